@@ -1,0 +1,554 @@
+//! The triangulation T^h and the parts of its boundary by name.
+//!
+//! ```text
+//!     6 --- 7 --- 8
+//!     |   / |   / |      Triangles list their vertices counter-clockwise; edge i of a triangle lies opposite its
+//!     | /   | /   |      vertex i; outward normals lie to the right of the counter-clockwise boundary; h_T is the
+//!     3 --- 4 --- 5      longest edge of T.
+//!     |   / |   / |
+//!     | /   | /   |      (2 x 2 cells with the diagonal "right")
+//!     0 --- 1 --- 2
+//! ```
+//!
+//! A [`Mesh`] that exists is valid: everything is checked when it is made, and nothing is checked again.
+
+use std::collections::BTreeMap;
+
+use thiserror::Error;
+
+use crate::kernel::Triangle;
+
+/// A conforming triangulation with named parts of its boundary.
+#[derive(Clone, Debug)]
+pub struct Mesh {
+    vertices: Vec<[f64; 2]>,
+    triangles: Vec<[usize; 3]>,
+    triangle_edges: Vec<[usize; 3]>,
+    edge_count: usize,
+    outline: Vec<BoundaryEdge>,
+    boundaries: BTreeMap<String, Vec<BoundaryEdge>>,
+}
+
+/// An edge on the boundary, by the triangle that owns it: edge `local` lies opposite the triangle's vertex `local`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BoundaryEdge {
+    /// The number of the triangle.
+    pub triangle: usize,
+    /// 0, 1 or 2.
+    pub local: usize,
+}
+
+/// Why there is no such mesh. Vertices and triangles are counted from 0, or by the numbers of the file they came from.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[expect(missing_docs, reason = "the message of each variant says what it is")]
+pub enum MeshError {
+    #[error("the mesh has no triangle; expected at least one")]
+    Empty,
+    #[error("vertex {vertex} is at ({x}, {y}); expected finite coordinates")]
+    NotFinite { vertex: usize, x: f64, y: f64 },
+    #[error(
+        "triangle {triangle} names vertex {vertex}; expected one of the {count} vertices of this mesh"
+    )]
+    NoSuchVertex { triangle: usize, vertex: usize, count: usize },
+    #[error("triangle {triangle} (vertices {}, {}, {}) has area {area}: list its vertices counter-clockwise", vertices[0], vertices[1], vertices[2])]
+    Clockwise { triangle: usize, vertices: [usize; 3], area: f64 },
+    #[error("triangle {triangle} (vertices {}, {}, {}) is flat: its area {area} is nothing beside its diameter {diameter}", vertices[0], vertices[1], vertices[2])]
+    Flat { triangle: usize, vertices: [usize; 3], area: f64, diameter: f64 },
+    #[error("vertices {} and {} are both at ({x}, {y}); expected one vertex there", vertices[0], vertices[1])]
+    Duplicate { vertices: [usize; 2], x: f64, y: f64 },
+    #[error("vertex {vertex} at ({x}, {y}) belongs to no triangle")]
+    Unused { vertex: usize, x: f64, y: f64 },
+    #[error("triangles {} and {} overlap: both lie on the same side of the edge from vertex {} to vertex {}", triangles[0], triangles[1], vertices[0], vertices[1])]
+    Overlap { triangles: [usize; 2], vertices: [usize; 2] },
+    #[error("vertex {vertex} at ({x}, {y}) hangs inside the edge between vertices {} and {} of triangle {triangle}: neighbours must share whole edges", edge[0], edge[1])]
+    Hanging { vertex: usize, x: f64, y: f64, edge: [usize; 2], triangle: usize },
+    #[error("boundary '{boundary}': no triangle has an edge between vertices {} and {}", vertices[0], vertices[1])]
+    NoSuchEdge { boundary: String, vertices: [usize; 2] },
+    #[error("boundary '{boundary}': the edge between vertices {} and {} lies inside the body, between two triangles", vertices[0], vertices[1])]
+    InnerEdge { boundary: String, vertices: [usize; 2] },
+    #[error("the edge between vertices {} and {} belongs to boundary '{first}' and again to boundary '{second}'; expected one name for it", vertices[0], vertices[1])]
+    NamedTwice { vertices: [usize; 2], first: String, second: String },
+    #[error("no boundary named '{name}'; this mesh has: {known}")]
+    NoSuchBoundary { name: String, known: String },
+    #[error("{0}")]
+    Rectangle(#[from] super::rectangle::RectangleError),
+}
+
+/// Half of an edge: an edge as one of its triangles sees it, and the next edge that starts its list at the same vertex.
+struct Edge {
+    vertices: [usize; 2],
+    owner: BoundaryEdge,
+    inner: bool,
+    next: Option<usize>,
+}
+
+/// All edges, found from either end.
+struct Edges {
+    edges: Vec<Edge>,
+    first: Vec<Option<usize>>,
+}
+
+impl Edges {
+    fn find(&self, a: usize, b: usize) -> Option<usize> {
+        let mut edge = *self.first.get(a.min(b))?;
+        while let Some(e) = edge {
+            let [p, q] = self.edges[e].vertices;
+            if p.max(q) == a.max(b) {
+                return Some(e);
+            }
+            edge = self.edges[e].next;
+        }
+        None
+    }
+}
+
+impl Mesh {
+    /// The mesh with these vertices, these triangles (counter-clockwise) and these named boundary parts (edges as pairs
+    /// of vertices, in any direction). An edge of the boundary needs no name.
+    ///
+    /// # Errors
+    /// Whatever makes it no conforming mesh, with the numbers of the vertices and triangles concerned.
+    pub fn new(
+        vertices: Vec<[f64; 2]>,
+        triangles: Vec<[usize; 3]>,
+        named: impl IntoIterator<Item = (String, Vec<[usize; 2]>)>,
+    ) -> Result<Mesh, MeshError> {
+        if triangles.is_empty() {
+            return Err(MeshError::Empty);
+        }
+        check_vertices(&vertices, &triangles)?;
+        check_triangles(&vertices, &triangles)?;
+        let (edges, triangle_edges) = match_edges(vertices.len(), &triangles)?;
+        let outline: Vec<BoundaryEdge> =
+            edges.edges.iter().filter(|e| !e.inner).map(|e| e.owner).collect();
+        let boundaries = name_boundaries(&edges, named)?;
+        let mesh = Mesh {
+            vertices,
+            triangles,
+            triangle_edges,
+            edge_count: edges.edges.len(),
+            outline,
+            boundaries,
+        };
+        mesh.check_hanging()?;
+        Ok(mesh)
+    }
+
+    /// The vertices.
+    pub fn vertices(&self) -> &[[f64; 2]] {
+        &self.vertices
+    }
+
+    /// The vertices of each triangle, counter-clockwise.
+    pub fn triangles(&self) -> &[[usize; 3]] {
+        &self.triangles
+    }
+
+    /// The number of each triangle's edge i, opposite vertex i; the edges of the mesh are counted from 0.
+    pub fn triangle_edges(&self) -> &[[usize; 3]] {
+        &self.triangle_edges
+    }
+
+    /// How many edges there are.
+    pub fn edge_count(&self) -> usize {
+        self.edge_count
+    }
+
+    /// The whole boundary, named or not.
+    pub fn outline(&self) -> &[BoundaryEdge] {
+        &self.outline
+    }
+
+    /// The names of the boundary parts, in alphabetical order.
+    pub fn boundary_names(&self) -> impl Iterator<Item = &str> {
+        self.boundaries.keys().map(String::as_str)
+    }
+
+    /// The edges of a named boundary part.
+    ///
+    /// # Errors
+    /// [`MeshError::NoSuchBoundary`], with the names that there are.
+    pub fn edges_of(&self, boundary: &str) -> Result<&[BoundaryEdge], MeshError> {
+        match self.boundaries.get(boundary) {
+            Some(edges) => Ok(edges),
+            None => Err(MeshError::NoSuchBoundary {
+                name: boundary.to_owned(),
+                known: if self.boundaries.is_empty() {
+                    "no named boundary".to_owned()
+                } else {
+                    self.boundary_names().collect::<Vec<_>>().join(", ")
+                },
+            }),
+        }
+    }
+
+    /// Triangle `t` with its coordinates.
+    pub fn triangle(&self, t: usize) -> Triangle<f64> {
+        Triangle { vertices: self.triangles[t].map(|v| self.vertices[v]) }
+    }
+
+    /// h_T of (7): the diameter of triangle `t`, which is its longest edge.
+    pub fn diameter(&self, t: usize) -> f64 {
+        diameter(&self.triangle(t))
+    }
+
+    /// The vertices at the start and at the end of a boundary edge, the body on its left.
+    pub fn ends(&self, edge: BoundaryEdge) -> [usize; 2] {
+        let t = self.triangles[edge.triangle];
+        [t[(edge.local + 1) % 3], t[(edge.local + 2) % 3]]
+    }
+
+    /// The length of a boundary edge and its unit outward normal.
+    pub fn length_and_normal(&self, edge: BoundaryEdge) -> (f64, [f64; 2]) {
+        let [x, y] = self.triangle(edge.triangle).scaled_normal(edge.local);
+        let length = x.hypot(y);
+        (length, [x / length, y / length])
+    }
+
+    /// A vertex strictly inside a boundary edge means that neighbours don't share whole edges. Candidates come from a
+    /// grid over the boundary with cells as wide as the longest edge of the outline.
+    fn check_hanging(&self) -> Result<(), MeshError> {
+        let width = self.outline.iter().map(|&e| self.length_and_normal(e).0).fold(0.0, f64::max);
+        let cell = |p: [f64; 2]| p.map(|c| (c / width).floor() as i64);
+        let mut grid: BTreeMap<[i64; 2], Vec<usize>> = BTreeMap::new();
+        for &edge in &self.outline {
+            let [vertex, _] = self.ends(edge);
+            grid.entry(cell(self.vertices[vertex])).or_default().push(vertex);
+        }
+        for &edge in &self.outline {
+            let ends = self.ends(edge);
+            let [a, b] = ends.map(|v| self.vertices[v]);
+            let d = [b[0] - a[0], b[1] - a[1]];
+            let squared = d[0] * d[0] + d[1] * d[1];
+            let [i, j] = cell([(a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0]);
+            let near = (i - 1..=i + 1).flat_map(|i| (j - 1..=j + 1).map(move |j| [i, j]));
+            for &vertex in near.filter_map(|cell| grid.get(&cell)).flatten() {
+                let [x, y] = self.vertices[vertex];
+                let along = ((x - a[0]) * d[0] + (y - a[1]) * d[1]) / squared;
+                let across = ((x - a[0]) * d[1] - (y - a[1]) * d[0]) / squared;
+                if !ends.contains(&vertex)
+                    && 0.0 < along
+                    && along < 1.0
+                    && across.abs() <= ON_THE_EDGE
+                {
+                    return Err(MeshError::Hanging {
+                        vertex,
+                        x,
+                        y,
+                        edge: ends,
+                        triangle: edge.triangle,
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A vertex this close to an edge, in units of the edge's length, lies on it: some hundred rounding errors.
+const ON_THE_EDGE: f64 = 1e-13;
+
+/// A triangle whose area is less than this times h_T^2 is flat: its gradients would have lost all but a few digits.
+const FLAT: f64 = 1e-12;
+
+fn diameter(triangle: &Triangle<f64>) -> f64 {
+    [0, 1, 2]
+        .map(|i| {
+            let [x, y] = triangle.edge(i);
+            x.hypot(y)
+        })
+        .into_iter()
+        .fold(0.0, f64::max)
+}
+
+fn check_vertices(vertices: &[[f64; 2]], triangles: &[[usize; 3]]) -> Result<(), MeshError> {
+    for (vertex, &[x, y]) in vertices.iter().enumerate() {
+        if !(x.is_finite() && y.is_finite()) {
+            return Err(MeshError::NotFinite { vertex, x, y });
+        }
+    }
+    let mut used = vec![false; vertices.len()];
+    for (triangle, corners) in triangles.iter().enumerate() {
+        for &vertex in corners {
+            match used.get_mut(vertex) {
+                Some(used) => *used = true,
+                None => {
+                    let count = vertices.len();
+                    return Err(MeshError::NoSuchVertex { triangle, vertex, count });
+                }
+            }
+        }
+    }
+    let mut order: Vec<usize> = (0..vertices.len()).collect();
+    // Adding 0.0 makes -0 and 0 the same place.
+    let place = |v: usize| vertices[v].map(|c| c + 0.0);
+    order.sort_unstable_by(|&a, &b| {
+        let ([ax, ay], [bx, by]) = (place(a), place(b));
+        ax.total_cmp(&bx).then(ay.total_cmp(&by)).then(a.cmp(&b))
+    });
+    for pair in order.windows(2) {
+        if place(pair[0]) == place(pair[1]) {
+            let [x, y] = place(pair[0]);
+            return Err(MeshError::Duplicate { vertices: [pair[0], pair[1]], x, y });
+        }
+    }
+    match used.iter().position(|&used| !used) {
+        Some(vertex) => {
+            let [x, y] = vertices[vertex];
+            Err(MeshError::Unused { vertex, x, y })
+        }
+        None => Ok(()),
+    }
+}
+
+fn check_triangles(vertices: &[[f64; 2]], triangles: &[[usize; 3]]) -> Result<(), MeshError> {
+    for (triangle, &corners) in triangles.iter().enumerate() {
+        let t = Triangle { vertices: corners.map(|v| vertices[v]) };
+        let (area, diameter) = (t.double_area() / 2.0, diameter(&t));
+        let flat = FLAT * diameter * diameter;
+        if area < -flat {
+            return Err(MeshError::Clockwise { triangle, vertices: corners, area });
+        }
+        if !(area > flat) {
+            // Adding 0.0 spares the reader an area of -0.
+            return Err(MeshError::Flat {
+                triangle,
+                vertices: corners,
+                area: area + 0.0,
+                diameter,
+            });
+        }
+    }
+    Ok(())
+}
+
+fn match_edges(
+    vertex_count: usize,
+    triangles: &[[usize; 3]],
+) -> Result<(Edges, Vec<[usize; 3]>), MeshError> {
+    let mut all = Edges {
+        edges: Vec::with_capacity(triangles.len() * 3 / 2 + vertex_count),
+        first: vec![None; vertex_count],
+    };
+    let mut triangle_edges = vec![[0; 3]; triangles.len()];
+    for (triangle, corners) in triangles.iter().enumerate() {
+        for local in 0..3 {
+            let [a, b] = [corners[(local + 1) % 3], corners[(local + 2) % 3]];
+            let edge = match all.find(a, b) {
+                Some(e) => {
+                    let known = &mut all.edges[e];
+                    if known.inner || known.vertices == [a, b] {
+                        let triangles = [known.owner.triangle, triangle];
+                        return Err(MeshError::Overlap { triangles, vertices: [a, b] });
+                    }
+                    known.inner = true;
+                    e
+                }
+                None => {
+                    let first = &mut all.first[a.min(b)];
+                    all.edges.push(Edge {
+                        vertices: [a, b],
+                        owner: BoundaryEdge { triangle, local },
+                        inner: false,
+                        next: first.replace(all.edges.len()),
+                    });
+                    all.edges.len() - 1
+                }
+            };
+            triangle_edges[triangle][local] = edge;
+        }
+    }
+    Ok((all, triangle_edges))
+}
+
+fn name_boundaries(
+    edges: &Edges,
+    named: impl IntoIterator<Item = (String, Vec<[usize; 2]>)>,
+) -> Result<BTreeMap<String, Vec<BoundaryEdge>>, MeshError> {
+    let mut boundaries: BTreeMap<String, Vec<BoundaryEdge>> = BTreeMap::new();
+    let mut name_of: BTreeMap<usize, String> = BTreeMap::new();
+    for (name, pairs) in named {
+        let part = boundaries.entry(name.clone()).or_default();
+        for [a, b] in pairs {
+            let vertices = [a, b];
+            let Some(e) = edges.find(a, b) else {
+                return Err(MeshError::NoSuchEdge { boundary: name, vertices });
+            };
+            if edges.edges[e].inner {
+                return Err(MeshError::InnerEdge { boundary: name, vertices });
+            }
+            if let Some(first) = name_of.insert(e, name.clone()) {
+                return Err(MeshError::NamedTwice { vertices, first, second: name });
+            }
+            part.push(edges.edges[e].owner);
+        }
+    }
+    Ok(boundaries)
+}
+
+impl MeshError {
+    /// The same error in the numbers of the file that the mesh came from.
+    #[must_use]
+    pub fn renumbered(
+        mut self,
+        of_vertex: impl Fn(usize) -> usize,
+        of_triangle: impl Fn(usize) -> usize,
+    ) -> MeshError {
+        use MeshError::*;
+        let two = |pair: &mut [usize; 2]| *pair = pair.map(&of_vertex);
+        match &mut self {
+            NotFinite { vertex, .. } | Unused { vertex, .. } => *vertex = of_vertex(*vertex),
+            NoSuchVertex { triangle, .. } => *triangle = of_triangle(*triangle),
+            Clockwise { triangle, vertices, .. } | Flat { triangle, vertices, .. } => {
+                *triangle = of_triangle(*triangle);
+                *vertices = vertices.map(&of_vertex);
+            }
+            Duplicate { vertices, .. }
+            | NoSuchEdge { vertices, .. }
+            | InnerEdge { vertices, .. }
+            | NamedTwice { vertices, .. } => two(vertices),
+            Overlap { triangles, vertices } => {
+                *triangles = triangles.map(&of_triangle);
+                two(vertices);
+            }
+            Hanging { vertex, edge, triangle, .. } => {
+                *vertex = of_vertex(*vertex);
+                *triangle = of_triangle(*triangle);
+                two(edge);
+            }
+            Empty | NoSuchBoundary { .. } | Rectangle(_) => {}
+        }
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SQUARE: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+
+    fn mesh(vertices: &[[f64; 2]], triangles: &[[usize; 3]]) -> Result<Mesh, MeshError> {
+        Mesh::new(vertices.to_vec(), triangles.to_vec(), [])
+    }
+
+    fn named(parts: &[(&str, &[[usize; 2]])]) -> Result<Mesh, MeshError> {
+        let parts = parts.iter().map(|(name, edges)| ((*name).to_owned(), edges.to_vec()));
+        Mesh::new(SQUARE.to_vec(), vec![[0, 1, 2], [0, 2, 3]], parts)
+    }
+
+    fn message(result: Result<Mesh, MeshError>) -> String {
+        result.unwrap_err().to_string()
+    }
+
+    #[test]
+    fn a_square_of_two_triangles_has_five_edges_four_of_them_outside() {
+        let m = mesh(&SQUARE, &[[0, 1, 2], [0, 2, 3]]).unwrap();
+        assert_eq!(m.edge_count(), 5);
+        assert_eq!(m.outline().len(), 4);
+        assert_eq!(m.triangle_edges()[0][1], m.triangle_edges()[1][2], "the diagonal is shared");
+        assert_eq!(m.diameter(0), 2.0_f64.sqrt());
+    }
+
+    #[test]
+    fn outward_normals_weighted_by_length_add_up_to_zero() {
+        let m = mesh(&SQUARE, &[[0, 1, 2], [0, 2, 3]]).unwrap();
+        let mut sum = [0.0; 2];
+        for &e in m.outline() {
+            let (length, n) = m.length_and_normal(e);
+            sum = [sum[0] + length * n[0], sum[1] + length * n[1]];
+        }
+        assert_eq!(sum, [0.0; 2]);
+    }
+
+    #[test]
+    fn boundary_parts_are_found_by_name_in_either_direction() {
+        let m = named(&[("floor", &[[1, 0]]), ("sides", &[[1, 2], [0, 3]])]).unwrap();
+        let floor = m.edges_of("floor").unwrap();
+        assert_eq!(m.ends(floor[0]), [0, 1]);
+        assert_eq!(m.length_and_normal(floor[0]), (1.0, [0.0, -1.0]));
+        assert_eq!(m.edges_of("sides").unwrap().len(), 2);
+    }
+
+    #[test]
+    fn unknown_boundaries_list_the_known_ones() {
+        let m = named(&[("floor", &[[0, 1]]), ("roof", &[[2, 3]])]).unwrap();
+        let e = m.edges_of("flor").unwrap_err().to_string();
+        assert_eq!(e, "no boundary named 'flor'; this mesh has: floor, roof");
+        let e = named(&[]).unwrap().edges_of("a").unwrap_err().to_string();
+        assert_eq!(e, "no boundary named 'a'; this mesh has: no named boundary");
+    }
+
+    #[test]
+    fn broken_vertices_and_triangles_are_refused_by_number() {
+        let mut bad = SQUARE;
+        bad[3][0] = f64::NAN;
+        let two = &[[0, 1, 2], [0, 2, 3]][..];
+        assert_eq!(
+            message(mesh(&bad, two)),
+            "vertex 3 is at (NaN, 1); expected finite coordinates"
+        );
+        assert_eq!(message(mesh(&SQUARE, &[])), "the mesh has no triangle; expected at least one");
+        assert_eq!(
+            message(mesh(&SQUARE, &[[0, 1, 2], [0, 2, 7]])),
+            "triangle 1 names vertex 7; expected one of the 4 vertices of this mesh"
+        );
+        assert_eq!(
+            message(mesh(&SQUARE, &[[0, 1, 2], [0, 3, 2]])),
+            "triangle 1 (vertices 0, 3, 2) has area -0.5: list its vertices counter-clockwise"
+        );
+        let flat = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [0.0, 1.0]];
+        assert_eq!(
+            message(mesh(&flat, &[[0, 1, 3], [0, 1, 2]])),
+            "triangle 1 (vertices 0, 1, 2) is flat: its area 0 is nothing beside its diameter 2"
+        );
+        let twice = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [-0.0, 0.0], [0.0, 1.0]];
+        assert_eq!(
+            message(mesh(&twice, &[[0, 1, 2], [3, 2, 4]])),
+            "vertices 0 and 3 are both at (0, 0); expected one vertex there"
+        );
+        assert_eq!(
+            message(mesh(&SQUARE, &[[0, 1, 2]])),
+            "vertex 3 at (0, 1) belongs to no triangle"
+        );
+    }
+
+    #[test]
+    fn overlapping_and_hanging_triangles_are_refused() {
+        let v = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [2.0, 3.0]];
+        assert_eq!(
+            message(mesh(&v, &[[0, 1, 2], [0, 1, 3]])),
+            "triangles 0 and 1 overlap: both lie on the same side of the edge from vertex 0 to vertex 1"
+        );
+        let v = [[0.0, 0.0], [2.0, 0.0], [0.0, 2.0], [1.0, 1.0], [2.0, 2.0]];
+        assert_eq!(
+            message(mesh(&v, &[[0, 1, 2], [1, 4, 3], [3, 4, 2]])),
+            "vertex 3 at (1, 1) hangs inside the edge between vertices 1 and 2 of triangle 0: neighbours must share whole edges"
+        );
+    }
+
+    #[test]
+    fn boundary_edges_that_are_none_are_refused() {
+        assert_eq!(
+            message(named(&[("floor", &[[1, 3]])])),
+            "boundary 'floor': no triangle has an edge between vertices 1 and 3"
+        );
+        assert_eq!(
+            message(named(&[("cut", &[[0, 2]])])),
+            "boundary 'cut': the edge between vertices 0 and 2 lies inside the body, between two triangles"
+        );
+        assert_eq!(
+            message(named(&[("floor", &[[0, 1]]), ("base", &[[1, 0]])])),
+            "the edge between vertices 1 and 0 belongs to boundary 'floor' and again to boundary 'base'; expected one name for it"
+        );
+    }
+
+    #[test]
+    fn errors_can_speak_in_the_numbers_of_a_file() {
+        let e = mesh(&SQUARE, &[[0, 1, 2], [0, 3, 2]]).unwrap_err();
+        assert_eq!(
+            e.renumbered(|v| v + 100, |t| t + 7).to_string(),
+            "triangle 8 (vertices 100, 103, 102) has area -0.5: list its vertices counter-clockwise"
+        );
+    }
+}

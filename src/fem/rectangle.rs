@@ -1,0 +1,204 @@
+//! Structured meshes of the rectangle (0, width) x (0, height), with the sides named left, right, bottom and top.
+//!
+//! ```text
+//!     3 --- 4 --- 5      3 --- 4 --- 5      4 --- 5 --- 6
+//!     |   / |   / |      | \   | \   |      | \ / | \ / |
+//!     | /   | /   |      |   \ |   \ |      |  2  |  7  |   (numbers differ)
+//!     0 --- 1 --- 2      0 --- 1 --- 2      | / \ | / \ |
+//!         right              left               crossed
+//! ```
+
+use thiserror::Error;
+
+use super::mesh::{Mesh, MeshError};
+
+/// How the cells of a structured mesh are cut into triangles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Diagonal {
+    /// From the upper left to the lower right.
+    Left,
+    /// From the lower left to the upper right.
+    Right,
+    /// Both, with a vertex in the middle of each cell.
+    Crossed,
+}
+
+/// A rectangle cut into `nx` x `ny` equal cells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rectangle {
+    /// The extent along x.
+    pub width: f64,
+    /// The extent along y.
+    pub height: f64,
+    /// Cells along x.
+    pub nx: usize,
+    /// Cells along y.
+    pub ny: usize,
+    /// How they are cut.
+    pub diagonal: Diagonal,
+}
+
+/// The most cells that a rectangle may have: beyond it the factorisation would not fit into the memory of one machine.
+pub const MOST_CELLS: usize = 4_000_000;
+
+/// Why there is no such rectangle.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[expect(missing_docs, reason = "the message of each variant says what it is")]
+pub enum RectangleError {
+    #[error("{name} = {value}; expected a positive finite length")]
+    Size { name: &'static str, value: f64 },
+    #[error("{name} = {value}; expected at least one cell")]
+    NoCells { name: &'static str, value: usize },
+    #[error("nx = {nx} and ny = {ny} make more than {MOST_CELLS} cells; expected fewer")]
+    TooMany { nx: usize, ny: usize },
+}
+
+impl Rectangle {
+    /// The mesh of this rectangle.
+    ///
+    /// # Errors
+    /// Sizes that are not positive and finite, no cells, or more than [`MOST_CELLS`] of them.
+    pub fn mesh(&self) -> Result<Mesh, MeshError> {
+        self.check()?;
+        Mesh::new(self.vertices(), self.triangles(), self.sides())
+    }
+
+    fn check(&self) -> Result<(), RectangleError> {
+        for (name, value) in [("width", self.width), ("height", self.height)] {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(RectangleError::Size { name, value });
+            }
+        }
+        for (name, value) in [("nx", self.nx), ("ny", self.ny)] {
+            if value == 0 {
+                return Err(RectangleError::NoCells { name, value });
+            }
+        }
+        match self.nx.checked_mul(self.ny) {
+            Some(cells) if cells <= MOST_CELLS => Ok(()),
+            _ => Err(RectangleError::TooMany { nx: self.nx, ny: self.ny }),
+        }
+    }
+
+    /// Row by row from below; the middles of crossed cells follow.
+    fn vertices(&self) -> Vec<[f64; 2]> {
+        let x = |i: f64| self.width * (i / self.nx as f64);
+        let y = |j: f64| self.height * (j / self.ny as f64);
+        let mut vertices: Vec<[f64; 2]> = (0..=self.ny)
+            .flat_map(|j| (0..=self.nx).map(move |i| [x(i as f64), y(j as f64)]))
+            .collect();
+        if self.diagonal == Diagonal::Crossed {
+            vertices.extend(
+                (0..self.ny).flat_map(|j| {
+                    (0..self.nx).map(move |i| [x(i as f64 + 0.5), y(j as f64 + 0.5)])
+                }),
+            );
+        }
+        vertices
+    }
+
+    fn corner(&self, i: usize, j: usize) -> usize {
+        j * (self.nx + 1) + i
+    }
+
+    fn triangles(&self) -> Vec<[usize; 3]> {
+        let middles = (self.nx + 1) * (self.ny + 1);
+        let mut triangles = Vec::with_capacity(4 * self.nx * self.ny);
+        for j in 0..self.ny {
+            for i in 0..self.nx {
+                let [a, b] = [self.corner(i, j), self.corner(i + 1, j)];
+                let [d, c] = [self.corner(i, j + 1), self.corner(i + 1, j + 1)];
+                match self.diagonal {
+                    Diagonal::Right => triangles.extend([[a, b, c], [a, c, d]]),
+                    Diagonal::Left => triangles.extend([[a, b, d], [b, c, d]]),
+                    Diagonal::Crossed => {
+                        let m = middles + j * self.nx + i;
+                        triangles.extend([[a, b, m], [b, c, m], [c, d, m], [d, a, m]]);
+                    }
+                }
+            }
+        }
+        triangles
+    }
+
+    fn sides(&self) -> [(String, Vec<[usize; 2]>); 4] {
+        let (nx, ny) = (self.nx, self.ny);
+        let along = |j| (0..nx).map(|i| [self.corner(i, j), self.corner(i + 1, j)]).collect();
+        let up = |i| (0..ny).map(|j| [self.corner(i, j), self.corner(i, j + 1)]).collect();
+        [
+            ("bottom".to_owned(), along(0)),
+            ("left".to_owned(), up(0)),
+            ("right".to_owned(), up(nx)),
+            ("top".to_owned(), along(ny)),
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rectangle(diagonal: Diagonal) -> Rectangle {
+        Rectangle { width: 3.0, height: 1.0, nx: 3, ny: 2, diagonal }
+    }
+
+    #[test]
+    fn every_diagonal_fills_the_rectangle() {
+        for (diagonal, triangles, vertices) in
+            [(Diagonal::Left, 12, 12), (Diagonal::Right, 12, 12), (Diagonal::Crossed, 24, 18)]
+        {
+            let mesh = rectangle(diagonal).mesh().unwrap();
+            assert_eq!(mesh.triangles().len(), triangles);
+            assert_eq!(mesh.vertices().len(), vertices);
+            let area: f64 = (0..triangles).map(|t| mesh.triangle(t).double_area() / 2.0).sum();
+            assert!((area - 3.0).abs() < 1e-14);
+            assert_eq!(mesh.outline().len(), 10);
+        }
+    }
+
+    #[test]
+    fn sides_have_their_names_lengths_and_normals() {
+        let mesh = rectangle(Diagonal::Right).mesh().unwrap();
+        let names: Vec<&str> = mesh.boundary_names().collect();
+        assert_eq!(names, ["bottom", "left", "right", "top"]);
+        for (name, length, normal) in [
+            ("bottom", 3.0, [0.0, -1.0]),
+            ("left", 1.0, [-1.0, 0.0]),
+            ("right", 1.0, [1.0, 0.0]),
+            ("top", 3.0, [0.0, 1.0]),
+        ] {
+            let edges = mesh.edges_of(name).unwrap();
+            let sum: f64 = edges.iter().map(|&e| mesh.length_and_normal(e).0).sum();
+            assert!((sum - length).abs() < 1e-15);
+            for &e in edges {
+                assert_eq!(mesh.length_and_normal(e).1, normal);
+            }
+        }
+    }
+
+    #[test]
+    fn right_diagonals_run_from_the_lower_left_to_the_upper_right() {
+        let mesh = rectangle(Diagonal::Right).mesh().unwrap();
+        assert_eq!(mesh.triangles()[0], [0, 1, 5]);
+        assert_eq!(mesh.vertices()[5], [1.0, 0.5]);
+    }
+
+    #[test]
+    fn impossible_rectangles_are_refused() {
+        let message = |r: Rectangle| r.mesh().unwrap_err().to_string();
+        let r = rectangle(Diagonal::Right);
+        assert_eq!(
+            message(Rectangle { width: 0.0, ..r }),
+            "width = 0; expected a positive finite length"
+        );
+        assert_eq!(
+            message(Rectangle { height: f64::NAN, ..r }),
+            "height = NaN; expected a positive finite length"
+        );
+        assert_eq!(message(Rectangle { ny: 0, ..r }), "ny = 0; expected at least one cell");
+        assert_eq!(
+            message(Rectangle { nx: usize::MAX, ..r }),
+            "nx = 18446744073709551615 and ny = 2 make more than 4000000 cells; expected fewer"
+        );
+    }
+}

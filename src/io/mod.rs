@@ -1,0 +1,1 @@
+//! What goes in and out: case files, Gmsh meshes, VTU, SVG, JSON.

@@ -1,0 +1,132 @@
+//! One edge E of Gamma_C with the triangle T that owns it: the functionals P0 and sigma_n, the matrix of
+//! -int_E gamma sigma_n(u) sigma_n(v) in A_gamma, and the share of E in the coercivity number kappa.
+//!
+//! On E, P0(v) = v_n - gamma sigma_n(v) is a polynomial of degree p, so its values at the M = p + 1 nodes of the edge
+//! determine it; sigma_n(v) has degree p - 1 <= 1, so its values at the two ends do.
+
+use super::triangle::on_edge;
+use super::{Element, Material, Scalar, Triangle};
+
+/// The functionals on one contact edge. A functional is a vector per node of the triangle: its value at v is the sum
+/// over the nodes j of `functional[j] . v_j`.
+#[derive(Clone, Copy, Debug)]
+pub struct ContactEdge<S, const N: usize, const M: usize> {
+    /// P0 at each node of the edge, in the order of [`Element::edge_nodes`].
+    pub p0: [[[S; 2]; N]; M],
+    /// sigma_n at the start and at the end of the edge.
+    pub sigma_n: [[[S; 2]; N]; 2],
+}
+
+impl<S: Scalar, const N: usize, const M: usize> ContactEdge<S, N, M> {
+    /// The functionals on edge `i` (mod 3) of `triangle`, with the unit outward normal `n` and gamma = gamma0 h_T of (7).
+    pub fn new<E: Element<N, M>>(
+        triangle: &Triangle<S>,
+        i: usize,
+        n: [S; 2],
+        material: &Material<S>,
+        gamma: S,
+    ) -> Self {
+        let barycentric = triangle.barycentric_gradients();
+        let sigma_n_at = |s: S| {
+            E::gradients(on_edge(i, s), barycentric).map(|g| material.normal_stress_of_shape(g, n))
+        };
+        let mut p0 = E::edge_positions().map(|s| sigma_n_at(s).map(|v| v.map(|c| -(gamma * c))));
+        for (row, node) in p0.iter_mut().zip(E::edge_nodes(i)) {
+            row[node] = [row[node][0] + n[0], row[node][1] + n[1]];
+        }
+        ContactEdge { p0, sigma_n: [sigma_n_at(S::from(0)), sigma_n_at(S::from(1))] }
+    }
+
+    /// int_E gamma sigma_n(u) sigma_n(v) for v = N_i e_c, u = N_j e_d, with `weight` = gamma |E|. Exact.
+    pub fn stress_product(&self, weight: S, i: usize, j: usize) -> [[S; 2]; 2] {
+        let [start, end] = &self.sigma_n;
+        [0, 1].map(|c| {
+            [0, 1].map(|d| {
+                weight * integral_of_product([start[i][c], end[i][c]], [start[j][d], end[j][d]])
+            })
+        })
+    }
+}
+
+/// int_0^1 f g for two affine functions given by their values at 0 and 1.
+pub fn integral_of_product<S: Scalar>(f: [S; 2], g: [S; 2]) -> S {
+    let two = S::from(2);
+    (f[0] * (two * g[0] + g[1]) + f[1] * (g[0] + two * g[1])) / S::from(6)
+}
+
+/// kappa_T / gamma0 of one triangle: c_p (lambda + 2 mu) h_T |Gamma_C edges of T| / |T|, so that
+/// |gamma^{1/2} sigma_n(v)|^2 on those edges is at most kappa_T a_T(v, v), the explicit form of (11).
+pub fn coercivity_constant<E, S, const N: usize, const M: usize>(
+    material: &Material<S>,
+    diameter: S,
+    contact_length: S,
+    area: S,
+) -> S
+where
+    E: Element<N, M>,
+    S: Scalar,
+{
+    S::from(E::TRACE_CONSTANT) * material.normal_stiffness() * diameter * contact_length / area
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::element::displacement_gradient;
+    use crate::kernel::{ContactPoint, P1, P2, Plane};
+
+    const T: Triangle<f64> = Triangle { vertices: [[0.0, 0.0], [3.0, 0.0], [0.0, 4.0]] };
+
+    fn apply<const N: usize>(functional: &[[f64; 2]; N], v: &[[f64; 2]; N]) -> f64 {
+        functional.iter().zip(v).map(|(f, v)| f[0] * v[0] + f[1] * v[1]).sum()
+    }
+
+    /// The functionals of edge 0 against stress and displacement evaluated from the field.
+    fn functionals_are_their_definitions<E: Element<N, M>, const N: usize, const M: usize>() {
+        let material = Material::lame(1.0, 1.0, Plane::Strain);
+        let (n, gamma) = ([0.8, 0.6], 0.3);
+        let edge = ContactEdge::new::<E>(&T, 0, n, &material, gamma);
+        let mut v = [[0.0; 2]; N];
+        for (j, v) in v.iter_mut().enumerate() {
+            *v = [0.3 + 0.7 * j as f64, -0.2 + 0.1 * (j * j) as f64];
+        }
+        for (a, s) in E::edge_positions::<f64>().into_iter().enumerate() {
+            let l = on_edge(0, s);
+            let values = E::values(l);
+            let u: [f64; 2] = [0, 1].map(|c| (0..N).map(|j| values[j] * v[j][c]).sum());
+            let gradients = E::gradients(l, T.barycentric_gradients());
+            let stress = material.stress(displacement_gradient(&v, &gradients));
+            let point = ContactPoint {
+                u_n: u[0] * n[0] + u[1] * n[1],
+                gap: 0.0,
+                sigma_n: stress.normal(n),
+                gamma,
+            };
+            assert!((apply(&edge.p0[a], &v) - point.p0()).abs() < 1e-13);
+            if a < 2 {
+                assert!((apply(&edge.sigma_n[a], &v) - point.sigma_n).abs() < 1e-13);
+            }
+        }
+    }
+
+    #[test]
+    fn p0_and_sigma_n_are_what_their_definitions_say() {
+        functionals_are_their_definitions::<P1, 3, 2>();
+        functionals_are_their_definitions::<P2, 6, 3>();
+    }
+
+    #[test]
+    fn integral_of_product_is_simpson() {
+        // (1 - 3s)(2 + 5s): values 1, -2 and 2, 7; midpoint -1/2 and 9/2.
+        let simpson = (1.0 * 2.0 + 4.0 * (-0.5 * 4.5) + -2.0 * 7.0) / 6.0;
+        assert_eq!(integral_of_product([1.0, -2.0], [2.0, 7.0]), simpson);
+    }
+
+    #[test]
+    fn the_limit_of_the_3_4_5_triangle_is_2_over_15() {
+        let material = Material::lame(1.0, 1.0, Plane::Strain);
+        let c = coercivity_constant::<P1, f64, 3, 2>(&material, 5.0, 3.0, 6.0);
+        assert_eq!(c, 7.5);
+        assert_eq!(coercivity_constant::<P2, f64, 6, 3>(&material, 5.0, 3.0, 6.0), 22.5);
+    }
+}

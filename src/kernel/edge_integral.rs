@@ -1,0 +1,356 @@
+//! The integrals of method (8) and of J_h over one contact edge, for P given by its values at the nodes of the edge.
+//!
+//! On the edge, parametrised by s in \[0, 1\], P = sum_a p_a N_a(s) with the Lagrange polynomials N_a of degree p. With the
+//! weight |E| / gamma outside, (8) needs
+//!
+//! - energy    1/2 int \[P\]+^2, its share of J_h,
+//! - gradient  int \[P\]+ N_a, the derivative of the energy with respect to p_a,
+//! - hessian   int_{P > 0} N_a N_b, the derivative that Newton uses,
+//! - active    the measure of {P > 0}.
+//!
+//! **Exact**: the edge is cut at the roots of P, so there is no quadrature error at all: in closed form for P1, whose
+//! positive part lives on one interval; with three Gauss points on each of at most two intervals for P2 (degree 4).
+//! **Gauss**: the points of a rule on the whole edge, \[.\]+ at each.
+
+use super::contact_edge::integral_of_product;
+use super::{Element, P1, P2, Scalar, positive_part, positive_part_slope};
+
+/// The integrals over s in \[0, 1\]; multiply all but `active` by |E| / gamma, and `active` by |E|.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EdgeIntegrals<S, const M: usize> {
+    /// 1/2 int \[P\]+^2
+    pub energy: S,
+    /// int \[P\]+ N_a
+    pub gradient: [S; M],
+    /// int_{P > 0} N_a N_b
+    pub hessian: [[S; M]; M],
+    /// the measure of {P > 0}
+    pub active: S,
+}
+
+impl<S: Scalar, const M: usize> EdgeIntegrals<S, M> {
+    const fn of(value: S) -> Self {
+        EdgeIntegrals {
+            energy: value,
+            gradient: [value; M],
+            hessian: [[value; M]; M],
+            active: value,
+        }
+    }
+
+    /// Adds a point of a rule: weight, the value and slope of \[.\]+ there, and the shape functions.
+    fn add(&mut self, weight: S, positive: S, slope: S, shapes: [S; M]) {
+        self.energy = self.energy + weight * positive * positive / S::from(2);
+        self.active = self.active + weight * slope;
+        for a in 0..M {
+            self.gradient[a] = self.gradient[a] + weight * positive * shapes[a];
+            for b in 0..M {
+                self.hessian[a][b] = self.hessian[a][b] + weight * slope * shapes[a] * shapes[b];
+            }
+        }
+    }
+}
+
+/// P at `s` from its nodal values.
+pub fn value_at<E, S, const N: usize, const M: usize>(p: [S; M], s: S) -> S
+where
+    E: Element<N, M>,
+    S: Scalar,
+{
+    let shapes = E::edge_values(s);
+    (0..M).fold(S::from(0), |sum, a| sum + p[a] * shapes[a])
+}
+
+/// An element whose edge integrals are known exactly in the number type `S`: P1 in every field, P2 in doubles (the
+/// roots of a quadratic P need a square root).
+pub trait ExactEdge<S, const N: usize, const M: usize>: Element<N, M> {
+    /// The integrals without quadrature error. A NaN in `p` makes them NaN.
+    fn exact(p: [S; M]) -> EdgeIntegrals<S, M>;
+}
+
+/// The interval of \[0, 1\] on which the affine function with the values `p` at 0 and 1 is positive, as its two ends;
+/// \[0, 0\] if there is none.
+pub fn positive_interval<S: Scalar>(p: [S; 2]) -> [S; 2] {
+    let (zero, one) = (S::from(0), S::from(1));
+    let root = || p[0] / (p[0] - p[1]);
+    let start = p[0].split(|_| p[1].split(|_| zero, |_| root()), |_| zero);
+    let end = p[1].split(|_| p[0].split(|_| zero, |_| root()), |_| one);
+    [start, end]
+}
+
+impl<S: Scalar> ExactEdge<S, 3, 2> for P1 {
+    /// On its positive interval \[P\]+ is affine: \[p_0\]+ at the start and \[p_1\]+ at the end, and so are the N_a.
+    fn exact(p: [S; 2]) -> EdgeIntegrals<S, 2> {
+        let [start, end] = positive_interval(p);
+        let length = end - start;
+        let positive = p.map(positive_part);
+        let at_start: [S; 2] = P1::edge_values(start);
+        let at_end: [S; 2] = P1::edge_values(end);
+        let shapes = [0, 1].map(|a| [at_start[a], at_end[a]]);
+        let integral = |f, g| length * integral_of_product(f, g);
+        EdgeIntegrals {
+            energy: integral(positive, positive) / S::from(2),
+            gradient: shapes.map(|n| integral(positive, n)),
+            hessian: shapes.map(|m| shapes.map(|n| integral(m, n))),
+            active: length,
+        }
+    }
+}
+
+impl ExactEdge<f64, 6, 3> for P2 {
+    fn exact(p: [f64; 3]) -> EdgeIntegrals<f64, 3> {
+        let mut sum = EdgeIntegrals::of(0.0);
+        let mut cuts = Cuts::new();
+        cuts.add_roots::<P2, 6, 3>(p);
+        for [start, end] in cuts.pieces() {
+            // A NaN is not <= 0: the piece counts as positive and the integrals become NaN.
+            if !(value_at::<P2, f64, 6, 3>(p, (start + end) / 2.0) <= 0.0) {
+                for (s, weight) in gauss3(start, end) {
+                    let shapes = P2::edge_values(s);
+                    // Inside a positive piece P itself is integrated: a rounding error of its sign near the ends of
+                    // the piece must not cut it again.
+                    let value = value_at::<P2, f64, 6, 3>(p, s);
+                    sum.add(weight, value, 1.0, shapes);
+                }
+            }
+        }
+        sum
+    }
+}
+
+/// The integrals by a rule on the whole edge: `rule` yields points in \[0, 1\] with their weights.
+pub fn gauss<E, S, const N: usize, const M: usize>(
+    p: [S; M],
+    rule: impl IntoIterator<Item = (S, S)>,
+) -> EdgeIntegrals<S, M>
+where
+    E: Element<N, M>,
+    S: Scalar,
+{
+    let mut sum = EdgeIntegrals::of(S::from(0));
+    for (s, weight) in rule {
+        let value = value_at::<E, S, N, M>(p, s);
+        let shapes = E::edge_values(s);
+        sum.add(weight, positive_part(value), positive_part_slope(value), shapes);
+    }
+    sum
+}
+
+/// The change 1/2 int \[Q\]+^2 - 1/2 int \[P\]+^2 without quadrature error, as the integral of
+/// 1/2 (\[Q\]+ - \[P\]+) (\[Q\]+ + \[P\]+) over the pieces on which neither P nor Q changes sign: a line search that
+/// subtracted two energies would drown in their rounding errors.
+pub fn exact_energy_change<E, const N: usize, const M: usize>(p: [f64; M], q: [f64; M]) -> f64
+where
+    E: Element<N, M>,
+{
+    let mut cuts = Cuts::new();
+    cuts.add_roots::<E, N, M>(p);
+    cuts.add_roots::<E, N, M>(q);
+    cuts.pieces().map(|[start, end]| gauss_energy_change::<E, N, M>(p, q, gauss3(start, end))).sum()
+}
+
+/// The same change by a rule: the sum of w/2 (\[Q\]+ - \[P\]+) (\[Q\]+ + \[P\]+) over its points.
+pub fn gauss_energy_change<E, const N: usize, const M: usize>(
+    p: [f64; M],
+    q: [f64; M],
+    rule: impl IntoIterator<Item = (f64, f64)>,
+) -> f64
+where
+    E: Element<N, M>,
+{
+    rule.into_iter()
+        .map(|(s, weight)| {
+            let before = positive_part(value_at::<E, f64, N, M>(p, s));
+            let after = positive_part(value_at::<E, f64, N, M>(q, s));
+            weight / 2.0 * (after - before) * (after + before)
+        })
+        .sum()
+}
+
+/// The largest value of P on the edge: at an end, or at the vertex of the parabola. NaN if one of them is.
+pub fn maximum<E, const N: usize, const M: usize>(p: [f64; M]) -> f64
+where
+    E: Element<N, M>,
+{
+    let [_, b, c] = monomials::<E, N, M>(p);
+    let vertex = -b / (2.0 * c);
+    let inside = if 0.0 < vertex && vertex < 1.0 { vertex } else { 0.0 };
+    [0.0, inside, 1.0]
+        .map(|s| value_at::<E, f64, N, M>(p, s))
+        .into_iter()
+        .fold(f64::NEG_INFINITY, |max, p| if p <= max || max.is_nan() { max } else { p })
+}
+
+/// a + b s + c s^2 from the values at 0, 1/2 and 1.
+fn monomials<E: Element<N, M>, const N: usize, const M: usize>(p: [f64; M]) -> [f64; 3] {
+    let [start, middle, end] = [0.0, 0.5, 1.0].map(|s| value_at::<E, f64, N, M>(p, s));
+    if E::DEGREE == 1 {
+        [start, end - start, 0.0]
+    } else {
+        [start, 4.0 * middle - 3.0 * start - end, 2.0 * (start + end) - 4.0 * middle]
+    }
+}
+
+/// \[0, 1\] cut at the places where one or two polynomials of degree <= 2 may change sign.
+struct Cuts {
+    at: [f64; 6],
+    len: usize,
+}
+
+impl Cuts {
+    fn new() -> Self {
+        Cuts { at: [0.0, 1.0, 0.0, 0.0, 0.0, 0.0], len: 2 }
+    }
+
+    /// Adds the roots of P inside (0, 1), by the formula that doesn't cancel. A double root changes no sign and is left
+    /// out; that the two roots near it are inexact is harmless, for the integrals of \[P\]+ are C^1 in the roots.
+    fn add_roots<E: Element<N, M>, const N: usize, const M: usize>(&mut self, p: [f64; M]) {
+        let [a, b, c] = monomials::<E, N, M>(p);
+        let discriminant = b * b - 4.0 * a * c;
+        if discriminant > 0.0 {
+            let q = -0.5 * (b + discriminant.sqrt().copysign(b));
+            for root in [q / c, a / q] {
+                if 0.0 < root && root < 1.0 {
+                    self.at[self.len] = root;
+                    self.len += 1;
+                }
+            }
+        }
+    }
+
+    fn pieces(&mut self) -> impl Iterator<Item = [f64; 2]> {
+        let cuts = &mut self.at[..self.len];
+        cuts.sort_unstable_by(f64::total_cmp);
+        cuts.windows(2).map(|w| [w[0], w[1]])
+    }
+}
+
+/// The Gauss rule with three points on \[start, end\]: exact for polynomials of degree 5.
+fn gauss3(start: f64, end: f64) -> [(f64, f64); 3] {
+    let (middle, half) = ((start + end) / 2.0, (end - start) / 2.0);
+    let offset = 0.6_f64.sqrt() * half;
+    [
+        (middle - offset, half * (5.0 / 9.0)),
+        (middle, half * (8.0 / 9.0)),
+        (middle + offset, half * (5.0 / 9.0)),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A fine composite rule: 20,000 midpoints on the edge. For the kinked integrands its error is about 1e-9.
+    fn fine() -> impl Iterator<Item = (f64, f64)> {
+        (0..20_000).map(|i| ((f64::from(i) + 0.5) / 20_000.0, 1.0 / 20_000.0))
+    }
+
+    fn close<const M: usize>(a: &EdgeIntegrals<f64, M>, b: &EdgeIntegrals<f64, M>, tolerance: f64) {
+        let near = |x: f64, y: f64| assert!((x - y).abs() <= tolerance, "{a:?}\n{b:?}");
+        near(a.energy, b.energy);
+        near(a.active, b.active);
+        for i in 0..M {
+            near(a.gradient[i], b.gradient[i]);
+            for j in 0..M {
+                near(a.hessian[i][j], b.hessian[i][j]);
+            }
+        }
+    }
+
+    #[test]
+    fn a_cut_p1_edge_by_hand() {
+        // P = 1 - 3s is positive on [0, 1/3].
+        let e = P1::exact([1.0, -2.0]);
+        assert!((e.active - 1.0 / 3.0).abs() < 1e-16);
+        assert!((e.energy - 1.0 / 18.0).abs() < 1e-16);
+        assert!((e.gradient[0] + e.gradient[1] - 1.0 / 6.0).abs() < 1e-16);
+        assert!((e.gradient[1] - 1.0 / 54.0).abs() < 1e-16);
+    }
+
+    #[test]
+    fn full_contact_is_the_mass_matrix_and_separation_is_nothing() {
+        let e = P1::exact([1.0, 1.0]);
+        assert_eq!(e.hessian, [[1.0 / 3.0, 1.0 / 6.0], [1.0 / 6.0, 1.0 / 3.0]]);
+        assert_eq!((e.active, e.energy), (1.0, 0.5));
+        let nothing = EdgeIntegrals::of(0.0);
+        assert_eq!(P1::exact([-1.0, 0.0]), nothing);
+        assert_eq!(P2::exact([-1.0, 0.0, -0.5]), EdgeIntegrals::of(0.0));
+        assert_eq!(P2::exact([0.0; 3]), EdgeIntegrals::of(0.0));
+    }
+
+    #[test]
+    fn exact_p1_agrees_with_a_fine_rule() {
+        for p in [[1.0, -2.0], [-1.0, 3.0], [2.0, 0.5], [0.0, 1.0], [1e-3, -1.0]] {
+            let fine = gauss::<P1, f64, 3, 2>(p, fine());
+            close(&P1::exact(p), &fine, 1e-4);
+            assert!((P1::exact(p).energy - fine.energy).abs() < 1e-8);
+        }
+    }
+
+    #[test]
+    fn exact_p2_agrees_with_a_fine_rule_for_zero_one_and_two_roots() {
+        let cases = [
+            [1.0, -2.0, 0.3],
+            [-1.0, -1.0, 1.0],
+            [1.0, 1.0, -1.0],
+            [2.0, 0.5, 1.0],
+            [-1.0, 3.0, 1.0],
+            [1.0, 1.0, 1e-9],
+        ];
+        for p in cases {
+            let fine = gauss::<P2, f64, 6, 3>(p, fine());
+            close(&P2::exact(p), &fine, 2e-4);
+            assert!((P2::exact(p).energy - fine.energy).abs() < 1e-8);
+        }
+    }
+
+    #[test]
+    fn exact_p2_of_an_affine_p_is_exact_p1() {
+        let p1 = P1::exact([1.0, -2.0]);
+        let p2 = P2::exact([1.0, -2.0, -0.5]);
+        assert!((p1.energy - p2.energy).abs() < 1e-16);
+        assert!((p1.active - p2.active).abs() < 1e-15);
+        // N_0 of P1 is N_0 + N_2/2 of P2.
+        assert!((p1.gradient[0] - p2.gradient[0] - p2.gradient[2] / 2.0).abs() < 1e-16);
+        assert!((p1.gradient[1] - p2.gradient[1] - p2.gradient[2] / 2.0).abs() < 1e-16);
+    }
+
+    #[test]
+    fn the_change_of_energy_is_the_difference_of_energies() {
+        for (p, q) in
+            [([1.0, -2.0], [-0.5, 1.0]), ([1.0, 2.0], [1.5, 2.5]), ([-1.0, -1.0], [1.0, -3.0])]
+        {
+            let difference = P1::exact(q).energy - P1::exact(p).energy;
+            assert!((exact_energy_change::<P1, 3, 2>(p, q) - difference).abs() < 1e-15);
+        }
+        let (p, q) = ([1.0, 1.0, -1.0], [-1.0, 0.5, 1.0]);
+        let difference = P2::exact(q).energy - P2::exact(p).energy;
+        assert!((exact_energy_change::<P2, 6, 3>(p, q) - difference).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_change_of_energy_keeps_its_digits_where_the_difference_loses_them() {
+        let (p, q) = ([1.0, 1.0], [1.0 + 1e-14, 1.0 + 1e-14]);
+        let expected = (q[0] - p[0]) * (q[0] + p[0]) / 2.0;
+        let change = exact_energy_change::<P1, 3, 2>(p, q);
+        assert!((change - expected).abs() < 1e-15 * expected, "{change:e} {expected:e}");
+    }
+
+    #[test]
+    fn the_maximum_finds_the_vertex_of_a_parabola() {
+        // 4 s (1 - s) - 1/2 has its maximum 1/2 at s = 1/2; s (2 - s) rises to 1 at the end.
+        assert_eq!(maximum::<P2, 6, 3>([-0.5, -0.5, 0.5]), 0.5);
+        assert_eq!(maximum::<P2, 6, 3>([0.0, 1.0, 0.75]), 1.0);
+        assert_eq!(maximum::<P1, 3, 2>([2.0, -1.0]), 2.0);
+        assert!(maximum::<P1, 3, 2>([f64::NAN, -1.0]).is_nan());
+        assert!(maximum::<P1, 3, 2>([-1.0, f64::NAN]).is_nan());
+    }
+
+    #[test]
+    fn nan_is_not_no_contact() {
+        assert!(P1::exact([f64::NAN, -1.0]).energy.is_nan());
+        assert!(P1::exact([-1.0, f64::NAN]).energy.is_nan());
+        assert!(P2::exact([-1.0, f64::NAN, -1.0]).energy.is_nan());
+        assert!(gauss::<P1, f64, 3, 2>([f64::NAN, -1.0], [(0.5, 1.0)]).energy.is_nan());
+    }
+}

@@ -1,0 +1,34 @@
+//! The verified core: what method (8) computes at one point, on one triangle and on one contact edge.
+//!
+//! Pure functions of plain data, generic over the number type ([`Scalar`]), so that the very code that solves a
+//! user's problem in doubles can be run over exact rationals, over symbols and over intervals. Sign tests are its only
+//! branches; it allocates nothing, reads nothing and has no panic.
+//!
+//! | module | in the paper |
+//! | --- | --- |
+//! | [`scalar`] | the numbers and the one question asked of them |
+//! | [`positive_part`](mod@positive_part) | \[.\]+ and (4) |
+//! | [`material`] | sigma = A eps in (1), plane strain and plane stress |
+//! | [`triangle`] | T, its area, normals and barycentric gradients |
+//! | [`element`] | V^h: P1, and P2 of Remark 3.7; a(.,.) on one triangle |
+//! | [`contact`] | conditions (2), equation (5), P_gamma, lambda^h |
+//! | [`contact_edge`] | P_gamma and sigma_n as functionals on one edge of Gamma_C |
+//! | [`edge_integral`] | the integrals over one edge in (8) and in J_h |
+
+pub mod contact;
+pub mod contact_edge;
+pub mod edge_integral;
+pub mod element;
+pub mod material;
+pub mod positive_part;
+pub mod scalar;
+pub mod triangle;
+
+pub use contact::ContactPoint;
+pub use contact_edge::ContactEdge;
+pub use edge_integral::EdgeIntegrals;
+pub use element::{Element, P1, P2};
+pub use material::{Material, Plane, Stress};
+pub use positive_part::{positive_part, positive_part_slope};
+pub use scalar::Scalar;
+pub use triangle::Triangle;

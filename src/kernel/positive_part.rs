@@ -1,0 +1,43 @@
+//! The positive part \[a\]+ of section 2.2 and the derivative that Newton's method uses for it.
+//!
+//! Exact in every number type: a sign test and no arithmetic. -0 gives +0. A NaN stays a NaN, for a NaN must not become
+//! "no contact". An interval across zero gives \[0, hi\].
+
+use super::Scalar;
+
+/// \[a\]+ = a if a > 0, else 0. A NaN stays a NaN.
+pub fn positive_part<S: Scalar>(a: S) -> S {
+    a.split(|_| S::from(0), |a| a)
+}
+
+/// The derivative of \[a\]+ that Newton's method uses: 1 for a > 0, 0 for a <= 0, and 1 for a NaN (which \[.\]+ itself
+/// hands on). At a = 0, where \[.\]+ has a kink, any value in \[0, 1\] would serve: the energy J_h doesn't depend on it.
+pub fn positive_part_slope<S: Scalar>(a: S) -> S {
+    a.split(|_| S::from(0), |_| S::from(1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nan_stays_nan() {
+        assert!(positive_part(f64::NAN).is_nan());
+    }
+
+    #[test]
+    fn minus_zero_becomes_plus_zero() {
+        assert_eq!(positive_part(-0.0_f64).to_bits(), 0.0_f64.to_bits());
+    }
+
+    #[test]
+    fn positive_numbers_are_kept_to_the_bit_and_the_others_become_zero() {
+        for a in [f64::MIN_POSITIVE, 5e-324, 1.0, f64::MAX, f64::INFINITY] {
+            assert_eq!(positive_part(a), a);
+            assert_eq!(positive_part(-a), 0.0);
+            assert_eq!(positive_part_slope(a), 1.0);
+            assert_eq!(positive_part_slope(-a), 0.0);
+        }
+        assert_eq!(positive_part_slope(0.0), 0.0);
+    }
+}
