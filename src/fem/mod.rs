@@ -2,8 +2,11 @@
 
 pub mod mesh;
 pub mod problem;
+pub mod quadrature;
 pub mod rectangle;
+pub mod space;
 
 pub use mesh::{BoundaryEdge, Mesh, MeshError};
 pub use problem::{BoxedFunction, Condition, Function, Problem};
 pub use rectangle::{Diagonal, Rectangle};
+pub use space::Space;

@@ -136,35 +136,41 @@ where
     sum
 }
 
-/// The change 1/2 int \[Q\]+^2 - 1/2 int \[P\]+^2 without quadrature error, as the integral of
-/// 1/2 (\[Q\]+ - \[P\]+) (\[Q\]+ + \[P\]+) over the pieces on which neither P nor Q changes sign: a line search that
-/// subtracted two energies would drown in their rounding errors.
-pub fn exact_energy_change<E, const N: usize, const M: usize>(p: [f64; M], q: [f64; M]) -> f64
+/// The Bregman distance of 1/2 \[.\]+^2 from `a` to `b`: 1/2 \[b\]+^2 - 1/2 \[a\]+^2 - \[a\]+ (b - a), written as the sum
+/// 1/2 (\[b\]+ - \[a\]+)^2 + \[a\]+ \[-b\]+ of two terms that are never negative, so that nothing cancels. It is the part of
+/// the change of J_h along a step that is not linear.
+pub fn bregman<S: Scalar>(a: S, b: S) -> S {
+    let (positive_a, positive_b) = (positive_part(a), positive_part(b));
+    let d = positive_b - positive_a;
+    d * d / S::from(2) + positive_a * positive_part(-b)
+}
+
+/// The integral over the edge of the [Bregman distance](bregman) from P to Q, without quadrature error: over the pieces on
+/// which neither changes sign.
+pub fn exact_bregman<E, const N: usize, const M: usize>(p: [f64; M], q: [f64; M]) -> f64
 where
     E: Element<N, M>,
 {
     let mut cuts = Cuts::new();
     cuts.add_roots::<E, N, M>(p);
     cuts.add_roots::<E, N, M>(q);
-    cuts.pieces().map(|[start, end]| gauss_energy_change::<E, N, M>(p, q, gauss3(start, end))).sum()
+    cuts.pieces().map(|[start, end]| gauss_bregman::<E, f64, N, M>(p, q, gauss3(start, end))).sum()
 }
 
-/// The same change by a rule: the sum of w/2 (\[Q\]+ - \[P\]+) (\[Q\]+ + \[P\]+) over its points.
-pub fn gauss_energy_change<E, const N: usize, const M: usize>(
-    p: [f64; M],
-    q: [f64; M],
-    rule: impl IntoIterator<Item = (f64, f64)>,
-) -> f64
+/// The same integral by a rule on the whole edge.
+pub fn gauss_bregman<E, S, const N: usize, const M: usize>(
+    p: [S; M],
+    q: [S; M],
+    rule: impl IntoIterator<Item = (S, S)>,
+) -> S
 where
     E: Element<N, M>,
+    S: Scalar,
 {
-    rule.into_iter()
-        .map(|(s, weight)| {
-            let before = positive_part(value_at::<E, f64, N, M>(p, s));
-            let after = positive_part(value_at::<E, f64, N, M>(q, s));
-            weight / 2.0 * (after - before) * (after + before)
-        })
-        .sum()
+    rule.into_iter().fold(S::from(0), |sum, (s, weight)| {
+        let (a, b) = (value_at::<E, S, N, M>(p, s), value_at::<E, S, N, M>(q, s));
+        sum + weight * bregman(a, b)
+    })
 }
 
 /// The largest value of P on the edge: at an end, or at the vertex of the parabola. NaN if one of them is.
@@ -315,25 +321,35 @@ mod tests {
         assert!((p1.gradient[1] - p2.gradient[1] - p2.gradient[2] / 2.0).abs() < 1e-16);
     }
 
-    #[test]
-    fn the_change_of_energy_is_the_difference_of_energies() {
-        for (p, q) in
-            [([1.0, -2.0], [-0.5, 1.0]), ([1.0, 2.0], [1.5, 2.5]), ([-1.0, -1.0], [1.0, -3.0])]
-        {
-            let difference = P1::exact(q).energy - P1::exact(p).energy;
-            assert!((exact_energy_change::<P1, 3, 2>(p, q) - difference).abs() < 1e-15);
-        }
-        let (p, q) = ([1.0, 1.0, -1.0], [-1.0, 0.5, 1.0]);
-        let difference = P2::exact(q).energy - P2::exact(p).energy;
-        assert!((exact_energy_change::<P2, 6, 3>(p, q) - difference).abs() < 1e-15);
+    /// energy(Q) - energy(P) - gradient(P) . (Q - P), as the definition has it.
+    fn by_definition<const M: usize>(
+        exact: impl Fn([f64; M]) -> EdgeIntegrals<f64, M>,
+        p: [f64; M],
+        q: [f64; M],
+    ) -> f64 {
+        let linear: f64 = (0..M).map(|a| exact(p).gradient[a] * (q[a] - p[a])).sum();
+        exact(q).energy - exact(p).energy - linear
     }
 
     #[test]
-    fn the_change_of_energy_keeps_its_digits_where_the_difference_loses_them() {
-        let (p, q) = ([1.0, 1.0], [1.0 + 1e-14, 1.0 + 1e-14]);
-        let expected = (q[0] - p[0]) * (q[0] + p[0]) / 2.0;
-        let change = exact_energy_change::<P1, 3, 2>(p, q);
-        assert!((change - expected).abs() < 1e-15 * expected, "{change:e} {expected:e}");
+    fn the_bregman_distance_is_the_nonlinear_part_of_the_change_of_energy() {
+        let pairs =
+            [([1.0, -2.0], [-0.5, 1.0]), ([1.0, 2.0], [1.5, 2.5]), ([1.0, 1.0], [-1.0, -3.0])];
+        for (p, q) in pairs {
+            let distance = exact_bregman::<P1, 3, 2>(p, q);
+            assert!((distance - by_definition(P1::exact, p, q)).abs() < 1e-15);
+        }
+        let (p, q) = ([1.0, 1.0, -1.0], [-1.0, 0.5, 1.0]);
+        let distance = exact_bregman::<P2, 6, 3>(p, q);
+        assert!((distance - by_definition(P2::exact, p, q)).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_bregman_distance_keeps_its_digits_where_a_difference_of_energies_has_none() {
+        let (p, q) = ([1.0, 1.0], [1.0 + 1e-9, 1.0 + 1e-9]);
+        let step = q[0] - p[0];
+        let distance = exact_bregman::<P1, 3, 2>(p, q);
+        assert!((distance - step * step / 2.0).abs() < 1e-15 * distance, "{distance:e}");
     }
 
     #[test]
