@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::mesh::Mesh;
+use thiserror::Error;
+
+use super::mesh::{Mesh, MeshError};
 use crate::kernel::Material;
 
 /// A function of the place, such as a component of the body force.
@@ -48,4 +50,42 @@ pub struct Problem {
     pub body_force: [BoxedFunction; 2],
     /// What holds on the named parts of the boundary.
     pub conditions: BTreeMap<String, Condition>,
+}
+
+/// Why a problem can't be posed on its mesh.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[expect(missing_docs, reason = "the message of each variant says what it is")]
+pub enum DataError {
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    #[error("{what} is {value} at ({x}, {y}); expected a finite number at every point of the mesh")]
+    NotFinite { what: String, value: f64, x: f64, y: f64 },
+    #[error(
+        "the displacement boundaries '{first}' and '{second}' meet at ({x}, {y}) and disagree there: u_{} = {} and {}; expected one value",
+        ["x", "y"][*component], values[0], values[1]
+    )]
+    Disagree { first: String, second: String, x: f64, y: f64, component: usize, values: [f64; 2] },
+    #[error(
+        "no displacement is prescribed that stops the {motion}{part}; expected displacement boundaries that leave no rigid body motion free (contact pushes, it doesn't hold)"
+    )]
+    RigidMotion { motion: String, part: String },
+    #[error("no boundary has contact; expected one with contact = {{ gap = ... }}")]
+    NoContact,
+}
+
+/// The value of `function`, which the case calls `what()`, at `x`.
+///
+/// # Errors
+/// [`DataError::NotFinite`].
+pub fn finite(
+    function: &dyn Function,
+    x: [f64; 2],
+    what: impl Fn() -> String,
+) -> Result<f64, DataError> {
+    let value = function.at(x);
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(DataError::NotFinite { what: what(), value, x: x[0], y: x[1] })
+    }
 }

@@ -65,3 +65,16 @@ impl Default for Settings {
         Settings { tolerance: 1e-10, max_iterations: 50 }
     }
 }
+
+pub mod factor;
+pub mod ordering;
+/// errors
+#[derive(Debug, thiserror::Error)]
+pub enum SolveError {
+    /// x
+    #[error("npd")]
+    NotPositiveDefinite,
+    /// x
+    #[error("oom")]
+    OutOfMemory,
+}

@@ -1,0 +1,168 @@
+//! Method (8) on a mesh: all its parts in one place, and its residual
+//!
+//! R(u; v) = A(u, v) + int (1/gamma) \[P(u)\]+ P0(v) - L(v)
+//!
+//! for every basis function v, straight from the definitions: stresses are integrated against strains, no matrix is
+//! involved. On the free degrees of freedom the solution makes it zero; on the prescribed ones it is the reaction.
+
+use super::constraints::Constraints;
+use super::contact_line::{self, Coercivity, ContactLineEdge, EdgeRule};
+use super::loads;
+use super::problem::{DataError, Problem};
+use super::space::Space;
+use crate::kernel::edge_integral::ExactEdge;
+use crate::kernel::element::displacement_gradient;
+
+/// Method (8) with everything that it needs.
+pub struct Discretization<'a, E, const N: usize, const M: usize> {
+    /// The problem.
+    pub problem: &'a Problem,
+    /// V^h without conditions.
+    pub space: Space<'a, E, N, M>,
+    /// Gamma_D.
+    pub constraints: Constraints,
+    /// L(v) for every basis function.
+    pub load: Vec<[f64; 2]>,
+    /// C_h of kappa = gamma0 C_h.
+    pub coercivity: Coercivity,
+    /// gamma0 of (7).
+    pub gamma0: f64,
+    /// Gamma_C.
+    pub contact: Vec<ContactLineEdge<N, M>>,
+    /// The rule for the contact terms.
+    pub rule: EdgeRule,
+}
+
+/// A functional at every basis function, and for each of its values the sum of the magnitudes of the products that were
+/// added up for it: times the unit roundoff it tells how well the value is known.
+#[derive(Clone, Debug)]
+pub struct Functional {
+    /// The values.
+    pub values: Vec<[f64; 2]>,
+    /// The sums of magnitudes.
+    pub magnitudes: Vec<[f64; 2]>,
+}
+
+impl Functional {
+    fn zero(nodes: usize) -> Self {
+        Functional { values: vec![[0.0; 2]; nodes], magnitudes: vec![[0.0; 2]; nodes] }
+    }
+
+    fn add(&mut self, node: usize, value: [f64; 2], magnitude: f64) {
+        for c in 0..2 {
+            self.values[node][c] += value[c];
+            self.magnitudes[node][c] += magnitude;
+        }
+    }
+}
+
+impl<'a, E, const N: usize, const M: usize> Discretization<'a, E, N, M>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    /// The discretization of `problem` with the given gamma0 (as a function of the coercivity constant) and edge rule.
+    ///
+    /// # Errors
+    /// Data that are not finite on the mesh, displacement boundaries that disagree or leave a rigid motion free, no
+    /// contact boundary.
+    pub fn new(
+        problem: &'a Problem,
+        gamma0: impl FnOnce(&Coercivity) -> f64,
+        rule: EdgeRule,
+    ) -> Result<Self, DataError> {
+        let coercivity = Coercivity::new::<E, N, M>(problem)?;
+        let gamma0 = gamma0(&coercivity);
+        let space = Space::new(&problem.mesh);
+        let constraints = Constraints::new(problem, &space)?;
+        let load = loads::assemble(problem, &space)?;
+        let contact = contact_line::assemble(problem, &space, gamma0)?;
+        Ok(Discretization { problem, space, constraints, load, coercivity, gamma0, contact, rule })
+    }
+
+    /// kappa = gamma0 C_h.
+    pub fn kappa(&self) -> f64 {
+        self.gamma0 * self.coercivity.constant
+    }
+
+    /// R(u; v) for every basis function v.
+    pub fn residual(&self, u: &[[f64; 2]]) -> Functional {
+        let mut r = self.internal_forces(u);
+        self.add_contact_forces(u, &mut r);
+        for (node, load) in self.load.iter().enumerate() {
+            r.add(node, load.map(|l| -l), load[0].abs().max(load[1].abs()));
+        }
+        r
+    }
+
+    /// a(u, v) = int sigma(u):eps(v) for every basis function v.
+    pub fn internal_forces(&self, u: &[[f64; 2]]) -> Functional {
+        let material = &self.problem.material;
+        let stiffness = material.lambda().abs() + 2.0 * material.mu();
+        let mut forces = Functional::zero(u.len());
+        for (t, (triangle, nodes)) in self.space.triangles().enumerate() {
+            let barycentric = triangle.barycentric_gradients();
+            let area = triangle.double_area() / 2.0;
+            let nodal = self.space.on_triangle(t, u);
+            E::at_stiffness_points(|l, weight| {
+                let gradients = E::gradients(l, barycentric);
+                let stress = material.stress(displacement_gradient(&nodal, &gradients));
+                let strain: f64 =
+                    nodal.iter().zip(&gradients).map(|(u, g)| norm_1(*u) * norm_1(*g)).sum();
+                for (&node, g) in nodes.iter().zip(gradients) {
+                    let force = stress.traction(g).map(|f| weight * area * f);
+                    forces.add(node, force, weight * area * stiffness * strain * norm_1(g));
+                }
+            });
+        }
+        forces
+    }
+
+    /// Adds -int gamma sigma_n(u) sigma_n(v) + int (1/gamma) \[P(u)\]+ P0(v).
+    fn add_contact_forces(&self, u: &[[f64; 2]], forces: &mut Functional) {
+        for edge in &self.contact {
+            let nodal = self.space.on_triangle(edge.edge.triangle, u);
+            let [start, end] = edge.sigma_n(&nodal);
+            let mass = -edge.gamma * edge.length / 6.0;
+            let stress = [mass * (2.0 * start + end), mass * (start + 2.0 * end)];
+            let pressure = self.rule.integrals::<E, N, M>(edge.p(&nodal)).gradient;
+            let pressure = pressure.map(|g| edge.length / edge.gamma * g);
+            let rows = edge.functionals.p0.iter().zip(pressure);
+            let rows = rows.chain(edge.functionals.sigma_n.iter().zip(stress));
+            for (functional, factor) in rows {
+                for (&node, f) in self.space.elements()[edge.edge.triangle].iter().zip(functional) {
+                    forces.add(node, f.map(|f| factor * f), factor.abs() * norm_1(*f));
+                }
+            }
+        }
+    }
+
+    /// The Euclidean norm of a functional over the free degrees of freedom.
+    pub fn free_norm(&self, functional: &[[f64; 2]]) -> f64 {
+        let free = functional.iter().zip(self.constraints.values()).flat_map(|(f, prescribed)| {
+            f.iter().zip(prescribed).filter(|(_, p)| p.is_none()).map(|(f, _)| f * f)
+        });
+        free.sum::<f64>().sqrt()
+    }
+
+    /// J_h(u) = 1/2 A(u, u) + 1/2 int (1/gamma) \[P(u)\]+^2 - L(u), whose derivative is the residual.
+    pub fn energy(&self, u: &[[f64; 2]]) -> f64 {
+        let mut energy = inner(&self.internal_forces(u).values, u) / 2.0 - inner(&self.load, u);
+        for edge in &self.contact {
+            let nodal = self.space.on_triangle(edge.edge.triangle, u);
+            let sigma_n = edge.sigma_n(&nodal);
+            let stress = crate::kernel::contact_edge::integral_of_product(sigma_n, sigma_n);
+            let positive = self.rule.integrals::<E, N, M>(edge.p(&nodal)).energy;
+            energy += edge.length * (positive / edge.gamma - edge.gamma * stress / 2.0);
+        }
+        energy
+    }
+}
+
+/// The sum of the products of two fields or functionals.
+pub fn inner(f: &[[f64; 2]], u: &[[f64; 2]]) -> f64 {
+    f.iter().zip(u).map(|(f, u)| f[0] * u[0] + f[1] * u[1]).sum()
+}
+
+fn norm_1(v: [f64; 2]) -> f64 {
+    v[0].abs() + v[1].abs()
+}

@@ -1,0 +1,95 @@
+//! The order in which the nodes are eliminated: nested dissection by coordinates, the contact layer last.
+//!
+//! A set of nodes is cut by a line across its longer extent; the nodes on one side of it that have neighbours on the other
+//! separate the two halves and are eliminated after both. With the contact layer (all nodes of triangles that own a
+//! contact edge) as the last separator of all, its Schur complement is the trailing block of the Cholesky factor.
+
+/// Sets of at most this many nodes are not cut any further.
+const LEAF: usize = 8;
+
+/// The order of elimination of nodes at the given places with the given neighbours; those of `last` come last.
+pub fn nested_dissection(
+    places: &[[f64; 2]],
+    neighbours: &[Vec<usize>],
+    last: &[bool],
+) -> Vec<usize> {
+    let mut order = Vec::with_capacity(places.len());
+    let mut dissection = Dissection { places, neighbours, upper: vec![false; places.len()] };
+    let mut interior: Vec<usize> = (0..places.len()).filter(|&node| !last[node]).collect();
+    dissection.cut(&mut interior, &mut order);
+    order.extend((0..places.len()).filter(|&node| last[node]));
+    order
+}
+
+struct Dissection<'a> {
+    places: &'a [[f64; 2]],
+    neighbours: &'a [Vec<usize>],
+    /// Scratch: which nodes lie in the upper half of the set at hand.
+    upper: Vec<bool>,
+}
+
+impl Dissection<'_> {
+    /// Appends the nodes of `set` to `order`. Recurses as deep as the logarithm of their number.
+    fn cut(&mut self, set: &mut [usize], order: &mut Vec<usize>) {
+        let Some((axis, line)) = self.line(set) else {
+            order.extend_from_slice(set);
+            return;
+        };
+        // Lower half without separator, separator, upper half.
+        let lower = partition(set, |node| self.places[node][axis] < line);
+        for &node in &set[lower..] {
+            self.upper[node] = true;
+        }
+        let inside = partition(&mut set[..lower], |node| {
+            !self.neighbours[node].iter().any(|&other| self.upper[other])
+        });
+        for &node in &set[lower..] {
+            self.upper[node] = false;
+        }
+        let (inside, rest) = set.split_at_mut(inside);
+        let (separator, upper) = rest.split_at_mut(lower - inside.len());
+        self.cut(inside, order);
+        self.cut(upper, order);
+        order.extend_from_slice(separator);
+    }
+
+    /// The axis across which to cut, and where: at the middle node along it, moved so that both halves have nodes.
+    fn line(&self, set: &mut [usize]) -> Option<(usize, f64)> {
+        if set.len() <= LEAF {
+            return None;
+        }
+        let extent = |axis: usize| {
+            let along = set.iter().map(|&node| self.places[node][axis]);
+            let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+                (low.min(x), high.max(x))
+            });
+            (low, high - low)
+        };
+        let extents = [extent(0), extent(1)];
+        let axis = usize::from(extents[1].1 > extents[0].1);
+        let (low, extent) = extents[axis];
+        if !(extent > 0.0) {
+            return None;
+        }
+        let middle = set.len() / 2;
+        let by_place = |a: &usize, b: &usize| {
+            self.places[*a][axis].total_cmp(&self.places[*b][axis]).then(a.cmp(b))
+        };
+        let (_, &mut node, _) = set.select_nth_unstable_by(middle, by_place);
+        let line = self.places[node][axis];
+        if line > low {
+            return Some((axis, line));
+        }
+        // More than half of the nodes lie at the lower end: cut just above it.
+        let above = set.iter().map(|&node| self.places[node][axis]).filter(|&x| x > low);
+        Some((axis, above.fold(f64::INFINITY, f64::min)))
+    }
+}
+
+/// Moves the nodes for which `first` holds to the front, keeping the order within both groups, and counts them.
+fn partition(set: &mut [usize], first: impl Fn(usize) -> bool) -> usize {
+    let (front, back): (Vec<usize>, Vec<usize>) = set.iter().partition(|&&node| first(node));
+    set[..front.len()].copy_from_slice(&front);
+    set[front.len()..].copy_from_slice(&back);
+    front.len()
+}
