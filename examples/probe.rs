@@ -26,6 +26,18 @@ fn run<E: ExactEdge<f64, N, M>, const N: usize, const M: usize>(n: usize) {
     let d = Discretization::<E, N, M>::new(&problem, |c| 0.5 * c.limit(), EdgeRule::Exact).unwrap();
     println!("discretize {:?}", t.elapsed());
     let t = Instant::now();
+    let (u, report) =
+        signorini::solve::condensed::solve(&d, &signorini::solve::Settings::default()).unwrap();
+    println!(
+        "contact solve {:?} {} {:?} {:e} energy {:.16}",
+        t.elapsed(),
+        report.residuals.len() - 1,
+        report.status,
+        report.residual,
+        signorini::fem::discretization::inner(&d.internal_forces(&u).values, &u)
+    );
+    println!("{:?}", report.residuals);
+    let t = Instant::now();
     let nb = neighbours(d.space.nodes().len(), d.space.elements());
     println!("neighbours {:?}", t.elapsed());
     let mut last = vec![false; d.space.nodes().len()];

@@ -86,8 +86,25 @@ where
 
     /// R(u; v) for every basis function v.
     pub fn residual(&self, u: &[[f64; 2]]) -> Functional {
+        let mut r = self.linear_residual(u);
+        for edge in &self.contact {
+            let nodal = self.space.on_triangle(edge.edge.triangle, u);
+            let pressure = self.rule.integrals::<E, N, M>(edge.p(&nodal)).gradient;
+            let pressure = pressure.map(|g| edge.length / edge.gamma * g);
+            self.add_functionals(edge, &edge.functionals.p0, &pressure, &mut r);
+        }
+        r
+    }
+
+    /// A(u, v) - L(v) for every basis function v.
+    pub fn linear_residual(&self, u: &[[f64; 2]]) -> Functional {
         let mut r = self.internal_forces(u);
-        self.add_contact_forces(u, &mut r);
+        for edge in &self.contact {
+            let [start, end] = edge.sigma_n(&self.space.on_triangle(edge.edge.triangle, u));
+            let mass = -edge.gamma * edge.length / 6.0;
+            let stress = [mass * (2.0 * start + end), mass * (start + 2.0 * end)];
+            self.add_functionals(edge, &edge.functionals.sigma_n, &stress, &mut r);
+        }
         for (node, load) in self.load.iter().enumerate() {
             r.add(node, load.map(|l| -l), load[0].abs().max(load[1].abs()));
         }
@@ -117,23 +134,26 @@ where
         forces
     }
 
-    /// Adds -int gamma sigma_n(u) sigma_n(v) + int (1/gamma) \[P(u)\]+ P0(v).
-    fn add_contact_forces(&self, u: &[[f64; 2]], forces: &mut Functional) {
-        for edge in &self.contact {
-            let nodal = self.space.on_triangle(edge.edge.triangle, u);
-            let [start, end] = edge.sigma_n(&nodal);
-            let mass = -edge.gamma * edge.length / 6.0;
-            let stress = [mass * (2.0 * start + end), mass * (start + 2.0 * end)];
-            let pressure = self.rule.integrals::<E, N, M>(edge.p(&nodal)).gradient;
-            let pressure = pressure.map(|g| edge.length / edge.gamma * g);
-            let rows = edge.functionals.p0.iter().zip(pressure);
-            let rows = rows.chain(edge.functionals.sigma_n.iter().zip(stress));
-            for (functional, factor) in rows {
-                for (&node, f) in self.space.elements()[edge.edge.triangle].iter().zip(functional) {
-                    forces.add(node, f.map(|f| factor * f), factor.abs() * norm_1(*f));
-                }
+    /// Adds the functionals of an edge, each times its factor.
+    fn add_functionals(
+        &self,
+        edge: &ContactLineEdge<N, M>,
+        functionals: &[[[f64; 2]; N]],
+        factors: &[f64],
+        sum: &mut Functional,
+    ) {
+        let nodes = &self.space.elements()[edge.edge.triangle];
+        for (functional, factor) in functionals.iter().zip(factors) {
+            for (&node, f) in nodes.iter().zip(functional) {
+                sum.add(node, f.map(|f| factor * f), factor.abs() * norm_1(*f));
             }
         }
+    }
+
+    /// R(u; v) + L(v): what prescribed data demand of the free degrees of freedom when `u` is their lift.
+    pub fn residual_and_load(&self, u: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        let residual = self.residual(u).values;
+        residual.iter().zip(&self.load).map(|(r, l)| [r[0] + l[0], r[1] + l[1]]).collect()
     }
 
     /// The Euclidean norm of a functional over the free degrees of freedom.

@@ -205,6 +205,20 @@ impl Mesh {
         (length, [x / length, y / length])
     }
 
+    /// The first triangle that contains the point `x`, with its barycentric coordinates there; `None` outside the body.
+    pub fn locate(&self, x: [f64; 2]) -> Option<(usize, [f64; 3])> {
+        (0..self.triangles.len()).find_map(|t| {
+            let triangle = self.triangle(t);
+            let gradients = triangle.barycentric_gradients();
+            // Each coordinate is measured from a vertex where it is zero: a vertex of the mesh finds itself exactly.
+            let l = [0, 1, 2].map(|i| {
+                let from = triangle.vertices[(i + 1) % 3];
+                gradients[i][0] * (x[0] - from[0]) + gradients[i][1] * (x[1] - from[1])
+            });
+            l.iter().all(|&l| l >= -OUTSIDE).then_some((t, l))
+        })
+    }
+
     /// A vertex strictly inside a boundary edge means that neighbours don't share whole edges. Candidates come from a
     /// grid over the boundary with cells as wide as the longest edge of the outline.
     fn check_hanging(&self) -> Result<(), MeshError> {
@@ -250,6 +264,9 @@ const ON_THE_EDGE: f64 = 1e-13;
 
 /// A triangle whose area is less than this times h_T^2 is flat: its gradients would have lost all but a few digits.
 const FLAT: f64 = 1e-12;
+
+/// A point this far outside a triangle, in units of its heights, still belongs to it: some thousand rounding errors.
+const OUTSIDE: f64 = 1e-12;
 
 fn diameter(triangle: &Triangle<f64>) -> f64 {
     [0, 1, 2]
@@ -525,6 +542,15 @@ mod tests {
             message(mesh(&v, &[[0, 1, 2], [1, 4, 3], [3, 4, 2]])),
             "vertex 3 at (1, 1) hangs inside the edge between vertices 1 and 2 of triangle 0: neighbours must share whole edges"
         );
+    }
+
+    #[test]
+    fn points_are_found_in_their_triangles_and_nowhere_else() {
+        let m = mesh(&SQUARE, &[[0, 1, 2], [0, 2, 3]]).unwrap();
+        let (t, l) = m.locate([0.25, 0.75]).unwrap();
+        assert_eq!((t, l), (1, [0.25, 0.25, 0.5]));
+        assert_eq!(m.locate([1.0, 1.0]).unwrap().1.iter().sum::<f64>(), 1.0);
+        assert_eq!(m.locate([1.0, 1.1]), None);
     }
 
     #[test]

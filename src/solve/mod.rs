@@ -1,4 +1,20 @@
-//! The solution of method (8).
+//! The solution of method (8): the body factored once, Newton's method on the contact layer, and what the solution says.
+
+pub mod condensed;
+pub mod factor;
+pub mod newton;
+pub mod ordering;
+pub mod solution;
+
+use std::time::{Duration, Instant};
+
+use thiserror::Error;
+
+pub use self::solution::{GammaReport, Quantities, Solution};
+use crate::fem::contact_line::{Coercivity, EdgeRule};
+use crate::fem::{DataError, Discretization, Problem};
+use crate::kernel::edge_integral::ExactEdge;
+use crate::kernel::{P1, P2};
 
 /// The free choices of method (8).
 #[derive(Clone, Debug, PartialEq)]
@@ -66,15 +82,158 @@ impl Default for Settings {
     }
 }
 
-pub mod factor;
-pub mod ordering;
-/// errors
-#[derive(Debug, thiserror::Error)]
+/// How a solve ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// The residual is within the tolerance.
+    Converged,
+    /// The tolerance asks for more than rounding allows; the residual is as small as rounding lets it be.
+    ConvergedToRounding,
+    /// Neither: there is no solution to report.
+    NotConverged,
+}
+
+/// How Newton's method went.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NewtonReport {
+    /// How it ended.
+    pub status: Status,
+    /// The residual of (8), as Newton's method saw it, before the first step and after each one: Euclidean norms over the
+    /// free degrees of freedom, relative to |L| + |residual of the prescribed data|.
+    pub residuals: Vec<f64>,
+    /// The same of the solution, evaluated from the definitions.
+    pub residual: f64,
+    /// How many sparse factorisations it took.
+    pub factorizations: usize,
+}
+
+/// Why there is no solution.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[expect(missing_docs, reason = "the message of each variant says what it is")]
 pub enum SolveError {
-    /// x
-    #[error("npd")]
+    #[error(transparent)]
+    Data(#[from] DataError),
+    #[error(
+        "gamma0 = {gamma0} gives kappa = {kappa:.4}, and coercivity needs kappa < 1: expected gamma0 below {limit}, the limit set by the contact edge from ({}, {}) to ({}, {}); lower gamma0, say \"auto\", or set allow_noncoercive = true to go on without any promise",
+        edge[0][0], edge[0][1], edge[1][0], edge[1][1]
+    )]
+    NotCoercive { gamma0: f64, kappa: f64, limit: f64, edge: [[f64; 2]; 2] },
+    #[error(
+        "the tangent is not positive definite: gamma0 is beyond the true limit of coercivity, J_h is not convex and a solution need not exist; lower gamma0"
+    )]
     NotPositiveDefinite,
-    /// x
-    #[error("oom")]
+    #[error("the factorisation needs more memory than there is; use a coarser mesh")]
     OutOfMemory,
+}
+
+/// How long the parts of a solve took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Times {
+    /// Reading the problem onto the mesh: nodes, constraints, loads, contact edges.
+    pub discretize: Duration,
+    /// Matrix, factorisation, Newton's method.
+    pub solve: Duration,
+}
+
+/// Solves `problem` by method (8).
+///
+/// # Errors
+/// Data that don't make a problem, kappa >= 1 without leave, a tangent that is not positive definite (only with leave),
+/// lack of memory. That Newton's method missed its tolerance is no error but a [`Status`].
+pub fn solve(
+    problem: &Problem,
+    method: &Method,
+    settings: &Settings,
+) -> Result<(Solution, Times), SolveError> {
+    match method.degree {
+        Degree::One => solve_with::<P1, 3, 2>(problem, method, settings),
+        Degree::Two => solve_with::<P2, 6, 3>(problem, method, settings),
+    }
+}
+
+fn solve_with<E, const N: usize, const M: usize>(
+    problem: &Problem,
+    method: &Method,
+    settings: &Settings,
+) -> Result<(Solution, Times), SolveError>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let start = Instant::now();
+    let d = discretize::<E, N, M>(problem, method)?;
+    let discretize = start.elapsed();
+    let start = Instant::now();
+    let (u, newton) = condensed::solve(&d, settings)?;
+    let solve = start.elapsed();
+    Ok((Solution::new(&d, u, newton), Times { discretize, solve }))
+}
+
+/// What [`solve`] would solve: everything short of a matrix is built and checked.
+///
+/// # Errors
+/// As [`solve`], as far as they show before anything is solved.
+pub fn check(problem: &Problem, method: &Method) -> Result<Outline, SolveError> {
+    match method.degree {
+        Degree::One => Ok(Outline::new(&discretize::<P1, 3, 2>(problem, method)?)),
+        Degree::Two => Ok(Outline::new(&discretize::<P2, 6, 3>(problem, method)?)),
+    }
+}
+
+/// The size of a discrete problem and its coercivity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outline {
+    /// How many nodes there are; each has two degrees of freedom.
+    pub nodes: usize,
+    /// How many of the degrees of freedom are prescribed.
+    pub prescribed: usize,
+    /// How many edges Gamma_C has.
+    pub contact_edges: usize,
+    /// gamma0, kappa and where the limit comes from.
+    pub gamma: GammaReport,
+}
+
+impl Outline {
+    fn new<E, const N: usize, const M: usize>(d: &Discretization<E, N, M>) -> Self
+    where
+        E: ExactEdge<f64, N, M>,
+    {
+        Outline {
+            nodes: d.space.nodes().len(),
+            prescribed: d.constraints.values().iter().flatten().flatten().count(),
+            contact_edges: d.contact.len(),
+            gamma: GammaReport::new(d),
+        }
+    }
+}
+
+/// Method (8) on the problem's mesh.
+///
+/// # Errors
+/// Data that don't make a problem, and kappa >= 1 without leave.
+pub fn discretize<'a, E, const N: usize, const M: usize>(
+    problem: &'a Problem,
+    method: &Method,
+) -> Result<Discretization<'a, E, N, M>, SolveError>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let gamma0 = |c: &Coercivity| match method.gamma0 {
+        Gamma0::Auto => c.limit() / 2.0,
+        Gamma0::Value(gamma0) => gamma0,
+    };
+    let rule = match method.quadrature {
+        ContactQuadrature::Exact => EdgeRule::Exact,
+        ContactQuadrature::Gauss(points) => EdgeRule::gauss(points),
+    };
+    let d = Discretization::new(problem, gamma0, rule)?;
+    if d.kappa() < 1.0 || method.allow_noncoercive {
+        Ok(d)
+    } else {
+        Err(SolveError::NotCoercive {
+            gamma0: d.gamma0,
+            kappa: d.kappa(),
+            limit: d.coercivity.limit(),
+            edge: d.coercivity.limiting_edge,
+        })
+    }
 }

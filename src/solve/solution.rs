@@ -1,0 +1,250 @@
+//! What a discrete solution says: stresses, the contact line, resultants and reactions.
+
+use std::collections::BTreeMap;
+
+use super::NewtonReport;
+use crate::fem::contact_line::Coercivity;
+use crate::fem::discretization::{Discretization, inner};
+use crate::kernel::contact::pressure;
+use crate::kernel::edge_integral::{self, ExactEdge};
+use crate::kernel::element::displacement_gradient;
+use crate::kernel::{Element, P1, P2, Stress};
+
+/// The solution of method (8), independent of the element that it was computed with.
+#[derive(Clone, Debug)]
+pub struct Solution {
+    /// The polynomial degree.
+    pub degree: usize,
+    /// The places of the nodes: the vertices of the mesh first.
+    pub nodes: Vec<[f64; 2]>,
+    /// The nodes of the triangles, `nodes_per_triangle` for each, in the order of [`Element`].
+    pub elements: Vec<usize>,
+    /// 3 or 6.
+    pub nodes_per_triangle: usize,
+    /// u^h at the nodes.
+    pub displacement: Vec<[f64; 2]>,
+    /// The mean stress on each triangle, with sigma_zz.
+    pub stress: Vec<(Stress<f64>, f64)>,
+    /// The von Mises stress of the mean stress on each triangle.
+    pub von_mises: Vec<f64>,
+    /// The edges of Gamma_C, chained along the boundary.
+    pub contact: Vec<ContactEdgeValues>,
+    /// gamma0, kappa and where the limit comes from.
+    pub gamma: GammaReport,
+    /// How Newton's method went.
+    pub newton: NewtonReport,
+    /// Energies, forces, lengths.
+    pub quantities: Quantities,
+}
+
+/// gamma0 and the coercivity number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GammaReport {
+    /// gamma0 of (7), in 1 / stress.
+    pub gamma0: f64,
+    /// kappa = gamma0 C_h.
+    pub kappa: f64,
+    /// C_h and the edge that sets it.
+    pub coercivity: Coercivity,
+}
+
+/// One edge of Gamma_C: its nodes and the values there, in order along the edge.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContactEdgeValues {
+    /// The triangle that owns the edge.
+    pub triangle: usize,
+    /// The unit outward normal n.
+    pub normal: [f64; 2],
+    /// The nodes in order along the edge (for P2 with the midpoint in the middle).
+    pub points: Vec<ContactValues>,
+}
+
+/// The values at a node of a contact edge, as its edge has them: sigma_n jumps from edge to edge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactValues {
+    /// The node.
+    pub node: usize,
+    /// Arc length along Gamma_C from the start of its first edge.
+    pub arc: f64,
+    /// u_n = u . n
+    pub u_n: f64,
+    /// g
+    pub gap: f64,
+    /// sigma_n(u^h)
+    pub sigma_n: f64,
+    /// lambda^h = -(1/gamma) \[P(u^h)\]+, the pressure to report
+    pub lambda: f64,
+}
+
+/// Scalars of a solution, in the units of the case.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Quantities {
+    /// a(u, u)
+    pub energy: f64,
+    /// L(u)
+    pub work: f64,
+    /// The largest Euclidean norm of u over the nodes.
+    pub max_displacement: f64,
+    /// -int lambda^h
+    pub contact_force: f64,
+    /// int lambda^h n: the force of the obstacle on the body
+    pub contact_resultant: [f64; 2],
+    /// The measure of {P > 0}.
+    pub contact_length: f64,
+    /// max -lambda^h over Gamma_C
+    pub peak_pressure: f64,
+    /// The force of each displacement boundary on the body.
+    pub reactions: BTreeMap<String, [f64; 2]>,
+}
+
+impl Solution {
+    /// Evaluates the solution with the nodal values `u`.
+    pub fn new<E, const N: usize, const M: usize>(
+        d: &Discretization<E, N, M>,
+        u: Vec<[f64; 2]>,
+        newton: NewtonReport,
+    ) -> Self
+    where
+        E: ExactEdge<f64, N, M>,
+    {
+        let material = &d.problem.material;
+        let stress = mean_stresses(d, &u);
+        Solution {
+            degree: E::DEGREE,
+            nodes: d.space.nodes().to_vec(),
+            elements: d.space.elements().as_flattened().to_vec(),
+            nodes_per_triangle: N,
+            von_mises: stress.iter().map(|s| material.von_mises_squared(*s).sqrt()).collect(),
+            stress: stress.into_iter().map(|s| (s, material.stress_zz(s))).collect(),
+            contact: contact_values(d, &u),
+            gamma: GammaReport::new(d),
+            newton,
+            quantities: quantities(d, &u),
+            displacement: u,
+        }
+    }
+
+    /// u^h at the point with the barycentric coordinates `l` of triangle `t`, as [`Mesh::locate`] finds them.
+    ///
+    /// [`Mesh::locate`]: crate::fem::Mesh::locate
+    pub fn displacement_at(&self, t: usize, l: [f64; 3]) -> [f64; 2] {
+        let shapes: &[f64] = match self.degree {
+            1 => &P1::values(l),
+            _ => &P2::values(l),
+        };
+        let nodes = &self.elements[t * self.nodes_per_triangle..][..self.nodes_per_triangle];
+        [0, 1].map(|c| nodes.iter().zip(shapes).map(|(&j, n)| n * self.displacement[j][c]).sum())
+    }
+}
+
+impl GammaReport {
+    /// Of a discretization.
+    pub fn new<E, const N: usize, const M: usize>(d: &Discretization<E, N, M>) -> Self
+    where
+        E: ExactEdge<f64, N, M>,
+    {
+        GammaReport { gamma0: d.gamma0, kappa: d.kappa(), coercivity: d.coercivity }
+    }
+}
+
+/// The mean of sigma(u) on each triangle: its average over the points of the stiffness rule, which is exact for it.
+fn mean_stresses<E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    u: &[[f64; 2]],
+) -> Vec<Stress<f64>>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    d.space
+        .triangles()
+        .enumerate()
+        .map(|(t, (triangle, _))| {
+            let barycentric = triangle.barycentric_gradients();
+            let nodal = d.space.on_triangle(t, u);
+            let mut mean = Stress { xx: 0.0, yy: 0.0, xy: 0.0 };
+            E::at_stiffness_points(|l, weight| {
+                let gradients = E::gradients(l, barycentric);
+                let s = d.problem.material.stress(displacement_gradient(&nodal, &gradients));
+                mean.xx += weight * s.xx;
+                mean.yy += weight * s.yy;
+                mean.xy += weight * s.xy;
+            });
+            mean
+        })
+        .collect()
+}
+
+fn contact_values<E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    u: &[[f64; 2]],
+) -> Vec<ContactEdgeValues>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let mut start = 0.0;
+    let mut line = Vec::with_capacity(d.contact.len());
+    for edge in &d.contact {
+        let triangle = edge.edge.triangle;
+        let nodal = d.space.on_triangle(triangle, u);
+        let (p, sigma_n) = (edge.p(&nodal), edge.sigma_n(&nodal));
+        let nodes = d.space.edge_nodes(edge.edge);
+        let positions: [f64; M] = E::edge_positions();
+        let mut points: Vec<ContactValues> = (0..M)
+            .map(|a| {
+                let [x, y] = u[nodes[a]];
+                ContactValues {
+                    node: nodes[a],
+                    arc: start + positions[a] * edge.length,
+                    u_n: x * edge.normal[0] + y * edge.normal[1],
+                    gap: edge.gap[a],
+                    sigma_n: (1.0 - positions[a]) * sigma_n[0] + positions[a] * sigma_n[1],
+                    lambda: pressure(p[a], edge.gamma) + 0.0,
+                }
+            })
+            .collect();
+        points.sort_by(|a, b| a.arc.total_cmp(&b.arc));
+        line.push(ContactEdgeValues { triangle, normal: edge.normal, points });
+        start += edge.length;
+    }
+    line
+}
+
+fn quantities<E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    u: &[[f64; 2]],
+) -> Quantities
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let mut q = Quantities {
+        energy: inner(&d.internal_forces(u).values, u),
+        work: inner(&d.load, u),
+        max_displacement: u.iter().fold(0.0, |max, v| f64::max(max, v[0].hypot(v[1]))),
+        contact_force: 0.0,
+        contact_resultant: [0.0; 2],
+        contact_length: 0.0,
+        peak_pressure: 0.0,
+        reactions: BTreeMap::new(),
+    };
+    for edge in &d.contact {
+        let p = edge.p(&d.space.on_triangle(edge.edge.triangle, u));
+        let integrals = d.rule.integrals::<E, N, M>(p);
+        // The shape functions add up to one, so this is the integral of [P]+ / gamma.
+        let force = edge.length / edge.gamma * integrals.gradient.iter().sum::<f64>();
+        q.contact_force += force;
+        for c in 0..2 {
+            q.contact_resultant[c] -= force * edge.normal[c];
+        }
+        q.contact_length += edge.length * integrals.active;
+        let peak = -pressure(edge_integral::maximum::<E, N, M>(p), edge.gamma);
+        q.peak_pressure = q.peak_pressure.max(peak);
+    }
+    let residual = d.residual(u).values;
+    for (boundary, held) in d.constraints.holders() {
+        let reaction = q.reactions.entry(boundary.clone()).or_default();
+        for &(node, c) in held {
+            reaction[c] += residual[node][c];
+        }
+    }
+    q
+}
