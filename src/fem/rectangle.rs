@@ -63,6 +63,28 @@ impl Rectangle {
         Mesh::new(self.vertices(), self.triangles(), self.sides())
     }
 
+    /// The same with its vertices moved at random: by up to `amount` cells along each axis inside, along the sides on
+    /// them, not at all in the corners. The same `seed` gives the same mesh.
+    ///
+    /// # Errors
+    /// As [`Rectangle::mesh`]; moved too far, triangles turn over.
+    pub fn perturbed(&self, amount: f64, seed: u64) -> Result<Mesh, MeshError> {
+        self.check()?;
+        let cell = [self.width / self.nx as f64, self.height / self.ny as f64];
+        let size = [self.width, self.height];
+        let mut random = Random(seed);
+        let mut vertices = self.vertices();
+        for vertex in &mut vertices {
+            for c in 0..2 {
+                let shift = amount * cell[c] * random.next();
+                if 0.0 < vertex[c] && vertex[c] < size[c] {
+                    vertex[c] += shift;
+                }
+            }
+        }
+        Mesh::new(vertices, self.triangles(), self.sides())
+    }
+
     fn check(&self) -> Result<(), RectangleError> {
         for (name, value) in [("width", self.width), ("height", self.height)] {
             if !(value > 0.0 && value.is_finite()) {
@@ -134,6 +156,20 @@ impl Rectangle {
     }
 }
 
+/// Numbers in [-1, 1): the splitmix64 generator.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^= z >> 31;
+        (z >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -181,6 +217,21 @@ mod tests {
         let mesh = rectangle(Diagonal::Right).mesh().unwrap();
         assert_eq!(mesh.triangles()[0], [0, 1, 5]);
         assert_eq!(mesh.vertices()[5], [1.0, 0.5]);
+    }
+
+    #[test]
+    fn perturbed_meshes_fill_the_same_rectangle_and_depend_on_the_seed_alone() {
+        let r = rectangle(Diagonal::Crossed);
+        let [a, b, c] = [1, 1, 2].map(|seed| r.perturbed(0.2, seed).unwrap());
+        assert_eq!(a.vertices(), b.vertices());
+        assert_ne!(a.vertices(), c.vertices());
+        let area: f64 = (0..24).map(|t| a.triangle(t).double_area() / 2.0).sum();
+        assert!((area - 3.0).abs() < 1e-14);
+        for (moved, straight) in a.vertices().iter().zip(r.mesh().unwrap().vertices()) {
+            for c in 0..2 {
+                assert!((moved[c] - straight[c]).abs() <= 0.2);
+            }
+        }
     }
 
     #[test]
