@@ -1,0 +1,501 @@
+//! Method (8) itself: the residual is the derivative of J_h and the tangent that of the residual, J_h is convex as long as
+//! kappa < 1, the solution is in equilibrium, Newton's method with its line search ends where plain Newton cycles, and the
+//! condensed solve is the solution of the full system.
+
+mod common;
+
+use common::*;
+use signorini::fem::contact_line::EdgeRule;
+use signorini::fem::discretization::inner;
+use signorini::fem::matrix::{self, Numbering};
+use signorini::fem::quadrature::gauss;
+use signorini::fem::{Condition, Diagonal, Discretization, Problem, Rectangle};
+use signorini::kernel::edge_integral::ExactEdge;
+use signorini::kernel::{Material, P1, P2, Plane};
+use signorini::solve::{
+    ContactQuadrature, Degree, Gamma0, Method, Settings, SolveError, Status, condensed, solve,
+};
+
+fn half_the_limit<'a, E: ExactEdge<f64, N, M>, const N: usize, const M: usize>(
+    problem: &'a Problem,
+    rule: EdgeRule,
+) -> Discretization<'a, E, N, M> {
+    Discretization::new(problem, |c| c.limit() / 2.0, rule).unwrap()
+}
+
+fn shifted(u: &[[f64; 2]], t: f64, v: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    u.iter().zip(v).map(|(u, v)| [u[0] + t * v[0], u[1] + t * v[1]]).collect()
+}
+
+/// The central difference of J_h has the error h^2/6 J''' + eps |J| / h; J_h is quadratic up to kinks of its second
+/// derivative, where the central difference of J is off by at most h times the jump of J'' over the kinked edges. With
+/// h = 1e-5 and values of order 10 both are below 1e-4 of the derivative; a wrong factor would be off by a good part of it.
+fn residual_is_the_derivative_of_the_energy<E, const N: usize, const M: usize>(rule: EdgeRule)
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let problem = block(skewed_square(4, Diagonal::Right));
+    let d = half_the_limit::<E, N, M>(&problem, rule);
+    let mut random = Random(1);
+    for _ in 0..20 {
+        let (u, v) = (random.field(d.space.nodes().len()), random.field(d.space.nodes().len()));
+        let h = 1e-5;
+        let difference =
+            (d.energy(&shifted(&u, h, &v)) - d.energy(&shifted(&u, -h, &v))) / (2.0 * h);
+        let derivative = inner(&d.residual(&u).values, &v);
+        let scale = d.energy(&u).abs().max(derivative.abs());
+        assert!((difference - derivative).abs() <= 1e-4 * scale, "{difference} {derivative}");
+    }
+}
+
+#[test]
+fn the_residual_is_the_derivative_of_the_energy_for_p1_and_p2() {
+    residual_is_the_derivative_of_the_energy::<P1, 3, 2>(EdgeRule::Exact);
+    residual_is_the_derivative_of_the_energy::<P1, 3, 2>(EdgeRule::gauss(4));
+    residual_is_the_derivative_of_the_energy::<P2, 6, 3>(EdgeRule::Exact);
+    residual_is_the_derivative_of_the_energy::<P2, 6, 3>(EdgeRule::gauss(4));
+}
+
+/// The tangent at u applied to v: A v from the assembled matrix, plus B^T H B v edge by edge. `slip` scales H, for the
+/// control.
+fn tangent<E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    u: &[[f64; 2]],
+    v: &[[f64; 2]],
+    slip: f64,
+) -> Vec<[f64; 2]>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let nodes = d.space.nodes().len();
+    let order: Vec<usize> = (0..nodes).collect();
+    let numbering = Numbering::new(&order, &vec![[None; 2]; nodes]);
+    let neighbours = matrix::neighbours(nodes, d.space.elements());
+    let a = matrix::assemble(d, &numbering, &neighbours);
+    let x = numbering.gather(v);
+    let mut product = vec![0.0; x.len()];
+    for column in 0..x.len() {
+        for k in a.starts[column]..a.starts[column + 1] {
+            let row = a.rows[k];
+            product[row] += a.values[k] * x[column];
+            if row != column {
+                product[column] += a.values[k] * x[row];
+            }
+        }
+    }
+    let mut result = vec![[0.0; 2]; nodes];
+    numbering.scatter(&product, &mut result);
+    for edge in &d.contact {
+        let t = edge.edge.triangle;
+        let hessian = d.rule.integrals::<E, N, M>(edge.p(&d.space.on_triangle(t, u))).hessian;
+        let along = edge.p(&d.space.on_triangle(t, v));
+        for a in 0..M {
+            let bv: f64 =
+                (0..M).map(|b| hessian[a][b] * (along[b] + edge.gap[b])).sum::<f64>() * slip;
+            for (&node, f) in d.space.elements()[t].iter().zip(&edge.functionals.p0[a]) {
+                for c in 0..2 {
+                    result[node][c] += edge.length / edge.gamma * bv * f[c];
+                }
+            }
+        }
+    }
+    result
+}
+
+/// Away from kinks the residual is quadratic in u on an edge that stays cut (P1) or smooth (P2), so a central difference
+/// with step h is off by O(h^2) there and by rounding eps |R| / h elsewhere: 1e-6 for h = 1e-5. At a kink (an end of an
+/// edge changing sign within the step) the residual is still C^1, off by O(h).
+fn tangent_error<E, const N: usize, const M: usize>(rule: EdgeRule, slip: f64) -> f64
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let problem = block(skewed_square(4, Diagonal::Crossed));
+    let d = half_the_limit::<E, N, M>(&problem, rule);
+    let mut random = Random(5);
+    let mut worst: f64 = 0.0;
+    for _ in 0..10 {
+        let (u, v) = (random.field(d.space.nodes().len()), random.field(d.space.nodes().len()));
+        let h = 1e-5;
+        let [plus, minus] = [h, -h].map(|h| d.residual(&shifted(&u, h, &v)).values);
+        let expected = tangent(&d, &u, &v, slip);
+        let scale = expected.iter().flatten().fold(0.0, |m: f64, x| m.max(x.abs()));
+        for i in 0..plus.len() {
+            for c in 0..2 {
+                let difference = (plus[i][c] - minus[i][c]) / (2.0 * h);
+                worst = worst.max((difference - expected[i][c]).abs() / scale);
+            }
+        }
+    }
+    worst
+}
+
+#[test]
+fn the_tangent_is_the_derivative_of_the_residual_for_p1_and_p2() {
+    for rule in [EdgeRule::Exact, EdgeRule::gauss(4)] {
+        for error in [
+            tangent_error::<P1, 3, 2>(rule.clone(), 1.0),
+            tangent_error::<P2, 6, 3>(rule.clone(), 1.0),
+        ] {
+            assert!(error < 1e-6, "{rule:?}: {error:e}");
+        }
+    }
+}
+
+#[test]
+fn control_a_tangent_with_a_slightly_wrong_contact_block_is_noticed() {
+    assert!(tangent_error::<P1, 3, 2>(EdgeRule::Exact, 1.001) > 1e-5);
+    assert!(tangent_error::<P2, 6, 3>(EdgeRule::Exact, 1.001) > 1e-5);
+}
+
+#[test]
+fn rigid_body_motions_cost_no_energy() {
+    let problem = block(skewed_square(5, Diagonal::Left));
+    let d = half_the_limit::<P2, 6, 3>(&problem, EdgeRule::Exact);
+    for motion in [|_: [f64; 2]| [1.0, 0.0], |_| [0.0, 1.0], |[x, y]: [f64; 2]| [-y, x]] {
+        let u: Vec<[f64; 2]> = d.space.nodes().iter().map(|&x| motion(x)).collect();
+        let forces = d.internal_forces(&u);
+        for (force, magnitude) in forces.values.iter().zip(&forces.magnitudes) {
+            for c in 0..2 {
+                assert!(force[c].abs() <= 8.0 * f64::EPSILON * magnitude[c]);
+            }
+        }
+    }
+}
+
+/// J_h at the middle of random segments against the mean of its ends: how many segments bend the wrong way.
+fn concave_segments(gamma0_over_limit: f64, tries: usize) -> usize {
+    let problem = block(unit_square(3).mesh().unwrap());
+    let rule = EdgeRule::Exact;
+    let d =
+        Discretization::<P1, 3, 2>::new(&problem, |c| gamma0_over_limit * c.limit(), rule).unwrap();
+    let mut random = Random(11);
+    (0..tries)
+        .filter(|_| {
+            let mut ends = [(); 2].map(|()| random.field(d.space.nodes().len()));
+            for end in &mut ends {
+                // Strains across the floor, where sigma_n is large, and the floor lifted so that P < 0: the worst case.
+                for (value, [_, y]) in end.iter_mut().zip(d.space.nodes()) {
+                    let floor = *y == 0.0;
+                    *value = [0.0, if floor { 4.0 + value[1] } else { 0.1 * value[1] }];
+                }
+            }
+            let [a, b] = ends;
+            let middle: Vec<[f64; 2]> =
+                shifted(&a, 1.0, &b).iter().map(|v| v.map(|c| c / 2.0)).collect();
+            d.energy(&middle) > (d.energy(&a) + d.energy(&b)) / 2.0
+        })
+        .count()
+}
+
+#[test]
+fn the_energy_is_convex_along_random_lines_below_the_limit() {
+    for share in [0.1, 0.5, 0.99] {
+        assert_eq!(concave_segments(share, 2000), 0);
+    }
+}
+
+#[test]
+fn control_beyond_the_limit_the_energy_is_not_convex() {
+    assert!(concave_segments(20.0, 2000) > 0);
+}
+
+fn example_problems() -> Vec<(&'static str, Problem)> {
+    let gap = Problem {
+        body_force: [constant(0.0), constant(0.0)],
+        conditions: conditions([
+            ("top", Condition::Displacement([Some(constant(0.01)), Some(constant(-0.05))])),
+            ("bottom", Condition::Contact { gap: function(|[x, _]| 0.2 * (x - 0.3) * (x - 0.3)) }),
+            ("right", Condition::Traction([function(|[_, y]| 0.1 * y), constant(0.02)])),
+        ]),
+        ..block(skewed_square(8, Diagonal::Crossed))
+    };
+    let sliding = Problem {
+        conditions: conditions([
+            ("left", Condition::Displacement([Some(constant(0.0)), None])),
+            ("top", Condition::Displacement([None, Some(constant(-0.02))])),
+            ("bottom", Condition::Contact { gap: constant(0.0) }),
+        ]),
+        material: Material::young_poisson(3.0, 0.4, Plane::Stress),
+        ..block(skewed_square(7, Diagonal::Left))
+    };
+    vec![("block", block(skewed_square(8, Diagonal::Right))), ("gap", gap), ("sliding", sliding)]
+}
+
+/// Loads, contact and reactions balance, in force and in moment about the origin. The loads are taken from L at the
+/// rigid body motions, the contact from lambda^h along the line, the reactions from the residual.
+fn equilibrium<E: ExactEdge<f64, N, M>, const N: usize, const M: usize>(
+    name: &str,
+    problem: &Problem,
+    rule: EdgeRule,
+    contact_factor: f64,
+) -> f64 {
+    let d = half_the_limit::<E, N, M>(problem, rule);
+    let (u, report) = condensed::solve(&d, &Settings::default()).unwrap();
+    assert_eq!(report.status, Status::Converged, "{name}");
+    let residual = d.residual(&u).values;
+    let motions = [|_: [f64; 2]| [1.0, 0.0], |_| [0.0, 1.0], |[x, y]: [f64; 2]| [-y, x]];
+    let mut worst: f64 = 0.0;
+    for motion in motions {
+        let field: Vec<[f64; 2]> = d.space.nodes().iter().map(|&x| motion(x)).collect();
+        let load = inner(&d.load, &field);
+        let mut reaction = 0.0;
+        for held in d.constraints.holders().values() {
+            reaction += held.iter().map(|&(i, c)| residual[i][c] * field[i][c]).sum::<f64>();
+        }
+        let mut contact = 0.0;
+        for edge in &d.contact {
+            let t = edge.edge.triangle;
+            let gradient =
+                d.rule.integrals::<E, N, M>(edge.p(&d.space.on_triangle(t, &u))).gradient;
+            for (node, g) in d.space.edge_nodes(edge.edge).into_iter().zip(gradient) {
+                let v_n = field[node][0] * edge.normal[0] + field[node][1] * edge.normal[1];
+                contact -= contact_factor * edge.length / edge.gamma * g * v_n;
+            }
+        }
+        let size = load.abs() + reaction.abs() + contact.abs();
+        worst = worst.max((load + reaction + contact).abs() / size.max(0.1));
+    }
+    worst
+}
+
+#[test]
+fn loads_contact_and_reactions_balance_in_force_and_moment() {
+    for (name, problem) in example_problems() {
+        for rule in [EdgeRule::Exact, EdgeRule::gauss(4)] {
+            let p1 = equilibrium::<P1, 3, 2>(name, &problem, rule.clone(), 1.0);
+            let p2 = equilibrium::<P2, 6, 3>(name, &problem, rule, 1.0);
+            assert!(p1 < 1e-12 && p2 < 1e-11, "{name}: {p1:e} {p2:e}");
+        }
+    }
+}
+
+#[test]
+fn control_a_contact_force_that_is_a_little_off_breaks_the_balance() {
+    for (name, problem) in example_problems() {
+        assert!(equilibrium::<P1, 3, 2>(name, &problem, EdgeRule::Exact, 1.0 + 1e-6) > 1e-9);
+    }
+}
+
+#[test]
+fn results_are_the_same_to_the_bit_from_run_to_run() {
+    for (_, problem) in example_problems() {
+        for degree in [Degree::One, Degree::Two] {
+            let run = || solve(&problem, &method(degree, EXACT), &Settings::default()).unwrap().0;
+            let (a, b) = (run(), run());
+            assert_eq!(a.displacement, b.displacement);
+            assert_eq!(a.newton, b.newton);
+            assert_eq!(a.quantities, b.quantities);
+        }
+    }
+}
+
+/// [0, 0.3] x [0, 1] in 6 x 4 cells, lambda = mu = 1, clamped on top, no load, one Gauss point per contact edge, the gap at
+/// the middles of the edges -0.2, -0.8, 0.1, -0.3, -0.9, -0.3: plain Newton repeats four contact sets for ever.
+fn cycling() -> (Problem, Method) {
+    let rectangle = Rectangle { width: 0.3, height: 1.0, nx: 6, ny: 4, diagonal: Diagonal::Right };
+    // Nodal values whose means over the edges are those.
+    const GAP: [f64; 7] = [0.0, -0.4, -1.2, 1.4, -2.0, 0.2, -0.8];
+    let problem = Problem {
+        mesh: rectangle.mesh().unwrap(),
+        body_force: [constant(0.0), constant(0.0)],
+        conditions: conditions([
+            ("top", clamped()),
+            (
+                "bottom",
+                Condition::Contact { gap: function(|[x, _]| GAP[(x / 0.05).round() as usize]) },
+            ),
+        ]),
+        ..block(unit_square(1).mesh().unwrap())
+    };
+    let method = Method {
+        degree: Degree::One,
+        gamma0: Gamma0::Value(0.0049029033784546),
+        quadrature: ContactQuadrature::Gauss(1),
+        allow_noncoercive: false,
+    };
+    (problem, method)
+}
+
+/// The edges in contact, counted from 1.
+fn contact_set(d: &Discretization<P1, 3, 2>, u: &[[f64; 2]]) -> Vec<usize> {
+    let in_contact = d.contact.iter().enumerate().filter(|(_, edge)| {
+        let p = edge.p(&d.space.on_triangle(edge.edge.triangle, u));
+        p[0] + p[1] > 0.0
+    });
+    in_contact.map(|(e, _)| e + 1).collect()
+}
+
+/// The solution of the linear problem in which exactly the edges of `set` are in contact: an iterate of plain Newton.
+fn newton_iterate(d: &Discretization<P1, 3, 2>, set: &[usize]) -> Vec<[f64; 2]> {
+    let nodes = d.space.nodes().len();
+    let free: Vec<(usize, usize)> = (0..nodes)
+        .flat_map(|i| [(i, 0), (i, 1)])
+        .filter(|&(i, c)| d.constraints.values()[i][c].is_none())
+        .collect();
+    // With exactly the edges of `set` closed the residual is affine in u; its differences are the columns of the tangent.
+    let affine = |u: &[[f64; 2]]| {
+        let mut r = d.linear_residual(u).values;
+        for &e in set {
+            let edge = &d.contact[e - 1];
+            let t = edge.edge.triangle;
+            let p = edge.p(&d.space.on_triangle(t, u));
+            let middle = edge.length / edge.gamma * (p[0] + p[1]) / 2.0;
+            for functional in &edge.functionals.p0 {
+                for (&node, f) in d.space.elements()[t].iter().zip(functional) {
+                    for c in 0..2 {
+                        r[node][c] += middle / 2.0 * f[c];
+                    }
+                }
+            }
+        }
+        r
+    };
+    let zero = vec![[0.0; 2]; nodes];
+    let at_zero = affine(&zero);
+    let n = free.len();
+    let mut system = vec![vec![0.0; n + 1]; n];
+    for (column, &(i, c)) in free.iter().enumerate() {
+        let mut unit = zero.clone();
+        unit[i][c] = 1.0;
+        let image = affine(&unit);
+        for (row, &(j, k)) in free.iter().enumerate() {
+            system[row][column] = image[j][k] - at_zero[j][k];
+        }
+    }
+    for (row, &(j, k)) in free.iter().enumerate() {
+        system[row][n] = -at_zero[j][k];
+    }
+    let mut u = zero;
+    for (&(i, c), x) in free.iter().zip(gauss_elimination(system)) {
+        u[i][c] = x;
+    }
+    u
+}
+
+fn gauss_elimination(mut a: Vec<Vec<f64>>) -> Vec<f64> {
+    let n = a.len();
+    for k in 0..n {
+        let pivot = (k..n).max_by(|&i, &j| a[i][k].abs().total_cmp(&a[j][k].abs())).unwrap();
+        a.swap(k, pivot);
+        for i in k + 1..n {
+            let factor = a[i][k] / a[k][k];
+            for j in k..=n {
+                let eliminated = factor * a[k][j];
+                a[i][j] -= eliminated;
+            }
+        }
+    }
+    let mut x = vec![0.0; n];
+    for i in (0..n).rev() {
+        let known: f64 = (i + 1..n).map(|j| a[i][j] * x[j]).sum();
+        x[i] = (a[i][n] - known) / a[i][i];
+    }
+    x
+}
+
+#[test]
+fn plain_newton_cycles_where_the_line_search_ends() {
+    let (problem, method) = cycling();
+    let d: Discretization<P1, 3, 2> = signorini::solve::discretize(&problem, &method).unwrap();
+    assert!((d.kappa() - 0.03).abs() < 1e-15);
+    let mut set = vec![5];
+    let mut visited = Vec::new();
+    let mut energies = Vec::new();
+    for _ in 0..8 {
+        let u = newton_iterate(&d, &set);
+        energies.push(d.energy(&u));
+        set = contact_set(&d, &u);
+        visited.push(set.clone());
+    }
+    let cycle: [&[usize]; 4] = [&[1, 2, 5], &[2], &[2, 5, 6], &[5]];
+    for (step, set) in visited.iter().enumerate() {
+        assert_eq!(set, cycle[step % 4], "{visited:?}");
+    }
+    for (energy, expected) in energies.iter().zip([4.4519, 0.81341, 7.5760, 0.90384]) {
+        assert!((energy - expected).abs() < 1e-4, "{energies:?}");
+    }
+    // From the same place, with the line search: the minimiser.
+    let (u, report) = condensed::solve(&d, &Settings::default()).unwrap();
+    assert_eq!(report.status, Status::Converged);
+    assert_eq!(contact_set(&d, &u), [2, 5]);
+    assert!((d.energy(&u) - 0.291087).abs() < 1e-6, "{}", d.energy(&u));
+    assert!(energies.iter().all(|e| *e > d.energy(&u)));
+}
+
+#[test]
+fn kappa_at_or_beyond_1_is_refused_with_the_limit_and_its_edge() {
+    let problem = block(unit_square(4).mesh().unwrap());
+    let mut method = Method { gamma0: Gamma0::Value(0.2), ..method(Degree::One, EXACT) };
+    let error = solve(&problem, &method, &Settings::default()).unwrap_err();
+    let SolveError::NotCoercive { kappa, limit, edge, .. } = error else { panic!("{error}") };
+    assert!((kappa - 1.2 * 2.0_f64.sqrt()).abs() < 1e-14);
+    assert!((limit - 1.0 / (6.0 * 2.0_f64.sqrt())).abs() < 1e-15);
+    assert_eq!(edge, [[0.0, 0.0], [0.25, 0.0]]);
+    method.allow_noncoercive = true;
+    method.gamma0 = Gamma0::Value(1.05 * limit);
+    let (s, _) = solve(&problem, &method, &Settings::default()).unwrap();
+    assert_eq!(s.newton.status, Status::Converged, "below the true limit it still works");
+    method.gamma0 = Gamma0::Value(10.0 * limit);
+    let error = solve(&problem, &method, &Settings::default()).unwrap_err();
+    assert_eq!(error, SolveError::NotPositiveDefinite);
+}
+
+#[test]
+fn a_tolerance_below_rounding_ends_in_converged_to_rounding() {
+    let problem = block(unit_square(16).mesh().unwrap());
+    let settings = Settings { tolerance: 1e-18, max_iterations: 50 };
+    let (s, _) = solve(&problem, &method(Degree::Two, EXACT), &settings).unwrap();
+    assert_eq!(s.newton.status, Status::ConvergedToRounding);
+    assert!(s.newton.residual < 1e-11);
+}
+
+#[test]
+fn too_few_iterations_are_no_solution() {
+    let problem = block(unit_square(16).mesh().unwrap());
+    let settings = Settings { tolerance: 1e-10, max_iterations: 2 };
+    let (s, _) = solve(&problem, &method(Degree::One, EXACT), &settings).unwrap();
+    assert_eq!(s.newton.status, Status::NotConverged);
+    assert_eq!(s.newton.residuals.len(), 3);
+}
+
+#[test]
+fn the_derivative_of_the_positive_part_at_zero_does_not_change_the_solution() {
+    // At u = 0 with g = 0 and no contact anywhere every P is zero: Newton starts at the kink.
+    let mut problem = block(unit_square(6).mesh().unwrap());
+    problem.body_force = [constant(0.0), constant(1.0)];
+    let (s, _) = solve(&problem, &method(Degree::One, EXACT), &Settings::default()).unwrap();
+    assert_eq!(s.newton.status, Status::Converged);
+    assert_eq!(s.quantities.contact_length, 0.0);
+}
+
+#[test]
+fn exact_edge_integrals_agree_with_32_gauss_points_on_subdivided_edges() {
+    let pieces = 512;
+    let rule: Vec<(f64, f64)> = (0..pieces)
+        .flat_map(|k| {
+            let width = 1.0 / f64::from(pieces);
+            gauss(32).into_iter().map(move |(s, w)| ((f64::from(k) + s) * width, w * width))
+        })
+        .collect();
+    let fine = EdgeRule::Gauss(rule);
+    let mut random = Random(3);
+    for _ in 0..50 {
+        compare::<P1, 3, 2>(&fine, [(); 2].map(|()| random.next()));
+        compare::<P2, 6, 3>(&fine, [(); 3].map(|()| random.next()));
+    }
+}
+
+/// Only the two pieces with a root are not smooth; there a kink of [P]+ costs at most slope width^2 / 4, that of its
+/// square width^3, and a jump width.
+fn compare<E: ExactEdge<f64, N, M>, const N: usize, const M: usize>(fine: &EdgeRule, p: [f64; M]) {
+    let (exact, fine) = (E::exact(p), fine.integrals::<E, N, M>(p));
+    let width = 1.0 / 512.0;
+    assert!((exact.energy - fine.energy).abs() < 30.0 * width * width * width, "{p:?}");
+    assert!((exact.active - fine.active).abs() < width);
+    for a in 0..M {
+        assert!((exact.gradient[a] - fine.gradient[a]).abs() < 4.0 * width * width, "{p:?}");
+        for b in 0..M {
+            assert!((exact.hessian[a][b] - fine.hessian[a][b]).abs() < width, "{p:?}");
+        }
+    }
+}
