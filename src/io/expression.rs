@@ -1,0 +1,630 @@
+//! Expressions in x and y, as they stand in a case file: `-4 + 10*x`, `0.2*(x - 0.3)^2`.
+//!
+//! ```text
+//! expression = term { ("+" | "-") term }
+//! term       = factor { ("*" | "/") factor }
+//! factor     = ("+" | "-") factor | power
+//! power      = atom [ "^" factor ]
+//! atom       = number | "x" | "y" | "pi" | "(" expression ")"
+//!            | ("sqrt" | "sin" | "cos" | "exp" | "abs") "(" expression ")"
+//!            | ("min" | "max") "(" expression "," expression ")"
+//! number     = digits ["." [digits]] [exponent] | "." digits [exponent]
+//! exponent   = ("e" | "E") ["+" | "-"] digits
+//! ```
+//!
+//! So ^ is right-associative and binds tighter than a sign: -x^2 = -(x^2), 2^3^2 = 2^9, 2^-1 = 1/2. There is no implicit
+//! product: `2x` is an error. White space may stand between any two symbols. A whole constant exponent from -16 to 16
+//! means repeated multiplication: x^2 is x*x to the bit, x^-2 is 1/(x*x), x^0 is 1 for every x. Any other power is
+//! [`f64::powf`]: 2^0.5 is the square root of 2, and (-8)^(1/3) is NaN. A NaN stays a NaN, in min and max too.
+//!
+//! An [`Expression`] is a flat postfix program, not a tree: evaluation is a loop over its steps, a sum of a hundred
+//! thousand terms is no deeper than a sum of two, and [`MOST_LEVELS`] bounds what does nest.
+
+use std::str::FromStr;
+
+use thiserror::Error;
+
+use super::quote::quoted;
+use crate::fem::Function;
+
+/// How deep parentheses, functions, signs and powers may nest.
+pub const MOST_LEVELS: usize = 200;
+
+/// A function of x and y; made by [`str::parse`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Expression {
+    program: Vec<Step>,
+    /// How many values wait at the same time.
+    depth: usize,
+}
+
+/// Where and why a text is no expression.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("column {column}: found {found}, expected {expected}")]
+pub struct ExpressionError {
+    /// The place, in characters from 1.
+    pub column: usize,
+    /// What stands there.
+    pub found: String,
+    /// What could stand there.
+    pub expected: String,
+}
+
+/// One step of a program: push a value, or replace the last one or two values by one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Step {
+    Number(f64),
+    X,
+    Y,
+    Unary(Unary),
+    Binary(Binary),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Unary {
+    Negate,
+    WholePower(i32),
+    Sqrt,
+    Sin,
+    Cos,
+    Exp,
+    Abs,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Binary {
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Power,
+    Min,
+    Max,
+}
+
+/// The functions, in the order in which messages list them.
+const FUNCTIONS: [(&str, Step); 7] = [
+    ("sqrt", Step::Unary(Unary::Sqrt)),
+    ("sin", Step::Unary(Unary::Sin)),
+    ("cos", Step::Unary(Unary::Cos)),
+    ("exp", Step::Unary(Unary::Exp)),
+    ("abs", Step::Unary(Unary::Abs)),
+    ("min", Step::Binary(Binary::Min)),
+    ("max", Step::Binary(Binary::Max)),
+];
+
+impl Unary {
+    fn of(self, a: f64) -> f64 {
+        match self {
+            Unary::Negate => -a,
+            Unary::WholePower(n) => whole_power(a, n),
+            Unary::Sqrt => a.sqrt(),
+            Unary::Sin => a.sin(),
+            Unary::Cos => a.cos(),
+            Unary::Exp => a.exp(),
+            Unary::Abs => a.abs(),
+        }
+    }
+}
+
+impl Binary {
+    fn of(self, a: f64, b: f64) -> f64 {
+        match self {
+            Binary::Add => a + b,
+            Binary::Subtract => a - b,
+            Binary::Multiply => a * b,
+            Binary::Divide => a / b,
+            Binary::Power => a.powf(b),
+            // Not f64::min and f64::max: those drop a NaN.
+            Binary::Min if a < b || a.is_nan() => a,
+            Binary::Max if a > b || a.is_nan() => a,
+            Binary::Min | Binary::Max => b,
+        }
+    }
+}
+
+/// Beyond this exponent repeated multiplication gains no time and loses digits: its error grows like the exponent.
+const MOST_FACTORS: f64 = 16.0;
+
+/// a^n by repeated multiplication.
+fn whole_power(a: f64, n: i32) -> f64 {
+    let product = (0..n.unsigned_abs()).fold(1.0, |product, _| product * a);
+    if n < 0 { 1.0 / product } else { product }
+}
+
+impl Expression {
+    fn run(&self, [x, y]: [f64; 2], stack: &mut [f64]) -> f64 {
+        let mut top = 0;
+        for &step in &self.program {
+            match step {
+                Step::Unary(f) => stack[top - 1] = f.of(stack[top - 1]),
+                Step::Binary(f) => {
+                    top -= 1;
+                    stack[top - 1] = f.of(stack[top - 1], stack[top]);
+                }
+                Step::Number(_) | Step::X | Step::Y => {
+                    stack[top] = match step {
+                        Step::Number(c) => c,
+                        Step::X => x,
+                        _ => y,
+                    };
+                    top += 1;
+                }
+            }
+        }
+        stack[0]
+    }
+
+    fn push(&mut self, step: Step) {
+        // The last steps of a postfix program are its last operands, if they are numbers.
+        let step = match (step, self.program.as_slice()) {
+            (Step::Unary(f), [.., Step::Number(a)]) => {
+                let value = f.of(*a);
+                self.program.pop();
+                Step::Number(value)
+            }
+            (Step::Binary(f), [.., Step::Number(a), Step::Number(b)]) => {
+                let value = f.of(*a, *b);
+                self.program.truncate(self.program.len() - 2);
+                Step::Number(value)
+            }
+            _ => step,
+        };
+        self.program.push(step);
+    }
+}
+
+impl Function for Expression {
+    fn at(&self, x: [f64; 2]) -> f64 {
+        const FEW: usize = 16;
+        if self.depth <= FEW {
+            self.run(x, &mut [0.0; FEW])
+        } else {
+            self.run(x, &mut vec![0.0; self.depth])
+        }
+    }
+
+    fn constant(&self) -> Option<f64> {
+        match self.program.as_slice() {
+            [Step::Number(c)] => Some(*c),
+            _ => None,
+        }
+    }
+}
+
+impl FromStr for Expression {
+    type Err = ExpressionError;
+
+    fn from_str(text: &str) -> Result<Expression, ExpressionError> {
+        let mut parser = Parser::new(text)?;
+        parser.expression(1)?;
+        match parser.token {
+            Token::End => Ok(parser.done),
+            _ => Err(parser.wrong("an operator (+ - * / ^) or the end")),
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Token<'t> {
+    Number(f64),
+    Name(&'t str),
+    Symbol(char),
+    End,
+}
+
+/// Recursive descent, one function for each line of the grammar. `level` counts the nesting and `waiting` the values that
+/// wait for their operator: both are 1 deep at the start.
+struct Parser<'t> {
+    text: &'t str,
+    /// The token under consideration, and the bytes it takes.
+    token: Token<'t>,
+    start: usize,
+    end: usize,
+    waiting: usize,
+    done: Expression,
+}
+
+impl<'t> Parser<'t> {
+    fn new(text: &'t str) -> Result<Self, ExpressionError> {
+        let done = Expression { program: Vec::new(), depth: 0 };
+        let mut parser = Parser { text, token: Token::End, start: 0, end: 0, waiting: 0, done };
+        parser.advance()?;
+        Ok(parser)
+    }
+
+    fn expression(&mut self, level: usize) -> Result<(), ExpressionError> {
+        self.term(level)?;
+        loop {
+            let operator = match self.token {
+                Token::Symbol('+') => Binary::Add,
+                Token::Symbol('-') => Binary::Subtract,
+                _ => return Ok(()),
+            };
+            self.advance()?;
+            self.term(level)?;
+            self.emit(Step::Binary(operator));
+        }
+    }
+
+    fn term(&mut self, level: usize) -> Result<(), ExpressionError> {
+        self.factor(level)?;
+        loop {
+            let operator = match self.token {
+                Token::Symbol('*') => Binary::Multiply,
+                Token::Symbol('/') => Binary::Divide,
+                _ => return Ok(()),
+            };
+            self.advance()?;
+            self.factor(level)?;
+            self.emit(Step::Binary(operator));
+        }
+    }
+
+    fn factor(&mut self, level: usize) -> Result<(), ExpressionError> {
+        if level > MOST_LEVELS {
+            return Err(self.wrong(&format!("at most {MOST_LEVELS} levels of nesting")));
+        }
+        match self.token {
+            Token::Symbol('+') => {
+                self.advance()?;
+                self.factor(level + 1)
+            }
+            Token::Symbol('-') => {
+                self.advance()?;
+                self.factor(level + 1)?;
+                self.emit(Step::Unary(Unary::Negate));
+                Ok(())
+            }
+            _ => self.power(level),
+        }
+    }
+
+    fn power(&mut self, level: usize) -> Result<(), ExpressionError> {
+        self.atom(level)?;
+        if self.token == Token::Symbol('^') {
+            self.advance()?;
+            self.factor(level + 1)?;
+            match self.done.program.last() {
+                Some(&Step::Number(n)) if n.trunc() == n && n.abs() <= MOST_FACTORS => {
+                    self.done.program.pop();
+                    self.waiting -= 1;
+                    self.emit(Step::Unary(Unary::WholePower(n as i32)));
+                }
+                _ => self.emit(Step::Binary(Binary::Power)),
+            }
+        }
+        Ok(())
+    }
+
+    fn atom(&mut self, level: usize) -> Result<(), ExpressionError> {
+        let value = match self.token {
+            Token::Number(value) => Step::Number(value),
+            Token::Name("x") => Step::X,
+            Token::Name("y") => Step::Y,
+            Token::Name("pi") => Step::Number(std::f64::consts::PI),
+            Token::Name(name) => return self.function(name, level),
+            Token::Symbol('(') => {
+                self.advance()?;
+                self.expression(level + 1)?;
+                return self.skip(')', "an operator (+ - * / ^) or ')'");
+            }
+            Token::Symbol(_) | Token::End => return Err(self.no_atom()),
+        };
+        self.emit(value);
+        self.advance()
+    }
+
+    fn function(&mut self, name: &str, level: usize) -> Result<(), ExpressionError> {
+        let Some((_, step)) = FUNCTIONS.iter().find(|f| f.0 == name) else {
+            return Err(if self.text[self.end..].trim_start().starts_with('(') {
+                let known = FUNCTIONS.map(|f| f.0).join(", ");
+                self.wrong(&format!("one of the functions {known}"))
+            } else {
+                self.no_atom()
+            });
+        };
+        self.advance()?;
+        self.skip('(', &format!("'(' after {name}"))?;
+        self.expression(level + 1)?;
+        if matches!(step, Step::Binary(_)) {
+            self.skip(',', &format!("an operator (+ - * / ^) or ',': {name} takes two arguments"))?;
+            self.expression(level + 1)?;
+        }
+        let count = if matches!(step, Step::Binary(_)) { "two arguments" } else { "one argument" };
+        self.skip(')', &format!("an operator (+ - * / ^) or ')': {name} takes {count}"))?;
+        self.emit(*step);
+        Ok(())
+    }
+
+    fn emit(&mut self, step: Step) {
+        match step {
+            Step::Number(_) | Step::X | Step::Y => self.waiting += 1,
+            Step::Unary(_) => {}
+            Step::Binary(_) => self.waiting -= 1,
+        }
+        self.done.depth = self.done.depth.max(self.waiting);
+        self.done.push(step);
+    }
+
+    fn skip(&mut self, symbol: char, expected: &str) -> Result<(), ExpressionError> {
+        if self.token == Token::Symbol(symbol) { self.advance() } else { Err(self.wrong(expected)) }
+    }
+
+    /// Reads the next token.
+    fn advance(&mut self) -> Result<(), ExpressionError> {
+        let rest = self.text[self.end..].trim_start();
+        self.start = self.text.len() - rest.len();
+        let (token, length) = match rest.chars().next() {
+            None => (Token::End, 0),
+            Some(c) if c.is_ascii_digit() || c == '.' => {
+                let length = self.number_length(rest)?;
+                self.end = self.start + length;
+                match rest[..length].parse::<f64>() {
+                    Ok(value) if value.is_finite() => (Token::Number(value), length),
+                    Ok(_) => return Err(self.wrong("a number below 1.8e308")),
+                    Err(_) => return Err(self.wrong("a number")),
+                }
+            }
+            Some(c) if is_letter(c) => {
+                let length = rest.find(|c| !is_letter(c) && !c.is_ascii_digit());
+                let length = length.unwrap_or(rest.len());
+                (Token::Name(&rest[..length]), length)
+            }
+            Some(c) => (Token::Symbol(c), c.len_utf8()),
+        };
+        self.token = token;
+        self.end = self.start + length;
+        Ok(())
+    }
+
+    /// How many bytes at the start of `rest` are a number; 1 for a lonely point.
+    fn number_length(&self, rest: &str) -> Result<usize, ExpressionError> {
+        let mut length = digits(rest);
+        if rest[length..].starts_with('.') {
+            length += 1;
+            length += digits(&rest[length..]);
+        }
+        let Some(exponent) = rest[length..].strip_prefix(['e', 'E']) else { return Ok(length) };
+        let unsigned = exponent.strip_prefix(['+', '-']);
+        if unsigned.is_none() && exponent.starts_with(is_letter) {
+            // The start of a name, as in 2exp(x).
+            return Ok(length);
+        }
+        let unsigned = unsigned.unwrap_or(exponent);
+        let count = digits(unsigned);
+        let start = self.text.len() - unsigned.len();
+        if count == 0 {
+            let found = unsigned.chars().next().map(String::from);
+            return Err(self.wrong_at(start, found.as_deref(), "the digits of the exponent"));
+        }
+        Ok(start + count - self.start)
+    }
+
+    fn no_atom(&self) -> ExpressionError {
+        self.wrong("a number, x, y, pi, a function or '('")
+    }
+
+    fn wrong(&self, expected: &str) -> ExpressionError {
+        let found = &self.text[self.start..self.end];
+        self.wrong_at(self.start, Some(found).filter(|f| !f.is_empty()), expected)
+    }
+
+    fn wrong_at(&self, start: usize, found: Option<&str>, expected: &str) -> ExpressionError {
+        ExpressionError {
+            column: self.text[..start].chars().count() + 1,
+            found: found.map_or("the end".to_owned(), |found| quoted(found, '\'')),
+            expected: expected.to_owned(),
+        }
+    }
+}
+
+/// How many digits stand at the start of `text`.
+fn digits(text: &str) -> usize {
+    text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len())
+}
+
+fn is_letter(c: char) -> bool {
+    c.is_alphabetic() || c == '_'
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(text: &str) -> Expression {
+        text.parse().unwrap_or_else(|e| panic!("{text}: {e}"))
+    }
+
+    fn message(text: &str) -> String {
+        match text.parse::<Expression>() {
+            Ok(e) => format!("no error, but {:?}", e.program),
+            Err(e) => e.to_string(),
+        }
+    }
+
+    #[test]
+    fn tricky_expressions_have_the_value_of_the_mathematics() {
+        // At x = 3, y = 5; every value is exact in doubles.
+        for (text, value) in [
+            ("x", 3.0),
+            ("(x)", 3.0),
+            ("((((y))))", 5.0),
+            ("-x^2", -9.0),
+            ("(-x)^2", 9.0),
+            ("-2^2", -4.0),
+            ("2^3^2", 512.0),
+            ("(2^3)^2", 64.0),
+            ("2^-1", 0.5),
+            ("2^-x", 0.125),
+            ("2^-1^2", 0.5),
+            ("-2^-2", -0.25),
+            ("x^-2", 1.0 / 9.0),
+            ("x^0", 1.0),
+            ("x^x", 27.0),
+            ("2*-3", -6.0),
+            ("2/-x", 2.0 / -3.0),
+            ("x--y", 8.0),
+            ("x+-y", -2.0),
+            ("x-+y", -2.0),
+            ("--x", 3.0),
+            ("+-+x", -3.0),
+            ("x - y - 1", -3.0),
+            ("x - (y - 1)", -1.0),
+            ("1/3*3", 1.0),
+            ("12/2/3", 2.0),
+            ("2*x^2*y", 90.0),
+            ("1e-3*x", 1e-3 * 3.0),
+            ("1E3", 1000.0),
+            (".5e+1", 5.0),
+            (".5", 0.5),
+            ("2.", 2.0),
+            ("2.e1", 20.0),
+            ("007", 7.0),
+            (" \t x\n+ y ", 8.0),
+            ("2^0.5", std::f64::consts::SQRT_2),
+            ("x^17", 129_140_163.0),
+            ("pi", std::f64::consts::PI),
+            ("sqrt(x*x)", 3.0),
+            ("sin(0) + cos(0) + exp(0)", 2.0),
+            ("sin(x)", 3.0_f64.sin()),
+            ("sin (x)^2", 3.0_f64.sin() * 3.0_f64.sin()),
+            ("-abs(-x)", -3.0),
+            ("min(x, y) - max(x, y)", -2.0),
+            ("max(min(x, 4), min(y, 4))", 4.0),
+            ("max(-x, -y)^2", 9.0),
+            ("-4 + 10*x", 26.0),
+            ("0.25*(x - 1)^2", 1.0),
+            ("y/(1 - y)", -1.25),
+        ] {
+            assert_eq!(parse(text).at([3.0, 5.0]), value, "{text}");
+        }
+    }
+
+    #[test]
+    fn square_is_the_product_to_the_bit() {
+        for x in [0.1, -1.0 / 3.0, 1e200, 5e-324, -0.0] {
+            assert_eq!(parse("x^2").at([x, 0.0]).to_bits(), (x * x).to_bits());
+        }
+    }
+
+    #[test]
+    fn powers_and_roots_outside_the_real_numbers_are_nan() {
+        for text in ["(-8)^(1/3)", "sqrt(-1)", "0/0", "min(0/0, 1)", "max(1, 0/0)", "max(x, 1)"] {
+            assert!(parse(text).at([f64::NAN, 0.0]).is_nan(), "{text}");
+        }
+        assert_eq!(parse("1/0").at([0.0; 2]), f64::INFINITY);
+    }
+
+    #[test]
+    fn constants_are_recognised() {
+        for (text, value) in [
+            ("0", Some(0.0)),
+            ("-2*(3 + 4)^2/7", Some(-14.0)),
+            ("max(1, 2) - sqrt(4)", Some(0.0)),
+            ("x - x", None),
+            ("0*y", None),
+        ] {
+            assert_eq!(parse(text).constant(), value, "{text}");
+        }
+    }
+
+    #[test]
+    fn mistakes_are_named_with_their_column() {
+        let atom = "expected a number, x, y, pi, a function or '('";
+        let end = "expected an operator (+ - * / ^) or the end";
+        for (text, expected) in [
+            ("", format!("column 1: found the end, {atom}")),
+            ("  ", format!("column 3: found the end, {atom}")),
+            ("(", format!("column 2: found the end, {atom}")),
+            (")", format!("column 1: found ')', {atom}")),
+            ("()", format!("column 2: found ')', {atom}")),
+            ("4 +", format!("column 4: found the end, {atom}")),
+            ("x^", format!("column 3: found the end, {atom}")),
+            ("2 * z", format!("column 5: found 'z', {atom}")),
+            ("nan", format!("column 1: found 'nan', {atom}")),
+            ("-inf", format!("column 2: found 'inf', {atom}")),
+            ("x1", format!("column 1: found 'x1', {atom}")),
+            ("X", format!("column 1: found 'X', {atom}")),
+            ("x**2", format!("column 3: found '*', {atom}")),
+            ("π", format!("column 1: found 'π', {atom}")),
+            ("x + ½", format!("column 5: found '½', {atom}")),
+            ("x·y", format!("column 2: found '·', {end}")),
+            ("2x", format!("column 2: found 'x', {end}")),
+            ("x y", format!("column 3: found 'y', {end}")),
+            ("2(x)", format!("column 2: found '(', {end}")),
+            ("x)", format!("column 2: found ')', {end}")),
+            ("x, y", format!("column 2: found ',', {end}")),
+            ("1.2.3", format!("column 4: found '.3', {end}")),
+            ("1..2", format!("column 3: found '.2', {end}")),
+            ("2exp(x)", format!("column 2: found 'exp', {end}")),
+            ("x = 1", format!("column 3: found '=', {end}")),
+            ("x\u{0}", format!("column 2: found '\\0', {end}")),
+            ("(x", "column 3: found the end, expected an operator (+ - * / ^) or ')'".into()),
+            ("(x, y)", "column 3: found ',', expected an operator (+ - * / ^) or ')'".into()),
+            (".", "column 1: found '.', expected a number".into()),
+            ("1e", "column 3: found the end, expected the digits of the exponent".into()),
+            ("é+1e+", "column 1: found 'é', expected a number, x, y, pi, a function or '('".into()),
+            ("1e-x", "column 4: found 'x', expected the digits of the exponent".into()),
+            ("1e999", "column 1: found '1e999', expected a number below 1.8e308".into()),
+            ("sin", "column 4: found the end, expected '(' after sin".into()),
+            ("sin x", "column 5: found 'x', expected '(' after sin".into()),
+            (
+                "sin(x,y)",
+                "column 6: found ',', expected an operator (+ - * / ^) or ')': sin takes one argument"
+                    .into(),
+            ),
+            (
+                "max(x)",
+                "column 6: found ')', expected an operator (+ - * / ^) or ',': max takes two arguments"
+                    .into(),
+            ),
+            (
+                "min(x,y,1)",
+                "column 8: found ',', expected an operator (+ - * / ^) or ')': min takes two arguments"
+                    .into(),
+            ),
+            (
+                "1 + tan(x)",
+                "column 5: found 'tan', expected one of the functions sqrt, sin, cos, exp, abs, min, max"
+                    .into(),
+            ),
+        ] {
+            assert_eq!(message(text), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn nesting_has_a_limit_and_long_sums_have_none() {
+        let nested = |open: &str, n: usize, close: &str| open.repeat(n) + "x" + &close.repeat(n);
+        for (open, close) in
+            [("(", ")"), ("-", ""), ("sin(", ")"), ("2^", ""), ("1+2*3^min(x,", ")")]
+        {
+            // A power and a function are two levels.
+            let most = if open.contains('^') && close == ")" { 99 } else { MOST_LEVELS - 1 };
+            assert!(nested(open, most, close).parse::<Expression>().is_ok(), "{open}");
+            let e = message(&nested(open, 1 << 20, close));
+            assert!(e.ends_with("expected at most 200 levels of nesting"), "{e}");
+        }
+        assert_eq!(
+            message(&"(".repeat(1 << 20)),
+            "column 201: found '(', expected at most 200 levels of nesting"
+        );
+        let sum = parse(&("x".to_owned() + &"+y".repeat(100_000)));
+        assert_eq!(sum.at([1.0, 2.0]), 200_001.0);
+        assert_eq!(sum.depth, 2);
+    }
+
+    #[test]
+    fn deep_expressions_are_evaluated_as_flat_ones() {
+        let deep = "x+(".repeat(150) + "y" + &")".repeat(150);
+        assert_eq!(parse(&deep).at([2.0, 1.0]), 301.0);
+        assert!(parse(&deep).depth > 16);
+    }
+
+    #[test]
+    fn long_tokens_are_shortened_in_messages() {
+        let e = message(&"z".repeat(1 << 20));
+        assert!(e.starts_with("column 1: found 'zzz") && e.len() < 200, "{e}");
+    }
+}
