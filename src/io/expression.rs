@@ -192,6 +192,12 @@ impl Function for Expression {
     }
 }
 
+impl From<f64> for Expression {
+    fn from(value: f64) -> Expression {
+        Expression { program: vec![Step::Number(value)], depth: 1 }
+    }
+}
+
 impl FromStr for Expression {
     type Err = ExpressionError;
 

@@ -1,6 +1,21 @@
 //! What goes in and out: case files, Gmsh meshes, VTU, SVG, JSON.
 
+pub mod case;
 pub mod expression;
 mod quote;
+mod table;
 
+use std::io;
+
+pub use case::{Case, CaseError};
 pub use expression::{Expression, ExpressionError};
+
+/// Why a file can't be read, in words that don't depend on the system where that is possible.
+fn why_unreadable(error: &io::Error) -> String {
+    match error.kind() {
+        io::ErrorKind::NotFound => "there is no such file".to_owned(),
+        io::ErrorKind::IsADirectory => "this is a directory; expected a file".to_owned(),
+        io::ErrorKind::PermissionDenied => "there is no permission to read this file".to_owned(),
+        _ => error.to_string(),
+    }
+}

@@ -1,0 +1,476 @@
+//! The case file: one contact problem and how to solve it, in TOML.
+//!
+//! ```toml
+//! title = "Block pressed on a rigid floor"  # default: the name of the file
+//! [mesh]                                    # required: one of rectangle, gmsh
+//! rectangle = { width = 1.0, height = 1.0, nx = 32, ny = 32, diagonal = "right" }   # right (default) | left | crossed
+//! # gmsh = "bracket.msh"                    # MSH 4.1, relative to this file; boundaries are its physical curves
+//! [material]                                # required
+//! lambda = 1.0                              # lambda and mu, or young and poisson: those of the three-dimensional body
+//! mu = 1.0
+//! plane = "strain"                          # strain (default) | stress
+//! [load]
+//! body = ["0", "-4 + 10*x"]                 # force per area; expressions in x, y; default 0
+//! [boundary.top]                            # the sides of a rectangle are left, right, bottom, top
+//! displacement = ["0", "0"]                 # "free" for a component that is not prescribed
+//! [boundary.right]
+//! traction = ["0", "0"]                     # the default for a boundary that is not named
+//! [boundary.bottom]                         # at least one boundary has contact
+//! contact = { gap = "0" }                   # along the outward normal; default 0
+//! [method]
+//! degree = 1                                # 1 (default) | 2
+//! gamma0 = 0.1                              # a number > 0, or "auto" (default): half the coercivity limit
+//! contact_quadrature = "exact"              # "exact" (default) or { gauss = 4 }: points per edge, 1 to 64
+//! allow_noncoercive = false                 # true: solve although kappa >= 1, without any promise
+//! [solver]
+//! tolerance = 1e-10                         # relative residual; between 0 and 1
+//! max_iterations = 50
+//! [output]
+//! probes = [[0.5, 0.5]]                     # places where result.json gives the displacement
+//! ```
+//!
+//! The grammar of expressions is in [`expression`](super::expression). A key that is not listed here is an error, and so
+//! is a list of the wrong length, a number that is NaN or infinite, and a boundary with more than one of displacement,
+//! traction and contact. Integers serve as numbers. The material is stable: mu > 0 and 3 lambda + 2 mu > 0, that is
+//! young > 0 and -1 < poisson < 1/2.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+use toml::de::DeTable;
+
+use super::expression::{Expression, ExpressionError};
+use super::table::{Source, Table, Value, shown};
+use super::why_unreadable;
+use crate::fem::rectangle::MOST_CELLS;
+use crate::fem::{BoxedFunction, Condition, Diagonal, Mesh, MeshError, Problem, Rectangle};
+use crate::kernel::{Material, Plane};
+use crate::solve::{ContactQuadrature, Degree, Gamma0, Method, Settings};
+
+/// A contact problem and how to solve it.
+pub struct Case {
+    /// A line for people.
+    pub title: String,
+    /// What to solve.
+    pub problem: Problem,
+    /// By which variant of method (8).
+    pub method: Method,
+    /// How accurately.
+    pub settings: Settings,
+    /// The places where the displacement is wanted.
+    pub probes: Vec<[f64; 2]>,
+}
+
+/// What is wrong with a case file, and where.
+#[derive(Debug, Error)]
+#[error("{}{}: {mistake}", file.display(), line.map_or(String::new(), |line| format!(":{line}")))]
+pub struct CaseError {
+    /// The case file.
+    pub file: PathBuf,
+    /// The line, from 1, unless it is the file as a whole.
+    pub line: Option<usize>,
+    /// What is wrong.
+    pub mistake: CaseMistake,
+}
+
+/// What is wrong with a case file. `name` is a key as messages show it: `[mesh] rectangle.nx`.
+#[derive(Debug, Error)]
+#[expect(missing_docs, reason = "the message of each variant says what it is")]
+pub enum CaseMistake {
+    #[error("{0}")]
+    Unreadable(String),
+    #[error("this is no TOML: {0}")]
+    Toml(String),
+    #[error("unknown key {key}{}; expected one of {known}", within(place))]
+    Unknown { key: String, place: String, known: String },
+    #[error("{name} is missing; expected {expected}")]
+    Missing { name: String, expected: String },
+    #[error("{name} = {found}; expected {expected}")]
+    Value { name: String, found: String, expected: String },
+    #[error("{name} has {found}; expected {expected}")]
+    Combination { name: String, found: String, expected: String },
+    #[error("{name} = {text}: {error}")]
+    Expression { name: String, text: String, error: ExpressionError },
+    #[error("{name}: {error}")]
+    Mesh { name: String, error: MeshError },
+}
+
+fn within(place: &str) -> String {
+    if place.is_empty() { String::new() } else { format!(" in {place}") }
+}
+
+impl Case {
+    /// The case in this file, its mesh made or read.
+    ///
+    /// # Errors
+    /// The first mistake found, with its place. What depends on the discrete problem (rigid motions left free, kappa >= 1,
+    /// expressions without a value somewhere on the mesh) is found when it is solved.
+    pub fn read(file: &Path) -> Result<Case, CaseError> {
+        let text = read_text(file).map_err(|why| CaseError {
+            file: file.to_owned(),
+            line: None,
+            mistake: CaseMistake::Unreadable(why),
+        })?;
+        let source = Source { file, text: &text };
+        let entries = DeTable::parse(&text).map_err(|e| {
+            let start = e.span().map(|span| span.start);
+            source.wrong(start, CaseMistake::Toml(e.message().replace('\n', ", ")))
+        })?;
+        case(file, &Table::whole(source, entries.get_ref()))
+    }
+}
+
+fn read_text(file: &Path) -> Result<String, String> {
+    let bytes = fs::read(file).map_err(|e| why_unreadable(&e))?;
+    String::from_utf8(bytes).map_err(|e| {
+        let good = e.utf8_error().valid_up_to();
+        format!("byte {} is not UTF-8; expected a text file", good + 1)
+    })
+}
+
+fn case(file: &Path, root: &Table) -> Result<Case, CaseError> {
+    root.only(&["title", "mesh", "material", "load", "boundary", "method", "solver", "output"])?;
+    let title = match root.get("title") {
+        Some(title) => title.text()?.to_owned(),
+        None => file.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
+    };
+    let mesh = root.required_section("mesh", "rectangle = { .. } or gmsh = \"..\" in it")?;
+    let material =
+        root.required_section("material", "lambda and mu, or young and poisson in it")?;
+    let material = read_material(&material)?;
+    let body_force = read_load(root.section("load")?)?;
+    let boundaries = read_boundaries(root)?;
+    let method = read_method(root.section("method")?)?;
+    let settings = read_settings(root.section("solver")?)?;
+    let probes = read_probes(root.section("output")?)?;
+    // The mesh comes last: it is what takes time.
+    let mesh = read_mesh(&mesh)?;
+    let conditions = on_the_mesh(&mesh, boundaries)?;
+    Ok(Case {
+        title,
+        problem: Problem { mesh, material, body_force, conditions },
+        method,
+        settings,
+        probes,
+    })
+}
+
+fn read_mesh(table: &Table) -> Result<Mesh, CaseError> {
+    let value = table.exactly_one(&["rectangle"])?;
+    read_rectangle(&value.table()?)?.mesh().map_err(|error| {
+        let name = value.name().to_owned();
+        value.mistake(CaseMistake::Mesh { name, error })
+    })
+}
+
+fn read_rectangle(table: &Table) -> Result<Rectangle, CaseError> {
+    table.only(&["width", "height", "nx", "ny", "diagonal"])?;
+    let length =
+        |key| table.require(key, "a length")?.number_that(|x| x > 0.0, "a positive number");
+    let cells = |key| table.require(key, "a number of cells")?.whole_number(1..=MOST_CELLS);
+    Ok(Rectangle {
+        width: length("width")?,
+        height: length("height")?,
+        nx: cells("nx")?,
+        ny: cells("ny")?,
+        diagonal: match table.get("diagonal") {
+            Some(diagonal) => diagonal.one_of(&[
+                ("right", Diagonal::Right),
+                ("left", Diagonal::Left),
+                ("crossed", Diagonal::Crossed),
+            ])?,
+            None => Diagonal::Right,
+        },
+    })
+}
+
+fn read_material(table: &Table) -> Result<Material<f64>, CaseError> {
+    const MODULI: [&str; 4] = ["lambda", "mu", "young", "poisson"];
+    table.only(&["lambda", "mu", "young", "poisson", "plane"])?;
+    let plane = match table.get("plane") {
+        Some(plane) => plane.one_of(&[("strain", Plane::Strain), ("stress", Plane::Stress)])?,
+        None => Plane::Strain,
+    };
+    let material = match MODULI.map(|key| table.get(key)) {
+        [Some(lambda), Some(mu), None, None] => {
+            let mu = mu.number_that(|mu| mu > 0.0, "a positive number")?;
+            let least = -2.0 / 3.0 * mu;
+            let expected = format!("a number above {least}, for 3 lambda + 2 mu > 0");
+            Material::lame(lambda.number_that(|l| 3.0 * l + 2.0 * mu > 0.0, &expected)?, mu, plane)
+        }
+        [None, None, Some(young), Some(poisson)] => Material::young_poisson(
+            young.number_that(|e| e > 0.0, "a positive number")?,
+            poisson.number_that(|nu| -1.0 < nu && nu < 0.5, "a number above -1 and below 0.5")?,
+            plane,
+        ),
+        _ => return Err(table.combination(&MODULI, "lambda and mu, or young and poisson")),
+    };
+    let stiffness = material.normal_stiffness();
+    if stiffness > 0.0 && stiffness.is_finite() {
+        Ok(material)
+    } else {
+        Err(table.wrong(CaseMistake::Value {
+            name: format!("{} lambda + 2 mu", table.name()),
+            found: stiffness.to_string(),
+            expected: "moduli that are neither so large nor so small".to_owned(),
+        }))
+    }
+}
+
+fn read_load(table: Option<Table>) -> Result<[BoxedFunction; 2], CaseError> {
+    if let Some(table) = &table {
+        table.only(&["body"])?;
+    }
+    match table.and_then(|table| table.get("body")) {
+        Some(body) => functions(&body),
+        None => Ok([zero(), zero()]),
+    }
+}
+
+fn functions(value: &Value) -> Result<[BoxedFunction; 2], CaseError> {
+    let [x, y] = value.pair()?;
+    Ok([x.function()?, y.function()?])
+}
+
+fn zero() -> BoxedFunction {
+    Box::new(Expression::from(0.0))
+}
+
+/// A boundary of the case file: its table, its name, and what holds there.
+type Boundary<'s> = (Table<'s>, &'s str, Condition);
+
+fn read_boundaries<'s>(root: &Table<'s>) -> Result<Vec<Boundary<'s>>, CaseError> {
+    let expected = "one boundary with contact, such as [boundary.bottom] contact = { gap = \"0\" }";
+    let all = root.required_section("boundary", expected)?;
+    let mut boundaries = Vec::new();
+    for key in all.keys() {
+        let table = all.require(key, "a table")?.section(format!("[boundary.{}]", shown(key)))?;
+        let condition = read_condition(&table)?;
+        boundaries.push((table, key, condition));
+    }
+    if boundaries.iter().any(|b| matches!(b.2, Condition::Contact { .. })) {
+        Ok(boundaries)
+    } else {
+        Err(all.wrong(CaseMistake::Combination {
+            name: all.name().to_owned(),
+            found: "no contact".to_owned(),
+            expected: expected.to_owned(),
+        }))
+    }
+}
+
+fn read_condition(table: &Table) -> Result<Condition, CaseError> {
+    let value = table.exactly_one(&["displacement", "traction", "contact"])?;
+    if table.get("displacement").is_some() {
+        let [x, y] = value.pair()?;
+        return Ok(Condition::Displacement([component(&x)?, component(&y)?]));
+    }
+    if table.get("traction").is_some() {
+        return Ok(Condition::Traction(functions(&value)?));
+    }
+    let contact = value.table()?;
+    contact.only(&["gap"])?;
+    let gap = contact.get("gap").map_or(Ok(zero()), |gap| gap.function())?;
+    Ok(Condition::Contact { gap })
+}
+
+/// A component of a displacement, `None` if it is free.
+fn component(value: &Value) -> Result<Option<BoxedFunction>, CaseError> {
+    if value.as_text() == Some("free") { Ok(None) } else { value.function().map(Some) }
+}
+
+fn on_the_mesh(
+    mesh: &Mesh,
+    boundaries: Vec<Boundary>,
+) -> Result<BTreeMap<String, Condition>, CaseError> {
+    let mut conditions = BTreeMap::new();
+    for (table, name, condition) in boundaries {
+        let edges = mesh.edges_of(name).map_err(|error| {
+            table.wrong(CaseMistake::Mesh { name: table.name().to_owned(), error })
+        })?;
+        if edges.is_empty() {
+            return Err(table.wrong(CaseMistake::Combination {
+                name: table.name().to_owned(),
+                found: "no edge in this mesh".to_owned(),
+                expected: "at least one".to_owned(),
+            }));
+        }
+        conditions.insert(name.to_owned(), condition);
+    }
+    Ok(conditions)
+}
+
+fn read_method(table: Option<Table>) -> Result<Method, CaseError> {
+    let mut method = Method::default();
+    let Some(table) = table else { return Ok(method) };
+    table.only(&["degree", "gamma0", "contact_quadrature", "allow_noncoercive"])?;
+    if let Some(degree) = table.get("degree") {
+        method.degree = match degree.whole_number(1..=2).map_err(|_| degree.wrong("1 or 2"))? {
+            1 => Degree::One,
+            _ => Degree::Two,
+        };
+    }
+    if let Some(gamma0) = table.get("gamma0") {
+        method.gamma0 = match gamma0.as_text() {
+            Some("auto") => Gamma0::Auto,
+            Some(_) => return Err(gamma0.wrong("a positive number or \"auto\"")),
+            None => {
+                Gamma0::Value(gamma0.number_that(|g| g > 0.0, "a positive number or \"auto\"")?)
+            }
+        };
+    }
+    if let Some(quadrature) = table.get("contact_quadrature") {
+        method.quadrature = read_quadrature(&quadrature)?;
+    }
+    if let Some(allow) = table.get("allow_noncoercive") {
+        method.allow_noncoercive = allow.flag()?;
+    }
+    Ok(method)
+}
+
+/// More Gauss points than this gain nothing: the integrand has a kink where contact ends.
+const MOST_GAUSS_POINTS: usize = 64;
+
+fn read_quadrature(value: &Value) -> Result<ContactQuadrature, CaseError> {
+    if value.as_text() == Some("exact") {
+        return Ok(ContactQuadrature::Exact);
+    }
+    if !value.is_table() {
+        return Err(value.wrong("\"exact\" or { gauss = points per edge }"));
+    }
+    let points = value.table()?.exactly_one(&["gauss"])?.whole_number(1..=MOST_GAUSS_POINTS)?;
+    Ok(ContactQuadrature::Gauss(points))
+}
+
+/// Newton's method takes a few steps, or it does not converge.
+const MOST_ITERATIONS: usize = 1_000_000;
+
+fn read_settings(table: Option<Table>) -> Result<Settings, CaseError> {
+    let mut settings = Settings::default();
+    let Some(table) = table else { return Ok(settings) };
+    table.only(&["tolerance", "max_iterations"])?;
+    if let Some(tolerance) = table.get("tolerance") {
+        settings.tolerance =
+            tolerance.number_that(|t| 0.0 < t && t < 1.0, "a number above 0 and below 1")?;
+    }
+    if let Some(most) = table.get("max_iterations") {
+        settings.max_iterations = most.whole_number(1..=MOST_ITERATIONS)?;
+    }
+    Ok(settings)
+}
+
+fn read_probes(table: Option<Table>) -> Result<Vec<[f64; 2]>, CaseError> {
+    let Some(table) = table else { return Ok(Vec::new()) };
+    table.only(&["probes"])?;
+    let Some(probes) = table.get("probes") else { return Ok(Vec::new()) };
+    let place = |probe: &Value| {
+        let [x, y] = probe.pair()?;
+        Ok([x.number()?, y.number()?])
+    };
+    probes.items()?.iter().map(place).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<Case, CaseError> {
+        let file = Path::new("x.toml");
+        let entries = DeTable::parse(text).unwrap();
+        case(file, &Table::whole(Source { file, text }, entries.get_ref()))
+    }
+
+    const SMALL: &str = "
+        mesh.rectangle = { width = 2, height = 1.0, nx = 2, ny = 1 }
+        material = { young = 2.5, poisson = 0.25 }
+        boundary.bottom.contact = {}
+    ";
+
+    #[test]
+    fn what_is_not_said_has_its_default() {
+        let case = read(SMALL).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(case.title, "x");
+        assert_eq!(case.method, Method::default());
+        assert_eq!(case.settings, Settings::default());
+        assert!(case.probes.is_empty());
+        assert_eq!(case.problem.material, Material::young_poisson(2.5, 0.25, Plane::Strain));
+        assert_eq!(case.problem.mesh.vertices()[5], [2.0, 1.0]);
+        assert_eq!(case.problem.mesh.triangles()[0], [0, 1, 4], "the diagonal is right");
+        assert_eq!(case.problem.body_force.each_ref().map(|f| f.constant()), [Some(0.0); 2]);
+        assert_eq!(case.problem.conditions.len(), 1);
+        let Some(Condition::Contact { gap }) = case.problem.conditions.get("bottom") else {
+            panic!("no contact")
+        };
+        assert_eq!(gap.constant(), Some(0.0));
+    }
+
+    #[test]
+    fn everything_that_can_be_said_is_read() {
+        let case = read(
+            r#"
+            title = "All"
+            [mesh]
+            rectangle = { width = 2, height = 1.0, nx = 2, ny = 1, diagonal = "crossed" }
+            [material]
+            lambda = -0.5
+            mu = 1
+            plane = "stress"
+            [load]
+            body = ["x", "-4 + 10*y"]
+            [boundary.left]
+            displacement = ["y", "free"]
+            [boundary.top]
+            traction = ["0", "-x"]
+            [boundary.bottom]
+            contact = { gap = "0.1*x^2" }
+            [method]
+            degree = 2
+            gamma0 = 1
+            contact_quadrature = { gauss = 4 }
+            allow_noncoercive = true
+            [solver]
+            tolerance = 1e-8
+            max_iterations = 7
+            [output]
+            probes = [[0, 1], [0.5, 0.25]]
+            "#,
+        )
+        .unwrap_or_else(|e| panic!("{e}"));
+        let p = [2.0, 3.0];
+        assert_eq!(case.title, "All");
+        assert_eq!(case.problem.mesh.triangles().len(), 8);
+        assert_eq!(case.problem.material, Material::lame(-0.5, 1.0, Plane::Stress));
+        assert_eq!(case.problem.body_force.each_ref().map(|f| f.at(p)), [2.0, 26.0]);
+        let conditions = &case.problem.conditions;
+        let Condition::Displacement([Some(x), None]) = &conditions["left"] else { panic!() };
+        let Condition::Traction([_, y]) = &conditions["top"] else { panic!() };
+        let Condition::Contact { gap } = &conditions["bottom"] else { panic!() };
+        assert_eq!([x.at(p), y.at(p), gap.at(p)], [3.0, -2.0, 0.4]);
+        assert_eq!(
+            case.method,
+            Method {
+                degree: Degree::Two,
+                gamma0: Gamma0::Value(1.0),
+                quadrature: ContactQuadrature::Gauss(4),
+                allow_noncoercive: true,
+            }
+        );
+        assert_eq!(case.settings, Settings { tolerance: 1e-8, max_iterations: 7 });
+        assert_eq!(case.probes, [[0.0, 1.0], [0.5, 0.25]]);
+    }
+
+    #[test]
+    fn every_committed_case_can_be_read() {
+        let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
+        let mut count = 0;
+        for file in fs::read_dir(cases).unwrap().map(|entry| entry.unwrap().path()) {
+            if file.extension().is_some_and(|e| e == "toml") {
+                Case::read(&file).unwrap_or_else(|e| panic!("{e}"));
+                count += 1;
+            }
+        }
+        assert!(count >= 3);
+    }
+}
