@@ -2,6 +2,7 @@
 
 pub mod case;
 pub mod expression;
+pub mod files;
 mod quote;
 mod table;
 
