@@ -1,10 +1,14 @@
 //! What goes in and out: case files, Gmsh meshes, VTU, SVG, JSON.
 
 pub mod case;
+pub mod csv;
+pub mod data;
 pub mod expression;
 pub mod files;
 mod quote;
+pub mod result;
 mod table;
+pub mod vtu;
 
 use std::io;
 

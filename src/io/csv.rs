@@ -1,0 +1,75 @@
+//! contact.csv: what happens along the contact line, for a spreadsheet or a plot.
+//!
+//! Each number is the shortest decimal that reads back to the same double.
+
+use std::fmt::Write;
+
+use super::data::{DataError, check_finite};
+
+/// One node of one contact edge. A node between two edges has a row for each: sigma_n jumps there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactRow {
+    /// Arc length from the start of the contact line.
+    pub arc: f64,
+    /// The place in the undeformed body.
+    pub x: f64,
+    /// The place in the undeformed body.
+    pub y: f64,
+    /// u.n
+    pub u_n: f64,
+    /// The gap g.
+    pub gap: f64,
+    /// sigma_n(u), negative in compression.
+    pub sigma_n: f64,
+    /// The contact pressure lambda^h, never positive.
+    pub lambda: f64,
+}
+
+/// The text of the file: a line with the names, then a line for each row.
+///
+/// # Errors
+/// [`DataError::NotFinite`], with the number of the row, counted from 0.
+pub fn contact_csv(rows: &[ContactRow]) -> Result<String, DataError> {
+    let numbers =
+        |row: &ContactRow| [row.arc, row.x, row.y, row.u_n, row.gap, row.sigma_n, row.lambda];
+    let rows: Vec<[f64; 7]> = rows.iter().map(numbers).collect();
+    check_finite("row", rows.iter().map(<[f64; 7]>::as_slice))?;
+    let mut text = String::from("arc,x,y,u_n,gap,sigma_n,lambda\n");
+    for [arc, x, y, u_n, gap, sigma_n, lambda] in rows {
+        // Writing to a string cannot fail. The debug form is the one that uses exponents where they are shorter.
+        let _ = writeln!(text, "{arc:?},{x:?},{y:?},{u_n:?},{gap:?},{sigma_n:?},{lambda:?}");
+    }
+    Ok(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ROW: ContactRow = ContactRow {
+        arc: 0.1,
+        x: 1.0 / 3.0,
+        y: -0.0,
+        u_n: -1e-17,
+        gap: 0.0,
+        sigma_n: 5e-324,
+        lambda: -1.5e300,
+    };
+
+    #[test]
+    fn numbers_are_the_shortest_that_read_back() {
+        let text = contact_csv(&[ROW, ContactRow { arc: 2.0, ..ROW }]).unwrap();
+        assert_eq!(
+            text,
+            "arc,x,y,u_n,gap,sigma_n,lambda\n\
+             0.1,0.3333333333333333,-0.0,-1e-17,0.0,5e-324,-1.5e300\n\
+             2.0,0.3333333333333333,-0.0,-1e-17,0.0,5e-324,-1.5e300\n"
+        );
+    }
+
+    #[test]
+    fn a_number_that_is_not_finite_is_refused_by_row() {
+        let error = contact_csv(&[ROW, ContactRow { gap: f64::NAN, ..ROW }]).unwrap_err();
+        assert_eq!(error.to_string(), "row[1] is NaN or infinite; expected a finite number");
+    }
+}

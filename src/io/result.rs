@@ -1,0 +1,446 @@
+//! result.json: what a program wants to know of a run, in the case's own consistent units.
+//!
+//! Each number is the shortest decimal that reads back to the same double. A number that does not exist is left out
+//! together with its name: `null` never stands in the file, and a NaN or an infinity is an error that names it, where
+//! JSON alone would turn it into `null` without a word. Everything but [`Seconds`] is the same from run to run.
+
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+
+use serde::Serialize;
+use serde_json::ser::{Formatter, Serializer};
+
+use super::data::DataError;
+
+/// The content of result.json, in its order.
+#[derive(Clone, Debug, Serialize)]
+pub struct Results {
+    /// The version of this program.
+    pub version: String,
+    /// The title of the case.
+    pub title: String,
+    /// The discretisation.
+    pub mesh: MeshSizes,
+    /// Nitsche's parameter.
+    pub gamma: GammaChoice,
+    /// The iteration.
+    pub newton: NewtonHistory,
+    /// The solution in numbers.
+    pub quantities: Quantities,
+    /// `[x, y, u_x, u_y]` at the points that the case asks for; left out if it asks for none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub probes: Vec<[f64; 4]>,
+    /// Against the exact solution; left out where none is known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub errors: Option<Errors>,
+    /// Where the time went.
+    pub seconds: Seconds,
+}
+
+/// The discretisation.
+#[derive(Clone, Debug, Serialize)]
+pub struct MeshSizes {
+    /// Vertices.
+    pub vertices: usize,
+    /// Triangles.
+    pub triangles: usize,
+    /// Degrees of freedom: twice the nodes.
+    pub dofs: usize,
+    /// Edges on Gamma_C.
+    pub contact_edges: usize,
+    /// The largest h_T.
+    pub h_max: f64,
+}
+
+/// Nitsche's parameter and how far it is from the limit of coercivity.
+#[derive(Clone, Debug, Serialize)]
+pub struct GammaChoice {
+    /// gamma0 of (7).
+    pub gamma0: f64,
+    /// The gamma0 for which kappa is 1.
+    pub limit: f64,
+    /// kappa of (11).
+    pub kappa: f64,
+    /// The ends of the contact edge that sets the limit.
+    pub limiting_edge: [[f64; 2]; 2],
+}
+
+/// Newton's iteration.
+#[derive(Clone, Debug, Serialize)]
+pub struct NewtonHistory {
+    /// Steps taken.
+    pub iterations: usize,
+    /// The relative residual before the first step and after each.
+    pub residuals: Vec<f64>,
+    /// Matrices factored.
+    pub factorizations: usize,
+    /// How it ended.
+    pub status: Status,
+}
+
+/// How Newton's iteration ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub enum Status {
+    /// The residual is below the tolerance.
+    #[serde(rename = "converged")]
+    Converged,
+    /// The residual is above the tolerance, but no more than rounding can make it.
+    #[serde(rename = "converged to rounding")]
+    ConvergedToRounding,
+    /// Neither.
+    #[serde(rename = "not converged")]
+    NotConverged,
+}
+
+/// The solution in numbers.
+#[derive(Clone, Debug, Serialize)]
+pub struct Quantities {
+    /// a(u, u).
+    pub energy: f64,
+    /// L(u).
+    pub work: f64,
+    /// The largest Euclidean norm of the displacement over the nodes.
+    pub max_displacement: f64,
+    /// -int lambda^h.
+    pub contact_force: f64,
+    /// int lambda^h n.
+    pub contact_resultant: [f64; 2],
+    /// The measure of {P > 0}.
+    pub contact_length: f64,
+    /// The largest -lambda^h.
+    pub peak_pressure: f64,
+    /// The force on the body where its displacement is prescribed, by boundary.
+    pub reactions: BTreeMap<String, [f64; 2]>,
+}
+
+/// Against the exact solution.
+#[derive(Clone, Debug, Serialize)]
+pub struct Errors {
+    /// The norm of a(., .).
+    pub energy: f64,
+    /// The norm of H^1.
+    pub h1: f64,
+    /// The norm of L^2.
+    pub l2: f64,
+    /// |gamma^(1/2) (sigma_n(u) - lambda^h)| on Gamma_C.
+    pub contact_residual: f64,
+    /// |gamma^(1/2) (sigma_n(u) - sigma_n(u^h))| on Gamma_C.
+    pub normal_stress: f64,
+}
+
+/// Where the time went.
+#[derive(Clone, Debug, Serialize)]
+pub struct Seconds {
+    /// Reading and meshing.
+    pub read: f64,
+    /// Assembling.
+    pub assemble: f64,
+    /// Factoring and iterating.
+    pub solve: f64,
+    /// Writing the other files.
+    pub write: f64,
+}
+
+/// The text of the file.
+///
+/// # Errors
+/// [`DataError::NotFinite`], with the path of the number.
+pub fn result_json(results: &Results) -> Result<String, DataError> {
+    let mut bytes = Vec::new();
+    let written = results.serialize(&mut Serializer::with_formatter(&mut bytes, Layout::default()));
+    // The only thing that can go wrong is what `Layout::write_null` reports, and its error is the path.
+    written.map_err(|error| DataError::NotFinite { place: error.to_string() })?;
+    bytes.push(b'\n');
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+/// One name a line, arrays on one line, and a refusal to write `null`.
+#[derive(Default)]
+struct Layout {
+    /// Where in the file we are.
+    path: Vec<Step>,
+    in_name: bool,
+    /// The object at hand has a member.
+    has_member: bool,
+}
+
+enum Step {
+    Name(String),
+    Index(usize),
+}
+
+impl Layout {
+    fn new_line<W: ?Sized + Write>(&self, to: &mut W) -> io::Result<()> {
+        write!(to, "\n{:width$}", "", width = 2 * self.path.len())
+    }
+
+    fn place(&self) -> String {
+        let mut place = String::new();
+        for step in &self.path {
+            match step {
+                Step::Name(name) if place.is_empty() => place.push_str(name),
+                Step::Name(name) => place.extend([".", name]),
+                Step::Index(i) => place.push_str(&format!("[{i}]")),
+            }
+        }
+        place
+    }
+}
+
+impl Formatter for Layout {
+    /// serde_json comes here for a NaN or an infinity.
+    fn write_null<W: ?Sized + Write>(&mut self, _: &mut W) -> io::Result<()> {
+        Err(io::Error::other(self.place()))
+    }
+
+    fn begin_array<W: ?Sized + Write>(&mut self, to: &mut W) -> io::Result<()> {
+        self.path.push(Step::Index(0));
+        to.write_all(b"[")
+    }
+
+    fn begin_array_value<W: ?Sized + Write>(&mut self, to: &mut W, first: bool) -> io::Result<()> {
+        if first {
+            return Ok(());
+        }
+        if let Some(Step::Index(i)) = self.path.last_mut() {
+            *i += 1;
+        }
+        to.write_all(b", ")
+    }
+
+    fn end_array<W: ?Sized + Write>(&mut self, to: &mut W) -> io::Result<()> {
+        self.path.pop();
+        to.write_all(b"]")
+    }
+
+    fn begin_object<W: ?Sized + Write>(&mut self, to: &mut W) -> io::Result<()> {
+        self.has_member = false;
+        to.write_all(b"{")
+    }
+
+    fn begin_object_key<W: ?Sized + Write>(&mut self, to: &mut W, first: bool) -> io::Result<()> {
+        if !first {
+            to.write_all(b",")?;
+        }
+        self.path.push(Step::Name(String::new()));
+        self.in_name = true;
+        self.new_line(to)
+    }
+
+    fn write_string_fragment<W: ?Sized + Write>(
+        &mut self,
+        to: &mut W,
+        fragment: &str,
+    ) -> io::Result<()> {
+        if let (true, Some(Step::Name(name))) = (self.in_name, self.path.last_mut()) {
+            name.push_str(fragment);
+        }
+        to.write_all(fragment.as_bytes())
+    }
+
+    fn end_object_key<W: ?Sized + Write>(&mut self, _: &mut W) -> io::Result<()> {
+        self.in_name = false;
+        Ok(())
+    }
+
+    fn begin_object_value<W: ?Sized + Write>(&mut self, to: &mut W) -> io::Result<()> {
+        to.write_all(b": ")
+    }
+
+    fn end_object_value<W: ?Sized + Write>(&mut self, _: &mut W) -> io::Result<()> {
+        self.path.pop();
+        self.has_member = true;
+        Ok(())
+    }
+
+    fn end_object<W: ?Sized + Write>(&mut self, to: &mut W) -> io::Result<()> {
+        if self.has_member {
+            self.new_line(to)?;
+        }
+        to.write_all(b"}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample() -> Results {
+        Results {
+            version: "0.1.0".to_owned(),
+            title: "A \"block\" <&> null".to_owned(),
+            mesh: MeshSizes {
+                vertices: 4,
+                triangles: 2,
+                dofs: 8,
+                contact_edges: 1,
+                h_max: 2_f64.sqrt(),
+            },
+            gamma: GammaChoice {
+                gamma0: 0.1,
+                limit: 1.0 / 3.0,
+                kappa: 0.3,
+                limiting_edge: [[0.0, 0.0], [1.0, 0.0]],
+            },
+            newton: NewtonHistory {
+                iterations: 2,
+                residuals: vec![1.0, 1e-3, 2.5e-17],
+                factorizations: 1,
+                status: Status::ConvergedToRounding,
+            },
+            quantities: Quantities {
+                energy: 1.0,
+                work: -0.0,
+                max_displacement: 0.5,
+                contact_force: 2.0,
+                contact_resultant: [0.0, 2.0],
+                contact_length: 1.0,
+                peak_pressure: 2.0,
+                reactions: BTreeMap::from([("top".to_owned(), [0.0, 2.0])]),
+            },
+            probes: Vec::new(),
+            errors: None,
+            seconds: Seconds { read: 0.25, assemble: 0.5, solve: 1.0, write: 2.0 },
+        }
+    }
+
+    #[test]
+    fn the_file_has_one_name_a_line_in_the_promised_order() {
+        let expected = r#"{
+  "version": "0.1.0",
+  "title": "A \"block\" <&> null",
+  "mesh": {
+    "vertices": 4,
+    "triangles": 2,
+    "dofs": 8,
+    "contact_edges": 1,
+    "h_max": 1.4142135623730951
+  },
+  "gamma": {
+    "gamma0": 0.1,
+    "limit": 0.3333333333333333,
+    "kappa": 0.3,
+    "limiting_edge": [[0.0, 0.0], [1.0, 0.0]]
+  },
+  "newton": {
+    "iterations": 2,
+    "residuals": [1.0, 0.001, 2.5e-17],
+    "factorizations": 1,
+    "status": "converged to rounding"
+  },
+  "quantities": {
+    "energy": 1.0,
+    "work": -0.0,
+    "max_displacement": 0.5,
+    "contact_force": 2.0,
+    "contact_resultant": [0.0, 2.0],
+    "contact_length": 1.0,
+    "peak_pressure": 2.0,
+    "reactions": {
+      "top": [0.0, 2.0]
+    }
+  },
+  "seconds": {
+    "read": 0.25,
+    "assemble": 0.5,
+    "solve": 1.0,
+    "write": 2.0
+  }
+}
+"#;
+        assert_eq!(result_json(&sample()).unwrap(), expected);
+    }
+
+    #[test]
+    fn what_is_known_is_written_and_what_is_not_is_left_out() {
+        let mut results = sample();
+        results.probes = vec![[0.5, 0.0, 0.25, -1.0], [1.0, 0.0, 0.0, 0.0]];
+        let norm = 0.125;
+        results.errors = Some(Errors {
+            energy: norm,
+            h1: norm,
+            l2: norm,
+            contact_residual: norm,
+            normal_stress: norm,
+        });
+        results.quantities.reactions.clear();
+        let text = result_json(&results).unwrap();
+        let value: serde_json::Value = serde_json::from_str(&text).unwrap();
+        assert_eq!(value["probes"][0][3], -1.0);
+        assert_eq!(value["errors"]["normal_stress"], 0.125);
+        assert!(text.contains("\"reactions\": {}\n"));
+        let text = result_json(&sample()).unwrap();
+        assert!(!text.contains("probes") && !text.contains("errors"));
+    }
+
+    #[test]
+    fn numbers_read_back_to_the_bit_and_none_is_shorter() {
+        let mut numbers = vec![
+            0.0,
+            -0.0,
+            f64::MIN_POSITIVE,
+            f64::MIN_POSITIVE.next_down(),
+            f64::from_bits(1),
+            -f64::from_bits(12345),
+            f64::MAX,
+            f64::EPSILON,
+            0.1 + 0.2,
+            1e15,
+            1e16,
+            1e17,
+            9_007_199_254_740_993.0,
+            1e23,
+            1e-5,
+        ];
+        let mut state = 1_u64;
+        while numbers.len() < 5000 {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            let number = f64::from_bits(state);
+            if number.is_finite() {
+                numbers.push(number);
+            }
+        }
+        let mut results = sample();
+        results.newton.residuals = numbers.clone();
+        let text = result_json(&results).unwrap();
+        let (_, rest) = text.split_once("\"residuals\": [").unwrap();
+        let (list, _) = rest.split_once(']').unwrap();
+        let written: Vec<&str> = list.split(", ").collect();
+        assert_eq!(written.len(), numbers.len());
+        let digits = |text: &str| {
+            let (mantissa, _) = text.split_once('e').unwrap_or((text, ""));
+            let digits: String = mantissa.chars().filter(char::is_ascii_digit).collect();
+            digits.trim_matches('0').len()
+        };
+        for (text, number) in written.into_iter().zip(numbers) {
+            assert_eq!(text.parse::<f64>().unwrap().to_bits(), number.to_bits(), "{text}");
+            assert_eq!(digits(text), digits(&format!("{number:e}")), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_nan_or_an_infinity_is_refused_by_its_path() {
+        let refused = |spoil: fn(&mut Results)| {
+            let mut results = sample();
+            spoil(&mut results);
+            result_json(&results).unwrap_err().to_string()
+        };
+        let expected =
+            |place: &str| format!("{place} is NaN or infinite; expected a finite number");
+        assert_eq!(refused(|r| r.gamma.kappa = f64::NAN), expected("gamma.kappa"));
+        assert_eq!(
+            refused(|r| r.gamma.limiting_edge[1][0] = f64::INFINITY),
+            expected("gamma.limiting_edge[1][0]")
+        );
+        assert_eq!(refused(|r| r.newton.residuals[2] = f64::NAN), expected("newton.residuals[2]"));
+        assert_eq!(
+            refused(|r| {
+                r.quantities.reactions.insert("left".to_owned(), [0.0, f64::NEG_INFINITY]);
+            }),
+            expected("quantities.reactions.left[1]")
+        );
+        assert_eq!(refused(|r| r.seconds.write = f64::NAN), expected("seconds.write"));
+    }
+}
