@@ -8,6 +8,8 @@ use thiserror::Error;
 pub enum DataError {
     #[error("{name} has {found} entries; expected {expected}")]
     Length { name: String, found: usize, expected: usize },
+    #[error("{name} has no entry; expected at least one")]
+    Empty { name: String },
     #[error("{name} names point {point}; expected one of the {count} points")]
     NoSuchPoint { name: String, point: usize, count: usize },
     #[error("{place} is NaN or infinite; expected a finite number")]

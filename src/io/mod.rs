@@ -5,6 +5,8 @@ pub mod csv;
 pub mod data;
 pub mod expression;
 pub mod files;
+pub mod outputs;
+pub mod picture;
 mod quote;
 pub mod result;
 mod table;

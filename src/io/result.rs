@@ -4,13 +4,13 @@
 //! together with its name: `null` never stands in the file, and a NaN or an infinity is an error that names it, where
 //! JSON alone would turn it into `null` without a word. Everything but [`Seconds`] is the same from run to run.
 
-use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 use serde::Serialize;
 use serde_json::ser::{Formatter, Serializer};
 
 use super::data::DataError;
+use crate::solve::{Quantities, Status};
 
 /// The content of result.json, in its order.
 #[derive(Clone, Debug, Serialize)]
@@ -30,9 +30,6 @@ pub struct Results {
     /// `[x, y, u_x, u_y]` at the points that the case asks for; left out if it asks for none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub probes: Vec<[f64; 4]>,
-    /// Against the exact solution; left out where none is known.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub errors: Option<Errors>,
     /// Where the time went.
     pub seconds: Seconds,
 }
@@ -70,62 +67,14 @@ pub struct GammaChoice {
 pub struct NewtonHistory {
     /// Steps taken.
     pub iterations: usize,
-    /// The relative residual before the first step and after each.
+    /// The relative residual before the first step and after each, as the iteration saw it.
     pub residuals: Vec<f64>,
+    /// The relative residual of the solution, evaluated from the definitions.
+    pub residual: f64,
     /// Matrices factored.
     pub factorizations: usize,
     /// How it ended.
     pub status: Status,
-}
-
-/// How Newton's iteration ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub enum Status {
-    /// The residual is below the tolerance.
-    #[serde(rename = "converged")]
-    Converged,
-    /// The residual is above the tolerance, but no more than rounding can make it.
-    #[serde(rename = "converged to rounding")]
-    ConvergedToRounding,
-    /// Neither.
-    #[serde(rename = "not converged")]
-    NotConverged,
-}
-
-/// The solution in numbers.
-#[derive(Clone, Debug, Serialize)]
-pub struct Quantities {
-    /// a(u, u).
-    pub energy: f64,
-    /// L(u).
-    pub work: f64,
-    /// The largest Euclidean norm of the displacement over the nodes.
-    pub max_displacement: f64,
-    /// -int lambda^h.
-    pub contact_force: f64,
-    /// int lambda^h n.
-    pub contact_resultant: [f64; 2],
-    /// The measure of {P > 0}.
-    pub contact_length: f64,
-    /// The largest -lambda^h.
-    pub peak_pressure: f64,
-    /// The force on the body where its displacement is prescribed, by boundary.
-    pub reactions: BTreeMap<String, [f64; 2]>,
-}
-
-/// Against the exact solution.
-#[derive(Clone, Debug, Serialize)]
-pub struct Errors {
-    /// The norm of a(., .).
-    pub energy: f64,
-    /// The norm of H^1.
-    pub h1: f64,
-    /// The norm of L^2.
-    pub l2: f64,
-    /// |gamma^(1/2) (sigma_n(u) - lambda^h)| on Gamma_C.
-    pub contact_residual: f64,
-    /// |gamma^(1/2) (sigma_n(u) - sigma_n(u^h))| on Gamma_C.
-    pub normal_stress: f64,
 }
 
 /// Where the time went.

@@ -15,7 +15,7 @@ use super::newton::{Edges, Reduced};
 use super::ordering::nested_dissection;
 use super::{NewtonReport, Settings, SolveError, Status};
 use crate::fem::discretization::{Discretization, Functional};
-use crate::fem::matrix::{self, Numbering};
+use crate::fem::matrix::{self, LowerTriangle, Numbering};
 use crate::kernel::edge_integral::ExactEdge;
 
 /// The solution of method (8) at the nodes, and how it was found.
@@ -24,13 +24,14 @@ use crate::kernel::edge_integral::ExactEdge;
 /// [`SolveError::NotPositiveDefinite`] when gamma0 is beyond the true limit, and [`SolveError::OutOfMemory`].
 pub fn solve<E, const N: usize, const M: usize>(
     d: &Discretization<E, N, M>,
+    system: System,
     settings: &Settings,
 ) -> Result<(Vec<[f64; 2]>, NewtonReport), SolveError>
 where
     E: ExactEdge<f64, N, M>,
 {
     let prescribed = d.constraints.lift();
-    let body = Body::new(d)?;
+    let body = system.factor()?;
     let mut z: Vec<f64> =
         body.numbering.gather(&d.linear_residual(&prescribed).values).iter().map(|r| -r).collect();
     body.factor.forward(&mut z);
@@ -88,18 +89,17 @@ where
     NewtonReport { status, residuals, residual: reached, factorizations: 1 }
 }
 
-/// The factored body.
-struct Body {
+/// The linear system of the body, the contact layer last.
+pub struct System {
     numbering: Numbering,
-    factor: Factor,
+    matrix: LowerTriangle,
     /// The first degree of freedom of the contact layer.
     layer: usize,
 }
 
-impl Body {
-    fn new<E, const N: usize, const M: usize>(
-        d: &Discretization<E, N, M>,
-    ) -> Result<Self, SolveError>
+impl System {
+    /// The matrix of A(.,.) in the order of elimination.
+    pub fn new<E, const N: usize, const M: usize>(d: &Discretization<E, N, M>) -> Self
     where
         E: ExactEdge<f64, N, M>,
     {
@@ -115,10 +115,24 @@ impl Body {
         let numbering = Numbering::new(&order, d.constraints.values());
         let in_layer = numbering.of.iter().zip(&last).filter(|(_, last)| **last);
         let layer = numbering.count - in_layer.flat_map(|(of, _)| of).flatten().count();
-        let factor = Factor::new(&matrix::assemble(d, &numbering, &neighbours))?;
-        Ok(Body { numbering, factor, layer })
+        let matrix = matrix::assemble(d, &numbering, &neighbours);
+        System { numbering, matrix, layer }
     }
 
+    fn factor(self) -> Result<Body, SolveError> {
+        let factor = Factor::new(&self.matrix)?;
+        Ok(Body { numbering: self.numbering, factor, layer: self.layer })
+    }
+}
+
+/// The factored body.
+struct Body {
+    numbering: Numbering,
+    factor: Factor,
+    layer: usize,
+}
+
+impl Body {
     /// The rows of B as columns over the contact layer: calls `f` with the row of the layer, the column and the entry.
     fn functionals<E, const N: usize, const M: usize>(
         &self,

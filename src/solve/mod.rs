@@ -8,8 +8,10 @@ pub mod solution;
 
 use std::time::{Duration, Instant};
 
+use serde::Serialize;
 use thiserror::Error;
 
+use self::condensed::System;
 pub use self::solution::{GammaReport, Quantities, Solution};
 use crate::fem::contact_line::{Coercivity, EdgeRule};
 use crate::fem::{DataError, Discretization, Problem};
@@ -36,6 +38,16 @@ pub enum Degree {
     One,
     /// P2, Remark 3.7.
     Two,
+}
+
+impl Degree {
+    /// 1 or 2.
+    pub fn number(self) -> usize {
+        match self {
+            Degree::One => 1,
+            Degree::Two => 2,
+        }
+    }
 }
 
 /// gamma0 of (7), in 1 / stress.
@@ -83,13 +95,16 @@ impl Default for Settings {
 }
 
 /// How a solve ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum Status {
     /// The residual is within the tolerance.
+    #[serde(rename = "converged")]
     Converged,
     /// The tolerance asks for more than rounding allows; the residual is as small as rounding lets it be.
+    #[serde(rename = "converged to rounding")]
     ConvergedToRounding,
     /// Neither: there is no solution to report.
+    #[serde(rename = "not converged")]
     NotConverged,
 }
 
@@ -105,6 +120,13 @@ pub struct NewtonReport {
     pub residual: f64,
     /// How many sparse factorisations it took.
     pub factorizations: usize,
+}
+
+impl NewtonReport {
+    /// How many steps were taken.
+    pub fn iterations(&self) -> usize {
+        self.residuals.len().saturating_sub(1)
+    }
 }
 
 /// Why there is no solution.
@@ -129,9 +151,9 @@ pub enum SolveError {
 /// How long the parts of a solve took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Times {
-    /// Reading the problem onto the mesh: nodes, constraints, loads, contact edges.
-    pub discretize: Duration,
-    /// Matrix, factorisation, Newton's method.
+    /// Nodes, constraints, loads, contact edges, order of elimination, matrix.
+    pub assemble: Duration,
+    /// Factorisation, Newton's method, substitution.
     pub solve: Duration,
 }
 
@@ -161,11 +183,12 @@ where
 {
     let start = Instant::now();
     let d = discretize::<E, N, M>(problem, method)?;
-    let discretize = start.elapsed();
+    let system = System::new(&d);
+    let assemble = start.elapsed();
     let start = Instant::now();
-    let (u, newton) = condensed::solve(&d, settings)?;
+    let (u, newton) = condensed::solve(&d, system, settings)?;
     let solve = start.elapsed();
-    Ok((Solution::new(&d, u, newton), Times { discretize, solve }))
+    Ok((Solution::new(&d, u, newton), Times { assemble, solve }))
 }
 
 /// What [`solve`] would solve: everything short of a matrix is built and checked.

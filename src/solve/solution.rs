@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use serde::Serialize;
+
 use super::NewtonReport;
 use crate::fem::contact_line::Coercivity;
 use crate::fem::discretization::{Discretization, inner};
@@ -77,7 +79,7 @@ pub struct ContactValues {
 }
 
 /// Scalars of a solution, in the units of the case.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Quantities {
     /// a(u, u)
     pub energy: f64,

@@ -1,0 +1,196 @@
+//! The files of a solved case: solution.vtu, contact.vtu, contact.csv, picture.svg and result.json, written together or
+//! not at all.
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use thiserror::Error;
+
+use super::case::Case;
+use super::csv::{ContactRow, contact_csv};
+use super::data::DataError;
+use super::files::{Output, WriteError};
+use super::picture::{ContactSample, Scene, picture};
+use super::result::{GammaChoice, MeshSizes, NewtonHistory, Results, Seconds, result_json};
+use super::vtu::{CellKind, Field, Grid, Values, vtu};
+use crate::solve::solution::ContactValues;
+use crate::solve::{Solution, Times};
+
+/// Why the files of a run could not be written.
+#[derive(Debug, Error)]
+pub enum OutputError {
+    /// A file or folder.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// What was to go into a file.
+    #[error("{file} cannot be made: {error}")]
+    Data {
+        /// The name of the file.
+        file: &'static str,
+        /// What is wrong with its data.
+        error: DataError,
+    },
+}
+
+/// Writes the files of a case into `folder` and returns their paths.
+///
+/// # Errors
+/// A folder or file that can't be written, a number that is not finite.
+pub fn write(
+    folder: &Path,
+    case: &Case,
+    solution: &Solution,
+    read: Duration,
+    times: Times,
+) -> Result<(Vec<PathBuf>, Seconds), OutputError> {
+    let start = Instant::now();
+    let mut output = Output::new(folder)?;
+    let mut stage = |file, bytes: Result<Vec<u8>, DataError>| -> Result<(), OutputError> {
+        let bytes = bytes.map_err(|error| OutputError::Data { file, error })?;
+        Ok(output.stage(file, &bytes)?)
+    };
+    stage("solution.vtu", solution_vtu(solution))?;
+    stage("contact.vtu", contact_vtu(solution))?;
+    stage("contact.csv", contact_csv(&contact_rows(solution)).map(String::into_bytes))?;
+    stage("picture.svg", draw(case, solution).map(String::into_bytes))?;
+    let seconds = Seconds {
+        read: read.as_secs_f64(),
+        assemble: times.assemble.as_secs_f64(),
+        solve: times.solve.as_secs_f64(),
+        write: start.elapsed().as_secs_f64(),
+    };
+    let results = results(case, solution, seconds.clone());
+    stage("result.json", result_json(&results).map(String::into_bytes))?;
+    Ok((output.publish()?, seconds))
+}
+
+/// The content of result.json.
+pub fn results(case: &Case, solution: &Solution, seconds: Seconds) -> Results {
+    let mesh = &case.problem.mesh;
+    let gamma = &solution.gamma;
+    let triangles = 0..mesh.triangles().len();
+    let probes = case.probes.iter().filter_map(|&[x, y]| {
+        let (t, l) = mesh.locate([x, y])?;
+        let [u_x, u_y] = solution.displacement_at(t, l);
+        Some([x, y, u_x, u_y])
+    });
+    Results {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        title: case.title.clone(),
+        mesh: MeshSizes {
+            vertices: mesh.vertices().len(),
+            triangles: mesh.triangles().len(),
+            dofs: 2 * solution.nodes.len(),
+            contact_edges: solution.contact.len(),
+            h_max: triangles.map(|t| mesh.diameter(t)).fold(0.0, f64::max),
+        },
+        gamma: GammaChoice {
+            gamma0: gamma.gamma0,
+            limit: gamma.coercivity.limit(),
+            kappa: gamma.kappa,
+            limiting_edge: gamma.coercivity.limiting_edge,
+        },
+        newton: NewtonHistory {
+            iterations: solution.newton.iterations(),
+            residuals: solution.newton.residuals.clone(),
+            residual: solution.newton.residual,
+            factorizations: solution.newton.factorizations,
+            status: solution.newton.status,
+        },
+        quantities: solution.quantities.clone(),
+        probes: probes.collect(),
+        seconds,
+    }
+}
+
+fn solution_vtu(s: &Solution) -> Result<Vec<u8>, DataError> {
+    let stress: Vec<[f64; 4]> = s.stress.iter().map(|(t, zz)| [t.xx, t.yy, *zz, t.xy]).collect();
+    vtu(&Grid {
+        kind: if s.degree == 1 { CellKind::Triangle } else { CellKind::QuadraticTriangle },
+        points: &s.nodes,
+        connectivity: &s.elements,
+        point_data: &[Field { name: "displacement", values: Values::Vectors(&s.displacement) }],
+        cell_data: &[
+            Field { name: "stress", values: Values::SymmetricTensors(&stress) },
+            Field { name: "von_mises", values: Values::Scalars(&s.von_mises) },
+        ],
+    })
+}
+
+/// Each edge has points of its own, for sigma_n and lambda^h jump from edge to edge.
+fn contact_vtu(s: &Solution) -> Result<Vec<u8>, DataError> {
+    let points: Vec<&ContactValues> = s.contact.iter().flat_map(|edge| &edge.points).collect();
+    let per_edge = s.degree + 1;
+    let connectivity: Vec<usize> = (0..s.contact.len())
+        .flat_map(|e| {
+            let first = e * per_edge;
+            // Ends first, then what lies between them.
+            [first, first + s.degree].into_iter().chain(first + 1..first + s.degree)
+        })
+        .collect();
+    let places: Vec<[f64; 2]> = points.iter().map(|p| s.nodes[p.node]).collect();
+    let displacement: Vec<[f64; 2]> = points.iter().map(|p| s.displacement[p.node]).collect();
+    let scalars = |of: fn(&ContactValues) -> f64| points.iter().map(|p| of(p)).collect::<Vec<_>>();
+    let (u_n, gap) = (scalars(|p| p.u_n), scalars(|p| p.gap));
+    let (sigma_n, lambda) = (scalars(|p| p.sigma_n), scalars(|p| p.lambda));
+    vtu(&Grid {
+        kind: if s.degree == 1 { CellKind::Line } else { CellKind::QuadraticLine },
+        points: &places,
+        connectivity: &connectivity,
+        point_data: &[
+            Field { name: "displacement", values: Values::Vectors(&displacement) },
+            Field { name: "u_n", values: Values::Scalars(&u_n) },
+            Field { name: "gap", values: Values::Scalars(&gap) },
+            Field { name: "sigma_n", values: Values::Scalars(&sigma_n) },
+            Field { name: "lambda", values: Values::Scalars(&lambda) },
+        ],
+        cell_data: &[],
+    })
+}
+
+fn contact_rows(s: &Solution) -> Vec<ContactRow> {
+    let row = |p: &ContactValues| {
+        let [x, y] = s.nodes[p.node];
+        let ContactValues { arc, u_n, gap, sigma_n, lambda, .. } = *p;
+        ContactRow { arc, x, y, u_n, gap, sigma_n, lambda }
+    };
+    s.contact.iter().flat_map(|edge| edge.points.iter().map(row)).collect()
+}
+
+fn draw(case: &Case, s: &Solution) -> Result<String, DataError> {
+    let mesh = &case.problem.mesh;
+    let outline: Vec<[usize; 2]> = mesh.outline().iter().map(|&edge| mesh.ends(edge)).collect();
+    let mut contact: Vec<Vec<ContactSample>> = Vec::new();
+    let mut end = None;
+    for edge in &s.contact {
+        let samples = edge.points.iter().map(|p| ContactSample {
+            position: s.nodes[p.node],
+            normal: edge.normal,
+            displacement: s.displacement[p.node],
+            gap: p.gap,
+            pressure: -p.lambda,
+        });
+        match contact.last_mut() {
+            Some(part) if end == edge.points.first().map(|p| p.node) => part.extend(samples),
+            _ => contact.push(samples.collect()),
+        }
+        end = edge.points.last().map(|p| p.node);
+    }
+    let gamma = &s.gamma;
+    picture(&Scene {
+        title: &case.title,
+        subtitle: &format!(
+            "P{}, {} unknowns, gamma0 = {:.4}, kappa = {:.3}",
+            s.degree,
+            2 * s.nodes.len(),
+            gamma.gamma0,
+            gamma.kappa
+        ),
+        points: mesh.vertices(),
+        displacement: &s.displacement[..mesh.vertices().len()],
+        triangles: mesh.triangles(),
+        von_mises: &s.von_mises,
+        outline: &outline,
+        contact: &contact,
+    })
+}

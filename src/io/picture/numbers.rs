@@ -1,0 +1,132 @@
+//! Numbers for people: round ones for scales and ticks, three digits for labels.
+
+/// m x 10^k with m = 1, 2 or 5.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Round {
+    m: u8,
+    k: i32,
+}
+
+impl Round {
+    /// The largest round number that is not above `x`, for finite `x > 0`.
+    pub fn below(x: f64) -> Round {
+        // The decimal exponent as the formatter sees it: exact, where log10 may be off by one.
+        let text = format!("{x:e}");
+        let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+        let m = match mantissa.as_bytes().first() {
+            Some(b'1') => 1,
+            Some(b'2'..=b'4') => 2,
+            _ => 5,
+        };
+        Round { m, k: exponent.parse().unwrap_or(0) }
+    }
+
+    /// The next larger one.
+    fn next(self) -> Round {
+        match self.m {
+            1 => Round { m: 2, ..self },
+            2 => Round { m: 5, ..self },
+            _ => Round { m: 1, k: self.k + 1 },
+        }
+    }
+
+    /// `i` times this number: the double nearest to the decimal.
+    pub fn times(self, i: i64) -> f64 {
+        format!("{}e{}", i * i64::from(self.m), self.k).parse().unwrap_or(f64::INFINITY)
+    }
+
+    /// `i` times this number with all its digits and no more.
+    pub fn text(self, i: i64) -> String {
+        let value = self.times(i);
+        if value == 0.0 {
+            "0".to_owned()
+        } else if self.k >= -4 && value.abs() < 1e5 {
+            format!("{value:.decimals$}", decimals = usize::try_from(-self.k).unwrap_or(0))
+        } else {
+            format!("{value:e}")
+        }
+    }
+}
+
+/// Round numbers in \[min, max\], evenly spaced, some three to six of them, with their text. For `min < max`.
+pub fn ticks(min: f64, max: f64) -> Vec<(f64, String)> {
+    let step = Round::below((max - min) / 5.0).next();
+    let unit = step.times(1);
+    let (first, last) = ((min / unit).ceil(), (max / unit).floor());
+    // Where the interval is narrow beside its distance from 0, doubles have no room for ticks.
+    if !(first.abs() < 1e9 && last.abs() < 1e9) {
+        return Vec::new();
+    }
+    (first as i64..=last as i64).map(|i| (step.times(i), step.text(i))).collect()
+}
+
+/// Three digits.
+pub fn short(x: f64) -> String {
+    let text = format!("{x:.2e}");
+    let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+    let trimmed = |text: &str| {
+        if text.contains('.') {
+            text.trim_end_matches('0').trim_end_matches('.').to_owned()
+        } else {
+            text.to_owned()
+        }
+    };
+    match exponent.parse::<i32>() {
+        Ok(exponent) if (-3..5).contains(&exponent) => {
+            let decimals = usize::try_from(2 - exponent).unwrap_or(0);
+            trimmed(&format!("{x:.decimals$}"))
+        }
+        _ => format!("{}e{exponent}", trimmed(mantissa)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn round_numbers_are_the_largest_that_are_not_above() {
+        for (x, expected) in [
+            (1.0, 1.0),
+            (1.99, 1.0),
+            (2.0, 2.0),
+            (4.99, 2.0),
+            (5.0, 5.0),
+            (9.99, 5.0),
+            (1000.0, 1000.0),
+            (0.001, 0.001),
+            (0.03, 0.02),
+            (7e-300, 5e-300),
+        ] {
+            assert_eq!(Round::below(x).times(1), expected, "{x}");
+        }
+    }
+
+    #[test]
+    fn ticks_are_round_and_inside() {
+        let texts =
+            |min, max| ticks(min, max).into_iter().map(|(_, text)| text).collect::<Vec<_>>();
+        assert_eq!(texts(0.0, 1.0), ["0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
+        assert_eq!(texts(0.013, 0.29), ["0.1", "0.2"]);
+        assert_eq!(texts(-3.0, 17.0), ["0", "5", "10", "15"]);
+        assert_eq!(texts(0.0, 3e7), ["0", "1e7", "2e7", "3e7"]);
+        assert_eq!(texts(1.0, 1.0 + 1e-12), Vec::<String>::new());
+    }
+
+    #[test]
+    fn labels_have_three_digits() {
+        for (x, expected) in [
+            (0.0, "0"),
+            (1.0, "1"),
+            (-0.25, "-0.25"),
+            (3.14159, "3.14"),
+            (99.96, "100"),
+            (1234.0, "1234"),
+            (0.0012345, "0.00123"),
+            (1.0e-7, "1e-7"),
+            (2.346e12, "2.35e12"),
+        ] {
+            assert_eq!(short(x), expected);
+        }
+    }
+}
