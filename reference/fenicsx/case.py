@@ -1,0 +1,320 @@
+"""The case file: its schema, defaults and refusals. Every message says which file, where, what was found, what was expected."""
+
+import math
+import tomllib
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from . import exact
+from .expression import Expression, ExpressionError
+
+MOST_CELLS = 4_000_000  # nx * ny of a rectangle, checked before anything is allocated
+KINDS = ("displacement", "traction", "contact")
+
+
+class CaseError(Exception):
+    """The case is wrong: the command ends with code 2 and writes nothing."""
+
+
+@dataclass
+class Rectangle:
+    width: float
+    height: float
+    nx: int
+    ny: int
+    diagonal: str
+
+
+@dataclass
+class Trapezoid:
+    """The unit square mapped by (s, t) -> (s + (1-s) t cot(omega), t); n x n cells."""
+
+    omega: float
+    n: int
+
+
+@dataclass
+class Gmsh:
+    path: Path
+
+
+@dataclass
+class Material:
+    """The three-dimensional Lame constants, and what plane strain or plane stress makes of them."""
+
+    lam: float
+    mu: float
+    plane: str
+
+    @property
+    def plane_lam(self):
+        """lambda in plane strain; lambda* = 2 lambda mu / (lambda + 2 mu) in plane stress."""
+        return self.lam if self.plane == "strain" else 2 * self.lam * self.mu / (self.lam + 2 * self.mu)
+
+
+@dataclass
+class Boundary:
+    """`data` holds two expressions (None for a free component), or the gap for contact; None where [exact] supplies it."""
+
+    kind: str
+    data: object
+
+
+@dataclass
+class Case:
+    path: Path
+    title: str
+    mesh: object
+    material: Material
+    body: list
+    boundaries: dict
+    degree: int
+    gamma0: object  # a float, or "auto"
+    gauss: object  # points per edge, or None for the exact integral
+    allow_noncoercive: bool
+    tolerance: float
+    max_iterations: int
+    exact: object
+    probes: list = field(default_factory=list)
+
+    def of_kind(self, kind):
+        """{name: data} of the boundaries of one kind, in name order."""
+        return {name: self.boundaries[name].data for name in sorted(self.boundaries) if self.boundaries[name].kind == kind}
+
+
+class _Table:
+    """A TOML table that remembers which of its keys were asked for."""
+
+    def __init__(self, where, content, file):
+        self.where, self.content, self.file, self.known = where, content, file, []
+        if not isinstance(content, dict):
+            self.fail("", content, "a table")
+
+    def place(self, key):
+        return ".".join(part for part in (self.where, key) if part)
+
+    def fail(self, key, found, expected):
+        raise CaseError(f"{self.file}: {self.place(key)}: found {_show(found)}, expected {expected}")
+
+    def get(self, key, default=None):
+        self.known.append(key)
+        return self.content.get(key, default)
+
+    def has(self, key):
+        self.known.append(key)
+        return key in self.content
+
+    def need(self, key, expected):
+        if not self.has(key):
+            self.fail(key, None, expected)
+        return self.content[key]
+
+    def table(self, key, needed=True):
+        content = self.need(key, "a table") if needed else self.get(key, {})
+        return _Table(self.place(key), content, self.file)
+
+    def number(self, key, expected="a finite number", accept=math.isfinite, default=None):
+        value = self.need(key, expected) if default is None else self.get(key, default)
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value) or not accept(value):
+            self.fail(key, value, expected)
+        return float(value)
+
+    def integer(self, key, expected, accept, default=None):
+        value = self.need(key, expected) if default is None else self.get(key, default)
+        if isinstance(value, bool) or not isinstance(value, int) or not accept(value):
+            self.fail(key, value, expected)
+        return value
+
+    def choice(self, key, options, default=None):
+        expected = " or ".join(f'"{option}"' for option in options)
+        value = self.need(key, expected) if default is None else self.get(key, default)
+        if value not in options or not isinstance(value, str):
+            self.fail(key, value, expected)
+        return value
+
+    def boolean(self, key, default):
+        value = self.get(key, default)
+        if not isinstance(value, bool):
+            self.fail(key, value, "true or false")
+        return value
+
+    def text(self, key, default):
+        value = self.get(key, default)
+        if not isinstance(value, str):
+            self.fail(key, value, "a string")
+        return value
+
+    def expression(self, key, value):
+        if not isinstance(value, str):
+            self.fail(key, value, "an expression of x and y in a string")
+        try:
+            return Expression(value)
+        except ExpressionError as error:
+            raise CaseError(f"{self.file}: {self.place(key)}: in {_show(value)}, {error}") from None
+
+    def pair(self, key, value, free_allowed=False):
+        if not isinstance(value, list) or len(value) != 2:
+            self.fail(key, value, "a list of two expressions")
+        return [None if free_allowed and entry == "free" else self.expression(f"{key}[{i}]", entry) for i, entry in enumerate(value)]
+
+    def finish(self):
+        for key in self.content:
+            if key not in self.known:
+                known = ", ".join(dict.fromkeys(self.known))
+                raise CaseError(f"{self.file}: {self.place(key)}: unknown key; known here: {known}")
+
+
+def _show(value):
+    if value is None:
+        return "nothing"
+    text = f'"{value}"' if isinstance(value, str) else str(value).lower() if isinstance(value, bool) else repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def read_case(path):
+    """The case in the file at `path`, or CaseError."""
+    path = Path(path)
+    try:
+        content = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise CaseError(f"{path}: cannot be read: {error.strerror}") from None
+    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise CaseError(f"{path}: not a TOML file: {error}") from None
+    root = _Table("", content, path)
+    material = _material(root.table("material"))
+    solution = _exact(root.table("exact"), material) if root.has("exact") else None
+    if solution and root.has("load"):
+        root.fail("load", content["load"], "no [load] beside [exact], which supplies it")
+    load = root.table("load", needed=False)
+    method = root.table("method", needed=False)
+    solver = root.table("solver", needed=False)
+    output = root.table("output", needed=False)
+    case = Case(
+        path=path,
+        title=root.text("title", ""),
+        mesh=_mesh(root.table("mesh"), path),
+        material=material,
+        body=load.pair("body", load.get("body", ["0", "0"])),
+        boundaries=_boundaries(root.table("boundary"), solution),
+        degree=method.integer("degree", "1 or 2", lambda p: p in (1, 2), default=1),
+        gamma0=_gamma0(method),
+        gauss=_quadrature(method),
+        allow_noncoercive=method.boolean("allow_noncoercive", False),
+        tolerance=solver.number("tolerance", "a positive number below 1", lambda t: 0 < t < 1, default=1e-10),
+        max_iterations=solver.integer("max_iterations", "a positive integer", lambda n: n > 0, default=50),
+        exact=solution,
+        probes=_probes(output),
+    )
+    for table in (load, method, solver, output, root):
+        table.finish()
+    return case
+
+
+def _mesh(table, path):
+    shapes = [shape for shape in ("rectangle", "gmsh", "trapezoid") if table.has(shape)]
+    if len(shapes) != 1:
+        table.fail("", ", ".join(shapes) or None, "exactly one of rectangle, gmsh, trapezoid")
+    if table.has("perturb"):
+        table.fail("perturb", table.content["perturb"], "no perturb: the reference has no generator of random meshes; give a Gmsh file")
+    table.finish()
+    if shapes == ["gmsh"]:
+        return Gmsh(path.parent / table.text("gmsh", ""))
+    inner = table.table(shapes[0])
+    positive = ("a positive number", lambda a: a > 0)
+    count = ("a positive integer", lambda n: n > 0)
+    if shapes == ["trapezoid"]:
+        shape = Trapezoid(inner.number("omega", "an angle between pi/2 and pi", lambda a: math.pi / 2 < a < math.pi), inner.integer("n", *count))
+        cells = shape.n**2
+    else:
+        shape = Rectangle(inner.number("width", *positive), inner.number("height", *positive), inner.integer("nx", *count),
+                          inner.integer("ny", *count), inner.choice("diagonal", ("right", "left", "crossed"), "right"))
+        cells = shape.nx * shape.ny
+    if cells > MOST_CELLS:
+        inner.fail("", f"{cells} cells", f"at most {MOST_CELLS}")
+    inner.finish()
+    return shape
+
+
+def _material(table):
+    plane = table.choice("plane", ("strain", "stress"), "strain")
+    lame, engineering = [table.has(key) for key in ("lambda", "mu")], [table.has(key) for key in ("young", "poisson")]
+    if any(lame) == any(engineering):
+        table.fail("", ", ".join(key for key in ("lambda", "mu", "young", "poisson") if key in table.content) or None,
+                   "either lambda and mu, or young and poisson")
+    if any(lame):
+        lam, mu = table.number("lambda"), table.number("mu", "a positive number", lambda m: m > 0)
+        if not 3 * lam + 2 * mu > 0:
+            table.fail("lambda", lam, "3 lambda + 2 mu > 0")
+    else:
+        young = table.number("young", "a positive number", lambda e: e > 0)
+        poisson = table.number("poisson", "a number above -1 and below 0.5", lambda nu: -1 < nu < 0.5)
+        lam, mu = young * poisson / ((1 + poisson) * (1 - 2 * poisson)), young / (2 * (1 + poisson))
+    table.finish()
+    return Material(lam, mu, plane)
+
+
+def _boundaries(table, solution):
+    boundaries = {}
+    for name in table.content:
+        if solution:
+            boundaries[name] = Boundary(table.choice(name, KINDS), None)
+            continue
+        inner = table.table(name)
+        kinds = [kind for kind in KINDS if inner.has(kind)]
+        inner.finish()
+        if len(kinds) != 1:
+            inner.fail("", ", ".join(kinds) or None, "exactly one of displacement, traction, contact")
+        if kinds == ["contact"]:
+            contact = inner.table("contact")
+            data = contact.expression("gap", contact.get("gap", "0"))
+            contact.finish()
+        else:
+            data = inner.pair(kinds[0], inner.content[kinds[0]], free_allowed=kinds == ["displacement"])
+        boundaries[name] = Boundary(kinds[0], data)
+    table.finish()
+    if not any(boundary.kind == "contact" for boundary in boundaries.values()):
+        table.fail("", ", ".join(boundaries) or None, "at least one boundary with contact")
+    return boundaries
+
+
+def _gamma0(method):
+    if method.get("gamma0", "auto") == "auto":
+        return "auto"
+    return method.number("gamma0", 'a positive number or "auto"', lambda g: g > 0)
+
+
+def _quadrature(method):
+    value = method.get("contact_quadrature", "exact")
+    if value == "exact":
+        return None
+    if not isinstance(value, dict):
+        method.fail("contact_quadrature", value, '"exact" or { gauss = n }')
+    table = method.table("contact_quadrature")
+    points = table.integer("gauss", "a number of points from 1 to 32", lambda n: 1 <= n <= 32)
+    table.finish()
+    return points
+
+
+def _probes(output):
+    probes = output.get("probes", [])
+    if not isinstance(probes, list):
+        output.fail("probes", probes, "a list of points [x, y]")
+    for i, point in enumerate(probes):
+        numbers = isinstance(point, list) and all(isinstance(c, (int, float)) and not isinstance(c, bool) and math.isfinite(c) for c in point)
+        if not numbers or len(point) != 2:
+            output.fail(f"probes[{i}]", point, "a point [x, y]")
+    return [[float(x), float(y)] for x, y in probes]
+
+
+def _exact(table, material):
+    name = table.choice("solution", tuple(exact.SOLUTIONS))
+    which = table.choice("which", tuple(exact.PATCHES)) if name == "patch" else None
+    solution = exact.PATCHES[which] if which else exact.SOLUTIONS[name]
+    parameters = {}
+    for key, check in solution.parameters.items():
+        if check is exact.GAP:
+            parameters[key] = table.expression(key, table.get(key, "0"))
+        else:
+            parameters[key] = table.number(key, *check)
+    table.finish()
+    return solution(material, **parameters)
