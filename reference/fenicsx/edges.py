@@ -1,0 +1,191 @@
+"""The contact edges in numpy: P as a polynomial on each edge, integrals of its positive part, and what is reported of them.
+
+P restricted to an edge has the displacement's degree p, so its values at the edge's p + 1 Lagrange points determine it:
+P(u) = B u_T - g there, B the matrix of P0 on the dofs u_T of the owning triangle T. Between consecutive roots P keeps its sign and
+p + 1 Gauss points integrate its square, and all else in (8), without error: this is the rule "exact". Tables of P at points have one
+row per edge.
+"""
+
+import math
+
+import numpy as np
+from mpi4py import MPI
+
+from . import compat
+from .problem import FACET_VERTICES
+
+REFERENCE = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+
+
+def edge_basis(degree, s):
+    """The Lagrange basis of an edge at s in [0, 1] (an array of any shape; the basis is the last axis)."""
+    if degree == 1:
+        return np.stack((1 - s, s), axis=-1)
+    return np.stack(((1 - s) * (1 - 2 * s), 4 * s * (1 - s), s * (2 * s - 1)), axis=-1)
+
+
+def coefficients(nodal):
+    """(c0, c1[, c2]) of c0 + c1 s + c2 s^2 with the given values at s = 0, (1/2,) 1; one row per edge."""
+    if nodal.shape[1] == 2:
+        return nodal[:, 0], nodal[:, 1] - nodal[:, 0]
+    start, middle, end = nodal.T
+    return start, -3 * start + 4 * middle - end, 2 * (start - 2 * middle + end)
+
+
+def roots(nodal):
+    """The roots in (0, 1) of each row's polynomial, (edges, degree), with 1 where there is none."""
+    c = coefficients(nodal)
+    with np.errstate(all="ignore"):
+        if len(c) == 2:
+            found = (-c[0] / c[1])[:, None]
+        else:
+            discriminant = c[1] ** 2 - 4 * c[2] * c[0]
+            q = -(c[1] + np.copysign(np.sqrt(discriminant), c[1])) / 2
+            found = np.column_stack((q / c[2], c[0] / q))
+    return np.where((found > 0) & (found < 1), found, 1.0)
+
+
+class ContactEdges:
+    """The edges on Gamma_C whose triangles this process owns."""
+
+    def __init__(self, problem, gamma0):
+        self.comm, self.p, self.gauss = problem.comm, problem.case.degree, problem.case.gauss
+        self.names, self.cells, local = [], [], []
+        for name in problem.case.of_kind("contact"):
+            facets = problem.boundaries[name]
+            self.names += [name] * np.count_nonzero(facets.owned)
+            self.cells += facets.cells[facets.owned].tolist()
+            local += facets.local[facets.owned].tolist()
+        self._geometry(problem, np.array(local, int))
+        self.gamma = gamma0 * self.h_T
+        self._operators(problem, np.array(local, int))
+
+    def _geometry(self, problem, local):
+        count = len(self.cells)
+        corners = problem.mesh.geometry.x[compat.cell_vertices(problem.mesh)[self.cells].reshape(count, 3)][:, :, :2]
+        self.corners = corners
+        self.ends = np.array([corners[e, FACET_VERTICES[i]] for e, i in enumerate(local)]).reshape(count, 2, 2)
+        along = self.ends[:, 1] - self.ends[:, 0]
+        self.length = np.linalg.norm(along, axis=1)
+        self.n = np.column_stack((along[:, 1], -along[:, 0])) / self.length[:, None]
+        inward = np.array([corners[e, i] for e, i in enumerate(local)]).reshape(count, 2) - self.ends[:, 0]
+        self.n[np.einsum("ek,ek->e", self.n, inward) > 0] *= -1
+        self.h_T = np.max(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2), axis=1)
+        self.J = np.stack((corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=2)  # d x / d (reference)
+        self.area = np.abs(np.linalg.det(self.J)) / 2
+
+    def _operators(self, problem, local):
+        """`V_n`, `S_n` (edges, p + 1, dofs of T): v_n and sigma_n at the edge's Lagrange points; `B` = V_n - gamma S_n; the gap."""
+        lam, mu = problem.case.material.plane_lam, problem.case.material.mu
+        s = np.linspace(0, 1, self.p + 1)
+        tables = [compat.basis(self.p, (1 - s)[:, None] * REFERENCE[i] + s[:, None] * REFERENCE[j]) for i, j in FACET_VERTICES]
+        values = np.array([table[0] for table in tables])[local]
+        gradients = np.array([table[1] for table in tables])[local] @ np.linalg.inv(self.J)[:, None]
+        normal = np.einsum("eqik,ek->eqi", gradients, self.n)
+        # sigma_n(phi e_k) = lam d_k phi + 2 mu n_k (n . grad phi)
+        S_n = lam * gradients + 2 * mu * normal[..., None] * self.n[:, None, None, :]
+        V_n = values[..., None] * self.n[:, None, None, :]
+        count, points, functions = values.shape
+        self.S_n, self.V_n = (table.reshape(count, points, 2 * functions) for table in (S_n, V_n))
+        self.B = self.V_n - self.gamma[:, None, None] * self.S_n
+        nodes = np.array([problem.V.dofmap.cell_dofs(cell) for cell in self.cells], np.int32).reshape(count, functions)
+        self.dofs = (2 * nodes[:, :, None] + np.arange(2, dtype=np.int32)).reshape(count, 2 * functions)
+        on_cell = [problem.gaps[name].x.array[problem.W.dofmap.cell_dofs(cell)] for name, cell in zip(self.names, self.cells)]
+        self.gap = np.einsum("eqi,ei->eq", values, np.array(on_cell).reshape(count, functions))
+
+    def P(self, u):
+        """P(u) at the Lagrange points of each edge; u holds all dofs that this process sees."""
+        return self.P0(u) - self.gap
+
+    def P0(self, v):
+        return np.einsum("eqd,ed->eq", self.B, v[self.dofs])
+
+    def rule(self, *polynomials):
+        """Points s and weights (their lengths included) for integrals of positive parts of the polynomials (nodal values), in one table
+        per edge; and per polynomial, where it counts as positive."""
+        if self.gauss:
+            s, w = _gauss(self.gauss)
+            s, w = np.tile(s, (len(self.length), 1)), np.tile(w, (len(self.length), 1))
+            signs = [self.at(nodal, s) for nodal in polynomials]
+        else:
+            ends = np.zeros((len(self.length), 1)), np.ones((len(self.length), 1))
+            cuts = np.sort(np.hstack((ends[0], *map(roots, polynomials), ends[1])), axis=1)
+            pieces, middles = np.diff(cuts), (cuts[:, 1:] + cuts[:, :-1]) / 2
+            t, w = _gauss(self.p + 1)
+            s = (cuts[:, :-1, None] + pieces[:, :, None] * t).reshape(len(pieces), pieces.shape[1] * len(t))
+            w = (pieces[:, :, None] * w).reshape(s.shape)
+            signs = [np.repeat(self.at(nodal, middles), len(t), axis=1) for nodal in polynomials]
+        return s, w * self.length[:, None], [sign > 0 for sign in signs]
+
+    def at(self, nodal, s):
+        return np.einsum("eqi,ei->eq", edge_basis(self.p, s), nodal)
+
+    def functional(self, u):
+        """int (1/gamma) [P(u)]+ P0(.) over all dofs that this process sees."""
+        P = self.P(u)
+        s, w, (active,) = self.rule(P)
+        pressure = np.where(active, self.at(P, s), 0) / self.gamma[:, None]
+        loads = np.einsum("eq,eq,eqi,eid->ed", w, pressure, edge_basis(self.p, s), self.B)
+        total = np.zeros_like(u)
+        np.add.at(total, self.dofs, loads)
+        return total
+
+    def tangent(self, u):
+        """(dofs, block) per edge of int (1/gamma) H(P(u)) P0(.) P0(.)."""
+        s, w, (active,) = self.rule(self.P(u))
+        N = edge_basis(self.p, s)
+        mass = np.einsum("eq,eqi,eqj->eij", w * active / self.gamma[:, None], N, N)
+        return zip(self.dofs, np.einsum("eid,eij,ejc->edc", self.B, mass, self.B))
+
+    def energy_change(self, u, d, t):
+        """1/2 int (1/gamma) ([P(u + t d)]+^2 - [P(u)]+^2) without cancellation: a^2 - b^2 = (a - b)(a + b)."""
+        before, D = self.P(u), self.P0(d)
+        after = before + t * D
+        s, w, (was, is_) = self.rule(before, after)
+        b, a = np.where(was, self.at(before, s), 0), np.where(is_, self.at(after, s), 0)
+        both = was & is_
+        difference = np.where(both, t * self.at(D, s), a - b)
+        return self.comm.allreduce(float(np.sum(w / (2 * self.gamma[:, None]) * difference * (a + b))))
+
+    # What is reported.
+
+    def pressure(self, u):
+        """contact_force = -int lambda^h, contact_resultant = int lambda^h n, contact_length = the measure of {P > 0}, peak_pressure."""
+        P = self.P(u)
+        s, w, (active,) = self.rule(P)
+        force = np.sum(w * np.where(active, self.at(P, s), 0) / self.gamma[:, None], axis=1)
+        resultant = -force @ self.n
+        sums = self.comm.allreduce(np.array([np.sum(force), *resultant, np.sum(w * active)]))
+        peak = self.comm.allreduce(float(np.max(self._largest(P) / self.gamma, initial=0.0)), op=MPI.MAX)
+        return {"contact_force": float(sums[0]), "contact_resultant": [float(sums[1]), float(sums[2])],
+                "contact_length": float(sums[3]), "peak_pressure": peak}
+
+    def _largest(self, P):
+        """The maximum of P on each edge: at an end, or for p = 2 at the vertex of the parabola."""
+        largest = np.maximum(P[:, 0], P[:, -1])
+        if self.p == 2:
+            _, c1, c2 = coefficients(P)
+            with np.errstate(all="ignore"):
+                s = -c1 / (2 * c2)
+            inside = (c2 < 0) & (s > 0) & (s < 1)
+            largest = np.maximum(largest, self.at(P, np.where(inside, s, 0)[:, None])[:, 0])
+        return largest
+
+    def coercivity(self, material):
+        """(C_h, the edge that sets it): kappa = gamma0 C_h, C_h = max_T h_T C c_p sum_{E in T} |E| / |T|, with C = lambda + 2 mu in
+        plane strain and 4 mu (lambda + mu) / (lambda + 2 mu) in plane stress, c_1 = 1, c_2 = 3. Of equal edges, the first by its ends."""
+        factor = (material.plane_lam + 2 * material.mu) * {1: 1, 2: 3}[self.p]
+        per_cell = {}
+        for cell, length in zip(self.cells, self.length):
+            per_cell[cell] = per_cell.get(cell, 0.0) + length
+        numbers = [factor * h * per_cell[cell] / area for cell, h, area in zip(self.cells, self.h_T, self.area)]
+        edges = [(value, sorted(ends.tolist())) for value, ends in zip(numbers, self.ends)]
+        edges = [edge for part in self.comm.allgather(edges) for edge in part]
+        largest = max(value for value, _ in edges)
+        return largest, min(ends for value, ends in edges if value >= largest * (1 - 1e-12))
+
+
+def _gauss(n):
+    """n Gauss points and weights on [0, 1]."""
+    t, w = np.polynomial.legendre.leggauss(n)
+    return (t + 1) / 2, w / 2

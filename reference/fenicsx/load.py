@@ -1,0 +1,2 @@
+def exact_load(problem):
+    raise NotImplementedError

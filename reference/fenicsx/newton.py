@@ -1,0 +1,164 @@
+"""Semismooth Newton for (8): the residual is the gradient of the convex functional
+
+    J_h(v) = 1/2 A(v, v) + 1/2 int_{Gamma_C} (1/gamma) [P(v)]+^2 - L(v)      (kappa < 1),
+
+so each step goes along a descent direction and is halved until J_h falls enough (Armijo). Differences of J_h are summed term by term,
+because near the solution the values themselves agree to rounding. Steps go on after the tolerance is met for as long as each divides
+the residual by ten or more: the result is then exact to rounding, which comparisons between codes need.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from petsc4py import PETSc
+
+ARMIJO = 1e-4  # required decrease, as a share of the linear model's
+NEGLIGIBLE = 1e-10  # a step of this size relative to u is at the rounding level: no line search, and if it gains nothing, the end
+
+
+class NotSolved(Exception):
+    """Newton or the linear solver failed; the command ends with code 1."""
+
+
+@dataclass
+class History:
+    reference: float
+    residuals: list = field(default_factory=list)
+    factorizations: int = 0
+    inner: list = field(default_factory=list)  # iterations of CG per step
+    outcome: str = ""
+
+    @property
+    def iterations(self):
+        return len(self.residuals) - 1
+
+
+class Solver:
+    """Newton's method for one Method. `iterative`: CG with algebraic multigrid in place of the sparse Cholesky factorisation."""
+
+    def __init__(self, method, iterative):
+        self.method, self.problem, self.iterative = method, method.problem, iterative
+        owned = self.problem.owned_dofs
+        self.prescribed = self.problem.prescribed[:owned] > 0
+        self.data = self.problem.data[:owned]
+
+    def norm(self, owned):
+        return float(np.sqrt(self.dot(owned, owned)))
+
+    def dot(self, a, b):
+        return self.problem.comm.allreduce(float(a @ b))
+
+    def free(self, owned):
+        return np.where(self.prescribed, 0.0, owned)
+
+    def residual(self, u):
+        """The residual of (8) at u on the free dofs, leaving the method at u."""
+        self.method.set(u)
+        return self.free(self.method.functional() - self.problem.load)
+
+    def solve(self):
+        """(u, history): the solution on the owned dofs. It starts from the prescribed data, zero at all other nodes."""
+        tolerance, most = self.problem.case.tolerance, self.problem.case.max_iterations
+        u = self.data.copy()
+        r = self.residual(u)
+        history = History(self.norm(self.free(self.problem.load)) + self.norm(r + self.free(self.problem.load)))
+        history.residuals.append(self.norm(r))
+        if history.residuals[0] == 0:
+            return self.end(u, "converged", history)
+        while history.iterations < most:
+            d = self.direction(r, history)
+            before = history.residuals[-1]
+            met = before <= tolerance * history.reference
+            negligible = self.norm(d) <= NEGLIGIBLE * self.norm(u)
+            t = 1.0 if met or negligible else self.step(u, d, r)
+            candidate = u + t * d
+            new = self.residual(candidate)
+            after = self.norm(new)
+            if (met or negligible) and not after < before:
+                return self.end(u, "converged" if met else "converged to rounding", history)
+            if not np.isfinite(after):
+                raise NotSolved(f"Newton: the residual is {after} after {history.iterations + 1} iterations")
+            history.residuals.append(after)
+            if (met or negligible) and not after < before / 10:
+                return self.end(candidate, "converged" if met else "converged to rounding", history)
+            u, r = candidate, new
+        if history.residuals[-1] <= tolerance * history.reference:
+            return self.end(u, "converged", history)
+        raise NotSolved(f"Newton: relative residual {history.residuals[-1] / history.reference:.3e} after {most} iterations, expected "
+                        f"{tolerance:.1e}; residuals {', '.join(f'{value:.3e}' for value in history.residuals)}")
+
+    def end(self, u, outcome, history):
+        self.method.set(u)
+        history.outcome = outcome
+        return u, history
+
+    def step(self, u, d, r):
+        """The first t = 1, 1/2, 1/4, ... with J_h(u + t d) - J_h(u) <= ARMIJO t r.d"""
+        slope = self.dot(r, d)
+        if not slope < 0:
+            raise NotSolved(f"Newton: the tangent is not positive definite (r.d = {slope:.3e}, expected a negative number)")
+        self.method.set(d)
+        A_d, seen_d = self.method.linear_functional(), self.method.u.x.array.copy()
+        self.method.set(u)
+        linear = self.dot(self.method.linear_functional() - self.problem.load, d)
+        quadratic = self.dot(A_d, d)
+        t = 1.0
+        while t > 1e-12:
+            change = t * linear + t * t / 2 * quadratic + self.method.edges.energy_change(self.method.u.x.array, seen_d, t)
+            if change <= ARMIJO * t * slope:
+                return t
+            t /= 2
+        raise NotSolved("Newton: no step along the direction decreases J_h")
+
+    def direction(self, r, history):
+        """d with H d = -r on the free dofs and d = 0 on the prescribed ones."""
+        matrix = self.method.tangent()
+        first = matrix.getOwnershipRange()[0]
+        matrix.zeroRowsColumns(first + np.flatnonzero(self.prescribed).astype(PETSc.IntType), diag=1.0)
+        b, x = matrix.createVecRight(), matrix.createVecRight()
+        b.array[:] = -r
+        ksp = PETSc.KSP().create(self.problem.comm)
+        ksp.setOperators(matrix)
+        self._configure_cg(ksp, matrix) if self.iterative else self._configure_cholesky(ksp, matrix)
+        ksp.solve(b, x)
+        reason = ksp.getConvergedReason()
+        if reason == PETSc.KSP.ConvergedReason.DIVERGED_INDEFINITE_MAT or (not self.iterative and self._negative_pivots(ksp)):
+            raise NotSolved("the tangent is not positive definite")
+        if reason <= 0:
+            raise NotSolved(f"the linear solver failed (PETSc's reason {reason})")
+        history.inner.append(ksp.getIterationNumber())
+        history.factorizations += not self.iterative
+        d = self.free(x.array.copy())
+        for thing in (ksp, b, x, matrix):
+            thing.destroy()
+        return d
+
+    def _configure_cholesky(self, ksp, matrix):
+        matrix.setOption(PETSc.Mat.Option.SYMMETRIC, True)
+        ksp.setType("preonly")
+        ksp.getPC().setType("cholesky")
+        ksp.getPC().setFactorSolverType("mumps")
+
+    def _negative_pivots(self, ksp):
+        return ksp.getPC().getFactorMatrix().getMumpsInfog(12) > 0
+
+    def _configure_cg(self, ksp, matrix):
+        matrix.setBlockSize(2)
+        motions = []
+        for motion in self.problem.rigid_motions():
+            vector = matrix.createVecRight()
+            vector.array[:] = motion
+            motions.append(vector)
+        _orthonormalise(motions)
+        matrix.setNearNullSpace(PETSc.NullSpace().create(vectors=motions, comm=self.problem.comm))
+        ksp.setType("cg")
+        ksp.setNormType(PETSc.KSP.NormType.UNPRECONDITIONED)
+        ksp.setTolerances(rtol=1e-10, max_it=1000)
+        ksp.getPC().setType("gamg")
+
+
+def _orthonormalise(vectors):
+    for i, vector in enumerate(vectors):
+        for other in vectors[:i]:
+            vector.axpy(-vector.dot(other), other)
+        vector.normalize()

@@ -1,0 +1,81 @@
+"""result.json: what is reported of a solution, in the project's format."""
+
+import json
+import os
+from pathlib import Path
+
+import numpy as np
+
+from . import compat
+from .case import CaseError
+
+
+def result(problem, method, gamma, u, history, seconds):
+    """The content of result.json; u is the solution on the owned dofs, and the method's current iterate."""
+    content = {
+        "version": f"reference (DOLFINx {compat.versions()['DOLFINx']})",
+        "title": problem.case.title,
+        "mesh": problem.sizes | {"h_max": problem.h_max},
+        "gamma": gamma,
+        "newton": {"iterations": history.iterations, "residuals": history.residuals, "factorizations": history.factorizations},
+        "quantities": quantities(problem, method, u),
+    }
+    if problem.case.probes:
+        content["probes"] = probes(problem, method.u.x.array)
+    content["seconds"] = seconds
+    return content
+
+
+def quantities(problem, method, u):
+    pressure = method.edges.pressure(method.u.x.array)
+    largest = np.max(np.hypot(u[0::2], u[1::2]), initial=0.0)
+    return {
+        "energy": float(method.energy()),
+        "work": problem.comm.allreduce(float(problem.load @ u)),
+        "max_displacement": max(problem.comm.allgather(float(largest))),
+        **pressure,
+        "reactions": reactions(problem, method.functional() - problem.load),
+    }
+
+
+def reactions(problem, residual):
+    """{boundary: [x, y]}: the sum over its prescribed dofs of the unconstrained equations' residual, which is the force on the body.
+    A dof on two displacement boundaries counts for the one first in name order."""
+    owner = problem.prescribed[: problem.owned_dofs]
+    found = {}
+    for name in problem.case.of_kind("displacement"):
+        mine = np.where(owner == problem.number[name], residual, 0.0)
+        total = problem.comm.allreduce(np.array([np.sum(mine[0::2]), np.sum(mine[1::2])]))
+        found[name] = total.tolist()
+    return found
+
+
+def probes(problem, u):
+    """[x, y, u_x, u_y] per probe: u^h in the triangle that holds the point, found by barycentric coordinates."""
+    corners = problem.mesh.geometry.x[compat.cell_vertices(problem.mesh)][:, :, :2]
+    to_reference = np.linalg.inv(np.stack((corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=2))
+    found = []
+    for point in problem.case.probes:
+        reference = np.einsum("cij,cj->ci", to_reference, point - corners[:, 0])
+        inside = np.minimum(reference.min(axis=1), 1 - reference.sum(axis=1))
+        cell = int(np.argmax(inside))
+        values, _ = compat.basis(problem.case.degree, reference[cell][None])
+        dofs = 2 * problem.V.dofmap.cell_dofs(cell)
+        found.append((float(inside[cell]), [float(values[0] @ u[dofs]), float(values[0] @ u[dofs + 1])]))
+    rows = []
+    for point, candidates in zip(problem.case.probes, zip(*problem.comm.allgather(found))):
+        inside, displacement = max(candidates)
+        if inside < -1e-9:
+            raise CaseError(f"{problem.case.path}: output.probes: found {point}, expected a point of the mesh")
+        rows.append(point + displacement)
+    return rows
+
+
+def write(content, folder):
+    """Writes result.json whole or not at all."""
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    text = json.dumps(content, indent=1, allow_nan=False)
+    temporary = folder / f".result.json.{os.getpid()}"
+    temporary.write_text(text + "\n")
+    temporary.rename(folder / "result.json")
