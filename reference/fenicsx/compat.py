@@ -56,11 +56,6 @@ def basis(degree, points):
     return table[0], np.moveaxis(table[1:], 0, 2)
 
 
-def vector_of(function):
-    """The PETSc vector that shares the function's values."""
-    return function.x.petsc_vec if hasattr(function.x, "petsc_vec") else function.vector
-
-
 def versions():
     """Versions of what the numbers rest on."""
     return {"DOLFINx": dolfinx.__version__, "PETSc": ".".join(map(str, PETSc.Sys.getVersion())),

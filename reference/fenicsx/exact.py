@@ -15,11 +15,11 @@ INSIDE = ("a number between 0 and 1", lambda c: 0 < c < 1)
 
 
 class Solution:
-    """`cut`: the line x = cut where the load has a kink (or None); `apex`: where the stress is singular (or None)."""
+    """`cut`: the line x = cut where the load has a kink (or None); `apex`: where the stress is singular (or None), and there
+    `edge_grading` g: with r = t^g the stress squared is smooth in t along the contact line, dr included."""
 
     cut = None
     apex = None
-    root = 1.0  # near the apex the displacement is a power series in r^root, times a power of r
 
     def __init__(self, material, **parameters):
         self.lam, self.mu = material.plane_lam, material.mu
@@ -84,7 +84,7 @@ class Singular(Solution):
     """Unit square, displacement given on x = 0, x = 1, y = 1, no load: contact for x < c, r^(3/2) singularity at (c, 0)."""
 
     parameters = {"c": INSIDE, "amplitude": POSITIVE}
-    root = 0.5
+    edge_grading = 4.0
 
     @property
     def apex(self):
@@ -120,7 +120,7 @@ class Corner(Solution):
         omega, self.a = self.omega, -1.0
         self.alpha = _bisect(lambda s: math.sin(2 * s * omega) + s * math.sin(2 * omega), 0.5 + 1e-9, 0.999)
         self.b = -self.a * (math.cos(2 * self.alpha * omega) + self.alpha * math.cos(2 * omega))
-        self.root = self.alpha
+        self.edge_grading = 1 / (2 * self.alpha - 1)
 
     def displacement(self, x, y):
         y = np.maximum(y, 0.0)

@@ -8,6 +8,7 @@ import numpy as np
 
 from . import compat
 from .case import CaseError
+from .errors import errors
 
 
 def result(problem, method, gamma, u, history, seconds):
@@ -20,6 +21,8 @@ def result(problem, method, gamma, u, history, seconds):
         "newton": {"iterations": history.iterations, "residuals": history.residuals, "factorizations": history.factorizations},
         "quantities": quantities(problem, method, u),
     }
+    if problem.case.exact:
+        content["errors"] = errors(problem, method)
     if problem.case.probes:
         content["probes"] = probes(problem, method.u.x.array)
     content["seconds"] = seconds
