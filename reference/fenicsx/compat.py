@@ -43,6 +43,19 @@ def scalar_space(domain, degree):
     return fem.FunctionSpace(domain, ("Lagrange", degree))
 
 
+def cellwise_space(domain):
+    """Piecewise constants."""
+    if hasattr(fem, "functionspace"):
+        return fem.functionspace(domain, ("DG", 0))
+    return fem.FunctionSpace(domain, ("DG", 0))
+
+
+def expression(form, space):
+    """A UFL expression ready to be interpolated into a space."""
+    points = space.element.interpolation_points
+    return fem.Expression(form, points() if callable(points) else points)
+
+
 def cell_vertices(domain):
     """Row per local triangle: its vertices as rows of domain.geometry.x, in the reference triangle's order."""
     dofmap = domain.geometry.dofmap

@@ -29,9 +29,7 @@ def plane_mesh(case):
     if isinstance(spec, Gmsh):
         mesh = gmsh.read(spec.path)
     elif isinstance(spec, Trapezoid):
-        mesh = rectangle(1.0, 1.0, spec.n, spec.n, "right")
-        s, t = mesh.points.T
-        mesh.points = np.column_stack((s + (1 - s) * t / math.tan(spec.omega), t))
+        mesh = trapezoid(spec.omega, spec.n)
     else:
         mesh = rectangle(spec.width, spec.height, spec.nx, spec.ny, spec.diagonal)
     _check(mesh, case)
@@ -56,6 +54,13 @@ def rectangle(width, height, nx, ny, diagonal):
     sides = {"bottom": number[0], "right": number[:, -1], "top": number[-1], "left": number[:, 0]}
     boundaries = {name: np.column_stack((line[:-1], line[1:])) for name, line in sides.items()}
     return PlaneMesh(points, np.stack([np.column_stack(t) for t in triangles], axis=1).reshape(-1, 3), boundaries)
+
+
+def trapezoid(omega, n):
+    """The unit square in n x n cells, diagonals right, mapped by (s, t) -> (s + (1 - s) t cot(omega), t)."""
+    mesh = rectangle(1.0, 1.0, n, n, "right")
+    s, t = mesh.points.T
+    return PlaneMesh(np.column_stack((s + (1 - s) * t / math.tan(omega), t)), mesh.triangles, mesh.boundaries)
 
 
 def _check(mesh, case):

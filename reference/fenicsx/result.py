@@ -1,9 +1,5 @@
 """result.json: what is reported of a solution, in the project's format."""
 
-import json
-import os
-from pathlib import Path
-
 import numpy as np
 
 from . import compat
@@ -72,13 +68,3 @@ def probes(problem, u):
             raise CaseError(f"{problem.case.path}: output.probes: found {point}, expected a point of the mesh")
         rows.append(point + displacement)
     return rows
-
-
-def write(content, folder):
-    """Writes result.json whole or not at all."""
-    folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
-    text = json.dumps(content, indent=1, allow_nan=False)
-    temporary = folder / f".result.json.{os.getpid()}"
-    temporary.write_text(text + "\n")
-    temporary.rename(folder / "result.json")

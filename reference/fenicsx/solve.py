@@ -3,10 +3,10 @@
 import time
 
 from .case import CaseError, read_case
+from .edges import ContactEdges
 from .method import Method
 from .newton import Solver
 from .problem import Problem
-from .edges import ContactEdges
 from .result import result
 
 
@@ -22,7 +22,7 @@ def coercivity(problem):
     return {"gamma0": gamma0, "limit": 1 / C_h, "kappa": kappa, "limiting_edge": edge}
 
 
-def solve(path, comm, iterative=False, nx=None, change=None, Method=Method):
+def solve(path, comm, iterative=False, nx=None, Method=Method):
     """(result, problem, method, history) of the case at `path`, on `nx` cells along x if given."""
     clock = [time.perf_counter()]
     case = read_case(path)
