@@ -93,8 +93,11 @@ class _Table:
     def place(self, key):
         return ".".join(part for part in (self.where, key) if part)
 
-    def fail(self, key, found, expected):
-        raise CaseError(f"{self.file}: {self.place(key)}: found {_show(found)}, expected {expected}")
+    def fail(self, key, value, expected):
+        self.refuse(key, _show(value), expected)
+
+    def refuse(self, key, found, expected):
+        raise CaseError(f"{self.file}: {self.place(key)}: found {found or 'nothing'}, expected {expected}")
 
     def get(self, key, default=None):
         self.known.append(key)
@@ -213,7 +216,7 @@ def read_case(path):
 def _mesh(table, path):
     shapes = [shape for shape in ("rectangle", "gmsh", "trapezoid") if table.has(shape)]
     if len(shapes) != 1:
-        table.fail("", ", ".join(shapes) or None, "exactly one of rectangle, gmsh, trapezoid")
+        table.refuse("", ", ".join(shapes), "exactly one of rectangle, gmsh, trapezoid")
     if table.has("perturb"):
         table.fail("perturb", table.content["perturb"], "no perturb: the reference has no generator of random meshes; give a Gmsh file")
     table.finish()
@@ -230,7 +233,7 @@ def _mesh(table, path):
                           inner.integer("ny", *count), inner.choice("diagonal", ("right", "left", "crossed"), "right"))
         cells = shape.nx * shape.ny
     if cells > MOST_CELLS:
-        inner.fail("", f"{cells} cells", f"at most {MOST_CELLS}")
+        inner.refuse("", f"{cells} cells", f"at most {MOST_CELLS}")
     inner.finish()
     return shape
 
@@ -239,8 +242,8 @@ def _material(table):
     plane = table.choice("plane", ("strain", "stress"), "strain")
     lame, engineering = [table.has(key) for key in ("lambda", "mu")], [table.has(key) for key in ("young", "poisson")]
     if any(lame) == any(engineering):
-        table.fail("", ", ".join(key for key in ("lambda", "mu", "young", "poisson") if key in table.content) or None,
-                   "either lambda and mu, or young and poisson")
+        table.refuse("", ", ".join(key for key in ("lambda", "mu", "young", "poisson") if key in table.content),
+                     "either lambda and mu, or young and poisson")
     if any(lame):
         lam, mu = table.number("lambda"), table.number("mu", "a positive number", lambda m: m > 0)
         if not 3 * lam + 2 * mu > 0:
@@ -263,7 +266,7 @@ def _boundaries(table, solution):
         kinds = [kind for kind in KINDS if inner.has(kind)]
         inner.finish()
         if len(kinds) != 1:
-            inner.fail("", ", ".join(kinds) or None, "exactly one of displacement, traction, contact")
+            inner.refuse("", ", ".join(kinds), "exactly one of displacement, traction, contact")
         if kinds == ["contact"]:
             contact = inner.table("contact")
             data = contact.expression("gap", contact.get("gap", "0"))
@@ -273,7 +276,7 @@ def _boundaries(table, solution):
         boundaries[name] = Boundary(kinds[0], data)
     table.finish()
     if not any(boundary.kind == "contact" for boundary in boundaries.values()):
-        table.fail("", ", ".join(boundaries) or None, "at least one boundary with contact")
+        table.refuse("", ", ".join(boundaries), "at least one boundary with contact")
     return boundaries
 
 

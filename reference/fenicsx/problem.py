@@ -36,7 +36,7 @@ class Problem:
         self.V = compat.vector_space(self.mesh, case.degree)
         self.W = compat.scalar_space(self.mesh, case.degree)
         self.owned_dofs = 2 * self.V.dofmap.index_map.size_local
-        self.nodes = self.V.tabulate_dof_coordinates()[:, :2]
+        self.nodes = self._node_coordinates()
         self.sizes = {"vertices": len(plane.points), "triangles": len(plane.triangles), "dofs": 2 * self.V.dofmap.index_map.size_global,
                       "contact_edges": sum(len(plane.boundaries[name]) for name in case.of_kind("contact"))}
         self.h_max = float(max(np.max(np.linalg.norm(plane.points[plane.triangles[:, i]] - plane.points[plane.triangles[:, i - 1]], axis=1))
@@ -46,6 +46,17 @@ class Problem:
         self._prescribe()
         self.gaps = {name: self._gap(name, gap) for name, gap in case.of_kind("contact").items()}
         self.load = self._load()
+
+    def _node_coordinates(self):
+        """(nodes that this process sees, 2): vertices as they were given, then midpoints. DOLFINx's own table carries rounding, by which a
+        point may leave the side it lies on."""
+        dofmap = self.V.dofmap
+        corners = self.mesh.geometry.x[compat.cell_vertices(self.mesh)][:, :, :2]
+        on_cell = corners if self.case.degree == 1 else np.hstack((corners, corners[:, FACET_VERTICES].mean(axis=2)))
+        nodes = np.empty((dofmap.index_map.size_local + dofmap.index_map.num_ghosts, 2))
+        for cell, points in enumerate(on_cell):
+            nodes[dofmap.cell_dofs(cell)] = points
+        return nodes
 
     def _facets(self, plane):
         """{name: Facets}, found by the vertices' numbers in `plane`."""

@@ -49,14 +49,15 @@ def sha256(file):
 
 
 def differences(a, b):
-    """[(place, difference relative to its scale)] for each number of two results. A force is measured against the largest force, an error
-    against the energy norm, a displacement against the largest, so that what is 0 in exact arithmetic needs no rule of its own."""
+    """[(place, difference relative to its scale)] for each number of two results. A force is measured against the largest force (energy
+    over displacement is one), an error against the energy norm, a displacement against the largest: numbers that are 0 in exact arithmetic
+    then need no rule of their own."""
     quantities = a["quantities"]
-    reactions = quantities["reactions"]
-    norm = quantities["energy"] ** 0.5
-    force = max([abs(quantities["contact_force"]), *(abs(c) for pair in reactions.values() for c in pair)])
-    scales = {"contact_force": force, "contact_resultant": force, "reactions": force, "work": max(abs(quantities["work"]), norm**2),
-              "errors": norm, "probes": quantities["max_displacement"]}
+    energy, displacement = quantities["energy"], quantities["max_displacement"]
+    forces = [quantities["contact_force"], *(component for pair in quantities["reactions"].values() for component in pair)]
+    force = max([energy / displacement if displacement > 0 else 0.0, *map(abs, forces)])
+    scales = {"contact_force": force, "contact_resultant": force, "reactions": force, "work": max(abs(quantities["work"]), energy),
+              "errors": energy**0.5, "probes": displacement}
     found = []
 
     def walk(place, x, y, scale):
