@@ -1,0 +1,124 @@
+//! Our results against the stored ones of the independent reference in FEniCSx (`reference/results`): energies, contact
+//! force and length, peak pressure, the largest displacement, and the displacement at every probe.
+//!
+//! Both sides solve the same discrete problem, so they differ by rounding and by what is left of the residual: 1e-10
+//! relative, for displacements relative to the largest one.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+use signorini::io::{Case, outputs, result};
+use signorini::solve::solve;
+
+const TOLERANCE: f64 = 1e-10;
+
+fn stored() -> Vec<PathBuf> {
+    let mut files: Vec<PathBuf> = fs::read_dir("reference/results")
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|e| e == "json"))
+        .collect();
+    files.sort();
+    files
+}
+
+/// The numbers of a JSON value with their paths.
+fn numbers(path: &str, value: &Value, all: &mut Vec<(String, f64)>) {
+    match value {
+        Value::Number(number) => all.push((path.to_owned(), number.as_f64().unwrap())),
+        Value::Array(items) => {
+            for (i, item) in items.iter().enumerate() {
+                numbers(&format!("{path}[{i}]"), item, all);
+            }
+        }
+        Value::Object(members) => {
+            for (name, member) in members {
+                numbers(&format!("{path}.{name}"), member, all);
+            }
+        }
+        _ => {}
+    }
+}
+
+/// What both must agree on, with the size against which a difference counts.
+fn compared(results: &Value) -> Vec<(String, f64, f64)> {
+    let q = &results["quantities"];
+    let number = |value: &Value| value.as_f64().unwrap();
+    let length = number(&q["max_displacement"]);
+    let force = number(&q["contact_force"]).abs()
+        + q["reactions"]
+            .as_object()
+            .unwrap()
+            .values()
+            .flat_map(|r| r.as_array().unwrap())
+            .map(|r| number(r).abs())
+            .sum::<f64>();
+    let size_of = |path: &str, value: f64| {
+        if path.contains("reactions") || path.contains("contact_resultant") {
+            force
+        } else if path.contains("probes") {
+            length
+        } else {
+            value.abs()
+        }
+    };
+    let mut all = Vec::new();
+    for section in ["mesh", "gamma", "quantities", "errors"] {
+        if let Some(value) = results.get(section) {
+            numbers(section, value, &mut all);
+        }
+    }
+    if let Some(probes) = results.get("probes") {
+        numbers("probes", probes, &mut all);
+    }
+    all.into_iter()
+        .map(|(path, value)| {
+            let size = size_of(&path, value);
+            (path, value, size)
+        })
+        .collect()
+}
+
+fn ours(case: &Path) -> Value {
+    let case = Case::read(case).unwrap();
+    let (solution, _) = solve(&case.problem, &case.method, &case.settings).unwrap();
+    let seconds = result::Seconds { read: 0.0, assemble: 0.0, solve: 0.0, write: 0.0 };
+    let text = result::result_json(&outputs::results(&case, &solution, seconds)).unwrap();
+    serde_json::from_str(&text).unwrap()
+}
+
+#[test]
+fn our_results_agree_with_the_stored_ones_of_fenicsx() {
+    let mut bad = Vec::new();
+    for file in stored() {
+        let stored: Value = serde_json::from_str(&fs::read_to_string(&file).unwrap()).unwrap();
+        let provenance = &stored["provenance"];
+        let case = Path::new(provenance["case"].as_str().unwrap());
+        let text = fs::read_to_string(case).unwrap();
+        if text.contains("[exact]") {
+            continue;
+        }
+        let hash: String =
+            Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect();
+        if provenance["case_sha256"] != Value::String(hash) {
+            bad.push(format!("{}: {} has changed since", file.display(), case.display()));
+            continue;
+        }
+        let ours = ours(case);
+        let (theirs, ours) = (compared(&stored), compared(&ours));
+        assert_eq!(theirs.len(), ours.len(), "{}", file.display());
+        for ((path, a, size), (name, b, _)) in theirs.iter().zip(&ours) {
+            assert_eq!(path, name);
+            if !((a - b).abs() <= TOLERANCE * size) {
+                bad.push(format!(
+                    "{}: {path} = {b:e}, stored {a:e}, off by {:.1e}",
+                    file.display(),
+                    (a - b).abs() / size
+                ));
+            }
+        }
+    }
+    assert!(bad.is_empty(), "{} differences\n{}", bad.len(), bad.join("\n"));
+}
