@@ -42,6 +42,7 @@ use thiserror::Error;
 use toml::de::DeTable;
 
 use super::expression::{Expression, ExpressionError};
+use super::gmsh::{self, GmshError};
 use super::table::{Source, Table, Value, shown};
 use super::why_unreadable;
 use crate::fem::rectangle::MOST_CELLS;
@@ -72,7 +73,7 @@ pub struct CaseError {
     /// The line, from 1, unless it is the file as a whole.
     pub line: Option<usize>,
     /// What is wrong.
-    pub mistake: CaseMistake,
+    pub mistake: Box<CaseMistake>,
 }
 
 /// What is wrong with a case file. `name` is a key as messages show it: `[mesh] rectangle.nx`.
@@ -95,6 +96,8 @@ pub enum CaseMistake {
     Expression { name: String, text: String, error: ExpressionError },
     #[error("{name}: {error}")]
     Mesh { name: String, error: MeshError },
+    #[error("[mesh] gmsh: {0}")]
+    Gmsh(GmshError),
 }
 
 fn within(place: &str) -> String {
@@ -111,7 +114,7 @@ impl Case {
         let text = read_text(file).map_err(|why| CaseError {
             file: file.to_owned(),
             line: None,
-            mistake: CaseMistake::Unreadable(why),
+            mistake: Box::new(CaseMistake::Unreadable(why)),
         })?;
         let source = Source { file, text: &text };
         let entries = DeTable::parse(&text).map_err(|e| {
@@ -146,7 +149,7 @@ fn case(file: &Path, root: &Table) -> Result<Case, CaseError> {
     let settings = read_settings(root.section("solver")?)?;
     let probes = read_probes(root.section("output")?)?;
     // The mesh comes last: it is what takes time.
-    let mesh = read_mesh(&mesh)?;
+    let mesh = read_mesh(&mesh, file.parent().unwrap_or(Path::new("")))?;
     let conditions = on_the_mesh(&mesh, boundaries)?;
     Ok(Case {
         title,
@@ -157,8 +160,13 @@ fn case(file: &Path, root: &Table) -> Result<Case, CaseError> {
     })
 }
 
-fn read_mesh(table: &Table) -> Result<Mesh, CaseError> {
-    let value = table.exactly_one(&["rectangle"])?;
+/// `directory` is the one of the case file.
+fn read_mesh(table: &Table, directory: &Path) -> Result<Mesh, CaseError> {
+    let value = table.exactly_one(&["rectangle", "gmsh"])?;
+    if table.get("gmsh").is_some() {
+        let mesh = directory.join(value.text()?);
+        return gmsh::read(&mesh).map_err(|error| value.mistake(CaseMistake::Gmsh(error)));
+    }
     read_rectangle(&value.table()?)?.mesh().map_err(|error| {
         let name = value.name().to_owned();
         value.mistake(CaseMistake::Mesh { name, error })

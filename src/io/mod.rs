@@ -5,6 +5,7 @@ pub mod csv;
 pub mod data;
 pub mod expression;
 pub mod files;
+pub mod gmsh;
 pub mod outputs;
 pub mod picture;
 mod quote;
@@ -16,6 +17,7 @@ use std::io;
 
 pub use case::{Case, CaseError};
 pub use expression::{Expression, ExpressionError};
+pub use gmsh::GmshError;
 
 /// Why a file can't be read, in words that don't depend on the system where that is possible.
 fn why_unreadable(error: &io::Error) -> String {

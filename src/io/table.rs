@@ -27,7 +27,7 @@ impl Source<'_> {
     pub fn wrong(&self, start: Option<usize>, mistake: CaseMistake) -> CaseError {
         let before = start.and_then(|start| self.text.get(..start));
         let line = before.map(|before| before.matches('\n').count() + 1);
-        CaseError { file: self.file.to_owned(), line, mistake }
+        CaseError { file: self.file.to_owned(), line, mistake: Box::new(mistake) }
     }
 }
 
