@@ -43,6 +43,7 @@ use toml::de::DeTable;
 
 use super::expression::{Expression, ExpressionError};
 use super::gmsh::{self, GmshError};
+use super::quote::quoted;
 use super::table::{Source, Table, Value, shown};
 use super::why_unreadable;
 use crate::fem::rectangle::MOST_CELLS;
@@ -82,15 +83,15 @@ pub struct CaseError {
 pub enum CaseMistake {
     #[error("{0}")]
     Unreadable(String),
-    #[error("this is no TOML: {0}")]
-    Toml(String),
-    #[error("unknown key {key}{}; expected one of {known}", within(place))]
+    #[error("invalid TOML{at}: {said}")]
+    Toml { at: String, said: String },
+    #[error("unknown key {key}{}; expected {known}", within(place))]
     Unknown { key: String, place: String, known: String },
     #[error("{name} is missing; expected {expected}")]
     Missing { name: String, expected: String },
     #[error("{name} = {found}; expected {expected}")]
     Value { name: String, found: String, expected: String },
-    #[error("{name} has {found}; expected {expected}")]
+    #[error("{name}: found {found}; expected {expected}")]
     Combination { name: String, found: String, expected: String },
     #[error("{name} = {text}: {error}")]
     Expression { name: String, text: String, error: ExpressionError },
@@ -119,10 +120,26 @@ impl Case {
         let source = Source { file, text: &text };
         let entries = DeTable::parse(&text).map_err(|e| {
             let start = e.span().map(|span| span.start);
-            source.wrong(start, CaseMistake::Toml(e.message().replace('\n', ", ")))
+            source.wrong(start, no_toml(&e, &text))
         })?;
         case(file, &Table::whole(source, entries.get_ref()))
     }
+}
+
+/// What the TOML reader says, and the words of the file that it speaks of.
+fn no_toml(error: &toml::de::Error, text: &str) -> CaseMistake {
+    let said = match error.message() {
+        // It says so where there is no value at all, too.
+        m if m.starts_with("string values must be quoted") => {
+            "expected a value; a text must be in quotes".to_owned()
+        }
+        m => m.replace('\n', ", "),
+    };
+    let at = match error.span().and_then(|span| text.get(span)).map(str::trim) {
+        Some(found) if !found.is_empty() => format!(" at {}", quoted(found, '\'')),
+        _ => String::new(),
+    };
+    CaseMistake::Toml { at, said }
 }
 
 fn read_text(file: &Path) -> Result<String, String> {
@@ -164,7 +181,11 @@ fn case(file: &Path, root: &Table) -> Result<Case, CaseError> {
 fn read_mesh(table: &Table, directory: &Path) -> Result<Mesh, CaseError> {
     let value = table.exactly_one(&["rectangle", "gmsh"])?;
     if table.get("gmsh").is_some() {
-        let mesh = directory.join(value.text()?);
+        let name = value.text()?;
+        if name.is_empty() {
+            return Err(value.wrong("the name of a mesh file"));
+        }
+        let mesh = directory.join(name);
         return gmsh::read(&mesh).map_err(|error| value.mistake(CaseMistake::Gmsh(error)));
     }
     read_rectangle(&value.table()?)?.mesh().map_err(|error| {
@@ -219,10 +240,10 @@ fn read_material(table: &Table) -> Result<Material<f64>, CaseError> {
     if stiffness > 0.0 && stiffness.is_finite() {
         Ok(material)
     } else {
-        Err(table.wrong(CaseMistake::Value {
-            name: format!("{} lambda + 2 mu", table.name()),
-            found: stiffness.to_string(),
-            expected: "moduli that are neither so large nor so small".to_owned(),
+        Err(table.wrong(CaseMistake::Combination {
+            name: table.name().to_owned(),
+            found: format!("moduli with lambda + 2 mu = {stiffness} in the plane"),
+            expected: "a positive finite sum".to_owned(),
         }))
     }
 }
@@ -277,6 +298,9 @@ fn read_condition(table: &Table) -> Result<Condition, CaseError> {
     }
     if table.get("traction").is_some() {
         return Ok(Condition::Traction(functions(&value)?));
+    }
+    if !value.is_table() {
+        return Err(value.wrong("a table, such as { gap = \"0\" }"));
     }
     let contact = value.table()?;
     contact.only(&["gap"])?;
@@ -348,8 +372,10 @@ fn read_quadrature(value: &Value) -> Result<ContactQuadrature, CaseError> {
     if !value.is_table() {
         return Err(value.wrong("\"exact\" or { gauss = points per edge }"));
     }
-    let points = value.table()?.exactly_one(&["gauss"])?.whole_number(1..=MOST_GAUSS_POINTS)?;
-    Ok(ContactQuadrature::Gauss(points))
+    let table = value.table()?;
+    table.only(&["gauss"])?;
+    let points = table.require("gauss", "a number of points per edge")?;
+    Ok(ContactQuadrature::Gauss(points.whole_number(1..=MOST_GAUSS_POINTS)?))
 }
 
 /// Newton's method takes a few steps, or it does not converge.

@@ -94,10 +94,12 @@ pub enum GmshMistake {
         "physical curve {physical} has no name; expected one, as in Physical Curve(\"floor\", {physical}) = {{{curve}}};"
     )]
     Unnamed { physical: i32, curve: i32 },
-    #[error("curve {curve} belongs to the physical curves {names}; expected one of them")]
+    #[error(
+        "curve {curve} belongs to the physical curves {names}; expected it in one of them only"
+    )]
     SeveralNames { curve: i32, names: String },
-    #[error("{error} (the numbers are tags of the file{advice})")]
-    Mesh { error: MeshError, advice: &'static str },
+    #[error("{error} ({note})")]
+    Mesh { error: MeshError, note: &'static str },
 }
 
 type Result<T> = std::result::Result<T, GmshError>;
@@ -305,7 +307,7 @@ fn read_nodes(cursor: &mut Cursor) -> Result<Vec<Node>> {
 /// `$Elements`: the number of blocks, three numbers of no use here; then in each block dimension and tag of an entity,
 /// the type of the elements, how many there are, and the tag and the nodes of each.
 fn read_elements(cursor: &mut Cursor) -> Result<Elements> {
-    const NODE: &str = "a node of an element";
+    const NODE: &str = "the tag of a node";
     let blocks = read_block_count(cursor, "elements")?;
     let mut elements = Elements::default();
     for _ in 0..blocks {
@@ -372,6 +374,13 @@ fn other_kind(number: i32) -> (&'static str, &'static str) {
     }
 }
 
+// Notes on errors of the mesh.
+const TAGS: &str = "the numbers are tags of the file";
+const CLOCKWISE: &str =
+    "the numbers are tags of the file; in Gmsh, turn the curve loop of the surface round";
+const NO_TRIANGLE: &str =
+    "mesh with gmsh -2, and where curves have a physical group, give the surface one too";
+
 /// The mesh of the nodes that triangles use, in the order of the file.
 fn make_mesh(content: Content) -> std::result::Result<Mesh, GmshMistake> {
     let Content { names, curves, nodes, elements: Elements { triangles, lines } } = content;
@@ -380,6 +389,9 @@ fn make_mesh(content: Content) -> std::result::Result<Mesh, GmshMistake> {
         if position.insert(node.tag, i).is_some() {
             return Err(GmshMistake::NodeTwice { node: node.tag });
         }
+    }
+    if triangles.is_empty() {
+        return Err(GmshMistake::Mesh { error: MeshError::Empty, note: NO_TRIANGLE });
     }
     let find = |element, node| {
         position.get(&node).copied().ok_or(GmshMistake::NoSuchNode { element, node })
@@ -405,7 +417,7 @@ fn make_mesh(content: Content) -> std::result::Result<Mesh, GmshMistake> {
         let (Some(&first), Some(&second)) = (vertex_of.get(&a), vertex_of.get(&b)) else {
             return Err(GmshMistake::Mesh {
                 error: MeshError::NoSuchEdge { boundary: name.clone(), vertices: [a, b] },
-                advice: "",
+                note: TAGS,
             });
         };
         parts.entry(name.clone()).or_default().push([first, second]);
@@ -413,13 +425,9 @@ fn make_mesh(content: Content) -> std::result::Result<Mesh, GmshMistake> {
 
     let corners = triangles.iter().map(|t| t.nodes.map(|node| vertex_of[&node])).collect();
     Mesh::new(kept.iter().map(|node| node.place).collect(), corners, parts).map_err(|error| {
-        GmshMistake::Mesh {
-            advice: match error {
-                MeshError::Clockwise { .. } => "; or reverse the curve loop of the surface",
-                _ => "",
-            },
-            error: error.renumbered(|vertex| kept[vertex].tag, |t| triangles[t].tag),
-        }
+        let note = if matches!(error, MeshError::Clockwise { .. }) { CLOCKWISE } else { TAGS };
+        let error = error.renumbered(|vertex| kept[vertex].tag, |t| triangles[t].tag);
+        GmshMistake::Mesh { error, note }
     })
 }
 
@@ -631,7 +639,11 @@ impl<'b> Cursor<'b> {
 }
 
 fn shown(bytes: &[u8]) -> String {
-    quoted(&String::from_utf8_lossy(&bytes[..bytes.len().min(1000)]), '\'')
+    const MOST: usize = 40;
+    match bytes {
+        [] => "nothing".to_owned(),
+        _ => quoted(&String::from_utf8_lossy(&bytes[..bytes.len().min(MOST)]), '\''),
+    }
 }
 
 #[cfg(test)]

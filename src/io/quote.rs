@@ -1,4 +1,5 @@
-//! What a file says, as a message shows it: in quotes, control characters escaped, long texts cut.
+//! What a file says, as a message shows it: texts in quotes, control characters escaped, long texts cut; lists as people
+//! say them.
 
 /// More characters than this are cut.
 const MOST: usize = 60;
@@ -20,6 +21,15 @@ pub fn quoted(text: &str, mark: char) -> String {
     shown
 }
 
+/// `a, b or c`, where `last` is "or".
+pub fn listed(words: &[&str], last: &str) -> String {
+    match words {
+        [] => String::new(),
+        [word] => (*word).to_owned(),
+        [first @ .., word] => format!("{} {last} {word}", first.join(", ")),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -29,5 +39,12 @@ mod tests {
         assert_eq!(quoted("a 'b'\n\u{7}é", '"'), "\"a 'b'\\n\\u{7}é\"");
         assert_eq!(quoted(&"x".repeat(61), '\''), format!("'{}...'", "x".repeat(60)));
         assert_eq!(quoted(&"x".repeat(60), '\''), format!("'{}'", "x".repeat(60)));
+    }
+
+    #[test]
+    fn lists_end_with_a_word() {
+        assert_eq!(listed(&[], "or"), "");
+        assert_eq!(listed(&["a"], "or"), "a");
+        assert_eq!(listed(&["a", "b", "c"], "and"), "a, b and c");
     }
 }

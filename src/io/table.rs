@@ -12,7 +12,7 @@ use toml::de::{DeInteger, DeTable, DeValue};
 
 use super::case::{CaseError, CaseMistake};
 use super::expression::Expression;
-use super::quote::quoted;
+use super::quote::{listed, quoted};
 use crate::fem::{BoxedFunction, Function};
 
 /// A file and its text.
@@ -97,7 +97,7 @@ impl<'s> Table<'s> {
                 let mistake = CaseMistake::Unknown {
                     key: quoted(key.get_ref(), '\''),
                     place: self.name.clone(),
-                    known: known.join(", "),
+                    known: listed(known, "or"),
                 };
                 Err(self.source.wrong(Some(key.span().start), mistake))
             }
@@ -110,7 +110,7 @@ impl<'s> Table<'s> {
         let mut values = keys.iter().filter_map(|key| self.get(key));
         match (values.next(), values.next()) {
             (Some(value), None) => Ok(value),
-            _ => Err(self.combination(keys, &format!("exactly one of {}", keys.join(", ")))),
+            _ => Err(self.combination(keys, &format!("either {}", listed(keys, "or")))),
         }
     }
 
@@ -119,7 +119,7 @@ impl<'s> Table<'s> {
         let found: Vec<&str> = keys.iter().copied().filter(|k| self.get(k).is_some()).collect();
         self.wrong(CaseMistake::Combination {
             name: self.name.clone(),
-            found: if found.is_empty() { "none of them".to_owned() } else { found.join(" and ") },
+            found: if found.is_empty() { "none".to_owned() } else { listed(&found, "and") },
             expected: expected.to_owned(),
         })
     }
@@ -215,7 +215,8 @@ impl<'s> Value<'s> {
         let found = self.as_text().and_then(|text| words.iter().find(|word| word.0 == text));
         found.map(|word| word.1).ok_or_else(|| {
             let words: Vec<String> = words.iter().map(|word| quoted(word.0, '"')).collect();
-            self.wrong(&words.join(" or "))
+            let words: Vec<&str> = words.iter().map(String::as_str).collect();
+            self.wrong(&listed(&words, "or"))
         })
     }
 

@@ -1,0 +1,92 @@
+//! Reads files that the installed Gmsh has just written, in text and binary. A fresh Gmsh shows what the committed files in
+//! `tests/meshes` can't: that the format is still the one that is read here.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use signorini::fem::Mesh;
+use signorini::io::gmsh;
+
+const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+
+/// Runs `gmsh -2 -format msh41` with more arguments on a file of the project.
+fn mesh(geometry: &str, output: &str, more: &[&str]) -> PathBuf {
+    let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join("gmsh_live");
+    fs::create_dir_all(&directory).unwrap();
+    let file = directory.join(output);
+    let run = Command::new("gmsh")
+        .args(["-2", "-format", "msh41", "-o"])
+        .arg(&file)
+        .args(more)
+        .arg(Path::new(ROOT).join(geometry))
+        .output()
+        .unwrap_or_else(|e| panic!("gmsh can't be run ({e}): install it, in Debian as `gmsh`"));
+    assert!(run.status.success(), "gmsh failed:\n{}", String::from_utf8_lossy(&run.stderr));
+    file
+}
+
+fn read(file: &Path) -> Mesh {
+    gmsh::read(file).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn area(mesh: &Mesh) -> f64 {
+    (0..mesh.triangles().len()).map(|t| mesh.triangle(t).double_area() / 2.0).sum()
+}
+
+fn length(mesh: &Mesh, boundary: &str) -> f64 {
+    let edges = mesh.edges_of(boundary).unwrap();
+    edges.iter().map(|&edge| mesh.length_and_normal(edge).0).sum()
+}
+
+#[test]
+#[ignore = "needs gmsh: run by .ci/run"]
+fn fresh_text_and_binary_files_give_the_same_mesh() {
+    let text = read(&mesh("tests/meshes/square.geo", "text.msh", &[]));
+    for (output, more) in [
+        ("binary.msh", &["-bin"][..]),
+        ("all.msh", &["-save_all"]),
+        ("parametric.msh", &["-parametric", "-bin", "-save_all"]),
+    ] {
+        let other = read(&mesh("tests/meshes/square.geo", output, more));
+        assert_eq!(text.triangles().len(), other.triangles().len(), "{output}");
+        assert!((area(&text) - area(&other)).abs() < 1e-12, "{output}");
+        assert!(text.boundary_names().eq(other.boundary_names()), "{output}");
+        for name in text.boundary_names() {
+            assert!((length(&text, name) - length(&other, name)).abs() < 1e-12, "{output} {name}");
+        }
+    }
+}
+
+#[test]
+#[ignore = "needs gmsh: run by .ci/run"]
+fn a_fresh_disk_is_half_a_disk_that_touches_the_floor() {
+    let disk = read(&mesh("cases/disk.geo", "disk.msh", &[]));
+    assert!((area(&disk) - std::f64::consts::FRAC_PI_2).abs() < 0.01);
+    // The contact arc reaches to 30 degrees on both sides; the free arcs from there to 90.
+    assert!((length(&disk, "contact") - std::f64::consts::FRAC_PI_3).abs() < 1e-3);
+    assert!((length(&disk, "free") - 2.0 * std::f64::consts::FRAC_PI_3).abs() < 1e-2);
+    assert!((length(&disk, "top") - 2.0).abs() < 1e-12);
+    assert!(disk.vertices().contains(&[0.0, 0.0]));
+}
+
+#[test]
+#[ignore = "needs gmsh: run by .ci/run"]
+fn files_in_other_formats_and_orders_are_refused() {
+    for (output, more, expected) in [
+        (
+            "old.msh",
+            &["-format", "msh22"][..],
+            ":2: the version of the format is '2.2'; expected '4.1': export the mesh with gmsh -format msh41",
+        ),
+        (
+            "quadratic.msh",
+            &["-order", "2"],
+            "is a 3-node line (type 8); expected 2-node lines and 3-node triangles: export with element order 1",
+        ),
+    ] {
+        let error = gmsh::read(&mesh("tests/meshes/square.geo", output, more)).err();
+        let message = error.map_or("no error".to_owned(), |e| e.to_string());
+        assert!(message.ends_with(expected), "{message}");
+    }
+}
