@@ -838,3 +838,25 @@ fn text_meshes_that_are_cut() {
         .map(|(found, expected)| (found, expected.to_owned())),
     );
 }
+
+#[test]
+fn absurd_files() {
+    let directory = directory("absurd");
+    let message_of = |edit: [&str; 2]| {
+        fs::write(directory.join("bad.toml"), edited(CASE, edit)).unwrap();
+        message(&directory)
+    };
+    let mib = 1 << 20;
+    compare(
+        [
+            (message_of(["-4 + 10*x", &"(".repeat(mib)]), r#"bad.toml:9: [load] body[1] = "((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((...": column 201: found '(', expected at most 200 levels of nesting"#),
+            (message_of(["mu = 1.0", &format!("mu = {}", "[".repeat(mib))]), "bad.toml:6: invalid TOML at '[': cannot recurse further; max recursion depth met"),
+            (message_of(["mu = 1.0", &format!("mu{} = 1.0", ".a".repeat(mib))]), "bad.toml: invalid TOML: recursion limit"),
+            (message_of(["mu = 1.0", &format!("mu = \"{}\"", "1".repeat(mib))]), r#"bad.toml:6: [material] mu = "111111111111111111111111111111111111111111111111111111111111..."; expected a number"#),
+            (message_of(["mu = 1.0", &format!("{} = 1.0", "m".repeat(mib))]), "bad.toml:6: unknown key 'mmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmm...' in [material]; expected lambda, mu, young, poisson or plane"),
+            (message_of(["mu = 1.0", &format!("mu = 1{}.0", "0".repeat(mib))]), "bad.toml:6: [material] mu = 100000000000000000000000000000000000000000000000000000000000...; expected a finite number"),
+            (message_of(["[[0, 1], [0.5, 0.5]]", &format!("[{}]", "0,".repeat(mib))]), "bad.toml:23: [output] probes[0] = 0; expected a list of two: one for x, one for y"),
+        ]
+        .map(|(found, expected)| (found, expected.to_owned())),
+    );
+}

@@ -505,6 +505,6 @@ mod tests {
                 count += 1;
             }
         }
-        assert!(count >= 3);
+        assert!(count >= 4);
     }
 }

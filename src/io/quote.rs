@@ -6,7 +6,12 @@ const MOST: usize = 60;
 
 /// `text` between two `mark`s.
 pub fn quoted(text: &str, mark: char) -> String {
-    let mut shown = String::from(mark);
+    format!("{mark}{}{mark}", cut(text))
+}
+
+/// `text` without quotes.
+pub fn cut(text: &str) -> String {
+    let mut shown = String::new();
     for c in text.chars().take(MOST) {
         if c.is_control() {
             shown.extend(c.escape_debug());
@@ -17,7 +22,6 @@ pub fn quoted(text: &str, mark: char) -> String {
     if text.chars().nth(MOST).is_some() {
         shown.push_str("...");
     }
-    shown.push(mark);
     shown
 }
 

@@ -12,7 +12,7 @@ use toml::de::{DeInteger, DeTable, DeValue};
 
 use super::case::{CaseError, CaseMistake};
 use super::expression::Expression;
-use super::quote::{listed, quoted};
+use super::quote::{cut, listed, quoted};
 use crate::fem::{BoxedFunction, Function};
 
 /// A file and its text.
@@ -69,6 +69,7 @@ impl<'s> Table<'s> {
         })
     }
 
+    /// The value of `key`, which must be there.
     pub fn require(&self, key: &str, expected: &str) -> Result<Value<'s>, CaseError> {
         self.get(key).ok_or_else(|| {
             let name = format!("{}{key}", self.prefix);
@@ -76,7 +77,7 @@ impl<'s> Table<'s> {
         })
     }
 
-    /// The table `key` of the file under its header, empty if there is none.
+    /// The table `key` of the file under its header, if there is one.
     pub fn section(&self, key: &str) -> Result<Option<Table<'s>>, CaseError> {
         self.get(key).map(|value| value.section(format!("[{key}]"))).transpose()
     }
@@ -124,6 +125,7 @@ impl<'s> Table<'s> {
         })
     }
 
+    /// A mistake that concerns the table as a whole.
     pub fn wrong(&self, mistake: CaseMistake) -> CaseError {
         self.source.wrong(self.start, mistake)
     }
@@ -200,6 +202,7 @@ impl<'s> Value<'s> {
         if holds(number) { Ok(number) } else { Err(self.wrong(expected)) }
     }
 
+    /// An integer in a range.
     pub fn whole_number(&self, range: RangeInclusive<usize>) -> Result<usize, CaseError> {
         let number = match self.value {
             DeValue::Integer(n) => integer(n).and_then(|n| usize::try_from(n).ok()),
@@ -220,6 +223,7 @@ impl<'s> Value<'s> {
         })
     }
 
+    /// The items of a list.
     pub fn items(&self) -> Result<Vec<Value<'s>>, CaseError> {
         match self.value {
             DeValue::Array(items) => Ok(items.iter().enumerate().map(|i| self.item(i)).collect()),
@@ -238,13 +242,8 @@ impl<'s> Value<'s> {
 
     /// A list of two.
     pub fn pair(&self) -> Result<[Value<'s>; 2], CaseError> {
-        match self.value {
-            DeValue::Array(_) => self
-                .items()?
-                .try_into()
-                .map_err(|_| self.wrong("a list of two: one for x, one for y")),
-            _ => Err(self.wrong("a list of two: one for x, one for y")),
-        }
+        let pair = self.items().ok().and_then(|items| items.try_into().ok());
+        pair.ok_or_else(|| self.wrong("a list of two: one for x, one for y"))
     }
 
     /// An expression in x and y. One that is the same everywhere must be finite.
@@ -269,8 +268,8 @@ impl<'s> Value<'s> {
     pub fn wrong(&self, expected: &str) -> CaseError {
         let found = match self.value {
             DeValue::String(text) => quoted(text, '"'),
-            DeValue::Integer(n) => n.to_string(),
-            DeValue::Float(f) => f.to_string(),
+            DeValue::Integer(n) => cut(&n.to_string()),
+            DeValue::Float(f) => cut(f.as_str()),
             DeValue::Boolean(flag) => flag.to_string(),
             DeValue::Datetime(date) => date.to_string(),
             DeValue::Array(items) => format!("a list of {}", items.len()),
@@ -284,6 +283,7 @@ impl<'s> Value<'s> {
         self.mistake(CaseMistake::Value { name, found, expected })
     }
 
+    /// A mistake that concerns this value.
     pub fn mistake(&self, mistake: CaseMistake) -> CaseError {
         self.source.wrong(Some(self.start), mistake)
     }
