@@ -8,7 +8,7 @@
 //! high as a fixed part of the body.
 //!
 //! Two runs draw the same picture to the bit, and it stays under 2 MB: a body of more than [`MOST_TRIANGLES`] is drawn by
-//! small cells ([`cells`]), and lines leave out what nobody can see ([`path::thinned`]).
+//! small cells, and lines leave out what nobody can see.
 
 mod cells;
 mod numbers;
@@ -21,7 +21,7 @@ use svg::node::element::{
 use svg::{Document, Node};
 
 use super::data::{DataError, check_finite, check_length, check_points};
-use cells::Cells;
+use cells::{Cells, area};
 use numbers::{Round, short, ticks};
 use path::{Path, Point, between, direction, distance, loops, moved, places, thinned};
 
@@ -36,7 +36,7 @@ pub struct Scene<'a> {
     pub points: &'a [[f64; 2]],
     /// The displacement of each.
     pub displacement: &'a [[f64; 2]],
-    /// The triangles by their vertices.
+    /// The triangles by their vertices. A P2 triangle is drawn as four, cut at the midpoints of its edges.
     pub triangles: &'a [[usize; 3]],
     /// The von Mises stress in each.
     pub von_mises: &'a [f64],
@@ -66,10 +66,10 @@ pub struct ContactSample {
 pub const MOST_TRIANGLES: usize = 20_000;
 
 /// The side of such a cell.
-const CELL: f64 = 3.0;
+const CELL: f64 = 2.5;
 
 /// Up to here the mesh itself is worth seeing.
-const MOST_VISIBLE_TRIANGLES: usize = 5000;
+const MOST_VISIBLE_TRIANGLES: usize = 3000;
 
 /// Colours of the von Mises stress: more than the eye tells apart.
 const LEVELS: usize = 128;
@@ -171,12 +171,12 @@ fn bounds(points: impl IntoIterator<Item = Point>) -> [Point; 2] {
 struct Stretch(Option<Round>);
 
 impl Stretch {
-    /// True scale if the largest displacement is between 2% and 30% of the body: one sees it, and the body keeps its
+    /// True scale if the largest displacement is between 1% and 30% of the body: one sees it, and the body keeps its
     /// shape. True scale also if it is mere rounding. Otherwise the largest round factor that keeps it within 10%.
     fn of(scene: &Scene) -> Stretch {
         let largest = scene.displacement.iter().map(|&u| distance(u, [0.0; 2])).fold(0.0, f64::max);
         let part = largest / scene.size();
-        if (0.02..=0.3).contains(&part) || !(part > 1e-12 && part.is_finite()) {
+        if (0.01..=0.3).contains(&part) || !(part > 1e-12 && part.is_finite()) {
             Stretch(None)
         } else {
             Stretch(Some(Round::below(0.1 / part)))
@@ -214,19 +214,22 @@ impl ContactLine {
     fn all(scene: &Scene, factor: f64) -> Vec<ContactLine> {
         let (size, peak) = (scene.size(), scene.peak());
         let line = |samples: &Vec<ContactSample>| {
-            let base = |s: &ContactSample| moved(s.position, s.displacement, factor);
-            let height = |s: &ContactSample| {
-                if s.pressure > 0.0 { HIGHEST * size * (s.pressure / peak) } else { 0.0 }
+            let normals = smooth_normals(samples);
+            let base: Vec<Point> =
+                samples.iter().map(|s| moved(s.position, s.displacement, factor)).collect();
+            let height = |p: f64| if p > 0.0 { HIGHEST * size * (p / peak) } else { 0.0 };
+            let tip = |((s, &n), &base): ((&ContactSample, &Point), &Point)| {
+                moved(base, n, height(s.pressure))
             };
-            let wall = |s: &ContactSample| {
+            let wall = |(s, &n): (&ContactSample, &Point)| {
                 let gap = factor * s.gap;
-                (gap.abs() <= FURTHEST * size).then(|| moved(s.position, s.normal, gap))
+                (gap.abs() <= FURTHEST * size).then(|| moved(s.position, n, gap))
             };
             ContactLine {
-                base: samples.iter().map(base).collect(),
-                tip: samples.iter().map(|s| moved(base(s), s.normal, height(s))).collect(),
-                wall: samples.iter().map(wall).collect(),
+                tip: samples.iter().zip(&normals).zip(&base).map(tip).collect(),
+                wall: samples.iter().zip(&normals).map(wall).collect(),
                 pressure: samples.iter().map(|s| s.pressure).collect(),
+                base,
             }
         };
         scene.contact.iter().map(line).collect()
@@ -255,6 +258,21 @@ impl ContactLine {
         }
         ranges
     }
+}
+
+/// The normals, except that two samples at one place share the mean of theirs: the facets of a curved line would otherwise
+/// show as steps. A true corner (more than 45 degrees) stays one.
+fn smooth_normals(samples: &[ContactSample]) -> Vec<Point> {
+    let mut normals: Vec<Point> = samples.iter().map(|s| s.normal).collect();
+    for i in 1..samples.len() {
+        let ([a, b], [c, d]) = (normals[i - 1], normals[i]);
+        if samples[i - 1].position == samples[i].position && a * c + b * d > 0.7 {
+            let length = (a + c).hypot(b + d);
+            normals[i - 1] = [(a + c) / length, (b + d) / length];
+            normals[i] = normals[i - 1];
+        }
+    }
+    normals
 }
 
 /// From the plane to the page.
@@ -296,22 +314,47 @@ impl Frame {
     }
 }
 
-/// The range of the von Mises stress.
+/// The range of the von Mises stress, and where the colours end.
 struct Colours {
     min: f64,
+    top: f64,
     max: f64,
 }
 
+/// The part of the body's area that may lie above the colours: at a corner the stress is singular, and its value there
+/// tells of the mesh, not of the body.
+const ABOVE: f64 = 1.0 / 500.0;
+
 impl Colours {
-    /// A range that is mere rounding is none.
+    /// The colours end below the maximum where most of them would otherwise be spent on next to nothing. A range that is
+    /// mere rounding is none.
     fn of(scene: &Scene) -> Colours {
-        let values = || scene.von_mises.iter().copied();
-        let (min, max) = (values().fold(f64::INFINITY, f64::min), values().fold(0.0, f64::max));
-        if max - min > 1e-9 * max { Colours { min, max } } else { Colours { min: max, max } }
+        let mut parts: Vec<(f64, f64)> = scene
+            .triangles
+            .iter()
+            .zip(scene.von_mises)
+            .map(|(vertices, &value)| (value, area(&vertices.map(|v| scene.points[v])).abs()))
+            .collect();
+        parts.sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
+        let whole: f64 = parts.iter().map(|part| part.1).sum();
+        let mut above = 0.0;
+        let quantile = parts.iter().find(|part| {
+            above += part.1;
+            above > ABOVE * whole
+        });
+        let [min, quantile, max] =
+            [parts.last(), quantile, parts.first()].map(|part| part.map_or(0.0, |part| part.0));
+        if max - min <= 1e-9 * max {
+            Colours { min: max, top: max, max }
+        } else if quantile > min && max > 1.5 * quantile {
+            Colours { min, top: quantile, max }
+        } else {
+            Colours { min, top: max, max }
+        }
     }
 
     fn position(&self, value: f64) -> f64 {
-        if self.max > self.min { (value - self.min) / (self.max - self.min) } else { 0.5 }
+        if self.top > self.min { (value - self.min) / (self.top - self.min) } else { 0.5 }
     }
 
     fn level(&self, value: f64) -> usize {
@@ -382,8 +425,9 @@ fn definitions(scene: &Scene, deformed: &[Point]) -> Definitions {
 
 fn headline(scene: &Scene, room: f64) -> Group {
     let (title, subtitle) = (clean(scene.title), clean(scene.subtitle));
-    let fitting = |text: &str, size: f64| (size * room / width_of(text, size)).min(size).round();
-    let [large, small] = [fitting(&title, 24.0), fitting(&subtitle, 14.0)];
+    let fitting = |text: &str, size: f64| rounded((size * room / width_of(text, size)).min(size));
+    // Bold letters are wider.
+    let [large, small] = [fitting(&title, 24.0 / 0.8) * 0.8, fitting(&subtitle, 14.0)];
     Group::new()
         .add(text(title, [MARGIN, 44.0]).set("font-size", large).set("font-weight", "bold"))
         .add(text(subtitle, [MARGIN, 68.0]).set("font-size", small).set("fill", GREY))
@@ -522,8 +566,10 @@ fn arrow(from: Point, to: Point, arrows: &mut Path) {
 }
 
 fn colour_bar(colours: &Colours, frame: &Frame) -> Group {
-    let (left, top) = (MARGIN + frame.width + 20.0, HEADER + 30.0);
-    let height = frame.height - 40.0;
+    let capped = colours.top < colours.max;
+    let left = MARGIN + frame.width + 20.0;
+    let top = HEADER + if capped { 48.0 } else { 30.0 };
+    let height = HEADER + frame.height - 10.0 - top;
     let bar = Rectangle::new()
         .set("x", rounded(left))
         .set("y", rounded(top))
@@ -532,23 +578,30 @@ fn colour_bar(colours: &Colours, frame: &Frame) -> Group {
     let heading = text("von Mises stress", [left, HEADER + 12.0]);
     let label = |at: f64, content: String| text(content, [left + 28.0, at + 4.5]);
     let group = Group::new().add(heading);
-    if colours.max <= colours.min {
+    if colours.top <= colours.min {
         let fill = Colours::colour(colours.level(colours.max));
         return group.add(bar.set("fill", fill)).add(label(top + height / 2.0, short(colours.max)));
     }
     let at = |value: f64| top + height * (1.0 - colours.position(value));
     let mut marks = Path::default();
     let mut labels = Group::new();
-    for value in [colours.min, colours.max] {
+    for value in [colours.min, colours.top] {
         marks.line([[left + 18.0, at(value)], [left + 25.0, at(value)]]);
         labels = labels.add(label(at(value), short(value)).set("font-weight", "bold"));
     }
-    for (value, content) in ticks(colours.min, colours.max) {
+    for (value, content) in ticks(colours.min, colours.top) {
         let y = at(value);
         if (y - top).min(top + height - y) >= 16.0 {
             marks.line([[left + 18.0, y], [left + 23.0, y]]);
             labels = labels.add(label(y, content));
         }
+    }
+    if capped {
+        let mut peak = Path::default();
+        peak.polygon([[left, top + 0.5], [left + 9.0, top - 16.0], [left + 18.0, top + 0.5]]);
+        labels = labels
+            .add(shape(peak).set("fill", Colours::colour(LEVELS - 1)))
+            .add(label(top - 16.0, format!("max {}", short(colours.max))));
     }
     group.add(bar.set("fill", "url(#von-mises)")).add(stroke(marks, DARK, 1.0)).add(labels)
 }
@@ -605,5 +658,287 @@ impl Legend {
     fn words(&mut self, words: &str) {
         self.group.append(text(words, self.place));
         self.place[0] += width_of(words, 13.0) + 28.0;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fem::{Diagonal, Mesh, Rectangle};
+    use svg::node::element::tag::Type;
+    use svg::parser::Event;
+
+    /// A scene with the data that it borrows.
+    struct Sample {
+        title: String,
+        mesh: Mesh,
+        displacement: Vec<[f64; 2]>,
+        von_mises: Vec<f64>,
+        outline: Vec<[usize; 2]>,
+        contact: Vec<Vec<ContactSample>>,
+    }
+
+    impl Sample {
+        /// A block of n x n cells that comes down on the floor with its left part, and bends up on the right.
+        fn block(n: usize) -> Sample {
+            let rectangle =
+                Rectangle { width: 1.0, height: 1.0, nx: n, ny: n, diagonal: Diagonal::Right };
+            let mesh = rectangle.mesh().unwrap();
+            let lift = |x: f64| (x - 0.5).max(0.0).powi(2);
+            let displacement: Vec<[f64; 2]> = mesh
+                .vertices()
+                .iter()
+                .map(|&[x, y]| [0.05 * (1.0 - y), lift(x) * (1.0 - y)])
+                .collect();
+            let mut edges = mesh.edges_of("bottom").unwrap().to_vec();
+            edges.sort_by_key(|&edge| mesh.ends(edge)[0]);
+            let sample = |v: usize| ContactSample {
+                position: mesh.vertices()[v],
+                normal: [0.0, -1.0],
+                displacement: displacement[v],
+                gap: 0.0,
+                pressure: (0.5 - mesh.vertices()[v][0]).max(0.0),
+            };
+            Sample {
+                title: "Block".to_owned(),
+                von_mises: (0..mesh.triangles().len()).map(|t| 1.0 + (t % 7) as f64).collect(),
+                outline: mesh.outline().iter().map(|&edge| mesh.ends(edge)).collect(),
+                contact: vec![edges.iter().flat_map(|&e| mesh.ends(e)).map(sample).collect()],
+                displacement,
+                mesh,
+            }
+        }
+
+        fn scene(&self) -> Scene<'_> {
+            Scene {
+                title: &self.title,
+                subtitle: "gamma0 = 0.1, kappa = 0.4",
+                points: self.mesh.vertices(),
+                displacement: &self.displacement,
+                triangles: self.mesh.triangles(),
+                von_mises: &self.von_mises,
+                outline: &self.outline,
+                contact: &self.contact,
+            }
+        }
+
+        fn stretched(factor: f64) -> Sample {
+            let mut sample = Sample::block(4);
+            let scale = |u: &mut [f64; 2]| *u = u.map(|c| factor * c);
+            sample.displacement.iter_mut().for_each(scale);
+            sample.contact.iter_mut().flatten().for_each(|s| scale(&mut s.displacement));
+            sample
+        }
+    }
+
+    /// All words of the picture; every element that starts also ends, and no number is none.
+    fn words(svg: &str) -> Vec<String> {
+        let (mut open, mut words) = (Vec::new(), Vec::new());
+        for event in svg::read(svg).unwrap() {
+            match event {
+                Event::Tag(name, Type::Start, _) => open.push(name.to_owned()),
+                Event::Tag(name, Type::End, _) => assert_eq!(open.pop().as_deref(), Some(name)),
+                Event::Text(text) => words.push(text.trim().to_owned()),
+                Event::Error(error) => panic!("{error}"),
+                _ => {}
+            }
+        }
+        assert!(open.is_empty());
+        assert!(!svg.contains("NaN") && !svg.contains("inf"));
+        words.retain(|text| !text.is_empty());
+        words
+    }
+
+    fn draw(sample: &Sample) -> String {
+        picture(&sample.scene()).unwrap()
+    }
+
+    #[test]
+    fn the_picture_says_what_one_sees() {
+        let sample = Sample::block(4);
+        let words = words(&draw(&sample));
+        for expected in [
+            "Block",
+            "gamma0 = 0.1, kappa = 0.4",
+            "von Mises stress",
+            "1",
+            "7",
+            "peak 0.5",
+            "undeformed",
+            "rigid obstacle",
+            "contact pressure",
+            "deformation at true scale",
+        ] {
+            assert!(words.iter().any(|word| word == expected), "{expected}: {words:?}");
+        }
+    }
+
+    #[test]
+    fn a_block_of_two_triangles_is_drawn_where_it_should_be() {
+        let svg = draw(&Sample::block(1));
+        // The body is 1 x 1 and the pressure below it 0.15 high: of 492 units 427.83 are left for the body.
+        for d in [
+            "M539.22 549.83L539.22 122 111.39 122 111.39 549.83Z",
+            "M560.61 442.87L539.22 122 111.39 122 132.78 549.83Z",
+            "M132.78 549.83L560.61 442.87 539.22 122Z",
+            "M132.78 549.83L539.22 122 111.39 122Z",
+        ] {
+            assert!(svg.contains(&format!("<path d=\"{d}\"")), "{d}: {svg}");
+        }
+    }
+
+    #[test]
+    fn markup_in_a_title_is_text() {
+        let mut sample = Sample::block(1);
+        sample.title = "a < b & \"c\" > 'd'\u{1}\n</svg>".to_owned();
+        let svg = draw(&sample);
+        assert!(svg.contains("a &lt; b &amp; \"c\" &gt; 'd'  &lt;/svg&gt;"));
+        words(&svg);
+    }
+
+    #[test]
+    fn the_same_scene_gives_the_same_picture() {
+        assert_eq!(draw(&Sample::block(16)), draw(&Sample::block(16)));
+    }
+
+    #[test]
+    fn a_picture_stays_below_two_megabytes() {
+        for n in [100, 101, 256] {
+            let mut sample = Sample::block(n);
+            // Neighbours as different as can be: nothing to merge.
+            for (t, value) in sample.von_mises.iter_mut().enumerate() {
+                *value = (t.wrapping_mul(2_654_435_761) % 1000) as f64;
+            }
+            let svg = draw(&sample);
+            assert!(svg.len() < 2_000_000, "{n}: {}", svg.len());
+            words(&svg);
+            assert_eq!(svg.contains("clip-path"), n > 100);
+        }
+    }
+
+    #[test]
+    fn displacements_are_stretched_by_a_round_factor_when_they_are_too_small_or_too_large() {
+        // The largest displacement of the block is 0.255 of its size.
+        for (factor, expected) in [
+            (1.0, "deformation at true scale"),
+            (0.04, "deformation at true scale"),
+            (0.039, "deformation and gap × 10"),
+            (1e-4, "deformation and gap × 2000"),
+            (2.0, "deformation and gap × 0.1"),
+            (0.0, "deformation at true scale"),
+            (1e-13, "deformation at true scale"),
+        ] {
+            let sample = Sample::stretched(factor);
+            assert_eq!(Stretch::of(&sample.scene()).text(), expected, "{factor}");
+        }
+    }
+
+    #[test]
+    fn the_body_touches_the_obstacle_where_u_n_is_the_gap_at_any_stretch() {
+        let mut sample = Sample::block(4);
+        for s in sample.contact.iter_mut().flatten() {
+            (s.displacement, s.gap) = ([0.01, -0.03], 0.03);
+        }
+        for factor in [0.5, 1.0, 5.0] {
+            let line = &ContactLine::all(&sample.scene(), factor)[0];
+            for (base, wall) in line.base.iter().zip(&line.wall) {
+                assert_eq!(Some(base[1]), wall.map(|wall| wall[1]));
+            }
+        }
+    }
+
+    #[test]
+    fn an_obstacle_far_away_is_left_out() {
+        let mut sample = Sample::block(4);
+        sample.contact[0].iter_mut().for_each(|s| s.gap = 1.0);
+        assert!(!words(&draw(&sample)).contains(&"rigid obstacle".to_owned()));
+    }
+
+    #[test]
+    fn without_pressure_the_legend_says_so() {
+        let mut sample = Sample::block(4);
+        sample.contact[0].iter_mut().for_each(|s| s.pressure = 0.0);
+        let with_zero = words(&draw(&sample));
+        sample.contact.clear();
+        for words in [with_zero, words(&draw(&sample))] {
+            assert!(words.contains(&"no contact pressure".to_owned()));
+            assert!(!words.iter().any(|word| word.starts_with("peak")));
+        }
+    }
+
+    #[test]
+    fn a_constant_stress_has_one_colour_even_if_rounding_has_touched_it() {
+        for stress in [0.0, 3.0] {
+            let mut sample = Sample::block(4);
+            sample.von_mises.fill(stress);
+            sample.von_mises[5] += 1e-15 * stress;
+            let svg = draw(&sample);
+            assert_eq!(svg.matches(&viridis::colour(64.0 / 127.0)).count(), 3, "{svg}");
+            assert!(words(&svg).contains(&short(stress)));
+        }
+    }
+
+    #[test]
+    fn a_peak_of_stress_on_next_to_no_area_does_not_take_the_colours() {
+        let mut sample = Sample::block(32);
+        sample.von_mises[77] = 1000.0;
+        let colours = Colours::of(&sample.scene());
+        assert_eq!((colours.min, colours.top, colours.max), (1.0, 7.0, 1000.0));
+        assert!(words(&draw(&sample)).contains(&"max 1000".to_owned()));
+        // On a coarse mesh one triangle is not next to nothing.
+        let mut sample = Sample::block(4);
+        sample.von_mises[7] = 1000.0;
+        assert_eq!(Colours::of(&sample.scene()).top, 1000.0);
+    }
+
+    #[test]
+    fn facets_share_their_normal_and_corners_do_not() {
+        let sample = |position, normal| ContactSample {
+            position,
+            normal,
+            displacement: [0.0; 2],
+            gap: 0.0,
+            pressure: 0.0,
+        };
+        let line = [
+            sample([0.0, 0.0], [0.6, -0.8]),
+            sample([0.0, 0.0], [0.8, -0.6]),
+            sample([1.0, 0.0], [0.8, -0.6]),
+            sample([1.0, 0.0], [0.6, 0.8]),
+        ];
+        let [a, b, c, d] = smooth_normals(&line).try_into().unwrap();
+        assert_eq!(a, b);
+        assert!((a[0] + a[1]).abs() < 1e-15 && (a[0].hypot(a[1]) - 1.0).abs() < 1e-15);
+        assert_eq!([c, d], [[0.8, -0.6], [0.6, 0.8]]);
+    }
+
+    #[test]
+    fn data_that_do_not_fit_are_refused_by_name() {
+        let refused = |spoil: fn(&mut Sample)| {
+            let mut sample = Sample::block(1);
+            spoil(&mut sample);
+            picture(&sample.scene()).unwrap_err().to_string()
+        };
+        let not_finite = "is NaN or infinite; expected a finite number";
+        assert_eq!(
+            refused(|s| s.displacement.truncate(3)),
+            "displacement has 3 entries; expected 4"
+        );
+        assert_eq!(refused(|s| s.von_mises.push(1.0)), "von_mises has 3 entries; expected 2");
+        assert_eq!(
+            refused(|s| s.outline[0][1] = 9),
+            "outline names point 9; expected one of the 4 points"
+        );
+        assert_eq!(refused(|s| s.von_mises[1] = f64::NAN), format!("von_mises[1] {not_finite}"));
+        assert_eq!(
+            refused(|s| s.contact[0][1].pressure = f64::INFINITY),
+            format!("contact[1] {not_finite}")
+        );
+        let sample = Sample::block(1);
+        let nothing = Scene { triangles: &[], von_mises: &[], ..sample.scene() };
+        assert_eq!(
+            picture(&nothing).unwrap_err().to_string(),
+            "triangles has no entry; expected at least one"
+        );
     }
 }

@@ -128,7 +128,8 @@ impl Cells {
     }
 }
 
-fn area([a, b, c]: &[Point; 3]) -> f64 {
+/// Positive if the corners are in counter-clockwise order (with y upwards).
+pub fn area([a, b, c]: &[Point; 3]) -> f64 {
     ((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])) / 2.0
 }
 

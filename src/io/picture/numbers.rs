@@ -21,12 +21,14 @@ impl Round {
         Round { m, k: exponent.parse().unwrap_or(0) }
     }
 
-    /// The next larger one.
-    fn next(self) -> Round {
-        match self.m {
-            1 => Round { m: 2, ..self },
-            2 => Round { m: 5, ..self },
-            _ => Round { m: 1, k: self.k + 1 },
+    /// The smallest round number that is not below `x`, for finite `x > 0`.
+    pub fn above(x: f64) -> Round {
+        let below = Round::below(x);
+        match below {
+            round if round.times(1) == x => round,
+            Round { m: 1, k } => Round { m: 2, k },
+            Round { m: 2, k } => Round { m: 5, k },
+            Round { k, .. } => Round { m: 1, k: k + 1 },
         }
     }
 
@@ -50,7 +52,7 @@ impl Round {
 
 /// Round numbers in \[min, max\], evenly spaced, some three to six of them, with their text. For `min < max`.
 pub fn ticks(min: f64, max: f64) -> Vec<(f64, String)> {
-    let step = Round::below((max - min) / 5.0).next();
+    let step = Round::above((max - min) / 5.0);
     let unit = step.times(1);
     let (first, last) = ((min / unit).ceil(), (max / unit).floor());
     // Where the interval is narrow beside its distance from 0, doubles have no room for ticks.
@@ -103,6 +105,13 @@ mod tests {
     }
 
     #[test]
+    fn round_numbers_are_the_smallest_that_are_not_below() {
+        for (x, expected) in [(1.0, 1.0), (1.01, 2.0), (0.2, 0.2), (3e-7, 5e-7), (5.01, 10.0)] {
+            assert_eq!(Round::above(x).times(1), expected, "{x}");
+        }
+    }
+
+    #[test]
     fn ticks_are_round_and_inside() {
         let texts =
             |min, max| ticks(min, max).into_iter().map(|(_, text)| text).collect::<Vec<_>>();
@@ -119,7 +128,7 @@ mod tests {
             (0.0, "0"),
             (1.0, "1"),
             (-0.25, "-0.25"),
-            (3.14159, "3.14"),
+            (2.1449, "2.14"),
             (99.96, "100"),
             (1234.0, "1234"),
             (0.0012345, "0.00123"),

@@ -55,10 +55,14 @@ impl Path {
 pub fn thinned(points: &[Point]) -> Vec<Point> {
     let mut kept: Vec<Point> = Vec::new();
     for (i, &p) in points.iter().enumerate() {
-        let far = kept.last().is_none_or(|&last| distance(last, p) >= 0.5);
-        if far || i + 1 == points.len() {
-            kept.push(p);
+        let near = kept.last().is_some_and(|&last| distance(last, p) < 0.5);
+        if near && i + 1 < points.len() {
+            continue;
         }
+        if near && kept.len() > 1 {
+            kept.pop();
+        }
+        kept.push(p);
     }
     kept
 }
