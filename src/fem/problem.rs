@@ -12,8 +12,9 @@ pub trait Function: Send + Sync {
     /// The value at `x`; NaN or infinite where the function has none, which the assembly reports as an error.
     fn at(&self, x: [f64; 2]) -> f64;
 
-    /// The value, if it is the same everywhere: it spares the evaluations.
-    fn constant(&self) -> Option<f64> {
+    /// The degree in x and y, if the function is known to be a polynomial: it is then integrated exactly, with no more
+    /// points than that takes.
+    fn degree(&self) -> Option<u32> {
         None
     }
 }

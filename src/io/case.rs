@@ -432,12 +432,12 @@ mod tests {
         assert_eq!(case.problem.material, Material::young_poisson(2.5, 0.25, Plane::Strain));
         assert_eq!(case.problem.mesh.vertices()[5], [2.0, 1.0]);
         assert_eq!(case.problem.mesh.triangles()[0], [0, 1, 4], "the diagonal is right");
-        assert_eq!(case.problem.body_force.each_ref().map(|f| f.constant()), [Some(0.0); 2]);
+        assert_eq!(case.problem.body_force.each_ref().map(|f| f.degree()), [Some(0); 2]);
         assert_eq!(case.problem.conditions.len(), 1);
         let Some(Condition::Contact { gap }) = case.problem.conditions.get("bottom") else {
             panic!("no contact")
         };
-        assert_eq!(gap.constant(), Some(0.0));
+        assert_eq!((gap.degree(), gap.at([0.5, 0.5])), (Some(0), 0.0));
     }
 
     #[test]

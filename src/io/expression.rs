@@ -174,6 +174,16 @@ impl Expression {
     }
 }
 
+impl Expression {
+    /// The value, if the program is nothing but a number.
+    pub(super) fn constant(&self) -> Option<f64> {
+        match self.program.as_slice() {
+            [Step::Number(c)] => Some(*c),
+            _ => None,
+        }
+    }
+}
+
 impl Function for Expression {
     fn at(&self, x: [f64; 2]) -> f64 {
         const FEW: usize = 16;
@@ -184,10 +194,43 @@ impl Function for Expression {
         }
     }
 
-    fn constant(&self) -> Option<f64> {
-        match self.program.as_slice() {
-            [Step::Number(c)] => Some(*c),
-            _ => None,
+    fn degree(&self) -> Option<u32> {
+        let mut stack: Vec<Option<u32>> = Vec::with_capacity(self.depth);
+        for &step in &self.program {
+            let degree = match step {
+                Step::Number(_) => Some(0),
+                Step::X | Step::Y => Some(1),
+                Step::Unary(f) => f.degree(stack.pop()??),
+                Step::Binary(f) => {
+                    let b = stack.pop()??;
+                    f.degree(stack.pop()??, b)
+                }
+            };
+            stack.push(degree);
+        }
+        stack.pop()?
+    }
+}
+
+impl Unary {
+    /// The degree of the result for an operand of degree `a`.
+    fn degree(self, a: u32) -> Option<u32> {
+        match self {
+            Unary::Negate => Some(a),
+            Unary::WholePower(n) => a.checked_mul(u32::try_from(n).ok()?),
+            Unary::Sqrt | Unary::Sin | Unary::Cos | Unary::Exp | Unary::Abs => None,
+        }
+    }
+}
+
+impl Binary {
+    /// The degree of the result for operands of degrees `a` and `b`.
+    fn degree(self, a: u32, b: u32) -> Option<u32> {
+        match self {
+            Binary::Add | Binary::Subtract => Some(a.max(b)),
+            Binary::Multiply => a.checked_add(b),
+            Binary::Divide if b == 0 => Some(a),
+            Binary::Divide | Binary::Power | Binary::Min | Binary::Max => None,
         }
     }
 }
@@ -532,6 +575,25 @@ mod tests {
             ("0*y", None),
         ] {
             assert_eq!(parse(text).constant(), value, "{text}");
+        }
+    }
+
+    #[test]
+    fn polynomials_know_their_degree() {
+        for (text, degree) in [
+            ("7", Some(0)),
+            ("x/2 - 3", Some(1)),
+            ("-(x + y^2)*(x*y - 1)^3 + 5", Some(8)),
+            ("x^2*x^0", Some(2)),
+            ("x/y", None),
+            ("x^-1", None),
+            ("x^0.5", None),
+            ("sin(x)", None),
+            ("1 + abs(x)", None),
+            ("min(x, y)", None),
+            ("(((((x^16)^16)^16)^16)^16)^16*(((((x^16)^16)^16)^16)^16)^16^16", None),
+        ] {
+            assert_eq!(parse(text).degree(), degree, "{text}");
         }
     }
 
