@@ -7,7 +7,7 @@ mod common;
 use common::*;
 use signorini::fem::contact_line::EdgeRule;
 use signorini::fem::discretization::inner;
-use signorini::fem::matrix::{self, Numbering};
+use signorini::fem::matrix::{self, Neighbours, Numbering};
 use signorini::fem::quadrature::gauss;
 use signorini::fem::{Condition, Diagonal, Discretization, Problem, Rectangle};
 use signorini::kernel::edge_integral::ExactEdge;
@@ -71,7 +71,7 @@ where
     let nodes = d.space.nodes().len();
     let order: Vec<usize> = (0..nodes).collect();
     let numbering = Numbering::new(&order, &vec![[None; 2]; nodes]);
-    let neighbours = matrix::neighbours(nodes, d.space.elements());
+    let neighbours = Neighbours::new(nodes, d.space.elements());
     let a = matrix::assemble(d, &numbering, &neighbours);
     let x = numbering.gather(v);
     let mut product = vec![0.0; x.len()];

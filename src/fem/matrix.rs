@@ -36,6 +36,11 @@ impl Numbering {
         Numbering { of, count, place }
     }
 
+    /// The numbers of the free components of a node.
+    fn free(&self, node: usize) -> impl Iterator<Item = usize> {
+        self.of[node].into_iter().flatten()
+    }
+
     /// A vector over the free degrees of freedom, from a field.
     pub fn gather(&self, field: &[[f64; 2]]) -> Vec<f64> {
         let mut vector = vec![0.0; self.count];
@@ -72,26 +77,69 @@ pub struct LowerTriangle {
     pub values: Vec<f64>,
 }
 
-/// For each node, the nodes that share a triangle with it, itself included.
-pub fn neighbours<const N: usize>(nodes: usize, elements: &[[usize; N]]) -> Vec<Vec<usize>> {
-    let mut neighbours: Vec<Vec<usize>> = vec![Vec::with_capacity(2 * N); nodes];
-    for element in elements {
-        for &i in element {
-            for &j in element {
-                if !neighbours[i].contains(&j) {
-                    neighbours[i].push(j);
+/// The nodes around each node: those that share a triangle with it, itself included.
+#[derive(Clone, Debug)]
+pub struct Neighbours {
+    starts: Vec<usize>,
+    nodes: Vec<usize>,
+}
+
+impl Neighbours {
+    /// In a mesh with these nodes on its triangles.
+    pub fn new<const N: usize>(count: usize, elements: &[[usize; N]]) -> Self {
+        let (first, owners) = triangles_of_nodes(count, elements);
+        let mut starts = Vec::with_capacity(count + 1);
+        let mut nodes = Vec::with_capacity(elements.len() * N * N / 2);
+        let mut seen_by = vec![usize::MAX; count];
+        for node in 0..count {
+            starts.push(nodes.len());
+            for &t in &owners[first[node]..first[node + 1]] {
+                for &other in &elements[t] {
+                    if seen_by[other] != node {
+                        seen_by[other] = node;
+                        nodes.push(other);
+                    }
                 }
             }
         }
+        starts.push(nodes.len());
+        Neighbours { starts, nodes }
     }
-    neighbours
+
+    /// Around `node`.
+    pub fn of(&self, node: usize) -> &[usize] {
+        &self.nodes[self.starts[node]..self.starts[node + 1]]
+    }
 }
 
-/// The matrix of A over the free degrees of freedom in the order of `numbering`, given the [`neighbours`] of the nodes.
+/// The triangles of node i are `owners[first[i]..first[i + 1]]`.
+fn triangles_of_nodes<const N: usize>(
+    count: usize,
+    elements: &[[usize; N]],
+) -> (Vec<usize>, Vec<usize>) {
+    let mut first = vec![0; count + 1];
+    for &node in elements.as_flattened() {
+        first[node + 1] += 1;
+    }
+    for node in 0..count {
+        first[node + 1] += first[node];
+    }
+    let mut next = first.clone();
+    let mut owners = vec![0; elements.len() * N];
+    for (t, element) in elements.iter().enumerate() {
+        for &node in element {
+            owners[next[node]] = t;
+            next[node] += 1;
+        }
+    }
+    (first, owners)
+}
+
+/// The matrix of A over the free degrees of freedom in the order of `numbering`.
 pub fn assemble<E, const N: usize, const M: usize>(
     d: &Discretization<E, N, M>,
     numbering: &Numbering,
-    neighbours: &[Vec<usize>],
+    neighbours: &Neighbours,
 ) -> LowerTriangle
 where
     E: ExactEdge<f64, N, M>,
@@ -113,56 +161,70 @@ where
 /// Where the entries of the matrix stand.
 struct Pattern<'a> {
     numbering: &'a Numbering,
-    /// For each node, the nodes from its place on, in order, with the number of free components before each.
-    later: Vec<Vec<(usize, usize)>>,
+    /// For each node, the nodes from its place on, in order, are `later[first[node]..first[node + 1]]`.
+    first: Vec<usize>,
+    later: Vec<Later>,
     starts: Vec<usize>,
-    rows: Vec<usize>,
+}
+
+/// A node in the columns of another one.
+struct Later {
+    node: usize,
+    /// How many free components come before its own.
+    before: usize,
 }
 
 impl<'a> Pattern<'a> {
-    fn new(numbering: &'a Numbering, neighbours: &[Vec<usize>]) -> Self {
-        let free = |node: usize| numbering.of[node].iter().flatten();
-        let mut later = Vec::with_capacity(neighbours.len());
-        let mut columns = vec![(0, 0); numbering.count];
-        for (node, around) in neighbours.iter().enumerate() {
-            let mut around: Vec<usize> = around
-                .iter()
-                .copied()
-                .filter(|&other| numbering.place[other] >= numbering.place[node])
-                .collect();
-            around.sort_unstable_by_key(|&other| numbering.place[other]);
+    fn new(numbering: &'a Numbering, neighbours: &Neighbours) -> Self {
+        let count = numbering.of.len();
+        let mut first = Vec::with_capacity(count + 1);
+        let mut later: Vec<Later> = Vec::with_capacity(neighbours.nodes.len() / 2 + count);
+        let mut lengths = vec![0; numbering.count];
+        for node in 0..count {
+            let start = later.len();
+            first.push(start);
+            let place = numbering.place[node];
+            let around = neighbours.of(node).iter().copied();
+            let after = around.filter(|&other| numbering.place[other] >= place);
+            later.extend(after.map(|node| Later { node, before: 0 }));
+            later[start..].sort_unstable_by_key(|entry| numbering.place[entry.node]);
             let mut before = 0;
-            let list: Vec<(usize, usize)> = around
-                .into_iter()
-                .map(|other| {
-                    let entry = (other, before);
-                    before += free(other).count();
-                    entry
-                })
-                .collect();
-            for (k, &column) in free(node).enumerate() {
-                columns[column] = (node, before - k);
+            for entry in &mut later[start..] {
+                entry.before = before;
+                before += numbering.free(entry.node).count();
             }
-            later.push(list);
+            for (k, column) in numbering.free(node).enumerate() {
+                lengths[column] = before - k;
+            }
         }
+        first.push(later.len());
         let mut starts = Vec::with_capacity(numbering.count + 1);
-        let mut rows = Vec::new();
-        for (column, (node, length)) in columns.into_iter().enumerate() {
-            starts.push(rows.len());
-            let all = later[node].iter().flat_map(|&(other, _)| free(other).copied());
-            rows.extend(all.filter(|&row| row >= column));
-            debug_assert_eq!(rows.len() - starts[column], length);
+        let mut end = 0;
+        for length in lengths {
+            starts.push(end);
+            end += length;
         }
-        starts.push(rows.len());
-        Pattern { numbering, later, starts, rows }
+        starts.push(end);
+        Pattern { numbering, first, later, starts }
+    }
+
+    fn later(&self, node: usize) -> &[Later] {
+        &self.later[self.first[node]..self.first[node + 1]]
     }
 
     fn zero_matrix(&self) -> LowerTriangle {
-        LowerTriangle {
-            starts: self.starts.clone(),
-            rows: self.rows.clone(),
-            values: vec![0.0; self.rows.len()],
+        let entries = self.starts.last().copied().unwrap_or(0);
+        let mut rows = vec![0; entries];
+        for node in 0..self.numbering.of.len() {
+            for column in self.numbering.free(node) {
+                let all = self.later(node).iter().flat_map(|l| self.numbering.free(l.node));
+                let below = all.filter(|&row| row >= column);
+                for (slot, row) in rows[self.starts[column]..].iter_mut().zip(below) {
+                    *slot = row;
+                }
+            }
         }
+        LowerTriangle { starts: self.starts.clone(), rows, values: vec![0.0; entries] }
     }
 
     /// Adds the blocks of an element matrix.
@@ -174,27 +236,27 @@ impl<'a> Pattern<'a> {
     ) {
         let Numbering { of, place, .. } = self.numbering;
         for (j, &column_node) in nodes.iter().enumerate() {
+            let later = self.later(column_node);
             for (i, &row_node) in nodes.iter().enumerate() {
+                // A pair stands in the columns of the node that comes first.
                 if place[row_node] < place[column_node] {
                     continue;
                 }
-                let block = block(i, j);
-                let Some(&(_, before)) =
-                    self.later[column_node].iter().find(|(node, _)| *node == row_node)
-                else {
+                let Some(entry) = later.iter().find(|entry| entry.node == row_node) else {
                     continue;
                 };
+                let block = block(i, j);
                 for (d, column) in of[column_node].iter().enumerate() {
                     let Some(column) = *column else { continue };
                     // The second column of a node starts one row lower than its first.
                     let skipped = usize::from(d == 1 && of[column_node][0].is_some());
-                    let free_rows =
-                        of[row_node].iter().enumerate().filter(|(_, row)| row.is_some());
-                    for (k, (c, row)) in free_rows.enumerate() {
-                        if *row >= Some(column) {
-                            matrix.values[self.starts[column] + before + k - skipped] +=
-                                block[c][d];
+                    let mut at = self.starts[column] + entry.before;
+                    for (c, row) in of[row_node].iter().enumerate() {
+                        let Some(row) = *row else { continue };
+                        if row >= column {
+                            matrix.values[at - skipped] += block[c][d];
                         }
+                        at += 1;
                     }
                 }
             }

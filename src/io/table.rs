@@ -13,7 +13,7 @@ use toml::de::{DeInteger, DeTable, DeValue};
 use super::case::{CaseError, CaseMistake};
 use super::expression::Expression;
 use super::quote::{cut, listed, quoted};
-use crate::fem::{BoxedFunction, Function};
+use crate::fem::BoxedFunction;
 
 /// A file and its text.
 #[derive(Clone, Copy)]

@@ -15,7 +15,7 @@ use super::newton::{Edges, Reduced};
 use super::ordering::nested_dissection;
 use super::{NewtonReport, Settings, SolveError, Status};
 use crate::fem::discretization::{Discretization, Functional};
-use crate::fem::matrix::{self, LowerTriangle, Numbering};
+use crate::fem::matrix::{self, LowerTriangle, Neighbours, Numbering};
 use crate::kernel::edge_integral::ExactEdge;
 
 /// The solution of method (8) at the nodes, and how it was found.
@@ -110,7 +110,7 @@ impl System {
                 last[node] = true;
             }
         }
-        let neighbours = matrix::neighbours(nodes.len(), d.space.elements());
+        let neighbours = Neighbours::new(nodes.len(), d.space.elements());
         let order = nested_dissection(nodes, &neighbours, &last);
         let numbering = Numbering::new(&order, d.constraints.values());
         let in_layer = numbering.of.iter().zip(&last).filter(|(_, last)| **last);

@@ -4,13 +4,15 @@
 //! separate the two halves and are eliminated after both. With the contact layer (all nodes of triangles that own a
 //! contact edge) as the last separator of all, its Schur complement is the trailing block of the Cholesky factor.
 
+use crate::fem::matrix::Neighbours;
+
 /// Sets of at most this many nodes are not cut any further.
 const LEAF: usize = 8;
 
 /// The order of elimination of nodes at the given places with the given neighbours; those of `last` come last.
 pub fn nested_dissection(
     places: &[[f64; 2]],
-    neighbours: &[Vec<usize>],
+    neighbours: &Neighbours,
     last: &[bool],
 ) -> Vec<usize> {
     let mut order = Vec::with_capacity(places.len());
@@ -23,7 +25,7 @@ pub fn nested_dissection(
 
 struct Dissection<'a> {
     places: &'a [[f64; 2]],
-    neighbours: &'a [Vec<usize>],
+    neighbours: &'a Neighbours,
     /// Scratch: which nodes lie in the upper half of the set at hand.
     upper: Vec<bool>,
 }
@@ -41,7 +43,7 @@ impl Dissection<'_> {
             self.upper[node] = true;
         }
         let inside = partition(&mut set[..lower], |node| {
-            !self.neighbours[node].iter().any(|&other| self.upper[other])
+            !self.neighbours.of(node).iter().any(|&other| self.upper[other])
         });
         for &node in &set[lower..] {
             self.upper[node] = false;
