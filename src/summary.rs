@@ -3,8 +3,8 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use signorini::io::Case;
 use signorini::io::result::Seconds;
+use signorini::io::{Case, numbers};
 use signorini::solve::{
     ContactQuadrature, GammaReport, NewtonReport, Outline, Settings, Solution, Status,
 };
@@ -152,20 +152,7 @@ fn vector([x, y]: [f64; 2]) -> String {
 
 /// Four significant digits.
 fn short(x: f64) -> String {
-    let size = x.abs();
-    if size == 0.0 {
-        "0".to_owned()
-    } else if (1e-3..1e5).contains(&size) {
-        let digits = (3 - size.log10().floor() as i32).max(0) as usize;
-        let text = format!("{x:.digits$}");
-        if text.contains('.') {
-            text.trim_end_matches('0').trim_end_matches('.').to_owned()
-        } else {
-            text
-        }
-    } else {
-        format!("{x:.3e}")
-    }
+    numbers::short(x, 4)
 }
 
 fn time(seconds: f64) -> String {

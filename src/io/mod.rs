@@ -6,6 +6,7 @@ pub mod data;
 pub mod expression;
 pub mod files;
 pub mod gmsh;
+pub mod numbers;
 pub mod outputs;
 pub mod picture;
 mod quote;

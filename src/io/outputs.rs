@@ -10,6 +10,7 @@ use super::case::Case;
 use super::csv::{ContactRow, contact_csv};
 use super::data::DataError;
 use super::files::{Output, WriteError};
+use super::numbers::short;
 use super::picture::{ContactSample, Scene, picture};
 use super::result::{GammaChoice, MeshSizes, NewtonHistory, Results, Seconds, result_json};
 use super::vtu::{CellKind, Field, Grid, Values, vtu};
@@ -159,8 +160,48 @@ fn contact_rows(s: &Solution) -> Vec<ContactRow> {
 
 fn draw(case: &Case, s: &Solution) -> Result<String, DataError> {
     let mesh = &case.problem.mesh;
-    let outline: Vec<[usize; 2]> = mesh.outline().iter().map(|&edge| mesh.ends(edge)).collect();
-    let mut contact: Vec<Vec<ContactSample>> = Vec::new();
+    let ends = mesh.outline().iter().map(|&edge| (edge, mesh.ends(edge)));
+    let (triangles, von_mises, outline): (Vec<[usize; 3]>, Vec<f64>, Vec<[usize; 2]>) =
+        if s.degree == 1 {
+            let outline = ends.map(|(_, ends)| ends).collect();
+            (mesh.triangles().to_vec(), s.von_mises.clone(), outline)
+        } else {
+            // A quadratic triangle is drawn as four, its edges as two.
+            let (elements, _) = s.elements.as_chunks::<6>();
+            let quarters =
+                |&[a, b, c, d, e, f]: &[usize; 6]| [[a, f, e], [f, b, d], [e, d, c], [d, e, f]];
+            let halves = ends.flat_map(|(edge, [a, b])| {
+                let middle = elements[edge.triangle][3 + edge.local];
+                [[a, middle], [middle, b]]
+            });
+            (
+                elements.iter().flat_map(quarters).collect(),
+                s.von_mises.iter().flat_map(|&v| [v; 4]).collect(),
+                halves.collect(),
+            )
+        };
+    let gamma = &s.gamma;
+    picture(&Scene {
+        title: &case.title,
+        subtitle: &format!(
+            "P{}, {} unknowns, gamma0 = {}, kappa = {}",
+            s.degree,
+            2 * s.nodes.len(),
+            short(gamma.gamma0, 3),
+            short(gamma.kappa, 3)
+        ),
+        points: &s.nodes,
+        displacement: &s.displacement,
+        triangles: &triangles,
+        von_mises: &von_mises,
+        outline: &outline,
+        contact: &contact_parts(s),
+    })
+}
+
+/// The connected parts of the contact line.
+fn contact_parts(s: &Solution) -> Vec<Vec<ContactSample>> {
+    let mut parts: Vec<Vec<ContactSample>> = Vec::new();
     let mut end = None;
     for edge in &s.contact {
         let samples = edge.points.iter().map(|p| ContactSample {
@@ -170,27 +211,11 @@ fn draw(case: &Case, s: &Solution) -> Result<String, DataError> {
             gap: p.gap,
             pressure: -p.lambda,
         });
-        match contact.last_mut() {
+        match parts.last_mut() {
             Some(part) if end == edge.points.first().map(|p| p.node) => part.extend(samples),
-            _ => contact.push(samples.collect()),
+            _ => parts.push(samples.collect()),
         }
         end = edge.points.last().map(|p| p.node);
     }
-    let gamma = &s.gamma;
-    picture(&Scene {
-        title: &case.title,
-        subtitle: &format!(
-            "P{}, {} unknowns, gamma0 = {:.4}, kappa = {:.3}",
-            s.degree,
-            2 * s.nodes.len(),
-            gamma.gamma0,
-            gamma.kappa
-        ),
-        points: mesh.vertices(),
-        displacement: &s.displacement[..mesh.vertices().len()],
-        triangles: mesh.triangles(),
-        von_mises: &s.von_mises,
-        outline: &outline,
-        contact: &contact,
-    })
+    parts
 }

@@ -2,7 +2,7 @@
 //! contact pressure.
 //!
 //! Displacements are drawn at true scale where that can be seen, else stretched (or shrunk) by a round factor s that the
-//! legend states. The gap is stretched with them: the obstacle is drawn at x + s g n for each point x of the contact line,
+//! legend states, unless that would bend the obstacle. The gap is stretched with them: the obstacle is drawn at x + s g n for each point x of the contact line,
 //! so that the body touches it exactly where u_n = g, whatever s is. Where the obstacle is far from the body it is left
 //! out. The contact pressure -lambda^h stands on the deformed contact line, on the obstacle's side, its largest value as
 //! high as a fixed part of the body.
@@ -11,7 +11,6 @@
 //! small cells, and lines leave out what nobody can see.
 
 mod cells;
-mod numbers;
 mod path;
 mod viridis;
 
@@ -21,8 +20,8 @@ use svg::node::element::{
 use svg::{Document, Node};
 
 use super::data::{DataError, check_finite, check_length, check_points};
+use super::numbers::{self, Round, ticks};
 use cells::{Cells, area};
-use numbers::{Round, short, ticks};
 use path::{Path, Point, between, direction, distance, loops, moved, places, thinned};
 
 /// What is drawn.
@@ -70,6 +69,13 @@ const CELL: f64 = 2.5;
 
 /// Up to here the mesh itself is worth seeing.
 const MOST_VISIBLE_TRIANGLES: usize = 3000;
+
+/// The digits of labels.
+const DIGITS: usize = 3;
+
+fn short(x: f64) -> String {
+    numbers::short(x, DIGITS)
+}
 
 /// Colours of the von Mises stress: more than the eye tells apart.
 const LEVELS: usize = 128;
@@ -172,11 +178,14 @@ struct Stretch(Option<Round>);
 
 impl Stretch {
     /// True scale if the largest displacement is between 1% and 30% of the body: one sees it, and the body keeps its
-    /// shape. True scale also if it is mere rounding. Otherwise the largest round factor that keeps it within 10%.
+    /// shape. True scale also if it is mere rounding, or if a stretched gap would bend the obstacle: normals that turn
+    /// along the contact line would pull a flat floor out of shape. Otherwise the largest round factor that keeps the
+    /// displacement within 10%.
     fn of(scene: &Scene) -> Stretch {
         let largest = scene.displacement.iter().map(|&u| distance(u, [0.0; 2])).fold(0.0, f64::max);
         let part = largest / scene.size();
-        if (0.01..=0.3).contains(&part) || !(part > 1e-12 && part.is_finite()) {
+        let small = !(part > 0.3);
+        if (0.01..=0.3).contains(&part) || !(part > 1e-12) || (small && scene.contact_turns()) {
             Stretch(None)
         } else {
             Stretch(Some(Round::below(0.1 / part)))
@@ -192,6 +201,15 @@ impl Stretch {
             None => "deformation at true scale".to_owned(),
             Some(round) => format!("deformation and gap × {}", round.text(1)),
         }
+    }
+}
+
+impl Scene<'_> {
+    /// The contact line has more than one direction.
+    fn contact_turns(&self) -> bool {
+        self.contact
+            .iter()
+            .any(|part| part.windows(2).any(|pair| distance(pair[0].normal, pair[1].normal) > 1e-6))
     }
 }
 

@@ -1,4 +1,4 @@
-//! Numbers for people: round ones for scales and ticks, three digits for labels.
+//! Numbers for people: round ones for scales and ticks, a few digits for labels and summaries.
 
 /// m x 10^k with m = 1, 2 or 5.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,9 +62,10 @@ pub fn ticks(min: f64, max: f64) -> Vec<(f64, String)> {
     (first as i64..=last as i64).map(|i| (step.times(i), step.text(i))).collect()
 }
 
-/// Three digits.
-pub fn short(x: f64) -> String {
-    let text = format!("{x:.2e}");
+/// `x` with this many significant digits, without the zeros at their end; with an exponent where the size asks for it.
+pub fn short(x: f64, digits: usize) -> String {
+    let after_the_first = digits.saturating_sub(1);
+    let text = format!("{x:.after_the_first$e}");
     let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
     let trimmed = |text: &str| {
         if text.contains('.') {
@@ -75,7 +76,8 @@ pub fn short(x: f64) -> String {
     };
     match exponent.parse::<i32>() {
         Ok(exponent) if (-3..5).contains(&exponent) => {
-            let decimals = usize::try_from(2 - exponent).unwrap_or(0);
+            let exponent = i64::from(exponent);
+            let decimals = usize::try_from(after_the_first as i64 - exponent).unwrap_or(0);
             trimmed(&format!("{x:.decimals$}"))
         }
         _ => format!("{}e{exponent}", trimmed(mantissa)),
@@ -135,7 +137,7 @@ mod tests {
             (1.0e-7, "1e-7"),
             (2.346e12, "2.35e12"),
         ] {
-            assert_eq!(short(x), expected);
+            assert_eq!(short(x, 3), expected);
         }
     }
 }
