@@ -164,10 +164,11 @@ fn case(file: &Path, root: &Table) -> Result<Case, CaseError> {
     let boundaries = read_boundaries(root)?;
     let method = read_method(root.section("method")?)?;
     let settings = read_settings(root.section("solver")?)?;
-    let probes = read_probes(root.section("output")?)?;
-    // The mesh comes last: it is what takes time.
+    let output = root.section("output")?;
+    // The mesh, and what needs it, comes last: it is what takes time.
     let mesh = read_mesh(&mesh, file.parent().unwrap_or(Path::new("")))?;
     let conditions = on_the_mesh(&mesh, boundaries)?;
+    let probes = read_probes(output, &mesh)?;
     Ok(Case {
         title,
         problem: Problem { mesh, material, body_force, conditions },
@@ -395,13 +396,17 @@ fn read_settings(table: Option<Table>) -> Result<Settings, CaseError> {
     Ok(settings)
 }
 
-fn read_probes(table: Option<Table>) -> Result<Vec<[f64; 2]>, CaseError> {
+fn read_probes(table: Option<Table>, mesh: &Mesh) -> Result<Vec<[f64; 2]>, CaseError> {
     let Some(table) = table else { return Ok(Vec::new()) };
     table.only(&["probes"])?;
     let Some(probes) = table.get("probes") else { return Ok(Vec::new()) };
     let place = |probe: &Value| {
         let [x, y] = probe.pair()?;
-        Ok([x.number()?, y.number()?])
+        let place = [x.number()?, y.number()?];
+        match mesh.locate(place) {
+            Some(_) => Ok(place),
+            None => Err(probe.wrong_as(format!("{place:?}"), "a point of the body")),
+        }
     };
     probes.items()?.iter().map(place).collect()
 }

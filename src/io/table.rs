@@ -278,7 +278,8 @@ impl<'s> Value<'s> {
         self.wrong_as(found, expected)
     }
 
-    fn wrong_as(&self, found: String, expected: &str) -> CaseError {
+    /// The value is wrong; messages show it as `found`.
+    pub fn wrong_as(&self, found: String, expected: &str) -> CaseError {
         let (name, expected) = (self.name.clone(), expected.to_owned());
         self.mistake(CaseMistake::Value { name, found, expected })
     }

@@ -1,0 +1,275 @@
+//! What the command promises: exit codes, messages that say what is wrong and where, files whole or not at all.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+const CASE: &str = r#"title = "Block"
+[mesh]
+rectangle = { width = 1.0, height = 1.0, nx = 4, ny = 4 }
+[material]
+lambda = 1.0
+mu = 1.0
+[load]
+body = ["0", "-4 + 10*x"]
+[boundary.top]
+displacement = ["0", "0"]
+[boundary.bottom]
+contact = { gap = "0" }
+[output]
+probes = [[0.0, 0.0], [0.3, 0.1]]
+"#;
+
+/// A fresh folder with `case.toml` in it, the first text of each edit replaced by the second.
+fn folder(test: &str, edits: &[[&str; 2]]) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("command").join(test);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    let mut text = CASE.to_owned();
+    for [old, new] in edits {
+        assert!(text.contains(old), "{old}");
+        text = text.replacen(old, new, 1);
+    }
+    fs::write(folder.join("case.toml"), text).unwrap();
+    folder
+}
+
+fn signorini(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_signorini"))
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .unwrap()
+}
+
+fn text(bytes: &[u8]) -> &str {
+    std::str::from_utf8(bytes).unwrap()
+}
+
+/// The names in a folder, sorted.
+fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+const FILES: [&str; 5] =
+    ["contact.csv", "contact.vtu", "picture.svg", "result.json", "solution.vtu"];
+
+#[test]
+fn a_solved_case_writes_its_files_and_says_so_with_exit_code_0() {
+    let folder = folder("solved", &[]);
+    let output = signorini(&folder, &["solve", "case.toml"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert_eq!(names(&folder.join("out/case")), FILES);
+    let said = text(&output.stdout);
+    for line in [
+        "Block\n",
+        "  mesh        32 P1 triangles, 50 unknowns, 4 contact edges",
+        "kappa = 0.5 < 1",
+    ] {
+        assert!(said.contains(line), "{said}");
+    }
+    assert_eq!(text(&output.stderr), "");
+    let rows = fs::read_to_string(folder.join("out/case/contact.csv")).unwrap();
+    assert_eq!(rows.lines().count(), 1 + 2 * 4);
+    assert!(rows.starts_with("arc,x,y,u_n,gap,sigma_n,lambda\n0.0,0.0,0.0,"), "{rows}");
+}
+
+#[test]
+fn quiet_prints_nothing_and_out_names_the_folder() {
+    let folder = folder("quiet", &[]);
+    let output = signorini(&folder, &["solve", "case.toml", "--quiet", "--out", "here/there"]);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(output.stdout.is_empty() && output.stderr.is_empty());
+    assert_eq!(names(&folder.join("here/there")), FILES);
+}
+
+#[test]
+fn everything_but_the_seconds_is_the_same_to_the_bit_in_a_second_run() {
+    let folder = folder("twice", &[["[load]", "[method]\ndegree = 2\n[load]"]]);
+    for out in ["a", "b"] {
+        assert!(signorini(&folder, &["solve", "case.toml", "--out", out]).status.success());
+    }
+    let read = |out: &str, name: &str| fs::read_to_string(folder.join(out).join(name)).unwrap();
+    for name in FILES.into_iter().filter(|name| *name != "result.json") {
+        assert!(read("a", name) == read("b", name), "{name}");
+    }
+    let results = ["a", "b"].map(|out| {
+        let text = read(out, "result.json");
+        text[..text.find("\"seconds\"").unwrap()].to_owned()
+    });
+    assert_eq!(results[0], results[1]);
+}
+
+#[test]
+fn check_reports_and_writes_nothing() {
+    let folder = folder("check", &[]);
+    let output = signorini(&folder, &["check", "case.toml"]);
+    assert_eq!(output.status.code(), Some(0));
+    assert_eq!(
+        text(&output.stdout),
+        "Block
+  mesh        32 P1 triangles, 50 unknowns, 4 contact edges, h = 0.3536
+  prescribed  10 of the unknowns
+  coercivity  gamma0 = 0.05893 (limit 0.1179 at the edge (0, 0)-(0.25, 0)), kappa = 0.5 < 1: coercive
+  quadrature  exact: contact edges are cut at the roots of P
+"
+    );
+    assert_eq!(names(&folder), ["case.toml"]);
+}
+
+/// Cases that are wrong in a way that shows only on the mesh: exit code 2, the message, and nothing written.
+#[test]
+fn wrong_cases_end_with_exit_code_2_and_write_nothing() {
+    let left = "[boundary.left]\ndisplacement";
+    let rows: [(&str, &[[&str; 2]], &str); 14] = [
+        (
+            "missing",
+            &[["mu = 1.0", ""]],
+            "case.toml:4: [material]: found lambda; expected lambda and mu, or young and poisson",
+        ),
+        (
+            "limit",
+            &[["[load]", "[method]\ngamma0 = 0.2\n[load]"]],
+            "case.toml: gamma0 = 0.2 gives kappa = 1.6971, and coercivity needs kappa < 1: expected gamma0 below 0.1178511301977579, the limit set by the contact edge from (0, 0) to (0.25, 0); lower gamma0, say \"auto\", or set allow_noncoercive = true to go on without any promise",
+        ),
+        (
+            "limit-p2",
+            &[["[load]", "[method]\ngamma0 = 0.1\ndegree = 2\n[load]"]],
+            "case.toml: gamma0 = 0.1 gives kappa = 2.5456, and coercivity needs kappa < 1: expected gamma0 below 0.039283710065919304, the limit set by the contact edge from (0, 0) to (0.25, 0); lower gamma0, say \"auto\", or set allow_noncoercive = true to go on without any promise",
+        ),
+        (
+            "free",
+            &[["[boundary.top]\ndisplacement = [\"0\", \"0\"]\n", ""]],
+            "case.toml: no displacement is prescribed that stops the translation along (1, 0); expected displacement boundaries that leave no rigid body motion free (contact pushes, it doesn't hold)",
+        ),
+        (
+            "sliding",
+            &[["displacement = [\"0\", \"0\"]", "displacement = [\"free\", \"0\"]"]],
+            "case.toml: no displacement is prescribed that stops the translation along (1, 0); expected displacement boundaries that leave no rigid body motion free (contact pushes, it doesn't hold)",
+        ),
+        (
+            "sliding-up",
+            &[["displacement = [\"0\", \"0\"]", "displacement = [\"0\", \"free\"]"]],
+            "case.toml: no displacement is prescribed that stops the translation along (0, 1); expected displacement boundaries that leave no rigid body motion free (contact pushes, it doesn't hold)",
+        ),
+        (
+            "disagree",
+            &[["[output]", &format!("{left} = [\"0.1\", \"0\"]\n[output]")]],
+            "case.toml: the displacement boundaries 'left' and 'top' meet at (0, 1) and disagree there: u_x = 0.1 and 0; expected one value",
+        ),
+        (
+            "infinite-load",
+            &[["-4 + 10*x", "1/(x - x)"]],
+            "case.toml: [load] body[1] is inf at (0.011727519257667005, 0.0005501388317558017); expected a finite number at every point of the mesh",
+        ),
+        (
+            "nan-load",
+            &[["-4 + 10*x", "sqrt(-x)"]],
+            "case.toml: [load] body[1] is NaN at (0.011727519257667005, 0.0005501388317558017); expected a finite number at every point of the mesh",
+        ),
+        (
+            "infinite-gap",
+            &[["gap = \"0\"", "gap = \"1/x\""]],
+            "case.toml: [boundary.bottom] contact.gap is inf at (0, 0); expected a finite number at every point of the mesh",
+        ),
+        (
+            "infinite-displacement",
+            &[["displacement = [\"0\", \"0\"]", "displacement = [\"0\", \"1/(x - 0.5)\"]"]],
+            "case.toml: [boundary.top] displacement[1] is inf at (0.5, 1); expected a finite number at every point of the mesh",
+        ),
+        (
+            "infinite-traction",
+            &[["[output]", "[boundary.left]\ntraction = [\"0\", \"exp(1000*(1 + y))\"]\n[output]"]],
+            "case.toml: [boundary.left] traction[1] is inf at (0, 0.23827248074233298); expected a finite number at every point of the mesh",
+        ),
+        (
+            "probe",
+            &[["[0.3, 0.1]", "[0.3, -0.1]"]],
+            "case.toml:14: [output] probes[1] = [0.3, -0.1]; expected a point of the body",
+        ),
+        (
+            "no-contact",
+            &[["contact = { gap = \"0\" }", "traction = [\"0\", \"0\"]"]],
+            "case.toml:9: [boundary]: found no contact; expected one boundary with contact, such as [boundary.bottom] contact = { gap = \"0\" }",
+        ),
+    ];
+    let mut wrong = Vec::new();
+    for (test, edits, expected) in rows {
+        let folder = folder(test, edits);
+        let output = signorini(&folder, &["solve", "case.toml"]);
+        let said = text(&output.stderr);
+        let expected = format!("error: {expected}\n");
+        if (output.status.code(), said) != (Some(2), expected.as_str()) {
+            wrong.push(format!("{test}: {:?}\n{said}{expected}", output.status.code()));
+        }
+        assert_eq!(names(&folder), ["case.toml"], "{test}");
+        assert!(output.stdout.is_empty());
+        let check = signorini(&folder, &["check", "case.toml"]);
+        assert_eq!((check.status.code(), text(&check.stderr)), (Some(2), said), "{test}");
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn no_convergence_ends_with_exit_code_1_the_history_and_no_files() {
+    let folder = folder("history", &[["[load]", "[solver]\nmax_iterations = 1\n[load]"]]);
+    let output = signorini(&folder, &["solve", "case.toml"]);
+    assert_eq!(output.status.code(), Some(1));
+    let said = text(&output.stderr);
+    assert!(
+        said.starts_with("error: case.toml: no convergence: the relative residual is "),
+        "{said}"
+    );
+    assert!(
+        said.contains(
+            " after 1 Newton step; expected at most 1e-10. Nothing is written.\nresiduals: "
+        ),
+        "{said}"
+    );
+    assert_eq!(names(&folder), ["case.toml"]);
+}
+
+#[test]
+fn a_tangent_that_is_not_positive_definite_ends_with_exit_code_1() {
+    let folder = folder(
+        "indefinite",
+        &[["[load]", "[method]\ngamma0 = 2\nallow_noncoercive = true\n[load]"]],
+    );
+    let output = signorini(&folder, &["solve", "case.toml"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(
+        text(&output.stderr),
+        "error: case.toml: the tangent is not positive definite: gamma0 is beyond the true limit of coercivity, J_h is not convex and a solution need not exist; lower gamma0\n"
+    );
+    assert_eq!(names(&folder), ["case.toml"]);
+}
+
+#[test]
+fn an_output_folder_that_cannot_be_made_ends_with_exit_code_1() {
+    let folder = folder("unwritable", &[]);
+    let output = signorini(&folder, &["solve", "case.toml", "--out", "case.toml/out"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(
+        text(&output.stderr),
+        "error: cannot make the folder case.toml/out: Not a directory\n"
+    );
+    assert_eq!(names(&folder), ["case.toml"]);
+}
+
+#[test]
+fn wrong_arguments_end_with_exit_code_2() {
+    let folder = folder("arguments", &[]);
+    for arguments in [&["solve"][..], &["slove", "case.toml"], &["solve", "case.toml", "--fast"]] {
+        let output = signorini(&folder, arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(text(&output.stderr).starts_with("error: "), "{arguments:?}");
+    }
+    let output = signorini(&folder, &["solve", "nowhere.toml"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(text(&output.stderr), "error: nowhere.toml: there is no such file\n");
+}
