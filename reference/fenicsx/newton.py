@@ -14,6 +14,7 @@ from petsc4py import PETSc
 
 ARMIJO = 1e-4  # required decrease, as a share of the linear model's
 NEGLIGIBLE = 1e-10  # a step of this size relative to u is at the rounding level: no line search, and if it gains nothing, the end
+INDEFINITE = (PETSc.KSP.ConvergedReason.DIVERGED_INDEFINITE_MAT, PETSc.KSP.ConvergedReason.DIVERGED_INDEFINITE_PC)  # as CG finds it
 
 
 class NotSolved(Exception):
@@ -122,7 +123,7 @@ class Solver:
         self._configure_cg(ksp, matrix) if self.iterative else self._configure_cholesky(ksp, matrix)
         ksp.solve(b, x)
         reason = ksp.getConvergedReason()
-        if reason == PETSc.KSP.ConvergedReason.DIVERGED_INDEFINITE_MAT or (not self.iterative and self._negative_pivots(ksp)):
+        if reason in INDEFINITE or (not self.iterative and self._negative_pivots(ksp)):
             raise NotSolved("the tangent is not positive definite")
         if reason <= 0:
             raise NotSolved(f"the linear solver failed (PETSc's reason {reason})")
