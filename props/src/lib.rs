@@ -1,1 +1,26 @@
-//! The claims of the paper.
+//! The claims of the paper as executable statements about `signorini`.
+//!
+//! A statement is written once, generic over the number type ([`Ordered`]), calls the kernel's own functions, and answers
+//! a [`Verdict`]. Engines run it: `proof` over symbols, `draws` over rationals and doubles, and the `harness`es of the
+//! model checker. [`claims`] are the rows of the ledger `VERIFY.md`.
+
+#[cfg(not(kani))]
+pub mod audit;
+#[cfg(not(kani))]
+pub mod claim;
+pub mod claims;
+#[cfg(not(kani))]
+pub mod draws;
+#[cfg(not(kani))]
+pub mod export;
+pub mod harness;
+#[cfg(not(kani))]
+pub mod ledger;
+pub mod numbers;
+#[cfg(not(kani))]
+pub mod proof;
+#[cfg(not(kani))]
+pub mod statement;
+pub mod verdict;
+
+pub use verdict::{Ordered, Verdict};

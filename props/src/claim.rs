@@ -1,0 +1,162 @@
+//! A claim: an item of the paper, what is said about it here, and the checks that say so. Tests, ledger and audit walk
+//! over the same claims, so no name in `VERIFY.md` can go stale.
+
+use crate::draws;
+use crate::harness::Harness;
+use crate::proof;
+use crate::statement::Statement;
+
+/// What a check answers: a line of evidence, or what went wrong.
+pub type Outcome = Result<String, String>;
+
+/// By which means a check looks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Engine {
+    /// All paths over symbols; failing ones refuted by checked certificates.
+    Proof,
+    /// Random data, exact rationals, no tolerance.
+    Exact,
+    /// Random data over all finite doubles, or doubles against exact rationals with a stated bound.
+    Doubles,
+    /// A harness for the model checker, run here on random draws.
+    Kani,
+}
+
+impl Engine {
+    /// Its name in the ledger.
+    pub fn name(self) -> &'static str {
+        match self {
+            Engine::Proof => "proof",
+            Engine::Exact => "exact",
+            Engine::Doubles => "doubles",
+            Engine::Kani => "Kani",
+        }
+    }
+}
+
+/// What a check runs.
+#[derive(Clone, Copy)]
+pub enum Subject {
+    /// A statement, by the check's engine.
+    Statement(Statement),
+    /// A function of its own.
+    Function(fn() -> Outcome),
+    /// A harness.
+    Harness(Harness),
+}
+
+/// One piece of evidence.
+#[derive(Clone, Copy)]
+pub struct Check {
+    /// A sentence that is true when the check passes (underscores for blanks).
+    pub name: &'static str,
+    /// By which means.
+    pub engine: Engine,
+    /// A negative control: a planted mistake that must be rejected.
+    pub control: bool,
+    /// What is run.
+    pub subject: Subject,
+}
+
+impl Check {
+    /// Runs it.
+    ///
+    /// # Errors
+    /// What was found instead.
+    pub fn run(&self) -> Outcome {
+        match (self.subject, self.engine, self.control) {
+            (Subject::Function(run), _, _) => run(),
+            (Subject::Harness(harness), _, _) => harness.run(),
+            (Subject::Statement(s), Engine::Proof, false) => proof::prove(&s),
+            (Subject::Statement(s), Engine::Proof, true) => proof::refute(&s),
+            (Subject::Statement(s), Engine::Exact, false) => draws::hold_exactly(&s),
+            (Subject::Statement(s), Engine::Doubles, false) => draws::hold_in_doubles(&s),
+            (Subject::Statement(s), Engine::Doubles, true) => draws::reject_in_doubles(&s),
+            (Subject::Statement(_), _, _) => Err("this engine has no such check".to_owned()),
+        }
+    }
+}
+
+/// Proved over every ordered field.
+pub fn proved(statement: Statement) -> Check {
+    of_statement(statement, Engine::Proof, false)
+}
+
+/// Tested over exact rationals.
+pub fn tested(statement: Statement) -> Check {
+    of_statement(statement, Engine::Exact, false)
+}
+
+/// Tested over all finite doubles.
+pub fn in_doubles(statement: Statement) -> Check {
+    of_statement(statement, Engine::Doubles, false)
+}
+
+/// A planted mistake, refuted by an exact counterexample.
+pub fn refuted(statement: Statement) -> Check {
+    of_statement(statement, Engine::Proof, true)
+}
+
+/// A statement that is false in doubles, refuted by a draw.
+pub fn refuted_in_doubles(statement: Statement) -> Check {
+    of_statement(statement, Engine::Doubles, true)
+}
+
+fn of_statement(statement: Statement, engine: Engine, control: bool) -> Check {
+    Check { name: statement.name, engine, control, subject: Subject::Statement(statement) }
+}
+
+/// A check by a function of its own.
+pub fn by(engine: Engine, name: &'static str, run: fn() -> Outcome) -> Check {
+    Check { name, engine, control: false, subject: Subject::Function(run) }
+}
+
+/// A negative control by a function of its own.
+pub fn control(engine: Engine, name: &'static str, run: fn() -> Outcome) -> Check {
+    Check { name, engine, control: true, subject: Subject::Function(run) }
+}
+
+/// A harness, as evidence or, if it is the false twin of one, as a control.
+pub fn model_checked(harness: Harness) -> Check {
+    Check {
+        name: harness.name,
+        engine: Engine::Kani,
+        control: harness.control,
+        subject: Subject::Harness(harness),
+    }
+}
+
+/// Runs a check whose subject panics when something is wrong.
+pub fn caught(run: impl FnOnce() -> String + std::panic::UnwindSafe) -> Outcome {
+    std::panic::catch_unwind(run).map_err(|panic| {
+        let text = panic.downcast_ref::<String>().cloned();
+        text.or_else(|| panic.downcast_ref::<&str>().map(|s| (*s).to_owned()))
+            .unwrap_or_else(|| "a panic without a message".to_owned())
+    })
+}
+
+/// One row of the ledger.
+pub struct Claim {
+    /// Its number in the ledger.
+    pub id: &'static str,
+    /// The numbered items of the paper that it is about.
+    pub items: &'static [&'static str],
+    /// A title.
+    pub title: &'static str,
+    /// The paper's words.
+    pub paper: &'static str,
+    /// The statement as it is checked.
+    pub statement: &'static str,
+    /// Over which numbers.
+    pub numbers: &'static str,
+    /// The items of the kernel that it is about.
+    pub kernel: &'static [&'static str],
+    /// What is assumed, and by whom.
+    pub preconditions: &'static str,
+    /// What this does not establish.
+    pub limits: &'static str,
+    /// Why evidence of fewer than two engines is all there is, where that is so.
+    pub single: Option<&'static str>,
+    /// The evidence.
+    pub checks: Vec<Check>,
+}

@@ -1,0 +1,331 @@
+//! Lemma 3.2 and (11) with the explicit constant kappa = gamma0 h_T c_p (lambda + 2 mu) |E| / |T|: at a point, on an edge.
+//!
+//! At a point sigma_n^2 <= (lambda + 2 mu) sigma:eps, because the difference is a sum of squares: with t the normal turned
+//! by a right angle, and for a normal of any length,
+//!
+//! ```text
+//! (lambda + 2 mu) |n|^4 sigma:eps - (n.sigma n)^2 = 4 mu (lambda + mu) eps_tt^2 + 4 mu (lambda + 2 mu) eps_nt^2
+//! ```
+//!
+//! On an edge the trace inequality |w|_E^2 <= c_p (|E|/|T|) |w|_T^2 for polynomials w of degree p - 1: c_1 = 1, c_2 = 3.
+
+use signorini::kernel::{Element, Material, P1, P2, Plane, Stress};
+
+use crate::verdict::{Ordered, Verdict};
+use crate::{ensure, given};
+
+/// sigma:eps for the stress that belongs to a displacement gradient.
+fn energy_density<S: Ordered>(stress: Stress<S>, g: [[S; 2]; 2]) -> S {
+    stress.xx * g[0][0] + stress.yy * g[1][1] + stress.xy * (g[0][1] + g[1][0])
+}
+
+fn gradient<S>([xx, xy, yx, yy]: [S; 4]) -> [[S; 2]; 2] {
+    [[xx, xy], [yx, yy]]
+}
+
+/// (1): sigma = lambda tr(eps) I + 2 mu eps with eps = (grad u + grad u^T)/2; sigma_n = n.sigma n; traction sigma n;
+/// the normal stress of a shape function, for a unit normal.
+pub fn stress_is_hookes_law<S: Ordered>([xx, xy, yx, yy, nx, ny, lambda, mu]: [S; 8]) -> Verdict {
+    let two = S::from(2);
+    let material = Material::lame(lambda, mu, Plane::Strain);
+    ensure!(material.lambda() == lambda && material.mu() == mu);
+    let stress = material.stress(gradient([xx, xy, yx, yy]));
+    let (exx, eyy, exy) = (xx, yy, (xy + yx) / two);
+    ensure!(stress.xx == lambda * (exx + eyy) + two * mu * exx);
+    ensure!(stress.yy == lambda * (exx + eyy) + two * mu * eyy);
+    ensure!(stress.xy == two * mu * exy);
+    let traction = stress.traction([nx, ny]);
+    ensure!(traction[0] == stress.xx * nx + stress.xy * ny);
+    ensure!(traction[1] == stress.xy * nx + stress.yy * ny);
+    ensure!(stress.normal([nx, ny]) == traction[0] * nx + traction[1] * ny);
+    Verdict::Holds("always")
+}
+
+/// The functional sigma_n of one shape function: its value at v = N (v_x, v_y) is sigma_n of the gradient v x grad N.
+pub fn normal_stress_of_a_shape_is_n_sigma_n<S: Ordered>(
+    [gx, gy, vx, vy, nx, ny, lambda, mu]: [S; 8],
+) -> Verdict {
+    given!(nx * nx + ny * ny == S::from(1));
+    let material = Material::lame(lambda, mu, Plane::Strain);
+    let functional = material.normal_stress_of_shape([gx, gy], [nx, ny]);
+    let stress = material.stress([[vx * gx, vx * gy], [vy * gx, vy * gy]]);
+    ensure!(functional[0] * vx + functional[1] * vy == stress.normal([nx, ny]));
+    Verdict::Holds("always")
+}
+
+/// eps_tt and eps_nt, times |n|^2.
+fn other_strains<S: Ordered>([xx, xy, yx, yy, nx, ny]: [S; 6]) -> [S; 2] {
+    let two = S::from(2);
+    let exy = (xy + yx) / two;
+    [
+        ny * ny * xx - two * nx * ny * exy + nx * nx * yy,
+        nx * ny * (yy - xx) + (nx * nx - ny * ny) * exy,
+    ]
+}
+
+/// The inequality at a point for a candidate of its constant and any normal, by the identity above.
+fn bounded<S: Ordered>(
+    [xx, xy, yx, yy, nx, ny, lambda, mu]: [S; 8],
+    constant: impl Fn(&Material<S>) -> S,
+) -> Verdict {
+    let (zero, two, four) = (S::from(0), S::from(2), S::from(4));
+    given!(mu > zero && lambda + mu > zero);
+    let material = Material::lame(lambda, mu, Plane::Strain);
+    let g = gradient([xx, xy, yx, yy]);
+    let stress = material.stress(g);
+    let (sigma_n, squared) = (stress.normal([nx, ny]), nx * nx + ny * ny);
+    let [tt, nt] = other_strains([xx, xy, yx, yy, nx, ny]);
+    let left = constant(&material) * squared * squared * energy_density(stress, g);
+    let rest = left - sigma_n * sigma_n;
+    ensure!(
+        rest == four * mu * (lambda + mu) * tt * tt + four * mu * (lambda + two * mu) * nt * nt
+    );
+    ensure!(mu * (lambda + mu) > zero && mu * (lambda + two * mu) > zero);
+    ensure!(mu * (lambda + mu) * (tt * tt) >= zero);
+    ensure!(mu * (lambda + two * mu) * (nt * nt) >= zero);
+    ensure!(sigma_n * sigma_n <= left);
+    Verdict::Holds("always")
+}
+
+/// |n|^4 (lambda + 2 mu) sigma:eps >= sigma_n^2 for every n.
+pub fn normal_stress_is_bounded_by_the_energy<S: Ordered>(v: [S; 8]) -> Verdict {
+    bounded(v, Material::normal_stiffness)
+}
+
+/// With n = e_y, as in the paper's proof.
+pub fn normal_stress_on_a_horizontal_edge_is_bounded_by_the_energy<S: Ordered>(
+    [xx, xy, yx, yy, lambda, mu]: [S; 6],
+) -> Verdict {
+    let zero = S::from(0);
+    given!(mu > zero && lambda + mu > zero);
+    let material = Material::lame(lambda, mu, Plane::Strain);
+    let g = gradient([xx, xy, yx, yy]);
+    let stress = material.stress(g);
+    ensure!(stress.yy * stress.yy <= material.normal_stiffness() * energy_density(stress, g));
+    Verdict::Holds("always")
+}
+
+/// A strain along the normal attains it: the constant can't be smaller.
+pub fn the_constant_is_attained_by_a_strain_along_the_normal<S: Ordered>(
+    [c, nx, ny, lambda, mu]: [S; 5],
+) -> Verdict {
+    given!(nx * nx + ny * ny == S::from(1));
+    let material = Material::lame(lambda, mu, Plane::Strain);
+    let g = [[c * nx * nx, c * nx * ny], [c * nx * ny, c * ny * ny]];
+    let stress = material.stress(g);
+    let sigma_n = stress.normal([nx, ny]);
+    ensure!(sigma_n * sigma_n == material.normal_stiffness() * energy_density(stress, g));
+    Verdict::Holds("always")
+}
+
+/// Plane stress is plane strain with lambda* = 2 lambda mu / (lambda + 2 mu), for which the inequality holds too: its
+/// constant is 4 mu (lambda + mu)/(lambda + 2 mu), and lambda* + mu > 0 if 3 lambda + 2 mu > 0. sigma_zz and the von
+/// Mises stress belong to it.
+pub fn plane_stress_has_its_own_lambda<S: Ordered>([lambda, mu, xx, yy, xy]: [S; 5]) -> Verdict {
+    let (zero, two) = (S::from(0), S::from(2));
+    given!(mu > zero && S::from(3) * lambda + two * mu > zero);
+    ensure!(lambda + two * mu > zero);
+    let material = Material::lame(lambda, mu, Plane::Stress);
+    let star = two * lambda * mu / (lambda + two * mu);
+    ensure!(material.lambda() == star && material.mu() == mu);
+    let constant = material.normal_stiffness() * (lambda + two * mu);
+    ensure!(constant == S::from(4) * mu * (lambda + mu));
+    ensure!((star + mu) * (lambda + two * mu) == mu * (S::from(3) * lambda + two * mu));
+    ensure!((star + mu) * (lambda + two * mu) > zero);
+    ensure!(star + mu > zero);
+    let stress = Stress { xx, yy, xy };
+    ensure!(material.stress_zz(stress) == zero);
+    let mises = xx * xx - xx * yy + yy * yy + S::from(3) * xy * xy;
+    ensure!(material.von_mises_squared(stress) == mises);
+    Verdict::Holds("always")
+}
+
+/// Plane strain: sigma_zz = lambda tr(eps), and the von Mises stress with it is (3/2) s:s of the deviator s.
+pub fn plane_strain_has_a_stress_across_the_plane<S: Ordered>(
+    [lambda, mu, exx, eyy, exy]: [S; 5],
+) -> Verdict {
+    let (zero, two, three) = (S::from(0), S::from(2), S::from(3));
+    given!(mu > zero && lambda + mu > zero);
+    let material = Material::lame(lambda, mu, Plane::Strain);
+    let stress = material.stress([[exx, exy], [exy, eyy]]);
+    let zz = material.stress_zz(stress);
+    ensure!(zz == lambda * (exx + eyy));
+    let mean = (stress.xx + stress.yy + zz) / three;
+    let (a, b, c) = (stress.xx - mean, stress.yy - mean, zz - mean);
+    let deviator = a * a + b * b + c * c + two * stress.xy * stress.xy;
+    ensure!(two * material.von_mises_squared(stress) == three * deviator);
+    Verdict::Holds("always")
+}
+
+/// Young's modulus and Poisson's ratio: the bar that is pulled along x and free across it.
+pub fn young_and_poisson_are_those_of_a_bar<S: Ordered>([young, poisson, e]: [S; 3]) -> Verdict {
+    let (zero, one, two) = (S::from(0), S::from(1), S::from(2));
+    given!(young > zero && poisson > -one && two * poisson < one);
+    let plate = Material::young_poisson(young, poisson, Plane::Strain);
+    let (lambda, mu) = (plate.lambda(), plate.mu());
+    // sigma = lambda tr I + 2 mu eps in three dimensions, eps = e diag(1, -nu, -nu)
+    let trace = e * (one - two * poisson);
+    ensure!(lambda * trace + two * mu * e == young * e);
+    ensure!(lambda * trace - two * mu * poisson * e == zero);
+    Verdict::Holds("always")
+}
+
+/// The trace inequality on an edge with the ends b, c of the triangle with the values a, b, c of an affine w:
+/// |w|_E^2 = |E| (b^2 + b c + c^2)/3, |w|_T^2 = |T| (a^2 + b^2 + c^2 + a b + b c + c a)/6.
+fn trace_inequality<S: Ordered>([a, b, c]: [S; 3], constant: S) -> Verdict {
+    let edge = (b * b + b * c + c * c) / S::from(3);
+    let triangle = (a * a + b * b + c * c + a * b + b * c + c * a) / S::from(6);
+    ensure!(edge <= constant * triangle);
+    Verdict::Holds("always")
+}
+
+/// c_2 = 3 for P2, whose stress is affine; c_1 = 1 for P1, whose stress is constant.
+pub fn trace_inequality_holds_with_the_constants_of_p1_and_p2<S: Ordered>(
+    [a, b, c]: [S; 3],
+) -> Verdict {
+    let constant = trace_inequality([a, a, a], S::from(<P1 as Element<3, 2>>::TRACE_CONSTANT));
+    ensure!(!constant.fails());
+    trace_inequality([a, b, c], S::from(<P2 as Element<6, 3>>::TRACE_CONSTANT))
+}
+
+/// w = 1 on the edge and -1 at the opposite vertex attains it: 3 can't be smaller.
+pub fn the_trace_constant_of_p2_is_attained<S: Ordered>([b]: [S; 1]) -> Verdict {
+    given!(b > S::from(0) || b < S::from(0));
+    let c = S::from(<P2 as Element<6, 3>>::TRACE_CONSTANT);
+    let triangle = (S::from(3) * b * b - b * b) / S::from(6);
+    ensure!(b * b == c * triangle);
+    Verdict::Holds("always")
+}
+
+/// Coercivity from (11), as in the proof: a - s >= (1 - kappa) a if s <= kappa a.
+pub fn the_trace_bound_gives_coercivity<S: Ordered>([a, s, kappa]: [S; 3]) -> Verdict {
+    given!(s <= kappa * a);
+    ensure!(a - s >= (S::from(1) - kappa) * a);
+    Verdict::Holds("always")
+}
+
+/// lambda + mu in place of lambda + 2 mu.
+pub fn control_lambda_plus_mu_for_the_stiffness<S: Ordered>(
+    [xx, xy, yx, yy, lambda, mu]: [S; 6],
+) -> Verdict {
+    let zero = S::from(0);
+    given!(mu > zero && lambda + mu > zero);
+    let g = gradient([xx, xy, yx, yy]);
+    let stress = Material::lame(lambda, mu, Plane::Strain).stress(g);
+    ensure!(stress.yy * stress.yy <= (lambda + mu) * energy_density(stress, g));
+    Verdict::Holds("always")
+}
+
+/// c_2 = 2 in place of 3.
+pub fn control_smaller_trace_constant<S: Ordered>(v: [S; 3]) -> Verdict {
+    trace_inequality(v, S::from(2))
+}
+
+#[cfg(not(kani))]
+pub use row::claim;
+
+#[cfg(not(kani))]
+mod row {
+    use super::*;
+    use crate::claim::{Claim, proved, refuted, tested};
+    use crate::numbers::Exact;
+    use crate::statement;
+    use crate::statement::take;
+
+    /// A unit vector from the first component: ((1 - t^2), 2 t)/(1 + t^2).
+    fn unit(t: Exact) -> [Exact; 2] {
+        let one = Exact::from(1);
+        let norm = one + t * t;
+        [(one - t * t) / norm, Exact::from(2) * t / norm]
+    }
+
+    fn unit_normal_at_4(v: &mut [Exact]) {
+        [v[4], v[5]] = unit(v[4]);
+    }
+
+    fn unit_normal_at_1(v: &mut [Exact]) {
+        [v[1], v[2]] = unit(v[1]);
+    }
+
+    /// The row of Lemma 3.2.
+    pub fn claim() -> Claim {
+        let hooke =
+            statement!(stress_is_hookes_law, [xx, xy, yx, yy, nx, ny, lambda, mu], ["always"]);
+        let shape = statement!(
+            normal_stress_of_a_shape_is_n_sigma_n,
+            [gx, gy, vx, vy, nx, ny, lambda, mu],
+            ["always"]
+        )
+        .prepared(unit_normal_at_4);
+        let any = statement!(
+            normal_stress_is_bounded_by_the_energy,
+            [xx, xy, yx, yy, nx, ny, lambda, mu],
+            ["always"]
+        )
+        .with_hints(|v| other_strains(take(&v[..6])).to_vec());
+        let horizontal = statement!(
+            normal_stress_on_a_horizontal_edge_is_bounded_by_the_energy,
+            [xx, xy, yx, yy, lambda, mu],
+            ["always"]
+        )
+        .with_hints(|v| vec![v[0], v[1] + v[2]]);
+        let attained = statement!(
+            the_constant_is_attained_by_a_strain_along_the_normal,
+            [c, nx, ny, lambda, mu],
+            ["always"]
+        )
+        .prepared(unit_normal_at_1);
+        let stress =
+            statement!(plane_stress_has_its_own_lambda, [lambda, mu, xx, yy, xy], ["always"]);
+        let strain = statement!(
+            plane_strain_has_a_stress_across_the_plane,
+            [lambda, mu, exx, eyy, exy],
+            ["always"]
+        );
+        let bar = statement!(young_and_poisson_are_those_of_a_bar, [young, poisson, e], ["always"]);
+        let trace = statement!(
+            trace_inequality_holds_with_the_constants_of_p1_and_p2,
+            [a, b, c],
+            ["always"]
+        );
+        let sharp = statement!(the_trace_constant_of_p2_is_attained, [b], ["always"]);
+        let coercive = statement!(the_trace_bound_gives_coercivity, [a, s, kappa], ["always"]);
+        let all =
+            [hooke, shape, any, horizontal, attained, stress, strain, bar, trace, sharp, coercive];
+        let mut checks: Vec<_> = all.into_iter().map(proved).collect();
+        checks.extend(all.into_iter().map(tested));
+        checks.extend([
+            refuted(statement!(
+                control_lambda_plus_mu_for_the_stiffness,
+                [xx, xy, yx, yy, lambda, mu],
+                []
+            )),
+            refuted(statement!(control_smaller_trace_constant, [a, b, c], [])),
+        ]);
+        Claim {
+            id: "9",
+            items: &["(1)", "Lemma 3.2", "(11)"],
+            title: "Coercivity with an explicit constant",
+            paper: "Let gamma0 be sufficiently small. Then A_gamma is elliptic on V^h. In the proof: |gamma^1/2 sigma_n(v^h)|^2 <= C gamma0 |v^h|_1^2 (11).",
+            statement: "sigma_n(v)^2 <= (lambda + 2 mu) sigma(v):eps(v) at every point, with equality for a strain along the normal; |w|_E^2 <= c_p (|E|/|T|) |w|_T^2 for polynomials of degree p - 1, c_1 = 1, c_2 = 3, attained.",
+            numbers: "every ordered field (proof); rationals.",
+            kernel: &[
+                "material::Material::lame",
+                "material::Material::young_poisson",
+                "material::Material::lambda",
+                "material::Material::mu",
+                "material::Material::normal_stiffness",
+                "material::Material::stress",
+                "material::Material::stress_zz",
+                "material::Material::von_mises_squared",
+                "material::Material::normal_stress_of_shape",
+                "material::Stress::normal",
+                "material::Stress::traction",
+            ],
+            preconditions: "mu > 0 and lambda + mu > 0 (in plane stress 3 lambda + 2 mu > 0), which every elastic material satisfies. The paper says 'gamma0 sufficiently small'; here the limit is a number.",
+            limits: "Korn's inequality, which turns a(v, v) into |v|_1^2, is not checked.",
+            single: None,
+            checks,
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! The claims, one file per item. Each file has the predicates first, then the harnesses of the model checker, and last
+//! the row of the ledger with its checks.
+
+pub mod lemma_3_2;
+#[cfg(not(kani))]
+pub mod pending;
+pub mod positive_part;
+pub mod prop_2_1;
+pub mod theorem_3_3;
+pub mod theorem_3_4;
+
+#[cfg(not(kani))]
+use crate::claim::Claim;
+
+/// All claims, in the order of the paper.
+#[cfg(not(kani))]
+pub fn all() -> Vec<Claim> {
+    let mut claims = vec![
+        positive_part::claim(),
+        prop_2_1::claim(),
+        prop_2_1::remark_2_2(),
+        lemma_3_2::claim(),
+        theorem_3_3::claim(),
+        theorem_3_4::claim(),
+    ];
+    claims.extend(pending::claims());
+    claims.sort_by_key(|claim| claim.id.parse::<u32>().expect("the id of a row is a number"));
+    claims
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn passes(id: &str) {
+        let claim = all().into_iter().find(|c| c.id == id).expect("a row");
+        let mut failures = Vec::new();
+        for check in &claim.checks {
+            if let Err(why) = check.run() {
+                failures.push(format!("{} ({}): {why}", check.name, check.engine.name()));
+            }
+        }
+        assert!(failures.is_empty(), "row {id}:\n{}", failures.join("\n"));
+    }
+
+    macro_rules! rows {
+        ($($test:ident $id:literal),* $(,)?) => {
+            $(#[test]
+            fn $test() {
+                passes($id);
+            })*
+
+            #[test]
+            fn every_row_has_its_test() {
+                let ids: Vec<&str> = all().iter().map(|c| c.id).collect();
+                assert_eq!(ids, [$($id),*]);
+            }
+        };
+    }
+
+    rows! {
+        every_check_of_row_1_passes "1",
+        every_check_of_row_2_passes "2",
+        every_check_of_row_3_passes "3",
+        every_check_of_row_4_passes "4",
+        every_check_of_row_5_passes "5",
+        every_check_of_row_6_passes "6",
+        every_check_of_row_7_passes "7",
+        every_check_of_row_8_passes "8",
+        every_check_of_row_9_passes "9",
+        every_check_of_row_10_passes "10",
+        every_check_of_row_11_passes "11",
+        every_check_of_row_12_passes "12",
+        every_check_of_row_13_passes "13",
+    }
+}

@@ -1,0 +1,72 @@
+//! Rows that are not checked yet: they say so.
+
+use crate::claim::Claim;
+
+fn row(
+    id: &'static str,
+    items: &'static [&'static str],
+    title: &'static str,
+    paper: &'static str,
+) -> Claim {
+    Claim {
+        id,
+        items,
+        title,
+        paper,
+        statement: "Not yet.",
+        numbers: "None yet.",
+        kernel: &[],
+        preconditions: "None yet.",
+        limits: "Everything: there is no evidence here yet.",
+        single: None,
+        checks: Vec::new(),
+    }
+}
+
+/// The rows without evidence.
+pub fn claims() -> Vec<Claim> {
+    vec![
+        row(
+            "4",
+            &["(6)", "Remark 2.3"],
+            "From Green's formula to Nitsche's",
+            "a(u, v) - int gamma sigma_n(u) sigma_n(v) + int (1/gamma)[u_n - gamma sigma_n(u)]+ (v_n - gamma sigma_n(v)) = L(v).",
+        ),
+        row(
+            "5",
+            &["(7)"],
+            "gamma, P_gamma and A_gamma",
+            "gamma = gamma0 h_T; P_gamma(v) = v_n - gamma sigma_n(v); A_gamma(u, v) = a(u, v) - int gamma sigma_n(u) sigma_n(v).",
+        ),
+        row(
+            "6",
+            &["(8)"],
+            "The method",
+            "A_gamma(u^h, v^h) + int (1/gamma)[P_gamma(u^h)]+ P_gamma(v^h) = L(v^h) for all v^h in V^h.",
+        ),
+        row(
+            "7",
+            &["(9)", "(10)"],
+            "The contact pressure as a projection",
+            "lambda^h = -(1/gamma)[P_gamma(u^h)]+ is the L^2-projection of -(1/gamma)P_gamma(u^h) on the nonpositive functions.",
+        ),
+        row(
+            "8",
+            &["Lemma 3.1", "(3)"],
+            "Consistency",
+            "The solution u of (1)-(2) is also solution of A_gamma(u, v^h) + int (1/gamma)[P_gamma(u)]+ P_gamma(v^h) = L(v^h).",
+        ),
+        row(
+            "12",
+            &["Theorem 3.5", "(21)", "(22)-(24)", "Corollary 3.6", "(25)", "Remark 3.7"],
+            "Rates",
+            "|u - u^h|_1 + |gamma^1/2 (sigma_n(u) + [P(u^h)]+/gamma)| <= C h^(1/2 + nu) |u|_(3/2 + nu).",
+        ),
+        row(
+            "13",
+            &["floating point"],
+            "What the above rests on in floating point",
+            "Nothing: the paper computes in R.",
+        ),
+    ]
+}

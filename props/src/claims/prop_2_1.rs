@@ -1,0 +1,419 @@
+//! Proposition 2.1 and Remark 2.2: conditions (2)(i)-(iii) are one equation, (5) sigma_n = -(1/gamma) \[u_n - g - gamma
+//! sigma_n\]+, for every gamma > 0, constant or not.
+//!
+//! In doubles (5) as written is false (the division rounds) and even the scaled form, s = gamma sigma_n,
+//! s = -\[u - s\]+, gives u <= 0 only up to rounding: u = 3.9e-121, s = -8.3e-25 satisfies it. What survives is stated and
+//! checked apart. The predicates write (2) out from the paper and take P, lambda^h and the violation from the kernel.
+
+use signorini::kernel::contact::{self, ContactPoint};
+
+use crate::harness::{any, assume};
+use crate::numbers::Whole;
+use crate::verdict::{Ordered, Verdict};
+use crate::{ensure, given, harnesses};
+
+/// (2)(i)-(iii), with a gap.
+pub fn conditions_2<S: Ordered>(point: &ContactPoint<S>) -> bool {
+    let zero = S::from(0);
+    let opening = point.u_n - point.gap;
+    opening <= zero && point.sigma_n <= zero && point.sigma_n * opening == zero
+}
+
+fn class<S: Ordered>(point: &ContactPoint<S>, holds: bool) -> &'static str {
+    if !holds {
+        "neither holds"
+    } else if point.sigma_n < S::from(0) {
+        "contact"
+    } else if point.u_n < point.gap {
+        "gap"
+    } else {
+        "touching without force"
+    }
+}
+
+/// (2) if and only if (5), for a candidate of the right side of (5).
+pub fn equivalence<S: Ordered>(
+    point: &ContactPoint<S>,
+    right_side: impl Fn(&ContactPoint<S>) -> S,
+) -> Verdict {
+    let equation_5 = point.sigma_n == right_side(point);
+    let conditions_2 = conditions_2(point);
+    ensure!(conditions_2 == equation_5);
+    Verdict::Holds(class(point, conditions_2))
+}
+
+fn point<S>([u_n, gap, sigma_n, gamma]: [S; 4]) -> ContactPoint<S> {
+    ContactPoint { u_n, gap, sigma_n, gamma }
+}
+
+/// Proposition 2.1 with the kernel's lambda^h for the right side.
+pub fn conditions_2_are_equation_5<S: Ordered>(v: [S; 4]) -> Verdict {
+    let point = point(v);
+    given!(point.gamma > S::from(0));
+    equivalence(&point, ContactPoint::pressure)
+}
+
+/// The functions of a contact point, written out: P, P0, lambda^h, and that lambda^h <= 0.
+pub fn contact_functions_are_their_definitions<S: Ordered>(v: [S; 4]) -> Verdict {
+    let (zero, point) = (S::from(0), point(v));
+    let [u, g, sigma, gamma] = v;
+    given!(gamma > zero);
+    ensure!(point.p() == u - g - gamma * sigma);
+    ensure!(point.p0() == u - gamma * sigma);
+    let (p, pressure) = (u - g - gamma * sigma, point.pressure());
+    ensure!(pressure <= zero);
+    ensure!(pressure == contact::pressure(p, gamma));
+    ensure!(if p > zero { gamma * pressure == -p } else { pressure == zero });
+    Verdict::Holds(if p > zero { "pressed" } else { "open" })
+}
+
+/// The violation of (2) is zero exactly where (2) holds, and each part is what its name says.
+pub fn violation_is_zero_exactly_where_2_holds<S: Ordered>(v: [S; 4]) -> Verdict {
+    let (zero, point) = (S::from(0), point(v));
+    let opening = point.u_n - point.gap;
+    let violation = point.violation();
+    ensure!(violation.penetration == if opening > zero { opening } else { zero });
+    ensure!(violation.tension == if point.sigma_n > zero { point.sigma_n } else { zero });
+    ensure!(violation.product == point.sigma_n * opening);
+    let none =
+        violation.penetration == zero && violation.tension == zero && violation.product == zero;
+    let conditions_2 = conditions_2(&point);
+    ensure!(conditions_2 == none);
+    Verdict::Holds(class(&point, conditions_2))
+}
+
+/// Remark 2.2: gamma may differ from point to point, for (5) with one positive gamma is (5) with any other.
+pub fn equation_5_does_not_depend_on_gamma<S: Ordered>(
+    [u, g, sigma, gamma, other]: [S; 5],
+) -> Verdict {
+    given!(gamma > S::from(0) && other > S::from(0));
+    let here = point([u, g, sigma, gamma]);
+    let there = ContactPoint { gamma: other, ..here };
+    let (equation_5, with_the_other_gamma) = (sigma == here.pressure(), sigma == there.pressure());
+    ensure!(equation_5 == with_the_other_gamma);
+    Verdict::Holds(class(&here, equation_5))
+}
+
+/// gamma of any sign.
+pub fn control_gamma_of_any_sign<S: Ordered>(v: [S; 4]) -> Verdict {
+    let point = point(v);
+    given!(point.gamma < S::from(0) || point.gamma > S::from(0));
+    equivalence(&point, ContactPoint::pressure)
+}
+
+/// gamma >= 0: a division by zero.
+pub fn control_gamma_may_be_zero<S: Ordered>(v: [S; 4]) -> Verdict {
+    let point = point(v);
+    given!(point.gamma >= S::from(0));
+    equivalence(&point, ContactPoint::pressure)
+}
+
+/// (5) without the gap.
+pub fn control_gap_forgotten<S: Ordered>(v: [S; 4]) -> Verdict {
+    let point = point(v);
+    given!(point.gamma > S::from(0));
+    equivalence(&point, |point| contact::pressure(point.p0(), point.gamma))
+}
+
+/// (5) with the sign of sigma_n turned inside.
+pub fn control_sign_inside_5_turned<S: Ordered>(v: [S; 4]) -> Verdict {
+    let point = point(v);
+    given!(point.gamma > S::from(0));
+    let turned = |point: &ContactPoint<S>| {
+        contact::pressure(point.u_n - point.gap + point.gamma * point.sigma_n, point.gamma)
+    };
+    equivalence(&point, turned)
+}
+
+/// (5) with |.| for \[.\]+.
+pub fn control_absolute_value_in_5<S: Ordered>(v: [S; 4]) -> Verdict {
+    let point = point(v);
+    given!(point.gamma > S::from(0));
+    equivalence(&point, |point| -(point.p().split(|p| -p, |p| p) / point.gamma))
+}
+
+/// (5) without 1/gamma.
+pub fn control_gamma_omitted<S: Ordered>(v: [S; 4]) -> Verdict {
+    let point = point(v);
+    given!(point.gamma > S::from(0));
+    equivalence(&point, |point| contact::pressure(point.p(), S::from(1)))
+}
+
+/// The scaled form s = -\[u - s\]+ at u, s = gamma sigma_n; the kernel's P with gamma = 1 and no gap rounds once.
+fn scaled_5<S: Ordered>(u: S, s: S) -> bool {
+    let point = point([u, S::from(0), s, S::from(1)]);
+    s == point.pressure()
+}
+
+/// Scaled Proposition 2.1, exactly: for numbers that do not round.
+pub fn scaled_conditions_are_the_scaled_equation<S: Ordered>([u, s]: [S; 2]) -> Verdict {
+    let zero = S::from(0);
+    let conditions_2 = u <= zero && s <= zero && (u == zero || s == zero);
+    let equation = scaled_5(u, s);
+    ensure!(conditions_2 == equation);
+    Verdict::Holds(class(&point([u, zero, s, S::from(1)]), equation))
+}
+
+/// (2) implies the scaled (5), in doubles too.
+pub fn conditions_2_imply_the_scaled_equation<S: Ordered>([u, s]: [S; 2]) -> Verdict {
+    let zero = S::from(0);
+    given!(u <= zero && s <= zero && (u == zero || s == zero));
+    ensure!(scaled_5(u, s));
+    Verdict::Holds(class(&point([u, zero, s, S::from(1)]), true))
+}
+
+/// What the scaled (5) implies in doubles: no tension; no penetration where there is no force; and a displacement of at
+/// most 2^-52 |s| where there is.
+pub fn scaled_equation_implies_2_up_to_rounding([u, s]: [f64; 2]) -> Verdict {
+    given!(scaled_5(u, s));
+    ensure!(s <= 0.0);
+    if s == 0.0 {
+        ensure!(u <= 0.0);
+        return Verdict::Holds("gap");
+    }
+    ensure!(u.abs() <= -s * f64::EPSILON);
+    Verdict::Holds(if u == 0.0 { "contact" } else { "contact up to rounding" })
+}
+
+harnesses! {
+    /// No tension.
+    holds scaled_equation_implies_no_tension_for_all_finite_doubles() {
+        let (u, s): (f64, f64) = (any(), any());
+        assume(u.is_finite() && s.is_finite());
+        assume(s == -signorini::kernel::positive_part(u - s));
+        assert!(s <= 0.0);
+    }
+    /// The false twin: always compression.
+    fails control_scaled_equation_implies_compression_for_all_finite_doubles() {
+        let (u, s): (f64, f64) = (any(), any());
+        assume(u.is_finite() && s.is_finite());
+        assume(s == -signorini::kernel::positive_part(u - s));
+        assert!(s < 0.0);
+    }
+    /// s = 0 and u <= 0, or s < 0 and u vanishes beside s.
+    holds scaled_equation_is_gap_or_contact_for_all_finite_doubles() {
+        let (u, s): (f64, f64) = (any(), any());
+        assume(u.is_finite() && s.is_finite());
+        assume(s == -signorini::kernel::positive_part(u - s));
+        assert!((s == 0.0 && u <= 0.0) || (s < 0.0 && u - s == -s));
+    }
+    /// The false twin: u <= 0 as over R, which is false in doubles.
+    fails control_scaled_equation_implies_no_penetration_for_all_finite_doubles() {
+        let (u, s): (f64, f64) = (any(), any());
+        assume(u.is_finite() && s.is_finite());
+        assume(s == -signorini::kernel::positive_part(u - s));
+        assert!(u <= 0.0);
+    }
+    /// The converse, without rounding.
+    holds conditions_2_imply_the_scaled_equation_for_all_finite_doubles() {
+        let (u, s): (f64, f64) = (any(), any());
+        assume(u.is_finite() && s.is_finite());
+        assume(u <= 0.0 && s <= 0.0 && (u == 0.0 || s == 0.0));
+        assert!(s == -signorini::kernel::positive_part(u - s));
+    }
+    /// The false twin: without (iii).
+    fails control_signs_alone_imply_the_scaled_equation_for_all_finite_doubles() {
+        let (u, s): (f64, f64) = (any(), any());
+        assume(u.is_finite() && s.is_finite());
+        assume(u <= 0.0 && s <= 0.0);
+        assert!(s == -signorini::kernel::positive_part(u - s));
+    }
+    /// Both directions where nothing rounds.
+    holds scaled_equivalence_for_all_i16() {
+        let (u, s): (i16, i16) = (any(), any());
+        let verdict = scaled_conditions_are_the_scaled_equation([i32::from(u), i32::from(s)].map(Whole));
+        assert!(!verdict.fails());
+    }
+    /// The false twin: \[u\]+ for \[u - s\]+.
+    fails control_scaled_equivalence_without_s_inside_for_all_i16() {
+        let (u, s): (i16, i16) = (any(), any());
+        let (u, s) = (Whole(i32::from(u)), Whole(i32::from(s)));
+        let conditions = u <= Whole(0) && s <= Whole(0) && (u == Whole(0) || s == Whole(0));
+        assert!(conditions == (s == -signorini::kernel::positive_part(u)));
+    }
+    /// (2) if and only if gamma sigma = -\[P\]+, with the kernel's P, gap and gamma.
+    holds conditions_2_are_equation_5_times_gamma_for_all_i8_and_positive_i8_gamma() {
+        let (u, g, s, gamma): (i8, i8, i8, i8) = (any(), any(), any(), any());
+        assume(gamma > 0);
+        let point = point([u, g, s, gamma].map(|v| Whole(i32::from(v))));
+        let equation = point.gamma * point.sigma_n == -signorini::kernel::positive_part(point.p());
+        assert!(conditions_2(&point) == equation);
+    }
+    /// The false twin: P without the gap.
+    fails control_conditions_2_are_equation_5_without_gap_for_all_i8() {
+        let (u, g, s, gamma): (i8, i8, i8, i8) = (any(), any(), any(), any());
+        assume(gamma > 0);
+        let point = point([u, g, s, gamma].map(|v| Whole(i32::from(v))));
+        let equation = point.gamma * point.sigma_n == -signorini::kernel::positive_part(point.p0());
+        assert!(conditions_2(&point) == equation);
+    }
+    /// The violation is zero exactly where (2) holds.
+    holds violation_is_zero_exactly_where_2_holds_for_all_i8() {
+        let (u, g, s): (i8, i8, i8) = (any(), any(), any());
+        let point = point([i32::from(u), i32::from(g), i32::from(s), 1].map(Whole));
+        let violation = point.violation();
+        let none = violation.penetration == Whole(0)
+            && violation.tension == Whole(0)
+            && violation.product == Whole(0);
+        assert!(conditions_2(&point) == none);
+    }
+    /// The false twin: the product alone.
+    fails control_product_is_zero_exactly_where_2_holds_for_all_i8() {
+        let (u, g, s): (i8, i8, i8) = (any(), any(), any());
+        let point = point([i32::from(u), i32::from(g), i32::from(s), 1].map(Whole));
+        assert!(conditions_2(&point) == (point.violation().product == Whole(0)));
+    }
+}
+
+#[cfg(not(kani))]
+pub use row::{claim, remark_2_2};
+
+#[cfg(not(kani))]
+mod row {
+    use super::*;
+    use crate::claim::{
+        Claim, Engine, Outcome, by, control, in_doubles, model_checked, proved, refuted,
+        refuted_in_doubles, tested,
+    };
+    use crate::draws;
+    use crate::numbers::Exact;
+    use crate::statement;
+
+    /// One time in three the data are moved onto (5): sigma_n = lambda^h of a displacement, and the matching u_n.
+    fn onto_equation_5(v: &mut [Exact]) {
+        let zero = Exact::from(0);
+        if v[0] > v[1] {
+            v[0] = v[1];
+        } else if v[2] > zero {
+            v[2] = zero;
+        }
+    }
+
+    fn rounding() -> Outcome {
+        let classes = ["gap", "contact", "contact up to rounding"];
+        draws::hold(40_000, draws::doubles(2), &classes, |v| {
+            scaled_equation_implies_2_up_to_rounding([v[0], v[1]])
+        })
+    }
+
+    /// u > 0 with s = -\[u - s\]+ in doubles: why Proposition 2.1 is stated over R and scaled for doubles.
+    fn kept_counterexample() -> Outcome {
+        let (u, s) = (3.9e-121, -8.3e-25);
+        match (scaled_5(u, s), scaled_conditions_are_the_scaled_equation([u, s])) {
+            (true, Verdict::Fails(_)) => Ok(format!("u = {u:e}, s = {s:e}: (5) holds, (2) not")),
+            other => Err(format!("expected a counterexample, found {other:?}")),
+        }
+    }
+
+    /// (5) as written, in doubles: contact with a force that does not survive the division.
+    fn as_written() -> Outcome {
+        draws::reject(20_000, draws::doubles(4), |v| {
+            given!(v[3] > 1e-3 && v[3] < 1e3 && v[2].abs() > 1e-3 && v[2].abs() < 1e3);
+            conditions_2_are_equation_5([v[1], v[1], v[2], v[3]])
+        })
+    }
+
+    /// The row of Proposition 2.1.
+    pub fn claim() -> Claim {
+        let equivalence = statement!(
+            conditions_2_are_equation_5,
+            [u_n, g, sigma_n, gamma],
+            ["contact", "gap", "touching without force", "neither holds"]
+        )
+        .prepared(onto_equation_5);
+        let definitions = statement!(
+            contact_functions_are_their_definitions,
+            [u_n, g, sigma_n, gamma],
+            ["pressed", "open"]
+        );
+        let violation = statement!(
+            violation_is_zero_exactly_where_2_holds,
+            [u_n, g, sigma_n, gamma],
+            ["contact", "gap", "touching without force", "neither holds"]
+        )
+        .prepared(onto_equation_5);
+        let scaled = statement!(
+            scaled_conditions_are_the_scaled_equation,
+            [u, s],
+            ["contact", "gap", "touching without force", "neither holds"]
+        );
+        let converse = statement!(
+            conditions_2_imply_the_scaled_equation,
+            [u, s],
+            ["contact", "gap", "touching without force"]
+        );
+        let mut checks = vec![
+            proved(equivalence),
+            proved(definitions),
+            proved(violation),
+            proved(scaled),
+            tested(equivalence),
+            tested(definitions),
+            tested(violation),
+            in_doubles(converse),
+            by(Engine::Doubles, "scaled_equation_implies_2_up_to_rounding", rounding),
+            by(Engine::Doubles, "a_displacement_below_rounding_is_kept", kept_counterexample),
+            refuted_in_doubles(scaled),
+            control(Engine::Doubles, "control_equation_5_as_written_in_doubles", as_written),
+            refuted(statement!(control_gap_forgotten, [u_n, g, sigma_n, gamma], [])),
+            refuted(statement!(control_sign_inside_5_turned, [u_n, g, sigma_n, gamma], [])),
+            refuted(statement!(control_absolute_value_in_5, [u_n, g, sigma_n, gamma], [])),
+            refuted(statement!(control_gamma_omitted, [u_n, g, sigma_n, gamma], [])),
+        ];
+        checks.extend(HARNESSES.iter().copied().map(model_checked));
+        Claim {
+            id: "2",
+            items: &["(2)", "Proposition 2.1", "(5)"],
+            title: "Contact as one equation",
+            paper: "Let gamma > 0. The contact conditions (2)(i)-(iii) on Gamma_C are equivalent to: sigma_n(u) = -(1/gamma)[u_n - gamma sigma_n(u)]+.",
+            statement: "With a gap g: u_n - g <= 0, sigma_n <= 0 and sigma_n (u_n - g) = 0 hold together exactly if sigma_n = -(1/gamma)[u_n - g - gamma sigma_n]+, the kernel's lambda^h. P, P0, lambda^h and the violation of (2) are their definitions. In doubles, with s = gamma sigma_n: (2) implies s = -[u - s]+; and s = -[u - s]+ implies s <= 0, u <= 0 where s = 0, and |u| <= 2^-52 |s| where s < 0.",
+            numbers: "every ordered field (proof); rationals; in doubles the scaled form only. Over doubles the equivalence as written is false; the counterexamples are kept.",
+            kernel: &[
+                "contact::ContactPoint::p",
+                "contact::ContactPoint::p0",
+                "contact::ContactPoint::pressure",
+                "contact::ContactPoint::violation",
+                "contact::pressure",
+            ],
+            preconditions: "gamma > 0 (the paper's). The gap is ours; the paper has g = 0.",
+            limits: "One point of Gamma_C. That the traces u_n and sigma_n exist there is the regularity of the solution, which nothing here looks at. (2)(iv), no friction, is no equation of the kernel: the tangential traction is natural in (8).",
+            single: None,
+            checks,
+        }
+    }
+
+    /// The row of Remark 2.2.
+    pub fn remark_2_2() -> Claim {
+        let independent = statement!(
+            equation_5_does_not_depend_on_gamma,
+            [u_n, g, sigma_n, gamma, other],
+            ["contact", "gap", "touching without force", "neither holds"]
+        )
+        .prepared(onto_equation_5);
+        let pointwise = statement!(
+            conditions_2_are_equation_5,
+            [u_n, g, sigma_n, gamma],
+            ["contact", "gap", "touching without force", "neither holds"]
+        )
+        .prepared(onto_equation_5);
+        Claim {
+            id: "3",
+            items: &["Remark 2.2"],
+            title: "gamma may be a function",
+            paper: "Condition (5) is still equivalent to (2)(i)-(iii) on Gamma_C when gamma is a positive function defined on Gamma_C instead of a positive constant.",
+            statement: "(2) and (5) are conditions at each point, and gamma enters as a number of that point: Proposition 2.1 holds with any gamma > 0 there, and (5) with one gamma > 0 is (5) with any other.",
+            numbers: "every ordered field (proof); rationals.",
+            kernel: &["contact::ContactPoint::pressure"],
+            preconditions: "gamma > 0 at the point. It is needed: gamma < 0 and gamma = 0 are refuted by the controls.",
+            limits: "Nothing about measurability of gamma: in the code it is constant on each edge, (7).",
+            single: None,
+            checks: vec![
+                proved(pointwise),
+                proved(independent),
+                tested(independent),
+                refuted(statement!(control_gamma_of_any_sign, [u_n, g, sigma_n, gamma], [])),
+                refuted(statement!(control_gamma_may_be_zero, [u_n, g, sigma_n, gamma], [])),
+            ],
+        }
+    }
+}

@@ -1,0 +1,42 @@
+//! The paths of the proofs as SMT-LIB 2 problems, for solvers that know nothing of the proof engine.
+//!
+//! One file per failing path. The head of a file says what to expect: `unsat` where this engine has a certificate, `sat`
+//! where it has a point, `unknown` where it has neither (paths of controls). A solver that contradicts it is news.
+
+use std::collections::BTreeSet;
+use std::io;
+use std::path::Path;
+
+use crate::claim::{Engine, Subject};
+use crate::claims;
+use crate::proof::{Fate, analyse, smt};
+
+/// Writes the files into `directory` and answers how many.
+///
+/// # Errors
+/// Whatever keeps them from being written.
+pub fn export(directory: &Path) -> io::Result<usize> {
+    std::fs::create_dir_all(directory)?;
+    let (mut seen, mut count) = (BTreeSet::new(), 0);
+    for check in claims::all().iter().flat_map(|claim| &claim.checks) {
+        let (Subject::Statement(statement), Engine::Proof) = (check.subject, check.engine) else {
+            continue;
+        };
+        if !seen.insert(statement.name) {
+            continue;
+        }
+        let analysis = analyse(&statement);
+        for (i, fate) in &analysis.fates {
+            let expected = match fate {
+                Fate::Impossible(_) => "unsat",
+                Fate::Refuted(_) => "sat",
+                Fate::Open => "unknown",
+            };
+            let head = format!("; {}, path {i}\n; expected: {expected}\n", statement.name);
+            let problem = smt::problem(&analysis.paths[*i], statement.variables, &head);
+            std::fs::write(directory.join(format!("{}.{i}.smt2", statement.name)), problem)?;
+            count += 1;
+        }
+    }
+    Ok(count)
+}

@@ -1,0 +1,216 @@
+//! `VERIFY.md`: the ledger of the claims, printed from the claims themselves.
+
+use std::fmt::Write;
+
+use crate::claim::{Check, Claim, Engine};
+use crate::claims;
+
+/// The numbered items of the paper; each must be in some row.
+pub const ITEMS: [&str; 34] = [
+    "(1)",
+    "(2)",
+    "(3)",
+    "(4)",
+    "Proposition 2.1",
+    "(5)",
+    "Remark 2.2",
+    "(6)",
+    "(7)",
+    "Remark 2.3",
+    "(8)",
+    "(9)",
+    "(10)",
+    "Lemma 3.1",
+    "Lemma 3.2",
+    "(11)",
+    "Theorem 3.3",
+    "(12)",
+    "Theorem 3.4",
+    "(13)",
+    "(14)",
+    "(15)",
+    "(16)",
+    "(17)",
+    "(18)",
+    "(19)",
+    "(20)",
+    "Theorem 3.5",
+    "(21)",
+    "(22)-(24)",
+    "Corollary 3.6",
+    "(25)",
+    "Remark 3.7",
+    "floating point",
+];
+
+const HEAD: &str = "\
+# What is verified, and how
+
+Printed by `cargo run -p props -- ledger > VERIFY.md` from the claims themselves; a test fails when it is stale.
+
+## For the auditor
+
+The paper is F. Chouly, P. Hild, *A Nitsche-based method for unilateral contact problems: numerical analysis*, SIAM J.
+Numer. Anal. 51 (2013) 1295-1307. Each of its items has a row below: its words, the statement as it is checked, the code
+that it is about, the evidence, and what that does not establish. Conventions: n is the outward normal, sigma_n is
+negative in compression, P(v) = v_n - g - gamma sigma_n(v) with a gap g (the paper has g = 0), P0 its linear part,
+gamma = gamma0 h_T, lambda^h = -(1/gamma)[P(u^h)]+.
+
+A statement is an ordinary Rust function, generic over the number type, that calls the kernel's own functions and
+compares them with the paper's formulas. It answers *holds*, with the class of its data, *vacuous* (the hypothesis is not
+met), or *fails*. The engines run that one function:
+
+| engine | numbers | what a pass means |
+| --- | --- | --- |
+| proof | symbols: polynomials over Q | every comparison forks the path; each path that ends in *fails* contradicts itself, by a certificate (a sum of products of the path's facts and of squares that is positive and zero) that a checker of 40 lines verifies. So it holds over every ordered field, hence over R |
+| exact | rationals | random data, no tolerance at all |
+| doubles | f64 | random finite doubles with edge values, ties and neighbours; or a comparison with exact rationals and a stated bound |
+| Kani | f64, small integers | a harness for the bounded model checker exists and is run on random draws here; **no receipt of a run of the model checker is kept yet** |
+
+A check is no check if it can't fail. Every class of data that a statement names must be hit, every row has a **control**,
+a planted mistake that the same check must reject, and a harness has a false twin.
+
+**What is trusted:** the compiler and the standard library; num-rational and num-bigint; of this crate, the arithmetic of
+polynomials, the forking of paths and the checker (`props/src/proof/polynomial.rs`, `symbol.rs`, `explorer.rs`,
+`certificate.rs`), which have tests of their own: every random point lies on exactly one path and has its verdict, and the
+checker refuses bad certificates of each kind. The search for certificates is not trusted. For the rows that assemble
+on meshes, the naive transcription of the definitions in `props/src/naive.rs`.
+
+**How to run:** `cargo run -p props -- audit` runs every row and writes `target/audit/index.html`; `cargo run -p props --
+audit 9` runs row 9; `cargo test -p props` runs all of it with the engines' own tests. `PROPS_SEED=random` draws other
+random data and prints the seed; `PROPS_SEED=<number>` repeats it. `cargo run -p props -- smt DIR` writes the paths of the
+proofs as SMT-LIB 2 problems for other solvers (`.ci/smt.py DIR`).
+
+**How to add a row:** write the predicate in `props/src/claims/`, generic over `Ordered`, with `given!` for hypotheses and
+`ensure!` for conclusions; plant a mistake as a control; list both in a `Claim`, and the claim in `claims::all`; print the
+ledger again.
+
+## Errata of the paper
+
+In (17) and (18) the integral of (sigma_n(u) + [P(u^h)]+/gamma) sigma_n(u - v^h) lacks a factor gamma. As printed it has
+the dimension stress^2 length, beside terms of dimension gamma stress^2 length, and both are false at points:
+
+- (17) with gamma = 2, sigma_n(u) = -1 and all else 0: the left side is 0 + 2, the right side 1. With the factor: 2 <= 2.
+- (18) with z = sigma_n(u - v^h) = 1, gamma = 1/4, beta_2 = 1: 1 <= 1/8 + 1/8. With the factor: 1/4 <= 1/4.
+
+With the factor gamma both are proved, and the rest of the proof uses them in that form: the theorem stands (row 11).
+
+In section 2.3 the set of the multipliers is printed as L^2(Gamma_C); it is the cone of the nonpositive functions in it.
+";
+
+/// The text of `VERIFY.md`.
+pub fn ledger() -> String {
+    let claims = claims::all();
+    let mut text =
+        format!("{HEAD}\n## The items\n\n| item | row | evidence |\n| --- | --- | --- |\n");
+    for item in ITEMS {
+        let rows: Vec<&Claim> = claims.iter().filter(|c| c.items.contains(&item)).collect();
+        let ids: Vec<String> = rows.iter().map(|c| format!("[{}](#row-{})", c.id, c.id)).collect();
+        let evidence: Vec<String> = rows.iter().map(|c| engines(c)).collect();
+        let _ = writeln!(text, "| {item} | {} | {} |", ids.join(", "), evidence.join("; "));
+    }
+    for claim in &claims {
+        text += &row(claim);
+    }
+    text
+}
+
+/// The engines behind a claim's evidence, controls apart.
+pub fn engines(claim: &Claim) -> String {
+    let mut engines: Vec<Engine> = evidence(claim).map(|check| check.engine).collect();
+    engines.sort_unstable();
+    engines.dedup();
+    if engines.is_empty() {
+        return "not yet".to_owned();
+    }
+    engines.into_iter().map(Engine::name).collect::<Vec<_>>().join(", ")
+}
+
+fn evidence(claim: &Claim) -> impl Iterator<Item = &Check> {
+    claim.checks.iter().filter(|check| !check.control)
+}
+
+fn row(claim: &Claim) -> String {
+    let mut text =
+        format!("\n## Row {}\n\n**{}** ({})\n\n", claim.id, claim.title, claim.items.join(", "));
+    let mut line = |name: &str, content: &str| {
+        let _ = writeln!(text, "- **{name}:** {content}");
+    };
+    line("The paper", claim.paper);
+    line("As checked", claim.statement);
+    line("Numbers", claim.numbers);
+    if !claim.kernel.is_empty() {
+        let paths: Vec<String> = claim.kernel.iter().map(|path| format!("`{path}`")).collect();
+        line("Code (`src/kernel`)", &paths.join(", "));
+    }
+    line("Assumed", claim.preconditions);
+    line("Not established", claim.limits);
+    if let Some(why) = claim.single {
+        line("Why one engine", why);
+    }
+    if claim.checks.is_empty() {
+        return text + "- **Evidence:** not yet.\n";
+    }
+    let _ = writeln!(
+        text,
+        "- **Run:** `cargo run -p props -- audit {id}`, or `cargo test -p props every_check_of_row_{id}_passes`\n",
+        id = claim.id
+    );
+    text += "| engine | evidence |\n| --- | --- |\n";
+    for check in evidence(claim) {
+        let _ = writeln!(text, "| {} | `{}` |", check.engine.name(), check.name);
+    }
+    text += "\n| engine | control: a planted mistake that is rejected |\n| --- | --- |\n";
+    for check in claim.checks.iter().filter(|check| check.control) {
+        let _ = writeln!(text, "| {} | `{}` |", check.engine.name(), check.name);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    fn root() -> &'static Path {
+        Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the workspace")
+    }
+
+    #[test]
+    fn verify_md_is_what_the_claims_print() {
+        let stored = std::fs::read_to_string(root().join("VERIFY.md")).unwrap_or_default();
+        assert!(stored == ledger(), "stale: cargo run -p props -- ledger > VERIFY.md");
+    }
+
+    #[test]
+    fn every_item_of_the_paper_has_a_row_and_every_row_is_about_an_item() {
+        let claims = claims::all();
+        for item in ITEMS {
+            assert!(claims.iter().any(|c| c.items.contains(&item)), "{item} has no row");
+        }
+        for item in claims.iter().flat_map(|c| c.items) {
+            assert!(ITEMS.contains(item), "{item} is no item of the paper");
+        }
+    }
+
+    #[test]
+    fn every_row_has_two_engines_or_a_reason_and_a_control() {
+        for claim in claims::all().iter().filter(|c| !c.checks.is_empty()) {
+            let several = engines(claim).contains(',');
+            assert!(several != claim.single.is_some(), "row {}: {}", claim.id, engines(claim));
+            assert!(claim.checks.iter().any(|check| check.control), "row {}", claim.id);
+        }
+    }
+
+    #[test]
+    fn every_harness_has_a_false_twin() {
+        let claims = claims::all();
+        let harnesses = |control: bool| {
+            let kani = claims.iter().flat_map(|c| &c.checks).filter(|c| c.engine == Engine::Kani);
+            kani.filter(|check| check.control == control).count()
+        };
+        assert!(harnesses(false) >= 16, "{}", harnesses(false));
+        assert_eq!(harnesses(false), harnesses(true));
+    }
+}

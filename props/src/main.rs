@@ -1,0 +1,38 @@
+//! The ledger and its audit, on the command line.
+
+#[cfg(kani)]
+fn main() {}
+
+#[cfg(not(kani))]
+fn main() -> std::process::ExitCode {
+    use std::process::ExitCode;
+
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let outcome = match arguments[..] {
+        ["ledger"] => {
+            print!("{}", props::ledger::ledger());
+            Ok(true)
+        }
+        ["audit"] => props::audit::audit(None),
+        ["audit", id] => props::audit::audit(Some(id)),
+        ["smt", directory] => props::export::export(directory.as_ref()).map(|count| {
+            println!("{count} problems in {directory}");
+            true
+        }),
+        _ => {
+            eprintln!("props ledger       print VERIFY.md");
+            eprintln!("props audit [ROW]  run every check, or those of a row");
+            eprintln!("props smt DIR      write the paths of the proofs as SMT-LIB 2 problems");
+            return ExitCode::from(2);
+        }
+    };
+    match outcome {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
+        Err(why) => {
+            eprintln!("{why}");
+            ExitCode::from(2)
+        }
+    }
+}

@@ -1,0 +1,214 @@
+//! Why a path is impossible: a sum of products that must be positive and yet is zero.
+//!
+//! A certificate is the identity
+//!
+//! ```text
+//! sum_k c_k (product of facts > 0 or >= 0, and of squares)_k  +  sum_j q_j e_j  =  0
+//! ```
+//!
+//! with weights c_k >= 0, facts e_j = 0, and c_k > 0 for at least one product of strict facts only (the empty product is
+//! 1 > 0). Everything on the left is >= 0, one term is > 0, and the sum is zero: nothing satisfies the facts.
+//!
+//! Trusted: [`check`]. Where a certificate comes from does not matter.
+
+use num_rational::BigRational;
+use num_traits::{Signed, Zero};
+
+use super::explorer::{Fact, Sense};
+use super::polynomial::{Polynomial, integer};
+
+/// weight * product of facts * product of squares
+#[derive(Clone, Debug)]
+pub struct Term {
+    /// c_k
+    pub weight: BigRational,
+    /// The facts, by number.
+    pub facts: Vec<usize>,
+    /// What is squared.
+    pub squares: Vec<Polynomial>,
+}
+
+/// The contradiction in the facts of a path.
+#[derive(Clone, Debug, Default)]
+pub struct Certificate {
+    /// The products.
+    pub terms: Vec<Term>,
+    /// The multiples q_j of facts e_j = 0, by number.
+    pub multiples: Vec<(Polynomial, usize)>,
+}
+
+/// Why a certificate proves nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refusal {
+    /// It names a fact that the path doesn't have.
+    NoSuchFact,
+    /// A weight is negative.
+    NegativeWeight,
+    /// A product contains an equation.
+    NotAnInequality,
+    /// A multiple of something that isn't an equation: its sign is unknown.
+    NotAnEquation,
+    /// No product is strictly positive.
+    NothingStrict,
+    /// The sum is not zero.
+    DoesNotCancel,
+}
+
+/// Accepts a certificate that shows that no point satisfies all `facts`.
+///
+/// # Errors
+/// Why it doesn't show that.
+pub fn check(facts: &[Fact], certificate: &Certificate) -> Result<(), Refusal> {
+    let mut sum = Polynomial::default();
+    let mut strict = false;
+    for term in &certificate.terms {
+        if term.weight.is_negative() {
+            return Err(Refusal::NegativeWeight);
+        }
+        let mut product = Polynomial::constant(term.weight.clone());
+        let mut positive = !term.weight.is_zero() && term.squares.is_empty();
+        for &number in &term.facts {
+            let fact = facts.get(number).ok_or(Refusal::NoSuchFact)?;
+            if fact.sense == Sense::Zero {
+                return Err(Refusal::NotAnInequality);
+            }
+            positive &= fact.sense == Sense::Positive;
+            product = &product * &fact.polynomial;
+        }
+        for square in &term.squares {
+            product = &(&product * square) * square;
+        }
+        strict |= positive;
+        sum = &sum + &product;
+    }
+    for (multiplier, number) in &certificate.multiples {
+        let fact = facts.get(*number).ok_or(Refusal::NoSuchFact)?;
+        if fact.sense != Sense::Zero {
+            return Err(Refusal::NotAnEquation);
+        }
+        sum = &sum + &(multiplier * &fact.polynomial);
+    }
+    match (strict, sum.is_zero()) {
+        (false, _) => Err(Refusal::NothingStrict),
+        (true, false) => Err(Refusal::DoesNotCancel),
+        (true, true) => Ok(()),
+    }
+}
+
+impl Certificate {
+    /// The most factors in one product.
+    pub fn factors(&self) -> usize {
+        self.terms.iter().map(|t| t.facts.len() + t.squares.len()).max().unwrap_or(0)
+    }
+
+    /// Adds weight * product of facts.
+    pub fn with(mut self, weight: i64, facts: &[usize], squares: &[Polynomial]) -> Certificate {
+        let term =
+            Term { weight: integer(weight), facts: facts.to_vec(), squares: squares.to_vec() };
+        self.terms.push(term);
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn x() -> Polynomial {
+        Polynomial::variable(0)
+    }
+
+    fn fact(polynomial: Polynomial, sense: Sense) -> Fact {
+        Fact { polynomial, sense }
+    }
+
+    /// 0: x > 0, 1: -x >= 0, 2: -x > 0, 3: x^2 = 0, 4: -x^2 >= 0
+    fn facts() -> Vec<Fact> {
+        let square = &x() * &x();
+        vec![
+            fact(x(), Sense::Positive),
+            fact(-&x(), Sense::Nonnegative),
+            fact(-&x(), Sense::Positive),
+            fact(square.clone(), Sense::Zero),
+            fact(-&square, Sense::Nonnegative),
+        ]
+    }
+
+    fn verdict(certificate: &Certificate) -> Result<(), Refusal> {
+        check(&facts(), certificate)
+    }
+
+    #[test]
+    fn right_certificates_are_accepted() {
+        let linear = Certificate::default().with(1, &[0], &[]).with(1, &[1], &[]);
+        assert_eq!(verdict(&linear), Ok(()));
+        let product = Certificate::default().with(1, &[0, 0], &[]).with(1, &[0, 1], &[]);
+        assert_eq!(verdict(&product), Ok(()));
+        let mut multiple = Certificate::default().with(1, &[0, 0], &[]);
+        multiple.multiples.push((Polynomial::constant(integer(-1)), 3));
+        assert_eq!(verdict(&multiple), Ok(()));
+        // -x > 0, x^2 >= 0: (-x)(-x) - x^2 is not it, but 1 [x]^2 with the strict product (-x)(-x) and 2 (-x^2) is.
+        let square = Certificate::default().with(1, &[2, 2], &[]).with(1, &[], &[x()]);
+        assert_eq!(verdict(&square.with(2, &[4], &[])), Ok(()));
+    }
+
+    #[test]
+    fn a_sum_that_does_not_cancel_is_refused() {
+        let c = Certificate::default().with(2, &[0], &[]).with(1, &[1], &[]);
+        assert_eq!(verdict(&c), Err(Refusal::DoesNotCancel));
+    }
+
+    #[test]
+    fn a_certificate_without_a_strict_product_is_refused() {
+        let c = Certificate::default().with(1, &[], &[x()]).with(1, &[4], &[]);
+        assert_eq!(verdict(&c), Err(Refusal::NothingStrict));
+        assert_eq!(verdict(&Certificate::default()), Err(Refusal::NothingStrict));
+    }
+
+    #[test]
+    fn a_square_is_not_strict_even_beside_a_strict_fact() {
+        // x [x]^2 - x [x]^2 written with 0: x > 0 and 1: -x >= 0.
+        let c = Certificate::default().with(1, &[0], &[x()]).with(1, &[1], &[x()]);
+        assert_eq!(verdict(&c), Err(Refusal::NothingStrict));
+    }
+
+    #[test]
+    fn a_product_with_one_weak_fact_is_not_strict() {
+        let c = Certificate::default().with(1, &[0, 1], &[]).with(1, &[], &[x()]);
+        assert_eq!(verdict(&c), Err(Refusal::NothingStrict));
+    }
+
+    #[test]
+    fn a_strict_product_of_weight_zero_is_refused() {
+        let c = Certificate::default().with(0, &[0], &[]);
+        assert_eq!(verdict(&c), Err(Refusal::NothingStrict));
+    }
+
+    #[test]
+    fn a_negative_weight_is_refused() {
+        let c = Certificate::default().with(1, &[0], &[]).with(-1, &[0], &[]);
+        assert_eq!(verdict(&c), Err(Refusal::NegativeWeight));
+    }
+
+    #[test]
+    fn a_multiple_of_an_inequality_is_refused() {
+        let mut c = Certificate::default().with(1, &[0], &[]);
+        c.multiples.push((Polynomial::constant(integer(-1)), 0));
+        assert_eq!(verdict(&c), Err(Refusal::NotAnEquation));
+    }
+
+    #[test]
+    fn an_equation_as_a_factor_is_refused() {
+        let c = Certificate::default().with(1, &[0, 0], &[]).with(1, &[3], &[]);
+        assert_eq!(verdict(&c), Err(Refusal::NotAnInequality));
+    }
+
+    #[test]
+    fn an_unknown_fact_is_refused() {
+        let c = Certificate::default().with(1, &[9], &[]);
+        assert_eq!(verdict(&c), Err(Refusal::NoSuchFact));
+        let mut c = Certificate::default().with(1, &[], &[]);
+        c.multiples.push((x(), 9));
+        assert_eq!(verdict(&c), Err(Refusal::NoSuchFact));
+    }
+}

@@ -1,0 +1,320 @@
+//! The proof engine: a predicate is run over symbols along all its paths, and every path that ends in `Fails` is shown
+//! to contradict itself by a certificate that a small checker verifies.
+//!
+//! What holds this way holds over every ordered field, so over the real numbers. Trusted are [`polynomial`], [`symbol`],
+//! [`explorer`] and [`certificate::check`]; the search for certificates and for points is not.
+
+pub mod certificate;
+pub mod explorer;
+pub mod polynomial;
+pub mod sampler;
+pub mod search;
+mod simplex;
+pub mod smt;
+pub mod symbol;
+
+pub use symbol::Sym;
+
+use std::fmt::Write;
+
+use num_rational::BigRational;
+
+use crate::Verdict;
+use crate::statement::Statement;
+use certificate::Certificate;
+use explorer::{Path, explore, polynomials_of, verdict_at};
+use sampler::{Random, sample};
+
+/// Draws for a counterexample before and after the search for a certificate, and for a witness.
+const QUICK_DRAWS: usize = 40;
+const SLOW_DRAWS: usize = 4000;
+
+/// What became of a path that ends in `Fails`.
+#[derive(Clone, Debug)]
+pub enum Fate {
+    /// It contradicts itself.
+    Impossible(Certificate),
+    /// The predicate fails at this point.
+    Refuted(Vec<BigRational>),
+    /// Neither was found.
+    Open,
+}
+
+/// The paths of a statement and what became of those that fail.
+#[derive(Clone, Debug)]
+pub struct Analysis {
+    /// All paths.
+    pub paths: Vec<Path>,
+    /// By number of the path, for those that end in `Fails`.
+    pub fates: Vec<(usize, Fate)>,
+}
+
+/// Explores a statement and decides each path that fails.
+pub fn analyse(statement: &Statement) -> Analysis {
+    let unknowns = statement.variables.len();
+    let paths = explore(unknowns, statement.symbolic);
+    let hints = polynomials_of(unknowns, statement.hints);
+    let failing = paths.iter().enumerate().filter(|(_, path)| path.verdict.fails());
+    let fates = failing.map(|(i, path)| (i, fate(statement, path, &hints))).collect();
+    Analysis { paths, fates }
+}
+
+fn fate(statement: &Statement, path: &Path, hints: &[polynomial::Polynomial]) -> Fate {
+    let mut random = Random::new(1);
+    if let Some(point) = refutation(statement, path, &mut random, QUICK_DRAWS) {
+        return Fate::Refuted(point);
+    }
+    if let Some(certificate) = search::search(&path.facts, path.variables, hints) {
+        match certificate::check(&path.facts, &certificate) {
+            Ok(()) => return Fate::Impossible(certificate),
+            Err(refusal) => panic!("the search found a wrong certificate: {refusal:?}"),
+        }
+    }
+    match refutation(statement, path, &mut random, SLOW_DRAWS) {
+        Some(point) => Fate::Refuted(point),
+        None => Fate::Open,
+    }
+}
+
+/// A point on the path at which the predicate, run there, fails.
+fn refutation(
+    statement: &Statement,
+    path: &Path,
+    random: &mut Random,
+    draws: usize,
+) -> Option<Vec<BigRational>> {
+    let mut point = sample(path, random, draws)?;
+    point.truncate(statement.variables.len());
+    verdict_at(statement.symbolic, &point).fails().then_some(point)
+}
+
+/// Proves a statement: every failing path is impossible, and each of its classes is reached at some point.
+///
+/// # Errors
+/// A counterexample, the paths left open, or the class that no point was found for.
+pub fn prove(statement: &Statement) -> Result<String, String> {
+    let analysis = analyse(statement);
+    let mut open = Vec::new();
+    let (mut terms, mut factors) = (0, 0);
+    for (i, fate) in &analysis.fates {
+        match fate {
+            Fate::Refuted(point) => {
+                let verdict = verdict_at(statement.symbolic, point);
+                return Err(format!("{verdict:?} at {}", place(statement, point)));
+            }
+            Fate::Open => open.push(format!("path {i}: {:?}", analysis.paths[*i].verdict)),
+            Fate::Impossible(certificate) => {
+                terms = terms.max(certificate.terms.len() + certificate.multiples.len());
+                factors = factors.max(certificate.factors());
+            }
+        }
+    }
+    if !open.is_empty() {
+        return Err(format!("no certificate and no counterexample for {}", open.join("; ")));
+    }
+    reach_classes(statement, &analysis.paths)?;
+    let (all, failing) = (analysis.paths.len(), analysis.fates.len());
+    let largest = match failing {
+        0 => "by identities and signs alone".to_owned(),
+        _ => format!("largest certificate {terms} terms of {factors} factors"),
+    };
+    Ok(format!("{all} paths, {failing} of them refuted; {largest}"))
+}
+
+/// Refutes a statement that is a control: the predicate fails at a point that was found on one of its paths.
+///
+/// # Errors
+/// That there is no such point.
+pub fn refute(statement: &Statement) -> Result<String, String> {
+    let analysis = analyse(statement);
+    let refuted = analysis.fates.into_iter().find_map(|(_, fate)| match fate {
+        Fate::Refuted(point) => Some(point),
+        _ => None,
+    });
+    match refuted {
+        Some(point) => Ok(format!("rejected at {}", place(statement, &point))),
+        None => Err("the planted mistake was not rejected".to_owned()),
+    }
+}
+
+fn place(statement: &Statement, point: &[BigRational]) -> String {
+    let mut text = String::new();
+    for (name, value) in statement.variables.iter().zip(point) {
+        let comma = if text.is_empty() { "" } else { ", " };
+        let _ = write!(text, "{comma}{name} = {value}");
+    }
+    text
+}
+
+/// A witness for each class, by running the predicate there.
+fn reach_classes(statement: &Statement, paths: &[Path]) -> Result<(), String> {
+    for path in paths {
+        if let Verdict::Holds(class) = path.verdict {
+            if !statement.classes.contains(&class) {
+                return Err(format!("the class '{class}' is not listed"));
+            }
+        }
+    }
+    let mut random = Random::new(2);
+    for class in statement.classes {
+        let of_class: Vec<&Path> =
+            paths.iter().filter(|p| p.verdict == Verdict::Holds(class)).collect();
+        let mut reached = |tries| {
+            of_class.iter().any(|path| {
+                sample(path, &mut random, tries).is_some_and(|mut point| {
+                    point.truncate(statement.variables.len());
+                    verdict_at(statement.symbolic, &point) == Verdict::Holds(class)
+                })
+            })
+        };
+        if !(reached(20) || reached(SLOW_DRAWS)) {
+            return Err(format!("no point of the class '{class}' was found"));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::claim::Subject;
+    use crate::verdict::Ordered;
+    use crate::{claims, ensure, given, statement};
+
+    /// All statements of all claims, controls included.
+    fn statements() -> Vec<Statement> {
+        let claims = claims::all();
+        let subjects = claims.iter().flat_map(|c| &c.checks).map(|check| check.subject);
+        let mut all: Vec<Statement> = subjects
+            .filter_map(|subject| match subject {
+                Subject::Statement(statement) => Some(statement),
+                _ => None,
+            })
+            .collect();
+        all.sort_by_key(|s| s.name);
+        all.dedup_by_key(|s| s.name);
+        all
+    }
+
+    /// The point with the values of the inverse variables, or nothing where a divisor is zero.
+    fn with_inverses(path: &Path, point: &[BigRational]) -> Option<Vec<BigRational>> {
+        let mut point = point.to_vec();
+        for (divisor, _) in &path.inverses {
+            let value = divisor.at(&point);
+            if value == BigRational::from_integer(0.into()) {
+                return None;
+            }
+            point.push(value.recip());
+        }
+        Some(point)
+    }
+
+    /// A path on which a divisor is zero stops before it has an inverse for it, so there `with_inverses` is enough too.
+    fn lies_on(path: &Path, point: &[BigRational]) -> bool {
+        with_inverses(path, point)
+            .is_some_and(|point| path.facts.iter().all(|fact| fact.holds_at(&point)))
+    }
+
+    #[test]
+    fn every_random_point_lies_on_exactly_one_path_and_has_its_verdict() {
+        let mut random = Random::new(7);
+        for statement in statements() {
+            let unknowns = statement.variables.len();
+            let paths = explore(unknowns, statement.symbolic);
+            for _ in 0..100 {
+                let point: Vec<BigRational> = (0..unknowns).map(|_| random.rational()).collect();
+                let on: Vec<&Path> = paths.iter().filter(|path| lies_on(path, &point)).collect();
+                assert_eq!(on.len(), 1, "{} at {}", statement.name, place(&statement, &point));
+                let verdict = verdict_at(statement.symbolic, &point);
+                assert_eq!(on[0].verdict, verdict, "{}", statement.name);
+            }
+        }
+    }
+
+    #[test]
+    fn points_drawn_on_a_path_have_its_verdict() {
+        let mut random = Random::new(8);
+        for statement in statements() {
+            let paths = explore(statement.variables.len(), statement.symbolic);
+            for path in &paths {
+                if let Some(mut point) = sample(path, &mut random, 20) {
+                    point.truncate(statement.variables.len());
+                    assert_eq!(path.verdict, verdict_at(statement.symbolic, &point));
+                }
+            }
+        }
+    }
+
+    fn a_square_is_positive<S: Ordered>([a]: [S; 1]) -> Verdict {
+        ensure!(a * a > S::from(0));
+        Verdict::Holds("all")
+    }
+
+    fn a_square_is_not_negative<S: Ordered>([a]: [S; 1]) -> Verdict {
+        ensure!(a * a >= S::from(0));
+        Verdict::Holds("all")
+    }
+
+    fn a_number_is_its_product_with_an_inverse<S: Ordered>([a, b]: [S; 2]) -> Verdict {
+        ensure!(a / b * b == a);
+        Verdict::Holds("all")
+    }
+
+    fn a_quotient_returns<S: Ordered>([a, b]: [S; 2]) -> Verdict {
+        given!(b * b > S::from(0));
+        ensure!(a / b * b == a);
+        ensure!(S::from(1) / (S::from(3) * b) * b == S::from(1) / S::from(3));
+        Verdict::Holds("all")
+    }
+
+    fn nothing_satisfies_this<S: Ordered>([a]: [S; 1]) -> Verdict {
+        given!(a > S::from(1) && a < S::from(0));
+        Verdict::Holds("never")
+    }
+
+    fn a_comparison_has_one_answer<S: Ordered>([a, b]: [S; 2]) -> Verdict {
+        let answers = [a < b, a == b, a > b].map(u8::from);
+        ensure!(answers.iter().sum::<u8>() == 1);
+        ensure!((a <= b) == (a < b || a == b));
+        ensure!((a >= b) != (a < b));
+        ensure!((b > a) == (a < b));
+        ensure!((a != b) == (a < b || b < a));
+        ensure!(a.partial_cmp(&b) == (b - b).partial_cmp(&(b - a)));
+        Verdict::Holds("all")
+    }
+
+    #[test]
+    fn true_statements_are_proved_and_false_ones_refuted() {
+        assert!(prove(&statement!(a_square_is_not_negative, [a], ["all"])).is_ok());
+        let why = prove(&statement!(a_square_is_positive, [a], ["all"])).unwrap_err();
+        assert!(why.ends_with("at a = 0"), "{why}");
+        assert!(refute(&statement!(a_square_is_not_negative, [a], ["all"])).is_err());
+        assert!(prove(&statement!(a_comparison_has_one_answer, [a, b], ["all"])).is_ok());
+    }
+
+    #[test]
+    fn a_division_by_something_that_may_be_zero_fails() {
+        let statement = statement!(a_number_is_its_product_with_an_inverse, [a, b], ["all"]);
+        let why = prove(&statement).unwrap_err();
+        assert!(why.contains("division by zero") && why.ends_with("b = 0"), "{why}");
+        assert!(prove(&statement!(a_quotient_returns, [a, b], ["all"])).is_ok());
+    }
+
+    #[test]
+    fn a_class_that_nothing_reaches_is_an_error() {
+        let why = prove(&statement!(nothing_satisfies_this, [a], ["never"])).unwrap_err();
+        assert!(why.contains("'never'"), "{why}");
+        let why = prove(&statement!(a_square_is_not_negative, [a], [])).unwrap_err();
+        assert!(why.contains("not listed"), "{why}");
+    }
+
+    #[test]
+    fn a_path_is_printed_as_an_smt_problem() {
+        let paths = explore(1, |v| a_square_is_positive(crate::statement::take(v)));
+        let zero = paths.iter().find(|p| p.verdict.fails()).unwrap();
+        let text = smt::problem(zero, &["a"], "; head\n");
+        let expected = "; head\n(set-logic QF_NRA)\n(declare-const a Real)\n\
+                        (assert (>= (* (- 1.0) a a) 0.0))\n(check-sat)\n";
+        assert_eq!(text, expected);
+    }
+}

@@ -1,0 +1,321 @@
+//! Polynomials in several variables with exact rational coefficients.
+//!
+//! Trusted: the checker of certificates rests on this arithmetic.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::ops::{Add, Mul, Neg, Sub};
+
+use num_rational::BigRational;
+use num_traits::{One, Signed, Zero};
+
+/// The exponents of the variables, without trailing zeros.
+pub type Monomial = Vec<u8>;
+
+/// A polynomial: its monomials with their coefficients, none of which is zero. Equal maps are equal polynomials.
+#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Polynomial(BTreeMap<Monomial, BigRational>);
+
+impl Polynomial {
+    /// A constant.
+    pub fn constant(value: BigRational) -> Polynomial {
+        Polynomial::term(Vec::new(), value)
+    }
+
+    /// The variable with this number.
+    pub fn variable(index: usize) -> Polynomial {
+        let mut monomial = vec![0; index];
+        monomial.push(1);
+        Polynomial::term(monomial, BigRational::one())
+    }
+
+    /// coefficient * monomial
+    pub fn term(monomial: Monomial, coefficient: BigRational) -> Polynomial {
+        let mut sum = Polynomial::default();
+        sum.add_term(monomial, coefficient);
+        sum
+    }
+
+    fn add_term(&mut self, monomial: Monomial, coefficient: BigRational) {
+        if coefficient.is_zero() {
+            return;
+        }
+        let entry = self.0.entry(monomial);
+        match entry {
+            std::collections::btree_map::Entry::Vacant(entry) => {
+                entry.insert(coefficient);
+            }
+            std::collections::btree_map::Entry::Occupied(mut entry) => {
+                *entry.get_mut() += coefficient;
+                if entry.get().is_zero() {
+                    entry.remove();
+                }
+            }
+        }
+    }
+
+    /// Whether it is the zero polynomial.
+    pub fn is_zero(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Its value, if it has no variables.
+    pub fn as_constant(&self) -> Option<BigRational> {
+        match self.0.len() {
+            0 => Some(BigRational::zero()),
+            1 => self.0.get(&Vec::new()).cloned(),
+            _ => None,
+        }
+    }
+
+    /// Its monomials with their coefficients.
+    pub fn terms(&self) -> impl Iterator<Item = (&Monomial, &BigRational)> {
+        self.0.iter()
+    }
+
+    /// The numbers of its variables.
+    pub fn variables(&self) -> Vec<usize> {
+        let longest = self.0.keys().map(Vec::len).max().unwrap_or(0);
+        (0..longest).filter(|&i| self.0.keys().any(|m| m.get(i).is_some_and(|&e| e > 0))).collect()
+    }
+
+    /// The polynomial divided by its leading coefficient, and that coefficient. Not for zero.
+    pub fn monic(&self) -> (Polynomial, BigRational) {
+        let lead = self.0.values().next_back().expect("not the zero polynomial").clone();
+        (self.scaled(&lead.recip()), lead)
+    }
+
+    /// factor * self
+    pub fn scaled(&self, factor: &BigRational) -> Polynomial {
+        if factor.is_zero() {
+            return Polynomial::default();
+        }
+        Polynomial(self.0.iter().map(|(m, c)| (m.clone(), c * factor)).collect())
+    }
+
+    /// The derivative with respect to a variable.
+    pub fn derivative(&self, variable: usize) -> Polynomial {
+        let mut sum = Polynomial::default();
+        for (monomial, coefficient) in &self.0 {
+            if let Some(&exponent) = monomial.get(variable).filter(|&&e| e > 0) {
+                let mut lower = monomial.clone();
+                lower[variable] -= 1;
+                trim(&mut lower);
+                sum.add_term(lower, coefficient * integer(i64::from(exponent)));
+            }
+        }
+        sum
+    }
+
+    /// The polynomial with `value` in place of a variable.
+    pub fn substituted(&self, variable: usize, value: &BigRational) -> Polynomial {
+        let mut sum = Polynomial::default();
+        for (monomial, coefficient) in &self.0 {
+            let mut rest = monomial.clone();
+            let mut coefficient = coefficient.clone();
+            if let Some(exponent) = rest.get_mut(variable) {
+                coefficient *= power(value, *exponent);
+                *exponent = 0;
+            }
+            trim(&mut rest);
+            sum.add_term(rest, coefficient);
+        }
+        sum
+    }
+
+    /// Its value at a point.
+    pub fn at(&self, point: &[BigRational]) -> BigRational {
+        let value = |monomial: &Monomial| {
+            let powers = monomial.iter().zip(point).map(|(&e, x)| power(x, e));
+            powers.fold(BigRational::one(), |product, p| product * p)
+        };
+        self.0.iter().map(|(m, c)| c * value(m)).fold(BigRational::zero(), |sum, t| sum + t)
+    }
+
+    /// In the notation of SMT-LIB 2.
+    pub fn smt(&self, names: &[String]) -> String {
+        let factor = |monomial: &Monomial, coefficient: &BigRational| {
+            let mut text = format!("(* {}", smt_number(coefficient));
+            for (i, &exponent) in monomial.iter().enumerate() {
+                for _ in 0..exponent {
+                    let _ = write!(text, " {}", names[i]);
+                }
+            }
+            if monomial.is_empty() { smt_number(coefficient) } else { text + ")" }
+        };
+        match self.0.len() {
+            0 => "0.0".to_owned(),
+            1 => self.0.iter().map(|(m, c)| factor(m, c)).collect(),
+            _ => {
+                let terms: Vec<String> = self.0.iter().map(|(m, c)| factor(m, c)).collect();
+                format!("(+ {})", terms.join(" "))
+            }
+        }
+    }
+}
+
+/// An integer as a rational number.
+pub fn integer(value: i64) -> BigRational {
+    BigRational::from_integer(value.into())
+}
+
+fn power(base: &BigRational, exponent: u8) -> BigRational {
+    (0..exponent).fold(BigRational::one(), |product, _| product * base)
+}
+
+fn trim(monomial: &mut Monomial) {
+    while monomial.last() == Some(&0) {
+        monomial.pop();
+    }
+}
+
+/// The product of two monomials.
+pub fn product(a: &Monomial, b: &Monomial) -> Monomial {
+    let exponent = |m: &Monomial, i: usize| m.get(i).copied().unwrap_or(0);
+    (0..a.len().max(b.len())).map(|i| exponent(a, i) + exponent(b, i)).collect()
+}
+
+/// a / b, if b divides a.
+pub fn quotient(a: &Monomial, b: &Monomial) -> Option<Monomial> {
+    if b.len() > a.len() {
+        return None;
+    }
+    let mut result = a.clone();
+    for (exponent, &divisor) in result.iter_mut().zip(b) {
+        *exponent = exponent.checked_sub(divisor)?;
+    }
+    trim(&mut result);
+    Some(result)
+}
+
+fn smt_number(value: &BigRational) -> String {
+    let size = value.abs();
+    let text = if size.is_integer() {
+        format!("{}.0", size.numer())
+    } else {
+        format!("(/ {}.0 {}.0)", size.numer(), size.denom())
+    };
+    if value.is_negative() { format!("(- {text})") } else { text }
+}
+
+impl Add for &Polynomial {
+    type Output = Polynomial;
+
+    fn add(self, other: &Polynomial) -> Polynomial {
+        let mut sum = self.clone();
+        for (m, c) in &other.0 {
+            sum.add_term(m.clone(), c.clone());
+        }
+        sum
+    }
+}
+
+impl Neg for &Polynomial {
+    type Output = Polynomial;
+
+    fn neg(self) -> Polynomial {
+        self.scaled(&integer(-1))
+    }
+}
+
+impl Sub for &Polynomial {
+    type Output = Polynomial;
+
+    fn sub(self, other: &Polynomial) -> Polynomial {
+        let mut difference = self.clone();
+        for (m, c) in &other.0 {
+            difference.add_term(m.clone(), -c);
+        }
+        difference
+    }
+}
+
+impl Mul for &Polynomial {
+    type Output = Polynomial;
+
+    fn mul(self, other: &Polynomial) -> Polynomial {
+        let mut sum = Polynomial::default();
+        for (m, c) in &self.0 {
+            for (n, d) in &other.0 {
+                sum.add_term(product(m, n), c * d);
+            }
+        }
+        sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn x() -> Polynomial {
+        Polynomial::variable(0)
+    }
+
+    fn y() -> Polynomial {
+        Polynomial::variable(1)
+    }
+
+    /// (2x - 3y)(x + y) + 5
+    fn example() -> Polynomial {
+        let two_x = x().scaled(&integer(2));
+        let three_y = y().scaled(&integer(3));
+        &(&(&two_x - &three_y) * &(&x() + &y())) + &Polynomial::constant(integer(5))
+    }
+
+    #[test]
+    fn products_are_distributed_and_like_terms_collected() {
+        let terms: Vec<(Monomial, BigRational)> =
+            example().terms().map(|(m, c)| (m.clone(), c.clone())).collect();
+        let expected = [(vec![], 5), (vec![0, 2], -3), (vec![1, 1], -1), (vec![2], 2)];
+        assert_eq!(terms, expected.map(|(m, c)| (m, integer(c))));
+    }
+
+    #[test]
+    fn a_difference_with_itself_is_zero() {
+        assert!((&example() - &example()).is_zero());
+        assert!((&example() + &-&example()).is_zero());
+        assert!((&example() * &Polynomial::default()).is_zero());
+        assert_eq!(Polynomial::default().as_constant(), Some(integer(0)));
+    }
+
+    #[test]
+    fn values_agree_with_substitution_one_variable_at_a_time() {
+        let at = [integer(7), integer(-2)];
+        let value = example().at(&at);
+        assert_eq!(value, integer((14 + 6) * 5 + 5));
+        let by_steps = example().substituted(0, &at[0]).substituted(1, &at[1]);
+        assert_eq!(by_steps.as_constant(), Some(value));
+    }
+
+    #[test]
+    fn the_derivative_of_a_product_is_known() {
+        // d/dx = 4x - y, d/dy = -x - 6y
+        let dx = &x().scaled(&integer(4)) - &y();
+        let dy = &-&x() - &y().scaled(&integer(6));
+        assert_eq!(example().derivative(0), dx);
+        assert_eq!(example().derivative(1), dy);
+    }
+
+    #[test]
+    fn monic_divides_by_the_leading_coefficient() {
+        let (monic, lead) = example().scaled(&integer(-3)).monic();
+        assert_eq!(monic.scaled(&lead), example().scaled(&integer(-3)));
+        assert_eq!(monic.monic().1, integer(1));
+    }
+
+    #[test]
+    fn quotients_exist_only_where_the_divisor_divides() {
+        assert_eq!(quotient(&vec![2, 1], &vec![1, 1]), Some(vec![1]));
+        assert_eq!(quotient(&vec![2], &vec![0, 1]), None);
+        assert_eq!(quotient(&vec![1, 1], &vec![2]), None);
+    }
+
+    #[test]
+    fn smt_writes_negative_and_fractional_coefficients() {
+        let p = &x().scaled(&(integer(-1) / integer(2))) + &(&y() * &y());
+        let names = ["x".to_owned(), "y".to_owned()];
+        assert_eq!(p.smt(&names), "(+ (* 1.0 y y) (* (- (/ 1.0 2.0)) x))");
+        assert_eq!(Polynomial::constant(integer(-3)).smt(&names), "(- 3.0)");
+    }
+}

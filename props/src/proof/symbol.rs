@@ -1,0 +1,334 @@
+//! Symbols: numbers that stand for a polynomial in the unknowns of a statement. Asking one for its sign forks the path.
+//!
+//! A run knows for each (monic) polynomial that was asked about which signs are still possible on this path. A question
+//! whose answer is implied forks nothing; any other is answered one way now and the other ways in later runs, and the
+//! answer is remembered. A division by something that isn't a constant asks whether it is zero: the path on which it is
+//! has failed; on the others a new variable stands for the inverse.
+//!
+//! Trusted: `ask` and the operators decide which paths there are.
+
+use std::cell::RefCell;
+use std::cmp::Ordering;
+use std::collections::BTreeMap;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use num_rational::BigRational;
+use num_traits::{Signed, Zero};
+use signorini::kernel::Scalar;
+
+use super::polynomial::{Polynomial, integer};
+
+/// A set of signs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Signs(u8);
+
+impl Signs {
+    pub(super) const NEGATIVE: Signs = Signs(1);
+    pub(super) const ZERO: Signs = Signs(2);
+    pub(super) const POSITIVE: Signs = Signs(4);
+    const ALL: Signs = Signs(7);
+    pub(super) const NONPOSITIVE: Signs = Signs(1 | 2);
+    pub(super) const NONNEGATIVE: Signs = Signs(2 | 4);
+
+    fn of(value: &BigRational) -> Signs {
+        if value.is_zero() {
+            Signs::ZERO
+        } else if value.is_negative() {
+            Signs::NEGATIVE
+        } else {
+            Signs::POSITIVE
+        }
+    }
+
+    fn and(self, other: Signs) -> Signs {
+        Signs(self.0 & other.0)
+    }
+
+    fn not(self) -> Signs {
+        Signs(7 & !self.0)
+    }
+
+    /// The signs of -p for the signs of p.
+    fn mirrored(self) -> Signs {
+        Signs((self.0 & 1) << 2 | self.0 & 2 | self.0 >> 2)
+    }
+
+    /// Its convex parts: "not zero" is two of them.
+    fn parts(self) -> Vec<Signs> {
+        match self {
+            Signs(0) => Vec::new(),
+            Signs(5) => vec![Signs::NEGATIVE, Signs::POSITIVE],
+            convex => vec![convex],
+        }
+    }
+}
+
+/// A decision of the current run: which answer, of how many.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Choice {
+    pub(super) answer: usize,
+    pub(super) of: usize,
+}
+
+/// One run of a predicate along one path.
+#[derive(Default)]
+pub(super) struct Run {
+    number: u32,
+    values: Vec<Polynomial>,
+    pub(super) signs: BTreeMap<Polynomial, Signs>,
+    /// Monic divisors and the variables that stand for their inverses.
+    pub(super) inverses: Vec<(Polynomial, usize)>,
+    pub(super) variables: usize,
+    pub(super) script: Vec<Choice>,
+    next: usize,
+    pub(super) failed: Option<&'static str>,
+}
+
+thread_local! {
+    static RUN: RefCell<Run> = RefCell::new(Run::default());
+}
+
+/// Starts a run with `variables` unknowns that follows `script` and extends it at new questions.
+pub(super) fn start(variables: usize, script: Vec<Choice>) -> Vec<Sym> {
+    RUN.with_borrow_mut(|run| {
+        *run = Run { number: run.number + 1, variables, script, ..Run::default() };
+    });
+    (0..variables).map(|i| Sym::new(Polynomial::variable(i))).collect()
+}
+
+/// Ends the run and hands it over.
+pub(super) fn finish() -> Run {
+    RUN.with_borrow_mut(|run| {
+        let number = run.number + 1;
+        std::mem::replace(run, Run { number, ..Run::default() })
+    })
+}
+
+impl Run {
+    /// Whether the sign of `p` is in `yes` on this path.
+    fn ask(&mut self, p: &Polynomial, yes: Signs) -> bool {
+        if self.failed.is_some() {
+            return false;
+        }
+        if let Some(value) = p.as_constant() {
+            return Signs::of(&value).and(yes) != Signs(0);
+        }
+        let (monic, lead) = p.monic();
+        let yes = if lead.is_negative() { yes.mirrored() } else { yes };
+        let known = self.signs.get(&monic).copied().unwrap_or(Signs::ALL);
+        let mut answers: Vec<(bool, Signs)> = Vec::new();
+        answers.extend(known.and(yes).parts().into_iter().map(|part| (true, part)));
+        answers.extend(known.and(yes.not()).parts().into_iter().map(|part| (false, part)));
+        if answers.len() == 1 {
+            return answers[0].0;
+        }
+        let (answer, part) = answers[self.choose(answers.len())];
+        self.signs.insert(monic, part);
+        answer
+    }
+
+    fn choose(&mut self, of: usize) -> usize {
+        if self.next == self.script.len() {
+            self.script.push(Choice { answer: 0, of });
+        }
+        let choice = self.script[self.next];
+        assert_eq!(choice.of, of, "a predicate must be a function of its arguments");
+        self.next += 1;
+        choice.answer
+    }
+
+    /// 1 / divisor, or nothing on the path where it is zero.
+    fn inverse(&mut self, divisor: &Polynomial) -> Option<Polynomial> {
+        if let Some(value) = divisor.as_constant() {
+            return (!value.is_zero()).then(|| Polynomial::constant(value.recip()));
+        }
+        if self.ask(divisor, Signs::ZERO) {
+            return None;
+        }
+        let (monic, lead) = divisor.monic();
+        let known =
+            self.inverses.iter().find(|(of, _)| *of == monic).map(|&(_, variable)| variable);
+        let variable = known.unwrap_or_else(|| self.new_inverse(&monic));
+        Some(Polynomial::variable(variable).scaled(&lead.recip()))
+    }
+
+    /// A new variable x with m x = 1 and the sign of m, which is known here.
+    fn new_inverse(&mut self, monic: &Polynomial) -> usize {
+        let variable = self.variables;
+        self.variables += 1;
+        self.inverses.push((monic.clone(), variable));
+        let x = Polynomial::variable(variable);
+        let one = Polynomial::constant(integer(1));
+        let (definition, _) = (&(monic * &x) - &one).monic();
+        self.signs.insert(definition, Signs::ZERO);
+        if let Some(&sign) = self.signs.get(monic) {
+            self.signs.insert(x, sign);
+        }
+        variable
+    }
+
+    fn value(&self, symbol: Sym) -> &Polynomial {
+        assert_eq!(symbol.run, self.number, "a symbol outlived its run");
+        &self.values[symbol.index as usize]
+    }
+
+    fn keep(&mut self, value: Polynomial) -> Sym {
+        self.values.push(value);
+        let index = u32::try_from(self.values.len() - 1).expect("fewer than 2^32 symbols");
+        Sym { run: self.number, index }
+    }
+}
+
+/// A polynomial in the unknowns of the current run.
+#[derive(Clone, Copy, Debug)]
+pub struct Sym {
+    run: u32,
+    index: u32,
+}
+
+impl Sym {
+    /// The symbol with this value.
+    pub fn new(value: Polynomial) -> Sym {
+        RUN.with_borrow_mut(|run| run.keep(value))
+    }
+
+    /// Its value.
+    pub fn polynomial(self) -> Polynomial {
+        RUN.with_borrow(|run| run.value(self).clone())
+    }
+
+    fn ask(self, other: Sym, yes: Signs) -> bool {
+        RUN.with_borrow_mut(|run| {
+            let difference = run.value(self) - run.value(other);
+            run.ask(&difference, yes)
+        })
+    }
+
+    fn combined(self, other: Sym, work: impl Fn(&Polynomial, &Polynomial) -> Polynomial) -> Sym {
+        RUN.with_borrow_mut(|run| {
+            let value = work(run.value(self), run.value(other));
+            run.keep(value)
+        })
+    }
+}
+
+impl From<i32> for Sym {
+    fn from(value: i32) -> Sym {
+        Sym::new(Polynomial::constant(integer(i64::from(value))))
+    }
+}
+
+impl Add for Sym {
+    type Output = Sym;
+
+    fn add(self, other: Sym) -> Sym {
+        self.combined(other, |a, b| a + b)
+    }
+}
+
+impl Sub for Sym {
+    type Output = Sym;
+
+    fn sub(self, other: Sym) -> Sym {
+        self.combined(other, |a, b| a - b)
+    }
+}
+
+impl Mul for Sym {
+    type Output = Sym;
+
+    fn mul(self, other: Sym) -> Sym {
+        self.combined(other, |a, b| a * b)
+    }
+}
+
+impl Neg for Sym {
+    type Output = Sym;
+
+    fn neg(self) -> Sym {
+        RUN.with_borrow_mut(|run| {
+            let value = -run.value(self);
+            run.keep(value)
+        })
+    }
+}
+
+impl Div for Sym {
+    type Output = Sym;
+
+    fn div(self, divisor: Sym) -> Sym {
+        RUN.with_borrow_mut(|run| {
+            let (a, b) = (run.value(self).clone(), run.value(divisor).clone());
+            let quotient = match run.inverse(&b) {
+                Some(inverse) => &a * &inverse,
+                None => {
+                    run.failed.get_or_insert("division by zero");
+                    Polynomial::default()
+                }
+            };
+            run.keep(quotient)
+        })
+    }
+}
+
+impl PartialEq for Sym {
+    fn eq(&self, other: &Sym) -> bool {
+        self.ask(*other, Signs::ZERO)
+    }
+}
+
+impl PartialOrd for Sym {
+    fn partial_cmp(&self, other: &Sym) -> Option<Ordering> {
+        Some(if self == other {
+            Ordering::Equal
+        } else if self < other {
+            Ordering::Less
+        } else {
+            Ordering::Greater
+        })
+    }
+
+    fn lt(&self, other: &Sym) -> bool {
+        self.ask(*other, Signs::NEGATIVE)
+    }
+
+    fn le(&self, other: &Sym) -> bool {
+        self.ask(*other, Signs::NONPOSITIVE)
+    }
+
+    fn gt(&self, other: &Sym) -> bool {
+        self.ask(*other, Signs::POSITIVE)
+    }
+
+    fn ge(&self, other: &Sym) -> bool {
+        self.ask(*other, Signs::NONNEGATIVE)
+    }
+}
+
+impl Scalar for Sym {
+    fn split(self, nonpositive: impl FnOnce(Sym) -> Sym, positive: impl FnOnce(Sym) -> Sym) -> Sym {
+        if self <= Sym::from(0) { nonpositive(self) } else { positive(self) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn signs_mirror_and_fall_into_convex_parts() {
+        assert_eq!(Signs::NONPOSITIVE.mirrored(), Signs::NONNEGATIVE);
+        assert_eq!(Signs::NEGATIVE.mirrored(), Signs::POSITIVE);
+        assert_eq!(Signs::ZERO.mirrored(), Signs::ZERO);
+        assert_eq!(Signs::ZERO.not().parts(), [Signs::NEGATIVE, Signs::POSITIVE]);
+        assert_eq!(Signs::NONPOSITIVE.parts(), [Signs::NONPOSITIVE]);
+    }
+
+    #[test]
+    #[should_panic(expected = "a symbol outlived its run")]
+    fn a_symbol_does_not_outlive_its_run() {
+        let late = start(1, Vec::new())[0];
+        finish();
+        let _ = late + Sym::from(1);
+    }
+}
