@@ -103,8 +103,11 @@ impl ExactEdge<f64, 6, 3> for P2 {
         let mut cuts = Cuts::new();
         cuts.add_roots::<P2, 6, 3>(p);
         for [start, end] in cuts.pieces() {
-            // A NaN is not <= 0: the piece counts as positive and the integrals become NaN.
-            if !(value_at::<P2, f64, 6, 3>(p, (start + end) / 2.0) <= 0.0) {
+            // By the sign of Simpson's sum, which is the integral of P: the value in the middle alone would take
+            // (s - 1/2)^2 for zero. A NaN is not <= 0: the piece counts as positive and the integrals become NaN.
+            let [first, middle, last] =
+                [start, (start + end) / 2.0, end].map(|s| value_at::<P2, f64, 6, 3>(p, s));
+            if !(first + 4.0 * middle + last <= 0.0) {
                 for (s, weight) in gauss3(start, end) {
                     let shapes = P2::edge_values(s);
                     // Inside a positive piece P itself is integrated: a rounding error of its sign near the ends of
@@ -308,6 +311,14 @@ mod tests {
             close(&P2::exact(p), &fine, 2e-4);
             assert!((P2::exact(p).energy - fine.energy).abs() < 1e-8);
         }
+    }
+
+    #[test]
+    fn a_parabola_that_touches_zero_in_the_middle_is_positive() {
+        // (s - 1/2)^2: 1/2 int P^2 = 1/2 . 2 . (1/2)^5 / 5.
+        let e = P2::exact([0.25, 0.25, 0.0]);
+        assert!((e.energy - 1.0 / 160.0).abs() < 1e-17 && (e.active - 1.0).abs() < 1e-15);
+        assert_eq!(P2::exact([-0.25, -0.25, 0.0]), EdgeIntegrals::of(0.0));
     }
 
     #[test]
