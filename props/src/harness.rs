@@ -158,7 +158,7 @@ mod stand_in {
                 [0.0, -0.0, 1.0, -1.0, 5e-324, f64::MAX, f64::NAN, 3.9e-121, -8.3e-25];
             match random.below(4) {
                 0 => EDGES[random.below(9)],
-                1 => f64::from_bits(random.next()),
+                1 => f64::from_bits(random.bits()),
                 _ => random.below(2001) as f64 / 8.0 - 125.0,
             }
         }
@@ -177,7 +177,7 @@ mod stand_in {
                     match random.below(3) {
                         0 => random.below(9) as $type,
                         1 => (0 as $type).wrapping_sub(random.below(9) as $type),
-                        _ => random.next() as $type,
+                        _ => random.bits() as $type,
                     }
                 }
             })*

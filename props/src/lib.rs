@@ -7,6 +7,8 @@
 #[cfg(not(kani))]
 pub mod audit;
 #[cfg(not(kani))]
+pub mod bodies;
+#[cfg(not(kani))]
 pub mod claim;
 pub mod claims;
 #[cfg(not(kani))]
@@ -16,6 +18,8 @@ pub mod export;
 pub mod harness;
 #[cfg(not(kani))]
 pub mod ledger;
+#[cfg(not(kani))]
+pub mod naive;
 pub mod numbers;
 #[cfg(not(kani))]
 pub mod proof;

@@ -1,7 +1,9 @@
 //! The claims, one file per item. Each file has the predicates first, then the harnesses of the model checker, and last
 //! the row of the ledger with its checks.
 
+pub mod discrete_forms;
 pub mod lemma_3_2;
+pub mod method;
 #[cfg(not(kani))]
 pub mod pending;
 pub mod positive_part;
@@ -19,6 +21,8 @@ pub fn all() -> Vec<Claim> {
         positive_part::claim(),
         prop_2_1::claim(),
         prop_2_1::remark_2_2(),
+        discrete_forms::claim(),
+        method::claim(),
         lemma_3_2::claim(),
         theorem_3_3::claim(),
         theorem_3_4::claim(),

@@ -33,18 +33,6 @@ pub fn claims() -> Vec<Claim> {
             "a(u, v) - int gamma sigma_n(u) sigma_n(v) + int (1/gamma)[u_n - gamma sigma_n(u)]+ (v_n - gamma sigma_n(v)) = L(v).",
         ),
         row(
-            "5",
-            &["(7)"],
-            "gamma, P_gamma and A_gamma",
-            "gamma = gamma0 h_T; P_gamma(v) = v_n - gamma sigma_n(v); A_gamma(u, v) = a(u, v) - int gamma sigma_n(u) sigma_n(v).",
-        ),
-        row(
-            "6",
-            &["(8)"],
-            "The method",
-            "A_gamma(u^h, v^h) + int (1/gamma)[P_gamma(u^h)]+ P_gamma(v^h) = L(v^h) for all v^h in V^h.",
-        ),
-        row(
             "7",
             &["(9)", "(10)"],
             "The contact pressure as a projection",

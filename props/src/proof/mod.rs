@@ -149,10 +149,10 @@ fn place(statement: &Statement, point: &[BigRational]) -> String {
 /// A witness for each class, by running the predicate there.
 fn reach_classes(statement: &Statement, paths: &[Path]) -> Result<(), String> {
     for path in paths {
-        if let Verdict::Holds(class) = path.verdict {
-            if !statement.classes.contains(&class) {
-                return Err(format!("the class '{class}' is not listed"));
-            }
+        if let Verdict::Holds(class) = path.verdict
+            && !statement.classes.contains(&class)
+        {
+            return Err(format!("the class '{class}' is not listed"));
         }
     }
     let mut random = Random::new(2);
@@ -272,6 +272,7 @@ mod tests {
         Verdict::Holds("never")
     }
 
+    #[expect(clippy::double_comparisons, clippy::eq_op, reason = "the comparisons are under test")]
     fn a_comparison_has_one_answer<S: Ordered>([a, b]: [S; 2]) -> Verdict {
         let answers = [a < b, a == b, a > b].map(u8::from);
         ensure!(answers.iter().sum::<u8>() == 1);

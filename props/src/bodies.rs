@@ -1,0 +1,634 @@
+//! Small random bodies with exact data: a grid of cells cut into triangles, nodes moved, turned by a rational rotation;
+//! contact at the bottom, sometimes on the left side too (so that one triangle owns two contact edges). Lengths of
+//! contact edges, normals and h_T are rational, so that nothing is rounded.
+//!
+//! On such a body each quantity of method (8) is computed twice: by looping the kernel's element functions, and by
+//! `naive`. h_T enters as given data, for it is a square root: any positive number serves both sides alike.
+
+use std::collections::BTreeMap;
+
+use proptest::prelude::*;
+use signorini::kernel::contact_edge::coercivity_constant;
+use signorini::kernel::edge_integral::{ExactEdge, gauss};
+use signorini::kernel::element::stiffness;
+use signorini::kernel::{ContactEdge, EdgeIntegrals, Element, Material, Plane, Triangle};
+
+use crate::draws::{positive, ratio};
+use crate::naive::{Field, Hooke, Line};
+use crate::numbers::Exact;
+
+/// The plain data of a body, as drawn.
+#[derive(Clone, Debug)]
+pub struct Draw {
+    cells: [usize; 2],
+    diagonals: Vec<bool>,
+    moves: Vec<[i8; 2]>,
+    turn: usize,
+    left_too: bool,
+    lambda: (i64, i64),
+    mu: (i64, i64),
+    stress: bool,
+    gamma0: (i64, i64),
+    diameters: Vec<(i64, i64)>,
+    values: Vec<[(i64, i64); 2]>,
+    gaps: Vec<[(i64, i64); 3]>,
+}
+
+/// More values than any field on these bodies has nodes.
+const MOST_NODES: usize = 24;
+
+/// Bodies of one to four cells, with values for `fields` fields.
+pub fn bodies(fields: usize) -> impl Strategy<Value = Draw> {
+    let shape = (
+        prop_oneof![Just([1, 1]), Just([2, 1]), Just([1, 2])],
+        prop::collection::vec(any::<bool>(), 4),
+        prop::collection::vec([-4_i8..=4, -4_i8..=4], 9),
+        0..TURNS.len(),
+        any::<bool>(),
+    );
+    let numbers = (ratio(), positive(), any::<bool>(), positive());
+    let more = (
+        prop::collection::vec(positive(), 8),
+        prop::collection::vec([ratio(), ratio()], fields * MOST_NODES),
+        prop::collection::vec([ratio(), ratio(), ratio()], 4),
+    );
+    (shape, numbers, more).prop_map(|(shape, numbers, more)| Draw {
+        cells: shape.0,
+        diagonals: shape.1,
+        moves: shape.2,
+        turn: shape.3,
+        left_too: shape.4,
+        lambda: numbers.0,
+        mu: numbers.1,
+        stress: numbers.2,
+        gamma0: numbers.3,
+        diameters: more.0,
+        values: more.1,
+        gaps: more.2,
+    })
+}
+
+/// Cosine and sine, in 1/65.
+const TURNS: [[i64; 2]; 5] = [[65, 0], [39, 52], [-52, 39], [25, -60], [0, 65]];
+
+/// A contact edge.
+#[derive(Clone, Copy, Debug)]
+pub struct Side {
+    /// Who owns it.
+    pub triangle: usize,
+    /// Which edge of the triangle.
+    pub local: usize,
+    /// |E|
+    pub length: Exact,
+    /// The unit outward normal.
+    pub n: [Exact; 2],
+    /// The gap at start, end and middle.
+    pub gap: [Exact; 3],
+}
+
+/// A body with exact data.
+pub struct Body {
+    /// The corners of the triangles.
+    pub vertices: Vec<[Exact; 2]>,
+    /// The places of the vertices before the body was turned.
+    pub unturned: Vec<[Exact; 2]>,
+    /// Counter-clockwise.
+    pub triangles: Vec<[usize; 3]>,
+    /// Gamma_C
+    pub contact: Vec<Side>,
+    /// Boundary edges that are neither contact nor at the top: triangle and local number.
+    pub free: Vec<(usize, usize)>,
+    /// The vertices at the top.
+    pub top: Vec<usize>,
+    /// h_T, as data.
+    pub diameters: Vec<Exact>,
+    /// For the kernel.
+    pub material: Material<Exact>,
+    /// For the transcription.
+    pub hooke: Hooke<Exact>,
+    /// gamma0
+    pub gamma0: Exact,
+    /// cos and sin of the turn.
+    pub turn: [Exact; 2],
+    middles: BTreeMap<[usize; 2], usize>,
+    values: Vec<[Exact; 2]>,
+}
+
+fn exact((n, d): (i64, i64)) -> Exact {
+    Exact::ratio(n, d)
+}
+
+impl Draw {
+    /// The body with these data; its material is one: mu > 0, 3 lambda + 2 mu > 0.
+    pub fn body(&self) -> Body {
+        let [nx, ny] = self.cells;
+        let unturned: Vec<[Exact; 2]> = (0..=ny)
+            .flat_map(|j| (0..=nx).map(move |i| (i, j)))
+            .map(|(i, j)| self.node(i, j))
+            .collect();
+        let turn = TURNS[self.turn].map(|c| Exact::ratio(c, 65));
+        let vertices = unturned.iter().map(|&p| rotated(p, turn)).collect();
+        let mut triangles = Vec::new();
+        for j in 0..ny {
+            for i in 0..nx {
+                let a = j * (nx + 1) + i;
+                let (b, d, c) = (a + 1, a + nx + 1, a + nx + 2);
+                match self.diagonals[j * nx + i] {
+                    true => triangles.extend([[a, b, c], [a, c, d]]),
+                    false => triangles.extend([[a, b, d], [b, c, d]]),
+                }
+            }
+        }
+        let (lambda, mu) = (self.lambda(), exact(self.mu));
+        let two = Exact::from(2);
+        let plane = if self.stress { Plane::Stress } else { Plane::Strain };
+        let star = if self.stress { two * lambda * mu / (lambda + two * mu) } else { lambda };
+        let count = triangles.len();
+        let mut body = Body {
+            top: (0..=nx).map(|i| ny * (nx + 1) + i).collect(),
+            vertices,
+            unturned,
+            triangles,
+            contact: Vec::new(),
+            free: Vec::new(),
+            diameters: self.diameters[..count].iter().map(|&h| exact(h)).collect(),
+            material: Material::lame(lambda, mu, plane),
+            hooke: Hooke { lambda: star, mu },
+            gamma0: exact(self.gamma0),
+            turn,
+            middles: BTreeMap::new(),
+            values: self.values.iter().map(|v| v.map(exact)).collect(),
+        };
+        body.sort_edges(self);
+        body
+    }
+
+    /// lambda, lifted where 3 lambda + 2 mu would not be positive.
+    fn lambda(&self) -> Exact {
+        let (lambda, mu) = (exact(self.lambda), exact(self.mu));
+        let floor = -(mu / Exact::from(2));
+        if lambda > floor { lambda } else { floor }
+    }
+
+    fn node(&self, i: usize, j: usize) -> [Exact; 2] {
+        let [dx, dy] = self.moves[j * 3 + i].map(|m| Exact::ratio(i64::from(m), 20));
+        let (x, y) = (Exact::from(i as i32), Exact::from(j as i32));
+        // Contact sides stay straight.
+        [if i == 0 && self.left_too { x } else { x + dx }, if j == 0 { y } else { y + dy }]
+    }
+}
+
+/// The point turned about the origin.
+pub fn rotated([x, y]: [Exact; 2], [c, s]: [Exact; 2]) -> [Exact; 2] {
+    [c * x - s * y, s * x + c * y]
+}
+
+impl Body {
+    /// Finds contact edges and free edges, and numbers the middles.
+    fn sort_edges(&mut self, draw: &Draw) {
+        let mut owners: BTreeMap<[usize; 2], Vec<(usize, usize)>> = BTreeMap::new();
+        for (t, corners) in self.triangles.iter().enumerate() {
+            for i in 0..3 {
+                let (a, b) = (corners[(i + 1) % 3], corners[(i + 2) % 3]);
+                owners.entry([a.min(b), a.max(b)]).or_default().push((t, i));
+            }
+        }
+        for ([a, b], owners) in owners {
+            let next = self.vertices.len() + self.middles.len();
+            self.middles.insert([a, b], next);
+            let [(triangle, local)] = owners[..] else { continue };
+            let (p, q) = (self.unturned[a], self.unturned[b]);
+            let zero = Exact::from(0);
+            let normal = if p[1] == zero && q[1] == zero {
+                Some((([zero, Exact::from(-1)]), (q[0] - p[0]).abs()))
+            } else if draw.left_too && p[0] == zero && q[0] == zero {
+                Some((([Exact::from(-1), zero]), (q[1] - p[1]).abs()))
+            } else {
+                None
+            };
+            if let Some((n, length)) = normal {
+                let n = rotated(n, self.turn);
+                let gap = draw.gaps[self.contact.len()].map(exact);
+                self.contact.push(Side { triangle, local, length, n, gap });
+            } else if !(self.top.contains(&a) && self.top.contains(&b)) {
+                self.free.push((triangle, local));
+            }
+        }
+    }
+
+    /// The nodes of a triangle for degree 1 (N = 3) or 2 (N = 6).
+    fn nodes<const N: usize>(&self, t: usize) -> [usize; N] {
+        let corners = self.triangles[t];
+        let mut nodes = [0; N];
+        nodes[..3].copy_from_slice(&corners);
+        for i in 3..N {
+            let (a, b) = (corners[(i + 1) % 3], corners[(i + 2) % 3]);
+            nodes[i] = self.middles[&[a.min(b), a.max(b)]];
+        }
+        nodes
+    }
+
+    /// How many nodes there are.
+    pub fn node_count(&self, degree: usize) -> usize {
+        self.vertices.len() + if degree == 2 { self.middles.len() } else { 0 }
+    }
+
+    /// The drawn field with this number.
+    pub fn drawn(&self, field: usize) -> Vec<[Exact; 2]> {
+        self.values[field * MOST_NODES..(field + 1) * MOST_NODES].to_vec()
+    }
+
+    /// The field with the values of `f` at its nodes.
+    pub fn interpolated(&self, f: impl Fn([Exact; 2]) -> [Exact; 2]) -> Vec<[Exact; 2]> {
+        let mut values: Vec<[Exact; 2]> = self.vertices.iter().map(|&x| f(x)).collect();
+        values.resize(self.node_count(2), [Exact::from(0); 2]);
+        for (&[a, b], &node) in &self.middles {
+            let half = |c: usize| (self.vertices[a][c] + self.vertices[b][c]) / Exact::from(2);
+            values[node] = f([half(0), half(1)]);
+        }
+        values
+    }
+
+    /// The field with zeros at the top: on Gamma_D.
+    pub fn clamped(&self, mut field: Vec<[Exact; 2]>) -> Vec<[Exact; 2]> {
+        for &v in &self.top {
+            field[v] = [Exact::from(0); 2];
+        }
+        for (&[a, b], &node) in &self.middles {
+            if self.top.contains(&a) && self.top.contains(&b) {
+                field[node] = [Exact::from(0); 2];
+            }
+        }
+        field
+    }
+
+    /// A triangle's share of a field.
+    pub fn local<const N: usize>(&self, t: usize, field: &[[Exact; 2]]) -> [[Exact; 2]; N] {
+        self.nodes::<N>(t).map(|node| field[node])
+    }
+
+    /// The triangle with its coordinates.
+    pub fn triangle(&self, t: usize) -> Triangle<Exact> {
+        Triangle { vertices: self.triangles[t].map(|v| self.vertices[v]) }
+    }
+
+    /// gamma on a side: (7).
+    pub fn gamma(&self, side: &Side) -> Exact {
+        self.gamma0 * self.diameters[side.triangle]
+    }
+
+    /// The field on triangle t, for the transcription.
+    pub fn field<const N: usize>(&self, t: usize, field: &[[Exact; 2]]) -> Field<Exact> {
+        let vertices = self.triangles[t].map(|v| self.vertices[v]);
+        Field { vertices, nodal: self.local::<N>(t, field).to_vec() }
+    }
+}
+
+/// The sum of f over a list.
+pub fn sum<T>(items: impl IntoIterator<Item = T>, f: impl Fn(T) -> Exact) -> Exact {
+    items.into_iter().fold(Exact::from(0), |sum, item| sum + f(item))
+}
+
+/// How the contact terms are integrated.
+#[derive(Clone, Copy, Debug)]
+pub enum Rule<'a> {
+    /// Without quadrature error (P1 over rationals).
+    Exact,
+    /// By points in \[0, 1\] with weights.
+    Points(&'a [[Exact; 2]]),
+}
+
+/// Method (8) on a body by the kernel's functions.
+pub struct Kernel<'a, const N: usize, const M: usize> {
+    body: &'a Body,
+    edges: Vec<ContactEdge<Exact, N, M>>,
+    stiffness: Vec<[[[[Exact; 2]; 2]; N]; N]>,
+}
+
+impl<'a, const N: usize, const M: usize> Kernel<'a, N, M> {
+    /// Element matrices and contact edges of a body.
+    pub fn new<E: Element<N, M>>(body: &'a Body) -> Self {
+        let edge = |side: &Side| {
+            let triangle = body.triangle(side.triangle);
+            let gamma = body.gamma(side);
+            ContactEdge::new::<E>(&triangle, side.local, side.n, &body.material, gamma)
+        };
+        let matrix = |t| stiffness::<E, Exact, N, M>(&body.triangle(t), &body.material);
+        Kernel {
+            body,
+            edges: body.contact.iter().map(edge).collect(),
+            stiffness: (0..body.triangles.len()).map(matrix).collect(),
+        }
+    }
+
+    fn apply(functional: &[[Exact; 2]; N], v: &[[Exact; 2]; N]) -> Exact {
+        sum(functional.iter().zip(v), |(f, v)| f[0] * v[0] + f[1] * v[1])
+    }
+
+    /// sum v_i K_ij u_j on one triangle
+    pub fn a_on(&self, t: usize, u: &[[Exact; 2]], v: &[[Exact; 2]]) -> Exact {
+        let (u, v) = (self.body.local::<N>(t, u), self.body.local::<N>(t, v));
+        Self::product(|i, j| self.stiffness[t][i][j], &u, &v)
+    }
+
+    fn product(
+        block: impl Fn(usize, usize) -> [[Exact; 2]; 2],
+        u: &[[Exact; 2]; N],
+        v: &[[Exact; 2]; N],
+    ) -> Exact {
+        let mut total = Exact::from(0);
+        for i in 0..N {
+            for j in 0..N {
+                let entry = block(i, j);
+                for c in 0..2 {
+                    for d in 0..2 {
+                        total = total + v[i][c] * entry[c][d] * u[j][d];
+                    }
+                }
+            }
+        }
+        total
+    }
+
+    /// a(u, v)
+    pub fn a(&self, u: &[[Exact; 2]], v: &[[Exact; 2]]) -> Exact {
+        sum(0..self.body.triangles.len(), |t| self.a_on(t, u, v))
+    }
+
+    /// int_E gamma sigma_n(u) sigma_n(v)
+    pub fn stress_product(&self, e: usize, u: &[[Exact; 2]], v: &[[Exact; 2]]) -> Exact {
+        let side = &self.body.contact[e];
+        let weight = self.body.gamma(side) * side.length;
+        let local = |field| self.body.local::<N>(side.triangle, field);
+        Self::product(|i, j| self.edges[e].stress_product(weight, i, j), &local(u), &local(v))
+    }
+
+    /// A(u, v)
+    pub fn big_a(&self, u: &[[Exact; 2]], v: &[[Exact; 2]]) -> Exact {
+        self.a(u, v) - sum(0..self.edges.len(), |e| self.stress_product(e, u, v))
+    }
+
+    /// P0(v) at the nodes of edge e
+    pub fn p0(&self, e: usize, v: &[[Exact; 2]]) -> [Exact; M] {
+        let local = self.body.local::<N>(self.body.contact[e].triangle, v);
+        self.edges[e].p0.map(|row| Self::apply(&row, &local))
+    }
+
+    /// sigma_n(v) at the ends of edge e
+    pub fn sigma_n(&self, e: usize, v: &[[Exact; 2]]) -> [Exact; 2] {
+        let local = self.body.local::<N>(self.body.contact[e].triangle, v);
+        self.edges[e].sigma_n.map(|row| Self::apply(&row, &local))
+    }
+
+    /// P(v) at the nodes of edge e
+    pub fn p(&self, e: usize, v: &[[Exact; 2]]) -> [Exact; M] {
+        let mut p = self.p0(e, v);
+        for (p, gap) in p.iter_mut().zip(self.body.contact[e].gap) {
+            *p = *p - gap;
+        }
+        p
+    }
+
+    /// The contact integrals of edge e at u.
+    fn integrals<E>(&self, rule: Rule<'_>, e: usize, u: &[[Exact; 2]]) -> EdgeIntegrals<Exact, M>
+    where
+        E: MaybeExact<N, M>,
+    {
+        let p = self.p(e, u);
+        match rule {
+            Rule::Exact => E::without_error(p),
+            Rule::Points(points) => gauss::<E, Exact, N, M>(p, points.iter().map(|&[s, w]| (s, w))),
+        }
+    }
+
+    /// |E| / gamma
+    fn weight(&self, e: usize) -> Exact {
+        self.body.contact[e].length / self.body.gamma(&self.body.contact[e])
+    }
+
+    /// The left side of (8): A(u, v) + int (1/gamma) \[P(u)\]+ P0(v)
+    pub fn b<E>(&self, rule: Rule<'_>, u: &[[Exact; 2]], v: &[[Exact; 2]]) -> Exact
+    where
+        E: MaybeExact<N, M>,
+    {
+        let contact = sum(0..self.edges.len(), |e| {
+            let gradient = self.integrals::<E>(rule, e, u).gradient;
+            self.weight(e) * sum(gradient.iter().zip(self.p0(e, v)), |(&g, p)| g * p)
+        });
+        self.big_a(u, v) + contact
+    }
+
+    /// J_h without L: 1/2 A(u, u) + 1/2 int (1/gamma) \[P(u)\]+^2
+    pub fn j<E>(&self, rule: Rule<'_>, u: &[[Exact; 2]]) -> Exact
+    where
+        E: MaybeExact<N, M>,
+    {
+        let contact = |e| self.weight(e) * self.integrals::<E>(rule, e, u).energy;
+        self.big_a(u, u) / Exact::from(2) + sum(0..self.edges.len(), contact)
+    }
+
+    /// The second derivative that Newton uses, at u, of v and w.
+    pub fn hessian<E>(
+        &self,
+        rule: Rule<'_>,
+        u: &[[Exact; 2]],
+        v: &[[Exact; 2]],
+        w: &[[Exact; 2]],
+    ) -> Exact
+    where
+        E: MaybeExact<N, M>,
+    {
+        let contact = sum(0..self.edges.len(), |e| {
+            let hessian = self.integrals::<E>(rule, e, u).hessian;
+            let (v, w) = (self.p0(e, v), self.p0(e, w));
+            let mut total = Exact::from(0);
+            for a in 0..M {
+                for b in 0..M {
+                    total = total + v[a] * hessian[a][b] * w[b];
+                }
+            }
+            self.weight(e) * total
+        });
+        self.big_a(v, w) + contact
+    }
+
+    /// kappa of the body: the largest kappa_T.
+    pub fn kappa<E: Element<N, M>>(&self) -> Exact {
+        let mut kappa = Exact::from(0);
+        for t in 0..self.body.triangles.len() {
+            let of_t = self.kappa_of::<E>(t);
+            if of_t > kappa {
+                kappa = of_t;
+            }
+        }
+        kappa
+    }
+
+    /// kappa_T
+    pub fn kappa_of<E: Element<N, M>>(&self, t: usize) -> Exact {
+        let body = self.body;
+        let sides = body.contact.iter().filter(|side| side.triangle == t);
+        let length = sum(sides, |side| side.length);
+        let area = body.triangle(t).double_area() / Exact::from(2);
+        let (material, h) = (&body.material, body.diameters[t]);
+        body.gamma0 * coercivity_constant::<E, Exact, N, M>(material, h, length, area)
+    }
+}
+
+/// An element whose contact integrals can be had without quadrature error over rationals, or not.
+pub trait MaybeExact<const N: usize, const M: usize>: Element<N, M> {
+    /// The integrals.
+    fn without_error(p: [Exact; M]) -> EdgeIntegrals<Exact, M>;
+}
+
+impl MaybeExact<3, 2> for signorini::kernel::P1 {
+    fn without_error(p: [Exact; 2]) -> EdgeIntegrals<Exact, 2> {
+        <Self as ExactEdge<Exact, 3, 2>>::exact(p)
+    }
+}
+
+impl MaybeExact<6, 3> for signorini::kernel::P2 {
+    fn without_error(_: [Exact; 3]) -> EdgeIntegrals<Exact, 3> {
+        unreachable!("the roots of a quadratic P are no rational numbers")
+    }
+}
+
+/// Method (8) on a body by its definitions.
+pub struct Definition<'a, const N: usize>(pub &'a Body);
+
+/// What the definitions need on one contact edge.
+pub struct Traces {
+    /// v_n
+    pub v_n: Line<Exact>,
+    /// sigma_n(v)
+    pub sigma_n: Line<Exact>,
+    /// P0(v)
+    pub p0: Line<Exact>,
+    /// P(v)
+    pub p: Line<Exact>,
+}
+
+impl<const N: usize> Definition<'_, N> {
+    /// a(u, v)
+    pub fn a(&self, u: &[[Exact; 2]], v: &[[Exact; 2]]) -> Exact {
+        sum(0..self.0.triangles.len(), |t| self.a_on(t, u, v))
+    }
+
+    /// a_T(u, v)
+    pub fn a_on(&self, t: usize, u: &[[Exact; 2]], v: &[[Exact; 2]]) -> Exact {
+        self.0.field::<N>(t, u).energy(&self.0.field::<N>(t, v), &self.0.hooke)
+    }
+
+    /// v_n, sigma_n(v), P0(v) and P(v) on a contact edge.
+    pub fn traces(&self, side: &Side, v: &[[Exact; 2]]) -> Traces {
+        let field = self.0.field::<N>(side.triangle, v);
+        let v_n = field.normal_trace(side.local, side.n);
+        let sigma_n = field.normal_stress(side.local, side.n, &self.0.hooke);
+        let p0 = v_n.minus(&sigma_n.times(self.0.gamma(side)));
+        let [start, end, middle] = side.gap;
+        let gap = match N {
+            3 => Line::affine(start, end),
+            _ => Line::quadratic(start, middle, end),
+        };
+        let p = p0.minus(&gap);
+        Traces { v_n, sigma_n, p0, p }
+    }
+
+    /// A(u, v)
+    pub fn big_a(&self, u: &[[Exact; 2]], v: &[[Exact; 2]]) -> Exact {
+        self.a(u, v)
+            - sum(&self.0.contact, |side| {
+                let (u, v) = (self.traces(side, u).sigma_n, self.traces(side, v).sigma_n);
+                self.0.gamma(side) * side.length * whole(&u.by(&v))
+            })
+    }
+
+    /// int over Gamma_C of (1/gamma) \[P(u)\]+ q, for q given on each side.
+    pub fn contact(
+        &self,
+        rule: Rule<'_>,
+        u: &[[Exact; 2]],
+        q: impl Fn(&Side) -> Line<Exact>,
+    ) -> Exact {
+        sum(&self.0.contact, |side| {
+            let (p, q) = (self.traces(side, u).p, q(side));
+            let integral = match rule {
+                Rule::Exact => p.positive_part_times(&q),
+                Rule::Points(points) => sum(points, |&[s, w]| {
+                    let zero = Exact::from(0);
+                    let value = p.at(s);
+                    w * (if value > zero { value } else { zero }) * q.at(s)
+                }),
+            };
+            side.length / self.0.gamma(side) * integral
+        })
+    }
+
+    /// The left side of (8).
+    pub fn b(&self, rule: Rule<'_>, u: &[[Exact; 2]], v: &[[Exact; 2]]) -> Exact {
+        self.big_a(u, v) + self.contact(rule, u, |side| self.traces(side, v).p0)
+    }
+}
+
+/// The integral over \[0, 1\].
+pub fn whole(line: &Line<Exact>) -> Exact {
+    line.integral([Exact::from(0), Exact::from(1)])
+}
+
+/// alpha u + beta v
+pub fn combined(alpha: Exact, u: &[[Exact; 2]], beta: Exact, v: &[[Exact; 2]]) -> Vec<[Exact; 2]> {
+    u.iter().zip(v).map(|(u, v)| [0, 1].map(|c| alpha * u[c] + beta * v[c])).collect()
+}
+
+/// What a body's contact looks like at u, for the classes: all open, all pressed, or both.
+pub fn contact_class<const N: usize>(body: &Body, u: &[[Exact; 2]]) -> &'static str {
+    let definition = Definition::<N>(body);
+    let (mut open, mut pressed, mut cut) = (false, false, false);
+    for side in &body.contact {
+        let p = definition.traces(side, u).p;
+        let ends = [p.at(Exact::from(0)), p.at(Exact::from(1))].map(|v| v > Exact::from(0));
+        open |= !ends[0] || !ends[1];
+        pressed |= ends[0] || ends[1];
+        cut |= ends[0] != ends[1];
+    }
+    match (cut, open, pressed) {
+        (true, _, _) => "an edge is cut",
+        (_, true, true) => "open and pressed edges",
+        (_, true, false) => "open",
+        _ => "pressed",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::strategy::ValueTree;
+    use proptest::test_runner::TestRunner;
+
+    use super::*;
+
+    #[test]
+    fn drawn_bodies_are_bodies() {
+        let mut runner = TestRunner::deterministic();
+        let mut two_edges = 0;
+        for _ in 0..100 {
+            let draw = bodies(1).new_tree(&mut runner).unwrap().current();
+            Exact::scope(|| {
+                let body = draw.body();
+                let zero = Exact::from(0);
+                let (lambda, mu) = (draw.lambda(), body.hooke.mu);
+                assert!(mu > zero && Exact::from(3) * lambda + Exact::from(2) * mu > zero);
+                for t in 0..body.triangles.len() {
+                    assert!(body.triangle(t).double_area() > zero);
+                    let owned = body.contact.iter().filter(|side| side.triangle == t).count();
+                    two_edges += usize::from(owned == 2);
+                }
+                for side in &body.contact {
+                    let [x, y] = body.triangle(side.triangle).scaled_normal(side.local);
+                    assert_eq!([x, y], side.n.map(|c| c * side.length));
+                }
+                assert!(body.node_count(2) <= MOST_NODES);
+            });
+        }
+        assert!(two_edges > 5, "{two_edges}");
+    }
+}

@@ -1,0 +1,478 @@
+//! V^h, a(.,.), P_gamma and A_gamma of section 2.2: what the kernel computes is what the definitions say.
+//!
+//! The elements reproduce every polynomial of their degree and its gradient; on random bodies over rationals, the sums
+//! over the kernel's element matrices and contact functionals equal the transcription in `naive`.
+
+use signorini::kernel::triangle::on_edge;
+use signorini::kernel::{Element, P1, P2, Triangle};
+
+use crate::harness::any;
+use crate::numbers::Whole;
+use crate::verdict::{Ordered, Verdict};
+use crate::{ensure, given, harnesses};
+
+fn triangle<S>([ax, ay, bx, by, cx, cy]: [S; 6]) -> Triangle<S> {
+    Triangle { vertices: [[ax, ay], [bx, by], [cx, cy]] }
+}
+
+/// Edges, area and normals of a triangle without a division.
+pub fn triangle_geometry_is_its_definition<S: Ordered>(v: [S; 6]) -> Verdict {
+    let (t, zero) = (triangle(v), S::from(0));
+    let [ax, ay, bx, by, cx, cy] = v;
+    let shoelace = ax * (by - cy) + bx * (cy - ay) + cx * (ay - by);
+    ensure!(t.double_area() == shoelace);
+    let [a, b, c] = [[ax, ay], [bx, by], [cx, cy]];
+    ensure!(t.edge(0) == [c[0] - b[0], c[1] - b[1]]);
+    ensure!(t.edge(1) == [a[0] - c[0], a[1] - c[1]]);
+    ensure!(t.edge(2) == [b[0] - a[0], b[1] - a[1]]);
+    for i in 0..3 {
+        let (edge, n) = (t.edge(i), t.scaled_normal(i));
+        // As long as the edge, across it, and away from the opposite vertex when the area is positive.
+        ensure!(n[0] * edge[0] + n[1] * edge[1] == zero);
+        ensure!(n[0] * n[0] + n[1] * n[1] == edge[0] * edge[0] + edge[1] * edge[1]);
+        let (from, to) = (t.vertices[i], t.vertices[(i + 1) % 3]);
+        ensure!(n[0] * (to[0] - from[0]) + n[1] * (to[1] - from[1]) == shoelace);
+    }
+    Verdict::Holds("always")
+}
+
+/// The barycentric gradients are dual to the vertices.
+pub fn barycentric_gradients_are_dual_to_the_vertices<S: Ordered>(v: [S; 6]) -> Verdict {
+    let t = triangle(v);
+    given!(t.double_area() > S::from(0));
+    let gradients = t.barycentric_gradients();
+    for i in 0..3 {
+        for (j, k) in [(1, 0), (2, 0)] {
+            let d = [0, 1].map(|c| t.vertices[j][c] - t.vertices[k][c]);
+            let change = i32::from(i == j) - i32::from(i == k);
+            ensure!(gradients[i][0] * d[0] + gradients[i][1] * d[1] == S::from(change));
+        }
+    }
+    Verdict::Holds("always")
+}
+
+/// A point by its barycentric coordinates, and the points of an edge: s = 0 is vertex i + 1, s = 1 vertex i + 2.
+pub fn points_of_edges_run_from_start_to_end<S: Ordered>(
+    [ax, ay, bx, by, cx, cy, s]: [S; 7],
+) -> Verdict {
+    let t = triangle([ax, ay, bx, by, cx, cy]);
+    for i in 0..3 {
+        let [start, end] = [t.vertices[(i + 1) % 3], t.vertices[(i + 2) % 3]];
+        let point = t.point(on_edge(i, s));
+        for c in 0..2 {
+            ensure!(point[c] == start[c] + s * (end[c] - start[c]));
+        }
+    }
+    Verdict::Holds("always")
+}
+
+/// The quadratic with these coefficients in the barycentric coordinates l_0, l_1, and its derivatives by them.
+fn quadratic<S: Ordered>(c: [S; 6], [x, y, _]: [S; 3]) -> [S; 3] {
+    let two = S::from(2);
+    [
+        c[0] + c[1] * x + c[2] * y + c[3] * x * x + c[4] * x * y + c[5] * y * y,
+        c[1] + two * c[3] * x + c[4] * y,
+        c[2] + c[4] * x + two * c[5] * y,
+    ]
+}
+
+/// An element reproduces a polynomial from its values at the nodes: values and gradients at l, traces on the edges at s.
+/// The nodes are where `edge_nodes` and `edge_positions` say.
+fn reproduces<E: Element<N, M>, S: Ordered, const N: usize, const M: usize>(
+    c: [S; 6],
+    [x, y]: [S; 2],
+) -> Verdict {
+    let (zero, one) = (S::from(0), S::from(1));
+    let l = [x, y, one - x - y];
+    let mut nodal = [zero; N];
+    for i in 0..3 {
+        for (node, s) in E::edge_nodes(i).into_iter().zip(E::edge_positions()) {
+            nodal[node] = quadratic(c, on_edge(i, s))[0];
+        }
+    }
+    let combined = |weights: [S; N]| (0..N).fold(zero, |sum, j| sum + weights[j] * nodal[j]);
+    let [value, dx, dy] = quadratic(c, l);
+    ensure!(combined(E::values(l)) == value);
+    // In the coordinates l_0, l_1 the barycentric gradients are these.
+    let gradients = E::gradients(l, [[one, zero], [zero, one], [-one, -one]]);
+    ensure!(combined(gradients.map(|g| g[0])) == dx && combined(gradients.map(|g| g[1])) == dy);
+    for i in 0..3 {
+        let shapes = E::edge_values(x);
+        let trace = (0..M).fold(zero, |sum, a| sum + shapes[a] * nodal[E::edge_nodes(i)[a]]);
+        ensure!(trace == quadratic(c, on_edge(i, x))[0]);
+    }
+    Verdict::Holds("always")
+}
+
+/// P1: every affine function.
+pub fn p1_reproduces_affine_functions<S: Ordered>([c0, c1, c2, x, y]: [S; 5]) -> Verdict {
+    let zero = S::from(0);
+    ensure!(P1::DEGREE == 1);
+    reproduces::<P1, S, 3, 2>([c0, c1, c2, zero, zero, zero], [x, y])
+}
+
+/// P2: every quadratic function.
+pub fn p2_reproduces_quadratic_functions<S: Ordered>(
+    [c0, c1, c2, c3, c4, c5, x, y]: [S; 8],
+) -> Verdict {
+    ensure!(P2::DEGREE == 2);
+    reproduces::<P2, S, 6, 3>([c0, c1, c2, c3, c4, c5], [x, y])
+}
+
+/// P1 does not reproduce quadratic functions.
+pub fn control_p1_reproduces_quadratic_functions<S: Ordered>(
+    [c0, c1, c2, c3, c4, c5, x, y]: [S; 8],
+) -> Verdict {
+    reproduces::<P1, S, 3, 2>([c0, c1, c2, c3, c4, c5], [x, y])
+}
+
+/// The barycentric gradients without the minus sign: inward normals are outward ones.
+pub fn control_gradients_along_the_outward_normals<S: Ordered>(v: [S; 6]) -> Verdict {
+    let t = triangle(v);
+    given!(t.double_area() > S::from(0));
+    let g = t.scaled_normal(0).map(|c| c / t.double_area());
+    let d = [0, 1].map(|c| t.vertices[0][c] - t.vertices[1][c]);
+    ensure!(g[0] * d[0] + g[1] * d[1] == S::from(1));
+    Verdict::Holds("always")
+}
+
+fn on_grid() -> Triangle<Whole> {
+    let bit = || Whole(i32::from(any::<bool>()));
+    triangle([bit(), bit(), bit(), bit(), bit(), bit()])
+}
+
+harnesses! {
+    /// The area changes sign with the orientation. It has degree 1 in each coordinate, so the grid decides for all.
+    holds area_is_antisymmetric_on_the_unit_grid() {
+        let t = on_grid();
+        let [a, b, c] = t.vertices;
+        assert!(Triangle { vertices: [a, c, b] }.double_area() == -t.double_area());
+    }
+    /// The false twin: it does not change.
+    fails control_area_is_symmetric_on_the_unit_grid() {
+        let t = on_grid();
+        let [a, b, c] = t.vertices;
+        assert!(Triangle { vertices: [a, c, b] }.double_area() == t.double_area());
+    }
+    /// The area does not depend on the vertex that is listed first.
+    holds area_is_cyclic_on_the_unit_grid() {
+        let t = on_grid();
+        let [a, b, c] = t.vertices;
+        assert!(Triangle { vertices: [b, c, a] }.double_area() == t.double_area());
+    }
+    /// The false twin: an exchange of two.
+    fails control_area_survives_an_exchange_on_the_unit_grid() {
+        let t = on_grid();
+        let [a, b, c] = t.vertices;
+        assert!(Triangle { vertices: [b, a, c] }.double_area() == t.double_area());
+    }
+    /// The outward normals, weighted by length, add up to zero (so do the barycentric gradients).
+    holds scaled_normals_add_up_to_zero_for_all_i8() {
+        let coordinate = || Whole(i32::from(any::<i8>()));
+        let t = triangle([0; 6].map(|_| coordinate()));
+        let n = [0, 1, 2].map(|i| t.scaled_normal(i));
+        assert!(n[0][0] + n[1][0] + n[2][0] == Whole(0) && n[0][1] + n[1][1] + n[2][1] == Whole(0));
+    }
+    /// The false twin: two of them.
+    fails control_two_scaled_normals_add_up_to_zero_for_all_i8() {
+        let coordinate = || Whole(i32::from(any::<i8>()));
+        let t = triangle([0; 6].map(|_| coordinate()));
+        let n = [0, 1].map(|i| t.scaled_normal(i));
+        assert!(n[0][0] + n[1][0] == Whole(0) && n[0][1] + n[1][1] == Whole(0));
+    }
+    /// The nodes of the edges: each vertex is the end of one edge and the start of the next; middles are their own.
+    holds edge_nodes_follow_each_other_for_all_edges() {
+        let i: usize = any();
+        crate::harness::assume(i < 3);
+        let ([_, end], [start, _]) = (P1::edge_nodes(i), P1::edge_nodes(i + 1));
+        assert!(end == start);
+        let [a, b, middle] = P2::edge_nodes(i);
+        assert!(P1::edge_nodes(i) == [a, b] && a != i && b != i && middle == 3 + i);
+    }
+    /// The false twin: edges are numbered by their start.
+    fails control_edges_start_at_the_vertex_with_their_number() {
+        let i: usize = any();
+        crate::harness::assume(i < 3);
+        assert!(P1::edge_nodes(i)[0] == i);
+    }
+}
+
+#[cfg(not(kani))]
+pub use row::claim;
+
+#[cfg(not(kani))]
+mod row {
+    use proptest::prelude::*;
+    use signorini::fem::{Diagonal, Rectangle};
+    use signorini::kernel::element::{displacement_gradient, stiffness};
+    use signorini::kernel::{ContactEdge, Material, Plane};
+
+    use super::*;
+    use crate::bodies::{Body, Definition, Kernel, MaybeExact, bodies, contact_class};
+    use crate::claim::{
+        Claim, Engine, Outcome, by, control, model_checked, proved, refuted, tested,
+    };
+    use crate::draws;
+    use crate::numbers::Exact;
+    use crate::statement;
+
+    const BODIES: u32 = 60;
+
+    /// Every quantity of a body by the kernel and by its definition; `spoil` may plant a mistake into h_T.
+    fn forms<E, const N: usize, const M: usize>(body: &Body, spoilt: &Body) -> Verdict
+    where
+        E: MaybeExact<N, M>,
+    {
+        let (u, v) = (body.drawn(0), body.drawn(1));
+        let (kernel, definition) = (Kernel::<N, M>::new::<E>(spoilt), Definition::<N>(body));
+        for t in 0..body.triangles.len() {
+            ensure!(kernel.a_on(t, &u, &v) == definition.a_on(t, &u, &v));
+            let gradients =
+                E::gradients(on_edge(0, Exact::from(0)), body.triangle(t).barycentric_gradients());
+            let [[xx, xy], [yx, yy]] = displacement_gradient(&body.local::<N>(t, &u), &gradients);
+            let strain = body.field::<N>(t, &u).strain(1);
+            ensure!([xx, yy, (xy + yx) / Exact::from(2)] == strain);
+        }
+        for (e, side) in body.contact.iter().enumerate() {
+            let traces = definition.traces(side, &u);
+            let places: [Exact; M] = E::edge_positions();
+            for (a, s) in places.into_iter().enumerate() {
+                ensure!(kernel.p0(e, &u)[a] == traces.p0.at(s));
+                ensure!(kernel.p(e, &u)[a] == traces.p.at(s));
+            }
+            for (end, s) in [0, 1].map(Exact::from).into_iter().enumerate() {
+                ensure!(kernel.sigma_n(e, &u)[end] == traces.sigma_n.at(s));
+            }
+        }
+        ensure!(kernel.big_a(&u, &v) == definition.big_a(&u, &v));
+        ensure!(kernel.big_a(&u, &v) == kernel.big_a(&v, &u));
+        Verdict::Holds(contact_class::<N>(body, &u))
+    }
+
+    fn forms_p1() -> Outcome {
+        let classes = ["an edge is cut", "open", "pressed"];
+        draws::hold(BODIES, bodies(2), &classes, |draw| {
+            Exact::scope(|| forms::<P1, 3, 2>(&draw.body(), &draw.body()))
+        })
+    }
+
+    fn forms_p2() -> Outcome {
+        draws::hold(BODIES / 2, bodies(2), &["an edge is cut"], |draw| {
+            Exact::scope(|| forms::<P2, 6, 3>(&draw.body(), &draw.body()))
+        })
+    }
+
+    /// The length of the contact edge in place of the diameter in gamma = gamma0 h_T.
+    fn edge_length_for_diameter() -> Outcome {
+        draws::reject(BODIES, bodies(2), |draw| {
+            Exact::scope(|| {
+                let mut spoilt = draw.body();
+                for side in &spoilt.contact {
+                    spoilt.diameters[side.triangle] = side.length;
+                }
+                forms::<P1, 3, 2>(&draw.body(), &spoilt)
+            })
+        })
+    }
+
+    /// lambda and mu exchanged.
+    fn lame_exchanged() -> Outcome {
+        draws::reject(BODIES, bodies(2), |draw| {
+            Exact::scope(|| {
+                let mut spoilt = draw.body();
+                let material = Material::lame(spoilt.hooke.mu, spoilt.hooke.lambda, Plane::Strain);
+                spoilt.material = material;
+                forms::<P2, 6, 3>(&draw.body(), &spoilt)
+            })
+        })
+    }
+
+    /// A triangle with vertices in \[-1, 1\]^2 and an area that rounding does not touch.
+    fn triangles() -> impl Strategy<Value = [[f64; 2]; 3]> {
+        let point = || [-1.0_f64..1.0, -1.0_f64..1.0];
+        [point(), point(), point()].prop_filter("counter-clockwise, not flat", |vertices| {
+            Triangle { vertices: *vertices }.double_area() > 0.1
+        })
+    }
+
+    /// Element matrix and contact functionals in doubles against exact arithmetic on the same doubles: within 2^-44 of
+    /// the largest entry (2^-53 times about 30 operations and h_T^2 / |T| <= 80, twice over).
+    fn doubles_are_near<E: Element<N, M>, const N: usize, const M: usize>(
+        v: &[[f64; 2]; 3],
+    ) -> Verdict {
+        let (lambda, mu, gamma, n) = (3.0, 0.75, 0.125, [0.6, -0.8]);
+        let material = Material::lame(lambda, mu, Plane::Strain);
+        let exactly = Exact::of_double;
+        let exact_material = Material::lame(exactly(lambda), exactly(mu), Plane::Strain);
+        let (t, exact_t) =
+            (Triangle { vertices: *v }, Triangle { vertices: v.map(|p| p.map(exactly)) });
+        let (k, exact_k) = (
+            stiffness::<E, f64, N, M>(&t, &material),
+            stiffness::<E, Exact, N, M>(&exact_t, &exact_material),
+        );
+        let edge = ContactEdge::<f64, N, M>::new::<E>(&t, 1, n, &material, gamma);
+        let exact_edge = ContactEdge::<Exact, N, M>::new::<E>(
+            &exact_t,
+            1,
+            n.map(exactly),
+            &exact_material,
+            exactly(gamma),
+        );
+        let mut pairs: Vec<(f64, Exact)> = Vec::new();
+        let flat = k.iter().flatten().flatten().flatten().copied();
+        pairs.extend(flat.zip(exact_k.iter().flatten().flatten().flatten().copied()));
+        ensure!(near(&pairs));
+        let flat = edge.p0.iter().flatten().flatten().copied();
+        let pairs: Vec<(f64, Exact)> =
+            flat.zip(exact_edge.p0.iter().flatten().flatten().copied()).collect();
+        ensure!(near(&pairs));
+        Verdict::Holds("always")
+    }
+
+    fn near(pairs: &[(f64, Exact)]) -> bool {
+        let largest = pairs.iter().map(|(d, _)| d.abs()).fold(0.0, f64::max);
+        let bound = Exact::of_double(largest * 2.0_f64.powi(-44));
+        pairs.iter().all(|&(d, e)| (Exact::of_double(d) - e).abs() <= bound)
+    }
+
+    fn matrices_in_doubles() -> Outcome {
+        draws::hold(60, triangles(), &["always"], |v| {
+            Exact::scope(|| {
+                let p1 = doubles_are_near::<P1, 3, 2>(v);
+                ensure!(!p1.fails());
+                doubles_are_near::<P2, 6, 3>(v)
+            })
+        })
+    }
+
+    /// h_T of a mesh is the longest edge, and lengths and normals of its boundary are those of its edges: within two
+    /// units in the last place.
+    fn mesh_diameters() -> Outcome {
+        let sizes = (0.1_f64..10.0, 0.1_f64..10.0, 1_usize..4, 1_usize..4);
+        let diagonals = prop::sample::select(&[Diagonal::Left, Diagonal::Right, Diagonal::Crossed]);
+        draws::hold(60, (sizes, diagonals), &["always"], |&((width, height, nx, ny), diagonal)| {
+            let mesh = match (Rectangle { width, height, nx, ny, diagonal }).mesh() {
+                Ok(mesh) => mesh,
+                Err(_) => return Verdict::Fails("the mesh is refused"),
+            };
+            Exact::scope(|| {
+                let close = |double: f64, exact: Exact| {
+                    let square = Exact::of_double(double) * Exact::of_double(double);
+                    (square - exact).abs() <= exact * Exact::of_double(4.0 * f64::EPSILON)
+                };
+                for t in 0..mesh.triangles().len() {
+                    let exact = Triangle {
+                        vertices: mesh.triangle(t).vertices.map(|p| p.map(Exact::of_double)),
+                    };
+                    let squares = [0, 1, 2].map(|i| {
+                        let [x, y] = exact.edge(i);
+                        x * x + y * y
+                    });
+                    let longest =
+                        squares.into_iter().fold(Exact::from(0), |a, b| if b > a { b } else { a });
+                    ensure!(close(mesh.diameter(t), longest));
+                }
+                for &edge in mesh.outline() {
+                    let t = mesh.triangle(edge.triangle);
+                    let exact = Triangle { vertices: t.vertices.map(|p| p.map(Exact::of_double)) };
+                    let [x, y] = exact.scaled_normal(edge.local);
+                    let (length, n) = mesh.length_and_normal(edge);
+                    ensure!(close(length, x * x + y * y));
+                    for (c, exact) in [x, y].into_iter().enumerate() {
+                        let scaled = Exact::of_double(n[c]) * Exact::of_double(length);
+                        let bound = Exact::of_double(length * 4.0 * f64::EPSILON);
+                        ensure!((scaled - exact).abs() <= bound);
+                    }
+                }
+                Verdict::Holds("always")
+            })
+        })
+    }
+
+    /// The row of section 2.2's definitions.
+    pub fn claim() -> Claim {
+        let geometry =
+            statement!(triangle_geometry_is_its_definition, [ax, ay, bx, by, cx, cy], ["always"]);
+        let dual = statement!(
+            barycentric_gradients_are_dual_to_the_vertices,
+            [ax, ay, bx, by, cx, cy],
+            ["always"]
+        );
+        let points = statement!(
+            points_of_edges_run_from_start_to_end,
+            [ax, ay, bx, by, cx, cy, s],
+            ["always"]
+        );
+        let p1 = statement!(p1_reproduces_affine_functions, [c0, c1, c2, x, y], ["always"]);
+        let p2 = statement!(
+            p2_reproduces_quadratic_functions,
+            [c0, c1, c2, c3, c4, c5, x, y],
+            ["always"]
+        );
+        let mut checks: Vec<_> = [geometry, dual, points, p1, p2].into_iter().map(proved).collect();
+        checks.extend([geometry, dual, points, p1, p2].map(tested));
+        checks.extend([
+            by(Engine::Exact, "forms_on_random_bodies_are_their_definitions_for_p1", forms_p1),
+            by(Engine::Exact, "forms_on_random_bodies_are_their_definitions_for_p2", forms_p2),
+            by(
+                Engine::Doubles,
+                "element_matrices_in_doubles_are_near_the_exact_ones",
+                matrices_in_doubles,
+            ),
+            by(
+                Engine::Doubles,
+                "diameters_lengths_and_normals_are_those_of_the_edges",
+                mesh_diameters,
+            ),
+            refuted(statement!(
+                control_p1_reproduces_quadratic_functions,
+                [c0, c1, c2, c3, c4, c5, x, y],
+                []
+            )),
+            refuted(statement!(
+                control_gradients_along_the_outward_normals,
+                [ax, ay, bx, by, cx, cy],
+                []
+            )),
+            control(
+                Engine::Exact,
+                "control_edge_length_for_the_diameter",
+                edge_length_for_diameter,
+            ),
+            control(Engine::Exact, "control_lame_coefficients_exchanged", lame_exchanged),
+        ]);
+        checks.extend(HARNESSES.iter().copied().map(model_checked));
+        Claim {
+            id: "5",
+            items: &["(7)"],
+            title: "gamma, P_gamma and A_gamma",
+            paper: "gamma(x) = gamma0 h_T for x in T; P_gamma(v^h) = v_n - gamma sigma_n(v^h); A_gamma(u^h, v^h) = a(u^h, v^h) - int gamma sigma_n(u^h) sigma_n(v^h).",
+            statement: "P1 and P2 reproduce every polynomial of their degree, values, gradients and traces; areas, normals and barycentric gradients are their definitions. On random bodies (two to four triangles, turned, plane strain and stress, one or two contact edges per triangle, random gaps) a_T(u, v), P0(v), P(v), sigma_n(v) and A_gamma(u, v) by the kernel equal a transcription of the definitions. h_T of a mesh is its longest edge.",
+            numbers: "every ordered field for the elements (proof); rationals for the assembled quantities; doubles: element matrices within 2^-44 of their largest entry for triangles in [-1, 1]^2 of area > 1/20.",
+            kernel: &[
+                "triangle::Triangle::edge",
+                "triangle::Triangle::double_area",
+                "triangle::Triangle::scaled_normal",
+                "triangle::Triangle::barycentric_gradients",
+                "triangle::Triangle::point",
+                "triangle::on_edge",
+                "element::Element::values",
+                "element::Element::gradients",
+                "element::Element::edge_nodes",
+                "element::Element::edge_values",
+                "element::Element::edge_positions",
+                "element::Element::at_stiffness_points",
+                "element::displacement_gradient",
+                "element::stiffness",
+                "contact_edge::ContactEdge::new",
+                "contact_edge::ContactEdge::stress_product",
+                "contact_edge::integral_of_product",
+                "scalar::dot",
+            ],
+            preconditions: "Counter-clockwise triangles. h_T enters the rational rows as given data, for it is a square root.",
+            limits: "The solver's own loop over the elements (dof numbering, prescribed displacements, load) is not this loop: it is not connected yet. That the code multiplies gamma0 by h_T of the owning triangle is checked in the loop of these rows only.",
+            single: None,
+            checks,
+        }
+    }
+}

@@ -1,0 +1,239 @@
+//! The definitions of the paper on a small mesh, transcribed without shape functions, quadrature or the kernel: the
+//! other side of every comparison of an assembled quantity.
+//!
+//! A field of degree p on a triangle is known by its nodal values. The gradient of a polynomial of degree <= 2 is
+//! affine, so its values at the vertices determine it, and they follow from the derivatives along the edges: b - a for an
+//! affine function, -3a + 4m - b at the start of a quadratic one. Products of affine functions are integrated over T
+//! by |T|/12 (sum f_i g_i + sum f_i sum g_i), and everything along an edge is a polynomial in s.
+
+use signorini::kernel::Scalar;
+
+use crate::Ordered;
+
+/// The material of the body, by the coefficients that act in the plane.
+#[derive(Clone, Copy, Debug)]
+pub struct Hooke<S> {
+    /// lambda
+    pub lambda: S,
+    /// mu
+    pub mu: S,
+}
+
+/// A symmetric tensor: xx, yy, xy.
+pub type Tensor<S> = [S; 3];
+
+impl<S: Scalar> Hooke<S> {
+    /// sigma = lambda tr(eps) I + 2 mu eps of (1).
+    pub fn stress(&self, [xx, yy, xy]: Tensor<S>) -> Tensor<S> {
+        let (trace, two) = (self.lambda * (xx + yy), S::from(2) * self.mu);
+        [trace + two * xx, trace + two * yy, two * xy]
+    }
+
+    /// eps that belongs to sigma.
+    pub fn strain(&self, [xx, yy, xy]: Tensor<S>) -> Tensor<S> {
+        let two = S::from(2);
+        let mean = self.lambda * (xx + yy) / (two * (self.lambda + self.mu));
+        let by = |c: S| c / (two * self.mu);
+        [by(xx - mean), by(yy - mean), by(xy)]
+    }
+}
+
+/// a : b
+pub fn contract<S: Scalar>(a: Tensor<S>, b: Tensor<S>) -> S {
+    a[0] * b[0] + a[1] * b[1] + S::from(2) * a[2] * b[2]
+}
+
+/// n . s n
+pub fn normal<S: Scalar>(s: Tensor<S>, n: [S; 2]) -> S {
+    s[0] * n[0] * n[0] + s[1] * n[1] * n[1] + S::from(2) * s[2] * n[0] * n[1]
+}
+
+/// A field on one triangle: vertices, and the nodal values of degree 1 (three) or 2 (six: the middle of edge i is node
+/// 3 + i, opposite vertex i).
+#[derive(Clone, Debug)]
+pub struct Field<S> {
+    /// The corners, counter-clockwise.
+    pub vertices: [[S; 2]; 3],
+    /// u at the nodes.
+    pub nodal: Vec<[S; 2]>,
+}
+
+impl<S: Scalar> Field<S> {
+    /// |T| by the shoelace formula.
+    pub fn area(&self) -> S {
+        let [[ax, ay], [bx, by], [cx, cy]] = self.vertices;
+        (ax * (by - cy) + bx * (cy - ay) + cx * (ay - by)) / S::from(2)
+    }
+
+    /// The derivative of component c at vertex k along the edge to vertex m.
+    fn along(&self, k: usize, m: usize, c: usize) -> S {
+        let (start, end) = (self.nodal[k][c], self.nodal[m][c]);
+        match self.nodal.get(3 + (3 - k - m)) {
+            None => end - start,
+            Some(middle) => S::from(4) * middle[c] - S::from(3) * start - end,
+        }
+    }
+
+    /// eps(u) at vertex k.
+    pub fn strain(&self, k: usize) -> Tensor<S> {
+        let (m, l) = ((k + 1) % 3, (k + 2) % 3);
+        let to = |i: usize| [0, 1].map(|c| self.vertices[i][c] - self.vertices[k][c]);
+        let ([a, b], [c, d]) = (to(m), to(l));
+        let determinant = a * d - b * c;
+        let gradient = |i: usize| {
+            let (p, q) = (self.along(k, m, i), self.along(k, l, i));
+            [(p * d - q * b) / determinant, (a * q - c * p) / determinant]
+        };
+        let ([xx, xy], [yx, yy]) = (gradient(0), gradient(1));
+        [xx, yy, (xy + yx) / S::from(2)]
+    }
+
+    /// int_T sigma(u) : eps(v)
+    pub fn energy(&self, v: &Field<S>, hooke: &Hooke<S>) -> S {
+        let stress = [0, 1, 2].map(|k| hooke.stress(self.strain(k)));
+        let strain = [0, 1, 2].map(|k| v.strain(k));
+        let sum = |t: [Tensor<S>; 3]| [0, 1, 2].map(|c| t[0][c] + t[1][c] + t[2][c]);
+        let each = (0..3).fold(S::from(0), |s, k| s + contract(stress[k], strain[k]));
+        self.area() * (each + contract(sum(stress), sum(strain))) / S::from(12)
+    }
+
+    /// u . n along edge i, from vertex i + 1 to vertex i + 2.
+    pub fn normal_trace(&self, i: usize, n: [S; 2]) -> Line<S> {
+        let at = |j: usize| self.nodal[j][0] * n[0] + self.nodal[j][1] * n[1];
+        let (start, end) = (at((i + 1) % 3), at((i + 2) % 3));
+        match self.nodal.len() {
+            3 => Line::affine(start, end),
+            _ => Line::quadratic(start, at(3 + i), end),
+        }
+    }
+
+    /// sigma_n(u) along edge i.
+    pub fn normal_stress(&self, i: usize, n: [S; 2], hooke: &Hooke<S>) -> Line<S> {
+        let at = |k: usize| normal(hooke.stress(self.strain(k)), n);
+        Line::affine(at((i + 1) % 3), at((i + 2) % 3))
+    }
+}
+
+/// A polynomial in s on \[0, 1\], by its coefficients.
+#[derive(Clone, Debug)]
+pub struct Line<S>(pub Vec<S>);
+
+impl<S: Scalar> Line<S> {
+    /// From the values at 0 and 1.
+    pub fn affine(start: S, end: S) -> Line<S> {
+        Line(vec![start, end - start])
+    }
+
+    /// From the values at 0, 1/2 and 1.
+    pub fn quadratic(start: S, middle: S, end: S) -> Line<S> {
+        let (two, three, four) = (S::from(2), S::from(3), S::from(4));
+        let slope = four * middle - three * start - end;
+        Line(vec![start, slope, two * start - four * middle + two * end])
+    }
+
+    /// The value at s.
+    pub fn at(&self, s: S) -> S {
+        self.0.iter().rev().fold(S::from(0), |sum, &c| sum * s + c)
+    }
+
+    /// factor * self
+    pub fn times(&self, factor: S) -> Line<S> {
+        Line(self.0.iter().map(|&c| factor * c).collect())
+    }
+
+    /// self + other
+    pub fn plus(&self, other: &Line<S>) -> Line<S> {
+        let at = |line: &Line<S>, i: usize| line.0.get(i).copied().unwrap_or(S::from(0));
+        let length = self.0.len().max(other.0.len());
+        Line((0..length).map(|i| at(self, i) + at(other, i)).collect())
+    }
+
+    /// self - other
+    pub fn minus(&self, other: &Line<S>) -> Line<S> {
+        self.plus(&other.times(S::from(-1)))
+    }
+
+    /// self * other
+    pub fn by(&self, other: &Line<S>) -> Line<S> {
+        let mut product = vec![S::from(0); self.0.len() + other.0.len() - 1];
+        for (i, &a) in self.0.iter().enumerate() {
+            for (j, &b) in other.0.iter().enumerate() {
+                product[i + j] = product[i + j] + a * b;
+            }
+        }
+        Line(product)
+    }
+
+    /// The integral from start to end.
+    pub fn integral(&self, [start, end]: [S; 2]) -> S {
+        let (mut sum, mut from, mut to) = (S::from(0), start, end);
+        for (power, &c) in (1_i32..).zip(&self.0) {
+            sum = sum + c * (to - from) / S::from(power);
+            (from, to) = (from * start, to * end);
+        }
+        sum
+    }
+}
+
+impl<S: Ordered> Line<S> {
+    /// \[0, 1\] cut where this affine function is zero inside; each piece with whether it is positive there.
+    pub fn pieces(&self) -> Vec<([S; 2], bool)> {
+        let (zero, one) = (S::from(0), S::from(1));
+        let (start, end) = (self.at(zero), self.at(one));
+        if (start > zero && end < zero) || (start < zero && end > zero) {
+            let root = start / (start - end);
+            vec![([zero, root], start > zero), ([root, one], end > zero)]
+        } else {
+            vec![([zero, one], start > zero || end > zero)]
+        }
+    }
+
+    /// int_0^1 \[self\]+ other
+    pub fn positive_part_times(&self, other: &Line<S>) -> S {
+        self.pieces()
+            .into_iter()
+            .filter(|(_, positive)| *positive)
+            .fold(S::from(0), |sum, (piece, _)| sum + self.by(other).integral(piece))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numbers::Exact;
+
+    fn q(n: i64, d: i64) -> Exact {
+        Exact::ratio(n, d)
+    }
+
+    #[test]
+    fn the_strain_of_a_quadratic_field_is_known() {
+        // u = (x^2, x y): eps = [[2x, y/2], [y/2, x]]
+        let vertices = [[q(1, 1), q(1, 1)], [q(4, 1), q(2, 1)], [q(2, 1), q(5, 1)]];
+        let middle =
+            |a: usize, b: usize| [0, 1].map(|c| (vertices[a][c] + vertices[b][c]) / q(2, 1));
+        let nodes =
+            [vertices[0], vertices[1], vertices[2], middle(1, 2), middle(2, 0), middle(0, 1)];
+        let field = Field { vertices, nodal: nodes.map(|[x, y]| [x * x, x * y]).to_vec() };
+        assert_eq!(field.strain(1), [q(8, 1), q(4, 1), q(1, 1)]);
+        assert_eq!(field.strain(2), [q(4, 1), q(2, 1), q(5, 2)]);
+        assert_eq!(field.area(), q(11, 2));
+    }
+
+    #[test]
+    fn strain_inverts_stress() {
+        let hooke = Hooke { lambda: q(3, 1), mu: q(7, 10) };
+        let strain = [q(1, 2), q(-2, 3), q(5, 1)];
+        assert_eq!(hooke.strain(hooke.stress(strain)), strain);
+    }
+
+    #[test]
+    fn integrals_of_lines_are_known() {
+        // (1 - 3s)(2 + 5s) on [0, 1]: 2 - 1/2 - 5
+        let (a, b) = (Line::affine(q(1, 1), q(-2, 1)), Line::affine(q(2, 1), q(7, 1)));
+        assert_eq!(a.by(&b).integral([q(0, 1), q(1, 1)]), q(-7, 2));
+        assert_eq!(Line::quadratic(q(1, 1), q(2, 1), q(5, 1)).at(q(1, 2)), q(2, 1));
+        // [1 - 3s]+ on [0, 1]: 1/6
+        assert_eq!(a.positive_part_times(&Line(vec![q(1, 1)])), q(1, 6));
+    }
+}
