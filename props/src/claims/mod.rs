@@ -2,8 +2,10 @@
 //! the row of the ledger with its checks.
 
 pub mod discrete_forms;
+pub mod lemma_3_1;
 pub mod lemma_3_2;
 pub mod method;
+pub mod mixed;
 #[cfg(not(kani))]
 pub mod pending;
 pub mod positive_part;
@@ -22,7 +24,10 @@ pub fn all() -> Vec<Claim> {
         prop_2_1::claim(),
         prop_2_1::remark_2_2(),
         discrete_forms::claim(),
+        lemma_3_1::green(),
         method::claim(),
+        mixed::claim(),
+        lemma_3_1::consistency(),
         lemma_3_2::claim(),
         theorem_3_3::claim(),
         theorem_3_4::claim(),

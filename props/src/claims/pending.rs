@@ -27,24 +27,6 @@ fn row(
 pub fn claims() -> Vec<Claim> {
     vec![
         row(
-            "4",
-            &["(6)", "Remark 2.3"],
-            "From Green's formula to Nitsche's",
-            "a(u, v) - int gamma sigma_n(u) sigma_n(v) + int (1/gamma)[u_n - gamma sigma_n(u)]+ (v_n - gamma sigma_n(v)) = L(v).",
-        ),
-        row(
-            "7",
-            &["(9)", "(10)"],
-            "The contact pressure as a projection",
-            "lambda^h = -(1/gamma)[P_gamma(u^h)]+ is the L^2-projection of -(1/gamma)P_gamma(u^h) on the nonpositive functions.",
-        ),
-        row(
-            "8",
-            &["Lemma 3.1", "(3)"],
-            "Consistency",
-            "The solution u of (1)-(2) is also solution of A_gamma(u, v^h) + int (1/gamma)[P_gamma(u)]+ P_gamma(v^h) = L(v^h).",
-        ),
-        row(
             "12",
             &["Theorem 3.5", "(21)", "(22)-(24)", "Corollary 3.6", "(25)", "Remark 3.7"],
             "Rates",

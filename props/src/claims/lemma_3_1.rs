@@ -1,0 +1,255 @@
+//! From Green's formula to (6), and Lemma 3.1: the exact solution satisfies the discrete equations.
+//!
+//! On a body with any affine field u the equations (1) hold with f = 0 and the tractions sigma(u) n. With a gap and a
+//! stress such that (2) holds on Gamma_C, u is an exact solution, and it lies in V^h: then (8) must hold at u for every
+//! v^h that is zero on Gamma_D, without any error. These are the patch tests, in a general form: full contact, an open
+//! gap, and touching without force.
+
+use signorini::kernel::ContactPoint;
+
+use crate::verdict::{Ordered, Verdict};
+use crate::{ensure, given};
+
+fn class<S: Ordered>(sigma: S, u: S, g: S) -> &'static str {
+    if sigma < S::from(0) {
+        "contact"
+    } else if u < g {
+        "gap"
+    } else {
+        "touching without force"
+    }
+}
+
+/// The steps before (6), at a point: -sigma_n(u) v_n becomes -gamma sigma_n(u) sigma_n(v) + (1/gamma)\[P(u)\]+ P0(v).
+fn rearranged<S: Ordered>([u, g, s, gamma, v, t]: [S; 6], theta: S) -> Verdict {
+    let zero = S::from(0);
+    given!(gamma > zero);
+    given!(u <= g && s <= zero && s * (u - g) == zero);
+    let here = ContactPoint { u_n: u, gap: g, sigma_n: s, gamma };
+    let p0 = v - theta * gamma * t;
+    ensure!(here.pressure() == s);
+    ensure!(-(s * v) == -(gamma * s * t) - s * (v - gamma * t));
+    ensure!(-(s * v) == -(gamma * s * t) - here.pressure() * p0);
+    Verdict::Holds(class(s, u, g))
+}
+
+/// (6) as an identity of integrands.
+pub fn green_terms_rearrange_to_6<S: Ordered>(v: [S; 6]) -> Verdict {
+    rearranged(v, S::from(1))
+}
+
+/// (6) with theta = -1 in the test function.
+pub fn control_theta_minus_one_in_6<S: Ordered>(v: [S; 6]) -> Verdict {
+    rearranged(v, S::from(-1))
+}
+
+#[cfg(not(kani))]
+pub use row::{consistency, green};
+
+#[cfg(not(kani))]
+mod row {
+    use proptest::prelude::*;
+    use signorini::kernel::{P1, P2};
+
+    use super::*;
+    use crate::bodies::{Body, Definition, Draw, Kernel, MaybeExact, Rule, bodies, rotated, sum};
+    use crate::claim::{Claim, Engine, Outcome, by, control, proved, refuted, tested};
+    use crate::draws;
+    use crate::naive::Tensor;
+    use crate::numbers::Exact;
+    use crate::statement;
+
+    /// The plain data of an affine exact solution: stresses, rotation, displacement, distance to the obstacle.
+    type Patch = ([(i64, i64); 5], [(i64, i64); 2], usize);
+
+    fn patches() -> impl Strategy<Value = Patch> {
+        let ratio = draws::ratio;
+        (
+            [ratio(), ratio(), ratio(), ratio(), ratio()],
+            [draws::positive(), draws::positive()],
+            0_usize..3,
+        )
+    }
+
+    /// An affine field with its stress in the frame of the unturned body, and the gap for which it is a solution.
+    struct Solution {
+        stress: Tensor<Exact>,
+        field: Vec<[Exact; 2]>,
+    }
+
+    /// Sets the gaps of a body so that an affine field is an exact solution. `kind`: 0 contact, 1 gap, 2 touching.
+    fn solution(body: &mut Body, (values, distances, kind): &Patch) -> Solution {
+        let [sxx, syy, w, dx, dy] = values.map(|(n, d)| Exact::ratio(n, d));
+        let zero = Exact::from(0);
+        let left_too = body.contact.iter().any(|side| rotated_back(side.n, body.turn)[0] < zero);
+        let pressed = |s: Exact| if *kind == 0 { -s.abs() } else { zero };
+        let stress = [if left_too { pressed(sxx) } else { sxx }, pressed(syy), zero];
+        let [exx, eyy, exy] = body.hooke.strain(stress);
+        let turn = body.turn;
+        let at = move |x: [Exact; 2]| {
+            let [x, y] = rotated_back(x, turn);
+            rotated([exx * x + (exy - w) * y + dx, (exy + w) * x + eyy * y + dy], turn)
+        };
+        let field = body.interpolated(at);
+        let open = distances.map(|(n, d)| Exact::ratio(n, d));
+        let vertices = body.vertices.clone();
+        for side in &mut body.contact {
+            let corners = body.triangles[side.triangle];
+            let ends = [1, 2].map(|k| vertices[corners[(side.local + k) % 3]]);
+            let normal = ends.map(|x| {
+                let u = at(x);
+                u[0] * side.n[0] + u[1] * side.n[1]
+            });
+            let away = if *kind == 1 { open } else { [zero; 2] };
+            let (start, end) = (normal[0] + away[0], normal[1] + away[1]);
+            side.gap = [start, end, (start + end) / Exact::from(2)];
+        }
+        Solution { stress, field }
+    }
+
+    fn rotated_back(x: [Exact; 2], [c, s]: [Exact; 2]) -> [Exact; 2] {
+        rotated(x, [c, -s])
+    }
+
+    /// L(v) = int over Gamma_N of (sigma n) . v: exact for v of degree 2 by Simpson's rule. All of the boundary that is
+    /// neither contact nor top; the scaled normal is |E| n.
+    fn load<const N: usize>(body: &Body, stress: Tensor<Exact>, v: &[[Exact; 2]]) -> Exact {
+        sum(&body.free, |&(t, i)| {
+            let field = body.field::<N>(t, v);
+            let [start, end] = [1, 2].map(|k| body.unturned[body.triangles[t][(i + k) % 3]]);
+            let (nx, ny) = (end[1] - start[1], start[0] - end[0]);
+            let traction = [stress[0] * nx + stress[2] * ny, stress[2] * nx + stress[1] * ny];
+            let force = rotated(traction, body.turn);
+            let work = field.normal_trace(i, force);
+            crate::bodies::whole(&work)
+        })
+    }
+
+    /// Green's formula and (8) at an exact affine solution, for every v that is zero at the top.
+    fn consistent<E, const N: usize, const M: usize>(
+        draw: &Draw,
+        patch: &Patch,
+        spoil: bool,
+    ) -> Verdict
+    where
+        E: MaybeExact<N, M>,
+    {
+        let mut body = draw.body();
+        let Solution { stress, field: u } = solution(&mut body, patch);
+        if spoil {
+            for side in &mut body.contact {
+                side.gap = side.gap.map(|g| g - Exact::ratio(1, 3));
+            }
+        }
+        let v = body.clamped(body.drawn(0));
+        let (kernel, definition) = (Kernel::<N, M>::new::<E>(&body), Definition::<N>(&body));
+        let work = load::<N>(&body, stress, &v);
+        // Green's formula with (1), before (6).
+        let green = sum(&body.contact, |side| {
+            let (here, test) = (definition.traces(side, &u), definition.traces(side, &v));
+            side.length * crate::bodies::whole(&here.sigma_n.by(&test.v_n))
+        });
+        ensure!(definition.a(&u, &v) - green == work);
+        // The weights of a rule that is exact for the affine integrand here, so that P2 can take part.
+        let half = Exact::ratio(1, 2);
+        let gauss = [
+            [Exact::from(0), Exact::ratio(1, 6)],
+            [half, Exact::ratio(2, 3)],
+            [Exact::from(1), Exact::ratio(1, 6)],
+        ];
+        let rule = if N == 3 { Rule::Exact } else { Rule::Points(&gauss) };
+        ensure!(kernel.b::<E>(rule, &u, &v) == work);
+        Verdict::Holds(["contact", "gap", "touching without force"][patch.2])
+    }
+
+    const CLASSES: [&str; 3] = ["contact", "gap", "touching without force"];
+
+    fn patch_p1() -> Outcome {
+        draws::hold(90, (bodies(1), patches()), &CLASSES, |(draw, patch)| {
+            Exact::scope(|| consistent::<P1, 3, 2>(draw, patch, false))
+        })
+    }
+
+    fn patch_p2() -> Outcome {
+        draws::hold(30, (bodies(1), patches()), &CLASSES, |(draw, patch)| {
+            Exact::scope(|| consistent::<P2, 6, 3>(draw, patch, false))
+        })
+    }
+
+    /// An obstacle that is nearer than the solution allows.
+    fn wrong_gap() -> Outcome {
+        draws::reject(90, (bodies(1), patches()), |(draw, patch)| {
+            Exact::scope(|| consistent::<P1, 3, 2>(draw, patch, true))
+        })
+    }
+
+    fn onto_contact(v: &mut [Exact]) {
+        let zero = Exact::from(0);
+        if v[0] > v[1] {
+            v[0] = v[1];
+            v[2] = -v[2].abs();
+        } else {
+            v[2] = zero;
+        }
+        v[3] = v[3].abs() + Exact::ratio(1, 9);
+    }
+
+    /// The row of (6).
+    pub fn green() -> Claim {
+        let six = statement!(
+            green_terms_rearrange_to_6,
+            [u_n, g, sigma_n, gamma, v_n, tau_n],
+            ["contact", "gap", "touching without force"]
+        )
+        .prepared(onto_contact);
+        let minus =
+            statement!(control_theta_minus_one_in_6, [u_n, g, sigma_n, gamma, v_n, tau_n], []);
+        Claim {
+            id: "4",
+            items: &["(6)", "Remark 2.3"],
+            title: "From Green's formula to Nitsche's",
+            paper: "a(u, v) - int gamma sigma_n(u) sigma_n(v) + int (1/gamma)[u_n - gamma sigma_n(u)]+ (v_n - gamma sigma_n(v)) = L(v) (6), from a(u, v) - int sigma_n(u) v_n = L(v) and (5).",
+            statement: "The rearrangement is an identity of integrands, given (2) and gamma > 0. On random bodies with an affine exact solution, Green's formula a(u, v) - int sigma_n(u) v_n = L(v) and (6) hold for every discrete v that is zero on Gamma_D.",
+            numbers: "every ordered field at a point (proof); rationals on bodies.",
+            kernel: &["contact::ContactPoint::pressure"],
+            preconditions: "gamma > 0 and (2) at the exact solution. The paper has g = 0.",
+            limits: "Green's formula for fields that are not piecewise polynomial is taken from analysis. Remark 2.3 is the same formula, for u sufficiently regular.",
+            single: None,
+            checks: vec![
+                proved(six),
+                tested(six),
+                by(Engine::Exact, "green_and_6_hold_at_affine_solutions_for_p1", patch_p1),
+                refuted(minus),
+                control(Engine::Exact, "control_obstacle_too_near", wrong_gap),
+            ],
+        }
+    }
+
+    /// The row of Lemma 3.1.
+    pub fn consistency() -> Claim {
+        Claim {
+            id: "8",
+            items: &["Lemma 3.1", "(3)"],
+            title: "Consistency",
+            paper: "Suppose that the solution u of (1)-(2) is in H^(3/2 + nu), nu > 0; then u is also solution of A_gamma(u, v^h) + int (1/gamma)[P_gamma(u)]+ P_gamma(v^h) = L(v^h) for all v^h in V^h.",
+            statement: "On random bodies, for every affine field with a stress and a gap that satisfy (2) (full contact, an open gap, touching without force; one or two contact sides; plane strain and stress; turned), the residual of (8) is exactly zero for every v^h that is zero on Gamma_D, for P1 and P2.",
+            numbers: "rationals, no tolerance.",
+            kernel: &[
+                "contact_edge::ContactEdge::new",
+                "edge_integral::ExactEdge::exact",
+                "edge_integral::gauss",
+                "element::stiffness",
+            ],
+            preconditions: "(2) at the exact solution; f = 0; tractions sigma(u) n on Gamma_N.",
+            limits: "Curved exact solutions, whose residual needs integrals with an enclosed error, are not covered yet; nor is L as the solver assembles it. That (3) has one solution (Stampacchia) is taken from analysis.",
+            single: Some(
+                "The statement is about assembled quantities; over symbols it is the pointwise identity of row 4.",
+            ),
+            checks: vec![
+                by(Engine::Exact, "residual_vanishes_at_affine_solutions_for_p1", patch_p1),
+                by(Engine::Exact, "residual_vanishes_at_affine_solutions_for_p2", patch_p2),
+                control(Engine::Exact, "control_obstacle_too_near", wrong_gap),
+            ],
+        }
+    }
+}

@@ -1,0 +1,297 @@
+//! Section 2.3: lambda^h = -(1/gamma) \[P(u^h)\]+ is a projection, (9) and (10), and method (8) as a mixed method.
+//!
+//! The set of the multipliers is printed as L^2(Gamma_C); it is the cone of the nonpositive functions in it.
+
+use signorini::kernel::ContactPoint;
+
+use crate::verdict::{Ordered, Verdict};
+use crate::{ensure, given};
+
+fn point<S>([u_n, gap, sigma_n, gamma]: [S; 4]) -> ContactPoint<S> {
+    ContactPoint { u_n, gap, sigma_n, gamma }
+}
+
+fn class<S: Ordered>(point: &ContactPoint<S>) -> &'static str {
+    if point.p() > S::from(0) { "pressed" } else { "open" }
+}
+
+/// The integrand of (9): (mu - l)(-P/gamma - l).
+fn nine<S: Ordered>(point: &ContactPoint<S>, mu: S, l: S) -> S {
+    let p = point.u_n - point.gap - point.gamma * point.sigma_n;
+    (mu - l) * (-(p / point.gamma) - l)
+}
+
+/// The integrand of (10): (mu - l)(u_n - g) + gamma (mu - l)(l - sigma_n).
+fn ten<S: Ordered>(point: &ContactPoint<S>, mu: S, l: S) -> S {
+    (mu - l) * (point.u_n - point.gap) + point.gamma * (mu - l) * (l - point.sigma_n)
+}
+
+/// (9) and (10) at a point for lambda^h, for every mu <= 0, and with equality for mu = 0 and mu = 2 lambda^h.
+fn projection<S: Ordered>(
+    [u, g, s, gamma, mu]: [S; 5],
+    lambda: impl Fn(&ContactPoint<S>) -> S,
+) -> Verdict {
+    let zero = S::from(0);
+    let point = point([u, g, s, gamma]);
+    given!(gamma > zero && mu <= zero);
+    let l = lambda(&point);
+    ensure!(l <= zero);
+    ensure!(nine(&point, mu, l) <= zero);
+    ensure!(ten(&point, mu, l) >= zero);
+    ensure!(nine(&point, zero, l) == zero && nine(&point, l + l, l) == zero);
+    Verdict::Holds(class(&point))
+}
+
+/// (9) and (10) hold for the kernel's lambda^h.
+pub fn contact_pressure_is_the_projection<S: Ordered>(v: [S; 5]) -> Verdict {
+    projection(v, ContactPoint::pressure)
+}
+
+/// (9) and (10) are the same condition for any multiplier l: (10) is -gamma times (9).
+pub fn conditions_9_and_10_are_equivalent<S: Ordered>([u, g, s, gamma, mu, l]: [S; 6]) -> Verdict {
+    let zero = S::from(0);
+    let point = point([u, g, s, gamma]);
+    given!(gamma > zero);
+    let (nine, ten) = (nine(&point, mu, l), ten(&point, mu, l));
+    ensure!(ten == -(gamma * nine));
+    let (nine_holds, ten_holds) = (nine <= zero, ten >= zero);
+    ensure!(nine_holds == ten_holds);
+    Verdict::Holds(if nine_holds { "both hold" } else { "neither holds" })
+}
+
+/// The converse: l <= 0 that satisfies (9) for mu = 0, 2 l and l - 1 is lambda^h.
+pub fn condition_9_leaves_only_the_contact_pressure<S: Ordered>(
+    [u, g, s, gamma, l]: [S; 5],
+) -> Verdict {
+    let zero = S::from(0);
+    let point = point([u, g, s, gamma]);
+    given!(gamma > zero && l <= zero);
+    given!(nine(&point, zero, l) <= zero && nine(&point, l + l, l) <= zero);
+    given!(nine(&point, l - S::from(1), l) <= zero);
+    ensure!(l == point.pressure());
+    Verdict::Holds(class(&point))
+}
+
+/// The rewriting of (8): integrand of A_gamma's stress term and of the contact term together.
+pub fn method_is_its_mixed_form_at_a_point<S: Ordered>([u, g, s, gamma, v, t]: [S; 6]) -> Verdict {
+    given!(gamma > S::from(0));
+    let here = point([u, g, s, gamma]);
+    let l = here.pressure();
+    let test = ContactPoint { u_n: v, sigma_n: t, ..here };
+    let method = -(gamma * s * t) - l * test.p0();
+    ensure!(method == gamma * (l - s) * t - l * v);
+    Verdict::Holds(class(&here))
+}
+
+/// sigma_n in place of lambda^h: not the projection, for sigma_n(u^h) is not lambda^h.
+pub fn control_normal_stress_for_the_multiplier<S: Ordered>(v: [S; 5]) -> Verdict {
+    projection(v, |point| point.sigma_n)
+}
+
+/// lambda^h without 1/gamma.
+pub fn control_multiplier_without_gamma<S: Ordered>(v: [S; 5]) -> Verdict {
+    projection(v, |point| point.gamma * point.pressure())
+}
+
+#[cfg(not(kani))]
+pub use row::claim;
+
+#[cfg(not(kani))]
+mod row {
+    use signorini::kernel::{P1, P2};
+
+    use super::*;
+    use crate::bodies::{
+        Body, Definition, Kernel, MaybeExact, Rule, Side, bodies, contact_class, sum,
+    };
+    use crate::claim::{Claim, Engine, Outcome, by, control, proved, refuted, tested};
+    use crate::draws;
+    use crate::naive::Line;
+    use crate::numbers::Exact;
+    use crate::statement;
+
+    /// The pieces of a side on which lambda^h is a polynomial, with that polynomial.
+    fn multiplier(body: &Body, side: &Side, p: &Line<Exact>) -> Vec<([Exact; 2], Line<Exact>)> {
+        let pressed = p.times(-(Exact::from(1) / body.gamma(side)));
+        let none = Line(vec![Exact::from(0)]);
+        p.pieces()
+            .into_iter()
+            .map(|(piece, positive)| (piece, if positive { pressed.clone() } else { none.clone() }))
+            .collect()
+    }
+
+    /// mu <= 0, affine on a side.
+    fn cone(body: &Body, e: usize) -> Line<Exact> {
+        let [a, b] = body.drawn(2)[e];
+        Line::affine(-a.abs(), -b.abs())
+    }
+
+    /// The mixed form of (8) and (9), (10) integrated over Gamma_C, at any u: P1 without quadrature error.
+    fn mixed(body: &Body, sign: Exact) -> Verdict {
+        let (u, v) = (body.drawn(0), body.drawn(1));
+        let (kernel, definition) = (Kernel::<3, 2>::new::<P1>(body), Definition::<3>(body));
+        let over = |f: &dyn Fn(&Side, usize, &Line<Exact>) -> Line<Exact>| {
+            let (mut total, mut e) = (Exact::from(0), 0);
+            for side in &body.contact {
+                let p = definition.traces(side, &u).p;
+                for (piece, l) in multiplier(body, side, &p) {
+                    total = total + side.length * f(side, e, &l).integral(piece);
+                }
+                e += 1;
+            }
+            total
+        };
+        let contact = over(&|side, _, l| {
+            let (here, test) = (definition.traces(side, &u), definition.traces(side, &v));
+            let stabilised = l.minus(&here.sigma_n).by(&test.sigma_n).times(body.gamma(side));
+            stabilised.plus(&l.by(&test.v_n).times(-sign))
+        });
+        ensure!(kernel.b::<P1>(Rule::Exact, &u, &v) == definition.a(&u, &v) + contact);
+        let nine = over(&|side, e, l| {
+            let projected =
+                definition.traces(side, &u).p.times(-(Exact::from(1) / body.gamma(side)));
+            cone(body, e).minus(l).by(&projected.minus(l))
+        });
+        ensure!(nine <= Exact::from(0));
+        let ten = over(&|side, e, l| {
+            let here = definition.traces(side, &u);
+            let [start, end, _] = side.gap;
+            let opening = here.v_n.minus(&Line::affine(start, end));
+            let inner = opening.plus(&l.minus(&here.sigma_n).times(body.gamma(side)));
+            cone(body, e).minus(l).by(&inner)
+        });
+        ensure!(ten >= Exact::from(0));
+        let equality = over(&|side, _, l| {
+            let projected =
+                definition.traces(side, &u).p.times(-(Exact::from(1) / body.gamma(side)));
+            l.by(&projected.minus(l))
+        });
+        ensure!(equality == Exact::from(0));
+        Verdict::Holds(contact_class::<3>(body, &u))
+    }
+
+    /// The same equality by points, for P1 and P2: lambda^h at each point.
+    fn mixed_by_points<E, const N: usize, const M: usize>(body: &Body) -> Verdict
+    where
+        E: MaybeExact<N, M>,
+    {
+        let (u, v) = (body.drawn(0), body.drawn(1));
+        let (kernel, definition) = (Kernel::<N, M>::new::<E>(body), Definition::<N>(body));
+        let rule = [[(1, 4), (1, 3)], [(3, 5), (1, 2)], [(1, 1), (1, 6)]]
+            .map(|p| p.map(|(n, d)| Exact::ratio(n, d)));
+        let contact = sum(&body.contact, |side| {
+            let (here, test) = (definition.traces(side, &u), definition.traces(side, &v));
+            let gamma = body.gamma(side);
+            side.length
+                * sum(&rule, |&[s, w]| {
+                    let p = here.p.at(s);
+                    let l = if p > Exact::from(0) { -(p / gamma) } else { Exact::from(0) };
+                    // The part of A_gamma that cancels is integrated exactly on both sides.
+                    w * (gamma * l * test.sigma_n.at(s) - l * test.v_n.at(s))
+                })
+        });
+        ensure!(kernel.b::<E>(Rule::Points(&rule), &u, &v) == definition.big_a(&u, &v) + contact);
+        Verdict::Holds(contact_class::<N>(body, &u))
+    }
+
+    fn mixed_p1() -> Outcome {
+        let classes = ["an edge is cut", "open", "pressed"];
+        draws::hold(60, bodies(3), &classes, |draw| {
+            Exact::scope(|| mixed(&draw.body(), Exact::from(1)))
+        })
+    }
+
+    fn mixed_p2() -> Outcome {
+        draws::hold(20, bodies(2), &["an edge is cut"], |draw| {
+            Exact::scope(|| mixed_by_points::<P2, 6, 3>(&draw.body()))
+        })
+    }
+
+    fn sign_of_the_multiplier() -> Outcome {
+        draws::reject(60, bodies(3), |draw| Exact::scope(|| mixed(&draw.body(), Exact::from(-1))))
+    }
+
+    /// lambda^h in doubles lies within rounding of (9) with equality: l (u_n - g + gamma (l - sigma_n)) = 0, relative to
+    /// its largest term.
+    fn complementarity_in_doubles() -> Outcome {
+        draws::hold(20_000, draws::doubles(4), &["pressed", "open"], |v| {
+            let point = point([v[0], v[1], v[2], v[3].abs()]);
+            let moderate = |x: f64| x == 0.0 || (x.abs() > 1e-60 && x.abs() < 1e60);
+            given!(v.iter().all(|&x| moderate(x)) && point.gamma > 0.0);
+            let l = point.pressure();
+            ensure!(l <= 0.0);
+            if l == 0.0 {
+                ensure!(point.p() <= 0.0);
+                return Verdict::Holds("open");
+            }
+            let terms = [point.u_n, -point.gap, point.gamma * l, -(point.gamma * point.sigma_n)];
+            let size = terms.iter().fold(0.0, |m: f64, t| m.max(t.abs()));
+            ensure!(terms.iter().sum::<f64>().abs() <= 16.0 * f64::EPSILON * size);
+            Verdict::Holds("pressed")
+        })
+    }
+
+    fn onto_9(v: &mut [Exact]) {
+        let gamma = v[3].abs() + Exact::ratio(1, 7);
+        let p = v[0] - v[1] - gamma * v[2];
+        v[3] = gamma;
+        v[4] = if p > Exact::from(0) { -(p / gamma) } else { Exact::from(0) };
+    }
+
+    /// The row of section 2.3.
+    pub fn claim() -> Claim {
+        let projection = statement!(
+            contact_pressure_is_the_projection,
+            [u_n, g, sigma_n, gamma, mu],
+            ["pressed", "open"]
+        );
+        let equivalent = statement!(
+            conditions_9_and_10_are_equivalent,
+            [u_n, g, sigma_n, gamma, mu, l],
+            ["both hold", "neither holds"]
+        );
+        let converse = statement!(
+            condition_9_leaves_only_the_contact_pressure,
+            [u_n, g, sigma_n, gamma, l],
+            ["pressed", "open"]
+        )
+        .prepared(onto_9);
+        let form = statement!(
+            method_is_its_mixed_form_at_a_point,
+            [u, g, s, gamma, v, t],
+            ["pressed", "open"]
+        );
+        let all = [projection, equivalent, converse, form];
+        let mut checks: Vec<_> = all.into_iter().map(proved).collect();
+        checks.extend(all.into_iter().map(tested));
+        checks.extend([
+            by(Engine::Exact, "mixed_form_9_and_10_hold_on_random_bodies_for_p1", mixed_p1),
+            by(Engine::Exact, "mixed_form_by_points_holds_on_random_bodies_for_p2", mixed_p2),
+            by(
+                Engine::Doubles,
+                "complementarity_of_the_contact_pressure_holds_up_to_rounding",
+                complementarity_in_doubles,
+            ),
+            control(Engine::Exact, "control_sign_of_the_multiplier_turned", sign_of_the_multiplier),
+            refuted(statement!(
+                control_normal_stress_for_the_multiplier,
+                [u_n, g, sigma_n, gamma, mu],
+                []
+            )),
+            refuted(statement!(control_multiplier_without_gamma, [u_n, g, sigma_n, gamma, mu], [])),
+        ]);
+        Claim {
+            id: "7",
+            items: &["(9)", "(10)"],
+            title: "The contact pressure as a projection, and the mixed form",
+            paper: "lambda^h := -(1/gamma)[P_gamma(u^h)]+ can be interpreted as the L^2-projection of -(1/gamma)P_gamma(u^h) on the cone of the nonpositive mu: (9); (9) is equivalent to (10); the method is equivalent to a mixed method with stabilisation.",
+            statement: "At a point: (9) and (10) hold for lambda^h and every mu <= 0, with equality for mu = 0 and mu = 2 lambda^h; (10) is -gamma times (9) for any multiplier; a multiplier l <= 0 that satisfies (9) for three choices of mu is lambda^h. On random bodies, for every u^h and not the solution alone: the left side of (8) equals that of the first mixed equation, and the integrals (9) and (10) have their signs for random mu <= 0.",
+            numbers: "every ordered field at a point (proof); rationals on bodies; doubles at a point, up to 16 roundings.",
+            kernel: &["contact::ContactPoint::pressure", "contact::ContactPoint::p0"],
+            preconditions: "gamma > 0, constant on each edge (7).",
+            limits: "That the solver's output is used with these functions is not checked here.",
+            single: None,
+            checks,
+        }
+    }
+}
