@@ -1,4 +1,57 @@
-//! Unilateral (Signorini) contact in linear elasticity by Nitsche's method.
+//! Unilateral (Signorini) contact in linear elasticity by Nitsche's method, after Chouly & Hild, *A Nitsche-based method
+//! for unilateral contact problems: numerical analysis*, SIAM J. Numer. Anal. 51 (2013) 1295-1307 ("the paper").
+//!
+//! # The problem
+//!
+//! An elastic body is clamped (or moved) on Gamma_D, loaded in Omega and on Gamma_N, and may touch a rigid obstacle along
+//! Gamma_C, at the initial distance g along the outward normal n:
+//!
+//! - (1) div sigma(u) + f = 0, sigma(u) = A eps(u), with the data on Gamma_D and Gamma_N;
+//! - (2) u_n - g <= 0, sigma_n(u) <= 0, sigma_n(u) (u_n - g) = 0, sigma_t(u) = 0 on Gamma_C.
+//!
+//! # The method
+//!
+//! For any gamma > 0, (2)(i)-(iii) say the same as the one equation (5): sigma_n(u) = -(1/gamma) \[P(u)\]+ with
+//! P(u) = u_n - g - gamma sigma_n(u) (Proposition 2.1). Put into Green's formula it gives (6), and on a finite element
+//! space V^h, with gamma = gamma0 h_T (7), **method (8)**: find u^h in V^h such that for all v^h in V^h
+//!
+//! A(u^h, v^h) + int (1/gamma) \[P(u^h)\]+ P0(v^h) = L(v^h),
+//!
+//! with A(u, v) = a(u, v) - int gamma sigma_n(u) sigma_n(v) and P0 the linear part of P. Its left side less its right is the
+//! derivative of J_h(v) = 1/2 A(v, v) + 1/2 int (1/gamma) \[P(v)\]+^2 - L(v), which is strictly convex as long as
+//! kappa = gamma0 C_h < 1: that is what "gamma0 sufficiently small" means here (Lemma 3.2, Theorem 3.3).
+//!
+//! # Where the paper's formulas live
+//!
+//! | paper | here |
+//! | --- | --- |
+//! | sigma = A eps in (1) | [`kernel::material`] |
+//! | \[.\]+ and (4) | [`kernel::positive_part`](mod@kernel::positive_part) |
+//! | (2), (5), P_gamma, lambda^h of section 2.3 | [`kernel::contact`] |
+//! | V^h: P1, and P2 of Remark 3.7; a(.,.) on a triangle | [`kernel::element`], [`fem::space`] |
+//! | P_gamma and sigma_n on an edge, the constant of (11) | [`kernel::contact_edge`] |
+//! | the integrals over Gamma_C in (8), without quadrature error | [`kernel::edge_integral`] |
+//! | T^h and h_T | [`fem::mesh`] |
+//! | Gamma_D, L, Gamma_C with (7), kappa | [`fem::constraints`], [`fem::loads`], [`fem::contact_line`] |
+//! | (8) itself, J_h | [`fem::discretization`] |
+//! | A_gamma as a matrix | [`fem::matrix`] |
+//! | the solution of (8) | [`solve::condensed`], [`solve::newton`] |
+//!
+//! # Example
+//!
+//! ```
+//! use std::path::Path;
+//! use signorini::{io::Case, solve::{Status, solve}};
+//!
+//! let case = Case::read(Path::new("cases/block.toml"))?;
+//! let (solution, _) = solve(&case.problem, &case.method, &case.settings)?;
+//! assert_eq!(solution.newton.status, Status::Converged);
+//! assert!((solution.quantities.contact_force - 0.4198).abs() < 1e-4);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Proofs of what the code relies on are in `docs/theory.md`; what has been verified, and how, is in `VERIFY.md`.
+
 #[cfg(not(kani))]
 pub mod fem;
 #[cfg(not(kani))]
