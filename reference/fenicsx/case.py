@@ -118,7 +118,7 @@ class _Table:
 
     def number(self, key, expected="a finite number", accept=math.isfinite, default=None):
         value = self.need(key, expected) if default is None else self.get(key, default)
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value) or not accept(value):
+        if not _is_number(value) or not accept(value):
             self.fail(key, value, expected)
         return float(value)
 
@@ -165,6 +165,10 @@ class _Table:
             if key not in self.known:
                 known = ", ".join(dict.fromkeys(self.known))
                 raise CaseError(f"{self.file}: {self.place(key)}: unknown key; known here: {known}")
+
+
+def _is_number(value):
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
 
 
 def _show(value):
@@ -226,7 +230,8 @@ def _mesh(table, path):
     positive = ("a positive number", lambda a: a > 0)
     count = ("a positive integer", lambda n: n > 0)
     if shapes == ["trapezoid"]:
-        shape = Trapezoid(inner.number("omega", "an angle between pi/2 and pi", lambda a: math.pi / 2 < a < math.pi), inner.integer("n", *count))
+        omega = inner.number("omega", "an angle between pi/2 and pi", lambda a: math.pi / 2 < a < math.pi)
+        shape = Trapezoid(omega, inner.integer("n", *count))
         cells = shape.n**2
     else:
         shape = Rectangle(inner.number("width", *positive), inner.number("height", *positive), inner.integer("nx", *count),
@@ -303,8 +308,7 @@ def _probes(output):
     if not isinstance(probes, list):
         output.fail("probes", probes, "a list of points [x, y]")
     for i, point in enumerate(probes):
-        numbers = isinstance(point, list) and all(isinstance(c, (int, float)) and not isinstance(c, bool) and math.isfinite(c) for c in point)
-        if not numbers or len(point) != 2:
+        if not isinstance(point, list) or len(point) != 2 or not all(_is_number(coordinate) for coordinate in point):
             output.fail(f"probes[{i}]", point, "a point [x, y]")
     return [[float(x), float(y)] for x, y in probes]
 
@@ -317,6 +321,8 @@ def _exact(table, material):
     for key, check in solution.parameters.items():
         if check is exact.GAP:
             parameters[key] = table.expression(key, table.get(key, "0"))
+            if "y" in parameters[key].program:
+                table.fail(key, parameters[key].text, check)
         else:
             parameters[key] = table.number(key, *check)
     table.finish()

@@ -16,7 +16,7 @@ from dolfinx import fem, mesh
 from petsc4py import PETSc
 
 try:
-    import basix.ufl as basix_ufl  # 0.7 and later
+    import basix.ufl as basix_ufl  # not in 0.5
 except ImportError:
     basix_ufl = None
 
@@ -27,7 +27,7 @@ def create_mesh(comm, triangles, points):
         domain = ufl.Mesh(basix_ufl.element("Lagrange", "triangle", 1, shape=(2,)))
     else:
         domain = ufl.Mesh(ufl.VectorElement("Lagrange", ufl.Cell("triangle", geometric_dimension=2), 1))
-    points_third = list(inspect.signature(mesh.create_mesh).parameters)[2] == "x"  # 0.10 and later take the element there
+    points_third = list(inspect.signature(mesh.create_mesh).parameters)[2] == "x"  # 0.11 takes the element there
     return mesh.create_mesh(comm, triangles, *((points, domain) if points_third else (domain, points)))
 
 
@@ -37,17 +37,10 @@ def vector_space(domain, degree):
     return fem.VectorFunctionSpace(domain, ("Lagrange", degree))
 
 
-def scalar_space(domain, degree):
+def scalar_space(domain, family, degree):
     if hasattr(fem, "functionspace"):
-        return fem.functionspace(domain, ("Lagrange", degree))
-    return fem.FunctionSpace(domain, ("Lagrange", degree))
-
-
-def cellwise_space(domain):
-    """Piecewise constants."""
-    if hasattr(fem, "functionspace"):
-        return fem.functionspace(domain, ("DG", 0))
-    return fem.FunctionSpace(domain, ("DG", 0))
+        return fem.functionspace(domain, (family, degree))
+    return fem.FunctionSpace(domain, (family, degree))
 
 
 def expression(form, space):

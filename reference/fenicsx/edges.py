@@ -6,13 +6,12 @@ p + 1 Gauss points integrate its square, and all else in (8), without error: thi
 row per edge.
 """
 
-import math
-
 import numpy as np
 from mpi4py import MPI
 
 from . import compat
 from .problem import FACET_VERTICES
+from .quadrature import gauss
 
 REFERENCE = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
 
@@ -104,14 +103,14 @@ class ContactEdges:
         """Points s and weights (their lengths included) for integrals of positive parts of the polynomials (nodal values), in one table
         per edge; and per polynomial, where it counts as positive."""
         if self.gauss:
-            s, w = _gauss(self.gauss)
+            s, w = gauss(self.gauss)
             s, w = np.tile(s, (len(self.length), 1)), np.tile(w, (len(self.length), 1))
             signs = [self.at(nodal, s) for nodal in polynomials]
         else:
             ends = np.zeros((len(self.length), 1)), np.ones((len(self.length), 1))
             cuts = np.sort(np.hstack((ends[0], *map(roots, polynomials), ends[1])), axis=1)
             pieces, middles = np.diff(cuts), (cuts[:, 1:] + cuts[:, :-1]) / 2
-            t, w = _gauss(self.p + 1)
+            t, w = gauss(self.p + 1)
             s = (cuts[:, :-1, None] + pieces[:, :, None] * t).reshape(len(pieces), pieces.shape[1] * len(t))
             w = (pieces[:, :, None] * w).reshape(s.shape)
             signs = [np.repeat(self.at(nodal, middles), len(t), axis=1) for nodal in polynomials]
@@ -184,8 +183,3 @@ class ContactEdges:
         largest = max(value for value, _ in edges)
         return largest, min(ends for value, ends in edges if value >= largest * (1 - 1e-12))
 
-
-def _gauss(n):
-    """n Gauss points and weights on [0, 1]."""
-    t, w = np.polynomial.legendre.leggauss(n)
-    return (t + 1) / 2, w / 2

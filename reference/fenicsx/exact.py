@@ -8,6 +8,8 @@ import math
 
 import numpy as np
 
+from . import taylor
+
 GAP = "an expression of x"
 FINITE = ("a finite number", math.isfinite)
 POSITIVE = ("a positive number", lambda a: a > 0)
@@ -41,17 +43,20 @@ class Solution:
 
 
 class Smooth(Solution):
-    """Unit square, clamped on y = 1, tractions on x = 0 and x = 1: contact for x < c, a gap opening for x > c.
+    """Unit square, clamped on y = 1, tractions on x = 0 and x = 1: contact for x < c, open by ap [x-c]+^k for x > c.
 
-    p = ap [x-c]+^k, q = -aq [c-x]+^m, B = 1 - 3 y^2 + 2 y^3, A = -y B:  u = (A p', B p - A q).
+    p = ap [x-c]+^k - g, q = -aq [c-x]+^m, B = 1 - 3 y^2 + 2 y^3, A = -y B:  u = (A p', B p - A q).
     """
 
     parameters = {"c": INSIDE, "k": ("a number above 2.5", lambda k: k > 2.5), "m": ("a number above 1.5", lambda m: m > 1.5),
-                  "ap": POSITIVE, "aq": POSITIVE}
+                  "ap": POSITIVE, "aq": POSITIVE, "gap": GAP}
 
-    @property
-    def cut(self):
-        return self.c
+    def __init__(self, material, gap, **parameters):
+        super().__init__(material, **parameters)
+        self.floor, self.cut = gap, parameters["c"]
+
+    def gap(self, x, y):
+        return self.floor.values(x, y)
 
     def _profiles(self, x, y):
         def power(t, e):
@@ -60,6 +65,7 @@ class Smooth(Solution):
         k, m, right, left = self.k, self.m, x - self.c, self.c - x
         p = [self.ap * power(right, k), self.ap * k * power(right, k - 1), self.ap * k * (k - 1) * power(right, k - 2),
              self.ap * k * (k - 1) * (k - 2) * power(right, k - 3)]
+        p = [opening - gap for opening, gap in zip(p, taylor.derivatives(self.floor, x))]
         q = [-self.aq * power(left, m), self.aq * m * power(left, m - 1), -self.aq * m * (m - 1) * power(left, m - 2)]
         A = [-(y - 3 * y**3 + 2 * y**4), -(1 - 9 * y**2 + 8 * y**3), 18 * y - 24 * y**2]
         B = [1 - 3 * y**2 + 2 * y**3, -6 * y + 6 * y**2, -6 + 12 * y]

@@ -40,13 +40,14 @@ class Expression:
         """The values at the points (x, y): floats or arrays. 1/0 gives inf and sqrt(-1) NaN; callers must look."""
         x, y = np.asarray(x, float), np.asarray(y, float)
         with np.errstate(all="ignore"):
-            return self._run({"x": x, "y": y}, _NUMPY, np.float64) + np.zeros(np.broadcast(x, y).shape)
+            return self.run({"x": x, "y": y}, _NUMPY, np.float64) + np.zeros(np.broadcast(x, y).shape)
 
     def ufl(self, point):
         """The UFL expression at `point`, a ufl.SpatialCoordinate."""
-        return self._run({"x": point[0], "y": point[1]}, _UFL, ufl.as_ufl)
+        return self.run({"x": point[0], "y": point[1]}, _UFL, ufl.as_ufl)
 
-    def _run(self, variables, operations, number):
+    def run(self, variables, operations, number):
+        """The value with the given meaning of variables, operations and numbers."""
         stack = []
         for step in self.program:
             if isinstance(step, float):

@@ -33,8 +33,10 @@ class Problem:
         plane = plane_mesh(case)
         mine = slice(None) if comm.rank == 0 else slice(0, 0)
         self.mesh = compat.create_mesh(comm, plane.triangles[mine].astype(np.int64), plane.points[mine])
+        idle = self.mesh.topology.index_map(2).size_local == 0
+        self.refuse("mesh: a process has no triangle, expected fewer processes" if idle else None)
         self.V = compat.vector_space(self.mesh, case.degree)
-        self.W = compat.scalar_space(self.mesh, case.degree)
+        self.W = compat.scalar_space(self.mesh, "Lagrange", case.degree)
         self.owned_dofs = 2 * self.V.dofmap.index_map.size_local
         self.nodes = self._node_coordinates()
         self.sizes = {"vertices": len(plane.points), "triangles": len(plane.triangles), "dofs": 2 * self.V.dofmap.index_map.size_global,

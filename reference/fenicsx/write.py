@@ -12,11 +12,10 @@ from . import compat
 
 
 def write(content, problem, method, folder):
-    """Writes both, with the time that solution.xdmf took; result.json last, under a temporary name first, so that it is there only if all went well."""
+    """Writes both; result.json (with the time that solution.xdmf took) last and under a temporary name first: it is there only if all
+    went well."""
     comm, start = problem.comm, time.perf_counter()
-    if comm.rank == 0:
-        folder.mkdir(parents=True, exist_ok=True)
-    comm.barrier()
+    make_folder(folder, comm)
     with XDMFFile(comm, str(folder / "solution.xdmf"), "w") as file:
         file.write_mesh(problem.mesh)
         file.write_function(displacement(problem, method))
@@ -26,6 +25,19 @@ def write(content, problem, method, folder):
         temporary = folder / f".result.json.{os.getpid()}"
         temporary.write_text(text_of(content))
         temporary.rename(folder / "result.json")
+
+
+def make_folder(folder, comm):
+    """Makes the folder; where process 0 cannot, all processes raise its OSError."""
+    error = None
+    if comm.rank == 0:
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as found:
+            error = found
+    error = comm.bcast(error)
+    if error:
+        raise error
 
 
 def text_of(content):
@@ -46,6 +58,6 @@ def von_mises(problem, method):
     xx, yy, xy = sigma[0, 0], sigma[1, 1], sigma[0, 1]
     zz = method.lam * ufl.tr(method.eps(method.u)) if problem.case.material.plane == "strain" else 0
     squared = ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * xy**2
-    function = fem.Function(compat.cellwise_space(problem.mesh), name="von_mises")
+    function = fem.Function(compat.scalar_space(problem.mesh, "DG", 0), name="von_mises")
     function.interpolate(compat.expression(ufl.sqrt(squared), function.function_space))
     return function

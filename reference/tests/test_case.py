@@ -61,7 +61,10 @@ REFUSED = [
      "method.contact_quadrature.gauss: found 0, expected a number of points from 1 to 32"),
     ("degree = 1", "[solver]\ntolerance = 0.0", "solver.tolerance: found 0.0, expected a positive number below 1"),
     ("degree = 1", "[output]\nprobes = [[0.5]]", "output.probes[0]: found [0.5], expected a point [x, y]"),
-    ("[load]", '[exact]\nsolution = "patch"\nwhich = "d4"\n[load]', "load: found {'body': ['0', '-4 + 10*x']}, expected no [load] beside [exact], which supplies it"),
+    ("[load]", '[exact]\nsolution = "patch"\nwhich = "d4"\n[load]', 
+     "load: found {'body': ['0', '-4 + 10*x']}, expected no [load] beside [exact], which supplies it"),
+    ('[load]\nbody = ["0", "-4 + 10*x"]', '[exact]\nsolution = "smooth"\nc = 0.5\nk = 3\nm = 2\nap = 8\naq = 4\ngap = "x*y"',
+     'exact.gap: found "x*y", expected an expression of x'),
     ('[load]\nbody = ["0", "-4 + 10*x"]', '[exact]\nsolution = "rough"',
      'exact.solution: found "rough", expected "smooth" or "singular" or "corner" or "patch"'),
 ]

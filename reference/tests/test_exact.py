@@ -5,8 +5,9 @@ import math
 
 import numpy as np
 
-from fenicsx import exact, quadrature
+from fenicsx import exact, quadrature, taylor
 from fenicsx.case import Material
+from fenicsx.expression import Expression
 from fenicsx.store import RESULTS
 
 from .support import TestCase
@@ -14,7 +15,8 @@ from .support import TestCase
 UNIT = Material(1.0, 1.0, "strain")
 OTHERS = (Material(3.0, 0.7, "strain"), Material(3.0, 0.7, "stress"))
 SOLUTIONS = {
-    "smooth": lambda m: exact.Smooth(m, c=1 / 3, k=4.0, m=3.0, ap=16.0, aq=8.0),
+    "smooth": lambda m: exact.Smooth(m, Expression("0"), c=1 / 3, k=4.0, m=3.0, ap=16.0, aq=8.0),
+    "smooth with a gap": lambda m: exact.Smooth(m, Expression("0.2 - 0.3*x + 0.5*x^2"), c=1 / 3, k=3.0, m=2.0, ap=8.0, aq=4.0),
     "singular": lambda m: exact.Singular(m, c=0.4, amplitude=1.5),
     "corner": lambda m: exact.Corner(m, omega=0.6 * math.pi),
     "d1": lambda m: exact.Compression(m, p=0.3),
@@ -42,7 +44,7 @@ def difference(f, x, y, h=1e-4):
 class Solutions(TestCase):
     def test_values_known_to_many_digits(self):
         x, y = np.array([0.9]), np.array([0.6])
-        a = exact.Smooth(UNIT, c=1 / 3, k=3.0, m=2.0, ap=8.0, aq=4.0)
+        a = exact.Smooth(UNIT, Expression("0"), c=1 / 3, k=3.0, m=2.0, ap=8.0, aq=4.0)
         np.testing.assert_allclose(np.ravel(a.displacement(x, y)), [-1.627648, 0.5124077037037035], rtol=1e-14)
         np.testing.assert_allclose(np.ravel(a.body_force(x, y)), [35.9616, -42.66773333333332], rtol=1e-14)
         np.testing.assert_allclose(a.gradient(x, y)[0][1], 3.945813333333333, rtol=1e-14)
@@ -88,6 +90,26 @@ class Solutions(TestCase):
         self.assertLess(np.max(np.abs([sxx * n[0] + sxy * n[1], sxy * n[0] + syy * n[1]])), 1e-13)
 
 
+class Taylor(TestCase):
+    def test_derivatives_by_differences(self):
+        x = np.linspace(0.2, 0.9, 15)
+        for text in ("0.2 - 0.3*x + 0.5*x^2", "sin(3*x)*cos(x)/(1 + x^2)", "sqrt(x)*exp(-x)", "x^x", "2^x - x^-2.5", "abs(x - 0.31)^3 + min(x, 1/x)",
+                     "max(x, 0.57)^2"):
+            expression = Expression(text)
+            found = taylor.derivatives(expression, x)
+            np.testing.assert_allclose(found[0], expression.values(x, x), rtol=1e-14, atol=1e-15)
+            for k in range(3):
+                with self.subTest(f"{text}, derivative {k + 1}"):
+                    by_difference = difference(lambda p, q: taylor.derivatives(expression, p)[k], x, x)[0]
+                    np.testing.assert_allclose(found[k + 1], by_difference, rtol=1e-8, atol=1e-8)
+
+    def test_no_points_have_no_derivatives(self):  # a process may own no node of a boundary
+        self.assertEqual([d.shape for d in taylor.derivatives(Expression("(1 + x)^0.5/x"), np.zeros(0))], [(0,)] * 4)
+
+    def test_whole_powers_have_derivatives_at_zero(self):
+        self.assertEqual([float(d[0]) for d in taylor.derivatives(Expression("x^2 + x^3"), np.array([0.0]))], [0, 0, 2, 6])
+
+
 class Quadrature(TestCase):
     def test_cut_and_graded_rules_are_exact_for_polynomials(self):
         triangle = np.array([[[0.1, 0.0], [0.9, 0.1], [0.4, 0.8]]])
@@ -103,7 +125,7 @@ class Quadrature(TestCase):
         np.testing.assert_allclose(moments, np.tile(expected, (5, 1)), rtol=1e-13)
 
     def test_a_kink_on_the_cut_is_integrated_exactly(self):
-        solution = exact.Smooth(UNIT, c=0.35, k=3.0, m=2.0, ap=1.0, aq=1.0)
+        solution = exact.Smooth(UNIT, Expression("0"), c=0.35, k=3.0, m=2.0, ap=1.0, aq=1.0)
         triangle = np.array([[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]])
         _, p, w = quadrature.on_triangles(triangle, solution)
         self.assertAlmostEqual(w @ np.maximum(p[:, 0] - 0.35, 0), 0.65**3 / 6, delta=1e-16)

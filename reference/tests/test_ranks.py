@@ -32,6 +32,12 @@ class Ranks(TestCase):
 
 
 class Codes(TestCase):
+    def test_more_processes_than_triangles_are_refused(self):
+        text = BLOCK.replace("nx = 4, ny = 4", "nx = 1, ny = 1")
+        done = command(self.file(text), "--out", self.folder / "nothing", "--ranks", 4)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("mesh: a process has no triangle, expected fewer processes", done.stderr)
+
     def test_a_wrong_case_ends_with_2_and_writes_nothing(self):
         out = self.folder / "nothing"
         for ranks in (1, 2):
@@ -49,9 +55,10 @@ class Codes(TestCase):
 
     def test_an_output_folder_that_cannot_be_made_ends_with_1(self):
         self.file("", "file")
-        done = command(self.file(BLOCK), "--out", self.folder / "file" / "inside")
-        self.assertEqual(done.returncode, 1)
-        self.assertIn("Not a directory", done.stderr)
+        for ranks in (1, 2):
+            done = command(self.file(BLOCK), "--out", self.folder / "file" / "inside", "--ranks", ranks)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn("Not a directory", done.stderr)
 
     def test_nx_refines_in_proportion(self):
         out = self.folder / "finer"
