@@ -1,7 +1,8 @@
 """Writes reference/cases/*.toml: the example cases and the exact solutions on several meshes, P1 and P2, Gauss 4 and exact.
 
-Each is a complete case file. The patch tests use the mesh square.msh, which Gmsh 4.8.4 made from square.geo. Meshes with n <= 8 have all their vertices as probes. A variant keeps the example's gamma0 if it keeps its
-degree, and takes "auto" otherwise (the limit falls to a third from P1 to P2).
+Each is a complete case file. The patch tests use the mesh square.msh, which Gmsh 4.8.4 made from square.geo. Meshes with n <= 8 have all
+their vertices as probes. A variant keeps the example's gamma0 if it keeps its degree, and takes "auto" otherwise (the limit falls to a
+third from P1 to P2).
 
     PYTHONPATH=reference python3 reference/make_cases.py
 """
@@ -58,6 +59,9 @@ def examples():
 SOLUTIONS = {  # name: (mesh of n, its points, [exact], kinds of bottom, left, right, top)
     "smooth": (lambda n: rectangle_line(1.0, 1.0, n, n, "right"), lambda n: rectangle(1.0, 1.0, n, n, "right").points,
                'solution = "smooth"\nc = 0.5\nk = 3\nm = 2\nap = 8\naq = 4', "contact traction traction displacement"),
+    "smooth-gap": (lambda n: rectangle_line(1.0, 1.0, n, n, "right"), lambda n: rectangle(1.0, 1.0, n, n, "right").points,
+                   f'solution = "smooth"\nc = {1 / 3!r}\nk = 4\nm = 3\nap = 16\naq = 8\ngap = "0.2 - 0.3*x + 0.5*x^2"',
+                   "contact traction traction displacement"),
     "singular": (lambda n: rectangle_line(1.0, 1.0, n, n, "right"), lambda n: rectangle(1.0, 1.0, n, n, "right").points,
                  'solution = "singular"\nc = 0.5\namplitude = 1', "contact displacement displacement displacement"),
     "corner": (lambda n: f"trapezoid = {{ omega = {OMEGA!r}, n = {n} }}", lambda n: trapezoid(OMEGA, n).points,
