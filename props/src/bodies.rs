@@ -159,7 +159,7 @@ impl Draw {
             middles: BTreeMap::new(),
             values: self.values.iter().map(|v| v.map(exact)).collect(),
         };
-        body.sort_edges(self);
+        body.sort_edges(self.left_too, &self.gaps);
         body
     }
 
@@ -184,8 +184,43 @@ pub fn rotated([x, y]: [Exact; 2], [c, s]: [Exact; 2]) -> [Exact; 2] {
 }
 
 impl Body {
+    /// A given body with contact where y = 0, no gap, lambda = mu = 1, plane strain.
+    pub fn explicit(
+        vertices: &[[Exact; 2]],
+        triangles: &[[usize; 3]],
+        top: &[usize],
+        diameter: Exact,
+        gamma0: Exact,
+    ) -> Body {
+        let one = Exact::from(1);
+        let mut body = Body {
+            vertices: vertices.to_vec(),
+            unturned: vertices.to_vec(),
+            triangles: triangles.to_vec(),
+            contact: Vec::new(),
+            free: Vec::new(),
+            top: top.to_vec(),
+            diameters: vec![diameter; triangles.len()],
+            material: Material::lame(one, one, Plane::Strain),
+            hooke: Hooke { lambda: one, mu: one },
+            gamma0,
+            turn: [one, Exact::from(0)],
+            middles: BTreeMap::new(),
+            values: Vec::new(),
+        };
+        body.sort_edges(false, &[[(0, 1); 3]]);
+        body
+    }
+
+    /// The field that is `value` at one node and zero at the others.
+    pub fn bump(&self, node: usize, value: [Exact; 2]) -> Vec<[Exact; 2]> {
+        let mut field = vec![[Exact::from(0); 2]; self.node_count(2)];
+        field[node] = value;
+        field
+    }
+
     /// Finds contact edges and free edges, and numbers the middles.
-    fn sort_edges(&mut self, draw: &Draw) {
+    fn sort_edges(&mut self, left_too: bool, gaps: &[[(i64, i64); 3]]) {
         let mut owners: BTreeMap<[usize; 2], Vec<(usize, usize)>> = BTreeMap::new();
         for (t, corners) in self.triangles.iter().enumerate() {
             for i in 0..3 {
@@ -201,14 +236,14 @@ impl Body {
             let zero = Exact::from(0);
             let normal = if p[1] == zero && q[1] == zero {
                 Some((([zero, Exact::from(-1)]), (q[0] - p[0]).abs()))
-            } else if draw.left_too && p[0] == zero && q[0] == zero {
+            } else if left_too && p[0] == zero && q[0] == zero {
                 Some((([Exact::from(-1), zero]), (q[1] - p[1]).abs()))
             } else {
                 None
             };
             if let Some((n, length)) = normal {
                 let n = rotated(n, self.turn);
-                let gap = draw.gaps[self.contact.len()].map(exact);
+                let gap = gaps[self.contact.len()].map(exact);
                 self.contact.push(Side { triangle, local, length, n, gap });
             } else if !(self.top.contains(&a) && self.top.contains(&b)) {
                 self.free.push((triangle, local));
@@ -568,6 +603,22 @@ impl<const N: usize> Definition<'_, N> {
     pub fn b(&self, rule: Rule<'_>, u: &[[Exact; 2]], v: &[[Exact; 2]]) -> Exact {
         self.big_a(u, v) + self.contact(rule, u, |side| self.traces(side, v).p0)
     }
+}
+
+/// Whether a symmetric matrix is positive definite, by exact elimination.
+pub fn positive_definite(mut matrix: Vec<Vec<Exact>>) -> bool {
+    for k in 0..matrix.len() {
+        if matrix[k][k] <= Exact::from(0) {
+            return false;
+        }
+        for i in k + 1..matrix.len() {
+            let factor = matrix[i][k] / matrix[k][k];
+            for j in k..matrix.len() {
+                matrix[i][j] = matrix[i][j] - factor * matrix[k][j];
+            }
+        }
+    }
+    true
 }
 
 /// The integral over \[0, 1\].

@@ -67,7 +67,7 @@ mod stand_in {
     use crate::proof::sampler::Random;
 
     /// Runs per harness.
-    const RUNS: u32 = 4000;
+    const RUNS: u32 = 20_000;
 
     /// A harness: a function that asserts something about [`any`] values.
     #[derive(Clone, Copy)]

@@ -14,11 +14,13 @@
 //! | [`contact`] | conditions (2), equation (5), P_gamma, lambda^h |
 //! | [`contact_edge`] | P_gamma and sigma_n as functionals on one edge of Gamma_C |
 //! | [`edge_integral`] | the integrals over one edge in (8) and in J_h |
+//! | [`interval`] | not in the paper: doubles with their rounding enclosed |
 
 pub mod contact;
 pub mod contact_edge;
 pub mod edge_integral;
 pub mod element;
+pub mod interval;
 pub mod material;
 pub mod positive_part;
 pub mod scalar;
@@ -28,6 +30,7 @@ pub use contact::ContactPoint;
 pub use contact_edge::ContactEdge;
 pub use edge_integral::EdgeIntegrals;
 pub use element::{Element, P1, P2};
+pub use interval::Interval;
 pub use material::{Material, Plane, Stress};
 pub use positive_part::{positive_part, positive_part_slope};
 pub use scalar::Scalar;

@@ -227,7 +227,9 @@ pub use row::claim;
 #[cfg(not(kani))]
 mod row {
     use super::*;
-    use crate::claim::{Claim, proved, refuted, tested};
+    use crate::bodies::{Body, Kernel, MaybeExact, Side, bodies, positive_definite, sum};
+    use crate::claim::{Claim, Engine, Outcome, by, control, proved, refuted, tested};
+    use crate::draws;
     use crate::numbers::Exact;
     use crate::statement;
     use crate::statement::take;
@@ -245,6 +247,160 @@ mod row {
 
     fn unit_normal_at_1(v: &mut [Exact]) {
         [v[1], v[2]] = unit(v[1]);
+    }
+
+    /// (11) on each triangle and Lemma 3.2 on the body, for any field and for one that attains (11) on the triangles with
+    /// one contact edge; `factor` multiplies the constant (1, or a planted smaller one).
+    fn coercive<E, const N: usize, const M: usize>(body: &Body, factor: Exact) -> Verdict
+    where
+        E: MaybeExact<N, M>,
+    {
+        let kernel = Kernel::<N, M>::new::<E>(body);
+        let on = |t: usize, v: &[[Exact; 2]]| {
+            let owned = (0..body.contact.len()).filter(|&e| body.contact[e].triangle == t);
+            sum(owned, |e| kernel.stress_product(e, v, v))
+        };
+        let v = body.drawn(0);
+        for t in 0..body.triangles.len() {
+            let bound = factor * kernel.kappa_of::<E>(t);
+            ensure!(on(t, &v) <= bound * kernel.a_on(t, &v, &v));
+        }
+        let kappa = factor * kernel.kappa::<E>();
+        let rest = kernel.big_a(&v, &v) - (Exact::from(1) - kappa) * kernel.a(&v, &v);
+        ensure!(rest >= Exact::from(0));
+        let mut attained = "two contact edges each";
+        for side in &body.contact {
+            let t = side.triangle;
+            if body.contact.iter().filter(|other| other.triangle == t).count() == 1 {
+                let v = along_the_normal::<N>(body, side);
+                let bound = factor * kernel.kappa_of::<E>(t);
+                ensure!(on(t, &v) == bound * kernel.a_on(t, &v, &v));
+                attained = "attained";
+            }
+        }
+        Verdict::Holds(attained)
+    }
+
+    /// A field with eps = c n x n on the triangle of a side: c = 1 for P1; for P2 c is affine, 1 on the edge and -1 at
+    /// the opposite vertex.
+    fn along_the_normal<const N: usize>(body: &Body, side: &Side) -> Vec<[Exact; 2]> {
+        let n = side.n;
+        let height = |x: [Exact; 2]| x[0] * n[0] + x[1] * n[1];
+        let corners = body.triangles[side.triangle].map(|v| height(body.vertices[v]));
+        let (edge, opposite) = (corners[(side.local + 1) % 3], corners[side.local]);
+        body.interpolated(|x| {
+            let depth = height(x) - edge;
+            let v = match N {
+                3 => depth,
+                _ => depth - depth * depth / (opposite - edge),
+            };
+            n.map(|c| c * v)
+        })
+    }
+
+    fn coercive_p1() -> Outcome {
+        draws::hold(60, bodies(1), &["attained"], |draw| {
+            Exact::scope(|| coercive::<P1, 3, 2>(&draw.body(), Exact::from(1)))
+        })
+    }
+
+    fn coercive_p2() -> Outcome {
+        draws::hold(20, bodies(1), &["attained"], |draw| {
+            Exact::scope(|| coercive::<P2, 6, 3>(&draw.body(), Exact::from(1)))
+        })
+    }
+
+    /// The constant one part in a hundred smaller.
+    fn smaller_constant() -> Outcome {
+        draws::reject(60, bodies(1), |draw| {
+            Exact::scope(|| coercive::<P1, 3, 2>(&draw.body(), Exact::ratio(99, 100)))
+        })?;
+        draws::reject(60, bodies(1), |draw| {
+            Exact::scope(|| coercive::<P2, 6, 3>(&draw.body(), Exact::ratio(99, 100)))
+        })
+    }
+
+    /// A on the free nodes of a body with gamma0 = ratio / C_h is positive definite.
+    fn definite(body: &mut Body, limit: Exact, ratio: Exact) -> bool {
+        body.gamma0 = ratio * limit;
+        let kernel = Kernel::<3, 2>::new::<P1>(body);
+        let free = (0..body.vertices.len()).filter(|v| !body.top.contains(v));
+        let unit = [[1, 0], [0, 1]].map(|d| d.map(Exact::from));
+        let basis: Vec<_> = free.flat_map(|v| unit.map(|d| body.bump(v, d))).collect();
+        let row = |u: &Vec<[Exact; 2]>| basis.iter().map(|v| kernel.big_a(u, v)).collect();
+        positive_definite(basis.iter().map(row).collect())
+    }
+
+    /// The ratio gamma0* C_h at which A ceases to be positive definite, between 1 and 64, to 1/256 of itself.
+    fn lost_at(body: &mut Body) -> Result<f64, String> {
+        body.gamma0 = Exact::from(1);
+        let limit = Exact::from(1) / Kernel::<3, 2>::new::<P1>(body).kappa::<P1>();
+        if !definite(body, limit, Exact::ratio(255, 256)) {
+            return Err("not positive definite below the limit".to_owned());
+        }
+        let (mut low, mut high) = (256, 256 * 64);
+        if definite(body, limit, Exact::ratio(high, 256)) {
+            return Err("still positive definite at 64 times the limit".to_owned());
+        }
+        while high - low > 1 + low / 256 {
+            let middle = (low + high) / 2;
+            let kept = definite(body, limit, Exact::ratio(middle, 256));
+            (low, high) = if kept { (middle, high) } else { (low, middle) };
+        }
+        Ok(high as f64 / 256.0)
+    }
+
+    /// How sharp the limit is, on bodies clamped at the top: cells with a diagonal to the right, and the trapezoid
+    /// (-3, 0), (3, 0), (0, 4), (e, 4), which attains it as e goes to 0.
+    fn sharpness() -> Outcome {
+        Exact::scope(|| {
+            let at = |points: &[[i64; 2]], d: i64| -> Vec<[Exact; 2]> {
+                points.iter().map(|p| p.map(|c| Exact::ratio(c, d))).collect()
+            };
+            let one = Exact::from(1);
+            let square = at(&[[0, 0], [1, 0], [0, 1], [1, 1]], 1);
+            let flat = at(&[[0, 0], [4, 0], [0, 1], [4, 1]], 1);
+            let cells: &[[usize; 3]] = &[[0, 1, 3], [0, 3, 2]];
+            let mut text = Vec::new();
+            for (name, vertices, triangles) in [
+                ("square", square, cells),
+                ("cell 4:1", flat, cells),
+                (
+                    "trapezoid, e = 1/10",
+                    at(&[[-30, 0], [30, 0], [0, 40], [1, 40]], 10),
+                    &[[0, 1, 2], [1, 3, 2]],
+                ),
+                (
+                    "trapezoid, e = 1/100",
+                    at(&[[-300, 0], [300, 0], [0, 400], [1, 400]], 100),
+                    &[[0, 1, 2], [1, 3, 2]],
+                ),
+            ] {
+                let mut body = Body::explicit(&vertices, triangles, &[2, 3], one, one);
+                text.push(format!("{name} {:.3}", lost_at(&mut body)?));
+            }
+            Ok(format!("gamma0* C_h: {}", text.join(", ")))
+        })
+    }
+
+    /// The triangle (0, 0), (3, 0), (0, 4) with only (3, 0) free: its limit is 2/15, and with gamma0 = 8/5 A is
+    /// diag(-2/3, 2/3) there.
+    fn lost_beyond_the_limit() -> Outcome {
+        Exact::scope(|| {
+            let vertices = [[0, 0], [3, 0], [0, 4]].map(|p| p.map(Exact::from));
+            let gamma0 = Exact::ratio(8, 5);
+            let body = Body::explicit(&vertices, &[[0, 1, 2]], &[0, 2], Exact::from(5), gamma0);
+            let kernel = Kernel::<3, 2>::new::<P1>(&body);
+            let [x, y] = [[1, 0], [0, 1]].map(|d| body.bump(1, d.map(Exact::from)));
+            let a = [kernel.big_a(&x, &x), kernel.big_a(&x, &y), kernel.big_a(&y, &y)];
+            if kernel.kappa::<P1>() == Exact::from(12)
+                && a == [Exact::ratio(-2, 3), Exact::from(0), Exact::ratio(2, 3)]
+            {
+                Ok("kappa = 12, A = diag(-2/3, 2/3)".to_owned())
+            } else {
+                Err(format!("kappa = {:?}, A = {a:?}", kernel.kappa::<P1>()))
+            }
+        })
     }
 
     /// The row of Lemma 3.2.
@@ -301,15 +457,21 @@ mod row {
                 []
             )),
             refuted(statement!(control_smaller_trace_constant, [a, b, c], [])),
+            by(Engine::Exact, "11_and_coercivity_hold_on_random_bodies_for_p1", coercive_p1),
+            by(Engine::Exact, "11_and_coercivity_hold_on_random_bodies_for_p2", coercive_p2),
+            by(Engine::Exact, "coercivity_is_lost_close_beyond_the_limit", sharpness),
+            control(Engine::Exact, "control_constant_one_percent_smaller", smaller_constant),
+            control(Engine::Exact, "control_coercivity_beyond_the_limit", lost_beyond_the_limit),
         ]);
         Claim {
             id: "9",
             items: &["(1)", "Lemma 3.2", "(11)"],
             title: "Coercivity with an explicit constant",
             paper: "Let gamma0 be sufficiently small. Then A_gamma is elliptic on V^h. In the proof: |gamma^1/2 sigma_n(v^h)|^2 <= C gamma0 |v^h|_1^2 (11).",
-            statement: "sigma_n(v)^2 <= (lambda + 2 mu) sigma(v):eps(v) at every point, with equality for a strain along the normal; |w|_E^2 <= c_p (|E|/|T|) |w|_T^2 for polynomials of degree p - 1, c_1 = 1, c_2 = 3, attained.",
+            statement: "sigma_n(v)^2 <= (lambda + 2 mu) sigma(v):eps(v) at every point, with equality for a strain along the normal; |w|_E^2 <= c_p (|E|/|T|) |w|_T^2 for polynomials of degree p - 1, c_1 = 1, c_2 = 3, attained. On random bodies, for P1 and P2 and with kappa_T = gamma0 h_T c_p (lambda + 2 mu) |E|/|T|: int_E gamma sigma_n(v)^2 <= kappa_T a_T(v, v), attained on every triangle with one contact edge, and A(v, v) >= (1 - kappa) a(v, v). A on the whole body is positive definite up to the limit, and on the bodies tried it ceases to be so at 1.00 to 1.14 times the limit: the limit is sharp.",
             numbers: "every ordered field (proof); rationals.",
             kernel: &[
+                "contact_edge::coercivity_constant",
                 "material::Material::lame",
                 "material::Material::young_poisson",
                 "material::Material::lambda",

@@ -110,6 +110,9 @@ mod row {
     use crate::numbers::Exact;
     use crate::statement;
 
+    /// An integrand on a side, from its number and lambda^h there.
+    type Integrand<'a> = &'a dyn Fn(&Side, usize, &Line<Exact>) -> Line<Exact>;
+
     /// The pieces of a side on which lambda^h is a polynomial, with that polynomial.
     fn multiplier(body: &Body, side: &Side, p: &Line<Exact>) -> Vec<([Exact; 2], Line<Exact>)> {
         let pressed = p.times(-(Exact::from(1) / body.gamma(side)));
@@ -130,7 +133,7 @@ mod row {
     fn mixed(body: &Body, sign: Exact) -> Verdict {
         let (u, v) = (body.drawn(0), body.drawn(1));
         let (kernel, definition) = (Kernel::<3, 2>::new::<P1>(body), Definition::<3>(body));
-        let over = |f: &dyn Fn(&Side, usize, &Line<Exact>) -> Line<Exact>| {
+        let over = |f: Integrand<'_>| {
             let (mut total, mut e) = (Exact::from(0), 0);
             for side in &body.contact {
                 let p = definition.traces(side, &u).p;

@@ -1,7 +1,9 @@
 //! Theorem 3.3: problem (8) has one solution. The proof rests on an inequality between positive parts, on (12) and on
 //! the Lipschitz continuity of phi; here these at one point, over every ordered field.
 
-use signorini::kernel::positive_part;
+use signorini::kernel::edge_integral::ExactEdge;
+use signorini::kernel::element::stiffness;
+use signorini::kernel::{ContactEdge, Material, P1, Plane, Triangle, positive_part};
 
 use crate::harness::{any, assume};
 use crate::numbers::Whole;
@@ -81,6 +83,35 @@ pub fn square_of_the_positive_part_is_convex_and_smooth<S: Ordered>([a, b]: [S; 
     ensure!(q * q >= tangent);
     ensure!(q * q <= tangent + e * e);
     Verdict::Holds(class(a, b))
+}
+
+/// Method (8) on the triangle (0, 0), (3, 0), (0, 4) with contact at y = 0, all but (3, 0) clamped, lambda = mu = 1,
+/// h_T = 5: the left side at u = (s, t) there, for both test functions.
+fn one_triangle<S: Ordered>([s, t]: [S; 2], gamma0: S) -> [S; 2] {
+    let (zero, one) = (S::from(0), S::from(1));
+    let of = |x, y| [S::from(x), S::from(y)];
+    let triangle = Triangle { vertices: [of(0, 0), of(3, 0), of(0, 4)] };
+    let material = Material::lame(one, one, Plane::Strain);
+    let gamma = gamma0 * S::from(5);
+    let edge = ContactEdge::<S, 3, 2>::new::<P1>(&triangle, 2, [zero, -one], &material, gamma);
+    let stiffness = stiffness::<P1, S, 3, 2>(&triangle, &material)[1][1];
+    let weight = gamma * S::from(3);
+    let stress = edge.stress_product(weight, 1, 1);
+    let p = edge.p0.map(|row| row[1][0] * s + row[1][1] * t);
+    let gradient = P1::exact(p).gradient;
+    [0, 1].map(|c| {
+        let a = stiffness[c][0] * s + stiffness[c][1] * t;
+        let nitsche = stress[c][0] * s + stress[c][1] * t;
+        let contact = gradient[0] * edge.p0[0][1][c] + gradient[1] * edge.p0[1][1][c];
+        a - nitsche + contact * S::from(3) / gamma
+    })
+}
+
+/// Beyond the limit, gamma0 = 8/5, the body force (1/2, 0), whose load is (1, 0), has no solution at all.
+pub fn beyond_the_limit_there_may_be_no_solution<S: Ordered>(v: [S; 2]) -> Verdict {
+    let residual = one_triangle(v, S::from(8) / S::from(5));
+    ensure!(!(residual[0] == S::from(1) && residual[1] == S::from(0)));
+    Verdict::Holds("no solution here")
 }
 
 /// |.| for \[.\]+.
@@ -180,8 +211,99 @@ pub use row::claim;
 #[cfg(not(kani))]
 mod row {
     use super::*;
-    use crate::claim::{Claim, in_doubles, model_checked, proved, refuted, tested};
+    use signorini::kernel::P2;
+
+    use crate::bodies::{
+        Definition, Draw, Kernel, MaybeExact, Rule, bodies, combined, contact_class, sum, whole,
+    };
+    use crate::claim::{
+        Claim, Engine, Outcome, by, control, in_doubles, model_checked, proved, refuted, tested,
+    };
+    use crate::draws;
+    use crate::numbers::Exact;
     use crate::statement;
+
+    /// (12) with its constant, and the Lipschitz constant of phi, on a body with kappa < 1.
+    fn monotone_on_bodies<E, const N: usize, const M: usize>(
+        draw: &Draw,
+        (n, d): (i64, i64),
+        rule: Rule<'_>,
+        theta: Exact,
+    ) -> Verdict
+    where
+        E: MaybeExact<N, M>,
+    {
+        let mut body = draw.body();
+        let kappa = Exact::ratio(n, n + d);
+        body.gamma0 = body.gamma0 * kappa / Kernel::<N, M>::new::<E>(&body).kappa::<E>();
+        let (kernel, definition) = (Kernel::<N, M>::new::<E>(&body), Definition::<N>(&body));
+        ensure!(kernel.kappa::<E>() == kappa);
+        let (v, w) = (body.drawn(0), body.drawn(1));
+        let one = Exact::from(1);
+        let difference = combined(one, &v, -one, &w);
+        let left = kernel.b::<E>(rule, &v, &difference) - kernel.b::<E>(rule, &w, &difference);
+        let a = kernel.big_a(&difference, &difference);
+        ensure!(left >= a);
+        ensure!(left >= theta * (one - kappa) * kernel.a(&difference, &difference));
+        // phi(t) = (B(v - t w), w), at t = 1/3 and s = 4/5.
+        let phi = |t: Exact| kernel.b::<E>(rule, &combined(one, &v, -t, &w), &w);
+        let (s, t) = (Exact::ratio(4, 5), Exact::ratio(1, 3));
+        let squares = sum(&body.contact, |side| {
+            let p0 = definition.traces(side, &w).p0;
+            let square = p0.by(&p0);
+            let integral = match rule {
+                Rule::Exact => whole(&square),
+                Rule::Points(points) => sum(points, |&[s, weight]| weight * square.at(s)),
+            };
+            side.length / body.gamma(side) * integral
+        });
+        let bound = (s - t).abs() * (kernel.big_a(&w, &w) + squares);
+        ensure!((phi(t) - phi(s)).abs() <= bound);
+        Verdict::Holds(contact_class::<N>(&body, &v))
+    }
+
+    fn monotone_p1() -> Outcome {
+        let classes = ["an edge is cut", "open", "pressed"];
+        draws::hold(50, (bodies(2), draws::positive()), &classes, |(draw, kappa)| {
+            Exact::scope(|| {
+                monotone_on_bodies::<P1, 3, 2>(draw, *kappa, Rule::Exact, Exact::from(1))
+            })
+        })
+    }
+
+    fn monotone_p2() -> Outcome {
+        draws::hold(15, (bodies(2), draws::positive()), &["an edge is cut"], |(draw, kappa)| {
+            Exact::scope(|| {
+                let points = [[(1, 4), (1, 2)], [(3, 4), (1, 2)]]
+                    .map(|p| p.map(|(n, d)| Exact::ratio(n, d)));
+                monotone_on_bodies::<P2, 6, 3>(draw, *kappa, Rule::Points(&points), Exact::from(1))
+            })
+        })
+    }
+
+    /// Ten times the constant of (12).
+    fn larger_constant() -> Outcome {
+        draws::reject(200, (bodies(2), draws::positive()), |(draw, kappa)| {
+            Exact::scope(|| {
+                monotone_on_bodies::<P1, 3, 2>(draw, *kappa, Rule::Exact, Exact::from(10))
+            })
+        })
+    }
+
+    /// gamma0 = 8/5, load (-1, 0): two solutions, one open and one in full contact. The limit is 2/15.
+    fn two_solutions() -> Outcome {
+        Exact::scope(|| {
+            let load = [Exact::from(-1), Exact::from(0)];
+            for (u, pressed) in [([(3, 2), (0, 1)], false), ([(-19, 32), (3, 8)], true)] {
+                let u = u.map(|(n, d)| Exact::ratio(n, d));
+                let residual = one_triangle(u, Exact::ratio(8, 5));
+                if residual != load {
+                    return Err(format!("the left side at {u:?} ({pressed}) is {residual:?}"));
+                }
+            }
+            Ok("u = (3/2, 0), open, and u = (-19/32, 3/8), pressed".to_owned())
+        })
+    }
 
     /// The row of Theorem 3.3.
     pub fn claim() -> Claim {
@@ -218,7 +340,15 @@ mod row {
         let all = [monotone, steps, lipschitz, between, phi, convex];
         let mut checks: Vec<_> = all.into_iter().map(proved).collect();
         checks.extend(all.into_iter().map(tested));
+        let none =
+            statement!(beyond_the_limit_there_may_be_no_solution, [s, t], ["no solution here"]);
         checks.extend([
+            by(Engine::Exact, "12_and_the_bound_of_phi_hold_on_random_bodies_for_p1", monotone_p1),
+            by(Engine::Exact, "12_and_the_bound_of_phi_hold_on_random_bodies_for_p2", monotone_p2),
+            proved(none),
+            tested(none),
+            control(Engine::Exact, "control_12_with_ten_times_the_constant", larger_constant),
+            control(Engine::Exact, "control_two_solutions_beyond_the_limit", two_solutions),
             in_doubles(lipschitz),
             in_doubles(between),
             refuted(statement!(control_absolute_value_is_monotone, [a, b], [])),
@@ -232,11 +362,19 @@ mod row {
             items: &["Theorem 3.3", "(12)"],
             title: "One solution",
             paper: "Suppose that gamma0 is sufficiently small. Then the problem (8) admits one unique solution u^h in V^h. In the proof: ([a]+ - [b]+)(a - b) >= ([a]+ - [b]+)^2 >= 0 and |[a]+ - [b]+| <= |a - b|, for all a, b; (12); phi is Lipschitz.",
-            statement: "Both inequalities as printed, and the steps of the first one by one; the integrand of phi is Lipschitz with the paper's constant; [.]+^2 lies between its tangent and the parabola above it, so J_h is convex and C^1.",
+            statement: "Both inequalities as printed, and the steps of the first one by one; the integrand of phi is Lipschitz with the paper's constant; [.]+^2 lies between its tangent and the parabola above it, so J_h is convex and C^1. On random bodies with kappa < 1, for P1 without quadrature error and P2 by points: (12) with the constant 1 - kappa, and phi is Lipschitz with the paper's constant. The hypothesis is needed: for one triangle and gamma0 = 8/5, twelve times the limit, one load has two solutions and another has none (proved over all displacements).",
             numbers: "every ordered field (proof); rationals; the Lipschitz bound and the sign form in all finite doubles.",
-            kernel: &["positive_part::positive_part"],
-            preconditions: "None at a point.",
-            limits: "That a monotone, hemicontinuous, coercive operator is one-to-one (the corollary of Brezis that the paper cites) is not checked.",
+            kernel: &[
+                "positive_part::positive_part",
+                "contact_edge::ContactEdge::new",
+                "contact_edge::ContactEdge::stress_product",
+                "contact_edge::coercivity_constant",
+                "edge_integral::ExactEdge::exact",
+                "edge_integral::gauss",
+                "element::stiffness",
+            ],
+            preconditions: "None at a point; kappa < 1 on bodies, in place of 'gamma0 sufficiently small'.",
+            limits: "That a monotone, hemicontinuous, coercive operator is one-to-one (the corollary of Brezis that the paper cites) is not checked, and no solution is enclosed yet.",
             single: None,
             checks,
         }

@@ -1,0 +1,292 @@
+//! Intervals of doubles that contain the exact result: the number type of enclosures.
+//!
+//! An operation takes the double result at each end and goes one double further out (`next_down`, `next_up`): the
+//! rounded result is within one double of the exact one, so the exact one is inside. A sum or a product that is zero
+//! without underflow is exact and stays sharp. What can't be bounded is \[-oo, oo\]: a quotient by an interval that
+//! contains zero, an overflow. A NaN makes both ends NaN and stays.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use super::Scalar;
+
+/// All real numbers between two doubles, ends included; an infinite end is no number but no bound.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
+    lo: f64,
+    hi: f64,
+}
+
+impl Interval {
+    /// The interval from `lo` to `hi`, in either order. NaN if one of them is.
+    pub fn new(lo: f64, hi: f64) -> Interval {
+        if lo <= hi {
+            Interval { lo, hi }
+        } else if hi < lo {
+            Interval { lo: hi, hi: lo }
+        } else {
+            Interval::NAN
+        }
+    }
+
+    /// The interval that contains this double only.
+    pub fn point(value: f64) -> Interval {
+        Interval::new(value, value)
+    }
+
+    const NAN: Interval = Interval { lo: f64::NAN, hi: f64::NAN };
+    const EVERYTHING: Interval = Interval { lo: f64::NEG_INFINITY, hi: f64::INFINITY };
+
+    /// The lower end.
+    pub fn lo(self) -> f64 {
+        self.lo
+    }
+
+    /// The upper end.
+    pub fn hi(self) -> f64 {
+        self.hi
+    }
+
+    /// Whether it is the result of a NaN.
+    pub fn is_nan(self) -> bool {
+        self.lo.is_nan()
+    }
+
+    /// Whether `value` lies in it.
+    pub fn contains(self, value: f64) -> bool {
+        self.lo <= value && value <= self.hi
+    }
+
+    /// The smallest interval that contains both. NaN if one of them is.
+    pub fn hull(self, other: Interval) -> Interval {
+        if self.is_nan() || other.is_nan() {
+            return Interval::NAN;
+        }
+        let [lo, _, _, hi] = sorted([self.lo, self.hi, other.lo, other.hi]);
+        Interval { lo, hi }
+    }
+
+    /// The square roots of its nonnegative numbers; NaN if it has none.
+    pub fn sqrt(self) -> Interval {
+        if !(self.hi >= 0.0) {
+            return Interval::NAN;
+        }
+        let lo = if self.lo > 0.0 { self.lo.sqrt().next_down() } else { 0.0 };
+        let hi = if self.hi > 0.0 { self.hi.sqrt().next_up() } else { 0.0 };
+        Interval { lo, hi }
+    }
+
+    /// One double further out at each end that isn't an exact zero.
+    fn outward(lo: f64, hi: f64) -> Interval {
+        let lo = if lo == 0.0 { 0.0 } else { lo.next_down() };
+        let hi = if hi == 0.0 { 0.0 } else { hi.next_up() };
+        Interval { lo, hi }
+    }
+}
+
+/// Four numbers by size: a product of two intervals lies between the least and the greatest product of ends.
+pub fn sorted<T: Copy + PartialOrd>(mut values: [T; 4]) -> [T; 4] {
+    for (i, j) in [(0, 1), (2, 3), (0, 2), (1, 3), (1, 2)] {
+        if values[j] < values[i] {
+            values.swap(i, j);
+        }
+    }
+    values
+}
+
+/// x y rounded down and up; exact where it is zero without underflow, also for 0 * oo, where oo stands for "no bound".
+fn product(x: f64, y: f64) -> Interval {
+    if x == 0.0 || y == 0.0 {
+        return Interval { lo: 0.0, hi: 0.0 };
+    }
+    let rounded = x * y;
+    Interval { lo: rounded.next_down(), hi: rounded.next_up() }
+}
+
+/// x / y rounded down and up, for y != 0; exact where x is zero.
+fn quotient(x: f64, y: f64) -> Interval {
+    if x == 0.0 {
+        return Interval { lo: 0.0, hi: 0.0 };
+    }
+    if x.is_infinite() && y.is_infinite() {
+        let negative = (x < 0.0) != (y < 0.0);
+        return if negative {
+            Interval { lo: f64::NEG_INFINITY, hi: 0.0 }
+        } else {
+            Interval { lo: 0.0, hi: f64::INFINITY }
+        };
+    }
+    let rounded = x / y;
+    Interval { lo: rounded.next_down(), hi: rounded.next_up() }
+}
+
+/// The hull of `f` at the four pairs of ends.
+fn of_ends(a: Interval, b: Interval, f: fn(f64, f64) -> Interval) -> Interval {
+    let at = [f(a.lo, b.lo), f(a.lo, b.hi), f(a.hi, b.lo), f(a.hi, b.hi)];
+    let [lo, ..] = sorted(at.map(|i| i.lo));
+    let [.., hi] = sorted(at.map(|i| i.hi));
+    Interval { lo, hi }
+}
+
+impl From<i32> for Interval {
+    fn from(value: i32) -> Interval {
+        Interval::point(f64::from(value))
+    }
+}
+
+impl Add for Interval {
+    type Output = Interval;
+
+    fn add(self, other: Interval) -> Interval {
+        Interval::outward(self.lo + other.lo, self.hi + other.hi)
+    }
+}
+
+impl Neg for Interval {
+    type Output = Interval;
+
+    fn neg(self) -> Interval {
+        Interval { lo: -self.hi, hi: -self.lo }
+    }
+}
+
+impl Sub for Interval {
+    type Output = Interval;
+
+    fn sub(self, other: Interval) -> Interval {
+        self + -other
+    }
+}
+
+impl Mul for Interval {
+    type Output = Interval;
+
+    fn mul(self, other: Interval) -> Interval {
+        if self.is_nan() || other.is_nan() {
+            return Interval::NAN;
+        }
+        of_ends(self, other, product)
+    }
+}
+
+impl Div for Interval {
+    type Output = Interval;
+
+    fn div(self, other: Interval) -> Interval {
+        if self.is_nan() || other.is_nan() {
+            return Interval::NAN;
+        }
+        if other.contains(0.0) {
+            return Interval::EVERYTHING;
+        }
+        of_ends(self, other, quotient)
+    }
+}
+
+impl Scalar for Interval {
+    fn split(
+        self,
+        nonpositive: impl FnOnce(Interval) -> Interval,
+        positive: impl FnOnce(Interval) -> Interval,
+    ) -> Interval {
+        if self.hi <= 0.0 {
+            nonpositive(self)
+        } else if self.lo <= 0.0 {
+            let below = nonpositive(Interval { lo: self.lo, hi: 0.0 });
+            below.hull(positive(Interval { lo: 0.0, hi: self.hi }))
+        } else {
+            positive(self)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::{positive_part, positive_part_slope};
+
+    fn interval(lo: f64, hi: f64) -> Interval {
+        Interval::new(lo, hi)
+    }
+
+    #[test]
+    fn a_tenth_three_times_contains_three_tenths_and_is_narrow() {
+        let tenth = Interval::from(1) / Interval::from(10);
+        let sum = tenth + tenth + tenth;
+        assert!(sum.contains(0.3) && sum.contains(0.1 + 0.2));
+        assert!(sum.hi() - sum.lo() < 1e-15);
+    }
+
+    #[test]
+    fn products_and_quotients_take_the_signs_of_their_ends_into_account() {
+        let product = interval(-2.0, 3.0) * interval(-5.0, 1.0);
+        assert_eq!(product, interval((-15.0_f64).next_down(), 10.0_f64.next_up()));
+        let quotient = interval(-2.0, 3.0) / interval(-4.0, -1.0);
+        assert_eq!(quotient, interval((-3.0_f64).next_down(), 2.0_f64.next_up()));
+        assert_eq!(
+            interval(1.0, 2.0) - interval(1.0, 2.0),
+            interval((-1.0_f64).next_down(), 1.0_f64.next_up())
+        );
+    }
+
+    #[test]
+    fn zero_stays_sharp_and_an_underflow_does_not() {
+        assert_eq!(Interval::from(0) * interval(-1.0, f64::INFINITY), Interval::from(0));
+        assert_eq!(Interval::from(0) / interval(1.0, 2.0), Interval::from(0));
+        assert_eq!(Interval::from(3) - Interval::from(3), Interval::from(0));
+        let tiny = Interval::point(1e-200) * Interval::point(1e-200);
+        assert_eq!((tiny.lo(), tiny.hi()), (-5e-324, 5e-324));
+    }
+
+    #[test]
+    fn what_has_no_bound_is_everything() {
+        let everything = interval(f64::NEG_INFINITY, f64::INFINITY);
+        assert_eq!(Interval::from(1) / interval(-1.0, 1.0), everything);
+        let huge = Interval::point(f64::MAX) + Interval::point(f64::MAX);
+        assert_eq!((huge.lo(), huge.hi()), (f64::MAX, f64::INFINITY));
+        assert_eq!(everything / interval(1.0, f64::INFINITY), everything);
+        let ratio = interval(1.0, f64::INFINITY) / interval(1.0, f64::INFINITY);
+        assert_eq!((ratio.lo(), ratio.hi()), (-5e-324, f64::INFINITY));
+        let ratio = interval(f64::NEG_INFINITY, -1.0) / interval(1.0, f64::INFINITY);
+        assert_eq!((ratio.lo(), ratio.hi()), (f64::NEG_INFINITY, 5e-324));
+    }
+
+    #[test]
+    fn ends_in_either_order_make_an_interval_and_nan_stays_nan() {
+        assert_eq!(interval(2.0, 1.0), interval(1.0, 2.0));
+        let nan = interval(f64::NAN, 1.0);
+        let one = Interval::from(1);
+        for result in [
+            nan + one,
+            one - nan,
+            nan * one,
+            one * nan,
+            one / nan,
+            nan / one,
+            -nan,
+            nan.sqrt(),
+            one.hull(nan),
+        ] {
+            assert!(result.is_nan());
+        }
+        assert!(positive_part(nan).is_nan());
+        assert!(!one.is_nan() && !nan.contains(1.0));
+    }
+
+    #[test]
+    fn the_positive_part_of_an_interval_across_zero_is_sharp() {
+        assert_eq!(positive_part(interval(-1.0, 2.0)), interval(0.0, 2.0));
+        assert_eq!(positive_part(interval(-2.0, 0.0)), interval(0.0, 0.0));
+        assert_eq!(positive_part(interval(1.0, 2.0)), interval(1.0, 2.0));
+        assert_eq!(positive_part_slope(interval(-1.0, 2.0)), interval(0.0, 1.0));
+        assert_eq!(positive_part_slope(interval(1.0, 2.0)), interval(1.0, 1.0));
+    }
+
+    #[test]
+    fn square_roots_enclose_and_leave_out_negative_numbers() {
+        let two = Interval::from(2).sqrt();
+        assert!(two.lo() * two.lo() < 2.0 && two.hi() * two.hi() > 2.0);
+        assert_eq!(interval(-4.0, 0.0).sqrt(), interval(0.0, 0.0));
+        assert!(interval(-4.0, 1.0).sqrt().contains(1.0));
+        assert!(interval(-4.0, -1.0).sqrt().is_nan());
+    }
+}
