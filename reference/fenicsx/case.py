@@ -298,7 +298,7 @@ def _quadrature(method):
     if not isinstance(value, dict):
         method.fail("contact_quadrature", value, '"exact" or { gauss = n }')
     table = method.table("contact_quadrature")
-    points = table.integer("gauss", "a number of points from 1 to 32", lambda n: 1 <= n <= 32)
+    points = table.integer("gauss", "a number of points from 1 to 64", lambda n: 1 <= n <= 64)
     table.finish()
     return points
 

@@ -2,7 +2,7 @@
 
     expr  = term  { ("+" | "-") term }
     term  = unary { ("*" | "/") unary }
-    unary = "-" unary | power
+    unary = ("+" | "-") unary | power
     power = atom [ "^" unary ]                 right-associative; -x^2 = -(x^2), 2^-3 and 2*-3 are allowed
     atom  = number | "x" | "y" | "pi" | name "(" expr { "," expr } ")" | "(" expr ")"
     name  = sqrt | sin | cos | exp | abs (one argument) | min | max (two arguments)
@@ -11,13 +11,15 @@
 import math
 import operator
 import re
+import sys
 
 import numpy as np
 import ufl
 
 FUNCTIONS = {"sqrt": 1, "sin": 1, "cos": 1, "exp": 1, "abs": 1, "min": 2, "max": 2}
 ARGUMENTS = {"+": 2, "-": 2, "*": 2, "/": 2, "^": 2, "negative": 1, **FUNCTIONS}
-DEEPEST = 100  # nesting allowed in an expression; Python's own stack ends near ten times that
+DEEPEST = 200  # nesting allowed in an expression
+sys.setrecursionlimit(max(sys.getrecursionlimit(), 20 * DEEPEST))  # five calls a level
 TOKEN = re.compile(r"(?P<number>(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?)|(?P<name>[A-Za-z_]\w*)|(?P<sign>[-+*/^(),])", re.ASCII)
 SPACES = re.compile(r"\s*")
 
@@ -121,6 +123,8 @@ class _Parser:
         if self.take("-"):
             self.unary()
             self.program.append("negative")
+        elif self.take("+"):
+            self.unary()
         else:
             self.power()
         self.depth -= 1

@@ -58,7 +58,7 @@ REFUSED = [
     ("degree = 1", 'gamma0 = "big"', 'method.gamma0: found "big", expected a positive number or "auto"'),
     ("degree = 1", 'contact_quadrature = "gauss"', 'method.contact_quadrature: found "gauss", expected "exact" or { gauss = n }'),
     ("degree = 1", "contact_quadrature = { gauss = 0 }",
-     "method.contact_quadrature.gauss: found 0, expected a number of points from 1 to 32"),
+     "method.contact_quadrature.gauss: found 0, expected a number of points from 1 to 64"),
     ("degree = 1", "[solver]\ntolerance = 0.0", "solver.tolerance: found 0.0, expected a positive number below 1"),
     ("degree = 1", "[output]\nprobes = [[0.5]]", "output.probes[0]: found [0.5], expected a point [x, y]"),
     ("[load]", '[exact]\nsolution = "patch"\nwhich = "d4"\n[load]', 
