@@ -3,16 +3,25 @@
 pub mod constraints;
 pub mod contact_line;
 pub mod discretization;
+pub mod errors;
+pub mod exact;
 pub mod loads;
 pub mod matrix;
 pub mod mesh;
+pub mod pieces;
 pub mod problem;
 pub mod quadrature;
 pub mod rectangle;
 pub mod space;
+pub mod structured;
+pub mod trapezoid;
 
 pub use discretization::Discretization;
+pub use errors::Errors;
+pub use exact::{Exact, ExactSolution};
 pub use mesh::{BoundaryEdge, Mesh, MeshError};
 pub use problem::{BoxedFunction, Condition, DataError, Function, Problem};
 pub use rectangle::{Diagonal, Rectangle};
 pub use space::Space;
+pub use structured::{Perturbation, Structured};
+pub use trapezoid::Trapezoid;

@@ -12,9 +12,19 @@ pub trait Function: Send + Sync {
     /// The value at `x`; NaN or infinite where the function has none, which the assembly reports as an error.
     fn at(&self, x: [f64; 2]) -> f64;
 
+    /// The value at `x` on the boundary with the outward normal `n`: a traction may depend on the normal.
+    fn on_boundary(&self, x: [f64; 2], _n: [f64; 2]) -> f64 {
+        self.at(x)
+    }
+
     /// The degree in x and y, if the function is known to be a polynomial: it is then integrated exactly, with no more
     /// points than that takes.
     fn degree(&self) -> Option<u32> {
+        None
+    }
+
+    /// c, if the function is smooth only on either side of the line x = c: its integrals are cut there.
+    fn kink(&self) -> Option<f64> {
         None
     }
 }
@@ -83,7 +93,14 @@ pub fn finite(
     x: [f64; 2],
     what: impl Fn() -> String,
 ) -> Result<f64, DataError> {
-    let value = function.at(x);
+    checked(function.at(x), x, what)
+}
+
+/// `value`, which is that of `what()` at `x`.
+///
+/// # Errors
+/// [`DataError::NotFinite`].
+pub fn checked(value: f64, x: [f64; 2], what: impl Fn() -> String) -> Result<f64, DataError> {
     if value.is_finite() {
         Ok(value)
     } else {

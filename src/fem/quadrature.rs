@@ -34,11 +34,20 @@ fn legendre(n: usize, x: f64) -> (f64, f64) {
 /// A rule on a triangle, exact for polynomials of degree 2n - 2: barycentric points with weights that add up to 1. It is
 /// the product of two Gauss rules on the square, collapsed onto the triangle.
 pub fn triangle(n: usize) -> Vec<([f64; 3], f64)> {
+    collapsed(n, 1)
+}
+
+/// The same, its points drawn towards the first vertex: the distance from it is rho = s^grading with the Gauss points s.
+/// What is a power of rho there becomes a higher power of s.
+pub fn collapsed(n: usize, grading: i32) -> Vec<([f64; 3], f64)> {
     let rule = gauss(n);
     let mut points = Vec::with_capacity(n * n);
     for &(s, ws) in &rule {
+        let rho = s.powi(grading);
+        // 2 rho d(rho)
+        let weight = 2.0 * f64::from(grading) * s.powi(2 * grading - 1) * ws;
         for &(t, wt) in &rule {
-            points.push(([1.0 - s, s * (1.0 - t), s * t], 2.0 * s * ws * wt));
+            points.push(([1.0 - rho, rho * (1.0 - t), rho * t], weight * wt));
         }
     }
     points

@@ -70,6 +70,10 @@ impl Rectangle {
     /// As [`Rectangle::mesh`]; moved too far, triangles turn over.
     pub fn perturbed(&self, amount: f64, seed: u64) -> Result<Mesh, MeshError> {
         self.check()?;
+        Mesh::new(self.moved_vertices(amount, seed), self.triangles(), self.sides())
+    }
+
+    fn moved_vertices(&self, amount: f64, seed: u64) -> Vec<[f64; 2]> {
         let cell = [self.width / self.nx as f64, self.height / self.ny as f64];
         let size = [self.width, self.height];
         let mut random = Random(seed);
@@ -82,6 +86,18 @@ impl Rectangle {
                 }
             }
         }
+        vertices
+    }
+
+    /// The mesh with its vertices moved as in [`Rectangle::perturbed`] by `amount`, if any, and then by `map`.
+    pub(super) fn mapped(
+        &self,
+        amount: f64,
+        seed: u64,
+        map: impl Fn([f64; 2]) -> [f64; 2],
+    ) -> Result<Mesh, MeshError> {
+        self.check()?;
+        let vertices = self.moved_vertices(amount, seed).into_iter().map(map).collect();
         Mesh::new(vertices, self.triangles(), self.sides())
     }
 

@@ -5,6 +5,8 @@
 //! [mesh]                                    # required: one of rectangle, gmsh
 //! rectangle = { width = 1.0, height = 1.0, nx = 32, ny = 32, diagonal = "right" }   # right (default) | left | crossed
 //! # gmsh = "bracket.msh"                    # MSH 4.1, relative to this file; boundaries are its physical curves
+//! # trapezoid = { omega = 2.0, n = 32 }     # (0,0), (1,0), (1,1), (cot omega, 1), for the exact solution "corner"
+//! # perturb = { amount = 0.2, seed = 1 }    # beside rectangle or trapezoid: vertices moved by up to so many cells
 //! [material]                                # required
 //! lambda = 1.0                              # lambda and mu, or young and poisson: those of the three-dimensional body
 //! mu = 1.0
@@ -27,9 +29,15 @@
 //! max_iterations = 50
 //! [output]
 //! probes = [[0.5, 0.5]]                     # places where result.json gives the displacement
+//! [exact]                                   # instead of [load]: a built-in exact solution, which supplies all data;
+//! solution = "singular"                     # result.json then has the errors
+//! c = 0.5
+//! amplitude = 1.0
+//! [boundary]                                # and then each boundary has a kind only: displacement, traction or contact
+//! top = "displacement"
 //! ```
 //!
-//! The grammar of expressions is in [`expression`](super::expression). A key that is not listed here is an error, and so
+//! The grammar of expressions is in [`expression`](super::expression), the parameters of the exact solutions in `exact.rs`. A key that is not listed here is an error, and so
 //! is a list of the wrong length, a number that is NaN or infinite, and a boundary with more than one of displacement,
 //! traction and contact. Integers serve as numbers. The material is stable: mu > 0 and 3 lambda + 2 mu > 0, that is
 //! young > 0 and -1 < poisson < 1/2.
@@ -41,13 +49,18 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 use toml::de::DeTable;
 
+use super::exact::{angle, read_exact, read_kind};
 use super::expression::{Expression, ExpressionError};
 use super::gmsh::{self, GmshError};
 use super::quote::quoted;
 use super::table::{Source, Table, Value, shown};
 use super::why_unreadable;
+use crate::fem::exact::{self, Kind};
 use crate::fem::rectangle::MOST_CELLS;
-use crate::fem::{BoxedFunction, Condition, Diagonal, Mesh, MeshError, Problem, Rectangle};
+use crate::fem::{
+    BoxedFunction, Condition, Diagonal, Exact, Mesh, MeshError, Perturbation, Problem, Rectangle,
+    Structured, Trapezoid,
+};
 use crate::kernel::{Material, Plane};
 use crate::solve::{ContactQuadrature, Degree, Gamma0, Method, Settings};
 
@@ -63,6 +76,20 @@ pub struct Case {
     pub settings: Settings,
     /// The places where the displacement is wanted.
     pub probes: Vec<[f64; 2]>,
+    /// The exact solution, if there is one.
+    pub exact: Option<ExactCase>,
+}
+
+/// An exact solution and the meshes on which it can be approximated.
+pub struct ExactCase {
+    /// The solution.
+    pub solution: Exact,
+    /// What holds on each boundary.
+    pub kinds: BTreeMap<String, Kind>,
+    /// The mesh as a structured one, unless it came from a file.
+    pub structured: Option<Structured>,
+    /// How its vertices are moved.
+    pub perturbation: Option<Perturbation>,
 }
 
 /// What is wrong with a case file, and where.
@@ -151,7 +178,9 @@ fn read_text(file: &Path) -> Result<String, String> {
 }
 
 fn case(file: &Path, root: &Table) -> Result<Case, CaseError> {
-    root.only(&["title", "mesh", "material", "load", "boundary", "method", "solver", "output"])?;
+    root.only(&[
+        "title", "mesh", "material", "load", "exact", "boundary", "method", "solver", "output",
+    ])?;
     let title = match root.get("title") {
         Some(title) => title.text()?.to_owned(),
         None => file.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
@@ -160,13 +189,19 @@ fn case(file: &Path, root: &Table) -> Result<Case, CaseError> {
     let material =
         root.required_section("material", "lambda and mu, or young and poisson in it")?;
     let material = read_material(&material)?;
-    let body_force = read_load(root.section("load")?)?;
-    let boundaries = read_boundaries(root)?;
+    let solution = match root.section("exact")? {
+        Some(table) => Some(read_exact(&table, material)?),
+        None => None,
+    };
+    let body_force = read_load(root, solution.as_ref())?;
+    let boundaries = read_boundaries(root, solution.as_ref())?;
     let method = read_method(root.section("method")?)?;
     let settings = read_settings(root.section("solver")?)?;
     let output = root.section("output")?;
     // The mesh, and what needs it, comes last: it is what takes time.
-    let mesh = read_mesh(&mesh, file.parent().unwrap_or(Path::new("")))?;
+    let Meshed { mesh, structured, perturbation } =
+        read_mesh(&mesh, file.parent().unwrap_or(Path::new("")))?;
+    let kinds = boundaries.iter().filter_map(|b| Some((b.key.to_owned(), b.kind?))).collect();
     let conditions = on_the_mesh(&mesh, boundaries)?;
     let probes = read_probes(output, &mesh)?;
     Ok(Case {
@@ -175,25 +210,81 @@ fn case(file: &Path, root: &Table) -> Result<Case, CaseError> {
         method,
         settings,
         probes,
+        exact: solution.map(|solution| ExactCase { solution, kinds, structured, perturbation }),
     })
 }
 
+/// A mesh and how it was made.
+struct Meshed {
+    mesh: Mesh,
+    structured: Option<Structured>,
+    perturbation: Option<Perturbation>,
+}
+
 /// `directory` is the one of the case file.
-fn read_mesh(table: &Table, directory: &Path) -> Result<Mesh, CaseError> {
-    let value = table.exactly_one(&["rectangle", "gmsh"])?;
-    if table.get("gmsh").is_some() {
-        let name = value.text()?;
-        if name.is_empty() {
-            return Err(value.wrong("the name of a mesh file"));
+fn read_mesh(table: &Table, directory: &Path) -> Result<Meshed, CaseError> {
+    const SHAPES: [&str; 3] = ["rectangle", "trapezoid", "gmsh"];
+    table.only(&["rectangle", "trapezoid", "gmsh", "perturb"])?;
+    let perturbation = table.get("perturb").map(|value| read_perturbation(&value)).transpose()?;
+    let shapes = SHAPES.map(|key| table.get(key));
+    let (value, structured) = match shapes {
+        [Some(value), None, None] => {
+            let rectangle = read_rectangle(&value.table()?)?;
+            (value, Structured::Rectangle(rectangle))
         }
-        let mesh = directory.join(name);
-        return gmsh::read(&mesh).map_err(|error| value.mistake(CaseMistake::Gmsh(error)));
-    }
-    read_rectangle(&value.table()?)?.mesh().map_err(|error| {
+        [None, Some(value), None] => {
+            let trapezoid = read_trapezoid(&value.table()?)?;
+            (value, Structured::Trapezoid(trapezoid))
+        }
+        [None, None, Some(value)] => {
+            if perturbation.is_some() {
+                return Err(table.combination(
+                    &["gmsh", "perturb"],
+                    "perturb beside rectangle or trapezoid only",
+                ));
+            }
+            let name = value.text()?;
+            if name.is_empty() {
+                return Err(value.wrong("the name of a mesh file"));
+            }
+            let mesh = gmsh::read(&directory.join(name))
+                .map_err(|error| value.mistake(CaseMistake::Gmsh(error)))?;
+            return Ok(Meshed { mesh, structured: None, perturbation: None });
+        }
+        _ => {
+            let expected = format!("exactly one of {}", SHAPES.join(", "));
+            return Err(table.combination(&SHAPES, &expected));
+        }
+    };
+    let mesh = structured.mesh(perturbation).map_err(|error| {
         let name = value.name().to_owned();
         value.mistake(CaseMistake::Mesh { name, error })
-    })
+    })?;
+    Ok(Meshed { mesh, structured: Some(structured), perturbation })
 }
+
+fn read_trapezoid(table: &Table) -> Result<Trapezoid, CaseError> {
+    table.only(&["omega", "n"])?;
+    let (omega, _) = angle(table)?;
+    let most = MOST_CELLS.isqrt();
+    Ok(Trapezoid { omega, n: table.require("n", "a number of cells")?.whole_number(1..=most)? })
+}
+
+/// Beyond this share of a cell, triangles may turn over.
+const MOST_MOVED: f64 = 0.25;
+
+fn read_perturbation(value: &Value) -> Result<Perturbation, CaseError> {
+    let table = value.table()?;
+    table.only(&["amount", "seed"])?;
+    let expected = format!("a number of cells from 0 to {MOST_MOVED}");
+    let amount = table.require("amount", &expected)?;
+    let amount = amount.number_that(|a| (0.0..=MOST_MOVED).contains(&a), &expected)?;
+    let seed = table.get("seed").map_or(Ok(0), |seed| seed.whole_number(0..=MOST_SEEDS))?;
+    Ok(Perturbation { amount, seed: seed as u64 })
+}
+
+/// Seeds that every reader of TOML can hold.
+const MOST_SEEDS: usize = 1 << 31;
 
 fn read_rectangle(table: &Table) -> Result<Rectangle, CaseError> {
     table.only(&["width", "height", "nx", "ny", "diagonal"])?;
@@ -249,7 +340,18 @@ fn read_material(table: &Table) -> Result<Material<f64>, CaseError> {
     }
 }
 
-fn read_load(table: Option<Table>) -> Result<[BoxedFunction; 2], CaseError> {
+fn read_load(root: &Table, solution: Option<&Exact>) -> Result<[BoxedFunction; 2], CaseError> {
+    let table = root.section("load")?;
+    if let Some(solution) = solution {
+        return match table {
+            None => Ok(exact::body_force(solution)),
+            Some(table) => Err(table.wrong(CaseMistake::Combination {
+                name: table.name().to_owned(),
+                found: "loads beside [exact]".to_owned(),
+                expected: "one of the two: an exact solution supplies its own".to_owned(),
+            })),
+        };
+    }
     if let Some(table) = &table {
         table.only(&["body"])?;
     }
@@ -268,19 +370,43 @@ fn zero() -> BoxedFunction {
     Box::new(Expression::from(0.0))
 }
 
-/// A boundary of the case file: its table, its name, and what holds there.
-type Boundary<'s> = (Table<'s>, &'s str, Condition);
+/// A boundary of the case file: where it stands, what messages call it, its name, and what holds there.
+struct Boundary<'s> {
+    value: Value<'s>,
+    title: String,
+    key: &'s str,
+    /// Beside \[exact\] only.
+    kind: Option<Kind>,
+    condition: Condition,
+}
 
-fn read_boundaries<'s>(root: &Table<'s>) -> Result<Vec<Boundary<'s>>, CaseError> {
-    let expected = "one boundary with contact, such as [boundary.bottom] contact = { gap = \"0\" }";
+fn read_boundaries<'s>(
+    root: &Table<'s>,
+    solution: Option<&Exact>,
+) -> Result<Vec<Boundary<'s>>, CaseError> {
+    let expected = match solution {
+        None => "one boundary with contact, such as [boundary.bottom] contact = { gap = \"0\" }",
+        Some(_) => "one boundary with contact, such as bottom = \"contact\"",
+    };
     let all = root.required_section("boundary", expected)?;
     let mut boundaries = Vec::new();
     for key in all.keys() {
-        let table = all.require(key, "a table")?.section(format!("[boundary.{}]", shown(key)))?;
-        let condition = read_condition(&table)?;
-        boundaries.push((table, key, condition));
+        let title = format!("[boundary.{}]", shown(key));
+        let (value, kind, condition) = match solution {
+            None => {
+                let value = all.require(key, "a table")?;
+                let condition = read_condition(&value.section(title.clone())?)?;
+                (value, None, condition)
+            }
+            Some(solution) => {
+                let value = all.require(key, "a kind")?;
+                let kind = read_kind(&value)?;
+                (value, Some(kind), kind.condition(solution))
+            }
+        };
+        boundaries.push(Boundary { value, title, key, kind, condition });
     }
-    if boundaries.iter().any(|b| matches!(b.2, Condition::Contact { .. })) {
+    if boundaries.iter().any(|b| matches!(b.condition, Condition::Contact { .. })) {
         Ok(boundaries)
     } else {
         Err(all.wrong(CaseMistake::Combination {
@@ -319,18 +445,18 @@ fn on_the_mesh(
     boundaries: Vec<Boundary>,
 ) -> Result<BTreeMap<String, Condition>, CaseError> {
     let mut conditions = BTreeMap::new();
-    for (table, name, condition) in boundaries {
-        let edges = mesh.edges_of(name).map_err(|error| {
-            table.wrong(CaseMistake::Mesh { name: table.name().to_owned(), error })
-        })?;
-        if edges.is_empty() {
-            return Err(table.wrong(CaseMistake::Combination {
-                name: table.name().to_owned(),
-                found: "no edge in this mesh".to_owned(),
-                expected: "at least one".to_owned(),
-            }));
-        }
-        conditions.insert(name.to_owned(), condition);
+    for Boundary { value, title: name, key, condition, .. } in boundaries {
+        match mesh.edges_of(key) {
+            Err(error) => return Err(value.mistake(CaseMistake::Mesh { name, error })),
+            Ok([]) => {
+                return Err(value.mistake(CaseMistake::Combination {
+                    name,
+                    found: "no edge in this mesh".to_owned(),
+                    expected: "at least one".to_owned(),
+                }));
+            }
+            Ok(_) => conditions.insert(key.to_owned(), condition),
+        };
     }
     Ok(conditions)
 }

@@ -3,6 +3,7 @@
 pub mod case;
 pub mod csv;
 pub mod data;
+mod exact;
 pub mod expression;
 pub mod files;
 pub mod gmsh;

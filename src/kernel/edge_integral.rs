@@ -190,6 +190,16 @@ where
         .fold(f64::NEG_INFINITY, |max, p| if p <= max || max.is_nan() { max } else { p })
 }
 
+/// The places inside (0, 1) where P changes its sign, in no particular order.
+pub fn roots<E, const N: usize, const M: usize>(p: [f64; M]) -> impl Iterator<Item = f64>
+where
+    E: Element<N, M>,
+{
+    let mut cuts = Cuts::new();
+    cuts.add_roots::<E, N, M>(p);
+    (2..cuts.len).map(move |i| cuts.at[i])
+}
+
 /// a + b s + c s^2 from the values at 0, 1/2 and 1.
 fn monomials<E: Element<N, M>, const N: usize, const M: usize>(p: [f64; M]) -> [f64; 3] {
     let [start, middle, end] = [0.0, 0.5, 1.0].map(|s| value_at::<E, f64, N, M>(p, s));

@@ -1,0 +1,148 @@
+//! How far a discrete field is from an exact solution u, in the norms of section 3.3. For v^h and e = u - v^h:
+//!
+//! energy = a(e, e)^(1/2),  h1 = |e|_{1,Omega} (the full norm),  l2 = |e|_{0,Omega},
+//! contact_residual = |gamma^(1/2) (sigma_n(u) + (1/gamma) \[P(v^h)\]+)|_{0,Gamma_C},
+//! normal_stress = |gamma^(1/2) sigma_n(e)|_{0,Gamma_C},
+//! operator = |gamma^(-1/2) (P(u) - P(v^h))|_{0,Gamma_C}, which only the bound of Theorem 3.4 needs.
+//!
+//! P(u) has the given gap, P(v^h) its interpolant, as method (8) does. Triangles and edges are cut where u is less smooth,
+//! edges also at the roots of P(v^h).
+
+use serde::Serialize;
+
+use super::contact_line::ContactLineEdge;
+use super::exact::ExactSolution;
+use super::pieces::Rule;
+use super::space::Space;
+use crate::kernel::edge_integral::{roots, value_at};
+use crate::kernel::element::displacement_gradient;
+use crate::kernel::{ContactPoint, Element, Triangle, positive_part};
+
+/// Points in each direction. u is a polynomial of degree at most 7 on each piece for the smooth solutions with whole
+/// exponents (exact from 8 points on); for the singular ones the rule converges geometrically away from the singular point
+/// and is graded at it. Half as many points change the results by less than 1e-6 of themselves (tests/exact.rs).
+pub const POINTS: usize = 10;
+
+/// The distances, each a norm.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Errors {
+    /// a(e, e)^(1/2)
+    pub energy: f64,
+    /// |e|_{1,Omega}
+    pub h1: f64,
+    /// |e|_{0,Omega}
+    pub l2: f64,
+    /// |gamma^(1/2) (sigma_n(u) + (1/gamma) \[P(v^h)\]+)| on Gamma_C
+    pub contact_residual: f64,
+    /// |gamma^(1/2) sigma_n(e)| on Gamma_C
+    pub normal_stress: f64,
+    /// |gamma^(-1/2) (P(u) - P(v^h))| on Gamma_C
+    #[serde(skip)]
+    pub operator: f64,
+}
+
+impl Errors {
+    /// The distances of the field with the nodal values `v` from `exact`, with [`POINTS`] points.
+    pub fn new<E, const N: usize, const M: usize>(
+        space: &Space<E, N, M>,
+        contact: &[ContactLineEdge<N, M>],
+        v: &[[f64; 2]],
+        exact: &dyn ExactSolution,
+    ) -> Self
+    where
+        E: Element<N, M>,
+    {
+        Errors::with_points(space, contact, v, exact, POINTS)
+    }
+
+    /// The same with `points` quadrature points in each direction.
+    pub fn with_points<E, const N: usize, const M: usize>(
+        space: &Space<E, N, M>,
+        contact: &[ContactLineEdge<N, M>],
+        v: &[[f64; 2]],
+        exact: &dyn ExactSolution,
+        points: usize,
+    ) -> Self
+    where
+        E: Element<N, M>,
+    {
+        let rule = Rule::new(exact.features(), points);
+        let mut squares = Errors::default();
+        for (t, (triangle, _)) in space.triangles().enumerate() {
+            let nodal = space.on_triangle(t, v);
+            squares.add_triangle::<E, N, M>(&rule, &triangle, &nodal, exact);
+        }
+        for edge in contact {
+            let ends = space.mesh().ends(edge.edge).map(|vertex| space.mesh().vertices()[vertex]);
+            let nodal = space.on_triangle(edge.edge.triangle, v);
+            squares.add_edge::<E, N, M>(&rule, edge, ends, &nodal, exact);
+        }
+        // The full norm of H1: so far there is only the seminorm.
+        squares.h1 += squares.l2;
+        Errors {
+            energy: squares.energy.sqrt(),
+            h1: squares.h1.sqrt(),
+            l2: squares.l2.sqrt(),
+            contact_residual: squares.contact_residual.sqrt(),
+            normal_stress: squares.normal_stress.sqrt(),
+            operator: squares.operator.sqrt(),
+        }
+    }
+
+    fn add_triangle<E, const N: usize, const M: usize>(
+        &mut self,
+        rule: &Rule,
+        triangle: &Triangle<f64>,
+        nodal: &[[f64; 2]; N],
+        exact: &dyn ExactSolution,
+    ) where
+        E: Element<N, M>,
+    {
+        let barycentric = triangle.barycentric_gradients();
+        rule.on_triangle(triangle, |l, x, weight| {
+            let shapes = E::values(l);
+            let u = exact.displacement(x);
+            let value = |c: usize| (0..N).map(|j| shapes[j] * nodal[j][c]).sum::<f64>();
+            let e = [0, 1].map(|c| u[c] - value(c));
+            let discrete = displacement_gradient(nodal, &E::gradients(l, barycentric));
+            let exact_gradient = exact.gradient(x);
+            let d = [0, 1].map(|i| [0, 1].map(|j| exact_gradient[i][j] - discrete[i][j]));
+            let s = exact.material().stress(d);
+            self.energy += weight * (s.xx * d[0][0] + s.yy * d[1][1] + s.xy * (d[0][1] + d[1][0]));
+            self.h1 += weight * d.as_flattened().iter().map(|d| d * d).sum::<f64>();
+            self.l2 += weight * (e[0] * e[0] + e[1] * e[1]);
+        });
+    }
+
+    fn add_edge<E, const N: usize, const M: usize>(
+        &mut self,
+        rule: &Rule,
+        edge: &ContactLineEdge<N, M>,
+        ends: [[f64; 2]; 2],
+        nodal: &[[f64; 2]; N],
+        exact: &dyn ExactSolution,
+    ) where
+        E: Element<N, M>,
+    {
+        let (n, gamma) = (edge.normal, edge.gamma);
+        let p = edge.p(nodal);
+        let stress = edge.sigma_n(nodal);
+        rule.on_edge(ends, roots::<E, N, M>(p), |point| {
+            let (s, x) = (point.s, point.x);
+            let u = exact.displacement(x);
+            let exact = ContactPoint {
+                u_n: u[0] * n[0] + u[1] * n[1],
+                gap: exact.gap(x),
+                sigma_n: exact.stress(x).normal(n),
+                gamma,
+            };
+            let p = value_at::<E, f64, N, M>(p, s);
+            let residual = exact.sigma_n + positive_part(p) / gamma;
+            let stress = exact.sigma_n - ((1.0 - s) * stress[0] + s * stress[1]);
+            let weight = point.weight * edge.length;
+            self.contact_residual += weight * gamma * residual * residual;
+            self.normal_stress += weight * gamma * stress * stress;
+            self.operator += weight / gamma * (exact.p() - p) * (exact.p() - p);
+        });
+    }
+}

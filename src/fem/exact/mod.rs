@@ -1,0 +1,160 @@
+//! Exact solutions of (1)-(2) in closed form, on which the method is measured. Why each is one: docs/theory.md, section 10.
+//!
+//! | solution | body | on Gamma_C | u in H^s for |
+//! | --- | --- | --- | --- |
+//! | [`Smooth`] | unit square | pressure for x < c, a gap opening for x > c | s < min(k - 1/2, m + 1/2) |
+//! | [`Singular`] | unit square | the r^(3/2) singularity where contact ends | s < 5/2 |
+//! | [`Corner`] | trapezoid | contact everywhere, pressure r^(alpha - 1) at one end | s < 1 + alpha |
+//! | [`Patch`] | any | d1 to d5: u affine, so it lies in V^h | |
+//!
+//! Gamma_C lies on y = 0 in all of them: n = (0, -1), u_n = -u_y, sigma_n = sigma_yy, and sigma_t = 0 means sigma_xy = 0.
+//! lambda is the coefficient that acts in the plane, so plane stress needs no second set of formulas.
+
+mod corner;
+mod patch;
+mod singular;
+mod smooth;
+
+use std::collections::BTreeMap;
+use std::fmt::Debug;
+use std::sync::Arc;
+
+pub use corner::Corner;
+pub use patch::Patch;
+pub use singular::Singular;
+pub use smooth::Smooth;
+
+use super::mesh::Mesh;
+use super::pieces::Features;
+use super::problem::{BoxedFunction, Condition, Function, Problem};
+use crate::kernel::{Material, Stress};
+
+/// A displacement field that solves (1)-(2), with its data.
+pub trait ExactSolution: Debug + Send + Sync {
+    /// What the body is made of.
+    fn material(&self) -> &Material<f64>;
+
+    /// u
+    fn displacement(&self, x: [f64; 2]) -> [f64; 2];
+
+    /// du_i/dx_j as `gradient[i][j]`.
+    fn gradient(&self, x: [f64; 2]) -> [[f64; 2]; 2];
+
+    /// f = -div sigma(u); `None` if there is none anywhere.
+    fn body_force(&self, _: [f64; 2]) -> Option<[f64; 2]> {
+        None
+    }
+
+    /// g, the initial gap on Gamma_C.
+    fn gap(&self, _: [f64; 2]) -> f64 {
+        0.0
+    }
+
+    /// Where u is less smooth than elsewhere.
+    fn features(&self) -> Features {
+        Features::default()
+    }
+
+    /// sigma(u)
+    fn stress(&self, x: [f64; 2]) -> Stress<f64> {
+        self.material().stress(self.gradient(x))
+    }
+}
+
+/// An exact solution that problems, loads and error measures share.
+pub type Exact = Arc<dyn ExactSolution>;
+
+/// What a part of the boundary is asked to hold of an exact solution.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Its displacement, at the nodes.
+    Displacement,
+    /// Its traction.
+    Traction,
+    /// The contact conditions with its gap.
+    Contact,
+}
+
+impl Kind {
+    /// The condition, its data taken from the solution.
+    pub fn condition(self, solution: &Exact) -> Condition {
+        let parts = |part: fn(usize) -> Part| [0, 1].map(|c| field(solution, part(c)));
+        match self {
+            Kind::Displacement => Condition::Displacement(parts(Part::Displacement).map(Some)),
+            Kind::Traction => Condition::Traction(parts(Part::Traction)),
+            Kind::Contact => Condition::Contact { gap: field(solution, Part::Gap) },
+        }
+    }
+}
+
+/// The body force of a solution.
+pub fn body_force(solution: &Exact) -> [BoxedFunction; 2] {
+    [0, 1].map(|c| field(solution, Part::BodyForce(c)))
+}
+
+/// The problem that `solution` solves on a mesh of its body.
+pub fn problem(solution: &Exact, mesh: Mesh, kinds: &BTreeMap<String, Kind>) -> Problem {
+    Problem {
+        mesh,
+        material: *solution.material(),
+        body_force: body_force(solution),
+        conditions: kinds
+            .iter()
+            .map(|(name, kind)| (name.clone(), kind.condition(solution)))
+            .collect(),
+    }
+}
+
+/// One number of an exact solution as a function of the place.
+struct Field {
+    solution: Exact,
+    part: Part,
+}
+
+#[derive(Clone, Copy)]
+enum Part {
+    Displacement(usize),
+    BodyForce(usize),
+    Traction(usize),
+    Gap,
+}
+
+fn field(solution: &Exact, part: Part) -> BoxedFunction {
+    Box::new(Field { solution: Arc::clone(solution), part })
+}
+
+impl Function for Field {
+    /// A traction has no value without a normal.
+    fn at(&self, x: [f64; 2]) -> f64 {
+        match self.part {
+            Part::Displacement(c) => self.solution.displacement(x)[c],
+            Part::BodyForce(c) => self.solution.body_force(x).unwrap_or_default()[c],
+            Part::Traction(_) => f64::NAN,
+            Part::Gap => self.solution.gap(x),
+        }
+    }
+
+    fn on_boundary(&self, x: [f64; 2], n: [f64; 2]) -> f64 {
+        match self.part {
+            Part::Traction(c) => self.solution.stress(x).traction(n)[c],
+            _ => self.at(x),
+        }
+    }
+
+    fn degree(&self) -> Option<u32> {
+        match self.part {
+            Part::BodyForce(_) if self.solution.body_force([0.0; 2]).is_none() => Some(0),
+            _ => None,
+        }
+    }
+
+    fn kink(&self) -> Option<f64> {
+        self.solution.features().kink
+    }
+}
+
+/// Kolosov's constant (lambda + 3 mu) / (lambda + mu).
+fn kolosov(material: &Material<f64>) -> f64 {
+    let (lambda, mu) = (material.lambda(), material.mu());
+    (lambda + 3.0 * mu) / (lambda + mu)
+}

@@ -1,0 +1,80 @@
+//! (d) Patch tests: u is affine, so the discrete solution is u itself, for P1 and P2 on every mesh. Displacement on y = 1,
+//! tractions on x = 0 and x = 1, no body force; on y = 0:
+//!
+//! | | u | g | |
+//! | --- | --- | --- | --- |
+//! | d1 | (p e2 x, -p e1 y) | 0 | contact under the pressure p |
+//! | d2 | (p e1 x, -p e2 y + d) | 0 | lifted by d under the horizontal tension p |
+//! | d3 | (p e2 x - w y, -p e1 y + w x - g0) | g0 - w x | contact with an inclined floor |
+//! | d4 | 0 | 0 | P = 0 everywhere |
+//! | d5 | (0, d (1 - y)) | -d | a floor that is d too high |
+//!
+//! e1 = (lambda + 2 mu) / (4 mu (lambda + mu)) and e2 = lambda / (4 mu (lambda + mu)): the strains of the uniaxial stress 1.
+
+use super::ExactSolution;
+use crate::kernel::Material;
+
+/// A solution u = `matrix` x + `shift` with the gap g = `gap`\[0\] + `gap`\[1\] x.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Patch {
+    material: Material<f64>,
+    matrix: [[f64; 2]; 2],
+    shift: [f64; 2],
+    gap: [f64; 2],
+}
+
+/// (e1, e2)
+fn strains(material: &Material<f64>) -> (f64, f64) {
+    let (lambda, mu) = (material.lambda(), material.mu());
+    let common = 4.0 * mu * (lambda + mu);
+    ((lambda + 2.0 * mu) / common, lambda / common)
+}
+
+impl Patch {
+    /// d1, for p > 0.
+    pub fn compression(material: Material<f64>, p: f64) -> Self {
+        Patch::inclined(material, p, 0.0, 0.0)
+    }
+
+    /// d2, for d > 0.
+    pub fn separation(material: Material<f64>, p: f64, d: f64) -> Self {
+        let (e1, e2) = strains(&material);
+        let matrix = [[p * e1, 0.0], [0.0, -p * e2]];
+        Patch { material, matrix, shift: [0.0, d], gap: [0.0; 2] }
+    }
+
+    /// d3, for p > 0.
+    pub fn inclined(material: Material<f64>, p: f64, w: f64, g0: f64) -> Self {
+        let (e1, e2) = strains(&material);
+        let matrix = [[p * e2, -w], [w, -p * e1]];
+        Patch { material, matrix, shift: [0.0, -g0], gap: [g0, -w] }
+    }
+
+    /// d4
+    pub fn grazing(material: Material<f64>) -> Self {
+        Patch { material, matrix: [[0.0; 2]; 2], shift: [0.0; 2], gap: [0.0; 2] }
+    }
+
+    /// d5, for d > 0.
+    pub fn interference(material: Material<f64>, d: f64) -> Self {
+        Patch { material, matrix: [[0.0, 0.0], [0.0, -d]], shift: [0.0, d], gap: [-d, 0.0] }
+    }
+}
+
+impl ExactSolution for Patch {
+    fn material(&self) -> &Material<f64> {
+        &self.material
+    }
+
+    fn displacement(&self, x: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|c| self.matrix[c][0] * x[0] + self.matrix[c][1] * x[1] + self.shift[c])
+    }
+
+    fn gradient(&self, _: [f64; 2]) -> [[f64; 2]; 2] {
+        self.matrix
+    }
+
+    fn gap(&self, [x, _]: [f64; 2]) -> f64 {
+        self.gap[0] + self.gap[1] * x
+    }
+}

@@ -1,0 +1,283 @@
+//! Quadrature that follows a function which is smooth only piece by piece: triangles and edges are cut along the line x = c
+//! where it has a kink, and around the point where it is singular.
+//!
+//! A triangle that holds the singular point is cut into triangles with that point as their first vertex. On them the
+//! distance from it is rho = t^4, t in \[0, 1\]: then rho^(alpha-1), alpha > 1/2, squared and times rho d(rho), is a power of
+//! t above 3 times dt, smooth enough for a Gauss rule. An edge that ends at the singular point is graded likewise.
+//! Places are computed from the singular point outwards, so that their distance from it keeps its digits.
+
+use super::quadrature;
+use crate::kernel::Triangle;
+
+/// Where a function is less smooth than elsewhere.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Features {
+    /// c, if it has a kink along x = c.
+    pub kink: Option<f64>,
+    /// Where it is singular.
+    pub singular: Option<Singularity>,
+}
+
+/// A singular point on the boundary.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Singularity {
+    /// The place.
+    pub point: [f64; 2],
+    /// g, such that with the distance r = t^g along an edge the integrand is smooth in t.
+    pub edge_grading: f64,
+}
+
+/// rho = t^GRADING on a triangle at the singular point.
+const GRADING: i32 = 4;
+
+/// How many times as many points, in each direction, a graded piece gets.
+const MORE: usize = 2;
+
+/// A vertex or the end of an edge this close to the singular point, in units of the piece's size, is the singular point.
+const AT_THE_POINT: f64 = 1e-12;
+
+/// A rule for functions with some [`Features`].
+#[derive(Clone, Debug)]
+pub struct Rule {
+    features: Features,
+    plain: Vec<([f64; 3], f64)>,
+    graded: Vec<([f64; 3], f64)>,
+    gauss: Vec<(f64, f64)>,
+    graded_gauss: Vec<(f64, f64)>,
+}
+
+/// A part of a triangle: its corners as places and as barycentric coordinates in the whole.
+type Piece = [([f64; 2], [f64; 3]); 3];
+
+/// A point of a rule on an edge.
+#[derive(Clone, Copy, Debug)]
+pub struct EdgePoint {
+    /// The parameter on the edge, from 0 at its start to 1 at its end.
+    pub s: f64,
+    /// The place.
+    pub x: [f64; 2],
+    /// The weight; over the whole edge they add up to 1.
+    pub weight: f64,
+}
+
+impl Rule {
+    /// With `n` points in each direction on a smooth piece.
+    pub fn new(features: Features, n: usize) -> Self {
+        Rule {
+            features,
+            plain: quadrature::collapsed(n, 1),
+            graded: quadrature::collapsed(MORE * n, GRADING),
+            gauss: quadrature::gauss(n),
+            graded_gauss: quadrature::gauss(MORE * n),
+        }
+    }
+
+    /// Calls `f` with barycentric coordinates, place and weight of every point; the weights add up to the area.
+    pub fn on_triangle(
+        &self,
+        triangle: &Triangle<f64>,
+        mut f: impl FnMut([f64; 3], [f64; 2], f64),
+    ) {
+        let unit = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let whole: Piece = [0, 1, 2].map(|i| (triangle.vertices[i], unit[i]));
+        for piece in cut(whole, self.features.kink) {
+            match self.features.singular.and_then(|singular| around(&piece, singular.point)) {
+                Some(parts) => parts.iter().for_each(|part| apply(part, &self.graded, &mut f)),
+                None => apply(&piece, &self.plain, &mut f),
+            }
+        }
+    }
+
+    /// Calls `f` with the points on the edge from `ends[0]` to `ends[1]`, cut at the features and at the parameters `cuts`
+    /// inside (0, 1).
+    pub fn on_edge(
+        &self,
+        ends: [[f64; 2]; 2],
+        cuts: impl IntoIterator<Item = f64>,
+        mut f: impl FnMut(EdgePoint),
+    ) {
+        let [a, b] = ends;
+        let direction = [b[0] - a[0], b[1] - a[1]];
+        let squared = dot(direction, direction);
+        let at_kink = self.features.kink.map(|c| (c - a[0]) / direction[0]);
+        let singular = self.features.singular.map(|singular| {
+            let from_start = [singular.point[0] - a[0], singular.point[1] - a[1]];
+            let along = dot(from_start, direction) / squared;
+            let across = cross(from_start, direction) / squared;
+            // Off the line of the edge it is nowhere on the edge.
+            (if across.abs() <= AT_THE_POINT { along } else { f64::NAN }, singular)
+        });
+        let mut all = vec![0.0, 1.0];
+        let at_point = singular.map(|(s, _)| s);
+        let inside = |s: &f64| AT_THE_POINT < *s && *s < 1.0 - AT_THE_POINT;
+        all.extend(cuts.into_iter().chain(at_kink).chain(at_point).filter(inside));
+        all.sort_unstable_by(f64::total_cmp);
+        for piece in all.windows(2) {
+            let (low, high) = (piece[0], piece[1]);
+            let place = |s: f64| [0, 1].map(|c| a[c] + s * direction[c]);
+            let near = |s: f64| {
+                singular.filter(|(at, _)| (s - at).abs() <= AT_THE_POINT).map(|(_, p)| (s, p))
+            };
+            let Some((from, Singularity { point, edge_grading })) =
+                near(low).or_else(|| near(high))
+            else {
+                for &(t, weight) in &self.gauss {
+                    let s = low + t * (high - low);
+                    f(EdgePoint { s, x: place(s), weight: weight * (high - low) });
+                }
+                continue;
+            };
+            let (sign, other) = if from == low { (1.0, high) } else { (-1.0, low) };
+            let other = place(other);
+            for &(t, weight) in &self.graded_gauss {
+                let r = t.powf(edge_grading);
+                f(EdgePoint {
+                    s: from + sign * r * (high - low),
+                    x: [0, 1].map(|c| point[c] + r * (other[c] - point[c])),
+                    weight: weight * edge_grading * t.powf(edge_grading - 1.0) * (high - low),
+                });
+            }
+        }
+    }
+}
+
+fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+/// Twice the signed area of a triangle.
+fn double_area(vertices: [[f64; 2]; 3]) -> f64 {
+    Triangle { vertices }.double_area()
+}
+
+fn apply(piece: &Piece, rule: &[([f64; 3], f64)], f: &mut impl FnMut([f64; 3], [f64; 2], f64)) {
+    let places = Triangle { vertices: piece.map(|(x, _)| x) };
+    let area = places.double_area().abs() / 2.0;
+    for &(own, weight) in rule {
+        let l = [0, 1, 2].map(|i| (0..3).map(|k| own[k] * piece[k].1[i]).sum());
+        f(l, places.point(own), weight * area);
+    }
+}
+
+/// The parts of a triangle on the two sides of the line x = c.
+fn cut(piece: Piece, kink: Option<f64>) -> Vec<Piece> {
+    let side = |c: f64, k: usize| piece[k].0[0] - c;
+    match kink {
+        Some(c) if (0..3).any(|k| side(c, k) < 0.0) && (0..3).any(|k| side(c, k) > 0.0) => {
+            [1.0, -1.0].into_iter().flat_map(|sign| half(&piece, c, sign)).collect()
+        }
+        _ => vec![piece],
+    }
+}
+
+/// The part of a triangle where sign (x - c) >= 0: one triangle, or two that make a quadrilateral.
+fn half(piece: &Piece, c: f64, sign: f64) -> Vec<Piece> {
+    let mut polygon = Vec::with_capacity(4);
+    for k in 0..3 {
+        let (a, b) = (piece[k], piece[(k + 1) % 3]);
+        let (da, db) = (a.0[0] - c, b.0[0] - c);
+        if sign * da >= 0.0 {
+            polygon.push(a);
+        }
+        if da * db < 0.0 {
+            let s = da / (da - db);
+            let l = [0, 1, 2].map(|i| a.1[i] + s * (b.1[i] - a.1[i]));
+            polygon.push(([c, a.0[1] + s * (b.0[1] - a.0[1])], l));
+        }
+    }
+    (1..polygon.len().saturating_sub(1)).map(|k| [polygon[0], polygon[k], polygon[k + 1]]).collect()
+}
+
+/// The triangle cut into triangles with `point` as their first vertex; `None` if it doesn't hold the point.
+fn around(piece: &Piece, point: [f64; 2]) -> Option<Vec<Piece>> {
+    let [a, b, c] = *piece;
+    let whole = double_area(piece.map(|(x, _)| x));
+    let sides = [[b, c], [c, a], [a, b]];
+    let shares = sides.map(|[q, r]| double_area([point, q.0, r.0]) / whole);
+    if shares.iter().any(|&share| share < -AT_THE_POINT) {
+        return None;
+    }
+    let l = [0, 1, 2].map(|i| (0..3).map(|k| shares[k] * piece[k].1[i]).sum());
+    let parts = sides.into_iter().zip(shares).filter(|(_, share)| *share > AT_THE_POINT);
+    Some(parts.map(|([q, r], _)| [(point, l), q, r]).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const T: Triangle<f64> = Triangle { vertices: [[0.1, 0.0], [0.9, 0.0], [0.4, 0.7]] };
+
+    fn integral(features: Features, n: usize, f: impl Fn([f64; 2]) -> f64) -> f64 {
+        let mut sum = 0.0;
+        Rule::new(features, n).on_triangle(&T, |l, x, weight| {
+            let from_l = T.point(l);
+            assert!((from_l[0] - x[0]).abs() + (from_l[1] - x[1]).abs() < 1e-14);
+            sum += weight * f(x);
+        });
+        sum
+    }
+
+    #[test]
+    fn a_kink_inside_the_triangle_costs_nothing() {
+        let c = 0.35;
+        let kinked = |[x, y]: [f64; 2]| y * (x - c).abs();
+        let features = Features { kink: Some(c), singular: None };
+        let (coarse, fine) = (integral(features, 3, kinked), integral(features, 12, kinked));
+        assert!((coarse - fine).abs() < 1e-16, "{coarse} {fine}");
+        assert!((integral(Features::default(), 12, kinked) - fine).abs() > 1e-7);
+    }
+
+    #[test]
+    fn a_kink_outside_the_triangle_or_through_a_corner_leaves_the_area_alone() {
+        for c in [-1.0, 0.1, 0.4, 0.9, 2.0] {
+            let features = Features { kink: Some(c), singular: None };
+            assert!((integral(features, 2, |_| 1.0) - 0.28).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn a_singular_point_in_a_corner_on_an_edge_or_outside_is_integrated_to_rounding() {
+        for point in [[0.1, 0.0], [0.3, 0.0], [0.9, 0.0], [2.0, 0.0]] {
+            let features =
+                Features { kink: None, singular: Some(Singularity { point, edge_grading: 4.0 }) };
+            let f = |[x, y]: [f64; 2]| (x - point[0]).hypot(y).powf(-0.9);
+            let (coarse, fine) = (integral(features, 8, f), integral(features, 20, f));
+            assert!((coarse - fine).abs() < 1e-10 * fine, "{point:?}: {coarse} {fine}");
+        }
+    }
+
+    #[test]
+    fn control_without_grading_a_singular_point_spoils_the_integral() {
+        let f = |[x, y]: [f64; 2]| (x - 0.3).hypot(y).powf(-0.9);
+        let (coarse, fine) =
+            (integral(Features::default(), 8, f), integral(Features::default(), 20, f));
+        assert!((coarse - fine).abs() > 1e-4 * fine);
+    }
+
+    #[test]
+    fn edges_are_graded_towards_a_singular_point_at_either_end_or_inside() {
+        let ends = [[0.2, 0.0], [0.7, 0.0]];
+        for c in [0.2, 0.4, 0.7] {
+            let singular = Some(Singularity { point: [c, 0.0], edge_grading: 5.0 });
+            let mut sum = 0.0;
+            let rule = Rule::new(Features { kink: None, singular }, 8);
+            rule.on_edge(ends, [], |p| sum += 0.5 * p.weight * (p.x[0] - c).abs().powf(-0.8));
+            let exact = 5.0 * ((c - 0.2_f64).powf(0.2) + (0.7 - c).powf(0.2));
+            assert!((sum - exact).abs() < 1e-12 * exact, "{c}: {sum} {exact}");
+        }
+    }
+
+    #[test]
+    fn an_edge_that_misses_the_singular_point_is_not_cut() {
+        let singular = Some(Singularity { point: [0.5, 0.1], edge_grading: 5.0 });
+        let mut points = 0;
+        let rule = Rule::new(Features { kink: None, singular }, 8);
+        rule.on_edge([[0.0, 0.0], [1.0, 0.0]], [], |_| points += 1);
+        assert_eq!(points, 8);
+    }
+}

@@ -1,0 +1,204 @@
+//! The section \[exact\] of a case file: a built-in exact solution, which supplies loads, boundary data and gap.
+//!
+//! | solution | parameters |
+//! | --- | --- |
+//! | "smooth" | c in (0, 1), k > 5/2, m > 3/2, ap > 0, aq > 0, gap = \[g0, g1, ..\] for g = g0 + g1 x + .. (default none) |
+//! | "singular" | c in (0, 1), amplitude > 0 |
+//! | "corner" | omega between pi/2 and pi |
+//! | "patch" | which = "d1" (p > 0), "d2" (p, d > 0), "d3" (p > 0, w, g0), "d4" or "d5" (d > 0) |
+//!
+//! What they are: [`exact`](crate::fem::exact).
+
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::sync::Arc;
+
+use super::case::CaseError;
+use super::table::{Table, Value};
+use crate::fem::Exact;
+use crate::fem::exact::{Corner, Kind, Patch, Singular, Smooth};
+use crate::kernel::Material;
+
+#[derive(Clone, Copy)]
+enum Which {
+    Smooth,
+    Singular,
+    Corner,
+    Patch,
+}
+
+#[derive(Clone, Copy)]
+enum Test {
+    Compression,
+    Separation,
+    Inclined,
+    Grazing,
+    Interference,
+}
+
+/// The solution that the section describes.
+pub fn read_exact(table: &Table, material: Material<f64>) -> Result<Exact, CaseError> {
+    let solution = table.require("solution", "the name of an exact solution")?;
+    let which = solution.one_of(&[
+        ("smooth", Which::Smooth),
+        ("singular", Which::Singular),
+        ("corner", Which::Corner),
+        ("patch", Which::Patch),
+    ])?;
+    Ok(match which {
+        Which::Smooth => {
+            table.only(&["solution", "c", "k", "m", "ap", "aq", "gap"])?;
+            Arc::new(Smooth {
+                material,
+                c: inside(table, "c")?,
+                k: above(table, "k", 2.5)?,
+                m: above(table, "m", 1.5)?,
+                ap: above(table, "ap", 0.0)?,
+                aq: above(table, "aq", 0.0)?,
+                gap: coefficients(table.get("gap"))?,
+            })
+        }
+        Which::Singular => {
+            table.only(&["solution", "c", "amplitude"])?;
+            let amplitude = above(table, "amplitude", 0.0)?;
+            Arc::new(Singular { material, c: inside(table, "c")?, amplitude })
+        }
+        Which::Corner => {
+            table.only(&["solution", "omega"])?;
+            let (omega, value) = angle(table)?;
+            Arc::new(Corner::new(material, omega).ok_or_else(|| value.wrong(ANGLE))?)
+        }
+        Which::Patch => Arc::new(read_patch(table, material)?),
+    })
+}
+
+const ANGLE: &str = "an angle between pi/2 and pi";
+
+/// omega, and where it stands.
+pub fn angle<'s>(table: &Table<'s>) -> Result<(f64, Value<'s>), CaseError> {
+    let value = table.require("omega", ANGLE)?;
+    Ok((value.number_that(|omega| FRAC_PI_2 < omega && omega < PI, ANGLE)?, value))
+}
+
+fn read_patch(table: &Table, material: Material<f64>) -> Result<Patch, CaseError> {
+    let which = table.require("which", "d1, d2, d3, d4 or d5 in quotes")?.one_of(&[
+        ("d1", Test::Compression),
+        ("d2", Test::Separation),
+        ("d3", Test::Inclined),
+        ("d4", Test::Grazing),
+        ("d5", Test::Interference),
+    ])?;
+    let keys: &[&str] = match which {
+        Test::Compression => &["solution", "which", "p"],
+        Test::Separation => &["solution", "which", "p", "d"],
+        Test::Inclined => &["solution", "which", "p", "w", "g0"],
+        Test::Grazing => &["solution", "which"],
+        Test::Interference => &["solution", "which", "d"],
+    };
+    table.only(keys)?;
+    let number = |key| table.require(key, "a number")?.number();
+    Ok(match which {
+        Test::Compression => Patch::compression(material, above(table, "p", 0.0)?),
+        Test::Separation => Patch::separation(material, number("p")?, above(table, "d", 0.0)?),
+        Test::Inclined => {
+            Patch::inclined(material, above(table, "p", 0.0)?, number("w")?, number("g0")?)
+        }
+        Test::Grazing => Patch::grazing(material),
+        Test::Interference => Patch::interference(material, above(table, "d", 0.0)?),
+    })
+}
+
+/// A number above `least`.
+fn above(table: &Table, key: &str, least: f64) -> Result<f64, CaseError> {
+    let expected = format!("a number above {least}");
+    table.require(key, &expected)?.number_that(|value| value > least, &expected)
+}
+
+/// A place on the contact line (0, 1).
+fn inside(table: &Table, key: &str) -> Result<f64, CaseError> {
+    let expected = "a number above 0 and below 1";
+    table.require(key, expected)?.number_that(|c| 0.0 < c && c < 1.0, expected)
+}
+
+fn coefficients(gap: Option<Value>) -> Result<Vec<f64>, CaseError> {
+    match gap {
+        Some(gap) => gap.items()?.iter().map(Value::number).collect(),
+        None => Ok(Vec::new()),
+    }
+}
+
+/// What a boundary is asked to hold: beside \[exact\], \[boundary\] has a kind for each.
+pub fn read_kind(value: &Value) -> Result<Kind, CaseError> {
+    value.one_of(&[
+        ("displacement", Kind::Displacement),
+        ("traction", Kind::Traction),
+        ("contact", Kind::Contact),
+    ])
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use toml::de::DeTable;
+
+    use super::*;
+    use crate::io::table::Source;
+    use crate::kernel::Plane;
+
+    fn read(text: &str) -> Result<Exact, String> {
+        let entries = DeTable::parse(text).unwrap();
+        let table = Table::whole(Source { file: Path::new("x"), text }, entries.get_ref());
+        let material = Material::lame(1.0, 1.0, Plane::Strain);
+        read_exact(&table, material).map_err(|e| e.to_string())
+    }
+
+    #[test]
+    fn every_solution_is_read_with_its_parameters() {
+        for text in [
+            "solution = 'smooth'\nc = 0.5\nk = 3\nm = 2\nap = 8\naq = 4\ngap = [0.2, -0.3, 0.5]",
+            "solution = 'singular'\nc = 0.5\namplitude = 1",
+            "solution = 'corner'\nomega = 2.0",
+            "solution = 'patch'\nwhich = 'd1'\np = 0.3",
+            "solution = 'patch'\nwhich = 'd2'\np = 0.3\nd = 0.1",
+            "solution = 'patch'\nwhich = 'd3'\np = 0.3\nw = 0.2\ng0 = 0.1",
+            "solution = 'patch'\nwhich = 'd4'",
+            "solution = 'patch'\nwhich = 'd5'\nd = 0.1",
+        ] {
+            assert!(read(text).is_ok(), "{text}: {:?}", read(text));
+        }
+        let gap = read("solution='smooth'\nc=0.5\nk=3\nm=2\nap=8\naq=4\ngap=[1, 2, 3]").unwrap();
+        assert_eq!(gap.gap([2.0, 0.0]), 17.0);
+    }
+
+    #[test]
+    fn wrong_parameters_are_refused_with_what_was_expected() {
+        for (text, message) in [
+            ("", "solution is missing; expected the name of an exact solution"),
+            (
+                "solution = 'smoth'",
+                "solution = \"smoth\"; expected \"smooth\" or \"singular\" or \"corner\" or \"patch\"",
+            ),
+            ("solution = 'corner'\nomega = 1", "omega = 1; expected an angle between pi/2 and pi"),
+            (
+                "solution = 'corner'\nomega = 2\nc = 1",
+                "unknown key 'c'; expected solution or omega",
+            ),
+            (
+                "solution = 'singular'\nc = 1\namplitude = 1",
+                "c = 1; expected a number above 0 and below 1",
+            ),
+            ("solution = 'singular'\nc = 0.5", "amplitude is missing; expected a number above 0"),
+            (
+                "solution = 'smooth'\nc = 0.5\nk = 2.5\nm = 2\nap = 8\naq = 4",
+                "k = 2.5; expected a number above 2.5",
+            ),
+            (
+                "solution = 'patch'\nwhich = 'd4'\np = 1",
+                "unknown key 'p'; expected solution or which",
+            ),
+        ] {
+            let found = read(text).unwrap_err();
+            assert!(found.ends_with(message), "{found}");
+        }
+    }
+}
