@@ -14,6 +14,7 @@ use super::numbers::short;
 use super::picture::{ContactSample, Scene, picture};
 use super::result::{GammaChoice, MeshSizes, NewtonHistory, Results, Seconds, result_json};
 use super::vtu::{CellKind, Field, Grid, Values, vtu};
+use crate::fem;
 use crate::solve::solution::ContactValues;
 use crate::solve::{Solution, Times};
 
@@ -31,6 +32,9 @@ pub enum OutputError {
         /// What is wrong with its data.
         error: DataError,
     },
+    /// A solution and a case that don't belong together.
+    #[error(transparent)]
+    Problem(#[from] fem::DataError),
 }
 
 /// Writes the files of a case into `folder` and returns their paths.
@@ -60,13 +64,20 @@ pub fn write(
         solve: times.solve.as_secs_f64(),
         write: start.elapsed().as_secs_f64(),
     };
-    let results = results(case, solution, seconds.clone());
+    let results = results(case, solution, seconds.clone())?;
     stage("result.json", result_json(&results).map(String::into_bytes))?;
     Ok((output.publish()?, seconds))
 }
 
 /// The content of result.json.
-pub fn results(case: &Case, solution: &Solution, seconds: Seconds) -> Results {
+///
+/// # Errors
+/// Those of [`Solution::errors`], should `solution` not be one of this case.
+pub fn results(
+    case: &Case,
+    solution: &Solution,
+    seconds: Seconds,
+) -> Result<Results, fem::DataError> {
     let mesh = &case.problem.mesh;
     let gamma = &solution.gamma;
     let triangles = 0..mesh.triangles().len();
@@ -75,7 +86,11 @@ pub fn results(case: &Case, solution: &Solution, seconds: Seconds) -> Results {
         let [u_x, u_y] = solution.displacement_at(t, l);
         Some([x, y, u_x, u_y])
     });
-    Results {
+    let errors = match &case.exact {
+        Some(exact) => Some(solution.errors(&case.problem, &*exact.solution)?),
+        None => None,
+    };
+    Ok(Results {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         title: case.title.clone(),
         mesh: MeshSizes {
@@ -100,8 +115,9 @@ pub fn results(case: &Case, solution: &Solution, seconds: Seconds) -> Results {
         },
         quantities: solution.quantities.clone(),
         probes: probes.collect(),
+        errors,
         seconds,
-    }
+    })
 }
 
 fn solution_vtu(s: &Solution) -> Result<Vec<u8>, DataError> {

@@ -10,6 +10,7 @@ use serde::Serialize;
 use serde_json::ser::{Formatter, Serializer};
 
 use super::data::DataError;
+use crate::fem::Errors;
 use crate::solve::{Quantities, Status};
 
 /// The content of result.json, in its order.
@@ -30,6 +31,9 @@ pub struct Results {
     /// `[x, y, u_x, u_y]` at the points that the case asks for; left out if it asks for none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub probes: Vec<[f64; 4]>,
+    /// The distances from the exact solution; left out if the case has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub errors: Option<Errors>,
     /// Where the time went.
     pub seconds: Seconds,
 }
@@ -251,6 +255,7 @@ mod tests {
                 reactions: BTreeMap::from([("top".to_owned(), [0.0, 2.0])]),
             },
             probes: Vec::new(),
+            errors: None,
             seconds: Seconds { read: 0.25, assemble: 0.5, solve: 1.0, write: 2.0 },
         }
     }
@@ -307,13 +312,16 @@ mod tests {
     fn what_is_known_is_written_and_what_is_not_is_left_out() {
         let mut results = sample();
         results.probes = vec![[0.5, 0.0, 0.25, -1.0], [1.0, 0.0, 0.0, 0.0]];
+        results.errors = Some(Errors { normal_stress: 0.125, ..Errors::default() });
         results.quantities.reactions.clear();
         let text = result_json(&results).unwrap();
         let value: serde_json::Value = serde_json::from_str(&text).unwrap();
         assert_eq!(value["probes"][0][3], -1.0);
+        assert_eq!(value["errors"]["normal_stress"], 0.125);
+        assert_eq!(value["errors"].as_object().unwrap().len(), 5);
         assert!(text.contains("\"reactions\": {}\n"));
         let text = result_json(&sample()).unwrap();
-        assert!(!text.contains("probes"));
+        assert!(!text.contains("probes") && !text.contains("errors"));
     }
 
     #[test]

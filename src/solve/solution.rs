@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::NewtonReport;
-use crate::fem::contact_line::Coercivity;
+use crate::fem::contact_line::{self, Coercivity};
 use crate::fem::discretization::{Discretization, inner};
+use crate::fem::{DataError, Errors, ExactSolution, Problem, Space};
 use crate::kernel::contact::pressure;
 use crate::kernel::edge_integral::{self, ExactEdge};
 use crate::kernel::element::displacement_gradient;
@@ -124,6 +125,31 @@ impl Solution {
             quantities: quantities(d, &u),
             displacement: u,
         }
+    }
+
+    /// The distances from an exact solution of `problem`, which is the one that this solves.
+    ///
+    /// # Errors
+    /// A problem with no contact boundary, or with a gap that is not finite.
+    pub fn errors(
+        &self,
+        problem: &Problem,
+        exact: &dyn ExactSolution,
+    ) -> Result<Errors, DataError> {
+        match self.degree {
+            1 => self.errors_with::<P1, 3, 2>(problem, exact),
+            _ => self.errors_with::<P2, 6, 3>(problem, exact),
+        }
+    }
+
+    fn errors_with<E: Element<N, M>, const N: usize, const M: usize>(
+        &self,
+        problem: &Problem,
+        exact: &dyn ExactSolution,
+    ) -> Result<Errors, DataError> {
+        let space = Space::<E, N, M>::new(&problem.mesh);
+        let contact = contact_line::assemble(problem, &space, self.gamma.gamma0)?;
+        Ok(Errors::new(&space, &contact, &self.displacement, exact))
     }
 
     /// u^h at the point with the barycentric coordinates `l` of triangle `t`, as [`Mesh::locate`] finds them.
