@@ -15,13 +15,12 @@ const PLENTY: u32 = 24;
 /// quadrature error must not show beside the error of the method.
 const ENOUGH_AT_KINKS: u32 = 13;
 
-/// The rule for a load times a shape function of degree `shape`.
-fn rule(load: &dyn Function, shape: usize) -> Rule {
-    let kink = load.kink();
-    let enough = if kink.is_some() { ENOUGH_AT_KINKS } else { ENOUGH };
+/// How many points along each direction the rule for a load times a shape function of degree `shape` has: n are exact for
+/// degree 2n - 2 on a triangle, 2n - 1 on an edge.
+fn points(load: &dyn Function, shape: usize) -> usize {
+    let enough = if load.kink().is_some() { ENOUGH_AT_KINKS } else { ENOUGH };
     let degree = load.degree().unwrap_or(enough).min(PLENTY) as usize + shape;
-    // n points along each direction are exact for degree 2n - 2 on a triangle, 2n - 1 on an edge.
-    Rule::new(Features { kink, singular: None }, degree.div_ceil(2) + 1)
+    degree.div_ceil(2) + 1
 }
 
 /// The load is zero everywhere.
@@ -37,60 +36,82 @@ pub fn assemble<E: Element<N, M>, const N: usize, const M: usize>(
     problem: &Problem,
     space: &Space<E, N, M>,
 ) -> Result<Vec<[f64; 2]>, DataError> {
+    assemble_with(problem, space, |load| points(load, E::DEGREE))
+}
+
+/// The same with as many points along each direction as `points` says for a load.
+///
+/// # Errors
+/// As [`assemble`].
+pub fn assemble_with<E: Element<N, M>, const N: usize, const M: usize>(
+    problem: &Problem,
+    space: &Space<E, N, M>,
+    points: impl Fn(&dyn Function) -> usize,
+) -> Result<Vec<[f64; 2]>, DataError> {
+    let rule = |load: &dyn Function| {
+        Rule::new(Features { kink: load.kink(), singular: None }, points(load))
+    };
     let mut load = vec![[0.0; 2]; space.nodes().len()];
-    add_body_force(problem, space, &mut load)?;
+    for (c, f) in acting(&problem.body_force) {
+        add_body_force(c, f, &rule(f), space, &mut load)?;
+    }
     for (name, condition) in &problem.conditions {
         if let Condition::Traction(traction) = condition {
-            add_traction(name, traction, space, &mut load)?;
+            for (c, t) in acting(traction) {
+                add_traction(name, c, t, &rule(t), space, &mut load)?;
+            }
         }
     }
     Ok(load)
 }
 
+/// The components of a load that act somewhere.
+fn acting(load: &[BoxedFunction; 2]) -> impl Iterator<Item = (usize, &dyn Function)> {
+    load.iter().map(|f| &**f).enumerate().filter(|(_, f)| !vanishes(*f))
+}
+
 fn add_body_force<E: Element<N, M>, const N: usize, const M: usize>(
-    problem: &Problem,
+    c: usize,
+    f: &dyn Function,
+    rule: &Rule,
     space: &Space<E, N, M>,
     load: &mut [[f64; 2]],
 ) -> Result<(), DataError> {
     let mut wrong = None;
-    for (c, f) in problem.body_force.iter().enumerate().filter(|(_, f)| !vanishes(&***f)) {
-        let rule = rule(&**f, E::DEGREE);
-        for (triangle, nodes) in space.triangles() {
-            rule.on_triangle(&triangle, |l, x, weight| {
-                match checked(f.at(x), x, || format!("[load] body[{c}]")) {
-                    Ok(f) => add(load, c, nodes, &E::values(l), weight * f),
-                    Err(error) => wrong = wrong.take().or(Some(error)),
-                }
-            });
-        }
+    for (triangle, nodes) in space.triangles() {
+        rule.on_triangle(&triangle, |l, x, weight| {
+            match checked(f.at(x), x, || format!("[load] body[{c}]")) {
+                Ok(f) => add(load, c, nodes, &E::values(l), weight * f),
+                Err(error) => wrong = wrong.take().or(Some(error)),
+            }
+        });
     }
     wrong.map_or(Ok(()), Err)
 }
 
 fn add_traction<E: Element<N, M>, const N: usize, const M: usize>(
     name: &str,
-    traction: &[BoxedFunction; 2],
+    c: usize,
+    t: &dyn Function,
+    rule: &Rule,
     space: &Space<E, N, M>,
     load: &mut [[f64; 2]],
 ) -> Result<(), DataError> {
     let mut wrong = None;
-    for (c, t) in traction.iter().enumerate().filter(|(_, t)| !vanishes(&***t)) {
-        let rule = rule(&**t, E::DEGREE);
-        for &edge in space.mesh().edges_of(name)? {
-            let (length, normal) = space.mesh().length_and_normal(edge);
-            let ends = space.mesh().ends(edge).map(|vertex| space.mesh().vertices()[vertex]);
-            let nodes = space.edge_nodes(edge);
-            rule.on_edge(ends, [], |point| {
-                let what = || format!("[boundary.{name}] traction[{c}]");
-                match checked(t.on_boundary(point.x, normal), point.x, what) {
-                    Ok(t) => {
-                        let shapes: [f64; M] = E::edge_values(point.s);
-                        add(load, c, &nodes, &shapes, point.weight * length * t);
-                    }
-                    Err(error) => wrong = wrong.take().or(Some(error)),
+    for &edge in space.mesh().edges_of(name)? {
+        let (length, normal) = space.mesh().length_and_normal(edge);
+        let ends = space.mesh().ends(edge).map(|vertex| space.mesh().vertices()[vertex]);
+        let nodes = space.edge_nodes(edge);
+        rule.on_edge(ends, [], |point| {
+            let what = || format!("[boundary.{name}] traction[{c}]");
+            match checked(t.on_boundary(point.x, normal), point.x, what) {
+                Ok(t) => {
+                    let shapes: [f64; M] = E::edge_values(point.s);
+                    add(load, c, &nodes, &shapes, point.weight * length * t);
                 }
-            });
-        }
+                Err(error) => wrong = wrong.take().or(Some(error)),
+            }
+        });
     }
     wrong.map_or(Ok(()), Err)
 }

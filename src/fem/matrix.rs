@@ -145,15 +145,38 @@ where
     E: ExactEdge<f64, N, M>,
 {
     let pattern = Pattern::new(numbering, neighbours);
-    let mut matrix = pattern.zero_matrix();
-    for (triangle, nodes) in d.space.triangles() {
-        let k = stiffness::<E, f64, N, M>(&triangle, &d.problem.material);
-        pattern.add(&mut matrix, nodes, |i, j| k[i][j]);
-    }
+    let mut matrix = add_stiffness(d, &pattern);
     for edge in &d.contact {
         let weight = -edge.gamma * edge.length;
         let nodes = &d.space.elements()[edge.edge.triangle];
         pattern.add(&mut matrix, nodes, |i, j| edge.functionals.stress_product(weight, i, j));
+    }
+    matrix
+}
+
+/// The matrix of a(.,.) likewise.
+pub fn assemble_stiffness<E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    numbering: &Numbering,
+    neighbours: &Neighbours,
+) -> LowerTriangle
+where
+    E: ExactEdge<f64, N, M>,
+{
+    add_stiffness(d, &Pattern::new(numbering, neighbours))
+}
+
+fn add_stiffness<E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    pattern: &Pattern,
+) -> LowerTriangle
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let mut matrix = pattern.zero_matrix();
+    for (triangle, nodes) in d.space.triangles() {
+        let k = stiffness::<E, f64, N, M>(&triangle, &d.problem.material);
+        pattern.add(&mut matrix, nodes, |i, j| k[i][j]);
     }
     matrix
 }

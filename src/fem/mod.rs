@@ -1,5 +1,6 @@
 //! The discrete space V^h on a mesh and everything that is integrated over it.
 
+pub mod a_priori;
 pub mod constraints;
 pub mod contact_line;
 pub mod discretization;

@@ -3,7 +3,8 @@
 //!
 //! A triangle that holds the singular point is cut into triangles with that point as their first vertex. On them the
 //! distance from it is rho = t^4, t in \[0, 1\]: then rho^(alpha-1), alpha > 1/2, squared and times rho d(rho), is a power of
-//! t above 3 times dt, smooth enough for a Gauss rule. An edge that ends at the singular point is graded likewise.
+//! t above 3 times dt, smooth enough for a Gauss rule. An edge that ends at the singular point is graded likewise. Pieces
+//! near the singular point get more points, for the rules converge the more slowly the nearer it is.
 //! Places are computed from the singular point outwards, so that their distance from it keeps its digits.
 
 use super::quadrature;
@@ -30,8 +31,14 @@ pub struct Singularity {
 /// rho = t^GRADING on a triangle at the singular point.
 const GRADING: i32 = 4;
 
-/// How many times as many points, in each direction, a graded piece gets.
-const MORE: usize = 2;
+/// How many times as many points, in each direction, a piece gets that is graded or near the singular point.
+const MORE: usize = 3;
+
+/// Pieces within this distance of the singular point, in units of their size, are near it. Beyond it, n Gauss points leave
+/// at most some 10^(-2 n) (the singularity lies on an ellipse around the piece with semi-axes that add up to 10 times its
+/// half); at a third of the piece's size from it, which is what a point inside an edge may leave to the neighbours, it would
+/// be 3^(-2 n) only.
+const NEAR: f64 = 2.0;
 
 /// A vertex or the end of an edge this close to the singular point, in units of the piece's size, is the singular point.
 const AT_THE_POINT: f64 = 1e-12;
@@ -41,9 +48,10 @@ const AT_THE_POINT: f64 = 1e-12;
 pub struct Rule {
     features: Features,
     plain: Vec<([f64; 3], f64)>,
+    near: Vec<([f64; 3], f64)>,
     graded: Vec<([f64; 3], f64)>,
     gauss: Vec<(f64, f64)>,
-    graded_gauss: Vec<(f64, f64)>,
+    more_gauss: Vec<(f64, f64)>,
 }
 
 /// A part of a triangle: its corners as places and as barycentric coordinates in the whole.
@@ -66,9 +74,10 @@ impl Rule {
         Rule {
             features,
             plain: quadrature::collapsed(n, 1),
+            near: quadrature::collapsed(MORE * n, 1),
             graded: quadrature::collapsed(MORE * n, GRADING),
             gauss: quadrature::gauss(n),
-            graded_gauss: quadrature::gauss(MORE * n),
+            more_gauss: quadrature::gauss(MORE * n),
         }
     }
 
@@ -83,9 +92,20 @@ impl Rule {
         for piece in cut(whole, self.features.kink) {
             match self.features.singular.and_then(|singular| around(&piece, singular.point)) {
                 Some(parts) => parts.iter().for_each(|part| apply(part, &self.graded, &mut f)),
+                None if self.is_near(&piece.map(|(x, _)| x)) => apply(&piece, &self.near, &mut f),
                 None => apply(&piece, &self.plain, &mut f),
             }
         }
+    }
+
+    /// A piece with these corners is near the singular point.
+    fn is_near(&self, corners: &[[f64; 2]]) -> bool {
+        let distance = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
+        self.features.singular.is_some_and(|singular| {
+            let first = corners[0];
+            let size = corners.iter().map(|&x| distance(x, first)).fold(0.0, f64::max);
+            corners.iter().any(|&x| distance(x, singular.point) <= NEAR * size)
+        })
     }
 
     /// Calls `f` with the points on the edge from `ends[0]` to `ends[1]`, cut at the features and at the parameters `cuts`
@@ -121,7 +141,8 @@ impl Rule {
             let Some((from, Singularity { point, edge_grading })) =
                 near(low).or_else(|| near(high))
             else {
-                for &(t, weight) in &self.gauss {
+                let near = self.is_near(&[place(low), place(high)]);
+                for &(t, weight) in if near { &self.more_gauss } else { &self.gauss } {
                     let s = low + t * (high - low);
                     f(EdgePoint { s, x: place(s), weight: weight * (high - low) });
                 }
@@ -129,7 +150,7 @@ impl Rule {
             };
             let (sign, other) = if from == low { (1.0, high) } else { (-1.0, low) };
             let other = place(other);
-            for &(t, weight) in &self.graded_gauss {
+            for &(t, weight) in &self.more_gauss {
                 let r = t.powf(edge_grading);
                 f(EdgePoint {
                     s: from + sign * r * (high - low),

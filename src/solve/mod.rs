@@ -2,9 +2,11 @@
 
 pub mod condensed;
 pub mod factor;
+pub mod ladder;
 pub mod newton;
 pub mod ordering;
 pub mod solution;
+pub mod theorem;
 
 use std::time::{Duration, Instant};
 
@@ -12,7 +14,9 @@ use serde::Serialize;
 use thiserror::Error;
 
 use self::condensed::System;
+pub use self::ladder::{Ladder, LadderError, Level};
 pub use self::solution::{GammaReport, Quantities, Solution};
+pub use self::theorem::Theorem;
 use crate::fem::contact_line::{Coercivity, EdgeRule};
 use crate::fem::{DataError, Discretization, Problem};
 use crate::kernel::edge_integral::ExactEdge;

@@ -65,3 +65,80 @@ impl Random {
         (0..nodes).map(|_| [self.next(), self.next()]).collect()
     }
 }
+
+/// The plain solutions of docs/theory.md, section 10, each with the mesh of its body in one cell.
+pub mod exact {
+    use std::collections::BTreeMap;
+    use std::f64::consts::PI;
+    use std::sync::Arc;
+
+    use signorini::fem::exact::{Corner, Kind, Singular, Smooth};
+    use signorini::fem::{Diagonal, Exact, Perturbation, Rectangle, Structured, Trapezoid};
+    use signorini::kernel::{Material, Plane};
+    use signorini::solve::{ContactQuadrature, Degree, Gamma0, Ladder, Method, Settings};
+
+    pub fn material() -> Material<f64> {
+        Material::lame(1.0, 1.0, Plane::Strain)
+    }
+
+    /// (a) with the exponents (3, 2) or (4, 3).
+    pub fn smooth(k: f64, m: f64, c: f64) -> Exact {
+        let (ap, aq) = if k > 3.5 { (16.0, 8.0) } else { (8.0, 4.0) };
+        Arc::new(Smooth { material: material(), c, k, m, ap, aq, gap: Vec::new() })
+    }
+
+    pub fn singular(c: f64) -> Exact {
+        Arc::new(Singular { material: material(), c, amplitude: 1.0 })
+    }
+
+    /// (c) with its exponent alpha; `omega` in units of pi.
+    pub fn corner(omega: f64) -> (Exact, f64) {
+        let corner = Corner::new(material(), omega * PI).unwrap();
+        let alpha = corner.alpha();
+        (Arc::new(corner), alpha)
+    }
+
+    /// The ladder of a solution whose body has the kinds left, right and top; contact below, half the coercivity limit.
+    fn ladder(
+        solution: &Exact,
+        body: Structured,
+        [left, right, top]: [Kind; 3],
+        degree: Degree,
+    ) -> Ladder {
+        let kinds = [("bottom", Kind::Contact), ("left", left), ("right", right), ("top", top)];
+        Ladder {
+            solution: Arc::clone(solution),
+            kinds: BTreeMap::from(kinds.map(|(name, kind)| (name.to_owned(), kind))),
+            body,
+            perturbation: None,
+            method: Method {
+                degree,
+                gamma0: Gamma0::Auto,
+                quadrature: ContactQuadrature::Exact,
+                allow_noncoercive: false,
+            },
+            settings: Settings::default(),
+        }
+    }
+
+    /// (a) or (b) on the unit square, n x n cells on level 0.
+    pub fn on_square(solution: &Exact, degree: Degree, n: usize) -> Ladder {
+        let square = Rectangle { width: 1.0, height: 1.0, nx: n, ny: n, diagonal: Diagonal::Right };
+        let sides = match solution.body_force([0.5; 2]) {
+            Some(_) => [Kind::Traction, Kind::Traction, Kind::Displacement],
+            None => [Kind::Displacement; 3],
+        };
+        ladder(solution, Structured::Rectangle(square), sides, degree)
+    }
+
+    /// (c) on its trapezoid.
+    pub fn on_trapezoid(solution: &Exact, omega: f64, degree: Degree, n: usize) -> Ladder {
+        let body = Structured::Trapezoid(Trapezoid { omega: omega * PI, n });
+        let sides = [Kind::Traction, Kind::Displacement, Kind::Displacement];
+        ladder(solution, body, sides, degree)
+    }
+
+    pub fn moved(ladder: Ladder) -> Ladder {
+        Ladder { perturbation: Some(Perturbation { amount: 0.2, seed: 1 }), ..ladder }
+    }
+}

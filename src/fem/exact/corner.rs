@@ -24,6 +24,9 @@ pub struct Corner {
 
 const A: f64 = -1.0;
 
+/// Along an edge the distance from the corner is at least this power of the parameter.
+const LEAST_GRADING: f64 = 8.0;
+
 impl Corner {
     /// The solution for the angle `omega`; `None` if that does not lie between pi/2 and pi.
     pub fn new(material: Material<f64>, omega: f64) -> Option<Self> {
@@ -106,8 +109,10 @@ impl ExactSolution for Corner {
     }
 
     fn features(&self) -> Features {
-        // With r = t^g, sigma_n^2 dr = r^(2 alpha - 2) dr is a constant times dt.
-        let edge_grading = 1.0 / (2.0 * self.alpha - 1.0);
+        // With r = t^g, sigma_n^2 dr = r^(2 alpha - 2) dr is a power t^(g (2 alpha - 1) - 1) dt. This g makes it a whole
+        // one, and is large enough for the mixed term r^(alpha - 1) dr of an error to be smooth, too.
+        let power = 2.0 * self.alpha - 1.0;
+        let edge_grading = (LEAST_GRADING * power).ceil() / power;
         Features { kink: None, singular: Some(Singularity { point: [0.0; 2], edge_grading }) }
     }
 }

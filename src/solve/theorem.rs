@@ -1,0 +1,145 @@
+//! Both sides of Theorem 3.4 for a computed solution: v^h is the Lagrange interpolant of u, or the a-orthogonal projection
+//! of u, that is the v^h with the prescribed values and
+//!
+//! a(v^h, w) = a(u, w) = L(w) + int_{Gamma_C} sigma_n(u) w_n for all w in V^h.
+
+use super::factor::Factor;
+use super::ordering::nested_dissection;
+use super::{ContactQuadrature, Degree, Gamma0, Method, Solution, SolveError, discretize};
+use crate::fem::matrix::{self, Neighbours, Numbering};
+use crate::fem::pieces::Rule;
+use crate::fem::{Discretization, Errors, ExactSolution, Problem, a_priori, errors};
+use crate::kernel::edge_integral::ExactEdge;
+use crate::kernel::{P1, P2};
+
+/// The two sides and their ingredients.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Theorem {
+    /// kappa = gamma0 C_h < 1.
+    pub kappa: f64,
+    /// The errors of u^h.
+    pub discrete: Errors,
+    /// Those of the Lagrange interpolant.
+    pub interpolant: Errors,
+    /// Those of the a-orthogonal projection.
+    pub projection: Errors,
+}
+
+impl Theorem {
+    /// Evaluates both sides for `solution`, the solution of `problem`, whose exact solution is `exact`.
+    ///
+    /// # Errors
+    /// As [`solve`](super::solve).
+    pub fn new(
+        problem: &Problem,
+        solution: &Solution,
+        exact: &dyn ExactSolution,
+    ) -> Result<Self, SolveError> {
+        match solution.degree {
+            1 => theorem::<P1, 3, 2>(problem, solution, exact, Degree::One),
+            _ => theorem::<P2, 6, 3>(problem, solution, exact, Degree::Two),
+        }
+    }
+
+    /// The left side.
+    pub fn left(&self) -> f64 {
+        a_priori::left(self.kappa, &self.discrete)
+    }
+
+    /// The right side of Theorem 9.1 for the interpolant.
+    pub fn plain(&self) -> f64 {
+        a_priori::plain(self.kappa, &self.interpolant)
+    }
+
+    /// That of Theorem 9.3 for the interpolant.
+    pub fn sharp(&self) -> f64 {
+        a_priori::sharp(self.kappa, &self.interpolant)
+    }
+
+    /// That of Theorem 9.4 for the projection.
+    pub fn projected(&self) -> f64 {
+        a_priori::projected(self.kappa, &self.projection)
+    }
+
+    /// The right side of Corollary 3.6, the smaller of the two.
+    pub fn corollary(&self) -> f64 {
+        let of = |eta| a_priori::corollary(self.kappa, &self.discrete, eta);
+        of(&self.interpolant).min(of(&self.projection))
+    }
+}
+
+fn theorem<E, const N: usize, const M: usize>(
+    problem: &Problem,
+    solution: &Solution,
+    exact: &dyn ExactSolution,
+    degree: Degree,
+) -> Result<Theorem, SolveError>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let method = Method {
+        degree,
+        gamma0: Gamma0::Value(solution.gamma.gamma0),
+        quadrature: ContactQuadrature::Exact,
+        allow_noncoercive: true,
+    };
+    let d = discretize::<E, N, M>(problem, &method)?;
+    let of = |v: &[[f64; 2]]| Errors::new(&d.space, &d.contact, v, exact);
+    Ok(Theorem {
+        kappa: d.kappa(),
+        discrete: of(&solution.displacement),
+        interpolant: of(&interpolant(&d, exact)),
+        projection: of(&projection(&d, exact)?),
+    })
+}
+
+fn interpolant<E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    exact: &dyn ExactSolution,
+) -> Vec<[f64; 2]>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    d.space.nodes().iter().map(|&x| exact.displacement(x)).collect()
+}
+
+/// The a-orthogonal projection: one linear solve with the matrix of a(.,.).
+fn projection<E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    exact: &dyn ExactSolution,
+) -> Result<Vec<[f64; 2]>, SolveError>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let mut v = d.constraints.lift();
+    // L(w) + int sigma_n(u) w_n - a(lift, w)
+    let mut force = d.load.clone();
+    for (force, inner) in force.iter_mut().zip(d.internal_forces(&v).values) {
+        *force = [force[0] - inner[0], force[1] - inner[1]];
+    }
+    let rule = Rule::new(exact.features(), errors::POINTS);
+    for edge in &d.contact {
+        let ends = d.space.mesh().ends(edge.edge).map(|vertex| d.space.mesh().vertices()[vertex]);
+        let nodes = d.space.edge_nodes(edge.edge);
+        rule.on_edge(ends, [], |point| {
+            let sigma_n = exact.stress(point.x).normal(edge.normal);
+            let shapes: [f64; M] = E::edge_values(point.s);
+            for (node, shape) in nodes.into_iter().zip(shapes) {
+                for c in 0..2 {
+                    let weight = point.weight * edge.length * shape;
+                    force[node][c] += weight * sigma_n * edge.normal[c];
+                }
+            }
+        });
+    }
+    let nodes = d.space.nodes();
+    let neighbours = Neighbours::new(nodes.len(), d.space.elements());
+    let order = nested_dissection(nodes, &neighbours, &vec![false; nodes.len()]);
+    let numbering = Numbering::new(&order, d.constraints.values());
+    let factor = Factor::new(&matrix::assemble_stiffness(d, &numbering, &neighbours))?;
+    let mut x = numbering.gather(&force);
+    factor.forward(&mut x);
+    factor.backward(&mut x);
+    numbering.scatter(&x, &mut v);
+    Ok(v)
+}

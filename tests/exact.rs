@@ -1,0 +1,377 @@
+//! The exact solutions, each verified by itself: the gradient is that of the displacement, the stress is in equilibrium
+//! with the body force, conditions (2) hold along Gamma_C, the boundary data are what section 10 of docs/theory.md says.
+//! Then the integrals that are taken of them.
+//!
+//! Derivatives are enclosed: a central difference of order 8 with the step d/20, d being the distance to the nearest point
+//! where the solution is not smooth, differs from the derivative by less than it differs from the one with twice the step
+//! (whose error is 2^8 times larger), plus rounding: some 30 roundoffs of the largest value in the body over the step.
+
+mod common;
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use common::Random;
+use common::exact::{corner, on_square, on_trapezoid, singular, smooth};
+use signorini::fem::errors::POINTS;
+use signorini::fem::exact::{Corner, Patch, Singular, Smooth};
+use signorini::fem::{Errors, Exact, Space, contact_line, loads};
+use signorini::kernel::{Material, P1, P2, Plane};
+use signorini::solve::Degree;
+
+/// A solution, its name, and its body: the unit square, or the wedge 0 < theta < omega.
+struct Sample {
+    name: String,
+    solution: Exact,
+    omega: Option<f64>,
+}
+
+fn samples() -> Vec<Sample> {
+    let materials = [
+        ("lambda = mu = 1", Material::lame(1.0, 1.0, Plane::Strain)),
+        ("lambda = 3, mu = 0.7", Material::lame(3.0, 0.7, Plane::Strain)),
+        ("lambda = -0.4, mu = 1", Material::lame(-0.4, 1.0, Plane::Strain)),
+        ("plane stress", Material::lame(3.0, 0.7, Plane::Stress)),
+    ];
+    let mut all = Vec::new();
+    for (what, material) in materials {
+        let mut add = |name: &str, solution: Exact, omega| {
+            all.push(Sample { name: format!("{name}, {what}"), solution, omega });
+        };
+        for (k, m, c, gap) in [
+            (3.0, 2.0, 1.0 / 3.0, vec![]),
+            (4.0, 3.0, 0.5, vec![]),
+            (2.6, 1.7, 0.4, vec![]),
+            (4.0, 3.0, 1.0 / 3.0, vec![0.2, -0.3, 0.5, 0.1, 0.7]),
+        ] {
+            let name = format!("smooth {k} {m} c = {c} gap {gap:?}");
+            add(&name, Arc::new(Smooth { material, c, k, m, ap: 8.0, aq: 4.0, gap }), None);
+        }
+        for c in [0.5, 1.0 / 3.0] {
+            add("singular", Arc::new(Singular { material, c, amplitude: 2.0 }), None);
+        }
+        for omega in [0.75 * PI, 2.0 / 3.0 * PI, 0.6 * PI] {
+            let corner = Corner::new(material, omega).unwrap();
+            add(&format!("corner {omega}"), Arc::new(corner), Some(omega));
+        }
+        add("d1", Arc::new(Patch::compression(material, 0.3)), None);
+        add("d2", Arc::new(Patch::separation(material, 0.3, 0.1)), None);
+        add("d3", Arc::new(Patch::inclined(material, 0.3, 0.2, 0.1)), None);
+        add("d4", Arc::new(Patch::grazing(material)), None);
+        add("d5", Arc::new(Patch::interference(material, 0.1)), None);
+    }
+    all
+}
+
+/// The distance to the nearest point where the solution is not smooth; y = 0 counts as one, for the fields need not go on
+/// below it.
+fn clearance(sample: &Sample, [x, y]: [f64; 2]) -> f64 {
+    let features = sample.solution.features();
+    let to_kink = features.kink.map_or(1.0, |c| (x - c).abs());
+    let to_point = features.singular.map_or(1.0, |s| (x - s.point[0]).hypot(y - s.point[1]));
+    to_kink.min(to_point).min(y).min(1.0)
+}
+
+/// Random points inside the body, away from where the solution is not smooth.
+fn points(sample: &Sample, random: &mut Random, count: usize) -> Vec<[f64; 2]> {
+    let mut found = Vec::new();
+    while found.len() < count {
+        let [s, t] = [0, 1].map(|_| (random.next() + 1.0) / 2.0);
+        let x = match sample.omega {
+            Some(omega) => [s + (1.0 - s) * t / omega.tan(), t],
+            None => [s, t],
+        };
+        if clearance(sample, x) > 0.02 {
+            found.push(x);
+        }
+    }
+    found
+}
+
+/// The derivative of f at 0 by the central difference of order 8.
+fn difference(f: impl Fn(f64) -> f64, h: f64) -> f64 {
+    let pair = |k: f64| f(k * h) - f(-k * h);
+    (4.0 / 5.0 * pair(1.0) - pair(2.0) / 5.0 + 4.0 / 105.0 * pair(3.0) - pair(4.0) / 280.0) / h
+}
+
+/// The derivative of f, with a bound of the error; `size` is that of the numbers that f is computed from.
+fn derivative(f: impl Fn(f64) -> f64, clearance: f64, size: f64) -> (f64, f64) {
+    let h = clearance / 20.0;
+    let (fine, coarse) = (difference(&f, h), difference(&f, 2.0 * h));
+    let largest = (-8..=8).map(|k| f(f64::from(k) * h).abs()).fold(size, f64::max);
+    (fine, (fine - coarse).abs() + 30.0 * f64::EPSILON * largest / h)
+}
+
+fn along(x: [f64; 2], j: usize, t: f64) -> [f64; 2] {
+    if j == 0 { [x[0] + t, x[1]] } else { [x[0], x[1] + t] }
+}
+
+#[test]
+fn the_gradient_is_that_of_the_displacement() {
+    let mut random = Random(1);
+    for sample in samples() {
+        for x in points(&sample, &mut random, 50) {
+            let gradient = sample.solution.gradient(x);
+            for i in 0..2 {
+                for j in 0..2 {
+                    let u = |t: f64| sample.solution.displacement(along(x, j, t))[i];
+                    // No displacement of the samples is much larger than 1.
+                    let (value, bound) = derivative(u, clearance(&sample, x), 1.0);
+                    let off = (gradient[i][j] - value).abs();
+                    assert!(
+                        bound < 1e-6 / clearance(&sample, x),
+                        "{} {x:?}: {bound:e}",
+                        sample.name
+                    );
+                    assert!(off <= bound, "{} {x:?}: {off:e}", sample.name);
+                }
+            }
+        }
+    }
+}
+
+/// The largest part of div sigma + f that the enclosure doesn't explain, over random points: 0 in equilibrium.
+fn out_of_balance(sample: &Sample, force_factor: f64) -> f64 {
+    let mut random = Random(2);
+    let mut worst: f64 = 0.0;
+    for x in points(sample, &mut random, 50) {
+        let clear = clearance(sample, x);
+        let stress = |j: usize, t: f64| sample.solution.stress(along(x, j, t));
+        let f = sample.solution.body_force(x).unwrap_or_default();
+        let here = stress(0, 0.0);
+        let size = here.xx.abs() + here.yy.abs() + here.xy.abs() + 1.0;
+        let (xx_x, a) = derivative(|t| stress(0, t).xx, clear, size);
+        let (xy_y, b) = derivative(|t| stress(1, t).xy, clear, size);
+        let (xy_x, c) = derivative(|t| stress(0, t).xy, clear, size);
+        let (yy_y, d) = derivative(|t| stress(1, t).yy, clear, size);
+        let sharp = a + b + c + d < 1e-5 * size / clear;
+        assert!(sharp, "{} {x:?}: {:e}", sample.name, a + b + c + d);
+        let rounding = 1e-13 * (f[0].abs() + f[1].abs());
+        worst = worst.max((xx_x + xy_y + force_factor * f[0]).abs() - a - b - rounding);
+        worst = worst.max((xy_x + yy_y + force_factor * f[1]).abs() - c - d - rounding);
+    }
+    worst
+}
+
+#[test]
+fn stresses_are_in_equilibrium_with_the_body_force() {
+    for sample in samples() {
+        assert!(out_of_balance(&sample, 1.0) <= 0.0, "{}", sample.name);
+    }
+}
+
+#[test]
+fn control_a_body_force_that_is_off_by_a_millionth_is_out_of_balance() {
+    for sample in samples().iter().filter(|s| s.name.starts_with("smooth")) {
+        assert!(out_of_balance(sample, 1.0 + 1e-6) > 0.0, "{}", sample.name);
+    }
+}
+
+/// The normal of Gamma_C.
+const N: [f64; 2] = [0.0, -1.0];
+
+/// How far conditions (2)(i)-(iv) are from holding at (x, 0), relative to the sizes of the numbers that enter, and whether
+/// there is pressure and whether there is a gap.
+fn contact(solution: &Exact, x: f64) -> (f64, bool, bool) {
+    let x = [x, 0.0];
+    let gap = solution.gap(x);
+    let opening = -solution.displacement(x)[1] - gap;
+    let stress = solution.stress(x);
+    let sigma_n = stress.normal(N);
+    let size = stress.xx.abs() + stress.yy.abs() + stress.xy.abs() + 1.0;
+    let length = gap.abs() + 1.0;
+    let worst = (opening / length)
+        .max(sigma_n / size)
+        .max(sigma_n.abs() * opening.abs() / (size * length))
+        .max(stress.xy.abs() / size);
+    (worst, sigma_n < -1e-9, opening < -1e-9)
+}
+
+#[test]
+fn conditions_2_hold_along_the_contact_line() {
+    for Sample { name, solution, .. } in samples() {
+        let (mut pressed, mut open) = (0, 0);
+        for i in 1..1000 {
+            let (worst, pressure, gap) = contact(&solution, f64::from(i) / 1000.0);
+            assert!(worst <= 1e-14, "{name}: {worst:e} at x = {}", f64::from(i) / 1000.0);
+            pressed += i32::from(pressure);
+            open += i32::from(gap);
+        }
+        // (a) and (b) have a real change between contact and gap.
+        if solution.features().kink.is_some() || name.starts_with("singular") {
+            assert!(pressed > 250 && open > 400, "{name}: {pressed} {open}");
+        }
+        if name.starts_with("corner") {
+            assert_eq!(pressed, 999, "{name}");
+        }
+    }
+}
+
+#[test]
+fn control_a_tension_amplitude_of_the_wrong_sign_breaks_the_contact_conditions() {
+    let tension: Exact = Arc::new(Singular {
+        material: Material::lame(1.0, 1.0, Plane::Strain),
+        c: 0.5,
+        amplitude: -1.0,
+    });
+    assert!((1..1000).any(|i| contact(&tension, f64::from(i) / 1000.0).0 > 0.1));
+}
+
+#[test]
+fn boundary_data_are_what_the_theory_says() {
+    for Sample { name, solution, omega } in samples() {
+        for i in 1..100 {
+            let t = f64::from(i) / 100.0;
+            if name.starts_with("smooth") {
+                let u = solution.displacement([t, 1.0]);
+                assert!(u[0].abs() + u[1].abs() < 1e-14, "{name}: clamped on top");
+            }
+            if name.starts_with("d1") || name.starts_with("d3") {
+                let pull = solution.stress([1.0, t]).traction([1.0, 0.0]);
+                assert!(pull[0].abs() + pull[1].abs() < 1e-15, "{name}: free on the right");
+            }
+            if let Some(omega) = omega {
+                // The normal of the ray theta = omega.
+                let n = [-omega.sin(), omega.cos()];
+                let x = [t * omega.cos(), t * omega.sin()];
+                let pull = solution.stress(x).traction(n);
+                let size = solution.stress(x).xx.abs() + solution.stress(x).yy.abs();
+                assert!(pull[0].hypot(pull[1]) < 1e-13 * size, "{name}: free where it leans");
+            }
+        }
+    }
+}
+
+#[test]
+fn values_agree_with_those_computed_elsewhere() {
+    let close = |found: [f64; 2], expected: [f64; 2]| {
+        for c in 0..2 {
+            let off = (found[c] - expected[c]).abs();
+            assert!(off <= 1e-15 * expected[c].abs().max(1.0), "{found:?} {expected:?}");
+        }
+    };
+    let a = smooth(3.0, 2.0, 1.0 / 3.0);
+    let x = [0.9, 0.6];
+    close(a.displacement(x), [-1.627648, 0.5124077037037035]);
+    let force = a.body_force(x).unwrap();
+    close(force.map(|f| f / 64.0), [35.9616 / 64.0, -42.66773333333332 / 64.0]);
+    close([a.gradient(x)[0][1] / 8.0, 0.0], [3.945813333333333 / 8.0, 0.0]);
+    let b = singular(0.5);
+    close(b.displacement([0.3, 0.2]), [-0.010758100618926999, -0.020352237281760832]);
+    close([b.gradient([0.3, 0.2])[0][1], 0.0], [-0.2395003853032351, 0.0]);
+    let (c, alpha) = corner(0.75);
+    close(c.displacement(x), [-0.3889076234771358, -0.2516567736790981]);
+    close([alpha, 0.0], [0.5444837367824640, 0.0]);
+    for (omega, alpha) in [(2.0 / 3.0, 0.6157310594907832), (0.6, 0.7177993084070473)] {
+        close([corner(omega).1, 0.0], [alpha, 0.0]);
+    }
+}
+
+/// The ladders whose integrals are tested, with the level that has 8 x 8 cells.
+fn ladders(degree: Degree) -> Vec<signorini::solve::Ladder> {
+    vec![
+        on_square(&smooth(3.0, 2.0, 1.0 / 3.0), degree, 8),
+        on_square(&smooth(4.0, 3.0, 0.5), degree, 8),
+        on_square(&singular(0.5), degree, 8),
+        on_square(&singular(1.0 / 3.0), degree, 8),
+        on_trapezoid(&corner(0.75).0, 0.75, degree, 8),
+        on_trapezoid(&corner(0.6).0, 0.6, degree, 8),
+    ]
+}
+
+/// The five errors by two rules, as the largest relative difference.
+fn difference_of_rules(ladder: &signorini::solve::Ladder, points: [usize; 2]) -> f64 {
+    let (_, problem, solution) = ladder.solve(0).unwrap();
+    let space = Space::<P2, 6, 3>::new(&problem.mesh);
+    let gamma0 = solution.gamma.gamma0;
+    let contact = contact_line::assemble(&problem, &space, gamma0).unwrap();
+    let [a, b] = points.map(|points| {
+        let u = &solution.displacement;
+        Errors::with_points(&space, &contact, u, &*ladder.solution, points)
+    });
+    let pairs = [
+        (a.energy, b.energy),
+        (a.h1, b.h1),
+        (a.l2, b.l2),
+        (a.contact_residual, b.contact_residual),
+        (a.normal_stress, b.normal_stress),
+    ];
+    pairs.into_iter().map(|(a, b)| (a - b).abs() / b).fold(0.0, f64::max)
+}
+
+#[test]
+fn half_as_many_points_do_not_move_the_errors_and_twice_as_many_even_less() {
+    for ladder in ladders(Degree::Two) {
+        let half = difference_of_rules(&ladder, [POINTS / 2, POINTS]);
+        let twice = difference_of_rules(&ladder, [POINTS, 2 * POINTS]);
+        println!("{:?}: {half:.1e} {twice:.1e}", ladder.solution);
+        assert!(half < 1e-4 && twice < 1e-10, "{:?}: {half:e} {twice:e}", ladder.solution);
+    }
+}
+
+#[test]
+fn control_errors_by_a_rule_that_ignores_where_the_solution_is_not_smooth_do_move() {
+    /// A solution that hides its features.
+    #[derive(Debug)]
+    struct Hidden(Exact);
+    impl signorini::fem::ExactSolution for Hidden {
+        fn material(&self) -> &Material<f64> {
+            self.0.material()
+        }
+        fn displacement(&self, x: [f64; 2]) -> [f64; 2] {
+            self.0.displacement(x)
+        }
+        fn gradient(&self, x: [f64; 2]) -> [[f64; 2]; 2] {
+            self.0.gradient(x)
+        }
+        fn body_force(&self, x: [f64; 2]) -> Option<[f64; 2]> {
+            self.0.body_force(x)
+        }
+    }
+    for mut ladder in ladders(Degree::Two).into_iter().skip(2) {
+        ladder.solution = Arc::new(Hidden(Arc::clone(&ladder.solution)));
+        let half = difference_of_rules(&ladder, [POINTS / 2, POINTS]);
+        assert!(half > 1e-4, "{:?}: {half:e}", ladder.solution);
+    }
+}
+
+/// The largest relative change of L when each rule gets `points` points instead of its own.
+fn change_of_load(ladder: &signorini::solve::Ladder, points: usize) -> f64 {
+    let problem = ladder.problem(0).unwrap();
+    let space = Space::<P2, 6, 3>::new(&problem.mesh);
+    let usual = loads::assemble(&problem, &space).unwrap();
+    let other = loads::assemble_with(&problem, &space, |_| points).unwrap();
+    let size = usual.as_flattened().iter().fold(0.0, |max: f64, l| max.max(l.abs()));
+    let pairs = usual.as_flattened().iter().zip(other.as_flattened());
+    pairs.map(|(a, b)| (a - b).abs() / size).fold(0.0, f64::max)
+}
+
+#[test]
+fn half_as_many_points_do_not_move_the_load() {
+    // f is a polynomial of degree 4 or 5 on each side of x = c, so with the quadratic shape functions 5 points (exact to
+    // degree 8) are enough, and 4 (degree 6) for the exponents (3, 2).
+    for (k, m, points) in [(3.0, 2.0, 4), (4.0, 3.0, 5)] {
+        for c in [1.0 / 3.0, 0.5] {
+            let change = change_of_load(&on_square(&smooth(k, m, c), Degree::Two, 8), points);
+            assert!(change < 1e-13, "{k} {m} {c}: {change:e}");
+        }
+    }
+}
+
+#[test]
+fn control_a_load_by_one_point_moves() {
+    assert!(change_of_load(&on_square(&smooth(3.0, 2.0, 0.5), Degree::Two, 8), 1) > 1e-2);
+}
+
+#[test]
+fn loads_of_p1_sum_to_those_of_p2() {
+    // The shape functions of both add up to one: the total force doesn't depend on the degree.
+    let ladder = on_square(&smooth(4.0, 3.0, 1.0 / 3.0), Degree::One, 8);
+    let problem = ladder.problem(0).unwrap();
+    let total = |load: Vec<[f64; 2]>| [0, 1].map(|c| load.iter().map(|l| l[c]).sum::<f64>());
+    let p1 = total(loads::assemble(&problem, &Space::<P1, 3, 2>::new(&problem.mesh)).unwrap());
+    let p2 = total(loads::assemble(&problem, &Space::<P2, 6, 3>::new(&problem.mesh)).unwrap());
+    for c in 0..2 {
+        assert!((p1[c] - p2[c]).abs() < 1e-12, "{p1:?} {p2:?}");
+    }
+}
