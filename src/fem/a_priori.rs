@@ -53,7 +53,7 @@ pub fn corollary(kappa: f64, e: &Errors, eta: &Errors) -> f64 {
 mod tests {
     use super::*;
 
-    /// Numbers E and Z on the boundary of what inequality [9.4] allows, from the direction (E, Z) = X (cos, sin).
+    /// Numbers E and Z on the boundary of what inequality [9.6] of the theory allows, from the direction (E, Z) = X (cos, sin).
     fn largest(kappa: f64, [h, s, q]: [f64; 3], angle: f64) -> f64 {
         let delta = 1.0 - kappa;
         let (x, y) = (angle.cos() / delta.sqrt(), angle.sin());
