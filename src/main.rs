@@ -1,4 +1,5 @@
-//! The command `signorini`: reads a case file, solves it, writes the files and says what came out.
+//! The command `signorini`: reads a case file, solves it (once, or on finer and finer meshes), writes the files and says
+//! what came out.
 //!
 //! Exit codes: 0 solved; 1 could not solve, or could not write; 2 the case is wrong, and then nothing is written.
 
@@ -21,9 +22,11 @@ mod command {
     use std::process::ExitCode;
     use std::time::Instant;
 
-    use clap::{Parser, Subcommand};
+    use clap::{Parser, Subcommand, ValueEnum};
+    use indicatif::{ProgressBar, ProgressStyle};
+    use signorini::io::convergence::{self, Meshes, StudyError};
     use signorini::io::{Case, outputs};
-    use signorini::solve::{self, SolveError, Status};
+    use signorini::solve::{self, Degree, LadderError, SolveError, Status};
 
     use crate::summary;
 
@@ -53,6 +56,29 @@ mod command {
             /// The case file (TOML)
             case: PathBuf,
         },
+        /// Solve a case with an exact solution on finer and finer meshes; write convergence.csv and convergence.svg
+        Convergence {
+            /// The case file (TOML)
+            case: PathBuf,
+            /// How many meshes, each with twice as many cells along each axis as the one before; the first is the case's
+            #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u8).range(1..=12))]
+            levels: u8,
+            /// Polynomial degrees, such as 1,2 [default: that of the case]
+            #[arg(long, value_delimiter = ',', value_parser = clap::value_parser!(u8).range(1..=2))]
+            degree: Vec<u8>,
+            /// Structured or perturbed meshes, or both: structured,perturbed [default: those of the case]
+            #[arg(long, value_enum, value_delimiter = ',')]
+            mesh: Vec<Mesh>,
+            /// The folder to write to [default: out/ and the name of the case]
+            #[arg(long, value_name = "DIR")]
+            out: Option<PathBuf>,
+        },
+    }
+
+    #[derive(Clone, Copy, ValueEnum)]
+    enum Mesh {
+        Structured,
+        Perturbed,
     }
 
     /// The case is wrong.
@@ -75,6 +101,10 @@ mod command {
         let text = match &arguments.task {
             Task::Solve { case, out } => solve(case, out.as_deref()),
             Task::Check { case } => check(case),
+            Task::Convergence { case, levels, degree, mesh, out } => {
+                let wanted = Wanted { levels: usize::from(*levels), degree, mesh };
+                study(case, &wanted, out.as_deref(), arguments.quiet)
+            }
         };
         match text {
             Ok(text) => {
@@ -100,13 +130,86 @@ mod command {
             let message = summary::not_converged(file, &case.settings, &solution.newton);
             return Err(Failure { message, code: FAILED });
         }
-        let folder = match out {
-            Some(folder) => folder.to_owned(),
-            None => Path::new("out").join(file.file_stem().unwrap_or_default()),
-        };
+        let folder = folder(file, out);
         let (files, seconds) = outputs::write(&folder, &case, &solution, read, times)
             .map_err(|e| failure(FAILED)(&e))?;
         Ok(summary::solved(&case, &solution, &seconds, &files))
+    }
+
+    /// What `--out` says, or out/ and the name of the case.
+    fn folder(file: &Path, out: Option<&Path>) -> PathBuf {
+        match out {
+            Some(folder) => folder.to_owned(),
+            None => Path::new("out").join(file.file_stem().unwrap_or_default()),
+        }
+    }
+
+    /// What the study shall cover; empty lists stand for what the case says.
+    struct Wanted<'a> {
+        levels: usize,
+        degree: &'a [u8],
+        mesh: &'a [Mesh],
+    }
+
+    fn study(
+        file: &Path,
+        wanted: &Wanted,
+        out: Option<&Path>,
+        quiet: bool,
+    ) -> Result<String, Failure> {
+        let case = Case::read(file).map_err(|e| failure(WRONG)(&e))?;
+        let degree = |d: &u8| if *d == 1 { Degree::One } else { Degree::Two };
+        let mesh = |m: &Mesh| match m {
+            Mesh::Structured => Meshes::Structured,
+            Mesh::Perturbed => Meshes::Perturbed,
+        };
+        let degrees = or_none(wanted.degree.iter().map(degree).collect());
+        let meshes = or_none(wanted.mesh.iter().map(mesh).collect());
+        let progress = progress(degrees.len() * meshes.len() * wanted.levels, quiet);
+        let mut studies = Vec::new();
+        for degree in &degrees {
+            for meshes in &meshes {
+                let study = convergence::ladder(&case, *degree, *meshes)
+                    .and_then(|(ladder, meshes)| {
+                        convergence::climb(ladder, meshes, wanted.levels, || progress.inc(1))
+                    })
+                    .map_err(|e| no_study(file, &e))?;
+                studies.push(study);
+            }
+        }
+        progress.finish_and_clear();
+        let files = convergence::write(&folder(file, out), &case.title, &studies)
+            .map_err(|e| failure(FAILED)(&e))?;
+        Ok(summary::studied(&case, &studies, &files))
+    }
+
+    /// The wanted ones, or one that the case decides.
+    fn or_none<T>(wanted: Vec<T>) -> Vec<Option<T>> {
+        if wanted.is_empty() { vec![None] } else { wanted.into_iter().map(Some).collect() }
+    }
+
+    /// A bar on standard error if that is a terminal, else nothing. The levels to come take longer than those done.
+    fn progress(levels: usize, quiet: bool) -> ProgressBar {
+        let bar = if quiet { ProgressBar::hidden() } else { ProgressBar::new(levels as u64) };
+        let colour = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
+        let bar_of = if colour { "{bar:30.cyan}" } else { "{bar:30}" };
+        let template = format!("  {bar_of} {{pos}} of {{len}} meshes, {{elapsed}}");
+        match ProgressStyle::with_template(&template) {
+            Ok(style) => bar.with_style(style),
+            Err(_) => bar,
+        }
+    }
+
+    fn no_study(file: &Path, error: &StudyError) -> Failure {
+        let code = match error {
+            StudyError::NoSolution | StudyError::MeshFile => WRONG,
+            StudyError::Level { error, .. } => match error {
+                LadderError::Mesh(_) => WRONG,
+                LadderError::Solve(error) => code(error),
+                LadderError::NotConverged { .. } => FAILED,
+            },
+        };
+        Failure { message: format!("{}: {error}", file.display()), code }
     }
 
     fn check(file: &Path) -> Result<String, Failure> {
@@ -117,10 +220,13 @@ mod command {
     }
 
     fn unsolvable(file: &Path, error: &SolveError) -> Failure {
-        let code = match error {
+        Failure { message: format!("{}: {error}", file.display()), code: code(error) }
+    }
+
+    fn code(error: &SolveError) -> u8 {
+        match error {
             SolveError::Data(_) | SolveError::NotCoercive { .. } => WRONG,
             SolveError::NotPositiveDefinite | SolveError::OutOfMemory => FAILED,
-        };
-        Failure { message: format!("{}: {error}", file.display()), code }
+        }
     }
 }

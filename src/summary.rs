@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use signorini::io::convergence::Study;
 use signorini::io::result::Seconds;
 use signorini::io::{Case, numbers};
 use signorini::solve::{
@@ -64,6 +65,21 @@ pub fn solved(case: &Case, s: &Solution, seconds: &Seconds, files: &[PathBuf]) -
             time(seconds.write)
         ),
     );
+    if let Some(exact) = &case.exact
+        && let Ok(errors) = s.errors(&case.problem, &*exact.solution)
+    {
+        lines.line(
+            "errors",
+            format!(
+                "energy {}, H1 {}, L2 {}, contact pressure {}, normal stress {}",
+                short(errors.energy),
+                short(errors.h1),
+                short(errors.l2),
+                short(errors.contact_residual),
+                short(errors.normal_stress)
+            ),
+        );
+    }
     lines.line("written", written(files));
     lines.0
 }
@@ -84,6 +100,12 @@ pub fn checked(case: &Case, outline: &Outline) -> String {
         },
     );
     lines.0
+}
+
+/// Of a case on finer and finer meshes.
+pub fn studied(case: &Case, studies: &[Study], files: &[PathBuf]) -> String {
+    let tables: Vec<String> = studies.iter().map(Study::table).collect();
+    format!("{}\n\n{}\nwritten: {}\n", case.title, tables.join("\n"), written(files))
 }
 
 /// Of a case that Newton's method could not solve.

@@ -324,6 +324,9 @@ fn control_errors_by_a_rule_that_ignores_where_the_solution_is_not_smooth_do_mov
         fn gradient(&self, x: [f64; 2]) -> [[f64; 2]; 2] {
             self.0.gradient(x)
         }
+        fn regularity(&self) -> f64 {
+            self.0.regularity()
+        }
         fn body_force(&self, x: [f64; 2]) -> Option<[f64; 2]> {
             self.0.body_force(x)
         }

@@ -1,6 +1,7 @@
 //! What goes in and out: case files, Gmsh meshes, VTU, SVG, JSON.
 
 pub mod case;
+pub mod convergence;
 pub mod csv;
 pub mod data;
 mod exact;
@@ -10,6 +11,7 @@ pub mod gmsh;
 pub mod numbers;
 pub mod outputs;
 pub mod picture;
+pub mod plot;
 mod quote;
 pub mod result;
 mod table;

@@ -126,6 +126,13 @@ impl Ladder {
     }
 }
 
+impl Ladder {
+    /// The rate that Theorem 3.5 and Remark 3.7 promise for the energy and contact norms: min(p, s - 1) for u in H^s.
+    pub fn promised_rate(&self) -> f64 {
+        (self.method.degree.number() as f64).min(self.solution.regularity() - 1.0)
+    }
+}
+
 /// The rates between neighbours, log(error ratio) / log(h ratio). A rate between two zeros is NaN.
 pub fn rates(h: &[f64], error: &[f64]) -> Vec<f64> {
     let pairs = h.windows(2).zip(error.windows(2));

@@ -108,6 +108,10 @@ impl ExactSolution for Corner {
         [0, 1].map(|c| [scale * by_x[c], scale * by_y[c]])
     }
 
+    fn regularity(&self) -> f64 {
+        1.0 + self.alpha
+    }
+
     fn features(&self) -> Features {
         // With r = t^g, sigma_n^2 dr = r^(2 alpha - 2) dr is a power t^(g (2 alpha - 1) - 1) dt. This g makes it a whole
         // one, and is large enough for the mixed term r^(alpha - 1) dr of an error to be smooth, too.

@@ -50,6 +50,9 @@ pub trait ExactSolution: Debug + Send + Sync {
         0.0
     }
 
+    /// The least upper bound of the s for which u is in H^s.
+    fn regularity(&self) -> f64;
+
     /// Where u is less smooth than elsewhere.
     fn features(&self) -> Features {
         Features::default()

@@ -74,6 +74,10 @@ impl ExactSolution for Patch {
         self.matrix
     }
 
+    fn regularity(&self) -> f64 {
+        f64::INFINITY
+    }
+
     fn gap(&self, [x, _]: [f64; 2]) -> f64 {
         self.gap[0] + self.gap[1] * x
     }

@@ -67,6 +67,10 @@ impl ExactSolution for Singular {
             .map(|row| row.map(|d| d / (2.0 * self.material.mu())))
     }
 
+    fn regularity(&self) -> f64 {
+        2.5
+    }
+
     fn features(&self) -> Features {
         // With r = t^4, r dr is a power of t.
         Features {

@@ -105,6 +105,10 @@ impl ExactSolution for Smooth {
         polynomial_derivative(&self.gap, 0, x)
     }
 
+    fn regularity(&self) -> f64 {
+        (self.k - 0.5).min(self.m + 0.5)
+    }
+
     fn features(&self) -> Features {
         Features { kink: Some(self.c), singular: None }
     }

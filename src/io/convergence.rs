@@ -1,0 +1,335 @@
+//! The command `signorini convergence`: a case with an exact solution on finer and finer meshes, as a table for people, as
+//! CSV and as a figure.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use super::case::Case;
+use super::data::DataError;
+use super::files::{Output, WriteError};
+use super::plot::{Figure, Panel, Style, figure};
+use crate::fem::{Errors, Perturbation};
+use crate::solve::ladder::{fitted_slope, rates};
+use crate::solve::{Degree, Ladder, LadderError, Level, Method};
+
+/// Structured meshes, or meshes with vertices moved at random.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Meshes {
+    /// As the generator makes them.
+    Structured,
+    /// Moved as the case says, or by up to 0.2 cells.
+    Perturbed,
+}
+
+/// How far vertices are moved where the case doesn't say.
+const PERTURBATION: Perturbation = Perturbation { amount: 0.2, seed: 1 };
+
+/// Why there is no study of a case.
+#[derive(Debug, Error)]
+pub enum StudyError {
+    /// The case has no exact solution.
+    #[error("[exact] is missing; errors are measured against an exact solution")]
+    NoSolution,
+    /// The mesh can't be refined.
+    #[error(
+        "[mesh] gmsh: found a mesh file; expected rectangle or trapezoid, which can be refined"
+    )]
+    MeshFile,
+    /// A level failed.
+    #[error("P{degree}, level {level}: {error}")]
+    Level {
+        /// The polynomial degree.
+        degree: usize,
+        /// The level, from 0.
+        level: usize,
+        /// Why.
+        error: LadderError,
+    },
+}
+
+/// One ladder and what came out on it.
+#[derive(Clone, Debug)]
+pub struct Study {
+    /// P1 or P2.
+    pub degree: Degree,
+    /// How the meshes are made.
+    pub meshes: Meshes,
+    /// The rate that the theory promises for all norms but L2.
+    pub promised: f64,
+    /// From the coarsest mesh on.
+    pub levels: Vec<Level>,
+}
+
+/// The ladder of a case, with its own degree and mesh unless told otherwise.
+///
+/// # Errors
+/// No exact solution, or a mesh from a file.
+pub fn ladder(
+    case: &Case,
+    degree: Option<Degree>,
+    meshes: Option<Meshes>,
+) -> Result<(Ladder, Meshes), StudyError> {
+    let exact = case.exact.as_ref().ok_or(StudyError::NoSolution)?;
+    let body = exact.structured.ok_or(StudyError::MeshFile)?;
+    let own = if exact.perturbation.is_some() { Meshes::Perturbed } else { Meshes::Structured };
+    let meshes = meshes.unwrap_or(own);
+    let ladder = Ladder {
+        solution: exact.solution.clone(),
+        kinds: exact.kinds.clone(),
+        body,
+        perturbation: match meshes {
+            Meshes::Structured => None,
+            Meshes::Perturbed => Some(exact.perturbation.unwrap_or(PERTURBATION)),
+        },
+        method: Method { degree: degree.unwrap_or(case.method.degree), ..case.method.clone() },
+        settings: case.settings,
+    };
+    Ok((ladder, meshes))
+}
+
+/// Solves the first `levels` levels of a ladder at one gamma0, and calls `done` after each.
+///
+/// # Errors
+/// The first level that fails.
+pub fn climb(
+    ladder: Ladder,
+    meshes: Meshes,
+    levels: usize,
+    mut done: impl FnMut(),
+) -> Result<Study, StudyError> {
+    let degree = ladder.method.degree;
+    let failed = |level| move |error| StudyError::Level { degree: degree.number(), level, error };
+    let ladder = ladder.with_one_gamma0(levels).map_err(failed(0))?;
+    let mut climbed = Vec::with_capacity(levels);
+    for level in 0..levels {
+        climbed.push(ladder.solve(level).map_err(failed(level))?.0);
+        done();
+    }
+    Ok(Study { degree, meshes, promised: ladder.promised_rate(), levels: climbed })
+}
+
+/// The norms in the order of the table: a name, its value, and whether the theory promises a rate.
+pub const NORMS: [(&str, fn(&Errors) -> f64, bool); 5] = [
+    ("energy", |e| e.energy, true),
+    ("h1", |e| e.h1, true),
+    ("l2", |e| e.l2, false),
+    ("contact_residual", |e| e.contact_residual, true),
+    ("normal_stress", |e| e.normal_stress, true),
+];
+
+/// How many of the finest levels the slope is fitted to.
+pub const FITTED: usize = 4;
+
+impl Study {
+    /// Such as "P2, structured".
+    pub fn name(&self) -> String {
+        let meshes = match self.meshes {
+            Meshes::Structured => "structured",
+            Meshes::Perturbed => "perturbed",
+        };
+        format!("P{}, {meshes}", self.degree.number())
+    }
+
+    /// The mesh sizes.
+    pub fn sizes(&self) -> Vec<f64> {
+        self.levels.iter().map(|level| level.h).collect()
+    }
+
+    /// One error on all levels.
+    pub fn error(&self, of: fn(&Errors) -> f64) -> Vec<f64> {
+        self.levels.iter().map(|level| of(&level.errors)).collect()
+    }
+
+    /// The slope over the last [`FITTED`] levels; `None` if there is only one, or an error of 0.
+    pub fn slope(&self, of: fn(&Errors) -> f64) -> Option<f64> {
+        let first = self.levels.len().saturating_sub(FITTED);
+        let slope = fitted_slope(&self.sizes()[first..], &self.error(of)[first..]);
+        slope.is_finite().then_some(slope)
+    }
+
+    /// The table for people.
+    pub fn table(&self) -> String {
+        let mut text = String::new();
+        let gamma0 = self.levels.first().map_or(f64::NAN, |level| level.gamma0);
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{}: gamma0 = {gamma0:.4e}", self.name());
+        let _ = write!(text, "{:>10}{:>10}", "h", "unknowns");
+        for (name, _, _) in NORMS {
+            let _ = write!(text, "{:>18}", name);
+        }
+        let _ = writeln!(text, "{:>8}{:>7}", "newton", "kappa");
+        let rates: Vec<Vec<f64>> =
+            NORMS.iter().map(|(_, of, _)| rates(&self.sizes(), &self.error(*of))).collect();
+        for (i, level) in self.levels.iter().enumerate() {
+            let _ = write!(text, "{:>10.3e}{:>10}", level.h, level.unknowns);
+            for ((_, of, _), rates) in NORMS.iter().zip(&rates) {
+                let rate = i.checked_sub(1).and_then(|before| rates.get(before));
+                let _ = write!(text, "{:>12.3e}{:>6}", of(&level.errors), shown(rate.copied()));
+            }
+            let _ = writeln!(text, "{:>8}{:>7.3}", level.newton_steps, level.kappa);
+        }
+        let finest = self.levels.len().min(FITTED);
+        let _ = write!(text, "{:>20}", format!("slope, last {finest}"));
+        for (_, of, _) in NORMS {
+            let _ = write!(text, "{:>18}", shown(self.slope(of)));
+        }
+        let _ = write!(text, "\n{:>20}", "promised");
+        for (_, _, promised) in NORMS {
+            let rate = promised.then_some(self.promised).filter(|rate| rate.is_finite());
+            let _ = write!(text, "{:>18}", shown(rate));
+        }
+        text.push('\n');
+        text
+    }
+}
+
+/// A rate, if there is one.
+fn shown(rate: Option<f64>) -> String {
+    match rate {
+        Some(rate) if rate.is_finite() => format!("{rate:.2}"),
+        _ => "-".to_owned(),
+    }
+}
+
+/// The text of convergence.csv.
+pub fn csv(studies: &[Study]) -> String {
+    let mut text = String::from("degree,mesh,h,unknowns");
+    for (name, _, _) in NORMS {
+        let _ = write!(text, ",{name}");
+    }
+    text.push_str(",newton_steps,gamma0,kappa\n");
+    for study in studies {
+        let meshes = match study.meshes {
+            Meshes::Structured => "structured",
+            Meshes::Perturbed => "perturbed",
+        };
+        for level in &study.levels {
+            let degree = study.degree.number();
+            let _ = write!(text, "{degree},{meshes},{:?},{}", level.h, level.unknowns);
+            for (_, of, _) in NORMS {
+                let _ = write!(text, ",{:?}", of(&level.errors));
+            }
+            let Level { newton_steps, gamma0, kappa, .. } = level;
+            let _ = writeln!(text, ",{newton_steps},{gamma0:?},{kappa:?}");
+        }
+    }
+    text
+}
+
+/// The figure: energy norm, contact pressure and normal stress over h, with triangles for the promised rates.
+pub fn plot(title: &str, studies: &[Study]) -> Figure {
+    let panels = [
+        ("energy norm of u - uʰ", NORMS[0].1),
+        ("contact pressure: ‖γ½(σₙ(u) - λʰ)‖", NORMS[3].1),
+        ("normal stress: ‖γ½ σₙ(u - uʰ)‖", NORMS[4].1),
+    ];
+    Figure {
+        title: title.to_owned(),
+        x_label: "h".to_owned(),
+        panels: panels.map(|(name, of)| panel(name, of, studies)).into(),
+        styles: studies
+            .iter()
+            .map(|study| Style {
+                name: study.name(),
+                colour: if study.degree == Degree::One { "#1f77b4" } else { "#d62728" },
+                dashed: study.meshes == Meshes::Perturbed,
+            })
+            .collect(),
+    }
+}
+
+fn panel(title: &str, of: fn(&Errors) -> f64, studies: &[Study]) -> Panel {
+    let lines: Vec<Vec<[f64; 2]>> = studies
+        .iter()
+        .map(|study| study.sizes().into_iter().zip(study.error(of)).map(|(h, e)| [h, e]).collect())
+        .collect();
+    // One triangle for each promised rate, below the lowest of its lines.
+    let finest = |line: usize| studies[line].error(of).last().copied().unwrap_or(f64::INFINITY);
+    let mut slopes: Vec<(usize, f64)> = Vec::new();
+    for (line, study) in studies.iter().enumerate().filter(|(_, s)| s.promised.is_finite()) {
+        match slopes.iter_mut().find(|(_, slope)| *slope == study.promised) {
+            Some(known) if finest(line) < finest(known.0) => known.0 = line,
+            Some(_) => {}
+            None => slopes.push((line, study.promised)),
+        }
+    }
+    Panel { title: title.to_owned(), lines, slopes }
+}
+
+/// Why the files of a study could not be written.
+#[derive(Debug, Error)]
+pub enum StudyFileError {
+    /// A file or folder.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// What was to be drawn.
+    #[error("convergence.svg cannot be made: {0}")]
+    Data(#[from] DataError),
+}
+
+/// Writes convergence.csv and convergence.svg into `folder` and returns their paths.
+///
+/// # Errors
+/// A folder or file that can't be written, a number that is not finite.
+pub fn write(
+    folder: &Path,
+    title: &str,
+    studies: &[Study],
+) -> Result<Vec<PathBuf>, StudyFileError> {
+    let mut output = Output::new(folder)?;
+    output.stage("convergence.csv", csv(studies).as_bytes())?;
+    output.stage("convergence.svg", figure(&plot(title, studies))?.as_bytes())?;
+    Ok(output.publish()?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn study(levels: usize) -> Study {
+        let level = |i: usize| {
+            let h = 0.5_f64.powi(i as i32);
+            let errors = Errors {
+                energy: h,
+                h1: h,
+                l2: h * h,
+                contact_residual: h.powf(1.5),
+                normal_stress: 0.0,
+                operator: 0.0,
+            };
+            Level { h, unknowns: 8 << (2 * i), errors, newton_steps: 3, gamma0: 0.1, kappa: 0.5 }
+        };
+        Study {
+            degree: Degree::One,
+            meshes: Meshes::Structured,
+            promised: 1.0,
+            levels: (0..levels).map(level).collect(),
+        }
+    }
+
+    #[test]
+    fn the_table_has_rates_slopes_and_promises_and_a_dash_where_there_is_none() {
+        let text = study(3).table();
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(lines.len(), 7);
+        assert_eq!(lines[0], "P1, structured: gamma0 = 1.0000e-1");
+        assert!(lines[4].contains("2.500e-1  1.00") && lines[4].contains("1.250e-1  1.50"));
+        let words = |line: &str| line.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
+        assert_eq!(words(lines[5]), ["slope,", "last", "3", "1.00", "1.00", "2.00", "1.50", "-"]);
+        assert_eq!(words(lines[6]), ["promised", "1.00", "1.00", "-", "1.00", "1.00"]);
+        assert!(study(1).table().contains("slope, last 1"));
+    }
+
+    #[test]
+    fn the_csv_has_a_line_for_each_level() {
+        let text = csv(&[study(2)]);
+        assert_eq!(
+            text,
+            "degree,mesh,h,unknowns,energy,h1,l2,contact_residual,normal_stress,newton_steps,gamma0,kappa\n\
+             1,structured,1.0,8,1.0,1.0,1.0,1.0,0.0,3,0.1,0.5\n\
+             1,structured,0.5,32,0.5,0.5,0.25,0.3535533905932738,0.0,3,0.1,0.5\n"
+        );
+    }
+}

@@ -1,0 +1,319 @@
+//! Figures with logarithmic axes: panels side by side, a legend below them, and triangles that show a slope.
+//!
+//! Points with a coordinate that is not positive have no place in such a figure and are left out.
+
+use svg::node::Text as Content;
+use svg::node::element::{Circle, Group, Line, Path as PathElement, Rectangle, TSpan, Text, Title};
+use svg::{Document, Node};
+
+use super::data::{DataError, check_finite};
+
+/// A figure.
+#[derive(Clone, Debug)]
+pub struct Figure {
+    /// The headline.
+    pub title: String,
+    /// What the panels have in common along x.
+    pub x_label: String,
+    /// From left to right.
+    pub panels: Vec<Panel>,
+    /// The lines by name, for the legend and their looks.
+    pub styles: Vec<Style>,
+}
+
+/// A panel: a line for each style, in their order.
+#[derive(Clone, Debug)]
+pub struct Panel {
+    /// What is drawn over x.
+    pub title: String,
+    /// The points of each line; an empty one is not drawn.
+    pub lines: Vec<Vec<[f64; 2]>>,
+    /// Triangles: the number of a line, and the slope to show below it.
+    pub slopes: Vec<(usize, f64)>,
+}
+
+/// How a line looks.
+#[derive(Clone, Debug)]
+pub struct Style {
+    /// What it is called.
+    pub name: String,
+    /// Its colour, as SVG has it.
+    pub colour: &'static str,
+    /// Dashed, its points hollow.
+    pub dashed: bool,
+}
+
+const FONT: &str = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
+const DARK: &str = "#222222";
+const GREY: &str = "#666666";
+const LIGHT: &str = "#dddddd";
+
+/// The drawing area of a panel, and the space around it.
+const WIDTH: f64 = 270.0;
+const HEIGHT: f64 = 270.0;
+const LEFT: f64 = 62.0;
+const RIGHT: f64 = 18.0;
+const TOP: f64 = 74.0;
+const BELOW: f64 = 48.0;
+const LEGEND_LINE: f64 = 20.0;
+
+/// Legend entries on one line for each panel.
+const PER_PANEL: usize = 2;
+
+/// The text of the SVG file.
+///
+/// # Errors
+/// A coordinate that is NaN or infinite.
+pub fn figure(figure: &Figure) -> Result<String, DataError> {
+    for panel in &figure.panels {
+        for (line, style) in panel.lines.iter().zip(&figure.styles) {
+            let name = format!("{}: {}", panel.title, style.name);
+            check_finite(&name, line.iter().map(<[f64; 2]>::as_slice))?;
+        }
+    }
+    let columns = figure.panels.len().max(1);
+    let width = columns as f64 * (LEFT + WIDTH + RIGHT);
+    let per_line = PER_PANEL * columns;
+    let legend_lines = figure.styles.len().div_ceil(per_line) as f64;
+    let height = TOP + HEIGHT + BELOW + legend_lines * LEGEND_LINE + 8.0;
+    let mut document = Document::new()
+        .set("viewBox", (0, 0, width.round(), height.round()))
+        .set("width", width.round())
+        .set("height", height.round())
+        .set("font-family", FONT)
+        .set("font-size", 12)
+        .set("fill", DARK)
+        .add(Title::new(figure.title.as_str()))
+        .add(Rectangle::new().set("width", "100%").set("height", "100%").set("fill", "white"))
+        .add(label(&figure.title, width / 2.0, 26.0, "middle").set("font-size", 15));
+    for (i, panel) in figure.panels.iter().enumerate() {
+        let left = i as f64 * (LEFT + WIDTH + RIGHT) + LEFT;
+        document = document.add(draw(panel, figure, left));
+    }
+    let step = width / per_line as f64;
+    for (i, style) in figure.styles.iter().enumerate() {
+        let x = (i % per_line) as f64 * step + 16.0;
+        let y = TOP + HEIGHT + BELOW + (i / per_line) as f64 * LEGEND_LINE + 8.0;
+        let mut entry = Group::new().add(stroke([x, y], [x + 28.0, y], style));
+        entry.append(mark([x + 14.0, y], style));
+        entry.append(label(&style.name, x + 36.0, y + 4.0, "start"));
+        document = document.add(entry);
+    }
+    Ok(format!("{document}\n"))
+}
+
+fn label(text: &str, x: f64, y: f64, anchor: &str) -> Text {
+    Text::new(text).set("x", rounded(x)).set("y", rounded(y)).set("text-anchor", anchor)
+}
+
+/// Coordinates in hundredths, which keeps the file small and the same everywhere.
+fn rounded(x: f64) -> f64 {
+    (x * 100.0).round() / 100.0 + 0.0
+}
+
+fn stroke(from: [f64; 2], to: [f64; 2], style: &Style) -> Line {
+    let line = Line::new()
+        .set("x1", rounded(from[0]))
+        .set("y1", rounded(from[1]))
+        .set("x2", rounded(to[0]))
+        .set("y2", rounded(to[1]))
+        .set("stroke", style.colour)
+        .set("stroke-width", 1.6);
+    if style.dashed { line.set("stroke-dasharray", "5 3") } else { line }
+}
+
+fn mark([x, y]: [f64; 2], style: &Style) -> Circle {
+    Circle::new()
+        .set("cx", rounded(x))
+        .set("cy", rounded(y))
+        .set("r", 3)
+        .set("fill", if style.dashed { "white" } else { style.colour })
+        .set("stroke", style.colour)
+        .set("stroke-width", 1.2)
+}
+
+/// A range of decimal exponents along an axis, and where it lies on the page.
+struct Axis {
+    low: f64,
+    high: f64,
+    start: f64,
+    length: f64,
+}
+
+impl Axis {
+    /// Around `values`, with some space.
+    fn around(values: impl Iterator<Item = f64>, start: f64, length: f64) -> Axis {
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for value in values {
+            low = low.min(value.log10());
+            high = high.max(value.log10());
+        }
+        if !(low <= high) {
+            (low, high) = (-1.0, 0.0);
+        }
+        let space = (0.06 * (high - low)).max(0.05);
+        Axis { low: low - space, high: high + space, start, length }
+    }
+
+    fn page(&self, value: f64) -> f64 {
+        self.start + (value.log10() - self.low) / (self.high - self.low) * self.length
+    }
+
+    /// The powers of ten inside; where there are fewer than two, also twice and five times them.
+    fn ticks(&self) -> Vec<(f64, i32, u8)> {
+        let (first, last) = (self.low.floor() as i32, self.high.ceil() as i32);
+        let inside = |x: f64| self.low <= x.log10() && x.log10() <= self.high;
+        let of = |digits: &[u8]| -> Vec<(f64, i32, u8)> {
+            (first..=last)
+                .flat_map(|k| digits.iter().map(move |&m| (f64::from(m) * 10_f64.powi(k), k, m)))
+                .filter(|tick| inside(tick.0))
+                .collect()
+        };
+        let decades = of(&[1]);
+        if decades.len() < 3 {
+            return of(&[1, 2, 5]);
+        }
+        // Not more than about eight labels.
+        let every = decades.len().div_ceil(8) as i32;
+        decades.into_iter().filter(|(_, k, _)| k.rem_euclid(every) == 0).collect()
+    }
+}
+
+/// m x 10^k: plain where that is short, else with an exponent.
+fn tick_label(k: i32, m: u8, x: f64, y: f64, anchor: &str) -> Text {
+    let text = match k {
+        0 => m.to_string(),
+        1..=2 => format!("{m}{}", "0".repeat(k as usize)),
+        -2..=-1 => format!("0.{}{m}", "0".repeat((-k - 1) as usize)),
+        _ => {
+            let base = if m == 1 { "10".to_owned() } else { format!("{m}·10") };
+            let exponent = TSpan::new(k.to_string()).set("dy", -5).set("font-size", 9);
+            let mut label = label("", x, y, anchor);
+            label.append(Content::new(base));
+            label.append(exponent);
+            return label;
+        }
+    };
+    label(&text, x, y, anchor)
+}
+
+fn positive(line: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    line.iter().copied().filter(|p| p.iter().all(|&c| c > 0.0)).collect()
+}
+
+/// The corners of a slope triangle in coordinates of the figure: below the second and third of the points that are
+/// smallest in x.
+fn triangle(line: &[[f64; 2]], slope: f64) -> Option<[[f64; 2]; 3]> {
+    let mut points = positive(line);
+    points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let [_, a, b, ..] = points[..] else { return None };
+    let low = 0.55 * a[1].min(b[1] / (b[0] / a[0]).powf(slope));
+    Some([[a[0], low], [b[0], low], [b[0], low * (b[0] / a[0]).powf(slope)]])
+}
+
+fn draw(panel: &Panel, figure: &Figure, left: f64) -> Group {
+    let lines: Vec<Vec<[f64; 2]>> = panel.lines.iter().map(|line| positive(line)).collect();
+    let triangles: Vec<(f64, [[f64; 2]; 3])> = panel
+        .slopes
+        .iter()
+        .filter_map(|&(line, slope)| Some((slope, triangle(panel.lines.get(line)?, slope)?)))
+        .collect();
+    let corners = triangles.iter().flat_map(|(_, corners)| corners);
+    let all = || lines.iter().flatten().chain(corners.clone());
+    let x_axis = Axis::around(all().map(|p| p[0]), left, WIDTH);
+    let y_axis = Axis::around(all().map(|p| p[1]), TOP + HEIGHT, -HEIGHT);
+    let page = |p: [f64; 2]| [x_axis.page(p[0]), y_axis.page(p[1])];
+    let thin = |from, to, colour| {
+        let style = Style { name: String::new(), colour, dashed: false };
+        stroke(from, to, &style).set("stroke-width", 0.8)
+    };
+
+    let mut group = Group::new()
+        .add(label(&panel.title, left + WIDTH / 2.0, TOP - 12.0, "middle").set("font-size", 13));
+    for (x, k, m) in x_axis.ticks() {
+        let x = x_axis.page(x);
+        group.append(thin([x, TOP], [x, TOP + HEIGHT], LIGHT));
+        group.append(tick_label(k, m, x, TOP + HEIGHT + 16.0, "middle"));
+    }
+    for (y, k, m) in y_axis.ticks() {
+        let y = y_axis.page(y);
+        group.append(thin([left, y], [left + WIDTH, y], LIGHT));
+        group.append(tick_label(k, m, left - 6.0, y + 4.0, "end"));
+    }
+    group.append(
+        Rectangle::new()
+            .set("x", left)
+            .set("y", TOP)
+            .set("width", WIDTH)
+            .set("height", HEIGHT)
+            .set("fill", "none")
+            .set("stroke", GREY),
+    );
+    group.append(label(&figure.x_label, left + WIDTH / 2.0, TOP + HEIGHT + 34.0, "middle"));
+    for (slope, corners) in triangles {
+        let [a, b, c] = corners.map(page).map(|p| p.map(rounded));
+        let d = format!("M{} {}L{} {} {} {}Z", a[0], a[1], b[0], b[1], c[0], c[1]);
+        group.append(PathElement::new().set("d", d).set("fill", "none").set("stroke", GREY));
+        let text = format!("{:.2}", slope);
+        let text = text.trim_end_matches('0').trim_end_matches('.');
+        let beside = label(text, b[0] + 4.0, (b[1] + c[1]) / 2.0 + 4.0, "start");
+        group.append(beside.set("font-size", 11).set("fill", GREY));
+    }
+    for (line, style) in lines.iter().zip(&figure.styles) {
+        for pair in line.windows(2) {
+            group.append(stroke(page(pair[0]), page(pair[1]), style));
+        }
+        for &point in line {
+            group.append(mark(page(point), style));
+        }
+    }
+    group
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample(points: Vec<[f64; 2]>) -> Figure {
+        Figure {
+            title: "A < B".to_owned(),
+            x_label: "h".to_owned(),
+            panels: vec![Panel {
+                title: "energy".to_owned(),
+                lines: vec![points],
+                slopes: vec![(0, 1.5)],
+            }],
+            styles: vec![Style { name: "P1".to_owned(), colour: "#1f77b4", dashed: false }],
+        }
+    }
+
+    #[test]
+    fn every_point_has_its_mark_and_neighbours_their_line() {
+        let text = figure(&sample(vec![[0.1, 1e-3], [0.2, 3e-3], [0.4, 8e-3]])).unwrap();
+        // One mark more in the legend.
+        assert_eq!(text.matches("<circle").count(), 4);
+        assert!(text.contains("A &lt; B") && text.contains(">1.5<"));
+    }
+
+    #[test]
+    fn points_that_are_not_positive_are_left_out() {
+        let text = figure(&sample(vec![[0.1, 0.0], [0.2, 3e-3], [0.4, 8e-3]])).unwrap();
+        assert_eq!(text.matches("<circle").count(), 3);
+        assert!(figure(&sample(vec![[0.1, 0.0]])).is_ok());
+        assert!(figure(&sample(vec![])).is_ok());
+    }
+
+    #[test]
+    fn a_nan_is_refused() {
+        let error = figure(&sample(vec![[0.1, f64::NAN]])).unwrap_err().to_string();
+        assert_eq!(error, "energy: P1[0] is NaN or infinite; expected a finite number");
+    }
+
+    #[test]
+    fn a_slope_triangle_lies_below_its_line() {
+        let line = [[0.1, 1.0], [0.2, 2.0], [0.4, 4.0]];
+        let [a, b, c] = triangle(&line, 1.0).unwrap();
+        assert_eq!([a[0], b[0], c[0]], [0.2, 0.4, 0.4]);
+        assert!(a[1] < 2.0 && c[1] < 4.0 && (c[1] / a[1] - 2.0).abs() < 1e-15);
+    }
+}
