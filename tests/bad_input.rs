@@ -184,7 +184,7 @@ fn keys_tables_and_types() {
             ),
             (
                 ["title = \"Block\"", "titel = \"Block\""],
-                "bad.toml:1: unknown key 'titel'; expected title, mesh, material, load, boundary, method, solver or output",
+                "bad.toml:1: unknown key 'titel'; expected title, mesh, material, load, exact, boundary, method, solver or output",
             ),
             (
                 ["title = \"Block\"", "title = Block"],
@@ -197,11 +197,11 @@ fn keys_tables_and_types() {
             (["[load]", "[load"], "bad.toml:8: invalid TOML: unclosed table, expected `]`"),
             (
                 ["[load]", "[loads]"],
-                "bad.toml:8: unknown key 'loads'; expected title, mesh, material, load, boundary, method, solver or output",
+                "bad.toml:8: unknown key 'loads'; expected title, mesh, material, load, exact, boundary, method, solver or output",
             ),
             (
                 ["[load]", "[exact]"],
-                "bad.toml:8: unknown key 'exact'; expected title, mesh, material, load, boundary, method, solver or output",
+                "bad.toml:8: [exact] solution is missing; expected the name of an exact solution",
             ),
             (["[load]", "[material]"], "bad.toml:8: invalid TOML at 'material': duplicate key"),
             (
@@ -267,15 +267,15 @@ fn meshes_of_rectangles() {
             ),
             (
                 ["rectangle = {", "#"],
-                "bad.toml:2: [mesh]: found none; expected either rectangle or gmsh",
+                "bad.toml:2: [mesh]: found none; expected exactly one of rectangle, trapezoid, gmsh",
             ),
             (
                 ["rectangle = {", "gmsh = \"a.msh\"\nrectangle = {"],
-                "bad.toml:2: [mesh]: found rectangle and gmsh; expected either rectangle or gmsh",
+                "bad.toml:2: [mesh]: found rectangle and gmsh; expected exactly one of rectangle, trapezoid, gmsh",
             ),
             (
                 ["rectangle = {", "trapezoid = { omega = 1.5, n = 4 }\nrectangle = {"],
-                "bad.toml:3: unknown key 'trapezoid' in [mesh]; expected rectangle or gmsh",
+                "bad.toml:2: [mesh]: found rectangle and trapezoid; expected exactly one of rectangle, trapezoid, gmsh",
             ),
             ([WITH_MESH[0], "rectangle = 3"], "bad.toml:3: [mesh] rectangle = 3; expected a table"),
             ([WITH_MESH[0], "gmsh = 3"], "bad.toml:3: [mesh] gmsh = 3; expected a text in quotes"),

@@ -2,7 +2,7 @@
 //!
 //! | solution | parameters |
 //! | --- | --- |
-//! | "smooth" | c in (0, 1), k > 5/2, m > 3/2, ap > 0, aq > 0, gap = \[g0, g1, ..\] for g = g0 + g1 x + .. (default none) |
+//! | "smooth" | c in (0, 1), k > 5/2, m > 3/2, ap > 0, aq > 0, gap = "a polynomial in x" (default "0") |
 //! | "singular" | c in (0, 1), amplitude > 0 |
 //! | "corner" | omega between pi/2 and pi |
 //! | "patch" | which = "d1" (p > 0), "d2" (p, d > 0), "d3" (p > 0, w, g0), "d4" or "d5" (d > 0) |
@@ -119,11 +119,11 @@ fn inside(table: &Table, key: &str) -> Result<f64, CaseError> {
     table.require(key, expected)?.number_that(|c| 0.0 < c && c < 1.0, expected)
 }
 
+/// The gap function of a smooth solution: the solution needs its derivatives, so it is a polynomial.
 fn coefficients(gap: Option<Value>) -> Result<Vec<f64>, CaseError> {
-    match gap {
-        Some(gap) => gap.items()?.iter().map(Value::number).collect(),
-        None => Ok(Vec::new()),
-    }
+    let Some(gap) = gap else { return Ok(Vec::new()) };
+    let expression = gap.expression()?;
+    expression.polynomial_in_x().ok_or_else(|| gap.wrong("a polynomial in x"))
 }
 
 /// What a boundary is asked to hold: beside \[exact\], \[boundary\] has a kind for each.
@@ -155,7 +155,7 @@ mod tests {
     #[test]
     fn every_solution_is_read_with_its_parameters() {
         for text in [
-            "solution = 'smooth'\nc = 0.5\nk = 3\nm = 2\nap = 8\naq = 4\ngap = [0.2, -0.3, 0.5]",
+            "solution = 'smooth'\nc = 0.5\nk = 3\nm = 2\nap = 8\naq = 4\ngap = '0.2 - 0.3*x + 0.5*x^2'",
             "solution = 'singular'\nc = 0.5\namplitude = 1",
             "solution = 'corner'\nomega = 2.0",
             "solution = 'patch'\nwhich = 'd1'\np = 0.3",
@@ -166,7 +166,8 @@ mod tests {
         ] {
             assert!(read(text).is_ok(), "{text}: {:?}", read(text));
         }
-        let gap = read("solution='smooth'\nc=0.5\nk=3\nm=2\nap=8\naq=4\ngap=[1, 2, 3]").unwrap();
+        let gap =
+            read("solution='smooth'\nc=0.5\nk=3\nm=2\nap=8\naq=4\ngap='1 + 2*x + 3*x^2'").unwrap();
         assert_eq!(gap.gap([2.0, 0.0]), 17.0);
     }
 
@@ -176,7 +177,7 @@ mod tests {
             ("", "solution is missing; expected the name of an exact solution"),
             (
                 "solution = 'smoth'",
-                "solution = \"smoth\"; expected \"smooth\" or \"singular\" or \"corner\" or \"patch\"",
+                "solution = \"smoth\"; expected \"smooth\", \"singular\", \"corner\" or \"patch\"",
             ),
             ("solution = 'corner'\nomega = 1", "omega = 1; expected an angle between pi/2 and pi"),
             (
@@ -191,6 +192,10 @@ mod tests {
             (
                 "solution = 'smooth'\nc = 0.5\nk = 2.5\nm = 2\nap = 8\naq = 4",
                 "k = 2.5; expected a number above 2.5",
+            ),
+            (
+                "solution = 'smooth'\nc = 0.5\nk = 3\nm = 2\nap = 8\naq = 4\ngap = 'sin(x)'",
+                "gap = \"sin(x)\"; expected a polynomial in x",
             ),
             (
                 "solution = 'patch'\nwhich = 'd4'\np = 1",

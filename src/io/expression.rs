@@ -184,6 +184,69 @@ impl Expression {
     }
 }
 
+impl Expression {
+    /// The coefficients of 1, x, x^2, .., if the expression is a polynomial in x alone.
+    pub(super) fn polynomial_in_x(&self) -> Option<Vec<f64>> {
+        let mut stack: Vec<Vec<f64>> = Vec::new();
+        for &step in &self.program {
+            let result = match step {
+                Step::Number(c) => vec![c],
+                Step::X => vec![0.0, 1.0],
+                Step::Y => return None,
+                Step::Unary(f) => f.of_polynomial(&stack.pop()?)?,
+                Step::Binary(f) => {
+                    let b = stack.pop()?;
+                    f.of_polynomials(&stack.pop()?, &b)?
+                }
+            };
+            stack.push(result);
+        }
+        stack.pop()
+    }
+}
+
+/// The product of two polynomials by their coefficients.
+fn product(a: &[f64], b: &[f64]) -> Vec<f64> {
+    let mut product = vec![0.0; a.len() + b.len() - 1];
+    for (i, a) in a.iter().enumerate() {
+        for (j, b) in b.iter().enumerate() {
+            product[i + j] += a * b;
+        }
+    }
+    product
+}
+
+/// The longest polynomial that is multiplied out.
+const MOST_COEFFICIENTS: usize = 64;
+
+impl Unary {
+    fn of_polynomial(self, a: &[f64]) -> Option<Vec<f64>> {
+        match self {
+            Unary::Negate => Some(product(a, &[-1.0])),
+            Unary::WholePower(n) if n >= 0 => {
+                (0..n).try_fold(vec![1.0], |power, _| Binary::Multiply.of_polynomials(&power, a))
+            }
+            _ => None,
+        }
+    }
+}
+
+impl Binary {
+    fn of_polynomials(self, a: &[f64], b: &[f64]) -> Option<Vec<f64>> {
+        let sum = |sign: f64| {
+            let at = |p: &[f64], i: usize| p.get(i).copied().unwrap_or(0.0);
+            Some((0..a.len().max(b.len())).map(|i| at(a, i) + sign * at(b, i)).collect())
+        };
+        match (self, b) {
+            (Binary::Add, _) => sum(1.0),
+            (Binary::Subtract, _) => sum(-1.0),
+            (Binary::Multiply, _) if a.len() + b.len() <= MOST_COEFFICIENTS => Some(product(a, b)),
+            (Binary::Divide, [c]) => Some(a.iter().map(|a| a / c).collect()),
+            _ => None,
+        }
+    }
+}
+
 impl Function for Expression {
     fn at(&self, x: [f64; 2]) -> f64 {
         const FEW: usize = 16;
@@ -575,6 +638,23 @@ mod tests {
             ("0*y", None),
         ] {
             assert_eq!(parse(text).constant(), value, "{text}");
+        }
+    }
+
+    #[test]
+    fn polynomials_in_x_are_multiplied_out() {
+        for (text, coefficients) in [
+            ("3", Some(vec![3.0])),
+            ("1 - 2*x + x^2/4", Some(vec![1.0, -2.0, 0.25])),
+            ("-(x - 1)^3", Some(vec![1.0, -3.0, 3.0, -1.0])),
+            ("(x + 1)*(x - 1)", Some(vec![-1.0, 0.0, 1.0])),
+            ("y", None),
+            ("1/x", None),
+            ("sin(x)", None),
+            ("x^0.5", None),
+            ("(x^16)^16", None),
+        ] {
+            assert_eq!(parse(text).polynomial_in_x(), coefficients, "{text}");
         }
     }
 

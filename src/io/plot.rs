@@ -254,7 +254,7 @@ fn draw(panel: &Panel, figure: &Figure, left: f64) -> Group {
         let [a, b, c] = corners.map(page).map(|p| p.map(rounded));
         let d = format!("M{} {}L{} {} {} {}Z", a[0], a[1], b[0], b[1], c[0], c[1]);
         group.append(PathElement::new().set("d", d).set("fill", "none").set("stroke", GREY));
-        let text = format!("{:.2}", slope);
+        let text = format!("{slope:.2}");
         let text = text.trim_end_matches('0').trim_end_matches('.');
         let beside = label(text, b[0] + 4.0, (b[1] + c[1]) / 2.0 + 4.0, "start");
         group.append(beside.set("font-size", 11).set("fill", GREY));
@@ -292,7 +292,7 @@ mod tests {
         let text = figure(&sample(vec![[0.1, 1e-3], [0.2, 3e-3], [0.4, 8e-3]])).unwrap();
         // One mark more in the legend.
         assert_eq!(text.matches("<circle").count(), 4);
-        assert!(text.contains("A &lt; B") && text.contains(">1.5<"));
+        assert!(text.contains("A &lt; B") && text.contains("\n1.5\n"));
     }
 
     #[test]

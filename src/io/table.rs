@@ -247,7 +247,7 @@ impl<'s> Value<'s> {
     }
 
     /// An expression in x and y. One that is the same everywhere must be finite.
-    pub fn function(&self) -> Result<BoxedFunction, CaseError> {
+    pub fn expression(&self) -> Result<Expression, CaseError> {
         let Some(text) = self.as_text() else {
             return Err(self.wrong("an expression in quotes, such as \"0\""));
         };
@@ -260,8 +260,13 @@ impl<'s> Value<'s> {
                 let found = format!("{}, which is {value}", quoted(text, '"'));
                 Err(self.wrong_as(found, "a finite value"))
             }
-            _ => Ok(Box::new(expression)),
+            _ => Ok(expression),
         }
+    }
+
+    /// The same as a function.
+    pub fn function(&self) -> Result<BoxedFunction, CaseError> {
+        Ok(Box::new(self.expression()?))
     }
 
     /// The complaint that this should have been as `expected`.
