@@ -1,4 +1,5 @@
-//! The paths of the proofs as SMT-LIB 2 problems, for solvers that know nothing of the proof engine.
+//! The paths of the proofs as SMT-LIB 2 problems, for solvers that know nothing of the proof engine; and those of the
+//! statements that are tested in doubles, over all finite doubles, for a floating-point solver.
 //!
 //! One file per failing path. The head of a file says what to expect: `unsat` where this engine has a certificate, `sat`
 //! where it has a point, `unknown` where it has neither (paths of controls). A solver that contradicts it is news.
@@ -9,6 +10,7 @@ use std::path::Path;
 
 use crate::claim::{Engine, Subject};
 use crate::claims;
+use crate::proof::float::problems;
 use crate::proof::{Fate, analyse, smt};
 
 /// Writes the files into `directory` and answers how many.
@@ -19,10 +21,21 @@ pub fn export(directory: &Path) -> io::Result<usize> {
     std::fs::create_dir_all(directory)?;
     let (mut seen, mut count) = (BTreeSet::new(), 0);
     for check in claims::all().iter().flat_map(|claim| &claim.checks) {
-        let (Subject::Statement(statement), Engine::Proof) = (check.subject, check.engine) else {
+        let Subject::Statement(statement) = check.subject else { continue };
+        if !matches!(check.engine, Engine::Proof | Engine::Doubles)
+            || !seen.insert((check.engine, statement.name))
+        {
             continue;
-        };
-        if !seen.insert(statement.name) {
+        }
+        if check.engine == Engine::Doubles {
+            let expected = if check.control { "unknown" } else { "unsat" };
+            for (i, problem) in problems(statement.variables, statement.terms).iter().enumerate() {
+                let head =
+                    format!("; {}, in doubles, path {i}\n; expected: {expected}\n", statement.name);
+                let file = directory.join(format!("{}.double.{i}.smt2", statement.name));
+                std::fs::write(file, head + problem)?;
+                count += 1;
+            }
             continue;
         }
         let analysis = analyse(&statement);

@@ -74,17 +74,21 @@ impl<S: Scalar> Field<S> {
         }
     }
 
-    /// eps(u) at vertex k.
-    pub fn strain(&self, k: usize) -> Tensor<S> {
+    /// du_i/dx_j at vertex k.
+    pub fn gradient(&self, k: usize) -> [[S; 2]; 2] {
         let (m, l) = ((k + 1) % 3, (k + 2) % 3);
         let to = |i: usize| [0, 1].map(|c| self.vertices[i][c] - self.vertices[k][c]);
         let ([a, b], [c, d]) = (to(m), to(l));
         let determinant = a * d - b * c;
-        let gradient = |i: usize| {
+        [0, 1].map(|i| {
             let (p, q) = (self.along(k, m, i), self.along(k, l, i));
             [(p * d - q * b) / determinant, (a * q - c * p) / determinant]
-        };
-        let ([xx, xy], [yx, yy]) = (gradient(0), gradient(1));
+        })
+    }
+
+    /// eps(u) at vertex k.
+    pub fn strain(&self, k: usize) -> Tensor<S> {
+        let [[xx, xy], [yx, yy]] = self.gradient(k);
         [xx, yy, (xy + yx) / S::from(2)]
     }
 

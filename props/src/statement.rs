@@ -2,7 +2,7 @@
 
 use crate::Verdict;
 use crate::numbers::Exact;
-use crate::proof::Sym;
+use crate::proof::{Float, Sym};
 
 /// One predicate, for all engines. Made by the macro [`statement!`](crate::statement!).
 #[derive(Clone, Copy)]
@@ -19,6 +19,8 @@ pub struct Statement {
     pub exact: fn(&[Exact]) -> Verdict,
     /// Over doubles.
     pub doubles: fn(&[f64]) -> Verdict,
+    /// Over terms for a floating-point solver.
+    pub terms: fn(&[Float]) -> Verdict,
     /// Polynomials whose squares the search for certificates shall use.
     pub hints: fn(&[Sym]) -> Vec<Sym>,
     /// Moves random data onto the hypothesis, where it is an equation that draws would never meet.
@@ -53,6 +55,7 @@ macro_rules! statement {
             symbolic: |v| $predicate($crate::statement::take(v)),
             exact: |v| $predicate($crate::statement::take(v)),
             doubles: |v| $predicate($crate::statement::take(v)),
+            terms: |v| $predicate($crate::statement::take(v)),
             hints: |_| Vec::new(),
             prepare: |_| {},
         }

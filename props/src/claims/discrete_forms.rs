@@ -119,6 +119,33 @@ pub fn p2_reproduces_quadratic_functions<S: Ordered>(
     reproduces::<P2, S, 6, 3>([c0, c1, c2, c3, c4, c5], [x, y])
 }
 
+/// The rule for the element matrix is exact for products of two gradients: its mean of a polynomial of degree 2 (p - 1),
+/// at least 1, is the mean over the triangle.
+fn rule_is_exact<E: Element<N, M>, S: Ordered, const N: usize, const M: usize>(
+    c: [S; 6],
+) -> Verdict {
+    let (zero, one) = (S::from(0), S::from(1));
+    let (mut mean, mut weights, mut inside) = (zero, zero, true);
+    E::at_stiffness_points(|l: [S; 3], weight| {
+        mean = mean + weight * quadratic(c, l)[0];
+        weights = weights + weight;
+        inside = inside && l[0] + l[1] + l[2] == one;
+    });
+    ensure!(weights == one && inside);
+    // The means of x, y, x^2, xy, y^2 are 1/3, 1/3, 1/6, 1/12, 1/6.
+    let exact = S::from(12) * c[0] + S::from(4) * (c[1] + c[2]) + S::from(2) * (c[3] + c[5]) + c[4];
+    ensure!(S::from(12) * mean == exact);
+    Verdict::Holds("always")
+}
+
+/// The rules of P1 and P2.
+pub fn stiffness_rules_are_exact<S: Ordered>(c: [S; 6]) -> Verdict {
+    let zero = S::from(0);
+    let affine = rule_is_exact::<P1, S, 3, 2>([c[0], c[1], c[2], zero, zero, zero]);
+    ensure!(!affine.fails());
+    rule_is_exact::<P2, S, 6, 3>(c)
+}
+
 /// P1 does not reproduce quadratic functions.
 pub fn control_p1_reproduces_quadratic_functions<S: Ordered>(
     [c0, c1, c2, c3, c4, c5, x, y]: [S; 8],
@@ -229,9 +256,8 @@ mod row {
             ensure!(kernel.a_on(t, &u, &v) == definition.a_on(t, &u, &v));
             let gradients =
                 E::gradients(on_edge(0, Exact::from(0)), body.triangle(t).barycentric_gradients());
-            let [[xx, xy], [yx, yy]] = displacement_gradient(&body.local::<N>(t, &u), &gradients);
-            let strain = body.field::<N>(t, &u).strain(1);
-            ensure!([xx, yy, (xy + yx) / Exact::from(2)] == strain);
+            let gradient = displacement_gradient(&body.local::<N>(t, &u), &gradients);
+            ensure!(gradient == body.field::<N>(t, &u).gradient(1));
         }
         for (e, side) in body.contact.iter().enumerate() {
             let traces = definition.traces(side, &u);
@@ -409,8 +435,10 @@ mod row {
             [c0, c1, c2, c3, c4, c5, x, y],
             ["always"]
         );
-        let mut checks: Vec<_> = [geometry, dual, points, p1, p2].into_iter().map(proved).collect();
-        checks.extend([geometry, dual, points, p1, p2].map(tested));
+        let rules = statement!(stiffness_rules_are_exact, [c0, c1, c2, c3, c4, c5], ["always"]);
+        let all = [geometry, dual, points, p1, p2, rules];
+        let mut checks: Vec<_> = all.into_iter().map(proved).collect();
+        checks.extend(all.map(tested));
         checks.extend([
             by(Engine::Exact, "forms_on_random_bodies_are_their_definitions_for_p1", forms_p1),
             by(Engine::Exact, "forms_on_random_bodies_are_their_definitions_for_p2", forms_p2),

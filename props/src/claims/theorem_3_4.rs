@@ -149,6 +149,12 @@ fn bound<S: Ordered>([e, h, z, s, r, k]: [S; 6], factor: S) -> Verdict {
     ensure!(four * delta * k * e * s <= delta * delta * e * e + four * kappa * s * s);
     ensure!(two * k * h * s <= h * h + kappa * s * s);
     ensure!(two * z * r <= z * z + r * r);
+    // Times delta, so that what is left is a sum.
+    ensure!(delta > zero);
+    ensure!(two * delta * k * h * s <= delta * h * h + delta * kappa * s * s);
+    ensure!(two * delta * z * r <= delta * z * z + delta * r * r);
+    let right = e * h + kappa * h * h + z * r + k * (e + h) * s;
+    ensure!(delta * (delta * e * e + z * z) <= delta * right);
     let bracket =
         (two + two * kappa * delta + delta) * h * h + kappa * (two + delta) * s * s + delta * r * r;
     // Both sides times delta^2.

@@ -6,6 +6,7 @@
 
 pub mod certificate;
 pub mod explorer;
+pub mod float;
 pub mod polynomial;
 pub mod sampler;
 pub mod search;
@@ -13,6 +14,7 @@ mod simplex;
 pub mod smt;
 pub mod symbol;
 
+pub use float::Float;
 pub use symbol::Sym;
 
 use std::fmt::Write;
