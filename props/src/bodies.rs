@@ -163,6 +163,11 @@ impl Draw {
         body
     }
 
+    /// The same data without a turn, in contact at the bottom only.
+    pub fn upright(&self) -> Draw {
+        Draw { turn: 0, left_too: false, ..self.clone() }
+    }
+
     /// lambda, lifted where 3 lambda + 2 mu would not be positive.
     fn lambda(&self) -> Exact {
         let (lambda, mu) = (exact(self.lambda), exact(self.mu));

@@ -54,6 +54,7 @@ mod row {
     use super::*;
     use crate::bodies::{Body, Definition, Draw, Kernel, MaybeExact, Rule, bodies, rotated, sum};
     use crate::claim::{Claim, Engine, Outcome, by, control, proved, refuted, tested};
+    use crate::claims::curved;
     use crate::draws;
     use crate::naive::Tensor;
     use crate::numbers::Exact;
@@ -232,7 +233,7 @@ mod row {
             items: &["Lemma 3.1", "(3)"],
             title: "Consistency",
             paper: "Suppose that the solution u of (1)-(2) is in H^(3/2 + nu), nu > 0; then u is also solution of A_gamma(u, v^h) + int (1/gamma)[P_gamma(u)]+ P_gamma(v^h) = L(v^h) for all v^h in V^h.",
-            statement: "On random bodies, for every affine field with a stress and a gap that satisfy (2) (full contact, an open gap, touching without force; one or two contact sides; plane strain and stress; turned), the residual of (8) is exactly zero for every v^h that is zero on Gamma_D, for P1 and P2.",
+            statement: "On random bodies, for every affine field with a stress and a gap that satisfy (2) (full contact, an open gap, touching without force; one or two contact sides; plane strain and stress; turned), the residual of (8) is exactly zero for every v^h that is zero on Gamma_D, for P1 and P2. The same at a curved solution that changes from contact to a gap inside an edge (piecewise polynomial, so that all integrals are rational), for P1.",
             numbers: "rationals, no tolerance.",
             kernel: &[
                 "contact_edge::ContactEdge::new",
@@ -241,13 +242,23 @@ mod row {
                 "element::stiffness",
             ],
             preconditions: "(2) at the exact solution; f = 0; tractions sigma(u) n on Gamma_N.",
-            limits: "Curved exact solutions, whose residual needs integrals with an enclosed error, are not covered yet; nor is L as the solver assembles it. That (3) has one solution (Stampacchia) is taken from analysis.",
+            limits: "Solutions that are not piecewise polynomial, whose residual needs integrals with an enclosed error, are not covered; nor is L as the solver assembles it. That (3) has one solution (Stampacchia) is taken from analysis.",
             single: Some(
                 "The statement is about assembled quantities; over symbols it is the pointwise identity of row 4.",
             ),
             checks: vec![
                 by(Engine::Exact, "residual_vanishes_at_affine_solutions_for_p1", patch_p1),
                 by(Engine::Exact, "residual_vanishes_at_affine_solutions_for_p2", patch_p2),
+                by(
+                    Engine::Exact,
+                    "residual_vanishes_at_a_curved_solution_for_p1",
+                    curved::residual_vanishes,
+                ),
+                control(
+                    Engine::Exact,
+                    "control_contact_term_left_out",
+                    curved::without_the_contact_term,
+                ),
                 control(Engine::Exact, "control_obstacle_too_near", wrong_gap),
             ],
         }

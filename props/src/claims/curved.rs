@@ -1,0 +1,253 @@
+//! Lemma 3.1 at a curved solution that changes from contact to a gap at x = c, without any error: the field is a
+//! polynomial on either side of c, so every integral of the discrete equations at the exact u is a rational number.
+//!
+//! With A(y) = -(y - 3y^3 + 2y^4), B(y) = 1 - 3y^2 + 2y^3, p = 8 \[x - c\]+^3 and q = -4 \[c - x\]+^2 the field
+//! u = (A p', B p - A q) has u_n = -p, sigma_n = (lambda + 2 mu) q and no shear on y = 0, n = (0, -1): conditions (2).
+//! Body force and tractions follow from (1). P1, whose gradients and P0(v) come from the kernel.
+
+use num_rational::BigRational;
+use num_traits::{Signed, Zero};
+use signorini::kernel::P1;
+
+use crate::Verdict;
+use crate::bodies::{Body, Draw, Kernel, bodies};
+use crate::claim::Outcome;
+use crate::draws;
+use crate::numbers::Exact;
+use crate::proof::polynomial::{Polynomial, integer};
+use crate::{ensure, given};
+
+type Point = [BigRational; 2];
+
+fn constant(value: i64) -> Polynomial {
+    Polynomial::constant(integer(value))
+}
+
+fn power(base: &Polynomial, exponent: u8) -> Polynomial {
+    (0..exponent).fold(constant(1), |product, _| &product * base)
+}
+
+/// p with x and y replaced.
+fn composed(p: &Polynomial, x: &Polynomial, y: &Polynomial) -> Polynomial {
+    p.terms().fold(Polynomial::default(), |sum, (monomial, coefficient)| {
+        let exponent = |i: usize| monomial.get(i).copied().unwrap_or(0);
+        let product = &power(x, exponent(0)) * &power(y, exponent(1));
+        &sum + &product.scaled(coefficient)
+    })
+}
+
+fn factorial(n: u8) -> BigRational {
+    (1..=i64::from(n)).fold(integer(1), |product, k| product * integer(k))
+}
+
+/// a + s (b - a), in the variable with this number.
+fn between(a: &BigRational, b: &BigRational, variable: usize) -> Polynomial {
+    Polynomial::variable(variable).scaled(&(b - a))
+}
+
+/// The integral over a triangle.
+fn over_triangle(p: &Polynomial, [a, b, c]: [&Point; 3]) -> BigRational {
+    let coordinate = |i: usize| {
+        let start = Polynomial::constant(a[i].clone());
+        &(&start + &between(&a[i], &b[i], 0)) + &between(&a[i], &c[i], 1)
+    };
+    let area = (&b[0] - &a[0]) * (&c[1] - &a[1]) - (&b[1] - &a[1]) * (&c[0] - &a[0]);
+    let reference = composed(p, &coordinate(0), &coordinate(1));
+    let integral = reference.terms().fold(BigRational::zero(), |sum, (monomial, coefficient)| {
+        let exponent = |i: usize| monomial.get(i).copied().unwrap_or(0);
+        let (i, j) = (exponent(0), exponent(1));
+        sum + coefficient * factorial(i) * factorial(j) / factorial(i + j + 2)
+    });
+    integral * area.abs()
+}
+
+/// p along the segment from a to b, as a polynomial in s.
+fn along(p: &Polynomial, a: &Point, b: &Point) -> Polynomial {
+    let coordinate = |i: usize| &Polynomial::constant(a[i].clone()) + &between(&a[i], &b[i], 0);
+    composed(p, &coordinate(0), &coordinate(1))
+}
+
+/// The integral of a polynomial in s.
+fn over_interval(p: &Polynomial, [start, end]: [&BigRational; 2]) -> BigRational {
+    p.terms().fold(BigRational::zero(), |sum, (monomial, coefficient)| {
+        let exponent = monomial.first().copied().unwrap_or(0);
+        let at = |s: &BigRational| (0..=exponent).fold(integer(1), |product, _| product * s);
+        sum + coefficient * (at(end) - at(start)) / integer(i64::from(exponent) + 1)
+    })
+}
+
+/// Stress and body force of a polynomial field.
+struct Smooth {
+    u: [Polynomial; 2],
+    /// xx, yy, xy
+    stress: [Polynomial; 3],
+    force: [Polynomial; 2],
+}
+
+impl Smooth {
+    /// The solution right of c (a gap) or left of it (contact).
+    fn new(c: &BigRational, right: bool, [lambda, mu]: [&BigRational; 2]) -> Smooth {
+        let (x, y) = (Polynomial::variable(0), Polynomial::variable(1));
+        let scaled = |p: Polynomial, k: i64| p.scaled(&integer(k));
+        let (y3, y4) = (power(&y, 3), power(&y, 4));
+        let a = &(&scaled(y3.clone(), 3) - &y) - &scaled(y4, 2);
+        let b = &(&constant(1) - &scaled(power(&y, 2), 3)) + &scaled(y3, 2);
+        let d = &x - &Polynomial::constant(c.clone());
+        let zero = Polynomial::default();
+        let (p, q) =
+            if right { (scaled(power(&d, 3), 8), zero) } else { (zero, scaled(power(&d, 2), -4)) };
+        let u = [&a * &p.derivative(0), &(&b * &p) - &(&a * &q)];
+        let [xx, yy] = [u[0].derivative(0), u[1].derivative(1)];
+        let trace = (&xx + &yy).scaled(lambda);
+        let two_mu = mu * integer(2);
+        let shear = (&u[0].derivative(1) + &u[1].derivative(0)).scaled(mu);
+        let stress = [&trace + &xx.scaled(&two_mu), &trace + &yy.scaled(&two_mu), shear];
+        let force = [
+            -&(&stress[0].derivative(0) + &stress[2].derivative(1)),
+            -&(&stress[2].derivative(0) + &stress[1].derivative(1)),
+        ];
+        Smooth { u, stress, force }
+    }
+}
+
+/// The part of a polygon with x <= c, or x >= c.
+fn clipped(polygon: &[Point], c: &BigRational, right: bool) -> Vec<Point> {
+    let inside = |p: &Point| if right { p[0] >= *c } else { p[0] <= *c };
+    let mut result = Vec::new();
+    for (i, a) in polygon.iter().enumerate() {
+        let b = &polygon[(i + 1) % polygon.len()];
+        if inside(a) {
+            result.push(a.clone());
+        }
+        if inside(a) != inside(b) {
+            let s = (c - &a[0]) / (&b[0] - &a[0]);
+            result.push([c.clone(), &a[1] + s * (&b[1] - &a[1])]);
+        }
+    }
+    result
+}
+
+/// The part of \[0, 1\] where a + s (b - a) lies left or right of c, if any.
+fn cut(a: &BigRational, b: &BigRational, c: &BigRational, right: bool) -> Option<[BigRational; 2]> {
+    let inside = |x: &BigRational| if right { x >= c } else { x <= c };
+    let root = || (c - a) / (b - a);
+    match (inside(a), inside(b)) {
+        (true, true) => Some([integer(0), integer(1)]),
+        (true, false) => Some([integer(0), root()]),
+        (false, true) => Some([root(), integer(1)]),
+        (false, false) => None,
+    }
+}
+
+/// v on a triangle as a polynomial, by the kernel's barycentric gradients.
+fn test_function(body: &Body, t: usize, v: &[[Exact; 2]]) -> [Polynomial; 2] {
+    let gradients = body.triangle(t).barycentric_gradients();
+    let (corners, origin) = (body.triangles[t], body.vertices[body.triangles[t][0]]);
+    [0, 1].map(|component| {
+        (0..3).fold(Polynomial::default(), |sum, i| {
+            let mut l = constant(i64::from(i == 0));
+            for c in 0..2 {
+                let offset = &Polynomial::variable(c) - &Polynomial::constant(origin[c].value());
+                l = &l + &offset.scaled(&gradients[i][c].value());
+            }
+            &sum + &l.scaled(&v[corners[i]][component].value())
+        })
+    })
+}
+
+/// The left side of the discrete equations at the exact u minus L(v), for a v that is zero at the top.
+fn residual(body: &Body, c: &BigRational, v: &[[Exact; 2]], theta: i64) -> BigRational {
+    let place = |vertex: usize| body.vertices[vertex].clone().map(|x| x.value());
+    let (lambda, mu) = (body.hooke.lambda.value(), body.hooke.mu.value());
+    let sides = [false, true].map(|right| (right, Smooth::new(c, right, [&lambda, &mu])));
+    let kernel = Kernel::<3, 2>::new::<P1>(body);
+    let mut total = BigRational::zero();
+    for (right, exact) in &sides {
+        for (t, corners) in body.triangles.iter().enumerate() {
+            let v = test_function(body, t, v);
+            let strain =
+                [v[0].derivative(0), v[1].derivative(1), &v[0].derivative(1) + &v[1].derivative(0)];
+            let mut density = Polynomial::default();
+            for i in 0..3 {
+                density = &density + &(&exact.stress[i] * &strain[i]);
+            }
+            for i in 0..2 {
+                density = &density - &(&exact.force[i] * &v[i]);
+            }
+            let polygon = clipped(&corners.map(place), c, *right);
+            for k in 1..polygon.len().saturating_sub(1) {
+                total += over_triangle(&density, [&polygon[0], &polygon[k], &polygon[k + 1]]);
+            }
+        }
+        for &(t, i) in &body.free {
+            let [a, b] = [1, 2].map(|k| place(body.triangles[t][(i + k) % 3]));
+            let Some([start, end]) = cut(&a[0], &b[0], c, *right) else { continue };
+            let (nx, ny) = (&b[1] - &a[1], &a[0] - &b[0]);
+            let [xx, yy, xy] = &exact.stress;
+            let traction = [&xx.scaled(&nx) + &xy.scaled(&ny), &xy.scaled(&nx) + &yy.scaled(&ny)];
+            let v = test_function(body, t, v);
+            let work = &(&traction[0] * &v[0]) + &(&traction[1] * &v[1]);
+            total -= over_interval(&along(&work, &a, &b), [&start, &end]);
+        }
+        for (e, side) in body.contact.iter().enumerate() {
+            let [a, b] = [1, 2].map(|k| place(body.triangles[side.triangle][(side.local + k) % 3]));
+            let Some([start, end]) = cut(&a[0], &b[0], c, *right) else { continue };
+            let (gamma, length) = (body.gamma(side).value(), side.length.value());
+            let (u_n, sigma_n) = (along(&-&exact.u[1], &a, &b), along(&exact.stress[1], &a, &b));
+            let line = |[at_0, at_1]: [Exact; 2]| {
+                &Polynomial::constant(at_0.value()) + &between(&at_0.value(), &at_1.value(), 0)
+            };
+            let (p0, stress) = (line(kernel.p0(e, v)), line(kernel.sigma_n(e, v)));
+            let p = &u_n - &sigma_n.scaled(&gamma);
+            let middle = (&start + &end) / integer(2);
+            let mut density = -&(&sigma_n * &stress).scaled(&gamma);
+            if p.at(&[middle]).is_positive() {
+                density = &density + &(&p * &p0).scaled(&(integer(theta) / &gamma));
+            }
+            total += over_interval(&density, [&start, &end]) * length;
+        }
+    }
+    total
+}
+
+/// The field is a solution: (2) holds on y = 0 on either side of c, as polynomials or at the ends.
+fn satisfies_2(c: &BigRational, moduli: [&BigRational; 2]) -> bool {
+    [false, true].into_iter().all(|right| {
+        let exact = Smooth::new(c, right, moduli);
+        let floor = |p: &Polynomial| p.substituted(1, &BigRational::zero());
+        let (u_n, sigma_n) = (floor(&-&exact.u[1]), floor(&exact.stress[1]));
+        let away = c + integer(if right { 1 } else { -1 });
+        floor(&exact.stress[2]).is_zero()
+            && (&u_n * &sigma_n).is_zero()
+            && if right { u_n.at(&[away]).is_negative() } else { sigma_n.at(&[away]).is_negative() }
+    })
+}
+
+fn consistent(draw: &Draw, (n, d): (i64, i64), theta: i64) -> Verdict {
+    Exact::scope(|| {
+        let body = draw.upright().body();
+        let c = integer(n) / integer(n + d);
+        let v = body.clamped(body.drawn(0));
+        ensure!(satisfies_2(&c, [&body.hooke.lambda.value(), &body.hooke.mu.value()]));
+        let cut_edge = body.contact.iter().any(|side| {
+            let x = [1, 2]
+                .map(|k| body.vertices[body.triangles[side.triangle][(side.local + k) % 3]][0]);
+            let c = Exact::new(c.clone());
+            (x[0] < c) != (x[1] < c)
+        });
+        given!(cut_edge);
+        ensure!(residual(&body, &c, &v, theta).is_zero());
+        Verdict::Holds("an edge with contact and gap")
+    })
+}
+
+/// The residual vanishes at the curved solution.
+pub fn residual_vanishes() -> Outcome {
+    let data = (bodies(1), draws::positive());
+    draws::hold(25, data, &["an edge with contact and gap"], |(draw, c)| consistent(draw, *c, 1))
+}
+
+/// Without the contact term: the penalty-free method is not consistent.
+pub fn without_the_contact_term() -> Outcome {
+    draws::reject(25, (bodies(1), draws::positive()), |(draw, c)| consistent(draw, *c, 0))
+}
