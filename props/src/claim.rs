@@ -126,15 +126,6 @@ pub fn model_checked(harness: Harness) -> Check {
     }
 }
 
-/// Runs a check whose subject panics when something is wrong.
-pub fn caught(run: impl FnOnce() -> String + std::panic::UnwindSafe) -> Outcome {
-    std::panic::catch_unwind(run).map_err(|panic| {
-        let text = panic.downcast_ref::<String>().cloned();
-        text.or_else(|| panic.downcast_ref::<&str>().map(|s| (*s).to_owned()))
-            .unwrap_or_else(|| "a panic without a message".to_owned())
-    })
-}
-
 /// One row of the ledger.
 pub struct Claim {
     /// Its number in the ledger.

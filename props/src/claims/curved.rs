@@ -157,7 +157,7 @@ fn test_function(body: &Body, t: usize, v: &[[Exact; 2]]) -> [Polynomial; 2] {
 
 /// The left side of the discrete equations at the exact u minus L(v), for a v that is zero at the top.
 fn residual(body: &Body, c: &BigRational, v: &[[Exact; 2]], theta: i64) -> BigRational {
-    let place = |vertex: usize| body.vertices[vertex].clone().map(|x| x.value());
+    let place = |vertex: usize| body.vertices[vertex].map(|x| x.value());
     let (lambda, mu) = (body.hooke.lambda.value(), body.hooke.mu.value());
     let sides = [false, true].map(|right| (right, Smooth::new(c, right, [&lambda, &mu])));
     let kernel = Kernel::<3, 2>::new::<P1>(body);

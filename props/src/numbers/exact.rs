@@ -10,7 +10,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use num_bigint::BigInt;
 use num_rational::BigRational;
-use num_traits::{Signed, ToPrimitive, Zero};
+use num_traits::{Signed, Zero};
 use signorini::kernel::Scalar;
 
 struct Arena {
@@ -62,11 +62,6 @@ impl Exact {
     /// The value of a finite double, exactly.
     pub fn of_double(value: f64) -> Exact {
         Exact::new(BigRational::from_float(value).expect("a finite double"))
-    }
-
-    /// The nearest double, or close to it: for messages and for comparisons with a tolerance.
-    pub fn to_double(self) -> f64 {
-        self.value().to_f64().unwrap_or(f64::NAN)
     }
 
     /// Its value.
@@ -171,7 +166,7 @@ mod tests {
             let answer = Exact::from(value).split(|_| Exact::from(10), |_| Exact::from(20));
             assert_eq!(answer, Exact::from(expected));
         }
-        assert_eq!((-Exact::ratio(7, 2)).abs().to_double(), 3.5);
+        assert_eq!((-Exact::ratio(7, 2)).abs(), Exact::of_double(3.5));
     }
 
     #[test]

@@ -15,7 +15,7 @@ use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
 use super::explorer::{Fact, Sense};
-use super::polynomial::{Polynomial, integer};
+use super::polynomial::Polynomial;
 
 /// weight * product of facts * product of squares
 #[derive(Clone, Debug)]
@@ -100,19 +100,22 @@ impl Certificate {
     pub fn factors(&self) -> usize {
         self.terms.iter().map(|t| t.facts.len() + t.squares.len()).max().unwrap_or(0)
     }
-
-    /// Adds weight * product of facts.
-    pub fn with(mut self, weight: i64, facts: &[usize], squares: &[Polynomial]) -> Certificate {
-        let term =
-            Term { weight: integer(weight), facts: facts.to_vec(), squares: squares.to_vec() };
-        self.terms.push(term);
-        self
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::proof::polynomial::integer;
+
+    impl Certificate {
+        /// Adds weight * product of facts and squares.
+        fn with(mut self, weight: i64, facts: &[usize], squares: &[Polynomial]) -> Certificate {
+            let term =
+                Term { weight: integer(weight), facts: facts.to_vec(), squares: squares.to_vec() };
+            self.terms.push(term);
+            self
+        }
+    }
 
     fn x() -> Polynomial {
         Polynomial::variable(0)
