@@ -60,8 +60,8 @@ pub fn write(
     stage("picture.svg", draw(case, solution).map(String::into_bytes))?;
     let seconds = Seconds {
         read: read.as_secs_f64(),
-        assemble: times.assemble.as_secs_f64(),
-        solve: times.solve.as_secs_f64(),
+        assemble: times.assemble().as_secs_f64(),
+        solve: times.solve().as_secs_f64(),
         write: start.elapsed().as_secs_f64(),
     };
     let results = results(case, solution, seconds.clone())?;

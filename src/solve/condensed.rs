@@ -13,12 +13,13 @@ use faer::{Accum, Col, Mat, Par};
 use super::factor::Factor;
 use super::newton::{Edges, Reduced};
 use super::ordering::nested_dissection;
+use super::times::{Stopwatch, Times};
 use super::{NewtonReport, Settings, SolveError, Status};
 use crate::fem::discretization::{Discretization, Functional};
 use crate::fem::matrix::{self, LowerTriangle, Neighbours, Numbering};
 use crate::kernel::edge_integral::ExactEdge;
 
-/// The solution of method (8) at the nodes, and how it was found.
+/// The solution of method (8) at the nodes, how it was found, and how long that took.
 ///
 /// # Errors
 /// [`SolveError::NotPositiveDefinite`] when gamma0 is beyond the true limit, and [`SolveError::OutOfMemory`].
@@ -26,15 +27,20 @@ pub fn solve<E, const N: usize, const M: usize>(
     d: &Discretization<E, N, M>,
     system: System,
     settings: &Settings,
-) -> Result<(Vec<[f64; 2]>, NewtonReport), SolveError>
+) -> Result<(Vec<[f64; 2]>, NewtonReport, Times), SolveError>
 where
     E: ExactEdge<f64, N, M>,
 {
-    let prescribed = d.constraints.lift();
+    let mut times = Times::default();
+    let mut watch = Stopwatch::start();
     let body = system.factor()?;
+    times.factor = watch.lap();
+
+    let prescribed = d.constraints.lift();
     let mut z: Vec<f64> =
         body.numbering.gather(&d.linear_residual(&prescribed).values).iter().map(|r| -r).collect();
     body.factor.forward(&mut z);
+    times.forward = watch.lap();
 
     let x = body.contact_columns(d);
     let compliance = gram(&x);
@@ -45,11 +51,15 @@ where
             free[e * M + a] += p[a];
         }
     }
+    times.compliance = watch.lap();
 
     let reference = d.free_norm(&d.load) + d.free_norm(&d.residual_and_load(&prescribed));
+    times.judge = watch.lap();
+
     let edges = ContactEdges { d, body: &body, reference };
     let reduced = Reduced { edges: &edges, compliance: &compliance, free: &free };
     let iterate = reduced.minimise(vec![0.0; free.len()], settings.max_iterations)?;
+    times.newton = watch.lap();
 
     let w = Col::from_fn(iterate.w.len(), |i| iterate.w[i]);
     for (z, xw) in z[body.layer..].iter_mut().zip((&x * w).iter()) {
@@ -58,8 +68,11 @@ where
     body.factor.backward(&mut z);
     let mut u = prescribed;
     body.numbering.scatter(&z, &mut u);
+    times.backward = watch.lap();
+
     let report = judge(d, &d.residual(&u), reference, iterate.residuals, settings);
-    Ok((u, report))
+    times.judge += watch.lap();
+    Ok((u, report, times))
 }
 
 /// A residual this many unit roundoffs times its magnitudes is what the factorisation leaves.

@@ -7,8 +7,7 @@ pub mod newton;
 pub mod ordering;
 pub mod solution;
 pub mod theorem;
-
-use std::time::{Duration, Instant};
+pub mod times;
 
 use serde::Serialize;
 use thiserror::Error;
@@ -17,6 +16,8 @@ use self::condensed::System;
 pub use self::ladder::{Ladder, LadderError, Level};
 pub use self::solution::{GammaReport, Quantities, Solution};
 pub use self::theorem::Theorem;
+use self::times::Stopwatch;
+pub use self::times::Times;
 use crate::fem::contact_line::{Coercivity, EdgeRule};
 use crate::fem::{DataError, Discretization, Problem};
 use crate::kernel::edge_integral::ExactEdge;
@@ -152,15 +153,6 @@ pub enum SolveError {
     OutOfMemory,
 }
 
-/// How long the parts of a solve took.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Times {
-    /// Nodes, constraints, loads, contact edges, order of elimination, matrix.
-    pub assemble: Duration,
-    /// Factorisation, Newton's method, substitution.
-    pub solve: Duration,
-}
-
 /// Solves `problem` by method (8).
 ///
 /// # Errors
@@ -185,14 +177,15 @@ fn solve_with<E, const N: usize, const M: usize>(
 where
     E: ExactEdge<f64, N, M>,
 {
-    let start = Instant::now();
+    let mut watch = Stopwatch::start();
     let d = discretize::<E, N, M>(problem, method)?;
+    let discretize = watch.lap();
     let system = System::new(&d);
-    let assemble = start.elapsed();
-    let start = Instant::now();
-    let (u, newton) = condensed::solve(&d, system, settings)?;
-    let solve = start.elapsed();
-    Ok((Solution::new(&d, u, newton), Times { assemble, solve }))
+    let matrix = watch.lap();
+    let (u, newton, times) = condensed::solve(&d, system, settings)?;
+    watch.lap();
+    let solution = Solution::new(&d, u, newton);
+    Ok((solution, Times { discretize, matrix, evaluate: watch.lap(), ..times }))
 }
 
 /// What [`solve`] would solve: everything short of a matrix is built and checked.

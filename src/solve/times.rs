@@ -1,0 +1,55 @@
+//! Where the time of a solve goes.
+
+use std::time::{Duration, Instant};
+
+/// How long the parts of a solve took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Times {
+    /// Nodes, constraints, loads, contact edges.
+    pub discretize: Duration,
+    /// Order of elimination and matrix.
+    pub matrix: Duration,
+    /// Sparse Cholesky factorisation.
+    pub factor: Duration,
+    /// The right-hand side and the substitution forward.
+    pub forward: Duration,
+    /// The contact functionals: X, G, y0.
+    pub compliance: Duration,
+    /// Newton's method.
+    pub newton: Duration,
+    /// The substitution backward.
+    pub backward: Duration,
+    /// The residual of the solution in the full system, and its reference.
+    pub judge: Duration,
+    /// Stresses, contact pressure, resultants.
+    pub evaluate: Duration,
+}
+
+impl Times {
+    /// All that comes before the factorisation.
+    pub fn assemble(&self) -> Duration {
+        self.discretize + self.matrix
+    }
+
+    /// From the factorisation to a solution that has been judged.
+    pub fn solve(&self) -> Duration {
+        let substitution = self.forward + self.backward;
+        self.factor + substitution + self.compliance + self.newton + self.judge
+    }
+}
+
+/// Tells the time since it was last asked.
+pub(super) struct Stopwatch(Instant);
+
+impl Stopwatch {
+    pub fn start() -> Self {
+        Stopwatch(Instant::now())
+    }
+
+    pub fn lap(&mut self) -> Duration {
+        let now = Instant::now();
+        let lap = now - self.0;
+        self.0 = now;
+        lap
+    }
+}
