@@ -13,6 +13,7 @@ analysis of the pattern kept where the code can keep it.
 """
 
 import json
+import subprocess
 import sys
 import time
 
@@ -51,6 +52,12 @@ def peak_memory():
     """The most resident memory that this process has had, in bytes."""
     with open("/proc/self/status") as status:
         return next(1024 * int(line.split()[1]) for line in status if line.startswith("VmHWM"))
+
+
+def debian(package):
+    """The version of an installed Debian package."""
+    query = ["dpkg-query", "-W", "-f", "${Version}", package]
+    return subprocess.run(query, capture_output=True, text=True, check=True).stdout
 
 
 def main(solvers, versions, run):

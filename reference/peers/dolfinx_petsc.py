@@ -9,7 +9,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 from ufl import dot, grad, inner, sym, tr
 
-from common import main, newton
+from common import debian, main, newton
 
 LAMBDA = MU = 1.0
 
@@ -120,5 +120,6 @@ def run(n, gamma0, solver, clock):
     return fem.assemble_scalar(fem.form(inner(sigma(u), sym(grad(u))) * ufl.dx)), steps
 
 
-versions = {"DOLFINx": dolfinx.__version__, "PETSc": ".".join(map(str, PETSc.Sys.getVersion()))}
+versions = {"DOLFINx": dolfinx.__version__, "PETSc": ".".join(map(str, PETSc.Sys.getVersion())), "MUMPS": debian("libmumps-5.5"),
+            "CHOLMOD": debian("libcholmod3"), "OpenBLAS": debian("libopenblas0-pthread")}
 main(["mumps", "cholmod"], versions, run)

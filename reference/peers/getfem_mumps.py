@@ -1,11 +1,9 @@
 """GetFEM with MUMPS. See common.py."""
 
-import subprocess
-
 import getfem as gf
 import numpy as np
 
-from common import main, newton
+from common import debian, main, newton
 
 LAMBDA = MU = 1.0
 FLOOR = 1
@@ -80,5 +78,4 @@ def run(n, gamma0, solver, clock):
 
 
 # The module does not know its version.
-version = subprocess.run(["dpkg-query", "-W", "-f", "${Version}", "python3-getfem"], capture_output=True, text=True, check=True).stdout
-main(["mumps"], {"GetFEM": version}, run)
+main(["mumps"], {"GetFEM": debian("python3-getfem"), "MUMPS": debian("libmumps-seq-5.5")}, run)

@@ -8,7 +8,7 @@ import sksparse
 from skfem.helpers import ddot, sym_grad, trace
 from sksparse.cholmod import cholesky
 
-from common import main, newton
+from common import debian, main, newton
 
 LAMBDA = MU = 1.0
 
@@ -111,5 +111,6 @@ def run(n, gamma0, solver, clock):
     return u @ (k @ u), steps
 
 
-versions = {"scikit-fem": skfem.__version__, "SciPy": scipy.__version__, "NumPy": np.__version__, "scikit-sparse": sksparse.__version__}
+versions = {"scikit-fem": skfem.__version__, "SciPy": scipy.__version__, "NumPy": np.__version__, "scikit-sparse": sksparse.__version__,
+            "CHOLMOD": debian("libcholmod3"), "OpenBLAS": debian("libopenblas0-pthread")}
 main(["superlu", "cholmod"], versions, run)

@@ -1,0 +1,104 @@
+//! One solve in a process of its own, for its peak memory.
+
+use std::fs;
+use std::process::Command;
+use std::time::Instant;
+
+use serde::{Deserialize, Serialize};
+use signorini::solve::ContactQuadrature;
+
+use crate::problem::{self, Size};
+
+/// The argument by which this program calls itself.
+pub const FLAG: &str = "--measure";
+
+/// What is run, and by which integrals.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Task {
+    /// The contact solve, contact integrals exact.
+    Contact,
+    /// A linear solve and a contact solve with 4 Gauss points, as the other codes do it.
+    LikePeers,
+}
+
+/// What the child found.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Report {
+    /// Of the linear solve: all before the factorisation. 0 if there is none.
+    pub assembly: f64,
+    /// Of the linear solve: factorisation and substitution.
+    pub factor: f64,
+    /// Of the contact solve, to displacements.
+    pub contact: f64,
+    /// Newton's method.
+    pub steps: usize,
+    /// a(u, u)
+    pub energy: f64,
+    /// gamma0
+    pub gamma0: f64,
+    /// The peak resident memory in bytes.
+    pub memory: u64,
+}
+
+/// Runs `task` in a new process.
+pub fn start(task: Task, size: Size) -> Report {
+    let program = std::env::current_exe().expect("the path of this program");
+    let output = Command::new(program)
+        .args([FLAG, name(task), &size.degree.to_string(), &size.n.to_string()])
+        .output()
+        .expect("this program runs");
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{task:?} {size:?}: {error}");
+    serde_json::from_slice(&output.stdout).expect("a report")
+}
+
+fn name(task: Task) -> &'static str {
+    match task {
+        Task::Contact => "contact",
+        Task::LikePeers => "like-peers",
+    }
+}
+
+/// Runs what [`start`] asks for and prints the report.
+pub fn run(arguments: &[String]) {
+    let [task, degree, n] = arguments else {
+        panic!("a task, a degree and n; found {arguments:?}")
+    };
+    let task = [Task::Contact, Task::LikePeers].into_iter().find(|&t| name(t) == task);
+    let task = task.expect("a known task");
+    let [degree, n] = [degree, n].map(|text| text.parse().expect("a number"));
+    let report = solve(task, Size { degree, n });
+    println!("{}", serde_json::to_string(&report).expect("numbers"));
+}
+
+fn solve(task: Task, Size { degree, n }: Size) -> Report {
+    let problem = problem::block(n);
+    let (quadrature, linear) = match task {
+        Task::Contact => (ContactQuadrature::Exact, None),
+        Task::LikePeers => {
+            // What happens once per process is over after this, as in the scripts for the other codes.
+            problem::linear(&problem::block(8), degree);
+            (ContactQuadrature::Gauss(4), Some(problem::linear(&problem, degree)))
+        }
+    };
+    let start = Instant::now();
+    let (solution, times) = problem::contact(&problem, &problem::method(degree, quadrature));
+    let contact = start.elapsed() - times.evaluate;
+    Report {
+        assembly: linear.map_or(0.0, |t| t.assemble.as_secs_f64()),
+        factor: linear.map_or(0.0, |t| t.solve.as_secs_f64()),
+        contact: contact.as_secs_f64(),
+        steps: solution.newton.iterations(),
+        energy: solution.quantities.energy,
+        gamma0: solution.gamma.gamma0,
+        memory: peak_memory(),
+    }
+}
+
+/// VmHWM, in bytes.
+fn peak_memory() -> u64 {
+    let status = fs::read_to_string("/proc/self/status").expect("Linux");
+    let line = status.lines().find(|line| line.starts_with("VmHWM")).expect("VmHWM");
+    let kilobytes = line.split_whitespace().nth(1).and_then(|word| word.parse::<u64>().ok());
+    1024 * kilobytes.expect("a number")
+}

@@ -1,0 +1,202 @@
+//! How far the factorisation is from what the machine can do, and whether the order of elimination is a good one.
+
+use std::time::{Duration, Instant};
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::matmul::matmul;
+use faer::sparse::linalg::cholesky::simplicial::{
+    prefactorize_symbolic_cholesky, prefactorize_symbolic_cholesky_scratch,
+};
+use faer::sparse::linalg::cholesky::{
+    SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
+};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::{Accum, Mat, Par, Side};
+use signorini::fem::matrix::{LowerTriangle, Neighbours};
+use signorini::kernel::edge_integral::ExactEdge;
+use signorini::kernel::{P1, P2};
+use signorini::solve::factor::Factor;
+
+use crate::own::Measured;
+use crate::problem::{self, Size};
+use crate::table::{table, three, time};
+
+/// The matrix of the body without contact, and the time its order took.
+fn body(Size { degree, n }: Size) -> (LowerTriangle, Duration) {
+    let problem = problem::block(n);
+    match degree {
+        1 => body_with(&problem::without_contact::<P1, 3, 2>(&problem)),
+        _ => body_with(&problem::without_contact::<P2, 6, 3>(&problem)),
+    }
+}
+
+fn body_with<E, const N: usize, const M: usize>(
+    d: &signorini::fem::Discretization<E, N, M>,
+) -> (LowerTriangle, Duration)
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let neighbours = Neighbours::new(d.space.nodes().len(), d.space.elements());
+    let start = Instant::now();
+    let order = problem::dissect(d, &neighbours);
+    let time = start.elapsed();
+    (problem::matrix(d, &neighbours, &order).1, time)
+}
+
+fn pattern(matrix: &LowerTriangle) -> SymbolicSparseColMatRef<'_, usize> {
+    let n = matrix.starts.len() - 1;
+    SymbolicSparseColMatRef::new_checked(n, n, &matrix.starts, None, &matrix.rows)
+}
+
+/// The operations of a Cholesky factorisation without any that meet a zero: the sum of the squared column counts of L.
+fn operations(matrix: &LowerTriangle) -> f64 {
+    let lower = pattern(matrix);
+    let n = lower.ncols();
+    let upper = lower.transpose().to_col_major().expect("memory");
+    let entries = matrix.rows.len();
+    let mut memory = MemBuffer::new(prefactorize_symbolic_cholesky_scratch::<usize>(n, entries));
+    let (mut etree, mut counts) = (vec![0_isize; n], vec![0_usize; n]);
+    let stack = MemStack::new(&mut memory);
+    prefactorize_symbolic_cholesky(&mut etree, &mut counts, upper.as_ref(), stack);
+    counts.iter().map(|&c| (c * c) as f64).sum()
+}
+
+/// Operations per second of faer's dense product, one thread.
+fn dense_peak() -> f64 {
+    const SIZE: usize = 1024;
+    let a = Mat::from_fn(SIZE, SIZE, |i, j| (i + 2 * j) as f64 / SIZE as f64);
+    let mut c = Mat::zeros(SIZE, SIZE);
+    let least = (0..10)
+        .map(|_| {
+            let start = Instant::now();
+            matmul(c.as_mut(), Accum::Replace, a.as_ref(), a.as_ref(), 1.0, Par::Seq);
+            start.elapsed()
+        })
+        .min()
+        .unwrap_or_default();
+    2.0 * (SIZE as f64).powi(3) / least.as_secs_f64()
+}
+
+/// (v)
+pub fn table_of_limits(n: usize, repetitions: usize, own: &[Measured]) -> String {
+    let peak = dense_peak();
+    let rows: Vec<Vec<String>> = [1, 2]
+        .map(|degree| Size { degree, n })
+        .into_iter()
+        .map(|size| {
+            let (matrix, _) = body(size);
+            let (least, factor) = least_factor(&matrix, repetitions);
+            let rate = operations(&matrix) / least.as_secs_f64();
+            let unknowns = size.unknowns() as f64;
+            let factor = 8.0 * factor.stored_entries() as f64 / unknowns;
+            let memory = own.iter().find(|m| m.size == size).map(|m| m.memory / unknowns);
+            vec![
+                format!("P{}", size.degree),
+                three(operations(&matrix) / 1e9),
+                time(least),
+                three(rate / 1e9),
+                format!("{:.0} %", 100.0 * rate / peak),
+                format!("{factor:.0}"),
+                memory.map_or("not measured".to_owned(), |m| format!("{m:.0}")),
+                memory.map_or("not measured".to_owned(), |m| three(m / factor)),
+            ]
+        })
+        .collect();
+    let head = [
+        "",
+        "operations (10^9)",
+        "factorisation",
+        "10^9 per second",
+        "of the dense peak",
+        "factor, bytes per unknown",
+        "peak of the contact solve, bytes per unknown",
+        "peak / factor",
+    ];
+    format!(
+        "## Distance to the limit
+
+The sparse factorisation at n = {n}, analysis included, against faer's dense product of matrices of order 1024:
+{} x 10^9 operations per second on one thread. Operations are the sum of the squared column counts of L.
+
+{}",
+        three(peak / 1e9),
+        table(&head, &rows)
+    )
+}
+
+fn least_factor(matrix: &LowerTriangle, repetitions: usize) -> (Duration, Factor) {
+    let mut least = Duration::MAX;
+    let mut last = None;
+    for _ in 0..repetitions {
+        drop(last.take());
+        let start = Instant::now();
+        last = Some(Factor::new(matrix).expect("a clamped body"));
+        least = least.min(start.elapsed());
+    }
+    (least, last.expect("at least one repetition"))
+}
+
+/// faer's approximate minimum degree on the same matrix: order and analysis, numeric part, stored entries of L.
+fn minimum_degree(matrix: &LowerTriangle) -> (Duration, Duration, usize) {
+    let start = Instant::now();
+    let symbolic = factorize_symbolic_cholesky(
+        pattern(matrix),
+        Side::Lower,
+        SymmetricOrdering::Amd,
+        Default::default(),
+    )
+    .expect("memory");
+    let analysis = start.elapsed();
+    let start = Instant::now();
+    let values = numeric(matrix, &symbolic);
+    (analysis, start.elapsed(), values.len())
+}
+
+fn numeric(matrix: &LowerTriangle, symbolic: &SymbolicCholesky<usize>) -> Vec<f64> {
+    let scratch = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
+    let mut memory = MemBuffer::new(scratch);
+    let mut values = vec![0.0; symbolic.len_val()];
+    let a = SparseColMatRef::new(pattern(matrix), &matrix.values);
+    let stack = MemStack::new(&mut memory);
+    let (regular, settings) = Default::default();
+    symbolic
+        .factorize_numeric_llt(&mut values, a, Side::Lower, regular, Par::Seq, stack, settings)
+        .expect("a clamped body");
+    values
+}
+
+/// Nested dissection against minimum degree.
+pub fn orderings(n: usize, repetitions: usize) -> String {
+    let mut rows = Vec::new();
+    for degree in [1, 2] {
+        let size = Size { degree, n };
+        let (matrix, mut order) = body(size);
+        let mut other = minimum_degree(&matrix);
+        let mut factorisation = Duration::MAX;
+        let mut stored = 0;
+        for _ in 0..repetitions {
+            order = order.min(body(size).1);
+            let (least, factor) = least_factor(&matrix, 1);
+            (factorisation, stored) = (factorisation.min(least), factor.stored_entries());
+            drop(factor);
+            let (analysis, numeric, entries) = minimum_degree(&matrix);
+            other = (other.0.min(analysis), other.1.min(numeric), entries);
+        }
+        let row = |name: &str, time_of_order: String, total: Duration, stored: usize| {
+            let entries = three(stored as f64 / 1e6);
+            vec![format!("P{degree}"), name.to_owned(), time_of_order, time(total), entries]
+        };
+        rows.push(row("nested dissection", time(order), order + factorisation, stored));
+        let analysis = format!("{} with analysis", time(other.0));
+        rows.push(row("minimum degree (faer)", analysis, other.0 + other.1, other.2));
+    }
+    let head = ["", "order", "order alone", "order, analysis, factorisation", "10^6 entries of L"];
+    format!(
+        "## Order of elimination
+
+The matrix of the linear solve at n = {n}.
+
+{}",
+        table(&head, &rows)
+    )
+}

@@ -1,0 +1,98 @@
+//! How fast the contact solve is: beside one linear elastic solve, beside other codes, beside the machine's limits.
+//!
+//! ```text
+//! cargo bench --bench speed                         our own tables
+//! cargo bench --bench speed -- --peers --large      all of docs/speed.md
+//! cargo bench --bench speed -- --quick              small sizes, nothing written: does it run?
+//! ```
+//!
+//! Prints Markdown, and writes it to docs/speed.md with docs/speed.svg. Times are minima of runs that take turns; memory is
+//! the peak of a process that does nothing else.
+
+#![allow(missing_docs, reason = "a program")]
+
+mod child;
+mod figure;
+mod limits;
+mod own;
+mod peers;
+mod problem;
+mod provenance;
+mod table;
+
+use std::fs;
+use std::path::Path;
+
+use problem::Size;
+
+/// What the command line asks for.
+struct Plan {
+    quick: bool,
+    peers: bool,
+    large: bool,
+}
+
+impl Plan {
+    fn sizes(&self) -> Vec<Size> {
+        let (linear, quadratic) = if self.quick { (64, 32) } else { (512, 256) };
+        let up_to = |degree, most| {
+            (5..10).map(|k| 1 << k).filter(move |&n| n <= most).map(move |n| Size { degree, n })
+        };
+        up_to(1, linear).chain(up_to(2, quadratic)).collect()
+    }
+
+    fn repetitions(&self) -> usize {
+        if self.quick { 2 } else { 5 }
+    }
+
+    /// The size at which details are shown.
+    fn detail(&self) -> usize {
+        if self.quick { 32 } else { 256 }
+    }
+
+    fn peer_sizes(&self) -> &'static [usize] {
+        if self.quick { &[16] } else { &[64, 128, 256] }
+    }
+}
+
+const LARGE: [Size; 2] = [Size { degree: 1, n: 1024 }, Size { degree: 2, n: 512 }];
+
+fn main() {
+    // Cargo adds --bench.
+    let arguments: Vec<String> = std::env::args().skip(1).filter(|a| a != "--bench").collect();
+    if arguments.first().is_some_and(|a| a == child::FLAG) {
+        return child::run(&arguments[1..]);
+    }
+    let known = ["--quick", "--peers", "--large"];
+    if let Some(unknown) = arguments.iter().find(|a| !known.contains(&a.as_str())) {
+        eprintln!("unknown argument {unknown}; expected {}", known.join(", "));
+        std::process::exit(2);
+    }
+    let has = |name: &str| arguments.iter().any(|a| a == name);
+    let plan = Plan { quick: has("--quick"), peers: has("--peers"), large: has("--large") };
+    let own: Vec<own::Measured> =
+        plan.sizes().into_iter().map(|size| own::measure(size, plan.repetitions())).collect();
+    let mut text = vec![
+        provenance::head(&arguments),
+        own::ratio_table(&own),
+        own::growth_table(&own),
+        own::newton_table(&own),
+        own::phases(plan.detail(), plan.repetitions()),
+        limits::table_of_limits(plan.detail(), plan.repetitions(), &own),
+        limits::orderings(plan.detail(), plan.repetitions()),
+    ];
+    let rivals = plan.peers.then(|| peers::measure(plan.peer_sizes(), plan.repetitions()));
+    text.push(match &rivals {
+        Some(rivals) => peers::tables(rivals),
+        None => "## Other codes\n\nNot measured in this run: `--peers` does.\n".to_owned(),
+    });
+    text.push(if plan.large { own::large(&LARGE) } else { own::NOT_LARGE.to_owned() });
+    let text = text.join("\n");
+    print!("{text}");
+    if !plan.quick {
+        let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+        let figure = figure::draw(&own, rivals.as_deref().unwrap_or(&[]));
+        fs::write(docs.join("speed.md"), text).expect("docs/ is writable");
+        fs::write(docs.join("speed.svg"), figure).expect("docs/ is writable");
+    }
+}

@@ -1,0 +1,298 @@
+//! Our own times: the contact solve over one linear solve, growth, Newton's method, phases.
+
+use std::fs;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use signorini::io::{Case, outputs};
+use signorini::solve::{self, ContactQuadrature, Times};
+
+use crate::child::{self, Task};
+use crate::problem::{self, LinearTimes, Size};
+use crate::table::{bytes, seconds, table, three, time};
+
+/// Minima at one size.
+pub struct Measured {
+    pub size: Size,
+    /// One linear elastic solve.
+    pub linear: LinearTimes,
+    /// The contact solve, to judged displacements.
+    pub contact: Duration,
+    /// Of it: Newton's method.
+    pub newton: Duration,
+    pub steps: usize,
+    /// The peak memory of a contact solve in bytes.
+    pub memory: f64,
+}
+
+impl Measured {
+    pub fn linear_total(&self) -> Duration {
+        self.linear.assemble + self.linear.solve
+    }
+}
+
+/// Small sizes are run more often: up to so many times,
+const MANY: usize = 50;
+
+/// within this time.
+const BRIEF: Duration = Duration::from_millis(500);
+
+/// Linear and contact solves in turn, at least `repetitions` of each.
+pub fn measure(size: Size, repetitions: usize) -> Measured {
+    let problem = problem::block(size.n);
+    let method = problem::method(size.degree, ContactQuadrature::Exact);
+    let mut linear: Option<LinearTimes> = None;
+    let (mut contact, mut newton, mut steps) = (Duration::MAX, Duration::MAX, 0);
+    let (start, mut runs) = (Instant::now(), 0);
+    while runs < repetitions || (runs < MANY && start.elapsed() < BRIEF) {
+        runs += 1;
+        let run = problem::linear(&problem, size.degree);
+        if linear.is_none_or(|best| run.assemble + run.solve < best.assemble + best.solve) {
+            linear = Some(run);
+        }
+        let (solution, times) = problem::contact(&problem, &method);
+        contact = contact.min(times.assemble() + times.solve());
+        newton = newton.min(times.newton);
+        steps = solution.newton.iterations();
+    }
+    let linear = linear.expect("at least one repetition");
+    let memory = child::start(Task::Contact, size).memory as f64;
+    eprintln!("P{} n = {}: measured", size.degree, size.n);
+    Measured { size, linear, contact, newton, steps, memory }
+}
+
+fn ratio(a: Duration, b: Duration) -> f64 {
+    a.as_secs_f64() / b.as_secs_f64()
+}
+
+fn name(size: Size) -> [String; 3] {
+    [format!("P{}", size.degree), size.n.to_string(), size.unknowns().to_string()]
+}
+
+/// (i)
+pub fn ratio_table(own: &[Measured]) -> String {
+    let rows: Vec<Vec<String>> = own
+        .iter()
+        .map(|m| {
+            let mut row = name(m.size).to_vec();
+            row.extend([
+                time(m.linear.assemble),
+                time(m.linear.solve),
+                time(m.contact),
+                m.steps.to_string(),
+                format!("**{:.2}**", ratio(m.contact, m.linear_total())),
+            ]);
+            row
+        })
+        .collect();
+    let head = [
+        "",
+        "n",
+        "unknowns",
+        "assembly",
+        "factor and solve",
+        "contact solve",
+        "Newton steps",
+        "contact / linear",
+    ];
+    format!(
+        "## The contact solve over one linear elastic solve
+
+The linear solve is of the same body with a free floor: same mesh, data, assembly and factorisation, ordered by the same
+nested dissection without a contact layer.
+
+{}",
+        table(&head, &rows)
+    )
+}
+
+/// The exponent of y in x, by least squares on logarithms.
+fn exponent(points: &[(f64, f64)]) -> f64 {
+    let logs: Vec<(f64, f64)> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();
+    let count = logs.len() as f64;
+    let (mx, my) = logs.iter().fold((0.0, 0.0), |m, p| (m.0 + p.0 / count, m.1 + p.1 / count));
+    let (above, below) = logs
+        .iter()
+        .fold((0.0, 0.0), |(a, b), (x, y)| (a + (x - mx) * (y - my), b + (x - mx) * (x - mx)));
+    above / below
+}
+
+/// (iii)
+pub fn growth_table(own: &[Measured]) -> String {
+    let rows: Vec<Vec<String>> = own
+        .iter()
+        .map(|m| {
+            let unknowns = m.size.unknowns() as f64;
+            let mut row = name(m.size).to_vec();
+            row.extend([
+                three(unknowns / m.contact.as_secs_f64() / 1e3),
+                bytes(m.memory),
+                format!("{:.0}", m.memory / unknowns),
+            ]);
+            row
+        })
+        .collect();
+    let head =
+        ["", "n", "unknowns", "thousand unknowns per second", "peak memory", "bytes per unknown"];
+    let mut text = format!("## Growth\n\n{}\n", table(&head, &rows));
+    for degree in [1, 2] {
+        let last: Vec<&Measured> = own.iter().filter(|m| m.size.degree == degree).collect();
+        let last = &last[last.len().saturating_sub(3)..];
+        let fit = |y: &dyn Fn(&Measured) -> f64| {
+            let points: Vec<(f64, f64)> =
+                last.iter().map(|m| (m.size.unknowns() as f64, y(m))).collect();
+            exponent(&points)
+        };
+        text += &format!(
+            "P{degree}, n = {} to {}: contact solve ~ N^{:.2}, linear solve ~ N^{:.2}, memory ~ N^{:.2} in N unknowns.\n",
+            last[0].size.n,
+            last[last.len() - 1].size.n,
+            fit(&|m| m.contact.as_secs_f64()),
+            fit(&|m| m.linear_total().as_secs_f64()),
+            fit(&|m| m.memory),
+        );
+    }
+    text
+}
+
+/// Newton's method against n.
+pub fn newton_table(own: &[Measured]) -> String {
+    let rows: Vec<Vec<String>> = own
+        .iter()
+        .map(|m| {
+            let mut row = name(m.size).to_vec();
+            let share = ratio(m.newton, m.contact);
+            let step = m.newton / u32::try_from(m.steps.max(1)).unwrap_or(u32::MAX);
+            row.extend([m.steps.to_string(), time(step), percent(share)]);
+            row
+        })
+        .collect();
+    let head = ["", "n", "unknowns", "steps", "one step", "all steps, of the contact solve"];
+    format!(
+        "## Newton's method
+
+From the linear solution to the rounding level, contact integrals exact, on the contact functionals.
+
+{}",
+        table(&head, &rows)
+    )
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.1} %", 100.0 * share)
+}
+
+/// The times of `signorini solve` with reading and writing.
+struct Command {
+    read: Duration,
+    times: Times,
+    write: Duration,
+}
+
+impl Command {
+    fn run(file: &Path, folder: &Path) -> Self {
+        let start = Instant::now();
+        let case = Case::read(file).expect("a valid case");
+        let read = start.elapsed();
+        let (solution, times) =
+            solve::solve(&case.problem, &case.method, &case.settings).expect("a solution");
+        let start = Instant::now();
+        outputs::write(folder, &case, &solution, read, times).expect("a writable folder");
+        Command { read, times, write: start.elapsed() }
+    }
+
+    fn parts(&self) -> [(&'static str, Duration); 11] {
+        let t = &self.times;
+        [
+            ("reading the case, making the mesh", self.read),
+            ("nodes, constraints, loads, contact edges", t.discretize),
+            ("order of elimination, matrix", t.matrix),
+            ("factorisation, analysis included", t.factor),
+            ("right-hand side, substitution forward", t.forward),
+            ("contact functionals: X, G", t.compliance),
+            ("Newton's method", t.newton),
+            ("substitution backward", t.backward),
+            ("residual in the full system", t.judge),
+            ("stresses, pressure, resultants", t.evaluate),
+            ("writing the files", self.write),
+        ]
+    }
+}
+
+/// (iv)
+pub fn phases(n: usize, repetitions: usize) -> String {
+    let folder = std::env::temp_dir().join(format!("signorini-speed-{}", std::process::id()));
+    fs::create_dir_all(&folder).expect("a writable folder for temporary files");
+    let columns = [1, 2].map(|degree| {
+        let file = folder.join("block.toml");
+        fs::write(&file, case_file(degree, n)).expect("a writable folder");
+        let runs: Vec<Command> =
+            (0..repetitions).map(|_| Command::run(&file, &folder.join("out"))).collect();
+        let parts = runs[0].parts().map(|part| part.0);
+        let least = |k: usize| runs.iter().map(|r| r.parts()[k].1).min().unwrap_or_default();
+        std::array::from_fn::<_, 11, _>(|k| (parts[k], least(k)))
+    });
+    fs::remove_dir_all(&folder).expect("the folder made above");
+    let totals = columns.each_ref().map(|c| c.iter().map(|part| part.1).sum::<Duration>());
+    let rows: Vec<Vec<String>> = (0..11)
+        .map(|k| {
+            let mut row = vec![columns[0][k].0.to_owned()];
+            for (column, total) in columns.iter().zip(totals) {
+                row.extend([time(column[k].1), percent(ratio(column[k].1, total))]);
+            }
+            row
+        })
+        .collect();
+    format!(
+        "## Where the time goes
+
+`signorini solve` at n = {n}, the least of {repetitions} runs for each phase.
+
+{}",
+        table(&["phase", "P1", "share", "P2", "share"], &rows)
+    )
+}
+
+fn case_file(degree: usize, n: usize) -> String {
+    format!(
+        "[mesh]
+rectangle = {{ width = 1, height = 1, nx = {n}, ny = {n} }}
+[material]
+lambda = 1
+mu = 1
+[load]
+body = [\"0\", \"-4 + 10*x\"]
+[boundary.top]
+displacement = [\"0\", \"0\"]
+[boundary.bottom]
+contact = {{ gap = \"0\" }}
+[method]
+degree = {degree}
+"
+    )
+}
+
+/// What stands in place of [`large`].
+pub const NOT_LARGE: &str = "## Large\n\nNot measured in this run: `--large` does.\n";
+
+/// One run each in a process of its own.
+pub fn large(sizes: &[Size]) -> String {
+    let rows: Vec<Vec<String>> = sizes
+        .iter()
+        .map(|&size| {
+            let report = child::start(Task::Contact, size);
+            let unknowns = size.unknowns() as f64;
+            let mut row = name(size).to_vec();
+            row.extend([
+                seconds(report.contact),
+                report.steps.to_string(),
+                bytes(report.memory as f64),
+                format!("{:.0}", report.memory as f64 / unknowns),
+            ]);
+            row
+        })
+        .collect();
+    let head =
+        ["", "n", "unknowns", "contact solve", "Newton steps", "peak memory", "bytes per unknown"];
+    format!("## Large\n\nOne run each.\n\n{}", table(&head, &rows))
+}

@@ -1,0 +1,141 @@
+//! The case that is timed, and the plain linear elastic solve beside it.
+
+use std::collections::BTreeMap;
+use std::time::{Duration, Instant};
+
+use signorini::fem::matrix::{self, LowerTriangle, Neighbours, Numbering};
+use signorini::fem::{BoxedFunction, Condition, Diagonal, Discretization, Problem, Rectangle};
+use signorini::io::Expression;
+use signorini::kernel::edge_integral::ExactEdge;
+use signorini::kernel::{Material, P1, P2, Plane};
+use signorini::solve::factor::Factor;
+use signorini::solve::ordering::nested_dissection;
+use signorini::solve::{
+    self, ContactQuadrature, Degree, Method, Settings, Solution, Status, Times,
+};
+
+/// A size of the case.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Size {
+    /// 1 or 2.
+    pub degree: usize,
+    /// Cells along a side.
+    pub n: usize,
+}
+
+impl Size {
+    /// Degrees of freedom, prescribed ones included.
+    pub fn unknowns(self) -> usize {
+        let nodes = self.degree * self.n + 1;
+        2 * nodes * nodes
+    }
+}
+
+/// The block on the floor: the unit square, clamped at the top, pressed down on the left and lifted on the right.
+pub fn block(n: usize) -> Problem {
+    let expression = |text: &str| -> BoxedFunction {
+        Box::new(text.parse::<Expression>().expect("a valid expression"))
+    };
+    let zero = || expression("0");
+    let square = Rectangle { width: 1.0, height: 1.0, nx: n, ny: n, diagonal: Diagonal::Right };
+    Problem {
+        mesh: square.mesh().expect("a valid mesh"),
+        material: Material::lame(1.0, 1.0, Plane::Strain),
+        body_force: [zero(), expression("-4 + 10*x")],
+        conditions: BTreeMap::from([
+            ("top".to_owned(), Condition::Displacement([Some(zero()), Some(zero())])),
+            ("bottom".to_owned(), Condition::Contact { gap: zero() }),
+        ]),
+    }
+}
+
+/// Method (8) with gamma0 at half the coercivity limit.
+pub fn method(degree: usize, quadrature: ContactQuadrature) -> Method {
+    let degree = if degree == 1 { Degree::One } else { Degree::Two };
+    Method { degree, quadrature, ..Method::default() }
+}
+
+/// The whole contact solve, from the mesh to stresses and resultants.
+pub fn contact(problem: &Problem, method: &Method) -> (Solution, Times) {
+    let (solution, times) =
+        solve::solve(problem, method, &Settings::default()).expect("the block has a solution");
+    assert_eq!(solution.newton.status, Status::Converged, "{:?}", solution.newton);
+    (solution, times)
+}
+
+/// How long a linear solve took.
+#[derive(Clone, Copy, Debug)]
+pub struct LinearTimes {
+    /// Nodes, constraints, loads, order of elimination, matrix.
+    pub assemble: Duration,
+    /// Factorisation and substitution.
+    pub solve: Duration,
+}
+
+/// One linear elastic solve of the same body with a free floor: same mesh, data, assembly and factorisation.
+pub fn linear(problem: &Problem, degree: usize) -> LinearTimes {
+    match degree {
+        1 => linear_with::<P1, 3, 2>(problem),
+        _ => linear_with::<P2, 6, 3>(problem),
+    }
+}
+
+fn linear_with<E, const N: usize, const M: usize>(problem: &Problem) -> LinearTimes
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let start = Instant::now();
+    let d = without_contact::<E, N, M>(problem);
+    let neighbours = Neighbours::new(d.space.nodes().len(), d.space.elements());
+    let (numbering, matrix) = matrix(&d, &neighbours, &dissect(&d, &neighbours));
+    let assemble = start.elapsed();
+    let start = Instant::now();
+    let factor = Factor::new(&matrix).expect("a clamped body");
+    // What is prescribed is zero, so that the loads are the right-hand side.
+    let mut x = numbering.gather(&d.load);
+    factor.forward(&mut x);
+    factor.backward(&mut x);
+    let mut u = d.constraints.lift();
+    numbering.scatter(&x, &mut u);
+    std::hint::black_box(&u);
+    LinearTimes { assemble, solve: start.elapsed() }
+}
+
+/// The discretization of the body with a free floor.
+pub fn without_contact<E, const N: usize, const M: usize>(
+    problem: &Problem,
+) -> Discretization<'_, E, N, M>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let method = method(E::DEGREE, ContactQuadrature::Exact);
+    let mut d = solve::discretize(problem, &method).expect("a valid problem");
+    d.contact.clear();
+    d
+}
+
+/// The nodes in the order of nested dissection, without a contact layer.
+pub fn dissect<E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    neighbours: &Neighbours,
+) -> Vec<usize>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let nodes = d.space.nodes();
+    nested_dissection(nodes, neighbours, &vec![false; nodes.len()])
+}
+
+/// The matrix with the nodes in this order.
+pub fn matrix<E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    neighbours: &Neighbours,
+    order: &[usize],
+) -> (Numbering, LowerTriangle)
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let numbering = Numbering::new(order, d.constraints.values());
+    let matrix = matrix::assemble(d, &numbering, neighbours);
+    (numbering, matrix)
+}
