@@ -1,7 +1,7 @@
 //! The order in which the nodes are eliminated: nested dissection by coordinates, the contact layer last.
 //!
-//! A set of nodes is cut by a line across its longer extent; the nodes on one side of it that have neighbours on the other
-//! separate the two halves and are eliminated after both. With the contact layer (all nodes of triangles that own a
+//! A set of nodes is cut by a line across its longer extent; the nodes on one side of it that have neighbours on the other,
+//! on the side where they are fewer, separate the two halves and are eliminated after both. With the contact layer (all nodes of triangles that own a
 //! contact edge) as the last separator of all, its Schur complement is the trailing block of the Cholesky factor.
 
 use crate::fem::matrix::Neighbours;
@@ -16,7 +16,7 @@ pub fn nested_dissection(
     last: &[bool],
 ) -> Vec<usize> {
     let mut order = Vec::with_capacity(places.len());
-    let mut dissection = Dissection { places, neighbours, upper: vec![false; places.len()] };
+    let mut dissection = Dissection { places, neighbours, side: vec![Side::Outside; places.len()] };
     let mut interior: Vec<usize> = (0..places.len()).filter(|&node| !last[node]).collect();
     dissection.cut(&mut interior, &mut order);
     order.extend((0..places.len()).filter(|&node| last[node]));
@@ -26,8 +26,15 @@ pub fn nested_dissection(
 struct Dissection<'a> {
     places: &'a [[f64; 2]],
     neighbours: &'a Neighbours,
-    /// Scratch: which nodes lie in the upper half of the set at hand.
-    upper: Vec<bool>,
+    /// Scratch: where each node lies with regard to the set at hand.
+    side: Vec<Side>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Side {
+    Outside,
+    Lower,
+    Upper,
 }
 
 impl Dissection<'_> {
@@ -37,22 +44,28 @@ impl Dissection<'_> {
             order.extend_from_slice(set);
             return;
         };
-        // Lower half without separator, separator, upper half.
         let lower = partition(set, |node| self.places[node][axis] < line);
-        for &node in &set[lower..] {
-            self.upper[node] = true;
-        }
-        let inside = partition(&mut set[..lower], |node| {
-            !self.neighbours.of(node).iter().any(|&other| self.upper[other])
-        });
-        for &node in &set[lower..] {
-            self.upper[node] = false;
-        }
-        let (inside, rest) = set.split_at_mut(inside);
-        let (separator, upper) = rest.split_at_mut(lower - inside.len());
-        self.cut(inside, order);
+        self.mark(&set[..lower], Side::Lower);
+        self.mark(&set[lower..], Side::Upper);
+        let touches = |node: usize, side: Side| {
+            self.neighbours.of(node).iter().any(|&other| self.side[other] == side)
+        };
+        // The lower half without its border, then the border; the border of the upper half, then the rest of it.
+        let low = partition(&mut set[..lower], |node| !touches(node, Side::Upper));
+        let high = lower + partition(&mut set[lower..], |node| touches(node, Side::Lower));
+        self.mark(set, Side::Outside);
+        let separator = if lower - low <= high - lower { low..lower } else { lower..high };
+        let (rest, upper) = set.split_at_mut(separator.end);
+        let (lower, separator) = rest.split_at_mut(separator.start);
+        self.cut(lower, order);
         self.cut(upper, order);
         order.extend_from_slice(separator);
+    }
+
+    fn mark(&mut self, nodes: &[usize], side: Side) {
+        for &node in nodes {
+            self.side[node] = side;
+        }
     }
 
     /// The axis across which to cut, and where: at the middle node along it, moved so that both halves have nodes.
