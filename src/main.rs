@@ -4,6 +4,8 @@
 //! Exit codes: 0 solved; 1 could not solve, or could not write; 2 the case is wrong, and then nothing is written.
 
 #[cfg(not(kani))]
+mod engine;
+#[cfg(not(kani))]
 mod summary;
 
 #[cfg(not(kani))]
@@ -28,7 +30,7 @@ mod command {
     use signorini::io::{Case, outputs};
     use signorini::solve::{self, Degree, LadderError, SolveError, Status};
 
-    use crate::summary;
+    use crate::{engine, summary};
 
     /// Unilateral (Signorini) contact in linear elasticity by Nitsche's method.
     #[derive(Parser)]
@@ -50,6 +52,12 @@ mod command {
             /// The folder to write to [default: out/ and the name of the case]
             #[arg(long, value_name = "DIR")]
             out: Option<PathBuf>,
+            /// Who solves: this program, or the reference in FEniCSx, which runs on many processes
+            #[arg(long, value_enum, default_value_t = Engine::Signorini)]
+            engine: Engine,
+            /// MPI processes for the engine fenicsx
+            #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
+            ranks: u16,
         },
         /// Read a case and report its sizes and the limit of gamma0; solve nothing, write nothing
         Check {
@@ -81,6 +89,12 @@ mod command {
         Perturbed,
     }
 
+    #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+    enum Engine {
+        Signorini,
+        Fenicsx,
+    }
+
     /// The case is wrong.
     const WRONG: u8 = 2;
     /// The case is right, but there is no result.
@@ -99,7 +113,12 @@ mod command {
     pub fn run() -> ExitCode {
         let arguments = Arguments::parse();
         let text = match &arguments.task {
-            Task::Solve { case, out } => solve(case, out.as_deref()),
+            Task::Solve { case, out, engine: Engine::Signorini, .. } => solve(case, out.as_deref()),
+            Task::Solve { case, out, engine: Engine::Fenicsx, ranks } => {
+                engine::fenicsx(case, &folder(case, out.as_deref()), *ranks)
+                    .map(|(results, files)| summary::solved(&results, &files))
+                    .map_err(|e| failure(if e.is_wrong_case() { WRONG } else { FAILED })(&e))
+            }
             Task::Check { case } => check(case),
             Task::Convergence { case, levels, degree, mesh, out } => {
                 let wanted = Wanted { levels: usize::from(*levels), degree, mesh };
@@ -131,9 +150,9 @@ mod command {
             return Err(Failure { message, code: FAILED });
         }
         let folder = folder(file, out);
-        let (files, seconds) = outputs::write(&folder, &case, &solution, read, times)
+        let (files, results) = outputs::write(&folder, &case, &solution, read, times)
             .map_err(|e| failure(FAILED)(&e))?;
-        Ok(summary::solved(&case, &solution, &seconds, &files))
+        Ok(summary::solved(&results, &files))
     }
 
     /// What `--out` says, or out/ and the name of the case.

@@ -4,11 +4,9 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use signorini::io::convergence::Study;
-use signorini::io::result::Seconds;
+use signorini::io::result::{GammaChoice, NewtonHistory, Results};
 use signorini::io::{Case, numbers};
-use signorini::solve::{
-    ContactQuadrature, GammaReport, NewtonReport, Outline, Settings, Solution, Status,
-};
+use signorini::solve::{ContactQuadrature, NewtonReport, Outline, Settings, Status};
 
 /// Lines of a name and a text.
 #[derive(Default)]
@@ -25,14 +23,19 @@ impl Lines {
     }
 }
 
-/// Of a solved case.
-pub fn solved(case: &Case, s: &Solution, seconds: &Seconds, files: &[PathBuf]) -> String {
-    let q = &s.quantities;
-    let mut lines = Lines::titled(&case.title);
-    lines.line("mesh", sizes(case, s.nodes.len(), s.contact.len(), s.degree));
-    lines.line("coercivity", coercivity(&s.gamma));
-    lines.line("newton", newton(&s.newton));
-    lines.line("", history(&s.newton));
+/// Of a solved case, whoever solved it.
+pub fn solved(r: &Results, files: &[PathBuf]) -> String {
+    let (q, seconds) = (&r.quantities, &r.seconds);
+    // P1 has its nodes at the vertices alone.
+    let degree = if r.mesh.dofs == 2 * r.mesh.vertices { 1 } else { 2 };
+    let mut lines = Lines::titled(&r.title);
+    lines.line(
+        "mesh",
+        sizes(r.mesh.triangles, degree, r.mesh.dofs, r.mesh.contact_edges, r.mesh.h_max),
+    );
+    lines.line("coercivity", coercivity(&r.gamma));
+    lines.line("newton", newton(&r.newton));
+    lines.line("", history(&r.newton.residuals));
     lines.line(
         "contact",
         format!(
@@ -65,9 +68,7 @@ pub fn solved(case: &Case, s: &Solution, seconds: &Seconds, files: &[PathBuf]) -
             time(seconds.write)
         ),
     );
-    if let Some(exact) = &case.exact
-        && let Ok(errors) = s.errors(&case.problem, &*exact.solution)
-    {
+    if let Some(errors) = &r.errors {
         lines.line(
             "errors",
             format!(
@@ -86,11 +87,14 @@ pub fn solved(case: &Case, s: &Solution, seconds: &Seconds, files: &[PathBuf]) -
 
 /// Of a case that was only checked.
 pub fn checked(case: &Case, outline: &Outline) -> String {
+    let mesh = &case.problem.mesh;
+    let triangles = mesh.triangles().len();
+    let h_max = (0..triangles).map(|t| mesh.diameter(t)).fold(0.0, f64::max);
     let degree = case.method.degree.number();
     let mut lines = Lines::titled(&case.title);
-    lines.line("mesh", sizes(case, outline.nodes, outline.contact_edges, degree));
+    lines.line("mesh", sizes(triangles, degree, 2 * outline.nodes, outline.contact_edges, h_max));
     lines.line("prescribed", format!("{} of the unknowns", outline.prescribed));
-    lines.line("coercivity", coercivity(&outline.gamma));
+    lines.line("coercivity", coercivity(&GammaChoice::from(&outline.gamma)));
     lines.line(
         "quadrature",
         match case.method.quadrature {
@@ -116,52 +120,44 @@ pub fn not_converged(file: &Path, settings: &Settings, report: &NewtonReport) ->
         report.residual,
         count(report.iterations(), "Newton step"),
         settings.tolerance,
-        history(report)
+        history(&report.residuals)
     )
 }
 
-fn sizes(case: &Case, nodes: usize, contact_edges: usize, degree: usize) -> String {
-    let mesh = &case.problem.mesh;
-    let h = (0..mesh.triangles().len()).map(|t| mesh.diameter(t)).fold(0.0, f64::max);
-    format!(
-        "{} P{degree} triangles, {} unknowns, {}, h = {}",
-        mesh.triangles().len(),
-        2 * nodes,
-        count(contact_edges, "contact edge"),
-        short(h)
-    )
+fn sizes(triangles: usize, degree: usize, dofs: usize, contact_edges: usize, h: f64) -> String {
+    let contact = count(contact_edges, "contact edge");
+    format!("{triangles} P{degree} triangles, {dofs} unknowns, {contact}, h = {}", short(h))
 }
 
-fn coercivity(gamma: &GammaReport) -> String {
-    let [a, b] = gamma.coercivity.limiting_edge;
+fn coercivity(gamma: &GammaChoice) -> String {
+    let [a, b] = gamma.limiting_edge;
     let verdict = if gamma.kappa < 1.0 { "< 1: coercive" } else { ">= 1: no promise" };
     format!(
         "gamma0 = {} (limit {} at the edge {}-{}), kappa = {} {verdict}",
         short(gamma.gamma0),
-        short(gamma.coercivity.limit()),
+        short(gamma.limit),
         vector(a),
         vector(b),
         short(gamma.kappa)
     )
 }
 
-fn newton(report: &NewtonReport) -> String {
-    let verdict = match report.status {
+fn newton(newton: &NewtonHistory) -> String {
+    let verdict = match newton.status {
         Status::Converged => "converged",
         Status::ConvergedToRounding => "converged to rounding",
         Status::NotConverged => "not converged",
     };
     format!(
         "{verdict} in {}, {}, relative residual {:.1e}",
-        count(report.iterations(), "step"),
-        count(report.factorizations, "factorisation"),
-        report.residual
+        count(newton.iterations, "step"),
+        count(newton.factorizations, "factorisation"),
+        newton.residual
     )
 }
 
-fn history(report: &NewtonReport) -> String {
-    let residuals: Vec<String> = report.residuals.iter().map(|r| format!("{r:.0e}")).collect();
-    residuals.join(" ")
+fn history(residuals: &[f64]) -> String {
+    residuals.iter().map(|r| format!("{r:.0e}")).collect::<Vec<_>>().join(" ")
 }
 
 fn count(n: usize, what: &str) -> String {

@@ -14,7 +14,13 @@ def result(problem, method, gamma, u, history, seconds):
         "title": problem.case.title,
         "mesh": problem.sizes | {"h_max": problem.h_max},
         "gamma": gamma,
-        "newton": {"iterations": history.iterations, "residuals": history.residuals, "factorizations": history.factorizations},
+        "newton": {
+            "iterations": history.iterations,
+            "residuals": history.residuals,
+            "residual": history.residuals[-1],
+            "factorizations": history.factorizations,
+            "status": history.outcome,
+        },
         "quantities": quantities(problem, method, u),
     }
     if problem.case.exact:

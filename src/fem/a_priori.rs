@@ -74,7 +74,9 @@ mod tests {
                     ..Errors::default()
                 };
                 let most = (0..=10_000)
-                    .map(|i| largest(kappa, hsq, f64::from(i) / 10_000.0 * 1.5707963))
+                    .map(|i| {
+                        largest(kappa, hsq, f64::from(i) / 10_000.0 * std::f64::consts::FRAC_PI_2)
+                    })
                     .fold(0.0, f64::max);
                 let (sharp, plain) = (sharp(kappa, &eta), plain(kappa, &eta));
                 assert!((sharp - most).abs() <= 1e-6 * sharp, "{kappa} {hsq:?}: {sharp} {most}");

@@ -8,7 +8,7 @@
 //! P(u) has the given gap, P(v^h) its interpolant, as method (8) does. Triangles and edges are cut where u is less smooth,
 //! edges also at the roots of P(v^h).
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::contact_line::ContactLineEdge;
 use super::exact::ExactSolution;
@@ -25,7 +25,7 @@ use crate::kernel::{ContactPoint, Element, Triangle, positive_part};
 pub const POINTS: usize = 10;
 
 /// The distances, each a norm.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Errors {
     /// a(e, e)^(1/2)
     pub energy: f64,

@@ -37,7 +37,7 @@ pub enum OutputError {
     Problem(#[from] fem::DataError),
 }
 
-/// Writes the files of a case into `folder` and returns their paths.
+/// Writes the files of a case into `folder`; returns their paths and the content of result.json.
 ///
 /// # Errors
 /// A folder or file that can't be written, a number that is not finite.
@@ -47,7 +47,7 @@ pub fn write(
     solution: &Solution,
     read: Duration,
     times: Times,
-) -> Result<(Vec<PathBuf>, Seconds), OutputError> {
+) -> Result<(Vec<PathBuf>, Results), OutputError> {
     let start = Instant::now();
     let mut output = Output::new(folder)?;
     let mut stage = |file, bytes: Result<Vec<u8>, DataError>| -> Result<(), OutputError> {
@@ -64,9 +64,9 @@ pub fn write(
         solve: times.solve().as_secs_f64(),
         write: start.elapsed().as_secs_f64(),
     };
-    let results = results(case, solution, seconds.clone())?;
+    let results = results(case, solution, seconds)?;
     stage("result.json", result_json(&results).map(String::into_bytes))?;
-    Ok((output.publish()?, seconds))
+    Ok((output.publish()?, results))
 }
 
 /// The content of result.json.
@@ -79,7 +79,6 @@ pub fn results(
     seconds: Seconds,
 ) -> Result<Results, fem::DataError> {
     let mesh = &case.problem.mesh;
-    let gamma = &solution.gamma;
     let triangles = 0..mesh.triangles().len();
     let probes = case.probes.iter().filter_map(|&[x, y]| {
         let (t, l) = mesh.locate([x, y])?;
@@ -100,12 +99,7 @@ pub fn results(
             contact_edges: solution.contact.len(),
             h_max: triangles.map(|t| mesh.diameter(t)).fold(0.0, f64::max),
         },
-        gamma: GammaChoice {
-            gamma0: gamma.gamma0,
-            limit: gamma.coercivity.limit(),
-            kappa: gamma.kappa,
-            limiting_edge: gamma.coercivity.limiting_edge,
-        },
+        gamma: GammaChoice::from(&solution.gamma),
         newton: NewtonHistory {
             iterations: solution.newton.iterations(),
             residuals: solution.newton.residuals.clone(),

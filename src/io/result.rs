@@ -6,15 +6,15 @@
 
 use std::io::{self, Write};
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::ser::{Formatter, Serializer};
 
 use super::data::DataError;
 use crate::fem::Errors;
-use crate::solve::{Quantities, Status};
+use crate::solve::{GammaReport, Quantities, Status};
 
 /// The content of result.json, in its order.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Results {
     /// The version of this program.
     pub version: String,
@@ -29,17 +29,17 @@ pub struct Results {
     /// The solution in numbers.
     pub quantities: Quantities,
     /// `[x, y, u_x, u_y]` at the points that the case asks for; left out if it asks for none.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub probes: Vec<[f64; 4]>,
     /// The distances from the exact solution; left out if the case has none.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub errors: Option<Errors>,
     /// Where the time went.
     pub seconds: Seconds,
 }
 
 /// The discretisation.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct MeshSizes {
     /// Vertices.
     pub vertices: usize,
@@ -54,7 +54,7 @@ pub struct MeshSizes {
 }
 
 /// Nitsche's parameter and how far it is from the limit of coercivity.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct GammaChoice {
     /// gamma0 of (7).
     pub gamma0: f64,
@@ -66,8 +66,19 @@ pub struct GammaChoice {
     pub limiting_edge: [[f64; 2]; 2],
 }
 
+impl From<&GammaReport> for GammaChoice {
+    fn from(gamma: &GammaReport) -> Self {
+        GammaChoice {
+            gamma0: gamma.gamma0,
+            limit: gamma.coercivity.limit(),
+            kappa: gamma.kappa,
+            limiting_edge: gamma.coercivity.limiting_edge,
+        }
+    }
+}
+
 /// Newton's iteration.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct NewtonHistory {
     /// Steps taken.
     pub iterations: usize,
@@ -82,7 +93,7 @@ pub struct NewtonHistory {
 }
 
 /// Where the time went.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Seconds {
     /// Reading and meshing.
     pub read: f64,

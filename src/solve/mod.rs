@@ -9,7 +9,7 @@ pub mod solution;
 pub mod theorem;
 pub mod times;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use self::condensed::System;
@@ -100,7 +100,7 @@ impl Default for Settings {
 }
 
 /// How a solve ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Status {
     /// The residual is within the tolerance.
     #[serde(rename = "converged")]

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::NewtonReport;
 use crate::fem::contact_line::{self, Coercivity};
@@ -80,7 +80,7 @@ pub struct ContactValues {
 }
 
 /// Scalars of a solution, in the units of the case.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Quantities {
     /// a(u, u)
     pub energy: f64,
