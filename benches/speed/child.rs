@@ -32,6 +32,8 @@ pub struct Report {
     pub contact: f64,
     /// Newton's method.
     pub steps: usize,
+    /// The relative residual in the full system.
+    pub residual: f64,
     /// a(u, u)
     pub energy: f64,
     /// gamma0
@@ -89,6 +91,7 @@ fn solve(task: Task, Size { degree, n }: Size) -> Report {
         factor: linear.map_or(0.0, |t| t.solve.as_secs_f64()),
         contact: contact.as_secs_f64(),
         steps: solution.newton.iterations(),
+        residual: solution.newton.residual,
         energy: solution.quantities.energy,
         gamma0: solution.gamma.gamma0,
         memory: peak_memory(),

@@ -286,13 +286,22 @@ pub fn large(sizes: &[Size]) -> String {
             row.extend([
                 seconds(report.contact),
                 report.steps.to_string(),
+                format!("{:.0e}", report.residual),
                 bytes(report.memory as f64),
                 format!("{:.0}", report.memory as f64 / unknowns),
             ]);
             row
         })
         .collect();
-    let head =
-        ["", "n", "unknowns", "contact solve", "Newton steps", "peak memory", "bytes per unknown"];
+    let head = [
+        "",
+        "n",
+        "unknowns",
+        "contact solve",
+        "Newton steps",
+        "residual",
+        "peak memory",
+        "bytes per unknown",
+    ];
     format!("## Large\n\nOne run each.\n\n{}", table(&head, &rows))
 }
