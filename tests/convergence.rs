@@ -16,7 +16,7 @@
 
 mod common;
 
-use common::exact::{corner, moved, on_square, on_trapezoid, singular, smooth};
+use common::exact::{corner, moved, on_square, on_trapezoid, singular, smooth, smooth_with_gap};
 use signorini::fem::contact_line::{ContactLineEdge, EdgeRule};
 use signorini::fem::{Discretization, Errors, loads};
 use signorini::kernel::edge_integral::ExactEdge;
@@ -181,6 +181,8 @@ fn theorem_ladders() -> Vec<(String, Ladder)> {
             add(&format!("(a) 4 3, c = {c:.2}"), on_square(&smooth(4.0, 3.0, c), degree, 4));
             add(&format!("(b) c = {c:.2}"), on_square(&singular(c), degree, 4));
         }
+        // The discrete gap is the interpolant of this one.
+        add("(a) 4 3 with a gap", on_square(&smooth_with_gap(), degree, 4));
         for omega in [0.75, 2.0 / 3.0, 0.6] {
             let ladder = on_trapezoid(&corner(omega).0, omega, degree, 4);
             add(&format!("(c) omega = {omega:.2} pi"), ladder);

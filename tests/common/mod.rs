@@ -87,6 +87,20 @@ pub mod exact {
         Arc::new(Smooth { material: material(), c, k, m, ap, aq, gap: Vec::new() })
     }
 
+    /// (a) with the exponents (4, 3) on a floor that is not flat.
+    pub fn smooth_with_gap() -> Exact {
+        let gap = vec![0.2, -0.3, 0.5];
+        Arc::new(Smooth {
+            material: material(),
+            c: 1.0 / 3.0,
+            k: 4.0,
+            m: 3.0,
+            ap: 16.0,
+            aq: 8.0,
+            gap,
+        })
+    }
+
     pub fn singular(c: f64) -> Exact {
         Arc::new(Singular { material: material(), c, amplitude: 1.0 })
     }
