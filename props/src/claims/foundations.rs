@@ -117,10 +117,11 @@ mod row {
                 ensure!(encloses(x * y, a * b));
                 ensure!(encloses(-x, -a));
                 ensure!(encloses(x.hull(y), a) && encloses(x.hull(y), b));
-                if !y.contains(0.0) {
+                if b != Exact::from(0) {
                     ensure!(encloses(x / y, a / b));
                 }
             }
+            ensure!(positive_part(x) == Interval::new(x.lo().max(0.0), x.hi().max(0.0)));
             let root = x.sqrt();
             if x.lo() >= 0.0 {
                 let [low, high] = [root.lo(), root.hi()].map(Exact::of_double);
@@ -189,7 +190,7 @@ mod row {
             items: &["floating point"],
             title: "What the above rests on in floating point",
             paper: "Nothing: the paper computes in R.",
-            statement: "For intervals X, Y of doubles and numbers x in X, y in Y: x + y, x - y, x y, x / y (0 not in Y) and sqrt(x) lie in X + Y, X - Y, X Y, X / Y and sqrt(X). [X]+ contains every [x]+ and is sharp across zero. The integrals over a cut P1 edge, by the same source line over intervals, contain the exact ones.",
+            statement: "For intervals X, Y of doubles and numbers x in X, y in Y: x + y, x - y, x y, x / y (y not 0) and sqrt(x) lie in X + Y, X - Y, X Y, X / Y and sqrt(X). [X]+ is [[lo]+, [hi]+], sharp across zero. The integrals over a cut P1 edge, by the same source line over intervals, contain the exact ones.",
             numbers: "doubles against exact rational arithmetic, over all finite doubles with subnormals, overflow and ties.",
             kernel: &[
                 "interval::Interval::new",
