@@ -215,6 +215,9 @@ fn rates(text: &mut String, figures: &Path, samples: &[Sample]) -> Result<()> {
     Ok(())
 }
 
+/// A panel of a sweep: its title, and what it shows.
+type Norm = (&'static str, fn(&Errors) -> f64);
+
 /// A line of a sweep.
 struct Sweep {
     name: String,
@@ -223,12 +226,7 @@ struct Sweep {
     points: Vec<(f64, Errors, usize)>,
 }
 
-fn sweep_figure(
-    title: &str,
-    x_label: &str,
-    norms: &[(&str, fn(&Errors) -> f64)],
-    sweeps: &[Sweep],
-) -> Figure {
+fn sweep_figure(title: &str, x_label: &str, norms: &[Norm], sweeps: &[Sweep]) -> Figure {
     Figure {
         title: title.to_owned(),
         x_label: x_label.to_owned(),
@@ -296,7 +294,7 @@ fn gamma_sweep(text: &mut String, figures: &Path, samples: &[Sample]) -> Result<
             sweeps.push(Sweep { name, degree, colour, points });
         }
     }
-    let norms: [(&str, fn(&Errors) -> f64); 2] = [
+    let norms: [Norm; 2] = [
         ("H1 norm of u − uʰ", |e| e.h1),
         ("contact pressure: ‖√γ (σₙ(u) − λʰ)‖", |e| e.contact_residual),
     ];
@@ -351,7 +349,7 @@ fn locking(text: &mut String, figures: &Path) -> Result<()> {
         }
         writeln!(text, "| {lambda} | {} | {} |", cells.join(" | "), steps.join(", "))?;
     }
-    let norms: [(&str, fn(&Errors) -> f64); 1] = [("H1 norm of u − uʰ, n = 32", |e| e.h1)];
+    let norms: [Norm; 1] = [("H1 norm of u − uʰ, n = 32", |e| e.h1)];
     let drawn =
         plot::figure(&sweep_figure("Locking", "lambda/mu (0 drawn at 0.1)", &norms, &sweeps))?;
     fs::write(figures.join("locking.svg"), drawn)?;
@@ -373,7 +371,7 @@ fn theorem(text: &mut String, samples: &[Sample]) -> Result<()> {
     let mut count = 0;
     for sample in samples {
         for degree in DEGREES {
-            let mut rows = vec![[0.0; 2]; 10];
+            let mut rows = [[0.0; 2]; 10];
             for (k, kappa) in [0.1, 0.5, 0.9].into_iter().enumerate() {
                 for (i, n) in [8, 32].into_iter().enumerate() {
                     for meshes in [Meshes::Structured, Meshes::Perturbed] {

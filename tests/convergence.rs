@@ -266,7 +266,7 @@ where
         Discretization::<E, N, M>::new(&problem, |c| c.limit() / 2.0, EdgeRule::Exact).unwrap();
     let contact: Vec<ContactLineEdge<N, M>> = d.contact.clone();
     modify(&mut d);
-    let (u, report) = condensed::solve(&d, System::new(&d), &ladder.settings)?;
+    let (u, report, _) = condensed::solve(&d, System::new(&d), &ladder.settings)?;
     if report.status == Status::NotConverged {
         return Err(SolveError::NotPositiveDefinite);
     }

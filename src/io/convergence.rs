@@ -110,8 +110,11 @@ pub fn climb(
     Ok(Study { degree, meshes, promised: ladder.promised_rate(), levels: climbed })
 }
 
-/// The norms in the order of the table: a name, its value, and whether the theory promises a rate.
-pub const NORMS: [(&str, fn(&Errors) -> f64, bool); 5] = [
+/// A norm: its name, its value, and whether the theory promises a rate.
+pub type Norm = (&'static str, fn(&Errors) -> f64, bool);
+
+/// The norms in the order of the table.
+pub const NORMS: [Norm; 5] = [
     ("energy", |e| e.energy, true),
     ("h1", |e| e.h1, true),
     ("l2", |e| e.l2, false),
