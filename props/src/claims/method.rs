@@ -168,7 +168,7 @@ pub use row::claim;
 mod row {
     use proptest::prelude::*;
     use signorini::kernel::P2;
-    use signorini::kernel::edge_integral::{exact_bregman, gauss, gauss_bregman, maximum};
+    use signorini::kernel::edge_integral::{exact_bregman, gauss, gauss_bregman, maximum, roots};
 
     use super::*;
     use crate::bodies::{
@@ -509,6 +509,24 @@ mod row {
         })
     }
 
+    /// The places where P changes its sign: its simple roots inside the edge, and no others.
+    fn sign_changes() -> Outcome {
+        draws::hold(2000, parabolas(), &PARABOLAS, |parabola| {
+            let mut expected = parabola.roots.to_vec();
+            expected.retain(|&r| 0.0 < r && r < 1.0 && parabola.roots[0] != parabola.roots[1]);
+            expected.sort_by(f64::total_cmp);
+            let mut found: Vec<f64> = roots::<P2, 6, 3>(parabola.nodal()).collect();
+            found.sort_by(f64::total_cmp);
+            ensure!(found.len() == expected.len());
+            ensure!(found.iter().zip(&expected).all(|(a, b)| (a - b).abs() <= 2.0_f64.powi(-44)));
+            let [start, end] = [parabola.at(0.0), parabola.at(1.0)];
+            let of_p1: Vec<f64> = roots::<P1, 3, 2>([start, end]).collect();
+            ensure!(of_p1.len() == usize::from(start * end < 0.0));
+            ensure!(of_p1.iter().all(|s| (s - start / (start - end)).abs() <= 2.0_f64.powi(-50)));
+            Verdict::Holds(parabola.class())
+        })
+    }
+
     /// `gauss` over rationals is the sum over the rule's points of \[P\]+ and its companions.
     fn sums_over_points() -> Outcome {
         let values = [draws::ratio(), draws::ratio(), draws::ratio()];
@@ -585,6 +603,7 @@ mod row {
             ),
             by(Engine::Doubles, "bregman_distances_are_near_the_exact_ones", bregman_distances),
             by(Engine::Doubles, "the_maximum_on_an_edge_is_at_an_end_or_at_the_vertex", maxima),
+            by(Engine::Doubles, "signs_change_at_the_simple_roots_inside_an_edge", sign_changes),
             control(Engine::Exact, "control_theta_other_than_1", other_theta),
             control(Engine::Exact, "control_gap_missing", gap_missing),
             refuted(statement!(control_cut_edge_integral_keeps_any_sign, [p0, p1, q0, q1], [])),
@@ -608,6 +627,7 @@ mod row {
                 "edge_integral::exact_bregman",
                 "edge_integral::gauss_bregman",
                 "edge_integral::maximum",
+                "edge_integral::roots",
             ],
             preconditions: "gamma > 0. In the second derivative {P = 0} counts as open.",
             limits: "L and the solver's own assembly are not looked at. The root of a quadratic P is irrational, so P2 without quadrature error is compared in doubles only, for parabolas with dyadic roots; at a double root the measure of {P > 0} may be off by the square root of the rounding error and is left out.",
