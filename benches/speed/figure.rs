@@ -71,7 +71,7 @@ pub fn draw(own: &[Measured], rivals: &[Rival]) -> String {
     let background =
         Rectangle::new().set("width", "100%").set("height", "100%").set("fill", "white");
     Document::new()
-        .set("viewBox", (0, 0, LEFT + STRIDE + WIDTH + 20.0, TOP + HEIGHT + 50.0))
+        .set("viewBox", (0, 0, LEFT + STRIDE + WIDTH + 40.0, TOP + HEIGHT + 50.0))
         .set("font-family", "sans-serif")
         .set("font-size", 12)
         .add(background)
@@ -116,19 +116,20 @@ fn panel(panel: &Panel, left: f64) -> Group {
             group = group.add(circle(u, v, curve.colour));
         }
     }
-    legend(group, panel, left + 12.0)
+    legend(group, panel, left + 160.0)
 }
 
+/// In the lower right corner, where no curve comes.
 fn legend(mut group: Group, panel: &Panel, left: f64) -> Group {
-    for (row, curve) in panel.curves.iter().enumerate() {
-        let at = TOP + 16.0 + 17.0 * row as f64;
-        group = group.add(polyline(&[(left, at), (left + 24.0, at)], curve));
-        group = group.add(text(&curve.name, left + 32.0, at + 4.0, "start"));
+    let row = |k: usize| TOP + HEIGHT - 12.0 - 16.0 * k as f64;
+    for (k, curve) in panel.curves.iter().rev().enumerate() {
+        group = group.add(polyline(&[(left, row(k)), (left + 24.0, row(k))], curve));
+        group = group.add(text(&curve.name, left + 32.0, row(k) + 4.0, "start"));
     }
     if !panel.marks.is_empty() {
-        let at = TOP + 16.0 + 17.0 * panel.curves.len() as f64;
+        let at = row(panel.curves.len());
         group = group.add(circle(left + 12.0, at, "none").set("stroke", "#888888"));
-        group = group.add(text("contact solve, P1, other codes", left + 32.0, at + 4.0, "start"));
+        group = group.add(text("other codes, P1", left + 32.0, at + 4.0, "start"));
     }
     group
 }

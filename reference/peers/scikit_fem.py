@@ -47,7 +47,7 @@ def contact_slope(u, v, w):
 
 
 class SuperLU:
-    """Minimum degree of A + A', the ordering for symmetric patterns, and pivots on the diagonal: half the time of its default."""
+    """Minimum degree of A + A', the ordering for symmetric patterns, and pivots on the diagonal: faster than its default."""
 
     def solve(self, matrix, right):
         options = {"SymmetricMode": True, "DiagPivotThresh": 0.001}
