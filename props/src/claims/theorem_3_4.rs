@@ -312,7 +312,8 @@ pub use row::claim;
 #[cfg(not(kani))]
 mod row {
     use super::*;
-    use crate::claim::{Claim, Engine, Outcome, control, proved, refuted, tested};
+    use crate::claim::{Claim, Engine, Outcome, by, control, proved, refuted, tested};
+    use crate::claims::rates;
     use crate::numbers::Exact;
     use crate::statement;
 
@@ -452,6 +453,16 @@ mod row {
         checks.extend([identity, z, split, raw, theorem, s14, s15, s16, s17, s18].map(tested));
         checks.extend([
             control(Engine::Exact, "control_17_and_18_as_printed_at_exact_points", errata_points),
+            by(
+                Engine::Doubles,
+                "the_bound_holds_for_the_errors_of_the_solver",
+                rates::theorem_on_computed_errors,
+            ),
+            control(
+                Engine::Doubles,
+                "control_errors_a_hundred_times_as_large",
+                rates::theorem_on_errors_blown_up,
+            ),
             refuted(statement!(control_step_17_as_printed, [gamma, u, su, uh, sh, sv], [])),
             refuted(statement!(control_step_18_as_printed, [z, d, gamma, beta], [])),
             refuted(statement!(control_z_inequality_without_5, [gamma, g, u, su, uh, sh], [])),
@@ -464,14 +475,14 @@ mod row {
             title: "The abstract error estimate, with its constant",
             paper: "The solution u^h satisfies |u - u^h|_1 + |gamma^1/2 (sigma_n(u) + [P(u^h)]+/gamma)| <= C inf over v^h of (|u - v^h|_1 + |gamma^-1/2 (u_n - v_n^h)| + |gamma^1/2 sigma_n(u - v^h)|), gamma0 sufficiently small.",
             statement: "With kappa < 1 and delta = 1 - kappa: |u - u^h|_a^2 + |z|_g^2 / delta <= (2/delta) [(1/delta + kappa + 1/2) |eta|_a^2 + kappa (1/delta + 1/2) |sigma_n(eta)|_g^2 + 1/2 |gamma^-1/2 P0(eta)|^2]. The identity for a(e, w), the pointwise inequality for z, Young's steps and the combination are proved one by one; so are (14)-(16), (17) and (18) with the missing factor gamma, (19) with constants, and (20).",
-            numbers: "every ordered field (proof); rationals. Square roots enter as data: k with kappa = k^2, norms with their squares.",
+            numbers: "every ordered field (proof); rationals; doubles for the errors that the solver makes on exact solutions. Square roots enter as data: k with kappa = k^2, norms with their squares.",
             kernel: &[
                 "contact::ContactPoint::p",
                 "contact::ContactPoint::p0",
                 "contact::ContactPoint::pressure",
             ],
             preconditions: "gamma > 0, 0 <= kappa < 1; (5) at the exact solution; (8) for the discrete one; the Cauchy-Schwarz inequalities and (11) of the norms.",
-            limits: "The integrals are numbers here: that they exist, Green's formula and the Cauchy-Schwarz inequality are hypotheses. That the bound holds for the errors that the solver makes on exact solutions is not yet checked (it needs the convergence study). C in the paper's (13) is in other norms; Korn's constant is not computed.",
+            limits: "The integrals are numbers here: that they exist, Green's formula and the Cauchy-Schwarz inequality are hypotheses. The computed errors are those of two solutions on one mesh each; `cargo test --test convergence` has many more. C in the paper's (13) is in other norms; Korn's constant is not computed.",
             single: None,
             checks,
         }
