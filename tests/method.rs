@@ -10,6 +10,7 @@ use signorini::fem::discretization::inner;
 use signorini::fem::matrix::{self, Neighbours, Numbering};
 use signorini::fem::quadrature::gauss;
 use signorini::fem::{Condition, Diagonal, Discretization, Problem, Rectangle};
+use signorini::io::Case;
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::{Material, P1, P2, Plane};
 use signorini::solve::condensed::{self, System};
@@ -259,9 +260,20 @@ fn equilibrium<E: ExactEdge<f64, N, M>, const N: usize, const M: usize>(
     worst
 }
 
+/// The problems of the files in `cases/`.
+fn cases() -> Vec<(String, Problem)> {
+    let files = std::fs::read_dir("cases").unwrap().map(|entry| entry.unwrap().path());
+    let mut files: Vec<_> = files.filter(|f| f.extension().is_some_and(|e| e == "toml")).collect();
+    files.sort();
+    assert!(files.len() >= 4);
+    files.into_iter().map(|f| (f.display().to_string(), Case::read(&f).unwrap().problem)).collect()
+}
+
 #[test]
 fn loads_contact_and_reactions_balance_in_force_and_moment() {
-    for (name, problem) in example_problems() {
+    let examples = example_problems().into_iter().map(|(name, p)| (name.to_owned(), p));
+    for (name, problem) in examples.chain(cases()) {
+        let name = &name;
         for rule in [EdgeRule::Exact, EdgeRule::gauss(4)] {
             let p1 = equilibrium::<P1, 3, 2>(name, &problem, rule.clone(), 1.0);
             let p2 = equilibrium::<P2, 6, 3>(name, &problem, rule, 1.0);
