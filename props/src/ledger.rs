@@ -71,6 +71,21 @@ A further opinion, not part of `cargo test`: `cargo run -p props -- smt DIR` wri
 problem for z3 and cvc5, and every failing path of the statements in doubles, over all finite doubles, for bitwuzla;
 `.ci/smt.py DIR` runs them and fails on a contradiction, or where no solver confirms a path.
 
+**The reference.** An engine of another kind: an independent program in FEniCSx (`reference/fenicsx`) solves the same case
+files, and `cargo test --test reference` compares the whole solver with its stored results, one file for each case in
+`reference/results/`. It sees what the rows can't: the assembly, the loads, the solution of the discrete problem.
+
+| row | what is compared | stored results |
+| --- | --- | --- |
+| 6, method (8) | energies, contact force, length and peak, reactions, displacement at every vertex of the small meshes: 1e-10 relative; P1 and P2, exact and by 4 Gauss points | `block-*`, `cantilever-*`, `disk` |
+| 6, with a gap | the same | `gap-*`, `smooth-gap-*`, `patch-d3-*`, `patch-d5-*` |
+| 8, consistency | the same where the exact solution is discrete: its errors are rounding on both sides | `patch-*` |
+| 12, rates, P2 of Remark 3.7 | the same, and the errors in all norms: 1e-8 relative | `smooth-*`, `singular-*`, `corner-*` |
+
+Its controls are in `reference/tests`: penalty in place of Nitsche, |E| in place of h_T and gamma inverted disagree with
+the stored results by far more than the tolerance. It does not establish that both programs read the paper rightly where
+they read it alike.
+
 A check is no check if it can't fail. Every class of data that a statement names must be hit, every row has a **control**,
 a planted mistake that the same check must reject, and a harness has a false twin.
 
