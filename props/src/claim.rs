@@ -121,7 +121,7 @@ pub fn model_checked(harness: Harness) -> Check {
     Check {
         name: harness.name,
         engine: Engine::Kani,
-        control: harness.control,
+        control: harness.counterexample.is_some(),
         subject: Subject::Harness(harness),
     }
 }

@@ -3,7 +3,7 @@
 //! Under Kani [`any`] is every value at once and [`assume`] restricts them. Elsewhere a harness is run many times:
 //! [`any`] draws (edge values often), and [`assume`] ends the run when it does not hold. A harness whose assumptions no
 //! draw meets has shown nothing, and is an error. A control is the false twin of a harness: under Kani it must fail
-//! (`should_panic`), and the stand-in must find a draw for which it panics.
+//! (`should_panic`); elsewhere it is run once, on the counterexample that is stored with it, and must panic there.
 
 #[cfg(kani)]
 pub use kani::{any, assume};
@@ -11,19 +11,20 @@ pub use kani::{any, assume};
 #[cfg(not(kani))]
 pub use stand_in::{Any, Harness, any, assume};
 
-/// Names a function as a harness of the model checker, with its unwinding bound, and lists it for the stand-in.
+/// Names functions as harnesses of the model checker, with their unwinding bound, and lists them for the stand-in.
 ///
-/// `harnesses! { const LIST; #[unwind] fn name() { .. } .. }`; a name that starts with `control_` is a false twin.
+/// `holds name() { .. }` must hold for all values; `fails name([v, ..]) { .. }` is a false twin, which fails when
+/// [`any`] returns the values v, .. one after the other.
 #[macro_export]
 macro_rules! harnesses {
-    ($($(#[doc = $doc:literal])* $kind:ident $name:ident() $body:block)*) => {
+    ($($(#[doc = $doc:literal])* $kind:ident $name:ident($($counterexample:expr)?) $body:block)*) => {
         $($crate::harness_function! { $(#[doc = $doc])* $kind $name $body })*
 
         /// The harnesses of this module.
         #[cfg(not(kani))]
         pub const HARNESSES: &[$crate::harness::Harness] = &[$($crate::harness::Harness {
             name: stringify!($name),
-            control: $crate::is_control!($kind),
+            counterexample: $crate::counterexample!($kind $($counterexample)?),
             body: $name,
         }),*];
     };
@@ -47,14 +48,14 @@ macro_rules! harness_function {
     };
 }
 
-/// Whether a kind of harness is a control.
+/// The stored counterexample of a false twin; a harness that holds has none.
 #[macro_export]
-macro_rules! is_control {
+macro_rules! counterexample {
     (holds) => {
-        false
+        None
     };
-    (fails) => {
-        true
+    (fails $values:expr) => {
+        Some(&$values)
     };
 }
 
@@ -74,8 +75,8 @@ mod stand_in {
     pub struct Harness {
         /// Its name, which says the range.
         pub name: &'static str,
-        /// A false twin: it must panic for some draw.
-        pub control: bool,
+        /// The values for which a false twin must panic; a number stands for the value of any type.
+        pub counterexample: Option<&'static [f64]>,
         /// The function.
         pub body: fn(),
     }
@@ -83,42 +84,87 @@ mod stand_in {
     /// How a run that ended early ended.
     struct AssumptionFailed;
 
+    /// Where [`any`] takes its values from.
+    enum Source {
+        Random(Random),
+        /// In reverse order.
+        Stored(Vec<f64>),
+    }
+
     thread_local! {
-        static RANDOM: RefCell<Random> = RefCell::new(Random::new(0));
+        static SOURCE: RefCell<Source> = const { RefCell::new(Source::Stored(Vec::new())) };
         static RUNNING: Cell<bool> = const { Cell::new(false) };
     }
 
+    /// How one run of a harness ended.
+    enum End {
+        Passed,
+        NotAssumed,
+        Panicked(String),
+    }
+
     impl Harness {
-        /// Runs it on random draws.
+        /// Runs it on random draws, or a false twin on its counterexample.
         ///
         /// # Errors
-        /// The message of a harness that panicked, a control that did not, or that no draw met the assumptions.
+        /// The message of a harness that panicked, a false twin that did not, or that no draw met the assumptions.
         pub fn run(&self) -> Result<String, String> {
-            quiet_panics();
-            RANDOM.set(Random::new(crate::draws::seed()));
+            match self.counterexample {
+                None => self.run_on_draws(),
+                Some(values) => self.run_on(values),
+            }
+        }
+
+        fn run_on_draws(&self) -> Result<String, String> {
+            SOURCE.set(Source::Random(Random::new(crate::draws::seed())));
             let mut met = 0;
             for run in 0..RUNS {
-                RUNNING.set(true);
-                let result = panic::catch_unwind(AssertUnwindSafe(self.body));
-                RUNNING.set(false);
-                match result {
-                    Ok(()) => met += 1,
-                    Err(why) if why.is::<AssumptionFailed>() => {}
-                    Err(_) if self.control => return Ok(format!("rejected at draw {run}")),
-                    Err(why) => {
-                        let text = why.downcast_ref::<&str>().map(|s| (*s).to_owned());
-                        let text = text.or_else(|| why.downcast_ref::<String>().cloned());
-                        return Err(format!("draw {run}: {}", text.unwrap_or_default()));
-                    }
+                match self.run_once() {
+                    End::Passed => met += 1,
+                    End::NotAssumed => {}
+                    End::Panicked(why) => return Err(format!("draw {run}: {why}")),
                 }
             }
-            match (self.control, met) {
-                (true, _) => Err("no draw rejected the planted mistake".to_owned()),
-                (false, 0) => Err("no draw met the assumptions".to_owned()),
-                (false, _) => Ok(format!("{met} of {RUNS} random draws met the assumptions")),
+            match met {
+                0 => Err("no draw met the assumptions".to_owned()),
+                _ => Ok(format!("{met} of {RUNS} random draws met the assumptions")),
+            }
+        }
+
+        fn run_on(&self, values: &[f64]) -> Result<String, String> {
+            SOURCE.set(Source::Stored(values.iter().rev().copied().collect()));
+            let end = self.run_once();
+            let unused = SOURCE.with_borrow(|source| match source {
+                Source::Stored(values) => values.len(),
+                Source::Random(_) => 0,
+            });
+            match end {
+                _ if unused > 0 => Err(format!("{unused} of the values {values:?} are not used")),
+                End::Passed => Err(format!("{values:?} do not reject the planted mistake")),
+                End::NotAssumed => Err(format!("{values:?} do not meet the assumptions")),
+                End::Panicked(why) if why == TOO_FEW => Err(format!("{values:?}: {why}")),
+                End::Panicked(_) => Ok(format!("rejected at {values:?}")),
+            }
+        }
+
+        fn run_once(&self) -> End {
+            quiet_panics();
+            RUNNING.set(true);
+            let result = panic::catch_unwind(AssertUnwindSafe(self.body));
+            RUNNING.set(false);
+            match result {
+                Ok(()) => End::Passed,
+                Err(why) if why.is::<AssumptionFailed>() => End::NotAssumed,
+                Err(why) => {
+                    let text = why.downcast_ref::<&str>().map(|s| (*s).to_owned());
+                    let text = text.or_else(|| why.downcast_ref::<String>().cloned());
+                    End::Panicked(text.unwrap_or_default())
+                }
             }
         }
     }
+
+    const TOO_FEW: &str = "the counterexample has too few values";
 
     /// A panic inside a run of a harness is an answer, not an accident: it is not printed.
     fn quiet_panics() {
@@ -140,33 +186,48 @@ mod stand_in {
         }
     }
 
-    /// Any value of a type: here, a random one.
+    /// Any value of a type: here, a random one or the next one of a counterexample.
     pub fn any<T: Any>() -> T {
-        RANDOM.with_borrow_mut(|random| T::draw(random))
+        SOURCE.with_borrow_mut(|source| match source {
+            Source::Random(random) => T::draw(random),
+            Source::Stored(values) => match values.pop() {
+                Some(value) => T::from_number(value),
+                None => panic!("{TOO_FEW}"),
+            },
+        })
     }
 
     /// A type of which [`any`] value can be asked for.
     pub trait Any {
         /// A random value, edge values often.
         fn draw(random: &mut Random) -> Self;
+
+        /// The value that a number stands for: itself, and 0 and 1 for false and true.
+        fn from_number(number: f64) -> Self;
     }
 
     impl Any for f64 {
         fn draw(random: &mut Random) -> f64 {
-            // The last two refute the scaled (5) => u <= 0 together.
-            const EDGES: [f64; 9] =
-                [0.0, -0.0, 1.0, -1.0, 5e-324, f64::MAX, f64::NAN, 3.9e-121, -8.3e-25];
+            const EDGES: [f64; 7] = [0.0, -0.0, 1.0, -1.0, 5e-324, f64::MAX, f64::NAN];
             match random.below(4) {
-                0 => EDGES[random.below(9)],
+                0 => EDGES[random.below(EDGES.len())],
                 1 => f64::from_bits(random.bits()),
                 _ => random.below(2001) as f64 / 8.0 - 125.0,
             }
+        }
+
+        fn from_number(number: f64) -> f64 {
+            number
         }
     }
 
     impl Any for bool {
         fn draw(random: &mut Random) -> bool {
             random.below(2) == 0
+        }
+
+        fn from_number(number: f64) -> bool {
+            number == 1.0
         }
     }
 
@@ -180,6 +241,10 @@ mod stand_in {
                         _ => random.bits() as $type,
                     }
                 }
+
+                fn from_number(number: f64) -> $type {
+                    number as $type
+                }
             })*
         };
     }
@@ -190,24 +255,43 @@ mod stand_in {
     mod tests {
         use super::*;
 
-        fn harness(body: fn(), control: bool) -> Harness {
-            Harness { name: "test", control, body }
+        fn holds(body: fn()) -> Result<String, String> {
+            Harness { name: "test", counterexample: None, body }.run()
+        }
+
+        fn fails(body: fn(), counterexample: &'static [f64]) -> Result<String, String> {
+            Harness { name: "test", counterexample: Some(counterexample), body }.run()
+        }
+
+        fn small() {
+            let value: i8 = any();
+            assume(value >= 0);
+            assert!(value < 100, "small");
         }
 
         #[test]
         fn a_harness_whose_assumptions_contradict_each_other_is_an_error() {
-            let h = harness(|| assume(any::<i8>() as i32 > 1000), false);
-            assert_eq!(h.run(), Err("no draw met the assumptions".to_owned()));
+            let contradiction = holds(|| assume(any::<i8>() as i32 > 1000));
+            assert_eq!(contradiction, Err("no draw met the assumptions".to_owned()));
         }
 
         #[test]
-        fn a_false_harness_is_an_error_and_a_true_control_too() {
-            fn small() {
-                assert!(any::<i8>() < 100, "small");
+        fn a_false_harness_is_an_error_and_its_counterexample_rejects_it() {
+            assert!(holds(small).unwrap_err().ends_with("small"));
+            assert_eq!(fails(small, &[100.0]), Ok("rejected at [100.0]".to_owned()));
+        }
+
+        #[test]
+        fn a_counterexample_that_rejects_nothing_is_an_error() {
+            for (values, why) in [
+                (&[99.0] as &[f64], "do not reject the planted mistake"),
+                (&[-1.0], "do not meet the assumptions"),
+                (&[], TOO_FEW),
+                (&[100.0, 1.0], "not used"),
+            ] {
+                let error = fails(small, values).unwrap_err();
+                assert!(error.contains(why), "{error}");
             }
-            assert!(harness(small, false).run().unwrap_err().ends_with("small"));
-            assert!(harness(small, true).run().is_ok());
-            assert!(harness(|| {}, true).run().is_err());
         }
     }
 }

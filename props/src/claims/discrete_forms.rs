@@ -176,7 +176,7 @@ harnesses! {
         assert!(Triangle { vertices: [a, c, b] }.double_area() == -t.double_area());
     }
     /// The false twin: it does not change.
-    fails control_area_is_symmetric_on_the_unit_grid() {
+    fails control_area_is_symmetric_on_the_unit_grid([0.0, 0.0, 1.0, 0.0, 0.0, 1.0]) {
         let t = on_grid();
         let [a, b, c] = t.vertices;
         assert!(Triangle { vertices: [a, c, b] }.double_area() == t.double_area());
@@ -188,7 +188,7 @@ harnesses! {
         assert!(Triangle { vertices: [b, c, a] }.double_area() == t.double_area());
     }
     /// The false twin: an exchange of two.
-    fails control_area_survives_an_exchange_on_the_unit_grid() {
+    fails control_area_survives_an_exchange_on_the_unit_grid([0.0, 0.0, 1.0, 0.0, 0.0, 1.0]) {
         let t = on_grid();
         let [a, b, c] = t.vertices;
         assert!(Triangle { vertices: [b, a, c] }.double_area() == t.double_area());
@@ -201,7 +201,7 @@ harnesses! {
         assert!(n[0][0] + n[1][0] + n[2][0] == Whole(0) && n[0][1] + n[1][1] + n[2][1] == Whole(0));
     }
     /// The false twin: two of them.
-    fails control_two_scaled_normals_add_up_to_zero_for_all_i8() {
+    fails control_two_scaled_normals_add_up_to_zero_for_all_i8([0.0, 0.0, 1.0, 0.0, 0.0, 1.0]) {
         let coordinate = || Whole(i32::from(any::<i8>()));
         let t = triangle([0; 6].map(|_| coordinate()));
         let n = [0, 1].map(|i| t.scaled_normal(i));
@@ -217,7 +217,7 @@ harnesses! {
         assert!(P1::edge_nodes(i) == [a, b] && a != i && b != i && middle == 3 + i);
     }
     /// The false twin: edges are numbered by their start.
-    fails control_edges_start_at_the_vertex_with_their_number() {
+    fails control_edges_start_at_the_vertex_with_their_number([0.0]) {
         let i: usize = any();
         crate::harness::assume(i < 3);
         assert!(P1::edge_nodes(i)[0] == i);

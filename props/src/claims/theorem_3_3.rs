@@ -146,7 +146,7 @@ harnesses! {
         assert!(positive_part(a) <= positive_part(b));
     }
     /// The false twin: strictly.
-    fails control_positive_part_is_strictly_monotone_for_all_finite_doubles() {
+    fails control_positive_part_is_strictly_monotone_for_all_finite_doubles([-1.0, 0.0]) {
         let (a, b): (f64, f64) = (any(), any());
         assume(a.is_finite() && b.is_finite() && a < b);
         assert!(positive_part(a) < positive_part(b));
@@ -158,7 +158,7 @@ harnesses! {
         assert!(positive_part(b) - positive_part(a) <= b - a);
     }
     /// The false twin: equality.
-    fails control_positive_part_keeps_distances_for_all_ordered_finite_doubles() {
+    fails control_positive_part_keeps_distances_for_all_ordered_finite_doubles([-1.0, 0.0]) {
         let (a, b): (f64, f64) = (any(), any());
         assume(a.is_finite() && b.is_finite() && a <= b);
         assert!(positive_part(b) - positive_part(a) == b - a);
@@ -171,7 +171,7 @@ harnesses! {
         assert!(!difference_of_positive_parts_lies_between_zero_and_the_difference(v).fails());
     }
     /// The false twin: with |.|.
-    fails control_sign_form_with_absolute_values_for_all_i16() {
+    fails control_sign_form_with_absolute_values_for_all_i16([-1.0, 0.0]) {
         let (a, b): (i16, i16) = (any(), any());
         let (a, b) = (i32::from(a), i32::from(b));
         let (d, e) = (a.abs() - b.abs(), a - b);
@@ -185,7 +185,7 @@ harnesses! {
         assert!((d >= 0.0 && d <= e) || (d <= 0.0 && d >= e));
     }
     /// The false twin: d is no smaller than e where it is positive.
-    fails control_sign_form_turned_for_all_finite_doubles() {
+    fails control_sign_form_turned_for_all_finite_doubles([1.0, -1.0]) {
         let (a, b): (f64, f64) = (any(), any());
         assume(a.is_finite() && b.is_finite());
         let (d, e) = (positive_part(a) - positive_part(b), a - b);
@@ -198,7 +198,7 @@ harnesses! {
         assert!(!positive_parts_are_monotone(v).fails());
     }
     /// The false twin: turned.
-    fails control_inequality_of_theorem_3_3_turned_for_all_i8() {
+    fails control_inequality_of_theorem_3_3_turned_for_all_i8([1.0, -1.0]) {
         let (a, b): (i8, i8) = (any(), any());
         let v = [i32::from(a), i32::from(b)].map(Whole);
         assert!(!control_monotonicity_turned(v).fails());
