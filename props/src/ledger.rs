@@ -140,9 +140,6 @@ pub fn engines(claim: &Claim) -> String {
     let mut engines: Vec<Engine> = evidence(claim).map(|check| check.engine).collect();
     engines.sort_unstable();
     engines.dedup();
-    if engines.is_empty() {
-        return "not yet".to_owned();
-    }
     engines.into_iter().map(Engine::name).collect::<Vec<_>>().join(", ")
 }
 
@@ -167,9 +164,6 @@ fn row(claim: &Claim) -> String {
     line("Not established", claim.limits);
     if let Some(why) = claim.single {
         line("Why one engine", why);
-    }
-    if claim.checks.is_empty() {
-        return text + "- **Evidence:** not yet.\n";
     }
     let _ = writeln!(
         text,
@@ -216,7 +210,7 @@ mod tests {
 
     #[test]
     fn every_row_has_two_engines_or_a_reason_and_a_control() {
-        for claim in claims::all().iter().filter(|c| !c.checks.is_empty()) {
+        for claim in &claims::all() {
             // A harness that was never run by the model checker is not counted.
             let mut kinds: Vec<Engine> = evidence(claim).map(|check| check.engine).collect();
             kinds.retain(|&engine| engine != Engine::Kani);
