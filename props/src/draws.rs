@@ -118,7 +118,7 @@ pub fn positive() -> impl Strategy<Value = (i64, i64)> {
 }
 
 /// A list of rational numbers in which some repeat another, or its negative.
-fn rationals(length: usize) -> impl Strategy<Value = Vec<(i64, i64)>> {
+pub fn ratios(length: usize) -> impl Strategy<Value = Vec<(i64, i64)>> {
     prop::collection::vec((ratio(), 0_u8..8, any::<prop::sample::Index>()), length).prop_map(
         |drawn| {
             let mut values: Vec<(i64, i64)> = Vec::new();
@@ -188,7 +188,7 @@ const EDGES: &[f64] = &[
 /// Draws of the unknowns of a statement.
 const DRAWS: u32 = 2000;
 
-fn at_rationals(statement: &Statement, values: &[(i64, i64)]) -> Verdict {
+fn at_ratios(statement: &Statement, values: &[(i64, i64)]) -> Verdict {
     Exact::scope(|| {
         let mut values: Vec<Exact> = values.iter().map(|&(n, d)| Exact::ratio(n, d)).collect();
         (statement.prepare)(&mut values);
@@ -201,8 +201,8 @@ fn at_rationals(statement: &Statement, values: &[(i64, i64)]) -> Verdict {
 /// # Errors
 /// As [`hold`].
 pub fn hold_exactly(statement: &Statement) -> Result<String, String> {
-    let strategy = rationals(statement.variables.len());
-    hold(DRAWS, strategy, statement.classes, |v| at_rationals(statement, v))
+    let strategy = ratios(statement.variables.len());
+    hold(DRAWS, strategy, statement.classes, |v| at_ratios(statement, v))
 }
 
 /// Tests a statement over all finite doubles.
