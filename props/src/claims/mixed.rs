@@ -98,7 +98,12 @@ pub use row::claim;
 
 #[cfg(not(kani))]
 mod row {
+    use std::collections::BTreeMap;
+    use std::path::Path;
+
+    use signorini::io::case::Case;
     use signorini::kernel::{P1, P2};
+    use signorini::solve::solve;
 
     use super::*;
     use crate::bodies::{
@@ -234,6 +239,86 @@ mod row {
         })
     }
 
+    /// What the solver reports at a node of Gamma_C, with gamma of (7) worked out here, and the size of its terms.
+    struct Reported {
+        point: ContactPoint<f64>,
+        lambda: f64,
+        size: f64,
+    }
+
+    /// The nodes of Gamma_C of the example `cases/<name>.toml`, solved.
+    fn reported(name: &str) -> Result<Vec<Reported>, String> {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../cases/{name}.toml"));
+        let case = Case::read(&file).map_err(|why| why.to_string())?;
+        let solved = solve(&case.problem, &case.method, &case.settings);
+        let (solution, _) = solved.map_err(|why| format!("{name}: {why}"))?;
+        let longest = |triangle: usize| {
+            let corners = &solution.elements[triangle * solution.nodes_per_triangle..][..3];
+            let [a, b, c] = [0, 1, 2].map(|i| solution.nodes[corners[i]]);
+            let length = |p: [f64; 2], q: [f64; 2]| (p[0] - q[0]).hypot(p[1] - q[1]);
+            length(a, b).max(length(b, c)).max(length(c, a))
+        };
+        let largest = solution.quantities.max_displacement;
+        let mut nodes = Vec::new();
+        for edge in &solution.contact {
+            let gamma = solution.gamma.gamma0 * longest(edge.triangle);
+            for v in &edge.points {
+                let point = ContactPoint { u_n: v.u_n, gap: v.gap, sigma_n: v.sigma_n, gamma };
+                let size = largest + v.gap.abs() + (gamma * v.sigma_n).abs();
+                nodes.push(Reported { point, lambda: v.lambda, size });
+            }
+        }
+        Ok(nodes)
+    }
+
+    /// How far rounding may move a sum of terms of this size: P and sigma_n are sums of a dozen products.
+    const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+    /// (10) at a node for the multiplier l, for mu from 0 to far below l: l <= 0 and
+    /// (mu - l)(u_n - g + gamma (l - sigma_n)) >= 0.
+    fn satisfies_10(r: &Reported, l: f64) -> Verdict {
+        ensure!(l <= 0.0);
+        let ContactPoint { u_n, gap, sigma_n, gamma } = r.point;
+        let opening = u_n - gap + gamma * (l - sigma_n);
+        for mu in [0.0, 0.5 * l, 2.0 * l, l - 1.0, l - 1e6] {
+            ensure!((mu - l) * opening >= -(mu - l).abs() * ROUNDING * r.size);
+        }
+        Verdict::Holds(if l < 0.0 { "pressed" } else { "open" })
+    }
+
+    /// P1 and P2, exact integrals and Gauss points, a curved floor, a Gmsh mesh.
+    const SOLVED: [&str; 3] = ["gap", "cantilever", "disk"];
+
+    /// lambda^h as the solver reports it is the multiplier of the mixed form, at every node of Gamma_C.
+    fn solutions() -> Outcome {
+        let mut seen = Vec::new();
+        for name in SOLVED {
+            let mut count = BTreeMap::from([("pressed", 0), ("open", 0)]);
+            for (k, r) in reported(name)?.iter().enumerate() {
+                match satisfies_10(r, r.lambda) {
+                    Verdict::Holds(class) => *count.entry(class).or_default() += 1,
+                    verdict => return Err(format!("{name}, node {k}: {verdict:?}")),
+                }
+            }
+            if count.values().any(|&n: &usize| n == 0) {
+                return Err(format!("{name}: {count:?}"));
+            }
+            seen.push(format!("{name}: {} pressed, {} open", count["pressed"], count["open"]));
+        }
+        Ok(seen.join("; "))
+    }
+
+    /// sigma_n(u^h) is no such multiplier in any of them, unlike sigma_n(u).
+    fn discrete_stress_for_the_multiplier() -> Outcome {
+        for name in SOLVED {
+            let nodes = reported(name)?;
+            if !nodes.iter().any(|r| satisfies_10(r, r.point.sigma_n).fails()) {
+                return Err(format!("{name}: sigma_n(u^h) passes for lambda^h"));
+            }
+        }
+        Ok(format!("rejected in {}", SOLVED.join(", ")))
+    }
+
     fn onto_9(v: &mut [Exact]) {
         let gamma = v[3].abs() + Exact::ratio(1, 7);
         let p = v[0] - v[1] - gamma * v[2];
@@ -275,6 +360,12 @@ mod row {
                 "complementarity_of_the_contact_pressure_holds_up_to_rounding",
                 complementarity_in_doubles,
             ),
+            by(Engine::Doubles, "the_pressure_of_computed_solutions_is_the_multiplier", solutions),
+            control(
+                Engine::Doubles,
+                "control_normal_stress_of_computed_solutions_for_the_multiplier",
+                discrete_stress_for_the_multiplier,
+            ),
             control(Engine::Exact, "control_sign_of_the_multiplier_turned", sign_of_the_multiplier),
             refuted(statement!(
                 control_normal_stress_for_the_multiplier,
@@ -288,11 +379,11 @@ mod row {
             items: &["(9)", "(10)"],
             title: "The contact pressure as a projection, and the mixed form",
             paper: "lambda^h := -(1/gamma)[P_gamma(u^h)]+ can be interpreted as the L^2-projection of -(1/gamma)P_gamma(u^h) on the cone of the nonpositive mu: (9); (9) is equivalent to (10); the method is equivalent to a mixed method with stabilisation.",
-            statement: "At a point: (9) and (10) hold for lambda^h and every mu <= 0, with equality for mu = 0 and mu = 2 lambda^h; (10) is -gamma times (9) for any multiplier; a multiplier l <= 0 that satisfies (9) for three choices of mu is lambda^h. On random bodies, for every u^h and not the solution alone: the left side of (8) equals that of the first mixed equation, and the integrals (9) and (10) have their signs for random mu <= 0.",
-            numbers: "every ordered field at a point (proof); rationals on bodies; doubles at a point, up to 16 roundings.",
+            statement: "At a point: (9) and (10) hold for lambda^h and every mu <= 0, with equality for mu = 0 and mu = 2 lambda^h; (10) is -gamma times (9) for any multiplier; a multiplier l <= 0 that satisfies (9) for three choices of mu is lambda^h. On random bodies, for every u^h and not the solution alone: the left side of (8) equals that of the first mixed equation, and the integrals (9) and (10) have their signs for random mu <= 0. For the discrete solution: lambda^h, u_n and sigma_n as the solver reports them on three of the example cases (P1, P2, exact integrals and Gauss points) satisfy (10) at every node of Gamma_C, for mu <= 0 near and far.",
+            numbers: "every ordered field at a point (proof); rationals on bodies; doubles at a point, up to 16 roundings, and at the nodes of computed solutions, up to 64.",
             kernel: &["contact::ContactPoint::pressure", "contact::ContactPoint::p0"],
             preconditions: "gamma > 0, constant on each edge (7).",
-            limits: "That the solver's output is used with these functions is not checked here.",
+            limits: "That the discrete solution satisfies (8), hence the first mixed equation, is row 10's certificate; (9) for it is checked at nodes, not integrated.",
             single: None,
             checks,
         }
