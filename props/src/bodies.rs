@@ -14,6 +14,7 @@ use signorini::kernel::element::stiffness;
 use signorini::kernel::{ContactEdge, EdgeIntegrals, Element, Material, Plane, Triangle};
 
 use crate::draws::{positive, ratio};
+use crate::elimination::Matrix;
 use crate::naive::{Field, Hooke, Line};
 use crate::numbers::Exact;
 
@@ -257,7 +258,7 @@ impl Body {
     }
 
     /// The nodes of a triangle for degree 1 (N = 3) or 2 (N = 6).
-    fn nodes<const N: usize>(&self, t: usize) -> [usize; N] {
+    pub fn nodes<const N: usize>(&self, t: usize) -> [usize; N] {
         let corners = self.triangles[t];
         let mut nodes = [0; N];
         nodes[..3].copy_from_slice(&corners);
@@ -401,6 +402,25 @@ impl<'a, const N: usize, const M: usize> Kernel<'a, N, M> {
         let weight = self.body.gamma(side) * side.length;
         let local = |field| self.body.local::<N>(side.triangle, field);
         Self::product(|i, j| self.edges[e].stress_product(weight, i, j), &local(u), &local(v))
+    }
+
+    /// On one triangle the matrices of a and of int gamma sigma_n(u) sigma_n(v), over the components of its nodes.
+    pub fn matrices_on(&self, t: usize) -> [Matrix; 2] {
+        let matrix = |block: &dyn Fn(usize, usize) -> [[Exact; 2]; 2]| -> Matrix {
+            let entry = |row: usize, column: usize| block(row / 2, column / 2)[row % 2][column % 2];
+            (0..2 * N).map(|row| (0..2 * N).map(|column| entry(row, column)).collect()).collect()
+        };
+        let owned = |e: &usize| self.body.contact[*e].triangle == t;
+        let stress = |i, j| {
+            let mut block = [[Exact::from(0); 2]; 2];
+            for e in (0..self.edges.len()).filter(owned) {
+                let weight = self.body.gamma(&self.body.contact[e]) * self.body.contact[e].length;
+                let of_e = self.edges[e].stress_product(weight, i, j);
+                block = [0, 1].map(|c| [0, 1].map(|d| block[c][d] + of_e[c][d]));
+            }
+            block
+        };
+        [matrix(&|i, j| self.stiffness[t][i][j]), matrix(&stress)]
     }
 
     /// A(u, v)
@@ -608,22 +628,6 @@ impl<const N: usize> Definition<'_, N> {
     pub fn b(&self, rule: Rule<'_>, u: &[[Exact; 2]], v: &[[Exact; 2]]) -> Exact {
         self.big_a(u, v) + self.contact(rule, u, |side| self.traces(side, v).p0)
     }
-}
-
-/// Whether a symmetric matrix is positive definite, by exact elimination.
-pub fn positive_definite(mut matrix: Vec<Vec<Exact>>) -> bool {
-    for k in 0..matrix.len() {
-        if matrix[k][k] <= Exact::from(0) {
-            return false;
-        }
-        for i in k + 1..matrix.len() {
-            let factor = matrix[i][k] / matrix[k][k];
-            for j in k..matrix.len() {
-                matrix[i][j] = matrix[i][j] - factor * matrix[k][j];
-            }
-        }
-    }
-    true
 }
 
 /// The integral over \[0, 1\].

@@ -12,7 +12,11 @@ pub mod bodies;
 pub mod claim;
 pub mod claims;
 #[cfg(not(kani))]
+pub mod discrete;
+#[cfg(not(kani))]
 pub mod draws;
+#[cfg(not(kani))]
+pub mod elimination;
 #[cfg(not(kani))]
 pub mod export;
 pub mod harness;
@@ -23,6 +27,8 @@ pub mod naive;
 pub mod numbers;
 #[cfg(not(kani))]
 pub mod proof;
+#[cfg(not(kani))]
+pub mod sharpness;
 #[cfg(not(kani))]
 pub mod statement;
 pub mod verdict;

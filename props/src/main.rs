@@ -20,10 +20,15 @@ fn main() -> std::process::ExitCode {
             println!("{count} problems in {directory}");
             true
         }),
+        ["sharpness"] => props::sharpness::rows().map_err(std::io::Error::other).map(|rows| {
+            print!("{}", props::sharpness::table(&rows));
+            true
+        }),
         _ => {
             eprintln!("props ledger       print VERIFY.md");
             eprintln!("props audit [ROW]  run every check, or those of a row");
             eprintln!("props smt DIR      write the paths of the proofs as SMT-LIB 2 problems");
+            eprintln!("props sharpness    print the table of docs/parameters.md: limits of gamma0");
             return ExitCode::from(2);
         }
     };

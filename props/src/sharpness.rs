@@ -1,0 +1,418 @@
+//! How sharp the limit 1/C_h of gamma0 is: the smallest eigenvalue lambda_min of A v = lambda K v on V^h beside its bound
+//! 1 - kappa (Lemma 3.2), and gamma0*, at which it is zero. A is K - gamma0 M_1, M_1 the matrix of
+//! int h_T sigma_n(u) sigma_n(v), so lambda_min = 1 - gamma0/gamma0* (docs/theory.md, 2.4).
+//!
+//! M_1 = S^T S with at most two rows of S for each contact edge. Hence, with the solver's own matrices,
+//! 1/gamma0* = mu_max(S K^-1 S^T) and lambda_min = 1/(1 + gamma0 mu_max(S A^-1 S^T)) (docs/theory.md, 5.6).
+
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+use std::fmt::Write;
+use std::path::Path;
+
+use faer::{Mat, Side};
+use signorini::fem::matrix::{self, LowerTriangle, Neighbours, Numbering};
+use signorini::fem::{
+    BoxedFunction, Condition, Diagonal, Discretization, Mesh, Perturbation, Problem, Rectangle,
+    Structured, Trapezoid,
+};
+use signorini::io::Case;
+use signorini::kernel::edge_integral::ExactEdge;
+use signorini::kernel::{Material, P1, P2, Plane};
+use signorini::solve::factor::Factor;
+use signorini::solve::ordering::nested_dissection;
+use signorini::solve::{Degree, Gamma0, Method, discretize};
+
+/// What went wrong, in words.
+type Result<T> = std::result::Result<T, String>;
+
+/// A body of the table.
+pub struct Specimen {
+    /// What it is.
+    pub name: String,
+    /// Its mesh, material and conditions.
+    pub problem: Problem,
+}
+
+fn constant(value: f64) -> BoxedFunction {
+    Box::new(move |_: [f64; 2]| value)
+}
+
+/// The body clamped on the named sides, in contact at the bottom.
+pub fn clamped(mesh: Mesh, material: Material<f64>, sides: &[&str]) -> Problem {
+    let mut conditions =
+        BTreeMap::from([("bottom".to_owned(), Condition::Contact { gap: constant(0.0) })]);
+    for &side in sides {
+        let nothing = [0, 1].map(|_| Some(constant(0.0)));
+        conditions.insert(side.to_owned(), Condition::Displacement(nothing));
+    }
+    let body_force = [0, 1].map(|_| constant(0.0));
+    Problem { mesh, material, body_force, conditions }
+}
+
+/// The material with lambda and mu = 1.
+fn material(lambda: f64, plane: Plane) -> Material<f64> {
+    Material::lame(lambda, 1.0, plane)
+}
+
+/// Cells of a rectangle, `n` along each side.
+fn rectangle(width: f64, n: usize, diagonal: Diagonal) -> Rectangle {
+    Rectangle { width, height: 1.0, nx: n, ny: n, diagonal }
+}
+
+/// The trapezoid (-3, 0), (3, 0), (0, 4), (e, 4), which attains the limit as e goes to 0.
+pub fn trapezoid(e: f64) -> Result<Problem> {
+    let vertices = vec![[-3.0, 0.0], [3.0, 0.0], [0.0, 4.0], [e, 4.0]];
+    let named = [("bottom", [0, 1]), ("top", [2, 3])];
+    let named = named.map(|(name, edge)| (name.to_owned(), vec![edge]));
+    let mesh = Mesh::new(vertices, vec![[0, 1, 2], [1, 3, 2]], named).map_err(text)?;
+    Ok(clamped(mesh, material(1.0, Plane::Strain), &["top"]))
+}
+
+fn text(error: impl ToString) -> String {
+    error.to_string()
+}
+
+/// The bodies of the table.
+///
+/// # Errors
+/// A mesh or a case that can't be read.
+fn specimens() -> Result<Vec<Specimen>> {
+    let mut all = Vec::new();
+    let mut add = |name: &str, problem| all.push(Specimen { name: name.to_owned(), problem });
+    let strain = || material(1.0, Plane::Strain);
+    let body = |structured: Structured, perturbation, material, sides: &[&str]| {
+        let mesh = structured.mesh(perturbation).map_err(text)?;
+        Ok::<_, String>(clamped(mesh, material, sides))
+    };
+    let cells = |width, n, diagonal| Structured::Rectangle(rectangle(width, n, diagonal));
+    for n in [2, 4, 8, 16] {
+        let square = cells(1.0, n, Diagonal::Right);
+        add(&format!("square, n = {n}"), body(square, None, strain(), &["top"])?);
+    }
+    for n in [4, 16] {
+        let square = cells(1.0, n, Diagonal::Crossed);
+        add(&format!("square, crossed, n = {n}"), body(square, None, strain(), &["top"])?);
+    }
+    let square = cells(1.0, 8, Diagonal::Right);
+    for amount in [0.2, 0.35] {
+        let moved = Some(Perturbation { amount, seed: 1 });
+        let name = format!("square, n = 8, vertices moved by up to {amount}");
+        add(&name, body(square, moved, strain(), &["top"])?);
+    }
+    add("cells 4:1, n = 8", body(cells(4.0, 8, Diagonal::Right), None, strain(), &["top"])?);
+    for lambda in [0.0, 100.0] {
+        let name = format!("square, n = 8, lambda = {lambda}");
+        add(&name, body(square, None, material(lambda, Plane::Strain), &["top"])?);
+    }
+    for lambda in [1.0, 100.0] {
+        let name = format!("square, n = 8, plane stress, lambda = {lambda}");
+        add(&name, body(square, None, material(lambda, Plane::Stress), &["top"])?);
+    }
+    for n in [8, 16] {
+        let wedge = Structured::Trapezoid(Trapezoid { omega: 0.75 * PI, n });
+        let name = format!("wedge of 3 pi/4, n = {n}");
+        add(&name, body(wedge, None, strain(), &["right", "top"])?);
+    }
+    for e in [0.1, 0.01] {
+        add(&format!("two triangles, e = {e}"), trapezoid(e)?);
+    }
+    let disk = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/disk.toml");
+    add("`cases/disk.toml`, a Gmsh mesh", Case::read(&disk).map_err(text)?.problem);
+    Ok(all)
+}
+
+/// Small bodies for exact arithmetic; the third one's vertices are moved to multiples of 1/32.
+///
+/// # Errors
+/// A mesh that is none.
+pub fn small_bodies() -> Result<Vec<Specimen>> {
+    let strain = || material(1.0, Plane::Strain);
+    let grid = |width, nx, diagonal| {
+        let cells = Rectangle { width, height: 1.0, nx, ny: 1, diagonal };
+        cells.mesh().map_err(text)
+    };
+    let wedge = Trapezoid { omega: 0.75 * PI, n: 1 }.mesh().map_err(text)?;
+    let all = [
+        ("square", clamped(grid(1.0, 1, Diagonal::Right)?, strain(), &["top"])),
+        ("two cells", clamped(grid(2.0, 2, Diagonal::Right)?, strain(), &["top"])),
+        ("two cells, moved", clamped(moved([2, 1], 1)?, strain(), &["top"])),
+        ("crossed cell", clamped(grid(1.0, 1, Diagonal::Crossed)?, strain(), &["top"])),
+        ("cell 4:1", clamped(grid(4.0, 1, Diagonal::Right)?, strain(), &["top"])),
+        (
+            "plane stress, lambda = 3",
+            clamped(grid(1.0, 1, Diagonal::Left)?, material(3.0, Plane::Stress), &["top"]),
+        ),
+        ("wedge", clamped(wedge, strain(), &["right", "top"])),
+        ("two triangles, e = 0.1", trapezoid(0.1)?),
+        ("two triangles, e = 0.01", trapezoid(0.01)?),
+    ];
+    Ok(all.map(|(name, problem)| Specimen { name: name.to_owned(), problem }).into())
+}
+
+/// Unit cells whose vertices are moved at random by up to 0.2, to multiples of 1/32: areas stay short fractions.
+///
+/// # Errors
+/// A mesh that is none.
+pub fn moved([nx, ny]: [usize; 2], seed: u64) -> Result<Mesh> {
+    let (width, height, diagonal) = (nx as f64, ny as f64, Diagonal::Right);
+    let cells = Rectangle { width, height, nx, ny, diagonal };
+    let mesh = cells.perturbed(0.2, seed).map_err(text)?;
+    let vertices = mesh.vertices().iter().map(|x| x.map(|c| (32.0 * c).round() / 32.0)).collect();
+    let mut named = Vec::new();
+    for name in mesh.boundary_names() {
+        let edges = mesh.edges_of(name).map_err(text)?.iter().map(|&edge| mesh.ends(edge));
+        named.push((name.to_owned(), edges.collect()));
+    }
+    Mesh::new(vertices, mesh.triangles().to_vec(), named).map_err(text)
+}
+
+/// A length that stands in gamma = gamma0 h_T, of an edge's triangle (its diameter h_T) or of the edge.
+pub type Size = fn(diameter: f64, length: f64) -> f64;
+
+/// h_T
+pub const DIAMETER: Size = |diameter, _| diameter;
+
+/// The free components in an order of elimination, with the pattern of the matrices.
+struct Order {
+    numbering: Numbering,
+    neighbours: Neighbours,
+}
+
+impl Order {
+    fn new<E, const N: usize, const M: usize>(d: &Discretization<E, N, M>) -> Self
+    where
+        E: ExactEdge<f64, N, M>,
+    {
+        let nodes = d.space.nodes();
+        let neighbours = Neighbours::new(nodes.len(), d.space.elements());
+        let order = nested_dissection(nodes, &neighbours, &vec![false; nodes.len()]);
+        Order { numbering: Numbering::new(&order, d.constraints.values()), neighbours }
+    }
+
+    /// The rows of S: for an affine w on an edge int w^2 = |E| (mean^2 + (difference of the end values)^2/12).
+    fn stress_rows<E, const N: usize, const M: usize>(
+        &self,
+        d: &Discretization<E, N, M>,
+        size: Size,
+    ) -> Vec<Vec<f64>>
+    where
+        E: ExactEdge<f64, N, M>,
+    {
+        let mut rows = Vec::new();
+        for edge in &d.contact {
+            let h = size(d.space.mesh().diameter(edge.edge.triangle), edge.length);
+            let weight = (h * edge.length).sqrt();
+            for [start, end] in [[0.5, 0.5], [-1.0, 1.0].map(|c| c / 12.0_f64.sqrt())] {
+                let mut row = vec![0.0; self.numbering.count];
+                let [at_start, at_end] = &edge.functionals.sigma_n;
+                for (k, &node) in d.space.elements()[edge.edge.triangle].iter().enumerate() {
+                    for (c, number) in self.numbering.of[node].iter().enumerate() {
+                        if let Some(number) = *number {
+                            row[number] = weight * (start * at_start[k][c] + end * at_end[k][c]);
+                        }
+                    }
+                }
+                rows.push(row);
+            }
+        }
+        rows
+    }
+}
+
+/// The largest eigenvalue of S matrix^-1 S^T.
+fn largest(matrix: &LowerTriangle, rows: &[Vec<f64>]) -> Result<f64> {
+    let factor = Factor::new(matrix).map_err(text)?;
+    let mut columns = rows.to_vec();
+    columns.iter_mut().for_each(|column| factor.forward(column));
+    let product = |i: usize, j: usize| -> f64 {
+        columns[i].iter().zip(&columns[j]).map(|(x, y)| x * y).sum()
+    };
+    let gram =
+        Mat::from_fn(rows.len(), rows.len(), |i, j| if j <= i { product(i, j) } else { 0.0 });
+    let eigenvalues = gram.self_adjoint_eigenvalues(Side::Lower).map_err(|e| format!("{e:?}"))?;
+    eigenvalues.last().copied().ok_or_else(|| "no contact".to_owned())
+}
+
+/// The limits of gamma0 on a mesh.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// 1/C_h, where kappa = 1.
+    pub proved: f64,
+    /// gamma0*, where A ceases to be positive definite.
+    pub sharp: f64,
+}
+
+impl Limits {
+    /// gamma0* C_h: 1 says that the bound is sharp.
+    pub fn ratio(&self) -> f64 {
+        self.sharp / self.proved
+    }
+
+    /// 1 - gamma0/gamma0* for gamma0 = kappa/C_h.
+    pub fn smallest_eigenvalue(&self, kappa: f64) -> f64 {
+        1.0 - kappa / self.ratio()
+    }
+}
+
+/// The method with this kappa, also beyond 1.
+pub fn at_kappa(problem: &Problem, degree: Degree, kappa: f64) -> Result<Method> {
+    let method = Method { degree, ..Method::default() };
+    let outline = signorini::solve::check(problem, &method).map_err(text)?;
+    let gamma0 = Gamma0::Value(kappa * outline.gamma.coercivity.limit());
+    Ok(Method { gamma0, allow_noncoercive: true, ..method })
+}
+
+/// 1/C_h and gamma0* = 1/mu_max(S K^-1 S^T).
+///
+/// # Errors
+/// A problem that is none.
+pub fn limits<E, const N: usize, const M: usize>(
+    problem: &Problem,
+    degree: Degree,
+    size: Size,
+) -> Result<Limits>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let method = Method { degree, ..Method::default() };
+    let d = discretize::<E, N, M>(problem, &method).map_err(text)?;
+    let order = Order::new(&d);
+    let k = matrix::assemble_stiffness(&d, &order.numbering, &order.neighbours);
+    let mu = largest(&k, &order.stress_rows(&d, size))?;
+    Ok(Limits { proved: d.coercivity.limit(), sharp: 1.0 / mu })
+}
+
+/// lambda_min = 1/(1 + gamma0 mu_max(S A^-1 S^T)) with the solver's matrix A.
+///
+/// # Errors
+/// A problem that is none, and A that is not positive definite.
+pub fn smallest_eigenvalue<E, const N: usize, const M: usize>(
+    problem: &Problem,
+    degree: Degree,
+    kappa: f64,
+) -> Result<f64>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let d = discretize::<E, N, M>(problem, &at_kappa(problem, degree, kappa)?).map_err(text)?;
+    let order = Order::new(&d);
+    let a = matrix::assemble(&d, &order.numbering, &order.neighbours);
+    let mu = largest(&a, &order.stress_rows(&d, DIAMETER))?;
+    Ok(1.0 / (1.0 + d.gamma0 * mu))
+}
+
+/// lambda_min as the smallest eigenvalue of the dense matrix L^-1 A L^-T, K = L L^T.
+///
+/// # Errors
+/// A problem that is none.
+pub fn smallest_eigenvalue_dense<E, const N: usize, const M: usize>(
+    problem: &Problem,
+    degree: Degree,
+    kappa: f64,
+) -> Result<f64>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let d = discretize::<E, N, M>(problem, &at_kappa(problem, degree, kappa)?).map_err(text)?;
+    let Order { numbering, neighbours } = Order::new(&d);
+    let k = matrix::assemble_stiffness(&d, &numbering, &neighbours);
+    let factor = Factor::new(&k).map_err(text)?;
+    let mut columns = dense(&matrix::assemble(&d, &numbering, &neighbours));
+    for _ in 0..2 {
+        columns.iter_mut().for_each(|column| factor.forward(column));
+        columns = transposed(&columns);
+    }
+    let reduced = Mat::from_fn(columns.len(), columns.len(), |i, j| columns[j][i]);
+    let eigenvalues = reduced.self_adjoint_eigenvalues(Side::Lower);
+    eigenvalues.map_err(|e| format!("{e:?}"))?.first().copied().ok_or_else(|| "no free node".into())
+}
+
+/// The columns of a symmetric matrix.
+fn dense(lower: &LowerTriangle) -> Vec<Vec<f64>> {
+    let n = lower.starts.len() - 1;
+    let mut columns = vec![vec![0.0; n]; n];
+    for column in 0..n {
+        for at in lower.starts[column]..lower.starts[column + 1] {
+            let row = lower.rows[at];
+            columns[column][row] = lower.values[at];
+            columns[row][column] = lower.values[at];
+        }
+    }
+    columns
+}
+
+fn transposed(columns: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    (0..columns.len()).map(|i| columns.iter().map(|column| column[i]).collect()).collect()
+}
+
+/// The values of kappa in the table.
+const KAPPAS: [f64; 2] = [0.5, 0.9];
+
+/// A row of the table.
+pub struct Row {
+    /// The body.
+    pub name: String,
+    degree: Degree,
+    /// 1/C_h and gamma0*.
+    pub limits: Limits,
+    /// kappa with lambda_min.
+    pub eigenvalues: [(f64, f64); 2],
+}
+
+impl Row {
+    fn new<E, const N: usize, const M: usize>(specimen: &Specimen, degree: Degree) -> Result<Row>
+    where
+        E: ExactEdge<f64, N, M>,
+    {
+        let Specimen { name, problem } = specimen;
+        let limits = limits::<E, N, M>(problem, degree, DIAMETER)?;
+        let mut eigenvalues = KAPPAS.map(|kappa| (kappa, 0.0));
+        for (kappa, smallest) in &mut eigenvalues {
+            *smallest = smallest_eigenvalue::<E, N, M>(problem, degree, *kappa)?;
+        }
+        Ok(Row { name: name.clone(), degree, limits, eigenvalues })
+    }
+}
+
+/// All rows.
+///
+/// # Errors
+/// A mesh or a case that can't be read.
+pub fn rows() -> Result<Vec<Row>> {
+    let mut rows = Vec::new();
+    for specimen in specimens()? {
+        rows.push(Row::new::<P1, 3, 2>(&specimen, Degree::One)?);
+        rows.push(Row::new::<P2, 6, 3>(&specimen, Degree::Two)?);
+    }
+    Ok(rows)
+}
+
+/// The table of `docs/parameters.md`.
+pub fn table(rows: &[Row]) -> String {
+    let mut text = "| body | | 1/C_h | gamma0\\* | gamma0\\* C_h |".to_owned();
+    for kappa in KAPPAS {
+        let _ = write!(text, " lambda_min, 1 - kappa = {:.1} |", 1.0 - kappa);
+    }
+    text += "\n| --- | --- | --- | --- | --- | --- | --- |\n";
+    for row in rows {
+        let Limits { proved, sharp } = row.limits;
+        let [half, most] = row.eigenvalues.map(|(_, smallest)| smallest);
+        let _ = writeln!(
+            text,
+            "| {} | P{} | {} | {} | {:.3} | {half:.3} | {most:.3} |",
+            row.name,
+            row.degree.number(),
+            digits(proved),
+            digits(sharp),
+            row.limits.ratio()
+        );
+    }
+    text
+}
+
+/// Four significant digits.
+fn digits(x: f64) -> String {
+    let places = (3.0 - x.abs().log10().floor()).max(0.0) as usize;
+    format!("{x:.places$}")
+}
