@@ -219,6 +219,7 @@ mod row {
     use crate::claim::{
         Claim, Engine, Outcome, by, control, in_doubles, model_checked, proved, refuted, tested,
     };
+    use crate::claims::certificate;
     use crate::draws;
     use crate::numbers::Exact;
     use crate::statement;
@@ -356,14 +357,15 @@ mod row {
             refuted(statement!(control_monotonicity_turned, [a, b], [])),
             refuted(statement!(control_half_the_curvature, [a, b], [])),
         ]);
+        checks.extend(certificate::checks());
         checks.extend(HARNESSES.iter().copied().map(model_checked));
         Claim {
             id: "10",
             items: &["Theorem 3.3", "(12)"],
             title: "One solution",
             paper: "Suppose that gamma0 is sufficiently small. Then the problem (8) admits one unique solution u^h in V^h. In the proof: ([a]+ - [b]+)(a - b) >= ([a]+ - [b]+)^2 >= 0 and |[a]+ - [b]+| <= |a - b|, for all a, b; (12); phi is Lipschitz.",
-            statement: "Both inequalities as printed, and the steps of the first one by one; the integrand of phi is Lipschitz with the paper's constant; [.]+^2 lies between its tangent and the parabola above it, so J_h is convex and C^1. On random bodies with kappa < 1, for P1 without quadrature error and P2 by points: (12) with the constant 1 - kappa, and phi is Lipschitz with the paper's constant. The hypothesis is needed: for one triangle and gamma0 = 8/5, twelve times the limit, one load has two solutions and another has none (proved over all displacements).",
-            numbers: "every ordered field (proof); rationals; the Lipschitz bound and the sign form in all finite doubles.",
+            statement: "Both inequalities as printed, and the steps of the first one by one; the integrand of phi is Lipschitz with the paper's constant; [.]+^2 lies between its tangent and the parabola above it, so J_h is convex and C^1. On random bodies with kappa < 1, for P1 without quadrature error and P2 by points: (12) with the constant 1 - kappa, and phi is Lipschitz with the paper's constant. On random problems with kappa < 1 that the solver has solved, its data and its result u~ taken for the rationals that they are: A is positive definite by exact elimination, so there is exactly one solution u^h, and the residual of (8) at u~, exact, encloses it: |u~ - u^h|_A <= |r|_A*, |u~ - u^h|_a <= |r|_a*/(1 - kappa), and the radius is below 2^-40 |u~|_a. u^h itself is found, with a residual that is exactly zero, wherever it is rational (P1 with no edge cut inside, P1 and P2 by points), and lies in the enclosure; elsewhere a point with a radius a thousand times smaller does, to that accuracy. The hypothesis is needed: for one triangle and gamma0 = 8/5, twelve times the limit, one load has two solutions and another has none (proved over all displacements).",
+            numbers: "every ordered field (proof); rationals, the solver's doubles among them; the Lipschitz bound and the sign form in all finite doubles.",
             kernel: &[
                 "positive_part::positive_part",
                 "contact_edge::ContactEdge::new",
@@ -374,7 +376,7 @@ mod row {
                 "element::stiffness",
             ],
             preconditions: "None at a point; kappa < 1 on bodies, in place of 'gamma0 sufficiently small'.",
-            limits: "That a monotone, hemicontinuous, coercive operator is one-to-one (the corollary of Brezis that the paper cites) is not checked, and no solution is enclosed yet.",
+            limits: "The corollary of Brezis that the paper cites is not checked. On a given mesh it is not needed: that a strictly convex, coercive C^1 function on a space of finite dimension has exactly one stationary point is a textbook fact, and where u^h is rational it is there to be seen. The enclosures are of small meshes (up to 20 free nodes), over the solver's data as they are rounded: gamma, the loads and, in plane stress, lambda*. P2 without quadrature error is left out, for its roots are irrational.",
             single: None,
             checks,
         }

@@ -1,0 +1,523 @@
+//! Existence and uniqueness of the discrete solution on a given mesh, by certificate: the solver's result u~ is taken for
+//! the rational numbers that it is, the residual r of (8) at u~ and the matrices K and A are exact (`discrete`), and A is
+//! found positive definite by elimination. Then J_h is strictly convex and coercive on a space of finite dimension: (8) has
+//! exactly one solution u^h, and with e = u~ - u^h (docs/theory.md, section 7)
+//!
+//! ```text
+//! A(e, e) + int ([P(u~)]+ - [P(u^h)]+)^2/gamma <= r(e)                        (C0)
+//! |e|_a <= |r|_a*/(1 - kappa)                                                (C1)
+//! |e|_A <= rho = |r|_A*,  int ([P(u~)]+ - [P(u^h)]+)^2/gamma <= rho^2/4       (C2)
+//! ```
+//!
+//! with |r|_A*^2 = r.A^-1 r, |r|_a*^2 = r.K^-1 r: an enclosure of u^h. Where P has no root inside an edge, or the rule is one
+//! of points, u^h itself is rational: Newton's steps in exact arithmetic end at a residual that is exactly zero, and (C0)
+//! to (C2) are compared with the error itself. Where an edge is cut, u^h is irrational; one step makes a much better point
+//! u', whose own enclosure is so small that |u~ - u'| stands for the error.
+
+use std::collections::BTreeMap;
+
+use num_bigint::BigInt;
+use num_rational::BigRational;
+use proptest::prelude::*;
+use signorini::fem::{
+    BoxedFunction, Condition, Diagonal, Discretization, Mesh, Problem, Rectangle,
+};
+use signorini::kernel::edge_integral::ExactEdge;
+use signorini::kernel::{Material, P1, P2, Plane};
+use signorini::solve::{
+    ContactQuadrature, Degree, Gamma0, Method, Settings, Status, discretize, solve,
+};
+
+use crate::bodies::MaybeExact;
+use crate::claim::{Check, Engine, Outcome, by, control};
+use crate::discrete::{CUT, Discrete, Nodal, exactly};
+use crate::elimination::{Matrix, combined, dot, solve_definite, square};
+use crate::numbers::Exact;
+use crate::verdict::Verdict;
+use crate::{draws, ensure, sharpness};
+
+/// The class of solutions with an edge that P cuts at an irrational point.
+const IRRATIONAL: &str = "an edge is cut, u^h irrational";
+
+/// The enclosure of u^h around a point.
+struct Certificate {
+    /// rho^2 = r . A^-1 r
+    rho_squared: Exact,
+    /// r . K^-1 r
+    dual_squared: Exact,
+}
+
+/// A field with the residual of (8).
+struct Point {
+    u: Nodal,
+    residual: Vec<Exact>,
+}
+
+impl Point {
+    fn is_solution(&self) -> bool {
+        self.residual.iter().all(|&r| r == Exact::from(0))
+    }
+}
+
+/// A discrete problem with its matrices.
+struct Certifier<'a, E, const N: usize, const M: usize> {
+    problem: Discrete<'a, E, N, M>,
+    k: Matrix,
+    a: Matrix,
+}
+
+impl<'a, E, const N: usize, const M: usize> Certifier<'a, E, N, M>
+where
+    E: MaybeExact<N, M> + ExactEdge<f64, N, M>,
+{
+    fn new(d: &'a Discretization<'a, E, N, M>) -> Self {
+        let problem = Discrete::new(d);
+        let k = problem.stiffness();
+        let one = Exact::from(1);
+        let a = combined(one, &k, -one, &problem.stresses());
+        Certifier { problem, k, a }
+    }
+
+    fn point(&self, u: Nodal) -> Point {
+        Point { residual: self.problem.residual(&u), u }
+    }
+
+    /// The certificate at a point, refused where A is not positive definite.
+    fn certify(&self, point: &Point) -> Result<Certificate, &'static str> {
+        let r = &point.residual;
+        let riesz = solve_definite(&self.a, r).ok_or("A is not positive definite")?;
+        let in_a = solve_definite(&self.k, r).ok_or("K is not positive definite")?;
+        Ok(Certificate { rho_squared: dot(r, &riesz), dual_squared: dot(r, &in_a) })
+    }
+
+    /// u less the tangent's inverse times the residual: the solution, or where it is irrational a point near it.
+    fn newton_step(&self, point: &Point) -> Result<Point, &'static str> {
+        let step = solve_definite(&self.problem.tangent(&point.u), &point.residual);
+        let u = self.problem.less(&point.u, &step.ok_or("the tangent is not positive definite")?);
+        if !self.irrational(&u) {
+            let next = self.point(u.clone());
+            if next.is_solution() {
+                return Ok(next);
+            }
+        }
+        Ok(self.point(rounded(u)))
+    }
+
+    /// P has a root inside an edge, where the contact integrals have to be cut.
+    fn irrational(&self, u: &[[Exact; 2]]) -> bool {
+        self.problem.by_pieces() && self.problem.class(u) == CUT
+    }
+
+    /// The free components of u - v.
+    fn difference(&self, u: &[[Exact; 2]], v: &[[Exact; 2]]) -> Vec<Exact> {
+        let (u, v) = (self.problem.free(u), self.problem.free(v));
+        u.iter().zip(&v).map(|(&u, &v)| u - v).collect()
+    }
+}
+
+/// A problem and the method for it, as drawn.
+#[derive(Clone, Debug)]
+struct Draw {
+    cells: [usize; 2],
+    diagonal: Diagonal,
+    moved: Option<u64>,
+    lambda: f64,
+    plane: Plane,
+    load: [f64; 2],
+    /// g0 + g1 x
+    gap: [f64; 2],
+    /// How far the top is moved down.
+    push: f64,
+    /// In twentieths.
+    kappa: u8,
+}
+
+/// The gap at x = 0 in sixty-fourths: so wide that there is no contact, so narrow that there is nothing else, or between.
+type Gap = std::ops::RangeInclusive<i32>;
+const WIDE: Gap = 256..=256;
+const NARROW: Gap = -64..=-64;
+const BETWEEN: Gap = -4..=8;
+
+/// Problems on up to `most` cells along each side; data in sixty-fourths.
+fn problems(most: [usize; 2], gap: Gap) -> impl Strategy<Value = Draw> {
+    let diagonal = prop::sample::select(&[Diagonal::Left, Diagonal::Right, Diagonal::Crossed]);
+    let mesh = (1..=most[0], 1..=most[1], diagonal, prop::option::of(0_u64..1000));
+    let lambda = prop::sample::select(&[-0.5, 0.0, 1.0, 4.0]);
+    let plane = prop::sample::select(&[Plane::Strain, Plane::Stress]);
+    let part = |range: Gap| range.prop_map(|k| f64::from(k) / 64.0);
+    let load = (part(-64..=64), part(-64..=16));
+    let line = (part(gap), part(-16..=16), part(-4..=8));
+    (mesh, lambda, plane, load, line, 1_u8..=19).prop_map(
+        |(mesh, lambda, plane, load, line, kappa)| Draw {
+            cells: [mesh.0, mesh.1],
+            diagonal: mesh.2,
+            moved: mesh.3,
+            lambda,
+            plane,
+            load: [load.0, load.1],
+            gap: [line.0, line.1],
+            push: line.2,
+            kappa,
+        },
+    )
+}
+
+fn constant(value: f64) -> BoxedFunction {
+    Box::new(move |_: [f64; 2]| value)
+}
+
+impl Draw {
+    fn mesh(&self) -> Result<Mesh, String> {
+        if let Some(seed) = self.moved {
+            return sharpness::moved(self.cells, seed);
+        }
+        let [nx, ny] = self.cells;
+        let (width, height) = (nx as f64, ny as f64);
+        let rectangle = Rectangle { width, height, nx, ny, diagonal: self.diagonal };
+        rectangle.mesh().map_err(|error| error.to_string())
+    }
+
+    /// A body that is held and pushed down at the top, with a body force and a gap at the bottom.
+    fn problem(&self) -> Result<Problem, String> {
+        let [g0, g1] = self.gap;
+        let gap: BoxedFunction = Box::new(move |[x, _]: [f64; 2]| g0 + g1 * x);
+        let push = [constant(0.0), constant(-self.push)];
+        Ok(Problem {
+            mesh: self.mesh()?,
+            material: Material::lame(self.lambda, 1.0, self.plane),
+            body_force: self.load.map(constant),
+            conditions: BTreeMap::from([
+                ("top".to_owned(), Condition::Displacement(push.map(Some))),
+                ("bottom".to_owned(), Condition::Contact { gap }),
+            ]),
+        })
+    }
+}
+
+/// The solver's result, and what it solved.
+struct Solved {
+    problem: Problem,
+    method: Method,
+    u: Vec<[f64; 2]>,
+}
+
+impl Solved {
+    fn new(draw: &Draw, degree: Degree, quadrature: ContactQuadrature) -> Result<Solved, String> {
+        let problem = draw.problem()?;
+        let kappa = f64::from(draw.kappa) / 20.0;
+        let method = sharpness::at_kappa(&problem, degree, kappa)?;
+        let method = Method { quadrature, allow_noncoercive: false, ..method };
+        let (solution, _) =
+            solve(&problem, &method, &Settings::default()).map_err(|error| error.to_string())?;
+        if solution.newton.status == Status::NotConverged {
+            return Err("the solver did not converge".to_owned());
+        }
+        Ok(Solved { problem, method, u: solution.displacement })
+    }
+}
+
+/// 2^-n
+fn power(n: i32) -> Exact {
+    Exact::of_double(2.0_f64.powi(-n))
+}
+
+/// The same field to 2^-200: a refined point need not be known better.
+fn rounded(u: Nodal) -> Nodal {
+    let scale = BigRational::from_integer(BigInt::from(1) << 200);
+    let round = |x: Exact| Exact::new((x.value() * &scale).round() / &scale);
+    u.into_iter().map(|v| v.map(round)).collect()
+}
+
+/// The inequalities of Theorem 7.1.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Bound {
+    /// (C0)
+    Monotone,
+    /// (C1)
+    Energy,
+    /// (C2)
+    Displacement,
+    /// (C2)
+    Pressure,
+}
+
+/// What is asked of an enclosure.
+#[derive(Clone, Copy)]
+struct Demand {
+    /// The solver's result is moved at random by up to this.
+    noise: f64,
+    /// rho is at most 2^-share |u~|_a.
+    share: i32,
+    /// A planted mistake: a tenth of the right side of this bound.
+    tenth: Option<Bound>,
+}
+
+/// The solver's result is within 2^-40 of u^h, and the enclosure holds.
+const SOLVER: Demand = Demand { noise: 0.0, share: 40, tenth: None };
+
+/// The enclosure holds around any point.
+const MOVED: Demand = Demand { noise: 1e-3, share: -40, ..SOLVER };
+
+impl Demand {
+    /// The factor of a right side.
+    fn factor(self, bound: Bound) -> Exact {
+        if self.tenth == Some(bound) { Exact::ratio(1, 10) } else { Exact::from(1) }
+    }
+}
+
+/// The field moved at random.
+fn moved(u: &[[f64; 2]], by: f64) -> Vec<[f64; 2]> {
+    let mut state = 1_u64;
+    let mut next = || {
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        by * ((state >> 33) as f64 / f64::from(1_u32 << 31) - 0.5)
+    };
+    u.iter().map(|v| v.map(|c| c + next())).collect()
+}
+
+/// The solver's result on a drawn problem, certified and compared with the exact u^h or a much better point.
+fn enclosed<E, const N: usize, const M: usize>(
+    draw: &Draw,
+    quadrature: ContactQuadrature,
+    demand: Demand,
+) -> Verdict
+where
+    E: MaybeExact<N, M> + ExactEdge<f64, N, M>,
+{
+    let degree = if N == 3 { Degree::One } else { Degree::Two };
+    let Ok(solved) = Solved::new(draw, degree, quadrature) else {
+        return Verdict::Fails("the solver has no solution");
+    };
+    let Ok(d) = discretize::<E, N, M>(&solved.problem, &solved.method) else {
+        return Verdict::Fails("there is no discrete problem");
+    };
+    let certifier = Certifier::new(&d);
+    let mut found = exactly(&moved(&solved.u, demand.noise));
+    // Prescribed values stay what they are.
+    for (values, prescribed) in found.iter_mut().zip(d.constraints.values()) {
+        for c in 0..2 {
+            values[c] = prescribed[c].map_or(values[c], Exact::of_double);
+        }
+    }
+    match certifier.compared(found, demand) {
+        Ok(verdict) => verdict,
+        Err(why) => Verdict::Fails(why),
+    }
+}
+
+impl<E, const N: usize, const M: usize> Certifier<'_, E, N, M>
+where
+    E: MaybeExact<N, M> + ExactEdge<f64, N, M>,
+{
+    /// Certifies u~ and compares the enclosure with u^h, or with a point whose own enclosure is a thousand times smaller.
+    fn compared(&self, found: Nodal, demand: Demand) -> Result<Verdict, &'static str> {
+        let found = self.point(found);
+        let certificate = self.certify(&found)?;
+        let (share, scale) = (power(demand.share), square(&self.k, &self.problem.free(&found.u)));
+        if certificate.rho_squared > share * share * scale {
+            return Err("rho <= 2^-share |u~|_a");
+        }
+        let mut point = Point { u: found.u.clone(), residual: found.residual.clone() };
+        for _ in 0..8 {
+            if point.is_solution() {
+                return Ok(self.around_the_solution(&certificate, &found, &point, demand));
+            }
+            if self.irrational(&point.u) {
+                let (refined, small) = (self.certify(&point)?, Exact::ratio(1, 1_000_000));
+                if refined.rho_squared <= small * certificate.rho_squared
+                    && refined.dual_squared <= small * certificate.dual_squared
+                {
+                    let error = self.difference(&found.u, &point.u);
+                    let verdict = self.inside(&certificate, &error, Exact::ratio(1, 1000), demand);
+                    return Ok(if verdict.fails() { verdict } else { Verdict::Holds(IRRATIONAL) });
+                }
+            }
+            point = self.newton_step(&point)?;
+        }
+        Err("Newton's steps settle on no better point")
+    }
+
+    /// All bounds with the exact solution.
+    fn around_the_solution(
+        &self,
+        certificate: &Certificate,
+        found: &Point,
+        solution: &Point,
+        demand: Demand,
+    ) -> Verdict {
+        let error = self.difference(&found.u, &solution.u);
+        let verdict = self.inside(certificate, &error, Exact::from(0), demand);
+        if verdict.fails() {
+            return verdict;
+        }
+        if let Some(apart) = self.problem.pressures_apart(&found.u, &solution.u) {
+            let left = square(&self.a, &error) + apart;
+            ensure!(left <= demand.factor(Bound::Monotone) * dot(&found.residual, &error));
+            let half = demand.factor(Bound::Pressure) / Exact::from(2);
+            ensure!(apart <= half * half * certificate.rho_squared);
+        }
+        Verdict::Holds(self.problem.class(&solution.u))
+    }
+
+    /// |e|_A <= rho and |e|_a <= |r|_a*/(1 - kappa), kappa < 1, where e is known up to `slack` times these.
+    fn inside(
+        &self,
+        certificate: &Certificate,
+        error: &[Exact],
+        slack: Exact,
+        demand: Demand,
+    ) -> Verdict {
+        let kept = Exact::from(1) - self.problem.kappa();
+        ensure!(kept > Exact::from(0));
+        let factor = demand.factor(Bound::Displacement) + slack;
+        ensure!(square(&self.a, error) <= factor * factor * certificate.rho_squared);
+        let factor = demand.factor(Bound::Energy) + slack;
+        let in_energy = square(&self.k, error);
+        ensure!(kept * kept * in_energy <= factor * factor * certificate.dual_squared);
+        Verdict::Holds("inside")
+    }
+}
+
+/// Draws of each kind of gap, with the class that it is to hit; most of them for the one between.
+fn hold<E, const N: usize, const M: usize>(
+    cases: u32,
+    most: [usize; 2],
+    quadrature: ContactQuadrature,
+    demand: Demand,
+) -> Outcome
+where
+    E: MaybeExact<N, M> + ExactEdge<f64, N, M>,
+{
+    let cut = if quadrature == ContactQuadrature::Exact { IRRATIONAL } else { CUT };
+    let mut text = Vec::new();
+    for (cases, gap, class) in
+        [(cases / 4, WIDE, "open"), (cases / 4, NARROW, "pressed"), (cases, BETWEEN, cut)]
+    {
+        text.push(draws::hold(cases, problems(most, gap), &[class], |draw| {
+            Exact::scope(|| enclosed::<E, N, M>(draw, quadrature, demand))
+        })?);
+    }
+    Ok(text.join("; "))
+}
+
+fn by_pieces(demand: Demand) -> Outcome {
+    hold::<P1, 3, 2>(16, [2, 2], ContactQuadrature::Exact, demand)
+}
+
+fn by_points(demand: Demand) -> Outcome {
+    let gauss = ContactQuadrature::Gauss(3);
+    let p1 = hold::<P1, 3, 2>(8, [2, 1], gauss, demand)?;
+    let p2 = hold::<P2, 6, 3>(4, [1, 1], gauss, demand)?;
+    Ok(format!("P1: {p1}; P2: {p2}"))
+}
+
+fn around_the_result_for_p1() -> Outcome {
+    by_pieces(SOLVER)
+}
+
+fn around_any_point_for_p1() -> Outcome {
+    by_pieces(MOVED)
+}
+
+fn around_the_result_by_points() -> Outcome {
+    by_points(SOLVER)
+}
+
+fn around_any_point_by_points() -> Outcome {
+    by_points(MOVED)
+}
+
+/// In full contact, where u^h is rational and each of the bounds is looked at.
+fn rejected(demand: Demand) -> Outcome {
+    let p1 = draws::reject(60, problems([2, 1], NARROW), |draw| {
+        Exact::scope(|| enclosed::<P1, 3, 2>(draw, ContactQuadrature::Exact, demand))
+    })?;
+    let p2 = draws::reject(30, problems([1, 1], NARROW), |draw| {
+        Exact::scope(|| enclosed::<P2, 6, 3>(draw, ContactQuadrature::Gauss(3), demand))
+    })?;
+    Ok(format!("P1: {p1}; P2: {p2}"))
+}
+
+/// A tenth of the right side of each bound in turn.
+fn a_tenth() -> Outcome {
+    let mut text = Vec::new();
+    for bound in [Bound::Monotone, Bound::Energy, Bound::Displacement, Bound::Pressure] {
+        text.push(rejected(Demand { tenth: Some(bound), ..SOLVER })?);
+    }
+    Ok(text.join("; "))
+}
+
+/// The result moved by up to 1e-9 and still called the solver's.
+fn slightly_moved() -> Outcome {
+    rejected(Demand { noise: 1e-9, ..SOLVER })
+}
+
+/// The triangle (0, 0), (3, 0), (0, 4) in contact at y = 0, all but (3, 0) clamped, lambda = mu = 1, with the body force
+/// (-1/2, 0), whose load is (-1, 0).
+fn triangle() -> Result<Problem, String> {
+    let named = [("bottom", [0, 1]), ("left", [2, 0])];
+    let named = named.map(|(name, edge)| (name.to_owned(), vec![edge]));
+    let mesh = Mesh::new(vec![[0.0, 0.0], [3.0, 0.0], [0.0, 4.0]], vec![[0, 1, 2]], named)
+        .map_err(|error| error.to_string())?;
+    let mut problem = sharpness::clamped(mesh, Material::lame(1.0, 1.0, Plane::Strain), &["left"]);
+    problem.body_force = [constant(-0.5), constant(0.0)];
+    Ok(problem)
+}
+
+/// On the triangle with gamma0 = 8/5, twelve times the limit, both u = (3/2, 0) and u = (-19/32, 3/8) are solutions, and
+/// the certificate refuses both; with gamma0 = 1/15 it accepts any point.
+fn refused_beyond_the_limit() -> Outcome {
+    let problem = triangle()?;
+    Exact::scope(|| {
+        let zero = [0; 2].map(Exact::from);
+        for (gamma0, unique) in [(1.6, false), (1.0 / 15.0, true)] {
+            let gamma0 = Gamma0::Value(gamma0);
+            let method = Method { gamma0, allow_noncoercive: true, ..Method::default() };
+            let d = discretize::<P1, 3, 2>(&problem, &method).map_err(|error| error.to_string())?;
+            let certifier = Certifier::new(&d);
+            // The solver's load, -1 up to rounding; with it the solutions are scaled.
+            let scale = -Exact::of_double(d.load[1][0]);
+            for u in [[(3, 2), (0, 1)], [(-19, 32), (3, 8)]] {
+                let field = vec![zero, u.map(|(n, d)| scale * Exact::ratio(n, d)), zero];
+                let field = certifier.point(field);
+                if !unique && !field.is_solution() {
+                    return Err(format!("{u:?} is no solution"));
+                }
+                if certifier.certify(&field).is_ok() != unique {
+                    return Err(format!("gamma0 = {gamma0:?}: the certificate is wrong"));
+                }
+            }
+        }
+        Ok("gamma0 = 8/5: two solutions, refused; gamma0 = 1/15: accepted".to_owned())
+    })
+}
+
+/// The checks, for the row of Theorem 3.3.
+pub fn checks() -> [Check; 7] {
+    [
+        by(
+            Engine::Exact,
+            "one_solution_is_enclosed_around_the_result_of_the_solver_for_p1",
+            around_the_result_for_p1,
+        ),
+        by(
+            Engine::Exact,
+            "one_solution_is_enclosed_around_the_result_of_the_solver_by_points",
+            around_the_result_by_points,
+        ),
+        by(
+            Engine::Exact,
+            "one_solution_is_enclosed_around_any_point_for_p1",
+            around_any_point_for_p1,
+        ),
+        by(
+            Engine::Exact,
+            "one_solution_is_enclosed_around_any_point_by_points",
+            around_any_point_by_points,
+        ),
+        control(Engine::Exact, "control_a_tenth_of_the_radius_encloses", a_tenth),
+        control(Engine::Exact, "control_a_moved_result_for_the_solvers", slightly_moved),
+        control(Engine::Exact, "control_certificate_beyond_the_limit", refused_beyond_the_limit),
+    ]
+}
