@@ -654,7 +654,7 @@ mod row {
                 "material::Stress::traction",
             ],
             preconditions: "mu > 0 and lambda + mu > 0 (in plane stress 3 lambda + 2 mu > 0), which every elastic material satisfies. The paper says 'gamma0 sufficiently small'; here the limit is a number.",
-            limits: "Korn's inequality, which turns a(v, v) into |v|_1^2, is not checked. On the larger meshes of the table the eigenvalues are those of the doubles' arithmetic, with no enclosure.",
+            limits: "Korn's inequality, which turns a(v, v) into |v|_1^2, is not checked. On the larger meshes of the table the eigenvalues are those of doubles, with no enclosure. The elimination that counts signs (`props/src/elimination.rs`) is trusted.",
             single: None,
             checks,
         }
