@@ -12,6 +12,7 @@
 
 mod corner;
 mod patch;
+mod real;
 mod singular;
 mod smooth;
 
@@ -21,13 +22,14 @@ use std::sync::Arc;
 
 pub use corner::Corner;
 pub use patch::Patch;
-pub use singular::Singular;
+pub use real::Real;
+pub use singular::{Place, Singular};
 pub use smooth::Smooth;
 
 use super::mesh::Mesh;
 use super::pieces::Features;
 use super::problem::{BoxedFunction, Condition, Function, Problem};
-use crate::kernel::{Material, Stress};
+use crate::kernel::{Material, Scalar, Stress};
 
 /// A displacement field that solves (1)-(2), with its data.
 pub trait ExactSolution: Debug + Send + Sync {
@@ -157,7 +159,7 @@ impl Function for Field {
 }
 
 /// Kolosov's constant (lambda + 3 mu) / (lambda + mu).
-fn kolosov(material: &Material<f64>) -> f64 {
+fn kolosov<S: Scalar>(material: &Material<S>) -> S {
     let (lambda, mu) = (material.lambda(), material.mu());
-    (lambda + 3.0 * mu) / (lambda + mu)
+    (lambda + S::from(3) * mu) / (lambda + mu)
 }

@@ -5,35 +5,96 @@
 //! 2 mu u_y = am ( (k + 1)/3 r^(3/2) cos(3 theta/2) + y r^(1/2) sin(theta/2)).
 //!
 //! Contact with sigma_n = -am r^(1/2) for x < c; a gap that opens as r^(3/2) for x > c.
+//!
+//! The formulas need square roots only, so that they can be run over any [`Real`] number: over doubles here, over
+//! enclosures in `props`.
 
-use super::{ExactSolution, kolosov};
+use super::{ExactSolution, Real, kolosov};
 use crate::fem::pieces::{Features, Singularity};
 use crate::kernel::Material;
 
 /// The solution (b).
 #[derive(Clone, Debug, PartialEq)]
-pub struct Singular {
+pub struct Singular<S = f64> {
     /// What the body is made of.
-    pub material: Material<f64>,
+    pub material: Material<S>,
     /// Where contact ends, inside (0, 1).
-    pub c: f64,
+    pub c: S,
     /// am > 0, in stress / length^(1/2).
-    pub amplitude: f64,
+    pub amplitude: S,
 }
 
-/// (r, r^(1/2) cos(theta/2), r^(1/2) sin(theta/2)) without the angle and without cancellation. Of the two half-angle
-/// formulas the one that adds is taken, the other factor follows from their product |y|/2.
-fn root(x: f64, y: f64) -> [f64; 3] {
-    let r = x.hypot(y);
-    let larger = ((r + x.abs()) / 2.0).sqrt();
-    let smaller = if larger > 0.0 { y / (2.0 * larger) } else { 0.0 };
-    if x >= 0.0 { [r, larger, smaller] } else { [r, smaller, larger] }
+/// A place with y >= 0, seen from the singular point, and z^(1/2) there.
+#[derive(Clone, Copy, Debug)]
+pub struct Place<S> {
+    /// x - c
+    pub x: S,
+    /// y
+    pub y: S,
+    /// y / r = sin theta; 0 where r is.
+    pub over_r: S,
+    /// r^(1/2) cos(theta/2)
+    pub cos: S,
+    /// r^(1/2) sin(theta/2)
+    pub sin: S,
+}
+
+impl<S: Real> Place<S> {
+    /// Without the angle and without cancellation: of the two half-angle formulas the one that adds is taken, the other
+    /// factor follows from their product y/2.
+    pub fn new(x: S, y: S) -> Self {
+        let (zero, two) = (S::from(0), S::from(2));
+        let r = (x * x + y * y).sqrt();
+        let larger = |x: S| ((r + x) / two).sqrt();
+        let smaller = |larger: S| larger.split(|_| zero, |larger| y / (two * larger));
+        let [cos, sin] = x.by_sign(
+            |x| {
+                let sin = larger(-x);
+                [smaller(sin), sin]
+            },
+            |x| {
+                let cos = larger(x);
+                [cos, smaller(cos)]
+            },
+        );
+        Place { x, y, over_r: r.split(|_| zero, |r| y / r), cos, sin }
+    }
+}
+
+impl<S: Real> Singular<S> {
+    /// u
+    pub fn displacement_at(&self, place: &Place<S>) -> [S; 2] {
+        let &Place { x, y, cos, sin, .. } = place;
+        // z^(3/2) = z z^(1/2)
+        let [cos3, sin3] = [x * cos - y * sin, x * sin + y * cos];
+        let (one, three) = (S::from(1), S::from(3));
+        let k = kolosov(&self.material);
+        let scale = self.amplitude / (S::from(2) * self.material.mu());
+        [
+            scale * (-((k - one) / three * sin3) - y * cos),
+            scale * ((k + one) / three * cos3 + y * sin),
+        ]
+    }
+
+    /// du_i/dx_j. Without a value at the singular point itself when y > 0 is lost: there y r^(-1/2) counts as 0.
+    pub fn gradient_at(&self, place: &Place<S>) -> [[S; 2]; 2] {
+        let &Place { over_r, cos, sin, .. } = place;
+        let (one, two) = (S::from(1), S::from(2));
+        let am = self.amplitude;
+        // Phi = i am z^(1/2) and y Phi'.
+        let (re, im) = (-(am * sin), am * cos);
+        let (re1, im1) = (am / two * over_r * sin, am / two * over_r * cos);
+        let k = kolosov(&self.material);
+        let (less, more) = ((k - one) / two, (k + one) / two);
+        [[less * re - im1, -(more * im) - re1], [more * im - re1, less * re + im1]]
+            .map(|row| row.map(|d| d / (two * self.material.mu())))
+    }
 }
 
 impl Singular {
-    /// (x - c, y) with y >= 0: rounding must not put a point of the contact line below it.
-    fn local(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        [x - self.c, y.max(0.0)]
+    /// With y >= 0: rounding must not put a point of the contact line below it.
+    fn place(&self, [x, y]: [f64; 2]) -> Place<f64> {
+        Place::new(x - self.c, y.max(0.0))
     }
 }
 
@@ -43,28 +104,11 @@ impl ExactSolution for Singular {
     }
 
     fn displacement(&self, x: [f64; 2]) -> [f64; 2] {
-        let [x, y] = self.local(x);
-        let [_, cos, sin] = root(x, y);
-        // z^(3/2) = z z^(1/2)
-        let [cos3, sin3] = [x * cos - y * sin, x * sin + y * cos];
-        let k = kolosov(&self.material);
-        let scale = self.amplitude / (2.0 * self.material.mu());
-        [scale * (-(k - 1.0) / 3.0 * sin3 - y * cos), scale * ((k + 1.0) / 3.0 * cos3 + y * sin)]
+        self.displacement_at(&self.place(x))
     }
 
-    /// Without a value at the singular point itself when y > 0 is lost: there y r^(-1/2) counts as 0.
     fn gradient(&self, x: [f64; 2]) -> [[f64; 2]; 2] {
-        let [x, y] = self.local(x);
-        let [r, cos, sin] = root(x, y);
-        let over_r = if r > 0.0 { y / r } else { 0.0 };
-        let am = self.amplitude;
-        // Phi = i am z^(1/2) and y Phi'.
-        let (re, im) = (-am * sin, am * cos);
-        let (re1, im1) = (am / 2.0 * over_r * sin, am / 2.0 * over_r * cos);
-        let k = kolosov(&self.material);
-        let (less, more) = ((k - 1.0) / 2.0, (k + 1.0) / 2.0);
-        [[less * re - im1, -more * im - re1], [more * im - re1, less * re + im1]]
-            .map(|row| row.map(|d| d / (2.0 * self.material.mu())))
+        self.gradient_at(&self.place(x))
     }
 
     fn regularity(&self) -> f64 {
