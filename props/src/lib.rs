@@ -18,6 +18,8 @@ pub mod draws;
 #[cfg(not(kani))]
 pub mod elimination;
 #[cfg(not(kani))]
+pub mod enclosure;
+#[cfg(not(kani))]
 pub mod export;
 pub mod harness;
 #[cfg(not(kani))]

@@ -3,16 +3,23 @@
 //!
 //! With A(y) = -(y - 3y^3 + 2y^4), B(y) = 1 - 3y^2 + 2y^3, p = 8 \[x - c\]+^3 and q = -4 \[c - x\]+^2 the field
 //! u = (A p', B p - A q) has u_n = -p, sigma_n = (lambda + 2 mu) q and no shear on y = 0, n = (0, -1): conditions (2).
-//! Body force and tractions follow from (1). P1, whose gradients and P0(v) come from the kernel.
+//! Body force and tractions follow from (1). P1 and P2, whose gradients and P0(v) come from the kernel. The solver has the
+//! same solution by other formulas, `fem::exact::Smooth`: its doubles, and the L that it assembles from them, are compared.
+
+use std::sync::Arc;
 
 use num_rational::BigRational;
-use num_traits::{Signed, Zero};
-use signorini::kernel::P1;
+use num_traits::{Signed, ToPrimitive, Zero};
+use proptest::prelude::Strategy;
+use signorini::fem::exact::{self, Kind};
+use signorini::fem::{Mesh, Problem, Space, loads};
+use signorini::kernel::{Element, Material, P1, P2, Plane};
 
 use crate::Verdict;
 use crate::bodies::{Body, Draw, Kernel, bodies};
 use crate::claim::Outcome;
 use crate::draws;
+use crate::naive::Line;
 use crate::numbers::Exact;
 use crate::proof::polynomial::{Polynomial, integer};
 use crate::{ensure, given};
@@ -139,75 +146,148 @@ fn cut(a: &BigRational, b: &BigRational, c: &BigRational, right: bool) -> Option
     }
 }
 
+/// The shape functions by the barycentric coordinates, in the order of the nodes.
+fn shapes<const N: usize>(l: &[Polynomial; 3]) -> [Polynomial; N] {
+    std::array::from_fn(|i| match (N, i) {
+        (3, _) => l[i].clone(),
+        (_, 0..3) => &l[i] * &(&(&l[i] + &l[i]) - &constant(1)),
+        _ => (&l[(i + 1) % 3] * &l[(i + 2) % 3]).scaled(&integer(4)),
+    })
+}
+
 /// v on a triangle as a polynomial, by the kernel's barycentric gradients.
-fn test_function(body: &Body, t: usize, v: &[[Exact; 2]]) -> [Polynomial; 2] {
+fn test_function<const N: usize>(body: &Body, t: usize, v: &[[Exact; 2]]) -> [Polynomial; 2] {
     let gradients = body.triangle(t).barycentric_gradients();
-    let (corners, origin) = (body.triangles[t], body.vertices[body.triangles[t][0]]);
+    let origin = body.vertices[body.triangles[t][0]];
+    let l = [0, 1, 2].map(|i| {
+        (0..2).fold(constant(i64::from(i == 0)), |l, c| {
+            let offset = &Polynomial::variable(c) - &Polynomial::constant(origin[c].value());
+            &l + &offset.scaled(&gradients[i][c].value())
+        })
+    });
+    let (shapes, nodal) = (shapes::<N>(&l), body.local::<N>(t, v));
     [0, 1].map(|component| {
-        (0..3).fold(Polynomial::default(), |sum, i| {
-            let mut l = constant(i64::from(i == 0));
-            for c in 0..2 {
-                let offset = &Polynomial::variable(c) - &Polynomial::constant(origin[c].value());
-                l = &l + &offset.scaled(&gradients[i][c].value());
-            }
-            &sum + &l.scaled(&v[corners[i]][component].value())
+        shapes.iter().zip(nodal).fold(Polynomial::default(), |sum, (shape, v)| {
+            &sum + &shape.scaled(&v[component].value())
         })
     })
 }
 
-/// The left side of the discrete equations at the exact u minus L(v), for a v that is zero at the top.
-fn residual(body: &Body, c: &BigRational, v: &[[Exact; 2]], theta: i64) -> BigRational {
-    let place = |vertex: usize| body.vertices[vertex].map(|x| x.value());
+/// The exact solution left and right of c.
+fn sides(body: &Body, c: &BigRational) -> [(bool, Smooth); 2] {
     let (lambda, mu) = (body.hooke.lambda.value(), body.hooke.mu.value());
-    let sides = [false, true].map(|right| (right, Smooth::new(c, right, [&lambda, &mu])));
-    let kernel = Kernel::<3, 2>::new::<P1>(body);
+    [false, true].map(|right| (right, Smooth::new(c, right, [&lambda, &mu])))
+}
+
+fn corner(body: &Body, vertex: usize) -> Point {
+    body.vertices[vertex].map(|x| x.value())
+}
+
+/// The ends of an edge.
+fn ends(body: &Body, t: usize, i: usize) -> [Point; 2] {
+    [1, 2].map(|k| corner(body, body.triangles[t][(i + k) % 3]))
+}
+
+/// The integral over the body of sigma(u):eps(v), or of f . v.
+fn over_body<const N: usize>(
+    body: &Body,
+    c: &BigRational,
+    v: &[[Exact; 2]],
+    density: impl Fn(&Smooth, &[Polynomial; 2]) -> Polynomial,
+) -> BigRational {
     let mut total = BigRational::zero();
-    for (right, exact) in &sides {
+    for (right, exact) in &sides(body, c) {
         for (t, corners) in body.triangles.iter().enumerate() {
-            let v = test_function(body, t, v);
-            let strain =
-                [v[0].derivative(0), v[1].derivative(1), &v[0].derivative(1) + &v[1].derivative(0)];
-            let mut density = Polynomial::default();
-            for i in 0..3 {
-                density = &density + &(&exact.stress[i] * &strain[i]);
-            }
-            for i in 0..2 {
-                density = &density - &(&exact.force[i] * &v[i]);
-            }
-            let polygon = clipped(&corners.map(place), c, *right);
+            let density = density(exact, &test_function::<N>(body, t, v));
+            let polygon = clipped(&corners.map(|vertex| corner(body, vertex)), c, *right);
             for k in 1..polygon.len().saturating_sub(1) {
                 total += over_triangle(&density, [&polygon[0], &polygon[k], &polygon[k + 1]]);
             }
         }
+    }
+    total
+}
+
+/// sigma(u) : eps(v)
+fn energy(exact: &Smooth, v: &[Polynomial; 2]) -> Polynomial {
+    let strain =
+        [v[0].derivative(0), v[1].derivative(1), &v[0].derivative(1) + &v[1].derivative(0)];
+    let terms = exact.stress.iter().zip(&strain);
+    terms.fold(Polynomial::default(), |sum, (stress, strain)| &sum + &(stress * strain))
+}
+
+/// a . b
+fn dot(a: &[Polynomial; 2], b: &[Polynomial; 2]) -> Polynomial {
+    &(&a[0] * &b[0]) + &(&a[1] * &b[1])
+}
+
+/// L(v): the body force, and the tractions on all sides but the contact line and the top.
+fn load<const N: usize>(body: &Body, c: &BigRational, v: &[[Exact; 2]]) -> BigRational {
+    let mut total = over_body::<N>(body, c, v, |exact, v| dot(&exact.force, v));
+    for (right, exact) in &sides(body, c) {
         for &(t, i) in &body.free {
-            let [a, b] = [1, 2].map(|k| place(body.triangles[t][(i + k) % 3]));
+            let [a, b] = ends(body, t, i);
             let Some([start, end]) = cut(&a[0], &b[0], c, *right) else { continue };
             let (nx, ny) = (&b[1] - &a[1], &a[0] - &b[0]);
             let [xx, yy, xy] = &exact.stress;
             let traction = [&xx.scaled(&nx) + &xy.scaled(&ny), &xy.scaled(&nx) + &yy.scaled(&ny)];
-            let v = test_function(body, t, v);
-            let work = &(&traction[0] * &v[0]) + &(&traction[1] * &v[1]);
-            total -= over_interval(&along(&work, &a, &b), [&start, &end]);
+            let work = dot(&traction, &test_function::<N>(body, t, v));
+            total += over_interval(&along(&work, &a, &b), [&start, &end]);
         }
+    }
+    total
+}
+
+/// The polynomial in s with these values at 0 and 1, and at 1/2 if there are three.
+fn line(values: &[Exact]) -> Polynomial {
+    let line = match *values {
+        [start, end] => Line::affine(start, end),
+        [start, end, middle] => Line::quadratic(start, middle, end),
+        _ => Line(Vec::new()),
+    };
+    let terms = line.0.iter().zip(0_u8..);
+    terms.fold(Polynomial::default(), |sum, (c, n)| {
+        &sum + &power(&Polynomial::variable(0), n).scaled(&c.value())
+    })
+}
+
+/// The contact terms of (8) at the exact u; `weight` times int (1/gamma) \[P(u)\]+ P0(v) in them.
+fn contact<E: Element<N, M>, const N: usize, const M: usize>(
+    body: &Body,
+    c: &BigRational,
+    v: &[[Exact; 2]],
+    weight: i64,
+) -> BigRational {
+    let kernel = Kernel::<N, M>::new::<E>(body);
+    let mut total = BigRational::zero();
+    for (right, exact) in &sides(body, c) {
         for (e, side) in body.contact.iter().enumerate() {
-            let [a, b] = [1, 2].map(|k| place(body.triangles[side.triangle][(side.local + k) % 3]));
+            let [a, b] = ends(body, side.triangle, side.local);
             let Some([start, end]) = cut(&a[0], &b[0], c, *right) else { continue };
             let (gamma, length) = (body.gamma(side).value(), side.length.value());
             let (u_n, sigma_n) = (along(&-&exact.u[1], &a, &b), along(&exact.stress[1], &a, &b));
-            let line = |[at_0, at_1]: [Exact; 2]| {
-                &Polynomial::constant(at_0.value()) + &between(&at_0.value(), &at_1.value(), 0)
-            };
-            let (p0, stress) = (line(kernel.p0(e, v)), line(kernel.sigma_n(e, v)));
+            let (p0, stress) = (line(&kernel.p0(e, v)), line(&kernel.sigma_n(e, v)));
             let p = &u_n - &sigma_n.scaled(&gamma);
             let middle = (&start + &end) / integer(2);
             let mut density = -&(&sigma_n * &stress).scaled(&gamma);
             if p.at(&[middle]).is_positive() {
-                density = &density + &(&p * &p0).scaled(&(integer(theta) / &gamma));
+                density = &density + &(&p * &p0).scaled(&(integer(weight) / &gamma));
             }
             total += over_interval(&density, [&start, &end]) * length;
         }
     }
     total
+}
+
+/// The left side of the discrete equations at the exact u minus L(v), for a v that is zero at the top.
+fn residual<E: Element<N, M>, const N: usize, const M: usize>(
+    body: &Body,
+    c: &BigRational,
+    v: &[[Exact; 2]],
+    weight: i64,
+) -> BigRational {
+    over_body::<N>(body, c, v, energy) - load::<N>(body, c, v)
+        + contact::<E, N, M>(body, c, v, weight)
 }
 
 /// The field is a solution: (2) holds on y = 0 on either side of c, as polynomials or at the ends.
@@ -223,31 +303,152 @@ fn satisfies_2(c: &BigRational, moduli: [&BigRational; 2]) -> bool {
     })
 }
 
-fn consistent(draw: &Draw, (n, d): (i64, i64), theta: i64) -> Verdict {
+fn consistent<E: Element<N, M>, const N: usize, const M: usize>(
+    draw: &Draw,
+    (n, d): (i64, i64),
+    weight: i64,
+) -> Verdict {
     Exact::scope(|| {
         let body = draw.upright().body();
         let c = integer(n) / integer(n + d);
         let v = body.clamped(body.drawn(0));
         ensure!(satisfies_2(&c, [&body.hooke.lambda.value(), &body.hooke.mu.value()]));
         let cut_edge = body.contact.iter().any(|side| {
-            let x = [1, 2]
-                .map(|k| body.vertices[body.triangles[side.triangle][(side.local + k) % 3]][0]);
-            let c = Exact::new(c.clone());
-            (x[0] < c) != (x[1] < c)
+            let [a, b] = ends(&body, side.triangle, side.local);
+            (a[0] < c) != (b[0] < c)
         });
         given!(cut_edge);
-        ensure!(residual(&body, &c, &v, theta).is_zero());
+        ensure!(residual::<E, N, M>(&body, &c, &v, weight).is_zero());
         Verdict::Holds("an edge with contact and gap")
     })
 }
 
+const CLASSES: [&str; 1] = ["an edge with contact and gap"];
+
+fn data() -> impl Strategy<Value = (Draw, (i64, i64))> {
+    (bodies(1), draws::positive())
+}
+
 /// The residual vanishes at the curved solution.
 pub fn residual_vanishes() -> Outcome {
-    let data = (bodies(1), draws::positive());
-    draws::hold(25, data, &["an edge with contact and gap"], |(draw, c)| consistent(draw, *c, 1))
+    draws::hold(25, data(), &CLASSES, |(draw, c)| consistent::<P1, 3, 2>(draw, *c, 1))
+}
+
+/// The same for P2.
+pub fn residual_vanishes_for_p2() -> Outcome {
+    draws::hold(8, data(), &CLASSES, |(draw, c)| consistent::<P2, 6, 3>(draw, *c, 1))
 }
 
 /// Without the contact term: the penalty-free method is not consistent.
 pub fn without_the_contact_term() -> Outcome {
-    draws::reject(25, (bodies(1), draws::positive()), |(draw, c)| consistent(draw, *c, 0))
+    draws::reject(25, data(), |(draw, c)| consistent::<P1, 3, 2>(draw, *c, 0))
+}
+
+/// The same for P2.
+pub fn without_the_contact_term_for_p2() -> Outcome {
+    draws::reject(25, data(), |(draw, c)| consistent::<P2, 6, 3>(draw, *c, 0))
+}
+
+/// How far doubles may be from the exact values, relative to the sum of the magnitudes of what is added up.
+const ROUNDING: f64 = 1e-12;
+
+fn double(x: &BigRational) -> f64 {
+    x.to_f64().unwrap_or(f64::NAN)
+}
+
+/// Whether `found` is the value of the polynomial at a point, up to rounding.
+fn is_value(found: f64, p: &Polynomial, x: &[BigRational]) -> bool {
+    let size = p.terms().fold(0.0, |sum, (monomial, coefficient)| {
+        let factors = monomial.iter().zip(x).map(|(&n, x)| double(x).powi(n.into()));
+        sum + (double(coefficient) * factors.product::<f64>()).abs()
+    });
+    (found - double(&p.at(x))).abs() <= ROUNDING * size
+}
+
+/// The body as the solver has it: contact on its bottom, tractions on its sides.
+fn problem(body: &Body, solution: &exact::Exact) -> Option<Problem> {
+    let vertices = body.vertices.iter().map(|x| x.map(|x| double(&x.value()))).collect();
+    let pair = |t: usize, i: usize| [1, 2].map(|k| body.triangles[t][(i + k) % 3]);
+    let named = [
+        ("bottom".to_owned(), body.contact.iter().map(|s| pair(s.triangle, s.local)).collect()),
+        ("sides".to_owned(), body.free.iter().map(|&(t, i)| pair(t, i)).collect()),
+    ];
+    let mesh = Mesh::new(vertices, body.triangles.clone(), named).ok()?;
+    let kinds = [("bottom".to_owned(), Kind::Contact), ("sides".to_owned(), Kind::Traction)];
+    Some(exact::problem(solution, mesh, &kinds.into()))
+}
+
+/// The load that the solver assembles, at a v, is L(v).
+fn load_agrees<E: Element<N, M>, const N: usize, const M: usize>(
+    body: &Body,
+    problem: &Problem,
+    c: &BigRational,
+    solver_scale: f64,
+) -> bool {
+    let drawn = body.drawn(0);
+    // Any function of the place will do, if both sides take it at their nodes.
+    let test =
+        |[x, y]: [Exact; 2]| [drawn[0][0] + drawn[1][0] * x, drawn[0][1] + drawn[1][1] * x * y];
+    let d = [0, 1].map(|i| drawn[i].map(|x| double(&x.value())));
+    let in_doubles = |[x, y]: [f64; 2]| [d[0][0] + d[1][0] * x, d[0][1] + d[1][1] * x * y];
+    let space = Space::<E, N, M>::new(&problem.mesh);
+    let Ok(load) = loads::assemble(problem, &space) else { return false };
+    let products = load.iter().zip(space.nodes()).flat_map(|(l, &x)| {
+        let v = in_doubles(x);
+        [l[0] * v[0], l[1] * v[1]]
+    });
+    let (sum, size) = products.fold((0.0, 0.0), |(sum, size), p: f64| (sum + p, size + p.abs()));
+    let exact = self::load::<N>(body, c, &body.interpolated(test));
+    (solver_scale * sum - double(&exact)).abs() <= ROUNDING * size
+}
+
+/// The formulas and the load of the solver against the polynomials.
+fn solver_agrees(draw: &Draw, (n, d): (i64, i64), scale: f64) -> Verdict {
+    Exact::scope(|| {
+        let body = draw.upright().body();
+        let c = integer(n) / integer(n + d);
+        let [lambda, mu] = [body.hooke.lambda, body.hooke.mu].map(|x| double(&x.value()));
+        let material = Material::lame(lambda, mu, Plane::Strain);
+        let (k, m, ap, aq) = (3.0, 2.0, 8.0, 4.0);
+        let in_doubles = exact::Smooth { material, c: double(&c), k, m, ap, aq, gap: Vec::new() };
+        let solution: exact::Exact = Arc::new(in_doubles);
+        for (right, exact) in &sides(&body, &c) {
+            for corners in &body.triangles {
+                let x = [0, 1].map(|i| {
+                    let sum = corners.iter().map(|&v| double(&corner(&body, v)[i])).sum::<f64>();
+                    sum / 3.0
+                });
+                let Some(at) =
+                    x.iter().map(|&x| BigRational::from_float(x)).collect::<Option<Vec<_>>>()
+                else {
+                    return Verdict::Fails("finite places");
+                };
+                if (at[0] > c) != *right {
+                    continue;
+                }
+                let (u, s) = (solution.displacement(x), solution.stress(x));
+                let f = solution.body_force(x).unwrap_or_default().map(|f| scale * f);
+                ensure!((0..2).all(|i| is_value(u[i], &exact.u[i], &at)));
+                ensure!((0..2).all(|i| is_value(f[i], &exact.force[i], &at)));
+                let stress = [s.xx, s.yy, s.xy];
+                ensure!((0..3).all(|i| is_value(stress[i], &exact.stress[i], &at)));
+            }
+        }
+        let Some(problem) = problem(&body, &solution) else {
+            return Verdict::Fails("the body is a mesh");
+        };
+        ensure!(load_agrees::<P1, 3, 2>(&body, &problem, &c, scale));
+        ensure!(load_agrees::<P2, 6, 3>(&body, &problem, &c, scale));
+        Verdict::Holds("formulas and load")
+    })
+}
+
+/// The solver's formulas of this solution, and the L that it assembles from them, are the polynomials and their L.
+pub fn solver_has_the_same_solution() -> Outcome {
+    draws::hold(15, data(), &["formulas and load"], |(draw, c)| solver_agrees(draw, *c, 1.0))
+}
+
+/// A body force that is off by a millionth is not that of the solution.
+pub fn body_force_off_by_a_millionth() -> Outcome {
+    draws::reject(15, data(), |(draw, c)| solver_agrees(draw, *c, 1.0 + 1e-6))
 }

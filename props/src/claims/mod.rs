@@ -6,6 +6,8 @@ pub mod certificate;
 #[cfg(not(kani))]
 pub mod curved;
 pub mod discrete_forms;
+#[cfg(not(kani))]
+pub mod enclosed;
 pub mod foundations;
 pub mod lemma_3_1;
 pub mod lemma_3_2;
