@@ -156,6 +156,12 @@ mod tests {
     }
 
     #[test]
+    fn factors_are_facts_and_squares_of_the_longest_product() {
+        let c = Certificate::default().with(1, &[0], &[]).with(1, &[2, 2], &[x()]);
+        assert_eq!(c.factors(), 3);
+    }
+
+    #[test]
     fn a_sum_that_does_not_cancel_is_refused() {
         let c = Certificate::default().with(2, &[0], &[]).with(1, &[1], &[]);
         assert_eq!(verdict(&c), Err(Refusal::DoesNotCancel));

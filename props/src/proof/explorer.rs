@@ -129,3 +129,14 @@ pub fn polynomials_of(unknowns: usize, of: fn(&[Sym]) -> Vec<Sym>) -> Vec<Polyno
     symbol::finish();
     result
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_answers_of_a_function_of_the_unknowns_are_polynomials_in_them() {
+        let (x, y) = (Polynomial::variable(0), Polynomial::variable(1));
+        assert_eq!(polynomials_of(2, |v| vec![v[0] * v[1], v[0] - v[1]]), [&x * &y, &x - &y]);
+    }
+}

@@ -180,6 +180,7 @@ fn reach_classes(statement: &Statement, paths: &[Path]) -> Result<(), String> {
 mod tests {
     use super::*;
     use crate::claim::Subject;
+    use crate::numbers::Exact;
     use crate::verdict::Ordered;
     use crate::{claims, ensure, given, statement};
 
@@ -217,6 +218,14 @@ mod tests {
             .is_some_and(|point| path.facts.iter().all(|fact| fact.holds_at(&point)))
     }
 
+    /// The verdict by the arithmetic of the exact engine, which knows nothing of symbols. It panics at a division by zero.
+    fn over_rationals(statement: &Statement, point: &[BigRational]) -> Verdict {
+        Exact::scope(|| {
+            let point: Vec<Exact> = point.iter().cloned().map(Exact::new).collect();
+            (statement.exact)(&point)
+        })
+    }
+
     #[test]
     fn every_random_point_lies_on_exactly_one_path_and_has_its_verdict() {
         let mut random = Random::new(7);
@@ -229,6 +238,9 @@ mod tests {
                 assert_eq!(on.len(), 1, "{} at {}", statement.name, place(&statement, &point));
                 let verdict = verdict_at(statement.symbolic, &point);
                 assert_eq!(on[0].verdict, verdict, "{}", statement.name);
+                if verdict != Verdict::Fails("division by zero") {
+                    assert_eq!(verdict, over_rationals(&statement, &point), "{}", statement.name);
+                }
             }
         }
     }

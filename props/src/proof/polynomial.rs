@@ -305,6 +305,12 @@ mod tests {
     }
 
     #[test]
+    fn variables_are_those_that_occur() {
+        assert_eq!(example().variables(), [0, 1]);
+        assert_eq!((&y() * &y()).variables(), [1]);
+    }
+
+    #[test]
     fn quotients_exist_only_where_the_divisor_divides() {
         assert_eq!(quotient(&vec![2, 1], &vec![1, 1]), Some(vec![1]));
         assert_eq!(quotient(&vec![2], &vec![0, 1]), None);
@@ -317,5 +323,6 @@ mod tests {
         let names = ["x".to_owned(), "y".to_owned()];
         assert_eq!(p.smt(&names), "(+ (* 1.0 y y) (* (- (/ 1.0 2.0)) x))");
         assert_eq!(Polynomial::constant(integer(-3)).smt(&names), "(- 3.0)");
+        assert_eq!(Polynomial::default().smt(&names), "0.0");
     }
 }

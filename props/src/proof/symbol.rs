@@ -7,7 +7,7 @@
 //!
 //! Trusted: `ask` and the operators decide which paths there are.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -18,17 +18,17 @@ use signorini::kernel::Scalar;
 
 use super::polynomial::{Polynomial, integer};
 
-/// A set of signs.
+/// A set of signs: from the right, a bit for negative, for zero and for positive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Signs(u8);
 
 impl Signs {
-    pub(super) const NEGATIVE: Signs = Signs(1);
-    pub(super) const ZERO: Signs = Signs(2);
-    pub(super) const POSITIVE: Signs = Signs(4);
-    const ALL: Signs = Signs(7);
-    pub(super) const NONPOSITIVE: Signs = Signs(1 | 2);
-    pub(super) const NONNEGATIVE: Signs = Signs(2 | 4);
+    pub(super) const NEGATIVE: Signs = Signs(0b001);
+    pub(super) const ZERO: Signs = Signs(0b010);
+    pub(super) const POSITIVE: Signs = Signs(0b100);
+    const ALL: Signs = Signs(0b111);
+    pub(super) const NONPOSITIVE: Signs = Signs(0b011);
+    pub(super) const NONNEGATIVE: Signs = Signs(0b110);
 
     fn of(value: &BigRational) -> Signs {
         if value.is_zero() {
@@ -45,19 +45,19 @@ impl Signs {
     }
 
     fn not(self) -> Signs {
-        Signs(7 & !self.0)
+        Signs(Signs::ALL.0 & !self.0)
     }
 
     /// The signs of -p for the signs of p.
     fn mirrored(self) -> Signs {
-        Signs((self.0 & 1) << 2 | self.0 & 2 | self.0 >> 2)
+        Signs(self.0.reverse_bits() >> 5)
     }
 
     /// Its convex parts: "not zero" is two of them.
     fn parts(self) -> Vec<Signs> {
         match self {
-            Signs(0) => Vec::new(),
-            Signs(5) => vec![Signs::NEGATIVE, Signs::POSITIVE],
+            Signs(0b000) => Vec::new(),
+            Signs(0b101) => vec![Signs::NEGATIVE, Signs::POSITIVE],
             convex => vec![convex],
         }
     }
@@ -86,22 +86,20 @@ pub(super) struct Run {
 
 thread_local! {
     static RUN: RefCell<Run> = RefCell::new(Run::default());
+    /// How many runs were started: each has a number of its own, and 0 belongs to none.
+    static STARTED: Cell<u32> = const { Cell::new(0) };
 }
 
 /// Starts a run with `variables` unknowns that follows `script` and extends it at new questions.
 pub(super) fn start(variables: usize, script: Vec<Choice>) -> Vec<Sym> {
-    RUN.with_borrow_mut(|run| {
-        *run = Run { number: run.number + 1, variables, script, ..Run::default() };
-    });
+    STARTED.set(STARTED.get() + 1);
+    RUN.set(Run { number: STARTED.get(), variables, script, ..Run::default() });
     (0..variables).map(|i| Sym::new(Polynomial::variable(i))).collect()
 }
 
 /// Ends the run and hands it over.
 pub(super) fn finish() -> Run {
-    RUN.with_borrow_mut(|run| {
-        let number = run.number + 1;
-        std::mem::replace(run, Run { number, ..Run::default() })
-    })
+    RUN.take()
 }
 
 impl Run {
@@ -325,10 +323,58 @@ mod tests {
     }
 
     #[test]
+    fn operations_of_symbols_are_those_of_their_polynomials() {
+        let v = start(2, Vec::new());
+        let (x, y) = (Polynomial::variable(0), Polynomial::variable(1));
+        let half = integer(1) / integer(2);
+        let cases = [
+            (v[0] + v[1], &x + &y),
+            (v[0] - v[1], &x - &y),
+            (v[0] * v[1], &x * &y),
+            (-v[0], -&x),
+            (v[0] / Sym::from(2), x.scaled(&half)),
+            (Sym::from(-3), Polynomial::constant(integer(-3))),
+        ];
+        for (symbol, polynomial) in cases {
+            assert_eq!(symbol.polynomial(), polynomial);
+        }
+        finish();
+    }
+
+    #[test]
+    fn constants_are_in_the_order_of_the_integers() {
+        start(0, Vec::new());
+        for (a, b) in [(-1, 1), (1, -1), (2, 2), (0, 3), (0, -3)] {
+            let (m, n) = (Sym::from(a), Sym::from(b));
+            assert_eq!(m.partial_cmp(&n), a.partial_cmp(&b));
+            let answers = [m < n, m <= n, m == n, m >= n, m > n];
+            assert_eq!(answers, [a < b, a <= b, a == b, a >= b, a > b]);
+        }
+        assert!(finish().script.is_empty());
+    }
+
+    #[test]
+    fn only_positive_constants_go_the_positive_way() {
+        start(0, Vec::new());
+        for (value, expected) in [(-1, 10), (0, 10), (1, 20)] {
+            let way = Sym::from(value).split(|_| Sym::from(10), |_| Sym::from(20));
+            assert_eq!(way.polynomial(), Polynomial::constant(integer(expected)));
+        }
+        finish();
+    }
+
+    #[test]
     #[should_panic(expected = "a symbol outlived its run")]
     fn a_symbol_does_not_outlive_its_run() {
         let late = start(1, Vec::new())[0];
         finish();
         let _ = late + Sym::from(1);
+    }
+
+    #[test]
+    #[should_panic(expected = "a symbol outlived its run")]
+    fn a_symbol_does_not_live_on_in_the_next_run() {
+        let late = start(1, Vec::new())[0];
+        let _ = late + start(1, Vec::new())[0];
     }
 }
