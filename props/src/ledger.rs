@@ -6,7 +6,7 @@ use crate::claim::{Check, Claim, Engine};
 use crate::claims;
 
 /// The numbered items of the paper; each must be in some row.
-pub const ITEMS: [&str; 34] = [
+pub const ITEMS: [&str; 35] = [
     "(1)",
     "(2)",
     "(3)",
@@ -41,6 +41,7 @@ pub const ITEMS: [&str; 34] = [
     "(25)",
     "Remark 3.7",
     "floating point",
+    "sparse pattern",
 ];
 
 const HEAD: &str = "\

@@ -2,7 +2,7 @@
 //!
 //! Pure functions of plain data, generic over the number type ([`Scalar`]), so that the very code that solves a
 //! user's problem in doubles can be run over exact rationals, over symbols and over intervals. Sign tests are its only
-//! branches; it allocates nothing, reads nothing and has no panic.
+//! branches, but for [`pattern`], which is about whole numbers; it allocates nothing, reads nothing and has no panic.
 //!
 //! | module | in the paper |
 //! | --- | --- |
@@ -15,6 +15,7 @@
 //! | [`contact_edge`] | P_gamma and sigma_n as functionals on one edge of Gamma_C |
 //! | [`edge_integral`] | the integrals over one edge in (8) and in J_h |
 //! | [`interval`] | not in the paper: doubles with their rounding enclosed |
+//! | [`pattern`] | not in the paper: the numbers of the unknowns, and where the entries of the matrix stand |
 
 pub mod contact;
 pub mod contact_edge;
@@ -22,6 +23,7 @@ pub mod edge_integral;
 pub mod element;
 pub mod interval;
 pub mod material;
+pub mod pattern;
 pub mod positive_part;
 pub mod scalar;
 pub mod triangle;

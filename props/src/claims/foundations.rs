@@ -204,7 +204,7 @@ mod row {
                 "interval::sorted",
             ],
             preconditions: "The processor rounds +, -, *, / and sqrt to nearest, as IEEE 754 says.",
-            limits: "The enclosure of a rounded operation is tested, not proved, over all doubles: no solver at hand decides it. Sparse pattern and dof map are not covered yet.",
+            limits: "The enclosure of a rounded operation is tested, not proved, over all doubles: no solver at hand decides it.",
             single: Some(
                 "Rounding is a fact about doubles alone; exact rationals are the other side of each comparison. The harnesses for the model checker have no receipt yet.",
             ),

@@ -13,6 +13,7 @@ pub mod lemma_3_1;
 pub mod lemma_3_2;
 pub mod method;
 pub mod mixed;
+pub mod pattern;
 pub mod positive_part;
 pub mod prop_2_1;
 #[cfg(not(kani))]
@@ -40,6 +41,7 @@ pub fn all() -> Vec<Claim> {
         theorem_3_4::claim(),
         rates::claim(),
         foundations::claim(),
+        pattern::claim(),
     ];
     claims.sort_by_key(|claim| claim.id.parse::<u32>().expect("the id of a row is a number"));
     claims
@@ -89,5 +91,6 @@ mod tests {
         every_check_of_row_11_passes "11",
         every_check_of_row_12_passes "12",
         every_check_of_row_13_passes "13",
+        every_check_of_row_14_passes "14",
     }
 }
