@@ -57,15 +57,13 @@ fn ends(counts: &mut [usize]) {
     }
 }
 
-/// Puts more members in front of those of list `i`.
-fn put(starts: &mut [usize], members: &mut [usize], i: usize, more: Range<usize>) {
+/// Puts a member in front of those of list `i`.
+fn put(starts: &mut [usize], members: &mut [usize], i: usize, member: usize) {
     if let Some([start, _, ..]) = starts.get_mut(i..)
-        && let Some(place) = start.checked_sub(more.len())
-        && let Some(slots) = members.get_mut(place..*start)
+        && let Some(place) = start.checked_sub(1)
+        && let Some(slot) = members.get_mut(place)
     {
-        for (slot, member) in slots.iter_mut().zip(more) {
-            *slot = member;
-        }
+        *slot = member;
         *start = place;
     }
 }
@@ -84,7 +82,7 @@ pub fn triangles_of_nodes<const N: usize>(
     ends(starts);
     for (t, element) in elements.iter().enumerate().rev() {
         for &node in element {
-            put(starts, triangles, node, t..t + 1);
+            put(starts, triangles, node, t);
         }
     }
 }
@@ -211,7 +209,11 @@ pub fn column_ends(numbers: Numbers, neighbours: Lists, counts: &mut [usize]) {
 /// The rows of each column in increasing order, the diagonal first. `starts` are the ends of the columns before, and their
 /// starts after.
 pub fn column_rows(numbers: Numbers, neighbours: Lists, starts: &mut [usize], rows: &mut [usize]) {
-    entries(numbers, neighbours, |more, column| put(starts, rows, column, more));
+    entries(numbers, neighbours, |more, column| {
+        for row in more.rev() {
+            put(starts, rows, column, row);
+        }
+    });
 }
 
 /// Adds to the `values` of the lower triangle with these `columns` the 2 x 2 blocks of an element matrix: `block(i, j)`
