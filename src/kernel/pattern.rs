@@ -7,7 +7,7 @@
 //! order of the nodes, prescribed components --> numbers, and back ---+
 //! ```
 //!
-//! Lists are made from the back: first the members of each list are counted, [`ends`] turns the counts into the ends of
+//! Lists are made from the back: first the members of each list are counted, `ends` turns the counts into the ends of
 //! the lists, and each member is put in front of those that are there. Members that come in decreasing order stand in
 //! increasing order then; nothing is sorted.
 //!
