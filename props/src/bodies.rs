@@ -11,8 +11,9 @@ use proptest::prelude::*;
 use signorini::kernel::contact_edge::coercivity_constant;
 use signorini::kernel::edge_integral::{ExactEdge, gauss};
 use signorini::kernel::element::stiffness;
-use signorini::kernel::{ContactEdge, EdgeIntegrals, Element, Material, Plane, Triangle};
+use signorini::kernel::{ContactEdge, EdgeIntegrals, Element, Material, Plane, Scalar, Triangle};
 
+use crate::Ordered;
 use crate::draws::{positive, ratio};
 use crate::elimination::Matrix;
 use crate::naive::{Field, Hooke, Line};
@@ -74,45 +75,47 @@ const TURNS: [[i64; 2]; 5] = [[65, 0], [39, 52], [-52, 39], [25, -60], [0, 65]];
 
 /// A contact edge.
 #[derive(Clone, Copy, Debug)]
-pub struct Side {
+pub struct Side<S = Exact> {
     /// Who owns it.
     pub triangle: usize,
     /// Which edge of the triangle.
     pub local: usize,
     /// |E|
-    pub length: Exact,
+    pub length: S,
     /// The unit outward normal.
-    pub n: [Exact; 2],
+    pub n: [S; 2],
     /// The gap at start, end and middle.
-    pub gap: [Exact; 3],
+    pub gap: [S; 3],
 }
 
 /// A body with exact data.
-pub struct Body {
+pub struct Body<S = Exact> {
     /// The corners of the triangles.
-    pub vertices: Vec<[Exact; 2]>,
+    pub vertices: Vec<[S; 2]>,
     /// The places of the vertices before the body was turned.
-    pub unturned: Vec<[Exact; 2]>,
+    pub unturned: Vec<[S; 2]>,
     /// Counter-clockwise.
     pub triangles: Vec<[usize; 3]>,
     /// Gamma_C
-    pub contact: Vec<Side>,
+    pub contact: Vec<Side<S>>,
     /// Boundary edges that are neither contact nor at the top: triangle and local number.
     pub free: Vec<(usize, usize)>,
     /// The vertices at the top.
     pub top: Vec<usize>,
     /// h_T, as data.
-    pub diameters: Vec<Exact>,
+    pub diameters: Vec<S>,
     /// For the kernel.
-    pub material: Material<Exact>,
+    pub material: Material<S>,
     /// For the transcription.
-    pub hooke: Hooke<Exact>,
+    pub hooke: Hooke<S>,
     /// gamma0
-    pub gamma0: Exact,
+    pub gamma0: S,
     /// cos and sin of the turn.
-    pub turn: [Exact; 2],
-    middles: BTreeMap<[usize; 2], usize>,
-    values: Vec<[Exact; 2]>,
+    pub turn: [S; 2],
+    /// The nodes in the middles of the edges, by the vertices of these, the smaller one first.
+    pub middles: BTreeMap<[usize; 2], usize>,
+    /// The values of the drawn fields.
+    pub values: Vec<[S; 2]>,
 }
 
 fn exact((n, d): (i64, i64)) -> Exact {
@@ -218,13 +221,6 @@ impl Body {
         body
     }
 
-    /// The field that is `value` at one node and zero at the others.
-    pub fn bump(&self, node: usize, value: [Exact; 2]) -> Vec<[Exact; 2]> {
-        let mut field = vec![[Exact::from(0); 2]; self.node_count(2)];
-        field[node] = value;
-        field
-    }
-
     /// Finds contact edges and free edges, and numbers the middles.
     fn sort_edges(&mut self, left_too: bool, gaps: &[[(i64, i64); 3]]) {
         let mut owners: BTreeMap<[usize; 2], Vec<(usize, usize)>> = BTreeMap::new();
@@ -257,23 +253,6 @@ impl Body {
         }
     }
 
-    /// The nodes of a triangle for degree 1 (N = 3) or 2 (N = 6).
-    pub fn nodes<const N: usize>(&self, t: usize) -> [usize; N] {
-        let corners = self.triangles[t];
-        let mut nodes = [0; N];
-        nodes[..3].copy_from_slice(&corners);
-        for i in 3..N {
-            let (a, b) = (corners[(i + 1) % 3], corners[(i + 2) % 3]);
-            nodes[i] = self.middles[&[a.min(b), a.max(b)]];
-        }
-        nodes
-    }
-
-    /// How many nodes there are.
-    pub fn node_count(&self, degree: usize) -> usize {
-        self.vertices.len() + if degree == 2 { self.middles.len() } else { 0 }
-    }
-
     /// The drawn field with this number.
     pub fn drawn(&self, field: usize) -> Vec<[Exact; 2]> {
         self.values[field * MOST_NODES..(field + 1) * MOST_NODES].to_vec()
@@ -302,41 +281,67 @@ impl Body {
         }
         field
     }
+}
+
+impl<S: Scalar> Body<S> {
+    /// The nodes of a triangle for degree 1 (N = 3) or 2 (N = 6).
+    pub fn nodes<const N: usize>(&self, t: usize) -> [usize; N] {
+        let corners = self.triangles[t];
+        let mut nodes = [0; N];
+        nodes[..3].copy_from_slice(&corners);
+        for i in 3..N {
+            let (a, b) = (corners[(i + 1) % 3], corners[(i + 2) % 3]);
+            nodes[i] = self.middles[&[a.min(b), a.max(b)]];
+        }
+        nodes
+    }
+
+    /// How many nodes there are.
+    pub fn node_count(&self, degree: usize) -> usize {
+        self.vertices.len() + if degree == 2 { self.middles.len() } else { 0 }
+    }
+
+    /// The field that is `value` at one node and zero at the others.
+    pub fn bump(&self, node: usize, value: [S; 2]) -> Vec<[S; 2]> {
+        let mut field = vec![[S::from(0); 2]; self.node_count(2)];
+        field[node] = value;
+        field
+    }
 
     /// A triangle's share of a field.
-    pub fn local<const N: usize>(&self, t: usize, field: &[[Exact; 2]]) -> [[Exact; 2]; N] {
+    pub fn local<const N: usize>(&self, t: usize, field: &[[S; 2]]) -> [[S; 2]; N] {
         self.nodes::<N>(t).map(|node| field[node])
     }
 
     /// The triangle with its coordinates.
-    pub fn triangle(&self, t: usize) -> Triangle<Exact> {
+    pub fn triangle(&self, t: usize) -> Triangle<S> {
         Triangle { vertices: self.triangles[t].map(|v| self.vertices[v]) }
     }
 
     /// gamma on a side: (7).
-    pub fn gamma(&self, side: &Side) -> Exact {
+    pub fn gamma(&self, side: &Side<S>) -> S {
         self.gamma0 * self.diameters[side.triangle]
     }
 
     /// The field on triangle t, for the transcription.
-    pub fn field<const N: usize>(&self, t: usize, field: &[[Exact; 2]]) -> Field<Exact> {
+    pub fn field<const N: usize>(&self, t: usize, field: &[[S; 2]]) -> Field<S> {
         let vertices = self.triangles[t].map(|v| self.vertices[v]);
         Field { vertices, nodal: self.local::<N>(t, field).to_vec() }
     }
 }
 
 /// The sum of f over a list.
-pub fn sum<T>(items: impl IntoIterator<Item = T>, f: impl Fn(T) -> Exact) -> Exact {
-    items.into_iter().fold(Exact::from(0), |sum, item| sum + f(item))
+pub fn sum<T, S: Scalar>(items: impl IntoIterator<Item = T>, f: impl Fn(T) -> S) -> S {
+    items.into_iter().fold(S::from(0), |sum, item| sum + f(item))
 }
 
 /// How the contact terms are integrated.
 #[derive(Clone, Copy, Debug)]
-pub enum Rule<'a> {
-    /// Without quadrature error (P1 over rationals).
+pub enum Rule<'a, S = Exact> {
+    /// Without quadrature error.
     Exact,
     /// By points in \[0, 1\] with weights.
-    Points(&'a [[Exact; 2]]),
+    Points(&'a [[S; 2]]),
 }
 
 /// Method (8) on a body by the kernel's functions.
@@ -554,33 +559,44 @@ impl MaybeExact<6, 3> for signorini::kernel::P2 {
 }
 
 /// Method (8) on a body by its definitions.
-pub struct Definition<'a, const N: usize>(pub &'a Body);
+pub struct Definition<'a, const N: usize, S = Exact>(pub &'a Body<S>);
 
 /// What the definitions need on one contact edge.
-pub struct Traces {
+pub struct Traces<S = Exact> {
     /// v_n
-    pub v_n: Line<Exact>,
+    pub v_n: Line<S>,
     /// sigma_n(v)
-    pub sigma_n: Line<Exact>,
+    pub sigma_n: Line<S>,
     /// P0(v)
-    pub p0: Line<Exact>,
+    pub p0: Line<S>,
     /// P(v)
-    pub p: Line<Exact>,
+    pub p: Line<S>,
 }
 
-impl<const N: usize> Definition<'_, N> {
+impl<const N: usize, S: Ordered> Definition<'_, N, S> {
     /// a(u, v)
-    pub fn a(&self, u: &[[Exact; 2]], v: &[[Exact; 2]]) -> Exact {
-        sum(0..self.0.triangles.len(), |t| self.a_on(t, u, v))
+    pub fn a(&self, u: &[[S; 2]], v: &[[S; 2]]) -> S {
+        let both = |&t: &usize| self.acts(t, u) && self.acts(t, v);
+        sum((0..self.0.triangles.len()).filter(both), |t| self.a_on(t, u, v))
+    }
+
+    /// v is not zero on triangle t: where it is, it takes part in no integral.
+    fn acts(&self, t: usize, v: &[[S; 2]]) -> bool {
+        self.0.local::<N>(t, v).iter().flatten().any(|&v| v != S::from(0))
+    }
+
+    /// The contact edges where v is not zero.
+    fn sides<'b>(&'b self, v: &'b [[S; 2]]) -> impl Iterator<Item = &'b Side<S>> {
+        self.0.contact.iter().filter(|side| self.acts(side.triangle, v))
     }
 
     /// a_T(u, v)
-    pub fn a_on(&self, t: usize, u: &[[Exact; 2]], v: &[[Exact; 2]]) -> Exact {
+    pub fn a_on(&self, t: usize, u: &[[S; 2]], v: &[[S; 2]]) -> S {
         self.0.field::<N>(t, u).energy(&self.0.field::<N>(t, v), &self.0.hooke)
     }
 
     /// v_n, sigma_n(v), P0(v) and P(v) on a contact edge.
-    pub fn traces(&self, side: &Side, v: &[[Exact; 2]]) -> Traces {
+    pub fn traces(&self, side: &Side<S>, v: &[[S; 2]]) -> Traces<S> {
         let field = self.0.field::<N>(side.triangle, v);
         let v_n = field.normal_trace(side.local, side.n);
         let sigma_n = field.normal_stress(side.local, side.n, &self.0.hooke);
@@ -595,44 +611,72 @@ impl<const N: usize> Definition<'_, N> {
     }
 
     /// A(u, v)
-    pub fn big_a(&self, u: &[[Exact; 2]], v: &[[Exact; 2]]) -> Exact {
+    pub fn big_a(&self, u: &[[S; 2]], v: &[[S; 2]]) -> S {
+        let both = self.sides(u).filter(|side| self.acts(side.triangle, v));
         self.a(u, v)
-            - sum(&self.0.contact, |side| {
+            - sum(both, |side| {
                 let (u, v) = (self.traces(side, u).sigma_n, self.traces(side, v).sigma_n);
                 self.0.gamma(side) * side.length * whole(&u.by(&v))
             })
     }
 
     /// int over Gamma_C of (1/gamma) \[P(u)\]+ q, for q given on each side.
-    pub fn contact(
-        &self,
-        rule: Rule<'_>,
-        u: &[[Exact; 2]],
-        q: impl Fn(&Side) -> Line<Exact>,
-    ) -> Exact {
+    pub fn contact(&self, rule: Rule<'_, S>, u: &[[S; 2]], q: impl Fn(&Side<S>) -> Line<S>) -> S {
+        sum(&self.0.contact, |side| self.contact_on(rule, side, u, &q(side)))
+    }
+
+    /// int over one side of (1/gamma) \[P(u)\]+ q
+    pub fn contact_on(&self, rule: Rule<'_, S>, side: &Side<S>, u: &[[S; 2]], q: &Line<S>) -> S {
+        let p = self.traces(side, u).p;
+        let integral = match rule {
+            Rule::Exact => p.positive_part_times(q),
+            Rule::Points(points) => sum(points, |&[s, w]| {
+                let zero = S::from(0);
+                let value = p.at(s);
+                w * (if value > zero { value } else { zero }) * q.at(s)
+            }),
+        };
+        side.length / self.0.gamma(side) * integral
+    }
+
+    /// The left side of (8).
+    pub fn b(&self, rule: Rule<'_, S>, u: &[[S; 2]], v: &[[S; 2]]) -> S {
+        self.big_a(u, v) + self.contact(rule, u, |side| self.traces(side, v).p0)
+    }
+
+    /// int P0(v)^2 / gamma
+    pub fn squares(&self, rule: Rule<'_, S>, v: &[[S; 2]]) -> S {
         sum(&self.0.contact, |side| {
-            let (p, q) = (self.traces(side, u).p, q(side));
+            let p0 = self.traces(side, v).p0;
+            let square = p0.by(&p0);
             let integral = match rule {
-                Rule::Exact => p.positive_part_times(&q),
-                Rule::Points(points) => sum(points, |&[s, w]| {
-                    let zero = Exact::from(0);
-                    let value = p.at(s);
-                    w * (if value > zero { value } else { zero }) * q.at(s)
-                }),
+                Rule::Exact => whole(&square),
+                Rule::Points(points) => sum(points, |&[s, weight]| weight * square.at(s)),
             };
             side.length / self.0.gamma(side) * integral
         })
     }
 
-    /// The left side of (8).
-    pub fn b(&self, rule: Rule<'_>, u: &[[Exact; 2]], v: &[[Exact; 2]]) -> Exact {
-        self.big_a(u, v) + self.contact(rule, u, |side| self.traces(side, v).p0)
+    /// C_h: the largest p (p + 1) / 2 (lambda + 2 mu) h_T |T's edges on Gamma_C| / |T|.
+    pub fn coercivity(&self) -> S {
+        let body = self.0;
+        let trace = S::from(if N == 3 { 1 } else { 3 });
+        let stiffness = body.hooke.lambda + S::from(2) * body.hooke.mu;
+        (0..body.triangles.len())
+            .map(|t| {
+                let own = body.contact.iter().filter(|side| side.triangle == t);
+                let length = sum(own, |side| side.length);
+                let corners = body.triangles[t].map(|v| body.vertices[v]);
+                let area = Field { vertices: corners, nodal: Vec::new() }.area();
+                trace * stiffness * body.diameters[t] * length / area
+            })
+            .fold(S::from(0), |most, constant| if constant > most { constant } else { most })
     }
 }
 
 /// The integral over \[0, 1\].
-pub fn whole(line: &Line<Exact>) -> Exact {
-    line.integral([Exact::from(0), Exact::from(1)])
+pub fn whole<S: Scalar>(line: &Line<S>) -> S {
+    line.integral([S::from(0), S::from(1)])
 }
 
 /// alpha u + beta v

@@ -4,7 +4,8 @@
 //! A field of degree p on a triangle is known by its nodal values. The gradient of a polynomial of degree <= 2 is
 //! affine, so its values at the vertices determine it, and they follow from the derivatives along the edges: b - a for an
 //! affine function, -3a + 4m - b at the start of a quadratic one. Products of affine functions are integrated over T
-//! by |T|/12 (sum f_i g_i + sum f_i sum g_i), and everything along an edge is a polynomial in s.
+//! by |T|/12 (sum f_i g_i + sum f_i sum g_i), products of quadratic ones by their monomials in the barycentric
+//! coordinates, and everything along an edge is a polynomial in s.
 
 use signorini::kernel::Scalar;
 
@@ -101,6 +102,27 @@ impl<S: Scalar> Field<S> {
         self.area() * (each + contract(sum(stress), sum(strain))) / S::from(12)
     }
 
+    /// The vertices, then the middles of the edges.
+    pub fn places(&self) -> [[S; 2]; 6] {
+        let [a, b, c] = self.vertices;
+        let middle = |p: [S; 2], q: [S; 2]| [0, 1].map(|i| (p[i] + q[i]) / S::from(2));
+        [a, b, c, middle(b, c), middle(c, a), middle(a, b)]
+    }
+
+    /// Component c at those places.
+    fn component(&self, c: usize) -> [S; 6] {
+        let at = |j: usize| self.nodal[j % 3][c];
+        [0, 1, 2, 3, 4, 5].map(|k| match self.nodal.get(k) {
+            Some(value) => value[c],
+            None => (at(k + 1) + at(k + 2)) / S::from(2),
+        })
+    }
+
+    /// int_T f v_c for a polynomial f of degree <= 2.
+    pub fn load(&self, c: usize, f: impl Fn([S; 2]) -> S) -> S {
+        integral_of_quadratics(self.area(), self.places().map(f), self.component(c))
+    }
+
     /// u . n along edge i, from vertex i + 1 to vertex i + 2.
     pub fn normal_trace(&self, i: usize, n: [S; 2]) -> Line<S> {
         let at = |j: usize| self.nodal[j][0] * n[0] + self.nodal[j][1] * n[1];
@@ -116,6 +138,31 @@ impl<S: Scalar> Field<S> {
         let at = |k: usize| normal(hooke.stress(self.strain(k)), n);
         Line::affine(at((i + 1) % 3), at((i + 2) % 3))
     }
+}
+
+/// The monomials of degree 2 in the barycentric coordinates, by their exponents: the squares, then l_1 l_2, l_2 l_0, l_0 l_1.
+const MONOMIALS: [[usize; 3]; 6] =
+    [[2, 0, 0], [0, 2, 0], [0, 0, 2], [0, 1, 1], [1, 0, 1], [1, 1, 0]];
+
+/// int_T f g of two polynomials of degree <= 2 by their values at the vertices and the middles of the edges. Such a
+/// polynomial is f_0 l_0^2 + .. + (4 f_3 - f_1 - f_2) l_1 l_2 + .., and int_T l^alpha = 2 |T| alpha! / (|alpha| + 2)!.
+pub fn integral_of_quadratics<S: Scalar>(area: S, f: [S; 6], g: [S; 6]) -> S {
+    let coefficients = |f: [S; 6]| {
+        [0, 1, 2, 3, 4, 5].map(|k| {
+            let ends = || f[(k + 1) % 3] + f[(k + 2) % 3];
+            if k < 3 { f[k] } else { S::from(4) * f[k] - ends() }
+        })
+    };
+    let (f, g) = (coefficients(f), coefficients(g));
+    let mut sum = S::from(0);
+    for (f, a) in f.into_iter().zip(MONOMIALS) {
+        for (g, b) in g.into_iter().zip(MONOMIALS) {
+            let factorial = |k: usize| (1..=i32::from(k as u8)).product::<i32>();
+            let weight: i32 = (0..3).map(|i| factorial(a[i] + b[i])).product();
+            sum = sum + S::from(weight) * f * g;
+        }
+    }
+    area * sum / S::from(360)
 }
 
 /// A polynomial in s on \[0, 1\], by its coefficients.
@@ -179,17 +226,66 @@ impl<S: Scalar> Line<S> {
     }
 }
 
+/// A root that is no rational number is known to 2^-HALVINGS. Between it and the root a polynomial is as small as that, so
+/// an integral of its positive part is off by its square at most, 2^-120 times the slope.
+const HALVINGS: u32 = 60;
+
 impl<S: Ordered> Line<S> {
-    /// \[0, 1\] cut where this affine function is zero inside; each piece with whether it is positive there.
+    /// Where this polynomial of degree <= 2 has a root between start and end, given that its signs there are opposite and
+    /// that it is monotone in between.
+    fn root(&self, [mut start, mut end]: [S; 2]) -> S {
+        let zero = S::from(0);
+        if self.0.get(2).is_none_or(|&c| c == zero) {
+            return self.0[0] / -self.0[1];
+        }
+        let rising = self.at(end) > zero;
+        for _ in 0..HALVINGS {
+            let middle = (start + end) / S::from(2);
+            if (self.at(middle) > zero) == rising {
+                end = middle;
+            } else {
+                start = middle;
+            }
+        }
+        (start + end) / S::from(2)
+    }
+
+    /// Where the derivative of this polynomial of degree <= 2 is zero, if that is inside (0, 1).
+    fn turn(&self) -> Option<S> {
+        let (zero, one) = (S::from(0), S::from(1));
+        let c = self.0.get(2).copied().filter(|&c| c != zero)?;
+        let turn = -self.0[1] / (S::from(2) * c);
+        (turn > zero && turn < one).then_some(turn)
+    }
+
+    /// \[0, 1\] cut where this polynomial of degree <= 2 changes its sign inside; each piece with whether it is positive
+    /// there.
     pub fn pieces(&self) -> Vec<([S; 2], bool)> {
         let (zero, one) = (S::from(0), S::from(1));
-        let (start, end) = (self.at(zero), self.at(one));
-        if (start > zero && end < zero) || (start < zero && end > zero) {
-            let root = start / (start - end);
-            vec![([zero, root], start > zero), ([root, one], end > zero)]
-        } else {
-            vec![([zero, one], start > zero || end > zero)]
+        let monotone: Vec<S> = [zero].into_iter().chain(self.turn()).chain([one]).collect();
+        let mut cuts = vec![zero];
+        for ends in monotone.windows(2) {
+            let (start, end) = (self.at(ends[0]), self.at(ends[1]));
+            if (start > zero && end < zero) || (start < zero && end > zero) {
+                cuts.push(self.root([ends[0], ends[1]]));
+            }
         }
+        cuts.push(one);
+        let middle = |a: S, b: S| (a + b) / S::from(2);
+        let piece = |ends: &[S]| {
+            // A double root may be in the middle, but then not at the quarter.
+            let half = middle(ends[0], ends[1]);
+            let quarter = middle(ends[0], half);
+            ([ends[0], ends[1]], self.at(half) > zero || self.at(quarter) > zero)
+        };
+        cuts.windows(2).map(piece).collect()
+    }
+
+    /// The largest value on \[0, 1\] of this polynomial of degree <= 2.
+    pub fn maximum(&self) -> S {
+        let ends = [S::from(0), S::from(1)].into_iter();
+        let values = ends.chain(self.turn()).map(|s| self.at(s));
+        values.reduce(|a, b| if b > a { b } else { a }).unwrap_or(self.0[0])
     }
 
     /// int_0^1 \[self\]+ other
@@ -239,5 +335,39 @@ mod tests {
         assert_eq!(Line::quadratic(q(1, 1), q(2, 1), q(5, 1)).at(q(1, 2)), q(2, 1));
         // [1 - 3s]+ on [0, 1]: 1/6
         assert_eq!(a.positive_part_times(&Line(vec![q(1, 1)])), q(1, 6));
+    }
+
+    #[test]
+    fn a_parabola_is_cut_at_its_roots_and_largest_at_its_vertex() {
+        // 2 - (3s - 1)^2 is positive up to s = (1 + sqrt 2)/3, where it changes its sign.
+        let line = Line(vec![q(1, 1), q(6, 1), q(-9, 1)]);
+        let pieces = line.pieces();
+        let ([start, end], positive) = pieces[0];
+        assert!(pieces.len() == 2 && positive && !pieces[1].1);
+        let off = (q(3, 1) * end - q(1, 1)) * (q(3, 1) * end - q(1, 1)) - q(2, 1);
+        assert!(start == q(0, 1) && off.abs() < q(1, 1 << 58));
+        assert_eq!(line.maximum(), q(2, 1));
+        // A double root changes no sign: (2s - 1)^2.
+        let line = Line(vec![q(1, 1), q(-4, 1), q(4, 1)]);
+        assert!(line.pieces().len() == 1 && line.pieces()[0].1);
+        assert!(!line.times(q(-1, 1)).pieces()[0].1);
+        // Two roots, 1/4 and 3/4; no quadratic term; not the whole line.
+        let line = Line(vec![q(3, 16), q(-1, 1), q(1, 1)]);
+        let signs: Vec<bool> = line.pieces().iter().map(|piece| piece.1).collect();
+        assert_eq!(signs, [true, false, true]);
+        let line = Line(vec![q(1, 1), q(-3, 1), q(0, 1)]);
+        assert_eq!(line.pieces()[0].0[1], q(1, 3));
+    }
+
+    #[test]
+    fn loads_of_quadratic_fields_are_known() {
+        // On the triangle (0,0), (1,0), (0,1): int x^2 y^2 = 4/720 and int x^2 (1 - x) = 1/12 - 1/20 = 1/30.
+        let vertices = [[q(0, 1); 2], [q(1, 1), q(0, 1)], [q(0, 1), q(1, 1)]];
+        let affine = Field { vertices, nodal: vertices.map(|[x, _]| [q(1, 1) - x; 2]).to_vec() };
+        let nodal = affine.places().map(|[x, y]| [x * y, y * y]).to_vec();
+        let quadratic = Field { vertices, nodal };
+        assert_eq!(quadratic.load(1, |[x, _]| x * x), q(1, 180));
+        assert_eq!(quadratic.load(0, |[x, y]| x * y), q(1, 180));
+        assert_eq!(affine.load(0, |[x, _]| x * x), q(1, 30));
     }
 }

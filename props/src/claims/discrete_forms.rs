@@ -230,7 +230,6 @@ pub use row::claim;
 #[cfg(not(kani))]
 mod row {
     use proptest::prelude::*;
-    use signorini::fem::{Diagonal, Rectangle};
     use signorini::kernel::element::{displacement_gradient, stiffness};
     use signorini::kernel::{ContactEdge, Material, Plane};
 
@@ -239,6 +238,7 @@ mod row {
     use crate::claim::{
         Claim, Engine, Outcome, by, control, model_checked, proved, refuted, tested,
     };
+    use crate::claims::assembled;
     use crate::draws;
     use crate::numbers::Exact;
     use crate::statement;
@@ -371,50 +371,6 @@ mod row {
         })
     }
 
-    /// h_T of a mesh is the longest edge, and lengths and normals of its boundary are those of its edges: within two
-    /// units in the last place.
-    fn mesh_diameters() -> Outcome {
-        let sizes = (0.1_f64..10.0, 0.1_f64..10.0, 1_usize..4, 1_usize..4);
-        let diagonals = prop::sample::select(&[Diagonal::Left, Diagonal::Right, Diagonal::Crossed]);
-        draws::hold(60, (sizes, diagonals), &["always"], |&((width, height, nx, ny), diagonal)| {
-            let mesh = match (Rectangle { width, height, nx, ny, diagonal }).mesh() {
-                Ok(mesh) => mesh,
-                Err(_) => return Verdict::Fails("the mesh is refused"),
-            };
-            Exact::scope(|| {
-                let close = |double: f64, exact: Exact| {
-                    let square = Exact::of_double(double) * Exact::of_double(double);
-                    (square - exact).abs() <= exact * Exact::of_double(4.0 * f64::EPSILON)
-                };
-                for t in 0..mesh.triangles().len() {
-                    let exact = Triangle {
-                        vertices: mesh.triangle(t).vertices.map(|p| p.map(Exact::of_double)),
-                    };
-                    let squares = [0, 1, 2].map(|i| {
-                        let [x, y] = exact.edge(i);
-                        x * x + y * y
-                    });
-                    let longest =
-                        squares.into_iter().fold(Exact::from(0), |a, b| if b > a { b } else { a });
-                    ensure!(close(mesh.diameter(t), longest));
-                }
-                for &edge in mesh.outline() {
-                    let t = mesh.triangle(edge.triangle);
-                    let exact = Triangle { vertices: t.vertices.map(|p| p.map(Exact::of_double)) };
-                    let [x, y] = exact.scaled_normal(edge.local);
-                    let (length, n) = mesh.length_and_normal(edge);
-                    ensure!(close(length, x * x + y * y));
-                    for (c, exact) in [x, y].into_iter().enumerate() {
-                        let scaled = Exact::of_double(n[c]) * Exact::of_double(length);
-                        let bound = Exact::of_double(length * 4.0 * f64::EPSILON);
-                        ensure!((scaled - exact).abs() <= bound);
-                    }
-                }
-                Verdict::Holds("always")
-            })
-        })
-    }
-
     /// The row of section 2.2's definitions.
     pub fn claim() -> Claim {
         let geometry =
@@ -449,8 +405,8 @@ mod row {
             ),
             by(
                 Engine::Doubles,
-                "diameters_lengths_and_normals_are_those_of_the_edges",
-                mesh_diameters,
+                "diameters_lengths_and_normals_of_the_solver_are_those_of_the_edges",
+                assembled::square_roots,
             ),
             refuted(statement!(
                 control_p1_reproduces_quadratic_functions,
@@ -468,6 +424,21 @@ mod row {
                 edge_length_for_diameter,
             ),
             control(Engine::Exact, "control_lame_coefficients_exchanged", lame_exchanged),
+            control(
+                Engine::Doubles,
+                "control_an_edge_of_the_solver_for_the_longest",
+                assembled::first_edge_for_the_longest,
+            ),
+            control(
+                Engine::Doubles,
+                "control_the_diameter_of_the_solver_taken_wrong",
+                assembled::diameter_taken_wrong,
+            ),
+            control(
+                Engine::Doubles,
+                "control_gamma_edges_or_material_of_the_solver_taken_wrong",
+                assembled::form_taken_wrong,
+            ),
         ]);
         checks.extend(HARNESSES.iter().copied().map(model_checked));
         Claim {

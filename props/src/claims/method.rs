@@ -201,11 +201,12 @@ mod row {
 
     use super::*;
     use crate::bodies::{
-        Body, Definition, Kernel, MaybeExact, Rule, bodies, combined, contact_class, sum, whole,
+        Body, Definition, Kernel, MaybeExact, Rule, bodies, combined, contact_class, sum,
     };
     use crate::claim::{
         Claim, Engine, Outcome, by, control, model_checked, proved, refuted, tested,
     };
+    use crate::claims::assembled;
     use crate::draws;
     use crate::naive::Line;
     use crate::numbers::Exact;
@@ -249,7 +250,7 @@ mod row {
         let moved = combined(one, &u, one, &v);
         let above =
             kernel.j::<E>(rule, &moved) - kernel.j::<E>(rule, &u) - kernel.b::<E>(rule, &u, &v);
-        let (least, squares) = (half * kernel.big_a(&v, &v), squares(&definition, rule, &v));
+        let (least, squares) = (half * kernel.big_a(&v, &v), definition.squares(rule, &v));
         ensure!(above >= least && above <= least + half * squares);
         Verdict::Holds(contact_class::<N>(body, &u))
     }
@@ -278,24 +279,6 @@ mod row {
                 Rule::Points(points) => sum(points, |&[s, weight]| {
                     if p.at(s) > Exact::from(0) { weight * product.at(s) } else { Exact::from(0) }
                 }),
-            };
-            side.length / body.gamma(side) * integral
-        })
-    }
-
-    /// int P0(v)^2 / gamma
-    fn squares<const N: usize>(
-        definition: &Definition<'_, N>,
-        rule: Rule<'_>,
-        v: &[[Exact; 2]],
-    ) -> Exact {
-        let body = definition.0;
-        sum(&body.contact, |side| {
-            let p0 = definition.traces(side, v).p0;
-            let square = p0.by(&p0);
-            let integral = match rule {
-                Rule::Exact => whole(&square),
-                Rule::Points(points) => sum(points, |&[s, weight]| weight * square.at(s)),
             };
             side.length / body.gamma(side) * integral
         })
@@ -633,7 +616,27 @@ mod row {
             by(Engine::Doubles, "bregman_distances_are_near_the_exact_ones", bregman_distances),
             by(Engine::Doubles, "the_maximum_on_an_edge_is_at_an_end_or_at_the_vertex", maxima),
             by(Engine::Doubles, "signs_change_at_the_simple_roots_inside_an_edge", sign_changes),
+            by(
+                Engine::Doubles,
+                "every_number_of_the_solver_is_near_its_definition_for_p1",
+                assembled::p1,
+            ),
+            by(
+                Engine::Doubles,
+                "every_number_of_the_solver_is_near_its_definition_for_p2",
+                assembled::p2,
+            ),
             control(Engine::Exact, "control_theta_other_than_1", other_theta),
+            control(
+                Engine::Doubles,
+                "control_theta_or_the_gap_of_the_solver_taken_wrong",
+                assembled::contact_taken_wrong,
+            ),
+            control(
+                Engine::Doubles,
+                "control_loads_or_reactions_of_the_solver_taken_wrong",
+                assembled::load_taken_wrong,
+            ),
             control(Engine::Exact, "control_gap_missing", gap_missing),
             refuted(statement!(control_cut_edge_integral_keeps_any_sign, [p0, p1, q0, q1], [])),
             refuted(statement!(control_edge_not_cut, [p0, p1], [])),

@@ -2,6 +2,8 @@
 //! the row of the ledger with its checks.
 
 #[cfg(not(kani))]
+pub mod assembled;
+#[cfg(not(kani))]
 pub mod certificate;
 #[cfg(not(kani))]
 pub mod curved;

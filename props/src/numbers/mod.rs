@@ -1,13 +1,18 @@
-//! The number types of the engines: exact rationals, the same with dimensions, and integers for the model checker.
+//! The number types of the engines: exact rationals, the same with dimensions, magnitudes for the bounds of rounding errors,
+//! and integers for the model checker.
 
 #[cfg(not(kani))]
 pub mod exact;
+#[cfg(not(kani))]
+pub mod magnitude;
 #[cfg(not(kani))]
 pub mod quantity;
 pub mod whole;
 
 #[cfg(not(kani))]
 pub use exact::Exact;
+#[cfg(not(kani))]
+pub use magnitude::Magnitude;
 #[cfg(not(kani))]
 pub use quantity::{Dimension, Quantity};
 pub use whole::Whole;
