@@ -612,12 +612,16 @@ impl<const N: usize, S: Ordered> Definition<'_, N, S> {
 
     /// A(u, v)
     pub fn big_a(&self, u: &[[S; 2]], v: &[[S; 2]]) -> S {
+        self.a(u, v) - self.stress_product(u, v)
+    }
+
+    /// int gamma sigma_n(u) sigma_n(v)
+    pub fn stress_product(&self, u: &[[S; 2]], v: &[[S; 2]]) -> S {
         let both = self.sides(u).filter(|side| self.acts(side.triangle, v));
-        self.a(u, v)
-            - sum(both, |side| {
-                let (u, v) = (self.traces(side, u).sigma_n, self.traces(side, v).sigma_n);
-                self.0.gamma(side) * side.length * whole(&u.by(&v))
-            })
+        sum(both, |side| {
+            let (u, v) = (self.traces(side, u).sigma_n, self.traces(side, v).sigma_n);
+            self.0.gamma(side) * side.length * whole(&u.by(&v))
+        })
     }
 
     /// int over Gamma_C of (1/gamma) \[P(u)\]+ q, for q given on each side.
@@ -657,20 +661,21 @@ impl<const N: usize, S: Ordered> Definition<'_, N, S> {
         })
     }
 
-    /// C_h: the largest p (p + 1) / 2 (lambda + 2 mu) h_T |T's edges on Gamma_C| / |T|.
+    /// C_h: the largest of its triangles.
     pub fn coercivity(&self) -> S {
+        let all = (0..self.0.triangles.len()).map(|t| self.coercivity_of(t));
+        all.fold(S::from(0), |most, constant| if constant > most { constant } else { most })
+    }
+
+    /// p (p + 1) / 2 (lambda + 2 mu) h_T |T's edges on Gamma_C| / |T|
+    pub fn coercivity_of(&self, t: usize) -> S {
         let body = self.0;
         let trace = S::from(if N == 3 { 1 } else { 3 });
         let stiffness = body.hooke.lambda + S::from(2) * body.hooke.mu;
-        (0..body.triangles.len())
-            .map(|t| {
-                let own = body.contact.iter().filter(|side| side.triangle == t);
-                let length = sum(own, |side| side.length);
-                let corners = body.triangles[t].map(|v| body.vertices[v]);
-                let area = Field { vertices: corners, nodal: Vec::new() }.area();
-                trace * stiffness * body.diameters[t] * length / area
-            })
-            .fold(S::from(0), |most, constant| if constant > most { constant } else { most })
+        let length = sum(body.contact.iter().filter(|side| side.triangle == t), |s| s.length);
+        let vertices = body.triangles[t].map(|v| body.vertices[v]);
+        let area = Field { vertices, nodal: Vec::new() }.area();
+        trace * stiffness * body.diameters[t] * length / area
     }
 }
 

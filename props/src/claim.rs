@@ -140,7 +140,7 @@ pub struct Claim {
     pub statement: &'static str,
     /// Over which numbers.
     pub numbers: &'static str,
-    /// The items of the kernel that it is about.
+    /// The items of the code that it is about: `module::item` of the kernel, `fem::module::item` of the solver.
     pub kernel: &'static [&'static str],
     /// What is assumed, and by whom.
     pub preconditions: &'static str,

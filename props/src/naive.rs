@@ -93,10 +93,18 @@ impl<S: Scalar> Field<S> {
         [xx, yy, (xy + yx) / S::from(2)]
     }
 
+    /// eps(u) at the vertices: that of an affine field is constant.
+    fn strains(&self) -> [Tensor<S>; 3] {
+        match self.nodal.len() {
+            3 => [self.strain(0); 3],
+            _ => [0, 1, 2].map(|k| self.strain(k)),
+        }
+    }
+
     /// int_T sigma(u) : eps(v)
     pub fn energy(&self, v: &Field<S>, hooke: &Hooke<S>) -> S {
-        let stress = [0, 1, 2].map(|k| hooke.stress(self.strain(k)));
-        let strain = [0, 1, 2].map(|k| v.strain(k));
+        let stress = self.strains().map(|strain| hooke.stress(strain));
+        let strain = v.strains();
         let sum = |t: [Tensor<S>; 3]| [0, 1, 2].map(|c| t[0][c] + t[1][c] + t[2][c]);
         let each = (0..3).fold(S::from(0), |s, k| s + contract(stress[k], strain[k]));
         self.area() * (each + contract(sum(stress), sum(strain))) / S::from(12)
