@@ -65,7 +65,7 @@ met), or *fails*. The engines run that one function:
 | --- | --- | --- |
 | proof | symbols: polynomials over Q | every comparison forks the path; each path that ends in *fails* contradicts itself, by a certificate (a sum of products of the path's facts and of squares that is positive and zero) that a checker of 40 lines verifies. So it holds over every ordered field, hence over R |
 | exact | rationals | random data, no tolerance at all |
-| doubles | f64 | random finite doubles with edge values, ties and neighbours; or a comparison with exact rationals and a stated bound |
+| doubles | f64 | random finite doubles with edge values, ties and neighbours; or a comparison with exact rationals and a stated bound; or an enclosure by intervals, rounded outwards |
 | Kani | f64, small integers | a harness for the bounded model checker exists and is run on random draws here; **no receipt of a run of the model checker is kept yet** |
 
 A further opinion, not part of `cargo test`: `cargo run -p props -- smt DIR` writes every failing path of the proofs as a
@@ -88,13 +88,16 @@ the stored results by far more than the tolerance. It does not establish that bo
 they read it alike.
 
 A check is no check if it can't fail. Every class of data that a statement names must be hit, every row has a **control**,
-a planted mistake that the same check must reject, and a harness has a false twin.
+a planted mistake that the same check must reject, and a harness has a false twin, which must fail on the counterexample
+that is stored with it.
 
 **What is trusted:** the compiler and the standard library; num-rational and num-bigint; of this crate, the arithmetic of
 polynomials, the forking of paths and the checker (`props/src/proof/polynomial.rs`, `symbol.rs`, `explorer.rs`,
 `certificate.rs`), which have tests of their own: every random point lies on exactly one path and has its verdict, and the
 checker refuses bad certificates of each kind. The search for certificates is not trusted. For the rows that assemble
-on meshes, the naive transcription of the definitions in `props/src/naive.rs`.
+on meshes, the naive transcription of the definitions in `props/src/naive.rs`; for the definite matrices of rows 9 and
+10, the exact elimination in `elimination.rs`; for the enclosed integrals of row 8, `enclosure.rs` and the intervals of
+row 13; for the rounding bounds of rows 5 and 6, the counts of roundings in `claims/assembled.rs`.
 
 **How to run:** `cargo run -p props -- audit` runs every row and writes `target/audit/index.html`; `cargo run -p props --
 audit 9` runs row 9; `cargo test -p props` runs all of it with the engines' own tests. `PROPS_SEED=random` draws other

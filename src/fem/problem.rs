@@ -17,8 +17,8 @@ pub trait Function: Send + Sync {
         self.at(x)
     }
 
-    /// The degree in x and y, if the function is known to be a polynomial: it is then integrated exactly, with no more
-    /// points than that takes.
+    /// The degree in x and y, if the function is known to be a polynomial, on the boundary too: it is then integrated
+    /// exactly, with no more points than that takes.
     fn degree(&self) -> Option<u32> {
         None
     }
