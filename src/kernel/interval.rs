@@ -21,7 +21,7 @@ impl Interval {
     pub fn new(lo: f64, hi: f64) -> Interval {
         if lo <= hi {
             Interval { lo, hi }
-        } else if hi < lo {
+        } else if hi <= lo {
             Interval { lo: hi, hi: lo }
         } else {
             Interval::NAN
@@ -86,7 +86,7 @@ impl Interval {
 /// Four numbers by size: a product of two intervals lies between the least and the greatest product of ends.
 pub fn sorted<T: Copy + PartialOrd>(mut values: [T; 4]) -> [T; 4] {
     for (i, j) in [(0, 1), (2, 3), (0, 2), (1, 3), (1, 2)] {
-        if values[j] < values[i] {
+        if !(values[i] <= values[j]) {
             values.swap(i, j);
         }
     }

@@ -87,59 +87,116 @@ mod row {
             && (hi == f64::INFINITY || (hi.is_finite() && value <= Exact::of_double(hi)))
     }
 
-    /// Two intervals, as their ends in any order, and a place inside each.
-    type Pair = (Vec<f64>, [f64; 2]);
+    /// Two intervals and a place inside each. Some have no bound on one side, or on both.
+    type Pair = ([Interval; 2], [f64; 2]);
 
     fn pairs() -> impl Strategy<Value = Pair> {
-        (draws::doubles(4), [0.0_f64..=1.0, 0.0_f64..=1.0])
+        let bounded = prop::array::uniform4(prop::bool::weighted(0.9));
+        (draws::doubles(4), bounded, [0.0_f64..=1.0, 0.0_f64..=1.0]).prop_map(|(v, b, places)| {
+            let least = |i: usize| if b[i] { v[i] } else { f64::NEG_INFINITY };
+            let greatest = |i: usize| if b[i] { v[i] } else { f64::INFINITY };
+            ([0, 2].map(|i| Interval::new(least(i), greatest(i + 1))), places)
+        })
     }
 
-    fn inside(lo: f64, hi: f64, place: f64) -> f64 {
-        let x = lo + place * (hi - lo);
-        if x >= lo && x <= hi { x } else { lo }
+    /// The finite ends of an interval, and a number between them.
+    fn members(x: Interval, place: f64) -> impl Iterator<Item = f64> + Clone {
+        let (lo, hi) = (x.lo().max(f64::MIN), x.hi().min(f64::MAX));
+        let inside = (lo * (1.0 - place) + hi * place).clamp(lo, hi);
+        [x.lo(), x.hi(), inside].into_iter().filter(|a| a.is_finite())
     }
 
-    /// The exact results of the four operations at points of two intervals lie in the results of the intervals.
-    fn operations((ends, places): &Pair, add: impl Fn(Interval, Interval) -> Interval) -> Verdict {
-        let [x, y] = [(0, 1), (2, 3)].map(|(i, j)| Interval::new(ends[i], ends[j]));
-        let at = [
-            (x.lo(), y.lo()),
-            (x.lo(), y.hi()),
-            (x.hi(), y.lo()),
-            (x.hi(), y.hi()),
-            (inside(x.lo(), x.hi(), places[0]), inside(y.lo(), y.hi(), places[1])),
-        ];
+    /// The exact results of the operations at members of two intervals lie in the results of the intervals.
+    fn operations(
+        &([x, y], places): &Pair,
+        add: impl Fn(Interval, Interval) -> Interval,
+    ) -> Verdict {
         Exact::scope(|| {
-            for (a, b) in at {
+            for (a, b) in
+                members(x, places[0]).flat_map(|a| members(y, places[1]).map(move |b| (a, b)))
+            {
+                ensure!(x.contains(a) && y.contains(b));
                 let (a, b) = (Exact::of_double(a), Exact::of_double(b));
                 ensure!(encloses(add(x, y), a + b));
                 ensure!(encloses(x - y, a - b));
                 ensure!(encloses(x * y, a * b));
                 ensure!(encloses(-x, -a));
-                ensure!(encloses(x.hull(y), a) && encloses(x.hull(y), b));
                 if b != Exact::from(0) {
                     ensure!(encloses(x / y, a / b));
                 }
+                if a >= Exact::from(0) {
+                    let (low, high) = (x.sqrt().lo(), x.sqrt().hi());
+                    ensure!(low >= 0.0 && square(low) <= a);
+                    ensure!(high == f64::INFINITY || square(high) >= a);
+                }
             }
-            ensure!(positive_part(x) == Interval::new(x.lo().max(0.0), x.hi().max(0.0)));
-            let root = x.sqrt();
-            if x.lo() >= 0.0 {
-                let [low, high] = [root.lo(), root.hi()].map(Exact::of_double);
-                ensure!(low >= Exact::from(0));
-                ensure!(low * low <= Exact::of_double(x.lo()));
-                ensure!(high * high >= Exact::of_double(x.hi()));
-            }
-            Verdict::Holds(match (x.contains(0.0), y.contains(0.0)) {
-                (true, true) => "both across zero",
-                (false, false) => "neither across zero",
+            let bounded = [x.lo(), x.hi(), y.lo(), y.hi()].iter().all(|end| end.is_finite());
+            Verdict::Holds(match (bounded, x.contains(0.0), y.contains(0.0)) {
+                (false, ..) => "unbounded",
+                (true, true, true) => "both across zero",
+                (true, false, false) => "neither across zero",
                 _ => "one across zero",
             })
         })
     }
 
+    fn square(x: f64) -> Exact {
+        Exact::of_double(x) * Exact::of_double(x)
+    }
+
+    /// How wide the results are: of two numbers at most two doubles, and not at all where the result is zero without
+    /// underflow; hull and positive part are exact, and a root is bounded by the roots of the ends.
+    fn widths(&([x, y], _): &Pair) -> Verdict {
+        let narrow = |i: Interval| i.lo().next_up().next_up() >= i.hi();
+        for (a, b) in members(x, 0.0).flat_map(|a| members(y, 0.0).map(move |b| (a, b))) {
+            let (p, q) = (Interval::point(a), Interval::point(b));
+            ensure!(p.lo() == a && p.hi() == a);
+            ensure!([p + q, p - q, p * q].into_iter().all(narrow));
+            ensure!(a + b != 0.0 || p + q == Interval::point(0.0));
+            ensure!((a != 0.0 && b != 0.0) || p * q == Interval::point(0.0));
+            ensure!(b == 0.0 || narrow(p / q) && (a != 0.0 || p / q == Interval::point(0.0)));
+            ensure!((p / q == Interval::new(f64::NEG_INFINITY, f64::INFINITY)) == (b == 0.0));
+        }
+        let zero = Interval::point(0.0);
+        ensure!(x * zero == zero && zero * x == zero && (x.contains(0.0) || zero / x == zero));
+        ensure!(x.hull(y) == Interval::new(x.lo().min(y.lo()), x.hi().max(y.hi())));
+        ensure!(positive_part(x) == Interval::new(x.lo().max(0.0), x.hi().max(0.0)));
+        let root = x.sqrt();
+        ensure!(root.is_nan() == (x.hi() < 0.0));
+        given!(!root.is_nan());
+        if x.lo() > 0.0 {
+            ensure!(root.lo().next_up() == x.lo().sqrt());
+        } else {
+            ensure!(root.lo() == 0.0);
+        }
+        ensure!(root.hi() == if x.hi() == 0.0 { 0.0 } else { x.hi().sqrt().next_up() });
+        Verdict::Holds(if x.lo() > 0.0 { "positive" } else { "not positive" })
+    }
+
+    /// A NaN makes both ends NaN, whatever it meets, and nothing else does.
+    fn nan_stays(&([x, y], _): &Pair) -> Verdict {
+        let nan = Interval::new(f64::NAN, x.lo());
+        let is_nan = |i: Interval| i.is_nan() && i.lo().is_nan() && i.hi().is_nan();
+        ensure!(is_nan(nan) && is_nan(Interval::new(x.lo(), f64::NAN)));
+        ensure!([nan + x, x + nan, nan - x, x - nan, nan * x, x * nan].into_iter().all(is_nan));
+        ensure!([nan / x, x / nan, nan.hull(x), x.hull(nan)].into_iter().all(is_nan));
+        ensure!([-nan, nan.sqrt(), positive_part(nan)].into_iter().all(is_nan));
+        ensure!(!nan.contains(x.lo()) && !x.contains(f64::NAN));
+        ensure!(![x, x + y, x - y, x * y, x / y, -x, x.hull(y)].into_iter().any(Interval::is_nan));
+        Verdict::Holds(if x.contains(0.0) { "across zero" } else { "not across zero" })
+    }
+
     fn enclosures() -> Outcome {
-        let classes = ["both across zero", "neither across zero", "one across zero"];
+        let classes = ["both across zero", "neither across zero", "one across zero", "unbounded"];
         draws::hold(5000, pairs(), &classes, |pair| operations(pair, |x, y| x + y))
+    }
+
+    fn sharpness() -> Outcome {
+        draws::hold(5000, pairs(), &["positive", "not positive"], widths)
+    }
+
+    fn nans() -> Outcome {
+        draws::hold(500, pairs(), &["across zero", "not across zero"], nan_stays)
     }
 
     /// The sum rounded to nearest, without the step outwards.
@@ -177,6 +234,8 @@ mod row {
     pub fn claim() -> Claim {
         let mut checks = vec![
             by(Engine::Doubles, "operations_of_intervals_contain_the_exact_results", enclosures),
+            by(Engine::Doubles, "results_of_intervals_are_as_narrow_as_stated", sharpness),
+            by(Engine::Doubles, "a_nan_makes_an_interval_nan_and_nothing_else_does", nans),
             by(Engine::Doubles, "edge_integrals_over_intervals_contain_the_exact_ones", edges),
             control(
                 Engine::Doubles,
@@ -190,7 +249,7 @@ mod row {
             items: &["floating point"],
             title: "What the above rests on in floating point",
             paper: "Nothing: the paper computes in R.",
-            statement: "For intervals X, Y of doubles and numbers x in X, y in Y: x + y, x - y, x y, x / y (y not 0) and sqrt(x) lie in X + Y, X - Y, X Y, X / Y and sqrt(X). [X]+ is [[lo]+, [hi]+], sharp across zero. The integrals over a cut P1 edge, by the same source line over intervals, contain the exact ones.",
+            statement: "For intervals X, Y of doubles and numbers x in X, y in Y: x + y, x - y, x y, x / y (y not 0) and sqrt(x) lie in X + Y, X - Y, X Y, X / Y and sqrt(X). [X]+ is [[lo]+, [hi]+], sharp across zero. Of two numbers the result is at most two doubles wide, and exact where it is zero without underflow; an end may be infinite (no bound); a NaN makes both ends NaN. The integrals over a cut P1 edge, by the same source line over intervals, contain the exact ones.",
             numbers: "doubles against exact rational arithmetic, over all finite doubles with subnormals, overflow and ties.",
             kernel: &[
                 "interval::Interval::new",
