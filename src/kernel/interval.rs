@@ -108,8 +108,7 @@ fn quotient(x: f64, y: f64) -> Interval {
         return Interval { lo: 0.0, hi: 0.0 };
     }
     if x.is_infinite() && y.is_infinite() {
-        let negative = (x < 0.0) != (y < 0.0);
-        return if negative {
+        return if x.is_sign_negative() != y.is_sign_negative() {
             Interval { lo: f64::NEG_INFINITY, hi: 0.0 }
         } else {
             Interval { lo: 0.0, hi: f64::INFINITY }

@@ -156,6 +156,16 @@ mod row {
             ensure!((a != 0.0 && b != 0.0) || p * q == Interval::point(0.0));
             ensure!(b == 0.0 || narrow(p / q) && (a != 0.0 || p / q == Interval::point(0.0)));
             ensure!((p / q == Interval::new(f64::NEG_INFINITY, f64::INFINITY)) == (b == 0.0));
+            if a > 0.0 && b > 0.0 {
+                let [up, beyond] = [a, b].map(|end| Interval::new(end, f64::INFINITY));
+                let (least, greatest) = ((a / b).next_down(), (a / b).next_up());
+                let below_zero = -f64::from_bits(1);
+                ensure!(up / q == Interval::new(least, f64::INFINITY));
+                ensure!(p / beyond == Interval::new(below_zero, greatest));
+                ensure!(up / beyond == Interval::new(below_zero, f64::INFINITY));
+                ensure!(-up / beyond == -(up / beyond) && up / -beyond == -(up / beyond));
+                ensure!(-up / -beyond == up / beyond);
+            }
         }
         let zero = Interval::point(0.0);
         ensure!(x * zero == zero && zero * x == zero && (x.contains(0.0) || zero / x == zero));

@@ -277,12 +277,12 @@ impl PartialEq for Sym {
 
 impl PartialOrd for Sym {
     fn partial_cmp(&self, other: &Sym) -> Option<Ordering> {
-        Some(if self == other {
-            Ordering::Equal
-        } else if self < other {
+        Some(if self < other {
             Ordering::Less
-        } else {
+        } else if self > other {
             Ordering::Greater
+        } else {
+            Ordering::Equal
         })
     }
 
