@@ -101,7 +101,10 @@ row 13; for the rounding bounds of rows 5 and 6, the counts of roundings in `cla
 
 **How to run:** `cargo run -p props -- audit` runs every row and writes `target/audit/index.html`; `cargo run -p props --
 audit 9` runs row 9; `cargo test -p props` runs all of it with the engines' own tests. `PROPS_SEED=random` draws other
-random data and prints the seed; `PROPS_SEED=<number>` repeats it.
+random data and prints the seed; `PROPS_SEED=<number>` repeats it. `cargo mutants` (with cargo-nextest; hours) plants
+mistakes in kernel and assembly one by one and asks the claims alone; with `--workspace --config
+.cargo/mutants-proof.toml` in the trusted part of the proof engine, and asks the engine's own tests. What came of it:
+`props/mutants.md`.
 
 **How to add a row:** write the predicate in `props/src/claims/`, generic over `Ordered`, with `given!` for hypotheses and
 `ensure!` for conclusions; plant a mistake as a control; list both in a `Claim`, and the claim in `claims::all`; print the

@@ -182,16 +182,13 @@ fn entries(numbers: Numbers, neighbours: Lists, mut f: impl FnMut(Range<usize>, 
         && let Some(&node) = numbers.nodes.get(last)
     {
         // The numbers of a node follow each other.
-        let before = last.checked_sub(1).and_then(|before| numbers.nodes.get(before));
-        let first = if before == Some(&node) { last - 1 } else { last };
+        let before = last.checked_sub(1).filter(|&i| numbers.nodes.get(i) == Some(&node));
+        let first = before.unwrap_or(last);
         for &other in neighbours.of(node) {
             let Some(columns) = numbers.of.get(other) else { continue };
-            for column in columns {
-                if let Some(column) = *column
-                    && column < end
-                {
-                    f(first.max(column)..end, column);
-                }
+            for &column in columns.iter().flatten() {
+                // No rows at all where the column is beyond them.
+                f(first.max(column)..end, column);
             }
         }
         end = first;
