@@ -182,9 +182,9 @@ where
     E: Element<N, M>,
 {
     let [_, b, c] = monomials::<E, N, M>(p);
-    // Without a vertex (c = 0) this is an end; `max` takes the 0 in place of a NaN.
-    let vertex = (-b / (2.0 * c)).max(0.0).min(1.0);
-    [0.0, vertex, 1.0]
+    // Without a vertex (c = 0) this is 0 or beyond 1: `max` takes the 0 in place of a NaN.
+    let vertex = (-b / (2.0 * c)).max(0.0);
+    [0.0, vertex.min(1.0), 1.0]
         .map(|s| value_at::<E, f64, N, M>(p, s))
         .into_iter()
         .fold(f64::NEG_INFINITY, |max, p| if p <= max || max.is_nan() { max } else { p })
