@@ -30,6 +30,16 @@ impl Dimension {
     pub const WORK: Dimension = Dimension(2, 4);
     /// Of |v|_a, |s|_g.
     pub const NORM: Dimension = Dimension(1, 2);
+
+    /// Of a product.
+    fn times(self, other: Dimension) -> Dimension {
+        Dimension(self.0 + other.0, self.1 + other.1)
+    }
+
+    /// Of a quotient.
+    fn per(self, other: Dimension) -> Dimension {
+        Dimension(self.0 - other.0, self.1 - other.1)
+    }
 }
 
 impl fmt::Display for Dimension {
@@ -104,8 +114,7 @@ impl Mul for Quantity {
     type Output = Quantity;
 
     fn mul(self, other: Quantity) -> Quantity {
-        let product = |(a, b): (Dimension, Dimension)| Dimension(a.0 + b.0, a.1 + b.1);
-        let dimension = self.dimension.zip(other.dimension).map(product);
+        let dimension = self.dimension.zip(other.dimension).map(|(a, b)| a.times(b));
         Quantity { value: self.value * other.value, dimension }
     }
 }
@@ -114,8 +123,7 @@ impl Div for Quantity {
     type Output = Quantity;
 
     fn div(self, other: Quantity) -> Quantity {
-        let quotient = |(a, b): (Dimension, Dimension)| Dimension(a.0 - b.0, a.1 - b.1);
-        let dimension = self.dimension.zip(other.dimension).map(quotient);
+        let dimension = self.dimension.zip(other.dimension).map(|(a, b)| a.per(b));
         Quantity { value: self.value / other.value, dimension }
     }
 }
