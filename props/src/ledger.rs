@@ -73,7 +73,7 @@ problem for z3 and cvc5, and every failing path of the statements in doubles, ov
 `.ci/smt.py DIR` runs them and fails on a contradiction, or where no solver confirms a path.
 
 **The reference.** An engine of another kind: an independent program in FEniCSx (`reference/fenicsx`) solves the same case
-files, and `cargo test --test reference` compares the whole solver with its stored results, one file for each case in
+files, and `cargo test --test suite reference` compares the whole solver with its stored results, one file for each case in
 `reference/results/`. It sees what the rows can't: the solution of the discrete problem, on meshes of any size.
 
 | row | what is compared | stored results |

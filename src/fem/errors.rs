@@ -21,7 +21,7 @@ use crate::kernel::{ContactPoint, Element, Triangle, positive_part};
 /// Points in each direction. u is a polynomial of degree at most 7 on each piece for the smooth solutions with whole
 /// exponents (exact from 8 points on); for the singular ones the rule converges geometrically away from the singular point
 /// and is graded at it. Twice as many points change the errors by less than 1e-10 of themselves, half as many by less than
-/// 1e-4 (tests/exact.rs).
+/// 1e-4 (tests/suite/exact.rs).
 pub const POINTS: usize = 10;
 
 /// The distances, each a norm.

@@ -3,7 +3,7 @@
 //!
 //! Observed here: the wedge in full contact, whose regularity H^(1 + alpha) makes every norm fall at the rate alpha and no
 //! faster (0 < nu < 1/2), and the end of contact, in H^(5/2), where P1 has the rate 1 and P2 the rate 3/2 of Remark 3.7.
-//! The whole study is `tests/convergence.rs` and `docs/convergence.md`.
+//! The whole study is `tests/suite/convergence.rs` and `docs/convergence.md`.
 
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -156,7 +156,7 @@ pub fn claim() -> Claim {
         items: &["Theorem 3.5", "(21)", "(22)-(24)", "Corollary 3.6", "(25)", "Remark 3.7"],
         title: "Rates of convergence",
         paper: "|u - u^h|_1 + |gamma^1/2 (sigma_n(u) + (1/gamma)[P_gamma(u^h)]+)| <= C h^(1/2 + nu) |u|_(3/2 + nu), 0 < nu <= 1/2; the same rate for |gamma^1/2 sigma_n(u - u_h)|; for quadratic elements 0 < nu <= 3/2.",
-        statement: "Observed, not established: on the wedge of angle 3 pi/4, u in H^(1 + alpha), the energy, contact and normal stress errors of P1 and P2 fall at the rate alpha; at the end of contact, u in H^(5/2), the energy error at the rates 1 (P1) and 3/2 (P2). The whole study, more solutions and meshes, and the variants of the method that lose the rates: `cargo test --test convergence`, docs/convergence.md. The step from (13) with its constant to the rate of Corollary 3.6 is proved in row 11.",
+        statement: "Observed, not established: on the wedge of angle 3 pi/4, u in H^(1 + alpha), the energy, contact and normal stress errors of P1 and P2 fall at the rate alpha; at the end of contact, u in H^(5/2), the energy error at the rates 1 (P1) and 3/2 (P2). The whole study, more solutions and meshes, and the variants of the method that lose the rates: `cargo test --test suite convergence`, docs/convergence.md. The step from (13) with its constant to the rate of Corollary 3.6 is proved in row 11.",
         numbers: "doubles: slopes fitted over four meshes of the solver, 4 to 32 cells a side.",
         kernel: &[],
         preconditions: "The regularity of the solution.",

@@ -591,7 +591,7 @@ mod row {
                 "contact::ContactPoint::pressure",
             ],
             preconditions: "gamma > 0, 0 <= kappa < 1; (5) at the exact solution; (8) for the discrete one; the Cauchy-Schwarz inequalities and (11) of the norms.",
-            limits: "The integrals are numbers here: that they exist, Green's formula and the Cauchy-Schwarz inequality are hypotheses. The computed errors are those of two solutions on one mesh each; `cargo test --test convergence` has many more. C in the paper's (13) is in other norms; Korn's constant is not computed.",
+            limits: "The integrals are numbers here: that they exist, Green's formula and the Cauchy-Schwarz inequality are hypotheses. The computed errors are those of two solutions on one mesh each; `cargo test --test suite convergence` has many more. C in the paper's (13) is in other norms; Korn's constant is not computed.",
             single: None,
             checks,
         }

@@ -1,5 +1,4 @@
 //! Problems that the tests share.
-#![allow(dead_code, reason = "each test file uses its own part")]
 
 use std::collections::BTreeMap;
 

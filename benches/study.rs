@@ -2,7 +2,7 @@
 //! Theorem 3.4, and two cases from the literature. From the root of the repository:
 //!
 //! ```text
-//! cargo run --release --example study
+//! cargo bench --bench study
 //! ```
 
 use std::collections::BTreeMap;
@@ -553,7 +553,7 @@ fn main() -> Result<()> {
         "# Convergence\n\n\
          The paper proves rates and shows no experiment. These are the experiments, on the exact solutions of \
          [theory.md](theory.md#10-exact-solutions), lambda = mu = 1 unless it says otherwise. This page and its figures are written by\n\n\
-         ```\ncargo run --release --example study\n```\n\n\
+         ```\ncargo bench --bench study\n```\n\n\
          and one case is studied by, for example,\n\n\
          ```\nsignorini convergence cases/smooth.toml --levels 5 --degree 1,2 --mesh structured,perturbed\n```\n\n",
     );

@@ -787,7 +787,7 @@ fn boundaries_of_gmsh_meshes() {
 
 #[test]
 fn binary_meshes_that_are_cut_or_damaged() {
-    const BINARY: &[u8] = include_bytes!("meshes/square-binary.msh");
+    const BINARY: &[u8] = include_bytes!("../meshes/square-binary.msh");
     let directory = directory("binary");
     fs::write(directory.join("bad.toml"), edited(CASE, WITH_MESH)).unwrap();
     let message_of = |bytes: &[u8]| {

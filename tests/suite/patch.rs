@@ -6,9 +6,7 @@
 //! d1 full contact under uniform compression, d2 separation, d3 full contact on a sloping gap, d4 grazing (nothing
 //! happens, P = 0 everywhere), d5 an interference fit.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use signorini::fem::{BoxedFunction, Condition, Diagonal, Problem};
 use signorini::kernel::{Material, Plane};
 use signorini::solve::{Degree, Solution, Status, solve};

@@ -1,5 +1,4 @@
 //! The command `signorini convergence`: what it prints, what it writes, and what it refuses.
-#![cfg(feature = "cli")]
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -14,9 +14,9 @@
 //!
 //! Meshes with fewer than 8 cells a side are too coarse to count. A failure prints all errors.
 
-mod common;
-
-use common::exact::{corner, moved, on_square, on_trapezoid, singular, smooth, smooth_with_gap};
+use crate::common::exact::{
+    corner, moved, on_square, on_trapezoid, singular, smooth, smooth_with_gap,
+};
 use signorini::fem::contact_line::{ContactLineEdge, EdgeRule};
 use signorini::fem::{Discretization, Errors, loads};
 use signorini::kernel::edge_integral::ExactEdge;

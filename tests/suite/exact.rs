@@ -6,13 +6,11 @@
 //! where the solution is not smooth, differs from the derivative by less than it differs from the one with twice the step
 //! (whose error is 2^8 times larger), plus rounding: some 30 roundoffs of the largest value in the body over the step.
 
-mod common;
-
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use common::Random;
-use common::exact::{corner, on_square, on_trapezoid, singular, smooth};
+use crate::common::Random;
+use crate::common::exact::{corner, on_square, on_trapezoid, singular, smooth};
 use signorini::fem::errors::POINTS;
 use signorini::fem::exact::{Corner, Patch, Singular, Smooth};
 use signorini::fem::{Errors, Exact, Space, contact_line, loads};

@@ -2,9 +2,7 @@
 //! kappa < 1, the solution is in equilibrium, Newton's method with its line search ends where plain Newton cycles, and the
 //! condensed solve is the solution of the full system.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use signorini::fem::contact_line::EdgeRule;
 use signorini::fem::discretization::inner;
 use signorini::fem::matrix::{self, Neighbours, Numbering};

@@ -1,0 +1,16 @@
+//! What the library and the command promise, in one program: one to link, one to start. A part of it alone:
+//! `cargo test --test suite patch::`.
+
+mod common;
+
+mod bad_input;
+#[cfg(feature = "cli")]
+mod command;
+mod convergence;
+#[cfg(feature = "cli")]
+mod convergence_command;
+mod exact;
+mod gmsh_live;
+mod method;
+mod patch;
+mod reference;
