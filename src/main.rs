@@ -28,7 +28,7 @@ mod command {
     use indicatif::{ProgressBar, ProgressStyle};
     use signorini::io::convergence::{self, Meshes, StudyError};
     use signorini::io::{Case, outputs};
-    use signorini::solve::{self, Degree, LadderError, SolveError, Status};
+    use signorini::solve::{self, Degree, LadderError, SolveError};
 
     use crate::{engine, summary};
 
@@ -145,10 +145,6 @@ mod command {
         let read = start.elapsed();
         let (solution, times) = solve::solve(&case.problem, &case.method, &case.settings)
             .map_err(|e| unsolvable(file, &e))?;
-        if solution.newton.status == Status::NotConverged {
-            let message = summary::not_converged(file, &case.settings, &solution.newton);
-            return Err(Failure { message, code: FAILED });
-        }
         let folder = folder(file, out);
         let (files, results) = outputs::write(&folder, &case, &solution, read, times)
             .map_err(|e| failure(FAILED)(&e))?;
@@ -225,7 +221,6 @@ mod command {
             StudyError::Level { error, .. } => match error {
                 LadderError::Mesh(_) => WRONG,
                 LadderError::Solve(error) => code(error),
-                LadderError::NotConverged { .. } => FAILED,
             },
         };
         Failure { message: format!("{}: {error}", file.display()), code }
@@ -245,7 +240,11 @@ mod command {
     fn code(error: &SolveError) -> u8 {
         match error {
             SolveError::Data(_) | SolveError::NotCoercive { .. } => WRONG,
-            SolveError::NotPositiveDefinite | SolveError::OutOfMemory => FAILED,
+            SolveError::NotPositiveDefinite
+            | SolveError::NotConverged { .. }
+            | SolveError::IllConditioned { .. }
+            | SolveError::Singular
+            | SolveError::OutOfMemory { .. } => FAILED,
         }
     }
 }

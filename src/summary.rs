@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use signorini::io::convergence::Study;
 use signorini::io::result::{GammaChoice, NewtonHistory, Results};
 use signorini::io::{Case, numbers};
-use signorini::solve::{ContactQuadrature, NewtonReport, Outline, Settings, Status};
+use signorini::solve::{ContactQuadrature, Outline, Status};
 
 /// Lines of a name and a text.
 #[derive(Default)]
@@ -112,18 +112,6 @@ pub fn studied(case: &Case, studies: &[Study], files: &[PathBuf]) -> String {
     format!("{}\n\n{}\nwritten: {}\n", case.title, tables.join("\n"), written(files))
 }
 
-/// Of a case that Newton's method could not solve.
-pub fn not_converged(file: &Path, settings: &Settings, report: &NewtonReport) -> String {
-    format!(
-        "{}: no convergence: the relative residual is {:.1e} after {}; expected at most {:e}. Nothing is written.\nresiduals: {}",
-        file.display(),
-        report.residual,
-        count(report.iterations(), "Newton step"),
-        settings.tolerance,
-        history(&report.residuals)
-    )
-}
-
 fn sizes(triangles: usize, degree: usize, dofs: usize, contact_edges: usize, h: f64) -> String {
     let contact = count(contact_edges, "contact edge");
     format!("{triangles} P{degree} triangles, {dofs} unknowns, {contact}, h = {}", short(h))
@@ -146,7 +134,6 @@ fn newton(newton: &NewtonHistory) -> String {
     let verdict = match newton.status {
         Status::Converged => "converged",
         Status::ConvergedToRounding => "converged to rounding",
-        Status::NotConverged => "not converged",
     };
     format!(
         "{verdict} in {}, {}, relative residual {:.1e}",

@@ -10,6 +10,7 @@ pub mod loads;
 pub mod matrix;
 pub mod mesh;
 pub mod pieces;
+pub mod precise;
 pub mod problem;
 pub mod quadrature;
 pub mod rectangle;
