@@ -14,3 +14,5 @@ mod gmsh_live;
 mod method;
 mod patch;
 mod reference;
+#[cfg(feature = "cli")]
+mod set_and_sweep;
