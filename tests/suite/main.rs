@@ -9,6 +9,7 @@ mod command;
 mod convergence;
 #[cfg(feature = "cli")]
 mod convergence_command;
+mod documents;
 mod exact;
 mod gmsh_live;
 mod method;
