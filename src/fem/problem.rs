@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use thiserror::Error;
 
 use super::mesh::{Mesh, MeshError};
+use super::rigid::FreeMotion;
 use crate::kernel::Material;
 
 /// A function of the place, such as a component of the body force.
@@ -77,11 +78,24 @@ pub enum DataError {
     )]
     Disagree { first: String, second: String, x: f64, y: f64, component: usize, values: [f64; 2] },
     #[error(
-        "no displacement is prescribed that stops the {motion}{part}; expected displacement boundaries that leave no rigid body motion free (contact pushes, it doesn't hold)"
+        "no displacement is prescribed that stops the {}; expected displacement boundaries that leave no rigid body motion free (contact pushes, it doesn't hold)",
+        listed(motions)
     )]
-    RigidMotion { motion: String, part: String },
+    RigidMotion { motions: Vec<FreeMotion> },
     #[error("no boundary has contact; expected one with contact = {{ gap = ... }}")]
     NoContact,
+}
+
+/// So many free motions are told one by one.
+const TOLD: usize = 4;
+
+fn listed(motions: &[FreeMotion]) -> String {
+    let told: Vec<String> = motions.iter().take(TOLD).map(FreeMotion::to_string).collect();
+    let more = match motions.len().saturating_sub(TOLD) {
+        0 => String::new(),
+        more => format!("; nor {more} more"),
+    };
+    told.join("; nor the ") + &more
 }
 
 /// The value of `function`, which the case calls `what()`, at `x`.
