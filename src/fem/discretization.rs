@@ -113,8 +113,6 @@ where
 
     /// a(u, v) = int sigma(u):eps(v) for every basis function v.
     pub fn internal_forces(&self, u: &[[f64; 2]]) -> Functional {
-        let material = &self.problem.material;
-        let stiffness = material.lambda().abs() + 2.0 * material.mu();
         let mut forces = Functional::zero(u.len());
         for (t, (triangle, nodes)) in self.space.triangles().enumerate() {
             let nodal = self.space.on_triangle(t, u);
@@ -122,6 +120,8 @@ where
             if nodal == [[0.0; 2]; N] {
                 continue;
             }
+            let material = self.problem.material.of(t);
+            let stiffness = material.lambda().abs() + 2.0 * material.mu();
             let barycentric = triangle.barycentric_gradients();
             let area = triangle.double_area() / 2.0;
             E::at_stiffness_points(|l, weight| {

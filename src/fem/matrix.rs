@@ -143,8 +143,8 @@ where
     E: ExactEdge<f64, N, M>,
 {
     let mut matrix = LowerTriangle::zero(numbering, neighbours);
-    for (triangle, nodes) in d.space.triangles() {
-        let k = stiffness::<E, f64, N, M>(&triangle, &d.problem.material);
+    for (t, (triangle, nodes)) in d.space.triangles().enumerate() {
+        let k = stiffness::<E, f64, N, M>(&triangle, d.problem.material.of(t));
         matrix.add(numbering, nodes, |i, j| k[i][j]);
     }
     matrix

@@ -7,8 +7,10 @@ pub mod discretization;
 pub mod errors;
 pub mod exact;
 pub mod loads;
+pub mod materials;
 pub mod matrix;
 pub mod mesh;
+pub mod obstacle;
 pub mod pieces;
 pub mod problem;
 pub mod quadrature;
@@ -20,8 +22,12 @@ pub mod trapezoid;
 pub use discretization::Discretization;
 pub use errors::Errors;
 pub use exact::{Exact, ExactSolution};
+pub use materials::Materials;
 pub use mesh::{BoundaryEdge, Mesh, MeshError};
-pub use problem::{BoxedFunction, Condition, DataError, Function, Problem};
+pub use obstacle::{Closest, Distance, Obstacle, Side};
+pub use problem::{
+    BoxedFunction, Condition, DataError, Function, PointSupport, Problem, SurfaceForce,
+};
 pub use rectangle::{Diagonal, Rectangle};
 pub use space::Space;
 pub use structured::{Perturbation, Structured};

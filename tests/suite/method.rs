@@ -215,7 +215,7 @@ fn example_problems() -> Vec<(&'static str, Problem)> {
             ("top", Condition::Displacement([None, Some(constant(-0.02))])),
             ("bottom", Condition::Contact { gap: constant(0.0) }),
         ]),
-        material: Material::young_poisson(3.0, 0.4, Plane::Stress),
+        material: Material::young_poisson(3.0, 0.4, Plane::Stress).into(),
         ..block(skewed_square(7, Diagonal::Left))
     };
     vec![("block", block(skewed_square(8, Diagonal::Right))), ("gap", gap), ("sliding", sliding)]
