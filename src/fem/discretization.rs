@@ -5,7 +5,7 @@
 //! for every basis function v, straight from the definitions: stresses are integrated against strains, no matrix is
 //! involved. On the free degrees of freedom the solution makes it zero; on the prescribed ones it is the reaction.
 
-use super::constraints::Constraints;
+use super::constraints::{Constraints, in_frame};
 use super::contact_line::{self, Coercivity, ContactLineEdge, EdgeRule};
 use super::loads;
 use super::problem::{DataError, Problem};
@@ -162,8 +162,11 @@ where
 
     /// The Euclidean norm of a functional over the free degrees of freedom.
     pub fn free_norm(&self, functional: &[[f64; 2]]) -> f64 {
-        let free = functional.iter().zip(self.constraints.values()).flat_map(|(f, prescribed)| {
-            f.iter().zip(prescribed).filter(|(_, p)| p.is_none()).map(|(f, _)| f * f)
+        let frames = self.constraints.frames();
+        let nodes = functional.iter().zip(self.constraints.values()).enumerate();
+        let free = nodes.flat_map(|(node, (&f, prescribed))| {
+            let f = frames.get(&node).map_or(f, |&axis| in_frame(axis, f));
+            f.into_iter().zip(prescribed).filter(|(_, p)| p.is_none()).map(|(f, _)| f * f)
         });
         free.sum::<f64>().sqrt()
     }

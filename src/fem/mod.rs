@@ -15,6 +15,7 @@ pub mod pieces;
 pub mod problem;
 pub mod quadrature;
 pub mod rectangle;
+pub mod smooth;
 pub mod space;
 pub mod structured;
 pub mod trapezoid;

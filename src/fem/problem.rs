@@ -147,6 +147,18 @@ pub enum DataError {
     )]
     Disagree { first: String, second: String, x: f64, y: f64, component: usize, values: [f64; 2] },
     #[error(
+        "the displacement boundaries '{first}' and '{second}' meet at ({x}, {y}) and disagree there: u . ({}, {}) = {} and {}; expected one value",
+        direction[0], direction[1], values[0], values[1]
+    )]
+    DisagreeAlong {
+        first: String,
+        second: String,
+        x: f64,
+        y: f64,
+        direction: [f64; 2],
+        values: [f64; 2],
+    },
+    #[error(
         "no displacement is prescribed that stops the {motion}{part}; expected displacement boundaries that leave no rigid body motion free (contact pushes, it doesn't hold)"
     )]
     RigidMotion { motion: String, part: String },

@@ -272,8 +272,9 @@ where
     let residual = d.residual(u).values;
     for (boundary, held) in d.constraints.holders() {
         let reaction = q.reactions.entry(boundary.clone()).or_default();
-        for &(node, c) in held {
-            reaction[c] += residual[node][c];
+        for held in held {
+            let part = held.part_of(residual[held.node]);
+            *reaction = [reaction[0] + part[0], reaction[1] + part[1]];
         }
     }
     q

@@ -240,7 +240,10 @@ fn equilibrium<E: ExactEdge<f64, N, M>, const N: usize, const M: usize>(
         let load = inner(&d.load, &field);
         let mut reaction = 0.0;
         for held in d.constraints.holders().values() {
-            reaction += held.iter().map(|&(i, c)| residual[i][c] * field[i][c]).sum::<f64>();
+            for held in held {
+                let ([a, b], [x, y]) = (held.part_of(residual[held.node]), field[held.node]);
+                reaction += a * x + b * y;
+            }
         }
         let mut contact = 0.0;
         for edge in &d.contact {
