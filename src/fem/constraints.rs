@@ -11,8 +11,9 @@
 
 use std::collections::BTreeMap;
 
-use super::mesh::{BoundaryEdge, Mesh};
+use super::mesh::BoundaryEdge;
 use super::problem::{BoxedFunction, Condition, DataError, Problem, finite};
+use super::rigid::{self, Parts};
 use super::smooth::SmoothBoundary;
 use super::space::Space;
 use crate::kernel::Element;
@@ -82,14 +83,15 @@ impl Constraints {
             // Coordinate directions first: a value that is given for a component is taken as it is.
             at_node.sort_by_key(|demand| demand.axis().is_none());
             let holding = independent(at_node, space.nodes()[node], AGREEMENT * largest)?;
-            constraints.hold(node, &holding);
+            constraints.prescribe(node, &holding);
         }
-        constraints.check_rigid_motions(space)?;
-        Ok(constraints)
+        let held = |node| constraints.directions(node);
+        let motions = rigid::free_motions(&Parts::new(space.mesh()), space, held);
+        if motions.is_empty() { Ok(constraints) } else { Err(DataError::RigidMotion { motions }) }
     }
 
     /// Prescribes one or two independent demands at a node.
-    fn hold(&mut self, node: usize, demands: &[&Demand]) {
+    fn prescribe(&mut self, node: usize, demands: &[&Demand]) {
         let mut holder = |demand: &Demand, dual| {
             let held = Held { node, direction: demand.direction, dual };
             self.holders.entry(demand.name.to_owned()).or_default().push(held);
@@ -156,44 +158,6 @@ impl Constraints {
             None => [[1.0, 0.0], [0.0, 1.0]],
         };
         self.values[node].iter().zip(axes).filter(|(value, _)| value.is_some()).map(|(_, d)| d)
-    }
-
-    /// In each connected part of the body the prescribed components must stop both translations and the rotation: the
-    /// rows (d_x, d_y, x d_y - y d_x) of the held directions d have rank 3.
-    fn check_rigid_motions<E: Element<N, M>, const N: usize, const M: usize>(
-        &self,
-        space: &Space<E, N, M>,
-    ) -> Result<(), DataError> {
-        let mesh = space.mesh();
-        let part_of = connected_parts(mesh);
-        let count = part_of.iter().max().map_or(0, |last| last + 1);
-        let mut part_of_node = vec![0; space.nodes().len()];
-        for (nodes, corners) in space.elements().iter().zip(mesh.triangles()) {
-            for &node in nodes {
-                part_of_node[node] = part_of[corners[0]];
-            }
-        }
-        let size = mesh.vertices().iter().flatten().fold(0.0, |max: f64, c| max.max(c.abs()));
-        let mut stopped = vec![Stopped::default(); count];
-        let mut place = vec![[0.0; 2]; count];
-        for (node, &part) in part_of_node.iter().enumerate() {
-            place[part] = space.nodes()[node];
-            let [x, y] = space.nodes()[node].map(|c| c / size);
-            for [a, b] in self.directions(node) {
-                stopped[part].add([a, b, x * b - y * a]);
-            }
-        }
-        for (stopped, [x, y]) in stopped.iter().zip(place) {
-            if let Some(motion) = stopped.free_motion(size) {
-                let part = if count == 1 {
-                    String::new()
-                } else {
-                    format!(" of the part of the body at ({x}, {y})")
-                };
-                return Err(DataError::RigidMotion { motion, part });
-            }
-        }
-        Ok(())
     }
 }
 
@@ -334,86 +298,4 @@ fn nodes_of<E: Element<N, M>, const N: usize, const M: usize>(
     edges: &[BoundaryEdge],
 ) -> Vec<usize> {
     edges.iter().flat_map(|&edge| space.edge_nodes(edge)).collect()
-}
-
-/// An orthonormal basis of the rows that constrain a rigid motion (a_x, a_y, rotation).
-#[derive(Clone, Debug, Default)]
-struct Stopped {
-    basis: Vec<[f64; 3]>,
-}
-
-/// A row of norm >= 1 whose part across the known rows is this small adds nothing to them.
-const DEPENDENT: f64 = 1e-10;
-
-impl Stopped {
-    fn add(&mut self, mut row: [f64; 3]) {
-        if self.basis.len() < 3 {
-            for b in &self.basis {
-                let along = dot3(row, *b);
-                row = [0, 1, 2].map(|i| row[i] - along * b[i]);
-            }
-            let norm = dot3(row, row).sqrt();
-            if norm > DEPENDENT {
-                self.basis.push(row.map(|c| c / norm));
-            }
-        }
-    }
-
-    /// A motion that no row stops, in words; coordinates were divided by `size`.
-    fn free_motion(&self, size: f64) -> Option<String> {
-        let [ax, ay, rotation] = match self.basis[..] {
-            [] => [1.0, 0.0, 0.0],
-            [a] => {
-                // Any motion across one row will do: the translation across it.
-                [-a[1], a[0], 0.0]
-            }
-            [a, b] => {
-                [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-            }
-            _ => return None,
-        };
-        let short = |c: f64| (c * 1e6).round() / 1e6 + 0.0;
-        Some(if rotation.abs() <= DEPENDENT {
-            let norm = ax.hypot(ay);
-            format!("translation along ({}, {})", short(ax / norm), short(ay / norm))
-        } else {
-            let (x, y) = (-ay / rotation * size, ax / rotation * size);
-            format!("rotation about ({}, {})", short(x), short(y))
-        })
-    }
-}
-
-fn dot3(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-/// The number of the connected part to which each vertex belongs.
-fn connected_parts(mesh: &Mesh) -> Vec<usize> {
-    fn root(parent: &mut [usize], mut v: usize) -> usize {
-        while parent[v] != v {
-            parent[v] = parent[parent[v]];
-            v = parent[v];
-        }
-        v
-    }
-    let mut parent: Vec<usize> = (0..mesh.vertices().len()).collect();
-    for &[a, b, c] in mesh.triangles() {
-        for (a, b) in [(a, b), (b, c)] {
-            let (a, b) = (root(&mut parent, a), root(&mut parent, b));
-            parent[a.max(b)] = a.min(b);
-        }
-    }
-    // A root is the smallest vertex of its part, so it is numbered before the others ask for its number.
-    let mut part = vec![0; parent.len()];
-    let mut count = 0;
-    for v in 0..parent.len() {
-        let r = root(&mut parent, v);
-        if r == v {
-            part[v] = count;
-            count += 1;
-        } else {
-            part[v] = part[r];
-        }
-    }
-    part
 }

@@ -15,6 +15,7 @@ pub mod pieces;
 pub mod problem;
 pub mod quadrature;
 pub mod rectangle;
+pub mod rigid;
 pub mod smooth;
 pub mod space;
 pub mod structured;
@@ -30,6 +31,7 @@ pub use problem::{
     BoxedFunction, Condition, DataError, Function, PointSupport, Problem, SurfaceForce,
 };
 pub use rectangle::{Diagonal, Rectangle};
+pub use rigid::{FreeMotion, Parts};
 pub use space::Space;
 pub use structured::{Perturbation, Structured};
 pub use trapezoid::Trapezoid;

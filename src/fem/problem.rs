@@ -7,6 +7,7 @@ use thiserror::Error;
 use super::materials::Materials;
 use super::mesh::{Mesh, MeshError};
 use super::obstacle::Obstacle;
+use super::rigid::FreeMotion;
 
 /// A function of the place, such as a component of the body force.
 pub trait Function: Send + Sync {
@@ -159,15 +160,28 @@ pub enum DataError {
         values: [f64; 2],
     },
     #[error(
-        "no displacement is prescribed that stops the {motion}{part}; expected displacement boundaries that leave no rigid body motion free (contact pushes, it doesn't hold)"
+        "no displacement is prescribed that stops the {}; expected displacement boundaries that leave no rigid body motion free (contact pushes, it doesn't hold)",
+        listed(motions)
     )]
-    RigidMotion { motion: String, part: String },
+    RigidMotion { motions: Vec<FreeMotion> },
     #[error(
         "{what} has a gradient of length {length} at ({x}, {y}); expected a distance there, with a gradient between {least} and {most}"
     )]
     NoDistance { what: String, length: f64, x: f64, y: f64, least: f64, most: f64 },
     #[error("no boundary has contact; expected one with contact = {{ gap = ... }}")]
     NoContact,
+}
+
+/// So many free motions are told one by one.
+const TOLD: usize = 4;
+
+fn listed(motions: &[FreeMotion]) -> String {
+    let told: Vec<String> = motions.iter().take(TOLD).map(FreeMotion::to_string).collect();
+    let more = match motions.len().saturating_sub(TOLD) {
+        0 => String::new(),
+        more => format!("; nor {more} more"),
+    };
+    told.join("; nor the ") + &more
 }
 
 /// The value of `function`, which the case calls `what()`, at `x`.
