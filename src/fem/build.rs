@@ -3,9 +3,9 @@
 
 use std::collections::BTreeMap;
 
+use super::materials::Materials;
 use super::mesh::Mesh;
 use super::problem::{BoxedFunction, Condition, Problem};
-use crate::kernel::Material;
 
 fn zero() -> BoxedFunction {
     Box::new(|_| 0.0)
@@ -41,8 +41,8 @@ impl Condition {
 
 impl Problem {
     /// A body on which nothing acts yet.
-    pub fn of(mesh: Mesh, material: Material<f64>) -> Self {
-        Problem { mesh, material, body_force: [zero(), zero()], conditions: BTreeMap::new() }
+    pub fn of(mesh: Mesh, material: impl Into<Materials>) -> Self {
+        Problem::new(mesh, material, [zero(), zero()], BTreeMap::new())
     }
 
     /// The same with this force per unit of area.
