@@ -24,7 +24,7 @@ use signorini::io::plot::{self, Figure, Panel, Style};
 use signorini::kernel::{Material, Plane};
 use signorini::solve::ladder::fitted_slope;
 use signorini::solve::{
-    ContactQuadrature, Degree, Gamma0, Ladder, Method, Settings, SolveError, Status, Theorem, solve,
+    ContactQuadrature, Degree, Gamma0, Ladder, Method, Settings, SolveError, Theorem, solve,
 };
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
@@ -428,12 +428,12 @@ fn hertz_block(n: usize) -> Result<Problem> {
         ("top", Condition::Displacement([None, Some(constant(-0.015))])),
         ("bottom", Condition::Contact { gap: Box::new(|[x, _]: [f64; 2]| x * x / 2.0) }),
     ];
-    Ok(Problem {
-        mesh: rectangle.mesh()?,
-        material: Material::young_poisson(1000.0, 0.3, Plane::Strain),
-        body_force: [constant(0.0), constant(0.0)],
-        conditions: conditions.map(|(name, condition)| (name.to_owned(), condition)).into(),
-    })
+    Ok(Problem::new(
+        rectangle.mesh()?,
+        Material::young_poisson(1000.0, 0.3, Plane::Strain),
+        [constant(0.0), constant(0.0)],
+        conditions.map(|(name, condition)| (name.to_owned(), condition)).into(),
+    ))
 }
 
 struct Constant(f64);
@@ -493,18 +493,18 @@ fn literature(text: &mut String) -> Result<()> {
     const YOUNG: f64 = 25.0;
     let mesh = scaled(&case.problem.mesh, 0.2)?;
     let zero = || -> Box<dyn Function> { Box::new(Constant(0.0)) };
-    let disk = Problem {
+    let disk = Problem::new(
         mesh,
-        material: Material::young_poisson(YOUNG, 0.25, Plane::Strain),
-        body_force: [zero(), Box::new(Constant(-20.0))],
-        conditions: BTreeMap::from([
+        Material::young_poisson(YOUNG, 0.25, Plane::Strain),
+        [zero(), Box::new(Constant(-20.0))],
+        BTreeMap::from([
             ("top".to_owned(), Condition::Displacement([Some(zero()), Some(zero())])),
             (
                 "contact".to_owned(),
                 Condition::Contact { gap: Box::new(|[_, y]: [f64; 2]| y / (1.0 - 5.0 * y)) },
             ),
         ]),
-    };
+    );
     for degree in DEGREES {
         for (name, gamma0) in
             [("1/(100 E)", 0.01 / YOUNG), ("1/E", 1.0 / YOUNG), ("100/E", 100.0 / YOUNG)]
@@ -518,13 +518,15 @@ fn literature(text: &mut String) -> Result<()> {
             };
             let kappa = signorini::solve::check(&disk, &method)?.gamma.kappa;
             let outcome = match solve(&disk, &method, &Settings::default()) {
-                Ok((solution, _)) if solution.newton.status != Status::NotConverged => format!(
+                Ok((solution, _)) => format!(
                     "{} Newton steps, force {:.4} MN/m, peak pressure {:.3} MPa",
                     solution.newton.iterations(),
                     solution.quantities.contact_force,
                     solution.quantities.peak_pressure
                 ),
-                Ok(_) => "Newton's method does not converge".to_owned(),
+                Err(SolveError::NotConverged { .. }) => {
+                    "Newton's method does not converge".to_owned()
+                }
                 Err(SolveError::NotPositiveDefinite) => {
                     "A(.,.) is not positive definite: no solution need exist".to_owned()
                 }

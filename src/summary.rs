@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 
 use signorini::io::convergence::Study;
 use signorini::io::result::{GammaChoice, NewtonHistory, Results};
+use signorini::io::sweep::Sweep;
 use signorini::io::{Case, numbers};
-use signorini::solve::{ContactQuadrature, Outline, Status};
+use signorini::solve::{ContactQuadrature, Outline, history};
 
 /// Lines of a name and a text.
 #[derive(Default)]
@@ -112,6 +113,11 @@ pub fn studied(case: &Case, studies: &[Study], files: &[PathBuf]) -> String {
     format!("{}\n\n{}\nwritten: {}\n", case.title, tables.join("\n"), written(files))
 }
 
+/// Of a case along some axes.
+pub fn swept(sweep: &Sweep, files: &[PathBuf]) -> String {
+    format!("{}\n\n{}\nwritten: {}\n", sweep.title, sweep.table(), written(files))
+}
+
 fn sizes(triangles: usize, degree: usize, dofs: usize, contact_edges: usize, h: f64) -> String {
     let contact = count(contact_edges, "contact edge");
     format!("{triangles} P{degree} triangles, {dofs} unknowns, {contact}, h = {}", short(h))
@@ -131,20 +137,13 @@ fn coercivity(gamma: &GammaChoice) -> String {
 }
 
 fn newton(newton: &NewtonHistory) -> String {
-    let verdict = match newton.status {
-        Status::Converged => "converged",
-        Status::ConvergedToRounding => "converged to rounding",
-    };
     format!(
-        "{verdict} in {}, {}, relative residual {:.1e}",
+        "{} in {}, {}, relative residual {:.1e}",
+        newton.verdict(),
         count(newton.iterations, "step"),
         count(newton.factorizations, "factorisation"),
         newton.residual
     )
-}
-
-fn history(residuals: &[f64]) -> String {
-    residuals.iter().map(|r| format!("{r:.0e}")).collect::<Vec<_>>().join(" ")
 }
 
 fn count(n: usize, what: &str) -> String {

@@ -47,7 +47,7 @@ pub fn clamped(mesh: Mesh, material: Material<f64>, sides: &[&str]) -> Problem {
         conditions.insert(side.to_owned(), Condition::Displacement(nothing));
     }
     let body_force = [0, 1].map(|_| constant(0.0));
-    Problem { mesh, material, body_force, conditions }
+    Problem::new(mesh, material, body_force, conditions)
 }
 
 /// The material with lambda and mu = 1.
@@ -186,7 +186,7 @@ impl Order {
     {
         let nodes = d.space.nodes();
         let neighbours = Neighbours::new(nodes.len(), d.space.elements());
-        let order = nested_dissection(nodes, &neighbours, &vec![false; nodes.len()]);
+        let order = nested_dissection(nodes, &neighbours);
         Order { numbering: Numbering::new(&order, d.constraints.values()), neighbours }
     }
 

@@ -1,10 +1,10 @@
 //! The linear part of (8) at a displacement that is known to more than double precision, evaluated from the definitions in
-//! [twofold](crate::kernel::twofold) numbers: what is left of forces that cancel is then known to the last bit of a double.
+//! [twofold](crate::fem::twofold) numbers: what is left of forces that cancel is then known to the last bit of a double.
 
 use super::discretization::Discretization;
+use crate::fem::twofold::Twofold;
 use crate::kernel::edge_integral::ExactEdge;
 use crate::kernel::element::displacement_gradient;
-use crate::kernel::twofold::Twofold;
 use crate::kernel::{ContactEdge, Triangle};
 
 /// A(u, v) - L(v) for every basis function v, and the values of P(u) at the nodes of each contact edge.
@@ -16,12 +16,12 @@ where
     E: ExactEdge<f64, N, M>,
 {
     let zero = Twofold::from(0);
-    let material = d.problem.material.map(Twofold::from);
     let exact = |t: Triangle<f64>| Triangle { vertices: t.vertices.map(|x| x.map(Twofold::from)) };
     let mut forces: Vec<[Twofold; 2]> =
         d.load.iter().map(|l| l.map(|l| -Twofold::from(l))).collect();
     for (t, (triangle, nodes)) in d.space.triangles().enumerate() {
         let triangle = exact(triangle);
+        let material = d.problem.material.of(t).map(Twofold::from);
         let nodal = d.space.elements()[t].map(|node| u[node]);
         let barycentric = triangle.barycentric_gradients();
         let area = triangle.double_area() / Twofold::from(2);
@@ -42,6 +42,7 @@ where
         let nodal = nodes.map(|node| u[node]);
         let triangle = exact(d.space.mesh().triangle(edge.edge.triangle));
         let n = edge.normal.map(Twofold::from);
+        let material = d.problem.material.of(edge.edge.triangle).map(Twofold::from);
         let functionals = ContactEdge::<Twofold, N, M>::new::<E>(
             &triangle,
             edge.edge.local,
@@ -81,24 +82,28 @@ mod tests {
 
     fn block() -> Problem {
         let zero = || -> BoxedFunction { Box::new(|_: [f64; 2]| 0.0) };
-        Problem {
-            mesh: Rectangle { width: 3.0, height: 1.0, nx: 3, ny: 2, diagonal: Diagonal::Left }
+        Problem::new(
+            Rectangle { width: 3.0, height: 1.0, nx: 3, ny: 2, diagonal: Diagonal::Left }
                 .mesh()
                 .unwrap(),
-            material: Material::lame(3.0, 0.7, Plane::Strain),
-            body_force: [zero(), Box::new(|[x, _]: [f64; 2]| x - 1.0)],
-            conditions: BTreeMap::from([
+            Material::lame(3.0, 0.7, Plane::Strain),
+            [zero(), Box::new(|[x, _]: [f64; 2]| x - 1.0)],
+            BTreeMap::from([
                 ("top".to_owned(), Condition::Displacement([Some(zero()), Some(zero())])),
-                ("bottom".to_owned(), Condition::Contact { gap: Box::new(|[x, _]: [f64; 2]| x / 7.0) }),
+                (
+                    "bottom".to_owned(),
+                    Condition::Contact { gap: Box::new(|[x, _]: [f64; 2]| x / 7.0) },
+                ),
             ]),
-        }
+        )
     }
 
     /// The residual in twofold numbers is the one in doubles, to the rounding of the latter; a change of u far below its
     /// rounding shows in P as it should.
     fn agrees_and_sees_more<E: ExactEdge<f64, N, M>, const N: usize, const M: usize>() {
         let problem = block();
-        let d = Discretization::<E, N, M>::new(&problem, |c| c.limit() / 2.0, EdgeRule::Exact).unwrap();
+        let d =
+            Discretization::<E, N, M>::new(&problem, |c| c.limit() / 2.0, EdgeRule::Exact).unwrap();
         let mut u: Vec<[f64; 2]> = vec![[0.0; 2]; d.space.nodes().len()];
         for (i, u) in u.iter_mut().enumerate() {
             *u = [(i as f64).sin(), (2.0 * i as f64).cos()];

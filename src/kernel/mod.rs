@@ -15,7 +15,6 @@
 //! | [`contact_edge`] | P_gamma and sigma_n as functionals on one edge of Gamma_C |
 //! | [`edge_integral`] | the integrals over one edge in (8) and in J_h |
 //! | [`interval`] | not in the paper: doubles with their rounding enclosed |
-//! | [`twofold`] | not in the paper: numbers with twice the precision of a double |
 //! | [`pattern`] | not in the paper: the numbers of the unknowns, and where the entries of the matrix stand |
 
 pub mod contact;
@@ -28,7 +27,6 @@ pub mod pattern;
 pub mod positive_part;
 pub mod scalar;
 pub mod triangle;
-pub mod twofold;
 
 pub use contact::ContactPoint;
 pub use contact_edge::ContactEdge;

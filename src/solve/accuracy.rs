@@ -134,12 +134,8 @@ where
     E: ExactEdge<f64, N, M>,
 {
     let residual = d.residual(&d.constraints.lift());
-    let prescribed: Vec<[f64; 2]> = residual
-        .values
-        .iter()
-        .zip(&d.load)
-        .map(|(r, l)| [r[0] + l[0], r[1] + l[1]])
-        .collect();
+    let prescribed: Vec<[f64; 2]> =
+        residual.values.iter().zip(&d.load).map(|(r, l)| [r[0] + l[0], r[1] + l[1]]).collect();
     let forces = d.free_norm(&d.load) + d.free_norm(&prescribed);
     let magnitudes = d.free_norm(&residual.magnitudes);
     if forces > NOISE * f64::EPSILON * magnitudes {
@@ -170,7 +166,8 @@ pub fn judge(outcome: &Outcome, settings: &Settings) -> Result<Status, SolveErro
     }
     let steps = outcome.residuals.len().saturating_sub(1);
     Err(if steps >= settings.max_iterations {
-        SolveError::NotConverged { residual, steps, tolerance: settings.tolerance }
+        let residuals = outcome.residuals.clone();
+        SolveError::NotConverged { residual, residuals, tolerance: settings.tolerance }
     } else {
         SolveError::IllConditioned { condition, forward_error }
     })

@@ -19,7 +19,7 @@ pub struct Assembled<'a, 'd, 'p, E, const N: usize, const M: usize> {
     reference: f64,
     /// The contact edges as they come.
     order: Vec<usize>,
-    factored: Option<(Factor<'a>, Vec<[[f64; M]; M]>)>,
+    factored: Option<Factored<M>>,
     factorizations: usize,
     precisely: bool,
     first: bool,
@@ -76,25 +76,33 @@ where
         matrix
     }
 
-    fn factor(&mut self, at: &Derivatives<M>) -> Result<&Factor<'a>, SolveError> {
-        let largest = at.hessian.as_flattened().as_flattened().iter().fold(0.0, |m: f64, h| m.max(h.abs()));
+    fn factor(&mut self, at: &Derivatives<M>) -> Result<&Factor, SolveError> {
+        let largest =
+            at.hessian.as_flattened().as_flattened().iter().fold(0.0, |m: f64, h| m.max(h.abs()));
         let close = |old: &[[[f64; M]; M]]| {
-            let (old, new) = (old.as_flattened().as_flattened(), at.hessian.as_flattened().as_flattened());
+            let (old, new) =
+                (old.as_flattened().as_flattened(), at.hessian.as_flattened().as_flattened());
             old.iter().zip(new).all(|(old, new)| (old - new).abs() <= CHANGED * largest)
         };
-        if !self.factored.as_ref().is_some_and(|(_, old)| close(old)) {
-            self.factored = None;
-            let factor = self.system.structure.factor(&self.tangent(at))?;
-            self.factorizations += 1;
-            let factor = factor.map_err(|Indefinite| SolveError::NotPositiveDefinite)?;
-            self.factored = Some((factor, at.hessian.clone()));
-        }
-        match &self.factored {
-            Some((factor, _)) => Ok(factor),
-            None => Err(SolveError::NotPositiveDefinite),
-        }
+        let (factor, hessian) = match self.factored.take() {
+            Some((factor, old)) if close(&old) => (factor, old),
+            _ => {
+                let factored = Factor::with(&self.system.structure, &self.tangent(at))?;
+                self.factorizations += 1;
+                let coercive = self.system.d.kappa() < 1.0;
+                let factor = factored.map_err(|Indefinite| match coercive {
+                    true => SolveError::Singular,
+                    false => SolveError::NotPositiveDefinite,
+                })?;
+                (factor, at.hessian.clone())
+            }
+        };
+        Ok(&self.factored.insert((factor, hessian)).0)
     }
 }
+
+/// A factor with the Psi'' of its tangent.
+type Factored<const M: usize> = (Factor, Vec<[[f64; M]; M]>);
 
 impl<E, const N: usize, const M: usize> Route<E, N, M> for Assembled<'_, '_, '_, E, N, M>
 where

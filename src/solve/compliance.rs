@@ -36,8 +36,9 @@ impl Reach {
         for s in 0..count {
             supernode_of[structure.columns(s)].fill(s);
         }
-        let parent: Vec<Option<usize>> =
-            (0..count).map(|s| structure.rows_below(s).first().map(|&row| supernode_of[row])).collect();
+        let parent: Vec<Option<usize>> = (0..count)
+            .map(|s| structure.rows_below(s).first().map(|&row| supernode_of[row]))
+            .collect();
         let rank = postorder(&parent);
         let first = |e: usize| unknowns[e].iter().min().map(|&row| supernode_of[row]);
         let mut order: Vec<usize> = (0..unknowns.len()).collect();
@@ -130,7 +131,7 @@ pub struct Compliance<'a> {
 impl<'a> Compliance<'a> {
     /// From the factor, and the entries of B: `entries` calls its argument with the unknown, the functional and the entry.
     pub fn new(
-        factor: &Factor<'a>,
+        factor: &'a Factor,
         reach: &'a Reach,
         entries: impl FnOnce(&mut dyn FnMut(usize, usize, f64)),
     ) -> Self {

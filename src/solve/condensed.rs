@@ -29,7 +29,7 @@ use crate::kernel::edge_integral::ExactEdge;
 /// The body, factored, and the forces of contact on it.
 pub struct Condensed<'a, 'd, 'p, E, const N: usize, const M: usize> {
     system: &'a System<'d, 'p, E, N, M>,
-    factor: &'a Factor<'a>,
+    factor: &'a Factor,
     reach: &'a Reach,
     compliance: Compliance<'a>,
     /// What residuals are relative to.
@@ -45,7 +45,7 @@ where
     /// With the factor of A and without contact yet.
     pub fn new(
         system: &'a System<'d, 'p, E, N, M>,
-        factor: &'a Factor<'a>,
+        factor: &'a Factor,
         reach: &'a Reach,
         reference: f64,
     ) -> Self {
@@ -142,7 +142,8 @@ where
 
     /// The columns of R with their edges.
     fn roots(at: &Derivatives<M>) -> Vec<(usize, [f64; M])> {
-        let of = |(e, h): (usize, &[[f64; M]; M])| root(*h).into_iter().map(move |column| (e, column));
+        let of =
+            |(e, h): (usize, &[[f64; M]; M])| root(*h).into_iter().map(move |column| (e, column));
         at.hessian.iter().enumerate().flat_map(of).collect()
     }
 
@@ -165,7 +166,9 @@ where
             for a in 0..M {
                 let i = e * M + a;
                 let spread: f64 = (0..M)
-                    .map(|b| hessian[a][b].abs() * (self.y[e * M + b].abs() + self.start[e * M + b]))
+                    .map(|b| {
+                        hessian[a][b].abs() * (self.y[e * M + b].abs() + self.start[e * M + b])
+                    })
                     .sum();
                 magnitudes.push(self.w[i].abs() + at.gradient[i].abs() + spread);
             }
@@ -218,7 +221,7 @@ where
             sum
         });
         let right = Col::from_fn(columns.len(), |i| dot(columns[i].1, block(&gs, columns[i].0)));
-        let llt = system.llt(Side::Lower).map_err(|_| SolveError::NotPositiveDefinite)?;
+        let llt = system.llt(Side::Lower).map_err(|_| SolveError::Singular)?;
         let t = llt.solve(right);
         let mut dw: Vec<f64> = s.iter().map(|s| -s).collect();
         for (i, (e, column)) in columns.iter().enumerate() {

@@ -1,6 +1,8 @@
 //! The sparse Cholesky factor H = L L^T of a matrix on the free degrees of freedom, by faer, in a given order: its
 //! structure, which all matrices with one pattern share and which tells what a factorisation will cost, and its numbers.
 
+use std::sync::Arc;
+
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltError;
 use faer::sparse::linalg::cholesky::simplicial::prefactorize_symbolic_cholesky;
@@ -89,22 +91,42 @@ impl Structure {
         };
         (0..self.supernodes()).map(of).sum()
     }
+}
 
-    /// The factor of a matrix with the pattern that this is the structure of.
+/// L of H = L L^T.
+pub struct Factor {
+    structure: Arc<Structure>,
+    values: Vec<f64>,
+}
+
+impl Factor {
+    /// The factor of a matrix.
+    ///
+    /// # Errors
+    /// [`SolveError::Singular`] if it is not positive definite, as far as doubles tell, and [`SolveError::OutOfMemory`].
+    pub fn new(matrix: &LowerTriangle) -> Result<Self, SolveError> {
+        let structure = Arc::new(Structure::new(matrix)?);
+        Factor::with(&structure, matrix)?.map_err(|Indefinite| SolveError::Singular)
+    }
+
+    /// The factor of a matrix with the pattern that `structure` is the structure of.
     ///
     /// # Errors
     /// [`SolveError::OutOfMemory`]; inside, [`Indefinite`].
-    pub fn factor(&self, matrix: &LowerTriangle) -> Result<Result<Factor<'_>, Indefinite>, SolveError> {
-        let n = self.size();
+    pub fn with(
+        structure: &Arc<Structure>,
+        matrix: &LowerTriangle,
+    ) -> Result<Result<Self, Indefinite>, SolveError> {
+        let n = structure.size();
         let parallel = Par::Seq;
         let scratch = factorize_supernodal_numeric_llt_scratch::<usize, f64>(
-            &self.symbolic,
+            &structure.symbolic,
             parallel,
             Default::default(),
         );
-        let bytes = (8 * self.stored_entries() + scratch.size_bytes()) as u64;
+        let bytes = (8 * structure.stored_entries() + scratch.size_bytes()) as u64;
         memory::ensure(bytes)?;
-        let mut values = vec![0.0; self.stored_entries()];
+        let mut values = vec![0.0; structure.stored_entries()];
         let mut memory =
             MemBuffer::try_new(scratch).map_err(|_| SolveError::OutOfMemory { bytes })?;
         let pattern =
@@ -113,32 +135,24 @@ impl Structure {
             &mut values,
             SparseColMatRef::new(pattern, &matrix.values),
             Default::default(),
-            &self.symbolic,
+            &structure.symbolic,
             parallel,
             MemStack::new(&mut memory),
             Default::default(),
         );
         Ok(match factored {
-            Ok(_) => Ok(Factor { structure: self, values }),
+            Ok(_) => Ok(Factor { structure: Arc::clone(structure), values }),
             Err(LltError::NonPositivePivot { .. }) => Err(Indefinite),
         })
     }
-}
 
-/// L of H = L L^T.
-pub struct Factor<'a> {
-    structure: &'a Structure,
-    values: Vec<f64>,
-}
-
-impl<'a> Factor<'a> {
     fn llt(&self) -> SupernodalLltRef<'_, usize, f64> {
         SupernodalLltRef::new(&self.structure.symbolic, &self.values)
     }
 
     /// Its structure.
-    pub fn structure(&self) -> &'a Structure {
-        self.structure
+    pub fn structure(&self) -> &Structure {
+        &self.structure
     }
 
     /// The columns of supernode `s`: first the lower triangle on the diagonal, below it the rows of

@@ -1,12 +1,12 @@
 //! A displacement on its way to the solution, and what the definitions say of it: in doubles as long as these tell enough,
-//! in [twofold](crate::kernel::twofold) numbers where rounding would blur it. It is known to more than double precision
+//! in [twofold](crate::fem::twofold) numbers where rounding would blur it. It is known to more than double precision
 //! itself: rounding the displacement of a slender body to doubles changes its forces by more than its loads.
 
 use super::system::System;
 use crate::fem::discretization::Discretization;
 use crate::fem::precise;
+use crate::fem::twofold::Twofold;
 use crate::kernel::edge_integral::ExactEdge;
-use crate::kernel::twofold::Twofold;
 
 /// A residual this many unit roundoffs times its magnitudes is noise.
 const NOISE: f64 = 4.0;
@@ -49,12 +49,10 @@ impl Iterate {
         t: f64,
         step: &[f64],
     ) {
-        for (u, numbers) in self.u.iter_mut().zip(&system.numbering.of) {
-            for (u, number) in u.iter_mut().zip(numbers) {
-                if let Some(number) = *number {
-                    *u = *u + Twofold::from(t * step[number]);
-                }
-            }
+        let mut field = vec![[0.0; 2]; self.u.len()];
+        system.numbering.scatter(step, &mut field);
+        for (u, step) in self.u.iter_mut().flatten().zip(field.as_flattened()) {
+            *u = *u + Twofold::from(t * step);
         }
     }
 

@@ -18,14 +18,15 @@ pub mod system;
 pub mod theorem;
 pub mod times;
 
+#[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use self::accuracy::Outcome;
-pub use self::route::RouteName;
 pub use self::ladder::{Ladder, LadderError, Level};
-use self::system::System;
+pub use self::route::RouteName;
 pub use self::solution::{GammaReport, Quantities, Solution};
+use self::system::System;
 pub use self::theorem::Theorem;
 use self::times::Stopwatch;
 pub use self::times::Times;
@@ -111,13 +112,14 @@ impl Default for Settings {
 }
 
 /// How a solve ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 pub enum Status {
     /// The residual is within the tolerance, and the forward error is known to be small.
-    #[serde(rename = "converged")]
+    #[cfg_attr(feature = "files", serde(rename = "converged"))]
     Converged,
     /// The tolerance asks for more than rounding allows; the forward error is known to be small all the same.
-    #[serde(rename = "converged to rounding")]
+    #[cfg_attr(feature = "files", serde(rename = "converged to rounding"))]
     ConvergedToRounding,
 }
 
@@ -143,7 +145,8 @@ impl NewtonReport {
 }
 
 /// By which route the solution was found, and how far it can be trusted.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 pub struct MethodReport {
     /// The route.
     pub route: RouteName,
@@ -183,9 +186,10 @@ pub enum SolveError {
     )]
     NotPositiveDefinite,
     #[error(
-        "no convergence: the relative residual is {residual:.1e} after {steps} Newton steps; expected at most {tolerance:e}; more steps are allowed by max_iterations in [solver]"
+        "no convergence: the relative residual is {residual:.1e} after {} Newton step{}, all that max_iterations allows; expected at most {tolerance:e}. Nothing is written.\nresiduals: {}",
+        residuals.len().saturating_sub(1), if residuals.len() == 2 { "" } else { "s" }, history(residuals)
     )]
-    NotConverged { residual: f64, steps: usize, tolerance: f64 },
+    NotConverged { residual: f64, residuals: Vec<f64>, tolerance: f64 },
     #[error(
         "the body is too slender, too nearly incompressible or too weakly held for double precision: with a condition number of at least {condition:.0e} the displacement is known to a relative error of {forward_error:.0e} only (in the energy norm; expected at most {:e}); a coarser mesh or a shorter body conditions it better",
         accuracy::ACCEPTABLE
@@ -197,6 +201,11 @@ pub enum SolveError {
     Singular,
     #[error("the solution needs {bytes} bytes of memory, more than there are; use a coarser mesh")]
     OutOfMemory { bytes: u64 },
+}
+
+/// The residuals from step to step, to one digit.
+pub fn history(residuals: &[f64]) -> String {
+    residuals.iter().map(|r| format!("{r:.0e}")).collect::<Vec<_>>().join(" ")
 }
 
 /// Solves `problem` by method (8).

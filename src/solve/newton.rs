@@ -108,7 +108,9 @@ pub fn minimise<const M: usize>(
         residuals.push(residual.norm);
     }
     // A later call makes a step in any case: its size is what tells how good the end of the first was.
-    while (residual.norm > residual.noise / 4.0 || (!first && largest == 0.0)) && residuals.len() <= most {
+    while (residual.norm > residual.noise / 4.0 || (!first && largest == 0.0))
+        && residuals.len() <= most
+    {
         let scaled = at.times(stiffness);
         let step = body.step(&scaled)?;
         let Some(t) = line_search(edges, body.y(), stiffness, &scaled, &step) else {

@@ -7,13 +7,14 @@
 //! Both give the same numbers. Where A alone has no factor or a bad one although the method is coercive, the assembled route
 //! is taken all the same: there contact holds the body.
 
+#[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
 
 use super::accuracy::{self, Outcome};
 use super::assembled::Assembled;
 use super::compliance::Reach;
 use super::condensed::Condensed;
-use super::factor::{Indefinite, Structure};
+use super::factor::{Factor, Indefinite, Structure};
 use super::memory;
 use super::system::System;
 use super::times::{Stopwatch, Times};
@@ -21,8 +22,8 @@ use super::{MethodReport, Settings, SolveError};
 use crate::kernel::edge_integral::ExactEdge;
 
 /// The two routes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize), serde(rename_all = "lowercase"))]
 pub enum RouteName {
     /// The body factored once, Newton's method on the contact functionals.
     Condensed,
@@ -76,7 +77,8 @@ pub fn solve<E, const N: usize, const M: usize>(
 where
     E: ExactEdge<f64, N, M>,
 {
-    let unknowns: Vec<Vec<usize>> = (0..system.d.contact.len()).map(|e| system.unknowns(e)).collect();
+    let unknowns: Vec<Vec<usize>> =
+        (0..system.d.contact.len()).map(|e| system.unknowns(e)).collect();
     let reach = Reach::new(&system.structure, &unknowns, M);
     let prediction = Prediction::new(&system.structure, &reach);
     if prediction.route() == RouteName::Condensed {
@@ -117,7 +119,7 @@ where
         RouteName::Condensed => {
             let q = reach.functionals();
             memory::ensure(8 * (reach.stored_entries(&system.structure) + 3 * q * q) as u64)?;
-            let factor = match system.structure.factor(&system.matrix)? {
+            let factor = match Factor::with(&system.structure, &system.matrix)? {
                 Ok(factor) => factor,
                 Err(Indefinite) if system.d.kappa() < 1.0 => return Err(SolveError::Singular),
                 Err(Indefinite) => return Err(SolveError::NotPositiveDefinite),

@@ -2,6 +2,8 @@
 //! factor, and B, the values of P0 at the nodes of the contact edges. The tangent A + B^T Psi'' B has the pattern of A: each
 //! functional lives on one triangle.
 
+use std::sync::Arc;
+
 use super::SolveError;
 use super::factor::Structure;
 use super::ordering::nested_dissection;
@@ -18,7 +20,7 @@ pub struct System<'d, 'p, E, const N: usize, const M: usize> {
     /// A
     pub matrix: LowerTriangle,
     /// The structure of the factor of A and of every tangent.
-    pub structure: Structure,
+    pub structure: Arc<Structure>,
 }
 
 impl<'d, 'p, E, const N: usize, const M: usize> System<'d, 'p, E, N, M>
@@ -33,9 +35,9 @@ where
         let nodes = d.space.nodes();
         let neighbours = Neighbours::new(nodes.len(), d.space.elements());
         let order = nested_dissection(nodes, &neighbours);
-        let numbering = Numbering::new(&order, d.constraints.values());
+        let numbering = Numbering::under(&order, &d.constraints);
         let matrix = matrix::assemble(d, &numbering, &neighbours);
-        let structure = Structure::new(&matrix)?;
+        let structure = Arc::new(Structure::new(&matrix)?);
         Ok(System { d, numbering, matrix, structure })
     }
 
@@ -50,8 +52,9 @@ where
         let edge = &self.d.contact[e];
         let nodes = &self.d.space.elements()[edge.edge.triangle];
         for (a, functional) in edge.functionals.p0.iter().enumerate() {
-            for (&node, entries) in nodes.iter().zip(functional) {
-                for (number, &entry) in self.numbering.of[node].iter().zip(entries) {
+            for (&node, &entries) in nodes.iter().zip(functional) {
+                let entries = self.numbering.in_frame(node, entries);
+                for (number, entry) in self.numbering.of[node].iter().zip(entries) {
                     if let Some(number) = *number {
                         f(number, a, entry);
                     }

@@ -3,7 +3,7 @@
 //!
 //! a(v^h, w) = a(u, w) = L(w) + int_{Gamma_C} sigma_n(u) w_n for all w in V^h.
 
-use super::factor::{Indefinite, Structure};
+use super::factor::Factor;
 use super::ordering::nested_dissection;
 use super::{ContactQuadrature, Degree, Gamma0, Method, Solution, SolveError, discretize};
 use crate::fem::matrix::{self, Neighbours, Numbering};
@@ -135,10 +135,9 @@ where
     let nodes = d.space.nodes();
     let neighbours = Neighbours::new(nodes.len(), d.space.elements());
     let order = nested_dissection(nodes, &neighbours);
-    let numbering = Numbering::new(&order, d.constraints.values());
+    let numbering = Numbering::under(&order, &d.constraints);
     let matrix = matrix::assemble_stiffness(d, &numbering, &neighbours);
-    let structure = Structure::new(&matrix)?;
-    let factor = structure.factor(&matrix)?.map_err(|Indefinite| SolveError::Singular)?;
+    let factor = Factor::new(&matrix)?;
     let mut x = numbering.gather(&force);
     factor.forward(&mut x);
     factor.backward(&mut x);

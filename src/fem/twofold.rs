@@ -6,7 +6,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::Scalar;
+use crate::kernel::Scalar;
 
 /// `head + tail`, where the tail is at most half a unit in the last place of the head.
 #[derive(Clone, Copy, Debug, PartialEq)]
