@@ -58,4 +58,8 @@ pub mod fem;
 pub mod io;
 pub mod kernel;
 #[cfg(not(kani))]
+pub mod memory;
+#[cfg(not(kani))]
+pub mod quote;
+#[cfg(not(kani))]
 pub mod solve;

@@ -1,10 +1,14 @@
 //! The command `signorini`: reads a case file, solves it (once, or on finer and finer meshes), writes the files and says
 //! what came out.
 //!
-//! Exit codes: 0 solved; 1 could not solve, or could not write; 2 the case is wrong, and then nothing is written.
+//! Exit codes: 0 solved; 1 could not solve, or could not write; 2 the case is wrong, and then nothing is written. Nobody
+//! listening at standard output (`| head`) is no failure, a standard output that is full is one: 1. A signal ends the
+//! program as a signal does: 130, 143 or 129 to a shell.
 
 #[cfg(not(kani))]
 mod engine;
+#[cfg(not(kani))]
+mod signals;
 #[cfg(not(kani))]
 mod summary;
 
@@ -20,17 +24,21 @@ fn main() {}
 #[cfg(not(kani))]
 mod command {
     use std::fmt::Display;
+    use std::io::{self, Write};
     use std::path::{Path, PathBuf};
     use std::process::ExitCode;
     use std::time::Instant;
 
     use clap::{Parser, Subcommand, ValueEnum};
     use indicatif::{ProgressBar, ProgressStyle};
+    use signorini::fem::{DataError, MeshError};
     use signorini::io::convergence::{self, Meshes, StudyError};
-    use signorini::io::{Case, outputs};
+    use signorini::io::files::{reason, spare};
+    use signorini::io::{Case, CaseError, outputs};
+    use signorini::quote;
     use signorini::solve::{self, Degree, LadderError, SolveError, Status};
 
-    use crate::{engine, summary};
+    use crate::{engine, signals, summary};
 
     /// Unilateral (Signorini) contact in linear elasticity by Nitsche's method.
     #[derive(Parser)]
@@ -58,6 +66,9 @@ mod command {
             /// MPI processes for the engine fenicsx
             #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
             ranks: u16,
+            /// The folder with the reference in FEniCSx, reference/ of the sources [default: beside this program]
+            #[arg(long, value_name = "DIR")]
+            reference: Option<PathBuf>,
         },
         /// Read a case and report its sizes and the limit of gamma0; solve nothing, write nothing
         Check {
@@ -112,10 +123,11 @@ mod command {
 
     pub fn run() -> ExitCode {
         let arguments = Arguments::parse();
+        signals::watch();
         let text = match &arguments.task {
             Task::Solve { case, out, engine: Engine::Signorini, .. } => solve(case, out.as_deref()),
-            Task::Solve { case, out, engine: Engine::Fenicsx, ranks } => {
-                engine::fenicsx(case, &folder(case, out.as_deref()), *ranks)
+            Task::Solve { case, out, engine: Engine::Fenicsx, ranks, reference } => {
+                engine::fenicsx(case, &folder(case, out.as_deref()), *ranks, reference.as_deref())
                     .map(|(results, files)| summary::solved(&results, &files))
                     .map_err(|e| failure(if e.is_wrong_case() { WRONG } else { FAILED })(&e))
             }
@@ -125,31 +137,48 @@ mod command {
                 study(case, &wanted, out.as_deref(), arguments.quiet)
             }
         };
-        match text {
-            Ok(text) => {
-                if !arguments.quiet {
-                    print!("{text}");
-                }
-                ExitCode::SUCCESS
-            }
+        let said = text.and_then(|text| if arguments.quiet { Ok(()) } else { say(&text) });
+        match said {
+            Ok(()) => ExitCode::SUCCESS,
             Err(Failure { message, code }) => {
-                eprintln!("error: {message}");
+                // Where there is no standard error, the code says it alone.
+                let _ = writeln!(io::stderr(), "error: {}", quote::lines(&message));
                 ExitCode::from(code)
             }
         }
     }
 
+    /// Says it on standard output. A reader who has left has heard enough; the files are written in any case.
+    fn say(text: &str) -> Result<(), Failure> {
+        let mut out = io::stdout().lock();
+        let said = out.write_all(quote::lines(text).as_bytes()).and_then(|()| out.flush());
+        match said {
+            Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+                let message = format!("cannot write to standard output: {}", reason(&error));
+                Err(Failure { message, code: FAILED })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The case in this file.
+    fn read(file: &Path) -> Result<Case, Failure> {
+        let code = |error: &CaseError| if error.is_lack_of_memory() { FAILED } else { WRONG };
+        Case::read(file).map_err(|error| failure(code(&error))(&error))
+    }
+
     fn solve(file: &Path, out: Option<&Path>) -> Result<String, Failure> {
         let start = Instant::now();
-        let case = Case::read(file).map_err(|e| failure(WRONG)(&e))?;
+        let case = read(file)?;
         let read = start.elapsed();
+        let folder = folder(file, out);
+        spare(&folder, &outputs::FILES, &case.sources).map_err(|e| failure(WRONG)(&e))?;
         let (solution, times) = solve::solve(&case.problem, &case.method, &case.settings)
             .map_err(|e| unsolvable(file, &e))?;
         if solution.newton.status == Status::NotConverged {
             let message = summary::not_converged(file, &case.settings, &solution.newton);
             return Err(Failure { message, code: FAILED });
         }
-        let folder = folder(file, out);
         let (files, results) = outputs::write(&folder, &case, &solution, read, times)
             .map_err(|e| failure(FAILED)(&e))?;
         Ok(summary::solved(&results, &files))
@@ -157,9 +186,11 @@ mod command {
 
     /// What `--out` says, or out/ and the name of the case.
     fn folder(file: &Path, out: Option<&Path>) -> PathBuf {
+        // "...toml" without its ending would be "..", the folder above.
+        let stem = file.file_stem().filter(|stem| !matches!(stem.to_str(), Some("." | "..")));
         match out {
             Some(folder) => folder.to_owned(),
-            None => Path::new("out").join(file.file_stem().unwrap_or_default()),
+            None => Path::new("out").join(stem.or(file.file_name()).unwrap_or_default()),
         }
     }
 
@@ -176,7 +207,9 @@ mod command {
         out: Option<&Path>,
         quiet: bool,
     ) -> Result<String, Failure> {
-        let case = Case::read(file).map_err(|e| failure(WRONG)(&e))?;
+        let case = read(file)?;
+        let folder = folder(file, out);
+        spare(&folder, &convergence::FILES, &case.sources).map_err(|e| failure(WRONG)(&e))?;
         let degree = |d: &u8| if *d == 1 { Degree::One } else { Degree::Two };
         let mesh = |m: &Mesh| match m {
             Mesh::Structured => Meshes::Structured,
@@ -197,8 +230,8 @@ mod command {
             }
         }
         progress.finish_and_clear();
-        let files = convergence::write(&folder(file, out), &case.title, &studies)
-            .map_err(|e| failure(FAILED)(&e))?;
+        let files =
+            convergence::write(&folder, &case.title, &studies).map_err(|e| failure(FAILED)(&e))?;
         Ok(summary::studied(&case, &studies, &files))
     }
 
@@ -223,27 +256,29 @@ mod command {
         let code = match error {
             StudyError::NoSolution | StudyError::MeshFile => WRONG,
             StudyError::Level { error, .. } => match error {
+                LadderError::Mesh(MeshError::OutOfMemory(_)) => FAILED,
                 LadderError::Mesh(_) => WRONG,
                 LadderError::Solve(error) => code(error),
                 LadderError::NotConverged { .. } => FAILED,
             },
         };
-        Failure { message: format!("{}: {error}", file.display()), code }
+        Failure { message: format!("{}: {error}", quote::path(file)), code }
     }
 
     fn check(file: &Path) -> Result<String, Failure> {
-        let case = Case::read(file).map_err(|e| failure(WRONG)(&e))?;
+        let case = read(file)?;
         let outline =
             solve::check(&case.problem, &case.method).map_err(|e| unsolvable(file, &e))?;
         Ok(summary::checked(&case, &outline))
     }
 
     fn unsolvable(file: &Path, error: &SolveError) -> Failure {
-        Failure { message: format!("{}: {error}", file.display()), code: code(error) }
+        Failure { message: format!("{}: {error}", quote::path(file)), code: code(error) }
     }
 
     fn code(error: &SolveError) -> u8 {
         match error {
+            SolveError::Data(DataError::Mesh(MeshError::OutOfMemory(_))) => FAILED,
             SolveError::Data(_) | SolveError::NotCoercive { .. } => WRONG,
             SolveError::NotPositiveDefinite | SolveError::OutOfMemory => FAILED,
         }

@@ -9,6 +9,7 @@ use super::mesh::Mesh;
 use super::problem::{Condition, DataError, Problem, finite};
 use super::space::Space;
 use crate::kernel::Element;
+use crate::quote::key;
 
 /// The prescribed components of the displacement.
 #[derive(Clone, Debug)]
@@ -39,7 +40,7 @@ impl Constraints {
                         let Some(function) = function else { continue };
                         let demand = demands.entry((node, c)).or_default();
                         if demand.last().is_none_or(|(last, _)| last != name) {
-                            let what = || format!("[boundary.{name}] displacement[{c}]");
+                            let what = || format!("[boundary.{}] displacement[{c}]", key(name));
                             let value = finite(&**function, space.nodes()[node], what)?;
                             demand.push((name, value));
                         }

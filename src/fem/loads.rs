@@ -4,6 +4,7 @@ use super::pieces::{Features, Rule};
 use super::problem::{BoxedFunction, Condition, DataError, Function, Problem, checked};
 use super::space::Space;
 use crate::kernel::Element;
+use crate::quote::key;
 
 /// The degree up to which loads that are no polynomials are integrated exactly.
 const ENOUGH: u32 = 7;
@@ -103,7 +104,7 @@ fn add_traction<E: Element<N, M>, const N: usize, const M: usize>(
         let ends = space.mesh().ends(edge).map(|vertex| space.mesh().vertices()[vertex]);
         let nodes = space.edge_nodes(edge);
         rule.on_edge(ends, [], |point| {
-            let what = || format!("[boundary.{name}] traction[{c}]");
+            let what = || format!("[boundary.{}] traction[{c}]", key(name));
             match checked(t.on_boundary(point.x, normal), point.x, what) {
                 Ok(t) => {
                     let shapes: [f64; M] = E::edge_values(point.s);

@@ -6,6 +6,7 @@ use thiserror::Error;
 
 use super::mesh::{Mesh, MeshError};
 use crate::kernel::Material;
+use crate::quote::{number, quoted};
 
 /// A function of the place, such as a component of the body force.
 pub trait Function: Send + Sync {
@@ -69,11 +70,11 @@ pub struct Problem {
 pub enum DataError {
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    #[error("{what} is {value} at ({x}, {y}); expected a finite number at every point of the mesh")]
+    #[error("{what} is {value} at ({}, {}); expected a finite number at every point of the mesh", number(*x), number(*y))]
     NotFinite { what: String, value: f64, x: f64, y: f64 },
     #[error(
-        "the displacement boundaries '{first}' and '{second}' meet at ({x}, {y}) and disagree there: u_{} = {} and {}; expected one value",
-        ["x", "y"][*component], values[0], values[1]
+        "the displacement boundaries {} and {} meet at ({}, {}) and disagree there: u_{} = {} and {}; expected one value",
+        quoted(first, '\''), quoted(second, '\''), number(*x), number(*y), ["x", "y"][*component], number(values[0]), number(values[1])
     )]
     Disagree { first: String, second: String, x: f64, y: f64, component: usize, values: [f64; 2] },
     #[error(

@@ -9,6 +9,8 @@ mod command;
 mod convergence;
 #[cfg(feature = "cli")]
 mod convergence_command;
+#[cfg(all(feature = "cli", unix))]
+mod doors;
 mod exact;
 mod gmsh_live;
 mod method;
