@@ -141,6 +141,7 @@ mod command {
         match said {
             Ok(()) => ExitCode::SUCCESS,
             Err(Failure { message, code }) => {
+                signals::give_way();
                 // Where there is no standard error, the code says it alone.
                 let _ = writeln!(io::stderr(), "error: {}", quote::lines(&message));
                 ExitCode::from(code)

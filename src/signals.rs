@@ -2,16 +2,17 @@
 //! what it does to every program. A signal that this process was started to ignore (`nohup`) stays ignored.
 
 #[cfg(unix)]
-pub use unix::{start, watch};
+pub use unix::{give_way, start, watch};
 
 #[cfg(not(unix))]
-pub use elsewhere::{start, watch};
+pub use elsewhere::{give_way, start, watch};
 
 #[cfg(unix)]
 mod unix {
     use std::io;
     use std::os::unix::process::CommandExt;
     use std::process::{Child, Command, Output};
+    use std::sync::atomic::{AtomicBool, Ordering};
     use std::sync::{Mutex, MutexGuard, PoisonError};
     use std::thread;
     use std::time::{Duration, Instant};
@@ -24,6 +25,16 @@ mod unix {
 
     /// The leader of the process group that works for this program.
     static WORKER: Mutex<Option<Pid>> = Mutex::new(None);
+
+    /// A signal has come, and ends this program.
+    static ENDING: AtomicBool = AtomicBool::new(false);
+
+    /// Where a signal ends this program, nothing that fails because of it is worth a word: waits for the end.
+    pub fn give_way() {
+        while ENDING.load(Ordering::SeqCst) {
+            thread::park();
+        }
+    }
 
     fn worker() -> MutexGuard<'static, Option<Pid>> {
         WORKER.lock().unwrap_or_else(PoisonError::into_inner)
@@ -40,9 +51,12 @@ mod unix {
         let Ok(mut signals) = Signals::new(watched) else { return };
         thread::spawn(move || {
             if let Some(signal) = signals.forever().next() {
+                ENDING.store(true, Ordering::SeqCst);
                 stop_worker();
                 files::abandon();
+                // It does not return; if it did, the code would say the same.
                 let _ = emulate_default_handler(signal);
+                std::process::exit(128 + signal);
             }
         });
     }
@@ -99,6 +113,8 @@ mod elsewhere {
     use std::process::{Child, Command, Output};
 
     pub fn watch() {}
+
+    pub fn give_way() {}
 
     pub struct Running(Child);
 
