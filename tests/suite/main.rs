@@ -9,6 +9,7 @@ mod command;
 mod convergence;
 #[cfg(feature = "cli")]
 mod convergence_command;
+mod documents;
 #[cfg(all(feature = "cli", unix))]
 mod doors;
 mod exact;
@@ -16,3 +17,5 @@ mod gmsh_live;
 mod method;
 mod patch;
 mod reference;
+#[cfg(feature = "cli")]
+mod set_and_sweep;
