@@ -22,7 +22,7 @@ use signorini::fem::{Discretization, Errors, loads};
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::{P1, P2};
 use signorini::solve::ladder::{fitted_slope, rates};
-use signorini::solve::{Degree, Gamma0, Ladder, SolveError, Status, Theorem, solve_discrete};
+use signorini::solve::{Degree, Gamma0, Ladder, SolveError, Theorem, solve_discrete};
 
 const LEVELS: usize = 4;
 const COARSEST: usize = 8;
