@@ -89,15 +89,16 @@ where
             *y += change;
         }
         let edges = ContactEdges { d: self.system.d, order: &self.reach.order };
-        let before = self.w.clone();
         let start = y.iter().map(|y| y.abs()).collect();
         let soft = self.first;
-        let mut body = Reduced { route: self, y, start, w: before.clone(), dw: Vec::new() };
+        let change = vec![0.0; y.len()];
+        let mut body = Reduced { route: self, y, start, change, dw: Vec::new() };
         newton::minimise(&edges, &mut body, soft, residuals, most)?;
-        let w = body.w;
-        let change: Vec<f64> = w.iter().zip(&before).map(|(w, before)| w - before).collect();
+        let change = body.change;
         self.compliance.subtract(&change, &mut v);
-        self.w = w;
+        for (w, change) in self.w.iter_mut().zip(&change) {
+            *w += change;
+        }
         self.first = false;
         let energy = v.iter().map(|v| v * v).sum();
         self.factor.backward(&mut v);
@@ -106,13 +107,14 @@ where
     }
 }
 
-/// Newton's unknown w, with the values of P that belong to it.
+/// Newton's unknown, the change of w in this pass, with the values of P that belong to it. The change has digits of its own:
+/// where contact is stiff, those of w are too few for it.
 struct Reduced<'r, 'a, 'd, 'p, E, const N: usize, const M: usize> {
     route: &'r Condensed<'a, 'd, 'p, E, N, M>,
     y: Vec<f64>,
     /// The magnitudes that y was computed from.
     start: Vec<f64>,
-    w: Vec<f64>,
+    change: Vec<f64>,
     dw: Vec<f64>,
 }
 
@@ -148,7 +150,8 @@ where
     }
 
     fn s(&self, at: &Derivatives<M>) -> Vec<f64> {
-        self.w.iter().zip(&at.gradient).map(|(w, g)| w - g).collect()
+        let w = self.route.w.iter().zip(&self.change);
+        w.zip(&at.gradient).map(|((w, change), g)| (w - g) + change).collect()
     }
 }
 
@@ -161,7 +164,7 @@ where
     }
 
     fn residual(&self, at: &Derivatives<M>) -> Residual {
-        let mut magnitudes = Vec::with_capacity(self.w.len());
+        let mut magnitudes = Vec::with_capacity(self.y.len());
         for (e, hessian) in at.hessian.iter().enumerate() {
             for a in 0..M {
                 let i = e * M + a;
@@ -170,7 +173,7 @@ where
                         hessian[a][b].abs() * (self.y[e * M + b].abs() + self.start[e * M + b])
                     })
                     .sum();
-                magnitudes.push(self.w[i].abs() + at.gradient[i].abs() + spread);
+                magnitudes.push(self.route.w[i].abs() + at.gradient[i].abs() + spread);
             }
         }
         Residual {
@@ -189,7 +192,7 @@ where
             if !(norm > 0.0) {
                 return 0.0;
             }
-            let mut rx = vec![0.0; self.w.len()];
+            let mut rx = vec![0.0; self.y.len()];
             for ((e, column), x) in roots.iter().zip(&x) {
                 for a in 0..M {
                     rx[e * M + a] += column[a] * x / norm;
@@ -237,8 +240,8 @@ where
     }
 
     fn advance(&mut self, t: f64, step: &Step) {
-        for (w, dw) in self.w.iter_mut().zip(&self.dw) {
-            *w += t * dw;
+        for (change, dw) in self.change.iter_mut().zip(&self.dw) {
+            *change += t * dw;
         }
         for (y, dy) in self.y.iter_mut().zip(&step.dy) {
             *y += t * dy;
