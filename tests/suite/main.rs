@@ -17,5 +17,6 @@ mod gmsh_live;
 mod method;
 mod patch;
 mod reference;
+mod routes;
 #[cfg(feature = "cli")]
 mod set_and_sweep;
