@@ -40,6 +40,12 @@ pub fn solved(r: &Results, files: &[PathBuf]) -> String {
     lines.line("", history(&r.newton.residuals));
     if let Some(method) = &r.method {
         lines.line("accuracy", accuracy(method));
+        if method.slides > 0 {
+            lines.line("", format!(
+                "contact holds the body; {} along the obstacles is stopped by nothing: the displacement of least norm is given, friction would be needed to know more",
+                count(method.slides, "motion")
+            ));
+        }
     }
     lines.line(
         "contact",

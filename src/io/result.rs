@@ -292,6 +292,7 @@ mod tests {
                 condition: 2e3,
                 forward_error: 1e-13,
                 threads: 1,
+                slides: 1,
             }),
             quantities: Quantities {
                 energy: 1.0,
@@ -340,7 +341,8 @@ mod tests {
     "predicted_operations": 1000000.0,
     "condition": 2000.0,
     "forward_error": 1e-13,
-    "threads": 1
+    "threads": 1,
+    "slides": 1
   },
   "quantities": {
     "energy": 1.0,

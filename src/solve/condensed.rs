@@ -22,7 +22,7 @@ use super::compliance::{Compliance, Reach};
 use super::contact_edges::ContactEdges;
 use super::factor::Factor;
 use super::iterate::{Evaluation, Iterate};
-use super::newton::{self, Body, Derivatives, Residual, Step, block};
+use super::newton::{self, Body, Derivatives, Edges, Residual, Step, Until, block};
 use super::system::System;
 use crate::kernel::edge_integral::ExactEdge;
 
@@ -75,7 +75,7 @@ where
         iterate: &mut Iterate,
         at: Evaluation,
         residuals: &mut Vec<f64>,
-        most: usize,
+        until: Until,
     ) -> Result<Pass, SolveError> {
         let mut v = at.linear;
         self.add_contact_forces(&self.w, &mut v);
@@ -93,17 +93,18 @@ where
         let soft = self.first;
         let change = vec![0.0; y.len()];
         let mut body = Reduced { route: self, y, start, change, dw: Vec::new() };
-        newton::minimise(&edges, &mut body, soft, residuals, most)?;
+        newton::minimise(&edges, &mut body, soft, residuals, until)?;
         let change = body.change;
         self.compliance.subtract(&change, &mut v);
         for (w, change) in self.w.iter_mut().zip(&change) {
             *w += change;
         }
         self.first = false;
-        let energy = v.iter().map(|v| v * v).sum();
+        let energy: f64 = v.iter().map(|v| v * v).sum();
         self.factor.backward(&mut v);
         iterate.add(self.system, 1.0, &v);
-        Ok(Pass { energy, square: v.iter().map(|v| v * v).sum() })
+        let square: f64 = v.iter().map(|v| v * v).sum();
+        Ok(Pass { energy, softness: if energy > 0.0 { square / energy } else { 0.0 } })
     }
 }
 
@@ -182,27 +183,20 @@ where
         }
     }
 
-    /// By a few steps of the power method on R^T G R.
-    fn stiffness_of_contact(&mut self, at: &Derivatives<M>) -> f64 {
-        let roots = Self::roots(at);
-        let mut x = vec![1.0; roots.len()];
-        let mut largest = 0.0;
-        for _ in 0..POWER_STEPS {
-            let norm = x.iter().map(|x| x * x).sum::<f64>().sqrt();
-            if !(norm > 0.0) {
-                return 0.0;
-            }
+    /// The body is there already: this is by the power method on R^T G R.
+    fn start(&mut self, edges: &impl Edges<M>) -> Result<f64, SolveError> {
+        let at = newton::derivatives(edges, &self.y);
+        let roots = Self::roots(&at);
+        Ok(newton::largest_eigenvalue(roots.len(), |x| {
             let mut rx = vec![0.0; self.y.len()];
-            for ((e, column), x) in roots.iter().zip(&x) {
+            for ((e, column), x) in roots.iter().zip(x) {
                 for a in 0..M {
-                    rx[e * M + a] += column[a] * x / norm;
+                    rx[e * M + a] += column[a] * x;
                 }
             }
             let grx = self.times_compliance(&rx);
-            x = roots.iter().map(|(e, column)| dot(*column, block(&grx, *e))).collect();
-            largest = x.iter().map(|x| x * x).sum::<f64>().sqrt();
-        }
-        largest
+            roots.iter().map(|(e, column)| dot(*column, block(&grx, *e))).collect()
+        }))
     }
 
     fn step(&mut self, at: &Derivatives<M>) -> Result<Step, SolveError> {
@@ -248,9 +242,6 @@ where
         }
     }
 }
-
-/// Steps of the power method: an eigenvalue to within a factor is all that is asked.
-const POWER_STEPS: usize = 4;
 
 fn dot<const M: usize>(a: [f64; M], b: [f64; M]) -> f64 {
     (0..M).map(|i| a[i] * b[i]).sum()

@@ -88,7 +88,8 @@ pub fn solve<E, const N: usize, const M: usize>(
 where
     E: ExactEdge<f64, N, M>,
 {
-    if Prediction::of(system).1.route() == RouteName::Condensed {
+    let held = system.d.slides.is_none();
+    if held && Prediction::of(system).1.route() == RouteName::Condensed {
         match by(RouteName::Condensed, system, settings, times) {
             Err(SolveError::Singular) => {}
             Ok((outcome, report, count))
@@ -144,7 +145,14 @@ where
     };
     times.newton += watch.lap();
     let Outcome { condition, forward_error, .. } = outcome;
-    let report =
-        MethodReport { route: name, predicted_operations, condition, forward_error, threads: 1 };
+    let slides = system.d.slides.as_ref().map_or(0, Vec::len);
+    let report = MethodReport {
+        route: name,
+        predicted_operations,
+        condition,
+        forward_error,
+        threads: 1,
+        slides,
+    };
     Ok((outcome, report, factorizations))
 }

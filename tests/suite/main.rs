@@ -14,6 +14,7 @@ mod documents;
 mod doors;
 mod exact;
 mod gmsh_live;
+mod held;
 mod method;
 mod patch;
 mod reference;
