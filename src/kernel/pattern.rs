@@ -227,12 +227,11 @@ pub fn column_rows(numbers: Numbers, neighbours: Lists, starts: &mut [usize], ro
 
 /// Where in a list a number stands.
 fn place(list: &[usize], number: usize) -> Option<usize> {
-    for i in 0..list.len() {
-        if list[i] == number {
-            return Some(i);
-        }
+    let mut i = 0;
+    while i < list.len() && list[i] != number {
+        i += 1;
     }
-    None
+    (i < list.len()).then_some(i)
 }
 
 /// Adds to the `values` of the lower triangle with these `columns` the 2 x 2 blocks of an element matrix: `block(i, j)`
