@@ -224,7 +224,7 @@ impl Standing {
         };
         for answer in [Answer::Failed, Answer::Verified, Answer::NoAnswer] {
             if let Some((receipt, _)) =
-                runs().filter(|(_, r)| r.sources == sources && r.answer == answer).last()
+                runs().rfind(|(_, r)| r.sources == sources && r.answer == answer)
             {
                 return Standing::Answered(answer, receipt.date.clone());
             }
