@@ -224,14 +224,18 @@ impl Parts {
     }
 }
 
-/// All rigid motions that are free when the components given in `prescribed` are held at each node: a basis, empty if the
+/// All rigid motions that are free when each node is held in the directions `held` of it: a basis, empty if the
 /// body is held. Motions that turn a part come with as few other parts as the elimination gives.
-pub fn free_motions<E: Element<N, M>, const N: usize, const M: usize>(
+pub fn free_motions<E, I, const N: usize, const M: usize>(
     parts: &Parts,
     space: &Space<E, N, M>,
-    prescribed: &[[Option<f64>; 2]],
-) -> Vec<FreeMotion> {
-    let mut equations = supports(parts, space, prescribed);
+    held: impl Fn(usize) -> I,
+) -> Vec<FreeMotion>
+where
+    E: Element<N, M>,
+    I: Iterator<Item = [f64; 2]>,
+{
+    let mut equations = supports(parts, space, held);
     for hinge in &parts.hinges {
         let x = space.mesh().vertices()[hinge.vertex];
         for pair in hinge.parts.windows(2) {
@@ -246,27 +250,30 @@ pub fn free_motions<E: Element<N, M>, const N: usize, const M: usize>(
 }
 
 /// What the prescribed components ask of each part: at most three equations, equivalent to all of them.
-fn supports<E: Element<N, M>, const N: usize, const M: usize>(
+fn supports<E, I, const N: usize, const M: usize>(
     parts: &Parts,
     space: &Space<E, N, M>,
-    prescribed: &[[Option<f64>; 2]],
-) -> Vec<Vec<(usize, [f64; 3])>> {
-    let mut held: BTreeMap<usize, Dense> = BTreeMap::new();
+    held: impl Fn(usize) -> I,
+) -> Vec<Vec<(usize, [f64; 3])>>
+where
+    E: Element<N, M>,
+    I: Iterator<Item = [f64; 2]>,
+{
+    let mut by_part: BTreeMap<usize, Dense> = BTreeMap::new();
     for (nodes, &part) in space.elements().iter().zip(&parts.of_triangle) {
         for &node in nodes {
-            for c in 0..2 {
-                if prescribed[node][c].is_some() {
-                    let rows = held.entry(part).or_insert_with(|| Dense::new(3));
-                    rows.push(parts.row(part, space.nodes()[node], c));
-                    if rows.count() == 12 {
-                        rows.triangularise(0);
-                    }
+            for d in held(node) {
+                let rows = by_part.entry(part).or_insert_with(|| Dense::new(3));
+                let [a, b] = [0, 1].map(|c| parts.row(part, space.nodes()[node], c));
+                rows.push([0, 1, 2].map(|i| d[0] * a[i] + d[1] * b[i]));
+                if rows.count() == 12 {
+                    rows.triangularise(0);
                 }
             }
         }
     }
     let mut equations = Vec::new();
-    for (part, mut rows) in held {
+    for (part, mut rows) in by_part {
         rows.triangularise(0);
         let largest = rows.values.iter().fold(0.0, |max: f64, v| max.max(v.abs()));
         for row in rows.values.chunks(3) {
@@ -566,10 +573,12 @@ mod tests {
         held: &Held,
     ) -> Vec<FreeMotion> {
         let space = Space::<E, N, M>::new(mesh);
-        let values = |x: &[f64; 2]| held(*x).map(|held| held.then_some(0.0));
-        let prescribed: Vec<[Option<f64>; 2]> = space.nodes().iter().map(values).collect();
+        let directions = |node: usize| {
+            let axes = held(space.nodes()[node]).into_iter().zip([[1.0, 0.0], [0.0, 1.0]]);
+            axes.filter(|(held, _)| *held).map(|(_, axis)| axis)
+        };
         let parts = Parts::new(mesh);
-        let motions = free_motions(&parts, &space, &prescribed);
+        let motions = free_motions(&parts, &space, directions);
         for motion in &motions {
             vanishes_where_held_and_agrees_at_hinges(motion, &parts, &space, held);
         }
