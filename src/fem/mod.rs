@@ -9,6 +9,7 @@ pub mod embedding;
 pub mod errors;
 pub mod exact;
 pub mod loads;
+pub mod material;
 pub mod materials;
 pub mod matrix;
 pub mod merge;

@@ -1,5 +1,6 @@
 //! The solution of method (8): the body factored once, Newton's method on the contact layer, and what the solution says.
 
+mod checked;
 pub mod condensed;
 pub mod factor;
 pub mod ladder;
@@ -13,6 +14,7 @@ pub mod times;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+pub use self::checked::{MOST_GAUSS_POINTS, MOST_ITERATIONS};
 use self::condensed::System;
 pub use self::ladder::{Ladder, LadderError, Level};
 pub use self::solution::{GammaReport, Quantities, Solution};
@@ -165,6 +167,7 @@ pub fn solve(
     method: &Method,
     settings: &Settings,
 ) -> Result<(Solution, Times), SolveError> {
+    settings.check()?;
     match method.degree {
         Degree::One => solve_with::<P1, 3, 2>(problem, method, settings),
         Degree::Two => solve_with::<P2, 6, 3>(problem, method, settings),
@@ -239,6 +242,7 @@ pub fn discretize<'a, E, const N: usize, const M: usize>(
 where
     E: ExactEdge<f64, N, M>,
 {
+    method.check()?;
     let gamma0 = |c: &Coercivity| match method.gamma0 {
         Gamma0::Auto => c.limit() / 2.0,
         Gamma0::Value(gamma0) => gamma0,
