@@ -16,6 +16,7 @@ pub mod merge;
 pub mod mesh;
 pub mod obstacle;
 pub mod pieces;
+pub mod precise;
 pub mod problem;
 pub mod quadrature;
 pub mod rectangle;
@@ -25,6 +26,7 @@ pub mod space;
 pub mod structured;
 pub mod trapezoid;
 pub mod tree;
+pub mod twofold;
 
 pub use discretization::Discretization;
 pub use errors::Errors;
