@@ -3,9 +3,7 @@
 
 mod common;
 
-mod assembled;
 mod bad_input;
-mod bodies;
 #[cfg(feature = "cli")]
 mod command;
 mod convergence;
