@@ -68,6 +68,11 @@ impl<S: Scalar> Material<S> {
         self.mu
     }
 
+    /// Plane strain or plane stress.
+    pub fn plane(&self) -> Plane {
+        self.plane
+    }
+
     /// lambda + 2 mu in the plane: the constant of sigma_n(v)^2 <= (lambda + 2 mu) sigma(v):eps(v), attained by a strain
     /// along the normal only. In plane stress it is 4 mu (lambda + mu) / (lambda + 2 mu) = E / (1 - nu^2).
     pub fn normal_stiffness(&self) -> S {
