@@ -3,7 +3,9 @@
 
 mod common;
 
+mod assembled;
 mod bad_input;
+mod bodies;
 #[cfg(feature = "cli")]
 mod command;
 mod convergence;
