@@ -42,6 +42,11 @@ impl Iterate {
         self.u.iter().map(|u| u.map(Twofold::head)).collect()
     }
 
+    /// What rounding to doubles leaves out.
+    pub fn remainder(&self) -> Vec<[f64; 2]> {
+        self.u.iter().map(|u| u.map(Twofold::tail)).collect()
+    }
+
     /// Adds `t` times a step over the free degrees of freedom.
     pub fn add<E, const N: usize, const M: usize>(
         &mut self,

@@ -384,7 +384,8 @@ fn wrong(body: &Body) -> Option<String> {
         return Some("the independent solver does not converge".to_owned());
     };
     let error = again.error(&answer, &solution.displacement);
-    if !(error <= CLOSE) {
+    // Where doubles cannot hold the displacement any better, the solver says so.
+    if !(error <= CLOSE.max(2.0 * solution.method.forward_error)) {
         return Some(format!("off by {error:.1e} in the energy norm"));
     }
     let quantities = &solution.quantities;
@@ -588,7 +589,9 @@ fn ill_posed(seed: u64) -> IllPosed {
         1 => {
             let solid = |i: usize, j: usize| (2 * i < cells[0]) == (2 * j < cells[1]);
             let mesh = Grid { cells, cut: choice.cut, solid: &solid, place: &plain }.mesh();
-            let problem = |mesh| with(mesh, vec![("top", clamped()), floor()]);
+            // Contact is on the block that is clamped: on the other one it could hold it.
+            let side = || ("right", choice.floor(0.01, 0.0));
+            let problem = |mesh| with(mesh, vec![("top", clamped()), side()]);
             (
                 "a block that hangs on another in a corner",
                 attempt(mesh, problem, &method),
