@@ -56,6 +56,12 @@ def digest(folder):
     return found
 
 
+def temporary(folder):
+    """The names of temporary folders in a folder."""
+    here = folder.iterdir() if folder.exists() else []
+    return {path.name for path in here if path.name.startswith(".signorini-") and path.name.endswith(".tmp")}
+
+
 class Bench:
     def __init__(self, program, rounds):
         self.program, self.rounds = program, rounds
@@ -84,11 +90,13 @@ class Bench:
     def whole(self, out, known, what):
         """A set that has its result.json is one of the known ones; what else is there is a temporary folder."""
         names = {path.name for path in out.iterdir()} if out.exists() else set()
-        left = {name for name in names if name.startswith(".signorini-") and name.endswith(".tmp")}
+        left = temporary(out)
         expect(names - left <= FILES, f"{what}: unexpected files {sorted(names - left - FILES)}")
         if "result.json" in names:
             expect(FILES <= names, f"{what}: a result.json without {sorted(FILES - names)}")
-            expect(frozenset(digest(out).items()) in known, f"{what}: files of two runs are mixed")
+            found = frozenset(digest(out).items())
+            origin = {name: [k for good, k in known.items() if (name, value) in good] for name, value in found}
+            expect(found in known, f"{what}: files of two runs are mixed: {origin}")
         return "result.json" in names, left
 
     def kills(self):
@@ -103,23 +111,22 @@ class Bench:
             how = self.random.choice([signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGHUP])
             if self.random.random() < 0.2:
                 shutil.rmtree(out.parent, ignore_errors=True)
-            before = {path.name for path in out.iterdir()} if out.exists() else set()
+            before = temporary(out) | temporary(out.parent)
             run = self.start("solve", cases[i % 2], "--quiet", "--out", out)
             time.sleep(self.random.uniform(0, 1.2 * usual))
             run.send_signal(how)
             code = run.wait()
             expect(code in (0, -how), f"kills: {how.name} gave {code}: {run.stderr.read()}")
             whole, left = self.whole(out, known, f"kills: {how.name}")
-            here = out.parent.iterdir() if out.parent.exists() else []
-            left |= {path.name for path in here if path.name.startswith(".signorini-")}
+            left |= temporary(out.parent)
             if how != signal.SIGKILL and code != 0:
-                swept = {name for name in before if name.startswith(".signorini-")}
-                expect(left <= swept, f"kills: {how.name} left {sorted(left)}")
+                expect(left <= before, f"kills: {how.name} left {sorted(left - before)}")
             counts["killed"] += code != 0
             counts["whole"] += whole
             counts["left"] += bool(left)
         expect(self.run("solve", cases[0], "--quiet", "--out", out).returncode == 0, "kills: the last run")
         expect(self.whole(out, known, "kills: the last run") == (True, set()), "kills: something is left for ever")
+        expect(not temporary(out.parent), "kills: something is left for ever")
         return f"{self.rounds} runs, {counts['killed']} of them stopped, {counts['whole']} whole sets, none mixed; {counts['left']} times a temporary folder stayed, for the next run to sweep"
 
     def races(self):

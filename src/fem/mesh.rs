@@ -212,16 +212,19 @@ impl Mesh {
 
     /// The first triangle that contains the point `x`, with its barycentric coordinates there; `None` outside the body.
     pub fn locate(&self, x: [f64; 2]) -> Option<(usize, [f64; 3])> {
-        (0..self.triangles.len()).find_map(|t| {
-            let triangle = self.triangle(t);
-            let gradients = triangle.barycentric_gradients();
-            // Each coordinate is measured from a vertex where it is zero: a vertex of the mesh finds itself exactly.
-            let l = [0, 1, 2].map(|i| {
-                let from = triangle.vertices[(i + 1) % 3];
-                gradients[i][0] * (x[0] - from[0]) + gradients[i][1] * (x[1] - from[1])
-            });
-            l.iter().all(|&l| l >= -OUTSIDE).then_some((t, l))
-        })
+        (0..self.triangles.len()).find_map(|t| Some((t, self.barycentric(t, x)?)))
+    }
+
+    /// The barycentric coordinates of the point `x` in triangle `t`; `None` outside it.
+    pub fn barycentric(&self, t: usize, x: [f64; 2]) -> Option<[f64; 3]> {
+        let triangle = self.triangle(t);
+        let gradients = triangle.barycentric_gradients();
+        // Each coordinate is measured from a vertex where it is zero: a vertex of the mesh finds itself exactly.
+        let l = [0, 1, 2].map(|i| {
+            let from = triangle.vertices[(i + 1) % 3];
+            gradients[i][0] * (x[0] - from[0]) + gradients[i][1] * (x[1] - from[1])
+        });
+        l.iter().all(|&l| l >= -OUTSIDE).then_some(l)
     }
 
     /// A vertex strictly inside a boundary edge means that neighbours don't share whole edges. Candidates come from a

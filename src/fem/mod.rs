@@ -8,6 +8,7 @@ pub mod discretization;
 pub mod errors;
 pub mod exact;
 pub mod loads;
+pub mod locate;
 pub mod materials;
 pub mod matrix;
 pub mod mesh;

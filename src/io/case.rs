@@ -57,6 +57,7 @@ use super::input::{self, InputError, MOST_OF_A_CASE};
 use super::setting;
 use super::table::{Source, Table, Value};
 use crate::fem::exact::{self, Kind};
+use crate::fem::locate::locate_all;
 use crate::fem::rectangle::MOST_CELLS;
 use crate::fem::{
     BoxedFunction, Condition, Diagonal, Exact, Mesh, MeshError, Perturbation, Problem, Rectangle,
@@ -620,13 +621,14 @@ fn read_probes(table: Option<Table>, mesh: &Mesh) -> Result<Vec<[f64; 2]>, CaseE
     let Some(probes) = table.get("probes") else { return Ok(Vec::new()) };
     let place = |probe: &Value| {
         let [x, y] = probe.pair()?;
-        let place = [x.number()?, y.number()?];
-        match mesh.locate(place) {
-            Some(_) => Ok(place),
-            None => Err(probe.wrong_as(format!("{place:?}"), "a point of the body")),
-        }
+        Ok([x.number()?, y.number()?])
     };
-    probes.items()?.iter().map(place).collect()
+    let probes = probes.items()?;
+    let places: Vec<[f64; 2]> = probes.iter().map(place).collect::<Result<_, CaseError>>()?;
+    match locate_all(mesh, &places).iter().position(Option::is_none) {
+        None => Ok(places),
+        Some(i) => Err(probes[i].wrong_as(format!("{:?}", places[i]), "a point of the body")),
+    }
 }
 
 #[cfg(test)]
