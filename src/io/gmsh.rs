@@ -513,13 +513,13 @@ impl<'b> Cursor<'b> {
 
     /// Reads the end of a section.
     fn end_of(&mut self, section: &str) -> Result<()> {
-        let expected = format!("$End{section}");
+        let expected = end_of(section);
         self.skip_white_space();
         if self.at == self.bytes.len() {
             return Err(self.cut_short(&expected));
         }
         let (start, line) = self.line();
-        if line == expected.as_bytes() {
+        if line.strip_prefix(b"$End") == Some(section.as_bytes()) {
             Ok(())
         } else {
             Err(self.unexpected(start, shown(line), &expected))
@@ -537,7 +537,7 @@ impl<'b> Cursor<'b> {
             }
             None => {
                 self.at = self.bytes.len();
-                Err(self.cut_short(&end))
+                Err(self.cut_short(&end_of(section)))
             }
         }
     }
@@ -673,6 +673,11 @@ impl<'b> Cursor<'b> {
     fn wrong(&self, place: Place, mistake: GmshMistake) -> GmshError {
         GmshError { file: self.file.to_owned(), place, mistake: Box::new(mistake) }
     }
+}
+
+/// The line that ends a section, as messages show it: its name is one of the file.
+fn end_of(section: &str) -> String {
+    format!("$End{}", quote::cut(section))
 }
 
 fn shown(bytes: &[u8]) -> String {
