@@ -8,6 +8,7 @@ pub mod discretization;
 pub mod embedding;
 pub mod errors;
 pub mod exact;
+pub mod held;
 pub mod loads;
 pub mod material;
 pub mod materials;
