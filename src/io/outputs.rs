@@ -15,7 +15,6 @@ use super::picture::{ContactSample, Scene, picture};
 use super::result::{GammaChoice, MeshSizes, NewtonHistory, Results, Seconds, result_json};
 use super::vtu::{CellKind, Field, Grid, Values, vtu};
 use crate::fem;
-use crate::fem::locate::locate_all;
 use crate::memory::{self, OutOfMemory};
 use crate::solve::solution::ContactValues;
 use crate::solve::{Solution, Times};
@@ -103,9 +102,8 @@ pub fn results(
 ) -> Result<Results, fem::DataError> {
     let mesh = &case.problem.mesh;
     let triangles = 0..mesh.triangles().len();
-    let places = locate_all(mesh, &case.probes);
-    let probes = case.probes.iter().zip(places).filter_map(|(&[x, y], place)| {
-        let (t, l) = place?;
+    let probes = case.probes.iter().filter_map(|&[x, y]| {
+        let (t, l) = mesh.locate([x, y])?;
         let [u_x, u_y] = solution.displacement_at(t, l);
         Some([x, y, u_x, u_y])
     });
