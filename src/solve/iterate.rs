@@ -22,6 +22,8 @@ pub struct Evaluation {
     pub linear: Vec<f64>,
     /// P(u) at the nodes of the contact edges.
     pub p: Vec<f64>,
+    /// The magnitudes that these were added up from.
+    pub p_magnitudes: Vec<f64>,
     /// A norm that rounding alone may give the residual.
     pub noise: f64,
     /// In twofold numbers.
@@ -75,7 +77,9 @@ impl Iterate {
             let (forces, p) = precise::evaluate(d, &self.u);
             // The forces of contact are added to these in doubles, and the loads are doubles.
             let noise = NOISE * f64::EPSILON * d.free_norm(&forces).max(d.free_norm(&d.load));
-            return Evaluation { linear: system.numbering.gather(&forces), p, noise, precisely };
+            let p_magnitudes = p.iter().map(|p| p.abs()).collect();
+            let linear = system.numbering.gather(&forces);
+            return Evaluation { linear, p, p_magnitudes, noise, precisely };
         }
         let u = self.rounded();
         let forces = d.linear_residual(&u);
@@ -84,7 +88,20 @@ impl Iterate {
             .iter()
             .flat_map(|edge| edge.p(&d.space.on_triangle(edge.edge.triangle, &u)))
             .collect();
+        let magnitude = |functional: &[[f64; 2]; N], nodal: &[[f64; 2]; N]| {
+            let pairs = functional.as_flattened().iter().zip(nodal.as_flattened());
+            pairs.map(|(f, u)| (f * u).abs()).sum::<f64>()
+        };
+        let p_magnitudes = d
+            .contact
+            .iter()
+            .flat_map(|edge| {
+                let nodal = d.space.on_triangle(edge.edge.triangle, &u);
+                edge.functionals.p0.map(|functional| magnitude(&functional, &nodal))
+            })
+            .collect();
         let noise = NOISE * f64::EPSILON * d.free_norm(&forces.magnitudes);
-        Evaluation { linear: system.numbering.gather(&forces.values), p, noise, precisely }
+        let linear = system.numbering.gather(&forces.values);
+        Evaluation { linear, p, p_magnitudes, noise, precisely }
     }
 }

@@ -205,6 +205,10 @@ pub enum SolveError {
         "the matrix has no Cholesky factor in double precision although the method is coercive: the body is too slender, too nearly incompressible or too weakly held (condition number beyond 1e15); a coarser mesh or a shorter body conditions it better"
     )]
     Singular,
+    #[error(
+        "the numbers of this case over- or underflow double precision (lengths, moduli and loads multiply to beyond 1e300, or to below 1e-300); choose other units"
+    )]
+    OutOfRange,
     #[error("the solution needs {bytes} bytes of memory, more than there are; use a coarser mesh")]
     OutOfMemory { bytes: u64 },
 }
