@@ -379,9 +379,6 @@ mod command {
     }
 
     fn code(error: &SolveError) -> u8 {
-        match error {
-            SolveError::Data(_) | SolveError::NotCoercive { .. } => WRONG,
-            SolveError::NotPositiveDefinite | SolveError::OutOfMemory => FAILED,
-        }
+        if error.is_wrong_case() { WRONG } else { FAILED }
     }
 }

@@ -28,6 +28,7 @@ use crate::fem::{Mesh, MeshError};
 /// Why a file gives no mesh, and where.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("{}{place}: {mistake}", file.display())]
+#[non_exhaustive]
 pub struct GmshError {
     /// The mesh file.
     pub file: PathBuf,

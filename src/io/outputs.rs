@@ -20,6 +20,7 @@ use crate::solve::{Solution, Times};
 
 /// Why the files of a run could not be written.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum OutputError {
     /// A file or folder.
     #[error(transparent)]

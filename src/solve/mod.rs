@@ -155,6 +155,13 @@ pub enum SolveError {
     OutOfMemory,
 }
 
+impl SolveError {
+    /// Whether the case is wrong. Otherwise it is right, but there is no solution.
+    pub fn is_wrong_case(&self) -> bool {
+        matches!(self, SolveError::Data(_) | SolveError::NotCoercive { .. })
+    }
+}
+
 /// Solves `problem` by method (8).
 ///
 /// # Errors
