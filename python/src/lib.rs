@@ -12,8 +12,7 @@ use signorini::fem::Mesh;
 use signorini::io::Case;
 use signorini::io::outputs;
 use signorini::io::result::{Seconds, result_json};
-use signorini::io::sweep::NoResult;
-use signorini::solve::{Solution, SolveError, Status};
+use signorini::solve::{Solution, SolveError};
 
 create_exception!(_signorini, CaseError, PyValueError, "The case is wrong.");
 create_exception!(
@@ -103,10 +102,6 @@ fn solved(case: &Case, start: Instant) -> PyResult<Solved> {
     let read = start.elapsed();
     let (solution, times) = signorini::solve(&case.problem, &case.method, &case.settings)
         .map_err(|error| unsolved(&error))?;
-    if solution.newton.status == Status::NotConverged {
-        let (residual, steps) = (solution.newton.residual, solution.newton.iterations());
-        return Err(SolutionError::new_err(NoResult::NotConverged { residual, steps }.to_string()));
-    }
     let no_results = |error: &dyn std::fmt::Display| SolutionError::new_err(error.to_string());
     let seconds = Seconds::new(read, &times, std::time::Duration::ZERO);
     let results = outputs::results(case, &solution, seconds).map_err(|e| no_results(&e))?;
