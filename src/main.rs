@@ -35,7 +35,7 @@ mod command {
     use std::time::{Duration, Instant};
 
     use clap::{CommandFactory, Parser};
-    use signorini::fem::{DataError, MeshError};
+    use signorini::fem::MeshError;
     use signorini::io::convergence::{self, Meshes, StudyError};
     use signorini::io::files::{reason, spare};
     use signorini::io::input;
@@ -421,15 +421,6 @@ mod command {
     }
 
     fn code(error: &SolveError) -> u8 {
-        match error {
-            SolveError::Data(DataError::Mesh(MeshError::OutOfMemory(_))) => FAILED,
-            SolveError::Data(_) | SolveError::NotCoercive { .. } => WRONG,
-            SolveError::NotPositiveDefinite
-            | SolveError::NotConverged { .. }
-            | SolveError::IllConditioned { .. }
-            | SolveError::Singular
-            | SolveError::OutOfRange
-            | SolveError::OutOfMemory { .. } => FAILED,
-        }
+        if error.is_wrong_case() { WRONG } else { FAILED }
     }
 }

@@ -47,6 +47,7 @@ pub struct BoundaryEdge {
 
 /// Why there is no such mesh. Vertices and triangles are counted from 0, or by the numbers of the file they came from.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
 pub enum MeshError {
     #[error("the mesh has no triangle; expected at least one")]

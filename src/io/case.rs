@@ -71,6 +71,7 @@ use crate::solve::{
 };
 
 /// A contact problem and how to solve it.
+#[non_exhaustive]
 pub struct Case {
     /// The file it was read from, or what stands in its place.
     pub file: PathBuf,
@@ -91,6 +92,7 @@ pub struct Case {
 }
 
 /// An exact solution and the meshes on which it can be approximated.
+#[non_exhaustive]
 pub struct ExactCase {
     /// The solution.
     pub solution: Exact,
@@ -105,6 +107,7 @@ pub struct ExactCase {
 /// What is wrong with a case file, and where.
 #[derive(Debug, Error)]
 #[error("{}{place}: {mistake}", quote::path(file))]
+#[non_exhaustive]
 pub struct CaseError {
     /// The case file.
     pub file: PathBuf,
@@ -138,6 +141,7 @@ impl Display for Place {
 
 /// What is wrong with a case file. `name` is a key as messages show it: `[mesh] rectangle.nx`.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
 pub enum CaseMistake {
     #[error("{0}")]
@@ -222,16 +226,27 @@ impl Case {
     /// # Errors
     /// As [`Case::read`]; for a mistake in a setting, the place is that setting.
     pub fn parse(file: &Path, text: &str, settings: &[String]) -> Result<Case, CaseError> {
-        let source = Source { file, text, settings };
-        let entries = DeTable::parse(text).map_err(|e| {
-            let start = e.span().map(|span| span.start).or_else(|| deepest(&e, text));
-            source.wrong(start, no_toml(&e, text))
-        })?;
-        let layers = setting::layers(&source);
-        let mut entries = entries.into_inner();
-        setting::lay(source, &layers, &mut entries)?;
-        case(file, &Table::whole(source, &entries))
+        parse(Source { file, text, settings }, None)
     }
+
+    /// The case with this text, which has no \[mesh\], on this mesh.
+    ///
+    /// # Errors
+    /// As [`Case::parse`].
+    pub fn on_mesh(file: &Path, text: &str, mesh: Mesh) -> Result<Case, CaseError> {
+        parse(Source { file, text, settings: &[] }, Some(mesh))
+    }
+}
+
+fn parse(source: Source, mesh: Option<Mesh>) -> Result<Case, CaseError> {
+    let entries = DeTable::parse(source.text).map_err(|e| {
+        let start = e.span().map(|span| span.start).or_else(|| deepest(&e, source.text));
+        source.wrong(start, no_toml(&e, source.text))
+    })?;
+    let layers = setting::layers(&source);
+    let mut entries = entries.into_inner();
+    setting::lay(source, &layers, &mut entries)?;
+    case(source.file, &Table::whole(source, &entries), mesh)
 }
 
 /// What the TOML reader says, and the words of the file that it speaks of.
@@ -268,7 +283,8 @@ fn text(bytes: Vec<u8>) -> Result<String, CaseMistake> {
 /// The bytes of memory that a byte of a case file takes at most while it is read: 241 in a list of tables of one number.
 const MEMORY_PER_BYTE: u64 = 400;
 
-fn case(file: &Path, root: &Table) -> Result<Case, CaseError> {
+/// `given` is the mesh, if it is not the case that says which.
+fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, CaseError> {
     root.only(&[
         "title", "mesh", "material", "load", "exact", "boundary", "method", "solver", "output",
     ])?;
@@ -276,7 +292,19 @@ fn case(file: &Path, root: &Table) -> Result<Case, CaseError> {
         Some(title) => title.text()?.to_owned(),
         None => file.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
     };
-    let mesh = root.required_section("mesh", "rectangle = { .. } or gmsh = \"..\" in it")?;
+    let mesh = match (given, root.section("mesh")?) {
+        (Some(_), Some(table)) => {
+            return Err(table.wrong(CaseMistake::Combination {
+                name: table.name().to_owned(),
+                found: "a mesh beside the one that is given".to_owned(),
+                expected: "one of the two".to_owned(),
+            }));
+        }
+        (Some(mesh), None) => Body::Given(mesh),
+        (None, _) => {
+            Body::Told(root.required_section("mesh", "rectangle = { .. } or gmsh = \"..\" in it")?)
+        }
+    };
     let material =
         root.required_section("material", "lambda and mu, or young and poisson in it")?;
     let material = read_material(&material)?;
@@ -290,8 +318,10 @@ fn case(file: &Path, root: &Table) -> Result<Case, CaseError> {
     let settings = read_settings(root.section("solver")?)?;
     let output = root.section("output")?;
     // The mesh, and what needs it, comes last: it is what takes time.
-    let Meshed { mesh, structured, perturbation, file: mesh_file } =
-        read_mesh(&mesh, file.parent().unwrap_or(Path::new("")))?;
+    let Meshed { mesh, structured, perturbation, file: mesh_file } = match mesh {
+        Body::Given(mesh) => Meshed { mesh, structured: None, perturbation: None, file: None },
+        Body::Told(table) => read_mesh(&table, file.parent().unwrap_or(Path::new("")))?,
+    };
     let kinds = boundaries.iter().filter_map(|b| Some((b.key.to_owned(), b.kind?))).collect();
     let conditions = on_the_mesh(&mesh, boundaries)?;
     let probes = read_probes(output, &mesh)?;
@@ -305,6 +335,12 @@ fn case(file: &Path, root: &Table) -> Result<Case, CaseError> {
         exact: solution.map(|solution| ExactCase { solution, kinds, structured, perturbation }),
         sources: std::iter::once(file.to_owned()).chain(mesh_file).collect(),
     })
+}
+
+/// Where the mesh comes from.
+enum Body<'s> {
+    Given(Mesh),
+    Told(Table<'s>),
 }
 
 /// A mesh and how it was made.
@@ -647,7 +683,7 @@ mod tests {
     fn read(text: &str) -> Result<Case, CaseError> {
         let file = Path::new("x.toml");
         let entries = DeTable::parse(text).unwrap();
-        case(file, &Table::whole(Source { file, text, settings: &[] }, entries.get_ref()))
+        case(file, &Table::whole(Source { file, text, settings: &[] }, entries.get_ref()), None)
     }
 
     const SMALL: &str = "

@@ -30,6 +30,7 @@ use crate::quote::{self, quoted};
 /// Why a file gives no mesh, and where.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("{}{place}: {mistake}", quote::path(file))]
+#[non_exhaustive]
 pub struct GmshError {
     /// The mesh file.
     pub file: PathBuf,

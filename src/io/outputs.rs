@@ -33,6 +33,7 @@ pub fn only_in(names: &[&'static str], others: &[&str]) -> Vec<&'static str> {
 
 /// Why the files of a run could not be written.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum OutputError {
     /// A file or folder.
     #[error(transparent)]

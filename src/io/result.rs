@@ -16,6 +16,7 @@ use crate::solve::{GammaReport, MethodReport, Quantities, Status, Times};
 
 /// The content of result.json, in its order.
 #[derive(Clone, Debug, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Results {
     /// The version of this program.
     pub version: String,
@@ -47,6 +48,7 @@ pub struct Results {
 
 /// The discretisation.
 #[derive(Clone, Debug, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct MeshSizes {
     /// Vertices.
     pub vertices: usize,
@@ -62,6 +64,7 @@ pub struct MeshSizes {
 
 /// Nitsche's parameter and how far it is from the limit of coercivity.
 #[derive(Clone, Debug, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct GammaChoice {
     /// gamma0 of (7).
     pub gamma0: f64,
@@ -86,6 +89,7 @@ impl From<&GammaReport> for GammaChoice {
 
 /// Newton's iteration.
 #[derive(Clone, Debug, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct NewtonHistory {
     /// Steps taken.
     pub iterations: usize,
@@ -111,6 +115,7 @@ impl NewtonHistory {
 
 /// Where the time went.
 #[derive(Clone, Debug, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Seconds {
     /// Reading and meshing.
     pub read: f64,

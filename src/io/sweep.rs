@@ -65,6 +65,7 @@ pub type Outcome = Result<Results, SolveError>;
 
 /// One solve of a sweep.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Run {
     /// The value on each axis.
     pub values: Vec<String>,
@@ -74,6 +75,7 @@ pub struct Run {
 
 /// Why there is no sweep.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
 pub enum SweepError {
     #[error("--set makes {runs} runs; expected at most {MOST_RUNS}")]
@@ -97,6 +99,7 @@ pub const FILE: &str = "sweep.csv";
 
 /// A case and what became of it along some axes.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Sweep {
     /// The title of the case.
     pub title: String,

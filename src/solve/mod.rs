@@ -33,7 +33,7 @@ pub use self::theorem::Theorem;
 use self::times::Stopwatch;
 pub use self::times::Times;
 use crate::fem::contact_line::{Coercivity, EdgeRule};
-use crate::fem::{DataError, Discretization, Problem, held};
+use crate::fem::{DataError, Discretization, MeshError, Problem, held};
 use crate::kernel::edge_integral::ExactEdge;
 use crate::kernel::{P1, P2};
 use crate::quote::{fixed, number};
@@ -224,6 +224,21 @@ fn known(forward_error: f64) -> String {
 /// The residuals from step to step, to one digit.
 pub fn history(residuals: &[f64]) -> String {
     residuals.iter().map(|r| format!("{r:.0e}")).collect::<Vec<_>>().join(" ")
+}
+
+impl SolveError {
+    /// Whether the case is wrong. Otherwise it is right, but there is no solution of it here.
+    pub fn is_wrong_case(&self) -> bool {
+        match self {
+            SolveError::Data(DataError::Mesh(MeshError::OutOfMemory(_))) => false,
+            SolveError::Data(_) | SolveError::NotCoercive { .. } => true,
+            SolveError::NotPositiveDefinite
+            | SolveError::NotConverged { .. }
+            | SolveError::IllConditioned { .. }
+            | SolveError::Singular
+            | SolveError::OutOfMemory { .. } => false,
+        }
+    }
 }
 
 /// Solves `problem` by method (8).
