@@ -1,5 +1,7 @@
 //! What goes in and out: case files, Gmsh meshes, VTU, SVG, JSON.
 
+pub mod body;
+mod boundaries;
 pub mod case;
 pub mod convergence;
 pub mod csv;

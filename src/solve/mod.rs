@@ -1,5 +1,6 @@
 //! The solution of method (8): the body factored once, Newton's method on the contact layer, and what the solution says.
 
+pub mod answers;
 pub mod condensed;
 pub mod factor;
 pub mod ladder;
@@ -12,6 +13,7 @@ pub mod times;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+pub use self::answers::{ContactBoundary, EnergyBalance};
 use self::condensed::System;
 pub use self::ladder::{Ladder, LadderError, Level};
 pub use self::solution::{GammaReport, Quantities, Solution};
