@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 
 use signorini::io::convergence::Study;
 use signorini::io::result::{GammaChoice, NewtonHistory, Results};
+use signorini::io::sweep::Sweep;
 use signorini::io::{Case, numbers};
-use signorini::solve::{ContactQuadrature, NewtonReport, Outline, Settings, Status};
+use signorini::solve::{ContactQuadrature, NewtonReport, Outline, Settings};
 
 /// Lines of a name and a text.
 #[derive(Default)]
@@ -36,18 +37,64 @@ pub fn solved(r: &Results, files: &[PathBuf]) -> String {
     lines.line("coercivity", coercivity(&r.gamma));
     lines.line("newton", newton(&r.newton));
     lines.line("", history(&r.newton.residuals));
-    lines.line(
-        "contact",
-        format!(
-            "force {}, length {}, peak pressure {}",
-            short(q.contact_force),
-            short(q.contact_length),
-            short(q.peak_pressure)
-        ),
-    );
+    for material in &r.materials {
+        let of = if material.surfaces.is_empty() {
+            "the whole body".to_owned()
+        } else {
+            material.surfaces.join(", ")
+        };
+        let (young, poisson) = (short(material.young), short(material.poisson));
+        lines.line(
+            "material",
+            format!("{of}: E = {young}, nu = {poisson}, plane {}", material.plane),
+        );
+    }
+    if r.contact.is_empty() {
+        lines.line(
+            "contact",
+            format!(
+                "force {}, length {}, peak pressure {}",
+                short(q.contact_force),
+                short(q.contact_length),
+                short(q.peak_pressure)
+            ),
+        );
+    }
+    let unit = |unit: Option<String>| unit.map_or(String::new(), |unit| format!(" {unit}"));
+    let length = unit(r.units.as_ref().map(|u| u.length.clone()));
+    let stress = unit(r.units.as_ref().map(|u| u.stress()));
+    for contact in &r.contact {
+        lines.line(
+            "contact",
+            format!(
+                "{}: force {} {}, moment {}, length {}{length}",
+                contact.boundary,
+                short(contact.force),
+                vector(contact.resultant),
+                short(contact.moment),
+                short(contact.length)
+            ),
+        );
+        if contact.length > 0.0 {
+            lines.line(
+                "",
+                format!(
+                    "peak pressure {}{stress} at {}, penetration {}{length} at {}",
+                    short(contact.peak_pressure),
+                    vector(contact.peak_at),
+                    short(contact.penetration),
+                    vector(contact.penetration_at)
+                ),
+            );
+        }
+    }
     for (i, (boundary, reaction)) in q.reactions.iter().enumerate() {
         let name = if i == 0 { "reactions" } else { "" };
-        lines.line(name, format!("{boundary}: {}", vector(*reaction)));
+        let moment = match q.reaction_moments.get(boundary) {
+            Some(moment) => format!(", moment {}", short(*moment)),
+            None => String::new(),
+        };
+        lines.line(name, format!("{boundary}: {}{moment}", vector(*reaction)));
     }
     lines.line(
         "energy",
@@ -58,6 +105,21 @@ pub fn solved(r: &Results, files: &[PathBuf]) -> String {
             short(q.max_displacement)
         ),
     );
+    if let Some(balance) = &r.balance {
+        lines.line(
+            "balance",
+            format!(
+                "a(u,u) = loads {} + supports {} + contact {}, up to {:.0e}",
+                short(balance.loads),
+                short(balance.supports),
+                short(balance.contact),
+                balance.imbalance.abs()
+            ),
+        );
+    }
+    for remark in &r.remarks {
+        lines.line("remark", remark);
+    }
     lines.line(
         "time",
         format!(
@@ -112,6 +174,11 @@ pub fn studied(case: &Case, studies: &[Study], files: &[PathBuf]) -> String {
     format!("{}\n\n{}\nwritten: {}\n", case.title, tables.join("\n"), written(files))
 }
 
+/// Of a case along some axes.
+pub fn swept(sweep: &Sweep, files: &[PathBuf]) -> String {
+    format!("{}\n\n{}\nwritten: {}\n", sweep.title, sweep.table(), written(files))
+}
+
 /// Of a case that Newton's method could not solve.
 pub fn not_converged(file: &Path, settings: &Settings, report: &NewtonReport) -> String {
     format!(
@@ -143,13 +210,9 @@ fn coercivity(gamma: &GammaChoice) -> String {
 }
 
 fn newton(newton: &NewtonHistory) -> String {
-    let verdict = match newton.status {
-        Status::Converged => "converged",
-        Status::ConvergedToRounding => "converged to rounding",
-        Status::NotConverged => "not converged",
-    };
     format!(
-        "{verdict} in {}, {}, relative residual {:.1e}",
+        "{} in {}, {}, relative residual {:.1e}",
+        newton.verdict(),
         count(newton.iterations, "step"),
         count(newton.factorizations, "factorisation"),
         newton.residual

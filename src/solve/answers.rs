@@ -14,15 +14,18 @@
 
 use std::collections::BTreeMap;
 
+#[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
 
 use crate::fem::contact_line::{ContactLineEdge, EdgeRule};
 use crate::fem::discretization::{Discretization, inner};
 use crate::kernel::edge_integral::{self, ExactEdge, value_at};
+use crate::kernel::element::displacement_gradient;
 use crate::kernel::positive_part;
 
 /// What one part of Gamma_C carries, in the units of the case.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 pub struct ContactBoundary {
     /// Its name.
     pub boundary: String,
@@ -47,7 +50,8 @@ pub struct ContactBoundary {
 }
 
 /// a(u, u) = loads + supports + contact: what the strains hold is twice the work of the three on u.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 pub struct EnergyBalance {
     /// a(u, u), twice the strain energy.
     pub strain: f64,
@@ -93,6 +97,31 @@ where
     let difference = strain - loads - supports - contact;
     let imbalance = if largest > 0.0 { difference / largest } else { 0.0 };
     EnergyBalance { strain, loads, supports, contact, imbalance }
+}
+
+/// The largest principal strain, in magnitude, of the mean strain on a triangle.
+pub fn largest_strain<E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    u: &[[f64; 2]],
+) -> f64
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let mut largest: f64 = 0.0;
+    for (t, (triangle, _)) in d.space.triangles().enumerate() {
+        let nodal = d.space.on_triangle(t, u);
+        let barycentric = triangle.barycentric_gradients();
+        let [mut xx, mut yy, mut xy] = [0.0; 3];
+        E::at_stiffness_points(|l, weight| {
+            let g = displacement_gradient(&nodal, &E::gradients(l, barycentric));
+            xx += weight * g[0][0];
+            yy += weight * g[1][1];
+            xy += weight * (g[0][1] + g[1][0]) / 2.0;
+        });
+        let radius = ((xx - yy) / 2.0).hypot(xy);
+        largest = largest.max(((xx + yy) / 2.0).abs() + radius);
+    }
+    largest
 }
 
 /// The recovered pressure at the nodes of each edge, in the order of the edge's nodes.

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+#[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
 
 use super::NewtonReport;
@@ -44,6 +45,8 @@ pub struct Solution {
     pub boundaries: Vec<ContactBoundary>,
     /// Where the energy comes from.
     pub balance: EnergyBalance,
+    /// The largest principal strain, in magnitude, of the mean strain on a triangle.
+    pub largest_strain: f64,
 }
 
 /// gamma0 and the coercivity number.
@@ -92,7 +95,8 @@ pub struct ContactValues {
 }
 
 /// Scalars of a solution, in the units of the case.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 pub struct Quantities {
     /// a(u, u)
     pub energy: f64,
@@ -111,6 +115,7 @@ pub struct Quantities {
     /// The force of each displacement boundary on the body.
     pub reactions: BTreeMap<String, [f64; 2]>,
     /// The moment of each of these about the origin, counter-clockwise.
+    #[cfg_attr(feature = "files", serde(default))]
     pub reaction_moments: BTreeMap<String, f64>,
 }
 
@@ -139,6 +144,7 @@ impl Solution {
             stress: with_material().map(|(m, s)| (s, m.stress_zz(s))).collect(),
             contact: contact_values(d, &u, &recovered),
             boundaries: answers::contact_boundaries(d, &u, &recovered),
+            largest_strain: answers::largest_strain(d, &u),
             balance: answers::energy_balance(d, &u, &residual, quantities.energy),
             gamma: GammaReport::new(d),
             newton,
