@@ -90,7 +90,7 @@ pub fn solved(r: &Results, files: &[PathBuf]) -> String {
     }
     for (i, (boundary, reaction)) in q.reactions.iter().enumerate() {
         let name = if i == 0 { "reactions" } else { "" };
-        let moment = match q.reaction_moments.get(boundary) {
+        let moment = match r.reaction_moments.get(boundary) {
             Some(moment) => format!(", moment {}", short(*moment)),
             None => String::new(),
         };

@@ -628,9 +628,10 @@ mod tests {
             message(named(&[("floor", &[[1, 3]])])),
             "boundary 'floor': no triangle has an edge between vertices 1 and 3"
         );
+        let cut = named(&[("cut", &[[0, 2]])]).unwrap();
         assert_eq!(
-            message(named(&[("cut", &[[0, 2]])])),
-            "boundary 'cut': the edge between vertices 0 and 2 lies inside the body, between two triangles"
+            cut.edges_of("cut").unwrap_err().to_string(),
+            "boundary 'cut': its edge from (0, 0) to (1, 1) lies inside the body, between two triangles; nothing can be prescribed there"
         );
         assert_eq!(
             message(named(&[("floor", &[[0, 1]]), ("base", &[[1, 0]])])),

@@ -498,6 +498,7 @@ fn read_probes(table: Option<Table>, mesh: &Mesh) -> Result<Vec<[f64; 2]>, CaseE
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fem::Condition;
     use crate::kernel::{Material, Plane};
 
     fn read(text: &str) -> Result<Case, CaseError> {

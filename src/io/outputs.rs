@@ -112,6 +112,7 @@ pub fn results(
         },
         quantities: solution.quantities.clone(),
         contact: solution.boundaries.clone(),
+        reaction_moments: solution.quantities.reaction_moments.clone(),
         balance: Some(solution.balance),
         probes: probes.collect(),
         errors,

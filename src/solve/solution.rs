@@ -115,7 +115,7 @@ pub struct Quantities {
     /// The force of each displacement boundary on the body.
     pub reactions: BTreeMap<String, [f64; 2]>,
     /// The moment of each of these about the origin, counter-clockwise.
-    #[cfg_attr(feature = "files", serde(default))]
+    #[cfg_attr(feature = "files", serde(skip))]
     pub reaction_moments: BTreeMap<String, f64>,
 }
 

@@ -13,6 +13,7 @@ mod documents;
 mod exact;
 mod gmsh_live;
 mod method;
+mod parts;
 mod patch;
 mod reference;
 #[cfg(feature = "cli")]
