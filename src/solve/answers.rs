@@ -194,7 +194,7 @@ fn groups<E, const N: usize, const M: usize>(d: &Discretization<E, N, M>) -> Vec
 where
     E: ExactEdge<f64, N, M>,
 {
-    let mut of_end: BTreeMap<(usize, &str), Vec<([f64; 2], usize)>> = BTreeMap::new();
+    let mut of_end: BTreeMap<(usize, &str), Vec<Group>> = BTreeMap::new();
     let mut count = 0;
     let mut groups = Vec::with_capacity(d.contact.len());
     for edge in &d.contact {
@@ -214,6 +214,9 @@ where
     }
     groups
 }
+
+/// A direction of contact at a node, and the number of the value there.
+type Group = ([f64; 2], usize);
 
 /// Directions that differ by rounding only, or by what a facet's normal may be off where the boundary is straight.
 fn same(a: [f64; 2], b: [f64; 2]) -> bool {
