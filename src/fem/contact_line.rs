@@ -17,6 +17,7 @@ use super::space::Space;
 use crate::kernel::contact_edge::{coercivity_constant, turning_factor};
 use crate::kernel::edge_integral::{self, ExactEdge};
 use crate::kernel::{ContactEdge, EdgeIntegrals, Element};
+use crate::quote::key;
 
 /// One edge of Gamma_C.
 #[derive(Clone, Debug)]
@@ -211,11 +212,13 @@ impl<'a> Sight<'a> {
     fn closest(&self, name: &str, point: SmoothPoint) -> Result<Closest, DataError> {
         match self.problem.conditions.get(name) {
             Some(Condition::Contact { gap }) => {
-                let gap = finite(&**gap, point.place, || format!("[boundary.{name}] contact.gap"))?;
+                let gap = finite(&**gap, point.place, || {
+                    format!("[boundary.{}] contact.gap", key(name))
+                })?;
                 Ok(Closest { gap, direction: point.normal })
             }
             Some(Condition::Obstacle(obstacle, geometry)) => {
-                geometry.closest(point.place, || format!("[obstacle.{obstacle}]"))
+                geometry.closest(point.place, || format!("[obstacle.{}]", key(obstacle)))
             }
             _ => Err(DataError::NoContact),
         }

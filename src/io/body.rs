@@ -5,10 +5,11 @@ use serde::{Deserialize, Serialize};
 
 use super::case::{CaseError, CaseMistake};
 use super::expression::Expression;
-use super::table::{Table, Value, shown};
+use super::table::{Table, Value};
 use crate::fem::exact;
 use crate::fem::{BoxedFunction, Exact, Materials, Mesh, SurfaceForce};
 use crate::kernel::{Material, Plane};
+use crate::quote::{self, key as shown, quoted};
 
 const MODULI: [&str; 4] = ["lambda", "mu", "young", "poisson"];
 
@@ -117,12 +118,16 @@ impl MaterialTable<'_> {
         }
         let without = |name: &&String| materials.iter().all(|(_, key, ..)| key != name);
         if let Some(name) = mesh.surfaces().keys().find(without) {
-            let found = format!("no material for the surface '{name}'");
+            let found = format!("no material for the surface {}", quoted(name, '\''));
             return Err(wrong(found, &format!("[material.{}]", shown(name))));
         }
         if let Some(t) = covered.iter().position(|covered| !covered) {
             let [x, y] = mesh.triangle(t).point([1.0 / 3.0; 3]);
-            let found = format!("a triangle around ({x}, {y}) that belongs to no physical surface");
+            let found = format!(
+                "a triangle around ({}, {}) that belongs to no physical surface",
+                quote::number(x),
+                quote::number(y)
+            );
             return Err(wrong(found, "all of the body in physical surfaces with a material each"));
         }
         let rest = materials[0].2;
@@ -160,7 +165,7 @@ fn read_material(table: &Table, plane: Plane) -> Result<(Material<f64>, Material
     let (material, [young, poisson]) = match MODULI.map(|key| table.get(key)) {
         [Some(lambda), Some(mu), None, None] => {
             let mu = mu.number_that(|mu| mu > 0.0, "a positive number")?;
-            let least = -2.0 / 3.0 * mu;
+            let least = quote::number(-2.0 / 3.0 * mu);
             let expected = format!("a number above {least}, for 3 lambda + 2 mu > 0");
             let lambda = lambda.number_that(|l| 3.0 * l + 2.0 * mu > 0.0, &expected)?;
             let young = mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu);
@@ -182,7 +187,7 @@ fn read_material(table: &Table, plane: Plane) -> Result<(Material<f64>, Material
     } else {
         Err(table.wrong(CaseMistake::Combination {
             name: table.name().to_owned(),
-            found: format!("moduli with lambda + 2 mu = {stiffness} in the plane"),
+            found: format!("moduli with lambda + 2 mu = {} in the plane", quote::number(stiffness)),
             expected: "a positive finite sum".to_owned(),
         }))
     }

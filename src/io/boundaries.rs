@@ -7,11 +7,12 @@ use super::body::{functions, zero};
 use super::case::{CaseError, CaseMistake};
 use super::exact::read_kind;
 use super::expression::Expression;
-use super::table::{Table, Value, shown};
+use super::table::{Table, Value};
 use crate::fem::exact::Kind;
 use crate::fem::{
     BoxedFunction, Condition, Distance, Exact, Function, Mesh, Obstacle, PointSupport, Side,
 };
+use crate::quote::{key as shown, names, quoted};
 
 /// A boundary of the case file: where it stands, what messages call it, its name, and what holds there.
 pub(super) struct Boundary<'s> {
@@ -161,8 +162,8 @@ fn read_contact(
                 Ok(Condition::Obstacle(name.text()?.to_owned(), obstacle.clone()))
             }
             None => {
-                let known: Vec<&str> = obstacles.keys().copied().collect();
-                let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+                let known = names(obstacles.keys().copied());
+                let known = if known.is_empty() { "none".to_owned() } else { known };
                 Err(name.wrong(&format!("the name of an [obstacle.NAME]; there are: {known}")))
             }
         },
@@ -196,7 +197,7 @@ fn read_obstacle(table: &Table) -> Result<Obstacle, CaseError> {
         return if length > 0.0 && length.is_finite() {
             Ok(Obstacle::Plane { point, normal: [x / length, y / length] })
         } else {
-            Err(value.wrong_as(format!("[{x}, {y}]"), "a vector that is not zero"))
+            Err(value.wrong_as(format!("{:?}", [x, y]), "a vector that is not zero"))
         };
     }
     if table.get("circle").is_some() {

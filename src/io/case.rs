@@ -70,7 +70,7 @@
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display, Formatter};
-use std::fs;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -82,15 +82,16 @@ use super::boundaries::{on_the_mesh, read_boundaries, read_points};
 use super::exact::{angle, read_exact};
 use super::expression::ExpressionError;
 use super::gmsh::{self, GmshError};
-use super::quote::{cut, quoted};
+use super::input::{self, InputError, MOST_OF_A_CASE};
 use super::setting;
 use super::table::{Source, Table, Value};
-use super::why_unreadable;
 use crate::fem::exact::Kind;
 use crate::fem::rectangle::MOST_CELLS;
 use crate::fem::{
     Diagonal, Exact, Mesh, MeshError, Perturbation, Problem, Rectangle, Structured, Trapezoid,
 };
+use crate::memory;
+use crate::quote::quoted;
 use crate::solve::{ContactQuadrature, Degree, Gamma0, Method, Settings};
 
 /// A contact problem and how to solve it.
@@ -113,6 +114,8 @@ pub struct Case {
     pub units: Option<Units>,
     /// The exact solution, if there is one.
     pub exact: Option<ExactCase>,
+    /// The files that all this was read from.
+    pub sources: Vec<PathBuf>,
 }
 
 /// The units of a case: words for labels. The numbers are consistent by themselves.
@@ -149,7 +152,7 @@ pub struct ExactCase {
 
 /// What is wrong with a case file, and where.
 #[derive(Debug, Error)]
-#[error("{}{place}: {mistake}", file.display())]
+#[error("{}{place}: {mistake}", quote::path(file))]
 pub struct CaseError {
     /// The case file.
     pub file: PathBuf,
@@ -176,7 +179,7 @@ impl Display for Place {
         match self {
             Place::File => Ok(()),
             Place::Line(line) => write!(f, ":{line}"),
-            Place::Setting(setting) => write!(f, " with --set {}", cut(setting)),
+            Place::Setting(setting) => write!(f, " with --set {}", quote::cut(setting)),
         }
     }
 }
@@ -186,7 +189,9 @@ impl Display for Place {
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
 pub enum CaseMistake {
     #[error("{0}")]
-    Unreadable(String),
+    Input(#[from] InputError),
+    #[error("byte {byte} is not UTF-8; expected a text file")]
+    NoText { byte: usize },
     #[error("invalid TOML{at}: {said}")]
     Toml { at: String, said: String },
     #[error("unknown key {key}{}; expected {known}", within(place))]
@@ -205,6 +210,18 @@ pub enum CaseMistake {
     Gmsh(GmshError),
     #[error("found no key with a value; expected KEY=VALUE, such as method.gamma0=1e-3")]
     NoSetting,
+}
+
+impl CaseError {
+    /// The case may be right, but there is not enough memory to read it.
+    pub fn is_lack_of_memory(&self) -> bool {
+        match &*self.mistake {
+            CaseMistake::Input(InputError::OutOfMemory(_))
+            | CaseMistake::Mesh { error: MeshError::OutOfMemory(_), .. } => true,
+            CaseMistake::Gmsh(error) => error.is_lack_of_memory(),
+            _ => false,
+        }
+    }
 }
 
 fn within(place: &str) -> String {
@@ -226,10 +243,24 @@ impl Case {
     /// # Errors
     /// A file that can't be read, or is no text.
     pub fn text(file: &Path) -> Result<String, CaseError> {
-        read_text(file).map_err(|why| CaseError {
+        let bytes = input::read(file, MOST_OF_A_CASE).map_err(CaseMistake::from);
+        bytes.and_then(text).map_err(|mistake| CaseError {
             file: file.to_owned(),
             place: Place::File,
-            mistake: Box::new(CaseMistake::Unreadable(why)),
+            mistake: Box::new(mistake),
+        })
+    }
+
+    /// The text of a stream, such as standard input, which messages call `name`.
+    ///
+    /// # Errors
+    /// As [`Case::text`].
+    pub fn text_from(stream: impl Read, name: &Path) -> Result<String, CaseError> {
+        let bytes = input::read_from(stream, MOST_OF_A_CASE).map_err(CaseMistake::from);
+        bytes.and_then(text).map_err(|mistake| CaseError {
+            file: name.to_owned(),
+            place: Place::File,
+            mistake: Box::new(mistake),
         })
     }
 
@@ -241,7 +272,7 @@ impl Case {
     pub fn parse(file: &Path, text: &str, settings: &[String]) -> Result<Case, CaseError> {
         let source = Source { file, text, settings };
         let entries = DeTable::parse(text).map_err(|e| {
-            let start = e.span().map(|span| span.start);
+            let start = e.span().map(|span| span.start).or_else(|| deepest(&e, text));
             source.wrong(start, no_toml(&e, text))
         })?;
         let layers = setting::layers(&source);
@@ -267,13 +298,23 @@ pub(super) fn no_toml(error: &toml::de::Error, text: &str) -> CaseMistake {
     CaseMistake::Toml { at, said }
 }
 
-fn read_text(file: &Path) -> Result<String, String> {
-    let bytes = fs::read(file).map_err(|e| why_unreadable(&e))?;
-    String::from_utf8(bytes).map_err(|e| {
-        let good = e.utf8_error().valid_up_to();
-        format!("byte {} is not UTF-8; expected a text file", good + 1)
-    })
+/// Where the first key with more parts than the TOML reader takes stands: of that mistake it does not give the place.
+fn deepest(error: &toml::de::Error, text: &str) -> Option<usize> {
+    const MOST_PARTS: usize = 80;
+    let is_deep = |line: &&str| line.matches('.').nth(MOST_PARTS - 1).is_some();
+    let line = text.split('\n').find(is_deep).filter(|_| error.message() == "recursion limit")?;
+    Some(line.as_ptr() as usize - text.as_ptr() as usize)
 }
+
+fn text(bytes: Vec<u8>) -> Result<String, CaseMistake> {
+    // What the TOML reader and the expressions make of it.
+    memory::check(MEMORY_PER_BYTE * bytes.len() as u64).map_err(InputError::from)?;
+    String::from_utf8(bytes)
+        .map_err(|e| CaseMistake::NoText { byte: e.utf8_error().valid_up_to() + 1 })
+}
+
+/// The bytes of memory that a byte of a case file takes at most while it is read.
+const MEMORY_PER_BYTE: u64 = 128;
 
 fn case(file: &Path, root: &Table) -> Result<Case, CaseError> {
     root.only(&[
@@ -299,7 +340,7 @@ fn case(file: &Path, root: &Table) -> Result<Case, CaseError> {
     let output = root.section("output")?;
     let units = root.section("units")?.map(|table| read_units(&table)).transpose()?;
     // The mesh, and what needs it, comes last: it is what takes time.
-    let Meshed { mesh, structured, perturbation } =
+    let Meshed { mesh, structured, perturbation, file: mesh_file } =
         read_mesh(&mesh, file.parent().unwrap_or(Path::new("")))?;
     let kinds = boundaries.iter().filter_map(|b| Some((b.key.to_owned(), b.kind?))).collect();
     let conditions = on_the_mesh(&mesh, boundaries)?;
@@ -317,6 +358,7 @@ fn case(file: &Path, root: &Table) -> Result<Case, CaseError> {
         settings,
         probes,
         exact: solution.map(|solution| ExactCase { solution, kinds, structured, perturbation }),
+        sources: std::iter::once(file.to_owned()).chain(mesh_file).collect(),
     })
 }
 
@@ -325,6 +367,7 @@ struct Meshed {
     mesh: Mesh,
     structured: Option<Structured>,
     perturbation: Option<Perturbation>,
+    file: Option<PathBuf>,
 }
 
 /// `directory` is the one of the case file.
@@ -353,9 +396,10 @@ fn read_mesh(table: &Table, directory: &Path) -> Result<Meshed, CaseError> {
             if name.is_empty() {
                 return Err(value.wrong("the name of a mesh file"));
             }
-            let mesh = gmsh::read(&directory.join(name))
-                .map_err(|error| value.mistake(CaseMistake::Gmsh(error)))?;
-            return Ok(Meshed { mesh, structured: None, perturbation: None });
+            let file = directory.join(name);
+            let mesh =
+                gmsh::read(&file).map_err(|error| value.mistake(CaseMistake::Gmsh(error)))?;
+            return Ok(Meshed { mesh, structured: None, perturbation: None, file: Some(file) });
         }
         _ => {
             let expected = format!("exactly one of {}", SHAPES.join(", "));
@@ -366,7 +410,7 @@ fn read_mesh(table: &Table, directory: &Path) -> Result<Meshed, CaseError> {
         let name = value.name().to_owned();
         value.mistake(CaseMistake::Mesh { name, error })
     })?;
-    Ok(Meshed { mesh, structured: Some(structured), perturbation })
+    Ok(Meshed { mesh, structured: Some(structured), perturbation, file: None })
 }
 
 fn read_trapezoid(table: &Table) -> Result<Trapezoid, CaseError> {
@@ -590,7 +634,7 @@ mod tests {
     fn every_committed_case_can_be_read() {
         let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
         let mut count = 0;
-        for file in fs::read_dir(cases).unwrap().map(|entry| entry.unwrap().path()) {
+        for file in std::fs::read_dir(cases).unwrap().map(|entry| entry.unwrap().path()) {
             if file.extension().is_some_and(|e| e == "toml") {
                 Case::read(&file).unwrap_or_else(|e| panic!("{e}"));
                 count += 1;

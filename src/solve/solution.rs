@@ -6,8 +6,8 @@ use std::sync::Arc;
 #[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
 
-use super::NewtonReport;
 use super::answers::{self, ContactBoundary, EnergyBalance};
+use super::{MethodReport, NewtonReport, Report};
 use crate::fem::contact_line::{self, Coercivity};
 use crate::fem::discretization::{Discretization, inner};
 use crate::fem::{DataError, Errors, ExactSolution, Problem, Space};
@@ -39,6 +39,8 @@ pub struct Solution {
     pub gamma: GammaReport,
     /// How Newton's method went.
     pub newton: NewtonReport,
+    /// By which route, and how accurately.
+    pub method: MethodReport,
     /// Energies, forces, lengths.
     pub quantities: Quantities,
     /// What each part of Gamma_C carries.
@@ -124,7 +126,7 @@ impl Solution {
     pub fn new<E, const N: usize, const M: usize>(
         d: &Discretization<E, N, M>,
         u: Vec<[f64; 2]>,
-        newton: NewtonReport,
+        report: Report,
     ) -> Self
     where
         E: ExactEdge<f64, N, M>,
@@ -147,7 +149,8 @@ impl Solution {
             largest_strain: answers::largest_strain(d, &u),
             balance: answers::energy_balance(d, &u, &residual, quantities.energy),
             gamma: GammaReport::new(d),
-            newton,
+            newton: report.newton,
+            method: report.method,
             quantities,
             displacement: u,
         }
@@ -280,7 +283,7 @@ where
     E: ExactEdge<f64, N, M>,
 {
     let mut q = Quantities {
-        energy: inner(&d.internal_forces(u).values, u),
+        energy: d.strain_energy(u),
         work: inner(&d.load, u),
         max_displacement: u.iter().fold(0.0, |max, v| f64::max(max, v[0].hypot(v[1]))),
         contact_force: 0.0,
