@@ -12,7 +12,7 @@ use crate::fem::exact::Kind;
 use crate::fem::{
     BoxedFunction, Condition, Distance, Exact, Function, Mesh, Obstacle, PointSupport, Side,
 };
-use crate::quote::{key as shown, names, quoted};
+use crate::quote::{key as shown, names};
 
 /// A boundary of the case file: where it stands, what messages call it, its name, and what holds there.
 pub(super) struct Boundary<'s> {

@@ -91,7 +91,7 @@ use crate::fem::{
     Diagonal, Exact, Mesh, MeshError, Perturbation, Problem, Rectangle, Structured, Trapezoid,
 };
 use crate::memory;
-use crate::quote::quoted;
+use crate::quote::{self, quoted};
 use crate::solve::{ContactQuadrature, Degree, Gamma0, Method, Settings};
 
 /// A contact problem and how to solve it.
