@@ -16,8 +16,8 @@ use super::case::Units;
 use super::data::DataError;
 use crate::fem::Errors;
 use crate::solve::{
-    ContactBoundary, ContactQuadrature, EnergyBalance, Gamma0, GammaReport, Method, Quantities,
-    Status, Times,
+    ContactBoundary, ContactQuadrature, EnergyBalance, Gamma0, GammaReport, Method, MethodReport,
+    Quantities, Status, Times,
 };
 
 /// The content of result.json, in its order.
@@ -51,6 +51,9 @@ pub struct Results {
     pub gamma: GammaChoice,
     /// The iteration.
     pub newton: NewtonHistory,
+    /// The route and the accuracy; left out by the engine fenicsx.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub method: Option<MethodReport>,
     /// The solution in numbers.
     pub quantities: Quantities,
     /// What each contact boundary carries.
@@ -319,6 +322,7 @@ impl Formatter for Layout {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solve::RouteName;
 
     fn sample() -> Results {
         Results {
@@ -350,6 +354,14 @@ mod tests {
                 factorizations: 1,
                 status: Status::ConvergedToRounding,
             },
+            method: Some(MethodReport {
+                route: RouteName::Assembled,
+                predicted_operations: 1e6,
+                condition: 2e3,
+                forward_error: 1e-13,
+                threads: 1,
+                slides: 1,
+            }),
             quantities: Quantities {
                 energy: 1.0,
                 work: -0.0,
@@ -411,6 +423,14 @@ mod tests {
     "residual": 3e-17,
     "factorizations": 1,
     "status": "converged to rounding"
+  },
+  "method": {
+    "route": "assembled",
+    "predicted_operations": 1000000.0,
+    "condition": 2000.0,
+    "forward_error": 1e-13,
+    "threads": 1,
+    "slides": 1
   },
   "quantities": {
     "energy": 1.0,

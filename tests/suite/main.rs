@@ -13,10 +13,13 @@ mod documents;
 #[cfg(all(feature = "cli", unix))]
 mod doors;
 mod exact;
+mod fuzz;
 mod gmsh_live;
+mod held;
 mod method;
 mod parts;
 mod patch;
 mod reference;
+mod routes;
 #[cfg(feature = "cli")]
 mod set_and_sweep;
