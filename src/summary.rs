@@ -47,18 +47,64 @@ pub fn solved(r: &Results, files: &[PathBuf]) -> String {
             ));
         }
     }
-    lines.line(
-        "contact",
-        format!(
-            "force {}, length {}, peak pressure {}",
-            short(q.contact_force),
-            short(q.contact_length),
-            short(q.peak_pressure)
-        ),
-    );
+    for material in &r.materials {
+        let of = if material.surfaces.is_empty() {
+            "the whole body".to_owned()
+        } else {
+            quote::names(material.surfaces.iter().map(String::as_str))
+        };
+        let (young, poisson) = (short(material.young), short(material.poisson));
+        lines.line(
+            "material",
+            format!("{of}: E = {young}, nu = {poisson}, plane {}", material.plane),
+        );
+    }
+    if r.contact.is_empty() {
+        lines.line(
+            "contact",
+            format!(
+                "force {}, length {}, peak pressure {}",
+                short(q.contact_force),
+                short(q.contact_length),
+                short(q.peak_pressure)
+            ),
+        );
+    }
+    let unit = |unit: Option<String>| unit.map_or(String::new(), |unit| format!(" {unit}"));
+    let length = unit(r.units.as_ref().map(|u| u.length.clone()));
+    let stress = unit(r.units.as_ref().map(|u| u.stress()));
+    for contact in &r.contact {
+        lines.line(
+            "contact",
+            format!(
+                "{}: force {} {}, moment {}, length {}{length}",
+                quote::cut(&contact.boundary),
+                short(contact.force),
+                vector(contact.resultant),
+                short(contact.moment),
+                short(contact.length)
+            ),
+        );
+        if contact.length > 0.0 {
+            lines.line(
+                "",
+                format!(
+                    "peak pressure {}{stress} at {}, penetration {}{length} at {}",
+                    short(contact.peak_pressure),
+                    vector(contact.peak_at),
+                    short(contact.penetration),
+                    vector(contact.penetration_at)
+                ),
+            );
+        }
+    }
     for (i, (boundary, reaction)) in q.reactions.iter().enumerate() {
         let name = if i == 0 { "reactions" } else { "" };
-        lines.line(name, format!("{}: {}", quote::cut(boundary), vector(*reaction)));
+        let moment = match r.reaction_moments.get(boundary) {
+            Some(moment) => format!(", moment {}", short(*moment)),
+            None => String::new(),
+        };
+        lines.line(name, format!("{}: {}{moment}", quote::cut(boundary), vector(*reaction)));
     }
     lines.line(
         "energy",
@@ -69,6 +115,21 @@ pub fn solved(r: &Results, files: &[PathBuf]) -> String {
             short(q.max_displacement)
         ),
     );
+    if let Some(balance) = &r.balance {
+        lines.line(
+            "balance",
+            format!(
+                "a(u,u) = loads {} + supports {} + contact {}, up to {:.0e}",
+                short(balance.loads),
+                short(balance.supports),
+                short(balance.contact),
+                balance.imbalance.abs()
+            ),
+        );
+    }
+    for remark in &r.remarks {
+        lines.line("remark", remark);
+    }
     lines.line(
         "time",
         format!(

@@ -1,6 +1,10 @@
 //! What goes in and out: case files, Gmsh meshes, VTU, SVG, JSON.
 
 #[cfg(feature = "files")]
+pub mod body;
+#[cfg(feature = "files")]
+mod boundaries;
+#[cfg(feature = "files")]
 pub mod case;
 #[cfg(feature = "files")]
 pub mod convergence;

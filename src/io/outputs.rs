@@ -12,7 +12,9 @@ use super::data::DataError;
 use super::files::{Output, WriteError};
 use super::numbers::short;
 use super::picture::{ContactSample, Scene, picture};
-use super::result::{GammaChoice, MeshSizes, NewtonHistory, Results, Seconds, result_json};
+use super::result::{
+    Choices, GammaChoice, MeshSizes, NewtonHistory, Results, SCHEMA, Seconds, result_json,
+};
 use super::vtu::{CellKind, Field, Grid, Values, vtu};
 use crate::fem;
 use crate::memory::{self, OutOfMemory};
@@ -115,7 +117,12 @@ pub fn results(
     Ok(Results {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         case: Some(case.file.display().to_string()),
+        schema: SCHEMA,
         title: case.title.clone(),
+        units: case.units.clone(),
+        materials: case.materials.clone(),
+        choices: Some(Choices::from(&case.method)),
+        remarks: remarks(case, solution),
         mesh: MeshSizes {
             vertices: mesh.vertices().len(),
             triangles: mesh.triangles().len(),
@@ -133,10 +140,50 @@ pub fn results(
         },
         method: Some(solution.method),
         quantities: solution.quantities.clone(),
+        contact: solution.boundaries.clone(),
+        reaction_moments: solution.quantities.reaction_moments.clone(),
+        balance: Some(solution.balance),
         probes: probes.collect(),
         errors,
         seconds,
     })
+}
+
+/// Strains above this are more than small-strain theory is for.
+const LARGE_STRAIN: f64 = 0.05;
+
+/// Displacements above this share of the body's size likewise.
+const LARGE_DISPLACEMENT: f64 = 0.1;
+
+/// What a person should know before the numbers are used.
+fn remarks(case: &Case, solution: &Solution) -> Vec<String> {
+    let mut remarks = Vec::new();
+    let length = case.units.as_ref().map_or(String::new(), |units| format!(" {}", units.length));
+    let strain = solution.largest_strain;
+    if strain > LARGE_STRAIN {
+        remarks.push(format!(
+            "the largest strain is {} %: strains are taken to be small (below {} %); check load, modulus and units",
+            short(100.0 * strain, 3),
+            short(100.0 * LARGE_STRAIN, 3)
+        ));
+    }
+    let vertices = case.problem.mesh.vertices();
+    let extent = |c: usize| {
+        let (low, high) = vertices
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x[c]), h.max(x[c])));
+        high - low
+    };
+    let size = extent(0).max(extent(1));
+    let largest = solution.quantities.max_displacement;
+    if largest > LARGE_DISPLACEMENT * size {
+        remarks.push(format!(
+            "the largest displacement is {}{length}, the body is {}{length} long: displacements are taken to be small; check load, modulus and units",
+            short(largest, 3),
+            short(size, 3)
+        ));
+    }
+    remarks
 }
 
 fn solution_vtu(s: &Solution) -> Result<Vec<u8>, DataError> {
@@ -169,6 +216,8 @@ fn contact_vtu(s: &Solution) -> Result<Vec<u8>, DataError> {
     let scalars = |of: fn(&ContactValues) -> f64| points.iter().map(|p| of(p)).collect::<Vec<_>>();
     let (u_n, gap) = (scalars(|p| p.u_n), scalars(|p| p.gap));
     let (sigma_n, lambda) = (scalars(|p| p.sigma_n), scalars(|p| p.lambda));
+    let pressure = scalars(|p| p.pressure);
+    let direction: Vec<[f64; 2]> = points.iter().map(|p| p.direction).collect();
     vtu(&Grid {
         kind: if s.degree == 1 { CellKind::Line } else { CellKind::QuadraticLine },
         points: &places,
@@ -179,18 +228,24 @@ fn contact_vtu(s: &Solution) -> Result<Vec<u8>, DataError> {
             Field { name: "gap", values: Values::Scalars(&gap) },
             Field { name: "sigma_n", values: Values::Scalars(&sigma_n) },
             Field { name: "lambda", values: Values::Scalars(&lambda) },
+            Field { name: "pressure", values: Values::Scalars(&pressure) },
+            Field { name: "direction", values: Values::Vectors(&direction) },
         ],
         cell_data: &[],
     })
 }
 
-fn contact_rows(s: &Solution) -> Vec<ContactRow> {
-    let row = |p: &ContactValues| {
-        let [x, y] = s.nodes[p.node];
-        let ContactValues { arc, u_n, gap, sigma_n, lambda, .. } = *p;
-        ContactRow { arc, x, y, u_n, gap, sigma_n, lambda }
-    };
-    s.contact.iter().flat_map(|edge| edge.points.iter().map(row)).collect()
+fn contact_rows(s: &Solution) -> Vec<ContactRow<'_>> {
+    let mut rows = Vec::new();
+    for edge in &s.contact {
+        for p in &edge.points {
+            let [x, y] = s.nodes[p.node];
+            let ContactValues { arc, u_n, gap, sigma_n, lambda, pressure, .. } = *p;
+            let boundary = &*edge.boundary;
+            rows.push(ContactRow { arc, x, y, u_n, gap, sigma_n, lambda, pressure, boundary });
+        }
+    }
+    rows
 }
 
 fn draw(case: &Case, s: &Solution) -> Result<String, DataError> {
@@ -238,16 +293,23 @@ fn draw(case: &Case, s: &Solution) -> Result<String, DataError> {
 fn contact_parts(s: &Solution) -> Vec<Vec<ContactSample>> {
     let mut parts: Vec<Vec<ContactSample>> = Vec::new();
     let mut end = None;
+    let mut boundary = "";
     for edge in &s.contact {
+        if *edge.boundary != *boundary {
+            end = None;
+        }
+        boundary = &edge.boundary;
         let samples = edge.points.iter().map(|p| ContactSample {
             position: s.nodes[p.node],
-            normal: edge.normal,
+            normal: p.direction,
             displacement: s.displacement[p.node],
             gap: p.gap,
-            pressure: -p.lambda,
+            pressure: p.pressure,
         });
         match parts.last_mut() {
-            Some(part) if end == edge.points.first().map(|p| p.node) => part.extend(samples),
+            Some(part) if end.is_some() && end == edge.points.first().map(|p| p.node) => {
+                part.extend(samples)
+            }
             _ => parts.push(samples.collect()),
         }
         end = edge.points.last().map(|p| p.node);

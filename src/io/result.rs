@@ -4,15 +4,21 @@
 //! together with its name: `null` never stands in the file, and a NaN or an infinity is an error that names it, where
 //! JSON alone would turn it into `null` without a word. Everything but [`Seconds`] is the same from run to run.
 
+use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 use serde_json::ser::{Formatter, Serializer};
 
+use super::body::MaterialEcho;
+use super::case::Units;
 use super::data::DataError;
 use crate::fem::Errors;
-use crate::solve::{GammaReport, MethodReport, Quantities, Status, Times};
+use crate::solve::{
+    ContactBoundary, ContactQuadrature, EnergyBalance, Gamma0, GammaReport, Method, MethodReport,
+    Quantities, Status, Times,
+};
 
 /// The content of result.json, in its order.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -23,8 +29,23 @@ pub struct Results {
     /// The case file, as the command was given it; left out by the engine fenicsx.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub case: Option<String>,
+    /// The version of this layout: [`SCHEMA`].
+    #[serde(default = "first")]
+    pub schema: u32,
     /// The title of the case.
     pub title: String,
+    /// The units of the case; left out if it names none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub units: Option<Units>,
+    /// The materials and the physical surfaces made of them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub materials: Vec<MaterialEcho>,
+    /// The method as the case chose it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub choices: Option<Choices>,
+    /// What a person should know before the numbers are used; left out if there is nothing.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub remarks: Vec<String>,
     /// The discretisation.
     pub mesh: MeshSizes,
     /// Nitsche's parameter.
@@ -36,6 +57,15 @@ pub struct Results {
     pub method: Option<MethodReport>,
     /// The solution in numbers.
     pub quantities: Quantities,
+    /// What each contact boundary carries.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub contact: Vec<ContactBoundary>,
+    /// The moment about the origin of the force of each displacement boundary, counter-clockwise.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub reaction_moments: BTreeMap<String, f64>,
+    /// Where the energy comes from.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub balance: Option<EnergyBalance>,
     /// `[x, y, u_x, u_y]` at the points that the case asks for; left out if it asks for none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub probes: Vec<[f64; 4]>,
@@ -44,6 +74,41 @@ pub struct Results {
     pub errors: Option<Errors>,
     /// Where the time went.
     pub seconds: Seconds,
+}
+
+/// The version of the layout of result.json. 2: an entry for each contact boundary, balance, units, materials, choices.
+pub const SCHEMA: u32 = 2;
+
+/// The one without a number.
+fn first() -> u32 {
+    1
+}
+
+/// The method as the case chose it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Choices {
+    /// The polynomial degree.
+    pub degree: usize,
+    /// gamma0 was chosen by the program.
+    pub gamma0_auto: bool,
+    /// "exact", or the number of Gauss points on each contact edge.
+    pub contact_quadrature: String,
+    /// kappa >= 1 was allowed.
+    pub allow_noncoercive: bool,
+}
+
+impl From<&Method> for Choices {
+    fn from(method: &Method) -> Self {
+        Choices {
+            degree: method.degree.number(),
+            gamma0_auto: method.gamma0 == Gamma0::Auto,
+            contact_quadrature: match method.quadrature {
+                ContactQuadrature::Exact => "exact".to_owned(),
+                ContactQuadrature::Gauss(points) => points.to_string(),
+            },
+            allow_noncoercive: method.allow_noncoercive,
+        }
+    }
 }
 
 /// The discretisation.
@@ -261,8 +326,6 @@ impl Formatter for Layout {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeMap;
-
     use super::*;
     use crate::solve::RouteName;
 
@@ -270,7 +333,12 @@ mod tests {
         Results {
             version: "0.1.0".to_owned(),
             case: Some("cases/block.toml".to_owned()),
+            schema: SCHEMA,
             title: "A \"block\" <&> null".to_owned(),
+            units: Some(Units { length: "mm".to_owned(), force: "N".to_owned() }),
+            materials: Vec::new(),
+            choices: None,
+            remarks: Vec::new(),
             mesh: MeshSizes {
                 vertices: 4,
                 triangles: 2,
@@ -308,7 +376,22 @@ mod tests {
                 contact_length: 1.0,
                 peak_pressure: 2.0,
                 reactions: BTreeMap::from([("top".to_owned(), [0.0, 2.0])]),
+                reaction_moments: BTreeMap::new(),
             },
+            contact: vec![ContactBoundary {
+                boundary: "floor".to_owned(),
+                force: 2.0,
+                resultant: [0.0, 2.0],
+                moment: 1.0,
+                length: 1.0,
+                stretches: vec![[[0.0, 0.0], [1.0, 0.0]]],
+                peak_pressure: 2.5,
+                peak_at: [0.5, 0.0],
+                penetration: 1e-3,
+                penetration_at: [0.25, 0.0],
+            }],
+            reaction_moments: BTreeMap::from([("top".to_owned(), 0.5)]),
+            balance: None,
             probes: Vec::new(),
             errors: None,
             seconds: Seconds { read: 0.25, assemble: 0.5, solve: 1.0, write: 2.0 },
@@ -320,7 +403,12 @@ mod tests {
         let expected = r#"{
   "version": "0.1.0",
   "case": "cases/block.toml",
+  "schema": 2,
   "title": "A \"block\" <&> null",
+  "units": {
+    "length": "mm",
+    "force": "N"
+  },
   "mesh": {
     "vertices": 4,
     "triangles": 2,
@@ -360,6 +448,22 @@ mod tests {
     "reactions": {
       "top": [0.0, 2.0]
     }
+  },
+  "contact": [
+    {
+      "boundary": "floor",
+      "force": 2.0,
+      "resultant": [0.0, 2.0],
+      "moment": 1.0,
+      "length": 1.0,
+      "stretches": [[[0.0, 0.0], [1.0, 0.0]]],
+      "peak_pressure": 2.5,
+      "peak_at": [0.5, 0.0],
+      "penetration": 0.001,
+      "penetration_at": [0.25, 0.0]
+    }],
+  "reaction_moments": {
+    "top": 0.5
   },
   "seconds": {
     "read": 0.25,

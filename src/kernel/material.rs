@@ -116,6 +116,13 @@ impl<S: Scalar> Material<S> {
         let along = S::from(2) * self.mu * dot(gradient, n);
         [self.lambda * gradient[0] + along * n[0], self.lambda * gradient[1] + along * n[1]]
     }
+
+    /// The same for the traction's component along `d`: d . sigma(v) n = s . (v_x, v_y) for the returned
+    /// s = lambda (d . n) grad N + mu ((d . grad N) n + (grad N . n) d). With d = n, n a unit vector, it is that of sigma_n.
+    pub fn traction_of_shape(&self, gradient: [S; 2], n: [S; 2], d: [S; 2]) -> [S; 2] {
+        let (bulk, on_n, on_d) = (self.lambda * dot(d, n), dot(d, gradient), dot(gradient, n));
+        [0, 1].map(|c| bulk * gradient[c] + self.mu * (on_n * n[c] + on_d * d[c]))
+    }
 }
 
 impl<S: Scalar> Stress<S> {

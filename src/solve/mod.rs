@@ -2,6 +2,7 @@
 //! correct, the verdict, and what the solution says.
 
 pub mod accuracy;
+pub mod answers;
 pub mod assembled;
 mod checked;
 pub mod compliance;
@@ -24,6 +25,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use self::accuracy::Outcome;
+pub use self::answers::{ContactBoundary, EnergyBalance};
 pub use self::checked::{MOST_GAUSS_POINTS, MOST_ITERATIONS};
 pub use self::ladder::{Ladder, LadderError, Level};
 pub use self::route::RouteName;

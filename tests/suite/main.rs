@@ -19,6 +19,7 @@ mod fuzz;
 mod gmsh_live;
 mod held;
 mod method;
+mod parts;
 mod patch;
 mod reference;
 mod routes;
