@@ -238,6 +238,7 @@ impl SolveError {
             | SolveError::NotConverged { .. }
             | SolveError::IllConditioned { .. }
             | SolveError::Singular
+            | SolveError::OutOfRange
             | SolveError::OutOfMemory { .. } => false,
         }
     }
