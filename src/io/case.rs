@@ -206,7 +206,7 @@ fn case(file: &Path, root: &Table) -> Result<Case, CaseError> {
     let probes = read_probes(output, &mesh)?;
     Ok(Case {
         title,
-        problem: Problem { mesh, material, body_force, conditions },
+        problem: Problem::new(mesh, material, body_force, conditions),
         method,
         settings,
         probes,
@@ -406,7 +406,7 @@ fn read_boundaries<'s>(
         };
         boundaries.push(Boundary { value, title, key, kind, condition });
     }
-    if boundaries.iter().any(|b| matches!(b.condition, Condition::Contact { .. })) {
+    if boundaries.iter().any(|b| b.condition.is_contact()) {
         Ok(boundaries)
     } else {
         Err(all.wrong(CaseMistake::Combination {
@@ -560,7 +560,7 @@ mod tests {
         assert_eq!(case.method, Method::default());
         assert_eq!(case.settings, Settings::default());
         assert!(case.probes.is_empty());
-        assert_eq!(case.problem.material, Material::young_poisson(2.5, 0.25, Plane::Strain));
+        assert_eq!(case.problem.material, Material::young_poisson(2.5, 0.25, Plane::Strain).into());
         assert_eq!(case.problem.mesh.vertices()[5], [2.0, 1.0]);
         assert_eq!(case.problem.mesh.triangles()[0], [0, 1, 4], "the diagonal is right");
         assert_eq!(case.problem.body_force.each_ref().map(|f| f.degree()), [Some(0); 2]);
@@ -606,7 +606,7 @@ mod tests {
         let p = [2.0, 3.0];
         assert_eq!(case.title, "All");
         assert_eq!(case.problem.mesh.triangles().len(), 8);
-        assert_eq!(case.problem.material, Material::lame(-0.5, 1.0, Plane::Stress));
+        assert_eq!(case.problem.material, Material::lame(-0.5, 1.0, Plane::Stress).into());
         assert_eq!(case.problem.body_force.each_ref().map(|f| f.at(p)), [2.0, 26.0]);
         let conditions = &case.problem.conditions;
         let Condition::Displacement([Some(x), None]) = &conditions["left"] else { panic!() };
