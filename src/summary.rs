@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use signorini::io::convergence::Study;
-use signorini::io::result::{GammaChoice, NewtonHistory, Results};
+use signorini::io::result::{ContinuousCertificate, GammaChoice, NewtonHistory, Results};
 use signorini::io::{Case, numbers};
 use signorini::solve::{ContactQuadrature, NewtonReport, Outline, Settings, Status};
 
@@ -58,13 +58,17 @@ pub fn solved(r: &Results, files: &[PathBuf]) -> String {
             short(q.max_displacement)
         ),
     );
+    if let Some(certificates) = &r.certificate {
+        lines.line("error", distance(&certificates.continuous));
+    }
     lines.line(
         "time",
         format!(
-            "read {}, assemble {}, solve {}, write {}",
+            "read {}, assemble {}, solve {}, certify {}, write {}",
             time(seconds.read),
             time(seconds.assemble),
             time(seconds.solve),
+            time(seconds.certify),
             time(seconds.write)
         ),
     );
@@ -83,6 +87,21 @@ pub fn solved(r: &Results, files: &[PathBuf]) -> String {
     }
     lines.line("written", written(files));
     lines.0
+}
+
+/// How far the solution can be from the true one.
+fn distance(certificate: &ContinuousCertificate) -> String {
+    let reason = certificate.reason.as_deref().unwrap_or_default();
+    let Some(bound) = certificate.bound else { return format!("not bounded: {reason}") };
+    let size = match certificate.relative {
+        Some(relative) => format!("{} % of the energy norm", numbers::short(100.0 * relative, 2)),
+        None => short(bound),
+    };
+    if certificate.rigorous {
+        format!("energy error at most {size}: proved")
+    } else {
+        format!("energy error at most {size}, up to quadrature ({reason})")
+    }
 }
 
 /// Of a case that was only checked.

@@ -15,11 +15,14 @@
 
 use std::collections::BTreeMap;
 
-use super::oscillation::{self, Oscillation};
+use super::CertifyError;
+use super::oscillation::{self, Oscillation, Traction, is_within};
 use super::proof::{Certificate, Cut, Edge, Piece, Role};
+use crate::fem::constraints::Constraints;
 use crate::fem::contact_line::ContactLineEdge;
 use crate::fem::pieces::{Features, Rule};
-use crate::fem::{BoundaryEdge, Condition, Function, Mesh, Problem};
+use crate::fem::{BoundaryEdge, BoxedFunction, Condition, Function, Mesh, Problem};
+use crate::kernel::composite::complementary;
 use crate::kernel::edge_integral::{ExactEdge, positive_interval};
 use crate::kernel::{Material, P1, Stress, Triangle};
 
@@ -29,7 +32,7 @@ pub(super) enum Boundary<'a> {
     /// The components that are held.
     Held([bool; 2]),
     /// The traction.
-    Loaded(&'a [crate::fem::BoxedFunction; 2]),
+    Loaded(Traction<'a>),
     /// Nothing: traction 0.
     Free,
     /// Gamma_C, and which of its edges.
@@ -49,37 +52,84 @@ pub(super) struct Parts<'a> {
 }
 
 impl<'a> Parts<'a> {
+    /// # Errors
+    /// Conditions that no composite stress can satisfy.
     pub fn new(
         problem: &'a Problem,
         contact: &'a [ContactLineEdge<3, 2>],
-        prescribed: &'a [[Option<f64>; 2]],
-    ) -> Self {
+        constraints: &'a Constraints,
+    ) -> Result<Self, CertifyError> {
+        let unsupported = |why: String| Err(CertifyError::Unsupported(why));
+        if let Some(point) = problem.points.first() {
+            return unsupported(format!(
+                "[point.{}] holds a point, which a true solution does not feel",
+                point.name
+            ));
+        }
+        if !constraints.frames().is_empty() {
+            return unsupported("a support holds an oblique direction".to_owned());
+        }
         let mesh = &problem.mesh;
         let number = |edge: BoundaryEdge| mesh.triangle_edges()[edge.triangle][edge.local];
         let mut boundary: BTreeMap<usize, Boundary> =
             mesh.outline().iter().map(|&edge| (number(edge), Boundary::Free)).collect();
         for (name, condition) in &problem.conditions {
-            let what = match condition {
-                Condition::Displacement(functions) => {
-                    Boundary::Held([functions[0].is_some(), functions[1].is_some()])
-                }
-                Condition::Traction(traction) => Boundary::Loaded(traction),
-                Condition::Contact { .. } => continue,
-            };
             // The names were found when the problem was discretised.
             for &edge in mesh.edges_of(name).unwrap_or_default() {
+                let what = match condition {
+                    Condition::Displacement(functions) => {
+                        Boundary::Held([functions[0].is_some(), functions[1].is_some()])
+                    }
+                    Condition::Mixed { displacement, traction } => {
+                        let held = [0, 1].map(|c| displacement[c].is_some());
+                        let vanishes = |c: usize| {
+                            let t = &traction[c];
+                            t.degree() == Some(0) && t.at([0.0; 2]) == 0.0
+                        };
+                        if !(0..2).all(|c| held[c] || vanishes(c)) {
+                            return unsupported(format!(
+                                "'{name}' has a traction beside a prescribed component"
+                            ));
+                        }
+                        Boundary::Held(held)
+                    }
+                    Condition::Support { normal, tangential } => {
+                        let affine = |f: &BoxedFunction| is_within(f, 1);
+                        if ![normal, tangential].into_iter().flatten().all(affine) {
+                            return unsupported(format!("the support of '{name}' is not affine"));
+                        }
+                        let n = mesh.length_and_normal(edge).1;
+                        let held = match (normal.is_some(), tangential.is_some()) {
+                            (true, true) => [true, true],
+                            (along, across) if n[0] == 0.0 => [across, along],
+                            (along, across) if n[1] == 0.0 => [along, across],
+                            _ => {
+                                return unsupported(format!("'{name}' holds an oblique direction"));
+                            }
+                        };
+                        Boundary::Held(held)
+                    }
+                    Condition::Traction(traction) => Boundary::Loaded(Traction::Vector(traction)),
+                    Condition::Pressure(p) => Boundary::Loaded(Traction::Pressure(p)),
+                    Condition::Contact { .. } => continue,
+                    Condition::Obstacle(..) => {
+                        return unsupported(format!(
+                            "'{name}' meets an obstacle along a direction that is not the edges' normal"
+                        ));
+                    }
+                };
                 boundary.insert(number(edge), what);
             }
         }
         for (k, edge) in contact.iter().enumerate() {
             boundary.insert(number(edge.edge), Boundary::Contact(k));
         }
-        Parts { problem, mesh, contact, prescribed, boundary }
+        Ok(Parts { problem, mesh, contact, prescribed: constraints.values(), boundary })
     }
 
     /// What triangle `t` is made of.
-    pub fn material(&self, _t: usize) -> &Material<f64> {
-        &self.problem.material
+    pub fn material(&self, t: usize) -> &Material<f64> {
+        self.problem.material.of(t)
     }
 }
 
@@ -96,6 +146,7 @@ pub(super) fn admissible(parts: &Parts, u: &[[f64; 2]]) -> Vec<[f64; 2]> {
         }
     };
     hold(&mut v);
+    let reach = parts.mesh.vertices().iter().flatten().fold(0.0_f64, |max, x| max.max(x.abs()));
     let size = u.iter().flatten().fold(0.0_f64, |max, u| max.max(u.abs()));
     // At a corner two edges push; the second may push back into the first, so some rounds.
     for _ in 0..8 {
@@ -107,9 +158,9 @@ pub(super) fn admissible(parts: &Parts, u: &[[f64; 2]]) -> Vec<[f64; 2]> {
                 let free = [0, 1].map(|c| if data[c].is_none() { n[c] } else { 0.0 });
                 let along = free[0] * n[0] + free[1] * n[1];
                 let beyond = v[vertex][0] * n[0] + v[vertex][1] * n[1] - edge.gap[k];
-                // Intervals must see it: some rounding errors of what is subtracted.
+                // Intervals must see it, also on a part of the edge between places as far out as the body reaches.
                 let scale = edge.gap[k].abs() + if n[0] != 0.0 && n[1] != 0.0 { size } else { 0.0 };
-                let margin = 16.0 * f64::EPSILON * scale;
+                let margin = 64.0 * f64::EPSILON * scale * reach / edge.length / NEAR_THE_END;
                 if beyond > -margin && along > 0.0 && (beyond > 0.0 || margin > 0.0) {
                     let step = (beyond + 2.0 * margin) / along;
                     v[vertex] = [0, 1].map(|c| v[vertex][c] - step * free[c]);
@@ -124,8 +175,13 @@ pub(super) fn admissible(parts: &Parts, u: &[[f64; 2]]) -> Vec<[f64; 2]> {
     v
 }
 
-/// The certificate with equilibrated tractions, before any improvement, and what the data of the problem leave out.
-pub(super) fn build(parts: &Parts, u: &[[f64; 2]], v: Vec<[f64; 2]>) -> (Certificate, Oscillation) {
+/// The certificate with equilibrated tractions, before any improvement; the triangles of the mesh that its pieces come
+/// from; and what the data of the problem leave out.
+pub(super) fn build(
+    parts: &Parts,
+    u: &[[f64; 2]],
+    v: Vec<[f64; 2]>,
+) -> (Certificate, Vec<usize>, Oscillation) {
     let mesh = parts.mesh;
     let data = oscillation::Data::new(parts.problem);
     let whole: Vec<Triangle<f64>> = (0..mesh.triangles().len()).map(|t| mesh.triangle(t)).collect();
@@ -157,8 +213,7 @@ pub(super) fn build(parts: &Parts, u: &[[f64; 2]], v: Vec<[f64; 2]>) -> (Certifi
             }
             Some(Boundary::Free) => Role::Loaded([[0.0; 2]; 2]),
             Some(Boundary::Loaded(traction)) => {
-                let places = ends.map(|vertex| mesh.vertices()[vertex]);
-                Role::Loaded(data.affine_traction(traction, places, force))
+                traction.affine(ends.map(|vertex| mesh.vertices()[vertex]), force)
             }
             Some(Boundary::Contact(k)) => {
                 let edge = &parts.contact[*k];
@@ -175,7 +230,7 @@ pub(super) fn build(parts: &Parts, u: &[[f64; 2]], v: Vec<[f64; 2]>) -> (Certifi
         origins.resize(certificate.pieces.len(), t);
     }
     oscillation.measure(parts, &data, &mut certificate, &origins);
-    (certificate, oscillation)
+    (certificate, origins, oscillation)
 }
 
 /// Contact that ends this near an end of its edge, in units of the edge, leaves it whole: the triangles would be slivers.
@@ -194,7 +249,7 @@ fn add_triangle(
     let material = [parts.material(t).lambda(), parts.material(t).mu()];
     let add = |vertices: [usize; 3], edges: [usize; 3], certificate: &mut Certificate| {
         let triangle = Triangle { vertices: vertices.map(|p| place(certificate, p)) };
-        let body = data.body_on(&triangle);
+        let body = data.body_on(t, &triangle);
         certificate.pieces.push(Piece { vertices, edges, material, body, oscillation: 0.0 });
     };
     let cut = (0..3).find_map(|local| {
@@ -332,7 +387,7 @@ fn moments(
             Some(Boundary::Loaded(traction)) => {
                 known[e] = [true; 2];
                 let ends = [1, 2].map(|k| mesh.vertices()[corners[t][(local + k) % 3]]);
-                moments[e] = data.traction_moments(traction, ends, normal);
+                moments[e] = traction.moments(ends, normal);
             }
             Some(Boundary::Contact(k)) => {
                 known[e] = [true; 2];
@@ -343,7 +398,8 @@ fn moments(
         }
     }
     let averaged = moments.clone();
-    let body: Vec<[[f64; 2]; 3]> = triangles.iter().map(|t| data.body_moments(t)).collect();
+    let body: Vec<[[f64; 2]; 3]> =
+        triangles.iter().enumerate().map(|(t, triangle)| data.body_moments(t, triangle)).collect();
     for (a, fan) in fans.iter().enumerate() {
         go_round(
             a,
@@ -461,4 +517,45 @@ fn go_round(a: usize, fan: &[(usize, usize)], around: &Around, moments: &mut [[[
 /// A rule for a function of the place.
 pub(super) fn rule(function: &dyn Function) -> Rule {
     Rule::new(Features { kink: function.kink(), singular: None }, oscillation::POINTS)
+}
+
+/// Zienkiewicz and Zhu's estimate of the error of v: the distance of its stress from the stress that is averaged at the
+/// vertices, triangle by triangle of each material.
+pub(super) fn averaging_estimate(parts: &Parts, v: &[[f64; 2]]) -> f64 {
+    let mesh = parts.mesh;
+    let mut sums: BTreeMap<(usize, usize), ([f64; 3], f64)> = BTreeMap::new();
+    let stress_of = |t: usize, triangle: &Triangle<f64>| {
+        let nodal = mesh.triangles()[t].map(|vertex| v[vertex]);
+        parts.material(t).stress(super::proof::displacement_gradient(triangle, &nodal))
+    };
+    let place = |t: usize| parts.problem.material.place_of(t);
+    for (t, corners) in mesh.triangles().iter().enumerate() {
+        let triangle = mesh.triangle(t);
+        let (s, area) = (stress_of(t, &triangle), triangle.double_area());
+        for &vertex in corners {
+            let (sum, weight) = sums.entry((vertex, place(t))).or_default();
+            *sum = [sum[0] + area * s.xx, sum[1] + area * s.yy, sum[2] + area * s.xy];
+            *weight += area;
+        }
+    }
+    let mut square = 0.0;
+    for (t, corners) in mesh.triangles().iter().enumerate() {
+        let triangle = mesh.triangle(t);
+        let s = stress_of(t, &triangle);
+        let mut total = Stress { xx: 0.0, yy: 0.0, xy: 0.0 };
+        let mut share = 0.0;
+        for &vertex in corners {
+            let Some((sum, weight)) = sums.get(&(vertex, place(t))) else { continue };
+            let [xx, yy, xy] = sum.map(|x| x / weight);
+            let difference = Stress { xx: xx - s.xx, yy: yy - s.yy, xy: xy - s.xy };
+            share += complementary(parts.material(t), difference);
+            total = Stress {
+                xx: total.xx + difference.xx,
+                yy: total.yy + difference.yy,
+                xy: total.xy + difference.xy,
+            };
+        }
+        square += (share + complementary(parts.material(t), total)) * triangle.double_area() / 24.0;
+    }
+    square.sqrt()
 }

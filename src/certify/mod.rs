@@ -1,5 +1,7 @@
 //! How far a displacement is from the solution of (1)-(2): an upper bound of |u - v|_a without an unknown constant.
 //!
+//! Docs: docs/theory.md, sections 7.2 to 7.4.
+//!
 //! | module | what it does |
 //! | --- | --- |
 //! | [`proof`] | the certificate, and the checker that evaluates it |
@@ -31,16 +33,22 @@ pub struct Continuous {
     pub bound: f64,
     /// The bound over |v|_a.
     pub relative: f64,
+    /// The bound over an estimate of the error that proves nothing (Zienkiewicz and Zhu's): how sharp the bound may be.
+    pub effectivity_hint: Option<f64>,
     /// Whether every step is proved, rounding included.
     pub rigorous: bool,
     /// Why it is not rigorous.
     pub reason: Option<String>,
-    /// The square root of each triangle's share in the square of the bound.
+    /// The square root of each triangle's share in the square of the bound, by the triangles of the mesh.
     pub indicators: Vec<f64>,
     /// J(u) lies between these; `None` where the data are outside the exact class.
     pub energy: Option<[f64; 2]>,
     /// What proves it.
     pub certificate: Certificate,
+    /// What it proves.
+    pub proof: Proof,
+    /// |z|_a of the lift of section 7.4, which the bound has beside that of the proof.
+    pub lift: f64,
 }
 
 /// Certifies the P1 `solution` of `problem`.
@@ -67,10 +75,10 @@ pub fn certify_field(
     let space = Space::<P1, 3, 2>::new(&problem.mesh);
     let constraints = Constraints::new(problem, &space)?;
     let contact = contact_line::assemble(problem, &space, solution.gamma.gamma0)?;
-    let parts = build::Parts::new(problem, &contact, constraints.values());
+    let parts = build::Parts::new(problem, &contact, &constraints)?;
     let v = build::admissible(&parts, field);
-    let (mut certificate, oscillation) = build::build(&parts, &solution.displacement, v);
-    certificate.improve(SWEEPS)?;
+    let (mut certificate, origins, oscillation) = build::build(&parts, &solution.displacement, v);
+    sweeps::improve(&mut certificate, SWEEPS)?;
     let proof = certificate.evaluate::<Interval>()?;
     let bound = (Interval::point(proof.bound) + Interval::point(oscillation.lift)).hi();
     let relative = (Interval::point(bound) / Interval::point(proof.norm)).hi();
@@ -79,14 +87,20 @@ pub fn certify_field(
         let below = Interval::point(proof.energy[0]) - b * b / Interval::from(2);
         [below.lo(), proof.energy[1]]
     });
+    let mut shares = vec![0.0; problem.mesh.triangles().len()];
+    origins.iter().zip(&proof.shares).for_each(|(&t, share)| shares[t] += share);
+    let estimate = build::averaging_estimate(&parts, &certificate.displacement);
     Ok(Continuous {
         bound,
         relative,
         rigorous: oscillation.reason.is_none(),
         reason: oscillation.reason,
-        indicators: proof.shares.iter().map(|s| s.max(0.0).sqrt()).collect(),
+        effectivity_hint: (estimate > 0.0).then(|| bound / estimate),
+        indicators: shares.into_iter().map(|s| s.max(0.0).sqrt()).collect(),
         energy,
         certificate,
+        proof,
+        lift: oscillation.lift,
     })
 }
 
@@ -96,6 +110,8 @@ pub fn certify_field(
 pub enum CertifyError {
     #[error(transparent)]
     Data(#[from] DataError),
+    #[error("no bound of the distance to the true solution: {0}")]
+    Unsupported(String),
     #[error("certificates are made for degree 1; a composite stress for degree 2 is not built")]
     Degree,
     #[error("the certificate does not hold: {0}")]

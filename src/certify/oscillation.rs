@@ -15,6 +15,8 @@
 //!
 //! These integrals are by quadrature, so a bound that contains one is not rigorous: [`Oscillation::reason`] says so.
 
+use std::collections::BTreeMap;
+
 use super::build::{Boundary, Parts, place, rule};
 use super::proof::{Certificate, Piece, Role};
 use crate::fem::pieces::Rule;
@@ -25,92 +27,144 @@ use crate::kernel::{Material, Triangle};
 /// Quadrature points in each direction.
 pub(super) const POINTS: usize = 8;
 
-/// The loads of a problem as a certificate needs them.
+/// The body forces of a problem as a certificate needs them.
 pub(super) struct Data<'a> {
-    body: &'a [BoxedFunction; 2],
-    rules: [Rule; 2],
+    /// Those on the whole body, then those on parts of it.
+    forces: Vec<(&'a [BoxedFunction; 2], [Rule; 2])>,
+    /// Which of the latter act on a triangle.
+    local: BTreeMap<usize, Vec<usize>>,
 }
 
 /// Both components are polynomials of at most this degree.
 fn within(functions: &[BoxedFunction; 2], degree: u32) -> bool {
-    functions.iter().all(|f| f.degree().is_some_and(|d| d <= degree))
+    functions.iter().all(|f| is_within(f, degree))
+}
+
+/// The function is a polynomial of at most this degree.
+pub(super) fn is_within(function: &BoxedFunction, degree: u32) -> bool {
+    function.degree().is_some_and(|d| d <= degree)
 }
 
 impl<'a> Data<'a> {
     pub fn new(problem: &'a Problem) -> Self {
-        let body = &problem.body_force;
-        Data { body, rules: [0, 1].map(|c| rule(&*body[c])) }
+        let parts = problem.surface_forces.iter().map(|part| &part.force);
+        let all = std::iter::once(&problem.body_force).chain(parts);
+        let mut local: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for (k, part) in problem.surface_forces.iter().enumerate() {
+            part.triangles.iter().for_each(|&t| local.entry(t).or_default().push(k + 1));
+        }
+        Data { forces: all.map(|f| (f, [0, 1].map(|c| rule(&*f[c])))).collect(), local }
     }
 
-    /// int_T f phi_a for each vertex a.
-    pub fn body_moments(&self, triangle: &Triangle<f64>) -> [[f64; 2]; 3] {
+    /// The component c of each force that acts on triangle `t`, with its rule.
+    fn acting(&self, t: usize) -> impl Iterator<Item = (usize, &BoxedFunction, &Rule)> {
+        let here = self.local.get(&t).into_iter().flatten().copied();
+        std::iter::once(0).chain(here).flat_map(|k| {
+            let (functions, rules) = &self.forces[k];
+            (0..2).map(move |c| (c, &functions[c], &rules[c]))
+        })
+    }
+
+    /// int f phi_a over a part of triangle `t`, for each of its vertices a.
+    pub fn body_moments(&self, t: usize, part: &Triangle<f64>) -> [[f64; 2]; 3] {
         let mut moments = [[0.0; 2]; 3];
-        for (c, f) in self.body.iter().enumerate() {
+        for (c, f, rule) in self.acting(t) {
             if f.degree() == Some(0) {
-                let third = triangle.double_area() / 6.0;
-                let value = f.at(triangle.vertices[0]);
-                moments.iter_mut().for_each(|m| m[c] = third * value);
-                continue;
+                let value = f.at(part.vertices[0]) * part.double_area() / 6.0;
+                moments.iter_mut().for_each(|m| m[c] += value);
+            } else {
+                rule.on_triangle(part, |l, x, weight| {
+                    let value = weight * f.at(x);
+                    (0..3).for_each(|a| moments[a][c] += l[a] * value);
+                });
             }
-            self.rules[c].on_triangle(triangle, |l, x, weight| {
-                let value = weight * f.at(x);
-                (0..3).for_each(|a| moments[a][c] += l[a] * value);
-            });
         }
         moments
     }
 
-    /// f_h on the three parts: constants with the moments of f, (4 sum F - 9 F_i) / |T|.
-    pub fn body_on(&self, triangle: &Triangle<f64>) -> [[f64; 2]; 3] {
-        let moments = self.body_moments(triangle);
-        let area = triangle.double_area() / 2.0;
-        let mut parts = [[0.0; 2]; 3];
-        for (c, f) in self.body.iter().enumerate() {
-            let constant = (f.degree() == Some(0)).then(|| f.at(triangle.vertices[0]));
-            let total: f64 = moments.iter().map(|m| m[c]).sum();
-            for i in 0..3 {
-                parts[i][c] = constant.unwrap_or((4.0 * total - 9.0 * moments[i][c]) / area);
+    /// f_h on the three parts of the composite element: constants with the moments of f, (4 sum F - 9 F_i) / |T|.
+    pub fn body_on(&self, t: usize, part: &Triangle<f64>) -> [[f64; 2]; 3] {
+        let constant = self.acting(t).all(|(_, f, _)| f.degree() == Some(0));
+        if constant {
+            let mut sum = [0.0; 2];
+            self.acting(t).for_each(|(c, f, _)| sum[c] += f.at(part.vertices[0]));
+            return [sum; 3];
+        }
+        let moments = self.body_moments(t, part);
+        let area = part.double_area() / 2.0;
+        let total = [0, 1].map(|c| moments.iter().map(|m| m[c]).sum::<f64>());
+        moments.map(|m| [0, 1].map(|c| (4.0 * total[c] - 9.0 * m[c]) / area))
+    }
+}
+
+/// A given traction.
+#[derive(Clone, Copy)]
+pub(super) enum Traction<'a> {
+    /// Its components.
+    Vector(&'a [BoxedFunction; 2]),
+    /// -p n
+    Pressure(&'a BoxedFunction),
+}
+
+impl Traction<'_> {
+    /// It is affine along a straight edge.
+    fn is_affine(&self) -> bool {
+        match self {
+            Traction::Vector(t) => within(t, 1),
+            Traction::Pressure(p) => is_within(p, 1),
+        }
+    }
+
+    fn at(&self, x: [f64; 2], n: [f64; 2]) -> [f64; 2] {
+        match self {
+            Traction::Vector(t) => [0, 1].map(|c| t[c].on_boundary(x, n)),
+            Traction::Pressure(p) => {
+                let pressure = p.on_boundary(x, n);
+                n.map(|n| -n * pressure)
             }
         }
-        parts
+    }
+
+    fn rule(&self) -> Rule {
+        match self {
+            Traction::Vector([x, y]) => rule(if x.kink().is_some() { &**x } else { &**y }),
+            Traction::Pressure(p) => rule(&***p),
+        }
     }
 
     /// int_E t phi for both ends of an edge with the scaled normal N.
-    pub fn traction_moments(
-        &self,
-        traction: &[BoxedFunction; 2],
-        ends: [[f64; 2]; 2],
-        normal: [f64; 2],
-    ) -> [[f64; 2]; 2] {
+    pub fn moments(&self, ends: [[f64; 2]; 2], normal: [f64; 2]) -> [[f64; 2]; 2] {
         let length = normal[0].hypot(normal[1]);
         let unit = normal.map(|n| n / length);
         let mut moments = [[0.0; 2]; 2];
-        for (c, t) in traction.iter().enumerate() {
-            rule(&**t).on_edge(ends, [], |point| {
-                let value = point.weight * length * t.on_boundary(point.x, unit);
-                moments[0][c] += (1.0 - point.s) * value;
-                moments[1][c] += point.s * value;
-            });
-        }
+        self.rule().on_edge(ends, [], |point| {
+            let t = self.at(point.x, unit);
+            for c in 0..2 {
+                moments[0][c] += (1.0 - point.s) * point.weight * length * t[c];
+                moments[1][c] += point.s * point.weight * length * t[c];
+            }
+        });
         moments
     }
 
     /// t_h at both ends: t itself where it is affine, else the affine function whose `force` has the moments of t.
-    pub fn affine_traction(
-        &self,
-        traction: &[BoxedFunction; 2],
-        ends: [[f64; 2]; 2],
-        force: [[f64; 2]; 2],
-    ) -> [[f64; 2]; 2] {
-        let normal = [ends[1][1] - ends[0][1], ends[0][0] - ends[1][0]];
-        let length = normal[0].hypot(normal[1]);
-        if within(traction, 1) {
-            let unit = normal.map(|n| n / length);
-            ends.map(|x| [0, 1].map(|c| traction[c].on_boundary(x, unit)))
-        } else {
-            force.map(|f| f.map(|f| f / length))
+    pub fn affine(&self, ends: [[f64; 2]; 2], force: [[f64; 2]; 2]) -> Role {
+        let (length, unit) = length_and_normal(ends);
+        match self {
+            Traction::Vector(_) if self.is_affine() => Role::Loaded(ends.map(|x| self.at(x, unit))),
+            Traction::Vector(_) => Role::Loaded(force.map(|f| f.map(|f| f / length))),
+            Traction::Pressure(p) if self.is_affine() => {
+                Role::Pressed(ends.map(|x| p.on_boundary(x, unit)))
+            }
+            Traction::Pressure(_) => Role::Pressed(force.map(|f| -dot(f, unit) / length)),
         }
     }
+}
+
+fn length_and_normal(ends: [[f64; 2]; 2]) -> (f64, [f64; 2]) {
+    let normal = [ends[1][1] - ends[0][1], ends[0][0] - ends[1][0]];
+    let length = normal[0].hypot(normal[1]);
+    (length, normal.map(|n| n / length))
 }
 
 /// What the data of a problem leave out of a certificate.
@@ -128,18 +182,26 @@ impl Oscillation {
         if !within(&problem.body_force, 0) {
             inexact.push("the body force is not known to be constant".to_owned());
         }
+        for part in problem.surface_forces.iter().filter(|part| !within(&part.force, 0)) {
+            inexact
+                .push(format!("the body force on '{}' is not known to be constant", part.surface));
+        }
         for (name, condition) in &problem.conditions {
-            let what = match condition {
-                Condition::Displacement(functions) => {
-                    let affine = |f: &BoxedFunction| f.degree().is_some_and(|d| d <= 1);
-                    (!functions.iter().flatten().all(affine)).then_some("displacement")
+            let affine = |f: &BoxedFunction| is_within(f, 1);
+            let (what, exact) = match condition {
+                Condition::Displacement(u) => ("displacement", u.iter().flatten().all(affine)),
+                Condition::Mixed { displacement, .. } => {
+                    ("displacement", displacement.iter().flatten().all(affine))
                 }
-                Condition::Traction(traction) => (!within(traction, 1)).then_some("traction"),
-                Condition::Contact { gap } => {
-                    (!gap.degree().is_some_and(|d| d <= 1)).then_some("gap")
+                Condition::Support { normal, tangential } => {
+                    ("displacement", [normal, tangential].into_iter().flatten().all(affine))
                 }
+                Condition::Traction(traction) => ("traction", within(traction, 1)),
+                Condition::Pressure(p) => ("pressure", affine(p)),
+                Condition::Contact { gap } => ("gap", affine(gap)),
+                Condition::Obstacle(..) => ("obstacle", false),
             };
-            if let Some(what) = what {
+            if !exact {
                 inexact.push(format!("the {what} of '{name}' is not known to be affine"));
             }
         }
@@ -165,7 +227,7 @@ impl Oscillation {
             .pieces
             .iter()
             .zip(origins)
-            .map(|(piece, &t)| lifts[t] + loads(parts, data, certificate, piece))
+            .map(|(piece, &t)| lifts[t] + loads(parts, data, certificate, piece, t))
             .collect();
         for (piece, oscillation) in certificate.pieces.iter_mut().zip(pieces) {
             piece.oscillation = oscillation;
@@ -197,47 +259,48 @@ fn least_stiffness(material: &Material<f64>) -> f64 {
     2.0 * material.mu().min(material.lambda() + material.mu())
 }
 
-/// What f and t cost on one triangle.
-fn loads(parts: &Parts, data: &Data, certificate: &Certificate, piece: &Piece) -> f64 {
+/// What f and t cost on one piece of triangle `t`.
+fn loads(parts: &Parts, data: &Data, certificate: &Certificate, piece: &Piece, t: usize) -> f64 {
     let triangle = Triangle { vertices: piece.vertices.map(|p| place(certificate, p)) };
     let (k, h) = korn(&triangle);
     let poincare = k * h / std::f64::consts::PI;
     let mut square = 0.0;
-    let thirds = [1.0 / 3.0; 3];
-    for i in 0..3 {
-        let mut vertices = triangle.vertices;
-        vertices[i] = triangle.point(thirds);
-        let part = Triangle { vertices };
-        for (c, f) in data.body.iter().enumerate().filter(|(_, f)| f.degree() != Some(0)) {
-            data.rules[c].on_triangle(&part, |_, x, weight| {
-                let difference = f.at(x) - piece.body[i][c];
-                square += weight * difference * difference;
+    if data.acting(t).any(|(_, f, _)| f.degree() != Some(0)) {
+        // Each component by the rule of the first force that is smooth only piece by piece.
+        let kinked = data.acting(t).find(|(_, f, _)| f.kink().is_some());
+        let Some((_, _, rule)) = kinked.or_else(|| data.acting(t).next()) else { return 0.0 };
+        for i in 0..3 {
+            let mut vertices = triangle.vertices;
+            vertices[i] = triangle.point([1.0 / 3.0; 3]);
+            rule.on_triangle(&Triangle { vertices }, |_, x, weight| {
+                let mut difference = piece.body[i].map(|f| -f);
+                data.acting(t).for_each(|(c, f, _)| difference[c] += f.at(x));
+                square += weight * dot(difference, difference);
             });
         }
     }
     let mut sum = poincare * square.sqrt();
     for e in piece.edges {
         let edge = certificate.edges[e];
-        let (Role::Loaded(affine), Some(Boundary::Loaded(traction))) =
-            (edge.role, parts.boundary.get(&e))
-        else {
-            continue;
-        };
-        if within(traction, 1) {
+        let Some(Boundary::Loaded(traction)) = parts.boundary.get(&e) else { continue };
+        if traction.is_affine() {
             continue;
         }
         let ends = edge.ends.map(|p| place(certificate, p));
-        let normal = [ends[1][1] - ends[0][1], ends[0][0] - ends[1][0]];
-        let length = normal[0].hypot(normal[1]);
-        let unit = normal.map(|n| n / length);
+        let (length, unit) = length_and_normal(ends);
+        let affine = match edge.role {
+            Role::Loaded(affine) => affine,
+            Role::Pressed(p) => p.map(|p| unit.map(|n| -p * n)),
+            _ => continue,
+        };
         let mut square = 0.0;
-        for (c, t) in traction.iter().enumerate() {
-            rule(&**t).on_edge(ends, [], |point| {
+        traction.rule().on_edge(ends, [], |point| {
+            let t = traction.at(point.x, unit);
+            for c in 0..2 {
                 let there = (1.0 - point.s) * affine[0][c] + point.s * affine[1][c];
-                let difference = t.on_boundary(point.x, unit) - there;
-                square += point.weight * length * difference * difference;
-            });
-        }
+                square += point.weight * length * (t[c] - there) * (t[c] - there);
+            }
+        });
         let trace = (length / (triangle.double_area() / 2.0)
             * (poincare * poincare + h * poincare * k))
             .sqrt();
@@ -258,20 +321,19 @@ fn lifts(parts: &Parts) -> Vec<f64> {
             let between = |s: f64, value: [f64; 2]| (1.0 - s) * value[0] + s * value[1];
             let at = |s: f64| [0, 1].map(|c| between(s, [ends[0][c], ends[1][c]]));
             let lacking: Box<dyn Fn(f64) -> [f64; 2]> = match condition {
-                Condition::Displacement(functions) => Box::new(move |s| {
+                Condition::Displacement(functions)
+                | Condition::Mixed { displacement: functions, .. } => Box::new(move |s| {
                     [0, 1].map(|c| match &functions[c] {
-                        Some(f) if !f.degree().is_some_and(|d| d <= 1) => {
+                        Some(f) if !is_within(f, 1) => {
                             f.at(at(s)) - between(s, ends.map(|x| f.at(x)))
                         }
                         _ => 0.0,
                     })
                 }),
-                Condition::Contact { gap } if !gap.degree().is_some_and(|d| d <= 1) => {
-                    Box::new(move |s| {
-                        let lacking = gap.at(at(s)) - between(s, ends.map(|x| gap.at(x)));
-                        normal.map(|n| lacking * n)
-                    })
-                }
+                Condition::Contact { gap } if !is_within(gap, 1) => Box::new(move |s| {
+                    let lacking = gap.at(at(s)) - between(s, ends.map(|x| gap.at(x)));
+                    normal.map(|n| lacking * n)
+                }),
                 _ => continue,
             };
             let t = edge.triangle;

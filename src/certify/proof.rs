@@ -14,7 +14,6 @@
 use thiserror::Error;
 
 use super::balance::{self, Unbalanced};
-use super::sweeps;
 use crate::kernel::composite::{Composite, Loads, complementary};
 use crate::kernel::contact_edge::integral_of_product;
 use crate::kernel::scalar::dot;
@@ -130,6 +129,8 @@ pub enum Role {
     Held([bool; 2], [[f64; 2]; 2]),
     /// Gamma_N: the traction t that is given (a stress, not a force).
     Loaded([[f64; 2]; 2]),
+    /// Gamma_N: the pressure p that is given, t = -p n.
+    Pressed([f64; 2]),
     /// Gamma_C.
     Contact {
         /// tau_n at both ends.
@@ -152,6 +153,19 @@ pub struct Proof {
     pub energy: [f64; 2],
 }
 
+/// What a certificate is said to prove.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Claim {
+    /// As in [`Proof`].
+    pub shares: Vec<f64>,
+    /// As in [`Proof`].
+    pub bound: f64,
+}
+
+/// A triangle may be out of balance by this, in units of the forces on it: the tractions and the sums of a dozen terms,
+/// rounded.
+const IMBALANCE: f64 = 128.0 * f64::EPSILON;
+
 /// Why a certificate proves nothing.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
@@ -172,6 +186,12 @@ pub enum Rejection {
     Orientation { triangle: usize },
     #[error(transparent)]
     Unbalanced(#[from] Unbalanced),
+    #[error("triangle {triangle} is not in equilibrium: its tractions and its body force don't balance to rounding")]
+    OutOfBalance { triangle: usize },
+    #[error("triangle {triangle} claims the share {claimed}; its data give {found}")]
+    Share { triangle: usize, claimed: f64, found: f64 },
+    #[error("the claimed bound is {claimed}; the data give {found}")]
+    Bound { claimed: f64, found: f64 },
     #[error("the bound is not a finite number")]
     NotFinite,
 }
@@ -190,25 +210,48 @@ impl Certificate {
         self.sum(&state)
     }
 
-    /// Improves tau by `count` sweeps over the vertices.
+    /// The same as [`Certificate::evaluate`] in intervals, and more than a proof needs: that the certificate is as it was
+    /// made. Its tractions balance on every triangle to the rounding of doubles, and what it claims are the very numbers
+    /// that its data give.
     ///
     /// # Errors
-    /// As [`Certificate::evaluate`].
-    pub fn improve(&mut self, count: usize) -> Result<(), Rejection> {
-        let state = self.balanced::<f64>()?;
-        // From now on with the tractions that balance, in doubles.
-        for (edge, owner) in self.edges.iter_mut().zip(&state.owners) {
-            let Some(Owner { piece, local }) = owner[0] else { continue };
-            if let Role::Inner(force) | Role::Held(_, force) = &mut edge.role {
-                *force = state.loads[piece].forces[local];
+    /// As [`Certificate::evaluate`]; a triangle that is out of balance; a claim that does not follow.
+    pub fn audit(&self, claim: &Claim) -> Result<Proof, Rejection> {
+        let state = self.balanced::<Interval>()?;
+        for (t, piece) in self.pieces.iter().enumerate() {
+            let loads = self.loads(t, &state.forces, &state.owners);
+            let triangle = &state.triangles[t];
+            let size = |x: Interval| x.lo().abs().max(x.hi().abs());
+            let reach = (0..3).flat_map(|i| triangle.edge(i)).map(size).fold(0.0, f64::max);
+            let area = size(triangle.double_area());
+            let forces: f64 = loads.forces.iter().flatten().flatten().copied().map(size).sum();
+            let body: f64 = piece.body.iter().flatten().map(|f| f.abs()).sum();
+            let allowed = IMBALANCE * (forces + area * body);
+            let resultant = loads.resultant(triangle);
+            let force = resultant.force.map(size).into_iter().fold(0.0, f64::max);
+            if !(force <= allowed && size(resultant.moment) <= allowed * reach) {
+                return Err(Rejection::OutOfBalance { triangle: t });
             }
         }
-        sweeps::improve(self, &state.owners, &state.loads, count);
-        Ok(())
+        let proof = self.sum(&state)?;
+        if claim.shares.len() != proof.shares.len() {
+            let (found, expected) = (claim.shares.len(), proof.shares.len());
+            return Err(Rejection::Length { what: "claimed shares", found, expected });
+        }
+        let same = |a: f64, b: f64| a.to_bits() == b.to_bits();
+        for (triangle, (&claimed, &found)) in claim.shares.iter().zip(&proof.shares).enumerate() {
+            if !same(claimed, found) {
+                return Err(Rejection::Share { triangle, claimed, found });
+            }
+        }
+        if !same(claim.bound, proof.bound) {
+            return Err(Rejection::Bound { claimed: claim.bound, found: proof.bound });
+        }
+        Ok(proof)
     }
 
     /// Checks all conditions and puts the triangles in equilibrium.
-    fn balanced<S: Enclosing>(&self) -> Result<Balanced<S>, Rejection> {
+    pub(super) fn balanced<S: Enclosing>(&self) -> Result<Balanced<S>, Rejection> {
         self.check_shape()?;
         let points: Vec<[S; 2]> = self.values(&self.vertices);
         let v: Vec<[S; 2]> = self.values(&self.displacement);
@@ -229,6 +272,7 @@ impl Certificate {
                     let length = length();
                     traction.map(|t| t.map(|t| length * S::exactly(t)))
                 }
+                Role::Pressed(p) => p.map(|p| normal.map(|n| -(S::exactly(p) * n))),
                 Role::Contact { pressure, gap } => {
                     let mut beyond = [S::from(0); 2];
                     for (k, vertex) in edge.ends.into_iter().enumerate() {
@@ -261,7 +305,7 @@ impl Certificate {
 
     /// The right side of the theorem.
     fn sum<S: Enclosing>(&self, state: &Balanced<S>) -> Result<Proof, Rejection> {
-        let Balanced { triangles, v, owners, forces, loads, contact } = state;
+        let Balanced { triangles, v, forces, loads, contact, .. } = state;
         let zero = S::from(0);
         let (mut square, mut norm, mut energy) = (zero, zero, zero);
         let mut shares = Vec::with_capacity(loads.len());
@@ -295,7 +339,7 @@ impl Certificate {
             energy = energy + internal / S::from(2) - work * double_area / S::from(54);
         }
         for (e, edge) in self.edges.iter().enumerate() {
-            if let (Role::Loaded(_), Some(_)) = (edge.role, owners[e][0]) {
+            if let Role::Loaded(_) | Role::Pressed(_) = edge.role {
                 let [a, b] = edge.ends.map(|vertex| v[vertex]);
                 for c in 0..2 {
                     let force = [forces[e][0][c], forces[e][1][c]];
@@ -365,6 +409,7 @@ impl Certificate {
         for (i, edge) in self.edges.iter().enumerate() {
             let numbers = match edge.role {
                 Role::Inner(f) | Role::Held(_, f) | Role::Loaded(f) => finite(f.as_flattened()),
+                Role::Pressed(p) => finite(&p),
                 Role::Contact { pressure, gap } => finite(&pressure) && finite(&gap),
             };
             if !(numbers && edge.ends.iter().all(|&p| p < points) && edge.ends[0] != edge.ends[1]) {
@@ -484,15 +529,15 @@ impl Certificate {
 }
 
 /// A certificate whose triangles are in equilibrium, in the numbers `S`.
-struct Balanced<S> {
+pub(super) struct Balanced<S> {
     triangles: Vec<Triangle<S>>,
     /// v at vertices and cuts.
     v: Vec<[S; 2]>,
-    owners: Vec<[Option<Owner>; 2]>,
+    pub owners: Vec<[Option<Owner>; 2]>,
     /// tau N on the edges as the certificate has it.
     forces: Vec<[[S; 2]; 2]>,
     /// On each triangle, in equilibrium.
-    loads: Vec<Loads<S>>,
+    pub loads: Vec<Loads<S>>,
     /// 2 int tau_n (v_n - g) over the edges of each triangle.
     contact: Vec<S>,
 }

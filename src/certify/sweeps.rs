@@ -11,7 +11,7 @@
 //! unknown. One sweep goes to every vertex and solves for its three unknowns and those of its edges together.
 
 use super::build::place;
-use super::proof::{Certificate, Owner, Role, displacement_gradient};
+use super::proof::{Balanced, Certificate, Owner, Rejection, Role, displacement_gradient};
 use crate::kernel::composite::{Composite, Loads};
 use crate::kernel::{Stress, Triangle};
 
@@ -23,8 +23,31 @@ struct Energy {
     gradient: [f64; 12],
 }
 
-/// Improves the tractions of `certificate` in `count` sweeps. Equilibrium stays as it is, up to rounding.
-pub(super) fn improve(
+/// Improves the tractions of `certificate` in `count` sweeps, and leaves them in equilibrium up to rounding.
+///
+/// # Errors
+/// A condition of the theorem that does not hold.
+pub(super) fn improve(certificate: &mut Certificate, count: usize) -> Result<(), Rejection> {
+    let state = balance(certificate)?;
+    sweep(certificate, &state.owners, &state.loads, count);
+    // Each update has left its rounding errors.
+    balance(certificate)?;
+    Ok(())
+}
+
+/// Gives the edges the tractions that balance, in doubles.
+fn balance(certificate: &mut Certificate) -> Result<Balanced<f64>, Rejection> {
+    let state = certificate.balanced::<f64>()?;
+    for (edge, owner) in certificate.edges.iter_mut().zip(&state.owners) {
+        let Some(Owner { piece, local }) = owner[0] else { continue };
+        if let Role::Inner(force) | Role::Held(_, force) = &mut edge.role {
+            *force = state.loads[piece].forces[local];
+        }
+    }
+    Ok(state)
+}
+
+fn sweep(
     certificate: &mut Certificate,
     owners: &[[Option<Owner>; 2]],
     loads: &[Loads<f64>],

@@ -12,8 +12,11 @@ use super::data::DataError;
 use super::files::{Output, WriteError};
 use super::numbers::short;
 use super::picture::{ContactSample, Scene, picture};
-use super::result::{GammaChoice, MeshSizes, NewtonHistory, Results, Seconds, result_json};
+use super::result::{
+    Certificates, GammaChoice, MeshSizes, NewtonHistory, Results, Seconds, result_json,
+};
 use super::vtu::{CellKind, Field, Grid, Values, vtu};
+use crate::certify;
 use crate::fem;
 use crate::solve::solution::ContactValues;
 use crate::solve::{Solution, Times};
@@ -49,12 +52,16 @@ pub fn write(
     times: Times,
 ) -> Result<(Vec<PathBuf>, Results), OutputError> {
     let start = Instant::now();
+    let certified = certify::certify(&case.problem, solution);
+    let certify = start.elapsed();
+    let start = Instant::now();
     let mut output = Output::new(folder)?;
     let mut stage = |file, bytes: Result<Vec<u8>, DataError>| -> Result<(), OutputError> {
         let bytes = bytes.map_err(|error| OutputError::Data { file, error })?;
         Ok(output.stage(file, &bytes)?)
     };
-    stage("solution.vtu", solution_vtu(solution))?;
+    let indicators = certified.as_ref().ok().map(|c| c.indicators.as_slice());
+    stage("solution.vtu", solution_vtu(solution, indicators))?;
     stage("contact.vtu", contact_vtu(solution))?;
     stage("contact.csv", contact_csv(&contact_rows(solution)).map(String::into_bytes))?;
     stage("picture.svg", draw(case, solution).map(String::into_bytes))?;
@@ -62,9 +69,11 @@ pub fn write(
         read: read.as_secs_f64(),
         assemble: times.assemble().as_secs_f64(),
         solve: times.solve().as_secs_f64(),
+        certify: certify.as_secs_f64(),
         write: start.elapsed().as_secs_f64(),
     };
-    let results = results(case, solution, seconds)?;
+    let mut results = results(case, solution, seconds)?;
+    results.certificate = Some(Certificates { continuous: (&certified).into() });
     stage("result.json", result_json(&results).map(String::into_bytes))?;
     Ok((output.publish()?, results))
 }
@@ -109,22 +118,27 @@ pub fn results(
         },
         quantities: solution.quantities.clone(),
         probes: probes.collect(),
+        certificate: None,
         errors,
         seconds,
     })
 }
 
-fn solution_vtu(s: &Solution) -> Result<Vec<u8>, DataError> {
+fn solution_vtu(s: &Solution, indicators: Option<&[f64]>) -> Result<Vec<u8>, DataError> {
     let stress: Vec<[f64; 4]> = s.stress.iter().map(|(t, zz)| [t.xx, t.yy, *zz, t.xy]).collect();
+    let mut cell_data = vec![
+        Field { name: "stress", values: Values::SymmetricTensors(&stress) },
+        Field { name: "von_mises", values: Values::Scalars(&s.von_mises) },
+    ];
+    if let Some(indicators) = indicators {
+        cell_data.push(Field { name: "error_bound", values: Values::Scalars(indicators) });
+    }
     vtu(&Grid {
         kind: if s.degree == 1 { CellKind::Triangle } else { CellKind::QuadraticTriangle },
         points: &s.nodes,
         connectivity: &s.elements,
         point_data: &[Field { name: "displacement", values: Values::Vectors(&s.displacement) }],
-        cell_data: &[
-            Field { name: "stress", values: Values::SymmetricTensors(&stress) },
-            Field { name: "von_mises", values: Values::Scalars(&s.von_mises) },
-        ],
+        cell_data: &cell_data,
     })
 }
 

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::ser::{Formatter, Serializer};
 
 use super::data::DataError;
+use crate::certify::{CertifyError, Continuous};
 use crate::fem::Errors;
 use crate::solve::{GammaReport, Quantities, Status};
 
@@ -31,6 +32,9 @@ pub struct Results {
     /// `[x, y, u_x, u_y]` at the points that the case asks for; left out if it asks for none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub probes: Vec<[f64; 4]>,
+    /// How wrong the solution can be; left out if nothing is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub certificate: Option<Certificates>,
     /// The distances from the exact solution; left out if the case has none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub errors: Option<Errors>,
@@ -92,6 +96,54 @@ pub struct NewtonHistory {
     pub status: Status,
 }
 
+/// How wrong the solution can be.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Certificates {
+    /// The distance from the true solution.
+    pub continuous: ContinuousCertificate,
+}
+
+/// The distance of the admissible part v of the solution from the true solution u of (1)-(2).
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ContinuousCertificate {
+    /// |u - v|_a is at most this.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bound: Option<f64>,
+    /// The same over |v|_a.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub relative: Option<f64>,
+    /// The bound over an estimate of the error, which proves nothing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub effectivity_hint: Option<f64>,
+    /// The potential energy of u lies between these.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub potential_energy: Option<[f64; 2]>,
+    /// Every step is proved, rounding included.
+    pub rigorous: bool,
+    /// Why not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+}
+
+impl From<&Result<Continuous, CertifyError>> for ContinuousCertificate {
+    fn from(result: &Result<Continuous, CertifyError>) -> Self {
+        match result {
+            Ok(c) => ContinuousCertificate {
+                bound: Some(c.bound),
+                // A body at rest has no energy to compare with.
+                relative: Some(c.relative).filter(|r| r.is_finite()),
+                effectivity_hint: c.effectivity_hint,
+                potential_energy: c.energy,
+                rigorous: c.rigorous,
+                reason: c.reason.clone(),
+            },
+            Err(error) => {
+                ContinuousCertificate { reason: Some(error.to_string()), ..Default::default() }
+            }
+        }
+    }
+}
+
 /// Where the time went.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Seconds {
@@ -101,6 +153,9 @@ pub struct Seconds {
     pub assemble: f64,
     /// Factoring and iterating.
     pub solve: f64,
+    /// Proving how wrong the result can be.
+    #[serde(default)]
+    pub certify: f64,
     /// Writing the other files.
     pub write: f64,
 }
@@ -266,8 +321,9 @@ mod tests {
                 reactions: BTreeMap::from([("top".to_owned(), [0.0, 2.0])]),
             },
             probes: Vec::new(),
+            certificate: None,
             errors: None,
-            seconds: Seconds { read: 0.25, assemble: 0.5, solve: 1.0, write: 2.0 },
+            seconds: Seconds { read: 0.25, assemble: 0.5, solve: 1.0, certify: 1.5, write: 2.0 },
         }
     }
 
@@ -312,6 +368,7 @@ mod tests {
     "read": 0.25,
     "assemble": 0.5,
     "solve": 1.0,
+    "certify": 1.5,
     "write": 2.0
   }
 }

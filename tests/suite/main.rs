@@ -4,6 +4,7 @@
 mod common;
 
 mod bad_input;
+mod certify;
 #[cfg(feature = "cli")]
 mod command;
 mod convergence;

@@ -98,7 +98,8 @@ fn compared(results: &Value) -> Vec<(String, f64, f64)> {
 fn ours(case: &Path) -> Value {
     let case = Case::read(case).unwrap();
     let (solution, _) = solve(&case.problem, &case.method, &case.settings).unwrap();
-    let seconds = result::Seconds { read: 0.0, assemble: 0.0, solve: 0.0, write: 0.0 };
+    let seconds =
+        result::Seconds { read: 0.0, assemble: 0.0, solve: 0.0, certify: 0.0, write: 0.0 };
     let text = result::result_json(&outputs::results(&case, &solution, seconds).unwrap()).unwrap();
     serde_json::from_str(&text).unwrap()
 }

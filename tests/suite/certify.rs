@@ -1,0 +1,208 @@
+//! Section 7 of docs/theory.md on exact solutions: the bound of |u - v|_a is never below the true error, and not far above
+//! it; what is proved without quadrature says so; and what the bound would be worth with a part of it left out.
+//!
+//! Effectivity is bound over error. What is expected: below 2 where the solution is smooth and below 3 where it is singular,
+//! which is what the stress costs; on the coarsest mesh of (a), n = 8, the oscillation of its body force adds as much again
+//! (it falls with h^2, the error with h).
+
+use crate::common::exact::{
+    corner, moved, on_square, on_trapezoid, singular, smooth, smooth_with_gap,
+};
+use crate::common::{Random, clamped, conditions, constant, unit_square};
+use signorini::certify::proof::Role;
+use signorini::certify::{Continuous, Rejection, certify, certify_field};
+use signorini::fem::{BoxedFunction, Condition, Errors, Problem, Space, contact_line};
+use signorini::io::Expression;
+use signorini::kernel::{Interval, Material, P1, Plane};
+use signorini::solve::{Degree, Gamma0, Ladder, Method, Settings, Solution, solve};
+
+/// The bound on the levels of a ladder, each with the true error of the same field.
+fn bounds(what: &str, ladder: &Ladder, levels: usize, limit: impl Fn(usize) -> f64) {
+    for level in 0..levels {
+        let (_, problem, solution) = ladder.solve(level).unwrap();
+        let certified = certify(&problem, &solution).unwrap();
+        let error = error_of(&problem, ladder, &solution, &certified.certificate.displacement);
+        let effectivity = certified.bound / error;
+        assert!(
+            1.0 <= effectivity && effectivity < limit(level),
+            "{what}, level {level}: bound {} for the error {error}, effectivity {effectivity:.3}",
+            certified.bound
+        );
+    }
+}
+
+fn error_of(problem: &Problem, ladder: &Ladder, solution: &Solution, v: &[[f64; 2]]) -> f64 {
+    let space = Space::<P1, 3, 2>::new(&problem.mesh);
+    let contact = contact_line::assemble(problem, &space, solution.gamma.gamma0).unwrap();
+    Errors::new(&space, &contact, v, &*ladder.solution).energy
+}
+
+#[test]
+fn the_bound_is_above_the_error_and_below_twice_the_error_of_smooth_solutions() {
+    for (what, solution) in [
+        ("(a) 3 2", smooth(3.0, 2.0, 1.0 / 3.0)),
+        ("(a) 4 3", smooth(4.0, 3.0, 1.0 / 3.0)),
+        ("(a) 4 3 with a gap", smooth_with_gap()),
+    ] {
+        let limit = |level| if level == 0 { 3.0 } else { 2.0 };
+        bounds(what, &on_square(&solution, Degree::One, 8), 4, limit);
+    }
+}
+
+#[test]
+fn the_bound_is_above_the_error_and_below_thrice_the_error_of_singular_solutions() {
+    for c in [0.5, 1.0 / 3.0] {
+        let ladder = on_square(&singular(c), Degree::One, 8);
+        bounds(&format!("(b) c = {c}"), &ladder, 4, |_| 2.0);
+        bounds(&format!("(b) c = {c} moved"), &moved(ladder), 3, |_| 2.0);
+    }
+    let (solution, _) = corner(0.75);
+    bounds("(c)", &on_trapezoid(&solution, 0.75, Degree::One, 8), 4, |_| 3.0);
+}
+
+#[test]
+fn any_field_has_its_error_bounded() {
+    let ladder = on_square(&singular(0.5), Degree::One, 8);
+    let (_, problem, solution) = ladder.solve(0).unwrap();
+    let mut random = Random(5);
+    for size in [1e-4, 1e-3, 1e-2, 0.1, 1.0] {
+        let noise = random.field(solution.displacement.len());
+        let field: Vec<[f64; 2]> = solution
+            .displacement
+            .iter()
+            .zip(&noise)
+            .map(|(u, r)| [u[0] + size * r[0], u[1] + size * r[1]])
+            .collect();
+        let certified = certify_field(&problem, &solution, &field).unwrap();
+        let v = &certified.certificate.displacement;
+        let error = error_of(&problem, &ladder, &solution, v);
+        let effectivity = certified.bound / error;
+        assert!((1.0..3.0).contains(&effectivity), "{size}: {effectivity}");
+        // Far from u the error of tau hardly counts.
+        assert!(size < 0.1 || effectivity < 1.1, "{size}: {effectivity}");
+    }
+}
+
+fn expression(text: &str) -> BoxedFunction {
+    Box::new(text.parse::<Expression>().unwrap())
+}
+
+/// A clamped block with data of the exact class, that bends so that a part of its lower side stays in contact.
+fn block(n: usize) -> (Problem, Solution) {
+    let problem = Problem::new(
+        unit_square(n).mesh().unwrap(),
+        Material::lame(1.0, 1.0, Plane::Strain),
+        [expression("0.8"), expression("-1")],
+        conditions([
+            ("top", Condition::Displacement([Some(expression("0")), Some(expression("0.1*x"))])),
+            ("left", Condition::Pressure(expression("0.2 + y"))),
+            ("bottom", Condition::Contact { gap: expression("0.1 - 0.2*x") }),
+        ]),
+    );
+    let method = Method {
+        degree: Degree::One,
+        gamma0: Gamma0::Auto,
+        quadrature: crate::common::EXACT,
+        allow_noncoercive: false,
+    };
+    let (solution, _) = solve(&problem, &method, &Settings::default()).unwrap();
+    (problem, solution)
+}
+
+#[test]
+fn data_of_the_exact_class_make_the_bound_rigorous_and_enclose_the_potential_energy() {
+    let mut before: Option<(f64, [f64; 2])> = None;
+    for n in [4, 8, 16, 32] {
+        let (problem, solution) = block(n);
+        let certified = certify(&problem, &solution).unwrap();
+        assert!(certified.rigorous && certified.reason.is_none());
+        let [low, high] = certified.energy.unwrap();
+        assert!(low < high);
+        if let Some((bound, [coarse_low, coarse_high])) = before {
+            // All contain J(u), and they shrink with h.
+            assert!(low.max(coarse_low) <= high.min(coarse_high));
+            assert!(high - low < 0.5 * (coarse_high - coarse_low), "{n}");
+            assert!(certified.bound < 0.7 * bound, "{n}: {} after {bound}", certified.bound);
+            // J(v) - J(u) is at least half the square of the error: seen from the finer mesh.
+            assert!(coarse_high - high <= 0.5 * bound * bound);
+        }
+        before = Some((certified.bound, [low, high]));
+        let hint = certified.effectivity_hint.unwrap();
+        assert!((1.0..2.5).contains(&hint), "{n}: {hint}");
+    }
+}
+
+#[test]
+fn intervals_and_doubles_agree_to_rounding() {
+    let (problem, solution) = block(8);
+    let certificate = certify(&problem, &solution).unwrap().certificate;
+    let proved = certificate.evaluate::<Interval>().unwrap().bound;
+    let quick = certificate.evaluate::<f64>().unwrap().bound;
+    assert!(quick <= proved && proved <= (1.0 + 1e-9) * quick, "{quick} {proved}");
+}
+
+/// lambda = 0: on the unit square the floor at height d makes u = (0, d (1 - y)); without it (g = 0) u = 0. v and tau of
+/// the first are admissible for the second, with |C eps(v) - tau| = 0.
+fn raised_floor(d: f64) -> Continuous {
+    let problem = Problem::new(
+        unit_square(4).mesh().unwrap(),
+        Material::lame(0.0, 1.0, Plane::Strain),
+        [expression("0"), expression("0")],
+        conditions([("top", clamped()), ("bottom", Condition::Contact { gap: constant(-d) })]),
+    );
+    let (solution, _) = solve(&problem, &Method::default(), &Settings::default()).unwrap();
+    certify(&problem, &solution).unwrap()
+}
+
+#[test]
+fn control_without_the_contact_term_there_would_be_no_bound() {
+    let d = 0.25;
+    let certified = raised_floor(d);
+    let error = 2.0_f64.sqrt() * d;
+    let mut certificate = certified.certificate;
+    let with_the_floor = certificate.evaluate::<Interval>().unwrap();
+    // What is left when the contact term is dropped: nothing, though u is far away.
+    assert!(with_the_floor.bound < 1e-6, "{}", with_the_floor.bound);
+    for edge in &mut certificate.edges {
+        if let Role::Contact { gap, .. } = &mut edge.role {
+            *gap = [0.0; 2];
+        }
+    }
+    let without = certificate.evaluate::<Interval>().unwrap();
+    let effectivity = without.bound / error;
+    assert!((1.0..1.5).contains(&effectivity), "{effectivity}");
+}
+
+#[test]
+fn control_a_tension_on_the_contact_line_is_refused() {
+    let (problem, solution) = block(8);
+    let mut certificate = certify(&problem, &solution).unwrap().certificate;
+    let edge = certificate.edges.iter_mut().find_map(|edge| match &mut edge.role {
+        Role::Contact { pressure, .. } if pressure[0] < 0.0 => Some(pressure),
+        _ => None,
+    });
+    edge.unwrap()[0] *= -1.0;
+    let refused = certificate.evaluate::<Interval>();
+    assert!(matches!(refused, Err(Rejection::Tension { .. })), "{refused:?}");
+}
+
+#[test]
+fn control_a_wrong_load_is_seen_by_the_bound() {
+    let (problem, solution) = block(8);
+    let certified = certify(&problem, &solution).unwrap();
+    let mut certificate = certified.certificate;
+    certificate.pieces.iter_mut().for_each(|piece| piece.body.iter_mut().for_each(|f| f[1] *= 2.0));
+    let bound = certificate.evaluate::<Interval>().unwrap().bound;
+    assert!(bound > 3.0 * certified.bound, "{bound} {}", certified.bound);
+}
+
+#[test]
+fn a_function_without_a_degree_makes_the_bound_say_that_it_rests_on_quadrature() {
+    let problem = crate::common::block(unit_square(8).mesh().unwrap());
+    assert_eq!(problem.body_force[1].degree(), None);
+    let (solution, _) = solve(&problem, &Method::default(), &Settings::default()).unwrap();
+    let certified = certify(&problem, &solution).unwrap();
+    assert!(!certified.rigorous && certified.energy.is_none());
+    let reason = certified.reason.unwrap();
+    assert!(reason.starts_with("the body force is not known to be constant"), "{reason}");
+}
