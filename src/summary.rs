@@ -3,10 +3,12 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use signorini::io::certificate::Audit;
 use signorini::io::convergence::Study;
 use signorini::io::result::{ContinuousCertificate, GammaChoice, NewtonHistory, Results};
+use signorini::io::sweep::Sweep;
 use signorini::io::{Case, numbers};
-use signorini::solve::{ContactQuadrature, NewtonReport, Outline, Settings, Status};
+use signorini::solve::{ContactQuadrature, NewtonReport, Outline, Settings};
 
 /// Lines of a name and a text.
 #[derive(Default)]
@@ -89,6 +91,35 @@ pub fn solved(r: &Results, files: &[PathBuf]) -> String {
     lines.0
 }
 
+/// Of a certificate that was verified.
+pub fn audited(audit: &Audit) -> String {
+    let Audit { header, proof } = audit;
+    let mut lines = Lines::titled(&header.title);
+    let counts = header.counts;
+    lines.line(
+        "certificate",
+        format!("accepted: {} triangles, {} edges", counts.triangles, counts.edges),
+    );
+    lines.line("statement", &header.statement);
+    let relative = 100.0 * header.bound / proof.norm;
+    let size = if relative.is_finite() {
+        format!(", {} % of |v|_a", numbers::short(relative, 2))
+    } else {
+        String::new()
+    };
+    lines.line("bound", format!("{}{size}", short(header.bound)));
+    lines.line(
+        "rigorous",
+        match &header.reason {
+            None if header.rigorous => "yes, rounding included".to_owned(),
+            reason => {
+                format!("up to quadrature: {}", reason.as_deref().unwrap_or("no reason given"))
+            }
+        },
+    );
+    lines.0
+}
+
 /// How far the solution can be from the true one.
 fn distance(certificate: &ContinuousCertificate) -> String {
     let reason = certificate.reason.as_deref().unwrap_or_default();
@@ -131,6 +162,11 @@ pub fn studied(case: &Case, studies: &[Study], files: &[PathBuf]) -> String {
     format!("{}\n\n{}\nwritten: {}\n", case.title, tables.join("\n"), written(files))
 }
 
+/// Of a case along some axes.
+pub fn swept(sweep: &Sweep, files: &[PathBuf]) -> String {
+    format!("{}\n\n{}\nwritten: {}\n", sweep.title, sweep.table(), written(files))
+}
+
 /// Of a case that Newton's method could not solve.
 pub fn not_converged(file: &Path, settings: &Settings, report: &NewtonReport) -> String {
     format!(
@@ -162,13 +198,9 @@ fn coercivity(gamma: &GammaChoice) -> String {
 }
 
 fn newton(newton: &NewtonHistory) -> String {
-    let verdict = match newton.status {
-        Status::Converged => "converged",
-        Status::ConvergedToRounding => "converged to rounding",
-        Status::NotConverged => "not converged",
-    };
     format!(
-        "{verdict} in {}, {}, relative residual {:.1e}",
+        "{} in {}, {}, relative residual {:.1e}",
+        newton.verdict(),
         count(newton.iterations, "step"),
         count(newton.factorizations, "factorisation"),
         newton.residual

@@ -118,6 +118,10 @@ impl<'a> Parts<'a> {
                         ));
                     }
                 };
+                let what = match what {
+                    Boundary::Held([false, false]) => Boundary::Free,
+                    what => what,
+                };
                 boundary.insert(number(edge), what);
             }
         }

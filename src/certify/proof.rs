@@ -186,7 +186,9 @@ pub enum Rejection {
     Orientation { triangle: usize },
     #[error(transparent)]
     Unbalanced(#[from] Unbalanced),
-    #[error("triangle {triangle} is not in equilibrium: its tractions and its body force don't balance to rounding")]
+    #[error(
+        "triangle {triangle} is not in equilibrium: its tractions and its body force don't balance to rounding"
+    )]
     OutOfBalance { triangle: usize },
     #[error("triangle {triangle} claims the share {claimed}; its data give {found}")]
     Share { triangle: usize, claimed: f64, found: f64 },

@@ -1,6 +1,7 @@
 //! The discrete space V^h on a mesh and everything that is integrated over it.
 
 pub mod a_priori;
+mod build;
 pub mod constraints;
 pub mod contact_line;
 pub mod discretization;

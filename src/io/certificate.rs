@@ -128,18 +128,23 @@ pub fn audit(path: &Path) -> Result<Audit, AuditError> {
         fs::read(path).map_err(|error| AuditError::Read { path: path.to_owned(), error })
     };
     let text = read(path)?;
-    let wrong = |path: &Path, problem: String| AuditError::Format { path: path.to_owned(), problem };
+    let wrong =
+        |path: &Path, problem: String| AuditError::Format { path: path.to_owned(), problem };
     let header: Header =
         serde_json::from_slice(&text).map_err(|e| wrong(path, format!("no certificate: {e}")))?;
     let arrays = path.with_file_name(ARRAYS);
     let bytes = read(&arrays)?;
-    let (certificate, claim) = decode(&header, &bytes).map_err(|problem| wrong(&arrays, problem))?;
+    let (certificate, claim) =
+        decode(&header, &bytes).map_err(|problem| wrong(&arrays, problem))?;
     let proof = certificate.audit(&claim)?;
     if !(header.bound >= proof.bound) {
         return Err(Rejection::Bound { claimed: header.bound, found: proof.bound }.into());
     }
     if header.rigorous && (header.bound > proof.bound || header.reason.is_some()) {
-        return Err(wrong(path, "a rigorous bound is the proved one, without a reservation".to_owned()));
+        return Err(wrong(
+            path,
+            "a rigorous bound is the proved one, without a reservation".to_owned(),
+        ));
     }
     if header.rigorous && certificate.pieces.iter().any(|piece| piece.oscillation != 0.0) {
         return Err(wrong(path, "a rigorous bound has no oscillation by quadrature".to_owned()));

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use thiserror::Error;
 
 use super::case::Case;
+use super::certificate;
 use super::csv::{ContactRow, contact_csv};
 use super::data::DataError;
 use super::files::{Output, WriteError};
@@ -16,7 +17,7 @@ use super::result::{
     Certificates, GammaChoice, MeshSizes, NewtonHistory, Results, Seconds, result_json,
 };
 use super::vtu::{CellKind, Field, Grid, Values, vtu};
-use crate::certify;
+use crate::certify::{CertifyError, Continuous, certify};
 use crate::fem;
 use crate::solve::solution::ContactValues;
 use crate::solve::{Solution, Times};
@@ -40,7 +41,31 @@ pub enum OutputError {
     Problem(#[from] fem::DataError),
 }
 
-/// Writes the files of a case into `folder`; returns their paths and the content of result.json.
+/// What is known of the distance from the true solution, and how long it took to know.
+#[derive(Clone, Debug)]
+pub struct Certified {
+    /// The bound, or why there is none.
+    pub result: Result<Continuous, CertifyError>,
+    /// The time.
+    pub time: Duration,
+}
+
+impl Certified {
+    /// Certifies a solution.
+    pub fn new(case: &Case, solution: &Solution) -> Self {
+        let start = Instant::now();
+        let result = certify(&case.problem, solution);
+        Certified { result, time: start.elapsed() }
+    }
+
+    /// As result.json has it.
+    pub fn report(&self) -> Certificates {
+        Certificates { continuous: (&self.result).into() }
+    }
+}
+
+/// Writes the files of a case into `folder`; returns their paths and the content of result.json. `certificate` asks for
+/// the files certificate.json and certificate.bin, too, where there is a certificate.
 ///
 /// # Errors
 /// A folder or file that can't be written, a number that is not finite.
@@ -50,30 +75,32 @@ pub fn write(
     solution: &Solution,
     read: Duration,
     times: Times,
+    certified: Option<&Certified>,
+    certificate: bool,
 ) -> Result<(Vec<PathBuf>, Results), OutputError> {
-    let start = Instant::now();
-    let certified = certify::certify(&case.problem, solution);
-    let certify = start.elapsed();
     let start = Instant::now();
     let mut output = Output::new(folder)?;
     let mut stage = |file, bytes: Result<Vec<u8>, DataError>| -> Result<(), OutputError> {
         let bytes = bytes.map_err(|error| OutputError::Data { file, error })?;
         Ok(output.stage(file, &bytes)?)
     };
-    let indicators = certified.as_ref().ok().map(|c| c.indicators.as_slice());
+    let continuous = certified.and_then(|c| c.result.as_ref().ok());
+    let indicators = continuous.map(|c| c.indicators.as_slice());
     stage("solution.vtu", solution_vtu(solution, indicators))?;
     stage("contact.vtu", contact_vtu(solution))?;
     stage("contact.csv", contact_csv(&contact_rows(solution)).map(String::into_bytes))?;
     stage("picture.svg", draw(case, solution).map(String::into_bytes))?;
-    let seconds = Seconds {
-        read: read.as_secs_f64(),
-        assemble: times.assemble().as_secs_f64(),
-        solve: times.solve().as_secs_f64(),
-        certify: certify.as_secs_f64(),
-        write: start.elapsed().as_secs_f64(),
-    };
+    if let (Some(continuous), true) = (continuous, certificate) {
+        let (header, arrays) = certificate::encode(&case.title, continuous);
+        let text = serde_json::to_vec_pretty(&header)
+            .map_err(|_| DataError::NotFinite { place: certificate::HEADER.to_owned() });
+        stage(certificate::HEADER, text)?;
+        stage(certificate::ARRAYS, Ok(arrays))?;
+    }
+    let mut seconds = Seconds::new(read, &times, start.elapsed());
+    seconds.certify = certified.map_or(0.0, |c| c.time.as_secs_f64());
     let mut results = results(case, solution, seconds)?;
-    results.certificate = Some(Certificates { continuous: (&certified).into() });
+    results.certificate = certified.map(Certified::report);
     stage("result.json", result_json(&results).map(String::into_bytes))?;
     Ok((output.publish()?, results))
 }
@@ -100,6 +127,7 @@ pub fn results(
     };
     Ok(Results {
         version: env!("CARGO_PKG_VERSION").to_owned(),
+        case: Some(case.file.display().to_string()),
         title: case.title.clone(),
         mesh: MeshSizes {
             vertices: mesh.vertices().len(),

@@ -5,6 +5,7 @@
 //! JSON alone would turn it into `null` without a word. Everything but [`Seconds`] is the same from run to run.
 
 use std::io::{self, Write};
+use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 use serde_json::ser::{Formatter, Serializer};
@@ -12,13 +13,16 @@ use serde_json::ser::{Formatter, Serializer};
 use super::data::DataError;
 use crate::certify::{CertifyError, Continuous};
 use crate::fem::Errors;
-use crate::solve::{GammaReport, Quantities, Status};
+use crate::solve::{GammaReport, Quantities, Status, Times};
 
 /// The content of result.json, in its order.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Results {
     /// The version of this program.
     pub version: String,
+    /// The case file, as the command was given it; left out by the engine fenicsx.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub case: Option<String>,
     /// The title of the case.
     pub title: String,
     /// The discretisation.
@@ -144,6 +148,17 @@ impl From<&Result<Continuous, CertifyError>> for ContinuousCertificate {
     }
 }
 
+impl NewtonHistory {
+    /// How it ended, in words.
+    pub fn verdict(&self) -> &'static str {
+        match self.status {
+            Status::Converged => "converged",
+            Status::ConvergedToRounding => "converged to rounding",
+            Status::NotConverged => "not converged",
+        }
+    }
+}
+
 /// Where the time went.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Seconds {
@@ -156,8 +171,21 @@ pub struct Seconds {
     /// Proving how wrong the result can be.
     #[serde(default)]
     pub certify: f64,
-    /// Writing the other files.
+    /// Writing the other files; 0 where none was written.
     pub write: f64,
+}
+
+impl Seconds {
+    /// Of a solve that took `times` after `read`, its files `write`.
+    pub fn new(read: Duration, times: &Times, write: Duration) -> Self {
+        Seconds {
+            read: read.as_secs_f64(),
+            assemble: times.assemble().as_secs_f64(),
+            solve: times.solve().as_secs_f64(),
+            certify: 0.0,
+            write: write.as_secs_f64(),
+        }
+    }
 }
 
 /// The text of the file.
@@ -289,6 +317,7 @@ mod tests {
     fn sample() -> Results {
         Results {
             version: "0.1.0".to_owned(),
+            case: Some("cases/block.toml".to_owned()),
             title: "A \"block\" <&> null".to_owned(),
             mesh: MeshSizes {
                 vertices: 4,
@@ -331,6 +360,7 @@ mod tests {
     fn the_file_has_one_name_a_line_in_the_promised_order() {
         let expected = r#"{
   "version": "0.1.0",
+  "case": "cases/block.toml",
   "title": "A \"block\" <&> null",
   "mesh": {
     "vertices": 4,

@@ -13,6 +13,7 @@ use signorini::certify::proof::Role;
 use signorini::certify::{Continuous, Rejection, certify, certify_field};
 use signorini::fem::{BoxedFunction, Condition, Errors, Problem, Space, contact_line};
 use signorini::io::Expression;
+use signorini::io::certificate::{self, Header};
 use signorini::kernel::{Interval, Material, P1, Plane};
 use signorini::solve::{Degree, Gamma0, Ladder, Method, Settings, Solution, solve};
 
@@ -162,7 +163,8 @@ fn control_without_the_contact_term_there_would_be_no_bound() {
     let mut certificate = certified.certificate;
     let with_the_floor = certificate.evaluate::<Interval>().unwrap();
     // What is left when the contact term is dropped: nothing, though u is far away.
-    assert!(with_the_floor.bound < 1e-6, "{}", with_the_floor.bound);
+    // (but for the root of the margin by which v is kept off the floor, 1e-11).
+    assert!(with_the_floor.bound < 1e-4, "{}", with_the_floor.bound);
     for edge in &mut certificate.edges {
         if let Role::Contact { gap, .. } = &mut edge.role {
             *gap = [0.0; 2];
@@ -205,4 +207,124 @@ fn a_function_without_a_degree_makes_the_bound_say_that_it_rests_on_quadrature()
     assert!(!certified.rigorous && certified.energy.is_none());
     let reason = certified.reason.unwrap();
     assert!(reason.starts_with("the body force is not known to be constant"), "{reason}");
+}
+
+/// The certificate of the block as files.
+fn written(n: usize) -> (Header, Vec<u8>) {
+    let (problem, solution) = block(n);
+    certificate::encode("Block", &certify(&problem, &solution).unwrap())
+}
+
+/// Whether the checker accepts these files.
+fn accepts(header: &Header, bytes: &[u8]) -> Result<(), String> {
+    let (certificate, claim) = certificate::decode(header, bytes)?;
+    certificate.audit(&claim).map(|_| ()).map_err(|e| e.to_string())
+}
+
+#[test]
+fn a_certificate_is_accepted_as_it_was_written() {
+    for n in [4, 8, 16] {
+        let (header, bytes) = written(n);
+        assert_eq!(accepts(&header, &bytes), Ok(()));
+    }
+}
+
+/// The words of certificate.bin that the statement or its proof depend on, by array: all of them but gaps, which no bound
+/// feels where there is no pressure, as the hash is what protects them.
+fn is_gap(header: &Header, bytes: &[u8], word: usize) -> bool {
+    let counts = header.counts;
+    let first = 8 * counts.vertices + 3 * counts.cuts + 15 * counts.triangles;
+    let Some(inside) = word.checked_sub(first).filter(|w| *w < 7 * counts.edges) else {
+        return false;
+    };
+    let role = (first + inside / 7 * 7 + 2) * 8;
+    bytes[role] == 6 && inside % 7 >= 5
+}
+
+/// Changes one word: the last bits of a number beyond rounding, its sign, its size, an index, a triangle.
+fn tamper(bytes: &mut [u8], word: usize, random: &mut Random) -> bool {
+    let place = 8 * word..8 * word + 8;
+    let old = u64::from_le_bytes(bytes[place.clone()].try_into().unwrap());
+    let value = f64::from_bits(old);
+    let kind = random.next();
+    let new = if old < 1 << 40 {
+        // A whole number or a zero.
+        match kind {
+            k if k < -0.3 => old.wrapping_add(1),
+            k if k < 0.3 => (1e-9 * random.next()).to_bits(),
+            _ => (1.0 + random.next()).to_bits(),
+        }
+    } else {
+        match kind {
+            k if k < -0.5 => (-value).to_bits(),
+            k if k < 0.0 => (value * (1.0 + 1e-12 * (1.5 + random.next()))).to_bits(),
+            k if k < 0.5 => (value * (1.0 + 0.1 * random.next())).to_bits(),
+            _ => (value + random.next()).to_bits(),
+        }
+    };
+    bytes[place].copy_from_slice(&new.to_le_bytes());
+    new != old
+}
+
+#[test]
+fn a_thousand_tampered_certificates_are_rejected() {
+    let (header, bytes) = written(4);
+    let mut random = Random(11);
+    let words = bytes.len() / 8;
+    let mut done = 0;
+    let mut accepted = Vec::new();
+    while done < 1000 {
+        let word = ((random.next() + 1.0) / 2.0 * words as f64) as usize;
+        let mut changed = bytes.clone();
+        if is_gap(&header, &bytes, word) || !tamper(&mut changed, word, &mut random) {
+            continue;
+        }
+        done += 1;
+        // Who tampers can compute a hash, too.
+        let mut forged = header.clone();
+        assert!(accepts(&forged, &changed).is_err(), "the hash of word {word}");
+        forged.hash = certificate::hash(&changed);
+        if accepts(&forged, &changed).is_ok() {
+            let (old, new) = (&bytes[8 * word..8 * word + 8], &changed[8 * word..8 * word + 8]);
+            let number = |b: &[u8]| f64::from_le_bytes(b.try_into().unwrap());
+            accepted.push((word, number(old), number(new)));
+        }
+    }
+    assert!(accepted.is_empty(), "{} accepted: {accepted:?} of {words} words", accepted.len());
+}
+
+#[test]
+fn a_certificate_without_its_last_triangle_or_with_another_claim_is_rejected() {
+    let (header, bytes) = written(4);
+    let mut short = header.clone();
+    short.counts.triangles -= 1;
+    assert!(accepts(&short, &bytes).is_err());
+    let (mut certificate, mut claim) = certificate::decode(&header, &bytes).unwrap();
+    certificate.pieces.pop();
+    claim.shares.pop();
+    assert!(certificate.audit(&claim).is_err());
+    let (certificate, mut claim) = certificate::decode(&header, &bytes).unwrap();
+    claim.bound *= 0.99;
+    assert!(matches!(certificate.audit(&claim), Err(Rejection::Bound { .. })));
+}
+
+#[test]
+fn control_the_signs_are_what_rejects_a_tension_with_a_consistent_claim() {
+    // The whole contact line in tension, balanced anew: every number fits, and only the sign is wrong.
+    let (problem, solution) = block(8);
+    let mut certificate = certify(&problem, &solution).unwrap().certificate;
+    for edge in &mut certificate.edges {
+        if let Role::Contact { pressure, .. } = &mut edge.role {
+            *pressure = pressure.map(|p| p + 0.5);
+        }
+    }
+    let refused = certificate.evaluate::<Interval>();
+    assert!(matches!(refused, Err(Rejection::Tension { .. })), "{refused:?}");
+    // Without the line Gamma_C the same stress passes: as a given pressure.
+    for edge in &mut certificate.edges {
+        if let Role::Contact { pressure, .. } = edge.role {
+            edge.role = Role::Pressed(pressure.map(|p| -p));
+        }
+    }
+    assert!(certificate.evaluate::<Interval>().is_ok());
 }

@@ -21,7 +21,7 @@ probes = [[0.0, 0.0], [0.3, 0.1]]
 "#;
 
 /// A fresh folder with `case.toml` in it, the first text of each edit replaced by the second.
-fn folder(test: &str, edits: &[[&str; 2]]) -> PathBuf {
+pub fn folder(test: &str, edits: &[[&str; 2]]) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("command").join(test);
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).unwrap();
@@ -34,7 +34,7 @@ fn folder(test: &str, edits: &[[&str; 2]]) -> PathBuf {
     folder
 }
 
-fn signorini(folder: &Path, arguments: &[&str]) -> Output {
+pub fn signorini(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_signorini"))
         .args(arguments)
         .current_dir(folder)
@@ -42,12 +42,12 @@ fn signorini(folder: &Path, arguments: &[&str]) -> Output {
         .unwrap()
 }
 
-fn text(bytes: &[u8]) -> &str {
+pub fn text(bytes: &[u8]) -> &str {
     std::str::from_utf8(bytes).unwrap()
 }
 
 /// The names in a folder, sorted.
-fn names(folder: &Path) -> Vec<String> {
+pub fn names(folder: &Path) -> Vec<String> {
     let mut names: Vec<String> = fs::read_dir(folder)
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
