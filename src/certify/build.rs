@@ -510,7 +510,8 @@ fn go_round(a: usize, fan: &[(usize, usize)], around: &Around, moments: &mut [[[
                 weighted / weights
             };
             for i in 0..=last {
-                if !around.known[edges[i]][c] && !(ring && i == last) {
+                let done = around.known[edges[i]][c] || (ring && i == last);
+                if !done {
                     moments[edges[i]][signs[i].0][c] = signs[i].1 * (offset + sums[i][c]);
                 }
             }

@@ -245,3 +245,106 @@ fn scale<S: Scalar>(factor: S, a: Stress<S>) -> Stress<S> {
 fn pair<S: Scalar>([a, b]: [Stress<S>; 2]) -> Stress<S> {
     add(a, b)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::Plane;
+
+    const T: Triangle<f64> = Triangle { vertices: [[0.3, -0.2], [2.0, 0.1], [0.7, 1.9]] };
+
+    /// Tractions in equilibrium with f: any on two edges, and on the third what balances.
+    fn balanced() -> Loads<f64> {
+        let mut loads = Loads {
+            forces: [[[0.3, -1.0], [0.7, 0.2]], [[-0.4, 0.9], [1.1, -0.6]], [[0.0; 2]; 2]],
+            body: [[0.5, -0.25], [0.1, 0.3], [-0.7, 0.2]],
+        };
+        let force = loads.resultant(&T).on_edge(T.vertices[0], T.vertices[1]);
+        loads.forces[2] = force.map(|f| f.map(|f| -f));
+        loads
+    }
+
+    fn close(a: [f64; 2], b: [f64; 2]) {
+        assert!((a[0] - b[0]).abs() + (a[1] - b[1]).abs() < 1e-13, "{a:?} {b:?}");
+    }
+
+    #[test]
+    fn the_wrench_on_an_edge_has_its_force_and_moment() {
+        let wrench = Wrench { force: [0.7, -0.3], moment: 1.3, about: [5.0, -4.0] };
+        let mut loads = Loads { forces: [[[0.0; 2]; 2]; 3], body: [[0.0; 2]; 3] };
+        loads.forces[1] = wrench.on_edge(T.vertices[2], T.vertices[0]);
+        let back = loads.resultant(&T).about(wrench.about);
+        close(back.force, wrench.force);
+        assert!((back.moment - wrench.moment).abs() < 1e-13);
+        let nothing = balanced().resultant(&T);
+        close(nothing.force, [0.0; 2]);
+        assert!(nothing.moment.abs() < 1e-14);
+    }
+
+    #[test]
+    fn tractions_are_the_given_ones_and_continuous_across_the_cuts() {
+        let loads = balanced();
+        let tau = Composite::new(&T, &loads);
+        for i in 0..3 {
+            for end in 0..2 {
+                close(tau.corners[i][end].traction(T.scaled_normal(i)), loads.forces[i][end]);
+            }
+            // Along the cut from the centroid to corner j, parts j + 1 and j + 2 meet.
+            let j = i;
+            let [a, b] = [tau.corners[(j + 1) % 3][1], tau.corners[(j + 2) % 3][0]];
+            let [x, y] = arms(&T)[j];
+            close(a.traction([y, -x]), b.traction([y, -x]));
+        }
+    }
+
+    #[test]
+    fn the_divergence_is_minus_the_load_on_every_part() {
+        let loads = balanced();
+        let tau = Composite::new(&T, &loads);
+        let m = centroid(&T);
+        for i in 0..3 {
+            let (b, c) = (T.vertices[(i + 1) % 3], T.vertices[(i + 2) % 3]);
+            let g = Triangle { vertices: [m, b, c] }.barycentric_gradients();
+            let stresses = [tau.centre, tau.corners[i][0], tau.corners[i][1]];
+            let mut divergence = [0.0; 2];
+            for (s, g) in stresses.iter().zip(g) {
+                let t = s.traction(g);
+                divergence = [divergence[0] + t[0], divergence[1] + t[1]];
+            }
+            close(divergence, loads.body[i].map(|f| -f));
+        }
+    }
+
+    #[test]
+    fn control_out_of_balance_the_divergence_is_another() {
+        let mut loads = balanced();
+        loads.forces[0][0][0] += 0.1;
+        let tau = Composite::new(&T, &loads);
+        let whole: f64 = (0..3)
+            .map(|i| {
+                let (b, c) = (T.vertices[(i + 1) % 3], T.vertices[(i + 2) % 3]);
+                let g = Triangle { vertices: [centroid(&T), b, c] }.barycentric_gradients();
+                let stresses = [tau.centre, tau.corners[i][0], tau.corners[i][1]];
+                stresses.iter().zip(g).map(|(s, g)| s.traction(g)[0]).sum::<f64>()
+                    + loads.body[i][0]
+            })
+            .sum();
+        assert!(whole.abs() > 1e-2);
+    }
+
+    #[test]
+    fn a_constant_stress_is_reproduced_and_its_energy_is_stress_times_strain() {
+        let material = Material::lame(1.3, 0.7, Plane::Strain);
+        let gradient = [[0.3, -0.2], [0.5, 0.9]];
+        let sigma = material.stress(gradient);
+        let forces = [0, 1, 2].map(|i| [sigma.traction(T.scaled_normal(i)); 2]);
+        let tau = Composite::new(&T, &Loads { forces, body: [[0.0; 2]; 3] });
+        let distance = tau.distance_from(sigma).energy(&material, T.double_area());
+        assert!(distance.abs() < 1e-28, "{distance}");
+        let density = sigma.xx * 0.3 + sigma.yy * 0.9 + sigma.xy * 0.3;
+        let energy = tau.energy(&material, T.double_area());
+        assert!((energy - density * T.double_area() / 2.0).abs() < 1e-13);
+        let product = tau.product(&tau, &material, T.double_area());
+        assert!((energy - product).abs() < 1e-14);
+    }
+}
