@@ -48,6 +48,18 @@ pub enum Task {
         #[arg(value_hint = ValueHint::FilePath)]
         certificate: PathBuf,
     },
+    /// Bound the error of a displacement that any program computed for a case; write certified.vtu, certificate.json and
+    /// certificate.bin
+    Certify {
+        #[command(flatten)]
+        case: CaseArguments,
+        /// The displacement at the vertices of the case's mesh: .vtu, or .csv with x, y, ux, uy
+        #[arg(long, value_name = "FIELD", value_hint = ValueHint::FilePath)]
+        displacement: PathBuf,
+        /// The folder to write to [default: out/ and the name of the case]
+        #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+        out: Option<PathBuf>,
+    },
     /// Read a case and report its sizes and the limit of gamma0; solve nothing, write nothing
     Check {
         #[command(flatten)]

@@ -32,6 +32,8 @@ mod command {
 
     use clap::{CommandFactory, Parser};
     use signorini::io::convergence::{self, Meshes, StudyError};
+    use signorini::certify::certify_field;
+    use signorini::io::field::read_field;
     use signorini::io::outputs::{self, Certified};
     use signorini::io::result::{Results, Seconds, result_json};
     use signorini::io::sweep::{self, Axis, NoResult, SweepError};
@@ -77,6 +79,9 @@ mod command {
                 }
             }
             Task::Audit { certificate } => audit(certificate).map(summarised(quiet)),
+            Task::Certify { case, displacement, out } => {
+                certify(case, displacement, out.as_deref(), quiet).map(summarised(quiet))
+            }
             Task::Check { case } => check(case).map(summarised(quiet)),
             Task::Sweep { case, axes, files, out } => {
                 sweep(case, axes, *files, out.as_deref(), quiet)
@@ -176,6 +181,30 @@ mod command {
         };
         drop(phases);
         wanted.text(&results, &files, quiet)
+    }
+
+    /// How wrong a displacement is that any program computed.
+    fn certify(
+        arguments: &CaseArguments,
+        displacement: &Path,
+        out: Option<&Path>,
+        quiet: bool,
+    ) -> Result<String, Failure> {
+        let phases = Phases::start(quiet);
+        phases.enter("reading the case");
+        let case = read(arguments)?;
+        let field = read_field(displacement, &case.problem.mesh).map_err(|e| failure(WRONG)(&e))?;
+        phases.enter("solving");
+        let (solution, _) = solved(&case)?;
+        phases.enter("certifying");
+        let certified = certify_field(&case.problem, &solution, &field).map_err(|e| {
+            failure(FAILED)(&format!("{}: {e}", displacement.display()))
+        })?;
+        let folder = folder(&arguments.file, out);
+        let files = outputs::write_certified(&folder, &case, &field, &certified)
+            .map_err(|e| failure(FAILED)(&e))?;
+        drop(phases);
+        Ok(summary::certified(&case, displacement, &certified, &files))
     }
 
     /// Verifies a certificate from scratch.

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use signorini::certify::Continuous;
 use signorini::io::certificate::Audit;
 use signorini::io::convergence::Study;
 use signorini::io::result::{ContinuousCertificate, GammaChoice, NewtonHistory, Results};
@@ -87,6 +88,23 @@ pub fn solved(r: &Results, files: &[PathBuf]) -> String {
             ),
         );
     }
+    lines.line("written", written(files));
+    lines.0
+}
+
+/// Of a displacement from elsewhere.
+pub fn certified(case: &Case, field: &Path, c: &Continuous, files: &[PathBuf]) -> String {
+    let mut lines = Lines::titled(&case.title);
+    lines.line("field", field.display().to_string());
+    let norm = c.proof.norm;
+    let size = |bound: f64| {
+        let percent = 100.0 * bound / norm;
+        if percent.is_finite() { format!("{} % of its energy norm", numbers::short(percent, 3)) } else { short(bound) }
+    };
+    let proved = if c.rigorous { "proved".to_owned() } else { format!("up to quadrature ({})", c.reason.as_deref().unwrap_or_default()) };
+    lines.line("admissible", format!("{} (energy norm) were changed to satisfy the conditions on displacements", short(c.clipping)));
+    lines.line("error", format!("at most {} once admissible: {proved}", size(c.bound)));
+    lines.line("", format!("at most {} as it is", size((c.bound + c.clipping).next_up())));
     lines.line("written", written(files));
     lines.0
 }

@@ -20,7 +20,8 @@ pub use self::proof::{Certificate, Proof, Rejection};
 use crate::fem::constraints::Constraints;
 use crate::fem::contact_line;
 use crate::fem::{DataError, Problem, Space};
-use crate::kernel::{Interval, P1};
+use crate::kernel::composite::complementary;
+use crate::kernel::{Interval, Material, P1, Plane, Triangle};
 use crate::solve::Solution;
 
 /// How often the stress is improved around every vertex.
@@ -47,6 +48,8 @@ pub struct Continuous {
     pub certificate: Certificate,
     /// What it proves.
     pub proof: Proof,
+    /// |v - w|_a is at most this, for the field w that was given: |u - w|_a <= bound + clipping.
+    pub clipping: f64,
     /// |z|_a of the lift of section 7.4, which the bound has beside that of the proof.
     pub lift: f64,
 }
@@ -87,6 +90,7 @@ pub fn certify_field(
         let below = Interval::point(proof.energy[0]) - b * b / Interval::from(2);
         [below.lo(), proof.energy[1]]
     });
+    let clipping = energy_distance(problem, &certificate.displacement, field);
     let mut shares = vec![0.0; problem.mesh.triangles().len()];
     origins.iter().zip(&proof.shares).for_each(|(&t, share)| shares[t] += share);
     let estimate = build::averaging_estimate(&parts, &certificate.displacement);
@@ -101,7 +105,32 @@ pub fn certify_field(
         certificate,
         proof,
         lift: oscillation.lift,
+        clipping,
     })
+}
+
+/// An upper bound of |v - w|_a for two fields that are affine on triangles.
+fn energy_distance(problem: &Problem, v: &[[f64; 2]], w: &[[f64; 2]]) -> f64 {
+    let exactly = |x: [f64; 2]| x.map(Interval::point);
+    let mut square = Interval::from(0);
+    for (t, corners) in problem.mesh.triangles().iter().enumerate() {
+        if corners.iter().all(|&k| v[k] == w[k]) {
+            continue;
+        }
+        let vertices = corners.map(|k| exactly(problem.mesh.vertices()[k]));
+        let triangle = Triangle { vertices };
+        let difference = corners.map(|k| {
+            let (a, b) = (exactly(v[k]), exactly(w[k]));
+            [a[0] - b[0], a[1] - b[1]]
+        });
+        let of = problem.material.of(t);
+        let [lambda, mu] = [of.lambda(), of.mu()].map(Interval::point);
+        let material = Material::lame(lambda, mu, Plane::Strain);
+        let sigma = material.stress(proof::displacement_gradient(&triangle, &difference));
+        square = square
+            + complementary(&material, sigma) * triangle.double_area() / Interval::from(2);
+    }
+    square.sqrt().hi()
 }
 
 /// Why there is no certificate.

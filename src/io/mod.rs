@@ -11,6 +11,8 @@ pub mod data;
 #[cfg(feature = "files")]
 mod exact;
 pub mod expression;
+#[cfg(feature = "files")]
+pub mod field;
 pub mod files;
 pub mod gmsh;
 pub mod numbers;

@@ -91,11 +91,9 @@ pub fn write(
     stage("contact.csv", contact_csv(&contact_rows(solution)).map(String::into_bytes))?;
     stage("picture.svg", draw(case, solution).map(String::into_bytes))?;
     if let (Some(continuous), true) = (continuous, certificate) {
-        let (header, arrays) = certificate::encode(&case.title, continuous);
-        let text = serde_json::to_vec_pretty(&header)
-            .map_err(|_| DataError::NotFinite { place: certificate::HEADER.to_owned() });
-        stage(certificate::HEADER, text)?;
-        stage(certificate::ARRAYS, Ok(arrays))?;
+        for (file, bytes) in certificate_files(&case.title, continuous) {
+            stage(file, bytes)?;
+        }
     }
     let mut seconds = Seconds::new(read, &times, start.elapsed());
     seconds.certify = certified.map_or(0.0, |c| c.time.as_secs_f64());
@@ -103,6 +101,52 @@ pub fn write(
     results.certificate = certified.map(Certified::report);
     stage("result.json", result_json(&results).map(String::into_bytes))?;
     Ok((output.publish()?, results))
+}
+
+/// Writes what is certified of a displacement from elsewhere: certified.vtu with the `field`, its admissible part and the
+/// bound of its error by triangles, certificate.json and certificate.bin.
+///
+/// # Errors
+/// A folder or file that can't be written.
+pub fn write_certified(
+    folder: &Path,
+    case: &Case,
+    field: &[[f64; 2]],
+    certified: &Continuous,
+) -> Result<Vec<PathBuf>, OutputError> {
+    let mut output = Output::new(folder)?;
+    let mesh = &case.problem.mesh;
+    let grid = vtu(&Grid {
+        kind: CellKind::Triangle,
+        points: mesh.vertices(),
+        connectivity: mesh.triangles().as_flattened(),
+        point_data: &[
+            Field { name: "displacement", values: Values::Vectors(field) },
+            Field {
+                name: "admissible",
+                values: Values::Vectors(&certified.certificate.displacement),
+            },
+        ],
+        cell_data: &[Field { name: "error_bound", values: Values::Scalars(&certified.indicators) }],
+    });
+    let grid = grid.map_err(|error| OutputError::Data { file: "certified.vtu", error })?;
+    output.stage("certified.vtu", &grid)?;
+    for (file, bytes) in certificate_files(&case.title, certified) {
+        let bytes = bytes.map_err(|error| OutputError::Data { file, error })?;
+        output.stage(file, &bytes)?;
+    }
+    Ok(output.publish()?)
+}
+
+/// certificate.json and certificate.bin.
+fn certificate_files(
+    title: &str,
+    certified: &Continuous,
+) -> [(&'static str, Result<Vec<u8>, DataError>); 2] {
+    let (header, arrays) = certificate::encode(title, certified);
+    let text = serde_json::to_vec_pretty(&header)
+        .map_err(|_| DataError::NotFinite { place: certificate::HEADER.to_owned() });
+    [(certificate::HEADER, text), (certificate::ARRAYS, Ok(arrays))]
 }
 
 /// The content of result.json.
