@@ -172,7 +172,8 @@ mod command {
         let read = start.elapsed();
         let folder = folder(&arguments.file, out);
         if wanted == Wanted::Summary || out.is_some() {
-            spare(&folder, &outputs::FILES, &case.sources).map_err(|e| failure(WRONG)(&e))?;
+            let names = [&outputs::FILES[..], &certificate::FILES].concat();
+            spare(&folder, &names, &case.sources).map_err(|e| failure(WRONG)(&e))?;
         }
         phases.enter("solving");
         let (solution, times) = solved(&case)?;

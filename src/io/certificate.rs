@@ -25,11 +25,8 @@ use thiserror::Error;
 use crate::certify::Continuous;
 use crate::certify::proof::{Certificate, Claim, Cut, Edge, Piece, Proof, Rejection, Role};
 
-/// The name of the file with the arrays, beside certificate.json.
-pub const ARRAYS: &str = "certificate.bin";
-
-/// The name of the file with the claim.
-pub const HEADER: &str = "certificate.json";
+/// The names of the files: the claim, and the arrays beside it.
+pub const FILES: [&str; 2] = ["certificate.json", "certificate.bin"];
 
 /// The format that this program writes and reads.
 const FORMAT: u32 = 1;
@@ -132,7 +129,7 @@ pub fn audit(path: &Path) -> Result<Audit, AuditError> {
         |path: &Path, problem: String| AuditError::Format { path: path.to_owned(), problem };
     let header: Header =
         serde_json::from_slice(&text).map_err(|e| wrong(path, format!("no certificate: {e}")))?;
-    let arrays = path.with_file_name(ARRAYS);
+    let arrays = path.with_file_name(FILES[1]);
     let bytes = read(&arrays)?;
     let (certificate, claim) =
         decode(&header, &bytes).map_err(|problem| wrong(&arrays, problem))?;

@@ -93,6 +93,9 @@ pub fn write(
     let start = Instant::now();
     let mut output = Output::new(folder)?;
     output.replaces(&only_in(&FILES_OF_FENICSX, &FILES));
+    if !certificate {
+        output.replaces(&certificate::FILES);
+    }
     let mut stage = |file, bytes: Result<Vec<u8>, DataError>| -> Result<(), OutputError> {
         let bytes = bytes.map_err(|error| OutputError::Data { file, error })?;
         Ok(output.stage(file, &bytes)?)
@@ -106,9 +109,9 @@ pub fn write(
     if let (Some(continuous), true) = (continuous, certificate) {
         let (header, arrays) = certificate::encode(&case.title, continuous);
         let text = serde_json::to_vec_pretty(&header)
-            .map_err(|_| DataError::NotFinite { place: certificate::HEADER.to_owned() });
-        stage(certificate::HEADER, text)?;
-        stage(certificate::ARRAYS, Ok(arrays))?;
+            .map_err(|_| DataError::NotFinite { place: certificate::FILES[0].to_owned() });
+        stage(certificate::FILES[0], text)?;
+        stage(certificate::FILES[1], Ok(arrays))?;
     }
     let mut seconds = Seconds::new(read, &times, start.elapsed());
     seconds.certify = certified.map_or(0.0, |c| c.time.as_secs_f64());
