@@ -9,7 +9,8 @@ use signorini::io::convergence::Study;
 use signorini::io::result::{ContinuousCertificate, GammaChoice, NewtonHistory, Results};
 use signorini::io::sweep::Sweep;
 use signorini::io::{Case, numbers};
-use signorini::solve::{ContactQuadrature, NewtonReport, Outline, Settings};
+use signorini::quote;
+use signorini::solve::{ContactQuadrature, Outline, history};
 
 /// Lines of a name and a text.
 #[derive(Default)]
@@ -17,7 +18,7 @@ struct Lines(String);
 
 impl Lines {
     fn titled(title: &str) -> Self {
-        Lines(format!("{title}\n"))
+        Lines(format!("{}\n", quote::line(title)))
     }
 
     fn line(&mut self, name: &str, text: impl AsRef<str>) {
@@ -50,7 +51,7 @@ pub fn solved(r: &Results, files: &[PathBuf]) -> String {
     );
     for (i, (boundary, reaction)) in q.reactions.iter().enumerate() {
         let name = if i == 0 { "reactions" } else { "" };
-        lines.line(name, format!("{boundary}: {}", vector(*reaction)));
+        lines.line(name, format!("{}: {}", quote::cut(boundary), vector(*reaction)));
     }
     lines.line(
         "energy",
@@ -99,10 +100,24 @@ pub fn certified(case: &Case, field: &Path, c: &Continuous, files: &[PathBuf]) -
     let norm = c.proof.norm;
     let size = |bound: f64| {
         let percent = 100.0 * bound / norm;
-        if percent.is_finite() { format!("{} % of its energy norm", numbers::short(percent, 3)) } else { short(bound) }
+        if percent.is_finite() {
+            format!("{} % of its energy norm", numbers::short(percent, 3))
+        } else {
+            short(bound)
+        }
     };
-    let proved = if c.rigorous { "proved".to_owned() } else { format!("up to quadrature ({})", c.reason.as_deref().unwrap_or_default()) };
-    lines.line("admissible", format!("{} (energy norm) were changed to satisfy the conditions on displacements", short(c.clipping)));
+    let proved = if c.rigorous {
+        "proved".to_owned()
+    } else {
+        format!("up to quadrature ({})", c.reason.as_deref().unwrap_or_default())
+    };
+    lines.line(
+        "admissible",
+        format!(
+            "{} (energy norm) were changed to satisfy the conditions on displacements",
+            short(c.clipping)
+        ),
+    );
     lines.line("error", format!("at most {} once admissible: {proved}", size(c.bound)));
     lines.line("", format!("at most {} as it is", size((c.bound + c.clipping).next_up())));
     lines.line("written", written(files));
@@ -177,24 +192,12 @@ pub fn checked(case: &Case, outline: &Outline) -> String {
 /// Of a case on finer and finer meshes.
 pub fn studied(case: &Case, studies: &[Study], files: &[PathBuf]) -> String {
     let tables: Vec<String> = studies.iter().map(Study::table).collect();
-    format!("{}\n\n{}\nwritten: {}\n", case.title, tables.join("\n"), written(files))
+    format!("{}\n\n{}\nwritten: {}\n", quote::line(&case.title), tables.join("\n"), written(files))
 }
 
 /// Of a case along some axes.
 pub fn swept(sweep: &Sweep, files: &[PathBuf]) -> String {
-    format!("{}\n\n{}\nwritten: {}\n", sweep.title, sweep.table(), written(files))
-}
-
-/// Of a case that Newton's method could not solve.
-pub fn not_converged(file: &Path, settings: &Settings, report: &NewtonReport) -> String {
-    format!(
-        "{}: no convergence: the relative residual is {:.1e} after {}; expected at most {:e}. Nothing is written.\nresiduals: {}",
-        file.display(),
-        report.residual,
-        count(report.iterations(), "Newton step"),
-        settings.tolerance,
-        history(&report.residuals)
-    )
+    format!("{}\n\n{}\nwritten: {}\n", quote::line(&sweep.title), sweep.table(), written(files))
 }
 
 fn sizes(triangles: usize, degree: usize, dofs: usize, contact_edges: usize, h: f64) -> String {
@@ -225,10 +228,6 @@ fn newton(newton: &NewtonHistory) -> String {
     )
 }
 
-fn history(residuals: &[f64]) -> String {
-    residuals.iter().map(|r| format!("{r:.0e}")).collect::<Vec<_>>().join(" ")
-}
-
 fn count(n: usize, what: &str) -> String {
     if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") }
 }
@@ -251,5 +250,5 @@ fn written(files: &[PathBuf]) -> String {
     let folder = files.first().and_then(|file| file.parent()).unwrap_or(Path::new(""));
     let names: Vec<_> =
         files.iter().flat_map(|f| f.file_name()).map(|n| n.to_string_lossy()).collect();
-    format!("{}: {}", folder.display(), names.join(", "))
+    format!("{}: {}", quote::path(folder), names.join(", "))
 }

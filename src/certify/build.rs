@@ -24,7 +24,7 @@ use crate::fem::pieces::{Features, Rule};
 use crate::fem::{BoundaryEdge, BoxedFunction, Condition, Function, Mesh, Problem};
 use crate::kernel::composite::complementary;
 use crate::kernel::edge_integral::{ExactEdge, positive_interval};
-use crate::kernel::{Material, P1, Stress, Triangle};
+use crate::kernel::{ContactEdge, Material, P1, Stress, Triangle};
 
 /// What a boundary edge prescribes.
 #[derive(Clone, Copy)]
@@ -126,6 +126,15 @@ impl<'a> Parts<'a> {
             }
         }
         for (k, edge) in contact.iter().enumerate() {
+            let (t, local) = (edge.edge.triangle, edge.edge.local);
+            let (triangle, of) = (mesh.triangle(t), problem.material.of(t));
+            let along_the_normal =
+                ContactEdge::new::<P1>(&triangle, local, edge.normal, of, edge.gamma);
+            if along_the_normal.p0 != edge.functionals.p0 {
+                return unsupported(
+                    "contact acts along a direction that is not the edges' normal".to_owned(),
+                );
+            }
             boundary.insert(number(edge.edge), Boundary::Contact(k));
         }
         Ok(Parts { problem, mesh, contact, prescribed: constraints.values(), boundary })

@@ -127,8 +127,8 @@ fn energy_distance(problem: &Problem, v: &[[f64; 2]], w: &[[f64; 2]]) -> f64 {
         let [lambda, mu] = [of.lambda(), of.mu()].map(Interval::point);
         let material = Material::lame(lambda, mu, Plane::Strain);
         let sigma = material.stress(proof::displacement_gradient(&triangle, &difference));
-        square = square
-            + complementary(&material, sigma) * triangle.double_area() / Interval::from(2);
+        square =
+            square + complementary(&material, sigma) * triangle.double_area() / Interval::from(2);
     }
     square.sqrt().hi()
 }

@@ -16,20 +16,21 @@
 //! and end), 4 given traction (t at start and end), 5 given pressure (p at start and end, 0 0), 6 contact (tau_n at start and
 //! end, g at start and end).
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use super::input::{self, InputError};
 use crate::certify::Continuous;
 use crate::certify::proof::{Certificate, Claim, Cut, Edge, Piece, Proof, Rejection, Role};
+use crate::quote;
 
-/// The name of the file with the arrays, beside certificate.json.
-pub const ARRAYS: &str = "certificate.bin";
+/// The names of the files: the claim, and the arrays beside it.
+pub const FILES: [&str; 2] = ["certificate.json", "certificate.bin"];
 
-/// The name of the file with the claim.
-pub const HEADER: &str = "certificate.json";
+/// The most bytes of a file: some ten million triangles.
+const MOST: u64 = 4 << 30;
 
 /// The format that this program writes and reads.
 const FORMAT: u32 = 1;
@@ -77,9 +78,9 @@ pub struct Counts {
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
 pub enum AuditError {
-    #[error("{path}: {error}")]
-    Read { path: PathBuf, error: std::io::Error },
-    #[error("{path}: {problem}")]
+    #[error("{}: {error}", quote::path(path))]
+    Read { path: PathBuf, error: InputError },
+    #[error("{}: {problem}", quote::path(path))]
     Format { path: PathBuf, problem: String },
     #[error("rejected: {0}")]
     Rejected(#[from] Rejection),
@@ -125,14 +126,14 @@ pub fn encode(title: &str, certified: &Continuous) -> (Header, Vec<u8>) {
 /// Files that can't be read or are no certificate; whatever [`Certificate::audit`] rejects; a bound below the proved one.
 pub fn audit(path: &Path) -> Result<Audit, AuditError> {
     let read = |path: &Path| {
-        fs::read(path).map_err(|error| AuditError::Read { path: path.to_owned(), error })
+        input::read(path, MOST).map_err(|error| AuditError::Read { path: path.to_owned(), error })
     };
     let text = read(path)?;
     let wrong =
         |path: &Path, problem: String| AuditError::Format { path: path.to_owned(), problem };
     let header: Header =
         serde_json::from_slice(&text).map_err(|e| wrong(path, format!("no certificate: {e}")))?;
-    let arrays = path.with_file_name(ARRAYS);
+    let arrays = path.with_file_name(FILES[1]);
     let bytes = read(&arrays)?;
     let (certificate, claim) =
         decode(&header, &bytes).map_err(|problem| wrong(&arrays, problem))?;

@@ -8,23 +8,27 @@
 //! Points are matched to vertices by their place; other points, such as midpoints of edges, are passed over.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use miniz_oxide::inflate::decompress_to_vec_zlib_with_limit;
 use thiserror::Error;
 
+use super::input::{self, InputError};
 use crate::fem::Mesh;
+use crate::quote;
 
 /// Why there is no field.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
 pub enum FieldError {
-    #[error("{path}: {error}")]
-    Read { path: PathBuf, error: std::io::Error },
-    #[error("{path}: {problem}")]
+    #[error("{}: {error}", quote::path(path))]
+    Read { path: PathBuf, error: InputError },
+    #[error("{}: {problem}", quote::path(path))]
     Format { path: PathBuf, problem: String },
 }
+
+/// The most bytes of a file: the text of some ten million points.
+const MOST: u64 = 2 << 30;
 
 /// A point is a vertex when it is this near, in units of the body's extent: coordinates written in single precision pass.
 const NEAR: f64 = 1e-6;
@@ -34,8 +38,8 @@ const NEAR: f64 = 1e-6;
 /// # Errors
 /// A file that can't be read or understood, or that lacks a vertex of the mesh.
 pub fn read_field(path: &Path, mesh: &Mesh) -> Result<Vec<[f64; 2]>, FieldError> {
-    let bytes =
-        fs::read(path).map_err(|error| FieldError::Read { path: path.to_owned(), error })?;
+    let bytes = input::read(path, MOST)
+        .map_err(|error| FieldError::Read { path: path.to_owned(), error })?;
     let text = String::from_utf8_lossy(&bytes);
     let points = match path.extension().and_then(|e| e.to_str()) {
         Some("csv") => from_csv(&text),
@@ -54,7 +58,8 @@ fn at_vertices(points: &Points, mesh: &Mesh) -> Result<Vec<[f64; 2]>, String> {
     let vertices = mesh.vertices();
     let extent = (0..2)
         .map(|c| {
-            let of = |pick: fn(f64, f64) -> f64, start| vertices.iter().map(|x| x[c]).fold(start, pick);
+            let of =
+                |pick: fn(f64, f64) -> f64, start| vertices.iter().map(|x| x[c]).fold(start, pick);
             of(f64::max, f64::NEG_INFINITY) - of(f64::min, f64::INFINITY)
         })
         .fold(0.0, f64::max);
@@ -96,7 +101,10 @@ fn from_csv(text: &str) -> Result<Points, String> {
     let names: Vec<&str> = head.split(',').map(str::trim).collect();
     let column = |name: &str| {
         names.iter().position(|n| *n == name).ok_or_else(|| {
-            format!("line 1 has no column '{name}' among {}; expected x, y, ux and uy", names.join(", "))
+            format!(
+                "line 1 has no column '{name}' among {}; expected x, y, ux and uy",
+                names.join(", ")
+            )
         })
     };
     let columns = [column("x")?, column("y")?, column("ux")?, column("uy")?];
@@ -105,8 +113,9 @@ fn from_csv(text: &str) -> Result<Points, String> {
         let cells: Vec<&str> = line.split(',').map(str::trim).collect();
         let number = |c: usize| {
             let cell = cells.get(c).copied().unwrap_or_default();
-            cell.parse::<f64>()
-                .map_err(|_| format!("line {}: '{cell}' is no number; expected {}", i + 1, names[c]))
+            cell.parse::<f64>().map_err(|_| {
+                format!("line {}: '{cell}' is no number; expected {}", i + 1, names[c])
+            })
         };
         let [x, y, u, v] = columns.map(number);
         points.push(([x?, y?], [u?, v?]));
@@ -138,7 +147,9 @@ fn attribute<'a>(attributes: &'a str, name: &str) -> Option<&'a str> {
         rest = &rest[place + name.len()..];
         let Some(value) = rest.trim_start().strip_prefix('=') else { continue };
         let value = value.trim_start();
-        let Some(quote) = value.chars().next().filter(|c| ['"', '\''].contains(c)) else { continue };
+        let Some(quote) = value.chars().next().filter(|c| ['"', '\''].contains(c)) else {
+            continue;
+        };
         if before.is_none_or(char::is_whitespace) {
             return value[1..].split(quote).next();
         }
@@ -158,7 +169,8 @@ fn arrays(section: &str) -> Vec<Array<'_>> {
         .filter_map(|part| {
             let (attributes, rest) = part.split_once('>')?;
             // An empty array closes itself.
-            let text = if attributes.ends_with('/') { "" } else { rest.split("</DataArray").next()? };
+            let text =
+                if attributes.ends_with('/') { "" } else { rest.split("</DataArray").next()? };
             Some(Array { attributes, text: text.trim() })
         })
         .collect()
@@ -175,7 +187,8 @@ fn from_vtu(text: &str) -> Result<Points, String> {
     let places = section(text, "Points").map(arrays).unwrap_or_default();
     let places = places.first().ok_or("it has no <Points>")?;
     let fields = section(text, "PointData").map(arrays).unwrap_or_default();
-    let vectors: Vec<&Array> = fields.iter().filter(|a| (2..=3).contains(&a.components())).collect();
+    let vectors: Vec<&Array> =
+        fields.iter().filter(|a| (2..=3).contains(&a.components())).collect();
     let named = vectors
         .iter()
         .find(|a| ["displacement", "u"].iter().any(|name| a.attribute("Name") == Some(name)));
@@ -193,7 +206,11 @@ fn from_vtu(text: &str) -> Result<Points, String> {
     let (x, u) = (numbers(places, head)?, numbers(field, head)?);
     let (dim, components) = (places.components().max(2), field.components());
     if x.len() / dim != u.len() / components || x.len() % dim != 0 {
-        return Err(format!("{} coordinates and {} components of vectors don't fit", x.len(), u.len()));
+        return Err(format!(
+            "{} coordinates and {} components of vectors don't fit",
+            x.len(),
+            u.len()
+        ));
     }
     let pairs = x.chunks_exact(dim).zip(u.chunks_exact(components));
     Ok(pairs.map(|(x, u)| ([x[0], x[1]], [u[0], u[1]])).collect())
@@ -204,12 +221,13 @@ fn numbers(array: &Array, head: &str) -> Result<Vec<f64>, String> {
     let name = array.attribute("Name").unwrap_or("Points");
     let bytes = match array.attribute("format") {
         Some("ascii") | None => {
-            let number = |word: &str| {
-                word.parse().map_err(|_| format!("{name}: '{word}' is no number"))
-            };
+            let number =
+                |word: &str| word.parse().map_err(|_| format!("{name}: '{word}' is no number"));
             return array.text.split_whitespace().map(number).collect();
         }
-        Some("binary") => blocks(array.text, head).map_err(|problem| format!("{name}: {problem}"))?,
+        Some("binary") => {
+            blocks(array.text, head).map_err(|problem| format!("{name}: {problem}"))?
+        }
         Some(other) => {
             return Err(format!("{name} has the format '{other}'; expected ascii or binary"));
         }
@@ -245,7 +263,10 @@ fn blocks(code: &str, head: &str) -> Result<Vec<u8>, String> {
         let bytes = decode(&code)?;
         let length = whole(&bytes, 0)?;
         let end = word.checked_add(length).ok_or("a length is too large")?;
-        return bytes.get(word..end).map(<[u8]>::to_vec).ok_or("the code ends too early".to_owned());
+        return bytes
+            .get(word..end)
+            .map(<[u8]>::to_vec)
+            .ok_or("the code ends too early".to_owned());
     };
     if compressor != "vtkZLibDataCompressor" {
         return Err(format!("it is compressed by {compressor}; expected vtkZLibDataCompressor"));
@@ -348,9 +369,11 @@ mod tests {
 <DataArray type="Float64" NumberOfComponents="3" format="ascii">0 0 0 1 0 0 0 1 0</DataArray></Points>
 <PointData><DataArray type="Float64" Name="p" format="ascii">1 2 3</DataArray>
 <DataArray type="Float64" Name="u" NumberOfComponents="2" format="ascii">0.5 -2 0 0 1 3</DataArray></PointData></Piece></VTKFile>"#;
-        let expected = vec![([0.0, 0.0], [0.5, -2.0]), ([1.0, 0.0], [0.0, 0.0]), ([0.0, 1.0], [1.0, 3.0])];
+        let expected =
+            vec![([0.0, 0.0], [0.5, -2.0]), ([1.0, 0.0], [0.0, 0.0]), ([0.0, 1.0], [1.0, 3.0])];
         assert_eq!(from_vtu(ascii).unwrap(), expected);
-        let numbers: Vec<u8> = [0.5, -2.0, 0.0, 0.0, 1.0, 3.0_f64].iter().flat_map(|x| x.to_le_bytes()).collect();
+        let numbers: Vec<u8> =
+            [0.5, -2.0, 0.0, 0.0, 1.0, 3.0_f64].iter().flat_map(|x| x.to_le_bytes()).collect();
         let packed = miniz_oxide::deflate::compress_to_vec_zlib(&numbers, 6);
         let header: Vec<u8> =
             [1, 48, 48, packed.len() as u32].iter().flat_map(|n| n.to_le_bytes()).collect();
@@ -359,8 +382,14 @@ mod tests {
         crate::io::vtu::encode(&packed, &mut code);
         let code = String::from_utf8(code).unwrap();
         let compressed = ascii
-            .replace("type=\"UnstructuredGrid\"", "header_type=\"UInt32\" compressor=\"vtkZLibDataCompressor\"")
-            .replace("Name=\"u\" NumberOfComponents=\"2\" format=\"ascii\">0.5 -2 0 0 1 3", &format!("Name=\"u\" NumberOfComponents=\"2\" format=\"binary\">{code}"));
+            .replace(
+                "type=\"UnstructuredGrid\"",
+                "header_type=\"UInt32\" compressor=\"vtkZLibDataCompressor\"",
+            )
+            .replace(
+                "Name=\"u\" NumberOfComponents=\"2\" format=\"ascii\">0.5 -2 0 0 1 3",
+                &format!("Name=\"u\" NumberOfComponents=\"2\" format=\"binary\">{code}"),
+            );
         assert_eq!(from_vtu(&compressed).unwrap(), expected);
     }
 
@@ -372,7 +401,9 @@ mod tests {
         let error = at_vertices(&points, &mesh).unwrap_err();
         assert!(error.contains("at vertex 4 of the mesh, (0, 1)"), "{error}");
         assert!(from_csv("x,y,u\n").unwrap_err().contains("no column 'ux'"));
-        assert!(from_csv("x,y,ux,uy\n1,2,a,4\n").unwrap_err().starts_with("line 2: 'a' is no number"));
+        assert!(
+            from_csv("x,y,ux,uy\n1,2,a,4\n").unwrap_err().starts_with("line 2: 'a' is no number")
+        );
         assert!(from_vtu("<VTKFile>").unwrap_err().contains("<Points>"));
     }
 }

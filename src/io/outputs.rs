@@ -22,6 +22,18 @@ use crate::fem;
 use crate::solve::solution::ContactValues;
 use crate::solve::{Solution, Times};
 
+/// The names of the files of a solved case; the last one says that the set is whole.
+pub const FILES: [&str; 5] =
+    ["solution.vtu", "contact.vtu", "contact.csv", "picture.svg", "result.json"];
+
+/// The same of the engine fenicsx.
+pub const FILES_OF_FENICSX: [&str; 3] = ["solution.xdmf", "solution.h5", "result.json"];
+
+/// Those of the first list that are not in the second: left from another kind of run.
+pub fn only_in(names: &[&'static str], others: &[&str]) -> Vec<&'static str> {
+    names.iter().copied().filter(|name| !others.contains(name)).collect()
+}
+
 /// Why the files of a run could not be written.
 #[derive(Debug, Error)]
 pub enum OutputError {
@@ -80,6 +92,10 @@ pub fn write(
 ) -> Result<(Vec<PathBuf>, Results), OutputError> {
     let start = Instant::now();
     let mut output = Output::new(folder)?;
+    output.replaces(&only_in(&FILES_OF_FENICSX, &FILES));
+    if !certificate {
+        output.replaces(&certificate::FILES);
+    }
     let mut stage = |file, bytes: Result<Vec<u8>, DataError>| -> Result<(), OutputError> {
         let bytes = bytes.map_err(|error| OutputError::Data { file, error })?;
         Ok(output.stage(file, &bytes)?)
@@ -145,8 +161,8 @@ fn certificate_files(
 ) -> [(&'static str, Result<Vec<u8>, DataError>); 2] {
     let (header, arrays) = certificate::encode(title, certified);
     let text = serde_json::to_vec_pretty(&header)
-        .map_err(|_| DataError::NotFinite { place: certificate::HEADER.to_owned() });
-    [(certificate::HEADER, text), (certificate::ARRAYS, Ok(arrays))]
+        .map_err(|_| DataError::NotFinite { place: certificate::FILES[0].to_owned() });
+    [(certificate::FILES[0], text), (certificate::FILES[1], Ok(arrays))]
 }
 
 /// The content of result.json.
