@@ -150,14 +150,16 @@ impl Traction<'_> {
     /// t_h at both ends: t itself where it is affine, else the affine function whose `force` has the moments of t.
     pub fn affine(&self, ends: [[f64; 2]; 2], force: [[f64; 2]; 2]) -> Role {
         let (length, unit) = length_and_normal(ends);
-        match self {
+        let role = match self {
             Traction::Vector(_) if self.is_affine() => Role::Loaded(ends.map(|x| self.at(x, unit))),
             Traction::Vector(_) => Role::Loaded(force.map(|f| f.map(|f| f / length))),
             Traction::Pressure(p) if self.is_affine() => {
                 Role::Pressed(ends.map(|x| p.on_boundary(x, unit)))
             }
             Traction::Pressure(_) => Role::Pressed(force.map(|f| -dot(f, unit) / length)),
-        }
+        };
+        // No load has one role only.
+        if role == Role::Pressed([0.0; 2]) { Role::Loaded([[0.0; 2]; 2]) } else { role }
     }
 }
 

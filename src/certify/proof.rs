@@ -444,8 +444,23 @@ impl Certificate {
         self.pieces.iter().enumerate().map(triangle).collect()
     }
 
-    /// v = u_D at both ends of the edges of Gamma_D, and there is no force in a direction that is not held.
+    /// v = u_D at both ends of the edges of Gamma_D, nothing is prescribed elsewhere, and there is no force in a direction
+    /// that is not held.
     fn check_displacement(&self) -> Result<(), Rejection> {
+        let mut held_at = vec![[false; 2]; self.vertices.len()];
+        for edge in &self.edges {
+            let Role::Held(held, _) = edge.role else { continue };
+            for vertex in edge.ends {
+                if let Some(at) = held_at.get_mut(vertex) {
+                    *at = [0, 1].map(|c| at[c] || held[c]);
+                }
+            }
+        }
+        for (vertex, (data, held)) in self.prescribed.iter().zip(held_at).enumerate() {
+            if (0..2).any(|c| data[c].is_some() && !held[c]) {
+                return Err(wrong("vertex", vertex, "a prescribed value off Gamma_D"));
+            }
+        }
         for (e, edge) in self.edges.iter().enumerate() {
             let Role::Held(held, force) = edge.role else { continue };
             for component in 0..2 {

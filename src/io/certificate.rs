@@ -214,7 +214,7 @@ pub fn decode(header: &Header, bytes: &[u8]) -> Result<(Certificate, Claim), Str
             0 => Role::Inner([start, end]),
             held @ 1..=3 => Role::Held([held & 1 != 0, held & 2 != 0], [start, end]),
             4 => Role::Loaded([start, end]),
-            5 if end == [0.0; 2] => Role::Pressed(start),
+            5 if end == [0.0; 2] && start != [0.0; 2] => Role::Pressed(start),
             6 => Role::Contact { pressure: start, gap: end },
             _ => return Err(format!("edge {e} has an unknown role")),
         };

@@ -229,37 +229,60 @@ fn a_certificate_is_accepted_as_it_was_written() {
     }
 }
 
-/// The words of certificate.bin that the statement or its proof depend on, by array: all of them but gaps, which no bound
-/// feels where there is no pressure, as the hash is what protects them.
-fn is_gap(header: &Header, bytes: &[u8], word: usize) -> bool {
-    let counts = header.counts;
-    let first = 8 * counts.vertices + 3 * counts.cuts + 15 * counts.triangles;
-    let Some(inside) = word.checked_sub(first).filter(|w| *w < 7 * counts.edges) else {
-        return false;
-    };
-    let role = (first + inside / 7 * 7 + 2) * 8;
-    bytes[role] == 6 && inside % 7 >= 5
+/// What a word of certificate.bin is.
+#[derive(Clone, Copy, PartialEq)]
+enum Word {
+    /// An index, a role, or whether there is a number.
+    Whole,
+    Number,
+    /// A gap: no bound feels it where there is no pressure, so the hash alone protects it.
+    Gap,
 }
 
-/// Changes one word: the last bits of a number beyond rounding, its sign, its size, an index, a triangle.
-fn tamper(bytes: &mut [u8], word: usize, random: &mut Random) -> bool {
+fn kind(header: &Header, bytes: &[u8], word: usize) -> Word {
+    let counts = header.counts;
+    let mut first = 0;
+    // Words for each entry, and which of them are whole.
+    for (entries, each, whole) in [
+        (4 * counts.vertices, 1, 0..0),
+        (2 * counts.vertices, 2, 0..1),
+        (counts.cuts, 3, 0..2),
+        (counts.triangles, 15, 0..6),
+        (counts.edges, 7, 0..3),
+    ] {
+        if word < first + entries * each {
+            let inside = (word - first) % each;
+            let is_contact = each == 7 && bytes[8 * (word - inside + 2)] == 6;
+            return match inside {
+                i if whole.contains(&i) => Word::Whole,
+                5.. if is_contact => Word::Gap,
+                _ => Word::Number,
+            };
+        }
+        first += entries * each;
+    }
+    Word::Number
+}
+
+/// Changes one word: a number beyond its last bits, in sign or in size, or an index.
+fn tamper(bytes: &mut [u8], word: usize, is: Word, random: &mut Random) -> bool {
     let place = 8 * word..8 * word + 8;
     let old = u64::from_le_bytes(bytes[place.clone()].try_into().unwrap());
     let value = f64::from_bits(old);
-    let kind = random.next();
-    let new = if old < 1 << 40 {
-        // A whole number or a zero.
-        match kind {
-            k if k < -0.3 => old.wrapping_add(1),
-            k if k < 0.3 => (1e-9 * random.next()).to_bits(),
-            _ => (1.0 + random.next()).to_bits(),
-        }
-    } else {
-        match kind {
-            k if k < -0.5 => (-value).to_bits(),
-            k if k < 0.0 => (value * (1.0 + 1e-12 * (1.5 + random.next()))).to_bits(),
-            k if k < 0.5 => (value * (1.0 + 0.1 * random.next())).to_bits(),
-            _ => (value + random.next()).to_bits(),
+    let how = random.next();
+    let new = match is {
+        Word::Gap => old,
+        Word::Whole if how < 0.0 => old.wrapping_add(1),
+        Word::Whole => old.wrapping_add(2 + (100.0 * (1.0 + random.next())) as u64),
+        Word::Number => {
+            let changed = match how {
+                h if h < -0.5 => -value,
+                h if h < 0.0 && value != 0.0 => value * (1.0 + 1e-12 * (1.5 + random.next())),
+                h if h < 0.5 && value != 0.0 => value * (1.0 + 0.1 * random.next()),
+                _ => value + random.next(),
+            };
+            // 0 and -0 are the same number.
+            if changed == value { old } else { changed.to_bits() }
         }
     };
     bytes[place].copy_from_slice(&new.to_le_bytes());
@@ -276,7 +299,7 @@ fn a_thousand_tampered_certificates_are_rejected() {
     while done < 1000 {
         let word = ((random.next() + 1.0) / 2.0 * words as f64) as usize;
         let mut changed = bytes.clone();
-        if is_gap(&header, &bytes, word) || !tamper(&mut changed, word, &mut random) {
+        if !tamper(&mut changed, word, kind(&header, &bytes, word), &mut random) {
             continue;
         }
         done += 1;

@@ -49,7 +49,10 @@ fn the_page_on_result_json_lists_exactly_what_is_written() {
             &["output.probes=[[0.5, 0.5]]", "mesh.rectangle.nx=4", "method.gamma0=auto"][..],
         ),
         ("cases/singular.toml", &["mesh.rectangle.nx=2", "mesh.rectangle.ny=2"]),
-        ("cases/block.toml", &["mesh.rectangle.nx=4", "load.body=[\"0\", \"-1\"]"]),
+        (
+            "cases/block.toml",
+            &["mesh.rectangle.nx=4", "method.gamma0=auto", "load.body=[\"0\", \"-1\"]"],
+        ),
     ] {
         let settings: Vec<String> = settings.iter().map(|&s| s.to_owned()).collect();
         let case = Case::parse(Path::new(file), &page(file), &settings).unwrap();
