@@ -22,10 +22,15 @@ use crate::fem::contact_line;
 use crate::fem::{DataError, Problem, Space};
 use crate::kernel::composite::complementary;
 use crate::kernel::{Interval, Material, P1, Plane, Triangle};
+use crate::memory::{self, OutOfMemory};
 use crate::solve::Solution;
 
 /// How often the stress is improved around every vertex.
 pub const SWEEPS: usize = 3;
+
+/// The bytes that a certificate takes for each triangle while it is made: the second derivatives of the sweeps, 1,250, and
+/// the forces, wrenches and tractions in doubles and in intervals.
+const PER_TRIANGLE: u64 = 3000;
 
 /// A bound of the distance from the true solution.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,6 +80,7 @@ pub fn certify_field(
     if solution.degree != 1 {
         return Err(CertifyError::Degree);
     }
+    memory::check(PER_TRIANGLE * problem.mesh.triangles().len() as u64)?;
     let space = Space::<P1, 3, 2>::new(&problem.mesh);
     let constraints = Constraints::new(problem, &space)?;
     let contact = contact_line::assemble(problem, &space, solution.gamma.gamma0)?;
@@ -139,6 +145,8 @@ fn energy_distance(problem: &Problem, v: &[[f64; 2]], w: &[[f64; 2]]) -> f64 {
 pub enum CertifyError {
     #[error(transparent)]
     Data(#[from] DataError),
+    #[error(transparent)]
+    OutOfMemory(#[from] OutOfMemory),
     #[error("no bound of the distance to the true solution: {0}")]
     Unsupported(String),
     #[error("certificates are made for degree 1; a composite stress for degree 2 is not built")]
