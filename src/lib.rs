@@ -63,6 +63,8 @@
 //! Proofs of what the code relies on are in `docs/theory.md`; what has been verified, and how, is in `VERIFY.md`.
 
 #[cfg(not(kani))]
+pub mod certify;
+#[cfg(not(kani))]
 pub mod fem;
 #[cfg(not(kani))]
 pub mod io;

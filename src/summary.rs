@@ -3,8 +3,10 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use signorini::certify::Continuous;
+use signorini::io::certificate::Audit;
 use signorini::io::convergence::Study;
-use signorini::io::result::{GammaChoice, NewtonHistory, Results};
+use signorini::io::result::{ContinuousCertificate, GammaChoice, NewtonHistory, Results};
 use signorini::io::sweep::Sweep;
 use signorini::io::{Case, numbers};
 use signorini::quote;
@@ -127,16 +129,20 @@ pub fn solved(r: &Results, files: &[PathBuf]) -> String {
             ),
         );
     }
+    if let Some(certificates) = &r.certificate {
+        lines.line("error", distance(&certificates.continuous));
+    }
     for remark in &r.remarks {
         lines.line("remark", remark);
     }
     lines.line(
         "time",
         format!(
-            "read {}, assemble {}, solve {}, write {}",
+            "read {}, assemble {}, solve {}, certify {}, write {}",
             time(seconds.read),
             time(seconds.assemble),
             time(seconds.solve),
+            time(seconds.certify),
             time(seconds.write)
         ),
     );
@@ -155,6 +161,81 @@ pub fn solved(r: &Results, files: &[PathBuf]) -> String {
     }
     lines.line("written", written(files));
     lines.0
+}
+
+/// Of a displacement from elsewhere.
+pub fn certified(case: &Case, field: &Path, c: &Continuous, files: &[PathBuf]) -> String {
+    let mut lines = Lines::titled(&case.title);
+    lines.line("field", field.display().to_string());
+    let norm = c.proof.norm;
+    let size = |bound: f64| {
+        let percent = 100.0 * bound / norm;
+        if percent.is_finite() {
+            format!("{} % of its energy norm", numbers::short(percent, 3))
+        } else {
+            short(bound)
+        }
+    };
+    let proved = if c.rigorous {
+        "proved".to_owned()
+    } else {
+        format!("up to quadrature ({})", c.reason.as_deref().unwrap_or_default())
+    };
+    lines.line(
+        "admissible",
+        format!(
+            "{} (energy norm) were changed to satisfy the conditions on displacements",
+            short(c.clipping)
+        ),
+    );
+    lines.line("error", format!("at most {} once admissible: {proved}", size(c.bound)));
+    lines.line("", format!("at most {} as it is", size((c.bound + c.clipping).next_up())));
+    lines.line("written", written(files));
+    lines.0
+}
+
+/// Of a certificate that was verified.
+pub fn audited(audit: &Audit) -> String {
+    let Audit { header, proof } = audit;
+    let mut lines = Lines::titled(&header.title);
+    let counts = header.counts;
+    lines.line(
+        "certificate",
+        format!("accepted: {} triangles, {} edges", counts.triangles, counts.edges),
+    );
+    lines.line("statement", &header.statement);
+    let relative = 100.0 * header.bound / proof.norm;
+    let size = if relative.is_finite() {
+        format!(", {} % of |v|_a", numbers::short(relative, 2))
+    } else {
+        String::new()
+    };
+    lines.line("bound", format!("{}{size}", short(header.bound)));
+    lines.line(
+        "rigorous",
+        match &header.reason {
+            None if header.rigorous => "yes, rounding included".to_owned(),
+            reason => {
+                format!("up to quadrature: {}", reason.as_deref().unwrap_or("no reason given"))
+            }
+        },
+    );
+    lines.0
+}
+
+/// How far the solution can be from the true one.
+fn distance(certificate: &ContinuousCertificate) -> String {
+    let reason = certificate.reason.as_deref().unwrap_or_default();
+    let Some(bound) = certificate.bound else { return format!("not bounded: {reason}") };
+    let size = match certificate.relative {
+        Some(relative) => format!("{} % of the energy norm", numbers::short(100.0 * relative, 2)),
+        None => short(bound),
+    };
+    if certificate.rigorous {
+        format!("energy error at most {size}: proved")
+    } else {
+        format!("energy error at most {size}, up to quadrature ({reason})")
+    }
 }
 
 /// Of a case that was only checked.

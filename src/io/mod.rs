@@ -7,12 +7,16 @@ mod boundaries;
 #[cfg(feature = "files")]
 pub mod case;
 #[cfg(feature = "files")]
+pub mod certificate;
+#[cfg(feature = "files")]
 pub mod convergence;
 pub mod csv;
 pub mod data;
 #[cfg(feature = "files")]
 mod exact;
 pub mod expression;
+#[cfg(feature = "files")]
+pub mod field;
 pub mod files;
 pub mod gmsh;
 pub mod input;

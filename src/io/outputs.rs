@@ -7,15 +7,18 @@ use std::time::{Duration, Instant};
 use thiserror::Error;
 
 use super::case::Case;
+use super::certificate;
 use super::csv::{ContactRow, contact_csv};
 use super::data::DataError;
 use super::files::{Output, WriteError};
 use super::numbers::short;
 use super::picture::{ContactSample, Scene, picture};
 use super::result::{
-    Choices, GammaChoice, MeshSizes, NewtonHistory, Results, SCHEMA, Seconds, result_json,
+    Certificates, Choices, GammaChoice, MeshSizes, NewtonHistory, Results, SCHEMA, Seconds,
+    result_json,
 };
 use super::vtu::{CellKind, Field, Grid, Values, vtu};
+use crate::certify::{CertifyError, Continuous, certify};
 use crate::fem;
 use crate::memory::{self, OutOfMemory};
 use crate::solve::solution::ContactValues;
@@ -56,7 +59,31 @@ pub enum OutputError {
     Problem(#[from] fem::DataError),
 }
 
-/// Writes the files of a case into `folder`; returns their paths and the content of result.json.
+/// What is known of the distance from the true solution, and how long it took to know.
+#[derive(Clone, Debug)]
+pub struct Certified {
+    /// The bound, or why there is none.
+    pub result: Result<Continuous, CertifyError>,
+    /// The time.
+    pub time: Duration,
+}
+
+impl Certified {
+    /// Certifies a solution.
+    pub fn new(case: &Case, solution: &Solution) -> Self {
+        let start = Instant::now();
+        let result = certify(&case.problem, solution);
+        Certified { result, time: start.elapsed() }
+    }
+
+    /// As result.json has it.
+    pub fn report(&self) -> Certificates {
+        Certificates { continuous: (&self.result).into() }
+    }
+}
+
+/// Writes the files of a case into `folder`; returns their paths and the content of result.json. `certificate` asks for
+/// the files certificate.json and certificate.bin, too, where there is a certificate.
 ///
 /// # Errors
 /// A folder or file that can't be written, a number that is not finite.
@@ -66,23 +93,83 @@ pub fn write(
     solution: &Solution,
     read: Duration,
     times: Times,
+    certified: Option<&Certified>,
+    certificate: bool,
 ) -> Result<(Vec<PathBuf>, Results), OutputError> {
     let start = Instant::now();
     memory::check(bytes_to_write(solution))?;
     let mut output = Output::new(folder)?;
     output.replaces(&only_in(&FILES_OF_FENICSX, &FILES));
+    if !certificate {
+        output.replaces(&certificate::FILES);
+    }
     let mut stage = |file, bytes: Result<Vec<u8>, DataError>| -> Result<(), OutputError> {
         let bytes = bytes.map_err(|error| OutputError::Data { file, error })?;
         Ok(output.stage(file, &bytes)?)
     };
-    stage("solution.vtu", solution_vtu(solution))?;
+    let continuous = certified.and_then(|c| c.result.as_ref().ok());
+    let indicators = continuous.map(|c| c.indicators.as_slice());
+    stage("solution.vtu", solution_vtu(solution, indicators))?;
     stage("contact.vtu", contact_vtu(solution))?;
     stage("contact.csv", contact_csv(&contact_rows(solution)).map(String::into_bytes))?;
     stage("picture.svg", draw(case, solution).map(String::into_bytes))?;
-    let seconds = Seconds::new(read, &times, start.elapsed());
-    let results = results(case, solution, seconds)?;
+    if let (Some(continuous), true) = (continuous, certificate) {
+        for (file, bytes) in certificate_files(&case.title, continuous) {
+            stage(file, bytes)?;
+        }
+    }
+    let mut seconds = Seconds::new(read, &times, start.elapsed());
+    seconds.certify = certified.map_or(0.0, |c| c.time.as_secs_f64());
+    let mut results = results(case, solution, seconds)?;
+    results.certificate = certified.map(Certified::report);
     stage("result.json", result_json(&results).map(String::into_bytes))?;
     Ok((output.publish()?, results))
+}
+
+/// Writes what is certified of a displacement from elsewhere: certified.vtu with the `field`, its admissible part and the
+/// bound of its error by triangles, certificate.json and certificate.bin.
+///
+/// # Errors
+/// A folder or file that can't be written.
+pub fn write_certified(
+    folder: &Path,
+    case: &Case,
+    field: &[[f64; 2]],
+    certified: &Continuous,
+) -> Result<Vec<PathBuf>, OutputError> {
+    let mut output = Output::new(folder)?;
+    let mesh = &case.problem.mesh;
+    let grid = vtu(&Grid {
+        kind: CellKind::Triangle,
+        points: mesh.vertices(),
+        connectivity: mesh.triangles().as_flattened(),
+        point_data: &[
+            Field { name: "displacement", values: Values::Vectors(field) },
+            Field {
+                name: "admissible",
+                values: Values::Vectors(&certified.certificate.displacement),
+            },
+        ],
+        cell_data: &[Field { name: "error_bound", values: Values::Scalars(&certified.indicators) }],
+    });
+    let grid = grid.map_err(|error| OutputError::Data { file: "certified.vtu", error })?;
+    output.stage("certified.vtu", &grid)?;
+    for (file, bytes) in certificate_files(&case.title, certified) {
+        let bytes = bytes.map_err(|error| OutputError::Data { file, error })?;
+        output.stage(file, &bytes)?;
+    }
+    Ok(output.publish()?)
+}
+
+/// certificate.json and certificate.bin.
+fn certificate_files(
+    title: &str,
+    certified: &Continuous,
+) -> [(&'static str, Result<Vec<u8>, DataError>); 2] {
+    let (header, arrays) = certificate::encode(title, certified);
+    let text = serde_json::to_vec_pretty(&header)
+        .map_err(|_| DataError::NotFinite { place: certificate::FILES[0].to_owned() });
+    [(certificate::FILES[0], text), (certificate::FILES[1], Ok(arrays))]
 }
 
 /// The bytes that making one file after the other takes at most: the numbers of solution.vtu once as they are and once as
@@ -144,6 +231,7 @@ pub fn results(
         reaction_moments: solution.quantities.reaction_moments.clone(),
         balance: Some(solution.balance),
         probes: probes.collect(),
+        certificate: None,
         errors,
         seconds,
     })
@@ -186,17 +274,21 @@ fn remarks(case: &Case, solution: &Solution) -> Vec<String> {
     remarks
 }
 
-fn solution_vtu(s: &Solution) -> Result<Vec<u8>, DataError> {
+fn solution_vtu(s: &Solution, indicators: Option<&[f64]>) -> Result<Vec<u8>, DataError> {
     let stress: Vec<[f64; 4]> = s.stress.iter().map(|(t, zz)| [t.xx, t.yy, *zz, t.xy]).collect();
+    let mut cell_data = vec![
+        Field { name: "stress", values: Values::SymmetricTensors(&stress) },
+        Field { name: "von_mises", values: Values::Scalars(&s.von_mises) },
+    ];
+    if let Some(indicators) = indicators {
+        cell_data.push(Field { name: "error_bound", values: Values::Scalars(indicators) });
+    }
     vtu(&Grid {
         kind: if s.degree == 1 { CellKind::Triangle } else { CellKind::QuadraticTriangle },
         points: &s.nodes,
         connectivity: &s.elements,
         point_data: &[Field { name: "displacement", values: Values::Vectors(&s.displacement) }],
-        cell_data: &[
-            Field { name: "stress", values: Values::SymmetricTensors(&stress) },
-            Field { name: "von_mises", values: Values::Scalars(&s.von_mises) },
-        ],
+        cell_data: &cell_data,
     })
 }
 

@@ -14,6 +14,7 @@ use serde_json::ser::{Formatter, Serializer};
 use super::body::MaterialEcho;
 use super::case::Units;
 use super::data::DataError;
+use crate::certify::{CertifyError, Continuous};
 use crate::fem::Errors;
 use crate::solve::{
     ContactBoundary, ContactQuadrature, EnergyBalance, Gamma0, GammaReport, Method, MethodReport,
@@ -69,6 +70,9 @@ pub struct Results {
     /// `[x, y, u_x, u_y]` at the points that the case asks for; left out if it asks for none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub probes: Vec<[f64; 4]>,
+    /// How wrong the solution can be; left out if nothing is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub certificate: Option<Certificates>,
     /// The distances from the exact solution; left out if the case has none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub errors: Option<Errors>,
@@ -168,6 +172,54 @@ pub struct NewtonHistory {
     pub status: Status,
 }
 
+/// How wrong the solution can be.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Certificates {
+    /// The distance from the true solution.
+    pub continuous: ContinuousCertificate,
+}
+
+/// The distance of the admissible part v of the solution from the true solution u of (1)-(2).
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ContinuousCertificate {
+    /// |u - v|_a is at most this.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bound: Option<f64>,
+    /// The same over |v|_a.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub relative: Option<f64>,
+    /// The bound over an estimate of the error, which proves nothing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub effectivity_hint: Option<f64>,
+    /// The potential energy of u lies between these.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub potential_energy: Option<[f64; 2]>,
+    /// Every step is proved, rounding included.
+    pub rigorous: bool,
+    /// Why not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+}
+
+impl From<&Result<Continuous, CertifyError>> for ContinuousCertificate {
+    fn from(result: &Result<Continuous, CertifyError>) -> Self {
+        match result {
+            Ok(c) => ContinuousCertificate {
+                bound: Some(c.bound),
+                // A body at rest has no energy to compare with.
+                relative: Some(c.relative).filter(|r| r.is_finite()),
+                effectivity_hint: c.effectivity_hint,
+                potential_energy: c.energy,
+                rigorous: c.rigorous,
+                reason: c.reason.clone(),
+            },
+            Err(error) => {
+                ContinuousCertificate { reason: Some(error.to_string()), ..Default::default() }
+            }
+        }
+    }
+}
+
 impl NewtonHistory {
     /// How it ended, in words.
     pub fn verdict(&self) -> &'static str {
@@ -188,6 +240,9 @@ pub struct Seconds {
     pub assemble: f64,
     /// Factoring and iterating.
     pub solve: f64,
+    /// Proving how wrong the result can be.
+    #[serde(default)]
+    pub certify: f64,
     /// Writing the other files; 0 where none was written.
     pub write: f64,
 }
@@ -199,6 +254,7 @@ impl Seconds {
             read: read.as_secs_f64(),
             assemble: times.assemble().as_secs_f64(),
             solve: times.solve().as_secs_f64(),
+            certify: 0.0,
             write: write.as_secs_f64(),
         }
     }
@@ -393,8 +449,9 @@ mod tests {
             reaction_moments: BTreeMap::from([("top".to_owned(), 0.5)]),
             balance: None,
             probes: Vec::new(),
+            certificate: None,
             errors: None,
-            seconds: Seconds { read: 0.25, assemble: 0.5, solve: 1.0, write: 2.0 },
+            seconds: Seconds { read: 0.25, assemble: 0.5, solve: 1.0, certify: 1.5, write: 2.0 },
         }
     }
 
@@ -469,6 +526,7 @@ mod tests {
     "read": 0.25,
     "assemble": 0.5,
     "solve": 1.0,
+    "certify": 1.5,
     "write": 2.0
   }
 }

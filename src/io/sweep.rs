@@ -12,7 +12,7 @@ use toml::de::{DeTable, DeValue};
 use super::case::{Case, CaseError};
 use super::files::{Output, WriteError};
 use super::numbers::short;
-use super::outputs::{self, OutputError};
+use super::outputs::{self, Certified, OutputError};
 use super::result::{Results, Seconds};
 use crate::solve::{self, SolveError};
 
@@ -174,7 +174,10 @@ fn solve(case: &Case, folder: Option<&Path>) -> Result<Outcome, OutputError> {
     };
     let read = Duration::ZERO;
     Ok(Ok(match folder {
-        Some(folder) => outputs::write(folder, case, &solution, read, times)?.1,
+        Some(folder) => {
+            let certified = Certified::new(case, &solution);
+            outputs::write(folder, case, &solution, read, times, Some(&certified), false)?.1
+        }
         None => outputs::results(case, &solution, Seconds::new(read, &times, Duration::ZERO))?,
     }))
 }

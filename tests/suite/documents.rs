@@ -7,7 +7,7 @@ use std::path::Path;
 
 use serde_json::Value;
 use signorini::io::Case;
-use signorini::io::outputs;
+use signorini::io::outputs::{self, Certified};
 use signorini::io::result::Seconds;
 use signorini::solve;
 
@@ -58,12 +58,18 @@ fn the_page_on_result_json_lists_exactly_what_is_written() {
             ][..],
         ),
         ("cases/singular.toml", &["mesh.rectangle.nx=2", "mesh.rectangle.ny=2"]),
+        (
+            "cases/block.toml",
+            &["mesh.rectangle.nx=4", "method.gamma0=auto", "load.body=[\"0\", \"-1\"]"],
+        ),
     ] {
         let settings: Vec<String> = settings.iter().map(|&s| s.to_owned()).collect();
         let case = Case::parse(Path::new(file), &page(file), &settings).unwrap();
         let (solution, times) = solve(&case.problem, &case.method, &case.settings).unwrap();
         let zero = std::time::Duration::ZERO;
-        let results = outputs::results(&case, &solution, Seconds::new(zero, &times, zero)).unwrap();
+        let seconds = Seconds::new(zero, &times, zero);
+        let mut results = outputs::results(&case, &solution, seconds).unwrap();
+        results.certificate = Some(Certified::new(&case, &solution).report());
         paths("", &serde_json::to_value(results).unwrap(), &mut written);
     }
     assert_eq!(written, first_cells(&page("docs/result.md")));

@@ -6,6 +6,7 @@ mod common;
 mod assembled;
 mod bad_input;
 mod bodies;
+mod certify;
 #[cfg(feature = "cli")]
 mod command;
 mod convergence;

@@ -257,6 +257,6 @@ fn completions_and_manual_pages_know_every_option() {
     assert_eq!(output.status.code(), Some(2));
     assert_eq!(
         text(&output.stderr),
-        "error: no task 'sove'; expected one of solve, check, sweep, convergence, completions, man, help\n"
+        "error: no task 'sove'; expected one of solve, audit, certify, check, sweep, convergence, completions, man, help\n"
     );
 }
