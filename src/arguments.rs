@@ -33,7 +33,8 @@ pub enum Task {
         /// Print result.json instead of the summary; write no files unless --out names a folder
         #[arg(long)]
         json: bool,
-        /// Write certificate.json and certificate.bin, too: the proof of the error bound, for `signorini audit`
+        /// Bound the distance to the true solution, too, and write the proof, certificate.json and certificate.bin, for
+        /// `signorini audit`; takes several times as long as the solution
         #[arg(long)]
         certificate: bool,
         /// Who solves: this program, or the reference in FEniCSx, which runs on many processes

@@ -182,25 +182,27 @@ mod command {
         }
         phases.enter("solving");
         let (solution, times) = solved(&case)?;
-        phases.enter("certifying");
-        let certified = Certified::new(&case, &solution);
-        if let (Err(error), true) = (&certified.result, certificate) {
+        let certified = certificate.then(|| {
+            phases.enter("certifying");
+            Certified::new(&case, &solution)
+        });
+        if let Some(Err(error)) = certified.as_ref().map(|certified| &certified.result) {
             let message = format!("{}: no certificate: {error}", case.file.display());
             return Err(Failure { message, code: FAILED });
         }
         let (files, results) = match (wanted, out) {
             (Wanted::Json, None) => {
                 let mut seconds = Seconds::new(read, &times, Duration::ZERO);
-                seconds.certify = certified.time.as_secs_f64();
+                seconds.certify = certified.as_ref().map_or(0.0, |c| c.time.as_secs_f64());
                 let results = outputs::results(&case, &solution, seconds);
                 let mut results = results.map_err(|e| failure(FAILED)(&e))?;
-                results.certificate = Some(certified.report());
+                results.certificate = certified.as_ref().map(Certified::report);
                 (Vec::new(), results)
             }
             _ => {
                 phases.enter("writing the files");
                 let remark = remark_of_another_case(&folder, &case.file);
-                let certified = Some(&certified);
+                let certified = certified.as_ref();
                 let written =
                     outputs::write(&folder, &case, &solution, read, times, certified, certificate)
                         .map_err(|e| failure(FAILED)(&e))?;
