@@ -21,7 +21,7 @@ use crate::claim::Outcome;
 use crate::draws;
 use crate::naive::Line;
 use crate::numbers::Exact;
-use crate::proof::polynomial::{Polynomial, integer};
+use crate::proof::polynomial::{Exponent, Polynomial, integer};
 use crate::{ensure, given};
 
 type Point = [BigRational; 2];
@@ -30,7 +30,7 @@ fn constant(value: i64) -> Polynomial {
     Polynomial::constant(integer(value))
 }
 
-fn power(base: &Polynomial, exponent: u8) -> Polynomial {
+fn power(base: &Polynomial, exponent: Exponent) -> Polynomial {
     (0..exponent).fold(constant(1), |product, _| &product * base)
 }
 
@@ -43,7 +43,7 @@ fn composed(p: &Polynomial, x: &Polynomial, y: &Polynomial) -> Polynomial {
     })
 }
 
-fn factorial(n: u8) -> BigRational {
+fn factorial(n: Exponent) -> BigRational {
     (1..=i64::from(n)).fold(integer(1), |product, k| product * integer(k))
 }
 
@@ -245,7 +245,7 @@ fn line(values: &[Exact]) -> Polynomial {
         [start, end, middle] => Line::quadratic(start, middle, end),
         _ => Line(Vec::new()),
     };
-    let terms = line.0.iter().zip(0_u8..);
+    let terms = line.0.iter().zip(0 as Exponent..);
     terms.fold(Polynomial::default(), |sum, (c, n)| {
         &sum + &power(&Polynomial::variable(0), n).scaled(&c.value())
     })

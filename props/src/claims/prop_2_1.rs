@@ -353,12 +353,20 @@ mod row {
             in_doubles(converse),
             in_doubles(rounding),
             by(Engine::Doubles, "a_displacement_below_rounding_is_kept", kept_counterexample),
-            refuted_in_doubles(scaled),
+            refuted_in_doubles(scaled.failing("conditions_2 == equation")),
             control(Engine::Doubles, "control_equation_5_as_written_in_doubles", as_written),
-            refuted(statement!(control_gap_forgotten, [u_n, g, sigma_n, gamma], [])),
-            refuted(statement!(control_sign_inside_5_turned, [u_n, g, sigma_n, gamma], [])),
-            refuted(statement!(control_absolute_value_in_5, [u_n, g, sigma_n, gamma], [])),
-            refuted(statement!(control_gamma_omitted, [u_n, g, sigma_n, gamma], [])),
+            refuted(
+                statement!(control_gap_forgotten, [u_n, g, sigma_n, gamma], fails "conditions_2 == equation_5"),
+            ),
+            refuted(
+                statement!(control_sign_inside_5_turned, [u_n, g, sigma_n, gamma], fails "conditions_2 == equation_5"),
+            ),
+            refuted(
+                statement!(control_absolute_value_in_5, [u_n, g, sigma_n, gamma], fails "conditions_2 == equation_5"),
+            ),
+            refuted(
+                statement!(control_gamma_omitted, [u_n, g, sigma_n, gamma], fails "conditions_2 == equation_5"),
+            ),
         ];
         checks.extend(HARNESSES.iter().copied().map(model_checked));
         Claim {
@@ -411,8 +419,12 @@ mod row {
                 proved(pointwise),
                 proved(independent),
                 tested(independent),
-                refuted(statement!(control_gamma_of_any_sign, [u_n, g, sigma_n, gamma], [])),
-                refuted(statement!(control_gamma_may_be_zero, [u_n, g, sigma_n, gamma], [])),
+                refuted(
+                    statement!(control_gamma_of_any_sign, [u_n, g, sigma_n, gamma], fails "conditions_2 == equation_5"),
+                ),
+                refuted(
+                    statement!(control_gamma_may_be_zero, [u_n, g, sigma_n, gamma], fails "division by zero"),
+                ),
             ],
         }
     }
