@@ -8,6 +8,7 @@
 //! P(u) has the given gap, P(v^h) its interpolant, as method (8) does. Triangles and edges are cut where u is less smooth,
 //! edges also at the roots of P(v^h).
 
+#[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
 
 use super::contact_line::ContactLineEdge;
@@ -25,7 +26,8 @@ use crate::kernel::{ContactPoint, Element, Triangle, positive_part};
 pub const POINTS: usize = 10;
 
 /// The distances, each a norm.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 pub struct Errors {
     /// a(e, e)^(1/2)
     pub energy: f64,
@@ -38,7 +40,7 @@ pub struct Errors {
     /// |gamma^(1/2) sigma_n(e)| on Gamma_C
     pub normal_stress: f64,
     /// |gamma^(-1/2) (P(u) - P(v^h))| on Gamma_C
-    #[serde(skip)]
+    #[cfg_attr(feature = "files", serde(skip))]
     pub operator: f64,
 }
 
