@@ -460,6 +460,19 @@ pub const ITEMS: &[Item] = &[
             ],
         )]),
     },
+    Item {
+        name: "the solver",
+        says: "not in the paper: what it refuses, the rules by which it integrates",
+        basis: Basis::Checks(&[(
+            "18",
+            &[
+                "kappa_of_1_or_more_is_refused_and_less_is_taken",
+                "prescribed_displacements_that_disagree_are_refused",
+                "gauss_rules_have_the_moments_of_legendre",
+                "integrals_over_an_edge_scale_by_powers_of_two_without_error",
+            ],
+        )]),
+    },
 ];
 
 #[cfg(test)]

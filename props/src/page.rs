@@ -140,7 +140,7 @@ const STYLE: &str = "body{font:16px/1.5 sans-serif;max-width:64em;margin:2em aut
     code{overflow-wrap:anywhere;font-size:.9em}td:first-child{white-space:nowrap}\
     .bad{background:#fdd}.control td:nth-child(2){padding-left:1.5em}\
     .verdict{font-size:1.2em;border-left:.4em solid #393;padding-left:.6em}.verdict.bad{border-color:#c22}\
-    nav a{margin-right:.8em}@media print{nav{display:none}}";
+    nav a{margin-right:.8em;white-space:nowrap}@media print{nav{display:none}}";
 
 /// The page. `at` is where it will be: links to the sources are relative to that.
 pub fn html(report: &Report, at: &Path) -> String {
@@ -412,7 +412,16 @@ fn inline(text: &str) -> String {
             )
             .collect()
     };
-    paired(&paired(&escape(text), "`", "code"), "**", "b")
+    let text = paired(&paired(&escape(text), "`", "code"), "**", "b");
+    // A star within code is part of a path.
+    text.split("<code>").enumerate().fold(String::new(), |all, (i, part)| {
+        match part.split_once("</code>") {
+            Some((code, rest)) if i > 0 => {
+                all + "<code>" + code + "</code>" + &paired(rest, "*", "i")
+            }
+            _ => all + &paired(part, "*", "i"),
+        }
+    })
 }
 
 /// A text in JSON.

@@ -311,14 +311,17 @@ fn consistent<E: Element<N, M>, const N: usize, const M: usize>(
     Exact::scope(|| {
         let body = draw.upright().body();
         let c = integer(n) / integer(n + d);
-        let v = body.clamped(body.drawn(0));
         ensure!(satisfies_2(&c, [&body.hooke.lambda.value(), &body.hooke.mu.value()]));
         let cut_edge = body.contact.iter().any(|side| {
             let [a, b] = ends(&body, side.triangle, side.local);
             (a[0] < c) != (b[0] < c)
         });
         given!(cut_edge);
-        ensure!(residual::<E, N, M>(&body, &c, &v, weight).is_zero());
+        // For P2 one v^h out of the whole space: each takes seconds.
+        let basis = if N == 3 { body.basis::<N>() } else { vec![body.clamped(body.drawn(0))] };
+        for v in basis {
+            ensure!(residual::<E, N, M>(&body, &c, &v, weight).is_zero());
+        }
         Verdict::Holds("an edge with contact and gap")
     })
 }
@@ -331,7 +334,7 @@ fn data() -> impl Strategy<Value = (Draw, (i64, i64))> {
 
 /// The residual vanishes at the curved solution.
 pub fn residual_vanishes() -> Outcome {
-    draws::hold(25, data(), &CLASSES, |(draw, c)| consistent::<P1, 3, 2>(draw, *c, 1))
+    draws::hold(8, data(), &CLASSES, |(draw, c)| consistent::<P1, 3, 2>(draw, *c, 1))
 }
 
 /// The same for P2.

@@ -23,6 +23,8 @@ pub mod positive_part;
 pub mod prop_2_1;
 #[cfg(not(kani))]
 pub mod rates;
+#[cfg(not(kani))]
+pub mod solver;
 pub mod theorem_3_3;
 pub mod theorem_3_4;
 pub mod variational_inequality;
@@ -51,6 +53,7 @@ pub fn all() -> Vec<Claim> {
         constants::claim(),
         variational_inequality::claim(),
         a_priori::claim(),
+        solver::claim(),
     ];
     claims.sort_by_key(|claim| claim.id.parse::<u32>().expect("the id of a row is a number"));
     claims
@@ -104,5 +107,6 @@ mod tests {
         every_check_of_row_15_passes "15",
         every_check_of_row_16_passes "16",
         every_check_of_row_17_passes "17",
+        every_check_of_row_18_passes "18",
     }
 }

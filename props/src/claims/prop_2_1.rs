@@ -281,12 +281,13 @@ mod row {
     use crate::numbers::Exact;
     use crate::statement;
 
-    /// One time in three the data are moved onto (5): sigma_n = lambda^h of a displacement, and the matching u_n.
+    /// Some of the data that violate (2) are moved onto it, the others stay: penetration where sigma_n < 0 becomes contact,
+    /// tension at a gap becomes no force where gamma > 1.
     fn onto_equation_5(v: &mut [Exact]) {
-        let zero = Exact::from(0);
-        if v[0] > v[1] {
+        let (zero, one) = (Exact::from(0), Exact::from(1));
+        if v[0] > v[1] && v[2] < zero {
             v[0] = v[1];
-        } else if v[2] > zero {
+        } else if v[0] <= v[1] && v[2] > zero && v[3] > one {
             v[2] = zero;
         }
     }

@@ -149,6 +149,35 @@ pub fn theorem_on_errors_blown_up() -> Outcome {
     noticed(both_sides(100.0))
 }
 
+/// The energy errors of the a-orthogonal projection, and of what `other` answers with, which must be no smaller.
+fn nearest(other: impl Fn(&Theorem) -> f64) -> Outcome {
+    let mut least = f64::INFINITY;
+    for degree in [Degree::One, Degree::Two] {
+        for ladder in [wedge(degree)?.0, end_of_contact(degree)] {
+            let (_, problem, solution) = ladder.solve(1).map_err(|e| e.to_string())?;
+            let t =
+                Theorem::new(&problem, &solution, &*ladder.solution).map_err(|e| e.to_string())?;
+            let (projection, other) = (t.projection.energy, other(&t));
+            // Both are integrals known to 1e-9.
+            if !(projection <= other * (1.0 + 1e-9)) {
+                return Err(format!("projection {projection:e}, other {other:e}"));
+            }
+            least = least.min(other / projection);
+        }
+    }
+    Ok(format!("the others are farther by a factor of at least {least:.6}"))
+}
+
+/// No v^h with the nodal values of u^h on Gamma_D is nearer to u in the energy norm: a check of row 18.
+pub fn projection_is_the_nearest() -> Outcome {
+    nearest(|t| t.discrete.energy.min(t.interpolant.energy))
+}
+
+/// The interpolant for the projection: u^h is nearer.
+pub fn interpolant_is_as_near() -> Outcome {
+    noticed(nearest(|t| t.discrete.energy * t.projection.energy / t.interpolant.energy))
+}
+
 /// The row of the rates.
 pub fn claim() -> Claim {
     Claim {
