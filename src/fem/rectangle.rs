@@ -10,7 +10,9 @@
 
 use thiserror::Error;
 
-use super::mesh::{Mesh, MeshError};
+use super::mesh::{Mesh, MeshError, bytes_to_make};
+use crate::memory::{self, bytes_of};
+use crate::quote::number;
 
 /// How the cells of a structured mesh are cut into triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,7 +47,7 @@ pub const MOST_CELLS: usize = 4_000_000;
 #[derive(Clone, Debug, Error, PartialEq)]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
 pub enum RectangleError {
-    #[error("{name} = {value}; expected a positive finite length")]
+    #[error("{name} = {}; expected a positive finite length", number(*value))]
     Size { name: &'static str, value: f64 },
     #[error("{name} = {value}; expected at least one cell")]
     NoCells { name: &'static str, value: usize },
@@ -101,7 +103,18 @@ impl Rectangle {
         Mesh::new(vertices, self.triangles(), self.sides())
     }
 
-    fn check(&self) -> Result<(), RectangleError> {
+    fn check(&self) -> Result<(), MeshError> {
+        self.check_numbers()?;
+        let (cells, crossed) = (self.nx * self.ny, self.diagonal == Diagonal::Crossed);
+        let middles = if crossed { cells } else { 0 };
+        let vertices = (self.nx + 1) * (self.ny + 1) + middles;
+        let triangles = if crossed { 4 * cells } else { 2 * cells };
+        // The vertices are moved or mapped in a second list.
+        let lists = bytes_of::<[[f64; 2]; 2]>(vertices) + bytes_of::<[usize; 3]>(triangles);
+        Ok(memory::check(lists + bytes_to_make(vertices, triangles))?)
+    }
+
+    fn check_numbers(&self) -> Result<(), RectangleError> {
         for (name, value) in [("width", self.width), ("height", self.height)] {
             if !(value > 0.0 && value.is_finite()) {
                 return Err(RectangleError::Size { name, value });

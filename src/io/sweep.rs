@@ -14,7 +14,7 @@ use super::files::{Output, WriteError};
 use super::numbers::short;
 use super::outputs::{self, OutputError};
 use super::result::{Results, Seconds};
-use crate::solve::{self, SolveError, Status};
+use crate::solve::{self, SolveError};
 
 /// More runs than this are a mistake of the person who asks for them.
 pub const MOST_RUNS: usize = 10_000;
@@ -61,7 +61,7 @@ fn items(list: &str) -> Option<Vec<String>> {
 }
 
 /// What a run gives: the quantities of the solution, or why there is none.
-pub type Outcome = Result<Results, NoResult>;
+pub type Outcome = Result<Results, SolveError>;
 
 /// One solve of a sweep.
 #[derive(Clone, Debug)]
@@ -70,16 +70,6 @@ pub struct Run {
     pub values: Vec<String>,
     /// What came out.
     pub outcome: Outcome,
-}
-
-/// Why a run has no result.
-#[derive(Clone, Debug, Error, PartialEq)]
-#[expect(missing_docs, reason = "the message of each variant says what it is")]
-pub enum NoResult {
-    #[error(transparent)]
-    Solve(#[from] SolveError),
-    #[error("no convergence: the relative residual is {residual:.1e} after {steps} Newton steps")]
-    NotConverged { residual: f64, steps: usize },
 }
 
 /// Why there is no sweep.
@@ -101,6 +91,9 @@ impl From<WriteError> for SweepError {
         SweepError::Output(error.into())
     }
 }
+
+/// The name of the file.
+pub const FILE: &str = "sweep.csv";
 
 /// A case and what became of it along some axes.
 #[derive(Clone, Debug)]
@@ -174,13 +167,8 @@ fn combination(axes: &[Axis], mut i: usize) -> Vec<String> {
 fn solve(case: &Case, folder: Option<&Path>) -> Result<Outcome, OutputError> {
     let (solution, times) = match solve::solve(&case.problem, &case.method, &case.settings) {
         Ok(solved) => solved,
-        Err(error) => return Ok(Err(error.into())),
+        Err(error) => return Ok(Err(error)),
     };
-    let newton = &solution.newton;
-    if newton.status == Status::NotConverged {
-        let (residual, steps) = (newton.residual, newton.iterations());
-        return Ok(Err(NoResult::NotConverged { residual, steps }));
-    }
     let read = Duration::ZERO;
     Ok(Ok(match folder {
         Some(folder) => outputs::write(folder, case, &solution, read, times)?.1,
@@ -272,7 +260,7 @@ impl Sweep {
     /// A folder or file that can't be written.
     pub fn write(&self, folder: &Path) -> Result<Vec<PathBuf>, WriteError> {
         let mut output = Output::new(folder)?;
-        output.stage("sweep.csv", self.csv().as_bytes())?;
+        output.stage(FILE, self.csv().as_bytes())?;
         output.publish()
     }
 }
