@@ -473,6 +473,18 @@ pub const ITEMS: &[Item] = &[
             ],
         )]),
     },
+    Item {
+        name: "Newton's method",
+        says: "not in the paper: how (8) is solved, and the verdict",
+        basis: Basis::Checks(&[(
+            "19",
+            &[
+                "newton_ends_at_the_minimiser_where_full_steps_cycle",
+                "newton_ends_at_the_minimiser_from_any_start",
+                "the_verdict_accepts_small_forward_errors_only",
+            ],
+        )]),
+    },
 ];
 
 #[cfg(test)]

@@ -18,6 +18,8 @@ pub mod lemma_3_1;
 pub mod lemma_3_2;
 pub mod method;
 pub mod mixed;
+#[cfg(not(kani))]
+pub mod newton;
 pub mod pattern;
 pub mod positive_part;
 pub mod prop_2_1;
@@ -54,6 +56,7 @@ pub fn all() -> Vec<Claim> {
         variational_inequality::claim(),
         a_priori::claim(),
         solver::claim(),
+        newton::claim(),
     ];
     claims.sort_by_key(|claim| claim.id.parse::<u32>().expect("the id of a row is a number"));
     claims
@@ -108,5 +111,6 @@ mod tests {
         every_check_of_row_16_passes "16",
         every_check_of_row_17_passes "17",
         every_check_of_row_18_passes "18",
+        every_check_of_row_19_passes "19",
     }
 }
