@@ -57,7 +57,8 @@ fn folder() -> PathBuf {
 fn run(claim: &Claim) -> Vec<Line> {
     println!("row {}: {}", claim.id, claim.title);
     let one = |check: &crate::claim::Check| {
-        print!("  {:7} {} ... ", check.engine.name(), check.name);
+        let (engine, name) = (check.engine_name(), check.shown_name());
+        print!("  {engine:7} {name} ... ");
         let _ = io::stdout().flush();
         let start = Instant::now();
         let outcome = check.run();
@@ -66,9 +67,16 @@ fn run(claim: &Claim) -> Vec<Line> {
             Ok(evidence) => println!("{} ({seconds:.2} s) {evidence}", paint("ok", "32")),
             Err(why) => println!("{} ({seconds:.2} s) {why}", paint("FAILED", "31")),
         }
-        let (engine, control) = (check.engine.name(), check.control);
-        let (row, name) = (claim.id, check.name.to_owned());
-        Line { row, engine, name, control, seconds, outcome }
+        Line {
+            row: claim.id,
+            engine,
+            name,
+            declared: check.name,
+            receipt: check.receipt(),
+            control: check.control,
+            seconds,
+            outcome,
+        }
     };
     claim.checks.iter().map(one).collect()
 }

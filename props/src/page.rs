@@ -19,6 +19,10 @@ pub struct Line {
     pub engine: &'static str,
     /// Its name.
     pub name: String,
+    /// Its name in the sources.
+    pub declared: &'static str,
+    /// What a receipt says of it.
+    pub receipt: Option<String>,
     /// Whether it is a control.
     pub control: bool,
     /// How long it took.
@@ -201,7 +205,7 @@ fn item_view(item: &Item, report: &Report) -> String {
     text += "<table><tr><th>row<th>check<th>engine<th>outcome</tr>";
     for (claim, check) in found {
         let line = report.of(claim.id).find(|line| {
-            !line.control && line.name == check.name && line.engine == check.engine.name()
+            !line.control && line.declared == check.name && line.engine == check.engine_name()
         });
         let (class, word) = match line.map(|line| &line.outcome) {
             Some(Ok(_)) => ("", "ok"),
@@ -211,10 +215,10 @@ fn item_view(item: &Item, report: &Report) -> String {
         let _ = write!(
             text,
             "<tr class=\"{class}\"><td><a href=\"#row-{id}\">{id}</a><td><a href=\"#{anchor}\"><code>{}</code></a><td>{}<td>{word}</tr>",
-            check.name,
-            check.engine.name(),
+            check.shown_name(),
+            check.engine_name(),
             id = claim.id,
-            anchor = anchor(claim.id, check.engine.name(), check.name),
+            anchor = anchor(claim.id, check.engine_name(), check.name),
         );
     }
     text + "</table>"
@@ -257,14 +261,15 @@ fn row_view(claim: &Claim, report: &Report, sources: &Sources) -> String {
             Err(why) => (" bad", "FAILED", why),
         };
         let control = if line.control { "control" } else { "" };
+        let receipt = line.receipt.as_deref().map_or(String::new(), |r| format!("; {}", escape(r)));
         let _ = write!(
             text,
             "<tr class=\"{control}{class}\" id=\"{}\"><td>{}<td>{}{}<td>{word}: {}<td>{:.2}</tr>",
-            anchor(id, line.engine, &line.name),
+            anchor(id, line.engine, line.declared),
             line.engine,
-            sources.of_check(&line.name),
+            sources.link(&line.name, sources.names.get(line.declared).copied()),
             if line.control { " (control)" } else { "" },
-            escape(detail),
+            escape(detail) + &receipt,
             line.seconds
         );
     }
@@ -318,10 +323,6 @@ impl Sources {
             }
             None => format!("<code>{text}</code>"),
         }
-    }
-
-    fn of_check(&self, name: &str) -> String {
-        self.link(name, self.names.get(name).copied())
     }
 
     /// An item of the code, `module::Type::function` as in [`Claim::kernel`].
@@ -458,13 +459,14 @@ pub fn json(report: &Report) -> String {
                 Err(said) => (false, said),
             };
             format!(
-                "{{\"row\": {}, \"engine\": {}, \"name\": {}, \"control\": {}, \"passed\": {passed}, \"seconds\": {:.3}, \"said\": {}}}",
+                "{{\"row\": {}, \"engine\": {}, \"name\": {}, \"control\": {}, \"passed\": {passed}, \"seconds\": {:.3}, \"said\": {}, \"receipt\": {}}}",
                 quoted(line.row),
                 quoted(line.engine),
                 quoted(&line.name),
                 line.control,
                 line.seconds,
-                quoted(said)
+                quoted(said),
+                line.receipt.as_deref().map_or("null".to_owned(), quoted)
             )
         })
         .collect();
@@ -475,10 +477,10 @@ pub fn json(report: &Report) -> String {
                 .found(&report.claims)
                 .iter()
                 .map(|(claim, check)| {
-                    let (row, name) = (quoted(claim.id), quoted(check.name));
+                    let (row, name) = (quoted(claim.id), quoted(&check.shown_name()));
                     format!(
                         "{{\"row\": {row}, \"engine\": {}, \"name\": {name}}}",
-                        quoted(check.engine.name())
+                        quoted(check.engine_name())
                     )
                 })
                 .collect();
@@ -548,6 +550,8 @@ mod tests {
             row: "1",
             engine: "proof",
             name: "positive_part_satisfies_4".to_owned(),
+            declared: "positive_part_satisfies_4",
+            receipt: None,
             control: false,
             seconds: 0.5,
             outcome,
