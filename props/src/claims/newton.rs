@@ -6,7 +6,7 @@
 
 use proptest::prelude::*;
 use signorini::solve::accuracy::{self, Outcome as Solved};
-use signorini::solve::newton::{self, Derivatives, Edges, Residual, Step};
+use signorini::solve::newton::{self, Derivatives, Edges, Residual, Step, Until};
 use signorini::solve::{Settings, SolveError, Status};
 
 use crate::claim::{Claim, Engine, Outcome, by, control};
@@ -107,8 +107,8 @@ impl newton::Body<1> for Body {
         Residual { norm: dot(&r, &r).sqrt() / reference, noise }
     }
 
-    fn stiffness_of_contact(&mut self, _: &Derivatives<1>) -> f64 {
-        1.0
+    fn start(&mut self, _: &impl Edges<1>) -> Result<f64, SolveError> {
+        Ok(1.0)
     }
 
     fn step(&mut self, at: &Derivatives<1>) -> Result<Step, SolveError> {
@@ -138,10 +138,11 @@ const MOST: usize = 60;
 /// Newton's method from where the body is: the residual relative to its noise at the end, and the number of steps.
 fn ends(body: &mut Body) -> Result<(f64, usize), String> {
     let mut residuals = Vec::new();
-    newton::minimise(&Springs, body, false, &mut residuals, MOST).map_err(|e| e.to_string())?;
+    let until = Until { steps: MOST, residual: 0.0 };
+    newton::minimise(&Springs, body, false, &mut residuals, until).map_err(|e| e.to_string())?;
     let at = newton::derivatives(&Springs, newton::Body::y(body));
     let Residual { norm, noise } = newton::Body::residual(body, &at);
-    Ok((norm / noise, residuals.len() - 1))
+    Ok((norm / noise, residuals.len()))
 }
 
 /// A residual this many times its noise is no solution; the last step is left out where it would change nothing.
