@@ -13,7 +13,7 @@
 //! bytes, a `size_t` and a `double` have 8; in a text file all are words between white space. Nothing is allocated because
 //! a file announces it, only because it is there.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::fmt;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
@@ -22,6 +22,7 @@ use std::str::FromStr;
 use thiserror::Error;
 
 use super::input::{self, InputError, MOST_OF_A_MESH};
+use crate::fem::merge::merge;
 use crate::fem::{Mesh, MeshError};
 use crate::quote::{self, quoted};
 
@@ -121,12 +122,27 @@ type Result<T> = std::result::Result<T, GmshError>;
 /// # Errors
 /// The first mistake found, with its place and the numbers that the file uses.
 pub fn read(file: &Path) -> Result<Mesh> {
-    let bytes = input::read(file, MOST_OF_A_MESH).map_err(|error| GmshError {
+    from_bytes(&read_bytes(file)?, file)
+}
+
+/// The mesh in this file, its nodes merged that are no further apart than `share` of the body's size.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_merged(file: &Path, share: f64) -> Result<Mesh> {
+    let bytes = read_bytes(file)?;
+    let mut cursor = Cursor { bytes: &bytes, file, at: 0, form: Form::Text };
+    let mut content = read_sections(&mut cursor)?;
+    merge_nodes(&mut content, share);
+    make_mesh(content).map_err(|mistake| cursor.wrong(Place::File, mistake))
+}
+
+fn read_bytes(file: &Path) -> Result<Vec<u8>> {
+    input::read(file, MOST_OF_A_MESH).map_err(|error| GmshError {
         file: file.to_owned(),
         place: Place::File,
         mistake: Box::new(GmshMistake::Input(error)),
-    })?;
-    from_bytes(&bytes, file)
+    })
 }
 
 /// The mesh in `bytes`, which messages call `file`.
@@ -391,6 +407,28 @@ const CLOCKWISE: &str =
     "the numbers are tags of the file; in Gmsh, turn the curve loop of the surface round";
 const NO_TRIANGLE: &str =
     "mesh with gmsh -2, and where curves have a physical group, give the surface one too";
+
+/// Gives the triangles and lines on nodes that lie together the first of these nodes, and leaves out what loses an edge by
+/// it. Nodes that no triangle uses, and elements on nodes that are not there, stay as they are.
+fn merge_nodes(content: &mut Content, share: f64) {
+    let Elements { triangles, lines } = &mut content.elements;
+    let used: HashSet<usize> = triangles.iter().flat_map(|t| t.nodes).collect();
+    let kept: Vec<&Node> = content.nodes.iter().filter(|node| used.contains(&node.tag)).collect();
+    let places: Vec<[f64; 2]> = kept.iter().map(|node| node.place).collect();
+    let merged = merge(&places, &[], share);
+    let first: HashMap<usize, usize> = kept
+        .iter()
+        .zip(&merged.vertex)
+        .map(|(node, &vertex)| (node.tag, kept[merged.old_vertex[vertex]].tag))
+        .collect();
+    let become_first = |tag: &mut usize| *tag = first.get(tag).copied().unwrap_or(*tag);
+    triangles.iter_mut().flat_map(|t| &mut t.nodes).for_each(become_first);
+    lines.iter_mut().flat_map(|line| &mut line.nodes).for_each(become_first);
+    triangles.retain(|t| {
+        t.nodes[0] != t.nodes[1] && t.nodes[1] != t.nodes[2] && t.nodes[2] != t.nodes[0]
+    });
+    lines.retain(|line| line.nodes[0] != line.nodes[1]);
+}
 
 /// The mesh of the nodes that triangles use, in the order of the file.
 fn make_mesh(content: Content) -> std::result::Result<Mesh, GmshMistake> {
