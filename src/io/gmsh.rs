@@ -24,6 +24,7 @@ use thiserror::Error;
 use super::input::{self, InputError, MOST_OF_A_MESH};
 use crate::fem::merge::merge;
 use crate::fem::{Mesh, MeshError};
+use crate::memory::{self, OutOfMemory, bytes_of};
 use crate::quote::{self, quoted};
 
 /// Why a file gives no mesh, and where.
@@ -100,6 +101,8 @@ pub enum GmshMistake {
         "curve {curve} belongs to the physical curves {names}; expected it in one of them only"
     )]
     SeveralNames { curve: i32, names: String },
+    #[error("{0}")]
+    OutOfMemory(#[from] OutOfMemory),
     #[error("{error} ({note})")]
     Mesh { error: MeshError, note: &'static str },
 }
@@ -110,6 +113,7 @@ impl GmshError {
         matches!(
             *self.mistake,
             GmshMistake::Input(InputError::OutOfMemory(_))
+                | GmshMistake::OutOfMemory(_)
                 | GmshMistake::Mesh { error: MeshError::OutOfMemory(_), .. }
         )
     }
@@ -151,6 +155,10 @@ fn read_bytes(file: &Path) -> Result<Vec<u8>> {
 /// As [`read`].
 pub fn from_bytes(bytes: &[u8], file: &Path) -> Result<Mesh> {
     let mut cursor = Cursor { bytes, file, at: 0, form: Form::Text };
+    // Names and entities: what is kept of one is no more than this many times what the file says of it.
+    const MOST_TIMES: u64 = 4;
+    let lack = |lack: OutOfMemory| cursor.wrong(Place::File, lack.into());
+    memory::check(MOST_TIMES * bytes.len() as u64).map_err(lack)?;
     let content = read_sections(&mut cursor)?;
     make_mesh(content).map_err(|mistake| cursor.wrong(Place::File, mistake))
 }
@@ -311,6 +319,7 @@ fn read_nodes(cursor: &mut Cursor) -> Result<Vec<Node>> {
         let parametric = cursor.int_within(0..=1, "0 or 1 for nodes without or with parameters")?;
         let count = cursor.size("a number of nodes")?;
         let first = nodes.len();
+        cursor.make_room(&mut nodes, count)?;
         for _ in 0..count {
             let tag = cursor.size("the tag of a node")?;
             nodes.push(Node { tag, place: [0.0; 2] });
@@ -341,7 +350,13 @@ fn read_elements(cursor: &mut Cursor) -> Result<Elements> {
         cursor.int_within(0..=3, "a dimension from 0 to 3")?;
         let entity = cursor.int("the tag of an entity")?;
         let number = cursor.int("the type of the elements")?;
-        for _ in 0..cursor.size("a number of elements")? {
+        let count = cursor.size("a number of elements")?;
+        match number {
+            LINE => cursor.make_room(&mut elements.lines, count)?,
+            TRIANGLE => cursor.make_room(&mut elements.triangles, count)?,
+            _ => {}
+        }
+        for _ in 0..count {
             let start = cursor.here();
             let tag = cursor.size("the tag of an element")?;
             match number {
@@ -433,6 +448,9 @@ fn merge_nodes(content: &mut Content, share: f64) {
 /// The mesh of the nodes that triangles use, in the order of the file.
 fn make_mesh(content: Content) -> std::result::Result<Mesh, GmshMistake> {
     let Content { names, curves, nodes, elements: Elements { triangles, lines } } = content;
+    // Two maps from tags, which are at most half empty and twice as large for a moment while they grow; the lists.
+    let maps = 3 * bytes_of::<[usize; 4]>(nodes.len()).saturating_mul(2);
+    memory::check(maps.saturating_add(bytes_of::<[usize; 3]>(triangles.len())))?;
     let mut position = HashMap::new();
     for (i, node) in nodes.iter().enumerate() {
         if position.insert(node.tag, i).is_some() {
@@ -533,13 +551,13 @@ impl<'b> Cursor<'b> {
 
     /// Reads the end of a section.
     fn end_of(&mut self, section: &str) -> Result<()> {
-        let expected = format!("$End{section}");
+        let expected = end_of(section);
         self.skip_white_space();
         if self.at == self.bytes.len() {
             return Err(self.cut_short(&expected));
         }
         let (start, line) = self.line();
-        if line == expected.as_bytes() {
+        if line.strip_prefix(b"$End") == Some(section.as_bytes()) {
             Ok(())
         } else {
             Err(self.unexpected(start, shown(line), &expected))
@@ -557,7 +575,7 @@ impl<'b> Cursor<'b> {
             }
             None => {
                 self.at = self.bytes.len();
-                Err(self.cut_short(&end))
+                Err(self.cut_short(&end_of(section)))
             }
         }
     }
@@ -654,6 +672,14 @@ impl<'b> Cursor<'b> {
         self.at
     }
 
+    /// Makes room for as many items as are announced, or as many as the rest of the file can hold if those are fewer.
+    fn make_room<T>(&self, list: &mut Vec<T>, announced: usize) -> Result<()> {
+        // A digit and the space after it.
+        const LEAST: usize = 2;
+        memory::reserve(list, announced.min(self.rest().len() / LEAST))
+            .map_err(|lack| self.wrong(Place::File, lack.into()))
+    }
+
     fn skip_white_space(&mut self) {
         let rest = self.rest();
         self.at += rest.len() - rest.trim_ascii_start().len();
@@ -685,6 +711,11 @@ impl<'b> Cursor<'b> {
     fn wrong(&self, place: Place, mistake: GmshMistake) -> GmshError {
         GmshError { file: self.file.to_owned(), place, mistake: Box::new(mistake) }
     }
+}
+
+/// The line that ends a section, as messages show it: its name is one of the file.
+fn end_of(section: &str) -> String {
+    format!("$End{}", quote::cut(section))
 }
 
 fn shown(bytes: &[u8]) -> String {

@@ -13,6 +13,7 @@ mod documents;
 #[cfg(all(feature = "cli", unix))]
 mod doors;
 mod exact;
+mod fuzz;
 mod gmsh_live;
 mod held;
 mod method;
