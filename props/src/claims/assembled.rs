@@ -1171,7 +1171,8 @@ pub fn load_taken_wrong() -> Outcome {
     ])
 }
 
-/// The square of a length is within 8 units of roundoff of the exact one: two differences, hypot (2), squared.
+/// The square of a length, or of gamma, is within 8 units of roundoff of the exact one: two differences, hypot (2), a product,
+/// squared.
 fn close(length: f64, square: Exact) -> bool {
     let computed = Exact::of_double(length) * Exact::of_double(length);
     (computed - square).abs() <= square * Exact::of_double(8.0 * UNIT)
@@ -1192,9 +1193,7 @@ fn geometry(draw: &Draw, diameter: impl Fn(&Mesh, usize) -> f64) -> Verdict {
                 let [x, y] = exact(t).edge(i);
                 x * x + y * y
             });
-            let [a, b, c] = squares;
-            let larger = |a: Exact, b: Exact| if b > a { b } else { a };
-            ensure!(close(diameter(mesh, t), larger(larger(a, b), c)));
+            ensure!(close(diameter(mesh, t), longest(squares)));
         }
         for edge in sides.into_values().flatten().map(|edge| owner(&triangles, edge)) {
             let [x, y] = exact(edge.triangle).scaled_normal(edge.local);
@@ -1225,4 +1224,43 @@ pub fn first_edge_for_the_longest() -> Outcome {
             x.hypot(y)
         })
     })
+}
+
+/// (7) for every contact edge of the solver: gamma^2 is gamma0^2 times `square`, the square of h_T or a planted mistake, of
+/// the triangle and its edge.
+fn gamma_is(draw: &Draw, square: impl Fn([Exact; 3], usize) -> Exact) -> Verdict {
+    let problem = draw.problem();
+    let discretized =
+        Discretization::<P1, 3, 2>::new(&problem, |c| draw.kappa * c.limit(), draw.rule());
+    let Ok(d) = discretized else { return Verdict::Fails("the problem is refused") };
+    let (vertices, triangles, _) = draw.parts();
+    Exact::scope(|| {
+        let gamma0 = Exact::of_double(d.gamma0);
+        for line in &d.contact {
+            let vertices = triangles[line.edge.triangle].map(|v| vertices[v].map(Exact::of_double));
+            let squares = [0, 1, 2].map(|i| {
+                let [x, y] = Triangle { vertices }.edge(i);
+                x * x + y * y
+            });
+            ensure!(close(line.gamma, gamma0 * gamma0 * square(squares, line.edge.local)));
+        }
+        Verdict::Holds("always")
+    })
+}
+
+fn longest([a, b, c]: [Exact; 3]) -> Exact {
+    let larger = |a: Exact, b: Exact| if b > a { b } else { a };
+    larger(larger(a, b), c)
+}
+
+/// (7): gamma = gamma0 h_T, h_T the diameter of the triangle that owns the edge.
+pub fn gamma_by_the_diameter() -> Outcome {
+    draws::hold(60, problems(Contact::Any, false), &["always"], |draw| {
+        gamma_is(draw, |squares, _| longest(squares))
+    })
+}
+
+/// The control of [`gamma_by_the_diameter`]: |E| for h_T.
+pub fn gamma_by_the_edge() -> Outcome {
+    draws::reject(20, problems(Contact::Any, false), |draw| gamma_is(draw, |squares, i| squares[i]))
 }
