@@ -28,7 +28,6 @@ pub const POINTS: usize = 10;
 /// The distances, each a norm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
-#[non_exhaustive]
 pub struct Errors {
     /// a(e, e)^(1/2)
     pub energy: f64,

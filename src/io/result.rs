@@ -506,8 +506,7 @@ mod tests {
       "top": [0.0, 2.0]
     }
   },
-  "contact": [
-    {
+  "contact": [{
       "boundary": "floor",
       "force": 2.0,
       "resultant": [0.0, 2.0],

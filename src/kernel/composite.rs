@@ -57,7 +57,7 @@ pub struct Wrench<S> {
 impl<S: Scalar> Composite<S> {
     /// The stress with these tractions whose divergence is minus `loads.body`; that takes tractions and body force in
     /// equilibrium.
-    pub fn new(triangle: &Triangle<S>, loads: &Loads<S>) -> Self {
+    pub(crate) fn new(triangle: &Triangle<S>, loads: &Loads<S>) -> Self {
         let normals = [0, 1, 2].map(|i| triangle.scaled_normal(i));
         let edges = [0, 1, 2].map(|i| triangle.edge(i));
         let double_area = triangle.double_area();
@@ -85,13 +85,13 @@ impl<S: Scalar> Composite<S> {
     }
 
     /// sigma - tau for a constant stress sigma.
-    pub fn distance_from(&self, sigma: Stress<S>) -> Composite<S> {
+    pub(crate) fn distance_from(&self, sigma: Stress<S>) -> Composite<S> {
         let minus = |tau: Stress<S>| add(sigma, scale(-S::from(1), tau));
         Composite { corners: self.corners.map(|part| part.map(minus)), centre: minus(self.centre) }
     }
 
     /// int_T tau : C^-1 tau.
-    pub fn energy(&self, material: &Material<S>, double_area: S) -> S {
+    pub(crate) fn energy(&self, material: &Material<S>, double_area: S) -> S {
         let mut sum = S::from(0);
         for [a, b] in self.corners {
             let total = add(add(a, b), self.centre);
@@ -101,29 +101,11 @@ impl<S: Scalar> Composite<S> {
         }
         sum * double_area / S::from(72)
     }
-
-    /// int_T tau : C^-1 rho.
-    pub fn product(&self, other: &Composite<S>, material: &Material<S>, double_area: S) -> S {
-        let mut sum = S::from(0);
-        for (x, y) in self.corners.iter().zip(&other.corners) {
-            let total = |c: &[Stress<S>; 2], centre| add(add(c[0], c[1]), centre);
-            let pairs = [
-                (x[0], y[0]),
-                (x[1], y[1]),
-                (self.centre, other.centre),
-                (total(x, self.centre), total(y, other.centre)),
-            ];
-            for (a, b) in pairs {
-                sum = sum + complementary_product(material, a, b);
-            }
-        }
-        sum * double_area / S::from(72)
-    }
 }
 
 impl<S: Scalar> Loads<S> {
     /// The resultant of tractions and body force, about the centroid.
-    pub fn resultant(&self, triangle: &Triangle<S>) -> Wrench<S> {
+    pub(crate) fn resultant(&self, triangle: &Triangle<S>) -> Wrench<S> {
         let arms = arms(triangle);
         let (two, six) = (S::from(2), S::from(6));
         let part = triangle.double_area() / six;
@@ -144,13 +126,13 @@ impl<S: Scalar> Loads<S> {
 
 impl<S: Scalar> Wrench<S> {
     /// The same forces, their moment about another point.
-    pub fn about(self, point: [S; 2]) -> Self {
+    pub(crate) fn about(self, point: [S; 2]) -> Self {
         let arm = [self.about[0] - point[0], self.about[1] - point[1]];
         Wrench { moment: self.moment + cross(arm, self.force), about: point, ..self }
     }
 
     /// The sum with another wrench, about this one's point.
-    pub fn plus(self, other: Wrench<S>) -> Self {
+    pub(crate) fn plus(self, other: Wrench<S>) -> Self {
         let other = other.about(self.about);
         Wrench {
             force: [self.force[0] + other.force[0], self.force[1] + other.force[1]],
@@ -162,7 +144,7 @@ impl<S: Scalar> Wrench<S> {
     /// The affine force per unit of parameter, at both ends of the edge from `start` to `end`, that amounts to this wrench:
     /// a constant, and (2 s - 1) times a multiple of the edge's normal N, whose moment about the middle is |E|^2 / 6 times
     /// the multiple, clockwise.
-    pub fn on_edge(self, start: [S; 2], end: [S; 2]) -> [[S; 2]; 2] {
+    pub(crate) fn on_edge(self, start: [S; 2], end: [S; 2]) -> [[S; 2]; 2] {
         let two = S::from(2);
         let wrench = self.about([0, 1].map(|c| (start[c] + end[c]) / two));
         let edge = [end[0] - start[0], end[1] - start[1]];
@@ -176,7 +158,7 @@ impl<S: Scalar> Wrench<S> {
 }
 
 /// tau : C^-1 tau: what is deviatoric over 2 mu, what is spherical over 2 (lambda + mu), both squares.
-pub fn complementary<S: Scalar>(material: &Material<S>, tau: Stress<S>) -> S {
+pub(crate) fn complementary<S: Scalar>(material: &Material<S>, tau: Stress<S>) -> S {
     complementary_product(material, tau, tau)
 }
 

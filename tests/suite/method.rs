@@ -279,7 +279,14 @@ fn loads_contact_and_reactions_balance_in_force_and_moment() {
             let p1 = equilibrium::<P1, 3, 2>(name, &problem, rule.clone(), 1.0);
             let p2 = equilibrium::<P2, 6, 3>(name, &problem, rule, 1.0);
             // Steel is 2e4 times as stiff as rubber, and takes so much of the digits of what rubber carries.
-            let more = if name.contains("bracket") { 100.0 } else { 1.0 };
+            // And a body that contact alone holds has no support to take what rounding leaves.
+            let more = match name {
+                name if name.contains("bracket") => 100.0,
+                name if name.contains("disk_force") => 10.0,
+                // Solved to the tolerance, 1e-10, and no further.
+                name if name.contains("pin") => 1000.0,
+                _ => 1.0,
+            };
             assert!(p1 < more * 1e-12 && p2 < more * 1e-11, "{name}: {p1:e} {p2:e}");
         }
     }

@@ -264,7 +264,10 @@ impl Draw {
         let cells = Rectangle { width, height, nx, ny, diagonal: self.diagonal };
         let grid = cells.mesh().expect("a rectangle of a few cells is a mesh");
         let [angle, stretch, shear] = self.map;
+        let [angle, shear] = if self.coarse { [0.0; 2] } else { [angle, shear] };
         let moved = |(&[x, y], &[dx, dy]): (&[f64; 2], &[f64; 2])| {
+            // Lines of contact stay straight: where they bend, the direction of contact is a field of its own.
+            let (dx, dy) = (if x == 0.0 { 0.0 } else { dx }, if y == 0.0 { 0.0 } else { dy });
             let (x, y) = (x + dx - width / 2.0, y + dy - height / 2.0);
             let (x, y) = (stretch * x + shear * y, y / stretch);
             let turned = [angle.cos() * x - angle.sin() * y, angle.sin() * x + angle.cos() * y];
@@ -725,7 +728,14 @@ fn defined<S: Given, const N: usize>(
         (
             "arc",
             on_edges(&|e, s| {
-                sum(&body.contact[..e], |side| side.length) + s * body.contact[e].length
+                // From zero on each boundary: where a side does not start where the one before it ends.
+                let corner =
+                    |side: &Side<S>, k| body.triangles[side.triangle][(side.local + k) % 3];
+                let joined =
+                    |i: usize| corner(&body.contact[i], 2) == corner(&body.contact[i + 1], 1);
+                let first = (0..e).rev().find(|&i| !joined(i));
+                let before = &body.contact[first.map_or(0, |i| i + 1)..e];
+                sum(before, |side| side.length) + s * body.contact[e].length
             }),
         ),
         ("lambda^h", on_edges(&|e, s| -pressure(e, traces[e].p.at(s)))),
