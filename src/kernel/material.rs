@@ -70,7 +70,8 @@ impl<S: Scalar> Material<S> {
     }
 
     /// Plane strain or plane stress.
-    pub fn plane(&self) -> Plane {
+    #[cfg(not(kani))]
+    pub(crate) fn plane(&self) -> Plane {
         self.plane
     }
 
