@@ -4,11 +4,11 @@
 //!
 //! | module | what it does |
 //! | --- | --- |
-//! | [`proof`] | the certificate, and the checker that evaluates it |
-//! | [`balance`] | tractions in exact equilibrium |
-//! | [`build`] | v and tau from the discrete solution |
-//! | [`sweeps`] | a better tau |
-//! | [`oscillation`] | data outside the exact class |
+//! | `proof` | the certificate, and the checker that evaluates it |
+//! | `balance` | tractions in exact equilibrium |
+//! | `build` | v and tau from the discrete solution |
+//! | `sweeps` | a better tau |
+//! | `oscillation` | data outside the exact class |
 
 mod balance;
 mod build;

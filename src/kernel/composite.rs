@@ -19,7 +19,7 @@
 //!
 //! int_T div tau . w = int tau N . w - int tau : eps(w) for affine w has on the left the three constant divergences of the
 //! parts, which affine functions tell apart: div tau is minus the load f (constant on each part) exactly when the
-//! tractions and f are in equilibrium and the mean stress is the one of [`Composite::new`].
+//! tractions and f are in equilibrium and the mean stress is the one of `Composite::new`.
 
 use super::scalar::dot;
 use super::{Material, Scalar, Stress, Triangle};

@@ -92,7 +92,7 @@ pub struct ContactValues {
     pub sigma_n: f64,
     /// lambda^h = -(1/gamma) \[P(u^h)\]+
     pub lambda: f64,
-    /// The recovered pressure ([`answers`](super::answers)), the one to report.
+    /// The recovered pressure ([`super::answers`]), the one to report.
     pub pressure: f64,
 }
 
