@@ -78,8 +78,20 @@ fn older_files_and_straight_elements_of_second_order_give_the_same_mesh() {
     for (output, more) in [
         ("old.msh", &["-format", "msh22"][..]),
         ("old_binary.msh", &["-format", "msh22", "-bin"]),
-        ("quadratic.msh", &["-order", "2"]),
-        ("old_quadratic.msh", &["-format", "msh22", "-order", "2", "-bin"]),
+        ("quadratic.msh", &["-order", "2", "-setnumber", "Mesh.SecondOrderLinear", "1"]),
+        (
+            "old_quadratic.msh",
+            &[
+                "-format",
+                "msh22",
+                "-order",
+                "2",
+                "-setnumber",
+                "Mesh.SecondOrderLinear",
+                "1",
+                "-bin",
+            ],
+        ),
     ] {
         let other = read(&mesh("tests/meshes/square.geo", output, more));
         // A text has sixteen digits, and a double may need seventeen.
