@@ -37,10 +37,11 @@ of their own, for one engine: they assemble on random bodies, solve, or compare 
 A further opinion, not part of `cargo test`: `cargo run -p props -- smt DIR` writes every failing path of the proofs as a
 problem for z3 and cvc5, and every failing path of the statements in doubles, over all finite doubles, for bitwuzla;
 `.ci/smt.py DIR` runs them and fails on a contradiction, or where no solver confirms a path. What bitwuzla answers decides
-a statement for all finite doubles, so its answers are kept, with a hash of each problem, and a test fails when one changes.
+a statement for all finite doubles. The answers are kept, with a hash of each problem and the versions of the solvers, and a
+test fails when a problem that was asked is another one now, or when a solver contradicts.
 
 **Receipts** (`props/receipts`): `cargo kani` at the root runs the model checker, which is not part of `cargo test`; `cargo
-run -p props -- receipt LOG` keeps what it printed, and `.ci/smt.py DIR --receipt props/receipts` what bitwuzla answered. A
+run -p props -- receipt LOG` keeps what it printed, and `.ci/smt.py DIR --receipt props/receipts` what the solvers answered. A
 receipt stands behind a harness as long as a hash of the harness and of all that it reaches of the kernel, of this crate
 and of other packages is the same (`props/src/sources.rs`); then \"verified by receipt\" stands beside it below, for a
 control that exactly its planted mistake fails.

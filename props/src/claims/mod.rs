@@ -14,6 +14,8 @@ pub mod discrete_forms;
 #[cfg(not(kani))]
 pub mod enclosed;
 pub mod foundations;
+#[cfg(not(kani))]
+pub mod honesty;
 pub mod lemma_3_1;
 pub mod lemma_3_2;
 pub mod method;
