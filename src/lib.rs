@@ -52,6 +52,9 @@
 //!
 //! Proofs of what the code relies on are in `docs/theory.md`; what has been verified, and how, is in `VERIFY.md`.
 
+/// The vectors and matrices of the interface.
+pub use nalgebra;
+
 #[cfg(not(kani))]
 pub mod fem;
 #[cfg(not(kani))]

@@ -61,7 +61,7 @@ fn width(interval: Interval) -> f64 {
 }
 
 /// The Taylor coefficients of a function of two variables, each enclosed at all points of a piece at once.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Taylor([Interval; LENGTH]);
 
 impl Taylor {
@@ -178,6 +178,8 @@ impl Div for Taylor {
         Taylor(quotient)
     }
 }
+
+signorini::entry_of_nalgebra!(Taylor);
 
 impl Scalar for Taylor {
     /// Where the sign is decided on all of the piece, the branch; else the hull of the values of both, for the function

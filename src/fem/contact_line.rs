@@ -3,6 +3,8 @@
 
 use std::collections::BTreeMap;
 
+use nalgebra::Vector2;
+
 use super::mesh::BoundaryEdge;
 use super::problem::{Condition, DataError, Problem, finite};
 use super::quadrature;
@@ -19,7 +21,7 @@ pub struct ContactLineEdge<const N: usize, const M: usize> {
     /// |E|
     pub length: f64,
     /// n
-    pub normal: [f64; 2],
+    pub normal: Vector2<f64>,
     /// gamma = gamma0 h_T
     pub gamma: f64,
     /// g at the nodes of the edge: on it the gap is their Lagrange interpolant.
@@ -30,19 +32,19 @@ pub struct ContactLineEdge<const N: usize, const M: usize> {
 
 impl<const N: usize, const M: usize> ContactLineEdge<N, M> {
     /// P(u) = P0(u) - g at the nodes of the edge, from the nodal values of u on its triangle.
-    pub fn p(&self, u: &[[f64; 2]; N]) -> [f64; M] {
+    pub fn p(&self, u: &[Vector2<f64>; N]) -> [f64; M] {
         std::array::from_fn(|a| apply(&self.functionals.p0[a], u) - self.gap[a])
     }
 
     /// sigma_n(u) at the start and at the end of the edge.
-    pub fn sigma_n(&self, u: &[[f64; 2]; N]) -> [f64; 2] {
+    pub fn sigma_n(&self, u: &[Vector2<f64>; N]) -> [f64; 2] {
         [0, 1].map(|a| apply(&self.functionals.sigma_n[a], u))
     }
 }
 
 /// The value of a functional at the nodal values `u` on its triangle.
-pub fn apply<const N: usize>(functional: &[[f64; 2]; N], u: &[[f64; 2]; N]) -> f64 {
-    functional.iter().zip(u).map(|(f, u)| f[0] * u[0] + f[1] * u[1]).sum()
+pub fn apply<const N: usize>(functional: &[Vector2<f64>; N], u: &[Vector2<f64>; N]) -> f64 {
+    functional.iter().zip(u).map(|(f, u)| f.dot(u)).sum()
 }
 
 /// C_h with kappa = gamma0 C_h, and the contact edge that sets it.

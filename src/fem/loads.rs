@@ -104,7 +104,7 @@ fn add_traction<E: Element<N, M>, const N: usize, const M: usize>(
         let nodes = space.edge_nodes(edge);
         rule.on_edge(ends, [], |point| {
             let what = || format!("[boundary.{name}] traction[{c}]");
-            match checked(t.on_boundary(point.x, normal), point.x, what) {
+            match checked(t.on_boundary(point.x, normal.into()), point.x, what) {
                 Ok(t) => {
                     let shapes: [f64; M] = E::edge_values(point.s);
                     add(load, c, &nodes, &shapes, point.weight * length * t);

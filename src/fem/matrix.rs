@@ -4,6 +4,8 @@
 //! The pattern is read off the mesh, node by node, and the element matrices are added into it in one pass. Here is where
 //! that is stored; how it is done is `kernel::pattern`.
 
+use nalgebra::Matrix2;
+
 use super::discretization::Discretization;
 use crate::kernel::edge_integral::ExactEdge;
 use crate::kernel::element::stiffness;
@@ -103,15 +105,17 @@ impl LowerTriangle {
         LowerTriangle { starts, rows, values }
     }
 
-    /// Adds the 2 x 2 blocks of an element matrix: `block(i, j)` has the rows of `nodes[i]` and the columns of `nodes[j]`.
+    /// Adds the blocks of an element matrix: `block(i, j)` has the rows of `nodes[i]` and the columns of `nodes[j]`.
     pub fn add<const N: usize>(
         &mut self,
         numbering: &Numbering,
         nodes: &[usize; N],
-        block: impl Fn(usize, usize) -> [[f64; 2]; 2],
+        block: impl Fn(usize, usize) -> Matrix2<f64>,
     ) {
         let columns = Lists { starts: &self.starts, members: &self.rows };
-        pattern::add(&numbering.of, columns, &mut self.values, nodes, block);
+        // `pattern` knows no numbers but whole ones, and takes a block as the array of its rows.
+        let rows = |i, j| block(i, j).transpose().into();
+        pattern::add(&numbering.of, columns, &mut self.values, nodes, rows);
     }
 }
 

@@ -14,6 +14,7 @@
 
 use std::collections::BTreeMap;
 
+use nalgebra::Vector2;
 use thiserror::Error;
 
 use crate::kernel::Triangle;
@@ -184,7 +185,7 @@ impl Mesh {
 
     /// Triangle `t` with its coordinates.
     pub fn triangle(&self, t: usize) -> Triangle<f64> {
-        Triangle { vertices: self.triangles[t].map(|v| self.vertices[v]) }
+        Triangle { vertices: self.triangles[t].map(|v| self.vertices[v].into()) }
     }
 
     /// h_T of (7): the diameter of triangle `t`, which is its longest edge.
@@ -199,22 +200,20 @@ impl Mesh {
     }
 
     /// The length of a boundary edge and its unit outward normal.
-    pub fn length_and_normal(&self, edge: BoundaryEdge) -> (f64, [f64; 2]) {
-        let [x, y] = self.triangle(edge.triangle).scaled_normal(edge.local);
-        let length = x.hypot(y);
-        (length, [x / length, y / length])
+    pub fn length_and_normal(&self, edge: BoundaryEdge) -> (f64, Vector2<f64>) {
+        let normal = self.triangle(edge.triangle).scaled_normal(edge.local);
+        let length = length(normal);
+        (length, normal / length)
     }
 
     /// The first triangle that contains the point `x`, with its barycentric coordinates there; `None` outside the body.
     pub fn locate(&self, x: [f64; 2]) -> Option<(usize, [f64; 3])> {
+        let x = Vector2::from(x);
         (0..self.triangles.len()).find_map(|t| {
             let triangle = self.triangle(t);
             let gradients = triangle.barycentric_gradients();
             // Each coordinate is measured from a vertex where it is zero: a vertex of the mesh finds itself exactly.
-            let l = [0, 1, 2].map(|i| {
-                let from = triangle.vertices[(i + 1) % 3];
-                gradients[i][0] * (x[0] - from[0]) + gradients[i][1] * (x[1] - from[1])
-            });
+            let l = [0, 1, 2].map(|i| gradients[i].dot(&(x - triangle.vertices[(i + 1) % 3])));
             l.iter().all(|&l| l >= -OUTSIDE).then_some((t, l))
         })
     }
@@ -231,15 +230,15 @@ impl Mesh {
         }
         for &edge in &self.outline {
             let ends = self.ends(edge);
-            let [a, b] = ends.map(|v| self.vertices[v]);
-            let d = [b[0] - a[0], b[1] - a[1]];
-            let squared = d[0] * d[0] + d[1] * d[1];
-            let [i, j] = cell([(a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0]);
+            let [a, b] = ends.map(|v| Vector2::from(self.vertices[v]));
+            let d = b - a;
+            let squared = d.dot(&d);
+            let [i, j] = cell(((a + b) / 2.0).into());
             let near = (i - 1..=i + 1).flat_map(|i| (j - 1..=j + 1).map(move |j| [i, j]));
             for &vertex in near.filter_map(|cell| grid.get(&cell)).flatten() {
                 let [x, y] = self.vertices[vertex];
-                let along = ((x - a[0]) * d[0] + (y - a[1]) * d[1]) / squared;
-                let across = ((x - a[0]) * d[1] - (y - a[1]) * d[0]) / squared;
+                let from_a = Vector2::new(x, y) - a;
+                let (along, across) = (from_a.dot(&d) / squared, from_a.perp(&d) / squared);
                 if !ends.contains(&vertex)
                     && 0.0 < along
                     && along < 1.0
@@ -268,14 +267,13 @@ const FLAT: f64 = 1e-12;
 /// A point this far outside a triangle, in units of its heights, still belongs to it: some thousand rounding errors.
 const OUTSIDE: f64 = 1e-12;
 
+/// |v|, without the overflow and underflow of a sum of squares.
+pub(super) fn length(v: Vector2<f64>) -> f64 {
+    v.x.hypot(v.y)
+}
+
 fn diameter(triangle: &Triangle<f64>) -> f64 {
-    [0, 1, 2]
-        .map(|i| {
-            let [x, y] = triangle.edge(i);
-            x.hypot(y)
-        })
-        .into_iter()
-        .fold(0.0, f64::max)
+    [0, 1, 2].map(|i| length(triangle.edge(i))).into_iter().fold(0.0, f64::max)
 }
 
 fn check_vertices(vertices: &[[f64; 2]], triangles: &[[usize; 3]]) -> Result<(), MeshError> {
@@ -320,7 +318,7 @@ fn check_vertices(vertices: &[[f64; 2]], triangles: &[[usize; 3]]) -> Result<(),
 
 fn check_triangles(vertices: &[[f64; 2]], triangles: &[[usize; 3]]) -> Result<(), MeshError> {
     for (triangle, &corners) in triangles.iter().enumerate() {
-        let t = Triangle { vertices: corners.map(|v| vertices[v]) };
+        let t = Triangle { vertices: corners.map(|v| vertices[v].into()) };
         let (area, diameter) = (t.double_area() / 2.0, diameter(&t));
         let flat = FLAT * diameter * diameter;
         if area < -flat {
@@ -483,7 +481,7 @@ mod tests {
         let m = named(&[("floor", &[[1, 0]]), ("sides", &[[1, 2], [0, 3]])]).unwrap();
         let floor = m.edges_of("floor").unwrap();
         assert_eq!(m.ends(floor[0]), [0, 1]);
-        assert_eq!(m.length_and_normal(floor[0]), (1.0, [0.0, -1.0]));
+        assert_eq!(m.length_and_normal(floor[0]), (1.0, Vector2::new(0.0, -1.0)));
         assert_eq!(m.edges_of("sides").unwrap().len(), 2);
     }
 

@@ -223,7 +223,7 @@ mod tests {
             let sum: f64 = edges.iter().map(|&e| mesh.length_and_normal(e).0).sum();
             assert!((sum - length).abs() < 1e-15);
             for &e in edges {
-                assert_eq!(mesh.length_and_normal(e).1, normal);
+                assert_eq!(mesh.length_and_normal(e).1, nalgebra::Vector2::from(normal));
             }
         }
     }

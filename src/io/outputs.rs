@@ -15,6 +15,7 @@ use super::picture::{ContactSample, Scene, picture};
 use super::result::{GammaChoice, MeshSizes, NewtonHistory, Results, Seconds, result_json};
 use super::vtu::{CellKind, Field, Grid, Values, vtu};
 use crate::fem;
+use crate::kernel::Stress;
 use crate::solve::solution::ContactValues;
 use crate::solve::{Solution, Times};
 
@@ -115,7 +116,11 @@ pub fn results(
 }
 
 fn solution_vtu(s: &Solution) -> Result<Vec<u8>, DataError> {
-    let stress: Vec<[f64; 4]> = s.stress.iter().map(|(t, zz)| [t.xx, t.yy, *zz, t.xy]).collect();
+    let all = |(stress, zz): &(Stress<f64>, f64)| {
+        let [xx, yy, xy] = stress.components();
+        [xx, yy, *zz, xy]
+    };
+    let stress: Vec<[f64; 4]> = s.stress.iter().map(all).collect();
     vtu(&Grid {
         kind: if s.degree == 1 { CellKind::Triangle } else { CellKind::QuadraticTriangle },
         points: &s.nodes,

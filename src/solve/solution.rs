@@ -189,15 +189,15 @@ where
         .map(|(t, (triangle, _))| {
             let barycentric = triangle.barycentric_gradients();
             let nodal = d.space.on_triangle(t, u);
-            let mut mean = Stress { xx: 0.0, yy: 0.0, xy: 0.0 };
+            let mut mean = [0.0; 3];
             E::at_stiffness_points(|l, weight| {
                 let gradients = E::gradients(l, barycentric);
                 let s = d.problem.material.stress(displacement_gradient(&nodal, &gradients));
-                mean.xx += weight * s.xx;
-                mean.yy += weight * s.yy;
-                mean.xy += weight * s.xy;
+                for (mean, s) in mean.iter_mut().zip(s.components()) {
+                    *mean += weight * s;
+                }
             });
-            mean
+            Stress::new(mean)
         })
         .collect()
 }
@@ -231,7 +231,7 @@ where
             })
             .collect();
         points.sort_by(|a, b| a.arc.total_cmp(&b.arc));
-        line.push(ContactEdgeValues { triangle, normal: edge.normal, points });
+        line.push(ContactEdgeValues { triangle, normal: edge.normal.into(), points });
         start += edge.length;
     }
     line

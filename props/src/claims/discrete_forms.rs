@@ -5,6 +5,7 @@
 
 use signorini::kernel::triangle::on_edge;
 use signorini::kernel::{Element, P1, P2, Triangle};
+use signorini::nalgebra::Vector2;
 
 use crate::harness::any;
 use crate::numbers::Whole;
@@ -12,7 +13,7 @@ use crate::verdict::{Ordered, Verdict};
 use crate::{ensure, given, harnesses};
 
 fn triangle<S>([ax, ay, bx, by, cx, cy]: [S; 6]) -> Triangle<S> {
-    Triangle { vertices: [[ax, ay], [bx, by], [cx, cy]] }
+    Triangle { vertices: [Vector2::new(ax, ay), Vector2::new(bx, by), Vector2::new(cx, cy)] }
 }
 
 /// Edges, area and normals of a triangle without a division.
@@ -21,10 +22,9 @@ pub fn triangle_geometry_is_its_definition<S: Ordered>(v: [S; 6]) -> Verdict {
     let [ax, ay, bx, by, cx, cy] = v;
     let shoelace = ax * (by - cy) + bx * (cy - ay) + cx * (ay - by);
     ensure!(t.double_area() == shoelace);
-    let [a, b, c] = [[ax, ay], [bx, by], [cx, cy]];
-    ensure!(t.edge(0) == [c[0] - b[0], c[1] - b[1]]);
-    ensure!(t.edge(1) == [a[0] - c[0], a[1] - c[1]]);
-    ensure!(t.edge(2) == [b[0] - a[0], b[1] - a[1]]);
+    ensure!(t.edge(0) == Vector2::new(cx - bx, cy - by));
+    ensure!(t.edge(1) == Vector2::new(ax - cx, ay - cy));
+    ensure!(t.edge(2) == Vector2::new(bx - ax, by - ay));
     for i in 0..3 {
         let (edge, n) = (t.edge(i), t.scaled_normal(i));
         // As long as the edge, across it, and away from the opposite vertex when the area is positive.
@@ -94,7 +94,8 @@ fn reproduces<E: Element<N, M>, S: Ordered, const N: usize, const M: usize>(
     let [value, dx, dy] = quadratic(c, l);
     ensure!(combined(E::values(l)) == value);
     // In the coordinates l_0, l_1 the barycentric gradients are these.
-    let gradients = E::gradients(l, [[one, zero], [zero, one], [-one, -one]]);
+    let barycentric = [[one, zero], [zero, one], [-one, -one]].map(Vector2::from);
+    let gradients = E::gradients(l, barycentric);
     ensure!(combined(gradients.map(|g| g[0])) == dx && combined(gradients.map(|g| g[1])) == dy);
     for i in 0..3 {
         let shapes = E::edge_values(x);
@@ -157,7 +158,7 @@ pub fn control_p1_reproduces_quadratic_functions<S: Ordered>(
 pub fn control_gradients_along_the_outward_normals<S: Ordered>(v: [S; 6]) -> Verdict {
     let t = triangle(v);
     given!(t.double_area() > S::from(0));
-    let g = t.scaled_normal(0).map(|c| c / t.double_area());
+    let g = t.scaled_normal(0) / t.double_area();
     let d = [0, 1].map(|c| t.vertices[0][c] - t.vertices[1][c]);
     ensure!(g[0] * d[0] + g[1] * d[1] == S::from(1));
     Verdict::Holds("always")
@@ -232,6 +233,7 @@ mod row {
     use proptest::prelude::*;
     use signorini::kernel::element::{displacement_gradient, stiffness};
     use signorini::kernel::{ContactEdge, Material, Plane};
+    use signorini::nalgebra::Matrix2;
 
     use super::*;
     use crate::bodies::{Body, Definition, Kernel, MaybeExact, bodies, contact_class};
@@ -256,8 +258,10 @@ mod row {
             ensure!(kernel.a_on(t, &u, &v) == definition.a_on(t, &u, &v));
             let gradients =
                 E::gradients(on_edge(0, Exact::from(0)), body.triangle(t).barycentric_gradients());
-            let gradient = displacement_gradient(&body.local::<N>(t, &u), &gradients);
-            ensure!(gradient == body.field::<N>(t, &u).gradient(1));
+            let nodal = body.local::<N>(t, &u).map(Vector2::from);
+            let [[xx, xy], [yx, yy]] = body.field::<N>(t, &u).gradient(1);
+            let gradient = displacement_gradient(&nodal, &gradients);
+            ensure!(gradient == Matrix2::new(xx, xy, yx, yy));
         }
         for (e, side) in body.contact.iter().enumerate() {
             let traces = definition.traces(side, &u);
@@ -317,7 +321,7 @@ mod row {
     fn triangles() -> impl Strategy<Value = [[f64; 2]; 3]> {
         let point = || [-1.0_f64..1.0, -1.0_f64..1.0];
         [point(), point(), point()].prop_filter("counter-clockwise, not flat", |vertices| {
-            Triangle { vertices: *vertices }.double_area() > 0.1
+            Triangle { vertices: vertices.map(Vector2::from) }.double_area() > 0.1
         })
     }
 
@@ -326,12 +330,13 @@ mod row {
     fn doubles_are_near<E: Element<N, M>, const N: usize, const M: usize>(
         v: &[[f64; 2]; 3],
     ) -> Verdict {
-        let (lambda, mu, gamma, n) = (3.0, 0.75, 0.125, [0.6, -0.8]);
+        let (lambda, mu, gamma, n) = (3.0, 0.75, 0.125, Vector2::new(0.6, -0.8));
         let material = Material::lame(lambda, mu, Plane::Strain);
         let exactly = Exact::of_double;
         let exact_material = Material::lame(exactly(lambda), exactly(mu), Plane::Strain);
+        let vertices = v.map(Vector2::from);
         let (t, exact_t) =
-            (Triangle { vertices: *v }, Triangle { vertices: v.map(|p| p.map(exactly)) });
+            (Triangle { vertices }, Triangle { vertices: vertices.map(|p| p.map(exactly)) });
         let (k, exact_k) = (
             stiffness::<E, f64, N, M>(&t, &material),
             stiffness::<E, Exact, N, M>(&exact_t, &exact_material),
@@ -345,8 +350,8 @@ mod row {
             exactly(gamma),
         );
         let mut pairs: Vec<(f64, Exact)> = Vec::new();
-        let flat = k.iter().flatten().flatten().flatten().copied();
-        pairs.extend(flat.zip(exact_k.iter().flatten().flatten().flatten().copied()));
+        let flat = k.iter().flatten().flatten().copied();
+        pairs.extend(flat.zip(exact_k.iter().flatten().flatten().copied()));
         ensure!(near(&pairs));
         let flat = edge.p0.iter().flatten().flatten().copied();
         let pairs: Vec<(f64, Exact)> =
