@@ -389,7 +389,7 @@ impl<'a, const N: usize, const M: usize> Kernel<'a, N, M> {
                 let entry = block(i, j);
                 for c in 0..2 {
                     for d in 0..2 {
-                        total = total + v[i][c] * entry[(c, d)] * u[j][d];
+                        total += v[i][c] * entry[(c, d)] * u[j][d];
                     }
                 }
             }
@@ -450,7 +450,7 @@ impl<'a, const N: usize, const M: usize> Kernel<'a, N, M> {
     pub fn p(&self, e: usize, v: &[[Exact; 2]]) -> [Exact; M] {
         let mut p = self.p0(e, v);
         for (p, gap) in p.iter_mut().zip(self.body.contact[e].gap) {
-            *p = *p - gap;
+            *p -= gap;
         }
         p
     }
@@ -510,7 +510,7 @@ impl<'a, const N: usize, const M: usize> Kernel<'a, N, M> {
             let mut total = Exact::from(0);
             for a in 0..M {
                 for b in 0..M {
-                    total = total + v[a] * hessian[a][b] * w[b];
+                    total += v[a] * hessian[a][b] * w[b];
                 }
             }
             self.weight(e) * total

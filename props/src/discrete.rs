@@ -127,7 +127,7 @@ where
                     for d in 0..2 {
                         let [row, column] = [self.numbers[nodes[i]][c], self.numbers[nodes[j]][d]];
                         if let (Some(row), Some(column)) = (row, column) {
-                            matrix[row][column] = matrix[row][column] + block[(c, d)];
+                            matrix[row][column] += block[(c, d)];
                         }
                     }
                 }
@@ -170,7 +170,7 @@ where
         let u = self.local(edge.triangle, u);
         let mut p = edge.functionals.p0.map(|row| sum(row.iter().zip(&u), |(f, u)| f.dot(u)));
         for (p, &gap) in p.iter_mut().zip(&edge.gap) {
-            *p = *p - gap;
+            *p -= gap;
         }
         p
     }
@@ -191,7 +191,7 @@ where
         let mut residual: Nodal = self.d.load.iter().map(load).collect();
         let mut add = |t: usize, i: usize, c: usize, value: Exact| {
             let node = self.d.space.elements()[t][i];
-            residual[node][c] = residual[node][c] + value;
+            residual[node][c] += value;
         };
         for (t, k) in self.stiffness.iter().enumerate() {
             let u = self.local(t, u);
@@ -264,7 +264,7 @@ where
                 }
                 None => return None,
             };
-            sum = sum + edge.length / edge.gamma * square;
+            sum += edge.length / edge.gamma * square;
         }
         Some(sum)
     }

@@ -705,7 +705,7 @@ fn defined<S: Given, const N: usize>(
     let mut reactions: BTreeMap<&str, [S; 2]> = BTreeMap::new();
     for (&(node, c), (_, name)) in &setting.prescribed {
         let reaction = reactions.entry(name).or_insert([zero; 2]);
-        reaction[c] = reaction[c] + setting.reaction_sign * residual[2 * node + c];
+        reaction[c] += setting.reaction_sign * residual[2 * node + c];
     }
     let mean = |t: usize| {
         let field = body.field::<N>(t, u);

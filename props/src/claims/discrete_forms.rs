@@ -128,8 +128,8 @@ fn rule_is_exact<E: Element<N, M>, S: Ordered, const N: usize, const M: usize>(
     let (zero, one) = (S::from(0), S::from(1));
     let (mut mean, mut weights, mut inside) = (zero, zero, true);
     E::at_stiffness_points(|l: [S; 3], weight| {
-        mean = mean + weight * quadratic(c, l)[0];
-        weights = weights + weight;
+        mean += weight * quadratic(c, l)[0];
+        weights += weight;
         inside = inside && l[0] + l[1] + l[2] == one;
     });
     ensure!(weights == one && inside);

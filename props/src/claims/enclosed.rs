@@ -200,7 +200,7 @@ impl Enclosed {
     }
 
     fn add(&mut self, node: usize, c: usize, term: Interval) {
-        self.values[node][c] = self.values[node][c] + term;
+        self.values[node][c] += term;
         self.largest_term = self.largest_term.max(term.lo().abs()).max(term.hi().abs());
     }
 
