@@ -428,12 +428,12 @@ fn hertz_block(n: usize) -> Result<Problem> {
         ("top", Condition::Displacement([None, Some(constant(-0.015))])),
         ("bottom", Condition::Contact { gap: Box::new(|[x, _]: [f64; 2]| x * x / 2.0) }),
     ];
-    Ok(Problem {
-        mesh: rectangle.mesh()?,
-        material: Material::young_poisson(1000.0, 0.3, Plane::Strain),
-        body_force: [constant(0.0), constant(0.0)],
-        conditions: conditions.map(|(name, condition)| (name.to_owned(), condition)).into(),
-    })
+    Ok(Problem::new(
+        rectangle.mesh()?,
+        Material::young_poisson(1000.0, 0.3, Plane::Strain),
+        [constant(0.0), constant(0.0)],
+        conditions.map(|(name, condition)| (name.to_owned(), condition)).into(),
+    ))
 }
 
 struct Constant(f64);
@@ -493,18 +493,18 @@ fn literature(text: &mut String) -> Result<()> {
     const YOUNG: f64 = 25.0;
     let mesh = scaled(&case.problem.mesh, 0.2)?;
     let zero = || -> Box<dyn Function> { Box::new(Constant(0.0)) };
-    let disk = Problem {
+    let disk = Problem::new(
         mesh,
-        material: Material::young_poisson(YOUNG, 0.25, Plane::Strain),
-        body_force: [zero(), Box::new(Constant(-20.0))],
-        conditions: BTreeMap::from([
+        Material::young_poisson(YOUNG, 0.25, Plane::Strain),
+        [zero(), Box::new(Constant(-20.0))],
+        BTreeMap::from([
             ("top".to_owned(), Condition::Displacement([Some(zero()), Some(zero())])),
             (
                 "contact".to_owned(),
                 Condition::Contact { gap: Box::new(|[_, y]: [f64; 2]| y / (1.0 - 5.0 * y)) },
             ),
         ]),
-    };
+    );
     for degree in DEGREES {
         for (name, gamma0) in
             [("1/(100 E)", 0.01 / YOUNG), ("1/E", 1.0 / YOUNG), ("100/E", 100.0 / YOUNG)]

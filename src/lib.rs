@@ -39,16 +39,26 @@
 //!
 //! # Example
 //!
-//! ```
-//! use std::path::Path;
-//! use signorini::{io::Case, solve::{Status, solve}};
+//! A block on a rigid floor; its right half is lifted off. More in the folder `examples`.
 //!
-//! let case = Case::read(Path::new("cases/block.toml"))?;
-//! let (solution, _) = solve(&case.problem, &case.method, &case.settings)?;
-//! assert_eq!(solution.newton.status, Status::Converged);
-//! assert!((solution.quantities.contact_force - 0.4198).abs() < 1e-4);
+//! ```
+//! use signorini::{Condition, Diagonal, Material, Method, Plane, Problem, Rectangle, Settings, solve};
+//!
+//! let (nx, ny, diagonal) = (16, 16, Diagonal::Right);
+//! let mesh = Rectangle { width: 1.0, height: 1.0, nx, ny, diagonal }.mesh()?;
+//! let problem = Problem::of(mesh, Material::lame(1.0, 1.0, Plane::Strain))
+//!     .with_body_force(|_| 0.0, |[x, _]| -4.0 + 10.0 * x)
+//!     .with("top", Condition::clamped())
+//!     .with("bottom", Condition::contact(|_| 0.0));
+//! let (solution, _) = solve(&problem, &Method::default(), &Settings::default())?;
+//! assert!((solution.quantities.contact_force - 0.42).abs() < 0.01);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! # Features
+//!
+//! `cli` (default) is the command; it needs `files`: case files ([`io::case`]), result.json and pictures. Without both
+//! (`default-features = false`), the library depends on no parser and writes no files but VTU and CSV.
 //!
 //! Proofs of what the code relies on are in `docs/theory.md`; what has been verified, and how, is in `VERIFY.md`.
 
@@ -62,3 +72,13 @@ pub mod io;
 pub mod kernel;
 #[cfg(not(kani))]
 pub mod solve;
+
+// What a program needs that has its problem in code.
+#[cfg(not(kani))]
+pub use fem::{Condition, Diagonal, Mesh, Problem, Rectangle};
+#[cfg(all(not(kani), feature = "files"))]
+pub use io::Case;
+#[cfg(not(kani))]
+pub use kernel::{Material, Plane};
+#[cfg(not(kani))]
+pub use solve::{Degree, Gamma0, Method, Settings, Solution, solve};

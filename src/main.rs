@@ -4,7 +4,11 @@
 //! Exit codes: 0 solved; 1 could not solve, or could not write; 2 the case is wrong, and then nothing is written.
 
 #[cfg(not(kani))]
+mod arguments;
+#[cfg(not(kani))]
 mod engine;
+#[cfg(not(kani))]
+mod progress;
 #[cfg(not(kani))]
 mod summary;
 
@@ -20,80 +24,22 @@ fn main() {}
 #[cfg(not(kani))]
 mod command {
     use std::fmt::Display;
+    use std::fs;
+    use std::io;
     use std::path::{Path, PathBuf};
     use std::process::ExitCode;
-    use std::time::Instant;
+    use std::time::{Duration, Instant};
 
-    use clap::{Parser, Subcommand, ValueEnum};
-    use indicatif::{ProgressBar, ProgressStyle};
+    use clap::{CommandFactory, Parser};
     use signorini::io::convergence::{self, Meshes, StudyError};
+    use signorini::io::result::{Results, Seconds, result_json};
+    use signorini::io::sweep::{self, Axis, NoResult, SweepError};
     use signorini::io::{Case, outputs};
-    use signorini::solve::{self, Degree, LadderError, SolveError, Status};
+    use signorini::solve::{self, Degree, LadderError, Solution, SolveError, Status, Times};
 
-    use crate::{engine, summary};
-
-    /// Unilateral (Signorini) contact in linear elasticity by Nitsche's method.
-    #[derive(Parser)]
-    #[command(version, arg_required_else_help = true)]
-    struct Arguments {
-        #[command(subcommand)]
-        task: Task,
-        /// Print nothing but errors
-        #[arg(long, global = true)]
-        quiet: bool,
-    }
-
-    #[derive(Subcommand)]
-    enum Task {
-        /// Solve a case; write solution.vtu, contact.vtu, contact.csv, picture.svg and result.json
-        Solve {
-            /// The case file (TOML)
-            case: PathBuf,
-            /// The folder to write to [default: out/ and the name of the case]
-            #[arg(long, value_name = "DIR")]
-            out: Option<PathBuf>,
-            /// Who solves: this program, or the reference in FEniCSx, which runs on many processes
-            #[arg(long, value_enum, default_value_t = Engine::Signorini)]
-            engine: Engine,
-            /// MPI processes for the engine fenicsx
-            #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
-            ranks: u16,
-        },
-        /// Read a case and report its sizes and the limit of gamma0; solve nothing, write nothing
-        Check {
-            /// The case file (TOML)
-            case: PathBuf,
-        },
-        /// Solve a case with an exact solution on finer and finer meshes; write convergence.csv and convergence.svg
-        Convergence {
-            /// The case file (TOML)
-            case: PathBuf,
-            /// How many meshes, each with twice as many cells along each axis as the one before; the first is the case's
-            #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u8).range(1..=12))]
-            levels: u8,
-            /// Polynomial degrees, such as 1,2 [default: that of the case]
-            #[arg(long, value_delimiter = ',', value_parser = clap::value_parser!(u8).range(1..=2))]
-            degree: Vec<u8>,
-            /// Structured or perturbed meshes, or both: structured,perturbed [default: those of the case]
-            #[arg(long, value_enum, value_delimiter = ',')]
-            mesh: Vec<Mesh>,
-            /// The folder to write to [default: out/ and the name of the case]
-            #[arg(long, value_name = "DIR")]
-            out: Option<PathBuf>,
-        },
-    }
-
-    #[derive(Clone, Copy, ValueEnum)]
-    enum Mesh {
-        Structured,
-        Perturbed,
-    }
-
-    #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-    enum Engine {
-        Signorini,
-        Fenicsx,
-    }
+    use crate::arguments::{Arguments, CaseArguments, Engine, Mesh, Task};
+    use crate::progress::Phases;
+    use crate::{engine, progress, summary};
 
     /// The case is wrong.
     const WRONG: u8 = 2;
@@ -111,26 +57,39 @@ mod command {
     }
 
     pub fn run() -> ExitCode {
-        let arguments = Arguments::parse();
-        let text = match &arguments.task {
-            Task::Solve { case, out, engine: Engine::Signorini, .. } => solve(case, out.as_deref()),
-            Task::Solve { case, out, engine: Engine::Fenicsx, ranks } => {
-                engine::fenicsx(case, &folder(case, out.as_deref()), *ranks)
-                    .map(|(results, files)| summary::solved(&results, &files))
-                    .map_err(|e| failure(if e.is_wrong_case() { WRONG } else { FAILED })(&e))
-            }
-            Task::Check { case } => check(case),
-            Task::Convergence { case, levels, degree, mesh, out } => {
-                let wanted = Wanted { levels: usize::from(*levels), degree, mesh };
-                study(case, &wanted, out.as_deref(), arguments.quiet)
-            }
-        };
-        match text {
-            Ok(text) => {
-                if !arguments.quiet {
-                    print!("{text}");
+        let Arguments { task, quiet } = Arguments::parse();
+        let done = match &task {
+            Task::Solve { case, out, json, engine, ranks } => {
+                let out = out.as_deref();
+                let wanted = if *json { Wanted::Json } else { Wanted::Summary };
+                match (engine, ranks) {
+                    (Engine::Fenicsx, ranks) => {
+                        solve_by_fenicsx(case, out, ranks.unwrap_or(1), wanted, quiet)
+                    }
+                    (Engine::Signorini, None) => solve(case, out, wanted, quiet),
+                    (Engine::Signorini, Some(ranks)) => Err(Failure {
+                        message: format!(
+                            "--ranks {ranks}: this program solves in one process; expected --engine fenicsx beside it"
+                        ),
+                        code: WRONG,
+                    }),
                 }
-                ExitCode::SUCCESS
+            }
+            Task::Check { case } => check(case).map(summarised(quiet)),
+            Task::Sweep { case, axes, files, out } => {
+                sweep(case, axes, *files, out.as_deref(), quiet)
+            }
+            Task::Convergence { case, levels, degree, mesh, out } => {
+                let wanted = Ladders { levels: usize::from(*levels), degree, mesh };
+                study(case, &wanted, out.as_deref(), quiet).map(summarised(quiet))
+            }
+            Task::Completions { shell } => Ok(completions(*shell)),
+            Task::Man { task } => man(task.as_deref()),
+        };
+        match done {
+            Ok(Done { text, code }) => {
+                print!("{text}");
+                ExitCode::from(code)
             }
             Err(Failure { message, code }) => {
                 eprintln!("error: {message}");
@@ -139,44 +98,232 @@ mod command {
         }
     }
 
-    fn solve(file: &Path, out: Option<&Path>) -> Result<String, Failure> {
+    /// What goes to standard output, and the exit code.
+    struct Done {
+        text: String,
+        code: u8,
+    }
+
+    fn summarised(quiet: bool) -> impl Fn(String) -> Done {
+        move |text| Done { text: if quiet { String::new() } else { text }, code: 0 }
+    }
+
+    /// What a solve shall print.
+    #[derive(Clone, Copy, PartialEq, Eq)]
+    enum Wanted {
+        Summary,
+        Json,
+    }
+
+    impl Wanted {
+        fn text(self, results: &Results, files: &[PathBuf], quiet: bool) -> Result<Done, Failure> {
+            match self {
+                Wanted::Summary => Ok(summarised(quiet)(summary::solved(results, files))),
+                Wanted::Json => match result_json(results) {
+                    Ok(text) => Ok(Done { text, code: 0 }),
+                    Err(error) => {
+                        Err(failure(FAILED)(&format!("result.json cannot be made: {error}")))
+                    }
+                },
+            }
+        }
+    }
+
+    fn solve(
+        arguments: &CaseArguments,
+        out: Option<&Path>,
+        wanted: Wanted,
+        quiet: bool,
+    ) -> Result<Done, Failure> {
+        let phases = Phases::start(quiet);
+        phases.enter("reading the case");
         let start = Instant::now();
-        let case = Case::read(file).map_err(|e| failure(WRONG)(&e))?;
+        let case = read(arguments)?;
         let read = start.elapsed();
+        phases.enter("solving");
+        let (solution, times) = solved(&case)?;
+        let (files, results) = match (wanted, out) {
+            (Wanted::Json, None) => {
+                let seconds = Seconds::new(read, &times, Duration::ZERO);
+                let results = outputs::results(&case, &solution, seconds);
+                (Vec::new(), results.map_err(|e| failure(FAILED)(&e))?)
+            }
+            _ => {
+                phases.enter("writing the files");
+                let folder = folder(&arguments.file, out);
+                let remark = remark_of_another_case(&folder, &case.file);
+                let written = outputs::write(&folder, &case, &solution, read, times)
+                    .map_err(|e| failure(FAILED)(&e))?;
+                if let (Some(remark), false) = (remark, quiet) {
+                    eprintln!("{remark}");
+                }
+                written
+            }
+        };
+        drop(phases);
+        wanted.text(&results, &files, quiet)
+    }
+
+    fn solved(case: &Case) -> Result<(Solution, Times), Failure> {
         let (solution, times) = solve::solve(&case.problem, &case.method, &case.settings)
-            .map_err(|e| unsolvable(file, &e))?;
+            .map_err(|e| unsolvable(&case.file, &e))?;
         if solution.newton.status == Status::NotConverged {
-            let message = summary::not_converged(file, &case.settings, &solution.newton);
+            let message = summary::not_converged(&case.file, &case.settings, &solution.newton);
             return Err(Failure { message, code: FAILED });
         }
-        let folder = folder(file, out);
-        let (files, results) = outputs::write(&folder, &case, &solution, read, times)
-            .map_err(|e| failure(FAILED)(&e))?;
-        Ok(summary::solved(&results, &files))
+        Ok((solution, times))
+    }
+
+    fn solve_by_fenicsx(
+        arguments: &CaseArguments,
+        out: Option<&Path>,
+        ranks: u16,
+        wanted: Wanted,
+        quiet: bool,
+    ) -> Result<Done, Failure> {
+        let CaseArguments { file, settings } = arguments;
+        if let Some(setting) = settings.first() {
+            return Err(failure(WRONG)(&format!(
+                "--set {setting}: the engine fenicsx reads the case file itself; write the key into a case file"
+            )));
+        }
+        if is_standard_input(file) {
+            return Err(failure(WRONG)(
+                &"-: the engine fenicsx reads the case file itself; expected its name",
+            ));
+        }
+        let phases = Phases::start(quiet);
+        phases.enter("solving by the engine fenicsx");
+        let (results, files) = engine::fenicsx(file, &folder(file, out), ranks)
+            .map_err(|e| failure(if e.is_wrong_case() { WRONG } else { FAILED })(&e))?;
+        drop(phases);
+        wanted.text(&results, &files, quiet)
+    }
+
+    const STANDARD_INPUT: &str = "standard input";
+
+    fn is_standard_input(file: &Path) -> bool {
+        file == Path::new("-")
+    }
+
+    fn read(CaseArguments { file, settings }: &CaseArguments) -> Result<Case, Failure> {
+        let (file, text) = read_text(file)?;
+        Case::parse(&file, &text, settings).map_err(|e| failure(WRONG)(&e))
+    }
+
+    /// The text of a case, and what messages call its file.
+    fn read_text(file: &Path) -> Result<(PathBuf, String), Failure> {
+        if is_standard_input(file) {
+            match io::read_to_string(io::stdin()) {
+                Ok(text) => Ok((PathBuf::from(STANDARD_INPUT), text)),
+                Err(error) => Err(failure(WRONG)(&format!("{STANDARD_INPUT}: {error}"))),
+            }
+        } else {
+            let text = Case::text(file).map_err(|e| failure(WRONG)(&e))?;
+            Ok((file.to_owned(), text))
+        }
     }
 
     /// What `--out` says, or out/ and the name of the case.
     fn folder(file: &Path, out: Option<&Path>) -> PathBuf {
         match out {
             Some(folder) => folder.to_owned(),
+            None if is_standard_input(file) => PathBuf::from("out/stdin"),
             None => Path::new("out").join(file.file_stem().unwrap_or_default()),
         }
     }
 
+    /// Two cases of one name write into one folder: said when the results in `folder` are those of another case than `file`.
+    fn remark_of_another_case(folder: &Path, file: &Path) -> Option<String> {
+        let bytes = fs::read(folder.join("result.json")).ok()?;
+        let earlier: Results = serde_json::from_slice(&bytes).ok()?;
+        let earlier = PathBuf::from(earlier.case?);
+        let whole = |path: &Path| fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        (whole(&earlier) != whole(file)).then(|| {
+            format!(
+                "remark: the results of {} in {} are replaced by those of {}; --out DIR keeps them apart",
+                earlier.display(),
+                folder.display(),
+                file.display()
+            )
+        })
+    }
+
+    fn sweep(
+        file: &Path,
+        axes: &[Axis],
+        files: bool,
+        out: Option<&Path>,
+        quiet: bool,
+    ) -> Result<Done, Failure> {
+        let no_sweep = |error: SweepError| {
+            let code = match error {
+                SweepError::Output(_) => FAILED,
+                _ => WRONG,
+            };
+            failure(code)(&error)
+        };
+        let runs = sweep::count(axes).map_err(no_sweep)?;
+        let folder = folder(file, out);
+        let (file, text) = read_text(file)?;
+        let bar = progress::bar(runs, "runs", quiet);
+        let folders = files.then_some(folder.as_path());
+        let sweep = sweep::run(&file, &text, axes, folders, || bar.inc(1)).map_err(no_sweep)?;
+        bar.finish_and_clear();
+        let code = |outcome: &sweep::Outcome| match outcome {
+            Ok(_) => None,
+            Err(NoResult::Solve(error)) => Some(code(error)),
+            Err(NoResult::NotConverged { .. }) => Some(FAILED),
+        };
+        let codes: Vec<u8> = sweep.runs.iter().filter_map(|run| code(&run.outcome)).collect();
+        if codes.len() == sweep.runs.len() && codes.iter().all(|code| *code == WRONG) {
+            let Some(Err(error)) = sweep.runs.first().map(|run| &run.outcome) else {
+                return Ok(summarised(quiet)(String::new()));
+            };
+            return Err(failure(WRONG)(&format!("{}: {error}", file.display())));
+        }
+        let written = sweep.write(&folder).map_err(|e| failure(FAILED)(&e))?;
+        let code = if codes.is_empty() { 0 } else { FAILED };
+        Ok(Done { code, ..summarised(quiet)(summary::swept(&sweep, &written)) })
+    }
+
+    fn completions(shell: clap_complete::Shell) -> Done {
+        let mut bytes = Vec::new();
+        clap_complete::generate(shell, &mut Arguments::command(), "signorini", &mut bytes);
+        Done { text: String::from_utf8_lossy(&bytes).into_owned(), code: 0 }
+    }
+
+    fn man(task: Option<&str>) -> Result<Done, Failure> {
+        let mut command = Arguments::command();
+        command.build();
+        let command = match task {
+            None => &command,
+            Some(task) => command.find_subcommand(task).ok_or_else(|| {
+                let tasks: Vec<&str> = command.get_subcommands().map(|c| c.get_name()).collect();
+                failure(WRONG)(&format!("no task '{task}'; expected one of {}", tasks.join(", ")))
+            })?,
+        };
+        let mut bytes = Vec::new();
+        clap_mangen::Man::new(command.clone())
+            .render(&mut bytes)
+            .map_err(|e| failure(FAILED)(&e))?;
+        Ok(Done { text: String::from_utf8_lossy(&bytes).into_owned(), code: 0 })
+    }
+
     /// What the study shall cover; empty lists stand for what the case says.
-    struct Wanted<'a> {
+    struct Ladders<'a> {
         levels: usize,
         degree: &'a [u8],
         mesh: &'a [Mesh],
     }
 
     fn study(
-        file: &Path,
-        wanted: &Wanted,
+        arguments: &CaseArguments,
+        wanted: &Ladders,
         out: Option<&Path>,
         quiet: bool,
     ) -> Result<String, Failure> {
-        let case = Case::read(file).map_err(|e| failure(WRONG)(&e))?;
+        let case = read(arguments)?;
         let degree = |d: &u8| if *d == 1 { Degree::One } else { Degree::Two };
         let mesh = |m: &Mesh| match m {
             Mesh::Structured => Meshes::Structured,
@@ -184,7 +331,8 @@ mod command {
         };
         let degrees = or_none(wanted.degree.iter().map(degree).collect());
         let meshes = or_none(wanted.mesh.iter().map(mesh).collect());
-        let progress = progress(degrees.len() * meshes.len() * wanted.levels, quiet);
+        let count = degrees.len() * meshes.len() * wanted.levels;
+        let progress = progress::bar(count, "meshes", quiet);
         let mut studies = Vec::new();
         for degree in &degrees {
             for meshes in &meshes {
@@ -192,12 +340,12 @@ mod command {
                     .and_then(|(ladder, meshes)| {
                         convergence::climb(ladder, meshes, wanted.levels, || progress.inc(1))
                     })
-                    .map_err(|e| no_study(file, &e))?;
+                    .map_err(|e| no_study(&case.file, &e))?;
                 studies.push(study);
             }
         }
         progress.finish_and_clear();
-        let files = convergence::write(&folder(file, out), &case.title, &studies)
+        let files = convergence::write(&folder(&arguments.file, out), &case.title, &studies)
             .map_err(|e| failure(FAILED)(&e))?;
         Ok(summary::studied(&case, &studies, &files))
     }
@@ -205,18 +353,6 @@ mod command {
     /// The wanted ones, or one that the case decides.
     fn or_none<T>(wanted: Vec<T>) -> Vec<Option<T>> {
         if wanted.is_empty() { vec![None] } else { wanted.into_iter().map(Some).collect() }
-    }
-
-    /// A bar on standard error if that is a terminal, else nothing. The levels to come take longer than those done.
-    fn progress(levels: usize, quiet: bool) -> ProgressBar {
-        let bar = if quiet { ProgressBar::hidden() } else { ProgressBar::new(levels as u64) };
-        let colour = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
-        let bar_of = if colour { "{bar:30.cyan}" } else { "{bar:30}" };
-        let template = format!("  {bar_of} {{pos}} of {{len}} meshes, {{elapsed}}");
-        match ProgressStyle::with_template(&template) {
-            Ok(style) => bar.with_style(style),
-            Err(_) => bar,
-        }
     }
 
     fn no_study(file: &Path, error: &StudyError) -> Failure {
@@ -231,10 +367,10 @@ mod command {
         Failure { message: format!("{}: {error}", file.display()), code }
     }
 
-    fn check(file: &Path) -> Result<String, Failure> {
-        let case = Case::read(file).map_err(|e| failure(WRONG)(&e))?;
+    fn check(arguments: &CaseArguments) -> Result<String, Failure> {
+        let case = read(arguments)?;
         let outline =
-            solve::check(&case.problem, &case.method).map_err(|e| unsolvable(file, &e))?;
+            solve::check(&case.problem, &case.method).map_err(|e| unsolvable(&case.file, &e))?;
         Ok(summary::checked(&case, &outline))
     }
 

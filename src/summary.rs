@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 
 use signorini::io::convergence::Study;
 use signorini::io::result::{GammaChoice, NewtonHistory, Results};
+use signorini::io::sweep::Sweep;
 use signorini::io::{Case, numbers};
-use signorini::solve::{ContactQuadrature, NewtonReport, Outline, Settings, Status};
+use signorini::solve::{ContactQuadrature, NewtonReport, Outline, Settings};
 
 /// Lines of a name and a text.
 #[derive(Default)]
@@ -112,6 +113,11 @@ pub fn studied(case: &Case, studies: &[Study], files: &[PathBuf]) -> String {
     format!("{}\n\n{}\nwritten: {}\n", case.title, tables.join("\n"), written(files))
 }
 
+/// Of a case along some axes.
+pub fn swept(sweep: &Sweep, files: &[PathBuf]) -> String {
+    format!("{}\n\n{}\nwritten: {}\n", sweep.title, sweep.table(), written(files))
+}
+
 /// Of a case that Newton's method could not solve.
 pub fn not_converged(file: &Path, settings: &Settings, report: &NewtonReport) -> String {
     format!(
@@ -143,13 +149,9 @@ fn coercivity(gamma: &GammaChoice) -> String {
 }
 
 fn newton(newton: &NewtonHistory) -> String {
-    let verdict = match newton.status {
-        Status::Converged => "converged",
-        Status::ConvergedToRounding => "converged to rounding",
-        Status::NotConverged => "not converged",
-    };
     format!(
-        "{verdict} in {}, {}, relative residual {:.1e}",
+        "{} in {}, {}, relative residual {:.1e}",
+        newton.verdict(),
         count(newton.iterations, "step"),
         count(newton.factorizations, "factorisation"),
         newton.residual

@@ -38,15 +38,15 @@ pub fn block(n: usize) -> Problem {
     };
     let zero = || expression("0");
     let square = Rectangle { width: 1.0, height: 1.0, nx: n, ny: n, diagonal: Diagonal::Right };
-    Problem {
-        mesh: square.mesh().expect("a valid mesh"),
-        material: Material::lame(1.0, 1.0, Plane::Strain),
-        body_force: [zero(), expression("-4 + 10*x")],
-        conditions: BTreeMap::from([
+    Problem::new(
+        square.mesh().expect("a valid mesh"),
+        Material::lame(1.0, 1.0, Plane::Strain),
+        [zero(), expression("-4 + 10*x")],
+        BTreeMap::from([
             ("top".to_owned(), Condition::Displacement([Some(zero()), Some(zero())])),
             ("bottom".to_owned(), Condition::Contact { gap: zero() }),
         ]),
-    }
+    )
 }
 
 /// Method (8) with gamma0 at half the coercivity limit.

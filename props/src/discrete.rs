@@ -54,7 +54,8 @@ where
     /// The solver's discrete problem.
     pub fn new(d: &'a Discretization<'a, E, N, M>) -> Self {
         let exact = Exact::of_double;
-        let of = &d.problem.material;
+        // The bodies of the claims have one material.
+        let of = d.problem.material.of(0);
         // lambda is the coefficient that acts in the plane, also in plane stress.
         let material = Material::lame(exact(of.lambda()), exact(of.mu()), Plane::Strain);
         let triangle = |t| -> Triangle<Exact> {

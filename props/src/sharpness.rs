@@ -47,7 +47,7 @@ pub fn clamped(mesh: Mesh, material: Material<f64>, sides: &[&str]) -> Problem {
         conditions.insert(side.to_owned(), Condition::Displacement(nothing));
     }
     let body_force = [0, 1].map(|_| constant(0.0));
-    Problem { mesh, material, body_force, conditions }
+    Problem::new(mesh, material, body_force, conditions)
 }
 
 /// The material with lambda and mu = 1.

@@ -2,11 +2,19 @@
 //!
 //! Where boundaries meet at a node, displacement wins; two displacements that meet must agree. Prescribed values are
 //! interpolated at the nodes.
+//!
+//! A demand at a node is u . d = value for a unit vector d: a coordinate direction, or the normal or tangent of a support.
+//! Two that are not parallel fix the node. One alone in an oblique direction d turns the node's unknowns into the frame
+//! (d, t), t being d turned to the left: u = u_d d + u_t t, with u_d prescribed. The blocks of the matrix at such a node are
+//! R^T K R with R = (d, t), a rotation: symmetry, definiteness and the matrix's norm are what they were, and no entry is
+//! added to its pattern.
 
 use std::collections::BTreeMap;
 
-use super::mesh::Mesh;
-use super::problem::{Condition, DataError, Problem, finite};
+use super::mesh::BoundaryEdge;
+use super::problem::{BoxedFunction, Condition, DataError, Problem, finite};
+use super::rigid::{self, Parts};
+use super::smooth::SmoothBoundary;
 use super::space::Space;
 use crate::kernel::Element;
 
@@ -14,12 +22,45 @@ use crate::kernel::Element;
 #[derive(Clone, Debug)]
 pub struct Constraints {
     values: Vec<[Option<f64>; 2]>,
-    holders: BTreeMap<String, Vec<(usize, usize)>>,
+    frames: BTreeMap<usize, [f64; 2]>,
+    holders: BTreeMap<String, Vec<Held>>,
+}
+
+/// A direction in which a node is held.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Held {
+    /// The node.
+    pub node: usize,
+    /// d, in which the force on the node acts.
+    pub direction: [f64; 2],
+    /// The force of size `dual . r` along d is this holder's part of a force r on the node.
+    pub dual: [f64; 2],
+}
+
+impl Held {
+    /// This holder's part of the force `r` on its node.
+    pub fn part_of(&self, r: [f64; 2]) -> [f64; 2] {
+        let size = self.dual[0] * r[0] + self.dual[1] * r[1];
+        self.direction.map(|c| size * c)
+    }
+}
+
+/// u . direction = value, asked for by `name`.
+struct Demand<'a> {
+    name: &'a str,
+    direction: [f64; 2],
+    value: f64,
 }
 
 /// Two prescribed values that differ by no more than this share of the largest one agree: expressions that mean the same
 /// may differ by their rounding errors.
 const AGREEMENT: f64 = 1e-12;
+
+/// Two directions with a sine below this are parallel.
+const PARALLEL: f64 = 1e-8;
+
+/// The demands at each node.
+type Demands<'a> = BTreeMap<usize, Vec<Demand<'a>>>;
 
 impl Constraints {
     /// The constraints of a problem.
@@ -30,180 +71,231 @@ impl Constraints {
         problem: &Problem,
         space: &Space<E, N, M>,
     ) -> Result<Self, DataError> {
-        let mut demands: BTreeMap<(usize, usize), Vec<(&str, f64)>> = BTreeMap::new();
-        for (name, condition) in &problem.conditions {
-            let Condition::Displacement(functions) = condition else { continue };
-            for &edge in space.mesh().edges_of(name)? {
-                for node in space.edge_nodes(edge) {
-                    for (c, function) in functions.iter().enumerate() {
-                        let Some(function) = function else { continue };
-                        let demand = demands.entry((node, c)).or_default();
-                        if demand.last().is_none_or(|(last, _)| last != name) {
-                            let what = || format!("[boundary.{name}] displacement[{c}]");
-                            let value = finite(&**function, space.nodes()[node], what)?;
-                            demand.push((name, value));
-                        }
+        let mut demands = demands(problem, space)?;
+        let all = demands.values().flatten();
+        let largest = all.fold(0.0, |max: f64, demand| max.max(demand.value.abs()));
+        let mut constraints = Constraints {
+            values: vec![[None; 2]; space.nodes().len()],
+            frames: BTreeMap::new(),
+            holders: BTreeMap::new(),
+        };
+        for (&node, at_node) in &mut demands {
+            // Coordinate directions first: a value that is given for a component is taken as it is.
+            at_node.sort_by_key(|demand| demand.axis().is_none());
+            let holding = independent(at_node, space.nodes()[node], AGREEMENT * largest)?;
+            constraints.prescribe(node, &holding);
+        }
+        let held = |node| constraints.directions(node);
+        let motions = rigid::free_motions(&Parts::new(space.mesh()), space, held);
+        if motions.is_empty() { Ok(constraints) } else { Err(DataError::RigidMotion { motions }) }
+    }
+
+    /// Prescribes one or two independent demands at a node.
+    fn prescribe(&mut self, node: usize, demands: &[&Demand]) {
+        let mut holder = |demand: &Demand, dual| {
+            let held = Held { node, direction: demand.direction, dual };
+            self.holders.entry(demand.name.to_owned()).or_default().push(held);
+        };
+        match demands {
+            [one] => {
+                holder(one, one.direction);
+                match one.axis() {
+                    Some(c) => self.values[node][c] = Some(one.direction[c] * one.value),
+                    None => {
+                        self.values[node] = [Some(one.value), None];
+                        self.frames.insert(node, one.direction);
                     }
                 }
             }
-        }
-        let largest = demands.values().flatten().fold(0.0, |max: f64, (_, v)| max.max(v.abs()));
-        let mut values = vec![[None; 2]; space.nodes().len()];
-        let mut holders: BTreeMap<String, Vec<(usize, usize)>> = BTreeMap::new();
-        for ((node, component), demand) in demands {
-            let (first, value) = demand[0];
-            for &(second, other) in &demand[1..] {
-                if !((other - value).abs() <= AGREEMENT * largest) {
-                    let [x, y] = space.nodes()[node];
-                    let (first, second) = (first.to_owned(), second.to_owned());
-                    let values = [value, other];
-                    return Err(DataError::Disagree { first, second, x, y, component, values });
-                }
+            [one, other] => {
+                // The dual basis: each across the other's direction.
+                let sine = cross(one.direction, other.direction);
+                let [first, second] = [other.direction, one.direction].map(|[x, y]| [y, -x]);
+                let duals = [first.map(|c| c / sine), second.map(|c| c / -sine)];
+                holder(one, duals[0]);
+                holder(other, duals[1]);
+                self.values[node] = [0, 1].map(|c| {
+                    match [one, other].into_iter().find(|demand| demand.axis() == Some(c)) {
+                        Some(given) => Some(given.direction[c] * given.value),
+                        None => Some(duals[0][c] * one.value + duals[1][c] * other.value),
+                    }
+                });
             }
-            values[node][component] = Some(value);
-            holders.entry(first.to_owned()).or_default().push((node, component));
+            _ => {}
         }
-        let constraints = Constraints { values, holders };
-        constraints.check_rigid_motions(space)?;
-        Ok(constraints)
     }
 
-    /// The prescribed components at each node.
+    /// The prescribed components at each node, in the node's frame.
     pub fn values(&self) -> &[[Option<f64>; 2]] {
         &self.values
     }
 
-    /// The prescribed data as a field, zero where nothing is prescribed.
-    pub fn lift(&self) -> Vec<[f64; 2]> {
-        self.values.iter().map(|v| v.map(Option::unwrap_or_default)).collect()
+    /// The first axes of the frames that are not those of the coordinates, by node; the second is the first turned left.
+    pub fn frames(&self) -> &BTreeMap<usize, [f64; 2]> {
+        &self.frames
     }
 
-    /// The (node, component) pairs that each displacement boundary holds; a pair that two boundaries prescribe counts for
-    /// the one that is first in alphabetical order.
-    pub fn holders(&self) -> &BTreeMap<String, Vec<(usize, usize)>> {
+    /// The prescribed data as a field, zero where nothing is prescribed.
+    pub fn lift(&self) -> Vec<[f64; 2]> {
+        let mut lift: Vec<[f64; 2]> =
+            self.values.iter().map(|v| v.map(Option::unwrap_or_default)).collect();
+        for (&node, &axis) in &self.frames {
+            lift[node] = from_frame(axis, lift[node]);
+        }
+        lift
+    }
+
+    /// What each displacement boundary holds; a direction that two boundaries prescribe counts for the one that is first in
+    /// alphabetical order.
+    pub fn holders(&self) -> &BTreeMap<String, Vec<Held>> {
         &self.holders
     }
 
-    /// In each connected part of the body the prescribed components must stop both translations and the rotation: the
-    /// rows (1, 0, -y) and (0, 1, x) of the prescribed components have rank 3.
-    fn check_rigid_motions<E: Element<N, M>, const N: usize, const M: usize>(
-        &self,
-        space: &Space<E, N, M>,
-    ) -> Result<(), DataError> {
-        let mesh = space.mesh();
-        let part_of = connected_parts(mesh);
-        let count = part_of.iter().max().map_or(0, |last| last + 1);
-        let mut part_of_node = vec![0; space.nodes().len()];
-        for (nodes, corners) in space.elements().iter().zip(mesh.triangles()) {
-            for &node in nodes {
-                part_of_node[node] = part_of[corners[0]];
-            }
+    /// The directions in which a node is held.
+    pub fn directions(&self, node: usize) -> impl Iterator<Item = [f64; 2]> {
+        let axes = match self.frames.get(&node) {
+            Some(&axis) => [axis, [-axis[1], axis[0]]],
+            None => [[1.0, 0.0], [0.0, 1.0]],
+        };
+        self.values[node].iter().zip(axes).filter(|(value, _)| value.is_some()).map(|(_, d)| d)
+    }
+}
+
+impl Demand<'_> {
+    /// The component that this is about, up to its sign, if it is about one.
+    fn axis(&self) -> Option<usize> {
+        let [x, y] = self.direction;
+        if y == 0.0 {
+            Some(0)
+        } else if x == 0.0 {
+            Some(1)
+        } else {
+            None
         }
-        let size = mesh.vertices().iter().flatten().fold(0.0, |max: f64, c| max.max(c.abs()));
-        let mut stopped = vec![Stopped::default(); count];
-        let mut place = vec![[0.0; 2]; count];
-        for (node, values) in self.values.iter().enumerate() {
-            let part = part_of_node[node];
-            place[part] = space.nodes()[node];
-            let [x, y] = space.nodes()[node].map(|c| c / size);
-            for (value, row) in values.iter().zip([[1.0, 0.0, -y], [0.0, 1.0, x]]) {
-                if value.is_some() {
-                    stopped[part].add(row);
+    }
+}
+
+/// The components of a vector along `axis` and along `axis` turned left.
+pub fn in_frame(axis: [f64; 2], [x, y]: [f64; 2]) -> [f64; 2] {
+    [axis[0] * x + axis[1] * y, axis[0] * y - axis[1] * x]
+}
+
+/// The vector with these components.
+pub fn from_frame(axis: [f64; 2], [along, across]: [f64; 2]) -> [f64; 2] {
+    [axis[0] * along - axis[1] * across, axis[1] * along + axis[0] * across]
+}
+
+fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+/// The first one or two demands at a node that are independent; the others must agree with them to within `tolerance`.
+fn independent<'d, 'a>(
+    demands: &'d [Demand<'a>],
+    [x, y]: [f64; 2],
+    tolerance: f64,
+) -> Result<Vec<&'d Demand<'a>>, DataError> {
+    let mut chosen: Vec<&Demand> = Vec::new();
+    for demand in demands {
+        let d = demand.direction;
+        let parallel = chosen.iter().find(|other| cross(other.direction, d).abs() <= PARALLEL);
+        let (first, value) = match (parallel, &chosen[..]) {
+            (Some(one), _) => {
+                let sign = one.direction[0] * d[0] + one.direction[1] * d[1];
+                (one.name, one.value * sign.signum())
+            }
+            (None, [one, other]) => {
+                let sine = cross(one.direction, other.direction);
+                let along = cross(d, other.direction) / sine * one.value;
+                (one.name, along - cross(d, one.direction) / sine * other.value)
+            }
+            (None, _) => {
+                chosen.push(demand);
+                continue;
+            }
+        };
+        if !((demand.value - value).abs() <= tolerance) {
+            let (first, second) = (first.to_owned(), demand.name.to_owned());
+            let values = [value, demand.value];
+            return Err(match demand.axis() {
+                Some(component) => {
+                    let values = values.map(|value| d[component] * value);
+                    DataError::Disagree { first, second, x, y, component, values }
+                }
+                None => DataError::DisagreeAlong { first, second, x, y, direction: d, values },
+            });
+        }
+    }
+    Ok(chosen)
+}
+
+/// All demands of a problem, in the alphabetical order of the boundaries, those of points last.
+fn demands<'a, E: Element<N, M>, const N: usize, const M: usize>(
+    problem: &'a Problem,
+    space: &Space<E, N, M>,
+) -> Result<Demands<'a>, DataError> {
+    let mesh = space.mesh();
+    let mut demands = Demands::new();
+    let mut ask = |node: usize,
+                   name: &'a str,
+                   direction: [f64; 2],
+                   function: &BoxedFunction,
+                   key: &dyn Fn() -> String| {
+        let at_node: &mut Vec<Demand> = demands.entry(node).or_default();
+        // Both edges at a node ask.
+        if at_node.iter().all(|d| d.name != name || d.direction != direction) {
+            let value = finite(&**function, space.nodes()[node], key)?;
+            at_node.push(Demand { name, direction, value });
+        }
+        Ok::<(), DataError>(())
+    };
+    const AXES: [[f64; 2]; 2] = [[1.0, 0.0], [0.0, 1.0]];
+    let mut smooth: Option<SmoothBoundary> = None;
+    for (name, condition) in &problem.conditions {
+        match condition {
+            Condition::Displacement(displacement) | Condition::Mixed { displacement, .. } => {
+                for node in nodes_of(space, mesh.edges_of(name)?) {
+                    for (c, function) in displacement.iter().enumerate() {
+                        let Some(function) = function else { continue };
+                        let key = || format!("[boundary.{name}] displacement[{c}]");
+                        ask(node, name, AXES[c], function, &key)?;
+                    }
                 }
             }
-        }
-        for (stopped, [x, y]) in stopped.iter().zip(place) {
-            if let Some(motion) = stopped.free_motion(size) {
-                let part = if count == 1 {
-                    String::new()
-                } else {
-                    format!(" of the part of the body at ({x}, {y})")
-                };
-                return Err(DataError::RigidMotion { motion, part });
+            Condition::Support { normal, tangential } => {
+                let smooth = smooth.get_or_insert_with(|| SmoothBoundary::new(mesh));
+                for &edge in mesh.edges_of(name)? {
+                    let facet = mesh.length_and_normal(edge).1.into();
+                    let normals = smooth.along(mesh, edge).map(|points| points.map(|p| p.normal));
+                    for (a, node) in space.edge_nodes(edge).into_iter().enumerate() {
+                        let n = normals.map_or(facet, |normals| normals[a]);
+                        let t = [-n[1], n[0]];
+                        for (function, direction, key) in
+                            [(normal, n, "normal"), (tangential, t, "tangential")]
+                        {
+                            let Some(function) = function else { continue };
+                            let key = || format!("[boundary.{name}] {key}");
+                            ask(node, name, direction, function, &key)?;
+                        }
+                    }
+                }
             }
+            _ => {}
         }
-        Ok(())
     }
+    for point in &problem.points {
+        for (c, function) in point.displacement.iter().enumerate() {
+            let Some(function) = function else { continue };
+            let key = || format!("[point.{}] displacement[{c}]", point.name);
+            ask(point.vertex, &point.name, AXES[c], function, &key)?;
+        }
+    }
+    Ok(demands)
 }
 
-/// An orthonormal basis of the rows that constrain a rigid motion (a_x, a_y, rotation).
-#[derive(Clone, Debug, Default)]
-struct Stopped {
-    basis: Vec<[f64; 3]>,
-}
-
-/// A row of norm >= 1 whose part across the known rows is this small adds nothing to them.
-const DEPENDENT: f64 = 1e-10;
-
-impl Stopped {
-    fn add(&mut self, mut row: [f64; 3]) {
-        if self.basis.len() < 3 {
-            for b in &self.basis {
-                let along = dot3(row, *b);
-                row = [0, 1, 2].map(|i| row[i] - along * b[i]);
-            }
-            let norm = dot3(row, row).sqrt();
-            if norm > DEPENDENT {
-                self.basis.push(row.map(|c| c / norm));
-            }
-        }
-    }
-
-    /// A motion that no row stops, in words; coordinates were divided by `size`.
-    fn free_motion(&self, size: f64) -> Option<String> {
-        let [ax, ay, rotation] = match self.basis[..] {
-            [] => [1.0, 0.0, 0.0],
-            [a] => {
-                // Any motion across one row will do: the translation across it.
-                [-a[1], a[0], 0.0]
-            }
-            [a, b] => {
-                [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-            }
-            _ => return None,
-        };
-        let short = |c: f64| (c * 1e6).round() / 1e6 + 0.0;
-        Some(if rotation.abs() <= DEPENDENT {
-            let norm = ax.hypot(ay);
-            format!("translation along ({}, {})", short(ax / norm), short(ay / norm))
-        } else {
-            let (x, y) = (-ay / rotation * size, ax / rotation * size);
-            format!("rotation about ({}, {})", short(x), short(y))
-        })
-    }
-}
-
-fn dot3(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-/// The number of the connected part to which each vertex belongs.
-fn connected_parts(mesh: &Mesh) -> Vec<usize> {
-    fn root(parent: &mut [usize], mut v: usize) -> usize {
-        while parent[v] != v {
-            parent[v] = parent[parent[v]];
-            v = parent[v];
-        }
-        v
-    }
-    let mut parent: Vec<usize> = (0..mesh.vertices().len()).collect();
-    for &[a, b, c] in mesh.triangles() {
-        for (a, b) in [(a, b), (b, c)] {
-            let (a, b) = (root(&mut parent, a), root(&mut parent, b));
-            parent[a.max(b)] = a.min(b);
-        }
-    }
-    // A root is the smallest vertex of its part, so it is numbered before the others ask for its number.
-    let mut part = vec![0; parent.len()];
-    let mut count = 0;
-    for v in 0..parent.len() {
-        let r = root(&mut parent, v);
-        if r == v {
-            part[v] = count;
-            count += 1;
-        } else {
-            part[v] = part[r];
-        }
-    }
-    part
+fn nodes_of<E: Element<N, M>, const N: usize, const M: usize>(
+    space: &Space<E, N, M>,
+    edges: &[BoundaryEdge],
+) -> Vec<usize> {
+    edges.iter().flat_map(|&edge| space.edge_nodes(edge)).collect()
 }

@@ -75,7 +75,8 @@ impl Coercivity {
             let t = edge.triangle;
             let area = mesh.triangle(t).double_area() / 2.0;
             let (h, length) = (mesh.diameter(t), contact_length[&t]);
-            let constant = coercivity_constant::<E, f64, N, M>(&problem.material, h, length, area);
+            let constant =
+                coercivity_constant::<E, f64, N, M>(problem.material.of(t), h, length, area);
             if worst.is_none_or(|w| constant > w.constant) {
                 let limiting_edge = mesh.ends(edge).map(|v| mesh.vertices()[v]);
                 worst = Some(Coercivity { constant, limiting_edge });
@@ -143,8 +144,8 @@ pub fn assemble<E: Element<N, M>, const N: usize, const M: usize>(
             *value = finite(&**gap, space.nodes()[node], what)?;
         }
         let triangle = mesh.triangle(edge.triangle);
-        let functionals =
-            ContactEdge::new::<E>(&triangle, edge.local, normal, &problem.material, gamma);
+        let material = problem.material.of(edge.triangle);
+        let functionals = ContactEdge::new::<E>(&triangle, edge.local, normal, material, gamma);
         line.push(ContactLineEdge { edge, length, normal, gamma, gap: values, functionals });
     }
     Ok(line)

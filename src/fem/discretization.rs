@@ -7,7 +7,7 @@
 
 use nalgebra::Vector2;
 
-use super::constraints::Constraints;
+use super::constraints::{Constraints, in_frame};
 use super::contact_line::{self, Coercivity, ContactLineEdge, EdgeRule};
 use super::loads;
 use super::problem::{DataError, Problem};
@@ -115,8 +115,6 @@ where
 
     /// a(u, v) = int sigma(u):eps(v) for every basis function v.
     pub fn internal_forces(&self, u: &[[f64; 2]]) -> Functional {
-        let material = &self.problem.material;
-        let stiffness = material.lambda().abs() + 2.0 * material.mu();
         let mut forces = Functional::zero(u.len());
         for (t, (triangle, nodes)) in self.space.triangles().enumerate() {
             let nodal = self.space.on_triangle(t, u);
@@ -124,6 +122,8 @@ where
             if nodal == [Vector2::zeros(); N] {
                 continue;
             }
+            let material = self.problem.material.of(t);
+            let stiffness = material.lambda().abs() + 2.0 * material.mu();
             let barycentric = triangle.barycentric_gradients();
             let area = triangle.double_area() / 2.0;
             E::at_stiffness_points(|l, weight| {
@@ -164,8 +164,11 @@ where
 
     /// The Euclidean norm of a functional over the free degrees of freedom.
     pub fn free_norm(&self, functional: &[[f64; 2]]) -> f64 {
-        let free = functional.iter().zip(self.constraints.values()).flat_map(|(f, prescribed)| {
-            f.iter().zip(prescribed).filter(|(_, p)| p.is_none()).map(|(f, _)| f * f)
+        let frames = self.constraints.frames();
+        let nodes = functional.iter().zip(self.constraints.values()).enumerate();
+        let free = nodes.flat_map(|(node, (&f, prescribed))| {
+            let f = frames.get(&node).map_or(f, |&axis| in_frame(axis, f));
+            f.into_iter().zip(prescribed).filter(|(_, p)| p.is_none()).map(|(f, _)| f * f)
         });
         free.sum::<f64>().sqrt()
     }

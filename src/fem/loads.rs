@@ -1,7 +1,9 @@
 //! L(v) = int_Omega f . v + int_{Gamma_N} t . v for every basis function v.
 
 use super::pieces::{Features, Rule};
-use super::problem::{BoxedFunction, Condition, DataError, Function, Problem, checked};
+use super::problem::{
+    BoxedFunction, Condition, DataError, Function, Problem, SurfaceForce, checked,
+};
 use super::space::Space;
 use crate::kernel::Element;
 
@@ -53,13 +55,40 @@ pub fn assemble_with<E: Element<N, M>, const N: usize, const M: usize>(
     };
     let mut load = vec![[0.0; 2]; space.nodes().len()];
     for (c, f) in acting(&problem.body_force) {
-        add_body_force(c, f, &rule(f), space, &mut load)?;
+        let what = || format!("[load] body[{c}]");
+        add_body_force(c, f, &rule(f), space, 0..space.elements().len(), what, &mut load)?;
+    }
+    for SurfaceForce { surface, triangles, force } in &problem.surface_forces {
+        for (c, f) in acting(force) {
+            let what = || format!("[load.{surface}] body[{c}]");
+            let triangles = triangles.iter().copied();
+            add_body_force(c, f, &rule(f), space, triangles, what, &mut load)?;
+        }
     }
     for (name, condition) in &problem.conditions {
-        if let Condition::Traction(traction) = condition {
-            for (c, t) in acting(traction) {
-                add_traction(name, c, t, &rule(t), space, &mut load)?;
+        match condition {
+            Condition::Traction(traction) => {
+                for (c, t) in acting(traction) {
+                    let what = || format!("[boundary.{name}] traction[{c}]");
+                    let value = |x, n| checked(t.on_boundary(x, n), x, what);
+                    add_on_boundary(name, c, value, &rule(t), space, &mut load)?;
+                }
             }
+            Condition::Mixed { displacement, traction } => {
+                for (c, t) in acting(traction).filter(|(c, _)| displacement[*c].is_none()) {
+                    let what = || format!("[boundary.{name}] traction[{c}]");
+                    let value = |x, n| checked(t.on_boundary(x, n), x, what);
+                    add_on_boundary(name, c, value, &rule(t), space, &mut load)?;
+                }
+            }
+            Condition::Pressure(p) => {
+                let what = || format!("[boundary.{name}] pressure");
+                for c in 0..2 {
+                    let value = |x, n: [f64; 2]| Ok(-n[c] * checked(p.on_boundary(x, n), x, what)?);
+                    add_on_boundary(name, c, value, &rule(&**p), space, &mut load)?;
+                }
+            }
+            _ => {}
         }
     }
     Ok(load)
@@ -75,12 +104,15 @@ fn add_body_force<E: Element<N, M>, const N: usize, const M: usize>(
     f: &dyn Function,
     rule: &Rule,
     space: &Space<E, N, M>,
+    triangles: impl Iterator<Item = usize>,
+    what: impl Fn() -> String,
     load: &mut [[f64; 2]],
 ) -> Result<(), DataError> {
     let mut wrong = None;
-    for (triangle, nodes) in space.triangles() {
-        rule.on_triangle(&triangle, |l, x, weight| {
-            match checked(f.at(x), x, || format!("[load] body[{c}]")) {
+    for t in triangles {
+        let nodes = &space.elements()[t];
+        rule.on_triangle(&space.mesh().triangle(t), |l, x, weight| {
+            match checked(f.at(x), x, &what) {
                 Ok(f) => add(load, c, nodes, &E::values(l), weight * f),
                 Err(error) => wrong = wrong.take().or(Some(error)),
             }
@@ -89,10 +121,11 @@ fn add_body_force<E: Element<N, M>, const N: usize, const M: usize>(
     wrong.map_or(Ok(()), Err)
 }
 
-fn add_traction<E: Element<N, M>, const N: usize, const M: usize>(
+/// Adds a traction's component c, `value` of the place and the outward normal.
+fn add_on_boundary<E: Element<N, M>, const N: usize, const M: usize>(
     name: &str,
     c: usize,
-    t: &dyn Function,
+    value: impl Fn([f64; 2], [f64; 2]) -> Result<f64, DataError>,
     rule: &Rule,
     space: &Space<E, N, M>,
     load: &mut [[f64; 2]],
@@ -102,15 +135,12 @@ fn add_traction<E: Element<N, M>, const N: usize, const M: usize>(
         let (length, normal) = space.mesh().length_and_normal(edge);
         let ends = space.mesh().ends(edge).map(|vertex| space.mesh().vertices()[vertex]);
         let nodes = space.edge_nodes(edge);
-        rule.on_edge(ends, [], |point| {
-            let what = || format!("[boundary.{name}] traction[{c}]");
-            match checked(t.on_boundary(point.x, normal.into()), point.x, what) {
-                Ok(t) => {
-                    let shapes: [f64; M] = E::edge_values(point.s);
-                    add(load, c, &nodes, &shapes, point.weight * length * t);
-                }
-                Err(error) => wrong = wrong.take().or(Some(error)),
+        rule.on_edge(ends, [], |point| match value(point.x, normal.into()) {
+            Ok(t) => {
+                let shapes: [f64; M] = E::edge_values(point.s);
+                add(load, c, &nodes, &shapes, point.weight * length * t);
             }
+            Err(error) => wrong = wrong.take().or(Some(error)),
         });
     }
     wrong.map_or(Ok(()), Err)
@@ -152,12 +182,12 @@ mod tests {
         let load = || -> BoxedFunction { Box::new(Monomial { power, known }) };
         let diagonal = Diagonal::Right;
         let mesh = Rectangle { width: 2.0, height: 2.0, nx: 1, ny: 1, diagonal }.mesh().unwrap();
-        let problem = Problem {
+        let problem = Problem::new(
             mesh,
-            material: Material::lame(1.0, 1.0, Plane::Strain),
-            body_force: [load(), Box::new(|_: [f64; 2]| 0.0)],
-            conditions: BTreeMap::from([("top".to_owned(), Condition::Traction([zero(), load()]))]),
-        };
+            Material::lame(1.0, 1.0, Plane::Strain),
+            [load(), Box::new(|_: [f64; 2]| 0.0)],
+            BTreeMap::from([("top".to_owned(), Condition::Traction([zero(), load()]))]),
+        );
         let space = Space::<P2, 6, 3>::new(&problem.mesh);
         let load = assemble(&problem, &space).unwrap();
         let sum = |c: usize| load.iter().map(|l| l[c]).sum::<f64>();

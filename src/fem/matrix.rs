@@ -4,8 +4,11 @@
 //! The pattern is read off the mesh, node by node, and the element matrices are added into it in one pass. Here is where
 //! that is stored; how it is done is `kernel::pattern`.
 
+use std::collections::BTreeMap;
+
 use nalgebra::Matrix2;
 
+use super::constraints::{Constraints, from_frame, in_frame};
 use super::discretization::Discretization;
 use crate::kernel::edge_integral::ExactEdge;
 use crate::kernel::element::stiffness;
@@ -20,6 +23,8 @@ pub struct Numbering {
     pub count: usize,
     /// The node to which each number belongs.
     nodes: Vec<usize>,
+    /// The first axes of the frames that are not those of the coordinates, by node.
+    frames: BTreeMap<usize, [f64; 2]>,
 }
 
 impl Numbering {
@@ -29,7 +34,13 @@ impl Numbering {
         let mut nodes = vec![0; 2 * prescribed.len()];
         let count = pattern::number(order, prescribed, &mut of, &mut nodes);
         nodes.truncate(count);
-        Numbering { of, count, nodes }
+        Numbering { of, count, nodes, frames: BTreeMap::new() }
+    }
+
+    /// Numbers the components that are free under `constraints`, in the frames of their nodes.
+    pub fn under(order: &[usize], constraints: &Constraints) -> Self {
+        let frames = constraints.frames().clone();
+        Numbering { frames, ..Numbering::new(order, constraints.values()) }
     }
 
     fn numbers(&self) -> Numbers<'_> {
@@ -39,13 +50,43 @@ impl Numbering {
     /// A vector over the free degrees of freedom, from a field.
     pub fn gather(&self, field: &[[f64; 2]]) -> Vec<f64> {
         let mut vector = vec![0.0; self.count];
-        pattern::gather(&self.of, field, &mut vector);
+        if self.frames.is_empty() {
+            pattern::gather(&self.of, field, &mut vector);
+        } else {
+            pattern::gather(&self.of, &self.turned(field), &mut vector);
+        }
         vector
     }
 
     /// Writes a vector over the free degrees of freedom into a field.
     pub fn scatter(&self, vector: &[f64], field: &mut [[f64; 2]]) {
+        for (&node, &axis) in &self.frames {
+            field[node] = in_frame(axis, field[node]);
+        }
         pattern::scatter(&self.of, vector, field);
+        for (&node, &axis) in &self.frames {
+            field[node] = from_frame(axis, field[node]);
+        }
+    }
+
+    /// A vector at a node, a pair of entries of a functional, in the node's frame.
+    pub fn in_frame(&self, node: usize, vector: [f64; 2]) -> [f64; 2] {
+        self.frames.get(&node).map_or(vector, |&axis| in_frame(axis, vector))
+    }
+
+    fn turned(&self, field: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        let mut turned = field.to_vec();
+        for (&node, &axis) in &self.frames {
+            turned[node] = in_frame(axis, turned[node]);
+        }
+        turned
+    }
+
+    /// R_i^T block R_j with the frames R of the nodes i and j.
+    fn turned_block(&self, [i, j]: [usize; 2], block: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
+        let rows = block.map(|row| self.in_frame(j, row));
+        let columns = [0, 1].map(|d| self.in_frame(i, [rows[0][d], rows[1][d]]));
+        [0, 1].map(|c| [0, 1].map(|d| columns[d][c]))
     }
 }
 
@@ -114,8 +155,14 @@ impl LowerTriangle {
     ) {
         let columns = Lists { starts: &self.starts, members: &self.rows };
         // `pattern` knows no numbers but whole ones, and takes a block as the array of its rows.
-        let rows = |i, j| block(i, j).transpose().into();
-        pattern::add(&numbering.of, columns, &mut self.values, nodes, rows);
+        let rows = |block: Matrix2<f64>| block.transpose().into();
+        if nodes.iter().any(|node| numbering.frames.contains_key(node)) {
+            let block = |i, j| numbering.turned_block([nodes[i], nodes[j]], rows(block(i, j)));
+            pattern::add(&numbering.of, columns, &mut self.values, nodes, block);
+        } else {
+            let block = |i, j| rows(block(i, j));
+            pattern::add(&numbering.of, columns, &mut self.values, nodes, block);
+        }
     }
 }
 
@@ -147,8 +194,8 @@ where
     E: ExactEdge<f64, N, M>,
 {
     let mut matrix = LowerTriangle::zero(numbering, neighbours);
-    for (triangle, nodes) in d.space.triangles() {
-        let k = stiffness::<E, f64, N, M>(&triangle, &d.problem.material);
+    for (t, (triangle, nodes)) in d.space.triangles().enumerate() {
+        let k = stiffness::<E, f64, N, M>(&triangle, d.problem.material.of(t));
         matrix.add(numbering, nodes, |i, j| k[i][j]);
     }
     matrix

@@ -4,8 +4,10 @@ use std::collections::BTreeMap;
 
 use thiserror::Error;
 
+use super::materials::Materials;
 use super::mesh::{Mesh, MeshError};
-use crate::kernel::Material;
+use super::obstacle::Obstacle;
+use super::rigid::FreeMotion;
 
 /// A function of the place, such as a component of the body force.
 pub trait Function: Send + Sync {
@@ -44,11 +46,57 @@ pub enum Condition {
     Displacement([Option<BoxedFunction>; 2]),
     /// Gamma_N: sigma n = the given traction (a stress).
     Traction([BoxedFunction; 2]),
+    /// Gamma_N: sigma n = -p n for the given pressure p.
+    Pressure(BoxedFunction),
+    /// A displacement in one component and a traction in the other: where the first is `None`, the second acts.
+    Mixed {
+        /// The given components of the displacement.
+        displacement: [Option<BoxedFunction>; 2],
+        /// The traction.
+        traction: [BoxedFunction; 2],
+    },
+    /// u . n and u . t are given, t being n turned to the left; `None` leaves one free. A plane of symmetry, or a roller at
+    /// any angle, has u . n = 0.
+    Support {
+        /// u . n
+        normal: Option<BoxedFunction>,
+        /// u . t
+        tangential: Option<BoxedFunction>,
+    },
     /// Gamma_C: conditions (2) with the given initial gap (a length along the outward normal).
     Contact {
         /// g
         gap: BoxedFunction,
     },
+    /// Gamma_C: conditions (2) along the way to the closest point of a rigid obstacle, which has this name.
+    Obstacle(String, Obstacle),
+}
+
+impl Condition {
+    /// This is a part of Gamma_C.
+    pub fn is_contact(&self) -> bool {
+        matches!(self, Condition::Contact { .. } | Condition::Obstacle(..))
+    }
+}
+
+/// A force per unit of area on a part of the body, beside [`Problem::body_force`].
+pub struct SurfaceForce {
+    /// The part's name.
+    pub surface: String,
+    /// Its triangles.
+    pub triangles: Vec<usize>,
+    /// f there.
+    pub force: [BoxedFunction; 2],
+}
+
+/// A support in one point.
+pub struct PointSupport {
+    /// The point's name.
+    pub name: String,
+    /// The vertex of the mesh.
+    pub vertex: usize,
+    /// The given components of its displacement; `None` leaves a component free.
+    pub displacement: [Option<BoxedFunction>; 2],
 }
 
 /// A unilateral contact problem on a mesh.
@@ -56,11 +104,34 @@ pub struct Problem {
     /// The body.
     pub mesh: Mesh,
     /// What it is made of.
-    pub material: Material<f64>,
+    pub material: Materials,
     /// f, the force per unit of area.
     pub body_force: [BoxedFunction; 2],
+    /// Forces on parts of the body beside it.
+    pub surface_forces: Vec<SurfaceForce>,
     /// What holds on the named parts of the boundary.
     pub conditions: BTreeMap<String, Condition>,
+    /// Supports in single points.
+    pub points: Vec<PointSupport>,
+}
+
+impl Problem {
+    /// A body with its loads and boundary conditions, without forces on parts of it and without supports in points.
+    pub fn new(
+        mesh: Mesh,
+        material: impl Into<Materials>,
+        body_force: [BoxedFunction; 2],
+        conditions: BTreeMap<String, Condition>,
+    ) -> Self {
+        Problem {
+            mesh,
+            material: material.into(),
+            body_force,
+            surface_forces: Vec::new(),
+            conditions,
+            points: Vec::new(),
+        }
+    }
 }
 
 /// Why a problem can't be posed on its mesh.
@@ -77,11 +148,40 @@ pub enum DataError {
     )]
     Disagree { first: String, second: String, x: f64, y: f64, component: usize, values: [f64; 2] },
     #[error(
-        "no displacement is prescribed that stops the {motion}{part}; expected displacement boundaries that leave no rigid body motion free (contact pushes, it doesn't hold)"
+        "the displacement boundaries '{first}' and '{second}' meet at ({x}, {y}) and disagree there: u . ({}, {}) = {} and {}; expected one value",
+        direction[0], direction[1], values[0], values[1]
     )]
-    RigidMotion { motion: String, part: String },
+    DisagreeAlong {
+        first: String,
+        second: String,
+        x: f64,
+        y: f64,
+        direction: [f64; 2],
+        values: [f64; 2],
+    },
+    #[error(
+        "no displacement is prescribed that stops the {}; expected displacement boundaries that leave no rigid body motion free (contact pushes, it doesn't hold)",
+        listed(motions)
+    )]
+    RigidMotion { motions: Vec<FreeMotion> },
+    #[error(
+        "{what} has a gradient of length {length} at ({x}, {y}); expected a distance there, with a gradient between {least} and {most}"
+    )]
+    NoDistance { what: String, length: f64, x: f64, y: f64, least: f64, most: f64 },
     #[error("no boundary has contact; expected one with contact = {{ gap = ... }}")]
     NoContact,
+}
+
+/// So many free motions are told one by one.
+const TOLD: usize = 4;
+
+fn listed(motions: &[FreeMotion]) -> String {
+    let told: Vec<String> = motions.iter().take(TOLD).map(FreeMotion::to_string).collect();
+    let more = match motions.len().saturating_sub(TOLD) {
+        0 => String::new(),
+        more => format!("; nor {more} more"),
+    };
+    told.join("; nor the ") + &more
 }
 
 /// The value of `function`, which the case calls `what()`, at `x`.

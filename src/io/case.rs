@@ -43,6 +43,7 @@
 //! young > 0 and -1 < poisson < 1/2.
 
 use std::collections::BTreeMap;
+use std::fmt::{self, Display, Formatter};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -52,7 +53,8 @@ use toml::de::DeTable;
 use super::exact::{angle, read_exact, read_kind};
 use super::expression::{Expression, ExpressionError};
 use super::gmsh::{self, GmshError};
-use super::quote::quoted;
+use super::quote::{cut, quoted};
+use super::setting;
 use super::table::{Source, Table, Value, shown};
 use super::why_unreadable;
 use crate::fem::exact::{self, Kind};
@@ -66,6 +68,8 @@ use crate::solve::{ContactQuadrature, Degree, Gamma0, Method, Settings};
 
 /// A contact problem and how to solve it.
 pub struct Case {
+    /// The file it was read from, or what stands in its place.
+    pub file: PathBuf,
     /// A line for people.
     pub title: String,
     /// What to solve.
@@ -94,14 +98,36 @@ pub struct ExactCase {
 
 /// What is wrong with a case file, and where.
 #[derive(Debug, Error)]
-#[error("{}{}: {mistake}", file.display(), line.map_or(String::new(), |line| format!(":{line}")))]
+#[error("{}{place}: {mistake}", file.display())]
 pub struct CaseError {
     /// The case file.
     pub file: PathBuf,
-    /// The line, from 1, unless it is the file as a whole.
-    pub line: Option<usize>,
+    /// Where in it.
+    pub place: Place,
     /// What is wrong.
     pub mistake: Box<CaseMistake>,
+}
+
+/// A place in a case. It is shown so that it may follow the name of the file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Place {
+    /// The file as a whole.
+    File,
+    /// A line, from 1.
+    Line(usize),
+    /// Not the file, but this setting over it.
+    Setting(String),
+}
+
+impl Display for Place {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        match self {
+            Place::File => Ok(()),
+            Place::Line(line) => write!(f, ":{line}"),
+            Place::Setting(setting) => write!(f, " with --set {}", cut(setting)),
+        }
+    }
 }
 
 /// What is wrong with a case file. `name` is a key as messages show it: `[mesh] rectangle.nx`.
@@ -126,6 +152,8 @@ pub enum CaseMistake {
     Mesh { name: String, error: MeshError },
     #[error("[mesh] gmsh: {0}")]
     Gmsh(GmshError),
+    #[error("found no key with a value; expected KEY=VALUE, such as method.gamma0=1e-3")]
+    NoSetting,
 }
 
 fn within(place: &str) -> String {
@@ -139,22 +167,41 @@ impl Case {
     /// The first mistake found, with its place. What depends on the discrete problem (rigid motions left free, kappa >= 1,
     /// expressions without a value somewhere on the mesh) is found when it is solved.
     pub fn read(file: &Path) -> Result<Case, CaseError> {
-        let text = read_text(file).map_err(|why| CaseError {
+        Case::parse(file, &Case::text(file)?, &[])
+    }
+
+    /// The text of this file.
+    ///
+    /// # Errors
+    /// A file that can't be read, or is no text.
+    pub fn text(file: &Path) -> Result<String, CaseError> {
+        read_text(file).map_err(|why| CaseError {
             file: file.to_owned(),
-            line: None,
+            place: Place::File,
             mistake: Box::new(CaseMistake::Unreadable(why)),
-        })?;
-        let source = Source { file, text: &text };
-        let entries = DeTable::parse(&text).map_err(|e| {
+        })
+    }
+
+    /// The case with this text. Messages call it `file`, and a mesh file is looked for beside that. Each of the `settings`
+    /// (`method.gamma0=1e-3`: a key, `=`, and a value as TOML has it) adds a key or replaces its value.
+    ///
+    /// # Errors
+    /// As [`Case::read`]; for a mistake in a setting, the place is that setting.
+    pub fn parse(file: &Path, text: &str, settings: &[String]) -> Result<Case, CaseError> {
+        let source = Source { file, text, settings };
+        let entries = DeTable::parse(text).map_err(|e| {
             let start = e.span().map(|span| span.start);
-            source.wrong(start, no_toml(&e, &text))
+            source.wrong(start, no_toml(&e, text))
         })?;
-        case(file, &Table::whole(source, entries.get_ref()))
+        let layers = setting::layers(&source);
+        let mut entries = entries.into_inner();
+        setting::lay(source, &layers, &mut entries)?;
+        case(file, &Table::whole(source, &entries))
     }
 }
 
 /// What the TOML reader says, and the words of the file that it speaks of.
-fn no_toml(error: &toml::de::Error, text: &str) -> CaseMistake {
+pub(super) fn no_toml(error: &toml::de::Error, text: &str) -> CaseMistake {
     let said = match error.message() {
         // It says so where there is no value at all, too.
         m if m.starts_with("string values must be quoted") => {
@@ -205,8 +252,9 @@ fn case(file: &Path, root: &Table) -> Result<Case, CaseError> {
     let conditions = on_the_mesh(&mesh, boundaries)?;
     let probes = read_probes(output, &mesh)?;
     Ok(Case {
+        file: file.to_owned(),
         title,
-        problem: Problem { mesh, material, body_force, conditions },
+        problem: Problem::new(mesh, material, body_force, conditions),
         method,
         settings,
         probes,
@@ -406,7 +454,7 @@ fn read_boundaries<'s>(
         };
         boundaries.push(Boundary { value, title, key, kind, condition });
     }
-    if boundaries.iter().any(|b| matches!(b.condition, Condition::Contact { .. })) {
+    if boundaries.iter().any(|b| b.condition.is_contact()) {
         Ok(boundaries)
     } else {
         Err(all.wrong(CaseMistake::Combination {
@@ -544,7 +592,7 @@ mod tests {
     fn read(text: &str) -> Result<Case, CaseError> {
         let file = Path::new("x.toml");
         let entries = DeTable::parse(text).unwrap();
-        case(file, &Table::whole(Source { file, text }, entries.get_ref()))
+        case(file, &Table::whole(Source { file, text, settings: &[] }, entries.get_ref()))
     }
 
     const SMALL: &str = "
@@ -560,7 +608,7 @@ mod tests {
         assert_eq!(case.method, Method::default());
         assert_eq!(case.settings, Settings::default());
         assert!(case.probes.is_empty());
-        assert_eq!(case.problem.material, Material::young_poisson(2.5, 0.25, Plane::Strain));
+        assert_eq!(case.problem.material, Material::young_poisson(2.5, 0.25, Plane::Strain).into());
         assert_eq!(case.problem.mesh.vertices()[5], [2.0, 1.0]);
         assert_eq!(case.problem.mesh.triangles()[0], [0, 1, 4], "the diagonal is right");
         assert_eq!(case.problem.body_force.each_ref().map(|f| f.degree()), [Some(0); 2]);
@@ -606,7 +654,7 @@ mod tests {
         let p = [2.0, 3.0];
         assert_eq!(case.title, "All");
         assert_eq!(case.problem.mesh.triangles().len(), 8);
-        assert_eq!(case.problem.material, Material::lame(-0.5, 1.0, Plane::Stress));
+        assert_eq!(case.problem.material, Material::lame(-0.5, 1.0, Plane::Stress).into());
         assert_eq!(case.problem.body_force.each_ref().map(|f| f.at(p)), [2.0, 26.0]);
         let conditions = &case.problem.conditions;
         let Condition::Displacement([Some(x), None]) = &conditions["left"] else { panic!() };

@@ -147,7 +147,8 @@ mod tests {
 
     fn read(text: &str) -> Result<Exact, String> {
         let entries = DeTable::parse(text).unwrap();
-        let table = Table::whole(Source { file: Path::new("x"), text }, entries.get_ref());
+        let table =
+            Table::whole(Source { file: Path::new("x"), text, settings: &[] }, entries.get_ref());
         let material = Material::lame(1.0, 1.0, Plane::Strain);
         read_exact(&table, material).map_err(|e| e.to_string())
     }

@@ -176,7 +176,7 @@ impl Expression {
 
 impl Expression {
     /// The value, if the program is nothing but a number.
-    pub(super) fn constant(&self) -> Option<f64> {
+    pub fn constant(&self) -> Option<f64> {
         match self.program.as_slice() {
             [Step::Number(c)] => Some(*c),
             _ => None,
@@ -186,7 +186,7 @@ impl Expression {
 
 impl Expression {
     /// The coefficients of 1, x, x^2, .., if the expression is a polynomial in x alone.
-    pub(super) fn polynomial_in_x(&self) -> Option<Vec<f64>> {
+    pub fn polynomial_in_x(&self) -> Option<Vec<f64>> {
         let mut stack: Vec<Vec<f64>> = Vec::new();
         for &step in &self.program {
             let result = match step {

@@ -1,24 +1,38 @@
 //! What goes in and out: case files, Gmsh meshes, VTU, SVG, JSON.
 
+#[cfg(feature = "files")]
 pub mod case;
+#[cfg(feature = "files")]
 pub mod convergence;
 pub mod csv;
 pub mod data;
+#[cfg(feature = "files")]
 mod exact;
 pub mod expression;
 pub mod files;
 pub mod gmsh;
 pub mod numbers;
+#[cfg(feature = "files")]
 pub mod outputs;
+#[cfg(feature = "files")]
 pub mod picture;
+#[cfg(feature = "files")]
 pub mod plot;
+#[cfg_attr(not(feature = "files"), allow(dead_code, reason = "lists are for case files alone"))]
 mod quote;
+#[cfg(feature = "files")]
 pub mod result;
+#[cfg(feature = "files")]
+mod setting;
+#[cfg(feature = "files")]
+pub mod sweep;
+#[cfg(feature = "files")]
 mod table;
 pub mod vtu;
 
 use std::io;
 
+#[cfg(feature = "files")]
 pub use case::{Case, CaseError};
 pub use expression::{Expression, ExpressionError};
 pub use gmsh::GmshError;

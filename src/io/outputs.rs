@@ -59,12 +59,7 @@ pub fn write(
     stage("contact.vtu", contact_vtu(solution))?;
     stage("contact.csv", contact_csv(&contact_rows(solution)).map(String::into_bytes))?;
     stage("picture.svg", draw(case, solution).map(String::into_bytes))?;
-    let seconds = Seconds {
-        read: read.as_secs_f64(),
-        assemble: times.assemble().as_secs_f64(),
-        solve: times.solve().as_secs_f64(),
-        write: start.elapsed().as_secs_f64(),
-    };
+    let seconds = Seconds::new(read, &times, start.elapsed());
     let results = results(case, solution, seconds)?;
     stage("result.json", result_json(&results).map(String::into_bytes))?;
     Ok((output.publish()?, results))
@@ -92,6 +87,7 @@ pub fn results(
     };
     Ok(Results {
         version: env!("CARGO_PKG_VERSION").to_owned(),
+        case: Some(case.file.display().to_string()),
         title: case.title.clone(),
         mesh: MeshSizes {
             vertices: mesh.vertices().len(),

@@ -5,19 +5,23 @@
 //! JSON alone would turn it into `null` without a word. Everything but [`Seconds`] is the same from run to run.
 
 use std::io::{self, Write};
+use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 use serde_json::ser::{Formatter, Serializer};
 
 use super::data::DataError;
 use crate::fem::Errors;
-use crate::solve::{GammaReport, Quantities, Status};
+use crate::solve::{GammaReport, Quantities, Status, Times};
 
 /// The content of result.json, in its order.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Results {
     /// The version of this program.
     pub version: String,
+    /// The case file, as the command was given it; left out by the engine fenicsx.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub case: Option<String>,
     /// The title of the case.
     pub title: String,
     /// The discretisation.
@@ -92,6 +96,17 @@ pub struct NewtonHistory {
     pub status: Status,
 }
 
+impl NewtonHistory {
+    /// How it ended, in words.
+    pub fn verdict(&self) -> &'static str {
+        match self.status {
+            Status::Converged => "converged",
+            Status::ConvergedToRounding => "converged to rounding",
+            Status::NotConverged => "not converged",
+        }
+    }
+}
+
 /// Where the time went.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Seconds {
@@ -101,8 +116,20 @@ pub struct Seconds {
     pub assemble: f64,
     /// Factoring and iterating.
     pub solve: f64,
-    /// Writing the other files.
+    /// Writing the other files; 0 where none was written.
     pub write: f64,
+}
+
+impl Seconds {
+    /// Of a solve that took `times` after `read`, its files `write`.
+    pub fn new(read: Duration, times: &Times, write: Duration) -> Self {
+        Seconds {
+            read: read.as_secs_f64(),
+            assemble: times.assemble().as_secs_f64(),
+            solve: times.solve().as_secs_f64(),
+            write: write.as_secs_f64(),
+        }
+    }
 }
 
 /// The text of the file.
@@ -234,6 +261,7 @@ mod tests {
     fn sample() -> Results {
         Results {
             version: "0.1.0".to_owned(),
+            case: Some("cases/block.toml".to_owned()),
             title: "A \"block\" <&> null".to_owned(),
             mesh: MeshSizes {
                 vertices: 4,
@@ -275,6 +303,7 @@ mod tests {
     fn the_file_has_one_name_a_line_in_the_promised_order() {
         let expected = r#"{
   "version": "0.1.0",
+  "case": "cases/block.toml",
   "title": "A \"block\" <&> null",
   "mesh": {
     "vertices": 4,

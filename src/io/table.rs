@@ -10,24 +10,31 @@ use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeInteger, DeTable, DeValue};
 
-use super::case::{CaseError, CaseMistake};
+use super::case::{CaseError, CaseMistake, Place};
 use super::expression::Expression;
 use super::quote::{cut, listed, quoted};
+use super::setting::setting_at;
 use crate::fem::BoxedFunction;
 
-/// A file and its text.
+/// A file, its text, and what is set over it. Places in the settings come after those in the text.
 #[derive(Clone, Copy)]
 pub struct Source<'s> {
     pub file: &'s Path,
     pub text: &'s str,
+    pub settings: &'s [String],
 }
 
 impl Source<'_> {
     /// `mistake` at the byte `start`, or in the file as a whole.
     pub fn wrong(&self, start: Option<usize>, mistake: CaseMistake) -> CaseError {
+        let setting = start.and_then(|start| setting_at(self, start));
         let before = start.and_then(|start| self.text.get(..start));
-        let line = before.map(|before| before.matches('\n').count() + 1);
-        CaseError { file: self.file.to_owned(), line, mistake: Box::new(mistake) }
+        let place = match (setting, before) {
+            (Some(setting), _) => Place::Setting(setting.to_owned()),
+            (None, Some(before)) => Place::Line(before.matches('\n').count() + 1),
+            (None, None) => Place::File,
+        };
+        CaseError { file: self.file.to_owned(), place, mistake: Box::new(mistake) }
     }
 }
 
@@ -118,11 +125,15 @@ impl<'s> Table<'s> {
     /// The complaint about which of `keys` are there.
     pub fn combination(&self, keys: &[&str], expected: &str) -> CaseError {
         let found: Vec<&str> = keys.iter().copied().filter(|k| self.get(k).is_some()).collect();
-        self.wrong(CaseMistake::Combination {
+        let mistake = CaseMistake::Combination {
             name: self.name.clone(),
             found: if found.is_empty() { "none".to_owned() } else { listed(&found, "and") },
             expected: expected.to_owned(),
-        })
+        };
+        // Where one of them was set over the file, that is what went wrong.
+        let mut starts = found.iter().filter_map(|key| Some(self.get(key)?.start));
+        let set = starts.rfind(|&start| setting_at(&self.source, start).is_some());
+        self.source.wrong(set.or(self.start), mistake)
     }
 
     /// A mistake that concerns the table as a whole.

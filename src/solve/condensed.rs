@@ -125,7 +125,7 @@ impl System {
         }
         let neighbours = Neighbours::new(nodes.len(), d.space.elements());
         let order = nested_dissection(nodes, &neighbours, &last);
-        let numbering = Numbering::new(&order, d.constraints.values());
+        let numbering = Numbering::under(&order, &d.constraints);
         let in_layer = numbering.of.iter().zip(&last).filter(|(_, last)| **last);
         let layer = numbering.count - in_layer.flat_map(|(of, _)| of).flatten().count();
         let matrix = matrix::assemble(d, &numbering, &neighbours);
@@ -157,8 +157,9 @@ impl Body {
         for (e, edge) in d.contact.iter().enumerate() {
             let nodes = &d.space.elements()[edge.edge.triangle];
             for (a, functional) in edge.functionals.p0.iter().enumerate() {
-                for (&node, entries) in nodes.iter().zip(functional) {
-                    for (number, &entry) in self.numbering.of[node].iter().zip(entries) {
+                for (&node, &entries) in nodes.iter().zip(functional) {
+                    let entries = self.numbering.in_frame(node, entries.into());
+                    for (number, entry) in self.numbering.of[node].iter().zip(entries) {
                         if let Some(number) = number {
                             f(number - self.layer, e * M + a, entry);
                         }

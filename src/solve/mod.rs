@@ -9,6 +9,7 @@ pub mod solution;
 pub mod theorem;
 pub mod times;
 
+#[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -100,16 +101,17 @@ impl Default for Settings {
 }
 
 /// How a solve ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 pub enum Status {
     /// The residual is within the tolerance.
-    #[serde(rename = "converged")]
+    #[cfg_attr(feature = "files", serde(rename = "converged"))]
     Converged,
     /// The tolerance asks for more than rounding allows; the residual is as small as rounding lets it be.
-    #[serde(rename = "converged to rounding")]
+    #[cfg_attr(feature = "files", serde(rename = "converged to rounding"))]
     ConvergedToRounding,
     /// Neither: there is no solution to report.
-    #[serde(rename = "not converged")]
+    #[cfg_attr(feature = "files", serde(rename = "not converged"))]
     NotConverged,
 }
 

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+#[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
 
 use super::NewtonReport;
@@ -80,7 +81,8 @@ pub struct ContactValues {
 }
 
 /// Scalars of a solution, in the units of the case.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 pub struct Quantities {
     /// a(u, u)
     pub energy: f64,
@@ -110,15 +112,16 @@ impl Solution {
     where
         E: ExactEdge<f64, N, M>,
     {
-        let material = &d.problem.material;
         let stress = mean_stresses(d, &u);
+        let with_material =
+            || stress.iter().enumerate().map(|(t, &s)| (d.problem.material.of(t), s));
         Solution {
             degree: E::DEGREE,
             nodes: d.space.nodes().to_vec(),
             elements: d.space.elements().as_flattened().to_vec(),
             nodes_per_triangle: N,
-            von_mises: stress.iter().map(|s| material.von_mises_squared(*s).sqrt()).collect(),
-            stress: stress.into_iter().map(|s| (s, material.stress_zz(s))).collect(),
+            von_mises: with_material().map(|(m, s)| m.von_mises_squared(s).sqrt()).collect(),
+            stress: with_material().map(|(m, s)| (s, m.stress_zz(s))).collect(),
             contact: contact_values(d, &u),
             gamma: GammaReport::new(d),
             newton,
@@ -189,10 +192,11 @@ where
         .map(|(t, (triangle, _))| {
             let barycentric = triangle.barycentric_gradients();
             let nodal = d.space.on_triangle(t, u);
+            let material = d.problem.material.of(t);
             let mut mean = [0.0; 3];
             E::at_stiffness_points(|l, weight| {
                 let gradients = E::gradients(l, barycentric);
-                let s = d.problem.material.stress(displacement_gradient(&nodal, &gradients));
+                let s = material.stress(displacement_gradient(&nodal, &gradients));
                 for (mean, s) in mean.iter_mut().zip(s.components()) {
                     *mean += weight * s;
                 }
@@ -270,8 +274,9 @@ where
     let residual = d.residual(u).values;
     for (boundary, held) in d.constraints.holders() {
         let reaction = q.reactions.entry(boundary.clone()).or_default();
-        for &(node, c) in held {
-            reaction[c] += residual[node][c];
+        for held in held {
+            let part = held.part_of(residual[held.node]);
+            *reaction = [reaction[0] + part[0], reaction[1] + part[1]];
         }
     }
     q

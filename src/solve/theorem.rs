@@ -135,7 +135,7 @@ where
     let nodes = d.space.nodes();
     let neighbours = Neighbours::new(nodes.len(), d.space.elements());
     let order = nested_dissection(nodes, &neighbours, &vec![false; nodes.len()]);
-    let numbering = Numbering::new(&order, d.constraints.values());
+    let numbering = Numbering::under(&order, &d.constraints);
     let factor = Factor::new(&matrix::assemble_stiffness(d, &numbering, &neighbours))?;
     let mut x = numbering.gather(&force);
     factor.forward(&mut x);

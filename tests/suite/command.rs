@@ -21,7 +21,7 @@ probes = [[0.0, 0.0], [0.3, 0.1]]
 "#;
 
 /// A fresh folder with `case.toml` in it, the first text of each edit replaced by the second.
-fn folder(test: &str, edits: &[[&str; 2]]) -> PathBuf {
+pub fn folder(test: &str, edits: &[[&str; 2]]) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("command").join(test);
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).unwrap();
@@ -34,7 +34,7 @@ fn folder(test: &str, edits: &[[&str; 2]]) -> PathBuf {
     folder
 }
 
-fn signorini(folder: &Path, arguments: &[&str]) -> Output {
+pub fn signorini(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_signorini"))
         .args(arguments)
         .current_dir(folder)
@@ -42,12 +42,12 @@ fn signorini(folder: &Path, arguments: &[&str]) -> Output {
         .unwrap()
 }
 
-fn text(bytes: &[u8]) -> &str {
+pub fn text(bytes: &[u8]) -> &str {
     std::str::from_utf8(bytes).unwrap()
 }
 
 /// The names in a folder, sorted.
-fn names(folder: &Path) -> Vec<String> {
+pub fn names(folder: &Path) -> Vec<String> {
     let mut names: Vec<String> = fs::read_dir(folder)
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
@@ -145,17 +145,17 @@ fn wrong_cases_end_with_exit_code_2_and_write_nothing() {
         (
             "free",
             &[["[boundary.top]\ndisplacement = [\"0\", \"0\"]\n", ""]],
-            "case.toml: no displacement is prescribed that stops the translation along (1, 0); expected displacement boundaries that leave no rigid body motion free (contact pushes, it doesn't hold)",
+            "case.toml: no displacement is prescribed that stops the translation along (1, 0): u_x would stop it; nor the translation along (0, 1): u_y would stop it; nor the rotation about (0.5, 0.5): u_x off the line y = 0.5 would stop it, or u_y off x = 0.5; expected displacement boundaries that leave no rigid body motion free (contact pushes, it doesn't hold)",
         ),
         (
             "sliding",
             &[["displacement = [\"0\", \"0\"]", "displacement = [\"free\", \"0\"]"]],
-            "case.toml: no displacement is prescribed that stops the translation along (1, 0); expected displacement boundaries that leave no rigid body motion free (contact pushes, it doesn't hold)",
+            "case.toml: no displacement is prescribed that stops the translation along (1, 0): u_x would stop it; expected displacement boundaries that leave no rigid body motion free (contact pushes, it doesn't hold)",
         ),
         (
             "sliding-up",
             &[["displacement = [\"0\", \"0\"]", "displacement = [\"0\", \"free\"]"]],
-            "case.toml: no displacement is prescribed that stops the translation along (0, 1); expected displacement boundaries that leave no rigid body motion free (contact pushes, it doesn't hold)",
+            "case.toml: no displacement is prescribed that stops the translation along (0, 1): u_y would stop it; nor the rotation about (0.5, 1): u_x off the line y = 1 would stop it, or u_y off x = 0.5; expected displacement boundaries that leave no rigid body motion free (contact pushes, it doesn't hold)",
         ),
         (
             "disagree",

@@ -36,15 +36,12 @@ pub fn skewed_square(n: usize, diagonal: Diagonal) -> Mesh {
 
 /// A block with lambda = mu = 1 on a rigid floor, clamped on top; the body force lifts its right part off.
 pub fn block(mesh: Mesh) -> Problem {
-    Problem {
+    Problem::new(
         mesh,
-        material: Material::lame(1.0, 1.0, Plane::Strain),
-        body_force: [constant(0.0), function(|[x, _]| -4.0 + 10.0 * x)],
-        conditions: conditions([
-            ("top", clamped()),
-            ("bottom", Condition::Contact { gap: constant(0.0) }),
-        ]),
-    }
+        Material::lame(1.0, 1.0, Plane::Strain),
+        [constant(0.0), function(|[x, _]| -4.0 + 10.0 * x)],
+        conditions([("top", clamped()), ("bottom", Condition::Contact { gap: constant(0.0) })]),
+    )
 }
 
 pub fn method(degree: Degree, quadrature: ContactQuadrature) -> Method {

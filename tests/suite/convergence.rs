@@ -305,7 +305,7 @@ fn rebuilt<E, const N: usize, const M: usize>(
             &mesh.triangle(t),
             edge.edge.local,
             edge.normal,
-            &d.problem.material,
+            d.problem.material.of(0),
             edge.gamma,
         );
     }
@@ -383,7 +383,7 @@ fn control_a_stress_with_the_wrong_sign_in_p_costs_p2_its_rate() {
                 &d.space.mesh().triangle(edge.edge.triangle),
                 edge.edge.local,
                 edge.normal,
-                &d.problem.material,
+                d.problem.material.of(0),
                 -edge.gamma,
             );
             edge.functionals.p0 = opposite.p0;

@@ -9,8 +9,11 @@ mod command;
 mod convergence;
 #[cfg(feature = "cli")]
 mod convergence_command;
+mod documents;
 mod exact;
 mod gmsh_live;
 mod method;
 mod patch;
 mod reference;
+#[cfg(feature = "cli")]
+mod set_and_sweep;

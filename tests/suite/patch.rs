@@ -92,17 +92,17 @@ fn problem(patch: &Patch, c: Constants, diagonal: Diagonal) -> Problem {
         move |i: usize| -> Option<BoxedFunction> { Some(function(move |x| u(c, x)[i])) };
     let side = |sign: f64| Condition::Traction((patch.right)(c).map(|t| constant(sign * t)));
     let gap = patch.gap;
-    Problem {
-        mesh: skewed_square(6, diagonal),
-        material: Material::lame(c.lambda, c.mu, Plane::Strain),
-        body_force: [constant(0.0), constant(0.0)],
-        conditions: conditions([
+    Problem::new(
+        skewed_square(6, diagonal),
+        Material::lame(c.lambda, c.mu, Plane::Strain),
+        [constant(0.0), constant(0.0)],
+        conditions([
             ("top", Condition::Displacement([component(0), component(1)])),
             ("left", side(-1.0)),
             ("right", side(1.0)),
             ("bottom", Condition::Contact { gap: function(gap) }),
         ]),
-    }
+    )
 }
 
 /// The bound of the patch tests: displacements of size 0.1 and stresses of size 1 through some 100 unknowns, each a sum of
@@ -151,7 +151,7 @@ fn patches_are_reproduced_to_rounding_on_skewed_meshes() {
 fn control_a_patch_with_the_wrong_modulus_is_not_reproduced() {
     let c = constants(MATERIALS[1]);
     let mut problem = problem(&PATCHES[0], c, Diagonal::Right);
-    problem.material = Material::lame(c.lambda, c.mu * 1.001, Plane::Strain);
+    problem.material = Material::lame(c.lambda, c.mu * 1.001, Plane::Strain).into();
     let (s, _) = solve(&problem, &method(Degree::One, EXACT), &Default::default()).unwrap();
     assert!(largest_error(&PATCHES[0], c, &s) > 1e6 * BOUND);
 }

@@ -350,12 +350,8 @@ impl Draw {
             let traction = self.tractions().map(|t| -> BoxedFunction { Box::new(t) });
             conditions.insert(name.to_owned(), Condition::Traction(traction));
         }
-        Problem {
-            mesh,
-            material: Material::lame(self.lambda, self.mu, plane),
-            body_force: [boxed(self.data[0]), boxed(self.data[1])],
-            conditions,
-        }
+        let material = Material::lame(self.lambda, self.mu, plane);
+        Problem::new(mesh, material, [boxed(self.data[0]), boxed(self.data[1])], conditions)
     }
 
     fn rule(&self) -> EdgeRule {

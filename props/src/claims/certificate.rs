@@ -182,15 +182,15 @@ impl Draw {
         let [g0, g1] = self.gap;
         let gap: BoxedFunction = Box::new(move |[x, _]: [f64; 2]| g0 + g1 * x);
         let push = [constant(0.0), constant(-self.push)];
-        Ok(Problem {
-            mesh: self.mesh()?,
-            material: Material::lame(self.lambda, 1.0, self.plane),
-            body_force: self.load.map(constant),
-            conditions: BTreeMap::from([
+        Ok(Problem::new(
+            self.mesh()?,
+            Material::lame(self.lambda, 1.0, self.plane),
+            self.load.map(constant),
+            BTreeMap::from([
                 ("top".to_owned(), Condition::Displacement(push.map(Some))),
                 ("bottom".to_owned(), Condition::Contact { gap }),
             ]),
-        })
+        ))
     }
 }
 

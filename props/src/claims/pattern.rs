@@ -756,12 +756,8 @@ mod row {
             ("top".to_owned(), Condition::Displacement([Some(zero()), Some(zero())])),
             ("bottom".to_owned(), Condition::Contact { gap: zero() }),
         ]);
-        Problem {
-            mesh: mesh.expect("a mesh"),
-            material: Material::lame(1.3, 0.7, Plane::Strain),
-            body_force: [zero(), zero()],
-            conditions,
-        }
+        let material = Material::lame(1.3, 0.7, Plane::Strain);
+        Problem::new(mesh.expect("a mesh"), material, [zero(), zero()], conditions)
     }
 
     /// The data of a mesh with a random order and random constraints.
@@ -808,7 +804,7 @@ mod row {
             }
         };
         for (triangle, nodes) in d.space.triangles() {
-            let k = stiffness::<E, f64, N, M>(&triangle, &problem.material);
+            let k = stiffness::<E, f64, N, M>(&triangle, problem.material.of(0));
             add(nodes, &|i, j| k[i][j]);
         }
         for edge in &d.contact {

@@ -101,15 +101,8 @@ pub fn body_force(solution: &Exact) -> [BoxedFunction; 2] {
 
 /// The problem that `solution` solves on a mesh of its body.
 pub fn problem(solution: &Exact, mesh: Mesh, kinds: &BTreeMap<String, Kind>) -> Problem {
-    Problem {
-        mesh,
-        material: *solution.material(),
-        body_force: body_force(solution),
-        conditions: kinds
-            .iter()
-            .map(|(name, kind)| (name.clone(), kind.condition(solution)))
-            .collect(),
-    }
+    let conditions = kinds.iter().map(|(name, kind)| (name.clone(), kind.condition(solution)));
+    Problem::new(mesh, *solution.material(), body_force(solution), conditions.collect())
 }
 
 /// One number of an exact solution as a function of the place.

@@ -1,0 +1,112 @@
+//! What the command can be asked to do. The help, the manual page and what a shell completes are all made from this.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
+use clap_complete::Shell;
+use signorini::io::sweep::Axis;
+
+/// Unilateral (Signorini) contact in linear elasticity by Nitsche's method.
+#[derive(Parser)]
+#[command(name = "signorini", version, arg_required_else_help = true, after_help = EXIT_CODES)]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub task: Task,
+    /// Print nothing but errors
+    #[arg(long, global = true)]
+    pub quiet: bool,
+}
+
+const EXIT_CODES: &str = "Exit codes: 0 solved; 1 could not solve, or could not write; 2 the case is wrong, and then nothing \
+                          is written.";
+
+#[derive(Subcommand)]
+pub enum Task {
+    /// Solve a case; write solution.vtu, contact.vtu, contact.csv, picture.svg and result.json
+    Solve {
+        #[command(flatten)]
+        case: CaseArguments,
+        /// The folder to write to [default: out/ and the name of the case]
+        #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+        out: Option<PathBuf>,
+        /// Print result.json instead of the summary; write no files unless --out names a folder
+        #[arg(long)]
+        json: bool,
+        /// Who solves: this program, or the reference in FEniCSx, which runs on many processes
+        #[arg(long, value_enum, default_value_t = Engine::Signorini)]
+        engine: Engine,
+        /// MPI processes for --engine fenicsx [default: 1]
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+        ranks: Option<u16>,
+    },
+    /// Read a case and report its sizes and the limit of gamma0; solve nothing, write nothing
+    Check {
+        #[command(flatten)]
+        case: CaseArguments,
+    },
+    /// Solve a case for every combination of values of some keys; print a table and write it to sweep.csv
+    Sweep {
+        /// The case file (TOML), or - for standard input
+        #[arg(value_hint = ValueHint::FilePath)]
+        case: PathBuf,
+        /// A key of the case file and its values, such as method.gamma0=1e-3,1e-2; may be repeated
+        #[arg(long = "set", value_name = "KEY=VALUE,VALUE,...", required = true)]
+        axes: Vec<Axis>,
+        /// Write the files of each run, too, into folders 1, 2, ...
+        #[arg(long)]
+        files: bool,
+        /// The folder to write to [default: out/ and the name of the case]
+        #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+        out: Option<PathBuf>,
+    },
+    /// Solve a case with an exact solution on finer and finer meshes; write convergence.csv and convergence.svg
+    Convergence {
+        #[command(flatten)]
+        case: CaseArguments,
+        /// How many meshes, each with twice as many cells along each axis as the one before; the first is the case's
+        #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u8).range(1..=12))]
+        levels: u8,
+        /// Polynomial degrees, such as 1,2 [default: that of the case]
+        #[arg(long, value_delimiter = ',', value_parser = clap::value_parser!(u8).range(1..=2))]
+        degree: Vec<u8>,
+        /// Structured or perturbed meshes, or both: structured,perturbed [default: those of the case]
+        #[arg(long, value_enum, value_delimiter = ',')]
+        mesh: Vec<Mesh>,
+        /// The folder to write to [default: out/ and the name of the case]
+        #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+        out: Option<PathBuf>,
+    },
+    /// Print what a shell needs to complete this command
+    Completions {
+        /// The shell
+        shell: Shell,
+    },
+    /// Print the manual page of this command, or of one of its tasks, in the format of man(1)
+    Man {
+        /// The task, such as solve
+        task: Option<String>,
+    },
+}
+
+/// A case file and what is set over it.
+#[derive(Args)]
+pub struct CaseArguments {
+    /// The case file (TOML), or - for standard input
+    #[arg(value_name = "CASE", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// Set a key of the case file, such as method.gamma0=1e-3; may be repeated
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub settings: Vec<String>,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum Mesh {
+    Structured,
+    Perturbed,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Engine {
+    Signorini,
+    Fenicsx,
+}

@@ -1,0 +1,62 @@
+//! Problems put together in code: a body, then what acts on it and what holds it, one after the other. Functions of the
+//! place are closures; a [`Function`](super::Function) that knows more of itself goes into the fields.
+
+use std::collections::BTreeMap;
+
+use super::materials::Materials;
+use super::mesh::Mesh;
+use super::problem::{BoxedFunction, Condition, Problem};
+
+fn zero() -> BoxedFunction {
+    Box::new(|_| 0.0)
+}
+
+impl Condition {
+    /// No displacement.
+    pub fn clamped() -> Self {
+        Condition::Displacement([Some(zero()), Some(zero())])
+    }
+
+    /// The displacement with these components.
+    pub fn displacement(
+        x: impl Fn([f64; 2]) -> f64 + Send + Sync + 'static,
+        y: impl Fn([f64; 2]) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        Condition::Displacement([Some(Box::new(x)), Some(Box::new(y))])
+    }
+
+    /// The traction (a stress) with these components.
+    pub fn traction(
+        x: impl Fn([f64; 2]) -> f64 + Send + Sync + 'static,
+        y: impl Fn([f64; 2]) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        Condition::Traction([Box::new(x), Box::new(y)])
+    }
+
+    /// Contact at this initial gap (a length along the outward normal).
+    pub fn contact(gap: impl Fn([f64; 2]) -> f64 + Send + Sync + 'static) -> Self {
+        Condition::Contact { gap: Box::new(gap) }
+    }
+}
+
+impl Problem {
+    /// A body on which nothing acts yet.
+    pub fn of(mesh: Mesh, material: impl Into<Materials>) -> Self {
+        Problem::new(mesh, material, [zero(), zero()], BTreeMap::new())
+    }
+
+    /// The same with this force per unit of area.
+    pub fn with_body_force(
+        self,
+        x: impl Fn([f64; 2]) -> f64 + Send + Sync + 'static,
+        y: impl Fn([f64; 2]) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        Problem { body_force: [Box::new(x), Box::new(y)], ..self }
+    }
+
+    /// The same with this condition on a named part of the boundary, in place of what held there.
+    pub fn with(mut self, boundary: impl Into<String>, condition: Condition) -> Self {
+        self.conditions.insert(boundary.into(), condition);
+        self
+    }
+}

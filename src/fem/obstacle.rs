@@ -1,0 +1,234 @@
+//! Rigid obstacles as geometry. Where the body is at x, the obstacle's closest point lies at the distance g = phi(x) in the
+//! direction n~ = -grad phi(x), with the signed distance phi from the obstacle, positive on the body's side: g is the gap
+//! and n~ the direction of contact.
+//!
+//! | obstacle | phi | n~ |
+//! | --- | --- | --- |
+//! | plane through p, unit normal m towards the body | (x - p) . m | -m |
+//! | circle of radius R around c, the body outside | \|x - c\| - R | -(x - c)/\|x - c\| |
+//! | the same, the body inside | R - \|x - c\| | (x - c)/\|x - c\| |
+//! | a distance by its expression | phi(x) | -grad phi(x) |
+//!
+//! phi is a distance only where \|grad phi\| = 1. An expression whose gradient is off by more than [`MOST_OFF`] at a node
+//! is refused; within it phi / \|grad phi\| is taken, which has the same zeros and is the distance to first order.
+
+use std::fmt;
+use std::sync::Arc;
+
+use super::problem::{DataError, Function, finite};
+
+/// The length of grad phi may be off 1 by this much.
+pub const MOST_OFF: f64 = 0.1;
+
+/// A rigid obstacle.
+#[derive(Clone)]
+pub enum Obstacle {
+    /// The half plane behind a straight line.
+    Plane {
+        /// A point of the line.
+        point: [f64; 2],
+        /// The unit normal, out of the obstacle, towards the body.
+        normal: [f64; 2],
+    },
+    /// A disk that the body lies outside of (a pin), or a hole that it lies in (a bearing).
+    Circle {
+        /// c
+        center: [f64; 2],
+        /// R
+        radius: f64,
+        /// Where the body is.
+        side: Side,
+    },
+    /// The set where a signed distance is negative.
+    Distance(Arc<dyn Distance>),
+}
+
+/// On which side of a circle the body is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// The obstacle is the disk.
+    Outside,
+    /// The obstacle is all but the disk.
+    Inside,
+}
+
+/// A signed distance with its gradient.
+pub trait Distance: Function {
+    /// grad phi at `x`.
+    fn gradient(&self, x: [f64; 2]) -> [f64; 2];
+}
+
+impl fmt::Debug for Obstacle {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Obstacle::Plane { point, normal } => write!(f, "plane at {point:?}, normal {normal:?}"),
+            Obstacle::Circle { center, radius, side } => {
+                write!(f, "circle around {center:?}, radius {radius}, body {side:?}")
+            }
+            Obstacle::Distance(_) => write!(f, "distance"),
+        }
+    }
+}
+
+/// What a point of the body sees of an obstacle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Closest {
+    /// g: negative where the obstacle reaches into the body.
+    pub gap: f64,
+    /// n~, a unit vector from the body towards the obstacle.
+    pub direction: [f64; 2],
+}
+
+impl Obstacle {
+    /// Gap and direction at `x`; messages call the obstacle `what()`.
+    ///
+    /// # Errors
+    /// A distance without a value there, or with a gradient that is none of a distance; the centre of a circle, which has
+    /// no closest point.
+    pub fn closest(&self, x: [f64; 2], what: impl Fn() -> String) -> Result<Closest, DataError> {
+        let no_distance = |length: f64| DataError::NoDistance {
+            what: what(),
+            length,
+            x: x[0],
+            y: x[1],
+            least: 1.0 - MOST_OFF,
+            most: 1.0 + MOST_OFF,
+        };
+        match self {
+            Obstacle::Plane { point, normal } => Ok(Closest {
+                gap: (x[0] - point[0]) * normal[0] + (x[1] - point[1]) * normal[1],
+                direction: normal.map(|c| 0.0 - c),
+            }),
+            Obstacle::Circle { center, radius, side } => {
+                let out = [x[0] - center[0], x[1] - center[1]];
+                let distance = out[0].hypot(out[1]);
+                if distance == 0.0 {
+                    return Err(no_distance(0.0));
+                }
+                let out = out.map(|c| c / distance);
+                Ok(match side {
+                    Side::Outside => {
+                        Closest { gap: distance - radius, direction: out.map(|c| 0.0 - c) }
+                    }
+                    Side::Inside => Closest { gap: radius - distance, direction: out },
+                })
+            }
+            Obstacle::Distance(distance) => {
+                let value = finite(&**distance, x, &what)?;
+                let [a, b] = distance.gradient(x);
+                let length = a.hypot(b);
+                if (length - 1.0).abs() <= MOST_OFF {
+                    Ok(Closest {
+                        gap: value / length,
+                        direction: [0.0 - a / length, 0.0 - b / length],
+                    })
+                } else {
+                    Err(no_distance(length))
+                }
+            }
+        }
+    }
+
+    /// The same obstacle with all lengths multiplied by `factor` > 0.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Obstacle {
+        match self {
+            Obstacle::Plane { point, normal } => {
+                Obstacle::Plane { point: point.map(|c| factor * c), normal: *normal }
+            }
+            Obstacle::Circle { center, radius, side } => Obstacle::Circle {
+                center: center.map(|c| factor * c),
+                radius: factor * radius,
+                side: *side,
+            },
+            Obstacle::Distance(distance) => {
+                Obstacle::Distance(Arc::new(Scaled { distance: Arc::clone(distance), factor }))
+            }
+        }
+    }
+}
+
+/// factor phi(x / factor)
+struct Scaled {
+    distance: Arc<dyn Distance>,
+    factor: f64,
+}
+
+impl Function for Scaled {
+    fn at(&self, x: [f64; 2]) -> f64 {
+        self.factor * self.distance.at(x.map(|c| c / self.factor))
+    }
+}
+
+impl Distance for Scaled {
+    fn gradient(&self, x: [f64; 2]) -> [f64; 2] {
+        self.distance.gradient(x.map(|c| c / self.factor))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The circle of radius 2 around (1, 0) as a distance, times a factor.
+    struct Around(f64);
+
+    impl Function for Around {
+        fn at(&self, [x, y]: [f64; 2]) -> f64 {
+            self.0 * ((x - 1.0).hypot(y) - 2.0)
+        }
+    }
+
+    impl Distance for Around {
+        fn gradient(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+            let r = (x - 1.0).hypot(y);
+            [self.0 * (x - 1.0) / r, self.0 * y / r]
+        }
+    }
+
+    fn at(obstacle: &Obstacle, x: [f64; 2]) -> Closest {
+        obstacle.closest(x, || "floor".to_owned()).unwrap()
+    }
+
+    fn circle(side: Side) -> Obstacle {
+        Obstacle::Circle { center: [1.0, 0.0], radius: 2.0, side }
+    }
+
+    #[test]
+    fn the_gap_is_the_distance_and_the_direction_leads_to_the_closest_point() {
+        let floor = Obstacle::Plane { point: [0.0, 1.0], normal: [0.0, 1.0] };
+        assert_eq!(at(&floor, [3.0, 1.5]), Closest { gap: 0.5, direction: [0.0, -1.0] });
+        let pin = at(&circle(Side::Outside), [4.0, 4.0]);
+        assert_eq!(pin, Closest { gap: 3.0, direction: [-0.6, -0.8] });
+        let bearing = at(&circle(Side::Inside), [2.2, 1.6]);
+        assert!((bearing.gap - 0.0).abs() < 1e-15);
+        assert!((bearing.direction[0] - 0.6).abs() + (bearing.direction[1] - 0.8).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_circle_as_a_distance_is_the_circle_even_if_its_gradient_is_a_little_off() {
+        for factor in [1.0, 0.95, 1.05] {
+            let pin = at(&Obstacle::Distance(Arc::new(Around(factor))), [4.0, 4.0]);
+            assert!((pin.gap - 3.0).abs() < 1e-15, "{pin:?}");
+            assert!((pin.direction[0] + 0.6).abs() + (pin.direction[1] + 0.8).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn what_is_no_distance_is_refused_and_so_is_the_centre_of_a_circle() {
+        let twice = Obstacle::Distance(Arc::new(Around(2.0)));
+        for (obstacle, x) in [(twice, [4.0, 4.0]), (circle(Side::Outside), [1.0, 0.0])] {
+            let error = obstacle.closest(x, || "[obstacle.cam] distance".to_owned()).unwrap_err();
+            assert!(error.to_string().contains("expected a distance"), "{error}");
+        }
+    }
+
+    #[test]
+    fn scaling_multiplies_the_gap_and_keeps_the_direction() {
+        let floor = Obstacle::Plane { point: [0.0, 1.0], normal: [0.0, 1.0] };
+        for o in [floor, circle(Side::Outside), Obstacle::Distance(Arc::new(Around(1.0)))] {
+            let (one, four) = (at(&o, [4.0, 4.0]), at(&o.scaled(4.0), [16.0, 16.0]));
+            assert_eq!((4.0 * one.gap, one.direction), (four.gap, four.direction));
+        }
+    }
+}

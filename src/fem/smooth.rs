@@ -1,0 +1,255 @@
+//! The smooth boundary behind the facets of a mesh: a normal at each end of each boundary edge, and the cubic curve between
+//! them.
+//!
+//! Facet normals jump at the vertices of a curved boundary, u_n jumps with them, and the jump, divided by gamma, does not
+//! tend to 0 with h. So the normal belongs to the vertex:
+//!
+//! | at a vertex where | the normals of its two edges there are |
+//! | --- | --- |
+//! | the boundary is straight | those of the facets |
+//! | it bends by less than [`SMOOTH`] | one: the mean of the facets' normals weighted by the inverse lengths, exact on circles |
+//! | likewise, one of the two edges goes on straight | one: that of the straight edge, exact where an arc starts |
+//! | two straight sides meet, or it bends by more: a corner | one for each side: the other end's, mirrored on the facet (exact on circles), or the facet's where that side is straight |
+//!
+//! The curve through the ends a, b with the tangents t there (the normals turned left) is the cubic Hermite curve with
+//! derivatives m t, m = 2 |b - a| / (1 + cos(theta/2)), theta being the angle between the normals: its middle lies on the
+//! circle if there is one. Only the middle is needed, (a + b)/2 + (m/8) (t_a - t_b): it is where P2 has a node.
+
+use std::collections::BTreeMap;
+
+use super::mesh::{BoundaryEdge, Mesh};
+
+/// A bend of more degrees is a corner.
+pub const SMOOTH: f64 = 40.0;
+
+/// A bend of less, in radians, is none: a hundred thousand rounding errors of a facet a thousandth of the body long.
+const STRAIGHT: f64 = 1e-8;
+
+/// The normals at the ends of the boundary's edges.
+#[derive(Clone, Debug)]
+pub struct SmoothBoundary {
+    /// By triangle and local edge; an edge that is not listed has its facet's normal all along.
+    normals: BTreeMap<(usize, usize), [[f64; 2]; 2]>,
+}
+
+/// A point of the smooth boundary.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SmoothPoint {
+    /// The place.
+    pub place: [f64; 2],
+    /// The unit outward normal there.
+    pub normal: [f64; 2],
+}
+
+/// The edges before and after a vertex of the outline, by their places in it.
+#[derive(Clone, Copy, Default)]
+struct Around {
+    before: Option<usize>,
+    after: Option<usize>,
+    /// More than one edge ends or starts here: parts of the body touch in a point.
+    several: bool,
+}
+
+/// How the outline passes a vertex: the edge before, the edge after and the angle by which it turns left.
+struct Passage {
+    before: usize,
+    after: usize,
+    bend: f64,
+}
+
+impl SmoothBoundary {
+    /// Of the whole boundary of a mesh.
+    pub fn new(mesh: &Mesh) -> Self {
+        let outline = mesh.outline();
+        let facet = |&edge| {
+            let (length, normal) = mesh.length_and_normal(edge);
+            (length, normal.into())
+        };
+        let facets: Vec<(f64, [f64; 2])> = outline.iter().map(facet).collect();
+        let mut around: BTreeMap<usize, Around> = BTreeMap::new();
+        for (e, &edge) in outline.iter().enumerate() {
+            let [start, end] = mesh.ends(edge);
+            let at_start = around.entry(start).or_default();
+            at_start.several |= at_start.after.replace(e).is_some();
+            let at_end = around.entry(end).or_default();
+            at_end.several |= at_end.before.replace(e).is_some();
+        }
+        let passage = |vertex: usize| -> Option<Passage> {
+            let Around { before: Some(before), after: Some(after), several: false } =
+                *around.get(&vertex)?
+            else {
+                return None;
+            };
+            let (n, m) = (facets[before].1, facets[after].1);
+            let bend = (n[0] * m[1] - n[1] * m[0]).atan2(n[0] * m[0] + n[1] * m[1]);
+            Some(Passage { before, after, bend })
+        };
+        let bend_at = |vertex: usize| passage(vertex).map_or(f64::INFINITY, |p| p.bend);
+
+        // The normal that both edges share at a vertex, where they share one.
+        let mut shared: BTreeMap<usize, [f64; 2]> = BTreeMap::new();
+        for &vertex in around.keys() {
+            let Some(Passage { before, after, bend }) = passage(vertex) else { continue };
+            if bend.abs() <= STRAIGHT || bend.abs() > SMOOTH.to_radians() {
+                continue;
+            }
+            let [previous, _] = mesh.ends(outline[before]);
+            let [_, next] = mesh.ends(outline[after]);
+            let (behind, ahead) = (bend_at(previous), bend_at(next));
+            let arc_starts = |beyond: f64| beyond * bend > 0.0 && bend.abs() <= beyond.abs();
+            let ((a, n), (b, m)) = (facets[before], facets[after]);
+            let normal = match (behind.abs() <= STRAIGHT, ahead.abs() <= STRAIGHT) {
+                (true, true) => None,
+                (true, false) => arc_starts(ahead).then_some(n),
+                (false, true) => arc_starts(behind).then_some(m),
+                (false, false) => {
+                    let mean = [0, 1].map(|c| n[c] / a + m[c] / b);
+                    Some(unit(mean))
+                }
+            };
+            shared.extend(normal.map(|normal| (vertex, normal)));
+        }
+
+        let mut normals = BTreeMap::new();
+        for (e, &edge) in outline.iter().enumerate() {
+            let facet = facets[e].1;
+            let ends = mesh.ends(edge);
+            let own = ends.map(|vertex| shared.get(&vertex).copied());
+            let straight = |vertex: usize| bend_at(vertex).abs() <= STRAIGHT;
+            let both = match own {
+                [Some(start), Some(end)] => [start, end],
+                [Some(start), None] if straight(ends[1]) => [start, facet],
+                [None, Some(end)] if straight(ends[0]) => [facet, end],
+                [Some(start), None] => [start, mirrored(start, facet)],
+                [None, Some(end)] => [mirrored(end, facet), end],
+                [None, None] => continue,
+            };
+            normals.insert((edge.triangle, edge.local), both);
+        }
+        SmoothBoundary { normals }
+    }
+
+    /// The normals at the start and at the end of an edge, if they are not both its facet's.
+    pub fn at_ends(&self, edge: BoundaryEdge) -> Option<[[f64; 2]; 2]> {
+        self.normals.get(&(edge.triangle, edge.local)).copied()
+    }
+
+    /// Start, end and middle of the smooth boundary along an edge, if it is not straight there.
+    pub fn along(&self, mesh: &Mesh, edge: BoundaryEdge) -> Option<[SmoothPoint; 3]> {
+        let [n, m] = self.at_ends(edge)?;
+        let [a, b] = mesh.ends(edge).map(|v| mesh.vertices()[v]);
+        let chord = [b[0] - a[0], b[1] - a[1]];
+        let half = ((1.0 + n[0] * m[0] + n[1] * m[1]) / 2.0).max(0.0).sqrt();
+        let speed = 2.0 * chord[0].hypot(chord[1]) / (1.0 + half);
+        let ([t0, t1], [s0, s1]) = ([-n[1], n[0]], [-m[1], m[0]]);
+        let middle = [
+            (a[0] + b[0]) / 2.0 + speed / 8.0 * (t0 - s0),
+            (a[1] + b[1]) / 2.0 + speed / 8.0 * (t1 - s1),
+        ];
+        // The derivative of the curve there.
+        let tangent =
+            [1.5 * chord[0] - speed / 4.0 * (t0 + s0), 1.5 * chord[1] - speed / 4.0 * (t1 + s1)];
+        let normal = unit([tangent[1], -tangent[0]]);
+        Some([
+            SmoothPoint { place: a, normal: n },
+            SmoothPoint { place: b, normal: m },
+            SmoothPoint { place: middle, normal },
+        ])
+    }
+}
+
+fn unit([x, y]: [f64; 2]) -> [f64; 2] {
+    let length = x.hypot(y);
+    [x / length, y / length]
+}
+
+/// The normal at the other end of an arc of a circle whose chord has the normal `facet`.
+fn mirrored(normal: [f64; 2], facet: [f64; 2]) -> [f64; 2] {
+    let along = 2.0 * (normal[0] * facet[0] + normal[1] * facet[1]);
+    unit([0, 1].map(|c| along * facet[c] - normal[c]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A fan of triangles around the origin with these vertices in counter-clockwise order, the last one joined to the
+    /// first if the fan is closed.
+    fn fan(rim: &[[f64; 2]], closed: bool) -> Mesh {
+        let mut vertices = vec![[0.0, 0.0]];
+        vertices.extend(rim);
+        let count = rim.len();
+        let last = if closed { count } else { count - 1 };
+        let triangles = (0..last).map(|i| [0, 1 + i, 1 + (i + 1) % count]).collect();
+        Mesh::new(vertices, triangles, []).unwrap()
+    }
+
+    fn on_circle(angles: &[f64]) -> Vec<[f64; 2]> {
+        angles.iter().map(|a| [2.0 * a.cos(), 2.0 * a.sin()]).collect()
+    }
+
+    /// Distances of normals and middles from those of the circle of radius 2.
+    fn errors(mesh: &Mesh) -> Vec<[f64; 2]> {
+        let smooth = SmoothBoundary::new(mesh);
+        let rim = |e: &&BoundaryEdge| !mesh.ends(**e).contains(&0);
+        let points =
+            mesh.outline().iter().filter(rim).flat_map(|&e| smooth.along(mesh, e).unwrap());
+        points
+            .map(|p| {
+                let off = |c: usize| p.normal[c] - p.place[c] / p.place[0].hypot(p.place[1]);
+                [off(0).hypot(off(1)), (p.place[0].hypot(p.place[1]) - 2.0).abs()]
+            })
+            .collect()
+    }
+
+    #[test]
+    fn on_a_circle_with_unequal_facets_normals_and_middles_are_exact() {
+        let angles = [0.1, 0.3, 0.45, 0.9, 1.4, 1.6, 2.2, 2.8, 3.3, 3.9, 4.1, 4.7, 5.2, 5.6, 6.0];
+        for error in errors(&fan(&on_circle(&angles), true)) {
+            assert!(error[0] < 1e-14 && error[1] < 1e-14, "{error:?}");
+        }
+    }
+
+    #[test]
+    fn an_arc_between_corners_has_its_own_normals_at_its_ends() {
+        for error in errors(&fan(&on_circle(&[0.0, 0.3, 0.5, 0.9, 1.5]), false)) {
+            assert!(error[0] < 1e-14 && error[1] < 1e-14, "{error:?}");
+        }
+    }
+
+    #[test]
+    fn control_weights_by_length_are_not_exact_on_unequal_facets() {
+        let [a, b, c] = [0.0_f64, 0.3, 0.5].map(|t| [2.0 * t.cos(), 2.0 * t.sin()]);
+        // Turned facets weighted by their lengths add up to the chord from a to c.
+        let n = unit([c[1] - a[1], a[0] - c[0]]);
+        assert!((n[0] - b[0] / 2.0).hypot(n[1] - b[1] / 2.0) > 0.04);
+    }
+
+    #[test]
+    fn straight_sides_keep_the_normals_of_their_facets_and_so_do_shallow_corners_between_them() {
+        // The side from (4, -1) to (4, 1) and on to (3.5, 3): a bend of 14 degrees.
+        let rim = [[4.0, -1.0], [4.0, 0.0], [4.0, 1.0], [3.75, 2.0], [3.5, 3.0]];
+        let mesh = fan(&rim, false);
+        let smooth = SmoothBoundary::new(&mesh);
+        assert!(mesh.outline().iter().all(|&e| smooth.at_ends(e).is_none()));
+    }
+
+    #[test]
+    fn where_a_straight_side_goes_over_into_an_arc_its_normal_is_that_of_the_side() {
+        // x = 2 up to y = 0, then the circle of radius 2 around the origin.
+        let mut rim = vec![[2.0, -1.0], [2.0, -0.5]];
+        rim.extend(on_circle(&[0.0, 0.2, 0.4, 0.6]));
+        let mesh = fan(&rim, false);
+        let smooth = SmoothBoundary::new(&mesh);
+        let of = |start: usize| {
+            let edge = mesh.outline().iter().find(|&&e| mesh.ends(e) == [start, start + 1]);
+            smooth.at_ends(*edge.unwrap())
+        };
+        assert_eq!(of(1), None);
+        let [start, end] = of(2).unwrap();
+        assert!(start == [1.0, 0.0] && end == [1.0, 0.0], "{start:?} {end:?}");
+        let [start, end] = of(3).unwrap();
+        assert_eq!(start, [1.0, 0.0]);
+        assert!((end[0] - 0.2_f64.cos()).hypot(end[1] - 0.2_f64.sin()) < 1e-14);
+    }
+}

@@ -1,0 +1,89 @@
+//! Keys set over a case file, as by the option `--set`: `method.gamma0=1e-3`, `material.young=2`,
+//! `boundary.bottom.contact.gap="0.1*x"`.
+//!
+//! A setting is a line of TOML, so its value has the type that it has in the file; only a bare word needs no quotes
+//! (`method.gamma0=auto`). A table is laid over the one that is there, anything else takes its place, and a later setting
+//! wins over an earlier one. The reader of the case then cannot tell a setting from the file, but where a mistake is.
+
+use toml::de::{DeTable, DeValue};
+
+use super::case::{CaseError, CaseMistake, no_toml};
+use super::table::Source;
+
+/// The settings as TOML, each behind so much space that a place in it is a place in no other, nor in the file.
+pub fn layers(source: &Source) -> Vec<String> {
+    let mut start = source.text.len();
+    let mut layers = Vec::with_capacity(source.settings.len());
+    for setting in source.settings {
+        start += 1;
+        layers.push(format!("{:start$}{}", "", with_quotes(setting)));
+        start += setting.len();
+    }
+    layers
+}
+
+/// The setting in which the byte `start` lies, if it lies behind the file.
+pub fn setting_at<'s>(source: &Source<'s>, start: usize) -> Option<&'s str> {
+    let mut end = source.text.len();
+    source.settings.iter().map(String::as_str).find(|setting| {
+        let begin = end;
+        end += 1 + setting.len();
+        // A word in quotes that it was given without reaches two bytes further; no key or value begins there.
+        begin < start && start <= end
+    })
+}
+
+/// Lays the settings over the file's entries.
+///
+/// # Errors
+/// A setting that is not of the form KEY=VALUE in TOML.
+pub fn lay<'s>(
+    source: Source<'s>,
+    layers: &'s [String],
+    entries: &mut DeTable<'s>,
+) -> Result<(), CaseError> {
+    for (setting, layer) in source.settings.iter().zip(layers) {
+        let start = Some(layer.len() - layer.trim_start().len());
+        let no_setting = || source.wrong(start, CaseMistake::NoSetting);
+        if !setting.contains('=') {
+            return Err(no_setting());
+        }
+        let table = DeTable::parse(layer)
+            .map_err(|e| source.wrong(start, no_toml(&e, layer)))?
+            .into_inner();
+        if table.is_empty() {
+            return Err(no_setting());
+        }
+        merge(entries, table);
+    }
+    Ok(())
+}
+
+fn merge<'s>(below: &mut DeTable<'s>, above: DeTable<'s>) {
+    for (key, mut value) in above {
+        if let (Some(old), DeValue::Table(new)) = (below.get_mut(&**key.get_ref()), value.get_mut())
+            && let DeValue::Table(old) = old.get_mut()
+        {
+            merge(old, std::mem::take(new));
+        } else {
+            // With the key, so that the place is the new one.
+            below.remove(&**key.get_ref());
+            below.insert(key, value);
+        }
+    }
+}
+
+/// The setting, its value in quotes if that is a bare word.
+fn with_quotes(setting: &str) -> String {
+    match setting.split_once('=') {
+        Some((key, value)) if is_word(value) => format!("{key}=\"{value}\""),
+        _ => setting.to_owned(),
+    }
+}
+
+/// Whether this is a word that TOML has no other meaning for.
+fn is_word(text: &str) -> bool {
+    text.starts_with(|c: char| c.is_ascii_alphabetic())
+        && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')
+        && !["true", "false", "inf", "nan"].contains(&text)
+}

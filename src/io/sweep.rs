@@ -1,0 +1,347 @@
+//! The command `signorini sweep`: one case, solved for every combination of the values that some of its keys are given, as
+//! a table for people and as CSV.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+use std::time::Duration;
+
+use thiserror::Error;
+use toml::de::{DeTable, DeValue};
+
+use super::case::{Case, CaseError};
+use super::files::{Output, WriteError};
+use super::numbers::short;
+use super::outputs::{self, OutputError};
+use super::result::{Results, Seconds};
+use crate::solve::{self, SolveError, Status};
+
+/// More runs than this are a mistake of the person who asks for them.
+pub const MOST_RUNS: usize = 10_000;
+
+/// A key of the case file and the values that it takes, such as `method.gamma0=1e-3,1e-2`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Axis {
+    /// The key with its dots.
+    pub key: String,
+    /// The values as TOML has them; at least one.
+    pub values: Vec<String>,
+}
+
+/// Why a text is no [`Axis`].
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("expected KEY=VALUE,VALUE,..., such as method.gamma0=1e-3,1e-2")]
+pub struct NoAxis;
+
+impl FromStr for Axis {
+    type Err = NoAxis;
+
+    fn from_str(text: &str) -> Result<Axis, NoAxis> {
+        let (key, values) = text.split_once('=').ok_or(NoAxis)?;
+        // Commas inside texts, lists and tables separate nothing; bare words are no TOML, and have no commas.
+        let values = items(values)
+            .unwrap_or_else(|| values.split(',').map(|value| value.trim().to_owned()).collect());
+        if key.trim().is_empty() || values.is_empty() || values.iter().any(String::is_empty) {
+            return Err(NoAxis);
+        }
+        Ok(Axis { key: key.trim().to_owned(), values })
+    }
+}
+
+/// The texts of the items of a TOML list, without its brackets.
+fn items(list: &str) -> Option<Vec<String>> {
+    let line = format!("list = [{list}]");
+    let table = DeTable::parse(&line).ok()?;
+    match table.get_ref().get("list")?.get_ref() {
+        DeValue::Array(items) => {
+            items.iter().map(|item| Some(line.get(item.span())?.to_owned())).collect()
+        }
+        _ => None,
+    }
+}
+
+/// What a run gives: the quantities of the solution, or why there is none.
+pub type Outcome = Result<Results, NoResult>;
+
+/// One solve of a sweep.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// The value on each axis.
+    pub values: Vec<String>,
+    /// What came out.
+    pub outcome: Outcome,
+}
+
+/// Why a run has no result.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[expect(missing_docs, reason = "the message of each variant says what it is")]
+pub enum NoResult {
+    #[error(transparent)]
+    Solve(#[from] SolveError),
+    #[error("no convergence: the relative residual is {residual:.1e} after {steps} Newton steps")]
+    NotConverged { residual: f64, steps: usize },
+}
+
+/// Why there is no sweep.
+#[derive(Debug, Error)]
+#[expect(missing_docs, reason = "the message of each variant says what it is")]
+pub enum SweepError {
+    #[error("--set makes {runs} runs; expected at most {MOST_RUNS}")]
+    TooMany { runs: usize },
+    #[error("--set {key} is there twice; expected each key once, with all its values")]
+    Twice { key: String },
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    #[error(transparent)]
+    Output(#[from] OutputError),
+}
+
+impl From<WriteError> for SweepError {
+    fn from(error: WriteError) -> Self {
+        SweepError::Output(error.into())
+    }
+}
+
+/// A case and what became of it along some axes.
+#[derive(Clone, Debug)]
+pub struct Sweep {
+    /// The title of the case.
+    pub title: String,
+    /// The keys that were set.
+    pub keys: Vec<String>,
+    /// The runs; the last key changes first.
+    pub runs: Vec<Run>,
+}
+
+/// How many runs these axes make.
+///
+/// # Errors
+/// More than [`MOST_RUNS`], or a key on two axes.
+pub fn count(axes: &[Axis]) -> Result<usize, SweepError> {
+    let twice = |(i, axis): (usize, &Axis)| axes[..i].iter().any(|a| a.key == axis.key);
+    if let Some(axis) = axes.iter().enumerate().find(|&axis| twice(axis)).map(|(_, axis)| axis) {
+        return Err(SweepError::Twice { key: axis.key.clone() });
+    }
+    let runs = axes.iter().fold(1_usize, |runs, axis| runs.saturating_mul(axis.values.len()));
+    if runs <= MOST_RUNS { Ok(runs) } else { Err(SweepError::TooMany { runs }) }
+}
+
+/// Solves the case with this text (see [`Case::parse`]) for each combination of the axes' values, and calls `done` after
+/// each. Where `folders` is given, the files of run i (from 1) are written into its folder i.
+///
+/// # Errors
+/// A mistake in the case or in one of the values, found before anything is solved; files that can't be written. A run that
+/// has no solution is no error but a [`Run`].
+pub fn run(
+    file: &Path,
+    text: &str,
+    axes: &[Axis],
+    folders: Option<&Path>,
+    mut done: impl FnMut(),
+) -> Result<Sweep, SweepError> {
+    let count = count(axes)?;
+    let read = |i| {
+        let values = combination(axes, i);
+        let settings: Vec<String> =
+            axes.iter().zip(&values).map(|(axis, value)| format!("{}={value}", axis.key)).collect();
+        Case::parse(file, text, &settings).map(|case| (case, values))
+    };
+    let mut title = String::new();
+    for i in 0..count {
+        title = read(i)?.0.title;
+    }
+    let mut runs = Vec::with_capacity(count);
+    for i in 0..count {
+        let (case, values) = read(i)?;
+        let folder = folders.map(|folder| folder.join((i + 1).to_string()));
+        runs.push(Run { values, outcome: solve(&case, folder.as_deref())? });
+        done();
+    }
+    Ok(Sweep { title, keys: axes.iter().map(|axis| axis.key.clone()).collect(), runs })
+}
+
+/// The values of run `i`: its digits, the last axis first.
+fn combination(axes: &[Axis], mut i: usize) -> Vec<String> {
+    let mut values: Vec<String> = Vec::with_capacity(axes.len());
+    for axis in axes.iter().rev() {
+        values.push(axis.values[i % axis.values.len()].clone());
+        i /= axis.values.len();
+    }
+    values.reverse();
+    values
+}
+
+fn solve(case: &Case, folder: Option<&Path>) -> Result<Outcome, OutputError> {
+    let (solution, times) = match solve::solve(&case.problem, &case.method, &case.settings) {
+        Ok(solved) => solved,
+        Err(error) => return Ok(Err(error.into())),
+    };
+    let newton = &solution.newton;
+    if newton.status == Status::NotConverged {
+        let (residual, steps) = (newton.residual, newton.iterations());
+        return Ok(Err(NoResult::NotConverged { residual, steps }));
+    }
+    let read = Duration::ZERO;
+    Ok(Ok(match folder {
+        Some(folder) => outputs::write(folder, case, &solution, read, times)?.1,
+        None => outputs::results(case, &solution, Seconds::new(read, &times, Duration::ZERO))?,
+    }))
+}
+
+/// How a number is shown.
+type Shown<'a> = &'a dyn Fn(f64) -> String;
+
+/// A column: its name and its cell, where the run has it.
+type Column = (&'static str, fn(&Results, Shown) -> Option<String>);
+
+const COLUMNS: [Column; 9] = [
+    ("gamma0", |r, shown| Some(shown(r.gamma.gamma0))),
+    ("kappa", |r, shown| Some(shown(r.gamma.kappa))),
+    ("newton_steps", |r, _| Some(r.newton.iterations.to_string())),
+    ("contact_force", |r, shown| Some(shown(r.quantities.contact_force))),
+    ("contact_length", |r, shown| Some(shown(r.quantities.contact_length))),
+    ("peak_pressure", |r, shown| Some(shown(r.quantities.peak_pressure))),
+    ("max_displacement", |r, shown| Some(shown(r.quantities.max_displacement))),
+    ("energy", |r, shown| Some(shown(r.quantities.energy))),
+    // Only of a case with an exact solution.
+    ("energy_error", |r, shown| r.errors.as_ref().map(|errors| shown(errors.energy))),
+];
+
+impl Sweep {
+    fn columns(&self) -> impl Iterator<Item = Column> {
+        // gamma0 as a key stands there already; an error that no run has is no column.
+        let new = |name: &str| !self.keys.iter().any(|key| key == &format!("method.{name}"));
+        let exact = self.runs.iter().any(|r| r.outcome.as_ref().is_ok_and(|r| r.errors.is_some()));
+        COLUMNS.into_iter().filter(move |(name, _)| new(name) && (exact || *name != "energy_error"))
+    }
+
+    fn names(&self) -> Vec<&str> {
+        let names = self.columns().map(|(name, _)| name);
+        self.keys.iter().map(String::as_str).chain(names).chain(["status"]).collect()
+    }
+
+    /// A line for each run: the values, the numbers, and how it ended.
+    fn rows(&self, shown: Shown) -> Vec<Vec<String>> {
+        let row = |run: &Run| {
+            let results = run.outcome.as_ref().ok();
+            let cells = self
+                .columns()
+                .map(|(_, cell)| results.and_then(|r| cell(r, shown)).unwrap_or_default());
+            let status = match &run.outcome {
+                Ok(results) => results.newton.verdict().to_owned(),
+                Err(error) => error.to_string(),
+            };
+            run.values.iter().cloned().chain(cells).chain([status]).collect()
+        };
+        self.runs.iter().map(row).collect()
+    }
+
+    /// The table for people: columns with four digits, aligned.
+    pub fn table(&self) -> String {
+        let mut lines = vec![self.names().into_iter().map(str::to_owned).collect::<Vec<_>>()];
+        lines.extend(self.rows(&|x| short(x, 4)));
+        let width = |c: usize| lines.iter().map(|line| line[c].chars().count()).max().unwrap_or(0);
+        let columns = lines[0].len();
+        let widths: Vec<usize> = (0..columns).map(width).collect();
+        let mut text = String::new();
+        for line in &lines {
+            // Writing to a string cannot fail.
+            for (cell, width) in line.iter().zip(&widths).take(columns - 1) {
+                let _ = write!(text, "{cell:>width$}  ");
+            }
+            // What was expected instead is in the CSV; here it would make the line too long.
+            let status = line[columns - 1].split(": expected").next().unwrap_or_default();
+            let _ = writeln!(text, "{status}");
+        }
+        text
+    }
+
+    /// The text of sweep.csv: each number the shortest decimal that reads back to the same double.
+    pub fn csv(&self) -> String {
+        let line = |cells: &[String]| {
+            cells.iter().map(|cell| field(cell)).collect::<Vec<_>>().join(",") + "\n"
+        };
+        let names: Vec<String> = self.names().into_iter().map(str::to_owned).collect();
+        let rows = self.rows(&|x| format!("{x:?}"));
+        line(&names) + &rows.iter().map(|row| line(row)).collect::<String>()
+    }
+
+    /// Writes sweep.csv into `folder` and returns its path.
+    ///
+    /// # Errors
+    /// A folder or file that can't be written.
+    pub fn write(&self, folder: &Path) -> Result<Vec<PathBuf>, WriteError> {
+        let mut output = Output::new(folder)?;
+        output.stage("sweep.csv", self.csv().as_bytes())?;
+        output.publish()
+    }
+}
+
+/// A field of a CSV file (RFC 4180): in quotes where it needs them.
+fn field(text: &str) -> String {
+    if text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn axis(text: &str) -> Axis {
+        text.parse().unwrap()
+    }
+
+    #[test]
+    fn an_axis_is_a_key_and_the_items_of_a_list() {
+        for (text, key, values) in [
+            ("method.gamma0=1e-3,1e-2", "method.gamma0", &["1e-3", "1e-2"][..]),
+            ("method.gamma0=auto, 0.1", "method.gamma0", &["auto", "0.1"]),
+            (
+                "load.body=[\"0\", \"-1\"],[\"0\", \"-2\"]",
+                "load.body",
+                &["[\"0\", \"-1\"]", "[\"0\", \"-2\"]"],
+            ),
+            ("title=\"a,b\"", "title", &["\"a,b\""]),
+            ("a={gauss = 4},\"exact\"", "a", &["{gauss = 4}", "\"exact\""]),
+        ] {
+            assert_eq!(
+                axis(text),
+                Axis {
+                    key: key.to_owned(),
+                    values: values.iter().map(|v| (*v).to_owned()).collect()
+                }
+            );
+        }
+        for text in ["method.gamma0", "=1", "a=", "a=x,,y"] {
+            assert_eq!(text.parse::<Axis>(), Err(NoAxis), "{text}");
+        }
+    }
+
+    #[test]
+    fn the_last_axis_changes_first() {
+        let axes = [axis("a=1,2"), axis("b=3,4,5")];
+        assert_eq!(count(&axes).unwrap(), 6);
+        let runs: Vec<String> = (0..6).map(|i| combination(&axes, i).join("")).collect();
+        assert_eq!(runs, ["13", "14", "15", "23", "24", "25"]);
+        assert_eq!(combination(&[], 0), Vec::<String>::new());
+    }
+
+    #[test]
+    fn too_many_runs_and_a_key_on_two_axes_are_refused() {
+        let many = axis(&format!("a={}", ["1"; 101].join(",")));
+        let axes = [many.clone(), Axis { key: "b".to_owned(), ..many }];
+        let said = count(&axes).unwrap_err().to_string();
+        assert_eq!(said, "--set makes 10201 runs; expected at most 10000");
+        let said = count(&[axis("a=1"), axis("a=2")]).unwrap_err().to_string();
+        assert_eq!(said, "--set a is there twice; expected each key once, with all its values");
+    }
+
+    #[test]
+    fn a_field_of_the_csv_is_in_quotes_where_it_needs_them() {
+        assert_eq!(field("1e-3"), "1e-3");
+        assert_eq!(field("[\"0\", \"1\"]"), "\"[\"\"0\"\", \"\"1\"\"]\"");
+    }
+}

@@ -1,0 +1,260 @@
+//! Keys set over a case, sweeps, JSON, standard input, completions and the manual page.
+
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use super::command::{folder, names, signorini, text};
+
+fn with_standard_input(folder: &Path, arguments: &[&str], input: &[u8]) -> Output {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_signorini"))
+        .args(arguments)
+        .current_dir(folder)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    child.stdin.take().unwrap().write_all(input).unwrap();
+    child.wait_with_output().unwrap()
+}
+
+/// What `check` says of the mesh, with these settings.
+fn checked(folder: &Path, settings: &[&str]) -> Output {
+    let settings = settings.iter().flat_map(|setting| ["--set", setting]);
+    signorini(folder, &["check", "case.toml"].into_iter().chain(settings).collect::<Vec<_>>())
+}
+
+#[test]
+fn a_setting_has_the_effect_of_the_same_line_in_the_file() {
+    let set = folder("set", &[]);
+    let written = folder(
+        "written",
+        &[
+            ["nx = 4", "nx = 7"],
+            ["gap = \"0\"", "gap = \"0.1*x\""],
+            ["[output]", "[method]\ngamma0 = \"auto\"\ndegree = 2\n[output]"],
+        ],
+    );
+    let settings = [
+        "mesh.rectangle.nx=3",
+        "method.gamma0=auto",
+        "boundary.bottom={contact = {gap = \"0.1*x\"}}",
+        "method.degree=2",
+        "mesh.rectangle.nx=7",
+    ];
+    let solve = |folder: &Path, settings: &[&str]| {
+        let arguments = settings.iter().flat_map(|setting| ["--set", *setting]);
+        let all: Vec<&str> = ["solve", "case.toml"].into_iter().chain(arguments).collect();
+        let output = signorini(folder, &all);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        fs::read_to_string(folder.join("out/case/contact.csv")).unwrap()
+    };
+    assert_eq!(solve(&set, &settings), solve(&written, &[]));
+    assert_ne!(solve(&set, &settings[..4]), solve(&written, &[]), "the last one wins");
+}
+
+#[test]
+fn a_mistake_in_a_setting_is_reported_with_the_setting_and_exit_code_2() {
+    let folder = folder("wrong-set", &[]);
+    for (setting, message) in [
+        (
+            "metod.gamma0=1",
+            "unknown key 'metod'; expected title, mesh, material, load, exact, boundary, method, solver or output",
+        ),
+        (
+            "method.gama0=1",
+            "unknown key 'gama0' in [method]; expected degree, gamma0, contact_quadrature or allow_noncoercive",
+        ),
+        ("material.mu=-1", "[material] mu = -1; expected a positive number"),
+        (
+            "material.young=1",
+            "[material]: found lambda, mu and young; expected lambda and mu, or young and poisson",
+        ),
+        (
+            "boundary.bottom.contact.gap=\"z\"",
+            "[boundary.bottom] contact.gap = \"z\": column 1: found 'z', expected a number, x, y, pi, a function or '('",
+        ),
+        ("method.gamma0=1+x", "invalid TOML at '1+x': expected a value; a text must be in quotes"),
+        (
+            "method.gamma0",
+            "found no key with a value; expected KEY=VALUE, such as method.gamma0=1e-3",
+        ),
+        ("# a=1", "found no key with a value; expected KEY=VALUE, such as method.gamma0=1e-3"),
+    ] {
+        let output = checked(&folder, &["title=\"a\"", setting, "mesh.rectangle.ny=5"]);
+        let expected = format!("error: case.toml with --set {setting}: {message}\n");
+        assert_eq!((output.status.code(), text(&output.stderr)), (Some(2), expected.as_str()));
+    }
+    // A mistake of the file stays one of the file.
+    fs::write(folder.join("case.toml"), "titel = 1\n").unwrap();
+    let output = checked(&folder, &["method.degree=2"]);
+    assert!(text(&output.stderr).starts_with("error: case.toml:1: unknown key 'titel'"));
+}
+
+#[test]
+fn json_prints_the_results_and_nothing_else_and_writes_no_files() {
+    let folder = folder("json", &[]);
+    let output = signorini(&folder, &["solve", "case.toml", "--json"]);
+    assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), ""));
+    assert_eq!(names(&folder), ["case.toml"]);
+    let without_seconds = |text: &str| text[..text.find("\"seconds\"").unwrap()].to_owned();
+    let printed = text(&output.stdout);
+    serde_json::from_str::<signorini::io::result::Results>(printed).unwrap();
+    // With a folder, the files are written, too, and the same is printed.
+    let output = signorini(&folder, &["solve", "case.toml", "--json", "--out", "o"]);
+    let file = fs::read_to_string(folder.join("o/result.json")).unwrap();
+    assert_eq!(text(&output.stdout), file);
+    assert_eq!(without_seconds(printed), without_seconds(&file));
+    let wrong = signorini(&folder, &["solve", "case.toml", "--json", "--set", "mesh=1"]);
+    assert!(wrong.status.code() == Some(2) && wrong.stdout.is_empty());
+}
+
+#[test]
+fn a_case_from_standard_input_is_solved_like_one_from_a_file() {
+    let folder = folder("stdin", &[]);
+    let case = fs::read(folder.join("case.toml")).unwrap();
+    let output = with_standard_input(&folder, &["solve", "-"], &case);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert!(signorini(&folder, &["solve", "case.toml"]).status.success());
+    let read = |out: &str| fs::read(folder.join(out).join("solution.vtu")).unwrap();
+    assert!(read("out/stdin") == read("out/case"));
+    let output = with_standard_input(&folder, &["check", "-"], b"titel = 1");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).starts_with("error: standard input:1: unknown key 'titel'"));
+}
+
+#[test]
+fn a_sweep_prints_and_writes_one_line_for_each_combination() {
+    let folder = folder("sweep", &[]);
+    let arguments = ["--set", "method.gamma0=1e-3,auto", "--set", "method.degree=1,2"];
+    let output = signorini(&folder, &[&["sweep", "case.toml"], &arguments[..]].concat());
+    assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), ""));
+    assert_eq!(names(&folder.join("out/case")), ["sweep.csv"]);
+    let csv = fs::read_to_string(folder.join("out/case/sweep.csv")).unwrap();
+    let lines: Vec<&str> = csv.lines().collect();
+    assert_eq!(
+        lines[0],
+        "method.gamma0,method.degree,kappa,newton_steps,contact_force,contact_length,peak_pressure,max_displacement,energy,status"
+    );
+    for (line, values) in lines[1..].iter().zip(["1e-3,1", "1e-3,2", "auto,1", "auto,2"]) {
+        assert!(line.starts_with(values) && line.ends_with(",converged"), "{line}");
+    }
+    assert_eq!(lines.len(), 5);
+    // The line has the numbers of the solve.
+    let [gamma0, degree] = ["method.gamma0=auto", "method.degree=2"];
+    let solve = ["solve", "case.toml", "--json", "--set", gamma0, "--set", degree];
+    let json = signorini(&folder, &solve).stdout;
+    let results: signorini::io::result::Results = serde_json::from_slice(&json).unwrap();
+    let force = format!(",{:?},", results.quantities.contact_force);
+    assert!(lines[4].contains(&force) && !lines[3].contains(&force), "{csv}{force}");
+    let table = text(&output.stdout);
+    assert!(table.lines().count() == 1 + 1 + 5 + 1 + 1, "{table}");
+}
+
+#[test]
+fn a_sweep_over_lists_writes_the_files_of_each_run_where_asked() {
+    let folder = folder("sweep-files", &[]);
+    let loads = "load.body=[\"0\", \"-1\"],[\"0\", \"-2\"]";
+    let output =
+        signorini(&folder, &["sweep", "case.toml", "--set", loads, "--files", "--out", "o"]);
+    assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), ""));
+    assert_eq!(names(&folder.join("o")), ["1", "2", "sweep.csv"]);
+    assert!(names(&folder.join("o/2")).contains(&"picture.svg".to_owned()));
+    let csv = fs::read_to_string(folder.join("o/sweep.csv")).unwrap();
+    assert!(csv.contains("\n\"[\"\"0\"\", \"\"-2\"\"]\","), "{csv}");
+}
+
+#[test]
+fn a_run_without_a_solution_is_a_line_of_the_sweep_and_exit_code_1() {
+    let folder = folder("sweep-fails", &[]);
+    let output = signorini(&folder, &["sweep", "case.toml", "--set", "method.gamma0=0.1,5"]);
+    assert_eq!(output.status.code(), Some(1));
+    let csv = fs::read_to_string(folder.join("out/case/sweep.csv")).unwrap();
+    let lines: Vec<&str> = csv.lines().collect();
+    assert!(lines[1].ends_with(",converged"), "{csv}");
+    assert!(lines[2].starts_with("5,,,,,,,,\"gamma0 = 5 gives kappa = "), "{csv}");
+    let table = text(&output.stdout);
+    assert!(table.contains("and coercivity needs kappa < 1\n"), "{table}");
+}
+
+#[test]
+fn a_sweep_that_is_wrong_ends_with_exit_code_2_and_writes_nothing() {
+    let folder = folder("sweep-wrong", &[]);
+    for (axis, message) in [
+        (
+            "method.degree=1,3",
+            "error: case.toml with --set method.degree=3: [method] degree = 3; expected 1 or 2\n",
+        ),
+        ("method.gamma0=5,6", "error: case.toml: gamma0 = 5 gives kappa = "),
+        (
+            "method.degree",
+            "error: invalid value 'method.degree' for '--set <KEY=VALUE,VALUE,...>': expected KEY=VALUE,",
+        ),
+    ] {
+        let output = signorini(&folder, &["sweep", "case.toml", "--set", axis]);
+        let said = text(&output.stderr);
+        assert!(output.status.code() == Some(2) && said.starts_with(message), "{said}");
+        assert_eq!(names(&folder), ["case.toml"]);
+    }
+}
+
+#[test]
+fn what_only_the_other_engine_or_only_this_one_can_do_is_refused() {
+    let folder = folder("engines", &[]);
+    for (arguments, message) in [
+        (
+            &["--ranks", "4"][..],
+            "error: --ranks 4: this program solves in one process; expected --engine fenicsx beside it\n",
+        ),
+        (
+            &["--engine", "fenicsx", "--set", "a=1"],
+            "error: --set a=1: the engine fenicsx reads the case file itself; write the key into a case file\n",
+        ),
+    ] {
+        let output = signorini(&folder, &[&["solve", "case.toml"], arguments].concat());
+        assert_eq!((output.status.code(), text(&output.stderr)), (Some(2), message));
+    }
+}
+
+#[test]
+fn two_cases_of_one_name_in_one_folder_are_remarked_on() {
+    let folder = folder("remark", &[]);
+    fs::create_dir(folder.join("b")).unwrap();
+    fs::copy(folder.join("case.toml"), folder.join("b/case.toml")).unwrap();
+    let said = |arguments: &[&str]| {
+        let output = signorini(&folder, &[&["solve"], arguments].concat());
+        assert!(output.status.success());
+        text(&output.stderr).to_owned()
+    };
+    assert_eq!(said(&["case.toml"]), "");
+    assert_eq!(said(&["./case.toml"]), "");
+    assert_eq!(
+        said(&["b/case.toml"]),
+        "remark: the results of ./case.toml in out/case are replaced by those of b/case.toml; --out DIR keeps them apart\n"
+    );
+    assert_eq!(said(&["case.toml", "--quiet"]), "");
+}
+
+#[test]
+fn completions_and_manual_pages_know_every_option() {
+    let folder = folder("man", &[]);
+    for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
+        let output = signorini(&folder, &["completions", shell]);
+        assert!(output.status.success() && text(&output.stdout).contains("ranks"), "{shell}");
+    }
+    let page = |arguments: &[&str]| {
+        let output = signorini(&folder, arguments);
+        assert!(output.status.success());
+        text(&output.stdout).to_owned()
+    };
+    assert!(page(&["man"]).contains("signorini\\-sweep(1)"));
+    assert!(page(&["man", "solve"]).contains("\\fB\\-\\-ranks\\fR"));
+    let output = signorini(&folder, &["man", "sove"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(
+        text(&output.stderr),
+        "error: no task 'sove'; expected one of solve, check, sweep, convergence, completions, man, help\n"
+    );
+}
