@@ -4,15 +4,15 @@ import struct
 
 import numpy as np
 
+from .case import CaseError
+from .plane import PlaneMesh
+
 LINE, TRIANGLE = 1, 2  # Gmsh's element types
 NODES_OF = {15: 1, 1: 2, 2: 3}  # point, line, triangle; any other element is refused
 
 
 def read(path):
     """The PlaneMesh in the file at `path`, or CaseError."""
-    from .case import CaseError
-    from .mesh import PlaneMesh
-
     try:
         nodes, triangles, curves = _Reader(path.read_bytes()).mesh()
     except OSError as error:

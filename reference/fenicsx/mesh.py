@@ -1,4 +1,4 @@
-"""Meshes as plain arrays: points, triangles, and for each named boundary its edges as pairs of vertices.
+"""The mesh of a case: structured ones are made here, others are read from a file.
 
 Rectangles are divided into ny rows of nx cells; a cell is cut by its diagonal
 
@@ -8,19 +8,12 @@ A mesh is small beside the linear systems: every process builds all of it, and D
 """
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from . import gmsh
 from .case import CaseError, Gmsh, Trapezoid
-
-
-@dataclass
-class PlaneMesh:
-    points: np.ndarray  # (vertices, 2)
-    triangles: np.ndarray  # (triangles, 3), counter-clockwise
-    boundaries: dict  # name -> (edges, 2)
+from .plane import PlaneMesh
 
 
 def plane_mesh(case):

@@ -71,8 +71,12 @@ pub enum MeshError {
     NamedTwice { vertices: [usize; 2], first: String, second: String },
     #[error("no boundary named '{name}'; this mesh has: {known}")]
     NoSuchBoundary { name: String, known: String },
-    #[error("{0}")]
-    Rectangle(#[from] super::rectangle::RectangleError),
+    #[error("{name} = {value}; expected a positive finite length")]
+    Size { name: &'static str, value: f64 },
+    #[error("{name} = {value}; expected at least one cell")]
+    NoCells { name: &'static str, value: usize },
+    #[error("nx = {nx} and ny = {ny} make more than {most} cells; expected fewer")]
+    TooManyCells { nx: usize, ny: usize, most: usize },
 }
 
 /// Half of an edge: an edge as one of its triangles sees it, and the next edge that starts its list at the same vertex.
