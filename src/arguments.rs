@@ -18,7 +18,8 @@ pub struct Arguments {
 }
 
 const EXIT_CODES: &str = "Exit codes: 0 solved; 1 could not solve, or could not write; 2 the case is wrong, and then nothing \
-                          is written.";
+                          is written. A signal ends it as a signal does (130, 143, 129 to a shell); a reader of standard \
+                          output who leaves (| head) is no failure, a full standard output is one: 1.";
 
 #[derive(Subcommand)]
 pub enum Task {
@@ -38,6 +39,9 @@ pub enum Task {
         /// MPI processes for --engine fenicsx [default: 1]
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
         ranks: Option<u16>,
+        /// The folder with the reference in FEniCSx, reference/ of the sources [default: beside this program]
+        #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+        reference: Option<PathBuf>,
     },
     /// Read a case and report its sizes and the limit of gamma0; solve nothing, write nothing
     Check {

@@ -1,91 +1,175 @@
 //! The engine past one machine: hands a case to the reference in FEniCSx (`reference/fenicsx`), which runs under MPI.
+//!
+//! What runs is what this program was told to run, or what lies beside it. Python, PETSc and DOLFINx all read files of the
+//! folder in which they are started (modules, `.petscrc`, `dolfinx_jit_options.json`): so they are started in a fresh
+//! folder, where they also write, with paths from the root, and Python does not look for modules where it is started.
+//! What they have written there is then published as this program's own files are.
 
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 use std::{env, fs, io};
 
+use signorini::io::files::{self, WriteError, reason};
+use signorini::io::input::{self, InputError, MOST_OF_A_CASE};
+use signorini::io::outputs::{FILES, FILES_OF_FENICSX, only_in};
 use signorini::io::result::Results;
+use signorini::quote;
 use thiserror::Error;
+
+use crate::signals;
 
 /// Why the other engine gave no result.
 #[derive(Debug, Error)]
 pub enum EngineError {
     #[error(
-        "the engine fenicsx is not here: no folder fenicsx on PYTHONPATH nor in {}; take the folder reference/ of the sources and put it on PYTHONPATH",
-        looked_in.iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(", ")
+        "the engine fenicsx is not here: no folder fenicsx in {}; take the folder reference/ of the sources and name it: --reference DIR",
+        looked_in.iter().map(|p| quote::path(p)).collect::<Vec<_>>().join(", ")
     )]
     NoPackage { looked_in: Vec<PathBuf> },
     #[error(
-        "the engine fenicsx needs DOLFINx, and neither python3 nor /usr/bin/python3 can import it: install it (Debian, Ubuntu: apt-get install python3-dolfinx)"
+        "the engine fenicsx needs DOLFINx and Python 3.11 or later, and neither python3 nor /usr/bin/python3 can import it: install it (Debian, Ubuntu: apt-get install python3-dolfinx)"
     )]
     NoDolfinx,
-    #[error("cannot start {program}: {error}")]
+    #[error("{}: {error}", quote::path(path))]
+    Case { path: PathBuf, error: InputError },
+    #[error("cannot start {program}: {}", reason(error))]
     NotStarted { program: String, error: io::Error },
     #[error("{message}")]
     Failed { code: Option<i32>, message: String },
-    #[error("{}: {error}", path.display())]
-    NoResult { path: PathBuf, error: io::Error },
+    #[error("the engine fenicsx wrote no result.json that can be read: {error}")]
+    NoResult { error: io::Error },
+    #[error(transparent)]
+    Write(#[from] WriteError),
 }
 
 impl EngineError {
     /// The engine refused the case, as this program would have.
     pub fn is_wrong_case(&self) -> bool {
-        matches!(self, EngineError::Failed { code: Some(2), .. })
+        matches!(
+            self,
+            EngineError::Failed { code: Some(2), .. }
+                | EngineError::Case { .. }
+                | EngineError::Write(WriteError::Source { .. })
+        )
     }
 }
 
-/// Solves `case` on `ranks` processes; the engine writes result.json and a file for ParaView into `folder`.
+/// Solves `case` on `ranks` processes, with the package in `reference` if that is given; result.json and a file for
+/// ParaView are written into `folder`.
 pub fn fenicsx(
     case: &Path,
     folder: &Path,
     ranks: u16,
+    reference: Option<&Path>,
 ) -> Result<(Results, Vec<PathBuf>), EngineError> {
-    let path = python_path()?;
+    let read = input::read(case, MOST_OF_A_CASE);
+    read.map_err(|error| EngineError::Case { path: case.to_owned(), error })?;
+    files::spare(folder, &FILES_OF_FENICSX, &[case.to_owned()])?;
+    let path = python_path(reference)?;
     let python = python()?;
-    let output = run(Command::new(python)
+    let not_started = |error| EngineError::NotStarted { program: quote::path(&python), error };
+    let mut output = files::Output::new(folder)?;
+    output.replaces(&only_in(&FILES, &FILES_OF_FENICSX));
+    let room = std::path::absolute(output.room()).map_err(not_started)?;
+    let full = std::path::absolute(case).map_err(not_started)?;
+    let ended = run(safe(&python)
         .args(["-m", "fenicsx", "--ranks", &ranks.to_string(), "--out"])
-        .args([folder, case])
-        .env("PYTHONPATH", path))?;
-    if !output.status.success() {
-        let said = String::from_utf8_lossy(&output.stderr);
-        let said = said.trim();
-        let message = said.strip_prefix("error: ").unwrap_or(said).to_owned();
-        return Err(EngineError::Failed { code: output.status.code(), message });
+        .args([&room, &full])
+        .env("PYTHONPATH", path)
+        .current_dir(&room))
+    .map_err(not_started)?;
+    if !ended.status.success() {
+        return Err(failed(&ended, case, &full));
     }
-    let file = folder.join("result.json");
-    let read = || serde_json::from_slice(&fs::read(&file)?).map_err(io::Error::from);
-    let results = read().map_err(|error| EngineError::NoResult { path: file.clone(), error })?;
-    Ok((results, vec![file, folder.join("solution.xdmf")]))
-}
-
-fn run(command: &mut Command) -> Result<Output, EngineError> {
-    let program = command.get_program().to_string_lossy().into_owned();
-    command.output().map_err(|error| EngineError::NotStarted { program, error })
-}
-
-/// PYTHONPATH with the package on it: as it is, or with `reference/` of the sources, here or where this program was built.
-fn python_path() -> Result<std::ffi::OsString, EngineError> {
-    let given: Vec<PathBuf> =
-        env::var_os("PYTHONPATH").map_or(Vec::new(), |path| env::split_paths(&path).collect());
-    let own = [PathBuf::from("reference"), Path::new(env!("CARGO_MANIFEST_DIR")).join("reference")];
-    let has_package = |folder: &&PathBuf| folder.join("fenicsx/__main__.py").is_file();
-    let Some(found) = given.iter().chain(&own).find(has_package) else {
-        return Err(EngineError::NoPackage { looked_in: own.into() });
+    let read = || {
+        let file = room.join("result.json");
+        serde_json::from_slice(&fs::read(file)?).map_err(io::Error::from)
     };
-    let found = std::path::absolute(found).unwrap_or_else(|_| found.clone());
-    let all = std::iter::once(found).chain(given);
-    env::join_paths(all).map_err(|error| EngineError::NotStarted {
-        program: "python3".to_owned(),
-        error: io::Error::other(error),
-    })
+    let results = read().map_err(|error| EngineError::NoResult { error })?;
+    for name in FILES_OF_FENICSX {
+        output.adopt(name)?;
+    }
+    let mut files = output.publish()?;
+    files.retain(|file| !file.ends_with("solution.h5"));
+    Ok((results, files))
+}
+
+/// What the engine said, with the case as the caller called it.
+fn failed(ended: &Output, case: &Path, full: &Path) -> EngineError {
+    const MOST: usize = 4000;
+    let said = String::from_utf8_lossy(&ended.stderr);
+    let said = said.trim().replace(&*full.to_string_lossy(), &case.to_string_lossy());
+    let said = said.strip_prefix("error: ").unwrap_or(&said);
+    // Of a long complaint the end says why.
+    let cut = said.char_indices().rev().nth(MOST).map_or(0, |(at, c)| at + c.len_utf8());
+    let message = match &said[cut..] {
+        "" => format!("the engine fenicsx ended with {}", ended.status),
+        said => said.to_owned(),
+    };
+    EngineError::Failed { code: ended.status.code(), message }
+}
+
+/// A Python that does not look for modules in the folder where it is started.
+fn safe(python: &Path) -> Command {
+    let mut command = Command::new(python);
+    // The variable is for the Pythons that this one starts under MPI.
+    command.arg("-P").env("PYTHONSAFEPATH", "1").stdin(Stdio::null());
+    command
+}
+
+fn run(command: &mut Command) -> io::Result<Output> {
+    signals::start(command.stdout(Stdio::piped()).stderr(Stdio::piped()))?.output()
+}
+
+/// PYTHONPATH with the package in front. Entries that are not paths from the root are left out: they would be folders of
+/// wherever Python is started.
+fn python_path(reference: Option<&Path>) -> Result<OsString, EngineError> {
+    let looked_in = match reference {
+        Some(folder) => vec![folder.to_owned()],
+        None => beside_this_program(),
+    };
+    let has_package = |folder: &&PathBuf| folder.join("fenicsx/__main__.py").is_file();
+    let Some(found) = looked_in.iter().find(has_package) else {
+        return Err(EngineError::NoPackage { looked_in });
+    };
+    let not_started = |error| EngineError::NotStarted { program: "python3".to_owned(), error };
+    let found = std::path::absolute(found).map_err(not_started)?;
+    let given = absolute_paths("PYTHONPATH");
+    env::join_paths(std::iter::once(found).chain(given))
+        .map_err(|error| not_started(io::Error::other(error)))
+}
+
+/// reference/ in the folder of this program, and in that of the sources if this program was built there.
+fn beside_this_program() -> Vec<PathBuf> {
+    let Ok(program) = env::current_exe().and_then(fs::canonicalize) else { return Vec::new() };
+    let Some(folder) = program.parent() else { return Vec::new() };
+    let sources = folder.parent().filter(|target| target.ends_with("target"));
+    let sources = sources.and_then(Path::parent);
+    [Some(folder), sources].into_iter().flatten().map(|f| f.join("reference")).collect()
+}
+
+/// The entries of a list of folders in the environment that are paths from the root.
+fn absolute_paths(variable: &str) -> Vec<PathBuf> {
+    let list = env::var_os(variable).unwrap_or_default();
+    env::split_paths(&list).filter(|path| path.is_absolute()).collect()
 }
 
 /// A Python that has DOLFINx: the one on PATH, or the system's.
-fn python() -> Result<&'static str, EngineError> {
-    ["python3", "/usr/bin/python3"]
-        .into_iter()
+fn python() -> Result<PathBuf, EngineError> {
+    let on_path = absolute_paths("PATH").into_iter().map(|folder| folder.join("python3"));
+    on_path
+        .filter(|python| python.is_file())
+        .take(1)
+        .chain([PathBuf::from("/usr/bin/python3")])
         .find(|python| {
-            let import = Command::new(python).args(["-c", "import dolfinx"]).output();
+            let path = env::join_paths(absolute_paths("PYTHONPATH")).unwrap_or_default();
+            // PETSc reads .petscrc of the folder where it starts: not of this one.
+            let home = python.parent().unwrap_or(Path::new("/"));
+            let import = run(safe(python)
+                .args(["-c", "import dolfinx"])
+                .env("PYTHONPATH", path)
+                .current_dir(home));
             import.is_ok_and(|output| output.status.success())
         })
         .ok_or(EngineError::NoDolfinx)

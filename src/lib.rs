@@ -71,6 +71,10 @@ pub mod fem;
 pub mod io;
 pub mod kernel;
 #[cfg(not(kani))]
+pub mod memory;
+#[cfg(not(kani))]
+pub mod quote;
+#[cfg(not(kani))]
 pub mod solve;
 
 // What a program needs that has its problem in code.

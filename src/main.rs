@@ -1,7 +1,9 @@
 //! The command `signorini`: reads a case file, solves it (once, or on finer and finer meshes), writes the files and says
 //! what came out.
 //!
-//! Exit codes: 0 solved; 1 could not solve, or could not write; 2 the case is wrong, and then nothing is written.
+//! Exit codes: 0 solved; 1 could not solve, or could not write; 2 the case is wrong, and then nothing is written. Nobody
+//! listening at standard output (`| head`) is no failure, a standard output that is full is one: 1. A signal ends the
+//! program as a signal does: 130, 143 or 129 to a shell.
 
 #[cfg(not(kani))]
 mod arguments;
@@ -9,6 +11,8 @@ mod arguments;
 mod engine;
 #[cfg(not(kani))]
 mod progress;
+#[cfg(not(kani))]
+mod signals;
 #[cfg(not(kani))]
 mod summary;
 
@@ -25,21 +29,25 @@ fn main() {}
 mod command {
     use std::fmt::Display;
     use std::fs;
-    use std::io;
+    use std::io::{self, Write};
     use std::path::{Path, PathBuf};
     use std::process::ExitCode;
     use std::time::{Duration, Instant};
 
     use clap::{CommandFactory, Parser};
+    use signorini::fem::{DataError, MeshError};
     use signorini::io::convergence::{self, Meshes, StudyError};
+    use signorini::io::files::{reason, spare};
+    use signorini::io::input;
     use signorini::io::result::{Results, Seconds, result_json};
     use signorini::io::sweep::{self, Axis, NoResult, SweepError};
-    use signorini::io::{Case, outputs};
+    use signorini::io::{Case, CaseError, outputs};
+    use signorini::quote;
     use signorini::solve::{self, Degree, LadderError, Solution, SolveError, Status, Times};
 
     use crate::arguments::{Arguments, CaseArguments, Engine, Mesh, Task};
     use crate::progress::Phases;
-    use crate::{engine, progress, summary};
+    use crate::{engine, progress, signals, summary};
 
     /// The case is wrong.
     const WRONG: u8 = 2;
@@ -58,13 +66,16 @@ mod command {
 
     pub fn run() -> ExitCode {
         let Arguments { task, quiet } = Arguments::parse();
+        signals::watch();
         let done = match &task {
-            Task::Solve { case, out, json, engine, ranks } => {
+            Task::Solve { case, out, json, engine, ranks, reference } => {
                 let out = out.as_deref();
                 let wanted = if *json { Wanted::Json } else { Wanted::Summary };
                 match (engine, ranks) {
                     (Engine::Fenicsx, ranks) => {
-                        solve_by_fenicsx(case, out, ranks.unwrap_or(1), wanted, quiet)
+                        let reference = reference.as_deref();
+                        let by = Fenicsx { ranks: ranks.unwrap_or(1), reference };
+                        solve_by_fenicsx(case, out, by, wanted, quiet)
                     }
                     (Engine::Signorini, None) => solve(case, out, wanted, quiet),
                     (Engine::Signorini, Some(ranks)) => Err(Failure {
@@ -86,16 +97,32 @@ mod command {
             Task::Completions { shell } => Ok(completions(*shell)),
             Task::Man { task } => man(task.as_deref()),
         };
-        match done {
-            Ok(Done { text, code }) => {
-                print!("{text}");
-                ExitCode::from(code)
-            }
+        let said = done.and_then(|Done { text, code }| say(&text).map(|()| code));
+        match said {
+            Ok(code) => ExitCode::from(code),
             Err(Failure { message, code }) => {
-                eprintln!("error: {message}");
+                signals::give_way();
+                complain(&format!("error: {message}"));
                 ExitCode::from(code)
             }
         }
+    }
+
+    /// Says it on standard output. A reader who has left has heard enough; the files are written in any case.
+    fn say(text: &str) -> Result<(), Failure> {
+        let mut out = io::stdout().lock();
+        match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+            Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+                let message = format!("cannot write to standard output: {}", reason(&error));
+                Err(Failure { message, code: FAILED })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Says it on standard error. Where there is none, the exit code says it alone.
+    fn complain(text: &str) {
+        let _ = writeln!(io::stderr(), "{}", quote::lines(text));
     }
 
     /// What goes to standard output, and the exit code.
@@ -105,7 +132,7 @@ mod command {
     }
 
     fn summarised(quiet: bool) -> impl Fn(String) -> Done {
-        move |text| Done { text: if quiet { String::new() } else { text }, code: 0 }
+        move |text| Done { text: if quiet { String::new() } else { quote::lines(&text) }, code: 0 }
     }
 
     /// What a solve shall print.
@@ -140,6 +167,10 @@ mod command {
         let start = Instant::now();
         let case = read(arguments)?;
         let read = start.elapsed();
+        let folder = folder(&arguments.file, out);
+        if wanted == Wanted::Summary || out.is_some() {
+            spare(&folder, &outputs::FILES, &case.sources).map_err(|e| failure(WRONG)(&e))?;
+        }
         phases.enter("solving");
         let (solution, times) = solved(&case)?;
         let (files, results) = match (wanted, out) {
@@ -150,12 +181,11 @@ mod command {
             }
             _ => {
                 phases.enter("writing the files");
-                let folder = folder(&arguments.file, out);
                 let remark = remark_of_another_case(&folder, &case.file);
                 let written = outputs::write(&folder, &case, &solution, read, times)
                     .map_err(|e| failure(FAILED)(&e))?;
                 if let (Some(remark), false) = (remark, quiet) {
-                    eprintln!("{remark}");
+                    complain(&remark);
                 }
                 written
             }
@@ -174,10 +204,16 @@ mod command {
         Ok((solution, times))
     }
 
+    /// How the engine fenicsx is to be run.
+    struct Fenicsx<'a> {
+        ranks: u16,
+        reference: Option<&'a Path>,
+    }
+
     fn solve_by_fenicsx(
         arguments: &CaseArguments,
         out: Option<&Path>,
-        ranks: u16,
+        by: Fenicsx,
         wanted: Wanted,
         quiet: bool,
     ) -> Result<Done, Failure> {
@@ -194,7 +230,7 @@ mod command {
         }
         let phases = Phases::start(quiet);
         phases.enter("solving by the engine fenicsx");
-        let (results, files) = engine::fenicsx(file, &folder(file, out), ranks)
+        let (results, files) = engine::fenicsx(file, &folder(file, out), by.ranks, by.reference)
             .map_err(|e| failure(if e.is_wrong_case() { WRONG } else { FAILED })(&e))?;
         drop(phases);
         wanted.text(&results, &files, quiet)
@@ -208,20 +244,22 @@ mod command {
 
     fn read(CaseArguments { file, settings }: &CaseArguments) -> Result<Case, Failure> {
         let (file, text) = read_text(file)?;
-        Case::parse(&file, &text, settings).map_err(|e| failure(WRONG)(&e))
+        Case::parse(&file, &text, settings).map_err(|e| no_case(&e))
+    }
+
+    fn no_case(error: &CaseError) -> Failure {
+        failure(if error.is_lack_of_memory() { FAILED } else { WRONG })(error)
     }
 
     /// The text of a case, and what messages call its file.
     fn read_text(file: &Path) -> Result<(PathBuf, String), Failure> {
-        if is_standard_input(file) {
-            match io::read_to_string(io::stdin()) {
-                Ok(text) => Ok((PathBuf::from(STANDARD_INPUT), text)),
-                Err(error) => Err(failure(WRONG)(&format!("{STANDARD_INPUT}: {error}"))),
-            }
+        let (name, text) = if is_standard_input(file) {
+            let name = Path::new(STANDARD_INPUT);
+            (name, Case::text_from(io::stdin(), name))
         } else {
-            let text = Case::text(file).map_err(|e| failure(WRONG)(&e))?;
-            Ok((file.to_owned(), text))
-        }
+            (file, Case::text(file))
+        };
+        Ok((name.to_owned(), text.map_err(|e| no_case(&e))?))
     }
 
     /// What `--out` says, or out/ and the name of the case.
@@ -229,22 +267,26 @@ mod command {
         match out {
             Some(folder) => folder.to_owned(),
             None if is_standard_input(file) => PathBuf::from("out/stdin"),
-            None => Path::new("out").join(file.file_stem().unwrap_or_default()),
+            None => {
+                // "...toml" without its ending would be "..", the folder above.
+                let stem = file.file_stem().filter(|s| !matches!(s.to_str(), Some("." | "..")));
+                Path::new("out").join(stem.or(file.file_name()).unwrap_or_default())
+            }
         }
     }
 
     /// Two cases of one name write into one folder: said when the results in `folder` are those of another case than `file`.
     fn remark_of_another_case(folder: &Path, file: &Path) -> Option<String> {
-        let bytes = fs::read(folder.join("result.json")).ok()?;
+        let bytes = input::read(&folder.join("result.json"), input::MOST_OF_A_CASE).ok()?;
         let earlier: Results = serde_json::from_slice(&bytes).ok()?;
         let earlier = PathBuf::from(earlier.case?);
         let whole = |path: &Path| fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         (whole(&earlier) != whole(file)).then(|| {
             format!(
                 "remark: the results of {} in {} are replaced by those of {}; --out DIR keeps them apart",
-                earlier.display(),
-                folder.display(),
-                file.display()
+                quote::path(&earlier),
+                quote::path(folder),
+                quote::path(file)
             )
         })
     }
@@ -259,6 +301,7 @@ mod command {
         let no_sweep = |error: SweepError| {
             let code = match error {
                 SweepError::Output(_) => FAILED,
+                SweepError::Case(ref error) if error.is_lack_of_memory() => FAILED,
                 _ => WRONG,
             };
             failure(code)(&error)
@@ -266,6 +309,8 @@ mod command {
         let runs = sweep::count(axes).map_err(no_sweep)?;
         let folder = folder(file, out);
         let (file, text) = read_text(file)?;
+        spare(&folder, &[sweep::FILE], std::slice::from_ref(&file))
+            .map_err(|e| failure(WRONG)(&e))?;
         let bar = progress::bar(runs, "runs", quiet);
         let folders = files.then_some(folder.as_path());
         let sweep = sweep::run(&file, &text, axes, folders, || bar.inc(1)).map_err(no_sweep)?;
@@ -280,7 +325,7 @@ mod command {
             let Some(Err(error)) = sweep.runs.first().map(|run| &run.outcome) else {
                 return Ok(summarised(quiet)(String::new()));
             };
-            return Err(failure(WRONG)(&format!("{}: {error}", file.display())));
+            return Err(failure(WRONG)(&format!("{}: {error}", quote::path(&file))));
         }
         let written = sweep.write(&folder).map_err(|e| failure(FAILED)(&e))?;
         let code = if codes.is_empty() { 0 } else { FAILED };
@@ -324,6 +369,8 @@ mod command {
         quiet: bool,
     ) -> Result<String, Failure> {
         let case = read(arguments)?;
+        let folder = folder(&arguments.file, out);
+        spare(&folder, &convergence::FILES, &case.sources).map_err(|e| failure(WRONG)(&e))?;
         let degree = |d: &u8| if *d == 1 { Degree::One } else { Degree::Two };
         let mesh = |m: &Mesh| match m {
             Mesh::Structured => Meshes::Structured,
@@ -345,8 +392,8 @@ mod command {
             }
         }
         progress.finish_and_clear();
-        let files = convergence::write(&folder(&arguments.file, out), &case.title, &studies)
-            .map_err(|e| failure(FAILED)(&e))?;
+        let files =
+            convergence::write(&folder, &case.title, &studies).map_err(|e| failure(FAILED)(&e))?;
         Ok(summary::studied(&case, &studies, &files))
     }
 
@@ -359,12 +406,13 @@ mod command {
         let code = match error {
             StudyError::NoSolution | StudyError::MeshFile => WRONG,
             StudyError::Level { error, .. } => match error {
+                LadderError::Mesh(MeshError::OutOfMemory(_)) => FAILED,
                 LadderError::Mesh(_) => WRONG,
                 LadderError::Solve(error) => code(error),
                 LadderError::NotConverged { .. } => FAILED,
             },
         };
-        Failure { message: format!("{}: {error}", file.display()), code }
+        Failure { message: format!("{}: {error}", quote::path(file)), code }
     }
 
     fn check(arguments: &CaseArguments) -> Result<String, Failure> {
@@ -375,11 +423,12 @@ mod command {
     }
 
     fn unsolvable(file: &Path, error: &SolveError) -> Failure {
-        Failure { message: format!("{}: {error}", file.display()), code: code(error) }
+        Failure { message: format!("{}: {error}", quote::path(file)), code: code(error) }
     }
 
     fn code(error: &SolveError) -> u8 {
         match error {
+            SolveError::Data(DataError::Mesh(MeshError::OutOfMemory(_))) => FAILED,
             SolveError::Data(_) | SolveError::NotCoercive { .. } => WRONG,
             SolveError::NotPositiveDefinite | SolveError::OutOfMemory => FAILED,
         }

@@ -7,6 +7,7 @@ use signorini::io::convergence::Study;
 use signorini::io::result::{GammaChoice, NewtonHistory, Results};
 use signorini::io::sweep::Sweep;
 use signorini::io::{Case, numbers};
+use signorini::quote;
 use signorini::solve::{ContactQuadrature, NewtonReport, Outline, Settings};
 
 /// Lines of a name and a text.
@@ -15,7 +16,7 @@ struct Lines(String);
 
 impl Lines {
     fn titled(title: &str) -> Self {
-        Lines(format!("{title}\n"))
+        Lines(format!("{}\n", quote::line(title)))
     }
 
     fn line(&mut self, name: &str, text: impl AsRef<str>) {
@@ -48,7 +49,7 @@ pub fn solved(r: &Results, files: &[PathBuf]) -> String {
     );
     for (i, (boundary, reaction)) in q.reactions.iter().enumerate() {
         let name = if i == 0 { "reactions" } else { "" };
-        lines.line(name, format!("{boundary}: {}", vector(*reaction)));
+        lines.line(name, format!("{}: {}", quote::cut(boundary), vector(*reaction)));
     }
     lines.line(
         "energy",
@@ -110,19 +111,19 @@ pub fn checked(case: &Case, outline: &Outline) -> String {
 /// Of a case on finer and finer meshes.
 pub fn studied(case: &Case, studies: &[Study], files: &[PathBuf]) -> String {
     let tables: Vec<String> = studies.iter().map(Study::table).collect();
-    format!("{}\n\n{}\nwritten: {}\n", case.title, tables.join("\n"), written(files))
+    format!("{}\n\n{}\nwritten: {}\n", quote::line(&case.title), tables.join("\n"), written(files))
 }
 
 /// Of a case along some axes.
 pub fn swept(sweep: &Sweep, files: &[PathBuf]) -> String {
-    format!("{}\n\n{}\nwritten: {}\n", sweep.title, sweep.table(), written(files))
+    format!("{}\n\n{}\nwritten: {}\n", quote::line(&sweep.title), sweep.table(), written(files))
 }
 
 /// Of a case that Newton's method could not solve.
 pub fn not_converged(file: &Path, settings: &Settings, report: &NewtonReport) -> String {
     format!(
         "{}: no convergence: the relative residual is {:.1e} after {}; expected at most {:e}. Nothing is written.\nresiduals: {}",
-        file.display(),
+        quote::path(file),
         report.residual,
         count(report.iterations(), "Newton step"),
         settings.tolerance,
@@ -184,5 +185,5 @@ fn written(files: &[PathBuf]) -> String {
     let folder = files.first().and_then(|file| file.parent()).unwrap_or(Path::new(""));
     let names: Vec<_> =
         files.iter().flat_map(|f| f.file_name()).map(|n| n.to_string_lossy()).collect();
-    format!("{}: {}", folder.display(), names.join(", "))
+    format!("{}: {}", quote::path(folder), names.join(", "))
 }

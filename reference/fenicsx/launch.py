@@ -7,7 +7,7 @@ import sys
 
 def on_ranks(ranks, module, arguments):
     """The exit code of `python3 -m module arguments` on `ranks` processes; --ranks is taken out of the arguments."""
-    command = ["mpirun", "-n", str(ranks), *_allowances(), sys.executable, "-m", module, *_without_ranks(arguments)]
+    command = ["mpirun", "-n", str(ranks), *_allowances(), sys.executable, *_isolation(), "-m", module, *_without_ranks(arguments)]
     return subprocess.run(command).returncode
 
 
@@ -20,6 +20,11 @@ def _allowances():
     if "Open MPI" not in version:
         return []
     return ["--oversubscribe"] + (["--allow-run-as-root"] if os.geteuid() == 0 else [])
+
+
+def _isolation():
+    """Where this Python does not look for modules in the working folder, neither shall those that it starts."""
+    return ["-P"] if getattr(sys.flags, "safe_path", False) else []
 
 
 def _without_ranks(arguments):

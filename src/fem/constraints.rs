@@ -17,6 +17,7 @@ use super::rigid::{self, Parts};
 use super::smooth::SmoothBoundary;
 use super::space::Space;
 use crate::kernel::Element;
+use crate::quote;
 
 /// The prescribed components of the displacement.
 #[derive(Clone, Debug)]
@@ -257,7 +258,7 @@ fn demands<'a, E: Element<N, M>, const N: usize, const M: usize>(
                 for node in nodes_of(space, mesh.edges_of(name)?) {
                     for (c, function) in displacement.iter().enumerate() {
                         let Some(function) = function else { continue };
-                        let key = || format!("[boundary.{name}] displacement[{c}]");
+                        let key = || format!("[boundary.{}] displacement[{c}]", quote::key(name));
                         ask(node, name, AXES[c], function, &key)?;
                     }
                 }
@@ -274,7 +275,7 @@ fn demands<'a, E: Element<N, M>, const N: usize, const M: usize>(
                             [(normal, n, "normal"), (tangential, t, "tangential")]
                         {
                             let Some(function) = function else { continue };
-                            let key = || format!("[boundary.{name}] {key}");
+                            let key = || format!("[boundary.{}] {key}", quote::key(name));
                             ask(node, name, direction, function, &key)?;
                         }
                     }

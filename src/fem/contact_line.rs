@@ -12,6 +12,7 @@ use super::space::Space;
 use crate::kernel::contact_edge::coercivity_constant;
 use crate::kernel::edge_integral::{self, ExactEdge};
 use crate::kernel::{ContactEdge, EdgeIntegrals, Element};
+use crate::quote::key;
 
 /// One edge of Gamma_C.
 #[derive(Clone, Debug)]
@@ -140,7 +141,7 @@ pub fn assemble<E: Element<N, M>, const N: usize, const M: usize>(
         let gamma = gamma0 * mesh.diameter(edge.triangle);
         let mut values = [0.0; M];
         for (value, node) in values.iter_mut().zip(space.edge_nodes(edge)) {
-            let what = || format!("[boundary.{name}] contact.gap");
+            let what = || format!("[boundary.{}] contact.gap", key(name));
             *value = finite(&**gap, space.nodes()[node], what)?;
         }
         let triangle = mesh.triangle(edge.triangle);

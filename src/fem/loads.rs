@@ -6,6 +6,7 @@ use super::problem::{
 };
 use super::space::Space;
 use crate::kernel::Element;
+use crate::quote::key;
 
 /// The degree up to which loads that are no polynomials are integrated exactly.
 const ENOUGH: u32 = 7;
@@ -69,20 +70,20 @@ pub fn assemble_with<E: Element<N, M>, const N: usize, const M: usize>(
         match condition {
             Condition::Traction(traction) => {
                 for (c, t) in acting(traction) {
-                    let what = || format!("[boundary.{name}] traction[{c}]");
+                    let what = || format!("[boundary.{}] traction[{c}]", key(name));
                     let value = |x, n| checked(t.on_boundary(x, n), x, what);
                     add_on_boundary(name, c, value, &rule(t), space, &mut load)?;
                 }
             }
             Condition::Mixed { displacement, traction } => {
                 for (c, t) in acting(traction).filter(|(c, _)| displacement[*c].is_none()) {
-                    let what = || format!("[boundary.{name}] traction[{c}]");
+                    let what = || format!("[boundary.{}] traction[{c}]", key(name));
                     let value = |x, n| checked(t.on_boundary(x, n), x, what);
                     add_on_boundary(name, c, value, &rule(t), space, &mut load)?;
                 }
             }
             Condition::Pressure(p) => {
-                let what = || format!("[boundary.{name}] pressure");
+                let what = || format!("[boundary.{}] pressure", key(name));
                 for c in 0..2 {
                     let value = |x, n: [f64; 2]| Ok(-n[c] * checked(p.on_boundary(x, n), x, what)?);
                     add_on_boundary(name, c, value, &rule(&**p), space, &mut load)?;

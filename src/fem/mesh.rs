@@ -18,6 +18,8 @@ use nalgebra::Vector2;
 use thiserror::Error;
 
 use crate::kernel::Triangle;
+use crate::memory::{self, OutOfMemory, bytes_of};
+use crate::quote::{self, number, quoted};
 
 /// A conforming triangulation with named parts of its boundary.
 #[derive(Clone, Debug)]
@@ -45,33 +47,35 @@ pub struct BoundaryEdge {
 pub enum MeshError {
     #[error("the mesh has no triangle; expected at least one")]
     Empty,
-    #[error("vertex {vertex} is at ({x}, {y}); expected finite coordinates")]
+    #[error("vertex {vertex} is at ({}, {}); expected finite coordinates", number(*x), number(*y))]
     NotFinite { vertex: usize, x: f64, y: f64 },
     #[error(
         "triangle {triangle} names vertex {vertex}; expected one of the {count} vertices of this mesh"
     )]
     NoSuchVertex { triangle: usize, vertex: usize, count: usize },
-    #[error("triangle {triangle} (vertices {}, {}, {}) has area {area}: list its vertices counter-clockwise", vertices[0], vertices[1], vertices[2])]
+    #[error("triangle {triangle} (vertices {}, {}, {}) has area {}: list its vertices counter-clockwise", vertices[0], vertices[1], vertices[2], number(*area))]
     Clockwise { triangle: usize, vertices: [usize; 3], area: f64 },
-    #[error("triangle {triangle} (vertices {}, {}, {}) is flat: its area {area} is nothing beside its diameter {diameter}", vertices[0], vertices[1], vertices[2])]
+    #[error("triangle {triangle} (vertices {}, {}, {}) is flat: its area {} is nothing beside its diameter {}", vertices[0], vertices[1], vertices[2], number(*area), number(*diameter))]
     Flat { triangle: usize, vertices: [usize; 3], area: f64, diameter: f64 },
-    #[error("vertices {} and {} are both at ({x}, {y}); expected one vertex there", vertices[0], vertices[1])]
+    #[error("vertices {} and {} are both at ({}, {}); expected one vertex there", vertices[0], vertices[1], number(*x), number(*y))]
     Duplicate { vertices: [usize; 2], x: f64, y: f64 },
-    #[error("vertex {vertex} at ({x}, {y}) belongs to no triangle")]
+    #[error("vertex {vertex} at ({}, {}) belongs to no triangle", number(*x), number(*y))]
     Unused { vertex: usize, x: f64, y: f64 },
     #[error("triangles {} and {} overlap: both lie on the same side of the edge from vertex {} to vertex {}", triangles[0], triangles[1], vertices[0], vertices[1])]
     Overlap { triangles: [usize; 2], vertices: [usize; 2] },
-    #[error("vertex {vertex} at ({x}, {y}) hangs inside the edge between vertices {} and {} of triangle {triangle}: neighbours must share whole edges", edge[0], edge[1])]
+    #[error("vertex {vertex} at ({}, {}) hangs inside the edge between vertices {} and {} of triangle {triangle}: neighbours must share whole edges", number(*x), number(*y), edge[0], edge[1])]
     Hanging { vertex: usize, x: f64, y: f64, edge: [usize; 2], triangle: usize },
-    #[error("boundary '{boundary}': no triangle has an edge between vertices {} and {}", vertices[0], vertices[1])]
+    #[error("boundary {}: no triangle has an edge between vertices {} and {}", quoted(boundary, '\''), vertices[0], vertices[1])]
     NoSuchEdge { boundary: String, vertices: [usize; 2] },
-    #[error("boundary '{boundary}': the edge between vertices {} and {} lies inside the body, between two triangles", vertices[0], vertices[1])]
+    #[error("boundary {}: the edge between vertices {} and {} lies inside the body, between two triangles", quoted(boundary, '\''), vertices[0], vertices[1])]
     InnerEdge { boundary: String, vertices: [usize; 2] },
-    #[error("the edge between vertices {} and {} belongs to boundary '{first}' and again to boundary '{second}'; expected one name for it", vertices[0], vertices[1])]
+    #[error("the edge between vertices {} and {} belongs to boundary {} and again to boundary {}; expected one name for it", vertices[0], vertices[1], quoted(first, '\''), quoted(second, '\''))]
     NamedTwice { vertices: [usize; 2], first: String, second: String },
-    #[error("no boundary named '{name}'; this mesh has: {known}")]
+    #[error("no boundary named {}; this mesh has: {known}", quoted(name, '\''))]
     NoSuchBoundary { name: String, known: String },
-    #[error("{name} = {value}; expected a positive finite length")]
+    #[error("{0}; use a coarser mesh")]
+    OutOfMemory(#[from] OutOfMemory),
+    #[error("{name} = {}; expected a positive finite length", number(*value))]
     Size { name: &'static str, value: f64 },
     #[error("{name} = {value}; expected at least one cell")]
     NoCells { name: &'static str, value: usize },
@@ -121,6 +125,7 @@ impl Mesh {
         if triangles.is_empty() {
             return Err(MeshError::Empty);
         }
+        memory::check(bytes_to_make(vertices.len(), triangles.len()))?;
         check_vertices(&vertices, &triangles)?;
         check_triangles(&vertices, &triangles)?;
         let (edges, triangle_edges) = match_edges(vertices.len(), &triangles)?;
@@ -181,7 +186,7 @@ impl Mesh {
                 known: if self.boundaries.is_empty() {
                     "no named boundary".to_owned()
                 } else {
-                    self.boundary_names().collect::<Vec<_>>().join(", ")
+                    quote::names(self.boundary_names())
                 },
             }),
         }
@@ -278,6 +283,16 @@ pub(super) fn length(v: Vector2<f64>) -> f64 {
 
 fn diameter(triangle: &Triangle<f64>) -> f64 {
     [0, 1, 2].map(|i| length(triangle.edge(i))).into_iter().fold(0.0, f64::max)
+}
+
+/// The bytes that making a mesh takes beside its vertices and triangles: its edges, of which there are at most three to a
+/// triangle and in a list that grows up to twice that, and what is kept of them.
+pub(super) fn bytes_to_make(vertices: usize, triangles: usize) -> u64 {
+    let per_vertex = bytes_of::<[usize; 4]>(vertices);
+    let edges = (triangles.saturating_mul(3) / 2).saturating_add(vertices);
+    [per_vertex, bytes_of::<[usize; 3]>(triangles), bytes_of::<Edge>(edges)]
+        .into_iter()
+        .fold(0, u64::saturating_add)
 }
 
 fn check_vertices(vertices: &[[f64; 2]], triangles: &[[usize; 3]]) -> Result<(), MeshError> {
@@ -416,6 +431,7 @@ impl MeshError {
         use MeshError::*;
         let two = |pair: &mut [usize; 2]| *pair = pair.map(&of_vertex);
         match &mut self {
+            OutOfMemory(_) => {}
             NotFinite { vertex, .. } | Unused { vertex, .. } => *vertex = of_vertex(*vertex),
             NoSuchVertex { triangle, .. } => *triangle = of_triangle(*triangle),
             Clockwise { triangle, vertices, .. } | Flat { triangle, vertices, .. } => {

@@ -8,6 +8,7 @@ use super::materials::Materials;
 use super::mesh::{Mesh, MeshError};
 use super::obstacle::Obstacle;
 use super::rigid::FreeMotion;
+use crate::quote::{number, quoted};
 
 /// A function of the place, such as a component of the body force.
 pub trait Function: Send + Sync {
@@ -140,16 +141,16 @@ impl Problem {
 pub enum DataError {
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    #[error("{what} is {value} at ({x}, {y}); expected a finite number at every point of the mesh")]
+    #[error("{what} is {value} at ({}, {}); expected a finite number at every point of the mesh", number(*x), number(*y))]
     NotFinite { what: String, value: f64, x: f64, y: f64 },
     #[error(
-        "the displacement boundaries '{first}' and '{second}' meet at ({x}, {y}) and disagree there: u_{} = {} and {}; expected one value",
-        ["x", "y"][*component], values[0], values[1]
+        "the displacement boundaries {} and {} meet at ({}, {}) and disagree there: u_{} = {} and {}; expected one value",
+        quoted(first, '\''), quoted(second, '\''), number(*x), number(*y), ["x", "y"][*component], number(values[0]), number(values[1])
     )]
     Disagree { first: String, second: String, x: f64, y: f64, component: usize, values: [f64; 2] },
     #[error(
-        "the displacement boundaries '{first}' and '{second}' meet at ({x}, {y}) and disagree there: u . ({}, {}) = {} and {}; expected one value",
-        direction[0], direction[1], values[0], values[1]
+        "the displacement boundaries {} and {} meet at ({}, {}) and disagree there: u . ({}, {}) = {} and {}; expected one value",
+        quoted(first, '\''), quoted(second, '\''), number(*x), number(*y), number(direction[0]), number(direction[1]), number(values[0]), number(values[1])
     )]
     DisagreeAlong {
         first: String,
@@ -165,7 +166,8 @@ pub enum DataError {
     )]
     RigidMotion { motions: Vec<FreeMotion> },
     #[error(
-        "{what} has a gradient of length {length} at ({x}, {y}); expected a distance there, with a gradient between {least} and {most}"
+        "{what} has a gradient of length {} at ({}, {}); expected a distance there, with a gradient between {least} and {most}",
+        number(*length), number(*x), number(*y)
     )]
     NoDistance { what: String, length: f64, x: f64, y: f64, least: f64, most: f64 },
     #[error("no boundary has contact; expected one with contact = {{ gap = ... }}")]

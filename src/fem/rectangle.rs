@@ -8,7 +8,8 @@
 //!         right              left               crossed
 //! ```
 
-use super::mesh::{Mesh, MeshError};
+use super::mesh::{Mesh, MeshError, bytes_to_make};
+use crate::memory::{self, bytes_of};
 
 /// How the cells of a structured mesh are cut into triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,6 +89,17 @@ impl Rectangle {
     }
 
     fn check(&self) -> Result<(), MeshError> {
+        self.check_numbers()?;
+        let (cells, crossed) = (self.nx * self.ny, self.diagonal == Diagonal::Crossed);
+        let middles = if crossed { cells } else { 0 };
+        let vertices = (self.nx + 1) * (self.ny + 1) + middles;
+        let triangles = if crossed { 4 * cells } else { 2 * cells };
+        // The vertices are moved or mapped in a second list.
+        let lists = bytes_of::<[[f64; 2]; 2]>(vertices) + bytes_of::<[usize; 3]>(triangles);
+        Ok(memory::check(lists + bytes_to_make(vertices, triangles))?)
+    }
+
+    fn check_numbers(&self) -> Result<(), MeshError> {
         for (name, value) in [("width", self.width), ("height", self.height)] {
             if !(value > 0.0 && value.is_finite()) {
                 return Err(MeshError::Size { name, value });

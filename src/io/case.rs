@@ -44,7 +44,7 @@
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display, Formatter};
-use std::fs;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
@@ -53,10 +53,9 @@ use toml::de::DeTable;
 use super::exact::{angle, read_exact, read_kind};
 use super::expression::{Expression, ExpressionError};
 use super::gmsh::{self, GmshError};
-use super::quote::{cut, quoted};
+use super::input::{self, InputError, MOST_OF_A_CASE};
 use super::setting;
-use super::table::{Source, Table, Value, shown};
-use super::why_unreadable;
+use super::table::{Source, Table, Value};
 use crate::fem::exact::{self, Kind};
 use crate::fem::rectangle::MOST_CELLS;
 use crate::fem::{
@@ -64,6 +63,8 @@ use crate::fem::{
     Structured, Trapezoid,
 };
 use crate::kernel::{Material, Plane};
+use crate::memory;
+use crate::quote::{self, key as shown, quoted};
 use crate::solve::{ContactQuadrature, Degree, Gamma0, Method, Settings};
 
 /// A contact problem and how to solve it.
@@ -82,6 +83,8 @@ pub struct Case {
     pub probes: Vec<[f64; 2]>,
     /// The exact solution, if there is one.
     pub exact: Option<ExactCase>,
+    /// The files that all this was read from.
+    pub sources: Vec<PathBuf>,
 }
 
 /// An exact solution and the meshes on which it can be approximated.
@@ -98,7 +101,7 @@ pub struct ExactCase {
 
 /// What is wrong with a case file, and where.
 #[derive(Debug, Error)]
-#[error("{}{place}: {mistake}", file.display())]
+#[error("{}{place}: {mistake}", quote::path(file))]
 pub struct CaseError {
     /// The case file.
     pub file: PathBuf,
@@ -125,7 +128,7 @@ impl Display for Place {
         match self {
             Place::File => Ok(()),
             Place::Line(line) => write!(f, ":{line}"),
-            Place::Setting(setting) => write!(f, " with --set {}", cut(setting)),
+            Place::Setting(setting) => write!(f, " with --set {}", quote::cut(setting)),
         }
     }
 }
@@ -135,7 +138,9 @@ impl Display for Place {
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
 pub enum CaseMistake {
     #[error("{0}")]
-    Unreadable(String),
+    Input(#[from] InputError),
+    #[error("byte {byte} is not UTF-8; expected a text file")]
+    NoText { byte: usize },
     #[error("invalid TOML{at}: {said}")]
     Toml { at: String, said: String },
     #[error("unknown key {key}{}; expected {known}", within(place))]
@@ -154,6 +159,18 @@ pub enum CaseMistake {
     Gmsh(GmshError),
     #[error("found no key with a value; expected KEY=VALUE, such as method.gamma0=1e-3")]
     NoSetting,
+}
+
+impl CaseError {
+    /// The case may be right, but there is not enough memory to read it.
+    pub fn is_lack_of_memory(&self) -> bool {
+        match &*self.mistake {
+            CaseMistake::Input(InputError::OutOfMemory(_))
+            | CaseMistake::Mesh { error: MeshError::OutOfMemory(_), .. } => true,
+            CaseMistake::Gmsh(error) => error.is_lack_of_memory(),
+            _ => false,
+        }
+    }
 }
 
 fn within(place: &str) -> String {
@@ -175,10 +192,24 @@ impl Case {
     /// # Errors
     /// A file that can't be read, or is no text.
     pub fn text(file: &Path) -> Result<String, CaseError> {
-        read_text(file).map_err(|why| CaseError {
+        let bytes = input::read(file, MOST_OF_A_CASE).map_err(CaseMistake::from);
+        bytes.and_then(text).map_err(|mistake| CaseError {
             file: file.to_owned(),
             place: Place::File,
-            mistake: Box::new(CaseMistake::Unreadable(why)),
+            mistake: Box::new(mistake),
+        })
+    }
+
+    /// The text of a stream, such as standard input, which messages call `name`.
+    ///
+    /// # Errors
+    /// As [`Case::text`].
+    pub fn text_from(stream: impl Read, name: &Path) -> Result<String, CaseError> {
+        let bytes = input::read_from(stream, MOST_OF_A_CASE).map_err(CaseMistake::from);
+        bytes.and_then(text).map_err(|mistake| CaseError {
+            file: name.to_owned(),
+            place: Place::File,
+            mistake: Box::new(mistake),
         })
     }
 
@@ -190,7 +221,7 @@ impl Case {
     pub fn parse(file: &Path, text: &str, settings: &[String]) -> Result<Case, CaseError> {
         let source = Source { file, text, settings };
         let entries = DeTable::parse(text).map_err(|e| {
-            let start = e.span().map(|span| span.start);
+            let start = e.span().map(|span| span.start).or_else(|| deepest(&e, text));
             source.wrong(start, no_toml(&e, text))
         })?;
         let layers = setting::layers(&source);
@@ -216,13 +247,23 @@ pub(super) fn no_toml(error: &toml::de::Error, text: &str) -> CaseMistake {
     CaseMistake::Toml { at, said }
 }
 
-fn read_text(file: &Path) -> Result<String, String> {
-    let bytes = fs::read(file).map_err(|e| why_unreadable(&e))?;
-    String::from_utf8(bytes).map_err(|e| {
-        let good = e.utf8_error().valid_up_to();
-        format!("byte {} is not UTF-8; expected a text file", good + 1)
-    })
+/// Where the first key with more parts than the TOML reader takes stands: of that mistake it does not give the place.
+fn deepest(error: &toml::de::Error, text: &str) -> Option<usize> {
+    const MOST_PARTS: usize = 80;
+    let is_deep = |line: &&str| line.matches('.').nth(MOST_PARTS - 1).is_some();
+    let line = text.split('\n').find(is_deep).filter(|_| error.message() == "recursion limit")?;
+    Some(line.as_ptr() as usize - text.as_ptr() as usize)
 }
+
+fn text(bytes: Vec<u8>) -> Result<String, CaseMistake> {
+    // What the TOML reader and the expressions make of it.
+    memory::check(MEMORY_PER_BYTE * bytes.len() as u64).map_err(InputError::from)?;
+    String::from_utf8(bytes)
+        .map_err(|e| CaseMistake::NoText { byte: e.utf8_error().valid_up_to() + 1 })
+}
+
+/// The bytes of memory that a byte of a case file takes at most while it is read.
+const MEMORY_PER_BYTE: u64 = 128;
 
 fn case(file: &Path, root: &Table) -> Result<Case, CaseError> {
     root.only(&[
@@ -246,7 +287,7 @@ fn case(file: &Path, root: &Table) -> Result<Case, CaseError> {
     let settings = read_settings(root.section("solver")?)?;
     let output = root.section("output")?;
     // The mesh, and what needs it, comes last: it is what takes time.
-    let Meshed { mesh, structured, perturbation } =
+    let Meshed { mesh, structured, perturbation, file: mesh_file } =
         read_mesh(&mesh, file.parent().unwrap_or(Path::new("")))?;
     let kinds = boundaries.iter().filter_map(|b| Some((b.key.to_owned(), b.kind?))).collect();
     let conditions = on_the_mesh(&mesh, boundaries)?;
@@ -259,6 +300,7 @@ fn case(file: &Path, root: &Table) -> Result<Case, CaseError> {
         settings,
         probes,
         exact: solution.map(|solution| ExactCase { solution, kinds, structured, perturbation }),
+        sources: std::iter::once(file.to_owned()).chain(mesh_file).collect(),
     })
 }
 
@@ -267,6 +309,7 @@ struct Meshed {
     mesh: Mesh,
     structured: Option<Structured>,
     perturbation: Option<Perturbation>,
+    file: Option<PathBuf>,
 }
 
 /// `directory` is the one of the case file.
@@ -295,9 +338,10 @@ fn read_mesh(table: &Table, directory: &Path) -> Result<Meshed, CaseError> {
             if name.is_empty() {
                 return Err(value.wrong("the name of a mesh file"));
             }
-            let mesh = gmsh::read(&directory.join(name))
-                .map_err(|error| value.mistake(CaseMistake::Gmsh(error)))?;
-            return Ok(Meshed { mesh, structured: None, perturbation: None });
+            let file = directory.join(name);
+            let mesh =
+                gmsh::read(&file).map_err(|error| value.mistake(CaseMistake::Gmsh(error)))?;
+            return Ok(Meshed { mesh, structured: None, perturbation: None, file: Some(file) });
         }
         _ => {
             let expected = format!("exactly one of {}", SHAPES.join(", "));
@@ -308,7 +352,7 @@ fn read_mesh(table: &Table, directory: &Path) -> Result<Meshed, CaseError> {
         let name = value.name().to_owned();
         value.mistake(CaseMistake::Mesh { name, error })
     })?;
-    Ok(Meshed { mesh, structured: Some(structured), perturbation })
+    Ok(Meshed { mesh, structured: Some(structured), perturbation, file: None })
 }
 
 fn read_trapezoid(table: &Table) -> Result<Trapezoid, CaseError> {
@@ -365,7 +409,7 @@ fn read_material(table: &Table) -> Result<Material<f64>, CaseError> {
     let material = match MODULI.map(|key| table.get(key)) {
         [Some(lambda), Some(mu), None, None] => {
             let mu = mu.number_that(|mu| mu > 0.0, "a positive number")?;
-            let least = -2.0 / 3.0 * mu;
+            let least = quote::number(-2.0 / 3.0 * mu);
             let expected = format!("a number above {least}, for 3 lambda + 2 mu > 0");
             Material::lame(lambda.number_that(|l| 3.0 * l + 2.0 * mu > 0.0, &expected)?, mu, plane)
         }
@@ -382,7 +426,7 @@ fn read_material(table: &Table) -> Result<Material<f64>, CaseError> {
     } else {
         Err(table.wrong(CaseMistake::Combination {
             name: table.name().to_owned(),
-            found: format!("moduli with lambda + 2 mu = {stiffness} in the plane"),
+            found: format!("moduli with lambda + 2 mu = {} in the plane", quote::number(stiffness)),
             expected: "a positive finite sum".to_owned(),
         }))
     }
@@ -678,7 +722,7 @@ mod tests {
     fn every_committed_case_can_be_read() {
         let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
         let mut count = 0;
-        for file in fs::read_dir(cases).unwrap().map(|entry| entry.unwrap().path()) {
+        for file in std::fs::read_dir(cases).unwrap().map(|entry| entry.unwrap().path()) {
             if file.extension().is_some_and(|e| e == "toml") {
                 Case::read(&file).unwrap_or_else(|e| panic!("{e}"));
                 count += 1;

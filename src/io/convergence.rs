@@ -196,6 +196,9 @@ fn shown(rate: Option<f64>) -> String {
     }
 }
 
+/// The names of the files.
+pub const FILES: [&str; 2] = ["convergence.csv", "convergence.svg"];
+
 /// The text of convergence.csv.
 pub fn csv(studies: &[Study]) -> String {
     let mut text = String::from("degree,mesh,h,unknowns");
@@ -285,8 +288,8 @@ pub fn write(
     studies: &[Study],
 ) -> Result<Vec<PathBuf>, StudyFileError> {
     let mut output = Output::new(folder)?;
-    output.stage("convergence.csv", csv(studies).as_bytes())?;
-    output.stage("convergence.svg", figure(&plot(title, studies))?.as_bytes())?;
+    output.stage(FILES[0], csv(studies).as_bytes())?;
+    output.stage(FILES[1], figure(&plot(title, studies))?.as_bytes())?;
     Ok(output.publish()?)
 }
 

@@ -24,8 +24,8 @@ use std::str::FromStr;
 
 use thiserror::Error;
 
-use super::quote::quoted;
 use crate::fem::Function;
+use crate::quote::quoted;
 
 /// How deep parentheses, functions, signs and powers may nest.
 pub const MOST_LEVELS: usize = 200;

@@ -1,42 +1,60 @@
 //! The files of a run, written whole or not at all.
 //!
-//! Every file is first written beside its place under a temporary name. Only when all of them are there, and on the disk,
-//! do they get their names. A run that fails halfway leaves behind neither files nor new folders, and the files of an
-//! earlier run stay as they were.
+//! A set of files is first written into a folder of its own with a random name, `.signorini-XXXX.tmp`, which nobody else
+//! can have planted: it is made, never opened, and so is each file in it. Only when all files are there, and on the disk,
+//! do they get their place:
+//!
+//! - A folder that did not exist before appears by one rename.
+//! - In a folder that was there, the last file of the set (result.json) says that the set is whole. It goes first and comes
+//!   last: under a lock, that file of an earlier run is put aside, then the others, then the new ones are renamed into
+//!   place, it last. Should a rename fail, all goes back. So files that lie beside a result.json belong to it, whenever a
+//!   run is stopped and however many run at a time.
+//!
+//! A run that fails leaves behind neither files nor new folders. Not so one that is killed outright, whose temporary folder
+//! stays: each is locked by its run, and the next run sweeps away those that are not.
 
-use std::fs::{self, File};
+use std::collections::hash_map::RandomState;
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::hash::{BuildHasher, Hasher};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use thiserror::Error;
+
+use crate::quote;
 
 /// The files of one run, on their way into one folder.
 #[derive(Debug)]
 pub struct Output {
     folder: PathBuf,
-    staged: Vec<Staged>,
+    staging: Staging,
+    names: Vec<String>,
+    /// Files of other kinds of runs, which a reader could take for files of this one.
+    stale: Vec<&'static str>,
     /// The folders that did not exist before, innermost first.
     made: Vec<PathBuf>,
-}
-
-#[derive(Debug)]
-struct Staged {
-    temporary: PathBuf,
-    path: PathBuf,
+    /// Nothing but the set is in the temporary folder, which can thus become the folder itself.
+    whole: bool,
 }
 
 /// Why a file or folder could not be written.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
 pub enum WriteError {
-    #[error("cannot make the folder {}: {}", path.display(), reason(error))]
+    #[error("cannot make the folder {}: {}", quote::path(path), reason(error))]
     Folder { path: PathBuf, error: io::Error },
-    #[error("cannot write {}: {}", path.display(), reason(error))]
+    #[error("cannot write {}: {}", quote::path(path), reason(error))]
     File { path: PathBuf, error: io::Error },
+    #[error(
+        "{} is a file of the case, and the results would replace it; expected another folder: --out DIR",
+        quote::path(path)
+    )]
+    Source { path: PathBuf },
 }
 
 /// The reason in words; the number that the system gives it helps nobody.
-fn reason(error: &io::Error) -> String {
+pub fn reason(error: &io::Error) -> String {
     let text = error.to_string();
     match text.split_once(" (os error ") {
         Some((words, _)) => words.to_owned(),
@@ -44,54 +62,194 @@ fn reason(error: &io::Error) -> String {
     }
 }
 
+/// Refuses to write files called `names` into `folder` if one of them is one of the `sources` of the case.
+///
+/// # Errors
+/// [`WriteError::Source`].
+pub fn spare(folder: &Path, names: &[&str], sources: &[PathBuf]) -> Result<(), WriteError> {
+    // The place of a name in its folder: a link of that name would be replaced, not what it leads to.
+    let place = |path: &Path| {
+        let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
+        Some(fs::canonicalize(parent.unwrap_or(Path::new("."))).ok()?.join(path.file_name()?))
+    };
+    let sources: Vec<PathBuf> = sources.iter().filter_map(|source| place(source)).collect();
+    match names
+        .iter()
+        .map(|name| folder.join(name))
+        .find(|path| place(path).is_some_and(|place| sources.contains(&place)))
+    {
+        Some(path) => Err(WriteError::Source { path }),
+        None => Ok(()),
+    }
+}
+
 impl Output {
-    /// Makes the folder, if there is none yet.
+    /// Makes the folder, if there is none yet, and sweeps away what killed runs have left.
     ///
     /// # Errors
     /// [`WriteError::Folder`].
     pub fn new(folder: impl Into<PathBuf>) -> Result<Output, WriteError> {
         let folder = folder.into();
-        let missing = |path: &&Path| !path.as_os_str().is_empty() && !path.exists();
-        let made = folder.ancestors().take_while(missing).map(Path::to_path_buf).collect();
-        let output = Output { folder, staged: Vec::new(), made };
-        match fs::create_dir_all(&output.folder) {
-            Ok(()) => Ok(output),
-            Err(error) => Err(WriteError::Folder { path: output.folder.clone(), error }),
+        let wrong = |error| WriteError::Folder { path: folder.clone(), error };
+        let mut last = io::Error::from(io::ErrorKind::NotFound);
+        // Another run that stops may take its empty folder away just when it was found.
+        for _ in 0..ATTEMPTS {
+            let missing = |path: &&Path| !path.as_os_str().is_empty() && !path.exists();
+            let made: Vec<PathBuf> =
+                folder.ancestors().take_while(missing).map(Path::to_path_buf).collect();
+            let remove_made = || made.iter().for_each(|folder| drop(fs::remove_dir(folder)));
+            if let Err(error) = fs::create_dir_all(&folder) {
+                remove_made();
+                return Err(wrong(error));
+            }
+            let whole = made.first() == Some(&folder);
+            let home = if whole { parent(&folder) } else { folder.as_path() };
+            sweep(home);
+            match Staging::new(home, &made) {
+                Ok(staging) => {
+                    let (names, stale) = (Vec::new(), Vec::new());
+                    return Ok(Output { folder, staging, names, stale, made, whole });
+                }
+                Err(error) if error.kind() == io::ErrorKind::NotFound => last = error,
+                Err(error) => {
+                    remove_made();
+                    return Err(wrong(error));
+                }
+            }
         }
+        Err(wrong(last))
     }
 
-    /// Writes the file `name` to the disk, but not yet under its name.
+    /// Writes the file `name` to the disk, but not yet to its place. The last file of a set is the one that says that the
+    /// set is whole.
     ///
     /// # Errors
-    /// [`WriteError::File`], with the name that the file was to have.
+    /// [`WriteError::File`], with the place that the file was to have.
     pub fn stage(&mut self, name: &str, bytes: &[u8]) -> Result<(), WriteError> {
-        let path = self.folder.join(name);
-        // Two runs that write to the same folder at the same time must not share a temporary file.
-        let temporary = self.folder.join(format!(".{name}.{}.tmp", std::process::id()));
-        self.staged.push(Staged { temporary: temporary.clone(), path: path.clone() });
         let write = || {
-            if path.is_dir() {
-                return Err(io::ErrorKind::IsADirectory.into());
-            }
-            let mut file = File::create(&temporary)?;
+            self.place_is_free(name)?;
+            let path = self.staging.path.join(name);
+            let mut file = OpenOptions::new().write(true).create_new(true).open(path)?;
             file.write_all(bytes)?;
             file.sync_all()
         };
-        write().map_err(|error| WriteError::File { path: path.clone(), error })
+        write().map_err(|error| self.wrong(name, error))?;
+        self.names.push(name.to_owned());
+        Ok(())
     }
 
-    /// Gives all staged files their names, replacing the files of an earlier run, and returns the paths in the order of
+    /// The temporary folder, for another program to write to.
+    pub fn room(&self) -> &Path {
+        &self.staging.path
+    }
+
+    /// As [`Output::stage`], of a file that another program has written into [`Output::room`].
+    ///
+    /// # Errors
+    /// [`WriteError::File`], with the place that the file was to have; also if there is no such file.
+    pub fn adopt(&mut self, name: &str) -> Result<(), WriteError> {
+        self.whole = false;
+        let sync = || {
+            self.place_is_free(name)?;
+            let path = self.staging.path.join(name);
+            if !fs::symlink_metadata(&path)?.is_file() {
+                return Err(io::Error::other("not a regular file"));
+            }
+            File::open(path)?.sync_all()
+        };
+        sync().map_err(|error| self.wrong(name, error))?;
+        self.names.push(name.to_owned());
+        Ok(())
+    }
+
+    /// Files of these names, which this run does not write, go when its own come.
+    pub fn replaces(&mut self, names: &[&'static str]) {
+        self.stale.extend(names);
+    }
+
+    fn place_is_free(&self, name: &str) -> io::Result<()> {
+        if self.folder.join(name).is_dir() {
+            Err(io::ErrorKind::IsADirectory.into())
+        } else {
+            Ok(())
+        }
+    }
+
+    fn wrong(&self, name: &str, error: io::Error) -> WriteError {
+        WriteError::File { path: self.folder.join(name), error }
+    }
+
+    /// Gives all staged files their places, replacing the files of an earlier run, and returns the paths in the order of
     /// staging.
     ///
     /// # Errors
-    /// [`WriteError::File`], should the system refuse to rename.
+    /// [`WriteError::File`], should the system refuse to rename; the folder is then as it was.
     pub fn publish(mut self) -> Result<Vec<PathBuf>, WriteError> {
-        for Staged { temporary, path } in &self.staged {
-            fs::rename(temporary, path)
-                .map_err(|error| WriteError::File { path: path.clone(), error })?;
+        let paths = self.names.iter().map(|name| self.folder.join(name)).collect();
+        if !(self.whole && self.appear()) {
+            // A system without locks takes its chance.
+            let lock = File::open(&self.folder).and_then(|folder| folder.lock().map(|()| folder));
+            // From here on a signal waits until the set is whole.
+            let live = live();
+            let replaced = self.replace();
+            drop((live, lock));
+            replaced?;
         }
         self.made.clear();
-        Ok(self.staged.drain(..).map(|staged| staged.path).collect())
+        Ok(paths)
+    }
+
+    /// Renames the temporary folder to the folder, which must be empty for that.
+    fn appear(&mut self) -> bool {
+        let mut live = live();
+        let here = &self.staging.path;
+        let done = sync_folder(here).is_ok() && fs::rename(here, &self.folder).is_ok();
+        if done {
+            // There is nothing left to report it to, should the system not be able to.
+            let _ = sync_folder(parent(&self.folder));
+            live.retain(|leftover| leftover.staging != self.staging.path);
+        }
+        done
+    }
+
+    /// Puts the files of an earlier run aside and the new ones in their places, or leaves all as it was.
+    fn replace(&self) -> Result<(), WriteError> {
+        let aside = self.staging.path.join(ASIDE);
+        fs::create_dir(&aside).map_err(|error| self.wrong(ASIDE, error))?;
+        let Some((marker, others)) = self.names.split_last() else { return Ok(()) };
+        let mut moved: Vec<(PathBuf, PathBuf)> = Vec::new();
+        let mut step = |name: &str, from: PathBuf, to: PathBuf| {
+            fs::rename(&from, &to).map_err(|error| self.wrong(name, error))?;
+            moved.push((from, to));
+            Ok(())
+        };
+        let place = |name: &str| self.folder.join(name);
+        let sync = || sync_folder(&self.folder).map_err(|error| self.wrong(marker, error));
+        let mut all = || {
+            let earlier = std::iter::once(marker).chain(others).map(String::as_str);
+            for (i, name) in earlier.chain(self.stale.iter().copied()).enumerate() {
+                if fs::symlink_metadata(place(name)).is_ok_and(|found| !found.is_dir()) {
+                    step(name, place(name), aside.join(name))?;
+                }
+                if i == 0 {
+                    sync()?;
+                }
+            }
+            for name in others {
+                step(name, self.staging.path.join(name), place(name))?;
+            }
+            sync()?;
+            step(marker, self.staging.path.join(marker), place(marker))?;
+            sync()
+        };
+        let result = all();
+        if result.is_err() {
+            // In reverse, so that the earlier marker comes last. What cannot go back stays aside.
+            for (from, to) in moved.iter().rev() {
+                let _ = fs::rename(to, from);
+            }
+        }
+        result
     }
 }
 
@@ -99,12 +257,120 @@ impl Output {
 /// here is the one to report.
 impl Drop for Output {
     fn drop(&mut self) {
-        for staged in &self.staged {
-            let _ = fs::remove_file(&staged.temporary);
-        }
+        let mut live = live();
+        let _ = fs::remove_dir_all(&self.staging.path);
         for folder in &self.made {
             let _ = fs::remove_dir(folder);
         }
+        live.retain(|leftover| leftover.staging != self.staging.path);
+    }
+}
+
+/// Where, in the temporary folder, the files of an earlier run wait until the new ones are in place.
+const ASIDE: &str = "earlier";
+
+/// How often a name or a folder is tried before giving up.
+const ATTEMPTS: usize = 16;
+
+const PREFIX: &str = ".signorini-";
+const SUFFIX: &str = ".tmp";
+
+/// A temporary folder, locked as long as it is in use.
+#[derive(Debug)]
+struct Staging {
+    path: PathBuf,
+    /// The system frees the lock with the process, however that ends. `None` where folders can't be locked.
+    _lock: Option<File>,
+}
+
+impl Staging {
+    fn new(home: &Path, made: &[PathBuf]) -> io::Result<Staging> {
+        for _ in 0..ATTEMPTS {
+            let number = RandomState::new().build_hasher().finish();
+            let path = home.join(format!("{PREFIX}{number:016x}{SUFFIX}"));
+            let mut live = live();
+            match fs::create_dir(&path) {
+                Ok(()) => {}
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => continue,
+                Err(error) => return Err(error),
+            }
+            let lock = match File::open(&path).map(|folder| folder.try_lock().map(|()| folder)) {
+                Ok(Ok(folder)) => Some(folder),
+                // A sweeper was faster.
+                Ok(Err(TryLockError::WouldBlock)) => continue,
+                Ok(Err(TryLockError::Error(_))) | Err(_) => None,
+            };
+            if path.is_dir() {
+                live.push(Leftover { staging: path.clone(), made: made.to_vec() });
+                return Ok(Staging { path, _lock: lock });
+            }
+        }
+        Err(io::ErrorKind::NotFound.into())
+    }
+}
+
+/// Removes the temporary folders in `home` that no run holds.
+fn sweep(home: &Path) {
+    let Ok(entries) = fs::read_dir(home) else { return };
+    for entry in entries.flatten() {
+        let name = entry.file_name();
+        let is_ours = name.to_str().is_some_and(|n| n.starts_with(PREFIX) && n.ends_with(SUFFIX));
+        if !(is_ours && entry.file_type().is_ok_and(|kind| kind.is_dir())) {
+            continue;
+        }
+        let path = entry.path();
+        if let Ok(folder) = File::open(&path)
+            && folder.try_lock().is_ok()
+        {
+            let _ = fs::remove_dir_all(&path);
+        }
+    }
+}
+
+/// What a run would leave behind if it ended now.
+#[derive(Debug)]
+struct Leftover {
+    staging: PathBuf,
+    made: Vec<PathBuf>,
+}
+
+static LIVE: Mutex<Vec<Leftover>> = Mutex::new(Vec::new());
+
+fn live() -> MutexGuard<'static, Vec<Leftover>> {
+    LIVE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes what the runs of this process have not finished, for a process that is told to end. A set on its way to its
+/// place gets there first.
+pub fn abandon() {
+    for Leftover { staging, made } in live().drain(..) {
+        let _ = fs::remove_dir_all(&staging);
+        for folder in made {
+            let _ = fs::remove_dir(folder);
+        }
+    }
+}
+
+fn parent(folder: &Path) -> &Path {
+    match folder.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    }
+}
+
+/// Brings the names in a folder to the disk, where folders can be opened for that.
+fn sync_folder(folder: &Path) -> io::Result<()> {
+    if cfg!(not(unix)) {
+        return Ok(());
+    }
+    match File::open(folder)?.sync_all() {
+        // Some file systems have nothing to bring.
+        Err(error)
+            if matches!(error.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported) =>
+        {
+            Ok(())
+        }
+        result => result,
     }
 }
 
@@ -202,5 +468,142 @@ mod tests {
         let expected = format!("cannot make the folder {}: File exists", file.display());
         assert_eq!(error.to_string(), expected);
         assert_eq!(scratch.names(), ["file"]);
+    }
+
+    /// A set of three files that say which run they are of.
+    fn run(folder: &Path, stamp: &str) -> Result<Vec<PathBuf>, WriteError> {
+        let mut output = Output::new(folder)?;
+        for name in SET {
+            output.stage(name, stamp.as_bytes())?;
+        }
+        output.publish()
+    }
+
+    const SET: [&str; 3] = ["a.txt", "b.txt", "result.json"];
+
+    #[test]
+    fn a_set_that_cannot_be_renamed_leaves_the_earlier_one_whole() {
+        let scratch = Scratch::new("rollback");
+        run(&scratch.0, "earlier").unwrap();
+        let mut output = Output::new(&scratch.0).unwrap();
+        for name in ["c.txt", "b.txt", "a.txt", "result.json"] {
+            output.stage(name, b"later").unwrap();
+        }
+        output.replaces(&["a.txt"]);
+        // Since it was staged, somebody has put a folder in its place.
+        fs::create_dir_all(scratch.0.join("c.txt/full")).unwrap();
+        let error = output.publish().unwrap_err().to_string();
+        assert!(error.ends_with("c.txt: Is a directory"), "{error}");
+        assert_eq!(scratch.names(), ["a.txt", "b.txt", "c.txt", "result.json"]);
+        for name in SET {
+            assert_eq!(fs::read(scratch.0.join(name)).unwrap(), b"earlier", "{name}");
+        }
+    }
+
+    #[test]
+    fn files_of_another_kind_of_run_go_when_the_new_ones_come() {
+        let scratch = Scratch::new("stale");
+        run(&scratch.0, "earlier").unwrap();
+        let mut output = Output::new(&scratch.0).unwrap();
+        output.replaces(&["b.txt", "never.txt"]);
+        output.stage("a.txt", b"now").unwrap();
+        output.stage("result.json", b"now").unwrap();
+        assert_eq!(fs::read(scratch.0.join("b.txt")).unwrap(), b"earlier");
+        output.publish().unwrap();
+        assert_eq!(scratch.names(), ["a.txt", "result.json"]);
+    }
+
+    #[test]
+    fn sets_of_several_runs_at_a_time_are_never_mixed() {
+        let scratch = Scratch::new("races");
+        let folder = scratch.0.join("case");
+        let stamps = |folder: &Path| SET.map(|name| fs::read_to_string(folder.join(name)).ok());
+        let mut whole = 0;
+        std::thread::scope(|scope| {
+            let writer = |k: usize| {
+                let folder = &folder;
+                move || (0..20).for_each(|i| drop(run(folder, &format!("{k} {i}")).unwrap()))
+            };
+            let writers: Vec<_> = (0..4).map(|k| scope.spawn(writer(k))).collect();
+            while !writers.iter().all(|writer| writer.is_finished()) {
+                let before = fs::read_to_string(folder.join("result.json")).ok();
+                let [a, b, after] = stamps(&folder);
+                // A reader who finds the same result.json before and after has read one set.
+                if before.is_some() && before == after {
+                    assert_eq!([&a, &b], [&before, &before]);
+                    whole += 1;
+                }
+            }
+        });
+        let [a, b, marker] = stamps(&folder);
+        assert!(marker.is_some() && a == marker && b == marker, "{a:?} {b:?} {marker:?}");
+        assert!(whole > 0);
+        assert_eq!(
+            (scratch.names(), fs::read_dir(&folder).unwrap().count()),
+            (vec!["case".to_owned()], 3)
+        );
+    }
+
+    #[test]
+    fn what_killed_runs_left_is_swept_and_what_is_in_use_is_not() {
+        let scratch = Scratch::new("sweep");
+        let left = scratch.0.join(".signorini-0123456789abcdef.tmp");
+        fs::create_dir_all(left.join("earlier")).unwrap();
+        fs::write(left.join("a.txt"), b"half").unwrap();
+        let own = scratch.0.join(".signorini-mine.txt");
+        fs::write(&own, b"of somebody else").unwrap();
+        let first = Output::new(&scratch.0).unwrap();
+        assert!(!left.exists() && own.exists());
+        let second = Output::new(&scratch.0).unwrap();
+        assert!(first.room().is_dir() && second.room().is_dir() && first.room() != second.room());
+        drop((first, second));
+        assert_eq!(scratch.names(), [".signorini-mine.txt"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_under_the_name_of_a_file_is_replaced_and_what_it_leads_to_is_not() {
+        let scratch = Scratch::new("links");
+        let folder = scratch.0.join("case");
+        fs::create_dir(&folder).unwrap();
+        let precious = scratch.0.join("precious.txt");
+        fs::write(&precious, b"precious").unwrap();
+        for name in SET {
+            std::os::unix::fs::symlink(&precious, folder.join(name)).unwrap();
+        }
+        run(&folder, "now").unwrap();
+        assert_eq!(fs::read(&precious).unwrap(), b"precious");
+        for name in SET {
+            assert!(fs::symlink_metadata(folder.join(name)).unwrap().is_file());
+        }
+    }
+
+    #[test]
+    fn control_an_adopted_file_must_be_there() {
+        let scratch = Scratch::new("adopt");
+        let mut output = Output::new(scratch.0.join("case")).unwrap();
+        fs::write(output.room().join("a.txt"), b"of the engine").unwrap();
+        fs::write(output.room().join("droppings"), b"").unwrap();
+        output.adopt("a.txt").unwrap();
+        let error = output.adopt("result.json").unwrap_err().to_string();
+        assert!(error.ends_with("result.json: No such file or directory"), "{error}");
+        output.stage("result.json", b"{}").unwrap();
+        output.publish().unwrap();
+        let mut names: Vec<_> =
+            fs::read_dir(scratch.0.join("case")).unwrap().map(|e| e.unwrap().file_name()).collect();
+        names.sort();
+        assert_eq!(names, ["a.txt", "result.json"]);
+    }
+
+    #[test]
+    fn the_files_of_the_case_are_spared() {
+        let scratch = Scratch::new("spare");
+        let case = scratch.0.join("result.json");
+        fs::write(&case, b"[mesh]").unwrap();
+        let sources = [case, scratch.0.join("elsewhere/mesh.msh")];
+        let refused = |folder: &str| spare(&scratch.0.join(folder), &SET, &sources).is_err();
+        assert!(refused("") && refused(".") && refused("../").eq(&false));
+        fs::create_dir(scratch.0.join("other")).unwrap();
+        assert!(refused("other/..") && !refused("other") && !refused("new"));
     }
 }

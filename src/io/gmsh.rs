@@ -14,20 +14,20 @@
 //! a file announces it, only because it is there.
 
 use std::collections::{BTreeMap, HashMap};
+use std::fmt;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
-use std::{fmt, fs};
 
 use thiserror::Error;
 
-use super::quote::quoted;
-use super::why_unreadable;
+use super::input::{self, InputError, MOST_OF_A_MESH};
 use crate::fem::{Mesh, MeshError};
+use crate::quote::{self, quoted};
 
 /// Why a file gives no mesh, and where.
 #[derive(Clone, Debug, Error, PartialEq)]
-#[error("{}{place}: {mistake}", file.display())]
+#[error("{}{place}: {mistake}", quote::path(file))]
 pub struct GmshError {
     /// The mesh file.
     pub file: PathBuf,
@@ -63,9 +63,10 @@ impl fmt::Display for Place {
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
 pub enum GmshMistake {
     #[error("{0}")]
-    Unreadable(String),
-    #[error("this is no Gmsh mesh: found {found}, expected $MeshFormat")]
-    NotGmsh { found: String },
+    Input(#[from] InputError),
+    // Without its words: a case of somebody else may name a file that is none of his business.
+    #[error("this is no Gmsh mesh: expected $MeshFormat on its first line")]
+    NotGmsh,
     #[error(
         "the version of the format is {version}; expected '4.1': export the mesh with gmsh -format msh41"
     )]
@@ -82,7 +83,7 @@ pub enum GmshMistake {
     SectionTwice { section: String },
     #[error("there is a second node {node}; expected a tag of its own for each node")]
     NodeTwice { node: usize },
-    #[error("node {node} has z = {z}; expected a mesh in the plane z = 0")]
+    #[error("node {node} has z = {}; expected a mesh in the plane z = 0", quote::number(*z))]
     OutOfPlane { node: usize, z: f64 },
     #[error("element {element} is a {kind} (type {number}); expected {expected}")]
     ElementKind { element: usize, kind: &'static str, number: i32, expected: &'static str },
@@ -102,6 +103,17 @@ pub enum GmshMistake {
     Mesh { error: MeshError, note: &'static str },
 }
 
+impl GmshError {
+    /// The file may be right, but there is not enough memory to read it.
+    pub fn is_lack_of_memory(&self) -> bool {
+        matches!(
+            *self.mistake,
+            GmshMistake::Input(InputError::OutOfMemory(_))
+                | GmshMistake::Mesh { error: MeshError::OutOfMemory(_), .. }
+        )
+    }
+}
+
 type Result<T> = std::result::Result<T, GmshError>;
 
 /// The mesh in this file.
@@ -109,10 +121,10 @@ type Result<T> = std::result::Result<T, GmshError>;
 /// # Errors
 /// The first mistake found, with its place and the numbers that the file uses.
 pub fn read(file: &Path) -> Result<Mesh> {
-    let bytes = fs::read(file).map_err(|e| GmshError {
+    let bytes = input::read(file, MOST_OF_A_MESH).map_err(|error| GmshError {
         file: file.to_owned(),
         place: Place::File,
-        mistake: Box::new(GmshMistake::Unreadable(why_unreadable(&e))),
+        mistake: Box::new(GmshMistake::Input(error)),
     })?;
     from_bytes(&bytes, file)
 }
@@ -192,8 +204,7 @@ fn read_sections(cursor: &mut Cursor) -> Result<Content> {
 fn read_format(cursor: &mut Cursor) -> Result<()> {
     let (start, heading) = cursor.line();
     if heading != b"$MeshFormat" {
-        let found = shown(heading);
-        return Err(cursor.wrong_at(start, GmshMistake::NotGmsh { found }));
+        return Err(cursor.wrong_at(start, GmshMistake::NotGmsh));
     }
     let (start, version) = cursor.word("the version of the format")?;
     if version != b"4.1" {

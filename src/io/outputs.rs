@@ -19,6 +19,18 @@ use crate::kernel::Stress;
 use crate::solve::solution::ContactValues;
 use crate::solve::{Solution, Times};
 
+/// The names of the files of a solved case; the last one says that the set is whole.
+pub const FILES: [&str; 5] =
+    ["solution.vtu", "contact.vtu", "contact.csv", "picture.svg", "result.json"];
+
+/// The same of the engine fenicsx.
+pub const FILES_OF_FENICSX: [&str; 3] = ["solution.xdmf", "solution.h5", "result.json"];
+
+/// Those of the first list that are not in the second: left from another kind of run.
+pub fn only_in(names: &[&'static str], others: &[&str]) -> Vec<&'static str> {
+    names.iter().copied().filter(|name| !others.contains(name)).collect()
+}
+
 /// Why the files of a run could not be written.
 #[derive(Debug, Error)]
 pub enum OutputError {
@@ -51,6 +63,7 @@ pub fn write(
 ) -> Result<(Vec<PathBuf>, Results), OutputError> {
     let start = Instant::now();
     let mut output = Output::new(folder)?;
+    output.replaces(&only_in(&FILES_OF_FENICSX, &FILES));
     let mut stage = |file, bytes: Result<Vec<u8>, DataError>| -> Result<(), OutputError> {
         let bytes = bytes.map_err(|error| OutputError::Data { file, error })?;
         Ok(output.stage(file, &bytes)?)

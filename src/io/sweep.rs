@@ -102,6 +102,9 @@ impl From<WriteError> for SweepError {
     }
 }
 
+/// The name of the file.
+pub const FILE: &str = "sweep.csv";
+
 /// A case and what became of it along some axes.
 #[derive(Clone, Debug)]
 pub struct Sweep {
@@ -272,7 +275,7 @@ impl Sweep {
     /// A folder or file that can't be written.
     pub fn write(&self, folder: &Path) -> Result<Vec<PathBuf>, WriteError> {
         let mut output = Output::new(folder)?;
-        output.stage("sweep.csv", self.csv().as_bytes())?;
+        output.stage(FILE, self.csv().as_bytes())?;
         output.publish()
     }
 }

@@ -12,9 +12,9 @@ use toml::de::{DeInteger, DeTable, DeValue};
 
 use super::case::{CaseError, CaseMistake, Place};
 use super::expression::Expression;
-use super::quote::{cut, listed, quoted};
 use super::setting::setting_at;
 use crate::fem::BoxedFunction;
+use crate::quote::{cut, key as shown, listed, number, quoted};
 
 /// A file, its text, and what is set over it. Places in the settings come after those in the text.
 #[derive(Clone, Copy)]
@@ -67,7 +67,7 @@ impl<'s> Table<'s> {
     }
 
     pub fn get(&self, key: &str) -> Option<Value<'s>> {
-        let (key, value) = self.entries.iter().find(|(k, _)| k.get_ref() == key)?;
+        let (key, value) = self.entries.get_key_value(key)?;
         Some(Value {
             source: self.source,
             name: format!("{}{}", self.prefix, shown(key.get_ref())),
@@ -268,7 +268,7 @@ impl<'s> Value<'s> {
         })?;
         match expression.constant() {
             Some(value) if !value.is_finite() => {
-                let found = format!("{}, which is {value}", quoted(text, '"'));
+                let found = format!("{}, which is {}", quoted(text, '"'), number(value));
                 Err(self.wrong_as(found, "a finite value"))
             }
             _ => Ok(expression),
@@ -287,7 +287,7 @@ impl<'s> Value<'s> {
             DeValue::Integer(n) => cut(&n.to_string()),
             DeValue::Float(f) => cut(f.as_str()),
             DeValue::Boolean(flag) => flag.to_string(),
-            DeValue::Datetime(date) => date.to_string(),
+            DeValue::Datetime(date) => cut(&date.to_string()),
             DeValue::Array(items) => format!("a list of {}", items.len()),
             DeValue::Table(_) => "a table".to_owned(),
         };
@@ -304,12 +304,6 @@ impl<'s> Value<'s> {
     pub fn mistake(&self, mistake: CaseMistake) -> CaseError {
         self.source.wrong(Some(self.start), mistake)
     }
-}
-
-/// A key as the file has it: in quotes only if it needs them.
-pub fn shown(key: &str) -> String {
-    let bare = key.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
-    if bare && (1..=60).contains(&key.len()) { key.to_owned() } else { quoted(key, '"') }
 }
 
 fn integer(n: &DeInteger<'_>) -> Option<i128> {

@@ -23,6 +23,7 @@ use crate::fem::contact_line::{Coercivity, EdgeRule};
 use crate::fem::{DataError, Discretization, Problem};
 use crate::kernel::edge_integral::ExactEdge;
 use crate::kernel::{P1, P2};
+use crate::quote::{fixed, number};
 
 /// The free choices of method (8).
 #[derive(Clone, Debug, PartialEq)]
@@ -143,8 +144,8 @@ pub enum SolveError {
     #[error(transparent)]
     Data(#[from] DataError),
     #[error(
-        "gamma0 = {gamma0} gives kappa = {kappa:.4}, and coercivity needs kappa < 1: expected gamma0 below {limit}, the limit set by the contact edge from ({}, {}) to ({}, {}); lower gamma0, say \"auto\", or set allow_noncoercive = true to go on without any promise",
-        edge[0][0], edge[0][1], edge[1][0], edge[1][1]
+        "gamma0 = {} gives kappa = {}, and coercivity needs kappa < 1: expected gamma0 below {}, the limit set by the contact edge from ({}, {}) to ({}, {}); lower gamma0, say \"auto\", or set allow_noncoercive = true to go on without any promise",
+        number(*gamma0), fixed(*kappa, 4), number(*limit), number(edge[0][0]), number(edge[0][1]), number(edge[1][0]), number(edge[1][1])
     )]
     NotCoercive { gamma0: f64, kappa: f64, limit: f64, edge: [[f64; 2]; 2] },
     #[error(

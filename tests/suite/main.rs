@@ -10,6 +10,8 @@ mod convergence;
 #[cfg(feature = "cli")]
 mod convergence_command;
 mod documents;
+#[cfg(all(feature = "cli", unix))]
+mod doors;
 mod exact;
 mod gmsh_live;
 mod method;

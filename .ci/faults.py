@@ -1,0 +1,251 @@
+"""python3 .ci/faults.py PROGRAM [--rounds N]
+
+What a command meets in the open: it is killed at any moment, runs twice at a time, finds the disk full, talks to nobody, and is
+started in a folder that somebody else has prepared. The program must leave sets of files that are whole or not there, and end with
+a documented exit code, never by a panic. A small disk needs leave to mount one (root); without it that part says so.
+"""
+
+import argparse
+import hashlib
+import json
+import os
+import random
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+CASE = """title = "{title}"
+[mesh]
+rectangle = {{ width = 1.0, height = 1.0, nx = {n}, ny = {n} }}
+[material]
+lambda = 1.0
+mu = 1.0
+[load]
+body = ["0", "{load} + 10*x"]
+[boundary.top]
+displacement = ["0", "0"]
+[boundary.bottom]
+contact = {{ gap = "0" }}
+"""
+FILES = {"contact.csv", "contact.vtu", "picture.svg", "result.json", "solution.vtu"}
+PANIC = 101
+
+
+class Fault(Exception):
+    pass
+
+
+def expect(true, message):
+    if not true:
+        raise Fault(message)
+
+
+def digest(folder):
+    """{name: hash} of the files of a set; of result.json without the times, which no two runs share."""
+    found = {}
+    for name in FILES:
+        content = (folder / name).read_bytes()
+        if name == "result.json":
+            content = content[: content.index(b'"seconds"')]
+        found[name] = hashlib.sha256(content).hexdigest()
+    return found
+
+
+class Bench:
+    def __init__(self, program, rounds):
+        self.program, self.rounds = program, rounds
+        self.random = random.Random(20130701)
+        self.room = Path(tempfile.mkdtemp(prefix="signorini-faults-"))
+
+    def cases(self, n):
+        """Two cases on one mesh whose files differ, and {digest: case}."""
+        known = {}
+        for k, load in enumerate((-4, -3)):
+            case = self.room / f"case{k}.toml"
+            case.write_text(CASE.format(title=f"Case {k}", n=n, load=load))
+            out = self.room / f"good{k}"
+            run = self.run("solve", case, "--quiet", "--out", out)
+            expect(run.returncode == 0, f"a good case: {run.stderr}")
+            known[frozenset(digest(out).items())] = k
+        expect(len(known) == 2, "the two cases should have different files")
+        return [self.room / f"case{k}.toml" for k in (0, 1)], known
+
+    def run(self, *arguments, **options):
+        return subprocess.run([self.program, *map(str, arguments)], capture_output=True, text=True, timeout=300, **options)
+
+    def start(self, *arguments):
+        return subprocess.Popen([self.program, *map(str, arguments)], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+
+    def whole(self, out, known, what):
+        """A set that has its result.json is one of the known ones; what else is there is a temporary folder."""
+        names = {path.name for path in out.iterdir()} if out.exists() else set()
+        left = {name for name in names if name.startswith(".signorini-") and name.endswith(".tmp")}
+        expect(names - left <= FILES, f"{what}: unexpected files {sorted(names - left - FILES)}")
+        if "result.json" in names:
+            expect(FILES <= names, f"{what}: a result.json without {sorted(FILES - names)}")
+            expect(frozenset(digest(out).items()) in known, f"{what}: files of two runs are mixed")
+        return "result.json" in names, left
+
+    def kills(self):
+        """A run over an earlier one is stopped at a random moment, outright or by a signal that it can see."""
+        cases, known = self.cases(40)
+        out = self.room / "kills" / "case"
+        start = time.monotonic()
+        self.run("solve", cases[0], "--quiet", "--out", out)
+        usual = time.monotonic() - start
+        counts = {"killed": 0, "whole": 0, "left": 0}
+        for i in range(self.rounds):
+            how = self.random.choice([signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGHUP])
+            if self.random.random() < 0.2:
+                shutil.rmtree(out.parent, ignore_errors=True)
+            before = {path.name for path in out.iterdir()} if out.exists() else set()
+            run = self.start("solve", cases[i % 2], "--quiet", "--out", out)
+            time.sleep(self.random.uniform(0, 1.2 * usual))
+            run.send_signal(how)
+            code = run.wait()
+            expect(code in (0, -how), f"kills: {how.name} gave {code}: {run.stderr.read()}")
+            whole, left = self.whole(out, known, f"kills: {how.name}")
+            here = out.parent.iterdir() if out.parent.exists() else []
+            left |= {path.name for path in here if path.name.startswith(".signorini-")}
+            if how != signal.SIGKILL and code != 0:
+                swept = {name for name in before if name.startswith(".signorini-")}
+                expect(left <= swept, f"kills: {how.name} left {sorted(left)}")
+            counts["killed"] += code != 0
+            counts["whole"] += whole
+            counts["left"] += bool(left)
+        expect(self.run("solve", cases[0], "--quiet", "--out", out).returncode == 0, "kills: the last run")
+        expect(self.whole(out, known, "kills: the last run") == (True, set()), "kills: something is left for ever")
+        return f"{self.rounds} runs, {counts['killed']} of them stopped, {counts['whole']} whole sets, none mixed; {counts['left']} times a temporary folder stayed, for the next run to sweep"
+
+    def races(self):
+        """Two runs at a time into one folder, a new one or that of an earlier run."""
+        cases, known = self.cases(12)
+        for i in range(self.rounds):
+            out = self.room / "races" / "case"
+            if self.random.random() < 0.5:
+                shutil.rmtree(out.parent, ignore_errors=True)
+            runs = [self.start("solve", case, "--quiet", "--out", out) for case in self.random.sample(cases, 2)]
+            codes = [run.wait() for run in runs]
+            expect(codes == [0, 0], f"races: {codes}: {[run.stderr.read() for run in runs]}")
+            whole, left = self.whole(out, known, "races")
+            expect(whole and not left, f"races: whole {whole}, left {sorted(left)}")
+        return f"{self.rounds} pairs, no mixed set"
+
+    def small_disk(self):
+        """Disks on which a set does not fit: the earlier one stays."""
+        disk = self.room / "disk"
+        disk.mkdir()
+        cases, known = self.cases(24)
+        refused = 0
+        for size in (16, 64, 128, 256, 300, 400, 512, 700, 1000, 4000):
+            mount = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}k", "tmpfs", disk], capture_output=True, text=True)
+            if mount.returncode:
+                return f"not run: no leave to mount a small disk ({mount.stderr.strip()})"
+            try:
+                for case in (cases[0], cases[1], cases[0]):
+                    out = disk / "case"
+                    before = digest(out) if (out / "result.json").exists() else None
+                    run = self.run("solve", case, "--quiet", "--out", out)
+                    expect(run.returncode in (0, 1), f"disk of {size} k: {run.returncode}: {run.stderr}")
+                    whole, left = self.whole(out, known, f"disk of {size} k")
+                    expect(not left, f"disk of {size} k: left {sorted(left)}")
+                    if run.returncode == 1:
+                        refused += 1
+                        expect("No space left on device" in run.stderr, run.stderr)
+                        expect(whole == (before is not None), f"disk of {size} k: the earlier set is gone")
+                        expect(before is None or digest(out) == before, f"disk of {size} k: the earlier set has changed")
+            finally:
+                subprocess.run(["umount", disk], check=True)
+        expect(refused > 3, "the disks were not small enough")
+        return f"{refused} runs refused for lack of space, the earlier set as it was"
+
+    def streams(self):
+        """Closed and full standard streams, with every task."""
+        (case, _), _ = self.cases(8)
+        for arguments, code in (
+            (["solve", case, "--out", self.room / "streams"], 0), (["check", case], 0), (["--help"], 0),
+            (["solve", self.room / "nowhere.toml"], 2), (["solve"], 2), (["solve", case, "--out", case / "out"], 1),
+        ):
+            command = [self.program, *map(str, arguments)]
+            read, write = os.pipe()
+            os.close(read)
+            with open("/dev/full", "w") as full:
+                for out, err in ((write, None), (None, write), (write, write), (full, None), (None, full), (full, full)):
+                    run = subprocess.run(command, stdout=out or subprocess.DEVNULL, stderr=err or subprocess.DEVNULL)
+                    allowed = {code, 1} if out is full else {code}
+                    expect(run.returncode in allowed, f"streams: {arguments[0]} gave {run.returncode}, expected {code}")
+            os.close(write)
+            closed = subprocess.run(["sh", "-c", 'exec "$0" "$@" <&- >&- 2>&-', *command])
+            expect(closed.returncode == code, f"streams: {arguments[0]} with closed streams gave {closed.returncode}")
+        return "solve, check, help and failures: no panic"
+
+    def memory(self):
+        """With less and less address space: an answer, or exit code 1 with a message."""
+        big = self.room / "big.toml"
+        big.write_text(CASE.format(title="Big", n=600, load=-4))
+        said, refused = set(), 0
+        for megabytes in (40, 60, 80, 100, 150, 200, 300, 400, 600, 900):
+            limit = lambda: resource.setrlimit(resource.RLIMIT_AS, (megabytes << 20,) * 2)
+            run = self.run("check", big, preexec_fn=limit)
+            expect(run.returncode in (0, 1), f"memory: {megabytes} MB gave {run.returncode}: {run.stderr}")
+            refused += run.returncode
+            said.add("bytes of memory" in run.stderr or run.returncode == 0)
+        expect(refused and said == {True}, f"memory: {refused} refused, {said}")
+        return f"{refused} of 10 refused, each with the number of bytes"
+
+    def hostile_folder(self):
+        """The engine in a folder with modules and options that somebody else wrote. With DOLFINx the case is solved, without it
+        the engine is missed: in neither case does anything of the folder run."""
+        folder = self.room / "hostile"
+        for package in ("reference/fenicsx", "fenicsx", "dolfinx", "mpi4py", "numpy"):
+            (folder / package).mkdir(parents=True)
+        marker = folder / "owned"
+        trap = f"open({str(marker)!r}, 'w').close()\n"
+        for name in ("reference/fenicsx/__main__.py", "fenicsx/__main__.py", "fenicsx/__init__.py", "dolfinx/__init__.py",
+                     "mpi4py/__init__.py", "numpy/__init__.py", "sitecustomize.py", "usercustomize.py", "argparse.py", "json.py"):
+            (folder / name).write_text(trap)
+        (folder / "python3").write_text(f"#!/bin/sh\ntouch {marker}\n")
+        (folder / "python3").chmod(0o755)
+        (folder / "dolfinx_jit_options.json").write_text(json.dumps({"cffi_extra_compile_args": [f"-fplugin={marker}"]}))
+        (folder / ".petscrc").write_text("-no_such_option\n-malloc_dump\n")
+        (folder / "--nx=3").write_text(CASE.format(title="Hostile", n=4, load=-4))
+        reference = Path(__file__).resolve().parent.parent / "reference"
+        environment = dict(os.environ, PATH=f".::{os.environ['PATH']}", PYTHONPATH=":.:", OMP_NUM_THREADS="1")
+        codes = []
+        for options in ([], ["--ranks", "2"], ["--reference", reference], ["--reference", reference, "--ranks", "2"]):
+            run = self.run("solve", "--engine", "fenicsx", *options, "--", "--nx=3", cwd=folder, env=environment)
+            expect(not marker.exists(), f"hostile folder: {options}: something of it ran")
+            expect(run.returncode in (0, 1), f"hostile folder: {run.returncode}: {run.stderr}")
+            if run.returncode == 1:
+                expect("the engine fenicsx" in run.stderr, run.stderr)
+            codes.append(run.returncode)
+        return f"nothing of it ran; exit codes {codes}"
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="python3 .ci/faults.py")
+    parser.add_argument("program", help="the command signorini, built")
+    parser.add_argument("--rounds", type=int, default=100, help="random kills, and races")
+    options = parser.parse_args()
+    bench = Bench(str(Path(options.program).resolve()), options.rounds)
+    failed = False
+    try:
+        for part in (bench.kills, bench.races, bench.small_disk, bench.streams, bench.memory, bench.hostile_folder):
+            start = time.monotonic()
+            try:
+                said = part()
+            except Fault as fault:
+                failed, said = True, f"FAULT: {fault}"
+            print(f"{part.__name__}: {said} ({time.monotonic() - start:.0f} s)", flush=True)
+    finally:
+        shutil.rmtree(bench.room, ignore_errors=True)
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,119 @@
+//! How much memory there is, asked before it is taken. An allocation that fails ends a Rust program, and a system that has
+//! promised too much ends it without a word: so what grows with the input is predicted and refused in time.
+
+use std::fmt;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// More memory is needed than there is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OutOfMemory {
+    /// The bytes needed.
+    pub needed: u64,
+    /// The bytes available, if the system tells.
+    pub available: Option<u64>,
+}
+
+impl fmt::Display for OutOfMemory {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "this needs {} bytes of memory, more than ", self.needed)?;
+        match self.available {
+            Some(available) => write!(f, "the {available} bytes that are available"),
+            None => f.write_str("the system gives this program"),
+        }
+    }
+}
+
+impl std::error::Error for OutOfMemory {}
+
+/// Less than this is always there, or nothing works.
+const LITTLE: u64 = 1 << 20;
+
+/// Whether so many bytes, beside those already taken, can be had now.
+///
+/// # Errors
+/// [`OutOfMemory`] if the process may not have them (`ulimit -v`), or the system, or the group of processes that this one
+/// belongs to, does not have them.
+pub fn check(bytes: u64) -> Result<(), OutOfMemory> {
+    if bytes < LITTLE {
+        return Ok(());
+    }
+    let available = available();
+    let granted = || {
+        let Ok(bytes) = usize::try_from(bytes) else { return false };
+        // Reserved, not touched: it costs no memory, and the limits of the process are asked.
+        Vec::<u8>::new().try_reserve_exact(bytes).is_ok()
+    };
+    if available.is_some_and(|available| available < bytes) || !granted() {
+        let available = available.filter(|&available| available < bytes);
+        return Err(OutOfMemory { needed: bytes, available });
+    }
+    Ok(())
+}
+
+/// The bytes that `count` items of type `T` take in a list; no less than the largest number if that is larger.
+pub fn bytes_of<T>(count: usize) -> u64 {
+    (count as u64).saturating_mul(size_of::<T>() as u64)
+}
+
+/// The bytes that the system can still give, as far as Linux tells.
+fn available() -> Option<u64> {
+    let text = fs::read_to_string("/proc/meminfo").ok()?;
+    let kilobytes = |name| -> Option<u64> {
+        let line = text.lines().find_map(|line: &str| line.strip_prefix(name))?;
+        line.trim().strip_suffix(" kB")?.parse().ok()
+    };
+    let free = kilobytes("MemAvailable:")?.saturating_add(kilobytes("SwapFree:").unwrap_or(0));
+    Some(group_limit().into_iter().fold(free.saturating_mul(1024), u64::min))
+}
+
+/// What the control groups (version 2) of this process still allow.
+fn group_limit() -> Option<u64> {
+    let own = fs::read_to_string("/proc/self/cgroup").ok()?;
+    let own = own.lines().find_map(|line| line.strip_prefix("0::/"))?;
+    let root = Path::new("/sys/fs/cgroup");
+    let group: PathBuf = root.join(own.trim());
+    group.ancestors().take_while(|group| group.starts_with(root)).filter_map(left_in).min()
+}
+
+fn left_in(group: &Path) -> Option<u64> {
+    let number = |name: &str| fs::read_to_string(group.join(name)).ok()?.trim().parse::<u64>().ok();
+    let statistics = fs::read_to_string(group.join("memory.stat")).unwrap_or_default();
+    // Pages of files that nobody uses are given back when asked for.
+    let idle = statistics.lines().find_map(|line| line.strip_prefix("inactive_file "));
+    let idle: u64 = idle.and_then(|idle| idle.trim().parse().ok()).unwrap_or(0);
+    // No limit is the word "max", no number.
+    let most = number("memory.max")?;
+    Some(most.saturating_sub(number("memory.current")?.saturating_sub(idle)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_no_machine_has_is_refused_with_the_number_of_bytes() {
+        for bytes in [1 << 50, u64::MAX] {
+            let error = check(bytes).unwrap_err();
+            assert_eq!(error.needed, bytes);
+            let said = error.to_string();
+            assert!(
+                said.starts_with(&format!("this needs {bytes} bytes of memory, more than the ")),
+                "{said}"
+            );
+        }
+    }
+
+    #[test]
+    fn control_a_little_is_granted() {
+        for bytes in [0, 1000, 8 << 20] {
+            assert_eq!(check(bytes), Ok(()));
+        }
+    }
+
+    #[test]
+    fn sizes_too_large_for_a_number_stay_the_largest() {
+        assert_eq!(bytes_of::<[f64; 2]>(3), 48);
+        assert_eq!(bytes_of::<[f64; 2]>(usize::MAX), u64::MAX);
+    }
+}

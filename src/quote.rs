@@ -1,0 +1,185 @@
+//! What others wrote, as a message shows it: control characters escaped, long texts cut, numbers with as many digits as
+//! they need and no more, lists as people say them.
+//!
+//! Names, titles and paths come from files that anybody may have written. A terminal obeys control characters, and some
+//! characters that are not control characters turn the direction of the text round: both are shown as `\u{..}`.
+
+use std::path::Path;
+
+/// More characters of a word than this are cut.
+const MOST: usize = 60;
+
+/// More characters of a title than this are cut.
+const MOST_OF_A_LINE: usize = 200;
+
+/// Of a longer path the end is shown.
+const MOST_OF_A_PATH: usize = 300;
+
+/// More names than this are counted.
+const MOST_NAMES: usize = 20;
+
+/// `text` between two `mark`s.
+pub fn quoted(text: &str, mark: char) -> String {
+    format!("{mark}{}{mark}", cut(text))
+}
+
+/// `text` without quotes.
+pub fn cut(text: &str) -> String {
+    cut_at(text, MOST)
+}
+
+/// A title, on one line.
+pub fn line(text: &str) -> String {
+    cut_at(text, MOST_OF_A_LINE)
+}
+
+fn cut_at(text: &str, most: usize) -> String {
+    let mut shown = escaped(text.chars().take(most));
+    if text.chars().nth(most).is_some() {
+        shown.push_str("...");
+    }
+    shown
+}
+
+/// A path, on one line; of a long one its end.
+pub fn path(path: &Path) -> String {
+    let text = path.to_string_lossy();
+    match text.char_indices().rev().nth(MOST_OF_A_PATH) {
+        None => escaped(text.chars()),
+        Some((cut, c)) => format!("...{}", escaped(text[cut + c.len_utf8()..].chars())),
+    }
+}
+
+/// A key of a case file as the file has it: in quotes only if it needs them.
+pub fn key(key: &str) -> String {
+    let bare = key.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
+    if bare && (1..=MOST).contains(&key.len()) { key.to_owned() } else { quoted(key, '"') }
+}
+
+/// The digits that read back to the same number; with an exponent where there would be many zeros.
+pub fn number(x: f64) -> String {
+    if x == 0.0 || !x.is_finite() || (1e-5..1e16).contains(&x.abs()) {
+        format!("{x}")
+    } else {
+        format!("{x:e}")
+    }
+}
+
+/// With so many decimals, unless that were a row of zeros.
+pub fn fixed(x: f64, decimals: usize) -> String {
+    if x.abs() < 1e16 { format!("{x:.decimals$}") } else { number(x) }
+}
+
+/// What goes to a terminal: lines of text, and no other control characters.
+pub fn lines(text: &str) -> String {
+    text.split('\n').map(|line| escaped(line.chars())).collect::<Vec<_>>().join("\n")
+}
+
+fn escaped(text: impl Iterator<Item = char>) -> String {
+    let mut shown = String::new();
+    for c in text {
+        if is_hidden(c) {
+            shown.push_str(&escape(c));
+        } else {
+            shown.push(c);
+        }
+    }
+    shown
+}
+
+/// Control characters, and those that format text without being seen.
+fn is_hidden(c: char) -> bool {
+    c.is_control()
+        || matches!(c, '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}')
+        || matches!(c, '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}')
+        || matches!(c, '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e0fff}')
+}
+
+fn escape(c: char) -> String {
+    match c {
+        '\n' | '\r' | '\t' | '\0' => c.escape_debug().collect(),
+        _ => c.escape_unicode().collect(),
+    }
+}
+
+/// `a, b or c`, where `last` is "or".
+pub fn listed(words: &[&str], last: &str) -> String {
+    match words {
+        [] => String::new(),
+        [word] => (*word).to_owned(),
+        [first @ .., word] => format!("{} {last} {word}", first.join(", ")),
+    }
+}
+
+/// `a, b, c`; of many names the first, and how many more there are.
+pub fn names<'n>(names: impl IntoIterator<Item = &'n str>) -> String {
+    let mut rest = names.into_iter();
+    let mut shown: Vec<String> = rest.by_ref().take(MOST_NAMES).map(cut).collect();
+    match rest.count() {
+        0 => {}
+        more => shown.push(format!("and {more} more")),
+    }
+    shown.join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn control_characters_are_escaped_and_long_texts_cut() {
+        assert_eq!(quoted("a 'b'\n\u{7}é", '"'), "\"a 'b'\\n\\u{7}é\"");
+        assert_eq!(quoted(&"x".repeat(61), '\''), format!("'{}...'", "x".repeat(60)));
+        assert_eq!(quoted(&"x".repeat(60), '\''), format!("'{}'", "x".repeat(60)));
+        assert_eq!(line(&"x".repeat(201)), format!("{}...", "x".repeat(200)));
+    }
+
+    #[test]
+    fn characters_that_turn_the_text_round_are_escaped_like_control_characters() {
+        assert_eq!(cut("a\u{202e}b\u{1b}[2Jc\u{9b}\0"), "a\\u{202e}b\\u{1b}[2Jc\\u{9b}\\0");
+        assert_eq!(lines("a\u{1b}c\nb\r\n"), "a\\u{1b}c\nb\\r\n");
+    }
+
+    #[test]
+    fn of_a_long_path_the_end_is_shown() {
+        assert_eq!(path(Path::new("a\nb/c.toml")), "a\\nb/c.toml");
+        let long = format!("{}/case.toml", "é".repeat(1000));
+        let shown = path(Path::new(&long));
+        assert!(shown.starts_with("...é") && shown.ends_with("é/case.toml"), "{shown}");
+        assert_eq!(shown.chars().count(), MOST_OF_A_PATH + 3);
+        let fits = "é".repeat(MOST_OF_A_PATH);
+        assert_eq!(path(Path::new(&fits)), fits);
+    }
+
+    #[test]
+    fn numbers_read_back_and_have_no_row_of_zeros() {
+        for (x, expected) in [
+            (0.0, "0"),
+            (-0.25, "-0.25"),
+            (1.0, "1"),
+            (0.00001, "0.00001"),
+            (1e-6, "1e-6"),
+            (1e16, "1e16"),
+            (1.5e300, "1.5e300"),
+            (f64::NAN, "NaN"),
+            (f64::INFINITY, "inf"),
+        ] {
+            assert_eq!(number(x), expected);
+        }
+        assert_eq!([fixed(1.69706, 4), fixed(1e300, 4)], ["1.6971", "1e300"]);
+        for x in [0.1 + 0.2, f64::MAX, f64::MIN_POSITIVE, 5e-324, 9.999999999999998e15] {
+            assert_eq!(number(x).parse(), Ok(x));
+            assert!(number(x).len() < 25);
+        }
+    }
+
+    #[test]
+    fn lists_end_with_a_word_and_long_ones_with_a_count() {
+        assert_eq!(listed(&[], "or"), "");
+        assert_eq!(listed(&["a"], "or"), "a");
+        assert_eq!(listed(&["a", "b", "c"], "and"), "a, b and c");
+        assert_eq!(names(["a", "b"]), "a, b");
+        let many = names(["a"; 32_000]);
+        assert!(many.ends_with("a, and 31980 more") && many.len() < 100, "{many}");
+    }
+}

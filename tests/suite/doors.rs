@@ -1,0 +1,406 @@
+//! The doors of the command: pipes that close, disks that are full, signals, files that are none, names that attack the
+//! terminal, and the other engine, which runs nothing of the folder in which it is started. Each case is one that once went
+//! wrong. The random ones (kills, races, a small disk) are in `.ci/faults.py`.
+
+use std::fs;
+use std::os::unix::fs::{PermissionsExt, symlink};
+use std::os::unix::process::ExitStatusExt;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+const CASE: &str = r#"title = "Block"
+[mesh]
+rectangle = { width = 1.0, height = 1.0, nx = 4, ny = 4 }
+[material]
+lambda = 1.0
+mu = 1.0
+[load]
+body = ["0", "-4 + 10*x"]
+[boundary.top]
+displacement = ["0", "0"]
+[boundary.bottom]
+contact = { gap = "0" }
+"#;
+
+/// A fresh folder with `case.toml` in it.
+fn folder(test: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("doors").join(test);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    fs::write(folder.join("case.toml"), CASE).unwrap();
+    folder
+}
+
+fn command(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_signorini"));
+    command.args(arguments).current_dir(folder).stdin(Stdio::null());
+    command
+}
+
+/// Waits no longer than a minute: a command that waits for the other end of a pipe never ends.
+fn output(mut child: Child) -> Output {
+    let start = Instant::now();
+    while child.try_wait().unwrap().is_none() {
+        if start.elapsed() > Duration::from_secs(60) {
+            let _ = child.kill();
+            panic!("the command hangs");
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    child.wait_with_output().unwrap()
+}
+
+fn run(command: &mut Command) -> Output {
+    output(command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap())
+}
+
+fn text(bytes: &[u8]) -> &str {
+    std::str::from_utf8(bytes).unwrap()
+}
+
+/// The names in a folder, sorted.
+fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+const FILES: [&str; 5] =
+    ["contact.csv", "contact.vtu", "picture.svg", "result.json", "solution.vtu"];
+
+fn full() -> Stdio {
+    fs::OpenOptions::new().write(true).open("/dev/full").unwrap().into()
+}
+
+#[test]
+fn a_reader_who_leaves_is_no_failure_and_the_files_are_there() {
+    let folder = folder("reader");
+    let mut child = command(&folder, &["solve", "case.toml"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let output = output(child);
+    assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), ""));
+    assert_eq!(names(&folder.join("out/case")), FILES);
+}
+
+#[test]
+fn a_full_standard_output_ends_with_exit_code_1_and_the_files_are_there() {
+    let folder = folder("full");
+    let mut solve = command(&folder, &["solve", "case.toml"]);
+    let output = output(solve.stdout(full()).stderr(Stdio::piped()).spawn().unwrap());
+    let said = "error: cannot write to standard output: No space left on device\n";
+    assert_eq!((output.status.code(), text(&output.stderr)), (Some(1), said));
+    assert_eq!(names(&folder.join("out/case")), FILES);
+}
+
+#[test]
+fn a_full_standard_error_leaves_the_exit_code_as_it_is() {
+    let folder = folder("full-error");
+    for (arguments, code) in [
+        (&["solve", "nowhere.toml"][..], 2),
+        (&["solve"], 2),
+        (&["solve", "case.toml", "--out", "case.toml/out"], 1),
+        (&["solve", "case.toml"], 0),
+    ] {
+        let child = command(&folder, arguments).stdout(full()).stderr(full()).spawn().unwrap();
+        let expected = if code == 0 { 1 } else { code };
+        assert_eq!(output(child).status.code(), Some(expected), "{arguments:?}");
+        let quiet = command(&folder, arguments).arg("--quiet").stderr(full()).spawn().unwrap();
+        assert_eq!(output(quiet).status.code(), Some(code), "{arguments:?}");
+    }
+}
+
+#[test]
+fn pipes_devices_and_directories_are_no_files_to_read() {
+    let folder = folder("no-files");
+    let pipe = Command::new("mkfifo").arg(folder.join("pipe")).status().unwrap();
+    assert!(pipe.success());
+    fs::write(
+        folder.join("mesh.toml"),
+        CASE.replace(
+            "rectangle = { width = 1.0, height = 1.0, nx = 4, ny = 4 }",
+            "gmsh = \"/dev/zero\"",
+        ),
+    )
+    .unwrap();
+    for (case, expected) in [
+        ("pipe", "pipe: this is a pipe; expected a file"),
+        ("/dev/zero", "/dev/zero: this is a device; expected a file"),
+        (".", ".: this is a directory; expected a file"),
+        ("mesh.toml", "mesh.toml:3: [mesh] gmsh: /dev/zero: this is a device; expected a file"),
+    ] {
+        for task in ["solve", "check"] {
+            let output = run(&mut command(&folder, &[task, case]));
+            assert_eq!(text(&output.stderr), format!("error: {expected}\n"));
+            assert_eq!(output.status.code(), Some(2));
+        }
+    }
+    assert_eq!(names(&folder), ["case.toml", "mesh.toml", "pipe"]);
+}
+
+#[test]
+fn pipes_and_links_under_the_names_of_the_results_are_replaced() {
+    let folder = folder("planted");
+    let out = folder.join("out/case");
+    fs::create_dir_all(&out).unwrap();
+    fs::write(folder.join("precious"), "precious").unwrap();
+    symlink(folder.join("precious"), out.join("solution.vtu")).unwrap();
+    assert!(Command::new("mkfifo").arg(out.join("contact.csv")).status().unwrap().success());
+    let output = run(&mut command(&folder, &["solve", "case.toml"]));
+    assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), ""));
+    assert_eq!(fs::read_to_string(folder.join("precious")).unwrap(), "precious");
+    assert_eq!(names(&out), FILES);
+    assert!(names(&out).iter().all(|name| fs::symlink_metadata(out.join(name)).unwrap().is_file()));
+}
+
+#[test]
+fn a_case_named_with_dots_writes_below_out_and_no_case_is_overwritten() {
+    let folder = folder("names");
+    fs::rename(folder.join("case.toml"), folder.join("...toml")).unwrap();
+    assert!(run(&mut command(&folder, &["solve", "...toml"])).status.success());
+    assert_eq!(names(&folder), ["...toml", "out"]);
+    assert_eq!(names(&folder.join("out/...toml")), FILES);
+
+    fs::write(folder.join("result.json"), CASE).unwrap();
+    for arguments in [
+        &["solve", "result.json", "--out", "."][..],
+        &["solve", "./result.json", "--out", "out/.."],
+        &["solve", "result.json", "--out", folder.to_str().unwrap()],
+    ] {
+        let output = run(&mut command(&folder, arguments));
+        let said = text(&output.stderr);
+        assert!(said.ends_with("result.json is a file of the case, and the results would replace it; expected another folder: --out DIR\n"), "{said}");
+        assert_eq!(output.status.code(), Some(2));
+        assert_eq!(fs::read_to_string(folder.join("result.json")).unwrap(), CASE);
+    }
+    assert_eq!(names(&folder), ["...toml", "out", "result.json"]);
+}
+
+/// Whatever a case calls things, the terminal sees no control character but the ends of lines.
+#[test]
+fn names_titles_and_paths_are_shown_without_control_characters() {
+    let folder = folder("terminal");
+    let nasty = "\u{1b}]0;owned\u{7}\u{9b}2J\u{202e}\r";
+    let quoted = r#""\u001b]0;owned\u0007\u009b2J\u202e\r\n""#;
+    let variants = [
+        CASE.replace("\"Block\"", quoted),
+        CASE.replace("boundary.top", &format!("boundary.{quoted}")),
+        CASE.replace("\"-4 + 10*x\"", quoted),
+        CASE.replace("nx = 4", &format!("nx = {quoted}")),
+        CASE.replace("[load]", &format!("[{quoted}]")),
+        CASE.replace("lambda", quoted),
+        CASE.replace(
+            "rectangle = { width = 1.0, height = 1.0, nx = 4, ny = 4 }",
+            &format!("gmsh = {quoted}"),
+        ),
+        CASE.replace("[load]", nasty),
+        CASE.replace("1.0", &"1".repeat(100_000)),
+        CASE.replace("width = 1.0", "width = 1e300"),
+    ];
+    let case = format!("case{nasty}.toml");
+    for variant in variants {
+        fs::write(folder.join(&case), &variant).unwrap();
+        for arguments in [
+            &["solve", &case][..],
+            &["check", &case],
+            &["solve", &case, "--out", &format!("{nasty}\n")],
+        ] {
+            let output = run(&mut command(&folder, arguments));
+            for said in [text(&output.stdout), text(&output.stderr)] {
+                let controls =
+                    said.chars().filter(|&c| (c.is_control() && c != '\n') || c == '\u{202e}');
+                assert_eq!(controls.count(), 0, "{said:?}");
+                assert!(said.len() < 3000, "{said}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_mesh_file_that_is_none_is_not_shown() {
+    let folder = folder("secret");
+    fs::write(folder.join("secret"), "root:$6$salt$hash:19000:0:99999:7:::\n").unwrap();
+    fs::write(
+        folder.join("case.toml"),
+        CASE.replace(
+            "rectangle = { width = 1.0, height = 1.0, nx = 4, ny = 4 }",
+            "gmsh = \"secret\"",
+        ),
+    )
+    .unwrap();
+    let output = run(&mut command(&folder, &["solve", "case.toml"]));
+    assert_eq!(
+        text(&output.stderr),
+        "error: case.toml:3: [mesh] gmsh: secret:1: this is no Gmsh mesh: expected $MeshFormat on its first line\n"
+    );
+}
+
+/// An engine in the folder `bin` that does what the script says, and a package for it to run.
+fn with_engine(folder: &Path, script: &str) {
+    fs::create_dir_all(folder.join("bin")).unwrap();
+    fs::create_dir_all(folder.join("here/fenicsx")).unwrap();
+    fs::write(folder.join("here/fenicsx/__main__.py"), "").unwrap();
+    let python = folder.join("bin/python3");
+    let script = format!("#!/bin/sh\nif [ \"$2\" = -c ]; then exit 0; fi\n{script}\n");
+    fs::write(&python, script).unwrap();
+    fs::set_permissions(&python, fs::Permissions::from_mode(0o755)).unwrap();
+}
+
+fn engine(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = command(folder, &["solve", "--engine", "fenicsx", "--reference", "here"]);
+    let path = format!(":.:{}:/usr/bin:/bin", folder.join("bin").display());
+    command.args(arguments).env("PATH", path).env("PYTHONPATH", ":.:here:/opt/python");
+    command
+}
+
+#[test]
+fn the_engine_is_started_in_a_fresh_folder_with_paths_from_the_root() {
+    let folder = folder("engine");
+    let arguments =
+        r#"{ pwd; ls -A; printf '%s\n' "$PYTHONPATH" "$PYTHONSAFEPATH" "$@"; } > "$NOTES"; exit 1"#;
+    with_engine(&folder, arguments);
+    // On PATH as `.` and as an empty entry.
+    fs::copy(folder.join("bin/python3"), folder.join("python3")).unwrap();
+    fs::write(folder.join("python3"), "#!/bin/sh\ntouch owned\n").unwrap();
+    fs::rename(folder.join("case.toml"), folder.join("--nx=3")).unwrap();
+    let notes = folder.join("notes");
+    let output = run(engine(&folder, &["--", "--nx=3"]).env("NOTES", &notes));
+    assert_eq!(text(&output.stderr), "error: the engine fenicsx ended with exit status: 1\n");
+    assert_eq!(output.status.code(), Some(1));
+    let notes = fs::read_to_string(notes).unwrap();
+    let root = fs::canonicalize(&folder).unwrap();
+    let lines: Vec<&str> = notes.lines().collect();
+    let room = lines[0];
+    assert!(room.starts_with(root.join("out/.signorini-").to_str().unwrap()), "{notes}");
+    let package = root.join("here");
+    let case = root.join("--nx=3");
+    assert_eq!(
+        lines[1],
+        format!("{}:/opt/python", package.display()),
+        "the folder is empty: {notes}"
+    );
+    assert_eq!(
+        lines[2..],
+        ["1", "-P", "-m", "fenicsx", "--ranks", "1", "--out", room, case.to_str().unwrap()]
+    );
+    assert_eq!(names(&folder), ["--nx=3", "bin", "here", "notes", "python3"]);
+}
+
+#[test]
+fn the_engine_is_not_looked_for_in_the_folder_where_the_command_is_started() {
+    let folder = folder("cwd");
+    for package in ["reference/fenicsx", "fenicsx"] {
+        fs::create_dir_all(folder.join(package)).unwrap();
+        fs::write(folder.join(package).join("__main__.py"), "open('owned', 'w')").unwrap();
+    }
+    fs::write(folder.join("dolfinx.py"), "open('owned', 'w')").unwrap();
+    let output = run(command(&folder, &["solve", "--engine", "fenicsx", "case.toml"])
+        .env("PYTHONPATH", folder.join("reference")));
+    let said = text(&output.stderr);
+    let elsewhere = said
+        .starts_with("error: the engine fenicsx is not here: no folder fenicsx in /")
+        || said.starts_with("error: the engine fenicsx needs DOLFINx");
+    assert!(elsewhere, "{said}");
+    assert_eq!(names(&folder), ["case.toml", "dolfinx.py", "fenicsx", "reference"]);
+}
+
+#[test]
+fn a_result_that_the_engine_did_not_write_is_not_reported() {
+    let folder = folder("stale");
+    assert!(run(&mut command(&folder, &["solve", "case.toml"])).status.success());
+    with_engine(&folder, "exit 0");
+    let output = run(&mut engine(&folder, &["case.toml"]));
+    let said = text(&output.stderr);
+    assert!(
+        said.starts_with("error: the engine fenicsx wrote no result.json that can be read"),
+        "{said}"
+    );
+    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(
+        (text(&output.stdout), names(&folder.join("out/case"))),
+        ("", FILES.map(str::to_owned).to_vec())
+    );
+}
+
+#[test]
+fn the_files_of_the_engine_replace_those_of_this_program_and_the_other_way_round() {
+    let folder = folder("kinds");
+    assert!(run(&mut command(&folder, &["solve", "case.toml"])).status.success());
+    fs::copy(folder.join("out/case/result.json"), folder.join("earlier.json")).unwrap();
+    with_engine(&folder, r#"cp "$EARLIER" result.json; touch solution.xdmf solution.h5 droppings"#);
+    let mut solve = engine(&folder, &["case.toml"]);
+    let output = run(solve.env("EARLIER", folder.join("earlier.json")));
+    assert_eq!(text(&output.stderr), "");
+    assert!(text(&output.stdout).ends_with("  written     out/case: solution.xdmf, result.json\n"));
+    let of_engine = ["result.json", "solution.h5", "solution.xdmf"];
+    assert_eq!(names(&folder.join("out/case")), of_engine);
+    assert!(run(&mut command(&folder, &["solve", "case.toml"])).status.success());
+    assert_eq!(names(&folder.join("out/case")), FILES);
+}
+
+#[test]
+fn a_signal_reaches_the_processes_of_the_engine_and_nothing_half_written_stays() {
+    for (name, number) in [("TERM", 15), ("INT", 2), ("HUP", 1)] {
+        let folder = folder(&format!("signal-{name}"));
+        // A process that the engine has started, as mpirun starts those that compute.
+        let script = r#"(trap 'echo told > "$NOTES/told"; exit' TERM; touch "$NOTES/ready"; sleep 60 & wait) & wait"#;
+        with_engine(&folder, script);
+        let notes = folder.join("notes");
+        fs::create_dir(&notes).unwrap();
+        let mut solve = engine(&folder, &["case.toml"]);
+        let child = solve.env("NOTES", &notes).stderr(Stdio::piped()).spawn().unwrap();
+        let start = Instant::now();
+        while !notes.join("ready").exists() {
+            assert!(start.elapsed() < Duration::from_secs(60), "the engine does not start");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        assert_eq!(names(&folder.join("out")).len(), 2);
+        let kill =
+            Command::new("kill").args([&format!("-{name}"), &child.id().to_string()]).status();
+        assert!(kill.unwrap().success());
+        let output = output(child);
+        assert_eq!(output.status.signal(), Some(number), "{}", text(&output.stderr));
+        while !notes.join("told").exists() {
+            assert!(start.elapsed() < Duration::from_secs(60), "the engine was not told");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        assert_eq!(names(&folder), ["bin", "case.toml", "here", "notes"]);
+    }
+}
+
+/// In `bytes` of address space.
+fn within(bytes: u64, folder: &Path, arguments: &str) -> Output {
+    let script = format!("ulimit -v {}; exec \"$0\" {arguments}", bytes / 1024);
+    let mut shell = Command::new("sh");
+    run(shell.args(["-c", &script, env!("CARGO_BIN_EXE_signorini")]).current_dir(folder))
+}
+
+#[test]
+fn what_does_not_fit_into_memory_ends_with_exit_code_1_and_the_number_of_bytes() {
+    let folder = folder("memory");
+    fs::write(folder.join("large.toml"), CASE.replace("nx = 4, ny = 4", "nx = 2000, ny = 2000"))
+        .unwrap();
+    fs::write(folder.join("long.toml"), format!("{CASE}# {}\n", "x".repeat(15 << 20))).unwrap();
+    for case in ["large.toml", "long.toml"] {
+        let output = within(300 << 20, &folder, &format!("check {case}"));
+        let said = text(&output.stderr);
+        assert!(
+            said.contains("this needs ") && said.contains(" bytes of memory, more than "),
+            "{said}"
+        );
+        assert_eq!(output.status.code(), Some(1), "{said}");
+    }
+    let output = within(300 << 20, &folder, "check case.toml");
+    assert_eq!(
+        (output.status.code(), text(&output.stderr)),
+        (Some(0), ""),
+        "control: a small case fits"
+    );
+}
