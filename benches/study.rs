@@ -24,7 +24,7 @@ use signorini::io::plot::{self, Figure, Panel, Style};
 use signorini::kernel::{Material, Plane};
 use signorini::solve::ladder::fitted_slope;
 use signorini::solve::{
-    ContactQuadrature, Degree, Gamma0, Ladder, Method, Settings, SolveError, Status, Theorem, solve,
+    ContactQuadrature, Degree, Gamma0, Ladder, Method, Settings, SolveError, Theorem, solve,
 };
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
@@ -518,13 +518,15 @@ fn literature(text: &mut String) -> Result<()> {
             };
             let kappa = signorini::solve::check(&disk, &method)?.gamma.kappa;
             let outcome = match solve(&disk, &method, &Settings::default()) {
-                Ok((solution, _)) if solution.newton.status != Status::NotConverged => format!(
+                Ok((solution, _)) => format!(
                     "{} Newton steps, force {:.4} MN/m, peak pressure {:.3} MPa",
                     solution.newton.iterations(),
                     solution.quantities.contact_force,
                     solution.quantities.peak_pressure
                 ),
-                Ok(_) => "Newton's method does not converge".to_owned(),
+                Err(SolveError::NotConverged { .. }) => {
+                    "Newton's method does not converge".to_owned()
+                }
                 Err(SolveError::NotPositiveDefinite) => {
                     "A(.,.) is not positive definite: no solution need exist".to_owned()
                 }

@@ -40,10 +40,10 @@ mod command {
     use signorini::io::files::{reason, spare};
     use signorini::io::input;
     use signorini::io::result::{Results, Seconds, result_json};
-    use signorini::io::sweep::{self, Axis, NoResult, SweepError};
+    use signorini::io::sweep::{self, Axis, SweepError};
     use signorini::io::{Case, CaseError, outputs};
     use signorini::quote;
-    use signorini::solve::{self, Degree, LadderError, Solution, SolveError, Status, Times};
+    use signorini::solve::{self, Degree, LadderError, Solution, SolveError, Times};
 
     use crate::arguments::{Arguments, CaseArguments, Engine, Mesh, Task};
     use crate::progress::Phases;
@@ -197,10 +197,6 @@ mod command {
     fn solved(case: &Case) -> Result<(Solution, Times), Failure> {
         let (solution, times) = solve::solve(&case.problem, &case.method, &case.settings)
             .map_err(|e| unsolvable(&case.file, &e))?;
-        if solution.newton.status == Status::NotConverged {
-            let message = summary::not_converged(&case.file, &case.settings, &solution.newton);
-            return Err(Failure { message, code: FAILED });
-        }
         Ok((solution, times))
     }
 
@@ -317,8 +313,7 @@ mod command {
         bar.finish_and_clear();
         let code = |outcome: &sweep::Outcome| match outcome {
             Ok(_) => None,
-            Err(NoResult::Solve(error)) => Some(code(error)),
-            Err(NoResult::NotConverged { .. }) => Some(FAILED),
+            Err(error) => Some(code(error)),
         };
         let codes: Vec<u8> = sweep.runs.iter().filter_map(|run| code(&run.outcome)).collect();
         if codes.len() == sweep.runs.len() && codes.iter().all(|code| *code == WRONG) {
@@ -409,7 +404,6 @@ mod command {
                 LadderError::Mesh(MeshError::OutOfMemory(_)) => FAILED,
                 LadderError::Mesh(_) => WRONG,
                 LadderError::Solve(error) => code(error),
-                LadderError::NotConverged { .. } => FAILED,
             },
         };
         Failure { message: format!("{}: {error}", quote::path(file)), code }
@@ -430,7 +424,11 @@ mod command {
         match error {
             SolveError::Data(DataError::Mesh(MeshError::OutOfMemory(_))) => FAILED,
             SolveError::Data(_) | SolveError::NotCoercive { .. } => WRONG,
-            SolveError::NotPositiveDefinite | SolveError::OutOfMemory => FAILED,
+            SolveError::NotPositiveDefinite
+            | SolveError::NotConverged { .. }
+            | SolveError::IllConditioned { .. }
+            | SolveError::Singular
+            | SolveError::OutOfMemory { .. } => FAILED,
         }
     }
 }

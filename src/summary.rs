@@ -8,7 +8,7 @@ use signorini::io::result::{GammaChoice, NewtonHistory, Results};
 use signorini::io::sweep::Sweep;
 use signorini::io::{Case, numbers};
 use signorini::quote;
-use signorini::solve::{ContactQuadrature, NewtonReport, Outline, Settings};
+use signorini::solve::{ContactQuadrature, Outline, history};
 
 /// Lines of a name and a text.
 #[derive(Default)]
@@ -119,18 +119,6 @@ pub fn swept(sweep: &Sweep, files: &[PathBuf]) -> String {
     format!("{}\n\n{}\nwritten: {}\n", quote::line(&sweep.title), sweep.table(), written(files))
 }
 
-/// Of a case that Newton's method could not solve.
-pub fn not_converged(file: &Path, settings: &Settings, report: &NewtonReport) -> String {
-    format!(
-        "{}: no convergence: the relative residual is {:.1e} after {}; expected at most {:e}. Nothing is written.\nresiduals: {}",
-        quote::path(file),
-        report.residual,
-        count(report.iterations(), "Newton step"),
-        settings.tolerance,
-        history(&report.residuals)
-    )
-}
-
 fn sizes(triangles: usize, degree: usize, dofs: usize, contact_edges: usize, h: f64) -> String {
     let contact = count(contact_edges, "contact edge");
     format!("{triangles} P{degree} triangles, {dofs} unknowns, {contact}, h = {}", short(h))
@@ -157,10 +145,6 @@ fn newton(newton: &NewtonHistory) -> String {
         count(newton.factorizations, "factorisation"),
         newton.residual
     )
-}
-
-fn history(residuals: &[f64]) -> String {
-    residuals.iter().map(|r| format!("{r:.0e}")).collect::<Vec<_>>().join(" ")
 }
 
 fn count(n: usize, what: &str) -> String {

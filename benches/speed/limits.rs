@@ -88,7 +88,7 @@ pub fn table_of_limits(n: usize, repetitions: usize, own: &[Measured]) -> String
             let (least, factor) = least_factor(&matrix, repetitions);
             let rate = operations(&matrix) / least.as_secs_f64();
             let unknowns = size.unknowns() as f64;
-            let factor = 8.0 * factor.stored_entries() as f64 / unknowns;
+            let factor = 8.0 * factor.structure().stored_entries() as f64 / unknowns;
             let memory = own.iter().find(|m| m.size == size).map(|m| m.memory / unknowns);
             vec![
                 format!("P{}", size.degree),
@@ -177,7 +177,8 @@ pub fn orderings(n: usize, repetitions: usize) -> String {
         for _ in 0..repetitions {
             order = order.min(body(size).1);
             let (least, factor) = least_factor(&matrix, 1);
-            (factorisation, stored) = (factorisation.min(least), factor.stored_entries());
+            (factorisation, stored) =
+                (factorisation.min(least), factor.structure().stored_entries());
             drop(factor);
             let (analysis, numeric, entries) = minimum_degree(&matrix);
             other = (other.0.min(analysis), other.1.min(numeric), entries);

@@ -186,7 +186,7 @@ impl Order {
     {
         let nodes = d.space.nodes();
         let neighbours = Neighbours::new(nodes.len(), d.space.elements());
-        let order = nested_dissection(nodes, &neighbours, &vec![false; nodes.len()]);
+        let order = nested_dissection(nodes, &neighbours);
         Order { numbering: Numbering::new(&order, d.constraints.values()), neighbours }
     }
 

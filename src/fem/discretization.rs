@@ -140,6 +140,26 @@ where
         forces
     }
 
+    /// a(u, u) = int sigma(u):eps(u), from the strains: forces times displacements would cancel where a body moves far and
+    /// bends little.
+    pub fn strain_energy(&self, u: &[[f64; 2]]) -> f64 {
+        let mut energy = 0.0;
+        for (t, (triangle, _)) in self.space.triangles().enumerate() {
+            let material = self.problem.material.of(t);
+            let nodal = self.space.on_triangle(t, u);
+            let barycentric = triangle.barycentric_gradients();
+            let area = triangle.double_area() / 2.0;
+            E::at_stiffness_points(|l, weight| {
+                let strain = displacement_gradient(&nodal, &E::gradients(l, barycentric));
+                let stress = material.stress(strain);
+                let shear = stress.xy * (strain[0][1] + strain[1][0]);
+                energy +=
+                    weight * area * (stress.xx * strain[0][0] + stress.yy * strain[1][1] + shear);
+            });
+        }
+        energy
+    }
+
     /// Adds the functionals of an edge, each times its factor.
     fn add_functionals(
         &self,

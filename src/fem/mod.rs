@@ -13,6 +13,7 @@ pub mod matrix;
 pub mod mesh;
 pub mod obstacle;
 pub mod pieces;
+pub mod precise;
 pub mod problem;
 pub mod quadrature;
 pub mod rectangle;
@@ -21,6 +22,7 @@ pub mod smooth;
 pub mod space;
 pub mod structured;
 pub mod trapezoid;
+pub mod twofold;
 
 pub use discretization::Discretization;
 pub use errors::Errors;

@@ -102,7 +102,6 @@ impl NewtonHistory {
         match self.status {
             Status::Converged => "converged",
             Status::ConvergedToRounding => "converged to rounding",
-            Status::NotConverged => "not converged",
         }
     }
 }

@@ -14,7 +14,7 @@ use super::files::{Output, WriteError};
 use super::numbers::short;
 use super::outputs::{self, OutputError};
 use super::result::{Results, Seconds};
-use crate::solve::{self, SolveError, Status};
+use crate::solve::{self, SolveError};
 
 /// More runs than this are a mistake of the person who asks for them.
 pub const MOST_RUNS: usize = 10_000;
@@ -61,7 +61,7 @@ fn items(list: &str) -> Option<Vec<String>> {
 }
 
 /// What a run gives: the quantities of the solution, or why there is none.
-pub type Outcome = Result<Results, NoResult>;
+pub type Outcome = Result<Results, SolveError>;
 
 /// One solve of a sweep.
 #[derive(Clone, Debug)]
@@ -70,16 +70,6 @@ pub struct Run {
     pub values: Vec<String>,
     /// What came out.
     pub outcome: Outcome,
-}
-
-/// Why a run has no result.
-#[derive(Clone, Debug, Error, PartialEq)]
-#[expect(missing_docs, reason = "the message of each variant says what it is")]
-pub enum NoResult {
-    #[error(transparent)]
-    Solve(#[from] SolveError),
-    #[error("no convergence: the relative residual is {residual:.1e} after {steps} Newton steps")]
-    NotConverged { residual: f64, steps: usize },
 }
 
 /// Why there is no sweep.
@@ -177,13 +167,8 @@ fn combination(axes: &[Axis], mut i: usize) -> Vec<String> {
 fn solve(case: &Case, folder: Option<&Path>) -> Result<Outcome, OutputError> {
     let (solution, times) = match solve::solve(&case.problem, &case.method, &case.settings) {
         Ok(solved) => solved,
-        Err(error) => return Ok(Err(error.into())),
+        Err(error) => return Ok(Err(error)),
     };
-    let newton = &solution.newton;
-    if newton.status == Status::NotConverged {
-        let (residual, steps) = (newton.residual, newton.iterations());
-        return Ok(Err(NoResult::NotConverged { residual, steps }));
-    }
     let read = Duration::ZERO;
     Ok(Ok(match folder {
         Some(folder) => outputs::write(folder, case, &solution, read, times)?.1,

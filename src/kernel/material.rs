@@ -48,6 +48,11 @@ impl<S: Scalar> Material<S> {
         Material::lame(lambda, mu, plane)
     }
 
+    /// The same material in another number type.
+    pub(crate) fn map<T>(&self, f: impl Fn(S) -> T) -> Material<T> {
+        Material { lambda: f(self.lambda), mu: f(self.mu), plane: self.plane }
+    }
+
     /// The first Lamé coefficient as it acts in the plane: lambda, in plane stress lambda*.
     pub fn lambda(&self) -> S {
         self.lambda

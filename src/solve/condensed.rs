@@ -1,265 +1,280 @@
-//! Contact at the price of one linear solve: the body is factored once, A = L L^T with the contact layer last, and
-//! Newton's method works on the contact functionals alone (`newton`).
+//! The condensed route: the body is factored once, A = L L^T, and Newton's method works on the contact functionals alone.
 //!
-//! B touches only the nodes of triangles that own a contact edge. They come last in the order of elimination, so
-//! X = L^-1 B^T has nonzero rows only there, and needs only the trailing block of L. Then G = X^T X, the values of P
-//! without contact pressure are y0 = X^T L^-1 l + d, and at the end u = L^-T (L^-1 l - X w): one substitution forward, one
-//! backward, as in a linear solve.
+//! With u at hand, w what stands for the forces of contact on it, r = A u + B^T w - l the residual of the linear part, and
+//! v = -L^-1 r, the displacement u + L^-T (v - X dw) has the contact forces w + dw in equilibrium with the loads, and there
+//! P has the values y = P(u) + X^T v - G dw. The residual of (8) is then B^T (Psi'(y) - w - dw). So Newton's method has w
+//! for its unknown:
+//!
+//! - its step solves w + dw = Psi'(y) + H dy with dy = -G dw, where H = Psi''(y) = R R^T is block diagonal; with
+//!   s = w - Psi'(y) this is dw = R t - s, (I + R^T G R) t = R^T G s: symmetric, with no eigenvalue below 1,
+//! - DJ d = -s . dy, d^T A d = dw . G dw.
+//!
+//! A first pass starts from the lift of the prescribed data with w = 0. What is lost in it (where the body bends far without
+//! contact, G w nearly cancels what it is subtracted from) a second pass finds again, from the u and w of the first and
+//! their true residual: nothing cancels there, because everything is small.
 
-use faer::linalg::matmul::triangular::{BlockStructure, matmul};
-use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
-use faer::{Accum, Col, Mat, Par};
+use faer::linalg::solvers::Solve;
+use faer::{Col, Mat, Side};
 
+use super::SolveError;
+use super::accuracy::{Pass, Route};
+use super::compliance::{Compliance, Reach};
+use super::contact_edges::ContactEdges;
 use super::factor::Factor;
-use super::newton::{Edges, Reduced};
-use super::ordering::nested_dissection;
-use super::times::{Stopwatch, Times};
-use super::{NewtonReport, Settings, SolveError, Status};
-use crate::fem::discretization::{Discretization, Functional};
-use crate::fem::matrix::{self, LowerTriangle, Neighbours, Numbering};
+use super::iterate::{Evaluation, Iterate};
+use super::newton::{self, Body, Derivatives, Residual, Step, block};
+use super::system::System;
 use crate::kernel::edge_integral::ExactEdge;
 
-/// The solution of method (8) at the nodes, how it was found, and how long that took.
-///
-/// # Errors
-/// [`SolveError::NotPositiveDefinite`] when gamma0 is beyond the true limit, and [`SolveError::OutOfMemory`].
-pub fn solve<E, const N: usize, const M: usize>(
-    d: &Discretization<E, N, M>,
-    system: System,
-    settings: &Settings,
-) -> Result<(Vec<[f64; 2]>, NewtonReport, Times), SolveError>
+/// The body, factored, and the forces of contact on it.
+pub struct Condensed<'a, 'd, 'p, E, const N: usize, const M: usize> {
+    system: &'a System<'d, 'p, E, N, M>,
+    factor: &'a Factor,
+    reach: &'a Reach,
+    compliance: Compliance<'a>,
+    /// What residuals are relative to.
+    reference: f64,
+    w: Vec<f64>,
+    first: bool,
+}
+
+impl<'a, 'd, 'p, E, const N: usize, const M: usize> Condensed<'a, 'd, 'p, E, N, M>
 where
     E: ExactEdge<f64, N, M>,
 {
-    let mut times = Times::default();
-    let mut watch = Stopwatch::start();
-    let body = system.factor()?;
-    times.factor = watch.lap();
+    /// With the factor of A and without contact yet.
+    pub fn new(
+        system: &'a System<'d, 'p, E, N, M>,
+        factor: &'a Factor,
+        reach: &'a Reach,
+        reference: f64,
+    ) -> Self {
+        let compliance = Compliance::new(factor, reach, |add| {
+            for (position, &e) in reach.order.iter().enumerate() {
+                system.functionals(e, |row, a, entry| add(row, position * M + a, entry));
+            }
+        });
+        let w = vec![0.0; reach.functionals()];
+        Condensed { system, factor, reach, compliance, reference, w, first: true }
+    }
 
-    let prescribed = d.constraints.lift();
-    let mut z: Vec<f64> =
-        body.numbering.gather(&d.linear_residual(&prescribed).values).iter().map(|r| -r).collect();
-    body.factor.forward(&mut z);
-    times.forward = watch.lap();
-
-    let x = body.contact_columns(d);
-    let compliance = gram(&x);
-    let mut free = transpose_times(&x, &z[body.layer..]);
-    for (e, edge) in d.contact.iter().enumerate() {
-        let p = edge.p(&d.space.on_triangle(edge.edge.triangle, &prescribed));
-        for a in 0..M {
-            free[e * M + a] += p[a];
+    /// r <- r + B^T w
+    fn add_contact_forces(&self, w: &[f64], r: &mut [f64]) {
+        for (position, &e) in self.reach.order.iter().enumerate() {
+            self.system.functionals(e, |row, a, entry| r[row] += entry * w[position * M + a]);
         }
     }
-    times.compliance = watch.lap();
-
-    let reference = d.free_norm(&d.load) + d.free_norm(&d.residual_and_load(&prescribed));
-    times.judge = watch.lap();
-
-    let edges = ContactEdges { d, body: &body, reference };
-    let reduced = Reduced { edges: &edges, compliance: &compliance, free: &free };
-    let iterate = reduced.minimise(vec![0.0; free.len()], settings.max_iterations)?;
-    times.newton = watch.lap();
-
-    let w = Col::from_fn(iterate.w.len(), |i| iterate.w[i]);
-    for (z, xw) in z[body.layer..].iter_mut().zip((&x * w).iter()) {
-        *z -= xw;
-    }
-    body.factor.backward(&mut z);
-    let mut u = prescribed;
-    body.numbering.scatter(&z, &mut u);
-    times.backward = watch.lap();
-
-    let report = judge(d, &d.residual(&u), reference, iterate.residuals, settings);
-    times.judge += watch.lap();
-    Ok((u, report, times))
 }
 
-/// A residual this many unit roundoffs times its magnitudes is what the factorisation leaves.
-const ROUNDING: f64 = 32.0;
-
-/// The verdict on a solution from its residual in the full system.
-fn judge<E, const N: usize, const M: usize>(
-    d: &Discretization<E, N, M>,
-    residual: &Functional,
-    reference: f64,
-    residuals: Vec<f64>,
-    settings: &Settings,
-) -> NewtonReport
+impl<E, const N: usize, const M: usize> Route<E, N, M> for Condensed<'_, '_, '_, E, N, M>
 where
     E: ExactEdge<f64, N, M>,
 {
-    let relative = |norm: f64| if norm == 0.0 { 0.0 } else { norm / reference };
-    let reached = relative(d.free_norm(&residual.values));
-    let rounding = relative(ROUNDING * f64::EPSILON * d.free_norm(&residual.magnitudes));
-    let status = if reached <= settings.tolerance {
-        Status::Converged
-    } else if reached <= rounding {
-        Status::ConvergedToRounding
-    } else {
-        Status::NotConverged
-    };
-    NewtonReport { status, residuals, residual: reached, factorizations: 1 }
+    fn pass(
+        &mut self,
+        iterate: &mut Iterate,
+        at: Evaluation,
+        residuals: &mut Vec<f64>,
+        most: usize,
+    ) -> Result<Pass, SolveError> {
+        let mut v = at.linear;
+        self.add_contact_forces(&self.w, &mut v);
+        v.iter_mut().for_each(|v| *v = -*v);
+        self.factor.forward(&mut v);
+        let mut y: Vec<f64> = Vec::with_capacity(at.p.len());
+        for &e in &self.reach.order {
+            y.extend(block::<M>(&at.p, e));
+        }
+        for (y, change) in y.iter_mut().zip(self.compliance.transpose_times(&v)) {
+            *y += change;
+        }
+        let edges = ContactEdges { d: self.system.d, order: &self.reach.order };
+        let before = self.w.clone();
+        let start = y.iter().map(|y| y.abs()).collect();
+        let soft = self.first;
+        let mut body = Reduced { route: self, y, start, w: before.clone(), dw: Vec::new() };
+        newton::minimise(&edges, &mut body, soft, residuals, most)?;
+        let w = body.w;
+        let change: Vec<f64> = w.iter().zip(&before).map(|(w, before)| w - before).collect();
+        self.compliance.subtract(&change, &mut v);
+        self.w = w;
+        self.first = false;
+        let energy = v.iter().map(|v| v * v).sum();
+        self.factor.backward(&mut v);
+        iterate.add(self.system, 1.0, &v);
+        Ok(Pass { energy, square: v.iter().map(|v| v * v).sum() })
+    }
 }
 
-/// The linear system of the body, the contact layer last.
-pub struct System {
-    numbering: Numbering,
-    matrix: LowerTriangle,
-    /// The first degree of freedom of the contact layer.
-    layer: usize,
+/// Newton's unknown w, with the values of P that belong to it.
+struct Reduced<'r, 'a, 'd, 'p, E, const N: usize, const M: usize> {
+    route: &'r Condensed<'a, 'd, 'p, E, N, M>,
+    y: Vec<f64>,
+    /// The magnitudes that y was computed from.
+    start: Vec<f64>,
+    w: Vec<f64>,
+    dw: Vec<f64>,
 }
 
-impl System {
-    /// The matrix of A(.,.) in the order of elimination.
-    pub fn new<E, const N: usize, const M: usize>(d: &Discretization<E, N, M>) -> Self
-    where
-        E: ExactEdge<f64, N, M>,
-    {
-        let nodes = d.space.nodes();
-        let mut last = vec![false; nodes.len()];
-        for edge in &d.contact {
-            for &node in &d.space.elements()[edge.edge.triangle] {
-                last[node] = true;
+/// A residual this many unit roundoffs times its magnitudes is noise.
+const NOISE: f64 = 4.0;
+
+impl<E, const N: usize, const M: usize> Reduced<'_, '_, '_, '_, E, N, M>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    fn times_compliance(&self, v: &[f64]) -> Vec<f64> {
+        let product = &self.route.compliance.g * Col::from_fn(v.len(), |i| v[i]);
+        product.iter().copied().collect()
+    }
+
+    /// The norm of B^T s, or of |B|^T |s|, relative to the reference.
+    fn norm(&self, s: &[f64], of: impl Fn(f64) -> f64) -> f64 {
+        let route = self.route;
+        let mut sum = vec![0.0; route.system.numbering.count];
+        for (position, &e) in route.reach.order.iter().enumerate() {
+            route.system.functionals(e, |row, a, entry| {
+                sum[row] += of(entry) * s[position * M + a];
+            });
+        }
+        sum.iter().map(|r| r * r).sum::<f64>().sqrt() / route.reference
+    }
+
+    /// The columns of R with their edges.
+    fn roots(at: &Derivatives<M>) -> Vec<(usize, [f64; M])> {
+        let of =
+            |(e, h): (usize, &[[f64; M]; M])| root(*h).into_iter().map(move |column| (e, column));
+        at.hessian.iter().enumerate().flat_map(of).collect()
+    }
+
+    fn s(&self, at: &Derivatives<M>) -> Vec<f64> {
+        self.w.iter().zip(&at.gradient).map(|(w, g)| w - g).collect()
+    }
+}
+
+impl<E, const N: usize, const M: usize> Body<M> for Reduced<'_, '_, '_, '_, E, N, M>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    fn y(&self) -> &[f64] {
+        &self.y
+    }
+
+    fn residual(&self, at: &Derivatives<M>) -> Residual {
+        let mut magnitudes = Vec::with_capacity(self.w.len());
+        for (e, hessian) in at.hessian.iter().enumerate() {
+            for a in 0..M {
+                let i = e * M + a;
+                let spread: f64 = (0..M)
+                    .map(|b| {
+                        hessian[a][b].abs() * (self.y[e * M + b].abs() + self.start[e * M + b])
+                    })
+                    .sum();
+                magnitudes.push(self.w[i].abs() + at.gradient[i].abs() + spread);
             }
         }
-        let neighbours = Neighbours::new(nodes.len(), d.space.elements());
-        let order = nested_dissection(nodes, &neighbours, &last);
-        let numbering = Numbering::under(&order, &d.constraints);
-        let in_layer = numbering.of.iter().zip(&last).filter(|(_, last)| **last);
-        let layer = numbering.count - in_layer.flat_map(|(of, _)| of).flatten().count();
-        let matrix = matrix::assemble(d, &numbering, &neighbours);
-        System { numbering, matrix, layer }
+        Residual {
+            norm: self.norm(&self.s(at), |entry| entry),
+            noise: NOISE * f64::EPSILON * self.norm(&magnitudes, f64::abs),
+        }
     }
 
-    fn factor(self) -> Result<Body, SolveError> {
-        let factor = Factor::new(&self.matrix)?;
-        Ok(Body { numbering: self.numbering, factor, layer: self.layer })
-    }
-}
-
-/// The factored body.
-struct Body {
-    numbering: Numbering,
-    factor: Factor,
-    layer: usize,
-}
-
-impl Body {
-    /// The rows of B as columns over the contact layer: calls `f` with the row of the layer, the column and the entry.
-    fn functionals<E, const N: usize, const M: usize>(
-        &self,
-        d: &Discretization<E, N, M>,
-        mut f: impl FnMut(usize, usize, f64),
-    ) where
-        E: ExactEdge<f64, N, M>,
-    {
-        for (e, edge) in d.contact.iter().enumerate() {
-            let nodes = &d.space.elements()[edge.edge.triangle];
-            for (a, functional) in edge.functionals.p0.iter().enumerate() {
-                for (&node, &entries) in nodes.iter().zip(functional) {
-                    let entries = self.numbering.in_frame(node, entries.into());
-                    for (number, entry) in self.numbering.of[node].iter().zip(entries) {
-                        if let Some(number) = number {
-                            f(number - self.layer, e * M + a, entry);
-                        }
-                    }
+    /// By a few steps of the power method on R^T G R.
+    fn stiffness_of_contact(&mut self, at: &Derivatives<M>) -> f64 {
+        let roots = Self::roots(at);
+        let mut x = vec![1.0; roots.len()];
+        let mut largest = 0.0;
+        for _ in 0..POWER_STEPS {
+            let norm = x.iter().map(|x| x * x).sum::<f64>().sqrt();
+            if !(norm > 0.0) {
+                return 0.0;
+            }
+            let mut rx = vec![0.0; self.w.len()];
+            for ((e, column), x) in roots.iter().zip(&x) {
+                for a in 0..M {
+                    rx[e * M + a] += column[a] * x / norm;
                 }
             }
+            let grx = self.times_compliance(&rx);
+            x = roots.iter().map(|(e, column)| dot(*column, block(&grx, *e))).collect();
+            largest = x.iter().map(|x| x * x).sum::<f64>().sqrt();
+        }
+        largest
+    }
+
+    fn step(&mut self, at: &Derivatives<M>) -> Result<Step, SolveError> {
+        let columns = Self::roots(at);
+        let s = self.s(at);
+        let gs = self.times_compliance(&s);
+        let g = &self.route.compliance.g;
+        let system = Mat::from_fn(columns.len(), columns.len(), |i, j| {
+            if i < j {
+                return 0.0;
+            }
+            let ((e, r), (f, q)) = (columns[i], columns[j]);
+            let mut sum = f64::from(u8::from(i == j));
+            for a in 0..M {
+                for b in 0..M {
+                    sum += r[a] * g[(e * M + a, f * M + b)] * q[b];
+                }
+            }
+            sum
+        });
+        let right = Col::from_fn(columns.len(), |i| dot(columns[i].1, block(&gs, columns[i].0)));
+        let llt = system.llt(Side::Lower).map_err(|_| SolveError::Singular)?;
+        let t = llt.solve(right);
+        let mut dw: Vec<f64> = s.iter().map(|s| -s).collect();
+        for (i, (e, column)) in columns.iter().enumerate() {
+            for a in 0..M {
+                dw[e * M + a] += column[a] * t[i];
+            }
+        }
+        let dy: Vec<f64> = self.times_compliance(&dw).into_iter().map(|v| -v).collect();
+        let slope = -s.iter().zip(&dy).map(|(s, dy)| s * dy).sum::<f64>();
+        let curvature = -dw.iter().zip(&dy).map(|(dw, dy)| dw * dy).sum::<f64>();
+        self.dw = dw;
+        Ok(Step { dy, slope, curvature })
+    }
+
+    fn advance(&mut self, t: f64, step: &Step) {
+        for (w, dw) in self.w.iter_mut().zip(&self.dw) {
+            *w += t * dw;
+        }
+        for (y, dy) in self.y.iter_mut().zip(&step.dy) {
+            *y += t * dy;
         }
     }
-
-    /// X = L^-1 B^T on the contact layer.
-    fn contact_columns<E, const N: usize, const M: usize>(
-        &self,
-        d: &Discretization<E, N, M>,
-    ) -> Mat<f64>
-    where
-        E: ExactEdge<f64, N, M>,
-    {
-        let mut x = Mat::zeros(self.numbering.count - self.layer, M * d.contact.len());
-        self.functionals(d, |row, column, entry| x[(row, column)] += entry);
-        let trailing = self.factor.trailing_block(self.layer);
-        solve_lower_triangular_in_place(trailing.as_ref(), x.as_mut(), Par::Seq);
-        x
-    }
 }
 
-/// X^T X
-fn gram(x: &Mat<f64>) -> Mat<f64> {
-    let mut g = Mat::zeros(x.ncols(), x.ncols());
-    matmul(
-        g.as_mut(),
-        BlockStructure::TriangularLower,
-        Accum::Replace,
-        x.transpose(),
-        BlockStructure::Rectangular,
-        x.as_ref(),
-        BlockStructure::Rectangular,
-        1.0,
-        Par::Seq,
-    );
-    for j in 0..g.ncols() {
-        for i in 0..j {
-            g[(i, j)] = g[(j, i)];
+/// Steps of the power method: an eigenvalue to within a factor is all that is asked.
+const POWER_STEPS: usize = 4;
+
+fn dot<const M: usize>(a: [f64; M], b: [f64; M]) -> f64 {
+    (0..M).map(|i| a[i] * b[i]).sum()
+}
+
+/// A pivot this small beside its diagonal entry belongs to a singular matrix.
+const SINGULAR: f64 = 1e-14;
+
+/// The columns of R with H = R R^T for a positive semidefinite H, by Cholesky; those of zero pivots are left out.
+fn root<const M: usize>(mut h: [[f64; M]; M]) -> Vec<[f64; M]> {
+    let diagonal: [f64; M] = std::array::from_fn(|a| h[a][a]);
+    let mut columns = Vec::with_capacity(M);
+    for k in 0..M {
+        if h[k][k] <= SINGULAR * diagonal[k] {
+            continue;
         }
+        let pivot = h[k][k].sqrt();
+        let mut column = [0.0; M];
+        for i in k..M {
+            column[i] = h[i][k] / pivot;
+        }
+        for i in k..M {
+            for j in k..M {
+                h[i][j] -= column[i] * column[j];
+            }
+        }
+        columns.push(column);
     }
-    g
-}
-
-fn transpose_times(x: &Mat<f64>, v: &[f64]) -> Vec<f64> {
-    let product = x.transpose() * Col::from_fn(v.len(), |i| v[i]);
-    product.iter().copied().collect()
-}
-
-/// Psi of the discretization, edge by edge, and the norms of B^T s.
-struct ContactEdges<'a, 'b, E, const N: usize, const M: usize> {
-    d: &'a Discretization<'b, E, N, M>,
-    body: &'a Body,
-    reference: f64,
-}
-
-impl<E: ExactEdge<f64, N, M>, const N: usize, const M: usize> ContactEdges<'_, '_, E, N, M> {
-    /// |E| / gamma
-    fn weight(&self, e: usize) -> f64 {
-        let edge = &self.d.contact[e];
-        edge.length / edge.gamma
-    }
-
-    fn norm(&self, s: &[f64], of: impl Fn(f64) -> f64) -> f64 {
-        let mut sum = vec![0.0; self.body.numbering.count - self.body.layer];
-        self.body.functionals(self.d, |row, column, entry| sum[row] += of(entry) * s[column]);
-        let norm = sum.iter().map(|r| r * r).sum::<f64>().sqrt();
-        if norm == 0.0 { 0.0 } else { norm / self.reference }
-    }
-}
-
-impl<E, const N: usize, const M: usize> Edges<M> for ContactEdges<'_, '_, E, N, M>
-where
-    E: ExactEdge<f64, N, M>,
-{
-    fn count(&self) -> usize {
-        self.d.contact.len()
-    }
-
-    fn derivatives(&self, e: usize, p: [f64; M]) -> ([f64; M], [[f64; M]; M]) {
-        let integrals = self.d.rule.integrals::<E, N, M>(p);
-        let weight = self.weight(e);
-        (
-            integrals.gradient.map(|g| weight * g),
-            integrals.hessian.map(|row| row.map(|h| weight * h)),
-        )
-    }
-
-    fn bregman(&self, e: usize, p: [f64; M], q: [f64; M]) -> f64 {
-        self.weight(e) * self.d.rule.bregman::<E, N, M>(p, q)
-    }
-
-    fn residual_norm(&self, s: &[f64]) -> f64 {
-        self.norm(s, |entry| entry)
-    }
-
-    fn magnitude_norm(&self, s: &[f64]) -> f64 {
-        self.norm(s, f64::abs)
-    }
+    columns
 }

@@ -1,4 +1,7 @@
-//! The sparse Cholesky factor A = L L^T of the matrix on the free degrees of freedom, by faer, in a given order.
+//! The sparse Cholesky factor H = L L^T of a matrix on the free degrees of freedom, by faer, in a given order: its
+//! structure, which all matrices with one pattern share and which tells what a factorisation will cost, and its numbers.
+
+use std::sync::Arc;
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltError;
@@ -9,55 +12,153 @@ use faer::sparse::linalg::cholesky::supernodal::{
     factorize_supernodal_symbolic_cholesky_scratch,
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Conj, Mat, MatMut, Par};
+use faer::{Conj, MatMut, MatRef, Par};
 
 use super::SolveError;
+use super::memory;
 use crate::fem::matrix::LowerTriangle;
 
-/// L of A = L L^T.
-pub struct Factor {
+/// The structure of L: its columns in groups with one pattern, the supernodes.
+pub struct Structure {
     symbolic: SymbolicSupernodalCholesky<usize>,
-    values: Vec<f64>,
 }
 
-impl Factor {
-    /// Factors the matrix, rows and columns in the order that they have.
+/// A pivot was not positive: the matrix is not positive definite, as far as doubles tell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Indefinite;
+
+impl Structure {
+    /// The structure of the factor of a matrix with this pattern.
     ///
     /// # Errors
-    /// [`SolveError::NotPositiveDefinite`], and [`SolveError::OutOfMemory`].
+    /// [`SolveError::OutOfMemory`].
     pub fn new(matrix: &LowerTriangle) -> Result<Self, SolveError> {
         let n = matrix.starts.len() - 1;
-        let symbolic = analyse(n, matrix)?;
-        let parallel = Par::Seq;
-        let mut values = zeros(symbolic.len_val())?;
-        let scratch = factorize_supernodal_numeric_llt_scratch::<usize, f64>(
-            &symbolic,
-            parallel,
-            Default::default(),
+        let (starts, rows) = upper_triangle(n, matrix);
+        let upper = SymbolicSparseColMatRef::new_checked(n, n, &starts, None, &rows);
+        let scratch = factorize_supernodal_symbolic_cholesky_scratch::<usize>(n);
+        let out_of_memory = || SolveError::OutOfMemory { bytes: scratch.size_bytes() as u64 };
+        let mut memory = MemBuffer::try_new(scratch).map_err(|_| out_of_memory())?;
+        let mut etree = vec![0_isize; n];
+        let mut counts = vec![0_usize; n];
+        let etree = prefactorize_symbolic_cholesky(
+            &mut etree,
+            &mut counts,
+            upper,
+            MemStack::new(&mut memory),
         );
-        let mut memory = MemBuffer::try_new(scratch).map_err(|_| SolveError::OutOfMemory)?;
-        let pattern =
-            SymbolicSparseColMatRef::new_checked(n, n, &matrix.starts, None, &matrix.rows);
-        factorize_supernodal_numeric_llt(
-            &mut values,
-            SparseColMatRef::new(pattern, &matrix.values),
-            Default::default(),
-            &symbolic,
-            parallel,
+        let symbolic = factorize_supernodal_symbolic_cholesky(
+            upper,
+            etree,
+            &counts,
             MemStack::new(&mut memory),
             Default::default(),
         )
-        .map_err(|LltError::NonPositivePivot { .. }| SolveError::NotPositiveDefinite)?;
-        Ok(Factor { symbolic, values })
+        .map_err(|_| out_of_memory())?;
+        Ok(Structure { symbolic })
     }
 
-    fn llt(&self) -> SupernodalLltRef<'_, usize, f64> {
-        SupernodalLltRef::new(&self.symbolic, &self.values)
+    /// How many unknowns there are.
+    pub fn size(&self) -> usize {
+        self.symbolic.nrows()
+    }
+
+    /// How many supernodes there are. They are numbered as they are eliminated.
+    pub fn supernodes(&self) -> usize {
+        self.symbolic.n_supernodes()
+    }
+
+    /// The columns of supernode `s`.
+    pub fn columns(&self, s: usize) -> std::ops::Range<usize> {
+        self.symbolic.supernode_begin()[s]..self.symbolic.supernode_end()[s]
+    }
+
+    /// The rows of L below the block of supernode `s` on the diagonal, in increasing order.
+    pub fn rows_below(&self, s: usize) -> &[usize] {
+        self.symbolic.supernode(s).pattern()
     }
 
     /// The entries of L that are stored.
     pub fn stored_entries(&self) -> usize {
-        self.values.len()
+        self.symbolic.len_val()
+    }
+
+    /// Multiplications with an addition of one factorisation: half the sum over the columns of the squares of their lengths.
+    pub fn operations(&self) -> f64 {
+        let of = |s: usize| {
+            let (columns, below) = (self.columns(s).len(), self.rows_below(s).len());
+            (1..=columns).map(|left| ((left + below) as f64).powi(2)).sum::<f64>() / 2.0
+        };
+        (0..self.supernodes()).map(of).sum()
+    }
+}
+
+/// L of H = L L^T.
+pub struct Factor {
+    structure: Arc<Structure>,
+    values: Vec<f64>,
+}
+
+impl Factor {
+    /// The factor of a matrix.
+    ///
+    /// # Errors
+    /// [`SolveError::Singular`] if it is not positive definite, as far as doubles tell, and [`SolveError::OutOfMemory`].
+    pub fn new(matrix: &LowerTriangle) -> Result<Self, SolveError> {
+        let structure = Arc::new(Structure::new(matrix)?);
+        Factor::with(&structure, matrix)?.map_err(|Indefinite| SolveError::Singular)
+    }
+
+    /// The factor of a matrix with the pattern that `structure` is the structure of.
+    ///
+    /// # Errors
+    /// [`SolveError::OutOfMemory`]; inside, [`Indefinite`].
+    pub fn with(
+        structure: &Arc<Structure>,
+        matrix: &LowerTriangle,
+    ) -> Result<Result<Self, Indefinite>, SolveError> {
+        let n = structure.size();
+        let parallel = Par::Seq;
+        let scratch = factorize_supernodal_numeric_llt_scratch::<usize, f64>(
+            &structure.symbolic,
+            parallel,
+            Default::default(),
+        );
+        let bytes = (8 * structure.stored_entries() + scratch.size_bytes()) as u64;
+        memory::ensure(bytes)?;
+        let mut values = vec![0.0; structure.stored_entries()];
+        let mut memory =
+            MemBuffer::try_new(scratch).map_err(|_| SolveError::OutOfMemory { bytes })?;
+        let pattern =
+            SymbolicSparseColMatRef::new_checked(n, n, &matrix.starts, None, &matrix.rows);
+        let factored = factorize_supernodal_numeric_llt(
+            &mut values,
+            SparseColMatRef::new(pattern, &matrix.values),
+            Default::default(),
+            &structure.symbolic,
+            parallel,
+            MemStack::new(&mut memory),
+            Default::default(),
+        );
+        Ok(match factored {
+            Ok(_) => Ok(Factor { structure: Arc::clone(structure), values }),
+            Err(LltError::NonPositivePivot { .. }) => Err(Indefinite),
+        })
+    }
+
+    fn llt(&self) -> SupernodalLltRef<'_, usize, f64> {
+        SupernodalLltRef::new(&self.structure.symbolic, &self.values)
+    }
+
+    /// Its structure.
+    pub fn structure(&self) -> &Structure {
+        &self.structure
+    }
+
+    /// The columns of supernode `s`: first the lower triangle on the diagonal, below it the rows of
+    /// [`Structure::rows_below`].
+    pub fn block(&self, s: usize) -> MatRef<'_, f64> {
+        self.llt().supernode(s).val()
     }
 
     /// x <- L^-1 x
@@ -77,65 +178,12 @@ impl Factor {
         x: &mut [f64],
         solve: impl FnOnce(SupernodalLltRef<'_, usize, f64>, MatMut<'_, f64>, &mut MemStack),
     ) {
-        let mut memory = MemBuffer::new(self.symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
+        let scratch = self.structure.symbolic.solve_in_place_scratch::<f64>(1, Par::Seq);
+        let mut memory = MemBuffer::new(scratch);
         let n = x.len();
         let x = MatMut::from_column_major_slice_mut(x, n, 1);
         solve(self.llt(), x, MemStack::new(&mut memory));
     }
-
-    /// The trailing block of L from row and column `first` on, as a dense lower triangle.
-    pub fn trailing_block(&self, first: usize) -> Mat<f64> {
-        let llt = self.llt();
-        let size = self.symbolic.nrows() - first;
-        let mut block = Mat::zeros(size, size);
-        for s in (0..self.symbolic.n_supernodes()).rev() {
-            let supernode = llt.supernode(s);
-            let entries = supernode.val();
-            let (start, columns) = (supernode.start(), entries.ncols());
-            if start + columns <= first {
-                break;
-            }
-            for j in first.saturating_sub(start)..columns {
-                for i in j..columns {
-                    block[(start + i - first, start + j - first)] = entries[(i, j)];
-                }
-                for (i, &row) in supernode.pattern().iter().enumerate() {
-                    block[(row - first, start + j - first)] = entries[(columns + i, j)];
-                }
-            }
-        }
-        block
-    }
-}
-
-fn zeros(n: usize) -> Result<Vec<f64>, SolveError> {
-    let mut values = Vec::new();
-    values.try_reserve_exact(n).map_err(|_| SolveError::OutOfMemory)?;
-    values.resize(n, 0.0);
-    Ok(values)
-}
-
-/// The structure of L from that of A.
-fn analyse(
-    n: usize,
-    matrix: &LowerTriangle,
-) -> Result<SymbolicSupernodalCholesky<usize>, SolveError> {
-    let (starts, rows) = upper_triangle(n, matrix);
-    let upper = SymbolicSparseColMatRef::new_checked(n, n, &starts, None, &rows);
-    let scratch = factorize_supernodal_symbolic_cholesky_scratch::<usize>(n);
-    let mut memory = MemBuffer::try_new(scratch).map_err(|_| SolveError::OutOfMemory)?;
-    let mut etree = vec![0_isize; n];
-    let mut counts = vec![0_usize; n];
-    let etree =
-        prefactorize_symbolic_cholesky(&mut etree, &mut counts, upper, MemStack::new(&mut memory));
-    factorize_supernodal_symbolic_cholesky(
-        upper,
-        etree,
-        &counts,
-        MemStack::new(&mut memory),
-        Default::default(),
-    )
-    .map_err(|_| SolveError::OutOfMemory)
 }
 
 /// The pattern of the upper triangle, column by column: the transpose of the lower one.

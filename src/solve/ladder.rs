@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use thiserror::Error;
 
-use super::{Gamma0, Method, Outline, Settings, Solution, SolveError, Status, check, solve};
+use super::{Gamma0, Method, Outline, Settings, Solution, SolveError, check, solve};
 use crate::fem::exact::{self, Kind};
 use crate::fem::{Errors, Exact, MeshError, Perturbation, Problem, Structured};
 
@@ -34,14 +34,6 @@ pub enum LadderError {
     /// Its solve.
     #[error(transparent)]
     Solve(#[from] SolveError),
-    /// Newton's method.
-    #[error("no convergence: the relative residual is {residual:.1e} after {steps} Newton steps")]
-    NotConverged {
-        /// The relative residual.
-        residual: f64,
-        /// How many steps were taken.
-        steps: usize,
-    },
 }
 
 /// What came out on one mesh.
@@ -103,15 +95,11 @@ impl Ladder {
     /// Solves a level; also returns the problem and its discrete solution.
     ///
     /// # Errors
-    /// No mesh, no solution, or no convergence.
+    /// No mesh, or no solution.
     pub fn solve(&self, level: usize) -> Result<(Level, Problem, Solution), LadderError> {
         let problem = self.problem(level)?;
         let (solution, _) = solve(&problem, &self.method, &self.settings)?;
         let newton = &solution.newton;
-        if newton.status == Status::NotConverged {
-            let (residual, steps) = (newton.residual, newton.iterations());
-            return Err(LadderError::NotConverged { residual, steps });
-        }
         let errors = solution.errors(&problem, &*self.solution).map_err(SolveError::from)?;
         let mesh = &problem.mesh;
         let level = Level {

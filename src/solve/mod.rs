@@ -1,11 +1,20 @@
-//! The solution of method (8): the body factored once, Newton's method on the contact layer, and what the solution says.
+//! The solution of method (8): Newton's method on J_h by the route that costs less, corrections until nothing is left to
+//! correct, the verdict, and what the solution says.
 
+pub mod accuracy;
+pub mod assembled;
+pub mod compliance;
 pub mod condensed;
+mod contact_edges;
 pub mod factor;
+pub mod iterate;
 pub mod ladder;
+mod memory;
 pub mod newton;
 pub mod ordering;
+pub mod route;
 pub mod solution;
+pub mod system;
 pub mod theorem;
 pub mod times;
 
@@ -13,9 +22,11 @@ pub mod times;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use self::condensed::System;
+use self::accuracy::Outcome;
 pub use self::ladder::{Ladder, LadderError, Level};
+pub use self::route::RouteName;
 pub use self::solution::{GammaReport, Quantities, Solution};
+use self::system::System;
 pub use self::theorem::Theorem;
 use self::times::Stopwatch;
 pub use self::times::Times;
@@ -105,15 +116,12 @@ impl Default for Settings {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 pub enum Status {
-    /// The residual is within the tolerance.
+    /// The residual is within the tolerance, and the forward error is known to be small.
     #[cfg_attr(feature = "files", serde(rename = "converged"))]
     Converged,
-    /// The tolerance asks for more than rounding allows; the residual is as small as rounding lets it be.
+    /// The tolerance asks for more than rounding allows; the forward error is known to be small all the same.
     #[cfg_attr(feature = "files", serde(rename = "converged to rounding"))]
     ConvergedToRounding,
-    /// Neither: there is no solution to report.
-    #[cfg_attr(feature = "files", serde(rename = "not converged"))]
-    NotConverged,
 }
 
 /// How Newton's method went.
@@ -137,6 +145,32 @@ impl NewtonReport {
     }
 }
 
+/// By which route the solution was found, and how far it can be trusted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
+pub struct MethodReport {
+    /// The route.
+    pub route: RouteName,
+    /// Multiplications with an addition that were predicted for it.
+    pub predicted_operations: f64,
+    /// The condition number of the matrix, estimated from below.
+    pub condition: f64,
+    /// The last correction of the displacement in the energy norm, relative to the displacement: an estimate of the error
+    /// that rounding and iteration leave.
+    pub forward_error: f64,
+    /// How many threads worked.
+    pub threads: usize,
+}
+
+/// How a solution was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    /// Newton's method.
+    pub newton: NewtonReport,
+    /// The route and the accuracy.
+    pub method: MethodReport,
+}
+
 /// Why there is no solution.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
@@ -152,15 +186,34 @@ pub enum SolveError {
         "the tangent is not positive definite: gamma0 is beyond the true limit of coercivity, J_h is not convex and a solution need not exist; lower gamma0"
     )]
     NotPositiveDefinite,
-    #[error("the factorisation needs more memory than there is; use a coarser mesh")]
-    OutOfMemory,
+    #[error(
+        "no convergence: the relative residual is {residual:.1e} after {} Newton step{}, all that max_iterations allows; expected at most {tolerance:e}. Nothing is written.\nresiduals: {}",
+        residuals.len().saturating_sub(1), if residuals.len() == 2 { "" } else { "s" }, history(residuals)
+    )]
+    NotConverged { residual: f64, residuals: Vec<f64>, tolerance: f64 },
+    #[error(
+        "the body is too slender, too nearly incompressible or too weakly held for double precision: with a condition number of at least {condition:.0e} the displacement is known to a relative error of {forward_error:.0e} only (in the energy norm; expected at most {:e}); a coarser mesh or a shorter body conditions it better",
+        accuracy::ACCEPTABLE
+    )]
+    IllConditioned { condition: f64, forward_error: f64 },
+    #[error(
+        "the matrix has no Cholesky factor in double precision although the method is coercive: the body is too slender, too nearly incompressible or too weakly held (condition number beyond 1e15); a coarser mesh or a shorter body conditions it better"
+    )]
+    Singular,
+    #[error("the solution needs {bytes} bytes of memory, more than there are; use a coarser mesh")]
+    OutOfMemory { bytes: u64 },
+}
+
+/// The residuals from step to step, to one digit.
+pub fn history(residuals: &[f64]) -> String {
+    residuals.iter().map(|r| format!("{r:.0e}")).collect::<Vec<_>>().join(" ")
 }
 
 /// Solves `problem` by method (8).
 ///
 /// # Errors
 /// Data that don't make a problem, kappa >= 1 without leave, a tangent that is not positive definite (only with leave),
-/// lack of memory. That Newton's method missed its tolerance is no error but a [`Status`].
+/// a tolerance that is not met within the allowed steps, an answer that doubles cannot represent, lack of memory.
 pub fn solve(
     problem: &Problem,
     method: &Method,
@@ -183,12 +236,32 @@ where
     let mut watch = Stopwatch::start();
     let d = discretize::<E, N, M>(problem, method)?;
     let discretize = watch.lap();
-    let system = System::new(&d);
-    let matrix = watch.lap();
-    let (u, newton, times) = condensed::solve(&d, system, settings)?;
+    let (u, report, times) = solve_discrete(&d, settings)?;
     watch.lap();
-    let solution = Solution::new(&d, u, newton);
-    Ok((solution, Times { discretize, matrix, evaluate: watch.lap(), ..times }))
+    let solution = Solution::new(&d, u, report);
+    Ok((solution, Times { discretize, evaluate: watch.lap(), ..times }))
+}
+
+/// Solves a discretization: the displacement at the nodes, how it was found, and how long that took.
+///
+/// # Errors
+/// As [`solve`], but for the data.
+pub fn solve_discrete<E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    settings: &Settings,
+) -> Result<(Vec<[f64; 2]>, Report, Times), SolveError>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let mut times = Times::default();
+    let mut watch = Stopwatch::start();
+    let system = System::new(d)?;
+    times.matrix = watch.lap();
+    let (outcome, method, factorizations) = route::solve(&system, settings, &mut times)?;
+    let status = accuracy::judge(&outcome, settings)?;
+    let Outcome { u, residuals, residual, .. } = outcome;
+    let newton = NewtonReport { status, residuals, residual, factorizations };
+    Ok((u, Report { newton, method }, times))
 }
 
 /// What [`solve`] would solve: everything short of a matrix is built and checked.

@@ -1,26 +1,25 @@
-//! Newton's method with a line search on J_h, in the space of the contact functionals.
+//! Newton's method with an exact line search on J_h, for a body of which it knows only what a step does to P.
 //!
-//! Let A = L L^T be the matrix of A(.,.), B the contact functionals (the values of P0 at the nodes of each contact edge),
-//! y = B u + d the values of P, and Psi(y) = sum over the edges of (|E| / gamma) 1/2 int \[P\]+^2. Then
+//! Let y be the values of P at the nodes of the contact edges, y = B u + d, and Psi(y) = sum over the edges of
+//! (|E| / gamma) 1/2 int \[P\]+^2. Then
 //!
-//! J_h(u) = 1/2 u^T A u - l^T u + Psi(B u + d)
+//! J_h(u) = 1/2 u^T A u - l^T u + Psi(B u + d).
 //!
-//! is stationary where A u + B^T w = l with w = Psi'(y). Every iterate of Newton's method on J_h has the form
-//! u = A^-1 (l - B^T w), so w stands for u, and with G = B A^-1 B^T and y0 = B A^-1 l + d
+//! A step d of the body changes y by dy = B d, and J_h along it by
 //!
-//! - y = y0 - G w, and the residual of (8) is B^T (Psi'(y) - w),
-//! - the Newton step solves w + dw = Psi'(y) + H dy with dy = -G dw, where H = Psi''(y) = R R^T is block diagonal; with
-//!   s = w - Psi'(y) this is dw = R t - s, (I + R^T G R) t = R^T G s: symmetric, with no eigenvalue below 1,
-//! - along the step J_h changes by t DJ + t^2/2 dw^T G dw + D(y, y + t dy), where DJ = -s . dy <= 0 and D is the Bregman
-//!   distance of Psi: two terms that are never negative against one that is never positive. Nothing cancels, so the line
-//!   search works down to the rounding level. Armijo's rule reads: both together at most (1 - sigma) t |DJ|.
-
-use faer::linalg::solvers::Solve;
-use faer::{Col, Mat, Side};
+//! J_h(u + t d) - J_h(u) = t DJ d + t^2/2 d^T A d + D(y, y + t dy),
+//!
+//! where DJ d <= 0 and D is the Bregman distance of Psi: two terms that are never negative against one that is never
+//! positive. Nothing cancels, so the search works down to the rounding level. Its derivative in t does not decrease; the
+//! search finds where it vanishes, to a hundredth of its value at 0, and Armijo's rule is asked of what it finds.
+//!
+//! **The start.** A body that bends, started as if without contact, lets go of about one edge a step. So the springs are soft
+//! at first: s Psi in place of Psi, with s so small that contact and body are equally stiff, and then [`STIFFENING`] times
+//! stiffer with each step, until s = 1. From there on it is Newton's method on J_h, from a start that knows something.
 
 use super::SolveError;
 
-/// What Newton's method needs to know of one contact edge.
+/// What Newton's method needs to know of the contact edges.
 pub trait Edges<const M: usize> {
     /// How many there are.
     fn count(&self) -> usize;
@@ -28,185 +27,196 @@ pub trait Edges<const M: usize> {
     fn derivatives(&self, e: usize, p: [f64; M]) -> ([f64; M], [[f64; M]; M]);
     /// The Bregman distance of Psi on edge `e` from `p` to `q`.
     fn bregman(&self, e: usize, p: [f64; M], q: [f64; M]) -> f64;
-    /// The norm of B^T s relative to the reference of the problem.
-    fn residual_norm(&self, s: &[f64]) -> f64;
-    /// The same of |B|^T |s|: an upper bound that knows no cancellation.
-    fn magnitude_norm(&self, s: &[f64]) -> f64;
 }
 
-/// The reduced problem.
-pub struct Reduced<'a, T, const M: usize> {
-    /// Psi
-    pub edges: &'a T,
-    /// G = B A^-1 B^T
-    pub compliance: &'a Mat<f64>,
-    /// y0, the values of P without contact pressure
-    pub free: &'a [f64],
+/// The body with its loads, at an iterate.
+pub trait Body<const M: usize> {
+    /// y, the values of P at the nodes of each edge.
+    fn y(&self) -> &[f64];
+    /// The residual of (8) at the iterate, relative, where Psi has the derivatives `at`; and how much of it may be noise.
+    fn residual(&self, at: &Derivatives<M>) -> Residual;
+    /// The largest eigenvalue of B^T Psi'' B with regard to A, roughly: how much stiffer contact is than the body.
+    fn stiffness_of_contact(&mut self, at: &Derivatives<M>) -> f64;
+    /// The Newton step from the iterate.
+    ///
+    /// # Errors
+    /// A tangent that is not positive definite, and lack of memory.
+    fn step(&mut self, at: &Derivatives<M>) -> Result<Step, SolveError>;
+    /// Moves the iterate by `t` times `step`, the last one.
+    fn advance(&mut self, t: f64, step: &Step);
 }
 
-/// Where Newton's method ended.
-#[derive(Clone, Debug)]
-pub struct Iterate {
-    /// w, the nodal values of the contact pressure's functional
-    pub w: Vec<f64>,
-    /// The relative residual before the first step and after each one.
-    pub residuals: Vec<f64>,
+/// The size of a residual.
+#[derive(Clone, Copy, Debug)]
+pub struct Residual {
+    /// Its norm, relative to the reference of the problem.
+    pub norm: f64,
+    /// A norm that rounding alone may have.
+    pub noise: f64,
+}
+
+/// The derivatives of s Psi at y.
+pub struct Derivatives<const M: usize> {
+    /// Nodal values of the gradient.
+    pub gradient: Vec<f64>,
+    /// The Hessian, edge by edge.
+    pub hessian: Vec<[[f64; M]; M]>,
+}
+
+/// A step d.
+pub struct Step {
+    /// B d
+    pub dy: Vec<f64>,
+    /// DJ d <= 0
+    pub slope: f64,
+    /// d^T A d
+    pub curvature: f64,
 }
 
 /// Armijo's sigma.
 const SUFFICIENT: f64 = 1e-4;
 
-/// A residual this many unit roundoffs times its magnitudes is noise.
-const NOISE: f64 = 4.0;
+/// The line search ends where the derivative along the step is this small beside the one at its start.
+const FLAT: f64 = 1e-2;
 
-impl<T: Edges<M>, const M: usize> Reduced<'_, T, M> {
-    /// Newton's method from `w`. A step costs little beside the factorisation, so it goes on to the rounding level, unless
-    /// `max_iterations` come first.
-    ///
-    /// # Errors
-    /// [`SolveError::NotPositiveDefinite`] if the tangent isn't; with a positive definite A that takes a NaN.
-    pub fn minimise(&self, mut w: Vec<f64>, max_iterations: usize) -> Result<Iterate, SolveError> {
-        let mut residuals: Vec<f64> = Vec::new();
-        loop {
-            let y = self.values_of_p(&w);
-            let point = self.evaluate(&y, &w);
-            let residual = self.edges.residual_norm(&point.s);
-            let stalled = residual <= point.noise
-                && residuals.last().is_some_and(|&last| residual >= last / 2.0);
-            residuals.push(residual);
-            let done = residual <= point.noise / NOISE || stalled;
-            if done || residuals.len() > max_iterations || !residual.is_finite() {
-                return Ok(Iterate { w, residuals });
-            }
-            let dw = self.step(&point)?;
-            let dy: Vec<f64> = self.times_compliance(&dw).into_iter().map(|v| -v).collect();
-            let Some(t) = self.line_search(&y, &point.s, &dw, &dy) else {
-                return Ok(Iterate { w, residuals });
-            };
-            for (w, dw) in w.iter_mut().zip(&dw) {
-                *w += t * dw;
-            }
+/// How much stiffer the springs of contact get with each of the first steps.
+pub const STIFFENING: f64 = 4.0;
+
+/// A step whose energy is this small beside that of the largest (the square root of this as a length) is the last one:
+/// Newton's method converges superlinearly, so what remains is far smaller.
+const LAST: f64 = 1e-14;
+
+/// Newton's method from where `body` is, with soft springs first if `soft`. Appends the residual at each iterate to
+/// `residuals`, and stops when there are more than `most` of them, when a residual is no longer a finite number, at the
+/// rounding level, or after a step that leaves nothing to do.
+///
+/// # Errors
+/// Those of [`Body::step`].
+pub fn minimise<const M: usize>(
+    edges: &impl Edges<M>,
+    body: &mut impl Body<M>,
+    first: bool,
+    residuals: &mut Vec<f64>,
+    most: usize,
+) -> Result<(), SolveError> {
+    let mut at = derivatives(edges, body.y());
+    let mut stiffness = if first { (1.0 / body.stiffness_of_contact(&at)).min(1.0) } else { 1.0 };
+    let mut largest: f64 = 0.0;
+    let mut residual = body.residual(&at);
+    // The start of a second call is the end of the first.
+    if residuals.is_empty() {
+        residuals.push(residual.norm);
+    }
+    // A later call makes a step in any case: its size is what tells how good the end of the first was.
+    while (residual.norm > residual.noise / 4.0 || (!first && largest == 0.0))
+        && residuals.len() <= most
+    {
+        let scaled = at.times(stiffness);
+        let step = body.step(&scaled)?;
+        let Some(t) = line_search(edges, body.y(), stiffness, &scaled, &step) else {
+            return Ok(());
+        };
+        body.advance(t, &step);
+        at = derivatives(edges, body.y());
+        let before = std::mem::replace(&mut residual, body.residual(&at));
+        residuals.push(residual.norm);
+        let decrement = -step.slope;
+        largest = largest.max(decrement);
+        let last = stiffness == 1.0 && t == 1.0 && decrement <= LAST * largest;
+        let stalled = residual.norm <= residual.noise && residual.norm >= before.norm / 2.0;
+        if last || stalled {
+            break;
+        }
+        stiffness = (stiffness * STIFFENING).min(1.0);
+    }
+    Ok(())
+}
+
+/// The derivatives of Psi at `y`.
+pub fn derivatives<const M: usize>(edges: &impl Edges<M>, y: &[f64]) -> Derivatives<M> {
+    let mut gradient = Vec::with_capacity(y.len());
+    let mut hessian = Vec::with_capacity(edges.count());
+    for e in 0..edges.count() {
+        let (g, h) = edges.derivatives(e, block(y, e));
+        gradient.extend(g);
+        hessian.push(h);
+    }
+    Derivatives { gradient, hessian }
+}
+
+impl<const M: usize> Derivatives<M> {
+    fn times(&self, s: f64) -> Self {
+        Derivatives {
+            gradient: self.gradient.iter().map(|g| s * g).collect(),
+            hessian: self.hessian.iter().map(|h| h.map(|row| row.map(|v| s * v))).collect(),
         }
     }
+}
 
-    /// y = y0 - G w
-    fn values_of_p(&self, w: &[f64]) -> Vec<f64> {
-        self.free.iter().zip(self.times_compliance(w)).map(|(y0, gw)| y0 - gw).collect()
-    }
-
-    fn times_compliance(&self, v: &[f64]) -> Vec<f64> {
-        let v = Col::from_fn(v.len(), |i| v[i]);
-        let product = self.compliance * v;
-        product.iter().copied().collect()
-    }
-
-    fn evaluate(&self, y: &[f64], w: &[f64]) -> Point<M> {
-        let mut s = w.to_vec();
-        let mut roots = Vec::new();
-        let mut magnitudes = vec![0.0; w.len()];
-        for e in 0..self.edges.count() {
-            let at = e * M;
-            let (gradient, hessian) = self.edges.derivatives(e, block(y, e));
+/// Where along the step J_h with the springs times `stiffness` is least; `None` if its decrease is lost in rounding.
+fn line_search<const M: usize>(
+    edges: &impl Edges<M>,
+    y: &[f64],
+    stiffness: f64,
+    at: &Derivatives<M>,
+    step: &Step,
+) -> Option<f64> {
+    let point = |e: usize, t: f64| -> [f64; M] {
+        let (p, d): ([f64; M], [f64; M]) = (block(y, e), block(&step.dy, e));
+        std::array::from_fn(|a| p[a] + t * d[a])
+    };
+    // The first and the second derivative of J_h along the step.
+    let derivatives = |t: f64| {
+        let mut first = step.slope + t * step.curvature;
+        let mut second = step.curvature;
+        for e in 0..edges.count() {
+            let d: [f64; M] = block(&step.dy, e);
+            let (g, h) = edges.derivatives(e, point(e, t));
             for a in 0..M {
-                s[at + a] -= gradient[a];
-                let spread: f64 = (0..M)
-                    .map(|b| hessian[a][b].abs() * (y[at + b].abs() + self.free[at + b].abs()))
-                    .sum();
-                magnitudes[at + a] = w[at + a].abs() + gradient[a].abs() + spread;
-            }
-            roots.extend(root(hessian).into_iter().map(|column| (e, column)));
-        }
-        let noise = NOISE * f64::EPSILON * self.edges.magnitude_norm(&magnitudes);
-        Point { s, roots, noise }
-    }
-
-    /// dw = R t - s with (I + R^T G R) t = R^T G s.
-    fn step(&self, point: &Point<M>) -> Result<Vec<f64>, SolveError> {
-        let columns = &point.roots;
-        let gs = self.times_compliance(&point.s);
-        let system = Mat::from_fn(columns.len(), columns.len(), |i, j| {
-            if i < j {
-                return 0.0;
-            }
-            let ((e, r), (f, q)) = (columns[i], columns[j]);
-            let mut sum = f64::from(u8::from(i == j));
-            for a in 0..M {
+                first += (stiffness * g[a] - at.gradient[e * M + a]) * d[a];
                 for b in 0..M {
-                    sum += r[a] * self.compliance[(e * M + a, f * M + b)] * q[b];
+                    second += stiffness * h[a][b] * d[a] * d[b];
                 }
             }
-            sum
-        });
-        let right = Col::from_fn(columns.len(), |i| dot(columns[i].1, block(&gs, columns[i].0)));
-        let llt = system.llt(Side::Lower).map_err(|_| SolveError::NotPositiveDefinite)?;
-        let t = llt.solve(right);
-        let mut dw: Vec<f64> = point.s.iter().map(|s| -s).collect();
-        for (i, (e, column)) in columns.iter().enumerate() {
-            for a in 0..M {
-                dw[e * M + a] += column[a] * t[i];
-            }
         }
-        Ok(dw)
-    }
-
-    /// The first of 1, 1/2, 1/4, ... with a sufficient decrease of J_h; `None` if the decrease is lost in rounding.
-    fn line_search(&self, y: &[f64], s: &[f64], dw: &[f64], dy: &[f64]) -> Option<f64> {
-        let slope: f64 = -s.iter().zip(dy).map(|(s, dy)| s * dy).sum::<f64>();
-        let curvature: f64 = -dw.iter().zip(dy).map(|(dw, dy)| dw * dy).sum::<f64>();
-        let mut t = 1.0;
-        while t > f64::EPSILON {
-            let distance: f64 = (0..self.edges.count())
-                .map(|e| {
-                    let (p, d): ([f64; M], [f64; M]) = (block(y, e), block(dy, e));
-                    self.edges.bregman(e, p, std::array::from_fn(|a| p[a] + t * d[a]))
-                })
-                .sum();
-            if t * t / 2.0 * curvature + distance <= (SUFFICIENT - 1.0) * t * slope {
-                return Some(t);
-            }
-            t /= 2.0;
+        (first, second)
+    };
+    let falls = |t: f64| {
+        let distance: f64 =
+            (0..edges.count()).map(|e| edges.bregman(e, block(y, e), point(e, t))).sum();
+        t * t / 2.0 * step.curvature + stiffness * distance <= (SUFFICIENT - 1.0) * t * step.slope
+    };
+    let flat = FLAT * step.slope.abs();
+    let (mut low, mut high, mut t) = (0.0, f64::INFINITY, 1.0);
+    for _ in 0..60 {
+        let (first, second) = derivatives(t);
+        if first.abs() <= flat {
+            break;
         }
-        None
+        if first < 0.0 {
+            low = t;
+        } else {
+            high = t;
+        }
+        let newton = t - first / second;
+        t = if newton > low && newton < high {
+            newton
+        } else if high.is_finite() {
+            (low + high) / 2.0
+        } else {
+            2.0 * t
+        };
     }
+    while t > f64::EPSILON {
+        if falls(t) {
+            return Some(t);
+        }
+        t /= 2.0;
+    }
+    None
 }
 
-/// What is known at an iterate: s = w - Psi'(y), the columns of R with their edges, and the noise in the residual.
-struct Point<const M: usize> {
-    s: Vec<f64>,
-    roots: Vec<(usize, [f64; M])>,
-    noise: f64,
-}
-
-fn block<const M: usize>(v: &[f64], e: usize) -> [f64; M] {
+/// The values of edge `e`.
+pub fn block<const M: usize>(v: &[f64], e: usize) -> [f64; M] {
     std::array::from_fn(|a| v[e * M + a])
-}
-
-fn dot<const M: usize>(a: [f64; M], b: [f64; M]) -> f64 {
-    (0..M).map(|i| a[i] * b[i]).sum()
-}
-
-/// A pivot this small beside its diagonal entry belongs to a singular matrix.
-const SINGULAR: f64 = 1e-14;
-
-/// The columns of R with H = R R^T for a positive semidefinite H, by Cholesky; those of zero pivots are left out.
-fn root<const M: usize>(mut h: [[f64; M]; M]) -> Vec<[f64; M]> {
-    let diagonal: [f64; M] = std::array::from_fn(|a| h[a][a]);
-    let mut columns = Vec::with_capacity(M);
-    for k in 0..M {
-        if h[k][k] <= SINGULAR * diagonal[k] {
-            continue;
-        }
-        let pivot = h[k][k].sqrt();
-        let mut column = [0.0; M];
-        for i in k..M {
-            column[i] = h[i][k] / pivot;
-        }
-        for i in k..M {
-            for j in k..M {
-                h[i][j] -= column[i] * column[j];
-            }
-        }
-        columns.push(column);
-    }
-    columns
 }

@@ -1,25 +1,19 @@
-//! The order in which the nodes are eliminated: nested dissection by coordinates, the contact layer last.
+//! The order in which the nodes are eliminated: nested dissection by coordinates.
 //!
 //! A set of nodes is cut by a line across its longer extent; the nodes on one side of it that have neighbours on the other,
-//! on the side where they are fewer, separate the two halves and are eliminated after both. With the contact layer (all nodes of triangles that own a
-//! contact edge) as the last separator of all, its Schur complement is the trailing block of the Cholesky factor.
+//! on the side where they are fewer, separate the two halves and are eliminated after both.
 
 use crate::fem::matrix::Neighbours;
 
 /// Sets of at most this many nodes are not cut any further.
 const LEAF: usize = 8;
 
-/// The order of elimination of nodes at the given places with the given neighbours; those of `last` come last.
-pub fn nested_dissection(
-    places: &[[f64; 2]],
-    neighbours: &Neighbours,
-    last: &[bool],
-) -> Vec<usize> {
+/// The order of elimination of nodes at the given places with the given neighbours.
+pub fn nested_dissection(places: &[[f64; 2]], neighbours: &Neighbours) -> Vec<usize> {
     let mut order = Vec::with_capacity(places.len());
     let mut dissection = Dissection { places, neighbours, side: vec![Side::Outside; places.len()] };
-    let mut interior: Vec<usize> = (0..places.len()).filter(|&node| !last[node]).collect();
-    dissection.cut(&mut interior, &mut order);
-    order.extend((0..places.len()).filter(|&node| last[node]));
+    let mut all: Vec<usize> = (0..places.len()).collect();
+    dissection.cut(&mut all, &mut order);
     order
 }
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 #[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
 
-use super::NewtonReport;
+use super::{MethodReport, NewtonReport, Report};
 use crate::fem::contact_line::{self, Coercivity};
 use crate::fem::discretization::{Discretization, inner};
 use crate::fem::{DataError, Errors, ExactSolution, Problem, Space};
@@ -37,6 +37,8 @@ pub struct Solution {
     pub gamma: GammaReport,
     /// How Newton's method went.
     pub newton: NewtonReport,
+    /// By which route, and how accurately.
+    pub method: MethodReport,
     /// Energies, forces, lengths.
     pub quantities: Quantities,
 }
@@ -107,7 +109,7 @@ impl Solution {
     pub fn new<E, const N: usize, const M: usize>(
         d: &Discretization<E, N, M>,
         u: Vec<[f64; 2]>,
-        newton: NewtonReport,
+        report: Report,
     ) -> Self
     where
         E: ExactEdge<f64, N, M>,
@@ -124,7 +126,8 @@ impl Solution {
             stress: with_material().map(|(m, s)| (s, m.stress_zz(s))).collect(),
             contact: contact_values(d, &u),
             gamma: GammaReport::new(d),
-            newton,
+            newton: report.newton,
+            method: report.method,
             quantities: quantities(d, &u),
             displacement: u,
         }
@@ -249,7 +252,7 @@ where
     E: ExactEdge<f64, N, M>,
 {
     let mut q = Quantities {
-        energy: inner(&d.internal_forces(u).values, u),
+        energy: d.strain_energy(u),
         work: inner(&d.load, u),
         max_displacement: u.iter().fold(0.0, |max, v| f64::max(max, v[0].hypot(v[1]))),
         contact_force: 0.0,

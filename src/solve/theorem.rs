@@ -134,9 +134,10 @@ where
     }
     let nodes = d.space.nodes();
     let neighbours = Neighbours::new(nodes.len(), d.space.elements());
-    let order = nested_dissection(nodes, &neighbours, &vec![false; nodes.len()]);
+    let order = nested_dissection(nodes, &neighbours);
     let numbering = Numbering::under(&order, &d.constraints);
-    let factor = Factor::new(&matrix::assemble_stiffness(d, &numbering, &neighbours))?;
+    let matrix = matrix::assemble_stiffness(d, &numbering, &neighbours);
+    let factor = Factor::new(&matrix)?;
     let mut x = numbering.gather(&force);
     factor.forward(&mut x);
     factor.backward(&mut x);

@@ -29,7 +29,7 @@ use signorini::fem::{
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::{Material, P1, P2, Plane, Triangle};
 use signorini::nalgebra::Vector2;
-use signorini::solve::{NewtonReport, Solution, Status};
+use signorini::solve::{MethodReport, NewtonReport, Report, RouteName, Solution, Status};
 
 use crate::bodies::{Body, Definition, Rule, Side, combined, contact_class, sum, whole};
 use crate::claim::Outcome;
@@ -759,6 +759,24 @@ fn defined<S: Given, const N: usize>(
     all
 }
 
+/// The report that goes with a displacement that nothing was solved for.
+fn unsolved() -> Report {
+    let newton = NewtonReport {
+        status: Status::Converged,
+        residuals: Vec::new(),
+        residual: 0.0,
+        factorizations: 0,
+    };
+    let method = MethodReport {
+        route: RouteName::Condensed,
+        predicted_operations: 0.0,
+        condition: 1.0,
+        forward_error: 0.0,
+        threads: 1,
+    };
+    Report { newton, method }
+}
+
 /// The same numbers by the solver, in the same order.
 fn assembled<E, const N: usize, const M: usize>(
     d: &Discretization<'_, E, N, M>,
@@ -769,13 +787,7 @@ where
     E: ExactEdge<f64, N, M>,
 {
     let flat = |field: &[[f64; 2]]| field.as_flattened().to_vec();
-    let newton = NewtonReport {
-        status: Status::Converged,
-        residuals: Vec::new(),
-        residual: 0.0,
-        factorizations: 0,
-    };
-    let solution = Solution::new(d, u.to_vec(), newton);
+    let solution = Solution::new(d, u.to_vec(), unsolved());
     let q = &solution.quantities;
     let local = |triangle: usize| d.space.on_triangle(triangle, u);
     // In order along the edge.
@@ -1016,13 +1028,7 @@ where
     let lengths = sum(&exact.body.contact, |side| side.length);
     // Root, difference, product, sum.
     let slack = lengths * Exact::of_double(12.0 * UNIT);
-    let newton = NewtonReport {
-        status: Status::Converged,
-        residuals: Vec::new(),
-        residual: 0.0,
-        factorizations: 0,
-    };
-    let length = Solution::new(d, u.to_vec(), newton).quantities.contact_length;
+    let length = Solution::new(d, u.to_vec(), unsolved()).quantities.contact_length;
     let length = Exact::of_double(length);
     measure(-1.0) - slack <= length && length <= measure(1.0) + slack
 }

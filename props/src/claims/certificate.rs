@@ -24,9 +24,7 @@ use signorini::fem::{
 };
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::{Material, P1, P2, Plane};
-use signorini::solve::{
-    ContactQuadrature, Degree, Gamma0, Method, Settings, Status, discretize, solve,
-};
+use signorini::solve::{ContactQuadrature, Degree, Gamma0, Method, Settings, discretize, solve};
 
 use crate::bodies::MaybeExact;
 use crate::claim::{Check, Engine, Outcome, by, control};
@@ -209,9 +207,6 @@ impl Solved {
         let method = Method { quadrature, allow_noncoercive: false, ..method };
         let (solution, _) =
             solve(&problem, &method, &Settings::default()).map_err(|error| error.to_string())?;
-        if solution.newton.status == Status::NotConverged {
-            return Err("the solver did not converge".to_owned());
-        }
         Ok(Solved { problem, method, u: solution.displacement })
     }
 }

@@ -1,0 +1,211 @@
+//! The assembled route: Newton's method on the displacement itself, the tangent A + B^T Psi'' B factored in each step. It is
+//! the cheaper one where contact edges are many beside the body (strips, graded meshes), and the only one where A alone is
+//! singular, or as good as: contact then holds the body, and the tangent knows it.
+
+use super::SolveError;
+use super::accuracy::{Pass, Route};
+use super::contact_edges::ContactEdges;
+use super::factor::{Factor, Indefinite};
+use super::iterate::{Evaluation, Iterate};
+use super::newton::{self, Body, Derivatives, Residual, Step, block};
+use super::system::System;
+use crate::fem::matrix::LowerTriangle;
+use crate::kernel::edge_integral::ExactEdge;
+
+/// The tangent last factored.
+pub struct Assembled<'a, 'd, 'p, E, const N: usize, const M: usize> {
+    system: &'a System<'d, 'p, E, N, M>,
+    /// What residuals are relative to.
+    reference: f64,
+    /// The contact edges as they come.
+    order: Vec<usize>,
+    factored: Option<Factored<M>>,
+    factorizations: usize,
+    precisely: bool,
+    first: bool,
+}
+
+/// A tangent is factored anew if an entry of Psi'' has changed by more than this share of the largest: one that has not is
+/// as good a tangent, for the residual is the true one.
+const CHANGED: f64 = 1e-3;
+
+impl<'a, 'd, 'p, E, const N: usize, const M: usize> Assembled<'a, 'd, 'p, E, N, M>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    /// Before anything is factored.
+    pub fn new(system: &'a System<'d, 'p, E, N, M>, reference: f64) -> Self {
+        let order = (0..system.d.contact.len()).collect();
+        Assembled {
+            system,
+            reference,
+            order,
+            factored: None,
+            factorizations: 0,
+            precisely: false,
+            first: true,
+        }
+    }
+
+    /// How many tangents have been factored.
+    pub fn factorizations(&self) -> usize {
+        self.factorizations
+    }
+
+    /// A + B^T Psi'' B
+    fn tangent(&self, at: &Derivatives<M>) -> LowerTriangle {
+        let d = self.system.d;
+        let mut matrix = self.system.matrix.clone();
+        for (edge, h) in d.contact.iter().zip(&at.hessian) {
+            let p0 = &edge.functionals.p0;
+            let nodes = &d.space.elements()[edge.edge.triangle];
+            matrix.add(&self.system.numbering, nodes, |i, j| {
+                [0, 1].map(|c| {
+                    [0, 1].map(|k| {
+                        let mut sum = 0.0;
+                        for a in 0..M {
+                            for b in 0..M {
+                                sum += p0[a][i][c] * h[a][b] * p0[b][j][k];
+                            }
+                        }
+                        sum
+                    })
+                })
+            });
+        }
+        matrix
+    }
+
+    fn factor(&mut self, at: &Derivatives<M>) -> Result<&Factor, SolveError> {
+        let largest =
+            at.hessian.as_flattened().as_flattened().iter().fold(0.0, |m: f64, h| m.max(h.abs()));
+        let close = |old: &[[[f64; M]; M]]| {
+            let (old, new) =
+                (old.as_flattened().as_flattened(), at.hessian.as_flattened().as_flattened());
+            old.iter().zip(new).all(|(old, new)| (old - new).abs() <= CHANGED * largest)
+        };
+        let (factor, hessian) = match self.factored.take() {
+            Some((factor, old)) if close(&old) => (factor, old),
+            _ => {
+                let factored = Factor::with(&self.system.structure, &self.tangent(at))?;
+                self.factorizations += 1;
+                let coercive = self.system.d.kappa() < 1.0;
+                let factor = factored.map_err(|Indefinite| match coercive {
+                    true => SolveError::Singular,
+                    false => SolveError::NotPositiveDefinite,
+                })?;
+                (factor, at.hessian.clone())
+            }
+        };
+        Ok(&self.factored.insert((factor, hessian)).0)
+    }
+}
+
+/// A factor with the Psi'' of its tangent.
+type Factored<const M: usize> = (Factor, Vec<[[f64; M]; M]>);
+
+impl<E, const N: usize, const M: usize> Route<E, N, M> for Assembled<'_, '_, '_, E, N, M>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    fn pass(
+        &mut self,
+        iterate: &mut Iterate,
+        at: Evaluation,
+        residuals: &mut Vec<f64>,
+        most: usize,
+    ) -> Result<Pass, SolveError> {
+        self.precisely = at.precisely;
+        let soft = self.first;
+        self.first = false;
+        let order = self.order.clone();
+        let edges = ContactEdges { d: self.system.d, order: &order };
+        let moved = vec![0.0; self.system.numbering.count];
+        let mut body = Full { route: self, iterate, at, d: Vec::new(), moved, energy: 0.0 };
+        newton::minimise(&edges, &mut body, soft, residuals, most)?;
+        let square = body.moved.iter().map(|d| d * d).sum();
+        Ok(Pass { energy: body.energy, square })
+    }
+}
+
+/// Newton's unknown u.
+struct Full<'r, 'i, 'a, 'd, 'p, E, const N: usize, const M: usize> {
+    route: &'r mut Assembled<'a, 'd, 'p, E, N, M>,
+    iterate: &'i mut Iterate,
+    at: Evaluation,
+    /// The step.
+    d: Vec<f64>,
+    /// The steps of this pass together, and the largest of their energies.
+    moved: Vec<f64>,
+    energy: f64,
+}
+
+impl<E, const N: usize, const M: usize> Full<'_, '_, '_, '_, '_, E, N, M>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    /// The residual of (8).
+    fn gradient(&self, at: &Derivatives<M>) -> Vec<f64> {
+        let mut r = self.at.linear.clone();
+        for e in 0..self.route.order.len() {
+            let g: [f64; M] = block(&at.gradient, e);
+            self.route.system.functionals(e, |row, a, entry| r[row] += entry * g[a]);
+        }
+        r
+    }
+
+    /// B x
+    fn values_of_p0(&self, x: &[f64]) -> Vec<f64> {
+        let mut values = vec![0.0; self.at.p.len()];
+        for e in 0..self.route.order.len() {
+            self.route.system.functionals(e, |row, a, entry| values[e * M + a] += entry * x[row]);
+        }
+        values
+    }
+}
+
+impl<E, const N: usize, const M: usize> Body<M> for Full<'_, '_, '_, '_, '_, E, N, M>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    fn y(&self) -> &[f64] {
+        &self.at.p
+    }
+
+    fn residual(&self, at: &Derivatives<M>) -> Residual {
+        let norm = self.gradient(at).iter().map(|r| r * r).sum::<f64>().sqrt();
+        let reference = self.route.reference;
+        Residual { norm: norm / reference, noise: self.at.noise / reference }
+    }
+
+    /// The tangent with the springs this stiff is compared with the one where they are hardly there.
+    fn stiffness_of_contact(&mut self, _: &Derivatives<M>) -> f64 {
+        SOFTEST
+    }
+
+    fn step(&mut self, at: &Derivatives<M>) -> Result<Step, SolveError> {
+        let gradient = self.gradient(at);
+        let mut d: Vec<f64> = gradient.iter().map(|r| -r).collect();
+        let factor = self.route.factor(at)?;
+        factor.forward(&mut d);
+        factor.backward(&mut d);
+        let dy = self.values_of_p0(&d);
+        let slope = gradient.iter().zip(&d).map(|(r, d)| r * d).sum();
+        let ad = self.route.system.times_matrix(&d);
+        let curvature = ad.iter().zip(&d).map(|(a, d)| a * d).sum();
+        self.d = d;
+        Ok(Step { dy, slope, curvature })
+    }
+
+    fn advance(&mut self, t: f64, step: &Step) {
+        self.iterate.add(self.route.system, t, &self.d);
+        self.at = self.iterate.evaluate(self.route.system, self.route.precisely);
+        for (moved, d) in self.moved.iter_mut().zip(&self.d) {
+            *moved += t * d;
+        }
+        self.energy = self.energy.max(-t * t * step.slope);
+    }
+}
+
+/// How much stiffer contact is taken to be than the body at the start: the condensed route measures it.
+const SOFTEST: f64 = 1e6;

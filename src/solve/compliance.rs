@@ -1,0 +1,220 @@
+//! The compliance of the body as contact sees it: G = B A^-1 B^T = X^T X with X = L^-1 B^T, from the factor A = L L^T.
+//!
+//! A row of B belongs to a node of a contact edge and touches the unknowns of the triangle that owns it. These lie on one
+//! path of the elimination tree to its root, so the columns of X that belong to the edge are zero off that path. Edges are
+//! taken in the order in which a walk through the tree meets the supernodes where their paths begin; then the columns that
+//! are not zero in the rows of a supernode are neighbours, and X is one dense block a supernode.
+
+use faer::linalg::matmul::matmul;
+use faer::linalg::matmul::triangular::{self, BlockStructure};
+use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use faer::{Accum, Col, Mat, Par};
+
+use super::factor::{Factor, Structure};
+
+/// Which supernodes the contact functionals reach, and which of the functionals each.
+pub struct Reach {
+    /// The contact edges in the order of the walk.
+    pub order: Vec<usize>,
+    /// The supernodes that are reached, in the order of elimination.
+    supernodes: Vec<Reached>,
+    /// Functionals on an edge.
+    per_edge: usize,
+}
+
+struct Reached {
+    supernode: usize,
+    /// The functionals whose columns of X are not zero here.
+    functionals: std::ops::Range<usize>,
+}
+
+impl Reach {
+    /// For contact edges with `per_edge` functionals each, `unknowns` being those that the functionals of an edge touch.
+    pub fn new(structure: &Structure, unknowns: &[Vec<usize>], per_edge: usize) -> Self {
+        let count = structure.supernodes();
+        let mut supernode_of = vec![0; structure.size()];
+        for s in 0..count {
+            supernode_of[structure.columns(s)].fill(s);
+        }
+        let parent: Vec<Option<usize>> = (0..count)
+            .map(|s| structure.rows_below(s).first().map(|&row| supernode_of[row]))
+            .collect();
+        let rank = postorder(&parent);
+        let first = |e: usize| unknowns[e].iter().min().map(|&row| supernode_of[row]);
+        let mut order: Vec<usize> = (0..unknowns.len()).collect();
+        order.sort_by_key(|&e| (first(e).map(|s| rank[s]), e));
+        let mut ranges: Vec<Option<std::ops::Range<usize>>> = vec![None; count];
+        for (position, &e) in order.iter().enumerate() {
+            let mut at = first(e);
+            while let Some(s) = at {
+                let (start, end) = (position * per_edge, (position + 1) * per_edge);
+                match &mut ranges[s] {
+                    Some(range) => range.end = end,
+                    None => ranges[s] = Some(start..end),
+                }
+                at = parent[s];
+            }
+        }
+        let supernodes = ranges
+            .into_iter()
+            .enumerate()
+            .filter_map(|(supernode, range)| Some(Reached { supernode, functionals: range? }))
+            .collect();
+        Reach { order, supernodes, per_edge }
+    }
+
+    /// How many functionals there are.
+    pub fn functionals(&self) -> usize {
+        self.order.len() * self.per_edge
+    }
+
+    /// Multiplications with an addition for X and G.
+    pub fn operations(&self, structure: &Structure) -> f64 {
+        let of = |reached: &Reached| {
+            let w = structure.columns(reached.supernode).len() as f64;
+            let below = structure.rows_below(reached.supernode).len() as f64;
+            let c = reached.functionals.len() as f64;
+            c * w * (w / 2.0 + below) + w * c * c / 2.0
+        };
+        self.supernodes.iter().map(of).sum()
+    }
+
+    /// The entries of X that are stored.
+    pub fn stored_entries(&self, structure: &Structure) -> usize {
+        let of = |r: &Reached| structure.columns(r.supernode).len() * r.functionals.len();
+        self.supernodes.iter().map(of).sum()
+    }
+}
+
+/// The place of each node of a forest in a walk that meets the children of a node before it, one subtree after the other.
+fn postorder(parent: &[Option<usize>]) -> Vec<usize> {
+    // Parents have larger numbers than their children. A subtree's size is known when its root is met; places are then
+    // handed out from the roots down.
+    let mut size = vec![1_usize; parent.len()];
+    for (s, parent) in parent.iter().enumerate() {
+        if let Some(p) = *parent {
+            size[p] += size[s];
+        }
+    }
+    let mut rank = vec![0; parent.len()];
+    // The end of the part of a node's interval that is not handed out yet.
+    let mut free = vec![0; parent.len()];
+    let mut end = parent.len();
+    for s in (0..parent.len()).rev() {
+        let last = match parent[s] {
+            Some(p) => {
+                let last = free[p];
+                free[p] -= size[s];
+                last
+            }
+            None => {
+                let last = end;
+                end -= size[s];
+                last
+            }
+        };
+        rank[s] = last - 1;
+        free[s] = last - 1;
+    }
+    rank
+}
+
+/// X = L^-1 B^T, block by block, and G = X^T X. Functionals are in the order of [`Reach::order`].
+pub struct Compliance<'a> {
+    structure: &'a Structure,
+    reach: &'a Reach,
+    x: Vec<Mat<f64>>,
+    /// G, both triangles.
+    pub g: Mat<f64>,
+}
+
+impl<'a> Compliance<'a> {
+    /// From the factor, and the entries of B: `entries` calls its argument with the unknown, the functional and the entry.
+    pub fn new(
+        factor: &'a Factor,
+        reach: &'a Reach,
+        entries: impl FnOnce(&mut dyn FnMut(usize, usize, f64)),
+    ) -> Self {
+        let structure = factor.structure();
+        let mut place_of_row = vec![None; structure.size()];
+        for (place, r) in reach.supernodes.iter().enumerate() {
+            place_of_row[structure.columns(r.supernode)].fill(Some(place));
+        }
+        let mut x: Vec<Mat<f64>> = reach
+            .supernodes
+            .iter()
+            .map(|r| Mat::zeros(structure.columns(r.supernode).len(), r.functionals.len()))
+            .collect();
+        let start_of = |place: usize| {
+            let r = &reach.supernodes[place];
+            (structure.columns(r.supernode).start, r.functionals.start)
+        };
+        entries(&mut |row, functional, entry| {
+            if let Some(place) = place_of_row[row] {
+                let (start, first) = start_of(place);
+                x[place][(row - start, functional - first)] += entry;
+            }
+        });
+        let q = reach.functionals();
+        let mut g = Mat::zeros(q, q);
+        for (place, r) in reach.supernodes.iter().enumerate() {
+            let block = factor.block(r.supernode);
+            let (diagonal, below) = block.split_at_row(block.ncols());
+            solve_lower_triangular_in_place(diagonal, x[place].as_mut(), Par::Seq);
+            let c = r.functionals.len();
+            let mut update = Mat::zeros(below.nrows(), c);
+            matmul(update.as_mut(), Accum::Replace, below, x[place].as_ref(), 1.0, Par::Seq);
+            for (i, &row) in structure.rows_below(r.supernode).iter().enumerate() {
+                // An ancestor of a supernode that is reached is reached.
+                let Some(target) = place_of_row[row] else { continue };
+                let (start, first) = start_of(target);
+                let offset = r.functionals.start - first;
+                for j in 0..c {
+                    x[target][(row - start, offset + j)] -= update[(i, j)];
+                }
+            }
+            let range = r.functionals.clone();
+            triangular::matmul(
+                g.as_mut().submatrix_mut(range.start, range.start, c, c),
+                BlockStructure::TriangularLower,
+                Accum::Add,
+                x[place].transpose(),
+                BlockStructure::Rectangular,
+                x[place].as_ref(),
+                BlockStructure::Rectangular,
+                1.0,
+                Par::Seq,
+            );
+        }
+        for j in 0..q {
+            for i in 0..j {
+                g[(i, j)] = g[(j, i)];
+            }
+        }
+        Compliance { structure, reach, x, g }
+    }
+
+    /// X^T v
+    pub fn transpose_times(&self, v: &[f64]) -> Vec<f64> {
+        let mut sum = vec![0.0; self.reach.functionals()];
+        for (x, r) in self.x.iter().zip(&self.reach.supernodes) {
+            let rows = &v[self.structure.columns(r.supernode)];
+            let product = x.transpose() * Col::from_fn(rows.len(), |i| rows[i]);
+            for (sum, p) in sum[r.functionals.clone()].iter_mut().zip(product.iter()) {
+                *sum += p;
+            }
+        }
+        sum
+    }
+
+    /// v <- v - X w
+    pub fn subtract(&self, w: &[f64], v: &mut [f64]) {
+        for (x, r) in self.x.iter().zip(&self.reach.supernodes) {
+            let w = &w[r.functionals.clone()];
+            let product = x * Col::from_fn(w.len(), |i| w[i]);
+            for (v, p) in v[self.structure.columns(r.supernode)].iter_mut().zip(product.iter()) {
+                *v -= p;
+            }
+        }
+    }
+}

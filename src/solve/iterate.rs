@@ -1,0 +1,85 @@
+//! A displacement on its way to the solution, and what the definitions say of it: in doubles as long as these tell enough,
+//! in [twofold](crate::fem::twofold) numbers where rounding would blur it. It is known to more than double precision
+//! itself: rounding the displacement of a slender body to doubles changes its forces by more than its loads.
+
+use super::system::System;
+use crate::fem::discretization::Discretization;
+use crate::fem::precise;
+use crate::fem::twofold::Twofold;
+use crate::kernel::edge_integral::ExactEdge;
+
+/// A residual this many unit roundoffs times its magnitudes is noise.
+const NOISE: f64 = 4.0;
+
+/// A displacement.
+pub struct Iterate {
+    u: Vec<[Twofold; 2]>,
+}
+
+/// What the linear part of (8) is at a displacement.
+pub struct Evaluation {
+    /// A(u, v) - L(v) for every free degree of freedom.
+    pub linear: Vec<f64>,
+    /// P(u) at the nodes of the contact edges.
+    pub p: Vec<f64>,
+    /// A norm that rounding alone may give the residual.
+    pub noise: f64,
+    /// In twofold numbers.
+    pub precisely: bool,
+}
+
+impl Iterate {
+    /// The lift of the prescribed data.
+    pub fn lift<E, const N: usize, const M: usize>(d: &Discretization<E, N, M>) -> Self
+    where
+        E: ExactEdge<f64, N, M>,
+    {
+        Iterate { u: d.constraints.lift().into_iter().map(|u| u.map(Twofold::from)).collect() }
+    }
+
+    /// In doubles.
+    pub fn rounded(&self) -> Vec<[f64; 2]> {
+        self.u.iter().map(|u| u.map(Twofold::head)).collect()
+    }
+
+    /// Adds `t` times a step over the free degrees of freedom.
+    pub fn add<E, const N: usize, const M: usize>(
+        &mut self,
+        system: &System<E, N, M>,
+        t: f64,
+        step: &[f64],
+    ) {
+        let mut field = vec![[0.0; 2]; self.u.len()];
+        system.numbering.scatter(step, &mut field);
+        for (u, step) in self.u.iter_mut().flatten().zip(field.as_flattened()) {
+            *u = *u + Twofold::from(t * step);
+        }
+    }
+
+    /// The linear part of (8) here, in twofold numbers if `precisely`.
+    pub fn evaluate<E, const N: usize, const M: usize>(
+        &self,
+        system: &System<E, N, M>,
+        precisely: bool,
+    ) -> Evaluation
+    where
+        E: ExactEdge<f64, N, M>,
+    {
+        let d = system.d;
+        if precisely {
+            let (forces, p) = precise::evaluate(d, &self.u);
+            // The forces of contact are added to these in doubles.
+            let noise = NOISE * f64::EPSILON * d.free_norm(&forces);
+            return Evaluation { linear: system.numbering.gather(&forces), p, noise, precisely };
+        }
+        let u = self.rounded();
+        let forces = d.linear_residual(&u);
+        let p = d
+            .contact
+            .iter()
+            .flat_map(|edge| edge.p(&d.space.on_triangle(edge.edge.triangle, &u)))
+            .collect();
+        let noise = NOISE * f64::EPSILON * d.free_norm(&forces.magnitudes);
+        Evaluation { linear: system.numbering.gather(&forces.values), p, noise, precisely }
+    }
+}

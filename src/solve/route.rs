@@ -1,0 +1,144 @@
+//! Which route: by the multiplications that each is predicted to take, from the structure of the factor alone.
+//!
+//! - condensed: one factorisation, X = L^-1 B^T and G = X^T X, and for each Newton step a dense factorisation of as many rows
+//!   as there are contact functionals,
+//! - assembled: one factorisation for each Newton step.
+//!
+//! Both give the same numbers. Where A alone has no factor or a bad one although the method is coercive, the assembled route
+//! is taken all the same: there contact holds the body.
+
+#[cfg(feature = "files")]
+use serde::{Deserialize, Serialize};
+
+use super::accuracy::{self, Outcome};
+use super::assembled::Assembled;
+use super::compliance::Reach;
+use super::condensed::Condensed;
+use super::factor::{Factor, Indefinite, Structure};
+use super::memory;
+use super::system::System;
+use super::times::{Stopwatch, Times};
+use super::{MethodReport, Settings, SolveError};
+use crate::kernel::edge_integral::ExactEdge;
+
+/// The two routes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize), serde(rename_all = "lowercase"))]
+pub enum RouteName {
+    /// The body factored once, Newton's method on the contact functionals.
+    Condensed,
+    /// Newton's method on the displacement, the tangent factored in each step.
+    Assembled,
+}
+
+/// The Newton steps that a prediction counts on.
+const STEPS: f64 = 12.0;
+
+/// Multiplications that the assembled route makes beside those of the factorisation, for each stored entry of the factor:
+/// assembly, substitutions, small blocks.
+const PER_ENTRY: f64 = 12.0;
+
+/// What each route is predicted to take.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Prediction {
+    /// Multiplications with an addition.
+    pub condensed: f64,
+    /// The same.
+    pub assembled: f64,
+}
+
+impl Prediction {
+    /// For a system of this structure whose contact functionals have this reach.
+    pub fn new(structure: &Structure, reach: &Reach) -> Self {
+        let factor = structure.operations() + PER_ENTRY * structure.stored_entries() as f64;
+        let q = reach.functionals() as f64;
+        let dense = q * q * q / 6.0 + 4.0 * q * q;
+        Prediction {
+            condensed: factor + reach.operations(structure) + STEPS * dense,
+            assembled: STEPS * factor,
+        }
+    }
+
+    /// The route that takes less.
+    pub fn route(&self) -> RouteName {
+        if self.condensed <= self.assembled { RouteName::Condensed } else { RouteName::Assembled }
+    }
+}
+
+/// Solves the system by the route that is predicted to take less.
+///
+/// # Errors
+/// As [`solve_discrete`](super::solve_discrete).
+pub fn solve<E, const N: usize, const M: usize>(
+    system: &System<E, N, M>,
+    settings: &Settings,
+    times: &mut Times,
+) -> Result<(Outcome, MethodReport, usize), SolveError>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let unknowns: Vec<Vec<usize>> =
+        (0..system.d.contact.len()).map(|e| system.unknowns(e)).collect();
+    let reach = Reach::new(&system.structure, &unknowns, M);
+    let prediction = Prediction::new(&system.structure, &reach);
+    if prediction.route() == RouteName::Condensed {
+        match by(RouteName::Condensed, system, &reach, &prediction, settings, times) {
+            Err(SolveError::Singular) => {}
+            Ok((outcome, report, count)) if outcome.forward_error <= accuracy::ACCEPTABLE => {
+                return Ok((outcome, report, count));
+            }
+            Ok((outcome, report, count)) if outcome.residuals.len() > settings.max_iterations => {
+                return Ok((outcome, report, count));
+            }
+            Ok(_) => {}
+            Err(error) => return Err(error),
+        }
+    }
+    by(RouteName::Assembled, system, &reach, &prediction, settings, times)
+}
+
+/// Solves the system by a given route.
+///
+/// # Errors
+/// As [`solve_discrete`](super::solve_discrete).
+pub fn by<E, const N: usize, const M: usize>(
+    name: RouteName,
+    system: &System<E, N, M>,
+    reach: &Reach,
+    prediction: &Prediction,
+    settings: &Settings,
+    times: &mut Times,
+) -> Result<(Outcome, MethodReport, usize), SolveError>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let mut watch = Stopwatch::start();
+    let reference = accuracy::reference(system.d);
+    times.judge += watch.lap();
+    let (outcome, predicted_operations, factorizations) = match name {
+        RouteName::Condensed => {
+            let q = reach.functionals();
+            memory::ensure(8 * (reach.stored_entries(&system.structure) + 3 * q * q) as u64)?;
+            let factor = match Factor::with(&system.structure, &system.matrix)? {
+                Ok(factor) => factor,
+                Err(Indefinite) if system.d.kappa() < 1.0 => return Err(SolveError::Singular),
+                Err(Indefinite) => return Err(SolveError::NotPositiveDefinite),
+            };
+            times.factor += watch.lap();
+            let mut route = Condensed::new(system, &factor, reach, reference);
+            times.compliance += watch.lap();
+            let outcome = accuracy::refine(system, &mut route, reference, settings)?;
+            (outcome, prediction.condensed, 1)
+        }
+        RouteName::Assembled => {
+            let mut route = Assembled::new(system, reference);
+            let outcome = accuracy::refine(system, &mut route, reference, settings)?;
+            (outcome, prediction.assembled, route.factorizations())
+        }
+    };
+    times.newton += watch.lap();
+    let Outcome { condition, forward_error, .. } = outcome;
+    let report =
+        MethodReport { route: name, predicted_operations, condition, forward_error, threads: 1 };
+    Ok((outcome, report, factorizations))
+}

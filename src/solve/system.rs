@@ -1,0 +1,96 @@
+//! The linear part of (8) as matrices over the free degrees of freedom: A in an order of elimination, the structure of its
+//! factor, and B, the values of P0 at the nodes of the contact edges. The tangent A + B^T Psi'' B has the pattern of A: each
+//! functional lives on one triangle.
+
+use std::sync::Arc;
+
+use super::SolveError;
+use super::factor::Structure;
+use super::ordering::nested_dissection;
+use crate::fem::discretization::Discretization;
+use crate::fem::matrix::{self, LowerTriangle, Neighbours, Numbering};
+use crate::kernel::edge_integral::ExactEdge;
+
+/// The matrices of a discretization.
+pub struct System<'d, 'p, E, const N: usize, const M: usize> {
+    /// What it is the system of.
+    pub d: &'d Discretization<'p, E, N, M>,
+    /// The free degrees of freedom in the order of elimination.
+    pub numbering: Numbering,
+    /// A
+    pub matrix: LowerTriangle,
+    /// The structure of the factor of A and of every tangent.
+    pub structure: Arc<Structure>,
+}
+
+impl<'d, 'p, E, const N: usize, const M: usize> System<'d, 'p, E, N, M>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    /// The system of a discretization.
+    ///
+    /// # Errors
+    /// [`SolveError::OutOfMemory`].
+    pub fn new(d: &'d Discretization<'p, E, N, M>) -> Result<Self, SolveError> {
+        let nodes = d.space.nodes();
+        let neighbours = Neighbours::new(nodes.len(), d.space.elements());
+        let order = nested_dissection(nodes, &neighbours);
+        let numbering = Numbering::under(&order, &d.constraints);
+        let matrix = matrix::assemble(d, &numbering, &neighbours);
+        let structure = Arc::new(Structure::new(&matrix)?);
+        Ok(System { d, numbering, matrix, structure })
+    }
+
+    /// The free degrees of freedom on the triangle of contact edge `e`.
+    pub fn unknowns(&self, e: usize) -> Vec<usize> {
+        let nodes = &self.d.space.elements()[self.d.contact[e].edge.triangle];
+        nodes.iter().flat_map(|&node| self.numbering.of[node]).flatten().collect()
+    }
+
+    /// The rows of B that belong to contact edge `e`: calls `f` with the unknown, the node of the edge and the entry.
+    pub fn functionals(&self, e: usize, mut f: impl FnMut(usize, usize, f64)) {
+        let edge = &self.d.contact[e];
+        let nodes = &self.d.space.elements()[edge.edge.triangle];
+        for (a, functional) in edge.functionals.p0.iter().enumerate() {
+            for (&node, &entries) in nodes.iter().zip(functional) {
+                let entries = self.numbering.in_frame(node, entries);
+                for (number, entry) in self.numbering.of[node].iter().zip(entries) {
+                    if let Some(number) = *number {
+                        f(number, a, entry);
+                    }
+                }
+            }
+        }
+    }
+
+    /// A x
+    pub fn times_matrix(&self, x: &[f64]) -> Vec<f64> {
+        let LowerTriangle { starts, rows, values } = &self.matrix;
+        let mut product = vec![0.0; x.len()];
+        for column in 0..x.len() {
+            for k in starts[column]..starts[column + 1] {
+                let (row, value) = (rows[k], values[k]);
+                product[row] += value * x[column];
+                if row != column {
+                    product[column] += value * x[row];
+                }
+            }
+        }
+        product
+    }
+
+    /// The largest sum of the magnitudes of a row of A: a bound of its largest eigenvalue.
+    pub fn norm(&self) -> f64 {
+        let LowerTriangle { starts, rows, values } = &self.matrix;
+        let mut sums = vec![0.0; self.numbering.count];
+        for column in 0..sums.len() {
+            for k in starts[column]..starts[column + 1] {
+                sums[rows[k]] += values[k].abs();
+                if rows[k] != column {
+                    sums[column] += values[k].abs();
+                }
+            }
+        }
+        sums.into_iter().fold(0.0, f64::max)
+    }
+}
