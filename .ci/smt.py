@@ -3,6 +3,7 @@
 
     pip install z3-solver cvc5 bitwuzla
     cargo run -p props -- smt target/smt && python3 .ci/smt.py target/smt
+    python3 .ci/smt.py target/smt --receipt props/receipts     keeps bitwuzla's answers as bitwuzla-DATE.tsv
 
 Each file says what to expect: unsat (the path is impossible), sat (a planted mistake, refuted at a point), or unknown.
 Floating-point problems (QF_FP) go to bitwuzla instead. Every question runs in a process of its own that is killed after
@@ -12,6 +13,9 @@ is listed under KNOWN_OPEN. What one solver leaves undecided is listed.
 
 import argparse
 import concurrent.futures
+import datetime
+import hashlib
+import importlib.metadata
 import os
 import pathlib
 import subprocess
@@ -76,6 +80,7 @@ def main():
     arguments.add_argument("directory", type=pathlib.Path)
     arguments.add_argument("--seconds", type=float, default=10)
     arguments.add_argument("--jobs", type=int, default=os.cpu_count())
+    arguments.add_argument("--receipt", type=pathlib.Path, metavar="DIR", help="keep bitwuzla's answers in DIR")
     options = arguments.parse_args()
     missing = [m for m in ("z3", "cvc5", "bitwuzla") if not importable(m)]
     if missing:
@@ -83,9 +88,11 @@ def main():
     paths = sorted(options.directory.glob("*.smt2"))
     if not paths:
         sys.exit(f"no problems in {options.directory}")
-    contradictions, unconfirmed, counts = [], [], {}
+    contradictions, unconfirmed, counts, lines = [], [], {}, []
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         for path, (expected, answers) in zip(paths, pool.map(lambda p: decide(p, options.seconds), paths)):
+            if "bitwuzla" in answers:
+                lines.append(receipt_line(path, expected, answers["bitwuzla"]))
             for solver, answer in answers.items():
                 counts[solver, expected, answer] = counts.get((solver, expected, answer), 0) + 1
                 if "unknown" not in (expected, answer) and answer != expected:
@@ -105,6 +112,21 @@ def main():
         print(f"CONTRADICTION: {contradiction}")
     if contradictions or set(unconfirmed) - KNOWN_OPEN:
         sys.exit(1)
+    if options.receipt:
+        write_receipt(options.receipt, lines)
+
+
+def receipt_line(path, expected, answer):
+    """The problem, the hash of its text, what was expected, and what bitwuzla answered."""
+    return "\t".join([path.name, hashlib.sha256(path.read_bytes()).hexdigest()[:16], expected, answer])
+
+
+def write_receipt(directory, lines):
+    path = directory / f"bitwuzla-{datetime.datetime.now(datetime.timezone.utc).date()}.tsv"
+    version = importlib.metadata.version("bitwuzla")
+    head = [f"# bitwuzla {version}", "\t".join(["problem", "hash", "expected", "answer"])]
+    path.write_text("\n".join(head + lines) + "\n")
+    print(f"written: {path}")
 
 
 def importable(module):

@@ -11,7 +11,8 @@ use crate::claims;
 struct Result {
     row: &'static str,
     engine: &'static str,
-    name: &'static str,
+    name: String,
+    receipt: Option<String>,
     control: bool,
     seconds: f64,
     outcome: Outcome,
@@ -49,7 +50,8 @@ fn page_path() -> PathBuf {
 fn run(claim: &Claim) -> Vec<Result> {
     println!("row {}: {}", claim.id, claim.title);
     let one = |check: &crate::claim::Check| {
-        print!("  {:7} {} ... ", check.engine.name(), check.name);
+        let (engine, name, receipt) = (check.engine_name(), check.shown_name(), check.receipt());
+        print!("  {engine:7} {name} ... ");
         let _ = io::stdout().flush();
         let start = Instant::now();
         let outcome = check.run();
@@ -58,8 +60,8 @@ fn run(claim: &Claim) -> Vec<Result> {
             Ok(evidence) => println!("{} ({seconds:.2} s) {evidence}", paint("ok", "32")),
             Err(why) => println!("{} ({seconds:.2} s) {why}", paint("FAILED", "31")),
         }
-        let (engine, control) = (check.engine.name(), check.control);
-        Result { row: claim.id, engine, name: check.name, control, seconds, outcome }
+        let (row, control) = (claim.id, check.control);
+        Result { row, engine, name, receipt, control, seconds, outcome }
     };
     claim.checks.iter().map(one).collect()
 }
@@ -125,9 +127,10 @@ fn html(claims: &[Claim], results: &[Result]) -> String {
                 Err(why) => ("bad", "FAILED", why),
             };
             let kind = if r.control { " (control)" } else { "" };
+            let receipt = r.receipt.as_ref().map_or(String::new(), |text| format!("; {text}"));
             let _ = write!(
                 text,
-                "<tr class=\"{class}\"><td>{}<td><code>{}</code>{kind}<td>{word}: {}<td>{:.2}</tr>",
+                "<tr class=\"{class}\"><td>{}<td><code>{}</code>{kind}<td>{word}: {}{receipt}<td>{:.2}</tr>",
                 r.engine,
                 r.name,
                 escape(detail),
@@ -153,7 +156,8 @@ mod tests {
         let result = Result {
             row: "1",
             engine: "proof",
-            name: "name",
+            name: "name".to_owned(),
+            receipt: None,
             control: false,
             seconds: 0.0,
             outcome: Err("a < b".to_owned()),

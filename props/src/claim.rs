@@ -1,9 +1,11 @@
 //! A claim: an item of the paper, what is said about it here, and the checks that say so. Tests, ledger and audit walk
 //! over the same claims, so no name in `VERIFY.md` can go stale.
 
+use crate::bitwuzla;
 use crate::draws;
 use crate::harness::Harness;
 use crate::proof;
+use crate::receipt::{self, Standing};
 use crate::statement::Statement;
 
 /// What a check answers: a line of evidence, or what went wrong.
@@ -18,18 +20,19 @@ pub enum Engine {
     Exact,
     /// Random data over all finite doubles, or doubles against exact rationals with a stated bound.
     Doubles,
-    /// A harness for the model checker, run here on random draws.
-    Kani,
+    /// A harness for the model checker Kani, run here on random draws.
+    Harness,
 }
 
 impl Engine {
-    /// Its name in the ledger.
+    /// Its name. What a harness is by itself: the model checker is behind it where a receipt says so
+    /// ([`Check::engine_name`]).
     pub fn name(self) -> &'static str {
         match self {
             Engine::Proof => "proof",
             Engine::Exact => "exact",
             Engine::Doubles => "doubles",
-            Engine::Kani => "Kani",
+            Engine::Harness => "draws",
         }
     }
 }
@@ -59,6 +62,43 @@ pub struct Check {
 }
 
 impl Check {
+    /// Its engine in the ledger: that of a harness is the model checker where a receipt says so, else random draws.
+    pub fn engine_name(&self) -> &'static str {
+        match self.standing() {
+            Some(standing) if standing.is_verified() => "Kani",
+            _ => self.engine.name(),
+        }
+    }
+
+    /// Its name in the ledger: a harness says that it is for all numbers only where a receipt says so.
+    pub fn shown_name(&self) -> String {
+        match (self.subject, self.standing()) {
+            (Subject::Harness(harness), Some(standing)) if !standing.is_verified() => {
+                harness.name_on_draws()
+            }
+            _ => self.name.to_owned(),
+        }
+    }
+
+    /// What the model checker said of a harness, by the receipts.
+    pub fn standing(&self) -> Option<Standing> {
+        match self.subject {
+            Subject::Harness(harness) => Some(receipt::standing(&harness)),
+            _ => None,
+        }
+    }
+
+    /// What a receipt says of it: of a harness by the model checker, of a statement in doubles by bitwuzla.
+    pub fn receipt(&self) -> Option<String> {
+        match self.subject {
+            Subject::Harness(_) => self.standing().map(|standing| standing.to_string()),
+            Subject::Statement(statement) if self.engine == Engine::Doubles && !self.control => {
+                Some(bitwuzla::opinion(&statement).to_string())
+            }
+            _ => None,
+        }
+    }
+
     /// Runs it.
     ///
     /// # Errors
@@ -120,7 +160,7 @@ pub fn control(engine: Engine, name: &'static str, run: fn() -> Outcome) -> Chec
 pub fn model_checked(harness: Harness) -> Check {
     Check {
         name: harness.name,
-        engine: Engine::Kani,
+        engine: Engine::Harness,
         control: harness.counterexample.is_some(),
         subject: Subject::Harness(harness),
     }

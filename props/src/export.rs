@@ -12,6 +12,7 @@ use crate::claim::{Engine, Subject};
 use crate::claims;
 use crate::proof::float::problems;
 use crate::proof::{Fate, analyse, smt};
+use crate::statement::Statement;
 
 /// Writes the files into `directory` and answers how many.
 ///
@@ -28,12 +29,8 @@ pub fn export(directory: &Path) -> io::Result<usize> {
             continue;
         }
         if check.engine == Engine::Doubles {
-            let expected = if check.control { "unknown" } else { "unsat" };
-            for (i, problem) in problems(statement.variables, statement.terms).iter().enumerate() {
-                let head =
-                    format!("; {}, in doubles, path {i}\n; expected: {expected}\n", statement.name);
-                let file = directory.join(format!("{}.double.{i}.smt2", statement.name));
-                std::fs::write(file, head + problem)?;
+            for (name, problem) in in_doubles(&statement, check.control) {
+                std::fs::write(directory.join(name), problem)?;
                 count += 1;
             }
             continue;
@@ -52,4 +49,15 @@ pub fn export(directory: &Path) -> io::Result<usize> {
         }
     }
     Ok(count)
+}
+
+/// The failing paths of a statement in doubles: the names of their files, and the problems.
+pub fn in_doubles(statement: &Statement, control: bool) -> Vec<(String, String)> {
+    let (name, expected) = (statement.name, if control { "unknown" } else { "unsat" });
+    let problems = problems(statement.variables, statement.terms).into_iter().enumerate();
+    let with_names = |(i, problem): (usize, String)| {
+        let head = format!("; {name}, in doubles, path {i}\n; expected: {expected}\n");
+        (format!("{name}.double.{i}.smt2"), head + &problem)
+    };
+    problems.map(with_names).collect()
 }

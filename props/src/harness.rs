@@ -1,12 +1,13 @@
 //! Harnesses for the model checker Kani, and the stand-in that runs the same functions on random draws elsewhere.
 //!
 //! Under Kani [`any`] is every value at once and [`assume`] restricts them. Elsewhere a harness is run many times:
-//! [`any`] draws (edge values often), and [`assume`] ends the run when it does not hold. A harness whose assumptions no
-//! draw meets has shown nothing, and is an error. A control is the false twin of a harness: under Kani it must fail
+//! [`any`] draws (edge values often), and [`assume`] ends the run when it does not hold. What counts are the draws that
+//! meet the assumptions; a harness that hardly any does has shown nothing, and is an error. A control is the false twin of a harness: under Kani it must fail
 //! (`should_panic`); elsewhere it is run once, on the counterexample that is stored with it, and must panic there.
 //!
-//! Loops take at most seven rounds, the unwinding bound. So harnesses compare no whole arrays or slices of integers: such a
-//! comparison is a loop over bytes.
+//! Loops take at most seven rounds, or one less than a harness says (`within 4`: three rounds): the unwinding bound. So
+//! harnesses compare no whole arrays or slices of integers: such a comparison is a loop over bytes. A loop over a slice whose
+//! length is not known beforehand is unrolled up to the bound, and so is each one inside it.
 
 #[cfg(kani)]
 pub use kani::{any, assume};
@@ -17,16 +18,20 @@ pub use stand_in::{Any, Harness, any, assume};
 /// Names functions as harnesses of the model checker, with their unwinding bound, and lists them for the stand-in.
 ///
 /// `holds name() { .. }` must hold for all values; `fails name([v, ..]) { .. }` is a false twin, which fails when
-/// [`any`] returns the values v, .. one after the other.
+/// [`any`] returns the values v, .. one after the other. `within n` in front of the body is another unwinding bound than 8.
 #[macro_export]
 macro_rules! harnesses {
-    ($($(#[doc = $doc:literal])* $kind:ident $name:ident($($counterexample:expr)?) $body:block)*) => {
-        $($crate::harness_function! { $(#[doc = $doc])* $kind $name $body })*
+    ($(
+        $(#[doc = $doc:literal])*
+        $kind:ident $name:ident($($counterexample:expr)?) $(within $bound:literal)? $body:block
+    )*) => {
+        $($crate::harness_function! { $(#[doc = $doc])* $kind $name $($bound)? $body })*
 
         /// The harnesses of this module.
         #[cfg(not(kani))]
         pub const HARNESSES: &[$crate::harness::Harness] = &[$($crate::harness::Harness {
             name: stringify!($name),
+            module: module_path!(),
             counterexample: $crate::counterexample!($kind $($counterexample)?),
             body: $name,
         }),*];
@@ -36,18 +41,21 @@ macro_rules! harnesses {
 /// One harness: `holds` must hold, `fails` must not.
 #[macro_export]
 macro_rules! harness_function {
-    ($(#[doc = $doc:literal])* holds $name:ident $body:block) => {
+    ($(#[doc = $doc:literal])* holds $name:ident $bound:literal $body:block) => {
         $(#[doc = $doc])*
         #[cfg_attr(kani, kani::proof)]
-        #[cfg_attr(kani, kani::unwind(8))]
+        #[cfg_attr(kani, kani::unwind($bound))]
         pub fn $name() $body
     };
-    ($(#[doc = $doc:literal])* fails $name:ident $body:block) => {
+    ($(#[doc = $doc:literal])* fails $name:ident $bound:literal $body:block) => {
         $(#[doc = $doc])*
         #[cfg_attr(kani, kani::proof)]
-        #[cfg_attr(kani, kani::unwind(8))]
+        #[cfg_attr(kani, kani::unwind($bound))]
         #[cfg_attr(kani, kani::should_panic)]
         pub fn $name() $body
+    };
+    ($(#[doc = $doc:literal])* $kind:ident $name:ident $body:block) => {
+        $crate::harness_function! { $(#[doc = $doc])* $kind $name 8 $body }
     };
 }
 
@@ -70,14 +78,20 @@ mod stand_in {
 
     use crate::proof::sampler::Random;
 
-    /// Runs per harness.
-    const RUNS: u32 = 20_000;
+    /// So many draws shall meet the assumptions of a harness,
+    const ENOUGH: u32 = 20_000;
+    /// out of so many at most,
+    const MOST: u32 = 200_000;
+    /// and so many must.
+    const LEAST: u32 = 100;
 
     /// A harness: a function that asserts something about [`any`] values.
     #[derive(Clone, Copy)]
     pub struct Harness {
         /// Its name, which says the range.
         pub name: &'static str,
+        /// The module in which it stands.
+        pub module: &'static str,
         /// The values for which a false twin must panic; a number stands for the value of any type.
         pub counterexample: Option<&'static [f64]>,
         /// The function.
@@ -107,6 +121,17 @@ mod stand_in {
     }
 
     impl Harness {
+        /// Its path in this crate, as the model checker prints it.
+        pub fn path(&self) -> String {
+            let module = self.module.split_once("::").map_or("", |(_, module)| module);
+            format!("{module}::{}", self.name)
+        }
+
+        /// Its name for what it is when it runs on random draws: not for all, but for random numbers.
+        pub fn name_on_draws(&self) -> String {
+            self.name.replace("_for_all_", "_for_random_")
+        }
+
         /// Runs it on random draws, or a false twin on its counterexample.
         ///
         /// # Errors
@@ -120,17 +145,22 @@ mod stand_in {
 
         fn run_on_draws(&self) -> Result<String, String> {
             SOURCE.set(Source::Random(Random::new(crate::draws::seed())));
-            let mut met = 0;
-            for run in 0..RUNS {
+            let (mut draws, mut met) = (0, 0);
+            while met < ENOUGH && draws < MOST {
                 match self.run_once() {
                     End::Passed => met += 1,
                     End::NotAssumed => {}
-                    End::Panicked(why) => return Err(format!("draw {run}: {why}")),
+                    End::Panicked(why) => return Err(format!("draw {draws}: {why}")),
                 }
+                draws += 1;
             }
             match met {
                 0 => Err("no draw met the assumptions".to_owned()),
-                _ => Ok(format!("{met} of {RUNS} random draws met the assumptions")),
+                _ if met < LEAST => Err(format!("only {met} of {draws} draws met the assumptions")),
+                _ if met == draws => Ok(format!("{met} random draws")),
+                _ => Ok(format!(
+                    "{met} random draws, of {draws} that did not all meet the assumptions"
+                )),
             }
         }
 
@@ -259,11 +289,12 @@ mod stand_in {
         use super::*;
 
         fn holds(body: fn()) -> Result<String, String> {
-            Harness { name: "test", counterexample: None, body }.run()
+            Harness { name: "test", module: "props", counterexample: None, body }.run()
         }
 
         fn fails(body: fn(), counterexample: &'static [f64]) -> Result<String, String> {
-            Harness { name: "test", counterexample: Some(counterexample), body }.run()
+            Harness { name: "test", module: "props", counterexample: Some(counterexample), body }
+                .run()
         }
 
         fn small() {

@@ -66,11 +66,19 @@ met), or *fails*. The engines run that one function:
 | proof | symbols: polynomials over Q | every comparison forks the path; each path that ends in *fails* contradicts itself, by a certificate (a sum of products of the path's facts and of squares that is positive and zero) that a checker of 40 lines verifies. So it holds over every ordered field, hence over R |
 | exact | rationals | random data, no tolerance at all |
 | doubles | f64 | random finite doubles with edge values, ties and neighbours; or a comparison with exact rationals and a stated bound; or an enclosure by intervals, rounded outwards |
-| Kani | f64, small integers | a harness for the bounded model checker exists and is run on random draws here; **no receipt of a run of the model checker is kept yet** |
+| Kani | f64, small integers | the bounded model checker Kani has decided a harness, for all numbers that it ranges over, and a receipt in `props/receipts` is about these very sources |
+| draws | f64, small integers | no receipt is: **the harness is run on random draws, and no more is known**. Where the source says `for_all`, its name here says `for_random` |
 
 A further opinion, not part of `cargo test`: `cargo run -p props -- smt DIR` writes every failing path of the proofs as a
 problem for z3 and cvc5, and every failing path of the statements in doubles, over all finite doubles, for bitwuzla;
-`.ci/smt.py DIR` runs them and fails on a contradiction, or where no solver confirms a path.
+`.ci/smt.py DIR` runs them and fails on a contradiction, or where no solver confirms a path. What bitwuzla answers decides
+a statement for all finite doubles, so its answers are kept, with a hash of each problem, and a test fails when one changes.
+
+**Receipts** (`props/receipts`): `cargo kani` at the root runs the model checker, which is not part of `cargo test`; `cargo
+run -p props -- receipt LOG` keeps what it printed, and `.ci/smt.py DIR --receipt props/receipts` what bitwuzla answered. A
+receipt stands behind a harness as long as a hash of the harness and of all that it reaches of the kernel, of this crate
+and of other packages is the same (`props/src/sources.rs`); then \"verified by receipt\" stands beside it below, for a
+control that exactly its planted mistake fails.
 
 **The reference.** An engine of another kind: an independent program in FEniCSx (`reference/fenicsx`) solves the same case
 files, and `cargo test --test suite reference` compares the whole solver with its stored results, one file for each case in
@@ -144,10 +152,11 @@ pub fn ledger() -> String {
 
 /// The engines behind a claim's evidence, controls apart.
 pub fn engines(claim: &Claim) -> String {
-    let mut engines: Vec<Engine> = evidence(claim).map(|check| check.engine).collect();
+    let mut engines: Vec<(Engine, &str)> =
+        evidence(claim).map(|check| (check.engine, check.engine_name())).collect();
     engines.sort_unstable();
     engines.dedup();
-    engines.into_iter().map(Engine::name).collect::<Vec<_>>().join(", ")
+    engines.into_iter().map(|(_, name)| name).collect::<Vec<_>>().join(", ")
 }
 
 fn evidence(claim: &Claim) -> impl Iterator<Item = &Check> {
@@ -189,13 +198,19 @@ fn row(claim: &Claim) -> String {
     );
     text += "| engine | evidence |\n| --- | --- |\n";
     for check in evidence(claim) {
-        let _ = writeln!(text, "| {} | `{}` |", check.engine.name(), check.name);
+        text += &line_of(check);
     }
     text += "\n| engine | control: a planted mistake that is rejected |\n| --- | --- |\n";
     for check in claim.checks.iter().filter(|check| check.control) {
-        let _ = writeln!(text, "| {} | `{}` |", check.engine.name(), check.name);
+        text += &line_of(check);
     }
     text
+}
+
+/// A check in the table of its row, with what a receipt says of it.
+fn line_of(check: &Check) -> String {
+    let receipt = check.receipt().map_or(String::new(), |receipt| format!(": {receipt}"));
+    format!("| {} | `{}`{receipt} |\n", check.engine_name(), check.shown_name())
 }
 
 #[cfg(test)]
@@ -228,9 +243,9 @@ mod tests {
     #[test]
     fn every_row_has_two_engines_or_a_reason_and_a_control() {
         for claim in &claims::all() {
-            // A harness that was never run by the model checker is not counted.
+            // A harness is not counted: a receipt may stop standing behind it at any time.
             let mut kinds: Vec<Engine> = evidence(claim).map(|check| check.engine).collect();
-            kinds.retain(|&engine| engine != Engine::Kani);
+            kinds.retain(|&engine| engine != Engine::Harness);
             kinds.sort_unstable();
             kinds.dedup();
             assert!((kinds.len() > 1) != claim.single.is_some(), "row {}: {kinds:?}", claim.id);
@@ -242,8 +257,8 @@ mod tests {
     fn every_harness_has_a_false_twin_and_there_are_at_least_25() {
         let claims = claims::all();
         let harnesses = |control: bool| {
-            let kani = claims.iter().flat_map(|c| &c.checks).filter(|c| c.engine == Engine::Kani);
-            kani.filter(|check| check.control == control).count()
+            let all = claims.iter().flat_map(|c| &c.checks).filter(|c| c.engine == Engine::Harness);
+            all.filter(|check| check.control == control).count()
         };
         assert!(harnesses(false) >= 25, "{}", harnesses(false));
         assert_eq!(harnesses(false), harnesses(true));

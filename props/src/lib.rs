@@ -7,6 +7,8 @@
 #[cfg(not(kani))]
 pub mod audit;
 #[cfg(not(kani))]
+pub mod bitwuzla;
+#[cfg(not(kani))]
 pub mod bodies;
 #[cfg(not(kani))]
 pub mod claim;
@@ -30,7 +32,11 @@ pub mod numbers;
 #[cfg(not(kani))]
 pub mod proof;
 #[cfg(not(kani))]
+pub mod receipt;
+#[cfg(not(kani))]
 pub mod sharpness;
+#[cfg(not(kani))]
+pub mod sources;
 #[cfg(not(kani))]
 pub mod statement;
 pub mod verdict;

@@ -20,6 +20,11 @@ fn main() -> std::process::ExitCode {
             println!("{count} problems in {directory}");
             true
         }),
+        ["receipt", log] => props::receipt::make(log.as_ref()).map(|path| {
+            println!("written: {}", path.display());
+            println!("VERIFY.md follows it: cargo run -p props -- ledger > VERIFY.md");
+            true
+        }),
         ["sharpness"] => props::sharpness::rows().map_err(std::io::Error::other).map(|rows| {
             print!("{}", props::sharpness::table(&rows));
             true
@@ -28,6 +33,9 @@ fn main() -> std::process::ExitCode {
             eprintln!("props ledger       print VERIFY.md");
             eprintln!("props audit [ROW]  run every check, or those of a row");
             eprintln!("props smt DIR      write the paths of the proofs as SMT-LIB 2 problems");
+            eprintln!(
+                "props receipt LOG  keep the output of cargo kani as a receipt in props/receipts"
+            );
             eprintln!("props sharpness    print the table of docs/parameters.md: limits of gamma0");
             return ExitCode::from(2);
         }

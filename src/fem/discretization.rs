@@ -151,10 +151,9 @@ where
             let area = triangle.double_area() / 2.0;
             E::at_stiffness_points(|l, weight| {
                 let strain = displacement_gradient(&nodal, &E::gradients(l, barycentric));
-                let stress = material.stress(strain);
-                let shear = stress.xy * (strain[0][1] + strain[1][0]);
-                energy +=
-                    weight * area * (stress.xx * strain[0][0] + stress.yy * strain[1][1] + shear);
+                let [xx, yy, xy] = material.stress(strain).components();
+                let shear = xy * (strain.m12 + strain.m21);
+                energy += weight * area * (xx * strain.m11 + yy * strain.m22 + shear);
             });
         }
         energy

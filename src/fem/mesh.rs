@@ -451,7 +451,11 @@ impl MeshError {
                 *triangle = of_triangle(*triangle);
                 two(edge);
             }
-            Empty | NoSuchBoundary { .. } | Rectangle(_) => {}
+            Empty
+            | NoSuchBoundary { .. }
+            | Size { .. }
+            | NoCells { .. }
+            | TooManyCells { .. } => {}
         }
         self
     }

@@ -13,6 +13,9 @@
 //!
 //! All functions write into slices of the caller and are total: a number that names no node, no triangle or no column
 //! counts for nothing, and a member for which a slice has no room is left out.
+//!
+//! Loops count, and what there are two of is written as a loop of two: a model checker unrolls the iterators of `Option`,
+//! `zip`, `flatten` and `rev` far beyond their ends.
 
 use std::ops::{Add, Range};
 
@@ -40,11 +43,11 @@ impl<'a> Lists<'a> {
     }
 }
 
-/// So many more members for list `i`.
-fn count(counts: &mut [usize], i: usize, more: usize) {
+/// One more member for list `i`.
+fn count(counts: &mut [usize], i: usize) {
     // What comes after the last list is no list.
     if let Some([count, _, ..]) = counts.get_mut(i..) {
-        *count += more;
+        *count += 1;
     }
 }
 
@@ -76,13 +79,17 @@ pub fn triangles_of_nodes<const N: usize>(
     triangles: &mut [usize],
 ) {
     starts.fill(0);
-    for &node in elements.as_flattened() {
-        count(starts, node, 1);
+    for element in elements {
+        for i in 0..N {
+            count(starts, element[i]);
+        }
     }
     ends(starts);
-    for (t, element) in elements.iter().enumerate().rev() {
-        for &node in element {
-            put(starts, triangles, node, t);
+    let mut t = elements.len();
+    while t > 0 {
+        t -= 1;
+        for i in 0..N {
+            put(starts, triangles, elements[t][i], t);
         }
     }
 }
@@ -111,8 +118,10 @@ pub fn neighbours<const N: usize>(
         };
         meet(node);
         for &t in triangles.of(node) {
-            for &other in elements.get(t).into_iter().flatten() {
-                meet(other);
+            if let Some(element) = elements.get(t) {
+                for i in 0..N {
+                    meet(element[i]);
+                }
             }
         }
     }
@@ -142,12 +151,12 @@ pub fn number<T>(
         let (Some(numbers), Some(values)) = (of.get_mut(node), prescribed.get(node)) else {
             continue;
         };
-        if *numbers != [None; 2] {
+        if numbers[0].is_some() || numbers[1].is_some() {
             continue;
         }
-        for (number, value) in numbers.iter_mut().zip(values) {
-            if let (None, Some(slot)) = (value, nodes.get_mut(count)) {
-                *number = Some(count);
+        for c in 0..2 {
+            if let (None, Some(slot)) = (&values[c], nodes.get_mut(count)) {
+                numbers[c] = Some(count);
                 *slot = node;
                 count += 1;
             }
@@ -158,40 +167,47 @@ pub fn number<T>(
 
 /// A vector over the numbers from a field.
 pub fn gather<T: Copy>(of: &[[Option<usize>; 2]], field: &[[T; 2]], vector: &mut [T]) {
-    for (number, value) in of.as_flattened().iter().zip(field.as_flattened()) {
-        if let Some(slot) = number.and_then(|number| vector.get_mut(number)) {
-            *slot = *value;
+    for node in 0..of.len().min(field.len()) {
+        for c in 0..2 {
+            if let Some(number) = of[node][c]
+                && let Some(slot) = vector.get_mut(number)
+            {
+                *slot = field[node][c];
+            }
         }
     }
 }
 
 /// Writes a vector over the numbers into a field, and leaves the prescribed components as they are.
 pub fn scatter<T: Copy>(of: &[[Option<usize>; 2]], vector: &[T], field: &mut [[T; 2]]) {
-    for (number, slot) in of.as_flattened().iter().zip(field.as_flattened_mut()) {
-        if let Some(value) = number.and_then(|number| vector.get(number)) {
-            *slot = *value;
+    for node in 0..of.len().min(field.len()) {
+        for c in 0..2 {
+            if let Some(number) = of[node][c]
+                && let Some(value) = vector.get(number)
+            {
+                field[node][c] = *value;
+            }
         }
     }
 }
 
-/// Calls `f` with the rows of each node in the columns of each of its neighbours, as far as they are in the lower triangle:
-/// the last rows first.
-fn entries(numbers: Numbers, neighbours: Lists, mut f: impl FnMut(Range<usize>, usize)) {
-    let mut end = numbers.nodes.len();
-    while let Some(last) = end.checked_sub(1)
-        && let Some(&node) = numbers.nodes.get(last)
-    {
-        // The numbers of a node follow each other.
-        let before = last.checked_sub(1).filter(|&i| numbers.nodes.get(i) == Some(&node));
-        let first = before.unwrap_or(last);
-        for &other in neighbours.of(node) {
-            let Some(columns) = numbers.of.get(other) else { continue };
-            for &column in columns.iter().flatten() {
-                // No rows at all where the column is beyond them.
-                f(first.max(column)..end, column);
+/// Calls `f` with each row and the columns of each neighbour of its node, as far as they are in the lower triangle: the
+/// last row first.
+fn entries(numbers: Numbers, neighbours: Lists, mut f: impl FnMut(usize, usize)) {
+    let mut row = numbers.nodes.len();
+    while row > 0 {
+        row -= 1;
+        for &other in neighbours.of(numbers.nodes[row]) {
+            if let Some(columns) = numbers.of.get(other) {
+                for c in 0..2 {
+                    if let Some(column) = columns[c]
+                        && column <= row
+                    {
+                        f(row, column);
+                    }
+                }
             }
         }
-        end = first;
     }
 }
 
@@ -199,18 +215,23 @@ fn entries(numbers: Numbers, neighbours: Lists, mut f: impl FnMut(Range<usize>, 
 /// are numbers.
 pub fn column_ends(numbers: Numbers, neighbours: Lists, counts: &mut [usize]) {
     counts.fill(0);
-    entries(numbers, neighbours, |rows, column| count(counts, column, rows.len()));
+    entries(numbers, neighbours, |_, column| count(counts, column));
     ends(counts);
 }
 
 /// The rows of each column in increasing order, the diagonal first. `starts` are the ends of the columns before, and their
 /// starts after.
 pub fn column_rows(numbers: Numbers, neighbours: Lists, starts: &mut [usize], rows: &mut [usize]) {
-    entries(numbers, neighbours, |more, column| {
-        for row in more.rev() {
-            put(starts, rows, column, row);
-        }
-    });
+    entries(numbers, neighbours, |row, column| put(starts, rows, column, row));
+}
+
+/// Where in a list a number stands.
+fn place(list: &[usize], number: usize) -> Option<usize> {
+    let mut i = 0;
+    while i < list.len() && list[i] != number {
+        i += 1;
+    }
+    (i < list.len()).then_some(i)
 }
 
 /// Adds to the `values` of the lower triangle with these `columns` the 2 x 2 blocks of an element matrix: `block(i, j)`
@@ -222,27 +243,32 @@ pub fn add<T: Copy + Add<Output = T>, const N: usize>(
     nodes: &[usize; N],
     block: impl Fn(usize, usize) -> [[T; 2]; 2],
 ) {
-    let numbers = nodes.map(|node| of.get(node).copied().unwrap_or_default());
-    let first = numbers.map(|[x, y]| x.or(y));
+    let mut numbers = [[None; 2]; N];
+    for i in 0..N {
+        if let Some(own) = of.get(nodes[i]) {
+            numbers[i] = *own;
+        }
+    }
     for j in 0..N {
-        let Some(first_column) = first[j] else { continue };
+        // The numbers of a node follow each other.
+        let Some(first_column) = numbers[j][0].or(numbers[j][1]) else { continue };
         let rows = columns.of(first_column);
         for i in 0..N {
             // A pair stands in the columns of the node that comes first.
-            let Some(first_row) = first[i] else { continue };
+            let Some(first_row) = numbers[i][0].or(numbers[i][1]) else { continue };
             if first_row < first_column {
                 continue;
             }
-            let Some(place) = rows.iter().position(|&row| row == first_row) else { continue };
+            let Some(place) = place(rows, first_row) else { continue };
             let block = block(i, j);
-            for (d, column) in numbers[j].iter().enumerate() {
-                let Some(column) = *column else { continue };
-                // The numbers of a node follow each other: its second column has one row less at the top. What would be
-                // above the diagonal is at place -1, which there is not.
+            for d in 0..2 {
+                let Some(column) = numbers[j][d] else { continue };
+                // The second column has one row less at the top. What would be above the diagonal is at place -1, which
+                // there is not.
                 let top = place.wrapping_sub(column.wrapping_sub(first_column));
                 let Some(values) = values.get_mut(columns.range(column)) else { continue };
-                for (c, row) in numbers[i].iter().enumerate() {
-                    let Some(row) = *row else { continue };
+                for c in 0..2 {
+                    let Some(row) = numbers[i][c] else { continue };
                     let place = top.wrapping_add(row.wrapping_sub(first_row));
                     if let Some(value) = values.get_mut(place) {
                         *value = *value + block[c][d];

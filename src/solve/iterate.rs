@@ -52,7 +52,7 @@ impl Iterate {
         let mut field = vec![[0.0; 2]; self.u.len()];
         system.numbering.scatter(step, &mut field);
         for (u, step) in self.u.iter_mut().flatten().zip(field.as_flattened()) {
-            *u = *u + Twofold::from(t * step);
+            *u += Twofold::from(t * step);
         }
     }
 

@@ -194,6 +194,54 @@ harnesses! {
         let [a, b, c] = t.vertices;
         assert!(Triangle { vertices: [b, a, c] }.double_area() == t.double_area());
     }
+    /// The area is the shoelace formula: positive for counter-clockwise vertices, which the two harnesses above do not say.
+    holds area_is_the_shoelace_formula_on_the_unit_grid() {
+        let t = on_grid();
+        let [[ax, ay], [bx, by], [cx, cy]] = t.vertices.map(<[Whole; 2]>::from);
+        assert!(t.double_area() == ax * (by - cy) + bx * (cy - ay) + cx * (ay - by));
+    }
+    /// The false twin: positive for clockwise ones.
+    fails control_area_is_positive_for_clockwise_vertices_on_the_unit_grid([0.0, 0.0, 1.0, 0.0, 0.0, 1.0]) {
+        let t = on_grid();
+        let [[ax, ay], [bx, by], [cx, cy]] = t.vertices.map(<[Whole; 2]>::from);
+        assert!(t.double_area() == ax * (cy - by) + bx * (ay - cy) + cx * (by - ay));
+    }
+    /// n . t = 0: a normal is across its edge. Degree 1 in each coordinate.
+    holds scaled_normals_are_across_their_edges_on_the_unit_grid() {
+        let t = on_grid();
+        for i in 0..3 {
+            let (n, edge) = (t.scaled_normal(i), t.edge(i));
+            assert!(n[0] * edge[0] + n[1] * edge[1] == Whole(0));
+        }
+    }
+    /// The false twin: along it.
+    fails control_scaled_normals_are_along_their_edges_on_the_unit_grid([0.0, 0.0, 1.0, 0.0, 0.0, 1.0]) {
+        let t = on_grid();
+        for i in 0..3 {
+            let (n, edge) = (t.scaled_normal(i), t.edge(i));
+            assert!(n[0] * edge[1] - n[1] * edge[0] == Whole(0));
+        }
+    }
+    /// Its side: away from the opposite vertex where the vertices are counter-clockwise, and the height times |E_i| is 2 |T|.
+    holds scaled_normals_point_away_from_the_opposite_vertex_on_the_unit_grid() {
+        let t = on_grid();
+        let [[ax, ay], [bx, by], [cx, cy]] = t.vertices.map(<[Whole; 2]>::from);
+        let double_area = ax * (by - cy) + bx * (cy - ay) + cx * (ay - by);
+        for i in 0..3 {
+            let (n, from, to) = (t.scaled_normal(i), t.vertices[i], t.vertices[(i + 1) % 3]);
+            assert!(n[0] * (to[0] - from[0]) + n[1] * (to[1] - from[1]) == double_area);
+        }
+    }
+    /// The false twin: towards it.
+    fails control_scaled_normals_point_to_the_opposite_vertex_on_the_unit_grid([0.0, 0.0, 1.0, 0.0, 0.0, 1.0]) {
+        let t = on_grid();
+        let [[ax, ay], [bx, by], [cx, cy]] = t.vertices.map(<[Whole; 2]>::from);
+        let double_area = ax * (by - cy) + bx * (cy - ay) + cx * (ay - by);
+        for i in 0..3 {
+            let (n, from, to) = (t.scaled_normal(i), t.vertices[(i + 1) % 3], t.vertices[i]);
+            assert!(n[0] * (to[0] - from[0]) + n[1] * (to[1] - from[1]) == double_area);
+        }
+    }
     /// The outward normals, weighted by length, add up to zero (so do the barycentric gradients).
     holds scaled_normals_add_up_to_zero_for_all_i8() {
         let coordinate = || Whole(i32::from(any::<i8>()));

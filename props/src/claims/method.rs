@@ -115,6 +115,21 @@ pub fn control_edge_not_cut<S: Ordered>(p: [S; 2]) -> Verdict {
     Verdict::Holds(class(p))
 }
 
+/// 0 or 1.
+fn bit() -> Whole {
+    Whole(i32::from(any::<bool>()))
+}
+
+/// How far the second derivative is from the derivative of the gradient in the direction of P, which is the gradient
+/// itself: \[.\]+ is homogeneous. `factor` multiplies the second derivative.
+fn hessian_error(p: [f64; 2], factor: f64) -> f64 {
+    let e = P1::exact(p);
+    let error = |a: usize| {
+        (factor * (e.hessian[a][0] * p[0] + e.hessian[a][1] * p[1]) - e.gradient[a]).abs()
+    };
+    error(0) + error(1)
+}
+
 fn small() -> Whole {
     let value: i8 = any();
     assume(value > -16 && value < 16);
@@ -122,17 +137,18 @@ fn small() -> Whole {
 }
 
 harnesses! {
-    /// Six times the integral of a product of two affine functions, by the mass matrix.
-    holds integral_of_a_product_is_the_mass_matrix_for_values_within_15() {
+    /// Six times the integral of a product of two affine functions, by the mass matrix. It has degree 1 in each value, so
+    /// the grid decides for all.
+    holds integral_of_a_product_is_the_mass_matrix_on_the_unit_grid() {
         let (six, two) = (Whole(6), Whole(2));
-        let [a, b, c, d] = [small(), small(), small(), small()];
+        let [a, b, c, d] = [bit(), bit(), bit(), bit()];
         let integral = integral_of_product([six * a, six * b], [c, d]);
         assert!(integral == two * a * c + a * d + b * c + two * b * d);
     }
     /// The false twin: lumped.
-    fails control_integral_of_a_product_is_lumped_for_values_within_15([1.0, 0.0, 0.0, 1.0]) {
+    fails control_integral_of_a_product_is_lumped_on_the_unit_grid([1.0, 0.0, 0.0, 1.0]) {
         let (six, three) = (Whole(6), Whole(3));
-        let [a, b, c, d] = [small(), small(), small(), small()];
+        let [a, b, c, d] = [bit(), bit(), bit(), bit()];
         assert!(integral_of_product([six * a, six * b], [c, d]) == three * a * c + three * b * d);
     }
     /// The integral of a square is not negative.
@@ -172,6 +188,40 @@ harnesses! {
         for k in 1..8 {
             let p = [6.0 * f64::from(k - 8), 6.0 * f64::from(k)];
             assert!(!control_edge_not_cut(p).fails());
+        }
+    }
+    /// The second derivative is the derivative of the gradient. On an uncut edge the gradient is linear: its differences.
+    holds hessian_is_the_difference_of_gradients_on_a_pressed_edge() {
+        for k in 1..4 {
+            let p = [6.0 * f64::from(k), 6.0];
+            let (e, f) = (P1::exact(p), P1::exact([p[0] + 6.0, p[1]]));
+            for a in 0..2 {
+                assert!((f.gradient[a] - e.gradient[a] - 6.0 * e.hessian[a][0]).abs() < 1e-12);
+            }
+        }
+    }
+    /// The false twin: twice as large.
+    fails control_hessian_is_twice_the_difference_of_gradients_on_a_pressed_edge([]) {
+        for k in 1..4 {
+            let p = [6.0 * f64::from(k), 6.0];
+            let (e, f) = (P1::exact(p), P1::exact([p[0] + 6.0, p[1]]));
+            for a in 0..2 {
+                assert!((f.gradient[a] - e.gradient[a] - 12.0 * e.hessian[a][0]).abs() < 1e-12);
+            }
+        }
+    }
+    /// On a cut edge, in the direction of P itself.
+    holds hessian_times_p_is_the_gradient_at_three_roots_from_either_end() {
+        for k in [1, 4, 7] {
+            let p = [6.0 * f64::from(k), 6.0 * f64::from(k - 8)];
+            assert!(hessian_error(p, 1.0) < 1e-12 && hessian_error([p[1], p[0]], 1.0) < 1e-12);
+        }
+    }
+    /// The false twin: twice as large.
+    fails control_hessian_times_p_is_half_the_gradient_at_three_roots([]) {
+        for k in [1, 4, 7] {
+            let p = [6.0 * f64::from(k), 6.0 * f64::from(k - 8)];
+            assert!(hessian_error(p, 2.0) < 1e-12);
         }
     }
     /// Where P has no root inside, its positive interval is all of the edge or nothing, without a division.

@@ -102,6 +102,19 @@ harnesses! {
         assume(!a.is_nan());
         assert!(positive_part(a).to_bits() == a.to_bits());
     }
+    /// What is not positive gives +0, -0 too.
+    holds positive_part_is_never_minus_zero_for_all_doubles_but_nan() {
+        let a: f64 = any();
+        assume(!a.is_nan());
+        assert!(positive_part(a).is_sign_positive());
+    }
+    /// The false twin: by a test for negative.
+    fails control_a_test_for_negative_gives_no_minus_zero_for_all_doubles_but_nan([-0.0]) {
+        let a: f64 = any();
+        assume(!a.is_nan());
+        let part = if a < 0.0 { 0.0 } else { a };
+        assert!(part.is_sign_positive());
+    }
     /// \[a\]+ is the point of \[0, oo) nearest to a, where the products are exact.
     holds positive_part_is_the_projection_on_the_half_line_for_all_i8() {
         let (a, m): (i8, i8) = (any(), any());

@@ -177,6 +177,12 @@ pub fn scaled_equation_implies_2_up_to_rounding<S: Ordered>([u, s]: [S; 2]) -> V
     Verdict::Holds(if u == zero { "contact" } else { "contact up to rounding" })
 }
 
+fn within_7() -> Whole {
+    let value: i8 = any();
+    assume(value > -8 && value < 8);
+    Whole(i32::from(value))
+}
+
 harnesses! {
     /// No tension.
     holds scaled_equation_implies_no_tension_for_all_finite_doubles() {
@@ -248,6 +254,20 @@ harnesses! {
         let point = point([u, g, s, gamma].map(|v| Whole(i32::from(v))));
         let equation = point.gamma * point.sigma_n == -signorini::kernel::positive_part(point.p0());
         assert!(conditions_2(&point) == equation);
+    }
+    /// lambda^h = -(1/gamma) \[P\]+ by the kernel, at P = k gamma, where the division leaves nothing.
+    holds pressure_is_the_positive_part_over_gamma_for_integers_within_7() {
+        let (k, gamma) = (within_7(), within_7());
+        assume(gamma > Whole(0));
+        let expected = if k > Whole(0) { -k } else { Whole(0) };
+        assert!(contact::pressure(k * gamma, gamma) == expected);
+    }
+    /// The false twin: without 1/gamma.
+    fails control_pressure_is_the_positive_part_for_integers_within_7([1.0, 2.0]) {
+        let (k, gamma) = (within_7(), within_7());
+        assume(gamma > Whole(0));
+        let expected = if k > Whole(0) { -(k * gamma) } else { Whole(0) };
+        assert!(contact::pressure(k * gamma, gamma) == expected);
     }
     /// The violation is zero exactly where (2) holds.
     holds violation_is_zero_exactly_where_2_holds_for_all_i8() {
