@@ -8,7 +8,7 @@ use signorini::io::result::{GammaChoice, NewtonHistory, Results};
 use signorini::io::sweep::Sweep;
 use signorini::io::{Case, numbers};
 use signorini::quote;
-use signorini::solve::{ContactQuadrature, Outline, history};
+use signorini::solve::{ContactQuadrature, MethodReport, Outline, RouteName, history};
 
 /// Lines of a name and a text.
 #[derive(Default)]
@@ -38,6 +38,15 @@ pub fn solved(r: &Results, files: &[PathBuf]) -> String {
     lines.line("coercivity", coercivity(&r.gamma));
     lines.line("newton", newton(&r.newton));
     lines.line("", history(&r.newton.residuals));
+    if let Some(method) = &r.method {
+        lines.line("accuracy", accuracy(method));
+        if method.slides > 0 {
+            lines.line("", format!(
+                "contact holds the body; {} along the obstacles is stopped by nothing: the displacement of least norm is given, friction would be needed to know more",
+                count(method.slides, "motion")
+            ));
+        }
+    }
     lines.line(
         "contact",
         format!(
@@ -149,6 +158,17 @@ fn newton(newton: &NewtonHistory) -> String {
 
 fn count(n: usize, what: &str) -> String {
     if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") }
+}
+
+fn accuracy(method: &MethodReport) -> String {
+    let route = match method.route {
+        RouteName::Condensed => "condensed",
+        RouteName::Assembled => "assembled",
+    };
+    format!(
+        "{route} route, condition number at least {:.0e}, relative error of iteration and rounding {:.0e} (energy norm)",
+        method.condition, method.forward_error
+    )
 }
 
 fn vector([x, y]: [f64; 2]) -> String {

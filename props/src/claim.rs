@@ -62,18 +62,22 @@ pub struct Check {
 }
 
 impl Check {
-    /// Its engine in the ledger: that of a harness is the model checker where a receipt says so, else random draws.
+    /// Its engine in the ledger: that of a harness is the model checker where a receipt says so; where it has few values,
+    /// all of them are run; else random draws.
     pub fn engine_name(&self) -> &'static str {
-        match self.standing() {
-            Some(standing) if standing.is_verified() => "Kani",
+        match (self.subject, self.standing()) {
+            (_, Some(standing)) if standing.is_verified() => "Kani",
+            (Subject::Harness(harness), _) if receipt::is_decided(&harness) => "all cases",
             _ => self.engine.name(),
         }
     }
 
-    /// Its name in the ledger: a harness says that it is for all numbers only where a receipt says so.
+    /// Its name in the ledger: a harness says that it is for all numbers only where it was decided for all.
     pub fn shown_name(&self) -> String {
         match (self.subject, self.standing()) {
-            (Subject::Harness(harness), Some(standing)) if !standing.is_verified() => {
+            (Subject::Harness(harness), Some(standing))
+                if !standing.is_verified() && !receipt::is_decided(&harness) =>
+            {
                 harness.name_on_draws()
             }
             _ => self.name.to_owned(),
@@ -91,7 +95,7 @@ impl Check {
     /// What a receipt says of it: of a harness by the model checker, of a statement in doubles by bitwuzla.
     pub fn receipt(&self) -> Option<String> {
         match self.subject {
-            Subject::Harness(_) => self.standing().map(|standing| standing.to_string()),
+            Subject::Harness(_) => self.standing().map(|standing| format!("Kani: {standing}")),
             Subject::Statement(statement) if self.engine == Engine::Doubles && !self.control => {
                 Some(bitwuzla::opinion(&statement).to_string())
             }

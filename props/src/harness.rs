@@ -1,7 +1,8 @@
 //! Harnesses for the model checker Kani, and the stand-in that runs the same functions on random draws elsewhere.
 //!
-//! Under Kani [`any`] is every value at once and [`assume`] restricts them. Elsewhere a harness is run many times:
-//! [`any`] draws (edge values often), and [`assume`] ends the run when it does not hold. What counts are the draws that
+//! Under Kani [`any`] is every value at once and [`assume`] restricts them. Elsewhere a harness is run many times: on all
+//! values, where it asks for some bits or bytes only; else [`any`] draws (edge values often). [`assume`] ends the run when it
+//! does not hold. What counts are the draws that
 //! meet the assumptions; a harness that hardly any does has shown nothing, and is an error. A control is the false twin of a harness: under Kani it must fail
 //! (`should_panic`); elsewhere it is run once, on the counterexample that is stored with it, and must panic there.
 //!
@@ -84,6 +85,8 @@ mod stand_in {
     const MOST: u32 = 200_000;
     /// and so many must.
     const LEAST: u32 = 100;
+    /// All values are run where they are no more than this.
+    const ALL: u64 = 1 << 20;
 
     /// A harness: a function that asserts something about [`any`] values.
     #[derive(Clone, Copy)]
@@ -106,6 +109,48 @@ mod stand_in {
         Random(Random),
         /// In reverse order.
         Stored(Vec<f64>),
+        All(Odometer),
+    }
+
+    /// One value after the other: for each time that a value is asked for, which one it is, of how many.
+    #[derive(Default)]
+    struct Odometer {
+        digits: Vec<[u32; 2]>,
+        asked: usize,
+        /// A value of a type with too many was asked for.
+        endless: bool,
+    }
+
+    impl Odometer {
+        fn next<T: Any>(&mut self) -> T {
+            let Some(count) = T::COUNT else {
+                self.endless = true;
+                return T::nth(0);
+            };
+            if self.asked == self.digits.len() {
+                self.digits.push([0, count]);
+            }
+            self.asked += 1;
+            T::nth(self.digits[self.asked - 1][0])
+        }
+
+        /// Whether there are too many values.
+        fn is_endless(&self) -> bool {
+            let cases = self.digits.iter().map(|[_, count]| u64::from(*count));
+            self.endless || cases.fold(1, u64::saturating_mul) > ALL
+        }
+
+        /// The values after these; none if these were the last.
+        fn step(&mut self) -> Option<()> {
+            self.digits.truncate(std::mem::take(&mut self.asked));
+            while let Some([digit, count]) = self.digits.pop() {
+                if digit + 1 < count {
+                    self.digits.push([digit + 1, count]);
+                    return Some(());
+                }
+            }
+            None
+        }
     }
 
     thread_local! {
@@ -132,15 +177,49 @@ mod stand_in {
             self.name.replace("_for_all_", "_for_random_")
         }
 
-        /// Runs it on random draws, or a false twin on its counterexample.
+        /// Runs it on all values if they are few, else on random draws; or a false twin on its counterexample.
         ///
         /// # Errors
         /// The message of a harness that panicked, a false twin that did not, or that no draw met the assumptions.
         pub fn run(&self) -> Result<String, String> {
             match self.counterexample {
-                None => self.run_on_draws(),
+                None => self.run_on_all().unwrap_or_else(|| self.run_on_draws()),
                 Some(values) => self.run_on(values),
             }
+        }
+
+        /// Whether it holds on all values, and they are few enough to be run.
+        pub fn is_decided(&self) -> bool {
+            self.counterexample.is_none() && matches!(self.run_on_all(), Some(Ok(_)))
+        }
+
+        /// Nothing if there are too many values.
+        fn run_on_all(&self) -> Option<Result<String, String>> {
+            SOURCE.set(Source::All(Odometer::default()));
+            let (mut cases, mut met) = (0, 0);
+            loop {
+                let end = self.run_once();
+                let next = SOURCE.with_borrow_mut(|source| match source {
+                    Source::All(odometer) if odometer.is_endless() => None,
+                    Source::All(odometer) => Some(odometer.step().is_some()),
+                    _ => None,
+                });
+                let more = next?;
+                cases += 1;
+                match end {
+                    End::Passed => met += 1,
+                    End::NotAssumed => {}
+                    End::Panicked(why) => return Some(Err(format!("case {cases}: {why}"))),
+                }
+                if !more {
+                    break;
+                }
+            }
+            Some(match met {
+                0 => Err("no value meets the assumptions".to_owned()),
+                _ if met == cases => Ok(format!("all {cases} cases")),
+                _ => Ok(format!("all {met} cases that meet the assumptions")),
+            })
         }
 
         fn run_on_draws(&self) -> Result<String, String> {
@@ -169,7 +248,7 @@ mod stand_in {
             let end = self.run_once();
             let unused = SOURCE.with_borrow(|source| match source {
                 Source::Stored(values) => values.len(),
-                Source::Random(_) => 0,
+                _ => 0,
             });
             match end {
                 _ if unused > 0 => Err(format!("{unused} of the values {values:?} are not used")),
@@ -227,11 +306,20 @@ mod stand_in {
                 Some(value) => T::from_number(value),
                 None => panic!("{TOO_FEW}"),
             },
+            Source::All(odometer) => odometer.next(),
         })
     }
 
     /// A type of which [`any`] value can be asked for.
-    pub trait Any {
+    pub trait Any: Sized {
+        /// How many values it has, where they can all be run.
+        const COUNT: Option<u32>;
+
+        /// Value number `n`.
+        fn nth(n: u32) -> Self {
+            Self::from_number(f64::from(n))
+        }
+
         /// A random value, edge values often.
         fn draw(random: &mut Random) -> Self;
 
@@ -240,6 +328,8 @@ mod stand_in {
     }
 
     impl Any for f64 {
+        const COUNT: Option<u32> = None;
+
         fn draw(random: &mut Random) -> f64 {
             const EDGES: [f64; 7] = [0.0, -0.0, 1.0, -1.0, 5e-324, f64::MAX, f64::NAN];
             match random.below(4) {
@@ -255,6 +345,8 @@ mod stand_in {
     }
 
     impl Any for bool {
+        const COUNT: Option<u32> = Some(2);
+
         fn draw(random: &mut Random) -> bool {
             random.below(2) == 0
         }
@@ -267,6 +359,13 @@ mod stand_in {
     macro_rules! any_integer {
         ($($type:ty),*) => {
             $(impl Any for $type {
+                const COUNT: Option<u32> =
+                    if <$type>::BITS == 8 { Some(1 << <$type>::BITS) } else { None };
+
+                fn nth(n: u32) -> $type {
+                    n as $type
+                }
+
                 fn draw(random: &mut Random) -> $type {
                     match random.below(3) {
                         0 => random.below(9) as $type,
@@ -305,8 +404,32 @@ mod stand_in {
 
         #[test]
         fn a_harness_whose_assumptions_contradict_each_other_is_an_error() {
-            let contradiction = holds(|| assume(any::<i8>() as i32 > 1000));
+            let contradiction = holds(|| assume(any::<i16>() as i32 > 100_000));
             assert_eq!(contradiction, Err("no draw met the assumptions".to_owned()));
+            let contradiction = holds(|| assume(any::<i8>() as i32 > 1000));
+            assert_eq!(contradiction, Err("no value meets the assumptions".to_owned()));
+        }
+
+        #[test]
+        fn bits_and_bytes_are_run_through_and_a_single_exception_is_found() {
+            fn all_but_one() {
+                let (a, b): (i8, bool) = (any(), any());
+                assert!(!b || a != -77, "-77");
+            }
+            fn ordered() {
+                let (a, b): (u8, u8) = (any(), any());
+                assume(a < b);
+            }
+            assert!(holds(all_but_one).unwrap_err().ends_with("-77"));
+            assert_eq!(holds(ordered), Ok("all 32640 cases that meet the assumptions".to_owned()));
+            fn three_bits() {
+                let _: (bool, bool, bool) = (any(), any(), any());
+            }
+            assert_eq!(holds(three_bits), Ok("all 8 cases".to_owned()));
+            fn three_bytes() {
+                let _: (u8, u8, u8) = (any(), any(), any());
+            }
+            assert_eq!(holds(three_bytes), Ok("20000 random draws".to_owned()));
         }
 
         #[test]

@@ -67,7 +67,8 @@ met), or *fails*. The engines run that one function:
 | exact | rationals | random data, no tolerance at all |
 | doubles | f64 | random finite doubles with edge values, ties and neighbours; or a comparison with exact rationals and a stated bound; or an enclosure by intervals, rounded outwards |
 | Kani | f64, small integers | the bounded model checker Kani has decided a harness, for all numbers that it ranges over, and a receipt in `props/receipts` is about these very sources |
-| draws | f64, small integers | no receipt is: **the harness is run on random draws, and no more is known**. Where the source says `for_all`, its name here says `for_random` |
+| all cases | bits, bytes | the harness ranges over at most 2^20 cases, and each of them is run |
+| draws | f64, integers | neither: **the harness is run on random draws, and no more is known**; where its name in the source says `for_all`, it says `for_random` here. A false twin is run at the counterexample that is stored with it |
 
 A further opinion, not part of `cargo test`: `cargo run -p props -- smt DIR` writes every failing path of the proofs as a
 problem for z3 and cvc5, and every failing path of the statements in doubles, over all finite doubles, for bitwuzla;

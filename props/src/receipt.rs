@@ -8,7 +8,7 @@
 //!
 //! A receipt stands behind a harness as long as the harness and all that it reaches are what they were.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -295,6 +295,15 @@ pub fn standing(harness: &Harness) -> Standing {
     standings.get(&harness.path()).cloned().unwrap_or(Standing::Never)
 }
 
+/// Whether a harness is decided by running it on all its values, which are few.
+pub fn is_decided(harness: &Harness) -> bool {
+    static DECIDED: OnceLock<BTreeSet<String>> = OnceLock::new();
+    let decided = DECIDED.get_or_init(|| {
+        harnesses().iter().filter(|harness| harness.is_decided()).map(Harness::path).collect()
+    });
+    decided.contains(&harness.path())
+}
+
 /// All harnesses of the claims.
 pub fn harnesses() -> Vec<Harness> {
     let claims = claims::all();
@@ -493,7 +502,7 @@ Checking harness claims::a::ended...
         let known: BTreeMap<String, bool> =
             harnesses().iter().map(|h| (h.path(), h.counterexample.is_some())).collect();
         for receipt in stored().expect("receipts") {
-            let mut seen = std::collections::BTreeSet::new();
+            let mut seen = BTreeSet::new();
             for run in &receipt.runs {
                 let what = format!("receipt {}: {}", receipt.date, run.harness);
                 assert_eq!(

@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 
 use super::mesh::BoundaryEdge;
 use super::problem::{BoxedFunction, Condition, DataError, Problem, finite};
-use super::rigid::{self, Parts};
+use super::rigid::{self, FreeMotion, Parts};
 use super::smooth::SmoothBoundary;
 use super::space::Space;
 use crate::kernel::Element;
@@ -67,7 +67,7 @@ impl Constraints {
     /// The constraints of a problem.
     ///
     /// # Errors
-    /// A value that is not finite, two that disagree, or a rigid body motion that stays free.
+    /// A value that is not finite, or two that disagree.
     pub fn new<E: Element<N, M>, const N: usize, const M: usize>(
         problem: &Problem,
         space: &Space<E, N, M>,
@@ -86,9 +86,22 @@ impl Constraints {
             let holding = independent(at_node, space.nodes()[node], AGREEMENT * largest)?;
             constraints.prescribe(node, &holding);
         }
-        let held = |node| constraints.directions(node);
-        let motions = rigid::free_motions(&Parts::new(space.mesh()), space, held);
-        if motions.is_empty() { Ok(constraints) } else { Err(DataError::RigidMotion { motions }) }
+        Ok(constraints)
+    }
+
+    /// The rigid motions that stay free, and the parts of the body that they are motions of.
+    pub fn free_motions<E: Element<N, M>, const N: usize, const M: usize>(
+        &self,
+        space: &Space<E, N, M>,
+    ) -> (Parts, Vec<FreeMotion>) {
+        let parts = Parts::new(space.mesh());
+        let motions = rigid::free_motions(&parts, space, |node| self.directions(node));
+        (parts, motions)
+    }
+
+    /// Holds component `c` of a node without a frame of its own where it is: a motion that changes nothing is stopped.
+    pub fn pin(&mut self, node: usize, c: usize) {
+        self.values[node][c] = Some(0.0);
     }
 
     /// Prescribes one or two independent demands at a node.

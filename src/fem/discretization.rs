@@ -9,6 +9,7 @@ use nalgebra::Vector2;
 
 use super::constraints::{Constraints, in_frame};
 use super::contact_line::{self, Coercivity, ContactLineEdge, EdgeRule};
+use super::held;
 use super::loads;
 use super::problem::{DataError, Problem};
 use super::space::Space;
@@ -33,6 +34,9 @@ pub struct Discretization<'a, E, const N: usize, const M: usize> {
     pub contact: Vec<ContactLineEdge<N, M>>,
     /// The rule for the contact terms.
     pub rule: EdgeRule,
+    /// Where supports alone leave the body free to move and contact holds it: the motions that slide along all obstacles,
+    /// with orthonormal nodal values.
+    pub slides: Option<Vec<Vec<[f64; 2]>>>,
 }
 
 /// A functional at every basis function, and for each of its values the sum of the magnitudes of the products that were
@@ -65,8 +69,8 @@ where
     /// The discretization of `problem` with the given gamma0 (as a function of the coercivity constant) and edge rule.
     ///
     /// # Errors
-    /// Data that are not finite on the mesh, displacement boundaries that disagree or leave a rigid motion free, no
-    /// contact boundary.
+    /// Data that are not finite on the mesh, displacement boundaries that disagree, a rigid motion that neither they stop
+    /// nor contact with the loads as they are, no contact boundary.
     pub fn new(
         problem: &'a Problem,
         gamma0: impl FnOnce(&Coercivity) -> f64,
@@ -75,10 +79,36 @@ where
         let coercivity = Coercivity::new::<E, N, M>(problem)?;
         let gamma0 = gamma0(&coercivity);
         let space = Space::new(&problem.mesh);
-        let constraints = Constraints::new(problem, &space)?;
+        let mut constraints = Constraints::new(problem, &space)?;
         let load = loads::assemble(problem, &space)?;
         let contact = contact_line::assemble(problem, &space, gamma0)?;
-        Ok(Discretization { problem, space, constraints, load, coercivity, gamma0, contact, rule })
+        let (parts, motions) = constraints.free_motions(&space);
+        let mut slides = None;
+        if !motions.is_empty() {
+            let fields: Vec<_> =
+                motions.iter().map(|motion| motion.field(&parts, &space)).collect();
+            let Some(sliding) = held::slides(&fields, &space, &load, &contact) else {
+                return Err(DataError::RigidMotion { motions });
+            };
+            let free = |node: usize, c: usize| {
+                constraints.values()[node][c].is_none() && !constraints.frames().contains_key(&node)
+            };
+            for (node, c) in held::pins(&sliding, free) {
+                constraints.pin(node, c);
+            }
+            slides = Some(sliding);
+        }
+        Ok(Discretization {
+            problem,
+            space,
+            constraints,
+            load,
+            coercivity,
+            gamma0,
+            contact,
+            rule,
+            slides,
+        })
     }
 
     /// kappa = gamma0 C_h.

@@ -7,6 +7,7 @@ pub mod contact_line;
 pub mod discretization;
 pub mod errors;
 pub mod exact;
+pub mod held;
 pub mod loads;
 pub mod materials;
 pub mod matrix;

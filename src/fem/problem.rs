@@ -161,7 +161,7 @@ pub enum DataError {
         values: [f64; 2],
     },
     #[error(
-        "no displacement is prescribed that stops the {}; expected displacement boundaries that leave no rigid body motion free (contact pushes, it doesn't hold)",
+        "no displacement is prescribed that stops the {}; expected displacement boundaries that leave no rigid body motion free, or loads that press the body against its obstacles (contact pushes, it doesn't hold)",
         listed(motions)
     )]
     RigidMotion { motions: Vec<FreeMotion> },

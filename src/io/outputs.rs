@@ -117,6 +117,7 @@ pub fn results(
             factorizations: solution.newton.factorizations,
             status: solution.newton.status,
         },
+        method: Some(solution.method),
         quantities: solution.quantities.clone(),
         probes: probes.collect(),
         errors,

@@ -12,7 +12,7 @@ use serde_json::ser::{Formatter, Serializer};
 
 use super::data::DataError;
 use crate::fem::Errors;
-use crate::solve::{GammaReport, Quantities, Status, Times};
+use crate::solve::{GammaReport, MethodReport, Quantities, Status, Times};
 
 /// The content of result.json, in its order.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -30,6 +30,9 @@ pub struct Results {
     pub gamma: GammaChoice,
     /// The iteration.
     pub newton: NewtonHistory,
+    /// The route and the accuracy; left out by the engine fenicsx.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub method: Option<MethodReport>,
     /// The solution in numbers.
     pub quantities: Quantities,
     /// `[x, y, u_x, u_y]` at the points that the case asks for; left out if it asks for none.
@@ -256,6 +259,7 @@ mod tests {
     use std::collections::BTreeMap;
 
     use super::*;
+    use crate::solve::RouteName;
 
     fn sample() -> Results {
         Results {
@@ -282,6 +286,14 @@ mod tests {
                 factorizations: 1,
                 status: Status::ConvergedToRounding,
             },
+            method: Some(MethodReport {
+                route: RouteName::Assembled,
+                predicted_operations: 1e6,
+                condition: 2e3,
+                forward_error: 1e-13,
+                threads: 1,
+                slides: 1,
+            }),
             quantities: Quantities {
                 energy: 1.0,
                 work: -0.0,
@@ -323,6 +335,14 @@ mod tests {
     "residual": 3e-17,
     "factorizations": 1,
     "status": "converged to rounding"
+  },
+  "method": {
+    "route": "assembled",
+    "predicted_operations": 1000000.0,
+    "condition": 2000.0,
+    "forward_error": 1e-13,
+    "threads": 1,
+    "slides": 1
   },
   "quantities": {
     "energy": 1.0,

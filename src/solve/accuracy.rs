@@ -6,7 +6,7 @@
 //! alone says nothing where the condition number is large. Residuals are evaluated in doubles as long as these can tell.
 
 use super::iterate::{Evaluation, Iterate};
-use super::newton;
+use super::newton::{self, Until};
 use super::system::System;
 use super::{Settings, SolveError, Status};
 use crate::fem::discretization::Discretization;
@@ -23,7 +23,7 @@ pub trait Route<E, const N: usize, const M: usize> {
         iterate: &mut Iterate,
         at: Evaluation,
         residuals: &mut Vec<f64>,
-        most: usize,
+        until: Until,
     ) -> Result<Pass, SolveError>;
 }
 
@@ -32,8 +32,8 @@ pub trait Route<E, const N: usize, const M: usize> {
 pub struct Pass {
     /// |du|_A^2
     pub energy: f64,
-    /// |du|^2 over the free degrees of freedom
-    pub square: f64,
+    /// The largest |d|^2 / |d|_A^2 of what was solved for
+    pub softness: f64,
 }
 
 /// What came out.
@@ -53,6 +53,9 @@ pub struct Outcome {
 
 /// A correction this small, relative, leaves nothing to correct.
 const SMALL: f64 = 1e-11;
+
+/// A correction ends where the residual is this share of the tolerance.
+const GOOD_ENOUGH: f64 = 1e-2;
 
 /// No more passes than these: each takes the error down by a factor, or there is no point.
 const MOST_PASSES: usize = 12;
@@ -83,10 +86,11 @@ where
     let mut residual = f64::INFINITY;
     for pass in 0..MOST_PASSES {
         let precisely = at.precisely;
-        let change = route.pass(&mut iterate, at, &mut residuals, settings.max_iterations)?;
-        if change.energy > 0.0 {
-            condition = condition.max(norm * change.square / change.energy);
-        }
+        // The first pass goes as far as it can; a correction need not better what is good enough.
+        let enough = if pass == 0 { 0.0 } else { GOOD_ENOUGH * settings.tolerance };
+        let until = Until { steps: settings.max_iterations, residual: enough };
+        let change = route.pass(&mut iterate, at, &mut residuals, until)?;
+        condition = condition.max(norm * change.softness);
         let before = forward_error;
         at = iterate.evaluate(system, precisely);
         residual = residual_of(system, &at) / reference;
@@ -150,6 +154,9 @@ where
 /// Forces this many unit roundoffs times their magnitudes are noise.
 const NOISE: f64 = 4.0;
 
+/// A condition number beyond this leaves Newton's method nothing to go by.
+const HOPELESS: f64 = 1e14;
+
 /// The verdict on an outcome.
 ///
 /// # Errors
@@ -165,7 +172,7 @@ pub fn judge(outcome: &Outcome, settings: &Settings) -> Result<Status, SolveErro
         });
     }
     let steps = outcome.residuals.len().saturating_sub(1);
-    Err(if steps >= settings.max_iterations {
+    Err(if steps >= settings.max_iterations && condition < HOPELESS {
         let residuals = outcome.residuals.clone();
         SolveError::NotConverged { residual, residuals, tolerance: settings.tolerance }
     } else {

@@ -9,7 +9,7 @@ use super::accuracy::{Pass, Route};
 use super::contact_edges::ContactEdges;
 use super::factor::{Factor, Indefinite};
 use super::iterate::{Evaluation, Iterate};
-use super::newton::{self, Body, Derivatives, Residual, Step, block};
+use super::newton::{self, Body, Derivatives, Edges, Residual, Step, Until, block};
 use super::system::System;
 use crate::fem::matrix::LowerTriangle;
 use crate::kernel::edge_integral::ExactEdge;
@@ -76,6 +76,17 @@ where
         matrix
     }
 
+    /// The same with a little of the springs of all edges added.
+    fn supported(&self, at: &Derivatives<M>) -> Derivatives<M> {
+        let edges = ContactEdges { d: self.system.d, order: &self.order };
+        let all = newton::derivatives(&edges, &vec![1.0; at.gradient.len()]);
+        let sum = |(h, all): (&[[f64; M]; M], &[[f64; M]; M])| {
+            std::array::from_fn(|a| std::array::from_fn(|b| h[a][b] + SUPPORT * all[a][b]))
+        };
+        let hessian = at.hessian.iter().zip(&all.hessian).map(sum).collect();
+        Derivatives { gradient: at.gradient.clone(), hessian }
+    }
+
     fn factor(&mut self, at: &Derivatives<M>) -> Result<&Factor, SolveError> {
         let largest =
             at.hessian.as_flattened().as_flattened().iter().fold(0.0, |m: f64, h| m.max(h.abs()));
@@ -87,8 +98,13 @@ where
         let (factor, hessian) = match self.factored.take() {
             Some((factor, old)) if close(&old) => (factor, old),
             _ => {
-                let factored = Factor::with(&self.system.structure, &self.tangent(at))?;
+                let mut factored = Factor::with(&self.system.structure, &self.tangent(at))?;
                 self.factorizations += 1;
+                if factored.is_err() && self.system.d.kappa() < 1.0 {
+                    let supported = self.supported(at);
+                    factored = Factor::with(&self.system.structure, &self.tangent(&supported))?;
+                    self.factorizations += 1;
+                }
                 let coercive = self.system.d.kappa() < 1.0;
                 let factor = factored.map_err(|Indefinite| match coercive {
                     true => SolveError::Singular,
@@ -113,18 +129,16 @@ where
         iterate: &mut Iterate,
         at: Evaluation,
         residuals: &mut Vec<f64>,
-        most: usize,
+        until: Until,
     ) -> Result<Pass, SolveError> {
         self.precisely = at.precisely;
         let soft = self.first;
         self.first = false;
         let order = self.order.clone();
         let edges = ContactEdges { d: self.system.d, order: &order };
-        let moved = vec![0.0; self.system.numbering.count];
-        let mut body = Full { route: self, iterate, at, d: Vec::new(), moved, energy: 0.0 };
-        newton::minimise(&edges, &mut body, soft, residuals, most)?;
-        let square = body.moved.iter().map(|d| d * d).sum();
-        Ok(Pass { energy: body.energy, square })
+        let mut body = Full { route: self, iterate, at, d: Vec::new(), energy: 0.0, softness: 0.0 };
+        newton::minimise(&edges, &mut body, soft, residuals, until)?;
+        Ok(Pass { energy: body.energy, softness: body.softness })
     }
 }
 
@@ -135,9 +149,9 @@ struct Full<'r, 'i, 'a, 'd, 'p, E, const N: usize, const M: usize> {
     at: Evaluation,
     /// The step.
     d: Vec<f64>,
-    /// The steps of this pass together, and the largest of their energies.
-    moved: Vec<f64>,
+    /// The largest energy of the steps of this pass, and the largest square of one beside its energy.
     energy: f64,
+    softness: f64,
 }
 
 impl<E, const N: usize, const M: usize> Full<'_, '_, '_, '_, '_, E, N, M>
@@ -152,6 +166,24 @@ where
             self.route.system.functionals(e, |row, a, entry| r[row] += entry * g[a]);
         }
         r
+    }
+
+    /// How much stiffer contact is than the body, by the power method on A^-1 B^T Psi'' B; A is what was factored last.
+    fn stiffness(&self, at: &Derivatives<M>) -> Result<f64, SolveError> {
+        let Some((factor, _)) = &self.route.factored else { return Ok(SOFTEST) };
+        Ok(newton::largest_eigenvalue(self.route.system.numbering.count, |x| {
+            let p = self.values_of_p0(x);
+            let mut force = vec![0.0; x.len()];
+            for (e, h) in at.hessian.iter().enumerate() {
+                let values: [f64; M] = block(&p, e);
+                self.route.system.functionals(e, |row, a, entry| {
+                    force[row] += entry * (0..M).map(|b| h[a][b] * values[b]).sum::<f64>();
+                });
+            }
+            factor.forward(&mut force);
+            factor.backward(&mut force);
+            force
+        }))
     }
 
     /// B x
@@ -178,9 +210,31 @@ where
         Residual { norm: norm / reference, noise: self.at.noise / reference }
     }
 
-    /// The tangent with the springs this stiff is compared with the one where they are hardly there.
-    fn stiffness_of_contact(&mut self, _: &Derivatives<M>) -> f64 {
-        SOFTEST
+    /// The body without contact, or, where it does not hold without, on springs of all edges, which pull as well as push.
+    fn start(&mut self, edges: &impl Edges<M>) -> Result<f64, SolveError> {
+        let none = newton::derivatives(edges, &vec![-1.0; self.at.p.len()]);
+        if self.route.system.d.slides.is_none() {
+            match self.step(&none) {
+                Ok(step) => {
+                    self.advance(1.0, &step);
+                    let at = newton::derivatives(edges, self.y());
+                    return self.stiffness(&at);
+                }
+                Err(SolveError::Singular) => {}
+                Err(error) => return Err(error),
+            }
+        }
+        let all = newton::derivatives(edges, &vec![1.0; self.at.p.len()]);
+        let mut pulling = all.times(1.0 / SOFTEST);
+        for e in 0..self.route.order.len() {
+            let p: [f64; M] = block(&self.at.p, e);
+            for a in 0..M {
+                pulling.gradient[e * M + a] = (0..M).map(|b| pulling.hessian[e][a][b] * p[b]).sum();
+            }
+        }
+        let step = self.step(&pulling)?;
+        self.advance(1.0, &step);
+        Ok(SOFTEST)
     }
 
     fn step(&mut self, at: &Derivatives<M>) -> Result<Step, SolveError> {
@@ -200,12 +254,18 @@ where
     fn advance(&mut self, t: f64, step: &Step) {
         self.iterate.add(self.route.system, t, &self.d);
         self.at = self.iterate.evaluate(self.route.system, self.route.precisely);
-        for (moved, d) in self.moved.iter_mut().zip(&self.d) {
-            *moved += t * d;
-        }
         self.energy = self.energy.max(-t * t * step.slope);
+        if step.slope < 0.0 {
+            let square: f64 = self.d.iter().map(|d| d * d).sum();
+            self.softness = self.softness.max(square / -step.slope);
+        }
     }
 }
 
-/// How much stiffer contact is taken to be than the body at the start: the condensed route measures it.
-const SOFTEST: f64 = 1e6;
+/// How much softer than contact the springs are that hold a body at the start which nothing else holds: about as soft as
+/// the body.
+const SOFTEST: f64 = 1e3;
+
+/// The share of the springs of all edges that is added to a tangent which has no factor: the edges that are in contact at an
+/// iterate need not hold the body that those of the solution hold. The step goes downhill all the same.
+const SUPPORT: f64 = 1e-6;

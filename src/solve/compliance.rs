@@ -218,3 +218,93 @@ impl<'a> Compliance<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+    use crate::fem::contact_line::EdgeRule;
+    use crate::fem::{BoxedFunction, Condition, Diagonal, Discretization, Problem, Rectangle};
+    use crate::kernel::edge_integral::ExactEdge;
+    use crate::kernel::{Material, P1, P2, Plane};
+    use crate::solve::system::System;
+
+    /// Two sides of a crossed rectangle in contact, so that their paths in the elimination tree meet high up only.
+    fn problem() -> Problem {
+        let zero = || -> BoxedFunction { Box::new(|_: [f64; 2]| 0.0) };
+        let contact = || Condition::Contact { gap: Box::new(|_: [f64; 2]| 0.0) };
+        let mesh = Rectangle { width: 2.0, height: 1.0, nx: 7, ny: 4, diagonal: Diagonal::Crossed };
+        Problem::new(
+            mesh.mesh().unwrap(),
+            Material::lame(1.0, 1.0, Plane::Strain),
+            [zero(), zero()],
+            BTreeMap::from([
+                ("left".to_owned(), Condition::Displacement([Some(zero()), Some(zero())])),
+                ("bottom".to_owned(), contact()),
+                ("right".to_owned(), contact()),
+            ]),
+        )
+    }
+
+    /// G, X^T v and v - X w against substitutions with one column of B^T after the other.
+    fn is_what_substitutions_give<E: ExactEdge<f64, N, M>, const N: usize, const M: usize>() {
+        let problem = problem();
+        let rule = EdgeRule::Exact;
+        let d = Discretization::<E, N, M>::new(&problem, |c| c.limit() / 2.0, rule).unwrap();
+        let system = System::new(&d).unwrap();
+        let unknowns: Vec<Vec<usize>> = (0..d.contact.len()).map(|e| system.unknowns(e)).collect();
+        let reach = Reach::new(&system.structure, &unknowns, M);
+        let factor = Factor::with(&system.structure, &system.matrix).unwrap().unwrap();
+        let compliance = Compliance::new(&factor, &reach, |add| {
+            for (position, &e) in reach.order.iter().enumerate() {
+                system.functionals(e, |row, a, entry| add(row, position * M + a, entry));
+            }
+        });
+        let mut columns = vec![vec![0.0; system.numbering.count]; reach.functionals()];
+        for (position, &e) in reach.order.iter().enumerate() {
+            system.functionals(e, |row, a, entry| columns[position * M + a][row] += entry);
+        }
+        columns.iter_mut().for_each(|column| factor.forward(column));
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let largest = columns.iter().map(|c| dot(c, c)).fold(0.0, f64::max);
+        for i in 0..columns.len() {
+            for j in 0..columns.len() {
+                let g = dot(&columns[i], &columns[j]);
+                assert!((compliance.g[(i, j)] - g).abs() <= 1e-13 * largest, "({i}, {j})");
+            }
+        }
+        let v: Vec<f64> = (0..system.numbering.count).map(|i| (i as f64).sin()).collect();
+        let products = compliance.transpose_times(&v);
+        for (column, product) in columns.iter().zip(&products) {
+            assert!((dot(column, &v) - product).abs() <= 1e-12 * largest.sqrt());
+        }
+        let mut rest = v.clone();
+        compliance.subtract(&products, &mut rest);
+        for (i, rest) in rest.iter().enumerate() {
+            let xw: f64 = columns.iter().zip(&products).map(|(c, w)| c[i] * w).sum();
+            assert!((v[i] - xw - rest).abs() <= 1e-12 * (1.0 + xw.abs()));
+        }
+    }
+
+    #[test]
+    fn x_and_g_are_what_substitutions_give() {
+        is_what_substitutions_give::<P1, 3, 2>();
+        is_what_substitutions_give::<P2, 6, 3>();
+    }
+
+    #[test]
+    fn a_walk_meets_children_before_parents_and_subtrees_in_one_piece() {
+        //      5        4 and 5 are roots; 0, 1 below 3 below 5, 2 below 4.
+        let parent = [Some(3), Some(3), Some(4), Some(5), None, None];
+        let rank = postorder(&parent);
+        let mut sorted = rank.clone();
+        sorted.sort_unstable();
+        assert_eq!(sorted, [0, 1, 2, 3, 4, 5]);
+        for (s, parent) in parent.iter().enumerate() {
+            assert!(parent.is_none_or(|p| rank[s] < rank[p]));
+        }
+        let subtree = [rank[0], rank[1], rank[3], rank[5]];
+        assert_eq!(subtree.iter().max().unwrap() - subtree.iter().min().unwrap(), 3);
+    }
+}

@@ -22,7 +22,7 @@ use super::compliance::{Compliance, Reach};
 use super::contact_edges::ContactEdges;
 use super::factor::Factor;
 use super::iterate::{Evaluation, Iterate};
-use super::newton::{self, Body, Derivatives, Residual, Step, block};
+use super::newton::{self, Body, Derivatives, Edges, Residual, Step, Until, block};
 use super::system::System;
 use crate::kernel::edge_integral::ExactEdge;
 
@@ -75,7 +75,7 @@ where
         iterate: &mut Iterate,
         at: Evaluation,
         residuals: &mut Vec<f64>,
-        most: usize,
+        until: Until,
     ) -> Result<Pass, SolveError> {
         let mut v = at.linear;
         self.add_contact_forces(&self.w, &mut v);
@@ -89,30 +89,33 @@ where
             *y += change;
         }
         let edges = ContactEdges { d: self.system.d, order: &self.reach.order };
-        let before = self.w.clone();
         let start = y.iter().map(|y| y.abs()).collect();
         let soft = self.first;
-        let mut body = Reduced { route: self, y, start, w: before.clone(), dw: Vec::new() };
-        newton::minimise(&edges, &mut body, soft, residuals, most)?;
-        let w = body.w;
-        let change: Vec<f64> = w.iter().zip(&before).map(|(w, before)| w - before).collect();
+        let change = vec![0.0; y.len()];
+        let mut body = Reduced { route: self, y, start, change, dw: Vec::new() };
+        newton::minimise(&edges, &mut body, soft, residuals, until)?;
+        let change = body.change;
         self.compliance.subtract(&change, &mut v);
-        self.w = w;
+        for (w, change) in self.w.iter_mut().zip(&change) {
+            *w += change;
+        }
         self.first = false;
-        let energy = v.iter().map(|v| v * v).sum();
+        let energy: f64 = v.iter().map(|v| v * v).sum();
         self.factor.backward(&mut v);
         iterate.add(self.system, 1.0, &v);
-        Ok(Pass { energy, square: v.iter().map(|v| v * v).sum() })
+        let square: f64 = v.iter().map(|v| v * v).sum();
+        Ok(Pass { energy, softness: if energy > 0.0 { square / energy } else { 0.0 } })
     }
 }
 
-/// Newton's unknown w, with the values of P that belong to it.
+/// Newton's unknown, the change of w in this pass, with the values of P that belong to it. The change has digits of its own:
+/// where contact is stiff, those of w are too few for it.
 struct Reduced<'r, 'a, 'd, 'p, E, const N: usize, const M: usize> {
     route: &'r Condensed<'a, 'd, 'p, E, N, M>,
     y: Vec<f64>,
     /// The magnitudes that y was computed from.
     start: Vec<f64>,
-    w: Vec<f64>,
+    change: Vec<f64>,
     dw: Vec<f64>,
 }
 
@@ -148,7 +151,8 @@ where
     }
 
     fn s(&self, at: &Derivatives<M>) -> Vec<f64> {
-        self.w.iter().zip(&at.gradient).map(|(w, g)| w - g).collect()
+        let w = self.route.w.iter().zip(&self.change);
+        w.zip(&at.gradient).map(|((w, change), g)| (w - g) + change).collect()
     }
 }
 
@@ -161,7 +165,7 @@ where
     }
 
     fn residual(&self, at: &Derivatives<M>) -> Residual {
-        let mut magnitudes = Vec::with_capacity(self.w.len());
+        let mut magnitudes = Vec::with_capacity(self.y.len());
         for (e, hessian) in at.hessian.iter().enumerate() {
             for a in 0..M {
                 let i = e * M + a;
@@ -170,7 +174,7 @@ where
                         hessian[a][b].abs() * (self.y[e * M + b].abs() + self.start[e * M + b])
                     })
                     .sum();
-                magnitudes.push(self.w[i].abs() + at.gradient[i].abs() + spread);
+                magnitudes.push(self.route.w[i].abs() + at.gradient[i].abs() + spread);
             }
         }
         Residual {
@@ -179,27 +183,20 @@ where
         }
     }
 
-    /// By a few steps of the power method on R^T G R.
-    fn stiffness_of_contact(&mut self, at: &Derivatives<M>) -> f64 {
-        let roots = Self::roots(at);
-        let mut x = vec![1.0; roots.len()];
-        let mut largest = 0.0;
-        for _ in 0..POWER_STEPS {
-            let norm = x.iter().map(|x| x * x).sum::<f64>().sqrt();
-            if !(norm > 0.0) {
-                return 0.0;
-            }
-            let mut rx = vec![0.0; self.w.len()];
-            for ((e, column), x) in roots.iter().zip(&x) {
+    /// The body is there already: this is by the power method on R^T G R.
+    fn start(&mut self, edges: &impl Edges<M>) -> Result<f64, SolveError> {
+        let at = newton::derivatives(edges, &self.y);
+        let roots = Self::roots(&at);
+        Ok(newton::largest_eigenvalue(roots.len(), |x| {
+            let mut rx = vec![0.0; self.y.len()];
+            for ((e, column), x) in roots.iter().zip(x) {
                 for a in 0..M {
-                    rx[e * M + a] += column[a] * x / norm;
+                    rx[e * M + a] += column[a] * x;
                 }
             }
             let grx = self.times_compliance(&rx);
-            x = roots.iter().map(|(e, column)| dot(*column, block(&grx, *e))).collect();
-            largest = x.iter().map(|x| x * x).sum::<f64>().sqrt();
-        }
-        largest
+            roots.iter().map(|(e, column)| dot(*column, block(&grx, *e))).collect()
+        }))
     }
 
     fn step(&mut self, at: &Derivatives<M>) -> Result<Step, SolveError> {
@@ -237,17 +234,14 @@ where
     }
 
     fn advance(&mut self, t: f64, step: &Step) {
-        for (w, dw) in self.w.iter_mut().zip(&self.dw) {
-            *w += t * dw;
+        for (change, dw) in self.change.iter_mut().zip(&self.dw) {
+            *change += t * dw;
         }
         for (y, dy) in self.y.iter_mut().zip(&step.dy) {
             *y += t * dy;
         }
     }
 }
-
-/// Steps of the power method: an eigenvalue to within a factor is all that is asked.
-const POWER_STEPS: usize = 4;
 
 fn dot<const M: usize>(a: [f64; M], b: [f64; M]) -> f64 {
     (0..M).map(|i| a[i] * b[i]).sum()

@@ -68,8 +68,8 @@ impl Iterate {
         let d = system.d;
         if precisely {
             let (forces, p) = precise::evaluate(d, &self.u);
-            // The forces of contact are added to these in doubles.
-            let noise = NOISE * f64::EPSILON * d.free_norm(&forces);
+            // The forces of contact are added to these in doubles, and the loads are doubles.
+            let noise = NOISE * f64::EPSILON * d.free_norm(&forces).max(d.free_norm(&d.load));
             return Evaluation { linear: system.numbering.gather(&forces), p, noise, precisely };
         }
         let u = self.rounded();

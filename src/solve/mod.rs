@@ -31,7 +31,7 @@ pub use self::theorem::Theorem;
 use self::times::Stopwatch;
 pub use self::times::Times;
 use crate::fem::contact_line::{Coercivity, EdgeRule};
-use crate::fem::{DataError, Discretization, Problem};
+use crate::fem::{DataError, Discretization, Problem, held};
 use crate::kernel::edge_integral::ExactEdge;
 use crate::kernel::{P1, P2};
 use crate::quote::{fixed, number};
@@ -160,6 +160,9 @@ pub struct MethodReport {
     pub forward_error: f64,
     /// How many threads worked.
     pub threads: usize,
+    /// Independent motions of the body that slide along all obstacles and that no support stops: the solution is one up to
+    /// these, and the one of least norm is given. Friction would be needed to know more.
+    pub slides: usize,
 }
 
 /// How a solution was found.
@@ -192,8 +195,8 @@ pub enum SolveError {
     )]
     NotConverged { residual: f64, residuals: Vec<f64>, tolerance: f64 },
     #[error(
-        "the body is too slender, too nearly incompressible or too weakly held for double precision: with a condition number of at least {condition:.0e} the displacement is known to a relative error of {forward_error:.0e} only (in the energy norm; expected at most {:e}); a coarser mesh or a shorter body conditions it better",
-        accuracy::ACCEPTABLE
+        "the body is too slender, too nearly incompressible or too weakly held for double precision: with a condition number of at least {condition:.0e} {} (expected: to {:e} in the energy norm); a coarser mesh or a shorter body conditions it better",
+        known(*forward_error), accuracy::ACCEPTABLE
     )]
     IllConditioned { condition: f64, forward_error: f64 },
     #[error(
@@ -202,6 +205,14 @@ pub enum SolveError {
     Singular,
     #[error("the solution needs {bytes} bytes of memory, more than there are; use a coarser mesh")]
     OutOfMemory { bytes: u64 },
+}
+
+fn known(forward_error: f64) -> String {
+    if forward_error < 1.0 {
+        format!("the displacement is known to a relative error of {forward_error:.0e} only")
+    } else {
+        "no digit of the displacement is known".to_owned()
+    }
 }
 
 /// The residuals from step to step, to one digit.
@@ -259,7 +270,8 @@ where
     times.matrix = watch.lap();
     let (outcome, method, factorizations) = route::solve(&system, settings, &mut times)?;
     let status = accuracy::judge(&outcome, settings)?;
-    let Outcome { u, residuals, residual, .. } = outcome;
+    let Outcome { mut u, residuals, residual, .. } = outcome;
+    held::least_norm(&mut u, d.slides.as_deref().unwrap_or_default());
     let newton = NewtonReport { status, residuals, residual, factorizations };
     Ok((u, Report { newton, method }, times))
 }

@@ -15,7 +15,8 @@
 //!
 //! **The start.** A body that bends, started as if without contact, lets go of about one edge a step. So the springs are soft
 //! at first: s Psi in place of Psi, with s so small that contact and body are equally stiff, and then [`STIFFENING`] times
-//! stiffer with each step, until s = 1. From there on it is Newton's method on J_h, from a start that knows something.
+//! stiffer with each step or more, until s = 1. From there on it is Newton's method on J_h, from a start that knows something. Going
+//! to the body without contact counts as a step where it takes one.
 
 use super::SolveError;
 
@@ -35,8 +36,12 @@ pub trait Body<const M: usize> {
     fn y(&self) -> &[f64];
     /// The residual of (8) at the iterate, relative, where Psi has the derivatives `at`; and how much of it may be noise.
     fn residual(&self, at: &Derivatives<M>) -> Residual;
-    /// The largest eigenvalue of B^T Psi'' B with regard to A, roughly: how much stiffer contact is than the body.
-    fn stiffness_of_contact(&mut self, at: &Derivatives<M>) -> f64;
+    /// Goes to the body without contact, as far as it holds without, and says how much stiffer contact is there than the
+    /// body: the largest eigenvalue of B^T Psi'' B with regard to A, roughly.
+    ///
+    /// # Errors
+    /// As [`Body::step`].
+    fn start(&mut self, edges: &impl Edges<M>) -> Result<f64, SolveError>;
     /// The Newton step from the iterate.
     ///
     /// # Errors
@@ -82,13 +87,24 @@ const FLAT: f64 = 1e-2;
 /// How much stiffer the springs of contact get with each of the first steps.
 pub const STIFFENING: f64 = 4.0;
 
+/// With no more steps than these from soft springs to those of J_h: for the stiffest contact they stiffen faster.
+const STAGES: f64 = 18.0;
+
 /// A step whose energy is this small beside that of the largest (the square root of this as a length) is the last one:
 /// Newton's method converges superlinearly, so what remains is far smaller.
 const LAST: f64 = 1e-14;
 
-/// Newton's method from where `body` is, with soft springs first if `soft`. Appends the residual at each iterate to
-/// `residuals`, and stops when there are more than `most` of them, when a residual is no longer a finite number, at the
-/// rounding level, or after a step that leaves nothing to do.
+/// When to stop, short of the rounding level.
+#[derive(Clone, Copy, Debug)]
+pub struct Until {
+    /// There are more residuals than this.
+    pub steps: usize,
+    /// The relative residual is no larger.
+    pub residual: f64,
+}
+
+/// Newton's method from where `body` is, with soft springs if this is the `first` time. Appends the residual at each
+/// iterate to `residuals`, and stops as `until` says, at the rounding level, or after a step that leaves nothing to do.
 ///
 /// # Errors
 /// Those of [`Body::step`].
@@ -97,19 +113,21 @@ pub fn minimise<const M: usize>(
     body: &mut impl Body<M>,
     first: bool,
     residuals: &mut Vec<f64>,
-    most: usize,
+    until: Until,
 ) -> Result<(), SolveError> {
+    let (mut stiffness, mut stiffening) = (1.0, STIFFENING);
+    if first {
+        residuals.push(body.residual(&derivatives(edges, body.y())).norm);
+        let contact = body.start(edges)?.max(1.0);
+        stiffness = 1.0 / contact;
+        stiffening = contact.powf(1.0 / STAGES).max(STIFFENING);
+    }
     let mut at = derivatives(edges, body.y());
-    let mut stiffness = if first { (1.0 / body.stiffness_of_contact(&at)).min(1.0) } else { 1.0 };
     let mut largest: f64 = 0.0;
     let mut residual = body.residual(&at);
-    // The start of a second call is the end of the first.
-    if residuals.is_empty() {
-        residuals.push(residual.norm);
-    }
     // A later call makes a step in any case: its size is what tells how good the end of the first was.
     while (residual.norm > residual.noise / 4.0 || (!first && largest == 0.0))
-        && residuals.len() <= most
+        && residuals.len() <= until.steps
     {
         let scaled = at.times(stiffness);
         let step = body.step(&scaled)?;
@@ -122,12 +140,13 @@ pub fn minimise<const M: usize>(
         residuals.push(residual.norm);
         let decrement = -step.slope;
         largest = largest.max(decrement);
-        let last = stiffness == 1.0 && t == 1.0 && decrement <= LAST * largest;
+        let last = stiffness == 1.0
+            && (residual.norm <= until.residual || (t == 1.0 && decrement <= LAST * largest));
         let stalled = residual.norm <= residual.noise && residual.norm >= before.norm / 2.0;
         if last || stalled {
             break;
         }
-        stiffness = (stiffness * STIFFENING).min(1.0);
+        stiffness = (stiffness * stiffening).min(1.0);
     }
     Ok(())
 }
@@ -145,7 +164,8 @@ pub fn derivatives<const M: usize>(edges: &impl Edges<M>, y: &[f64]) -> Derivati
 }
 
 impl<const M: usize> Derivatives<M> {
-    fn times(&self, s: f64) -> Self {
+    /// The derivatives of s times the function.
+    pub fn times(&self, s: f64) -> Self {
         Derivatives {
             gradient: self.gradient.iter().map(|g| s * g).collect(),
             hessian: self.hessian.iter().map(|h| h.map(|row| row.map(|v| s * v))).collect(),
@@ -215,6 +235,25 @@ fn line_search<const M: usize>(
     }
     None
 }
+
+/// The largest eigenvalue of the positive semidefinite matrix of order `n` that `times` multiplies by, to within a factor.
+pub fn largest_eigenvalue(n: usize, times: impl Fn(&[f64]) -> Vec<f64>) -> f64 {
+    let mut x = vec![1.0; n];
+    let mut largest = 0.0;
+    for _ in 0..POWER_STEPS {
+        let norm = x.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if !(norm > 0.0) {
+            return largest;
+        }
+        x.iter_mut().for_each(|x| *x /= norm);
+        x = times(&x);
+        largest = x.iter().map(|x| x * x).sum::<f64>().sqrt();
+    }
+    largest
+}
+
+/// Steps of the power method.
+const POWER_STEPS: usize = 4;
 
 /// The values of edge `e`.
 pub fn block<const M: usize>(v: &[f64], e: usize) -> [f64; M] {

@@ -59,6 +59,17 @@ impl Prediction {
         }
     }
 
+    fn of<E, const N: usize, const M: usize>(system: &System<E, N, M>) -> (Reach, Prediction)
+    where
+        E: ExactEdge<f64, N, M>,
+    {
+        let edges = 0..system.d.contact.len();
+        let unknowns: Vec<Vec<usize>> = edges.map(|e| system.unknowns(e)).collect();
+        let reach = Reach::new(&system.structure, &unknowns, M);
+        let prediction = Prediction::new(&system.structure, &reach);
+        (reach, prediction)
+    }
+
     /// The route that takes less.
     pub fn route(&self) -> RouteName {
         if self.condensed <= self.assembled { RouteName::Condensed } else { RouteName::Assembled }
@@ -77,24 +88,21 @@ pub fn solve<E, const N: usize, const M: usize>(
 where
     E: ExactEdge<f64, N, M>,
 {
-    let unknowns: Vec<Vec<usize>> =
-        (0..system.d.contact.len()).map(|e| system.unknowns(e)).collect();
-    let reach = Reach::new(&system.structure, &unknowns, M);
-    let prediction = Prediction::new(&system.structure, &reach);
-    if prediction.route() == RouteName::Condensed {
-        match by(RouteName::Condensed, system, &reach, &prediction, settings, times) {
+    let held = system.d.slides.is_none();
+    if held && Prediction::of(system).1.route() == RouteName::Condensed {
+        match by(RouteName::Condensed, system, settings, times) {
             Err(SolveError::Singular) => {}
-            Ok((outcome, report, count)) if outcome.forward_error <= accuracy::ACCEPTABLE => {
-                return Ok((outcome, report, count));
-            }
-            Ok((outcome, report, count)) if outcome.residuals.len() > settings.max_iterations => {
+            Ok((outcome, report, count))
+                if outcome.forward_error <= accuracy::ACCEPTABLE
+                    || outcome.residuals.len() > settings.max_iterations =>
+            {
                 return Ok((outcome, report, count));
             }
             Ok(_) => {}
             Err(error) => return Err(error),
         }
     }
-    by(RouteName::Assembled, system, &reach, &prediction, settings, times)
+    by(RouteName::Assembled, system, settings, times)
 }
 
 /// Solves the system by a given route.
@@ -104,8 +112,6 @@ where
 pub fn by<E, const N: usize, const M: usize>(
     name: RouteName,
     system: &System<E, N, M>,
-    reach: &Reach,
-    prediction: &Prediction,
     settings: &Settings,
     times: &mut Times,
 ) -> Result<(Outcome, MethodReport, usize), SolveError>
@@ -113,6 +119,7 @@ where
     E: ExactEdge<f64, N, M>,
 {
     let mut watch = Stopwatch::start();
+    let (reach, prediction) = Prediction::of(system);
     let reference = accuracy::reference(system.d);
     times.judge += watch.lap();
     let (outcome, predicted_operations, factorizations) = match name {
@@ -125,7 +132,7 @@ where
                 Err(Indefinite) => return Err(SolveError::NotPositiveDefinite),
             };
             times.factor += watch.lap();
-            let mut route = Condensed::new(system, &factor, reach, reference);
+            let mut route = Condensed::new(system, &factor, &reach, reference);
             times.compliance += watch.lap();
             let outcome = accuracy::refine(system, &mut route, reference, settings)?;
             (outcome, prediction.condensed, 1)
@@ -138,7 +145,14 @@ where
     };
     times.newton += watch.lap();
     let Outcome { condition, forward_error, .. } = outcome;
-    let report =
-        MethodReport { route: name, predicted_operations, condition, forward_error, threads: 1 };
+    let slides = system.d.slides.as_ref().map_or(0, Vec::len);
+    let report = MethodReport {
+        route: name,
+        predicted_operations,
+        condition,
+        forward_error,
+        threads: 1,
+        slides,
+    };
     Ok((outcome, report, factorizations))
 }

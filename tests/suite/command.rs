@@ -145,17 +145,20 @@ fn wrong_cases_end_with_exit_code_2_and_write_nothing() {
         (
             "free",
             &[["[boundary.top]\ndisplacement = [\"0\", \"0\"]\n", ""]],
-            "case.toml: no displacement is prescribed that stops the translation along (1, 0): u_x would stop it; nor the translation along (0, 1): u_y would stop it; nor the rotation about (0.5, 0.5): u_x off the line y = 0.5 would stop it, or u_y off x = 0.5; expected displacement boundaries that leave no rigid body motion free (contact pushes, it doesn't hold)",
+            "case.toml: no displacement is prescribed that stops the translation along (1, 0): u_x would stop it; nor the translation along (0, 1): u_y would stop it; nor the rotation about (0.5, 0.5): u_x off the line y = 0.5 would stop it, or u_y off x = 0.5; expected displacement boundaries that leave no rigid body motion free, or loads that press the body against its obstacles (contact pushes, it doesn't hold)",
         ),
         (
             "sliding",
-            &[["displacement = [\"0\", \"0\"]", "displacement = [\"free\", \"0\"]"]],
-            "case.toml: no displacement is prescribed that stops the translation along (1, 0): u_x would stop it; expected displacement boundaries that leave no rigid body motion free (contact pushes, it doesn't hold)",
+            &[
+                ["displacement = [\"0\", \"0\"]", "displacement = [\"free\", \"0\"]"],
+                ["body = [\"0\"", "body = [\"1\""],
+            ],
+            "case.toml: no displacement is prescribed that stops the translation along (1, 0): u_x would stop it; expected displacement boundaries that leave no rigid body motion free, or loads that press the body against its obstacles (contact pushes, it doesn't hold)",
         ),
         (
             "sliding-up",
             &[["displacement = [\"0\", \"0\"]", "displacement = [\"0\", \"free\"]"]],
-            "case.toml: no displacement is prescribed that stops the translation along (0, 1): u_y would stop it; nor the rotation about (0.5, 1): u_x off the line y = 1 would stop it, or u_y off x = 0.5; expected displacement boundaries that leave no rigid body motion free (contact pushes, it doesn't hold)",
+            "case.toml: no displacement is prescribed that stops the translation along (0, 1): u_y would stop it; nor the rotation about (0.5, 1): u_x off the line y = 1 would stop it, or u_y off x = 0.5; expected displacement boundaries that leave no rigid body motion free, or loads that press the body against its obstacles (contact pushes, it doesn't hold)",
         ),
         (
             "disagree",

@@ -14,8 +14,10 @@ mod documents;
 mod doors;
 mod exact;
 mod gmsh_live;
+mod held;
 mod method;
 mod patch;
 mod reference;
+mod routes;
 #[cfg(feature = "cli")]
 mod set_and_sweep;

@@ -146,8 +146,10 @@ fn a_sweep_prints_and_writes_one_line_for_each_combination() {
     let [gamma0, degree] = ["method.gamma0=auto", "method.degree=2"];
     let solve = ["solve", "case.toml", "--json", "--set", gamma0, "--set", degree];
     let json = signorini(&folder, &solve).stdout;
-    let results: signorini::io::result::Results = serde_json::from_slice(&json).unwrap();
-    let force = format!(",{:?},", results.quantities.contact_force);
+    // As it stands there: serde_json reads some numbers to the last digit but one.
+    let json = text(&json);
+    let (_, force) = json.split_once("\"contact_force\": ").unwrap();
+    let force = format!(",{},", force.split_once(',').unwrap().0);
     assert!(lines[4].contains(&force) && !lines[3].contains(&force), "{csv}{force}");
     let table = text(&output.stdout);
     assert!(table.lines().count() == 1 + 1 + 5 + 1 + 1, "{table}");

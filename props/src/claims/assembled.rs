@@ -773,6 +773,7 @@ fn unsolved() -> Report {
         condition: 1.0,
         forward_error: 0.0,
         threads: 1,
+        slides: 0,
     };
     Report { newton, method }
 }

@@ -1,0 +1,137 @@
+//! The two routes of the solver give the same numbers, and what they promise: the residual of (8) at the tolerance, few steps,
+//! and a forward error that is one. Bodies on which A alone, or doubles alone, would not do.
+
+use signorini::fem::{Discretization, Problem, Rectangle};
+use signorini::io::Case;
+use signorini::kernel::edge_integral::ExactEdge;
+use signorini::kernel::{P1, P2};
+use signorini::solve::accuracy::Outcome;
+use signorini::solve::system::System;
+use signorini::solve::{
+    Degree, Method, RouteName, Settings, SolveError, Times, discretize, route, solve,
+};
+
+use crate::common::*;
+
+fn by<E: ExactEdge<f64, N, M>, const N: usize, const M: usize>(
+    name: RouteName,
+    problem: &Problem,
+    method: &Method,
+) -> Result<Outcome, SolveError> {
+    let d: Discretization<E, N, M> = discretize(problem, method)?;
+    let system = System::new(&d)?;
+    let settings = Settings::default();
+    Ok(route::by(name, &system, &settings, &mut Times::default())?.0)
+}
+
+/// The largest difference of two displacements beside the largest displacement.
+fn difference(a: &Outcome, b: &Outcome) -> f64 {
+    let largest = a.u.as_flattened().iter().fold(0.0, |m: f64, u| m.max(u.abs()));
+    let pairs = a.u.as_flattened().iter().zip(b.u.as_flattened());
+    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / largest
+}
+
+#[test]
+fn both_routes_give_the_same_numbers_on_every_example_case() {
+    for name in ["block", "gap", "cantilever", "disk", "smooth", "singular", "corner"] {
+        let case = Case::read(format!("cases/{name}.toml").as_ref()).unwrap();
+        for degree in [Degree::One, Degree::Two] {
+            let method =
+                Method { degree, gamma0: signorini::solve::Gamma0::Auto, ..case.method.clone() };
+            let run = |route| match degree {
+                Degree::One => by::<P1, 3, 2>(route, &case.problem, &method).unwrap(),
+                Degree::Two => by::<P2, 6, 3>(route, &case.problem, &method).unwrap(),
+            };
+            let (condensed, assembled) = (run(RouteName::Condensed), run(RouteName::Assembled));
+            let apart = difference(&condensed, &assembled);
+            assert!(apart <= 1e-10, "{name}, P{}: {apart:e}", degree.number());
+            for outcome in [condensed, assembled] {
+                assert!(outcome.residual <= 1e-10 && outcome.forward_error <= 1e-10, "{name}");
+            }
+        }
+    }
+}
+
+/// A beam of this length and height 1, clamped on the left, its tip coming down on the floor.
+fn beam(length: f64, degree: Degree) -> (Problem, Method) {
+    let nx = (4.0 * length.min(300.0)) as usize;
+    let diagonal = signorini::fem::Diagonal::Crossed;
+    let mesh = Rectangle { width: length, height: 1.0, nx, ny: 4, diagonal }.mesh().unwrap();
+    let conditions = conditions([
+        ("left", clamped()),
+        ("bottom", signorini::fem::Condition::Contact { gap: constant(0.02) }),
+    ]);
+    let material =
+        signorini::kernel::Material::young_poisson(1.0, 0.3, signorini::kernel::Plane::Strain);
+    let problem = Problem::new(mesh, material, [constant(0.0), constant(-1e-4)], conditions);
+    (problem, method(degree, EXACT))
+}
+
+#[test]
+fn slender_beams_are_solved_by_both_routes_in_few_steps() {
+    for length in [10.0, 30.0, 100.0] {
+        for degree in [Degree::One, Degree::Two] {
+            let (problem, method) = beam(length, degree);
+            let run = |route| match degree {
+                Degree::One => by::<P1, 3, 2>(route, &problem, &method).unwrap(),
+                Degree::Two => by::<P2, 6, 3>(route, &problem, &method).unwrap(),
+            };
+            let (condensed, assembled) = (run(RouteName::Condensed), run(RouteName::Assembled));
+            for outcome in [&condensed, &assembled] {
+                let steps = outcome.residuals.len() - 1;
+                let (residual, error) = (outcome.residual, outcome.forward_error);
+                let here = format!("{length} {degree:?}: {steps} steps, {residual:e}, {error:e}");
+                assert!(steps <= 25 && residual <= 1e-10 && error <= 1e-10, "{here}");
+            }
+            let apart = difference(&condensed, &assembled);
+            assert!(apart <= 1e-9, "{length} {degree:?}: {apart:e}");
+        }
+    }
+}
+
+#[test]
+fn stiff_contact_reaches_the_tolerance() {
+    // gamma0 at 1e-8 of the limit: the springs of contact are 1e8 times stiffer than the body.
+    for degree in [Degree::One, Degree::Two] {
+        let problem = block(unit_square(16).mesh().unwrap());
+        let auto = method(degree, EXACT);
+        let limit = signorini::solve::check(&problem, &auto).unwrap().gamma.coercivity.limit();
+        let gamma0 = signorini::solve::Gamma0::Value(1e-8 * limit);
+        let (s, _) = solve(&problem, &Method { gamma0, ..auto }, &Settings::default()).unwrap();
+        assert!(s.newton.residual <= 1e-10, "{:e}", s.newton.residual);
+        assert!(s.newton.iterations() <= 25, "{}", s.newton.iterations());
+    }
+}
+
+#[test]
+fn a_beam_beyond_double_precision_is_refused_with_the_reason() {
+    let diagonal = signorini::fem::Diagonal::Crossed;
+    let mesh = Rectangle { width: 1e6, height: 1.0, nx: 1000, ny: 1, diagonal }.mesh().unwrap();
+    let conditions = conditions([
+        ("left", clamped()),
+        ("bottom", signorini::fem::Condition::Contact { gap: constant(1e30) }),
+    ]);
+    let material =
+        signorini::kernel::Material::young_poisson(1.0, 0.0, signorini::kernel::Plane::Strain);
+    let problem = Problem::new(mesh, material, [constant(0.0), constant(-1e-12)], conditions);
+    let error = solve(&problem, &method(Degree::Two, EXACT), &Settings::default()).unwrap_err();
+    assert!(matches!(error, SolveError::Singular | SolveError::IllConditioned { .. }), "{error}");
+}
+
+#[test]
+fn a_lift_that_is_the_solution_has_converged() {
+    // One cell whose lower side follows the upper one: nothing is left for the free unknowns to do but to move along.
+    let mesh = Rectangle { nx: 1, ny: 1, ..unit_square(1) }.mesh().unwrap();
+    let material =
+        signorini::kernel::Material::young_poisson(1.0, 0.0, signorini::kernel::Plane::Strain);
+    let moved =
+        signorini::fem::Condition::Displacement([Some(constant(0.0)), Some(constant(-0.5))]);
+    let conditions = conditions([
+        ("top", moved),
+        ("bottom", signorini::fem::Condition::Contact { gap: constant(0.0) }),
+    ]);
+    let problem = Problem::new(mesh, material, [constant(0.0), constant(0.0)], conditions);
+    let (s, _) = solve(&problem, &method(Degree::One, EXACT), &Settings::default()).unwrap();
+    assert!((s.quantities.contact_force - 0.5).abs() < 1e-13);
+    assert!(s.newton.residuals.iter().all(|r| r.is_finite()));
+}
