@@ -451,11 +451,7 @@ impl MeshError {
                 *triangle = of_triangle(*triangle);
                 two(edge);
             }
-            Empty
-            | NoSuchBoundary { .. }
-            | Size { .. }
-            | NoCells { .. }
-            | TooManyCells { .. } => {}
+            Empty | NoSuchBoundary { .. } | Size { .. } | NoCells { .. } | TooManyCells { .. } => {}
         }
         self
     }
