@@ -36,6 +36,10 @@ FILES = {"contact.csv", "contact.vtu", "picture.svg", "result.json", "solution.v
 PANIC = 101
 
 
+# Seconds of processor time for a large input: it should take less than 2; a quadratic one takes minutes.
+PATIENCE = 5
+
+
 class Fault(Exception):
     pass
 
@@ -54,6 +58,38 @@ def digest(folder):
             content = content[: content.index(b'"seconds"')]
         found[name] = hashlib.sha256(content).hexdigest()
     return found
+
+
+def temporary(folder):
+    """The names of temporary folders in a folder."""
+    here = folder.iterdir() if folder.exists() else []
+    return {path.name for path in here if path.name.startswith(".signorini-") and path.name.endswith(".tmp")}
+
+
+def processor_time():
+    """Of all processes started here that have ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def strip(squares):
+    """A strip of unit squares as a mesh of Gmsh, each edge of its long sides a boundary with a name of its own: b0, b1, .. below
+    from left to right, and on above them."""
+    n = squares + 1
+    names = "".join(f'1 {i + 1} "b{i}"\n' for i in range(2 * squares))
+    curves = "".join(f"{i + 1} 0 0 0 1 1 0 1 {i + 1} 0\n" for i in range(2 * squares))
+    tags = "".join(f"{i + 1}\n" for i in range(2 * n))
+    places = "".join(f"{i} {j} 0\n" for j in (0, 1) for i in range(n))
+    ends = [(i + 1, i + 2) for i in range(squares)] + [(n + i + 2, n + i + 1) for i in range(squares)]
+    lines = "".join(f"1 {i + 1} 1 1\n{i + 1} {a} {b}\n" for i, (a, b) in enumerate(ends))
+    corners = [c for i in range(1, n) for c in ((i, i + 1, n + i + 1), (i, n + i + 1, n + i))]
+    triangles = "".join(f"{2 * squares + 1 + t} {a} {b} {c}\n" for t, (a, b, c) in enumerate(corners))
+    return (
+        f"$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n{2 * squares}\n{names}$EndPhysicalNames\n"
+        f"$Entities\n0 {2 * squares} 1 0\n{curves}1 0 0 0 {squares} 1 0 0 0\n$EndEntities\n"
+        f"$Nodes\n1 {2 * n} 1 {2 * n}\n2 1 0 {2 * n}\n{tags}{places}$EndNodes\n"
+        f"$Elements\n{2 * squares + 1} {4 * squares} 1 {4 * squares}\n{lines}2 1 2 {2 * squares}\n{triangles}$EndElements\n"
+    )
 
 
 class Bench:
@@ -84,11 +120,13 @@ class Bench:
     def whole(self, out, known, what):
         """A set that has its result.json is one of the known ones; what else is there is a temporary folder."""
         names = {path.name for path in out.iterdir()} if out.exists() else set()
-        left = {name for name in names if name.startswith(".signorini-") and name.endswith(".tmp")}
+        left = temporary(out)
         expect(names - left <= FILES, f"{what}: unexpected files {sorted(names - left - FILES)}")
         if "result.json" in names:
             expect(FILES <= names, f"{what}: a result.json without {sorted(FILES - names)}")
-            expect(frozenset(digest(out).items()) in known, f"{what}: files of two runs are mixed")
+            found = frozenset(digest(out).items())
+            origin = {name: [k for good, k in known.items() if (name, value) in good] for name, value in found}
+            expect(found in known, f"{what}: files of two runs are mixed: {origin}")
         return "result.json" in names, left
 
     def kills(self):
@@ -103,23 +141,22 @@ class Bench:
             how = self.random.choice([signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGHUP])
             if self.random.random() < 0.2:
                 shutil.rmtree(out.parent, ignore_errors=True)
-            before = {path.name for path in out.iterdir()} if out.exists() else set()
+            before = temporary(out) | temporary(out.parent)
             run = self.start("solve", cases[i % 2], "--quiet", "--out", out)
             time.sleep(self.random.uniform(0, 1.2 * usual))
             run.send_signal(how)
             code = run.wait()
             expect(code in (0, -how), f"kills: {how.name} gave {code}: {run.stderr.read()}")
             whole, left = self.whole(out, known, f"kills: {how.name}")
-            here = out.parent.iterdir() if out.parent.exists() else []
-            left |= {path.name for path in here if path.name.startswith(".signorini-")}
+            left |= temporary(out.parent)
             if how != signal.SIGKILL and code != 0:
-                swept = {name for name in before if name.startswith(".signorini-")}
-                expect(left <= swept, f"kills: {how.name} left {sorted(left)}")
+                expect(left <= before, f"kills: {how.name} left {sorted(left - before)}")
             counts["killed"] += code != 0
             counts["whole"] += whole
             counts["left"] += bool(left)
         expect(self.run("solve", cases[0], "--quiet", "--out", out).returncode == 0, "kills: the last run")
         expect(self.whole(out, known, "kills: the last run") == (True, set()), "kills: something is left for ever")
+        expect(not temporary(out.parent), "kills: something is left for ever")
         return f"{self.rounds} runs, {counts['killed']} of them stopped, {counts['whole']} whole sets, none mixed; {counts['left']} times a temporary folder stayed, for the next run to sweep"
 
     def races(self):
@@ -198,6 +235,38 @@ class Bench:
         expect(refused and said == {True}, f"memory: {refused} refused, {said}")
         return f"{refused} of 10 refused, each with the number of bytes"
 
+    def large_inputs(self):
+        """Many of everything: the time grows like the number, not like its square."""
+        folder = self.room / "large"
+        folder.mkdir()
+        head, rest = CASE.format(title="Large", n=128, load=-4).split("[material]")
+        case = "[material]" + rest
+        points = [[self.random.random(), self.random.random()] for _ in range(10_000)]
+        small = CASE.format(title="Large", n=4, load=-4)
+        inputs = {
+            "10,000 probes": f"{head}{case}[output]\nprobes = {points}\n",
+            "1e5 terms": small.replace("-4 + 10*x", "-4" + " + 1e-4*x" * 100_000),
+            "1e5 terms that are no polynomial": small.replace("-4 + 10*x", "-4" + " + 1e-4*sin(x)" * 100_000),
+            "32,000 boundaries that are not there": small + "".join(f"[boundary.b{i}]\ntraction = [\"0\", \"0\"]\n" for i in range(32_000)),
+            "32,000 boundaries": '[mesh]\ngmsh = "strip.msh"\n' + case.split("[boundary.top]")[0].replace("-4 + 10*x", "-1e-6")
+            + "".join(f"[boundary.b{i}]\n" + ("contact = {}\n" if i < 100 else 'displacement = ["0", "0"]\n' if i >= 16_000 else 'traction = ["0", "0"]\n')
+                      for i in range(32_000)),
+        }
+        (folder / "strip.msh").write_text(strip(16_000))
+        said = []
+        for name, text in inputs.items():
+            file = folder / "case.toml"
+            file.write_text(text)
+            before = processor_time()
+            run = self.run("solve", file, "--quiet", "--out", folder / "out")
+            seconds = processor_time() - before
+            expected = 2 if "not there" in name else 0
+            expect(run.returncode == expected, f"large inputs: {name}: {run.returncode}: {run.stderr[:2000]}")
+            expect(len(run.stderr) < 3000, f"large inputs: {name}: a message of {len(run.stderr)} characters")
+            expect(seconds < PATIENCE, f"large inputs: {name} took {seconds:.1f} s, expected at most {PATIENCE} s")
+            said.append(f"{name} {seconds:.1f} s")
+        return ", ".join(said)
+
     def hostile_folder(self):
         """The engine in a folder with modules and options that somebody else wrote. With DOLFINx the case is solved, without it
         the engine is missed: in neither case does anything of the folder run."""
@@ -235,7 +304,7 @@ def main():
     bench = Bench(str(Path(options.program).resolve()), options.rounds)
     failed = False
     try:
-        for part in (bench.kills, bench.races, bench.small_disk, bench.streams, bench.memory, bench.hostile_folder):
+        for part in (bench.kills, bench.races, bench.small_disk, bench.streams, bench.memory, bench.large_inputs, bench.hostile_folder):
             start = time.monotonic()
             try:
                 said = part()

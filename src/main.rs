@@ -428,6 +428,7 @@ mod command {
             | SolveError::NotConverged { .. }
             | SolveError::IllConditioned { .. }
             | SolveError::Singular
+            | SolveError::OutOfRange
             | SolveError::OutOfMemory { .. } => FAILED,
         }
     }

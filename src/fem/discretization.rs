@@ -11,6 +11,7 @@ use super::constraints::{Constraints, in_frame};
 use super::contact_line::{self, Coercivity, ContactLineEdge, EdgeRule};
 use super::held;
 use super::loads;
+use super::material;
 use super::problem::{DataError, Problem};
 use super::space::Space;
 use crate::kernel::edge_integral::ExactEdge;
@@ -69,15 +70,27 @@ where
     /// The discretization of `problem` with the given gamma0 (as a function of the coercivity constant) and edge rule.
     ///
     /// # Errors
-    /// Data that are not finite on the mesh, displacement boundaries that disagree, a rigid motion that neither they stop
-    /// nor contact with the loads as they are, no contact boundary.
+    /// Materials that are not stable, data that are not finite on the mesh, displacement boundaries that disagree, a rigid
+    /// motion that neither they stop nor contact with the loads as they are, no contact boundary, a gamma0 that is not
+    /// positive, a rule without points.
     pub fn new(
         problem: &'a Problem,
         gamma0: impl FnOnce(&Coercivity) -> f64,
         rule: EdgeRule,
     ) -> Result<Self, DataError> {
+        for &material in problem.material.distinct() {
+            material::stable(material)?;
+        }
         let coercivity = Coercivity::new::<E, N, M>(problem)?;
         let gamma0 = gamma0(&coercivity);
+        if !(gamma0 > 0.0 && gamma0.is_finite()) {
+            let (what, expected) = ("gamma0", "a positive number");
+            return Err(DataError::Value { what, found: gamma0.to_string(), expected });
+        }
+        if matches!(&rule, EdgeRule::Gauss(points) if points.is_empty()) {
+            let (what, expected) = ("the rule for contact edges", "one with points");
+            return Err(DataError::Value { what, found: "empty".to_owned(), expected });
+        }
         let space = Space::new(&problem.mesh);
         let mut constraints = Constraints::new(problem, &space)?;
         let load = loads::assemble(problem, &space)?;

@@ -8,8 +8,8 @@
 //!
 //! The solution is unique up to motions that slide along all obstacles; the one of least norm is taken.
 
+use faer::Mat;
 use faer::linalg::solvers::SolveLstsq;
-use faer::{Mat, Side};
 
 use super::contact_line::{ContactLineEdge, apply};
 use super::space::Space;
@@ -21,8 +21,8 @@ const BALANCED: f64 = 1e-9;
 /// Loads must go on pressing when they are changed by this share: a body on the verge of tipping is not held.
 const MARGIN: f64 = 1e-6;
 
-/// Squared singular values below this share of the largest belong to motions that slide.
-const SLIDES: f64 = 1e-16;
+/// Singular values of the c_i below this share of the largest belong to motions that slide.
+const SLIDES: f64 = 1e-10;
 
 /// The motions among the combinations of `motions` that slide along every obstacle, as fields with orthonormal nodal
 /// values; `None` if contact and `load` do not hold the body.
@@ -47,21 +47,22 @@ pub fn slides<E: Element<N, M>, const N: usize, const M: usize>(
         let pairs = load.as_flattened().iter().zip(r.as_flattened());
         pairs.map(|(l, r)| of(l * r)).sum()
     };
-    let loads: Vec<f64> = motions.iter().map(|r| work(r, |w| w)).collect();
     let scale = motions.iter().map(|r| work(r, f64::abs)).fold(0.0, f64::max);
     if !(scale > 0.0) {
         return None;
     }
-    let gram =
-        Mat::from_fn(dimension, dimension, |i, j| rows.iter().map(|c| c[i] * c[j]).sum::<f64>());
-    let eigen = gram.self_adjoint_eigen(Side::Lower).ok()?;
-    let direction = |j: usize| (0..dimension).map(|i| eigen.U()[(i, j)]).collect::<Vec<f64>>();
-    let largest = (0..dimension).map(|j| eigen.S()[j]).fold(0.0, f64::max);
-    let stopped = |j: &usize| eigen.S()[*j] > SLIDES * largest;
-    let holds = |loads: &[f64]| leaving(&rows, loads, BALANCED * scale).is_none();
+    // In units of the largest work of single loads.
+    let loads: Vec<f64> = motions.iter().map(|r| work(r, |w| w) / scale).collect();
+    let values = Mat::from_fn(rows.len(), dimension, |i, j| rows[i][j]);
+    let svd = values.svd().ok()?;
+    let direction = |j: usize| (0..dimension).map(|i| svd.V()[(i, j)]).collect::<Vec<f64>>();
+    let singular = |j: usize| if j < rows.len() { svd.S()[j] } else { 0.0 };
+    let largest = (0..dimension).map(singular).fold(0.0, f64::max);
+    let stopped = |j: &usize| singular(*j) > SLIDES * largest;
+    let holds = |loads: &[f64]| leaving(&rows, loads, BALANCED).is_none();
     let pressed = (0..dimension).filter(stopped).all(|j| {
         [-1.0, 1.0].iter().all(|sign| {
-            let change = direction(j).into_iter().map(|d| sign * MARGIN * scale * d);
+            let change = direction(j).into_iter().map(|d| sign * MARGIN * d);
             let changed: Vec<f64> = loads.iter().zip(change).map(|(l, c)| l + c).collect();
             holds(&changed)
         })

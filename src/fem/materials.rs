@@ -54,6 +54,11 @@ impl Materials {
         Materials { distinct, of_triangle: self.of_triangle.clone() }
     }
 
+    /// Each material once, whether a triangle is made of it or not.
+    pub fn distinct(&self) -> &[Material<f64>] {
+        &self.distinct
+    }
+
     /// The one material, if the whole body is made of it.
     pub fn only(&self) -> Option<&Material<f64>> {
         if self.of_triangle.is_empty() { self.distinct.first() } else { None }

@@ -13,10 +13,13 @@
 //! A [`Mesh`] that exists is valid: everything is checked when it is made, and nothing is checked again.
 
 use std::collections::BTreeMap;
+use std::sync::OnceLock;
 
 use nalgebra::Vector2;
 use thiserror::Error;
 
+use super::embedding;
+use super::tree::{Bounds, Tree};
 use crate::kernel::Triangle;
 use crate::memory::{self, OutOfMemory, bytes_of};
 use crate::quote::{self, number, quoted};
@@ -30,6 +33,8 @@ pub struct Mesh {
     edge_count: usize,
     outline: Vec<BoundaryEdge>,
     boundaries: BTreeMap<String, Vec<BoundaryEdge>>,
+    /// The boxes of the triangles, made when a point is first looked for.
+    boxes: OnceLock<Tree>,
 }
 
 /// An edge on the boundary, by the triangle that owns it: edge `local` lies opposite the triangle's vertex `local`.
@@ -63,8 +68,12 @@ pub enum MeshError {
     Unused { vertex: usize, x: f64, y: f64 },
     #[error("triangles {} and {} overlap: both lie on the same side of the edge from vertex {} to vertex {}", triangles[0], triangles[1], vertices[0], vertices[1])]
     Overlap { triangles: [usize; 2], vertices: [usize; 2] },
-    #[error("vertex {vertex} at ({}, {}) hangs inside the edge between vertices {} and {} of triangle {triangle}: neighbours must share whole edges", number(*x), number(*y), edge[0], edge[1])]
-    Hanging { vertex: usize, x: f64, y: f64, edge: [usize; 2], triangle: usize },
+    #[error("triangles {} and {} overlap at ({}, {}): expected triangles that cover no point twice", triangles[0], triangles[1], number(*x), number(*y))]
+    Overlapping { triangles: [usize; 2], x: f64, y: f64 },
+    #[error("vertices {} at ({}, {}) and {} at ({}, {}) are {:e} apart with no triangle between them, beside edges of length {}: the body would be torn there; expected one vertex, or a gap of more than {} times the edge (mesh.merge = {merge:e} makes them one)", vertices[0], number(places[0][0]), number(places[0][1]), vertices[1], number(places[1][0]), number(places[1][1]), short(*distance), short(*local), embedding::TOUCHING)]
+    Near { vertices: [usize; 2], places: [[f64; 2]; 2], distance: f64, local: f64, merge: f64 },
+    #[error("vertex {vertex} at ({}, {}) hangs inside the edge between vertices {} and {} of triangle {triangle}{}: neighbours must share whole edges", number(*x), number(*y), edge[0], edge[1], beside(*off))]
+    Hanging { vertex: usize, x: f64, y: f64, edge: [usize; 2], triangle: usize, off: f64 },
     #[error("boundary {}: no triangle has an edge between vertices {} and {}", quoted(boundary, '\''), vertices[0], vertices[1])]
     NoSuchEdge { boundary: String, vertices: [usize; 2] },
     #[error("boundary {}: the edge between vertices {} and {} lies inside the body, between two triangles", quoted(boundary, '\''), vertices[0], vertices[1])]
@@ -83,6 +92,15 @@ pub enum MeshError {
     TooManyCells { nx: usize, ny: usize, most: usize },
 }
 
+fn beside(off: f64) -> String {
+    if off == 0.0 { String::new() } else { format!(", {:e} beside it", short(off)) }
+}
+
+/// A length to three digits.
+fn short(length: f64) -> f64 {
+    format!("{length:.2e}").parse().unwrap_or(length)
+}
+
 /// Half of an edge: an edge as one of its triangles sees it, and the next edge that starts its list at the same vertex.
 struct Edge {
     vertices: [usize; 2],
@@ -91,18 +109,25 @@ struct Edge {
     next: Option<usize>,
 }
 
-/// All edges, found from either end.
+/// All edges. Each is in the list of the end where fewer triangles meet: the hub of a fan would have a long list.
 struct Edges {
     edges: Vec<Edge>,
     first: Vec<Option<usize>>,
+    triangles_at: Vec<u32>,
 }
 
 impl Edges {
+    /// The end whose list has the edge, if it is in one.
+    fn lister(&self, a: usize, b: usize) -> Option<usize> {
+        let at = |v: usize| self.triangles_at.get(v).map(|&count| (count, v));
+        Some(at(a)?.min(at(b)?).1)
+    }
+
     fn find(&self, a: usize, b: usize) -> Option<usize> {
-        let mut edge = *self.first.get(a.min(b))?;
+        let mut edge = *self.first.get(self.lister(a, b)?)?;
         while let Some(e) = edge {
             let [p, q] = self.edges[e].vertices;
-            if p.max(q) == a.max(b) {
+            if [p, q] == [a, b] || [q, p] == [a, b] {
                 return Some(e);
             }
             edge = self.edges[e].next;
@@ -139,8 +164,9 @@ impl Mesh {
             edge_count: edges.edges.len(),
             outline,
             boundaries,
+            boxes: OnceLock::new(),
         };
-        mesh.check_hanging()?;
+        embedding::check(&mesh)?;
         Ok(mesh)
     }
 
@@ -217,8 +243,18 @@ impl Mesh {
 
     /// The first triangle that contains the point `x`, with its barycentric coordinates there; `None` outside the body.
     pub fn locate(&self, x: [f64; 2]) -> Option<(usize, [f64; 3])> {
+        let boxes = self.boxes.get_or_init(|| {
+            let corners = |t: &[usize; 3]| t.map(|v| self.vertices[v]);
+            let boxed = |t: [[f64; 2]; 3]| {
+                Bounds::around(t).widened(4.0 * OUTSIDE * Bounds::around(t).size())
+            };
+            Tree::new(self.triangles.iter().map(corners).map(boxed).collect())
+        });
+        let mut near = Vec::new();
+        boxes.meeting(Bounds::around([x]), |t| near.push(t));
+        near.sort_unstable();
         let x = Vector2::from(x);
-        (0..self.triangles.len()).find_map(|t| {
+        near.into_iter().find_map(|t| {
             let triangle = self.triangle(t);
             let gradients = triangle.barycentric_gradients();
             // Each coordinate is measured from a vertex where it is zero: a vertex of the mesh finds itself exactly.
@@ -226,49 +262,7 @@ impl Mesh {
             l.iter().all(|&l| l >= -OUTSIDE).then_some((t, l))
         })
     }
-
-    /// A vertex strictly inside a boundary edge means that neighbours don't share whole edges. Candidates come from a
-    /// grid over the boundary with cells as wide as the longest edge of the outline.
-    fn check_hanging(&self) -> Result<(), MeshError> {
-        let width = self.outline.iter().map(|&e| self.length_and_normal(e).0).fold(0.0, f64::max);
-        let cell = |p: [f64; 2]| p.map(|c| (c / width).floor() as i64);
-        let mut grid: BTreeMap<[i64; 2], Vec<usize>> = BTreeMap::new();
-        for &edge in &self.outline {
-            let [vertex, _] = self.ends(edge);
-            grid.entry(cell(self.vertices[vertex])).or_default().push(vertex);
-        }
-        for &edge in &self.outline {
-            let ends = self.ends(edge);
-            let [a, b] = ends.map(|v| Vector2::from(self.vertices[v]));
-            let d = b - a;
-            let squared = d.dot(&d);
-            let [i, j] = cell(((a + b) / 2.0).into());
-            let near = (i - 1..=i + 1).flat_map(|i| (j - 1..=j + 1).map(move |j| [i, j]));
-            for &vertex in near.filter_map(|cell| grid.get(&cell)).flatten() {
-                let [x, y] = self.vertices[vertex];
-                let from_a = Vector2::new(x, y) - a;
-                let (along, across) = (from_a.dot(&d) / squared, from_a.perp(&d) / squared);
-                if !ends.contains(&vertex)
-                    && 0.0 < along
-                    && along < 1.0
-                    && across.abs() <= ON_THE_EDGE
-                {
-                    return Err(MeshError::Hanging {
-                        vertex,
-                        x,
-                        y,
-                        edge: ends,
-                        triangle: edge.triangle,
-                    });
-                }
-            }
-        }
-        Ok(())
-    }
 }
-
-/// A vertex this close to an edge, in units of the edge's length, lies on it: some hundred rounding errors.
-const ON_THE_EDGE: f64 = 1e-13;
 
 /// A triangle whose area is less than this times h_T^2 is flat: its gradients would have lost all but a few digits.
 const FLAT: f64 = 1e-12;
@@ -363,7 +357,11 @@ fn match_edges(
     let mut all = Edges {
         edges: Vec::with_capacity(triangles.len() * 3 / 2 + vertex_count),
         first: vec![None; vertex_count],
+        triangles_at: vec![0; vertex_count],
     };
+    for &vertex in triangles.as_flattened() {
+        all.triangles_at[vertex] += 1;
+    }
     let mut triangle_edges = vec![[0; 3]; triangles.len()];
     for (triangle, corners) in triangles.iter().enumerate() {
         for local in 0..3 {
@@ -379,7 +377,8 @@ fn match_edges(
                     e
                 }
                 None => {
-                    let first = &mut all.first[a.min(b)];
+                    let lister = all.lister(a, b).unwrap_or(a);
+                    let first = &mut all.first[lister];
                     all.edges.push(Edge {
                         vertices: [a, b],
                         owner: BoundaryEdge { triangle, local },
@@ -446,6 +445,8 @@ impl MeshError {
                 *triangles = triangles.map(&of_triangle);
                 two(vertices);
             }
+            Overlapping { triangles, .. } => *triangles = triangles.map(&of_triangle),
+            Near { vertices, .. } => two(vertices),
             Hanging { vertex, edge, triangle, .. } => {
                 *vertex = of_vertex(*vertex);
                 *triangle = of_triangle(*triangle);

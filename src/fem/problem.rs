@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use thiserror::Error;
 
+use super::material::MaterialError;
 use super::materials::Materials;
 use super::mesh::{Mesh, MeshError};
 use super::obstacle::Obstacle;
@@ -170,6 +171,10 @@ pub enum DataError {
         number(*length), number(*x), number(*y)
     )]
     NoDistance { what: String, length: f64, x: f64, y: f64, least: f64, most: f64 },
+    #[error("the material is none: {0}")]
+    Material(#[from] MaterialError),
+    #[error("{what} is {found}; expected {expected}")]
+    Value { what: &'static str, found: String, expected: &'static str },
     #[error("no boundary has contact; expected one with contact = {{ gap = ... }}")]
     NoContact,
 }

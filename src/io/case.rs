@@ -5,6 +5,7 @@
 //! [mesh]                                    # required: one of rectangle, gmsh
 //! rectangle = { width = 1.0, height = 1.0, nx = 32, ny = 32, diagonal = "right" }   # right (default) | left | crossed
 //! # gmsh = "bracket.msh"                    # MSH 4.1, relative to this file; boundaries are its physical curves
+//! # merge = 1e-6                            # beside gmsh: nodes within that share of the body's size become one
 //! # trapezoid = { omega = 2.0, n = 32 }     # (0,0), (1,0), (1,1), (cot omega, 1), for the exact solution "corner"
 //! # perturb = { amount = 0.2, seed = 1 }    # beside rectangle or trapezoid: vertices moved by up to so many cells
 //! [material]                                # required
@@ -65,7 +66,9 @@ use crate::fem::{
 use crate::kernel::{Material, Plane};
 use crate::memory;
 use crate::quote::{self, key as shown, quoted};
-use crate::solve::{ContactQuadrature, Degree, Gamma0, Method, Settings};
+use crate::solve::{
+    ContactQuadrature, Degree, Gamma0, MOST_GAUSS_POINTS, MOST_ITERATIONS, Method, Settings,
+};
 
 /// A contact problem and how to solve it.
 pub struct Case {
@@ -262,8 +265,8 @@ fn text(bytes: Vec<u8>) -> Result<String, CaseMistake> {
         .map_err(|e| CaseMistake::NoText { byte: e.utf8_error().valid_up_to() + 1 })
 }
 
-/// The bytes of memory that a byte of a case file takes at most while it is read.
-const MEMORY_PER_BYTE: u64 = 128;
+/// The bytes of memory that a byte of a case file takes at most while it is read: 241 in a list of tables of one number.
+const MEMORY_PER_BYTE: u64 = 400;
 
 fn case(file: &Path, root: &Table) -> Result<Case, CaseError> {
     root.only(&[
@@ -315,9 +318,13 @@ struct Meshed {
 /// `directory` is the one of the case file.
 fn read_mesh(table: &Table, directory: &Path) -> Result<Meshed, CaseError> {
     const SHAPES: [&str; 3] = ["rectangle", "trapezoid", "gmsh"];
-    table.only(&["rectangle", "trapezoid", "gmsh", "perturb"])?;
+    table.only(&["rectangle", "trapezoid", "gmsh", "perturb", "merge"])?;
     let perturbation = table.get("perturb").map(|value| read_perturbation(&value)).transpose()?;
+    let merge = table.get("merge").map(|value| read_merge(&value)).transpose()?;
     let shapes = SHAPES.map(|key| table.get(key));
+    if merge.is_some() && shapes[2].is_none() {
+        return Err(table.combination(&[SHAPES[0], SHAPES[1], "merge"], "merge beside gmsh only"));
+    }
     let (value, structured) = match shapes {
         [Some(value), None, None] => {
             let rectangle = read_rectangle(&value.table()?)?;
@@ -340,7 +347,8 @@ fn read_mesh(table: &Table, directory: &Path) -> Result<Meshed, CaseError> {
             }
             let file = directory.join(name);
             let mesh =
-                gmsh::read(&file).map_err(|error| value.mistake(CaseMistake::Gmsh(error)))?;
+                merge.map_or_else(|| gmsh::read(&file), |share| gmsh::read_merged(&file, share));
+            let mesh = mesh.map_err(|error| value.mistake(CaseMistake::Gmsh(error)))?;
             return Ok(Meshed { mesh, structured: None, perturbation: None, file: Some(file) });
         }
         _ => {
@@ -360,6 +368,14 @@ fn read_trapezoid(table: &Table) -> Result<Trapezoid, CaseError> {
     let (omega, _) = angle(table)?;
     let most = MOST_CELLS.isqrt();
     Ok(Trapezoid { omega, n: table.require("n", "a number of cells")?.whole_number(1..=most)? })
+}
+
+/// Vertices further apart than this share of the body are not one by mistake.
+const MOST_MERGED: f64 = 0.01;
+
+fn read_merge(value: &Value) -> Result<f64, CaseError> {
+    let expected = format!("a share of the body's size, above 0 and at most {MOST_MERGED}");
+    value.number_that(|share| 0.0 < share && share <= MOST_MERGED, &expected)
 }
 
 /// Beyond this share of a cell, triangles may turn over.
@@ -581,9 +597,6 @@ fn read_method(table: Option<Table>) -> Result<Method, CaseError> {
     Ok(method)
 }
 
-/// More Gauss points than this gain nothing: the integrand has a kink where contact ends.
-const MOST_GAUSS_POINTS: usize = 64;
-
 fn read_quadrature(value: &Value) -> Result<ContactQuadrature, CaseError> {
     if value.as_text() == Some("exact") {
         return Ok(ContactQuadrature::Exact);
@@ -596,9 +609,6 @@ fn read_quadrature(value: &Value) -> Result<ContactQuadrature, CaseError> {
     let points = table.require("gauss", "a number of points per edge")?;
     Ok(ContactQuadrature::Gauss(points.whole_number(1..=MOST_GAUSS_POINTS)?))
 }
-
-/// Newton's method takes a few steps, or it does not converge.
-const MOST_ITERATIONS: usize = 1_000_000;
 
 fn read_settings(table: Option<Table>) -> Result<Settings, CaseError> {
     let mut settings = Settings::default();
@@ -620,13 +630,14 @@ fn read_probes(table: Option<Table>, mesh: &Mesh) -> Result<Vec<[f64; 2]>, CaseE
     let Some(probes) = table.get("probes") else { return Ok(Vec::new()) };
     let place = |probe: &Value| {
         let [x, y] = probe.pair()?;
-        let place = [x.number()?, y.number()?];
-        match mesh.locate(place) {
-            Some(_) => Ok(place),
-            None => Err(probe.wrong_as(format!("{place:?}"), "a point of the body")),
-        }
+        Ok([x.number()?, y.number()?])
     };
-    probes.items()?.iter().map(place).collect()
+    let probes = probes.items()?;
+    let places: Vec<[f64; 2]> = probes.iter().map(place).collect::<Result<_, CaseError>>()?;
+    match places.iter().position(|&place| mesh.locate(place).is_none()) {
+        None => Ok(places),
+        Some(i) => Err(probes[i].wrong_as(format!("{:?}", places[i]), "a point of the body")),
+    }
 }
 
 #[cfg(test)]

@@ -104,7 +104,9 @@ impl Output {
             }
             let whole = made.first() == Some(&folder);
             let home = if whole { parent(&folder) } else { folder.as_path() };
+            // A killed run may have left its own beside a folder that was yet to appear.
             sweep(home);
+            sweep(parent(&folder));
             match Staging::new(home, &made) {
                 Ok(staging) => {
                     let (names, stale) = (Vec::new(), Vec::new());
@@ -270,7 +272,7 @@ impl Drop for Output {
 const ASIDE: &str = "earlier";
 
 /// How often a name or a folder is tried before giving up.
-const ATTEMPTS: usize = 16;
+const ATTEMPTS: usize = 64;
 
 const PREFIX: &str = ".signorini-";
 const SUFFIX: &str = ".tmp";
@@ -340,15 +342,22 @@ fn live() -> MutexGuard<'static, Vec<Leftover>> {
     LIVE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes what the runs of this process have not finished, for a process that is told to end. A set on its way to its
-/// place gets there first.
+/// Removes what the runs of this process have not finished, for a process that is told to end: afterwards it can begin or
+/// finish no other, but waits. A set on its way to its place gets there first.
 pub fn abandon() {
-    for Leftover { staging, made } in live().drain(..) {
-        let _ = fs::remove_dir_all(&staging);
+    let mut live = live();
+    for Leftover { staging, made } in live.drain(..) {
+        // The run may be adding a file at this moment, and then the folder is not empty.
+        for _ in 0..ATTEMPTS {
+            if fs::remove_dir_all(&staging).is_ok() || !staging.exists() {
+                break;
+            }
+        }
         for folder in made {
             let _ = fs::remove_dir(folder);
         }
     }
+    std::mem::forget(live);
 }
 
 fn parent(folder: &Path) -> &Path {

@@ -13,7 +13,7 @@
 //! bytes, a `size_t` and a `double` have 8; in a text file all are words between white space. Nothing is allocated because
 //! a file announces it, only because it is there.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::fmt;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
@@ -22,7 +22,9 @@ use std::str::FromStr;
 use thiserror::Error;
 
 use super::input::{self, InputError, MOST_OF_A_MESH};
+use crate::fem::merge::merge;
 use crate::fem::{Mesh, MeshError};
+use crate::memory::{self, OutOfMemory, bytes_of};
 use crate::quote::{self, quoted};
 
 /// Why a file gives no mesh, and where.
@@ -99,6 +101,8 @@ pub enum GmshMistake {
         "curve {curve} belongs to the physical curves {names}; expected it in one of them only"
     )]
     SeveralNames { curve: i32, names: String },
+    #[error("{0}")]
+    OutOfMemory(#[from] OutOfMemory),
     #[error("{error} ({note})")]
     Mesh { error: MeshError, note: &'static str },
 }
@@ -109,6 +113,7 @@ impl GmshError {
         matches!(
             *self.mistake,
             GmshMistake::Input(InputError::OutOfMemory(_))
+                | GmshMistake::OutOfMemory(_)
                 | GmshMistake::Mesh { error: MeshError::OutOfMemory(_), .. }
         )
     }
@@ -121,12 +126,27 @@ type Result<T> = std::result::Result<T, GmshError>;
 /// # Errors
 /// The first mistake found, with its place and the numbers that the file uses.
 pub fn read(file: &Path) -> Result<Mesh> {
-    let bytes = input::read(file, MOST_OF_A_MESH).map_err(|error| GmshError {
+    from_bytes(&read_bytes(file)?, file)
+}
+
+/// The mesh in this file, its nodes merged that are no further apart than `share` of the body's size.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_merged(file: &Path, share: f64) -> Result<Mesh> {
+    let bytes = read_bytes(file)?;
+    let mut cursor = Cursor { bytes: &bytes, file, at: 0, form: Form::Text };
+    let mut content = read_sections(&mut cursor)?;
+    merge_nodes(&mut content, share);
+    make_mesh(content).map_err(|mistake| cursor.wrong(Place::File, mistake))
+}
+
+fn read_bytes(file: &Path) -> Result<Vec<u8>> {
+    input::read(file, MOST_OF_A_MESH).map_err(|error| GmshError {
         file: file.to_owned(),
         place: Place::File,
         mistake: Box::new(GmshMistake::Input(error)),
-    })?;
-    from_bytes(&bytes, file)
+    })
 }
 
 /// The mesh in `bytes`, which messages call `file`.
@@ -135,6 +155,10 @@ pub fn read(file: &Path) -> Result<Mesh> {
 /// As [`read`].
 pub fn from_bytes(bytes: &[u8], file: &Path) -> Result<Mesh> {
     let mut cursor = Cursor { bytes, file, at: 0, form: Form::Text };
+    // Names and entities: what is kept of one is no more than this many times what the file says of it.
+    const MOST_TIMES: u64 = 4;
+    let lack = |lack: OutOfMemory| cursor.wrong(Place::File, lack.into());
+    memory::check(MOST_TIMES * bytes.len() as u64).map_err(lack)?;
     let content = read_sections(&mut cursor)?;
     make_mesh(content).map_err(|mistake| cursor.wrong(Place::File, mistake))
 }
@@ -295,6 +319,7 @@ fn read_nodes(cursor: &mut Cursor) -> Result<Vec<Node>> {
         let parametric = cursor.int_within(0..=1, "0 or 1 for nodes without or with parameters")?;
         let count = cursor.size("a number of nodes")?;
         let first = nodes.len();
+        cursor.make_room(&mut nodes, count)?;
         for _ in 0..count {
             let tag = cursor.size("the tag of a node")?;
             nodes.push(Node { tag, place: [0.0; 2] });
@@ -325,7 +350,13 @@ fn read_elements(cursor: &mut Cursor) -> Result<Elements> {
         cursor.int_within(0..=3, "a dimension from 0 to 3")?;
         let entity = cursor.int("the tag of an entity")?;
         let number = cursor.int("the type of the elements")?;
-        for _ in 0..cursor.size("a number of elements")? {
+        let count = cursor.size("a number of elements")?;
+        match number {
+            LINE => cursor.make_room(&mut elements.lines, count)?,
+            TRIANGLE => cursor.make_room(&mut elements.triangles, count)?,
+            _ => {}
+        }
+        for _ in 0..count {
             let start = cursor.here();
             let tag = cursor.size("the tag of an element")?;
             match number {
@@ -392,9 +423,34 @@ const CLOCKWISE: &str =
 const NO_TRIANGLE: &str =
     "mesh with gmsh -2, and where curves have a physical group, give the surface one too";
 
+/// Gives the triangles and lines on nodes that lie together the first of these nodes, and leaves out what loses an edge by
+/// it. Nodes that no triangle uses, and elements on nodes that are not there, stay as they are.
+fn merge_nodes(content: &mut Content, share: f64) {
+    let Elements { triangles, lines } = &mut content.elements;
+    let used: HashSet<usize> = triangles.iter().flat_map(|t| t.nodes).collect();
+    let kept: Vec<&Node> = content.nodes.iter().filter(|node| used.contains(&node.tag)).collect();
+    let places: Vec<[f64; 2]> = kept.iter().map(|node| node.place).collect();
+    let merged = merge(&places, &[], share);
+    let first: HashMap<usize, usize> = kept
+        .iter()
+        .zip(&merged.vertex)
+        .map(|(node, &vertex)| (node.tag, kept[merged.old_vertex[vertex]].tag))
+        .collect();
+    let become_first = |tag: &mut usize| *tag = first.get(tag).copied().unwrap_or(*tag);
+    triangles.iter_mut().flat_map(|t| &mut t.nodes).for_each(become_first);
+    lines.iter_mut().flat_map(|line| &mut line.nodes).for_each(become_first);
+    triangles.retain(|t| {
+        t.nodes[0] != t.nodes[1] && t.nodes[1] != t.nodes[2] && t.nodes[2] != t.nodes[0]
+    });
+    lines.retain(|line| line.nodes[0] != line.nodes[1]);
+}
+
 /// The mesh of the nodes that triangles use, in the order of the file.
 fn make_mesh(content: Content) -> std::result::Result<Mesh, GmshMistake> {
     let Content { names, curves, nodes, elements: Elements { triangles, lines } } = content;
+    // Two maps from tags, which are at most half empty and twice as large for a moment while they grow; the lists.
+    let maps = 3 * bytes_of::<[usize; 4]>(nodes.len()).saturating_mul(2);
+    memory::check(maps.saturating_add(bytes_of::<[usize; 3]>(triangles.len())))?;
     let mut position = HashMap::new();
     for (i, node) in nodes.iter().enumerate() {
         if position.insert(node.tag, i).is_some() {
@@ -495,13 +551,13 @@ impl<'b> Cursor<'b> {
 
     /// Reads the end of a section.
     fn end_of(&mut self, section: &str) -> Result<()> {
-        let expected = format!("$End{section}");
+        let expected = end_of(section);
         self.skip_white_space();
         if self.at == self.bytes.len() {
             return Err(self.cut_short(&expected));
         }
         let (start, line) = self.line();
-        if line == expected.as_bytes() {
+        if line.strip_prefix(b"$End") == Some(section.as_bytes()) {
             Ok(())
         } else {
             Err(self.unexpected(start, shown(line), &expected))
@@ -519,7 +575,7 @@ impl<'b> Cursor<'b> {
             }
             None => {
                 self.at = self.bytes.len();
-                Err(self.cut_short(&end))
+                Err(self.cut_short(&end_of(section)))
             }
         }
     }
@@ -616,6 +672,14 @@ impl<'b> Cursor<'b> {
         self.at
     }
 
+    /// Makes room for as many items as are announced, or as many as the rest of the file can hold if those are fewer.
+    fn make_room<T>(&self, list: &mut Vec<T>, announced: usize) -> Result<()> {
+        // A digit and the space after it.
+        const LEAST: usize = 2;
+        memory::reserve(list, announced.min(self.rest().len() / LEAST))
+            .map_err(|lack| self.wrong(Place::File, lack.into()))
+    }
+
     fn skip_white_space(&mut self) {
         let rest = self.rest();
         self.at += rest.len() - rest.trim_ascii_start().len();
@@ -647,6 +711,11 @@ impl<'b> Cursor<'b> {
     fn wrong(&self, place: Place, mistake: GmshMistake) -> GmshError {
         GmshError { file: self.file.to_owned(), place, mistake: Box::new(mistake) }
     }
+}
+
+/// The line that ends a section, as messages show it: its name is one of the file.
+fn end_of(section: &str) -> String {
+    format!("$End{}", quote::cut(section))
 }
 
 fn shown(bytes: &[u8]) -> String {

@@ -16,6 +16,7 @@ use super::result::{GammaChoice, MeshSizes, NewtonHistory, Results, Seconds, res
 use super::vtu::{CellKind, Field, Grid, Values, vtu};
 use crate::fem;
 use crate::kernel::Stress;
+use crate::memory::{self, OutOfMemory};
 use crate::solve::solution::ContactValues;
 use crate::solve::{Solution, Times};
 
@@ -45,6 +46,9 @@ pub enum OutputError {
         /// What is wrong with its data.
         error: DataError,
     },
+    /// The memory for what goes into the files.
+    #[error("the files cannot be made: {0}")]
+    OutOfMemory(#[from] OutOfMemory),
     /// A solution and a case that don't belong together.
     #[error(transparent)]
     Problem(#[from] fem::DataError),
@@ -62,6 +66,7 @@ pub fn write(
     times: Times,
 ) -> Result<(Vec<PathBuf>, Results), OutputError> {
     let start = Instant::now();
+    memory::check(bytes_to_write(solution))?;
     let mut output = Output::new(folder)?;
     output.replaces(&only_in(&FILES_OF_FENICSX, &FILES));
     let mut stage = |file, bytes: Result<Vec<u8>, DataError>| -> Result<(), OutputError> {
@@ -76,6 +81,15 @@ pub fn write(
     let results = results(case, solution, seconds)?;
     stage("result.json", result_json(&results).map(String::into_bytes))?;
     Ok((output.publish()?, results))
+}
+
+/// The bytes that making one file after the other takes at most: the numbers of solution.vtu once as they are and once as
+/// text, the triangles of picture.svg by their places, and as they are sorted by their stress.
+fn bytes_to_write(s: &Solution) -> u64 {
+    const PER_NODE: u64 = 160;
+    const PER_DRAWN_TRIANGLE: u64 = 400;
+    let drawn = s.von_mises.len() as u64 * if s.degree == 1 { 1 } else { 4 };
+    PER_NODE * s.nodes.len() as u64 + PER_DRAWN_TRIANGLE * drawn
 }
 
 /// The content of result.json.

@@ -49,6 +49,7 @@ impl<S: Scalar> Material<S> {
     }
 
     /// The same material in another number type.
+    #[cfg(not(kani))]
     pub(crate) fn map<T>(&self, f: impl Fn(S) -> T) -> Material<T> {
         Material { lambda: f(self.lambda), mu: f(self.mu), plane: self.plane }
     }
@@ -61,6 +62,11 @@ impl<S: Scalar> Material<S> {
     /// The shear modulus mu.
     pub fn mu(&self) -> S {
         self.mu
+    }
+
+    /// Plane strain or plane stress.
+    pub fn plane(&self) -> Plane {
+        self.plane
     }
 
     /// lambda + 2 mu in the plane: the constant of sigma_n(v)^2 <= (lambda + 2 mu) sigma(v):eps(v), attained by a strain

@@ -2,7 +2,8 @@
 //! until the residual has reached the tolerance and a pass has nothing left to correct; and the verdict.
 //!
 //! The correction of a pass is the error of what it corrects, but for the error of the correction, which is smaller by the
-//! same factor again. Its energy norm |du|_A beside that of u is the **forward error** that is reported; a small residual
+//! same factor again. Its energy norm |du|_A beside that of u, and that of what the displacement loses when it is rounded to
+//! doubles at the end, is the **forward error** that is reported; a small residual
 //! alone says nothing where the condition number is large. Residuals are evaluated in doubles as long as these can tell.
 
 use super::iterate::{Evaluation, Iterate};
@@ -45,7 +46,7 @@ pub struct Outcome {
     pub residuals: Vec<f64>,
     /// The relative residual of the displacement, from the definitions.
     pub residual: f64,
-    /// |du|_A / |u|_a of the last correction.
+    /// |du|_A / |u|_a of the last correction, and the same of what rounding the displacement to doubles takes away.
     pub forward_error: f64,
     /// The condition number of the matrix, from below: Rayleigh quotients of what was solved for.
     pub condition: f64,
@@ -113,7 +114,13 @@ where
             break;
         }
     }
-    Ok(Outcome { u: iterate.rounded(), residuals, residual, forward_error, condition })
+    let u = iterate.rounded();
+    let size = d.strain_energy(&u).sqrt();
+    let rounding = d.strain_energy(&iterate.remainder()).sqrt();
+    if rounding > 0.0 {
+        forward_error += rounding / size;
+    }
+    Ok(Outcome { u, residuals, residual, forward_error, condition })
 }
 
 /// The norm of the residual of (8) where its linear part is `at`.

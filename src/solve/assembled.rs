@@ -206,8 +206,18 @@ where
 
     fn residual(&self, at: &Derivatives<M>) -> Residual {
         let norm = self.gradient(at).iter().map(|r| r * r).sum::<f64>().sqrt();
+        // The rounding of P, through the springs of contact.
+        let mut contact = vec![0.0; self.route.system.numbering.count];
+        for (e, h) in at.hessian.iter().enumerate() {
+            let p: [f64; M] = block(&self.at.p_magnitudes, e);
+            self.route.system.functionals(e, |row, a, entry| {
+                contact[row] += entry.abs() * (0..M).map(|b| h[a][b].abs() * p[b]).sum::<f64>();
+            });
+        }
+        let contact = contact.iter().map(|c| c * c).sum::<f64>().sqrt();
         let reference = self.route.reference;
-        Residual { norm: norm / reference, noise: self.at.noise / reference }
+        let noise = self.at.noise + f64::EPSILON * contact;
+        Residual { norm: norm / reference, noise: noise / reference }
     }
 
     /// The body without contact, or, where it does not hold without, on springs of all edges, which pull as well as push.

@@ -187,7 +187,7 @@ where
     fn start(&mut self, edges: &impl Edges<M>) -> Result<f64, SolveError> {
         let at = newton::derivatives(edges, &self.y);
         let roots = Self::roots(&at);
-        Ok(newton::largest_eigenvalue(roots.len(), |x| {
+        let stiffness = newton::largest_eigenvalue(roots.len(), |x| {
             let mut rx = vec![0.0; self.y.len()];
             for ((e, column), x) in roots.iter().zip(x) {
                 for a in 0..M {
@@ -196,7 +196,9 @@ where
             }
             let grx = self.times_compliance(&rx);
             roots.iter().map(|(e, column)| dot(*column, block(&grx, *e))).collect()
-        }))
+        });
+        // The body bends so far without contact that what contact leaves of it cannot be seen.
+        if stiffness <= STIFFEST { Ok(stiffness) } else { Err(SolveError::Singular) }
     }
 
     fn step(&mut self, at: &Derivatives<M>) -> Result<Step, SolveError> {
@@ -246,6 +248,9 @@ where
 fn dot<const M: usize>(a: [f64; M], b: [f64; M]) -> f64 {
     (0..M).map(|i| a[i] * b[i]).sum()
 }
+
+/// Where contact is this many times stiffer than the body, the body is held by contact, and the tangent must know it.
+const STIFFEST: f64 = 1e11;
 
 /// A pivot this small beside its diagonal entry belongs to a singular matrix.
 const SINGULAR: f64 = 1e-14;

@@ -2,6 +2,8 @@
 //! in [twofold](crate::fem::twofold) numbers where rounding would blur it. It is known to more than double precision
 //! itself: rounding the displacement of a slender body to doubles changes its forces by more than its loads.
 
+use nalgebra::Vector2;
+
 use super::system::System;
 use crate::fem::discretization::Discretization;
 use crate::fem::precise;
@@ -22,6 +24,8 @@ pub struct Evaluation {
     pub linear: Vec<f64>,
     /// P(u) at the nodes of the contact edges.
     pub p: Vec<f64>,
+    /// The magnitudes that these were added up from.
+    pub p_magnitudes: Vec<f64>,
     /// A norm that rounding alone may give the residual.
     pub noise: f64,
     /// In twofold numbers.
@@ -40,6 +44,11 @@ impl Iterate {
     /// In doubles.
     pub fn rounded(&self) -> Vec<[f64; 2]> {
         self.u.iter().map(|u| u.map(Twofold::head)).collect()
+    }
+
+    /// What rounding to doubles leaves out.
+    pub fn remainder(&self) -> Vec<[f64; 2]> {
+        self.u.iter().map(|u| u.map(Twofold::tail)).collect()
     }
 
     /// Adds `t` times a step over the free degrees of freedom.
@@ -70,7 +79,9 @@ impl Iterate {
             let (forces, p) = precise::evaluate(d, &self.u);
             // The forces of contact are added to these in doubles, and the loads are doubles.
             let noise = NOISE * f64::EPSILON * d.free_norm(&forces).max(d.free_norm(&d.load));
-            return Evaluation { linear: system.numbering.gather(&forces), p, noise, precisely };
+            let p_magnitudes = p.iter().map(|p| p.abs()).collect();
+            let linear = system.numbering.gather(&forces);
+            return Evaluation { linear, p, p_magnitudes, noise, precisely };
         }
         let u = self.rounded();
         let forces = d.linear_residual(&u);
@@ -79,7 +90,20 @@ impl Iterate {
             .iter()
             .flat_map(|edge| edge.p(&d.space.on_triangle(edge.edge.triangle, &u)))
             .collect();
+        let magnitude = |functional: &[Vector2<f64>; N], nodal: &[Vector2<f64>; N]| {
+            let pairs = functional.iter().flatten().zip(nodal.iter().flatten());
+            pairs.map(|(f, u)| (f * u).abs()).sum::<f64>()
+        };
+        let p_magnitudes = d
+            .contact
+            .iter()
+            .flat_map(|edge| {
+                let nodal = d.space.on_triangle(edge.edge.triangle, &u);
+                edge.functionals.p0.map(|functional| magnitude(&functional, &nodal))
+            })
+            .collect();
         let noise = NOISE * f64::EPSILON * d.free_norm(&forces.magnitudes);
-        Evaluation { linear: system.numbering.gather(&forces.values), p, noise, precisely }
+        let linear = system.numbering.gather(&forces.values);
+        Evaluation { linear, p, p_magnitudes, noise, precisely }
     }
 }

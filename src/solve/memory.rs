@@ -2,27 +2,14 @@
 //! fit says so with the number, where the allocator would end the program.
 
 use super::SolveError;
+use crate::memory;
 
-/// That many bytes can be had.
+/// That many bytes can be had ([`memory::check`]).
 ///
 /// # Errors
-/// [`SolveError::OutOfMemory`] if the allocator refuses them, or if the system says that less is available (Linux:
-/// `MemAvailable` of /proc/meminfo; elsewhere the allocator alone is asked).
+/// [`SolveError::OutOfMemory`].
 pub fn ensure(bytes: u64) -> Result<(), SolveError> {
-    let refused = || SolveError::OutOfMemory { bytes };
-    if available().is_some_and(|available| bytes > available) {
-        return Err(refused());
-    }
-    let mut probe: Vec<u8> = Vec::new();
-    let length = usize::try_from(bytes).map_err(|_| refused())?;
-    probe.try_reserve_exact(length).map_err(|_| refused())
-}
-
-/// The bytes that the system can still hand out without swapping.
-fn available() -> Option<u64> {
-    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
-    let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
-    line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
+    memory::check(bytes).map_err(|lack| SolveError::OutOfMemory { bytes: lack.needed })
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 
 pub mod accuracy;
 pub mod assembled;
+mod checked;
 pub mod compliance;
 pub mod condensed;
 mod contact_edges;
@@ -23,6 +24,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use self::accuracy::Outcome;
+pub use self::checked::{MOST_GAUSS_POINTS, MOST_ITERATIONS};
 pub use self::ladder::{Ladder, LadderError, Level};
 pub use self::route::RouteName;
 pub use self::solution::{GammaReport, Quantities, Solution};
@@ -203,6 +205,10 @@ pub enum SolveError {
         "the matrix has no Cholesky factor in double precision although the method is coercive: the body is too slender, too nearly incompressible or too weakly held (condition number beyond 1e15); a coarser mesh or a shorter body conditions it better"
     )]
     Singular,
+    #[error(
+        "the numbers of this case over- or underflow double precision (lengths, moduli and loads multiply to beyond 1e300, or to below 1e-300); choose other units"
+    )]
+    OutOfRange,
     #[error("the solution needs {bytes} bytes of memory, more than there are; use a coarser mesh")]
     OutOfMemory { bytes: u64 },
 }
@@ -230,6 +236,7 @@ pub fn solve(
     method: &Method,
     settings: &Settings,
 ) -> Result<(Solution, Times), SolveError> {
+    settings.check()?;
     match method.degree {
         Degree::One => solve_with::<P1, 3, 2>(problem, method, settings),
         Degree::Two => solve_with::<P2, 6, 3>(problem, method, settings),
@@ -325,6 +332,7 @@ pub fn discretize<'a, E, const N: usize, const M: usize>(
 where
     E: ExactEdge<f64, N, M>,
 {
+    method.check()?;
     let gamma0 = |c: &Coercivity| match method.gamma0 {
         Gamma0::Auto => c.limit() / 2.0,
         Gamma0::Value(gamma0) => gamma0,

@@ -94,6 +94,12 @@ const STAGES: f64 = 18.0;
 /// Newton's method converges superlinearly, so what remains is far smaller.
 const LAST: f64 = 1e-14;
 
+/// A step whose energy is this small beside that of the largest may be noise.
+const NEGLIGIBLE: f64 = 1e-10;
+
+/// That many such steps without a smaller residual are noise.
+const IDLE_STEPS: usize = 4;
+
 /// When to stop, short of the rounding level.
 #[derive(Clone, Copy, Debug)]
 pub struct Until {
@@ -124,6 +130,7 @@ pub fn minimise<const M: usize>(
     }
     let mut at = derivatives(edges, body.y());
     let mut largest: f64 = 0.0;
+    let (mut best, mut idle) = (f64::INFINITY, 0);
     let mut residual = body.residual(&at);
     // A later call makes a step in any case: its size is what tells how good the end of the first was.
     while (residual.norm > residual.noise / 4.0 || (!first && largest == 0.0))
@@ -143,7 +150,14 @@ pub fn minimise<const M: usize>(
         let last = stiffness == 1.0
             && (residual.norm <= until.residual || (t == 1.0 && decrement <= LAST * largest));
         let stalled = residual.norm <= residual.noise && residual.norm >= before.norm / 2.0;
-        if last || stalled {
+        // What rounding leaves may be more than what is counted as noise: then the energies of the steps are next to nothing,
+        // and the residual falls no more.
+        if stiffness == 1.0 && residual.norm >= best / 2.0 {
+            idle += usize::from(decrement <= NEGLIGIBLE * largest);
+        } else {
+            (best, idle) = (residual.norm, 0);
+        }
+        if last || stalled || idle >= IDLE_STEPS {
             break;
         }
         stiffness = (stiffness * stiffening).min(1.0);

@@ -88,9 +88,14 @@ pub fn solve<E, const N: usize, const M: usize>(
 where
     E: ExactEdge<f64, N, M>,
 {
+    let reference = accuracy::reference(system.d);
+    if !(system.norm().is_normal() && reference.is_normal()) {
+        return Err(SolveError::OutOfRange);
+    }
     let held = system.d.slides.is_none();
     if held && Prediction::of(system).1.route() == RouteName::Condensed {
         match by(RouteName::Condensed, system, settings, times) {
+            // Contact may hold what the supports hardly hold.
             Err(SolveError::Singular) => {}
             Ok((outcome, report, count))
                 if outcome.forward_error <= accuracy::ACCEPTABLE

@@ -769,6 +769,43 @@ fn meshes_of_gmsh() {
 }
 
 #[test]
+fn seams_that_do_not_quite_match_and_what_merges_them() {
+    let directory = directory("seams");
+    // The upper triangle on a node of its own beside node 3.
+    let torn = [
+        ["1 5 1 9\n2 1 0 5\n1\n2\n3\n4\n9\n", "1 6 1 9\n2 1 0 6\n1\n2\n3\n4\n5\n9\n"],
+        ["0.5 0.5 0", "1.000001 1 0\n0.5 0.5 0"],
+        ["2 3 4\n", "2 5 4\n"],
+        ["5 1 3 4", "5 1 5 4"],
+    ]
+    .into_iter()
+    .fold(MESH.to_owned(), |text, edit| edited(&text, edit));
+    fs::write(directory.join("bad.msh"), torn).unwrap();
+    let gmsh = edited(CASE, WITH_MESH);
+    let message_with = |merge: &str| {
+        let text = gmsh.replacen("\"bad.msh\"\n", &format!("\"bad.msh\"\n{merge}\n"), 1);
+        fs::write(directory.join("bad.toml"), text).unwrap();
+        message(&directory)
+    };
+    let near = "bad.toml:3: [mesh] gmsh: bad.msh: vertices 3 at (1, 1) and 5 at (1.000001, 1) are 1e-6 apart with no triangle between them, beside edges of length 1: the body would be torn there; expected one vertex, or a gap of more than 0.001 times the edge (mesh.merge = 1e-6 makes them one) (the numbers are tags of the file)";
+    let share = "expected a share of the body's size, above 0 and at most 0.01";
+    compare([
+        (message_with(""), near.to_owned()),
+        (message_with("merge = 1e-7"), near.to_owned()),
+        (message_with("merge = 1e-6"), "nothing: the case was read".to_owned()),
+        (message_with("merge = 0"), format!("bad.toml:4: [mesh] merge = 0; {share}")),
+        (message_with("merge = 0.1"), format!("bad.toml:4: [mesh] merge = 0.1; {share}")),
+    ]);
+    compare_cases(
+        "merge",
+        &[(
+            ["[material]", "merge = 1e-6\n[material]"],
+            "bad.toml:2: [mesh]: found rectangle and merge; expected merge beside gmsh only",
+        )],
+    );
+}
+
+#[test]
 fn boundaries_of_gmsh_meshes() {
     let directory = directory("empty");
     fs::write(directory.join("bad.toml"), edited(CASE, WITH_MESH)).unwrap();

@@ -3,7 +3,9 @@
 
 mod common;
 
+mod assembled;
 mod bad_input;
+mod bodies;
 #[cfg(feature = "cli")]
 mod command;
 mod convergence;
@@ -13,6 +15,7 @@ mod documents;
 #[cfg(all(feature = "cli", unix))]
 mod doors;
 mod exact;
+mod fuzz;
 mod gmsh_live;
 mod held;
 mod method;

@@ -277,7 +277,7 @@ mod row {
             title: "What the above rests on in floating point",
             paper: "Nothing: the paper computes in R.",
             statement: "For intervals X, Y of doubles and numbers x in X, y in Y: x + y, x - y, x y, x / y (y not 0) and sqrt(x) lie in X + Y, X - Y, X Y, X / Y and sqrt(X). [X]+ is [[lo]+, [hi]+], sharp across zero. Of two numbers the result is at most two doubles wide, and exact where it is zero without underflow; an end may be infinite (no bound); a NaN makes both ends NaN. The integrals over a cut P1 edge, by the same source line over intervals, contain the exact ones.",
-            numbers: "doubles against exact rational arithmetic, over all finite doubles with subnormals, overflow and ties.",
+            numbers: "doubles against exact rational arithmetic, drawn from all finite doubles with subnormals, overflow and ties.",
             kernel: &[
                 "interval::Interval::new",
                 "interval::Interval::point",

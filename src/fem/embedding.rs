@@ -1,0 +1,428 @@
+//! Whether the triangles of a mesh cover no point twice, and whether its boundary is a boundary: seams that don't quite
+//! match look like cracks, and would be solved as such.
+//!
+//! Triangles that are counter-clockwise and share whole edges cover a point as often as their outline winds around it. So
+//! it is enough to look at the outline, near linear time in its edges:
+//!
+//! - no two edges of the outline cross;
+//! - just outside each chain of the outline the winding number is 0. It does not change along a chain that nothing
+//!   crosses; chains end where the outline meets itself in a vertex. It is counted on a ray;
+//! - no vertex of the outline lies on an edge that is not its own, or beside it across a void narrower than
+//!   [`TOUCHING`] times the local edge, and no two vertices are that close across a void.
+//!
+//! The last is a matter of tolerance. A mesh rounded to six decimals has voids, or overlaps, of 1e-6: 1e-3 of edges of
+//! length 1e-3. What is inside the body does not count: a sliver's apex may be as close to its base as it likes. A slot
+//! that is meant needs edges along it shorter than 1/[`TOUCHING`] times its width. The local edge of a vertex is the
+//! shortest one of the outline that ends there; of two places that nearly touch the smaller counts.
+
+use super::mesh::{BoundaryEdge, Mesh, MeshError};
+use super::tree::{Bounds, Tree};
+use crate::kernel::pattern::{self, Lists};
+
+/// A void narrower than this times the local edge is none.
+pub const TOUCHING: f64 = 1e-3;
+
+/// The outline of a mesh, with what it takes to look at what is near.
+struct Outline<'m> {
+    mesh: &'m Mesh,
+    /// Start and end of each edge of the outline.
+    ends: Vec<[usize; 2]>,
+    tree: Tree,
+    /// The shortest edge of the outline at each vertex.
+    shortest: Vec<f64>,
+    /// The triangles around each vertex.
+    first: Vec<usize>,
+    around: Vec<usize>,
+}
+
+/// Checks all of it.
+///
+/// # Errors
+/// [`MeshError::Hanging`], [`MeshError::Near`], [`MeshError::Overlapping`].
+pub fn check(mesh: &Mesh) -> Result<(), MeshError> {
+    let outline = Outline::new(mesh);
+    // What nearly touches often crosses too, and is better called by its name: it comes first.
+    (0..outline.ends.len()).try_for_each(|e| outline.check_vertices(e))?;
+    (0..outline.ends.len()).try_for_each(|e| outline.check_crossings(e))?;
+    outline.chains().into_iter().try_for_each(|e| outline.check_outside(e))
+}
+
+impl<'m> Outline<'m> {
+    fn new(mesh: &'m Mesh) -> Self {
+        let ends: Vec<[usize; 2]> = mesh.outline().iter().map(|&e| mesh.ends(e)).collect();
+        let mut shortest = vec![f64::INFINITY; mesh.vertices().len()];
+        for (&edge, ends) in mesh.outline().iter().zip(&ends) {
+            let length = mesh.length_and_normal(edge).0;
+            ends.iter().for_each(|&v| shortest[v] = shortest[v].min(length));
+        }
+        let boxes = ends.iter().map(|ends| Bounds::around(ends.map(|v| mesh.vertices()[v])));
+        let tree = Tree::new(boxes.collect());
+        let mut first = vec![0; mesh.vertices().len() + 1];
+        let mut around = vec![0; 3 * mesh.triangles().len()];
+        pattern::triangles_of_nodes(mesh.triangles(), &mut first, &mut around);
+        Outline { mesh, ends, tree, shortest, first, around }
+    }
+
+    fn places(&self, e: usize) -> [[f64; 2]; 2] {
+        self.ends[e].map(|v| self.mesh.vertices()[v])
+    }
+
+    /// The other edges of the outline near edge `e`, in order.
+    fn near(&self, e: usize) -> Vec<usize> {
+        let [a, b] = self.places(e);
+        let margin = TOUCHING * (b[0] - a[0]).hypot(b[1] - a[1]);
+        let mut near = Vec::new();
+        self.tree.meeting(Bounds::around([a, b]).widened(margin), |f| near.push(f));
+        near.sort_unstable();
+        near.retain(|&f| f != e);
+        near
+    }
+
+    fn check_vertices(&self, e: usize) -> Result<(), MeshError> {
+        let edge = self.mesh.outline()[e];
+        let length = self.mesh.length_and_normal(edge).0;
+        self.near(e).into_iter().try_for_each(|f| self.check_vertex(edge, self.ends[e], length, f))
+    }
+
+    fn check_crossings(&self, e: usize) -> Result<(), MeshError> {
+        let places = self.places(e);
+        for f in self.near(e).into_iter().filter(|&f| e < f) {
+            let apart = self.ends[f].iter().all(|v| !self.ends[e].contains(v));
+            if apart && cross(places, self.places(f)) {
+                let triangles = [e, f].map(|e| self.mesh.outline()[e].triangle);
+                let [x, y] = crossing(places, self.places(f));
+                return Err(MeshError::Overlapping { triangles, x, y });
+            }
+        }
+        Ok(())
+    }
+
+    /// The first vertex of edge `f` against `edge`.
+    fn check_vertex(
+        &self,
+        edge: BoundaryEdge,
+        ends: [usize; 2],
+        length: f64,
+        f: usize,
+    ) -> Result<(), MeshError> {
+        let vertex = self.ends[f][0];
+        if ends.contains(&vertex) {
+            return Ok(());
+        }
+        let p = self.mesh.vertices()[vertex];
+        let [a, b] = ends.map(|v| self.mesh.vertices()[v]);
+        for (end, place) in ends.into_iter().zip([a, b]) {
+            let distance = (p[0] - place[0]).hypot(p[1] - place[1]);
+            let local = self.shortest[end].min(self.shortest[vertex]);
+            if distance <= TOUCHING * local {
+                return self.across_a_void(end, vertex, distance, local);
+            }
+        }
+        let d = [(b[0] - a[0]) / length, (b[1] - a[1]) / length];
+        let along = (p[0] - a[0]) * d[0] + (p[1] - a[1]) * d[1];
+        let outside = (p[0] - a[0]) * d[1] - (p[1] - a[1]) * d[0];
+        let touching = TOUCHING * length.min(self.shortest[vertex]);
+        if !(0.0 < along && along < length) || outside > touching {
+            return Ok(());
+        }
+        let own = self.mesh.triangles()[edge.triangle].contains(&vertex);
+        let on_it = outside.abs() <= f64::EPSILON * 8.0 * (p[0].abs() + p[1].abs());
+        if !own && (outside >= 0.0 || on_it || self.inside(edge.triangle, p)) {
+            let [x, y] = p;
+            return Err(if outside >= -touching {
+                let (triangle, off) = (edge.triangle, outside.abs());
+                MeshError::Hanging { vertex, x, y, edge: ends, triangle, off }
+            } else {
+                let triangles = [edge.triangle, self.mesh.outline()[f].triangle];
+                MeshError::Overlapping { triangles, x, y }
+            });
+        }
+        Ok(())
+    }
+
+    /// Two vertices that are close to each other must have the body between them.
+    fn across_a_void(
+        &self,
+        from: usize,
+        to: usize,
+        distance: f64,
+        local: f64,
+    ) -> Result<(), MeshError> {
+        let triangles = Lists { starts: &self.first, members: &self.around }.of(from);
+        let place = |v: usize| self.mesh.vertices()[v];
+        let p = place(to);
+        for &t in triangles {
+            let corners = self.mesh.triangles()[t];
+            let joined = corners.contains(&to);
+            let own = corners.iter().position(|&v| v == from).unwrap_or(0);
+            let [next, last] = [1, 2].map(|k| place(corners[(own + k) % 3]));
+            let between = turn(place(from), next, p) > 0.0 && turn(place(from), p, last) > 0.0;
+            if joined || (between && !self.inside(t, p)) {
+                return Ok(());
+            }
+        }
+        let size = Bounds::around(self.mesh.vertices().iter().copied()).size();
+        let places = [place(from), p];
+        let merge = 10.0_f64.powf((distance / size).log10().floor() + 1.0);
+        Err(MeshError::Near { vertices: [from, to], places, distance, local, merge })
+    }
+
+    /// `p` lies inside triangle `t`.
+    fn inside(&self, t: usize, p: [f64; 2]) -> bool {
+        let corners = self.mesh.triangles()[t].map(|v| self.mesh.vertices()[v]);
+        (0..3).all(|i| turn(corners[i], corners[(i + 1) % 3], p) > 0.0)
+    }
+
+    /// One edge of each chain: chains end at the vertices where more than one edge of the outline starts.
+    fn chains(&self) -> Vec<usize> {
+        let mut from: Vec<Option<usize>> = vec![None; self.mesh.vertices().len()];
+        let mut meets = vec![false; self.mesh.vertices().len()];
+        for (e, ends) in self.ends.iter().enumerate() {
+            meets[ends[0]] |= from[ends[0]].replace(e).is_some();
+        }
+        let starts = (0..self.ends.len()).filter(|&e| meets[self.ends[e][0]]);
+        let closed = 0..self.ends.len();
+        let mut known = vec![false; self.ends.len()];
+        let mut chains = Vec::new();
+        for start in starts.chain(closed) {
+            let mut best: Option<(f64, usize)> = None;
+            let mut next = Some(start);
+            while let Some(e) = next.filter(|&e| !known[e]) {
+                known[e] = true;
+                let [a, b] = self.places(e);
+                let length = (b[0] - a[0]).hypot(b[1] - a[1]);
+                if best.is_none_or(|(longest, _)| length > longest) {
+                    best = Some((length, e));
+                }
+                let end = self.ends[e][1];
+                next = if meets[end] { None } else { from[end] };
+            }
+            chains.extend(best.map(|(_, e)| e));
+        }
+        chains
+    }
+
+    /// The winding number just outside the middle of edge `e`, counted on the ray downwards, or to the left if the edge is
+    /// steep.
+    fn check_outside(&self, e: usize) -> Result<(), MeshError> {
+        let [a, b] = self.places(e);
+        let [x, y] = [0, 1].map(|c| a[c] / 2.0 + b[c] / 2.0);
+        let c = usize::from((b[1] - a[1]).abs() > (b[0] - a[0]).abs());
+        // The ray enters the body where an edge runs to the right, or down.
+        let enters = |from: f64, to: f64| (from < to) == (c == 0);
+        let mut winding = if enters(a[c], b[c]) { 0 } else { -1 };
+        let mut ray = Bounds { low: [x, y], high: [x, y] };
+        ray.low[1 - c] = f64::NEG_INFINITY;
+        self.tree.meeting(ray, |f| {
+            let [p, q] = self.places(f);
+            let (low, high) = if p[c] < q[c] { (p, q) } else { (q, p) };
+            let side = turn(low, high, [x, y]);
+            let beyond = if c == 0 { side > 0.0 } else { side < 0.0 };
+            if f != e && low[c] <= [x, y][c] && [x, y][c] < high[c] && beyond {
+                winding += if enters(p[c], q[c]) { 1 } else { -1 };
+            }
+        });
+        if winding == 0 {
+            return Ok(());
+        }
+        let own = self.mesh.outline()[e].triangle;
+        let other = (0..self.mesh.triangles().len()).find(|&t| t != own && self.inside(t, [x, y]));
+        Err(MeshError::Overlapping { triangles: [own, other.unwrap_or(own)], x, y })
+    }
+}
+
+/// Twice the area of the triangle a b c, positive if it is counter-clockwise; 0 where rounding could change the sign.
+fn turn(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
+    let left = (b[0] - a[0]) * (c[1] - a[1]);
+    let right = (b[1] - a[1]) * (c[0] - a[0]);
+    // Four times the bound of Shewchuk's filter.
+    let rounding = 8.0 * f64::EPSILON * (left.abs() + right.abs());
+    if (left - right).abs() <= rounding { 0.0 } else { left - right }
+}
+
+/// The inner parts of two segments cross.
+fn cross([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> bool {
+    let opposite = |s: f64, t: f64| (s > 0.0 && t < 0.0) || (s < 0.0 && t > 0.0);
+    opposite(turn(a, b, c), turn(a, b, d)) && opposite(turn(c, d, a), turn(c, d, b))
+}
+
+/// Where.
+fn crossing([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> [f64; 2] {
+    let (s, t) = (turn(c, d, a), turn(c, d, b));
+    [0, 1].map(|k| a[k] + s / (s - t) * (b[k] - a[k]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A rectangle of nx x ny cells from `low` to `high`, its corners moved by `map`.
+    fn grid(
+        [nx, ny]: [usize; 2],
+        low: [f64; 2],
+        high: [f64; 2],
+        map: impl Fn([f64; 2]) -> [f64; 2],
+    ) -> (Vec<[f64; 2]>, Vec<[usize; 3]>) {
+        let at = |i: usize, n: usize, c: usize| low[c] + (high[c] - low[c]) * i as f64 / n as f64;
+        let places = (0..=ny).flat_map(|j| (0..=nx).map(move |i| [i, j]));
+        let vertices = places.map(|[i, j]| map([at(i, nx, 0), at(j, ny, 1)])).collect();
+        let mut triangles = Vec::new();
+        for (i, j) in (0..ny).flat_map(|j| (0..nx).map(move |i| (i, j))) {
+            let a = j * (nx + 1) + i;
+            let (b, c, d) = (a + 1, a + nx + 2, a + nx + 1);
+            triangles.extend([[a, b, c], [a, c, d]]);
+        }
+        (vertices, triangles)
+    }
+
+    type Pieces<'a> = &'a [(Vec<[f64; 2]>, Vec<[usize; 3]>)];
+
+    /// Meshes side by side in one, nothing joined.
+    fn together(pieces: Pieces) -> Result<Mesh, MeshError> {
+        let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+        for (v, t) in pieces {
+            let first = vertices.len();
+            triangles.extend(t.iter().map(|t| t.map(|i| i + first)));
+            vertices.extend_from_slice(v);
+        }
+        Mesh::new(vertices, triangles, [])
+    }
+
+    fn is_near(result: &Result<Mesh, MeshError>) -> bool {
+        matches!(result, Err(MeshError::Near { .. }))
+    }
+
+    fn is_hanging(result: &Result<Mesh, MeshError>) -> bool {
+        matches!(result, Err(MeshError::Hanging { .. }))
+    }
+
+    fn overlaps(result: &Result<Mesh, MeshError>) -> bool {
+        matches!(result, Err(MeshError::Overlapping { .. }))
+    }
+
+    fn rounded(x: [f64; 2]) -> [f64; 2] {
+        x.map(|c| (c * 1e6).round() / 1e6)
+    }
+
+    fn turned([x, y]: [f64; 2]) -> [f64; 2] {
+        let (sin, cos) = 0.6_f64.sin_cos();
+        [cos * x - sin * y, sin * x + cos * y]
+    }
+
+    #[test]
+    fn seams_that_are_rounded_to_six_decimals_are_found() {
+        for n in [3, 7, 30, 300] {
+            let left = grid([n, n], [0.0, 0.0], [1.0, 1.0], turned);
+            let same = grid([n, n], [1.0, 0.0], [2.0, 1.0], |x| rounded(turned(x)));
+            let finer = grid([2, 2 * n + 1], [1.0, 0.0], [2.0, 1.0], |x| rounded(turned(x)));
+            assert!(is_near(&together(&[left.clone(), same])), "{n}");
+            let finer = together(&[left, finer]);
+            assert!(is_near(&finer) || is_hanging(&finer), "{n}: {finer:?}");
+        }
+    }
+
+    #[test]
+    fn the_message_says_where_and_what_would_merge_them() {
+        let left = grid([1, 1], [0.0, 0.0], [1.0, 1.0], |x| x);
+        let right = grid([1, 1], [1.0 + 1e-6, 0.0], [2.0, 1.0], |x| x);
+        let message = together(&[left.clone(), right]).unwrap_err().to_string();
+        assert_eq!(
+            message,
+            "vertices 1 at (1, 0) and 4 at (1.000001, 0) are 1e-6 apart with no triangle between them, \
+             beside edges of length 1: the body would be torn there; expected one vertex, or a gap of more than 0.001 \
+             times the edge (mesh.merge = 1e-6 makes them one)"
+        );
+        let right = grid([1, 2], [1.0, 0.0], [2.0, 1.0], |[x, y]| [x + 1e-6 * x * x, y - 0.1]);
+        let message = together(&[left, right]).unwrap_err().to_string();
+        assert_eq!(
+            message,
+            "vertex 6 at (1.000001, 0.4) hangs inside the edge between vertices 1 and 3 of triangle 0, \
+             1e-6 beside it: neighbours must share whole edges"
+        );
+    }
+
+    #[test]
+    fn slots_that_are_meant_slivers_thin_strips_and_fine_meshes_beside_coarse_ones_are_no_seams() {
+        let left = grid([2, 4], [0.0, 0.0], [1.0, 1.0], |x| x);
+        let slot = |width: f64, n| grid([2, n], [1.0 + width, 0.0], [2.0, 1.0], |x| x);
+        assert!(together(&[left.clone(), slot(3e-4, 4)]).is_ok());
+        assert!(is_near(&together(&[left.clone(), slot(2e-4, 4)])));
+        assert!(together(&[left.clone(), slot(2e-6, 1000)]).is_ok(), "the finer edges count");
+        for slenderness in [1e3, 1e5, 1e7, 1e9] {
+            for map in [|x| x, turned] {
+                let strip = grid([10, 1], [0.0, 0.0], [1.0, 1.0 / slenderness], map);
+                assert!(together(&[strip]).is_ok(), "{slenderness:e}");
+            }
+        }
+        // Two slivers on one long edge, their apexes close together.
+        let v = vec![[0.0, 0.0], [1.0, 0.0], [0.5, 1e-5], [0.5, -1e-5]];
+        assert!(Mesh::new(v, vec![[0, 1, 2], [1, 0, 3]], []).is_ok());
+        // Rows of cells over eleven decades.
+        let graded = |[x, y]: [f64; 2]| [x, 10.0_f64.powf(11.0 * (y - 1.0))];
+        assert!(together(&[grid([1, 12], [0.0, 0.0], [1.0, 1.0], graded)]).is_ok());
+    }
+
+    #[test]
+    fn bodies_that_overlap_without_a_common_vertex_are_found() {
+        let body = grid([4, 4], [0.0, 0.0], [1.0, 1.0], |x| x);
+        for (what, low, high) in [
+            ("a corner", [0.9, 0.9], [1.5, 1.5]),
+            ("a bar across", [-0.5, 0.43], [1.5, 0.63]),
+            ("inside", [0.3, 0.3], [0.35, 0.35]),
+            ("inside one triangle", [0.05, 0.01], [0.06, 0.02]),
+            ("around it", [-1.0, -1.0], [3.0, 2.1]),
+        ] {
+            for pieces in [[0, 1], [1, 0]] {
+                let other = grid([2, 2], low, high, |x| x);
+                let both = [body.clone(), other];
+                let result = together(&pieces.map(|i| both[i].clone()));
+                assert!(overlaps(&result), "{what}: {:?}", result.err());
+            }
+        }
+        assert!(together(&[body, grid([2, 2], [1.5, 0.0], [2.0, 1.0], |x| x)]).is_ok());
+    }
+
+    #[test]
+    fn a_body_inside_the_hole_of_another_and_bodies_hinged_at_a_corner_do_not_overlap() {
+        let (v, t) = grid([3, 3], [0.0, 0.0], [3.0, 3.0], |x| x);
+        let holed: Vec<[usize; 3]> =
+            t.into_iter().enumerate().filter(|(i, _)| i / 2 != 4).map(|(_, t)| t).collect();
+        let inside = grid([1, 1], [1.2, 1.2], [1.8, 1.8], |x| x);
+        assert!(together(&[(v.clone(), holed.clone()), inside]).is_ok());
+        let inside = grid([1, 1], [1.2, 1.2], [2.2, 1.8], |x| x);
+        assert!(overlaps(&together(&[(v, holed), inside])));
+        // The same vertex, one sector inside the other.
+        let v = vec![[0.0, 0.0], [4.0, 0.0], [0.0, 4.0], [1.0, 0.5], [0.5, 1.0]];
+        assert!(overlaps(&Mesh::new(v, vec![[0, 1, 2], [0, 3, 4]], [])));
+        let v = vec![[0.0, 0.0], [4.0, 0.0], [0.0, 4.0], [-1.0, -0.5], [-0.5, -1.0]];
+        assert!(Mesh::new(v, vec![[0, 1, 2], [0, 3, 4]], []).is_ok());
+    }
+
+    #[test]
+    fn a_strip_wound_onto_itself_is_found() {
+        // A ramp of n cells around the origin; beyond a full turn it lies on its own beginning.
+        let ramp = |n: usize| {
+            grid([n, 1], [0.0, 1.0], [n as f64, 2.0], |[s, r]| {
+                let angle = -s * std::f64::consts::TAU / 23.7;
+                [(r + 0.02 * s) * angle.cos(), (r + 0.02 * s) * angle.sin()]
+            })
+        };
+        let clockwise = |(v, t): (Vec<[f64; 2]>, Vec<[usize; 3]>)| {
+            (v, t.into_iter().map(|[a, b, c]| [a, c, b]).collect::<Vec<_>>())
+        };
+        let upright = |n| {
+            let (v, t) = ramp(n);
+            let mesh = together(&[(v.clone(), t.clone())]);
+            if matches!(mesh, Err(MeshError::Clockwise { .. })) {
+                together(&[clockwise((v, t))])
+            } else {
+                mesh
+            }
+        };
+        assert!(upright(20).is_ok());
+        assert!(upright(23).is_ok());
+        for n in [25, 30, 47, 60] {
+            assert!(overlaps(&upright(n)), "{n}");
+        }
+    }
+}

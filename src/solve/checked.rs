@@ -1,0 +1,77 @@
+//! Methods and settings that a case file could not ask for are refused here too, whoever put them together.
+
+use super::{ContactQuadrature, Gamma0, Method, Settings};
+use crate::fem::DataError;
+
+/// More Gauss points than this gain nothing: the integrand has a kink where contact ends.
+pub const MOST_GAUSS_POINTS: usize = 64;
+
+/// Newton's method takes a few steps, or it does not converge.
+pub const MOST_ITERATIONS: usize = 1_000_000;
+
+fn refused(what: &'static str, found: impl ToString, expected: &'static str) -> DataError {
+    DataError::Value { what, found: found.to_string(), expected }
+}
+
+impl Gamma0 {
+    /// This value, a positive number.
+    ///
+    /// # Errors
+    /// [`DataError::Value`].
+    pub fn value(gamma0: f64) -> Result<Self, DataError> {
+        if gamma0 > 0.0 && gamma0.is_finite() {
+            Ok(Gamma0::Value(gamma0))
+        } else {
+            Err(refused("gamma0", gamma0, "a positive number"))
+        }
+    }
+}
+
+impl ContactQuadrature {
+    /// That many Gauss points on each edge, from 1 to [`MOST_GAUSS_POINTS`].
+    ///
+    /// # Errors
+    /// [`DataError::Value`].
+    pub fn gauss(points: usize) -> Result<Self, DataError> {
+        if (1..=MOST_GAUSS_POINTS).contains(&points) {
+            Ok(ContactQuadrature::Gauss(points))
+        } else {
+            Err(refused("the number of Gauss points on an edge", points, "one from 1 to 64"))
+        }
+    }
+}
+
+impl Method {
+    /// Nothing, if a case file could ask for this method.
+    pub(super) fn check(&self) -> Result<(), DataError> {
+        if let Gamma0::Value(gamma0) = self.gamma0 {
+            Gamma0::value(gamma0)?;
+        }
+        if let ContactQuadrature::Gauss(points) = self.quadrature {
+            ContactQuadrature::gauss(points)?;
+        }
+        Ok(())
+    }
+}
+
+impl Settings {
+    /// To this relative residual, above 0 and below 1, in at most that many steps, from 1 to [`MOST_ITERATIONS`].
+    ///
+    /// # Errors
+    /// [`DataError::Value`].
+    pub fn new(tolerance: f64, max_iterations: usize) -> Result<Self, DataError> {
+        if !(tolerance > 0.0 && tolerance < 1.0) {
+            return Err(refused("the tolerance", tolerance, "a number above 0 and below 1"));
+        }
+        if !(1..=MOST_ITERATIONS).contains(&max_iterations) {
+            let expected = "one from 1 to 1000000";
+            return Err(refused("the most steps (max_iterations)", max_iterations, expected));
+        }
+        Ok(Settings { tolerance, max_iterations })
+    }
+
+    /// Nothing, if a case file could ask for these settings.
+    pub(super) fn check(&self) -> Result<(), DataError> {
+        Settings::new(self.tolerance, self.max_iterations).map(|_| ())
+    }
+}

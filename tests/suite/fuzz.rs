@@ -1,0 +1,460 @@
+//! Fuzzers that run as tests, with a fixed budget and always the same inputs: mutated cases, expressions and meshes, and
+//! mutated cases that are solved. No input may end in a panic, take longer than a few seconds, or get a message that is long
+//! or holds control characters; and what is accepted keeps its promises (see each target).
+//!
+//! A long run, on other inputs each time: `FUZZ_SECONDS=3600 cargo test --release --test suite fuzz::`, so many seconds for
+//! each of the four targets. An input that fails is kept in the folder that the message names. What long runs have found is
+//! in docs/doors.md.
+
+use std::fs;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+
+use signorini::fem::Function;
+use signorini::io::Expression;
+use signorini::io::gmsh;
+
+/// A generator of numbers (splitmix64).
+struct Dice(u64);
+
+impl Dice {
+    fn roll(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// Below `n`; 0 for 0.
+    fn below(&mut self, n: usize) -> usize {
+        (self.roll() % n.max(1) as u64) as usize
+    }
+
+    fn one_of<'t, T>(&mut self, things: &'t [T]) -> &'t T {
+        &things[self.below(things.len())]
+    }
+}
+
+/// One of the seeds with a few changes: bytes, words of the format, parts of it or of another seed, an end too soon.
+fn mutated(dice: &mut Dice, seeds: &[Vec<u8>], words: &[&[u8]]) -> Vec<u8> {
+    const LONGEST: usize = 1 << 16;
+    let mut input = dice.one_of(seeds).clone();
+    // Half of the inputs differ in a number alone: they get further.
+    if dice.below(2) == 0 {
+        replace_a_number(dice, &mut input, &NUMBERS);
+        return input;
+    }
+    for _ in 0..=dice.below(4) {
+        let at = dice.below(input.len() + 1);
+        let end = (at + dice.below(24)).min(input.len());
+        match dice.below(8) {
+            0 => input.truncate(at),
+            1 => drop(input.drain(at..end)),
+            2 if at < input.len() => input[at] ^= 1 << dice.below(8),
+            3 if at < input.len() => input[at] = dice.roll() as u8,
+            4 => {
+                let part = input[at..end].to_vec();
+                let times = dice.below(40);
+                input.splice(at..at, part.repeat(times));
+            }
+            5 => {
+                let other = dice.one_of(seeds);
+                let from = dice.below(other.len() + 1);
+                let to = (from + dice.below(200)).min(other.len());
+                input.splice(at..end, other[from..to].iter().copied());
+            }
+            6 => replace_a_number(dice, &mut input, words),
+            _ => drop(input.splice(at..end, dice.one_of(words).iter().copied())),
+        }
+    }
+    input.truncate(LONGEST);
+    input
+}
+
+/// Another word where a number stands: what is read is then most often a case or a mesh, if a strange one.
+fn replace_a_number(dice: &mut Dice, input: &mut Vec<u8>, words: &[&[u8]]) {
+    let is_part = |b: &u8| b.is_ascii_digit() || *b == b'.';
+    let starts: Vec<usize> = (0..input.len())
+        .filter(|&i| is_part(&input[i]) && (i == 0 || !is_part(&input[i - 1])))
+        .collect();
+    let Some(&start) = starts.get(dice.below(starts.len())) else { return };
+    let length = input[start..].iter().take_while(|b| is_part(b)).count();
+    input.splice(start..start + length, dice.one_of(words).iter().copied());
+}
+
+/// Runs a target on mutated seeds: `runs` times, or as long as FUZZ_SECONDS says.
+fn fuzz(
+    name: &str,
+    runs: usize,
+    seeds: &[Vec<u8>],
+    words: &[&[u8]],
+    target: impl Fn(&[u8]) -> bool,
+) {
+    const SLOW: Duration = Duration::from_secs(20);
+    let seconds =
+        std::env::var("FUZZ_SECONDS").ok().map(|s| s.parse().expect("FUZZ_SECONDS is a number"));
+    let start = Instant::now();
+    let seed = match seconds {
+        None => 0,
+        Some(_) => SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_nanos() as u64,
+    };
+    let mut dice = Dice(seed);
+    let (mut done, mut accepted) = (0, 0);
+    let more = |done: usize| match seconds {
+        None => done < runs,
+        Some(seconds) => start.elapsed() < Duration::from_secs(seconds),
+    };
+    while more(done) {
+        // The seeds themselves come first.
+        let input = seeds.get(done).cloned().unwrap_or_else(|| mutated(&mut dice, seeds, words));
+        let begin = Instant::now();
+        let outcome = catch_unwind(AssertUnwindSafe(|| target(&input)));
+        if outcome.is_err() || begin.elapsed() > SLOW {
+            let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("fuzz");
+            fs::create_dir_all(&folder).unwrap();
+            let file = folder.join(format!("{name}-{seed}-{done}"));
+            fs::write(&file, &input).unwrap();
+            panic!(
+                "{name}: run {done} failed or took {:?}; its input is {}",
+                begin.elapsed(),
+                file.display()
+            );
+        }
+        accepted += usize::from(outcome.unwrap_or(false));
+        done += 1;
+    }
+    println!(
+        "{name}: {done} runs, {accepted} inputs accepted, {:.0} s",
+        start.elapsed().as_secs_f64()
+    );
+    // A target that accepts nothing, or everything, tests nothing.
+    assert!(accepted > done / 100 && accepted < done, "{name}: {accepted} of {done} accepted");
+}
+
+fn check_message(message: &str) {
+    assert!(message.len() < 3000, "a message of {} bytes", message.len());
+    assert!(!message.chars().any(char::is_control), "{message:?}");
+}
+
+fn files(folder: &str, ending: &str) -> Vec<Vec<u8>> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+    let mut paths: Vec<PathBuf> =
+        fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|e| e == ending));
+    paths.sort();
+    assert!(!paths.is_empty());
+    paths.iter().map(|path| fs::read(path).unwrap()).collect()
+}
+
+const NUMBERS: [&[u8]; 22] = [
+    b"0",
+    b"1",
+    b"-1",
+    b"2",
+    b"0.5",
+    b"-0.0",
+    b"1e-3",
+    b"1e300",
+    b"-1e300",
+    b"1e-300",
+    b"1e308",
+    b"5e-324",
+    b"1e999",
+    b"nan",
+    b"inf",
+    b"-inf",
+    b"3.0000000000000004",
+    b"1e16",
+    b"1_000",
+    b"0x7f",
+    b"99999999999999999999",
+    b"-9223372036854775808",
+];
+
+const EXPRESSION: [&[u8]; 30] = [
+    b"x",
+    b"y",
+    b"pi",
+    b"+",
+    b"-",
+    b"*",
+    b"/",
+    b"^",
+    b"(",
+    b")",
+    b",",
+    b" ",
+    b"sqrt(",
+    b"sin(",
+    b"cos(",
+    b"exp(",
+    b"abs(",
+    b"min(",
+    b"max(",
+    b"x^2",
+    b"y^-3",
+    b"1/x",
+    b"(x",
+    b"2^",
+    b"-x^-y",
+    b"1e",
+    b".5",
+    b"e9",
+    b"\xc3\xa9",
+    b"\0",
+];
+
+const EXPRESSIONS: [&str; 10] = [
+    "-4 + 10*x",
+    "0.2*(x - 0.3)^2",
+    "min(x, y)^2 - max(-x, 1)",
+    "sqrt(abs(x)) + exp(-y)/(1 + y^2)",
+    "-x^2 + 2^3^2 - 2^-1",
+    "sin(pi*x)*cos(pi*y)",
+    "((x + 1)*(x - 1))^16",
+    "1e-3*x - .5e+1",
+    "x - (y - (x - (y - 1)))",
+    "+-+x^0.5",
+];
+
+fn words(lists: &[&[&'static [u8]]]) -> Vec<&'static [u8]> {
+    lists.concat()
+}
+
+/// An expression that is read has a value everywhere; parentheses around it and two signs before it change no bit of it.
+#[test]
+fn expressions() {
+    let seeds: Vec<Vec<u8>> = EXPRESSIONS.iter().map(|e| e.as_bytes().to_vec()).collect();
+    fuzz("expressions", 20_000, &seeds, &words(&[&NUMBERS, &EXPRESSION]), |input| {
+        let text = String::from_utf8_lossy(input);
+        let expression = match text.parse::<Expression>() {
+            Ok(expression) => expression,
+            Err(error) => {
+                check_message(&error.to_string());
+                return false;
+            }
+        };
+        let _ = (expression.degree(), expression.constant(), expression.polynomial_in_x());
+        // Nested as deep as it may be, it leaves no room for more.
+        let around = ["(", "--("].map(|open| format!("{open}{text}\n)").parse::<Expression>());
+        for x in [[0.0, 0.0], [0.3, -1.7], [1e300, 1e-300], [f64::NAN, 1.0]] {
+            let value = expression.at(x);
+            for around in around.iter().flatten() {
+                let same = around.at(x);
+                assert!(
+                    same.to_bits() == value.to_bits() || (same.is_nan() && value.is_nan()),
+                    "{text:?} at {x:?}"
+                );
+            }
+        }
+        true
+    });
+}
+
+const MESH: [&[u8]; 16] = [
+    b"$Nodes\n",
+    b"$EndNodes\n",
+    b"$Elements\n",
+    b"$EndElements\n",
+    b"$Entities\n",
+    b"$EndEntities\n",
+    b"$PhysicalNames\n",
+    b"$EndPhysicalNames\n",
+    b"$MeshFormat\n4.1 0 8\n$EndMeshFormat\n",
+    b"\n",
+    b" ",
+    b"\"floor\"",
+    b"18446744073709551615",
+    b"\xff\xff\xff\xff\xff\xff\xff\xff",
+    b"\0\0\0\0\0\0\xf0\x7f",
+    b"1 1 2\n",
+];
+
+/// A mesh that is read is one: its triangles have areas, and its boundary is closed.
+#[test]
+fn meshes() {
+    let seeds = files("tests/meshes", "msh");
+    let small: Vec<Vec<u8>> = seeds.into_iter().filter(|seed| seed.len() < 1 << 15).collect();
+    fuzz("meshes", 4000, &small, &words(&[&NUMBERS, &MESH]), |input| {
+        match gmsh::from_bytes(input, Path::new("fuzzed.msh")) {
+            Ok(mesh) => {
+                assert!((0..mesh.triangles().len()).all(|t| mesh.triangle(t).double_area() > 0.0));
+                let mut starts: Vec<usize> =
+                    mesh.outline().iter().map(|&e| mesh.ends(e)[0]).collect();
+                let mut ends: Vec<usize> =
+                    mesh.outline().iter().map(|&e| mesh.ends(e)[1]).collect();
+                starts.sort_unstable();
+                ends.sort_unstable();
+                assert_eq!(starts, ends);
+                true
+            }
+            Err(error) => {
+                check_message(&error.to_string());
+                false
+            }
+        }
+    });
+}
+
+#[cfg(feature = "files")]
+mod cases {
+    use signorini::io::result::{Seconds, result_json};
+    use signorini::io::{Case, outputs};
+    use signorini::solve::solve;
+
+    use super::*;
+
+    const CASE: [&[u8]; 34] = [
+        b"[mesh]\n",
+        b"[material]\n",
+        b"[load]\n",
+        b"[boundary.left]\n",
+        b"[boundary.top]\n",
+        b"[method]\n",
+        b"[solver]\n",
+        b"[output]\n",
+        b"[exact]\n",
+        b"displacement = ",
+        b"traction = ",
+        b"contact = {}\n",
+        b"[\"0\", \"free\"]",
+        b"[\"x\", \"-y\"]",
+        b"\"0\"",
+        b"\"1/x\"",
+        b"degree = 2\n",
+        b"gamma0 = \"auto\"\n",
+        b"gamma0 = ",
+        b"allow_noncoercive = true\n",
+        b"contact_quadrature = { gauss = 4 }\n",
+        b"diagonal = \"crossed\"",
+        b"plane = \"stress\"\n",
+        b"perturb = { amount = 0.2, seed = 1 }\n",
+        b"probes = [[0.5, 0.5]]\n",
+        b"\"",
+        b"\"\"\"",
+        b"{",
+        b"}",
+        b"[",
+        b"]",
+        b"=",
+        b"#",
+        b"\n",
+    ];
+
+    /// Small ones: what is fuzzed are the doors, not the patience.
+    const SMALL: &str = r#"title = "Block"
+[mesh]
+rectangle = { width = 1.0, height = 1.0, nx = 4, ny = 3, diagonal = "right" }
+[material]
+lambda = 1.0
+mu = 1.0
+plane = "strain"
+[load]
+body = ["0.1*y", "-4 + 10*x"]
+[boundary.top]
+displacement = ["0", "0"]
+[boundary.right]
+traction = ["0", "0.5"]
+[boundary.bottom]
+contact = { gap = "0.01*x" }
+[method]
+degree = 1
+gamma0 = "auto"
+contact_quadrature = "exact"
+[solver]
+tolerance = 1e-10
+max_iterations = 50
+[output]
+probes = [[0, 1], [0.5, 0.5]]
+"#;
+
+    fn seeds() -> Vec<Vec<u8>> {
+        let mut seeds = vec![SMALL.as_bytes().to_vec()];
+        seeds.push(SMALL.replace("degree = 1", "degree = 2").into_bytes());
+        seeds.push(
+            SMALL
+                .replace("\"exact\"", "{ gauss = 3 }")
+                .replace("right\" }", "crossed\" }")
+                .into_bytes(),
+        );
+        for seed in files("cases", "toml") {
+            let text = String::from_utf8(seed).unwrap();
+            seeds.push(text.replace("= 32", "= 4").replace("= 16", "= 4").into_bytes());
+        }
+        seeds
+    }
+
+    /// A number of cells with more than two digits is left alone.
+    fn is_large(text: &str) -> bool {
+        let is_part = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '.' | '+' | '-');
+        let counts =
+            text.lines().filter(|line| ["nx", "ny", "n ", "n="].iter().any(|k| line.contains(k)));
+        counts.flat_map(|line| line.split(|c| !is_part(c))).any(|word| {
+            word.starts_with(|c: char| c.is_ascii_digit() || c == '+')
+                && word.len() > 2
+                && !word.contains('.')
+        })
+    }
+
+    fn read(input: &[u8]) -> Option<Case> {
+        let text = String::from_utf8_lossy(input);
+        if is_large(&text) {
+            return None;
+        }
+        // Beside the meshes that the cases name.
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/fuzzed.toml");
+        match Case::parse(&file, &text, &[]) {
+            Ok(case) => Some(case),
+            Err(error) => {
+                check_message(&error.to_string());
+                None
+            }
+        }
+    }
+
+    #[test]
+    fn read_or_refused() {
+        let words = words(&[&NUMBERS, &EXPRESSION, &CASE]);
+        fuzz("cases", 2000, &seeds(), &words, |input| read(input).is_some());
+    }
+
+    /// A case that is solved has results that can be written: all numbers are finite, and contact pushes.
+    #[test]
+    fn solved_or_refused() {
+        let small: Vec<Vec<u8>> = seeds().into_iter().take(3).collect();
+        let words = words(&[&NUMBERS, &CASE]);
+        fuzz("solved cases", 300, &small, &words, |input| {
+            let Some(mut case) = read(input) else { return false };
+            if case.problem.mesh.triangles().len() > 1000 {
+                return false;
+            }
+            case.settings.max_iterations = case.settings.max_iterations.min(100);
+            let (solution, times) = match solve(&case.problem, &case.method, &case.settings) {
+                Ok(solved) => solved,
+                Err(error) => {
+                    // The history of the residuals stands on a line of its own.
+                    check_message(&error.to_string().replace("\nresiduals: ", " residuals: "));
+                    return false;
+                }
+            };
+            let seconds = Seconds::new(Duration::ZERO, &times, Duration::ZERO);
+            match outputs::results(&case, &solution, seconds) {
+                Ok(results) => {
+                    assert!(results.quantities.contact_force >= 0.0);
+                    match result_json(&results) {
+                        Ok(_) => true,
+                        Err(error) => {
+                            check_message(&error.to_string());
+                            false
+                        }
+                    }
+                }
+                Err(error) => {
+                    check_message(&error.to_string());
+                    false
+                }
+            }
+        });
+    }
+}
