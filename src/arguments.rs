@@ -17,7 +17,7 @@ pub struct Arguments {
     pub quiet: bool,
 }
 
-const EXIT_CODES: &str = "Exit codes: 0 solved; 1 could not solve, or could not write; 2 the case is wrong, and then nothing \
+const EXIT_CODES: &str = "Exit codes: 0 solved; 1 could not solve, write or accept a certificate; 2 the case is wrong, and then nothing \
                           is written. A signal ends it as a signal does (130, 143, 129 to a shell); a reader of standard \
                           output who leaves (| head) is no failure, a full standard output is one: 1.";
 
@@ -33,6 +33,10 @@ pub enum Task {
         /// Print result.json instead of the summary; write no files unless --out names a folder
         #[arg(long)]
         json: bool,
+        /// Bound the distance to the true solution, too, and write the proof, certificate.json and certificate.bin, for
+        /// `signorini audit`; takes several times as long as the solution
+        #[arg(long)]
+        certificate: bool,
         /// Who solves: this program, or the reference in FEniCSx, which runs on many processes
         #[arg(long, value_enum, default_value_t = Engine::Signorini)]
         engine: Engine,
@@ -42,6 +46,24 @@ pub enum Task {
         /// The folder with the reference in FEniCSx, reference/ of the sources [default: beside this program]
         #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
         reference: Option<PathBuf>,
+    },
+    /// Verify a certificate from scratch, trusting no solver
+    Audit {
+        /// The file certificate.json, with certificate.bin beside it
+        #[arg(value_hint = ValueHint::FilePath)]
+        certificate: PathBuf,
+    },
+    /// Bound the error of a displacement that any program computed for a case; write certified.vtu, certificate.json and
+    /// certificate.bin
+    Certify {
+        #[command(flatten)]
+        case: CaseArguments,
+        /// The displacement at the vertices of the case's mesh: .vtu, or .csv with x, y, ux, uy
+        #[arg(long, value_name = "FIELD", value_hint = ValueHint::FilePath)]
+        displacement: PathBuf,
+        /// The folder to write to [default: out/ and the name of the case]
+        #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+        out: Option<PathBuf>,
     },
     /// Read a case and report its sizes and the limit of gamma0; solve nothing, write nothing
     Check {

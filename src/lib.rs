@@ -66,6 +66,8 @@
 pub use nalgebra;
 
 #[cfg(not(kani))]
+pub mod certify;
+#[cfg(not(kani))]
 pub mod fem;
 #[cfg(not(kani))]
 pub mod io;

@@ -35,13 +35,16 @@ mod command {
     use std::time::{Duration, Instant};
 
     use clap::{CommandFactory, Parser};
-    use signorini::fem::{DataError, MeshError};
+    use signorini::certify::certify_field;
+    use signorini::fem::MeshError;
     use signorini::io::convergence::{self, Meshes, StudyError};
+    use signorini::io::field::read_field;
     use signorini::io::files::{reason, spare};
     use signorini::io::input;
+    use signorini::io::outputs::{self, Certified};
     use signorini::io::result::{Results, Seconds, result_json};
     use signorini::io::sweep::{self, Axis, SweepError};
-    use signorini::io::{Case, CaseError, outputs};
+    use signorini::io::{Case, CaseError, certificate};
     use signorini::quote;
     use signorini::solve::{self, Degree, LadderError, Solution, SolveError, Times};
 
@@ -68,7 +71,7 @@ mod command {
         let Arguments { task, quiet } = Arguments::parse();
         signals::watch();
         let done = match &task {
-            Task::Solve { case, out, json, engine, ranks, reference } => {
+            Task::Solve { case, out, json, certificate, engine, ranks, reference } => {
                 let out = out.as_deref();
                 let wanted = if *json { Wanted::Json } else { Wanted::Summary };
                 match (engine, ranks) {
@@ -77,7 +80,7 @@ mod command {
                         let by = Fenicsx { ranks: ranks.unwrap_or(1), reference };
                         solve_by_fenicsx(case, out, by, wanted, quiet)
                     }
-                    (Engine::Signorini, None) => solve(case, out, wanted, quiet),
+                    (Engine::Signorini, None) => solve(case, out, wanted, *certificate, quiet),
                     (Engine::Signorini, Some(ranks)) => Err(Failure {
                         message: format!(
                             "--ranks {ranks}: this program solves in one process; expected --engine fenicsx beside it"
@@ -85,6 +88,10 @@ mod command {
                         code: WRONG,
                     }),
                 }
+            }
+            Task::Audit { certificate } => audit(certificate).map(summarised(quiet)),
+            Task::Certify { case, displacement, out } => {
+                certify(case, displacement, out.as_deref(), quiet).map(summarised(quiet))
             }
             Task::Check { case } => check(case).map(summarised(quiet)),
             Task::Sweep { case, axes, files, out } => {
@@ -160,6 +167,7 @@ mod command {
         arguments: &CaseArguments,
         out: Option<&Path>,
         wanted: Wanted,
+        certificate: bool,
         quiet: bool,
     ) -> Result<Done, Failure> {
         let phases = Phases::start(quiet);
@@ -169,21 +177,35 @@ mod command {
         let read = start.elapsed();
         let folder = folder(&arguments.file, out);
         if wanted == Wanted::Summary || out.is_some() {
-            spare(&folder, &outputs::FILES, &case.sources).map_err(|e| failure(WRONG)(&e))?;
+            let names = [&outputs::FILES[..], &certificate::FILES].concat();
+            spare(&folder, &names, &case.sources).map_err(|e| failure(WRONG)(&e))?;
         }
         phases.enter("solving");
         let (solution, times) = solved(&case)?;
+        let certified = certificate.then(|| {
+            phases.enter("certifying");
+            Certified::new(&case, &solution)
+        });
+        if let Some(Err(error)) = certified.as_ref().map(|certified| &certified.result) {
+            let message = format!("{}: no certificate: {error}", case.file.display());
+            return Err(Failure { message, code: FAILED });
+        }
         let (files, results) = match (wanted, out) {
             (Wanted::Json, None) => {
-                let seconds = Seconds::new(read, &times, Duration::ZERO);
+                let mut seconds = Seconds::new(read, &times, Duration::ZERO);
+                seconds.certify = certified.as_ref().map_or(0.0, |c| c.time.as_secs_f64());
                 let results = outputs::results(&case, &solution, seconds);
-                (Vec::new(), results.map_err(|e| failure(FAILED)(&e))?)
+                let mut results = results.map_err(|e| failure(FAILED)(&e))?;
+                results.certificate = certified.as_ref().map(Certified::report);
+                (Vec::new(), results)
             }
             _ => {
                 phases.enter("writing the files");
                 let remark = remark_of_another_case(&folder, &case.file);
-                let written = outputs::write(&folder, &case, &solution, read, times)
-                    .map_err(|e| failure(FAILED)(&e))?;
+                let certified = certified.as_ref();
+                let written =
+                    outputs::write(&folder, &case, &solution, read, times, certified, certificate)
+                        .map_err(|e| failure(FAILED)(&e))?;
                 if let (Some(remark), false) = (remark, quiet) {
                     complain(&remark);
                 }
@@ -192,6 +214,36 @@ mod command {
         };
         drop(phases);
         wanted.text(&results, &files, quiet)
+    }
+
+    /// How wrong a displacement is that any program computed.
+    fn certify(
+        arguments: &CaseArguments,
+        displacement: &Path,
+        out: Option<&Path>,
+        quiet: bool,
+    ) -> Result<String, Failure> {
+        let phases = Phases::start(quiet);
+        phases.enter("reading the case");
+        let case = read(arguments)?;
+        let field = read_field(displacement, &case.problem.mesh).map_err(|e| failure(WRONG)(&e))?;
+        phases.enter("solving");
+        let (solution, _) = solved(&case)?;
+        phases.enter("certifying");
+        let certified = certify_field(&case.problem, &solution, &field)
+            .map_err(|e| failure(FAILED)(&format!("{}: {e}", displacement.display())))?;
+        let folder = folder(&arguments.file, out);
+        let files = outputs::write_certified(&folder, &case, &field, &certified)
+            .map_err(|e| failure(FAILED)(&e))?;
+        drop(phases);
+        Ok(summary::certified(&case, displacement, &certified, &files))
+    }
+
+    /// Verifies a certificate from scratch.
+    fn audit(path: &Path) -> Result<String, Failure> {
+        let audit = certificate::audit(path)
+            .map_err(|e| failure(FAILED)(&format!("{}: {e}", path.display())))?;
+        Ok(summary::audited(&audit))
     }
 
     fn solved(case: &Case) -> Result<(Solution, Times), Failure> {
@@ -421,15 +473,6 @@ mod command {
     }
 
     fn code(error: &SolveError) -> u8 {
-        match error {
-            SolveError::Data(DataError::Mesh(MeshError::OutOfMemory(_))) => FAILED,
-            SolveError::Data(_) | SolveError::NotCoercive { .. } => WRONG,
-            SolveError::NotPositiveDefinite
-            | SolveError::NotConverged { .. }
-            | SolveError::IllConditioned { .. }
-            | SolveError::Singular
-            | SolveError::OutOfRange
-            | SolveError::OutOfMemory { .. } => FAILED,
-        }
+        if error.is_wrong_case() { WRONG } else { FAILED }
     }
 }

@@ -3,8 +3,10 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use signorini::certify::Continuous;
+use signorini::io::certificate::Audit;
 use signorini::io::convergence::Study;
-use signorini::io::result::{GammaChoice, NewtonHistory, Results};
+use signorini::io::result::{ContinuousCertificate, GammaChoice, NewtonHistory, Results};
 use signorini::io::sweep::Sweep;
 use signorini::io::{Case, numbers};
 use signorini::quote;
@@ -47,18 +49,64 @@ pub fn solved(r: &Results, files: &[PathBuf]) -> String {
             ));
         }
     }
-    lines.line(
-        "contact",
-        format!(
-            "force {}, length {}, peak pressure {}",
-            short(q.contact_force),
-            short(q.contact_length),
-            short(q.peak_pressure)
-        ),
-    );
+    for material in &r.materials {
+        let of = if material.surfaces.is_empty() {
+            "the whole body".to_owned()
+        } else {
+            quote::names(material.surfaces.iter().map(String::as_str))
+        };
+        let (young, poisson) = (short(material.young), short(material.poisson));
+        lines.line(
+            "material",
+            format!("{of}: E = {young}, nu = {poisson}, plane {}", material.plane),
+        );
+    }
+    if r.contact.is_empty() {
+        lines.line(
+            "contact",
+            format!(
+                "force {}, length {}, peak pressure {}",
+                short(q.contact_force),
+                short(q.contact_length),
+                short(q.peak_pressure)
+            ),
+        );
+    }
+    let unit = |unit: Option<String>| unit.map_or(String::new(), |unit| format!(" {unit}"));
+    let length = unit(r.units.as_ref().map(|u| u.length.clone()));
+    let stress = unit(r.units.as_ref().map(|u| u.stress()));
+    for contact in &r.contact {
+        lines.line(
+            "contact",
+            format!(
+                "{}: force {} {}, moment {}, length {}{length}",
+                quote::cut(&contact.boundary),
+                short(contact.force),
+                vector(contact.resultant),
+                short(contact.moment),
+                short(contact.length)
+            ),
+        );
+        if contact.length > 0.0 {
+            lines.line(
+                "",
+                format!(
+                    "peak pressure {}{stress} at {}, penetration {}{length} at {}",
+                    short(contact.peak_pressure),
+                    vector(contact.peak_at),
+                    short(contact.penetration),
+                    vector(contact.penetration_at)
+                ),
+            );
+        }
+    }
     for (i, (boundary, reaction)) in q.reactions.iter().enumerate() {
         let name = if i == 0 { "reactions" } else { "" };
-        lines.line(name, format!("{}: {}", quote::cut(boundary), vector(*reaction)));
+        let moment = match r.reaction_moments.get(boundary) {
+            Some(moment) => format!(", moment {}", short(*moment)),
+            None => String::new(),
+        };
+        lines.line(name, format!("{}: {}{moment}", quote::cut(boundary), vector(*reaction)));
     }
     lines.line(
         "energy",
@@ -69,13 +117,32 @@ pub fn solved(r: &Results, files: &[PathBuf]) -> String {
             short(q.max_displacement)
         ),
     );
+    if let Some(balance) = &r.balance {
+        lines.line(
+            "balance",
+            format!(
+                "a(u,u) = loads {} + supports {} + contact {}, up to {:.0e}",
+                short(balance.loads),
+                short(balance.supports),
+                short(balance.contact),
+                balance.imbalance.abs()
+            ),
+        );
+    }
+    if let Some(certificates) = &r.certificate {
+        lines.line("error", distance(&certificates.continuous));
+    }
+    for remark in &r.remarks {
+        lines.line("remark", remark);
+    }
     lines.line(
         "time",
         format!(
-            "read {}, assemble {}, solve {}, write {}",
+            "read {}, assemble {}, solve {}, certify {}, write {}",
             time(seconds.read),
             time(seconds.assemble),
             time(seconds.solve),
+            time(seconds.certify),
             time(seconds.write)
         ),
     );
@@ -94,6 +161,81 @@ pub fn solved(r: &Results, files: &[PathBuf]) -> String {
     }
     lines.line("written", written(files));
     lines.0
+}
+
+/// Of a displacement from elsewhere.
+pub fn certified(case: &Case, field: &Path, c: &Continuous, files: &[PathBuf]) -> String {
+    let mut lines = Lines::titled(&case.title);
+    lines.line("field", field.display().to_string());
+    let norm = c.proof.norm;
+    let size = |bound: f64| {
+        let percent = 100.0 * bound / norm;
+        if percent.is_finite() {
+            format!("{} % of its energy norm", numbers::short(percent, 3))
+        } else {
+            short(bound)
+        }
+    };
+    let proved = if c.rigorous {
+        "proved".to_owned()
+    } else {
+        format!("up to quadrature ({})", c.reason.as_deref().unwrap_or_default())
+    };
+    lines.line(
+        "admissible",
+        format!(
+            "{} (energy norm) were changed to satisfy the conditions on displacements",
+            short(c.clipping)
+        ),
+    );
+    lines.line("error", format!("at most {} once admissible: {proved}", size(c.bound)));
+    lines.line("", format!("at most {} as it is", size((c.bound + c.clipping).next_up())));
+    lines.line("written", written(files));
+    lines.0
+}
+
+/// Of a certificate that was verified.
+pub fn audited(audit: &Audit) -> String {
+    let Audit { header, proof } = audit;
+    let mut lines = Lines::titled(&header.title);
+    let counts = header.counts;
+    lines.line(
+        "certificate",
+        format!("accepted: {} triangles, {} edges", counts.triangles, counts.edges),
+    );
+    lines.line("statement", &header.statement);
+    let relative = 100.0 * header.bound / proof.norm;
+    let size = if relative.is_finite() {
+        format!(", {} % of |v|_a", numbers::short(relative, 2))
+    } else {
+        String::new()
+    };
+    lines.line("bound", format!("{}{size}", short(header.bound)));
+    lines.line(
+        "rigorous",
+        match &header.reason {
+            None if header.rigorous => "yes, rounding included".to_owned(),
+            reason => {
+                format!("up to quadrature: {}", reason.as_deref().unwrap_or("no reason given"))
+            }
+        },
+    );
+    lines.0
+}
+
+/// How far the solution can be from the true one.
+fn distance(certificate: &ContinuousCertificate) -> String {
+    let reason = certificate.reason.as_deref().unwrap_or_default();
+    let Some(bound) = certificate.bound else { return format!("not bounded: {reason}") };
+    let size = match certificate.relative {
+        Some(relative) => format!("{} % of the energy norm", numbers::short(100.0 * relative, 2)),
+        None => short(bound),
+    };
+    if certificate.rigorous {
+        format!("energy error at most {size}: proved")
+    } else {
+        format!("energy error at most {size}, up to quadrature ({reason})")
+    }
 }
 
 /// Of a case that was only checked.

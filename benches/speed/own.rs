@@ -197,7 +197,8 @@ impl Command {
         let (solution, times) =
             solve::solve(&case.problem, &case.method, &case.settings).expect("a solution");
         let start = Instant::now();
-        outputs::write(folder, &case, &solution, read, times).expect("a writable folder");
+        outputs::write(folder, &case, &solution, read, times, None, false)
+            .expect("a writable folder");
         Command { read, times, write: start.elapsed() }
     }
 

@@ -1,56 +1,63 @@
-//! Runs the rows of the ledger: progress and a table on the terminal, and a page to attach to a review.
+//! Runs the rows of the ledger: progress and a table on the terminal, and a page with its twins (`page`) in `target/audit`.
 
 use std::fmt::Write as _;
 use std::io::{self, IsTerminal, Write as _};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
-use crate::claim::{Claim, Outcome};
+use crate::claim::Claim;
 use crate::claims;
+use crate::page::{self, Line, Provenance, Report};
 
-struct Result {
-    row: &'static str,
-    engine: &'static str,
-    name: String,
-    receipt: Option<String>,
-    control: bool,
-    seconds: f64,
-    outcome: Outcome,
-}
-
-/// Runs the row with this id, or all of them. True if every check passed.
+/// Runs the row with this id, or all of them; of a row, the checks with this name, or all of them. True if every check
+/// passed. Writes a page with its twins in JSON and JUnit; a part of the ledger goes to files of its own.
 ///
 /// # Errors
-/// An unknown id, or a page that can't be written.
-pub fn audit(id: Option<&str>) -> io::Result<bool> {
-    let claims: Vec<Claim> =
+/// An unknown id or name, or a file that can't be written.
+pub fn audit(id: Option<&str>, name: Option<&str>) -> io::Result<bool> {
+    let mut claims: Vec<Claim> =
         claims::all().into_iter().filter(|c| id.is_none_or(|id| c.id == id)).collect();
     if claims.is_empty() {
         let known: Vec<&str> = claims::all().iter().map(|c| c.id).collect();
         let message = format!("no such row; the rows are {}", known.join(", "));
         return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
     }
-    let results: Vec<Result> = claims.iter().flat_map(run).collect();
-    println!("\n{}", table(&claims, &results));
-    let page = page_path();
-    std::fs::create_dir_all(page.parent().expect("a directory"))?;
-    std::fs::write(&page, html(&claims, &results))?;
-    println!("written: {}", page.display());
-    Ok(results.iter().all(|r| r.outcome.is_ok()))
+    for claim in &mut claims {
+        claim.checks.retain(|check| name.is_none_or(|name| check.name == name));
+    }
+    if claims.iter().all(|claim| claim.checks.is_empty()) {
+        let message = format!("row {} has no such check", id.unwrap_or("?"));
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
+    }
+    let lines: Vec<Line> = claims.iter().flat_map(run).collect();
+    println!("\n{}", table(&claims, &lines));
+    let passed = lines.iter().all(|line| line.outcome.is_ok());
+    let report = Report { provenance: Provenance::now(), claims, complete: id.is_none(), lines };
+    let stem = match (id, name) {
+        (None, _) => "index".to_owned(),
+        (Some(id), None) => format!("row-{id}"),
+        (Some(id), Some(name)) => format!("row-{id}-{name}"),
+    };
+    let folder = folder();
+    std::fs::create_dir_all(&folder)?;
+    let at = folder.join(format!("{stem}.html"));
+    std::fs::write(&at, page::html(&report, &at))?;
+    std::fs::write(at.with_extension("json"), page::json(&report))?;
+    std::fs::write(at.with_extension("xml"), page::junit(&report))?;
+    println!("written: {}, and the same as .json and .xml", at.display());
+    Ok(passed)
 }
 
-fn page_path() -> PathBuf {
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(
-        || Path::new(env!("CARGO_MANIFEST_DIR")).with_file_name("target"),
-        PathBuf::from,
-    );
-    target.join("audit/index.html")
+/// Where the pages go.
+fn folder() -> PathBuf {
+    let target = std::env::var_os("CARGO_TARGET_DIR");
+    target.map_or_else(|| page::root().join("target"), PathBuf::from).join("audit")
 }
 
-fn run(claim: &Claim) -> Vec<Result> {
+fn run(claim: &Claim) -> Vec<Line> {
     println!("row {}: {}", claim.id, claim.title);
     let one = |check: &crate::claim::Check| {
-        let (engine, name, receipt) = (check.engine_name(), check.shown_name(), check.receipt());
+        let (engine, name) = (check.engine_name(), check.shown_name());
         print!("  {engine:7} {name} ... ");
         let _ = io::stdout().flush();
         let start = Instant::now();
@@ -60,8 +67,16 @@ fn run(claim: &Claim) -> Vec<Result> {
             Ok(evidence) => println!("{} ({seconds:.2} s) {evidence}", paint("ok", "32")),
             Err(why) => println!("{} ({seconds:.2} s) {why}", paint("FAILED", "31")),
         }
-        let (row, control) = (claim.id, check.control);
-        Result { row, engine, name, receipt, control, seconds, outcome }
+        Line {
+            row: claim.id,
+            engine,
+            name,
+            declared: check.name,
+            receipt: check.receipt(),
+            control: check.control,
+            seconds,
+            outcome,
+        }
     };
     claim.checks.iter().map(one).collect()
 }
@@ -74,13 +89,13 @@ fn paint(text: &str, colour: &str) -> String {
     }
 }
 
-fn table(claims: &[Claim], results: &[Result]) -> String {
+fn table(claims: &[Claim], results: &[Line]) -> String {
     let mut text = format!(
         "{:>4} {:>6} {:>8} {:>6} {:>8}  title\n",
         "row", "checks", "controls", "failed", "seconds"
     );
     for claim in claims {
-        let of: Vec<&Result> = results.iter().filter(|r| r.row == claim.id).collect();
+        let of: Vec<&Line> = results.iter().filter(|r| r.row == claim.id).collect();
         let controls = of.iter().filter(|r| r.control).count();
         let failed = of.iter().filter(|r| r.outcome.is_err()).count();
         let seconds: f64 = of.iter().map(|r| r.seconds).sum();
@@ -95,80 +110,15 @@ fn table(claims: &[Claim], results: &[Result]) -> String {
     text
 }
 
-fn html(claims: &[Claim], results: &[Result]) -> String {
-    let failed = results.iter().filter(|r| r.outcome.is_err()).count();
-    let mut text = format!(
-        "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>signorini: audit</title><style>\
-         body{{font:16px/1.5 sans-serif;max-width:60em;margin:2em auto;padding:0 1em}}\
-         table{{border-collapse:collapse;width:100%}}td,th{{border:1px solid #ccc;padding:.2em .5em;\
-         text-align:left;vertical-align:top}}code{{overflow-wrap:anywhere}}.bad{{background:#fdd}}\
-         </style><h1>signorini: audit</h1><p>{} checks, {failed} failed; seed {}.</p>",
-        results.len(),
-        crate::draws::seed()
-    );
-    for claim in claims {
-        let _ = write!(
-            text,
-            "<h2 id=\"row-{}\">Row {}: {}</h2><p><b>The paper:</b> {}</p><p><b>As checked:</b> {}</p>\
-             <p><b>Numbers:</b> {}</p><p><b>Assumed:</b> {}</p><p><b>Not established:</b> {}</p>",
-            claim.id,
-            claim.id,
-            escape(claim.title),
-            escape(claim.paper),
-            escape(claim.statement),
-            escape(claim.numbers),
-            escape(claim.preconditions),
-            escape(claim.limits)
-        );
-        text += "<table><tr><th>engine<th>check<th>outcome<th>seconds</tr>";
-        for r in results.iter().filter(|r| r.row == claim.id) {
-            let (class, word, detail) = match &r.outcome {
-                Ok(evidence) => ("good", "ok", evidence),
-                Err(why) => ("bad", "FAILED", why),
-            };
-            let kind = if r.control { " (control)" } else { "" };
-            let receipt = r.receipt.as_ref().map_or(String::new(), |text| format!("; {text}"));
-            let _ = write!(
-                text,
-                "<tr class=\"{class}\"><td>{}<td><code>{}</code>{kind}<td>{word}: {}{receipt}<td>{:.2}</tr>",
-                r.engine,
-                r.name,
-                escape(detail),
-                r.seconds
-            );
-        }
-        text += "</table>";
-    }
-    text + "</html>\n"
-}
-
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn the_page_escapes_what_it_shows_and_marks_failures() {
-        let claims: Vec<Claim> = claims::all().into_iter().take(1).collect();
-        let result = Result {
-            row: "1",
-            engine: "proof",
-            name: "name".to_owned(),
-            receipt: None,
-            control: false,
-            seconds: 0.0,
-            outcome: Err("a < b".to_owned()),
-        };
-        let page = html(&claims, &[result]);
-        assert!(page.contains("FAILED: a &lt; b") && page.contains("1 checks, 1 failed"));
-        assert!(page.contains("a &lt;= [a]+"));
-    }
-
-    #[test]
-    fn an_unknown_row_names_the_known_ones() {
-        assert!(audit(Some("99")).unwrap_err().to_string().contains("the rows are 1, 2, 3"));
+    fn an_unknown_row_names_the_known_ones_and_an_unknown_check_is_an_error() {
+        let why = audit(Some("99"), None).unwrap_err().to_string();
+        assert!(why.contains("the rows are 1, 2, 3"), "{why}");
+        let why = audit(Some("1"), Some("nothing")).unwrap_err().to_string();
+        assert!(why.contains("row 1 has no such check"), "{why}");
     }
 }

@@ -270,6 +270,15 @@ impl Body {
         values
     }
 
+    /// The basis of V^h: every v^h that is zero at the top is a sum of these.
+    pub fn basis<const N: usize>(&self) -> Vec<Vec<[Exact; 2]>> {
+        let zero = Exact::from(0);
+        let directions = [[Exact::from(1), zero], [zero, Exact::from(1)]];
+        let nodes = 0..self.node_count(N / 3);
+        let all = nodes.flat_map(|node| directions.map(|d| self.clamped(self.bump(node, d))));
+        all.filter(|v| v.iter().flatten().any(|&c| c != zero)).collect()
+    }
+
     /// The field with zeros at the top: on Gamma_D.
     pub fn clamped(&self, mut field: Vec<[Exact; 2]>) -> Vec<[Exact; 2]> {
         for &v in &self.top {

@@ -108,6 +108,10 @@ impl Check {
     /// # Errors
     /// What was found instead.
     pub fn run(&self) -> Outcome {
+        draws::named(self.name, || self.run_here())
+    }
+
+    fn run_here(&self) -> Outcome {
         match (self.subject, self.engine, self.control) {
             (Subject::Function(run), _, _) => run(),
             (Subject::Harness(harness), _, _) => harness.run(),

@@ -1,10 +1,10 @@
 //! Random data for the exact and the doubles engine, by proptest: counted by class, shrunk when a predicate fails, and
-//! failures remembered in `props/regressions/`.
+//! failures remembered in `props/regressions/`, a file for each check, and replayed before its next draws.
 //!
 //! The seed is fixed unless the environment gives another one: `PROPS_SEED=random` draws one, `PROPS_SEED=<number>`
-//! takes that; a failure prints it.
+//! takes that; a failure prints it. Each check draws from it and its own name, so no two see the same data.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::sync::OnceLock;
@@ -34,22 +34,61 @@ pub fn seed() -> u64 {
     })
 }
 
-fn runner(cases: u32) -> TestRunner {
-    let regressions = concat!(env!("CARGO_MANIFEST_DIR"), "/regressions/draws.txt");
-    let config = Config {
-        cases,
-        failure_persistence: Some(Box::new(FileFailurePersistence::Direct(regressions))),
-        ..Config::default()
-    };
+thread_local! {
+    /// The check that is run.
+    static CHECK: Cell<&'static str> = const { Cell::new("") };
+}
+
+/// Runs `work` as the check with this name: its draws are its own, and so are the failures that it remembers.
+pub fn named<T>(check: &'static str, work: impl FnOnce() -> T) -> T {
+    let before = CHECK.replace(check);
+    let result = work();
+    CHECK.set(before);
+    result
+}
+
+/// The seed of this process and the name of the check, mixed (FNV-1a).
+fn seed_of_check() -> [u8; 32] {
+    let start = seed() ^ 0xcbf2_9ce4_8422_2325;
+    let name = CHECK.get().bytes();
+    let mixed =
+        name.fold(start, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
     let mut bytes = [0; 32];
     bytes[..8].copy_from_slice(&seed().to_le_bytes());
-    TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &bytes))
+    bytes[8..16].copy_from_slice(&mixed.to_le_bytes());
+    bytes
 }
+
+/// The failures that the check remembers.
+fn regressions() -> String {
+    let name = if CHECK.get().is_empty() { "unnamed" } else { CHECK.get() };
+    format!("{}/regressions/{name}.txt", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// How many failures are replayed before the first draw.
+fn replays() -> usize {
+    let kept = std::fs::read_to_string(regressions()).unwrap_or_default();
+    kept.lines().filter(|line| line.starts_with("cc ")).count()
+}
+
+fn runner(cases: u32) -> TestRunner {
+    // The name of the file lives as long as the process: there is one for each check.
+    let file: &'static str = Box::leak(regressions().into_boxed_str());
+    let config = Config {
+        cases,
+        failure_persistence: Some(Box::new(FileFailurePersistence::Direct(file))),
+        ..Config::default()
+    };
+    TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &seed_of_check()))
+}
+
+/// Under this name the draws are counted of which a predicate says nothing.
+const NOT_MET: &str = "hypothesis not met";
 
 /// Draws `cases` times, runs the predicate and counts the classes.
 ///
 /// # Errors
-/// The shrunk data for which it fails, or the class that no draw hit.
+/// The shrunk data for which it fails, the class that no draw hit, or that no draw met the hypothesis.
 pub fn hold<D: Debug>(
     cases: u32,
     strategy: impl Strategy<Value = D>,
@@ -57,13 +96,18 @@ pub fn hold<D: Debug>(
     predicate: impl Fn(&D) -> Verdict,
 ) -> Result<String, String> {
     let counts: RefCell<BTreeMap<&'static str, u32>> = RefCell::default();
+    let replays = replays();
+    let runs = Cell::new(0);
     let result = runner(cases).run(&strategy, |data| {
+        runs.set(runs.get() + 1);
         let class = match predicate(&data) {
             Verdict::Holds(class) => class,
-            Verdict::Vacuous => "hypothesis not met",
+            Verdict::Vacuous => NOT_MET,
             Verdict::Fails(why) => return Err(TestCaseError::fail(why)),
         };
-        *counts.borrow_mut().entry(class).or_default() += 1;
+        if runs.get() > replays {
+            *counts.borrow_mut().entry(class).or_default() += 1;
+        }
         Ok(())
     });
     let counts = counts.into_inner();
@@ -74,13 +118,17 @@ pub fn hold<D: Debug>(
         Err(TestError::Abort(why)) => return Err(why.to_string()),
         Ok(()) => {}
     }
+    if counts.keys().all(|&class| class == NOT_MET) {
+        return Err(format!("no draw met the hypothesis: {counts:?}"));
+    }
     for class in classes {
         if !counts.contains_key(class) {
             return Err(format!("no draw hit the class '{class}': {counts:?}"));
         }
     }
     let counts: Vec<String> = counts.iter().map(|(class, n)| format!("{class} {n}")).collect();
-    Ok(format!("{cases} draws: {}", counts.join(", ")))
+    let replayed = if replays == 0 { String::new() } else { format!(", {replays} replayed") };
+    Ok(format!("{cases} draws{replayed}: {}", counts.join(", ")))
 }
 
 /// The control of [`hold`]: some draw must make the predicate fail.
@@ -186,7 +234,10 @@ const EDGES: &[f64] = &[
 ];
 
 /// Draws of the unknowns of a statement.
-const DRAWS: u32 = 2000;
+pub const DRAWS: u32 = 2000;
+
+/// The same over doubles.
+pub const DRAWS_OF_DOUBLES: u32 = 10 * DRAWS;
 
 fn at_ratios(statement: &Statement, values: &[(i64, i64)]) -> Verdict {
     Exact::scope(|| {
@@ -211,16 +262,22 @@ pub fn hold_exactly(statement: &Statement) -> Result<String, String> {
 /// As [`hold`].
 pub fn hold_in_doubles(statement: &Statement) -> Result<String, String> {
     let strategy = doubles(statement.variables.len());
-    hold(10 * DRAWS, strategy, statement.classes, |v| (statement.doubles)(v))
+    hold(DRAWS_OF_DOUBLES, strategy, statement.classes, |v| (statement.doubles)(v))
 }
 
-/// The control of [`hold_in_doubles`].
+/// The control of [`hold_in_doubles`]: the conclusion that the statement names fails.
 ///
 /// # Errors
-/// As [`reject`].
+/// As [`reject`], and that it names none.
 pub fn reject_in_doubles(statement: &Statement) -> Result<String, String> {
+    let Some(conclusion) = statement.conclusion else {
+        return Err("a control names the conclusion that must fail".to_owned());
+    };
     let strategy = doubles(statement.variables.len());
-    reject(10 * DRAWS, strategy, |v| (statement.doubles)(v))
+    reject(DRAWS_OF_DOUBLES, strategy, |v| match (statement.doubles)(v) {
+        Verdict::Fails(why) if why != conclusion => Verdict::Vacuous,
+        verdict => verdict,
+    })
 }
 
 #[cfg(test)]
@@ -242,9 +299,22 @@ mod tests {
     }
 
     #[test]
+    fn checks_of_different_names_draw_different_data() {
+        let first = || doubles(9).new_tree(&mut runner(1)).unwrap().current();
+        let [a, b, again] = ["one", "other", "one"].map(|name| named(name, first));
+        assert!(a != b && a == again);
+    }
+
+    #[test]
     fn a_class_that_no_draw_hits_is_an_error() {
         let result = hold(10, Just(1), &["seen", "never seen"], |_| Verdict::Holds("seen"));
         assert!(result.unwrap_err().contains("'never seen'"));
+    }
+
+    #[test]
+    fn a_hypothesis_that_no_draw_meets_is_an_error() {
+        let result = hold(10, Just(1), &[], |_| Verdict::Vacuous);
+        assert!(result.unwrap_err().contains("no draw met the hypothesis"));
     }
 
     #[test]

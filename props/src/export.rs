@@ -1,6 +1,8 @@
 //! The paths of the proofs as SMT-LIB 2 problems, for solvers that know nothing of the proof engine; and those of the
 //! statements that are tested in doubles, over all finite doubles, for a floating-point solver.
 //!
+//! And the proofs as text, with their certificates, for the checker in `reference/`.
+//!
 //! One file per failing path. The head of a file says what to expect: `unsat` where this engine has a certificate, `sat`
 //! where it has a point, `unknown` where it has neither (paths of controls). A solver that contradicts it is news.
 
@@ -11,10 +13,31 @@ use std::path::Path;
 use crate::claim::{Engine, Subject};
 use crate::claims;
 use crate::proof::float::problems;
-use crate::proof::{Fate, analyse, smt};
+use crate::proof::{Fate, analyse, smt, transcript};
 use crate::statement::Statement;
 
-/// Writes the files into `directory` and answers how many.
+/// Writes every proof as text into `directory`, one file `NAME.proof` each, and answers how many.
+///
+/// # Errors
+/// A statement that is not proved, and whatever keeps the files from being written.
+pub fn certificates(directory: &Path) -> io::Result<usize> {
+    std::fs::create_dir_all(directory)?;
+    let mut seen = BTreeSet::new();
+    for check in claims::all().iter().flat_map(|claim| &claim.checks) {
+        let (Subject::Statement(statement), Engine::Proof, false) =
+            (check.subject, check.engine, check.control)
+        else {
+            continue;
+        };
+        if seen.insert(statement.name) {
+            let text = transcript(&statement).map_err(io::Error::other)?;
+            std::fs::write(directory.join(format!("{}.proof", statement.name)), text)?;
+        }
+    }
+    Ok(seen.len())
+}
+
+/// Writes the SMT-LIB problems into `directory` and answers how many.
 ///
 /// # Errors
 /// Whatever keeps them from being written.

@@ -4,47 +4,10 @@ use std::fmt::Write;
 
 use crate::claim::{Check, Claim, Engine};
 use crate::claims;
+use crate::items::ITEMS;
 
-/// The numbered items of the paper; each must be in some row.
-pub const ITEMS: [&str; 35] = [
-    "(1)",
-    "(2)",
-    "(3)",
-    "(4)",
-    "Proposition 2.1",
-    "(5)",
-    "Remark 2.2",
-    "(6)",
-    "(7)",
-    "Remark 2.3",
-    "(8)",
-    "(9)",
-    "(10)",
-    "Lemma 3.1",
-    "Lemma 3.2",
-    "(11)",
-    "Theorem 3.3",
-    "(12)",
-    "Theorem 3.4",
-    "(13)",
-    "(14)",
-    "(15)",
-    "(16)",
-    "(17)",
-    "(18)",
-    "(19)",
-    "(20)",
-    "Theorem 3.5",
-    "(21)",
-    "(22)-(24)",
-    "Corollary 3.6",
-    "(25)",
-    "Remark 3.7",
-    "floating point",
-    "sparse pattern",
-];
-
-const HEAD: &str = "\
+/// What stands before the items, in Markdown.
+pub const HEAD: &str = "\
 # What is verified, and how
 
 Printed by `cargo run -p props -- ledger > VERIFY.md` from the claims themselves; a test fails when it is stale.
@@ -59,13 +22,14 @@ gamma = gamma0 h_T, lambda^h = -(1/gamma)[P(u^h)]+.
 
 A statement is an ordinary Rust function, generic over the number type, that calls the kernel's own functions and
 compares them with the paper's formulas. It answers *holds*, with the class of its data, *vacuous* (the hypothesis is not
-met), or *fails*. The engines run that one function:
+met), or *fails*. A check named alike under several engines is one function, run by each of them; the others are functions
+of their own, for one engine: they assemble on random bodies, solve, or compare doubles with exact numbers.
 
 | engine | numbers | what a pass means |
 | --- | --- | --- |
 | proof | symbols: polynomials over Q | every comparison forks the path; each path that ends in *fails* contradicts itself, by a certificate (a sum of products of the path's facts and of squares that is positive and zero) that a checker of 40 lines verifies. So it holds over every ordered field, hence over R |
-| exact | rationals | random data, no tolerance at all |
-| doubles | f64 | random finite doubles with edge values, ties and neighbours; or a comparison with exact rationals and a stated bound; or an enclosure by intervals, rounded outwards |
+| exact | rationals | random data, no tolerance at all; 2000 draws of each statement |
+| doubles | f64 | random finite doubles with edge values, ties and neighbours, 20000 draws of each statement; or a comparison with exact rationals and a stated bound; or an enclosure by intervals, rounded outwards |
 | Kani | f64, small integers | the bounded model checker Kani has decided a harness, for all numbers that it ranges over, and a receipt in `props/receipts` is about these very sources |
 | all cases | bits, bytes | the harness ranges over at most 2^20 cases, and each of them is run |
 | draws | f64, integers | neither: **the harness is run on random draws, and no more is known**; where its name in the source says `for_all`, it says `for_random` here. A false twin is run at the counterexample that is stored with it |
@@ -80,6 +44,12 @@ run -p props -- receipt LOG` keeps what it printed, and `.ci/smt.py DIR --receip
 receipt stands behind a harness as long as a hash of the harness and of all that it reaches of the kernel, of this crate
 and of other packages is the same (`props/src/sources.rs`); then \"verified by receipt\" stands beside it below, for a
 control that exactly its planted mistake fails.
+
+**The certificates** of the proofs can be checked without this crate: `cargo run -p props -- export DIR` writes each proof
+as text, its paths with every question and answer, its facts and its certificates, and `python3
+reference/check_certificates.py DIR VERIFY.md`, which uses fractions and nothing else, checks that the paths leave no point
+out and that each one that fails contradicts itself. That the polynomials are those of the predicate it can't see: this is
+what remains to trust, with the predicate itself.
 
 **The reference.** An engine of another kind: an independent program in FEniCSx (`reference/fenicsx`) solves the same case
 files, and `cargo test --test suite reference` compares the whole solver with its stored results, one file for each case in
@@ -96,8 +66,9 @@ Its controls are in `reference/tests`: penalty in place of Nitsche, |E| in place
 the stored results by far more than the tolerance. It does not establish that both programs read the paper rightly where
 they read it alike.
 
-A check is no check if it can't fail. Every class of data that a statement names must be hit, every row has a **control**,
-a planted mistake that the same check must reject, and a harness has a false twin, which must fail on the counterexample
+A check is no check if it can't fail. Every class of data that a statement names must be hit (it names at least one), every
+row has a **control**, a planted mistake that the same check must reject (of a statement: in the conclusion that the
+control names), and a harness has a false twin, which must fail on the counterexample
 that is stored with it.
 
 **What is trusted:** the compiler and the standard library; num-rational and num-bigint; of this crate, the arithmetic of
@@ -106,11 +77,15 @@ polynomials, the forking of paths and the checker (`props/src/proof/polynomial.r
 checker refuses bad certificates of each kind. The search for certificates is not trusted. For the rows that assemble
 on meshes, the naive transcription of the definitions in `props/src/naive.rs`; for the definite matrices of rows 9 and
 10, the exact elimination in `elimination.rs`; for the enclosed integrals of row 8, `enclosure.rs` and the intervals of
-row 13; for the rounding bounds of rows 5 and 6, the counts of roundings in `claims/assembled.rs`.
+row 13; for the rounding bounds of rows 5 and 6, the counts of roundings in `claims/assembled.rs`. For what is drawn: the
+bodies and the definitions on them in `bodies.rs` and `discrete.rs`, the number types in `numbers`, the counting of draws in
+`draws.rs` with proptest, the stand-in of the model checker in `harness.rs`; for eigenvalues in doubles faer.
 
-**How to run:** `cargo run -p props -- audit` runs every row and writes `target/audit/index.html`; `cargo run -p props --
-audit 9` runs row 9; `cargo test -p props` runs all of it with the engines' own tests. `PROPS_SEED=random` draws other
-random data and prints the seed; `PROPS_SEED=<number>` repeats it. `cargo mutants` (with cargo-nextest; hours) plants
+**How to run:** `cargo run -p props -- audit` runs every row and writes `target/audit/index.html` (a page with the
+provenance of the run, the items of the paper one by one, and links to the functions), the same as JSON and as JUnit;
+`cargo run -p props -- audit 9` runs row 9 and writes files of its own; `cargo test -p props` runs all of it with the engines' own tests. Each check draws
+from the seed and its own name, and replays the failures that it remembers (`props/regressions`) before; the page counts
+both. `PROPS_SEED=random` draws other random data and prints the seed; `PROPS_SEED=<number>` repeats it. `cargo mutants` (with cargo-nextest; hours) plants
 mistakes in kernel and assembly one by one and asks the claims alone; with `--workspace --config
 .cargo/mutants-proof.toml` in the trusted part of the proof engine, and asks the engine's own tests. What came of it:
 `props/mutants.md`.
@@ -136,14 +111,28 @@ In section 2.3 the set of the multipliers is printed as L^2(Gamma_C); it is the 
 pub fn ledger() -> String {
     let claims = claims::all();
     let mut text = format!(
-        "{HEAD}\n## The items\n\nThe last column lists the engines of the row; the row says \
-         which statement each of them is about.\n\n| item | row | evidence |\n| --- | --- | --- |\n"
+        "{HEAD}\n## The items\n\nThe evidence for an item is those checks of its rows that are about it, listed in \
+         `props/src/items.rs` and item by item on the page of the audit. The last column is what nothing here checks.\n\n\
+         | item | what it says | rows | evidence | taken from analysis and literature |\n\
+         | --- | --- | --- | --- | --- |\n"
     );
     for item in ITEMS {
-        let rows: Vec<&Claim> = claims.iter().filter(|c| c.items.contains(&item)).collect();
-        let ids: Vec<String> = rows.iter().map(|c| format!("[{}](#row-{})", c.id, c.id)).collect();
-        let evidence: Vec<String> = rows.iter().map(|c| engines(c)).collect();
-        let _ = writeln!(text, "| {item} | {} | {} |", ids.join(", "), evidence.join("; "));
+        let rows: Vec<String> =
+            item.checks().iter().map(|(id, _)| format!("[{id}](#row-{id})")).collect();
+        let found = item.found(&claims);
+        let evidence = match found.len() {
+            0 => "none".to_owned(),
+            1 => format!("1 check: {}", engines(found.iter().map(|(_, check)| *check))),
+            n => format!("{n} checks: {}", engines(found.iter().map(|(_, check)| *check))),
+        };
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | {evidence} | {} |",
+            item.name,
+            item.says,
+            rows.join(", "),
+            item.literature().unwrap_or_default()
+        );
     }
     for claim in &claims {
         text += &row(claim);
@@ -151,10 +140,10 @@ pub fn ledger() -> String {
     text
 }
 
-/// The engines behind a claim's evidence, controls apart.
-pub fn engines(claim: &Claim) -> String {
+/// The engines of these checks.
+pub fn engines<'a>(checks: impl Iterator<Item = &'a Check>) -> String {
     let mut engines: Vec<(Engine, &str)> =
-        evidence(claim).map(|check| (check.engine, check.engine_name())).collect();
+        checks.map(|check| (check.engine, check.engine_name())).collect();
     engines.sort_unstable();
     engines.dedup();
     engines.into_iter().map(|(_, name)| name).collect::<Vec<_>>().join(", ")
@@ -165,7 +154,7 @@ fn evidence(claim: &Claim) -> impl Iterator<Item = &Check> {
 }
 
 /// The directory under `src` where an item of a claim is: that of the kernel unless its path begins with another one.
-fn source(path: &str) -> &str {
+pub fn source(path: &str) -> &str {
     let first = path.split("::").next().unwrap_or(path);
     if ["fem", "solve"].contains(&first) { first } else { "kernel" }
 }
@@ -228,17 +217,6 @@ mod tests {
     fn verify_md_is_what_the_claims_print() {
         let stored = std::fs::read_to_string(root().join("VERIFY.md")).unwrap_or_default();
         assert!(stored == ledger(), "stale: cargo run -p props -- ledger > VERIFY.md");
-    }
-
-    #[test]
-    fn every_item_of_the_paper_has_a_row_and_every_row_is_about_an_item() {
-        let claims = claims::all();
-        for item in ITEMS {
-            assert!(claims.iter().any(|c| c.items.contains(&item)), "{item} has no row");
-        }
-        for item in claims.iter().flat_map(|c| c.items) {
-            assert!(ITEMS.contains(item), "{item} is no item of the paper");
-        }
     }
 
     #[test]

@@ -25,10 +25,14 @@ pub mod enclosure;
 pub mod export;
 pub mod harness;
 #[cfg(not(kani))]
+pub mod items;
+#[cfg(not(kani))]
 pub mod ledger;
 #[cfg(not(kani))]
 pub mod naive;
 pub mod numbers;
+#[cfg(not(kani))]
+pub mod page;
 #[cfg(not(kani))]
 pub mod proof;
 #[cfg(not(kani))]

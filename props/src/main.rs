@@ -14,10 +14,15 @@ fn main() -> std::process::ExitCode {
             print!("{}", props::ledger::ledger());
             Ok(true)
         }
-        ["audit"] => props::audit::audit(None),
-        ["audit", id] => props::audit::audit(Some(id)),
+        ["audit"] => props::audit::audit(None, None),
+        ["audit", id] => props::audit::audit(Some(id), None),
+        ["audit", id, name] => props::audit::audit(Some(id), Some(name)),
         ["smt", directory] => props::export::export(directory.as_ref()).map(|count| {
             println!("{count} problems in {directory}");
+            true
+        }),
+        ["export", directory] => props::export::certificates(directory.as_ref()).map(|count| {
+            println!("{count} proofs in {directory}");
             true
         }),
         ["receipt", log] => props::receipt::make(log.as_ref()).map(|path| {
@@ -31,8 +36,9 @@ fn main() -> std::process::ExitCode {
         }),
         _ => {
             eprintln!("props ledger       print VERIFY.md");
-            eprintln!("props audit [ROW]  run every check, or those of a row");
+            eprintln!("props audit [ROW [CHECK]]  run every check, or those of a row, or one");
             eprintln!("props smt DIR      write the paths of the proofs as SMT-LIB 2 problems");
+            eprintln!("props export DIR   write the proofs with their certificates as text");
             eprintln!(
                 "props receipt LOG  keep the output of cargo kani as a receipt in props/receipts"
             );

@@ -11,8 +11,10 @@ pub struct Statement {
     pub name: &'static str,
     /// Its unknowns.
     pub variables: &'static [&'static str],
-    /// The classes of data for which it holds, all of which must be reached.
+    /// The classes of data for which it holds, all of which must be reached: at least one, unless it is a control.
     pub classes: &'static [&'static str],
+    /// Of a control: the conclusion, as it stands in the predicate, that must fail.
+    pub conclusion: Option<&'static str>,
     /// Over symbols.
     pub symbolic: fn(&[Sym]) -> Verdict,
     /// Over exact rationals.
@@ -33,6 +35,11 @@ impl Statement {
         Statement { hints, ..self }
     }
 
+    /// The statement as a control: this conclusion must fail.
+    pub fn failing(self, conclusion: &'static str) -> Statement {
+        Statement { conclusion: Some(conclusion), ..self }
+    }
+
     /// The statement with a way to meet its hypothesis.
     pub fn prepared(self, prepare: fn(&mut [Exact])) -> Statement {
         Statement { prepare, ..self }
@@ -44,14 +51,19 @@ pub fn take<S: Copy, const N: usize>(values: &[S]) -> [S; N] {
     values.try_into().expect("as many values as unknowns")
 }
 
-/// `statement!(predicate, [names of unknowns], [classes])`
+/// `statement!(predicate, [names of unknowns], [classes])`, or for a control
+/// `statement!(predicate, [names of unknowns], fails "the conclusion that must fail")`.
 #[macro_export]
 macro_rules! statement {
+    ($predicate:ident, [$($variable:ident),* $(,)?], fails $conclusion:literal) => {
+        $crate::statement!($predicate, [$($variable),*], []).failing($conclusion)
+    };
     ($predicate:ident, [$($variable:ident),* $(,)?], [$($class:literal),* $(,)?]) => {
         $crate::statement::Statement {
             name: stringify!($predicate),
             variables: &[$(stringify!($variable)),*],
             classes: &[$($class),*],
+            conclusion: None,
             symbolic: |v| $predicate($crate::statement::take(v)),
             exact: |v| $predicate($crate::statement::take(v)),
             doubles: |v| $predicate($crate::statement::take(v)),

@@ -6,47 +6,72 @@
 //!
 //! its left side is (E^2 + Z^2/delta)^(1/2), and three right sides are proved in docs/theory.md, section 9: the plain one,
 //! the sharpest that follows from the same steps, and one for the a-orthogonal projection of u. All ask for exact contact
-//! integrals and loads.
+//! integrals and loads. The bounds are written once, generic over the number type, for numbers H, S, Q and, where a root of
+//! kappa occurs, for that root: what the solver prints is their square root in doubles.
 
 use super::Errors;
+use crate::kernel::Scalar;
 
 /// (E^2 + Z^2/delta)^(1/2) from the errors of u^h.
 pub fn left(kappa: f64, e: &Errors) -> f64 {
     e.energy.hypot(e.contact_residual / (1.0 - kappa).sqrt())
 }
 
-/// Theorem 9.1: the square of the right side is
+/// Theorem 9.1: the square of the right side for \[H, S, Q\] is
 /// (2/delta) ((1/delta + kappa + 1/2) H^2 + kappa (1/delta + 1/2) S^2 + Q^2/2).
-pub fn plain(kappa: f64, eta: &Errors) -> f64 {
-    let delta = 1.0 - kappa;
-    let Errors { energy: h, normal_stress: s, operator: q, .. } = *eta;
+pub fn plain_squared<S: Scalar>(kappa: S, [h, s, q]: [S; 3]) -> S {
+    let (one, two) = (S::from(1), S::from(2));
+    let (delta, half) = (one - kappa, one / two);
     let sum =
-        (1.0 / delta + kappa + 0.5) * h * h + kappa * (1.0 / delta + 0.5) * s * s + 0.5 * q * q;
-    (2.0 / delta * sum).sqrt()
+        (one / delta + kappa + half) * h * h + kappa * (one / delta + half) * s * s + half * q * q;
+    two / delta * sum
 }
 
-/// Theorem 9.3: with b = |1 - 2 kappa| H + kappa^(1/2) S, r^2 = b^2/delta + Q^2 and c = kappa H^2 + kappa^(1/2) H S, the
-/// right side is (r + (r^2 + 4 c)^(1/2)) / (2 delta^(1/2)).
+/// The right side of Theorem 9.1 for the distances of v^h from u.
+pub fn plain(kappa: f64, eta: &Errors) -> f64 {
+    plain_squared(kappa, of(eta)).sqrt()
+}
+
+/// Theorem 9.3: b = |1 - 2 kappa| H + kappa^(1/2) S and c = kappa H^2 + kappa^(1/2) H S, for `root` = kappa^(1/2).
+pub fn sharp_terms<S: Scalar>(kappa: S, root: S, [h, s]: [S; 2]) -> [S; 2] {
+    let size = (S::from(1) - S::from(2) * kappa).split(|a| -a, |a| a);
+    [size * h + root * s, kappa * h * h + root * h * s]
+}
+
+/// Theorem 9.3: with r^2 = b^2/delta + Q^2 the right side is (r + (r^2 + 4 c)^(1/2)) / (2 delta^(1/2)).
 pub fn sharp(kappa: f64, eta: &Errors) -> f64 {
     let delta = 1.0 - kappa;
-    let Errors { energy: h, normal_stress: s, operator: q, .. } = *eta;
-    let b = (1.0 - 2.0 * kappa).abs() * h + kappa.sqrt() * s;
+    let [h, s, q] = of(eta);
+    let [b, c] = sharp_terms(kappa, kappa.sqrt(), [h, s]);
     let r = (b / delta.sqrt()).hypot(q);
-    let c = kappa * h * h + kappa.sqrt() * h * s;
     (r + (r * r + 4.0 * c).sqrt()) / (2.0 * delta.sqrt())
 }
 
-/// Theorem 9.4, for the v^h with a(u - v^h, w) = 0 for all w in V^h only: the square of the right side is
-/// H^2 + (kappa S^2/delta + Q^2) / delta.
-pub fn projected(kappa: f64, eta: &Errors) -> f64 {
-    let delta = 1.0 - kappa;
-    let Errors { energy: h, normal_stress: s, operator: q, .. } = *eta;
-    (h * h + (kappa / delta * s * s + q * q) / delta).sqrt()
+/// Theorem 9.4: the square of the right side for \[H, S, Q\] is H^2 + (kappa S^2/delta + Q^2) / delta.
+pub fn projected_squared<S: Scalar>(kappa: S, [h, s, q]: [S; 3]) -> S {
+    let delta = S::from(1) - kappa;
+    h * h + (kappa / delta * s * s + q * q) / delta
 }
 
-/// The right side of Corollary 9.2 (Corollary 3.6), |sigma_n(e)|_gamma <= S + kappa^(1/2) (E + H).
+/// The right side of Theorem 9.4, for the v^h with a(u - v^h, w) = 0 for all w in V^h only.
+pub fn projected(kappa: f64, eta: &Errors) -> f64 {
+    projected_squared(kappa, of(eta)).sqrt()
+}
+
+/// The right side of Corollary 9.2 (Corollary 3.6), |sigma_n(e)|_gamma <= S + kappa^(1/2) (E + H), for `root` =
+/// kappa^(1/2).
+pub fn corollary_bound<S: Scalar>(root: S, e: S, [h, s]: [S; 2]) -> S {
+    s + root * (e + h)
+}
+
+/// The same for the errors of u^h and the distances of v^h from u.
 pub fn corollary(kappa: f64, e: &Errors, eta: &Errors) -> f64 {
-    eta.normal_stress + kappa.sqrt() * (e.energy + eta.energy)
+    corollary_bound(kappa.sqrt(), e.energy, [eta.energy, eta.normal_stress])
+}
+
+/// \[H, S, Q\]
+fn of(eta: &Errors) -> [f64; 3] {
+    [eta.energy, eta.normal_stress, eta.operator]
 }
 
 #[cfg(test)]

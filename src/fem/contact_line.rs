@@ -1,15 +1,22 @@
 //! Gamma_C on the mesh: its edges with their functionals and gamma = gamma0 h_T of (7), the coercivity number kappa, and
 //! the integrals of \[P\]+ over an edge by the rule of the method.
+//!
+//! The direction of contact is a field n~, given at the nodes: by the obstacle's closest point where there is an obstacle, else
+//! by the normal of the smooth boundary (`smooth`), on which the nodes are placed when the gap is measured. On a straight line
+//! without an obstacle n~ = n, and all is the paper's method to the bit.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use nalgebra::Vector2;
 
 use super::mesh::BoundaryEdge;
+use super::obstacle::Closest;
 use super::problem::{Condition, DataError, Problem, finite};
 use super::quadrature;
+use super::smooth::{SmoothBoundary, SmoothPoint};
 use super::space::Space;
-use crate::kernel::contact_edge::coercivity_constant;
+use crate::kernel::contact_edge::{coercivity_constant, turning_factor};
 use crate::kernel::edge_integral::{self, ExactEdge};
 use crate::kernel::{ContactEdge, EdgeIntegrals, Element};
 use crate::quote::key;
@@ -23,6 +30,12 @@ pub struct ContactLineEdge<const N: usize, const M: usize> {
     pub length: f64,
     /// n
     pub normal: Vector2<f64>,
+    /// n~ at the nodes of the edge; n where it is straight and there is no obstacle that says otherwise.
+    pub directions: [Vector2<f64>; M],
+    /// Where the nodes lie on the smooth boundary, from which the gap is measured.
+    pub places: [[f64; 2]; M],
+    /// The name of the boundary.
+    pub boundary: Arc<str>,
     /// gamma = gamma0 h_T
     pub gamma: f64,
     /// g at the nodes of the edge: on it the gap is their Lagrange interpolant.
@@ -68,8 +81,16 @@ impl Coercivity {
         let mesh = &problem.mesh;
         let mut contact_length: BTreeMap<usize, f64> = BTreeMap::new();
         let edges = contact_edges(problem)?;
-        for (edge, _) in &edges {
-            *contact_length.entry(edge.triangle).or_default() += mesh.length_and_normal(*edge).0;
+        let sight = Sight::new(problem);
+        for &(edge, name) in &edges {
+            let [start, end] = [sight.direction(edge, name, 0)?, sight.direction(edge, name, 1)?];
+            let length = mesh.length_and_normal(edge).0;
+            let counted = if start == end {
+                length
+            } else {
+                turning_factor::<E, f64, N, M>(start.dot(&end)) * length
+            };
+            *contact_length.entry(edge.triangle).or_default() += counted;
         }
         let mut worst: Option<Coercivity> = None;
         for (edge, _) in edges {
@@ -96,7 +117,7 @@ impl Coercivity {
 fn contact_edges(problem: &Problem) -> Result<Vec<(BoundaryEdge, &str)>, DataError> {
     let mut edges = Vec::new();
     for (name, condition) in &problem.conditions {
-        if let Condition::Contact { .. } = condition {
+        if condition.is_contact() {
             let chained = chains(problem, problem.mesh.edges_of(name)?);
             edges.extend(chained.into_iter().map(|edge| (edge, name.as_str())));
         }
@@ -134,22 +155,94 @@ pub fn assemble<E: Element<N, M>, const N: usize, const M: usize>(
     gamma0: f64,
 ) -> Result<Vec<ContactLineEdge<N, M>>, DataError> {
     let mesh = space.mesh();
-    let mut line = Vec::new();
+    let sight = Sight::new(problem);
+    let mut line: Vec<ContactLineEdge<N, M>> = Vec::new();
     for (edge, name) in contact_edges(problem)? {
-        let Some(Condition::Contact { gap }) = problem.conditions.get(name) else { continue };
         let (length, normal) = mesh.length_and_normal(edge);
         let gamma = gamma0 * mesh.diameter(edge.triangle);
-        let mut values = [0.0; M];
-        for (value, node) in values.iter_mut().zip(space.edge_nodes(edge)) {
-            let what = || format!("[boundary.{}] contact.gap", key(name));
-            *value = finite(&**gap, space.nodes()[node], what)?;
+        let (mut gap, mut directions, mut places) = ([0.0; M], [normal; M], [[0.0; 2]; M]);
+        for (a, node) in space.edge_nodes(edge).into_iter().enumerate() {
+            let on_facet = SmoothPoint { place: space.nodes()[node], normal };
+            let point = sight.point(edge, a).unwrap_or(on_facet);
+            places[a] = point.place;
+            Closest { gap: gap[a], direction: directions[a] } = sight.closest(name, point)?;
         }
         let triangle = mesh.triangle(edge.triangle);
         let material = problem.material.of(edge.triangle);
-        let functionals = ContactEdge::new::<E>(&triangle, edge.local, normal, material, gamma);
-        line.push(ContactLineEdge { edge, length, normal, gamma, gap: values, functionals });
+        let functionals = if directions == [normal; M] {
+            ContactEdge::new::<E>(&triangle, edge.local, normal, material, gamma)
+        } else {
+            ContactEdge::along::<E>(&triangle, edge.local, normal, &directions, material, gamma)
+        };
+        let boundary = match line.last() {
+            Some(last) if &*last.boundary == name => Arc::clone(&last.boundary),
+            _ => Arc::from(name),
+        };
+        line.push(ContactLineEdge {
+            edge,
+            length,
+            normal,
+            directions,
+            places,
+            boundary,
+            gamma,
+            gap,
+            functionals,
+        });
     }
     Ok(line)
+}
+
+/// What the contact line sees of its obstacles.
+struct Sight<'a> {
+    problem: &'a Problem,
+    smooth: SmoothBoundary,
+}
+
+impl<'a> Sight<'a> {
+    fn new(problem: &'a Problem) -> Self {
+        Sight { problem, smooth: SmoothBoundary::new(&problem.mesh) }
+    }
+
+    /// Start (0), end (1) or middle (2) of the smooth boundary along an edge, if it is not straight there.
+    fn point(&self, edge: BoundaryEdge, a: usize) -> Option<SmoothPoint> {
+        self.smooth.along(&self.problem.mesh, edge).map(|points| points[a])
+    }
+
+    /// Gap and direction at a point of the boundary `name`.
+    fn closest(&self, name: &str, point: SmoothPoint) -> Result<Closest, DataError> {
+        match self.problem.conditions.get(name) {
+            Some(Condition::Contact { gap }) => {
+                let gap = finite(&**gap, point.place, || {
+                    format!("[boundary.{}] contact.gap", key(name))
+                })?;
+                Ok(Closest { gap, direction: point.normal })
+            }
+            Some(Condition::Obstacle(obstacle, geometry)) => {
+                geometry.closest(point.place, || format!("[obstacle.{}]", key(obstacle)))
+            }
+            _ => Err(DataError::NoContact),
+        }
+    }
+
+    /// n~ at the start or at the end of an edge.
+    fn direction(
+        &self,
+        edge: BoundaryEdge,
+        name: &str,
+        a: usize,
+    ) -> Result<Vector2<f64>, DataError> {
+        let mesh = &self.problem.mesh;
+        let on_facet = SmoothPoint {
+            place: mesh.vertices()[mesh.ends(edge)[a]],
+            normal: mesh.length_and_normal(edge).1,
+        };
+        let point = self.point(edge, a).unwrap_or(on_facet);
+        match self.problem.conditions.get(name) {
+            Some(Condition::Obstacle(..)) => Ok(self.closest(name, point)?.direction),
+            _ => Ok(point.normal),
+        }
+    }
 }
 
 /// How \[P\]+ is integrated over an edge.

@@ -11,7 +11,7 @@
 use faer::Mat;
 use faer::linalg::solvers::SolveLstsq;
 
-use super::contact_line::{ContactLineEdge, apply};
+use super::contact_line::ContactLineEdge;
 use super::space::Space;
 use crate::kernel::Element;
 
@@ -21,7 +21,7 @@ const BALANCED: f64 = 1e-9;
 /// Loads must go on pressing when they are changed by this share: a body on the verge of tipping is not held.
 const MARGIN: f64 = 1e-6;
 
-/// Singular values of the c_i below this share of the largest belong to motions that slide.
+/// Singular values of the c_i below this share of the largest, or of motions of size 1, belong to motions that slide.
 const SLIDES: f64 = 1e-10;
 
 /// The motions among the combinations of `motions` that slide along every obstacle, as fields with orthonormal nodal
@@ -33,13 +33,13 @@ pub fn slides<E: Element<N, M>, const N: usize, const M: usize>(
     contact: &[ContactLineEdge<N, M>],
 ) -> Option<Vec<Vec<[f64; 2]>>> {
     let dimension = motions.len();
+    // r_n, and not P0(r): the stress of a rigid motion is zero but for rounding.
     let rows: Vec<Vec<f64>> = contact
         .iter()
         .flat_map(|edge| {
-            edge.functionals.p0.iter().map(|functional| {
-                let value =
-                    |r: &Vec<_>| apply(functional, &space.on_triangle(edge.edge.triangle, r));
-                motions.iter().map(value).collect()
+            let nodes = space.edge_nodes(edge.edge).into_iter().zip(edge.directions);
+            nodes.map(|(node, n)| {
+                motions.iter().map(|r| r[node][0] * n[0] + r[node][1] * n[1]).collect()
             })
         })
         .collect();
@@ -58,7 +58,7 @@ pub fn slides<E: Element<N, M>, const N: usize, const M: usize>(
     let direction = |j: usize| (0..dimension).map(|i| svd.V()[(i, j)]).collect::<Vec<f64>>();
     let singular = |j: usize| if j < rows.len() { svd.S()[j] } else { 0.0 };
     let largest = (0..dimension).map(singular).fold(0.0, f64::max);
-    let stopped = |j: &usize| singular(*j) > SLIDES * largest;
+    let stopped = |j: &usize| singular(*j) > SLIDES * largest.max(1.0);
     let holds = |loads: &[f64]| leaving(&rows, loads, BALANCED).is_none();
     let pressed = (0..dimension).filter(stopped).all(|j| {
         [-1.0, 1.0].iter().all(|sign| {

@@ -33,6 +33,10 @@ pub struct Mesh {
     edge_count: usize,
     outline: Vec<BoundaryEdge>,
     boundaries: BTreeMap<String, Vec<BoundaryEdge>>,
+    /// Named curves with an edge inside the body, and where that is: no boundary.
+    inner: BTreeMap<String, [[f64; 2]; 2]>,
+    surfaces: BTreeMap<String, Vec<usize>>,
+    points: BTreeMap<String, usize>,
     /// The boxes of the triangles, made when a point is first looked for.
     boxes: OnceLock<Tree>,
 }
@@ -48,6 +52,7 @@ pub struct BoundaryEdge {
 
 /// Why there is no such mesh. Vertices and triangles are counted from 0, or by the numbers of the file they came from.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
 pub enum MeshError {
     #[error("the mesh has no triangle; expected at least one")]
@@ -76,8 +81,12 @@ pub enum MeshError {
     Hanging { vertex: usize, x: f64, y: f64, edge: [usize; 2], triangle: usize, off: f64 },
     #[error("boundary {}: no triangle has an edge between vertices {} and {}", quoted(boundary, '\''), vertices[0], vertices[1])]
     NoSuchEdge { boundary: String, vertices: [usize; 2] },
-    #[error("boundary {}: the edge between vertices {} and {} lies inside the body, between two triangles", quoted(boundary, '\''), vertices[0], vertices[1])]
-    InnerEdge { boundary: String, vertices: [usize; 2] },
+    #[error("boundary {}: its edge from ({}, {}) to ({}, {}) lies inside the body, between two triangles; nothing can be prescribed there", quoted(boundary, '\''), number(ends[0][0]), number(ends[0][1]), number(ends[1][0]), number(ends[1][1]))]
+    InnerEdge { boundary: String, ends: [[f64; 2]; 2] },
+    #[error("no surface named {}; this mesh has: {known}", quoted(name, '\''))]
+    NoSuchSurface { name: String, known: String },
+    #[error("no point named {}; this mesh has: {known}", quoted(name, '\''))]
+    NoSuchPoint { name: String, known: String },
     #[error("the edge between vertices {} and {} belongs to boundary {} and again to boundary {}; expected one name for it", vertices[0], vertices[1], quoted(first, '\''), quoted(second, '\''))]
     NamedTwice { vertices: [usize; 2], first: String, second: String },
     #[error("no boundary named {}; this mesh has: {known}", quoted(name, '\''))]
@@ -156,7 +165,7 @@ impl Mesh {
         let (edges, triangle_edges) = match_edges(vertices.len(), &triangles)?;
         let outline: Vec<BoundaryEdge> =
             edges.edges.iter().filter(|e| !e.inner).map(|e| e.owner).collect();
-        let boundaries = name_boundaries(&edges, named)?;
+        let (boundaries, inner) = name_boundaries(&edges, &vertices, named)?;
         let mesh = Mesh {
             vertices,
             triangles,
@@ -164,10 +173,58 @@ impl Mesh {
             edge_count: edges.edges.len(),
             outline,
             boundaries,
+            inner,
+            surfaces: BTreeMap::new(),
+            points: BTreeMap::new(),
             boxes: OnceLock::new(),
         };
         embedding::check(&mesh)?;
         Ok(mesh)
+    }
+
+    /// The same mesh with named parts of the body, as lists of triangles, and named points, as vertices. Numbers beyond the
+    /// last triangle or vertex are passed over.
+    #[must_use]
+    pub fn with_names(
+        mut self,
+        surfaces: BTreeMap<String, Vec<usize>>,
+        points: BTreeMap<String, usize>,
+    ) -> Mesh {
+        let (triangles, vertices) = (self.triangles.len(), self.vertices.len());
+        let inside = |(name, mut members): (String, Vec<usize>)| {
+            members.retain(|&t| t < triangles);
+            (name, members)
+        };
+        self.surfaces = surfaces.into_iter().map(inside).collect();
+        self.points = points.into_iter().filter(|(_, v)| *v < vertices).collect();
+        self
+    }
+
+    /// The named parts of the body with their triangles, in alphabetical order.
+    pub fn surfaces(&self) -> &BTreeMap<String, Vec<usize>> {
+        &self.surfaces
+    }
+
+    /// The triangles of a named part of the body.
+    ///
+    /// # Errors
+    /// [`MeshError::NoSuchSurface`], with the names that there are.
+    pub fn surface(&self, name: &str) -> Result<&[usize], MeshError> {
+        self.surfaces.get(name).map(Vec::as_slice).ok_or_else(|| MeshError::NoSuchSurface {
+            name: name.to_owned(),
+            known: listed(self.surfaces.keys(), "no named surface"),
+        })
+    }
+
+    /// The vertex of a named point.
+    ///
+    /// # Errors
+    /// [`MeshError::NoSuchPoint`], with the names that there are.
+    pub fn point(&self, name: &str) -> Result<usize, MeshError> {
+        self.points.get(name).copied().ok_or_else(|| MeshError::NoSuchPoint {
+            name: name.to_owned(),
+            known: listed(self.points.keys(), "no named point"),
+        })
     }
 
     /// The vertices.
@@ -203,19 +260,16 @@ impl Mesh {
     /// The edges of a named boundary part.
     ///
     /// # Errors
-    /// [`MeshError::NoSuchBoundary`], with the names that there are.
+    /// [`MeshError::NoSuchBoundary`], with the names that there are; [`MeshError::InnerEdge`] for a named curve inside the
+    /// body.
     pub fn edges_of(&self, boundary: &str) -> Result<&[BoundaryEdge], MeshError> {
-        match self.boundaries.get(boundary) {
-            Some(edges) => Ok(edges),
-            None => Err(MeshError::NoSuchBoundary {
-                name: boundary.to_owned(),
-                known: if self.boundaries.is_empty() {
-                    "no named boundary".to_owned()
-                } else {
-                    quote::names(self.boundary_names())
-                },
-            }),
+        if let Some(&ends) = self.inner.get(boundary) {
+            return Err(MeshError::InnerEdge { boundary: boundary.to_owned(), ends });
         }
+        self.boundaries.get(boundary).map(Vec::as_slice).ok_or_else(|| MeshError::NoSuchBoundary {
+            name: boundary.to_owned(),
+            known: listed(self.boundaries.keys(), "no named boundary"),
+        })
     }
 
     /// Triangle `t` with its coordinates.
@@ -271,7 +325,7 @@ const FLAT: f64 = 1e-12;
 const OUTSIDE: f64 = 1e-12;
 
 /// |v|, without the overflow and underflow of a sum of squares.
-pub(super) fn length(v: Vector2<f64>) -> f64 {
+pub(crate) fn length(v: Vector2<f64>) -> f64 {
     v.x.hypot(v.y)
 }
 
@@ -394,11 +448,21 @@ fn match_edges(
     Ok((all, triangle_edges))
 }
 
+/// The boundary parts by name, and the named curves that have an edge inside the body.
+type Named = (BTreeMap<String, Vec<BoundaryEdge>>, BTreeMap<String, [[f64; 2]; 2]>);
+
+fn listed<'a>(names: impl Iterator<Item = &'a String>, none: &str) -> String {
+    let mut names = names.map(String::as_str).peekable();
+    if names.peek().is_none() { none.to_owned() } else { quote::names(names) }
+}
+
 fn name_boundaries(
     edges: &Edges,
+    places: &[[f64; 2]],
     named: impl IntoIterator<Item = (String, Vec<[usize; 2]>)>,
-) -> Result<BTreeMap<String, Vec<BoundaryEdge>>, MeshError> {
+) -> Result<Named, MeshError> {
     let mut boundaries: BTreeMap<String, Vec<BoundaryEdge>> = BTreeMap::new();
+    let mut inner = BTreeMap::new();
     let mut name_of: BTreeMap<usize, String> = BTreeMap::new();
     for (name, pairs) in named {
         let part = boundaries.entry(name.clone()).or_default();
@@ -408,7 +472,8 @@ fn name_boundaries(
                 return Err(MeshError::NoSuchEdge { boundary: name, vertices });
             };
             if edges.edges[e].inner {
-                return Err(MeshError::InnerEdge { boundary: name, vertices });
+                inner.entry(name.clone()).or_insert([places[a], places[b]]);
+                continue;
             }
             if let Some(first) = name_of.insert(e, name.clone()) {
                 return Err(MeshError::NamedTwice { vertices, first, second: name });
@@ -416,7 +481,8 @@ fn name_boundaries(
             part.push(edges.edges[e].owner);
         }
     }
-    Ok(boundaries)
+    boundaries.retain(|name, _| !inner.contains_key(name));
+    Ok((boundaries, inner))
 }
 
 impl MeshError {
@@ -439,7 +505,6 @@ impl MeshError {
             }
             Duplicate { vertices, .. }
             | NoSuchEdge { vertices, .. }
-            | InnerEdge { vertices, .. }
             | NamedTwice { vertices, .. } => two(vertices),
             Overlap { triangles, vertices } => {
                 *triangles = triangles.map(&of_triangle);
@@ -452,7 +517,14 @@ impl MeshError {
                 *triangle = of_triangle(*triangle);
                 two(edge);
             }
-            Empty | NoSuchBoundary { .. } | Size { .. } | NoCells { .. } | TooManyCells { .. } => {}
+            Empty
+            | InnerEdge { .. }
+            | NoSuchBoundary { .. }
+            | NoSuchSurface { .. }
+            | NoSuchPoint { .. }
+            | Size { .. }
+            | NoCells { .. }
+            | TooManyCells { .. } => {}
         }
         self
     }
@@ -578,9 +650,10 @@ mod tests {
             message(named(&[("floor", &[[1, 3]])])),
             "boundary 'floor': no triangle has an edge between vertices 1 and 3"
         );
+        let cut = named(&[("cut", &[[0, 2]])]).unwrap();
         assert_eq!(
-            message(named(&[("cut", &[[0, 2]])])),
-            "boundary 'cut': the edge between vertices 0 and 2 lies inside the body, between two triangles"
+            cut.edges_of("cut").unwrap_err().to_string(),
+            "boundary 'cut': its edge from (0, 0) to (1, 1) lies inside the body, between two triangles; nothing can be prescribed there"
         );
         assert_eq!(
             message(named(&[("floor", &[[0, 1]]), ("base", &[[1, 0]])])),

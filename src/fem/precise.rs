@@ -45,13 +45,13 @@ where
         let triangle = exact(d.space.mesh().triangle(edge.edge.triangle));
         let n = edge.normal.map(Twofold::from);
         let material = d.problem.material.of(edge.edge.triangle).map(Twofold::from);
-        let functionals = ContactEdge::<Twofold, N, M>::new::<E>(
-            &triangle,
-            edge.edge.local,
-            n,
-            &material,
-            Twofold::from(edge.gamma),
-        );
+        let gamma = Twofold::from(edge.gamma);
+        let functionals = if edge.directions == [edge.normal; M] {
+            ContactEdge::<Twofold, N, M>::new::<E>(&triangle, edge.edge.local, n, &material, gamma)
+        } else {
+            let along = edge.directions.map(|d| d.map(Twofold::from));
+            ContactEdge::along::<E>(&triangle, edge.edge.local, n, &along, &material, gamma)
+        };
         let apply = |functional: &[Vector2<Twofold>; N]| {
             functional.iter().zip(&nodal).fold(zero, |sum, (f, u)| sum + f[0] * u[0] + f[1] * u[1])
         };

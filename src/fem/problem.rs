@@ -138,6 +138,7 @@ impl Problem {
 
 /// Why a problem can't be posed on its mesh.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
 pub enum DataError {
     #[error(transparent)]

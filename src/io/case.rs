@@ -19,7 +19,7 @@
 //! [boundary.right]
 //! traction = ["0", "0"]                     # the default for a boundary that is not named
 //! [boundary.bottom]                         # at least one boundary has contact
-//! contact = { gap = "0" }                   # along the outward normal; default 0
+//! contact = { gap = "0" }                   # along the outward normal; default 0; or { obstacle = "floor" }
 //! [method]
 //! degree = 1                                # 1 (default) | 2
 //! gamma0 = 0.1                              # a number > 0, or "auto" (default): half the coercivity limit
@@ -38,7 +38,33 @@
 //! top = "displacement"
 //! ```
 //!
-//! The grammar of expressions is in [`expression`](super::expression), the parameters of the exact solutions in `exact.rs`. A key that is not listed here is an error, and so
+//! For parts (see docs/parts.md):
+//!
+//! ```toml
+//! [units]                                   # words for labels, no conversion
+//! length = "mm"
+//! force = "N"
+//! [obstacle.floor]                          # one of plane, circle, distance
+//! plane = { point = [0, 0], normal = [0, 1] }                        # the normal towards the body
+//! # circle = { center = [0, 0], radius = 20, side = "outside" }      # where the body is: outside | inside
+//! # distance = "sqrt(x^2 + y^2) - 20"       # signed, positive on the body's side
+//! [material.steel]                          # instead of [material]: one for each physical surface of the mesh
+//! young = 210000
+//! poisson = 0.3
+//! [load.steel]                              # a force on one physical surface, beside that of [load]
+//! body = [0, -7.7e-5]
+//! [boundary.bore]
+//! pressure = "2 + x"                        # the traction -p n
+//! [boundary.symmetry]
+//! normal = 0                                # u . n at any angle; and tangential = u . t, t being n turned to the left
+//! [boundary.slider]
+//! displacement = [0, "free"]                # with a traction in the component that is free
+//! traction = [0, -5]
+//! [point.pivot]                             # a physical point of the mesh
+//! displacement = [0, 0]
+//! ```
+//!
+//! Numbers serve as expressions. The grammar of expressions is in [`expression`](super::expression), the parameters of the exact solutions in `exact.rs`. A key that is not listed here is an error, and so
 //! is a list of the wrong length, a number that is NaN or infinite, and a boundary with more than one of displacement,
 //! traction and contact. Integers serve as numbers. The material is stable: mu > 0 and 3 lambda + 2 mu > 0, that is
 //! young > 0 and -1 < poisson < 1/2.
@@ -48,29 +74,31 @@ use std::fmt::{self, Display, Formatter};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 use toml::de::DeTable;
 
-use super::exact::{angle, read_exact, read_kind};
-use super::expression::{Expression, ExpressionError};
+use super::body::{MaterialEcho, read_loads, read_materials};
+use super::boundaries::{on_the_mesh, read_boundaries, read_points};
+use super::exact::{angle, read_exact};
+use super::expression::ExpressionError;
 use super::gmsh::{self, GmshError};
 use super::input::{self, InputError, MOST_OF_A_CASE};
 use super::setting;
 use super::table::{Source, Table, Value};
-use crate::fem::exact::{self, Kind};
+use crate::fem::exact::Kind;
 use crate::fem::rectangle::MOST_CELLS;
 use crate::fem::{
-    BoxedFunction, Condition, Diagonal, Exact, Mesh, MeshError, Perturbation, Problem, Rectangle,
-    Structured, Trapezoid,
+    Diagonal, Exact, Mesh, MeshError, Perturbation, Problem, Rectangle, Structured, Trapezoid,
 };
-use crate::kernel::{Material, Plane};
 use crate::memory;
-use crate::quote::{self, key as shown, quoted};
+use crate::quote::{self, quoted};
 use crate::solve::{
     ContactQuadrature, Degree, Gamma0, MOST_GAUSS_POINTS, MOST_ITERATIONS, Method, Settings,
 };
 
 /// A contact problem and how to solve it.
+#[non_exhaustive]
 pub struct Case {
     /// The file it was read from, or what stands in its place.
     pub file: PathBuf,
@@ -84,13 +112,38 @@ pub struct Case {
     pub settings: Settings,
     /// The places where the displacement is wanted.
     pub probes: Vec<[f64; 2]>,
+    /// The materials as the case has them.
+    pub materials: Vec<MaterialEcho>,
+    /// The units of the case, if it names them.
+    pub units: Option<Units>,
     /// The exact solution, if there is one.
     pub exact: Option<ExactCase>,
     /// The files that all this was read from.
     pub sources: Vec<PathBuf>,
 }
 
+/// The units of a case: words for labels. The numbers are consistent by themselves.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Units {
+    /// Of lengths.
+    pub length: String,
+    /// Of forces, per length across the plane.
+    pub force: String,
+}
+
+impl Units {
+    /// Of stresses.
+    pub fn stress(&self) -> String {
+        match (&*self.force, &*self.length) {
+            ("N", "mm") => "MPa".to_owned(),
+            ("N", "m") => "Pa".to_owned(),
+            (force, length) => format!("{force}/{length}^2"),
+        }
+    }
+}
+
 /// An exact solution and the meshes on which it can be approximated.
+#[non_exhaustive]
 pub struct ExactCase {
     /// The solution.
     pub solution: Exact,
@@ -105,6 +158,7 @@ pub struct ExactCase {
 /// What is wrong with a case file, and where.
 #[derive(Debug, Error)]
 #[error("{}{place}: {mistake}", quote::path(file))]
+#[non_exhaustive]
 pub struct CaseError {
     /// The case file.
     pub file: PathBuf,
@@ -138,6 +192,7 @@ impl Display for Place {
 
 /// What is wrong with a case file. `name` is a key as messages show it: `[mesh] rectangle.nx`.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
 pub enum CaseMistake {
     #[error("{0}")]
@@ -222,16 +277,27 @@ impl Case {
     /// # Errors
     /// As [`Case::read`]; for a mistake in a setting, the place is that setting.
     pub fn parse(file: &Path, text: &str, settings: &[String]) -> Result<Case, CaseError> {
-        let source = Source { file, text, settings };
-        let entries = DeTable::parse(text).map_err(|e| {
-            let start = e.span().map(|span| span.start).or_else(|| deepest(&e, text));
-            source.wrong(start, no_toml(&e, text))
-        })?;
-        let layers = setting::layers(&source);
-        let mut entries = entries.into_inner();
-        setting::lay(source, &layers, &mut entries)?;
-        case(file, &Table::whole(source, &entries))
+        parse(Source { file, text, settings }, None)
     }
+
+    /// The case with this text, which has no \[mesh\], on this mesh.
+    ///
+    /// # Errors
+    /// As [`Case::parse`].
+    pub fn on_mesh(file: &Path, text: &str, mesh: Mesh) -> Result<Case, CaseError> {
+        parse(Source { file, text, settings: &[] }, Some(mesh))
+    }
+}
+
+fn parse(source: Source, mesh: Option<Mesh>) -> Result<Case, CaseError> {
+    let entries = DeTable::parse(source.text).map_err(|e| {
+        let start = e.span().map(|span| span.start).or_else(|| deepest(&e, source.text));
+        source.wrong(start, no_toml(&e, source.text))
+    })?;
+    let layers = setting::layers(&source);
+    let mut entries = entries.into_inner();
+    setting::lay(source, &layers, &mut entries)?;
+    case(source.file, &Table::whole(source, &entries), mesh)
 }
 
 /// What the TOML reader says, and the words of the file that it speaks of.
@@ -268,43 +334,71 @@ fn text(bytes: Vec<u8>) -> Result<String, CaseMistake> {
 /// The bytes of memory that a byte of a case file takes at most while it is read: 241 in a list of tables of one number.
 const MEMORY_PER_BYTE: u64 = 400;
 
-fn case(file: &Path, root: &Table) -> Result<Case, CaseError> {
+/// `given` is the mesh, if it is not the case that says which.
+fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, CaseError> {
     root.only(&[
-        "title", "mesh", "material", "load", "exact", "boundary", "method", "solver", "output",
+        "title", "mesh", "material", "load", "exact", "boundary", "obstacle", "point", "method",
+        "solver", "output", "units",
     ])?;
     let title = match root.get("title") {
         Some(title) => title.text()?.to_owned(),
         None => file.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
     };
-    let mesh = root.required_section("mesh", "rectangle = { .. } or gmsh = \"..\" in it")?;
+    let mesh = match (given, root.section("mesh")?) {
+        (Some(_), Some(table)) => {
+            return Err(table.wrong(CaseMistake::Combination {
+                name: table.name().to_owned(),
+                found: "a mesh beside the one that is given".to_owned(),
+                expected: "one of the two".to_owned(),
+            }));
+        }
+        (Some(mesh), None) => Body::Given(mesh),
+        (None, _) => {
+            Body::Told(root.required_section("mesh", "rectangle = { .. } or gmsh = \"..\" in it")?)
+        }
+    };
     let material =
         root.required_section("material", "lambda and mu, or young and poisson in it")?;
-    let material = read_material(&material)?;
+    let materials = read_materials(material)?;
     let solution = match root.section("exact")? {
-        Some(table) => Some(read_exact(&table, material)?),
+        Some(table) => Some(read_exact(&table, materials.only()?)?),
         None => None,
     };
-    let body_force = read_load(root, solution.as_ref())?;
+    let loads = read_loads(root, solution.as_ref())?;
     let boundaries = read_boundaries(root, solution.as_ref())?;
     let method = read_method(root.section("method")?)?;
     let settings = read_settings(root.section("solver")?)?;
     let output = root.section("output")?;
+    let units = root.section("units")?.map(|table| read_units(&table)).transpose()?;
     // The mesh, and what needs it, comes last: it is what takes time.
-    let Meshed { mesh, structured, perturbation, file: mesh_file } =
-        read_mesh(&mesh, file.parent().unwrap_or(Path::new("")))?;
+    let Meshed { mesh, structured, perturbation, file: mesh_file } = match mesh {
+        Body::Given(mesh) => Meshed { mesh, structured: None, perturbation: None, file: None },
+        Body::Told(table) => read_mesh(&table, file.parent().unwrap_or(Path::new("")))?,
+    };
     let kinds = boundaries.iter().filter_map(|b| Some((b.key.to_owned(), b.kind?))).collect();
     let conditions = on_the_mesh(&mesh, boundaries)?;
+    let (material, materials) = materials.on_the_mesh(&mesh)?;
+    let (body_force, surface_forces) = loads.on_the_mesh(&mesh)?;
+    let points = read_points(root, &mesh)?;
     let probes = read_probes(output, &mesh)?;
     Ok(Case {
         file: file.to_owned(),
         title,
-        problem: Problem::new(mesh, material, body_force, conditions),
+        problem: Problem { mesh, material, body_force, surface_forces, conditions, points },
+        materials,
+        units,
         method,
         settings,
         probes,
         exact: solution.map(|solution| ExactCase { solution, kinds, structured, perturbation }),
         sources: std::iter::once(file.to_owned()).chain(mesh_file).collect(),
     })
+}
+
+/// Where the mesh comes from.
+enum Body<'s> {
+    Given(Mesh),
+    Told(Table<'s>),
 }
 
 /// A mesh and how it was made.
@@ -415,158 +509,10 @@ fn read_rectangle(table: &Table) -> Result<Rectangle, CaseError> {
     })
 }
 
-fn read_material(table: &Table) -> Result<Material<f64>, CaseError> {
-    const MODULI: [&str; 4] = ["lambda", "mu", "young", "poisson"];
-    table.only(&["lambda", "mu", "young", "poisson", "plane"])?;
-    let plane = match table.get("plane") {
-        Some(plane) => plane.one_of(&[("strain", Plane::Strain), ("stress", Plane::Stress)])?,
-        None => Plane::Strain,
-    };
-    let material = match MODULI.map(|key| table.get(key)) {
-        [Some(lambda), Some(mu), None, None] => {
-            let mu = mu.number_that(|mu| mu > 0.0, "a positive number")?;
-            let least = quote::number(-2.0 / 3.0 * mu);
-            let expected = format!("a number above {least}, for 3 lambda + 2 mu > 0");
-            Material::lame(lambda.number_that(|l| 3.0 * l + 2.0 * mu > 0.0, &expected)?, mu, plane)
-        }
-        [None, None, Some(young), Some(poisson)] => Material::young_poisson(
-            young.number_that(|e| e > 0.0, "a positive number")?,
-            poisson.number_that(|nu| -1.0 < nu && nu < 0.5, "a number above -1 and below 0.5")?,
-            plane,
-        ),
-        _ => return Err(table.combination(&MODULI, "lambda and mu, or young and poisson")),
-    };
-    let stiffness = material.normal_stiffness();
-    if stiffness > 0.0 && stiffness.is_finite() {
-        Ok(material)
-    } else {
-        Err(table.wrong(CaseMistake::Combination {
-            name: table.name().to_owned(),
-            found: format!("moduli with lambda + 2 mu = {} in the plane", quote::number(stiffness)),
-            expected: "a positive finite sum".to_owned(),
-        }))
-    }
-}
-
-fn read_load(root: &Table, solution: Option<&Exact>) -> Result<[BoxedFunction; 2], CaseError> {
-    let table = root.section("load")?;
-    if let Some(solution) = solution {
-        return match table {
-            None => Ok(exact::body_force(solution)),
-            Some(table) => Err(table.wrong(CaseMistake::Combination {
-                name: table.name().to_owned(),
-                found: "loads beside [exact]".to_owned(),
-                expected: "one of the two: an exact solution supplies its own".to_owned(),
-            })),
-        };
-    }
-    if let Some(table) = &table {
-        table.only(&["body"])?;
-    }
-    match table.and_then(|table| table.get("body")) {
-        Some(body) => functions(&body),
-        None => Ok([zero(), zero()]),
-    }
-}
-
-fn functions(value: &Value) -> Result<[BoxedFunction; 2], CaseError> {
-    let [x, y] = value.pair()?;
-    Ok([x.function()?, y.function()?])
-}
-
-fn zero() -> BoxedFunction {
-    Box::new(Expression::from(0.0))
-}
-
-/// A boundary of the case file: where it stands, what messages call it, its name, and what holds there.
-struct Boundary<'s> {
-    value: Value<'s>,
-    title: String,
-    key: &'s str,
-    /// Beside \[exact\] only.
-    kind: Option<Kind>,
-    condition: Condition,
-}
-
-fn read_boundaries<'s>(
-    root: &Table<'s>,
-    solution: Option<&Exact>,
-) -> Result<Vec<Boundary<'s>>, CaseError> {
-    let expected = match solution {
-        None => "one boundary with contact, such as [boundary.bottom] contact = { gap = \"0\" }",
-        Some(_) => "one boundary with contact, such as bottom = \"contact\"",
-    };
-    let all = root.required_section("boundary", expected)?;
-    let mut boundaries = Vec::new();
-    for key in all.keys() {
-        let title = format!("[boundary.{}]", shown(key));
-        let (value, kind, condition) = match solution {
-            None => {
-                let value = all.require(key, "a table")?;
-                let condition = read_condition(&value.section(title.clone())?)?;
-                (value, None, condition)
-            }
-            Some(solution) => {
-                let value = all.require(key, "a kind")?;
-                let kind = read_kind(&value)?;
-                (value, Some(kind), kind.condition(solution))
-            }
-        };
-        boundaries.push(Boundary { value, title, key, kind, condition });
-    }
-    if boundaries.iter().any(|b| b.condition.is_contact()) {
-        Ok(boundaries)
-    } else {
-        Err(all.wrong(CaseMistake::Combination {
-            name: all.name().to_owned(),
-            found: "no contact".to_owned(),
-            expected: expected.to_owned(),
-        }))
-    }
-}
-
-fn read_condition(table: &Table) -> Result<Condition, CaseError> {
-    let value = table.exactly_one(&["displacement", "traction", "contact"])?;
-    if table.get("displacement").is_some() {
-        let [x, y] = value.pair()?;
-        return Ok(Condition::Displacement([component(&x)?, component(&y)?]));
-    }
-    if table.get("traction").is_some() {
-        return Ok(Condition::Traction(functions(&value)?));
-    }
-    if !value.is_table() {
-        return Err(value.wrong("a table, such as { gap = \"0\" }"));
-    }
-    let contact = value.table()?;
-    contact.only(&["gap"])?;
-    let gap = contact.get("gap").map_or(Ok(zero()), |gap| gap.function())?;
-    Ok(Condition::Contact { gap })
-}
-
-/// A component of a displacement, `None` if it is free.
-fn component(value: &Value) -> Result<Option<BoxedFunction>, CaseError> {
-    if value.as_text() == Some("free") { Ok(None) } else { value.function().map(Some) }
-}
-
-fn on_the_mesh(
-    mesh: &Mesh,
-    boundaries: Vec<Boundary>,
-) -> Result<BTreeMap<String, Condition>, CaseError> {
-    let mut conditions = BTreeMap::new();
-    for Boundary { value, title: name, key, condition, .. } in boundaries {
-        match mesh.edges_of(key) {
-            Err(error) => return Err(value.mistake(CaseMistake::Mesh { name, error })),
-            Ok([]) => {
-                return Err(value.mistake(CaseMistake::Combination {
-                    name,
-                    found: "no edge in this mesh".to_owned(),
-                    expected: "at least one".to_owned(),
-                }));
-            }
-            Ok(_) => conditions.insert(key.to_owned(), condition),
-        };
-    }
-    Ok(conditions)
+fn read_units(table: &Table) -> Result<Units, CaseError> {
+    table.only(&["length", "force"])?;
+    let word = |key: &str, example: &str| table.require(key, example)?.text().map(str::to_owned);
+    Ok(Units { length: word("length", "such as \"mm\"")?, force: word("force", "such as \"N\"")? })
 }
 
 fn read_method(table: Option<Table>) -> Result<Method, CaseError> {
@@ -643,11 +589,13 @@ fn read_probes(table: Option<Table>, mesh: &Mesh) -> Result<Vec<[f64; 2]>, CaseE
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fem::Condition;
+    use crate::kernel::{Material, Plane};
 
     fn read(text: &str) -> Result<Case, CaseError> {
         let file = Path::new("x.toml");
         let entries = DeTable::parse(text).unwrap();
-        case(file, &Table::whole(Source { file, text, settings: &[] }, entries.get_ref()))
+        case(file, &Table::whole(Source { file, text, settings: &[] }, entries.get_ref()), None)
     }
 
     const SMALL: &str = "

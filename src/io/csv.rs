@@ -8,21 +8,25 @@ use super::data::{DataError, check_finite};
 
 /// One node of one contact edge. A node between two edges has a row for each: sigma_n jumps there.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactRow {
-    /// Arc length from the start of the contact line.
+pub struct ContactRow<'a> {
+    /// Arc length from the start of the boundary.
     pub arc: f64,
     /// The place in the undeformed body.
     pub x: f64,
     /// The place in the undeformed body.
     pub y: f64,
-    /// u.n
+    /// u . n~
     pub u_n: f64,
     /// The gap g.
     pub gap: f64,
-    /// sigma_n(u), negative in compression.
+    /// n~ . sigma(u) n, negative in compression.
     pub sigma_n: f64,
     /// The contact pressure lambda^h, never positive.
     pub lambda: f64,
+    /// The recovered pressure, never negative.
+    pub pressure: f64,
+    /// The name of the boundary.
+    pub boundary: &'a str,
 }
 
 /// The text of the file: a line with the names, then a line for each row.
@@ -30,23 +34,39 @@ pub struct ContactRow {
 /// # Errors
 /// [`DataError::NotFinite`], with the number of the row, counted from 0.
 pub fn contact_csv(rows: &[ContactRow]) -> Result<String, DataError> {
-    let numbers =
-        |row: &ContactRow| [row.arc, row.x, row.y, row.u_n, row.gap, row.sigma_n, row.lambda];
-    let rows: Vec<[f64; 7]> = rows.iter().map(numbers).collect();
-    check_finite("row", rows.iter().map(<[f64; 7]>::as_slice))?;
-    let mut text = String::from("arc,x,y,u_n,gap,sigma_n,lambda\n");
-    for [arc, x, y, u_n, gap, sigma_n, lambda] in rows {
-        // Writing to a string cannot fail. The debug form is the one that uses exponents where they are shorter.
-        let _ = writeln!(text, "{arc:?},{x:?},{y:?},{u_n:?},{gap:?},{sigma_n:?},{lambda:?}");
+    let mut text = String::from("arc,x,y,u_n,gap,sigma_n,lambda,pressure,boundary\n");
+    let numbers: Vec<[f64; 8]> = rows
+        .iter()
+        .map(|&ContactRow { arc, x, y, u_n, gap, sigma_n, lambda, pressure, .. }| {
+            [arc, x, y, u_n, gap, sigma_n, lambda, pressure]
+        })
+        .collect();
+    check_finite("row", numbers.iter().map(<[f64; 8]>::as_slice))?;
+    for (row, numbers) in rows.iter().zip(numbers) {
+        for number in numbers {
+            // Writing to a string cannot fail. The debug form is the one that uses exponents where they are shorter.
+            let _ = write!(text, "{number:?},");
+        }
+        text.push_str(&word(row.boundary));
+        text.push('\n');
     }
     Ok(text)
+}
+
+/// A name as RFC 4180 has it: in quotes if it needs them.
+fn word(name: &str) -> String {
+    if name.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", name.replace('"', "\"\""))
+    } else {
+        name.to_owned()
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const ROW: ContactRow = ContactRow {
+    const ROW: ContactRow<'static> = ContactRow {
         arc: 0.1,
         x: 1.0 / 3.0,
         y: -0.0,
@@ -54,16 +74,20 @@ mod tests {
         gap: 0.0,
         sigma_n: 5e-324,
         lambda: -1.5e300,
+        pressure: 2.0,
+        boundary: "floor",
     };
 
     #[test]
     fn numbers_are_the_shortest_that_read_back() {
-        let text = contact_csv(&[ROW, ContactRow { arc: 2.0, ..ROW }]).unwrap();
+        let text =
+            contact_csv(&[ROW, ContactRow { arc: 2.0, boundary: "the \"floor\", left", ..ROW }])
+                .unwrap();
         assert_eq!(
             text,
-            "arc,x,y,u_n,gap,sigma_n,lambda\n\
-             0.1,0.3333333333333333,-0.0,-1e-17,0.0,5e-324,-1.5e300\n\
-             2.0,0.3333333333333333,-0.0,-1e-17,0.0,5e-324,-1.5e300\n"
+            "arc,x,y,u_n,gap,sigma_n,lambda,pressure,boundary\n\
+             0.1,0.3333333333333333,-0.0,-1e-17,0.0,5e-324,-1.5e300,2.0,floor\n\
+             2.0,0.3333333333333333,-0.0,-1e-17,0.0,5e-324,-1.5e300,2.0,\"the \"\"floor\"\", left\"\n"
         );
     }
 

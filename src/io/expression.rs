@@ -20,6 +20,8 @@
 //! An [`Expression`] is a flat postfix program, not a tree: evaluation is a loop over its steps, a sum of a hundred
 //! thousand terms is no deeper than a sum of two, and [`MOST_LEVELS`] bounds what does nest.
 
+mod gradient;
+
 use std::str::FromStr;
 
 use thiserror::Error;

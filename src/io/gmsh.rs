@@ -1,17 +1,22 @@
-//! Meshes from Gmsh: the format MSH 4.1, text or binary, of either byte order.
+//! Meshes from Gmsh: the formats MSH 4.1 and 2.2, text or binary, of either byte order. Here is 4.1 and what both share;
+//! what 2.2 writes otherwise is in `msh2`.
 //!
 //! A file is a list of sections, `$Name` .. `$EndName`. Four matter here; the others are skipped:
 //!
 //! | section | what is taken from it |
 //! | --- | --- |
-//! | `$PhysicalNames` | the names of the physical curves: the names of the boundary parts |
-//! | `$Entities` | which curve belongs to which physical curve |
-//! | `$Nodes` | the vertices; those that no triangle uses (the centre of an arc) are left out |
-//! | `$Elements` | 3-node triangles: the body; 2-node lines on physical curves: the boundary parts; points are ignored |
+//! | `$PhysicalNames` | the names of the physical points, curves and surfaces |
+//! | `$Entities` | which point, curve or surface belongs to which physical group |
+//! | `$Nodes` | the vertices; those that are no corner of a triangle (the centre of an arc) are left out |
+//! | `$Elements` | triangles: the body, by physical surface; lines on physical curves: the boundary parts; physical points |
+//!
+//! Elements of second order are read as those of first order if their edges are straight, and refused if they are curved.
 //!
 //! The format is described in the Gmsh reference manual, section "MSH file format". In a binary file an `int` has 4
 //! bytes, a `size_t` and a `double` have 8; in a text file all are words between white space. Nothing is allocated because
 //! a file announces it, only because it is there.
+
+mod msh2;
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::fmt;
@@ -30,6 +35,7 @@ use crate::quote::{self, quoted};
 /// Why a file gives no mesh, and where.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("{}{place}: {mistake}", quote::path(file))]
+#[non_exhaustive]
 pub struct GmshError {
     /// The mesh file.
     pub file: PathBuf,
@@ -70,7 +76,7 @@ pub enum GmshMistake {
     #[error("this is no Gmsh mesh: expected $MeshFormat on its first line")]
     NotGmsh,
     #[error(
-        "the version of the format is {version}; expected '4.1': export the mesh with gmsh -format msh41"
+        "the version of the format is {version}; expected '4.1' or '2.2': export the mesh with gmsh -format msh41"
     )]
     Version { version: String },
     #[error("found {found}, expected {expected}")]
@@ -91,16 +97,20 @@ pub enum GmshMistake {
     ElementKind { element: usize, kind: &'static str, number: i32, expected: &'static str },
     #[error("element {element} names node {node}, which is not in $Nodes")]
     NoSuchNode { element: usize, node: usize },
-    #[error("element {element} lies on curve {curve}, which is not in $Entities")]
-    NoSuchCurve { element: usize, curve: i32 },
+    #[error("element {element} lies on {kind} {entity}, which is not in $Entities")]
+    NoSuchEntity { element: usize, kind: &'static str, entity: i32 },
     #[error(
         "physical curve {physical} has no name; expected one, as in Physical Curve(\"floor\", {physical}) = {{{curve}}};"
     )]
     Unnamed { physical: i32, curve: i32 },
     #[error(
-        "curve {curve} belongs to the physical curves {names}; expected it in one of them only"
+        "{kind} {entity} belongs to the physical {kind}s {names}; expected it in one of them only"
     )]
-    SeveralNames { curve: i32, names: String },
+    SeveralNames { kind: &'static str, entity: i32, names: String },
+    #[error(
+        "element {element} is curved: the middle node {node} of its edge lies {off:e} of the edge's length off the middle; expected straight edges: mesh finer with element order 1 (Mesh.ElementOrder = 1), the smooth boundary is found from the vertices"
+    )]
+    Curved { element: usize, node: usize, off: f64 },
     #[error("{0}")]
     OutOfMemory(#[from] OutOfMemory),
     #[error("{error} ({note})")]
@@ -163,12 +173,18 @@ pub fn from_bytes(bytes: &[u8], file: &Path) -> Result<Mesh> {
     make_mesh(content).map_err(|mistake| cursor.wrong(Place::File, mistake))
 }
 
+/// Something for points, curves and surfaces each.
+type ByDimension<T> = [T; 3];
+
+/// What messages call the entities of a dimension.
+const KINDS: ByDimension<&str> = ["point", "curve", "surface"];
+
 /// What the sections say, in the tags of the file.
 struct Content {
-    /// The names of the physical curves.
-    names: BTreeMap<i32, String>,
-    /// The physical curves of each curve.
-    curves: BTreeMap<i32, Vec<i32>>,
+    /// The names of the physical groups.
+    names: ByDimension<BTreeMap<i32, String>>,
+    /// The physical groups of each entity.
+    groups: ByDimension<BTreeMap<i32, Vec<i32>>>,
     nodes: Vec<Node>,
     elements: Elements,
 }
@@ -180,28 +196,78 @@ struct Node {
 
 #[derive(Default)]
 struct Elements {
-    triangles: Vec<Triangle>,
-    lines: Vec<Line>,
+    points: Vec<Piece<1>>,
+    lines: Vec<Piece<2>>,
+    triangles: Vec<Piece<3>>,
+    /// The middle nodes of edges of second order, with the element and the ends of the edge.
+    middles: Vec<Middle>,
 }
 
-struct Triangle {
+/// An element by its corners, on an entity of its dimension.
+struct Piece<const N: usize> {
     tag: usize,
-    nodes: [usize; 3],
+    nodes: [usize; N],
+    entity: i32,
 }
 
-struct Line {
-    tag: usize,
-    nodes: [usize; 2],
-    curve: i32,
+struct Middle {
+    element: usize,
+    node: usize,
+    ends: [usize; 2],
+}
+
+impl Elements {
+    /// Reads the nodes of the element `tag` of type `number` on `entity`, if it is one of those in use.
+    fn read(
+        &mut self,
+        cursor: &mut Cursor,
+        start: usize,
+        tag: usize,
+        number: i32,
+        entity: i32,
+        node: impl Fn(&mut Cursor) -> Result<usize>,
+    ) -> Result<()> {
+        match number {
+            POINT => {
+                let nodes = [node(cursor)?];
+                self.points.push(Piece { tag, nodes, entity });
+            }
+            LINE | LINE_OF_3 => {
+                let nodes = [node(cursor)?, node(cursor)?];
+                self.lines.push(Piece { tag, nodes, entity });
+                if number == LINE_OF_3 {
+                    self.middles.push(Middle { element: tag, node: node(cursor)?, ends: nodes });
+                }
+            }
+            TRIANGLE | TRIANGLE_OF_6 => {
+                let nodes = [node(cursor)?, node(cursor)?, node(cursor)?];
+                self.triangles.push(Piece { tag, nodes, entity });
+                if number == TRIANGLE_OF_6 {
+                    let [a, b, c] = nodes;
+                    for ends in [[a, b], [b, c], [c, a]] {
+                        self.middles.push(Middle { element: tag, node: node(cursor)?, ends });
+                    }
+                }
+            }
+            _ => {
+                let (kind, expected) = other_kind(number);
+                let mistake = GmshMistake::ElementKind { element: tag, kind, number, expected };
+                return Err(cursor.wrong_at(start, mistake));
+            }
+        }
+        Ok(())
+    }
 }
 
 fn read_sections(cursor: &mut Cursor) -> Result<Content> {
-    read_format(cursor)?;
-    let (mut names, mut curves, mut nodes, mut elements) = (None, None, None, None);
+    if read_format(cursor)? == Version::Two {
+        return msh2::read_sections(cursor);
+    }
+    let (mut names, mut groups, mut nodes, mut elements) = (None, None, None, None);
     while let Some((start, section)) = cursor.section()? {
         let first = match section {
             "PhysicalNames" => names.replace(read_names(cursor)?).is_none(),
-            "Entities" => curves.replace(read_curves(cursor)?).is_none(),
+            "Entities" => groups.replace(read_entities(cursor)?).is_none(),
             "Nodes" => nodes.replace(read_nodes(cursor)?).is_none(),
             "Elements" => elements.replace(read_elements(cursor)?).is_none(),
             _ => {
@@ -218,23 +284,27 @@ fn read_sections(cursor: &mut Cursor) -> Result<Content> {
     let missing = |section| cursor.wrong(Place::File, GmshMistake::NoSection { section });
     Ok(Content {
         names: names.unwrap_or_default(),
-        curves: curves.ok_or_else(|| missing("Entities"))?,
+        groups: groups.ok_or_else(|| missing("Entities"))?,
         nodes: nodes.ok_or_else(|| missing("Nodes"))?,
         elements: elements.ok_or_else(|| missing("Elements"))?,
     })
 }
 
 /// `$MeshFormat`: version, text or binary, size of a `size_t`; in a binary file then the number 1.
-fn read_format(cursor: &mut Cursor) -> Result<()> {
+fn read_format(cursor: &mut Cursor) -> Result<Version> {
     let (start, heading) = cursor.line();
     if heading != b"$MeshFormat" {
         return Err(cursor.wrong_at(start, GmshMistake::NotGmsh));
     }
     let (start, version) = cursor.word("the version of the format")?;
-    if version != b"4.1" {
-        let version = shown(version);
-        return Err(cursor.wrong_at(start, GmshMistake::Version { version }));
-    }
+    let version = match version {
+        b"4.1" => Version::Four,
+        b"2.2" => Version::Two,
+        _ => {
+            let version = shown(version);
+            return Err(cursor.wrong_at(start, GmshMistake::Version { version }));
+        }
+    };
     let binary = cursor.int_within(0..=1, "0 for a text file or 1 for a binary file")?;
     cursor.int_within(8..=8, "8, the size of a number")?;
     if binary == 1 {
@@ -250,14 +320,24 @@ fn read_format(cursor: &mut Cursor) -> Result<()> {
             }
         };
     }
-    cursor.end_of("MeshFormat")
+    cursor.end_of("MeshFormat")?;
+    Ok(version)
 }
 
-/// `$PhysicalNames`, always text: a count; then dimension, tag and "name" on a line each. Returns those of the curves.
-fn read_names(cursor: &mut Cursor) -> Result<BTreeMap<i32, String>> {
+/// Of the format.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Version {
+    /// 4.1
+    Four,
+    /// 2.2
+    Two,
+}
+
+/// `$PhysicalNames`, always text: a count; then dimension, tag and "name" on a line each.
+fn read_names(cursor: &mut Cursor) -> Result<ByDimension<BTreeMap<i32, String>>> {
     let mut text = Cursor { form: Form::Text, ..*cursor };
     let count = text.size("the number of physical names")?;
-    let mut names = BTreeMap::new();
+    let mut names = <ByDimension<BTreeMap<i32, String>>>::default();
     for _ in 0..count {
         let dimension = text.int_within(0..=3, "a dimension from 0 to 3")?;
         let tag = text.int("the tag of a physical group")?;
@@ -267,8 +347,8 @@ fn read_names(cursor: &mut Cursor) -> Result<BTreeMap<i32, String>> {
         let name = name.ok_or_else(|| {
             text.unexpected(start, shown(line), "the name of a physical group in quotes")
         })?;
-        if dimension == 1 && !name.is_empty() {
-            names.insert(tag, name.to_owned());
+        if let (Some(of_dimension), false) = (names.get_mut(dimension as usize), name.is_empty()) {
+            of_dimension.insert(tag, name.to_owned());
         }
     }
     cursor.at = text.at;
@@ -276,13 +356,13 @@ fn read_names(cursor: &mut Cursor) -> Result<BTreeMap<i32, String>> {
 }
 
 /// `$Entities`: the counts of points, curves, surfaces and volumes; then of each the tag, the place (of a point) or the
-/// box around it, the physical groups and (except of a point) what bounds it. Returns the groups of the curves.
-fn read_curves(cursor: &mut Cursor) -> Result<BTreeMap<i32, Vec<i32>>> {
+/// box around it, the physical groups and (except of a point) what bounds it. Returns the groups.
+fn read_entities(cursor: &mut Cursor) -> Result<ByDimension<BTreeMap<i32, Vec<i32>>>> {
     let mut counts = [0; 4];
     for count in &mut counts {
         *count = cursor.size("a number of entities")?;
     }
-    let mut curves = BTreeMap::new();
+    let mut all = <ByDimension<BTreeMap<i32, Vec<i32>>>>::default();
     for (dimension, count) in counts.into_iter().enumerate() {
         for _ in 0..count {
             let tag = cursor.int("the tag of an entity")?;
@@ -299,12 +379,12 @@ fn read_curves(cursor: &mut Cursor) -> Result<BTreeMap<i32, Vec<i32>>> {
                     cursor.int("the tag of an entity")?;
                 }
             }
-            if dimension == 1 {
-                curves.insert(tag, groups);
+            if let Some(of_dimension) = all.get_mut(dimension) {
+                of_dimension.insert(tag, groups);
             }
         }
     }
-    Ok(curves)
+    Ok(all)
 }
 
 /// `$Nodes`: the number of blocks, three numbers of no use here; then in each block dimension and tag of an entity,
@@ -359,24 +439,7 @@ fn read_elements(cursor: &mut Cursor) -> Result<Elements> {
         for _ in 0..count {
             let start = cursor.here();
             let tag = cursor.size("the tag of an element")?;
-            match number {
-                POINT => {
-                    cursor.size(NODE)?;
-                }
-                LINE => {
-                    let nodes = [cursor.size(NODE)?, cursor.size(NODE)?];
-                    elements.lines.push(Line { tag, nodes, curve: entity });
-                }
-                TRIANGLE => {
-                    let nodes = [cursor.size(NODE)?, cursor.size(NODE)?, cursor.size(NODE)?];
-                    elements.triangles.push(Triangle { tag, nodes });
-                }
-                _ => {
-                    let (kind, expected) = other_kind(number);
-                    let mistake = GmshMistake::ElementKind { element: tag, kind, number, expected };
-                    return Err(cursor.wrong_at(start, mistake));
-                }
-            }
+            elements.read(cursor, start, tag, number, entity, |cursor| cursor.size(NODE))?;
         }
     }
     Ok(elements)
@@ -394,6 +457,9 @@ fn read_block_count(cursor: &mut Cursor, of: &str) -> Result<usize> {
 const LINE: i32 = 1;
 const TRIANGLE: i32 = 2;
 const POINT: i32 = 15;
+// Their counterparts of second order.
+const LINE_OF_3: i32 = 8;
+const TRIANGLE_OF_6: i32 = 9;
 
 /// What another element type is, and what to do about it.
 fn other_kind(number: i32) -> (&'static str, &'static str) {
@@ -406,8 +472,6 @@ fn other_kind(number: i32) -> (&'static str, &'static str) {
         5 => ("8-node hexahedron", PLANE),
         6 => ("6-node prism", PLANE),
         7 => ("5-node pyramid", PLANE),
-        8 => ("3-node line", ORDER),
-        9 => ("6-node triangle", ORDER),
         10 => ("9-node quadrangle", TRIANGLES),
         16 => ("8-node quadrangle", TRIANGLES),
         21 => ("10-node triangle", ORDER),
@@ -426,7 +490,7 @@ const NO_TRIANGLE: &str =
 /// Gives the triangles and lines on nodes that lie together the first of these nodes, and leaves out what loses an edge by
 /// it. Nodes that no triangle uses, and elements on nodes that are not there, stay as they are.
 fn merge_nodes(content: &mut Content, share: f64) {
-    let Elements { triangles, lines } = &mut content.elements;
+    let Elements { triangles, lines, points, .. } = &mut content.elements;
     let used: HashSet<usize> = triangles.iter().flat_map(|t| t.nodes).collect();
     let kept: Vec<&Node> = content.nodes.iter().filter(|node| used.contains(&node.tag)).collect();
     let places: Vec<[f64; 2]> = kept.iter().map(|node| node.place).collect();
@@ -439,15 +503,17 @@ fn merge_nodes(content: &mut Content, share: f64) {
     let become_first = |tag: &mut usize| *tag = first.get(tag).copied().unwrap_or(*tag);
     triangles.iter_mut().flat_map(|t| &mut t.nodes).for_each(become_first);
     lines.iter_mut().flat_map(|line| &mut line.nodes).for_each(become_first);
+    points.iter_mut().flat_map(|point| &mut point.nodes).for_each(become_first);
     triangles.retain(|t| {
         t.nodes[0] != t.nodes[1] && t.nodes[1] != t.nodes[2] && t.nodes[2] != t.nodes[0]
     });
     lines.retain(|line| line.nodes[0] != line.nodes[1]);
 }
 
-/// The mesh of the nodes that triangles use, in the order of the file.
+/// The mesh of the corners of triangles, in the order of the file.
 fn make_mesh(content: Content) -> std::result::Result<Mesh, GmshMistake> {
-    let Content { names, curves, nodes, elements: Elements { triangles, lines } } = content;
+    let Content { names, groups, nodes, elements } = content;
+    let Elements { points, lines, triangles, middles } = elements;
     // Two maps from tags, which are at most half empty and twice as large for a moment while they grow; the lists.
     let maps = 3 * bytes_of::<[usize; 4]>(nodes.len()).saturating_mul(2);
     memory::check(maps.saturating_add(bytes_of::<[usize; 3]>(triangles.len())))?;
@@ -463,6 +529,10 @@ fn make_mesh(content: Content) -> std::result::Result<Mesh, GmshMistake> {
     let find = |element, node| {
         position.get(&node).copied().ok_or(GmshMistake::NoSuchNode { element, node })
     };
+    for Middle { element, node, ends: [a, b] } in middles {
+        let [a, b, middle] = [find(element, a)?, find(element, b)?, find(element, node)?];
+        check_straight(element, node, [a, b, middle].map(|i| nodes[i].place))?;
+    }
     let mut used = vec![false; nodes.len()];
     for triangle in &triangles {
         for node in triangle.nodes {
@@ -473,14 +543,14 @@ fn make_mesh(content: Content) -> std::result::Result<Mesh, GmshMistake> {
     let vertex_of: HashMap<usize, usize> =
         kept.iter().enumerate().map(|(vertex, node)| (node.tag, vertex)).collect();
 
-    let group_of = name_curves(&names, curves)?;
+    let [of_point, of_curve, of_surface] = name_entities(&names, groups)?;
+    let [point_names, curve_names, surface_names] = names;
     let mut parts: BTreeMap<String, Vec<[usize; 2]>> =
-        names.into_values().map(|name| (name, Vec::new())).collect();
-    for Line { tag, nodes: [a, b], curve } in lines {
+        curve_names.into_values().map(|name| (name, Vec::new())).collect();
+    for Piece { tag, nodes: [a, b], entity } in lines {
         find(tag, a)?;
         find(tag, b)?;
-        let name = group_of.get(&curve).ok_or(GmshMistake::NoSuchCurve { element: tag, curve })?;
-        let Some(name) = name else { continue };
+        let Some(name) = name_of(&of_curve, 1, tag, entity)? else { continue };
         let (Some(&first), Some(&second)) = (vertex_of.get(&a), vertex_of.get(&b)) else {
             return Err(GmshMistake::Mesh {
                 error: MeshError::NoSuchEdge { boundary: name.clone(), vertices: [a, b] },
@@ -489,34 +559,93 @@ fn make_mesh(content: Content) -> std::result::Result<Mesh, GmshMistake> {
         };
         parts.entry(name.clone()).or_default().push([first, second]);
     }
+    let mut surfaces: BTreeMap<String, Vec<usize>> =
+        surface_names.into_values().map(|name| (name, Vec::new())).collect();
+    for (t, &Piece { tag, entity, .. }) in triangles.iter().enumerate() {
+        if let Some(name) = name_of(&of_surface, 2, tag, entity)? {
+            surfaces.entry(name.clone()).or_default().push(t);
+        }
+    }
+    let mut named_points = BTreeMap::new();
+    if !point_names.is_empty() {
+        for Piece { tag, nodes: [node], entity } in points {
+            let name = name_of(&of_point, 0, tag, entity)?;
+            if let (Some(name), Some(&vertex)) = (name, vertex_of.get(&node)) {
+                named_points.insert(name.clone(), vertex);
+            }
+        }
+    }
 
     let corners = triangles.iter().map(|t| t.nodes.map(|node| vertex_of[&node])).collect();
-    Mesh::new(kept.iter().map(|node| node.place).collect(), corners, parts).map_err(|error| {
-        let note = if matches!(error, MeshError::Clockwise { .. }) { CLOCKWISE } else { TAGS };
-        let error = error.renumbered(|vertex| kept[vertex].tag, |t| triangles[t].tag);
-        GmshMistake::Mesh { error, note }
-    })
+    let mesh = Mesh::new(kept.iter().map(|node| node.place).collect(), corners, parts);
+    match mesh {
+        Ok(mesh) => Ok(mesh.with_names(surfaces, named_points)),
+        Err(error) => {
+            let note = if matches!(error, MeshError::Clockwise { .. }) { CLOCKWISE } else { TAGS };
+            let error = error.renumbered(|vertex| kept[vertex].tag, |t| triangles[t].tag);
+            Err(GmshMistake::Mesh { error, note })
+        }
+    }
 }
 
-/// The name of each curve, if it is in a physical curve.
-fn name_curves(
-    names: &BTreeMap<i32, String>,
-    curves: BTreeMap<i32, Vec<i32>>,
-) -> std::result::Result<BTreeMap<i32, Option<String>>, GmshMistake> {
-    let mut group_of = BTreeMap::new();
-    for (curve, groups) in curves {
-        let mut found = Vec::new();
-        for physical in groups {
-            let name = names.get(&physical).ok_or(GmshMistake::Unnamed { physical, curve })?;
-            found.push(name);
+/// The middle node of a straight edge may be off the middle by this share of the edge's length: coordinates in a text file
+/// have 16 digits, and a thousandth of the body may be the length of an edge.
+const STRAIGHT: f64 = 1e-10;
+
+/// Refuses an edge whose middle node does not lie in its middle.
+fn check_straight(
+    element: usize,
+    node: usize,
+    [a, b, middle]: [[f64; 2]; 3],
+) -> std::result::Result<(), GmshMistake> {
+    let off = [0, 1].map(|c| middle[c] - (a[c] + b[c]) / 2.0);
+    let off = off[0].hypot(off[1]) / (b[0] - a[0]).hypot(b[1] - a[1]);
+    if off <= STRAIGHT { Ok(()) } else { Err(GmshMistake::Curved { element, node, off }) }
+}
+
+/// The name of each entity, if it is in a physical group.
+type NameOf = BTreeMap<i32, Option<String>>;
+
+/// The name of the entity of this dimension on which an element lies.
+fn name_of(
+    names: &NameOf,
+    dimension: usize,
+    element: usize,
+    entity: i32,
+) -> std::result::Result<Option<&String>, GmshMistake> {
+    let kind = KINDS[dimension];
+    let name = names.get(&entity).ok_or(GmshMistake::NoSuchEntity { element, kind, entity })?;
+    Ok(name.as_ref())
+}
+
+/// The names of all entities. A group without a name is an error for curves, which are meant as boundaries, and no name for
+/// points and surfaces.
+fn name_entities(
+    names: &ByDimension<BTreeMap<i32, String>>,
+    groups: ByDimension<BTreeMap<i32, Vec<i32>>>,
+) -> std::result::Result<ByDimension<NameOf>, GmshMistake> {
+    let mut all = <ByDimension<NameOf>>::default();
+    for (dimension, entities) in groups.into_iter().enumerate() {
+        for (entity, groups) in entities {
+            let mut found = Vec::new();
+            for physical in groups {
+                match names[dimension].get(&physical) {
+                    Some(name) => found.push(name),
+                    None if dimension == 1 => {
+                        return Err(GmshMistake::Unnamed { physical, curve: entity });
+                    }
+                    None => {}
+                }
+            }
+            if found.len() > 1 {
+                let names: Vec<String> = found.iter().map(|name| quoted(name, '\'')).collect();
+                let (kind, names) = (KINDS[dimension], names.join(" and "));
+                return Err(GmshMistake::SeveralNames { kind, entity, names });
+            }
+            all[dimension].insert(entity, found.first().map(|name| (*name).clone()));
         }
-        if found.len() > 1 {
-            let names: Vec<String> = found.iter().map(|name| quoted(name, '\'')).collect();
-            return Err(GmshMistake::SeveralNames { curve, names: names.join(" and ") });
-        }
-        group_of.insert(curve, found.first().map(|name| (*name).clone()));
     }
-    Ok(group_of)
+    Ok(all)
 }
 
 /// How numbers are written.
@@ -802,11 +931,15 @@ mod tests {
             ints(&[1]),
             b"\n$EndMeshFormat\n$PhysicalNames\n1\n1 7 \"floor\"\n$EndPhysicalNames\n$Entities\n"
                 .to_vec(),
-            sizes(&[0, 1, 0, 0]),
+            sizes(&[0, 1, 1, 0]),
             ints(&[4]),
             doubles(&[0.0, 0.0, 0.0, 2.0, 0.0, 0.0]),
             sizes(&[1]),
             ints(&[7]),
+            sizes(&[0]),
+            ints(&[1]),
+            doubles(&[0.0, 0.0, 0.0, 2.0, 1.5, 0.0]),
+            sizes(&[0]),
             sizes(&[0]),
             b"\n$EndEntities\n$Nodes\n".to_vec(),
             sizes(&[1, 3, 10, 30]),

@@ -1,7 +1,13 @@
 //! What goes in and out: case files, Gmsh meshes, VTU, SVG, JSON.
 
 #[cfg(feature = "files")]
+pub mod body;
+#[cfg(feature = "files")]
+mod boundaries;
+#[cfg(feature = "files")]
 pub mod case;
+#[cfg(feature = "files")]
+pub mod certificate;
 #[cfg(feature = "files")]
 pub mod convergence;
 pub mod csv;
@@ -9,6 +15,8 @@ pub mod data;
 #[cfg(feature = "files")]
 mod exact;
 pub mod expression;
+#[cfg(feature = "files")]
+pub mod field;
 pub mod files;
 pub mod gmsh;
 pub mod input;

@@ -7,13 +7,18 @@ use std::time::{Duration, Instant};
 use thiserror::Error;
 
 use super::case::Case;
+use super::certificate;
 use super::csv::{ContactRow, contact_csv};
 use super::data::DataError;
 use super::files::{Output, WriteError};
 use super::numbers::short;
 use super::picture::{ContactSample, Scene, picture};
-use super::result::{GammaChoice, MeshSizes, NewtonHistory, Results, Seconds, result_json};
+use super::result::{
+    Certificates, Choices, GammaChoice, MeshSizes, NewtonHistory, Results, SCHEMA, Seconds,
+    result_json,
+};
 use super::vtu::{CellKind, Field, Grid, Values, vtu};
+use crate::certify::{CertifyError, Continuous, certify};
 use crate::fem;
 use crate::kernel::Stress;
 use crate::memory::{self, OutOfMemory};
@@ -34,6 +39,7 @@ pub fn only_in(names: &[&'static str], others: &[&str]) -> Vec<&'static str> {
 
 /// Why the files of a run could not be written.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum OutputError {
     /// A file or folder.
     #[error(transparent)]
@@ -54,7 +60,31 @@ pub enum OutputError {
     Problem(#[from] fem::DataError),
 }
 
-/// Writes the files of a case into `folder`; returns their paths and the content of result.json.
+/// What is known of the distance from the true solution, and how long it took to know.
+#[derive(Clone, Debug)]
+pub struct Certified {
+    /// The bound, or why there is none.
+    pub result: Result<Continuous, CertifyError>,
+    /// The time.
+    pub time: Duration,
+}
+
+impl Certified {
+    /// Certifies a solution.
+    pub fn new(case: &Case, solution: &Solution) -> Self {
+        let start = Instant::now();
+        let result = certify(&case.problem, solution);
+        Certified { result, time: start.elapsed() }
+    }
+
+    /// As result.json has it.
+    pub fn report(&self) -> Certificates {
+        Certificates { continuous: (&self.result).into() }
+    }
+}
+
+/// Writes the files of a case into `folder`; returns their paths and the content of result.json. `certificate` asks for
+/// the files certificate.json and certificate.bin, too, where there is a certificate.
 ///
 /// # Errors
 /// A folder or file that can't be written, a number that is not finite.
@@ -64,23 +94,83 @@ pub fn write(
     solution: &Solution,
     read: Duration,
     times: Times,
+    certified: Option<&Certified>,
+    certificate: bool,
 ) -> Result<(Vec<PathBuf>, Results), OutputError> {
     let start = Instant::now();
     memory::check(bytes_to_write(solution))?;
     let mut output = Output::new(folder)?;
     output.replaces(&only_in(&FILES_OF_FENICSX, &FILES));
+    if !certificate {
+        output.replaces(&certificate::FILES);
+    }
     let mut stage = |file, bytes: Result<Vec<u8>, DataError>| -> Result<(), OutputError> {
         let bytes = bytes.map_err(|error| OutputError::Data { file, error })?;
         Ok(output.stage(file, &bytes)?)
     };
-    stage("solution.vtu", solution_vtu(solution))?;
+    let continuous = certified.and_then(|c| c.result.as_ref().ok());
+    let indicators = continuous.map(|c| c.indicators.as_slice());
+    stage("solution.vtu", solution_vtu(solution, indicators))?;
     stage("contact.vtu", contact_vtu(solution))?;
     stage("contact.csv", contact_csv(&contact_rows(solution)).map(String::into_bytes))?;
     stage("picture.svg", draw(case, solution).map(String::into_bytes))?;
-    let seconds = Seconds::new(read, &times, start.elapsed());
-    let results = results(case, solution, seconds)?;
+    if let (Some(continuous), true) = (continuous, certificate) {
+        for (file, bytes) in certificate_files(&case.title, continuous) {
+            stage(file, bytes)?;
+        }
+    }
+    let mut seconds = Seconds::new(read, &times, start.elapsed());
+    seconds.certify = certified.map_or(0.0, |c| c.time.as_secs_f64());
+    let mut results = results(case, solution, seconds)?;
+    results.certificate = certified.map(Certified::report);
     stage("result.json", result_json(&results).map(String::into_bytes))?;
     Ok((output.publish()?, results))
+}
+
+/// Writes what is certified of a displacement from elsewhere: certified.vtu with the `field`, its admissible part and the
+/// bound of its error by triangles, certificate.json and certificate.bin.
+///
+/// # Errors
+/// A folder or file that can't be written.
+pub fn write_certified(
+    folder: &Path,
+    case: &Case,
+    field: &[[f64; 2]],
+    certified: &Continuous,
+) -> Result<Vec<PathBuf>, OutputError> {
+    let mut output = Output::new(folder)?;
+    let mesh = &case.problem.mesh;
+    let grid = vtu(&Grid {
+        kind: CellKind::Triangle,
+        points: mesh.vertices(),
+        connectivity: mesh.triangles().as_flattened(),
+        point_data: &[
+            Field { name: "displacement", values: Values::Vectors(field) },
+            Field {
+                name: "admissible",
+                values: Values::Vectors(&certified.certificate.displacement),
+            },
+        ],
+        cell_data: &[Field { name: "error_bound", values: Values::Scalars(&certified.indicators) }],
+    });
+    let grid = grid.map_err(|error| OutputError::Data { file: "certified.vtu", error })?;
+    output.stage("certified.vtu", &grid)?;
+    for (file, bytes) in certificate_files(&case.title, certified) {
+        let bytes = bytes.map_err(|error| OutputError::Data { file, error })?;
+        output.stage(file, &bytes)?;
+    }
+    Ok(output.publish()?)
+}
+
+/// certificate.json and certificate.bin.
+fn certificate_files(
+    title: &str,
+    certified: &Continuous,
+) -> [(&'static str, Result<Vec<u8>, DataError>); 2] {
+    let (header, arrays) = certificate::encode(title, certified);
+    let text = serde_json::to_vec_pretty(&header)
+        .map_err(|_| DataError::NotFinite { place: certificate::FILES[0].to_owned() });
+    [(certificate::FILES[0], text), (certificate::FILES[1], Ok(arrays))]
 }
 
 /// The bytes that making one file after the other takes at most: the numbers of solution.vtu once as they are and once as
@@ -115,7 +205,12 @@ pub fn results(
     Ok(Results {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         case: Some(case.file.display().to_string()),
+        schema: SCHEMA,
         title: case.title.clone(),
+        units: case.units.clone(),
+        materials: case.materials.clone(),
+        choices: Some(Choices::from(&case.method)),
+        remarks: remarks(case, solution),
         mesh: MeshSizes {
             vertices: mesh.vertices().len(),
             triangles: mesh.triangles().len(),
@@ -133,27 +228,72 @@ pub fn results(
         },
         method: Some(solution.method),
         quantities: solution.quantities.clone(),
+        contact: solution.boundaries.clone(),
+        reaction_moments: solution.quantities.reaction_moments.clone(),
+        balance: Some(solution.balance),
         probes: probes.collect(),
+        certificate: None,
         errors,
         seconds,
     })
 }
 
-fn solution_vtu(s: &Solution) -> Result<Vec<u8>, DataError> {
+/// Strains above this are more than small-strain theory is for.
+const LARGE_STRAIN: f64 = 0.05;
+
+/// Displacements above this share of the body's size likewise.
+const LARGE_DISPLACEMENT: f64 = 0.1;
+
+/// What a person should know before the numbers are used.
+fn remarks(case: &Case, solution: &Solution) -> Vec<String> {
+    let mut remarks = Vec::new();
+    let length = case.units.as_ref().map_or(String::new(), |units| format!(" {}", units.length));
+    let strain = solution.largest_strain;
+    if strain > LARGE_STRAIN {
+        remarks.push(format!(
+            "the largest strain is {} %: strains are taken to be small (below {} %); check load, modulus and units",
+            short(100.0 * strain, 3),
+            short(100.0 * LARGE_STRAIN, 3)
+        ));
+    }
+    let vertices = case.problem.mesh.vertices();
+    let extent = |c: usize| {
+        let (low, high) = vertices
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x[c]), h.max(x[c])));
+        high - low
+    };
+    let size = extent(0).max(extent(1));
+    let largest = solution.quantities.max_displacement;
+    if largest > LARGE_DISPLACEMENT * size {
+        remarks.push(format!(
+            "the largest displacement is {}{length}, the body is {}{length} long: displacements are taken to be small; check load, modulus and units",
+            short(largest, 3),
+            short(size, 3)
+        ));
+    }
+    remarks
+}
+
+fn solution_vtu(s: &Solution, indicators: Option<&[f64]>) -> Result<Vec<u8>, DataError> {
     let all = |(stress, zz): &(Stress<f64>, f64)| {
         let [xx, yy, xy] = stress.components();
         [xx, yy, *zz, xy]
     };
     let stress: Vec<[f64; 4]> = s.stress.iter().map(all).collect();
+    let mut cell_data = vec![
+        Field { name: "stress", values: Values::SymmetricTensors(&stress) },
+        Field { name: "von_mises", values: Values::Scalars(&s.von_mises) },
+    ];
+    if let Some(indicators) = indicators {
+        cell_data.push(Field { name: "error_bound", values: Values::Scalars(indicators) });
+    }
     vtu(&Grid {
         kind: if s.degree == 1 { CellKind::Triangle } else { CellKind::QuadraticTriangle },
         points: &s.nodes,
         connectivity: &s.elements,
         point_data: &[Field { name: "displacement", values: Values::Vectors(&s.displacement) }],
-        cell_data: &[
-            Field { name: "stress", values: Values::SymmetricTensors(&stress) },
-            Field { name: "von_mises", values: Values::Scalars(&s.von_mises) },
-        ],
+        cell_data: &cell_data,
     })
 }
 
@@ -173,6 +313,8 @@ fn contact_vtu(s: &Solution) -> Result<Vec<u8>, DataError> {
     let scalars = |of: fn(&ContactValues) -> f64| points.iter().map(|p| of(p)).collect::<Vec<_>>();
     let (u_n, gap) = (scalars(|p| p.u_n), scalars(|p| p.gap));
     let (sigma_n, lambda) = (scalars(|p| p.sigma_n), scalars(|p| p.lambda));
+    let pressure = scalars(|p| p.pressure);
+    let direction: Vec<[f64; 2]> = points.iter().map(|p| p.direction).collect();
     vtu(&Grid {
         kind: if s.degree == 1 { CellKind::Line } else { CellKind::QuadraticLine },
         points: &places,
@@ -183,18 +325,24 @@ fn contact_vtu(s: &Solution) -> Result<Vec<u8>, DataError> {
             Field { name: "gap", values: Values::Scalars(&gap) },
             Field { name: "sigma_n", values: Values::Scalars(&sigma_n) },
             Field { name: "lambda", values: Values::Scalars(&lambda) },
+            Field { name: "pressure", values: Values::Scalars(&pressure) },
+            Field { name: "direction", values: Values::Vectors(&direction) },
         ],
         cell_data: &[],
     })
 }
 
-fn contact_rows(s: &Solution) -> Vec<ContactRow> {
-    let row = |p: &ContactValues| {
-        let [x, y] = s.nodes[p.node];
-        let ContactValues { arc, u_n, gap, sigma_n, lambda, .. } = *p;
-        ContactRow { arc, x, y, u_n, gap, sigma_n, lambda }
-    };
-    s.contact.iter().flat_map(|edge| edge.points.iter().map(row)).collect()
+fn contact_rows(s: &Solution) -> Vec<ContactRow<'_>> {
+    let mut rows = Vec::new();
+    for edge in &s.contact {
+        for p in &edge.points {
+            let [x, y] = s.nodes[p.node];
+            let ContactValues { arc, u_n, gap, sigma_n, lambda, pressure, .. } = *p;
+            let boundary = &*edge.boundary;
+            rows.push(ContactRow { arc, x, y, u_n, gap, sigma_n, lambda, pressure, boundary });
+        }
+    }
+    rows
 }
 
 fn draw(case: &Case, s: &Solution) -> Result<String, DataError> {
@@ -242,16 +390,23 @@ fn draw(case: &Case, s: &Solution) -> Result<String, DataError> {
 fn contact_parts(s: &Solution) -> Vec<Vec<ContactSample>> {
     let mut parts: Vec<Vec<ContactSample>> = Vec::new();
     let mut end = None;
+    let mut boundary = "";
     for edge in &s.contact {
+        if *edge.boundary != *boundary {
+            end = None;
+        }
+        boundary = &edge.boundary;
         let samples = edge.points.iter().map(|p| ContactSample {
             position: s.nodes[p.node],
-            normal: edge.normal,
+            normal: p.direction,
             displacement: s.displacement[p.node],
             gap: p.gap,
-            pressure: -p.lambda,
+            pressure: p.pressure,
         });
         match parts.last_mut() {
-            Some(part) if end == edge.points.first().map(|p| p.node) => part.extend(samples),
+            Some(part) if end.is_some() && end == edge.points.first().map(|p| p.node) => {
+                part.extend(samples)
+            }
             _ => parts.push(samples.collect()),
         }
         end = edge.points.last().map(|p| p.node);

@@ -4,26 +4,49 @@
 //! together with its name: `null` never stands in the file, and a NaN or an infinity is an error that names it, where
 //! JSON alone would turn it into `null` without a word. Everything but [`Seconds`] is the same from run to run.
 
+use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 use serde_json::ser::{Formatter, Serializer};
 
+use super::body::MaterialEcho;
+use super::case::Units;
 use super::data::DataError;
+use crate::certify::{CertifyError, Continuous};
 use crate::fem::Errors;
-use crate::solve::{GammaReport, MethodReport, Quantities, Status, Times};
+use crate::solve::{
+    ContactBoundary, ContactQuadrature, EnergyBalance, Gamma0, GammaReport, Method, MethodReport,
+    Quantities, Status, Times,
+};
 
 /// The content of result.json, in its order.
 #[derive(Clone, Debug, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Results {
     /// The version of this program.
     pub version: String,
     /// The case file, as the command was given it; left out by the engine fenicsx.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub case: Option<String>,
+    /// The version of this layout: [`SCHEMA`].
+    #[serde(default = "first")]
+    pub schema: u32,
     /// The title of the case.
     pub title: String,
+    /// The units of the case; left out if it names none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub units: Option<Units>,
+    /// The materials and the physical surfaces made of them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub materials: Vec<MaterialEcho>,
+    /// The method as the case chose it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub choices: Option<Choices>,
+    /// What a person should know before the numbers are used; left out if there is nothing.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub remarks: Vec<String>,
     /// The discretisation.
     pub mesh: MeshSizes,
     /// Nitsche's parameter.
@@ -35,9 +58,21 @@ pub struct Results {
     pub method: Option<MethodReport>,
     /// The solution in numbers.
     pub quantities: Quantities,
+    /// What each contact boundary carries.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub contact: Vec<ContactBoundary>,
+    /// The moment about the origin of the force of each displacement boundary, counter-clockwise.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub reaction_moments: BTreeMap<String, f64>,
+    /// Where the energy comes from.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub balance: Option<EnergyBalance>,
     /// `[x, y, u_x, u_y]` at the points that the case asks for; left out if it asks for none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub probes: Vec<[f64; 4]>,
+    /// How wrong the solution can be; left out if nothing is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub certificate: Option<Certificates>,
     /// The distances from the exact solution; left out if the case has none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub errors: Option<Errors>,
@@ -45,8 +80,44 @@ pub struct Results {
     pub seconds: Seconds,
 }
 
+/// The version of the layout of result.json. 2: an entry for each contact boundary, balance, units, materials, choices.
+pub const SCHEMA: u32 = 2;
+
+/// The one without a number.
+fn first() -> u32 {
+    1
+}
+
+/// The method as the case chose it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Choices {
+    /// The polynomial degree.
+    pub degree: usize,
+    /// gamma0 was chosen by the program.
+    pub gamma0_auto: bool,
+    /// "exact", or the number of Gauss points on each contact edge.
+    pub contact_quadrature: String,
+    /// kappa >= 1 was allowed.
+    pub allow_noncoercive: bool,
+}
+
+impl From<&Method> for Choices {
+    fn from(method: &Method) -> Self {
+        Choices {
+            degree: method.degree.number(),
+            gamma0_auto: method.gamma0 == Gamma0::Auto,
+            contact_quadrature: match method.quadrature {
+                ContactQuadrature::Exact => "exact".to_owned(),
+                ContactQuadrature::Gauss(points) => points.to_string(),
+            },
+            allow_noncoercive: method.allow_noncoercive,
+        }
+    }
+}
+
 /// The discretisation.
 #[derive(Clone, Debug, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct MeshSizes {
     /// Vertices.
     pub vertices: usize,
@@ -62,6 +133,7 @@ pub struct MeshSizes {
 
 /// Nitsche's parameter and how far it is from the limit of coercivity.
 #[derive(Clone, Debug, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct GammaChoice {
     /// gamma0 of (7).
     pub gamma0: f64,
@@ -86,6 +158,7 @@ impl From<&GammaReport> for GammaChoice {
 
 /// Newton's iteration.
 #[derive(Clone, Debug, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct NewtonHistory {
     /// Steps taken.
     pub iterations: usize,
@@ -97,6 +170,54 @@ pub struct NewtonHistory {
     pub factorizations: usize,
     /// How it ended.
     pub status: Status,
+}
+
+/// How wrong the solution can be.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Certificates {
+    /// The distance from the true solution.
+    pub continuous: ContinuousCertificate,
+}
+
+/// The distance of the admissible part v of the solution from the true solution u of (1)-(2).
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ContinuousCertificate {
+    /// |u - v|_a is at most this.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bound: Option<f64>,
+    /// The same over |v|_a.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub relative: Option<f64>,
+    /// The bound over an estimate of the error, which proves nothing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub effectivity_hint: Option<f64>,
+    /// The potential energy of u lies between these.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub potential_energy: Option<[f64; 2]>,
+    /// Every step is proved, rounding included.
+    pub rigorous: bool,
+    /// Why not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+}
+
+impl From<&Result<Continuous, CertifyError>> for ContinuousCertificate {
+    fn from(result: &Result<Continuous, CertifyError>) -> Self {
+        match result {
+            Ok(c) => ContinuousCertificate {
+                bound: Some(c.bound),
+                // A body at rest has no energy to compare with.
+                relative: Some(c.relative).filter(|r| r.is_finite()),
+                effectivity_hint: c.effectivity_hint,
+                potential_energy: c.energy,
+                rigorous: c.rigorous,
+                reason: c.reason.clone(),
+            },
+            Err(error) => {
+                ContinuousCertificate { reason: Some(error.to_string()), ..Default::default() }
+            }
+        }
+    }
 }
 
 impl NewtonHistory {
@@ -111,6 +232,7 @@ impl NewtonHistory {
 
 /// Where the time went.
 #[derive(Clone, Debug, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Seconds {
     /// Reading and meshing.
     pub read: f64,
@@ -118,6 +240,9 @@ pub struct Seconds {
     pub assemble: f64,
     /// Factoring and iterating.
     pub solve: f64,
+    /// Proving how wrong the result can be.
+    #[serde(default)]
+    pub certify: f64,
     /// Writing the other files; 0 where none was written.
     pub write: f64,
 }
@@ -129,6 +254,7 @@ impl Seconds {
             read: read.as_secs_f64(),
             assemble: times.assemble().as_secs_f64(),
             solve: times.solve().as_secs_f64(),
+            certify: 0.0,
             write: write.as_secs_f64(),
         }
     }
@@ -256,8 +382,6 @@ impl Formatter for Layout {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeMap;
-
     use super::*;
     use crate::solve::RouteName;
 
@@ -265,7 +389,12 @@ mod tests {
         Results {
             version: "0.1.0".to_owned(),
             case: Some("cases/block.toml".to_owned()),
+            schema: SCHEMA,
             title: "A \"block\" <&> null".to_owned(),
+            units: Some(Units { length: "mm".to_owned(), force: "N".to_owned() }),
+            materials: Vec::new(),
+            choices: None,
+            remarks: Vec::new(),
             mesh: MeshSizes {
                 vertices: 4,
                 triangles: 2,
@@ -303,10 +432,26 @@ mod tests {
                 contact_length: 1.0,
                 peak_pressure: 2.0,
                 reactions: BTreeMap::from([("top".to_owned(), [0.0, 2.0])]),
+                reaction_moments: BTreeMap::new(),
             },
+            contact: vec![ContactBoundary {
+                boundary: "floor".to_owned(),
+                force: 2.0,
+                resultant: [0.0, 2.0],
+                moment: 1.0,
+                length: 1.0,
+                stretches: vec![[[0.0, 0.0], [1.0, 0.0]]],
+                peak_pressure: 2.5,
+                peak_at: [0.5, 0.0],
+                penetration: 1e-3,
+                penetration_at: [0.25, 0.0],
+            }],
+            reaction_moments: BTreeMap::from([("top".to_owned(), 0.5)]),
+            balance: None,
             probes: Vec::new(),
+            certificate: None,
             errors: None,
-            seconds: Seconds { read: 0.25, assemble: 0.5, solve: 1.0, write: 2.0 },
+            seconds: Seconds { read: 0.25, assemble: 0.5, solve: 1.0, certify: 1.5, write: 2.0 },
         }
     }
 
@@ -315,7 +460,12 @@ mod tests {
         let expected = r#"{
   "version": "0.1.0",
   "case": "cases/block.toml",
+  "schema": 2,
   "title": "A \"block\" <&> null",
+  "units": {
+    "length": "mm",
+    "force": "N"
+  },
   "mesh": {
     "vertices": 4,
     "triangles": 2,
@@ -356,10 +506,26 @@ mod tests {
       "top": [0.0, 2.0]
     }
   },
+  "contact": [{
+      "boundary": "floor",
+      "force": 2.0,
+      "resultant": [0.0, 2.0],
+      "moment": 1.0,
+      "length": 1.0,
+      "stretches": [[[0.0, 0.0], [1.0, 0.0]]],
+      "peak_pressure": 2.5,
+      "peak_at": [0.5, 0.0],
+      "penetration": 0.001,
+      "penetration_at": [0.25, 0.0]
+    }],
+  "reaction_moments": {
+    "top": 0.5
+  },
   "seconds": {
     "read": 0.25,
     "assemble": 0.5,
     "solve": 1.0,
+    "certify": 1.5,
     "write": 2.0
   }
 }

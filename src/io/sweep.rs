@@ -12,7 +12,7 @@ use toml::de::{DeTable, DeValue};
 use super::case::{Case, CaseError};
 use super::files::{Output, WriteError};
 use super::numbers::short;
-use super::outputs::{self, OutputError};
+use super::outputs::{self, Certified, OutputError};
 use super::result::{Results, Seconds};
 use crate::solve::{self, SolveError};
 
@@ -65,6 +65,7 @@ pub type Outcome = Result<Results, SolveError>;
 
 /// One solve of a sweep.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Run {
     /// The value on each axis.
     pub values: Vec<String>,
@@ -74,6 +75,7 @@ pub struct Run {
 
 /// Why there is no sweep.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
 pub enum SweepError {
     #[error("--set makes {runs} runs; expected at most {MOST_RUNS}")]
@@ -97,6 +99,7 @@ pub const FILE: &str = "sweep.csv";
 
 /// A case and what became of it along some axes.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Sweep {
     /// The title of the case.
     pub title: String,
@@ -171,7 +174,10 @@ fn solve(case: &Case, folder: Option<&Path>) -> Result<Outcome, OutputError> {
     };
     let read = Duration::ZERO;
     Ok(Ok(match folder {
-        Some(folder) => outputs::write(folder, case, &solution, read, times)?.1,
+        Some(folder) => {
+            let certified = Certified::new(case, &solution);
+            outputs::write(folder, case, &solution, read, times, Some(&certified), false)?.1
+        }
         None => outputs::results(case, &solution, Seconds::new(read, &times, Duration::ZERO))?,
     }))
 }

@@ -259,8 +259,11 @@ impl<'s> Value<'s> {
 
     /// An expression in x and y. One that is the same everywhere must be finite.
     pub fn expression(&self) -> Result<Expression, CaseError> {
+        if let DeValue::Integer(_) | DeValue::Float(_) = self.value {
+            return self.number().map(Expression::from);
+        }
         let Some(text) = self.as_text() else {
-            return Err(self.wrong("an expression in quotes, such as \"0\""));
+            return Err(self.wrong("a number, or an expression in quotes, such as \"2*x\""));
         };
         let expression: Expression = text.parse().map_err(|error| {
             let (name, text) = (self.name.clone(), quoted(text, '"'));

@@ -218,7 +218,7 @@ impl File {
 }
 
 /// Appends the base64 code (RFC 4648, section 4) of `data`.
-fn encode(data: &[u8], to: &mut Vec<u8>) {
+pub(super) fn encode(data: &[u8], to: &mut Vec<u8>) {
     const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let letters = |[a, b, c]: [u8; 3]| {
         let bits = u32::from_be_bytes([0, a, b, c]);

@@ -39,6 +39,36 @@ impl<S: Scalar, const N: usize, const M: usize> ContactEdge<S, N, M> {
         ContactEdge { p0, sigma_n: [sigma_n_at(S::from(0)), sigma_n_at(S::from(1))] }
     }
 
+    /// The same where the direction of contact is a field n~: P0(v) = n~ . v - gamma s(v), s(v) = n~ . sigma(v) n, with the
+    /// unit vectors `directions` at the nodes. s is affine on the edge, from its values at the two ends, in P0 as in A:
+    /// this is what J_h and the consistency of (8) need. With n~ = n it is the functional of [`ContactEdge::new`].
+    #[cfg(not(kani))]
+    pub(crate) fn along<E: Element<N, M>>(
+        triangle: &Triangle<S>,
+        i: usize,
+        n: Vector2<S>,
+        directions: &[Vector2<S>; M],
+        material: &Material<S>,
+        gamma: S,
+    ) -> Self {
+        let barycentric = triangle.barycentric_gradients();
+        let at_end = |a: usize| {
+            let gradients = E::gradients(on_edge(i, S::from(a as i32)), barycentric);
+            gradients.map(|g| material.traction_of_shape(g, n, directions[a]))
+        };
+        let sigma_n = [at_end(0), at_end(1)];
+        let mut p0 = E::edge_positions().map(|s| {
+            std::array::from_fn(|j| {
+                let [start, end] = [sigma_n[0][j], sigma_n[1][j]];
+                -((start * (S::from(1) - s) + end * s) * gamma)
+            })
+        });
+        for ((row, node), d) in p0.iter_mut().zip(E::edge_nodes(i)).zip(directions) {
+            row[node] += d;
+        }
+        ContactEdge { p0, sigma_n }
+    }
+
     /// int_E gamma sigma_n(u) sigma_n(v) for v = N_i e_c, u = N_j e_d in entry (c, d), with `weight` = gamma |E|. Exact.
     pub fn stress_product(&self, weight: S, i: usize, j: usize) -> Matrix2<S> {
         let [start, end] = &self.sigma_n;
@@ -52,6 +82,18 @@ impl<S: Scalar, const N: usize, const M: usize> ContactEdge<S, N, M> {
 pub fn integral_of_product<S: Scalar>(f: [S; 2], g: [S; 2]) -> S {
     let two = S::from(2);
     (f[0] * (two * g[0] + g[1]) + f[1] * (g[0] + two * g[1])) / S::from(6)
+}
+
+/// By how much the length of an edge counts more in kappa where the direction of contact turns along it, for `cosine` =
+/// n~ . n~' at its two ends: 1 for P1, whose stress is constant on the triangle, and 2 - cosine for P2. Then
+/// int_E s(v)^2 is at most the factor times int_E |sigma(v) n|^2 (docs/theory.md, Lemma 2.1b; the factor is attained).
+#[cfg(not(kani))]
+pub(crate) fn turning_factor<E, S, const N: usize, const M: usize>(cosine: S) -> S
+where
+    E: Element<N, M>,
+    S: Scalar,
+{
+    if E::DEGREE == 1 { S::from(1) } else { S::from(2) - cosine }
 }
 
 /// kappa_T / gamma0 of one triangle: c_p (lambda + 2 mu) h_T |Gamma_C edges of T| / |T|, so that

@@ -4,6 +4,8 @@
 //! holds the coefficient that acts in the plane and remembers which of the two it is. The law itself, and what follows for
 //! sigma_n, is written for D dimensions; what only a plane has is not.
 
+use std::ops::{Add, Div, Mul, Sub};
+
 use nalgebra::{Matrix2, SMatrix, SVector};
 
 use super::Scalar;
@@ -65,7 +67,8 @@ impl<S: Scalar> Material<S> {
     }
 
     /// Plane strain or plane stress.
-    pub fn plane(&self) -> Plane {
+    #[cfg(not(kani))]
+    pub(crate) fn plane(&self) -> Plane {
         self.plane
     }
 
@@ -112,6 +115,19 @@ impl<S: Scalar> Material<S> {
     ) -> SVector<S, D> {
         gradient * self.lambda + n * (S::from(2) * self.mu * gradient.dot(&n))
     }
+
+    /// The same for the traction's component along `d`: d . sigma(v) n = s . w for the returned
+    /// s = lambda (d . n) grad N + mu ((d . grad N) n + (grad N . n) d). With d = n, n a unit vector, it is that of sigma_n.
+    #[cfg(not(kani))]
+    pub(crate) fn traction_of_shape<const D: usize>(
+        &self,
+        gradient: SVector<S, D>,
+        n: SVector<S, D>,
+        d: SVector<S, D>,
+    ) -> SVector<S, D> {
+        let (bulk, on_n, on_d) = (self.lambda * d.dot(&n), d.dot(&gradient), gradient.dot(&n));
+        gradient * bulk + (n * on_n + d * on_d) * self.mu
+    }
 }
 
 impl<S: Scalar, const D: usize> Stress<S, D> {
@@ -128,6 +144,38 @@ impl<S: Scalar, const D: usize> Stress<S, D> {
     /// The traction sigma n: sigma is symmetric.
     pub fn traction(&self, n: SVector<S, D>) -> SVector<S, D> {
         self.0.tr_mul(&n)
+    }
+}
+
+impl<S: Scalar, const D: usize> Add for Stress<S, D> {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Stress(self.0 + other.0)
+    }
+}
+
+impl<S: Scalar, const D: usize> Mul<S> for Stress<S, D> {
+    type Output = Self;
+
+    fn mul(self, factor: S) -> Self {
+        Stress(self.0 * factor)
+    }
+}
+
+impl<S: Scalar, const D: usize> Sub for Stress<S, D> {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Stress(self.0 - other.0)
+    }
+}
+
+impl<S: Scalar, const D: usize> Div<S> for Stress<S, D> {
+    type Output = Self;
+
+    fn div(self, divisor: S) -> Self {
+        Stress(self.0 / divisor)
     }
 }
 

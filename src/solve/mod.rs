@@ -2,6 +2,7 @@
 //! correct, the verdict, and what the solution says.
 
 pub mod accuracy;
+pub mod answers;
 pub mod assembled;
 mod checked;
 pub mod compliance;
@@ -24,6 +25,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use self::accuracy::Outcome;
+pub use self::answers::{ContactBoundary, EnergyBalance};
 pub use self::checked::{MOST_GAUSS_POINTS, MOST_ITERATIONS};
 pub use self::ladder::{Ladder, LadderError, Level};
 pub use self::route::RouteName;
@@ -33,7 +35,7 @@ pub use self::theorem::Theorem;
 use self::times::Stopwatch;
 pub use self::times::Times;
 use crate::fem::contact_line::{Coercivity, EdgeRule};
-use crate::fem::{DataError, Discretization, Problem, held};
+use crate::fem::{DataError, Discretization, MeshError, Problem, held};
 use crate::kernel::edge_integral::ExactEdge;
 use crate::kernel::{P1, P2};
 use crate::quote::{fixed, number};
@@ -224,6 +226,22 @@ fn known(forward_error: f64) -> String {
 /// The residuals from step to step, to one digit.
 pub fn history(residuals: &[f64]) -> String {
     residuals.iter().map(|r| format!("{r:.0e}")).collect::<Vec<_>>().join(" ")
+}
+
+impl SolveError {
+    /// Whether the case is wrong. Otherwise it is right, but there is no solution of it here.
+    pub fn is_wrong_case(&self) -> bool {
+        match self {
+            SolveError::Data(DataError::Mesh(MeshError::OutOfMemory(_))) => false,
+            SolveError::Data(_) | SolveError::NotCoercive { .. } => true,
+            SolveError::NotPositiveDefinite
+            | SolveError::NotConverged { .. }
+            | SolveError::IllConditioned { .. }
+            | SolveError::Singular
+            | SolveError::OutOfRange
+            | SolveError::OutOfMemory { .. } => false,
+        }
+    }
 }
 
 /// Solves `problem` by method (8).

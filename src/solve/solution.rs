@@ -1,10 +1,12 @@
 //! What a discrete solution says: stresses, the contact line, resultants and reactions.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 #[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
 
+use super::answers::{self, ContactBoundary, EnergyBalance};
 use super::{MethodReport, NewtonReport, Report};
 use crate::fem::contact_line::{self, Coercivity};
 use crate::fem::discretization::{Discretization, inner};
@@ -41,6 +43,12 @@ pub struct Solution {
     pub method: MethodReport,
     /// Energies, forces, lengths.
     pub quantities: Quantities,
+    /// What each part of Gamma_C carries.
+    pub boundaries: Vec<ContactBoundary>,
+    /// Where the energy comes from.
+    pub balance: EnergyBalance,
+    /// The largest principal strain, in magnitude, of the mean strain on a triangle.
+    pub largest_strain: f64,
 }
 
 /// gamma0 and the coercivity number.
@@ -59,6 +67,8 @@ pub struct GammaReport {
 pub struct ContactEdgeValues {
     /// The triangle that owns the edge.
     pub triangle: usize,
+    /// The name of its boundary.
+    pub boundary: Arc<str>,
     /// The unit outward normal n.
     pub normal: [f64; 2],
     /// The nodes in order along the edge (for P2 with the midpoint in the middle).
@@ -70,16 +80,20 @@ pub struct ContactEdgeValues {
 pub struct ContactValues {
     /// The node.
     pub node: usize,
-    /// Arc length along Gamma_C from the start of its first edge.
+    /// n~, the direction of contact.
+    pub direction: [f64; 2],
+    /// Arc length along the boundary from the start of its first edge.
     pub arc: f64,
-    /// u_n = u . n
+    /// u_n = u . n~
     pub u_n: f64,
     /// g
     pub gap: f64,
-    /// sigma_n(u^h)
+    /// n~ . sigma(u^h) n
     pub sigma_n: f64,
-    /// lambda^h = -(1/gamma) \[P(u^h)\]+, the pressure to report
+    /// lambda^h = -(1/gamma) \[P(u^h)\]+
     pub lambda: f64,
+    /// The recovered pressure ([`super::answers`]), the one to report.
+    pub pressure: f64,
 }
 
 /// Scalars of a solution, in the units of the case.
@@ -92,9 +106,9 @@ pub struct Quantities {
     pub work: f64,
     /// The largest Euclidean norm of u over the nodes.
     pub max_displacement: f64,
-    /// -int lambda^h
+    /// -int lambda^h over all of Gamma_C: a sum of magnitudes, whatever their directions
     pub contact_force: f64,
-    /// int lambda^h n: the force of the obstacle on the body
+    /// int lambda^h n~: the force of all obstacles on the body
     pub contact_resultant: [f64; 2],
     /// The measure of {P > 0}.
     pub contact_length: f64,
@@ -102,6 +116,9 @@ pub struct Quantities {
     pub peak_pressure: f64,
     /// The force of each displacement boundary on the body.
     pub reactions: BTreeMap<String, [f64; 2]>,
+    /// The moment of each of these about the origin, counter-clockwise.
+    #[cfg_attr(feature = "files", serde(skip))]
+    pub reaction_moments: BTreeMap<String, f64>,
 }
 
 impl Solution {
@@ -115,6 +132,9 @@ impl Solution {
         E: ExactEdge<f64, N, M>,
     {
         let stress = mean_stresses(d, &u);
+        let residual = d.residual(&u).values;
+        let quantities = quantities(d, &u, &residual);
+        let recovered = answers::recovered_pressure(d, &u);
         let with_material =
             || stress.iter().enumerate().map(|(t, &s)| (d.problem.material.of(t), s));
         Solution {
@@ -124,11 +144,14 @@ impl Solution {
             nodes_per_triangle: N,
             von_mises: with_material().map(|(m, s)| m.von_mises_squared(s).sqrt()).collect(),
             stress: with_material().map(|(m, s)| (s, m.stress_zz(s))).collect(),
-            contact: contact_values(d, &u),
+            contact: contact_values(d, &u, &recovered),
+            boundaries: answers::contact_boundaries(d, &u, &recovered),
+            largest_strain: answers::largest_strain(d, &u),
+            balance: answers::energy_balance(d, &u, &residual, quantities.energy),
             gamma: GammaReport::new(d),
             newton: report.newton,
             method: report.method,
-            quantities: quantities(d, &u),
+            quantities,
             displacement: u,
         }
     }
@@ -212,13 +235,17 @@ where
 fn contact_values<E, const N: usize, const M: usize>(
     d: &Discretization<E, N, M>,
     u: &[[f64; 2]],
+    recovered: &[[f64; M]],
 ) -> Vec<ContactEdgeValues>
 where
     E: ExactEdge<f64, N, M>,
 {
     let mut start = 0.0;
     let mut line = Vec::with_capacity(d.contact.len());
-    for edge in &d.contact {
+    for (edge, recovered) in d.contact.iter().zip(recovered) {
+        if line.last().is_none_or(|last: &ContactEdgeValues| last.boundary != edge.boundary) {
+            start = 0.0;
+        }
         let triangle = edge.edge.triangle;
         let nodal = d.space.on_triangle(triangle, u);
         let (p, sigma_n) = (edge.p(&nodal), edge.sigma_n(&nodal));
@@ -229,16 +256,19 @@ where
                 let [x, y] = u[nodes[a]];
                 ContactValues {
                     node: nodes[a],
+                    direction: edge.directions[a].into(),
                     arc: start + positions[a] * edge.length,
-                    u_n: x * edge.normal[0] + y * edge.normal[1],
+                    u_n: x * edge.directions[a][0] + y * edge.directions[a][1],
                     gap: edge.gap[a],
                     sigma_n: (1.0 - positions[a]) * sigma_n[0] + positions[a] * sigma_n[1],
                     lambda: pressure(p[a], edge.gamma) + 0.0,
+                    pressure: recovered[a],
                 }
             })
             .collect();
         points.sort_by(|a, b| a.arc.total_cmp(&b.arc));
-        line.push(ContactEdgeValues { triangle, normal: edge.normal.into(), points });
+        let boundary = Arc::clone(&edge.boundary);
+        line.push(ContactEdgeValues { triangle, boundary, normal: edge.normal.into(), points });
         start += edge.length;
     }
     line
@@ -247,6 +277,7 @@ where
 fn quantities<E, const N: usize, const M: usize>(
     d: &Discretization<E, N, M>,
     u: &[[f64; 2]],
+    residual: &[[f64; 2]],
 ) -> Quantities
 where
     E: ExactEdge<f64, N, M>,
@@ -260,6 +291,7 @@ where
         contact_length: 0.0,
         peak_pressure: 0.0,
         reactions: BTreeMap::new(),
+        reaction_moments: BTreeMap::new(),
     };
     for edge in &d.contact {
         let p = edge.p(&d.space.on_triangle(edge.edge.triangle, u));
@@ -267,19 +299,23 @@ where
         // The shape functions add up to one, so this is the integral of [P]+ / gamma.
         let force = edge.length / edge.gamma * integrals.gradient.iter().sum::<f64>();
         q.contact_force += force;
-        for c in 0..2 {
-            q.contact_resultant[c] -= force * edge.normal[c];
+        for (g, n) in integrals.gradient.iter().zip(edge.directions) {
+            for c in 0..2 {
+                q.contact_resultant[c] -= edge.length / edge.gamma * g * n[c];
+            }
         }
         q.contact_length += edge.length * integrals.active;
         let peak = -pressure(edge_integral::maximum::<E, N, M>(p), edge.gamma);
         q.peak_pressure = q.peak_pressure.max(peak);
     }
-    let residual = d.residual(u).values;
     for (boundary, held) in d.constraints.holders() {
         let reaction = q.reactions.entry(boundary.clone()).or_default();
+        let moment = q.reaction_moments.entry(boundary.clone()).or_default();
         for held in held {
             let part = held.part_of(residual[held.node]);
+            let [x, y] = d.space.nodes()[held.node];
             *reaction = [reaction[0] + part[0], reaction[1] + part[1]];
+            *moment += x * part[1] - y * part[0];
         }
     }
     q

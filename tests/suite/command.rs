@@ -76,7 +76,10 @@ fn a_solved_case_writes_its_files_and_says_so_with_exit_code_0() {
     assert_eq!(text(&output.stderr), "");
     let rows = fs::read_to_string(folder.join("out/case/contact.csv")).unwrap();
     assert_eq!(rows.lines().count(), 1 + 2 * 4);
-    assert!(rows.starts_with("arc,x,y,u_n,gap,sigma_n,lambda\n0.0,0.0,0.0,"), "{rows}");
+    assert!(
+        rows.starts_with("arc,x,y,u_n,gap,sigma_n,lambda,pressure,boundary\n0.0,0.0,0.0,"),
+        "{rows}"
+    );
 }
 
 #[test]

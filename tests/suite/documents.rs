@@ -7,7 +7,7 @@ use std::path::Path;
 
 use serde_json::Value;
 use signorini::io::Case;
-use signorini::io::outputs;
+use signorini::io::outputs::{self, Certified};
 use signorini::io::result::Seconds;
 use signorini::solve;
 
@@ -29,7 +29,11 @@ fn paths(prefix: &str, value: &Value, into: &mut BTreeSet<String>) {
     match value {
         Value::Object(members) => {
             for (name, value) in members {
-                let name = if prefix == "quantities.reactions" { "NAME" } else { name };
+                let name = if ["quantities.reactions", "reaction_moments"].contains(&prefix) {
+                    "NAME"
+                } else {
+                    name
+                };
                 let dot = if prefix.is_empty() { "" } else { "." };
                 paths(&format!("{prefix}{dot}{name}"), value, into);
             }
@@ -46,15 +50,26 @@ fn the_page_on_result_json_lists_exactly_what_is_written() {
     for (file, settings) in [
         (
             "cases/block.toml",
-            &["output.probes=[[0.5, 0.5]]", "mesh.rectangle.nx=4", "method.gamma0=auto"][..],
+            &[
+                "output.probes=[[0.5, 0.5]]",
+                "mesh.rectangle.nx=4",
+                "method.gamma0=auto",
+                "units={length=\"m\", force=\"N\"}",
+            ][..],
         ),
         ("cases/singular.toml", &["mesh.rectangle.nx=2", "mesh.rectangle.ny=2"]),
+        (
+            "cases/block.toml",
+            &["mesh.rectangle.nx=4", "method.gamma0=auto", "load.body=[\"0\", \"-1\"]"],
+        ),
     ] {
         let settings: Vec<String> = settings.iter().map(|&s| s.to_owned()).collect();
         let case = Case::parse(Path::new(file), &page(file), &settings).unwrap();
         let (solution, times) = solve(&case.problem, &case.method, &case.settings).unwrap();
         let zero = std::time::Duration::ZERO;
-        let results = outputs::results(&case, &solution, Seconds::new(zero, &times, zero)).unwrap();
+        let seconds = Seconds::new(zero, &times, zero);
+        let mut results = outputs::results(&case, &solution, seconds).unwrap();
+        results.certificate = Some(Certified::new(&case, &solution).report());
         paths("", &serde_json::to_value(results).unwrap(), &mut written);
     }
     assert_eq!(written, first_cells(&page("docs/result.md")));
@@ -92,6 +107,10 @@ fn the_page_on_case_files_knows_every_key() {
         ("cases/block.toml", &["method.degree=1"], "method"),
         ("cases/block.toml", &["method.contact_quadrature={gauss=1}"], "method.contact_quadrature"),
         ("cases/block.toml", &["solver.tolerance=1e-9"], "solver"),
+        ("cases/pin.toml", &[], "units"),
+        ("cases/pin.toml", &[], "obstacle.pin"),
+        ("cases/pin.toml", &[], "obstacle.pin.circle"),
+        ("cases/disk.toml", &[], "obstacle.floor.plane"),
         ("cases/block.toml", &["output.probes=[]"], "output"),
         ("cases/smooth.toml", &smooth, "exact"),
         ("cases/singular.toml", &[], "exact"),

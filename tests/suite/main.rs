@@ -6,6 +6,7 @@ mod common;
 mod assembled;
 mod bad_input;
 mod bodies;
+mod certify;
 #[cfg(feature = "cli")]
 mod command;
 mod convergence;
@@ -19,6 +20,7 @@ mod fuzz;
 mod gmsh_live;
 mod held;
 mod method;
+mod parts;
 mod patch;
 mod reference;
 mod routes;

@@ -11,6 +11,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use serde_json::Value;
 use sha2::{Digest, Sha256};
@@ -97,8 +98,8 @@ fn compared(results: &Value) -> Vec<(String, f64, f64)> {
 
 fn ours(case: &Path) -> Value {
     let case = Case::read(case).unwrap();
-    let (solution, _) = solve(&case.problem, &case.method, &case.settings).unwrap();
-    let seconds = result::Seconds { read: 0.0, assemble: 0.0, solve: 0.0, write: 0.0 };
+    let (solution, times) = solve(&case.problem, &case.method, &case.settings).unwrap();
+    let seconds = result::Seconds::new(Duration::ZERO, &times, Duration::ZERO);
     let text = result::result_json(&outputs::results(&case, &solution, seconds).unwrap()).unwrap();
     serde_json::from_str(&text).unwrap()
 }

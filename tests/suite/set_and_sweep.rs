@@ -61,7 +61,7 @@ fn a_mistake_in_a_setting_is_reported_with_the_setting_and_exit_code_2() {
     for (setting, message) in [
         (
             "metod.gamma0=1",
-            "unknown key 'metod'; expected title, mesh, material, load, exact, boundary, method, solver or output",
+            "unknown key 'metod'; expected title, mesh, material, load, exact, boundary, obstacle, point, method, solver, output or units",
         ),
         (
             "method.gama0=1",
@@ -257,6 +257,6 @@ fn completions_and_manual_pages_know_every_option() {
     assert_eq!(output.status.code(), Some(2));
     assert_eq!(
         text(&output.stderr),
-        "error: no task 'sove'; expected one of solve, check, sweep, convergence, completions, man, help\n"
+        "error: no task 'sove'; expected one of solve, audit, certify, check, sweep, convergence, completions, man, help\n"
     );
 }

@@ -265,7 +265,10 @@ impl Draw {
         let cells = Rectangle { width, height, nx, ny, diagonal: self.diagonal };
         let grid = cells.mesh().expect("a rectangle of a few cells is a mesh");
         let [angle, stretch, shear] = self.map;
+        let [angle, shear] = if self.coarse { [0.0; 2] } else { [angle, shear] };
         let moved = |(&[x, y], &[dx, dy]): (&[f64; 2], &[f64; 2])| {
+            // Lines of contact stay straight: where they bend, the direction of contact is a field of its own.
+            let (dx, dy) = (if x == 0.0 { 0.0 } else { dx }, if y == 0.0 { 0.0 } else { dy });
             let (x, y) = (x + dx - width / 2.0, y + dy - height / 2.0);
             let (x, y) = (stretch * x + shear * y, y / stretch);
             let turned = [angle.cos() * x - angle.sin() * y, angle.sin() * x + angle.cos() * y];
@@ -726,7 +729,14 @@ fn defined<S: Given, const N: usize>(
         (
             "arc",
             on_edges(&|e, s| {
-                sum(&body.contact[..e], |side| side.length) + s * body.contact[e].length
+                // From zero on each boundary: where a side does not start where the one before it ends.
+                let corner =
+                    |side: &Side<S>, k| body.triangles[side.triangle][(side.local + k) % 3];
+                let joined =
+                    |i: usize| corner(&body.contact[i], 2) == corner(&body.contact[i + 1], 1);
+                let first = (0..e).rev().find(|&i| !joined(i));
+                let before = &body.contact[first.map_or(0, |i| i + 1)..e];
+                sum(before, |side| side.length) + s * body.contact[e].length
             }),
         ),
         ("lambda^h", on_edges(&|e, s| -pressure(e, traces[e].p.at(s)))),
@@ -1172,7 +1182,8 @@ pub fn load_taken_wrong() -> Outcome {
     ])
 }
 
-/// The square of a length is within 8 units of roundoff of the exact one: two differences, hypot (2), squared.
+/// The square of a length, or of gamma, is within 8 units of roundoff of the exact one: two differences, hypot (2), a product,
+/// squared.
 fn close(length: f64, square: Exact) -> bool {
     let computed = Exact::of_double(length) * Exact::of_double(length);
     (computed - square).abs() <= square * Exact::of_double(8.0 * UNIT)
@@ -1193,9 +1204,7 @@ fn geometry(draw: &Draw, diameter: impl Fn(&Mesh, usize) -> f64) -> Verdict {
                 let [x, y] = exact(t).edge(i).into();
                 x * x + y * y
             });
-            let [a, b, c] = squares;
-            let larger = |a: Exact, b: Exact| if b > a { b } else { a };
-            ensure!(close(diameter(mesh, t), larger(larger(a, b), c)));
+            ensure!(close(diameter(mesh, t), longest(squares)));
         }
         for edge in sides.into_values().flatten().map(|edge| owner(&triangles, edge)) {
             let [x, y] = exact(edge.triangle).scaled_normal(edge.local).into();
@@ -1226,4 +1235,44 @@ pub fn first_edge_for_the_longest() -> Outcome {
             x.hypot(y)
         })
     })
+}
+
+/// (7) for every contact edge of the solver: gamma^2 is gamma0^2 times `square`, the square of h_T or a planted mistake, of
+/// the triangle and its edge.
+fn gamma_is(draw: &Draw, square: impl Fn([Exact; 3], usize) -> Exact) -> Verdict {
+    let problem = draw.problem();
+    let discretized =
+        Discretization::<P1, 3, 2>::new(&problem, |c| draw.kappa * c.limit(), draw.rule());
+    let Ok(d) = discretized else { return Verdict::Fails("the problem is refused") };
+    let (vertices, triangles, _) = draw.parts();
+    Exact::scope(|| {
+        let gamma0 = Exact::of_double(d.gamma0);
+        for line in &d.contact {
+            let vertices =
+                triangles[line.edge.triangle].map(|v| vertices[v].map(Exact::of_double).into());
+            let squares = [0, 1, 2].map(|i| {
+                let edge = Triangle { vertices }.edge(i);
+                edge.dot(&edge)
+            });
+            ensure!(close(line.gamma, gamma0 * gamma0 * square(squares, line.edge.local)));
+        }
+        Verdict::Holds("always")
+    })
+}
+
+fn longest([a, b, c]: [Exact; 3]) -> Exact {
+    let larger = |a: Exact, b: Exact| if b > a { b } else { a };
+    larger(larger(a, b), c)
+}
+
+/// (7): gamma = gamma0 h_T, h_T the diameter of the triangle that owns the edge.
+pub fn gamma_by_the_diameter() -> Outcome {
+    draws::hold(60, problems(Contact::Any, false), &["always"], |draw| {
+        gamma_is(draw, |squares, _| longest(squares))
+    })
+}
+
+/// The control of [`gamma_by_the_diameter`]: |E| for h_T.
+pub fn gamma_by_the_edge() -> Outcome {
+    draws::reject(20, problems(Contact::Any, false), |draw| gamma_is(draw, |squares, i| squares[i]))
 }

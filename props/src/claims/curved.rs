@@ -21,7 +21,7 @@ use crate::claim::Outcome;
 use crate::draws;
 use crate::naive::Line;
 use crate::numbers::Exact;
-use crate::proof::polynomial::{Polynomial, integer};
+use crate::proof::polynomial::{Exponent, Polynomial, integer};
 use crate::{ensure, given};
 
 type Point = [BigRational; 2];
@@ -30,7 +30,7 @@ fn constant(value: i64) -> Polynomial {
     Polynomial::constant(integer(value))
 }
 
-fn power(base: &Polynomial, exponent: u8) -> Polynomial {
+fn power(base: &Polynomial, exponent: Exponent) -> Polynomial {
     (0..exponent).fold(constant(1), |product, _| &product * base)
 }
 
@@ -43,7 +43,7 @@ fn composed(p: &Polynomial, x: &Polynomial, y: &Polynomial) -> Polynomial {
     })
 }
 
-fn factorial(n: u8) -> BigRational {
+fn factorial(n: Exponent) -> BigRational {
     (1..=i64::from(n)).fold(integer(1), |product, k| product * integer(k))
 }
 
@@ -245,7 +245,7 @@ fn line(values: &[Exact]) -> Polynomial {
         [start, end, middle] => Line::quadratic(start, middle, end),
         _ => Line(Vec::new()),
     };
-    let terms = line.0.iter().zip(0_u8..);
+    let terms = line.0.iter().zip(0 as Exponent..);
     terms.fold(Polynomial::default(), |sum, (c, n)| {
         &sum + &power(&Polynomial::variable(0), n).scaled(&c.value())
     })
@@ -311,14 +311,17 @@ fn consistent<E: Element<N, M>, const N: usize, const M: usize>(
     Exact::scope(|| {
         let body = draw.upright().body();
         let c = integer(n) / integer(n + d);
-        let v = body.clamped(body.drawn(0));
         ensure!(satisfies_2(&c, [&body.hooke.lambda.value(), &body.hooke.mu.value()]));
         let cut_edge = body.contact.iter().any(|side| {
             let [a, b] = ends(&body, side.triangle, side.local);
             (a[0] < c) != (b[0] < c)
         });
         given!(cut_edge);
-        ensure!(residual::<E, N, M>(&body, &c, &v, weight).is_zero());
+        // For P2 one v^h out of the whole space: each takes seconds.
+        let basis = if N == 3 { body.basis::<N>() } else { vec![body.clamped(body.drawn(0))] };
+        for v in basis {
+            ensure!(residual::<E, N, M>(&body, &c, &v, weight).is_zero());
+        }
         Verdict::Holds("an edge with contact and gap")
     })
 }
@@ -331,7 +334,7 @@ fn data() -> impl Strategy<Value = (Draw, (i64, i64))> {
 
 /// The residual vanishes at the curved solution.
 pub fn residual_vanishes() -> Outcome {
-    draws::hold(25, data(), &CLASSES, |(draw, c)| consistent::<P1, 3, 2>(draw, *c, 1))
+    draws::hold(8, data(), &CLASSES, |(draw, c)| consistent::<P1, 3, 2>(draw, *c, 1))
 }
 
 /// The same for P2.

@@ -461,15 +461,25 @@ mod row {
                 "diameters_lengths_and_normals_of_the_solver_are_those_of_the_edges",
                 assembled::square_roots,
             ),
+            by(
+                Engine::Doubles,
+                "gamma_of_the_solver_is_gamma0_times_the_diameter",
+                assembled::gamma_by_the_diameter,
+            ),
+            control(
+                Engine::Doubles,
+                "control_gamma_by_the_length_of_the_edge",
+                assembled::gamma_by_the_edge,
+            ),
             refuted(statement!(
                 control_p1_reproduces_quadratic_functions,
                 [c0, c1, c2, c3, c4, c5, x, y],
-                []
+                fails "trace == quadratic(c, on_edge(i, x))[0]"
             )),
             refuted(statement!(
                 control_gradients_along_the_outward_normals,
                 [ax, ay, bx, by, cx, cy],
-                []
+                fails "g[0] * d[0] + g[1] * d[1] == S::from(1)"
             )),
             control(
                 Engine::Exact,

@@ -87,8 +87,8 @@ pub use row::claim;
 #[cfg(not(kani))]
 mod row {
     use proptest::prelude::*;
-    use signorini::kernel::P1;
     use signorini::kernel::edge_integral::ExactEdge;
+    use signorini::kernel::{P1, positive_part_slope};
 
     use crate::claim::{Claim, Engine, Outcome, by, control, model_checked};
     use crate::numbers::Exact;
@@ -257,6 +257,47 @@ mod row {
         })
     }
 
+    /// Branches on an interval (`split`): [X]+ and its slope contain those of the numbers in X, 0 included.
+    fn branches(&([x, _], places): &Pair, slope: impl Fn(Interval) -> Interval) -> Verdict {
+        let zero = Some(0.0).filter(|&zero| x.contains(zero));
+        for a in members(x, places[0]).chain(zero) {
+            ensure!(slope(x).contains(positive_part_slope(a)));
+            ensure!(positive_part(x).contains(positive_part(a)));
+        }
+        Verdict::Holds(match (x.lo(), x.hi()) {
+            (lo, _) if lo > 0.0 => "positive",
+            (0.0, hi) if hi > 0.0 => "from zero",
+            (_, hi) if hi > 0.0 => "across zero",
+            _ => "not positive",
+        })
+    }
+
+    /// Intervals of which many begin at zero.
+    fn intervals() -> impl Strategy<Value = Pair> {
+        (pairs(), 0_u8..4).prop_map(|(([x, y], places), kind)| {
+            let from_zero = if x.hi() > 0.0 { Interval::new(0.0, x.hi()) } else { x };
+            ([if kind == 0 { from_zero } else { x }, y], places)
+        })
+    }
+
+    const BRANCHES: [&str; 4] = ["positive", "from zero", "across zero", "not positive"];
+
+    fn slopes() -> Outcome {
+        draws::hold(2000, intervals(), &BRANCHES, |pair| branches(pair, positive_part_slope))
+    }
+
+    /// An interval [0, hi] counts as positive.
+    fn slopes_by_the_upper_end() -> Outcome {
+        draws::reject(2000, intervals(), |pair| {
+            branches(
+                pair,
+                |x| {
+                    if x.lo() >= 0.0 { Interval::from(1) } else { positive_part_slope(x) }
+                },
+            )
+        })
+    }
+
     /// The row of the floating-point foundations.
     pub fn claim() -> Claim {
         let mut checks = vec![
@@ -264,6 +305,12 @@ mod row {
             by(Engine::Doubles, "results_of_intervals_are_as_narrow_as_stated", sharpness),
             by(Engine::Doubles, "a_nan_makes_an_interval_nan_and_nothing_else_does", nans),
             by(Engine::Doubles, "edge_integrals_over_intervals_contain_the_exact_ones", edges),
+            by(Engine::Doubles, "slopes_of_intervals_contain_those_of_their_numbers", slopes),
+            control(
+                Engine::Doubles,
+                "control_slope_by_the_sign_of_the_upper_end",
+                slopes_by_the_upper_end,
+            ),
             control(
                 Engine::Doubles,
                 "control_rounding_to_nearest_does_not_enclose",
@@ -276,7 +323,7 @@ mod row {
             items: &["floating point"],
             title: "What the above rests on in floating point",
             paper: "Nothing: the paper computes in R.",
-            statement: "For intervals X, Y of doubles and numbers x in X, y in Y: x + y, x - y, x y, x / y (y not 0) and sqrt(x) lie in X + Y, X - Y, X Y, X / Y and sqrt(X). [X]+ is [[lo]+, [hi]+], sharp across zero. Of two numbers the result is at most two doubles wide, and exact where it is zero without underflow; an end may be infinite (no bound); a NaN makes both ends NaN. The integrals over a cut P1 edge, by the same source line over intervals, contain the exact ones.",
+            statement: "For intervals X, Y of doubles and numbers x in X, y in Y: x + y, x - y, x y, x / y (y not 0) and sqrt(x) lie in X + Y, X - Y, X Y, X / Y and sqrt(X). [X]+ is [[lo]+, [hi]+], sharp across zero, and the slope of [X]+ contains that at each number, for X = [0, hi] that at 0. Of two numbers the result is at most two doubles wide, and exact where it is zero without underflow; an end may be infinite (no bound); a NaN makes both ends NaN. The integrals over a cut P1 edge, by the same source line over intervals, contain the exact ones.",
             numbers: "doubles against exact rational arithmetic, drawn from all finite doubles with subnormals, overflow and ties.",
             kernel: &[
                 "interval::Interval::new",

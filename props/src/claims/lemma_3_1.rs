@@ -44,7 +44,7 @@ pub fn control_theta_minus_one_in_6<S: Ordered>(v: [S; 6]) -> Verdict {
 }
 
 #[cfg(not(kani))]
-pub use row::{consistency, green};
+pub use row::{consistency, green, inequality_3_at_affine_solutions};
 
 #[cfg(not(kani))]
 mod row {
@@ -126,6 +126,44 @@ mod row {
         })
     }
 
+    /// (3) at an exact affine solution: a(u, w) >= L(w) for the shape functions w of P1, and their opposites, that do not
+    /// lead into the obstacle. `outwards` takes those that do.
+    fn inequality_3(draw: &Draw, patch: &Patch, outwards: bool) -> Verdict {
+        let mut body = draw.body();
+        let Solution { stress, field: u } = solution(&mut body, patch);
+        let definition = Definition::<3>(&body);
+        let zero = Exact::from(0);
+        let mut strict = false;
+        for v in body.basis::<3>() {
+            for w in [v.clone(), v.into_iter().map(|v| v.map(|c| -c)).collect()] {
+                let leads_in = body.contact.iter().any(|side| {
+                    let corners = body.triangles[side.triangle];
+                    [1, 2].iter().any(|k| {
+                        let w: [Exact; 2] = w[corners[(side.local + k) % 3]];
+                        w[0] * side.n[0] + w[1] * side.n[1] > zero
+                    })
+                });
+                if leads_in == outwards {
+                    let rest = definition.a(&u, &w) - load::<3>(&body, stress, &w);
+                    ensure!(rest >= zero);
+                    strict |= rest > zero;
+                }
+            }
+        }
+        Verdict::Holds(if strict { "strict" } else { "equal" })
+    }
+
+    /// (3) on random bodies.
+    pub fn inequality_3_at_affine_solutions() -> Outcome {
+        let found = draws::hold(60, (bodies(1), patches()), &["strict"], |(draw, patch)| {
+            Exact::scope(|| inequality_3(draw, patch, false))
+        })?;
+        let rejected = draws::reject(60, (bodies(1), patches()), |(draw, patch)| {
+            Exact::scope(|| inequality_3(draw, patch, true))
+        })?;
+        Ok(format!("{found}; into the obstacle: {rejected}"))
+    }
+
     /// Green's formula and (8) at an exact affine solution, for every v that is zero at the top.
     fn consistent<E, const N: usize, const M: usize>(
         draw: &Draw,
@@ -142,15 +180,7 @@ mod row {
                 side.gap = side.gap.map(|g| g - Exact::ratio(1, 3));
             }
         }
-        let v = body.clamped(body.drawn(0));
         let (kernel, definition) = (Kernel::<N, M>::new::<E>(&body), Definition::<N>(&body));
-        let work = load::<N>(&body, stress, &v);
-        // Green's formula with (1), before (6).
-        let green = sum(&body.contact, |side| {
-            let (here, test) = (definition.traces(side, &u), definition.traces(side, &v));
-            side.length * crate::bodies::whole(&here.sigma_n.by(&test.v_n))
-        });
-        ensure!(definition.a(&u, &v) - green == work);
         // The weights of a rule that is exact for the affine integrand here, so that P2 can take part.
         let half = Exact::ratio(1, 2);
         let gauss = [
@@ -159,7 +189,16 @@ mod row {
             [Exact::from(1), Exact::ratio(1, 6)],
         ];
         let rule = if N == 3 { Rule::Exact } else { Rule::Points(&gauss) };
-        ensure!(kernel.b::<E>(rule, &u, &v) == work);
+        for v in body.basis::<N>() {
+            let work = load::<N>(&body, stress, &v);
+            // Green's formula with (1), before (6).
+            let green = sum(&body.contact, |side| {
+                let (here, test) = (definition.traces(side, &u), definition.traces(side, &v));
+                side.length * crate::bodies::whole(&here.sigma_n.by(&test.v_n))
+            });
+            ensure!(definition.a(&u, &v) - green == work);
+            ensure!(kernel.b::<E>(rule, &u, &v) == work);
+        }
         Verdict::Holds(["contact", "gap", "touching without force"][patch.2])
     }
 
@@ -203,14 +242,13 @@ mod row {
             ["contact", "gap", "touching without force"]
         )
         .prepared(onto_contact);
-        let minus =
-            statement!(control_theta_minus_one_in_6, [u_n, g, sigma_n, gamma, v_n, tau_n], []);
+        let minus = statement!(control_theta_minus_one_in_6, [u_n, g, sigma_n, gamma, v_n, tau_n], fails "-(s * v) == -(gamma * s * t) - here.pressure() * p0");
         Claim {
             id: "4",
-            items: &["(6)", "Remark 2.3"],
+            items: &["(1)", "(6)", "Remark 2.3"],
             title: "From Green's formula to Nitsche's",
             paper: "a(u, v) - int gamma sigma_n(u) sigma_n(v) + int (1/gamma)[u_n - gamma sigma_n(u)]+ (v_n - gamma sigma_n(v)) = L(v) (6), from a(u, v) - int sigma_n(u) v_n = L(v) and (5).",
-            statement: "The rearrangement is an identity of integrands, given (2) and gamma > 0. On random bodies with an affine exact solution, Green's formula a(u, v) - int sigma_n(u) v_n = L(v) and (6) hold for every discrete v that is zero on Gamma_D.",
+            statement: "The rearrangement is an identity of integrands, given (2) and gamma > 0. On random bodies with an affine exact solution, Green's formula a(u, v) - int sigma_n(u) v_n = L(v) and (6) hold for every function of the basis of V^h, hence for every discrete v that is zero on Gamma_D.",
             numbers: "every ordered field at a point (proof); rationals on bodies.",
             kernel: &["contact::ContactPoint::pressure"],
             preconditions: "gamma > 0 and (2) at the exact solution. The paper has g = 0.",
@@ -230,10 +268,10 @@ mod row {
     pub fn consistency() -> Claim {
         Claim {
             id: "8",
-            items: &["Lemma 3.1", "(3)"],
+            items: &["(1)", "(2)", "Lemma 3.1"],
             title: "Consistency",
             paper: "Suppose that the solution u of (1)-(2) is in H^(3/2 + nu), nu > 0; then u is also solution of A_gamma(u, v^h) + int (1/gamma)[P_gamma(u)]+ P_gamma(v^h) = L(v^h) for all v^h in V^h.",
-            statement: "The residual of the discrete equations at the exact u is zero for every v^h that is zero on Gamma_D, for P1 and P2. Exactly: for every affine field with a stress and a gap that satisfy (2) (full contact, an open gap, touching without force; one or two contact sides; plane strain and stress; turned), on random bodies; and at a curved solution that changes from contact to a gap inside an edge (piecewise polynomial, k = 3, m = 2). Enclosed: at the end of contact, u = O(r^(3/2)), in H^s for s < 5/2 only, whose singular point lies inside an edge, every residual lies in an interval that contains zero and is narrower than 1e-3 of the largest term. That field satisfies (1) at random points (derivatives enclosed) and (2) on the contact line (signs at all places but those nearer to the end than 2^-40). The solver has these two solutions: its doubles for the first are within 1e-12 of the polynomials (relative to what is added up; places nearer to the end of contact than 1e-9 left out), and so is the L that it assembles; those for the second lie in the intervals of the same source lines, and its L in the enclosure of L widened by its quadrature error, 1e-3 of the largest entry on these coarse meshes (1e-12 with 40 points).",
+            statement: "The residual of the discrete equations at the exact u is zero for every v^h that is zero on Gamma_D, for P1 and P2: for each function of the basis of V^h at affine solutions, and for P1 at the curved ones too; for random v^h elsewhere (the equations are linear in v^h). Exactly: for every affine field with a stress and a gap that satisfy (2) (full contact, an open gap, touching without force; one or two contact sides; plane strain and stress; turned), on random bodies; and at a curved solution that changes from contact to a gap inside an edge (piecewise polynomial, k = 3, m = 2). Enclosed: at the end of contact, u = O(r^(3/2)), in H^s for s < 5/2 only, whose singular point lies inside an edge, every residual lies in an interval that contains zero and is narrower than 1e-3 of the largest term. That field satisfies (1) at random points (derivatives enclosed) and (2) on the contact line (signs at all places but those nearer to the end than 2^-40). The solver has these two solutions: its doubles for the first are within 1e-12 of the polynomials (relative to what is added up; places nearer to the end of contact than 1e-9 left out), and so is the L that it assembles; those for the second lie in the intervals of the same source lines, and its L in the enclosure of L widened by its quadrature error, 1e-3 of the largest entry on these coarse meshes (1e-12 with 40 points).",
             numbers: "rationals, no tolerance; Taylor coefficients of order 4 over intervals of doubles, adaptive pieces.",
             kernel: &[
                 "contact::ContactPoint::p",
@@ -245,7 +283,7 @@ mod row {
                 "positive_part::positive_part",
             ],
             preconditions: "(2) at the exact solution; tractions sigma(u) n on Gamma_N; the processor rounds as in row 13.",
-            limits: "The wedge (u = O(r^alpha), pressure unbounded) and smooth solutions with other exponents or a gap function are not covered. The enclosures are for a few bodies, of 2 x 1 cells. The derivatives in (1) and the shear on Gamma_C are enclosed at random points. The Taylor arithmetic of `props/src/enclosure.rs` is trusted, with tests on known integrals. That (3) has one solution (Stampacchia) is taken from analysis.",
+            limits: "The wedge (u = O(r^alpha), pressure unbounded) and smooth solutions with other exponents or a gap function are not covered. The enclosures are for a few bodies, of 2 x 1 cells. The derivatives in (1) and the shear on Gamma_C are enclosed at random points. The Taylor arithmetic of `props/src/enclosure.rs` is trusted, with tests on known integrals.",
             single: None,
             checks: vec![
                 by(Engine::Exact, "residual_vanishes_at_affine_solutions_for_p1", patch_p1),

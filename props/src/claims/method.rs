@@ -690,8 +690,10 @@ mod row {
                 assembled::load_taken_wrong,
             ),
             control(Engine::Exact, "control_gap_missing", gap_missing),
-            refuted(statement!(control_cut_edge_integral_keeps_any_sign, [p0, p1, q0, q1], [])),
-            refuted(statement!(control_edge_not_cut, [p0, p1], [])),
+            refuted(
+                statement!(control_cut_edge_integral_keeps_any_sign, [p0, p1, q0, q1], fails "g0 * q0 + g1 * q1 >= S::from(0)"),
+            ),
+            refuted(statement!(control_edge_not_cut, [p0, p1], fails "S::from(2) * (g0 + g1) == q[0] + q[1]")),
         ]);
         checks.extend(HARNESSES.iter().copied().map(model_checked));
         Claim {

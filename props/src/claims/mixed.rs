@@ -93,6 +93,17 @@ pub fn control_multiplier_without_gamma<S: Ordered>(v: [S; 5]) -> Verdict {
     projection(v, |point| point.gamma * point.pressure())
 }
 
+/// (9) gives (10) for one fixed mu: the integrands of (10) on two edges, those of (9) with -1/gamma.
+pub fn control_9_gives_10_for_one_multiplier_on_two_edges<S: Ordered>(
+    [first, second, gamma, other]: [S; 4],
+) -> Verdict {
+    let zero = S::from(0);
+    given!(gamma > zero && other > zero);
+    given!(-first / gamma - second / other <= zero);
+    ensure!(first + second >= zero);
+    Verdict::Holds("always")
+}
+
 #[cfg(not(kani))]
 pub use row::claim;
 
@@ -370,16 +381,21 @@ mod row {
             refuted(statement!(
                 control_normal_stress_for_the_multiplier,
                 [u_n, g, sigma_n, gamma, mu],
-                []
+                fails "nine(&point, zero, l) == zero && nine(&point, l + l, l) == zero"
             )),
-            refuted(statement!(control_multiplier_without_gamma, [u_n, g, sigma_n, gamma, mu], [])),
+            refuted(statement!(
+                control_9_gives_10_for_one_multiplier_on_two_edges,
+                [first, second, gamma, other],
+                fails "first + second >= zero"
+            )),
+            refuted(statement!(control_multiplier_without_gamma, [u_n, g, sigma_n, gamma, mu], fails "nine(&point, zero, l) == zero && nine(&point, l + l, l) == zero")),
         ]);
         Claim {
             id: "7",
             items: &["(9)", "(10)"],
             title: "The contact pressure as a projection, and the mixed form",
             paper: "lambda^h := -(1/gamma)[P_gamma(u^h)]+ can be interpreted as the L^2-projection of -(1/gamma)P_gamma(u^h) on the cone of the nonpositive mu: (9); (9) is equivalent to (10); the method is equivalent to a mixed method with stabilisation.",
-            statement: "At a point: (9) and (10) hold for lambda^h and every mu <= 0, with equality for mu = 0 and mu = 2 lambda^h; (10) is -gamma times (9) for any multiplier; a multiplier l <= 0 that satisfies (9) for three choices of mu is lambda^h. On random bodies, for every u^h and not the solution alone: the left side of (8) equals that of the first mixed equation, and the integrals (9) and (10) have their signs for random mu <= 0. For the discrete solution: lambda^h, u_n and sigma_n as the solver reports them on three of the example cases (P1, P2, exact integrals and Gauss points) satisfy (10) at every node of Gamma_C, for mu <= 0 near and far.",
+            statement: "At a point: (9) and (10) hold for lambda^h and every mu <= 0, with equality for mu = 0 and mu = 2 lambda^h; (10) is -gamma times (9) for any multiplier; as integrals over edges with different gamma the two are not equivalent for one fixed mu (a control has the counterexample), but for all mu they are, for a mu that differs from lambda^h on one edge only localises both (docs/theory.md, 8); a multiplier l <= 0 that satisfies (9) for three choices of mu is lambda^h. On random bodies, for every u^h and not the solution alone: the left side of (8) equals that of the first mixed equation, and the integrals (9) and (10) have their signs for random mu <= 0. For the discrete solution: lambda^h, u_n and sigma_n as the solver reports them on three of the example cases (P1, P2, exact integrals and Gauss points) satisfy (10) at every node of Gamma_C, for mu <= 0 near and far.",
             numbers: "every ordered field at a point (proof); rationals on bodies; doubles at a point, up to 16 roundings, and at the nodes of computed solutions, up to 64.",
             kernel: &["contact::ContactPoint::pressure", "contact::ContactPoint::p0"],
             preconditions: "gamma > 0, constant on each edge (7).",

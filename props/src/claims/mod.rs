@@ -2,9 +2,12 @@
 //! the row of the ledger with its checks.
 
 #[cfg(not(kani))]
+pub mod a_priori;
+#[cfg(not(kani))]
 pub mod assembled;
 #[cfg(not(kani))]
 pub mod certificate;
+pub mod constants;
 #[cfg(not(kani))]
 pub mod curved;
 pub mod discrete_forms;
@@ -15,13 +18,18 @@ pub mod lemma_3_1;
 pub mod lemma_3_2;
 pub mod method;
 pub mod mixed;
+#[cfg(not(kani))]
+pub mod newton;
 pub mod pattern;
 pub mod positive_part;
 pub mod prop_2_1;
 #[cfg(not(kani))]
 pub mod rates;
+#[cfg(not(kani))]
+pub mod solver;
 pub mod theorem_3_3;
 pub mod theorem_3_4;
+pub mod variational_inequality;
 
 #[cfg(not(kani))]
 use crate::claim::Claim;
@@ -44,6 +52,11 @@ pub fn all() -> Vec<Claim> {
         rates::claim(),
         foundations::claim(),
         pattern::claim(),
+        constants::claim(),
+        variational_inequality::claim(),
+        a_priori::claim(),
+        solver::claim(),
+        newton::claim(),
     ];
     claims.sort_by_key(|claim| claim.id.parse::<u32>().expect("the id of a row is a number"));
     claims
@@ -94,5 +107,10 @@ mod tests {
         every_check_of_row_12_passes "12",
         every_check_of_row_13_passes "13",
         every_check_of_row_14_passes "14",
+        every_check_of_row_15_passes "15",
+        every_check_of_row_16_passes "16",
+        every_check_of_row_17_passes "17",
+        every_check_of_row_18_passes "18",
+        every_check_of_row_19_passes "19",
     }
 }

@@ -215,9 +215,11 @@ mod row {
             [a, b],
             ["positive", "negative", "zero"]
         );
-        let absolute = statement!(control_absolute_value_for_the_positive_part, [a], []);
-        let uncut = statement!(control_no_cut_at_zero, [a], []);
-        let negative = statement!(control_negative_part_for_the_positive_part, [a], []);
+        let absolute =
+            statement!(control_absolute_value_for_the_positive_part, [a], fails "a * p == p * p");
+        let uncut = statement!(control_no_cut_at_zero, [a], fails "p - part(-a) == a");
+        let negative =
+            statement!(control_negative_part_for_the_positive_part, [a], fails "p >= zero");
         let mut checks = vec![
             proved(facts),
             proved(projection),

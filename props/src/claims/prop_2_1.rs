@@ -301,12 +301,13 @@ mod row {
     use crate::numbers::Exact;
     use crate::statement;
 
-    /// One time in three the data are moved onto (5): sigma_n = lambda^h of a displacement, and the matching u_n.
+    /// Some of the data that violate (2) are moved onto it, the others stay: penetration where sigma_n < 0 becomes contact,
+    /// tension at a gap becomes no force where gamma > 1.
     fn onto_equation_5(v: &mut [Exact]) {
-        let zero = Exact::from(0);
-        if v[0] > v[1] {
+        let (zero, one) = (Exact::from(0), Exact::from(1));
+        if v[0] > v[1] && v[2] < zero {
             v[0] = v[1];
-        } else if v[2] > zero {
+        } else if v[0] <= v[1] && v[2] > zero && v[3] > one {
             v[2] = zero;
         }
     }
@@ -373,12 +374,20 @@ mod row {
             in_doubles(converse),
             in_doubles(rounding),
             by(Engine::Doubles, "a_displacement_below_rounding_is_kept", kept_counterexample),
-            refuted_in_doubles(scaled),
+            refuted_in_doubles(scaled.failing("conditions_2 == equation")),
             control(Engine::Doubles, "control_equation_5_as_written_in_doubles", as_written),
-            refuted(statement!(control_gap_forgotten, [u_n, g, sigma_n, gamma], [])),
-            refuted(statement!(control_sign_inside_5_turned, [u_n, g, sigma_n, gamma], [])),
-            refuted(statement!(control_absolute_value_in_5, [u_n, g, sigma_n, gamma], [])),
-            refuted(statement!(control_gamma_omitted, [u_n, g, sigma_n, gamma], [])),
+            refuted(
+                statement!(control_gap_forgotten, [u_n, g, sigma_n, gamma], fails "conditions_2 == equation_5"),
+            ),
+            refuted(
+                statement!(control_sign_inside_5_turned, [u_n, g, sigma_n, gamma], fails "conditions_2 == equation_5"),
+            ),
+            refuted(
+                statement!(control_absolute_value_in_5, [u_n, g, sigma_n, gamma], fails "conditions_2 == equation_5"),
+            ),
+            refuted(
+                statement!(control_gamma_omitted, [u_n, g, sigma_n, gamma], fails "conditions_2 == equation_5"),
+            ),
         ];
         checks.extend(HARNESSES.iter().copied().map(model_checked));
         Claim {
@@ -431,8 +440,12 @@ mod row {
                 proved(pointwise),
                 proved(independent),
                 tested(independent),
-                refuted(statement!(control_gamma_of_any_sign, [u_n, g, sigma_n, gamma], [])),
-                refuted(statement!(control_gamma_may_be_zero, [u_n, g, sigma_n, gamma], [])),
+                refuted(
+                    statement!(control_gamma_of_any_sign, [u_n, g, sigma_n, gamma], fails "conditions_2 == equation_5"),
+                ),
+                refuted(
+                    statement!(control_gamma_may_be_zero, [u_n, g, sigma_n, gamma], fails "division by zero"),
+                ),
             ],
         }
     }

@@ -354,10 +354,10 @@ mod row {
             control(Engine::Exact, "control_two_solutions_beyond_the_limit", two_solutions),
             in_doubles(lipschitz),
             in_doubles(between),
-            refuted(statement!(control_absolute_value_is_monotone, [a, b], [])),
-            refuted(statement!(control_twice_the_positive_part, [a, b], [])),
-            refuted(statement!(control_monotonicity_turned, [a, b], [])),
-            refuted(statement!(control_half_the_curvature, [a, b], [])),
+            refuted(statement!(control_absolute_value_is_monotone, [a, b], fails "d * e >= d * d")),
+            refuted(statement!(control_twice_the_positive_part, [a, b], fails "d * e >= d * d")),
+            refuted(statement!(control_monotonicity_turned, [a, b], fails "d * e <= d * d")),
+            refuted(statement!(control_half_the_curvature, [a, b], fails "q * q <= p * p + S::from(2) * p * e + e * e / S::from(2)")),
         ]);
         checks.extend(certificate::checks());
         checks.extend(HARNESSES.iter().copied().map(model_checked));

@@ -110,15 +110,53 @@ pub fn raw_facts_give_the_inequality_between_norms<S: Ordered>(
     let (zero, one, two) = (S::from(0), S::from(1), S::from(2));
     given!(e >= zero && h >= zero && w >= zero && s >= zero && r >= zero);
     given!(k >= zero && k < one);
-    let kappa = k * k;
     given!(c <= e * h && -c <= e * h);
     given!(w * w == e * e - two * c + h * h);
     given!(r <= k * w && t <= r * s);
     ensure!(w <= e + h);
-    ensure!((one - two * kappa) * c <= e * h);
-    let bound = (one - two * kappa) * c + kappa * (e * e + h * h) + k * (e + h) * s;
-    ensure!(c + r * r + t <= bound);
+    let [small, sum] = between_norms([e, h, c, s, r, t, k]);
+    ensure!(small >= zero);
+    ensure!(sum >= zero);
     Verdict::Holds("always")
+}
+
+/// What [`raw_facts_give_the_inequality_between_norms`] leaves to say of c, r and t, as two numbers that are not negative:
+/// (1 - 2 kappa) c <= E H, and c + r^2 + t <= (1 - 2 kappa) c + kappa (E^2 + H^2) + k (E + H) S.
+fn between_norms<S: Ordered>([e, h, c, s, r, t, k]: [S; 7]) -> [S; 2] {
+    let (one, two, kappa) = (S::from(1), S::from(2), k * k);
+    let bound = (one - two * kappa) * c + kappa * (e * e + h * h) + k * (e + h) * s;
+    [e * h - (one - two * kappa) * c, bound - (c + r * r + t)]
+}
+
+/// The inequality [9.4] of the theory, right side minus left side:
+/// delta E^2 + Z^2 <= E H + kappa H^2 + Z R + k (E + H) S.
+fn combined<S: Ordered>([e, h, z, s, r, k]: [S; 6]) -> S {
+    let kappa = k * k;
+    let right = e * h + kappa * h * h + z * r + k * (e + h) * s;
+    right - ((S::from(1) - kappa) * e * e + z * z)
+}
+
+/// The hypothesis of [`theorem_3_4_holds_with_its_constant`] from (i), (ii) and (iii): with a(e, w) = E^2 - c, p = int z
+/// P0(w) = d - q, d = int z (P(u) - P(u^h)) <= -Z^2, q = int z P0(eta) >= -Z R, and int gamma sigma_n(w) sigma_n(e) =
+/// r^2 + t. `sign` is that of Z^2 in (ii).
+fn hypothesis<S: Ordered>([e, h, z, s, big, k, c, d, q, r, t]: [S; 11], sign: S) -> Verdict {
+    let zero = S::from(0);
+    let [small, sum] = between_norms([e, h, c, s, r, t, k]);
+    given!(small >= zero && sum >= zero);
+    given!(d <= sign * z * z && -q <= z * big);
+    given!(e * e - c == d - q + r * r + t);
+    ensure!(combined([e, h, z, s, big, k]) >= zero);
+    Verdict::Holds("always")
+}
+
+/// The combined inequality follows from the three facts.
+pub fn three_facts_give_the_hypothesis_of_theorem_3_4<S: Ordered>(v: [S; 11]) -> Verdict {
+    hypothesis(v, -S::from(1))
+}
+
+/// (ii) without its square.
+pub fn control_three_facts_without_the_square_of_z<S: Ordered>(v: [S; 11]) -> Verdict {
+    hypothesis(v, S::from(0))
 }
 
 /// The four uses of Young's inequality.
@@ -143,7 +181,7 @@ fn bound<S: Ordered>([e, h, z, s, r, k]: [S; 6], factor: S) -> Verdict {
     given!(k >= zero && k < one);
     let kappa = k * k;
     let delta = one - kappa;
-    given!(delta * e * e + z * z <= e * h + kappa * h * h + z * r + k * (e + h) * s);
+    given!(combined([e, h, z, s, r, k]) >= zero);
     let four = S::from(4);
     ensure!(four * delta * e * h <= delta * delta * e * e + four * h * h);
     ensure!(four * delta * k * e * s <= delta * delta * e * e + four * kappa * s * s);
@@ -155,11 +193,18 @@ fn bound<S: Ordered>([e, h, z, s, r, k]: [S; 6], factor: S) -> Verdict {
     ensure!(two * delta * z * r <= delta * z * z + delta * r * r);
     let right = e * h + kappa * h * h + z * r + k * (e + h) * s;
     ensure!(delta * (delta * e * e + z * z) <= delta * right);
+    let [left, bracket] = scaled_sides([e, h, z, s, r, k]);
+    ensure!(left <= factor * bracket);
+    Verdict::Holds("always")
+}
+
+/// Both sides of Theorem 3.4, times delta^2.
+pub fn scaled_sides<S: Ordered>([e, h, z, s, r, k]: [S; 6]) -> [S; 2] {
+    let (one, two, kappa) = (S::from(1), S::from(2), k * k);
+    let delta = one - kappa;
     let bracket =
         (two + two * kappa * delta + delta) * h * h + kappa * (two + delta) * s * s + delta * r * r;
-    // Both sides times delta^2.
-    ensure!(delta * delta * e * e + delta * z * z <= factor * bracket);
-    Verdict::Holds("always")
+    [delta * delta * e * e + delta * z * z, bracket]
 }
 
 /// Theorem 3.4 with its constant.
@@ -187,6 +232,24 @@ pub fn step_14_holds<S: Ordered>([gamma, uh, sh, v, sv]: [S; 5]) -> Verdict {
     let after = over_gamma * point.test.p0() - gamma * over_gamma * over_gamma;
     ensure!(before == after);
     Verdict::Holds(class(&point))
+}
+
+/// (14) whole, as printed: from ellipticity and continuity of a(., .), Green's formula for u and (8) for u^h, with the
+/// integrals as numbers: n, m = |e|_1, |eta|_1; a = a(e, e) = b + c with b = a(e, eta) <= C n m, c = a(e, w); a(u, w) =
+/// l + i, a(u^h, w) = l + j - p, where i = int sigma_n(u) w_n, j = int gamma sigma_n(u^h) sigma_n(w), and p = int
+/// (1/gamma) \[P(u^h)\]+ P0(w) = q - r is the last step, which `step_14_holds` shows at a point.
+pub fn estimate_14_holds<S: Ordered>(
+    [alpha, big, n, m, b, c, l, i, j, p, q, r]: [S; 12],
+) -> Verdict {
+    let (zero, two) = (S::from(0), S::from(2));
+    given!(alpha > zero && big >= zero && n >= zero && m >= zero);
+    given!(alpha * n * n <= b + c && b <= big * n * m);
+    given!(c == (l + i) - (l + j - p) && p == q - r);
+    let half = alpha / two;
+    ensure!(two * alpha * (big * n * m) <= alpha * n * (alpha * n) + big * m * (big * m));
+    ensure!(big * n * m <= half * n * n + big * big / (two * alpha) * m * m);
+    ensure!(half * n * n <= big * big / (two * alpha) * m * m + i - j + q - r);
+    Verdict::Holds("always")
 }
 
 /// (15): the terms with u_n, of which the last is dropped because u_n <= 0.
@@ -278,6 +341,47 @@ pub fn step_20_is_the_sum_of_17_18_and_19<S: Ordered>(
     given!(second <= c * (e + h + s));
     let left = t + (one - one / (two * beta)) * z;
     ensure!(left <= c * (e + h) + (c + beta / two) * s);
+    Verdict::Holds("always")
+}
+
+/// The last estimate of the proof, as printed: (16) and (20) put into (15). n, m, s, z, d are squares of norms, i is the
+/// integral in (15), t is T; and what is left of it for beta_1 = beta_2 = 2 and gamma0 <= alpha/(4 C). `share` of the
+/// 1/(2 beta_2) of (20) is used (1).
+fn last_estimate<S: Ordered>(
+    [alpha, big, gamma0, n, m, z, s, d, i, t, b1, b2]: [S; 12],
+    share: S,
+) -> Verdict {
+    let (zero, one, two) = (S::from(0), S::from(1), S::from(2));
+    given!(alpha > zero && big >= zero && gamma0 > zero && b1 > zero && b2 > zero);
+    let (first, second) = (big * big / (two * alpha), big * gamma0);
+    given!(alpha / two * n <= first * m + i + t);
+    given!(i <= z / (two * b1) + b1 / two * d);
+    given!(t + (one - one / (two * b2)) * z <= second * n + second * m + (big + b2 / two) * s);
+    let left = (alpha / two - second) * n + (one - one / (two * b1) - share / (two * b2)) * z;
+    ensure!(left <= (first + second) * m + b1 / two * d + (big + b2 / two) * s);
+    Verdict::Holds("always")
+}
+
+/// The estimate after (20).
+pub fn the_last_estimate_follows_from_15_16_and_20<S: Ordered>(v: [S; 12]) -> Verdict {
+    last_estimate(v, S::from(1))
+}
+
+/// The same without 1/(2 beta_2) on the left.
+pub fn control_last_estimate_without_beta_2<S: Ordered>(v: [S; 12]) -> Verdict {
+    last_estimate(v, S::from(0))
+}
+
+/// "To conclude": with beta_1 = beta_2 = 2 and gamma0 <= alpha/(4 C) the factors on the left are at least alpha/4 and 1/2.
+pub fn the_last_estimate_bounds_both_errors<S: Ordered>(
+    [alpha, big, gamma0, n, z, right]: [S; 6],
+) -> Verdict {
+    let (zero, one, two, four) = (S::from(0), S::from(1), S::from(2), S::from(4));
+    given!(alpha > zero && n >= zero && z >= zero && four * big * gamma0 <= alpha);
+    let factor = one - one / (two * two) - one / (two * two);
+    given!((alpha / two - big * gamma0) * n + factor * z <= right);
+    ensure!(big * gamma0 * n <= alpha / four * n);
+    ensure!(alpha / four * n + z / two <= right);
     Verdict::Holds("always")
 }
 
@@ -550,9 +654,27 @@ mod row {
             [t, z, first, second, s, e, h, c, beta],
             ["always"]
         );
+        let facts = statement!(
+            three_facts_give_the_hypothesis_of_theorem_3_4,
+            [e, h, z, s, big, k, c, d, q, r, t],
+            ["always"]
+        );
+        let fourteen =
+            statement!(estimate_14_holds, [alpha, big, n, m, b, c, l, i, j, p, q, r], ["always"])
+                .with_hints(|v| vec![v[0] * v[2] - v[1] * v[3]]);
+        let last = statement!(
+            the_last_estimate_follows_from_15_16_and_20,
+            [alpha, big, gamma0, n, m, z, s, d, i, t, b1, b2],
+            ["always"]
+        );
+        let end = statement!(
+            the_last_estimate_bounds_both_errors,
+            [alpha, big, gamma0, n, z, right],
+            ["always"]
+        );
         let all = [identity, z, split, raw, young, theorem, corollary, s14, s15, s16, s17, s18];
         let mut checks: Vec<_> = all.into_iter().map(proved).collect();
-        checks.extend([proved(s19), proved(s20)]);
+        checks.extend([facts, fourteen, s19, s20, last, end].map(proved));
         checks.extend([identity, z, split, raw, theorem, s14, s15, s16, s17, s18].map(tested));
         checks.extend([
             by(Engine::Exact, "every_step_has_one_dimension", dimensions),
@@ -572,18 +694,35 @@ mod row {
                 "control_errors_a_hundred_times_as_large",
                 rates::theorem_on_errors_blown_up,
             ),
-            refuted(statement!(control_step_17_as_printed, [gamma, u, su, uh, sh, sv], [])),
-            refuted(statement!(control_step_18_as_printed, [z, d, gamma, beta], [])),
-            refuted(statement!(control_z_inequality_without_5, [gamma, g, u, su, uh, sh], [])),
-            refuted(statement!(control_half_the_constant_of_theorem_3_4, [e, h, z, s, r, k], [])),
-            refuted(statement!(control_step_15_with_penetration, [gamma, u, su, uh, sh, v], [])),
+            refuted(statement!(control_step_17_as_printed, [gamma, u, su, uh, sh, sv], fails "t + gamma * z * z <= factor * z * (su - sv) + gamma * (su - sh) * (sv - sh)")),
+            refuted(statement!(control_step_18_as_printed, [z, d, gamma, beta], fails "factor * z * d <= gamma * z * z / (two * beta) + beta * gamma * d * d / two")),
+            refuted(
+                statement!(control_z_inequality_without_5, [gamma, g, u, su, uh, sh], fails "z * (point.exact.p() - point.discrete.p()) <= -gamma * z * z"),
+            ),
+            refuted(
+                statement!(control_half_the_constant_of_theorem_3_4, [e, h, z, s, r, k], fails "left <= factor * bracket"),
+            ),
+            refuted(
+                statement!(control_step_15_with_penetration, [gamma, u, su, uh, sh, v], fails "su * (v - uh) + over_gamma * v <= (su + over_gamma) * (v - u) + su * (u - uh)"),
+            ),
         ]);
         Claim {
             id: "11",
-            items: &["Theorem 3.4", "(13)", "(14)", "(15)", "(16)", "(17)", "(18)", "(19)", "(20)"],
+            items: &[
+                "Theorem 3.4",
+                "(13)",
+                "(14)",
+                "(15)",
+                "(16)",
+                "(17)",
+                "(18)",
+                "(19)",
+                "(20)",
+                "Corollary 3.6",
+            ],
             title: "The abstract error estimate, with its constant",
             paper: "The solution u^h satisfies |u - u^h|_1 + |gamma^1/2 (sigma_n(u) + [P(u^h)]+/gamma)| <= C inf over v^h of (|u - v^h|_1 + |gamma^-1/2 (u_n - v_n^h)| + |gamma^1/2 sigma_n(u - v^h)|), gamma0 sufficiently small.",
-            statement: "With kappa < 1 and delta = 1 - kappa: |u - u^h|_a^2 + |z|_g^2 / delta <= (2/delta) [(1/delta + kappa + 1/2) |eta|_a^2 + kappa (1/delta + 1/2) |sigma_n(eta)|_g^2 + 1/2 |gamma^-1/2 P0(eta)|^2]. The identity for a(e, w), the pointwise inequality for z, Young's steps and the combination are proved one by one; so are (14)-(16), (17) and (18) with the missing factor gamma, (19) with constants, and (20). Run on numbers with dimensions, every sum and comparison in these steps is one of equal dimensions; in (17) and (18) as printed it is not.",
+            statement: "With kappa < 1 and delta = 1 - kappa: |u - u^h|_a^2 + |z|_g^2 / delta <= (2/delta) [(1/delta + kappa + 1/2) |eta|_a^2 + kappa (1/delta + 1/2) |sigma_n(eta)|_g^2 + 1/2 |gamma^-1/2 P0(eta)|^2]. The identity for a(e, w), the pointwise inequality for z, Young's steps and the combination are proved one by one; so are (14) whole, (15), (16), (17) and (18) with the missing factor gamma, (19) with constants, (20), and the last estimate of the proof with what it says for beta_1 = beta_2 = 2. The steps are linked: what the raw facts leave is, by one function, the hypothesis of the three facts' combination, and what that concludes is the hypothesis of the theorem. Run on numbers with dimensions, every sum and comparison in these steps is one of equal dimensions; in (17) and (18) as printed it is not.",
             numbers: "every ordered field (proof); rationals; doubles for the errors that the solver makes on exact solutions. Square roots enter as data: k with kappa = k^2, norms with their squares.",
             kernel: &[
                 "contact::ContactPoint::p",
@@ -591,7 +730,7 @@ mod row {
                 "contact::ContactPoint::pressure",
             ],
             preconditions: "gamma > 0, 0 <= kappa < 1; (5) at the exact solution; (8) for the discrete one; the Cauchy-Schwarz inequalities and (11) of the norms.",
-            limits: "The integrals are numbers here: that they exist, Green's formula and the Cauchy-Schwarz inequality are hypotheses. The computed errors are those of two solutions on one mesh each; `cargo test --test suite convergence` has many more. C in the paper's (13) is in other norms; Korn's constant is not computed.",
+            limits: "The integrals are numbers here: that they exist, Green's formula and the Cauchy-Schwarz inequality are hypotheses. The computed errors are those of two solutions on one mesh each; `cargo test --test suite convergence` has many more. C in the paper's (13) is in other norms; Korn's constant is not computed (row 15 has (13) with it as a number).",
             single: None,
             checks,
         }

@@ -6,7 +6,7 @@ use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
 use super::polynomial::Polynomial;
-use super::symbol::{self, Choice, Run, Signs, Sym};
+use super::symbol::{self, Choice, Run, Signs, Step, Sym};
 use crate::Verdict;
 
 /// A predicate over symbols.
@@ -67,6 +67,8 @@ pub struct Path {
     pub inverses: Vec<(Polynomial, usize)>,
     /// The unknowns of the predicate and the inverses together.
     pub variables: usize,
+    /// How it was reached.
+    pub steps: Vec<Step>,
 }
 
 /// More paths than this are a mistake in the predicate.
@@ -96,6 +98,7 @@ fn follow(unknowns: usize, predicate: Predicate, script: Vec<Choice>) -> (Run, P
         verdict: run.failed.map_or(verdict, Verdict::Fails),
         inverses: std::mem::take(&mut run.inverses),
         variables: run.variables,
+        steps: std::mem::take(&mut run.steps),
     };
     (run, path)
 }

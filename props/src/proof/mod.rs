@@ -13,9 +13,11 @@ pub mod search;
 mod simplex;
 pub mod smt;
 pub mod symbol;
+pub mod transcript;
 
 pub use float::Float;
 pub use symbol::Sym;
+pub use transcript::transcript;
 
 use std::fmt::Write;
 
@@ -93,8 +95,12 @@ fn refutation(
 /// Proves a statement: every failing path is impossible, and each of its classes is reached at some point.
 ///
 /// # Errors
-/// A counterexample, the paths left open, or the class that no point was found for.
+/// A counterexample, the paths left open, the class that no point was found for, or that it names no class: such a
+/// statement would pass where its hypothesis is never met.
 pub fn prove(statement: &Statement) -> Result<String, String> {
+    if statement.classes.is_empty() {
+        return Err("it names no class of data for which it holds: it may be vacuous".to_owned());
+    }
     let analysis = analyse(statement);
     let mut open = Vec::new();
     let (mut terms, mut factors) = (0, 0);
@@ -123,19 +129,22 @@ pub fn prove(statement: &Statement) -> Result<String, String> {
     Ok(format!("{all} paths, {failing} of them refuted; {largest}"))
 }
 
-/// Refutes a statement that is a control: the predicate fails at a point that was found on one of its paths.
+/// Refutes a statement that is a control: the conclusion that it names fails at a point that was found on one of its paths.
 ///
 /// # Errors
-/// That there is no such point.
+/// That it names no conclusion, or that there is no such point.
 pub fn refute(statement: &Statement) -> Result<String, String> {
-    let analysis = analyse(statement);
-    let refuted = analysis.fates.into_iter().find_map(|(_, fate)| match fate {
-        Fate::Refuted(point) => Some(point),
-        _ => None,
-    });
-    match refuted {
-        Some(point) => Ok(format!("rejected at {}", place(statement, &point))),
-        None => Err("the planted mistake was not rejected".to_owned()),
+    let Some(conclusion) = statement.conclusion else {
+        return Err("a control names the conclusion that must fail".to_owned());
+    };
+    let mut random = Random::new(1);
+    let named = |path: &Path| path.verdict == Verdict::Fails(conclusion);
+    let mut paths = explore(statement.variables.len(), statement.symbolic);
+    paths.retain(named);
+    let point = paths.iter().find_map(|path| refutation(statement, path, &mut random, SLOW_DRAWS));
+    match point {
+        Some(point) => Ok(format!("rejected at {}: {conclusion}", place(statement, &point))),
+        None => Err(format!("'{conclusion}' does not fail")),
     }
 }
 
@@ -303,7 +312,8 @@ mod tests {
         assert!(prove(&statement!(a_square_is_not_negative, [a], ["all"])).is_ok());
         let why = prove(&statement!(a_square_is_positive, [a], ["all"])).unwrap_err();
         assert!(why.ends_with("at a = 0"), "{why}");
-        assert!(refute(&statement!(a_square_is_not_negative, [a], ["all"])).is_err());
+        let right = statement!(a_square_is_not_negative, [a], fails "a * a >= S::from(0)");
+        assert_eq!(refute(&right), Err("'a * a >= S::from(0)' does not fail".to_owned()));
         assert!(prove(&statement!(a_comparison_has_one_answer, [a, b], ["all"])).is_ok());
     }
 
@@ -319,8 +329,85 @@ mod tests {
     fn a_class_that_nothing_reaches_is_an_error() {
         let why = prove(&statement!(nothing_satisfies_this, [a], ["never"])).unwrap_err();
         assert!(why.contains("'never'"), "{why}");
-        let why = prove(&statement!(a_square_is_not_negative, [a], [])).unwrap_err();
+        let why = prove(&statement!(a_square_is_not_negative, [a], ["other"])).unwrap_err();
         assert!(why.contains("not listed"), "{why}");
+    }
+
+    #[test]
+    fn a_statement_without_a_class_is_not_proved() {
+        for statement in [
+            statement!(nothing_satisfies_this, [a], []),
+            statement!(a_square_is_not_negative, [a], []),
+        ] {
+            let why = prove(&statement).unwrap_err();
+            assert!(why.contains("names no class"), "{why}");
+        }
+    }
+
+    fn two_conclusions<S: Ordered>([a]: [S; 1]) -> Verdict {
+        given!(a > S::from(1));
+        ensure!(a < S::from(3));
+        ensure!(a < S::from(2));
+        Verdict::Holds("all")
+    }
+
+    #[test]
+    fn a_control_is_refuted_by_the_conclusion_that_it_names() {
+        let named = statement!(a_square_is_positive, [a], fails "a * a > S::from(0)");
+        assert_eq!(refute(&named), Ok("rejected at a = 0: a * a > S::from(0)".to_owned()));
+        let other = statement!(a_square_is_positive, [a], fails "a > S::from(0)");
+        assert!(refute(&other).unwrap_err().contains("'a > S::from(0)' does not fail"));
+        let nameless = statement!(a_square_is_positive, [a], []);
+        assert!(refute(&nameless).unwrap_err().contains("names the conclusion"));
+        let second = statement!(two_conclusions, [a], fails "a < S::from(2)");
+        assert!(refute(&second).unwrap().ends_with("a < S::from(2)"));
+        let never = statement!(two_conclusions, [a], fails "a > S::from(1)");
+        assert!(refute(&never).is_err());
+    }
+
+    fn a_division_by_zero_is_followed_by_another<S: Ordered>([a, b]: [S; 2]) -> Verdict {
+        ensure!(a / b / b * b * b == a);
+        Verdict::Holds("all")
+    }
+
+    #[test]
+    fn a_second_division_does_not_excuse_a_division_by_zero() {
+        let statement = statement!(a_division_by_zero_is_followed_by_another, [a, b], ["all"]);
+        let why = prove(&statement).unwrap_err();
+        assert!(why.contains("division by zero") && why.ends_with("b = 0"), "{why}");
+    }
+
+    fn a_high_power_is_below_a_multiple<S: Ordered>([x]: [S; 1]) -> Verdict {
+        given!(x > S::from(2));
+        let power = (0..257).fold(S::from(1), |product, _| product * x);
+        ensure!(power < S::from(2) * x);
+        Verdict::Holds("all")
+    }
+
+    #[test]
+    fn exponents_do_not_wrap_around() {
+        let statement = statement!(a_high_power_is_below_a_multiple, [x], ["all"]);
+        let why = prove(&statement).unwrap_err();
+        assert!(why.contains("power < S::from(2) * x"), "{why}");
+        // 1 (x - 2) + 1 (2x - x^257) - ... would cancel with x^257 = x: x - 2 > 0, x^257 - 2x >= 0 for (x - 2) - x + 2 = 0.
+        let paths = explore(1, statement.symbolic);
+        let path = paths.iter().find(|path| path.verdict.fails()).unwrap();
+        let numbers = 0..path.facts.len();
+        let mut terms: Vec<certificate::Term> = numbers
+            .map(|i| certificate::Term {
+                weight: polynomial::integer(1),
+                facts: vec![i],
+                squares: vec![],
+            })
+            .collect();
+        terms.push(certificate::Term {
+            weight: polynomial::integer(2),
+            facts: vec![],
+            squares: vec![],
+        });
+        let certificate = Certificate { terms, multiples: vec![] };
+        let refusal = certificate::check(&path.facts, &certificate);
+        assert_eq!(refusal, Err(certificate::Refusal::DoesNotCancel));
     }
 
     #[test]

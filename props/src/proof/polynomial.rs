@@ -9,8 +9,11 @@ use std::ops::{Add, Mul, Neg, Sub};
 use num_rational::BigRational;
 use num_traits::{One, Signed, Zero};
 
+/// An exponent. The sum of two is checked: one that wrapped around would make x^257 = x, in builds without overflow checks.
+pub type Exponent = u16;
+
 /// The exponents of the variables, without trailing zeros.
-pub type Monomial = Vec<u8>;
+pub type Monomial = Vec<Exponent>;
 
 /// A polynomial: its monomials with their coefficients, none of which is zero. Equal maps are equal polynomials.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -132,6 +135,22 @@ impl Polynomial {
         self.0.iter().map(|(m, c)| c * value(m)).fold(BigRational::zero(), |sum, t| sum + t)
     }
 
+    /// As a sum of terms such as `3/2 a^2 b`; `0` for zero.
+    pub fn text(&self, names: &[String]) -> String {
+        let term = |(monomial, coefficient): (&Monomial, &BigRational)| {
+            let mut text = coefficient.to_string();
+            for (name, exponent) in names.iter().zip(monomial).filter(|&(_, &e)| e > 0) {
+                let _ = match exponent {
+                    1 => write!(text, " {name}"),
+                    _ => write!(text, " {name}^{exponent}"),
+                };
+            }
+            text
+        };
+        let terms: Vec<String> = self.0.iter().map(term).collect();
+        if terms.is_empty() { "0".to_owned() } else { terms.join(" + ") }
+    }
+
     /// In the notation of SMT-LIB 2.
     pub fn smt(&self, names: &[String]) -> String {
         let factor = |monomial: &Monomial, coefficient: &BigRational| {
@@ -159,7 +178,7 @@ pub fn integer(value: i64) -> BigRational {
     BigRational::from_integer(value.into())
 }
 
-fn power(base: &BigRational, exponent: u8) -> BigRational {
+fn power(base: &BigRational, exponent: Exponent) -> BigRational {
     (0..exponent).fold(BigRational::one(), |product, _| product * base)
 }
 
@@ -170,9 +189,13 @@ fn trim(monomial: &mut Monomial) {
 }
 
 /// The product of two monomials.
+///
+/// # Panics
+/// If an exponent is beyond the largest [`Exponent`].
 pub fn product(a: &Monomial, b: &Monomial) -> Monomial {
     let exponent = |m: &Monomial, i: usize| m.get(i).copied().unwrap_or(0);
-    (0..a.len().max(b.len())).map(|i| exponent(a, i) + exponent(b, i)).collect()
+    let sum = |i| exponent(a, i).checked_add(exponent(b, i)).expect("an exponent below 2^16");
+    (0..a.len().max(b.len())).map(sum).collect()
 }
 
 /// a / b, if b divides a.
@@ -315,6 +338,27 @@ mod tests {
         assert_eq!(quotient(&vec![2, 1], &vec![1, 1]), Some(vec![1]));
         assert_eq!(quotient(&vec![2], &vec![0, 1]), None);
         assert_eq!(quotient(&vec![1, 1], &vec![2]), None);
+    }
+
+    #[test]
+    fn a_power_beyond_255_is_not_a_smaller_one() {
+        let power = (0..257).fold(Polynomial::constant(integer(1)), |product, _| &product * &x());
+        assert_eq!(power, Polynomial::term(vec![257], integer(1)));
+        assert_ne!(power, x());
+    }
+
+    #[test]
+    #[should_panic(expected = "an exponent below 2^16")]
+    fn an_exponent_too_large_does_not_wrap_around() {
+        let _ = product(&vec![Exponent::MAX], &vec![1]);
+    }
+
+    #[test]
+    fn text_has_one_term_per_monomial() {
+        let p = &x().scaled(&(integer(-1) / integer(2))) + &(&(&x() * &y()) * &y());
+        let names = ["a".to_owned(), "b".to_owned()];
+        assert_eq!((&p + &Polynomial::constant(integer(3))).text(&names), "3 + -1/2 a + 1 a b^2");
+        assert_eq!(Polynomial::default().text(&names), "0");
     }
 
     #[test]

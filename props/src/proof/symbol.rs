@@ -20,7 +20,7 @@ use super::polynomial::{Polynomial, integer};
 
 /// A set of signs: from the right, a bit for negative, for zero and for positive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Signs(u8);
+pub struct Signs(u8);
 
 impl Signs {
     pub(super) const NEGATIVE: Signs = Signs(0b001);
@@ -53,6 +53,18 @@ impl Signs {
         Signs(self.0.reverse_bits() >> 5)
     }
 
+    /// The relation to zero that says the same of a number; `None` if there is none.
+    pub fn relation(self) -> Option<&'static str> {
+        match self {
+            Signs::NEGATIVE => Some("<"),
+            Signs::NONPOSITIVE => Some("<="),
+            Signs::ZERO => Some("="),
+            Signs::NONNEGATIVE => Some(">="),
+            Signs::POSITIVE => Some(">"),
+            _ => None,
+        }
+    }
+
     /// Its convex parts: "not zero" is two of them.
     fn parts(self) -> Vec<Signs> {
         match self {
@@ -70,6 +82,15 @@ pub(super) struct Choice {
     pub(super) of: usize,
 }
 
+/// What a run did, in order: from the steps of all paths their tree can be put together again, without the predicate.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Step {
+    /// The sign of a polynomial was asked for; from here on it is one of these.
+    Asked(Polynomial, Signs),
+    /// The variable with this number stands for the inverse of a polynomial, which is not zero here.
+    Inverted(Polynomial, usize),
+}
+
 /// One run of a predicate along one path.
 #[derive(Default)]
 pub(super) struct Run {
@@ -79,6 +100,7 @@ pub(super) struct Run {
     /// Monic divisors and the variables that stand for their inverses.
     pub(super) inverses: Vec<(Polynomial, usize)>,
     pub(super) variables: usize,
+    pub(super) steps: Vec<Step>,
     pub(super) script: Vec<Choice>,
     next: usize,
     pub(super) failed: Option<&'static str>,
@@ -121,6 +143,7 @@ impl Run {
             return answers[0].0;
         }
         let (answer, part) = answers[self.choose(answers.len())];
+        self.steps.push(Step::Asked(monic.clone(), part));
         self.signs.insert(monic, part);
         answer
     }
@@ -135,8 +158,12 @@ impl Run {
         choice.answer
     }
 
-    /// 1 / divisor, or nothing on the path where it is zero.
+    /// 1 / divisor, or nothing on the path where it is zero. A path that has failed gets no further inverses: a fact
+    /// x m = 1 that it is given after m = 0 would contradict it, and excuse the division by zero.
     fn inverse(&mut self, divisor: &Polynomial) -> Option<Polynomial> {
+        if self.failed.is_some() {
+            return None;
+        }
         if let Some(value) = divisor.as_constant() {
             return (!value.is_zero()).then(|| Polynomial::constant(value.recip()));
         }
@@ -155,6 +182,7 @@ impl Run {
         let variable = self.variables;
         self.variables += 1;
         self.inverses.push((monic.clone(), variable));
+        self.steps.push(Step::Inverted(monic.clone(), variable));
         let x = Polynomial::variable(variable);
         let one = Polynomial::constant(integer(1));
         let (definition, _) = (&(monic * &x) - &one).monic();

@@ -1,0 +1,191 @@
+//! The bounds of `fem::a_priori`, which the solver prints beside its errors on exact solutions: the very functions, over
+//! symbols, follow from Theorem 3.4, Corollary 3.6, and Theorems 9.3 and 9.4 of docs/theory.md; and what the solver calls
+//! is their square root, with the root of kappa where one belongs.
+
+use proptest::prelude::*;
+use signorini::fem::{Errors, a_priori};
+
+use crate::claim::{Claim, Engine, Outcome, by, control, proved, refuted, tested};
+use crate::claims::theorem_3_4::scaled_sides;
+use crate::numbers::Exact;
+use crate::verdict::{Ordered, Verdict};
+use crate::{draws, ensure, given, statement};
+
+/// Theorem 3.4, divided by delta^2, has the right side that the solver prints.
+pub fn plain_bound_is_that_of_theorem_3_4<S: Ordered>([e, h, z, s, q, k]: [S; 6]) -> Verdict {
+    let (zero, one) = (S::from(0), S::from(1));
+    given!(k >= zero && k < one);
+    let (kappa, delta) = (k * k, one - k * k);
+    ensure!(delta > zero);
+    let [left, right] = scaled_sides([e, h, z, s, q, k]);
+    given!(left <= right);
+    let squared = delta * delta;
+    ensure!(left / squared <= right / squared);
+    ensure!(left / squared == e * e + z * z / delta);
+    ensure!(right / squared == a_priori::plain_squared(kappa, [h, s, q]));
+    Verdict::Holds("always")
+}
+
+/// The terms of the sharp bound are those of Theorem 9.3.
+pub fn sharp_bound_is_that_of_theorem_9_3<S: Ordered>([h, s, k]: [S; 3]) -> Verdict {
+    let (zero, one, two) = (S::from(0), S::from(1), S::from(2));
+    given!(h >= zero && s >= zero && k >= zero && k < one);
+    let kappa = k * k;
+    let [b, c] = a_priori::sharp_terms(kappa, k, [h, s]);
+    ensure!(b >= (one - two * kappa) * h + k * s && b >= (two * kappa - one) * h + k * s);
+    ensure!((b - k * s) * (b - k * s) == (one - two * kappa) * h * ((one - two * kappa) * h));
+    ensure!(c == kappa * h * h + k * h * s);
+    Verdict::Holds(if two * kappa > one { "kappa above 1/2" } else { "kappa at most 1/2" })
+}
+
+/// Theorem 9.4: from delta W^2 + Z^2 <= k S W + Q Z and E^2 = W^2 + H^2.
+pub fn projected_bound_is_that_of_theorem_9_4<S: Ordered>([w, z, h, s, q, k]: [S; 6]) -> Verdict {
+    let (zero, one, two) = (S::from(0), S::from(1), S::from(2));
+    given!(k >= zero && k < one);
+    let (kappa, delta) = (k * k, one - k * k);
+    ensure!(delta > zero);
+    given!(delta * w * w + z * z <= k * s * w + q * z);
+    ensure!(two * delta * k * s * w <= delta * delta * w * w + kappa * s * s);
+    ensure!(two * k * s * w <= delta * w * w + kappa / delta * s * s);
+    ensure!(two * q * z <= q * q + z * z);
+    ensure!(delta * w * w + z * z <= kappa / delta * s * s + q * q);
+    let sum = w * w + z * z / delta;
+    ensure!(delta * sum == delta * w * w + z * z);
+    ensure!(sum <= (kappa / delta * s * s + q * q) / delta);
+    ensure!(w * w + h * h + z * z / delta <= a_priori::projected_squared(kappa, [h, s, q]));
+    Verdict::Holds("always")
+}
+
+/// Corollary 3.6 has the right side that the solver prints.
+pub fn corollary_bound_is_that_of_corollary_3_6<S: Ordered>(
+    [x, s, r, w, e, h, k]: [S; 7],
+) -> Verdict {
+    let zero = S::from(0);
+    given!(k >= zero && k < S::from(1) && e >= zero && h >= zero);
+    given!(x <= s + r && r <= k * w && w <= e + h);
+    ensure!(x <= a_priori::corollary_bound(k, e, [h, s]));
+    Verdict::Holds("always")
+}
+
+/// kappa in the place of its root, where x is as large as Corollary 3.6 allows.
+pub fn control_kappa_for_its_root_in_corollary_3_6<S: Ordered>([s, e, h, k]: [S; 4]) -> Verdict {
+    let zero = S::from(0);
+    given!(k >= zero && k < S::from(1) && e >= zero && h >= zero);
+    ensure!(s + k * (e + h) <= a_priori::corollary_bound(k * k, e, [h, s]));
+    Verdict::Holds("always")
+}
+
+/// Plain data: kappa, E, Z, H, S, Q.
+type Draw = [f64; 6];
+
+fn numbers() -> impl Strategy<Value = Draw> {
+    let size = || prop_oneof![Just(0.0), 1e-3_f64..1e3];
+    (0.0_f64..0.99, [size(), size(), size(), size(), size()])
+        .prop_map(|(kappa, [e, z, h, s, q])| [kappa, e, z, h, s, q])
+}
+
+/// |a - b| <= 64 roundings of b: each of these formulas takes fewer than 30.
+fn near(a: Exact, b: Exact) -> bool {
+    (a - b).abs() <= b.abs() * Exact::of_double(64.0 * f64::EPSILON / 2.0)
+}
+
+/// What the solver calls, squared, against the same functions over rationals; `root` answers the root of kappa that the
+/// corollary is given in the comparison.
+fn called(&[kappa, e, z, h, s, q]: &Draw, spoil: impl Fn(Exact) -> Exact) -> Verdict {
+    let of_u = Errors { energy: e, contact_residual: z, ..Errors::default() };
+    let eta = Errors { energy: h, normal_stress: s, operator: q, ..Errors::default() };
+    Exact::scope(|| {
+        let [left, plain, sharp, projected, corollary] = [
+            a_priori::left(kappa, &of_u),
+            a_priori::plain(kappa, &eta),
+            a_priori::sharp(kappa, &eta),
+            a_priori::projected(kappa, &eta),
+            a_priori::corollary(kappa, &of_u, &eta),
+        ]
+        .map(Exact::of_double);
+        let [k, e, z, h, s, q] = [kappa, e, z, h, s, q].map(Exact::of_double);
+        let delta = Exact::from(1) - k;
+        ensure!(near(left * left, e * e + z * z / delta));
+        ensure!(near(plain * plain, a_priori::plain_squared(k, [h, s, q])));
+        ensure!(near(projected * projected, a_priori::projected_squared(k, [h, s, q])));
+        // Corollary: its root of kappa is (bound - S)/(E + H), known to the roundings of the bound.
+        let sum = e + h;
+        let slack = corollary * Exact::of_double(64.0 * f64::EPSILON / 2.0);
+        let [low, high] = [corollary - s - slack, corollary - s + slack];
+        let square = spoil(k) * sum * sum;
+        ensure!(high >= Exact::from(0) && high * high >= square);
+        ensure!(low <= Exact::from(0) || low * low <= square);
+        // Sharp: y = delta^(1/2) x is a root of y^2 = r y + c: (delta x^2 - c)^2 = r^2 delta x^2, where the root of kappa in
+        // b and c is taken from the double, rounded once.
+        let root = Exact::of_double(kappa.sqrt());
+        let [b, c] = a_priori::sharp_terms(k, root, [h, s]);
+        let (square, r) = (delta * sharp * sharp, b * b / delta + q * q);
+        let slack = Exact::of_double(512.0 * f64::EPSILON) * (square + c) * (square + c + r);
+        let difference = (square - c) * (square - c) - r * square;
+        ensure!(difference.abs() <= slack);
+        ensure!(square + slack >= c);
+        Verdict::Holds("always")
+    })
+}
+
+fn what_the_solver_calls() -> Outcome {
+    draws::hold(400, numbers(), &["always"], |draw| called(draw, |kappa| kappa))
+}
+
+/// kappa^2 under the root: kappa for kappa^(1/2).
+fn kappa_for_its_root() -> Outcome {
+    draws::reject(40, numbers(), |draw| called(draw, |kappa| kappa * kappa))
+}
+
+/// The row of the bounds.
+pub fn claim() -> Claim {
+    let plain = statement!(plain_bound_is_that_of_theorem_3_4, [e, h, z, s, q, k], ["always"]);
+    let terms = statement!(
+        sharp_bound_is_that_of_theorem_9_3,
+        [h, s, k],
+        ["kappa above 1/2", "kappa at most 1/2"]
+    );
+    let projected =
+        statement!(projected_bound_is_that_of_theorem_9_4, [w, z, h, s, q, k], ["always"]);
+    let corollary =
+        statement!(corollary_bound_is_that_of_corollary_3_6, [x, s, r, w, e, h, k], ["always"]);
+    let all = [plain, terms, projected, corollary];
+    let mut checks: Vec<_> = all.into_iter().map(proved).collect();
+    checks.extend([tested(terms)]);
+    checks.extend([
+        by(
+            Engine::Doubles,
+            "the_bounds_that_the_solver_calls_are_roots_of_these",
+            what_the_solver_calls,
+        ),
+        control(Engine::Doubles, "control_kappa_for_its_root_in_doubles", kappa_for_its_root),
+        refuted(statement!(
+            control_kappa_for_its_root_in_corollary_3_6,
+            [s, e, h, k],
+            fails "s + k * (e + h) <= a_priori::corollary_bound(k * k, e, [h, s])"
+        )),
+    ]);
+    Claim {
+        id: "17",
+        items: &["Theorem 3.4", "Corollary 3.6"],
+        title: "The bounds that the solver prints",
+        paper: "The right sides of Theorem 3.4 and of Corollary 3.6, with C.",
+        statement: "The functions of `fem::a_priori`, by which the solver prints the bounds of Theorem 3.4 (plain, and for the a-orthogonal projection of u) and Corollary 3.6, are the right sides that rows 11 and docs/theory.md, 9 prove, over symbols; the terms b and c of the sharp bound are those of Theorem 9.3. In doubles, squared, each is within 64 roundings of the same function over rationals, the root of kappa in Corollary 3.6 is a root, and the sharp bound is a root of its quadratic equation.",
+        numbers: "every ordered field (proof), with k = kappa^(1/2) as data; doubles against rationals.",
+        kernel: &[
+            "fem::a_priori::left",
+            "fem::a_priori::plain_squared",
+            "fem::a_priori::plain",
+            "fem::a_priori::sharp_terms",
+            "fem::a_priori::sharp",
+            "fem::a_priori::projected_squared",
+            "fem::a_priori::projected",
+            "fem::a_priori::corollary_bound",
+            "fem::a_priori::corollary",
+        ],
+        preconditions: "0 <= kappa < 1; the hypotheses of row 11.",
+        limits: "The norms that are put in are those of row 12's quadrature.",
+        single: None,
+        checks,
+    }
+}

@@ -1,0 +1,451 @@
+//! What the solver is given, what it refuses, and the rules by which it integrates: facts about its own functions that no
+//! item of the paper names, but on which every number rests.
+//!
+//! - kappa >= 1 is refused, kappa < 1 is not, and gamma0 = "auto" is kappa = 1/2 (Lemma 3.2 asks for kappa < 1);
+//! - two sides that prescribe different displacements at a common vertex are refused, however near the values are;
+//! - the Gauss rules have the moments of the Legendre polynomials: int P_k = 0 for 0 < k < 2 n, and not for k = 2 n;
+//! - the rules for errors cut an edge where they are told to, near its ends too;
+//! - the integrals over a contact edge scale: from P to 2^k P without any error in doubles;
+//! - the errors from an exact solution are their definitions, in each norm;
+//! - the a-orthogonal projection of u, which the solver computes for Theorem 9.4, is nearer to u than u^h.
+
+use std::collections::BTreeMap;
+
+use proptest::prelude::*;
+use signorini::fem::pieces::{Features, Rule};
+use signorini::fem::quadrature;
+use signorini::fem::{
+    BoxedFunction, Condition, DataError, Diagonal, Errors, ExactSolution, Problem, Rectangle,
+};
+use signorini::kernel::edge_integral::ExactEdge;
+use signorini::kernel::element::displacement_gradient;
+use signorini::kernel::{EdgeIntegrals, Element, Material, P1, P2, Plane, positive_part};
+use signorini::nalgebra::Matrix2;
+use signorini::solve::{Degree, Gamma0, Method, SolveError, discretize};
+
+use crate::claim::{Claim, Engine, Outcome, by, control};
+use crate::claims::rates;
+use crate::numbers::Exact;
+use crate::proof::sampler::Random;
+use crate::verdict::Verdict;
+use crate::{draws, ensure, sharpness};
+
+/// A planted mistake must not pass.
+fn noticed(outcome: Outcome) -> Outcome {
+    match outcome {
+        Err(why) => Ok(format!("rejected: {why}")),
+        Ok(said) => Err(format!("not noticed: {said}")),
+    }
+}
+
+/// The verdict on gamma0 = `share` times the limit, and kappa where it is taken.
+fn kappa_at<E, const N: usize, const M: usize>(
+    problem: &Problem,
+    gamma0: Gamma0,
+) -> Result<Option<f64>, String>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let method = Method { gamma0, ..Method::default() };
+    match discretize::<E, N, M>(problem, &method) {
+        Ok(d) => Ok(Some(d.kappa())),
+        Err(SolveError::NotCoercive { kappa, .. }) if kappa >= 1.0 => Ok(None),
+        Err(other) => Err(other.to_string()),
+    }
+}
+
+/// kappa >= 1 is refused, less is not; `limit` multiplies the limit that is expected.
+fn refusal_on<E, const N: usize, const M: usize>(
+    problem: &Problem,
+    limit: f64,
+) -> Result<(), String>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let method = Method::default();
+    let d = discretize::<E, N, M>(problem, &method).map_err(|e| e.to_string())?;
+    let most = d.coercivity.limit();
+    for share in [1e-6, 0.5, 0.999, 1.0 - 1e-9, 1.0 + 1e-9, 1.001, 1.5, 1.999, 10.0] {
+        let found = kappa_at::<E, N, M>(problem, Gamma0::Value(share * most))?;
+        if found.is_some() != (share < limit) {
+            return Err(format!("kappa = {share}: taken as {found:?}"));
+        }
+        if let Some(kappa) = found
+            && !((kappa - share).abs() <= 1e-14 * share)
+        {
+            return Err(format!("kappa = {share} is called {kappa}"));
+        }
+    }
+    match kappa_at::<E, N, M>(problem, Gamma0::Auto)? {
+        Some(kappa) if (kappa - 0.5).abs() <= 1e-15 => Ok(()),
+        other => Err(format!("auto: kappa = {other:?}, expected 1/2")),
+    }
+}
+
+fn refusal(limit: f64) -> Outcome {
+    let bodies = sharpness::small_bodies()?;
+    for body in &bodies {
+        refusal_on::<P1, 3, 2>(&body.problem, limit).map_err(|e| format!("{}: {e}", body.name))?;
+        refusal_on::<P2, 6, 3>(&body.problem, limit).map_err(|e| format!("{}: {e}", body.name))?;
+    }
+    Ok(format!("{} bodies, P1 and P2, kappa from 1e-6 to 10, and auto", bodies.len()))
+}
+
+fn kappa_is_refused() -> Outcome {
+    refusal(1.0)
+}
+
+fn kappa_below_2_is_taken() -> Outcome {
+    noticed(refusal(2.0))
+}
+
+fn constant(value: f64) -> BoxedFunction {
+    Box::new(move |_: [f64; 2]| value)
+}
+
+/// Whether two sides that meet in a vertex, and prescribe values that differ by `by` there, are refused.
+fn disagreement(by: f64, component: usize) -> Result<bool, String> {
+    let cells = Rectangle { width: 1.0, height: 1.0, nx: 2, ny: 2, diagonal: Diagonal::Right };
+    let mesh = cells.mesh().map_err(|e| e.to_string())?;
+    let sides = [("top", 0.0), ("left", by)].map(|(name, value)| {
+        let values = [0, 1].map(|c| Some(constant(1.0 + if c == component { value } else { 0.0 })));
+        (name.to_owned(), Condition::Displacement(values))
+    });
+    let mut conditions = BTreeMap::from(sides);
+    conditions.insert("bottom".to_owned(), Condition::Contact { gap: constant(0.0) });
+    let material = Material::lame(1.0, 1.0, Plane::Strain);
+    let problem = Problem::new(mesh, material, [constant(0.0), constant(0.0)], conditions);
+    let method = Method { degree: Degree::One, ..Method::default() };
+    match discretize::<P1, 3, 2>(&problem, &method) {
+        Ok(_) => Ok(false),
+        Err(SolveError::Data(DataError::Disagree { .. })) => Ok(true),
+        Err(other) => Err(other.to_string()),
+    }
+}
+
+fn disagreements(least: f64) -> Outcome {
+    let mut refused = 0;
+    for component in [0, 1] {
+        for by in [0.0, 1e-9, 1e-6, 1e-4, 1e-3, 9e-3, 1e-2, 0.1, -1e-6] {
+            let expected = f64::abs(by) > least;
+            if disagreement(by, component)? != expected {
+                return Err(format!("component {component}, values that differ by {by}"));
+            }
+            refused += usize::from(expected);
+        }
+    }
+    Ok(format!("{refused} refused, from 1e-9 on; equal values taken"))
+}
+
+fn disagreements_are_refused() -> Outcome {
+    disagreements(0.0)
+}
+
+fn disagreements_of_a_hundredth_are_taken() -> Outcome {
+    noticed(disagreements(1e-2))
+}
+
+/// The moments of a rule on \[0, 1\] with the Legendre polynomials in 2 s - 1, exactly, from the doubles of the rule.
+fn moments(rule: &[(f64, f64)], most: usize) -> Vec<Exact> {
+    let mut sums = vec![Exact::from(0); most + 1];
+    for &(s, w) in rule {
+        let (x, w) = (Exact::of_double(2.0 * s - 1.0), Exact::of_double(w));
+        let (mut before, mut p) = (Exact::from(0), Exact::from(1));
+        for (k, sum) in sums.iter_mut().enumerate() {
+            *sum = *sum + w * p;
+            let k = Exact::of_double(k as f64);
+            let next = ((k + k + Exact::from(1)) * x * p - k * before) / (k + Exact::from(1));
+            (before, p) = (p, next);
+        }
+    }
+    sums
+}
+
+/// `rule` with n points has the moments of a Gauss rule with n points.
+fn is_gauss(n: usize, rule: &[(f64, f64)]) -> Result<(), String> {
+    Exact::scope(|| {
+        if rule.len() != n {
+            return Err(format!("{} points for {n}", rule.len()));
+        }
+        let moments = moments(rule, 2 * n);
+        // A point is known to a few units, and P_k has slopes up to k^2.
+        let slack = Exact::of_double(8.0 * f64::EPSILON * (n * n) as f64);
+        for (k, moment) in moments.iter().enumerate() {
+            let expected = Exact::from(i32::from(k == 0));
+            let near = (*moment - expected).abs() <= slack;
+            if near != (k < 2 * n) {
+                return Err(format!("n = {n}: moment {k} is {moment:?}"));
+            }
+        }
+        let inside = rule.iter().all(|&(s, w)| 0.0 < s && s < 1.0 && w > 0.0);
+        if inside { Ok(()) } else { Err(format!("n = {n}: points and weights {rule:?}")) }
+    })
+}
+
+fn gauss_rules() -> Outcome {
+    for n in 1..=10 {
+        is_gauss(n, &quadrature::gauss(n))?;
+    }
+    Ok("1 to 10 points, moments 0 to 2n".to_owned())
+}
+
+/// One point more, and weights one part in ten thousand larger.
+fn other_rules() -> Outcome {
+    let more = noticed(is_gauss(4, &quadrature::gauss(5)).map(|()| String::new()))?;
+    let heavier: Vec<(f64, f64)> =
+        quadrature::gauss(4).into_iter().map(|(s, w)| (s, w * 1.0001)).collect();
+    let heavier = noticed(is_gauss(4, &heavier).map(|()| String::new()))?;
+    Ok(format!("{more}; {heavier}"))
+}
+
+/// int_0^1 \[s - c\]+ ds by a rule on an edge that is told to cut at `cut`: (1 - c)^2/2.
+fn with_a_kink(c: f64, cut: Option<f64>) -> bool {
+    let rule = Rule::new(Features::default(), 4);
+    let (mut sum, mut total) = (0.0, 0.0);
+    rule.on_edge([[0.5, 1.0], [0.5, 3.0]], cut, |point| {
+        sum += point.weight * (point.s - c).max(0.0);
+        total += point.weight;
+    });
+    let near = |a: f64, b: f64| (a - b).abs() <= 32.0 * f64::EPSILON;
+    near(sum, (1.0 - c) * (1.0 - c) / 2.0) && near(total, 1.0)
+}
+
+/// Places in an edge, near its ends often.
+fn places() -> impl Strategy<Value = f64> {
+    prop_oneof![1e-7_f64..1e-2, (1e-7_f64..1e-2).prop_map(|c| 1.0 - c), 0.01_f64..0.99,]
+}
+
+fn edges_are_cut() -> Outcome {
+    draws::hold(500, places(), &["cut"], |&c| {
+        ensure!(with_a_kink(c, Some(c)));
+        Verdict::Holds("cut")
+    })
+}
+
+fn edges_are_not_cut() -> Outcome {
+    draws::reject(20, places(), |&c| {
+        ensure!(with_a_kink(c, None));
+        Verdict::Holds("cut")
+    })
+}
+
+/// The integrals for 2^k P are those for P times 2^k for each factor of P in them, bit for bit: a power of two rounds
+/// nothing, and no test of a sign may know of a size. `degree` is that of the energy (2).
+fn scales<E, const N: usize, const M: usize>(p: [f64; M], k: i32, degree: i32) -> Verdict
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let by = |power: i32| 2.0_f64.powi(power * k);
+    let (at, scaled): (EdgeIntegrals<f64, M>, _) = (E::exact(p), E::exact(p.map(|v| v * by(1))));
+    ensure!(scaled.energy == at.energy * by(degree));
+    ensure!(scaled.active == at.active);
+    for a in 0..M {
+        ensure!(scaled.gradient[a] == at.gradient[a] * by(1));
+        for b in 0..M {
+            ensure!(scaled.hessian[a][b] == at.hessian[a][b]);
+        }
+    }
+    let class = if at.active <= 0.0 {
+        "open"
+    } else if at.active < 1.0 {
+        "cut"
+    } else {
+        "pressed"
+    };
+    Verdict::Holds(class)
+}
+
+/// Nodal values of P, and the power of two.
+fn scalings() -> impl Strategy<Value = ([f64; 3], i32)> {
+    (prop::array::uniform3(-1.0_f64..1.0), -60_i32..=60)
+}
+
+fn integrals_scale() -> Outcome {
+    let classes = ["open", "cut", "pressed"];
+    let p1 = draws::hold(2000, scalings(), &classes, |&([a, b, _], k)| {
+        scales::<P1, 3, 2>([a, b], k, 2)
+    })?;
+    let p2 = draws::hold(2000, scalings(), &classes, |&(p, k)| scales::<P2, 6, 3>(p, k, 2))?;
+    Ok(format!("P1: {p1}; P2: {p2}"))
+}
+
+/// An energy of degree 1.
+fn energy_of_another_degree() -> Outcome {
+    draws::reject(20, scalings(), |&(p, k)| scales::<P2, 6, 3>(p, k, 1))
+}
+
+/// A displacement of degree 2: coefficients of 1, x, y, x^2, xy, y^2 for each component. P2 has it exactly.
+#[derive(Debug)]
+struct Quadratic {
+    material: Material<f64>,
+    coefficients: [[f64; 6]; 2],
+}
+
+impl ExactSolution for Quadratic {
+    fn material(&self) -> &Material<f64> {
+        &self.material
+    }
+
+    fn displacement(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        self.coefficients
+            .map(|c| c[0] + c[1] * x + c[2] * y + c[3] * x * x + c[4] * x * y + c[5] * y * y)
+    }
+
+    fn gradient(&self, [x, y]: [f64; 2]) -> Matrix2<f64> {
+        let slopes = self
+            .coefficients
+            .map(|c| [c[1] + 2.0 * c[3] * x + c[4] * y, c[2] + c[4] * x + 2.0 * c[5] * y]);
+        Matrix2::from_fn(|i, j| slopes[i][j])
+    }
+
+    fn regularity(&self) -> f64 {
+        f64::INFINITY
+    }
+}
+
+/// The squares of the errors of a P2 field from a quadratic one by their definitions, from the nodal values of the
+/// difference: int_0^1 of products of polynomials by their end and middle values. `inverted` takes gamma for 1/gamma.
+fn errors_on(problem: &Problem, sign: f64, inverted: bool) -> Result<(), String> {
+    let method = Method { degree: Degree::Two, ..Method::default() };
+    let d = discretize::<P2, 6, 3>(problem, &method).map_err(|e| e.to_string())?;
+    let mut random = Random::new(draws::seed());
+    let mut number = || random.below(2001) as f64 / 1000.0 - 1.0;
+    let exact = Quadratic {
+        material: *problem.material.of(0),
+        coefficients: [0, 1].map(|_| std::array::from_fn(|_| number())),
+    };
+    let nodes = d.space.nodes();
+    let u: Vec<[f64; 2]> = nodes.iter().map(|&x| exact.displacement(x)).collect();
+    // Far from the obstacle, or far behind it: P has one sign.
+    let v: Vec<[f64; 2]> = nodes.iter().map(|_| [number(), number() + sign * 1000.0]).collect();
+    let e: Vec<[f64; 2]> = u.iter().zip(&v).map(|(u, v)| [u[0] - v[0], u[1] - v[1]]).collect();
+    let found = Errors::new(&d.space, &d.contact, &v, &exact);
+    let mut expected = Errors { energy: d.strain_energy(&e), ..Errors::default() };
+    for (t, (triangle, _)) in d.space.triangles().enumerate() {
+        let local = d.space.on_triangle(t, &e);
+        let area = triangle.double_area() / 2.0;
+        for (l, weight) in quadrature::triangle(5) {
+            let shapes: [f64; 6] = <P2 as Element<6, 3>>::values(l);
+            let value = |c: usize| (0..6).map(|j| shapes[j] * local[j][c]).sum::<f64>();
+            let gradients = <P2 as Element<6, 3>>::gradients(l, triangle.barycentric_gradients());
+            let g = displacement_gradient(&local, &gradients);
+            let slope = g.dot(&g);
+            let l2 = value(0) * value(0) + value(1) * value(1);
+            expected.l2 += area * weight * l2;
+            expected.h1 += area * weight * (l2 + slope);
+        }
+    }
+    let squared = |[a, b, m]: [f64; 3]| {
+        (4.0 * (a * a + b * b) + 16.0 * m * m + 4.0 * m * (a + b) - 2.0 * a * b) / 30.0
+    };
+    for line in &d.contact {
+        let [of_e, of_u, of_v] =
+            [&e, &u, &v].map(|field| d.space.on_triangle(line.edge.triangle, field));
+        let [start, end] = line.sigma_n(&of_e);
+        let gamma = line.gamma;
+        let weight = line.length * gamma;
+        expected.normal_stress += weight * (start * start + start * end + end * end) / 3.0;
+        let share = if inverted { weight } else { line.length / gamma };
+        expected.operator += share * squared(line.p(&of_e));
+        let [start, end] = line.sigma_n(&of_u);
+        let p = line.p(&of_v);
+        let pressed = p.map(|p| positive_part(p) / gamma);
+        let z = [start + pressed[0], end + pressed[1], (start + end) / 2.0 + pressed[2]];
+        expected.contact_residual += weight * squared(z);
+    }
+    for (name, found, expected) in [
+        ("energy", found.energy, expected.energy),
+        ("H1", found.h1, expected.h1),
+        ("L2", found.l2, expected.l2),
+        ("contact residual", found.contact_residual, expected.contact_residual),
+        ("normal stress", found.normal_stress, expected.normal_stress),
+        ("operator", found.operator, expected.operator),
+    ] {
+        let expected = expected.sqrt();
+        // The stress is small beside what cancels in it: the displacement is some 1000, the gradients some 1e4.
+        if !((found - expected).abs() <= 1e-9 * expected) {
+            return Err(format!("{name} is {found:e}, by definition {expected:e}"));
+        }
+    }
+    Ok(())
+}
+
+fn errors_by_definition(inverted: bool) -> Outcome {
+    let bodies = sharpness::small_bodies()?;
+    for body in &bodies {
+        for sign in [1.0, -1.0] {
+            errors_on(&body.problem, sign, inverted).map_err(|e| format!("{}: {e}", body.name))?;
+        }
+    }
+    Ok(format!("{} bodies, open and pressed", bodies.len()))
+}
+
+fn errors_are_their_definitions() -> Outcome {
+    errors_by_definition(false)
+}
+
+fn errors_with_gamma_inverted() -> Outcome {
+    noticed(errors_by_definition(true))
+}
+
+/// The row.
+pub fn claim() -> Claim {
+    let checks = vec![
+        by(Engine::Doubles, "kappa_of_1_or_more_is_refused_and_less_is_taken", kappa_is_refused),
+        by(
+            Engine::Doubles,
+            "prescribed_displacements_that_disagree_are_refused",
+            disagreements_are_refused,
+        ),
+        by(Engine::Exact, "gauss_rules_have_the_moments_of_legendre", gauss_rules),
+        by(Engine::Doubles, "edges_are_cut_where_the_rule_is_told_to", edges_are_cut),
+        by(
+            Engine::Doubles,
+            "integrals_over_an_edge_scale_by_powers_of_two_without_error",
+            integrals_scale,
+        ),
+        by(
+            Engine::Doubles,
+            "errors_of_p2_fields_from_quadratic_ones_are_their_definitions",
+            errors_are_their_definitions,
+        ),
+        control(Engine::Doubles, "control_operator_error_with_gamma", errors_with_gamma_inverted),
+        by(
+            Engine::Doubles,
+            "the_projection_is_nearer_than_the_discrete_solution_and_the_interpolant",
+            rates::projection_is_the_nearest,
+        ),
+        control(Engine::Doubles, "control_kappa_below_2_is_taken", kappa_below_2_is_taken),
+        control(
+            Engine::Doubles,
+            "control_disagreements_of_a_hundredth_are_taken",
+            disagreements_of_a_hundredth_are_taken,
+        ),
+        control(Engine::Exact, "control_another_rule_for_that_of_gauss", other_rules),
+        control(Engine::Doubles, "control_an_edge_that_is_not_cut", edges_are_not_cut),
+        control(Engine::Doubles, "control_energy_of_degree_1", energy_of_another_degree),
+        control(
+            Engine::Doubles,
+            "control_the_interpolant_is_as_near_as_the_projection",
+            rates::interpolant_is_as_near,
+        ),
+    ];
+    Claim {
+        id: "18",
+        items: &["the solver"],
+        title: "What the solver refuses, and the rules by which it integrates",
+        paper: "gamma0 sufficiently small; the rest is not in the paper.",
+        statement: "On nine small bodies, P1 and P2: gamma0 with kappa >= 1 is refused (from 1 + 1e-9 on), with kappa < 1 taken (up to 1 - 1e-9), and gamma0 = auto is kappa = 1/2. Displacements that two sides prescribe at a common vertex and that differ by 1e-9 or more are refused. The Gauss rules with n <= 10 points have the moments 0 with the Legendre polynomials of degree 1 to 2n - 1, to a few units of roundoff, and not with that of degree 2n. The rule for errors, told to cut an edge, integrates a kink there exactly, 1e-7 from an end too. The integrals of [P]+ over an edge, P1 and P2, for 2^k P, |k| <= 60, are those for P times the power of two, bit for bit. The errors in all six norms of random P2 fields from quadratic ones, on nine bodies, open and pressed, are those of their definitions. The a-orthogonal projection of the exact solution is nearer to it in the energy norm than u^h and than the interpolant.",
+        numbers: "doubles; the moments from the doubles of the rules over rationals.",
+        kernel: &[
+            "fem::quadrature::gauss",
+            "fem::pieces::on_edge",
+            "fem::errors::with_points",
+            "edge_integral::ExactEdge::exact",
+        ],
+        preconditions: "The processor rounds as in row 13; no underflow where P is scaled.",
+        limits: "The bodies, the two exact solutions of row 12, and random data.",
+        single: None,
+        checks,
+    }
+}

@@ -1,0 +1,113 @@
+//! The variational inequality (3) and the contact conditions (2).
+//!
+//! By Green's formula a(u, v - u) - L(v - u) = int sigma_n(u) (v_n - u_n) for the solution u of (1), so (3) is the
+//! inequality sigma_n(u) (v_n - u_n) >= 0 for v_n <= g, integrated. At a point it is equivalent to (2), given u_n <= g.
+
+use crate::verdict::{Ordered, Verdict};
+use crate::{ensure, given};
+
+/// (2) gives the integrand of (3) its sign, for every admissible v.
+pub fn conditions_2_give_the_sign_of_3<S: Ordered>([u, g, s, v]: [S; 4]) -> Verdict {
+    let zero = S::from(0);
+    given!(u <= g && s <= zero && s * (u - g) == zero);
+    given!(v <= g);
+    ensure!(s * (v - u) >= zero);
+    Verdict::Holds(if s < zero { "contact" } else { "no force" })
+}
+
+/// The converse: the sign for v = u - 1 and for v = g is (2)(ii) and (iii).
+pub fn the_sign_of_3_gives_conditions_2<S: Ordered>([u, g, s]: [S; 3]) -> Verdict {
+    let (zero, one) = (S::from(0), S::from(1));
+    given!(u <= g);
+    given!(s * (u - one - u) >= zero && s * (g - u) >= zero);
+    ensure!(s <= zero);
+    ensure!(s * (u - g) == zero);
+    Verdict::Holds(if s < zero { "contact" } else { "no force" })
+}
+
+/// Without (2)(iii).
+pub fn control_sign_of_3_without_complementarity<S: Ordered>([u, g, s, v]: [S; 4]) -> Verdict {
+    let zero = S::from(0);
+    given!(u <= g && s <= zero && v <= g);
+    ensure!(s * (v - u) >= zero);
+    Verdict::Holds("always")
+}
+
+/// For every v, admissible or not.
+pub fn control_sign_of_3_for_every_v<S: Ordered>([u, g, s, v]: [S; 4]) -> Verdict {
+    let zero = S::from(0);
+    given!(u <= g && s <= zero && s * (u - g) == zero);
+    ensure!(s * (v - u) >= zero);
+    Verdict::Holds("always")
+}
+
+#[cfg(not(kani))]
+pub use row::claim;
+
+#[cfg(not(kani))]
+mod row {
+    use super::*;
+    use crate::claim::{Claim, Engine, by, proved, refuted, tested};
+    use crate::claims::lemma_3_1::inequality_3_at_affine_solutions;
+    use crate::numbers::Exact;
+    use crate::statement;
+
+    /// u_n = g where the force is not zero.
+    fn onto_contact(v: &mut [Exact]) {
+        v[2] = -v[2].abs();
+        if v[0] > v[1] {
+            v[0] = v[1];
+        } else {
+            v[2] = Exact::from(0);
+        }
+    }
+
+    /// The row of (3).
+    pub fn claim() -> Claim {
+        let sign = statement!(
+            conditions_2_give_the_sign_of_3,
+            [u_n, g, sigma_n, v_n],
+            ["contact", "no force"]
+        )
+        .prepared(onto_contact);
+        let converse = statement!(
+            the_sign_of_3_gives_conditions_2,
+            [u_n, g, sigma_n],
+            ["contact", "no force"]
+        )
+        .prepared(onto_contact);
+        Claim {
+            id: "16",
+            items: &["(3)"],
+            title: "The variational inequality",
+            paper: "Find u in K such that a(u, v - u) >= L(v - u) for all v in K, K = {v in V: v_n <= 0 on Gamma_C}.",
+            statement: "At a point of Gamma_C, sigma_n (v_n - u_n) >= 0 for all v_n <= g is equivalent to (2), given u_n <= g. On random bodies with an affine exact solution, a(u, w) - L(w) >= 0 for every shape function w of P1 with w_n <= 0 on Gamma_C, in both directions of both axes: so (3) holds for u + w, and for all sums of these with factors that are not negative.",
+            numbers: "every ordered field (proof); rationals.",
+            kernel: &["material::Material::stress"],
+            preconditions: "Green's formula, which row 4 checks on bodies.",
+            limits: "That (3) has one solution (Stampacchia) is taken from analysis.",
+            single: None,
+            checks: vec![
+                proved(sign),
+                proved(converse),
+                tested(sign),
+                tested(converse),
+                by(
+                    Engine::Exact,
+                    "inequality_3_holds_at_affine_solutions_on_random_bodies",
+                    inequality_3_at_affine_solutions,
+                ),
+                refuted(statement!(
+                    control_sign_of_3_without_complementarity,
+                    [u_n, g, sigma_n, v_n],
+                    fails "s * (v - u) >= zero"
+                )),
+                refuted(statement!(
+                    control_sign_of_3_for_every_v,
+                    [u_n, g, sigma_n, v_n],
+                    fails "s * (v - u) >= zero"
+                )),
+            ],
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! A proof as text, for checkers that know nothing of this engine: its paths with every question and its answer, and for
+//! each path that fails the facts and the certificate that contradict each other.
+//!
+//! ```text
+//! statement a_square_is_not_negative
+//! unknowns a
+//! path
+//! ask < 1 a^2                            the sign of this polynomial was asked for, and is <, <=, =, >= or > 0
+//! inverse inverse_0 1 b                  from here on inverse_0 b = 1; b is known not to be zero
+//! fails a * a >= S::from(0)              or: holds CLASS, vacuous
+//! fact > -1 a^2                          numbered from 0
+//! term 2 | 0 0 | 1 a ; 1 b               2 (fact 0)^2 a^2 b^2
+//! multiple 1 a | 3                       a times fact 3, which is an equation
+//! ```
+//!
+//! `reference/check_certificates.py` checks that the questions of all paths are a tree whose answers leave no sign out, that
+//! the facts follow from the answers, and that each certificate is one. What it does not check is that the polynomials are
+//! those of the predicate: for this the exploration is trusted.
+
+use std::fmt::Write;
+
+use super::certificate::Certificate;
+use super::explorer::{Path, Sense};
+use super::symbol::Step;
+use super::{Fate, analyse};
+use crate::Verdict;
+use crate::statement::Statement;
+
+/// The proof of a statement as text.
+///
+/// # Errors
+/// The first path that fails and is not refuted.
+pub fn transcript(statement: &Statement) -> Result<String, String> {
+    let analysis = analyse(statement);
+    let variables = statement.variables.join(" ");
+    let mut text = format!("statement {}\nunknowns {variables}\n", statement.name);
+    let mut fates = analysis.fates.iter();
+    for path in &analysis.paths {
+        let names = names(statement, path);
+        steps(path, &names, &mut text);
+        let _ = match path.verdict {
+            Verdict::Holds(class) => writeln!(text, "holds {class}"),
+            Verdict::Vacuous => writeln!(text, "vacuous"),
+            Verdict::Fails(conclusion) => {
+                let Some((_, Fate::Impossible(certificate))) = fates.next() else {
+                    return Err(format!("{}: {conclusion} is not proved", statement.name));
+                };
+                let _ = writeln!(text, "fails {}", conclusion.replace('\n', " "));
+                contradiction(path, certificate, &names, &mut text);
+                Ok(())
+            }
+        };
+    }
+    Ok(text)
+}
+
+fn names(statement: &Statement, path: &Path) -> Vec<String> {
+    let unknowns = statement.variables.len();
+    let inverses = (unknowns..path.variables).map(|i| format!("inverse_{}", i - unknowns));
+    statement.variables.iter().map(|name| (*name).to_owned()).chain(inverses).collect()
+}
+
+fn steps(path: &Path, names: &[String], text: &mut String) {
+    text.push_str("path\n");
+    for step in &path.steps {
+        let _ = match step {
+            Step::Asked(p, signs) => {
+                let relation = signs.relation().unwrap_or("?");
+                writeln!(text, "ask {relation} {}", p.text(names))
+            }
+            Step::Inverted(p, variable) => {
+                writeln!(text, "inverse {} {}", names[*variable], p.text(names))
+            }
+        };
+    }
+}
+
+fn contradiction(path: &Path, certificate: &Certificate, names: &[String], text: &mut String) {
+    for fact in &path.facts {
+        let relation = match fact.sense {
+            Sense::Positive => ">",
+            Sense::Nonnegative => ">=",
+            Sense::Zero => "=",
+        };
+        let _ = writeln!(text, "fact {relation} {}", fact.polynomial.text(names));
+    }
+    for term in &certificate.terms {
+        let facts: Vec<String> = term.facts.iter().map(usize::to_string).collect();
+        let squares: Vec<String> = term.squares.iter().map(|p| p.text(names)).collect();
+        let (facts, squares) = (facts.join(" "), squares.join(" ; "));
+        let _ = writeln!(text, "term {} | {facts} | {squares}", term.weight);
+    }
+    for (multiplier, fact) in &certificate.multiples {
+        let _ = writeln!(text, "multiple {} | {fact}", multiplier.text(names));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::verdict::Ordered;
+    use crate::{ensure, given, statement};
+
+    fn a_quotient_of_squares_is_not_negative<S: Ordered>([a, b]: [S; 2]) -> Verdict {
+        given!(b > S::from(0));
+        ensure!(a * a / b >= S::from(0));
+        Verdict::Holds("always")
+    }
+
+    fn a_square_is_positive<S: Ordered>([a]: [S; 1]) -> Verdict {
+        ensure!(a * a > S::from(0));
+        Verdict::Holds("always")
+    }
+
+    /// The example that the tests of the other checker tamper with.
+    const EXAMPLE: &str = "../reference/tests/quotient.proof";
+
+    #[test]
+    fn a_proof_is_printed_as_the_example_of_the_other_checker() {
+        let statement = statement!(a_quotient_of_squares_is_not_negative, [a, b], ["always"]);
+        let text = transcript(&statement).unwrap();
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(EXAMPLE);
+        let stored = std::fs::read_to_string(&path).unwrap_or_default();
+        assert!(stored == text, "{} is stale; it is now:\n{text}", path.display());
+    }
+
+    #[test]
+    fn what_is_not_proved_has_no_transcript() {
+        let why = transcript(&statement!(a_square_is_positive, [a], ["always"])).unwrap_err();
+        assert!(why.contains("is not proved"), "{why}");
+    }
+}

@@ -1,0 +1,218 @@
+"""Unilateral (Signorini) contact in linear elasticity by Nitsche's method, after Chouly & Hild (2013).
+
+    import signorini
+    solution = signorini.solve_case("cases/block.toml", set={"method.degree": 2})
+
+or, with a mesh of your own (arrays, or a meshio mesh in place of the three):
+
+    solution = signorini.solve(
+        points, triangles, {"top": edges, "bottom": edges},
+        material={"young": 2.5, "poisson": 0.25},
+        boundary={"top": {"displacement": [0, -0.01]}, "bottom": {"contact": {"gap": "0.1*x^2"}}},
+    )
+
+The keyword arguments of `solve` are the tables of a case file (docs/case.md), all but [mesh]. A wrong case raises CaseError,
+which is a ValueError; a case that has no solution raises SolveError, which is a RuntimeError.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import dataclass
+from typing import Any, Mapping, Optional, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _signorini
+from ._signorini import CaseError, SolveError, __version__
+
+__all__ = ["CaseError", "Contact", "Solution", "SolveError", "__version__", "from_meshio", "solve", "solve_case"]
+
+Floats = npt.NDArray[np.float64]
+Integers = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Contact:
+    """The contact line, by arc length. A node between two edges is there twice: sigma_n jumps."""
+
+    arc: Floats
+    """Arc length from the start of the contact line."""
+    node: Integers
+    """The number of the node."""
+    u_n: Floats
+    """u.n, n the outward normal."""
+    gap: Floats
+    """The initial gap g along n."""
+    sigma_n: Floats
+    """The normal stress, negative in compression."""
+    pressure: Floats
+    """The contact pressure -lambda, never negative: the one to report."""
+
+
+@dataclass(frozen=True)
+class Solution:
+    """A solved case, in its own units."""
+
+    nodes: Floats
+    """(nodes, 2): the vertices of the mesh, then, for degree 2, the middles of its edges."""
+    elements: Integers
+    """(triangles, 3 or 6): the nodes of each triangle, vertices first, then the middle opposite each vertex."""
+    displacement: Floats
+    """(nodes, 2)"""
+    stress: Floats
+    """(triangles, 4): the mean xx, yy, zz, xy."""
+    von_mises: Floats
+    """(triangles,)"""
+    contact: Contact
+    results: dict[str, Any]
+    """What result.json says (docs/result.md)."""
+
+
+def solve_case(
+    path: Union[str, "os.PathLike[str]"], *, set: Optional[Mapping[str, Any]] = None
+) -> Solution:
+    """Solve a case file; `set` sets keys over it, as in {"method.gamma0": 1e-3}."""
+    settings = [f"{key}={_toml(_expressions(key.rsplit('.', 1)[-1], value))}" for key, value in (set or {}).items()]
+    return _solution(_signorini.solve_case(os.fspath(path), settings))
+
+
+def solve(
+    points: Any,
+    triangles: Optional[npt.ArrayLike] = None,
+    boundaries: Optional[Mapping[str, npt.ArrayLike]] = None,
+    **tables: Any,
+) -> Solution:
+    """Solve a contact problem on a mesh: points (n, 2), triangles (m, 3), counter-clockwise, and for each named boundary its
+    edges (k, 2) as pairs of points; or a meshio mesh in place of the three.
+
+    The tables are those of a case file: material, boundary, load, method, solver, output, ... A number may stand where the
+    file has an expression.
+    """
+    if triangles is None and boundaries is None and hasattr(points, "cells"):
+        points, triangles, boundaries = from_meshio(points)
+    if triangles is None or boundaries is None:
+        raise TypeError("expected points, triangles and boundaries, or a meshio mesh")
+    text = "".join(f"{_key(name)} = {_toml(_expressions(name, table))}\n" for name, table in tables.items())
+    return _solution(
+        _signorini.solve(
+            text,
+            _bytes(points, np.float64, 2, "points"),
+            _bytes(triangles, np.int64, 3, "triangles"),
+            [(name, _bytes(edges, np.int64, 2, f"boundary '{name}'")) for name, edges in boundaries.items()],
+        )
+    )
+
+
+def from_meshio(mesh: Any) -> tuple[Floats, Integers, dict[str, Integers]]:
+    """Points, triangles and named boundaries of a meshio mesh, the latter from its physical names (as Gmsh writes them) or
+    its cell sets. Points that no triangle uses are left out, and triangles are turned counter-clockwise."""
+    triangles = [block.data for block in mesh.cells if block.type == "triangle"]
+    if not triangles:
+        found = ", ".join(sorted({block.type for block in mesh.cells})) or "no cells"
+        raise CaseError(f"the meshio mesh has {found}; expected triangles")
+    corners = np.concatenate(triangles).astype(np.int64)
+    places = np.asarray(mesh.points, dtype=np.float64)
+    if places.shape[1] > 2 and np.any(places[:, 2] != 0):
+        raise CaseError("the meshio mesh leaves the plane z = 0")
+    used = np.unique(corners)
+    number = np.full(len(places), -1, dtype=np.int64)
+    number[used] = np.arange(len(used))
+    points = np.ascontiguousarray(places[used, :2])
+    corners = number[corners]
+    a, b, c = (points[corners[:, i]] for i in range(3))
+    clockwise = (b - a)[:, 0] * (c - a)[:, 1] < (b - a)[:, 1] * (c - a)[:, 0]
+    corners[clockwise] = corners[clockwise][:, [0, 2, 1]]
+
+    boundaries: dict[str, list[Integers]] = {}
+    names = {int(tag): name for name, (tag, dimension) in mesh.field_data.items() if dimension == 1}
+    physical = mesh.cell_data.get("gmsh:physical", [None] * len(mesh.cells))
+    for i, block in enumerate(mesh.cells):
+        if block.type != "line":
+            continue
+        if physical[i] is not None:
+            for tag in np.unique(physical[i]):
+                if int(tag) in names:
+                    edges = block.data[np.asarray(physical[i]) == tag]
+                    boundaries.setdefault(names[int(tag)], []).append(number[edges])
+        for name, cells in mesh.cell_sets.items():
+            if not name.startswith("gmsh:") and cells[i] is not None and len(cells[i]) and name not in names.values():
+                boundaries.setdefault(name, []).append(number[block.data[np.asarray(cells[i], dtype=np.int64)]])
+    return points, corners, {name: np.concatenate(parts) for name, parts in boundaries.items()}
+
+
+# Keys whose values are expressions in x and y; a number serves, too.
+_EXPRESSIONS = {"body", "displacement", "traction", "gap", "pressure", "normal", "tangential", "distance"}
+
+
+def _expressions(key: str, value: Any) -> Any:
+    """The value with numbers as the expressions that they stand for."""
+    if isinstance(value, Mapping):
+        return {name: _expressions(name, inner) for name, inner in value.items()}
+    if key in _EXPRESSIONS:
+        if isinstance(value, (list, tuple, np.ndarray)):
+            return [_expressions(key, inner) for inner in value]
+        if isinstance(value, (int, float, np.number)) and not isinstance(value, bool):
+            return repr(float(value))
+    return value
+
+
+def _key(name: str) -> str:
+    return json.dumps(str(name), ensure_ascii=False)
+
+
+def _toml(value: Any) -> str:
+    """The value as TOML. The texts of JSON are texts of TOML, and so are its numbers."""
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{_key(name)} = {_toml(inner)}" for name, inner in value.items()) + "}"
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(map(_toml, value)) + "]"
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, int):
+        return str(value)
+    if isinstance(value, float):
+        return repr(value)
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    raise TypeError(f"{value!r} has no place in a case; expected a number, a text, true or false, a list or a dict")
+
+
+def _bytes(values: Any, dtype: Any, columns: int, name: str) -> bytes:
+    array = np.asarray(values)
+    if array.ndim != 2 or array.shape[1] != columns:
+        raise CaseError(f"{name} has shape {array.shape}; expected (n, {columns})")
+    if np.issubdtype(dtype, np.integer) and not np.issubdtype(array.dtype, np.integer):
+        raise CaseError(f"{name} is of {array.dtype}; expected whole numbers")
+    return np.ascontiguousarray(array, dtype=dtype).tobytes()
+
+
+def _solution(raw: _signorini.Raw) -> Solution:
+    def floats(name: str, *shape: int) -> Floats:
+        return np.frombuffer(raw[name], dtype=np.float64).reshape(*shape).copy()
+
+    def integers(name: str, *shape: int) -> Integers:
+        return np.frombuffer(raw[name], dtype=np.int64).reshape(*shape).copy()
+
+    return Solution(
+        nodes=floats("nodes", -1, 2),
+        elements=integers("elements", -1, raw["nodes_per_triangle"]),
+        displacement=floats("displacement", -1, 2),
+        stress=floats("stress", -1, 4),
+        von_mises=floats("von_mises", -1),
+        contact=Contact(
+            arc=floats("arc", -1),
+            node=integers("node", -1),
+            u_n=floats("u_n", -1),
+            gap=floats("gap", -1),
+            sigma_n=floats("sigma_n", -1),
+            pressure=floats("pressure", -1),
+        ),
+        results=json.loads(raw["results"]),
+    )

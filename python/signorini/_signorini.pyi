@@ -1,0 +1,27 @@
+from typing import List, Tuple, TypedDict
+
+__version__: str
+
+class CaseError(ValueError):
+    """The case is wrong."""
+
+class SolveError(RuntimeError):
+    """The case is right, but there is no solution."""
+
+class Raw(TypedDict):
+    nodes: bytes
+    elements: bytes
+    nodes_per_triangle: int
+    displacement: bytes
+    stress: bytes
+    von_mises: bytes
+    arc: bytes
+    node: bytes
+    u_n: bytes
+    gap: bytes
+    sigma_n: bytes
+    pressure: bytes
+    results: str
+
+def solve_case(path: str, settings: List[str]) -> Raw: ...
+def solve(text: str, points: bytes, triangles: bytes, boundaries: List[Tuple[str, bytes]]) -> Raw: ...

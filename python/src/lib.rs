@@ -1,0 +1,153 @@
+//! The Python module `signorini._signorini`: cases and meshes in, raw bytes of native numbers out. What a person sees of it
+//! is `signorini/__init__.py`, which makes arrays of them.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use pyo3::create_exception;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+use signorini::fem::Mesh;
+use signorini::io::Case;
+use signorini::io::outputs;
+use signorini::io::result::{Seconds, result_json};
+use signorini::solve::{Solution, SolveError};
+
+create_exception!(_signorini, CaseError, PyValueError, "The case is wrong.");
+create_exception!(
+    _signorini,
+    SolutionError,
+    PyRuntimeError,
+    "The case is right, but there is no solution."
+);
+
+/// Solves the case in a file, with these settings over it.
+#[pyfunction]
+fn solve_case<'py>(
+    py: Python<'py>,
+    path: PathBuf,
+    settings: Vec<String>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let solved = py.detach(|| {
+        let start = Instant::now();
+        let text = Case::text(&path).map_err(wrong)?;
+        let case = Case::parse(&path, &text, &settings).map_err(wrong)?;
+        solved(&case, start)
+    });
+    raw(py, &solved?)
+}
+
+/// Solves a case without a mesh on this one: points as pairs of doubles, triangles and edges as 64-bit numbers.
+#[pyfunction]
+fn solve<'py>(
+    py: Python<'py>,
+    text: &str,
+    points: &[u8],
+    triangles: &[u8],
+    boundaries: Vec<(String, Vec<u8>)>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let solved = py.detach(|| {
+        let start = Instant::now();
+        let boundaries = boundaries
+            .iter()
+            .map(|(name, edges)| Ok((name.clone(), indices(edges)?)))
+            .collect::<PyResult<Vec<_>>>()?;
+        let mesh = Mesh::new(doubles(points), indices(triangles)?, boundaries).map_err(wrong)?;
+        let case = Case::on_mesh(Path::new("case"), text, mesh).map_err(wrong)?;
+        solved(&case, start)
+    });
+    raw(py, &solved?)
+}
+
+fn wrong(error: impl ToString) -> PyErr {
+    CaseError::new_err(error.to_string())
+}
+
+/// Pairs of doubles.
+fn doubles(bytes: &[u8]) -> Vec<[f64; 2]> {
+    let (numbers, _) = bytes.as_chunks::<8>();
+    let (pairs, _) = numbers.as_chunks::<2>();
+    pairs.iter().map(|pair| pair.map(f64::from_ne_bytes)).collect()
+}
+
+/// Tuples of numbers of points.
+fn indices<const K: usize>(bytes: &[u8]) -> PyResult<Vec<[usize; K]>> {
+    let (numbers, _) = bytes.as_chunks::<8>();
+    let (tuples, _) = numbers.as_chunks::<K>();
+    let index = |bytes: &[u8; 8]| {
+        let number = i64::from_ne_bytes(*bytes);
+        usize::try_from(number)
+            .map_err(|_| wrong(format!("found point number {number}; expected one from 0 on")))
+    };
+    tuples
+        .iter()
+        .map(|tuple| {
+            let mut indices = [0; K];
+            for (i, bytes) in indices.iter_mut().zip(tuple) {
+                *i = index(bytes)?;
+            }
+            Ok(indices)
+        })
+        .collect()
+}
+
+/// A solution and the text of result.json.
+struct Solved {
+    solution: Solution,
+    results: String,
+}
+
+fn solved(case: &Case, start: Instant) -> PyResult<Solved> {
+    let read = start.elapsed();
+    let (solution, times) = signorini::solve(&case.problem, &case.method, &case.settings)
+        .map_err(|error| unsolved(&error))?;
+    let no_results = |error: &dyn std::fmt::Display| SolutionError::new_err(error.to_string());
+    let seconds = Seconds::new(read, &times, std::time::Duration::ZERO);
+    let results = outputs::results(case, &solution, seconds).map_err(|e| no_results(&e))?;
+    let results = result_json(&results).map_err(|e| no_results(&e))?;
+    Ok(Solved { solution, results })
+}
+
+fn unsolved(error: &SolveError) -> PyErr {
+    if error.is_wrong_case() { wrong(error) } else { SolutionError::new_err(error.to_string()) }
+}
+
+fn raw<'py>(py: Python<'py>, solved: &Solved) -> PyResult<Bound<'py, PyDict>> {
+    let Solved { solution: s, results } = solved;
+    let dict = PyDict::new(py);
+    let floats = |name: &str, values: &mut dyn Iterator<Item = f64>| {
+        let bytes: Vec<u8> = values.flat_map(f64::to_ne_bytes).collect();
+        dict.set_item(name, PyBytes::new(py, &bytes))
+    };
+    let integers = |name: &str, values: &mut dyn Iterator<Item = usize>| {
+        let bytes: Vec<u8> = values.flat_map(|i| (i as i64).to_ne_bytes()).collect();
+        dict.set_item(name, PyBytes::new(py, &bytes))
+    };
+    floats("nodes", &mut s.nodes.iter().flatten().copied())?;
+    integers("elements", &mut s.elements.iter().copied())?;
+    dict.set_item("nodes_per_triangle", s.nodes_per_triangle)?;
+    floats("displacement", &mut s.displacement.iter().flatten().copied())?;
+    floats("stress", &mut s.stress.iter().flat_map(|(t, zz)| [t.xx, t.yy, *zz, t.xy]))?;
+    floats("von_mises", &mut s.von_mises.iter().copied())?;
+    let points = || s.contact.iter().flat_map(|edge| &edge.points);
+    floats("arc", &mut points().map(|p| p.arc))?;
+    integers("node", &mut points().map(|p| p.node))?;
+    floats("u_n", &mut points().map(|p| p.u_n))?;
+    floats("gap", &mut points().map(|p| p.gap))?;
+    floats("sigma_n", &mut points().map(|p| p.sigma_n))?;
+    // + 0 makes a positive zero of a negative one.
+    floats("pressure", &mut points().map(|p| -p.lambda + 0.0))?;
+    dict.set_item("results", results)?;
+    Ok(dict)
+}
+
+/// The module.
+#[pymodule]
+fn _signorini(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add("CaseError", module.py().get_type::<CaseError>())?;
+    module.add("SolveError", module.py().get_type::<SolutionError>())?;
+    module.add_function(wrap_pyfunction!(solve_case, module)?)?;
+    module.add_function(wrap_pyfunction!(solve, module)?)
+}

@@ -1,0 +1,156 @@
+"""What the Python module promises. Run by pytest, with the module, meshio and mypy installed."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+
+import signorini
+
+CASES = Path(__file__).resolve().parents[2] / "cases"
+
+
+def square(n):
+    """The unit square in n x n cells with diagonals right, as the case files have it."""
+    x = np.linspace(0, 1, n + 1)
+    points = np.array([(a, b) for b in x for a in x])
+    corner = lambda i, j: j * (n + 1) + i
+    triangles = []
+    for j in range(n):
+        for i in range(n):
+            a, b, c, d = corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)
+            triangles += [(a, b, c), (a, c, d)]
+    bottom = [(corner(i, 0), corner(i + 1, 0)) for i in range(n)]
+    top = [(corner(i, n), corner(i + 1, n)) for i in range(n)]
+    return points, np.array(triangles), {"bottom": np.array(bottom), "top": np.array(top)}
+
+
+BLOCK = {
+    "material": {"lambda": 1.0, "mu": 1.0},
+    "load": {"body": [0, "-4 + 10*x"]},
+    "boundary": {"top": {"displacement": [0, 0]}, "bottom": {"contact": {"gap": 0}}},
+    "method": {"gamma0": "auto"},
+}
+
+
+def test_a_case_file_gives_arrays_that_fit_together():
+    solution = signorini.solve_case(CASES / "block.toml", set={"mesh.rectangle.nx": 8, "mesh.rectangle.ny": 8})
+    mesh = solution.results["mesh"]
+    assert solution.nodes.shape == solution.displacement.shape == (81, 2)
+    assert solution.elements.shape == (128, 3) == (mesh["triangles"], 3)
+    assert solution.stress.shape == (128, 4) and solution.von_mises.shape == (128,)
+    assert solution.contact.arc.shape == solution.contact.pressure.shape == (16,)
+    assert (solution.contact.pressure >= 0).all() and solution.contact.pressure.max() > 1
+    largest = np.hypot(*solution.displacement.T).max()
+    assert largest == pytest.approx(solution.results["quantities"]["max_displacement"], rel=1e-15)
+    # The contact line is the bottom, from left to right.
+    assert (solution.nodes[solution.contact.node][:, 1] == 0).all()
+    assert (np.diff(solution.contact.arc) >= 0).all()
+
+
+def test_a_mesh_of_arrays_gives_the_same_as_the_case_file_to_the_bit():
+    ours = signorini.solve(*square(8), **BLOCK)
+    theirs = signorini.solve_case(
+        CASES / "block.toml",
+        set={"mesh.rectangle.nx": 8, "mesh.rectangle.ny": 8, "method.gamma0": "auto"},
+    )
+    assert (ours.displacement == theirs.displacement).all()
+    assert ours.results["quantities"] == theirs.results["quantities"]
+
+
+def test_degree_2_has_nodes_on_the_edges():
+    solution = signorini.solve(*square(4), **{**BLOCK, "method": {"degree": 2}})
+    assert solution.elements.shape == (32, 6)
+    a, b, c, d, e, f = (solution.nodes[solution.elements[:, i]] for i in range(6))
+    for middle, ends in [(d, (b, c)), (e, (c, a)), (f, (a, b))]:
+        assert np.abs(middle - sum(ends) / 2).max() < 1e-15
+
+
+def test_a_meshio_mesh_is_taken_as_it_is_with_physical_names():
+    mesh = meshio.read(CASES / "disk.msh")
+    solution = signorini.solve(
+        mesh,
+        material={"young": 1000.0, "poisson": 0.3},
+        boundary={"top": {"displacement": [0, -0.015]}, "contact": {"contact": {"gap": "y/(1 - y)"}}},
+    )
+    theirs = signorini.solve_case(CASES / "disk.toml")
+    force = solution.results["quantities"]["contact_force"]
+    # The vertices may have other numbers, so the sums are rounded otherwise.
+    assert force == pytest.approx(theirs.results["quantities"]["contact_force"], rel=1e-9)
+
+
+def test_clockwise_triangles_stray_points_and_cell_sets_of_meshio_are_understood():
+    points, triangles, boundaries = square(4)
+    lines = np.concatenate([boundaries["bottom"], boundaries["top"]])
+    k = len(boundaries["bottom"])
+    mesh = meshio.Mesh(
+        np.vstack([points, [[9.0, 9.0]]]),
+        [("triangle", triangles[:, ::-1]), ("line", lines)],
+        cell_sets={"bottom": [[], list(range(k))], "top": [[], list(range(k, 2 * k))]},
+    )
+    ours, theirs = signorini.solve(mesh, **BLOCK), signorini.solve(*square(4), **BLOCK)
+    assert np.abs(ours.displacement - theirs.displacement).max() < 1e-12
+
+
+@pytest.mark.parametrize(
+    "change, message",
+    [
+        ({"material": {"lambda": 1.0, "mu": -1.0}}, r"\[material\] mu = -1.0; expected a positive number"),
+        ({"materiel": {}}, "unknown key 'materiel'"),
+        ({"mesh": {"gmsh": "x"}}, "mesh"),
+        ({"method": {"gamma0": 1e9}}, "coercivity needs kappa < 1"),
+        ({"load": {"body": [float("nan"), 0]}}, "body"),
+    ],
+)
+def test_a_wrong_case_is_a_value_error_with_the_message_of_the_command(change, message):
+    with pytest.raises(signorini.CaseError, match=message) as caught:
+        signorini.solve(*square(2), **{**BLOCK, **change})
+    assert isinstance(caught.value, ValueError)
+
+
+def test_wrong_arrays_are_refused_by_name():
+    points, triangles, boundaries = square(2)
+    for arguments, message in [
+        ((points[:, :1], triangles, boundaries), r"points has shape \(9, 1\); expected \(n, 2\)"),
+        ((points, triangles[:, :2], boundaries), r"triangles has shape \(8, 2\); expected \(n, 3\)"),
+        ((points, triangles + 0.5, boundaries), "triangles is of float64; expected whole numbers"),
+        ((points, triangles - 1, boundaries), "found point number -1; expected one from 0 on"),
+        ((points, triangles + 1, boundaries), "names vertex 9"),
+        ((points, triangles[:, ::-1], boundaries), "list its vertices counter-clockwise"),
+    ]:
+        with pytest.raises(signorini.CaseError, match=message):
+            signorini.solve(*arguments, **BLOCK)
+    with pytest.raises(TypeError):
+        signorini.solve(points)
+
+
+def test_a_case_that_does_not_converge_is_a_runtime_error():
+    with pytest.raises(signorini.SolveError, match="no convergence") as caught:
+        signorini.solve(*square(8), **BLOCK, solver={"max_iterations": 1})
+    assert isinstance(caught.value, RuntimeError)
+
+
+def test_a_missing_file_is_named():
+    with pytest.raises(signorini.CaseError, match="nowhere.toml: there is no such file"):
+        signorini.solve_case("nowhere.toml")
+
+
+def test_the_types_are_what_mypy_expects(tmp_path):
+    program = tmp_path / "program.py"
+    program.write_text(
+        "import numpy as np\nimport signorini\n"
+        "s = signorini.solve_case('a.toml', set={'method.degree': 2})\n"
+        "reveal_type(s.displacement)\nx: int = s.nodes\n"
+    )
+    run = subprocess.run([sys.executable, "-m", "mypy", str(program)], capture_output=True, text=True)
+    assert "floating" in run.stdout or "float64" in run.stdout, run.stdout
+    assert "Found 1 error" in run.stdout and "Incompatible types in assignment" in run.stdout, run.stdout
+
+
+def test_results_are_plain_json():
+    solution = signorini.solve(*square(2), **BLOCK)
+    assert json.loads(json.dumps(solution.results)) == solution.results

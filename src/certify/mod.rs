@@ -1,0 +1,153 @@
+//! How far a displacement is from the solution of (1)-(2): an upper bound of |u - v|_a without an unknown constant.
+//!
+//! Docs: docs/theory.md, sections 7.2 to 7.4.
+//!
+//! | module | what it does |
+//! | --- | --- |
+//! | `proof` | the certificate, and the checker that evaluates it |
+//! | `balance` | tractions in exact equilibrium |
+//! | `build` | v and tau from the discrete solution |
+//! | `sweeps` | a better tau |
+//! | `oscillation` | data outside the exact class |
+
+mod balance;
+mod build;
+mod oscillation;
+pub mod proof;
+mod sweeps;
+
+pub use self::proof::{Certificate, Proof, Rejection};
+use crate::fem::constraints::Constraints;
+use crate::fem::contact_line;
+use crate::fem::{DataError, Problem, Space};
+use crate::kernel::composite::complementary;
+use crate::kernel::{Interval, Material, P1, Plane, Triangle};
+use crate::memory::{self, OutOfMemory};
+use crate::solve::Solution;
+
+/// How often the stress is improved around every vertex.
+pub const SWEEPS: usize = 3;
+
+/// The bytes that a certificate takes for each triangle while it is made: the second derivatives of the sweeps, 1,250, and
+/// the forces, wrenches and tractions in doubles and in intervals.
+const PER_TRIANGLE: u64 = 3000;
+
+/// A bound of the distance from the true solution.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Continuous {
+    /// |u - v|_a is at most this.
+    pub bound: f64,
+    /// The bound over |v|_a.
+    pub relative: f64,
+    /// The bound over an estimate of the error that proves nothing (Zienkiewicz and Zhu's): how sharp the bound may be.
+    pub effectivity_hint: Option<f64>,
+    /// Whether every step is proved, rounding included.
+    pub rigorous: bool,
+    /// Why it is not rigorous.
+    pub reason: Option<String>,
+    /// The square root of each triangle's share in the square of the bound, by the triangles of the mesh.
+    pub indicators: Vec<f64>,
+    /// J(u) lies between these; `None` where the data are outside the exact class.
+    pub energy: Option<[f64; 2]>,
+    /// What proves it.
+    pub certificate: Certificate,
+    /// What it proves.
+    pub proof: Proof,
+    /// |v - w|_a is at most this, for the field w that was given: |u - w|_a <= bound + clipping.
+    pub clipping: f64,
+    /// |z|_a of the lift of section 7.4, which the bound has beside that of the proof.
+    pub lift: f64,
+}
+
+/// Certifies the P1 `solution` of `problem`.
+///
+/// # Errors
+/// Data that don't make the problem; a solution that no certificate can be made for, with the reason.
+pub fn certify(problem: &Problem, solution: &Solution) -> Result<Continuous, CertifyError> {
+    certify_field(problem, solution, &solution.displacement)
+}
+
+/// Certifies any displacement `field` of `problem`, given at the vertices of the mesh: it is clipped into the admissible
+/// set, and the stress comes from our own P1 `solution`.
+///
+/// # Errors
+/// As [`certify`].
+pub fn certify_field(
+    problem: &Problem,
+    solution: &Solution,
+    field: &[[f64; 2]],
+) -> Result<Continuous, CertifyError> {
+    if solution.degree != 1 {
+        return Err(CertifyError::Degree);
+    }
+    memory::check(PER_TRIANGLE * problem.mesh.triangles().len() as u64)?;
+    let space = Space::<P1, 3, 2>::new(&problem.mesh);
+    let constraints = Constraints::new(problem, &space)?;
+    let contact = contact_line::assemble(problem, &space, solution.gamma.gamma0)?;
+    let parts = build::Parts::new(problem, &contact, &constraints)?;
+    let v = build::admissible(&parts, field);
+    let (mut certificate, origins, oscillation) = build::build(&parts, &solution.displacement, v);
+    sweeps::improve(&mut certificate, SWEEPS)?;
+    let proof = certificate.evaluate::<Interval>()?;
+    let bound = (Interval::point(proof.bound) + Interval::point(oscillation.lift)).hi();
+    let relative = (Interval::point(bound) / Interval::point(proof.norm)).hi();
+    let energy = oscillation.reason.is_none().then(|| {
+        let b = Interval::point(proof.bound);
+        let below = Interval::point(proof.energy[0]) - b * b / Interval::from(2);
+        [below.lo(), proof.energy[1]]
+    });
+    let clipping = energy_distance(problem, &certificate.displacement, field);
+    let mut shares = vec![0.0; problem.mesh.triangles().len()];
+    origins.iter().zip(&proof.shares).for_each(|(&t, share)| shares[t] += share);
+    let estimate = build::averaging_estimate(&parts, &certificate.displacement);
+    Ok(Continuous {
+        bound,
+        relative,
+        rigorous: oscillation.reason.is_none(),
+        reason: oscillation.reason,
+        effectivity_hint: (estimate > 0.0).then(|| bound / estimate),
+        indicators: shares.into_iter().map(|s| s.max(0.0).sqrt()).collect(),
+        energy,
+        certificate,
+        proof,
+        lift: oscillation.lift,
+        clipping,
+    })
+}
+
+/// An upper bound of |v - w|_a for two fields that are affine on triangles.
+fn energy_distance(problem: &Problem, v: &[[f64; 2]], w: &[[f64; 2]]) -> f64 {
+    let exactly = proof::exactly::<Interval>;
+    let mut square = Interval::from(0);
+    for (t, corners) in problem.mesh.triangles().iter().enumerate() {
+        if corners.iter().all(|&k| v[k] == w[k]) {
+            continue;
+        }
+        let vertices = corners.map(|k| exactly(problem.mesh.vertices()[k]));
+        let triangle = Triangle { vertices };
+        let difference = corners.map(|k| exactly(v[k]) - exactly(w[k]));
+        let of = problem.material.of(t);
+        let [lambda, mu] = [of.lambda(), of.mu()].map(Interval::point);
+        let material = Material::lame(lambda, mu, Plane::Strain);
+        let sigma = material.stress(proof::displacement_gradient(&triangle, &difference));
+        square =
+            square + complementary(&material, sigma) * triangle.double_area() / Interval::from(2);
+    }
+    square.sqrt().hi()
+}
+
+/// Why there is no certificate.
+#[derive(Clone, Debug, thiserror::Error, PartialEq)]
+#[expect(missing_docs, reason = "the message of each variant says what it is")]
+pub enum CertifyError {
+    #[error(transparent)]
+    Data(#[from] DataError),
+    #[error(transparent)]
+    OutOfMemory(#[from] OutOfMemory),
+    #[error("no bound of the distance to the true solution: {0}")]
+    Unsupported(String),
+    #[error("certificates are made for degree 1; a composite stress for degree 2 is not built")]
+    Degree,
+    #[error("the certificate does not hold: {0}")]
+    Rejected(#[from] Rejection),
+}

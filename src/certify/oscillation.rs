@@ -1,0 +1,389 @@
+//! Data that a composite stress and an affine displacement can't follow, and what they cost: oscillation terms.
+//!
+//! The certificate is exact where f is constant, t and u_D are affine on edges and g is affine along Gamma_C. Elsewhere it
+//! is a certificate for data f_h, t_h, u_h, g_h near those of the problem, and the bound grows by explicit terms
+//! (docs/theory.md, section 7.4).
+//!
+//! - **Loads.** f - f_h and t - t_h are orthogonal to affine functions, so rigid motions r may be subtracted:
+//!   int_T (f - f_h) . w <= |f - f_h|_T |w - r|_T, and |w - r|_T <= K (h_T / pi) |eps(w)|_T by Payne and Weinberger's
+//!   inequality and Korn's, with K^2 = 1 + 2 / beta^2 and the bound of Costabel and Dauge (2015, theorem 2.3) for the
+//!   inf-sup constant beta of a domain between two circles of one centre. On an edge, |q|_E^2 <= (|E| / |T|) (|q|^2 + h_T |q|
+//!   |grad q|).
+//! - **Displacement and gap.** What v lacks on an edge, d(s), is lifted into its triangle, constant along rays from the
+//!   opposite vertex but for the factor 1 - l: z = (1 - l) d(s). Its gradient is constant along the rays, and
+//!   |z|_a^2 = |T| int sigma(G) : G ds with G(s) = d (x) (-grad l) + d' (x) (grad l_b + s grad l).
+//!
+//! These integrals are by quadrature, so a bound that contains one is not rigorous: [`Oscillation::reason`] says so.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{Matrix2, Vector2};
+
+use super::build::{Boundary, Parts, place, rule};
+use super::proof::{Certificate, Piece, Role};
+use crate::fem::mesh::length;
+use crate::fem::pieces::Rule;
+use crate::fem::{BoxedFunction, Condition, Problem, quadrature};
+use crate::kernel::{Material, Triangle};
+
+/// Quadrature points in each direction.
+pub(super) const POINTS: usize = 8;
+
+/// The body forces of a problem as a certificate needs them.
+pub(super) struct Data<'a> {
+    /// Those on the whole body, then those on parts of it.
+    forces: Vec<(&'a [BoxedFunction; 2], [Rule; 2])>,
+    /// Which of the latter act on a triangle.
+    local: BTreeMap<usize, Vec<usize>>,
+}
+
+/// Both components are polynomials of at most this degree.
+fn within(functions: &[BoxedFunction; 2], degree: u32) -> bool {
+    functions.iter().all(|f| is_within(f, degree))
+}
+
+/// The function is a polynomial of at most this degree.
+pub(super) fn is_within(function: &BoxedFunction, degree: u32) -> bool {
+    function.degree().is_some_and(|d| d <= degree)
+}
+
+impl<'a> Data<'a> {
+    pub fn new(problem: &'a Problem) -> Self {
+        let parts = problem.surface_forces.iter().map(|part| &part.force);
+        let all = std::iter::once(&problem.body_force).chain(parts);
+        let mut local: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for (k, part) in problem.surface_forces.iter().enumerate() {
+            part.triangles.iter().for_each(|&t| local.entry(t).or_default().push(k + 1));
+        }
+        Data { forces: all.map(|f| (f, [0, 1].map(|c| rule(&*f[c])))).collect(), local }
+    }
+
+    /// The component c of each force that acts on triangle `t`, with its rule.
+    fn acting(&self, t: usize) -> impl Iterator<Item = (usize, &BoxedFunction, &Rule)> {
+        let here = self.local.get(&t).into_iter().flatten().copied();
+        std::iter::once(0).chain(here).flat_map(|k| {
+            let (functions, rules) = &self.forces[k];
+            (0..2).map(move |c| (c, &functions[c], &rules[c]))
+        })
+    }
+
+    /// int f phi_a over a part of triangle `t`, for each of its vertices a.
+    pub fn body_moments(&self, t: usize, part: &Triangle<f64>) -> [Vector2<f64>; 3] {
+        let mut moments = [Vector2::zeros(); 3];
+        for (c, f, rule) in self.acting(t) {
+            if f.degree() == Some(0) {
+                let value = f.at(part.vertices[0].into()) * part.double_area() / 6.0;
+                moments.iter_mut().for_each(|m| m[c] += value);
+            } else {
+                rule.on_triangle(part, |l, x, weight| {
+                    let value = weight * f.at(x);
+                    (0..3).for_each(|a| moments[a][c] += l[a] * value);
+                });
+            }
+        }
+        moments
+    }
+
+    /// f_h on the three parts of the composite element: constants with the moments of f, (4 sum F - 9 F_i) / |T|.
+    pub fn body_on(&self, t: usize, part: &Triangle<f64>) -> [[f64; 2]; 3] {
+        let constant = self.acting(t).all(|(_, f, _)| f.degree() == Some(0));
+        if constant {
+            let mut sum = [0.0; 2];
+            self.acting(t).for_each(|(c, f, _)| sum[c] += f.at(part.vertices[0].into()));
+            return [sum; 3];
+        }
+        let moments = self.body_moments(t, part);
+        let area = part.double_area() / 2.0;
+        let total: Vector2<f64> = moments.iter().sum();
+        moments.map(|m| ((total * 4.0 - m * 9.0) / area).into())
+    }
+}
+
+/// A given traction.
+#[derive(Clone, Copy)]
+pub(super) enum Traction<'a> {
+    /// Its components.
+    Vector(&'a [BoxedFunction; 2]),
+    /// -p n
+    Pressure(&'a BoxedFunction),
+}
+
+impl Traction<'_> {
+    /// It is affine along a straight edge.
+    fn is_affine(&self) -> bool {
+        match self {
+            Traction::Vector(t) => within(t, 1),
+            Traction::Pressure(p) => is_within(p, 1),
+        }
+    }
+
+    fn at(&self, x: [f64; 2], n: [f64; 2]) -> [f64; 2] {
+        match self {
+            Traction::Vector(t) => [0, 1].map(|c| t[c].on_boundary(x, n)),
+            Traction::Pressure(p) => {
+                let pressure = p.on_boundary(x, n);
+                n.map(|n| -n * pressure)
+            }
+        }
+    }
+
+    fn rule(&self) -> Rule {
+        match self {
+            Traction::Vector([x, y]) => rule(if x.kink().is_some() { &**x } else { &**y }),
+            Traction::Pressure(p) => rule(&***p),
+        }
+    }
+
+    /// int_E t phi for both ends of an edge with the scaled normal N.
+    pub fn moments(&self, ends: [[f64; 2]; 2], normal: Vector2<f64>) -> [Vector2<f64>; 2] {
+        let length = length(normal);
+        let unit = (normal / length).into();
+        let mut moments = [Vector2::zeros(); 2];
+        self.rule().on_edge(ends, [], |point| {
+            let t = Vector2::from(self.at(point.x, unit));
+            moments[0] += t * ((1.0 - point.s) * point.weight * length);
+            moments[1] += t * (point.s * point.weight * length);
+        });
+        moments
+    }
+
+    /// t_h at both ends: t itself where it is affine, else the affine function whose `force` has the moments of t.
+    pub fn affine(&self, ends: [[f64; 2]; 2], force: [[f64; 2]; 2]) -> Role {
+        let (length, unit) = length_and_normal(ends);
+        let role = match self {
+            Traction::Vector(_) if self.is_affine() => Role::Loaded(ends.map(|x| self.at(x, unit))),
+            Traction::Vector(_) => Role::Loaded(force.map(|f| f.map(|f| f / length))),
+            Traction::Pressure(p) if self.is_affine() => {
+                Role::Pressed(ends.map(|x| p.on_boundary(x, unit)))
+            }
+            Traction::Pressure(_) => {
+                Role::Pressed(force.map(|f| -(f[0] * unit[0] + f[1] * unit[1]) / length))
+            }
+        };
+        // No load has one role only.
+        if role == Role::Pressed([0.0; 2]) { Role::Loaded([[0.0; 2]; 2]) } else { role }
+    }
+}
+
+fn length_and_normal(ends: [[f64; 2]; 2]) -> (f64, [f64; 2]) {
+    let normal = Vector2::new(ends[1][1] - ends[0][1], ends[0][0] - ends[1][0]);
+    let length = length(normal);
+    (length, (normal / length).into())
+}
+
+/// What the data of a problem leave out of a certificate.
+#[derive(Clone, Debug)]
+pub(super) struct Oscillation {
+    /// Why the bound rests on quadrature, if it does.
+    pub reason: Option<String>,
+    /// |z|_a of the lifts: to be added to the bound once more, for |u - v| <= |u - v - z| + |z|.
+    pub lift: f64,
+}
+
+impl Oscillation {
+    pub fn new(problem: &Problem) -> Self {
+        let mut inexact = Vec::new();
+        if !within(&problem.body_force, 0) {
+            inexact.push("the body force is not known to be constant".to_owned());
+        }
+        for part in problem.surface_forces.iter().filter(|part| !within(&part.force, 0)) {
+            inexact
+                .push(format!("the body force on '{}' is not known to be constant", part.surface));
+        }
+        for (name, condition) in &problem.conditions {
+            let affine = |f: &BoxedFunction| is_within(f, 1);
+            let (what, exact) = match condition {
+                Condition::Displacement(u) => ("displacement", u.iter().flatten().all(affine)),
+                Condition::Mixed { displacement, .. } => {
+                    ("displacement", displacement.iter().flatten().all(affine))
+                }
+                Condition::Support { normal, tangential } => {
+                    ("displacement", [normal, tangential].into_iter().flatten().all(affine))
+                }
+                Condition::Traction(traction) => ("traction", within(traction, 1)),
+                Condition::Pressure(p) => ("pressure", affine(p)),
+                Condition::Contact { gap } => ("gap", affine(gap)),
+                Condition::Obstacle(..) => ("obstacle", false),
+            };
+            if !exact {
+                inexact.push(format!("the {what} of '{name}' is not known to be affine"));
+            }
+        }
+        let reason = (!inexact.is_empty())
+            .then(|| format!("{}: its oscillation is measured by quadrature", inexact.join("; ")));
+        Oscillation { reason, lift: 0.0 }
+    }
+
+    /// Puts the oscillation of the data into the pieces of a certificate; `origins` are their triangles in the mesh.
+    pub fn measure(
+        &mut self,
+        parts: &Parts,
+        data: &Data,
+        certificate: &mut Certificate,
+        origins: &[usize],
+    ) {
+        if self.reason.is_none() {
+            return;
+        }
+        let lifts = lifts(parts);
+        self.lift = lifts.iter().map(|z| z * z).sum::<f64>().sqrt();
+        let pieces: Vec<f64> = certificate
+            .pieces
+            .iter()
+            .zip(origins)
+            .map(|(piece, &t)| lifts[t] + loads(parts, data, certificate, piece, t))
+            .collect();
+        for (piece, oscillation) in certificate.pieces.iter_mut().zip(pieces) {
+            piece.oscillation = oscillation;
+        }
+    }
+}
+
+/// K and h_T of a triangle: |grad (w - r)| <= K |eps(w)|, |w - r| <= K (h_T / pi) |eps(w)|.
+fn korn(triangle: &Triangle<f64>) -> (f64, f64) {
+    let lengths = [0, 1, 2].map(|i| length(triangle.edge(i)));
+    let perimeter: f64 = lengths.iter().sum();
+    let centre = triangle.point(lengths.map(|l| l / perimeter));
+    let inner = triangle.double_area() / perimeter;
+    let outer = triangle.vertices.iter().map(|x| length(x - centre)).fold(0.0, f64::max);
+    let ratio = inner / outer;
+    let beta = ratio / (2.0 * (1.0 + (1.0 - ratio * ratio).sqrt())).sqrt();
+    ((1.0 + 2.0 / (beta * beta)).sqrt(), lengths.into_iter().fold(0.0, f64::max))
+}
+
+/// The least eigenvalue of C on symmetric tensors.
+fn least_stiffness(material: &Material<f64>) -> f64 {
+    2.0 * material.mu().min(material.lambda() + material.mu())
+}
+
+/// What f and t cost on one piece of triangle `t`.
+fn loads(parts: &Parts, data: &Data, certificate: &Certificate, piece: &Piece, t: usize) -> f64 {
+    let triangle = Triangle { vertices: piece.vertices.map(|p| place(certificate, p)) };
+    let (k, h) = korn(&triangle);
+    let poincare = k * h / std::f64::consts::PI;
+    let mut square = 0.0;
+    if data.acting(t).any(|(_, f, _)| f.degree() != Some(0)) {
+        // Each component by the rule of the first force that is smooth only piece by piece.
+        let kinked = data.acting(t).find(|(_, f, _)| f.kink().is_some());
+        let Some((_, _, rule)) = kinked.or_else(|| data.acting(t).next()) else { return 0.0 };
+        for i in 0..3 {
+            let mut vertices = triangle.vertices;
+            vertices[i] = triangle.point([1.0 / 3.0; 3]);
+            rule.on_triangle(&Triangle { vertices }, |_, x, weight| {
+                let mut difference = -Vector2::from(piece.body[i]);
+                data.acting(t).for_each(|(c, f, _)| difference[c] += f.at(x));
+                square += weight * difference.dot(&difference);
+            });
+        }
+    }
+    let mut sum = poincare * square.sqrt();
+    for e in piece.edges {
+        let edge = certificate.edges[e];
+        let Some(Boundary::Loaded(traction)) = parts.boundary.get(&e) else { continue };
+        if traction.is_affine() {
+            continue;
+        }
+        let ends = edge.ends.map(|p| place(certificate, p).into());
+        let (length, unit) = length_and_normal(ends);
+        let affine = match edge.role {
+            Role::Loaded(affine) => affine,
+            Role::Pressed(p) => p.map(|p| unit.map(|n| -p * n)),
+            _ => continue,
+        };
+        let mut square = 0.0;
+        traction.rule().on_edge(ends, [], |point| {
+            let t = traction.at(point.x, unit);
+            for c in 0..2 {
+                let there = (1.0 - point.s) * affine[0][c] + point.s * affine[1][c];
+                square += point.weight * length * (t[c] - there) * (t[c] - there);
+            }
+        });
+        let trace = (length / (triangle.double_area() / 2.0)
+            * (poincare * poincare + h * poincare * k))
+            .sqrt();
+        sum += trace * square.sqrt();
+    }
+    sum / least_stiffness(&piece.material()).sqrt()
+}
+
+/// |z|_a of what the displacement and the gap ask for beyond v, on each triangle of the mesh.
+fn lifts(parts: &Parts) -> Vec<f64> {
+    let mesh = parts.mesh;
+    let mut lifts = vec![0.0; mesh.triangles().len()];
+    for (name, condition) in &parts.problem.conditions {
+        for &edge in mesh.edges_of(name).unwrap_or_default() {
+            let vertices = mesh.ends(edge);
+            let ends = vertices.map(|vertex| mesh.vertices()[vertex]);
+            let (_, normal) = mesh.length_and_normal(edge);
+            let between = |s: f64, value: [f64; 2]| (1.0 - s) * value[0] + s * value[1];
+            let at = |s: f64| [0, 1].map(|c| between(s, [ends[0][c], ends[1][c]]));
+            let lacking: Box<dyn Fn(f64) -> [f64; 2]> = match condition {
+                Condition::Displacement(functions)
+                | Condition::Mixed { displacement: functions, .. } => Box::new(move |s| {
+                    [0, 1].map(|c| match &functions[c] {
+                        Some(f) if !is_within(f, 1) => {
+                            f.at(at(s)) - between(s, ends.map(|x| f.at(x)))
+                        }
+                        _ => 0.0,
+                    })
+                }),
+                Condition::Contact { gap } if !is_within(gap, 1) => Box::new(move |s| {
+                    let lacking = gap.at(at(s)) - between(s, ends.map(|x| gap.at(x)));
+                    (normal * lacking).into()
+                }),
+                _ => continue,
+            };
+            let t = edge.triangle;
+            lifts[t] += lift(&mesh.triangle(t), edge.local, lacking, parts.material(t));
+        }
+    }
+    lifts
+}
+
+/// |z|_a of the lift of d from edge `local`, d zero at its ends. With the Legendre polynomials P_k on \[0, 1\], d' has the
+/// coefficients (2k + 1) int d' P_k = -(2k + 1) int d P_k'.
+fn lift(
+    triangle: &Triangle<f64>,
+    local: usize,
+    d: impl Fn(f64) -> [f64; 2],
+    material: &Material<f64>,
+) -> f64 {
+    let points = quadrature::gauss(POINTS);
+    let values: Vec<[f64; 2]> = points.iter().map(|&(s, _)| d(s)).collect();
+    let mut slopes = vec![[0.0; 2]; POINTS];
+    for k in 1..POINTS {
+        let legendre: Vec<[f64; 2]> = points.iter().map(|&(s, _)| shifted_legendre(k, s)).collect();
+        for c in 0..2 {
+            let mut moment = 0.0;
+            for ((value, p), (_, weight)) in values.iter().zip(&legendre).zip(&points) {
+                moment -= weight * value[c] * p[1];
+            }
+            for (slope, p) in slopes.iter_mut().zip(&legendre) {
+                slope[c] += (2 * k + 1) as f64 * moment * p[0];
+            }
+        }
+    }
+    let gradients = triangle.barycentric_gradients();
+    let (opposite, end) = (gradients[local], gradients[(local + 2) % 3]);
+    let mut square = 0.0;
+    for (((s, weight), value), slope) in points.iter().zip(&values).zip(&slopes) {
+        let along = end + opposite * *s;
+        let g = Matrix2::from_fn(|i, j| slope[i] * along[j] - value[i] * opposite[j]);
+        let [xx, yy, xy] = material.stress(g).components();
+        square += weight * (xx * g.m11 + yy * g.m22 + xy * (g.m12 + g.m21));
+    }
+    (square * triangle.double_area() / 2.0).sqrt()
+}
+
+/// The Legendre polynomial of degree k on \[0, 1\] and its derivative.
+fn shifted_legendre(k: usize, s: f64) -> [f64; 2] {
+    let x = 2.0 * s - 1.0;
+    let (mut before, mut p) = ([0.0, 0.0], [1.0, 0.0]);
+    for j in 1..=k {
+        let j = j as f64;
+        let value = ((2.0 * j - 1.0) * x * p[0] - (j - 1.0) * before[0]) / j;
+        let slope = ((2.0 * j - 1.0) * (p[0] + x * p[1]) - (j - 1.0) * before[1]) / j;
+        (before, p) = (p, [value, slope]);
+    }
+    [p[0], 2.0 * p[1]]
+}

@@ -1,0 +1,600 @@
+//! What proves an error bound, and its evaluation: the checker. It trusts no solver and no linear algebra; it reads
+//! numbers, and computes with [`Enclosing`] ones, so that rounding is part of the answer.
+//!
+//! **Theorem** (docs/theory.md, section 7.3). Let u be the solution of (1)-(2). If v = u_D on Gamma_D and v_n <= g on Gamma_C,
+//! and if div tau + f = 0, tau n = t on Gamma_N, tau_t = 0 and tau_n <= 0 on Gamma_C, then
+//!
+//! |u - v|_a^2 + |sigma(u) - tau|^2_{C^-1} <= |C eps(v) - tau|^2_{C^-1} + 2 int tau_n (v_n - g).
+//!
+//! A [`Certificate`] holds v by its values at vertices, and tau by its tractions on edges: an edge has one traction, so
+//! that tau n is continuous, and on Gamma_C it is a nonpositive multiple of n. What is left is that each triangle is in
+//! equilibrium, and there the doubles of a file can't be exact. `certify::balance` therefore adds to the tractions those
+//! small ones that make equilibrium exact; they are known as intervals, and so is then tau.
+
+use nalgebra::{Matrix2, Vector2};
+use thiserror::Error;
+
+use super::balance::{self, Unbalanced};
+use crate::kernel::composite::{Composite, Loads, complementary};
+use crate::kernel::contact_edge::integral_of_product;
+use crate::kernel::{Interval, Material, Plane, Scalar, Triangle};
+
+/// A number that stands for a real one: a double for a quick look, an interval for a proof, a rational for the truth.
+pub trait Enclosing: Scalar {
+    /// This double.
+    fn exactly(value: f64) -> Self;
+
+    /// The root of what is not negative.
+    fn sqrt(self) -> Self;
+
+    /// A double that it doesn't exceed.
+    fn upper(self) -> f64;
+
+    /// A double that it is not below.
+    fn lower(self) -> f64;
+}
+
+impl Enclosing for f64 {
+    fn exactly(value: f64) -> f64 {
+        value
+    }
+
+    fn sqrt(self) -> f64 {
+        f64::sqrt(self)
+    }
+
+    fn upper(self) -> f64 {
+        self
+    }
+
+    fn lower(self) -> f64 {
+        self
+    }
+}
+
+impl Enclosing for Interval {
+    fn exactly(value: f64) -> Interval {
+        Interval::point(value)
+    }
+
+    fn sqrt(self) -> Interval {
+        Interval::sqrt(self)
+    }
+
+    fn upper(self) -> f64 {
+        self.hi()
+    }
+
+    fn lower(self) -> f64 {
+        self.lo()
+    }
+}
+
+/// v, tau and the problem that they belong to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Certificate {
+    /// The vertices of the mesh.
+    pub vertices: Vec<[f64; 2]>,
+    /// Further vertices, numbered after these: each lies on the straight line between two of them.
+    pub cuts: Vec<Cut>,
+    /// v at the vertices; affine on the triangles of the mesh, so at a cut it follows.
+    pub displacement: Vec<[f64; 2]>,
+    /// u_D at the vertices of Gamma_D.
+    pub prescribed: Vec<[Option<f64>; 2]>,
+    /// The triangles.
+    pub pieces: Vec<Piece>,
+    /// Their edges.
+    pub edges: Vec<Edge>,
+}
+
+/// The point (1 - at) x_a + at x_b.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cut {
+    /// a and b.
+    pub ends: [usize; 2],
+    /// In (0, 1).
+    pub at: f64,
+}
+
+/// A triangle with what acts in it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Piece {
+    /// Its vertices, counter-clockwise.
+    pub vertices: [usize; 3],
+    /// Its edges: edge i lies opposite vertex i.
+    pub edges: [usize; 3],
+    /// lambda (as it acts in the plane) and mu.
+    pub material: [f64; 2],
+    /// f on the three parts of the composite element.
+    pub body: [[f64; 2]; 3],
+    /// What the data of the problem differ from those above: to be added to |C eps(v) - tau|. Zero where nothing does.
+    pub oscillation: f64,
+}
+
+/// An edge, from its start to its end; the triangle on its left has it in this direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Edge {
+    /// Start and end.
+    pub ends: [usize; 2],
+    /// What it is, with the traction of tau on it.
+    pub role: Role,
+}
+
+/// What an edge is. A force is tau N, N = |E| n, towards the right: per unit of the edge's parameter, at start and end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Role {
+    /// Between two triangles.
+    Inner([[f64; 2]; 2]),
+    /// Gamma_D for the components that are held; on the others the force is zero.
+    Held([bool; 2], [[f64; 2]; 2]),
+    /// Gamma_N: the traction t that is given (a stress, not a force).
+    Loaded([[f64; 2]; 2]),
+    /// Gamma_N: the pressure p that is given, t = -p n.
+    Pressed([f64; 2]),
+    /// Gamma_C.
+    Contact {
+        /// tau_n at both ends.
+        pressure: [f64; 2],
+        /// g at both ends.
+        gap: [f64; 2],
+    },
+}
+
+/// What a certificate proves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Proof {
+    /// Upper bounds of the share of each triangle in the square of the bound, the contact term of its edges included.
+    pub shares: Vec<f64>,
+    /// An upper bound of |u - v|_a, where no data oscillate outside the class.
+    pub bound: f64,
+    /// A lower bound of |v|_a.
+    pub norm: f64,
+    /// J(v) from below and from above.
+    pub energy: [f64; 2],
+}
+
+/// What a certificate is said to prove.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Claim {
+    /// As in [`Proof`].
+    pub shares: Vec<f64>,
+    /// As in [`Proof`].
+    pub bound: f64,
+}
+
+/// A triangle may be out of balance by this, in units of the forces on it: the tractions and the sums of a dozen terms,
+/// rounded.
+const IMBALANCE: f64 = 128.0 * f64::EPSILON;
+
+/// Why a certificate proves nothing.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[expect(missing_docs, reason = "the message of each variant says what it is")]
+pub enum Rejection {
+    #[error("{what} has {found} entries; expected {expected}")]
+    Length { what: &'static str, found: usize, expected: usize },
+    #[error("{what} {index}: {problem}")]
+    Wrong { what: &'static str, index: usize, problem: &'static str },
+    #[error("edge {edge} has tau_n = {value} on Gamma_C; expected no tension")]
+    Tension { edge: usize, value: f64 },
+    #[error(
+        "edge {edge}: v_n - g can't be shown to be <= 0 at its ends (it is up to {value} times the length)"
+    )]
+    Penetration { edge: usize, value: f64 },
+    #[error("vertex {vertex}: v_{} = {found}; expected the prescribed {expected}", ["x", "y"][*component])]
+    NotPrescribed { vertex: usize, component: usize, found: f64, expected: f64 },
+    #[error("triangle {triangle} is not counter-clockwise, or too flat to tell")]
+    Orientation { triangle: usize },
+    #[error(transparent)]
+    Unbalanced(#[from] Unbalanced),
+    #[error(
+        "triangle {triangle} is not in equilibrium: its tractions and its body force don't balance to rounding"
+    )]
+    OutOfBalance { triangle: usize },
+    #[error("triangle {triangle} claims the share {claimed}; its data give {found}")]
+    Share { triangle: usize, claimed: f64, found: f64 },
+    #[error("the claimed bound is {claimed}; the data give {found}")]
+    Bound { claimed: f64, found: f64 },
+    #[error("the bound is not a finite number")]
+    NotFinite,
+}
+
+/// The vector with these components.
+pub(super) fn exactly<S: Enclosing>(components: [f64; 2]) -> Vector2<S> {
+    components.map(S::exactly).into()
+}
+
+fn wrong(what: &'static str, index: usize, problem: &'static str) -> Rejection {
+    Rejection::Wrong { what, index, problem }
+}
+
+impl Certificate {
+    /// Verifies every condition of the theorem and evaluates its right side.
+    ///
+    /// # Errors
+    /// The first condition that does not hold, or can't be decided in `S`.
+    pub fn evaluate<S: Enclosing>(&self) -> Result<Proof, Rejection> {
+        let state = self.balanced::<S>()?;
+        self.sum(&state)
+    }
+
+    /// The same as [`Certificate::evaluate`] in intervals, and more than a proof needs: that the certificate is as it was
+    /// made. Its tractions balance on every triangle to the rounding of doubles, and what it claims are the very numbers
+    /// that its data give.
+    ///
+    /// # Errors
+    /// As [`Certificate::evaluate`]; a triangle that is out of balance; a claim that does not follow.
+    pub fn audit(&self, claim: &Claim) -> Result<Proof, Rejection> {
+        let state = self.balanced::<Interval>()?;
+        for (t, piece) in self.pieces.iter().enumerate() {
+            let loads = self.loads(t, &state.forces, &state.owners);
+            let triangle = &state.triangles[t];
+            let size = |x: Interval| x.lo().abs().max(x.hi().abs());
+            let reach = (0..3)
+                .flat_map(|i| <[Interval; 2]>::from(triangle.edge(i)))
+                .map(size)
+                .fold(0.0, f64::max);
+            let area = size(triangle.double_area());
+            let forces: f64 = loads.forces.iter().flatten().flatten().copied().map(size).sum();
+            let body: f64 = piece.body.iter().flatten().map(|f| f.abs()).sum();
+            let allowed = IMBALANCE * (forces + area * body);
+            let resultant = loads.resultant(triangle);
+            let force = resultant.force.map(size).iter().copied().fold(0.0, f64::max);
+            if !(force <= allowed && size(resultant.moment) <= allowed * reach) {
+                return Err(Rejection::OutOfBalance { triangle: t });
+            }
+        }
+        let proof = self.sum(&state)?;
+        if claim.shares.len() != proof.shares.len() {
+            let (found, expected) = (claim.shares.len(), proof.shares.len());
+            return Err(Rejection::Length { what: "claimed shares", found, expected });
+        }
+        let same = |a: f64, b: f64| a.to_bits() == b.to_bits();
+        for (triangle, (&claimed, &found)) in claim.shares.iter().zip(&proof.shares).enumerate() {
+            if !same(claimed, found) {
+                return Err(Rejection::Share { triangle, claimed, found });
+            }
+        }
+        if !same(claim.bound, proof.bound) {
+            return Err(Rejection::Bound { claimed: claim.bound, found: proof.bound });
+        }
+        Ok(proof)
+    }
+
+    /// Checks all conditions and puts the triangles in equilibrium.
+    pub(super) fn balanced<S: Enclosing>(&self) -> Result<Balanced<S>, Rejection> {
+        self.check_shape()?;
+        let points: Vec<Vector2<S>> = self.values(&self.vertices);
+        let v: Vec<Vector2<S>> = self.values(&self.displacement);
+        let triangles = self.triangles(&points)?;
+        self.check_displacement()?;
+        let owners = self.owners()?;
+        let mut forces = Vec::with_capacity(self.edges.len());
+        let mut contact = vec![S::from(0); self.pieces.len()];
+        for (e, edge) in self.edges.iter().enumerate() {
+            let [start, end] = edge.ends.map(|vertex| points[vertex]);
+            let along = end - start;
+            let normal = Vector2::new(along[1], -along[0]);
+            let length = || along.dot(&along).sqrt();
+            forces.push(match edge.role {
+                Role::Inner(force) | Role::Held(_, force) => force.map(exactly),
+                Role::Loaded(traction) if traction == [[0.0; 2]; 2] => [Vector2::zeros(); 2],
+                Role::Loaded(traction) => {
+                    let length = length();
+                    traction.map(|t| exactly(t) * length)
+                }
+                Role::Pressed(p) => p.map(|p| -(normal * S::exactly(p))),
+                Role::Contact { pressure, gap } => {
+                    let mut beyond = [S::from(0); 2];
+                    for (k, vertex) in edge.ends.into_iter().enumerate() {
+                        if !(pressure[k] <= 0.0) {
+                            return Err(Rejection::Tension { edge: e, value: pressure[k] });
+                        }
+                        beyond[k] = v[vertex].dot(&normal);
+                        if gap[k] != 0.0 {
+                            beyond[k] = beyond[k] - length() * S::exactly(gap[k]);
+                        }
+                        let value = beyond[k].upper();
+                        if !(value <= 0.0) {
+                            return Err(Rejection::Penetration { edge: e, value });
+                        }
+                    }
+                    let pressure = pressure.map(S::exactly);
+                    if let Some(owner) = owners[e][0] {
+                        contact[owner.piece] = contact[owner.piece]
+                            + S::from(2) * integral_of_product(pressure, beyond);
+                    }
+                    pressure.map(|p| normal * p)
+                }
+            });
+        }
+        let mut loads: Vec<Loads<S>> =
+            (0..self.pieces.len()).map(|t| self.loads(t, &forces, &owners)).collect();
+        balance::close(self, &triangles, &owners, &points, &mut loads)?;
+        Ok(Balanced { triangles, v, owners, forces, loads, contact })
+    }
+
+    /// The right side of the theorem.
+    fn sum<S: Enclosing>(&self, state: &Balanced<S>) -> Result<Proof, Rejection> {
+        let Balanced { triangles, v, forces, loads, contact, .. } = state;
+        let zero = S::from(0);
+        let (mut square, mut norm, mut energy) = (zero, zero, zero);
+        let mut shares = Vec::with_capacity(loads.len());
+        for (t, piece) in self.pieces.iter().enumerate() {
+            let material = piece.material();
+            let double_area = triangles[t].double_area();
+            let nodal = piece.vertices.map(|vertex| v[vertex]);
+            let gradient = displacement_gradient(&triangles[t], &nodal);
+            let sigma = material.stress(gradient);
+            let tau = Composite::new(&triangles[t], &loads[t]);
+            let distance = tau.distance_from(sigma).energy(&material, double_area);
+            let share = if piece.oscillation == 0.0 {
+                distance
+            } else {
+                // A sum of squares is not negative, whatever an interval around it says.
+                let distance = distance.split(|_| zero, |d| d);
+                let root = distance.sqrt() + S::exactly(piece.oscillation);
+                root * root
+            } + contact[t];
+            shares.push(share.upper());
+            square = square + share;
+            let internal = complementary(&material, sigma) * double_area / S::from(2);
+            norm = norm + internal;
+            // f is constant on the parts; the mean of v on part i is (4 (v_0 + v_1 + v_2) - 3 v_i) / 9.
+            let total = nodal[0] + nodal[1] + nodal[2];
+            let mut work = zero;
+            for i in 0..3 {
+                let mean = total * S::from(4) - nodal[i] * S::from(3);
+                work = work + exactly::<S>(piece.body[i]).dot(&mean);
+            }
+            energy = energy + internal / S::from(2) - work * double_area / S::from(54);
+        }
+        for (e, edge) in self.edges.iter().enumerate() {
+            if let Role::Loaded(_) | Role::Pressed(_) = edge.role {
+                let [a, b] = edge.ends.map(|vertex| v[vertex]);
+                for c in 0..2 {
+                    let force = [forces[e][0][c], forces[e][1][c]];
+                    energy = energy - integral_of_product(force, [a[c], b[c]]);
+                }
+            }
+        }
+        let bound = square.split(|_| zero, |s| s).sqrt().upper();
+        let norm = norm.split(|_| zero, |n| n).sqrt().lower();
+        let proof = Proof { shares, bound, norm, energy: [energy.lower(), energy.upper()] };
+        if proof.bound.is_finite() && norm.is_finite() && proof.energy.iter().all(|e| e.is_finite())
+        {
+            Ok(proof)
+        } else {
+            Err(Rejection::NotFinite)
+        }
+    }
+
+    /// The indices name things that exist, and the numbers are finite.
+    fn check_shape(&self) -> Result<(), Rejection> {
+        let (vertices, points) = (self.vertices.len(), self.vertices.len() + self.cuts.len());
+        for (what, found) in
+            [("displacement", self.displacement.len()), ("prescribed", self.prescribed.len())]
+        {
+            if found != vertices {
+                return Err(Rejection::Length { what, found, expected: vertices });
+            }
+        }
+        if self.pieces.is_empty() {
+            return Err(Rejection::Length { what: "triangles", found: 0, expected: 1 });
+        }
+        let finite = |values: &[f64]| values.iter().all(|x| x.is_finite());
+        for (i, (x, v)) in self.vertices.iter().zip(&self.displacement).enumerate() {
+            if !(finite(x) && finite(v)) {
+                return Err(wrong("vertex", i, "a number is not finite"));
+            }
+        }
+        for (i, cut) in self.cuts.iter().enumerate() {
+            if !(0.0 < cut.at && cut.at < 1.0 && cut.ends.iter().all(|&end| end < vertices)) {
+                return Err(wrong("cut", i, "expected a place between two vertices"));
+            }
+        }
+        for (i, piece) in self.pieces.iter().enumerate() {
+            if !(piece.vertices.iter().all(|&p| p < points)
+                && piece.edges.iter().all(|&e| e < self.edges.len()))
+            {
+                return Err(wrong("triangle", i, "a vertex or an edge does not exist"));
+            }
+            let [lambda, mu] = piece.material;
+            let body = finite(piece.body.as_flattened());
+            if !(body
+                && lambda.is_finite()
+                && mu.is_finite()
+                && mu > 0.0
+                && (lambda + mu).next_down() > 0.0)
+            {
+                return Err(wrong(
+                    "triangle",
+                    i,
+                    "expected mu > 0, lambda + mu > 0 and a finite body force",
+                ));
+            }
+            if !(piece.oscillation >= 0.0 && piece.oscillation.is_finite()) {
+                return Err(wrong("triangle", i, "expected an oscillation that is not negative"));
+            }
+        }
+        for (i, edge) in self.edges.iter().enumerate() {
+            let numbers = match edge.role {
+                Role::Inner(f) | Role::Held(_, f) | Role::Loaded(f) => finite(f.as_flattened()),
+                Role::Pressed(p) => finite(&p),
+                Role::Contact { pressure, gap } => finite(&pressure) && finite(&gap),
+            };
+            if !(numbers && edge.ends.iter().all(|&p| p < points) && edge.ends[0] != edge.ends[1]) {
+                return Err(wrong("edge", i, "expected two different vertices and finite numbers"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Values at the vertices, and at the cuts between them.
+    fn values<S: Enclosing>(&self, at: &[[f64; 2]]) -> Vec<Vector2<S>> {
+        let mut all: Vec<Vector2<S>> = at.iter().map(|&x| exactly(x)).collect();
+        for cut in &self.cuts {
+            let [a, b] = cut.ends.map(|end| all[end]);
+            let s = S::exactly(cut.at);
+            all.push(a * (S::from(1) - s) + b * s);
+        }
+        all
+    }
+
+    fn triangles<S: Enclosing>(
+        &self,
+        points: &[Vector2<S>],
+    ) -> Result<Vec<Triangle<S>>, Rejection> {
+        let triangle = |(t, piece): (usize, &Piece)| {
+            let triangle = Triangle { vertices: piece.vertices.map(|p| points[p]) };
+            if triangle.double_area().lower() > 0.0 {
+                Ok(triangle)
+            } else {
+                Err(Rejection::Orientation { triangle: t })
+            }
+        };
+        self.pieces.iter().enumerate().map(triangle).collect()
+    }
+
+    /// v = u_D at both ends of the edges of Gamma_D, nothing is prescribed elsewhere, and there is no force in a direction
+    /// that is not held.
+    fn check_displacement(&self) -> Result<(), Rejection> {
+        let mut held_at = vec![[false; 2]; self.vertices.len()];
+        for edge in &self.edges {
+            let Role::Held(held, _) = edge.role else { continue };
+            for vertex in edge.ends {
+                if let Some(at) = held_at.get_mut(vertex) {
+                    *at = [0, 1].map(|c| at[c] || held[c]);
+                }
+            }
+        }
+        for (vertex, (data, held)) in self.prescribed.iter().zip(held_at).enumerate() {
+            if (0..2).any(|c| data[c].is_some() && !held[c]) {
+                return Err(wrong("vertex", vertex, "a prescribed value off Gamma_D"));
+            }
+        }
+        for (e, edge) in self.edges.iter().enumerate() {
+            let Role::Held(held, force) = edge.role else { continue };
+            for component in 0..2 {
+                if !held[component] {
+                    if force[0][component] != 0.0 || force[1][component] != 0.0 {
+                        return Err(wrong("edge", e, "a force where nothing is held"));
+                    }
+                    continue;
+                }
+                for vertex in edge.ends {
+                    let Some(&data) = self.prescribed.get(vertex) else {
+                        return Err(wrong("edge", e, "an end without a prescribed value"));
+                    };
+                    let found = self.displacement[vertex][component];
+                    match data[component] {
+                        Some(expected) if expected == found => {}
+                        Some(expected) => {
+                            return Err(Rejection::NotPrescribed {
+                                vertex,
+                                component,
+                                found,
+                                expected,
+                            });
+                        }
+                        None => return Err(wrong("edge", e, "an end without a prescribed value")),
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The triangles of each edge, the one on its left first: inner edges have two, the others one.
+    fn owners(&self) -> Result<Vec<[Option<Owner>; 2]>, Rejection> {
+        let mut owners = vec![[None; 2]; self.edges.len()];
+        for (t, piece) in self.pieces.iter().enumerate() {
+            for local in 0..3 {
+                let e = piece.edges[local];
+                let seen = [piece.vertices[(local + 1) % 3], piece.vertices[(local + 2) % 3]];
+                let [a, b] = self.edges[e].ends;
+                let side = if seen == [a, b] {
+                    0
+                } else if seen == [b, a] {
+                    1
+                } else {
+                    return Err(wrong("triangle", t, "one of its edges joins other vertices"));
+                };
+                if owners[e][side].replace(Owner { piece: t, local }).is_some() {
+                    return Err(wrong("edge", e, "two triangles on the same side"));
+                }
+            }
+        }
+        for (e, (owner, edge)) in owners.iter().zip(&self.edges).enumerate() {
+            let inner = matches!(edge.role, Role::Inner(_));
+            if owner[0].is_none() || owner[1].is_some() != inner {
+                return Err(wrong(
+                    "edge",
+                    e,
+                    "expected two triangles at an inner edge, one on the left at others",
+                ));
+            }
+        }
+        Ok(owners)
+    }
+
+    /// The forces on triangle `t` towards its outside, and its body force.
+    fn loads<S: Enclosing>(
+        &self,
+        t: usize,
+        forces: &[[Vector2<S>; 2]],
+        owners: &[[Option<Owner>; 2]],
+    ) -> Loads<S> {
+        let piece = &self.pieces[t];
+        let outward = piece.edges.map(|e| {
+            let [a, b] = forces[e];
+            match owners[e][0] {
+                Some(owner) if owner.piece == t => [a, b],
+                _ => [-b, -a],
+            }
+        });
+        Loads { forces: outward, body: piece.body.map(exactly) }
+    }
+}
+
+/// A certificate whose triangles are in equilibrium, in the numbers `S`.
+pub(super) struct Balanced<S> {
+    triangles: Vec<Triangle<S>>,
+    /// v at vertices and cuts.
+    v: Vec<Vector2<S>>,
+    pub owners: Vec<[Option<Owner>; 2]>,
+    /// tau N on the edges as the certificate has it.
+    forces: Vec<[Vector2<S>; 2]>,
+    /// On each triangle, in equilibrium.
+    pub loads: Vec<Loads<S>>,
+    /// 2 int tau_n (v_n - g) over the edges of each triangle.
+    contact: Vec<S>,
+}
+
+/// A triangle at an edge, by the place of the edge in it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Owner {
+    /// The triangle.
+    pub piece: usize,
+    /// Which of its edges this is.
+    pub local: usize,
+}
+
+impl Piece {
+    /// The material. lambda is the one that acts in the plane, so plane strain is the formula to use.
+    pub fn material<S: Enclosing>(&self) -> Material<S> {
+        let [lambda, mu] = self.material;
+        Material::lame(S::exactly(lambda), S::exactly(mu), Plane::Strain)
+    }
+}
+
+/// The gradient of the affine field with these values at the vertices.
+pub(super) fn displacement_gradient<S: Scalar>(
+    triangle: &Triangle<S>,
+    nodal: &[Vector2<S>; 3],
+) -> Matrix2<S> {
+    // From differences, so that a translation has no gradient in any number type.
+    let double_area = triangle.double_area();
+    let (u, w) = (triangle.scaled_normal(1), triangle.scaled_normal(2));
+    let (a, b) = (nodal[1] - nodal[0], nodal[2] - nodal[0]);
+    Matrix2::from_fn(|i, j| -((a[i] * u[j] + b[i] * w[j]) / double_area))
+}

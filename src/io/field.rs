@@ -1,0 +1,409 @@
+//! A displacement that another program computed: VTU or CSV, read at the vertices of a mesh.
+//!
+//! - `.csv`: a first line with the names x, y, ux, uy (in any order, among others), then a line for each point.
+//! - `.vtu`: the points, and on them the vectors called `displacement` or `u`, or the only ones there are. Numbers in text or
+//!   base64, as they are or compressed by zlib: what this program, meshio, FEniCSx, GetFEM and scikit-fem write. Not the
+//!   appended section that VTK itself prefers.
+//!
+//! Points are matched to vertices by their place; other points, such as midpoints of edges, are passed over.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use miniz_oxide::inflate::decompress_to_vec_zlib_with_limit;
+use thiserror::Error;
+
+use super::input::{self, InputError};
+use crate::fem::Mesh;
+use crate::quote;
+
+/// Why there is no field.
+#[derive(Debug, Error)]
+#[expect(missing_docs, reason = "the message of each variant says what it is")]
+pub enum FieldError {
+    #[error("{}: {error}", quote::path(path))]
+    Read { path: PathBuf, error: InputError },
+    #[error("{}: {problem}", quote::path(path))]
+    Format { path: PathBuf, problem: String },
+}
+
+/// The most bytes of a file: the text of some ten million points.
+const MOST: u64 = 2 << 30;
+
+/// A point is a vertex when it is this near, in units of the body's extent: coordinates written in single precision pass.
+const NEAR: f64 = 1e-6;
+
+/// The displacement in the file at the vertices of `mesh`.
+///
+/// # Errors
+/// A file that can't be read or understood, or that lacks a vertex of the mesh.
+pub fn read_field(path: &Path, mesh: &Mesh) -> Result<Vec<[f64; 2]>, FieldError> {
+    let bytes = input::read(path, MOST)
+        .map_err(|error| FieldError::Read { path: path.to_owned(), error })?;
+    let text = String::from_utf8_lossy(&bytes);
+    let points = match path.extension().and_then(|e| e.to_str()) {
+        Some("csv") => from_csv(&text),
+        Some("vtu") => from_vtu(&text),
+        _ => Err("expected a file that ends in .vtu or .csv".to_owned()),
+    };
+    points
+        .and_then(|points| at_vertices(&points, mesh))
+        .map_err(|problem| FieldError::Format { path: path.to_owned(), problem })
+}
+
+/// Places with displacements.
+type Points = Vec<([f64; 2], [f64; 2])>;
+
+fn at_vertices(points: &Points, mesh: &Mesh) -> Result<Vec<[f64; 2]>, String> {
+    let vertices = mesh.vertices();
+    let extent = (0..2)
+        .map(|c| {
+            let of =
+                |pick: fn(f64, f64) -> f64, start| vertices.iter().map(|x| x[c]).fold(start, pick);
+            of(f64::max, f64::NEG_INFINITY) - of(f64::min, f64::INFINITY)
+        })
+        .fold(0.0, f64::max);
+    let width = 4.0 * NEAR * extent;
+    let cell = |x: [f64; 2]| x.map(|c| (c / width).floor() as i64);
+    let mut grid: BTreeMap<[i64; 2], Vec<usize>> = BTreeMap::new();
+    for (i, (x, u)) in points.iter().enumerate() {
+        if !x.iter().chain(u).all(|c| c.is_finite()) {
+            return Err(format!("point {i} has a number that is NaN or infinite"));
+        }
+        grid.entry(cell(*x)).or_default().push(i);
+    }
+    let nearest = |x: [f64; 2]| {
+        let [i, j] = cell(x);
+        let cells = (i - 1..=i + 1).flat_map(|i| (j - 1..=j + 1).map(move |j| [i, j]));
+        let distance = |k: usize| (points[k].0[0] - x[0]).hypot(points[k].0[1] - x[1]);
+        cells
+            .filter_map(|cell| grid.get(&cell))
+            .flatten()
+            .copied()
+            .min_by(|&a, &b| distance(a).total_cmp(&distance(b)))
+            .filter(|&k| distance(k) <= NEAR * extent)
+    };
+    let value = |(v, &x): (usize, &[f64; 2])| match nearest(x) {
+        Some(k) => Ok(points[k].1),
+        None => Err(format!(
+            "none of its {} points lies at vertex {v} of the mesh, ({}, {}); expected the displacement at every vertex",
+            points.len(),
+            x[0],
+            x[1]
+        )),
+    };
+    vertices.iter().enumerate().map(value).collect()
+}
+
+fn from_csv(text: &str) -> Result<Points, String> {
+    let mut lines = text.lines().enumerate();
+    let (_, head) = lines.next().ok_or("the file is empty; expected x,y,ux,uy")?;
+    let names: Vec<&str> = head.split(',').map(str::trim).collect();
+    let column = |name: &str| {
+        names.iter().position(|n| *n == name).ok_or_else(|| {
+            format!(
+                "line 1 has no column '{name}' among {}; expected x, y, ux and uy",
+                names.join(", ")
+            )
+        })
+    };
+    let columns = [column("x")?, column("y")?, column("ux")?, column("uy")?];
+    let mut points = Vec::new();
+    for (i, line) in lines.filter(|(_, line)| !line.trim().is_empty()) {
+        let cells: Vec<&str> = line.split(',').map(str::trim).collect();
+        let number = |c: usize| {
+            let cell = cells.get(c).copied().unwrap_or_default();
+            cell.parse::<f64>().map_err(|_| {
+                format!("line {}: '{cell}' is no number; expected {}", i + 1, names[c])
+            })
+        };
+        let [x, y, u, v] = columns.map(number);
+        points.push(([x?, y?], [u?, v?]));
+    }
+    Ok(points)
+}
+
+/// One array of a VTU file: its attributes and its text.
+struct Array<'a> {
+    attributes: &'a str,
+    text: &'a str,
+}
+
+impl<'a> Array<'a> {
+    fn attribute(&self, name: &str) -> Option<&'a str> {
+        attribute(self.attributes, name)
+    }
+
+    fn components(&self) -> usize {
+        self.attribute("NumberOfComponents").and_then(|n| n.parse().ok()).unwrap_or(1)
+    }
+}
+
+fn attribute<'a>(attributes: &'a str, name: &str) -> Option<&'a str> {
+    let mut rest = attributes;
+    loop {
+        let place = rest.find(name)?;
+        let before = rest[..place].chars().next_back();
+        rest = &rest[place + name.len()..];
+        let Some(value) = rest.trim_start().strip_prefix('=') else { continue };
+        let value = value.trim_start();
+        let Some(quote) = value.chars().next().filter(|c| ['"', '\''].contains(c)) else {
+            continue;
+        };
+        if before.is_none_or(char::is_whitespace) {
+            return value[1..].split(quote).next();
+        }
+    }
+}
+
+/// What stands between <tag ...> and </tag>.
+fn section<'a>(text: &'a str, tag: &str) -> Option<&'a str> {
+    let from = text.find(&format!("<{tag}"))?;
+    let inside = &text[from + text[from..].find('>')? + 1..];
+    Some(&inside[..inside.find(&format!("</{tag}>"))?])
+}
+
+fn arrays(section: &str) -> Vec<Array<'_>> {
+    let parts = section.split("<DataArray").skip(1);
+    parts
+        .filter_map(|part| {
+            let (attributes, rest) = part.split_once('>')?;
+            // An empty array closes itself.
+            let text =
+                if attributes.ends_with('/') { "" } else { rest.split("</DataArray").next()? };
+            Some(Array { attributes, text: text.trim() })
+        })
+        .collect()
+}
+
+fn from_vtu(text: &str) -> Result<Points, String> {
+    let head = text
+        .find("<VTKFile")
+        .and_then(|from| text[from..].split('>').next())
+        .ok_or("it has no element <VTKFile>; expected a VTU file")?;
+    if text.matches("<Piece").count() > 1 {
+        return Err("it has several pieces; expected one".to_owned());
+    }
+    let places = section(text, "Points").map(arrays).unwrap_or_default();
+    let places = places.first().ok_or("it has no <Points>")?;
+    let fields = section(text, "PointData").map(arrays).unwrap_or_default();
+    let vectors: Vec<&Array> =
+        fields.iter().filter(|a| (2..=3).contains(&a.components())).collect();
+    let named = vectors
+        .iter()
+        .find(|a| ["displacement", "u"].iter().any(|name| a.attribute("Name") == Some(name)));
+    let field = match (named, vectors.as_slice()) {
+        (Some(field), _) => field,
+        (None, [only]) => only,
+        _ => {
+            let names: Vec<&str> = vectors.iter().filter_map(|a| a.attribute("Name")).collect();
+            return Err(format!(
+                "its vectors on points are [{}]; expected one called displacement or u, or just one",
+                names.join(", ")
+            ));
+        }
+    };
+    let (x, u) = (numbers(places, head)?, numbers(field, head)?);
+    let (dim, components) = (places.components().max(2), field.components());
+    if x.len() / dim != u.len() / components || x.len() % dim != 0 {
+        return Err(format!(
+            "{} coordinates and {} components of vectors don't fit",
+            x.len(),
+            u.len()
+        ));
+    }
+    let pairs = x.chunks_exact(dim).zip(u.chunks_exact(components));
+    Ok(pairs.map(|(x, u)| ([x[0], x[1]], [u[0], u[1]])).collect())
+}
+
+/// The numbers of an array.
+fn numbers(array: &Array, head: &str) -> Result<Vec<f64>, String> {
+    let name = array.attribute("Name").unwrap_or("Points");
+    let bytes = match array.attribute("format") {
+        Some("ascii") | None => {
+            let number =
+                |word: &str| word.parse().map_err(|_| format!("{name}: '{word}' is no number"));
+            return array.text.split_whitespace().map(number).collect();
+        }
+        Some("binary") => {
+            blocks(array.text, head).map_err(|problem| format!("{name}: {problem}"))?
+        }
+        Some(other) => {
+            return Err(format!("{name} has the format '{other}'; expected ascii or binary"));
+        }
+    };
+    if attribute(head, "byte_order").is_some_and(|order| order != "LittleEndian") {
+        return Err("its byte order is not LittleEndian".to_owned());
+    }
+    match array.attribute("type") {
+        Some("Float64") => {
+            Ok(bytes.as_chunks::<8>().0.iter().map(|b| f64::from_le_bytes(*b)).collect())
+        }
+        Some("Float32") => {
+            Ok(bytes.as_chunks::<4>().0.iter().map(|b| f32::from_le_bytes(*b).into()).collect())
+        }
+        other => Err(format!("{name} has the type {other:?}; expected Float64 or Float32")),
+    }
+}
+
+/// The bytes of a base64 array: its length, then the data; or, compressed, the number of blocks, their size, the size of the
+/// last one, their compressed sizes, and in a code of its own the blocks.
+fn blocks(code: &str, head: &str) -> Result<Vec<u8>, String> {
+    let word = match attribute(head, "header_type") {
+        Some("UInt64") => 8,
+        _ => 4,
+    };
+    let whole = |bytes: &[u8], k: usize| -> Result<usize, String> {
+        let bytes = bytes.get(k * word..(k + 1) * word).ok_or("the code ends too early")?;
+        let value = bytes.iter().rev().fold(0_u64, |value, &b| value << 8 | u64::from(b));
+        usize::try_from(value).map_err(|_| "a length is too large".to_owned())
+    };
+    let code: Vec<u8> = code.bytes().filter(|b| !b.is_ascii_whitespace()).collect();
+    let Some(compressor) = attribute(head, "compressor").filter(|c| !c.is_empty()) else {
+        let bytes = decode(&code)?;
+        let length = whole(&bytes, 0)?;
+        let end = word.checked_add(length).ok_or("a length is too large")?;
+        return bytes
+            .get(word..end)
+            .map(<[u8]>::to_vec)
+            .ok_or("the code ends too early".to_owned());
+    };
+    if compressor != "vtkZLibDataCompressor" {
+        return Err(format!("it is compressed by {compressor}; expected vtkZLibDataCompressor"));
+    }
+    let code_length = |bytes: usize| bytes.div_ceil(3) * 4;
+    let start = decode(code.get(..code_length(word)).ok_or("the code ends too early")?)?;
+    let count = whole(&start, 0)?;
+    let header_code = count
+        .checked_add(3)
+        .and_then(|words| words.checked_mul(word))
+        .map(code_length)
+        .and_then(|length| code.get(..length))
+        .ok_or("the code ends too early")?;
+    let header = decode(header_code)?;
+    let (full, last) = (whole(&header, 1)?, whole(&header, 2)?);
+    let data = decode(&code[header_code.len()..])?;
+    let (mut all, mut from) = (Vec::new(), 0_usize);
+    for k in 0..count {
+        let length = whole(&header, 3 + k)?;
+        let end = from.checked_add(length).ok_or("a length is too large")?;
+        let block = data.get(from..end).ok_or("the code ends too early")?;
+        let size = if k + 1 == count && last > 0 { last } else { full };
+        let plain = decompress_to_vec_zlib_with_limit(block, size)
+            .map_err(|e| format!("block {k} can't be decompressed: {e}"))?;
+        all.extend(plain);
+        from = end;
+    }
+    Ok(all)
+}
+
+/// The bytes of a base64 code (RFC 4648, section 4).
+fn decode(code: &[u8]) -> Result<Vec<u8>, String> {
+    let mut bytes = Vec::with_capacity(code.len() / 4 * 3);
+    let (mut bits, mut held) = (0_u32, 0);
+    for &letter in code.iter().take_while(|&&letter| letter != b'=') {
+        let value = match letter {
+            b'A'..=b'Z' => letter - b'A',
+            b'a'..=b'z' => letter - b'a' + 26,
+            b'0'..=b'9' => letter - b'0' + 52,
+            b'+' => 62,
+            b'/' => 63,
+            _ => return Err(format!("'{}' is no letter of base64", char::from(letter))),
+        };
+        bits = bits << 6 | u32::from(value);
+        held += 6;
+        if held >= 8 {
+            held -= 8;
+            bytes.push((bits >> held) as u8);
+            bits &= (1 << held) - 1;
+        }
+    }
+    Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fem::{Diagonal, Rectangle};
+    use crate::io::vtu::{CellKind, Field, Grid, Values, vtu};
+
+    fn mesh() -> Mesh {
+        let diagonal = Diagonal::Right;
+        Rectangle { width: 1.0, height: 2.0, nx: 3, ny: 2, diagonal }.mesh().unwrap()
+    }
+
+    fn field(mesh: &Mesh) -> Vec<[f64; 2]> {
+        mesh.vertices().iter().map(|[x, y]| [x - y, 0.1 * x]).collect()
+    }
+
+    #[test]
+    fn what_this_program_writes_is_read_back_to_the_bit() {
+        let mesh = mesh();
+        let u = field(&mesh);
+        let file = vtu(&Grid {
+            kind: CellKind::Triangle,
+            points: mesh.vertices(),
+            connectivity: mesh.triangles().as_flattened(),
+            point_data: &[Field { name: "displacement", values: Values::Vectors(&u) }],
+            cell_data: &[],
+        });
+        let points = from_vtu(&String::from_utf8(file.unwrap()).unwrap()).unwrap();
+        assert_eq!(at_vertices(&points, &mesh).unwrap(), u);
+    }
+
+    #[test]
+    fn csv_is_read_in_any_order_of_columns_and_points() {
+        let mesh = mesh();
+        let u = field(&mesh);
+        let mut text = "uy, x, y, ux\n".to_owned();
+        for ([x, y], [a, b]) in mesh.vertices().iter().zip(&u).rev() {
+            text.push_str(&format!("{b},{x},{y},{a}\n"));
+        }
+        assert_eq!(at_vertices(&from_csv(&text).unwrap(), &mesh).unwrap(), u);
+    }
+
+    /// In the layout that meshio writes: text, and zlib with a header of its own code.
+    #[test]
+    fn text_and_compressed_arrays_are_read() {
+        let ascii = r#"<VTKFile type="UnstructuredGrid"><Piece NumberOfPoints="3"><Points>
+<DataArray type="Float64" NumberOfComponents="3" format="ascii">0 0 0 1 0 0 0 1 0</DataArray></Points>
+<PointData><DataArray type="Float64" Name="p" format="ascii">1 2 3</DataArray>
+<DataArray type="Float64" Name="u" NumberOfComponents="2" format="ascii">0.5 -2 0 0 1 3</DataArray></PointData></Piece></VTKFile>"#;
+        let expected =
+            vec![([0.0, 0.0], [0.5, -2.0]), ([1.0, 0.0], [0.0, 0.0]), ([0.0, 1.0], [1.0, 3.0])];
+        assert_eq!(from_vtu(ascii).unwrap(), expected);
+        let numbers: Vec<u8> =
+            [0.5, -2.0, 0.0, 0.0, 1.0, 3.0_f64].iter().flat_map(|x| x.to_le_bytes()).collect();
+        let packed = miniz_oxide::deflate::compress_to_vec_zlib(&numbers, 6);
+        let header: Vec<u8> =
+            [1, 48, 48, packed.len() as u32].iter().flat_map(|n| n.to_le_bytes()).collect();
+        let mut code = Vec::new();
+        crate::io::vtu::encode(&header, &mut code);
+        crate::io::vtu::encode(&packed, &mut code);
+        let code = String::from_utf8(code).unwrap();
+        let compressed = ascii
+            .replace(
+                "type=\"UnstructuredGrid\"",
+                "header_type=\"UInt32\" compressor=\"vtkZLibDataCompressor\"",
+            )
+            .replace(
+                "Name=\"u\" NumberOfComponents=\"2\" format=\"ascii\">0.5 -2 0 0 1 3",
+                &format!("Name=\"u\" NumberOfComponents=\"2\" format=\"binary\">{code}"),
+            );
+        assert_eq!(from_vtu(&compressed).unwrap(), expected);
+    }
+
+    #[test]
+    fn what_is_missing_is_named() {
+        let mesh = mesh();
+        let mut points: Points = mesh.vertices().iter().map(|&x| (x, [0.0; 2])).collect();
+        points.remove(4);
+        let error = at_vertices(&points, &mesh).unwrap_err();
+        assert!(error.contains("at vertex 4 of the mesh, (0, 1)"), "{error}");
+        assert!(from_csv("x,y,u\n").unwrap_err().contains("no column 'ux'"));
+        assert!(
+            from_csv("x,y,ux,uy\n1,2,a,4\n").unwrap_err().starts_with("line 2: 'a' is no number")
+        );
+        assert!(from_vtu("<VTKFile>").unwrap_err().contains("<Points>"));
+    }
+}

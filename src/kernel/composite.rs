@@ -1,0 +1,317 @@
+//! The composite stress element of Johnson and Mercier: the statically admissible stress that certificates are made of.
+//!
+//! ```text
+//!            2
+//!            |\           The triangle T is cut at its centroid m into three parts; part i holds edge i, opposite
+//!            | \          vertex i. On each part the stress is symmetric and affine, and across the cuts its traction
+//!            |  \         is continuous: 15 degrees of freedom, 2 x 6 for the tractions on the edges, which are affine,
+//!            | m \        and 3 for the mean stress.
+//!            |    \
+//!            0 ---- 1
+//! ```
+//!
+//! There is no system to solve. Write N_i = |E_i| n_i, J = 2 |T|, t_j = x_j - m, and G_i = tau N_i for the traction on edge i,
+//! per unit of its parameter. **At corner j**, where parts i and k meet along the cut with the tangent t_j, the traction
+//! is continuous if tau^i - tau^k = c t_j (x) t_j; then N_k . tau^i N_i - N_i . tau^k N_k = c (t_j . N_i) (t_j . N_k) with
+//! t_j . N_i = t_j . N_k = J/3 gives c = 9 (N_k . G_i - N_i . G_k) / J^2, and two tractions determine a symmetric tensor.
+//! **At m** three differences c_j t_j (x) t_j add up to zero; the three tensors are independent, so tau is continuous
+//! there, and the mean stress determines it.
+//!
+//! int_T div tau . w = int tau N . w - int tau : eps(w) for affine w has on the left the three constant divergences of the
+//! parts, which affine functions tell apart: div tau is minus the load f (constant on each part) exactly when the
+//! tractions and f are in equilibrium and the mean stress is the one of `Composite::new`.
+
+use nalgebra::{Matrix2, Vector2};
+
+use super::{Material, Scalar, Stress, Triangle};
+
+/// The load of one triangle as a certificate sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Loads<S> {
+    /// G_i = tau N_i on edge i (opposite vertex i, towards the outside), at its start i+1 and at its end i+2: a force per
+    /// unit of the edge's parameter in \[0, 1\].
+    pub forces: [[Vector2<S>; 2]; 3],
+    /// f on part i: a force per unit of area.
+    pub body: [Vector2<S>; 3],
+}
+
+/// A stress on a triangle, affine on each of its three parts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Composite<S> {
+    /// On part i, at the corners i+1 and i+2.
+    pub corners: [[Stress<S>; 2]; 3],
+    /// At the centroid.
+    pub centre: Stress<S>,
+}
+
+/// A force and a moment, with the point that the moment is about.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wrench<S> {
+    /// The force.
+    pub force: Vector2<S>,
+    /// The moment about `about`, positive counter-clockwise.
+    pub moment: S,
+    /// The point.
+    pub about: Vector2<S>,
+}
+
+impl<S: Scalar> Composite<S> {
+    /// The stress with these tractions whose divergence is minus `loads.body`; that takes tractions and body force in
+    /// equilibrium.
+    pub(crate) fn new(triangle: &Triangle<S>, loads: &Loads<S>) -> Self {
+        let normals = [0, 1, 2].map(|i| triangle.scaled_normal(i));
+        let edges = [0, 1, 2].map(|i| triangle.edge(i));
+        let double_area = triangle.double_area();
+        let third = double_area / S::from(3);
+        let arms = arms(triangle);
+        // [corner][part i = j + 1, part k = j + 2]
+        let at_corner = [0, 1, 2].map(|j| {
+            let (i, k) = ((j + 1) % 3, (j + 2) % 3);
+            let (p, q) = (loads.forces[i][1], loads.forces[k][0]);
+            let jump = arms[j] * ((normals[k].dot(&p) - normals[i].dot(&q)) / third);
+            let tensor = |p, q| from_tractions(p, q, edges[i], edges[k], double_area);
+            [tensor(p, q + jump), tensor(p - jump, q)]
+        });
+        let mean = mean_stress(loads, &arms, double_area);
+        let [a, b, c] = at_corner.map(|[first, second]| first + second);
+        let (one, three) = (S::from(1), S::from(3));
+        let centre = mean * three + (a + b + c) * -(one / three);
+        let corners = [0, 1, 2].map(|i| [at_corner[(i + 1) % 3][1], at_corner[(i + 2) % 3][0]]);
+        Composite { corners, centre }
+    }
+
+    /// sigma - tau for a constant stress sigma.
+    pub(crate) fn distance_from(&self, sigma: Stress<S>) -> Composite<S> {
+        let minus = |tau: Stress<S>| sigma + tau * -S::from(1);
+        Composite { corners: self.corners.map(|part| part.map(minus)), centre: minus(self.centre) }
+    }
+
+    /// int_T tau : C^-1 tau.
+    pub(crate) fn energy(&self, material: &Material<S>, double_area: S) -> S {
+        let mut sum = S::from(0);
+        for [a, b] in self.corners {
+            let total = a + b + self.centre;
+            for stress in [a, b, self.centre, total] {
+                sum = sum + complementary(material, stress);
+            }
+        }
+        sum * double_area / S::from(72)
+    }
+}
+
+impl<S: Scalar> Loads<S> {
+    /// The resultant of tractions and body force, about the centroid.
+    pub(crate) fn resultant(&self, triangle: &Triangle<S>) -> Wrench<S> {
+        let arms = arms(triangle);
+        let (two, six) = (S::from(2), S::from(6));
+        let part = triangle.double_area() / six;
+        let (mut force, mut moment) = (Vector2::zeros(), S::from(0));
+        for i in 0..3 {
+            let (a, b) = (arms[(i + 1) % 3], arms[(i + 2) % 3]);
+            let [p, q] = self.forces[i];
+            let f = self.body[i] * part;
+            force = force + (p + q) / two + f;
+            let (at_start, at_end) = (a * two + b, a + b * two);
+            moment = moment + (at_start.perp(&p) + at_end.perp(&q)) / six
+                - arms[i].perp(&f) / S::from(3);
+        }
+        Wrench { force, moment, about: centroid(triangle) }
+    }
+}
+
+impl<S: Scalar> Wrench<S> {
+    /// The same forces, their moment about another point.
+    pub(crate) fn about(self, point: Vector2<S>) -> Self {
+        let arm = self.about - point;
+        Wrench { moment: self.moment + arm.perp(&self.force), about: point, ..self }
+    }
+
+    /// The sum with another wrench, about this one's point.
+    pub(crate) fn plus(self, other: Wrench<S>) -> Self {
+        let other = other.about(self.about);
+        Wrench {
+            force: self.force + other.force,
+            moment: self.moment + other.moment,
+            about: self.about,
+        }
+    }
+
+    /// The affine force per unit of parameter, at both ends of the edge from `start` to `end`, that amounts to this wrench:
+    /// a constant, and (2 s - 1) times a multiple of the edge's normal N, whose moment about the middle is |E|^2 / 6 times
+    /// the multiple, clockwise.
+    pub(crate) fn on_edge(self, start: Vector2<S>, end: Vector2<S>) -> [Vector2<S>; 2] {
+        let wrench = self.about((start + end) / S::from(2));
+        let edge = end - start;
+        let normal = Vector2::new(edge[1], -edge[0]);
+        let slope = normal * -(S::from(6) * wrench.moment / edge.dot(&edge));
+        [wrench.force - slope, wrench.force + slope]
+    }
+}
+
+/// tau : C^-1 tau: what is deviatoric over 2 mu, what is spherical over 2 (lambda + mu), both squares.
+pub(crate) fn complementary<S: Scalar>(material: &Material<S>, tau: Stress<S>) -> S {
+    complementary_product(material, tau, tau)
+}
+
+fn complementary_product<S: Scalar>(material: &Material<S>, a: Stress<S>, b: Stress<S>) -> S {
+    let (two, four) = (S::from(2), S::from(4));
+    let ([a_xx, a_yy, a_xy], [b_xx, b_yy, b_xy]) = (a.components(), b.components());
+    let deviator = (a_xx - a_yy) * (b_xx - b_yy) + four * a_xy * b_xy;
+    let sphere = (a_xx + a_yy) * (b_xx + b_yy);
+    (deviator / material.mu() + sphere / (material.lambda() + material.mu())) / (two * two)
+}
+
+fn centroid<S: Scalar>(triangle: &Triangle<S>) -> Vector2<S> {
+    let third = S::from(1) / S::from(3);
+    triangle.point([third; 3])
+}
+
+/// x_j - m, from differences of vertices: ((x_j - x_i) + (x_j - x_k)) / 3.
+fn arms<S: Scalar>(triangle: &Triangle<S>) -> [Vector2<S>; 3] {
+    [0, 1, 2].map(|j| (triangle.edge(j + 1) - triangle.edge(j + 2)) / S::from(3))
+}
+
+/// The symmetric tensor with the tractions p on N_i and q on N_k, k = i + 1: (q (x) E_i - p (x) E_k) / J.
+fn from_tractions<S: Scalar>(
+    p: Vector2<S>,
+    q: Vector2<S>,
+    e_i: Vector2<S>,
+    e_k: Vector2<S>,
+    j: S,
+) -> Stress<S> {
+    let entry = |r: usize, c: usize| (q[r] * e_i[c] - p[r] * e_k[c]) / j;
+    Stress::new([entry(0, 0), entry(1, 1), (entry(0, 1) + entry(1, 0)) / S::from(2)])
+}
+
+/// (1/|T|) of the integral of G (x) (x - m) over the edges and of f (x) (x - m) over the parts, whose centroids lie at
+/// m - (x_i - m) / 3.
+fn mean_stress<S: Scalar>(loads: &Loads<S>, arms: &[Vector2<S>; 3], double_area: S) -> Stress<S> {
+    let two = S::from(2);
+    let mut sum = Matrix2::<S>::zeros();
+    for i in 0..3 {
+        let (a, b) = (arms[(i + 1) % 3], arms[(i + 2) % 3]);
+        let [p, q] = loads.forces[i];
+        let scale = double_area / S::from(3);
+        for r in 0..2 {
+            for c in 0..2 {
+                let edge = p[r] * (two * a[c] + b[c]) + q[r] * (a[c] + two * b[c]);
+                sum[(r, c)] = sum[(r, c)] + edge - scale * loads.body[i][r] * arms[i][c];
+            }
+        }
+    }
+    let factor = S::from(3) * double_area;
+    Stress::new([
+        sum[(0, 0)] / factor,
+        sum[(1, 1)] / factor,
+        (sum[(0, 1)] + sum[(1, 0)]) / (two * factor),
+    ])
+}
+
+#[cfg(test)]
+mod tests {
+    use approx::{assert_abs_diff_eq, assert_relative_eq};
+
+    use super::*;
+    use crate::kernel::Plane;
+
+    const T: Triangle<f64> = Triangle {
+        vertices: [Vector2::new(0.3, -0.2), Vector2::new(2.0, 0.1), Vector2::new(0.7, 1.9)],
+    };
+
+    /// What some dozen operations on numbers of size 1 to 10, divided by 2 |T| = 3.3, may be off.
+    const ROUNDING: f64 = 1e-13;
+
+    /// Tractions in equilibrium with f: any on two edges, and on the third what balances.
+    fn balanced() -> Loads<f64> {
+        let forces = [[[0.3, -1.0], [0.7, 0.2]], [[-0.4, 0.9], [1.1, -0.6]], [[0.0; 2]; 2]];
+        let body = [[0.5, -0.25], [0.1, 0.3], [-0.7, 0.2]];
+        let mut loads = Loads {
+            forces: forces.map(|ends| ends.map(Vector2::from)),
+            body: body.map(Vector2::from),
+        };
+        let force = loads.resultant(&T).on_edge(T.vertices[0], T.vertices[1]);
+        loads.forces[2] = force.map(|f| -f);
+        loads
+    }
+
+    const UNLOADED: Loads<f64> =
+        Loads { forces: [[Vector2::new(0.0, 0.0); 2]; 3], body: [Vector2::new(0.0, 0.0); 3] };
+
+    #[test]
+    fn the_wrench_on_an_edge_has_its_force_and_moment() {
+        let (force, about) = (Vector2::new(0.7, -0.3), Vector2::new(5.0, -4.0));
+        let wrench = Wrench { force, moment: 1.3, about };
+        let mut loads = UNLOADED;
+        loads.forces[1] = wrench.on_edge(T.vertices[2], T.vertices[0]);
+        let back = loads.resultant(&T).about(wrench.about);
+        assert_abs_diff_eq!(back.force, wrench.force, epsilon = ROUNDING);
+        assert_abs_diff_eq!(back.moment, wrench.moment, epsilon = ROUNDING);
+        let nothing = balanced().resultant(&T);
+        assert_abs_diff_eq!(nothing.force, Vector2::zeros(), epsilon = ROUNDING);
+        assert_abs_diff_eq!(nothing.moment, 0.0, epsilon = ROUNDING);
+    }
+
+    #[test]
+    fn tractions_are_the_given_ones_and_continuous_across_the_cuts() {
+        let loads = balanced();
+        let tau = Composite::new(&T, &loads);
+        for i in 0..3 {
+            for end in 0..2 {
+                let traction = tau.corners[i][end].traction(T.scaled_normal(i));
+                assert_abs_diff_eq!(traction, loads.forces[i][end], epsilon = ROUNDING);
+            }
+            // Along the cut from the centroid to corner j, parts j + 1 and j + 2 meet.
+            let j = i;
+            let [a, b] = [tau.corners[(j + 1) % 3][1], tau.corners[(j + 2) % 3][0]];
+            let [x, y] = arms(&T)[j].into();
+            let normal = Vector2::new(y, -x);
+            assert_abs_diff_eq!(a.traction(normal), b.traction(normal), epsilon = ROUNDING);
+        }
+    }
+
+    #[test]
+    fn the_divergence_is_minus_the_load_on_every_part() {
+        let loads = balanced();
+        let tau = Composite::new(&T, &loads);
+        let m = centroid(&T);
+        for i in 0..3 {
+            let (b, c) = (T.vertices[(i + 1) % 3], T.vertices[(i + 2) % 3]);
+            let g = Triangle { vertices: [m, b, c] }.barycentric_gradients();
+            let stresses = [tau.centre, tau.corners[i][0], tau.corners[i][1]];
+            let divergence: Vector2<f64> = stresses.iter().zip(g).map(|(s, g)| s.traction(g)).sum();
+            assert_abs_diff_eq!(divergence, -loads.body[i], epsilon = ROUNDING);
+        }
+    }
+
+    #[test]
+    fn control_out_of_balance_the_divergence_is_another() {
+        let mut loads = balanced();
+        loads.forces[0][0][0] += 0.1;
+        let tau = Composite::new(&T, &loads);
+        let whole: f64 = (0..3)
+            .map(|i| {
+                let (b, c) = (T.vertices[(i + 1) % 3], T.vertices[(i + 2) % 3]);
+                let g = Triangle { vertices: [centroid(&T), b, c] }.barycentric_gradients();
+                let stresses = [tau.centre, tau.corners[i][0], tau.corners[i][1]];
+                stresses.iter().zip(g).map(|(s, g)| s.traction(g)[0]).sum::<f64>()
+                    + loads.body[i][0]
+            })
+            .sum();
+        assert!(whole.abs() > 1e-2);
+    }
+
+    #[test]
+    fn a_constant_stress_is_reproduced_and_its_energy_is_stress_times_strain() {
+        let material = Material::lame(1.3, 0.7, Plane::Strain);
+        let gradient = Matrix2::new(0.3, -0.2, 0.5, 0.9);
+        let sigma = material.stress(gradient);
+        let forces = [0, 1, 2].map(|i| [sigma.traction(T.scaled_normal(i)); 2]);
+        let tau = Composite::new(&T, &Loads { forces, ..UNLOADED });
+        let distance = tau.distance_from(sigma).energy(&material, T.double_area());
+        // A sum of squares of rounding errors.
+        assert_abs_diff_eq!(distance, 0.0, epsilon = ROUNDING * ROUNDING);
+        let expected = sigma.matrix().dot(&gradient) * T.double_area() / 2.0;
+        let energy = tau.energy(&material, T.double_area());
+        assert_relative_eq!(energy, expected, max_relative = ROUNDING);
+    }
+}

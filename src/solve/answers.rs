@@ -1,0 +1,359 @@
+//! What each part of Gamma_C carries: resultant, moment, where there is contact, the recovered pressure, penetration; and
+//! the balance of energies.
+//!
+//! The force of the obstacle on the body is the functional v -> -int (1/gamma) \[P\]+ I(n~ . v): -G_a n~_a at node a, with
+//! G_a = int (1/gamma) \[P\]+ N_a. With v a rigid motion it gives resultant and moment, and these balance loads and reactions
+//! to rounding.
+//!
+//! **The recovered pressure** at a node is the mean of -lambda^h weighted by the node's hat function on the contact line (for
+//! P2 on its half edges): p_a = int (-lambda^h) phi_a / int phi_a. The hats are not negative and add up to one, so
+//! 0 <= p_a <= max(-lambda^h), and sum p_a phi_a has the same integral as -lambda^h on every part of Gamma_C, to rounding.
+//! -lambda^h jumps from edge to edge by what sigma_n does; the mean takes out the jumps. It is of second order where the
+//! pressure is smooth and neighbouring edges differ little in length (docs/parts.md has the numbers). At a corner, where the
+//! direction of contact jumps, each side has its own value.
+
+use std::collections::BTreeMap;
+
+#[cfg(feature = "files")]
+use serde::{Deserialize, Serialize};
+
+use nalgebra::Vector2;
+
+use crate::fem::contact_line::{ContactLineEdge, EdgeRule};
+use crate::fem::discretization::{Discretization, inner};
+use crate::fem::mesh::length;
+use crate::kernel::edge_integral::{self, ExactEdge, value_at};
+use crate::kernel::element::displacement_gradient;
+use crate::kernel::positive_part;
+
+/// What one part of Gamma_C carries, in the units of the case.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
+pub struct ContactBoundary {
+    /// Its name.
+    pub boundary: String,
+    /// int -lambda^h
+    pub force: f64,
+    /// The force of the obstacle on the body.
+    pub resultant: [f64; 2],
+    /// The moment of that force about the origin, counter-clockwise.
+    pub moment: f64,
+    /// The measure of {P > 0}.
+    pub length: f64,
+    /// The ends of each stretch with contact, in the undeformed body, in the direction of the boundary.
+    pub stretches: Vec<[[f64; 2]; 2]>,
+    /// The largest recovered pressure.
+    pub peak_pressure: f64,
+    /// Where that is, in the undeformed body.
+    pub peak_at: [f64; 2],
+    /// The largest u_n - g: how far the body reaches into the obstacle; negative if it nowhere touches it.
+    pub penetration: f64,
+    /// Where that is, in the undeformed body.
+    pub penetration_at: [f64; 2],
+}
+
+/// a(u, u) = loads + supports + contact: what the strains hold is twice the work of the three on u.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
+pub struct EnergyBalance {
+    /// a(u, u), twice the strain energy.
+    pub strain: f64,
+    /// L(u)
+    pub loads: f64,
+    /// The reactions times the prescribed displacements.
+    pub supports: f64,
+    /// int gamma sigma_n(u)^2 - int (1/gamma) \[P(u)\]+ P0(u), which tends to int lambda u_n.
+    pub contact: f64,
+    /// (strain - loads - supports - contact) / (the largest of their magnitudes): rounding, if the solution is one.
+    pub imbalance: f64,
+}
+
+/// The balance of the field `u` with the residual `residual` at all degrees of freedom, and the energy a(u, u).
+pub fn energy_balance<E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    u: &[[f64; 2]],
+    residual: &[[f64; 2]],
+    strain: f64,
+) -> EnergyBalance
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let loads = inner(&d.load, u);
+    let mut supports = 0.0;
+    for held in d.constraints.holders().values().flatten() {
+        let ([a, b], [x, y]) = (held.part_of(residual[held.node]), u[held.node]);
+        supports += a * x + b * y;
+    }
+    let mut contact = 0.0;
+    for edge in &d.contact {
+        let nodal = d.space.on_triangle(edge.edge.triangle, u);
+        let p = edge.p(&nodal);
+        let sigma = edge.sigma_n(&nodal);
+        let product = crate::kernel::contact_edge::integral_of_product(sigma, sigma);
+        contact += edge.gamma * edge.length * product;
+        let gradient = d.rule.integrals::<E, N, M>(p).gradient;
+        for a in 0..M {
+            contact -= edge.length / edge.gamma * gradient[a] * (p[a] + edge.gap[a]);
+        }
+    }
+    let largest = [strain, loads, supports, contact].map(f64::abs).into_iter().fold(0.0, f64::max);
+    let difference = strain - loads - supports - contact;
+    let imbalance = if largest > 0.0 { difference / largest } else { 0.0 };
+    EnergyBalance { strain, loads, supports, contact, imbalance }
+}
+
+/// The largest principal strain, in magnitude, of the mean strain on a triangle.
+pub fn largest_strain<E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    u: &[[f64; 2]],
+) -> f64
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let mut largest: f64 = 0.0;
+    for (t, (triangle, _)) in d.space.triangles().enumerate() {
+        let nodal = d.space.on_triangle(t, u);
+        let barycentric = triangle.barycentric_gradients();
+        let [mut xx, mut yy, mut xy] = [0.0; 3];
+        E::at_stiffness_points(|l, weight| {
+            let g = displacement_gradient(&nodal, &E::gradients(l, barycentric));
+            xx += weight * g.m11;
+            yy += weight * g.m22;
+            xy += weight * (g.m12 + g.m21) / 2.0;
+        });
+        let radius = ((xx - yy) / 2.0).hypot(xy);
+        largest = largest.max(((xx + yy) / 2.0).abs() + radius);
+    }
+    largest
+}
+
+/// The recovered pressure at the nodes of each edge, in the order of the edge's nodes.
+pub fn recovered_pressure<E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    u: &[[f64; 2]],
+) -> Vec<[f64; M]>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let groups = groups(d);
+    let count = groups.iter().flatten().max().map_or(0, |last| last + 1);
+    let (mut work, mut weight) = (vec![0.0; count], vec![0.0; count]);
+    let hats: [f64; M] =
+        if M == 2 { [0.5; M] } else { std::array::from_fn(|a| [0.25, 0.25, 0.5][a]) };
+    for (edge, groups) in d.contact.iter().zip(&groups) {
+        let p = edge.p(&d.space.on_triangle(edge.edge.triangle, u));
+        let of_edge = hat_integrals::<E, N, M>(p, &d.rule);
+        for (a, &group) in groups.iter().enumerate() {
+            work[group] += edge.length / edge.gamma * of_edge[a];
+            weight[group] += edge.length * hats[a];
+        }
+    }
+    groups.iter().map(|groups| groups.map(|group| work[group] / weight[group])).collect()
+}
+
+/// The hat functions of an edge's nodes at `s`: start, end, middle.
+fn hats<const M: usize>(s: f64) -> [f64; M] {
+    let all = match (M, s <= 0.5) {
+        (2, _) => [1.0 - s, s, 0.0],
+        (_, true) => [1.0 - 2.0 * s, 0.0, 2.0 * s],
+        (_, false) => [0.0, 2.0 * s - 1.0, 2.0 - 2.0 * s],
+    };
+    std::array::from_fn(|a| all[a])
+}
+
+/// int_0^1 \[P\]+ phi_a by the rule of the method.
+fn hat_integrals<E, const N: usize, const M: usize>(p: [f64; M], rule: &EdgeRule) -> [f64; M]
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let mut sums = [0.0; M];
+    let mut add = |s: f64, weight: f64| {
+        let value = positive_part(value_at::<E, f64, N, M>(p, s));
+        let hats: [f64; M] = hats(s);
+        (0..M).for_each(|a| sums[a] += weight * value * hats[a]);
+    };
+    match rule {
+        EdgeRule::Gauss(points) => points.iter().for_each(|&(s, weight)| add(s, weight)),
+        EdgeRule::Exact => {
+            let mut cuts: Vec<f64> =
+                edge_integral::roots::<E, N, M>(p).chain([0.0, 0.5, 1.0]).collect();
+            cuts.sort_unstable_by(f64::total_cmp);
+            for pair in cuts.windows(2) {
+                let [low, high] = [pair[0], pair[1]];
+                // Exact for the cubic that is left on each piece.
+                let (middle, half) = ((low + high) / 2.0, (high - low) / 2.0);
+                let offset = half / 3.0_f64.sqrt();
+                add(middle - offset, half);
+                add(middle + offset, half);
+            }
+        }
+    }
+    sums
+}
+
+/// The numbers of the values at the nodes of each edge: neighbours on one boundary share that of their common node unless
+/// the direction of contact jumps there.
+fn groups<E, const N: usize, const M: usize>(d: &Discretization<E, N, M>) -> Vec<[usize; M]>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let mut of_end: BTreeMap<(usize, &str), Vec<Group>> = BTreeMap::new();
+    let mut count = 0;
+    let mut groups = Vec::with_capacity(d.contact.len());
+    for edge in &d.contact {
+        let nodes = d.space.edge_nodes(edge.edge);
+        groups.push(std::array::from_fn(|a| {
+            let known = of_end.entry((nodes[a], &*edge.boundary)).or_default();
+            let direction = edge.directions[a];
+            match known.iter().find(|(other, _)| same(*other, direction)) {
+                Some(&(_, group)) => group,
+                None => {
+                    known.push((direction, count));
+                    count += 1;
+                    count - 1
+                }
+            }
+        }));
+    }
+    groups
+}
+
+/// A direction of contact at a node, and the number of the value there.
+type Group = (Vector2<f64>, usize);
+
+/// Directions that differ by rounding only, or by what a facet's normal may be off where the boundary is straight.
+fn same(a: Vector2<f64>, b: Vector2<f64>) -> bool {
+    length(a - b) <= 1e-6
+}
+
+/// What each part of Gamma_C carries, in alphabetical order.
+pub fn contact_boundaries<E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    u: &[[f64; 2]],
+    recovered: &[[f64; M]],
+) -> Vec<ContactBoundary>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let mut all: Vec<ContactBoundary> = Vec::new();
+    let mut end_of_last = None;
+    for (edge, recovered) in d.contact.iter().zip(recovered) {
+        if all.last().is_none_or(|last| last.boundary != *edge.boundary) {
+            end_of_last = None;
+            all.push(ContactBoundary::empty(&edge.boundary));
+        }
+        if let Some(boundary) = all.last_mut() {
+            boundary.add(d, u, edge, recovered, &mut end_of_last);
+        }
+    }
+    all
+}
+
+impl ContactBoundary {
+    fn empty(boundary: &str) -> Self {
+        ContactBoundary {
+            boundary: boundary.to_owned(),
+            force: 0.0,
+            resultant: [0.0; 2],
+            moment: 0.0,
+            length: 0.0,
+            stretches: Vec::new(),
+            peak_pressure: f64::NEG_INFINITY,
+            peak_at: [0.0; 2],
+            penetration: f64::NEG_INFINITY,
+            penetration_at: [0.0; 2],
+        }
+    }
+
+    /// Adds an edge; `open` is the vertex up to which a stretch of contact has come.
+    fn add<E, const N: usize, const M: usize>(
+        &mut self,
+        d: &Discretization<E, N, M>,
+        u: &[[f64; 2]],
+        edge: &ContactLineEdge<N, M>,
+        recovered: &[f64; M],
+        open: &mut Option<usize>,
+    ) where
+        E: ExactEdge<f64, N, M>,
+    {
+        let nodal = d.space.on_triangle(edge.edge.triangle, u);
+        let p = edge.p(&nodal);
+        let nodes = d.space.edge_nodes(edge.edge);
+        let places = nodes.map(|node| d.space.nodes()[node]);
+        let integrals = d.rule.integrals::<E, N, M>(p);
+        let mut openings = [0.0; M];
+        for a in 0..M {
+            let (g, [x, y], n) = (integrals.gradient[a], places[a], edge.directions[a]);
+            let size = edge.length / edge.gamma * g;
+            let force = n.map(|c| -size * c);
+            self.force += size;
+            self.resultant = [self.resultant[0] + force[0], self.resultant[1] + force[1]];
+            self.moment += x * force[1] - y * force[0];
+            let v = u[nodes[a]];
+            openings[a] = v[0] * n[0] + v[1] * n[1] - edge.gap[a];
+            if recovered[a] > self.peak_pressure {
+                (self.peak_pressure, self.peak_at) = (recovered[a], places[a]);
+            }
+        }
+        self.length += edge.length * integrals.active;
+        let place = |s: f64| {
+            let [a, b] = [places[0], places[1]];
+            [0, 1].map(|c| (1.0 - s) * a[c] + s * b[c])
+        };
+        for s in [0.0, 0.25, 0.5, 0.75, 1.0] {
+            let depth = value_at::<E, f64, N, M>(openings, s);
+            if depth > self.penetration {
+                (self.penetration, self.penetration_at) = (depth, place(s));
+            }
+        }
+        let mut cuts: Vec<f64> = edge_integral::roots::<E, N, M>(p).chain([0.0, 1.0]).collect();
+        cuts.sort_unstable_by(f64::total_cmp);
+        let [start, end] = [nodes[0], nodes[1]];
+        for pair in cuts.windows(2) {
+            let middle = value_at::<E, f64, N, M>(p, (pair[0] + pair[1]) / 2.0);
+            if !(middle > 0.0) {
+                continue;
+            }
+            let [from, to] = [place(pair[0]), place(pair[1])];
+            match self.stretches.last_mut() {
+                Some(last) if pair[0] == 0.0 && *open == Some(start) => last[1] = to,
+                _ => self.stretches.push([from, to]),
+            }
+            *open = (pair[1] == 1.0).then_some(end);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fem::quadrature;
+    use crate::kernel::{P1, P2};
+
+    #[test]
+    fn hats_are_not_negative_and_add_up_to_one() {
+        for i in 0..=20 {
+            let s = f64::from(i) / 20.0;
+            for hats in [hats::<3>(s).to_vec(), hats::<2>(s).to_vec()] {
+                assert!(hats.iter().all(|&h| h >= 0.0));
+                assert!((hats.iter().sum::<f64>() - 1.0).abs() < 1e-15);
+            }
+        }
+    }
+
+    #[test]
+    fn integrals_against_hats_add_up_to_the_integral_of_the_positive_part() {
+        for p in [[1.0, -2.0, 0.3], [-1.0, -1.0, 1.0], [2.0, 0.5, 1.0], [-1.0, -2.0, -3.0]] {
+            for rule in [EdgeRule::Exact, EdgeRule::Gauss(quadrature::gauss(4))] {
+                let whole: f64 = rule.integrals::<P2, 6, 3>(p).gradient.iter().sum();
+                let parts = hat_integrals::<P2, 6, 3>(p, &rule);
+                assert!((parts.iter().sum::<f64>() - whole).abs() < 1e-15, "{p:?}");
+                assert!(parts.iter().all(|&part| part >= 0.0));
+                let p = [p[0], p[1]];
+                let gradient = rule.integrals::<P1, 3, 2>(p).gradient;
+                let parts = hat_integrals::<P1, 3, 2>(p, &rule);
+                assert!((parts[0] - gradient[0]).abs() + (parts[1] - gradient[1]).abs() < 1e-15);
+            }
+        }
+    }
+}

@@ -1,0 +1,353 @@
+//! Section 7 of docs/theory.md on exact solutions: the bound of |u - v|_a is never below the true error, and not far above
+//! it; what is proved without quadrature says so; and what the bound would be worth with a part of it left out.
+//!
+//! Effectivity is bound over error. What is expected: below 2 where the solution is smooth and below 3 where it is singular,
+//! which is what the stress costs; on the coarsest mesh of (a), n = 8, the oscillation of its body force adds as much again
+//! (it falls with h^2, the error with h).
+
+use crate::common::exact::{
+    corner, moved, on_square, on_trapezoid, singular, smooth, smooth_with_gap,
+};
+use crate::common::{Random, clamped, conditions, constant, unit_square};
+use signorini::certify::proof::Role;
+use signorini::certify::{Continuous, Rejection, certify, certify_field};
+use signorini::fem::{BoxedFunction, Condition, Errors, Problem, Space, contact_line};
+use signorini::io::Expression;
+use signorini::io::certificate::{self, Header};
+use signorini::kernel::{Interval, Material, P1, Plane};
+use signorini::solve::{Degree, Gamma0, Ladder, Method, Settings, Solution, solve};
+
+/// The bound on the levels of a ladder, each with the true error of the same field.
+fn bounds(what: &str, ladder: &Ladder, levels: usize, limit: impl Fn(usize) -> f64) {
+    for level in 0..levels {
+        let (_, problem, solution) = ladder.solve(level).unwrap();
+        let certified = certify(&problem, &solution).unwrap();
+        let error = error_of(&problem, ladder, &solution, &certified.certificate.displacement);
+        let effectivity = certified.bound / error;
+        assert!(
+            1.0 <= effectivity && effectivity < limit(level),
+            "{what}, level {level}: bound {} for the error {error}, effectivity {effectivity:.3}",
+            certified.bound
+        );
+    }
+}
+
+fn error_of(problem: &Problem, ladder: &Ladder, solution: &Solution, v: &[[f64; 2]]) -> f64 {
+    let space = Space::<P1, 3, 2>::new(&problem.mesh);
+    let contact = contact_line::assemble(problem, &space, solution.gamma.gamma0).unwrap();
+    Errors::new(&space, &contact, v, &*ladder.solution).energy
+}
+
+#[test]
+fn the_bound_is_above_the_error_and_below_twice_the_error_of_smooth_solutions() {
+    for (what, solution) in [
+        ("(a) 3 2", smooth(3.0, 2.0, 1.0 / 3.0)),
+        ("(a) 4 3", smooth(4.0, 3.0, 1.0 / 3.0)),
+        ("(a) 4 3 with a gap", smooth_with_gap()),
+    ] {
+        let limit = |level| if level == 0 { 3.0 } else { 2.0 };
+        bounds(what, &on_square(&solution, Degree::One, 8), 4, limit);
+    }
+}
+
+#[test]
+fn the_bound_is_above_the_error_and_below_thrice_the_error_of_singular_solutions() {
+    for c in [0.5, 1.0 / 3.0] {
+        let ladder = on_square(&singular(c), Degree::One, 8);
+        bounds(&format!("(b) c = {c}"), &ladder, 4, |_| 2.0);
+        bounds(&format!("(b) c = {c} moved"), &moved(ladder), 3, |_| 2.0);
+    }
+    let (solution, _) = corner(0.75);
+    bounds("(c)", &on_trapezoid(&solution, 0.75, Degree::One, 8), 4, |_| 3.0);
+}
+
+#[test]
+fn any_field_has_its_error_bounded() {
+    let ladder = on_square(&singular(0.5), Degree::One, 8);
+    let (_, problem, solution) = ladder.solve(0).unwrap();
+    let mut random = Random(5);
+    for size in [1e-4, 1e-3, 1e-2, 0.1, 1.0] {
+        let noise = random.field(solution.displacement.len());
+        let field: Vec<[f64; 2]> = solution
+            .displacement
+            .iter()
+            .zip(&noise)
+            .map(|(u, r)| [u[0] + size * r[0], u[1] + size * r[1]])
+            .collect();
+        let certified = certify_field(&problem, &solution, &field).unwrap();
+        let v = &certified.certificate.displacement;
+        let error = error_of(&problem, &ladder, &solution, v);
+        let effectivity = certified.bound / error;
+        assert!((1.0..3.0).contains(&effectivity), "{size}: {effectivity}");
+        // Far from u the error of tau hardly counts.
+        assert!(size < 0.1 || effectivity < 1.1, "{size}: {effectivity}");
+    }
+}
+
+fn expression(text: &str) -> BoxedFunction {
+    Box::new(text.parse::<Expression>().unwrap())
+}
+
+/// A clamped block with data of the exact class, that bends so that a part of its lower side stays in contact.
+fn block(n: usize) -> (Problem, Solution) {
+    let problem = Problem::new(
+        unit_square(n).mesh().unwrap(),
+        Material::lame(1.0, 1.0, Plane::Strain),
+        [expression("0.8"), expression("-1")],
+        conditions([
+            ("top", Condition::Displacement([Some(expression("0")), Some(expression("0.1*x"))])),
+            ("left", Condition::Pressure(expression("0.2 + y"))),
+            ("bottom", Condition::Contact { gap: expression("0.1 - 0.2*x") }),
+        ]),
+    );
+    let method = Method {
+        degree: Degree::One,
+        gamma0: Gamma0::Auto,
+        quadrature: crate::common::EXACT,
+        allow_noncoercive: false,
+    };
+    let (solution, _) = solve(&problem, &method, &Settings::default()).unwrap();
+    (problem, solution)
+}
+
+#[test]
+fn data_of_the_exact_class_make_the_bound_rigorous_and_enclose_the_potential_energy() {
+    let mut before: Option<(f64, [f64; 2])> = None;
+    for n in [4, 8, 16, 32] {
+        let (problem, solution) = block(n);
+        let certified = certify(&problem, &solution).unwrap();
+        assert!(certified.rigorous && certified.reason.is_none());
+        let [low, high] = certified.energy.unwrap();
+        assert!(low < high);
+        if let Some((bound, [coarse_low, coarse_high])) = before {
+            // All contain J(u), and they shrink with h.
+            assert!(low.max(coarse_low) <= high.min(coarse_high));
+            assert!(high - low < 0.5 * (coarse_high - coarse_low), "{n}");
+            assert!(certified.bound < 0.7 * bound, "{n}: {} after {bound}", certified.bound);
+            // J(v) - J(u) is at least half the square of the error: seen from the finer mesh.
+            assert!(coarse_high - high <= 0.5 * bound * bound);
+        }
+        before = Some((certified.bound, [low, high]));
+        let hint = certified.effectivity_hint.unwrap();
+        assert!((1.0..2.5).contains(&hint), "{n}: {hint}");
+    }
+}
+
+#[test]
+fn intervals_and_doubles_agree_to_rounding() {
+    let (problem, solution) = block(8);
+    let certificate = certify(&problem, &solution).unwrap().certificate;
+    let proved = certificate.evaluate::<Interval>().unwrap().bound;
+    let quick = certificate.evaluate::<f64>().unwrap().bound;
+    assert!(quick <= proved && proved <= (1.0 + 1e-9) * quick, "{quick} {proved}");
+}
+
+/// lambda = 0: on the unit square the floor at height d makes u = (0, d (1 - y)); without it (g = 0) u = 0. v and tau of
+/// the first are admissible for the second, with |C eps(v) - tau| = 0.
+fn raised_floor(d: f64) -> Continuous {
+    let problem = Problem::new(
+        unit_square(4).mesh().unwrap(),
+        Material::lame(0.0, 1.0, Plane::Strain),
+        [expression("0"), expression("0")],
+        conditions([("top", clamped()), ("bottom", Condition::Contact { gap: constant(-d) })]),
+    );
+    let (solution, _) = solve(&problem, &Method::default(), &Settings::default()).unwrap();
+    certify(&problem, &solution).unwrap()
+}
+
+#[test]
+fn control_without_the_contact_term_there_would_be_no_bound() {
+    let d = 0.25;
+    let certified = raised_floor(d);
+    let error = 2.0_f64.sqrt() * d;
+    let mut certificate = certified.certificate;
+    let with_the_floor = certificate.evaluate::<Interval>().unwrap();
+    // What is left when the contact term is dropped: nothing, though u is far away.
+    // (but for the root of the margin by which v is kept off the floor, 1e-11).
+    assert!(with_the_floor.bound < 1e-4, "{}", with_the_floor.bound);
+    for edge in &mut certificate.edges {
+        if let Role::Contact { gap, .. } = &mut edge.role {
+            *gap = [0.0; 2];
+        }
+    }
+    let without = certificate.evaluate::<Interval>().unwrap();
+    let effectivity = without.bound / error;
+    assert!((1.0..1.5).contains(&effectivity), "{effectivity}");
+}
+
+#[test]
+fn control_a_tension_on_the_contact_line_is_refused() {
+    let (problem, solution) = block(8);
+    let mut certificate = certify(&problem, &solution).unwrap().certificate;
+    let edge = certificate.edges.iter_mut().find_map(|edge| match &mut edge.role {
+        Role::Contact { pressure, .. } if pressure[0] < 0.0 => Some(pressure),
+        _ => None,
+    });
+    edge.unwrap()[0] *= -1.0;
+    let refused = certificate.evaluate::<Interval>();
+    assert!(matches!(refused, Err(Rejection::Tension { .. })), "{refused:?}");
+}
+
+#[test]
+fn control_a_wrong_load_is_seen_by_the_bound() {
+    let (problem, solution) = block(8);
+    let certified = certify(&problem, &solution).unwrap();
+    let mut certificate = certified.certificate;
+    certificate.pieces.iter_mut().for_each(|piece| piece.body.iter_mut().for_each(|f| f[1] *= 2.0));
+    let bound = certificate.evaluate::<Interval>().unwrap().bound;
+    assert!(bound > 3.0 * certified.bound, "{bound} {}", certified.bound);
+}
+
+#[test]
+fn a_function_without_a_degree_makes_the_bound_say_that_it_rests_on_quadrature() {
+    let problem = crate::common::block(unit_square(8).mesh().unwrap());
+    assert_eq!(problem.body_force[1].degree(), None);
+    let (solution, _) = solve(&problem, &Method::default(), &Settings::default()).unwrap();
+    let certified = certify(&problem, &solution).unwrap();
+    assert!(!certified.rigorous && certified.energy.is_none());
+    let reason = certified.reason.unwrap();
+    assert!(reason.starts_with("the body force is not known to be constant"), "{reason}");
+}
+
+/// The certificate of the block as files.
+fn written(n: usize) -> (Header, Vec<u8>) {
+    let (problem, solution) = block(n);
+    certificate::encode("Block", &certify(&problem, &solution).unwrap())
+}
+
+/// Whether the checker accepts these files.
+fn accepts(header: &Header, bytes: &[u8]) -> Result<(), String> {
+    let (certificate, claim) = certificate::decode(header, bytes)?;
+    certificate.audit(&claim).map(|_| ()).map_err(|e| e.to_string())
+}
+
+#[test]
+fn a_certificate_is_accepted_as_it_was_written() {
+    for n in [4, 8, 16] {
+        let (header, bytes) = written(n);
+        assert_eq!(accepts(&header, &bytes), Ok(()));
+    }
+}
+
+/// What a word of certificate.bin is.
+#[derive(Clone, Copy, PartialEq)]
+enum Word {
+    /// An index, a role, or whether there is a number.
+    Whole,
+    Number,
+    /// A gap: no bound feels it where there is no pressure, so the hash alone protects it.
+    Gap,
+}
+
+fn kind(header: &Header, bytes: &[u8], word: usize) -> Word {
+    let counts = header.counts;
+    let mut first = 0;
+    // Words for each entry, and which of them are whole.
+    for (entries, each, whole) in [
+        (4 * counts.vertices, 1, 0..0),
+        (2 * counts.vertices, 2, 0..1),
+        (counts.cuts, 3, 0..2),
+        (counts.triangles, 15, 0..6),
+        (counts.edges, 7, 0..3),
+    ] {
+        if word < first + entries * each {
+            let inside = (word - first) % each;
+            let is_contact = each == 7 && bytes[8 * (word - inside + 2)] == 6;
+            return match inside {
+                i if whole.contains(&i) => Word::Whole,
+                5.. if is_contact => Word::Gap,
+                _ => Word::Number,
+            };
+        }
+        first += entries * each;
+    }
+    Word::Number
+}
+
+/// Changes one word: a number beyond its last bits, in sign or in size, or an index.
+fn tamper(bytes: &mut [u8], word: usize, is: Word, random: &mut Random) -> bool {
+    let place = 8 * word..8 * word + 8;
+    let old = u64::from_le_bytes(bytes[place.clone()].try_into().unwrap());
+    let value = f64::from_bits(old);
+    let how = random.next();
+    let new = match is {
+        Word::Gap => old,
+        Word::Whole if how < 0.0 => old.wrapping_add(1),
+        Word::Whole => old.wrapping_add(2 + (100.0 * (1.0 + random.next())) as u64),
+        Word::Number => {
+            let changed = match how {
+                h if h < -0.5 => -value,
+                h if h < 0.0 && value != 0.0 => value * (1.0 + 1e-12 * (1.5 + random.next())),
+                h if h < 0.5 && value != 0.0 => value * (1.0 + 0.1 * random.next()),
+                _ => value + random.next(),
+            };
+            // 0 and -0 are the same number.
+            if changed == value { old } else { changed.to_bits() }
+        }
+    };
+    bytes[place].copy_from_slice(&new.to_le_bytes());
+    new != old
+}
+
+#[test]
+fn a_thousand_tampered_certificates_are_rejected() {
+    let (header, bytes) = written(4);
+    let mut random = Random(11);
+    let words = bytes.len() / 8;
+    let mut done = 0;
+    let mut accepted = Vec::new();
+    while done < 1000 {
+        let word = ((random.next() + 1.0) / 2.0 * words as f64) as usize;
+        let mut changed = bytes.clone();
+        if !tamper(&mut changed, word, kind(&header, &bytes, word), &mut random) {
+            continue;
+        }
+        done += 1;
+        // Who tampers can compute a hash, too.
+        let mut forged = header.clone();
+        assert!(accepts(&forged, &changed).is_err(), "the hash of word {word}");
+        forged.hash = certificate::hash(&changed);
+        if accepts(&forged, &changed).is_ok() {
+            let (old, new) = (&bytes[8 * word..8 * word + 8], &changed[8 * word..8 * word + 8]);
+            let number = |b: &[u8]| f64::from_le_bytes(b.try_into().unwrap());
+            accepted.push((word, number(old), number(new)));
+        }
+    }
+    assert!(accepted.is_empty(), "{} accepted: {accepted:?} of {words} words", accepted.len());
+}
+
+#[test]
+fn a_certificate_without_its_last_triangle_or_with_another_claim_is_rejected() {
+    let (header, bytes) = written(4);
+    let mut short = header.clone();
+    short.counts.triangles -= 1;
+    assert!(accepts(&short, &bytes).is_err());
+    let (mut certificate, mut claim) = certificate::decode(&header, &bytes).unwrap();
+    certificate.pieces.pop();
+    claim.shares.pop();
+    assert!(certificate.audit(&claim).is_err());
+    let (certificate, mut claim) = certificate::decode(&header, &bytes).unwrap();
+    claim.bound *= 0.99;
+    assert!(matches!(certificate.audit(&claim), Err(Rejection::Bound { .. })));
+}
+
+#[test]
+fn control_the_signs_are_what_rejects_a_tension_with_a_consistent_claim() {
+    // The whole contact line in tension, balanced anew: every number fits, and only the sign is wrong.
+    let (problem, solution) = block(8);
+    let mut certificate = certify(&problem, &solution).unwrap().certificate;
+    for edge in &mut certificate.edges {
+        if let Role::Contact { pressure, .. } = &mut edge.role {
+            *pressure = pressure.map(|p| p + 0.5);
+        }
+    }
+    let refused = certificate.evaluate::<Interval>();
+    assert!(matches!(refused, Err(Rejection::Tension { .. })), "{refused:?}");
+    // Without the line Gamma_C the same stress passes: as a given pressure.
+    for edge in &mut certificate.edges {
+        if let Role::Contact { pressure, .. } = edge.role {
+            edge.role = Role::Pressed(pressure.map(|p| -p));
+        }
+    }
+    assert!(certificate.evaluate::<Interval>().is_ok());
+}
