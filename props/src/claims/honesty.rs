@@ -306,7 +306,7 @@ where
         // Plane stress has no stress across the plane, plane strain has one.
         let own = if *zz == 0.0 { Plane::Stress } else { Plane::Strain };
         let plane = plane.unwrap_or(own);
-        let expected = von_mises(material, plane, [stress.xx, stress.yy, stress.xy]);
+        let expected = von_mises(material, plane, stress.components());
         if !near(solution.von_mises[t], expected) {
             return Err(format!("von Mises {:e}, expected {expected:e}", solution.von_mises[t]));
         }
