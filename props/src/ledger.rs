@@ -86,10 +86,12 @@ bodies and the definitions on them in `bodies.rs` and `discrete.rs`, the number 
 provenance of the run, the items of the paper one by one, and links to the functions), the same as JSON and as JUnit;
 `cargo run -p props -- audit 9` runs row 9 and writes files of its own; `cargo test -p props` runs all of it with the engines' own tests. Each check draws
 from the seed and its own name, and replays the failures that it remembers (`props/regressions`) before; the page counts
-both. `PROPS_SEED=random` draws other random data and prints the seed; `PROPS_SEED=<number>` repeats it. `cargo mutants` (with cargo-nextest; hours) plants
-mistakes in kernel and assembly one by one and asks the claims alone; with `--workspace --config
-.cargo/mutants-proof.toml` in the trusted part of the proof engine, and asks the engine's own tests. What came of it:
-`props/mutants.md`.
+both. `PROPS_SEED=random` draws other random data and prints the seed; `PROPS_SEED=<number>` repeats it.
+
+**Mistakes planted in the sources:** `.ci/planted.py` plants those of `props/planted.toml`, one at a time, and asks the check
+that is named there. `cargo mutants` (with cargo-nextest; hours) plants small ones in kernel, assembly and solver and asks
+the claims alone; with `--workspace --config .cargo/mutants-proof.toml` in the trusted part of the proof engine, and asks
+the engine's own tests. What came of it: `props/mutants.md`.
 
 **How to add a row:** write the predicate in `props/src/claims/`, generic over `Ordered`, with `given!` for hypotheses and
 `ensure!` for conclusions; plant a mistake as a control; list both in a `Claim`, and the claim in `claims::all`; print the

@@ -213,18 +213,14 @@ pub fn claim() -> Claim {
         [e, h, z, s, big, k, c, d, q, r, t],
         ["kappa above 1/2", "kappa at most 1/2"]
     );
-    let sharp_bound = statement!(
-        inequality_9_6_gives_the_bound_9_5,
-        [f, z, b, q, c, x, r, root],
-        ["always"]
-    );
+    let sharp_bound =
+        statement!(inequality_9_6_gives_the_bound_9_5, [f, z, b, q, c, x, r, root], ["always"]);
     let projected_facts = statement!(
         three_facts_give_the_hypothesis_of_theorem_9_4,
         [w, z, s, big, k, d, q, r, t],
         ["always"]
     );
-    let all =
-        [plain, terms, sharp_facts, sharp_bound, projected_facts, projected, corollary];
+    let all = [plain, terms, sharp_facts, sharp_bound, projected_facts, projected, corollary];
     let mut checks: Vec<_> = all.into_iter().map(proved).collect();
     checks.extend([tested(terms)]);
     checks.extend([

@@ -149,10 +149,9 @@ where
     spread(&error, &mut only);
     let scale = FIRST * size(&u) / size(&only);
     error.iter_mut().for_each(|e| *e *= scale);
-    let mut route =
-        Known { system: &system, target, error, shares: shares.to_vec(), passes: 0 };
-    let outcome = accuracy::refine(&system, &mut route, forces(&d), &settings)
-        .map_err(|e| e.to_string())?;
+    let mut route = Known { system: &system, target, error, shares: shares.to_vec(), passes: 0 };
+    let outcome =
+        accuracy::refine(&system, &mut route, forces(&d), &settings).map_err(|e| e.to_string())?;
     away.copy_from_slice(&outcome.u);
     let difference: Vec<[f64; 2]> =
         away.iter().zip(&u).map(|(a, b)| [a[0] - b[0], a[1] - b[1]]).collect();
@@ -174,11 +173,7 @@ fn on_bodies(check: impl Fn(&Problem, usize) -> Result<(), String>) -> Result<us
 }
 
 fn told_of(problem: &Problem, degree: usize, shares: &[f64]) -> Result<Told, String> {
-    if degree == 1 {
-        told::<P1, 3, 2>(problem, shares)
-    } else {
-        told::<P2, 6, 3>(problem, shares)
-    }
+    if degree == 1 { told::<P1, 3, 2>(problem, shares) } else { told::<P2, 6, 3>(problem, shares) }
 }
 
 /// The residual that the verdict rests on, `scale` times what is reported, is that of (8) by its definition.
@@ -236,7 +231,9 @@ fn forward_error_is_told(scale: f64) -> Outcome {
     if refused == 0 {
         return Err("no result was refused".to_owned());
     }
-    Ok(format!("{bodies} bodies, P1 and P2; at most {largest:.0} times the error; {refused} refused"))
+    Ok(format!(
+        "{bodies} bodies, P1 and P2; at most {largest:.0} times the error; {refused} refused"
+    ))
 }
 
 /// From pass to pass the error is multiplied by this.
@@ -311,6 +308,33 @@ where
             return Err(format!("von Mises {:e}, expected {expected:e}", solution.von_mises[t]));
         }
     }
+    let strain = (0..solution.stress.len()).map(|t| mean_strain(&d, t, &u)).fold(0.0, f64::max);
+    if !((solution.largest_strain - strain).abs() <= 1e-12 * strain) {
+        return Err(format!("largest strain {}, expected {strain}", solution.largest_strain));
+    }
+    let points = solution.contact.iter().flat_map(|edge| &edge.points);
+    let deepest = points.map(|point| point.u_n - point.gap).fold(f64::NEG_INFINITY, f64::max);
+    let told = solution.boundaries.iter().map(|part| part.penetration);
+    let told = told.fold(f64::NEG_INFINITY, f64::max);
+    // Affine between the nodes, for P1.
+    if !(told >= deepest && (N == 6 || told == deepest)) {
+        return Err(format!("a penetration of {told:e}, at the nodes {deepest:e}"));
+    }
+    for part in &solution.boundaries {
+        // The recovered pressure has the integral of -lambda^h, by its hat functions.
+        let edges = solution.contact.iter().filter(|edge| *edge.boundary == *part.boundary);
+        let force: f64 = edges
+            .map(|edge| {
+                let p: Vec<f64> = edge.points.iter().map(|point| point.pressure).collect();
+                let length = edge.points[p.len() - 1].arc - edge.points[0].arc;
+                let mean = p.windows(2).map(|pair| (pair[0] + pair[1]) / 2.0).sum::<f64>();
+                length * mean / (p.len() - 1) as f64
+            })
+            .sum();
+        if !((force - part.force).abs() <= 1e-12 * part.force) {
+            return Err(format!("a recovered force of {force:e}, a force of {:e}", part.force));
+        }
+    }
     let squares = u.iter().map(|[x, y]| x * x + y * y);
     let expected = squares.fold(0.0, f64::max).sqrt();
     let found = solution.quantities.max_displacement;
@@ -326,6 +350,41 @@ fn stresses(plane: Option<Plane>) -> Outcome {
         }
     })?;
     Ok(format!("{bodies} bodies, P1 and P2"))
+}
+
+/// The largest principal strain, in magnitude, of the mean strain on triangle t, from the boundary: the mean of grad u is
+/// the integral of u n^T over the boundary, by Simpson's rule on each edge, by the area.
+fn mean_strain<E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    t: usize,
+    u: &[[f64; 2]],
+) -> f64
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let corners = d.problem.mesh.triangles()[t].map(|v| d.problem.mesh.vertices()[v]);
+    let nodes = d.space.elements()[t];
+    let [a, b, c] = corners;
+    let double_area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    let mut gradient = [[0.0; 2]; 2];
+    for i in 0..3 {
+        let (start, end) = (corners[(i + 1) % 3], corners[(i + 2) % 3]);
+        let normal = [end[1] - start[1], start[0] - end[0]];
+        let [from, to] = [u[nodes[(i + 1) % 3]], u[nodes[(i + 2) % 3]]];
+        for k in 0..2 {
+            let mean = if N == 6 {
+                (from[k] + 4.0 * u[nodes[3 + i]][k] + to[k]) / 6.0
+            } else {
+                (from[k] + to[k]) / 2.0
+            };
+            for j in 0..2 {
+                gradient[k][j] += mean * normal[j] / (double_area / 2.0);
+            }
+        }
+    }
+    let [[xx, xy], [yx, yy]] = gradient;
+    let (middle, shear) = ((xx + yy) / 2.0, (xy + yx) / 2.0);
+    middle.abs() + ((xx - yy) / 2.0).hypot(shear)
 }
 
 /// Row 6: von Mises stresses and the largest displacement.

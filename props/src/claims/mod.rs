@@ -7,7 +7,11 @@ pub mod a_priori;
 pub mod assembled;
 #[cfg(not(kani))]
 pub mod certificate;
+#[cfg(not(kani))]
+pub mod conditions;
 pub mod constants;
+#[cfg(not(kani))]
+pub mod directions;
 #[cfg(not(kani))]
 pub mod curved;
 pub mod discrete_forms;

@@ -10,7 +10,7 @@ use signorini::solve::newton::{self, Derivatives, Edges, Residual, Step, Until};
 use signorini::solve::{Settings, SolveError, Status};
 
 use crate::claim::{Claim, Engine, Outcome, by, control};
-use crate::claims::honesty;
+use crate::claims::{conditions, honesty};
 use crate::verdict::Verdict;
 use crate::{draws, ensure};
 
@@ -254,7 +254,7 @@ pub fn claim() -> Claim {
         items: &["Newton's method"],
         title: "Newton's method and the verdict",
         paper: "Nothing: the paper leaves open how (8) is solved.",
-        statement: "The solver's Newton method with its line search ends at the minimiser of J, up to 1000 times the noise of the residual: on the example of docs/theory.md, 4.4, where full steps from the same start cycle for ever (the control runs them), and on random strongly convex J with three springs, from random starts, with an energy that is not larger than at the start. The verdict: an outcome is accepted only with a forward error of at most 1e-6, called converged only with a residual within the tolerance, and infinities and NaN are never accepted. What it rests on, on nine loaded bodies, P1 and P2, with passes whose error is known: the residual is that of (8) over the free degrees of freedom, relative to |L| + |R(lift) + L|, and the forward error is no smaller than the error in the energy norm, where passes take that down by factors of 100, 10 and 2.5, and where they get no nearer.",
+        statement: "The solver's Newton method with its line search ends at the minimiser of J, up to 1000 times the noise of the residual: on the example of docs/theory.md, 4.4, where full steps from the same start cycle for ever (the control runs them), and on random strongly convex J with three springs, from random starts, with an energy that is not larger than at the start. The verdict: an outcome is accepted only with a forward error of at most 1e-6, called converged only with a residual within the tolerance, and infinities and NaN are never accepted. What it rests on, on nine loaded bodies, P1 and P2, with passes whose error is known: the residual is that of (8) over the free degrees of freedom, relative to |L| + |R(lift) + L|, and the forward error is no smaller than the error in the energy norm, where passes take that down by factors of 100, 10 and 2.5, and where they get no nearer. The condensed and the assembled route end at the same displacement, to 1e-10.",
         numbers: "doubles.",
         kernel: &[
             "solve::newton::minimise",
@@ -262,6 +262,7 @@ pub fn claim() -> Claim {
             "solve::accuracy::judge",
             "solve::accuracy::refine",
             "solve::accuracy::reference",
+            "solve::route::by",
         ],
         preconditions: "The tangent is positive definite (kappa < 1).",
         limits: "Small J, of three unknowns; theory 4.2 has the proof for all. The forward error that the verdict rests on is an estimate, the size of the last correction: passes that got slower and slower could deceive it. The enclosures of row 10 are not used by the solver.",
@@ -285,6 +286,16 @@ pub fn claim() -> Claim {
                 Engine::Doubles,
                 "the_forward_error_is_no_smaller_than_the_error",
                 honesty::forward_error_is_no_smaller_than_the_error,
+            ),
+            by(
+                Engine::Doubles,
+                "both_routes_end_at_the_same_displacement",
+                conditions::both_routes_end_at_the_same_displacement,
+            ),
+            control(
+                Engine::Doubles,
+                "control_routes_that_differ_by_a_millionth",
+                conditions::routes_that_differ_by_a_millionth,
             ),
             control(
                 Engine::Doubles,
