@@ -529,7 +529,6 @@ mod row {
                 "contact_edge::ContactEdge::new",
                 "contact_edge::ContactEdge::stress_product",
                 "contact_edge::integral_of_product",
-                "scalar::dot",
                 "fem::mesh::Mesh::diameter",
                 "fem::mesh::Mesh::length_and_normal",
                 "fem::space::Space::new",
