@@ -25,10 +25,11 @@ import time
 import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-BUILD = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")).absolute()
-TARGET = BUILD / "planted"
+TARGET = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")).absolute() / "planted"
 TREE = TARGET / "tree"
-PROGRAM = TARGET / "props"
+# Of its own: cargo tells workspaces apart by what is in them, not by where they are.
+BUILD = TARGET / "build"
+PROGRAM = BUILD / "debug/props"
 SWITCH = """//! Which of the planted mistakes is on: `.ci/planted.py`.
 
 /// Whether it is mistake `k`.
@@ -112,12 +113,11 @@ def plant(group):
 
 
 def build():
-    """The audit with the mistakes; what it depends on is built once for it and for the sources."""
+    """The audit with the mistakes."""
     command = ["cargo", "build", "--quiet", "-p", "props", "--target-dir", str(BUILD)]
     done = subprocess.run(command, cwd=TREE, capture_output=True, text=True)
     if done.returncode != 0:
         sys.exit(f"{done.stderr}\nthe mistakes do not compile: expected an expression in each `old` and `new`")
-    shutil.copy2(BUILD / "debug/props", PROGRAM)
 
 
 def ask(number, row=None, check=None, seconds=600):

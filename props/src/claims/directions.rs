@@ -7,7 +7,9 @@
 use std::collections::BTreeMap;
 
 use signorini::fem::contact_line::ContactLineEdge;
-use signorini::fem::{BoxedFunction, Condition, Diagonal, Discretization, Mesh, Problem, Rectangle};
+use signorini::fem::{
+    BoxedFunction, Condition, Diagonal, Discretization, Mesh, Problem, Rectangle,
+};
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::element::displacement_gradient;
 use signorini::kernel::triangle::on_edge;
@@ -45,7 +47,12 @@ fn bent(plane: Plane) -> Result<Problem, String> {
         ("top".to_owned(), Condition::Displacement(zero)),
         ("bottom".to_owned(), Condition::Contact { gap }),
     ]);
-    Ok(Problem::new(mesh, Material::lame(1.5, 1.0, plane), [0, 1].map(|_| constant(0.0)), conditions))
+    Ok(Problem::new(
+        mesh,
+        Material::lame(1.5, 1.0, plane),
+        [0, 1].map(|_| constant(0.0)),
+        conditions,
+    ))
 }
 
 /// n~ at the nodes of an edge; the planted mistake takes the facet's normal.
@@ -79,11 +86,11 @@ where
             n[a].dot(&sigma.traction(edge.normal))
         });
         let near = |found: f64, expected: f64| (found - expected).abs() <= 1e-11;
-        let found = edge.sigma_n(&nodal);
+        let found = edge.sigma_n(&vectors);
         if !(near(found[0], stress[0]) && near(found[1], stress[1])) {
             return Err(format!("s(v) = {found:?}, by definition {stress:?}"));
         }
-        let p = edge.p(&nodal);
+        let p = edge.p(&vectors);
         let nodes = E::edge_nodes(edge.edge.local);
         for (a, s) in E::edge_positions::<f64>().into_iter().enumerate() {
             let along = (1.0 - s) * stress[0] + s * stress[1];

@@ -11,9 +11,9 @@ pub mod certificate;
 pub mod conditions;
 pub mod constants;
 #[cfg(not(kani))]
-pub mod directions;
-#[cfg(not(kani))]
 pub mod curved;
+#[cfg(not(kani))]
+pub mod directions;
 pub mod discrete_forms;
 #[cfg(not(kani))]
 pub mod enclosed;
