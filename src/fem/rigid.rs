@@ -302,10 +302,15 @@ fn rounded(c: f64, size: f64) -> String {
 
 #[cfg(test)]
 mod tests {
+    use approx::abs_diff_eq;
     use faer::Mat;
 
     use super::*;
     use crate::kernel::{P1, P2};
+
+    /// What is left of a motion of size 1 where it is stopped: components below [`STILL`] are set to zero, and slender
+    /// parts have coordinates of up to 10 times their half box.
+    const STOPPED: f64 = 1e-8;
 
     /// The cells of an nx x ny grid for which `solid` says so, two triangles each; corner (i, j) lies at `place`.
     fn sheet(
@@ -364,7 +369,8 @@ mod tests {
         let field = motion.field(parts, space);
         for (x, u) in space.nodes().iter().zip(&field) {
             for c in 0..2 {
-                assert!(!held(*x)[c] || u[c].abs() < 1e-8, "{u:?} at {x:?}: {motion}");
+                let still = abs_diff_eq!(u[c], 0.0, epsilon = STOPPED);
+                assert!(!held(*x)[c] || still, "{u:?} at {x:?}: {motion}");
             }
         }
         let of = |part: usize, x| {
@@ -375,7 +381,8 @@ mod tests {
             let x = space.mesh().vertices()[hinge.vertex];
             for pair in hinge.parts.windows(2) {
                 let (a, b) = (of(pair[0], x), of(pair[1], x));
-                assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 1e-8, "{a:?} {b:?}: {motion}");
+                let together = abs_diff_eq!(a[..], b[..], epsilon = STOPPED);
+                assert!(together, "{a:?} {b:?}: {motion}");
             }
         }
         assert!(field.iter().any(|u| u[0].hypot(u[1]) > 1e-3), "{motion} moves");

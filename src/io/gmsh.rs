@@ -384,6 +384,8 @@ fn other_kind(number: i32) -> (&'static str, &'static str) {
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
+
     use super::*;
 
     const TEXT: &[u8] = include_bytes!("../../tests/meshes/square-ascii.msh");
@@ -425,7 +427,8 @@ mod tests {
         assert_eq!(text.triangles(), binary.triangles());
         assert_eq!(text.outline(), binary.outline());
         for (a, b) in text.vertices().iter().zip(binary.vertices()) {
-            assert!((a[0] - b[0]).abs() < 1e-15 && (a[1] - b[1]).abs() < 1e-15);
+            // A text file has 16 digits.
+            assert_abs_diff_eq!(a[..], b[..], epsilon = 1e-15);
         }
     }
 

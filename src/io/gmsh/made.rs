@@ -2,8 +2,11 @@
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
+use nalgebra::Vector2;
+
 use super::{ByDimension, Content, Elements, GmshMistake, KINDS, Middle, Node, Piece};
 use crate::fem::merge::merge;
+use crate::fem::mesh::length;
 use crate::fem::{Mesh, MeshError};
 use crate::memory::{self, bytes_of};
 use crate::quote::quoted;
@@ -128,8 +131,8 @@ pub(super) fn check_straight(
     node: usize,
     [a, b, middle]: [[f64; 2]; 3],
 ) -> std::result::Result<(), GmshMistake> {
-    let off = [0, 1].map(|c| middle[c] - (a[c] + b[c]) / 2.0);
-    let off = off[0].hypot(off[1]) / (b[0] - a[0]).hypot(b[1] - a[1]);
+    let [a, b, middle] = [a, b, middle].map(Vector2::from);
+    let off = length(middle - (a + b) / 2.0) / length(b - a);
     if off <= STRAIGHT { Ok(()) } else { Err(GmshMistake::Curved { element, node, off }) }
 }
 
