@@ -6,6 +6,8 @@
 
 use std::collections::BTreeMap;
 
+use nalgebra::Matrix2;
+
 use super::constraints::{Constraints, from_frame, in_frame};
 use super::contact_line::ContactLineEdge;
 use super::discretization::Discretization;
@@ -156,18 +158,21 @@ impl<S: Scalar + From<f64>> LowerTriangle<S> {
         LowerTriangle { starts, rows, values }
     }
 
-    /// Adds the 2 x 2 blocks of an element matrix: `block(i, j)` has the rows of `nodes[i]` and the columns of `nodes[j]`.
+    /// Adds the blocks of an element matrix: `block(i, j)` has the rows of `nodes[i]` and the columns of `nodes[j]`.
     pub fn add<const N: usize>(
         &mut self,
         numbering: &Numbering,
         nodes: &[usize; N],
-        block: impl Fn(usize, usize) -> [[S; 2]; 2],
+        block: impl Fn(usize, usize) -> Matrix2<S>,
     ) {
         let columns = Lists { starts: &self.starts, members: &self.rows };
+        // `pattern` knows no numbers but whole ones, and takes a block as the array of its rows.
+        let rows = |block: Matrix2<S>| block.transpose().into();
         if nodes.iter().any(|node| numbering.frames.contains_key(node)) {
-            let block = |i, j| numbering.turned_block([nodes[i], nodes[j]], block(i, j));
+            let block = |i, j| numbering.turned_block([nodes[i], nodes[j]], rows(block(i, j)));
             pattern::add(&numbering.of, columns, &mut self.values, nodes, block);
         } else {
+            let block = |i, j| rows(block(i, j));
             pattern::add(&numbering.of, columns, &mut self.values, nodes, block);
         }
     }
@@ -249,16 +254,14 @@ impl<S: Scalar + From<f64>> LowerTriangle<S> {
         let p0 = &functionals.p0;
         let nodes = &d.space.elements()[edge.edge.triangle];
         self.add(numbering, nodes, |i, j| {
-            [0, 1].map(|c| {
-                [0, 1].map(|k| {
-                    let mut sum = S::from(0.0);
-                    for a in 0..M {
-                        for b in 0..M {
-                            sum = sum + p0[a][i][c] * S::from(h[a][b]) * p0[b][j][k];
-                        }
+            Matrix2::from_fn(|c, k| {
+                let mut sum = S::from(0.0);
+                for a in 0..M {
+                    for b in 0..M {
+                        sum += p0[a][i][c] * S::from(h[a][b]) * p0[b][j][k];
                     }
-                    sum
-                })
+                }
+                sum
             })
         });
     }

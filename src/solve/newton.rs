@@ -14,9 +14,9 @@
 //! search finds where it vanishes, to a hundredth of its value at 0, and Armijo's rule is asked of what it finds.
 //!
 //! **The start.** A body that bends, started as if without contact, lets go of about one edge a step. So the springs are soft
-//! at first: s Psi in place of Psi, with s so small that contact and body are equally stiff. A step at stiffness s that leaves
-//! less than [`DONE`] of the residual there is followed by one with stiffer springs, by a factor that grows while single steps
-//! will do and falls where they don't: the contact zone of stiff springs is narrow, and a minimiser is found from near only.
+//! at first: s Psi in place of Psi, with s so small that contact and body are equally stiff. When the residual at s is small
+//! beside the one that stiffer springs bring, the springs get stiffer, by a factor that grows while single steps will do and
+//! falls where they don't: the contact zone of stiff springs is narrow, and a minimiser is found from near only.
 //! At s = 1 it is Newton's method on J_h, from a start that knows something. Going to the body without contact counts as a
 //! step where it takes one.
 
@@ -87,10 +87,10 @@ const SUFFICIENT: f64 = 1e-4;
 const FLAT: f64 = 1e-2;
 
 /// How much stiffer the springs of contact get at first, and at most, from one stiffness to the next.
-const STIFFENING: [f64; 2] = [6.0, 12.0];
+const STIFFENING: [f64; 2] = [4.0, 8.0];
 
-/// With this much left of the residual that stiffer springs brought, they may get stiffer again.
-const DONE: f64 = 0.25;
+/// The springs get stiffer when the residual is this share of what that will make of it.
+const DONE: f64 = 0.1;
 
 /// A step whose energy is this small beside that of the largest (the square root of this as a length) is the last one:
 /// Newton's method converges superlinearly, so what remains is far smaller.
@@ -124,10 +124,10 @@ pub fn minimise<const M: usize>(
     residuals: &mut Vec<f64>,
     until: Until,
 ) -> Result<f64, SolveError> {
-    let mut springs = Springs::hard();
+    let mut springs = Springs::new(1.0);
     if first {
         residuals.push(body.residual(&derivatives(edges, body.y())).norm);
-        springs = Springs::soft(1.0 / body.start(edges)?.max(1.0));
+        springs = Springs::new(1.0 / body.start(edges)?.max(1.0));
     }
     let mut at = derivatives(edges, body.y());
     let mut largest: f64 = 0.0;
@@ -139,7 +139,6 @@ pub fn minimise<const M: usize>(
         && residuals.len() <= until.steps
     {
         let scaled = at.times(springs.stiffness);
-        springs.begin(|| body.residual(&scaled).norm);
         let step = body.step(&scaled)?;
         let Some(t) = line_search(edges, body.y(), springs.stiffness, &scaled, &step) else {
             return Ok(left);
@@ -166,7 +165,7 @@ pub fn minimise<const M: usize>(
         if last || stalled || idle >= IDLE_STEPS {
             break;
         }
-        springs.end(|stiffness| body.residual(&at.times(stiffness)).norm);
+        springs.after_step(|stiffness| body.residual(&at.times(stiffness)).norm);
     }
     Ok(left)
 }
@@ -176,42 +175,30 @@ struct Springs {
     stiffness: f64,
     /// The factor by which it grows next.
     stiffening: f64,
-    /// The residual at this stiffness when it was new, and the steps since.
-    since: Option<(f64, usize)>,
+    /// The steps at this stiffness.
+    steps: usize,
 }
 
 impl Springs {
-    fn hard() -> Self {
-        Springs::soft(1.0)
-    }
-
-    fn soft(stiffness: f64) -> Self {
-        Springs { stiffness, stiffening: STIFFENING[0], since: None }
+    fn new(stiffness: f64) -> Self {
+        Springs { stiffness, stiffening: STIFFENING[0], steps: 0 }
     }
 
     fn are_soft(&self) -> bool {
         self.stiffness < 1.0
     }
 
-    /// A step begins, at this residual.
-    fn begin(&mut self, residual: impl FnOnce() -> f64) {
-        if self.are_soft() {
-            self.since.get_or_insert_with(|| (residual(), 0)).1 += 1;
+    /// After a step, with the residual as a function of the stiffness.
+    fn after_step(&mut self, residual: impl Fn(f64) -> f64) {
+        if !self.are_soft() {
+            return;
         }
-    }
-
-    /// A step has ended, at this residual as a function of the stiffness.
-    fn end(&mut self, residual: impl FnOnce(f64) -> f64) {
-        let Some((first, steps)) = self.since else { return };
-        if residual(self.stiffness) <= DONE * first {
-            if steps == 1 {
-                self.stiffening = (2.0 * self.stiffening).min(STIFFENING[1]);
-            }
-            *self = Springs {
-                stiffness: (self.stiffness * self.stiffening).min(1.0),
-                stiffening: self.stiffening,
-                since: None,
-            };
+        self.steps += 1;
+        let stiffer = (self.stiffness * self.stiffening).min(1.0);
+        if residual(self.stiffness) <= DONE * residual(stiffer) {
+            let grown = (2.0 * self.stiffening).min(STIFFENING[1]);
+            let stiffening = if self.steps == 1 { grown } else { self.stiffening };
+            *self = Springs { stiffness: stiffer, stiffening, steps: 0 };
         } else {
             self.stiffening = (self.stiffening / 4.0).max(2.0);
         }
