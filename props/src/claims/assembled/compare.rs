@@ -8,6 +8,7 @@ use signorini::fem::matrix::Numbering;
 use signorini::fem::{BoundaryEdge, Discretization};
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::solve::Solution;
+use signorini::solve::evaluated::Evaluated;
 
 use super::definition::{Mistake, Named, Setting, defined, inner};
 use super::draw::{Draw, owner};
@@ -206,7 +207,8 @@ where
     let lengths = sum(&exact.body.contact, |side| side.length);
     // Root, difference, product, sum.
     let slack = lengths * Exact::of_double(12.0 * UNIT);
-    let length = Solution::new(d, u.to_vec(), unsolved()).quantities.contact_length;
+    let length =
+        Solution::new(d, Evaluated::new(d, u.to_vec()), unsolved()).quantities.contact_length;
     let length = Exact::of_double(length);
     measure(-1.0) - slack <= length && length <= measure(1.0) + slack
 }

@@ -3,6 +3,7 @@
 use signorini::fem::Discretization;
 use signorini::fem::matrix::{self, LowerTriangle, Neighbours, Numbering};
 use signorini::kernel::edge_integral::ExactEdge;
+use signorini::solve::evaluated::Evaluated;
 use signorini::solve::{MethodReport, NewtonReport, Report, RouteName, Solution, Status};
 
 use super::definition::Named;
@@ -36,7 +37,7 @@ where
     E: ExactEdge<f64, N, M>,
 {
     let flat = |field: &[[f64; 2]]| field.as_flattened().to_vec();
-    let solution = Solution::new(d, u.to_vec(), unsolved());
+    let solution = Solution::new(d, Evaluated::new(d, u.to_vec()), unsolved());
     let q = &solution.quantities;
     let local = |triangle: usize| d.space.on_triangle(triangle, u);
     // In order along the edge.
