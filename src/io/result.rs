@@ -139,6 +139,7 @@ pub struct GammaChoice {
     /// gamma0 of (7), or the smallest where each contact edge has its own.
     pub gamma0: f64,
     /// Each contact edge has its own gamma0, for one kappa.
+    #[serde(default)]
     pub local: bool,
     /// The gamma0 for which kappa is 1.
     pub limit: f64,
