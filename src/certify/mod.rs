@@ -21,7 +21,7 @@ use crate::fem::constraints::Constraints;
 use crate::fem::contact_line;
 use crate::fem::{DataError, Problem, Space};
 use crate::kernel::composite::complementary;
-use crate::kernel::{Interval, Material, P1, Plane, Triangle};
+use crate::kernel::{Ball, Interval, Material, P1, Plane, Triangle};
 use crate::memory::{self, OutOfMemory};
 use crate::solve::Solution;
 
@@ -88,7 +88,7 @@ pub fn certify_field(
     let v = build::admissible(&parts, field);
     let (mut certificate, origins, oscillation) = build::build(&parts, &solution.displacement, v);
     sweeps::improve(&mut certificate, SWEEPS)?;
-    let proof = certificate.evaluate::<Interval>()?;
+    let proof = certificate.evaluate::<Ball>()?;
     let bound = (Interval::point(proof.bound) + Interval::point(oscillation.lift)).hi();
     let relative = (Interval::point(bound) / Interval::point(proof.norm)).hi();
     let energy = oscillation.reason.is_none().then(|| {

@@ -13,13 +13,14 @@
 
 use thiserror::Error;
 
-use super::balance::{self, Unbalanced};
+use super::balance::{self, Tree, Unbalanced};
 use crate::kernel::composite::{Composite, Loads, complementary};
 use crate::kernel::contact_edge::integral_of_product;
 use crate::kernel::scalar::dot;
-use crate::kernel::{Interval, Material, Plane, Scalar, Triangle};
+use crate::kernel::{Ball, Interval, Material, Plane, Scalar, Stress, Triangle};
 
-/// A number that stands for a real one: a double for a quick look, an interval for a proof, a rational for the truth.
+/// A number that stands for a real one: a double for a quick look, a ball or an interval for a proof, a rational for the
+/// truth.
 pub trait Enclosing: Scalar {
     /// This double.
     fn exactly(value: f64) -> Self;
@@ -49,6 +50,24 @@ impl Enclosing for f64 {
 
     fn lower(self) -> f64 {
         self
+    }
+}
+
+impl Enclosing for Ball {
+    fn exactly(value: f64) -> Ball {
+        Ball::point(value)
+    }
+
+    fn sqrt(self) -> Ball {
+        Ball::sqrt(self)
+    }
+
+    fn upper(self) -> f64 {
+        Ball::upper(self)
+    }
+
+    fn lower(self) -> f64 {
+        Ball::lower(self)
     }
 }
 
@@ -212,18 +231,18 @@ impl Certificate {
         self.sum(&state)
     }
 
-    /// The same as [`Certificate::evaluate`] in intervals, and more than a proof needs: that the certificate is as it was
+    /// The same as [`Certificate::evaluate`] in [balls](Ball), and more than a proof needs: that the certificate is as it was
     /// made. Its tractions balance on every triangle to the rounding of doubles, and what it claims are the very numbers
     /// that its data give.
     ///
     /// # Errors
     /// As [`Certificate::evaluate`]; a triangle that is out of balance; a claim that does not follow.
     pub fn audit(&self, claim: &Claim) -> Result<Proof, Rejection> {
-        let state = self.balanced::<Interval>()?;
+        let state = self.balanced::<Ball>()?;
         for (t, piece) in self.pieces.iter().enumerate() {
-            let loads = self.loads(t, &state.forces, &state.owners);
+            let loads = state.loads_as_given(self, t);
             let triangle = &state.triangles[t];
-            let size = |x: Interval| x.lo().abs().max(x.hi().abs());
+            let size = |x: Ball| x.lower().abs().max(x.upper().abs());
             let reach = (0..3).flat_map(|i| triangle.edge(i)).map(size).fold(0.0, f64::max);
             let area = size(triangle.double_area());
             let forces: f64 = loads.forces.iter().flatten().flatten().copied().map(size).sum();
@@ -299,26 +318,25 @@ impl Certificate {
                 }
             });
         }
-        let mut loads: Vec<Loads<S>> =
-            (0..self.pieces.len()).map(|t| self.loads(t, &forces, &owners)).collect();
-        balance::close(self, &triangles, &owners, &points, &mut loads)?;
-        Ok(Balanced { triangles, v, owners, forces, loads, contact })
+        let tree = Tree::new(self, &owners);
+        let mut state =
+            Balanced { points, triangles, v, owners, tree, forces, loads: Vec::new(), contact };
+        state.close(self)?;
+        Ok(state)
     }
 
     /// The right side of the theorem.
     fn sum<S: Enclosing>(&self, state: &Balanced<S>) -> Result<Proof, Rejection> {
-        let Balanced { triangles, v, forces, loads, contact, .. } = state;
+        let Balanced { triangles, v, forces, contact, .. } = state;
         let zero = S::from(0);
         let (mut square, mut norm, mut energy) = (zero, zero, zero);
-        let mut shares = Vec::with_capacity(loads.len());
+        let mut shares = Vec::with_capacity(self.pieces.len());
         for (t, piece) in self.pieces.iter().enumerate() {
             let material = piece.material();
             let double_area = triangles[t].double_area();
             let nodal = piece.vertices.map(|vertex| v[vertex]);
-            let gradient = displacement_gradient(&triangles[t], &nodal);
-            let sigma = material.stress(gradient);
-            let tau = Composite::new(&triangles[t], &loads[t]);
-            let distance = tau.distance_from(sigma).energy(&material, double_area);
+            let (sigma, distance) = state.stresses(self, t);
+            let distance = distance.energy(&material, double_area);
             let share = if piece.oscillation == 0.0 {
                 distance
             } else {
@@ -525,38 +543,78 @@ impl Certificate {
         }
         Ok(owners)
     }
+}
+
+/// A certificate whose triangles are in equilibrium, in the numbers `S`.
+pub(super) struct Balanced<S> {
+    /// Vertices and cuts.
+    pub points: Vec<[S; 2]>,
+    pub triangles: Vec<Triangle<S>>,
+    /// v at the points.
+    v: Vec<[S; 2]>,
+    pub owners: Vec<[Option<Owner>; 2]>,
+    tree: Tree,
+    /// tau N on the edges as the certificate has it.
+    forces: Vec<[[S; 2]; 2]>,
+    /// On each triangle, in equilibrium.
+    loads: Vec<Loads<S>>,
+    /// 2 int tau_n (v_n - g) over the edges of each triangle.
+    contact: Vec<S>,
+}
+
+impl<S: Enclosing> Balanced<S> {
+    /// The loads on the triangles from the forces on the edges, put in equilibrium.
+    fn close(&mut self, certificate: &Certificate) -> Result<(), Unbalanced> {
+        self.loads =
+            (0..certificate.pieces.len()).map(|t| self.loads_as_given(certificate, t)).collect();
+        let Balanced { points, triangles, owners, tree, loads, .. } = self;
+        balance::close(certificate, tree, triangles, owners, points, loads)
+    }
 
     /// The forces on triangle `t` towards its outside, and its body force.
-    fn loads<S: Enclosing>(
-        &self,
-        t: usize,
-        forces: &[[[S; 2]; 2]],
-        owners: &[[Option<Owner>; 2]],
-    ) -> Loads<S> {
-        let piece = &self.pieces[t];
+    fn loads_as_given(&self, certificate: &Certificate, t: usize) -> Loads<S> {
+        let piece = &certificate.pieces[t];
         let outward = piece.edges.map(|e| {
-            let [a, b] = forces[e];
-            match owners[e][0] {
+            let [a, b] = self.forces[e];
+            match self.owners[e][0] {
                 Some(owner) if owner.piece == t => [a, b],
                 _ => [b, a].map(|f| f.map(|f| -f)),
             }
         });
         Loads { forces: outward, body: piece.body.map(|f| f.map(S::exactly)) }
     }
+
+    /// C eps(v) and C eps(v) - tau on triangle `t`.
+    pub fn stresses(&self, certificate: &Certificate, t: usize) -> (Stress<S>, Composite<S>) {
+        let piece = &certificate.pieces[t];
+        let nodal = piece.vertices.map(|vertex| self.v[vertex]);
+        let gradient = displacement_gradient(&self.triangles[t], &nodal);
+        let sigma = piece.material().stress(gradient);
+        let tau = Composite::new(&self.triangles[t], &self.loads[t]);
+        (sigma, tau.distance_from(sigma))
+    }
 }
 
-/// A certificate whose triangles are in equilibrium, in the numbers `S`.
-pub(super) struct Balanced<S> {
-    triangles: Vec<Triangle<S>>,
-    /// v at vertices and cuts.
-    v: Vec<[S; 2]>,
-    pub owners: Vec<[Option<Owner>; 2]>,
-    /// tau N on the edges as the certificate has it.
-    forces: Vec<[[S; 2]; 2]>,
-    /// On each triangle, in equilibrium.
-    pub loads: Vec<Loads<S>>,
-    /// 2 int tau_n (v_n - g) over the edges of each triangle.
-    contact: Vec<S>,
+impl Balanced<f64> {
+    /// Gives the edges of the certificate the tractions that balance.
+    pub fn give(&self, certificate: &mut Certificate) {
+        for (edge, owner) in certificate.edges.iter_mut().zip(&self.owners) {
+            let Some(Owner { piece, local }) = owner[0] else { continue };
+            if let Role::Inner(force) | Role::Held(_, force) = &mut edge.role {
+                *force = self.loads[piece].forces[local];
+            }
+        }
+    }
+
+    /// The same with the forces that the certificate has now on inner and held edges.
+    pub fn rebalance(&mut self, certificate: &Certificate) -> Result<(), Unbalanced> {
+        for (force, edge) in self.forces.iter_mut().zip(&certificate.edges) {
+            if let Role::Inner(now) | Role::Held(_, now) = edge.role {
+                *force = now;
+            }
+        }
+        self.close(certificate)
+    }
 }
 
 /// A triangle at an edge, by the place of the edge in it.

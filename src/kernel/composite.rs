@@ -61,24 +61,29 @@ impl<S: Scalar> Composite<S> {
         let normals = [0, 1, 2].map(|i| triangle.scaled_normal(i));
         let edges = [0, 1, 2].map(|i| triangle.edge(i));
         let double_area = triangle.double_area();
-        let third = double_area / S::from(3);
+        let (one, three) = (S::from(1), S::from(3));
+        let (per_area, third) = (one / double_area, double_area / three);
         let arms = arms(triangle);
         // [corner][part i = j + 1, part k = j + 2]
         let at_corner = [0, 1, 2].map(|j| {
             let (i, k) = ((j + 1) % 3, (j + 2) % 3);
             let (p, q) = (loads.forces[i][1], loads.forces[k][0]);
-            let jump = (dot(normals[k], p) - dot(normals[i], q)) / third;
-            let jump = arms[j].map(|a| jump * a);
-            let tensor =
-                |p: [S; 2], q: [S; 2]| from_tractions(p, q, edges[i], edges[k], double_area);
-            [
-                tensor(p, [q[0] + jump[0], q[1] + jump[1]]),
-                tensor([p[0] - jump[0], p[1] - jump[1]], q),
-            ]
+            // c J/3
+            let jump = three * per_area * (dot(normals[k], p) - dot(normals[i], q));
+            let [x, y] = arms[j];
+            let first = from_tractions(
+                p,
+                [q[0] + jump * x, q[1] + jump * y],
+                edges[i],
+                edges[k],
+                per_area,
+            );
+            let c = three * per_area * jump;
+            let difference = Stress { xx: c * x * x, yy: c * y * y, xy: c * x * y };
+            [first, add(first, scale(-one, difference))]
         });
-        let mean = mean_stress(loads, &arms, double_area);
+        let mean = mean_stress(loads, &arms, third, per_area / three);
         let sum = add(add(pair(at_corner[0]), pair(at_corner[1])), pair(at_corner[2]));
-        let (one, three) = (S::from(1), S::from(3));
         let centre = add(scale(three, mean), scale(-(one / three), sum));
         let corners = [0, 1, 2].map(|i| [at_corner[(i + 1) % 3][1], at_corner[(i + 2) % 3][0]]);
         Composite { corners, centre }
@@ -90,16 +95,18 @@ impl<S: Scalar> Composite<S> {
         Composite { corners: self.corners.map(|part| part.map(minus)), centre: minus(self.centre) }
     }
 
-    /// int_T tau : C^-1 tau.
+    /// int_T tau : C^-1 tau. For a square form, a^2 + b^2 + c^2 + (a + b + c)^2 is, with s = a + b + 2/3 c,
+    /// 3/2 s^2 + 1/2 (a - b)^2 + 4/3 c^2.
     pub(crate) fn energy(&self, material: &Material<S>, double_area: S) -> S {
-        let mut sum = S::from(0);
+        let (three, eight) = (S::from(3), S::from(8));
+        let two_thirds = scale(S::from(2) / three, self.centre);
+        let mut sum = squares(self.centre).map(|x| eight * x);
         for [a, b] in self.corners {
-            let total = add(add(a, b), self.centre);
-            for stress in [a, b, self.centre, total] {
-                sum = sum + complementary(material, stress);
-            }
+            let s = squares(add(add(a, b), two_thirds));
+            let d = squares(add(a, scale(-S::from(1), b)));
+            sum = [0, 1].map(|k| sum[k] + three * s[k] + d[k]);
         }
-        sum * double_area / S::from(72)
+        per_moduli(material, sum) * double_area / S::from(576)
     }
 }
 
@@ -159,14 +166,17 @@ impl<S: Scalar> Wrench<S> {
 
 /// tau : C^-1 tau: what is deviatoric over 2 mu, what is spherical over 2 (lambda + mu), both squares.
 pub(crate) fn complementary<S: Scalar>(material: &Material<S>, tau: Stress<S>) -> S {
-    complementary_product(material, tau, tau)
+    per_moduli(material, squares(tau)) / S::from(4)
 }
 
-fn complementary_product<S: Scalar>(material: &Material<S>, a: Stress<S>, b: Stress<S>) -> S {
-    let (two, four) = (S::from(2), S::from(4));
-    let deviator = (a.xx - a.yy) * (b.xx - b.yy) + four * a.xy * b.xy;
-    let sphere = (a.xx + a.yy) * (b.xx + b.yy);
-    (deviator / material.mu() + sphere / (material.lambda() + material.mu())) / (two * two)
+/// Twice the square of the deviator, and of the sphere.
+fn squares<S: Scalar>(tau: Stress<S>) -> [S; 2] {
+    let (difference, twice, sum) = (tau.xx - tau.yy, tau.xy + tau.xy, tau.xx + tau.yy);
+    [difference * difference + twice * twice, sum * sum]
+}
+
+fn per_moduli<S: Scalar>(material: &Material<S>, [deviator, sphere]: [S; 2]) -> S {
+    deviator / material.mu() + sphere / (material.lambda() + material.mu())
 }
 
 fn centroid<S: Scalar>(triangle: &Triangle<S>) -> [S; 2] {
@@ -187,32 +197,43 @@ fn cross<S: Scalar>(a: [S; 2], b: [S; 2]) -> S {
 }
 
 /// The symmetric tensor with the tractions p on N_i and q on N_k, k = i + 1: (q (x) E_i - p (x) E_k) / J.
-fn from_tractions<S: Scalar>(p: [S; 2], q: [S; 2], e_i: [S; 2], e_k: [S; 2], j: S) -> Stress<S> {
-    let entry = |r: usize, c: usize| (q[r] * e_i[c] - p[r] * e_k[c]) / j;
-    Stress { xx: entry(0, 0), yy: entry(1, 1), xy: (entry(0, 1) + entry(1, 0)) / S::from(2) }
+fn from_tractions<S: Scalar>(
+    p: [S; 2],
+    q: [S; 2],
+    e_i: [S; 2],
+    e_k: [S; 2],
+    per_area: S,
+) -> Stress<S> {
+    let entry = |r: usize, c: usize| q[r] * e_i[c] - p[r] * e_k[c];
+    let half = per_area / S::from(2);
+    Stress {
+        xx: entry(0, 0) * per_area,
+        yy: entry(1, 1) * per_area,
+        xy: (entry(0, 1) + entry(1, 0)) * half,
+    }
 }
 
 /// (1/|T|) of the integral of G (x) (x - m) over the edges and of f (x) (x - m) over the parts, whose centroids lie at
-/// m - (x_i - m) / 3.
-fn mean_stress<S: Scalar>(loads: &Loads<S>, arms: &[[S; 2]; 3], double_area: S) -> Stress<S> {
-    let two = S::from(2);
+/// m - (x_i - m) / 3; `third` and `factor` are J/3 and 1/(3J).
+fn mean_stress<S: Scalar>(loads: &Loads<S>, arms: &[[S; 2]; 3], third: S, factor: S) -> Stress<S> {
     let mut sum = [[S::from(0); 2]; 2];
     for i in 0..3 {
         let (a, b) = (arms[(i + 1) % 3], arms[(i + 2) % 3]);
+        // 2 a + b and a + 2 b
+        let at_start = [0, 1].map(|c| a[c] + a[c] + b[c]);
+        let at_end = [0, 1].map(|c| a[c] + b[c] + b[c]);
         let [p, q] = loads.forces[i];
-        let scale = double_area / S::from(3);
+        let f = loads.body[i].map(|f| third * f);
         for r in 0..2 {
             for c in 0..2 {
-                let edge = p[r] * (two * a[c] + b[c]) + q[r] * (a[c] + two * b[c]);
-                sum[r][c] = sum[r][c] + edge - scale * loads.body[i][r] * arms[i][c];
+                sum[r][c] = sum[r][c] + p[r] * at_start[c] + q[r] * at_end[c] - f[r] * arms[i][c];
             }
         }
     }
-    let factor = S::from(3) * double_area;
     Stress {
-        xx: sum[0][0] / factor,
-        yy: sum[1][1] / factor,
-        xy: (sum[0][1] + sum[1][0]) / (two * factor),
+        xx: sum[0][0] * factor,
+        yy: sum[1][1] * factor,
+        xy: (sum[0][1] + sum[1][0]) * (factor / S::from(2)),
     }
 }
 
