@@ -75,7 +75,7 @@ def solve_case(
     path: Union[str, "os.PathLike[str]"], *, set: Optional[Mapping[str, Any]] = None
 ) -> Solution:
     """Solve a case file; `set` sets keys over it, as in {"method.gamma0": 1e-3}."""
-    settings = [f"{key}={_toml(_expressions(key.rsplit('.', 1)[-1], value))}" for key, value in (set or {}).items()]
+    settings = [f"{key}={_toml(value)}" for key, value in (set or {}).items()]
     return _solution(_signorini.solve_case(os.fspath(path), settings))
 
 
@@ -95,7 +95,7 @@ def solve(
         points, triangles, boundaries = from_meshio(points)
     if triangles is None or boundaries is None:
         raise TypeError("expected points, triangles and boundaries, or a meshio mesh")
-    text = "".join(f"{_key(name)} = {_toml(_expressions(name, table))}\n" for name, table in tables.items())
+    text = "".join(f"{_key(name)} = {_toml(table)}\n" for name, table in tables.items())
     return _solution(
         _signorini.solve(
             text,
@@ -141,22 +141,6 @@ def from_meshio(mesh: Any) -> tuple[Floats, Integers, dict[str, Integers]]:
             if not name.startswith("gmsh:") and cells[i] is not None and len(cells[i]) and name not in names.values():
                 boundaries.setdefault(name, []).append(number[block.data[np.asarray(cells[i], dtype=np.int64)]])
     return points, corners, {name: np.concatenate(parts) for name, parts in boundaries.items()}
-
-
-# Keys whose values are expressions in x and y; a number serves, too.
-_EXPRESSIONS = {"body", "displacement", "traction", "gap", "pressure", "normal", "tangential", "distance"}
-
-
-def _expressions(key: str, value: Any) -> Any:
-    """The value with numbers as the expressions that they stand for."""
-    if isinstance(value, Mapping):
-        return {name: _expressions(name, inner) for name, inner in value.items()}
-    if key in _EXPRESSIONS:
-        if isinstance(value, (list, tuple, np.ndarray)):
-            return [_expressions(key, inner) for inner in value]
-        if isinstance(value, (int, float, np.number)) and not isinstance(value, bool):
-            return repr(float(value))
-    return value
 
 
 def _key(name: str) -> str:

@@ -75,7 +75,8 @@ def test_a_meshio_mesh_is_taken_as_it_is_with_physical_names():
     solution = signorini.solve(
         mesh,
         material={"young": 1000.0, "poisson": 0.3},
-        boundary={"top": {"displacement": [0, -0.015]}, "contact": {"contact": {"gap": "y/(1 - y)"}}},
+        obstacle={"floor": {"plane": {"point": [0, 0], "normal": [0, 1]}}},
+        boundary={"top": {"displacement": [0, -0.015]}, "contact": {"contact": {"obstacle": "floor"}}},
     )
     theirs = signorini.solve_case(CASES / "disk.toml")
     force = solution.results["quantities"]["contact_force"]

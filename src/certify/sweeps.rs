@@ -12,9 +12,11 @@
 //! twelve unknowns, three for each vertex and one for each edge; the energy's second derivative by them is computed once,
 //! and the small systems of the vertices are factorised once.
 
+use nalgebra::Vector2;
+
 use super::proof::{Balanced, Certificate, Rejection, Role};
+use crate::kernel::Stress;
 use crate::kernel::composite::{Composite, Loads};
-use crate::kernel::{Stress, Triangle};
 
 /// The unknowns of a triangle: Phi, Phi_x, Phi_y at its vertices, then those of its edges.
 const UNKNOWNS: usize = 12;
@@ -217,9 +219,9 @@ impl Sweeps {
     }
 }
 
-fn add(force: &mut [[f64; 2]; 2], factor: f64, mode: &[[f64; 2]; 2]) {
-    for (force, mode) in force.as_flattened_mut().iter_mut().zip(mode.as_flattened()) {
-        *force += factor * mode;
+fn add(force: &mut [[f64; 2]; 2], factor: f64, mode: &[Vector2<f64>; 2]) {
+    for (force, mode) in force.iter_mut().zip(mode) {
+        *force = [force[0] + factor * mode.x, force[1] + factor * mode.y];
     }
 }
 
@@ -265,17 +267,15 @@ fn energy(certificate: &Certificate, state: &Balanced<f64>, t: usize) -> Energy 
     let roots = [(scale / mu).sqrt(), (scale / (lambda + mu)).sqrt()];
     let distance = features(&state.stresses(certificate, t).1, roots);
     let mut units = [[0.0; UNKNOWNS]; FEATURES];
-    let unloaded = [[0.0; 2]; 3];
-    let mut put = |k: usize, forces: [[[f64; 2]; 2]; 3]| {
-        let tau = features(&Composite::new(triangle, &Loads { forces, body: unloaded }), roots);
+    let (zero, body) = ([[Vector2::zeros(); 2]; 3], [Vector2::zeros(); 3]);
+    let mut put = |k: usize, forces: [[Vector2<f64>; 2]; 3]| {
+        let tau = features(&Composite::new(triangle, &Loads { forces, body }), roots);
         units.iter_mut().zip(tau).for_each(|(row, value)| row[k] = value);
     };
-    let mut at_vertices = [[[[0.0; 2]; 2]; 3]; 9];
+    let mut at_vertices = [zero; 9];
     for (side, &e) in piece.edges.iter().enumerate() {
         let left = state.owners[e][0].is_some_and(|owner| owner.piece == t);
-        let outward = |[a, b]: [[f64; 2]; 2]| {
-            if left { [a, b] } else { [b.map(|b| -b), a.map(|a| -a)] }
-        };
+        let outward = |[a, b]: [Vector2<f64>; 2]| if left { [a, b] } else { [-b, -a] };
         let ends = certificate.edges[e].ends;
         let places = ends.map(|p| state.points[p]);
         for (k, &p) in ends.iter().enumerate() {
@@ -287,7 +287,7 @@ fn energy(certificate: &Certificate, state: &Balanced<f64>, t: usize) -> Energy 
                 at_vertices[3 * vertex + c][side] = outward(modes[c]);
             }
             if k == 0 {
-                let mut forces = [[[0.0; 2]; 2]; 3];
+                let mut forces = zero;
                 forces[side] = outward(modes[3]);
                 put(9 + side, forces);
             }
@@ -316,43 +316,35 @@ fn energy(certificate: &Certificate, state: &Balanced<f64>, t: usize) -> Energy 
 fn features(tau: &Composite<f64>, [deviator, sphere]: [f64; 2]) -> [f64; FEATURES] {
     let mut all = [0.0; FEATURES];
     let mut k = 0;
-    let mut put = |factor: f64, s: [f64; 3]| {
-        let [xx, yy, xy] = s;
+    let mut put = |factor: f64, s: Stress<f64>| {
+        let [xx, yy, xy] = s.components();
         all[k] = factor * deviator * (xx - yy);
         all[k + 1] = factor * deviator * 2.0 * xy;
         all[k + 2] = factor * sphere * (xx + yy);
         k += 3;
     };
-    let entries = |s: Stress<f64>| [s.xx, s.yy, s.xy];
-    let c = entries(tau.centre);
-    for part in tau.corners {
-        let [a, b] = part.map(entries);
-        put(1.5_f64.sqrt(), [0, 1, 2].map(|i| a[i] + b[i] + c[i] / 1.5));
-        put(0.5_f64.sqrt(), [0, 1, 2].map(|i| a[i] - b[i]));
+    for [a, b] in tau.corners {
+        put(1.5_f64.sqrt(), a + b + tau.centre / 1.5);
+        put(0.5_f64.sqrt(), a - b);
     }
-    put(2.0, c);
+    put(2.0, tau.centre);
     all
 }
 
 /// The forces at start and end of an edge for unit values, at one of its ends, of Phi, Phi_x and Phi_y, and of the
 /// edge's own unknown.
-fn modes([start, end]: [[f64; 2]; 2], at_end: bool) -> [[[f64; 2]; 2]; 4] {
-    let along = [end[0] - start[0], end[1] - start[1]];
-    let squared = along[0] * along[0] + along[1] * along[1];
-    let normal = [along[1], -along[0]];
+fn modes([start, end]: [Vector2<f64>; 2], at_end: bool) -> [[Vector2<f64>; 2]; 4] {
+    let along = end - start;
+    let squared = along.dot(&along);
+    let normal = Vector2::new(along.y, -along.x);
     let sign = if at_end { 1.0 } else { -1.0 };
-    let bubble = |z: [f64; 2], q: [f64; 2]| {
-        [[0, 1].map(|c| sign * q[c] + 4.0 * z[c]), [0, 1].map(|c| sign * q[c] - 4.0 * z[c])]
-    };
-    let slope = |q: [f64; 2]| {
-        let factor = -0.75 * (q[0] * normal[0] + q[1] * normal[1]) / squared;
-        bubble(normal.map(|n| factor * n), q)
-    };
+    let bubble = |z: Vector2<f64>, q: Vector2<f64>| [q * sign + z * 4.0, q * sign - z * 4.0];
+    let slope = |q: Vector2<f64>| bubble(normal * (-0.75 * q.dot(&normal) / squared), q);
     [
-        bubble(normal.map(|n| sign * 1.5 * n / squared), [0.0; 2]),
-        slope([0.0, -1.0]),
-        slope([1.0, 0.0]),
-        bubble(along.map(|a| a / squared), [0.0; 2]),
+        bubble(normal * (sign * 1.5) / squared, Vector2::zeros()),
+        slope(-Vector2::y()),
+        slope(Vector2::x()),
+        bubble(along / squared, Vector2::zeros()),
     ]
 }
 

@@ -135,6 +135,8 @@ impl Div for Ball {
     }
 }
 
+crate::entry_of_nalgebra!(Ball);
+
 impl Scalar for Ball {
     fn split(
         self,
