@@ -9,7 +9,10 @@
 //! A [`Certificate`] holds v by its values at vertices, and tau by its tractions on edges: an edge has one traction, so
 //! that tau n is continuous, and on Gamma_C it is a nonpositive multiple of n. What is left is that each triangle is in
 //! equilibrium, and there the doubles of a file can't be exact. `certify::balance` therefore adds to the tractions those
-//! small ones that make equilibrium exact; they are known as intervals, and so is then tau.
+//! small ones that make equilibrium exact; they are known as balls, and so is then tau.
+//!
+//! Contact may also act along a direction d, affine on each edge, in place of n: v . d <= g, and tau n = p d with p <= 0. The
+//! theorem holds as it stands, for the solution u of the problem with that d (section 7.2).
 
 use nalgebra::{Matrix2, Vector2};
 use thiserror::Error;
@@ -156,6 +159,8 @@ pub enum Role {
         pressure: [f64; 2],
         /// g at both ends.
         gap: [f64; 2],
+        /// The direction d of contact at both ends, affine between them; `None` is the edge's normal.
+        along: Option<[[f64; 2]; 2]>,
     },
 }
 
@@ -288,7 +293,7 @@ impl Certificate {
         self.check_displacement()?;
         let owners = self.owners()?;
         let mut forces = Vec::with_capacity(self.edges.len());
-        let mut contact = vec![S::from(0); self.pieces.len()];
+        let mut on_contact = vec![S::from(0); self.pieces.len()];
         for (e, edge) in self.edges.iter().enumerate() {
             let [start, end] = edge.ends.map(|vertex| points[vertex]);
             let along = end - start;
@@ -302,40 +307,46 @@ impl Certificate {
                     traction.map(|t| exactly(t) * length)
                 }
                 Role::Pressed(p) => p.map(|p| -(normal * S::exactly(p))),
-                Role::Contact { pressure, gap } => {
-                    let mut beyond = [S::from(0); 2];
-                    for (k, vertex) in edge.ends.into_iter().enumerate() {
-                        if !(pressure[k] <= 0.0) {
-                            return Err(Rejection::Tension { edge: e, value: pressure[k] });
+                Role::Contact { pressure, gap, along } => {
+                    if let Some(&value) = pressure.iter().find(|&&p| !(p <= 0.0)) {
+                        return Err(Rejection::Tension { edge: e, value });
+                    }
+                    let at_ends = edge.ends.map(|vertex| v[vertex]);
+                    let contact = match along {
+                        None => along_the_normal(at_ends, normal, pressure, gap, length),
+                        Some([a, b]) if a != b && pressure[0] != pressure[1] => {
+                            return Err(wrong(
+                                "edge",
+                                e,
+                                "a pressure that varies along a direction that turns",
+                            ));
                         }
-                        beyond[k] = v[vertex].dot(&normal);
-                        if gap[k] != 0.0 {
-                            beyond[k] = beyond[k] - length() * S::exactly(gap[k]);
+                        Some(along) => {
+                            along_directions(at_ends, along.map(exactly), pressure, gap, length())
                         }
-                        let value = beyond[k].upper();
+                    };
+                    for value in contact.beyond.map(S::upper) {
                         if !(value <= 0.0) {
                             return Err(Rejection::Penetration { edge: e, value });
                         }
                     }
-                    let pressure = pressure.map(S::exactly);
                     if let Some(owner) = owners[e][0] {
-                        contact[owner.piece] = contact[owner.piece]
-                            + S::from(2) * integral_of_product(pressure, beyond);
+                        on_contact[owner.piece] = on_contact[owner.piece] + contact.term;
                     }
-                    pressure.map(|p| normal * p)
+                    contact.force
                 }
             });
         }
         let tree = Tree::new(self, &owners);
         let mut state =
-            Balanced { points, triangles, v, owners, tree, forces, loads: Vec::new(), contact };
+            Balanced { points, triangles, v, owners, tree, forces, loads: Vec::new(), on_contact };
         state.close(self)?;
         Ok(state)
     }
 
     /// The right side of the theorem.
     fn sum<S: Enclosing>(&self, state: &Balanced<S>) -> Result<Proof, Rejection> {
-        let Balanced { triangles, v, forces, contact, .. } = state;
+        let Balanced { triangles, v, forces, on_contact, .. } = state;
         let zero = S::from(0);
         let (mut square, mut norm, mut energy) = (zero, zero, zero);
         let mut shares = Vec::with_capacity(self.pieces.len());
@@ -352,7 +363,7 @@ impl Certificate {
                 let distance = distance.split(|_| zero, |d| d);
                 let root = distance.sqrt() + S::exactly(piece.oscillation);
                 root * root
-            } + contact[t];
+            } + on_contact[t];
             shares.push(share.upper());
             square = square + share;
             let internal = complementary(&material, sigma) * double_area / S::from(2);
@@ -438,7 +449,11 @@ impl Certificate {
             let numbers = match edge.role {
                 Role::Inner(f) | Role::Held(_, f) | Role::Loaded(f) => finite(f.as_flattened()),
                 Role::Pressed(p) => finite(&p),
-                Role::Contact { pressure, gap } => finite(&pressure) && finite(&gap),
+                Role::Contact { pressure, gap, along } => {
+                    finite(&pressure)
+                        && finite(&gap)
+                        && along.is_none_or(|d| finite(d.as_flattened()))
+                }
             };
             if !(numbers && edge.ends.iter().all(|&p| p < points) && edge.ends[0] != edge.ends[1]) {
                 return Err(wrong("edge", i, "expected two different vertices and finite numbers"));
@@ -556,6 +571,62 @@ impl Certificate {
     }
 }
 
+/// An edge of Gamma_C.
+struct OnContact<S> {
+    /// tau N at both ends.
+    force: [Vector2<S>; 2],
+    /// v_n - g at both ends, and what it is at most between them: none may be positive.
+    beyond: [S; 3],
+    /// 2 int tau_n (v_n - g)
+    term: S,
+}
+
+/// Contact along the normal. All is in units of the length, which is needed only where there is a gap.
+fn along_the_normal<S: Enclosing>(
+    v: [Vector2<S>; 2],
+    normal: Vector2<S>,
+    pressure: [f64; 2],
+    gap: [f64; 2],
+    length: impl Fn() -> S,
+) -> OnContact<S> {
+    let [a, b] = [0, 1].map(|k| {
+        let beyond = v[k].dot(&normal);
+        if gap[k] == 0.0 { beyond } else { beyond - length() * S::exactly(gap[k]) }
+    });
+    let pressure = pressure.map(S::exactly);
+    OnContact {
+        force: pressure.map(|p| normal * p),
+        beyond: [a, a, b],
+        term: S::from(2) * integral_of_product(pressure, [a, b]),
+    }
+}
+
+/// Contact along a direction d that is affine between the ends, with tau N = |E| p d: either d or p is constant. v . d - g has
+/// the Bernstein coefficients b_0, b_1 / 2, b_2, whose mean is its integral; it is at most their largest.
+fn along_directions<S: Enclosing>(
+    v: [Vector2<S>; 2],
+    d: [Vector2<S>; 2],
+    pressure: [f64; 2],
+    gap: [f64; 2],
+    length: S,
+) -> OnContact<S> {
+    let (two, [g, h]) = (S::from(2), gap.map(S::exactly));
+    let first = v[0].dot(&d[0]) - g;
+    let middle = v[0].dot(&d[1]) + v[1].dot(&d[0]) - g - h;
+    let last = v[1].dot(&d[1]) - h;
+    let [p, q] = pressure.map(S::exactly);
+    let integral = if pressure[0] == pressure[1] {
+        p * (two * first + middle + two * last) / S::from(6)
+    } else {
+        integral_of_product([p, q], [first, last])
+    };
+    OnContact {
+        force: [d[0] * (length * p), d[1] * (length * q)],
+        beyond: [first, middle, last],
+        term: two * length * integral,
+    }
+}
+
 /// A certificate whose triangles are in equilibrium, in the numbers `S`.
 pub(super) struct Balanced<S> {
     /// Vertices and cuts.
@@ -570,7 +641,7 @@ pub(super) struct Balanced<S> {
     /// On each triangle, in equilibrium.
     loads: Vec<Loads<S>>,
     /// 2 int tau_n (v_n - g) over the edges of each triangle.
-    contact: Vec<S>,
+    on_contact: Vec<S>,
 }
 
 impl<S: Enclosing> Balanced<S> {

@@ -89,8 +89,13 @@ struct Sweeps {
     /// The unknowns: of the points, and of the edges.
     at_points: Vec<[f64; 3]>,
     on_edges: Vec<f64>,
-    /// The factor of each star's system, by rows; none before the first sweep, or where it is not definite.
-    factors: Vec<Option<Box<[f64]>>>,
+    /// The systems of the stars: their columns, in the order of `stars.of`; the free edges at the points, and the factors,
+    /// each with the place where a point's begin. A point has no factor before the first sweep.
+    columns: Vec<Column>,
+    star_edges: Vec<usize>,
+    first_edge: Vec<usize>,
+    factors: Vec<f64>,
+    first_factor: Vec<usize>,
 }
 
 impl Sweeps {
@@ -107,94 +112,130 @@ impl Sweeps {
                 edge.ends.iter().for_each(|&p| free_point[p] = false);
             }
         }
-        Sweeps {
+        let stars = Stars::new(certificate, points);
+        let mut sweeps = Sweeps {
+            columns: Vec::with_capacity(stars.of.len()),
+            stars,
+            star_edges: Vec::with_capacity(2 * free_edge.len()),
+            first_edge: Vec::with_capacity(points + 1),
+            factors: Vec::new(),
+            first_factor: Vec::with_capacity(points + 1),
             edges: certificate.pieces.iter().map(|piece| piece.edges).collect(),
-            energies: (0..certificate.pieces.len()).map(|t| energy(certificate, state, t)).collect(),
-            stars: Stars::new(certificate, points),
+            energies: (0..certificate.pieces.len())
+                .map(|t| energy(certificate, state, t))
+                .collect(),
             free_point,
             at_points: vec![[0.0; 3]; points],
             on_edges: vec![0.0; free_edge.len()],
             free_edge,
-            factors: Vec::new(),
-        }
+        };
+        sweeps.number();
+        sweeps.factorise();
+        sweeps
     }
 
     /// To every point and its star, forwards or backwards.
     fn go(&mut self, backwards: bool) {
         let points = self.at_points.len();
-        let mut work = Work::default();
-        if self.factors.is_empty() {
-            self.factors = (0..points).map(|point| self.factor(point, &mut work)).collect();
-        }
+        let mut values = Vec::new();
         for k in 0..points {
-            self.minimise(if backwards { points - 1 - k } else { k }, &mut work);
+            self.minimise(if backwards { points - 1 - k } else { k }, &mut values);
         }
     }
 
-    /// Numbers the unknowns of a star: those of the point, if it is free, then one for each free edge at it.
-    fn number(&self, point: usize, work: &mut Work) {
-        work.columns.clear();
-        work.edges.clear();
-        let own = if self.free_point[point] { 3 } else { 0 };
-        for &(t, local) in self.stars.around(point) {
-            let mut column = Column { triangle: t, vertex: local, edges: [None; 2] };
-            for (k, place) in column.edges.iter_mut().enumerate() {
-                let e = self.edges[t][(local + 1 + k) % 3];
-                if !self.free_edge[e] {
-                    continue;
+    /// How many unknowns a point has.
+    fn own(&self, point: usize) -> usize {
+        if self.free_point[point] { 3 } else { 0 }
+    }
+
+    /// Numbers the unknowns of every star: those of the point, if it is free, then one for each free edge at it.
+    fn number(&mut self) {
+        for point in 0..self.at_points.len() {
+            let first = self.star_edges.len();
+            self.first_edge.push(first);
+            let own = self.own(point);
+            for &(triangle, local) in self.stars.around(point) {
+                let mut column = Column { triangle, count: 0, places: [(0, 0); 5] };
+                (0..own).for_each(|k| column.push(3 * local + k, k));
+                for side in [(local + 1) % 3, (local + 2) % 3] {
+                    let e = self.edges[triangle][side];
+                    if !self.free_edge[e] {
+                        continue;
+                    }
+                    let seen = &self.star_edges[first..];
+                    let place = seen.iter().position(|&other| other == e).unwrap_or(seen.len());
+                    if place == seen.len() {
+                        self.star_edges.push(e);
+                    }
+                    column.push(9 + side, own + place);
                 }
-                let seen = work.edges.iter().position(|&other| other == e);
-                *place = Some(own + seen.unwrap_or(work.edges.len()));
-                if seen.is_none() {
-                    work.edges.push(e);
-                }
+                self.columns.push(column);
             }
-            work.columns.push(column);
         }
-        work.own = own;
-        work.values.clear();
-        work.values.resize(own + work.edges.len(), 0.0);
+        self.first_edge.push(self.star_edges.len());
     }
 
-    /// The factor of the system of a star; none if it has no unknowns, or if they are not independent.
-    fn factor(&self, point: usize, work: &mut Work) -> Option<Box<[f64]>> {
-        self.number(point, work);
-        let n = work.values.len();
-        let mut matrix = vec![0.0; n * n].into_boxed_slice();
-        for column in &work.columns {
-            let hessian = &self.energies[column.triangle].hessian;
-            for (a, i) in column.places(work.own) {
-                for (b, j) in column.places(work.own) {
-                    if j <= i {
+    /// The columns of a star, and its free edges.
+    fn star(&self, point: usize) -> (&[Column], &[usize]) {
+        let columns = &self.columns[self.stars.first[point]..self.stars.first[point + 1]];
+        (columns, &self.star_edges[self.first_edge[point]..self.first_edge[point + 1]])
+    }
+
+    /// The factors of the systems of the stars, the rows of their lower halves; none where there are no unknowns, or where
+    /// these are not independent.
+    fn factorise(&mut self) {
+        let mut matrix = Vec::new();
+        for point in 0..self.at_points.len() {
+            self.first_factor.push(self.factors.len());
+            let (columns, edges) = self.star(point);
+            let n = self.own(point) + edges.len();
+            matrix.clear();
+            matrix.resize(n * n, 0.0);
+            for column in columns {
+                let hessian = &self.energies[column.triangle].hessian;
+                for &(a, i) in column.places() {
+                    for &(b, j) in column.places() {
                         matrix[i * n + j] += hessian[a][b];
                     }
                 }
             }
-        }
-        (n > 0 && factor_positive(&mut matrix, n)).then_some(matrix)
-    }
-
-    fn minimise(&mut self, point: usize, work: &mut Work) {
-        let Some(factor) = &self.factors[point] else { return };
-        self.number(point, work);
-        let x = &mut work.values;
-        for column in &work.columns {
-            let gradient = &self.energies[column.triangle].gradient;
-            column.places(work.own).for_each(|(a, i)| x[i] -= gradient[a]);
-        }
-        substitute(factor, x);
-        for column in &work.columns {
-            let Energy { hessian, gradient } = &mut self.energies[column.triangle];
-            for (a, i) in column.places(work.own) {
-                for (gradient, h) in gradient.iter_mut().zip(&hessian[a]) {
-                    *gradient += x[i] * h;
+            if n > 0 && factor_positive(&mut matrix, n) {
+                for (i, row) in matrix.chunks_exact(n).enumerate() {
+                    self.factors.extend_from_slice(&row[..=i]);
                 }
             }
         }
-        for (value, x) in self.at_points[point].iter_mut().zip(&x[..work.own]) {
+        self.first_factor.push(self.factors.len());
+    }
+
+    fn minimise(&mut self, point: usize, x: &mut Vec<f64>) {
+        let factor = &self.factors[self.first_factor[point]..self.first_factor[point + 1]];
+        if factor.is_empty() {
+            return;
+        }
+        let own = self.own(point);
+        let columns = &self.columns[self.stars.first[point]..self.stars.first[point + 1]];
+        let edges = &self.star_edges[self.first_edge[point]..self.first_edge[point + 1]];
+        x.clear();
+        x.resize(own + edges.len(), 0.0);
+        for column in columns {
+            let gradient = &self.energies[column.triangle].gradient;
+            column.places().iter().for_each(|&(a, i)| x[i] -= gradient[a]);
+        }
+        substitute(factor, x);
+        for column in columns {
+            let Energy { hessian, gradient } = &mut self.energies[column.triangle];
+            for &(a, i) in column.places() {
+                let value = x[i];
+                for (gradient, h) in gradient.iter_mut().zip(&hessian[a]) {
+                    *gradient += value * h;
+                }
+            }
+        }
+        for (value, x) in self.at_points[point].iter_mut().zip(&x[..own]) {
             *value += x;
         }
-        for (&e, x) in work.edges.iter().zip(&x[work.own..]) {
+        for (&e, x) in edges.iter().zip(&x[own..]) {
             self.on_edges[e] += x;
         }
     }
@@ -225,33 +266,22 @@ fn add(force: &mut [[f64; 2]; 2], factor: f64, mode: &[Vector2<f64>; 2]) {
     }
 }
 
-/// What one triangle has to do with a star.
+/// What one triangle has to do with a star: its unknowns there, each with its number in the star.
 struct Column {
     triangle: usize,
-    /// Its vertex at the star's point.
-    vertex: usize,
-    /// The numbers of the edges opposite the vertices after that one.
-    edges: [Option<usize>; 2],
+    count: usize,
+    places: [(usize, usize); 5],
 }
 
 impl Column {
-    /// The triangle's unknowns in the star, each with its number there; `own` is how many the point has.
-    fn places(&self, own: usize) -> impl Iterator<Item = (usize, usize)> {
-        let vertex = self.vertex;
-        let edges = self.edges.into_iter().enumerate();
-        (0..own)
-            .map(move |k| (3 * vertex + k, k))
-            .chain(edges.filter_map(move |(k, n)| Some((9 + (vertex + 1 + k) % 3, n?))))
+    fn push(&mut self, unknown: usize, number: usize) {
+        self.places[self.count] = (unknown, number);
+        self.count += 1;
     }
-}
 
-/// Memory that every star uses again.
-#[derive(Default)]
-struct Work {
-    columns: Vec<Column>,
-    edges: Vec<usize>,
-    own: usize,
-    values: Vec<f64>,
+    fn places(&self) -> &[(usize, usize)] {
+        &self.places[..self.count]
+    }
 }
 
 /// How many numbers [`features`] are.
@@ -348,7 +378,7 @@ fn modes([start, end]: [Vector2<f64>; 2], at_end: bool) -> [[Vector2<f64>; 2]; 4
     ]
 }
 
-/// The Cholesky factor of a small positive definite matrix of which the lower half is given, in its place; false if it is
+/// The Cholesky factor of a small positive definite matrix, in its lower half; false if it is
 /// not definite, as for a star whose unknowns are not independent. The diagonal holds the reciprocals.
 fn factor_positive(matrix: &mut [f64], n: usize) -> bool {
     for i in 0..n {
@@ -369,16 +399,20 @@ fn factor_positive(matrix: &mut [f64], n: usize) -> bool {
     true
 }
 
-/// Solves with that factor, in place.
+/// Solves with that factor, of which the rows of the lower half are given, in place.
 fn substitute(factor: &[f64], x: &mut [f64]) {
     let n = x.len();
+    let mut rest = factor;
     for i in 0..n {
-        let row = &factor[i * n..i * n + i + 1];
+        let (row, below) = rest.split_at(i + 1);
+        rest = below;
         let sum: f64 = row[..i].iter().zip(&*x).map(|(a, b)| a * b).sum();
         x[i] = (x[i] - sum) * row[i];
     }
+    let mut rest = factor;
     for i in (0..n).rev() {
-        let row = &factor[i * n..i * n + i + 1];
+        let (above, row) = rest.split_at(rest.len() - i - 1);
+        rest = above;
         x[i] *= row[i];
         let known = x[i];
         x[..i].iter_mut().zip(row).for_each(|(x, a)| *x -= known * a);
