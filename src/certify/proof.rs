@@ -242,8 +242,8 @@ impl Certificate {
     }
 
     /// The same as [`Certificate::evaluate`] in [balls](Ball), and more than a proof needs: that the certificate is as it was
-    /// made. Its tractions balance on every triangle to the rounding of doubles, and what it claims are the very numbers
-    /// that its data give.
+    /// made. Its tractions balance on every triangle to the rounding of doubles, its shares are the very numbers that
+    /// its data give, and the bound is no smaller.
     ///
     /// # Errors
     /// As [`Certificate::evaluate`]; a triangle that is out of balance; a claim that does not follow.
@@ -278,7 +278,7 @@ impl Certificate {
                 return Err(Rejection::Share { triangle, claimed, found });
             }
         }
-        if !same(claim.bound, proof.bound) {
+        if !(claim.bound >= proof.bound) {
             return Err(Rejection::Bound { claimed: claim.bound, found: proof.bound });
         }
         Ok(proof)

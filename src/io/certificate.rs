@@ -108,8 +108,8 @@ pub fn encode(title: &str, certified: &Continuous) -> (Header, Vec<u8>) {
         format: FORMAT,
         title: title.to_owned(),
         statement: STATEMENT.to_owned(),
-        bound: certified.bound,
-        proved: certified.proof.bound,
+        bound: beyond_reading(certified.bound),
+        proved: beyond_reading(certified.proof.bound),
         rigorous: certified.rigorous,
         reason: certified.reason.clone(),
         counts: Counts {
@@ -122,6 +122,11 @@ pub fn encode(title: &str, certified: &Continuous) -> (Header, Vec<u8>) {
         hash: hash(&bytes),
     };
     (header, bytes)
+}
+
+/// Two doubles more: whoever reads the decimals of a number may be off by one.
+fn beyond_reading(bound: f64) -> f64 {
+    bound.next_up().next_up()
 }
 
 /// Reads certificate.json and the arrays beside it, and verifies everything anew.
@@ -145,7 +150,7 @@ pub fn audit(path: &Path) -> Result<Audit, AuditError> {
     if !(header.bound >= proof.bound) {
         return Err(Rejection::Bound { claimed: header.bound, found: proof.bound }.into());
     }
-    if header.rigorous && (header.bound > proof.bound || header.reason.is_some()) {
+    if header.rigorous && (header.bound > header.proved || header.reason.is_some()) {
         return Err(wrong(
             path,
             "a rigorous bound is the proved one, without a reservation".to_owned(),
