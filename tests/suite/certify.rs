@@ -367,6 +367,23 @@ fn a_certificate_is_accepted_as_it_was_written() {
     }
 }
 
+/// The reader of decimals may be one double off; many certificates, for it rarely is.
+#[test]
+fn certificates_are_accepted_from_their_files() {
+    let folder =
+        std::env::temp_dir().join(format!("signorini-certificates-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    for n in 2..14 {
+        let (header, bytes) = written(n);
+        let json = folder.join(certificate::FILES[0]);
+        std::fs::write(&json, serde_json::to_vec(&header).unwrap()).unwrap();
+        std::fs::write(folder.join(certificate::FILES[1]), bytes).unwrap();
+        let audit = certificate::audit(&json).unwrap();
+        assert!(audit.header.rigorous && audit.proof.bound <= audit.header.bound, "{n}");
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
 /// What a word of certificate.bin is.
 #[derive(Clone, Copy, PartialEq)]
 enum Word {
