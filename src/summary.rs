@@ -279,7 +279,8 @@ fn coercivity(gamma: &GammaChoice) -> String {
     let [a, b] = gamma.limiting_edge;
     let verdict = if gamma.kappa < 1.0 { "< 1: coercive" } else { ">= 1: no promise" };
     format!(
-        "gamma0 = {} (limit {} at the edge {}-{}), kappa = {} {verdict}",
+        "gamma0 = {}{} (limit {} at the edge {}-{}), kappa = {} {verdict}",
+        if gamma.local { "on each edge its own, from " } else { "" },
         short(gamma.gamma0),
         short(gamma.limit),
         vector(a),

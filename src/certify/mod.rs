@@ -100,7 +100,7 @@ fn certify_near(
     memory::check(PER_TRIANGLE * problem.mesh.triangles().len() as u64)?;
     let space = Space::<P1, 3, 2>::new(&problem.mesh);
     let constraints = Constraints::new(problem, &space)?;
-    let contact = contact_line::assemble(problem, &space, solution.gamma.gamma0)?;
+    let contact = contact_line::assemble(problem, &space, solution.gamma.gamma)?;
     let parts = build::Parts::new(problem, &contact, &constraints)?;
     let v = build::admissible(&parts, start);
     let (mut certificate, origins, oscillation) = build::build(&parts, &solution.displacement, v);
