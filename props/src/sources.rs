@@ -410,6 +410,10 @@ mod row {
                 })
                 .collect();
             for line in file.text.lines().filter(|line| line.trim_start().starts_with("impl")) {
+                // One in a macro belongs to the macro.
+                if line.contains('$') {
+                    continue;
+                }
                 impls += 1;
                 assert!(words(line).any(|word| own.contains(word)), "{path}: {line}");
             }
