@@ -64,7 +64,7 @@ pub fn apply<const N: usize>(functional: &[[f64; 2]; N], u: &[[f64; 2]; N]) -> f
 pub struct Coercivity {
     /// max_T c_p (lambda + 2 mu) h_T |T's edges on Gamma_C| / |T|
     pub constant: f64,
-    /// An edge of the triangle where the maximum is attained, by its two ends.
+    /// The contact edge where the maximum is attained, by its two ends; of several, the first in the order of these.
     pub limiting_edge: [[f64; 2]; 2],
 }
 
@@ -91,25 +91,36 @@ impl Coercivity {
             };
             *contact_length.entry(edge.triangle).or_default() += counted;
         }
-        let mut worst: Option<Coercivity> = None;
+        let mut all: Vec<Coercivity> = Vec::with_capacity(edges.len());
         for (edge, _) in edges {
             let t = edge.triangle;
             let area = mesh.triangle(t).double_area() / 2.0;
             let (h, length) = (mesh.diameter(t), contact_length[&t]);
             let constant =
                 coercivity_constant::<E, f64, N, M>(problem.material.of(t), h, length, area);
-            if worst.is_none_or(|w| constant > w.constant) {
-                let limiting_edge = mesh.ends(edge).map(|v| mesh.vertices()[v]);
-                worst = Some(Coercivity { constant, limiting_edge });
-            }
+            let mut limiting_edge = mesh.ends(edge).map(|v| mesh.vertices()[v]);
+            limiting_edge.sort_by(order);
+            all.push(Coercivity { constant, limiting_edge });
         }
-        worst.ok_or(DataError::NoContact)
+        let constant = all.iter().map(|c| c.constant).fold(f64::NEG_INFINITY, f64::max);
+        // Equal edges differ by rounding: the choice must not.
+        let equal = all.into_iter().filter(|c| c.constant >= constant * (1.0 - 1e-12));
+        let first =
+            equal.map(|c| c.limiting_edge).min_by(|[a, b], [c, d]| order(a, c).then(order(b, d)));
+        first
+            .map(|limiting_edge| Coercivity { constant, limiting_edge })
+            .ok_or(DataError::NoContact)
     }
 
     /// The gamma0 at which kappa = 1: below it, J_h is strictly convex.
     pub fn limit(&self) -> f64 {
         1.0 / self.constant
     }
+}
+
+/// Points by x, then by y.
+fn order(a: &[f64; 2], b: &[f64; 2]) -> std::cmp::Ordering {
+    a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]))
 }
 
 /// The edges of all contact boundaries with the names of these, each boundary in chains along the boundary.

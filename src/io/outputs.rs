@@ -1,6 +1,7 @@
 //! The files of a solved case: solution.vtu, contact.vtu, contact.csv, picture.svg and result.json, written together or
 //! not at all.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -363,6 +364,8 @@ fn draw(case: &Case, s: &Solution) -> Result<String, DataError> {
             )
         };
     let gamma = &s.gamma;
+    let (contact, surfaces) = contact_parts(s);
+    let unit = case.units.as_ref().map(|units| format!("{}/{}²", units.force, units.length));
     picture(&Scene {
         title: &case.title,
         subtitle: &format!(
@@ -376,19 +379,49 @@ fn draw(case: &Case, s: &Solution) -> Result<String, DataError> {
         displacement: &s.displacement,
         triangles: &triangles,
         von_mises: &von_mises,
+        unit: unit.as_deref(),
+        interfaces: &interfaces(case, s),
         outline: &outline,
-        contact: &contact_parts(s),
+        contact: &contact,
+        surfaces: &surfaces,
     })
 }
 
-/// The connected parts of the contact line.
-fn contact_parts(s: &Solution) -> Vec<Vec<ContactSample>> {
+/// The edges between triangles of different materials, for P2 in two halves.
+fn interfaces(case: &Case, s: &Solution) -> Vec<[usize; 2]> {
+    let (mesh, materials) = (&case.problem.mesh, &case.problem.material);
+    let mut found = Vec::new();
+    if materials.only().is_some() {
+        return found;
+    }
+    let mut material_at = BTreeMap::new();
+    for (t, corners) in mesh.triangles().iter().enumerate() {
+        let material = materials.place_of(t);
+        for i in 0..3 {
+            let [a, b] = [corners[(i + 1) % 3], corners[(i + 2) % 3]];
+            match material_at.insert([a.min(b), a.max(b)], material) {
+                Some(other) if other != material && s.degree == 1 => found.push([a, b]),
+                Some(other) if other != material => {
+                    let middle = s.elements[6 * t + 3 + i];
+                    found.extend([[a, middle], [middle, b]]);
+                }
+                _ => {}
+            }
+        }
+    }
+    found
+}
+
+/// The connected parts of the contact line, and the number of each one's boundary.
+fn contact_parts(s: &Solution) -> (Vec<Vec<ContactSample>>, Vec<usize>) {
     let mut parts: Vec<Vec<ContactSample>> = Vec::new();
+    let (mut surfaces, mut surface) = (Vec::new(), 0);
     let mut end = None;
     let mut boundary = "";
     for edge in &s.contact {
         if *edge.boundary != *boundary {
             end = None;
+            surface += 1;
         }
         boundary = &edge.boundary;
         let samples = edge.points.iter().map(|p| ContactSample {
@@ -402,9 +435,12 @@ fn contact_parts(s: &Solution) -> Vec<Vec<ContactSample>> {
             Some(part) if end.is_some() && end == edge.points.first().map(|p| p.node) => {
                 part.extend(samples)
             }
-            _ => parts.push(samples.collect()),
+            _ => {
+                parts.push(samples.collect());
+                surfaces.push(surface);
+            }
         }
         end = edge.points.last().map(|p| p.node);
     }
-    parts
+    (parts, surfaces)
 }
