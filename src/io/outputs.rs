@@ -111,7 +111,7 @@ pub fn write(
     };
     let continuous = certified.and_then(|c| c.result.as_ref().ok());
     let indicators = continuous.map(|c| c.indicators.as_slice());
-    stage("solution.vtu", solution_vtu(solution, indicators))?;
+    stage("solution.vtu", solution_vtu(solution, &case.problem, indicators))?;
     stage("contact.vtu", contact_vtu(solution))?;
     stage("contact.csv", contact_csv(&contact_rows(solution)).map(String::into_bytes))?;
     stage("picture.svg", draw(case, solution).map(String::into_bytes))?;
@@ -177,7 +177,7 @@ fn certificate_files(
 /// The bytes that making one file after the other takes at most: the numbers of solution.vtu once as they are and once as
 /// text, the triangles of picture.svg by their places, and as they are sorted by their stress.
 fn bytes_to_write(s: &Solution) -> u64 {
-    const PER_NODE: u64 = 160;
+    const PER_NODE: u64 = 260;
     const PER_DRAWN_TRIANGLE: u64 = 400;
     let drawn = s.von_mises.len() as u64 * if s.degree == 1 { 1 } else { 4 };
     PER_NODE * s.nodes.len() as u64 + PER_DRAWN_TRIANGLE * drawn
@@ -276,7 +276,23 @@ fn remarks(case: &Case, solution: &Solution) -> Vec<String> {
     remarks
 }
 
-fn solution_vtu(s: &Solution, indicators: Option<&[f64]>) -> Result<Vec<u8>, DataError> {
+/// The larger and the smaller principal stress in the plane.
+fn principal(stresses: &[[f64; 4]]) -> [Vec<f64>; 2] {
+    let of = |sign: f64| {
+        let values = stresses.iter().map(|&[xx, yy, _, xy]| {
+            let (mean, radius) = ((xx + yy) / 2.0, ((xx - yy) / 2.0).hypot(xy));
+            mean + sign * radius
+        });
+        values.collect()
+    };
+    [of(1.0), of(-1.0)]
+}
+
+fn solution_vtu(
+    s: &Solution,
+    problem: &fem::Problem,
+    indicators: Option<&[f64]>,
+) -> Result<Vec<u8>, DataError> {
     let all = |(stress, zz): &(Stress<f64>, f64)| {
         let [xx, yy, xy] = stress.components();
         [xx, yy, *zz, xy]
@@ -289,11 +305,18 @@ fn solution_vtu(s: &Solution, indicators: Option<&[f64]>) -> Result<Vec<u8>, Dat
     if let Some(indicators) = indicators {
         cell_data.push(Field { name: "error_bound", values: Values::Scalars(indicators) });
     }
+    let nodal = s.nodal_stresses(problem);
+    let [largest, smallest] = principal(&nodal);
     vtu(&Grid {
         kind: if s.degree == 1 { CellKind::Triangle } else { CellKind::QuadraticTriangle },
         points: &s.nodes,
         connectivity: &s.elements,
-        point_data: &[Field { name: "displacement", values: Values::Vectors(&s.displacement) }],
+        point_data: &[
+            Field { name: "displacement", values: Values::Vectors(&s.displacement) },
+            Field { name: "nodal_stress", values: Values::SymmetricTensors(&nodal) },
+            Field { name: "principal_1", values: Values::Scalars(&largest) },
+            Field { name: "principal_2", values: Values::Scalars(&smallest) },
+        ],
         cell_data: &cell_data,
     })
 }

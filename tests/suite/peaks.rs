@@ -206,7 +206,7 @@ const FAMILIES: [Family; 4] = [
     },
 ];
 
-/// The peaks within 2 % from the second level on, the forces within 1 %; the coarsest peak within 5 %.
+/// From the second level on the peaks within 2 %, the forces within 1 %; on the coarsest within 5 % and 3 %.
 fn peaks_are_right_on(levels: std::ops::Range<usize>) {
     for Family { name, levels: edges, problem, expected } in FAMILIES {
         println!("| {name} | {:?} |", &edges[levels.clone()]);
@@ -218,10 +218,11 @@ fn peaks_are_right_on(levels: std::ops::Range<usize>) {
                 let line = &s.boundaries[0];
                 let [peak, force] = expected(line);
                 let ratio = line.peak_pressure / peak;
-                let most = if level == 0 { 0.05 } else { 0.02 };
+                let [of_peak, of_force] = if level == 0 { [0.05, 0.03] } else { [0.02, 0.01] };
+                let off = [ratio - 1.0, line.force / force - 1.0].map(f64::abs);
                 let n = edges[level];
-                assert!((ratio - 1.0).abs() < most, "{name}, {degree:?}, {n}: {peak} {line:?}");
-                assert!((line.force / force - 1.0).abs() < 0.01, "{name}, {n}: {force} {line:?}");
+                assert!(off[0] < of_peak, "{name}, {degree:?}, {n}: peak {peak}, found {line:?}");
+                assert!(off[1] < of_force, "{name}, {degree:?}, {n}: force {force}, {line:?}");
                 peaks.push(format!("{:.5} ({ratio:.4})", line.peak_pressure));
             }
             println!("| {degree:?} | {} |", peaks.join(" | "));
