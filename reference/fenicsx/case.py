@@ -350,7 +350,7 @@ def _boundary(table, obstacles):
         return Boundary("displacement", displacement, traction)
     if given and set(given) <= {"normal", "tangential"}:
         return Boundary("support", [table.expression(key, table.content[key]) if key in given else None for key in ("normal", "tangential")])
-    table.refuse("", ", ".join(given), "either displacement (with a traction where it is free), traction, pressure, normal and tangential, or contact")
+    table.refuse("", ", ".join(given), "exactly one of displacement, traction, pressure, normal and tangential, contact")
 
 
 def _is_zero(expression):
