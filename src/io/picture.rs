@@ -851,7 +851,7 @@ mod tests {
                 interfaces: &[],
                 outline: &self.outline,
                 contact: &self.contact,
-                surfaces: &[0][..self.contact.len()],
+                surfaces: &[0, 0][..self.contact.len()],
             }
         }
 
