@@ -11,6 +11,7 @@ mod contact_edges;
 pub mod factor;
 pub mod iterate;
 pub mod ladder;
+pub mod ldl;
 mod memory;
 pub mod newton;
 pub mod ordering;
@@ -112,7 +113,7 @@ impl Default for Method {
 
 impl Default for Settings {
     fn default() -> Self {
-        Settings { tolerance: 1e-10, max_iterations: 50 }
+        Settings { tolerance: 1e-10, max_iterations: 200 }
     }
 }
 
