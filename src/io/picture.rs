@@ -623,10 +623,7 @@ fn pressure_of(contact: &[&ContactLine], unit: Option<&str>) -> Option<Group> {
     let label = text(format!("peak {}{unit}", short(highest.pressure[at])), [x, y + 4.0])
         .set("text-anchor", anchor(out))
         .set("font-weight", "bold")
-        .set("fill", RED)
-        .set("stroke", "white")
-        .set("stroke-width", 3)
-        .set("paint-order", "stroke");
+        .set("fill", RED);
     let group = Group::new()
         .add(shape(area).set("fill", RED).set("fill-opacity", 0.25))
         .add(stroke(curve, RED, 1.5))
