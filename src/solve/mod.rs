@@ -8,6 +8,7 @@ mod checked;
 pub mod compliance;
 pub mod condensed;
 mod contact_edges;
+pub mod evaluated;
 pub mod factor;
 pub mod iterate;
 pub mod ladder;
@@ -28,6 +29,7 @@ use thiserror::Error;
 use self::accuracy::Outcome;
 pub use self::answers::{ContactBoundary, EnergyBalance};
 pub use self::checked::{MOST_GAUSS_POINTS, MOST_ITERATIONS};
+use self::evaluated::Evaluated;
 pub use self::ladder::{Ladder, LadderError, Level};
 pub use self::route::RouteName;
 pub use self::solution::{GammaReport, Quantities, Solution};
@@ -273,20 +275,20 @@ where
     let mut watch = Stopwatch::start();
     let d = discretize::<E, N, M>(problem, method)?;
     let discretize = watch.lap();
-    let (u, report, times) = solve_discrete(&d, settings)?;
+    let (evaluated, report, times) = solve_discrete(&d, settings)?;
     watch.lap();
-    let solution = Solution::new(&d, u, report);
+    let solution = Solution::new(&d, evaluated, report);
     Ok((solution, Times { discretize, evaluate: watch.lap(), ..times }))
 }
 
-/// Solves a discretization: the displacement at the nodes, how it was found, and how long that took.
+/// Solves a discretization: the displacement with its forces, how it was found, and how long that took.
 ///
 /// # Errors
 /// As [`solve`], but for the data.
 pub fn solve_discrete<E, const N: usize, const M: usize>(
     d: &Discretization<E, N, M>,
     settings: &Settings,
-) -> Result<(Vec<[f64; 2]>, Report, Times), SolveError>
+) -> Result<(Evaluated<M>, Report, Times), SolveError>
 where
     E: ExactEdge<f64, N, M>,
 {
@@ -296,10 +298,15 @@ where
     times.matrix = watch.lap();
     let (outcome, method, factorizations) = route::solve(&system, settings, &mut times)?;
     let status = accuracy::judge(&outcome, settings)?;
-    let Outcome { mut u, residuals, residual, .. } = outcome;
-    held::least_norm(&mut u, d.slides.as_deref().unwrap_or_default());
+    let Outcome { u, fine, residuals, residual, .. } = outcome;
+    let mut evaluated = match fine {
+        Some(fine) => Evaluated::precisely(d, &fine),
+        None => Evaluated::new(d, u),
+    };
+    // This changes neither P nor the forces.
+    held::least_norm(&mut evaluated.u, d.slides.as_deref().unwrap_or_default());
     let newton = NewtonReport { status, residuals, residual, factorizations };
-    Ok((u, Report { newton, method }, times))
+    Ok((evaluated, Report { newton, method }, times))
 }
 
 /// What [`solve`] would solve: everything short of a matrix is built and checked.

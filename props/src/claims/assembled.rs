@@ -29,6 +29,7 @@ use signorini::fem::{
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::{Material, P1, P2, Plane, Triangle};
 use signorini::nalgebra::Vector2;
+use signorini::solve::evaluated::Evaluated;
 use signorini::solve::{MethodReport, NewtonReport, Report, RouteName, Solution, Status};
 
 use crate::bodies::{Body, Definition, Rule, Side, combined, contact_class, sum, whole};
@@ -798,7 +799,7 @@ where
     E: ExactEdge<f64, N, M>,
 {
     let flat = |field: &[[f64; 2]]| field.as_flattened().to_vec();
-    let solution = Solution::new(d, u.to_vec(), unsolved());
+    let solution = Solution::new(d, Evaluated::new(d, u.to_vec()), unsolved());
     let q = &solution.quantities;
     let local = |triangle: usize| d.space.on_triangle(triangle, u);
     // In order along the edge.
@@ -1039,7 +1040,8 @@ where
     let lengths = sum(&exact.body.contact, |side| side.length);
     // Root, difference, product, sum.
     let slack = lengths * Exact::of_double(12.0 * UNIT);
-    let length = Solution::new(d, u.to_vec(), unsolved()).quantities.contact_length;
+    let length =
+        Solution::new(d, Evaluated::new(d, u.to_vec()), unsolved()).quantities.contact_length;
     let length = Exact::of_double(length);
     measure(-1.0) - slack <= length && length <= measure(1.0) + slack
 }
