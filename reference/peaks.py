@@ -1,4 +1,5 @@
-"""Peak pressures on curved contact lines by a third program: it shares no code, no method and no mesh with the other two.
+"""Peak pressures on curved contact lines by a third program, for tests/suite/peaks.rs: it shares no code, no method and no mesh with the
+other two.
 
     min 1/2 a(u, u)   over u with u . n_j <= g_j at every node j of the contact line
 

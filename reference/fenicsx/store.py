@@ -28,14 +28,10 @@ COMMAND = "PYTHONPATH=reference python3 -m fenicsx.store"
 TOLERANCE = 1e-11
 
 
-# Several of its contact edges set kappa, and the two programs name different ones.
-NOT_COMPARED = {"bracket"}
-
-
 def cases():
     """{name: case file}"""
     files = [*sorted((ROOT / "cases").glob("*.toml")), *sorted((ROOT / "reference" / "cases").glob("*.toml"))]
-    return {file.stem: file for file in files if file.stem not in NOT_COMPARED}
+    return {file.stem: file for file in files}
 
 
 def fresh(file):

@@ -84,7 +84,7 @@ pub struct Coercivity {
     pub constant: f64,
     /// The median of the same over the triangles.
     pub typical: f64,
-    /// An edge of the triangle where the maximum is attained, by its two ends.
+    /// The contact edge where the maximum is attained, by its two ends; of several, the first in the order of these.
     pub limiting_edge: [[f64; 2]; 2],
 }
 
@@ -101,16 +101,19 @@ impl Coercivity {
         let constants = constants::<E, N, M>(problem, &edges, &Sight::new(problem))?;
         let mut sorted: Vec<f64> = constants.values().copied().collect();
         sorted.sort_unstable_by(f64::total_cmp);
-        let typical = sorted.get(sorted.len() / 2).copied().unwrap_or_default();
-        let mut worst: Option<Coercivity> = None;
-        for (edge, _) in edges {
-            let constant = constants[&edge.triangle];
-            if worst.is_none_or(|w| constant > w.constant) {
-                let limiting_edge = mesh.ends(edge).map(|v| mesh.vertices()[v]);
-                worst = Some(Coercivity { constant, typical, limiting_edge });
-            }
-        }
-        worst.ok_or(DataError::NoContact)
+        let typical = sorted.get(sorted.len() / 2).copied().ok_or(DataError::NoContact)?;
+        let constant = sorted.last().copied().ok_or(DataError::NoContact)?;
+        // Equal edges differ by rounding: the choice must not.
+        let equal =
+            edges.iter().filter(|(e, _)| constants[&e.triangle] >= constant * (1.0 - 1e-12));
+        let ends = |(edge, _): &(BoundaryEdge, &str)| {
+            let mut ends = mesh.ends(*edge).map(|v| mesh.vertices()[v]);
+            ends.sort_by(order);
+            ends
+        };
+        let first = equal.map(ends).min_by(|[a, b], [c, d]| order(a, c).then(order(b, d)));
+        let limiting_edge = first.ok_or(DataError::NoContact)?;
+        Ok(Coercivity { constant, typical, limiting_edge })
     }
 
     /// The gamma0 at which kappa = 1: below it, J_h is strictly convex.
@@ -151,6 +154,11 @@ fn constants<E: Element<N, M>, const N: usize, const M: usize>(
         (t, coercivity_constant::<E, f64, N, M>(material, h, length, area))
     };
     Ok(lengths.into_iter().map(constant).collect())
+}
+
+/// Points by x, then by y.
+fn order(a: &[f64; 2], b: &[f64; 2]) -> std::cmp::Ordering {
+    a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]))
 }
 
 /// The edges of all contact boundaries with the names of these, each boundary in chains along the boundary.

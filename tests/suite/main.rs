@@ -22,6 +22,7 @@ mod held;
 mod method;
 mod parts;
 mod patch;
+mod peaks;
 mod reference;
 mod routes;
 #[cfg(feature = "cli")]
