@@ -16,7 +16,8 @@
 //! **The start.** A body that bends, started as if without contact, lets go of about one edge a step. So the springs are soft
 //! at first: s Psi in place of Psi, with s so small that contact and body are equally stiff, and then [`STIFFENING`] times
 //! stiffer with each step or more, until s = 1. From there on it is Newton's method on J_h, from a start that knows something. Going
-//! to the body without contact counts as a step where it takes one.
+//! to the body without contact counts as a step where it takes one. A start that is given ([`super::course`]) needs no soft
+//! springs.
 
 use super::SolveError;
 
@@ -36,12 +37,11 @@ pub trait Body<const M: usize> {
     fn y(&self) -> &[f64];
     /// The residual of (8) at the iterate, relative, where Psi has the derivatives `at`; and how much of it may be noise.
     fn residual(&self, at: &Derivatives<M>) -> Residual;
-    /// Goes to the body without contact, as far as it holds without, and says how much stiffer contact is there than the
-    /// body: the largest eigenvalue of B^T Psi'' B with regard to A, roughly.
+    /// Goes to the start.
     ///
     /// # Errors
     /// As [`Body::step`].
-    fn start(&mut self, edges: &impl Edges<M>) -> Result<f64, SolveError>;
+    fn start(&mut self, edges: &impl Edges<M>) -> Result<Start, SolveError>;
     /// The Newton step from the iterate.
     ///
     /// # Errors
@@ -49,6 +49,16 @@ pub trait Body<const M: usize> {
     fn step(&mut self, at: &Derivatives<M>) -> Result<Step, SolveError>;
     /// Moves the iterate by `t` times `step`, the last one.
     fn advance(&mut self, t: f64, step: &Step);
+}
+
+/// Where Newton's method starts.
+#[derive(Clone, Copy, Debug)]
+pub enum Start {
+    /// At the body without contact, as far as it holds without. Contact is that much stiffer there than the body: the largest
+    /// eigenvalue of B^T Psi'' B with regard to A, roughly.
+    Free(f64),
+    /// One step from a start that was given.
+    Given,
 }
 
 /// The size of a residual.
@@ -124,9 +134,14 @@ pub fn minimise<const M: usize>(
     let (mut stiffness, mut stiffening) = (1.0, STIFFENING);
     if first {
         residuals.push(body.residual(&derivatives(edges, body.y())).norm);
-        let contact = body.start(edges)?.max(1.0);
-        stiffness = 1.0 / contact;
-        stiffening = contact.powf(1.0 / STAGES).max(STIFFENING);
+        match body.start(edges)? {
+            Start::Free(contact) => {
+                let contact = contact.max(1.0);
+                stiffness = 1.0 / contact;
+                stiffening = contact.powf(1.0 / STAGES).max(STIFFENING);
+            }
+            Start::Given => residuals.push(body.residual(&derivatives(edges, body.y())).norm),
+        }
     }
     let mut at = derivatives(edges, body.y());
     let mut largest: f64 = 0.0;
