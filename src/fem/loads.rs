@@ -136,7 +136,7 @@ fn add_on_boundary<E: Element<N, M>, const N: usize, const M: usize>(
         let (length, normal) = space.mesh().length_and_normal(edge);
         let ends = space.mesh().ends(edge).map(|vertex| space.mesh().vertices()[vertex]);
         let nodes = space.edge_nodes(edge);
-        rule.on_edge(ends, [], |point| match value(point.x, normal) {
+        rule.on_edge(ends, [], |point| match value(point.x, normal.into()) {
             Ok(t) => {
                 let shapes: [f64; M] = E::edge_values(point.s);
                 add(load, c, &nodes, &shapes, point.weight * length * t);

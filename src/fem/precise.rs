@@ -1,6 +1,8 @@
 //! The linear part of (8) at a displacement that is known to more than double precision, evaluated from the definitions in
 //! [twofold](crate::fem::twofold) numbers: what is left of forces that cancel is then known to the last bit of a double.
 
+use nalgebra::Vector2;
+
 use super::discretization::Discretization;
 use crate::fem::twofold::Twofold;
 use crate::kernel::edge_integral::ExactEdge;
@@ -22,7 +24,7 @@ where
     for (t, (triangle, nodes)) in d.space.triangles().enumerate() {
         let triangle = exact(triangle);
         let material = d.problem.material.of(t).map(Twofold::from);
-        let nodal = d.space.elements()[t].map(|node| u[node]);
+        let nodal = d.space.elements()[t].map(|node| Vector2::from(u[node]));
         let barycentric = triangle.barycentric_gradients();
         let area = triangle.double_area() / Twofold::from(2);
         E::at_stiffness_points(|l: [Twofold; 3], weight| {
@@ -31,7 +33,7 @@ where
             for (&node, g) in nodes.iter().zip(gradients) {
                 let force = stress.traction(g);
                 for c in 0..2 {
-                    forces[node][c] = forces[node][c] + weight * area * force[c];
+                    forces[node][c] += weight * area * force[c];
                 }
             }
         });
@@ -39,7 +41,7 @@ where
     let mut p = Vec::with_capacity(M * d.contact.len());
     for edge in &d.contact {
         let nodes = &d.space.elements()[edge.edge.triangle];
-        let nodal = nodes.map(|node| u[node]);
+        let nodal = nodes.map(|node| Vector2::from(u[node]));
         let triangle = exact(d.space.mesh().triangle(edge.edge.triangle));
         let n = edge.normal.map(Twofold::from);
         let material = d.problem.material.of(edge.edge.triangle).map(Twofold::from);
@@ -50,7 +52,7 @@ where
             let along = edge.directions.map(|d| d.map(Twofold::from));
             ContactEdge::along::<E>(&triangle, edge.edge.local, n, &along, &material, gamma)
         };
-        let apply = |functional: &[[Twofold; 2]; N]| {
+        let apply = |functional: &[Vector2<Twofold>; N]| {
             functional.iter().zip(&nodal).fold(zero, |sum, (f, u)| sum + f[0] * u[0] + f[1] * u[1])
         };
         for a in 0..M {
@@ -63,7 +65,7 @@ where
         for (functional, factor) in functionals.sigma_n.iter().zip(stress) {
             for (&node, f) in nodes.iter().zip(functional) {
                 for c in 0..2 {
-                    forces[node][c] = forces[node][c] + factor * f[c];
+                    forces[node][c] += factor * f[c];
                 }
             }
         }
@@ -118,7 +120,7 @@ mod tests {
         }
         let shift = 2.0_f64.powi(-90);
         for u in &mut fine {
-            u[1] = u[1] + Twofold::from(shift);
+            u[1] += Twofold::from(shift);
         }
         let (_, moved) = evaluate(&d, &fine);
         // A translation by shift along y changes u_n by -shift and no stress.

@@ -20,6 +20,7 @@ use super::result::{
 use super::vtu::{CellKind, Field, Grid, Values, vtu};
 use crate::certify::{CertifyError, Continuous, certify};
 use crate::fem;
+use crate::kernel::Stress;
 use crate::memory::{self, OutOfMemory};
 use crate::solve::solution::ContactValues;
 use crate::solve::{Solution, Times};
@@ -275,7 +276,11 @@ fn remarks(case: &Case, solution: &Solution) -> Vec<String> {
 }
 
 fn solution_vtu(s: &Solution, indicators: Option<&[f64]>) -> Result<Vec<u8>, DataError> {
-    let stress: Vec<[f64; 4]> = s.stress.iter().map(|(t, zz)| [t.xx, t.yy, *zz, t.xy]).collect();
+    let all = |(stress, zz): &(Stress<f64>, f64)| {
+        let [xx, yy, xy] = stress.components();
+        [xx, yy, *zz, xy]
+    };
+    let stress: Vec<[f64; 4]> = s.stress.iter().map(all).collect();
     let mut cell_data = vec![
         Field { name: "stress", values: Values::SymmetricTensors(&stress) },
         Field { name: "von_mises", values: Values::Scalars(&s.von_mises) },

@@ -224,15 +224,15 @@ where
             let barycentric = triangle.barycentric_gradients();
             let nodal = d.space.on_triangle(t, u);
             let material = d.problem.material.of(t);
-            let mut mean = Stress { xx: 0.0, yy: 0.0, xy: 0.0 };
+            let mut mean = [0.0; 3];
             E::at_stiffness_points(|l, weight| {
                 let gradients = E::gradients(l, barycentric);
                 let s = material.stress(displacement_gradient(&nodal, &gradients));
-                mean.xx += weight * s.xx;
-                mean.yy += weight * s.yy;
-                mean.xy += weight * s.xy;
+                for (mean, s) in mean.iter_mut().zip(s.components()) {
+                    *mean += weight * s;
+                }
             });
-            mean
+            Stress::new(mean)
         })
         .collect()
 }
@@ -261,7 +261,7 @@ where
                 let [x, y] = u[nodes[a]];
                 ContactValues {
                     node: nodes[a],
-                    direction: edge.directions[a],
+                    direction: edge.directions[a].into(),
                     arc: start + positions[a] * edge.length,
                     u_n: x * edge.directions[a][0] + y * edge.directions[a][1],
                     gap: edge.gap[a],
@@ -273,7 +273,7 @@ where
             .collect();
         points.sort_by(|a, b| a.arc.total_cmp(&b.arc));
         let boundary = Arc::clone(&edge.boundary);
-        line.push(ContactEdgeValues { triangle, boundary, normal: edge.normal, points });
+        line.push(ContactEdgeValues { triangle, boundary, normal: edge.normal.into(), points });
         start += edge.length;
     }
     line
