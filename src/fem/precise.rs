@@ -3,6 +3,7 @@
 
 use nalgebra::Vector2;
 
+use super::contact_line::ContactLineEdge;
 use super::discretization::Discretization;
 use crate::fem::twofold::Twofold;
 use crate::kernel::edge_integral::ExactEdge;
@@ -18,7 +19,6 @@ where
     E: ExactEdge<f64, N, M>,
 {
     let zero = Twofold::from(0);
-    let exact = |t: Triangle<f64>| Triangle { vertices: t.vertices.map(|x| x.map(Twofold::from)) };
     let mut forces: Vec<[Twofold; 2]> =
         d.load.iter().map(|l| l.map(|l| -Twofold::from(l))).collect();
     for (t, (triangle, nodes)) in d.space.triangles().enumerate() {
@@ -42,16 +42,7 @@ where
     for edge in &d.contact {
         let nodes = &d.space.elements()[edge.edge.triangle];
         let nodal = nodes.map(|node| Vector2::from(u[node]));
-        let triangle = exact(d.space.mesh().triangle(edge.edge.triangle));
-        let n = edge.normal.map(Twofold::from);
-        let material = d.problem.material.of(edge.edge.triangle).map(Twofold::from);
-        let gamma = Twofold::from(edge.gamma);
-        let functionals = if edge.directions == [edge.normal; M] {
-            ContactEdge::<Twofold, N, M>::new::<E>(&triangle, edge.edge.local, n, &material, gamma)
-        } else {
-            let along = edge.directions.map(|d| d.map(Twofold::from));
-            ContactEdge::along::<E>(&triangle, edge.edge.local, n, &along, &material, gamma)
-        };
+        let functionals = functionals(d, edge);
         let apply = |functional: &[Vector2<Twofold>; N]| {
             functional.iter().zip(&nodal).fold(zero, |sum, (f, u)| sum + f[0] * u[0] + f[1] * u[1])
         };
@@ -71,6 +62,30 @@ where
         }
     }
     (forces.into_iter().map(|f| f.map(Twofold::head)).collect(), p)
+}
+
+fn exact(t: Triangle<f64>) -> Triangle<Twofold> {
+    Triangle { vertices: t.vertices.map(|x| x.map(Twofold::from)) }
+}
+
+/// P0 and sigma_n on a contact edge.
+pub fn functionals<E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    edge: &ContactLineEdge<N, M>,
+) -> ContactEdge<Twofold, N, M>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let triangle = exact(d.space.mesh().triangle(edge.edge.triangle));
+    let n = edge.normal.map(Twofold::from);
+    let material = d.problem.material.of(edge.edge.triangle).map(Twofold::from);
+    let gamma = Twofold::from(edge.gamma);
+    if edge.directions == [edge.normal; M] {
+        ContactEdge::new::<E>(&triangle, edge.edge.local, n, &material, gamma)
+    } else {
+        let along = edge.directions.map(|d| d.map(Twofold::from));
+        ContactEdge::along::<E>(&triangle, edge.edge.local, n, &along, &material, gamma)
+    }
 }
 
 #[cfg(test)]

@@ -9,9 +9,11 @@ pub mod compliance;
 pub mod condensed;
 mod contact_edges;
 pub mod course;
+pub mod evaluated;
 pub mod factor;
 pub mod iterate;
 pub mod ladder;
+pub mod ldl;
 mod memory;
 pub mod newton;
 pub mod ordering;
@@ -29,6 +31,7 @@ use self::accuracy::Outcome;
 pub use self::answers::{ContactBoundary, EnergyBalance};
 pub use self::checked::{MOST_GAUSS_POINTS, MOST_ITERATIONS};
 pub use self::course::{Course, Phase};
+use self::evaluated::Evaluated;
 pub use self::ladder::{Ladder, LadderError, Level};
 pub use self::route::RouteName;
 pub use self::solution::{GammaReport, Quantities, Solution};
@@ -114,7 +117,7 @@ impl Default for Method {
 
 impl Default for Settings {
     fn default() -> Self {
-        Settings { tolerance: 1e-10, max_iterations: 50 }
+        Settings { tolerance: 1e-10, max_iterations: 200 }
     }
 }
 
@@ -290,24 +293,25 @@ where
     course.enters(Phase::Assemble);
     let d = discretize::<E, N, M>(problem, method)?;
     let discretize = watch.lap();
-    let (u, report, times) = match (solve_discrete_along(&d, settings, course), course.afresh()) {
-        (Err(_), Some(afresh)) => solve_discrete_along(&d, settings, afresh)?,
-        (solved, _) => solved?,
-    };
+    let (evaluated, report, times) =
+        match (solve_discrete_along(&d, settings, course), course.afresh()) {
+            (Err(_), Some(afresh)) => solve_discrete_along(&d, settings, afresh)?,
+            (solved, _) => solved?,
+        };
     course.enters(Phase::Evaluate);
     watch.lap();
-    let solution = Solution::new(&d, u, report);
+    let solution = Solution::new(&d, evaluated, report);
     Ok((solution, Times { discretize, evaluate: watch.lap(), ..times }))
 }
 
-/// Solves a discretization: the displacement at the nodes, how it was found, and how long that took.
+/// Solves a discretization: the displacement with its forces, how it was found, and how long that took.
 ///
 /// # Errors
 /// As [`solve`], but for the data.
 pub fn solve_discrete<E, const N: usize, const M: usize>(
     d: &Discretization<E, N, M>,
     settings: &Settings,
-) -> Result<(Vec<[f64; 2]>, Report, Times), SolveError>
+) -> Result<(Evaluated<M>, Report, Times), SolveError>
 where
     E: ExactEdge<f64, N, M>,
 {
@@ -318,7 +322,7 @@ fn solve_discrete_along<'d, E, const N: usize, const M: usize>(
     d: &'d Discretization<E, N, M>,
     settings: &Settings,
     course: Course<'d>,
-) -> Result<(Vec<[f64; 2]>, Report, Times), SolveError>
+) -> Result<(Evaluated<M>, Report, Times), SolveError>
 where
     E: ExactEdge<f64, N, M>,
 {
@@ -328,10 +332,15 @@ where
     times.matrix = watch.lap();
     let (outcome, method, factorizations) = route::solve(&system, settings, &mut times)?;
     let status = accuracy::judge(&outcome, settings)?;
-    let Outcome { mut u, residuals, residual, .. } = outcome;
-    held::least_norm(&mut u, d.slides.as_deref().unwrap_or_default());
+    let Outcome { u, fine, residuals, residual, .. } = outcome;
+    let mut evaluated = match fine {
+        Some(fine) => Evaluated::precisely(d, &fine),
+        None => Evaluated::new(d, u),
+    };
+    // This changes neither P nor the forces.
+    held::least_norm(&mut evaluated.u, d.slides.as_deref().unwrap_or_default());
     let newton = NewtonReport { status, residuals, residual, factorizations };
-    Ok((u, Report { newton, method }, times))
+    Ok((evaluated, Report { newton, method }, times))
 }
 
 /// What [`solve`] would solve: everything short of a matrix is built and checked.

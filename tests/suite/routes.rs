@@ -99,7 +99,8 @@ fn stiff_contact_reaches_the_tolerance() {
         let gamma0 = signorini::solve::Gamma0::Value(1e-8 * limit);
         let (s, _) = solve(&problem, &Method { gamma0, ..auto }, &Settings::default()).unwrap();
         assert!(s.newton.residual <= 1e-10, "{:e}", s.newton.residual);
-        assert!(s.newton.iterations() <= 25, "{}", s.newton.iterations());
+        // Some ten stiffnesses on the way, each with a step or a few.
+        assert!(s.newton.iterations() <= 40, "{}", s.newton.iterations());
     }
 }
 
@@ -132,6 +133,7 @@ fn a_lift_that_is_the_solution_has_converged() {
     ]);
     let problem = Problem::new(mesh, material, [constant(0.0), constant(0.0)], conditions);
     let (s, _) = solve(&problem, &method(Degree::One, EXACT), &Settings::default()).unwrap();
-    assert!((s.quantities.contact_force - 0.5).abs() < 1e-13);
+    // Data of one digit, four unknowns: some hundred roundings.
+    approx::assert_abs_diff_eq!(s.quantities.contact_force, 0.5, epsilon = 1e-13);
     assert!(s.newton.residuals.iter().all(|r| r.is_finite()));
 }
