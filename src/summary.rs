@@ -179,16 +179,16 @@ pub fn certified(case: &Case, field: &Path, c: &Continuous, files: &[PathBuf]) -
     let proved = if c.rigorous {
         "proved".to_owned()
     } else {
-        format!("up to quadrature ({})", c.reason.as_deref().unwrap_or_default())
+        format!("with a reservation ({})", c.reason.as_deref().unwrap_or_default())
     };
     lines.line(
         "admissible",
         format!(
-            "{} (energy norm) were changed to satisfy the conditions on displacements",
+            "a displacement that satisfies the conditions is at most {} away (energy norm)",
             short(c.clipping)
         ),
     );
-    lines.line("error", format!("at most {} once admissible: {proved}", size(c.bound)));
+    lines.line("error", format!("at most {} of that one: {proved}", size(c.bound)));
     lines.line("", format!("at most {} as it is", size((c.bound + c.clipping).next_up())));
     lines.line("written", written(files));
     lines.0
@@ -216,7 +216,7 @@ pub fn audited(audit: &Audit) -> String {
         match &header.reason {
             None if header.rigorous => "yes, rounding included".to_owned(),
             reason => {
-                format!("up to quadrature: {}", reason.as_deref().unwrap_or("no reason given"))
+                format!("with a reservation: {}", reason.as_deref().unwrap_or("no reason given"))
             }
         },
     );
@@ -234,7 +234,7 @@ fn distance(certificate: &ContinuousCertificate) -> String {
     if certificate.rigorous {
         format!("energy error at most {size}: proved")
     } else {
-        format!("energy error at most {size}, up to quadrature ({reason})")
+        format!("energy error at most {size}, with a reservation ({reason})")
     }
 }
 
@@ -279,7 +279,8 @@ fn coercivity(gamma: &GammaChoice) -> String {
     let [a, b] = gamma.limiting_edge;
     let verdict = if gamma.kappa < 1.0 { "< 1: coercive" } else { ">= 1: no promise" };
     format!(
-        "gamma0 = {} (limit {} at the edge {}-{}), kappa = {} {verdict}",
+        "gamma0 = {}{} (limit {} at the edge {}-{}), kappa = {} {verdict}",
+        if gamma.local { "on each edge its own, from " } else { "" },
         short(gamma.gamma0),
         short(gamma.limit),
         vector(a),

@@ -19,7 +19,7 @@ use super::result::{
 };
 use super::vtu::{CellKind, Field, Grid, Values, vtu};
 use crate::certify::{CertifyError, Continuous, certify};
-use crate::fem;
+use crate::fem::{self, contact_line::Gamma};
 use crate::kernel::Stress;
 use crate::memory::{self, OutOfMemory};
 use crate::solve::solution::ContactValues;
@@ -244,9 +244,21 @@ const LARGE_STRAIN: f64 = 0.05;
 /// Displacements above this share of the body's size likewise.
 const LARGE_DISPLACEMENT: f64 = 0.1;
 
+/// A triangle whose limit of gamma0 is this many times below the median of the line spoils the line.
+const SLIVER: f64 = 8.0;
+
 /// What a person should know before the numbers are used.
 fn remarks(case: &Case, solution: &Solution) -> Vec<String> {
     let mut remarks = Vec::new();
+    let coercivity = solution.gamma.coercivity;
+    let uniform = matches!(solution.gamma.gamma, Gamma::Uniform(_));
+    if uniform && coercivity.constant > SLIVER * coercivity.typical {
+        let [[a, b], [c, d]] = coercivity.limiting_edge;
+        remarks.push(format!(
+            "the triangle at the contact edge from ({}, {}) to ({}, {}) sets gamma0 for the whole line, {:.0} times below what half of its triangles allow; method.kappa = 0.5 lets each edge have its own",
+            short(a, 3), short(b, 3), short(c, 3), short(d, 3), coercivity.constant / coercivity.typical
+        ));
+    }
     let length = case.units.as_ref().map_or(String::new(), |units| format!(" {}", units.length));
     let strain = solution.largest_strain;
     if strain > LARGE_STRAIN {

@@ -39,7 +39,7 @@ use self::system::System;
 pub use self::theorem::Theorem;
 use self::times::Stopwatch;
 pub use self::times::Times;
-use crate::fem::contact_line::{Coercivity, EdgeRule};
+use crate::fem::contact_line::{Coercivity, EdgeRule, Gamma};
 use crate::fem::{DataError, Discretization, MeshError, Problem, held};
 use crate::kernel::edge_integral::ExactEdge;
 use crate::kernel::{P1, P2};
@@ -84,6 +84,9 @@ pub enum Gamma0 {
     Auto,
     /// This value.
     Value(f64),
+    /// On each contact edge its own, such that kappa is this number on each triangle with edges on Gamma_C: one sliver does
+    /// not set gamma for the whole line. The same as [`Gamma0::Auto`] for 0.5 where all these triangles are alike.
+    Local(f64),
 }
 
 /// How the contact terms are integrated along an edge.
@@ -394,15 +397,16 @@ where
     E: ExactEdge<f64, N, M>,
 {
     method.check()?;
-    let gamma0 = |c: &Coercivity| match method.gamma0 {
-        Gamma0::Auto => c.limit() / 2.0,
-        Gamma0::Value(gamma0) => gamma0,
+    let gamma = |c: &Coercivity| match method.gamma0 {
+        Gamma0::Auto => Gamma::Uniform(c.limit() / 2.0),
+        Gamma0::Value(gamma0) => Gamma::Uniform(gamma0),
+        Gamma0::Local(kappa) => Gamma::Local(kappa),
     };
     let rule = match method.quadrature {
         ContactQuadrature::Exact => EdgeRule::Exact,
         ContactQuadrature::Gauss(points) => EdgeRule::gauss(points),
     };
-    let d = Discretization::new(problem, gamma0, rule)?;
+    let d = Discretization::new(problem, gamma, rule)?;
     if d.kappa() < 1.0 || method.allow_noncoercive {
         Ok(d)
     } else {

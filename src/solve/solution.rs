@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::answers::{self, ContactBoundary, EnergyBalance};
 use super::evaluated::Evaluated;
 use super::{MethodReport, NewtonReport, Report};
-use crate::fem::contact_line::{self, Coercivity};
+use crate::fem::contact_line::{self, Coercivity, Gamma};
 use crate::fem::discretization::{Discretization, inner};
 use crate::fem::{DataError, Errors, ExactSolution, Problem, Space};
 use crate::kernel::contact::pressure;
@@ -57,7 +57,9 @@ pub struct Solution {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct GammaReport {
-    /// gamma0 of (7), in 1 / stress.
+    /// gamma along Gamma_C.
+    pub gamma: Gamma,
+    /// gamma0 of (7), or the smallest where each triangle has its own, in 1 / stress.
     pub gamma0: f64,
     /// kappa = gamma0 C_h.
     pub kappa: f64,
@@ -183,7 +185,7 @@ impl Solution {
         exact: &dyn ExactSolution,
     ) -> Result<Errors, DataError> {
         let space = Space::<E, N, M>::new(&problem.mesh);
-        let contact = contact_line::assemble(problem, &space, self.gamma.gamma0)?;
+        let contact = contact_line::assemble(problem, &space, self.gamma.gamma)?;
         Ok(Errors::new(&space, &contact, &self.displacement, exact))
     }
 
@@ -206,7 +208,8 @@ impl GammaReport {
     where
         E: ExactEdge<f64, N, M>,
     {
-        GammaReport { gamma0: d.gamma0, kappa: d.kappa(), coercivity: d.coercivity }
+        let (kappa, coercivity) = (d.kappa(), d.coercivity);
+        GammaReport { gamma: d.gamma, gamma0: d.gamma0, kappa, coercivity }
     }
 }
 
