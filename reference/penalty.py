@@ -85,6 +85,7 @@ def main():
     if arguments.nx:
         resize(case, arguments.nx)
     problem = Problem(case, MPI.COMM_SELF)
+    problem.refuse(None if problem.straight else "the penalty method here takes straight lines of contact with a gap")
     arguments.out.mkdir(parents=True, exist_ok=True)
     start = None
     for eps in sorted(arguments.eps, reverse=True):
