@@ -196,7 +196,7 @@ pub fn certified(case: &Case, field: &Path, c: &Continuous, files: &[PathBuf]) -
 
 /// Of a certificate that was verified.
 pub fn audited(audit: &Audit) -> String {
-    let Audit { header, proof } = audit;
+    let Audit { header, proof, .. } = audit;
     let mut lines = Lines::titled(&header.title);
     let counts = header.counts;
     lines.line(

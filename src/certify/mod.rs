@@ -34,6 +34,7 @@ const PER_TRIANGLE: u64 = 3000;
 
 /// A bound of the distance from the true solution.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Continuous {
     /// |u - v|_a is at most this.
     pub bound: f64,
@@ -160,6 +161,7 @@ fn squared_distances(problem: &Problem, v: &[[f64; 2]], w: &[[f64; 2]]) -> Vec<f
 /// Why there is no certificate.
 #[derive(Clone, Debug, thiserror::Error, PartialEq)]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
+#[non_exhaustive]
 pub enum CertifyError {
     #[error(transparent)]
     Data(#[from] DataError),

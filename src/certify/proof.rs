@@ -193,6 +193,7 @@ const IMBALANCE: f64 = 128.0 * f64::EPSILON;
 /// Why a certificate proves nothing.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
+#[non_exhaustive]
 pub enum Rejection {
     #[error("{what} has {found} entries; expected {expected}")]
     Length { what: &'static str, found: usize, expected: usize },

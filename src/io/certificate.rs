@@ -80,6 +80,7 @@ pub struct Counts {
 /// Why a certificate is not accepted.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
+#[non_exhaustive]
 pub enum AuditError {
     #[error("{}: {error}", quote::path(path))]
     Read { path: PathBuf, error: InputError },
@@ -91,6 +92,7 @@ pub enum AuditError {
 
 /// What an audit found.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Audit {
     /// What is claimed.
     pub header: Header,

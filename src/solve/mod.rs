@@ -8,6 +8,7 @@ mod checked;
 pub mod compliance;
 pub mod condensed;
 mod contact_edges;
+pub mod course;
 pub mod evaluated;
 pub mod factor;
 pub mod iterate;
@@ -29,6 +30,7 @@ use thiserror::Error;
 use self::accuracy::Outcome;
 pub use self::answers::{ContactBoundary, EnergyBalance};
 pub use self::checked::{MOST_GAUSS_POINTS, MOST_ITERATIONS};
+pub use self::course::{Course, Phase};
 use self::evaluated::Evaluated;
 pub use self::ladder::{Ladder, LadderError, Level};
 pub use self::route::RouteName;
@@ -187,6 +189,7 @@ pub struct Report {
 /// Why there is no solution.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
+#[non_exhaustive]
 pub enum SolveError {
     #[error(transparent)]
     Data(#[from] DataError),
@@ -260,10 +263,23 @@ pub fn solve(
     method: &Method,
     settings: &Settings,
 ) -> Result<(Solution, Times), SolveError> {
+    solve_along(problem, method, settings, Course::default())
+}
+
+/// The same from a given start, or with somebody who watches. A start that leads nowhere is left for the usual one.
+///
+/// # Errors
+/// As [`solve`].
+pub fn solve_along(
+    problem: &Problem,
+    method: &Method,
+    settings: &Settings,
+    course: Course,
+) -> Result<(Solution, Times), SolveError> {
     settings.check()?;
     match method.degree {
-        Degree::One => solve_with::<P1, 3, 2>(problem, method, settings),
-        Degree::Two => solve_with::<P2, 6, 3>(problem, method, settings),
+        Degree::One => solve_with::<P1, 3, 2>(problem, method, settings, course),
+        Degree::Two => solve_with::<P2, 6, 3>(problem, method, settings, course),
     }
 }
 
@@ -271,14 +287,21 @@ fn solve_with<E, const N: usize, const M: usize>(
     problem: &Problem,
     method: &Method,
     settings: &Settings,
+    course: Course,
 ) -> Result<(Solution, Times), SolveError>
 where
     E: ExactEdge<f64, N, M>,
 {
     let mut watch = Stopwatch::start();
+    course.enters(Phase::Assemble);
     let d = discretize::<E, N, M>(problem, method)?;
     let discretize = watch.lap();
-    let (evaluated, report, times) = solve_discrete(&d, settings)?;
+    let (evaluated, report, times) =
+        match (solve_discrete_along(&d, settings, course), course.afresh()) {
+            (Err(_), Some(afresh)) => solve_discrete_along(&d, settings, afresh)?,
+            (solved, _) => solved?,
+        };
+    course.enters(Phase::Evaluate);
     watch.lap();
     let solution = Solution::new(&d, evaluated, report);
     Ok((solution, Times { discretize, evaluate: watch.lap(), ..times }))
@@ -295,9 +318,20 @@ pub fn solve_discrete<E, const N: usize, const M: usize>(
 where
     E: ExactEdge<f64, N, M>,
 {
+    solve_discrete_along(d, settings, Course::default())
+}
+
+fn solve_discrete_along<'d, E, const N: usize, const M: usize>(
+    d: &'d Discretization<E, N, M>,
+    settings: &Settings,
+    course: Course<'d>,
+) -> Result<(Evaluated<M>, Report, Times), SolveError>
+where
+    E: ExactEdge<f64, N, M>,
+{
     let mut times = Times::default();
     let mut watch = Stopwatch::start();
-    let system = System::new(d)?;
+    let system = System::on(d, course)?;
     times.matrix = watch.lap();
     let (outcome, method, factorizations) = route::solve(&system, settings, &mut times)?;
     let status = accuracy::judge(&outcome, settings)?;
@@ -325,6 +359,7 @@ pub fn check(problem: &Problem, method: &Method) -> Result<Outline, SolveError> 
 
 /// The size of a discrete problem and its coercivity.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Outline {
     /// How many nodes there are; each has two degrees of freedom.
     pub nodes: usize,

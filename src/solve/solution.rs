@@ -19,6 +19,7 @@ use crate::kernel::{Element, P1, P2, Stress};
 
 /// The solution of method (8), independent of the element that it was computed with.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Solution {
     /// The polynomial degree.
     pub degree: usize,
@@ -54,6 +55,7 @@ pub struct Solution {
 
 /// gamma0 and the coercivity number.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct GammaReport {
     /// gamma along Gamma_C.
     pub gamma: Gamma,
@@ -67,6 +69,7 @@ pub struct GammaReport {
 
 /// One edge of Gamma_C: its nodes and the values there, in order along the edge.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ContactEdgeValues {
     /// The triangle that owns the edge.
     pub triangle: usize,
@@ -80,6 +83,7 @@ pub struct ContactEdgeValues {
 
 /// The values at a node of a contact edge, as its edge has them: sigma_n jumps from edge to edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ContactValues {
     /// The node.
     pub node: usize,
@@ -102,6 +106,7 @@ pub struct ContactValues {
 /// Scalars of a solution, in the units of the case.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
+#[non_exhaustive]
 pub struct Quantities {
     /// a(u, u)
     pub energy: f64,

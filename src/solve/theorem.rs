@@ -15,6 +15,7 @@ use crate::kernel::{P1, P2};
 
 /// The two sides and their ingredients.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Theorem {
     /// kappa = gamma0 C_h < 1.
     pub kappa: f64,

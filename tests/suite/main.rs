@@ -12,6 +12,7 @@ mod command;
 mod convergence;
 #[cfg(feature = "cli")]
 mod convergence_command;
+mod course;
 mod documents;
 #[cfg(all(feature = "cli", unix))]
 mod doors;

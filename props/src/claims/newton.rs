@@ -6,7 +6,7 @@
 
 use proptest::prelude::*;
 use signorini::solve::accuracy::{self, Outcome as Solved};
-use signorini::solve::newton::{self, Derivatives, Edges, Residual, Step, Until};
+use signorini::solve::newton::{self, Derivatives, Edges, Residual, Start, Step, Until};
 use signorini::solve::{Settings, SolveError, Status};
 
 use crate::claim::{Claim, Engine, Outcome, by, control};
@@ -108,8 +108,8 @@ impl newton::Body<1> for Body {
         Residual { norm: dot(&r, &r).sqrt() / reference, noise }
     }
 
-    fn start(&mut self, _: &impl Edges<1>) -> Result<f64, SolveError> {
-        Ok(1.0)
+    fn start(&mut self, _: &impl Edges<1>) -> Result<Start, SolveError> {
+        Ok(Start::Free(1.0))
     }
 
     fn step(&mut self, at: &Derivatives<1>) -> Result<Step, SolveError> {
