@@ -224,6 +224,14 @@ pub const ITEMS: &[Item] = &[
                         "lemma_3_2_holds_with_constants_without_h",
                     ],
                 ),
+                (
+                    "20",
+                    &[
+                        "traction_along_a_turning_direction_is_bounded_by_its_factor",
+                        "traction_of_p1_needs_no_factor",
+                        "bound_11_holds_along_turning_directions",
+                    ],
+                ),
             ],
             "Korn's inequality",
         ),
@@ -249,6 +257,14 @@ pub const ITEMS: &[Item] = &[
                         "shape_regularity_bounds_edge_and_diameter_by_the_area",
                         "the_constant_of_11_depends_on_shape_and_material_alone",
                         "lemma_3_2_holds_with_constants_without_h",
+                    ],
+                ),
+                (
+                    "20",
+                    &[
+                        "traction_along_a_turning_direction_is_bounded_by_its_factor",
+                        "traction_of_p1_needs_no_factor",
+                        "bound_11_holds_along_turning_directions",
                     ],
                 ),
             ],

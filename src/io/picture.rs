@@ -934,7 +934,7 @@ mod tests {
         };
         let (own, peaks) = lines(&[0, 1]);
         assert!((own[0] - own[1]).abs() < 1e-12 && own[0] > 0.1, "{own:?}");
-        assert_eq!(peaks, ["peak 0.5", "peak 0.0005"]);
+        assert_eq!(peaks, ["peak 0.5", "peak 5e-4"]);
         let (common, peaks) = lines(&[0, 0]);
         assert!(common[1] < 0.01 * common[0] && peaks == ["peak 0.5"], "{common:?} {peaks:?}");
     }

@@ -42,6 +42,7 @@ pub struct ContactBoundary {
     /// The measure of {P > 0}.
     pub length: f64,
     /// The ends of each stretch with contact, in the undeformed body, in the direction of the boundary.
+    #[cfg_attr(feature = "files", serde(default))]
     pub stretches: Vec<[[f64; 2]; 2]>,
     /// The largest recovered pressure.
     pub peak_pressure: f64,

@@ -158,7 +158,8 @@ pub fn traction_along_a_turning_direction_is_bounded_by_its_factor<S: Ordered>(
     ensure!(factor * (second * second) >= zero);
     ensure!(factor * (one - c) * (third * third) >= zero);
     ensure!(squares >= zero);
-    ensure!(along <= factor * whole);
+    // Divided by 4 q > 0 it is the bound.
+    ensure!(q * (factor * whole - along) >= zero);
     Verdict::Holds("always")
 }
 
@@ -502,6 +503,10 @@ pub fn direction() -> Claim {
         ),
         proved(
             statement!(traction_of_p1_needs_no_factor, [a, b, c, s], ["always"])
+                .with_hints(|v| {
+                    let [a, b, c, s] = take(v);
+                    vec![a - (a * c + b * s), b * c - a * s]
+                })
                 .prepared(unit_at_2),
         ),
         by(
