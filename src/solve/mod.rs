@@ -8,9 +8,11 @@ mod checked;
 pub mod compliance;
 pub mod condensed;
 mod contact_edges;
+pub mod enclosure;
 pub mod factor;
 pub mod iterate;
 pub mod ladder;
+pub mod limit;
 mod memory;
 pub mod newton;
 pub mod ordering;
@@ -27,7 +29,9 @@ use thiserror::Error;
 use self::accuracy::Outcome;
 pub use self::answers::{ContactBoundary, EnergyBalance};
 pub use self::checked::{MOST_GAUSS_POINTS, MOST_ITERATIONS};
+pub use self::enclosure::{Enclosure, Intervals, Unproved};
 pub use self::ladder::{Ladder, LadderError, Level};
+pub use self::limit::{NoLimit, TrueLimit};
 pub use self::route::RouteName;
 pub use self::solution::{GammaReport, Quantities, Solution};
 use self::system::System;
@@ -176,6 +180,10 @@ pub struct Report {
     pub newton: NewtonReport,
     /// The route and the accuracy.
     pub method: MethodReport,
+    /// Where the exact solution of (8) is, or why nothing is proved of it.
+    pub enclosure: enclosure::Certificate,
+    /// The true limit of gamma0, or why it is not known.
+    pub limit: Result<TrueLimit, NoLimit>,
 }
 
 /// Why there is no solution.
@@ -293,12 +301,20 @@ where
     let mut watch = Stopwatch::start();
     let system = System::new(d)?;
     times.matrix = watch.lap();
-    let (outcome, method, factorizations) = route::solve(&system, settings, &mut times)?;
+    let (outcome, method, factorizations, factor) = route::solve(&system, settings, &mut times)?;
     let status = accuracy::judge(&outcome, settings)?;
     let Outcome { mut u, residuals, residual, .. } = outcome;
     held::least_norm(&mut u, d.slides.as_deref().unwrap_or_default());
     let newton = NewtonReport { status, residuals, residual, factorizations };
-    Ok((u, Report { newton, method }, times))
+    watch.lap();
+    let limit = match &factor {
+        Some(factor) => limit::true_limit(&system, factor, d.gamma0),
+        None if d.slides.is_some() => Err(NoLimit::HeldByContact),
+        None => Err(NoLimit::Assembled),
+    };
+    let enclosure = enclosure::enclose(&system, &u, factor);
+    times.certify = watch.lap();
+    Ok((u, Report { newton, method, enclosure, limit }, times))
 }
 
 /// What [`solve`] would solve: everything short of a matrix is built and checked.
@@ -334,7 +350,7 @@ impl Outline {
             nodes: d.space.nodes().len(),
             prescribed: d.constraints.values().iter().flatten().flatten().count(),
             contact_edges: d.contact.len(),
-            gamma: GammaReport::new(d),
+            gamma: GammaReport::new(d, limit::of_discretization(d)),
         }
     }
 }

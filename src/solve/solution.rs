@@ -7,7 +7,8 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::answers::{self, ContactBoundary, EnergyBalance};
-use super::{MethodReport, NewtonReport, Report};
+use super::enclosure::Certificate;
+use super::{MethodReport, NewtonReport, NoLimit, Report, TrueLimit};
 use crate::fem::contact_line::{self, Coercivity};
 use crate::fem::discretization::{Discretization, inner};
 use crate::fem::{DataError, Errors, ExactSolution, Problem, Space};
@@ -41,6 +42,8 @@ pub struct Solution {
     pub newton: NewtonReport,
     /// By which route, and how accurately.
     pub method: MethodReport,
+    /// Where the exact solution of (8) is, or why nothing is proved of it.
+    pub enclosure: Certificate,
     /// Energies, forces, lengths.
     pub quantities: Quantities,
     /// What each part of Gamma_C carries.
@@ -60,6 +63,8 @@ pub struct GammaReport {
     pub kappa: f64,
     /// C_h and the edge that sets it.
     pub coercivity: Coercivity,
+    /// The true limit of gamma0, or why it is not known.
+    pub true_limit: Result<TrueLimit, NoLimit>,
 }
 
 /// One edge of Gamma_C: its nodes and the values there, in order along the edge.
@@ -148,9 +153,10 @@ impl Solution {
             boundaries: answers::contact_boundaries(d, &u, &recovered),
             largest_strain: answers::largest_strain(d, &u),
             balance: answers::energy_balance(d, &u, &residual, quantities.energy),
-            gamma: GammaReport::new(d),
+            gamma: GammaReport::new(d, report.limit),
             newton: report.newton,
             method: report.method,
+            enclosure: report.enclosure,
             quantities,
             displacement: u,
         }
@@ -196,11 +202,14 @@ impl Solution {
 
 impl GammaReport {
     /// Of a discretization.
-    pub fn new<E, const N: usize, const M: usize>(d: &Discretization<E, N, M>) -> Self
+    pub fn new<E, const N: usize, const M: usize>(
+        d: &Discretization<E, N, M>,
+        true_limit: Result<TrueLimit, NoLimit>,
+    ) -> Self
     where
         E: ExactEdge<f64, N, M>,
     {
-        GammaReport { gamma0: d.gamma0, kappa: d.kappa(), coercivity: d.coercivity }
+        GammaReport { gamma0: d.gamma0, kappa: d.kappa(), coercivity: d.coercivity, true_limit }
     }
 }
 
