@@ -62,6 +62,9 @@
 //!
 //! Proofs of what the code relies on are in `docs/theory.md`; what has been verified, and how, is in `VERIFY.md`.
 
+/// The vectors and matrices of the interface.
+pub use nalgebra;
+
 #[cfg(not(kani))]
 pub mod certify;
 #[cfg(not(kani))]

@@ -12,6 +12,7 @@ use signorini::kernel::contact_edge::coercivity_constant;
 use signorini::kernel::edge_integral::{ExactEdge, gauss};
 use signorini::kernel::element::stiffness;
 use signorini::kernel::{ContactEdge, EdgeIntegrals, Element, Material, Plane, Scalar, Triangle};
+use signorini::nalgebra::{Matrix2, Vector2};
 
 use crate::Ordered;
 use crate::draws::{positive, ratio};
@@ -324,7 +325,7 @@ impl<S: Scalar> Body<S> {
 
     /// The triangle with its coordinates.
     pub fn triangle(&self, t: usize) -> Triangle<S> {
-        Triangle { vertices: self.triangles[t].map(|v| self.vertices[v]) }
+        Triangle { vertices: self.triangles[t].map(|v| self.vertices[v].into()) }
     }
 
     /// gamma on a side: (7).
@@ -357,7 +358,7 @@ pub enum Rule<'a, S = Exact> {
 pub struct Kernel<'a, const N: usize, const M: usize> {
     body: &'a Body,
     edges: Vec<ContactEdge<Exact, N, M>>,
-    stiffness: Vec<[[[[Exact; 2]; 2]; N]; N]>,
+    stiffness: Vec<[[Matrix2<Exact>; N]; N]>,
 }
 
 impl<'a, const N: usize, const M: usize> Kernel<'a, N, M> {
@@ -366,7 +367,7 @@ impl<'a, const N: usize, const M: usize> Kernel<'a, N, M> {
         let edge = |side: &Side| {
             let triangle = body.triangle(side.triangle);
             let gamma = body.gamma(side);
-            ContactEdge::new::<E>(&triangle, side.local, side.n, &body.material, gamma)
+            ContactEdge::new::<E>(&triangle, side.local, side.n.into(), &body.material, gamma)
         };
         let matrix = |t| stiffness::<E, Exact, N, M>(&body.triangle(t), &body.material);
         Kernel {
@@ -376,7 +377,7 @@ impl<'a, const N: usize, const M: usize> Kernel<'a, N, M> {
         }
     }
 
-    fn apply(functional: &[[Exact; 2]; N], v: &[[Exact; 2]; N]) -> Exact {
+    fn apply(functional: &[Vector2<Exact>; N], v: &[[Exact; 2]; N]) -> Exact {
         sum(functional.iter().zip(v), |(f, v)| f[0] * v[0] + f[1] * v[1])
     }
 
@@ -387,7 +388,7 @@ impl<'a, const N: usize, const M: usize> Kernel<'a, N, M> {
     }
 
     fn product(
-        block: impl Fn(usize, usize) -> [[Exact; 2]; 2],
+        block: impl Fn(usize, usize) -> Matrix2<Exact>,
         u: &[[Exact; 2]; N],
         v: &[[Exact; 2]; N],
     ) -> Exact {
@@ -397,7 +398,7 @@ impl<'a, const N: usize, const M: usize> Kernel<'a, N, M> {
                 let entry = block(i, j);
                 for c in 0..2 {
                     for d in 0..2 {
-                        total = total + v[i][c] * entry[c][d] * u[j][d];
+                        total += v[i][c] * entry[(c, d)] * u[j][d];
                     }
                 }
             }
@@ -420,17 +421,17 @@ impl<'a, const N: usize, const M: usize> Kernel<'a, N, M> {
 
     /// On one triangle the matrices of a and of int gamma sigma_n(u) sigma_n(v), over the components of its nodes.
     pub fn matrices_on(&self, t: usize) -> [Matrix; 2] {
-        let matrix = |block: &dyn Fn(usize, usize) -> [[Exact; 2]; 2]| -> Matrix {
-            let entry = |row: usize, column: usize| block(row / 2, column / 2)[row % 2][column % 2];
+        let matrix = |block: &dyn Fn(usize, usize) -> Matrix2<Exact>| -> Matrix {
+            let entry =
+                |row: usize, column: usize| block(row / 2, column / 2)[(row % 2, column % 2)];
             (0..2 * N).map(|row| (0..2 * N).map(|column| entry(row, column)).collect()).collect()
         };
         let owned = |e: &usize| self.body.contact[*e].triangle == t;
         let stress = |i, j| {
-            let mut block = [[Exact::from(0); 2]; 2];
+            let mut block = Matrix2::zeros();
             for e in (0..self.edges.len()).filter(owned) {
                 let weight = self.body.gamma(&self.body.contact[e]) * self.body.contact[e].length;
-                let of_e = self.edges[e].stress_product(weight, i, j);
-                block = [0, 1].map(|c| [0, 1].map(|d| block[c][d] + of_e[c][d]));
+                block += self.edges[e].stress_product(weight, i, j);
             }
             block
         };
@@ -458,7 +459,7 @@ impl<'a, const N: usize, const M: usize> Kernel<'a, N, M> {
     pub fn p(&self, e: usize, v: &[[Exact; 2]]) -> [Exact; M] {
         let mut p = self.p0(e, v);
         for (p, gap) in p.iter_mut().zip(self.body.contact[e].gap) {
-            *p = *p - gap;
+            *p -= gap;
         }
         p
     }
@@ -518,7 +519,7 @@ impl<'a, const N: usize, const M: usize> Kernel<'a, N, M> {
             let mut total = Exact::from(0);
             for a in 0..M {
                 for b in 0..M {
-                    total = total + v[a] * hessian[a][b] * w[b];
+                    total += v[a] * hessian[a][b] * w[b];
                 }
             }
             self.weight(e) * total
@@ -741,8 +742,8 @@ mod tests {
                     two_edges += usize::from(owned == 2);
                 }
                 for side in &body.contact {
-                    let [x, y] = body.triangle(side.triangle).scaled_normal(side.local);
-                    assert_eq!([x, y], side.n.map(|c| c * side.length));
+                    let scaled = body.triangle(side.triangle).scaled_normal(side.local);
+                    assert_eq!(scaled, Vector2::from(side.n) * side.length);
                 }
                 assert!(body.node_count(2) <= MOST_NODES);
             });

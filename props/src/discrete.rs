@@ -8,8 +8,9 @@ use signorini::kernel::contact_edge::coercivity_constant;
 use signorini::kernel::edge_integral::{self, ExactEdge};
 use signorini::kernel::element::stiffness;
 use signorini::kernel::{ContactEdge, EdgeIntegrals, Material, Plane, Triangle};
+use signorini::nalgebra::{Matrix2, Vector2};
 
-use crate::bodies::MaybeExact;
+use crate::bodies::{MaybeExact, sum};
 use crate::elimination::{Matrix, combined, dot};
 use crate::numbers::Exact;
 
@@ -40,7 +41,7 @@ pub struct Discrete<'a, E, const N: usize, const M: usize> {
     /// The number of each free component.
     numbers: Vec<[Option<usize>; 2]>,
     count: usize,
-    stiffness: Vec<[[[[Exact; 2]; 2]; N]; N]>,
+    stiffness: Vec<[[Matrix2<Exact>; N]; N]>,
     edges: Vec<Edge<N, M>>,
     /// Points and weights; none for exact integration.
     rule: Option<Vec<[Exact; 2]>>,
@@ -118,7 +119,7 @@ where
     }
 
     /// Adds the blocks of triangle t into a matrix over the free components.
-    fn add(&self, matrix: &mut Matrix, t: usize, block: impl Fn(usize, usize) -> [[Exact; 2]; 2]) {
+    fn add(&self, matrix: &mut Matrix, t: usize, block: impl Fn(usize, usize) -> Matrix2<Exact>) {
         let nodes = self.d.space.elements()[t];
         for i in 0..N {
             for j in 0..N {
@@ -127,7 +128,7 @@ where
                     for d in 0..2 {
                         let [row, column] = [self.numbers[nodes[i]][c], self.numbers[nodes[j]][d]];
                         if let (Some(row), Some(column)) = (row, column) {
-                            matrix[row][column] = matrix[row][column] + block[c][d];
+                            matrix[row][column] += block[(c, d)];
                         }
                     }
                 }
@@ -160,17 +161,17 @@ where
     }
 
     /// The nodal values on triangle t.
-    fn local(&self, t: usize, u: &[[Exact; 2]]) -> [[Exact; 2]; N] {
-        self.d.space.elements()[t].map(|node| u[node])
+    fn local(&self, t: usize, u: &[[Exact; 2]]) -> [Vector2<Exact>; N] {
+        self.d.space.elements()[t].map(|node| u[node].into())
     }
 
     /// P(u) at the nodes of edge e.
     pub fn p(&self, e: usize, u: &[[Exact; 2]]) -> [Exact; M] {
         let edge = &self.edges[e];
         let u = self.local(edge.triangle, u);
-        let mut p = edge.functionals.p0.map(|row| dot(row.as_flattened(), u.as_flattened()));
+        let mut p = edge.functionals.p0.map(|row| sum(row.iter().zip(&u), |(f, u)| f.dot(u)));
         for (p, &gap) in p.iter_mut().zip(&edge.gap) {
-            *p = *p - gap;
+            *p -= gap;
         }
         p
     }
@@ -191,14 +192,15 @@ where
         let mut residual: Nodal = self.d.load.iter().map(load).collect();
         let mut add = |t: usize, i: usize, c: usize, value: Exact| {
             let node = self.d.space.elements()[t][i];
-            residual[node][c] = residual[node][c] + value;
+            residual[node][c] += value;
         };
         for (t, k) in self.stiffness.iter().enumerate() {
             let u = self.local(t, u);
             for i in 0..N {
                 for j in 0..N {
+                    let force = k[i][j] * u[j];
                     for c in 0..2 {
-                        add(t, i, c, dot(&k[i][j][c], &u[j]));
+                        add(t, i, c, force[c]);
                     }
                 }
             }
@@ -210,8 +212,9 @@ where
             for i in 0..N {
                 for j in 0..N {
                     let stress = edge.functionals.stress_product(edge.gamma * edge.length, i, j);
+                    let force = stress * nodal[j];
                     for c in 0..2 {
-                        add(t, i, c, -dot(&stress[c], &nodal[j]));
+                        add(t, i, c, -force[c]);
                     }
                 }
                 for c in 0..2 {
@@ -232,13 +235,11 @@ where
             let hessian = self.integrals(self.p(e, u)).hessian;
             let p0 = &edge.functionals.p0;
             self.add(&mut matrix, edge.triangle, |i, j| {
-                [0, 1].map(|c| {
-                    [0, 1].map(|d| {
-                        let left = p0.map(|row| row[i][c]);
-                        let right = p0.map(|row| row[j][d]);
-                        let times = hessian.map(|row| dot(&row, &right));
-                        edge.length / edge.gamma * dot(&left, &times)
-                    })
+                Matrix2::from_fn(|c, d| {
+                    let left = p0.map(|row| row[i][c]);
+                    let right = p0.map(|row| row[j][d]);
+                    let times = hessian.map(|row| dot(&row, &right));
+                    edge.length / edge.gamma * dot(&left, &times)
                 })
             });
         }
@@ -264,7 +265,7 @@ where
                 }
                 None => return None,
             };
-            sum = sum + edge.length / edge.gamma * square;
+            sum += edge.length / edge.gamma * square;
         }
         Some(sum)
     }

@@ -61,7 +61,7 @@ fn width(interval: Interval) -> f64 {
 }
 
 /// The Taylor coefficients of a function of two variables, each enclosed at all points of a piece at once.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Taylor([Interval; LENGTH]);
 
 impl Taylor {
@@ -152,7 +152,7 @@ impl Mul for Taylor {
         for a in self.present() {
             for b in other.present() {
                 let Some(ab) = product_index(a, b) else { break };
-                product[ab] = product[ab] + self.0[a] * other.0[b];
+                product[ab] += self.0[a] * other.0[b];
             }
         }
         Taylor(product)
@@ -169,15 +169,17 @@ impl Div for Taylor {
             if is_zero(quotient[a]) && !other.0[0].contains(0.0) {
                 continue;
             }
-            quotient[a] = quotient[a] / other.0[0];
+            quotient[a] /= other.0[0];
             for b in other.present().filter(|&b| b > 0) {
                 let Some(ab) = product_index(a, b) else { break };
-                quotient[ab] = quotient[ab] - quotient[a] * other.0[b];
+                quotient[ab] -= quotient[a] * other.0[b];
             }
         }
         Taylor(quotient)
     }
 }
+
+signorini::entry_of_nalgebra!(Taylor);
 
 impl Scalar for Taylor {
     /// Where the sign is decided on all of the piece, the branch; else the hull of the values of both, for the function
@@ -207,11 +209,11 @@ impl Real for Taylor {
         root[0] = root[0].sqrt();
         let twice = root[0] + root[0];
         for a in 1..LENGTH {
-            root[a] = root[a] / twice;
+            root[a] /= twice;
             for b in 1..=a {
                 let Some(ab) = product_index(a, b) else { break };
                 let product = root[a] * root[b];
-                root[ab] = root[ab] - if a == b { product } else { product + product };
+                root[ab] -= if a == b { product } else { product + product };
             }
         }
         Taylor(root)
@@ -283,7 +285,7 @@ fn mean_of_monomial(corners: usize, [i, j]: [usize; 2]) -> Interval {
         for m in 0..=j {
             let dirichlet = factorial(corners - 1) * factorial(k) * factorial(m)
                 / factorial(corners - 1 + k + m);
-            sum = sum + term(i, k) * term(j, m) * dirichlet;
+            sum += term(i, k) * term(j, m) * dirichlet;
         }
     }
     sum
@@ -302,10 +304,10 @@ impl Monomials {
     fn mean(&self, centre: Taylor, whole: Taylor) -> Interval {
         let mut sum = Interval::from(0);
         for (a, [i, j]) in EXPONENTS.into_iter().enumerate() {
-            sum = sum + centre.0[a] * self.means[a];
+            sum += centre.0[a] * self.means[a];
             if i + j == ORDER {
                 let spread = (whole.0[a] - centre.0[a]) * self.magnitudes[a];
-                sum = sum + spread * Interval::new(-1.0, 1.0);
+                sum += spread * Interval::new(-1.0, 1.0);
             }
         }
         sum
@@ -347,7 +349,7 @@ pub fn mean<const P: usize, const C: usize, const K: usize>(
         let known = found.iter().all(|&mean| share * width(mean) <= tolerance);
         if known || depth == DEEPEST {
             for (sum, mean) in sums.iter_mut().zip(found) {
-                *sum = *sum + Interval::point(share) * mean;
+                *sum += Interval::point(share) * mean;
             }
         } else {
             pieces.extend(halves(&corners).map(|part| (part, depth + 1)));

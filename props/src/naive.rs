@@ -167,7 +167,7 @@ pub fn integral_of_quadratics<S: Scalar>(area: S, f: [S; 6], g: [S; 6]) -> S {
         for (g, b) in g.into_iter().zip(MONOMIALS) {
             let factorial = |k: usize| (1..=i32::from(k as u8)).product::<i32>();
             let weight: i32 = (0..3).map(|i| factorial(a[i] + b[i])).product();
-            sum = sum + S::from(weight) * f * g;
+            sum += S::from(weight) * f * g;
         }
     }
     area * sum / S::from(360)
@@ -217,7 +217,7 @@ impl<S: Scalar> Line<S> {
         let mut product = vec![S::from(0); self.0.len() + other.0.len() - 1];
         for (i, &a) in self.0.iter().enumerate() {
             for (j, &b) in other.0.iter().enumerate() {
-                product[i + j] = product[i + j] + a * b;
+                product[i + j] += a * b;
             }
         }
         Line(product)
@@ -227,7 +227,7 @@ impl<S: Scalar> Line<S> {
     pub fn integral(&self, [start, end]: [S; 2]) -> S {
         let (mut sum, mut from, mut to) = (S::from(0), start, end);
         for (power, &c) in (1_i32..).zip(&self.0) {
-            sum = sum + c * (to - from) / S::from(power);
+            sum += c * (to - from) / S::from(power);
             (from, to) = (from * start, to * end);
         }
         sum

@@ -12,6 +12,7 @@ use signorini::fem::Mesh;
 use signorini::io::Case;
 use signorini::io::outputs;
 use signorini::io::result::{Seconds, result_json};
+use signorini::kernel::Stress;
 use signorini::solve::{Solution, SolveError};
 
 create_exception!(_signorini, CaseError, PyValueError, "The case is wrong.");
@@ -128,7 +129,11 @@ fn raw<'py>(py: Python<'py>, solved: &Solved) -> PyResult<Bound<'py, PyDict>> {
     integers("elements", &mut s.elements.iter().copied())?;
     dict.set_item("nodes_per_triangle", s.nodes_per_triangle)?;
     floats("displacement", &mut s.displacement.iter().flatten().copied())?;
-    floats("stress", &mut s.stress.iter().flat_map(|(t, zz)| [t.xx, t.yy, *zz, t.xy]))?;
+    let stress = |(t, zz): &(Stress<f64>, f64)| {
+        let [xx, yy, xy] = t.components();
+        [xx, yy, *zz, xy]
+    };
+    floats("stress", &mut s.stress.iter().flat_map(stress))?;
     floats("von_mises", &mut s.von_mises.iter().copied())?;
     let points = || s.contact.iter().flat_map(|edge| &edge.points);
     floats("arc", &mut points().map(|p| p.arc))?;

@@ -4,9 +4,11 @@
 //! by is taken by three components of traction on Gamma_D, where tractions are free. The additional tractions exist as
 //! real numbers, and intervals contain them.
 
+use nalgebra::Vector2;
 use thiserror::Error;
 
 use super::proof::{Certificate, Enclosing, Owner, Role};
+use crate::fem::mesh::length;
 use crate::kernel::Triangle;
 use crate::kernel::composite::{Loads, Wrench};
 
@@ -97,7 +99,7 @@ pub(super) fn close<S: Enclosing>(
     certificate: &Certificate,
     triangles: &[Triangle<S>],
     owners: &[[Option<Owner>; 2]],
-    points: &[[S; 2]],
+    points: &[Vector2<S>],
     loads: &mut [Loads<S>],
 ) -> Result<(), Unbalanced> {
     let tree = Tree::new(certificate, owners);
@@ -120,14 +122,11 @@ pub(super) fn close<S: Enclosing>(
         for (hold, factor) in holds.into_iter().zip(solve(unit, total)) {
             let Some(owner) = owners[hold.edge][0] else { continue };
             let [start, end] = certificate.edges[hold.edge].ends.map(|p| points[p]);
-            let force = profile(hold).map(|f| f.map(|f| S::from(f) * factor));
+            let force = profile(hold).map(|f| Vector2::from(f.map(S::from)) * factor);
             add(&mut loads[owner.piece].forces[owner.local], force);
             let wrench = unit_wrench(hold, start, end);
-            let wrench = Wrench {
-                force: wrench.force.map(|f| f * factor),
-                moment: wrench.moment * factor,
-                ..wrench
-            };
+            let wrench =
+                Wrench { force: wrench.force * factor, moment: wrench.moment * factor, ..wrench };
             wrenches[owner.piece] = wrenches[owner.piece].plus(wrench);
         }
         for &t in part[1..].iter().rev() {
@@ -136,7 +135,7 @@ pub(super) fn close<S: Enclosing>(
             let [start, end] = certificate.edges[e].ends.map(|p| points[p]);
             let wrench = wrenches[t];
             let force = wrench.on_edge(start, end);
-            let minus = force.map(|f| f.map(|f| -f));
+            let minus = force.map(|f| -f);
             // The triangle behind the edge gets minus its resultant, the one before it the resultant; its edge runs the
             // other way round.
             let (behind, before) = if left.piece == t { (left, right) } else { (right, left) };
@@ -153,9 +152,9 @@ pub(super) fn close<S: Enclosing>(
     Ok(())
 }
 
-fn add<S: Enclosing>(to: &mut [[S; 2]; 2], force: [[S; 2]; 2]) {
+fn add<S: Enclosing>(to: &mut [Vector2<S>; 2], force: [Vector2<S>; 2]) {
     for (to, force) in to.iter_mut().zip(force) {
-        *to = [to[0] + force[0], to[1] + force[1]];
+        *to += force;
     }
 }
 
@@ -168,12 +167,12 @@ fn profile(hold: Hold) -> [[i32; 2]; 2] {
 }
 
 /// Its wrench, about the middle of the edge.
-fn unit_wrench<S: Enclosing>(hold: Hold, start: [S; 2], end: [S; 2]) -> Wrench<S> {
-    let about = [0, 1].map(|c| (start[c] + end[c]) / S::from(2));
-    let (mut force, mut moment) = ([S::from(0); 2], S::from(0));
+fn unit_wrench<S: Enclosing>(hold: Hold, start: Vector2<S>, end: Vector2<S>) -> Wrench<S> {
+    let about = (start + end) / S::from(2);
+    let (mut force, mut moment) = (Vector2::zeros(), S::from(0));
     if hold.linear {
         // int (s - 1/2) E x (2 s - 1) e_c = E x e_c / 6
-        let along = [end[0] - start[0], end[1] - start[1]];
+        let along = end - start;
         let turn = if hold.component == 0 { -along[1] } else { along[0] };
         moment = turn / S::from(6);
     } else {
@@ -187,7 +186,7 @@ fn choose<S: Enclosing>(
     certificate: &Certificate,
     owners: &[[Option<Owner>; 2]],
     part: &[usize],
-    points: &[[S; 2]],
+    points: &[Vector2<S>],
 ) -> Option<[Hold; 3]> {
     let double = |p: usize| points[p].map(|c| (c.lower() + c.upper()) / 2.0);
     let origin = double(certificate.pieces[part[0]].vertices[0]);
@@ -201,8 +200,8 @@ fn choose<S: Enclosing>(
                 continue;
             }
             let [start, end] = edge.ends.map(double);
-            size = size.max((start[0] - origin[0]).hypot(start[1] - origin[1]));
-            size = size.max((end[0] - origin[0]).hypot(end[1] - origin[1]));
+            size = size.max(length(start - origin));
+            size = size.max(length(end - origin));
             for component in (0..2).filter(|&c| held[c]) {
                 for linear in [false, true] {
                     let hold = Hold { edge: e, component, linear };

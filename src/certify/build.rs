@@ -15,11 +15,14 @@
 
 use std::collections::BTreeMap;
 
+use nalgebra::{Matrix2, Vector2};
+
 use super::CertifyError;
 use super::oscillation::{self, Oscillation, Traction, is_within};
 use super::proof::{Certificate, Cut, Edge, Piece, Role};
 use crate::fem::constraints::Constraints;
 use crate::fem::contact_line::ContactLineEdge;
+use crate::fem::mesh::length;
 use crate::fem::pieces::{Features, Rule};
 use crate::fem::{BoundaryEdge, BoxedFunction, Condition, Function, Mesh, Problem};
 use crate::kernel::composite::complementary;
@@ -169,8 +172,9 @@ pub(super) fn admissible(parts: &Parts, u: &[[f64; 2]]) -> Vec<[f64; 2]> {
             for (k, vertex) in parts.mesh.ends(edge.edge).into_iter().enumerate() {
                 let data = parts.prescribed[vertex];
                 let free = [0, 1].map(|c| if data[c].is_none() { n[c] } else { 0.0 });
-                let along = free[0] * n[0] + free[1] * n[1];
-                let beyond = v[vertex][0] * n[0] + v[vertex][1] * n[1] - edge.gap[k];
+                let free = Vector2::from(free);
+                let along = free.dot(&n);
+                let beyond = Vector2::from(v[vertex]).dot(&n) - edge.gap[k];
                 // Intervals must see it, also on a part of the edge between places as far out as the body reaches.
                 let scale = edge.gap[k].abs() + if n[0] != 0.0 && n[1] != 0.0 { size } else { 0.0 };
                 let margin = 64.0 * f64::EPSILON * scale * reach / edge.length / NEAR_THE_END;
@@ -230,7 +234,7 @@ pub(super) fn build(
             }
             Some(Boundary::Contact(k)) => {
                 let edge = &parts.contact[*k];
-                let p = edge.p(&mesh.triangles()[edge.edge.triangle].map(|vertex| u[vertex]));
+                let p = edge.p(&nodal(u, mesh.triangles()[edge.edge.triangle]));
                 let pressure = p.map(|p| -(p.max(0.0) / edge.gamma));
                 Role::Contact { pressure, gap: edge.gap }
             }
@@ -268,7 +272,7 @@ fn add_triangle(
     let cut = (0..3).find_map(|local| {
         let Some(&Boundary::Contact(k)) = parts.boundary.get(&edges[local]) else { return None };
         let edge = &parts.contact[k];
-        let p = edge.p(&corners.map(|vertex| u[vertex]));
+        let p = edge.p(&nodal(u, corners));
         let [start, end] = positive_interval(p);
         let at = if p[0] > 0.0 { end } else { start };
         let changes = (p[0] > 0.0) != (p[1] > 0.0);
@@ -296,29 +300,39 @@ fn add_triangle(
         role: Role::Contact { pressure: [0.0, pressure[1]], gap: [inside, gap[1]] },
     });
     let [from, to] = [middle, a].map(|p| place(certificate, p));
-    let normal = [to[1] - from[1], from[0] - to[0]];
-    let force = stress[t].traction(normal);
+    let normal = Vector2::new(to.y - from.y, from.x - to.x);
+    let force = stress[t].traction(normal).into();
     certificate.edges.push(Edge { ends: [middle, a], role: Role::Inner([force; 2]) });
     add([a, b, middle], [opposite, second + 1, last], certificate);
     add([a, middle, c], [second, next, second + 1], certificate);
 }
 
 /// Where point `p` of a certificate lies.
-pub(super) fn place(certificate: &Certificate, p: usize) -> [f64; 2] {
-    match certificate.vertices.get(p) {
-        Some(&place) => place,
+pub(super) fn place(certificate: &Certificate, p: usize) -> Vector2<f64> {
+    at_point(&certificate.vertices, &certificate.cuts, p)
+}
+
+/// The value at point `p` of what has these values at the vertices and is affine between them.
+pub(super) fn at_point(values: &[[f64; 2]], cuts: &[Cut], p: usize) -> Vector2<f64> {
+    match values.get(p) {
+        Some(&value) => value.into(),
         None => {
-            let cut = certificate.cuts[p - certificate.vertices.len()];
-            let [a, b] = cut.ends.map(|end| certificate.vertices[end]);
-            [0, 1].map(|c| a[c] + cut.at * (b[c] - a[c]))
+            let cut = cuts[p - values.len()];
+            let [a, b] = cut.ends.map(|end| Vector2::from(values[end]));
+            a + (b - a) * cut.at
         }
     }
+}
+
+/// The values of `u` at the vertices of a triangle.
+fn nodal(u: &[[f64; 2]], corners: [usize; 3]) -> [Vector2<f64>; 3] {
+    corners.map(|vertex| u[vertex].into())
 }
 
 /// s_T on each triangle.
 fn stresses(parts: &Parts, u: &[[f64; 2]], triangles: &[Triangle<f64>]) -> Vec<Stress<f64>> {
     let mesh = parts.mesh;
-    let nodal = |t: usize| mesh.triangles()[t].map(|vertex| u[vertex]);
+    let nodal = |t: usize| nodal(u, mesh.triangles()[t]);
     let mut stress: Vec<Stress<f64>> = triangles
         .iter()
         .enumerate()
@@ -333,15 +347,9 @@ fn stresses(parts: &Parts, u: &[[f64; 2]], triangles: &[Triangle<f64>]) -> Vec<S
         let force = -(edge.length * (pressure[0] + pressure[1]));
         let sigma_n = edge.sigma_n(&nodal);
         let excess = force - edge.gamma * edge.length * (sigma_n[0] + sigma_n[1]) / 2.0;
-        let strain = [0, 1].map(|i| [0, 1].map(|j| n[i] * n[j]));
-        let unit = parts.material(t).stress(strain);
+        let unit = parts.material(t).stress(Matrix2::from_fn(|i, j| n[i] * n[j]));
         let factor = excess / (triangles[t].double_area() / 2.0);
-        let s = &mut stress[t];
-        *s = Stress {
-            xx: s.xx + factor * unit.xx,
-            yy: s.yy + factor * unit.yy,
-            xy: s.xy + factor * unit.xy,
-        };
+        stress[t] = stress[t] + unit * factor;
     }
     stress
 }
@@ -354,7 +362,7 @@ fn moments(
     u: &[[f64; 2]],
     triangles: &[Triangle<f64>],
     stress: &[Stress<f64>],
-) -> Vec<[[f64; 2]; 2]> {
+) -> Vec<[Vector2<f64>; 2]> {
     let mesh = parts.mesh;
     let (corners, edges) = (mesh.triangles(), mesh.triangle_edges());
     let mut owners = vec![[None; 2]; mesh.edge_count()];
@@ -371,20 +379,17 @@ fn moments(
         }
     }
     // What the mean stress of the neighbours gives, and what the boundary prescribes.
-    let mut moments: Vec<[[f64; 2]; 2]> = vec![[[0.0; 2]; 2]; mesh.edge_count()];
+    let mut moments = vec![[Vector2::zeros(); 2]; mesh.edge_count()];
     let mut known = vec![[false; 2]; mesh.edge_count()];
     for (e, owner) in owners.iter().enumerate() {
         let [Some((t, local)), second] = *owner else { continue };
         let normal = triangles[t].scaled_normal(local);
         let here = stress[t].traction(normal);
         let force = match second {
-            Some((other, _)) => {
-                let there = stress[other].traction(normal);
-                [0, 1].map(|c| (here[c] + there[c]) / 2.0)
-            }
+            Some((other, _)) => (here + stress[other].traction(normal)) / 2.0,
             None => here,
         };
-        moments[e] = [force.map(|f| f / 2.0); 2];
+        moments[e] = [force / 2.0; 2];
         match parts.boundary.get(&e) {
             None => {}
             Some(Boundary::Held(held)) => {
@@ -395,7 +400,7 @@ fn moments(
             }
             Some(Boundary::Free) => {
                 known[e] = [true; 2];
-                moments[e] = [[0.0; 2]; 2];
+                moments[e] = [Vector2::zeros(); 2];
             }
             Some(Boundary::Loaded(traction)) => {
                 known[e] = [true; 2];
@@ -405,13 +410,13 @@ fn moments(
             Some(Boundary::Contact(k)) => {
                 known[e] = [true; 2];
                 let edge = &parts.contact[*k];
-                let positive = P1::exact(edge.p(&corners[t].map(|vertex| u[vertex]))).gradient;
-                moments[e] = positive.map(|p| normal.map(|n| -(p / edge.gamma) * n));
+                let positive = P1::exact(edge.p(&nodal(u, corners[t]))).gradient;
+                moments[e] = positive.map(|p| normal * -(p / edge.gamma));
             }
         }
     }
     let averaged = moments.clone();
-    let body: Vec<[[f64; 2]; 3]> =
+    let body: Vec<[Vector2<f64>; 3]> =
         triangles.iter().enumerate().map(|(t, triangle)| data.body_moments(t, triangle)).collect();
     for (a, fan) in fans.iter().enumerate() {
         go_round(
@@ -438,11 +443,11 @@ struct Around<'a> {
     corners: &'a [[usize; 3]],
     edges: &'a [[usize; 3]],
     owners: &'a [[Option<(usize, usize)>; 2]],
-    averaged: &'a [[[f64; 2]; 2]],
+    averaged: &'a [[Vector2<f64>; 2]],
     known: &'a [[bool; 2]],
     triangles: &'a [Triangle<f64>],
     stress: &'a [Stress<f64>],
-    body: &'a [[[f64; 2]; 3]],
+    body: &'a [[Vector2<f64>; 3]],
 }
 
 impl Around<'_> {
@@ -464,7 +469,7 @@ impl Around<'_> {
 }
 
 /// The moments at the edges around vertex `a`, whose triangles are `fan`: one or more chains, or a ring.
-fn go_round(a: usize, fan: &[(usize, usize)], around: &Around, moments: &mut [[[f64; 2]; 2]]) {
+fn go_round(a: usize, fan: &[(usize, usize)], around: &Around, moments: &mut [[Vector2<f64>; 2]]) {
     let mut left: Vec<(usize, usize)> = fan.to_vec();
     while !left.is_empty() {
         // A chain starts at a triangle with no neighbour clockwise; without one, anywhere.
@@ -481,16 +486,15 @@ fn go_round(a: usize, fan: &[(usize, usize)], around: &Around, moments: &mut [[[
         // X_i on the edge after triangle i, counter-clockwise, and X_0 on the one before the first.
         let (first, l) = chain[0];
         let mut edges = vec![around.edges[first][(l + 2) % 3]];
-        let mut sums = vec![[0.0; 2]];
-        let mut sum = [0.0; 2];
+        let mut sum = Vector2::zeros();
+        let mut sums = vec![sum];
         // Signs: X points counter-clockwise, out of the triangle before the edge.
         let mut signs = Vec::new();
         let (k, sign) = around.moment(a, first, edges[0]);
         signs.push((k, -sign));
         for &(t, l) in &chain {
             let normal = around.triangles[t].scaled_normal(l);
-            let traction = around.stress[t].traction(normal);
-            sum = [0, 1].map(|c| sum[c] - traction[c] / 2.0 - around.body[t][l][c]);
+            sum = sum - around.stress[t].traction(normal) / 2.0 - around.body[t][l];
             let e = around.edges[t][(l + 1) % 3];
             edges.push(e);
             sums.push(sum);
@@ -508,11 +512,11 @@ fn go_round(a: usize, fan: &[(usize, usize)], around: &Around, moments: &mut [[[
                 let count = if ring { last } else { last + 1 };
                 let (mut weighted, mut weights) = (0.0, 0.0);
                 for i in 0..count {
-                    let [x, y] = match around.owners[edges[i]][0] {
+                    let normal = match around.owners[edges[i]][0] {
                         Some((t, local)) => around.triangles[t].scaled_normal(local),
-                        None => [1.0, 0.0],
+                        None => Vector2::x(),
                     };
-                    let weight = 1.0 / x.hypot(y);
+                    let weight = 1.0 / length(normal);
                     weighted += weight * (target(i) - sums[i][c]);
                     weights += weight;
                 }
@@ -537,9 +541,10 @@ pub(super) fn rule(function: &dyn Function) -> Rule {
 /// vertices, triangle by triangle of each material.
 pub(super) fn averaging_estimate(parts: &Parts, v: &[[f64; 2]]) -> f64 {
     let mesh = parts.mesh;
-    let mut sums: BTreeMap<(usize, usize), ([f64; 3], f64)> = BTreeMap::new();
+    let mut sums: BTreeMap<(usize, usize), (Stress<f64>, f64)> = BTreeMap::new();
+    let zero = Stress::new([0.0; 3]);
     let stress_of = |t: usize, triangle: &Triangle<f64>| {
-        let nodal = mesh.triangles()[t].map(|vertex| v[vertex]);
+        let nodal = nodal(v, mesh.triangles()[t]);
         parts.material(t).stress(super::proof::displacement_gradient(triangle, &nodal))
     };
     let place = |t: usize| parts.problem.material.place_of(t);
@@ -547,8 +552,8 @@ pub(super) fn averaging_estimate(parts: &Parts, v: &[[f64; 2]]) -> f64 {
         let triangle = mesh.triangle(t);
         let (s, area) = (stress_of(t, &triangle), triangle.double_area());
         for &vertex in corners {
-            let (sum, weight) = sums.entry((vertex, place(t))).or_default();
-            *sum = [sum[0] + area * s.xx, sum[1] + area * s.yy, sum[2] + area * s.xy];
+            let (sum, weight) = sums.entry((vertex, place(t))).or_insert((zero, 0.0));
+            *sum = *sum + s * area;
             *weight += area;
         }
     }
@@ -556,18 +561,13 @@ pub(super) fn averaging_estimate(parts: &Parts, v: &[[f64; 2]]) -> f64 {
     for (t, corners) in mesh.triangles().iter().enumerate() {
         let triangle = mesh.triangle(t);
         let s = stress_of(t, &triangle);
-        let mut total = Stress { xx: 0.0, yy: 0.0, xy: 0.0 };
+        let mut total = zero;
         let mut share = 0.0;
         for &vertex in corners {
             let Some((sum, weight)) = sums.get(&(vertex, place(t))) else { continue };
-            let [xx, yy, xy] = sum.map(|x| x / weight);
-            let difference = Stress { xx: xx - s.xx, yy: yy - s.yy, xy: xy - s.xy };
+            let difference = *sum / *weight - s;
             share += complementary(parts.material(t), difference);
-            total = Stress {
-                xx: total.xx + difference.xx,
-                yy: total.yy + difference.yy,
-                xy: total.xy + difference.xy,
-            };
+            total = total + difference;
         }
         square += (share + complementary(parts.material(t), total)) * triangle.double_area() / 24.0;
     }

@@ -117,7 +117,7 @@ pub fn certify_field(
 
 /// An upper bound of |v - w|_a for two fields that are affine on triangles.
 fn energy_distance(problem: &Problem, v: &[[f64; 2]], w: &[[f64; 2]]) -> f64 {
-    let exactly = |x: [f64; 2]| x.map(Interval::point);
+    let exactly = proof::exactly::<Interval>;
     let mut square = Interval::from(0);
     for (t, corners) in problem.mesh.triangles().iter().enumerate() {
         if corners.iter().all(|&k| v[k] == w[k]) {
@@ -125,10 +125,7 @@ fn energy_distance(problem: &Problem, v: &[[f64; 2]], w: &[[f64; 2]]) -> f64 {
         }
         let vertices = corners.map(|k| exactly(problem.mesh.vertices()[k]));
         let triangle = Triangle { vertices };
-        let difference = corners.map(|k| {
-            let (a, b) = (exactly(v[k]), exactly(w[k]));
-            [a[0] - b[0], a[1] - b[1]]
-        });
+        let difference = corners.map(|k| exactly(v[k]) - exactly(w[k]));
         let of = problem.material.of(t);
         let [lambda, mu] = [of.lambda(), of.mu()].map(Interval::point);
         let material = Material::lame(lambda, mu, Plane::Strain);

@@ -17,11 +17,13 @@
 
 use std::collections::BTreeMap;
 
+use nalgebra::{Matrix2, Vector2};
+
 use super::build::{Boundary, Parts, place, rule};
 use super::proof::{Certificate, Piece, Role};
+use crate::fem::mesh::length;
 use crate::fem::pieces::Rule;
 use crate::fem::{BoxedFunction, Condition, Problem, quadrature};
-use crate::kernel::scalar::dot;
 use crate::kernel::{Material, Triangle};
 
 /// Quadrature points in each direction.
@@ -66,11 +68,11 @@ impl<'a> Data<'a> {
     }
 
     /// int f phi_a over a part of triangle `t`, for each of its vertices a.
-    pub fn body_moments(&self, t: usize, part: &Triangle<f64>) -> [[f64; 2]; 3] {
-        let mut moments = [[0.0; 2]; 3];
+    pub fn body_moments(&self, t: usize, part: &Triangle<f64>) -> [Vector2<f64>; 3] {
+        let mut moments = [Vector2::zeros(); 3];
         for (c, f, rule) in self.acting(t) {
             if f.degree() == Some(0) {
-                let value = f.at(part.vertices[0]) * part.double_area() / 6.0;
+                let value = f.at(part.vertices[0].into()) * part.double_area() / 6.0;
                 moments.iter_mut().for_each(|m| m[c] += value);
             } else {
                 rule.on_triangle(part, |l, x, weight| {
@@ -87,13 +89,13 @@ impl<'a> Data<'a> {
         let constant = self.acting(t).all(|(_, f, _)| f.degree() == Some(0));
         if constant {
             let mut sum = [0.0; 2];
-            self.acting(t).for_each(|(c, f, _)| sum[c] += f.at(part.vertices[0]));
+            self.acting(t).for_each(|(c, f, _)| sum[c] += f.at(part.vertices[0].into()));
             return [sum; 3];
         }
         let moments = self.body_moments(t, part);
         let area = part.double_area() / 2.0;
-        let total = [0, 1].map(|c| moments.iter().map(|m| m[c]).sum::<f64>());
-        moments.map(|m| [0, 1].map(|c| (4.0 * total[c] - 9.0 * m[c]) / area))
+        let total: Vector2<f64> = moments.iter().sum();
+        moments.map(|m| ((total * 4.0 - m * 9.0) / area).into())
     }
 }
 
@@ -133,16 +135,14 @@ impl Traction<'_> {
     }
 
     /// int_E t phi for both ends of an edge with the scaled normal N.
-    pub fn moments(&self, ends: [[f64; 2]; 2], normal: [f64; 2]) -> [[f64; 2]; 2] {
-        let length = normal[0].hypot(normal[1]);
-        let unit = normal.map(|n| n / length);
-        let mut moments = [[0.0; 2]; 2];
+    pub fn moments(&self, ends: [[f64; 2]; 2], normal: Vector2<f64>) -> [Vector2<f64>; 2] {
+        let length = length(normal);
+        let unit = (normal / length).into();
+        let mut moments = [Vector2::zeros(); 2];
         self.rule().on_edge(ends, [], |point| {
-            let t = self.at(point.x, unit);
-            for c in 0..2 {
-                moments[0][c] += (1.0 - point.s) * point.weight * length * t[c];
-                moments[1][c] += point.s * point.weight * length * t[c];
-            }
+            let t = Vector2::from(self.at(point.x, unit));
+            moments[0] += t * ((1.0 - point.s) * point.weight * length);
+            moments[1] += t * (point.s * point.weight * length);
         });
         moments
     }
@@ -156,7 +156,9 @@ impl Traction<'_> {
             Traction::Pressure(p) if self.is_affine() => {
                 Role::Pressed(ends.map(|x| p.on_boundary(x, unit)))
             }
-            Traction::Pressure(_) => Role::Pressed(force.map(|f| -dot(f, unit) / length)),
+            Traction::Pressure(_) => {
+                Role::Pressed(force.map(|f| -(f[0] * unit[0] + f[1] * unit[1]) / length))
+            }
         };
         // No load has one role only.
         if role == Role::Pressed([0.0; 2]) { Role::Loaded([[0.0; 2]; 2]) } else { role }
@@ -164,9 +166,9 @@ impl Traction<'_> {
 }
 
 fn length_and_normal(ends: [[f64; 2]; 2]) -> (f64, [f64; 2]) {
-    let normal = [ends[1][1] - ends[0][1], ends[0][0] - ends[1][0]];
-    let length = normal[0].hypot(normal[1]);
-    (length, normal.map(|n| n / length))
+    let normal = Vector2::new(ends[1][1] - ends[0][1], ends[0][0] - ends[1][0]);
+    let length = length(normal);
+    (length, (normal / length).into())
 }
 
 /// What the data of a problem leave out of a certificate.
@@ -239,18 +241,11 @@ impl Oscillation {
 
 /// K and h_T of a triangle: |grad (w - r)| <= K |eps(w)|, |w - r| <= K (h_T / pi) |eps(w)|.
 fn korn(triangle: &Triangle<f64>) -> (f64, f64) {
-    let lengths = [0, 1, 2].map(|i| {
-        let [x, y] = triangle.edge(i);
-        x.hypot(y)
-    });
+    let lengths = [0, 1, 2].map(|i| length(triangle.edge(i)));
     let perimeter: f64 = lengths.iter().sum();
     let centre = triangle.point(lengths.map(|l| l / perimeter));
     let inner = triangle.double_area() / perimeter;
-    let outer = triangle
-        .vertices
-        .iter()
-        .map(|x| (x[0] - centre[0]).hypot(x[1] - centre[1]))
-        .fold(0.0, f64::max);
+    let outer = triangle.vertices.iter().map(|x| length(x - centre)).fold(0.0, f64::max);
     let ratio = inner / outer;
     let beta = ratio / (2.0 * (1.0 + (1.0 - ratio * ratio).sqrt())).sqrt();
     ((1.0 + 2.0 / (beta * beta)).sqrt(), lengths.into_iter().fold(0.0, f64::max))
@@ -275,9 +270,9 @@ fn loads(parts: &Parts, data: &Data, certificate: &Certificate, piece: &Piece, t
             let mut vertices = triangle.vertices;
             vertices[i] = triangle.point([1.0 / 3.0; 3]);
             rule.on_triangle(&Triangle { vertices }, |_, x, weight| {
-                let mut difference = piece.body[i].map(|f| -f);
+                let mut difference = -Vector2::from(piece.body[i]);
                 data.acting(t).for_each(|(c, f, _)| difference[c] += f.at(x));
-                square += weight * dot(difference, difference);
+                square += weight * difference.dot(&difference);
             });
         }
     }
@@ -288,7 +283,7 @@ fn loads(parts: &Parts, data: &Data, certificate: &Certificate, piece: &Piece, t
         if traction.is_affine() {
             continue;
         }
-        let ends = edge.ends.map(|p| place(certificate, p));
+        let ends = edge.ends.map(|p| place(certificate, p).into());
         let (length, unit) = length_and_normal(ends);
         let affine = match edge.role {
             Role::Loaded(affine) => affine,
@@ -334,7 +329,7 @@ fn lifts(parts: &Parts) -> Vec<f64> {
                 }),
                 Condition::Contact { gap } if !is_within(gap, 1) => Box::new(move |s| {
                     let lacking = gap.at(at(s)) - between(s, ends.map(|x| gap.at(x)));
-                    normal.map(|n| lacking * n)
+                    (normal * lacking).into()
                 }),
                 _ => continue,
             };
@@ -372,11 +367,10 @@ fn lift(
     let (opposite, end) = (gradients[local], gradients[(local + 2) % 3]);
     let mut square = 0.0;
     for (((s, weight), value), slope) in points.iter().zip(&values).zip(&slopes) {
-        let along = [0, 1].map(|j| end[j] + s * opposite[j]);
-        let g = [0, 1].map(|i| [0, 1].map(|j| slope[i] * along[j] - value[i] * opposite[j]));
-        let sigma = material.stress(g);
-        square += weight
-            * (dot([sigma.xx, sigma.yy], [g[0][0], g[1][1]]) + sigma.xy * (g[0][1] + g[1][0]));
+        let along = end + opposite * *s;
+        let g = Matrix2::from_fn(|i, j| slope[i] * along[j] - value[i] * opposite[j]);
+        let [xx, yy, xy] = material.stress(g).components();
+        square += weight * (xx * g.m11 + yy * g.m22 + xy * (g.m12 + g.m21));
     }
     (square * triangle.double_area() / 2.0).sqrt()
 }

@@ -11,12 +11,12 @@
 //! equilibrium, and there the doubles of a file can't be exact. `certify::balance` therefore adds to the tractions those
 //! small ones that make equilibrium exact; they are known as intervals, and so is then tau.
 
+use nalgebra::{Matrix2, Vector2};
 use thiserror::Error;
 
 use super::balance::{self, Unbalanced};
 use crate::kernel::composite::{Composite, Loads, complementary};
 use crate::kernel::contact_edge::integral_of_product;
-use crate::kernel::scalar::dot;
 use crate::kernel::{Interval, Material, Plane, Scalar, Triangle};
 
 /// A number that stands for a real one: a double for a quick look, an interval for a proof, a rational for the truth.
@@ -198,6 +198,11 @@ pub enum Rejection {
     NotFinite,
 }
 
+/// The vector with these components.
+pub(super) fn exactly<S: Enclosing>(components: [f64; 2]) -> Vector2<S> {
+    components.map(S::exactly).into()
+}
+
 fn wrong(what: &'static str, index: usize, problem: &'static str) -> Rejection {
     Rejection::Wrong { what, index, problem }
 }
@@ -224,13 +229,16 @@ impl Certificate {
             let loads = self.loads(t, &state.forces, &state.owners);
             let triangle = &state.triangles[t];
             let size = |x: Interval| x.lo().abs().max(x.hi().abs());
-            let reach = (0..3).flat_map(|i| triangle.edge(i)).map(size).fold(0.0, f64::max);
+            let reach = (0..3)
+                .flat_map(|i| <[Interval; 2]>::from(triangle.edge(i)))
+                .map(size)
+                .fold(0.0, f64::max);
             let area = size(triangle.double_area());
             let forces: f64 = loads.forces.iter().flatten().flatten().copied().map(size).sum();
             let body: f64 = piece.body.iter().flatten().map(|f| f.abs()).sum();
             let allowed = IMBALANCE * (forces + area * body);
             let resultant = loads.resultant(triangle);
-            let force = resultant.force.map(size).into_iter().fold(0.0, f64::max);
+            let force = resultant.force.map(size).iter().copied().fold(0.0, f64::max);
             if !(force <= allowed && size(resultant.moment) <= allowed * reach) {
                 return Err(Rejection::OutOfBalance { triangle: t });
             }
@@ -255,8 +263,8 @@ impl Certificate {
     /// Checks all conditions and puts the triangles in equilibrium.
     pub(super) fn balanced<S: Enclosing>(&self) -> Result<Balanced<S>, Rejection> {
         self.check_shape()?;
-        let points: Vec<[S; 2]> = self.values(&self.vertices);
-        let v: Vec<[S; 2]> = self.values(&self.displacement);
+        let points: Vec<Vector2<S>> = self.values(&self.vertices);
+        let v: Vec<Vector2<S>> = self.values(&self.displacement);
         let triangles = self.triangles(&points)?;
         self.check_displacement()?;
         let owners = self.owners()?;
@@ -264,24 +272,24 @@ impl Certificate {
         let mut contact = vec![S::from(0); self.pieces.len()];
         for (e, edge) in self.edges.iter().enumerate() {
             let [start, end] = edge.ends.map(|vertex| points[vertex]);
-            let along = [end[0] - start[0], end[1] - start[1]];
-            let normal = [along[1], -along[0]];
-            let length = || dot(along, along).sqrt();
+            let along = end - start;
+            let normal = Vector2::new(along[1], -along[0]);
+            let length = || along.dot(&along).sqrt();
             forces.push(match edge.role {
-                Role::Inner(force) | Role::Held(_, force) => force.map(|f| f.map(S::exactly)),
-                Role::Loaded(traction) if traction == [[0.0; 2]; 2] => [[S::from(0); 2]; 2],
+                Role::Inner(force) | Role::Held(_, force) => force.map(exactly),
+                Role::Loaded(traction) if traction == [[0.0; 2]; 2] => [Vector2::zeros(); 2],
                 Role::Loaded(traction) => {
                     let length = length();
-                    traction.map(|t| t.map(|t| length * S::exactly(t)))
+                    traction.map(|t| exactly(t) * length)
                 }
-                Role::Pressed(p) => p.map(|p| normal.map(|n| -(S::exactly(p) * n))),
+                Role::Pressed(p) => p.map(|p| -(normal * S::exactly(p))),
                 Role::Contact { pressure, gap } => {
                     let mut beyond = [S::from(0); 2];
                     for (k, vertex) in edge.ends.into_iter().enumerate() {
                         if !(pressure[k] <= 0.0) {
                             return Err(Rejection::Tension { edge: e, value: pressure[k] });
                         }
-                        beyond[k] = dot(v[vertex], normal);
+                        beyond[k] = v[vertex].dot(&normal);
                         if gap[k] != 0.0 {
                             beyond[k] = beyond[k] - length() * S::exactly(gap[k]);
                         }
@@ -295,7 +303,7 @@ impl Certificate {
                         contact[owner.piece] = contact[owner.piece]
                             + S::from(2) * integral_of_product(pressure, beyond);
                     }
-                    pressure.map(|p| normal.map(|n| p * n))
+                    pressure.map(|p| normal * p)
                 }
             });
         }
@@ -332,11 +340,11 @@ impl Certificate {
             let internal = complementary(&material, sigma) * double_area / S::from(2);
             norm = norm + internal;
             // f is constant on the parts; the mean of v on part i is (4 (v_0 + v_1 + v_2) - 3 v_i) / 9.
-            let total = [0, 1].map(|c| nodal[0][c] + nodal[1][c] + nodal[2][c]);
+            let total = nodal[0] + nodal[1] + nodal[2];
             let mut work = zero;
             for i in 0..3 {
-                let mean = [0, 1].map(|c| S::from(4) * total[c] - S::from(3) * nodal[i][c]);
-                work = work + dot(piece.body[i].map(S::exactly), mean);
+                let mean = total * S::from(4) - nodal[i] * S::from(3);
+                work = work + exactly::<S>(piece.body[i]).dot(&mean);
             }
             energy = energy + internal / S::from(2) - work * double_area / S::from(54);
         }
@@ -422,17 +430,20 @@ impl Certificate {
     }
 
     /// Values at the vertices, and at the cuts between them.
-    fn values<S: Enclosing>(&self, at: &[[f64; 2]]) -> Vec<[S; 2]> {
-        let mut all: Vec<[S; 2]> = at.iter().map(|x| x.map(S::exactly)).collect();
+    fn values<S: Enclosing>(&self, at: &[[f64; 2]]) -> Vec<Vector2<S>> {
+        let mut all: Vec<Vector2<S>> = at.iter().map(|&x| exactly(x)).collect();
         for cut in &self.cuts {
             let [a, b] = cut.ends.map(|end| all[end]);
             let s = S::exactly(cut.at);
-            all.push([0, 1].map(|c| (S::from(1) - s) * a[c] + s * b[c]));
+            all.push(a * (S::from(1) - s) + b * s);
         }
         all
     }
 
-    fn triangles<S: Enclosing>(&self, points: &[[S; 2]]) -> Result<Vec<Triangle<S>>, Rejection> {
+    fn triangles<S: Enclosing>(
+        &self,
+        points: &[Vector2<S>],
+    ) -> Result<Vec<Triangle<S>>, Rejection> {
         let triangle = |(t, piece): (usize, &Piece)| {
             let triangle = Triangle { vertices: piece.vertices.map(|p| points[p]) };
             if triangle.double_area().lower() > 0.0 {
@@ -530,7 +541,7 @@ impl Certificate {
     fn loads<S: Enclosing>(
         &self,
         t: usize,
-        forces: &[[[S; 2]; 2]],
+        forces: &[[Vector2<S>; 2]],
         owners: &[[Option<Owner>; 2]],
     ) -> Loads<S> {
         let piece = &self.pieces[t];
@@ -538,10 +549,10 @@ impl Certificate {
             let [a, b] = forces[e];
             match owners[e][0] {
                 Some(owner) if owner.piece == t => [a, b],
-                _ => [b, a].map(|f| f.map(|f| -f)),
+                _ => [-b, -a],
             }
         });
-        Loads { forces: outward, body: piece.body.map(|f| f.map(S::exactly)) }
+        Loads { forces: outward, body: piece.body.map(exactly) }
     }
 }
 
@@ -549,10 +560,10 @@ impl Certificate {
 pub(super) struct Balanced<S> {
     triangles: Vec<Triangle<S>>,
     /// v at vertices and cuts.
-    v: Vec<[S; 2]>,
+    v: Vec<Vector2<S>>,
     pub owners: Vec<[Option<Owner>; 2]>,
     /// tau N on the edges as the certificate has it.
-    forces: Vec<[[S; 2]; 2]>,
+    forces: Vec<[Vector2<S>; 2]>,
     /// On each triangle, in equilibrium.
     pub loads: Vec<Loads<S>>,
     /// 2 int tau_n (v_n - g) over the edges of each triangle.
@@ -579,13 +590,11 @@ impl Piece {
 /// The gradient of the affine field with these values at the vertices.
 pub(super) fn displacement_gradient<S: Scalar>(
     triangle: &Triangle<S>,
-    nodal: &[[S; 2]; 3],
-) -> [[S; 2]; 2] {
+    nodal: &[Vector2<S>; 3],
+) -> Matrix2<S> {
     // From differences, so that a translation has no gradient in any number type.
     let double_area = triangle.double_area();
     let (u, w) = (triangle.scaled_normal(1), triangle.scaled_normal(2));
-    [0, 1].map(|i| {
-        let (a, b) = (nodal[1][i] - nodal[0][i], nodal[2][i] - nodal[0][i]);
-        [0, 1].map(|j| -((a * u[j] + b * w[j]) / double_area))
-    })
+    let (a, b) = (nodal[1] - nodal[0], nodal[2] - nodal[0]);
+    Matrix2::from_fn(|i, j| -((a[i] * u[j] + b[i] * w[j]) / double_area))
 }

@@ -10,7 +10,9 @@
 //! since the integral of grad Phi along the edge, which is that of q . N, is Phi_b - Phi_a; z . E is the edge's own
 //! unknown. One sweep goes to every vertex and solves for its three unknowns and those of its edges together.
 
-use super::build::place;
+use nalgebra::Vector2;
+
+use super::build::{at_point, place};
 use super::proof::{Balanced, Certificate, Owner, Rejection, Role, displacement_gradient};
 use crate::kernel::composite::{Composite, Loads};
 use crate::kernel::{Stress, Triangle};
@@ -41,7 +43,7 @@ fn balance(certificate: &mut Certificate) -> Result<Balanced<f64>, Rejection> {
     for (edge, owner) in certificate.edges.iter_mut().zip(&state.owners) {
         let Some(Owner { piece, local }) = owner[0] else { continue };
         if let Role::Inner(force) | Role::Held(_, force) = &mut edge.role {
-            *force = state.loads[piece].forces[local];
+            *force = state.loads[piece].forces[local].map(Into::into);
         }
     }
     Ok(state)
@@ -53,7 +55,7 @@ fn sweep(
     loads: &[Loads<f64>],
     count: usize,
 ) {
-    let points: Vec<[f64; 2]> = (0..certificate.vertices.len() + certificate.cuts.len())
+    let points: Vec<Vector2<f64>> = (0..certificate.vertices.len() + certificate.cuts.len())
         .map(|p| place(certificate, p))
         .collect();
     let mut stars = vec![Vec::new(); points.len()];
@@ -86,7 +88,12 @@ fn sweep(
 }
 
 /// |C eps(v) - tau|^2 / 2 on triangle `t`.
-fn energy(certificate: &Certificate, points: &[[f64; 2]], t: usize, loads: &Loads<f64>) -> Energy {
+fn energy(
+    certificate: &Certificate,
+    points: &[Vector2<f64>],
+    t: usize,
+    loads: &Loads<f64>,
+) -> Energy {
     let piece = &certificate.pieces[t];
     let triangle = Triangle { vertices: piece.vertices.map(|p| points[p]) };
     let double_area = triangle.double_area();
@@ -97,9 +104,10 @@ fn energy(certificate: &Certificate, points: &[[f64; 2]], t: usize, loads: &Load
         features(&Composite::new(&triangle, loads).distance_from(sigma), &material, double_area);
     let mut units = [[0.0; 36]; 12];
     for (k, unit) in units.iter_mut().enumerate() {
-        let mut forces = [[[0.0; 2]; 2]; 3];
-        forces[k / 4][k / 2 % 2][k % 2] = 1.0;
-        let tau = Composite::new(&triangle, &Loads { forces, body: [[0.0; 2]; 3] });
+        let mut unit_load =
+            Loads { forces: [[Vector2::zeros(); 2]; 3], body: [Vector2::zeros(); 3] };
+        unit_load.forces[k / 4][k / 2 % 2][k % 2] = 1.0;
+        let tau = Composite::new(&triangle, &unit_load);
         *unit = features(&tau, &material, double_area);
     }
     let inner = |a: &[f64; 36], b: &[f64; 36]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
@@ -125,9 +133,10 @@ fn features(
     let mut all = [0.0; 36];
     let mut k = 0;
     let mut put = |s: Stress<f64>| {
-        all[k] = deviator * (s.xx - s.yy);
-        all[k + 1] = deviator * 2.0 * s.xy;
-        all[k + 2] = sphere * (s.xx + s.yy);
+        let [xx, yy, xy] = s.components();
+        all[k] = deviator * (xx - yy);
+        all[k + 1] = deviator * 2.0 * xy;
+        all[k + 2] = sphere * (xx + yy);
         k += 3;
     };
     let centre = tau.centre;
@@ -135,29 +144,18 @@ fn features(
         put(a);
         put(b);
         put(centre);
-        put(Stress {
-            xx: a.xx + b.xx + centre.xx,
-            yy: a.yy + b.yy + centre.yy,
-            xy: a.xy + b.xy + centre.xy,
-        });
+        put(a + b + centre);
     }
     all
 }
 
 /// v at point `p`.
-pub(super) fn value(certificate: &Certificate, p: usize) -> [f64; 2] {
-    match certificate.displacement.get(p) {
-        Some(&v) => v,
-        None => {
-            let cut = certificate.cuts[p - certificate.displacement.len()];
-            let [a, b] = cut.ends.map(|end| certificate.displacement[end]);
-            [0, 1].map(|c| a[c] + cut.at * (b[c] - a[c]))
-        }
-    }
+pub(super) fn value(certificate: &Certificate, p: usize) -> Vector2<f64> {
+    at_point(&certificate.displacement, &certificate.cuts, p)
 }
 
 struct Star<'a> {
-    points: &'a [[f64; 2]],
+    points: &'a [Vector2<f64>],
     owners: &'a [[Option<Owner>; 2]],
     free_edge: &'a [bool],
     free_vertex: &'a [bool],
@@ -195,7 +193,7 @@ impl Star<'_> {
         if unknown == 0 {
             return;
         }
-        let forces: Vec<[[[f64; 2]; 2]; 4]> = edges
+        let forces: Vec<[[Vector2<f64>; 2]; 4]> = edges
             .iter()
             .map(|&e| {
                 let ends = certificate.edges[e].ends;
@@ -215,8 +213,7 @@ impl Star<'_> {
                     continue;
                 };
                 let left = self.owners[edges[place]][0].is_some_and(|owner| owner.piece == t);
-                let outward = |force: [[f64; 2]; 2]| {
-                    let [a, b] = force;
+                let outward = |[a, b]: [Vector2<f64>; 2]| {
                     if left { [a[0], a[1], b[0], b[1]] } else { [-b[0], -b[1], -a[0], -a[1]] }
                 };
                 for (mine, force) in mine.iter_mut().zip(&forces[place]).take(own) {
@@ -273,23 +270,18 @@ fn inner(a: &[f64; 12], b: &[f64; 12]) -> f64 {
 
 /// The forces at start and end of an edge for unit values, at one of its ends, of Phi, Phi_x and Phi_y, and of the
 /// edge's own unknown.
-fn modes([start, end]: [[f64; 2]; 2], at_end: bool) -> [[[f64; 2]; 2]; 4] {
-    let along = [end[0] - start[0], end[1] - start[1]];
-    let squared = along[0] * along[0] + along[1] * along[1];
-    let normal = [along[1], -along[0]];
+fn modes([start, end]: [Vector2<f64>; 2], at_end: bool) -> [[Vector2<f64>; 2]; 4] {
+    let along = end - start;
+    let squared = along.dot(&along);
+    let normal = Vector2::new(along.y, -along.x);
     let sign = if at_end { 1.0 } else { -1.0 };
-    let bubble = |z: [f64; 2], q: [f64; 2]| {
-        [[0, 1].map(|c| sign * q[c] + 4.0 * z[c]), [0, 1].map(|c| sign * q[c] - 4.0 * z[c])]
-    };
-    let slope = |q: [f64; 2]| {
-        let factor = -0.75 * (q[0] * normal[0] + q[1] * normal[1]) / squared;
-        bubble(normal.map(|n| factor * n), q)
-    };
+    let bubble = |z: Vector2<f64>, q: Vector2<f64>| [q * sign + z * 4.0, q * sign - z * 4.0];
+    let slope = |q: Vector2<f64>| bubble(normal * (-0.75 * q.dot(&normal) / squared), q);
     [
-        bubble(normal.map(|n| sign * 1.5 * n / squared), [0.0; 2]),
-        slope([0.0, -1.0]),
-        slope([1.0, 0.0]),
-        bubble(along.map(|a| a / squared), [0.0; 2]),
+        bubble(normal * (sign * 1.5) / squared, Vector2::zeros()),
+        slope(-Vector2::y()),
+        slope(Vector2::x()),
+        bubble(along / squared, Vector2::zeros()),
     ]
 }
 

@@ -203,6 +203,8 @@ impl Div for Ball {
     }
 }
 
+crate::entry_of_nalgebra!(Ball);
+
 impl Scalar for Ball {
     fn split(
         self,

@@ -282,7 +282,7 @@ fn demands<'a, E: Element<N, M>, const N: usize, const M: usize>(
                     let facet = mesh.length_and_normal(edge).1;
                     let normals = smooth.along(mesh, edge).map(|points| points.map(|p| p.normal));
                     for (a, node) in space.edge_nodes(edge).into_iter().enumerate() {
-                        let n = normals.map_or(facet, |normals| normals[a]);
+                        let n: [f64; 2] = normals.map_or(facet, |normals| normals[a]).into();
                         let t = [-n[1], n[0]];
                         for (function, direction, key) in
                             [(normal, n, "normal"), (tangential, t, "tangential")]

@@ -8,6 +8,8 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use nalgebra::Vector2;
+
 use super::mesh::BoundaryEdge;
 use super::obstacle::Closest;
 use super::problem::{Condition, DataError, Problem, finite};
@@ -27,9 +29,9 @@ pub struct ContactLineEdge<const N: usize, const M: usize> {
     /// |E|
     pub length: f64,
     /// n
-    pub normal: [f64; 2],
+    pub normal: Vector2<f64>,
     /// n~ at the nodes of the edge; n where it is straight and there is no obstacle that says otherwise.
-    pub directions: [[f64; 2]; M],
+    pub directions: [Vector2<f64>; M],
     /// Where the nodes lie on the smooth boundary, from which the gap is measured.
     pub places: [[f64; 2]; M],
     /// The name of the boundary.
@@ -44,19 +46,19 @@ pub struct ContactLineEdge<const N: usize, const M: usize> {
 
 impl<const N: usize, const M: usize> ContactLineEdge<N, M> {
     /// P(u) = P0(u) - g at the nodes of the edge, from the nodal values of u on its triangle.
-    pub fn p(&self, u: &[[f64; 2]; N]) -> [f64; M] {
+    pub fn p(&self, u: &[Vector2<f64>; N]) -> [f64; M] {
         std::array::from_fn(|a| apply(&self.functionals.p0[a], u) - self.gap[a])
     }
 
     /// sigma_n(u) at the start and at the end of the edge.
-    pub fn sigma_n(&self, u: &[[f64; 2]; N]) -> [f64; 2] {
+    pub fn sigma_n(&self, u: &[Vector2<f64>; N]) -> [f64; 2] {
         [0, 1].map(|a| apply(&self.functionals.sigma_n[a], u))
     }
 }
 
 /// The value of a functional at the nodal values `u` on its triangle.
-pub fn apply<const N: usize>(functional: &[[f64; 2]; N], u: &[[f64; 2]; N]) -> f64 {
-    functional.iter().zip(u).map(|(f, u)| f[0] * u[0] + f[1] * u[1]).sum()
+pub fn apply<const N: usize>(functional: &[Vector2<f64>; N], u: &[Vector2<f64>; N]) -> f64 {
+    functional.iter().zip(u).map(|(f, u)| f.dot(u)).sum()
 }
 
 /// C_h with kappa = gamma0 C_h, and the contact edge that sets it.
@@ -86,8 +88,7 @@ impl Coercivity {
             let counted = if start == end {
                 length
             } else {
-                let cosine = start[0] * end[0] + start[1] * end[1];
-                turning_factor::<E, f64, N, M>(cosine) * length
+                turning_factor::<E, f64, N, M>(start.dot(&end)) * length
             };
             *contact_length.entry(edge.triangle).or_default() += counted;
         }
@@ -225,7 +226,12 @@ impl<'a> Sight<'a> {
     }
 
     /// n~ at the start or at the end of an edge.
-    fn direction(&self, edge: BoundaryEdge, name: &str, a: usize) -> Result<[f64; 2], DataError> {
+    fn direction(
+        &self,
+        edge: BoundaryEdge,
+        name: &str,
+        a: usize,
+    ) -> Result<Vector2<f64>, DataError> {
         let mesh = &self.problem.mesh;
         let on_facet = SmoothPoint {
             place: mesh.vertices()[mesh.ends(edge)[a]],

@@ -5,6 +5,8 @@
 //! for every basis function v, straight from the definitions: stresses are integrated against strains, no matrix is
 //! involved. On the free degrees of freedom the solution makes it zero; on the prescribed ones it is the reaction.
 
+use nalgebra::Vector2;
+
 use super::constraints::{Constraints, in_frame};
 use super::contact_line::{self, Coercivity, ContactLineEdge, EdgeRule};
 use super::held;
@@ -53,7 +55,7 @@ impl Functional {
         Functional { values: vec![[0.0; 2]; nodes], magnitudes: vec![[0.0; 2]; nodes] }
     }
 
-    fn add(&mut self, node: usize, value: [f64; 2], magnitude: f64) {
+    fn add(&mut self, node: usize, value: Vector2<f64>, magnitude: f64) {
         for c in 0..2 {
             self.values[node][c] += value[c];
             self.magnitudes[node][c] += magnitude;
@@ -149,7 +151,7 @@ where
             self.add_functionals(edge, &edge.functionals.sigma_n, &stress, &mut r);
         }
         for (node, load) in self.load.iter().enumerate() {
-            r.add(node, load.map(|l| -l), load[0].abs().max(load[1].abs()));
+            r.add(node, -Vector2::from(*load), load[0].abs().max(load[1].abs()));
         }
         r
     }
@@ -160,7 +162,7 @@ where
         for (t, (triangle, nodes)) in self.space.triangles().enumerate() {
             let nodal = self.space.on_triangle(t, u);
             // Most of a lift: prescribed data are zero but on the boundary.
-            if nodal == [[0.0; 2]; N] {
+            if nodal == [Vector2::zeros(); N] {
                 continue;
             }
             let material = self.problem.material.of(t);
@@ -173,7 +175,7 @@ where
                 let strain: f64 =
                     nodal.iter().zip(&gradients).map(|(u, g)| norm_1(*u) * norm_1(*g)).sum();
                 for (&node, g) in nodes.iter().zip(gradients) {
-                    let force = stress.traction(g).map(|f| weight * area * f);
+                    let force = weight * area * stress.traction(g);
                     forces.add(node, force, weight * area * stiffness * strain * norm_1(g));
                 }
             });
@@ -192,10 +194,9 @@ where
             let area = triangle.double_area() / 2.0;
             E::at_stiffness_points(|l, weight| {
                 let strain = displacement_gradient(&nodal, &E::gradients(l, barycentric));
-                let stress = material.stress(strain);
-                let shear = stress.xy * (strain[0][1] + strain[1][0]);
-                energy +=
-                    weight * area * (stress.xx * strain[0][0] + stress.yy * strain[1][1] + shear);
+                let [xx, yy, xy] = material.stress(strain).components();
+                let shear = xy * (strain.m12 + strain.m21);
+                energy += weight * area * (xx * strain.m11 + yy * strain.m22 + shear);
             });
         }
         energy
@@ -205,14 +206,14 @@ where
     fn add_functionals(
         &self,
         edge: &ContactLineEdge<N, M>,
-        functionals: &[[[f64; 2]; N]],
+        functionals: &[[Vector2<f64>; N]],
         factors: &[f64],
         sum: &mut Functional,
     ) {
         let nodes = &self.space.elements()[edge.edge.triangle];
         for (functional, factor) in functionals.iter().zip(factors) {
             for (&node, f) in nodes.iter().zip(functional) {
-                sum.add(node, f.map(|f| factor * f), factor.abs() * norm_1(*f));
+                sum.add(node, *factor * f, factor.abs() * norm_1(*f));
             }
         }
     }
@@ -253,6 +254,6 @@ pub fn inner(f: &[[f64; 2]], u: &[[f64; 2]]) -> f64 {
     f.iter().zip(u).map(|(f, u)| f[0] * u[0] + f[1] * u[1]).sum()
 }
 
-fn norm_1(v: [f64; 2]) -> f64 {
+fn norm_1(v: Vector2<f64>) -> f64 {
     v[0].abs() + v[1].abs()
 }

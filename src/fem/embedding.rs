@@ -169,7 +169,7 @@ impl<'m> Outline<'m> {
 
     /// `p` lies inside triangle `t`.
     fn inside(&self, t: usize, p: [f64; 2]) -> bool {
-        let corners = self.mesh.triangle(t).vertices;
+        let corners = self.mesh.triangles()[t].map(|v| self.mesh.vertices()[v]);
         (0..3).all(|i| turn(corners[i], corners[(i + 1) % 3], p) > 0.0)
     }
 

@@ -8,6 +8,7 @@
 //! P(u) has the given gap, P(v^h) its interpolant, as method (8) does. Triangles and edges are cut where u is less smooth,
 //! edges also at the roots of P(v^h).
 
+use nalgebra::Vector2;
 #[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
 
@@ -96,7 +97,7 @@ impl Errors {
         &mut self,
         rule: &Rule,
         triangle: &Triangle<f64>,
-        nodal: &[[f64; 2]; N],
+        nodal: &[Vector2<f64>; N],
         exact: &dyn ExactSolution,
     ) where
         E: Element<N, M>,
@@ -104,16 +105,14 @@ impl Errors {
         let barycentric = triangle.barycentric_gradients();
         rule.on_triangle(triangle, |l, x, weight| {
             let shapes = E::values(l);
-            let u = exact.displacement(x);
-            let value = |c: usize| (0..N).map(|j| shapes[j] * nodal[j][c]).sum::<f64>();
-            let e = [0, 1].map(|c| u[c] - value(c));
-            let discrete = displacement_gradient(nodal, &E::gradients(l, barycentric));
-            let exact_gradient = exact.gradient(x);
-            let d = [0, 1].map(|i| [0, 1].map(|j| exact_gradient[i][j] - discrete[i][j]));
-            let s = exact.material().stress(d);
-            self.energy += weight * (s.xx * d[0][0] + s.yy * d[1][1] + s.xy * (d[0][1] + d[1][0]));
-            self.h1 += weight * d.as_flattened().iter().map(|d| d * d).sum::<f64>();
-            self.l2 += weight * (e[0] * e[0] + e[1] * e[1]);
+            let value: Vector2<f64> = shapes.iter().zip(nodal).map(|(n, v)| *n * v).sum();
+            let e = Vector2::from(exact.displacement(x)) - value;
+            let d = exact.gradient(x) - displacement_gradient(nodal, &E::gradients(l, barycentric));
+            let [xx, yy, xy] = exact.material().stress(d).components();
+            self.energy += weight * (xx * d.m11 + yy * d.m22 + xy * (d.m12 + d.m21));
+            // Row by row.
+            self.h1 += weight * d.transpose().iter().map(|d| d * d).sum::<f64>();
+            self.l2 += weight * e.dot(&e);
         });
     }
 
@@ -122,7 +121,7 @@ impl Errors {
         rule: &Rule,
         edge: &ContactLineEdge<N, M>,
         ends: [[f64; 2]; 2],
-        nodal: &[[f64; 2]; N],
+        nodal: &[Vector2<f64>; N],
         exact: &dyn ExactSolution,
     ) where
         E: Element<N, M>,
@@ -132,9 +131,8 @@ impl Errors {
         let stress = edge.sigma_n(nodal);
         rule.on_edge(ends, roots::<E, N, M>(p), |point| {
             let (s, x) = (point.s, point.x);
-            let u = exact.displacement(x);
             let exact = ContactPoint {
-                u_n: u[0] * n[0] + u[1] * n[1],
+                u_n: Vector2::from(exact.displacement(x)).dot(&n),
                 gap: exact.gap(x),
                 sigma_n: exact.stress(x).normal(n),
                 gamma,

@@ -47,10 +47,12 @@ impl Korn {
                 of_edge[edge][slot] = t;
             }
         }
-        let (low, high) = mesh.vertices().iter().fold(
-            ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]),
-            |(low, high), x| ([0, 1].map(|c| x[c].min(low[c])), [0, 1].map(|c| x[c].max(high[c]))),
-        );
+        let (low, high) = mesh
+            .vertices()
+            .iter()
+            .fold(([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]), |(low, high), x| {
+                ([0, 1].map(|c| x[c].min(low[c])), [0, 1].map(|c| x[c].max(high[c])))
+            });
         let size = (high[0] - low[0]).hypot(high[1] - low[1]);
 
         // The prescribed components, by the part of a triangle at their node.
@@ -78,8 +80,8 @@ impl Korn {
                 for (i, &edge) in mesh.triangle_edges()[t].iter().enumerate() {
                     let other = of_edge[edge].into_iter().find(|&o| o != t && o < count);
                     let Some(other) = other.filter(|&o| along[o].is_infinite()) else { continue };
-                    let [x, y] = mesh.triangle(t).edge(i);
-                    let w = 1.0 + 2.0 * size / x.hypot(y);
+                    let edge = mesh.triangle(t).edge(i);
+                    let w = 1.0 + 2.0 * size / edge[0].hypot(edge[1]);
                     along[other] = along[t] + 2.0 * w * w * (left[t] + left[other]);
                     queue.push_back(other);
                 }
@@ -127,8 +129,7 @@ fn squared_remainder<E: Element<N, M>, const N: usize, const M: usize>(
     let doubles = space.mesh().triangle(t);
     let exact = Triangle { vertices: doubles.vertices.map(|x| x.map(Interval::point)) };
     let area = (exact.double_area() / Interval::from(2)).lo();
-    let h = [0, 1, 2].map(|i| doubles.edge(i)).map(|[x, y]| x.hypot(y));
-    let h = h.into_iter().fold(0.0, f64::max);
+    let h = space.mesh().diameter(t);
     let material = materials.of(t);
     let mu = Interval::point(material.mu());
     let stiffness = mu.lo().min((mu + Interval::point(material.lambda())).lo());
@@ -145,12 +146,7 @@ fn squared_remainder<E: Element<N, M>, const N: usize, const M: usize>(
 }
 
 /// |r| <= this times |v|_a for the rigid motion r of the root, where |r(at) . direction| <= `of` |direction| |v|_a.
-fn held(
-    holds: &[Hold],
-    origin: [f64; 2],
-    size: f64,
-    of: impl Fn(&Hold) -> f64,
-) -> Option<f64> {
+fn held(holds: &[Hold], origin: [f64; 2], size: f64, of: impl Fn(&Hold) -> f64) -> Option<f64> {
     // r = (a, b) + c J (x - origin) / size
     let row = |hold: &Hold| -> [f64; 3] {
         let ([x, y], [p, q]) = (hold.at, hold.direction);

@@ -162,7 +162,7 @@ fn add_on_boundary<S: Scalar + From<f64>, E: Element<N, M>, const N: usize, cons
         let (length, normal) = space.mesh().length_and_normal(edge);
         let ends = space.mesh().ends(edge).map(|vertex| space.mesh().vertices()[vertex]);
         let nodes = space.edge_nodes(edge);
-        rule.on_edge(ends, [], |point| match value(point.x, normal) {
+        rule.on_edge(ends, [], |point| match value(point.x, normal.into()) {
             Ok(t) => {
                 let shapes: [S; M] = E::edge_values(<S as From<f64>>::from(point.s));
                 add(load, c, &nodes, &shapes, point.weight * length * t);

@@ -6,6 +6,8 @@
 
 use std::collections::BTreeMap;
 
+use nalgebra::Matrix2;
+
 use super::constraints::{Constraints, from_frame, in_frame};
 use super::discretization::Discretization;
 use crate::kernel::edge_integral::ExactEdge;
@@ -144,18 +146,21 @@ impl LowerTriangle {
         LowerTriangle { starts, rows, values }
     }
 
-    /// Adds the 2 x 2 blocks of an element matrix: `block(i, j)` has the rows of `nodes[i]` and the columns of `nodes[j]`.
+    /// Adds the blocks of an element matrix: `block(i, j)` has the rows of `nodes[i]` and the columns of `nodes[j]`.
     pub fn add<const N: usize>(
         &mut self,
         numbering: &Numbering,
         nodes: &[usize; N],
-        block: impl Fn(usize, usize) -> [[f64; 2]; 2],
+        block: impl Fn(usize, usize) -> Matrix2<f64>,
     ) {
         let columns = Lists { starts: &self.starts, members: &self.rows };
+        // `pattern` knows no numbers but whole ones, and takes a block as the array of its rows.
+        let rows = |block: Matrix2<f64>| block.transpose().into();
         if nodes.iter().any(|node| numbering.frames.contains_key(node)) {
-            let block = |i, j| numbering.turned_block([nodes[i], nodes[j]], block(i, j));
+            let block = |i, j| numbering.turned_block([nodes[i], nodes[j]], rows(block(i, j)));
             pattern::add(&numbering.of, columns, &mut self.values, nodes, block);
         } else {
+            let block = |i, j| rows(block(i, j));
             pattern::add(&numbering.of, columns, &mut self.values, nodes, block);
         }
     }

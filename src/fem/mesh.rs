@@ -15,6 +15,7 @@
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
+use nalgebra::Vector2;
 use thiserror::Error;
 
 use super::embedding;
@@ -92,8 +93,12 @@ pub enum MeshError {
     NoSuchBoundary { name: String, known: String },
     #[error("{0}; use a coarser mesh")]
     OutOfMemory(#[from] OutOfMemory),
-    #[error("{0}")]
-    Rectangle(#[from] super::rectangle::RectangleError),
+    #[error("{name} = {}; expected a positive finite length", number(*value))]
+    Size { name: &'static str, value: f64 },
+    #[error("{name} = {value}; expected at least one cell")]
+    NoCells { name: &'static str, value: usize },
+    #[error("nx = {nx} and ny = {ny} make more than {most} cells; expected fewer")]
+    TooManyCells { nx: usize, ny: usize, most: usize },
 }
 
 fn beside(off: f64) -> String {
@@ -269,7 +274,7 @@ impl Mesh {
 
     /// Triangle `t` with its coordinates.
     pub fn triangle(&self, t: usize) -> Triangle<f64> {
-        Triangle { vertices: self.triangles[t].map(|v| self.vertices[v]) }
+        Triangle { vertices: self.triangles[t].map(|v| self.vertices[v].into()) }
     }
 
     /// h_T of (7): the diameter of triangle `t`, which is its longest edge.
@@ -284,30 +289,30 @@ impl Mesh {
     }
 
     /// The length of a boundary edge and its unit outward normal.
-    pub fn length_and_normal(&self, edge: BoundaryEdge) -> (f64, [f64; 2]) {
-        let [x, y] = self.triangle(edge.triangle).scaled_normal(edge.local);
-        let length = x.hypot(y);
-        (length, [x / length, y / length])
+    pub fn length_and_normal(&self, edge: BoundaryEdge) -> (f64, Vector2<f64>) {
+        let normal = self.triangle(edge.triangle).scaled_normal(edge.local);
+        let length = length(normal);
+        (length, normal / length)
     }
 
     /// The first triangle that contains the point `x`, with its barycentric coordinates there; `None` outside the body.
     pub fn locate(&self, x: [f64; 2]) -> Option<(usize, [f64; 3])> {
         let boxes = self.boxes.get_or_init(|| {
-            let triangles = (0..self.triangles.len()).map(|t| self.triangle(t).vertices);
-            let boxed = |t| Bounds::around(t).widened(4.0 * OUTSIDE * Bounds::around(t).size());
-            Tree::new(triangles.map(boxed).collect())
+            let corners = |t: &[usize; 3]| t.map(|v| self.vertices[v]);
+            let boxed = |t: [[f64; 2]; 3]| {
+                Bounds::around(t).widened(4.0 * OUTSIDE * Bounds::around(t).size())
+            };
+            Tree::new(self.triangles.iter().map(corners).map(boxed).collect())
         });
         let mut near = Vec::new();
         boxes.meeting(Bounds::around([x]), |t| near.push(t));
         near.sort_unstable();
+        let x = Vector2::from(x);
         near.into_iter().find_map(|t| {
             let triangle = self.triangle(t);
             let gradients = triangle.barycentric_gradients();
             // Each coordinate is measured from a vertex where it is zero: a vertex of the mesh finds itself exactly.
-            let l = [0, 1, 2].map(|i| {
-                let from = triangle.vertices[(i + 1) % 3];
-                gradients[i][0] * (x[0] - from[0]) + gradients[i][1] * (x[1] - from[1])
-            });
+            let l = [0, 1, 2].map(|i| gradients[i].dot(&(x - triangle.vertices[(i + 1) % 3])));
             l.iter().all(|&l| l >= -OUTSIDE).then_some((t, l))
         })
     }
@@ -319,14 +324,13 @@ const FLAT: f64 = 1e-12;
 /// A point this far outside a triangle, in units of its heights, still belongs to it: some thousand rounding errors.
 const OUTSIDE: f64 = 1e-12;
 
+/// |v|, without the overflow and underflow of a sum of squares.
+pub(crate) fn length(v: Vector2<f64>) -> f64 {
+    v.x.hypot(v.y)
+}
+
 fn diameter(triangle: &Triangle<f64>) -> f64 {
-    [0, 1, 2]
-        .map(|i| {
-            let [x, y] = triangle.edge(i);
-            x.hypot(y)
-        })
-        .into_iter()
-        .fold(0.0, f64::max)
+    [0, 1, 2].map(|i| length(triangle.edge(i))).into_iter().fold(0.0, f64::max)
 }
 
 /// The bytes that making a mesh takes beside its vertices and triangles: its edges, of which there are at most three to a
@@ -381,7 +385,7 @@ fn check_vertices(vertices: &[[f64; 2]], triangles: &[[usize; 3]]) -> Result<(),
 
 fn check_triangles(vertices: &[[f64; 2]], triangles: &[[usize; 3]]) -> Result<(), MeshError> {
     for (triangle, &corners) in triangles.iter().enumerate() {
-        let t = Triangle { vertices: corners.map(|v| vertices[v]) };
+        let t = Triangle { vertices: corners.map(|v| vertices[v].into()) };
         let (area, diameter) = (t.double_area() / 2.0, diameter(&t));
         let flat = FLAT * diameter * diameter;
         if area < -flat {
@@ -518,7 +522,9 @@ impl MeshError {
             | NoSuchBoundary { .. }
             | NoSuchSurface { .. }
             | NoSuchPoint { .. }
-            | Rectangle(_) => {}
+            | Size { .. }
+            | NoCells { .. }
+            | TooManyCells { .. } => {}
         }
         self
     }
@@ -568,7 +574,7 @@ mod tests {
         let m = named(&[("floor", &[[1, 0]]), ("sides", &[[1, 2], [0, 3]])]).unwrap();
         let floor = m.edges_of("floor").unwrap();
         assert_eq!(m.ends(floor[0]), [0, 1]);
-        assert_eq!(m.length_and_normal(floor[0]), (1.0, [0.0, -1.0]));
+        assert_eq!(m.length_and_normal(floor[0]), (1.0, Vector2::new(0.0, -1.0)));
         assert_eq!(m.edges_of("sides").unwrap().len(), 2);
     }
 

@@ -7,8 +7,8 @@
 
 use super::ball::Ball;
 use super::contact_line::EdgeRule;
-use crate::kernel::edge_integral::{gauss, roots, value_at};
 use crate::kernel::Element;
+use crate::kernel::edge_integral::{gauss, roots, value_at};
 
 /// int \[P\]+ N_a for P with the nodal values `p`, by the rule of the method.
 pub fn moments<E, const N: usize, const M: usize>(rule: &EdgeRule, p: [Ball; M]) -> [Ball; M]
@@ -67,16 +67,16 @@ impl Parabola {
         let sign = Ball::from(sign);
         let ends = larger((sign * self.at(a)).upper(), (sign * self.at(b)).upper());
         let slopes = [a, b].map(|s| sign * self.slope(s));
-        let monotone = slopes.iter().all(|s| s.lower() >= 0.0)
-            || slopes.iter().all(|s| s.upper() <= 0.0);
+        let monotone =
+            slopes.iter().all(|s| s.lower() >= 0.0) || slopes.iter().all(|s| s.upper() <= 0.0);
         let opens_upwards = (sign * self.0[2]).lower() >= 0.0;
         if monotone || opens_upwards {
             return ends;
         }
         let vertex = -self.0[1].head() / (2.0 * self.0[2].head());
         let near = Ball::from(vertex.clamp(a.head(), b.head()));
-        let tangent = sign * self.at(near)
-            + Ball::from((sign * self.slope(near)).magnitude()) * (b - a);
+        let tangent =
+            sign * self.at(near) + Ball::from((sign * self.slope(near)).magnitude()) * (b - a);
         // A point a rounding error outside [a, b] would be at most |b - a| away, too, but for that error.
         let slack = (sign * self.slope(near)).magnitude() * 4.0 * f64::EPSILON;
         larger(ends, tangent.upper() + slack)

@@ -15,6 +15,9 @@
 use std::fmt;
 use std::sync::Arc;
 
+use nalgebra::Vector2;
+
+use super::mesh::length;
 use super::problem::{DataError, Function, finite};
 
 /// The length of grad phi may be off 1 by this much.
@@ -76,7 +79,7 @@ pub struct Closest {
     /// g: negative where the obstacle reaches into the body.
     pub gap: f64,
     /// n~, a unit vector from the body towards the obstacle.
-    pub direction: [f64; 2],
+    pub direction: Vector2<f64>,
 }
 
 impl Obstacle {
@@ -97,30 +100,30 @@ impl Obstacle {
         match self {
             Obstacle::Plane { point, normal } => Ok(Closest {
                 gap: (x[0] - point[0]) * normal[0] + (x[1] - point[1]) * normal[1],
-                direction: normal.map(|c| 0.0 - c),
+                direction: Vector2::zeros() - Vector2::from(*normal),
             }),
             Obstacle::Circle { center, radius, side } => {
-                let out = [x[0] - center[0], x[1] - center[1]];
-                let distance = out[0].hypot(out[1]);
+                let out = Vector2::from(x) - Vector2::from(*center);
+                let distance = length(out);
                 if distance == 0.0 {
                     return Err(no_distance(0.0));
                 }
-                let out = out.map(|c| c / distance);
+                let out = out / distance;
                 Ok(match side {
                     Side::Outside => {
-                        Closest { gap: distance - radius, direction: out.map(|c| 0.0 - c) }
+                        Closest { gap: distance - radius, direction: Vector2::zeros() - out }
                     }
                     Side::Inside => Closest { gap: radius - distance, direction: out },
                 })
             }
             Obstacle::Distance(distance) => {
                 let value = finite(&**distance, x, &what)?;
-                let [a, b] = distance.gradient(x);
-                let length = a.hypot(b);
+                let gradient = Vector2::from(distance.gradient(x));
+                let length = length(gradient);
                 if (length - 1.0).abs() <= MOST_OFF {
                     Ok(Closest {
                         gap: value / length,
-                        direction: [0.0 - a / length, 0.0 - b / length],
+                        direction: Vector2::zeros() - gradient / length,
                     })
                 } else {
                     Err(no_distance(length))
@@ -168,7 +171,12 @@ impl Distance for Scaled {
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
+
     use super::*;
+
+    /// A handful of operations on numbers below 5.
+    const ROUNDING: f64 = 2e-15;
 
     /// The circle of radius 2 around (1, 0) as a distance, times a factor.
     struct Around(f64);
@@ -197,20 +205,20 @@ mod tests {
     #[test]
     fn the_gap_is_the_distance_and_the_direction_leads_to_the_closest_point() {
         let floor = Obstacle::Plane { point: [0.0, 1.0], normal: [0.0, 1.0] };
-        assert_eq!(at(&floor, [3.0, 1.5]), Closest { gap: 0.5, direction: [0.0, -1.0] });
+        assert_eq!(at(&floor, [3.0, 1.5]), Closest { gap: 0.5, direction: -Vector2::y() });
         let pin = at(&circle(Side::Outside), [4.0, 4.0]);
-        assert_eq!(pin, Closest { gap: 3.0, direction: [-0.6, -0.8] });
+        assert_eq!(pin, Closest { gap: 3.0, direction: Vector2::new(-0.6, -0.8) });
         let bearing = at(&circle(Side::Inside), [2.2, 1.6]);
-        assert!((bearing.gap - 0.0).abs() < 1e-15);
-        assert!((bearing.direction[0] - 0.6).abs() + (bearing.direction[1] - 0.8).abs() < 1e-15);
+        assert_abs_diff_eq!(bearing.gap, 0.0, epsilon = ROUNDING);
+        assert_abs_diff_eq!(bearing.direction, Vector2::new(0.6, 0.8), epsilon = ROUNDING);
     }
 
     #[test]
     fn a_circle_as_a_distance_is_the_circle_even_if_its_gradient_is_a_little_off() {
         for factor in [1.0, 0.95, 1.05] {
             let pin = at(&Obstacle::Distance(Arc::new(Around(factor))), [4.0, 4.0]);
-            assert!((pin.gap - 3.0).abs() < 1e-15, "{pin:?}");
-            assert!((pin.direction[0] + 0.6).abs() + (pin.direction[1] + 0.8).abs() < 1e-15);
+            assert_abs_diff_eq!(pin.gap, 3.0, epsilon = ROUNDING);
+            assert_abs_diff_eq!(pin.direction, Vector2::new(-0.6, -0.8), epsilon = ROUNDING);
         }
     }
 

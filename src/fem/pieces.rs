@@ -7,6 +7,9 @@
 //! near the singular point get more points, for the rules converge the more slowly the nearer it is.
 //! Places are computed from the singular point outwards, so that their distance from it keeps its digits.
 
+use nalgebra::Vector2;
+
+use super::mesh::length;
 use super::quadrature;
 use crate::kernel::Triangle;
 
@@ -55,7 +58,7 @@ pub struct Rule {
 }
 
 /// A part of a triangle: its corners as places and as barycentric coordinates in the whole.
-type Piece = [([f64; 2], [f64; 3]); 3];
+type Piece = [(Vector2<f64>, [f64; 3]); 3];
 
 /// A point of a rule on an edge.
 #[derive(Clone, Copy, Debug)]
@@ -99,12 +102,12 @@ impl Rule {
     }
 
     /// A piece with these corners is near the singular point.
-    fn is_near(&self, corners: &[[f64; 2]]) -> bool {
-        let distance = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
+    fn is_near(&self, corners: &[Vector2<f64>]) -> bool {
+        let distance = |a: Vector2<f64>, b: Vector2<f64>| length(a - b);
         self.features.singular.is_some_and(|singular| {
             let first = corners[0];
             let size = corners.iter().map(|&x| distance(x, first)).fold(0.0, f64::max);
-            corners.iter().any(|&x| distance(x, singular.point) <= NEAR * size)
+            corners.iter().any(|&x| distance(x, singular.point.into()) <= NEAR * size)
         })
     }
 
@@ -116,14 +119,14 @@ impl Rule {
         cuts: impl IntoIterator<Item = f64>,
         mut f: impl FnMut(EdgePoint),
     ) {
-        let [a, b] = ends;
-        let direction = [b[0] - a[0], b[1] - a[1]];
-        let squared = dot(direction, direction);
+        let [a, b] = ends.map(Vector2::from);
+        let direction = b - a;
+        let squared = direction.dot(&direction);
         let at_kink = self.features.kink.map(|c| (c - a[0]) / direction[0]);
         let singular = self.features.singular.map(|singular| {
-            let from_start = [singular.point[0] - a[0], singular.point[1] - a[1]];
-            let along = dot(from_start, direction) / squared;
-            let across = cross(from_start, direction) / squared;
+            let from_start = Vector2::from(singular.point) - a;
+            let along = from_start.dot(&direction) / squared;
+            let across = from_start.perp(&direction) / squared;
             // Off the line of the edge it is nowhere on the edge.
             (if across.abs() <= AT_THE_POINT { along } else { f64::NAN }, singular)
         });
@@ -134,7 +137,7 @@ impl Rule {
         all.sort_unstable_by(f64::total_cmp);
         for piece in all.windows(2) {
             let (low, high) = (piece[0], piece[1]);
-            let place = |s: f64| [0, 1].map(|c| a[c] + s * direction[c]);
+            let place = |s: f64| a + s * direction;
             let near = |s: f64| {
                 singular.filter(|(at, _)| (s - at).abs() <= AT_THE_POINT).map(|(_, p)| (s, p))
             };
@@ -144,17 +147,18 @@ impl Rule {
                 let near = self.is_near(&[place(low), place(high)]);
                 for &(t, weight) in if near { &self.more_gauss } else { &self.gauss } {
                     let s = low + t * (high - low);
-                    f(EdgePoint { s, x: place(s), weight: weight * (high - low) });
+                    f(EdgePoint { s, x: place(s).into(), weight: weight * (high - low) });
                 }
                 continue;
             };
             let (sign, other) = if from == low { (1.0, high) } else { (-1.0, low) };
-            let other = place(other);
+            let point = Vector2::from(point);
+            let to_other = place(other) - point;
             for &(t, weight) in &self.more_gauss {
                 let r = t.powf(edge_grading);
                 f(EdgePoint {
                     s: from + sign * r * (high - low),
-                    x: [0, 1].map(|c| point[c] + r * (other[c] - point[c])),
+                    x: (point + r * to_other).into(),
                     weight: weight * edge_grading * t.powf(edge_grading - 1.0) * (high - low),
                 });
             }
@@ -162,16 +166,8 @@ impl Rule {
     }
 }
 
-fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
-}
-
-fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[1] - a[1] * b[0]
-}
-
 /// Twice the signed area of a triangle.
-fn double_area(vertices: [[f64; 2]; 3]) -> f64 {
+fn double_area(vertices: [Vector2<f64>; 3]) -> f64 {
     Triangle { vertices }.double_area()
 }
 
@@ -180,7 +176,7 @@ fn apply(piece: &Piece, rule: &[([f64; 3], f64)], f: &mut impl FnMut([f64; 3], [
     let area = places.double_area().abs() / 2.0;
     for &(own, weight) in rule {
         let l = [0, 1, 2].map(|i| (0..3).map(|k| own[k] * piece[k].1[i]).sum());
-        f(l, places.point(own), weight * area);
+        f(l, places.point(own).into(), weight * area);
     }
 }
 
@@ -207,7 +203,7 @@ fn half(piece: &Piece, c: f64, sign: f64) -> Vec<Piece> {
         if da * db < 0.0 {
             let s = da / (da - db);
             let l = [0, 1, 2].map(|i| a.1[i] + s * (b.1[i] - a.1[i]));
-            polygon.push(([c, a.0[1] + s * (b.0[1] - a.0[1])], l));
+            polygon.push((Vector2::new(c, a.0.y + s * (b.0.y - a.0.y)), l));
         }
     }
     (1..polygon.len().saturating_sub(1)).map(|k| [polygon[0], polygon[k], polygon[k + 1]]).collect()
@@ -215,6 +211,7 @@ fn half(piece: &Piece, c: f64, sign: f64) -> Vec<Piece> {
 
 /// The triangle cut into triangles with `point` as their first vertex; `None` if it doesn't hold the point.
 fn around(piece: &Piece, point: [f64; 2]) -> Option<Vec<Piece>> {
+    let point = Vector2::from(point);
     let [a, b, c] = *piece;
     let whole = double_area(piece.map(|(x, _)| x));
     let sides = [[b, c], [c, a], [a, b]];
@@ -229,15 +226,20 @@ fn around(piece: &Piece, point: [f64; 2]) -> Option<Vec<Piece>> {
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
+
     use super::*;
 
-    const T: Triangle<f64> = Triangle { vertices: [[0.1, 0.0], [0.9, 0.0], [0.4, 0.7]] };
+    const T: Triangle<f64> = Triangle {
+        vertices: [Vector2::new(0.1, 0.0), Vector2::new(0.9, 0.0), Vector2::new(0.4, 0.7)],
+    };
 
     fn integral(features: Features, n: usize, f: impl Fn([f64; 2]) -> f64) -> f64 {
         let mut sum = 0.0;
         Rule::new(features, n).on_triangle(&T, |l, x, weight| {
             let from_l = T.point(l);
-            assert!((from_l[0] - x[0]).abs() + (from_l[1] - x[1]).abs() < 1e-14);
+            // Sums of three products of numbers below 1.
+            assert_abs_diff_eq!(from_l, Vector2::from(x), epsilon = 1e-14);
             sum += weight * f(x);
         });
         sum

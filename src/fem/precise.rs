@@ -1,6 +1,8 @@
 //! The linear part of (8) at a displacement that is known to more than double precision, evaluated from the definitions in
 //! [twofold](crate::fem::twofold) numbers: what is left of forces that cancel is then known to the last bit of a double.
 
+use nalgebra::Vector2;
+
 use super::contact_line::ContactLineEdge;
 use super::discretization::Discretization;
 use crate::fem::twofold::Twofold;
@@ -44,14 +46,14 @@ pub fn add_internal_forces<S, E, const N: usize, const M: usize>(
     u: &[[S; 2]],
     forces: &mut [[S; 2]],
 ) where
-    S: Scalar + From<f64> + PartialEq,
+    S: Scalar + From<f64>,
     E: ExactEdge<f64, N, M>,
 {
     let zero = <S as From<i32>>::from(0);
     let two = <S as From<i32>>::from(2);
     for (t, (triangle, nodes)) in d.space.triangles().enumerate() {
-        let nodal = nodes.map(|node| u[node]);
-        if nodal.iter().flatten().all(|&u| u == zero) {
+        let nodal = nodes.map(|node| Vector2::from(u[node]));
+        if nodal.iter().all(|u| u.iter().all(|&u| u == zero)) {
             continue;
         }
         let triangle = exactly(triangle);
@@ -64,7 +66,7 @@ pub fn add_internal_forces<S, E, const N: usize, const M: usize>(
             for (&node, g) in nodes.iter().zip(gradients) {
                 let force = stress.traction(g);
                 for c in 0..2 {
-                    forces[node][c] = forces[node][c] + weight * area * force[c];
+                    forces[node][c] += weight * area * force[c];
                 }
             }
         });
@@ -75,7 +77,7 @@ pub fn add_internal_forces<S, E, const N: usize, const M: usize>(
 #[derive(Clone, Copy, Debug)]
 pub struct EdgeNumbers<S> {
     /// n
-    pub normal: [S; 2],
+    pub normal: Vector2<S>,
     /// gamma
     pub gamma: S,
     /// |E|
@@ -112,7 +114,7 @@ impl<'d, S: Scalar + From<f64>, const N: usize, const M: usize> OnEdge<'d, S, N,
         OnEdge { functionals, numbers, nodes: &d.space.elements()[t] }
     }
 
-    fn apply(&self, functional: &[[S; 2]; N], u: &[[S; 2]]) -> S {
+    fn apply(&self, functional: &[Vector2<S>; N], u: &[[S; 2]]) -> S {
         let zero = <S as From<i32>>::from(0);
         let nodal = functional.iter().zip(self.nodes);
         nodal.fold(zero, |sum, (f, &node)| sum + f[0] * u[node][0] + f[1] * u[node][1])
@@ -143,11 +145,11 @@ impl<'d, S: Scalar + From<f64>, const N: usize, const M: usize> OnEdge<'d, S, N,
         self.add(&self.functionals.p0, factors, forces);
     }
 
-    fn add(&self, functionals: &[[[S; 2]; N]], factors: &[S], forces: &mut [[S; 2]]) {
+    fn add(&self, functionals: &[[Vector2<S>; N]], factors: &[S], forces: &mut [[S; 2]]) {
         for (functional, &factor) in functionals.iter().zip(factors) {
             for (&node, f) in self.nodes.iter().zip(functional) {
                 for c in 0..2 {
-                    forces[node][c] = forces[node][c] + factor * f[c];
+                    forces[node][c] += factor * f[c];
                 }
             }
         }
@@ -201,7 +203,7 @@ mod tests {
         }
         let shift = 2.0_f64.powi(-90);
         for u in &mut fine {
-            u[1] = u[1] + Twofold::from(shift);
+            u[1] += Twofold::from(shift);
         }
         let (_, moved) = evaluate(&d, &fine);
         // A translation by shift along y changes u_n by -shift and no stress.

@@ -8,11 +8,8 @@
 //!         right              left               crossed
 //! ```
 
-use thiserror::Error;
-
 use super::mesh::{Mesh, MeshError, bytes_to_make};
 use crate::memory::{self, bytes_of};
-use crate::quote::number;
 
 /// How the cells of a structured mesh are cut into triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,18 +39,6 @@ pub struct Rectangle {
 
 /// The most cells that a rectangle may have: beyond it the factorisation would not fit into the memory of one machine.
 pub const MOST_CELLS: usize = 4_000_000;
-
-/// Why there is no such rectangle.
-#[derive(Clone, Debug, Error, PartialEq)]
-#[expect(missing_docs, reason = "the message of each variant says what it is")]
-pub enum RectangleError {
-    #[error("{name} = {}; expected a positive finite length", number(*value))]
-    Size { name: &'static str, value: f64 },
-    #[error("{name} = {value}; expected at least one cell")]
-    NoCells { name: &'static str, value: usize },
-    #[error("nx = {nx} and ny = {ny} make more than {MOST_CELLS} cells; expected fewer")]
-    TooMany { nx: usize, ny: usize },
-}
 
 impl Rectangle {
     /// The mesh of this rectangle.
@@ -114,20 +99,20 @@ impl Rectangle {
         Ok(memory::check(lists + bytes_to_make(vertices, triangles))?)
     }
 
-    fn check_numbers(&self) -> Result<(), RectangleError> {
+    fn check_numbers(&self) -> Result<(), MeshError> {
         for (name, value) in [("width", self.width), ("height", self.height)] {
             if !(value > 0.0 && value.is_finite()) {
-                return Err(RectangleError::Size { name, value });
+                return Err(MeshError::Size { name, value });
             }
         }
         for (name, value) in [("nx", self.nx), ("ny", self.ny)] {
             if value == 0 {
-                return Err(RectangleError::NoCells { name, value });
+                return Err(MeshError::NoCells { name, value });
             }
         }
         match self.nx.checked_mul(self.ny) {
             Some(cells) if cells <= MOST_CELLS => Ok(()),
-            _ => Err(RectangleError::TooMany { nx: self.nx, ny: self.ny }),
+            _ => Err(MeshError::TooManyCells { nx: self.nx, ny: self.ny, most: MOST_CELLS }),
         }
     }
 
@@ -236,7 +221,7 @@ mod tests {
             let sum: f64 = edges.iter().map(|&e| mesh.length_and_normal(e).0).sum();
             assert!((sum - length).abs() < 1e-15);
             for &e in edges {
-                assert_eq!(mesh.length_and_normal(e).1, normal);
+                assert_eq!(mesh.length_and_normal(e).1, nalgebra::Vector2::from(normal));
             }
         }
     }

@@ -121,7 +121,7 @@ impl Parts {
         let mut places = vec![None; count];
         for (t, &part) in of_triangle.iter().enumerate() {
             let triangle = mesh.triangle(t);
-            places[part].get_or_insert_with(|| triangle.point([1.0 / 3.0; 3]));
+            places[part].get_or_insert_with(|| triangle.point([1.0 / 3.0; 3]).into());
             let [low, high] = &mut boxes[part];
             for x in triangle.vertices {
                 for c in 0..2 {

@@ -17,7 +17,9 @@
 
 use std::collections::BTreeMap;
 
-use super::mesh::{BoundaryEdge, Mesh};
+use nalgebra::Vector2;
+
+use super::mesh::{BoundaryEdge, Mesh, length};
 
 /// A bend of more degrees is a corner.
 pub const SMOOTH: f64 = 40.0;
@@ -29,7 +31,7 @@ const STRAIGHT: f64 = 1e-8;
 #[derive(Clone, Debug)]
 pub struct SmoothBoundary {
     /// By triangle and local edge; an edge that is not listed has its facet's normal all along.
-    normals: BTreeMap<(usize, usize), [[f64; 2]; 2]>,
+    normals: BTreeMap<(usize, usize), [Vector2<f64>; 2]>,
 }
 
 /// A point of the smooth boundary.
@@ -38,7 +40,7 @@ pub struct SmoothPoint {
     /// The place.
     pub place: [f64; 2],
     /// The unit outward normal there.
-    pub normal: [f64; 2],
+    pub normal: Vector2<f64>,
 }
 
 /// The edges before and after a vertex of the outline, by their places in it.
@@ -61,7 +63,7 @@ impl SmoothBoundary {
     /// Of the whole boundary of a mesh.
     pub fn new(mesh: &Mesh) -> Self {
         let outline = mesh.outline();
-        let facets: Vec<(f64, [f64; 2])> =
+        let facets: Vec<(f64, Vector2<f64>)> =
             outline.iter().map(|&edge| mesh.length_and_normal(edge)).collect();
         let mut around: BTreeMap<usize, Around> = BTreeMap::new();
         for (e, &edge) in outline.iter().enumerate() {
@@ -78,13 +80,13 @@ impl SmoothBoundary {
                 return None;
             };
             let (n, m) = (facets[before].1, facets[after].1);
-            let bend = (n[0] * m[1] - n[1] * m[0]).atan2(n[0] * m[0] + n[1] * m[1]);
+            let bend = n.perp(&m).atan2(n.dot(&m));
             Some(Passage { before, after, bend })
         };
         let bend_at = |vertex: usize| passage(vertex).map_or(f64::INFINITY, |p| p.bend);
 
         // The normal that both edges share at a vertex, where they share one.
-        let mut shared: BTreeMap<usize, [f64; 2]> = BTreeMap::new();
+        let mut shared: BTreeMap<usize, Vector2<f64>> = BTreeMap::new();
         for &vertex in around.keys() {
             let Some(Passage { before, after, bend }) = passage(vertex) else { continue };
             if bend.abs() <= STRAIGHT || bend.abs() > SMOOTH.to_radians() {
@@ -99,10 +101,7 @@ impl SmoothBoundary {
                 (true, true) => None,
                 (true, false) => arc_starts(ahead).then_some(n),
                 (false, true) => arc_starts(behind).then_some(m),
-                (false, false) => {
-                    let mean = [0, 1].map(|c| n[c] / a + m[c] / b);
-                    Some(unit(mean))
-                }
+                (false, false) => Some(unit(n / a + m / b)),
             };
             shared.extend(normal.map(|normal| (vertex, normal)));
         }
@@ -127,43 +126,38 @@ impl SmoothBoundary {
     }
 
     /// The normals at the start and at the end of an edge, if they are not both its facet's.
-    pub fn at_ends(&self, edge: BoundaryEdge) -> Option<[[f64; 2]; 2]> {
+    pub fn at_ends(&self, edge: BoundaryEdge) -> Option<[Vector2<f64>; 2]> {
         self.normals.get(&(edge.triangle, edge.local)).copied()
     }
 
     /// Start, end and middle of the smooth boundary along an edge, if it is not straight there.
     pub fn along(&self, mesh: &Mesh, edge: BoundaryEdge) -> Option<[SmoothPoint; 3]> {
         let [n, m] = self.at_ends(edge)?;
-        let [a, b] = mesh.ends(edge).map(|v| mesh.vertices()[v]);
-        let chord = [b[0] - a[0], b[1] - a[1]];
-        let half = ((1.0 + n[0] * m[0] + n[1] * m[1]) / 2.0).max(0.0).sqrt();
-        let speed = 2.0 * chord[0].hypot(chord[1]) / (1.0 + half);
-        let ([t0, t1], [s0, s1]) = ([-n[1], n[0]], [-m[1], m[0]]);
-        let middle = [
-            (a[0] + b[0]) / 2.0 + speed / 8.0 * (t0 - s0),
-            (a[1] + b[1]) / 2.0 + speed / 8.0 * (t1 - s1),
-        ];
+        let [a, b] = mesh.ends(edge).map(|v| Vector2::from(mesh.vertices()[v]));
+        let chord = b - a;
+        let half = ((1.0 + n.x * m.x + n.y * m.y) / 2.0).max(0.0).sqrt();
+        let speed = 2.0 * length(chord) / (1.0 + half);
+        let (t, s) = (left_of(n), left_of(m));
+        let middle = (a + b) / 2.0 + (t - s) * (speed / 8.0);
         // The derivative of the curve there.
-        let tangent =
-            [1.5 * chord[0] - speed / 4.0 * (t0 + s0), 1.5 * chord[1] - speed / 4.0 * (t1 + s1)];
-        let normal = unit([tangent[1], -tangent[0]]);
-        Some([
-            SmoothPoint { place: a, normal: n },
-            SmoothPoint { place: b, normal: m },
-            SmoothPoint { place: middle, normal },
-        ])
+        let tangent = chord * 1.5 - (t + s) * (speed / 4.0);
+        let point = |place: Vector2<f64>, normal| SmoothPoint { place: place.into(), normal };
+        Some([point(a, n), point(b, m), point(middle, unit(-left_of(tangent)))])
     }
 }
 
-fn unit([x, y]: [f64; 2]) -> [f64; 2] {
-    let length = x.hypot(y);
-    [x / length, y / length]
+fn unit(v: Vector2<f64>) -> Vector2<f64> {
+    v / length(v)
+}
+
+/// v turned left by a right angle.
+fn left_of(v: Vector2<f64>) -> Vector2<f64> {
+    Vector2::new(-v.y, v.x)
 }
 
 /// The normal at the other end of an arc of a circle whose chord has the normal `facet`.
-fn mirrored(normal: [f64; 2], facet: [f64; 2]) -> [f64; 2] {
-    let along = 2.0 * (normal[0] * facet[0] + normal[1] * facet[1]);
-    unit([0, 1].map(|c| along * facet[c] - normal[c]))
+fn mirrored(normal: Vector2<f64>, facet: Vector2<f64>) -> Vector2<f64> {
+    unit(facet * (2.0 * normal.dot(&facet)) - normal)
 }
 
 #[cfg(test)]
@@ -193,8 +187,8 @@ mod tests {
             mesh.outline().iter().filter(rim).flat_map(|&e| smooth.along(mesh, e).unwrap());
         points
             .map(|p| {
-                let off = |c: usize| p.normal[c] - p.place[c] / p.place[0].hypot(p.place[1]);
-                [off(0).hypot(off(1)), (p.place[0].hypot(p.place[1]) - 2.0).abs()]
+                let place = Vector2::from(p.place);
+                [length(p.normal - unit(place)), (length(place) - 2.0).abs()]
             })
             .collect()
     }
@@ -218,8 +212,8 @@ mod tests {
     fn control_weights_by_length_are_not_exact_on_unequal_facets() {
         let [a, b, c] = [0.0_f64, 0.3, 0.5].map(|t| [2.0 * t.cos(), 2.0 * t.sin()]);
         // Turned facets weighted by their lengths add up to the chord from a to c.
-        let n = unit([c[1] - a[1], a[0] - c[0]]);
-        assert!((n[0] - b[0] / 2.0).hypot(n[1] - b[1] / 2.0) > 0.04);
+        let n = unit(Vector2::new(c[1] - a[1], a[0] - c[0]));
+        assert!(length(n - Vector2::from(b) / 2.0) > 0.04);
     }
 
     #[test]
@@ -244,9 +238,9 @@ mod tests {
         };
         assert_eq!(of(1), None);
         let [start, end] = of(2).unwrap();
-        assert!(start == [1.0, 0.0] && end == [1.0, 0.0], "{start:?} {end:?}");
+        assert!(start == Vector2::x() && end == Vector2::x(), "{start:?} {end:?}");
         let [start, end] = of(3).unwrap();
-        assert_eq!(start, [1.0, 0.0]);
-        assert!((end[0] - 0.2_f64.cos()).hypot(end[1] - 0.2_f64.sin()) < 1e-14);
+        assert_eq!(start, Vector2::x());
+        assert!(length(end - Vector2::new(0.2_f64.cos(), 0.2_f64.sin())) < 1e-14);
     }
 }

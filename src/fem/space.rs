@@ -5,6 +5,8 @@
 
 use std::marker::PhantomData;
 
+use nalgebra::Vector2;
+
 use super::mesh::{BoundaryEdge, Mesh};
 use crate::kernel::{Element, Triangle};
 
@@ -64,8 +66,8 @@ impl<'a, E: Element<N, M>, const N: usize, const M: usize> Space<'a, E, N, M> {
     }
 
     /// The nodal values of `field` on triangle `t`.
-    pub fn on_triangle(&self, t: usize, field: &[[f64; 2]]) -> [[f64; 2]; N] {
-        self.elements[t].map(|node| field[node])
+    pub fn on_triangle(&self, t: usize, field: &[[f64; 2]]) -> [Vector2<f64>; N] {
+        self.elements[t].map(|node| field[node].into())
     }
 
     /// All triangles with their coordinates and their nodes.

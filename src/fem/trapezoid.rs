@@ -55,7 +55,7 @@ mod tests {
                 [("right", [1.0, 0.0]), ("bottom", [0.0, -1.0]), ("top", [0.0, 1.0])]
             {
                 for &edge in mesh.edges_of(side).unwrap() {
-                    assert_eq!(mesh.length_and_normal(edge).1, normal);
+                    assert_eq!(mesh.length_and_normal(edge).1, nalgebra::Vector2::from(normal));
                 }
             }
         }

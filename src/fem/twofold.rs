@@ -108,6 +108,8 @@ impl Div for Twofold {
     }
 }
 
+crate::entry_of_nalgebra!(Twofold);
+
 impl Scalar for Twofold {
     fn split(
         self,

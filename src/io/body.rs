@@ -122,7 +122,7 @@ impl MaterialTable<'_> {
             return Err(wrong(found, &format!("[material.{}]", shown(name))));
         }
         if let Some(t) = covered.iter().position(|covered| !covered) {
-            let [x, y] = mesh.triangle(t).point([1.0 / 3.0; 3]);
+            let [x, y] = mesh.triangle(t).point([1.0 / 3.0; 3]).into();
             let found = format!(
                 "a triangle around ({}, {}) that belongs to no physical surface",
                 quote::number(x),

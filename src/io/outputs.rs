@@ -14,12 +14,13 @@ use super::files::{Output, WriteError};
 use super::numbers::short;
 use super::picture::{ContactSample, Scene, picture};
 use super::result::{
-    Certificates, Choices, GammaChoice, MeshSizes, NewtonHistory, Results, SCHEMA, Seconds,
-    result_json,
+    Certificates, Choices, ContinuousCertificate, DiscreteCertificate, GammaChoice, MeshSizes,
+    NewtonHistory, Results, SCHEMA, Seconds, result_json,
 };
 use super::vtu::{CellKind, Field, Grid, Values, vtu};
 use crate::certify::{CertifyError, Continuous, certify};
 use crate::fem;
+use crate::kernel::Stress;
 use crate::memory::{self, OutOfMemory};
 use crate::solve::solution::ContactValues;
 use crate::solve::{Solution, Times};
@@ -77,8 +78,8 @@ impl Certified {
     }
 
     /// As result.json has it.
-    pub fn report(&self) -> Certificates {
-        Certificates { continuous: (&self.result).into() }
+    pub fn report(&self) -> ContinuousCertificate {
+        (&self.result).into()
     }
 }
 
@@ -119,9 +120,9 @@ pub fn write(
         }
     }
     let mut seconds = Seconds::new(read, &times, start.elapsed());
-    seconds.certify = certified.map_or(0.0, |c| c.time.as_secs_f64());
+    seconds.certify += certified.map_or(0.0, |c| c.time.as_secs_f64());
     let mut results = results(case, solution, seconds)?;
-    results.certificate = certified.map(Certified::report);
+    results.add_certificate(certified.map(Certified::report));
     stage("result.json", result_json(&results).map(String::into_bytes))?;
     Ok((output.publish()?, results))
 }
@@ -197,6 +198,13 @@ pub fn results(
         let [u_x, u_y] = solution.displacement_at(t, l);
         Some([x, y, u_x, u_y])
     });
+    let probes: Vec<[f64; 4]> = probes.collect();
+    let mut discrete = DiscreteCertificate::from(&solution.enclosure);
+    if let Ok(enclosure) = &solution.enclosure {
+        let places = case.probes.iter().filter_map(|&x| mesh.locate(x));
+        let off = places.map(|(t, l)| solution.displacement_error_at(&enclosure.nodes, t, l));
+        discrete.probes = off.collect();
+    }
     let errors = match &case.exact {
         Some(exact) => Some(solution.errors(&case.problem, &*exact.solution)?),
         None => None,
@@ -230,8 +238,8 @@ pub fn results(
         contact: solution.boundaries.clone(),
         reaction_moments: solution.quantities.reaction_moments.clone(),
         balance: Some(solution.balance),
-        probes: probes.collect(),
-        certificate: None,
+        probes,
+        certificate: Some(Certificates { discrete: Some(discrete), continuous: None }),
         errors,
         seconds,
     })
@@ -275,7 +283,11 @@ fn remarks(case: &Case, solution: &Solution) -> Vec<String> {
 }
 
 fn solution_vtu(s: &Solution, indicators: Option<&[f64]>) -> Result<Vec<u8>, DataError> {
-    let stress: Vec<[f64; 4]> = s.stress.iter().map(|(t, zz)| [t.xx, t.yy, *zz, t.xy]).collect();
+    let all = |(stress, zz): &(Stress<f64>, f64)| {
+        let [xx, yy, xy] = stress.components();
+        [xx, yy, *zz, xy]
+    };
+    let stress: Vec<[f64; 4]> = s.stress.iter().map(all).collect();
     let mut cell_data = vec![
         Field { name: "stress", values: Values::SymmetricTensors(&stress) },
         Field { name: "von_mises", values: Values::Scalars(&s.von_mises) },

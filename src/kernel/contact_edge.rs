@@ -4,6 +4,8 @@
 //! On E, P0(v) = v_n - gamma sigma_n(v) is a polynomial of degree p, so its values at the M = p + 1 nodes of the edge
 //! determine it; sigma_n(v) has degree p - 1 <= 1, so its values at the two ends do.
 
+use nalgebra::{Matrix2, Vector2};
+
 use super::triangle::on_edge;
 use super::{Element, Material, Scalar, Triangle};
 
@@ -12,9 +14,9 @@ use super::{Element, Material, Scalar, Triangle};
 #[derive(Clone, Copy, Debug)]
 pub struct ContactEdge<S, const N: usize, const M: usize> {
     /// P0 at each node of the edge, in the order of [`Element::edge_nodes`].
-    pub p0: [[[S; 2]; N]; M],
+    pub p0: [[Vector2<S>; N]; M],
     /// sigma_n at the start and at the end of the edge.
-    pub sigma_n: [[[S; 2]; N]; 2],
+    pub sigma_n: [[Vector2<S>; N]; 2],
 }
 
 impl<S: Scalar, const N: usize, const M: usize> ContactEdge<S, N, M> {
@@ -22,7 +24,7 @@ impl<S: Scalar, const N: usize, const M: usize> ContactEdge<S, N, M> {
     pub fn new<E: Element<N, M>>(
         triangle: &Triangle<S>,
         i: usize,
-        n: [S; 2],
+        n: Vector2<S>,
         material: &Material<S>,
         gamma: S,
     ) -> Self {
@@ -30,9 +32,9 @@ impl<S: Scalar, const N: usize, const M: usize> ContactEdge<S, N, M> {
         let sigma_n_at = |s: S| {
             E::gradients(on_edge(i, s), barycentric).map(|g| material.normal_stress_of_shape(g, n))
         };
-        let mut p0 = E::edge_positions().map(|s| sigma_n_at(s).map(|v| v.map(|c| -(gamma * c))));
+        let mut p0 = E::edge_positions().map(|s| sigma_n_at(s).map(|v| -(v * gamma)));
         for (row, node) in p0.iter_mut().zip(E::edge_nodes(i)) {
-            row[node] = [row[node][0] + n[0], row[node][1] + n[1]];
+            row[node] += n;
         }
         ContactEdge { p0, sigma_n: [sigma_n_at(S::from(0)), sigma_n_at(S::from(1))] }
     }
@@ -44,8 +46,8 @@ impl<S: Scalar, const N: usize, const M: usize> ContactEdge<S, N, M> {
     pub(crate) fn along<E: Element<N, M>>(
         triangle: &Triangle<S>,
         i: usize,
-        n: [S; 2],
-        directions: &[[S; 2]; M],
+        n: Vector2<S>,
+        directions: &[Vector2<S>; M],
         material: &Material<S>,
         gamma: S,
     ) -> Self {
@@ -57,26 +59,21 @@ impl<S: Scalar, const N: usize, const M: usize> ContactEdge<S, N, M> {
         let sigma_n = [at_end(0), at_end(1)];
         let mut p0 = E::edge_positions().map(|s| {
             std::array::from_fn(|j| {
-                [0, 1].map(|c| {
-                    let [start, end] = [sigma_n[0][j][c], sigma_n[1][j][c]];
-                    -(gamma * ((S::from(1) - s) * start + s * end))
-                })
+                let [start, end] = [sigma_n[0][j], sigma_n[1][j]];
+                -((start * (S::from(1) - s) + end * s) * gamma)
             })
         });
         for ((row, node), d) in p0.iter_mut().zip(E::edge_nodes(i)).zip(directions) {
-            let entry: [S; 2] = row[node];
-            row[node] = [entry[0] + d[0], entry[1] + d[1]];
+            row[node] += d;
         }
         ContactEdge { p0, sigma_n }
     }
 
-    /// int_E gamma sigma_n(u) sigma_n(v) for v = N_i e_c, u = N_j e_d, with `weight` = gamma |E|. Exact.
-    pub fn stress_product(&self, weight: S, i: usize, j: usize) -> [[S; 2]; 2] {
+    /// int_E gamma sigma_n(u) sigma_n(v) for v = N_i e_c, u = N_j e_d in entry (c, d), with `weight` = gamma |E|. Exact.
+    pub fn stress_product(&self, weight: S, i: usize, j: usize) -> Matrix2<S> {
         let [start, end] = &self.sigma_n;
-        [0, 1].map(|c| {
-            [0, 1].map(|d| {
-                weight * integral_of_product([start[i][c], end[i][c]], [start[j][d], end[j][d]])
-            })
+        Matrix2::from_fn(|c, d| {
+            weight * integral_of_product([start[i][c], end[i][c]], [start[j][d], end[j][d]])
         })
     }
 }
@@ -116,40 +113,39 @@ where
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
+
     use super::*;
     use crate::kernel::element::displacement_gradient;
     use crate::kernel::{ContactPoint, P1, P2, Plane};
 
-    const T: Triangle<f64> = Triangle { vertices: [[0.0, 0.0], [3.0, 0.0], [0.0, 4.0]] };
+    const T: Triangle<f64> = Triangle {
+        vertices: [Vector2::new(0.0, 0.0), Vector2::new(3.0, 0.0), Vector2::new(0.0, 4.0)],
+    };
 
-    fn apply<const N: usize>(functional: &[[f64; 2]; N], v: &[[f64; 2]; N]) -> f64 {
-        functional.iter().zip(v).map(|(f, v)| f[0] * v[0] + f[1] * v[1]).sum()
+    fn apply<const N: usize>(functional: &[Vector2<f64>; N], v: &[Vector2<f64>; N]) -> f64 {
+        functional.iter().zip(v).map(|(f, v)| f.dot(v)).sum()
     }
 
     /// The functionals of edge 0 against stress and displacement evaluated from the field.
     fn functionals_are_their_definitions<E: Element<N, M>, const N: usize, const M: usize>() {
         let material = Material::lame(1.0, 1.0, Plane::Strain);
-        let (n, gamma) = ([0.8, 0.6], 0.3);
+        let (n, gamma) = (Vector2::new(0.8, 0.6), 0.3);
         let edge = ContactEdge::new::<E>(&T, 0, n, &material, gamma);
-        let mut v = [[0.0; 2]; N];
-        for (j, v) in v.iter_mut().enumerate() {
-            *v = [0.3 + 0.7 * j as f64, -0.2 + 0.1 * (j * j) as f64];
-        }
+        let v: [Vector2<f64>; N] = std::array::from_fn(|j| {
+            Vector2::new(0.3 + 0.7 * j as f64, -0.2 + 0.1 * (j * j) as f64)
+        });
         for (a, s) in E::edge_positions::<f64>().into_iter().enumerate() {
             let l = on_edge(0, s);
             let values = E::values(l);
-            let u: [f64; 2] = [0, 1].map(|c| (0..N).map(|j| values[j] * v[j][c]).sum());
+            let u: Vector2<f64> = values.iter().zip(&v).map(|(value, v)| *value * v).sum();
             let gradients = E::gradients(l, T.barycentric_gradients());
             let stress = material.stress(displacement_gradient(&v, &gradients));
-            let point = ContactPoint {
-                u_n: u[0] * n[0] + u[1] * n[1],
-                gap: 0.0,
-                sigma_n: stress.normal(n),
-                gamma,
-            };
-            assert!((apply(&edge.p0[a], &v) - point.p0()).abs() < 1e-13);
+            let point = ContactPoint { u_n: u.dot(&n), gap: 0.0, sigma_n: stress.normal(n), gamma };
+            // Sums of twelve products below 50.
+            assert_abs_diff_eq!(apply(&edge.p0[a], &v), point.p0(), epsilon = 1e-13);
             if a < 2 {
-                assert!((apply(&edge.sigma_n[a], &v) - point.sigma_n).abs() < 1e-13);
+                assert_abs_diff_eq!(apply(&edge.sigma_n[a], &v), point.sigma_n, epsilon = 1e-13);
             }
         }
     }

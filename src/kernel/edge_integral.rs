@@ -40,12 +40,12 @@ impl<S: Scalar, const M: usize> EdgeIntegrals<S, M> {
 
     /// Adds a point of a rule: weight, the value and slope of \[.\]+ there, and the shape functions.
     fn add(&mut self, weight: S, positive: S, slope: S, shapes: [S; M]) {
-        self.energy = self.energy + weight * positive * positive / S::from(2);
-        self.active = self.active + weight * slope;
+        self.energy += weight * positive * positive / S::from(2);
+        self.active += weight * slope;
         for a in 0..M {
-            self.gradient[a] = self.gradient[a] + weight * positive * shapes[a];
+            self.gradient[a] += weight * positive * shapes[a];
             for b in 0..M {
-                self.hessian[a][b] = self.hessian[a][b] + weight * slope * shapes[a] * shapes[b];
+                self.hessian[a][b] += weight * slope * shapes[a] * shapes[b];
             }
         }
     }

@@ -9,7 +9,8 @@
 //!        P1               P2
 //! ```
 
-use super::scalar::dot;
+use nalgebra::{Matrix2, SMatrix, SVector};
+
 use super::{Material, Scalar, Triangle};
 
 /// A Lagrange element with `N` nodes on a triangle, `M` of them on each edge.
@@ -25,7 +26,10 @@ pub trait Element<const N: usize, const M: usize> {
     fn values<S: Scalar>(l: [S; 3]) -> [S; N];
 
     /// Their gradients at `l`, given the gradients of the barycentric coordinates.
-    fn gradients<S: Scalar>(l: [S; 3], barycentric: [[S; 2]; 3]) -> [[S; 2]; N];
+    fn gradients<S: Scalar, const D: usize>(
+        l: [S; 3],
+        barycentric: [SVector<S, D>; 3],
+    ) -> [SVector<S, D>; N];
 
     /// The nodes on edge `i` (mod 3): start, end, then the midpoint if there is one.
     fn edge_nodes(i: usize) -> [usize; M];
@@ -57,7 +61,10 @@ impl Element<3, 2> for P1 {
         l
     }
 
-    fn gradients<S: Scalar>(_: [S; 3], barycentric: [[S; 2]; 3]) -> [[S; 2]; 3] {
+    fn gradients<S: Scalar, const D: usize>(
+        _: [S; 3],
+        barycentric: [SVector<S, D>; 3],
+    ) -> [SVector<S, D>; 3] {
         barycentric
     }
 
@@ -95,12 +102,13 @@ impl Element<6, 3> for P2 {
         ]
     }
 
-    fn gradients<S: Scalar>(l: [S; 3], barycentric: [[S; 2]; 3]) -> [[S; 2]; 6] {
+    fn gradients<S: Scalar, const D: usize>(
+        l: [S; 3],
+        barycentric: [SVector<S, D>; 3],
+    ) -> [SVector<S, D>; 6] {
         let (one, four) = (S::from(1), S::from(4));
-        let vertex = |i: usize| barycentric[i].map(|g| (four * l[i] - one) * g);
-        let middle = |j: usize, k: usize| {
-            [0, 1].map(|c| four * (l[j] * barycentric[k][c] + l[k] * barycentric[j][c]))
-        };
+        let vertex = |i: usize| barycentric[i] * (four * l[i] - one);
+        let middle = |j: usize, k: usize| (barycentric[k] * l[j] + barycentric[j] * l[k]) * four;
         [vertex(0), vertex(1), vertex(2), middle(1, 2), middle(2, 0), middle(0, 1)]
     }
 
@@ -126,28 +134,44 @@ impl Element<6, 3> for P2 {
     }
 }
 
+/// a b^T
+fn outer<S: Scalar, const D: usize>(a: SVector<S, D>, b: SVector<S, D>) -> SMatrix<S, D, D> {
+    SMatrix::from_fn(|i, j| a[i] * b[j])
+}
+
 /// The displacement gradient du_i/dx_j of a discrete field, from its nodal values and the gradients of its shapes.
-pub fn displacement_gradient<S: Scalar, const N: usize>(
-    nodal: &[[S; 2]; N],
-    gradients: &[[S; 2]; N],
-) -> [[S; 2]; 2] {
-    let mut sum = [[S::from(0); 2]; 2];
+pub fn displacement_gradient<S: Scalar, const N: usize, const D: usize>(
+    nodal: &[SVector<S, D>; N],
+    gradients: &[SVector<S, D>; N],
+) -> SMatrix<S, D, D> {
+    let mut sum = SMatrix::zeros();
     for (u, g) in nodal.iter().zip(gradients) {
-        for i in 0..2 {
-            for j in 0..2 {
-                sum[i][j] = sum[i][j] + u[i] * g[j];
-            }
-        }
+        sum += outer(*u, *g);
     }
     sum
 }
 
-/// The element matrix of a(.,.) = int_T sigma(u):eps(v): entry `[i][j][c][d]` belongs to v = N_i e_c and u = N_j e_d.
-/// Exact.
+/// sigma(u):eps(v) at a point, where v = N_i e_c has grad N_i = `g_i` and u = N_j e_d has grad N_j = `g_j`: entry (c, d) of
+/// lambda g_i g_j^T + mu g_j g_i^T + mu (g_i . g_j) I.
+fn energy_density<S: Scalar, const D: usize>(
+    g_i: SVector<S, D>,
+    g_j: SVector<S, D>,
+    [lambda, mu]: [S; 2],
+) -> SMatrix<S, D, D> {
+    let mut density = outer(g_i * lambda, g_j) + outer(g_j, g_i * mu);
+    let shear = mu * g_i.dot(&g_j);
+    for c in 0..D {
+        density[(c, c)] += shear;
+    }
+    density
+}
+
+/// The element matrix of a(.,.) = int_T sigma(u):eps(v) in blocks: entry (c, d) of block `[i][j]` belongs to v = N_i e_c
+/// and u = N_j e_d. Exact.
 pub fn stiffness<E, S, const N: usize, const M: usize>(
     triangle: &Triangle<S>,
     material: &Material<S>,
-) -> [[[[S; 2]; 2]; N]; N]
+) -> [[Matrix2<S>; N]; N]
 where
     E: Element<N, M>,
     S: Scalar,
@@ -155,22 +179,13 @@ where
     let barycentric = triangle.barycentric_gradients();
     let area = triangle.double_area() / S::from(2);
     let (lambda, mu) = (material.lambda(), material.mu());
-    let mut matrix = [[[[S::from(0); 2]; 2]; N]; N];
+    let mut matrix = [[Matrix2::zeros(); N]; N];
     E::at_stiffness_points(|l: [S; 3], weight| {
         let g = E::gradients(l, barycentric);
-        let (lambda, mu) = (weight * area * lambda, weight * area * mu);
+        let moduli = [weight * area * lambda, weight * area * mu];
         for i in 0..N {
             for j in 0..N {
-                let shear = mu * dot(g[i], g[j]);
-                for c in 0..2 {
-                    for d in 0..2 {
-                        let mut entry = lambda * g[i][c] * g[j][d] + mu * g[i][d] * g[j][c];
-                        if c == d {
-                            entry = entry + shear;
-                        }
-                        matrix[i][j][c][d] = matrix[i][j][c][d] + entry;
-                    }
-                }
+                matrix[i][j] += energy_density(g[i], g[j], moduli);
             }
         }
     });
@@ -179,11 +194,16 @@ where
 
 #[cfg(test)]
 mod tests {
+    use approx::{assert_abs_diff_eq, assert_relative_eq};
+    use nalgebra::Vector2;
+
     use super::*;
     use crate::kernel::Plane;
     use crate::kernel::triangle::on_edge;
 
-    const T: Triangle<f64> = Triangle { vertices: [[1.0, 1.0], [4.0, 2.0], [2.0, 5.0]] };
+    const T: Triangle<f64> = Triangle {
+        vertices: [Vector2::new(1.0, 1.0), Vector2::new(4.0, 2.0), Vector2::new(2.0, 5.0)],
+    };
     const INSIDE: [f64; 3] = [0.2, 0.5, 0.3];
 
     fn nodes<E: Element<N, M>, const N: usize, const M: usize>() -> [[f64; 3]; N] {
@@ -196,7 +216,7 @@ mod tests {
         points
     }
 
-    /// Nodality, partition of unity, and the trace on each edge, for one element.
+    /// Nodality, partition of unity, and the trace on each edge, for one element. Sums of six products below 1.
     fn is_a_lagrange_element<E: Element<N, M>, const N: usize, const M: usize>() {
         for (i, point) in nodes::<E, N, M>().into_iter().enumerate() {
             let values = E::values(point);
@@ -204,14 +224,14 @@ mod tests {
                 assert_eq!(value, f64::from(u8::from(i == j)));
             }
         }
-        assert!((E::values(INSIDE).iter().sum::<f64>() - 1.0).abs() < 1e-15);
+        assert_abs_diff_eq!(E::values(INSIDE).iter().sum::<f64>(), 1.0, epsilon = 1e-15);
         for i in 0..3 {
             let values = E::values(on_edge(i, 0.3_f64));
             for (node, value) in E::edge_nodes(i).into_iter().zip(E::edge_values(0.3_f64)) {
-                assert!((values[node] - value).abs() < 1e-15);
+                assert_abs_diff_eq!(values[node], value, epsilon = 1e-15);
             }
             let on_the_edge: f64 = E::edge_values(0.3_f64).iter().sum();
-            assert!((on_the_edge - 1.0).abs() < 1e-15);
+            assert_abs_diff_eq!(on_the_edge, 1.0, epsilon = 1e-15);
         }
     }
 
@@ -229,7 +249,8 @@ mod tests {
             let shifted = |h: f64| E::values([0, 1, 2].map(|i| INSIDE[i] + h * barycentric[i][c]));
             let (plus, minus) = (shifted(0.5), shifted(-0.5));
             for j in 0..N {
-                assert!((gradients[j][c] - (plus[j] - minus[j])).abs() < 1e-14);
+                // Values up to 10: some ten roundings.
+                assert_abs_diff_eq!(gradients[j][c], plus[j] - minus[j], epsilon = 1e-14);
             }
         }
     }
@@ -240,28 +261,36 @@ mod tests {
         gradients_are_derivatives::<P2, 6, 3>();
     }
 
+    #[test]
+    fn a_triangle_in_space_has_the_gradients_of_its_plane() {
+        let barycentric = T.barycentric_gradients();
+        let in_space = P2::gradients(INSIDE, barycentric.map(|g| g.push(0.0)));
+        for (g, flat) in in_space.iter().zip(P2::gradients(INSIDE, barycentric)) {
+            assert_eq!(*g, flat.push(0.0));
+        }
+    }
+
     /// The element matrix is symmetric and its kernel contains the three rigid body motions.
     fn stiffness_is_sound<E: Element<N, M>, const N: usize, const M: usize>() {
         let material = Material::lame(3.0, 0.7, Plane::Strain);
         let k = stiffness::<E, f64, N, M>(&T, &material);
         for i in 0..N {
             for j in 0..N {
-                for c in 0..2 {
-                    for d in 0..2 {
-                        assert!((k[i][j][c][d] - k[j][i][d][c]).abs() < 1e-14);
-                    }
-                }
+                // Entries up to 10.
+                assert_abs_diff_eq!(k[i][j], k[j][i].transpose(), epsilon = 1e-14);
             }
         }
         let points = nodes::<E, N, M>().map(|l| T.point(l));
-        let motions =
-            [points.map(|_| [1.0, 0.0]), points.map(|_| [0.0, 1.0]), points.map(|[x, y]| [-y, x])];
+        let motions = [
+            points.map(|_| Vector2::new(1.0, 0.0)),
+            points.map(|_| Vector2::new(0.0, 1.0)),
+            points.map(|x| Vector2::new(-x.y, x.x)),
+        ];
         for motion in motions {
             for row in &k {
-                for c in 0..2 {
-                    let force: f64 = (0..N).map(|j| dot(row[j][c], motion[j])).sum();
-                    assert!(force.abs() < 1e-13, "{force}");
-                }
+                let force: Vector2<f64> = row.iter().zip(motion).map(|(k, u)| k * u).sum();
+                // Twelve products of entries and places, each below 50.
+                assert_abs_diff_eq!(force, Vector2::zeros(), epsilon = 1e-13);
             }
         }
     }
@@ -279,25 +308,24 @@ mod tests {
         let material = Material::lame(3.0, 0.7, Plane::Strain);
         let k = stiffness::<P2, f64, 6, 3>(&T, &material);
         let u = nodes::<P2, 6, 3>().map(|l| {
-            let [x, y] = T.point(l);
-            [x * x, x * y]
+            let x = T.point(l);
+            x * x.x
         });
         let mut energy = 0.0;
         for i in 0..6 {
             for j in 0..6 {
-                for c in 0..2 {
-                    energy += u[i][c] * dot(k[i][j][c], u[j]);
-                }
+                energy += u[i].dot(&(k[i][j] * u[j]));
             }
         }
         let expected: f64 = (0..3)
             .map(|i| {
-                let [x, y] = T.point(on_edge(i, 0.5));
+                let [x, y] = T.point(on_edge(i, 0.5)).into();
                 let density = 3.0 * (3.0 * x) * (3.0 * x)
                     + 2.0 * 0.7 * (4.0 * x * x + x * x + 2.0 * (y / 2.0) * (y / 2.0));
                 density * 5.5 / 3.0
             })
             .sum();
-        assert!((energy - expected).abs() < 1e-12 * expected, "{energy} {expected}");
+        // 144 products, among which the rigid part of u cancels.
+        assert_relative_eq!(energy, expected, max_relative = 1e-12);
     }
 }

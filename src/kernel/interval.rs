@@ -181,6 +181,8 @@ impl Div for Interval {
     }
 }
 
+crate::entry_of_nalgebra!(Interval);
+
 impl Scalar for Interval {
     fn split(
         self,

@@ -1,10 +1,14 @@
 //! Linear isotropic elasticity in the plane: sigma = A eps of (1), sigma = lambda tr(eps) I + 2 mu eps.
 //!
 //! Plane stress has the same form with lambda* = 2 lambda mu / (lambda + 2 mu) in place of lambda, so a [`Material`]
-//! holds the coefficient that acts in the plane and remembers which of the two it is.
+//! holds the coefficient that acts in the plane and remembers which of the two it is. The law itself, and what follows for
+//! sigma_n, is written for D dimensions; what only a plane has is not.
+
+use std::ops::{Add, Div, Mul, Sub};
+
+use nalgebra::{Matrix2, SMatrix, SVector};
 
 use super::Scalar;
-use super::scalar::dot;
 
 /// Plane strain (no strain across the plane) or plane stress (no stress across it).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,16 +27,9 @@ pub struct Material<S> {
     plane: Plane,
 }
 
-/// A symmetric stress tensor in the plane.
+/// A symmetric stress tensor in D dimensions.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stress<S> {
-    /// sigma_xx
-    pub xx: S,
-    /// sigma_yy
-    pub yy: S,
-    /// sigma_xy
-    pub xy: S,
-}
+pub struct Stress<S, const D: usize = 2>(SMatrix<S, D, D>);
 
 impl<S: Scalar> Material<S> {
     /// The material with the three-dimensional Lamé coefficients `lambda` and `mu`.
@@ -81,69 +78,130 @@ impl<S: Scalar> Material<S> {
         self.lambda + S::from(2) * self.mu
     }
 
-    /// sigma(u) for the displacement gradient `gradient[i][j]` = du_i/dx_j.
-    pub fn stress(&self, gradient: [[S; 2]; 2]) -> Stress<S> {
-        let trace = self.lambda * (gradient[0][0] + gradient[1][1]);
+    /// sigma(u) for the displacement gradient `gradient[(i, j)]` = du_i/dx_j.
+    pub fn stress<const D: usize>(&self, gradient: SMatrix<S, D, D>) -> Stress<S, D> {
+        let g = |i, j| gradient[(i, j)];
+        let trace = self.lambda * (1..D).fold(g(0, 0), |sum, i| sum + g(i, i));
         let two_mu = S::from(2) * self.mu;
-        Stress {
-            xx: trace + two_mu * gradient[0][0],
-            yy: trace + two_mu * gradient[1][1],
-            xy: self.mu * (gradient[0][1] + gradient[1][0]),
-        }
+        Stress(SMatrix::from_fn(|i, j| {
+            if i == j { trace + two_mu * g(i, i) } else { self.mu * (g(i, j) + g(j, i)) }
+        }))
     }
 
     /// sigma_zz that goes with a stress in the plane: lambda tr(eps) = nu (sigma_xx + sigma_yy) in plane strain, 0 in
     /// plane stress.
     pub fn stress_zz(&self, stress: Stress<S>) -> S {
+        let [xx, yy, _] = stress.components();
         match self.plane {
-            Plane::Strain => {
-                self.lambda * (stress.xx + stress.yy) / (S::from(2) * (self.lambda + self.mu))
-            }
+            Plane::Strain => self.lambda * (xx + yy) / (S::from(2) * (self.lambda + self.mu)),
             Plane::Stress => S::from(0),
         }
     }
 
     /// The square of the von Mises stress, sigma_zz included.
     pub fn von_mises_squared(&self, stress: Stress<S>) -> S {
-        let Stress { xx, yy, xy } = stress;
+        let [xx, yy, xy] = stress.components();
         let zz = self.stress_zz(stress);
         let (a, b, c) = (xx - yy, yy - zz, zz - xx);
         (a * a + b * b + c * c) / S::from(2) + S::from(3) * xy * xy
     }
 
-    /// The linear functional sigma_n of one shape function: with v = N (v_x, v_y) and `gradient` = grad N at a point,
-    /// sigma_n(v) = s . (v_x, v_y) for the returned s = lambda grad N + 2 mu (grad N . n) n.
-    pub fn normal_stress_of_shape(&self, gradient: [S; 2], n: [S; 2]) -> [S; 2] {
-        let along = S::from(2) * self.mu * dot(gradient, n);
-        [self.lambda * gradient[0] + along * n[0], self.lambda * gradient[1] + along * n[1]]
+    /// The linear functional sigma_n of one shape function: with v = N w for a vector w and `gradient` = grad N at a point,
+    /// sigma_n(v) = s . w for the returned s = lambda grad N + 2 mu (grad N . n) n.
+    pub fn normal_stress_of_shape<const D: usize>(
+        &self,
+        gradient: SVector<S, D>,
+        n: SVector<S, D>,
+    ) -> SVector<S, D> {
+        gradient * self.lambda + n * (S::from(2) * self.mu * gradient.dot(&n))
     }
 
-    /// The same for the traction's component along `d`: d . sigma(v) n = s . (v_x, v_y) for the returned
+    /// The same for the traction's component along `d`: d . sigma(v) n = s . w for the returned
     /// s = lambda (d . n) grad N + mu ((d . grad N) n + (grad N . n) d). With d = n, n a unit vector, it is that of sigma_n.
     #[cfg(not(kani))]
-    pub(crate) fn traction_of_shape(&self, gradient: [S; 2], n: [S; 2], d: [S; 2]) -> [S; 2] {
-        let (bulk, on_n, on_d) = (self.lambda * dot(d, n), dot(d, gradient), dot(gradient, n));
-        [0, 1].map(|c| bulk * gradient[c] + self.mu * (on_n * n[c] + on_d * d[c]))
+    pub(crate) fn traction_of_shape<const D: usize>(
+        &self,
+        gradient: SVector<S, D>,
+        n: SVector<S, D>,
+        d: SVector<S, D>,
+    ) -> SVector<S, D> {
+        let (bulk, on_n, on_d) = (self.lambda * d.dot(&n), d.dot(&gradient), gradient.dot(&n));
+        gradient * bulk + (n * on_n + d * on_d) * self.mu
+    }
+}
+
+impl<S: Scalar, const D: usize> Stress<S, D> {
+    /// The tensor as a matrix.
+    pub fn matrix(&self) -> &SMatrix<S, D, D> {
+        &self.0
+    }
+
+    /// sigma_n = n . sigma n for the unit normal `n`: negative in compression.
+    pub fn normal(&self, n: SVector<S, D>) -> S {
+        self.traction(n).dot(&n)
+    }
+
+    /// The traction sigma n: sigma is symmetric.
+    pub fn traction(&self, n: SVector<S, D>) -> SVector<S, D> {
+        self.0.tr_mul(&n)
+    }
+}
+
+impl<S: Scalar, const D: usize> Add for Stress<S, D> {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Stress(self.0 + other.0)
+    }
+}
+
+impl<S: Scalar, const D: usize> Mul<S> for Stress<S, D> {
+    type Output = Self;
+
+    fn mul(self, factor: S) -> Self {
+        Stress(self.0 * factor)
+    }
+}
+
+impl<S: Scalar, const D: usize> Sub for Stress<S, D> {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Stress(self.0 - other.0)
+    }
+}
+
+impl<S: Scalar, const D: usize> Div<S> for Stress<S, D> {
+    type Output = Self;
+
+    fn div(self, divisor: S) -> Self {
+        Stress(self.0 / divisor)
     }
 }
 
 impl<S: Scalar> Stress<S> {
-    /// sigma_n = n . sigma n for the unit normal `n`: negative in compression.
-    pub fn normal(&self, n: [S; 2]) -> S {
-        dot(self.traction(n), n)
+    /// The stress in the plane with these components: sigma_xx, sigma_yy, sigma_xy.
+    pub fn new([xx, yy, xy]: [S; 3]) -> Self {
+        Stress(Matrix2::new(xx, xy, xy, yy))
     }
 
-    /// The traction sigma n.
-    pub fn traction(&self, n: [S; 2]) -> [S; 2] {
-        [self.xx * n[0] + self.xy * n[1], self.xy * n[0] + self.yy * n[1]]
+    /// sigma_xx, sigma_yy, sigma_xy
+    pub fn components(&self) -> [S; 3] {
+        [self.0[(0, 0)], self.0[(1, 1)], self.0[(0, 1)]]
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use approx::{assert_abs_diff_eq, assert_relative_eq};
+    use nalgebra::{Matrix3, Vector2, Vector3};
+
     use super::*;
 
-    const N: [f64; 2] = [0.6, -0.8];
+    const N: Vector2<f64> = Vector2::new(0.6, -0.8);
+
+    /// What a handful of operations may be off, relative to the numbers of size 1 to 10 that enter.
+    const ROUNDING: f64 = 1e-15;
 
     #[test]
     fn lame_and_young_poisson_agree() {
@@ -151,8 +209,8 @@ mod tests {
         for plane in [Plane::Strain, Plane::Stress] {
             let a = Material::lame(1.0_f64, 1.0, plane);
             let b = Material::young_poisson(2.5, 0.25, plane);
-            assert!((a.lambda() - b.lambda()).abs() < 1e-15);
-            assert!((a.mu() - b.mu()).abs() < 1e-15);
+            assert_relative_eq!(a.lambda(), b.lambda(), max_relative = ROUNDING);
+            assert_relative_eq!(a.mu(), b.mu(), max_relative = ROUNDING);
         }
     }
 
@@ -160,43 +218,57 @@ mod tests {
     fn plane_stress_has_the_modulus_of_a_free_plate() {
         // Uniaxial stress in the plane: sigma_xx = E eps_xx when eps_yy = -nu eps_xx.
         let m = Material::young_poisson(2.5_f64, 0.25, Plane::Stress);
-        let s = m.stress([[1.0, 0.0], [0.0, -0.25]]);
-        assert!((s.xx - 2.5).abs() < 1e-15 && s.yy.abs() < 1e-15 && s.xy == 0.0);
-        assert!((m.normal_stiffness() - 2.5 / (1.0 - 0.0625)).abs() < 1e-15);
+        let s = m.stress(Matrix2::new(1.0, 0.0, 0.0, -0.25));
+        assert_abs_diff_eq!(s.matrix(), &Matrix2::new(2.5, 0.0, 0.0, 0.0), epsilon = ROUNDING);
+        assert_relative_eq!(m.normal_stiffness(), 2.5 / (1.0 - 0.0625), max_relative = ROUNDING);
         assert_eq!(m.stress_zz(s), 0.0);
-        assert!((m.von_mises_squared(s).sqrt() - 2.5).abs() < 1e-15);
+        assert_relative_eq!(m.von_mises_squared(s).sqrt(), 2.5, max_relative = ROUNDING);
     }
 
     #[test]
     fn plane_strain_keeps_lambda_tr_eps_across_the_plane() {
         let m = Material::lame(3.0_f64, 0.7, Plane::Strain);
-        let s = m.stress([[0.2, 0.5], [-0.1, -0.7]]);
-        assert!((m.stress_zz(s) - 3.0 * (0.2 - 0.7)).abs() < 1e-15);
+        let s = m.stress(Matrix2::new(0.2, 0.5, -0.1, -0.7));
+        assert_relative_eq!(m.stress_zz(s), 3.0 * (0.2 - 0.7), max_relative = ROUNDING);
+    }
+
+    #[test]
+    fn plane_strain_is_the_law_in_three_dimensions_without_strain_across_the_plane() {
+        let m = Material::lame(3.0_f64, 0.7, Plane::Strain);
+        let in_plane = m.stress(Matrix2::new(0.2, 0.5, -0.1, -0.7));
+        let s = m.stress(Matrix3::new(0.2, 0.5, 0.0, -0.1, -0.7, 0.0, 0.0, 0.0, 0.0));
+        // The sum of three diagonal entries ends in one more that is 0.
+        assert_eq!(s.matrix().fixed_view::<2, 2>(0, 0), *in_plane.matrix());
+        assert_relative_eq!(s.matrix().m33, m.stress_zz(in_plane), max_relative = ROUNDING);
+        assert_eq!(s.traction(Vector3::new(0.6, -0.8, 0.0)).xy(), in_plane.traction(N));
     }
 
     #[test]
     fn a_rotation_gives_no_stress() {
-        let s = Material::lame(3.0, 0.7, Plane::Strain).stress([[0.0, -0.3], [0.3, 0.0]]);
-        assert_eq!((s.xx, s.yy, s.xy), (0.0, 0.0, 0.0));
+        let s = Material::lame(3.0, 0.7, Plane::Strain).stress(Matrix2::new(0.0, -0.3, 0.3, 0.0));
+        assert_eq!(s, Stress::new([0.0; 3]));
     }
 
     #[test]
     fn sigma_n_of_a_shape_function_is_n_sigma_n() {
         let m = Material::lame(3.0_f64, 0.7, Plane::Strain);
-        let g = [0.3, -1.1];
-        let s = m.normal_stress_of_shape(g, N);
-        for (c, v) in [(0, [[0.3, -1.1], [0.0, 0.0]]), (1, [[0.0, 0.0], [0.3, -1.1]])] {
-            assert!((s[c] - m.stress(v).normal(N)).abs() < 1e-15);
+        let s = m.normal_stress_of_shape(Vector2::new(0.3, -1.1), N);
+        for (c, v) in
+            [(0, Matrix2::new(0.3, -1.1, 0.0, 0.0)), (1, Matrix2::new(0.0, 0.0, 0.3, -1.1))]
+        {
+            assert_abs_diff_eq!(s[c], m.stress(v).normal(N), epsilon = ROUNDING);
         }
     }
 
     #[test]
     fn normal_stiffness_is_attained_by_a_strain_along_the_normal() {
         let m = Material::lame(3.0_f64, 0.7, Plane::Strain);
-        let gradient = [[N[0] * N[0], N[0] * N[1]], [N[1] * N[0], N[1] * N[1]]];
+        let gradient = N * N.transpose();
         let s = m.stress(gradient);
-        let energy = s.xx * gradient[0][0] + s.yy * gradient[1][1] + 2.0 * s.xy * gradient[0][1];
+        let energy = s.matrix().dot(&gradient);
         let sigma_n = s.normal(N);
-        assert!((sigma_n * sigma_n - m.normal_stiffness() * energy).abs() < 1e-12);
+        let attained = m.normal_stiffness() * energy;
+        // A dozen operations on numbers of one sign each.
+        assert_relative_eq!(sigma_n * sigma_n, attained, max_relative = 10.0 * ROUNDING);
     }
 }

@@ -3,6 +3,9 @@
 //! Pure functions of plain data, generic over the number type ([`Scalar`]), so that the very code that solves a
 //! user's problem in doubles can be run over exact rationals, over symbols and over intervals. Sign tests are its only
 //! branches, but for [`pattern`], which is about whole numbers; it allocates nothing, reads nothing and has no panic.
+//! Vectors and matrices are nalgebra's, with the dimension as a parameter where the formula is that of any dimension.
+//! What is numbered and not a vector stays an array: barycentric coordinates, the values of all shape functions, the nodes
+//! of an element.
 //!
 //! | module | in the paper |
 //! | --- | --- |

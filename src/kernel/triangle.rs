@@ -9,44 +9,44 @@
 //!             edge 2
 //! ```
 
+use nalgebra::Vector2;
+
 use super::Scalar;
 
 /// A triangle with its vertices counter-clockwise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Triangle<S> {
     /// The corners.
-    pub vertices: [[S; 2]; 3],
+    pub vertices: [Vector2<S>; 3],
 }
 
 impl<S: Scalar> Triangle<S> {
     /// Edge `i` (mod 3) as the vector from vertex i+1 to vertex i+2.
-    pub fn edge(&self, i: usize) -> [S; 2] {
-        let [a, b] = [self.vertices[(i + 1) % 3], self.vertices[(i + 2) % 3]];
-        [b[0] - a[0], b[1] - a[1]]
+    pub fn edge(&self, i: usize) -> Vector2<S> {
+        self.vertices[(i + 2) % 3] - self.vertices[(i + 1) % 3]
     }
 
     /// 2 |T|: positive for counter-clockwise vertices.
     pub fn double_area(&self) -> S {
-        let ([a, b], [c, d]) = (self.edge(2), self.edge(1));
-        b * c - a * d
+        self.edge(1).perp(&self.edge(2))
     }
 
     /// |E_i| n: the outward normal of edge `i` (mod 3), as long as the edge.
-    pub fn scaled_normal(&self, i: usize) -> [S; 2] {
-        let [x, y] = self.edge(i);
-        [y, -x]
+    pub fn scaled_normal(&self, i: usize) -> Vector2<S> {
+        let edge = self.edge(i);
+        Vector2::new(edge[1], -edge[0])
     }
 
     /// The gradients of the three barycentric coordinates: grad l_i = -|E_i| n_i / (2 |T|).
-    pub fn barycentric_gradients(&self) -> [[S; 2]; 3] {
+    pub fn barycentric_gradients(&self) -> [Vector2<S>; 3] {
         let double_area = self.double_area();
-        [0, 1, 2].map(|i| self.scaled_normal(i).map(|c| -c / double_area))
+        [0, 1, 2].map(|i| -self.scaled_normal(i) / double_area)
     }
 
     /// The point with barycentric coordinates `l`.
-    pub fn point(&self, l: [S; 3]) -> [S; 2] {
+    pub fn point(&self, l: [S; 3]) -> Vector2<S> {
         let [a, b, c] = self.vertices;
-        [0, 1].map(|i| l[0] * a[i] + l[1] * b[i] + l[2] * c[i])
+        a * l[0] + b * l[1] + c * l[2]
     }
 }
 
@@ -60,9 +60,13 @@ pub fn on_edge<S: Scalar>(i: usize, s: S) -> [S; 3] {
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
+
     use super::*;
 
-    const T: Triangle<f64> = Triangle { vertices: [[1.0, 1.0], [4.0, 2.0], [2.0, 5.0]] };
+    const T: Triangle<f64> = Triangle {
+        vertices: [Vector2::new(1.0, 1.0), Vector2::new(4.0, 2.0), Vector2::new(2.0, 5.0)],
+    };
 
     #[test]
     fn area_is_positive_counter_clockwise_and_changes_sign_with_the_order() {
@@ -74,10 +78,9 @@ mod tests {
     #[test]
     fn outward_normals_add_up_to_zero_and_point_away_from_the_opposite_vertex() {
         let n = [0, 1, 2].map(|i| T.scaled_normal(i));
-        assert_eq!([n[0][0] + n[1][0] + n[2][0], n[0][1] + n[1][1] + n[2][1]], [0.0; 2]);
+        assert_eq!(n.iter().sum::<Vector2<f64>>(), Vector2::zeros());
         for (i, n) in n.iter().enumerate() {
-            let (from, to) = (T.vertices[i], T.vertices[(i + 1) % 3]);
-            assert!(n[0] * (to[0] - from[0]) + n[1] * (to[1] - from[1]) > 0.0);
+            assert!(n.dot(&(T.vertices[(i + 1) % 3] - T.vertices[i])) > 0.0);
         }
     }
 
@@ -86,9 +89,9 @@ mod tests {
         let g = T.barycentric_gradients();
         for (i, g) in g.iter().enumerate() {
             for j in 0..3 {
-                let d = [0, 1].map(|c| T.vertices[j][c] - T.vertices[(i + 1) % 3][c]);
-                let value = g[0] * d[0] + g[1] * d[1];
-                assert!((value - f64::from(u8::from(i == j))).abs() < 1e-15);
+                let value = g.dot(&(T.vertices[j] - T.vertices[(i + 1) % 3]));
+                // Two products of numbers below 1: a few unit roundoffs.
+                assert_abs_diff_eq!(value, f64::from(u8::from(i == j)), epsilon = 1e-15);
             }
         }
     }

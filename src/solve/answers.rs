@@ -17,8 +17,11 @@ use std::collections::BTreeMap;
 #[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
 
+use nalgebra::Vector2;
+
 use crate::fem::contact_line::{ContactLineEdge, EdgeRule};
 use crate::fem::discretization::{Discretization, inner};
+use crate::fem::mesh::length;
 use crate::kernel::edge_integral::{self, ExactEdge, value_at};
 use crate::kernel::element::displacement_gradient;
 use crate::kernel::positive_part;
@@ -114,9 +117,9 @@ where
         let [mut xx, mut yy, mut xy] = [0.0; 3];
         E::at_stiffness_points(|l, weight| {
             let g = displacement_gradient(&nodal, &E::gradients(l, barycentric));
-            xx += weight * g[0][0];
-            yy += weight * g[1][1];
-            xy += weight * (g[0][1] + g[1][0]) / 2.0;
+            xx += weight * g.m11;
+            yy += weight * g.m22;
+            xy += weight * (g.m12 + g.m21) / 2.0;
         });
         let radius = ((xx - yy) / 2.0).hypot(xy);
         largest = largest.max(((xx + yy) / 2.0).abs() + radius);
@@ -216,11 +219,11 @@ where
 }
 
 /// A direction of contact at a node, and the number of the value there.
-type Group = ([f64; 2], usize);
+type Group = (Vector2<f64>, usize);
 
 /// Directions that differ by rounding only, or by what a facet's normal may be off where the boundary is straight.
-fn same(a: [f64; 2], b: [f64; 2]) -> bool {
-    (a[0] - b[0]).hypot(a[1] - b[1]) <= 1e-6
+fn same(a: Vector2<f64>, b: Vector2<f64>) -> bool {
+    length(a - b) <= 1e-6
 }
 
 /// What each part of Gamma_C carries, in alphabetical order.

@@ -2,6 +2,8 @@
 //! the cheaper one where contact edges are many beside the body (strips, graded meshes), and the only one where A alone is
 //! singular, or as good as: contact then holds the body, and the tangent knows it.
 
+use nalgebra::Matrix2;
+
 use super::SolveError;
 use super::accuracy::{Pass, Route};
 use super::contact_edges::ContactEdges;
@@ -60,16 +62,14 @@ where
             let p0 = &edge.functionals.p0;
             let nodes = &d.space.elements()[edge.edge.triangle];
             matrix.add(&self.system.numbering, nodes, |i, j| {
-                [0, 1].map(|c| {
-                    [0, 1].map(|k| {
-                        let mut sum = 0.0;
-                        for a in 0..M {
-                            for b in 0..M {
-                                sum += p0[a][i][c] * h[a][b] * p0[b][j][k];
-                            }
+                Matrix2::from_fn(|c, k| {
+                    let mut sum = 0.0;
+                    for a in 0..M {
+                        for b in 0..M {
+                            sum += p0[a][i][c] * h[a][b] * p0[b][j][k];
                         }
-                        sum
-                    })
+                    }
+                    sum
                 })
             });
         }

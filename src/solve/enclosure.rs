@@ -30,7 +30,6 @@ use crate::fem::moments::moments;
 use crate::fem::precise::{self, EdgeNumbers, OnEdge};
 use crate::kernel::contact_edge::{coercivity_constant, turning_factor};
 use crate::kernel::edge_integral::ExactEdge;
-use crate::kernel::scalar::dot;
 
 /// An interval `[low, high]`.
 pub type Range = [f64; 2];
@@ -112,6 +111,18 @@ fn up(x: f64) -> f64 {
     x * (1.0 + 16.0 * f64::EPSILON)
 }
 
+impl Unproved {
+    /// Whether (8) is known to have exactly one solution all the same.
+    pub fn is_unique(&self) -> bool {
+        !matches!(self, Unproved::HeldByContact | Unproved::NotCoercive { .. })
+    }
+}
+
+/// a . b
+fn dot(a: [Ball; 2], b: [Ball; 2]) -> Ball {
+    a[0] * b[0] + a[1] * b[1]
+}
+
 /// The square root of what cannot be negative, rounded up; infinite where nothing is known.
 fn root(square: Ball) -> f64 {
     let square = square.upper();
@@ -148,8 +159,7 @@ where
         return Err(Unproved::NotCoercive { kappa });
     }
     let coercivity = (1.0 - kappa) * (1.0 - 4.0 * f64::EPSILON);
-    let korn =
-        Korn::new(&d.space, &d.problem.material, &d.constraints).ok_or(Unproved::NotHeld)?;
+    let korn = Korn::new(&d.space, &d.problem.material, &d.constraints).ok_or(Unproved::NotHeld)?;
     let at = Evaluation::new(system, &lines, u)?;
     let r = free(system, &at.residual);
     let rest = up((korn.sum_of_squares() / coercivity).sqrt());
@@ -196,7 +206,7 @@ where
     E: ExactEdge<f64, N, M>,
 {
     let triangle = precise::exactly::<Ball>(d.space.mesh().triangle(edge.edge.triangle));
-    let squares = [0, 1, 2].map(|i| dot(triangle.edge(i), triangle.edge(i)));
+    let squares = [0, 1, 2].map(|i| triangle.edge(i)).map(|edge| dot(edge.into(), edge.into()));
     let mut longest = squares[0];
     for &square in &squares[1..] {
         if square.head() > longest.head() {
@@ -227,7 +237,7 @@ where
         let factor = if edge.directions == [edge.normal; M] {
             Ball::from(1)
         } else {
-            let along = edge.directions.map(|n| n.map(Ball::from));
+            let along: [[Ball; 2]; M] = edge.directions.map(|n| n.map(Ball::from).into());
             let off = along.map(|n| (dot(n, n) - Ball::from(1)).magnitude());
             let off = Ball::from(8.0 * off.into_iter().fold(0.0, larger));
             let turning = turning_factor::<E, Ball, N, M>(dot(along[0], along[1]));
@@ -477,15 +487,16 @@ impl Evaluation {
 
         let mut contact: Vec<(Arc<str>, [Ball; 3], Ball)> = Vec::new();
         for ((edge, line), pressure) in d.contact.iter().zip(lines).zip(&self.pressures) {
-            let along = if edge.directions == [edge.normal; M] {
-                [line.numbers.normal; M]
+            let along: [[Ball; 2]; M] = if edge.directions == [edge.normal; M] {
+                [line.numbers.normal.into(); M]
             } else {
-                edge.directions.map(|n| n.map(Ball::from))
+                edge.directions.map(|n| n.map(Ball::from).into())
             };
             let zero = Ball::from(0);
-            let of: [Ball; 3] = pressure.iter().zip(along).fold([zero; 3], |sum, (&p, n)| {
-                [sum[0] + p, sum[1] - p * n[0], sum[2] - p * n[1]]
-            });
+            let of: [Ball; 3] = pressure
+                .iter()
+                .zip(along)
+                .fold([zero; 3], |sum, (&p, n)| [sum[0] + p, sum[1] - p * n[0], sum[2] - p * n[1]]);
             let weight = line.numbers.length / line.numbers.gamma;
             match contact.iter_mut().find(|(name, ..)| *name == edge.boundary) {
                 Some((_, sum, weights)) => {

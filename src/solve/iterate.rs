@@ -2,6 +2,8 @@
 //! in [twofold](crate::fem::twofold) numbers where rounding would blur it. It is known to more than double precision
 //! itself: rounding the displacement of a slender body to doubles changes its forces by more than its loads.
 
+use nalgebra::Vector2;
+
 use super::system::System;
 use crate::fem::discretization::Discretization;
 use crate::fem::precise;
@@ -59,7 +61,7 @@ impl Iterate {
         let mut field = vec![[0.0; 2]; self.u.len()];
         system.numbering.scatter(step, &mut field);
         for (u, step) in self.u.iter_mut().flatten().zip(field.as_flattened()) {
-            *u = *u + Twofold::from(t * step);
+            *u += Twofold::from(t * step);
         }
     }
 
@@ -88,8 +90,8 @@ impl Iterate {
             .iter()
             .flat_map(|edge| edge.p(&d.space.on_triangle(edge.edge.triangle, &u)))
             .collect();
-        let magnitude = |functional: &[[f64; 2]; N], nodal: &[[f64; 2]; N]| {
-            let pairs = functional.as_flattened().iter().zip(nodal.as_flattened());
+        let magnitude = |functional: &[Vector2<f64>; N], nodal: &[Vector2<f64>; N]| {
+            let pairs = functional.iter().flatten().zip(nodal.iter().flatten());
             pairs.map(|(f, u)| (f * u).abs()).sum::<f64>()
         };
         let p_magnitudes = d

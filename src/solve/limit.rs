@@ -78,10 +78,7 @@ where
     let edge = most.map(|position| d.contact[reach.order[position]].edge);
     let edge = edge.ok_or(NoLimit::NoFactor)?;
     let mesh = d.space.mesh();
-    Ok(TrueLimit {
-        gamma0: gamma0 + 1.0 / mu,
-        edge: mesh.ends(edge).map(|v| mesh.vertices()[v]),
-    })
+    Ok(TrueLimit { gamma0: gamma0 + 1.0 / mu, edge: mesh.ends(edge).map(|v| mesh.vertices()[v]) })
 }
 
 /// The limit of a discretization that is not being solved: with the factor of the stiffness matrix.

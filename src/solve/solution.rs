@@ -198,6 +198,21 @@ impl Solution {
         let nodes = &self.elements[t * self.nodes_per_triangle..][..self.nodes_per_triangle];
         [0, 1].map(|c| nodes.iter().zip(shapes).map(|(&j, n)| n * self.displacement[j][c]).sum())
     }
+
+    /// How far the displacement at that point can be off where it is off by `nodes` at most at the nodes.
+    pub fn displacement_error_at(&self, nodes: &[f64], t: usize, l: [f64; 3]) -> f64 {
+        let shapes: &[f64] = match self.degree {
+            1 => &P1::values(l),
+            _ => &P2::values(l),
+        };
+        let members = &self.elements[t * self.nodes_per_triangle..][..self.nodes_per_triangle];
+        let sum: f64 = members.iter().zip(shapes).map(|(&j, n)| n.abs() * nodes[j]).sum();
+        // The sum, the shape functions and the displacement there are rounded.
+        let size: f64 = members.iter().fold(0.0, |size: f64, &j| {
+            size.max(self.displacement[j][0].abs()).max(self.displacement[j][1].abs())
+        });
+        sum * (1.0 + 1e-14) + 1e-14 * size
+    }
 }
 
 impl GammaReport {
@@ -228,15 +243,15 @@ where
             let barycentric = triangle.barycentric_gradients();
             let nodal = d.space.on_triangle(t, u);
             let material = d.problem.material.of(t);
-            let mut mean = Stress { xx: 0.0, yy: 0.0, xy: 0.0 };
+            let mut mean = [0.0; 3];
             E::at_stiffness_points(|l, weight| {
                 let gradients = E::gradients(l, barycentric);
                 let s = material.stress(displacement_gradient(&nodal, &gradients));
-                mean.xx += weight * s.xx;
-                mean.yy += weight * s.yy;
-                mean.xy += weight * s.xy;
+                for (mean, s) in mean.iter_mut().zip(s.components()) {
+                    *mean += weight * s;
+                }
             });
-            mean
+            Stress::new(mean)
         })
         .collect()
 }
@@ -265,7 +280,7 @@ where
                 let [x, y] = u[nodes[a]];
                 ContactValues {
                     node: nodes[a],
-                    direction: edge.directions[a],
+                    direction: edge.directions[a].into(),
                     arc: start + positions[a] * edge.length,
                     u_n: x * edge.directions[a][0] + y * edge.directions[a][1],
                     gap: edge.gap[a],
@@ -277,7 +292,7 @@ where
             .collect();
         points.sort_by(|a, b| a.arc.total_cmp(&b.arc));
         let boundary = Arc::clone(&edge.boundary);
-        line.push(ContactEdgeValues { triangle, boundary, normal: edge.normal, points });
+        line.push(ContactEdgeValues { triangle, boundary, normal: edge.normal.into(), points });
         start += edge.length;
     }
     line

@@ -53,7 +53,7 @@ where
         let nodes = &self.d.space.elements()[edge.edge.triangle];
         for (a, functional) in edge.functionals.p0.iter().enumerate() {
             for (&node, &entries) in nodes.iter().zip(functional) {
-                let entries = self.numbering.in_frame(node, entries);
+                let entries = self.numbering.in_frame(node, entries.into());
                 for (number, entry) in self.numbering.of[node].iter().zip(entries) {
                     if let Some(number) = *number {
                         f(number, a, entry);

@@ -21,6 +21,7 @@ use signorini::fem::contact_line::{ContactLineEdge, EdgeRule};
 use signorini::fem::{Discretization, Errors, loads};
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::{P1, P2};
+use signorini::nalgebra::Vector2;
 use signorini::solve::ladder::{fitted_slope, rates};
 use signorini::solve::{Degree, Gamma0, Ladder, SolveError, Theorem, solve_discrete};
 
@@ -325,10 +326,10 @@ fn control_a_fixed_penalty_without_the_consistency_terms_stalls() {
         for edge in &mut d.contact {
             edge.gamma = 1.0;
             for (functional, node) in edge.functionals.p0.iter_mut().zip([1, 2]) {
-                *functional = [[0.0; 2]; 3];
+                *functional = [Vector2::zeros(); 3];
                 functional[(edge.edge.local + node) % 3] = edge.normal;
             }
-            edge.functionals.sigma_n = [[[0.0; 2]; 3]; 2];
+            edge.functionals.sigma_n = [[Vector2::zeros(); 3]; 2];
         }
     });
     let rate = last_rate(&errors);

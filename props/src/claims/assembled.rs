@@ -28,7 +28,10 @@ use signorini::fem::{
 };
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::{Material, P1, P2, Plane, Triangle};
-use signorini::solve::{MethodReport, NewtonReport, Report, RouteName, Solution, Status};
+use signorini::nalgebra::Vector2;
+use signorini::solve::{
+    MethodReport, NewtonReport, NoLimit, Report, RouteName, Solution, Status, Unproved,
+};
 
 use crate::bodies::{Body, Definition, Rule, Side, combined, contact_class, sum, whole};
 use crate::claim::Outcome;
@@ -452,7 +455,7 @@ impl<S: Given> Setting<S> {
             let places = places(body, triangle);
             let at = [(local + 1) % 3, (local + 2) % 3, 3 + local];
             let gap = at.map(|k| draw.gap().value(places[k]));
-            Side { triangle, local, length: S::given(length), n: n.map(S::given), gap }
+            Side { triangle, local, length: S::given(length), n: n.map(S::given).into(), gap }
         };
         let all = |names: &[&str], body: &Body<S>| -> Vec<Side<S>> {
             let edges = names.iter().flat_map(|name| &sides[name]);
@@ -703,7 +706,7 @@ fn defined<S: Given, const N: usize>(
     let mut reactions: BTreeMap<&str, [S; 2]> = BTreeMap::new();
     for (&(node, c), (_, name)) in &setting.prescribed {
         let reaction = reactions.entry(name).or_insert([zero; 2]);
-        reaction[c] = reaction[c] + setting.reaction_sign * residual[2 * node + c];
+        reaction[c] += setting.reaction_sign * residual[2 * node + c];
     }
     let mean = |t: usize| {
         let field = body.field::<N>(t, u);
@@ -784,7 +787,7 @@ fn unsolved() -> Report {
         threads: 1,
         slides: 0,
     };
-    Report { newton, method }
+    Report { newton, method, enclosure: Err(Unproved::NotHeld), limit: Err(NoLimit::Assembled) }
 }
 
 /// The same numbers by the solver, in the same order.
@@ -819,7 +822,7 @@ where
         ("peak pressure", vec![q.peak_pressure]),
         ("contact force", vec![q.contact_force]),
         ("contact resultant", q.contact_resultant.to_vec()),
-        ("mean stress", solution.stress.iter().flat_map(|(s, _)| [s.xx, s.yy, s.xy]).collect()),
+        ("mean stress", solution.stress.iter().flat_map(|(s, _)| s.components()).collect()),
         ("a(u, v)", flat(&d.internal_forces(u).values)),
         ("a(u, u)", vec![q.energy]),
         ("L(v)", flat(&d.load)),
@@ -1196,17 +1199,17 @@ fn geometry(draw: &Draw, diameter: impl Fn(&Mesh, usize) -> f64) -> Verdict {
     let (vertices, triangles, sides) = draw.parts();
     Exact::scope(|| {
         let exact = |t: usize| Triangle {
-            vertices: triangles[t].map(|v| vertices[v].map(Exact::of_double)),
+            vertices: triangles[t].map(|v| Vector2::from(vertices[v]).map(Exact::of_double)),
         };
         for t in 0..triangles.len() {
             let squares = [0, 1, 2].map(|i| {
-                let [x, y] = exact(t).edge(i);
+                let [x, y] = exact(t).edge(i).into();
                 x * x + y * y
             });
             ensure!(close(diameter(mesh, t), longest(squares)));
         }
         for edge in sides.into_values().flatten().map(|edge| owner(&triangles, edge)) {
-            let [x, y] = exact(edge.triangle).scaled_normal(edge.local);
+            let [x, y] = exact(edge.triangle).scaled_normal(edge.local).into();
             let (length, n) = mesh.length_and_normal(edge);
             ensure!(close(length, x * x + y * y));
             for (c, exact) in [x, y].into_iter().enumerate() {
@@ -1230,7 +1233,7 @@ pub fn square_roots() -> Outcome {
 pub fn first_edge_for_the_longest() -> Outcome {
     draws::reject(10, problems(Contact::Any, false), |draw| {
         geometry(draw, |mesh, t| {
-            let [x, y] = mesh.triangle(t).edge(0);
+            let [x, y]: [f64; 2] = mesh.triangle(t).edge(0).into();
             x.hypot(y)
         })
     })
@@ -1247,10 +1250,11 @@ fn gamma_is(draw: &Draw, square: impl Fn([Exact; 3], usize) -> Exact) -> Verdict
     Exact::scope(|| {
         let gamma0 = Exact::of_double(d.gamma0);
         for line in &d.contact {
-            let vertices = triangles[line.edge.triangle].map(|v| vertices[v].map(Exact::of_double));
+            let vertices =
+                triangles[line.edge.triangle].map(|v| vertices[v].map(Exact::of_double).into());
             let squares = [0, 1, 2].map(|i| {
-                let [x, y] = Triangle { vertices }.edge(i);
-                x * x + y * y
+                let edge = Triangle { vertices }.edge(i);
+                edge.dot(&edge)
             });
             ensure!(close(line.gamma, gamma0 * gamma0 * square(squares, line.edge.local)));
         }

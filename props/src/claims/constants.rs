@@ -13,15 +13,11 @@
 //! (22)-(24) are taken from the literature: they are hypotheses here, with constants c_1, c_2, c_3.
 
 use signorini::kernel::contact_edge::coercivity_constant;
-use signorini::kernel::{Material, P1, P2, Plane, Scalar, Triangle};
+use signorini::kernel::{Material, P1, P2, Plane, Triangle};
+use signorini::nalgebra::Vector2;
 
 use crate::verdict::{Ordered, Verdict};
 use crate::{ensure, given};
-
-/// |E|^2
-fn square<S: Scalar>([x, y]: [S; 2]) -> S {
-    x * x + y * y
-}
 
 /// The triangle inequality for the edges of a triangle with one vertex in the origin, whose lengths are given by their
 /// squares.
@@ -29,11 +25,12 @@ pub fn two_edges_are_as_long_as_the_third<S: Ordered>(
     [bx, by, cx, cy, p, q, r]: [S; 7],
 ) -> Verdict {
     let zero = S::from(0);
-    let triangle = Triangle { vertices: [[zero; 2], [bx, by], [cx, cy]] };
+    let triangle =
+        Triangle { vertices: [Vector2::zeros(), Vector2::new(bx, by), Vector2::new(cx, cy)] };
     let [a, b, c] = [0, 1, 2].map(|i| triangle.edge(i));
     given!(p >= zero && q >= zero && r >= zero);
-    given!(square(b) == p * p && square(c) == q * q && square(a) == r * r);
-    let (along, across) = (b[0] * c[0] + b[1] * c[1], b[0] * c[1] - b[1] * c[0]);
+    given!(b.dot(&b) == p * p && c.dot(&c) == q * q && a.dot(&a) == r * r);
+    let (along, across) = (b.dot(&c), b.perp(&c));
     ensure!(along * along + across * across == p * p * q * q);
     ensure!(p * q >= zero);
     ensure!(along <= p * q);

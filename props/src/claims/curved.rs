@@ -441,7 +441,7 @@ fn formulas_agree(draw: &Draw, (n, d): (i64, i64), factor: f64) -> Verdict {
             let f = solution.body_force(x).unwrap_or_default().map(|f| factor * f);
             ensure!((0..2).all(|i| is_value(u[i], &exact.u[i], &at)));
             ensure!((0..2).all(|i| is_value(f[i], &exact.force[i], &at)));
-            let stress = [s.xx, s.yy, s.xy];
+            let stress = s.components();
             ensure!((0..3).all(|i| is_value(stress[i], &exact.stress[i], &at)));
             seen_left |= from_c < 0.0;
             seen_right |= from_c > 0.0;

@@ -19,6 +19,7 @@ use signorini::kernel::element::Element;
 use signorini::kernel::{
     ContactEdge, ContactPoint, Interval, Material, P1, P2, Plane, Stress, Triangle, positive_part,
 };
+use signorini::nalgebra::{Matrix2, Vector2};
 
 use crate::claim::Outcome;
 use crate::draws;
@@ -158,7 +159,7 @@ fn corners(mesh: &Mesh, t: usize) -> [[Interval; 5]; 3] {
     let unit = |k: usize, i: usize| Interval::from(i32::from(i == k));
     let vertices = mesh.triangle(t).vertices;
     [0, 1, 2].map(|k| {
-        let [x, y] = vertices[k].map(point);
+        let [x, y] = vertices[k].map(point).into();
         [x, y, unit(k, 0), unit(k, 1), unit(k, 2)]
     })
 }
@@ -178,9 +179,9 @@ fn stress_moments(mesh: &Mesh, solution: &Singular<Taylor>, tolerance: f64) -> V
     let of_triangle = |t: usize| {
         let area = in_intervals(mesh.triangle(t)).double_area() / Interval::from(2);
         let means = mean(corners(mesh, t), tolerance, |[x, y, l0, l1, l2]| {
-            let (_, Stress { xx, yy, xy }) = field(solution, [x, y]);
+            let stress = field(solution, [x, y]).1.components();
             let l = [l0, l1, l2];
-            std::array::from_fn(|i| [xx, yy, xy][i % 3] * l[i / 3])
+            std::array::from_fn(|i| stress[i % 3] * l[i / 3])
         });
         means.map(|m| area * m)
     };
@@ -199,7 +200,7 @@ impl Enclosed {
     }
 
     fn add(&mut self, node: usize, c: usize, term: Interval) {
-        self.values[node][c] = self.values[node][c] + term;
+        self.values[node][c] += term;
         self.largest_term = self.largest_term.max(term.lo().abs()).max(term.hi().abs());
     }
 
@@ -221,9 +222,9 @@ fn internal_forces<E: Element<N, M>, const N: usize, const M: usize>(
         for vertex in 0..3 {
             let l = [0, 1, 2].map(|i| Interval::from(i32::from(i == vertex)));
             let [xx, yy, xy] = [0, 1, 2].map(|i| moments[t][3 * vertex + i]);
-            for (&node, [dx, dy]) in nodes.iter().zip(E::gradients(l, barycentric)) {
-                sum.add(node, 0, xx * dx + xy * dy);
-                sum.add(node, 1, xy * dx + yy * dy);
+            for (&node, g) in nodes.iter().zip(E::gradients(l, barycentric)) {
+                sum.add(node, 0, xx * g.x + xy * g.y);
+                sum.add(node, 1, xy * g.x + yy * g.y);
             }
         }
     }
@@ -241,7 +242,7 @@ fn load<E: Element<N, M>, const N: usize, const M: usize>(
             let [start, end] = ends(space.mesh(), edge);
             let length = positive_part(end[1] - start[1]) + positive_part(start[1] - end[1]);
             let means: [Interval; 6] = mean([start, end], tolerance, |[x, y, s]| {
-                let n = [Taylor::from(outward), Taylor::from(0)];
+                let n = Vector2::new(Taylor::from(outward), Taylor::from(0));
                 let traction = field(solution, [x, y]).1.traction(n);
                 let shapes: [Taylor; M] = E::edge_values(s);
                 std::array::from_fn(|i| match shapes.get(i / 2) {
@@ -285,8 +286,8 @@ fn contact_terms<E: Element<N, M>, const N: usize, const M: usize>(
             )
         };
         let functionals = new(gamma);
-        let contains = |over: [[Interval; 2]; N], double: [[f64; 2]; N]| {
-            over.as_flattened().iter().zip(double.as_flattened()).all(|(i, &x)| i.contains(x))
+        let contains = |over: [Vector2<Interval>; N], double: [Vector2<f64>; N]| {
+            over.iter().flatten().zip(double.iter().flatten()).all(|(i, &x)| i.contains(x))
         };
         inside &= (0..M).all(|a| contains(functionals.p0[a], side.functionals.p0[a]));
         inside &= (0..2).all(|a| contains(functionals.sigma_n[a], side.functionals.sigma_n[a]));
@@ -469,8 +470,8 @@ fn equal(a: Interval, b: Interval, size: f64) -> bool {
 
 /// (1) at a point, the gradient there, and the doubles of the solver.
 fn formulas(draw: &Draw, x: [f64; 2], formula: Formula) -> Verdict {
-    let transposed = |g: [[Interval; 2]; 2]| match formula {
-        Formula::Transposed => [[g[0][0], g[1][0]], [g[0][1], g[1][1]]],
+    let transposed = |g: Matrix2<Interval>| match formula {
+        Formula::Transposed => g.transpose(),
         _ => g,
     };
     // The solver's doubles, by the same lines over intervals.
@@ -480,14 +481,8 @@ fn formulas(draw: &Draw, x: [f64; 2], formula: Formula) -> Verdict {
     let stress = over.material.stress(gradient);
     let found = doubles.stress(x);
     ensure!(u.iter().zip(doubles.displacement(x)).all(|(u, d)| u.contains(d)));
-    let pairs = [(stress.xx, found.xx), (stress.yy, found.yy), (stress.xy, found.xy)];
-    ensure!(pairs.iter().all(|(s, d)| s.contains(*d)));
-    ensure!(
-        gradient
-            .iter()
-            .zip(doubles.gradient(x))
-            .all(|(g, d)| g[0].contains(d[0]) && g[1].contains(d[1]))
-    );
+    ensure!(stress.matrix().iter().zip(found.matrix()).all(|(s, d)| s.contains(*d)));
+    ensure!(gradient.iter().zip(&doubles.gradient(x)).all(|(g, d)| g.contains(*d)));
     // Their derivatives.
     let solution = draw.solution(constant);
     let [x0, y0] = Taylor::variables(x.map(point));
@@ -495,15 +490,15 @@ fn formulas(draw: &Draw, x: [f64; 2], formula: Formula) -> Verdict {
     let r = (x[0] - draw.c).hypot(x[1]);
     let steep = draw.amplitude / (draw.moduli[1] * r.powf(1.5));
     let derivatives = solution.displacement_at(&here).map(Taylor::gradient);
-    for (derived, given) in derivatives.iter().zip(gradient) {
+    for (derived, given) in derivatives.iter().zip(gradient.row_iter()) {
         ensure!(equal(derived[0], given[0], steep) && equal(derived[1], given[1], steep));
     }
     let of = match formula {
         Formula::OtherMaterial => Material::lame(constant(5.0), constant(0.4), Plane::Strain),
         _ => solution.material,
     };
-    let Stress { xx, yy, xy } = of.stress(solution.gradient_at(&here));
-    let [xx, yy, xy] = [xx, yy, xy].map(Taylor::gradient);
+    let stress = of.stress(solution.gradient_at(&here));
+    let [xx, yy, xy] = stress.components().map(Taylor::gradient);
     let stiff = steep * (1.0 + draw.moduli[0].abs() + draw.moduli[1]);
     ensure!(equal(xx[0], -xy[1], stiff) && equal(xy[0], -yy[1], stiff));
     Verdict::Holds(if x[0] < draw.c { "over the contact" } else { "over the gap" })
@@ -537,7 +532,8 @@ fn conditions(draw: &Draw, x: f64) -> Verdict {
     let at = |x: Interval| {
         let place = Place::new(x, zero);
         let stress = solution.material.stress(solution.gradient_at(&place));
-        (-solution.displacement_at(&place)[1], stress.yy, stress.xy)
+        let [_, yy, xy] = stress.components();
+        (-solution.displacement_at(&place)[1], yy, xy)
     };
     // On pieces short enough to keep the signs for every material: an eighth of what lies between two powers of 2.
     for piece in 0..8 * 40 {

@@ -10,17 +10,19 @@
 //! On an edge the trace inequality |w|_E^2 <= c_p (|E|/|T|) |w|_T^2 for polynomials w of degree p - 1: c_1 = 1, c_2 = 3.
 
 use signorini::kernel::{Element, Material, P1, P2, Plane, Stress};
+use signorini::nalgebra::{Matrix2, Vector2};
 
 use crate::verdict::{Ordered, Verdict};
 use crate::{ensure, given};
 
 /// sigma:eps for the stress that belongs to a displacement gradient.
-fn energy_density<S: Ordered>(stress: Stress<S>, g: [[S; 2]; 2]) -> S {
-    stress.xx * g[0][0] + stress.yy * g[1][1] + stress.xy * (g[0][1] + g[1][0])
+fn energy_density<S: Ordered>(stress: Stress<S>, g: Matrix2<S>) -> S {
+    let [xx, yy, xy] = stress.components();
+    xx * g.m11 + yy * g.m22 + xy * (g.m12 + g.m21)
 }
 
-fn gradient<S>([xx, xy, yx, yy]: [S; 4]) -> [[S; 2]; 2] {
-    [[xx, xy], [yx, yy]]
+fn gradient<S>([xx, xy, yx, yy]: [S; 4]) -> Matrix2<S> {
+    Matrix2::new(xx, xy, yx, yy)
 }
 
 /// (1): sigma = lambda tr(eps) I + 2 mu eps with eps = (grad u + grad u^T)/2; sigma_n = n.sigma n; traction sigma n;
@@ -31,13 +33,16 @@ pub fn stress_is_hookes_law<S: Ordered>([xx, xy, yx, yy, nx, ny, lambda, mu]: [S
     ensure!(material.lambda() == lambda && material.mu() == mu);
     let stress = material.stress(gradient([xx, xy, yx, yy]));
     let (exx, eyy, exy) = (xx, yy, (xy + yx) / two);
-    ensure!(stress.xx == lambda * (exx + eyy) + two * mu * exx);
-    ensure!(stress.yy == lambda * (exx + eyy) + two * mu * eyy);
-    ensure!(stress.xy == two * mu * exy);
-    let traction = stress.traction([nx, ny]);
-    ensure!(traction[0] == stress.xx * nx + stress.xy * ny);
-    ensure!(traction[1] == stress.xy * nx + stress.yy * ny);
-    ensure!(stress.normal([nx, ny]) == traction[0] * nx + traction[1] * ny);
+    let [sxx, syy, sxy] = stress.components();
+    ensure!(sxx == lambda * (exx + eyy) + two * mu * exx);
+    ensure!(syy == lambda * (exx + eyy) + two * mu * eyy);
+    ensure!(sxy == two * mu * exy);
+    ensure!(*stress.matrix() == Matrix2::new(sxx, sxy, sxy, syy));
+    let n = Vector2::new(nx, ny);
+    let traction = stress.traction(n);
+    ensure!(traction[0] == sxx * nx + sxy * ny);
+    ensure!(traction[1] == sxy * nx + syy * ny);
+    ensure!(stress.normal(n) == traction[0] * nx + traction[1] * ny);
     Verdict::Holds("always")
 }
 
@@ -47,9 +52,10 @@ pub fn normal_stress_of_a_shape_is_n_sigma_n<S: Ordered>(
 ) -> Verdict {
     given!(nx * nx + ny * ny == S::from(1));
     let material = Material::lame(lambda, mu, Plane::Strain);
-    let functional = material.normal_stress_of_shape([gx, gy], [nx, ny]);
-    let stress = material.stress([[vx * gx, vx * gy], [vy * gx, vy * gy]]);
-    ensure!(functional[0] * vx + functional[1] * vy == stress.normal([nx, ny]));
+    let n = Vector2::new(nx, ny);
+    let functional = material.normal_stress_of_shape(Vector2::new(gx, gy), n);
+    let stress = material.stress(gradient([vx * gx, vx * gy, vy * gx, vy * gy]));
+    ensure!(functional[0] * vx + functional[1] * vy == stress.normal(n));
     Verdict::Holds("always")
 }
 
@@ -73,7 +79,7 @@ fn bounded<S: Ordered>(
     let material = Material::lame(lambda, mu, Plane::Strain);
     let g = gradient([xx, xy, yx, yy]);
     let stress = material.stress(g);
-    let (sigma_n, squared) = (stress.normal([nx, ny]), nx * nx + ny * ny);
+    let (sigma_n, squared) = (stress.normal(Vector2::new(nx, ny)), nx * nx + ny * ny);
     let [tt, nt] = other_strains([xx, xy, yx, yy, nx, ny]);
     let left = constant(&material) * squared * squared * energy_density(stress, g);
     let rest = left - sigma_n * sigma_n;
@@ -101,7 +107,8 @@ pub fn normal_stress_on_a_horizontal_edge_is_bounded_by_the_energy<S: Ordered>(
     let material = Material::lame(lambda, mu, Plane::Strain);
     let g = gradient([xx, xy, yx, yy]);
     let stress = material.stress(g);
-    ensure!(stress.yy * stress.yy <= material.normal_stiffness() * energy_density(stress, g));
+    let [_, yy, _] = stress.components();
+    ensure!(yy * yy <= material.normal_stiffness() * energy_density(stress, g));
     Verdict::Holds("always")
 }
 
@@ -111,9 +118,9 @@ pub fn the_constant_is_attained_by_a_strain_along_the_normal<S: Ordered>(
 ) -> Verdict {
     given!(nx * nx + ny * ny == S::from(1));
     let material = Material::lame(lambda, mu, Plane::Strain);
-    let g = [[c * nx * nx, c * nx * ny], [c * nx * ny, c * ny * ny]];
+    let g = gradient([c * nx * nx, c * nx * ny, c * nx * ny, c * ny * ny]);
     let stress = material.stress(g);
-    let sigma_n = stress.normal([nx, ny]);
+    let sigma_n = stress.normal(Vector2::new(nx, ny));
     ensure!(sigma_n * sigma_n == material.normal_stiffness() * energy_density(stress, g));
     Verdict::Holds("always")
 }
@@ -133,7 +140,7 @@ pub fn plane_stress_has_its_own_lambda<S: Ordered>([lambda, mu, xx, yy, xy]: [S;
     ensure!((star + mu) * (lambda + two * mu) == mu * (S::from(3) * lambda + two * mu));
     ensure!((star + mu) * (lambda + two * mu) > zero);
     ensure!(star + mu > zero);
-    let stress = Stress { xx, yy, xy };
+    let stress = Stress::new([xx, yy, xy]);
     ensure!(material.stress_zz(stress) == zero);
     let mises = xx * xx - xx * yy + yy * yy + S::from(3) * xy * xy;
     ensure!(material.von_mises_squared(stress) == mises);
@@ -147,12 +154,13 @@ pub fn plane_strain_has_a_stress_across_the_plane<S: Ordered>(
     let (zero, two, three) = (S::from(0), S::from(2), S::from(3));
     given!(mu > zero && lambda + mu > zero);
     let material = Material::lame(lambda, mu, Plane::Strain);
-    let stress = material.stress([[exx, exy], [exy, eyy]]);
+    let stress = material.stress(gradient([exx, exy, exy, eyy]));
     let zz = material.stress_zz(stress);
     ensure!(zz == lambda * (exx + eyy));
-    let mean = (stress.xx + stress.yy + zz) / three;
-    let (a, b, c) = (stress.xx - mean, stress.yy - mean, zz - mean);
-    let deviator = a * a + b * b + c * c + two * stress.xy * stress.xy;
+    let [xx, yy, xy] = stress.components();
+    let mean = (xx + yy + zz) / three;
+    let (a, b, c) = (xx - mean, yy - mean, zz - mean);
+    let deviator = a * a + b * b + c * c + two * xy * xy;
     ensure!(two * material.von_mises_squared(stress) == three * deviator);
     Verdict::Holds("always")
 }
@@ -212,7 +220,8 @@ pub fn control_lambda_plus_mu_for_the_stiffness<S: Ordered>(
     given!(mu > zero && lambda + mu > zero);
     let g = gradient([xx, xy, yx, yy]);
     let stress = Material::lame(lambda, mu, Plane::Strain).stress(g);
-    ensure!(stress.yy * stress.yy <= (lambda + mu) * energy_density(stress, g));
+    let [_, yy, _] = stress.components();
+    ensure!(yy * yy <= (lambda + mu) * energy_density(stress, g));
     Verdict::Holds("always")
 }
 
@@ -650,6 +659,9 @@ mod row {
                 "material::Material::stress_zz",
                 "material::Material::von_mises_squared",
                 "material::Material::normal_stress_of_shape",
+                "material::Stress::new",
+                "material::Stress::components",
+                "material::Stress::matrix",
                 "material::Stress::normal",
                 "material::Stress::traction",
             ],

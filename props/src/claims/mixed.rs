@@ -154,7 +154,7 @@ mod row {
             for side in &body.contact {
                 let p = definition.traces(side, &u).p;
                 for (piece, l) in multiplier(body, side, &p) {
-                    total = total + side.length * f(side, e, &l).integral(piece);
+                    total += side.length * f(side, e, &l).integral(piece);
                 }
                 e += 1;
             }

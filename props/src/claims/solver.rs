@@ -20,6 +20,7 @@ use signorini::fem::{
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::element::displacement_gradient;
 use signorini::kernel::{EdgeIntegrals, Element, Material, P1, P2, Plane, positive_part};
+use signorini::nalgebra::Matrix2;
 use signorini::solve::{Degree, Gamma0, Method, SolveError, discretize};
 
 use crate::claim::{Claim, Engine, Outcome, by, control};
@@ -290,9 +291,11 @@ impl ExactSolution for Quadratic {
             .map(|c| c[0] + c[1] * x + c[2] * y + c[3] * x * x + c[4] * x * y + c[5] * y * y)
     }
 
-    fn gradient(&self, [x, y]: [f64; 2]) -> [[f64; 2]; 2] {
-        self.coefficients
-            .map(|c| [c[1] + 2.0 * c[3] * x + c[4] * y, c[2] + c[4] * x + 2.0 * c[5] * y])
+    fn gradient(&self, [x, y]: [f64; 2]) -> Matrix2<f64> {
+        let slopes = self
+            .coefficients
+            .map(|c| [c[1] + 2.0 * c[3] * x + c[4] * y, c[2] + c[4] * x + 2.0 * c[5] * y]);
+        Matrix2::from_fn(|i, j| slopes[i][j])
     }
 
     fn regularity(&self) -> f64 {
@@ -326,7 +329,7 @@ fn errors_on(problem: &Problem, sign: f64, inverted: bool) -> Result<(), String>
             let value = |c: usize| (0..6).map(|j| shapes[j] * local[j][c]).sum::<f64>();
             let gradients = <P2 as Element<6, 3>>::gradients(l, triangle.barycentric_gradients());
             let g = displacement_gradient(&local, &gradients);
-            let slope: f64 = g.as_flattened().iter().map(|d| d * d).sum();
+            let slope = g.dot(&g);
             let l2 = value(0) * value(0) + value(1) * value(1);
             expected.l2 += area * weight * l2;
             expected.h1 += area * weight * (l2 + slope);

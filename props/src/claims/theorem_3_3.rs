@@ -4,6 +4,7 @@
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::element::stiffness;
 use signorini::kernel::{ContactEdge, Material, P1, Plane, Triangle, positive_part};
+use signorini::nalgebra::Vector2;
 
 use crate::harness::{any, assume};
 use crate::numbers::Whole;
@@ -89,19 +90,20 @@ pub fn square_of_the_positive_part_is_convex_and_smooth<S: Ordered>([a, b]: [S; 
 /// h_T = 5: the left side at u = (s, t) there, for both test functions.
 fn one_triangle<S: Ordered>([s, t]: [S; 2], gamma0: S) -> [S; 2] {
     let (zero, one) = (S::from(0), S::from(1));
-    let of = |x, y| [S::from(x), S::from(y)];
+    let of = |x, y| Vector2::new(S::from(x), S::from(y));
     let triangle = Triangle { vertices: [of(0, 0), of(3, 0), of(0, 4)] };
     let material = Material::lame(one, one, Plane::Strain);
     let gamma = gamma0 * S::from(5);
-    let edge = ContactEdge::<S, 3, 2>::new::<P1>(&triangle, 2, [zero, -one], &material, gamma);
+    let n = Vector2::new(zero, -one);
+    let edge = ContactEdge::<S, 3, 2>::new::<P1>(&triangle, 2, n, &material, gamma);
     let stiffness = stiffness::<P1, S, 3, 2>(&triangle, &material)[1][1];
     let weight = gamma * S::from(3);
     let stress = edge.stress_product(weight, 1, 1);
     let p = edge.p0.map(|row| row[1][0] * s + row[1][1] * t);
     let gradient = P1::exact(p).gradient;
     [0, 1].map(|c| {
-        let a = stiffness[c][0] * s + stiffness[c][1] * t;
-        let nitsche = stress[c][0] * s + stress[c][1] * t;
+        let a = stiffness[(c, 0)] * s + stiffness[(c, 1)] * t;
+        let nitsche = stress[(c, 0)] * s + stress[(c, 1)] * t;
         let contact = gradient[0] * edge.p0[0][1][c] + gradient[1] * edge.p0[1][1][c];
         a - nitsche + contact * S::from(3) / gamma
     })

@@ -595,7 +595,7 @@ mod row {
         for value in v.iter_mut() {
             *value = value.abs();
         }
-        v[5] = v[5] / (one + v[5]);
+        v[5] /= one + v[5];
         // Small enough on the left: E and Z from H, S and R.
         v[0] = v[1].min(v[0]);
         v[2] = v[4].min(v[2]) / two;

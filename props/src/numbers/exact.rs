@@ -129,6 +129,8 @@ impl PartialOrd for Exact {
     }
 }
 
+signorini::entry_of_nalgebra!(Exact);
+
 impl Scalar for Exact {
     fn split(
         self,

@@ -104,6 +104,8 @@ impl PartialOrd for Magnitude {
     }
 }
 
+signorini::entry_of_nalgebra!(Magnitude);
+
 impl Scalar for Magnitude {
     fn split(
         self,

@@ -14,7 +14,7 @@ use signorini::kernel::Scalar;
 use super::Exact;
 
 /// Twice the exponents of stress and length.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Dimension(i8, i8);
 
 impl Dimension {
@@ -53,7 +53,7 @@ thread_local! {
 }
 
 /// An exact number with its dimension, which only a 0 may leave open.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct Quantity {
     value: Exact,
     dimension: Option<Dimension>,
@@ -149,6 +149,8 @@ impl PartialOrd for Quantity {
         self.value.partial_cmp(&other.value)
     }
 }
+
+signorini::entry_of_nalgebra!(Quantity);
 
 impl Scalar for Quantity {
     fn split(

@@ -62,6 +62,8 @@ impl Neg for Whole {
     }
 }
 
+signorini::entry_of_nalgebra!(Whole);
+
 impl Scalar for Whole {
     fn split(
         self,

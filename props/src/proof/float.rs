@@ -146,6 +146,8 @@ impl PartialOrd for Float {
     }
 }
 
+signorini::entry_of_nalgebra!(Float);
+
 impl Scalar for Float {
     fn split(
         self,

@@ -331,6 +331,8 @@ impl PartialOrd for Sym {
     }
 }
 
+signorini::entry_of_nalgebra!(Sym);
+
 impl Scalar for Sym {
     fn split(self, nonpositive: impl FnOnce(Sym) -> Sym, positive: impl FnOnce(Sym) -> Sym) -> Sym {
         if self <= Sym::from(0) { nonpositive(self) } else { positive(self) }

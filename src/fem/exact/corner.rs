@@ -9,6 +9,8 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use nalgebra::{Matrix2, Vector2};
+
 use super::{ExactSolution, kolosov};
 use crate::fem::pieces::{Features, Singularity};
 use crate::kernel::Material;
@@ -92,7 +94,7 @@ impl ExactSolution for Corner {
 
     /// With U = u_x + i u_y, phi' = a alpha z^(alpha-1) and psi' = b alpha z^(alpha-1):
     /// 2 mu dU/dx = k phi' - conj(phi' + conj(z) phi'' + psi'), 2 mu dU/dy = i (k phi' - conj(phi' - conj(z) phi'' - psi')).
-    fn gradient(&self, x: [f64; 2]) -> [[f64; 2]; 2] {
+    fn gradient(&self, x: [f64; 2]) -> Matrix2<f64> {
         let (r, theta) = polar(x);
         let (alpha, k) = (self.alpha, kolosov(&self.material));
         let scale = alpha * r.powf(alpha - 1.0) / (2.0 * self.material.mu());
@@ -102,10 +104,10 @@ impl ExactSolution for Corner {
         let phi = [A * cos, A * sin];
         let rest =
             [A * (alpha - 1.0) * cos3 + self.b * cos, A * (alpha - 1.0) * sin3 - self.b * sin];
-        let by_x = [k * phi[0] - phi[0] - rest[0], k * phi[1] + phi[1] - rest[1]];
+        let by_x = Vector2::new(k * phi[0] - phi[0] - rest[0], k * phi[1] + phi[1] - rest[1]);
         // i (x + i y) = -y + i x
-        let by_y = [-(k * phi[1] + phi[1] + rest[1]), k * phi[0] - phi[0] + rest[0]];
-        [0, 1].map(|c| [scale * by_x[c], scale * by_y[c]])
+        let by_y = Vector2::new(-(k * phi[1] + phi[1] + rest[1]), k * phi[0] - phi[0] + rest[0]);
+        scale * Matrix2::from_columns(&[by_x, by_y])
     }
 
     fn regularity(&self) -> f64 {

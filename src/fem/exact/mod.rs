@@ -26,6 +26,8 @@ pub use real::Real;
 pub use singular::{Place, Singular};
 pub use smooth::Smooth;
 
+use nalgebra::Matrix2;
+
 use super::mesh::Mesh;
 use super::pieces::Features;
 use super::problem::{BoxedFunction, Condition, Function, Problem};
@@ -39,8 +41,8 @@ pub trait ExactSolution: Debug + Send + Sync {
     /// u
     fn displacement(&self, x: [f64; 2]) -> [f64; 2];
 
-    /// du_i/dx_j as `gradient[i][j]`.
-    fn gradient(&self, x: [f64; 2]) -> [[f64; 2]; 2];
+    /// du_i/dx_j in row i and column j.
+    fn gradient(&self, x: [f64; 2]) -> Matrix2<f64>;
 
     /// f = -div sigma(u); `None` if there is none anywhere.
     fn body_force(&self, _: [f64; 2]) -> Option<[f64; 2]> {
@@ -134,7 +136,7 @@ impl Function for Field {
 
     fn on_boundary(&self, x: [f64; 2], n: [f64; 2]) -> f64 {
         match self.part {
-            Part::Traction(c) => self.solution.stress(x).traction(n)[c],
+            Part::Traction(c) => self.solution.stress(x).traction(n.into())[c],
             _ => self.at(x),
         }
     }

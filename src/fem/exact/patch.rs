@@ -11,6 +11,8 @@
 //!
 //! e1 = (lambda + 2 mu) / (4 mu (lambda + mu)) and e2 = lambda / (4 mu (lambda + mu)): the strains of the uniaxial stress 1.
 
+use nalgebra::{Matrix2, Vector2};
+
 use super::ExactSolution;
 use crate::kernel::Material;
 
@@ -18,8 +20,8 @@ use crate::kernel::Material;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Patch {
     material: Material<f64>,
-    matrix: [[f64; 2]; 2],
-    shift: [f64; 2],
+    matrix: Matrix2<f64>,
+    shift: Vector2<f64>,
     gap: [f64; 2],
 }
 
@@ -39,25 +41,26 @@ impl Patch {
     /// d2, for d > 0.
     pub fn separation(material: Material<f64>, p: f64, d: f64) -> Self {
         let (e1, e2) = strains(&material);
-        let matrix = [[p * e1, 0.0], [0.0, -p * e2]];
-        Patch { material, matrix, shift: [0.0, d], gap: [0.0; 2] }
+        let matrix = Matrix2::new(p * e1, 0.0, 0.0, -p * e2);
+        Patch { material, matrix, shift: Vector2::new(0.0, d), gap: [0.0; 2] }
     }
 
     /// d3, for p > 0.
     pub fn inclined(material: Material<f64>, p: f64, w: f64, g0: f64) -> Self {
         let (e1, e2) = strains(&material);
-        let matrix = [[p * e2, -w], [w, -p * e1]];
-        Patch { material, matrix, shift: [0.0, -g0], gap: [g0, -w] }
+        let matrix = Matrix2::new(p * e2, -w, w, -p * e1);
+        Patch { material, matrix, shift: Vector2::new(0.0, -g0), gap: [g0, -w] }
     }
 
     /// d4
     pub fn grazing(material: Material<f64>) -> Self {
-        Patch { material, matrix: [[0.0; 2]; 2], shift: [0.0; 2], gap: [0.0; 2] }
+        Patch { material, matrix: Matrix2::zeros(), shift: Vector2::zeros(), gap: [0.0; 2] }
     }
 
     /// d5, for d > 0.
     pub fn interference(material: Material<f64>, d: f64) -> Self {
-        Patch { material, matrix: [[0.0, 0.0], [0.0, -d]], shift: [0.0, d], gap: [-d, 0.0] }
+        let matrix = Matrix2::new(0.0, 0.0, 0.0, -d);
+        Patch { material, matrix, shift: Vector2::new(0.0, d), gap: [-d, 0.0] }
     }
 }
 
@@ -67,10 +70,10 @@ impl ExactSolution for Patch {
     }
 
     fn displacement(&self, x: [f64; 2]) -> [f64; 2] {
-        [0, 1].map(|c| self.matrix[c][0] * x[0] + self.matrix[c][1] * x[1] + self.shift[c])
+        (self.matrix * Vector2::from(x) + self.shift).into()
     }
 
-    fn gradient(&self, _: [f64; 2]) -> [[f64; 2]; 2] {
+    fn gradient(&self, _: [f64; 2]) -> Matrix2<f64> {
         self.matrix
     }
 

@@ -9,6 +9,8 @@
 //! The formulas need square roots only, so that they can be run over any [`Real`] number: over doubles here, over
 //! enclosures in `props`.
 
+use nalgebra::Matrix2;
+
 use super::{ExactSolution, Real, kolosov};
 use crate::fem::pieces::{Features, Singularity};
 use crate::kernel::Material;
@@ -77,7 +79,7 @@ impl<S: Real> Singular<S> {
     }
 
     /// du_i/dx_j. Without a value at the singular point itself when y > 0 is lost: there y r^(-1/2) counts as 0.
-    pub fn gradient_at(&self, place: &Place<S>) -> [[S; 2]; 2] {
+    pub fn gradient_at(&self, place: &Place<S>) -> Matrix2<S> {
         let &Place { over_r, cos, sin, .. } = place;
         let (one, two) = (S::from(1), S::from(2));
         let am = self.amplitude;
@@ -86,8 +88,8 @@ impl<S: Real> Singular<S> {
         let (re1, im1) = (am / two * over_r * sin, am / two * over_r * cos);
         let k = kolosov(&self.material);
         let (less, more) = ((k - one) / two, (k + one) / two);
-        [[less * re - im1, -(more * im) - re1], [more * im - re1, less * re + im1]]
-            .map(|row| row.map(|d| d / (two * self.material.mu())))
+        Matrix2::new(less * re - im1, -(more * im) - re1, more * im - re1, less * re + im1)
+            / (two * self.material.mu())
     }
 }
 
@@ -107,7 +109,7 @@ impl ExactSolution for Singular {
         self.displacement_at(&self.place(x))
     }
 
-    fn gradient(&self, x: [f64; 2]) -> [[f64; 2]; 2] {
+    fn gradient(&self, x: [f64; 2]) -> Matrix2<f64> {
         self.gradient_at(&self.place(x))
     }
 

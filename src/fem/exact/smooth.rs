@@ -5,6 +5,8 @@
 //!
 //! u = 0 on y = 1; tractions on x = 0 and x = 1. On y = 0: u_n - g = -p, sigma_n = (lambda + 2 mu) q, sigma_xy = 0.
 
+use nalgebra::Matrix2;
+
 use super::ExactSolution;
 use crate::fem::pieces::Features;
 use crate::kernel::Material;
@@ -84,9 +86,14 @@ impl ExactSolution for Smooth {
         [a[0] * pi[1], b[0] * pi[0] - a[0] * q[0]]
     }
 
-    fn gradient(&self, x: [f64; 2]) -> [[f64; 2]; 2] {
+    fn gradient(&self, x: [f64; 2]) -> Matrix2<f64> {
         let Factors { pi, q, a, b } = self.factors(x);
-        [[a[0] * pi[2], a[1] * pi[1]], [b[0] * pi[1] - a[0] * q[1], b[1] * pi[0] - a[1] * q[0]]]
+        Matrix2::new(
+            a[0] * pi[2],
+            a[1] * pi[1],
+            b[0] * pi[1] - a[0] * q[1],
+            b[1] * pi[0] - a[1] * q[0],
+        )
     }
 
     /// f = -(lambda + mu) grad div u - mu Laplace u

@@ -12,6 +12,7 @@ use signorini::fem::{
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::element::stiffness;
 use signorini::kernel::{Material, P1, P2, Plane};
+use signorini::nalgebra::Matrix2;
 
 use crate::claim::{Claim, Engine, Outcome, by, control, model_checked};
 use crate::verdict::Verdict;
@@ -79,7 +80,7 @@ impl<const N: usize> Draw<N> {
     ) -> Made {
         let mut matrix = LowerTriangle::zero(numbering, neighbours);
         for (e, nodes) in self.elements.iter().enumerate() {
-            matrix.add(numbering, nodes, |i, j| block(e, i, j));
+            matrix.add(numbering, nodes, |i, j| Matrix2::from(block(e, i, j)).transpose());
         }
         let gathered = numbering.gather(&field(self.nodes()));
         let mut scattered = vec![[OLD; 2]; self.nodes()];
@@ -377,12 +378,12 @@ where
     let assembled = assemble(&d, &numbering, &draw.neighbours());
     let n = numbering.count;
     let mut dense = vec![vec![0.0; n]; n];
-    let mut add = |nodes: &[usize; N], k: &dyn Fn(usize, usize) -> [[f64; 2]; 2]| {
+    let mut add = |nodes: &[usize; N], k: &dyn Fn(usize, usize) -> Matrix2<f64>| {
         for (i, j) in (0..N).flat_map(|i| (0..N).map(move |j| (i, j))) {
             for (c, d) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                 let of = (numbering.of[nodes[i]][c], numbering.of[nodes[j]][d]);
                 if let (Some(row), Some(column)) = of {
-                    dense[row][column] += k(i, j)[c][d];
+                    dense[row][column] += k(i, j)[(c, d)];
                 }
             }
         }
