@@ -60,8 +60,8 @@ impl Korn {
         let mut seen = vec![usize::MAX; space.nodes().len()];
         for (t, nodes) in space.elements().iter().enumerate() {
             let part = parts.of_triangle()[t];
-            for &node in nodes {
-                // A node counts once for each part.
+            // Vertices, whose places are exact. A node counts once for each part.
+            for &node in &nodes[..3] {
                 if seen[node] != part {
                     seen[node] = part;
                     let at = space.nodes()[node];

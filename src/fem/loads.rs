@@ -181,7 +181,7 @@ fn add<S: Scalar + From<f64>>(
     force: f64,
 ) {
     for (&node, &shape) in nodes.iter().zip(shapes) {
-        load[node][c] = load[node][c] + <S as From<f64>>::from(force) * shape;
+        load[node][c] += <S as From<f64>>::from(force) * shape;
     }
 }
 

@@ -120,7 +120,7 @@ where
                 let value = value_at::<E, Ball, N, M>(p, s);
                 let shapes: [Ball; M] = E::edge_values(s);
                 for (sum, shape) in sum.iter_mut().zip(shapes) {
-                    *sum = *sum + length * weight * value * shape;
+                    *sum += length * weight * value * shape;
                 }
             }
         }

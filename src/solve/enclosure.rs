@@ -1,10 +1,10 @@
 //! How far the computed displacement u~ is from the exact solution u^h of (8), whatever Newton's method, the factorisation and
 //! rounding did: an enclosure of u^h and of what is reported of it. docs/theory.md, 7.5, has the proofs.
 //!
-//! The problem (8) that is meant has these data: the vertices, the Lame coefficients as they act in the plane, gamma0, the gap
-//! at the nodes, the prescribed components, the directions of contact where they are not the normal, the points of a Gauss
-//! rule, and for the loads the forces that the quadrature has at its points, weight times value: all of them doubles, taken
-//! for the real numbers that they are. Lengths, normals, areas, stresses and integrals are the exact ones.
+//! The problem (8) that is meant has these data: the vertices, the Lame coefficients as they act in the plane, gamma on each
+//! contact edge, the gap at the nodes, the prescribed components, the directions of contact where they are not the normal, the
+//! points of a Gauss rule, and for the loads the forces that the quadrature has at its points, weight times value: all of them
+//! doubles, taken for the real numbers that they are. Lengths, normals, areas, stresses and integrals are the exact ones.
 //!
 //! 1. kappa < 1, rounded up: (8) has exactly one solution, and A(v, v) >= (1 - kappa) a(v, v).
 //! 2. The residual r of (8) at u~ in [balls](crate::fem::ball), and any z that nearly solves A z = r, as the factor at hand
@@ -149,18 +149,35 @@ where
     E: ExactEdge<f64, N, M>,
 {
     let d = system.d;
+    let load = loads::assemble_as::<Ball, E, N, M>(d.problem, &d.space);
+    enclose_with(system, u, factor, &load.map_err(|_| Unproved::Loads)?)
+}
+
+/// The same for a given load: L(v) for every basis function.
+///
+/// # Errors
+/// As [`enclose`].
+pub fn enclose_with<E, const N: usize, const M: usize>(
+    system: &System<E, N, M>,
+    u: &[[f64; 2]],
+    factor: Option<Factor>,
+    load: &[[Ball; 2]],
+) -> Result<Enclosure, Unproved>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let d = system.d;
     if d.slides.is_some() {
         return Err(Unproved::HeldByContact);
     }
-    let lines: Vec<OnEdge<Ball, N, M>> =
-        d.contact.iter().map(|edge| OnEdge::new(d, edge, numbers(d, edge))).collect();
+    let lines = lines(d);
     let kappa = kappa(d, &lines);
     if !(kappa < 1.0) {
         return Err(Unproved::NotCoercive { kappa });
     }
     let coercivity = (1.0 - kappa) * (1.0 - 4.0 * f64::EPSILON);
     let korn = Korn::new(&d.space, &d.problem.material, &d.constraints).ok_or(Unproved::NotHeld)?;
-    let at = Evaluation::new(system, &lines, u)?;
+    let at = Evaluation::new(system, &lines, u, load)?;
     let r = free(system, &at.residual);
     let rest = up((korn.sum_of_squares() / coercivity).sqrt());
     let rho = if r.iter().all(|&r| r == Ball::from(0)) {
@@ -197,7 +214,20 @@ where
     })
 }
 
-/// Length, normal and gamma of a contact edge as its vertices have them.
+/// The contact edges in balls.
+pub(super) type Lines<'d, const N: usize, const M: usize> = Vec<OnEdge<'d, Ball, N, M>>;
+
+/// Those of a discretization.
+pub(super) fn lines<'d, E, const N: usize, const M: usize>(
+    d: &'d Discretization<E, N, M>,
+) -> Lines<'d, N, M>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    d.contact.iter().map(|edge| OnEdge::new(d, edge, numbers(d, edge))).collect()
+}
+
+/// Length and normal of a contact edge as its vertices have them, and its gamma.
 fn numbers<E, const N: usize, const M: usize>(
     d: &Discretization<E, N, M>,
     edge: &ContactLineEdge<N, M>,
@@ -206,22 +236,10 @@ where
     E: ExactEdge<f64, N, M>,
 {
     let triangle = precise::exactly::<Ball>(d.space.mesh().triangle(edge.edge.triangle));
-    let squares = [0, 1, 2].map(|i| triangle.edge(i)).map(|edge| dot(edge.into(), edge.into()));
-    let mut longest = squares[0];
-    for &square in &squares[1..] {
-        if square.head() > longest.head() {
-            longest = square;
-        }
-    }
-    // Where two are equal as far as their radii tell, either may be the longest.
-    let over = squares.iter().map(|&s| (s - longest).upper()).fold(0.0, larger);
-    let diameter = longest.widened(over).sqrt();
-    let length = squares[edge.edge.local % 3].sqrt();
-    EdgeNumbers {
-        normal: triangle.scaled_normal(edge.edge.local).map(|c| c / length),
-        gamma: Ball::from(d.gamma0) * diameter,
-        length,
-    }
+    let normal: [Ball; 2] = triangle.scaled_normal(edge.edge.local).into();
+    let length = dot(normal, normal).sqrt();
+    let normal = normal.map(|c| c / length).into();
+    EdgeNumbers { normal, gamma: Ball::from(edge.gamma), length }
 }
 
 /// kappa of Theorem 2.3, rounded up. The directions of contact are doubles, unit vectors to a rounding error only.
@@ -245,7 +263,7 @@ where
         };
         let entry =
             lengths.entry(edge.edge.triangle).or_insert((Ball::from(0), line.numbers.gamma));
-        entry.0 = entry.0 + factor * line.numbers.length;
+        entry.0 += factor * line.numbers.length;
     }
     let of = |(&t, &(length, gamma)): (&usize, &(Ball, Ball))| {
         let area = precise::exactly::<Ball>(d.space.mesh().triangle(t)).double_area();
@@ -268,7 +286,7 @@ fn larger(a: f64, b: f64) -> f64 {
 }
 
 /// The components of a functional at the free unknowns, in the frames of their nodes.
-fn free<E, const N: usize, const M: usize>(
+pub(super) fn free<E, const N: usize, const M: usize>(
     system: &System<E, N, M>,
     forces: &[[Ball; 2]],
 ) -> Vec<Ball>
@@ -325,7 +343,7 @@ where
 }
 
 /// A(v, .) at the free unknowns for the field with the components `z`.
-fn times_matrix<E, const N: usize, const M: usize>(
+pub(super) fn times_matrix<E, const N: usize, const M: usize>(
     system: &System<E, N, M>,
     lines: &[OnEdge<Ball, N, M>],
     z: &[f64],
@@ -412,6 +430,7 @@ impl Evaluation {
         system: &System<E, N, M>,
         lines: &[OnEdge<Ball, N, M>],
         u: &[[f64; 2]],
+        load: &[[Ball; 2]],
     ) -> Result<Self, Unproved>
     where
         E: ExactEdge<f64, N, M>,
@@ -444,9 +463,7 @@ impl Evaluation {
             line.add_contact(&pressure, &mut residual);
             pressures.push(pressure.to_vec());
         }
-        let load = loads::assemble_as::<Ball, E, N, M>(d.problem, &d.space)
-            .map_err(|_| Unproved::Loads)?;
-        for (r, l) in residual.iter_mut().zip(load) {
+        for (r, &l) in residual.iter_mut().zip(load) {
             *r = [r[0] - l[0], r[1] - l[1]];
         }
         let all = residual.iter().chain(&exact).flatten();
@@ -501,7 +518,7 @@ impl Evaluation {
             match contact.iter_mut().find(|(name, ..)| *name == edge.boundary) {
                 Some((_, sum, weights)) => {
                     *sum = [0, 1, 2].map(|i| sum[i] + of[i]);
-                    *weights = *weights + weight;
+                    *weights += weight;
                 }
                 None => contact.push((Arc::clone(&edge.boundary), of, weight)),
             }
@@ -539,7 +556,7 @@ impl Evaluation {
                     let direction = Ball::from(held.direction[c]);
                     for k in 0..2 {
                         let dual = Ball::from(held.dual[k]);
-                        test[held.node][k] = test[held.node][k] + direction * dual;
+                        test[held.node][k] += direction * dual;
                     }
                 }
                 let reaction = product(&test, &self.residual);

@@ -4,6 +4,7 @@
 pub mod accuracy;
 pub mod answers;
 pub mod assembled;
+pub mod census;
 mod checked;
 pub mod compliance;
 pub mod condensed;
@@ -202,6 +203,14 @@ pub enum SolveError {
     )]
     NotPositiveDefinite,
     #[error(
+        "gamma0 is beyond the true limit of coercivity, and (8) has no solution: this is proved, by a search over all displacements; lower gamma0"
+    )]
+    NoSolution,
+    #[error(
+        "gamma0 is beyond the true limit of coercivity, and (8) has exactly {count} solutions: this is proved, by a search over all displacements; lower gamma0"
+    )]
+    SeveralSolutions { count: usize },
+    #[error(
         "no convergence: the relative residual is {residual:.1e} after {} Newton step{}, all that max_iterations allows; expected at most {tolerance:e}. Nothing is written.\nresiduals: {}",
         residuals.len().saturating_sub(1), if residuals.len() == 2 { "" } else { "s" }, history(residuals)
     )]
@@ -243,6 +252,8 @@ impl SolveError {
             SolveError::Data(DataError::Mesh(MeshError::OutOfMemory(_))) => false,
             SolveError::Data(_) | SolveError::NotCoercive { .. } => true,
             SolveError::NotPositiveDefinite
+            | SolveError::NoSolution
+            | SolveError::SeveralSolutions { .. }
             | SolveError::NotConverged { .. }
             | SolveError::IllConditioned { .. }
             | SolveError::Singular
@@ -301,8 +312,9 @@ where
     let mut watch = Stopwatch::start();
     let system = System::new(d)?;
     times.matrix = watch.lap();
-    let (outcome, method, factorizations, factor) = route::solve(&system, settings, &mut times)?;
-    let status = accuracy::judge(&outcome, settings)?;
+    let found = route::solve(&system, settings, &mut times);
+    let (outcome, method, factorizations, factor) = found.map_err(|e| told(&system, e))?;
+    let status = accuracy::judge(&outcome, settings).map_err(|e| told(&system, e))?;
     let Outcome { mut u, residuals, residual, .. } = outcome;
     held::least_norm(&mut u, d.slides.as_deref().unwrap_or_default());
     let newton = NewtonReport { status, residuals, residual, factorizations };
@@ -315,6 +327,22 @@ where
     let enclosure = enclosure::enclose(&system, &u, factor);
     times.certify = watch.lap();
     Ok((u, Report { newton, method, enclosure, limit }, times))
+}
+
+/// Where kappa >= 1 and no solution was found: whether (8) has none, or several, if that can be proved.
+fn told<E, const N: usize, const M: usize>(
+    system: &System<E, N, M>,
+    error: SolveError,
+) -> SolveError
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let without_promise = system.d.kappa() >= 1.0;
+    match without_promise.then(|| census::count(system)).flatten() {
+        Some(0) => SolveError::NoSolution,
+        Some(count) if count > 1 => SolveError::SeveralSolutions { count },
+        _ => error,
+    }
 }
 
 /// What [`solve`] would solve: everything short of a matrix is built and checked.

@@ -15,6 +15,7 @@ mod convergence_command;
 mod documents;
 #[cfg(all(feature = "cli", unix))]
 mod doors;
+mod enclosure;
 mod exact;
 mod fuzz;
 mod gmsh_live;
