@@ -128,12 +128,14 @@ fn what_is_reported_lies_in_its_interval() {
 }
 
 #[test]
-fn a_body_at_rest_has_the_radius_zero() {
+fn a_body_at_rest_has_next_to_no_radius() {
     let mut problem = block(4);
     problem.body_force = [constant(0.0), constant(0.0)];
     let solution = solved(&problem, Degree::One);
     let enclosure = solution.enclosure.unwrap();
-    assert_eq!((enclosure.radius, enclosure.relative, enclosure.pressure), (0.0, None, 0.0));
+    // It touches the floor in a point, where the sign of P is known to a hundred bits only.
+    assert!(enclosure.radius <= 1e-25 && enclosure.pressure <= 1e-25);
+    assert_eq!(enclosure.relative, None);
 }
 
 #[test]

@@ -444,7 +444,7 @@ where
         enclosure: &Enclosure,
         asked: InDoubles,
     ) -> Result<Verdict, &'static str> {
-        let radius = Exact::of_double(enclosure.radius * asked.factor);
+        let radius = Exact::of_double(enclosure.radius) * Exact::of_double(asked.factor);
         let (share, scale) = (power(asked.share), square(&self.k, &self.problem.free(&found)));
         if radius * radius > share * share * scale {
             return Err("the radius is at most 2^-share |u~|_a");
@@ -470,22 +470,32 @@ where
             }
             point = self.newton_step(&point)?;
         }
-        let error = self.difference(&found, &point.u);
-        let most = radius + slack;
-        ensure!(square(&self.k, &error) <= most * most);
-        let fields = found.iter().zip(&point.u).zip(&enclosure.nodes);
-        for ((u, exact), &node) in fields {
-            let most = Exact::of_double(node * asked.factor) + slack;
+        let verdict =
+            self.within(&found, &point.u, enclosure, [Exact::of_double(asked.factor), slack]);
+        Ok(if verdict.fails() { verdict } else { Verdict::Holds(class) })
+    }
+
+    /// u~ is as near to `exact` as the enclosure says, its radii times a factor, where `exact` is u^h up to `slack`.
+    fn within(
+        &self,
+        found: &[[Exact; 2]],
+        exact: &[[Exact; 2]],
+        enclosure: &Enclosure,
+        [factor, slack]: [Exact; 2],
+    ) -> Verdict {
+        let most = |radius: f64| factor * Exact::of_double(radius) + slack;
+        let error = self.difference(found, exact);
+        ensure!(square(&self.k, &error) <= most(enclosure.radius) * most(enclosure.radius));
+        for ((u, exact), &node) in found.iter().zip(exact).zip(&enclosure.nodes) {
             let off = [u[0] - exact[0], u[1] - exact[1]];
-            ensure!(off[0] * off[0] + off[1] * off[1] <= most * most);
+            ensure!(off[0] * off[0] + off[1] * off[1] <= most(node) * most(node));
         }
         if slack == Exact::from(0)
-            && let Some(apart) = self.problem.pressures_apart(&found, &point.u)
+            && let Some(apart) = self.problem.pressures_apart(found, exact)
         {
-            let most = Exact::of_double(enclosure.pressure * asked.factor);
-            ensure!(apart <= most * most);
+            ensure!(apart <= most(enclosure.pressure) * most(enclosure.pressure));
         }
-        Ok(Verdict::Holds(class))
+        Verdict::Holds("within")
     }
 }
 
