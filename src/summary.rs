@@ -341,6 +341,7 @@ fn accuracy(method: &MethodReport) -> String {
     let route = match method.route {
         RouteName::Condensed => "condensed",
         RouteName::Assembled => "assembled",
+        RouteName::Twofold => "twofold",
     };
     format!(
         "{route} route, condition number at least {:.0e}, relative error of iteration and rounding {:.0e} (energy norm)",

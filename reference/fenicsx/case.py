@@ -208,7 +208,7 @@ def read_case(path):
         gauss=_quadrature(method),
         allow_noncoercive=method.boolean("allow_noncoercive", False),
         tolerance=solver.number("tolerance", "a positive number below 1", lambda t: 0 < t < 1, default=1e-10),
-        max_iterations=solver.integer("max_iterations", "a positive integer", lambda n: n > 0, default=50),
+        max_iterations=solver.integer("max_iterations", "a positive integer", lambda n: n > 0, default=200),
         exact=solution,
         probes=_probes(output),
     )

@@ -16,7 +16,7 @@ use super::problem::{BoxedFunction, Condition, DataError, Problem, finite};
 use super::rigid::{self, FreeMotion, Parts};
 use super::smooth::SmoothBoundary;
 use super::space::Space;
-use crate::kernel::Element;
+use crate::kernel::{Element, Scalar};
 use crate::quote;
 
 /// The prescribed components of the displacement.
@@ -190,7 +190,8 @@ impl Demand<'_> {
 }
 
 /// The components of a vector along `axis` and along `axis` turned left.
-pub fn in_frame(axis: [f64; 2], [x, y]: [f64; 2]) -> [f64; 2] {
+pub fn in_frame<S: Scalar + From<f64>>(axis: [f64; 2], [x, y]: [S; 2]) -> [S; 2] {
+    let axis = axis.map(S::from);
     [axis[0] * x + axis[1] * y, axis[0] * y - axis[1] * x]
 }
 

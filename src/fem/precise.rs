@@ -23,16 +23,38 @@ where
     add_internal_forces(d, u, &mut forces);
     let mut p = Vec::with_capacity(M * d.contact.len());
     for edge in &d.contact {
-        let doubles = EdgeNumbers {
-            normal: edge.normal.map(Twofold::from),
-            gamma: Twofold::from(edge.gamma),
-            length: Twofold::from(edge.length),
-        };
-        let line = OnEdge::new(d, edge, doubles);
+        let line = on_edge(d, edge);
         p.extend(line.p(edge, u).map(Twofold::head));
         line.add_stresses(u, &mut forces);
     }
     (forces.into_iter().map(|f| f.map(Twofold::head)).collect(), p)
+}
+
+/// P0 and sigma_n on a contact edge.
+pub fn functionals<E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    edge: &ContactLineEdge<N, M>,
+) -> ContactEdge<Twofold, N, M>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    on_edge(d, edge).functionals
+}
+
+/// A contact edge with the doubles that it has.
+fn on_edge<'d, E, const N: usize, const M: usize>(
+    d: &'d Discretization<E, N, M>,
+    edge: &ContactLineEdge<N, M>,
+) -> OnEdge<'d, Twofold, N, M>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let numbers = EdgeNumbers {
+        normal: edge.normal.map(Twofold::from),
+        gamma: Twofold::from(edge.gamma),
+        length: Twofold::from(edge.length),
+    };
+    OnEdge::new(d, edge, numbers)
 }
 
 /// A triangle of doubles in other numbers.

@@ -27,7 +27,7 @@
 //! allow_noncoercive = false                 # true: solve although kappa >= 1, without any promise
 //! [solver]
 //! tolerance = 1e-10                         # relative residual; between 0 and 1
-//! max_iterations = 50
+//! max_iterations = 200
 //! [output]
 //! probes = [[0.5, 0.5]]                     # places where result.json gives the displacement
 //! [exact]                                   # instead of [load]: a built-in exact solution, which supplies all data;

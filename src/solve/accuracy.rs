@@ -4,7 +4,9 @@
 //! The correction of a pass is the error of what it corrects, but for the error of the correction, which is smaller by the
 //! same factor again. Its energy norm |du|_A beside that of u, and that of what the displacement loses when it is rounded to
 //! doubles at the end, is the **forward error** that is reported; a small residual
-//! alone says nothing where the condition number is large. Residuals are evaluated in doubles as long as these can tell.
+//! alone says nothing where the condition number is large. Residuals are evaluated in doubles as long as these can tell: where
+//! their rounding, carried through the body at its softest, may move it by more than the bound for corrections, a residual that
+//! vanishes in doubles is no evidence, for Newton's method drives the rounding to zero with it.
 
 use super::iterate::{Evaluation, Iterate};
 use super::newton::{self, Until};
@@ -15,6 +17,11 @@ use crate::kernel::edge_integral::ExactEdge;
 
 /// A way to better an iterate.
 pub trait Route<E, const N: usize, const M: usize> {
+    /// Whether residuals are to be evaluated in twofold numbers from the start.
+    fn precisely(&self) -> bool {
+        false
+    }
+
     /// Moves `iterate`, where the linear part of (8) is `at`, to where the residual of (8) vanishes, as far as one pass can.
     ///
     /// # Errors
@@ -33,6 +40,8 @@ pub trait Route<E, const N: usize, const M: usize> {
 pub struct Pass {
     /// |du|_A^2
     pub energy: f64,
+    /// The decrement of the last step if the line search cut it short, else 0: the size of what is still to be changed.
+    pub left: f64,
     /// The largest |d|^2 / |d|_A^2 of what was solved for
     pub softness: f64,
 }
@@ -46,14 +55,34 @@ pub struct Outcome {
     pub residuals: Vec<f64>,
     /// The relative residual of the displacement, from the definitions.
     pub residual: f64,
-    /// |du|_A / |u|_a of the last correction, and the same of what rounding the displacement to doubles takes away.
+    /// |du|_A / |u|_a of the last correction.
+    pub correction: f64,
+    /// The same, and that of what rounding the displacement to doubles takes away.
     pub forward_error: f64,
     /// The condition number of the matrix, from below: Rayleigh quotients of what was solved for.
     pub condition: f64,
 }
 
+impl Outcome {
+    /// Whether the residual is within the tolerance and the last correction next to nothing.
+    pub fn is_right(&self, settings: &Settings) -> bool {
+        self.residual <= settings.tolerance && self.correction <= RIGHT
+    }
+
+    /// Whether Newton's method took all the steps that it may.
+    pub fn is_out_of_steps(&self, settings: &Settings) -> bool {
+        self.residuals.len() > settings.max_iterations
+    }
+}
+
+/// A correction up to this needs no better arithmetic.
+const RIGHT: f64 = 1e-9;
+
 /// A correction this small, relative, leaves nothing to correct.
 const SMALL: f64 = 1e-11;
+
+/// Rounding of the residual that may move the body by more than this, relative, calls for twofold numbers.
+const BLURRED: f64 = 1e-9;
 
 /// A correction ends where the residual is this share of the tolerance.
 const GOOD_ENOUGH: f64 = 1e-2;
@@ -80,62 +109,75 @@ where
     let d = system.d;
     let mut iterate = Iterate::lift(d);
     let mut residuals = Vec::new();
-    let mut at = iterate.evaluate(system, false);
-    let mut forward_error = f64::INFINITY;
-    let mut condition: f64 = 1.0;
-    let norm = system.norm();
+    let mut at = iterate.evaluate(system, route.precisely());
+    let mut correction = f64::INFINITY;
+    let mut softness: f64 = 0.0;
     let mut residual = f64::INFINITY;
+    let mut cut = false;
     for pass in 0..MOST_PASSES {
         let precisely = at.precisely;
         // The first pass goes as far as it can; a correction need not better what is good enough.
-        let enough = if pass == 0 { 0.0 } else { GOOD_ENOUGH * settings.tolerance };
+        let enough = if pass == 0 || cut { 0.0 } else { GOOD_ENOUGH * settings.tolerance };
         let until = Until { steps: settings.max_iterations, residual: enough };
         let change = route.pass(&mut iterate, at, &mut residuals, until)?;
-        condition = condition.max(norm * change.softness);
-        let before = forward_error;
+        softness = softness.max(change.softness);
+        let before = correction;
         at = iterate.evaluate(system, precisely);
-        residual = residual_of(system, &at) / reference;
+        let (force, noise) = residual_of(system, &at);
+        residual = force / reference;
         let size = d.strain_energy(&iterate.rounded()).sqrt();
-        let moved = change.energy.sqrt();
-        forward_error = if moved == 0.0 { 0.0 } else { moved / size };
+        cut = change.left > 0.0;
+        let moved = change.energy.max(change.left).sqrt();
+        correction = if moved == 0.0 { 0.0 } else { moved / size };
         if pass == 0 {
             // The first pass comes from nowhere: what it moved is no error.
-            forward_error = f64::INFINITY;
+            correction = f64::INFINITY;
         }
         let out_of_steps =
             residuals.len() > settings.max_iterations && !(residual <= settings.tolerance);
-        if out_of_steps || (residual <= settings.tolerance && forward_error <= SMALL) {
+        let blurred = !precisely && noise * softness.sqrt() > BLURRED * size;
+        if out_of_steps || (residual <= settings.tolerance && correction <= SMALL && !blurred) {
             break;
         }
         if pass > 0 && !precisely {
             // Doubles were not enough.
             at = iterate.evaluate(system, true);
-        } else if pass > 1 && !(forward_error < before / 2.0) {
+        } else if pass > 1 && !cut && !(correction < before / 2.0) {
             break;
         }
     }
     let u = iterate.rounded();
     let size = d.strain_energy(&u).sqrt();
     let rounding = d.strain_energy(&iterate.remainder()).sqrt();
-    if rounding > 0.0 {
-        forward_error += rounding / size;
-    }
-    Ok(Outcome { u, residuals, residual, forward_error, condition })
+    let rounding = if rounding > 0.0 { rounding / size } else { 0.0 };
+    let forward_error = correction + rounding;
+    let condition = (system.norm() * softness).max(1.0);
+    Ok(Outcome { u, residuals, residual, correction, forward_error, condition })
 }
 
-/// The norm of the residual of (8) where its linear part is `at`.
-fn residual_of<E, const N: usize, const M: usize>(system: &System<E, N, M>, at: &Evaluation) -> f64
+/// The norm of the residual of (8) where its linear part is `at`, and a norm that rounding alone may give it.
+fn residual_of<E, const N: usize, const M: usize>(
+    system: &System<E, N, M>,
+    at: &Evaluation,
+) -> (f64, f64)
 where
     E: ExactEdge<f64, N, M>,
 {
     let d = system.d;
     let mut r = at.linear.clone();
+    let mut blur = vec![0.0; r.len()];
     for (e, edge) in d.contact.iter().enumerate() {
         let integrals = d.rule.integrals::<E, N, M>(newton::block(&at.p, e));
+        let magnitudes: [f64; M] = newton::block(&at.p_magnitudes, e);
         let weight = edge.length / edge.gamma;
-        system.functionals(e, |row, a, entry| r[row] += entry * weight * integrals.gradient[a]);
+        system.functionals(e, |row, a, entry| {
+            r[row] += entry * weight * integrals.gradient[a];
+            let h = integrals.hessian[a].iter().zip(magnitudes);
+            blur[row] += (entry * weight).abs() * h.map(|(h, p)| h.abs() * p).sum::<f64>();
+        });
     }
-    r.iter().map(|r| r * r).sum::<f64>().sqrt()
+    let norm = |v: &[f64]| v.iter().map(|v| v * v).sum::<f64>().sqrt();
+    (norm(&r), at.noise + f64::EPSILON * norm(&blur))
 }
 
 /// What residuals are relative to: |L| + |residual of the prescribed data| over the free degrees of freedom, or, where these
@@ -178,8 +220,7 @@ pub fn judge(outcome: &Outcome, settings: &Settings) -> Result<Status, SolveErro
             Status::ConvergedToRounding
         });
     }
-    let steps = outcome.residuals.len().saturating_sub(1);
-    Err(if steps >= settings.max_iterations && condition < HOPELESS {
+    Err(if outcome.is_out_of_steps(settings) && condition < HOPELESS {
         let residuals = outcome.residuals.clone();
         SolveError::NotConverged { residual, residuals, tolerance: settings.tolerance }
     } else {

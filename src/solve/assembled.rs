@@ -1,22 +1,28 @@
 //! The assembled route: Newton's method on the displacement itself, the tangent A + B^T Psi'' B factored in each step. It is
 //! the cheaper one where contact edges are many beside the body (strips, graded meshes), and the only one where A alone is
 //! singular, or as good as: contact then holds the body, and the tangent knows it.
-
-use nalgebra::Matrix2;
+//!
+//! The tangent is added up and factored in doubles or, for bodies whose condition number is beyond these, in twofold numbers.
 
 use super::SolveError;
 use super::accuracy::{Pass, Route};
 use super::contact_edges::ContactEdges;
 use super::factor::{Factor, Indefinite};
 use super::iterate::{Evaluation, Iterate};
+use super::ldl::TwofoldFactor;
 use super::newton::{self, Body, Derivatives, Edges, Residual, Step, Until, block};
 use super::system::System;
 use crate::fem::matrix::LowerTriangle;
+use crate::fem::precise;
+use crate::fem::twofold::Twofold;
+use crate::kernel::ContactEdge;
 use crate::kernel::edge_integral::ExactEdge;
 
 /// The tangent last factored.
 pub struct Assembled<'a, 'd, 'p, E, const N: usize, const M: usize> {
     system: &'a System<'d, 'p, E, N, M>,
+    /// A and the functionals in twofold numbers, if the tangent is to be in these.
+    twofold: Option<TwofoldSystem<N, M>>,
     /// What residuals are relative to.
     reference: f64,
     /// The contact edges as they come.
@@ -27,10 +33,6 @@ pub struct Assembled<'a, 'd, 'p, E, const N: usize, const M: usize> {
     first: bool,
 }
 
-/// A tangent is factored anew if an entry of Psi'' has changed by more than this share of the largest: one that has not is
-/// as good a tangent, for the residual is the true one.
-const CHANGED: f64 = 1e-3;
-
 impl<'a, 'd, 'p, E, const N: usize, const M: usize> Assembled<'a, 'd, 'p, E, N, M>
 where
     E: ExactEdge<f64, N, M>,
@@ -40,6 +42,7 @@ where
         let order = (0..system.d.contact.len()).collect();
         Assembled {
             system,
+            twofold: None,
             reference,
             order,
             factored: None,
@@ -54,26 +57,39 @@ where
         self.factorizations
     }
 
-    /// A + B^T Psi'' B
-    fn tangent(&self, at: &Derivatives<M>) -> LowerTriangle {
-        let d = self.system.d;
-        let mut matrix = self.system.matrix.clone();
-        for (edge, h) in d.contact.iter().zip(&at.hessian) {
-            let p0 = &edge.functionals.p0;
-            let nodes = &d.space.elements()[edge.edge.triangle];
-            matrix.add(&self.system.numbering, nodes, |i, j| {
-                Matrix2::from_fn(|c, k| {
-                    let mut sum = 0.0;
-                    for a in 0..M {
-                        for b in 0..M {
-                            sum += p0[a][i][c] * h[a][b] * p0[b][j][k];
-                        }
-                    }
-                    sum
-                })
-            });
+    /// The same with the tangent in twofold numbers.
+    pub fn twofold(system: &'a System<'d, 'p, E, N, M>, reference: f64) -> Self {
+        let d = system.d;
+        let mut matrix = LowerTriangle::zero_like(&system.matrix);
+        matrix.add_stiffness(d, &system.numbering);
+        let functionals: Vec<_> = d.contact.iter().map(|e| precise::functionals(d, e)).collect();
+        for (edge, functionals) in d.contact.iter().zip(&functionals) {
+            matrix.add_contact_stress(d, &system.numbering, edge, functionals);
         }
-        matrix
+        let twofold = Some(TwofoldSystem { matrix, functionals });
+        Assembled { twofold, ..Assembled::new(system, reference) }
+    }
+
+    /// L of A + B^T Psi'' B, in the arithmetic of this route.
+    fn factor_tangent(
+        &self,
+        at: &Derivatives<M>,
+    ) -> Result<Result<Tangent, Indefinite>, SolveError> {
+        let System { d, numbering, structure, matrix, .. } = self.system;
+        let edges = d.contact.iter().zip(&at.hessian);
+        Ok(if let Some(TwofoldSystem { matrix, functionals }) = &self.twofold {
+            let mut tangent = matrix.clone();
+            for ((edge, h), functionals) in edges.zip(functionals) {
+                tangent.add_contact_springs(d, numbering, edge, functionals, h);
+            }
+            TwofoldFactor::new(&tangent).map(Tangent::Twofold)
+        } else {
+            let mut tangent = matrix.clone();
+            for (edge, h) in edges {
+                tangent.add_contact_springs(d, numbering, edge, &edge.functionals, h);
+            }
+            Factor::with(structure, &tangent)?.map(Tangent::Double)
+        })
     }
 
     /// The same with a little of the springs of all edges added.
@@ -87,43 +103,67 @@ where
         Derivatives { gradient: at.gradient.clone(), hessian }
     }
 
-    fn factor(&mut self, at: &Derivatives<M>) -> Result<&Factor, SolveError> {
-        let largest =
-            at.hessian.as_flattened().as_flattened().iter().fold(0.0, |m: f64, h| m.max(h.abs()));
-        let close = |old: &[[[f64; M]; M]]| {
-            let (old, new) =
-                (old.as_flattened().as_flattened(), at.hessian.as_flattened().as_flattened());
-            old.iter().zip(new).all(|(old, new)| (old - new).abs() <= CHANGED * largest)
-        };
+    fn factor(&mut self, at: &Derivatives<M>) -> Result<&Factored<M>, SolveError> {
         let (factor, hessian) = match self.factored.take() {
-            Some((factor, old)) if close(&old) => (factor, old),
+            Some((factor, old)) if old == at.hessian => (factor, old),
             _ => {
-                let mut factored = Factor::with(&self.system.structure, &self.tangent(at))?;
+                let mut factored = self.factor_tangent(at)?;
+                let mut hessian = at.hessian.clone();
                 self.factorizations += 1;
-                if factored.is_err() && self.system.d.kappa() < 1.0 {
+                let coercive = self.system.d.kappa() < 1.0;
+                if factored.is_err() && coercive {
                     let supported = self.supported(at);
-                    factored = Factor::with(&self.system.structure, &self.tangent(&supported))?;
+                    factored = self.factor_tangent(&supported)?;
+                    hessian = supported.hessian;
                     self.factorizations += 1;
                 }
-                let coercive = self.system.d.kappa() < 1.0;
                 let factor = factored.map_err(|Indefinite| match coercive {
                     true => SolveError::Singular,
                     false => SolveError::NotPositiveDefinite,
                 })?;
-                (factor, at.hessian.clone())
+                (factor, hessian)
             }
         };
-        Ok(&self.factored.insert((factor, hessian)).0)
+        Ok(self.factored.insert((factor, hessian)))
     }
 }
 
+/// The linear part of (8) in twofold numbers.
+struct TwofoldSystem<const N: usize, const M: usize> {
+    matrix: LowerTriangle<Twofold>,
+    functionals: Vec<ContactEdge<Twofold, N, M>>,
+}
+
 /// A factor with the Psi'' of its tangent.
-type Factored<const M: usize> = (Factor, Vec<[[f64; M]; M]>);
+type Factored<const M: usize> = (Tangent, Vec<[[f64; M]; M]>);
+
+/// The factor of a tangent.
+enum Tangent {
+    Double(Factor),
+    Twofold(TwofoldFactor),
+}
+
+impl Tangent {
+    /// x <- H^-1 x
+    fn solve(&self, x: &mut [f64]) {
+        match self {
+            Tangent::Double(factor) => {
+                factor.forward(x);
+                factor.backward(x);
+            }
+            Tangent::Twofold(factor) => factor.solve(x),
+        }
+    }
+}
 
 impl<E, const N: usize, const M: usize> Route<E, N, M> for Assembled<'_, '_, '_, E, N, M>
 where
     E: ExactEdge<f64, N, M>,
 {
+    fn precisely(&self) -> bool {
+        self.twofold.is_some()
+    }
+
     fn pass(
         &mut self,
         iterate: &mut Iterate,
@@ -137,8 +177,8 @@ where
         let order = self.order.clone();
         let edges = ContactEdges { d: self.system.d, order: &order };
         let mut body = Full { route: self, iterate, at, d: Vec::new(), energy: 0.0, softness: 0.0 };
-        newton::minimise(&edges, &mut body, soft, residuals, until)?;
-        Ok(Pass { energy: body.energy, softness: body.softness })
+        let left = newton::minimise(&edges, &mut body, soft, residuals, until)?;
+        Ok(Pass { energy: body.energy, left, softness: body.softness })
     }
 }
 
@@ -180,8 +220,7 @@ where
                     force[row] += entry * (0..M).map(|b| h[a][b] * values[b]).sum::<f64>();
                 });
             }
-            factor.forward(&mut force);
-            factor.backward(&mut force);
+            factor.solve(&mut force);
             force
         }))
     }
@@ -250,13 +289,22 @@ where
     fn step(&mut self, at: &Derivatives<M>) -> Result<Step, SolveError> {
         let gradient = self.gradient(at);
         let mut d: Vec<f64> = gradient.iter().map(|r| -r).collect();
-        let factor = self.route.factor(at)?;
-        factor.forward(&mut d);
-        factor.backward(&mut d);
+        let (factor, hessian) = self.route.factor(at)?;
+        factor.solve(&mut d);
+        let hessian = hessian.clone();
         let dy = self.values_of_p0(&d);
-        let slope = gradient.iter().zip(&d).map(|(r, d)| r * d).sum();
-        let ad = self.route.system.times_matrix(&d);
-        let curvature = ad.iter().zip(&d).map(|(a, d)| a * d).sum();
+        let slope: f64 = gradient.iter().zip(&d).map(|(r, d)| r * d).sum();
+        // d^T A d, where (A + B^T Psi'' B) d = -r with the Psi'' that was factored: nothing is lost where A d cancels.
+        let springs: f64 = (hessian.iter().enumerate())
+            .map(|(e, h)| {
+                let dy: [f64; M] = block(&dy, e);
+                h.iter()
+                    .zip(dy)
+                    .map(|(row, a)| a * row.iter().zip(dy).map(|(h, b)| h * b).sum::<f64>())
+                    .sum::<f64>()
+            })
+            .sum();
+        let curvature = -slope - springs;
         self.d = d;
         Ok(Step { dy, slope, curvature })
     }

@@ -93,7 +93,7 @@ where
         let soft = self.first;
         let change = vec![0.0; y.len()];
         let mut body = Reduced { route: self, y, start, change, dw: Vec::new() };
-        newton::minimise(&edges, &mut body, soft, residuals, until)?;
+        let left = newton::minimise(&edges, &mut body, soft, residuals, until)?;
         let change = body.change;
         self.compliance.subtract(&change, &mut v);
         for (w, change) in self.w.iter_mut().zip(&change) {
@@ -104,7 +104,8 @@ where
         self.factor.backward(&mut v);
         iterate.add(self.system, 1.0, &v);
         let square: f64 = v.iter().map(|v| v * v).sum();
-        Ok(Pass { energy, softness: if energy > 0.0 { square / energy } else { 0.0 } })
+        let softness = if energy > 0.0 { square / energy } else { 0.0 };
+        Ok(Pass { energy, left, softness })
     }
 }
 

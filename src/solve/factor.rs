@@ -34,7 +34,7 @@ impl Structure {
     /// [`SolveError::OutOfMemory`].
     pub fn new(matrix: &LowerTriangle) -> Result<Self, SolveError> {
         let n = matrix.starts.len() - 1;
-        let (starts, rows) = upper_triangle(n, matrix);
+        let (starts, rows, _) = upper_triangle(matrix);
         let upper = SymbolicSparseColMatRef::new_checked(n, n, &starts, None, &rows);
         let scratch = factorize_supernodal_symbolic_cholesky_scratch::<usize>(n);
         let out_of_memory = || SolveError::OutOfMemory { bytes: scratch.size_bytes() as u64 };
@@ -186,8 +186,10 @@ impl Factor {
     }
 }
 
-/// The pattern of the upper triangle, column by column: the transpose of the lower one.
-fn upper_triangle(n: usize, lower: &LowerTriangle) -> (Vec<usize>, Vec<usize>) {
+/// The upper triangle of a symmetric matrix, column by column: the transpose of the lower one. For each entry its row, and
+/// where it stands in the lower triangle.
+pub(super) fn upper_triangle<S>(lower: &LowerTriangle<S>) -> (Vec<usize>, Vec<usize>, Vec<usize>) {
+    let n = lower.starts.len() - 1;
     let mut starts = vec![0; n + 1];
     for &row in &lower.rows {
         starts[row + 1] += 1;
@@ -196,12 +198,14 @@ fn upper_triangle(n: usize, lower: &LowerTriangle) -> (Vec<usize>, Vec<usize>) {
         starts[i + 1] += starts[i];
     }
     let mut rows = vec![0; lower.rows.len()];
+    let mut places = vec![0; lower.rows.len()];
     let mut next = starts.clone();
     for column in 0..n {
-        for &row in &lower.rows[lower.starts[column]..lower.starts[column + 1]] {
-            rows[next[row]] = column;
-            next[row] += 1;
+        for place in lower.starts[column]..lower.starts[column + 1] {
+            let to = &mut next[lower.rows[place]];
+            (rows[*to], places[*to]) = (column, place);
+            *to += 1;
         }
     }
-    (starts, rows)
+    (starts, rows, places)
 }

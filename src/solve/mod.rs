@@ -13,6 +13,7 @@ pub mod enclosure;
 pub mod factor;
 pub mod iterate;
 pub mod ladder;
+pub mod ldl;
 pub mod limit;
 mod memory;
 pub mod newton;
@@ -117,7 +118,7 @@ impl Default for Method {
 
 impl Default for Settings {
     fn default() -> Self {
-        Settings { tolerance: 1e-10, max_iterations: 50 }
+        Settings { tolerance: 1e-10, max_iterations: 200 }
     }
 }
 

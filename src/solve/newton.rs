@@ -14,9 +14,11 @@
 //! search finds where it vanishes, to a hundredth of its value at 0, and Armijo's rule is asked of what it finds.
 //!
 //! **The start.** A body that bends, started as if without contact, lets go of about one edge a step. So the springs are soft
-//! at first: s Psi in place of Psi, with s so small that contact and body are equally stiff, and then [`STIFFENING`] times
-//! stiffer with each step or more, until s = 1. From there on it is Newton's method on J_h, from a start that knows something. Going
-//! to the body without contact counts as a step where it takes one.
+//! at first: s Psi in place of Psi, with s so small that contact and body are equally stiff. When the residual at s is small
+//! beside the one that stiffer springs bring, the springs get stiffer, by a factor that grows while single steps will do and
+//! falls where they don't: the contact zone of stiff springs is narrow, and a minimiser is found from near only.
+//! At s = 1 it is Newton's method on J_h, from a start that knows something. Going to the body without contact counts as a
+//! step where it takes one.
 
 use super::SolveError;
 
@@ -84,11 +86,11 @@ const SUFFICIENT: f64 = 1e-4;
 /// The line search ends where the derivative along the step is this small beside the one at its start.
 const FLAT: f64 = 1e-2;
 
-/// How much stiffer the springs of contact get with each of the first steps.
-pub const STIFFENING: f64 = 4.0;
+/// How much stiffer the springs of contact get at first, and at most, from one stiffness to the next.
+const STIFFENING: [f64; 2] = [4.0, 8.0];
 
-/// With no more steps than these from soft springs to those of J_h: for the stiffest contact they stiffen faster.
-const STAGES: f64 = 18.0;
+/// The springs get stiffer when the residual is this share of what that will make of it.
+const DONE: f64 = 0.1;
 
 /// A step whose energy is this small beside that of the largest (the square root of this as a length) is the last one:
 /// Newton's method converges superlinearly, so what remains is far smaller.
@@ -110,7 +112,8 @@ pub struct Until {
 }
 
 /// Newton's method from where `body` is, with soft springs if this is the `first` time. Appends the residual at each
-/// iterate to `residuals`, and stops as `until` says, at the rounding level, or after a step that leaves nothing to do.
+/// iterate to `residuals`, and stops as `until` says, at the rounding level, or after a step that leaves nothing to do. Gives
+/// the decrement of the last step if the line search cut it short: it has not been made, so there the iterate is no nearer.
 ///
 /// # Errors
 /// Those of [`Body::step`].
@@ -120,39 +123,41 @@ pub fn minimise<const M: usize>(
     first: bool,
     residuals: &mut Vec<f64>,
     until: Until,
-) -> Result<(), SolveError> {
-    let (mut stiffness, mut stiffening) = (1.0, STIFFENING);
+) -> Result<f64, SolveError> {
+    let mut springs = Springs::new(1.0);
     if first {
         residuals.push(body.residual(&derivatives(edges, body.y())).norm);
-        let contact = body.start(edges)?.max(1.0);
-        stiffness = 1.0 / contact;
-        stiffening = contact.powf(1.0 / STAGES).max(STIFFENING);
+        springs = Springs::new(1.0 / body.start(edges)?.max(1.0));
     }
     let mut at = derivatives(edges, body.y());
     let mut largest: f64 = 0.0;
+    let mut left = 0.0;
     let (mut best, mut idle) = (f64::INFINITY, 0);
     let mut residual = body.residual(&at);
     // A later call makes a step in any case: its size is what tells how good the end of the first was.
     while (residual.norm > residual.noise / 4.0 || (!first && largest == 0.0))
         && residuals.len() <= until.steps
     {
-        let scaled = at.times(stiffness);
+        let scaled = at.times(springs.stiffness);
         let step = body.step(&scaled)?;
-        let Some(t) = line_search(edges, body.y(), stiffness, &scaled, &step) else {
-            return Ok(());
+        let Some(t) = line_search(edges, body.y(), springs.stiffness, &scaled, &step) else {
+            return Ok(left);
         };
         body.advance(t, &step);
         at = derivatives(edges, body.y());
         let before = std::mem::replace(&mut residual, body.residual(&at));
         residuals.push(residual.norm);
         let decrement = -step.slope;
-        largest = largest.max(decrement);
-        let last = stiffness == 1.0
+        // What softer springs took tells nothing of what is large here.
+        let moved = decrement * t.min(1.0).powi(2);
+        left = if t < 1.0 { decrement } else { 0.0 };
+        largest = if springs.are_soft() { moved } else { largest.max(moved) };
+        let last = !springs.are_soft()
             && (residual.norm <= until.residual || (t == 1.0 && decrement <= LAST * largest));
         let stalled = residual.norm <= residual.noise && residual.norm >= before.norm / 2.0;
         // What rounding leaves may be more than what is counted as noise: then the energies of the steps are next to nothing,
         // and the residual falls no more.
-        if stiffness == 1.0 && residual.norm >= best / 2.0 {
+        if !springs.are_soft() && residual.norm >= best / 2.0 {
             idle += usize::from(decrement <= NEGLIGIBLE * largest);
         } else {
             (best, idle) = (residual.norm, 0);
@@ -160,9 +165,44 @@ pub fn minimise<const M: usize>(
         if last || stalled || idle >= IDLE_STEPS {
             break;
         }
-        stiffness = (stiffness * stiffening).min(1.0);
+        springs.after_step(|stiffness| body.residual(&at.times(stiffness)).norm);
     }
-    Ok(())
+    Ok(left)
+}
+
+/// s of s Psi, on its way to 1.
+struct Springs {
+    stiffness: f64,
+    /// The factor by which it grows next.
+    stiffening: f64,
+    /// The steps at this stiffness.
+    steps: usize,
+}
+
+impl Springs {
+    fn new(stiffness: f64) -> Self {
+        Springs { stiffness, stiffening: STIFFENING[0], steps: 0 }
+    }
+
+    fn are_soft(&self) -> bool {
+        self.stiffness < 1.0
+    }
+
+    /// After a step, with the residual as a function of the stiffness.
+    fn after_step(&mut self, residual: impl Fn(f64) -> f64) {
+        if !self.are_soft() {
+            return;
+        }
+        self.steps += 1;
+        let stiffer = (self.stiffness * self.stiffening).min(1.0);
+        if residual(self.stiffness) <= DONE * residual(stiffer) {
+            let grown = (2.0 * self.stiffening).min(STIFFENING[1]);
+            let stiffening = if self.steps == 1 { grown } else { self.stiffening };
+            *self = Springs { stiffness: stiffer, stiffening, steps: 0 };
+        } else {
+            self.stiffening = (self.stiffening / 4.0).max(2.0);
+        }
+    }
 }
 
 /// The derivatives of Psi at `y`.

@@ -5,7 +5,8 @@
 //! - assembled: one factorisation for each Newton step.
 //!
 //! Both give the same numbers. Where A alone has no factor or a bad one although the method is coercive, the assembled route
-//! is taken all the same: there contact holds the body.
+//! is taken all the same: there contact holds the body. Where doubles are not enough to factor the tangent or to correct
+//! what came of it, it is the assembled route in twofold numbers, which takes some fifty times as long.
 
 #[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
@@ -19,9 +20,10 @@ use super::memory;
 use super::system::System;
 use super::times::{Stopwatch, Times};
 use super::{MethodReport, Settings, SolveError};
+use crate::fem::twofold::Twofold;
 use crate::kernel::edge_integral::ExactEdge;
 
-/// The two routes.
+/// The routes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "files", derive(Serialize, Deserialize), serde(rename_all = "lowercase"))]
 pub enum RouteName {
@@ -29,10 +31,15 @@ pub enum RouteName {
     Condensed,
     /// Newton's method on the displacement, the tangent factored in each step.
     Assembled,
+    /// The same, the tangent in twofold numbers.
+    Twofold,
 }
 
 /// The Newton steps that a prediction counts on.
 const STEPS: f64 = 12.0;
+
+/// Newton steps that are enough for any case where no digits are missing.
+const ENOUGH: usize = 30;
 
 /// Multiplications that the assembled route makes beside those of the factorisation, for each stored entry of the factor:
 /// assembly, substitutions, small blocks.
@@ -94,21 +101,22 @@ where
         return Err(SolveError::OutOfRange);
     }
     let held = system.d.slides.is_none();
-    if held && Prediction::of(system).1.route() == RouteName::Condensed {
-        match by(RouteName::Condensed, system, settings, times) {
+    let condensed = held && Prediction::of(system).1.route() == RouteName::Condensed;
+    let doubles = [RouteName::Condensed, RouteName::Assembled];
+    for name in &doubles[usize::from(!condensed)..] {
+        match by(*name, system, settings, times) {
             // Contact may hold what the supports hardly hold.
             Err(SolveError::Singular) => {}
-            Ok((outcome, report, count, factor))
-                if outcome.forward_error <= accuracy::ACCEPTABLE
-                    || outcome.residuals.len() > settings.max_iterations =>
-            {
-                return Ok((outcome, report, count, factor));
+            Ok(done) if done.0.is_right(settings) => return Ok(done),
+            // With enough steps Newton's method ends: if it did not, digits were missing.
+            Ok(done) if settings.max_iterations < ENOUGH && done.0.is_out_of_steps(settings) => {
+                return Ok(done);
             }
             Ok(_) => {}
             Err(error) => return Err(error),
         }
     }
-    by(RouteName::Assembled, system, settings, times)
+    by(RouteName::Twofold, system, settings, times)
 }
 
 /// Solves the system by a given route.
@@ -143,8 +151,15 @@ where
             let outcome = accuracy::refine(system, &mut route, reference, settings)?;
             (outcome, prediction.condensed, 1, Some(factor))
         }
-        RouteName::Assembled => {
-            let mut route = Assembled::new(system, reference);
+        RouteName::Assembled | RouteName::Twofold => {
+            let mut route = if name == RouteName::Twofold {
+                memory::ensure(
+                    (2 * size_of::<Twofold>() * system.structure.stored_entries()) as u64,
+                )?;
+                Assembled::twofold(system, reference)
+            } else {
+                Assembled::new(system, reference)
+            };
             let outcome = accuracy::refine(system, &mut route, reference, settings)?;
             (outcome, prediction.assembled, route.factorizations(), None)
         }

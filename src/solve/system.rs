@@ -63,22 +63,6 @@ where
         }
     }
 
-    /// A x
-    pub fn times_matrix(&self, x: &[f64]) -> Vec<f64> {
-        let LowerTriangle { starts, rows, values } = &self.matrix;
-        let mut product = vec![0.0; x.len()];
-        for column in 0..x.len() {
-            for k in starts[column]..starts[column + 1] {
-                let (row, value) = (rows[k], values[k]);
-                product[row] += value * x[column];
-                if row != column {
-                    product[column] += value * x[row];
-                }
-            }
-        }
-        product
-    }
-
     /// The largest sum of the magnitudes of a row of A: a bound of its largest eigenvalue.
     pub fn norm(&self) -> f64 {
         let LowerTriangle { starts, rows, values } = &self.matrix;

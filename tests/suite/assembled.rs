@@ -443,6 +443,13 @@ impl Assembled {
         None
     }
 
+    /// |v - u|_a / |u|_a for the answer v rounded to doubles: no displacement in doubles can be held to less.
+    pub fn rounding(&self, answer: &Answer) -> f64 {
+        let rounded: Vec<[f64; 2]> =
+            answer.0.iter().map(|u| u.map(|c| c.0 * self.length)).collect();
+        self.error(answer, &rounded)
+    }
+
     /// |v - u|_a / |u|_a for nodal displacements `v` of another solver.
     pub fn error(&self, answer: &Answer, v: &[[f64; 2]]) -> f64 {
         let e: Vec<V> = answer

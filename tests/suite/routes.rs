@@ -99,7 +99,8 @@ fn stiff_contact_reaches_the_tolerance() {
         let gamma0 = signorini::solve::Gamma0::Value(1e-8 * limit);
         let (s, _) = solve(&problem, &Method { gamma0, ..auto }, &Settings::default()).unwrap();
         assert!(s.newton.residual <= 1e-10, "{:e}", s.newton.residual);
-        assert!(s.newton.iterations() <= 25, "{}", s.newton.iterations());
+        // Some ten stiffnesses on the way, each with a step or a few.
+        assert!(s.newton.iterations() <= 40, "{}", s.newton.iterations());
     }
 }
 
