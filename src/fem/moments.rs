@@ -168,7 +168,10 @@ mod tests {
                 let off = (ball - Ball::from(exact)).magnitude();
                 // Next to a double root the formula for the roots has half the digits, in doubles.
                 assert!(off <= 1e-14 * size + 1e-260, "{p:?}: {exact:e} {ball:?}");
-                assert!(ball.radius() <= 1e-26 * size + 1e-260, "{p:?}: {ball:?}");
+                // There it may miss both roots, and P between them, which is rounding.
+                let double_root = p[0] == p[1] && (p[M - 1] / p[0]).abs() < 1e-8;
+                let width = if double_root { 1e-15 } else { 1e-26 };
+                assert!(ball.radius() <= width * size + 1e-260, "{p:?}: {ball:?}");
             }
         }
     }
