@@ -2,23 +2,23 @@
 //! contact at the bottom, sometimes on the left side too (so that one triangle owns two contact edges). Lengths of
 //! contact edges, normals and h_T are rational, so that nothing is rounded.
 //!
-//! On such a body each quantity of method (8) is computed twice: by looping the kernel's element functions, and by
-//! `naive`. h_T enters as given data, for it is a square root: any positive number serves both sides alike.
+//! On such a body each quantity of method (8) is computed twice: by looping the kernel's element functions ([`Kernel`]), and
+//! by `naive` ([`Definition`]). h_T enters as given data, for it is a square root: any positive number serves both sides alike.
 
 use std::collections::BTreeMap;
 
 use proptest::prelude::*;
-use signorini::kernel::contact_edge::coercivity_constant;
-use signorini::kernel::edge_integral::{ExactEdge, gauss};
-use signorini::kernel::element::stiffness;
-use signorini::kernel::{ContactEdge, EdgeIntegrals, Element, Material, Plane, Scalar, Triangle};
-use signorini::nalgebra::{Matrix2, Vector2};
+use signorini::kernel::{Material, Plane, Scalar, Triangle};
 
-use crate::Ordered;
 use crate::draws::{positive, ratio};
-use crate::elimination::Matrix;
-use crate::naive::{Field, Hooke, Line};
+use crate::naive::{Field, Hooke};
 use crate::numbers::Exact;
+
+mod definition;
+mod kernel;
+
+pub use definition::{Definition, Traces, contact_class, whole};
+pub use kernel::{Kernel, MaybeExact};
 
 /// The plain data of a body, as drawn.
 #[derive(Clone, Debug)]
@@ -354,374 +354,16 @@ pub enum Rule<'a, S = Exact> {
     Points(&'a [[S; 2]]),
 }
 
-/// Method (8) on a body by the kernel's functions.
-pub struct Kernel<'a, const N: usize, const M: usize> {
-    body: &'a Body,
-    edges: Vec<ContactEdge<Exact, N, M>>,
-    stiffness: Vec<[[Matrix2<Exact>; N]; N]>,
-}
-
-impl<'a, const N: usize, const M: usize> Kernel<'a, N, M> {
-    /// Element matrices and contact edges of a body.
-    pub fn new<E: Element<N, M>>(body: &'a Body) -> Self {
-        let edge = |side: &Side| {
-            let triangle = body.triangle(side.triangle);
-            let gamma = body.gamma(side);
-            ContactEdge::new::<E>(&triangle, side.local, side.n.into(), &body.material, gamma)
-        };
-        let matrix = |t| stiffness::<E, Exact, N, M>(&body.triangle(t), &body.material);
-        Kernel {
-            body,
-            edges: body.contact.iter().map(edge).collect(),
-            stiffness: (0..body.triangles.len()).map(matrix).collect(),
-        }
-    }
-
-    fn apply(functional: &[Vector2<Exact>; N], v: &[[Exact; 2]; N]) -> Exact {
-        sum(functional.iter().zip(v), |(f, v)| f[0] * v[0] + f[1] * v[1])
-    }
-
-    /// sum v_i K_ij u_j on one triangle
-    pub fn a_on(&self, t: usize, u: &[[Exact; 2]], v: &[[Exact; 2]]) -> Exact {
-        let (u, v) = (self.body.local::<N>(t, u), self.body.local::<N>(t, v));
-        Self::product(|i, j| self.stiffness[t][i][j], &u, &v)
-    }
-
-    fn product(
-        block: impl Fn(usize, usize) -> Matrix2<Exact>,
-        u: &[[Exact; 2]; N],
-        v: &[[Exact; 2]; N],
-    ) -> Exact {
-        let mut total = Exact::from(0);
-        for i in 0..N {
-            for j in 0..N {
-                let entry = block(i, j);
-                for c in 0..2 {
-                    for d in 0..2 {
-                        total += v[i][c] * entry[(c, d)] * u[j][d];
-                    }
-                }
-            }
-        }
-        total
-    }
-
-    /// a(u, v)
-    pub fn a(&self, u: &[[Exact; 2]], v: &[[Exact; 2]]) -> Exact {
-        sum(0..self.body.triangles.len(), |t| self.a_on(t, u, v))
-    }
-
-    /// int_E gamma sigma_n(u) sigma_n(v)
-    pub fn stress_product(&self, e: usize, u: &[[Exact; 2]], v: &[[Exact; 2]]) -> Exact {
-        let side = &self.body.contact[e];
-        let weight = self.body.gamma(side) * side.length;
-        let local = |field| self.body.local::<N>(side.triangle, field);
-        Self::product(|i, j| self.edges[e].stress_product(weight, i, j), &local(u), &local(v))
-    }
-
-    /// On one triangle the matrices of a and of int gamma sigma_n(u) sigma_n(v), over the components of its nodes.
-    pub fn matrices_on(&self, t: usize) -> [Matrix; 2] {
-        let matrix = |block: &dyn Fn(usize, usize) -> Matrix2<Exact>| -> Matrix {
-            let entry =
-                |row: usize, column: usize| block(row / 2, column / 2)[(row % 2, column % 2)];
-            (0..2 * N).map(|row| (0..2 * N).map(|column| entry(row, column)).collect()).collect()
-        };
-        let owned = |e: &usize| self.body.contact[*e].triangle == t;
-        let stress = |i, j| {
-            let mut block = Matrix2::zeros();
-            for e in (0..self.edges.len()).filter(owned) {
-                let weight = self.body.gamma(&self.body.contact[e]) * self.body.contact[e].length;
-                block += self.edges[e].stress_product(weight, i, j);
-            }
-            block
-        };
-        [matrix(&|i, j| self.stiffness[t][i][j]), matrix(&stress)]
-    }
-
-    /// A(u, v)
-    pub fn big_a(&self, u: &[[Exact; 2]], v: &[[Exact; 2]]) -> Exact {
-        self.a(u, v) - sum(0..self.edges.len(), |e| self.stress_product(e, u, v))
-    }
-
-    /// P0(v) at the nodes of edge e
-    pub fn p0(&self, e: usize, v: &[[Exact; 2]]) -> [Exact; M] {
-        let local = self.body.local::<N>(self.body.contact[e].triangle, v);
-        self.edges[e].p0.map(|row| Self::apply(&row, &local))
-    }
-
-    /// sigma_n(v) at the ends of edge e
-    pub fn sigma_n(&self, e: usize, v: &[[Exact; 2]]) -> [Exact; 2] {
-        let local = self.body.local::<N>(self.body.contact[e].triangle, v);
-        self.edges[e].sigma_n.map(|row| Self::apply(&row, &local))
-    }
-
-    /// P(v) at the nodes of edge e
-    pub fn p(&self, e: usize, v: &[[Exact; 2]]) -> [Exact; M] {
-        let mut p = self.p0(e, v);
-        for (p, gap) in p.iter_mut().zip(self.body.contact[e].gap) {
-            *p -= gap;
-        }
-        p
-    }
-
-    /// The contact integrals of edge e at u.
-    fn integrals<E>(&self, rule: Rule<'_>, e: usize, u: &[[Exact; 2]]) -> EdgeIntegrals<Exact, M>
-    where
-        E: MaybeExact<N, M>,
-    {
-        let p = self.p(e, u);
-        match rule {
-            Rule::Exact => E::without_error(p),
-            Rule::Points(points) => gauss::<E, Exact, N, M>(p, points.iter().map(|&[s, w]| (s, w))),
-        }
-    }
-
-    /// |E| / gamma
-    fn weight(&self, e: usize) -> Exact {
-        self.body.contact[e].length / self.body.gamma(&self.body.contact[e])
-    }
-
-    /// The left side of (8): A(u, v) + int (1/gamma) \[P(u)\]+ P0(v)
-    pub fn b<E>(&self, rule: Rule<'_>, u: &[[Exact; 2]], v: &[[Exact; 2]]) -> Exact
-    where
-        E: MaybeExact<N, M>,
-    {
-        let contact = sum(0..self.edges.len(), |e| {
-            let gradient = self.integrals::<E>(rule, e, u).gradient;
-            self.weight(e) * sum(gradient.iter().zip(self.p0(e, v)), |(&g, p)| g * p)
-        });
-        self.big_a(u, v) + contact
-    }
-
-    /// J_h without L: 1/2 A(u, u) + 1/2 int (1/gamma) \[P(u)\]+^2
-    pub fn j<E>(&self, rule: Rule<'_>, u: &[[Exact; 2]]) -> Exact
-    where
-        E: MaybeExact<N, M>,
-    {
-        let contact = |e| self.weight(e) * self.integrals::<E>(rule, e, u).energy;
-        self.big_a(u, u) / Exact::from(2) + sum(0..self.edges.len(), contact)
-    }
-
-    /// The second derivative that Newton uses, at u, of v and w.
-    pub fn hessian<E>(
-        &self,
-        rule: Rule<'_>,
-        u: &[[Exact; 2]],
-        v: &[[Exact; 2]],
-        w: &[[Exact; 2]],
-    ) -> Exact
-    where
-        E: MaybeExact<N, M>,
-    {
-        let contact = sum(0..self.edges.len(), |e| {
-            let hessian = self.integrals::<E>(rule, e, u).hessian;
-            let (v, w) = (self.p0(e, v), self.p0(e, w));
-            let mut total = Exact::from(0);
-            for a in 0..M {
-                for b in 0..M {
-                    total += v[a] * hessian[a][b] * w[b];
-                }
-            }
-            self.weight(e) * total
-        });
-        self.big_a(v, w) + contact
-    }
-
-    /// kappa of the body: the largest kappa_T.
-    pub fn kappa<E: Element<N, M>>(&self) -> Exact {
-        let mut kappa = Exact::from(0);
-        for t in 0..self.body.triangles.len() {
-            let of_t = self.kappa_of::<E>(t);
-            if of_t > kappa {
-                kappa = of_t;
-            }
-        }
-        kappa
-    }
-
-    /// kappa_T
-    pub fn kappa_of<E: Element<N, M>>(&self, t: usize) -> Exact {
-        let body = self.body;
-        let sides = body.contact.iter().filter(|side| side.triangle == t);
-        let length = sum(sides, |side| side.length);
-        let area = body.triangle(t).double_area() / Exact::from(2);
-        let (material, h) = (&body.material, body.diameters[t]);
-        body.gamma0 * coercivity_constant::<E, Exact, N, M>(material, h, length, area)
-    }
-}
-
-/// An element whose contact integrals can be had without quadrature error over rationals, or not.
-pub trait MaybeExact<const N: usize, const M: usize>: Element<N, M> {
-    /// The integrals.
-    fn without_error(p: [Exact; M]) -> EdgeIntegrals<Exact, M>;
-}
-
-impl MaybeExact<3, 2> for signorini::kernel::P1 {
-    fn without_error(p: [Exact; 2]) -> EdgeIntegrals<Exact, 2> {
-        <Self as ExactEdge<Exact, 3, 2>>::exact(p)
-    }
-}
-
-impl MaybeExact<6, 3> for signorini::kernel::P2 {
-    fn without_error(_: [Exact; 3]) -> EdgeIntegrals<Exact, 3> {
-        unreachable!("the roots of a quadratic P are no rational numbers")
-    }
-}
-
-/// Method (8) on a body by its definitions.
-pub struct Definition<'a, const N: usize, S = Exact>(pub &'a Body<S>);
-
-/// What the definitions need on one contact edge.
-pub struct Traces<S = Exact> {
-    /// v_n
-    pub v_n: Line<S>,
-    /// sigma_n(v)
-    pub sigma_n: Line<S>,
-    /// P0(v)
-    pub p0: Line<S>,
-    /// P(v)
-    pub p: Line<S>,
-}
-
-impl<const N: usize, S: Ordered> Definition<'_, N, S> {
-    /// a(u, v)
-    pub fn a(&self, u: &[[S; 2]], v: &[[S; 2]]) -> S {
-        let both = |&t: &usize| self.acts(t, u) && self.acts(t, v);
-        sum((0..self.0.triangles.len()).filter(both), |t| self.a_on(t, u, v))
-    }
-
-    /// v is not zero on triangle t: where it is, it takes part in no integral.
-    fn acts(&self, t: usize, v: &[[S; 2]]) -> bool {
-        self.0.local::<N>(t, v).iter().flatten().any(|&v| v != S::from(0))
-    }
-
-    /// The contact edges where v is not zero.
-    fn sides<'b>(&'b self, v: &'b [[S; 2]]) -> impl Iterator<Item = &'b Side<S>> {
-        self.0.contact.iter().filter(|side| self.acts(side.triangle, v))
-    }
-
-    /// a_T(u, v)
-    pub fn a_on(&self, t: usize, u: &[[S; 2]], v: &[[S; 2]]) -> S {
-        self.0.field::<N>(t, u).energy(&self.0.field::<N>(t, v), &self.0.hooke)
-    }
-
-    /// v_n, sigma_n(v), P0(v) and P(v) on a contact edge.
-    pub fn traces(&self, side: &Side<S>, v: &[[S; 2]]) -> Traces<S> {
-        let field = self.0.field::<N>(side.triangle, v);
-        let v_n = field.normal_trace(side.local, side.n);
-        let sigma_n = field.normal_stress(side.local, side.n, &self.0.hooke);
-        let p0 = v_n.minus(&sigma_n.times(self.0.gamma(side)));
-        let [start, end, middle] = side.gap;
-        let gap = match N {
-            3 => Line::affine(start, end),
-            _ => Line::quadratic(start, middle, end),
-        };
-        let p = p0.minus(&gap);
-        Traces { v_n, sigma_n, p0, p }
-    }
-
-    /// A(u, v)
-    pub fn big_a(&self, u: &[[S; 2]], v: &[[S; 2]]) -> S {
-        self.a(u, v) - self.stress_product(u, v)
-    }
-
-    /// int gamma sigma_n(u) sigma_n(v)
-    pub fn stress_product(&self, u: &[[S; 2]], v: &[[S; 2]]) -> S {
-        let both = self.sides(u).filter(|side| self.acts(side.triangle, v));
-        sum(both, |side| {
-            let (u, v) = (self.traces(side, u).sigma_n, self.traces(side, v).sigma_n);
-            self.0.gamma(side) * side.length * whole(&u.by(&v))
-        })
-    }
-
-    /// int over Gamma_C of (1/gamma) \[P(u)\]+ q, for q given on each side.
-    pub fn contact(&self, rule: Rule<'_, S>, u: &[[S; 2]], q: impl Fn(&Side<S>) -> Line<S>) -> S {
-        sum(&self.0.contact, |side| self.contact_on(rule, side, u, &q(side)))
-    }
-
-    /// int over one side of (1/gamma) \[P(u)\]+ q
-    pub fn contact_on(&self, rule: Rule<'_, S>, side: &Side<S>, u: &[[S; 2]], q: &Line<S>) -> S {
-        let p = self.traces(side, u).p;
-        let integral = match rule {
-            Rule::Exact => p.positive_part_times(q),
-            Rule::Points(points) => sum(points, |&[s, w]| {
-                let zero = S::from(0);
-                let value = p.at(s);
-                w * (if value > zero { value } else { zero }) * q.at(s)
-            }),
-        };
-        side.length / self.0.gamma(side) * integral
-    }
-
-    /// The left side of (8).
-    pub fn b(&self, rule: Rule<'_, S>, u: &[[S; 2]], v: &[[S; 2]]) -> S {
-        self.big_a(u, v) + self.contact(rule, u, |side| self.traces(side, v).p0)
-    }
-
-    /// int P0(v)^2 / gamma
-    pub fn squares(&self, rule: Rule<'_, S>, v: &[[S; 2]]) -> S {
-        sum(&self.0.contact, |side| {
-            let p0 = self.traces(side, v).p0;
-            let square = p0.by(&p0);
-            let integral = match rule {
-                Rule::Exact => whole(&square),
-                Rule::Points(points) => sum(points, |&[s, weight]| weight * square.at(s)),
-            };
-            side.length / self.0.gamma(side) * integral
-        })
-    }
-
-    /// C_h: the largest of its triangles.
-    pub fn coercivity(&self) -> S {
-        let all = (0..self.0.triangles.len()).map(|t| self.coercivity_of(t));
-        all.fold(S::from(0), |most, constant| if constant > most { constant } else { most })
-    }
-
-    /// p (p + 1) / 2 (lambda + 2 mu) h_T |T's edges on Gamma_C| / |T|
-    pub fn coercivity_of(&self, t: usize) -> S {
-        let body = self.0;
-        let trace = S::from(if N == 3 { 1 } else { 3 });
-        let stiffness = body.hooke.lambda + S::from(2) * body.hooke.mu;
-        let length = sum(body.contact.iter().filter(|side| side.triangle == t), |s| s.length);
-        let vertices = body.triangles[t].map(|v| body.vertices[v]);
-        let area = Field { vertices, nodal: Vec::new() }.area();
-        trace * stiffness * body.diameters[t] * length / area
-    }
-}
-
-/// The integral over \[0, 1\].
-pub fn whole<S: Scalar>(line: &Line<S>) -> S {
-    line.integral([S::from(0), S::from(1)])
-}
-
 /// alpha u + beta v
 pub fn combined(alpha: Exact, u: &[[Exact; 2]], beta: Exact, v: &[[Exact; 2]]) -> Vec<[Exact; 2]> {
     u.iter().zip(v).map(|(u, v)| [0, 1].map(|c| alpha * u[c] + beta * v[c])).collect()
-}
-
-/// What a body's contact looks like at u, for the classes: all open, all pressed, or both.
-pub fn contact_class<const N: usize>(body: &Body, u: &[[Exact; 2]]) -> &'static str {
-    let definition = Definition::<N>(body);
-    let (mut open, mut pressed, mut cut) = (false, false, false);
-    for side in &body.contact {
-        let p = definition.traces(side, u).p;
-        let ends = [p.at(Exact::from(0)), p.at(Exact::from(1))].map(|v| v > Exact::from(0));
-        open |= !ends[0] || !ends[1];
-        pressed |= ends[0] || ends[1];
-        cut |= ends[0] != ends[1];
-    }
-    match (cut, open, pressed) {
-        (true, _, _) => "an edge is cut",
-        (_, true, true) => "open and pressed edges",
-        (_, true, false) => "open",
-        _ => "pressed",
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use proptest::strategy::ValueTree;
     use proptest::test_runner::TestRunner;
+    use signorini::nalgebra::Vector2;
 
     use super::*;
 

@@ -77,7 +77,7 @@ polynomials, the forking of paths and the checker (`props/src/proof/polynomial.r
 checker refuses bad certificates of each kind. The search for certificates is not trusted. For the rows that assemble
 on meshes, the naive transcription of the definitions in `props/src/naive.rs`; for the definite matrices of rows 9 and
 10, the exact elimination in `elimination.rs`; for the enclosed integrals of row 8, `enclosure.rs` and the intervals of
-row 13; for the rounding bounds of rows 5 and 6, the counts of roundings in `claims/assembled.rs`. For what is drawn: the
+row 13; for the rounding bounds of rows 5 and 6, the counts of roundings in `claims/assembled/compare.rs`. For what is drawn: the
 bodies and the definitions on them in `bodies.rs` and `discrete.rs`, the number types in `numbers`, the counting of draws in
 `draws.rs` with proptest, the stand-in of the model checker in `harness.rs`; for eigenvalues in doubles faer.
 

@@ -2,7 +2,8 @@
 
 use crate::Verdict;
 use crate::numbers::Exact;
-use crate::proof::{Float, Sym};
+use crate::proof::float::Float;
+use crate::proof::symbol::Sym;
 
 /// One predicate, for all engines. Made by the macro [`statement!`](crate::statement!).
 #[derive(Clone, Copy)]

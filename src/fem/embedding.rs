@@ -15,7 +15,9 @@
 //! that is meant needs edges along it shorter than 1/[`TOUCHING`] times its width. The local edge of a vertex is the
 //! shortest one of the outline that ends there; of two places that nearly touch the smaller counts.
 
-use super::mesh::{BoundaryEdge, Mesh, MeshError};
+use nalgebra::Vector2;
+
+use super::mesh::{BoundaryEdge, Mesh, MeshError, length};
 use super::tree::{Bounds, Tree};
 use crate::kernel::pattern::{self, Lists};
 
@@ -63,16 +65,20 @@ impl<'m> Outline<'m> {
         Outline { mesh, ends, tree, shortest, first, around }
     }
 
-    fn places(&self, e: usize) -> [[f64; 2]; 2] {
-        self.ends[e].map(|v| self.mesh.vertices()[v])
+    fn place(&self, vertex: usize) -> Vector2<f64> {
+        self.mesh.vertices()[vertex].into()
+    }
+
+    fn places(&self, e: usize) -> [Vector2<f64>; 2] {
+        self.ends[e].map(|v| self.place(v))
     }
 
     /// The other edges of the outline near edge `e`, in order.
     fn near(&self, e: usize) -> Vec<usize> {
         let [a, b] = self.places(e);
-        let margin = TOUCHING * (b[0] - a[0]).hypot(b[1] - a[1]);
+        let margin = TOUCHING * length(b - a);
         let mut near = Vec::new();
-        self.tree.meeting(Bounds::around([a, b]).widened(margin), |f| near.push(f));
+        self.tree.meeting(Bounds::around([a, b].map(Into::into)).widened(margin), |f| near.push(f));
         near.sort_unstable();
         near.retain(|&f| f != e);
         near
@@ -109,26 +115,25 @@ impl<'m> Outline<'m> {
         if ends.contains(&vertex) {
             return Ok(());
         }
-        let p = self.mesh.vertices()[vertex];
-        let [a, b] = ends.map(|v| self.mesh.vertices()[v]);
+        let p = self.place(vertex);
+        let [a, b] = ends.map(|v| self.place(v));
         for (end, place) in ends.into_iter().zip([a, b]) {
-            let distance = (p[0] - place[0]).hypot(p[1] - place[1]);
+            let distance = super::mesh::length(p - place);
             let local = self.shortest[end].min(self.shortest[vertex]);
             if distance <= TOUCHING * local {
                 return self.across_a_void(end, vertex, distance, local);
             }
         }
-        let d = [(b[0] - a[0]) / length, (b[1] - a[1]) / length];
-        let along = (p[0] - a[0]) * d[0] + (p[1] - a[1]) * d[1];
-        let outside = (p[0] - a[0]) * d[1] - (p[1] - a[1]) * d[0];
+        let direction = (b - a) / length;
+        let (along, outside) = ((p - a).dot(&direction), (p - a).perp(&direction));
         let touching = TOUCHING * length.min(self.shortest[vertex]);
         if !(0.0 < along && along < length) || outside > touching {
             return Ok(());
         }
         let own = self.mesh.triangles()[edge.triangle].contains(&vertex);
-        let on_it = outside.abs() <= f64::EPSILON * 8.0 * (p[0].abs() + p[1].abs());
+        let on_it = outside.abs() <= f64::EPSILON * 8.0 * (p.x.abs() + p.y.abs());
         if !own && (outside >= 0.0 || on_it || self.inside(edge.triangle, p)) {
-            let [x, y] = p;
+            let [x, y] = p.into();
             return Err(if outside >= -touching {
                 let (triangle, off) = (edge.triangle, outside.abs());
                 MeshError::Hanging { vertex, x, y, edge: ends, triangle, off }
@@ -149,7 +154,7 @@ impl<'m> Outline<'m> {
         local: f64,
     ) -> Result<(), MeshError> {
         let triangles = Lists { starts: &self.first, members: &self.around }.of(from);
-        let place = |v: usize| self.mesh.vertices()[v];
+        let place = |v: usize| self.place(v);
         let p = place(to);
         for &t in triangles {
             let corners = self.mesh.triangles()[t];
@@ -162,14 +167,14 @@ impl<'m> Outline<'m> {
             }
         }
         let size = Bounds::around(self.mesh.vertices().iter().copied()).size();
-        let places = [place(from), p];
+        let places = [place(from), p].map(Into::into);
         let merge = 10.0_f64.powf((distance / size).log10().floor() + 1.0);
         Err(MeshError::Near { vertices: [from, to], places, distance, local, merge })
     }
 
     /// `p` lies inside triangle `t`.
-    fn inside(&self, t: usize, p: [f64; 2]) -> bool {
-        let corners = self.mesh.triangles()[t].map(|v| self.mesh.vertices()[v]);
+    fn inside(&self, t: usize, p: Vector2<f64>) -> bool {
+        let corners = self.mesh.triangles()[t].map(|v| self.place(v));
         (0..3).all(|i| turn(corners[i], corners[(i + 1) % 3], p) > 0.0)
     }
 
@@ -190,7 +195,7 @@ impl<'m> Outline<'m> {
             while let Some(e) = next.filter(|&e| !known[e]) {
                 known[e] = true;
                 let [a, b] = self.places(e);
-                let length = (b[0] - a[0]).hypot(b[1] - a[1]);
+                let length = length(b - a);
                 if best.is_none_or(|(longest, _)| length > longest) {
                     best = Some((length, e));
                 }
@@ -206,19 +211,19 @@ impl<'m> Outline<'m> {
     /// steep.
     fn check_outside(&self, e: usize) -> Result<(), MeshError> {
         let [a, b] = self.places(e);
-        let [x, y] = [0, 1].map(|c| a[c] / 2.0 + b[c] / 2.0);
+        let middle = a / 2.0 + b / 2.0;
         let c = usize::from((b[1] - a[1]).abs() > (b[0] - a[0]).abs());
         // The ray enters the body where an edge runs to the right, or down.
         let enters = |from: f64, to: f64| (from < to) == (c == 0);
         let mut winding = if enters(a[c], b[c]) { 0 } else { -1 };
-        let mut ray = Bounds { low: [x, y], high: [x, y] };
+        let mut ray = Bounds::around([middle.into()]);
         ray.low[1 - c] = f64::NEG_INFINITY;
         self.tree.meeting(ray, |f| {
             let [p, q] = self.places(f);
             let (low, high) = if p[c] < q[c] { (p, q) } else { (q, p) };
-            let side = turn(low, high, [x, y]);
+            let side = turn(low, high, middle);
             let beyond = if c == 0 { side > 0.0 } else { side < 0.0 };
-            if f != e && low[c] <= [x, y][c] && [x, y][c] < high[c] && beyond {
+            if f != e && low[c] <= middle[c] && middle[c] < high[c] && beyond {
                 winding += if enters(p[c], q[c]) { 1 } else { -1 };
             }
         });
@@ -226,30 +231,32 @@ impl<'m> Outline<'m> {
             return Ok(());
         }
         let own = self.mesh.outline()[e].triangle;
-        let other = (0..self.mesh.triangles().len()).find(|&t| t != own && self.inside(t, [x, y]));
+        let other = (0..self.mesh.triangles().len()).find(|&t| t != own && self.inside(t, middle));
+        let [x, y] = middle.into();
         Err(MeshError::Overlapping { triangles: [own, other.unwrap_or(own)], x, y })
     }
 }
 
 /// Twice the area of the triangle a b c, positive if it is counter-clockwise; 0 where rounding could change the sign.
-fn turn(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
-    let left = (b[0] - a[0]) * (c[1] - a[1]);
-    let right = (b[1] - a[1]) * (c[0] - a[0]);
+fn turn(a: Vector2<f64>, b: Vector2<f64>, c: Vector2<f64>) -> f64 {
+    // The two products of `perp`, each on its own for the sake of the bound.
+    let (to_b, to_c) = (b - a, c - a);
+    let (left, right) = (to_b.x * to_c.y, to_b.y * to_c.x);
     // Four times the bound of Shewchuk's filter.
     let rounding = 8.0 * f64::EPSILON * (left.abs() + right.abs());
     if (left - right).abs() <= rounding { 0.0 } else { left - right }
 }
 
 /// The inner parts of two segments cross.
-fn cross([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> bool {
+fn cross([a, b]: [Vector2<f64>; 2], [c, d]: [Vector2<f64>; 2]) -> bool {
     let opposite = |s: f64, t: f64| (s > 0.0 && t < 0.0) || (s < 0.0 && t > 0.0);
     opposite(turn(a, b, c), turn(a, b, d)) && opposite(turn(c, d, a), turn(c, d, b))
 }
 
 /// Where.
-fn crossing([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> [f64; 2] {
+fn crossing([a, b]: [Vector2<f64>; 2], [c, d]: [Vector2<f64>; 2]) -> [f64; 2] {
     let (s, t) = (turn(c, d, a), turn(c, d, b));
-    [0, 1].map(|k| a[k] + s / (s - t) * (b[k] - a[k]))
+    (a + (b - a) * (s / (s - t))).into()
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@
 
 use faer::Mat;
 use faer::linalg::solvers::SolveLstsq;
+use nalgebra::Vector2;
 
 use super::contact_line::ContactLineEdge;
 use super::space::Space;
@@ -38,9 +39,7 @@ pub fn slides<E: Element<N, M>, const N: usize, const M: usize>(
         .iter()
         .flat_map(|edge| {
             let nodes = space.edge_nodes(edge.edge).into_iter().zip(edge.directions);
-            nodes.map(|(node, n)| {
-                motions.iter().map(|r| r[node][0] * n[0] + r[node][1] * n[1]).collect()
-            })
+            nodes.map(|(node, n)| motions.iter().map(|r| Vector2::from(r[node]).dot(&n)).collect())
         })
         .collect();
     let work = |r: &[[f64; 2]], of: fn(f64) -> f64| -> f64 {

@@ -12,17 +12,20 @@
 //!
 //! A [`Mesh`] that exists is valid: everything is checked when it is made, and nothing is checked again.
 
+mod edges;
+mod error;
+
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
-
-use nalgebra::Vector2;
-use thiserror::Error;
 
 use super::embedding;
 use super::tree::{Bounds, Tree};
 use crate::kernel::Triangle;
-use crate::memory::{self, OutOfMemory, bytes_of};
-use crate::quote::{self, number, quoted};
+use crate::memory::{self, bytes_of};
+use crate::quote;
+use edges::{Edge, match_edges, name_boundaries};
+pub use error::MeshError;
+use nalgebra::Vector2;
 
 /// A conforming triangulation with named parts of its boundary.
 #[derive(Clone, Debug)]
@@ -48,101 +51,6 @@ pub struct BoundaryEdge {
     pub triangle: usize,
     /// 0, 1 or 2.
     pub local: usize,
-}
-
-/// Why there is no such mesh. Vertices and triangles are counted from 0, or by the numbers of the file they came from.
-#[derive(Clone, Debug, Error, PartialEq)]
-#[non_exhaustive]
-#[expect(missing_docs, reason = "the message of each variant says what it is")]
-pub enum MeshError {
-    #[error("the mesh has no triangle; expected at least one")]
-    Empty,
-    #[error("vertex {vertex} is at ({}, {}); expected finite coordinates", number(*x), number(*y))]
-    NotFinite { vertex: usize, x: f64, y: f64 },
-    #[error(
-        "triangle {triangle} names vertex {vertex}; expected one of the {count} vertices of this mesh"
-    )]
-    NoSuchVertex { triangle: usize, vertex: usize, count: usize },
-    #[error("triangle {triangle} (vertices {}, {}, {}) has area {}: list its vertices counter-clockwise", vertices[0], vertices[1], vertices[2], number(*area))]
-    Clockwise { triangle: usize, vertices: [usize; 3], area: f64 },
-    #[error("triangle {triangle} (vertices {}, {}, {}) is flat: its area {} is nothing beside its diameter {}", vertices[0], vertices[1], vertices[2], number(*area), number(*diameter))]
-    Flat { triangle: usize, vertices: [usize; 3], area: f64, diameter: f64 },
-    #[error("vertices {} and {} are both at ({}, {}); expected one vertex there", vertices[0], vertices[1], number(*x), number(*y))]
-    Duplicate { vertices: [usize; 2], x: f64, y: f64 },
-    #[error("vertex {vertex} at ({}, {}) belongs to no triangle", number(*x), number(*y))]
-    Unused { vertex: usize, x: f64, y: f64 },
-    #[error("triangles {} and {} overlap: both lie on the same side of the edge from vertex {} to vertex {}", triangles[0], triangles[1], vertices[0], vertices[1])]
-    Overlap { triangles: [usize; 2], vertices: [usize; 2] },
-    #[error("triangles {} and {} overlap at ({}, {}): expected triangles that cover no point twice", triangles[0], triangles[1], number(*x), number(*y))]
-    Overlapping { triangles: [usize; 2], x: f64, y: f64 },
-    #[error("vertices {} at ({}, {}) and {} at ({}, {}) are {:e} apart with no triangle between them, beside edges of length {}: the body would be torn there; expected one vertex, or a gap of more than {} times the edge (mesh.merge = {merge:e} makes them one)", vertices[0], number(places[0][0]), number(places[0][1]), vertices[1], number(places[1][0]), number(places[1][1]), short(*distance), short(*local), embedding::TOUCHING)]
-    Near { vertices: [usize; 2], places: [[f64; 2]; 2], distance: f64, local: f64, merge: f64 },
-    #[error("vertex {vertex} at ({}, {}) hangs inside the edge between vertices {} and {} of triangle {triangle}{}: neighbours must share whole edges", number(*x), number(*y), edge[0], edge[1], beside(*off))]
-    Hanging { vertex: usize, x: f64, y: f64, edge: [usize; 2], triangle: usize, off: f64 },
-    #[error("boundary {}: no triangle has an edge between vertices {} and {}", quoted(boundary, '\''), vertices[0], vertices[1])]
-    NoSuchEdge { boundary: String, vertices: [usize; 2] },
-    #[error("boundary {}: its edge from ({}, {}) to ({}, {}) lies inside the body, between two triangles; nothing can be prescribed there", quoted(boundary, '\''), number(ends[0][0]), number(ends[0][1]), number(ends[1][0]), number(ends[1][1]))]
-    InnerEdge { boundary: String, ends: [[f64; 2]; 2] },
-    #[error("no surface named {}; this mesh has: {known}", quoted(name, '\''))]
-    NoSuchSurface { name: String, known: String },
-    #[error("no point named {}; this mesh has: {known}", quoted(name, '\''))]
-    NoSuchPoint { name: String, known: String },
-    #[error("the edge between vertices {} and {} belongs to boundary {} and again to boundary {}; expected one name for it", vertices[0], vertices[1], quoted(first, '\''), quoted(second, '\''))]
-    NamedTwice { vertices: [usize; 2], first: String, second: String },
-    #[error("no boundary named {}; this mesh has: {known}", quoted(name, '\''))]
-    NoSuchBoundary { name: String, known: String },
-    #[error("{0}; use a coarser mesh")]
-    OutOfMemory(#[from] OutOfMemory),
-    #[error("{name} = {}; expected a positive finite length", number(*value))]
-    Size { name: &'static str, value: f64 },
-    #[error("{name} = {value}; expected at least one cell")]
-    NoCells { name: &'static str, value: usize },
-    #[error("nx = {nx} and ny = {ny} make more than {most} cells; expected fewer")]
-    TooManyCells { nx: usize, ny: usize, most: usize },
-}
-
-fn beside(off: f64) -> String {
-    if off == 0.0 { String::new() } else { format!(", {:e} beside it", short(off)) }
-}
-
-/// A length to three digits.
-fn short(length: f64) -> f64 {
-    format!("{length:.2e}").parse().unwrap_or(length)
-}
-
-/// Half of an edge: an edge as one of its triangles sees it, and the next edge that starts its list at the same vertex.
-struct Edge {
-    vertices: [usize; 2],
-    owner: BoundaryEdge,
-    inner: bool,
-    next: Option<usize>,
-}
-
-/// All edges. Each is in the list of the end where fewer triangles meet: the hub of a fan would have a long list.
-struct Edges {
-    edges: Vec<Edge>,
-    first: Vec<Option<usize>>,
-    triangles_at: Vec<u32>,
-}
-
-impl Edges {
-    /// The end whose list has the edge, if it is in one.
-    fn lister(&self, a: usize, b: usize) -> Option<usize> {
-        let at = |v: usize| self.triangles_at.get(v).map(|&count| (count, v));
-        Some(at(a)?.min(at(b)?).1)
-    }
-
-    fn find(&self, a: usize, b: usize) -> Option<usize> {
-        let mut edge = *self.first.get(self.lister(a, b)?)?;
-        while let Some(e) = edge {
-            let [p, q] = self.edges[e].vertices;
-            if [p, q] == [a, b] || [q, p] == [a, b] {
-                return Some(e);
-            }
-            edge = self.edges[e].next;
-        }
-        None
-    }
 }
 
 impl Mesh {
@@ -404,130 +312,9 @@ fn check_triangles(vertices: &[[f64; 2]], triangles: &[[usize; 3]]) -> Result<()
     Ok(())
 }
 
-fn match_edges(
-    vertex_count: usize,
-    triangles: &[[usize; 3]],
-) -> Result<(Edges, Vec<[usize; 3]>), MeshError> {
-    let mut all = Edges {
-        edges: Vec::with_capacity(triangles.len() * 3 / 2 + vertex_count),
-        first: vec![None; vertex_count],
-        triangles_at: vec![0; vertex_count],
-    };
-    for &vertex in triangles.as_flattened() {
-        all.triangles_at[vertex] += 1;
-    }
-    let mut triangle_edges = vec![[0; 3]; triangles.len()];
-    for (triangle, corners) in triangles.iter().enumerate() {
-        for local in 0..3 {
-            let [a, b] = [corners[(local + 1) % 3], corners[(local + 2) % 3]];
-            let edge = match all.find(a, b) {
-                Some(e) => {
-                    let known = &mut all.edges[e];
-                    if known.inner || known.vertices == [a, b] {
-                        let triangles = [known.owner.triangle, triangle];
-                        return Err(MeshError::Overlap { triangles, vertices: [a, b] });
-                    }
-                    known.inner = true;
-                    e
-                }
-                None => {
-                    let lister = all.lister(a, b).unwrap_or(a);
-                    let first = &mut all.first[lister];
-                    all.edges.push(Edge {
-                        vertices: [a, b],
-                        owner: BoundaryEdge { triangle, local },
-                        inner: false,
-                        next: first.replace(all.edges.len()),
-                    });
-                    all.edges.len() - 1
-                }
-            };
-            triangle_edges[triangle][local] = edge;
-        }
-    }
-    Ok((all, triangle_edges))
-}
-
-/// The boundary parts by name, and the named curves that have an edge inside the body.
-type Named = (BTreeMap<String, Vec<BoundaryEdge>>, BTreeMap<String, [[f64; 2]; 2]>);
-
 fn listed<'a>(names: impl Iterator<Item = &'a String>, none: &str) -> String {
     let mut names = names.map(String::as_str).peekable();
     if names.peek().is_none() { none.to_owned() } else { quote::names(names) }
-}
-
-fn name_boundaries(
-    edges: &Edges,
-    places: &[[f64; 2]],
-    named: impl IntoIterator<Item = (String, Vec<[usize; 2]>)>,
-) -> Result<Named, MeshError> {
-    let mut boundaries: BTreeMap<String, Vec<BoundaryEdge>> = BTreeMap::new();
-    let mut inner = BTreeMap::new();
-    let mut name_of: BTreeMap<usize, String> = BTreeMap::new();
-    for (name, pairs) in named {
-        let part = boundaries.entry(name.clone()).or_default();
-        for [a, b] in pairs {
-            let vertices = [a, b];
-            let Some(e) = edges.find(a, b) else {
-                return Err(MeshError::NoSuchEdge { boundary: name, vertices });
-            };
-            if edges.edges[e].inner {
-                inner.entry(name.clone()).or_insert([places[a], places[b]]);
-                continue;
-            }
-            if let Some(first) = name_of.insert(e, name.clone()) {
-                return Err(MeshError::NamedTwice { vertices, first, second: name });
-            }
-            part.push(edges.edges[e].owner);
-        }
-    }
-    boundaries.retain(|name, _| !inner.contains_key(name));
-    Ok((boundaries, inner))
-}
-
-impl MeshError {
-    /// The same error in the numbers of the file that the mesh came from.
-    #[must_use]
-    pub fn renumbered(
-        mut self,
-        of_vertex: impl Fn(usize) -> usize,
-        of_triangle: impl Fn(usize) -> usize,
-    ) -> MeshError {
-        use MeshError::*;
-        let two = |pair: &mut [usize; 2]| *pair = pair.map(&of_vertex);
-        match &mut self {
-            OutOfMemory(_) => {}
-            NotFinite { vertex, .. } | Unused { vertex, .. } => *vertex = of_vertex(*vertex),
-            NoSuchVertex { triangle, .. } => *triangle = of_triangle(*triangle),
-            Clockwise { triangle, vertices, .. } | Flat { triangle, vertices, .. } => {
-                *triangle = of_triangle(*triangle);
-                *vertices = vertices.map(&of_vertex);
-            }
-            Duplicate { vertices, .. }
-            | NoSuchEdge { vertices, .. }
-            | NamedTwice { vertices, .. } => two(vertices),
-            Overlap { triangles, vertices } => {
-                *triangles = triangles.map(&of_triangle);
-                two(vertices);
-            }
-            Overlapping { triangles, .. } => *triangles = triangles.map(&of_triangle),
-            Near { vertices, .. } => two(vertices),
-            Hanging { vertex, edge, triangle, .. } => {
-                *vertex = of_vertex(*vertex);
-                *triangle = of_triangle(*triangle);
-                two(edge);
-            }
-            Empty
-            | InnerEdge { .. }
-            | NoSuchBoundary { .. }
-            | NoSuchSurface { .. }
-            | NoSuchPoint { .. }
-            | Size { .. }
-            | NoCells { .. }
-            | TooManyCells { .. } => {}
-        }
-        self
-    }
 }
 
 #[cfg(test)]

@@ -186,7 +186,12 @@ impl Random {
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
+
     use super::*;
+
+    /// A sum of up to 24 numbers that is 3.
+    const ROUNDING: f64 = 1e-14;
 
     fn rectangle(diagonal: Diagonal) -> Rectangle {
         Rectangle { width: 3.0, height: 1.0, nx: 3, ny: 2, diagonal }
@@ -201,7 +206,7 @@ mod tests {
             assert_eq!(mesh.triangles().len(), triangles);
             assert_eq!(mesh.vertices().len(), vertices);
             let area: f64 = (0..triangles).map(|t| mesh.triangle(t).double_area() / 2.0).sum();
-            assert!((area - 3.0).abs() < 1e-14);
+            assert_abs_diff_eq!(area, 3.0, epsilon = ROUNDING);
             assert_eq!(mesh.outline().len(), 10);
         }
     }
@@ -219,7 +224,7 @@ mod tests {
         ] {
             let edges = mesh.edges_of(name).unwrap();
             let sum: f64 = edges.iter().map(|&e| mesh.length_and_normal(e).0).sum();
-            assert!((sum - length).abs() < 1e-15);
+            assert_abs_diff_eq!(sum, length, epsilon = ROUNDING);
             for &e in edges {
                 assert_eq!(mesh.length_and_normal(e).1, nalgebra::Vector2::from(normal));
             }
@@ -240,7 +245,7 @@ mod tests {
         assert_eq!(a.vertices(), b.vertices());
         assert_ne!(a.vertices(), c.vertices());
         let area: f64 = (0..24).map(|t| a.triangle(t).double_area() / 2.0).sum();
-        assert!((area - 3.0).abs() < 1e-14);
+        assert_abs_diff_eq!(area, 3.0, epsilon = ROUNDING);
         for (moved, straight) in a.vertices().iter().zip(r.mesh().unwrap().vertices()) {
             for c in 0..2 {
                 assert!((moved[c] - straight[c]).abs() <= 0.2);

@@ -15,13 +15,17 @@
 //! transformations of the equations in which they occur; a column that its equations leave at zero is a free parameter
 //! (multifrontal QR with the rank found column by column, after Heath 1982). Its null vector follows by substitution back.
 
-use std::cmp::Reverse;
-use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
+mod connected;
+mod null_space;
+
+use std::collections::BTreeMap;
 use std::fmt;
 
 use super::mesh::Mesh;
 use super::space::Space;
 use crate::kernel::Element;
+use connected::{connected_by_edges, hinges};
+use null_space::{Dense, null_space};
 
 /// The parts of a body, and where they are hinged to each other.
 #[derive(Clone, Debug)]
@@ -69,10 +73,6 @@ pub struct FreeMotion {
     pub parts: Vec<PartMotion>,
     words: String,
 }
-
-/// A column of norm <= this, where coefficients are of order 1, is stopped by nothing. Rounding leaves some 1e-15; a part
-/// of slenderness s held at its end alone makes 1/s.
-const FREE: f64 = 1e-10;
 
 /// Components of a motion below this share of the largest one are rounding errors.
 const STILL: f64 = 1e-9;
@@ -283,240 +283,6 @@ where
     equations
 }
 
-/// Rows of coefficients, under orthogonal transformations.
-struct Dense {
-    columns: usize,
-    values: Vec<f64>,
-}
-
-impl Dense {
-    fn new(columns: usize) -> Self {
-        Dense { columns, values: Vec::new() }
-    }
-
-    fn count(&self) -> usize {
-        self.values.len() / self.columns
-    }
-
-    fn push(&mut self, row: [f64; 3]) {
-        self.values.extend(row);
-    }
-
-    fn at(&mut self, row: usize, column: usize) -> &mut f64 {
-        &mut self.values[row * self.columns + column]
-    }
-
-    /// Householder's reflection that gathers `column` of the rows from `top` on in row `top`; `false`, and the column zero
-    /// there, if it is no longer than `negligible`.
-    fn reflect(&mut self, top: usize, column: usize, negligible: f64) -> bool {
-        let count = self.count();
-        let norm = (top..count).fold(0.0, |n: f64, r| n.hypot(*self.at(r, column)));
-        if norm <= negligible {
-            (top..count).for_each(|r| *self.at(r, column) = 0.0);
-            return false;
-        }
-        let head = *self.at(top, column);
-        let mut v: Vec<f64> = (top..count).map(|r| *self.at(r, column) / norm).collect();
-        v[0] += head.signum();
-        let half_square = 1.0 + head.abs() / norm;
-        for c in column + 1..self.columns {
-            let along: f64 = v.iter().enumerate().map(|(i, v)| v * *self.at(top + i, c)).sum();
-            for (i, v) in v.iter().enumerate() {
-                *self.at(top + i, c) -= along / half_square * v;
-            }
-        }
-        (top..count).for_each(|r| *self.at(r, column) = 0.0);
-        *self.at(top, column) = -head.signum() * norm;
-        true
-    }
-
-    /// Replaces the rows by at most as many as there are columns, which ask the same. The columns before `first` are zero.
-    fn triangularise(&mut self, first: usize) {
-        let mut top = 0;
-        for column in first..self.columns {
-            if top < self.count() && self.reflect(top, column, 0.0) {
-                top += 1;
-            }
-        }
-        self.values.truncate(top * self.columns);
-    }
-}
-
-/// One eliminated part: the equations that give its unknowns, where there are any, from those of later parts.
-struct Eliminated {
-    part: usize,
-    /// The other parts in the equations; the columns are those of `part`, then theirs.
-    others: Vec<usize>,
-    rows: Dense,
-    /// The row that gives each unknown; `None` for a free one.
-    pivots: [Option<usize>; 3],
-}
-
-/// A basis of the solutions of homogeneous equations with three unknowns for each of `count` parts.
-fn null_space(
-    count: usize,
-    mut equations: Vec<Vec<(usize, [f64; 3])>>,
-) -> Vec<Vec<(usize, [f64; 3])>> {
-    let mut of_part: Vec<BTreeSet<usize>> = vec![BTreeSet::new(); count];
-    let mut neighbours: Vec<BTreeSet<usize>> = vec![BTreeSet::new(); count];
-    for (e, equation) in equations.iter().enumerate() {
-        for &(part, _) in equation {
-            of_part[part].insert(e);
-            neighbours[part].extend(equation.iter().map(|term| term.0).filter(|&o| o != part));
-        }
-    }
-    let mut queue: BinaryHeap<Reverse<(usize, usize)>> =
-        (0..count).map(|part| Reverse((neighbours[part].len(), part))).collect();
-    let mut done = vec![false; count];
-    let mut steps: Vec<Eliminated> = Vec::with_capacity(count);
-    while let Some(Reverse((degree, part))) = queue.pop() {
-        // Each change of a degree has put the part into the queue again.
-        if done[part] || degree != neighbours[part].len() {
-            continue;
-        }
-        done[part] = true;
-        let others: Vec<usize> = std::mem::take(&mut neighbours[part]).into_iter().collect();
-        for &other in &others {
-            neighbours[other].remove(&part);
-            neighbours[other].extend(others.iter().filter(|&&o| o != other));
-            queue.push(Reverse((neighbours[other].len(), other)));
-        }
-        let front = std::mem::take(&mut of_part[part]);
-        let mut rows = Dense::new(3 * (1 + others.len()));
-        for e in front {
-            let row = rows.count();
-            rows.values.resize(rows.values.len() + rows.columns, 0.0);
-            for (other, coefficients) in std::mem::take(&mut equations[e]) {
-                of_part[other].remove(&e);
-                let block = others.binary_search(&other).map_or(0, |i| i + 1);
-                for (k, coefficient) in coefficients.into_iter().enumerate() {
-                    *rows.at(row, 3 * block + k) = coefficient;
-                }
-            }
-        }
-        let mut pivots = [None; 3];
-        let mut top = 0;
-        for (column, pivot) in pivots.iter_mut().enumerate() {
-            if top < rows.count() && rows.reflect(top, column, FREE) {
-                *pivot = Some(top);
-                top += 1;
-            }
-        }
-        let mut rest = Dense::new(rows.columns);
-        rest.values = rows.values.split_off(top * rows.columns);
-        if rest.count() + 3 > rest.columns {
-            rest.triangularise(3);
-        }
-        for row in rest.values.chunks(rest.columns) {
-            let equation: Vec<(usize, [f64; 3])> = others
-                .iter()
-                .zip(row[3..].chunks(3))
-                .map(|(&other, c)| (other, [c[0], c[1], c[2]]))
-                .filter(|(_, c)| *c != [0.0; 3])
-                .collect();
-            for (other, _) in &equation {
-                of_part[*other].insert(equations.len());
-            }
-            equations.push(equation);
-        }
-        steps.push(Eliminated { part, others, rows, pivots });
-    }
-    substitute_back(count, &mut steps)
-}
-
-/// One null vector for each free unknown, the other free ones zero.
-fn substitute_back(count: usize, steps: &mut [Eliminated]) -> Vec<Vec<(usize, [f64; 3])>> {
-    // Which steps hear of a part: those that have it among the others.
-    let mut hear: Vec<Vec<usize>> = vec![Vec::new(); count];
-    for (s, step) in steps.iter().enumerate() {
-        step.others.iter().for_each(|&other| hear[other].push(s));
-    }
-    let free: Vec<(usize, usize)> = (0..steps.len())
-        .flat_map(|s| [0, 1, 2].map(|column| (s, column)))
-        .filter(|&(s, column)| steps[s].pivots[column].is_none())
-        .collect();
-    let mut basis = Vec::with_capacity(free.len());
-    for (last, column) in free {
-        let mut values: BTreeMap<usize, [f64; 3]> = BTreeMap::new();
-        let mut waiting = BTreeSet::from([last]);
-        while let Some(s) = waiting.pop_last() {
-            let Eliminated { part, others, rows, pivots } = &mut steps[s];
-            let mut own = [0.0; 3];
-            if s == last {
-                own[column] = 1.0;
-            }
-            for k in [2, 1, 0] {
-                let Some(row) = pivots[k] else { continue };
-                let mut sum: f64 = (k + 1..3).map(|j| *rows.at(row, j) * own[j]).sum();
-                for (i, other) in others.iter().enumerate() {
-                    if let Some(known) = values.get(other) {
-                        sum +=
-                            (0..3).map(|j| *rows.at(row, 3 * (i + 1) + j) * known[j]).sum::<f64>();
-                    }
-                }
-                own[k] = -sum / *rows.at(row, k);
-            }
-            if own.iter().any(|v| v.abs() > f64::EPSILON) {
-                values.insert(*part, own);
-                waiting.extend(hear[*part].iter().copied());
-            }
-        }
-        basis.push(values.into_iter().collect());
-    }
-    basis
-}
-
-/// The number of the part of each triangle: triangles with an edge in common are in one part.
-fn connected_by_edges(mesh: &Mesh) -> Vec<usize> {
-    fn root(parent: &mut [usize], mut t: usize) -> usize {
-        while parent[t] != t {
-            parent[t] = parent[parent[t]];
-            t = parent[t];
-        }
-        t
-    }
-    let triangles = mesh.triangles().len();
-    let mut parent: Vec<usize> = (0..triangles).collect();
-    let mut first: Vec<Option<usize>> = vec![None; mesh.edge_count()];
-    for (t, edges) in mesh.triangle_edges().iter().enumerate() {
-        for &edge in edges {
-            let other = *first[edge].get_or_insert(t);
-            let (a, b) = (root(&mut parent, other), root(&mut parent, t));
-            parent[a.max(b)] = a.min(b);
-        }
-    }
-    // A root is the first triangle of its part, so it is numbered before the others ask for its number.
-    let mut part = vec![0; triangles];
-    let mut count = 0;
-    for t in 0..triangles {
-        let r = root(&mut parent, t);
-        if r == t {
-            part[t] = count;
-            count += 1;
-        } else {
-            part[t] = part[r];
-        }
-    }
-    part
-}
-
-fn hinges(mesh: &Mesh, part_of: &[usize]) -> Vec<Hinge> {
-    let mut first: Vec<Option<usize>> = vec![None; mesh.vertices().len()];
-    let mut shared: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
-    for (corners, &part) in mesh.triangles().iter().zip(part_of) {
-        for &vertex in corners {
-            let known = *first[vertex].get_or_insert(part);
-            if known != part {
-                shared.entry(vertex).or_default().extend([known, part]);
-            }
-        }
-    }
-    shared
-        .into_iter()
-        .map(|(vertex, parts)| Hinge { vertex, parts: parts.into_iter().collect() })
-        .collect()
-}
-
 /// A place in a body of this size, to six digits of the size.
 fn point(x: [f64; 2], size: f64) -> String {
     let [x, y] = x.map(|c| rounded(c, size));
@@ -536,10 +302,15 @@ fn rounded(c: f64, size: f64) -> String {
 
 #[cfg(test)]
 mod tests {
+    use approx::abs_diff_eq;
     use faer::Mat;
 
     use super::*;
     use crate::kernel::{P1, P2};
+
+    /// What is left of a motion of size 1 where it is stopped: components below [`STILL`] are set to zero, and slender
+    /// parts have coordinates of up to 10 times their half box.
+    const STOPPED: f64 = 1e-8;
 
     /// The cells of an nx x ny grid for which `solid` says so, two triangles each; corner (i, j) lies at `place`.
     fn sheet(
@@ -598,7 +369,8 @@ mod tests {
         let field = motion.field(parts, space);
         for (x, u) in space.nodes().iter().zip(&field) {
             for c in 0..2 {
-                assert!(!held(*x)[c] || u[c].abs() < 1e-8, "{u:?} at {x:?}: {motion}");
+                let still = abs_diff_eq!(u[c], 0.0, epsilon = STOPPED);
+                assert!(!held(*x)[c] || still, "{u:?} at {x:?}: {motion}");
             }
         }
         let of = |part: usize, x| {
@@ -609,7 +381,8 @@ mod tests {
             let x = space.mesh().vertices()[hinge.vertex];
             for pair in hinge.parts.windows(2) {
                 let (a, b) = (of(pair[0], x), of(pair[1], x));
-                assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 1e-8, "{a:?} {b:?}: {motion}");
+                let together = abs_diff_eq!(a[..], b[..], epsilon = STOPPED);
+                assert!(together, "{a:?} {b:?}: {motion}");
             }
         }
         assert!(field.iter().any(|u| u[0].hypot(u[1]) > 1e-3), "{motion} moves");

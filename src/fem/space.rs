@@ -78,6 +78,9 @@ impl<'a, E: Element<N, M>, const N: usize, const M: usize> Space<'a, E, N, M> {
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
+    use nalgebra::Vector2;
+
     use super::*;
     use crate::fem::{Diagonal, Rectangle};
     use crate::kernel::{P1, P2};
@@ -96,8 +99,9 @@ mod tests {
                 let edge = BoundaryEdge { triangle: t, local };
                 for (node, s) in space.edge_nodes(edge).into_iter().zip(E::edge_positions()) {
                     let x = mesh.triangle(t).point(crate::kernel::triangle::on_edge(local, s));
-                    let node = space.nodes()[node];
-                    assert!((x[0] - node[0]).abs() + (x[1] - node[1]).abs() < 1e-15);
+                    let node = Vector2::from(space.nodes()[node]);
+                    // Half a sum of two coordinates below 2.
+                    assert_abs_diff_eq!(x, node, epsilon = 1e-15);
                 }
             }
         }

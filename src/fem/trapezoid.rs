@@ -39,6 +39,9 @@ impl Trapezoid {
 mod tests {
     use std::f64::consts::PI;
 
+    use approx::assert_abs_diff_eq;
+    use nalgebra::Vector2;
+
     use super::*;
 
     #[test]
@@ -49,13 +52,15 @@ mod tests {
             for &edge in mesh.edges_of("left").unwrap() {
                 let n = mesh.length_and_normal(edge).1;
                 // The outward normal of the ray theta = omega is (-sin omega, cos omega).
-                assert!((n[0] + omega.sin()).abs() + (n[1] - omega.cos()).abs() < 1e-13);
+                let expected = Vector2::new(-omega.sin(), omega.cos());
+                // Moved vertices lie on the ray to rounding, half of an edge of 1/8 apart.
+                assert_abs_diff_eq!(n, expected, epsilon = 1e-13);
             }
             for (side, normal) in
                 [("right", [1.0, 0.0]), ("bottom", [0.0, -1.0]), ("top", [0.0, 1.0])]
             {
                 for &edge in mesh.edges_of(side).unwrap() {
-                    assert_eq!(mesh.length_and_normal(edge).1, nalgebra::Vector2::from(normal));
+                    assert_eq!(mesh.length_and_normal(edge).1, Vector2::from(normal));
                 }
             }
         }

@@ -3,8 +3,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::case::{CaseError, CaseMistake};
 use super::expression::Expression;
+use super::mistake::{CaseError, CaseMistake};
 use super::table::{Table, Value};
 use crate::fem::exact;
 use crate::fem::{BoxedFunction, Exact, Materials, Mesh, SurfaceForce};

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::body::{functions, zero};
-use super::case::{CaseError, CaseMistake};
 use super::exact::read_kind;
 use super::expression::Expression;
+use super::mistake::{CaseError, CaseMistake};
 use super::table::{Table, Value};
 use crate::fem::exact::Kind;
 use crate::fem::{

@@ -12,7 +12,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
-use super::case::CaseError;
+use super::mistake::CaseError;
 use super::table::{Table, Value};
 use crate::fem::Exact;
 use crate::fem::exact::{Corner, Kind, Patch, Singular, Smooth};
@@ -142,7 +142,7 @@ mod tests {
     use toml::de::DeTable;
 
     use super::*;
-    use crate::io::table::Source;
+    use crate::io::source::Source;
     use crate::kernel::Plane;
 
     fn read(text: &str) -> Result<Exact, String> {

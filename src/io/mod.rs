@@ -20,6 +20,8 @@ pub mod field;
 pub mod files;
 pub mod gmsh;
 pub mod input;
+#[cfg(feature = "files")]
+mod mistake;
 pub mod numbers;
 #[cfg(feature = "files")]
 pub mod outputs;
@@ -31,6 +33,8 @@ pub mod plot;
 pub mod result;
 #[cfg(feature = "files")]
 mod setting;
+#[cfg(feature = "files")]
+mod source;
 #[cfg(feature = "files")]
 pub mod sweep;
 #[cfg(feature = "files")]

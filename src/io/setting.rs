@@ -7,8 +7,8 @@
 
 use toml::de::{DeTable, DeValue};
 
-use super::case::{CaseError, CaseMistake, no_toml};
-use super::table::Source;
+use super::mistake::{CaseError, CaseMistake, no_toml};
+use super::source::Source;
 
 /// The settings as TOML, each behind so much space that a place in it is a place in no other, nor in the file.
 pub fn layers(source: &Source) -> Vec<String> {
@@ -20,17 +20,6 @@ pub fn layers(source: &Source) -> Vec<String> {
         start += setting.len();
     }
     layers
-}
-
-/// The setting in which the byte `start` lies, if it lies behind the file.
-pub fn setting_at<'s>(source: &Source<'s>, start: usize) -> Option<&'s str> {
-    let mut end = source.text.len();
-    source.settings.iter().map(String::as_str).find(|setting| {
-        let begin = end;
-        end += 1 + setting.len();
-        // A word in quotes that it was given without reaches two bytes further; no key or value begins there.
-        begin < start && start <= end
-    })
 }
 
 /// Lays the settings over the file's entries.

@@ -5,38 +5,15 @@
 //! "a number or "auto"" into "did not match any variant", and forget the line.
 
 use std::ops::RangeInclusive;
-use std::path::Path;
 
 use toml::Spanned;
 use toml::de::{DeInteger, DeTable, DeValue};
 
-use super::case::{CaseError, CaseMistake, Place};
 use super::expression::Expression;
-use super::setting::setting_at;
+use super::mistake::{CaseError, CaseMistake};
+use super::source::Source;
 use crate::fem::BoxedFunction;
 use crate::quote::{cut, key as shown, listed, number, quoted};
-
-/// A file, its text, and what is set over it. Places in the settings come after those in the text.
-#[derive(Clone, Copy)]
-pub struct Source<'s> {
-    pub file: &'s Path,
-    pub text: &'s str,
-    pub settings: &'s [String],
-}
-
-impl Source<'_> {
-    /// `mistake` at the byte `start`, or in the file as a whole.
-    pub fn wrong(&self, start: Option<usize>, mistake: CaseMistake) -> CaseError {
-        let setting = start.and_then(|start| setting_at(self, start));
-        let before = start.and_then(|start| self.text.get(..start));
-        let place = match (setting, before) {
-            (Some(setting), _) => Place::Setting(setting.to_owned()),
-            (None, Some(before)) => Place::Line(before.matches('\n').count() + 1),
-            (None, None) => Place::File,
-        };
-        CaseError { file: self.file.to_owned(), place, mistake: Box::new(mistake) }
-    }
-}
 
 /// A table of the file.
 pub struct Table<'s> {
@@ -132,7 +109,7 @@ impl<'s> Table<'s> {
         };
         // Where one of them was set over the file, that is what went wrong.
         let mut starts = found.iter().filter_map(|key| Some(self.get(key)?.start));
-        let set = starts.rfind(|&start| setting_at(&self.source, start).is_some());
+        let set = starts.rfind(|&start| self.source.setting_at(start).is_some());
         self.source.wrong(set.or(self.start), mistake)
     }
 

@@ -13,6 +13,7 @@ use super::newton::{self, Until};
 use super::system::System;
 use super::{Settings, SolveError, Status};
 use crate::fem::discretization::Discretization;
+use crate::fem::twofold::Twofold;
 use crate::kernel::edge_integral::ExactEdge;
 
 /// A way to better an iterate.
@@ -51,6 +52,8 @@ pub struct Pass {
 pub struct Outcome {
     /// The displacement.
     pub u: Vec<[f64; 2]>,
+    /// The same before it was rounded to doubles, where its forces in doubles are noise.
+    pub fine: Option<Vec<[Twofold; 2]>>,
     /// The relative residual of (8) before each Newton step and after the last.
     pub residuals: Vec<f64>,
     /// The relative residual of the displacement, from the definitions.
@@ -81,7 +84,7 @@ const RIGHT: f64 = 1e-9;
 /// A correction this small, relative, leaves nothing to correct.
 const SMALL: f64 = 1e-11;
 
-/// Rounding of the residual that may move the body by more than this, relative, calls for twofold numbers.
+/// Rounding of the residual calls for twofold numbers where it is more than this, relative, or may move the body by more.
 const BLURRED: f64 = 1e-9;
 
 /// A correction ends where the residual is this share of the tolerance.
@@ -135,14 +138,16 @@ where
         }
         let out_of_steps =
             residuals.len() > settings.max_iterations && !(residual <= settings.tolerance);
-        let blurred = !precisely && noise * softness.sqrt() > BLURRED * size;
+        let blurred = noise * softness.sqrt() > BLURRED * size || noise > BLURRED * reference;
+        let blurred = blurred && !precisely;
         if out_of_steps || (residual <= settings.tolerance && correction <= SMALL && !blurred) {
             break;
         }
         if pass > 0 && !precisely {
             // Doubles were not enough.
             at = iterate.evaluate(system, true);
-        } else if pass > 1 && !cut && !(correction < before / 2.0) {
+            correction = f64::INFINITY;
+        } else if pass > 0 && !cut && !(correction < before / 2.0) {
             break;
         }
     }
@@ -152,7 +157,8 @@ where
     let rounding = if rounding > 0.0 { rounding / size } else { 0.0 };
     let forward_error = correction + rounding;
     let condition = (system.norm() * softness).max(1.0);
-    Ok(Outcome { u, residuals, residual, correction, forward_error, condition })
+    let fine = at.precisely.then(|| iterate.into_twofold());
+    Ok(Outcome { u, fine, residuals, residual, correction, forward_error, condition })
 }
 
 /// The norm of the residual of (8) where its linear part is `at`, and a norm that rounding alone may give it.

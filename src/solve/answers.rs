@@ -72,6 +72,7 @@ pub struct EnergyBalance {
 pub fn energy_balance<E, const N: usize, const M: usize>(
     d: &Discretization<E, N, M>,
     u: &[[f64; 2]],
+    p: &[[f64; M]],
     residual: &[[f64; 2]],
     strain: f64,
 ) -> EnergyBalance
@@ -85,10 +86,8 @@ where
         supports += a * x + b * y;
     }
     let mut contact = 0.0;
-    for edge in &d.contact {
-        let nodal = d.space.on_triangle(edge.edge.triangle, u);
-        let p = edge.p(&nodal);
-        let sigma = edge.sigma_n(&nodal);
+    for (edge, &p) in d.contact.iter().zip(p) {
+        let sigma = edge.sigma_n(&d.space.on_triangle(edge.edge.triangle, u));
         let product = crate::kernel::contact_edge::integral_of_product(sigma, sigma);
         contact += edge.gamma * edge.length * product;
         let gradient = d.rule.integrals::<E, N, M>(p).gradient;
@@ -130,7 +129,7 @@ where
 /// The recovered pressure at the nodes of each edge, in the order of the edge's nodes.
 pub fn recovered_pressure<E, const N: usize, const M: usize>(
     d: &Discretization<E, N, M>,
-    u: &[[f64; 2]],
+    p: &[[f64; M]],
 ) -> Vec<[f64; M]>
 where
     E: ExactEdge<f64, N, M>,
@@ -140,8 +139,7 @@ where
     let (mut work, mut weight) = (vec![0.0; count], vec![0.0; count]);
     let hats: [f64; M] =
         if M == 2 { [0.5; M] } else { std::array::from_fn(|a| [0.25, 0.25, 0.5][a]) };
-    for (edge, groups) in d.contact.iter().zip(&groups) {
-        let p = edge.p(&d.space.on_triangle(edge.edge.triangle, u));
+    for ((edge, &p), groups) in d.contact.iter().zip(p).zip(&groups) {
         let of_edge = hat_integrals::<E, N, M>(p, &d.rule);
         for (a, &group) in groups.iter().enumerate() {
             work[group] += edge.length / edge.gamma * of_edge[a];
@@ -230,6 +228,7 @@ fn same(a: Vector2<f64>, b: Vector2<f64>) -> bool {
 pub fn contact_boundaries<E, const N: usize, const M: usize>(
     d: &Discretization<E, N, M>,
     u: &[[f64; 2]],
+    p: &[[f64; M]],
     recovered: &[[f64; M]],
 ) -> Vec<ContactBoundary>
 where
@@ -237,13 +236,13 @@ where
 {
     let mut all: Vec<ContactBoundary> = Vec::new();
     let mut end_of_last = None;
-    for (edge, recovered) in d.contact.iter().zip(recovered) {
+    for ((edge, &p), recovered) in d.contact.iter().zip(p).zip(recovered) {
         if all.last().is_none_or(|last| last.boundary != *edge.boundary) {
             end_of_last = None;
             all.push(ContactBoundary::empty(&edge.boundary));
         }
         if let Some(boundary) = all.last_mut() {
-            boundary.add(d, u, edge, recovered, &mut end_of_last);
+            boundary.add(d, u, edge, p, recovered, &mut end_of_last);
         }
     }
     all
@@ -271,13 +270,12 @@ impl ContactBoundary {
         d: &Discretization<E, N, M>,
         u: &[[f64; 2]],
         edge: &ContactLineEdge<N, M>,
+        p: [f64; M],
         recovered: &[f64; M],
         open: &mut Option<usize>,
     ) where
         E: ExactEdge<f64, N, M>,
     {
-        let nodal = d.space.on_triangle(edge.edge.triangle, u);
-        let p = edge.p(&nodal);
         let nodes = d.space.edge_nodes(edge.edge);
         let places = nodes.map(|node| d.space.nodes()[node]);
         let integrals = d.rule.integrals::<E, N, M>(p);

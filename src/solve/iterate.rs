@@ -46,6 +46,11 @@ impl Iterate {
         self.u.iter().map(|u| u.map(Twofold::head)).collect()
     }
 
+    /// As it is.
+    pub fn into_twofold(self) -> Vec<[Twofold; 2]> {
+        self.u
+    }
+
     /// What rounding to doubles leaves out.
     pub fn remainder(&self) -> Vec<[f64; 2]> {
         self.u.iter().map(|u| u.map(Twofold::tail)).collect()

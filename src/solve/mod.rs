@@ -10,6 +10,7 @@ pub mod compliance;
 pub mod condensed;
 mod contact_edges;
 pub mod enclosure;
+pub mod evaluated;
 pub mod factor;
 pub mod iterate;
 pub mod ladder;
@@ -32,6 +33,7 @@ use self::accuracy::Outcome;
 pub use self::answers::{ContactBoundary, EnergyBalance};
 pub use self::checked::{MOST_GAUSS_POINTS, MOST_ITERATIONS};
 pub use self::enclosure::{Enclosure, Intervals, Unproved};
+use self::evaluated::Evaluated;
 pub use self::ladder::{Ladder, LadderError, Level};
 pub use self::limit::{NoLimit, TrueLimit};
 pub use self::route::RouteName;
@@ -292,20 +294,20 @@ where
     let mut watch = Stopwatch::start();
     let d = discretize::<E, N, M>(problem, method)?;
     let discretize = watch.lap();
-    let (u, report, times) = solve_discrete(&d, settings)?;
+    let (evaluated, report, times) = solve_discrete(&d, settings)?;
     watch.lap();
-    let solution = Solution::new(&d, u, report);
+    let solution = Solution::new(&d, evaluated, report);
     Ok((solution, Times { discretize, evaluate: watch.lap(), ..times }))
 }
 
-/// Solves a discretization: the displacement at the nodes, how it was found, and how long that took.
+/// Solves a discretization: the displacement with its forces, how it was found, and how long that took.
 ///
 /// # Errors
 /// As [`solve`], but for the data.
 pub fn solve_discrete<E, const N: usize, const M: usize>(
     d: &Discretization<E, N, M>,
     settings: &Settings,
-) -> Result<(Vec<[f64; 2]>, Report, Times), SolveError>
+) -> Result<(Evaluated<M>, Report, Times), SolveError>
 where
     E: ExactEdge<f64, N, M>,
 {
@@ -316,8 +318,13 @@ where
     let found = route::solve(&system, settings, &mut times);
     let (outcome, method, factorizations, factor) = found.map_err(|e| told(&system, e))?;
     let status = accuracy::judge(&outcome, settings).map_err(|e| told(&system, e))?;
-    let Outcome { mut u, residuals, residual, .. } = outcome;
-    held::least_norm(&mut u, d.slides.as_deref().unwrap_or_default());
+    let Outcome { u, fine, residuals, residual, .. } = outcome;
+    let mut evaluated = match fine {
+        Some(fine) => Evaluated::precisely(d, &fine),
+        None => Evaluated::new(d, u),
+    };
+    // This changes neither P nor the forces.
+    held::least_norm(&mut evaluated.u, d.slides.as_deref().unwrap_or_default());
     let newton = NewtonReport { status, residuals, residual, factorizations };
     watch.lap();
     let limit = match &factor {
@@ -325,9 +332,9 @@ where
         None if d.slides.is_some() => Err(NoLimit::HeldByContact),
         None => Err(NoLimit::Assembled),
     };
-    let enclosure = enclosure::enclose(&system, &u, factor);
+    let enclosure = enclosure::enclose(&system, &evaluated.u, factor);
     times.certify = watch.lap();
-    Ok((u, Report { newton, method, enclosure, limit }, times))
+    Ok((evaluated, Report { newton, method, enclosure, limit }, times))
 }
 
 /// Where kappa >= 1 and no solution was found: whether (8) has none, or several, if that can be proved.

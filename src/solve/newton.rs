@@ -113,7 +113,8 @@ pub struct Until {
 
 /// Newton's method from where `body` is, with soft springs if this is the `first` time. Appends the residual at each
 /// iterate to `residuals`, and stops as `until` says, at the rounding level, or after a step that leaves nothing to do. Gives
-/// the decrement of the last step if the line search cut it short: it has not been made, so there the iterate is no nearer.
+/// the decrement of the last step if the line search cut it short or found no decrease: then it has not been made, and the
+/// iterate is as far off as before.
 ///
 /// # Errors
 /// Those of [`Body::step`].
@@ -141,7 +142,7 @@ pub fn minimise<const M: usize>(
         let scaled = at.times(springs.stiffness);
         let step = body.step(&scaled)?;
         let Some(t) = line_search(edges, body.y(), springs.stiffness, &scaled, &step) else {
-            return Ok(left);
+            return Ok(-step.slope);
         };
         body.advance(t, &step);
         at = derivatives(edges, body.y());

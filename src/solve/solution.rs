@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::answers::{self, ContactBoundary, EnergyBalance};
 use super::enclosure::Certificate;
+use super::evaluated::Evaluated;
 use super::{MethodReport, NewtonReport, NoLimit, Report, TrueLimit};
 use crate::fem::contact_line::{self, Coercivity};
 use crate::fem::discretization::{Discretization, inner};
@@ -127,19 +128,19 @@ pub struct Quantities {
 }
 
 impl Solution {
-    /// Evaluates the solution with the nodal values `u`.
+    /// What there is to say of a displacement.
     pub fn new<E, const N: usize, const M: usize>(
         d: &Discretization<E, N, M>,
-        u: Vec<[f64; 2]>,
+        evaluated: Evaluated<M>,
         report: Report,
     ) -> Self
     where
         E: ExactEdge<f64, N, M>,
     {
-        let stress = mean_stresses(d, &u);
-        let residual = d.residual(&u).values;
-        let quantities = quantities(d, &u, &residual);
-        let recovered = answers::recovered_pressure(d, &u);
+        let stress = mean_stresses(d, &evaluated.u);
+        let quantities = quantities(d, &evaluated);
+        let Evaluated { u, p, residual } = evaluated;
+        let recovered = answers::recovered_pressure(d, &p);
         let with_material =
             || stress.iter().enumerate().map(|(t, &s)| (d.problem.material.of(t), s));
         Solution {
@@ -149,10 +150,10 @@ impl Solution {
             nodes_per_triangle: N,
             von_mises: with_material().map(|(m, s)| m.von_mises_squared(s).sqrt()).collect(),
             stress: with_material().map(|(m, s)| (s, m.stress_zz(s))).collect(),
-            contact: contact_values(d, &u, &recovered),
-            boundaries: answers::contact_boundaries(d, &u, &recovered),
+            contact: contact_values(d, &u, &p, &recovered),
+            boundaries: answers::contact_boundaries(d, &u, &p, &recovered),
             largest_strain: answers::largest_strain(d, &u),
-            balance: answers::energy_balance(d, &u, &residual, quantities.energy),
+            balance: answers::energy_balance(d, &u, &p, &residual, quantities.energy),
             gamma: GammaReport::new(d, report.limit),
             newton: report.newton,
             method: report.method,
@@ -259,6 +260,7 @@ where
 fn contact_values<E, const N: usize, const M: usize>(
     d: &Discretization<E, N, M>,
     u: &[[f64; 2]],
+    p: &[[f64; M]],
     recovered: &[[f64; M]],
 ) -> Vec<ContactEdgeValues>
 where
@@ -266,13 +268,13 @@ where
 {
     let mut start = 0.0;
     let mut line = Vec::with_capacity(d.contact.len());
-    for (edge, recovered) in d.contact.iter().zip(recovered) {
+    for ((edge, &p), recovered) in d.contact.iter().zip(p).zip(recovered) {
         if line.last().is_none_or(|last: &ContactEdgeValues| last.boundary != edge.boundary) {
             start = 0.0;
         }
         let triangle = edge.edge.triangle;
         let nodal = d.space.on_triangle(triangle, u);
-        let (p, sigma_n) = (edge.p(&nodal), edge.sigma_n(&nodal));
+        let sigma_n = edge.sigma_n(&nodal);
         let nodes = d.space.edge_nodes(edge.edge);
         let positions: [f64; M] = E::edge_positions();
         let mut points: Vec<ContactValues> = (0..M)
@@ -300,8 +302,7 @@ where
 
 fn quantities<E, const N: usize, const M: usize>(
     d: &Discretization<E, N, M>,
-    u: &[[f64; 2]],
-    residual: &[[f64; 2]],
+    Evaluated { u, p, residual }: &Evaluated<M>,
 ) -> Quantities
 where
     E: ExactEdge<f64, N, M>,
@@ -317,8 +318,7 @@ where
         reactions: BTreeMap::new(),
         reaction_moments: BTreeMap::new(),
     };
-    for edge in &d.contact {
-        let p = edge.p(&d.space.on_triangle(edge.edge.triangle, u));
+    for (edge, &p) in d.contact.iter().zip(p) {
         let integrals = d.rule.integrals::<E, N, M>(p);
         // The shape functions add up to one, so this is the integral of [P]+ / gamma.
         let force = edge.length / edge.gamma * integrals.gradient.iter().sum::<f64>();

@@ -374,30 +374,14 @@ fn wrong(body: &Body) -> Option<String> {
         return Some(format!("off by {error:.1e} in the energy norm"));
     }
     let quantities = &solution.quantities;
-    let rounding = rounding_of_forces(body, quantities.max_displacement);
-    out_of_balance(body, &quantities.contact_resultant, &quantities.reactions, rounding)
+    out_of_balance(body, &quantities.contact_resultant, &quantities.reactions)
 }
 
-/// What the rounding of nodal displacements to doubles leaves in forces: each is a stiffness times a displacement that is
-/// off by its rounding, E h_T^2 / |T| on a triangle and |E| / gamma on an edge of Gamma_C.
-fn rounding_of_forces(body: &Body, displacement: f64) -> f64 {
-    let mesh = &body.problem.mesh;
-    let modulus = body.problem.material.only().unwrap().normal_stiffness();
-    let stiffness: f64 = (0..mesh.triangles().len())
-        .map(|t| {
-            let h = mesh.diameter(t);
-            modulus * (h / (mesh.triangle(t).double_area() / h)) + 1.0 / body.gamma0
-        })
-        .sum();
-    8.0 * f64::EPSILON * displacement * stiffness
-}
-
-/// Body force, reactions and contact must balance to [`CLOSE`] of their sizes, and rounding.
+/// Body force, reactions and contact must balance to [`CLOSE`] of their sizes.
 fn out_of_balance(
     body: &Body,
     contact: &[f64; 2],
     reactions: &BTreeMap<String, [f64; 2]>,
-    rounding: f64,
 ) -> Option<String> {
     let mesh = &body.problem.mesh;
     let area: f64 = (0..mesh.triangles().len()).map(|t| mesh.triangle(t).double_area() / 2.0).sum();
@@ -405,7 +389,7 @@ fn out_of_balance(
         let forces = reactions.values().map(|r| r[c]).chain([contact[c], body.force[c] * area]);
         let (sum, size) = forces.fold((0.0, 0.0), |(s, m): (f64, f64), f| (s + f, m + f.abs()));
         let weight = body.force[0].hypot(body.force[1]) * area;
-        if !(sum.abs() <= CLOSE * size.max(weight) + rounding) {
+        if !(sum.abs() <= CLOSE * size.max(weight)) {
             return Some(format!("forces along {} add up to {sum:e} of {size:e}", ["x", "y"][c]));
         }
     }

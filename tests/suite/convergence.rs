@@ -22,6 +22,7 @@ use signorini::fem::{Discretization, Errors, loads};
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::{P1, P2};
 use signorini::nalgebra::Vector2;
+use signorini::solve::evaluated::Evaluated;
 use signorini::solve::ladder::{fitted_slope, rates};
 use signorini::solve::{Degree, Gamma0, Ladder, SolveError, Theorem, solve_discrete};
 
@@ -266,7 +267,7 @@ where
         Discretization::<E, N, M>::new(&problem, |c| c.limit() / 2.0, EdgeRule::Exact).unwrap();
     let contact: Vec<ContactLineEdge<N, M>> = d.contact.clone();
     modify(&mut d);
-    let (u, ..) = solve_discrete(&d, &ladder.settings)?;
+    let (Evaluated { u, .. }, ..) = solve_discrete(&d, &ladder.settings)?;
     Ok(Errors::new(&d.space, &contact, &u, &*ladder.solution))
 }
 

@@ -11,6 +11,7 @@ use signorini::fem::{Condition, Diagonal, Discretization, Problem, Rectangle};
 use signorini::io::Case;
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::{Material, P1, P2, Plane};
+use signorini::solve::evaluated::Evaluated;
 use signorini::solve::{
     ContactQuadrature, Degree, Gamma0, Method, Settings, SolveError, Status, solve, solve_discrete,
 };
@@ -229,7 +230,7 @@ fn equilibrium<E: ExactEdge<f64, N, M>, const N: usize, const M: usize>(
     contact_factor: f64,
 ) -> f64 {
     let d = half_the_limit::<E, N, M>(problem, rule);
-    let (u, report, _) = solve_discrete(&d, &Settings::default()).unwrap();
+    let (Evaluated { u, .. }, report, _) = solve_discrete(&d, &Settings::default()).unwrap();
     assert_eq!(report.newton.status, Status::Converged, "{name}");
     let residual = d.residual(&u).values;
     let motions = [|_: [f64; 2]| [1.0, 0.0], |_| [0.0, 1.0], |[x, y]: [f64; 2]| [-y, x]];
@@ -438,7 +439,7 @@ fn plain_newton_cycles_where_the_line_search_ends() {
         assert!((energy - expected).abs() < 1e-4, "{energies:?}");
     }
     // From the same place, with the line search: the minimiser.
-    let (u, report, _) = solve_discrete(&d, &Settings::default()).unwrap();
+    let (Evaluated { u, .. }, report, _) = solve_discrete(&d, &Settings::default()).unwrap();
     assert_eq!(report.newton.status, Status::Converged);
     assert_eq!(contact_set(&d, &u), [2, 5]);
     assert!((d.energy(&u) - 0.291087).abs() < 1e-6, "{}", d.energy(&u));

@@ -209,8 +209,15 @@ fn verdict_is_honest(accepted: f64) -> Outcome {
                 let settings = Settings { tolerance: 1e-10, max_iterations: 50 };
                 let residuals = vec![1.0; steps + 1];
                 let (u, correction, condition) = (Vec::new(), forward_error, 1.0);
-                let solved =
-                    Solved { u, residuals, residual, correction, forward_error, condition };
+                let solved = Solved {
+                    u,
+                    fine: None,
+                    residuals,
+                    residual,
+                    correction,
+                    forward_error,
+                    condition,
+                };
                 let expected = match (forward_error <= accepted, residual <= 1e-10) {
                     (true, true) => "converged",
                     (true, false) => "converged to rounding",

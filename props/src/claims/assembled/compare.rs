@@ -1,0 +1,257 @@
+//! The comparison: every double within the bound of its own roundings, and what holds between the numbers of one problem.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+
+use num_traits::ToPrimitive;
+use signorini::fem::matrix::Numbering;
+use signorini::fem::{BoundaryEdge, Discretization};
+use signorini::kernel::edge_integral::ExactEdge;
+use signorini::solve::Solution;
+use signorini::solve::evaluated::Evaluated;
+
+use super::definition::{Mistake, Named, Setting, defined, inner};
+use super::draw::{Draw, owner};
+use super::given::read;
+use super::solver::{assembled, numbered, unsolved};
+use crate::bodies::{Body, Definition, Rule, combined, contact_class, sum};
+use crate::ensure;
+use crate::naive::Line;
+use crate::numbers::{Exact, Magnitude};
+use crate::verdict::Verdict;
+
+/// 2^-53
+pub(super) const UNIT: f64 = f64::EPSILON / 2.0;
+
+/// The roundings on the longest way to these numbers, for P2: an edge takes 1, the double area 4, a barycentric gradient 6,
+/// the gradient of a shape function 9, lambda of plane stress 4, a point of a Gauss rule or its weight some 4.
+pub(super) fn roundings(name: &str) -> f64 {
+    f64::from(match name {
+        "prescribed data" => 8,
+        "u_n" => 3,
+        "arc" => 5,
+        // lambda + 2 mu, h_T, area.
+        "C_h" | "kappa" | "limit" => 14,
+        // Gradient, sigma_n of a shape function 11, gamma 2, sum over 12 products.
+        "sigma_n(u)" | "sigma_n(u^h)" | "mean stress" => 36,
+        "P(u)" | "gap" | "lambda^h" | "peak pressure" => 42,
+        // Place 6, value 8, shape 8, weight 10, sum over 16 points of 8 triangles.
+        "L(v)" | "L(u)" => 48,
+        // Two gradients, the material, the area, sums.
+        "a(., .)" | "A(., .)" | "a(u, v)" | "a(u, u)" | "A(u, v) - L(v)" => 64,
+        // P, the integral over an edge, P0.
+        _ => 96,
+    })
+}
+
+/// The error of a double as a share of its bound; infinite where it is no number, or wrong where there is nothing to round.
+pub(super) fn share(double: f64, exact: Exact, bound: f64) -> f64 {
+    if !double.is_finite() {
+        return f64::INFINITY;
+    }
+    let error = (Exact::of_double(double) - exact).abs().value().to_f64();
+    match error {
+        Some(0.0) => 0.0,
+        Some(error) => error / bound,
+        None => f64::INFINITY,
+    }
+}
+
+/// The largest share of its bound that an error used up, by name.
+pub(super) type Shares = RefCell<BTreeMap<&'static str, f64>>;
+
+/// The whole comparison for one problem.
+pub(super) fn compared<E, const N: usize, const M: usize>(
+    draw: &Draw,
+    mistake: Mistake,
+    matrices: bool,
+    shares: &Shares,
+) -> Verdict
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let problem = draw.problem();
+    let discretized =
+        Discretization::<E, N, M>::new(&problem, |c| draw.kappa * c.limit(), draw.rule());
+    let Ok(d) = discretized else { return Verdict::Fails("the problem is refused") };
+    Exact::scope(|| {
+        let settings = (Setting::<Exact>::new(draw, &d), Setting::<Magnitude>::new(draw, &d));
+        let (Some(mut exact), Some(mut magnitude)) = settings else {
+            return Verdict::Fails("nodes and contact edges are those of the mesh");
+        };
+        exact.plant(mistake, draw);
+        magnitude.plant(mistake, draw);
+        let nodes = d.space.nodes().len();
+        ensure!(nodes == exact.body.node_count(N / 3));
+        for (node, values) in d.constraints.values().iter().enumerate() {
+            for c in 0..2 {
+                ensure!(values[c].is_some() == exact.prescribed.contains_key(&(node, c)));
+            }
+        }
+        let numbering = Numbering::new(&draw.order(nodes), d.constraints.values());
+        ensure!(numbering.count == 2 * nodes - exact.prescribed.len());
+        let order = if matrices { numbered(&numbering) } else { Vec::new() };
+        let [u, step] = draw.fields(nodes);
+        let doubles = assembled(&d, &u, matrices.then_some(&numbering));
+        let exactly = defined::<_, N>(&exact, nodes, &read(&u), &order);
+        let magnitudes = defined::<_, N>(&magnitude, nodes, &read(&u), &order);
+        let near = all_near(&doubles, &exactly, &magnitudes, shares);
+        if near.fails() {
+            return near;
+        }
+        ensure!(contact_edges_follow_each_other(draw, &d));
+        ensure!(limiting_edge_attains_the_constant::<E, N, M>(&d, &exact.body));
+        ensure!(contact_length_is_the_measure_of_the_pressed_part(&d, &exact, &magnitude, &u));
+        ensure!(residual_is_the_gradient_of_the_energy(&d, &exact, &magnitude, [&u, &step]));
+        Verdict::Holds(contact_class::<N>(&exact.body, &read(&u)))
+    })
+}
+
+/// Every double is within its bound. All names and lengths are the same on the three sides.
+pub(super) fn all_near(
+    doubles: &[Named<f64>],
+    exact: &[Named<Exact>],
+    magnitudes: &[Named<Magnitude>],
+    shares: &Shares,
+) -> Verdict {
+    ensure!(doubles.len() == exact.len());
+    for (((name, doubles), (defined, exact)), (_, magnitudes)) in
+        doubles.iter().zip(exact).zip(magnitudes)
+    {
+        ensure!(name == defined && doubles.len() == exact.len());
+        for ((&double, &exact), magnitude) in doubles.iter().zip(exact).zip(magnitudes) {
+            let share = share(double, exact, roundings(name) * UNIT * magnitude.sum());
+            if !(share <= 1.0) {
+                return Verdict::Fails(name);
+            }
+            let mut shares = shares.borrow_mut();
+            let largest = shares.entry(name).or_insert(0.0);
+            *largest = largest.max(share);
+        }
+    }
+    Verdict::Holds("near")
+}
+
+/// On one side of the body, each contact edge starts where the one before it ends.
+pub(super) fn contact_edges_follow_each_other<E, const N: usize, const M: usize>(
+    draw: &Draw,
+    d: &Discretization<'_, E, N, M>,
+) -> bool
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let (_, triangles, sides) = draw.parts();
+    let ends = |edge: BoundaryEdge| [1, 2].map(|k| triangles[edge.triangle][(edge.local + k) % 3]);
+    let side = |edge: BoundaryEdge| {
+        sides.values().position(|edges| edges.iter().any(|&e| owner(&triangles, e) == edge))
+    };
+    d.contact.windows(2).all(|pair| {
+        let [a, b] = [pair[0].edge, pair[1].edge];
+        side(a) != side(b) || ends(a)[1] == ends(b)[0]
+    })
+}
+
+/// The edge that is said to limit gamma0 belongs to a triangle where the maximum C_h is attained, up to its bound.
+pub(super) fn limiting_edge_attains_the_constant<E, const N: usize, const M: usize>(
+    d: &Discretization<'_, E, N, M>,
+    body: &Body,
+) -> bool
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let definition = Definition::<N>(body);
+    let most = definition.coercivity();
+    let least = most * (Exact::from(1) - Exact::of_double(4.0 * roundings("C_h") * UNIT));
+    let edge = d.coercivity.limiting_edge.map(|x| x.map(Exact::of_double));
+    body.contact.iter().any(|side| {
+        let corners = body.triangles[side.triangle];
+        let ends = [1, 2].map(|k| body.vertices[corners[(side.local + k) % 3]]);
+        ends == edge && definition.coercivity_of(side.triangle) >= least
+    })
+}
+
+/// The contact length is monotone in P, and P is known to some delta: it lies between the measures of {P > delta} and of
+/// {P > -delta}. (It is no continuous function of P where P touches zero.)
+pub(super) fn contact_length_is_the_measure_of_the_pressed_part<E, const N: usize, const M: usize>(
+    d: &Discretization<'_, E, N, M>,
+    exact: &Setting<Exact>,
+    magnitude: &Setting<Magnitude>,
+    u: &[[f64; 2]],
+) -> bool
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let (definition, sizes) =
+        (Definition::<N>(&exact.body), Definition::<N, Magnitude>(&magnitude.body));
+    let measure = |sign: f64| {
+        sum(0..exact.body.contact.len(), |e| {
+            let side = &exact.body.contact[e];
+            let size = sizes.traces(&magnitude.body.contact[e], &read(u)).p.maximum().sum();
+            let delta = Exact::of_double(sign * roundings("P(u)") * UNIT * size);
+            let p = definition.traces(side, &read(u)).p.plus(&Line(vec![delta]));
+            let zero = Exact::from(0);
+            side.length
+                * match exact.rule() {
+                    Rule::Exact => sum(
+                        p.pieces(),
+                        |([start, end], positive)| {
+                            if positive { end - start } else { zero }
+                        },
+                    ),
+                    Rule::Points(points) => {
+                        sum(points, |&[s, w]| if p.at(s) > zero { w } else { zero })
+                    }
+                }
+        })
+    };
+    let lengths = sum(&exact.body.contact, |side| side.length);
+    // Root, difference, product, sum.
+    let slack = lengths * Exact::of_double(12.0 * UNIT);
+    let length =
+        Solution::new(d, Evaluated::new(d, u.to_vec()), unsolved()).quantities.contact_length;
+    let length = Exact::of_double(length);
+    measure(-1.0) - slack <= length && length <= measure(1.0) + slack
+}
+
+/// J_h(u + v) - J_h(u) - R(u; v) lies between 1/2 A(v, v) and 1/2 A(v, v) + 1/2 int P0(v)^2/gamma, up to the bounds of
+/// the three: the residual is the derivative of the energy.
+pub(super) fn residual_is_the_gradient_of_the_energy<E, const N: usize, const M: usize>(
+    d: &Discretization<'_, E, N, M>,
+    exact: &Setting<Exact>,
+    magnitude: &Setting<Magnitude>,
+    [u, step]: [&[[f64; 2]]; 2],
+) -> bool
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let nodes = u.len();
+    let moved: Vec<[f64; 2]> =
+        u.iter().zip(step).map(|(u, v)| [u[0] + v[0], u[1] + v[1]]).collect();
+    // The sum is rounded; the step is what it came to.
+    let one = Exact::from(1);
+    let v = combined(one, &read(&moved), -one, &read(u));
+    let size: Vec<[Magnitude; 2]> = read(step);
+    let residual = d.residual(u).values;
+    let along = sum(0..nodes, |k| {
+        let [x, y] = residual[k].map(Exact::of_double);
+        x * v[k][0] + y * v[k][1]
+    });
+    let above = Exact::of_double(d.energy(&moved)) - Exact::of_double(d.energy(u)) - along;
+    let sizes = Definition::<N, Magnitude>(&magnitude.body);
+    let load: Vec<Magnitude> = (0..2 * nodes).map(|k| magnitude.load::<N>(k / 2, k % 2)).collect();
+    let energy = |u: &[[f64; 2]]| {
+        let u = read(u);
+        magnitude.energy::<N>(&u, inner(&load, &u))
+    };
+    let terms = energy(&moved)
+        + energy(u)
+        + sizes.big_a(&read(u), &size)
+        + magnitude.contact::<N>(&read(u), &size)
+        + inner(&load, &size);
+    let slack = Exact::of_double(roundings("residual") * UNIT * terms.sum());
+    let definition = Definition::<N>(&exact.body);
+    let half = Exact::ratio(1, 2);
+    let least = half * definition.big_a(&v, &v);
+    let most = least + half * definition.squares(exact.rule(), &v);
+    least - slack <= above && above <= most + slack
+}

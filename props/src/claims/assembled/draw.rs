@@ -1,0 +1,313 @@
+//! The problems: random small ones in doubles, as plain data and as the solver is given them.
+
+use std::collections::BTreeMap;
+
+use proptest::prelude::*;
+use signorini::fem::contact_line::EdgeRule;
+use signorini::fem::{
+    BoundaryEdge, BoxedFunction, Condition, Diagonal, Function, Mesh, Problem, Rectangle,
+};
+use signorini::kernel::{Material, Plane};
+
+use super::given::Given;
+
+/// A polynomial of degree <= 2 in x and y: coefficients of 1, x, y, x^2, xy, y^2.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Polynomial {
+    pub(super) coefficients: [f64; 6],
+    /// What it says of its degree; `None` if it keeps it to itself.
+    pub(super) degree: Option<u32>,
+}
+
+impl Polynomial {
+    pub(super) fn value<S: Given>(&self, [x, y]: [S; 2]) -> S {
+        let c = self.coefficients.map(S::given);
+        c[0] + c[1] * x + c[2] * y + c[3] * x * x + c[4] * x * y + c[5] * y * y
+    }
+}
+
+impl Function for Polynomial {
+    fn at(&self, [x, y]: [f64; 2]) -> f64 {
+        let c = self.coefficients;
+        c[0] + c[1] * x + c[2] * y + c[3] * x * x + c[4] * x * y + c[5] * y * y
+    }
+
+    fn degree(&self) -> Option<u32> {
+        self.degree
+    }
+}
+
+/// A component of a traction: a polynomial and a share of the normal, as a pressure has it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Traction {
+    pub(super) polynomial: Polynomial,
+    pub(super) along_normal: f64,
+    pub(super) component: usize,
+}
+
+impl Function for Traction {
+    fn at(&self, x: [f64; 2]) -> f64 {
+        self.polynomial.at(x)
+    }
+
+    fn on_boundary(&self, x: [f64; 2], n: [f64; 2]) -> f64 {
+        self.at(x) + self.along_normal * n[self.component]
+    }
+
+    fn degree(&self) -> Option<u32> {
+        self.polynomial.degree.filter(|_| self.along_normal == 0.0)
+    }
+}
+
+/// How the body meets the obstacle: the gap is moved.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Contact {
+    Open,
+    Pressed,
+    /// The gap rises steeply along the lower side.
+    Cut,
+    /// As the numbers fall.
+    Any,
+}
+
+/// The plain data of a problem.
+#[derive(Clone, Debug)]
+pub(super) struct Draw {
+    pub(super) cells: [usize; 2],
+    pub(super) diagonal: Diagonal,
+    pub(super) moves: Vec<[f64; 2]>,
+    /// Angle, stretch, shear.
+    pub(super) map: [f64; 3],
+    /// Coordinates are multiples of 2^-7, loads and fields of 2^-10, as in most draws: rationals with few digits.
+    pub(super) coarse: bool,
+    /// The vertices are numbered, and the nodes are eliminated, in the order of these.
+    pub(super) keys: Vec<u32>,
+    /// The corner that each triangle lists first.
+    pub(super) first: Vec<usize>,
+    pub(super) two_sides: bool,
+    pub(super) sliding: bool,
+    pub(super) stress: bool,
+    pub(super) lambda: f64,
+    pub(super) mu: f64,
+    pub(super) kappa: f64,
+    pub(super) gauss: bool,
+    /// Body force, traction, displacement, gap.
+    pub(super) data: Vec<Polynomial>,
+    pub(super) along_normal: f64,
+    pub(super) fields: Vec<[f64; 2]>,
+}
+
+/// More than a field on these meshes has nodes.
+pub(super) const MOST_NODES: usize = 32;
+
+pub(super) fn polynomial() -> impl Strategy<Value = Polynomial> {
+    let coefficients = prop::array::uniform6(-1.0_f64..1.0);
+    (coefficients, 0_usize..6, any::<bool>()).prop_map(|(mut coefficients, kind, hidden)| {
+        // Nothing, a constant, an affine function that is zero at the origin, a quadratic one.
+        let (zeros, degree) = match kind {
+            0 => (0..6, 0),
+            1 => (1..6, 0),
+            2 | 3 => (3..6, 1),
+            _ => (0..0, 2),
+        };
+        coefficients[zeros].fill(0.0);
+        if let 2 | 3 = kind {
+            coefficients[0] = 0.0;
+        }
+        Polynomial { coefficients, degree: (!hidden).then_some(degree) }
+    })
+}
+
+pub(super) fn problems(contact: Contact, two_sides: bool) -> impl Strategy<Value = Draw> {
+    let mesh = (
+        prop_oneof![Just([1, 1]), Just([2, 1]), Just([1, 2])],
+        prop::sample::select(&[Diagonal::Left, Diagonal::Right, Diagonal::Crossed]),
+        prop::collection::vec([-0.15_f64..0.15, -0.15_f64..0.15], 8),
+        [0.0_f64..6.3, 0.6_f64..1.6, -0.5_f64..0.5],
+        0_u8..4,
+        prop::collection::vec(any::<u32>(), MOST_NODES),
+        prop::collection::vec(0_usize..3, 8),
+    );
+    let physics =
+        (any::<bool>(), any::<bool>(), -0.6_f64..3.0, 0.5_f64..2.0, 0.05_f64..1.5, any::<bool>());
+    let fields = (
+        prop::collection::vec(polynomial(), 7),
+        prop_oneof![Just(0.0), -1.0_f64..1.0],
+        prop::collection::vec([-1.0_f64..1.0, -1.0_f64..1.0], 2 * MOST_NODES),
+    );
+    // Each kind of problem begins elsewhere in the same stream of random numbers.
+    let skipped =
+        prop::collection::vec(any::<u32>(), 2 * contact as usize + usize::from(two_sides));
+    (skipped, mesh, physics, fields).prop_map(move |(_, mesh, physics, fields)| {
+        let (cells, diagonal, moves, map, kind, keys, first) = mesh;
+        let (sliding, stress, share, mu, kappa, gauss) = physics;
+        let (mut data, along_normal, fields) = fields;
+        data[6].coefficients[0] += match contact {
+            Contact::Open => 32.0,
+            Contact::Pressed => -32.0,
+            Contact::Cut | Contact::Any => 0.0,
+        };
+        if let Contact::Cut = contact {
+            data[6].coefficients[1] += 16.0 * map[0].cos();
+            data[6].coefficients[2] += 16.0 * map[0].sin();
+            data[6].degree = None;
+        }
+        let short = |c: f64| if kind == 0 { c } else { (c * 1024.0).round() / 1024.0 };
+        let fields = fields.into_iter().map(|v| v.map(short)).collect();
+        data.iter_mut().for_each(|p| p.coefficients = p.coefficients.map(short));
+        // Two contact edges of one triangle: at the corner that the diagonal cuts off.
+        let diagonal = if two_sides { Diagonal::Left } else { diagonal };
+        Draw {
+            cells,
+            diagonal,
+            moves,
+            map,
+            coarse: kind != 0,
+            keys,
+            first,
+            two_sides,
+            sliding,
+            stress,
+            lambda: share * mu,
+            mu,
+            kappa,
+            gauss,
+            data,
+            along_normal,
+            fields,
+        }
+    })
+}
+
+/// A side of the body.
+pub(super) type Edges = Vec<[usize; 2]>;
+
+/// Vertices, triangles, and the sides by name.
+pub(super) type Parts = (Vec<[f64; 2]>, Vec<[usize; 3]>, BTreeMap<&'static str, Edges>);
+
+impl Draw {
+    pub(super) fn order(&self, count: usize) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..count).collect();
+        order.sort_by_key(|&i| self.keys[i]);
+        order
+    }
+
+    pub(super) fn parts(&self) -> Parts {
+        let [nx, ny] = self.cells;
+        let (width, height) = (nx as f64, ny as f64);
+        let cells = Rectangle { width, height, nx, ny, diagonal: self.diagonal };
+        let grid = cells.mesh().expect("a rectangle of a few cells is a mesh");
+        let [angle, stretch, shear] = self.map;
+        let [angle, shear] = if self.coarse { [0.0; 2] } else { [angle, shear] };
+        let moved = |(&[x, y], &[dx, dy]): (&[f64; 2], &[f64; 2])| {
+            // Lines of contact stay straight: where they bend, the direction of contact is a field of its own.
+            let (dx, dy) = (if x == 0.0 { 0.0 } else { dx }, if y == 0.0 { 0.0 } else { dy });
+            let (x, y) = (x + dx - width / 2.0, y + dy - height / 2.0);
+            let (x, y) = (stretch * x + shear * y, y / stretch);
+            let turned = [angle.cos() * x - angle.sin() * y, angle.sin() * x + angle.cos() * y];
+            if self.coarse { turned.map(|c| (c * 128.0).round() / 128.0) } else { turned }
+        };
+        let places: Vec<[f64; 2]> = grid.vertices().iter().zip(&self.moves).map(moved).collect();
+        let order = self.order(places.len());
+        let mut number = vec![0; order.len()];
+        order.iter().enumerate().for_each(|(new, &old)| number[old] = new);
+        let triangles = grid.triangles().iter().zip(&self.first).map(|(corners, first)| {
+            let mut corners = corners.map(|v| number[v]);
+            corners.rotate_left(*first);
+            corners
+        });
+        let mut sides: BTreeMap<&str, Edges> = BTreeMap::new();
+        let lines = [("left", 0, 0.0), ("right", 0, width), ("bottom", 1, 0.0), ("top", 1, height)];
+        for corners in grid.triangles() {
+            for [a, b] in [[0, 1], [1, 2], [2, 0]].map(|edge| edge.map(|i| corners[i])) {
+                for (name, c, at) in lines {
+                    if [a, b].iter().all(|&v| grid.vertices()[v][c] == at) {
+                        sides.entry(name).or_default().push([number[a], number[b]]);
+                    }
+                }
+            }
+        }
+        (order.iter().map(|&old| places[old]).collect(), triangles.collect(), sides)
+    }
+
+    /// The names of the sides in contact.
+    pub(super) fn contact(&self) -> &'static [&'static str] {
+        if self.two_sides { &["bottom", "left"] } else { &["bottom"] }
+    }
+
+    /// The names of the sides with a displacement, in alphabetical order, and which components they prescribe. The
+    /// right and the upper side meet, and agree.
+    pub(super) fn displacement(&self) -> &'static [(&'static str, [bool; 2])] {
+        if self.sliding {
+            &[("right", [true, false]), ("top", [true, true])]
+        } else {
+            &[("top", [true, true])]
+        }
+    }
+
+    /// The name of the side with a traction: one that is neither in contact nor prescribed, if there is one. The
+    /// others are free.
+    pub(super) fn traction(&self) -> Option<&'static str> {
+        match (self.two_sides, self.sliding) {
+            (false, _) => Some("left"),
+            (true, false) => Some("right"),
+            (true, true) => None,
+        }
+    }
+
+    pub(super) fn tractions(&self) -> [Traction; 2] {
+        [0, 1].map(|component| Traction {
+            polynomial: self.data[2 + component],
+            along_normal: self.along_normal,
+            component,
+        })
+    }
+
+    pub(super) fn gap(&self) -> Polynomial {
+        self.data[6]
+    }
+
+    /// The problem as the solver is given it.
+    pub(super) fn problem(&self) -> Problem {
+        let (vertices, triangles, sides) = self.parts();
+        let named = sides.into_iter().map(|(name, edges)| (name.to_owned(), edges));
+        let mesh = Mesh::new(vertices, triangles, named).expect("moved a little, it is a mesh");
+        let plane = if self.stress { Plane::Stress } else { Plane::Strain };
+        let boxed = |p: Polynomial| -> BoxedFunction { Box::new(p) };
+        let mut conditions = BTreeMap::new();
+        for &name in self.contact() {
+            conditions.insert(name.to_owned(), Condition::Contact { gap: boxed(self.gap()) });
+        }
+        for (name, components) in self.displacement() {
+            let given = [0, 1].map(|c| components[c].then(|| boxed(self.data[4 + c])));
+            conditions.insert((*name).to_owned(), Condition::Displacement(given));
+        }
+        if let Some(name) = self.traction() {
+            let traction = self.tractions().map(|t| -> BoxedFunction { Box::new(t) });
+            conditions.insert(name.to_owned(), Condition::Traction(traction));
+        }
+        let material = Material::lame(self.lambda, self.mu, plane);
+        Problem::new(mesh, material, [boxed(self.data[0]), boxed(self.data[1])], conditions)
+    }
+
+    pub(super) fn rule(&self) -> EdgeRule {
+        if self.gauss { EdgeRule::gauss(3) } else { EdgeRule::Exact }
+    }
+
+    /// The first field, and a step to another one.
+    pub(super) fn fields(&self, nodes: usize) -> [Vec<[f64; 2]>; 2] {
+        [0, 1].map(|k| self.fields[k * MOST_NODES..][..nodes].to_vec())
+    }
+}
+
+/// The triangle that has this edge, and which of its edges it is.
+pub(super) fn owner(triangles: &[[usize; 3]], edge: [usize; 2]) -> BoundaryEdge {
+    let opposite = |corners: &[usize; 3]| {
+        let has = edge.iter().all(|v| corners.contains(v));
+        corners.iter().position(|v| has && !edge.contains(v))
+    };
+    let mut all = triangles.iter().enumerate().filter_map(|(triangle, corners)| {
+        opposite(corners).map(|local| BoundaryEdge { triangle, local })
+    });
+    all.next().expect("every side belongs to a triangle")
+}

@@ -1,0 +1,118 @@
+//! The same numbers by the solver.
+
+use signorini::fem::Discretization;
+use signorini::fem::matrix::{self, LowerTriangle, Neighbours, Numbering};
+use signorini::kernel::edge_integral::ExactEdge;
+use signorini::solve::evaluated::Evaluated;
+use signorini::solve::{
+    MethodReport, NewtonReport, NoLimit, Report, RouteName, Solution, Status, Unproved,
+};
+
+use super::definition::Named;
+
+/// The report that goes with a displacement that nothing was solved for.
+pub(super) fn unsolved() -> Report {
+    let newton = NewtonReport {
+        status: Status::Converged,
+        residuals: Vec::new(),
+        residual: 0.0,
+        factorizations: 0,
+    };
+    let method = MethodReport {
+        route: RouteName::Condensed,
+        predicted_operations: 0.0,
+        condition: 1.0,
+        forward_error: 0.0,
+        threads: 1,
+        slides: 0,
+    };
+    Report { newton, method, enclosure: Err(Unproved::NotHeld), limit: Err(NoLimit::Assembled) }
+}
+
+/// The same numbers by the solver, in the same order.
+pub(super) fn assembled<E, const N: usize, const M: usize>(
+    d: &Discretization<'_, E, N, M>,
+    u: &[[f64; 2]],
+    numbering: Option<&Numbering>,
+) -> Vec<Named<f64>>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let flat = |field: &[[f64; 2]]| field.as_flattened().to_vec();
+    let solution = Solution::new(d, Evaluated::new(d, u.to_vec()), unsolved());
+    let q = &solution.quantities;
+    let local = |triangle: usize| d.space.on_triangle(triangle, u);
+    // In order along the edge.
+    let sorted = |p: [f64; M]| [0, 2, 1].into_iter().filter(|&a| a < M).map(move |a| p[a]);
+    let line = || d.contact.iter();
+    let points = || solution.contact.iter().flat_map(|edge| &edge.points);
+    let mut all = vec![
+        ("prescribed data", flat(&d.constraints.lift())),
+        ("C_h", vec![d.coercivity.constant]),
+        ("kappa", vec![d.kappa()]),
+        ("limit", vec![d.coercivity.limit()]),
+        ("sigma_n(u)", line().flat_map(|e| e.sigma_n(&local(e.edge.triangle))).collect()),
+        ("P(u)", line().flat_map(|e| sorted(e.p(&local(e.edge.triangle)))).collect()),
+        ("u_n", points().map(|point| point.u_n).collect()),
+        ("gap", points().map(|point| point.gap).collect()),
+        ("sigma_n(u^h)", points().map(|point| point.sigma_n).collect()),
+        ("arc", points().map(|point| point.arc).collect()),
+        ("lambda^h", points().map(|point| point.lambda).collect()),
+        ("peak pressure", vec![q.peak_pressure]),
+        ("contact force", vec![q.contact_force]),
+        ("contact resultant", q.contact_resultant.to_vec()),
+        ("mean stress", solution.stress.iter().flat_map(|(s, _)| s.components()).collect()),
+        ("a(u, v)", flat(&d.internal_forces(u).values)),
+        ("a(u, u)", vec![q.energy]),
+        ("L(v)", flat(&d.load)),
+        ("L(u)", vec![q.work]),
+        ("A(u, v) - L(v)", flat(&d.linear_residual(u).values)),
+        ("residual", flat(&d.residual(u).values)),
+        ("residual without load", flat(&d.residual_and_load(u))),
+        ("J_h", vec![d.energy(u)]),
+        ("reactions", q.reactions.values().flatten().copied().collect()),
+    ];
+    let matrices = numbering.map(|numbering| {
+        let neighbours = Neighbours::new(d.space.nodes().len(), d.space.elements());
+        [
+            matrix::assemble_stiffness(d, numbering, &neighbours),
+            matrix::assemble(d, numbering, &neighbours),
+        ]
+        .map(|matrix| entries(&matrix, numbering.count))
+    });
+    let [stiffness, matrix] = matrices.unwrap_or_default();
+    all.extend([("a(., .)", stiffness), ("A(., .)", matrix)]);
+    all
+}
+
+/// All entries of the lower triangle, column by column, zeros included; NaN if its rows are not in increasing order from
+/// the diagonal on.
+pub(super) fn entries(matrix: &LowerTriangle, count: usize) -> Vec<f64> {
+    let mut all = Vec::new();
+    for column in 0..count {
+        let range = matrix.starts[column]..matrix.starts[column + 1];
+        let rows = &matrix.rows[range.clone()];
+        let mut values = vec![0.0; count - column];
+        for (row, value) in rows.iter().zip(&matrix.values[range]) {
+            values[row - column] = *value;
+        }
+        if rows.first() != Some(&column) || rows.windows(2).any(|w| w[0] >= w[1]) {
+            values.fill(f64::NAN);
+        }
+        all.extend(values);
+    }
+    all
+}
+
+/// The free degrees of freedom in the order of their numbers.
+pub(super) fn numbered(numbering: &Numbering) -> Vec<(usize, usize)> {
+    let mut order = vec![(0, 0); numbering.count];
+    for (node, numbers) in numbering.of.iter().enumerate() {
+        for (c, number) in numbers.iter().enumerate() {
+            if let Some(number) = number {
+                order[*number] = (node, c);
+            }
+        }
+    }
+    order
+}

@@ -1,0 +1,432 @@
+//! The row of Lemma 3.2: the bounds over every field, coercivity on random bodies, and how sharp it is.
+
+use super::*;
+use signorini::fem::Problem;
+use signorini::kernel::edge_integral::ExactEdge;
+use signorini::solve::{Degree, discretize};
+
+use crate::bodies::{Body, Kernel, MaybeExact, Side, bodies, sum};
+use crate::claim::{Claim, Engine, Outcome, by, control, proved, refuted, tested};
+use crate::discrete::Discrete;
+use crate::draws;
+use crate::elimination::{Inertia, combined, inertia};
+use crate::numbers::Exact;
+use crate::sharpness::{self, DIAMETER, Specimen};
+use crate::statement;
+use crate::statement::take;
+
+/// A unit vector from the first component: ((1 - t^2), 2 t)/(1 + t^2).
+fn unit(t: Exact) -> [Exact; 2] {
+    let one = Exact::from(1);
+    let norm = one + t * t;
+    [(one - t * t) / norm, Exact::from(2) * t / norm]
+}
+
+fn unit_normal_at_4(v: &mut [Exact]) {
+    [v[4], v[5]] = unit(v[4]);
+}
+
+fn unit_normal_at_1(v: &mut [Exact]) {
+    [v[1], v[2]] = unit(v[1]);
+}
+
+/// (11) on each triangle and Lemma 3.2 on the body, for any field and for one that attains (11) on the triangles with
+/// one contact edge; `factor` multiplies the constant (1, or a planted smaller one).
+fn coercive<E, const N: usize, const M: usize>(body: &Body, factor: Exact) -> Verdict
+where
+    E: MaybeExact<N, M>,
+{
+    let kernel = Kernel::<N, M>::new::<E>(body);
+    let on = |t: usize, v: &[[Exact; 2]]| {
+        let owned = (0..body.contact.len()).filter(|&e| body.contact[e].triangle == t);
+        sum(owned, |e| kernel.stress_product(e, v, v))
+    };
+    let v = body.drawn(0);
+    for t in 0..body.triangles.len() {
+        let bound = factor * kernel.kappa_of::<E>(t);
+        ensure!(on(t, &v) <= bound * kernel.a_on(t, &v, &v));
+    }
+    let kappa = factor * kernel.kappa::<E>();
+    let rest = kernel.big_a(&v, &v) - (Exact::from(1) - kappa) * kernel.a(&v, &v);
+    ensure!(rest >= Exact::from(0));
+    let mut attained = "two contact edges each";
+    for side in &body.contact {
+        let t = side.triangle;
+        if body.contact.iter().filter(|other| other.triangle == t).count() == 1 {
+            let v = along_the_normal::<N>(body, side);
+            let bound = factor * kernel.kappa_of::<E>(t);
+            ensure!(on(t, &v) == bound * kernel.a_on(t, &v, &v));
+            attained = "attained";
+        }
+    }
+    Verdict::Holds(attained)
+}
+
+/// A field with eps = c n x n on the triangle of a side: c = 1 for P1; for P2 c is affine, 1 on the edge and -1 at
+/// the opposite vertex.
+fn along_the_normal<const N: usize>(body: &Body, side: &Side) -> Vec<[Exact; 2]> {
+    let n = side.n;
+    let height = |x: [Exact; 2]| x[0] * n[0] + x[1] * n[1];
+    let corners = body.triangles[side.triangle].map(|v| height(body.vertices[v]));
+    let (edge, opposite) = (corners[(side.local + 1) % 3], corners[side.local]);
+    body.interpolated(|x| {
+        let depth = height(x) - edge;
+        let v = match N {
+            3 => depth,
+            _ => depth - depth * depth / (opposite - edge),
+        };
+        n.map(|c| c * v)
+    })
+}
+
+fn coercive_p1() -> Outcome {
+    draws::hold(60, bodies(1), &["attained"], |draw| {
+        Exact::scope(|| coercive::<P1, 3, 2>(&draw.body(), Exact::from(1)))
+    })
+}
+
+fn coercive_p2() -> Outcome {
+    draws::hold(20, bodies(1), &["attained"], |draw| {
+        Exact::scope(|| coercive::<P2, 6, 3>(&draw.body(), Exact::from(1)))
+    })
+}
+
+/// The constant one part in a hundred smaller.
+fn smaller_constant() -> Outcome {
+    draws::reject(60, bodies(1), |draw| {
+        Exact::scope(|| coercive::<P1, 3, 2>(&draw.body(), Exact::ratio(99, 100)))
+    })?;
+    draws::reject(60, bodies(1), |draw| {
+        Exact::scope(|| coercive::<P2, 6, 3>(&draw.body(), Exact::ratio(99, 100)))
+    })?;
+    draws::reject(60, bodies(1), |draw| {
+        Exact::scope(|| coercive_for_all::<P1, 3, 2>(&draw.body(), Exact::ratio(99, 100)))
+    })?;
+    draws::reject(60, bodies(1), |draw| {
+        Exact::scope(|| coercive_for_all::<P2, 6, 3>(&draw.body(), Exact::ratio(99, 100)))
+    })
+}
+
+/// (11) on each triangle and Lemma 3.2 on the body for all fields, the free nodes and all others: kappa_T K_T - S_T and
+/// A - (1 - kappa) K = kappa K - S have no negative eigenvalue. Equality in (11) shows as a zero eigenvalue beside the
+/// three of the rigid motions. `factor` multiplies the constant.
+fn coercive_for_all<E, const N: usize, const M: usize>(body: &Body, factor: Exact) -> Verdict
+where
+    E: MaybeExact<N, M>,
+{
+    let kernel = Kernel::<N, M>::new::<E>(body);
+    let kappa = factor * kernel.kappa::<E>();
+    let nodes = body.node_count(N / 3);
+    let zero = Exact::from(0);
+    let mut whole = vec![vec![zero; 2 * nodes]; 2 * nodes];
+    let mut attained = "two contact edges each";
+    for t in 0..body.triangles.len() {
+        let numbers = body.nodes::<N>(t).map(|node| [2 * node, 2 * node + 1]);
+        let numbers = numbers.as_flattened();
+        let [k, s] = kernel.matrices_on(t);
+        for (i, &row) in numbers.iter().enumerate() {
+            for (j, &column) in numbers.iter().enumerate() {
+                whole[row][column] = whole[row][column] + kappa * k[i][j] - s[i][j];
+            }
+        }
+        let edges = body.contact.iter().filter(|side| side.triangle == t).count();
+        if edges > 0 {
+            let bound = factor * kernel.kappa_of::<E>(t);
+            let Inertia { zero, negative, .. } = inertia(&combined(bound, &k, -Exact::from(1), &s));
+            ensure!(negative == 0);
+            if edges == 1 {
+                ensure!(zero == 4);
+                attained = "attained";
+            }
+        }
+    }
+    ensure!(inertia(&whole).negative == 0);
+    Verdict::Holds(attained)
+}
+
+fn coercive_for_all_p1() -> Outcome {
+    draws::hold(30, bodies(1), &["attained"], |draw| {
+        Exact::scope(|| coercive_for_all::<P1, 3, 2>(&draw.body(), Exact::from(1)))
+    })
+}
+
+fn coercive_for_all_p2() -> Outcome {
+    draws::hold(8, bodies(1), &["attained"], |draw| {
+        Exact::scope(|| coercive_for_all::<P2, 6, 3>(&draw.body(), Exact::from(1)))
+    })
+}
+
+/// How well an eigenvalue is known in doubles.
+const TOLERANCE: f64 = 1e-11;
+
+/// Whether `smallest` is lambda_min of (A, K) with kappa = 1/2, up to the tolerance, by counting the eigenvalues of
+/// A - l K = (1 - l) K - S for l on either side (Sylvester); the same counts for 1/(1 - l) times gamma0 say that A ceases
+/// to be positive definite at gamma0*. And whether 1 - `share` kappa bounds it from below.
+fn is_smallest<E, const N: usize, const M: usize>(
+    problem: &Problem,
+    degree: Degree,
+    smallest: f64,
+    share: (i64, i64),
+) -> Result<(), String>
+where
+    E: MaybeExact<N, M> + ExactEdge<f64, N, M>,
+{
+    let method = sharpness::at_kappa(problem, degree, 0.5)?;
+    let d = discretize::<E, N, M>(problem, &method).map_err(|error| error.to_string())?;
+    Exact::scope(|| {
+        let discrete = Discrete::new(&d);
+        let (k, s) = (discrete.stiffness(), discrete.stresses());
+        let one = Exact::from(1);
+        let below = |l: Exact| inertia(&combined(one - l, &k, -one, &s));
+        let [low, high] = [-TOLERANCE, TOLERANCE].map(|e| Exact::of_double(smallest + e));
+        let bound = one - Exact::ratio(share.0, share.1) * discrete.kappa();
+        if below(bound).negative > 0 {
+            return Err(format!("an eigenvalue lies below 1 - {share:?} kappa"));
+        }
+        let Inertia { zero, negative, .. } = below(low);
+        if zero + negative > 0 {
+            return Err(format!("an eigenvalue lies below {smallest}"));
+        }
+        if below(high).negative == 0 {
+            return Err(format!("no eigenvalue lies below {smallest} + {TOLERANCE}"));
+        }
+        Ok(())
+    })
+}
+
+fn sharp_on<E, const N: usize, const M: usize>(
+    specimen: &Specimen,
+    degree: Degree,
+) -> Result<String, String>
+where
+    E: MaybeExact<N, M> + ExactEdge<f64, N, M>,
+{
+    let Specimen { name, problem } = specimen;
+    let smallest = sharpness::smallest_eigenvalue::<E, N, M>(problem, degree, 0.5)?;
+    is_smallest::<E, N, M>(problem, degree, smallest, (1, 1))
+        .map_err(|why| format!("{name}, P{}: {why}", degree.number()))?;
+    let ratio = sharpness::limits::<E, N, M>(problem, degree, DIAMETER)?.ratio();
+    Ok(format!("{name} P{} {ratio:.3}", degree.number()))
+}
+
+/// lambda_min by the solver's matrices in doubles, enclosed by exact counts.
+fn smallest_eigenvalues() -> Outcome {
+    let mut text = Vec::new();
+    for specimen in sharpness::small_bodies()? {
+        text.push(sharp_on::<P1, 3, 2>(&specimen, Degree::One)?);
+        text.push(sharp_on::<P2, 6, 3>(&specimen, Degree::Two)?);
+    }
+    Ok(format!("gamma0* C_h: {}", text.join(", ")))
+}
+
+/// By the rows of S with K, with A, and by the dense matrix: one number, affine in gamma0, also beyond the limit.
+fn one_eigenvalue<E, const N: usize, const M: usize>(
+    specimen: &Specimen,
+    degree: Degree,
+) -> Result<(), String>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let Specimen { name, problem } = specimen;
+    let limits = sharpness::limits::<E, N, M>(problem, degree, DIAMETER)?;
+    for kappa in [0.1, 0.5, 0.9, 2.0] {
+        let expected = limits.smallest_eigenvalue(kappa);
+        let mut found =
+            vec![sharpness::smallest_eigenvalue_dense::<E, N, M>(problem, degree, kappa)?];
+        if kappa < 1.0 {
+            found.push(sharpness::smallest_eigenvalue::<E, N, M>(problem, degree, kappa)?);
+        }
+        let near = |smallest: &f64| (smallest - expected).abs() <= TOLERANCE;
+        if !(expected >= 1.0 - kappa && found.iter().all(near)) {
+            return Err(format!("{name}: {expected}, {found:?} with kappa = {kappa}"));
+        }
+    }
+    Ok(())
+}
+
+fn eigenvalues_agree() -> Outcome {
+    let bodies = sharpness::small_bodies()?;
+    for specimen in &bodies {
+        one_eigenvalue::<P1, 3, 2>(specimen, Degree::One)?;
+        one_eigenvalue::<P2, 6, 3>(specimen, Degree::Two)?;
+    }
+    Ok(format!("{} bodies, P1 and P2, four kappa each", bodies.len()))
+}
+
+/// The table of docs/parameters.md: printed by the code, and within the bound.
+fn table() -> Outcome {
+    let rows = sharpness::rows()?;
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/parameters.md");
+    let stored = std::fs::read_to_string(page).map_err(|error| error.to_string())?;
+    if !stored.contains(&sharpness::table(&rows)) {
+        return Err(format!("{page} is stale: cargo run -p props -- sharpness"));
+    }
+    for row in &rows {
+        for (kappa, smallest) in row.eigenvalues {
+            let affine = row.limits.smallest_eigenvalue(kappa);
+            let near = (smallest - affine).abs() <= TOLERANCE;
+            if !(near && smallest >= 1.0 - kappa - TOLERANCE) {
+                return Err(format!("{}: {smallest}, {affine}, kappa = {kappa}", row.name));
+            }
+        }
+    }
+    let ratios = rows.iter().map(|row| row.limits.ratio());
+    let (low, high) =
+        ratios.fold((f64::INFINITY, 0.0_f64), |(low, high), r| (low.min(r), high.max(r)));
+    Ok(format!("{} rows, gamma0* C_h from {low:.4} to {high:.4}", rows.len()))
+}
+
+/// A claim that must be refused, and why it was.
+fn refused(result: Result<(), String>) -> Outcome {
+    result.map_or_else(Ok, |()| Err("the planted mistake was not rejected".to_owned()))
+}
+
+/// 1 - 0.99 kappa for 1 - kappa, on the two triangles that nearly attain it.
+fn more_than_1_minus_kappa() -> Outcome {
+    let problem = sharpness::trapezoid(0.01)?;
+    let smallest = sharpness::smallest_eigenvalue::<P1, 3, 2>(&problem, Degree::One, 0.5)?;
+    refused(is_smallest::<P1, 3, 2>(&problem, Degree::One, smallest, (99, 100)))
+}
+
+/// |E| for h_T in the rows of S.
+fn length_for_the_diameter() -> Outcome {
+    let mut text = Vec::new();
+    for Specimen { name, problem } in sharpness::small_bodies()? {
+        let limits = sharpness::limits::<P1, 3, 2>(&problem, Degree::One, |_, length| length)?;
+        let smallest = limits.smallest_eigenvalue(0.5);
+        // There the contact edge is the longest one.
+        if name != "crossed cell" && !name.contains("triangles") {
+            let result = is_smallest::<P1, 3, 2>(&problem, Degree::One, smallest, (1, 1));
+            text.push(format!("{name}: {}", refused(result)?));
+        }
+    }
+    Ok(text.join("; "))
+}
+
+/// The triangle (0, 0), (3, 0), (0, 4) with only (3, 0) free: its limit is 2/15, and with gamma0 = 8/5 A is
+/// diag(-2/3, 2/3) there.
+fn lost_beyond_the_limit() -> Outcome {
+    Exact::scope(|| {
+        let vertices = [[0, 0], [3, 0], [0, 4]].map(|p| p.map(Exact::from));
+        let gamma0 = Exact::ratio(8, 5);
+        let body = Body::explicit(&vertices, &[[0, 1, 2]], &[0, 2], Exact::from(5), gamma0);
+        let kernel = Kernel::<3, 2>::new::<P1>(&body);
+        let [x, y] = [[1, 0], [0, 1]].map(|d| body.bump(1, d.map(Exact::from)));
+        let a = [kernel.big_a(&x, &x), kernel.big_a(&x, &y), kernel.big_a(&y, &y)];
+        if kernel.kappa::<P1>() == Exact::from(12)
+            && a == [Exact::ratio(-2, 3), Exact::from(0), Exact::ratio(2, 3)]
+        {
+            Ok("kappa = 12, A = diag(-2/3, 2/3)".to_owned())
+        } else {
+            Err(format!("kappa = {:?}, A = {a:?}", kernel.kappa::<P1>()))
+        }
+    })
+}
+
+/// The row of Lemma 3.2.
+pub fn claim() -> Claim {
+    let hooke = statement!(stress_is_hookes_law, [xx, xy, yx, yy, nx, ny, lambda, mu], ["always"]);
+    let shape = statement!(
+        normal_stress_of_a_shape_is_n_sigma_n,
+        [gx, gy, vx, vy, nx, ny, lambda, mu],
+        ["always"]
+    )
+    .prepared(unit_normal_at_4);
+    let any = statement!(
+        normal_stress_is_bounded_by_the_energy,
+        [xx, xy, yx, yy, nx, ny, lambda, mu],
+        ["always"]
+    )
+    .with_hints(|v| other_strains(take(&v[..6])).to_vec());
+    let horizontal = statement!(
+        normal_stress_on_a_horizontal_edge_is_bounded_by_the_energy,
+        [xx, xy, yx, yy, lambda, mu],
+        ["always"]
+    )
+    .with_hints(|v| vec![v[0], v[1] + v[2]]);
+    let attained = statement!(
+        the_constant_is_attained_by_a_strain_along_the_normal,
+        [c, nx, ny, lambda, mu],
+        ["always"]
+    )
+    .prepared(unit_normal_at_1);
+    let stress = statement!(plane_stress_has_its_own_lambda, [lambda, mu, xx, yy, xy], ["always"]);
+    let strain = statement!(
+        plane_strain_has_a_stress_across_the_plane,
+        [lambda, mu, exx, eyy, exy],
+        ["always"]
+    );
+    let bar = statement!(young_and_poisson_are_those_of_a_bar, [young, poisson, e], ["always"]);
+    let trace =
+        statement!(trace_inequality_holds_with_the_constants_of_p1_and_p2, [a, b, c], ["always"]);
+    let sharp = statement!(the_trace_constant_of_p2_is_attained, [b], ["always"]);
+    let coercive = statement!(the_trace_bound_gives_coercivity, [a, s, kappa], ["always"]);
+    let all =
+        [hooke, shape, any, horizontal, attained, stress, strain, bar, trace, sharp, coercive];
+    let mut checks: Vec<_> = all.into_iter().map(proved).collect();
+    checks.extend(all.into_iter().map(tested));
+    checks.extend([
+        refuted(statement!(
+            control_lambda_plus_mu_for_the_stiffness,
+            [xx, xy, yx, yy, lambda, mu],
+            fails "stress.yy * stress.yy <= (lambda + mu) * energy_density(stress, g)"
+        )),
+        refuted(statement!(control_smaller_trace_constant, [a, b, c], fails "edge <= constant * triangle")),
+        by(Engine::Exact, "11_and_coercivity_hold_on_random_bodies_for_p1", coercive_p1),
+        by(Engine::Exact, "11_and_coercivity_hold_on_random_bodies_for_p2", coercive_p2),
+        by(Engine::Exact, "11_and_coercivity_hold_for_all_fields_for_p1", coercive_for_all_p1),
+        by(Engine::Exact, "11_and_coercivity_hold_for_all_fields_for_p2", coercive_for_all_p2),
+        by(
+            Engine::Exact,
+            "the_smallest_eigenvalue_of_the_solver_is_enclosed_by_exact_counts",
+            smallest_eigenvalues,
+        ),
+        by(
+            Engine::Doubles,
+            "the_smallest_eigenvalue_is_affine_in_gamma0_and_at_least_1_minus_kappa",
+            eigenvalues_agree,
+        ),
+        by(
+            Engine::Doubles,
+            "the_table_of_docs_parameters_is_printed_by_the_code_and_within_the_bound",
+            table,
+        ),
+        control(Engine::Exact, "control_constant_one_percent_smaller", smaller_constant),
+        control(
+            Engine::Exact,
+            "control_1_minus_kappa_one_percent_larger",
+            more_than_1_minus_kappa,
+        ),
+        control(Engine::Exact, "control_length_for_the_diameter", length_for_the_diameter),
+        control(Engine::Exact, "control_coercivity_beyond_the_limit", lost_beyond_the_limit),
+    ]);
+    Claim {
+        id: "9",
+        items: &["(1)", "Lemma 3.2", "(11)", "Remark 3.7"],
+        title: "Coercivity with an explicit constant",
+        paper: "Let gamma0 be sufficiently small. Then A_gamma is elliptic on V^h. In the proof: |gamma^1/2 sigma_n(v^h)|^2 <= C gamma0 |v^h|_1^2 (11).",
+        statement: "sigma_n(v)^2 <= (lambda + 2 mu) sigma(v):eps(v) at every point, with equality for a strain along the normal; |w|_E^2 <= c_p (|E|/|T|) |w|_T^2 for polynomials of degree p - 1, c_1 = 1, c_2 = 3, attained. On random bodies, for P1 and P2 and with kappa_T = gamma0 h_T c_p (lambda + 2 mu) |E|/|T|: int_E gamma sigma_n(v)^2 <= kappa_T a_T(v, v), attained on every triangle with one contact edge, and A(v, v) >= (1 - kappa) a(v, v). The same for all fields at once, by the signs of the eigenvalues of kappa_T K_T - S_T and A - (1 - kappa) K, counted exactly. On nine small bodies with the solver's data, P1 and P2: the smallest eigenvalue lambda_min of A v = lambda K v, computed from the solver's matrices, is enclosed to 1e-11 by exact counts on either side, so A is positive definite up to gamma0* = gamma0/(1 - lambda_min) and not beyond; lambda_min = 1 - gamma0/gamma0* >= 1 - kappa, and on two flat triangles it comes within one percent of kappa of that. On the meshes of the table in docs/parameters.md, which shows how sharp the bound is, likewise in doubles.",
+        numbers: "every ordered field (proof); rationals; eigenvalues in doubles, enclosed over rationals on small bodies.",
+        kernel: &[
+            "contact_edge::coercivity_constant",
+            "material::Material::lame",
+            "material::Material::young_poisson",
+            "material::Material::lambda",
+            "material::Material::mu",
+            "material::Material::normal_stiffness",
+            "material::Material::stress",
+            "material::Material::stress_zz",
+            "material::Material::von_mises_squared",
+            "material::Material::normal_stress_of_shape",
+            "material::Stress::new",
+            "material::Stress::components",
+            "material::Stress::matrix",
+            "material::Stress::normal",
+            "material::Stress::traction",
+        ],
+        preconditions: "mu > 0 and lambda + mu > 0 (in plane stress 3 lambda + 2 mu > 0), which every elastic material satisfies. The paper says 'gamma0 sufficiently small'; here the limit is a number.",
+        limits: "Korn's inequality, which turns a(v, v) into |v|_1^2, is not checked. On the larger meshes of the table the eigenvalues are those of doubles, with no enclosure. The elimination that counts signs (`props/src/elimination.rs`) is trusted.",
+        single: None,
+        checks,
+    }
+}

@@ -1,0 +1,319 @@
+//! The row of Theorem 3.4: the steps of its proof run over symbols, rationals, quantities with dimensions and doubles.
+
+use super::*;
+use crate::claim::{Claim, Engine, Outcome, by, control, proved, refuted, tested};
+use crate::claims::rates;
+use crate::draws;
+use crate::numbers::{Dimension, Exact, Quantity};
+use crate::statement;
+
+const NUMBER: Dimension = Dimension::NUMBER;
+const LENGTH: Dimension = Dimension::LENGTH;
+const STRESS: Dimension = Dimension::STRESS;
+const GAMMA: Dimension = Dimension::GAMMA;
+const WORK: Dimension = Dimension::WORK;
+const NORM: Dimension = Dimension::NORM;
+
+/// Runs a step on numbers with these dimensions: it fails where different ones are added or compared.
+fn with_dimensions<const N: usize>(
+    values: &[(i64, i64)],
+    prepare: fn(&mut [Exact]),
+    dimensions: [Dimension; N],
+    step: fn([Quantity; N]) -> Verdict,
+) -> Verdict {
+    Exact::scope(|| {
+        let mut values: Vec<Exact> = values.iter().map(|&(n, d)| Exact::ratio(n, d)).collect();
+        prepare(&mut values);
+        let data = std::array::from_fn(|i| Quantity::new(values[i], dimensions[i]));
+        match Quantity::check(|| step(data)) {
+            Err(_) => Verdict::Fails("one dimension on both sides"),
+            // An inequality that does not hold is not the point here.
+            Ok(Verdict::Fails(_)) => Verdict::Vacuous,
+            Ok(verdict) => verdict,
+        }
+    })
+}
+
+/// All draws of a step, and that each of its classes is hit.
+fn has_one_dimension<const N: usize>(
+    dimensions: [Dimension; N],
+    classes: &[&'static str],
+    prepare: fn(&mut [Exact]),
+    step: fn([Quantity; N]) -> Verdict,
+) -> Result<(), String> {
+    draws::hold(200, draws::ratios(N), classes, |values| {
+        with_dimensions(values, prepare, dimensions, step)
+    })
+    .map(|_| ())
+}
+
+/// (14)-(20), and what leads to the constant: every sum and every comparison in them is one of equal dimensions.
+fn dimensions() -> Outcome {
+    let branches = ["pressed", "open"];
+    let point = [GAMMA, LENGTH, LENGTH, STRESS, LENGTH, STRESS, LENGTH, STRESS];
+    has_one_dimension(point, &branches, |_| {}, error_identity_holds_at_a_point)?;
+    has_one_dimension(
+        [GAMMA, LENGTH, LENGTH, STRESS, LENGTH, STRESS],
+        &branches,
+        onto_contact,
+        z_times_the_difference_of_p_is_at_most_minus_gamma_z_squared,
+    )?;
+    has_one_dimension(point, &["always"], |_| {}, p0_of_w_splits)?;
+    let raw = [NORM, NORM, NORM, WORK, NORM, NORM, WORK, NUMBER];
+    has_one_dimension(
+        raw,
+        &["always"],
+        onto_raw_facts,
+        raw_facts_give_the_inequality_between_norms,
+    )?;
+    let norms = [NORM, NORM, NORM, NORM, NORM, NUMBER];
+    has_one_dimension(norms, &["always"], onto_bound, young_steps_hold)?;
+    has_one_dimension(norms, &["always"], onto_bound, theorem_3_4_holds_with_its_constant)?;
+    let of_14 = [GAMMA, LENGTH, STRESS, LENGTH, STRESS];
+    has_one_dimension(of_14, &branches, |_| {}, step_14_holds)?;
+    let of_15 = [GAMMA, LENGTH, STRESS, LENGTH, STRESS, LENGTH];
+    has_one_dimension(of_15, &branches, |_| {}, step_15_holds)?;
+    has_one_dimension([STRESS, LENGTH, GAMMA, NUMBER], &["always"], |_| {}, step_16_holds)?;
+    has_one_dimension(OF_17, &branches, onto_17, step_17_holds_with_the_factor_gamma)?;
+    has_one_dimension(OF_18, &["always"], |_| {}, step_18_holds_with_the_factor_gamma)?;
+    let of_19 = [NORM, NORM, NORM, NORM, NORM, NORM, NUMBER];
+    has_one_dimension(of_19, &["always"], onto_19, step_19_holds_with_its_constants)?;
+    let of_20 = [WORK, WORK, WORK, WORK, WORK, WORK, WORK, NUMBER, NUMBER];
+    has_one_dimension(of_20, &["always"], onto_20, step_20_is_the_sum_of_17_18_and_19)?;
+    Ok("stress and length: the same on both sides of every sum and comparison".to_owned())
+}
+
+const OF_17: [Dimension; 6] = [GAMMA, LENGTH, STRESS, LENGTH, STRESS, STRESS];
+const OF_18: [Dimension; 4] = [STRESS, STRESS, GAMMA, NUMBER];
+
+/// (17) and (18) as printed, without the factor gamma.
+fn printed_dimensions() -> Outcome {
+    draws::reject(200, draws::ratios(6), |values| {
+        with_dimensions(values, onto_17, OF_17, control_step_17_as_printed)
+    })?;
+    draws::reject(200, draws::ratios(4), |values| {
+        with_dimensions(values, |_| {}, OF_18, control_step_18_as_printed)
+    })
+}
+
+/// r = k W, a = s + r, W = e + h.
+fn onto_19(v: &mut [Exact]) {
+    for value in v.iter_mut() {
+        *value = value.abs();
+    }
+    v[3] = v[4] + v[5];
+    v[2] = v[6] * v[3];
+    v[0] = v[1] + v[2];
+}
+
+/// The three hypotheses, with equality.
+fn onto_20(v: &mut [Exact]) {
+    let two = Exact::from(2);
+    v[8] = v[8].abs() + Exact::from(1);
+    v[2] = v[1] / (two * v[8]) + v[8] / two * v[4];
+    v[3] = v[7] * (v[5] + v[6] + v[4]);
+    v[0] = v[2] + v[3] - v[1];
+}
+
+/// The exact points that refute (17) and (18) as printed; with the factor gamma both hold there.
+fn errata_points() -> Outcome {
+    Exact::scope(|| {
+        let of = |v: &[i64]| -> Vec<Exact> { v.iter().map(|&n| Exact::ratio(n, 4)).collect() };
+        let array = |v: &[i64]| -> [Exact; 6] { of(v).try_into().expect("six numbers") };
+        let v = array(&[8, 0, -4, 0, 0, 0]);
+        if !control_step_17_as_printed(v).fails() || step_17_holds_with_the_factor_gamma(v).fails()
+        {
+            return Err("(17) at gamma = 2, sigma_n(u) = -1".to_owned());
+        }
+        let v: [Exact; 4] = of(&[4, 4, 1, 4]).try_into().expect("four numbers");
+        if !control_step_18_as_printed(v).fails() || step_18_holds_with_the_factor_gamma(v).fails()
+        {
+            return Err("(18) at z = 1, d = 1, gamma = 1/4, beta = 1".to_owned());
+        }
+        Ok("(17): gamma = 2, sigma_n(u) = -1, the rest 0: 2 <= 1 as printed, 2 <= 2 corrected; \
+            (18): z = d = beta = 1, gamma = 1/4: 1 <= 1/4 as printed, 1/4 <= 1/4 corrected"
+            .to_owned())
+    })
+}
+
+/// (5) at the exact solution: u <= 0 where sigma = 0, u = g where sigma < 0.
+fn onto_contact(v: &mut [Exact]) {
+    let zero = Exact::from(0);
+    let gap = v[1];
+    if v[2] > gap {
+        v[2] = gap;
+        v[3] = -v[3].abs();
+    } else {
+        v[3] = zero;
+    }
+}
+
+fn onto_17(v: &mut [Exact]) {
+    let zero = Exact::from(0);
+    v[1] = -v[1].abs();
+    v[2] = -v[2].abs();
+    if v[3] > zero {
+        v[1] = zero;
+    } else {
+        v[2] = zero;
+    }
+}
+
+/// W on its equation: collinear e and eta, c = e h, W = |e - h|, and r, t within their bounds.
+fn onto_raw_facts(v: &mut [Exact]) {
+    let one = Exact::from(1);
+    for i in [0, 1, 4] {
+        v[i] = v[i].abs();
+    }
+    v[7] = v[7].abs() / (one + v[7].abs());
+    let sign = if v[3] > Exact::from(0) { one } else { -one };
+    v[3] = sign * v[0] * v[1];
+    v[2] = (v[0] - sign * v[1]).abs();
+    v[5] = v[7] * v[2] / (one + v[5].abs());
+    v[6] = v[5] * v[4] - v[6].abs();
+}
+
+fn onto_bound(v: &mut [Exact]) {
+    let (one, two) = (Exact::from(1), Exact::from(2));
+    for value in v.iter_mut() {
+        *value = value.abs();
+    }
+    v[5] /= one + v[5];
+    // Small enough on the left: E and Z from H, S and R.
+    v[0] = v[1].min(v[0]);
+    v[2] = v[4].min(v[2]) / two;
+}
+
+trait Min {
+    fn min(self, other: Self) -> Self;
+}
+
+impl Min for Exact {
+    fn min(self, other: Exact) -> Exact {
+        if self <= other { self } else { other }
+    }
+}
+
+/// The row of Theorem 3.4.
+pub fn claim() -> Claim {
+    let identity = statement!(
+        error_identity_holds_at_a_point,
+        [gamma, g, u, su, uh, sh, v, sv],
+        ["pressed", "open"]
+    );
+    let z = statement!(
+        z_times_the_difference_of_p_is_at_most_minus_gamma_z_squared,
+        [gamma, g, u, su, uh, sh],
+        ["pressed", "open"]
+    )
+    .prepared(onto_contact);
+    let split = statement!(p0_of_w_splits, [gamma, g, u, su, uh, sh, v, sv], ["always"]);
+    let raw = statement!(
+        raw_facts_give_the_inequality_between_norms,
+        [e, h, w, c, s, r, t, k],
+        ["always"]
+    )
+    .prepared(onto_raw_facts);
+    let young = statement!(young_steps_hold, [e, h, z, s, r, k], ["always"]);
+    let theorem = statement!(theorem_3_4_holds_with_its_constant, [e, h, z, s, r, k], ["always"])
+        .prepared(onto_bound);
+    let corollary =
+        statement!(corollary_3_6_holds_with_its_constant, [x, s, r, w, e, h, k], ["always"]);
+    let s14 = statement!(step_14_holds, [gamma, uh, sh, v, sv], ["pressed", "open"]);
+    let s15 = statement!(step_15_holds, [gamma, u, su, uh, sh, v], ["pressed", "open"]);
+    let s16 = statement!(step_16_holds, [z, d, gamma, beta], ["always"])
+        .with_hints(|v| vec![v[2] * v[0] - v[3] * v[1]]);
+    let s17 = statement!(
+        step_17_holds_with_the_factor_gamma,
+        [gamma, u, su, uh, sh, sv],
+        ["pressed", "open"]
+    )
+    .prepared(onto_17);
+    let s18 = statement!(step_18_holds_with_the_factor_gamma, [z, d, gamma, beta], ["always"]);
+    let s19 = statement!(step_19_holds_with_its_constants, [a, s, r, w, e, h, k], ["always"]);
+    let s20 = statement!(
+        step_20_is_the_sum_of_17_18_and_19,
+        [t, z, first, second, s, e, h, c, beta],
+        ["always"]
+    );
+    let facts = statement!(
+        three_facts_give_the_hypothesis_of_theorem_3_4,
+        [e, h, z, s, big, k, c, d, q, r, t],
+        ["always"]
+    );
+    let fourteen =
+        statement!(estimate_14_holds, [alpha, big, n, m, b, c, l, i, j, p, q, r], ["always"])
+            .with_hints(|v| vec![v[0] * v[2] - v[1] * v[3]]);
+    let last = statement!(
+        the_last_estimate_follows_from_15_16_and_20,
+        [alpha, big, gamma0, n, m, z, s, d, i, t, b1, b2],
+        ["always"]
+    );
+    let end = statement!(
+        the_last_estimate_bounds_both_errors,
+        [alpha, big, gamma0, n, z, right],
+        ["always"]
+    );
+    let all = [identity, z, split, raw, young, theorem, corollary, s14, s15, s16, s17, s18];
+    let mut checks: Vec<_> = all.into_iter().map(proved).collect();
+    checks.extend([facts, fourteen, s19, s20, last, end].map(proved));
+    checks.extend([identity, z, split, raw, theorem, s14, s15, s16, s17, s18].map(tested));
+    checks.extend([
+        by(Engine::Exact, "every_step_has_one_dimension", dimensions),
+        control(
+            Engine::Exact,
+            "control_17_and_18_as_printed_have_two_dimensions",
+            printed_dimensions,
+        ),
+        control(Engine::Exact, "control_17_and_18_as_printed_at_exact_points", errata_points),
+        by(
+            Engine::Doubles,
+            "the_bound_holds_for_the_errors_of_the_solver",
+            rates::theorem_on_computed_errors,
+        ),
+        control(
+            Engine::Doubles,
+            "control_errors_a_hundred_times_as_large",
+            rates::theorem_on_errors_blown_up,
+        ),
+        refuted(statement!(control_step_17_as_printed, [gamma, u, su, uh, sh, sv], fails "t + gamma * z * z <= factor * z * (su - sv) + gamma * (su - sh) * (sv - sh)")),
+        refuted(statement!(control_step_18_as_printed, [z, d, gamma, beta], fails "factor * z * d <= gamma * z * z / (two * beta) + beta * gamma * d * d / two")),
+        refuted(
+            statement!(control_z_inequality_without_5, [gamma, g, u, su, uh, sh], fails "z * (point.exact.p() - point.discrete.p()) <= -gamma * z * z"),
+        ),
+        refuted(
+            statement!(control_half_the_constant_of_theorem_3_4, [e, h, z, s, r, k], fails "left <= factor * bracket"),
+        ),
+        refuted(
+            statement!(control_step_15_with_penetration, [gamma, u, su, uh, sh, v], fails "su * (v - uh) + over_gamma * v <= (su + over_gamma) * (v - u) + su * (u - uh)"),
+        ),
+    ]);
+    Claim {
+        id: "11",
+        items: &[
+            "Theorem 3.4",
+            "(13)",
+            "(14)",
+            "(15)",
+            "(16)",
+            "(17)",
+            "(18)",
+            "(19)",
+            "(20)",
+            "Corollary 3.6",
+        ],
+        title: "The abstract error estimate, with its constant",
+        paper: "The solution u^h satisfies |u - u^h|_1 + |gamma^1/2 (sigma_n(u) + [P(u^h)]+/gamma)| <= C inf over v^h of (|u - v^h|_1 + |gamma^-1/2 (u_n - v_n^h)| + |gamma^1/2 sigma_n(u - v^h)|), gamma0 sufficiently small.",
+        statement: "With kappa < 1 and delta = 1 - kappa: |u - u^h|_a^2 + |z|_g^2 / delta <= (2/delta) [(1/delta + kappa + 1/2) |eta|_a^2 + kappa (1/delta + 1/2) |sigma_n(eta)|_g^2 + 1/2 |gamma^-1/2 P0(eta)|^2]. The identity for a(e, w), the pointwise inequality for z, Young's steps and the combination are proved one by one; so are (14) whole, (15), (16), (17) and (18) with the missing factor gamma, (19) with constants, (20), and the last estimate of the proof with what it says for beta_1 = beta_2 = 2. The steps are linked: what the raw facts leave is, by one function, the hypothesis of the three facts' combination, and what that concludes is the hypothesis of the theorem. Run on numbers with dimensions, every sum and comparison in these steps is one of equal dimensions; in (17) and (18) as printed it is not.",
+        numbers: "every ordered field (proof); rationals; doubles for the errors that the solver makes on exact solutions. Square roots enter as data: k with kappa = k^2, norms with their squares.",
+        kernel: &[
+            "contact::ContactPoint::p",
+            "contact::ContactPoint::p0",
+            "contact::ContactPoint::pressure",
+        ],
+        preconditions: "gamma > 0, 0 <= kappa < 1; (5) at the exact solution; (8) for the discrete one; the Cauchy-Schwarz inequalities and (11) of the norms.",
+        limits: "The integrals are numbers here: that they exist, Green's formula and the Cauchy-Schwarz inequality are hypotheses. The computed errors are those of two solutions on one mesh each; `cargo test --test suite convergence` has many more. C in the paper's (13) is in other norms; Korn's constant is not computed (row 15 has (13) with it as a number).",
+        single: None,
+        checks,
+    }
+}

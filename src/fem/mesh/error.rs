@@ -1,0 +1,112 @@
+//! Why there is no such mesh.
+
+use thiserror::Error;
+
+use crate::fem::embedding;
+use crate::memory::OutOfMemory;
+use crate::quote::{number, quoted};
+
+/// Why there is no such mesh. Vertices and triangles are counted from 0, or by the numbers of the file they came from.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the message of each variant says what it is")]
+pub enum MeshError {
+    #[error("the mesh has no triangle; expected at least one")]
+    Empty,
+    #[error("vertex {vertex} is at ({}, {}); expected finite coordinates", number(*x), number(*y))]
+    NotFinite { vertex: usize, x: f64, y: f64 },
+    #[error(
+        "triangle {triangle} names vertex {vertex}; expected one of the {count} vertices of this mesh"
+    )]
+    NoSuchVertex { triangle: usize, vertex: usize, count: usize },
+    #[error("triangle {triangle} (vertices {}, {}, {}) has area {}: list its vertices counter-clockwise", vertices[0], vertices[1], vertices[2], number(*area))]
+    Clockwise { triangle: usize, vertices: [usize; 3], area: f64 },
+    #[error("triangle {triangle} (vertices {}, {}, {}) is flat: its area {} is nothing beside its diameter {}", vertices[0], vertices[1], vertices[2], number(*area), number(*diameter))]
+    Flat { triangle: usize, vertices: [usize; 3], area: f64, diameter: f64 },
+    #[error("vertices {} and {} are both at ({}, {}); expected one vertex there", vertices[0], vertices[1], number(*x), number(*y))]
+    Duplicate { vertices: [usize; 2], x: f64, y: f64 },
+    #[error("vertex {vertex} at ({}, {}) belongs to no triangle", number(*x), number(*y))]
+    Unused { vertex: usize, x: f64, y: f64 },
+    #[error("triangles {} and {} overlap: both lie on the same side of the edge from vertex {} to vertex {}", triangles[0], triangles[1], vertices[0], vertices[1])]
+    Overlap { triangles: [usize; 2], vertices: [usize; 2] },
+    #[error("triangles {} and {} overlap at ({}, {}): expected triangles that cover no point twice", triangles[0], triangles[1], number(*x), number(*y))]
+    Overlapping { triangles: [usize; 2], x: f64, y: f64 },
+    #[error("vertices {} at ({}, {}) and {} at ({}, {}) are {:e} apart with no triangle between them, beside edges of length {}: the body would be torn there; expected one vertex, or a gap of more than {} times the edge (mesh.merge = {merge:e} makes them one)", vertices[0], number(places[0][0]), number(places[0][1]), vertices[1], number(places[1][0]), number(places[1][1]), short(*distance), short(*local), embedding::TOUCHING)]
+    Near { vertices: [usize; 2], places: [[f64; 2]; 2], distance: f64, local: f64, merge: f64 },
+    #[error("vertex {vertex} at ({}, {}) hangs inside the edge between vertices {} and {} of triangle {triangle}{}: neighbours must share whole edges", number(*x), number(*y), edge[0], edge[1], beside(*off))]
+    Hanging { vertex: usize, x: f64, y: f64, edge: [usize; 2], triangle: usize, off: f64 },
+    #[error("boundary {}: no triangle has an edge between vertices {} and {}", quoted(boundary, '\''), vertices[0], vertices[1])]
+    NoSuchEdge { boundary: String, vertices: [usize; 2] },
+    #[error("boundary {}: its edge from ({}, {}) to ({}, {}) lies inside the body, between two triangles; nothing can be prescribed there", quoted(boundary, '\''), number(ends[0][0]), number(ends[0][1]), number(ends[1][0]), number(ends[1][1]))]
+    InnerEdge { boundary: String, ends: [[f64; 2]; 2] },
+    #[error("no surface named {}; this mesh has: {known}", quoted(name, '\''))]
+    NoSuchSurface { name: String, known: String },
+    #[error("no point named {}; this mesh has: {known}", quoted(name, '\''))]
+    NoSuchPoint { name: String, known: String },
+    #[error("the edge between vertices {} and {} belongs to boundary {} and again to boundary {}; expected one name for it", vertices[0], vertices[1], quoted(first, '\''), quoted(second, '\''))]
+    NamedTwice { vertices: [usize; 2], first: String, second: String },
+    #[error("no boundary named {}; this mesh has: {known}", quoted(name, '\''))]
+    NoSuchBoundary { name: String, known: String },
+    #[error("{0}; use a coarser mesh")]
+    OutOfMemory(#[from] OutOfMemory),
+    #[error("{name} = {}; expected a positive finite length", number(*value))]
+    Size { name: &'static str, value: f64 },
+    #[error("{name} = {value}; expected at least one cell")]
+    NoCells { name: &'static str, value: usize },
+    #[error("nx = {nx} and ny = {ny} make more than {most} cells; expected fewer")]
+    TooManyCells { nx: usize, ny: usize, most: usize },
+}
+
+fn beside(off: f64) -> String {
+    if off == 0.0 { String::new() } else { format!(", {:e} beside it", short(off)) }
+}
+
+/// A length to three digits.
+fn short(length: f64) -> f64 {
+    format!("{length:.2e}").parse().unwrap_or(length)
+}
+
+impl MeshError {
+    /// The same error in the numbers of the file that the mesh came from.
+    #[must_use]
+    pub fn renumbered(
+        mut self,
+        of_vertex: impl Fn(usize) -> usize,
+        of_triangle: impl Fn(usize) -> usize,
+    ) -> MeshError {
+        use MeshError::*;
+        let two = |pair: &mut [usize; 2]| *pair = pair.map(&of_vertex);
+        match &mut self {
+            OutOfMemory(_) => {}
+            NotFinite { vertex, .. } | Unused { vertex, .. } => *vertex = of_vertex(*vertex),
+            NoSuchVertex { triangle, .. } => *triangle = of_triangle(*triangle),
+            Clockwise { triangle, vertices, .. } | Flat { triangle, vertices, .. } => {
+                *triangle = of_triangle(*triangle);
+                *vertices = vertices.map(&of_vertex);
+            }
+            Duplicate { vertices, .. }
+            | NoSuchEdge { vertices, .. }
+            | NamedTwice { vertices, .. } => two(vertices),
+            Overlap { triangles, vertices } => {
+                *triangles = triangles.map(&of_triangle);
+                two(vertices);
+            }
+            Overlapping { triangles, .. } => *triangles = triangles.map(&of_triangle),
+            Near { vertices, .. } => two(vertices),
+            Hanging { vertex, edge, triangle, .. } => {
+                *vertex = of_vertex(*vertex);
+                *triangle = of_triangle(*triangle);
+                two(edge);
+            }
+            Empty
+            | InnerEdge { .. }
+            | NoSuchBoundary { .. }
+            | NoSuchSurface { .. }
+            | NoSuchPoint { .. }
+            | Size { .. }
+            | NoCells { .. }
+            | TooManyCells { .. } => {}
+        }
+        self
+    }
+}

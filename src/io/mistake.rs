@@ -1,0 +1,108 @@
+//! What is wrong with a case, and where.
+
+use std::fmt::{self, Display, Formatter};
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+use super::expression::ExpressionError;
+use super::gmsh::GmshError;
+use super::input::InputError;
+use crate::fem::MeshError;
+use crate::quote::{self, quoted};
+
+/// What is wrong with a case file, and where.
+#[derive(Debug, Error)]
+#[error("{}{place}: {mistake}", quote::path(file))]
+#[non_exhaustive]
+pub struct CaseError {
+    /// The case file.
+    pub file: PathBuf,
+    /// Where in it.
+    pub place: Place,
+    /// What is wrong.
+    pub mistake: Box<CaseMistake>,
+}
+
+/// A place in a case. It is shown so that it may follow the name of the file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Place {
+    /// The file as a whole.
+    File,
+    /// A line, from 1.
+    Line(usize),
+    /// Not the file, but this setting over it.
+    Setting(String),
+}
+
+impl Display for Place {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        match self {
+            Place::File => Ok(()),
+            Place::Line(line) => write!(f, ":{line}"),
+            Place::Setting(setting) => write!(f, " with --set {}", quote::cut(setting)),
+        }
+    }
+}
+
+/// What is wrong with a case file. `name` is a key as messages show it: `[mesh] rectangle.nx`.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the message of each variant says what it is")]
+pub enum CaseMistake {
+    #[error("{0}")]
+    Input(#[from] InputError),
+    #[error("byte {byte} is not UTF-8; expected a text file")]
+    NoText { byte: usize },
+    #[error("invalid TOML{at}: {said}")]
+    Toml { at: String, said: String },
+    #[error("unknown key {key}{}; expected {known}", within(place))]
+    Unknown { key: String, place: String, known: String },
+    #[error("{name} is missing; expected {expected}")]
+    Missing { name: String, expected: String },
+    #[error("{name} = {found}; expected {expected}")]
+    Value { name: String, found: String, expected: String },
+    #[error("{name}: found {found}; expected {expected}")]
+    Combination { name: String, found: String, expected: String },
+    #[error("{name} = {text}: {error}")]
+    Expression { name: String, text: String, error: ExpressionError },
+    #[error("{name}: {error}")]
+    Mesh { name: String, error: MeshError },
+    #[error("[mesh] gmsh: {0}")]
+    Gmsh(GmshError),
+    #[error("found no key with a value; expected KEY=VALUE, such as method.gamma0=1e-3")]
+    NoSetting,
+}
+
+impl CaseError {
+    /// The case may be right, but there is not enough memory to read it.
+    pub fn is_lack_of_memory(&self) -> bool {
+        match &*self.mistake {
+            CaseMistake::Input(InputError::OutOfMemory(_))
+            | CaseMistake::Mesh { error: MeshError::OutOfMemory(_), .. } => true,
+            CaseMistake::Gmsh(error) => error.is_lack_of_memory(),
+            _ => false,
+        }
+    }
+}
+
+fn within(place: &str) -> String {
+    if place.is_empty() { String::new() } else { format!(" in {place}") }
+}
+
+/// What the TOML reader says, and the words of the file that it speaks of.
+pub(super) fn no_toml(error: &toml::de::Error, text: &str) -> CaseMistake {
+    let said = match error.message() {
+        // It says so where there is no value at all, too.
+        m if m.starts_with("string values must be quoted") => {
+            "expected a value; a text must be in quotes".to_owned()
+        }
+        m => m.replace('\n', ", "),
+    };
+    let at = match error.span().and_then(|span| text.get(span)).map(str::trim) {
+        Some(found) if !found.is_empty() => format!(" at {}", quoted(found, '\'')),
+        _ => String::new(),
+    };
+    CaseMistake::Toml { at, said }
+}

@@ -1,0 +1,55 @@
+//! The displacement that a solve ends with, and what the definitions say of it: P on Gamma_C and the residual of (8) at all
+//! degrees of freedom, prescribed ones included, where it is the reaction. Forces are differences of stiffnesses times nodal
+//! values: where rounding the displacement to doubles would blur them, they are those of the displacement before rounding.
+
+use super::newton::block;
+use crate::fem::discretization::Discretization;
+use crate::fem::precise;
+use crate::fem::twofold::Twofold;
+use crate::kernel::edge_integral::ExactEdge;
+
+/// A displacement with its forces.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Evaluated<const M: usize> {
+    /// Nodal values.
+    pub u: Vec<[f64; 2]>,
+    /// P(u) at the nodes of each contact edge.
+    pub p: Vec<[f64; M]>,
+    /// R(u; v) for every basis function v.
+    pub residual: Vec<[f64; 2]>,
+}
+
+impl<const M: usize> Evaluated<M> {
+    /// Of a displacement in doubles.
+    pub fn new<E, const N: usize>(d: &Discretization<E, N, M>, u: Vec<[f64; 2]>) -> Self
+    where
+        E: ExactEdge<f64, N, M>,
+    {
+        let on_edge = |t: usize| d.space.on_triangle(t, &u);
+        let p = d.contact.iter().map(|edge| edge.p(&on_edge(edge.edge.triangle))).collect();
+        let residual = d.residual(&u).values;
+        Evaluated { u, p, residual }
+    }
+
+    /// Of a displacement in twofold numbers.
+    pub fn precisely<E, const N: usize>(d: &Discretization<E, N, M>, u: &[[Twofold; 2]]) -> Self
+    where
+        E: ExactEdge<f64, N, M>,
+    {
+        let (mut residual, p) = precise::evaluate(d, u);
+        let p: Vec<[f64; M]> = (0..d.contact.len()).map(|e| block(&p, e)).collect();
+        for (edge, &p) in d.contact.iter().zip(&p) {
+            let pressure = d.rule.integrals::<E, N, M>(p).gradient;
+            for (g, functional) in pressure.iter().zip(&edge.functionals.p0) {
+                let nodes = &d.space.elements()[edge.edge.triangle];
+                for (&node, f) in nodes.iter().zip(functional) {
+                    for c in 0..2 {
+                        residual[node][c] += edge.length / edge.gamma * g * f[c];
+                    }
+                }
+            }
+        }
+        let u = u.iter().map(|u| u.map(Twofold::head)).collect();
+        Evaluated { u, p, residual }
+    }
+}
