@@ -20,6 +20,7 @@ import pyvista
 
 # Field: (components, belongs to points or cells)
 SOLUTION = {"displacement": (3, "points"), "stress": (6, "cells"), "von_mises": (1, "cells")}
+SOLUTION |= {"nodal_stress": (6, "points"), "principal_1": (1, "points"), "principal_2": (1, "points")}
 CONTACT = {name: (1, "points") for name in ("u_n", "gap", "sigma_n", "lambda")} | {"displacement": (3, "points")}
 
 # VTK's number of a cell: meshio's name, corners, and the corners on both sides of each middle node.
@@ -119,6 +120,11 @@ def check(folder):
         )
         expect((data["cells"]["stress"][:, 4:] == 0).all(), "stress has yz or xz components")
         expect((data["cells"]["von_mises"] >= 0).all(), "von_mises is negative")
+        xx, yy, _, xy, *_ = np.asarray(data["points"]["nodal_stress"]).T
+        both = np.linalg.eigvalsh(np.array([[xx, xy], [xy, yy]]).T)
+        for field, found in (("principal_1", both[:, 1]), ("principal_2", both[:, 0])):
+            off = np.abs(data["points"][field] - found).max()
+            expect(off <= 1e-12 * np.abs(both).max(), f"{field} is off the eigenvalues of nodal_stress by {off}")
 
         name = "contact.vtu"
         _, cells, data = check_grid(folder / name, [3, 21], CONTACT)
@@ -132,9 +138,9 @@ def damaged(content):
     """Copies of a file that must not pass, each with what was done to it."""
     for part in (0.1, 0.5, 0.9, 0.999):
         yield f"cut after {part:.1%}", content[: int(part * len(content))]
-    # The first array: after 8 bytes with its length, which is 32 letters for 24 bytes, comes its second number.
+    # The first array: 44 letters are the header of one block; what follows is compressed.
     start = content.index(b'format="binary">\n') + len(b'format="binary">\n')
-    yield "with a NaN", content[: start + 22] + b"//////////" + content[start + 32 :]
+    yield "with other bits in its first array", content[: start + 64] + b"//////////" + content[start + 74 :]
     first = content.index(b'Name="') + 6
     yield "with another name for its first field", content[:first] + b"x" + content[first + 1 :]
 

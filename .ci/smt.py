@@ -3,7 +3,8 @@
 
     pip install z3-solver cvc5 bitwuzla
     cargo run -p props -- smt target/smt && python3 .ci/smt.py target/smt
-    python3 .ci/smt.py target/smt --receipt props/receipts     keeps bitwuzla's answers as bitwuzla-DATE.tsv
+    python3 .ci/smt.py target/smt --receipt props/receipts     keeps the answers as bitwuzla-DATE.tsv and reals-DATE.tsv,
+                                                               and asks only what the newest of these has no answer to
 
 Each file says what to expect: unsat (the path is impossible), sat (a planted mistake, refuted at a point), or unknown.
 Floating-point problems (QF_FP) go to bitwuzla instead. Every question runs in a process of its own that is killed after
@@ -45,6 +46,9 @@ p.parse(sys.argv[1], True, True)
 print(str(p.bitwuzla().check_sat()).rsplit(".")[-1].lower())
 """
 
+# The receipts: by name, the solvers and the packages that they come with.
+RECEIPTS = {"bitwuzla": {"bitwuzla": "bitwuzla"}, "reals": {"z3": "z3-solver", "cvc5": "cvc5"}}
+
 # Paths that no solver confirms in time; each has a certificate.
 KNOWN_OPEN = set()
 
@@ -80,7 +84,7 @@ def main():
     arguments.add_argument("directory", type=pathlib.Path)
     arguments.add_argument("--seconds", type=float, default=10)
     arguments.add_argument("--jobs", type=int, default=os.cpu_count())
-    arguments.add_argument("--receipt", type=pathlib.Path, metavar="DIR", help="keep bitwuzla's answers in DIR")
+    arguments.add_argument("--receipt", type=pathlib.Path, metavar="DIR", help="keep the answers in DIR")
     options = arguments.parse_args()
     missing = [m for m in ("z3", "cvc5", "bitwuzla") if not importable(m)]
     if missing:
@@ -88,11 +92,16 @@ def main():
     paths = sorted(options.directory.glob("*.smt2"))
     if not paths:
         sys.exit(f"no problems in {options.directory}")
-    contradictions, unconfirmed, counts, lines = [], [], {}, []
+    contradictions, unconfirmed, counts = [], [], {}
+    doubles, reals = [], []
+    known = stored(options.receipt) if options.receipt else {}
+    fresh = lambda p: known.get((p.name, digest(p))) or decide(p, options.seconds)
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        for path, (expected, answers) in zip(paths, pool.map(lambda p: decide(p, options.seconds), paths)):
+        for path, (expected, answers) in zip(paths, pool.map(fresh, paths)):
             if "bitwuzla" in answers:
-                lines.append(receipt_line(path, expected, answers["bitwuzla"]))
+                doubles.append(receipt_line(path, expected, answers))
+            elif expected == "unsat":
+                reals.append(receipt_line(path, expected, answers))
             for solver, answer in answers.items():
                 counts[solver, expected, answer] = counts.get((solver, expected, answer), 0) + 1
                 if "unknown" not in (expected, answer) and answer != expected:
@@ -113,18 +122,42 @@ def main():
     if contradictions or set(unconfirmed) - KNOWN_OPEN:
         sys.exit(1)
     if options.receipt:
-        write_receipt(options.receipt, lines)
+        for (name, solvers), lines in zip(RECEIPTS.items(), [doubles, reals]):
+            write_receipt(options.receipt, name, solvers, lines)
 
 
-def receipt_line(path, expected, answer):
-    """The problem, the hash of its text, what was expected, and what bitwuzla answered."""
-    return "\t".join([path.name, hashlib.sha256(path.read_bytes()).hexdigest()[:16], expected, answer])
+def receipt_line(path, expected, answers):
+    """The problem, the hash of its text, what was expected, and what each solver answered."""
+    return "\t".join([path.name, digest(path), expected, *answers.values()])
 
 
-def write_receipt(directory, lines):
-    path = directory / f"bitwuzla-{datetime.datetime.now(datetime.timezone.utc).date()}.tsv"
-    version = importlib.metadata.version("bitwuzla")
-    head = [f"# bitwuzla {version}", "\t".join(["problem", "hash", "expected", "answer"])]
+def digest(path):
+    return hashlib.sha256(path.read_bytes()).hexdigest()[:16]
+
+
+def stored(directory):
+    """The answers of the newest receipts, by problem and hash: those of other versions of the solvers count for nothing."""
+    known = {}
+    for name, solvers in RECEIPTS.items():
+        newest = max(directory.glob(f"{name}-*.tsv"), default=None)
+        lines = newest.read_text().splitlines() if newest else []
+        if [line for line in lines if line.startswith("#")] != versions(solvers):
+            continue
+        for line in lines[len(solvers) + 1 :]:
+            problem, digest_of_it, expected, *answers = line.split("\t")
+            if "unknown" not in answers:
+                known[problem, digest_of_it] = expected, dict(zip(solvers, answers))
+    return known
+
+
+def versions(solvers):
+    return [f"# {solver} {importlib.metadata.version(package)}" for solver, package in solvers.items()]
+
+
+def write_receipt(directory, name, solvers, lines):
+    """One receipt: a line for each solver, with its version, then the problems."""
+    path = directory / f"{name}-{datetime.datetime.now(datetime.timezone.utc).date()}.tsv"
+    head = versions(solvers) + ["\t".join(["problem", "hash", "expected", *solvers])]
     path.write_text("\n".join(head + lines) + "\n")
     print(f"written: {path}")
 

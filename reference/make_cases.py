@@ -1,6 +1,6 @@
-"""Writes reference/cases/*.toml: the example cases and the exact solutions on several meshes, P1 and P2, Gauss 4 and exact.
+"""Writes reference/cases/*.toml: the example cases, the exact solutions on several meshes, and parts, P1 and P2, Gauss 4 and exact.
 
-Each is a complete case file. The patch tests use the mesh square.msh, which Gmsh 4.8.4 made from square.geo. Meshes with n <= 8 have all
+Each is a complete case file. The patch tests use the mesh square.msh, which Gmsh 4.8.4 made from square.geo, as the other meshes. Meshes with n <= 8 have all
 their vertices as probes. A variant keeps the example's gamma0 if it keeps its degree, and takes "auto" otherwise (the limit falls to a
 third from P1 to P2).
 
@@ -97,8 +97,35 @@ def patches():
                 yield f"patch-{which}-p{degree}-{quadrature}", text + probes(gmsh.read(FOLDER / "square.msh").points)
 
 
+PARTS = {  # name: (what is in it, material, the rest)
+    "bimaterial": ("two materials, loads by surface, an inclined floor, pressure, traction beside displacement, a point",
+                   'plane = "stress"\n\n[material.pad]\nyoung = 1.0\npoisson = 0.4\n\n[material.punch]\nyoung = 20.0\npoisson = 0.3',
+                   '[load]\nbody = ["0.01*x", 0]\n\n[load.punch]\nbody = [0, "-0.02*y"]\n\n'
+                   '[obstacle.floor]\nplane = { point = [0, -0.08], normal = [-0.03, 1] }\n\n[point.peg]\ndisplacement = [0, "free"]\n\n'
+                   '[boundary.top]\ndisplacement = ["free", "-0.05 - 0.01*x"]\ntraction = ["0.02*x", 0]\n\n'
+                   '[boundary.right]\npressure = "0.03*(1 + y)"\n\n[boundary.bottom]\ncontact = { obstacle = "floor" }'),
+    "seat": ("a shaft in a bearing, pushed along the normal of its chord, held at a point", "lambda = 1.5\nmu = 1.0",
+             '[obstacle.bearing]\ncircle = { center = [0.005, -0.01], radius = 1.02, side = "inside" }\n\n[point.key]\n'
+             'displacement = [0.01, "free"]\n\n[boundary.chord]\nnormal = "-0.05 + 0.01*x"\n\n[boundary.arc]\ncontact = { obstacle = "bearing" }'),
+    "cam": ("a notch on a cam that is given by its distance, held along a tangent and a normal", "lambda = 1.0\nmu = 1.0",
+            '[load]\nbody = ["0.02", "-0.1"]\n\n[obstacle.cam]\ndistance = "sqrt(x^2 + (y + 0.8)^2) - 1"\n\n[boundary.top]\n'
+            'normal = "-0.04*exp(0.1*x)"\ntangential = "0.01"\n\n[boundary.notch]\ncontact = { obstacle = "cam" }'),
+    "fillet": ("straight lines that go over into arcs, a gap along the normal of the smooth boundary", "young = 2.0\npoisson = 0.3",
+               '[boundary.top]\ndisplacement = [0.02, -0.06]\n\n[boundary.right]\nnormal = 0.02\n\n[boundary.foot]\n'
+               'contact = { gap = "0.01 + 0.08*y + 0.01*x" }'),
+}
+
+
+def parts():
+    for name, (what, material, middle) in PARTS.items():
+        for degree in (1, 2):
+            for quadrature in QUADRATURES:
+                text = case(f"Part: {what}, P{degree}, {quadrature}", f'gmsh = "{name}.msh"', material, middle, degree, '"auto"', quadrature)
+                yield f"{name}-p{degree}-{quadrature}", text + probes(gmsh.read(FOLDER / f"{name}.msh").points)
+
+
 def main():
-    for name, text in (*examples(), *exact_solutions(), *patches()):
+    for name, text in (*examples(), *exact_solutions(), *patches(), *parts()):
         (FOLDER / f"{name}.toml").write_text(text)
 
 

@@ -46,7 +46,7 @@ mod command {
     use signorini::io::sweep::{self, Axis, SweepError};
     use signorini::io::{Case, CaseError, certificate};
     use signorini::quote;
-    use signorini::solve::{self, Degree, LadderError, Solution, SolveError, Times};
+    use signorini::solve::{self, Course, Degree, LadderError, Solution, SolveError, Times};
 
     use crate::arguments::{Arguments, CaseArguments, Engine, Mesh, Task};
     use crate::progress::Phases;
@@ -171,7 +171,7 @@ mod command {
         quiet: bool,
     ) -> Result<Done, Failure> {
         let phases = Phases::start(quiet);
-        phases.enter("reading the case");
+        phases.enter("reading the case and its mesh");
         let start = Instant::now();
         let case = read(arguments)?;
         let read = start.elapsed();
@@ -180,8 +180,7 @@ mod command {
             let names = [&outputs::FILES[..], &certificate::FILES].concat();
             spare(&folder, &names, &case.sources).map_err(|e| failure(WRONG)(&e))?;
         }
-        phases.enter("solving");
-        let (solution, times) = solved(&case)?;
+        let (solution, times) = solved(&case, &phases)?;
         let certified = certificate.then(|| {
             phases.enter("certifying");
             Certified::new(&case, &solution)
@@ -224,11 +223,10 @@ mod command {
         quiet: bool,
     ) -> Result<String, Failure> {
         let phases = Phases::start(quiet);
-        phases.enter("reading the case");
+        phases.enter("reading the case and its mesh");
         let case = read(arguments)?;
         let field = read_field(displacement, &case.problem.mesh).map_err(|e| failure(WRONG)(&e))?;
-        phases.enter("solving");
-        let (solution, _) = solved(&case)?;
+        let (solution, _) = solved(&case, &phases)?;
         phases.enter("certifying");
         let certified = certify_field(&case.problem, &solution, &field)
             .map_err(|e| failure(FAILED)(&format!("{}: {e}", displacement.display())))?;
@@ -246,10 +244,11 @@ mod command {
         Ok(summary::audited(&audit))
     }
 
-    fn solved(case: &Case) -> Result<(Solution, Times), Failure> {
-        let (solution, times) = solve::solve(&case.problem, &case.method, &case.settings)
-            .map_err(|e| unsolvable(&case.file, &e))?;
-        Ok((solution, times))
+    fn solved(case: &Case, phases: &Phases) -> Result<(Solution, Times), Failure> {
+        let watcher = |phase| phases.enter_solve(phase);
+        let course = Course::default().watched_by(&watcher);
+        solve::solve_along(&case.problem, &case.method, &case.settings, course)
+            .map_err(|e| unsolvable(&case.file, &e))
     }
 
     /// How the engine fenicsx is to be run.

@@ -1,10 +1,12 @@
 //! What goes on, on standard error if that is a terminal, else nothing.
 
+use std::borrow::Cow;
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use signorini::solve::Phase;
 
 /// Shorter work is not worth a word.
 const PATIENCE: Duration = Duration::from_secs(1);
@@ -54,9 +56,22 @@ impl Phases {
         Phases { bar, watch }
     }
 
-    /// The phase that begins, such as "factoring".
-    pub fn enter(&self, phase: &'static str) {
+    /// The phase that begins, such as "certifying".
+    pub fn enter(&self, phase: impl Into<Cow<'static, str>>) {
         self.bar.set_message(phase);
+    }
+
+    /// A phase inside a solve.
+    pub fn enter_solve(&self, phase: Phase) {
+        self.enter(match phase {
+            Phase::Assemble => "assembling loads, supports and the contact line".into(),
+            Phase::Order => "ordering and assembling the matrix".into(),
+            Phase::Factor => "factoring".into(),
+            Phase::Condense => "condensing the body onto its contact line".into(),
+            Phase::Newton { step } => Cow::from(format!("Newton step {step}")),
+            Phase::Evaluate => "evaluating stresses and pressures".into(),
+            _ => "solving".into(),
+        });
     }
 }
 

@@ -186,16 +186,16 @@ pub fn certified(case: &Case, field: &Path, c: &Continuous, files: &[PathBuf]) -
     let proved = if c.rigorous {
         "proved".to_owned()
     } else {
-        format!("up to quadrature ({})", c.reason.as_deref().unwrap_or_default())
+        format!("with a reservation ({})", c.reason.as_deref().unwrap_or_default())
     };
     lines.line(
         "admissible",
         format!(
-            "{} (energy norm) were changed to satisfy the conditions on displacements",
+            "a displacement that satisfies the conditions is at most {} away (energy norm)",
             short(c.clipping)
         ),
     );
-    lines.line("error", format!("at most {} once admissible: {proved}", size(c.bound)));
+    lines.line("error", format!("at most {} of that one: {proved}", size(c.bound)));
     lines.line("", format!("at most {} as it is", size((c.bound + c.clipping).next_up())));
     lines.line("written", written(files));
     lines.0
@@ -203,7 +203,7 @@ pub fn certified(case: &Case, field: &Path, c: &Continuous, files: &[PathBuf]) -
 
 /// Of a certificate that was verified.
 pub fn audited(audit: &Audit) -> String {
-    let Audit { header, proof } = audit;
+    let Audit { header, proof, .. } = audit;
     let mut lines = Lines::titled(&header.title);
     let counts = header.counts;
     lines.line(
@@ -223,7 +223,7 @@ pub fn audited(audit: &Audit) -> String {
         match &header.reason {
             None if header.rigorous => "yes, rounding included".to_owned(),
             reason => {
-                format!("up to quadrature: {}", reason.as_deref().unwrap_or("no reason given"))
+                format!("with a reservation: {}", reason.as_deref().unwrap_or("no reason given"))
             }
         },
     );
@@ -261,7 +261,7 @@ fn distance(certificate: &ContinuousCertificate) -> String {
     if certificate.rigorous {
         format!("energy error at most {size}: proved")
     } else {
-        format!("energy error at most {size}, up to quadrature ({reason})")
+        format!("energy error at most {size}, with a reservation ({reason})")
     }
 }
 
@@ -314,7 +314,8 @@ fn coercivity(gamma: &GammaChoice) -> String {
         _ => String::new(),
     };
     format!(
-        "gamma0 = {} (limit {} at the edge {}-{}), kappa = {} {verdict}{truth}",
+        "gamma0 = {}{} (limit {} at the edge {}-{}), kappa = {} {verdict}{truth}",
+        if gamma.local { "on each edge its own, from " } else { "" },
         short(gamma.gamma0),
         short(gamma.limit),
         vector(a),

@@ -1,11 +1,11 @@
 //! A claim: an item of the paper, what is said about it here, and the checks that say so. Tests, ledger and audit walk
 //! over the same claims, so no name in `VERIFY.md` can go stale.
 
-use crate::bitwuzla;
 use crate::draws;
 use crate::harness::Harness;
 use crate::proof;
 use crate::receipt::{self, Standing};
+use crate::solvers::{self, Field};
 use crate::statement::Statement;
 
 /// What a check answers: a line of evidence, or what went wrong.
@@ -92,12 +92,17 @@ impl Check {
         }
     }
 
-    /// What a receipt says of it: of a harness by the model checker, of a statement in doubles by bitwuzla.
+    /// What a receipt says of it: of a harness by the model checker, of a statement by the solvers.
     pub fn receipt(&self) -> Option<String> {
         match self.subject {
             Subject::Harness(_) => self.standing().map(|standing| format!("Kani: {standing}")),
-            Subject::Statement(statement) if self.engine == Engine::Doubles && !self.control => {
-                Some(bitwuzla::opinion(&statement).to_string())
+            Subject::Statement(statement) if !self.control => {
+                let field = match self.engine {
+                    Engine::Doubles => Field::Doubles,
+                    Engine::Proof => Field::Reals,
+                    _ => return None,
+                };
+                solvers::opinion(&statement, field).map(|opinion| opinion.said(field))
             }
             _ => None,
         }

@@ -3,15 +3,16 @@
 //!
 //! And the proofs as text, with their certificates, for the checker in `reference/`.
 //!
-//! One file per failing path. The head of a file says what to expect: `unsat` where this engine has a certificate, `sat`
-//! where it has a point, `unknown` where it has neither (paths of controls). A solver that contradicts it is news.
+//! One file per failing path. The head of a file says what to expect: `unsat` of a statement that must hold; of a control,
+//! `unsat` where this engine has a certificate, `sat` where it has a point, `unknown` where it has neither. A solver that
+//! contradicts it is news.
 
 use std::collections::BTreeSet;
 use std::io;
-use std::path::Path;
 
 use crate::claim::{Engine, Subject};
 use crate::claims;
+use crate::proof::explorer::{Path, explore};
 use crate::proof::float::problems;
 use crate::proof::{Fate, analyse, smt, transcript};
 use crate::statement::Statement;
@@ -20,7 +21,7 @@ use crate::statement::Statement;
 ///
 /// # Errors
 /// A statement that is not proved, and whatever keeps the files from being written.
-pub fn certificates(directory: &Path) -> io::Result<usize> {
+pub fn certificates(directory: &std::path::Path) -> io::Result<usize> {
     std::fs::create_dir_all(directory)?;
     let mut seen = BTreeSet::new();
     for check in claims::all().iter().flat_map(|claim| &claim.checks) {
@@ -41,7 +42,7 @@ pub fn certificates(directory: &Path) -> io::Result<usize> {
 ///
 /// # Errors
 /// Whatever keeps them from being written.
-pub fn export(directory: &Path) -> io::Result<usize> {
+pub fn export(directory: &std::path::Path) -> io::Result<usize> {
     std::fs::create_dir_all(directory)?;
     let (mut seen, mut count) = (BTreeSet::new(), 0);
     for check in claims::all().iter().flat_map(|claim| &claim.checks) {
@@ -58,6 +59,13 @@ pub fn export(directory: &Path) -> io::Result<usize> {
             }
             continue;
         }
+        if !check.control {
+            for (name, problem) in of_paths(&statement) {
+                std::fs::write(directory.join(name), problem)?;
+                count += 1;
+            }
+            continue;
+        }
         let analysis = analyse(&statement);
         for (i, fate) in &analysis.fates {
             let expected = match fate {
@@ -65,13 +73,27 @@ pub fn export(directory: &Path) -> io::Result<usize> {
                 Fate::Refuted(_) => "sat",
                 Fate::Open => "unknown",
             };
-            let head = format!("; {}, path {i}\n; expected: {expected}\n", statement.name);
-            let problem = smt::problem(&analysis.paths[*i], statement.variables, &head);
-            std::fs::write(directory.join(format!("{}.{i}.smt2", statement.name)), problem)?;
+            let (name, problem) = of_path(&statement, *i, &analysis.paths[*i], expected);
+            std::fs::write(directory.join(name), problem)?;
             count += 1;
         }
     }
     Ok(count)
+}
+
+/// One path: the name of its file, and the problem.
+fn of_path(statement: &Statement, i: usize, path: &Path, expected: &str) -> (String, String) {
+    let head = format!("; {}, path {i}\n; expected: {expected}\n", statement.name);
+    let problem = smt::problem(path, statement.variables, &head);
+    (format!("{}.{i}.smt2", statement.name), problem)
+}
+
+/// The failing paths of a statement that must hold: the names of their files, and the problems, all of which must be
+/// impossible.
+pub fn of_paths(statement: &Statement) -> Vec<(String, String)> {
+    let paths = explore(statement.variables.len(), statement.symbolic);
+    let failing = paths.iter().enumerate().filter(|(_, path)| path.verdict.fails());
+    failing.map(|(i, path)| of_path(statement, i, path, "unsat")).collect()
 }
 
 /// The failing paths of a statement in doubles: the names of their files, and the problems.

@@ -37,10 +37,11 @@ of their own, for one engine: they assemble on random bodies, solve, or compare 
 A further opinion, not part of `cargo test`: `cargo run -p props -- smt DIR` writes every failing path of the proofs as a
 problem for z3 and cvc5, and every failing path of the statements in doubles, over all finite doubles, for bitwuzla;
 `.ci/smt.py DIR` runs them and fails on a contradiction, or where no solver confirms a path. What bitwuzla answers decides
-a statement for all finite doubles, so its answers are kept, with a hash of each problem, and a test fails when one changes.
+a statement for all finite doubles. The answers are kept, with a hash of each problem and the versions of the solvers, and a
+test fails when a problem that was asked is another one now, or when a solver contradicts.
 
 **Receipts** (`props/receipts`): `cargo kani` at the root runs the model checker, which is not part of `cargo test`; `cargo
-run -p props -- receipt LOG` keeps what it printed, and `.ci/smt.py DIR --receipt props/receipts` what bitwuzla answered. A
+run -p props -- receipt LOG` keeps what it printed, and `.ci/smt.py DIR --receipt props/receipts` what the solvers answered. A
 receipt stands behind a harness as long as a hash of the harness and of all that it reaches of the kernel, of this crate
 and of other packages is the same (`props/src/sources.rs`); then \"verified by receipt\" stands beside it below, for a
 control that exactly its planted mistake fails.
@@ -85,10 +86,12 @@ bodies and the definitions on them in `bodies.rs` and `discrete.rs`, the number 
 provenance of the run, the items of the paper one by one, and links to the functions), the same as JSON and as JUnit;
 `cargo run -p props -- audit 9` runs row 9 and writes files of its own; `cargo test -p props` runs all of it with the engines' own tests. Each check draws
 from the seed and its own name, and replays the failures that it remembers (`props/regressions`) before; the page counts
-both. `PROPS_SEED=random` draws other random data and prints the seed; `PROPS_SEED=<number>` repeats it. `cargo mutants` (with cargo-nextest; hours) plants
-mistakes in kernel and assembly one by one and asks the claims alone; with `--workspace --config
-.cargo/mutants-proof.toml` in the trusted part of the proof engine, and asks the engine's own tests. What came of it:
-`props/mutants.md`.
+both. `PROPS_SEED=random` draws other random data and prints the seed; `PROPS_SEED=<number>` repeats it.
+
+**Mistakes planted in the sources:** `.ci/planted.py` plants those of `props/planted.toml`, one at a time, and asks the check
+that is named there. `cargo mutants` (with cargo-nextest; hours) plants small ones in kernel, assembly and solver and asks
+the claims alone; with `--workspace --config .cargo/mutants-proof.toml` in the trusted part of the proof engine, and asks
+the engine's own tests. What came of it: `props/mutants.md`.
 
 **How to add a row:** write the predicate in `props/src/claims/`, generic over `Ordered`, with `given!` for hypotheses and
 `ensure!` for conclusions; plant a mistake as a control; list both in a `Claim`, and the claim in `claims::all`; print the

@@ -7,8 +7,6 @@
 #[cfg(not(kani))]
 pub mod audit;
 #[cfg(not(kani))]
-pub mod bitwuzla;
-#[cfg(not(kani))]
 pub mod bodies;
 #[cfg(not(kani))]
 pub mod claim;
@@ -39,6 +37,8 @@ pub mod proof;
 pub mod receipt;
 #[cfg(not(kani))]
 pub mod sharpness;
+#[cfg(not(kani))]
+pub mod solvers;
 #[cfg(not(kani))]
 pub mod sources;
 #[cfg(not(kani))]

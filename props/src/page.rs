@@ -121,9 +121,10 @@ impl Report {
 
     fn summary(&self) -> String {
         let controls = self.lines.iter().filter(|line| line.control).count();
+        let rows = if self.claims.len() == 1 { "row" } else { "rows" };
         let part = if self.complete { "" } else { " This is a part of the ledger, not all of it." };
         format!(
-            "{} checks and {controls} controls in {} rows: {}.{part}",
+            "{} checks and {controls} controls in {} {rows}: {}.{part}",
             self.lines.len() - controls,
             self.claims.len(),
             match self.failed() {
@@ -132,6 +133,31 @@ impl Report {
             }
         )
     }
+}
+
+/// How many checks, controls apart, there are by each engine.
+fn by_engine(report: &Report) -> String {
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    for line in report.lines.iter().filter(|line| !line.control) {
+        *counts.entry(line.engine).or_default() += 1;
+    }
+    let listed: Vec<String> = counts.iter().map(|(name, n)| format!("{name} {n}")).collect();
+    let drawn = match counts.get("draws") {
+        Some(n) => format!(
+            "; {n} harnesses were only run on random draws, for no receipt of the model checker is about these sources"
+        ),
+        None => String::new(),
+    };
+    format!("Checks by engine: {}{drawn}.", listed.join(", "))
+}
+
+/// What a link can point to.
+fn slug(text: &str) -> String {
+    let plain: String = text
+        .chars()
+        .map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' })
+        .collect();
+    plain.trim_matches('-').to_owned()
 }
 
 fn escape(text: &str) -> String {
@@ -144,7 +170,8 @@ const STYLE: &str = "body{font:16px/1.5 sans-serif;max-width:64em;margin:2em aut
     code{overflow-wrap:anywhere;font-size:.9em}td:first-child{white-space:nowrap}\
     .bad{background:#fdd}.control td:nth-child(2){padding-left:1.5em}\
     .verdict{font-size:1.2em;border-left:.4em solid #393;padding-left:.6em}.verdict.bad{border-color:#c22}\
-    nav a{margin-right:.8em;white-space:nowrap}@media print{nav{display:none}}";
+    nav a{margin-right:.8em;white-space:nowrap}@media print{nav{display:none}}\
+    @media(max-width:40em){table{display:block;overflow-x:auto}td:first-child{white-space:normal}}";
 
 /// The page. `at` is where it will be: links to the sources are relative to that.
 pub fn html(report: &Report, at: &Path) -> String {
@@ -153,10 +180,11 @@ pub fn html(report: &Report, at: &Path) -> String {
     let mut text = format!(
         "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><meta name=\"viewport\" \
          content=\"width=device-width\"><title>signorini: audit</title><style>{STYLE}</style>\
-         <h1>signorini: audit</h1><p class=\"verdict{bad}\">{}</p><nav><a href=\"#provenance\">Provenance</a>\
-         <a href=\"#summary\">Summary</a><a href=\"#legend\">For the auditor</a><a href=\"#items\">Items of the \
-         paper</a>",
-        escape(&report.summary())
+         <h1>signorini: audit</h1><p class=\"verdict{bad}\">{}</p><p>{}</p><nav><a href=\"#provenance\">Provenance</a>\
+         <a href=\"#summary\">Summary</a><a href=\"#legend\">For the auditor</a><a href=\"#what-is-trusted\">What is \
+         trusted</a><a href=\"#errata-of-the-paper\">Errata</a><a href=\"#items\">Items of the paper</a>",
+        escape(&report.summary()),
+        escape(&by_engine(report)),
     );
     for claim in &report.claims {
         let _ = write!(text, "<a href=\"#row-{0}\">Row {0}</a>", claim.id);
@@ -181,8 +209,14 @@ pub fn html(report: &Report, at: &Path) -> String {
     }
     text += "</table><section id=\"legend\">";
     text += &rendered(ledger::HEAD);
-    text += "</section><h2 id=\"items\">Items of the paper</h2>";
-    for item in ITEMS {
+    text += "</section><h2 id=\"items\">Items of the paper</h2><nav>";
+    // A part of the ledger says nothing of the others.
+    let shown = |item: &&Item| report.complete || !item.found(&report.claims).is_empty();
+    for item in ITEMS.iter().filter(shown) {
+        let _ = write!(text, "<a href=\"#{}\">{}</a>", item_anchor(item), escape(item.name));
+    }
+    text += "</nav>";
+    for item in ITEMS.iter().filter(shown) {
         text += &item_view(item, report);
     }
     for claim in &report.claims {
@@ -191,16 +225,25 @@ pub fn html(report: &Report, at: &Path) -> String {
     text + "</html>\n"
 }
 
+fn item_anchor(item: &Item) -> String {
+    format!("item-{}", slug(item.name))
+}
+
 /// An item, with the checks that are about it.
 fn item_view(item: &Item, report: &Report) -> String {
-    let mut text = format!("<h3>{}</h3><p>{}.", escape(item.name), escape(item.says));
+    let mut text = format!(
+        "<h3 id=\"{}\">{}</h3><p>{}.",
+        item_anchor(item),
+        escape(item.name),
+        escape(item.says)
+    );
     if let Some(literature) = item.literature() {
         let _ = write!(text, " <b>Taken from analysis and literature:</b> {}.", escape(literature));
     }
     text += "</p>";
     let found = item.found(&report.claims);
     if found.is_empty() {
-        return text + "<p>No check of this run is about it.</p>";
+        return text + "<p>No check is about it.</p>";
     }
     text += "<table><tr><th>row<th>check<th>engine<th>outcome</tr>";
     for (claim, check) in found {
@@ -228,12 +271,21 @@ fn anchor(row: &str, engine: &str, name: &str) -> String {
     format!("check-{row}-{engine}-{name}")
 }
 
+/// The items of a row, with links.
+fn items_of(claim: &Claim) -> String {
+    let link = |name: &&str| match ITEMS.iter().find(|item| item.name == *name) {
+        Some(item) => format!("<a href=\"#{}\">{}</a>", item_anchor(item), escape(name)),
+        None => escape(name),
+    };
+    claim.items.iter().map(link).collect::<Vec<_>>().join(", ")
+}
+
 fn row_view(claim: &Claim, report: &Report, sources: &Sources) -> String {
     let id = claim.id;
     let mut text = format!(
         "<h2 id=\"row-{id}\">Row {id}: {}</h2><p>{}</p>",
         escape(claim.title),
-        escape(&claim.items.join(", "))
+        items_of(claim)
     );
     let mut line = |name: &str, content: &str| {
         let _ = write!(text, "<p><b>{name}:</b> {}</p>", escape(content));
@@ -376,8 +428,8 @@ fn rendered(markdown: &str) -> String {
     let mut text = String::new();
     for block in markdown.split("\n\n").map(str::trim).filter(|block| !block.is_empty()) {
         if let Some(heading) = block.strip_prefix("## ") {
-            let _ = write!(text, "<h2>{}</h2>", inline(heading));
-        } else if block.starts_with("# ") {
+            let _ = write!(text, "<h2 id=\"{}\">{}</h2>", slug(heading), inline(heading));
+        } else if block.starts_with("# ") || block.starts_with("Printed by ") {
         } else if block.starts_with('|') {
             text += "<table>";
             for (i, row) in block.lines().enumerate().filter(|(i, _)| *i != 1) {
@@ -396,7 +448,10 @@ fn rendered(markdown: &str) -> String {
             }
             text += "</ul>";
         } else {
-            let _ = write!(text, "<p>{}</p>", inline(block));
+            // A paragraph that begins with its subject can be linked to.
+            let subject = block.strip_prefix("**").and_then(|rest| rest.split("**").next());
+            let id = subject.map_or(String::new(), |s| format!(" id=\"{}\"", slug(s)));
+            let _ = write!(text, "<p{id}>{}</p>", inline(block));
         }
     }
     text
@@ -570,7 +625,14 @@ mod tests {
         let page = html(&report(Err("a < b".to_owned())), &at);
         for part in [
             "FAILED: a &lt; b",
-            "1 checks and 0 controls in 1 rows: 1 FAILED. This is a part",
+            "1 checks and 0 controls in 1 row: 1 FAILED. This is a part",
+            "Checks by engine: proof 1.",
+            "href=\"#what-is-trusted\"",
+            "id=\"what-is-trusted\"",
+            "href=\"#errata-of-the-paper\"",
+            "id=\"errata-of-the-paper\"",
+            "href=\"#item-4\"",
+            "id=\"item-4\"",
             "a &lt;= [a]+",
             "c0ffee",
             "id=\"check-1-proof-positive_part_satisfies_4\"",

@@ -5,11 +5,16 @@ import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import numpy as np
+
 from . import exact
 from .expression import Expression, ExpressionError
+from .obstacle import Circle, Distance, Plane
 
 MOST_CELLS = 4_000_000  # nx * ny of a rectangle, checked before anything is allocated
-KINDS = ("displacement", "traction", "contact")
+KINDS = ("displacement", "traction", "contact")  # beside [exact]
+CONDITIONS = ("displacement", "traction", "pressure", "normal", "tangential", "contact")
+MODULI = ("lambda", "mu", "young", "poisson")
 
 
 class CaseError(Exception):
@@ -54,10 +59,16 @@ class Material:
 
 @dataclass
 class Boundary:
-    """`data` holds two expressions (None for a free component), or the gap for contact; None where [exact] supplies it."""
+    """What `data` holds, by kind; None where [exact] supplies it:
+
+    displacement: two expressions, None for a free component; `traction`: two expressions that act in the free ones
+    traction: two expressions; pressure: an expression; support: u . n and u . t, expressions or None
+    contact: the gap, an expression, or an obstacle
+    """
 
     kind: str
     data: object
+    traction: object = None
 
 
 @dataclass
@@ -65,9 +76,11 @@ class Case:
     path: Path
     title: str
     mesh: object
-    material: Material
+    materials: dict  # by surface; one for the whole body goes by None
     body: list
+    bodies: dict  # loads by surface beside `body`
     boundaries: dict
+    points: dict  # name -> two expressions, None for a free component
     degree: int
     gamma0: object  # a float, or "auto"
     gauss: object  # points per edge, or None for the exact integral
@@ -76,6 +89,11 @@ class Case:
     max_iterations: int
     exact: object
     probes: list = field(default_factory=list)
+
+    @property
+    def material(self):
+        """The first material; all have the same `plane`."""
+        return next(iter(self.materials.values()))
 
     def of_kind(self, kind):
         """{name: data} of the boundaries of one kind, in name order."""
@@ -148,6 +166,7 @@ class _Table:
         return value
 
     def expression(self, key, value):
+        value = repr(float(value)) if _is_number(value) else value
         if not isinstance(value, str):
             self.fail(key, value, "an expression of x and y in a string")
         try:
@@ -159,6 +178,13 @@ class _Table:
         if not isinstance(value, list) or len(value) != 2:
             self.fail(key, value, "a list of two expressions")
         return [None if free_allowed and entry == "free" else self.expression(f"{key}[{i}]", entry) for i, entry in enumerate(value)]
+
+    def place_of(self, key):
+        """A point [x, y]."""
+        value = self.need(key, "a point [x, y]")
+        if not isinstance(value, list) or len(value) != 2 or not all(map(_is_number, value)):
+            self.fail(key, value, "a point [x, y]")
+        return np.array(value, float)
 
     def finish(self):
         for key in self.content:
@@ -188,21 +214,28 @@ def read_case(path):
     except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise CaseError(f"{path}: not a TOML file: {error}") from None
     root = _Table("", content, path)
-    material = _material(root.table("material"))
-    solution = _exact(root.table("exact"), material) if root.has("exact") else None
+    materials = _materials(root.table("material"))
+    if root.has("exact") and None not in materials:
+        root.fail("material", ", ".join(materials), "one material for the whole body beside [exact]")
+    solution = _exact(root.table("exact"), materials[None]) if root.has("exact") else None
     if solution and root.has("load"):
         root.fail("load", content["load"], "no [load] beside [exact], which supplies it")
     load = root.table("load", needed=False)
     method = root.table("method", needed=False)
     solver = root.table("solver", needed=False)
     output = root.table("output", needed=False)
+    units = root.table("units", needed=False)
+    for key in ("length", "force"):
+        units.text(key, "")
     case = Case(
         path=path,
         title=root.text("title", ""),
         mesh=_mesh(root.table("mesh"), path),
-        material=material,
+        materials=materials,
         body=load.pair("body", load.get("body", ["0", "0"])),
-        boundaries=_boundaries(root.table("boundary"), solution),
+        bodies=_bodies(load),
+        boundaries=_boundaries(root.table("boundary"), solution, _obstacles(root)),
+        points=_points(root),
         degree=method.integer("degree", "1 or 2", lambda p: p in (1, 2), default=1),
         gamma0=_gamma0(method),
         gauss=_quadrature(method),
@@ -212,7 +245,7 @@ def read_case(path):
         exact=solution,
         probes=_probes(output),
     )
-    for table in (load, method, solver, output, root):
+    for table in (load, method, solver, output, units, root):
         table.finish()
     return case
 
@@ -243,11 +276,24 @@ def _mesh(table, path):
     return shape
 
 
-def _material(table):
+def _materials(table):
+    """{surface: Material}, or {None: Material} for the whole body."""
+    named = [key for key, value in table.content.items() if isinstance(value, dict)]
+    if not named:
+        return {None: _material(table, "strain")}
     plane = table.choice("plane", ("strain", "stress"), "strain")
+    materials = {name: _material(table.table(name), plane) for name in named}
+    if len({material.plane for material in materials.values()}) > 1:
+        table.refuse("", "plane strain beside plane stress", "the same for the whole body")
+    table.finish()
+    return materials
+
+
+def _material(table, plane):
+    plane = table.choice("plane", ("strain", "stress"), plane)
     lame, engineering = [table.has(key) for key in ("lambda", "mu")], [table.has(key) for key in ("young", "poisson")]
     if any(lame) == any(engineering):
-        table.refuse("", ", ".join(key for key in ("lambda", "mu", "young", "poisson") if key in table.content),
+        table.refuse("", ", ".join(key for key in MODULI if key in table.content),
                      "either lambda and mu, or young and poisson")
     if any(lame):
         lam, mu = table.number("lambda"), table.number("mu", "a positive number", lambda m: m > 0)
@@ -261,28 +307,101 @@ def _material(table):
     return Material(lam, mu, plane)
 
 
-def _boundaries(table, solution):
+def _bodies(load):
+    """The loads by surface."""
+    found = {}
+    for name in [key for key, value in load.content.items() if isinstance(value, dict)]:
+        inner = load.table(name)
+        found[name] = inner.pair("body", inner.need("body", "a list of two expressions"))
+        inner.finish()
+    return found
+
+
+def _boundaries(table, solution, obstacles):
     boundaries = {}
     for name in table.content:
         if solution:
             boundaries[name] = Boundary(table.choice(name, KINDS), None)
-            continue
-        inner = table.table(name)
-        kinds = [kind for kind in KINDS if inner.has(kind)]
-        inner.finish()
-        if len(kinds) != 1:
-            inner.refuse("", ", ".join(kinds), "exactly one of displacement, traction, contact")
-        if kinds == ["contact"]:
-            contact = inner.table("contact")
-            data = contact.expression("gap", contact.get("gap", "0"))
-            contact.finish()
         else:
-            data = inner.pair(kinds[0], inner.content[kinds[0]], free_allowed=kinds == ["displacement"])
-        boundaries[name] = Boundary(kinds[0], data)
+            boundaries[name] = _boundary(table.table(name), obstacles)
     table.finish()
     if not any(boundary.kind == "contact" for boundary in boundaries.values()):
         table.refuse("", ", ".join(boundaries), "at least one boundary with contact")
     return boundaries
+
+
+def _boundary(table, obstacles):
+    given = [key for key in CONDITIONS if table.has(key)]
+    table.finish()
+    if given == ["contact"]:
+        return Boundary("contact", _contact(table.table("contact"), obstacles))
+    if given == ["traction"]:
+        return Boundary("traction", table.pair("traction", table.content["traction"]))
+    if given == ["pressure"]:
+        return Boundary("pressure", table.expression("pressure", table.content["pressure"]))
+    if given == ["displacement"] or given == ["displacement", "traction"]:
+        displacement = table.pair("displacement", table.content["displacement"], free_allowed=True)
+        if given == ["displacement"]:
+            return Boundary("displacement", displacement)
+        traction = table.pair("traction", table.content["traction"])
+        for k in (0, 1):
+            if displacement[k] and not _is_zero(traction[k]):
+                table.fail(f"traction[{k}]", traction[k].text, "0 where the displacement is given")
+        return Boundary("displacement", displacement, traction)
+    if given and set(given) <= {"normal", "tangential"}:
+        return Boundary("support", [table.expression(key, table.content[key]) if key in given else None for key in ("normal", "tangential")])
+    table.refuse("", ", ".join(given), "exactly one of displacement, traction, pressure, normal and tangential, contact")
+
+
+def _is_zero(expression):
+    return not {"x", "y"} & set(expression.program) and float(expression.values(0.0, 0.0)) == 0
+
+
+def _contact(table, obstacles):
+    if table.has("gap") and table.has("obstacle"):
+        table.refuse("", "gap, obstacle", "one of the two")
+    if table.has("obstacle"):
+        name = table.choice("obstacle", tuple(obstacles))
+        table.finish()
+        return obstacles[name]
+    data = table.expression("gap", table.get("gap", "0"))
+    table.finish()
+    return data
+
+
+def _obstacles(root):
+    table = root.table("obstacle", needed=False)
+    return {name: _obstacle(table.table(name)) for name in table.content}
+
+
+def _obstacle(table):
+    shapes = [shape for shape in ("plane", "circle", "distance") if table.has(shape)]
+    table.finish()
+    if len(shapes) != 1:
+        table.refuse("", ", ".join(shapes), "exactly one of plane, circle, distance")
+    if shapes == ["distance"]:
+        return Distance(table.expression("distance", table.content["distance"]))
+    inner = table.table(shapes[0])
+    if shapes == ["plane"]:
+        point, normal = inner.place_of("point"), inner.place_of("normal")
+        length = np.hypot(*normal)
+        if not length > 0:
+            inner.fail("normal", normal.tolist(), "a vector that is not zero")
+        obstacle = Plane(point, normal / length)
+    else:
+        radius = inner.number("radius", "a positive number", lambda r: r > 0)
+        obstacle = Circle(inner.place_of("center"), radius, inner.choice("side", ("outside", "inside")))
+    inner.finish()
+    return obstacle
+
+
+def _points(root):
+    table, points = root.table("point", needed=False), {}
+    for name in table.content:
+        inner = table.table(name)
+        points[name] = inner.pair("displacement", inner.need("displacement", "a list of two expressions"), free_allowed=True)
+        inner.finish()
+    return points
 
 
 def _gamma0(method):

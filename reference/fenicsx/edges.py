@@ -1,7 +1,8 @@
 """The contact edges in numpy: P as a polynomial on each edge, integrals of its positive part, and what is reported of them.
 
 P restricted to an edge has the displacement's degree p, so its values at the edge's p + 1 Lagrange points determine it:
-P(u) = B u_T - g there, B the matrix of P0 on the dofs u_T of the owning triangle T. Between consecutive roots P keeps its sign and
+P(u) = B u_T - g there, B the matrix of P0 on the dofs u_T of the owning triangle T. The direction of contact n~ is given at these
+points (docs/theory.md, 2.1): u . n~ is interpolated from them, and s(v) = n~ . sigma(v) n, which stands for sigma_n, from the two ends. Between consecutive roots P keeps its sign and
 p + 1 Gauss points integrate its square, and all else in (8), without error: this is the rule "exact". Tables of P at points have one
 row per edge.
 """
@@ -49,12 +50,14 @@ class ContactEdges:
 
     def __init__(self, problem, gamma0):
         self.comm, self.p, self.gauss = problem.comm, problem.case.degree, problem.case.gauss
-        self.names, self.cells, local = [], [], []
+        self.problem = problem
+        self.names, self.cells, self.vertices, local = [], [], [], []
         for name in problem.case.of_kind("contact"):
             facets = problem.boundaries[name]
             self.names += [name] * np.count_nonzero(facets.owned)
             self.cells += facets.cells[facets.owned].tolist()
             local += facets.local[facets.owned].tolist()
+            self.vertices += facets.ends[facets.owned].tolist()
         self._geometry(problem, np.array(local, int))
         self.gamma = gamma0 * self.h_T
         self._operators(problem, np.array(local, int))
@@ -74,23 +77,28 @@ class ContactEdges:
         self.area = np.abs(np.linalg.det(self.J)) / 2
 
     def _operators(self, problem, local):
-        """`V_n`, `S_n` (edges, p + 1, dofs of T): v_n and sigma_n at the edge's Lagrange points; `B` = V_n - gamma S_n; the gap."""
-        lam, mu = problem.case.material.plane_lam, problem.case.material.mu
+        """`V_n`, `S_n` (edges, p + 1, dofs of T): n~ . v and s(v) at the edge's Lagrange points; `B` = V_n - gamma S_n; the gap."""
+        count = len(self.cells)
+        on_line = [problem.contact[name, a, b] for name, (a, b) in zip(self.names, self.vertices)]
+        self.directions = np.array([n for n, _ in on_line]).reshape(count, self.p + 1, 2)
+        self.gap = np.array([g for _, g in on_line]).reshape(count, self.p + 1)
+        self.lam, self.mu = (values.reshape(count, 1, 1, 1) for values in problem.lame(self.cells))
         s = np.linspace(0, 1, self.p + 1)
         tables = [compat.basis(self.p, (1 - s)[:, None] * REFERENCE[i] + s[:, None] * REFERENCE[j]) for i, j in FACET_VERTICES]
         values = np.array([table[0] for table in tables])[local]
-        gradients = np.array([table[1] for table in tables])[local] @ np.linalg.inv(self.J)[:, None]
-        normal = np.einsum("eqik,ek->eqi", gradients, self.n)
-        # sigma_n(phi e_k) = lam d_k phi + 2 mu n_k (n . grad phi)
-        S_n = lam * gradients + 2 * mu * normal[..., None] * self.n[:, None, None, :]
-        V_n = values[..., None] * self.n[:, None, None, :]
-        count, points, functions = values.shape
-        self.S_n, self.V_n = (table.reshape(count, points, 2 * functions) for table in (S_n, V_n))
+        ends = [0, -1]
+        gradients = (np.array([table[1] for table in tables])[local] @ np.linalg.inv(self.J)[:, None])[:, ends]
+        n, d = self.n[:, None, None, :], self.directions[:, ends, None, :]
+        along_n, along_d = (np.sum(gradients * v, axis=3, keepdims=True) for v in (n, d))
+        # d . sigma(phi e_k) n = lam (d . n) d_k phi + mu (d_k (n . grad phi) + n_k (d . grad phi))
+        S = self.lam * np.sum(d * n, axis=3, keepdims=True) * gradients + self.mu * (d * along_n + n * along_d)
+        S_n = np.einsum("pa,eaik->epik", edge_basis(1, s), S)
+        V_n = values[..., None] * self.directions[:, :, None, :]
+        functions = values.shape[2]
+        self.S_n, self.V_n = (table.reshape(count, self.p + 1, 2 * functions) for table in (S_n, V_n))
         self.B = self.V_n - self.gamma[:, None, None] * self.S_n
         nodes = np.array([problem.V.dofmap.cell_dofs(cell) for cell in self.cells], np.int32).reshape(count, functions)
         self.dofs = (2 * nodes[:, :, None] + np.arange(2, dtype=np.int32)).reshape(count, 2 * functions)
-        on_cell = [problem.gaps[name].x.array[problem.W.dofmap.cell_dofs(cell)] for name, cell in zip(self.names, self.cells)]
-        self.gap = np.einsum("eqi,ei->eq", values, np.array(on_cell).reshape(count, functions))
 
     def P(self, u):
         """P(u) at the Lagrange points of each edge; u holds all dofs that this process sees."""
@@ -98,6 +106,19 @@ class ContactEdges:
 
     def P0(self, v):
         return np.einsum("eqd,ed->eq", self.B, v[self.dofs])
+
+    # - int gamma s(u) s(.), which UFL integrates where the line of contact is the paper's.
+
+    def stress_blocks(self):
+        """One block per edge; s is affine: int_0^1 a b = (2 a0 b0 + a0 b1 + a1 b0 + 2 a1 b1) / 6."""
+        mass = np.array([[2.0, 1.0], [1.0, 2.0]]) / 6
+        ends = self.S_n[:, [0, -1]]
+        return -np.einsum("e,eid,ij,ejc->edc", self.gamma * self.length, ends, mass, ends)
+
+    def stress_functional(self, u):
+        total = np.zeros_like(u)
+        np.add.at(total, self.dofs, np.einsum("edc,ec->ed", self.stress_blocks(), u[self.dofs]))
+        return total
 
     def rule(self, *polynomials):
         """Points s and weights (their lengths included) for integrals of positive parts of the polynomials (nodal values), in one table
@@ -129,9 +150,10 @@ class ContactEdges:
         np.add.at(total, self.dofs, loads)
         return total
 
-    def tangent(self, u):
-        """(dofs, block) per edge of int (1/gamma) H(P(u)) P0(.) P0(.)."""
-        s, w, (active,) = self.rule(self.P(u))
+    def tangent(self, u, everywhere=False):
+        """(dofs, block) per edge of int (1/gamma) H(P(u)) P0(.) P0(.); with H = 1 in place of H(P(u)) if `everywhere`."""
+        P = self.P(u)
+        s, w, (active,) = self.rule(np.ones_like(P) if everywhere else P)
         N = edge_basis(self.p, s)
         mass = np.einsum("eq,eqi,eqj->eij", w * active / self.gamma[:, None], N, N)
         return zip(self.dofs, np.einsum("eid,eij,ejc->edc", self.B, mass, self.B))
@@ -149,15 +171,54 @@ class ContactEdges:
     # What is reported.
 
     def pressure(self, u):
-        """contact_force = -int lambda^h, contact_resultant = int lambda^h n, contact_length = the measure of {P > 0}, peak_pressure."""
+        """contact_force = -int lambda^h, contact_resultant = int lambda^h n~, contact_length = the measure of {P > 0}, peak_pressure."""
         P = self.P(u)
-        s, w, (active,) = self.rule(P)
-        force = np.sum(w * np.where(active, self.at(P, s), 0) / self.gamma[:, None], axis=1)
-        resultant = -force @ self.n
-        sums = self.comm.allreduce(np.array([np.sum(force), *resultant, np.sum(w * active)]))
+        forces, w, active = self._forces(P)
+        resultant = -np.einsum("ei,eik->k", forces, self.directions)
+        sums = self.comm.allreduce(np.array([np.sum(forces), *resultant, np.sum(w * active)]))
         peak = self.comm.allreduce(float(np.max(self._largest(P) / self.gamma, initial=0.0)), op=MPI.MAX)
         return {"contact_force": float(sums[0]), "contact_resultant": [float(sums[1]), float(sums[2])],
                 "contact_length": float(sums[3]), "peak_pressure": peak}
+
+    def _forces(self, P):
+        """(int (1/gamma) [P]+ N_i at each Lagrange point i of each edge, weights, where they count)."""
+        s, w, (active,) = self.rule(P)
+        pressure = np.where(active, self.at(P, s), 0) / self.gamma[:, None]
+        return np.einsum("eq,eqi->ei", w * pressure, edge_basis(self.p, s)), w, active
+
+    def boundaries(self, u):
+        """For each contact boundary the force, resultant, moment about the origin and length of contact, and the largest recovered
+        pressure: at each node the mean of -lambda^h weighted by the hat function of the line's nodes (docs/parts.md)."""
+        P = self.P(u)
+        forces, w, active = self._forces(P)
+        at = np.linspace(0, 1, self.p + 1)
+        places = (1 - at)[:, None] * self.ends[:, None, 0] + at[:, None] * self.ends[:, None, 1]
+        vectors = -forces[..., None] * self.directions
+        moments = np.sum(places[..., 0] * vectors[..., 1] - places[..., 1] * vectors[..., 0], axis=1)
+        s, fine, (pressed, _) = self.rule(P, np.tile(2 * at - 1, (len(P), 1)))  # cut at the middle, too
+        pressure = np.where(pressed, self.at(P, s), 0) / self.gamma[:, None]
+        hats = np.maximum(0, 1 - self.p * np.abs(s[..., None] - at))
+        work = np.einsum("eq,eqi->ei", fine * pressure, hats)
+        weight = self.length[:, None] * np.where((at == 0) | (at == 1), 0.5, 1) / self.p
+        parts = zip(self.names, self.vertices, forces.sum(axis=1), vectors.sum(axis=1), moments, np.sum(w * active, axis=1), work, weight,
+                    self.directions)
+        parts = [part for of in self.comm.allgather(list(parts)) for part in of]
+        return [self._boundary(name, [part[1:] for part in parts if part[0] == name]) for name in sorted({part[0] for part in parts})]
+
+    def _boundary(self, name, parts):
+        nodes = {}  # vertex or edge -> [direction, work, weight] for each direction of contact there
+        for (a, b), *_, work, weight, directions in parts:
+            keys = [a, b] if self.p == 1 else [a, (a, b), b]
+            for key, n, value, size in zip(keys, directions, work, weight):
+                at = nodes.setdefault(key, [])
+                group = next((g for g in at if np.hypot(*(g[0] - n)) <= 1e-6), None)
+                if group:
+                    group[1:] = group[1] + value, group[2] + size
+                else:
+                    at.append([n, value, size])
+        sums = [sum(column) for column in zip(*(part[1:5] for part in parts))]
+        return {"boundary": name, "force": float(sums[0]), "resultant": sums[1].tolist(), "moment": float(sums[2]), "length": float(sums[3]),
+                "peak_pressure": float(max(value / size for at in nodes.values() for _, value, size in at))}
 
     def _largest(self, P):
         """The maximum of P on each edge: at an end, or for p = 2 at the vertex of the parabola."""
@@ -170,16 +231,18 @@ class ContactEdges:
             largest = np.maximum(largest, self.at(P, np.where(inside, s, 0)[:, None])[:, 0])
         return largest
 
-    def coercivity(self, material):
+    def coercivity(self):
         """(C_h, the edge that sets it): kappa = gamma0 C_h, C_h = max_T h_T C c_p sum_{E in T} |E| / |T|, with C = lambda + 2 mu in
-        plane strain and 4 mu (lambda + mu) / (lambda + 2 mu) in plane stress, c_1 = 1, c_2 = 3. Of equal edges, the first by its ends."""
-        factor = (material.plane_lam + 2 * material.mu) * {1: 1, 2: 3}[self.p]
+        plane strain and 4 mu (lambda + mu) / (lambda + 2 mu) in plane stress, c_1 = 1, c_2 = 3. An edge along which n~ turns by theta
+        counts 2 - cos(theta) times for P2. Of equal edges, the first by its ends."""
+        factor = (self.lam + 2 * self.mu).ravel() * {1: 1, 2: 3}[self.p]
+        cosine = np.sum(self.directions[:, 0] * self.directions[:, -1], axis=1)
+        turning = np.where((self.p == 1) | np.all(self.directions[:, 0] == self.directions[:, -1], axis=1), 1.0, 2 - cosine)
         per_cell = {}
-        for cell, length in zip(self.cells, self.length):
+        for cell, length in zip(self.cells, turning * self.length):
             per_cell[cell] = per_cell.get(cell, 0.0) + length
-        numbers = [factor * h * per_cell[cell] / area for cell, h, area in zip(self.cells, self.h_T, self.area)]
+        numbers = [c * h * per_cell[cell] / area for c, cell, h, area in zip(factor, self.cells, self.h_T, self.area)]
         edges = [(value, sorted(ends.tolist())) for value, ends in zip(numbers, self.ends)]
         edges = [edge for part in self.comm.allgather(edges) for edge in part]
         largest = max(value for value, _ in edges)
         return largest, min(ends for value, ends in edges if value >= largest * (1 - 1e-12))
-

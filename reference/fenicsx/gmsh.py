@@ -1,4 +1,4 @@
-"""Gmsh MSH 4.1 files, ASCII or binary: straight triangles, and lines of named physical curves."""
+"""Gmsh MSH 4.1 files, ASCII or binary: straight triangles by physical surface, lines of named physical curves, named physical points."""
 
 import struct
 
@@ -7,14 +7,14 @@ import numpy as np
 from .case import CaseError
 from .plane import PlaneMesh
 
-LINE, TRIANGLE = 1, 2  # Gmsh's element types
-NODES_OF = {15: 1, 1: 2, 2: 3}  # point, line, triangle; any other element is refused
+POINT, LINE, TRIANGLE = 15, 1, 2  # Gmsh's element types
+NODES_OF = {POINT: 1, LINE: 2, TRIANGLE: 3}  # point, line, triangle; any other element is refused
 
 
 def read(path):
     """The PlaneMesh in the file at `path`, or CaseError."""
     try:
-        nodes, triangles, curves = _Reader(path.read_bytes()).mesh()
+        nodes, triangles, curves, surfaces, places = _Reader(path.read_bytes()).mesh()
     except OSError as error:
         raise CaseError(f"{path}: cannot be read: {error.strerror}") from None
     except (ValueError, IndexError, KeyError, struct.error) as error:
@@ -24,11 +24,13 @@ def read(path):
     try:
         points = np.array([nodes[tag] for tag in used])
         edges = {name: np.array([[number[a], number[b]] for a, b in lines]) for name, lines in curves.items()}
+        corners = {name: number[tag] for name, tag in places.items()}
     except KeyError as error:
-        raise CaseError(f"{path}: node {error} is used and not listed, or lies on a boundary line and in no triangle") from None
+        raise CaseError(f"{path}: node {error} is used and not listed, or lies on a boundary line or at a named point and in no triangle") from None
     if np.any(points[:, 2] != points[0, 2]):
         raise CaseError(f"{path}: the mesh is not in a plane z = const")
-    return PlaneMesh(points[:, :2].copy(), np.array([[number[tag] for tag in triangle] for triangle in triangles]), edges)
+    rows = np.array([[number[tag] for tag in triangle] for triangle in triangles])
+    return PlaneMesh(points[:, :2].copy(), rows, edges, {name: np.array(members) for name, members in surfaces.items()}, corners)
 
 
 class _Reader:
@@ -86,19 +88,19 @@ class _Reader:
         return values
 
     def mesh(self):
-        names, curve_names, nodes, triangles, curves = {}, {}, {}, [], {}
+        names, entity_names, nodes, found = {}, {}, {}, ([], {}, {}, {})
         while (section := self.next_section()) is not None:
             if section == "$PhysicalNames":
                 names = self.physical_names()
             elif section == "$Entities":
-                curve_names = self.entities(names)
+                entity_names = self.entities(names)
             elif section == "$Nodes":
                 nodes = self.nodes()
             elif section == "$Elements":
-                triangles, curves = self.elements(curve_names)
-        if not triangles:
+                found = self.elements(entity_names)
+        if not found[0]:
             raise ValueError("it has no triangles")
-        return nodes, triangles, curves
+        return nodes, *found
 
     def next_section(self):
         """Moves behind the next line that opens a section; None at the end of the file."""
@@ -119,8 +121,8 @@ class _Reader:
         return names
 
     def entities(self, names):
-        """{curve: its physical name}; curves without one are left out."""
-        curve_names = {}
+        """{(dimension, entity): its physical name}; entities without one are left out."""
+        entity_names = {}
         counts = self.sizes(4)
         for dimension, count in enumerate(counts):
             for _ in range(count):
@@ -129,12 +131,12 @@ class _Reader:
                 physical = self.ints(self.sizes(1)[0])
                 if dimension > 0:
                     self.ints(self.sizes(1)[0])
-                named = [names[1, abs(p)] for p in physical if dimension == 1 and (1, abs(p)) in names]
+                named = [names[dimension, abs(p)] for p in physical if (dimension, abs(p)) in names]
                 if len(named) > 1:
-                    raise ValueError(f"curve {tag} has the physical names {', '.join(named)}, expected one")
+                    raise ValueError(f"entity {tag} of dimension {dimension} has the physical names {', '.join(named)}, expected one")
                 if named:
-                    curve_names[tag] = named[0]
-        return curve_names
+                    entity_names[dimension, tag] = named[0]
+        return entity_names
 
     def nodes(self):
         nodes = {}
@@ -148,18 +150,24 @@ class _Reader:
                 nodes[tag] = self.doubles(width)[:3]
         return nodes
 
-    def elements(self, curve_names):
-        triangles, curves = [], {}
+    def elements(self, entity_names):
+        """Triangles, the lines of each named curve, the triangles of each named surface, the node at each named point."""
+        triangles, curves, surfaces, places = [], {}, {}, {}
         blocks, *_ = self.sizes(4)
         for _ in range(blocks):
-            _, entity, kind = self.ints(3)
+            dimension, entity, kind = self.ints(3)
             (count,) = self.sizes(1)
             if kind not in NODES_OF:
                 raise ValueError(f"element type {kind}, expected straight triangles (2) and lines (1)")
+            name = entity_names.get((dimension, entity))
             for _ in range(count):
                 _, *nodes = self.sizes(1 + NODES_OF[kind])
                 if kind == TRIANGLE:
+                    if name is not None:
+                        surfaces.setdefault(name, []).append(len(triangles))
                     triangles.append(nodes)
-                elif kind == LINE and entity in curve_names:
-                    curves.setdefault(curve_names[entity], []).append(nodes)
-        return triangles, curves
+                elif kind == LINE and name is not None:
+                    curves.setdefault(name, []).append(nodes)
+                elif kind == POINT and name is not None:
+                    places[name] = nodes[0]
+        return triangles, curves, surfaces, places

@@ -63,6 +63,18 @@ def _check(mesh, case):
     for name in case.boundaries:
         if name not in mesh.boundaries:
             fail(f"no boundary named {name!r}; this mesh has: {', '.join(sorted(mesh.boundaries)) or 'none'}")
+    for name in case.points:
+        if name not in mesh.corners:
+            fail(f"no point named {name!r}; this mesh has: {', '.join(sorted(mesh.corners)) or 'none'}")
+    for name in [*case.materials, *case.bodies]:
+        if name is not None and name not in mesh.surfaces:
+            fail(f"no surface named {name!r}; this mesh has: {', '.join(sorted(mesh.surfaces)) or 'none'}")
+    if None not in case.materials:
+        without = np.ones(len(mesh.triangles), bool)
+        for name in case.materials:
+            without[mesh.surfaces[name]] = False
+        for bad in np.flatnonzero(without)[:1]:
+            fail(f"triangle {bad} has no material, expected one for each surface ({', '.join(sorted(mesh.surfaces)) or 'none'})")
     a, b, c = (mesh.points[corner] for corner in mesh.triangles.T)
     area = ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]) / 2
     longest = np.max([np.sum((p - q) ** 2, axis=1) for p, q in ((a, b), (b, c), (c, a))], axis=0)

@@ -6,7 +6,8 @@
     P(v) = v_n - g - gamma sigma_n(v),    P0(v) = v_n - gamma sigma_n(v).
 
 With { gauss = n } the integral of [.]+ takes n Gauss points per edge, here in UFL; with "exact" it is taken edge by edge between
-the roots of P, in edges.py. The integrals in A are polynomials' and exact in both.
+the roots of P, in edges.py. The integrals in A are polynomials' and exact in both. Where n turns along the line of contact or belongs to
+an obstacle, n~ and s(v) = n~ . sigma(v) n take the places of n and sigma_n: all integrals on Gamma_C are then those of edges.py.
 """
 
 import ufl
@@ -35,13 +36,16 @@ class Method:
         material = self.case.material
         self.lam, self.mu, self.gamma0 = (fem.Constant(problem.mesh, PETSc.ScalarType(value))
                                           for value in (material.plane_lam, material.mu, gamma0))
+        if len(self.case.materials) > 1:
+            self.lam, self.mu = map(problem.on_triangles, problem.lame(range(len(problem.original))))
+        self.contact_in_ufl = bool(self.case.gauss) and problem.straight
         self.n = ufl.FacetNormal(problem.mesh)
         self.u = fem.Function(problem.V)
         self.edges = ContactEdges(problem, gamma0)
         v, w = ufl.TestFunction(problem.V), ufl.TrialFunction(problem.V)
         residual, tangent = self.A(self.u, v), self.A(w, v)
         self.linear_part = fem.form(residual)
-        if self.case.gauss:
+        if self.contact_in_ufl:
             residual += self.contact(self.u, v)
             tangent += self.contact_slope(self.u, w, v)
         self.residual_form, self.tangent_form = fem.form(residual), fem.form(tangent)
@@ -90,7 +94,7 @@ class Method:
         return 2 * self.case.gauss - 1
 
     def Gamma_C(self, degree):
-        """(measure, gap) of each contact boundary."""
+        """(measure, gap) of each contact boundary; none where edges.py integrates."""
         return [(self.problem.ds(self.problem.number[name], metadata={"quadrature_degree": degree}), gap)
                 for name, gap in self.problem.gaps.items()]
 
@@ -103,17 +107,22 @@ class Method:
 
     def functional(self):
         """A(u, .) + int (1/gamma) [P(u)]+ P0(.): the residual of (8) is this minus L."""
-        return self.problem.assemble(self.residual_form, None if self.case.gauss else self.edges.functional(self.u.x.array))
+        u = self.u.x.array
+        contact = None if self.contact_in_ufl else self.edges.functional(u)
+        return self.problem.assemble(self.residual_form, contact if self.problem.straight else contact + self.edges.stress_functional(u))
 
     def linear_functional(self):
         """A(u, .)"""
-        return self.problem.assemble(self.linear_part)
+        return self.problem.assemble(self.linear_part, None if self.problem.straight else self.edges.stress_functional(self.u.x.array))
 
-    def tangent(self):
-        """The derivative of (8) at u on all dofs; its caller treats the prescribed ones and destroys it."""
+    def tangent(self, everywhere=False):
+        """The derivative of (8) at u on all dofs, or with contact everywhere; its caller treats the prescribed ones and destroys it."""
         matrix = fem.petsc.assemble_matrix(self.tangent_form)
-        if not self.case.gauss:
-            for dofs, block in self.edges.tangent(self.u.x.array):
+        if not self.contact_in_ufl:
+            for dofs, block in self.edges.tangent(self.u.x.array, everywhere):
+                matrix.setValuesLocal(dofs, dofs, block, addv=PETSc.InsertMode.ADD)
+        if not self.problem.straight:
+            for dofs, block in zip(self.edges.dofs, self.edges.stress_blocks()):
                 matrix.setValuesLocal(dofs, dofs, block, addv=PETSc.InsertMode.ADD)
         matrix.assemble()
         return matrix

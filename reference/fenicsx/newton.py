@@ -40,7 +40,7 @@ class Solver:
     def __init__(self, method, iterative):
         self.method, self.problem, self.iterative = method, method.problem, iterative
         owned = self.problem.owned_dofs
-        self.prescribed = self.problem.prescribed[:owned] > 0
+        self.prescribed = self.problem.prescribed[:owned]
         self.data = self.problem.data[:owned]
 
     def norm(self, owned):
@@ -50,7 +50,8 @@ class Solver:
         return self.problem.comm.allreduce(float(a @ b))
 
     def free(self, owned):
-        return np.where(self.prescribed, 0.0, owned)
+        holds = self.problem.holds
+        return holds.from_frames(np.where(self.prescribed, 0.0, holds.into_frames(owned)))
 
     def residual(self, u):
         """The residual of (8) at u on the free dofs, leaving the method at u."""
@@ -113,11 +114,15 @@ class Solver:
 
     def direction(self, r, history):
         """d with H d = -r on the free dofs and d = 0 on the prescribed ones."""
-        matrix = self.method.tangent()
+        matrix = self.method.tangent(everywhere=not self.held())
+        turn = self.turn(matrix)
+        if turn:
+            matrix, flat = matrix.PtAP(turn), matrix
+            flat.destroy()
         first = matrix.getOwnershipRange()[0]
         matrix.zeroRowsColumns(first + np.flatnonzero(self.prescribed).astype(PETSc.IntType), diag=1.0)
         b, x = matrix.createVecRight(), matrix.createVecRight()
-        b.array[:] = -r
+        b.array[:] = -self.problem.holds.into_frames(r)
         ksp = PETSc.KSP().create(self.problem.comm)
         ksp.setOperators(matrix)
         self._configure_cg(ksp, matrix) if self.iterative else self._configure_cholesky(ksp, matrix)
@@ -129,10 +134,41 @@ class Solver:
             raise NotSolved(f"the linear solver failed (PETSc's reason {reason})")
         history.inner.append(ksp.getIterationNumber())
         history.factorizations += not self.iterative
-        d = self.free(x.array.copy())
-        for thing in (ksp, b, x, matrix):
+        d = self.free(self.problem.holds.from_frames(x.array.copy()))
+        for thing in filter(None, (ksp, b, x, matrix, turn)):
             thing.destroy()
         return d
+
+    def held(self):
+        """Supports and the contact of the current iterate leave no motion but slides. Where they do, contact everywhere gives a tangent that
+        bounds J_h from above, and a step that decreases it."""
+        free, slides = self.problem.free, self.problem.slides
+        if len(free) == len(slides):
+            return True
+        edges, seen = self.method.edges, self.method.u.x.array
+        current, fields = seen[: self.problem.owned_dofs].copy(), np.zeros((len(free), len(seen)))
+        for field, motion in zip(fields, free):
+            self.method.set(motion)
+            field[:] = self.method.u.x.array
+        self.method.set(current)
+        stiffness = np.zeros((len(free), len(free)))
+        for dofs, block in edges.tangent(self.method.u.x.array):
+            stiffness += fields[:, dofs] @ block @ fields[:, dofs].T
+        values = np.linalg.eigvalsh(self.problem.comm.allreduce(stiffness))
+        return bool(values[len(slides)] > 1e-8 * values[-1] > 0)
+
+    def turn(self, matrix):
+        """The rotation R of the nodes with frames of their own, for R^T H R; None if there are none anywhere."""
+        holds, owned = self.problem.holds, self.problem.owned_dofs
+        if not self.problem.comm.allreduce(len(holds.turned)):
+            return None
+        turn = PETSc.Mat().createAIJ(matrix.getSizes(), nnz=(2, 0), comm=self.problem.comm)
+        first = turn.getOwnershipRange()[0]
+        for node, (c, s) in enumerate(holds.axis[: owned // 2]):
+            dofs = np.array([first + 2 * node, first + 2 * node + 1], PETSc.IntType)
+            turn.setValues(dofs, dofs, np.array([[c, -s], [s, c]]))
+        turn.assemble()
+        return turn
 
     def _configure_cholesky(self, ksp, matrix):
         matrix.setOption(PETSc.Mat.Option.SYMMETRIC, True)

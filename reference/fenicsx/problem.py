@@ -1,4 +1,5 @@
-"""A case on a distributed mesh: the space V^h, the facets of each named boundary, the prescribed data, the gap and the load L."""
+"""A case on a distributed mesh: the space V^h, the materials, the facets of each named boundary, what holds the body, gap and direction of
+contact, the load L."""
 
 from dataclasses import dataclass
 
@@ -10,8 +11,11 @@ from petsc4py import PETSc
 
 from . import compat
 from .case import CaseError
+from .constraints import Constraints, Demand
 from .load import exact_load
 from .mesh import plane_mesh
+from .obstacle import NoDistance
+from .smooth import SmoothBoundary
 
 DATA_DEGREE = 10  # body force and traction are integrated exactly if data times test function has this degree
 FACET_VERTICES = np.array([[1, 2], [0, 2], [0, 1]])  # of the reference triangle; facet i lies opposite vertex i
@@ -25,12 +29,14 @@ class Facets:
     cells: np.ndarray
     local: np.ndarray  # the facet's number in its triangle
     owned: np.ndarray
+    ends: np.ndarray  # its vertices in the plane mesh, in the order of FACET_VERTICES
 
 
 class Problem:
     def __init__(self, case, comm):
         self.case, self.comm = case, comm
-        plane = plane_mesh(case)
+        self.plane = plane = plane_mesh(case)
+        self.smooth = SmoothBoundary(plane)
         mine = slice(None) if comm.rank == 0 else slice(0, 0)
         self.mesh = compat.create_mesh(comm, plane.triangles[mine].astype(np.int64), plane.points[mine])
         idle = self.mesh.topology.index_map(2).size_local == 0
@@ -38,16 +44,25 @@ class Problem:
         self.V = compat.vector_space(self.mesh, case.degree)
         self.W = compat.scalar_space(self.mesh, "Lagrange", case.degree)
         self.owned_dofs = 2 * self.V.dofmap.index_map.size_local
+        self.original = np.asarray(self.mesh.geometry.input_global_indices)[compat.cell_vertices(self.mesh)]
         self.nodes = self._node_coordinates()
         self.sizes = {"vertices": len(plane.points), "triangles": len(plane.triangles), "dofs": 2 * self.V.dofmap.index_map.size_global,
                       "contact_edges": sum(len(plane.boundaries[name]) for name in case.of_kind("contact"))}
         self.h_max = float(max(np.max(np.linalg.norm(plane.points[plane.triangles[:, i]] - plane.points[plane.triangles[:, i - 1]], axis=1))
                                for i in range(3)))
         self.boundaries = self._facets(plane)
+        self.surface_of = self._surfaces()
         self.ds = ufl.Measure("ds", domain=self.mesh, subdomain_data=self._tags())
-        self._prescribe()
-        self.gaps = {name: self._gap(name, gap) for name, gap in case.of_kind("contact").items()}
+        self.holds = self._constraints()
+        self.prescribed = self.holds.held.ravel()
+        self.data = self.holds.from_frames(self.holds.data.ravel())
+        self.contact = self._contact()
+        # The paper's lines of contact: straight, with a gap along the normal.
+        curved = [name for name in case.of_kind("contact") if any(self.smooth.oriented(*e) in self.smooth.ends for e in plane.boundaries[name].tolist())]
+        self.straight = not curved and not any(hasattr(data, "closest") for data in case.of_kind("contact").values())
+        self.gaps = {name: self._gap(name, gap) for name, gap in case.of_kind("contact").items()} if self.straight else {}
         self.load = self._load()
+        self.free, self.slides = self._free_motions()
 
     def _node_coordinates(self):
         """(nodes that this process sees, 2): vertices as they were given, then midpoints. DOLFINx's own table carries rounding, by which a
@@ -63,19 +78,18 @@ class Problem:
     def _facets(self, plane):
         """{name: Facets}, found by the vertices' numbers in `plane`."""
         name_of = {(min(a, b), max(a, b)): name for name in self.case.boundaries for a, b in plane.boundaries[name].tolist()}
-        original = np.asarray(self.mesh.geometry.input_global_indices)
         topology = self.mesh.topology
         topology.create_connectivity(2, 1)
         topology.create_connectivity(1, 2)
         facets_of, owned_cells = topology.connectivity(2, 1), topology.index_map(2).size_local
         found = {name: [] for name in self.case.boundaries}
-        for cell, vertices in enumerate(original[compat.cell_vertices(self.mesh)].tolist()):
+        for cell, vertices in enumerate(self.original.tolist()):
             for local, (i, j) in enumerate(FACET_VERTICES):
                 name = name_of.get((min(vertices[i], vertices[j]), max(vertices[i], vertices[j])))
                 if name:
-                    found[name].append((facets_of.links(cell)[local], cell, local, cell < owned_cells))
-        rows = {name: np.array(list_, dtype=np.int32).reshape(-1, 4) for name, list_ in found.items()}
-        return {name: Facets(r[:, 0], r[:, 1], r[:, 2], r[:, 3].astype(bool)) for name, r in rows.items()}
+                    found[name].append((facets_of.links(cell)[local], cell, local, cell < owned_cells, vertices[i], vertices[j]))
+        rows = {name: np.array(list_, dtype=np.int32).reshape(-1, 6) for name, list_ in found.items()}
+        return {name: Facets(r[:, 0], r[:, 1], r[:, 2], r[:, 3].astype(bool), r[:, 4:]) for name, r in rows.items()}
 
     def _tags(self):
         """Mesh tags that give boundary number i (in name order) the value i + 1."""
@@ -88,39 +102,161 @@ class Problem:
     def _nodes_on(self, name):
         return fem.locate_dofs_topological(self.V, 1, self.boundaries[name].facets)
 
-    def _prescribe(self):
-        """`prescribed`: the boundary's number per dof (0: free), the first in name order; `data`: its value; ghosts included."""
-        self.data = np.zeros(2 * len(self.nodes))
-        self.prescribed = np.zeros(2 * len(self.nodes), int)
-        message = None
-        for name, components in self.case.of_kind("displacement").items():
-            nodes = self._nodes_on(name)
-            x, y = self.nodes[nodes].T
-            exact = self.case.exact and self.case.exact.displacement(x, y)
-            for k in (0, 1):
-                if not self.case.exact and components[k] is None:
-                    continue
-                values = exact[k] if self.case.exact else components[k].values(x, y)
-                message = message or self._not_finite(f"boundary.{name}.displacement[{k}]", values, x, y)
-                dofs = 2 * nodes + k
-                taken = self.prescribed[dofs] > 0
-                differ = taken & (np.abs(self.data[dofs] - values) > 1e-12 * np.abs(values))
-                for i in np.flatnonzero(differ)[:1]:
-                    other = next(n for n, number in self.number.items() if number == self.prescribed[dofs[i]])
-                    message = message or (f"boundary.{name}.displacement[{k}]: found {values[i]!r} at ({x[i]!r}, {y[i]!r}), "
-                                          f"expected {self.data[dofs[i]]!r} as on boundary {other!r}")
-                self.data[dofs[~taken]] = values[~taken]
-                self.prescribed[dofs[~taken]] = self.number[name]
-        self.refuse(message)
-        self._no_rigid_motion()
+    def _surfaces(self):
+        """The physical surface of each triangle that this process sees; None where it has none, or where there is one material and no
+        load by surface."""
+        surfaces = self.plane.surfaces
+        if None in self.case.materials and not self.case.bodies:
+            return [None] * len(self.original)
+        name_of = {tuple(sorted(self.plane.triangles[t].tolist())): name for name, members in surfaces.items() for t in members}
+        return [name_of.get(tuple(sorted(vertices))) for vertices in self.original.tolist()]
 
-    def _no_rigid_motion(self):
-        """Refuses a case whose prescribed dofs leave a translation or rotation free."""
-        fixed = np.flatnonzero(self.prescribed[:self.owned_dofs])
-        rows = self.rigid_motions()[:, fixed]
-        smallest = np.linalg.eigvalsh(self.comm.allreduce(rows @ rows.T))[0]
-        if not smallest > 1e-10:
+    def lame(self, cells):
+        """lambda (as it acts in the plane) and mu of the given triangles."""
+        of = [self.case.materials.get(self.surface_of[cell], self.case.material) for cell in cells]
+        return np.array([m.plane_lam for m in of]), np.array([m.mu for m in of])
+
+    def on_triangles(self, values):
+        """The function with one value per triangle that this process sees."""
+        function = fem.Function(compat.scalar_space(self.mesh, "DG", 0))
+        dofmap = function.function_space.dofmap
+        function.x.array[[dofmap.cell_dofs(cell)[0] for cell in range(len(self.original))]] = values
+        return function
+
+    def _constraints(self):
+        """What boundaries and points prescribe, at the nodes that this process sees."""
+        case, plane, message = self.case, self.plane, None
+        supports = sorted({**case.of_kind("displacement"), **case.of_kind("support")})
+        keys = {name: sorted({key for a, b in plane.boundaries[name].tolist() for key in self._keys(a, b)}, key=str) for name in supports}
+        node_of = self._nodes_at({key for of in keys.values() for key in of} | {(vertex,) for vertex in plane.corners.values()})
+        demands = {}
+
+        def ask(name, place, nodes, directions, values):
+            nonlocal message
+            x, y = self.nodes[nodes].T
+            message = message or self._not_finite(place, values, x, y)
+            for node, direction, value in zip(nodes, directions, values):
+                demands.setdefault(node, []).append(Demand(name, place, np.asarray(direction, float), value))
+
+        def ask_components(name, place, nodes, components):
+            x, y = self.nodes[nodes].T
+            exact = case.exact and case.exact.displacement(x, y)
+            for k in (0, 1):
+                if exact is not None or components[k] is not None:
+                    values = exact[k] if exact is not None else components[k].values(x, y)
+                    ask(name, f"{place}.displacement[{k}]", nodes, np.tile(np.eye(2)[k], (len(nodes), 1)), values)
+
+        for name in supports:
+            data = case.boundaries[name].data
+            if case.boundaries[name].kind == "displacement":
+                ask_components(name, f"boundary.{name}", np.array([node_of[key] for key in keys[name] if key in node_of], int), data)
+                continue
+            for a, b in plane.boundaries[name].tolist():
+                edge = self.smooth.oriented(a, b)
+                _, normals = self.smooth.along(edge)
+                seen = [(node_of[key], n) for key, n in zip(self._keys(*edge), normals[[0, 2, 1]]) if key in node_of]
+                if seen:
+                    nodes, normals = np.array([node for node, _ in seen]), np.array([n for _, n in seen])
+                    tangents = np.column_stack((-normals[:, 1], normals[:, 0]))
+                    for key, expression, directions in zip(("normal", "tangential"), data, (normals, tangents)):
+                        if expression is not None:
+                            ask(name, f"boundary.{name}.{key}", nodes, directions, expression.values(*self.nodes[nodes].T))
+        for name, components in case.points.items():
+            node = node_of.get((plane.corners[name],))
+            if node is not None:
+                ask_components(name, f"point.{name}", np.array([node]), components)
+        self.refuse(message)
+        constraints, message = Constraints.of(self.nodes, demands)
+        self.refuse(message)
+        return constraints
+
+    def _keys(self, a, b):
+        """What the nodes of an edge are known by: its two vertices and, for P2, the pair of them."""
+        return [(a,), (b,), (min(a, b), max(a, b))][: self.case.degree + 1]
+
+    def _nodes_at(self, keys):
+        """{key: node} for those of the keys that this process sees."""
+        found = {}
+        for cell, vertices in enumerate(self.original.tolist()):
+            own = [(v,) for v in vertices]
+            if self.case.degree == 2:
+                own += [tuple(sorted((vertices[i], vertices[j]))) for i, j in FACET_VERTICES]
+            if any(key in keys for key in own):
+                found.update((key, node) for key, node in zip(own, self.V.dofmap.cell_dofs(cell).tolist()) if key in keys)
+        return found
+
+    def _contact(self):
+        """{(name, a, b): (directions, gaps)} at the Lagrange points from a to b of the contact edges whose triangles this process owns."""
+        found, message = {}, None
+        for name, data in self.case.of_kind("contact").items():
+            facets = self.boundaries[name]
+            for a, b in facets.ends[facets.owned].tolist():
+                edge = self.smooth.oriented(a, b)
+                places, normals = self.smooth.along(edge)
+                if edge != (a, b):
+                    places, normals = places[::-1], normals[::-1]
+                if self.case.degree == 1:
+                    places, normals = places[::2], normals[::2]
+                if hasattr(data, "closest"):
+                    try:
+                        gaps, normals = (np.array(column) for column in zip(*(data.closest(place) for place in places)))
+                    except NoDistance as error:
+                        message = message or f"boundary.{name}.contact.obstacle: found {error}, expected a distance"
+                        continue
+                else:
+                    gaps = self.case.exact.gap(*places.T) if self.case.exact else data.values(*places.T)
+                    message = message or self._not_finite(f"boundary.{name}.contact.gap", gaps, *places.T)
+                found[name, a, b] = normals, gaps
+        self.refuse(message)
+        return found
+
+    def _free_motions(self):
+        """(the motions that supports leave free, those of them that slide along all obstacles), as fields over the owned dofs. One dof
+        per slide is then held where it is. Refuses a body that neither supports nor contact can hold."""
+        motions = self.rigid_motions()
+        owned = self.owned_dofs
+        held = np.flatnonzero(self.prescribed[:owned])
+        rows = np.array([self.holds.into_frames(motion) for motion in motions])[:, held]
+        values, vectors = np.linalg.eigh(self.comm.allreduce(rows @ rows.T))
+        free = vectors[:, values <= 1e-10].T @ motions
+        if not len(free):
+            return free, free
+        normal = self._normal_motion(free)
+        values, vectors = np.linalg.eigh(self.comm.allreduce(normal @ normal.T))
+        sliding = values <= 1e-16 * max(1.0, values[-1])
+        slides = _orthonormal(vectors[:, sliding].T @ free, self.comm)
+        work = self.comm.allreduce(np.array([slides @ self.load, np.abs(slides) @ np.abs(self.load)]))
+        if sliding.all() or not np.all(np.abs(work[0]) <= 1e-9 * work[1]):
             self.refuse("boundary: a rigid motion is free; expected displacement boundaries that exclude translations and rotation")
+        left = list(slides)
+        while left:
+            slide = left.pop()
+            size = np.where(self.prescribed[:owned], 0.0, np.abs(slide))
+            best = max(self.comm.allgather((float(size.max(initial=0.0)), self.comm.rank)))
+            if best[1] == self.comm.rank:
+                dof = int(np.argmax(size))
+                self.prescribed[dof] = True
+            pivot = self.comm.bcast((dof, slide[dof]) if best[1] == self.comm.rank else None, root=best[1])
+            for other in left:
+                value = self.comm.bcast(other[pivot[0]] if best[1] == self.comm.rank else None, root=best[1])
+                other -= value / pivot[1] * slide
+        return free, slides
+
+    def _normal_motion(self, motions):
+        """n~ . r at the nodes of the contact edges of owned triangles, a column for each: (motions, points)."""
+        keys = {key for _, a, b in self.contact for key in self._keys(a, b)}
+        node_of = self._nodes_at(keys)
+        columns = []
+        for (_, a, b), (directions, _) in self.contact.items():
+            for key, n in zip(self._keys(a, b), directions[[0, -1, 1]]):
+                node = node_of[key]
+                if 2 * node < self.owned_dofs:
+                    columns.append(motions[:, 2 * node : 2 * node + 2] @ n)
+        return np.array(columns).reshape(-1, len(motions)).T
+
+    def least_norm(self, u):
+        """u less its part along the slides: of all solutions the one whose nodal values have the least norm."""
+        return u - self.slides.T @ self.comm.allreduce(self.slides @ u) if len(self.slides) else u
 
     def rigid_motions(self):
         """(3, owned dofs): the two translations and the rotation about the origin scaled to the mesh's size."""
@@ -147,8 +283,16 @@ class Problem:
         zero = fem.Constant(self.mesh, np.zeros(2))  # keeps a form that is 0 by its text, which UFL would drop
         rule = {"quadrature_degree": DATA_DEGREE}
         L = ufl.inner(zero + _vector(self.case.body, x), v) * ufl.dx(self.mesh, metadata=rule)
-        for name, components in self.case.of_kind("traction").items():
+        for name, components in self.case.bodies.items():
+            there = self.on_triangles([float(surface == name) for surface in self.surface_of])
+            L += there * ufl.inner(zero + _vector(components, x), v) * ufl.dx(self.mesh, metadata=rule)
+        for name, pressure in self.case.of_kind("pressure").items():
+            L -= pressure.ufl(x) * ufl.inner(ufl.FacetNormal(self.mesh), v) * self.ds(self.number[name], metadata=rule)
+        for name, boundary in sorted(self.case.boundaries.items()):
+            components = boundary.data if boundary.kind == "traction" else boundary.traction
             if components:
+                if boundary.kind != "traction":
+                    components = [t if u is None else None for t, u in zip(components, boundary.data)]
                 L += ufl.inner(_vector(components, x), v) * self.ds(self.number[name], metadata=rule)
         load = self.assemble(fem.form(L), exact_load(self) if self.case.exact else None)
         self.refuse(None if np.all(np.isfinite(load)) else "load: body force or traction is not finite on the mesh")
@@ -180,4 +324,12 @@ class Problem:
 
 
 def _vector(components, x):
-    return ufl.as_vector([component.ufl(x) for component in components])
+    return ufl.as_vector([ufl.as_ufl(0.0) if component is None else component.ufl(x) for component in components])
+
+
+def _orthonormal(fields, comm):
+    """Fields with orthonormal nodal values that span the same."""
+    if not len(fields):
+        return fields
+    values, vectors = np.linalg.eigh(comm.allreduce(fields @ fields.T))
+    return (vectors / np.sqrt(values)).T @ fields

@@ -22,6 +22,7 @@ def result(problem, method, gamma, u, history, seconds):
             "status": history.outcome,
         },
         "quantities": quantities(problem, method, u),
+        "contact": method.edges.boundaries(method.u.x.array),
     }
     if problem.case.exact:
         content["errors"] = errors(problem, method)
@@ -44,15 +45,14 @@ def quantities(problem, method, u):
 
 
 def reactions(problem, residual):
-    """{boundary: [x, y]}: the sum over its prescribed dofs of the unconstrained equations' residual, which is the force on the body.
-    A dof on two displacement boundaries counts for the one first in name order."""
-    owner = problem.prescribed[: problem.owned_dofs]
-    found = {}
-    for name in problem.case.of_kind("displacement"):
-        mine = np.where(owner == problem.number[name], residual, 0.0)
-        total = problem.comm.allreduce(np.array([np.sum(mine[0::2]), np.sum(mine[1::2])]))
-        found[name] = total.tolist()
-    return found
+    """{boundary or point: [x, y]}: its share of the unconstrained equations' residual, which is the force on the body."""
+    own = {}
+    for name, node, direction, dual in problem.holds.holders:
+        total = own.setdefault(name, np.zeros(2))
+        if 2 * node < problem.owned_dofs:
+            total += direction * (dual @ residual[2 * node : 2 * node + 2])
+    names = sorted({name for of in problem.comm.allgather(list(own)) for name in of})
+    return {name: problem.comm.allreduce(own.get(name, np.zeros(2))).tolist() for name in names}
 
 
 def probes(problem, u):

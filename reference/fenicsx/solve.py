@@ -13,7 +13,7 @@ from .result import result
 def coercivity(problem):
     """The `gamma` part of the result: gamma0, its limit 1/C_h, kappa, the edge that sets it; refuses kappa >= 1."""
     case = problem.case
-    C_h, edge = ContactEdges(problem, 1.0).coercivity(case.material)
+    C_h, edge = ContactEdges(problem, 1.0).coercivity()
     gamma0 = 0.5 / C_h if case.gamma0 == "auto" else case.gamma0
     kappa = gamma0 * C_h
     if kappa >= 1 and not case.allow_noncoercive:
@@ -34,6 +34,8 @@ def solve(path, comm, iterative=False, nx=None, Method=Method):
     method = Method(problem, gamma["gamma0"])
     clock.append(time.perf_counter())
     u, history = Solver(method, iterative).solve()
+    u = problem.least_norm(u)
+    method.set(u)
     clock.append(time.perf_counter())
     seconds = dict(zip(("read", "assemble", "solve"), (b - a for a, b in zip(clock, clock[1:]))))
     return result(problem, method, gamma, u, history, seconds), problem, method, history

@@ -14,7 +14,7 @@ CONTACT = '[boundary.bottom]\ncontact = { gap = "0" }\n'
 
 # (what is replaced in BLOCK, by what, message behind the file's name)
 REFUSED = [
-    ("[mesh]", "titel = 1\n[mesh]", "titel: unknown key; known here: material, exact, load, method, solver, output, title, mesh, boundary"),
+    ("[mesh]", "titel = 1\n[mesh]", "titel: unknown key; known here: material, exact, load, method, solver, output, units, title, mesh, boundary, obstacle, point"),
     ("[mesh]", "[mesh", "not a TOML file: Expected ']' at the end of a table declaration (at line 2, column 6)"),
     ("[material]\nlambda = 1.0\nmu = 1.0\n", "", "material: found nothing, expected a table"),
     ("mu = 1.0", "mu = -1.0", "material.mu: found -1.0, expected a positive number"),
@@ -36,11 +36,23 @@ REFUSED = [
     ("[material]", "perturb = { amount = 0.2, seed = 1 }\n[material]",
      "mesh.perturb: found {'amount': 0.2, 'seed': 1}, expected no perturb: the reference has no generator of random meshes; give a Gmsh file"),
     (CONTACT, "", "boundary: found top, expected at least one boundary with contact"),
-    (CONTACT, '[boundary.bottom]\n', "boundary.bottom: found nothing, expected exactly one of displacement, traction, contact"),
+    (CONTACT, '[boundary.bottom]\n', "boundary.bottom: found nothing, expected exactly one of displacement, traction, pressure, normal and tangential, contact"),
     (CONTACT, CONTACT + 'traction = ["0", "0"]\n',
-     "boundary.bottom: found traction, contact, expected exactly one of displacement, traction, contact"),
-    (CONTACT, CONTACT + 'friction = 0.3\n', "boundary.bottom.friction: unknown key; known here: displacement, traction, contact"),
-    ('gap = "0"', "gap = 0", "boundary.bottom.contact.gap: found 0, expected an expression of x and y in a string"),
+     "boundary.bottom: found traction, contact, expected exactly one of displacement, traction, pressure, normal and tangential, contact"),
+    (CONTACT, CONTACT + 'friction = 0.3\n', "boundary.bottom.friction: unknown key; known here: displacement, traction, pressure, normal, tangential, contact"),
+    ('gap = "0"', "gap = true", "boundary.bottom.contact.gap: found true, expected an expression of x and y in a string"),
+    ('gap = "0"', 'obstacle = "floor"', 'boundary.bottom.contact.obstacle: found "floor", expected '),
+    ("[load]", '[obstacle.o]\nplane = { point = [0, 0], normal = [0, 0] }\n[load]',
+     "obstacle.o.plane.normal: found [0.0, 0.0], expected a vector that is not zero"),
+    ("[load]", '[obstacle.o]\ncircle = { center = [0, 0], radius = 0, side = "inside" }\n[load]',
+     "obstacle.o.circle.radius: found 0, expected a positive number"),
+    ("[load]", "[obstacle.o]\n[load]", "obstacle.o: found nothing, expected exactly one of plane, circle, distance"),
+    ('[load]\nbody = ["0", "-4 + 10*x"]', '[obstacle.o]\ndistance = "2*y"\n[boundary.right]\ncontact = { obstacle = "o" }',
+     "boundary.right.contact.obstacle: found 0.0 with a gradient of length 2.0 at (1.0, 0.0), expected a distance"),
+    ("[load]", "[point.peg]\ndisplacement = [0, 0]\n[load]", "mesh: no point named 'peg'; this mesh has: none"),
+    ("[load]", "[load.steel]\nbody = [0, 0]\n[load]", "mesh: no surface named 'steel'; this mesh has: none"),
+    ('displacement = ["0", "0"]', 'displacement = ["free", "0"]\ntraction = [0, 1]',
+     'boundary.top.traction[1]: found "1.0", expected 0 where the displacement is given'),
     ('gap = "0"', 'gap = "z"',
      'boundary.bottom.contact.gap: in "z", column 1: unknown name \'z\'; known: x, y, pi, sqrt, sin, cos, exp, abs, min, max'),
     ('gap = "0"', 'gap = "1/x"', "boundary.bottom.contact.gap: found inf at (0.0, 0.0), expected a finite number"),
@@ -74,7 +86,7 @@ class Cases(TestCase):
     def test_defaults(self):
         case = read_case(self.file(BLOCK.replace("[method]\ndegree = 1\n", "").replace('{ gap = "0" }', "{}")))
         self.assertEqual((case.title, case.material.plane, case.degree, case.gamma0, case.gauss), ("", "strain", 1, "auto", None))
-        self.assertEqual((case.tolerance, case.max_iterations, case.allow_noncoercive, case.probes), (1e-10, 50, False, []))
+        self.assertEqual((case.tolerance, case.max_iterations, case.allow_noncoercive, case.probes), (1e-10, 200, False, []))
         self.assertEqual(case.boundaries["bottom"].data.text, "0")
 
     def test_integers_are_numbers(self):

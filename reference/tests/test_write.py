@@ -27,7 +27,7 @@ class Files(TestCase):
         write.write(content, problem, method, self.folder / "out")
         read = json.loads((self.folder / "out" / "result.json").read_text())
         self.assertEqual(read, content)
-        self.assertEqual(list(read), ["version", "title", "mesh", "gamma", "newton", "quantities", "errors", "probes", "seconds"])
+        self.assertEqual(list(read), ["version", "title", "mesh", "gamma", "newton", "quantities", "contact", "errors", "probes", "seconds"])
         self.assertEqual(list(read["seconds"]), ["read", "assemble", "solve", "write"])
 
     def test_a_nan_is_not_written(self):

@@ -57,6 +57,7 @@ impl Tree {
             let [left, right] = owners[e];
             [left, right].into_iter().flatten().map(|owner| owner.piece).find(|&piece| piece != t)
         };
+        let mut reached = Vec::new();
         for root in 0..count {
             if seen[root] {
                 continue;
@@ -68,7 +69,7 @@ impl Tree {
             while next < tree.order.len() {
                 let t = tree.order[next];
                 next += 1;
-                let mut reached = vec![t];
+                reached.push(t);
                 while let Some(from) = reached.pop() {
                     for e in certificate.pieces[from].edges {
                         // From t everywhere; from a triangle just found only to the rest of a cut one.
@@ -97,12 +98,12 @@ impl Tree {
 /// A connected part that Gamma_D doesn't hold.
 pub(super) fn close<S: Enclosing>(
     certificate: &Certificate,
+    tree: &Tree,
     triangles: &[Triangle<S>],
     owners: &[[Option<Owner>; 2]],
     points: &[Vector2<S>],
     loads: &mut [Loads<S>],
 ) -> Result<(), Unbalanced> {
-    let tree = Tree::new(certificate, owners);
     let mut wrenches: Vec<Wrench<S>> =
         loads.iter().zip(triangles).map(|(loads, triangle)| loads.resultant(triangle)).collect();
     for (k, &first) in tree.parts.iter().enumerate() {

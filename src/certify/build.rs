@@ -1,7 +1,7 @@
 //! A certificate from a discrete solution: v by clipping u^h, tau by equilibrated tractions.
 //!
-//! Take lambda^h = -(1/gamma) \[P(u^h)\]+ and on each triangle s_T = sigma(u^h) + sum_E (c_E / |T|) C (n (x) n), with
-//! c_E = int_E gamma (lambda^h - sigma_n(u^h)) over its edges on Gamma_C. Then (8) for P1 reads int s : eps(v) = L(v) + int
+//! Take lambda^h = -(1/gamma) \[P(u^h)\]+ and on each triangle s_T = sigma(u^h) + sum_E C (c_E (x) n) / |T|, with
+//! c_E = int_E gamma (lambda^h - sigma_n(u^h)) n~ over its edges on Gamma_C (n~ = n, or the direction of contact). Then (8) for P1 reads int s : eps(v) = L(v) + int
 //! lambda^h v_n: Nitsche's terms have gone into the stress. Tested with a hat function phi_a it says that around each
 //! vertex a there are moments M_E of tractions, one for each edge E at a, with
 //!
@@ -11,9 +11,10 @@
 //! is chosen such that they are near those of the mean stress; where the boundary prescribes a traction, it is known. The
 //! affine traction with the moments M_a, M_b is 4 M_a - 2 M_b at a, per unit of the edge's parameter.
 //!
-//! A triangle whose contact edge holds the end of contact is cut there, so that lambda^h is affine on the edges.
+//! A triangle whose contact edge holds the end of contact is cut there, so that lambda^h is affine on the edges. Where n~
+//! turns along an edge, tau n is affine along it only if the pressure is constant: then it is the mean of lambda^h.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -26,8 +27,9 @@ use crate::fem::mesh::length;
 use crate::fem::pieces::{Features, Rule};
 use crate::fem::{BoundaryEdge, BoxedFunction, Condition, Function, Mesh, Problem};
 use crate::kernel::composite::complementary;
+use crate::kernel::contact_edge::integral_of_product;
 use crate::kernel::edge_integral::{ExactEdge, positive_interval};
-use crate::kernel::{ContactEdge, Material, P1, Stress, Triangle};
+use crate::kernel::{Material, P1, Stress, Triangle};
 
 /// What a boundary edge prescribes.
 #[derive(Clone, Copy)]
@@ -114,12 +116,7 @@ impl<'a> Parts<'a> {
                     }
                     Condition::Traction(traction) => Boundary::Loaded(Traction::Vector(traction)),
                     Condition::Pressure(p) => Boundary::Loaded(Traction::Pressure(p)),
-                    Condition::Contact { .. } => continue,
-                    Condition::Obstacle(..) => {
-                        return unsupported(format!(
-                            "'{name}' meets an obstacle along a direction that is not the edges' normal"
-                        ));
-                    }
+                    Condition::Contact { .. } | Condition::Obstacle(..) => continue,
                 };
                 let what = match what {
                     Boundary::Held([false, false]) => Boundary::Free,
@@ -129,24 +126,26 @@ impl<'a> Parts<'a> {
             }
         }
         for (k, edge) in contact.iter().enumerate() {
-            let (t, local) = (edge.edge.triangle, edge.edge.local);
-            let (triangle, of) = (mesh.triangle(t), problem.material.of(t));
-            let along_the_normal =
-                ContactEdge::new::<P1>(&triangle, local, edge.normal, of, edge.gamma);
-            if along_the_normal.p0 != edge.functionals.p0 {
-                return unsupported(
-                    "contact acts along a direction that is not the edges' normal".to_owned(),
-                );
-            }
             boundary.insert(number(edge.edge), Boundary::Contact(k));
         }
         Ok(Parts { problem, mesh, contact, prescribed: constraints.values(), boundary })
+    }
+
+    /// The contact boundaries whose direction turns along an edge, so that it and the gap are known at vertices only.
+    pub fn turning(&self) -> BTreeSet<&str> {
+        let turning = self.contact.iter().filter(|edge| turns(edge));
+        turning.map(|edge| &*edge.boundary).collect()
     }
 
     /// What triangle `t` is made of.
     pub fn material(&self, t: usize) -> &Material<f64> {
         self.problem.material.of(t)
     }
+}
+
+/// Whether the direction of contact turns along an edge.
+pub(super) fn turns(edge: &ContactLineEdge<3, 2>) -> bool {
+    edge.directions[0] != edge.directions[1]
 }
 
 /// v: u with the prescribed values, and pushed out of the obstacle at the vertices of Gamma_C.
@@ -168,19 +167,39 @@ pub(super) fn admissible(parts: &Parts, u: &[[f64; 2]]) -> Vec<[f64; 2]> {
     for _ in 0..8 {
         let mut moved = false;
         for edge in parts.contact {
-            let n = edge.normal;
-            for (k, vertex) in parts.mesh.ends(edge.edge).into_iter().enumerate() {
-                let data = parts.prescribed[vertex];
-                let free = [0, 1].map(|c| if data[c].is_none() { n[c] } else { 0.0 });
-                let free = Vector2::from(free);
-                let along = free.dot(&n);
-                let beyond = Vector2::from(v[vertex]).dot(&n) - edge.gap[k];
-                // Intervals must see it, also on a part of the edge between places as far out as the body reaches.
+            let ends = parts.mesh.ends(edge.edge);
+            let free = [0, 1].map(|k| {
+                let (n, data) = (edge.directions[k], parts.prescribed[ends[k]]);
+                Vector2::from([0, 1].map(|c| if data[c].is_none() { n[c] } else { 0.0 }))
+            });
+            let margin = |k: usize| {
+                let n = edge.directions[k];
+                // Balls must see it, also on a part of the edge between places as far out as the body reaches.
                 let scale = edge.gap[k].abs() + if n[0] != 0.0 && n[1] != 0.0 { size } else { 0.0 };
-                let margin = 64.0 * f64::EPSILON * scale * reach / edge.length / NEAR_THE_END;
+                64.0 * f64::EPSILON * scale * reach / edge.length / NEAR_THE_END
+            };
+            for (k, vertex) in ends.into_iter().enumerate() {
+                let along = free[k].dot(&edge.directions[k]);
+                let beyond = Vector2::from(v[vertex]).dot(&edge.directions[k]) - edge.gap[k];
+                let margin = margin(k);
                 if beyond > -margin && along > 0.0 && (beyond > 0.0 || margin > 0.0) {
                     let step = (beyond + 2.0 * margin) / along;
-                    v[vertex] = [0, 1].map(|c| v[vertex][c] - step * free[c]);
+                    v[vertex] = (Vector2::from(v[vertex]) - free[k] * step).into();
+                    moved = true;
+                }
+            }
+            if turns(edge) {
+                // Between the ends it is at most the mean of the products of each with the other's direction.
+                let [d, e] = edge.directions;
+                let along = free[0].dot(&e) + free[1].dot(&d);
+                let at = ends.map(|vertex| Vector2::from(v[vertex]));
+                let beyond = at[0].dot(&e) + at[1].dot(&d) - edge.gap[0] - edge.gap[1];
+                let margin = margin(0) + margin(1);
+                if beyond > -margin && along > 0.0 {
+                    let step = (beyond + 2.0 * margin) / along;
+                    for k in 0..2 {
+                        v[ends[k]] = (at[k] - free[k] * step).into();
+                    }
                     moved = true;
                 }
             }
@@ -204,7 +223,7 @@ pub(super) fn build(
     let whole: Vec<Triangle<f64>> = (0..mesh.triangles().len()).map(|t| mesh.triangle(t)).collect();
     let stress = stresses(parts, u, &whole);
     let moments = moments(parts, &data, u, &whole, &stress);
-    let mut oscillation = Oscillation::new(parts.problem);
+    let mut oscillation = Oscillation::new(parts);
     let mut certificate = Certificate {
         vertices: mesh.vertices().to_vec(),
         cuts: Vec::new(),
@@ -235,8 +254,16 @@ pub(super) fn build(
             Some(Boundary::Contact(k)) => {
                 let edge = &parts.contact[*k];
                 let p = edge.p(&nodal(u, mesh.triangles()[edge.edge.triangle]));
-                let pressure = p.map(|p| -(p.max(0.0) / edge.gamma));
-                Role::Contact { pressure, gap: edge.gap }
+                let along = (edge.directions != [edge.normal; 2])
+                    .then(|| edge.directions.map(<[f64; 2]>::from));
+                let pressure = if turns(edge) {
+                    // The mean: then tau n is affine.
+                    let [a, b] = P1::exact(p).gradient;
+                    [-((a + b) / edge.gamma); 2]
+                } else {
+                    p.map(|p| -(p.max(0.0) / edge.gamma))
+                };
+                Role::Contact { pressure, gap: edge.gap, along }
             }
         };
         certificate.edges.push(Edge { ends, role });
@@ -276,7 +303,8 @@ fn add_triangle(
         let [start, end] = positive_interval(p);
         let at = if p[0] > 0.0 { end } else { start };
         let changes = (p[0] > 0.0) != (p[1] > 0.0);
-        (changes && NEAR_THE_END < at && at < 1.0 - NEAR_THE_END).then_some((local, at))
+        let inside = NEAR_THE_END < at && at < 1.0 - NEAR_THE_END;
+        (changes && inside && !turns(edge)).then_some((local, at))
     });
     let Some((local, at)) = cut else {
         add(corners, edges, certificate);
@@ -287,17 +315,17 @@ fn add_triangle(
     let middle = certificate.vertices.len() + certificate.cuts.len();
     certificate.cuts.push(Cut { ends: [b, c], at });
     let whole = certificate.edges[opposite];
-    let Role::Contact { pressure, gap } = whole.role else { return };
+    let Role::Contact { pressure, gap, along } = whole.role else { return };
     let inside = gap[0] + at * (gap[1] - gap[0]);
     // The first half keeps the number of the edge.
     certificate.edges[opposite] = Edge {
         ends: [b, middle],
-        role: Role::Contact { pressure: [pressure[0], 0.0], gap: [gap[0], inside] },
+        role: Role::Contact { pressure: [pressure[0], 0.0], gap: [gap[0], inside], along },
     };
     let second = certificate.edges.len();
     certificate.edges.push(Edge {
         ends: [middle, c],
-        role: Role::Contact { pressure: [0.0, pressure[1]], gap: [inside, gap[1]] },
+        role: Role::Contact { pressure: [0.0, pressure[1]], gap: [inside, gap[1]], along },
     });
     let [from, to] = [middle, a].map(|p| place(certificate, p));
     let normal = Vector2::new(to.y - from.y, from.x - to.x);
@@ -344,12 +372,15 @@ fn stresses(parts: &Parts, u: &[[f64; 2]], triangles: &[Triangle<f64>]) -> Vec<S
         let (t, n) = (edge.edge.triangle, edge.normal);
         let nodal = nodal(t);
         let pressure = P1::exact(edge.p(&nodal)).gradient;
-        let force = -(edge.length * (pressure[0] + pressure[1]));
         let sigma_n = edge.sigma_n(&nodal);
-        let excess = force - edge.gamma * edge.length * (sigma_n[0] + sigma_n[1]) / 2.0;
-        let unit = parts.material(t).stress(Matrix2::from_fn(|i, j| n[i] * n[j]));
-        let factor = excess / (triangles[t].double_area() / 2.0);
-        stress[t] = stress[t] + unit * factor;
+        let d = edge.directions;
+        let excess = Vector2::from([0, 1].map(|c| {
+            let stress = integral_of_product(sigma_n, [d[0][c], d[1][c]]);
+            -(pressure[0] * d[0][c] + pressure[1] * d[1][c]) - edge.gamma * stress
+        }));
+        let factor = edge.length / (triangles[t].double_area() / 2.0);
+        let strain = Matrix2::from_fn(|i, j| factor * excess[i] * n[j]);
+        stress[t] = stress[t] + parts.material(t).stress(strain);
     }
     stress
 }
@@ -411,7 +442,11 @@ fn moments(
                 known[e] = [true; 2];
                 let edge = &parts.contact[*k];
                 let positive = P1::exact(edge.p(&nodal(u, corners[t]))).gradient;
-                moments[e] = positive.map(|p| normal * -(p / edge.gamma));
+                moments[e] = if edge.directions == [edge.normal; 2] {
+                    positive.map(|p| normal * -(p / edge.gamma))
+                } else {
+                    [0, 1].map(|k| edge.directions[k] * -(edge.length * positive[k] / edge.gamma))
+                };
             }
         }
     }

@@ -181,7 +181,8 @@ pub(super) struct Oscillation {
 }
 
 impl Oscillation {
-    pub fn new(problem: &Problem) -> Self {
+    pub fn new(parts: &Parts) -> Self {
+        let (problem, turning) = (parts.problem, parts.turning());
         let mut inexact = Vec::new();
         if !within(&problem.body_force, 0) {
             inexact.push("the body force is not known to be constant".to_owned());
@@ -202,15 +203,27 @@ impl Oscillation {
                 }
                 Condition::Traction(traction) => ("traction", within(traction, 1)),
                 Condition::Pressure(p) => ("pressure", affine(p)),
-                Condition::Contact { gap } => ("gap", affine(gap)),
-                Condition::Obstacle(..) => ("obstacle", false),
+                Condition::Contact { gap } => {
+                    ("gap", affine(gap) || turning.contains(name.as_str()))
+                }
+                // A plane's distance is affine; other distances turn.
+                Condition::Obstacle(..) => continue,
             };
             if !exact {
                 inexact.push(format!("the {what} of '{name}' is not known to be affine"));
             }
         }
-        let reason = (!inexact.is_empty())
+        let measured = (!inexact.is_empty())
             .then(|| format!("{}: its oscillation is measured by quadrature", inexact.join("; ")));
+        let named = (!turning.is_empty()).then(|| {
+            let names: Vec<String> = turning.iter().map(|name| format!("'{name}'")).collect();
+            format!(
+                "the problem that is bounded has the polygon of the mesh, and on {} a direction and a gap that are affine between its vertices",
+                names.join(", ")
+            )
+        });
+        let reasons: Vec<String> = measured.into_iter().chain(named).collect();
+        let reason = (!reasons.is_empty()).then(|| reasons.join("; "));
         Oscillation { reason, lift: 0.0 }
     }
 
@@ -310,6 +323,7 @@ fn loads(parts: &Parts, data: &Data, certificate: &Certificate, piece: &Piece, t
 fn lifts(parts: &Parts) -> Vec<f64> {
     let mesh = parts.mesh;
     let mut lifts = vec![0.0; mesh.triangles().len()];
+    let turning = parts.turning();
     for (name, condition) in &parts.problem.conditions {
         for &edge in mesh.edges_of(name).unwrap_or_default() {
             let vertices = mesh.ends(edge);
@@ -327,10 +341,14 @@ fn lifts(parts: &Parts) -> Vec<f64> {
                         _ => 0.0,
                     })
                 }),
-                Condition::Contact { gap } if !is_within(gap, 1) => Box::new(move |s| {
-                    let lacking = gap.at(at(s)) - between(s, ends.map(|x| gap.at(x)));
-                    (normal * lacking).into()
-                }),
+                Condition::Contact { gap }
+                    if !is_within(gap, 1) && !turning.contains(name.as_str()) =>
+                {
+                    Box::new(move |s| {
+                        let lacking = gap.at(at(s)) - between(s, ends.map(|x| gap.at(x)));
+                        (normal * lacking).into()
+                    })
+                }
                 _ => continue,
             };
             let t = edge.triangle;

@@ -9,17 +9,21 @@
 //! A [`Certificate`] holds v by its values at vertices, and tau by its tractions on edges: an edge has one traction, so
 //! that tau n is continuous, and on Gamma_C it is a nonpositive multiple of n. What is left is that each triangle is in
 //! equilibrium, and there the doubles of a file can't be exact. `certify::balance` therefore adds to the tractions those
-//! small ones that make equilibrium exact; they are known as intervals, and so is then tau.
+//! small ones that make equilibrium exact; they are known as balls, and so is then tau.
+//!
+//! Contact may also act along a direction d, affine on each edge, in place of n: v . d <= g, and tau n = p d with p <= 0. The
+//! theorem holds as it stands, for the solution u of the problem with that d (section 7.2).
 
 use nalgebra::{Matrix2, Vector2};
 use thiserror::Error;
 
-use super::balance::{self, Unbalanced};
+use super::balance::{self, Tree, Unbalanced};
 use crate::kernel::composite::{Composite, Loads, complementary};
 use crate::kernel::contact_edge::integral_of_product;
-use crate::kernel::{Interval, Material, Plane, Scalar, Triangle};
+use crate::kernel::{Ball, Interval, Material, Plane, Scalar, Stress, Triangle};
 
-/// A number that stands for a real one: a double for a quick look, an interval for a proof, a rational for the truth.
+/// A number that stands for a real one: a double for a quick look, a ball or an interval for a proof, a rational for the
+/// truth.
 pub trait Enclosing: Scalar {
     /// This double.
     fn exactly(value: f64) -> Self;
@@ -49,6 +53,24 @@ impl Enclosing for f64 {
 
     fn lower(self) -> f64 {
         self
+    }
+}
+
+impl Enclosing for Ball {
+    fn exactly(value: f64) -> Ball {
+        Ball::point(value)
+    }
+
+    fn sqrt(self) -> Ball {
+        Ball::sqrt(self)
+    }
+
+    fn upper(self) -> f64 {
+        Ball::upper(self)
+    }
+
+    fn lower(self) -> f64 {
+        Ball::lower(self)
     }
 }
 
@@ -137,6 +159,8 @@ pub enum Role {
         pressure: [f64; 2],
         /// g at both ends.
         gap: [f64; 2],
+        /// The direction d of contact at both ends, affine between them; `None` is the edge's normal.
+        along: Option<[[f64; 2]; 2]>,
     },
 }
 
@@ -169,6 +193,7 @@ const IMBALANCE: f64 = 128.0 * f64::EPSILON;
 /// Why a certificate proves nothing.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
+#[non_exhaustive]
 pub enum Rejection {
     #[error("{what} has {found} entries; expected {expected}")]
     Length { what: &'static str, found: usize, expected: usize },
@@ -217,20 +242,20 @@ impl Certificate {
         self.sum(&state)
     }
 
-    /// The same as [`Certificate::evaluate`] in intervals, and more than a proof needs: that the certificate is as it was
-    /// made. Its tractions balance on every triangle to the rounding of doubles, and what it claims are the very numbers
-    /// that its data give.
+    /// The same as [`Certificate::evaluate`] in [balls](Ball), and more than a proof needs: that the certificate is as it was
+    /// made. Its tractions balance on every triangle to the rounding of doubles, its shares are the very numbers that
+    /// its data give, and the bound is no smaller.
     ///
     /// # Errors
     /// As [`Certificate::evaluate`]; a triangle that is out of balance; a claim that does not follow.
     pub fn audit(&self, claim: &Claim) -> Result<Proof, Rejection> {
-        let state = self.balanced::<Interval>()?;
+        let state = self.balanced::<Ball>()?;
         for (t, piece) in self.pieces.iter().enumerate() {
-            let loads = self.loads(t, &state.forces, &state.owners);
+            let loads = state.loads_as_given(self, t);
             let triangle = &state.triangles[t];
-            let size = |x: Interval| x.lo().abs().max(x.hi().abs());
+            let size = |x: Ball| x.lower().abs().max(x.upper().abs());
             let reach = (0..3)
-                .flat_map(|i| <[Interval; 2]>::from(triangle.edge(i)))
+                .flat_map(|i| <[Ball; 2]>::from(triangle.edge(i)))
                 .map(size)
                 .fold(0.0, f64::max);
             let area = size(triangle.double_area());
@@ -254,7 +279,7 @@ impl Certificate {
                 return Err(Rejection::Share { triangle, claimed, found });
             }
         }
-        if !same(claim.bound, proof.bound) {
+        if !(claim.bound >= proof.bound) {
             return Err(Rejection::Bound { claimed: claim.bound, found: proof.bound });
         }
         Ok(proof)
@@ -269,7 +294,7 @@ impl Certificate {
         self.check_displacement()?;
         let owners = self.owners()?;
         let mut forces = Vec::with_capacity(self.edges.len());
-        let mut contact = vec![S::from(0); self.pieces.len()];
+        let mut on_contact = vec![S::from(0); self.pieces.len()];
         for (e, edge) in self.edges.iter().enumerate() {
             let [start, end] = edge.ends.map(|vertex| points[vertex]);
             let along = end - start;
@@ -283,50 +308,55 @@ impl Certificate {
                     traction.map(|t| exactly(t) * length)
                 }
                 Role::Pressed(p) => p.map(|p| -(normal * S::exactly(p))),
-                Role::Contact { pressure, gap } => {
-                    let mut beyond = [S::from(0); 2];
-                    for (k, vertex) in edge.ends.into_iter().enumerate() {
-                        if !(pressure[k] <= 0.0) {
-                            return Err(Rejection::Tension { edge: e, value: pressure[k] });
+                Role::Contact { pressure, gap, along } => {
+                    if let Some(&value) = pressure.iter().find(|&&p| !(p <= 0.0)) {
+                        return Err(Rejection::Tension { edge: e, value });
+                    }
+                    let at_ends = edge.ends.map(|vertex| v[vertex]);
+                    let contact = match along {
+                        None => along_the_normal(at_ends, normal, pressure, gap, length),
+                        Some([a, b]) if a != b && pressure[0] != pressure[1] => {
+                            return Err(wrong(
+                                "edge",
+                                e,
+                                "a pressure that varies along a direction that turns",
+                            ));
                         }
-                        beyond[k] = v[vertex].dot(&normal);
-                        if gap[k] != 0.0 {
-                            beyond[k] = beyond[k] - length() * S::exactly(gap[k]);
+                        Some(along) => {
+                            along_directions(at_ends, along.map(exactly), pressure, gap, length())
                         }
-                        let value = beyond[k].upper();
+                    };
+                    for value in contact.beyond.map(S::upper) {
                         if !(value <= 0.0) {
                             return Err(Rejection::Penetration { edge: e, value });
                         }
                     }
-                    let pressure = pressure.map(S::exactly);
                     if let Some(owner) = owners[e][0] {
-                        contact[owner.piece] = contact[owner.piece]
-                            + S::from(2) * integral_of_product(pressure, beyond);
+                        on_contact[owner.piece] = on_contact[owner.piece] + contact.term;
                     }
-                    pressure.map(|p| normal * p)
+                    contact.force
                 }
             });
         }
-        let mut loads: Vec<Loads<S>> =
-            (0..self.pieces.len()).map(|t| self.loads(t, &forces, &owners)).collect();
-        balance::close(self, &triangles, &owners, &points, &mut loads)?;
-        Ok(Balanced { triangles, v, owners, forces, loads, contact })
+        let tree = Tree::new(self, &owners);
+        let mut state =
+            Balanced { points, triangles, v, owners, tree, forces, loads: Vec::new(), on_contact };
+        state.close(self)?;
+        Ok(state)
     }
 
     /// The right side of the theorem.
     fn sum<S: Enclosing>(&self, state: &Balanced<S>) -> Result<Proof, Rejection> {
-        let Balanced { triangles, v, forces, loads, contact, .. } = state;
+        let Balanced { triangles, v, forces, on_contact, .. } = state;
         let zero = S::from(0);
         let (mut square, mut norm, mut energy) = (zero, zero, zero);
-        let mut shares = Vec::with_capacity(loads.len());
+        let mut shares = Vec::with_capacity(self.pieces.len());
         for (t, piece) in self.pieces.iter().enumerate() {
             let material = piece.material();
             let double_area = triangles[t].double_area();
             let nodal = piece.vertices.map(|vertex| v[vertex]);
-            let gradient = displacement_gradient(&triangles[t], &nodal);
-            let sigma = material.stress(gradient);
-            let tau = Composite::new(&triangles[t], &loads[t]);
-            let distance = tau.distance_from(sigma).energy(&material, double_area);
+            let (sigma, distance) = state.stresses(self, t);
+            let distance = distance.energy(&material, double_area);
             let share = if piece.oscillation == 0.0 {
                 distance
             } else {
@@ -334,7 +364,7 @@ impl Certificate {
                 let distance = distance.split(|_| zero, |d| d);
                 let root = distance.sqrt() + S::exactly(piece.oscillation);
                 root * root
-            } + contact[t];
+            } + on_contact[t];
             shares.push(share.upper());
             square = square + share;
             let internal = complementary(&material, sigma) * double_area / S::from(2);
@@ -420,7 +450,11 @@ impl Certificate {
             let numbers = match edge.role {
                 Role::Inner(f) | Role::Held(_, f) | Role::Loaded(f) => finite(f.as_flattened()),
                 Role::Pressed(p) => finite(&p),
-                Role::Contact { pressure, gap } => finite(&pressure) && finite(&gap),
+                Role::Contact { pressure, gap, along } => {
+                    finite(&pressure)
+                        && finite(&gap)
+                        && along.is_none_or(|d| finite(d.as_flattened()))
+                }
             };
             if !(numbers && edge.ends.iter().all(|&p| p < points) && edge.ends[0] != edge.ends[1]) {
                 return Err(wrong("edge", i, "expected two different vertices and finite numbers"));
@@ -536,38 +570,134 @@ impl Certificate {
         }
         Ok(owners)
     }
+}
+
+/// An edge of Gamma_C.
+struct OnContact<S> {
+    /// tau N at both ends.
+    force: [Vector2<S>; 2],
+    /// v_n - g at both ends, and what it is at most between them: none may be positive.
+    beyond: [S; 3],
+    /// 2 int tau_n (v_n - g)
+    term: S,
+}
+
+/// Contact along the normal. All is in units of the length, which is needed only where there is a gap.
+fn along_the_normal<S: Enclosing>(
+    v: [Vector2<S>; 2],
+    normal: Vector2<S>,
+    pressure: [f64; 2],
+    gap: [f64; 2],
+    length: impl Fn() -> S,
+) -> OnContact<S> {
+    let [a, b] = [0, 1].map(|k| {
+        let beyond = v[k].dot(&normal);
+        if gap[k] == 0.0 { beyond } else { beyond - length() * S::exactly(gap[k]) }
+    });
+    let pressure = pressure.map(S::exactly);
+    OnContact {
+        force: pressure.map(|p| normal * p),
+        beyond: [a, a, b],
+        term: S::from(2) * integral_of_product(pressure, [a, b]),
+    }
+}
+
+/// Contact along a direction d that is affine between the ends, with tau N = |E| p d: either d or p is constant. v . d - g has
+/// the Bernstein coefficients b_0, b_1 / 2, b_2, whose mean is its integral; it is at most their largest.
+fn along_directions<S: Enclosing>(
+    v: [Vector2<S>; 2],
+    d: [Vector2<S>; 2],
+    pressure: [f64; 2],
+    gap: [f64; 2],
+    length: S,
+) -> OnContact<S> {
+    let (two, [g, h]) = (S::from(2), gap.map(S::exactly));
+    let first = v[0].dot(&d[0]) - g;
+    let middle = v[0].dot(&d[1]) + v[1].dot(&d[0]) - g - h;
+    let last = v[1].dot(&d[1]) - h;
+    let [p, q] = pressure.map(S::exactly);
+    let integral = if pressure[0] == pressure[1] {
+        p * (two * first + middle + two * last) / S::from(6)
+    } else {
+        integral_of_product([p, q], [first, last])
+    };
+    OnContact {
+        force: [d[0] * (length * p), d[1] * (length * q)],
+        beyond: [first, middle, last],
+        term: two * length * integral,
+    }
+}
+
+/// A certificate whose triangles are in equilibrium, in the numbers `S`.
+pub(super) struct Balanced<S> {
+    /// Vertices and cuts.
+    pub points: Vec<Vector2<S>>,
+    pub triangles: Vec<Triangle<S>>,
+    /// v at the points.
+    v: Vec<Vector2<S>>,
+    pub owners: Vec<[Option<Owner>; 2]>,
+    tree: Tree,
+    /// tau N on the edges as the certificate has it.
+    forces: Vec<[Vector2<S>; 2]>,
+    /// On each triangle, in equilibrium.
+    loads: Vec<Loads<S>>,
+    /// 2 int tau_n (v_n - g) over the edges of each triangle.
+    on_contact: Vec<S>,
+}
+
+impl<S: Enclosing> Balanced<S> {
+    /// The loads on the triangles from the forces on the edges, put in equilibrium.
+    fn close(&mut self, certificate: &Certificate) -> Result<(), Unbalanced> {
+        self.loads =
+            (0..certificate.pieces.len()).map(|t| self.loads_as_given(certificate, t)).collect();
+        let Balanced { points, triangles, owners, tree, loads, .. } = self;
+        balance::close(certificate, tree, triangles, owners, points, loads)
+    }
 
     /// The forces on triangle `t` towards its outside, and its body force.
-    fn loads<S: Enclosing>(
-        &self,
-        t: usize,
-        forces: &[[Vector2<S>; 2]],
-        owners: &[[Option<Owner>; 2]],
-    ) -> Loads<S> {
-        let piece = &self.pieces[t];
+    fn loads_as_given(&self, certificate: &Certificate, t: usize) -> Loads<S> {
+        let piece = &certificate.pieces[t];
         let outward = piece.edges.map(|e| {
-            let [a, b] = forces[e];
-            match owners[e][0] {
+            let [a, b] = self.forces[e];
+            match self.owners[e][0] {
                 Some(owner) if owner.piece == t => [a, b],
                 _ => [-b, -a],
             }
         });
         Loads { forces: outward, body: piece.body.map(exactly) }
     }
+
+    /// C eps(v) and C eps(v) - tau on triangle `t`.
+    pub fn stresses(&self, certificate: &Certificate, t: usize) -> (Stress<S>, Composite<S>) {
+        let piece = &certificate.pieces[t];
+        let nodal = piece.vertices.map(|vertex| self.v[vertex]);
+        let gradient = displacement_gradient(&self.triangles[t], &nodal);
+        let sigma = piece.material().stress(gradient);
+        let tau = Composite::new(&self.triangles[t], &self.loads[t]);
+        (sigma, tau.distance_from(sigma))
+    }
 }
 
-/// A certificate whose triangles are in equilibrium, in the numbers `S`.
-pub(super) struct Balanced<S> {
-    triangles: Vec<Triangle<S>>,
-    /// v at vertices and cuts.
-    v: Vec<Vector2<S>>,
-    pub owners: Vec<[Option<Owner>; 2]>,
-    /// tau N on the edges as the certificate has it.
-    forces: Vec<[Vector2<S>; 2]>,
-    /// On each triangle, in equilibrium.
-    pub loads: Vec<Loads<S>>,
-    /// 2 int tau_n (v_n - g) over the edges of each triangle.
-    contact: Vec<S>,
+impl Balanced<f64> {
+    /// Gives the edges of the certificate the tractions that balance.
+    pub fn give(&self, certificate: &mut Certificate) {
+        for (edge, owner) in certificate.edges.iter_mut().zip(&self.owners) {
+            let Some(Owner { piece, local }) = owner[0] else { continue };
+            if let Role::Inner(force) | Role::Held(_, force) = &mut edge.role {
+                *force = self.loads[piece].forces[local].map(Into::into);
+            }
+        }
+    }
+
+    /// The same with the forces that the certificate has now on inner and held edges.
+    pub fn rebalance(&mut self, certificate: &Certificate) -> Result<(), Unbalanced> {
+        for (force, edge) in self.forces.iter_mut().zip(&certificate.edges) {
+            if let Role::Inner(now) | Role::Held(_, now) = edge.role {
+                *force = now.map(Into::into);
+            }
+        }
+        self.close(certificate)
+    }
 }
 
 /// A triangle at an edge, by the place of the edge in it.

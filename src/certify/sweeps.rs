@@ -8,21 +8,25 @@
 //! tau N = q_b - q_a + 4 z at the start, q_b - q_a - 4 z at the end,   z . N = 3/2 (Phi_b - Phi_a) - 3/4 (q_a + q_b) . N,
 //!
 //! since the integral of grad Phi along the edge, which is that of q . N, is Phi_b - Phi_a; z . E is the edge's own
-//! unknown. One sweep goes to every vertex and solves for its three unknowns and those of its edges together.
+//! unknown. One sweep goes to every vertex and solves for its three unknowns and those of its edges together. A triangle has
+//! twelve unknowns, three for each vertex and one for each edge; the energy's second derivative by them is computed once,
+//! and the small systems of the vertices are factorised once.
 
 use nalgebra::Vector2;
 
-use super::build::{at_point, place};
-use super::proof::{Balanced, Certificate, Owner, Rejection, Role, displacement_gradient};
+use super::proof::{Balanced, Certificate, Rejection, Role};
+use crate::kernel::Stress;
 use crate::kernel::composite::{Composite, Loads};
-use crate::kernel::{Stress, Triangle};
 
-/// A triangle's energy as a function of the forces on its edges.
+/// The unknowns of a triangle: Phi, Phi_x, Phi_y at its vertices, then those of its edges.
+const UNKNOWNS: usize = 12;
+
+/// |C eps(v) - tau|^2 / 2 on a triangle as a function of its unknowns.
 struct Energy {
     /// The second derivative.
-    hessian: [[f64; 12]; 12],
-    /// The derivative at the present forces.
-    gradient: [f64; 12],
+    hessian: [[f64; UNKNOWNS]; UNKNOWNS],
+    /// The derivative at the present stress.
+    gradient: [f64; UNKNOWNS],
 }
 
 /// Improves the tractions of `certificate` in `count` sweeps, and leaves them in equilibrium up to rounding.
@@ -30,242 +34,331 @@ struct Energy {
 /// # Errors
 /// A condition of the theorem that does not hold.
 pub(super) fn improve(certificate: &mut Certificate, count: usize) -> Result<(), Rejection> {
-    let state = balance(certificate)?;
-    sweep(certificate, &state.owners, &state.loads, count);
-    // Each update has left its rounding errors.
-    balance(certificate)?;
+    let mut state = certificate.balanced::<f64>()?;
+    let mut sweeps = Sweeps::new(certificate, &state);
+    for sweep in 0..count {
+        sweeps.go(sweep % 2 == 1);
+    }
+    state.give(certificate);
+    sweeps.add_to(certificate, &state);
+    // The sums have left their rounding errors.
+    state.rebalance(certificate)?;
+    state.give(certificate);
     Ok(())
 }
 
-/// Gives the edges the tractions that balance, in doubles.
-fn balance(certificate: &mut Certificate) -> Result<Balanced<f64>, Rejection> {
-    let state = certificate.balanced::<f64>()?;
-    for (edge, owner) in certificate.edges.iter_mut().zip(&state.owners) {
-        let Some(Owner { piece, local }) = owner[0] else { continue };
-        if let Role::Inner(force) | Role::Held(_, force) = &mut edge.role {
-            *force = state.loads[piece].forces[local].map(Into::into);
+/// The triangles around each point, one list after the other: the list of point p is `of[first[p]..first[p + 1]]`.
+struct Stars {
+    first: Vec<usize>,
+    of: Vec<(usize, usize)>,
+}
+
+impl Stars {
+    fn new(certificate: &Certificate, points: usize) -> Stars {
+        let mut first = vec![0; points + 1];
+        for piece in &certificate.pieces {
+            piece.vertices.iter().for_each(|&p| first[p + 1] += 1);
         }
-    }
-    Ok(state)
-}
-
-fn sweep(
-    certificate: &mut Certificate,
-    owners: &[[Option<Owner>; 2]],
-    loads: &[Loads<f64>],
-    count: usize,
-) {
-    let points: Vec<Vector2<f64>> = (0..certificate.vertices.len() + certificate.cuts.len())
-        .map(|p| place(certificate, p))
-        .collect();
-    let mut stars = vec![Vec::new(); points.len()];
-    for (t, piece) in certificate.pieces.iter().enumerate() {
-        for local in 0..3 {
-            stars[piece.vertices[local]].push((t, local));
+        for p in 0..points {
+            first[p + 1] += first[p];
         }
-    }
-    // Whose traction is free.
-    let free_edge: Vec<bool> = certificate
-        .edges
-        .iter()
-        .map(|edge| matches!(edge.role, Role::Inner(_) | Role::Held([true, true], _)))
-        .collect();
-    let mut free_vertex = vec![true; points.len()];
-    for (edge, free) in certificate.edges.iter().zip(&free_edge) {
-        if !free {
-            edge.ends.iter().for_each(|&p| free_vertex[p] = false);
-        }
-    }
-    let mut energies: Vec<Energy> =
-        (0..loads.len()).map(|t| energy(certificate, &points, t, &loads[t])).collect();
-    let star = Star { points: &points, owners, free_edge: &free_edge, free_vertex: &free_vertex };
-    for sweep in 0..count {
-        for k in 0..points.len() {
-            let vertex = if sweep % 2 == 0 { k } else { points.len() - 1 - k };
-            star.minimise(vertex, &stars[vertex], &mut energies, certificate);
-        }
-    }
-}
-
-/// |C eps(v) - tau|^2 / 2 on triangle `t`.
-fn energy(
-    certificate: &Certificate,
-    points: &[Vector2<f64>],
-    t: usize,
-    loads: &Loads<f64>,
-) -> Energy {
-    let piece = &certificate.pieces[t];
-    let triangle = Triangle { vertices: piece.vertices.map(|p| points[p]) };
-    let double_area = triangle.double_area();
-    let material = piece.material::<f64>();
-    let v = piece.vertices.map(|p| value(certificate, p));
-    let sigma = material.stress(displacement_gradient(&triangle, &v));
-    let distance =
-        features(&Composite::new(&triangle, loads).distance_from(sigma), &material, double_area);
-    let mut units = [[0.0; 36]; 12];
-    for (k, unit) in units.iter_mut().enumerate() {
-        let mut unit_load =
-            Loads { forces: [[Vector2::zeros(); 2]; 3], body: [Vector2::zeros(); 3] };
-        unit_load.forces[k / 4][k / 2 % 2][k % 2] = 1.0;
-        let tau = Composite::new(&triangle, &unit_load);
-        *unit = features(&tau, &material, double_area);
-    }
-    let inner = |a: &[f64; 36], b: &[f64; 36]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let mut hessian = [[0.0; 12]; 12];
-    for i in 0..12 {
-        for j in 0..=i {
-            hessian[i][j] = inner(&units[i], &units[j]);
-            hessian[j][i] = hessian[i][j];
-        }
-    }
-    Energy { hessian, gradient: units.each_ref().map(|unit| -inner(unit, &distance)) }
-}
-
-/// Numbers whose products are those of [`Composite::product`].
-fn features(
-    tau: &Composite<f64>,
-    material: &crate::kernel::Material<f64>,
-    double_area: f64,
-) -> [f64; 36] {
-    let scale = double_area / 288.0;
-    let deviator = (scale / material.mu()).sqrt();
-    let sphere = (scale / (material.lambda() + material.mu())).sqrt();
-    let mut all = [0.0; 36];
-    let mut k = 0;
-    let mut put = |s: Stress<f64>| {
-        let [xx, yy, xy] = s.components();
-        all[k] = deviator * (xx - yy);
-        all[k + 1] = deviator * 2.0 * xy;
-        all[k + 2] = sphere * (xx + yy);
-        k += 3;
-    };
-    let centre = tau.centre;
-    for [a, b] in tau.corners {
-        put(a);
-        put(b);
-        put(centre);
-        put(a + b + centre);
-    }
-    all
-}
-
-/// v at point `p`.
-pub(super) fn value(certificate: &Certificate, p: usize) -> Vector2<f64> {
-    at_point(&certificate.displacement, &certificate.cuts, p)
-}
-
-struct Star<'a> {
-    points: &'a [Vector2<f64>],
-    owners: &'a [[Option<Owner>; 2]],
-    free_edge: &'a [bool],
-    free_vertex: &'a [bool],
-}
-
-impl Star<'_> {
-    fn minimise(
-        &self,
-        vertex: usize,
-        triangles: &[(usize, usize)],
-        energies: &mut [Energy],
-        certificate: &mut Certificate,
-    ) {
-        let mut edges: Vec<usize> = Vec::with_capacity(triangles.len() + 1);
-        for &(t, local) in triangles {
-            for k in 1..3 {
-                let e = certificate.pieces[t].edges[(local + k) % 3];
-                if !edges.contains(&e) {
-                    edges.push(e);
-                }
+        let mut next = first.clone();
+        let mut of = vec![(0, 0); 3 * certificate.pieces.len()];
+        for (t, piece) in certificate.pieces.iter().enumerate() {
+            for (local, &p) in piece.vertices.iter().enumerate() {
+                of[next[p]] = (t, local);
+                next[p] += 1;
             }
         }
-        // The unknowns: those of the vertex, then one for each free edge.
-        let own = if self.free_vertex[vertex] { 3 } else { 0 };
-        let mut unknown = own;
-        let numbers: Vec<Option<usize>> = edges
+        Stars { first, of }
+    }
+
+    fn around(&self, point: usize) -> &[(usize, usize)] {
+        &self.of[self.first[point]..self.first[point + 1]]
+    }
+}
+
+struct Sweeps {
+    /// The edges of each triangle.
+    edges: Vec<[usize; 3]>,
+    energies: Vec<Energy>,
+    stars: Stars,
+    /// Whose traction is free.
+    free_edge: Vec<bool>,
+    free_point: Vec<bool>,
+    /// The unknowns: of the points, and of the edges.
+    at_points: Vec<[f64; 3]>,
+    on_edges: Vec<f64>,
+    /// The systems of the stars: their columns, in the order of `stars.of`; the free edges at the points, and the factors,
+    /// each with the place where a point's begin. A point has no factor before the first sweep.
+    columns: Vec<Column>,
+    star_edges: Vec<usize>,
+    first_edge: Vec<usize>,
+    factors: Vec<f64>,
+    first_factor: Vec<usize>,
+}
+
+impl Sweeps {
+    fn new(certificate: &Certificate, state: &Balanced<f64>) -> Sweeps {
+        let points = state.points.len();
+        let free_edge: Vec<bool> = certificate
+            .edges
             .iter()
-            .map(|&e| {
-                self.free_edge[e].then(|| {
-                    unknown += 1;
-                    unknown - 1
-                })
-            })
+            .map(|edge| matches!(edge.role, Role::Inner(_) | Role::Held([true, true], _)))
             .collect();
-        if unknown == 0 {
-            return;
+        let mut free_point = vec![true; points];
+        for (edge, free) in certificate.edges.iter().zip(&free_edge) {
+            if !free {
+                edge.ends.iter().for_each(|&p| free_point[p] = false);
+            }
         }
-        let forces: Vec<[[Vector2<f64>; 2]; 4]> = edges
-            .iter()
-            .map(|&e| {
-                let ends = certificate.edges[e].ends;
-                modes(ends.map(|p| self.points[p]), ends[1] == vertex)
-            })
-            .collect();
-        let mut matrix = vec![0.0; unknown * unknown];
-        let mut right = vec![0.0; unknown];
-        let mut columns: Vec<(usize, usize, [f64; 12])> = Vec::with_capacity(5 * triangles.len());
-        for &(t, local) in triangles {
-            let piece = &certificate.pieces[t];
-            let first = columns.len();
-            let mut mine = [[0.0; 12]; 3];
-            for k in 1..3 {
-                let side = (local + k) % 3;
-                let Some(place) = edges.iter().position(|&e| e == piece.edges[side]) else {
-                    continue;
-                };
-                let left = self.owners[edges[place]][0].is_some_and(|owner| owner.piece == t);
-                let outward = |[a, b]: [Vector2<f64>; 2]| {
-                    if left { [a[0], a[1], b[0], b[1]] } else { [-b[0], -b[1], -a[0], -a[1]] }
-                };
-                for (mine, force) in mine.iter_mut().zip(&forces[place]).take(own) {
-                    mine[4 * side..4 * side + 4].copy_from_slice(&outward(*force));
+        let stars = Stars::new(certificate, points);
+        let mut sweeps = Sweeps {
+            columns: Vec::with_capacity(stars.of.len()),
+            stars,
+            star_edges: Vec::with_capacity(2 * free_edge.len()),
+            first_edge: Vec::with_capacity(points + 1),
+            factors: Vec::new(),
+            first_factor: Vec::with_capacity(points + 1),
+            edges: certificate.pieces.iter().map(|piece| piece.edges).collect(),
+            energies: (0..certificate.pieces.len())
+                .map(|t| energy(certificate, state, t))
+                .collect(),
+            free_point,
+            at_points: vec![[0.0; 3]; points],
+            on_edges: vec![0.0; free_edge.len()],
+            free_edge,
+        };
+        sweeps.number();
+        sweeps.factorise();
+        sweeps
+    }
+
+    /// To every point and its star, forwards or backwards.
+    fn go(&mut self, backwards: bool) {
+        let points = self.at_points.len();
+        let mut values = Vec::new();
+        for k in 0..points {
+            self.minimise(if backwards { points - 1 - k } else { k }, &mut values);
+        }
+    }
+
+    /// How many unknowns a point has.
+    fn own(&self, point: usize) -> usize {
+        if self.free_point[point] { 3 } else { 0 }
+    }
+
+    /// Numbers the unknowns of every star: those of the point, if it is free, then one for each free edge at it.
+    fn number(&mut self) {
+        for point in 0..self.at_points.len() {
+            let first = self.star_edges.len();
+            self.first_edge.push(first);
+            let own = self.own(point);
+            for &(triangle, local) in self.stars.around(point) {
+                let mut column = Column { triangle, count: 0, places: [(0, 0); 5] };
+                (0..own).for_each(|k| column.push(3 * local + k, k));
+                for side in [(local + 1) % 3, (local + 2) % 3] {
+                    let e = self.edges[triangle][side];
+                    if !self.free_edge[e] {
+                        continue;
+                    }
+                    let seen = &self.star_edges[first..];
+                    let place = seen.iter().position(|&other| other == e).unwrap_or(seen.len());
+                    if place == seen.len() {
+                        self.star_edges.push(e);
+                    }
+                    column.push(9 + side, own + place);
                 }
-                if let Some(number) = numbers[place] {
-                    let mut column = [0.0; 12];
-                    column[4 * side..4 * side + 4].copy_from_slice(&outward(forces[place][3]));
-                    columns.push((t, number, column));
-                }
-            }
-            columns
-                .extend(mine.into_iter().take(own).enumerate().map(|(k, column)| (t, k, column)));
-            let energy = &energies[t];
-            for (_, i, a) in &columns[first..] {
-                let image = energy.hessian.each_ref().map(|row| inner(row, a));
-                right[*i] -= inner(&energy.gradient, a);
-                for (_, j, b) in &columns[first..] {
-                    matrix[i * unknown + j] += inner(&image, b);
-                }
+                self.columns.push(column);
             }
         }
-        if !solve_positive(&mut matrix, &mut right) {
-            return;
-        }
-        for (t, number, column) in &columns {
-            let energy = &mut energies[*t];
-            for (gradient, row) in energy.gradient.iter_mut().zip(&energy.hessian) {
-                *gradient += right[*number] * inner(row, column);
-            }
-        }
-        for ((&e, number), modes) in edges.iter().zip(&numbers).zip(&forces) {
-            let (Role::Inner(force) | Role::Held(_, force)) = &mut certificate.edges[e].role else {
-                continue;
-            };
-            if number.is_none() {
-                continue;
-            }
-            let factors = (0..own).map(|k| (k, right[k])).chain(number.map(|n| (3, right[n])));
-            for (k, factor) in factors {
-                for end in 0..2 {
-                    for c in 0..2 {
-                        force[end][c] += factor * modes[k][end][c];
+        self.first_edge.push(self.star_edges.len());
+    }
+
+    /// The columns of a star, and its free edges.
+    fn star(&self, point: usize) -> (&[Column], &[usize]) {
+        let columns = &self.columns[self.stars.first[point]..self.stars.first[point + 1]];
+        (columns, &self.star_edges[self.first_edge[point]..self.first_edge[point + 1]])
+    }
+
+    /// The factors of the systems of the stars, the rows of their lower halves; none where there are no unknowns, or where
+    /// these are not independent.
+    fn factorise(&mut self) {
+        let mut matrix = Vec::new();
+        for point in 0..self.at_points.len() {
+            self.first_factor.push(self.factors.len());
+            let (columns, edges) = self.star(point);
+            let n = self.own(point) + edges.len();
+            matrix.clear();
+            matrix.resize(n * n, 0.0);
+            for column in columns {
+                let hessian = &self.energies[column.triangle].hessian;
+                for &(a, i) in column.places() {
+                    for &(b, j) in column.places() {
+                        matrix[i * n + j] += hessian[a][b];
                     }
                 }
             }
+            if n > 0 && factor_positive(&mut matrix, n) {
+                for (i, row) in matrix.chunks_exact(n).enumerate() {
+                    self.factors.extend_from_slice(&row[..=i]);
+                }
+            }
+        }
+        self.first_factor.push(self.factors.len());
+    }
+
+    fn minimise(&mut self, point: usize, x: &mut Vec<f64>) {
+        let factor = &self.factors[self.first_factor[point]..self.first_factor[point + 1]];
+        if factor.is_empty() {
+            return;
+        }
+        let own = self.own(point);
+        let columns = &self.columns[self.stars.first[point]..self.stars.first[point + 1]];
+        let edges = &self.star_edges[self.first_edge[point]..self.first_edge[point + 1]];
+        x.clear();
+        x.resize(own + edges.len(), 0.0);
+        for column in columns {
+            let gradient = &self.energies[column.triangle].gradient;
+            column.places().iter().for_each(|&(a, i)| x[i] -= gradient[a]);
+        }
+        substitute(factor, x);
+        for column in columns {
+            let Energy { hessian, gradient } = &mut self.energies[column.triangle];
+            for &(a, i) in column.places() {
+                let value = x[i];
+                for (gradient, h) in gradient.iter_mut().zip(&hessian[a]) {
+                    *gradient += value * h;
+                }
+            }
+        }
+        for (value, x) in self.at_points[point].iter_mut().zip(&x[..own]) {
+            *value += x;
+        }
+        for (&e, x) in edges.iter().zip(&x[own..]) {
+            self.on_edges[e] += x;
+        }
+    }
+
+    /// Adds the stress of the unknowns to the tractions of the certificate.
+    fn add_to(&self, certificate: &mut Certificate, state: &Balanced<f64>) {
+        for (edge, on_edge) in certificate.edges.iter_mut().zip(&self.on_edges) {
+            let (Role::Inner(force) | Role::Held([true, true], force)) = &mut edge.role else {
+                continue;
+            };
+            let ends = edge.ends.map(|p| state.points[p]);
+            for (side, &p) in edge.ends.iter().enumerate() {
+                let modes = modes(ends, side == 1);
+                for (value, mode) in self.at_points[p].iter().zip(&modes) {
+                    add(force, *value, mode);
+                }
+                if side == 0 {
+                    add(force, *on_edge, &modes[3]);
+                }
+            }
         }
     }
 }
 
-fn inner(a: &[f64; 12], b: &[f64; 12]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+fn add(force: &mut [[f64; 2]; 2], factor: f64, mode: &[Vector2<f64>; 2]) {
+    for (force, mode) in force.iter_mut().zip(mode) {
+        *force = [force[0] + factor * mode.x, force[1] + factor * mode.y];
+    }
+}
+
+/// What one triangle has to do with a star: its unknowns there, each with its number in the star.
+struct Column {
+    triangle: usize,
+    count: usize,
+    places: [(usize, usize); 5],
+}
+
+impl Column {
+    fn push(&mut self, unknown: usize, number: usize) {
+        self.places[self.count] = (unknown, number);
+        self.count += 1;
+    }
+
+    fn places(&self) -> &[(usize, usize)] {
+        &self.places[..self.count]
+    }
+}
+
+/// How many numbers [`features`] are.
+const FEATURES: usize = 21;
+
+/// |C eps(v) - tau|^2 / 2 on triangle `t`.
+fn energy(certificate: &Certificate, state: &Balanced<f64>, t: usize) -> Energy {
+    let piece = &certificate.pieces[t];
+    let triangle = &state.triangles[t];
+    let double_area = triangle.double_area();
+    let scale = double_area / 288.0;
+    let [lambda, mu] = piece.material;
+    let roots = [(scale / mu).sqrt(), (scale / (lambda + mu)).sqrt()];
+    let distance = features(&state.stresses(certificate, t).1, roots);
+    let mut units = [[0.0; UNKNOWNS]; FEATURES];
+    let (zero, body) = ([[Vector2::zeros(); 2]; 3], [Vector2::zeros(); 3]);
+    let mut put = |k: usize, forces: [[Vector2<f64>; 2]; 3]| {
+        let tau = features(&Composite::new(triangle, &Loads { forces, body }), roots);
+        units.iter_mut().zip(tau).for_each(|(row, value)| row[k] = value);
+    };
+    let mut at_vertices = [zero; 9];
+    for (side, &e) in piece.edges.iter().enumerate() {
+        let left = state.owners[e][0].is_some_and(|owner| owner.piece == t);
+        let outward = |[a, b]: [Vector2<f64>; 2]| if left { [a, b] } else { [-b, -a] };
+        let ends = certificate.edges[e].ends;
+        let places = ends.map(|p| state.points[p]);
+        for (k, &p) in ends.iter().enumerate() {
+            let modes = modes(places, k == 1);
+            // The start of the edge in this triangle is vertex side + 1.
+            let vertex = (side + if left { 1 + k } else { 2 - k }) % 3;
+            debug_assert_eq!(piece.vertices[vertex], p);
+            for c in 0..3 {
+                at_vertices[3 * vertex + c][side] = outward(modes[c]);
+            }
+            if k == 0 {
+                let mut forces = zero;
+                forces[side] = outward(modes[3]);
+                put(9 + side, forces);
+            }
+        }
+    }
+    for (k, forces) in at_vertices.into_iter().enumerate() {
+        put(k, forces);
+    }
+    let mut hessian = [[0.0; UNKNOWNS]; UNKNOWNS];
+    let mut gradient = [0.0; UNKNOWNS];
+    for (row, distance) in units.iter().zip(distance) {
+        for (i, sums) in hessian.iter_mut().enumerate() {
+            for (sum, unit) in sums.iter_mut().zip(row) {
+                *sum += row[i] * unit;
+            }
+        }
+        gradient.iter_mut().zip(row).for_each(|(sum, unit)| *sum -= unit * distance);
+    }
+    Energy { hessian, gradient }
+}
+
+/// Numbers whose sum of squares is [`Composite::energy`]; `roots` are those of |T|/144 over mu and over lambda + mu.
+///
+/// On a part with the corners a, b and the centre c, a^2 + b^2 + c^2 + (a + b + c)^2 is, with s = a + b + 2/3 c,
+/// 3/2 s^2 + 1/2 (a - b)^2 + 4/3 c^2.
+fn features(tau: &Composite<f64>, [deviator, sphere]: [f64; 2]) -> [f64; FEATURES] {
+    let mut all = [0.0; FEATURES];
+    let mut k = 0;
+    let mut put = |factor: f64, s: Stress<f64>| {
+        let [xx, yy, xy] = s.components();
+        all[k] = factor * deviator * (xx - yy);
+        all[k + 1] = factor * deviator * 2.0 * xy;
+        all[k + 2] = factor * sphere * (xx + yy);
+        k += 3;
+    };
+    for [a, b] in tau.corners {
+        put(1.5_f64.sqrt(), a + b + tau.centre / 1.5);
+        put(0.5_f64.sqrt(), a - b);
+    }
+    put(2.0, tau.centre);
+    all
 }
 
 /// The forces at start and end of an edge for unit values, at one of its ends, of Phi, Phi_x and Phi_y, and of the
@@ -285,40 +378,43 @@ fn modes([start, end]: [Vector2<f64>; 2], at_end: bool) -> [[Vector2<f64>; 2]; 4
     ]
 }
 
-/// Solves a small positive definite system in place by Cholesky's method; false if it is not definite, as it is for a
-/// star whose unknowns are not independent.
-fn solve_positive(matrix: &mut [f64], right: &mut [f64]) -> bool {
-    let n = right.len();
-    for j in 0..n {
-        let whole = matrix[j * n + j];
-        let mut pivot = whole;
-        for k in 0..j {
-            pivot -= matrix[j * n + k] * matrix[j * n + k];
+/// The Cholesky factor of a small positive definite matrix, in its lower half; false if it is
+/// not definite, as for a star whose unknowns are not independent. The diagonal holds the reciprocals.
+fn factor_positive(matrix: &mut [f64], n: usize) -> bool {
+    for i in 0..n {
+        let (above, row) = matrix.split_at_mut(i * n);
+        let row = &mut row[..n];
+        let whole = row[i];
+        for j in 0..i {
+            let other = &above[j * n..j * n + j + 1];
+            let sum: f64 = row[..j].iter().zip(other).map(|(a, b)| a * b).sum();
+            row[j] = (row[j] - sum) * other[j];
         }
+        let pivot = whole - row[..i].iter().map(|a| a * a).sum::<f64>();
         if !(pivot > 1e-13 * whole) {
             return false;
         }
-        let root = pivot.sqrt();
-        matrix[j * n + j] = root;
-        for i in j + 1..n {
-            let mut entry = matrix[i * n + j];
-            for k in 0..j {
-                entry -= matrix[i * n + k] * matrix[j * n + k];
-            }
-            matrix[i * n + j] = entry / root;
-        }
-    }
-    for i in 0..n {
-        for k in 0..i {
-            right[i] -= matrix[i * n + k] * right[k];
-        }
-        right[i] /= matrix[i * n + i];
-    }
-    for i in (0..n).rev() {
-        for k in i + 1..n {
-            right[i] -= matrix[k * n + i] * right[k];
-        }
-        right[i] /= matrix[i * n + i];
+        row[i] = 1.0 / pivot.sqrt();
     }
     true
+}
+
+/// Solves with that factor, of which the rows of the lower half are given, in place.
+fn substitute(factor: &[f64], x: &mut [f64]) {
+    let n = x.len();
+    let mut rest = factor;
+    for i in 0..n {
+        let (row, below) = rest.split_at(i + 1);
+        rest = below;
+        let sum: f64 = row[..i].iter().zip(&*x).map(|(a, b)| a * b).sum();
+        x[i] = (x[i] - sum) * row[i];
+    }
+    let mut rest = factor;
+    for i in (0..n).rev() {
+        let (above, row) = rest.split_at(rest.len() - i - 1);
+        rest = above;
+        x[i] *= row[i];
+        let known = x[i];
+        x[..i].iter_mut().zip(row).for_each(|(x, a)| *x -= known * a);
+    }
 }

@@ -61,12 +61,30 @@ pub fn apply<const N: usize>(functional: &[Vector2<f64>; N], u: &[Vector2<f64>; 
     functional.iter().zip(u).map(|(f, u)| f.dot(u)).sum()
 }
 
+/// gamma along Gamma_C.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Gamma {
+    /// gamma0 h_T with one gamma0: (7). The triangle with the smallest limit sets the limit for all.
+    Uniform(f64),
+    /// gamma0 h_T with the gamma0 for which kappa on the triangle itself is this number: gamma may be any function
+    /// (Remark 2.2), and a sliver spoils only itself.
+    Local(f64),
+}
+
+impl From<f64> for Gamma {
+    fn from(gamma0: f64) -> Self {
+        Gamma::Uniform(gamma0)
+    }
+}
+
 /// C_h with kappa = gamma0 C_h, and the contact edge that sets it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coercivity {
     /// max_T c_p (lambda + 2 mu) h_T |T's edges on Gamma_C| / |T|
     pub constant: f64,
-    /// An edge of the triangle where the maximum is attained, by its two ends.
+    /// The median of the same over the triangles.
+    pub typical: f64,
+    /// The contact edge where the maximum is attained, by its two ends; of several, the first in the order of these.
     pub limiting_edge: [[f64; 2]; 2],
 }
 
@@ -79,38 +97,68 @@ impl Coercivity {
         problem: &Problem,
     ) -> Result<Self, DataError> {
         let mesh = &problem.mesh;
-        let mut contact_length: BTreeMap<usize, f64> = BTreeMap::new();
         let edges = contact_edges(problem)?;
-        let sight = Sight::new(problem);
-        for &(edge, name) in &edges {
-            let [start, end] = [sight.direction(edge, name, 0)?, sight.direction(edge, name, 1)?];
-            let length = mesh.length_and_normal(edge).0;
-            let counted = if start == end {
-                length
-            } else {
-                turning_factor::<E, f64, N, M>(start.dot(&end)) * length
-            };
-            *contact_length.entry(edge.triangle).or_default() += counted;
-        }
-        let mut worst: Option<Coercivity> = None;
-        for (edge, _) in edges {
-            let t = edge.triangle;
-            let area = mesh.triangle(t).double_area() / 2.0;
-            let (h, length) = (mesh.diameter(t), contact_length[&t]);
-            let constant =
-                coercivity_constant::<E, f64, N, M>(problem.material.of(t), h, length, area);
-            if worst.is_none_or(|w| constant > w.constant) {
-                let limiting_edge = mesh.ends(edge).map(|v| mesh.vertices()[v]);
-                worst = Some(Coercivity { constant, limiting_edge });
-            }
-        }
-        worst.ok_or(DataError::NoContact)
+        let constants = constants::<E, N, M>(problem, &edges, &Sight::new(problem))?;
+        let mut sorted: Vec<f64> = constants.values().copied().collect();
+        sorted.sort_unstable_by(f64::total_cmp);
+        let typical = sorted.get(sorted.len() / 2).copied().ok_or(DataError::NoContact)?;
+        let constant = sorted.last().copied().ok_or(DataError::NoContact)?;
+        // Equal edges differ by rounding: the choice must not.
+        let equal =
+            edges.iter().filter(|(e, _)| constants[&e.triangle] >= constant * (1.0 - 1e-12));
+        let ends = |(edge, _): &(BoundaryEdge, &str)| {
+            let mut ends = mesh.ends(*edge).map(|v| mesh.vertices()[v]);
+            ends.sort_by(order);
+            ends
+        };
+        let first = equal.map(ends).min_by(|[a, b], [c, d]| order(a, c).then(order(b, d)));
+        let limiting_edge = first.ok_or(DataError::NoContact)?;
+        Ok(Coercivity { constant, typical, limiting_edge })
     }
 
     /// The gamma0 at which kappa = 1: below it, J_h is strictly convex.
     pub fn limit(&self) -> f64 {
         1.0 / self.constant
     }
+
+    /// The gamma0 of (7), or the smallest where each triangle has its own.
+    pub fn gamma0(&self, gamma: Gamma) -> f64 {
+        match gamma {
+            Gamma::Uniform(gamma0) => gamma0,
+            Gamma::Local(kappa) => kappa * self.limit(),
+        }
+    }
+}
+
+/// kappa / gamma0 on each triangle with an edge on Gamma_C.
+fn constants<E: Element<N, M>, const N: usize, const M: usize>(
+    problem: &Problem,
+    edges: &[(BoundaryEdge, &str)],
+    sight: &Sight,
+) -> Result<BTreeMap<usize, f64>, DataError> {
+    let mesh = &problem.mesh;
+    let mut lengths: BTreeMap<usize, f64> = BTreeMap::new();
+    for &(edge, name) in edges {
+        let [start, end] = [sight.direction(edge, name, 0)?, sight.direction(edge, name, 1)?];
+        let length = mesh.length_and_normal(edge).0;
+        let counted = if start == end {
+            length
+        } else {
+            turning_factor::<E, f64, N, M>(start.dot(&end)) * length
+        };
+        *lengths.entry(edge.triangle).or_default() += counted;
+    }
+    let constant = |(t, length)| {
+        let area = mesh.triangle(t).double_area() / 2.0;
+        let (h, material) = (mesh.diameter(t), problem.material.of(t));
+        (t, coercivity_constant::<E, f64, N, M>(material, h, length, area))
+    };
+    Ok(lengths.into_iter().map(constant).collect())
+}
+
+/// Points by x, then by y.
+fn order(a: &[f64; 2], b: &[f64; 2]) -> std::cmp::Ordering {
+    a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]))
 }
 
 /// The edges of all contact boundaries with the names of these, each boundary in chains along the boundary.
@@ -145,21 +193,29 @@ fn chains(problem: &Problem, edges: &[BoundaryEdge]) -> Vec<BoundaryEdge> {
     chained
 }
 
-/// All edges of Gamma_C, with gamma = `gamma0` h_T.
+/// All edges of Gamma_C.
 ///
 /// # Errors
 /// [`DataError::NoContact`], a gap that is not finite, and unknown boundary names.
 pub fn assemble<E: Element<N, M>, const N: usize, const M: usize>(
     problem: &Problem,
     space: &Space<E, N, M>,
-    gamma0: f64,
+    gamma: impl Into<Gamma>,
 ) -> Result<Vec<ContactLineEdge<N, M>>, DataError> {
     let mesh = space.mesh();
     let sight = Sight::new(problem);
+    let edges = contact_edges(problem)?;
+    let gamma0: Box<dyn Fn(usize) -> f64> = match gamma.into() {
+        Gamma::Uniform(gamma0) => Box::new(move |_| gamma0),
+        Gamma::Local(kappa) => {
+            let constants = constants::<E, N, M>(problem, &edges, &sight)?;
+            Box::new(move |t| kappa / constants[&t])
+        }
+    };
     let mut line: Vec<ContactLineEdge<N, M>> = Vec::new();
-    for (edge, name) in contact_edges(problem)? {
+    for (edge, name) in edges {
         let (length, normal) = mesh.length_and_normal(edge);
-        let gamma = gamma0 * mesh.diameter(edge.triangle);
+        let gamma = gamma0(edge.triangle) * mesh.diameter(edge.triangle);
         let (mut gap, mut directions, mut places) = ([0.0; M], [normal; M], [[0.0; 2]; M]);
         for (a, node) in space.edge_nodes(edge).into_iter().enumerate() {
             let on_facet = SmoothPoint { place: space.nodes()[node], normal };

@@ -8,7 +8,7 @@
 use nalgebra::Vector2;
 
 use super::constraints::{Constraints, in_frame};
-use super::contact_line::{self, Coercivity, ContactLineEdge, EdgeRule};
+use super::contact_line::{self, Coercivity, ContactLineEdge, EdgeRule, Gamma};
 use super::held;
 use super::loads;
 use super::material;
@@ -29,7 +29,9 @@ pub struct Discretization<'a, E, const N: usize, const M: usize> {
     pub load: Vec<[f64; 2]>,
     /// C_h of kappa = gamma0 C_h.
     pub coercivity: Coercivity,
-    /// gamma0 of (7).
+    /// gamma along Gamma_C.
+    pub gamma: Gamma,
+    /// gamma0 of (7), or the smallest where each triangle has its own.
     pub gamma0: f64,
     /// Gamma_C.
     pub contact: Vec<ContactLineEdge<N, M>>,
@@ -67,22 +69,24 @@ impl<'a, E, const N: usize, const M: usize> Discretization<'a, E, N, M>
 where
     E: ExactEdge<f64, N, M>,
 {
-    /// The discretization of `problem` with the given gamma0 (as a function of the coercivity constant) and edge rule.
+    /// The discretization of `problem` with the given gamma or gamma0 (as a function of the coercivity constant) and edge
+    /// rule.
     ///
     /// # Errors
     /// Materials that are not stable, data that are not finite on the mesh, displacement boundaries that disagree, a rigid
     /// motion that neither they stop nor contact with the loads as they are, no contact boundary, a gamma0 that is not
     /// positive, a rule without points.
-    pub fn new(
+    pub fn new<G: Into<Gamma>>(
         problem: &'a Problem,
-        gamma0: impl FnOnce(&Coercivity) -> f64,
+        gamma: impl FnOnce(&Coercivity) -> G,
         rule: EdgeRule,
     ) -> Result<Self, DataError> {
         for &material in problem.material.distinct() {
             material::stable(material)?;
         }
         let coercivity = Coercivity::new::<E, N, M>(problem)?;
-        let gamma0 = gamma0(&coercivity);
+        let gamma = gamma(&coercivity).into();
+        let gamma0 = coercivity.gamma0(gamma);
         if !(gamma0 > 0.0 && gamma0.is_finite()) {
             let (what, expected) = ("gamma0", "a positive number");
             return Err(DataError::Value { what, found: gamma0.to_string(), expected });
@@ -94,7 +98,7 @@ where
         let space = Space::new(&problem.mesh);
         let mut constraints = Constraints::new(problem, &space)?;
         let load = loads::assemble(problem, &space)?;
-        let contact = contact_line::assemble(problem, &space, gamma0)?;
+        let contact = contact_line::assemble(problem, &space, gamma)?;
         let (parts, motions) = constraints.free_motions(&space);
         let mut slides = None;
         if !motions.is_empty() {
@@ -117,6 +121,7 @@ where
             constraints,
             load,
             coercivity,
+            gamma,
             gamma0,
             contact,
             rule,

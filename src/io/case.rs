@@ -419,7 +419,7 @@ fn read_units(table: &Table) -> Result<Units, CaseError> {
 fn read_method(table: Option<Table>) -> Result<Method, CaseError> {
     let mut method = Method::default();
     let Some(table) = table else { return Ok(method) };
-    table.only(&["degree", "gamma0", "contact_quadrature", "allow_noncoercive"])?;
+    table.only(&["degree", "gamma0", "kappa", "contact_quadrature", "allow_noncoercive"])?;
     if let Some(degree) = table.get("degree") {
         method.degree = match degree.whole_number(1..=2).map_err(|_| degree.wrong("1 or 2"))? {
             1 => Degree::One,
@@ -434,6 +434,12 @@ fn read_method(table: Option<Table>) -> Result<Method, CaseError> {
                 Gamma0::Value(gamma0.number_that(|g| g > 0.0, "a positive number or \"auto\"")?)
             }
         };
+    }
+    if let Some(kappa) = table.get("kappa") {
+        if table.get("gamma0").is_some() {
+            return Err(kappa.wrong("gamma0 or kappa, not both"));
+        }
+        method.gamma0 = Gamma0::Local(kappa.number_that(|k| k > 0.0, "a positive number")?);
     }
     if let Some(quadrature) = table.get("contact_quadrature") {
         method.quadrature = read_quadrature(&quadrature)?;

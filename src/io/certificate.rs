@@ -10,6 +10,7 @@
 //! | cuts | the two vertices (n n), the place between them (f) |
 //! | triangles | 3 points, 3 edges (n), lambda, mu, f on the three parts, the oscillation (f) |
 //! | edges | start, end, role (n), four numbers of the role (f) |
+//! | directions, of contact where it does not act along the normal | the edge (n), d at its start and at its end (f) |
 //! | shares, of the triangles | the claimed share in the square of the bound (f) |
 //!
 //! Points are vertices, then cuts. Roles: 0 inner (tau N at start and end), 1, 2, 3 held in x, in y, in both (tau N at start
@@ -33,7 +34,7 @@ pub const FILES: [&str; 2] = ["certificate.json", "certificate.bin"];
 const MOST: u64 = 4 << 30;
 
 /// The format that this program writes and reads.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 
 /// certificate.json.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -72,11 +73,14 @@ pub struct Counts {
     pub triangles: usize,
     /// Edges.
     pub edges: usize,
+    /// Directions of contact.
+    pub directions: usize,
 }
 
 /// Why a certificate is not accepted.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
+#[non_exhaustive]
 pub enum AuditError {
     #[error("{}: {error}", quote::path(path))]
     Read { path: PathBuf, error: InputError },
@@ -88,6 +92,7 @@ pub enum AuditError {
 
 /// What an audit found.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Audit {
     /// What is claimed.
     pub header: Header,
@@ -105,8 +110,8 @@ pub fn encode(title: &str, certified: &Continuous) -> (Header, Vec<u8>) {
         format: FORMAT,
         title: title.to_owned(),
         statement: STATEMENT.to_owned(),
-        bound: certified.bound,
-        proved: certified.proof.bound,
+        bound: beyond_reading(certified.bound),
+        proved: beyond_reading(certified.proof.bound),
         rigorous: certified.rigorous,
         reason: certified.reason.clone(),
         counts: Counts {
@@ -114,10 +119,16 @@ pub fn encode(title: &str, certified: &Continuous) -> (Header, Vec<u8>) {
             cuts: certificate.cuts.len(),
             triangles: certificate.pieces.len(),
             edges: certificate.edges.len(),
+            directions: directions(certificate).count(),
         },
         hash: hash(&bytes),
     };
     (header, bytes)
+}
+
+/// Two doubles more: whoever reads the decimals of a number may be off by one.
+fn beyond_reading(bound: f64) -> f64 {
+    bound.next_up().next_up()
 }
 
 /// Reads certificate.json and the arrays beside it, and verifies everything anew.
@@ -141,7 +152,7 @@ pub fn audit(path: &Path) -> Result<Audit, AuditError> {
     if !(header.bound >= proof.bound) {
         return Err(Rejection::Bound { claimed: header.bound, found: proof.bound }.into());
     }
-    if header.rigorous && (header.bound > proof.bound || header.reason.is_some()) {
+    if header.rigorous && (header.bound > header.proved || header.reason.is_some()) {
         return Err(wrong(
             path,
             "a rigorous bound is the proved one, without a reservation".to_owned(),
@@ -168,12 +179,18 @@ pub fn decode(header: &Header, bytes: &[u8]) -> Result<(Certificate, Claim), Str
     if found != header.hash {
         return Err(format!("its hash is {found}; certificate.json says {}", header.hash));
     }
-    let Counts { vertices, cuts, triangles, edges } = header.counts;
+    let Counts { vertices, cuts, triangles, edges, directions } = header.counts;
     let words = |entries: usize, each: usize| entries.checked_mul(each);
-    let expected = [words(vertices, 8), words(cuts, 3), words(triangles, 16), words(edges, 7)]
-        .into_iter()
-        .try_fold(0_usize, |sum, words| sum.checked_add(words?))
-        .and_then(|words| words.checked_mul(8));
+    let expected = [
+        words(vertices, 8),
+        words(cuts, 3),
+        words(triangles, 16),
+        words(edges, 7),
+        words(directions, 5),
+    ]
+    .into_iter()
+    .try_fold(0_usize, |sum, words| sum.checked_add(words?))
+    .and_then(|words| words.checked_mul(8));
     if expected != Some(bytes.len()) {
         return Err(format!("{} bytes are not what the counts ask for", bytes.len()));
     }
@@ -215,10 +232,17 @@ pub fn decode(header: &Header, bytes: &[u8]) -> Result<(Certificate, Claim), Str
             held @ 1..=3 => Role::Held([held & 1 != 0, held & 2 != 0], [start, end]),
             4 => Role::Loaded([start, end]),
             5 if end == [0.0; 2] && start != [0.0; 2] => Role::Pressed(start),
-            6 => Role::Contact { pressure: start, gap: end },
+            6 => Role::Contact { pressure: start, gap: end, along: None },
             _ => return Err(format!("edge {e} has an unknown role")),
         };
         certificate.edges.push(Edge { ends, role });
+    }
+    for _ in 0..directions {
+        let (e, d) = (words.index(), [words.pair(), words.pair()]);
+        match certificate.edges.get_mut(e).map(|edge| &mut edge.role) {
+            Some(Role::Contact { along: along @ None, .. }) => *along = Some(d),
+            _ => return Err(format!("a direction of contact for edge {e}, which has none")),
+        }
     }
     let shares = (0..triangles).map(|_| words.number()).collect();
     Ok((certificate, Claim { shares, bound: header.proved }))
@@ -252,13 +276,25 @@ fn arrays(certificate: &Certificate, shares: &[f64]) -> Vec<u8> {
             Role::Held(held, force) => (u64::from(held[0]) + 2 * u64::from(held[1]), force),
             Role::Loaded(traction) => (4, traction),
             Role::Pressed(pressure) => (5, [pressure, [0.0; 2]]),
-            Role::Contact { pressure, gap } => (6, [pressure, gap]),
+            Role::Contact { pressure, gap, .. } => (6, [pressure, gap]),
         };
         word(role);
         start.iter().chain(&end).for_each(|&x| word(number(x)));
     }
+    for (e, along) in directions(certificate) {
+        word(index(e));
+        along.as_flattened().iter().for_each(|&x| word(number(x)));
+    }
     shares.iter().for_each(|&x| word(number(x)));
     bytes
+}
+
+/// The directions of contact that are not the edges' normals, with the edges.
+fn directions(certificate: &Certificate) -> impl Iterator<Item = (usize, [[f64; 2]; 2])> {
+    certificate.edges.iter().enumerate().filter_map(|(e, edge)| match edge.role {
+        Role::Contact { along, .. } => Some((e, along?)),
+        _ => None,
+    })
 }
 
 /// The words that are left; zeros when there are none, which the lengths rule out.

@@ -51,6 +51,7 @@ pub enum StudyError {
 
 /// One ladder and what came out on it.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Study {
     /// P1 or P2.
     pub degree: Degree,
@@ -269,6 +270,7 @@ fn panel(title: &str, of: fn(&Errors) -> f64, studies: &[Study]) -> Panel {
 
 /// Why the files of a study could not be written.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum StudyFileError {
     /// A file or folder.
     #[error(transparent)]

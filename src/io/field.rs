@@ -20,6 +20,7 @@ use crate::quote;
 /// Why there is no field.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
+#[non_exhaustive]
 pub enum FieldError {
     #[error("{}: {error}", quote::path(path))]
     Read { path: PathBuf, error: InputError },

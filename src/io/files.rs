@@ -41,6 +41,7 @@ pub struct Output {
 /// Why a file or folder could not be written.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
+#[non_exhaustive]
 pub enum WriteError {
     #[error("cannot make the folder {}: {}", quote::path(path), reason(error))]
     Folder { path: PathBuf, error: io::Error },

@@ -18,6 +18,7 @@ pub const MOST_OF_A_MESH: u64 = 4 << 30;
 /// Why a file or a stream is not read.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
+#[non_exhaustive]
 pub enum InputError {
     #[error("{0}")]
     Unreadable(String),

@@ -1,6 +1,7 @@
 //! The files of a solved case: solution.vtu, contact.vtu, contact.csv, picture.svg and result.json, written together or
 //! not at all.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -19,7 +20,7 @@ use super::result::{
 };
 use super::vtu::{CellKind, Field, Grid, Values, vtu};
 use crate::certify::{CertifyError, Continuous, certify};
-use crate::fem;
+use crate::fem::{self, contact_line::Gamma};
 use crate::kernel::Stress;
 use crate::memory::{self, OutOfMemory};
 use crate::solve::solution::ContactValues;
@@ -110,7 +111,7 @@ pub fn write(
     };
     let continuous = certified.and_then(|c| c.result.as_ref().ok());
     let indicators = continuous.map(|c| c.indicators.as_slice());
-    stage("solution.vtu", solution_vtu(solution, indicators))?;
+    stage("solution.vtu", solution_vtu(solution, &case.problem, indicators))?;
     stage("contact.vtu", contact_vtu(solution))?;
     stage("contact.csv", contact_csv(&contact_rows(solution)).map(String::into_bytes))?;
     stage("picture.svg", draw(case, solution).map(String::into_bytes))?;
@@ -176,7 +177,7 @@ fn certificate_files(
 /// The bytes that making one file after the other takes at most: the numbers of solution.vtu once as they are and once as
 /// text, the triangles of picture.svg by their places, and as they are sorted by their stress.
 fn bytes_to_write(s: &Solution) -> u64 {
-    const PER_NODE: u64 = 160;
+    const PER_NODE: u64 = 260;
     const PER_DRAWN_TRIANGLE: u64 = 400;
     let drawn = s.von_mises.len() as u64 * if s.degree == 1 { 1 } else { 4 };
     PER_NODE * s.nodes.len() as u64 + PER_DRAWN_TRIANGLE * drawn
@@ -251,9 +252,21 @@ const LARGE_STRAIN: f64 = 0.05;
 /// Displacements above this share of the body's size likewise.
 const LARGE_DISPLACEMENT: f64 = 0.1;
 
+/// A triangle whose limit of gamma0 is this many times below the median of the line spoils the line.
+const SLIVER: f64 = 8.0;
+
 /// What a person should know before the numbers are used.
 fn remarks(case: &Case, solution: &Solution) -> Vec<String> {
     let mut remarks = Vec::new();
+    let coercivity = solution.gamma.coercivity;
+    let uniform = matches!(solution.gamma.gamma, Gamma::Uniform(_));
+    if uniform && coercivity.constant > SLIVER * coercivity.typical {
+        let [[a, b], [c, d]] = coercivity.limiting_edge;
+        remarks.push(format!(
+            "the triangle at the contact edge from ({}, {}) to ({}, {}) sets gamma0 for the whole line, {:.0} times below what half of its triangles allow; method.kappa = 0.5 lets each edge have its own",
+            short(a, 3), short(b, 3), short(c, 3), short(d, 3), coercivity.constant / coercivity.typical
+        ));
+    }
     let length = case.units.as_ref().map_or(String::new(), |units| format!(" {}", units.length));
     let strain = solution.largest_strain;
     if strain > LARGE_STRAIN {
@@ -282,7 +295,23 @@ fn remarks(case: &Case, solution: &Solution) -> Vec<String> {
     remarks
 }
 
-fn solution_vtu(s: &Solution, indicators: Option<&[f64]>) -> Result<Vec<u8>, DataError> {
+/// The larger and the smaller principal stress in the plane.
+fn principal(stresses: &[[f64; 4]]) -> [Vec<f64>; 2] {
+    let of = |sign: f64| {
+        let values = stresses.iter().map(|&[xx, yy, _, xy]| {
+            let (mean, radius) = ((xx + yy) / 2.0, ((xx - yy) / 2.0).hypot(xy));
+            mean + sign * radius
+        });
+        values.collect()
+    };
+    [of(1.0), of(-1.0)]
+}
+
+fn solution_vtu(
+    s: &Solution,
+    problem: &fem::Problem,
+    indicators: Option<&[f64]>,
+) -> Result<Vec<u8>, DataError> {
     let all = |(stress, zz): &(Stress<f64>, f64)| {
         let [xx, yy, xy] = stress.components();
         [xx, yy, *zz, xy]
@@ -295,11 +324,18 @@ fn solution_vtu(s: &Solution, indicators: Option<&[f64]>) -> Result<Vec<u8>, Dat
     if let Some(indicators) = indicators {
         cell_data.push(Field { name: "error_bound", values: Values::Scalars(indicators) });
     }
+    let nodal = s.nodal_stresses(problem);
+    let [largest, smallest] = principal(&nodal);
     vtu(&Grid {
         kind: if s.degree == 1 { CellKind::Triangle } else { CellKind::QuadraticTriangle },
         points: &s.nodes,
         connectivity: &s.elements,
-        point_data: &[Field { name: "displacement", values: Values::Vectors(&s.displacement) }],
+        point_data: &[
+            Field { name: "displacement", values: Values::Vectors(&s.displacement) },
+            Field { name: "nodal_stress", values: Values::SymmetricTensors(&nodal) },
+            Field { name: "principal_1", values: Values::Scalars(&largest) },
+            Field { name: "principal_2", values: Values::Scalars(&smallest) },
+        ],
         cell_data: &cell_data,
     })
 }
@@ -375,6 +411,8 @@ fn draw(case: &Case, s: &Solution) -> Result<String, DataError> {
             )
         };
     let gamma = &s.gamma;
+    let (contact, surfaces) = contact_parts(s);
+    let unit = case.units.as_ref().map(|units| format!("{}/{}²", units.force, units.length));
     picture(&Scene {
         title: &case.title,
         subtitle: &format!(
@@ -388,19 +426,49 @@ fn draw(case: &Case, s: &Solution) -> Result<String, DataError> {
         displacement: &s.displacement,
         triangles: &triangles,
         von_mises: &von_mises,
+        unit: unit.as_deref(),
+        interfaces: &interfaces(case, s),
         outline: &outline,
-        contact: &contact_parts(s),
+        contact: &contact,
+        surfaces: &surfaces,
     })
 }
 
-/// The connected parts of the contact line.
-fn contact_parts(s: &Solution) -> Vec<Vec<ContactSample>> {
+/// The edges between triangles of different materials, for P2 in two halves.
+fn interfaces(case: &Case, s: &Solution) -> Vec<[usize; 2]> {
+    let (mesh, materials) = (&case.problem.mesh, &case.problem.material);
+    let mut found = Vec::new();
+    if materials.only().is_some() {
+        return found;
+    }
+    let mut material_at = BTreeMap::new();
+    for (t, corners) in mesh.triangles().iter().enumerate() {
+        let material = materials.place_of(t);
+        for i in 0..3 {
+            let [a, b] = [corners[(i + 1) % 3], corners[(i + 2) % 3]];
+            match material_at.insert([a.min(b), a.max(b)], material) {
+                Some(other) if other != material && s.degree == 1 => found.push([a, b]),
+                Some(other) if other != material => {
+                    let middle = s.elements[6 * t + 3 + i];
+                    found.extend([[a, middle], [middle, b]]);
+                }
+                _ => {}
+            }
+        }
+    }
+    found
+}
+
+/// The connected parts of the contact line, and the number of each one's boundary.
+fn contact_parts(s: &Solution) -> (Vec<Vec<ContactSample>>, Vec<usize>) {
     let mut parts: Vec<Vec<ContactSample>> = Vec::new();
+    let (mut surfaces, mut surface) = (Vec::new(), 0);
     let mut end = None;
     let mut boundary = "";
     for edge in &s.contact {
         if *edge.boundary != *boundary {
             end = None;
+            surface += 1;
         }
         boundary = &edge.boundary;
         let samples = edge.points.iter().map(|p| ContactSample {
@@ -414,9 +482,12 @@ fn contact_parts(s: &Solution) -> Vec<Vec<ContactSample>> {
             Some(part) if end.is_some() && end == edge.points.first().map(|p| p.node) => {
                 part.extend(samples)
             }
-            _ => parts.push(samples.collect()),
+            _ => {
+                parts.push(samples.collect());
+                surfaces.push(surface);
+            }
         }
         end = edge.points.last().map(|p| p.node);
     }
-    parts
+    (parts, surfaces)
 }

@@ -4,8 +4,9 @@
 //! Displacements are drawn at true scale where that can be seen, else stretched (or shrunk) by a round factor s that the
 //! legend states, unless that would bend the obstacle. The gap is stretched with them: the obstacle is drawn at x + s g n for each point x of the contact line,
 //! so that the body touches it exactly where u_n = g, whatever s is. Where the obstacle is far from the body it is left
-//! out. The contact pressure -lambda^h stands on the deformed contact line, on the obstacle's side, its largest value as
-//! high as a fixed part of the body.
+//! out. The recovered contact pressure stands on the deformed contact line, on the obstacle's side. Each surface has a scale
+//! of its own, with an axis and its largest value, as high as a fixed part of the body; lower where the line is hollow, so
+//! that no arrow crosses another. Where two materials meet there is a line.
 //!
 //! Two runs draw the same picture to the bit, and it stays under 2 MB: a body of more than [`MOST_TRIANGLES`] is drawn by
 //! small cells, and lines leave out what nobody can see.
@@ -39,11 +40,17 @@ pub struct Scene<'a> {
     pub triangles: &'a [[usize; 3]],
     /// The von Mises stress in each.
     pub von_mises: &'a [f64],
+    /// The unit of stress, if the case has units.
+    pub unit: Option<&'a str>,
+    /// The edges between triangles of different materials.
+    pub interfaces: &'a [[usize; 2]],
     /// The edges of the whole boundary, from start to end, the body on their left.
     pub outline: &'a [[usize; 2]],
     /// The connected parts of the contact line, each from start to end, the body on its left. Where the pressure jumps
     /// there are two samples at one place.
     pub contact: &'a [Vec<ContactSample>],
+    /// For each of these the number of its surface: parts of one surface share a scale.
+    pub surfaces: &'a [usize],
 }
 
 /// A point of the contact line.
@@ -57,7 +64,7 @@ pub struct ContactSample {
     pub displacement: [f64; 2],
     /// The gap g.
     pub gap: f64,
-    /// -lambda^h >= 0
+    /// The recovered pressure, >= 0.
     pub pressure: f64,
 }
 
@@ -119,8 +126,8 @@ pub fn picture(scene: &Scene) -> Result<String, DataError> {
         .add(headline(scene, width - 2.0 * MARGIN))
         .add(body(scene, &deformed, &colours))
         .add(outlines(scene, &deformed, &frame))
-        .add(colour_bar(&colours, &frame));
-    let (obstacle, pressure) = (obstacle(&contact), pressure(&contact));
+        .add(colour_bar(&colours, scene.unit, &frame));
+    let (obstacle, pressure) = (obstacle(&contact), pressure(&contact, scene.unit));
     let legend = legend(&stretch, obstacle.is_some(), scene.peak(), height - 26.0);
     for group in [obstacle, pressure, Some(legend)].into_iter().flatten() {
         document = document.add(group);
@@ -138,6 +145,8 @@ impl Scene<'_> {
         check_length("von_mises", self.von_mises.len(), self.triangles.len())?;
         check_points("triangles", self.triangles.iter().flatten(), count)?;
         check_points("outline", self.outline.iter().flatten(), count)?;
+        check_points("interfaces", self.interfaces.iter().flatten(), count)?;
+        check_length("surfaces", self.surfaces.len(), self.contact.len())?;
         check_finite("points", self.points.iter().map(<[f64; 2]>::as_slice))?;
         check_finite("displacement", self.displacement.iter().map(<[f64; 2]>::as_slice))?;
         check_finite("von_mises", self.von_mises.chunks(1))?;
@@ -216,6 +225,7 @@ impl Scene<'_> {
 /// A part of the contact line as it is drawn: for each sample the deformed point, the end of its pressure, and the point
 /// of the obstacle.
 struct ContactLine {
+    surface: usize,
     base: Vec<Point>,
     tip: Vec<Point>,
     wall: Vec<Option<Point>>,
@@ -225,37 +235,50 @@ struct ContactLine {
 /// The largest pressure is drawn as high as this part of the body's size.
 const HIGHEST: f64 = 0.15;
 
+/// Of a hollow line's radius, at most so much: arrows along its normals meet at the centre.
+const OF_THE_RADIUS: f64 = 0.6;
+
 /// An obstacle further from the undeformed body than this part of the body's size is left out.
 const FURTHEST: f64 = 0.2;
 
 impl ContactLine {
     fn all(scene: &Scene, factor: f64) -> Vec<ContactLine> {
-        let (size, peak) = (scene.size(), scene.peak());
-        let line = |samples: &Vec<ContactSample>| {
+        let size = scene.size();
+        let mut lines: Vec<(ContactLine, Vec<Point>)> = Vec::with_capacity(scene.contact.len());
+        for (samples, &surface) in scene.contact.iter().zip(scene.surfaces) {
             let normals = smooth_normals(samples);
             let base: Vec<Point> =
                 samples.iter().map(|s| moved(s.position, s.displacement, factor)).collect();
-            let height = |p: f64| if p > 0.0 { HIGHEST * size * (p / peak) } else { 0.0 };
-            let tip = |((s, &n), &base): ((&ContactSample, &Point), &Point)| {
-                moved(base, n, height(s.pressure))
-            };
             let wall = |(s, &n): (&ContactSample, &Point)| {
                 let gap = factor * s.gap;
                 (gap.abs() <= FURTHEST * size).then(|| moved(s.position, n, gap))
             };
-            ContactLine {
-                tip: samples.iter().zip(&normals).zip(&base).map(tip).collect(),
+            let line = ContactLine {
+                surface,
+                tip: base.clone(),
                 wall: samples.iter().zip(&normals).map(wall).collect(),
                 pressure: samples.iter().map(|s| s.pressure).collect(),
                 base,
+            };
+            lines.push((line, normals));
+        }
+        let heights: Vec<f64> = lines.iter().map(|(line, _)| height(&lines, line, size)).collect();
+        for ((line, normals), height) in lines.iter_mut().zip(heights) {
+            for (i, tip) in line.tip.iter_mut().enumerate() {
+                *tip = moved(line.base[i], normals[i], height * line.pressure[i]);
             }
-        };
-        scene.contact.iter().map(line).collect()
+        }
+        lines.into_iter().map(|(line, _)| line).collect()
+    }
+
+    fn peak(&self) -> f64 {
+        self.pressure.iter().copied().fold(0.0, f64::max)
     }
 
     fn on(self, frame: &Frame) -> ContactLine {
         let page = |points: Vec<Point>| points.into_iter().map(|p| frame.page(p)).collect();
         ContactLine {
+            surface: self.surface,
             base: page(self.base),
             tip: page(self.tip),
             wall: self.wall.into_iter().map(|p| p.map(|p| frame.page(p))).collect(),
@@ -276,6 +299,24 @@ impl ContactLine {
         }
         ranges
     }
+}
+
+/// The height of a unit of pressure on the surface of a line.
+fn height(lines: &[(ContactLine, Vec<Point>)], line: &ContactLine, size: f64) -> f64 {
+    let (mut peak, mut highest) = (0.0_f64, HIGHEST * size);
+    for (other, normals) in lines.iter().filter(|(other, _)| other.surface == line.surface) {
+        peak = peak.max(other.peak());
+        for (base, n) in other.base.windows(2).zip(normals.windows(2)) {
+            let step = [base[1][0] - base[0][0], base[1][1] - base[0][1]];
+            let turn = [n[1][0] - n[0][0], n[1][1] - n[0][1]];
+            let closing = -(step[0] * turn[0] + step[1] * turn[1]);
+            if closing > 0.0 {
+                let radius = (step[0] * step[0] + step[1] * step[1]) / closing;
+                highest = highest.min(OF_THE_RADIUS * radius);
+            }
+        }
+    }
+    if peak > 0.0 { highest / peak } else { 0.0 }
 }
 
 /// The normals, except that two samples at one place share the mean of theirs: the facets of a curved line would otherwise
@@ -486,8 +527,15 @@ fn body(scene: &Scene, deformed: &[Point], colours: &Colours) -> Group {
 
 fn outlines(scene: &Scene, deformed: &[Point], frame: &Frame) -> Group {
     let before: Vec<Point> = scene.points.iter().map(|&p| frame.page(p)).collect();
+    let mut interfaces = Path::default();
+    for &[a, b] in scene.interfaces {
+        interfaces.line([deformed[a], deformed[b]]);
+    }
     Group::new()
         .set("stroke-linejoin", "round")
+        .set("stroke-linecap", "round")
+        .add(stroke(interfaces.clone(), "white", 2.4))
+        .add(stroke(interfaces, DARK, 1.0))
         .add(stroke(outline_path(scene, deformed), DARK, 1.2))
         .add(stroke(outline_path(scene, &before), GREY, 1.2).set("stroke-dasharray", "6 4"))
 }
@@ -520,12 +568,31 @@ fn hatch(border: &[Point], hatching: &mut Path) {
     }
 }
 
-/// The pressure as a filled curve, with arrows that push against the body and the largest value in numbers.
-fn pressure(contact: &[ContactLine]) -> Option<Group> {
+/// The pressure of each surface as a filled curve, with arrows that push against the body, the largest value in numbers and
+/// an axis.
+fn pressure(contact: &[ContactLine], unit: Option<&str>) -> Option<Group> {
+    let mut surfaces: Vec<usize> = contact.iter().map(|line| line.surface).collect();
+    surfaces.sort_unstable();
+    surfaces.dedup();
+    let mut group = Group::new().set("stroke-linejoin", "round");
+    let mut some = false;
+    for surface in surfaces {
+        let lines: Vec<&ContactLine> =
+            contact.iter().filter(|line| line.surface == surface).collect();
+        if let Some(drawn) = pressure_of(&lines, unit) {
+            group = group.add(drawn);
+            some = true;
+        }
+    }
+    some.then_some(group)
+}
+
+/// The pressure of one surface.
+fn pressure_of(contact: &[&ContactLine], unit: Option<&str>) -> Option<Group> {
     let (mut area, mut curve, mut arrows) = (Path::default(), Path::default(), Path::default());
     let highest = contact
         .iter()
-        .flat_map(|line| (0..line.pressure.len()).map(move |i| (line, i)))
+        .flat_map(|line| (0..line.pressure.len()).map(move |i| (*line, i)))
         .fold(None, |highest: Option<(&ContactLine, usize)>, (line, i)| match highest {
             Some((other, j)) if other.pressure[j] >= line.pressure[i] => highest,
             _ => Some((line, i)),
@@ -551,27 +618,64 @@ fn pressure(contact: &[ContactLine]) -> Option<Group> {
         }
     }
     let out = direction(peak_base, peak_tip).unwrap_or([0.0, 1.0]);
-    let anchor = match out[0] {
+    let [x, y] = moved(peak_tip, out, 12.0);
+    let unit = unit.map_or(String::new(), |unit| format!(" {unit}"));
+    let label = text(format!("peak {}{unit}", short(highest.pressure[at])), [x, y + 4.0])
+        .set("text-anchor", anchor(out))
+        .set("font-weight", "bold")
+        .set("fill", RED);
+    let group = Group::new()
+        .add(shape(area).set("fill", RED).set("fill-opacity", 0.25))
+        .add(stroke(curve, RED, 1.5))
+        .add(stroke(arrows, RED, 1.3));
+    let height = distance(peak_base, peak_tip);
+    Some(group.add(axis(highest, at, height)).add(label))
+}
+
+/// An axis for the pressure of a surface, at the end of the line with the peak that is further from it.
+fn axis(line: &ContactLine, at: usize, height: f64) -> Group {
+    let last = line.base.len() - 1;
+    let [first, end] = [line.base[0], line.base[last]];
+    let peak = line.base[at];
+    let (foot, inner) = if distance(first, peak) > distance(end, peak) {
+        (first, line.base[1.min(last)])
+    } else {
+        (end, line.base[last.saturating_sub(1)])
+    };
+    // Away from the line, and up along it.
+    let aside = direction(inner, foot).unwrap_or([1.0, 0.0]);
+    let out = direction(peak, line.tip[at]).unwrap_or([0.0, 1.0]);
+    let turned = [-aside[1], aside[0]];
+    let up =
+        if turned[0] * out[0] + turned[1] * out[1] < 0.0 { turned.map(|c| -c) } else { turned };
+    let foot = moved(foot, aside, 12.0);
+    let mut marks = Path::default();
+    marks.line([foot, moved(foot, up, height)]);
+    let mut labels = Group::new().set("font-size", 11).set("fill", RED);
+    let top = line.pressure[at];
+    let mut free = f64::NEG_INFINITY;
+    for (value, content) in ticks(0.0, top) {
+        let place = moved(foot, up, height * value / top);
+        let along = height * value / top;
+        // Words need their room: across where the axis is upright, along where it lies.
+        let room = if up[1].abs() > 0.5 { 14.0 } else { 8.0 + width_of(&content, 11.0) };
+        if along >= free {
+            free = along + room;
+            marks.line([place, moved(place, aside, 4.0)]);
+            let [x, y] = moved(place, aside, 9.0);
+            labels = labels.add(text(content, [x, y + 4.0]).set("text-anchor", anchor(aside)));
+        }
+    }
+    Group::new().add(stroke(marks, RED, 1.0)).add(labels)
+}
+
+/// How a text stands that is put in this direction from its place.
+fn anchor(out: Point) -> &'static str {
+    match out[0] {
         x if x > 0.5 => "start",
         x if x < -0.5 => "end",
         _ => "middle",
-    };
-    let [x, y] = moved(peak_tip, out, 12.0);
-    let label = text(format!("peak {}", short(highest.pressure[at])), [x, y + 4.0])
-        .set("text-anchor", anchor)
-        .set("font-weight", "bold")
-        .set("fill", RED)
-        .set("stroke", "white")
-        .set("stroke-width", 3)
-        .set("paint-order", "stroke");
-    Some(
-        Group::new()
-            .set("stroke-linejoin", "round")
-            .add(shape(area).set("fill", RED).set("fill-opacity", 0.25))
-            .add(stroke(curve, RED, 1.5))
-            .add(stroke(arrows, RED, 1.3))
-            .add(label),
-    )
+    }
 }
 
 /// An arrow, unless it would be all head.
@@ -583,7 +687,7 @@ fn arrow(from: Point, to: Point, arrows: &mut Path) {
     }
 }
 
-fn colour_bar(colours: &Colours, frame: &Frame) -> Group {
+fn colour_bar(colours: &Colours, unit: Option<&str>, frame: &Frame) -> Group {
     let capped = colours.top < colours.max;
     let left = MARGIN + frame.width + 20.0;
     let top = HEADER + if capped { 48.0 } else { 30.0 };
@@ -593,7 +697,12 @@ fn colour_bar(colours: &Colours, frame: &Frame) -> Group {
         .set("y", rounded(top))
         .set("width", 18)
         .set("height", rounded(height));
-    let heading = text("von Mises stress", [left, HEADER + 12.0]);
+    let line = if unit.is_some() { -4.0 } else { 12.0 };
+    let heading = Group::new().add(text("von Mises stress", [left, HEADER + line]));
+    let heading = match unit {
+        Some(unit) => heading.add(text(clean(unit), [left, HEADER + 12.0]).set("fill", GREY)),
+        None => heading,
+    };
     let label = |at: f64, content: String| text(content, [left + 28.0, at + 4.5]);
     let group = Group::new().add(heading);
     if colours.top <= colours.min {
@@ -735,8 +844,11 @@ mod tests {
                 displacement: &self.displacement,
                 triangles: self.mesh.triangles(),
                 von_mises: &self.von_mises,
+                unit: None,
+                interfaces: &[],
                 outline: &self.outline,
                 contact: &self.contact,
+                surfaces: &[0, 0][..self.contact.len()],
             }
         }
 
@@ -788,6 +900,59 @@ mod tests {
             "deformation at true scale",
         ] {
             assert!(words.iter().any(|word| word == expected), "{expected}: {words:?}");
+        }
+    }
+
+    #[test]
+    fn units_stand_on_the_colour_bar_and_at_the_peak_and_interfaces_are_drawn() {
+        let sample = Sample::block(4);
+        let plain = draw(&sample);
+        let edge = [[sample.mesh.triangles()[0][0], sample.mesh.triangles()[0][2]]];
+        let scene = Scene { unit: Some("N/mm²"), interfaces: &edge, ..sample.scene() };
+        let svg = picture(&scene).unwrap();
+        let words = words(&svg);
+        for expected in ["N/mm²", "peak 0.5 N/mm²", "0.2", "0.4"] {
+            assert!(words.iter().any(|word| word == expected), "{expected}: {words:?}");
+        }
+        assert!(svg.matches("stroke-width=\"2.4\"").count() == 1 && plain != svg);
+    }
+
+    #[test]
+    fn each_surface_has_its_own_scale_and_its_own_peak() {
+        let mut sample = Sample::block(4);
+        let mut small = sample.contact[0].clone();
+        small.iter_mut().for_each(|s| s.pressure *= 1e-3);
+        sample.contact.push(small);
+        let lines = |surfaces: &[usize]| {
+            let scene = Scene { surfaces, ..sample.scene() };
+            let words = words(&picture(&scene).unwrap());
+            let heights = ContactLine::all(&scene, 1.0)
+                .iter()
+                .map(|line| distance(line.base[0], line.tip[0]))
+                .collect::<Vec<_>>();
+            (heights, words.into_iter().filter(|w| w.starts_with("peak")).collect::<Vec<_>>())
+        };
+        let (own, peaks) = lines(&[0, 1]);
+        assert!((own[0] - own[1]).abs() < 1e-12 && own[0] > 0.1, "{own:?}");
+        assert_eq!(peaks, ["peak 0.5", "peak 0.0005"]);
+        let (common, peaks) = lines(&[0, 0]);
+        assert!(common[1] < 0.01 * common[0] && peaks == ["peak 0.5"], "{common:?} {peaks:?}");
+    }
+
+    #[test]
+    fn on_a_hollow_line_the_arrows_end_before_they_meet() {
+        let sample = |angle: f64| ContactSample {
+            position: [0.05 * angle.cos(), 0.05 * angle.sin()],
+            normal: [-angle.cos(), -angle.sin()],
+            displacement: [0.0; 2],
+            gap: 0.0,
+            pressure: 1.0,
+        };
+        let mut block = Sample::block(4);
+        block.contact = vec![(0..=20).rev().map(|i| sample(0.1 * f64::from(i))).collect()];
+        let line = &ContactLine::all(&block.scene(), 1.0)[0];
+        for tip in &line.tip {
+            assert!(tip[0].hypot(tip[1]) > 0.39 * 0.05, "{tip:?}");
         }
     }
 

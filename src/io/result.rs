@@ -16,6 +16,7 @@ use super::case::Units;
 use super::data::DataError;
 use crate::certify::{CertifyError, Continuous};
 use crate::fem::Errors;
+use crate::fem::contact_line::Gamma;
 use crate::solve::enclosure::{self, Intervals};
 use crate::solve::{
     ContactBoundary, ContactQuadrature, EnergyBalance, Gamma0, GammaReport, Method, MethodReport,
@@ -143,8 +144,11 @@ pub struct MeshSizes {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct GammaChoice {
-    /// gamma0 of (7).
+    /// gamma0 of (7), or the smallest where each contact edge has its own.
     pub gamma0: f64,
+    /// Each contact edge has its own gamma0, for one kappa.
+    #[serde(default)]
+    pub local: bool,
     /// The gamma0 for which kappa is 1.
     pub limit: f64,
     /// kappa of (11).
@@ -166,6 +170,7 @@ impl From<&GammaReport> for GammaChoice {
     fn from(gamma: &GammaReport) -> Self {
         GammaChoice {
             gamma0: gamma.gamma0,
+            local: matches!(gamma.gamma, Gamma::Local(_)),
             limit: gamma.coercivity.limit(),
             kappa: gamma.kappa,
             limiting_edge: gamma.coercivity.limiting_edge,
@@ -478,6 +483,7 @@ mod tests {
             },
             gamma: GammaChoice {
                 gamma0: 0.1,
+                local: false,
                 limit: 1.0 / 3.0,
                 kappa: 0.3,
                 limiting_edge: [[0.0, 0.0], [1.0, 0.0]],
@@ -552,6 +558,7 @@ mod tests {
   },
   "gamma": {
     "gamma0": 0.1,
+    "local": false,
     "limit": 0.3333333333333333,
     "kappa": 0.3,
     "limiting_edge": [[0.0, 0.0], [1.0, 0.0]],

@@ -14,7 +14,7 @@ use super::files::{Output, WriteError};
 use super::numbers::short;
 use super::outputs::{self, Certified, OutputError};
 use super::result::{Results, Seconds};
-use crate::solve::{self, SolveError};
+use crate::solve::{self, Course, Solution, SolveError};
 
 /// More runs than this are a mistake of the person who asks for them.
 pub const MOST_RUNS: usize = 10_000;
@@ -122,8 +122,8 @@ pub fn count(axes: &[Axis]) -> Result<usize, SweepError> {
     if runs <= MOST_RUNS { Ok(runs) } else { Err(SweepError::TooMany { runs }) }
 }
 
-/// Solves the case with this text (see [`Case::parse`]) for each combination of the axes' values, and calls `done` after
-/// each. Where `folders` is given, the files of run i (from 1) are written into its folder i.
+/// Solves the case with this text (see [`Case::parse`]) for each combination of the axes' values, each from the solution of
+/// the one before where the nodes are the same, and calls `done` after each. Where `folders` is given, the files of run i (from 1) are written into its folder i.
 ///
 /// # Errors
 /// A mistake in the case or in one of the values, found before anything is solved; files that can't be written. A run that
@@ -147,10 +147,11 @@ pub fn run(
         title = read(i)?.0.title;
     }
     let mut runs = Vec::with_capacity(count);
+    let mut last = None;
     for i in 0..count {
         let (case, values) = read(i)?;
         let folder = folders.map(|folder| folder.join((i + 1).to_string()));
-        runs.push(Run { values, outcome: solve(&case, folder.as_deref())? });
+        runs.push(Run { values, outcome: solve(&case, folder.as_deref(), &mut last)? });
         done();
     }
     Ok(Sweep { title, keys: axes.iter().map(|axis| axis.key.clone()).collect(), runs })
@@ -167,19 +168,28 @@ fn combination(axes: &[Axis], mut i: usize) -> Vec<String> {
     values
 }
 
-fn solve(case: &Case, folder: Option<&Path>) -> Result<Outcome, OutputError> {
-    let (solution, times) = match solve::solve(&case.problem, &case.method, &case.settings) {
+/// Solves from the `last` solution, and leaves its own there.
+fn solve(
+    case: &Case,
+    folder: Option<&Path>,
+    last: &mut Option<Solution>,
+) -> Result<Outcome, OutputError> {
+    let course = last.as_ref().map_or(Course::default(), |last| Course::default().from(last));
+    let solved = solve::solve_along(&case.problem, &case.method, &case.settings, course);
+    let (solution, times) = match solved {
         Ok(solved) => solved,
         Err(error) => return Ok(Err(error)),
     };
     let read = Duration::ZERO;
-    Ok(Ok(match folder {
+    let results = match folder {
         Some(folder) => {
             let certified = Certified::new(case, &solution);
             outputs::write(folder, case, &solution, read, times, Some(&certified), false)?.1
         }
         None => outputs::results(case, &solution, Seconds::new(read, &times, Duration::ZERO))?,
-    }))
+    };
+    *last = Some(solution);
+    Ok(Ok(results))
 }
 
 /// How a number is shown.

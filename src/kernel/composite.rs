@@ -62,19 +62,22 @@ impl<S: Scalar> Composite<S> {
         let normals = [0, 1, 2].map(|i| triangle.scaled_normal(i));
         let edges = [0, 1, 2].map(|i| triangle.edge(i));
         let double_area = triangle.double_area();
-        let third = double_area / S::from(3);
+        let (one, three) = (S::from(1), S::from(3));
+        let (per_area, third) = (one / double_area, double_area / three);
         let arms = arms(triangle);
         // [corner][part i = j + 1, part k = j + 2]
         let at_corner = [0, 1, 2].map(|j| {
             let (i, k) = ((j + 1) % 3, (j + 2) % 3);
             let (p, q) = (loads.forces[i][1], loads.forces[k][0]);
-            let jump = arms[j] * ((normals[k].dot(&p) - normals[i].dot(&q)) / third);
-            let tensor = |p, q| from_tractions(p, q, edges[i], edges[k], double_area);
-            [tensor(p, q + jump), tensor(p - jump, q)]
+            // c J/3
+            let jump = three * per_area * (normals[k].dot(&p) - normals[i].dot(&q));
+            let first = from_tractions(p, q + arms[j] * jump, edges[i], edges[k], per_area);
+            let c = three * per_area * jump;
+            let (x, y) = (arms[j][0], arms[j][1]);
+            [first, first - Stress::new([c * x * x, c * y * y, c * x * y])]
         });
-        let mean = mean_stress(loads, &arms, double_area);
+        let mean = mean_stress(loads, &arms, third, per_area / three);
         let [a, b, c] = at_corner.map(|[first, second]| first + second);
-        let (one, three) = (S::from(1), S::from(3));
         let centre = mean * three + (a + b + c) * -(one / three);
         let corners = [0, 1, 2].map(|i| [at_corner[(i + 1) % 3][1], at_corner[(i + 2) % 3][0]]);
         Composite { corners, centre }
@@ -82,20 +85,21 @@ impl<S: Scalar> Composite<S> {
 
     /// sigma - tau for a constant stress sigma.
     pub(crate) fn distance_from(&self, sigma: Stress<S>) -> Composite<S> {
-        let minus = |tau: Stress<S>| sigma + tau * -S::from(1);
+        let minus = |tau: Stress<S>| sigma - tau;
         Composite { corners: self.corners.map(|part| part.map(minus)), centre: minus(self.centre) }
     }
 
-    /// int_T tau : C^-1 tau.
+    /// int_T tau : C^-1 tau. For a square form, a^2 + b^2 + c^2 + (a + b + c)^2 is, with s = a + b + 2/3 c,
+    /// 3/2 s^2 + 1/2 (a - b)^2 + 4/3 c^2.
     pub(crate) fn energy(&self, material: &Material<S>, double_area: S) -> S {
-        let mut sum = S::from(0);
+        let (three, eight) = (S::from(3), S::from(8));
+        let two_thirds = self.centre * (S::from(2) / three);
+        let mut sum = squares(self.centre).map(|x| eight * x);
         for [a, b] in self.corners {
-            let total = a + b + self.centre;
-            for stress in [a, b, self.centre, total] {
-                sum = sum + complementary(material, stress);
-            }
+            let (s, d) = (squares(a + b + two_thirds), squares(a - b));
+            sum = [0, 1].map(|k| sum[k] + three * s[k] + d[k]);
         }
-        sum * double_area / S::from(72)
+        per_moduli(material, sum) * double_area / S::from(576)
     }
 }
 
@@ -150,15 +154,18 @@ impl<S: Scalar> Wrench<S> {
 
 /// tau : C^-1 tau: what is deviatoric over 2 mu, what is spherical over 2 (lambda + mu), both squares.
 pub(crate) fn complementary<S: Scalar>(material: &Material<S>, tau: Stress<S>) -> S {
-    complementary_product(material, tau, tau)
+    per_moduli(material, squares(tau)) / S::from(4)
 }
 
-fn complementary_product<S: Scalar>(material: &Material<S>, a: Stress<S>, b: Stress<S>) -> S {
-    let (two, four) = (S::from(2), S::from(4));
-    let ([a_xx, a_yy, a_xy], [b_xx, b_yy, b_xy]) = (a.components(), b.components());
-    let deviator = (a_xx - a_yy) * (b_xx - b_yy) + four * a_xy * b_xy;
-    let sphere = (a_xx + a_yy) * (b_xx + b_yy);
-    (deviator / material.mu() + sphere / (material.lambda() + material.mu())) / (two * two)
+/// Twice the square of the deviator, and that of the sphere.
+fn squares<S: Scalar>(tau: Stress<S>) -> [S; 2] {
+    let [xx, yy, xy] = tau.components();
+    let (difference, twice, sum) = (xx - yy, xy + xy, xx + yy);
+    [difference * difference + twice * twice, sum * sum]
+}
+
+fn per_moduli<S: Scalar>(material: &Material<S>, [deviator, sphere]: [S; 2]) -> S {
+    deviator / material.mu() + sphere / (material.lambda() + material.mu())
 }
 
 fn centroid<S: Scalar>(triangle: &Triangle<S>) -> Vector2<S> {
@@ -177,34 +184,37 @@ fn from_tractions<S: Scalar>(
     q: Vector2<S>,
     e_i: Vector2<S>,
     e_k: Vector2<S>,
-    j: S,
+    per_area: S,
 ) -> Stress<S> {
-    let entry = |r: usize, c: usize| (q[r] * e_i[c] - p[r] * e_k[c]) / j;
-    Stress::new([entry(0, 0), entry(1, 1), (entry(0, 1) + entry(1, 0)) / S::from(2)])
+    let entry = |r: usize, c: usize| q[r] * e_i[c] - p[r] * e_k[c];
+    let half = per_area / S::from(2);
+    let xy = (entry(0, 1) + entry(1, 0)) * half;
+    Stress::new([entry(0, 0) * per_area, entry(1, 1) * per_area, xy])
 }
 
 /// (1/|T|) of the integral of G (x) (x - m) over the edges and of f (x) (x - m) over the parts, whose centroids lie at
-/// m - (x_i - m) / 3.
-fn mean_stress<S: Scalar>(loads: &Loads<S>, arms: &[Vector2<S>; 3], double_area: S) -> Stress<S> {
-    let two = S::from(2);
+/// m - (x_i - m) / 3; `third` and `factor` are J/3 and 1/(3J).
+fn mean_stress<S: Scalar>(
+    loads: &Loads<S>,
+    arms: &[Vector2<S>; 3],
+    third: S,
+    factor: S,
+) -> Stress<S> {
     let mut sum = Matrix2::<S>::zeros();
     for i in 0..3 {
         let (a, b) = (arms[(i + 1) % 3], arms[(i + 2) % 3]);
+        let (at_start, at_end) = (a + a + b, a + b + b);
         let [p, q] = loads.forces[i];
-        let scale = double_area / S::from(3);
+        let f = loads.body[i] * third;
         for r in 0..2 {
             for c in 0..2 {
-                let edge = p[r] * (two * a[c] + b[c]) + q[r] * (a[c] + two * b[c]);
-                sum[(r, c)] = sum[(r, c)] + edge - scale * loads.body[i][r] * arms[i][c];
+                let edge = p[r] * at_start[c] + q[r] * at_end[c];
+                sum[(r, c)] = sum[(r, c)] + edge - f[r] * arms[i][c];
             }
         }
     }
-    let factor = S::from(3) * double_area;
-    Stress::new([
-        sum[(0, 0)] / factor,
-        sum[(1, 1)] / factor,
-        (sum[(0, 1)] + sum[(1, 0)]) / (two * factor),
-    ])
+    let xy = (sum[(0, 1)] + sum[(1, 0)]) * (factor / S::from(2));
+    Stress::new([sum[(0, 0)] * factor, sum[(1, 1)] * factor, xy])
 }
 
 #[cfg(test)]

@@ -43,7 +43,7 @@ impl<S: Scalar, const N: usize, const M: usize> ContactEdge<S, N, M> {
     /// unit vectors `directions` at the nodes. s is affine on the edge, from its values at the two ends, in P0 as in A:
     /// this is what J_h and the consistency of (8) need. With n~ = n it is the functional of [`ContactEdge::new`].
     #[cfg(not(kani))]
-    pub(crate) fn along<E: Element<N, M>>(
+    pub fn along<E: Element<N, M>>(
         triangle: &Triangle<S>,
         i: usize,
         n: Vector2<S>,
@@ -88,7 +88,7 @@ pub fn integral_of_product<S: Scalar>(f: [S; 2], g: [S; 2]) -> S {
 /// n~ . n~' at its two ends: 1 for P1, whose stress is constant on the triangle, and 2 - cosine for P2. Then
 /// int_E s(v)^2 is at most the factor times int_E |sigma(v) n|^2 (docs/theory.md, Lemma 2.1b; the factor is attained).
 #[cfg(not(kani))]
-pub(crate) fn turning_factor<E, S, const N: usize, const M: usize>(cosine: S) -> S
+pub fn turning_factor<E, S, const N: usize, const M: usize>(cosine: S) -> S
 where
     E: Element<N, M>,
     S: Scalar,

@@ -68,7 +68,7 @@ impl<S: Scalar> Material<S> {
 
     /// Plane strain or plane stress.
     #[cfg(not(kani))]
-    pub(crate) fn plane(&self) -> Plane {
+    pub fn plane(&self) -> Plane {
         self.plane
     }
 
@@ -119,7 +119,7 @@ impl<S: Scalar> Material<S> {
     /// The same for the traction's component along `d`: d . sigma(v) n = s . w for the returned
     /// s = lambda (d . n) grad N + mu ((d . grad N) n + (grad N . n) d). With d = n, n a unit vector, it is that of sigma_n.
     #[cfg(not(kani))]
-    pub(crate) fn traction_of_shape<const D: usize>(
+    pub fn traction_of_shape<const D: usize>(
         &self,
         gradient: SVector<S, D>,
         n: SVector<S, D>,

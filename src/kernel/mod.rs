@@ -19,8 +19,11 @@
 //! | [`edge_integral`] | the integrals over one edge in (8) and in J_h |
 //! | [`composite`] | not in the paper: stresses in equilibrium, for certificates |
 //! | [`interval`] | not in the paper: doubles with their rounding enclosed |
+//! | [`ball`] | not in the paper: the same, quicker and wider |
 //! | [`pattern`] | not in the paper: the numbers of the unknowns, and where the entries of the matrix stand |
 
+#[cfg(not(kani))]
+pub mod ball;
 #[cfg(not(kani))]
 pub mod composite;
 pub mod contact;
@@ -34,6 +37,8 @@ pub mod positive_part;
 pub mod scalar;
 pub mod triangle;
 
+#[cfg(not(kani))]
+pub use ball::Ball;
 pub use contact::ContactPoint;
 pub use contact_edge::ContactEdge;
 pub use edge_integral::EdgeIntegrals;

@@ -29,6 +29,7 @@ use crate::kernel::positive_part;
 /// What one part of Gamma_C carries, in the units of the case.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
+#[non_exhaustive]
 pub struct ContactBoundary {
     /// Its name.
     pub boundary: String,
@@ -55,6 +56,7 @@ pub struct ContactBoundary {
 /// a(u, u) = loads + supports + contact: what the strains hold is twice the work of the three on u.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
+#[non_exhaustive]
 pub struct EnergyBalance {
     /// a(u, u), twice the strain energy.
     pub strain: f64,

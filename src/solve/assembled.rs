@@ -7,10 +7,11 @@
 use super::SolveError;
 use super::accuracy::{Pass, Route};
 use super::contact_edges::ContactEdges;
+use super::course;
 use super::factor::{Factor, Indefinite};
 use super::iterate::{Evaluation, Iterate};
 use super::ldl::TwofoldFactor;
-use super::newton::{self, Body, Derivatives, Edges, Residual, Step, Until, block};
+use super::newton::{self, Body, Derivatives, Edges, Residual, Start, Step, Until, block};
 use super::system::System;
 use crate::fem::matrix::LowerTriangle;
 use crate::fem::precise;
@@ -260,14 +261,19 @@ where
     }
 
     /// The body without contact, or, where it does not hold without, on springs of all edges, which pull as well as push.
-    fn start(&mut self, edges: &impl Edges<M>) -> Result<f64, SolveError> {
+    fn start(&mut self, edges: &impl Edges<M>) -> Result<Start, SolveError> {
+        if let Some(p) = self.route.system.start() {
+            let step = self.step(&course::frozen(edges, &p, self.y()))?;
+            self.advance(1.0, &step);
+            return Ok(Start::Given);
+        }
         let none = newton::derivatives(edges, &vec![-1.0; self.at.p.len()]);
         if self.route.system.d.slides.is_none() {
             match self.step(&none) {
                 Ok(step) => {
                     self.advance(1.0, &step);
                     let at = newton::derivatives(edges, self.y());
-                    return self.stiffness(&at);
+                    return self.stiffness(&at).map(Start::Free);
                 }
                 Err(SolveError::Singular) => {}
                 Err(error) => return Err(error),
@@ -283,10 +289,11 @@ where
         }
         let step = self.step(&pulling)?;
         self.advance(1.0, &step);
-        Ok(SOFTEST)
+        Ok(Start::Free(SOFTEST))
     }
 
     fn step(&mut self, at: &Derivatives<M>) -> Result<Step, SolveError> {
+        self.route.system.enters_step();
         let gradient = self.gradient(at);
         let mut d: Vec<f64> = gradient.iter().map(|r| -r).collect();
         let (factor, hessian) = self.route.factor(at)?;

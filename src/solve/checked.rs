@@ -25,6 +25,18 @@ impl Gamma0 {
             Err(refused("gamma0", gamma0, "a positive number"))
         }
     }
+
+    /// On each contact edge the gamma0 for which kappa is this positive number on its own triangle.
+    ///
+    /// # Errors
+    /// [`DataError::Value`].
+    pub fn local(kappa: f64) -> Result<Self, DataError> {
+        if kappa > 0.0 && kappa.is_finite() {
+            Ok(Gamma0::Local(kappa))
+        } else {
+            Err(refused("kappa", kappa, "a positive number"))
+        }
+    }
 }
 
 impl ContactQuadrature {
@@ -44,8 +56,14 @@ impl ContactQuadrature {
 impl Method {
     /// Nothing, if a case file could ask for this method.
     pub(super) fn check(&self) -> Result<(), DataError> {
-        if let Gamma0::Value(gamma0) = self.gamma0 {
-            Gamma0::value(gamma0)?;
+        match self.gamma0 {
+            Gamma0::Auto => {}
+            Gamma0::Value(gamma0) => {
+                Gamma0::value(gamma0)?;
+            }
+            Gamma0::Local(kappa) => {
+                Gamma0::local(kappa)?;
+            }
         }
         if let ContactQuadrature::Gauss(points) = self.quadrature {
             ContactQuadrature::gauss(points)?;

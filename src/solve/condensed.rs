@@ -20,9 +20,10 @@ use super::SolveError;
 use super::accuracy::{Pass, Route};
 use super::compliance::{Compliance, Reach};
 use super::contact_edges::ContactEdges;
+use super::course;
 use super::factor::Factor;
 use super::iterate::{Evaluation, Iterate};
-use super::newton::{self, Body, Derivatives, Edges, Residual, Step, Until, block};
+use super::newton::{self, Body, Derivatives, Edges, Residual, Start, Step, Until, block};
 use super::system::System;
 use crate::kernel::edge_integral::ExactEdge;
 
@@ -184,8 +185,8 @@ where
         }
     }
 
-    /// The body is there already: this is by the power method on R^T G R.
-    fn start(&mut self, edges: &impl Edges<M>) -> Result<f64, SolveError> {
+    /// The body without contact is where it is already; the stiffness is by the power method on R^T G R.
+    fn start(&mut self, edges: &impl Edges<M>) -> Result<Start, SolveError> {
         let at = newton::derivatives(edges, &self.y);
         let roots = Self::roots(&at);
         let stiffness = newton::largest_eigenvalue(roots.len(), |x| {
@@ -199,10 +200,18 @@ where
             roots.iter().map(|(e, column)| dot(*column, block(&grx, *e))).collect()
         });
         // The body bends so far without contact that what contact leaves of it cannot be seen.
-        if stiffness <= STIFFEST { Ok(stiffness) } else { Err(SolveError::Singular) }
+        if !(stiffness <= STIFFEST) {
+            return Err(SolveError::Singular);
+        }
+        let Some(p) = self.route.system.start() else { return Ok(Start::Free(stiffness)) };
+        let p: Vec<f64> = self.route.reach.order.iter().flat_map(|&e| block::<M>(&p, e)).collect();
+        let step = self.step(&course::frozen(edges, &p, &self.y))?;
+        self.advance(1.0, &step);
+        Ok(Start::Given)
     }
 
     fn step(&mut self, at: &Derivatives<M>) -> Result<Step, SolveError> {
+        self.route.system.enters_step();
         let columns = Self::roots(at);
         let s = self.s(at);
         let gs = self.times_compliance(&s);

@@ -38,6 +38,7 @@ pub enum LadderError {
 
 /// What came out on one mesh.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Level {
     /// The largest h_T.
     pub h: f64,

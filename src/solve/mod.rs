@@ -9,6 +9,7 @@ mod checked;
 pub mod compliance;
 pub mod condensed;
 mod contact_edges;
+pub mod course;
 pub mod enclosure;
 pub mod evaluated;
 pub mod factor;
@@ -32,6 +33,7 @@ use thiserror::Error;
 use self::accuracy::Outcome;
 pub use self::answers::{ContactBoundary, EnergyBalance};
 pub use self::checked::{MOST_GAUSS_POINTS, MOST_ITERATIONS};
+pub use self::course::{Course, Phase};
 pub use self::enclosure::{Enclosure, Intervals, Unproved};
 use self::evaluated::Evaluated;
 pub use self::ladder::{Ladder, LadderError, Level};
@@ -42,7 +44,7 @@ use self::system::System;
 pub use self::theorem::Theorem;
 use self::times::Stopwatch;
 pub use self::times::Times;
-use crate::fem::contact_line::{Coercivity, EdgeRule};
+use crate::fem::contact_line::{Coercivity, EdgeRule, Gamma};
 use crate::fem::{DataError, Discretization, MeshError, Problem, held};
 use crate::kernel::edge_integral::ExactEdge;
 use crate::kernel::{P1, P2};
@@ -87,6 +89,9 @@ pub enum Gamma0 {
     Auto,
     /// This value.
     Value(f64),
+    /// On each contact edge its own, such that kappa is this number on each triangle with edges on Gamma_C: one sliver does
+    /// not set gamma for the whole line. The same as [`Gamma0::Auto`] for 0.5 where all these triangles are alike.
+    Local(f64),
 }
 
 /// How the contact terms are integrated along an edge.
@@ -193,6 +198,7 @@ pub struct Report {
 /// Why there is no solution.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
+#[non_exhaustive]
 pub enum SolveError {
     #[error(transparent)]
     Data(#[from] DataError),
@@ -276,10 +282,23 @@ pub fn solve(
     method: &Method,
     settings: &Settings,
 ) -> Result<(Solution, Times), SolveError> {
+    solve_along(problem, method, settings, Course::default())
+}
+
+/// The same from a given start, or with somebody who watches. A start that leads nowhere is left for the usual one.
+///
+/// # Errors
+/// As [`solve`].
+pub fn solve_along(
+    problem: &Problem,
+    method: &Method,
+    settings: &Settings,
+    course: Course,
+) -> Result<(Solution, Times), SolveError> {
     settings.check()?;
     match method.degree {
-        Degree::One => solve_with::<P1, 3, 2>(problem, method, settings),
-        Degree::Two => solve_with::<P2, 6, 3>(problem, method, settings),
+        Degree::One => solve_with::<P1, 3, 2>(problem, method, settings, course),
+        Degree::Two => solve_with::<P2, 6, 3>(problem, method, settings, course),
     }
 }
 
@@ -287,14 +306,21 @@ fn solve_with<E, const N: usize, const M: usize>(
     problem: &Problem,
     method: &Method,
     settings: &Settings,
+    course: Course,
 ) -> Result<(Solution, Times), SolveError>
 where
     E: ExactEdge<f64, N, M>,
 {
     let mut watch = Stopwatch::start();
+    course.enters(Phase::Assemble);
     let d = discretize::<E, N, M>(problem, method)?;
     let discretize = watch.lap();
-    let (evaluated, report, times) = solve_discrete(&d, settings)?;
+    let (evaluated, report, times) =
+        match (solve_discrete_along(&d, settings, course), course.afresh()) {
+            (Err(_), Some(afresh)) => solve_discrete_along(&d, settings, afresh)?,
+            (solved, _) => solved?,
+        };
+    course.enters(Phase::Evaluate);
     watch.lap();
     let solution = Solution::new(&d, evaluated, report);
     Ok((solution, Times { discretize, evaluate: watch.lap(), ..times }))
@@ -311,9 +337,20 @@ pub fn solve_discrete<E, const N: usize, const M: usize>(
 where
     E: ExactEdge<f64, N, M>,
 {
+    solve_discrete_along(d, settings, Course::default())
+}
+
+fn solve_discrete_along<'d, E, const N: usize, const M: usize>(
+    d: &'d Discretization<E, N, M>,
+    settings: &Settings,
+    course: Course<'d>,
+) -> Result<(Evaluated<M>, Report, Times), SolveError>
+where
+    E: ExactEdge<f64, N, M>,
+{
     let mut times = Times::default();
     let mut watch = Stopwatch::start();
-    let system = System::new(d)?;
+    let system = System::on(d, course)?;
     times.matrix = watch.lap();
     let found = route::solve(&system, settings, &mut times);
     let (outcome, method, factorizations, factor) = found.map_err(|e| told(&system, e))?;
@@ -366,6 +403,7 @@ pub fn check(problem: &Problem, method: &Method) -> Result<Outline, SolveError> 
 
 /// The size of a discrete problem and its coercivity.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Outline {
     /// How many nodes there are; each has two degrees of freedom.
     pub nodes: usize,
@@ -403,15 +441,16 @@ where
     E: ExactEdge<f64, N, M>,
 {
     method.check()?;
-    let gamma0 = |c: &Coercivity| match method.gamma0 {
-        Gamma0::Auto => c.limit() / 2.0,
-        Gamma0::Value(gamma0) => gamma0,
+    let gamma = |c: &Coercivity| match method.gamma0 {
+        Gamma0::Auto => Gamma::Uniform(c.limit() / 2.0),
+        Gamma0::Value(gamma0) => Gamma::Uniform(gamma0),
+        Gamma0::Local(kappa) => Gamma::Local(kappa),
     };
     let rule = match method.quadrature {
         ContactQuadrature::Exact => EdgeRule::Exact,
         ContactQuadrature::Gauss(points) => EdgeRule::gauss(points),
     };
-    let d = Discretization::new(problem, gamma0, rule)?;
+    let d = Discretization::new(problem, gamma, rule)?;
     if d.kappa() < 1.0 || method.allow_noncoercive {
         Ok(d)
     } else {

@@ -18,7 +18,7 @@
 //! beside the one that stiffer springs bring, the springs get stiffer, by a factor that grows while single steps will do and
 //! falls where they don't: the contact zone of stiff springs is narrow, and a minimiser is found from near only.
 //! At s = 1 it is Newton's method on J_h, from a start that knows something. Going to the body without contact counts as a
-//! step where it takes one.
+//! step where it takes one. A start that is given ([`super::course`]) needs no soft springs.
 
 use super::SolveError;
 
@@ -38,12 +38,11 @@ pub trait Body<const M: usize> {
     fn y(&self) -> &[f64];
     /// The residual of (8) at the iterate, relative, where Psi has the derivatives `at`; and how much of it may be noise.
     fn residual(&self, at: &Derivatives<M>) -> Residual;
-    /// Goes to the body without contact, as far as it holds without, and says how much stiffer contact is there than the
-    /// body: the largest eigenvalue of B^T Psi'' B with regard to A, roughly.
+    /// Goes to the start.
     ///
     /// # Errors
     /// As [`Body::step`].
-    fn start(&mut self, edges: &impl Edges<M>) -> Result<f64, SolveError>;
+    fn start(&mut self, edges: &impl Edges<M>) -> Result<Start, SolveError>;
     /// The Newton step from the iterate.
     ///
     /// # Errors
@@ -51,6 +50,16 @@ pub trait Body<const M: usize> {
     fn step(&mut self, at: &Derivatives<M>) -> Result<Step, SolveError>;
     /// Moves the iterate by `t` times `step`, the last one.
     fn advance(&mut self, t: f64, step: &Step);
+}
+
+/// Where Newton's method starts.
+#[derive(Clone, Copy, Debug)]
+pub enum Start {
+    /// At the body without contact, as far as it holds without. Contact is that much stiffer there than the body: the largest
+    /// eigenvalue of B^T Psi'' B with regard to A, roughly.
+    Free(f64),
+    /// One step from a start that was given.
+    Given,
 }
 
 /// The size of a residual.
@@ -128,7 +137,10 @@ pub fn minimise<const M: usize>(
     let mut springs = Springs::new(1.0);
     if first {
         residuals.push(body.residual(&derivatives(edges, body.y())).norm);
-        springs = Springs::new(1.0 / body.start(edges)?.max(1.0));
+        match body.start(edges)? {
+            Start::Free(contact) => springs = Springs::new(1.0 / contact.max(1.0)),
+            Start::Given => residuals.push(body.residual(&derivatives(edges, body.y())).norm),
+        }
     }
     let mut at = derivatives(edges, body.y());
     let mut largest: f64 = 0.0;

@@ -15,6 +15,7 @@ use super::accuracy::{self, Outcome};
 use super::assembled::Assembled;
 use super::compliance::Reach;
 use super::condensed::Condensed;
+use super::course::Phase;
 use super::factor::{Factor, Indefinite, Structure};
 use super::memory;
 use super::system::System;
@@ -140,12 +141,14 @@ where
         RouteName::Condensed => {
             let q = reach.functionals();
             memory::ensure(8 * (reach.stored_entries(&system.structure) + 3 * q * q) as u64)?;
+            system.enters(Phase::Factor);
             let factor = match Factor::with(&system.structure, &system.matrix)? {
                 Ok(factor) => factor,
                 Err(Indefinite) if system.d.kappa() < 1.0 => return Err(SolveError::Singular),
                 Err(Indefinite) => return Err(SolveError::NotPositiveDefinite),
             };
             times.factor += watch.lap();
+            system.enters(Phase::Condense);
             let mut route = Condensed::new(system, &factor, &reach, reference);
             times.compliance += watch.lap();
             let outcome = accuracy::refine(system, &mut route, reference, settings)?;

@@ -10,7 +10,7 @@ use super::answers::{self, ContactBoundary, EnergyBalance};
 use super::enclosure::Certificate;
 use super::evaluated::Evaluated;
 use super::{MethodReport, NewtonReport, NoLimit, Report, TrueLimit};
-use crate::fem::contact_line::{self, Coercivity};
+use crate::fem::contact_line::{self, Coercivity, Gamma};
 use crate::fem::discretization::{Discretization, inner};
 use crate::fem::{DataError, Errors, ExactSolution, Problem, Space};
 use crate::kernel::contact::pressure;
@@ -20,6 +20,7 @@ use crate::kernel::{Element, P1, P2, Stress};
 
 /// The solution of method (8), independent of the element that it was computed with.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Solution {
     /// The polynomial degree.
     pub degree: usize,
@@ -57,8 +58,11 @@ pub struct Solution {
 
 /// gamma0 and the coercivity number.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct GammaReport {
-    /// gamma0 of (7), in 1 / stress.
+    /// gamma along Gamma_C.
+    pub gamma: Gamma,
+    /// gamma0 of (7), or the smallest where each triangle has its own, in 1 / stress.
     pub gamma0: f64,
     /// kappa = gamma0 C_h.
     pub kappa: f64,
@@ -70,6 +74,7 @@ pub struct GammaReport {
 
 /// One edge of Gamma_C: its nodes and the values there, in order along the edge.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ContactEdgeValues {
     /// The triangle that owns the edge.
     pub triangle: usize,
@@ -83,6 +88,7 @@ pub struct ContactEdgeValues {
 
 /// The values at a node of a contact edge, as its edge has them: sigma_n jumps from edge to edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ContactValues {
     /// The node.
     pub node: usize,
@@ -105,6 +111,7 @@ pub struct ContactValues {
 /// Scalars of a solution, in the units of the case.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
+#[non_exhaustive]
 pub struct Quantities {
     /// a(u, u)
     pub energy: f64,
@@ -184,8 +191,18 @@ impl Solution {
         exact: &dyn ExactSolution,
     ) -> Result<Errors, DataError> {
         let space = Space::<E, N, M>::new(&problem.mesh);
-        let contact = contact_line::assemble(problem, &space, self.gamma.gamma0)?;
+        let contact = contact_line::assemble(problem, &space, self.gamma.gamma)?;
         Ok(Errors::new(&space, &contact, &self.displacement, exact))
+    }
+
+    /// The stresses sigma_xx, sigma_yy, sigma_zz, sigma_xy at the nodes, of `problem`, which is the one that this solves: the
+    /// means of what the triangles around a node have there, weighted by their areas. Where two materials meet, that is a
+    /// mean of both sides.
+    pub fn nodal_stresses(&self, problem: &Problem) -> Vec<[f64; 4]> {
+        match self.degree {
+            1 => nodal_stresses::<P1, 3, 2>(self, problem),
+            _ => nodal_stresses::<P2, 6, 3>(self, problem),
+        }
     }
 
     /// u^h at the point with the barycentric coordinates `l` of triangle `t`, as [`Mesh::locate`] finds them.
@@ -216,6 +233,37 @@ impl Solution {
     }
 }
 
+/// The area-weighted means at the nodes of the stresses sigma_xx, sigma_yy, sigma_zz, sigma_xy that the triangles around them
+/// have there.
+fn nodal_stresses<E: Element<N, M>, const N: usize, const M: usize>(
+    solution: &Solution,
+    problem: &Problem,
+) -> Vec<[f64; 4]> {
+    let mut sums = vec![([0.0; 4], 0.0); solution.nodes.len()];
+    let (elements, _) = solution.elements.as_chunks::<N>();
+    for (t, nodes) in elements.iter().enumerate() {
+        let (triangle, material) = (problem.mesh.triangle(t), problem.material.of(t));
+        let (barycentric, area) = (triangle.barycentric_gradients(), triangle.double_area());
+        let nodal = nodes.map(|node| solution.displacement[node].into());
+        for (j, &node) in nodes.iter().enumerate() {
+            // Corner j, or the middle of the edge opposite corner j - 3.
+            let l = [0, 1, 2].map(|k| match j {
+                0..3 => f64::from(u8::from(k == j)),
+                _ => f64::from(u8::from(k != j - 3)) / 2.0,
+            });
+            let gradients = E::gradients(l, barycentric);
+            let stress = material.stress(displacement_gradient(&nodal, &gradients));
+            let ([xx, yy, xy], zz) = (stress.components(), material.stress_zz(stress));
+            let (sum, weight) = &mut sums[node];
+            for (sum, s) in sum.iter_mut().zip([xx, yy, zz, xy]) {
+                *sum += area * s;
+            }
+            *weight += area;
+        }
+    }
+    sums.into_iter().map(|(sum, weight)| sum.map(|s| s / weight)).collect()
+}
+
 impl GammaReport {
     /// Of a discretization.
     pub fn new<E, const N: usize, const M: usize>(
@@ -225,7 +273,8 @@ impl GammaReport {
     where
         E: ExactEdge<f64, N, M>,
     {
-        GammaReport { gamma0: d.gamma0, kappa: d.kappa(), coercivity: d.coercivity, true_limit }
+        let (kappa, coercivity) = (d.kappa(), d.coercivity);
+        GammaReport { gamma: d.gamma, gamma0: d.gamma0, kappa, coercivity, true_limit }
     }
 }
 

@@ -2,9 +2,11 @@
 //! factor, and B, the values of P0 at the nodes of the contact edges. The tangent A + B^T Psi'' B has the pattern of A: each
 //! functional lives on one triangle.
 
+use std::cell::Cell;
 use std::sync::Arc;
 
 use super::SolveError;
+use super::course::{Course, Phase};
 use super::factor::Structure;
 use super::ordering::nested_dissection;
 use crate::fem::discretization::Discretization;
@@ -21,6 +23,9 @@ pub struct System<'d, 'p, E, const N: usize, const M: usize> {
     pub matrix: LowerTriangle,
     /// The structure of the factor of A and of every tangent.
     pub structure: Arc<Structure>,
+    course: Course<'d>,
+    /// The Newton steps so far.
+    steps: Cell<usize>,
 }
 
 impl<'d, 'p, E, const N: usize, const M: usize> System<'d, 'p, E, N, M>
@@ -32,13 +37,38 @@ where
     /// # Errors
     /// [`SolveError::OutOfMemory`].
     pub fn new(d: &'d Discretization<'p, E, N, M>) -> Result<Self, SolveError> {
+        System::on(d, Course::default())
+    }
+
+    /// The system of a discretization whose solve takes this course.
+    ///
+    /// # Errors
+    /// As [`System::new`].
+    pub fn on(d: &'d Discretization<'p, E, N, M>, course: Course<'d>) -> Result<Self, SolveError> {
+        course.enters(Phase::Order);
         let nodes = d.space.nodes();
         let neighbours = Neighbours::new(nodes.len(), d.space.elements());
         let order = nested_dissection(nodes, &neighbours);
         let numbering = Numbering::under(&order, &d.constraints);
         let matrix = matrix::assemble(d, &numbering, &neighbours);
         let structure = Arc::new(Structure::new(&matrix)?);
-        Ok(System { d, numbering, matrix, structure })
+        Ok(System { d, numbering, matrix, structure, course, steps: Cell::new(0) })
+    }
+
+    /// P of the given start, if there is one, at the nodes of the contact edges.
+    pub(super) fn start(&self) -> Option<Vec<f64>> {
+        self.course.p(self.d)
+    }
+
+    /// Tells who watches that a phase begins.
+    pub(super) fn enters(&self, phase: Phase) {
+        self.course.enters(phase);
+    }
+
+    /// The same of a Newton step.
+    pub(super) fn enters_step(&self) {
+        self.steps.set(self.steps.get() + 1);
+        self.enters(Phase::Newton { step: self.steps.get() });
     }
 
     /// The free degrees of freedom on the triangle of contact edge `e`.

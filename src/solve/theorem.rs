@@ -6,6 +6,7 @@
 use super::factor::Factor;
 use super::ordering::nested_dissection;
 use super::{ContactQuadrature, Degree, Gamma0, Method, Solution, SolveError, discretize};
+use crate::fem::contact_line::Gamma;
 use crate::fem::matrix::{self, Neighbours, Numbering};
 use crate::fem::pieces::Rule;
 use crate::fem::{Discretization, Errors, ExactSolution, Problem, a_priori, errors};
@@ -14,6 +15,7 @@ use crate::kernel::{P1, P2};
 
 /// The two sides and their ingredients.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Theorem {
     /// kappa = gamma0 C_h < 1.
     pub kappa: f64,
@@ -79,7 +81,10 @@ where
 {
     let method = Method {
         degree,
-        gamma0: Gamma0::Value(solution.gamma.gamma0),
+        gamma0: match solution.gamma.gamma {
+            Gamma::Uniform(gamma0) => Gamma0::Value(gamma0),
+            Gamma::Local(kappa) => Gamma0::Local(kappa),
+        },
         quadrature: ContactQuadrature::Exact,
         allow_noncoercive: true,
     };

@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 /// How long the parts of a solve took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Times {
     /// Nodes, constraints, loads, contact edges.
     pub discretize: Duration,

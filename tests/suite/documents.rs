@@ -80,11 +80,15 @@ fn the_page_on_result_json_lists_exactly_what_is_written() {
 
 /// The keys that the reader says it expects in a table of this case.
 fn known(file: &str, settings: &[&str], table: &str) -> BTreeSet<String> {
+    known_to(file, &page(file), settings, table)
+}
+
+fn known_to(file: &str, text: &str, settings: &[&str], table: &str) -> BTreeSet<String> {
     let settings: Vec<String> = settings.iter().map(|&s| s.to_owned()).collect();
     let dot = if table.is_empty() { "" } else { "." };
     let nonsense = format!("{table}{dot}nonsense=1");
     let all = [settings, vec![nonsense]].concat();
-    let error = match Case::parse(Path::new(file), &page(file), &all) {
+    let error = match Case::parse(Path::new(file), text, &all) {
         Ok(_) => panic!("{table}: nonsense is accepted"),
         Err(error) => error.to_string(),
     };
@@ -93,41 +97,104 @@ fn known(file: &str, settings: &[&str], table: &str) -> BTreeSet<String> {
     expected.split([',', ' ']).filter(|w| !["", "or"].contains(w)).map(str::to_owned).collect()
 }
 
-#[test]
-fn the_page_on_case_files_knows_every_key() {
-    let page = page("docs/case.md");
-    let smooth = ["boundary={bottom=\"contact\"}"];
-    for (file, settings, table) in [
-        ("cases/block.toml", &[][..], ""),
-        ("cases/block.toml", &[], "mesh"),
-        ("cases/block.toml", &[], "mesh.rectangle"),
-        ("cases/corner.toml", &[], "mesh.trapezoid"),
-        ("cases/block.toml", &["mesh.perturb={amount=0.1}"], "mesh.perturb"),
-        ("cases/block.toml", &[], "material"),
-        ("cases/block.toml", &[], "load"),
-        ("cases/block.toml", &[], "boundary.left"),
-        ("cases/block.toml", &[], "boundary.bottom.contact"),
-        ("cases/block.toml", &["method.degree=1"], "method"),
-        ("cases/block.toml", &["method.contact_quadrature={gauss=1}"], "method.contact_quadrature"),
-        ("cases/block.toml", &["solver.tolerance=1e-9"], "solver"),
-        ("cases/pin.toml", &[], "units"),
-        ("cases/pin.toml", &[], "obstacle.pin"),
-        ("cases/pin.toml", &[], "obstacle.pin.circle"),
-        ("cases/disk.toml", &[], "obstacle.floor.plane"),
-        ("cases/block.toml", &["output.probes=[]"], "output"),
-        ("cases/smooth.toml", &smooth, "exact"),
-        ("cases/singular.toml", &[], "exact"),
-        ("cases/corner.toml", &[], "exact"),
-    ] {
-        for key in known(file, settings, table) {
-            let shown = ["`", ".", "[", "{ "].into_iter().any(|before| {
-                ["`", ".", "]", " ="]
-                    .into_iter()
-                    .any(|after| page.contains(&format!("{before}{key}{after}")))
-            });
-            assert!(shown, "docs/case.md does not know '{key}' of [{table}]");
+/// The tables of a case, each with a case that has it and with its name on the page.
+const TABLES: [(&str, &[&str], &str, &str); 17] = [
+    ("cases/block.toml", &[], "", ""),
+    ("cases/block.toml", &[], "mesh", "mesh"),
+    ("cases/block.toml", &[], "mesh.rectangle", "mesh.rectangle"),
+    ("cases/corner.toml", &[], "mesh.trapezoid", "mesh.trapezoid"),
+    ("cases/block.toml", &["mesh.perturb={amount=0.1}"], "mesh.perturb", "mesh.perturb"),
+    ("cases/block.toml", &[], "material", "material"),
+    ("cases/block.toml", &[], "load", "load"),
+    ("cases/block.toml", &[], "boundary.left", "boundary.NAME"),
+    ("cases/block.toml", &[], "boundary.bottom.contact", "boundary.NAME.contact"),
+    ("cases/block.toml", &["method.degree=1"], "method", "method"),
+    ("cases/block.toml", &["solver.tolerance=1e-9"], "solver", "solver"),
+    ("cases/pin.toml", &[], "units", "units"),
+    ("cases/pin.toml", &[], "obstacle.pin", "obstacle.NAME"),
+    ("cases/pin.toml", &[], "obstacle.pin.circle", "obstacle.NAME.circle"),
+    ("cases/disk.toml", &[], "obstacle.floor.plane", "obstacle.NAME.plane"),
+    ("cases/block.toml", &["point.p.displacement=[0,0]"], "point.p", "point.NAME"),
+    ("cases/block.toml", &["output.probes=[]"], "output", "output"),
+];
+
+/// The keys of the first cells, with their tables, of all sections but that on exact solutions.
+fn documented_keys(page: &str) -> BTreeSet<String> {
+    let mut section = String::new();
+    let mut keys = BTreeSet::new();
+    for line in page.lines() {
+        if let Some(name) = line.strip_prefix("## ") {
+            let inner = name.strip_prefix("`[").and_then(|name| name.strip_suffix("]`"));
+            section = inner.unwrap_or_default().to_owned();
+        }
+        let Some(row) = line.strip_prefix("| `").filter(|_| section != "exact") else { continue };
+        let cell = row.split(" | ").next().unwrap();
+        let mut table = String::new();
+        for word in cell.split(['`', ',', ' ']).filter(|word| !word.is_empty()) {
+            let key = match word.strip_prefix('.') {
+                Some(key) => format!("{table}.{key}"),
+                None => word.to_owned(),
+            };
+            table = key.rsplit_once('.').map_or(String::new(), |(table, _)| table.to_owned());
+            keys.insert(if section.is_empty() { key } else { format!("{section}.{key}") });
         }
     }
+    keys
+}
+
+#[test]
+fn the_page_on_case_files_lists_exactly_the_keys_that_are_read() {
+    let page = page("docs/case.md");
+    let mut read = BTreeSet::new();
+    for (file, settings, table, name) in TABLES {
+        let dot = if name.is_empty() { "" } else { "." };
+        read.extend(known(file, settings, table).iter().map(|key| format!("{name}{dot}{key}")));
+    }
+    // Keys that are tables are listed by what is in them.
+    let is_table = |key: &String| {
+        let within = format!("{key}.");
+        key == "exact" || TABLES.iter().any(|table| format!("{}.", table.3).starts_with(&within))
+    };
+    read.retain(|key| !is_table(key));
+    assert_eq!(documented_keys(&page), read);
+    let quadrature = ["method.contact_quadrature={gauss=1}"];
+    let gauss = known("cases/block.toml", &quadrature, "method.contact_quadrature");
+    assert_eq!(gauss, BTreeSet::from(["gauss".to_owned()]));
+    assert!(page.contains("`{ gauss = 4 }`"));
+}
+
+#[test]
+fn the_page_on_case_files_lists_exactly_the_parameters_of_the_exact_solutions() {
+    let text = page("docs/case.md");
+    let rows = text.lines().skip_while(|line| !line.starts_with("| `solution`")).skip(2);
+    let mut solutions = Vec::new();
+    for row in rows.take_while(|line| line.starts_with("| `\"")) {
+        let cells: Vec<&str> = row.split(" | ").collect();
+        let solution = cells[0].trim_matches(['|', ' ', '`', '"']).to_owned();
+        let words = cells[1].split('`').skip(1).step_by(2);
+        let documented: BTreeSet<String> = words
+            .filter(|word| !word.starts_with('"'))
+            .map(|word| word.split(' ').next().unwrap().to_owned())
+            .chain(["solution".to_owned()])
+            .collect();
+        let variants = match solution.as_str() {
+            "smooth" | "singular" | "corner" => vec![page(&format!("cases/{solution}.toml"))],
+            "patch" => {
+                let singular = page("cases/singular.toml");
+                let (before, after) = singular.split_once("[exact]").unwrap();
+                let rest = &after[after.find("\n[").unwrap()..];
+                let test =
+                    |i| format!("{before}[exact]\nsolution = \"patch\"\nwhich = \"d{i}\"{rest}");
+                (1..=5).map(test).collect()
+            }
+            _ => panic!("the page has an exact solution '{solution}' that this test does not know"),
+        };
+        let read: BTreeSet<String> =
+            variants.iter().flat_map(|text| known_to("cases/x.toml", text, &[], "exact")).collect();
+        assert_eq!(documented, read, "{solution}");
+        solutions.push(solution);
+    }
+    assert_eq!(solutions, ["smooth", "singular", "corner", "patch"]);
 }
 
 #[test]

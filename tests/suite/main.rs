@@ -12,6 +12,7 @@ mod command;
 mod convergence;
 #[cfg(feature = "cli")]
 mod convergence_command;
+mod course;
 mod documents;
 #[cfg(all(feature = "cli", unix))]
 mod doors;
@@ -23,6 +24,7 @@ mod held;
 mod method;
 mod parts;
 mod patch;
+mod peaks;
 mod reference;
 mod routes;
 #[cfg(feature = "cli")]

@@ -417,8 +417,9 @@ fn gauss_elimination(mut a: Vec<Vec<f64>>) -> Vec<f64> {
     x
 }
 
+/// That it is the line search which ends it is row 19 of VERIFY.md: the solver does not start here, but from soft springs.
 #[test]
-fn plain_newton_cycles_where_the_line_search_ends() {
+fn plain_newton_cycles_where_the_solver_ends() {
     let (problem, method) = cycling();
     let d: Discretization<P1, 3, 2> = signorini::solve::discretize(&problem, &method).unwrap();
     assert!((d.kappa() - 0.03).abs() < 1e-15);
@@ -438,7 +439,7 @@ fn plain_newton_cycles_where_the_line_search_ends() {
     for (energy, expected) in energies.iter().zip([4.4519, 0.81341, 7.5760, 0.90384]) {
         assert!((energy - expected).abs() < 1e-4, "{energies:?}");
     }
-    // From the same place, with the line search: the minimiser.
+    // The solver: at the minimiser.
     let (Evaluated { u, .. }, report, _) = solve_discrete(&d, &Settings::default()).unwrap();
     assert_eq!(report.newton.status, Status::Converged);
     assert_eq!(contact_set(&d, &u), [2, 5]);

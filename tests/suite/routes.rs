@@ -1,14 +1,14 @@
 //! The two routes of the solver give the same numbers, and what they promise: the residual of (8) at the tolerance, few steps,
 //! and a forward error that is one. Bodies on which A alone, or doubles alone, would not do.
 
-use signorini::fem::{Discretization, Problem, Rectangle};
+use signorini::fem::{Discretization, Mesh, Problem, Rectangle};
 use signorini::io::Case;
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::{P1, P2};
 use signorini::solve::accuracy::Outcome;
 use signorini::solve::system::System;
 use signorini::solve::{
-    Degree, Method, RouteName, Settings, SolveError, Times, discretize, route, solve,
+    Degree, Gamma0, Method, RouteName, Settings, SolveError, Times, discretize, route, solve,
 };
 
 use crate::common::*;
@@ -36,8 +36,7 @@ fn both_routes_give_the_same_numbers_on_every_example_case() {
     for name in ["block", "gap", "cantilever", "disk", "smooth", "singular", "corner"] {
         let case = Case::read(format!("cases/{name}.toml").as_ref()).unwrap();
         for degree in [Degree::One, Degree::Two] {
-            let method =
-                Method { degree, gamma0: signorini::solve::Gamma0::Auto, ..case.method.clone() };
+            let method = Method { degree, gamma0: Gamma0::Auto, ..case.method.clone() };
             let run = |route| match degree {
                 Degree::One => by::<P1, 3, 2>(route, &case.problem, &method).unwrap(),
                 Degree::Two => by::<P2, 6, 3>(route, &case.problem, &method).unwrap(),
@@ -96,7 +95,7 @@ fn stiff_contact_reaches_the_tolerance() {
         let problem = block(unit_square(16).mesh().unwrap());
         let auto = method(degree, EXACT);
         let limit = signorini::solve::check(&problem, &auto).unwrap().gamma.coercivity.limit();
-        let gamma0 = signorini::solve::Gamma0::Value(1e-8 * limit);
+        let gamma0 = Gamma0::Value(1e-8 * limit);
         let (s, _) = solve(&problem, &Method { gamma0, ..auto }, &Settings::default()).unwrap();
         assert!(s.newton.residual <= 1e-10, "{:e}", s.newton.residual);
         // Some ten stiffnesses on the way, each with a step or a few.
@@ -136,4 +135,43 @@ fn a_lift_that_is_the_solution_has_converged() {
     // Data of one digit, four unknowns: some hundred roundings.
     approx::assert_abs_diff_eq!(s.quantities.contact_force, 0.5, epsilon = 1e-13);
     assert!(s.newton.residuals.iter().all(|r| r.is_finite()));
+}
+
+/// The block with one triangle on the floor cut in three, of which the one at the floor is a sliver of this height.
+fn with_a_sliver(height: f64) -> Problem {
+    let mesh = unit_square(16).mesh().unwrap();
+    let at = mesh.edges_of("bottom").unwrap()[8];
+    let [a, b] = mesh.ends(at);
+    let mut vertices = mesh.vertices().to_vec();
+    let inside = vertices.len();
+    vertices.push([(vertices[a][0] + vertices[b][0]) / 2.0, height]);
+    let mut triangles = mesh.triangles().to_vec();
+    let [_, _, c] = [0, 1, 2].map(|i| triangles[at.triangle][(at.local + 1 + i) % 3]);
+    assert!(![a, b].contains(&c));
+    triangles[at.triangle] = [a, b, inside];
+    triangles.extend([[b, c, inside], [c, a, inside]]);
+    let boundaries = mesh.boundary_names().map(|name| {
+        let edges = mesh.edges_of(name).unwrap();
+        (name.to_owned(), edges.iter().map(|&edge| mesh.ends(edge)).collect::<Vec<_>>())
+    });
+    block(Mesh::new(vertices, triangles, boundaries).unwrap())
+}
+
+#[test]
+fn a_sliver_spoils_itself_only_where_gamma_is_local() {
+    for degree in [Degree::One, Degree::Two] {
+        let peak = |problem: &Problem, gamma0| {
+            let method = Method { gamma0, ..method(degree, EXACT) };
+            solve(problem, &method, &Settings::default()).unwrap().0.quantities.peak_pressure
+        };
+        let whole = block(unit_square(16).mesh().unwrap());
+        let expected = peak(&whole, Gamma0::Auto);
+        // All triangles on the floor are alike, so one gamma0 and local ones are the same.
+        let same = peak(&whole, Gamma0::local(0.5).unwrap());
+        assert!((same - expected).abs() <= 1e-9 * expected, "{same} {expected}");
+        let spoilt = with_a_sliver(1e-4);
+        let [one, local] = [Gamma0::Auto, Gamma0::Local(0.5)].map(|g| peak(&spoilt, g));
+        assert!((local / expected - 1.0).abs() < 0.01, "{degree:?} {local} {expected}");
+        assert!(one / expected > 1.1, "the control: {degree:?} {one} {expected}");
+    }
 }

@@ -65,7 +65,7 @@ fn a_mistake_in_a_setting_is_reported_with_the_setting_and_exit_code_2() {
         ),
         (
             "method.gama0=1",
-            "unknown key 'gama0' in [method]; expected degree, gamma0, contact_quadrature or allow_noncoercive",
+            "unknown key 'gama0' in [method]; expected degree, gamma0, kappa, contact_quadrature or allow_noncoercive",
         ),
         ("material.mu=-1", "[material] mu = -1; expected a positive number"),
         (

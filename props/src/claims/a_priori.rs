@@ -38,6 +38,46 @@ pub fn sharp_bound_is_that_of_theorem_9_3<S: Ordered>([h, s, k]: [S; 3]) -> Verd
     Verdict::Holds(if two * kappa > one { "kappa above 1/2" } else { "kappa at most 1/2" })
 }
 
+/// [9.6] of docs/theory.md from the facts (i), (ii) and (iii) of 9.2, with the letters of
+/// [`three_facts_give_the_hypothesis_of_theorem_3_4`]: delta E^2 + Z^2 <= b E + Q Z + c with the solver's b and c, and what
+/// Theorem 9.1 starts from is no smaller.
+///
+/// [`three_facts_give_the_hypothesis_of_theorem_3_4`]: super::theorem_3_4::three_facts_give_the_hypothesis_of_theorem_3_4
+pub fn three_facts_give_inequality_9_6<S: Ordered>(
+    [e, h, z, s, big, k, c, d, q, r, t]: [S; 11],
+) -> Verdict {
+    let (zero, one, two) = (S::from(0), S::from(1), S::from(2));
+    given!(e >= zero && h >= zero && s >= zero && k >= zero && k < one);
+    let kappa = k * k;
+    given!(c <= e * h && -c <= e * h);
+    // |w|_a^2 = E^2 - 2 c + H^2, r^2 <= kappa |w|_a^2, t <= k (E + H) S.
+    given!(r * r <= kappa * (e * e - two * c + h * h) && t <= k * (e + h) * s);
+    given!(d <= -(z * z) && -q <= z * big);
+    given!(e * e - c == d - q + r * r + t);
+    let [b, constant] = a_priori::sharp_terms(kappa, k, [h, s]);
+    ensure!((one - two * kappa) * c <= (b - k * s) * e);
+    ensure!((one - kappa) * e * e + z * z <= b * e + big * z + constant);
+    ensure!(kappa <= one);
+    ensure!((b - k * s) * e <= h * e);
+    ensure!(b * e + constant <= e * h + kappa * h * h + k * (e + h) * s);
+    Verdict::Holds("always")
+}
+
+/// (i), (ii) and (iii) for the a-orthogonal projection, a(eta, w) = 0: what Theorem 9.4 starts from.
+pub fn three_facts_give_the_hypothesis_of_theorem_9_4<S: Ordered>(
+    [w, z, s, big, k, d, q, r, t]: [S; 9],
+) -> Verdict {
+    let (zero, one) = (S::from(0), S::from(1));
+    given!(w >= zero && s >= zero && r >= zero && k >= zero && k < one);
+    given!(r <= k * w && t <= r * s);
+    given!(d <= -(z * z) && -q <= z * big);
+    given!(w * w == d - q + r * r + t);
+    ensure!(r * r <= k * w * (k * w));
+    ensure!(r * s <= k * w * s);
+    ensure!((one - k * k) * w * w + z * z <= k * s * w + big * z);
+    Verdict::Holds("always")
+}
+
 /// Theorem 9.4: from delta W^2 + Z^2 <= k S W + Q Z and E^2 = W^2 + H^2.
 pub fn projected_bound_is_that_of_theorem_9_4<S: Ordered>([w, z, h, s, q, k]: [S; 6]) -> Verdict {
     let (zero, one, two) = (S::from(0), S::from(1), S::from(2));
@@ -149,7 +189,17 @@ pub fn claim() -> Claim {
         statement!(projected_bound_is_that_of_theorem_9_4, [w, z, h, s, q, k], ["always"]);
     let corollary =
         statement!(corollary_bound_is_that_of_corollary_3_6, [x, s, r, w, e, h, k], ["always"]);
-    let all = [plain, terms, projected, corollary];
+    let sharp_facts = statement!(
+        three_facts_give_inequality_9_6,
+        [e, h, z, s, big, k, c, d, q, r, t],
+        ["always"]
+    );
+    let projected_facts = statement!(
+        three_facts_give_the_hypothesis_of_theorem_9_4,
+        [w, z, s, big, k, d, q, r, t],
+        ["always"]
+    );
+    let all = [plain, terms, sharp_facts, projected_facts, projected, corollary];
     let mut checks: Vec<_> = all.into_iter().map(proved).collect();
     checks.extend([tested(terms)]);
     checks.extend([
@@ -170,7 +220,7 @@ pub fn claim() -> Claim {
         items: &["Theorem 3.4", "Corollary 3.6"],
         title: "The bounds that the solver prints",
         paper: "The right sides of Theorem 3.4 and of Corollary 3.6, with C.",
-        statement: "The functions of `fem::a_priori`, by which the solver prints the bounds of Theorem 3.4 (plain, and for the a-orthogonal projection of u) and Corollary 3.6, are the right sides that rows 11 and docs/theory.md, 9 prove, over symbols; the terms b and c of the sharp bound are those of Theorem 9.3. In doubles, squared, each is within 64 roundings of the same function over rationals, the root of kappa in Corollary 3.6 is a root, and the sharp bound is a root of its quadratic equation.",
+        statement: "The functions of `fem::a_priori`, by which the solver prints the bounds of Theorem 3.4 (plain, and for the a-orthogonal projection of u) and Corollary 3.6, are the right sides that rows 11 and docs/theory.md, 9 prove, over symbols; the terms b and c of the sharp bound are those of Theorem 9.3, whose inequality [9.6] follows from the facts of the proof of Theorem 3.4; the hypothesis of Theorem 9.4 likewise. In doubles, squared, each is within 64 roundings of the same function over rationals, the root of kappa in Corollary 3.6 is a root, and the sharp bound is a root of its quadratic equation.",
         numbers: "every ordered field (proof), with k = kappa^(1/2) as data; doubles against rationals.",
         kernel: &[
             "fem::a_priori::left",
@@ -184,7 +234,7 @@ pub fn claim() -> Claim {
             "fem::a_priori::corollary",
         ],
         preconditions: "0 <= kappa < 1; the hypotheses of row 11.",
-        limits: "The norms that are put in are those of row 12's quadrature.",
+        limits: "The norms that are put in are those of row 12's quadrature. That [9.5] follows from [9.6] is proved in docs/theory.md, not here.",
         single: None,
         checks,
     }

@@ -91,6 +91,7 @@ mod row {
     use signorini::kernel::{P1, positive_part_slope};
 
     use crate::claim::{Claim, Engine, Outcome, by, control, model_checked};
+    use crate::claims::conditions;
     use crate::numbers::Exact;
     use crate::verdict::Verdict;
     use crate::{draws, ensure, given};
@@ -306,6 +307,36 @@ mod row {
             by(Engine::Doubles, "a_nan_makes_an_interval_nan_and_nothing_else_does", nans),
             by(Engine::Doubles, "edge_integrals_over_intervals_contain_the_exact_ones", edges),
             by(Engine::Doubles, "slopes_of_intervals_contain_those_of_their_numbers", slopes),
+            by(
+                Engine::Doubles,
+                "twofold_numbers_keep_a_hundred_bits",
+                conditions::twofold_numbers_keep_a_hundred_bits,
+            ),
+            by(
+                Engine::Doubles,
+                "forces_of_a_translation_vanish_in_twofold_numbers",
+                conditions::forces_of_a_translation_vanish_in_twofold_numbers,
+            ),
+            by(
+                Engine::Doubles,
+                "the_residual_in_twofold_numbers_is_that_in_doubles",
+                conditions::residual_in_twofold_numbers_is_that_in_doubles,
+            ),
+            control(
+                Engine::Doubles,
+                "control_the_residual_in_doubles_has_18_digits",
+                conditions::residual_in_doubles_to_18_digits,
+            ),
+            control(
+                Engine::Doubles,
+                "control_twofold_numbers_keep_120_bits",
+                conditions::twofold_numbers_keep_120_bits,
+            ),
+            control(
+                Engine::Doubles,
+                "control_forces_of_a_translation_vanish_exactly",
+                conditions::forces_of_a_translation_vanish_exactly,
+            ),
             control(
                 Engine::Doubles,
                 "control_slope_by_the_sign_of_the_upper_end",
@@ -323,7 +354,7 @@ mod row {
             items: &["floating point"],
             title: "What the above rests on in floating point",
             paper: "Nothing: the paper computes in R.",
-            statement: "For intervals X, Y of doubles and numbers x in X, y in Y: x + y, x - y, x y, x / y (y not 0) and sqrt(x) lie in X + Y, X - Y, X Y, X / Y and sqrt(X). [X]+ is [[lo]+, [hi]+], sharp across zero, and the slope of [X]+ contains that at each number, for X = [0, hi] that at 0. Of two numbers the result is at most two doubles wide, and exact where it is zero without underflow; an end may be infinite (no bound); a NaN makes both ends NaN. The integrals over a cut P1 edge, by the same source line over intervals, contain the exact ones.",
+            statement: "For intervals X, Y of doubles and numbers x in X, y in Y: x + y, x - y, x y, x / y (y not 0) and sqrt(x) lie in X + Y, X - Y, X Y, X / Y and sqrt(X). [X]+ is [[lo]+, [hi]+], sharp across zero, and the slope of [X]+ contains that at each number, for X = [0, hi] that at 0. Of two numbers the result is at most two doubles wide, and exact where it is zero without underflow; an end may be infinite (no bound); a NaN makes both ends NaN. The integrals over a cut P1 edge, by the same source line over intervals, contain the exact ones. Sums and products of two doubles as twofold numbers are exact, and +, -, *, / of these are off by at most 2^-100 of what goes in; in them the forces of a translation of a block, P1 and P2, vanish to 2^-90, and A(u, .) - L and P at random fields are those in doubles, to 1e-15 of their magnitudes.",
             numbers: "doubles against exact rational arithmetic, drawn from all finite doubles with subnormals, overflow and ties.",
             kernel: &[
                 "interval::Interval::new",
@@ -335,6 +366,9 @@ mod row {
                 "interval::Interval::hull",
                 "interval::Interval::sqrt",
                 "interval::sorted",
+                "fem::twofold::Twofold::sum",
+                "fem::twofold::Twofold::product",
+                "fem::precise::evaluate",
             ],
             preconditions: "The processor rounds +, -, *, / and sqrt to nearest, as IEEE 754 says.",
             limits: "The enclosure of a rounded operation is tested, not proved, over all doubles: no solver at hand decides it.",

@@ -7,19 +7,27 @@ pub mod a_priori;
 pub mod assembled;
 #[cfg(not(kani))]
 pub mod certificate;
+#[cfg(not(kani))]
+pub mod conditions;
 pub mod constants;
 #[cfg(not(kani))]
 pub mod curved;
+#[cfg(not(kani))]
+pub mod directions;
 pub mod discrete_forms;
 #[cfg(not(kani))]
 pub mod enclosed;
 pub mod foundations;
+#[cfg(not(kani))]
+pub mod honesty;
 pub mod lemma_3_1;
 pub mod lemma_3_2;
 pub mod method;
 pub mod mixed;
 #[cfg(not(kani))]
 pub mod newton;
+#[cfg(not(kani))]
+pub mod parts;
 pub mod pattern;
 pub mod positive_part;
 pub mod prop_2_1;
@@ -57,6 +65,9 @@ pub fn all() -> Vec<Claim> {
         a_priori::claim(),
         solver::claim(),
         newton::claim(),
+        parts::direction(),
+        parts::materials(),
+        parts::recovered(),
     ];
     claims.sort_by_key(|claim| claim.id.parse::<u32>().expect("the id of a row is a number"));
     claims
@@ -112,5 +123,8 @@ mod tests {
         every_check_of_row_17_passes "17",
         every_check_of_row_18_passes "18",
         every_check_of_row_19_passes "19",
+        every_check_of_row_20_passes "20",
+        every_check_of_row_21_passes "21",
+        every_check_of_row_22_passes "22",
     }
 }

@@ -12,6 +12,7 @@
 use std::collections::BTreeMap;
 
 use proptest::prelude::*;
+use signorini::fem::contact_line::EdgeRule;
 use signorini::fem::pieces::{Features, Rule};
 use signorini::fem::quadrature;
 use signorini::fem::{
@@ -21,10 +22,10 @@ use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::element::displacement_gradient;
 use signorini::kernel::{EdgeIntegrals, Element, Material, P1, P2, Plane, positive_part};
 use signorini::nalgebra::Matrix2;
-use signorini::solve::{Degree, Gamma0, Method, SolveError, discretize};
+use signorini::solve::{ContactQuadrature, Degree, Gamma0, Method, SolveError, discretize};
 
 use crate::claim::{Claim, Engine, Outcome, by, control};
-use crate::claims::rates;
+use crate::claims::{conditions, rates};
 use crate::numbers::Exact;
 use crate::proof::sampler::Random;
 use crate::verdict::Verdict;
@@ -187,6 +188,27 @@ fn gauss_rules() -> Outcome {
         is_gauss(n, &quadrature::gauss(n))?;
     }
     Ok("1 to 10 points, moments 0 to 2n".to_owned())
+}
+
+/// The rule by which a discretization integrates contact terms is the one that is asked for.
+fn rule_is_the_one_asked_for() -> Outcome {
+    let bodies = sharpness::small_bodies()?;
+    let rule = |quadrature| {
+        let method = Method { quadrature, ..Method::default() };
+        discretize::<P1, 3, 2>(&bodies[0].problem, &method)
+            .map(|d| d.rule)
+            .map_err(|e| e.to_string())
+    };
+    if rule(ContactQuadrature::Exact)? != EdgeRule::Exact {
+        return Err("not exact".to_owned());
+    }
+    for n in 1..=10 {
+        match rule(ContactQuadrature::Gauss(n))? {
+            EdgeRule::Gauss(points) => is_gauss(n, &points)?,
+            EdgeRule::Exact => return Err(format!("exact for {n} points")),
+        }
+    }
+    Ok("exact, and 1 to 10 points".to_owned())
 }
 
 /// One point more, and weights one part in ten thousand larger.
@@ -400,6 +422,11 @@ pub fn claim() -> Claim {
         by(Engine::Exact, "gauss_rules_have_the_moments_of_legendre", gauss_rules),
         by(Engine::Doubles, "edges_are_cut_where_the_rule_is_told_to", edges_are_cut),
         by(
+            Engine::Exact,
+            "contact_edges_are_integrated_by_the_rule_that_is_asked_for",
+            rule_is_the_one_asked_for,
+        ),
+        by(
             Engine::Doubles,
             "integrals_over_an_edge_scale_by_powers_of_two_without_error",
             integrals_scale,
@@ -414,6 +441,16 @@ pub fn claim() -> Claim {
             Engine::Doubles,
             "the_projection_is_nearer_than_the_discrete_solution_and_the_interpolant",
             rates::projection_is_the_nearest,
+        ),
+        by(
+            Engine::Doubles,
+            "bodies_that_neither_supports_nor_contact_hold_are_refused",
+            conditions::bodies_that_can_move_are_refused,
+        ),
+        control(
+            Engine::Doubles,
+            "control_bodies_are_held_without_a_load",
+            conditions::bodies_held_without_a_load,
         ),
         control(Engine::Doubles, "control_kappa_below_2_is_taken", kappa_below_2_is_taken),
         control(
@@ -435,10 +472,11 @@ pub fn claim() -> Claim {
         items: &["the solver"],
         title: "What the solver refuses, and the rules by which it integrates",
         paper: "gamma0 sufficiently small; the rest is not in the paper.",
-        statement: "On nine small bodies, P1 and P2: gamma0 with kappa >= 1 is refused (from 1 + 1e-9 on), with kappa < 1 taken (up to 1 - 1e-9), and gamma0 = auto is kappa = 1/2. Displacements that two sides prescribe at a common vertex and that differ by 1e-9 or more are refused. The Gauss rules with n <= 10 points have the moments 0 with the Legendre polynomials of degree 1 to 2n - 1, to a few units of roundoff, and not with that of degree 2n. The rule for errors, told to cut an edge, integrates a kink there exactly, 1e-7 from an end too. The integrals of [P]+ over an edge, P1 and P2, for 2^k P, |k| <= 60, are those for P times the power of two, bit for bit. The errors in all six norms of random P2 fields from quadratic ones, on nine bodies, open and pressed, are those of their definitions. The a-orthogonal projection of the exact solution is nearer to it in the energy norm than u^h and than the interpolant.",
+        statement: "On nine small bodies, P1 and P2: gamma0 with kappa >= 1 is refused (from 1 + 1e-9 on), with kappa < 1 taken (up to 1 - 1e-9), and gamma0 = auto is kappa = 1/2. Displacements that two sides prescribe at a common vertex and that differ by 1e-9 or more are refused. A block that neither its supports nor contact under its load hold is refused, one that they hold is taken (nine cases). The Gauss rules with n <= 10 points have the moments 0 with the Legendre polynomials of degree 1 to 2n - 1, to a few units of roundoff, and not with that of degree 2n; contact edges are integrated by the one that is asked for. The rule for errors, told to cut an edge, integrates a kink there exactly, 1e-7 from an end too. The integrals of [P]+ over an edge, P1 and P2, for 2^k P, |k| <= 60, are those for P times the power of two, bit for bit. The errors in all six norms of random P2 fields from quadratic ones, on nine bodies, open and pressed, are those of their definitions. The a-orthogonal projection of the exact solution is nearer to it in the energy norm than u^h and than the interpolant.",
         numbers: "doubles; the moments from the doubles of the rules over rationals.",
         kernel: &[
             "fem::quadrature::gauss",
+            "fem::contact_line::EdgeRule::gauss",
             "fem::pieces::on_edge",
             "fem::errors::with_points",
             "edge_integral::ExactEdge::exact",

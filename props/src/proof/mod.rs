@@ -6,6 +6,8 @@
 
 pub mod certificate;
 pub mod explorer;
+#[cfg(test)]
+mod falsehoods;
 pub mod float;
 pub mod polynomial;
 pub mod sampler;

@@ -218,7 +218,7 @@ fn methods_solvers_and_outputs() {
             (["degree = 1", "degree = 1.0"], "bad.toml:15: [method] degree = 1.0; expected 1 or 2"),
             (
                 ["degree = 1", "degree = 1\ntheta = 1"],
-                "bad.toml:16: unknown key 'theta' in [method]; expected degree, gamma0, contact_quadrature or allow_noncoercive",
+                "bad.toml:16: unknown key 'theta' in [method]; expected degree, gamma0, kappa, contact_quadrature or allow_noncoercive",
             ),
             (
                 ["gamma0 = 0.1", "gamma0 = 0"],

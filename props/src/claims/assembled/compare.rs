@@ -161,12 +161,14 @@ where
 {
     let definition = Definition::<N>(body);
     let most = definition.coercivity();
-    let least = most * (Exact::from(1) - Exact::of_double(4.0 * roundings("C_h") * UNIT));
+    // Equal up to 1e-12, the first is named, and its ends are sorted.
+    let least = most * (Exact::from(1) - Exact::of_double(2e-12));
     let edge = d.coercivity.limiting_edge.map(|x| x.map(Exact::of_double));
     body.contact.iter().any(|side| {
         let corners = body.triangles[side.triangle];
         let ends = [1, 2].map(|k| body.vertices[corners[(side.local + k) % 3]]);
-        ends == edge && definition.coercivity_of(side.triangle) >= least
+        let turned = [ends[1], ends[0]];
+        (ends == edge || turned == edge) && definition.coercivity_of(side.triangle) >= least
     })
 }
 

@@ -1,0 +1,180 @@
+#!/usr/bin/env python3
+"""Plants the mistakes of `props/planted.toml` in the sources, one at a time, and asks the check of VERIFY.md that is named there.
+
+    python3 .ci/planted.py                    every mistake must be noticed by its check, and no check without one
+    python3 .ci/planted.py --only TEXT        those with TEXT in their name
+    python3 .ci/planted.py --survey           all rows for each: which checks notice it (hours)
+
+The sources themselves stay as they are: a copy of them is made in the target folder, in which `old` becomes
+
+    (if crate::planted::on(K) { new } else { old })
+
+for every mistake at once, so that the program is built once; PLANTED=K turns mistake K on. So `old` and `new` are expressions
+(an assignment is one), and `old` must be found exactly once in its file, after the text `after` if there is one: otherwise
+nothing is run. Mistakes whose texts overlap are built one after the other. What was found is written as a table.
+"""
+
+import argparse
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import time
+import tomllib
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+TARGET = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")).absolute() / "planted"
+TREE = TARGET / "tree"
+# Of its own: cargo tells workspaces apart by what is in them, not by where they are.
+BUILD = TARGET / "build"
+PROGRAM = BUILD / "debug/props"
+SWITCH = """//! Which of the planted mistakes is on: `.ci/planted.py`.
+
+/// Whether it is mistake `k`.
+pub fn on(k: u32) -> bool {
+    static PLANTED: std::sync::OnceLock<u32> = std::sync::OnceLock::new();
+    *PLANTED.get_or_init(|| std::env::var("PLANTED").ok().and_then(|k| k.parse().ok()).unwrap_or(0)) == k
+}
+"""
+KEYS = {"name", "file", "old", "new", "row", "check"}
+
+
+def mistakes(path):
+    """The mistakes, numbered from 1, each with the place of its text."""
+    found, wrong, names = [], [], set()
+    for k, entry in enumerate(tomllib.loads(path.read_text())["mistake"], 1):
+        what = f"{path.name}, mistake {k} ({entry.get('name')})"
+        if missing := KEYS - entry.keys():
+            wrong.append(f"{what}: no {', '.join(sorted(missing))}")
+            continue
+        if entry["name"] in names:
+            wrong.append(f"{what}: the name is there twice")
+        names.add(entry["name"])
+        source = ROOT / entry["file"]
+        text = source.read_text() if source.is_file() else ""
+        begin = text.find(entry["after"]) if "after" in entry else 0
+        count = text.count(entry["old"], begin) if begin >= 0 else 0
+        if "after" in entry and count > 1:
+            count = 1
+        if count != 1:
+            wrong.append(f"{what}: found {count} times in {entry['file']}, expected once: {entry['old']}")
+            continue
+        start = text.index(entry["old"], begin)
+        found.append(entry | {"number": k, "span": (start, start + len(entry["old"]))})
+    if wrong:
+        sys.exit("\n".join(wrong))
+    return found
+
+
+def batches(entries):
+    """Groups of mistakes whose texts do not overlap."""
+    groups = []
+    for entry in entries:
+        start, end = entry["span"]
+        for group in groups:
+            if all(e["file"] != entry["file"] or e["span"][1] <= start or end <= e["span"][0] for e in group):
+                group.append(entry)
+                break
+        else:
+            groups.append([entry])
+    return groups
+
+
+def plant(group):
+    """A copy of the sources with all mistakes of a group behind the switch."""
+    listed = subprocess.run(
+        ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
+        cwd=ROOT, capture_output=True, check=True, text=True,
+    ).stdout
+    texts = {name: (ROOT / name).read_bytes() for name in listed.split("\0") if name and (ROOT / name).is_file()}
+    by_file = {}
+    for entry in group:
+        by_file.setdefault(entry["file"], []).append(entry)
+    for name, entries in by_file.items():
+        text = texts[name].decode()
+        for entry in sorted(entries, key=lambda e: -e["span"][0]):
+            start, end = entry["span"]
+            way = f"(if crate::planted::on({entry['number']}) {{ {entry['new']} }} else {{ {entry['old']} }})"
+            text = text[:start] + way + text[end:]
+        texts[name] = text.encode()
+    texts["src/planted.rs"] = SWITCH.encode()
+    texts["src/lib.rs"] += b"\npub mod planted;\n"
+    # What differs only: cargo builds again what is newer.
+    for name, text in texts.items():
+        path = TREE / name
+        if not path.is_file() or path.read_bytes() != text:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(text)
+    for path in [p for p in TREE.rglob("*") if p.is_file()]:
+        if str(path.relative_to(TREE)) not in texts:
+            path.unlink()
+
+
+def build():
+    """The audit with the mistakes."""
+    command = ["cargo", "build", "--quiet", "-p", "props", "--target-dir", str(BUILD)]
+    done = subprocess.run(command, cwd=TREE, capture_output=True, text=True)
+    if done.returncode != 0:
+        sys.exit(f"{done.stderr}\nthe mistakes do not compile: expected an expression in each `old` and `new`")
+
+
+def ask(number, row=None, check=None, seconds=600):
+    """The names of the checks that fail with a mistake (0: none) on, and what they say; None if there is no answer."""
+    regressions = TREE / "props/regressions"
+    shutil.rmtree(regressions, ignore_errors=True)
+    shutil.copytree(ROOT / "props/regressions", regressions)
+    environment = os.environ | {"CARGO_TARGET_DIR": str(TARGET), "PLANTED": str(number), "NO_COLOR": "1"}
+    command = [str(PROGRAM), "audit"] + [part for part in (row, check) if part]
+    stem = "-".join(["row", row] + ([check] if check else [])) if row else "index"
+    report = TARGET / f"audit/{stem}.json"
+    report.unlink(missing_ok=True)
+    try:
+        done = subprocess.run(command, cwd=TREE, env=environment, capture_output=True, text=True, timeout=seconds)
+    except subprocess.TimeoutExpired:
+        return None
+    if not report.is_file():
+        return {"(no report)": (done.stderr or done.stdout).strip().splitlines()[-1:]}
+    checks = json.loads(report.read_text())["checks"]
+    return {c["name"]: c["said"] for c in checks if not c["passed"]}
+
+
+def main():
+    arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    arguments.add_argument("--only", default="", metavar="TEXT")
+    arguments.add_argument("--survey", action="store_true")
+    arguments.add_argument("--seconds", type=float, default=600)
+    options = arguments.parse_args()
+    entries = [e for e in mistakes(ROOT / "props/planted.toml") if options.only in e["name"]]
+    table, bad, asked = [], 0, set()
+    for group in batches(entries):
+        plant(group)
+        build()
+        for entry in group:
+            row, check = (None, None) if options.survey else (entry["row"], entry["check"])
+            if (row, check) not in asked:
+                asked.add((row, check))
+                if (failed := ask(0, row, check, options.seconds)) != {}:
+                    bad += 1
+                    print(f"WITHOUT A MISTAKE, row {row}, {check or 'all checks'}: {failed}", flush=True)
+            start = time.monotonic()
+            failed = ask(entry["number"], row, check, options.seconds)
+            took = time.monotonic() - start
+            if failed is None:
+                verdict = "no answer in time"
+            elif failed and "(no report)" not in failed:
+                verdict = f"noticed by {', '.join(f'`{name}`' for name in failed)}"
+            else:
+                verdict = f"SURVIVES {failed or ''}"
+            bad += not verdict.startswith("noticed")
+            print(f"{entry['name']}: {verdict} ({took:.0f} s)", flush=True)
+            table.append(f"| {entry['name']} | `{entry['file']}` | {entry['row']} | {verdict} |")
+    head = ["| mistake | file | row | found |", "| --- | --- | --- | --- |"]
+    (TARGET / "table.md").write_text("\n".join(head + table) + "\n")
+    print(f"{len(table)} mistakes, {bad} not noticed; written: {TARGET / 'table.md'}")
+    sys.exit(1 if bad else 0)
+
+
+if __name__ == "__main__":
+    main()

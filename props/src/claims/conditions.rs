@@ -1,0 +1,449 @@
+//! Conditions that the paper does not have, and what is reported of them: pressures, supports at any angle, bodies that
+//! contact alone holds; reactions, resultants, moments and energies; the two routes of the solver; twofold numbers.
+//!
+//! A body that is turned with all that acts on it has the turned solution. Where its sides are along the axes, a support is a
+//! prescribed component and a pressure a traction, which rows 5 and 6 are about: so they are right at every angle.
+
+use std::collections::BTreeMap;
+
+use proptest::prelude::*;
+use signorini::fem::twofold::Twofold;
+use signorini::fem::{
+    BoxedFunction, Condition, DataError, Diagonal, Discretization, Mesh, Problem, Rectangle,
+    precise,
+};
+use signorini::kernel::edge_integral::ExactEdge;
+use signorini::kernel::{Material, P1, P2, Plane};
+use signorini::solve::system::System;
+use signorini::solve::times::Times;
+use signorini::solve::{
+    Degree, Method, RouteName, Settings, Solution, SolveError, discretize, route, solve,
+};
+
+use crate::claim::Outcome;
+use crate::numbers::Exact;
+use crate::proof::sampler::Random;
+use crate::verdict::Verdict;
+use crate::{draws, ensure};
+
+fn constant(value: f64) -> BoxedFunction {
+    Box::new(move |_: [f64; 2]| value)
+}
+
+fn text(error: impl ToString) -> String {
+    error.to_string()
+}
+
+/// A planted mistake must not pass.
+fn noticed(outcome: Outcome) -> Outcome {
+    match outcome {
+        Err(why) => Ok(format!("rejected: {why}")),
+        Ok(said) => Err(format!("not noticed: {said}")),
+    }
+}
+
+/// A vector turned to the left by an angle.
+fn turned(angle: f64, [x, y]: [f64; 2]) -> [f64; 2] {
+    let (sine, cosine) = angle.sin_cos();
+    [cosine * x - sine * y, sine * x + cosine * y]
+}
+
+/// A block of 2 x 1, 4 x 2 cells, turned about the origin.
+fn block(angle: f64) -> Result<Mesh, String> {
+    let cells = Rectangle { width: 2.0, height: 1.0, nx: 4, ny: 2, diagonal: Diagonal::Right };
+    let mesh = cells.mesh().map_err(text)?;
+    let vertices = mesh.vertices().iter().map(|&x| turned(angle, x)).collect();
+    let mut named = Vec::new();
+    for name in mesh.boundary_names() {
+        let edges = mesh.edges_of(name).map_err(text)?.iter().map(|&edge| mesh.ends(edge));
+        named.push((name.to_owned(), edges.collect::<Vec<_>>()));
+    }
+    Mesh::new(vertices, mesh.triangles().to_vec(), named).map_err(text)
+}
+
+/// Pressed down on an obstacle, on a roller at its left side, under a pressure on its right one.
+const DOWN: f64 = -0.03;
+const ALONG: f64 = 0.01;
+const PRESSURE: f64 = 0.2;
+const FORCE: [f64; 2] = [0.1, -0.3];
+
+/// The block turned by an angle. `plain`, for angle 0: with components and tractions in place of supports and pressures.
+fn problem(angle: f64, plain: bool) -> Result<Problem, String> {
+    let [left, top, right] = if plain {
+        [
+            Condition::Displacement([Some(constant(-ALONG)), None]),
+            Condition::Displacement([Some(constant(-ALONG)), Some(constant(DOWN))]),
+            Condition::Traction([constant(-PRESSURE), constant(0.0)]),
+        ]
+    } else {
+        [
+            // The outward normal is -x.
+            Condition::Support { normal: Some(constant(ALONG)), tangential: None },
+            // It is y, and turned to the left -x.
+            Condition::Support { normal: Some(constant(DOWN)), tangential: Some(constant(ALONG)) },
+            Condition::Pressure(constant(PRESSURE)),
+        ]
+    };
+    let contact = Condition::Contact { gap: constant(0.005) };
+    let conditions = [("left", left), ("top", top), ("right", right), ("bottom", contact)];
+    let conditions = conditions.map(|(name, condition)| (name.to_owned(), condition));
+    let force = turned(angle, FORCE).map(constant);
+    let material = Material::lame(1.5, 1.0, Plane::Stress);
+    Ok(Problem::new(block(angle)?, material, force, BTreeMap::from(conditions)))
+}
+
+/// What is reported of a solution under each name, with the vectors turned back by an angle.
+fn reported(solution: &Solution, angle: f64) -> Vec<(&'static str, Vec<f64>)> {
+    let back = |vectors: Vec<[f64; 2]>| -> Vec<f64> {
+        vectors.into_iter().flat_map(|v| turned(-angle, v)).collect()
+    };
+    let q = &solution.quantities;
+    let parts = || solution.boundaries.iter();
+    let balance = &solution.balance;
+    vec![
+        ("displacement", back(solution.displacement.clone())),
+        ("reactions", back(q.reactions.values().copied().collect())),
+        ("moments of reactions", q.reaction_moments.values().copied().collect()),
+        ("contact resultant", back(vec![q.contact_resultant])),
+        ("resultants", back(parts().map(|part| part.resultant).collect())),
+        ("moments of contact", parts().map(|part| part.moment).collect()),
+        ("forces of contact", parts().map(|part| part.force).collect()),
+        ("lengths of contact", parts().map(|part| part.length).collect()),
+        ("stretches", back(parts().flat_map(|p| p.stretches.as_flattened().to_vec()).collect())),
+        ("peaks", parts().map(|part| part.peak_pressure).collect()),
+        ("places of peaks", back(parts().map(|part| part.peak_at).collect())),
+        ("penetrations", parts().map(|part| part.penetration).collect()),
+        ("von Mises stresses", solution.von_mises.clone()),
+        ("largest strain", vec![solution.largest_strain]),
+        ("energies", vec![balance.strain, balance.loads, balance.supports, balance.contact]),
+        ("kappa", vec![solution.gamma.kappa]),
+    ]
+}
+
+/// Angles at which no side is along an axis.
+const ANGLES: [f64; 4] = [0.4, 2.0, -1.1, 1.5];
+
+fn solved(problem: &Problem, degree: Degree) -> Result<Solution, String> {
+    let method = Method { degree, ..Method::default() };
+    solve(problem, &method, &Settings::default()).map(|(solution, _)| solution).map_err(text)
+}
+
+/// The numbers of two solutions are the same, to what rounding leaves.
+fn same(a: &Solution, of_a: f64, b: &Solution, of_b: f64) -> Result<(), String> {
+    for ((name, a), (_, b)) in reported(a, of_a).into_iter().zip(reported(b, of_b)) {
+        let size = a.iter().map(|a| a.abs()).fold(0.0, f64::max);
+        let far = |(a, b): (&f64, &f64)| !((a - b).abs() <= 1e-9 * size);
+        if a.len() != b.len() || a.iter().zip(&b).any(far) {
+            return Err(format!("{name}: {a:?} and {b:?}"));
+        }
+    }
+    Ok(())
+}
+
+/// The problem turned by the angles has the solution turned by `factor` times the angles.
+fn turned_solutions(factor: f64) -> Outcome {
+    let mut length = 0.0;
+    for degree in [Degree::One, Degree::Two] {
+        let plain = solved(&problem(0.0, true)?, degree)?;
+        same(&plain, 0.0, &solved(&problem(0.0, false)?, degree)?, 0.0)?;
+        for angle in ANGLES {
+            let of_turned = solved(&problem(angle, false)?, degree)?;
+            same(&plain, 0.0, &of_turned, factor * angle)
+                .map_err(|why| format!("turned by {angle}: {why}"))?;
+        }
+        length = plain.quantities.contact_length;
+    }
+    if !(length > 0.0) {
+        return Err("no contact".to_owned());
+    }
+    Ok(format!("{} angles, P1 and P2, contact on {length:.3} of 2", ANGLES.len()))
+}
+
+/// Row 6: supports and pressures at any angle.
+pub fn turned_problems_have_turned_solutions() -> Outcome {
+    turned_solutions(1.0)
+}
+
+/// Vectors turned back the wrong way.
+pub fn solutions_turned_the_wrong_way() -> Outcome {
+    noticed(turned_solutions(-1.0))
+}
+
+/// What is reported balances: forces, moments about the origin, and energies, with `share` of the moment of contact.
+fn balanced<E, const N: usize, const M: usize>(
+    angle: f64,
+    degree: Degree,
+    share: f64,
+) -> Result<(), String>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let problem = problem(angle, false)?;
+    let method = Method { degree, ..Method::default() };
+    let d: Discretization<E, N, M> = discretize(&problem, &method).map_err(text)?;
+    let solution = solved(&problem, degree)?;
+    let (mut force, mut moment, mut size) = ([0.0; 2], 0.0, 0.0);
+    let mut add = |f: [f64; 2], m: f64| {
+        force = [force[0] + f[0], force[1] + f[1]];
+        moment += m;
+        size += f[0].abs() + f[1].abs() + m.abs();
+    };
+    for (&[x, y], &[fx, fy]) in d.space.nodes().iter().zip(&d.load) {
+        add([fx, fy], x * fy - y * fx);
+    }
+    let q = &solution.quantities;
+    for (name, &reaction) in &q.reactions {
+        add(reaction, q.reaction_moments[name]);
+    }
+    for part in &solution.boundaries {
+        add(part.resultant, share * part.moment);
+    }
+    let near = |value: f64| value.abs() <= 1e-11 * size;
+    if !(force.into_iter().all(near) && near(moment)) {
+        return Err(format!("force {force:?}, moment {moment:e}, of {size:e}"));
+    }
+    let b = &solution.balance;
+    // By definition: the reactions times the displacements of the supports, the loads times the displacement.
+    let work = d.load.as_flattened().iter().zip(solution.displacement.as_flattened());
+    let loads: f64 = work.map(|(f, u)| f * u).sum();
+    if !((b.loads - loads).abs() <= 1e-12 * loads.abs()
+        && b.imbalance.abs() <= 1e-11
+        && (b.strain - b.loads - b.supports - b.contact).abs() <= 1e-11 * b.strain
+        && (b.strain - solution.quantities.energy).abs() <= 1e-12 * b.strain)
+    {
+        return Err(format!("energies {b:?}, loads {loads:e}"));
+    }
+    Ok(())
+}
+
+fn balances(share: f64) -> Outcome {
+    for angle in [0.0, 0.4, 2.0] {
+        balanced::<P1, 3, 2>(angle, Degree::One, share)?;
+        balanced::<P2, 6, 3>(angle, Degree::Two, share)?;
+    }
+    Ok("forces, moments and energies at three angles, P1 and P2".to_owned())
+}
+
+/// Row 6: forces, moments and energies balance.
+pub fn forces_moments_and_energies_balance() -> Outcome {
+    balances(1.0)
+}
+
+/// The moment of contact with the other sign.
+pub fn moment_of_contact_turned() -> Outcome {
+    noticed(balances(-1.0))
+}
+
+/// Whether the block is taken with these components of its upper side prescribed and this force on it, and along how many
+/// motions it slides.
+fn held(prescribed: [bool; 2], force: [f64; 2]) -> Result<Option<usize>, String> {
+    let mut conditions =
+        BTreeMap::from([("bottom".to_owned(), Condition::Contact { gap: constant(0.0) })]);
+    if prescribed != [false; 2] {
+        let given = prescribed.map(|yes| yes.then(|| constant(0.0)));
+        conditions.insert("top".to_owned(), Condition::Displacement(given));
+    }
+    let material = Material::lame(1.0, 1.0, Plane::Strain);
+    let problem = Problem::new(block(0.0)?, material, force.map(constant), conditions);
+    match discretize::<P1, 3, 2>(&problem, &Method::default()) {
+        Ok(d) => Ok(Some(d.slides.map_or(0, |slides| slides.len()))),
+        Err(SolveError::Data(DataError::RigidMotion { .. })) => Ok(None),
+        Err(other) => Err(other.to_string()),
+    }
+}
+
+/// What is held and what is not; `without` the load, which presses on the obstacle or does not.
+fn bodies_are_held(without: bool) -> Outcome {
+    let cases = [
+        ([true, true], [0.3, 1.0], Some(0)),
+        // Turning and rising are stopped by the upper side, sliding by nothing.
+        ([false, true], [0.3, -1.0], None),
+        ([false, true], [0.0, -1.0], None),
+        // Sliding is stopped by the upper side; the load decides about rising.
+        ([true, false], [0.0, -1.0], Some(0)),
+        ([true, false], [0.0, 1.0], None),
+        ([false, false], [0.0, -1.0], Some(1)),
+        ([false, false], [0.0, 1.0], None),
+        ([false, false], [0.1, -1.0], None),
+        ([false, false], [0.0, 0.0], None),
+    ];
+    for (prescribed, force, expected) in cases {
+        let found = held(prescribed, if without { [0.0; 2] } else { force })?;
+        if found != expected {
+            return Err(format!("{prescribed:?}, force {force:?}: {found:?}, not {expected:?}"));
+        }
+    }
+    Ok(format!("{} cases", cases.len()))
+}
+
+/// Row 18: bodies that can move are refused.
+pub fn bodies_that_can_move_are_refused() -> Outcome {
+    bodies_are_held(false)
+}
+
+/// Bodies that only the load presses on their obstacle, without the load.
+pub fn bodies_held_without_a_load() -> Outcome {
+    noticed(bodies_are_held(true))
+}
+
+/// Both routes end at the same displacement; `share` of the second one's.
+fn routes<E, const N: usize, const M: usize>(angle: f64, share: f64) -> Result<f64, String>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let problem = problem(angle, false)?;
+    let d: Discretization<E, N, M> = discretize(&problem, &Method::default()).map_err(text)?;
+    let system = System::new(&d).map_err(text)?;
+    let by = |name| {
+        let (outcome, ..) = route::by(name, &system, &Settings::default(), &mut Times::default())?;
+        Ok::<_, SolveError>(outcome.u)
+    };
+    let a = by(RouteName::Condensed).map_err(text)?;
+    let b = by(RouteName::Assembled).map_err(text)?;
+    let size = a.as_flattened().iter().map(|u| u.abs()).fold(0.0, f64::max);
+    let pairs = a.as_flattened().iter().zip(b.as_flattened());
+    let far = pairs.map(|(a, b)| (a - share * b).abs()).fold(0.0, f64::max) / size;
+    if far <= 1e-10 { Ok(far) } else { Err(format!("they differ by {far:e}")) }
+}
+
+fn routes_agree(share: f64) -> Outcome {
+    let mut far: f64 = 0.0;
+    for angle in [0.0, 0.4] {
+        far = far.max(routes::<P1, 3, 2>(angle, share)?).max(routes::<P2, 6, 3>(angle, share)?);
+    }
+    Ok(format!("P1 and P2, to {far:.0e} of the largest displacement"))
+}
+
+/// Row 19: the routes agree.
+pub fn both_routes_end_at_the_same_displacement() -> Outcome {
+    routes_agree(1.0)
+}
+
+/// A displacement that is a millionth too large.
+pub fn routes_that_differ_by_a_millionth() -> Outcome {
+    noticed(routes_agree(1.0 + 1e-6))
+}
+
+fn exactly(a: Twofold) -> Exact {
+    Exact::of_double(a.head()) + Exact::of_double(a.tail())
+}
+
+/// The four operations are exact to 2^`bits` of what they are made of.
+fn operations(&[a, b, c, d]: &[f64; 4], bits: i32) -> Verdict {
+    Exact::scope(|| {
+        let small = 2.0_f64.powi(-54);
+        let (x, y) = (Twofold::sum(a, b * small), Twofold::sum(c, d * small));
+        let [exact_x, exact_y] = [x, y].map(exactly);
+        ensure!(exact_x == Exact::of_double(a) + Exact::of_double(b * small));
+        let product = Twofold::product(a, c);
+        ensure!(exactly(product) == Exact::of_double(a) * Exact::of_double(c));
+        let unit = Exact::of_double(2.0_f64.powi(bits));
+        let near = |found: Twofold, exact: Exact, size: Exact| {
+            (exactly(found) - exact).abs() <= unit * size
+        };
+        let sizes = [exact_x, exact_y].map(Exact::abs);
+        ensure!(near(x + y, exact_x + exact_y, sizes[0] + sizes[1]));
+        ensure!(near(x - y, exact_x - exact_y, sizes[0] + sizes[1]));
+        ensure!(near(x * y, exact_x * exact_y, sizes[0] * sizes[1]));
+        ensure!(near(x / y, exact_x / exact_y, sizes[0] / sizes[1]));
+        Verdict::Holds(if (a > 0.0) == (c > 0.0) { "one sign" } else { "two signs" })
+    })
+}
+
+fn doubles() -> impl Strategy<Value = [f64; 4]> {
+    let size = || prop_oneof![1e-3_f64..1e3, -1e3_f64..-1e-3];
+    [size(), size(), size(), size()]
+}
+
+/// Row 13: numbers of twice the precision.
+pub fn twofold_numbers_keep_a_hundred_bits() -> Outcome {
+    draws::hold(500, doubles(), &["one sign", "two signs"], |draw| operations(draw, -100))
+}
+
+/// To 120 bits they are not.
+pub fn twofold_numbers_keep_120_bits() -> Outcome {
+    draws::reject(20, doubles(), |draw| operations(draw, -120))
+}
+
+/// The forces of a translation that no double is, without loads: nothing is left of terms of size 1 but 2^-90; and P is what it
+/// moves along the direction of contact, less the gap.
+fn translation<E, const N: usize, const M: usize>(least: f64) -> Result<(), String>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let mut problem = problem(0.4, false)?;
+    problem.body_force = [constant(0.0), constant(0.0)];
+    problem.conditions.remove("right");
+    let d: Discretization<E, N, M> = discretize(&problem, &Method::default()).map_err(text)?;
+    let third = Twofold::from(1) / Twofold::from(3);
+    let u = vec![[third, third * third]; d.space.nodes().len()];
+    let (forces, p) = precise::evaluate(&d, &u);
+    let largest = forces.as_flattened().iter().map(|f| f.abs()).fold(0.0, f64::max);
+    if !(largest <= least) {
+        return Err(format!("a force of {largest:e}, at most {least:e} was expected"));
+    }
+    for (i, p) in p.iter().enumerate() {
+        let edge = &d.contact[i / M];
+        let n = edge.directions[i % M];
+        let expected = n[0] / 3.0 + n[1] / 9.0 - edge.gap[i % M];
+        if !((p - expected).abs() <= 1e-15) {
+            return Err(format!("P is {p}, expected {expected}"));
+        }
+    }
+    Ok(())
+}
+
+/// Row 13: the forces of a translation vanish.
+pub fn forces_of_a_translation_vanish_in_twofold_numbers() -> Outcome {
+    translation::<P1, 3, 2>(2.0_f64.powi(-90))?;
+    translation::<P2, 6, 3>(2.0_f64.powi(-90))?;
+    Ok("P1 and P2".to_owned())
+}
+
+/// A(u, .) - L and P at a field of doubles: in twofold numbers as in doubles, to `digits` of the magnitudes.
+fn precise_as_in_doubles<E, const N: usize, const M: usize>(digits: f64) -> Result<(), String>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let problem = problem(0.4, false)?;
+    let d: Discretization<E, N, M> = discretize(&problem, &Method::default()).map_err(text)?;
+    let mut random = Random::new(draws::seed());
+    let mut number = || random.below(2001) as f64 / 1000.0 - 1.0;
+    let u: Vec<[f64; 2]> = d.space.nodes().iter().map(|_| [number(), number()]).collect();
+    let twofold: Vec<[Twofold; 2]> = u.iter().map(|u| u.map(Twofold::from)).collect();
+    let (forces, p) = precise::evaluate(&d, &twofold);
+    let doubles = d.linear_residual(&u);
+    for (node, force) in forces.iter().enumerate() {
+        for c in 0..2 {
+            let far = (force[c] - doubles.values[node][c]).abs();
+            if !(far <= digits * doubles.magnitudes[node][c]) {
+                return Err(format!("a force at node {node} is off by {far:e}"));
+            }
+        }
+    }
+    let in_doubles =
+        d.contact.iter().flat_map(|edge| edge.p(&d.space.on_triangle(edge.edge.triangle, &u)));
+    for (p, expected) in p.iter().zip(in_doubles) {
+        if !((p - expected).abs() <= 1e-14 * 100.0) {
+            return Err(format!("P is {p}, in doubles {expected}"));
+        }
+    }
+    Ok(())
+}
+
+/// Row 13: the residual in twofold numbers is that of the definitions.
+pub fn residual_in_twofold_numbers_is_that_in_doubles() -> Outcome {
+    precise_as_in_doubles::<P1, 3, 2>(1e-15)?;
+    precise_as_in_doubles::<P2, 6, 3>(1e-15)?;
+    Ok("P1 and P2".to_owned())
+}
+
+/// Doubles have fewer digits than 18.
+pub fn residual_in_doubles_to_18_digits() -> Outcome {
+    noticed(precise_as_in_doubles::<P2, 6, 3>(1e-18).map(|()| String::new()))
+}
+
+/// To more digits than such numbers have they do not.
+pub fn forces_of_a_translation_vanish_exactly() -> Outcome {
+    noticed(translation::<P2, 6, 3>(0.0).map(|()| String::new()))
+}

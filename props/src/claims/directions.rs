@@ -1,0 +1,183 @@
+//! The direction of contact as a field n~ (docs/theory.md, 2.1): where the boundary of the body bends, it turns along an edge.
+//!
+//! P(v) at a node a is n~_a . v - gamma s(v) - g, where s is affine on the edge with the values n~ . sigma(v) n at its ends; and
+//! an edge counts (2 - cos) times in kappa for P2, cos = n~ . n~' at its ends. Here for the solver's own functionals, on a body
+//! whose side of contact is bent, against displacements and stresses of random fields.
+
+use std::collections::BTreeMap;
+
+use signorini::fem::contact_line::ContactLineEdge;
+use signorini::fem::{
+    BoxedFunction, Condition, Diagonal, Discretization, Mesh, Problem, Rectangle,
+};
+use signorini::kernel::edge_integral::ExactEdge;
+use signorini::kernel::element::displacement_gradient;
+use signorini::kernel::triangle::on_edge;
+use signorini::kernel::{Material, P1, P2, Plane};
+use signorini::nalgebra::Vector2;
+use signorini::solve::{Method, discretize};
+
+use crate::claim::Outcome;
+use crate::draws;
+use crate::proof::sampler::Random;
+
+fn text(error: impl ToString) -> String {
+    error.to_string()
+}
+
+fn constant(value: f64) -> BoxedFunction {
+    Box::new(move |_: [f64; 2]| value)
+}
+
+/// A block of 2 x 1 whose lower side is bent upwards: 4 edges with a bend of some 10 degrees at each vertex.
+fn bent(plane: Plane) -> Result<Problem, String> {
+    let cells = Rectangle { width: 2.0, height: 1.0, nx: 4, ny: 2, diagonal: Diagonal::Left };
+    let grid = cells.mesh().map_err(text)?;
+    let place = |&[x, y]: &[f64; 2]| [x, y + 0.3 * (1.0 - y) * (x - 1.0) * (x - 1.0)];
+    let vertices = grid.vertices().iter().map(place).collect();
+    let mut named = Vec::new();
+    for name in grid.boundary_names() {
+        let edges = grid.edges_of(name).map_err(text)?.iter().map(|&edge| grid.ends(edge));
+        named.push((name.to_owned(), edges.collect::<Vec<_>>()));
+    }
+    let mesh = Mesh::new(vertices, grid.triangles().to_vec(), named).map_err(text)?;
+    let zero = [0, 1].map(|_| Some(constant(0.0)));
+    let gap: BoxedFunction = Box::new(|[x, y]: [f64; 2]| 0.1 * x - 0.2 * y);
+    let conditions = BTreeMap::from([
+        ("top".to_owned(), Condition::Displacement(zero)),
+        ("bottom".to_owned(), Condition::Contact { gap }),
+    ]);
+    Ok(Problem::new(
+        mesh,
+        Material::lame(1.5, 1.0, plane),
+        [0, 1].map(|_| constant(0.0)),
+        conditions,
+    ))
+}
+
+/// n~ at the nodes of an edge; the planted mistake takes the facet's normal.
+type Directions<const N: usize, const M: usize> = fn(&ContactLineEdge<N, M>) -> [Vector2<f64>; M];
+
+fn functionals_on<E, const N: usize, const M: usize>(
+    plane: Plane,
+    directions: Directions<N, M>,
+) -> Result<(), String>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let problem = bent(plane)?;
+    let d: Discretization<E, N, M> = discretize(&problem, &Method::default()).map_err(text)?;
+    if d.contact.iter().all(|edge| edge.directions == [edge.normal; M]) {
+        return Err("the direction of contact turns nowhere".to_owned());
+    }
+    let mut random = Random::new(draws::seed());
+    let mut number = || random.below(2001) as f64 / 1000.0 - 1.0;
+    for edge in &d.contact {
+        let nodal: [[f64; 2]; N] = std::array::from_fn(|_| [number(), number()]);
+        let vectors = nodal.map(Vector2::from);
+        let triangle = problem.mesh.triangle(edge.edge.triangle);
+        let material = problem.material.of(edge.edge.triangle);
+        let n = directions(edge);
+        // n~ . sigma(v) n at the start and at the end: the first two nodes.
+        let stress = [0, 1].map(|a| {
+            let l = on_edge(edge.edge.local, a as f64);
+            let gradients = E::gradients(l, triangle.barycentric_gradients());
+            let sigma = material.stress(displacement_gradient(&vectors, &gradients));
+            n[a].dot(&sigma.traction(edge.normal))
+        });
+        let near = |found: f64, expected: f64| (found - expected).abs() <= 1e-11;
+        let found = edge.sigma_n(&vectors);
+        if !(near(found[0], stress[0]) && near(found[1], stress[1])) {
+            return Err(format!("s(v) = {found:?}, by definition {stress:?}"));
+        }
+        let p = edge.p(&vectors);
+        let nodes = E::edge_nodes(edge.edge.local);
+        for (a, s) in E::edge_positions::<f64>().into_iter().enumerate() {
+            let along = (1.0 - s) * stress[0] + s * stress[1];
+            let expected = n[a].dot(&vectors[nodes[a]]) - edge.gamma * along - edge.gap[a];
+            if !near(p[a], expected) {
+                return Err(format!("P(v) = {}, by definition {expected}", p[a]));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn facets<const N: usize, const M: usize>(edge: &ContactLineEdge<N, M>) -> [Vector2<f64>; M] {
+    [edge.normal; M]
+}
+
+fn given<const N: usize, const M: usize>(edge: &ContactLineEdge<N, M>) -> [Vector2<f64>; M] {
+    edge.directions
+}
+
+/// Row 9: P and s along directions that turn.
+pub fn functionals_are_their_definitions() -> Outcome {
+    for plane in [Plane::Strain, Plane::Stress] {
+        functionals_on::<P1, 3, 2>(plane, given)?;
+        functionals_on::<P2, 6, 3>(plane, given)?;
+    }
+    Ok("a bent side of four edges, P1 and P2, plane strain and stress".to_owned())
+}
+
+/// The normals of the facets for the directions of contact.
+pub fn functionals_by_the_facets() -> Outcome {
+    match functionals_on::<P2, 6, 3>(Plane::Strain, facets) {
+        Err(why) => Ok(format!("rejected: {why}")),
+        Ok(()) => Err("the normals of the facets are not noticed".to_owned()),
+    }
+}
+
+/// C_h by its definition, an edge counted `factor` of the cosine times; and (11) with kappa for random fields.
+fn kappa_on<E, const N: usize, const M: usize>(factor: fn(f64) -> f64) -> Result<f64, String>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let problem = bent(Plane::Strain)?;
+    let d: Discretization<E, N, M> = discretize(&problem, &Method::default()).map_err(text)?;
+    let mut lengths: BTreeMap<usize, f64> = BTreeMap::new();
+    for edge in &d.contact {
+        let cosine = edge.directions[0].dot(&edge.directions[1]);
+        let counted = if E::DEGREE == 1 { 1.0 } else { factor(cosine) };
+        *lengths.entry(edge.edge.triangle).or_default() += counted * edge.length;
+    }
+    let mut most: f64 = 0.0;
+    for (&t, length) in &lengths {
+        let stiffness = problem.material.of(t).normal_stiffness();
+        let area = problem.mesh.triangle(t).double_area() / 2.0;
+        let size = problem.mesh.diameter(t);
+        most = most.max(f64::from(E::TRACE_CONSTANT) * stiffness * size * length / area);
+    }
+    if !((d.coercivity.constant - most).abs() <= 1e-13 * most) {
+        return Err(format!("C_h = {}, by definition {most}", d.coercivity.constant));
+    }
+    let mut random = Random::new(draws::seed());
+    let mut largest: f64 = 0.0;
+    for _ in 0..200 {
+        let mut number = || random.below(2001) as f64 / 1000.0 - 1.0;
+        let v: Vec<[f64; 2]> = d.space.nodes().iter().map(|_| [number(), number()]).collect();
+        let mut sum = 0.0;
+        for edge in &d.contact {
+            let [start, end] = edge.sigma_n(&d.space.on_triangle(edge.edge.triangle, &v));
+            let square = (start * start + start * end + end * end) / 3.0;
+            sum += edge.gamma * edge.length * square;
+        }
+        largest = largest.max(sum / (d.kappa() * d.strain_energy(&v)));
+    }
+    if largest <= 1.0 { Ok(largest) } else { Err(format!("(11) fails by a factor {largest}")) }
+}
+
+/// Row 9: kappa where the direction of contact turns.
+pub fn kappa_counts_turning_edges() -> Outcome {
+    let p1 = kappa_on::<P1, 3, 2>(|cosine| 2.0 - cosine)?;
+    let p2 = kappa_on::<P2, 6, 3>(|cosine| 2.0 - cosine)?;
+    Ok(format!("200 fields: at most {p1:.2} (P1) and {p2:.2} (P2) of what (11) allows"))
+}
+
+/// Edges counted once for P2.
+pub fn kappa_that_counts_edges_once() -> Outcome {
+    match kappa_on::<P2, 6, 3>(|_| 1.0) {
+        Err(why) => Ok(format!("rejected: {why}")),
+        Ok(_) => Err("an edge counted once is not noticed".to_owned()),
+    }
+}

@@ -1,0 +1,478 @@
+//! What the solver says of its own result: the residual, how much of an error is left, and with what noise a residual comes;
+//! the von Mises stress and the largest displacement.
+//!
+//! The solver's loop of corrections (`solve::accuracy::refine`) asks a route for each of them. Here the route is one whose
+//! error is known: it goes to within a given distance of the solution, and from pass to pass takes that down by a given factor,
+//! or not at all. So what the loop reports can be compared with what is true.
+
+use std::collections::BTreeMap;
+
+use signorini::fem::{BoxedFunction, Condition, Discretization, Problem};
+use signorini::kernel::edge_integral::ExactEdge;
+use signorini::kernel::{Material, P1, P2, Plane};
+use signorini::solve::accuracy::{self, Pass, Route};
+use signorini::solve::evaluated::Evaluated;
+use signorini::solve::iterate::{Evaluation, Iterate};
+use signorini::solve::newton::Until;
+use signorini::solve::system::System;
+use signorini::solve::{
+    Method, MethodReport, NewtonReport, NoLimit, Report, RouteName, Settings, Solution, SolveError,
+    Status, Unproved, discretize, solve_discrete,
+};
+
+use crate::claim::Outcome;
+use crate::proof::sampler::Random;
+use crate::{draws, sharpness};
+
+fn constant(value: f64) -> BoxedFunction {
+    Box::new(move |_: [f64; 2]| value)
+}
+
+/// The small bodies of row 9 under a load and a displacement of their upper side, half of them pressed on their obstacle.
+fn loaded_bodies() -> Result<Vec<(String, Problem)>, String> {
+    let mut bodies = Vec::new();
+    for (i, body) in sharpness::small_bodies()?.into_iter().enumerate() {
+        let mut problem = body.problem;
+        let down = if i % 2 == 0 { -1.0 } else { 1.0 };
+        problem.body_force = [constant(0.3), constant(down)];
+        let moved = [Some(constant(0.05)), Some(constant(0.1 * down))];
+        let displacement = |name: &str| name == "top" || name == "right";
+        let sides: Vec<String> =
+            problem.conditions.keys().filter(|name| displacement(name)).cloned().collect();
+        let held = BTreeMap::from([(sides[0].clone(), Condition::Displacement(moved))]);
+        // One side is moved: two that meet would have to agree.
+        problem.conditions.retain(|name, _| !displacement(name));
+        problem.conditions.extend(held);
+        bodies.push((body.name, problem));
+    }
+    Ok(bodies)
+}
+
+/// Numbers between -1 and 1.
+fn field(nodes: usize, random: &mut Random) -> Vec<[f64; 2]> {
+    (0..nodes).map(|_| [0, 1].map(|_| random.below(2001) as f64 / 1000.0 - 1.0)).collect()
+}
+
+/// The squared norm of a functional where no component is prescribed.
+fn free_square<E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    functional: &[[f64; 2]],
+) -> f64
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let mut sum = 0.0;
+    for (node, f) in functional.iter().enumerate() {
+        for c in 0..2 {
+            if d.constraints.values()[node][c].is_none() {
+                sum += f[c] * f[c];
+            }
+        }
+    }
+    sum
+}
+
+/// What the residual is relative to, by its definition: |L| + |R(lift) + L|.
+fn forces<E, const N: usize, const M: usize>(d: &Discretization<E, N, M>) -> f64
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let lift = d.residual(&d.constraints.lift()).values;
+    let sum: Vec<[f64; 2]> =
+        lift.iter().zip(&d.load).map(|(r, l)| [r[0] + l[0], r[1] + l[1]]).collect();
+    free_square(d, &d.load).sqrt() + free_square(d, &sum).sqrt()
+}
+
+/// A route that is `shares[k]` times `error` away from `target` after pass k, and as far as after the last from then on.
+struct Known<'s, 'd, 'p, E, const N: usize, const M: usize> {
+    system: &'s System<'d, 'p, E, N, M>,
+    /// Over the free degrees of freedom, as the next two.
+    target: Vec<f64>,
+    error: Vec<f64>,
+    shares: Vec<f64>,
+    passes: usize,
+}
+
+impl<E, const N: usize, const M: usize> Route<E, N, M> for Known<'_, '_, '_, E, N, M>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    fn pass(
+        &mut self,
+        iterate: &mut Iterate,
+        _: Evaluation,
+        residuals: &mut Vec<f64>,
+        _: Until,
+    ) -> Result<Pass, SolveError> {
+        let last = self.shares.len() - 1;
+        let share = self.shares[self.passes.min(last)];
+        self.passes += 1;
+        let here = self.system.numbering.gather(&iterate.rounded());
+        let goal = self.target.iter().zip(&self.error).map(|(u, e)| u + share * e);
+        let step: Vec<f64> = goal.zip(&here).map(|(goal, u)| goal - u).collect();
+        iterate.add(self.system, 1.0, &step);
+        residuals.push(1.0);
+        let d = self.system.d;
+        let mut field = vec![[0.0; 2]; d.space.nodes().len()];
+        self.system.numbering.scatter(&step, &mut field);
+        // A(v, v) = a(v, v) - int gamma sigma_n(v)^2.
+        let mut energy = d.strain_energy(&field);
+        for edge in &d.contact {
+            let [start, end] = edge.sigma_n(&d.space.on_triangle(edge.edge.triangle, &field));
+            let square = (start * start + start * end + end * end) / 3.0;
+            energy -= edge.gamma * edge.length * square;
+        }
+        Ok(Pass { energy, left: 0.0, softness: 0.0 })
+    }
+}
+
+/// What the loop says of a route whose error falls as `shares`, and what is true: the relative residual by its definition, and
+/// the error in the energy norm, relative to the displacement.
+struct Told {
+    outcome: accuracy::Outcome,
+    residual: f64,
+    error: f64,
+}
+
+/// The size of the first error, relative to the displacement.
+const FIRST: f64 = 0.1;
+
+fn told<E, const N: usize, const M: usize>(
+    problem: &Problem,
+    shares: &[f64],
+) -> Result<Told, String>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let d = discretize::<E, N, M>(problem, &Method::default()).map_err(|e| e.to_string())?;
+    let settings = Settings::default();
+    let (Evaluated { u, .. }, _, _) = solve_discrete(&d, &settings).map_err(|e| e.to_string())?;
+    let system = System::new(&d).map_err(|e| e.to_string())?;
+    let mut random = Random::new(draws::seed());
+    let target = system.numbering.gather(&u);
+    let mut away = d.constraints.lift();
+    let mut error = system.numbering.gather(&field(u.len(), &mut random));
+    let size = |field: &[[f64; 2]]| d.strain_energy(field).sqrt();
+    let spread = |values: &[f64], lift: &mut [[f64; 2]]| system.numbering.scatter(values, lift);
+    let mut only = vec![[0.0; 2]; u.len()];
+    spread(&error, &mut only);
+    let scale = FIRST * size(&u) / size(&only);
+    error.iter_mut().for_each(|e| *e *= scale);
+    let mut route = Known { system: &system, target, error, shares: shares.to_vec(), passes: 0 };
+    let outcome =
+        accuracy::refine(&system, &mut route, forces(&d), &settings).map_err(|e| e.to_string())?;
+    away.copy_from_slice(&outcome.u);
+    let difference: Vec<[f64; 2]> =
+        away.iter().zip(&u).map(|(a, b)| [a[0] - b[0], a[1] - b[1]]).collect();
+    let residual = free_square(&d, &d.residual(&outcome.u).values).sqrt() / forces(&d);
+    if !((accuracy::reference(&d) - forces(&d)).abs() <= 1e-12 * forces(&d)) {
+        return Err(format!("reference {}, by definition {}", accuracy::reference(&d), forces(&d)));
+    }
+    Ok(Told { residual, error: size(&difference) / size(&outcome.u), outcome })
+}
+
+fn on_bodies(check: impl Fn(&Problem, usize) -> Result<(), String>) -> Result<usize, String> {
+    let bodies = loaded_bodies()?;
+    for (name, problem) in &bodies {
+        for degree in [1, 2] {
+            check(problem, degree).map_err(|why| format!("{name}, P{degree}: {why}"))?;
+        }
+    }
+    Ok(bodies.len())
+}
+
+fn told_of(problem: &Problem, degree: usize, shares: &[f64]) -> Result<Told, String> {
+    if degree == 1 { told::<P1, 3, 2>(problem, shares) } else { told::<P2, 6, 3>(problem, shares) }
+}
+
+/// The residual that the verdict rests on, `scale` times what is reported, is that of (8) by its definition.
+fn residual_is_told(scale: f64) -> Outcome {
+    let bodies = on_bodies(|problem, degree| {
+        for share in [1.0, 1e-3, 1e-6] {
+            let told = told_of(problem, degree, &[share])?;
+            let reported = scale * told.outcome.residual;
+            if !((reported - told.residual).abs() <= 1e-6 * told.residual) {
+                return Err(format!("{reported:e} reported, {:e} by definition", told.residual));
+            }
+        }
+        Ok(())
+    })?;
+    Ok(format!("{bodies} bodies, P1 and P2, at three distances from the solution"))
+}
+
+/// Row 19: the residual.
+pub fn residual_is_that_of_8() -> Outcome {
+    residual_is_told(1.0)
+}
+
+/// A residual a million times too small.
+pub fn residual_too_small() -> Outcome {
+    noticed(residual_is_told(1e-6))
+}
+
+/// The forward error, `scale` times what is reported, is no smaller than the error, and no more than 200 times as large: where
+/// passes take the error down by the factors of `FALLS`; and where it only changes its sign. The verdict accepts only what is
+/// as near as it says.
+fn forward_error_is_told(scale: f64) -> Outcome {
+    let mut largest: f64 = 0.0;
+    let mut refused = 0;
+    let seen = std::cell::RefCell::new((&mut largest, &mut refused));
+    let bodies = on_bodies(|problem, degree| {
+        for fall in FALLS {
+            let size = if fall < 0.0 { 1e-4 } else { 1.0 };
+            let shares: Vec<f64> = (0..20).map(|k| size * fall.powi(k)).collect();
+            let told = told_of(problem, degree, &shares)?;
+            let reported = scale * told.outcome.forward_error;
+            // What doubles leave of any error.
+            if !(told.error <= reported + 1e-13 && reported <= 200.0 * told.error + 1e-11) {
+                return Err(format!("a forward error of {reported:e} for {:e}", told.error));
+            }
+            let accepted = accuracy::judge(&told.outcome, &Settings::default()).is_ok();
+            if accepted && !(told.error <= accuracy::ACCEPTABLE) {
+                return Err(format!("accepted with an error of {:e}", told.error));
+            }
+            let mut seen = seen.borrow_mut();
+            *seen.0 = seen.0.max(reported / told.error);
+            *seen.1 += usize::from(!accepted);
+        }
+        Ok(())
+    })?;
+    if refused == 0 {
+        return Err("no result was refused".to_owned());
+    }
+    Ok(format!(
+        "{bodies} bodies, P1 and P2; at most {largest:.0} times the error; {refused} refused"
+    ))
+}
+
+/// From pass to pass the error is multiplied by this.
+const FALLS: [f64; 4] = [0.01, 0.1, 0.4, -1.0];
+
+/// Row 19: the forward error.
+pub fn forward_error_is_no_smaller_than_the_error() -> Outcome {
+    forward_error_is_told(1.0)
+}
+
+/// A forward error a thousand times too small.
+pub fn forward_error_too_small() -> Outcome {
+    noticed(forward_error_is_told(1e-3))
+}
+
+/// A planted mistake must not pass.
+fn noticed(outcome: Outcome) -> Outcome {
+    match outcome {
+        Err(why) => Ok(format!("rejected: {why}")),
+        Ok(said) => Err(format!("not noticed: {said}")),
+    }
+}
+
+/// The report that goes with a displacement that nothing was solved for.
+fn unsolved() -> Report {
+    let newton = NewtonReport {
+        status: Status::Converged,
+        residuals: Vec::new(),
+        residual: 0.0,
+        factorizations: 0,
+    };
+    let method = MethodReport {
+        route: RouteName::Condensed,
+        predicted_operations: 0.0,
+        condition: 1.0,
+        forward_error: 0.0,
+        threads: 1,
+        slides: 0,
+    };
+    Report { newton, method, enclosure: Err(Unproved::NotHeld), limit: Err(NoLimit::Assembled) }
+}
+
+/// The von Mises stress of a mean stress by its principal stresses, sigma_zz from Hooke's law; `plane` may be a mistake.
+fn von_mises(material: &Material<f64>, plane: Plane, [xx, yy, xy]: [f64; 3]) -> f64 {
+    let (middle, radius) = ((xx + yy) / 2.0, ((xx - yy) / 2.0).hypot(xy));
+    let nu = material.lambda() / (2.0 * (material.lambda() + material.mu()));
+    let zz = if plane == Plane::Strain { nu * (xx + yy) } else { 0.0 };
+    let principal = [middle + radius, middle - radius, zz];
+    let [a, b, c] = [0, 1, 2].map(|i| principal[i] - principal[(i + 1) % 3]);
+    ((a * a + b * b + c * c) / 2.0).sqrt()
+}
+
+fn stresses_on<E, const N: usize, const M: usize>(
+    problem: &Problem,
+    plane: Option<Plane>,
+) -> Result<(), String>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let d = discretize::<E, N, M>(problem, &Method::default()).map_err(|e| e.to_string())?;
+    let mut random = Random::new(draws::seed());
+    let u = field(d.space.nodes().len(), &mut random);
+    let solution = Solution::new(&d, Evaluated::new(&d, u.clone()), unsolved());
+    let near = |found: f64, expected: f64| (found - expected).abs() <= 1e-13 * expected;
+    for (t, (stress, zz)) in solution.stress.iter().enumerate() {
+        let material = problem.material.of(t);
+        // Plane stress has no stress across the plane, plane strain has one.
+        let own = if *zz == 0.0 { Plane::Stress } else { Plane::Strain };
+        let plane = plane.unwrap_or(own);
+        let expected = von_mises(material, plane, stress.components());
+        if !near(solution.von_mises[t], expected) {
+            return Err(format!("von Mises {:e}, expected {expected:e}", solution.von_mises[t]));
+        }
+    }
+    let strain = (0..solution.stress.len()).map(|t| mean_strain(&d, t, &u)).fold(0.0, f64::max);
+    if !((solution.largest_strain - strain).abs() <= 1e-12 * strain) {
+        return Err(format!("largest strain {}, expected {strain}", solution.largest_strain));
+    }
+    let points = solution.contact.iter().flat_map(|edge| &edge.points);
+    let deepest = points.map(|point| point.u_n - point.gap).fold(f64::NEG_INFINITY, f64::max);
+    let told = solution.boundaries.iter().map(|part| part.penetration);
+    let told = told.fold(f64::NEG_INFINITY, f64::max);
+    // Affine between the nodes, for P1.
+    if !(told >= deepest && (N == 6 || told == deepest)) {
+        return Err(format!("a penetration of {told:e}, at the nodes {deepest:e}"));
+    }
+    for part in &solution.boundaries {
+        // The recovered pressure has the integral of -lambda^h, by its hat functions.
+        let edges = solution.contact.iter().filter(|edge| *edge.boundary == *part.boundary);
+        let force: f64 = edges
+            .map(|edge| {
+                let p: Vec<f64> = edge.points.iter().map(|point| point.pressure).collect();
+                let length = edge.points[p.len() - 1].arc - edge.points[0].arc;
+                let mean = p.windows(2).map(|pair| (pair[0] + pair[1]) / 2.0).sum::<f64>();
+                length * mean / (p.len() - 1) as f64
+            })
+            .sum();
+        if !((force - part.force).abs() <= 1e-12 * part.force) {
+            return Err(format!("a recovered force of {force:e}, a force of {:e}", part.force));
+        }
+    }
+    let squares = u.iter().map(|[x, y]| x * x + y * y);
+    let expected = squares.fold(0.0, f64::max).sqrt();
+    let found = solution.quantities.max_displacement;
+    if near(found, expected) { Ok(()) } else { Err(format!("{found}, expected {expected}")) }
+}
+
+fn stresses(plane: Option<Plane>) -> Outcome {
+    let bodies = on_bodies(|problem, degree| {
+        if degree == 1 {
+            stresses_on::<P1, 3, 2>(problem, plane)
+        } else {
+            stresses_on::<P2, 6, 3>(problem, plane)
+        }
+    })?;
+    Ok(format!("{bodies} bodies, P1 and P2"))
+}
+
+/// The largest principal strain, in magnitude, of the mean strain on triangle t, from the boundary: the mean of grad u is
+/// the integral of u n^T over the boundary, by Simpson's rule on each edge, by the area.
+fn mean_strain<E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    t: usize,
+    u: &[[f64; 2]],
+) -> f64
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let corners = d.problem.mesh.triangles()[t].map(|v| d.problem.mesh.vertices()[v]);
+    let nodes = d.space.elements()[t];
+    let [a, b, c] = corners;
+    let double_area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    let mut gradient = [[0.0; 2]; 2];
+    for i in 0..3 {
+        let (start, end) = (corners[(i + 1) % 3], corners[(i + 2) % 3]);
+        let normal = [end[1] - start[1], start[0] - end[0]];
+        let [from, to] = [u[nodes[(i + 1) % 3]], u[nodes[(i + 2) % 3]]];
+        for k in 0..2 {
+            let mean = if N == 6 {
+                (from[k] + 4.0 * u[nodes[3 + i]][k] + to[k]) / 6.0
+            } else {
+                (from[k] + to[k]) / 2.0
+            };
+            for j in 0..2 {
+                gradient[k][j] += mean * normal[j] / (double_area / 2.0);
+            }
+        }
+    }
+    let [[xx, xy], [yx, yy]] = gradient;
+    let (middle, shear) = ((xx + yy) / 2.0, (xy + yx) / 2.0);
+    middle.abs() + ((xx - yy) / 2.0).hypot(shear)
+}
+
+/// Row 6: von Mises stresses and the largest displacement.
+pub fn von_mises_stresses_are_their_definitions() -> Outcome {
+    stresses(None)
+}
+
+/// Plane strain without the stress across the plane.
+pub fn von_mises_without_sigma_zz() -> Outcome {
+    noticed(stresses(Some(Plane::Stress)))
+}
+
+/// The magnitudes that come with a functional, times `scale`: those of a(u, .) are at least sum_j |a(N_j, N_i)| |u_j|, and at
+/// most `COARSE` times that; and each part that is added, loads, stress product and contact, adds at least its size.
+fn magnitudes_on<E, const N: usize, const M: usize>(
+    problem: &Problem,
+    scale: f64,
+) -> Result<f64, String>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let d = discretize::<E, N, M>(problem, &Method::default()).map_err(|e| e.to_string())?;
+    let nodes = d.space.nodes().len();
+    let mut random = Random::new(draws::seed());
+    let u = field(nodes, &mut random);
+    let mut least = vec![[0.0; 2]; nodes];
+    for j in 0..nodes {
+        for c in 0..2 {
+            let mut bump = vec![[0.0; 2]; nodes];
+            bump[j][c] = 1.0;
+            let column = d.internal_forces(&bump).values;
+            for (least, entry) in least.iter_mut().flatten().zip(column.as_flattened()) {
+                *least += (entry * u[j][c]).abs();
+            }
+        }
+    }
+    let [inner, linear, whole] = [d.internal_forces(&u), d.linear_residual(&u), d.residual(&u)];
+    let mut most: f64 = 0.0;
+    for node in 0..nodes {
+        for c in 0..2 {
+            let sizes = [&inner, &linear, &whole].map(|f| scale * f.magnitudes[node][c]);
+            let values = [&inner, &linear, &whole].map(|f| f.values[node][c]);
+            let room = 1.0 + 1e-12;
+            let ratio = sizes[0] / least[node][c];
+            most = most.max(ratio);
+            let added = |from: usize, to: usize| {
+                (values[to] - values[from]).abs() <= (sizes[to] - sizes[from]) * room + 1e-12
+            };
+            if !(ratio * room >= 1.0 && ratio <= COARSE && added(0, 1) && added(1, 2)) {
+                return Err(format!("node {node}: {sizes:?} for {values:?}, a(u, .) {ratio:.2}"));
+            }
+        }
+    }
+    Ok(most)
+}
+
+/// Products of norms are no larger than this many times the products that were added up.
+const COARSE: f64 = 60.0;
+
+fn magnitudes(scale: f64) -> Outcome {
+    let most = std::cell::Cell::new(0.0_f64);
+    let bodies = on_bodies(|problem, degree| {
+        let found = if degree == 1 {
+            magnitudes_on::<P1, 3, 2>(problem, scale)
+        } else {
+            magnitudes_on::<P2, 6, 3>(problem, scale)
+        };
+        most.set(most.get().max(found?));
+        Ok(())
+    })?;
+    Ok(format!("{bodies} bodies, P1 and P2; of a(u, .) at most {:.1} times its terms", most.get()))
+}
+
+/// Row 6: the magnitudes by which noise is told.
+pub fn magnitudes_are_those_of_the_terms() -> Outcome {
+    magnitudes(1.0)
+}
+
+/// Magnitudes a hundred times too small.
+pub fn magnitudes_too_small() -> Outcome {
+    noticed(magnitudes(0.01))
+}

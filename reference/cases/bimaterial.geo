@@ -1,0 +1,25 @@
+// A punch on a soft pad: two surfaces, a curve between them, a named point: gmsh -2 -format msh41 bimaterial.geo
+Point(1) = {0, 0, 0, 0.15};
+Point(2) = {2, 0, 0, 0.2};
+Point(3) = {2, 0.4, 0, 0.25};
+Point(4) = {2, 1, 0, 0.4};
+Point(5) = {0, 1, 0, 0.4};
+Point(6) = {0, 0.4, 0, 0.25};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Line(4) = {4, 5};
+Line(5) = {5, 6};
+Line(6) = {6, 1};
+Line(7) = {3, 6};
+Curve Loop(1) = {1, 2, 7, 6};
+Curve Loop(2) = {3, 4, 5, -7};
+Plane Surface(1) = {1};
+Plane Surface(2) = {2};
+Physical Point("peg") = {5};
+Physical Curve("bottom") = {1};
+Physical Curve("right") = {2, 3};
+Physical Curve("top") = {4};
+Physical Curve("bond") = {7};
+Physical Surface("pad") = {1};
+Physical Surface("punch") = {2};

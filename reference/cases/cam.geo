@@ -1,0 +1,19 @@
+// A block with a notch of radius 1.05 in its lower side: gmsh -2 -format msh41 cam.geo
+Point(1) = {-1, 0, 0, 0.3};
+Point(2) = {-0.63, 0, 0, 0.12};
+Point(3) = {0, -0.84, 0};
+Point(4) = {0.63, 0, 0, 0.18};
+Point(5) = {1, 0, 0, 0.3};
+Point(6) = {1, 1, 0, 0.4};
+Point(7) = {-1, 1, 0, 0.4};
+Line(1) = {1, 2};
+Circle(2) = {2, 3, 4};
+Line(3) = {4, 5};
+Line(4) = {5, 6};
+Line(5) = {6, 7};
+Line(6) = {7, 1};
+Curve Loop(1) = {1, 2, 3, 4, 5, 6};
+Plane Surface(1) = {1};
+Physical Curve("notch") = {2};
+Physical Curve("top") = {5};
+Physical Surface("block") = {1};

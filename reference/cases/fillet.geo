@@ -1,0 +1,21 @@
+// The unit square, its lower left corner rounded with radius 0.3, the lower right one with 0.2: gmsh -2 -format msh41 fillet.geo
+Point(1) = {0, 0.3, 0, 0.15};
+Point(2) = {0.3, 0.3, 0};
+Point(3) = {0.3, 0, 0, 0.1};
+Point(4) = {0.8, 0, 0, 0.13};
+Point(5) = {0.8, 0.2, 0};
+Point(6) = {1, 0.2, 0, 0.2};
+Point(7) = {1, 1, 0, 0.4};
+Point(8) = {0, 1, 0, 0.4};
+Circle(1) = {1, 2, 3};
+Line(2) = {3, 4};
+Circle(3) = {4, 5, 6};
+Line(4) = {6, 7};
+Line(5) = {7, 8};
+Line(6) = {8, 1};
+Curve Loop(1) = {1, 2, 3, 4, 5, 6};
+Plane Surface(1) = {1};
+Physical Curve("foot") = {1, 2, 3};
+Physical Curve("right") = {4};
+Physical Curve("top") = {5};
+Physical Surface("block") = {1};

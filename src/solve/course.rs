@@ -1,0 +1,100 @@
+//! The course of a solve: where Newton's method starts, and who is told how far it is.
+//!
+//! A start is the solution of another problem on the same nodes, such as the load step before. What is taken of it is on which
+//! parts of the contact edges P is positive. With H = Psi'' there, the first step solves the problem whose springs
+//! of contact are these and no others,
+//!
+//! A u + B^T H y = l, y = B u + d,
+//!
+//! which is the solution where contact stays as it was, for Psi'(y) = Psi''(y) y. Any start leads to the same solution: (8)
+//! has one, and the verdict on it is as strict.
+
+use super::newton::{self, Derivatives, Edges};
+use super::solution::Solution;
+use crate::fem::discretization::Discretization;
+use crate::kernel::edge_integral::ExactEdge;
+
+/// A phase of a solve, as it begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Phase {
+    /// Nodes, constraints, loads, contact edges.
+    Assemble,
+    /// The order of elimination, the structure of the factor, the matrix.
+    Order,
+    /// Sparse Cholesky factorisation of the body.
+    Factor,
+    /// The compliance of the body at the contact edges.
+    Condense,
+    /// A step of Newton's method; the first is 1.
+    Newton {
+        /// Its number.
+        step: usize,
+    },
+    /// Stresses, contact pressure, resultants.
+    Evaluate,
+}
+
+/// Where a solve starts, and who watches.
+#[derive(Clone, Copy, Default)]
+pub struct Course<'a> {
+    start: Option<&'a Solution>,
+    watcher: Option<&'a dyn Fn(Phase)>,
+}
+
+impl<'a> Course<'a> {
+    /// Starts from a solution on the same nodes; one on others is no start, and Newton's method starts as without.
+    #[must_use]
+    pub fn from(self, start: &'a Solution) -> Self {
+        Course { start: Some(start), ..self }
+    }
+
+    /// Calls `watcher` as each phase begins.
+    #[must_use]
+    pub fn watched_by(self, watcher: &'a dyn Fn(Phase)) -> Self {
+        Course { watcher: Some(watcher), ..self }
+    }
+
+    /// The same without a start, where there is one.
+    pub(super) fn afresh(self) -> Option<Self> {
+        self.start.map(|_| Course { start: None, ..self })
+    }
+
+    pub(super) fn enters(&self, phase: Phase) {
+        if let Some(watcher) = self.watcher {
+            watcher(phase);
+        }
+    }
+
+    /// P of the start at the nodes of the contact edges.
+    pub(super) fn p<E, const N: usize, const M: usize>(
+        &self,
+        d: &Discretization<E, N, M>,
+    ) -> Option<Vec<f64>>
+    where
+        E: ExactEdge<f64, N, M>,
+    {
+        let start = self.start?;
+        let same =
+            start.nodes == d.space.nodes() && start.elements == d.space.elements().as_flattened();
+        let u = &start.displacement;
+        let p = |edge: &crate::fem::contact_line::ContactLineEdge<N, M>| {
+            edge.p(&d.space.on_triangle(edge.edge.triangle, u))
+        };
+        same.then(|| d.contact.iter().flat_map(p).collect())
+    }
+}
+
+/// What the derivatives of Psi at y would be if contact were as it is where P has the values `p`.
+pub(super) fn frozen<const M: usize>(
+    edges: &impl Edges<M>,
+    p: &[f64],
+    y: &[f64],
+) -> Derivatives<M> {
+    let Derivatives { hessian, .. } = newton::derivatives(edges, p);
+    let gradient = hessian.iter().enumerate().flat_map(|(e, h)| {
+        let y: [f64; M] = newton::block(y, e);
+        h.map(|row| (0..M).map(|b| row[b] * y[b]).sum::<f64>())
+    });
+    Derivatives { gradient: gradient.collect(), hessian }
+}
