@@ -192,10 +192,10 @@ mod command {
         let (files, results) = match (wanted, out) {
             (Wanted::Json, None) => {
                 let mut seconds = Seconds::new(read, &times, Duration::ZERO);
-                seconds.certify = certified.as_ref().map_or(0.0, |c| c.time.as_secs_f64());
+                seconds.certify += certified.as_ref().map_or(0.0, |c| c.time.as_secs_f64());
                 let results = outputs::results(&case, &solution, seconds);
                 let mut results = results.map_err(|e| failure(FAILED)(&e))?;
-                results.certificate = certified.as_ref().map(Certified::report);
+                results.add_certificate(certified.as_ref().map(Certified::report));
                 (Vec::new(), results)
             }
             _ => {

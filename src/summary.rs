@@ -6,10 +6,13 @@ use std::path::{Path, PathBuf};
 use signorini::certify::Continuous;
 use signorini::io::certificate::Audit;
 use signorini::io::convergence::Study;
-use signorini::io::result::{ContinuousCertificate, GammaChoice, NewtonHistory, Results};
+use signorini::io::result::{
+    ContinuousCertificate, DiscreteCertificate, GammaChoice, NewtonHistory, Results,
+};
 use signorini::io::sweep::Sweep;
 use signorini::io::{Case, numbers};
 use signorini::quote;
+use signorini::solve::accuracy::ACCEPTABLE;
 use signorini::solve::{ContactQuadrature, MethodReport, Outline, RouteName, history};
 
 /// Lines of a name and a text.
@@ -129,8 +132,12 @@ pub fn solved(r: &Results, files: &[PathBuf]) -> String {
             ),
         );
     }
-    if let Some(certificates) = &r.certificate {
-        lines.line("error", distance(&certificates.continuous));
+    let certificates = r.certificate.as_ref();
+    if let Some(discrete) = certificates.and_then(|c| c.discrete.as_ref()) {
+        lines.line("certified", enclosed(discrete));
+    }
+    if let Some(continuous) = certificates.and_then(|c| c.continuous.as_ref()) {
+        lines.line("error", distance(continuous));
     }
     for remark in &r.remarks {
         lines.line("remark", remark);
@@ -223,6 +230,26 @@ pub fn audited(audit: &Audit) -> String {
     lines.0
 }
 
+/// How far the solution can be from the exact solution of (8), and whether there is one.
+fn enclosed(certificate: &DiscreteCertificate) -> String {
+    let reason = certificate.reason.as_deref().unwrap_or_default();
+    let one = if certificate.unique { "(8) has exactly one solution" } else { "" };
+    let Some(radius) = certificate.radius else {
+        let one = if one.is_empty() { String::new() } else { format!("; {one}") };
+        return format!("no: {reason}{one}");
+    };
+    let size = match certificate.relative {
+        Some(relative) => format!("{relative:.0e} of the energy norm"),
+        None => short(radius),
+    };
+    let within = format!("{one}, within {size} of this: proved, rounding included");
+    if certificate.relative.is_some_and(|relative| relative > ACCEPTABLE) {
+        format!("not to six digits: {within}")
+    } else {
+        within
+    }
+}
+
 /// How far the solution can be from the true one.
 fn distance(certificate: &ContinuousCertificate) -> String {
     let reason = certificate.reason.as_deref().unwrap_or_default();
@@ -278,8 +305,16 @@ fn sizes(triangles: usize, degree: usize, dofs: usize, contact_edges: usize, h: 
 fn coercivity(gamma: &GammaChoice) -> String {
     let [a, b] = gamma.limiting_edge;
     let verdict = if gamma.kappa < 1.0 { "< 1: coercive" } else { ">= 1: no promise" };
+    let truth = match (gamma.true_limit, gamma.true_limiting_edge, &gamma.no_true_limit) {
+        (Some(limit), Some([c, d]), _) if [c, d] != [a, b] => {
+            format!("; true limit {} at the edge {}-{}", short(limit), vector(c), vector(d))
+        }
+        (Some(limit), ..) => format!("; true limit {}", short(limit)),
+        (None, _, Some(why)) => format!("; true limit not known: {why}"),
+        _ => String::new(),
+    };
     format!(
-        "gamma0 = {}{} (limit {} at the edge {}-{}), kappa = {} {verdict}",
+        "gamma0 = {}{} (limit {} at the edge {}-{}), kappa = {} {verdict}{truth}",
         if gamma.local { "on each edge its own, from " } else { "" },
         short(gamma.gamma0),
         short(gamma.limit),

@@ -5,7 +5,7 @@ use super::problem::{
     BoxedFunction, Condition, DataError, Function, Problem, SurfaceForce, checked,
 };
 use super::space::Space;
-use crate::kernel::Element;
+use crate::kernel::{Element, Scalar};
 use crate::quote::key;
 
 /// The degree up to which loads that are no polynomials are integrated exactly.
@@ -51,10 +51,36 @@ pub fn assemble_with<E: Element<N, M>, const N: usize, const M: usize>(
     space: &Space<E, N, M>,
     points: impl Fn(&dyn Function) -> usize,
 ) -> Result<Vec<[f64; 2]>, DataError> {
+    assemble_in(problem, space, points)
+}
+
+/// The same as [`assemble`] in other numbers: the forces at the points of the rules, weight times value, are doubles, and what
+/// they add up to is computed in those.
+///
+/// # Errors
+/// As [`assemble`].
+pub fn assemble_as<S, E: Element<N, M>, const N: usize, const M: usize>(
+    problem: &Problem,
+    space: &Space<E, N, M>,
+) -> Result<Vec<[S; 2]>, DataError>
+where
+    S: Scalar + From<f64>,
+{
+    assemble_in(problem, space, |load| points(load, E::DEGREE))
+}
+
+fn assemble_in<S, E: Element<N, M>, const N: usize, const M: usize>(
+    problem: &Problem,
+    space: &Space<E, N, M>,
+    points: impl Fn(&dyn Function) -> usize,
+) -> Result<Vec<[S; 2]>, DataError>
+where
+    S: Scalar + From<f64>,
+{
     let rule = |load: &dyn Function| {
         Rule::new(Features { kink: load.kink(), singular: None }, points(load))
     };
-    let mut load = vec![[0.0; 2]; space.nodes().len()];
+    let mut load = vec![[<S as From<i32>>::from(0); 2]; space.nodes().len()];
     for (c, f) in acting(&problem.body_force) {
         let what = || format!("[load] body[{c}]");
         add_body_force(c, f, &rule(f), space, 0..space.elements().len(), what, &mut load)?;
@@ -100,21 +126,21 @@ fn acting(load: &[BoxedFunction; 2]) -> impl Iterator<Item = (usize, &dyn Functi
     load.iter().map(|f| &**f).enumerate().filter(|(_, f)| !vanishes(*f))
 }
 
-fn add_body_force<E: Element<N, M>, const N: usize, const M: usize>(
+fn add_body_force<S: Scalar + From<f64>, E: Element<N, M>, const N: usize, const M: usize>(
     c: usize,
     f: &dyn Function,
     rule: &Rule,
     space: &Space<E, N, M>,
     triangles: impl Iterator<Item = usize>,
     what: impl Fn() -> String,
-    load: &mut [[f64; 2]],
+    load: &mut [[S; 2]],
 ) -> Result<(), DataError> {
     let mut wrong = None;
     for t in triangles {
         let nodes = &space.elements()[t];
         rule.on_triangle(&space.mesh().triangle(t), |l, x, weight| {
             match checked(f.at(x), x, &what) {
-                Ok(f) => add(load, c, nodes, &E::values(l), weight * f),
+                Ok(f) => add(load, c, nodes, &E::values(l.map(<S as From<f64>>::from)), weight * f),
                 Err(error) => wrong = wrong.take().or(Some(error)),
             }
         });
@@ -123,13 +149,13 @@ fn add_body_force<E: Element<N, M>, const N: usize, const M: usize>(
 }
 
 /// Adds a traction's component c, `value` of the place and the outward normal.
-fn add_on_boundary<E: Element<N, M>, const N: usize, const M: usize>(
+fn add_on_boundary<S: Scalar + From<f64>, E: Element<N, M>, const N: usize, const M: usize>(
     name: &str,
     c: usize,
     value: impl Fn([f64; 2], [f64; 2]) -> Result<f64, DataError>,
     rule: &Rule,
     space: &Space<E, N, M>,
-    load: &mut [[f64; 2]],
+    load: &mut [[S; 2]],
 ) -> Result<(), DataError> {
     let mut wrong = None;
     for &edge in space.mesh().edges_of(name)? {
@@ -138,7 +164,7 @@ fn add_on_boundary<E: Element<N, M>, const N: usize, const M: usize>(
         let nodes = space.edge_nodes(edge);
         rule.on_edge(ends, [], |point| match value(point.x, normal.into()) {
             Ok(t) => {
-                let shapes: [f64; M] = E::edge_values(point.s);
+                let shapes: [S; M] = E::edge_values(<S as From<f64>>::from(point.s));
                 add(load, c, &nodes, &shapes, point.weight * length * t);
             }
             Err(error) => wrong = wrong.take().or(Some(error)),
@@ -147,9 +173,15 @@ fn add_on_boundary<E: Element<N, M>, const N: usize, const M: usize>(
     wrong.map_or(Ok(()), Err)
 }
 
-fn add(load: &mut [[f64; 2]], c: usize, nodes: &[usize], shapes: &[f64], force: f64) {
-    for (&node, shape) in nodes.iter().zip(shapes) {
-        load[node][c] += force * shape;
+fn add<S: Scalar + From<f64>>(
+    load: &mut [[S; 2]],
+    c: usize,
+    nodes: &[usize],
+    shapes: &[S],
+    force: f64,
+) {
+    for (&node, &shape) in nodes.iter().zip(shapes) {
+        load[node][c] += <S as From<f64>>::from(force) * shape;
     }
 }
 

@@ -1,6 +1,7 @@
 //! The discrete space V^h on a mesh and everything that is integrated over it.
 
 pub mod a_priori;
+pub mod ball;
 mod build;
 pub mod constraints;
 pub mod contact_line;
@@ -9,12 +10,14 @@ pub mod embedding;
 pub mod errors;
 pub mod exact;
 pub mod held;
+pub mod korn;
 pub mod loads;
 pub mod material;
 pub mod materials;
 pub mod matrix;
 pub mod merge;
 pub mod mesh;
+pub mod moments;
 pub mod obstacle;
 pub mod pieces;
 pub mod precise;

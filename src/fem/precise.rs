@@ -8,7 +8,7 @@ use super::discretization::Discretization;
 use crate::fem::twofold::Twofold;
 use crate::kernel::edge_integral::ExactEdge;
 use crate::kernel::element::displacement_gradient;
-use crate::kernel::{ContactEdge, Triangle};
+use crate::kernel::{ContactEdge, Scalar, Triangle};
 
 /// A(u, v) - L(v) for every basis function v, and the values of P(u) at the nodes of each contact edge.
 pub fn evaluate<E, const N: usize, const M: usize>(
@@ -18,54 +18,16 @@ pub fn evaluate<E, const N: usize, const M: usize>(
 where
     E: ExactEdge<f64, N, M>,
 {
-    let zero = Twofold::from(0);
     let mut forces: Vec<[Twofold; 2]> =
         d.load.iter().map(|l| l.map(|l| -Twofold::from(l))).collect();
-    for (t, (triangle, nodes)) in d.space.triangles().enumerate() {
-        let triangle = exact(triangle);
-        let material = d.problem.material.of(t).map(Twofold::from);
-        let nodal = d.space.elements()[t].map(|node| Vector2::from(u[node]));
-        let barycentric = triangle.barycentric_gradients();
-        let area = triangle.double_area() / Twofold::from(2);
-        E::at_stiffness_points(|l: [Twofold; 3], weight| {
-            let gradients = E::gradients(l, barycentric);
-            let stress = material.stress(displacement_gradient(&nodal, &gradients));
-            for (&node, g) in nodes.iter().zip(gradients) {
-                let force = stress.traction(g);
-                for c in 0..2 {
-                    forces[node][c] += weight * area * force[c];
-                }
-            }
-        });
-    }
+    add_internal_forces(d, u, &mut forces);
     let mut p = Vec::with_capacity(M * d.contact.len());
     for edge in &d.contact {
-        let nodes = &d.space.elements()[edge.edge.triangle];
-        let nodal = nodes.map(|node| Vector2::from(u[node]));
-        let functionals = functionals(d, edge);
-        let apply = |functional: &[Vector2<Twofold>; N]| {
-            functional.iter().zip(&nodal).fold(zero, |sum, (f, u)| sum + f[0] * u[0] + f[1] * u[1])
-        };
-        for a in 0..M {
-            p.push((apply(&functionals.p0[a]) - Twofold::from(edge.gap[a])).head());
-        }
-        let [start, end] = [0, 1].map(|a| apply(&functionals.sigma_n[a]));
-        let mass = -(Twofold::from(edge.gamma) * Twofold::from(edge.length)) / Twofold::from(6);
-        let two = Twofold::from(2);
-        let stress = [mass * (two * start + end), mass * (start + two * end)];
-        for (functional, factor) in functionals.sigma_n.iter().zip(stress) {
-            for (&node, f) in nodes.iter().zip(functional) {
-                for c in 0..2 {
-                    forces[node][c] += factor * f[c];
-                }
-            }
-        }
+        let line = on_edge(d, edge);
+        p.extend(line.p(edge, u).map(Twofold::head));
+        line.add_stresses(u, &mut forces);
     }
     (forces.into_iter().map(|f| f.map(Twofold::head)).collect(), p)
-}
-
-fn exact(t: Triangle<f64>) -> Triangle<Twofold> {
-    Triangle { vertices: t.vertices.map(|x| x.map(Twofold::from)) }
 }
 
 /// P0 and sigma_n on a contact edge.
@@ -76,15 +38,143 @@ pub fn functionals<E, const N: usize, const M: usize>(
 where
     E: ExactEdge<f64, N, M>,
 {
-    let triangle = exact(d.space.mesh().triangle(edge.edge.triangle));
-    let n = edge.normal.map(Twofold::from);
-    let material = d.problem.material.of(edge.edge.triangle).map(Twofold::from);
-    let gamma = Twofold::from(edge.gamma);
-    if edge.directions == [edge.normal; M] {
-        ContactEdge::new::<E>(&triangle, edge.edge.local, n, &material, gamma)
-    } else {
-        let along = edge.directions.map(|d| d.map(Twofold::from));
-        ContactEdge::along::<E>(&triangle, edge.edge.local, n, &along, &material, gamma)
+    on_edge(d, edge).functionals
+}
+
+/// A contact edge with the doubles that it has.
+fn on_edge<'d, E, const N: usize, const M: usize>(
+    d: &'d Discretization<E, N, M>,
+    edge: &ContactLineEdge<N, M>,
+) -> OnEdge<'d, Twofold, N, M>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let numbers = EdgeNumbers {
+        normal: edge.normal.map(Twofold::from),
+        gamma: Twofold::from(edge.gamma),
+        length: Twofold::from(edge.length),
+    };
+    OnEdge::new(d, edge, numbers)
+}
+
+/// A triangle of doubles in other numbers.
+pub fn exactly<S: Scalar + From<f64>>(t: Triangle<f64>) -> Triangle<S> {
+    Triangle { vertices: t.vertices.map(|x| x.map(S::from)) }
+}
+
+/// Adds a(u, v) for every basis function v. Triangles on which `u` is all zero are not looked at.
+pub fn add_internal_forces<S, E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    u: &[[S; 2]],
+    forces: &mut [[S; 2]],
+) where
+    S: Scalar + From<f64>,
+    E: ExactEdge<f64, N, M>,
+{
+    let zero = <S as From<i32>>::from(0);
+    let two = <S as From<i32>>::from(2);
+    for (t, (triangle, nodes)) in d.space.triangles().enumerate() {
+        let nodal = nodes.map(|node| Vector2::from(u[node]));
+        if nodal.iter().all(|u| u.iter().all(|&u| u == zero)) {
+            continue;
+        }
+        let triangle = exactly(triangle);
+        let material = d.problem.material.of(t).map(<S as From<f64>>::from);
+        let barycentric = triangle.barycentric_gradients();
+        let area = triangle.double_area() / two;
+        E::at_stiffness_points(|l: [S; 3], weight| {
+            let gradients = E::gradients(l, barycentric);
+            let stress = material.stress(displacement_gradient(&nodal, &gradients));
+            for (&node, g) in nodes.iter().zip(gradients) {
+                let force = stress.traction(g);
+                for c in 0..2 {
+                    forces[node][c] += weight * area * force[c];
+                }
+            }
+        });
+    }
+}
+
+/// The geometry and the parameter of a contact edge.
+#[derive(Clone, Copy, Debug)]
+pub struct EdgeNumbers<S> {
+    /// n
+    pub normal: Vector2<S>,
+    /// gamma
+    pub gamma: S,
+    /// |E|
+    pub length: S,
+}
+
+/// A contact edge with its functionals.
+#[derive(Debug)]
+pub struct OnEdge<'d, S, const N: usize, const M: usize> {
+    /// P0 and sigma_n.
+    pub functionals: ContactEdge<S, N, M>,
+    /// Its numbers.
+    pub numbers: EdgeNumbers<S>,
+    nodes: &'d [usize; N],
+}
+
+impl<'d, S: Scalar + From<f64>, const N: usize, const M: usize> OnEdge<'d, S, N, M> {
+    /// Of an edge of a discretization.
+    pub fn new<E: ExactEdge<f64, N, M>>(
+        d: &'d Discretization<E, N, M>,
+        edge: &ContactLineEdge<N, M>,
+        numbers: EdgeNumbers<S>,
+    ) -> Self {
+        let EdgeNumbers { normal, gamma, .. } = numbers;
+        let (t, local) = (edge.edge.triangle, edge.edge.local);
+        let triangle = exactly(d.space.mesh().triangle(t));
+        let material = d.problem.material.of(t).map(<S as From<f64>>::from);
+        let functionals = if edge.directions == [edge.normal; M] {
+            ContactEdge::new::<E>(&triangle, local, normal, &material, gamma)
+        } else {
+            let along = edge.directions.map(|d| d.map(<S as From<f64>>::from));
+            ContactEdge::along::<E>(&triangle, local, normal, &along, &material, gamma)
+        };
+        OnEdge { functionals, numbers, nodes: &d.space.elements()[t] }
+    }
+
+    fn apply(&self, functional: &[Vector2<S>; N], u: &[[S; 2]]) -> S {
+        let zero = <S as From<i32>>::from(0);
+        let nodal = functional.iter().zip(self.nodes);
+        nodal.fold(zero, |sum, (f, &node)| sum + f[0] * u[node][0] + f[1] * u[node][1])
+    }
+
+    /// P0(u) at the nodes of the edge.
+    pub fn p0(&self, u: &[[S; 2]]) -> [S; M] {
+        std::array::from_fn(|a| self.apply(&self.functionals.p0[a], u))
+    }
+
+    /// P(u) there.
+    pub fn p(&self, edge: &ContactLineEdge<N, M>, u: &[[S; 2]]) -> [S; M] {
+        let p0 = self.p0(u);
+        std::array::from_fn(|a| p0[a] - <S as From<f64>>::from(edge.gap[a]))
+    }
+
+    /// Adds -int gamma sigma_n(u) sigma_n(v) over the edge for every basis function v.
+    pub fn add_stresses(&self, u: &[[S; 2]], forces: &mut [[S; 2]]) {
+        let [two, six] = [2, 6].map(<S as From<i32>>::from);
+        let [start, end] = [0, 1].map(|a| self.apply(&self.functionals.sigma_n[a], u));
+        let mass = -(self.numbers.gamma * self.numbers.length) / six;
+        let factors = [mass * (two * start + end), mass * (start + two * end)];
+        self.add(&self.functionals.sigma_n, &factors, forces);
+    }
+
+    /// Adds the values of P0 at the nodes, each times its factor, as forces on the body.
+    pub fn add_contact(&self, factors: &[S; M], forces: &mut [[S; 2]]) {
+        self.add(&self.functionals.p0, factors, forces);
+    }
+
+    fn add(&self, functionals: &[[Vector2<S>; N]], factors: &[S], forces: &mut [[S; 2]]) {
+        for (functional, &factor) in functionals.iter().zip(factors) {
+            for (&node, f) in self.nodes.iter().zip(functional) {
+                for c in 0..2 {
+                    forces[node][c] += factor * f[c];
+                }
+            }
+        }
     }
 }
 

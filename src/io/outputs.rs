@@ -15,8 +15,8 @@ use super::files::{Output, WriteError};
 use super::numbers::short;
 use super::picture::{ContactSample, Scene, picture};
 use super::result::{
-    Certificates, Choices, GammaChoice, MeshSizes, NewtonHistory, Results, SCHEMA, Seconds,
-    result_json,
+    Certificates, Choices, ContinuousCertificate, DiscreteCertificate, GammaChoice, MeshSizes,
+    NewtonHistory, Results, SCHEMA, Seconds, result_json,
 };
 use super::vtu::{CellKind, Field, Grid, Values, vtu};
 use crate::certify::{CertifyError, Continuous, certify};
@@ -79,8 +79,8 @@ impl Certified {
     }
 
     /// As result.json has it.
-    pub fn report(&self) -> Certificates {
-        Certificates { continuous: (&self.result).into() }
+    pub fn report(&self) -> ContinuousCertificate {
+        (&self.result).into()
     }
 }
 
@@ -121,9 +121,9 @@ pub fn write(
         }
     }
     let mut seconds = Seconds::new(read, &times, start.elapsed());
-    seconds.certify = certified.map_or(0.0, |c| c.time.as_secs_f64());
+    seconds.certify += certified.map_or(0.0, |c| c.time.as_secs_f64());
     let mut results = results(case, solution, seconds)?;
-    results.certificate = certified.map(Certified::report);
+    results.add_certificate(certified.map(Certified::report));
     stage("result.json", result_json(&results).map(String::into_bytes))?;
     Ok((output.publish()?, results))
 }
@@ -199,6 +199,13 @@ pub fn results(
         let [u_x, u_y] = solution.displacement_at(t, l);
         Some([x, y, u_x, u_y])
     });
+    let probes: Vec<[f64; 4]> = probes.collect();
+    let mut discrete = DiscreteCertificate::from(&solution.enclosure);
+    if let Ok(enclosure) = &solution.enclosure {
+        let places = case.probes.iter().filter_map(|&x| mesh.locate(x));
+        let off = places.map(|(t, l)| solution.displacement_error_at(&enclosure.nodes, t, l));
+        discrete.probes = off.collect();
+    }
     let errors = match &case.exact {
         Some(exact) => Some(solution.errors(&case.problem, &*exact.solution)?),
         None => None,
@@ -232,8 +239,8 @@ pub fn results(
         contact: solution.boundaries.clone(),
         reaction_moments: solution.quantities.reaction_moments.clone(),
         balance: Some(solution.balance),
-        probes: probes.collect(),
-        certificate: None,
+        probes,
+        certificate: Some(Certificates { discrete: Some(discrete), continuous: None }),
         errors,
         seconds,
     })

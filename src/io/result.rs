@@ -17,6 +17,7 @@ use super::data::DataError;
 use crate::certify::{CertifyError, Continuous};
 use crate::fem::Errors;
 use crate::fem::contact_line::Gamma;
+use crate::solve::enclosure::{self, Intervals};
 use crate::solve::{
     ContactBoundary, ContactQuadrature, EnergyBalance, Gamma0, GammaReport, Method, MethodReport,
     Quantities, Status, Times,
@@ -79,6 +80,13 @@ pub struct Results {
     pub errors: Option<Errors>,
     /// Where the time went.
     pub seconds: Seconds,
+}
+
+impl Results {
+    /// Adds what is known of the distance from the true solution.
+    pub fn add_certificate(&mut self, continuous: Option<ContinuousCertificate>) {
+        self.certificate.get_or_insert_default().continuous = continuous;
+    }
 }
 
 /// The version of the layout of result.json. 2: an entry for each contact boundary, balance, units, materials, choices.
@@ -147,6 +155,15 @@ pub struct GammaChoice {
     pub kappa: f64,
     /// The ends of the contact edge that sets the limit.
     pub limiting_edge: [[f64; 2]; 2],
+    /// The gamma0 below which A is positive definite.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub true_limit: Option<f64>,
+    /// The ends of the contact edge that has the largest share in it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub true_limiting_edge: Option<[[f64; 2]; 2]>,
+    /// Why it is not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub no_true_limit: Option<String>,
 }
 
 impl From<&GammaReport> for GammaChoice {
@@ -157,6 +174,9 @@ impl From<&GammaReport> for GammaChoice {
             limit: gamma.coercivity.limit(),
             kappa: gamma.kappa,
             limiting_edge: gamma.coercivity.limiting_edge,
+            true_limit: gamma.true_limit.ok().map(|limit| limit.gamma0),
+            true_limiting_edge: gamma.true_limit.ok().map(|limit| limit.edge),
+            no_true_limit: gamma.true_limit.err().map(|why| why.reason().to_owned()),
         }
     }
 }
@@ -178,10 +198,64 @@ pub struct NewtonHistory {
 }
 
 /// How wrong the solution can be.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Certificates {
+    /// The distance from the exact solution of (8).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub discrete: Option<DiscreteCertificate>,
     /// The distance from the true solution.
-    pub continuous: ContinuousCertificate,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub continuous: Option<ContinuousCertificate>,
+}
+
+/// The distance of the solution u~ that was computed from the exact solution u^h of (8).
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct DiscreteCertificate {
+    /// |u~ - u^h|_a is at most this.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub radius: Option<f64>,
+    /// The same over |u~|_a.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub relative: Option<f64>,
+    /// The norm of gamma^(1/2) (lambda~ - lambda^h) on Gamma_C is at most this.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pressure: Option<f64>,
+    /// (8) has exactly one solution: kappa, rounded up, is below 1.
+    pub unique: bool,
+    /// Every step is proved, rounding included.
+    pub rigorous: bool,
+    /// Why not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+    /// What u^h has.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub intervals: Option<Intervals>,
+    /// How far the displacement at each probe can be from that of u^h.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub probes: Vec<f64>,
+}
+
+impl From<&enclosure::Certificate> for DiscreteCertificate {
+    fn from(certificate: &enclosure::Certificate) -> Self {
+        match certificate {
+            Ok(e) => DiscreteCertificate {
+                radius: Some(e.radius),
+                // A body at rest has no energy to compare with.
+                relative: e.relative.filter(|r| r.is_finite()),
+                pressure: Some(e.pressure),
+                unique: true,
+                rigorous: true,
+                reason: None,
+                intervals: Some(e.intervals.clone()),
+                probes: Vec::new(),
+            },
+            Err(why) => DiscreteCertificate {
+                unique: why.is_unique(),
+                reason: Some(why.to_string()),
+                ..Default::default()
+            },
+        }
+    }
 }
 
 /// The distance of the admissible part v of the solution from the true solution u of (1)-(2).
@@ -259,7 +333,7 @@ impl Seconds {
             read: read.as_secs_f64(),
             assemble: times.assemble().as_secs_f64(),
             solve: times.solve().as_secs_f64(),
-            certify: 0.0,
+            certify: times.certify.as_secs_f64(),
             write: write.as_secs_f64(),
         }
     }
@@ -413,6 +487,9 @@ mod tests {
                 limit: 1.0 / 3.0,
                 kappa: 0.3,
                 limiting_edge: [[0.0, 0.0], [1.0, 0.0]],
+                true_limit: Some(0.5),
+                true_limiting_edge: Some([[0.0, 0.0], [1.0, 0.0]]),
+                no_true_limit: None,
             },
             newton: NewtonHistory {
                 iterations: 2,
@@ -484,7 +561,9 @@ mod tests {
     "local": false,
     "limit": 0.3333333333333333,
     "kappa": 0.3,
-    "limiting_edge": [[0.0, 0.0], [1.0, 0.0]]
+    "limiting_edge": [[0.0, 0.0], [1.0, 0.0]],
+    "true_limit": 0.5,
+    "true_limiting_edge": [[0.0, 0.0], [1.0, 0.0]]
   },
   "newton": {
     "iterations": 2,

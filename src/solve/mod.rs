@@ -4,16 +4,19 @@
 pub mod accuracy;
 pub mod answers;
 pub mod assembled;
+pub mod census;
 mod checked;
 pub mod compliance;
 pub mod condensed;
 mod contact_edges;
 pub mod course;
+pub mod enclosure;
 pub mod evaluated;
 pub mod factor;
 pub mod iterate;
 pub mod ladder;
 pub mod ldl;
+pub mod limit;
 mod memory;
 pub mod newton;
 pub mod ordering;
@@ -31,8 +34,10 @@ use self::accuracy::Outcome;
 pub use self::answers::{ContactBoundary, EnergyBalance};
 pub use self::checked::{MOST_GAUSS_POINTS, MOST_ITERATIONS};
 pub use self::course::{Course, Phase};
+pub use self::enclosure::{Enclosure, Intervals, Unproved};
 use self::evaluated::Evaluated;
 pub use self::ladder::{Ladder, LadderError, Level};
+pub use self::limit::{NoLimit, TrueLimit};
 pub use self::route::RouteName;
 pub use self::solution::{GammaReport, Quantities, Solution};
 use self::system::System;
@@ -184,6 +189,10 @@ pub struct Report {
     pub newton: NewtonReport,
     /// The route and the accuracy.
     pub method: MethodReport,
+    /// Where the exact solution of (8) is, or why nothing is proved of it.
+    pub enclosure: enclosure::Certificate,
+    /// The true limit of gamma0, or why it is not known.
+    pub limit: Result<TrueLimit, NoLimit>,
 }
 
 /// Why there is no solution.
@@ -202,6 +211,14 @@ pub enum SolveError {
         "the tangent is not positive definite: gamma0 is beyond the true limit of coercivity, J_h is not convex and a solution need not exist; lower gamma0"
     )]
     NotPositiveDefinite,
+    #[error(
+        "gamma0 is beyond the true limit of coercivity, and (8) has no solution: this is proved, by a search over all displacements; lower gamma0"
+    )]
+    NoSolution,
+    #[error(
+        "gamma0 is beyond the true limit of coercivity, and (8) has exactly {count} solutions: this is proved, by a search over all displacements; lower gamma0"
+    )]
+    SeveralSolutions { count: usize },
     #[error(
         "no convergence: the relative residual is {residual:.1e} after {} Newton step{}, all that max_iterations allows; expected at most {tolerance:e}. Nothing is written.\nresiduals: {}",
         residuals.len().saturating_sub(1), if residuals.len() == 2 { "" } else { "s" }, history(residuals)
@@ -244,6 +261,8 @@ impl SolveError {
             SolveError::Data(DataError::Mesh(MeshError::OutOfMemory(_))) => false,
             SolveError::Data(_) | SolveError::NotCoercive { .. } => true,
             SolveError::NotPositiveDefinite
+            | SolveError::NoSolution
+            | SolveError::SeveralSolutions { .. }
             | SolveError::NotConverged { .. }
             | SolveError::IllConditioned { .. }
             | SolveError::Singular
@@ -333,8 +352,9 @@ where
     let mut watch = Stopwatch::start();
     let system = System::on(d, course)?;
     times.matrix = watch.lap();
-    let (outcome, method, factorizations) = route::solve(&system, settings, &mut times)?;
-    let status = accuracy::judge(&outcome, settings)?;
+    let found = route::solve(&system, settings, &mut times);
+    let (outcome, method, factorizations, factor) = found.map_err(|e| told(&system, e))?;
+    let status = accuracy::judge(&outcome, settings).map_err(|e| told(&system, e))?;
     let Outcome { u, fine, residuals, residual, .. } = outcome;
     let mut evaluated = match fine {
         Some(fine) => Evaluated::precisely(d, &fine),
@@ -343,7 +363,31 @@ where
     // This changes neither P nor the forces.
     held::least_norm(&mut evaluated.u, d.slides.as_deref().unwrap_or_default());
     let newton = NewtonReport { status, residuals, residual, factorizations };
-    Ok((evaluated, Report { newton, method }, times))
+    watch.lap();
+    let limit = match &factor {
+        Some(factor) => limit::true_limit(&system, factor, d.gamma0),
+        None if d.slides.is_some() => Err(NoLimit::HeldByContact),
+        None => Err(NoLimit::Assembled),
+    };
+    let enclosure = enclosure::enclose(&system, &evaluated.u, factor);
+    times.certify = watch.lap();
+    Ok((evaluated, Report { newton, method, enclosure, limit }, times))
+}
+
+/// Where kappa >= 1 and no solution was found: whether (8) has none, or several, if that can be proved.
+fn told<E, const N: usize, const M: usize>(
+    system: &System<E, N, M>,
+    error: SolveError,
+) -> SolveError
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let without_promise = system.d.kappa() >= 1.0;
+    match without_promise.then(|| census::count(system)).flatten() {
+        Some(0) => SolveError::NoSolution,
+        Some(count) if count > 1 => SolveError::SeveralSolutions { count },
+        _ => error,
+    }
 }
 
 /// What [`solve`] would solve: everything short of a matrix is built and checked.
@@ -380,7 +424,7 @@ impl Outline {
             nodes: d.space.nodes().len(),
             prescribed: d.constraints.values().iter().flatten().flatten().count(),
             contact_edges: d.contact.len(),
-            gamma: GammaReport::new(d),
+            gamma: GammaReport::new(d, limit::of_discretization(d)),
         }
     }
 }

@@ -67,7 +67,8 @@ impl Prediction {
         }
     }
 
-    fn of<E, const N: usize, const M: usize>(system: &System<E, N, M>) -> (Reach, Prediction)
+    /// Of a system, with the reach of its contact functionals.
+    pub fn of<E, const N: usize, const M: usize>(system: &System<E, N, M>) -> (Reach, Prediction)
     where
         E: ExactEdge<f64, N, M>,
     {
@@ -84,7 +85,7 @@ impl Prediction {
     }
 }
 
-/// Solves the system by the route that is predicted to take less.
+/// Solves the system by the route that is predicted to take less. The factor of A comes with it where there is one.
 ///
 /// # Errors
 /// As [`solve_discrete`](super::solve_discrete).
@@ -92,7 +93,7 @@ pub fn solve<E, const N: usize, const M: usize>(
     system: &System<E, N, M>,
     settings: &Settings,
     times: &mut Times,
-) -> Result<(Outcome, MethodReport, usize), SolveError>
+) -> Result<(Outcome, MethodReport, usize, Option<Factor>), SolveError>
 where
     E: ExactEdge<f64, N, M>,
 {
@@ -128,7 +129,7 @@ pub fn by<E, const N: usize, const M: usize>(
     system: &System<E, N, M>,
     settings: &Settings,
     times: &mut Times,
-) -> Result<(Outcome, MethodReport, usize), SolveError>
+) -> Result<(Outcome, MethodReport, usize, Option<Factor>), SolveError>
 where
     E: ExactEdge<f64, N, M>,
 {
@@ -136,7 +137,7 @@ where
     let (reach, prediction) = Prediction::of(system);
     let reference = accuracy::reference(system.d);
     times.judge += watch.lap();
-    let (outcome, predicted_operations, factorizations) = match name {
+    let (outcome, predicted_operations, factorizations, factor) = match name {
         RouteName::Condensed => {
             let q = reach.functionals();
             memory::ensure(8 * (reach.stored_entries(&system.structure) + 3 * q * q) as u64)?;
@@ -151,7 +152,7 @@ where
             let mut route = Condensed::new(system, &factor, &reach, reference);
             times.compliance += watch.lap();
             let outcome = accuracy::refine(system, &mut route, reference, settings)?;
-            (outcome, prediction.condensed, 1)
+            (outcome, prediction.condensed, 1, Some(factor))
         }
         RouteName::Assembled | RouteName::Twofold => {
             let mut route = if name == RouteName::Twofold {
@@ -163,7 +164,7 @@ where
                 Assembled::new(system, reference)
             };
             let outcome = accuracy::refine(system, &mut route, reference, settings)?;
-            (outcome, prediction.assembled, route.factorizations())
+            (outcome, prediction.assembled, route.factorizations(), None)
         }
     };
     times.newton += watch.lap();
@@ -177,5 +178,5 @@ where
         threads: 1,
         slides,
     };
-    Ok((outcome, report, factorizations))
+    Ok((outcome, report, factorizations, factor))
 }

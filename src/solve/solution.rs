@@ -7,8 +7,9 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::answers::{self, ContactBoundary, EnergyBalance};
+use super::enclosure::Certificate;
 use super::evaluated::Evaluated;
-use super::{MethodReport, NewtonReport, Report};
+use super::{MethodReport, NewtonReport, NoLimit, Report, TrueLimit};
 use crate::fem::contact_line::{self, Coercivity, Gamma};
 use crate::fem::discretization::{Discretization, inner};
 use crate::fem::{DataError, Errors, ExactSolution, Problem, Space};
@@ -43,6 +44,8 @@ pub struct Solution {
     pub newton: NewtonReport,
     /// By which route, and how accurately.
     pub method: MethodReport,
+    /// Where the exact solution of (8) is, or why nothing is proved of it.
+    pub enclosure: Certificate,
     /// Energies, forces, lengths.
     pub quantities: Quantities,
     /// What each part of Gamma_C carries.
@@ -65,6 +68,8 @@ pub struct GammaReport {
     pub kappa: f64,
     /// C_h and the edge that sets it.
     pub coercivity: Coercivity,
+    /// The true limit of gamma0, or why it is not known.
+    pub true_limit: Result<TrueLimit, NoLimit>,
 }
 
 /// One edge of Gamma_C: its nodes and the values there, in order along the edge.
@@ -156,9 +161,10 @@ impl Solution {
             boundaries: answers::contact_boundaries(d, &u, &p, &recovered),
             largest_strain: answers::largest_strain(d, &u),
             balance: answers::energy_balance(d, &u, &p, &residual, quantities.energy),
-            gamma: GammaReport::new(d),
+            gamma: GammaReport::new(d, report.limit),
             newton: report.newton,
             method: report.method,
+            enclosure: report.enclosure,
             quantities,
             displacement: u,
         }
@@ -210,6 +216,21 @@ impl Solution {
         let nodes = &self.elements[t * self.nodes_per_triangle..][..self.nodes_per_triangle];
         [0, 1].map(|c| nodes.iter().zip(shapes).map(|(&j, n)| n * self.displacement[j][c]).sum())
     }
+
+    /// How far the displacement at that point can be off where it is off by `nodes` at most at the nodes.
+    pub fn displacement_error_at(&self, nodes: &[f64], t: usize, l: [f64; 3]) -> f64 {
+        let shapes: &[f64] = match self.degree {
+            1 => &P1::values(l),
+            _ => &P2::values(l),
+        };
+        let members = &self.elements[t * self.nodes_per_triangle..][..self.nodes_per_triangle];
+        let sum: f64 = members.iter().zip(shapes).map(|(&j, n)| n.abs() * nodes[j]).sum();
+        // The sum, the shape functions and the displacement there are rounded.
+        let size: f64 = members.iter().fold(0.0, |size: f64, &j| {
+            size.max(self.displacement[j][0].abs()).max(self.displacement[j][1].abs())
+        });
+        sum * (1.0 + 1e-14) + 1e-14 * size
+    }
 }
 
 /// The area-weighted means at the nodes of the stresses sigma_xx, sigma_yy, sigma_zz, sigma_xy that the triangles around them
@@ -245,12 +266,15 @@ fn nodal_stresses<E: Element<N, M>, const N: usize, const M: usize>(
 
 impl GammaReport {
     /// Of a discretization.
-    pub fn new<E, const N: usize, const M: usize>(d: &Discretization<E, N, M>) -> Self
+    pub fn new<E, const N: usize, const M: usize>(
+        d: &Discretization<E, N, M>,
+        true_limit: Result<TrueLimit, NoLimit>,
+    ) -> Self
     where
         E: ExactEdge<f64, N, M>,
     {
         let (kappa, coercivity) = (d.kappa(), d.coercivity);
-        GammaReport { gamma: d.gamma, gamma0: d.gamma0, kappa, coercivity }
+        GammaReport { gamma: d.gamma, gamma0: d.gamma0, kappa, coercivity, true_limit }
     }
 }
 

@@ -416,6 +416,48 @@ fn well_posed_bodies_are_solved_as_an_independent_assembled_newton_solves_them()
     report(&failures, count);
 }
 
+/// The share of |u|_a that the two solvers' problems may differ by: they integrate the same load by other rules, in doubles.
+const SAME_LOAD: f64 = 1e-15;
+
+/// Of a body that is solved: the true error and the enclosure's bound of it, relative; `None` where nothing is claimed.
+fn error_and_bound(body: &Body) -> Option<(f64, f64)> {
+    let settings = Settings { max_iterations: 200, ..Settings::default() };
+    let (solution, _) = solve(&body.problem, &body.method, &settings).ok()?;
+    let bound = solution.enclosure.ok()?.relative?;
+    let again = Assembled::new(&body.problem, body.method.degree, body.gamma0, body.force);
+    let answer = again.solve(Some(&solution.displacement))?;
+    Some((again.error(&answer, &solution.displacement), bound))
+}
+
+#[test]
+fn the_enclosure_contains_the_independent_solution() {
+    let seeds = seeds(40);
+    let count = seeds.end - seeds.start;
+    let (mut failures, mut factors) = (Vec::new(), Vec::new());
+    for seed in seeds {
+        let body = well_posed(seed);
+        if let Some((error, bound)) = error_and_bound(&body) {
+            factors.push(bound / (error + SAME_LOAD));
+            if !(error <= bound + SAME_LOAD) {
+                let why = format!("{}: error {error:.1e}, bound {bound:.1e}", body.kind);
+                failures.push((seed, why));
+            }
+        }
+    }
+    factors.sort_unstable_by(f64::total_cmp);
+    let at = |share: usize| factors[(factors.len() - 1) * share / 10];
+    println!(
+        "{} of {count} bodies enclosed; bound over error: median {:.1}, nine of ten below {:.1}, largest {:.1}",
+        factors.len(),
+        at(5),
+        at(9),
+        at(10)
+    );
+    report(&failures, count);
+    // Nothing is claimed of bodies that contact holds, or too slender ones.
+    assert!(2 * factors.len() as u64 >= count, "{} of {count} enclosed", factors.len());
+}
+
 #[test]
 fn control_the_independent_answer_notices_a_displacement_that_is_off_by_1e_7() {
     let body = well_posed(4);

@@ -16,6 +16,7 @@ mod course;
 mod documents;
 #[cfg(all(feature = "cli", unix))]
 mod doors;
+mod enclosure;
 mod exact;
 mod fuzz;
 mod gmsh_live;

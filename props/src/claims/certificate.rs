@@ -19,11 +19,14 @@ use std::collections::BTreeMap;
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use proptest::prelude::*;
+use signorini::fem::ball::Ball;
 use signorini::fem::{
     BoxedFunction, Condition, Diagonal, Discretization, Mesh, Problem, Rectangle,
 };
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::{Material, P1, P2, Plane};
+use signorini::solve::enclosure::{self, Enclosure};
+use signorini::solve::system::System;
 use signorini::solve::{ContactQuadrature, Degree, Gamma0, Method, Settings, discretize, solve};
 
 use crate::bodies::MaybeExact;
@@ -374,6 +377,166 @@ where
     }
 }
 
+/// What the enclosure in doubles is asked, and a planted mistake.
+#[derive(Clone, Copy)]
+struct InDoubles {
+    /// The solver's result is moved at random by up to this.
+    noise: f64,
+    /// The radius is at most 2^-share |u~|_a.
+    share: i32,
+    /// The radii are multiplied by this.
+    factor: f64,
+    /// So is the load that the residual is evaluated with.
+    load: f64,
+}
+
+/// The enclosure that every solve makes, around the solver's result.
+const REPORTED: InDoubles = InDoubles { noise: 0.0, share: 40, factor: 1.0, load: 1.0 };
+
+/// Around any point: a perturbation raises the radius at least to what it moves u~ by.
+const REPORTED_MOVED: InDoubles = InDoubles { noise: 1e-3, share: -40, ..REPORTED };
+
+/// The enclosure of the solver, in balls of doubles, contains the exact solution: its radius is compared with the error in
+/// exact arithmetic, or with the distance from a point whose own radius is a thousand times smaller.
+fn enclosed_in_doubles<E, const N: usize, const M: usize>(
+    draw: &Draw,
+    quadrature: ContactQuadrature,
+    asked: InDoubles,
+) -> Verdict
+where
+    E: MaybeExact<N, M> + ExactEdge<f64, N, M>,
+{
+    let degree = if N == 3 { Degree::One } else { Degree::Two };
+    // On whole cells lengths and normals are doubles, so that both sides speak of the same problem.
+    let draw = Draw { moved: None, ..draw.clone() };
+    let Ok(solved) = Solved::new(&draw, degree, quadrature) else {
+        return Verdict::Fails("the solver has no solution");
+    };
+    let Ok(d) = discretize::<E, N, M>(&solved.problem, &solved.method) else {
+        return Verdict::Fails("there is no discrete problem");
+    };
+    let mut u = moved(&solved.u, asked.noise);
+    for (values, prescribed) in u.iter_mut().zip(d.constraints.values()) {
+        for c in 0..2 {
+            values[c] = prescribed[c].unwrap_or(values[c]);
+        }
+    }
+    let Ok(system) = System::new(&d) else { return Verdict::Fails("there is no system") };
+    let load: Vec<[Ball; 2]> =
+        d.load.iter().map(|l| l.map(|l| Ball::from(l * asked.load))).collect();
+    let Ok(enclosure) = enclosure::enclose_with(&system, &u, None, &load) else {
+        return Verdict::Fails("there is an enclosure");
+    };
+    let certifier = Certifier::new(&d);
+    match certifier.contained(exactly(&u), &enclosure, asked) {
+        Ok(verdict) => verdict,
+        Err(why) => Verdict::Fails(why),
+    }
+}
+
+impl<E, const N: usize, const M: usize> Certifier<'_, E, N, M>
+where
+    E: MaybeExact<N, M> + ExactEdge<f64, N, M>,
+{
+    fn contained(
+        &self,
+        found: Nodal,
+        enclosure: &Enclosure,
+        asked: InDoubles,
+    ) -> Result<Verdict, &'static str> {
+        let radius = Exact::of_double(enclosure.radius) * Exact::of_double(asked.factor);
+        let (share, scale) = (power(asked.share), square(&self.k, &self.problem.free(&found)));
+        if radius * radius > share * share * scale {
+            return Err("the radius is at most 2^-share |u~|_a");
+        }
+        let start = self.point(found.clone());
+        let mut point = Point { u: found.clone(), residual: start.residual };
+        let mut slack = Exact::from(0);
+        let mut class = IRRATIONAL;
+        for step in 0.. {
+            if point.is_solution() {
+                class = self.problem.class(&point.u);
+                break;
+            }
+            let refined = self.certify(&point)?;
+            let kept = Exact::from(1) - self.problem.kappa();
+            let thousandth = radius / Exact::from(1000);
+            if step > 0 && refined.rho_squared <= kept * thousandth * thousandth {
+                slack = thousandth;
+                break;
+            }
+            if step == 8 {
+                return Err("Newton's steps settle on no better point");
+            }
+            point = self.newton_step(&point)?;
+        }
+        let verdict =
+            self.within(&found, &point.u, enclosure, [Exact::of_double(asked.factor), slack]);
+        Ok(if verdict.fails() { verdict } else { Verdict::Holds(class) })
+    }
+
+    /// u~ is as near to `exact` as the enclosure says, its radii times a factor, where `exact` is u^h up to `slack`.
+    fn within(
+        &self,
+        found: &[[Exact; 2]],
+        exact: &[[Exact; 2]],
+        enclosure: &Enclosure,
+        [factor, slack]: [Exact; 2],
+    ) -> Verdict {
+        let most = |radius: f64| factor * Exact::of_double(radius) + slack;
+        let error = self.difference(found, exact);
+        ensure!(square(&self.k, &error) <= most(enclosure.radius) * most(enclosure.radius));
+        for ((u, exact), &node) in found.iter().zip(exact).zip(&enclosure.nodes) {
+            let off = [u[0] - exact[0], u[1] - exact[1]];
+            ensure!(off[0] * off[0] + off[1] * off[1] <= most(node) * most(node));
+        }
+        if slack == Exact::from(0)
+            && let Some(apart) = self.problem.pressures_apart(found, exact)
+        {
+            ensure!(apart <= most(enclosure.pressure) * most(enclosure.pressure));
+        }
+        Verdict::Holds("within")
+    }
+}
+
+fn hold_in_doubles(asked: InDoubles) -> Outcome {
+    let mut text = Vec::new();
+    for (gap, class) in [(WIDE, "open"), (NARROW, "pressed"), (BETWEEN, IRRATIONAL)] {
+        text.push(draws::hold(6, problems([2, 2], gap), &[class], |draw| {
+            Exact::scope(|| enclosed_in_doubles::<P1, 3, 2>(draw, ContactQuadrature::Exact, asked))
+        })?);
+    }
+    let gauss = ContactQuadrature::Gauss(3);
+    text.push(draws::hold(4, problems([1, 1], BETWEEN), &[], |draw| {
+        Exact::scope(|| enclosed_in_doubles::<P2, 6, 3>(draw, gauss, asked))
+    })?);
+    Ok(text.join("; "))
+}
+
+fn reported_around_the_result() -> Outcome {
+    hold_in_doubles(REPORTED)
+}
+
+fn reported_around_any_point() -> Outcome {
+    hold_in_doubles(REPORTED_MOVED)
+}
+
+fn reported_rejected(asked: InDoubles) -> Outcome {
+    draws::reject(60, problems([2, 2], NARROW), |draw| {
+        Exact::scope(|| enclosed_in_doubles::<P1, 3, 2>(draw, ContactQuadrature::Exact, asked))
+    })
+}
+
+/// A third of the radii around a moved point.
+fn a_third_of_what_is_reported() -> Outcome {
+    reported_rejected(InDoubles { factor: 1.0 / 3.0, ..REPORTED_MOVED })
+}
+
+/// A residual from a load that is off by a millionth, and still a radius of 2^-40.
+fn a_wrong_load() -> Outcome {
+    reported_rejected(InDoubles { load: 1.0 + 1e-6, ..REPORTED })
+}
+
 /// Draws of each kind of gap, with the class that it is to hit; most of them for the one between.
 fn hold<E, const N: usize, const M: usize>(
     cases: u32,
@@ -508,8 +671,24 @@ fn refused_beyond_the_limit() -> Outcome {
 }
 
 /// The checks, for the row of Theorem 3.3.
-pub fn checks() -> [Check; 8] {
+pub fn checks() -> [Check; 12] {
     [
+        by(
+            Engine::Exact,
+            "the_enclosure_that_is_reported_contains_the_solution_around_the_result",
+            reported_around_the_result,
+        ),
+        by(
+            Engine::Exact,
+            "the_enclosure_that_is_reported_contains_the_solution_around_any_point",
+            reported_around_any_point,
+        ),
+        control(
+            Engine::Exact,
+            "control_a_third_of_the_radius_that_is_reported",
+            a_third_of_what_is_reported,
+        ),
+        control(Engine::Exact, "control_a_residual_from_a_wrong_load", a_wrong_load),
         by(
             Engine::Exact,
             "one_solution_is_enclosed_around_the_result_of_the_solver_for_p1",

@@ -295,8 +295,7 @@ where
     let d: Discretization<E, N, M> = discretize(&problem, &Method::default()).map_err(text)?;
     let system = System::new(&d).map_err(text)?;
     let by = |name| {
-        let (outcome, _, _) =
-            route::by(name, &system, &Settings::default(), &mut Times::default())?;
+        let (outcome, ..) = route::by(name, &system, &Settings::default(), &mut Times::default())?;
         Ok::<_, SolveError>(outcome.u)
     };
     let a = by(RouteName::Condensed).map_err(text)?;

@@ -16,8 +16,8 @@ use signorini::solve::iterate::{Evaluation, Iterate};
 use signorini::solve::newton::Until;
 use signorini::solve::system::System;
 use signorini::solve::{
-    Method, MethodReport, NewtonReport, Report, RouteName, Settings, Solution, SolveError, Status,
-    discretize, solve_discrete,
+    Method, MethodReport, NewtonReport, NoLimit, Report, RouteName, Settings, Solution, SolveError,
+    Status, Unproved, discretize, solve_discrete,
 };
 
 use crate::claim::Outcome;
@@ -282,7 +282,7 @@ fn unsolved() -> Report {
         threads: 1,
         slides: 0,
     };
-    Report { newton, method }
+    Report { newton, method, enclosure: Err(Unproved::NotHeld), limit: Err(NoLimit::Assembled) }
 }
 
 /// The von Mises stress of a mean stress by its principal stresses, sigma_zz from Hooke's law; `plane` may be a mistake.

@@ -4,7 +4,9 @@ use signorini::fem::Discretization;
 use signorini::fem::matrix::{self, LowerTriangle, Neighbours, Numbering};
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::solve::evaluated::Evaluated;
-use signorini::solve::{MethodReport, NewtonReport, Report, RouteName, Solution, Status};
+use signorini::solve::{
+    MethodReport, NewtonReport, NoLimit, Report, RouteName, Solution, Status, Unproved,
+};
 
 use super::definition::Named;
 
@@ -24,7 +26,7 @@ pub(super) fn unsolved() -> Report {
         threads: 1,
         slides: 0,
     };
-    Report { newton, method }
+    Report { newton, method, enclosure: Err(Unproved::NotHeld), limit: Err(NoLimit::Assembled) }
 }
 
 /// The same numbers by the solver, in the same order.

@@ -1,0 +1,275 @@
+//! Balls: all real numbers within a radius of a [twofold](super::twofold) number, for statements that hold whatever rounding
+//! does. An operation gives a ball that contains the exact results for all numbers of its operands' balls.
+//!
+//! The centres carry some 106 bits, so that residuals keep their digits where they cancel; the radii are doubles, rounded up.
+//! Trusted are IEEE 754 double precision, rounding to nearest, and the exactness of the sum and the product of two doubles as
+//! sums of two doubles (Knuth, Dekker). The bounds of the rounding errors are proved in docs/theory.md, 7.5. What has no bound
+//! (an overflow, a quotient by a ball that contains zero) has an infinite radius or is NaN.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use super::twofold::Twofold;
+use crate::kernel::Scalar;
+
+/// The numbers from `head + tail - radius` to `head + tail + radius`; `head` is `head + tail` rounded to nearest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ball {
+    head: f64,
+    tail: f64,
+    radius: f64,
+}
+
+/// 2^-103 >= twice the rounding error of a sum beside the magnitudes of its terms, 3.1 u^2 with u = 2^-53.
+const SUM: f64 = 9.860_761_315_262_648e-32;
+
+/// 2^-101 >= twice the rounding error of a product beside its magnitude, 8.1 u^2.
+const PRODUCT: f64 = 4.0 * SUM;
+
+/// What a product of less than 2^-900 in magnitude is off by at most, however it underflows: 2^-890.
+const TINY: f64 = f64::from_bits((1023 - 890) << 52);
+
+/// A sum or product of a few nonnegative doubles, each operation rounded to nearest, is no more than this times that.
+fn up(x: f64) -> f64 {
+    x * (1.0 + 16.0 * f64::EPSILON)
+}
+
+impl Ball {
+    const EVERYTHING: Ball = Ball { head: 0.0, tail: 0.0, radius: f64::INFINITY };
+
+    fn point(centre: Twofold) -> Self {
+        Ball { head: centre.head(), tail: centre.tail(), radius: 0.0 }
+    }
+
+    /// The centre alone.
+    pub fn centre(self) -> Self {
+        Ball { radius: 0.0, ..self }
+    }
+
+    /// The double nearest to the centre.
+    pub fn head(self) -> f64 {
+        self.head
+    }
+
+    /// How far the numbers of the ball are from its centre, at most.
+    pub fn radius(self) -> f64 {
+        self.radius
+    }
+
+    /// The same ball, wider by `by`.
+    pub fn widened(self, by: f64) -> Self {
+        Ball { radius: up(self.radius + by), ..self }
+    }
+
+    /// No number of the ball is larger in magnitude.
+    pub fn magnitude(self) -> f64 {
+        up(self.head.abs() + self.tail.abs() + self.radius)
+    }
+
+    /// No number of the ball is smaller in magnitude.
+    pub fn least_magnitude(self) -> f64 {
+        let least = self.head.abs() - up(self.tail.abs() + self.radius);
+        (least * (1.0 - 16.0 * f64::EPSILON)).max(0.0)
+    }
+
+    fn slack(self) -> f64 {
+        8.0 * f64::EPSILON * (self.head.abs() + self.radius)
+    }
+
+    /// No number of the ball is larger.
+    pub fn upper(self) -> f64 {
+        self.head + (self.tail + self.radius) + self.slack()
+    }
+
+    /// No number of the ball is smaller.
+    pub fn lower(self) -> f64 {
+        self.head + (self.tail - self.radius) - self.slack()
+    }
+
+    /// Whether it has a bound.
+    pub fn is_finite(self) -> bool {
+        self.head.is_finite() && self.tail.is_finite() && self.radius.is_finite()
+    }
+
+    fn is_zero(self) -> bool {
+        self.head == 0.0 && self.radius == 0.0
+    }
+
+    fn is_nan(self) -> bool {
+        self.head.is_nan() || self.tail.is_nan() || self.radius.is_nan()
+    }
+
+    /// A ball that contains both.
+    fn hull(self, other: Ball) -> Ball {
+        if self.is_nan() || other.is_nan() {
+            return Ball { head: f64::NAN, ..self };
+        }
+        let (low, high) = (self.lower().min(other.lower()), self.upper().max(other.upper()));
+        let middle = low / 2.0 + high / 2.0;
+        let radius = (high - middle).max(middle - low);
+        Ball { head: middle, tail: 0.0, radius: up(radius + f64::EPSILON * middle.abs() + TINY) }
+    }
+
+    /// The square roots of positive numbers.
+    pub fn sqrt(self) -> Ball {
+        if !(self.least_magnitude() > 0.0 && self.head > 0.0) {
+            return if self.is_zero() { self } else { Ball::EVERYTHING };
+        }
+        let first = self.head.sqrt();
+        let rest = self - Ball::from(first) * Ball::from(first);
+        let root = Ball::point(Twofold::sum(first, rest.head / (2.0 * first)));
+        // |x^(1/2) - s| = |x - s^2| / (x^(1/2) + s)
+        let off = (self - root * root).magnitude() / root.least_magnitude();
+        root.widened(up(off + TINY))
+    }
+}
+
+impl From<f64> for Ball {
+    fn from(a: f64) -> Self {
+        Ball { head: a, tail: 0.0, radius: 0.0 }
+    }
+}
+
+impl From<i32> for Ball {
+    fn from(a: i32) -> Self {
+        Ball::from(f64::from(a))
+    }
+}
+
+impl Add for Ball {
+    type Output = Self;
+
+    #[inline]
+    fn add(self, b: Self) -> Self {
+        let heads = Twofold::sum(self.head, b.head);
+        let sum = Twofold::sum(heads.head(), heads.tail() + (self.tail + b.tail));
+        let size = self.head.abs() + b.head.abs();
+        let radius = up(self.radius + b.radius + SUM * size);
+        Ball { head: sum.head(), tail: sum.tail(), radius }
+    }
+}
+
+impl Neg for Ball {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Ball { head: -self.head, tail: -self.tail, radius: self.radius }
+    }
+}
+
+impl Sub for Ball {
+    type Output = Self;
+
+    #[inline]
+    fn sub(self, b: Self) -> Self {
+        self + -b
+    }
+}
+
+impl Mul for Ball {
+    type Output = Self;
+
+    #[inline]
+    fn mul(self, b: Self) -> Self {
+        if self.is_zero() || b.is_zero() {
+            return if self.is_nan() || b.is_nan() { Ball::EVERYTHING } else { Ball::from(0.0) };
+        }
+        let heads = Twofold::product(self.head, b.head);
+        let cross = self.head * b.tail + self.tail * b.head;
+        let product = Twofold::sum(heads.head(), heads.tail() + cross);
+        let spread = self.head.abs() * b.radius + b.head.abs() * self.radius;
+        let size = PRODUCT * heads.head().abs() + TINY;
+        let radius = up(spread + self.radius * b.radius + size);
+        Ball { head: product.head(), tail: product.tail(), radius }
+    }
+}
+
+impl Div for Ball {
+    type Output = Self;
+
+    /// Any quotient of the centres will do: what it is off by is found by multiplying back.
+    fn div(self, b: Self) -> Self {
+        let least = b.least_magnitude();
+        if !(least > 0.0) {
+            return Ball::EVERYTHING;
+        }
+        if self.is_zero() {
+            return self;
+        }
+        let first = self.head / b.head;
+        let rest = self - b * Ball::from(first);
+        let quotient = Ball::point(Twofold::sum(first, rest.head / b.head));
+        let off = (self - b * quotient).magnitude() / least;
+        quotient.widened(up(off + TINY))
+    }
+}
+
+crate::entry_of_nalgebra!(Ball);
+
+impl Scalar for Ball {
+    fn split(
+        self,
+        nonpositive: impl FnOnce(Self) -> Self,
+        positive: impl FnOnce(Self) -> Self,
+    ) -> Self {
+        if self.is_nan() {
+            positive(self)
+        } else if self.is_zero() {
+            nonpositive(self)
+        } else if self.least_magnitude() > 0.0 {
+            if self.head > 0.0 { positive(self) } else { nonpositive(self) }
+        } else {
+            nonpositive(self).hull(positive(self))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::positive_part;
+
+    fn third() -> Ball {
+        Ball::from(1) / Ball::from(3)
+    }
+
+    #[test]
+    fn a_third_three_times_contains_one_and_is_known_to_a_hundred_bits() {
+        let off = third() + third() + third() - Ball::from(1);
+        assert!(off.lower() <= 0.0 && off.upper() >= 0.0);
+        assert!(off.radius() > 0.0 && off.magnitude() < 1e-29, "{off:?}");
+    }
+
+    #[test]
+    fn control_a_centre_alone_misses_what_its_ball_contains() {
+        // 10^16 + 1/3 - 10^16 - 1/3 is 0; the centres give some 1e-16, and only the radii say so.
+        let large = Ball::from(1e30);
+        let off = (large + third().centre()) - large - third();
+        assert!(off.lower() <= 0.0 && off.upper() >= 0.0);
+        assert!(off.centre().head() != 0.0, "the sum is rounded: {off:?}");
+    }
+
+    #[test]
+    fn roots_quotients_and_products_contain_the_exact_ones() {
+        for x in [2.0, 3.0, 0.1, 1e-30, 7e40] {
+            let root = Ball::from(x).sqrt();
+            let off = root * root - Ball::from(x);
+            assert!(off.lower() <= 0.0 && off.upper() >= 0.0 && off.magnitude() < 1e-29 * x);
+            let one = Ball::from(x) * (Ball::from(1) / Ball::from(x)) - Ball::from(1);
+            assert!(one.lower() <= 0.0 && one.upper() >= 0.0 && one.magnitude() < 1e-29);
+        }
+        assert!(!(Ball::from(1) / Ball::from(0)).is_finite());
+        assert!(!(Ball::from(1e300) * Ball::from(1e300)).is_finite());
+        let tiny = Ball::from(1e-200) * Ball::from(1e-200);
+        assert!(tiny.lower() <= 0.0 && tiny.upper() >= 0.0, "an underflow is enclosed: {tiny:?}");
+    }
+
+    #[test]
+    fn zero_stays_sharp_and_an_undecided_sign_gets_both_answers() {
+        assert!((Ball::from(0) * third()).is_zero());
+        let undecided = Ball::from(0).widened(1e-3);
+        let positive = positive_part(undecided);
+        assert!(positive.lower() <= 0.0 && positive.upper() >= 1e-3);
+        assert_eq!(positive_part(-third()), Ball::from(0));
+        assert_eq!(positive_part(third()), third());
+    }
+}

@@ -1,0 +1,604 @@
+//! How far the computed displacement u~ is from the exact solution u^h of (8), whatever Newton's method, the factorisation and
+//! rounding did: an enclosure of u^h and of what is reported of it. docs/theory.md, 7.5, has the proofs.
+//!
+//! The problem (8) that is meant has these data: the vertices, the Lame coefficients as they act in the plane, gamma on each
+//! contact edge, the gap at the nodes, the prescribed components, the directions of contact where they are not the normal, the
+//! points of a Gauss rule, and for the loads the forces that the quadrature has at its points, weight times value: all of them
+//! doubles, taken for the real numbers that they are. Lengths, normals, areas, stresses and integrals are the exact ones.
+//!
+//! 1. kappa < 1, rounded up: (8) has exactly one solution, and A(v, v) >= (1 - kappa) a(v, v).
+//! 2. The residual r of (8) at u~ in [balls](crate::fem::ball), and any z that nearly solves A z = r, as the factor at hand
+//!    gives it: |r|_A* <= (z.A z)^{1/2} + |r - A z|_A*, where the last residual is again one in balls, and is turned into a
+//!    dual norm by [Korn's inequality](crate::fem::korn), crudely.
+//! 3. (C2): with rho = |r|_A*, |u~ - u^h|_a <= rho (1 - kappa)^{-1/2}, |gamma^{1/2}(lambda~ - lambda^h)| <= rho / 2.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+#[cfg(feature = "files")]
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use super::factor::Factor;
+use super::system::System;
+use crate::fem::Discretization;
+use crate::fem::ball::Ball;
+use crate::fem::contact_line::ContactLineEdge;
+use crate::fem::korn::Korn;
+use crate::fem::loads;
+use crate::fem::moments::moments;
+use crate::fem::precise::{self, EdgeNumbers, OnEdge};
+use crate::kernel::contact_edge::{coercivity_constant, turning_factor};
+use crate::kernel::edge_integral::ExactEdge;
+
+/// An interval `[low, high]`.
+pub type Range = [f64; 2];
+
+/// Where u^h is, and what is known of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Enclosure {
+    /// kappa of (11), rounded up.
+    pub kappa: f64,
+    /// |u~ - u^h|_a at most.
+    pub radius: f64,
+    /// The same over |u~|_a; `None` for a body without strain.
+    pub relative: Option<f64>,
+    /// The norm of gamma^{1/2} (lambda~ - lambda^h) on Gamma_C at most.
+    pub pressure: f64,
+    /// The length of u~ - u^h at each node at most.
+    pub nodes: Vec<f64>,
+    /// What is reported of u^h.
+    pub intervals: Intervals,
+}
+
+/// Intervals that contain what the exact solution of (8) has.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
+pub struct Intervals {
+    /// a(u, u)
+    pub energy: Range,
+    /// The largest length of u at a node.
+    pub max_displacement: Range,
+    /// What each contact boundary carries.
+    pub contact: Vec<ContactIntervals>,
+    /// The force of each displacement boundary on the body.
+    pub reactions: BTreeMap<String, [Range; 2]>,
+}
+
+impl Intervals {
+    fn are_finite(&self) -> bool {
+        let contact = self.contact.iter().flat_map(|c| [c.force, c.resultant[0], c.resultant[1]]);
+        let all = contact.chain(self.reactions.values().copied().flatten());
+        let all = all.chain([self.energy, self.max_displacement]);
+        all.flatten().all(f64::is_finite)
+    }
+}
+
+/// Of a contact boundary.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
+pub struct ContactIntervals {
+    /// Its name.
+    pub boundary: String,
+    /// -int lambda^h
+    pub force: Range,
+    /// int lambda^h n~
+    pub resultant: [Range; 2],
+}
+
+/// Why nothing is proved.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[expect(missing_docs, reason = "the message of each variant says what it is")]
+pub enum Unproved {
+    #[error("the body is held by contact alone, and A is singular")]
+    HeldByContact,
+    #[error("kappa = {kappa} is not below 1: (8) may have several solutions, or none")]
+    NotCoercive { kappa: f64 },
+    #[error("a part of the body is not held by displacement boundaries of its own")]
+    NotHeld,
+    #[error("A has no Cholesky factor in double precision")]
+    NoFactor,
+    #[error("the bound over- or underflows double precision")]
+    OutOfRange,
+    #[error("out of memory")]
+    OutOfMemory,
+    #[error("the loads cannot be evaluated again")]
+    Loads,
+}
+
+/// A number that is rounded up: no more than a few roundings ago it was exact.
+fn up(x: f64) -> f64 {
+    x * (1.0 + 16.0 * f64::EPSILON)
+}
+
+impl Unproved {
+    /// Whether (8) is known to have exactly one solution all the same.
+    pub fn is_unique(&self) -> bool {
+        !matches!(self, Unproved::HeldByContact | Unproved::NotCoercive { .. })
+    }
+}
+
+/// a . b
+fn dot(a: [Ball; 2], b: [Ball; 2]) -> Ball {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+/// The square root of what cannot be negative, rounded up; infinite where nothing is known.
+fn root(square: Ball) -> f64 {
+    let square = square.upper();
+    if square.is_nan() { f64::INFINITY } else { up(square.max(0.0).sqrt()) }
+}
+
+/// The residual of a correction that is this small a part of the bound needs no further one.
+const SMALL: f64 = 1e-2;
+
+/// Corrections of z, at most.
+const CORRECTIONS: usize = 3;
+
+/// Encloses the solution of (8) around `u`. A factor of A, if one is at hand, is taken as it is: nothing depends on its
+/// being right.
+///
+/// # Errors
+/// Why nothing can be proved.
+pub fn enclose<E, const N: usize, const M: usize>(
+    system: &System<E, N, M>,
+    u: &[[f64; 2]],
+    factor: Option<Factor>,
+) -> Result<Enclosure, Unproved>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let d = system.d;
+    let load = loads::assemble_as::<Ball, E, N, M>(d.problem, &d.space);
+    enclose_with(system, u, factor, &load.map_err(|_| Unproved::Loads)?)
+}
+
+/// The same for a given load: L(v) for every basis function.
+///
+/// # Errors
+/// As [`enclose`].
+pub fn enclose_with<E, const N: usize, const M: usize>(
+    system: &System<E, N, M>,
+    u: &[[f64; 2]],
+    factor: Option<Factor>,
+    load: &[[Ball; 2]],
+) -> Result<Enclosure, Unproved>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let d = system.d;
+    if d.slides.is_some() {
+        return Err(Unproved::HeldByContact);
+    }
+    let lines = lines(d);
+    let kappa = kappa(d, &lines);
+    if !(kappa < 1.0) {
+        return Err(Unproved::NotCoercive { kappa });
+    }
+    let coercivity = (1.0 - kappa) * (1.0 - 4.0 * f64::EPSILON);
+    let korn = Korn::new(&d.space, &d.problem.material, &d.constraints).ok_or(Unproved::NotHeld)?;
+    let at = Evaluation::new(system, &lines, u, load)?;
+    let r = free(system, &at.residual);
+    let rest = up((korn.sum_of_squares() / coercivity).sqrt());
+    let rho = if r.iter().all(|&r| r == Ball::from(0)) {
+        0.0
+    } else {
+        let factor = match factor {
+            Some(factor) => factor,
+            None => match Factor::with(&system.structure, &system.matrix) {
+                Ok(Ok(factor)) => factor,
+                Ok(Err(_)) => return Err(Unproved::NoFactor),
+                Err(_) => return Err(Unproved::OutOfMemory),
+            },
+        };
+        dual_norm(system, &lines, &factor, &r, rest)
+    };
+    let exact = up(rho / coercivity.sqrt());
+    let radius = up(exact + at.moved);
+    if !radius.is_finite() {
+        return Err(Unproved::OutOfRange);
+    }
+    let size = at.energy.upper().max(0.0).sqrt();
+    let nodes: Vec<f64> = korn.nodes.iter().map(|n| up(n * exact)).collect();
+    let intervals = at.intervals(d, &lines, &nodes, rho, exact);
+    if !intervals.are_finite() {
+        return Err(Unproved::OutOfRange);
+    }
+    Ok(Enclosure {
+        kappa,
+        radius,
+        relative: (size > 0.0).then(|| radius / size),
+        pressure: rho / 2.0,
+        nodes,
+        intervals,
+    })
+}
+
+/// The contact edges in balls.
+pub(super) type Lines<'d, const N: usize, const M: usize> = Vec<OnEdge<'d, Ball, N, M>>;
+
+/// Those of a discretization.
+pub(super) fn lines<'d, E, const N: usize, const M: usize>(
+    d: &'d Discretization<E, N, M>,
+) -> Lines<'d, N, M>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    d.contact.iter().map(|edge| OnEdge::new(d, edge, numbers(d, edge))).collect()
+}
+
+/// Length and normal of a contact edge as its vertices have them, and its gamma.
+fn numbers<E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    edge: &ContactLineEdge<N, M>,
+) -> EdgeNumbers<Ball>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let triangle = precise::exactly::<Ball>(d.space.mesh().triangle(edge.edge.triangle));
+    let normal: [Ball; 2] = triangle.scaled_normal(edge.edge.local).into();
+    let length = dot(normal, normal).sqrt();
+    let normal = normal.map(|c| c / length).into();
+    EdgeNumbers { normal, gamma: Ball::from(edge.gamma), length }
+}
+
+/// kappa of Theorem 2.3, rounded up. The directions of contact are doubles, unit vectors to a rounding error only.
+fn kappa<E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    lines: &[OnEdge<Ball, N, M>],
+) -> f64
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let mut lengths: BTreeMap<usize, (Ball, Ball)> = BTreeMap::new();
+    for (edge, line) in d.contact.iter().zip(lines) {
+        let factor = if edge.directions == [edge.normal; M] {
+            Ball::from(1)
+        } else {
+            let along: [[Ball; 2]; M] = edge.directions.map(|n| n.map(Ball::from).into());
+            let off = along.map(|n| (dot(n, n) - Ball::from(1)).magnitude());
+            let off = Ball::from(8.0 * off.into_iter().fold(0.0, larger));
+            let turning = turning_factor::<E, Ball, N, M>(dot(along[0], along[1]));
+            turning * (Ball::from(1) + off) + off
+        };
+        let entry =
+            lengths.entry(edge.edge.triangle).or_insert((Ball::from(0), line.numbers.gamma));
+        entry.0 += factor * line.numbers.length;
+    }
+    let of = |(&t, &(length, gamma)): (&usize, &(Ball, Ball))| {
+        let area = precise::exactly::<Ball>(d.space.mesh().triangle(t)).double_area();
+        let material = d.problem.material.of(t).map(Ball::from);
+        let area = area / Ball::from(2);
+        coercivity_constant::<E, Ball, N, M>(&material, gamma, length, area).upper()
+    };
+    lengths.iter().map(of).fold(0.0, larger)
+}
+
+/// The larger one; NaN if one of them is.
+fn larger(a: f64, b: f64) -> f64 {
+    if a >= b {
+        a
+    } else if b >= a {
+        b
+    } else {
+        f64::NAN
+    }
+}
+
+/// The components of a functional at the free unknowns, in the frames of their nodes.
+pub(super) fn free<E, const N: usize, const M: usize>(
+    system: &System<E, N, M>,
+    forces: &[[Ball; 2]],
+) -> Vec<Ball>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let frames = system.d.constraints.frames();
+    let mut all = vec![Ball::from(0); system.numbering.count];
+    for (node, numbers) in system.numbering.of.iter().enumerate() {
+        let force = match frames.get(&node) {
+            Some(&axis) => axes(axis).map(|axis| dot(axis, forces[node])),
+            None => forces[node],
+        };
+        for (number, force) in numbers.iter().zip(force) {
+            if let Some(number) = *number {
+                all[number] = force;
+            }
+        }
+    }
+    all
+}
+
+/// A direction and the one across, to the left.
+fn axes(axis: [f64; 2]) -> [[Ball; 2]; 2] {
+    [[axis[0], axis[1]], [-axis[1], axis[0]]].map(|axis| axis.map(Ball::from))
+}
+
+/// The field with these components, `known` at the free ones and the prescribed ones as `prescribed` has them.
+fn field<E, const N: usize, const M: usize>(
+    system: &System<E, N, M>,
+    known: impl Fn(usize, usize, usize) -> f64,
+    prescribed: impl Fn(usize, usize) -> f64,
+) -> Vec<[Ball; 2]>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let frames = system.d.constraints.frames();
+    let at = |(node, numbers): (usize, &[Option<usize>; 2])| {
+        let parts = [0, 1].map(|c| {
+            Ball::from(match numbers[c] {
+                Some(number) => known(number, node, c),
+                None => prescribed(node, c),
+            })
+        });
+        match frames.get(&node) {
+            None => parts,
+            Some(&axis) => {
+                let [along, across] = axes(axis);
+                [0, 1].map(|c| parts[0] * along[c] + parts[1] * across[c])
+            }
+        }
+    };
+    system.numbering.of.iter().enumerate().map(at).collect()
+}
+
+/// A(v, .) at the free unknowns for the field with the components `z`.
+pub(super) fn times_matrix<E, const N: usize, const M: usize>(
+    system: &System<E, N, M>,
+    lines: &[OnEdge<Ball, N, M>],
+    z: &[f64],
+) -> Vec<Ball>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let v = field(system, |number, _, _| z[number], |_, _| 0.0);
+    let mut forces = vec![[Ball::from(0); 2]; v.len()];
+    precise::add_internal_forces(system.d, &v, &mut forces);
+    for line in lines {
+        line.add_stresses(&v, &mut forces);
+    }
+    free(system, &forces)
+}
+
+/// |r|_A* at most, where |t|_A* <= `crude` |t|_2 for every t.
+fn dual_norm<E, const N: usize, const M: usize>(
+    system: &System<E, N, M>,
+    lines: &[OnEdge<Ball, N, M>],
+    factor: &Factor,
+    r: &[Ball],
+    crude: f64,
+) -> f64
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let mut z = vec![0.0; r.len()];
+    let mut left = r.to_vec();
+    let mut best = f64::INFINITY;
+    for _ in 0..CORRECTIONS {
+        let mut correction: Vec<f64> = left.iter().map(|t| t.head()).collect();
+        factor.forward(&mut correction);
+        factor.backward(&mut correction);
+        for (z, c) in z.iter_mut().zip(&correction) {
+            *z += c;
+        }
+        let az = times_matrix(system, lines, &z);
+        let square =
+            z.iter().zip(&az).fold(Ball::from(0), |sum, (&z, &az)| sum + Ball::from(z) * az);
+        let energy = root(square);
+        left = r.iter().zip(&az).map(|(&r, &az)| r - az).collect();
+        let rest = up(crude * norm(&left));
+        let bound = up(energy + rest);
+        let enough = !(rest > SMALL * energy);
+        if !(bound < best) {
+            break;
+        }
+        best = bound;
+        if enough {
+            break;
+        }
+    }
+    best
+}
+
+/// The Euclidean norm at most.
+fn norm(v: &[Ball]) -> f64 {
+    let scale = v.iter().map(|v| v.magnitude()).fold(0.0, larger);
+    if !(scale > 0.0 && scale.is_finite()) {
+        return if scale == 0.0 { 0.0 } else { f64::INFINITY };
+    }
+    let sum: f64 = v.iter().map(|v| (v.magnitude() / scale).powi(2)).sum();
+    // As many roundings as terms, and what is less than 2^-1000 of the largest.
+    scale * sum.sqrt() * (1.0 + f64::EPSILON * (v.len() + 16) as f64)
+}
+
+/// (8) at u~.
+struct Evaluation {
+    /// The residual at every basis function.
+    residual: Vec<[Ball; 2]>,
+    /// u~ with its prescribed components where they should be.
+    u: Vec<[Ball; 2]>,
+    /// The energy norm of what that moved, at most.
+    moved: f64,
+    /// a(u~, u~)
+    energy: Ball,
+    /// int \[P\]+ N_a / gamma on each contact edge.
+    pressures: Vec<Vec<Ball>>,
+}
+
+impl Evaluation {
+    fn new<E, const N: usize, const M: usize>(
+        system: &System<E, N, M>,
+        lines: &[OnEdge<Ball, N, M>],
+        u: &[[f64; 2]],
+        load: &[[Ball; 2]],
+    ) -> Result<Self, Unproved>
+    where
+        E: ExactEdge<f64, N, M>,
+    {
+        let d = system.d;
+        let frames = d.constraints.frames();
+        let component = |_, node: usize, c: usize| match frames.get(&node) {
+            Some(&axis) => crate::fem::constraints::in_frame(axis, u[node])[c],
+            None => u[node][c],
+        };
+        let prescribed =
+            |node: usize, c: usize| d.constraints.values()[node][c].unwrap_or_default();
+        let exact = field(system, component, prescribed);
+        let off: Vec<[Ball; 2]> = exact
+            .iter()
+            .zip(u)
+            .map(|(exact, u)| [0, 1].map(|c| exact[c] - Ball::from(u[c])))
+            .collect();
+        let moved = root(strain_energy(d, &off));
+
+        let mut residual = vec![[Ball::from(0); 2]; u.len()];
+        precise::add_internal_forces(d, &exact, &mut residual);
+        let energy = product(&exact, &residual);
+        let mut pressures = Vec::with_capacity(lines.len());
+        for (edge, line) in d.contact.iter().zip(lines) {
+            line.add_stresses(&exact, &mut residual);
+            let weight = line.numbers.length / line.numbers.gamma;
+            let moments = moments::<E, N, M>(&d.rule, line.p(edge, &exact));
+            let pressure = moments.map(|moment| weight * moment);
+            line.add_contact(&pressure, &mut residual);
+            pressures.push(pressure.to_vec());
+        }
+        for (r, &l) in residual.iter_mut().zip(load) {
+            *r = [r[0] - l[0], r[1] - l[1]];
+        }
+        let all = residual.iter().chain(&exact).flatten();
+        let squares = exact.iter().map(|&u| dot(u, u)).chain([energy]);
+        if !(all.into_iter().all(|b| b.is_finite()) && squares.into_iter().all(Ball::is_finite)) {
+            return Err(Unproved::OutOfRange);
+        }
+        Ok(Evaluation { residual, u: exact, moved, energy, pressures })
+    }
+
+    /// What is reported, with |u~ - u^h|_A <= `rho`, |u~ - u^h|_a <= `radius`, |u~ - u^h| <= `nodes` at the nodes.
+    fn intervals<E, const N: usize, const M: usize>(
+        &self,
+        d: &Discretization<E, N, M>,
+        lines: &[OnEdge<Ball, N, M>],
+        nodes: &[f64],
+        rho: f64,
+        radius: f64,
+    ) -> Intervals
+    where
+        E: ExactEdge<f64, N, M>,
+    {
+        // |u^h|_a is within the radius of |u~|_a.
+        let low = self.energy.lower().max(0.0).sqrt() * (1.0 - 2.0 * f64::EPSILON);
+        let low = ((low - radius) * (1.0 - 2.0 * f64::EPSILON)).max(0.0);
+        let high = up(root(self.energy) + radius);
+        let energy = [low * low * (1.0 - 2.0 * f64::EPSILON), up(high * high)];
+
+        let lengths = self.u.iter().map(|&u| dot(u, u));
+        let mut max_displacement = [0.0_f64; 2];
+        for (square, by) in lengths.zip(nodes) {
+            let low = square.lower().max(0.0).sqrt() * (1.0 - 2.0 * f64::EPSILON);
+            let high = root(square);
+            let low = (low - by) * (1.0 - 2.0 * f64::EPSILON);
+            max_displacement =
+                [max_displacement[0].max(low), max_displacement[1].max(up(high + by))];
+        }
+
+        let mut contact: Vec<(Arc<str>, [Ball; 3], Ball)> = Vec::new();
+        for ((edge, line), pressure) in d.contact.iter().zip(lines).zip(&self.pressures) {
+            let along: [[Ball; 2]; M] = if edge.directions == [edge.normal; M] {
+                [line.numbers.normal.into(); M]
+            } else {
+                edge.directions.map(|n| n.map(Ball::from).into())
+            };
+            let zero = Ball::from(0);
+            let of: [Ball; 3] = pressure
+                .iter()
+                .zip(along)
+                .fold([zero; 3], |sum, (&p, n)| [sum[0] + p, sum[1] - p * n[0], sum[2] - p * n[1]]);
+            let weight = line.numbers.length / line.numbers.gamma;
+            match contact.iter_mut().find(|(name, ..)| *name == edge.boundary) {
+                Some((_, sum, weights)) => {
+                    *sum = [0, 1, 2].map(|i| sum[i] + of[i]);
+                    *weights += weight;
+                }
+                None => contact.push((Arc::clone(&edge.boundary), of, weight)),
+            }
+        }
+        let contact = contact
+            .into_iter()
+            .map(|(boundary, sums, weight)| {
+                // |int mu n~_c| <= (int 1/gamma)^{1/2} |gamma^{1/2} mu|
+                let off = up(root(weight) * rho / 2.0);
+                let [force, x, y] = sums.map(|sum| range(sum.widened(off)));
+                // lambda^h <= 0
+                let force = [force[0].max(0.0), force[1]];
+                ContactIntervals { boundary: boundary.to_string(), force, resultant: [x, y] }
+            })
+            .collect();
+        let reactions = self.reactions(d, lines, rho);
+        Intervals { energy, max_displacement, contact, reactions }
+    }
+
+    /// The residual at the held directions, and how far that of u^h can be from it.
+    fn reactions<E, const N: usize, const M: usize>(
+        &self,
+        d: &Discretization<E, N, M>,
+        lines: &[OnEdge<Ball, N, M>],
+        rho: f64,
+    ) -> BTreeMap<String, [Range; 2]>
+    where
+        E: ExactEdge<f64, N, M>,
+    {
+        let of = |(boundary, held): (&String, &Vec<crate::fem::constraints::Held>)| {
+            let ranges = [0, 1].map(|c| {
+                // The reaction is the residual at this field.
+                let mut test = vec![[Ball::from(0); 2]; self.u.len()];
+                for held in held {
+                    let direction = Ball::from(held.direction[c]);
+                    for k in 0..2 {
+                        let dual = Ball::from(held.dual[k]);
+                        test[held.node][k] += direction * dual;
+                    }
+                }
+                let reaction = product(&test, &self.residual);
+                let by_body = root(strain_energy(d, &test));
+                let by_contact = lines.iter().fold(Ball::from(0), |sum, line| {
+                    let most = line.p0(&test).iter().fold(0.0, |sum, p| up(sum + p.magnitude()));
+                    let weight = line.numbers.length / line.numbers.gamma;
+                    sum + weight * Ball::from(most) * Ball::from(most)
+                });
+                let by_contact = root(by_contact);
+                range(reaction.widened(up(rho * (by_body + by_contact / 2.0))))
+            });
+            (boundary.clone(), ranges)
+        };
+        d.constraints.holders().iter().map(of).collect()
+    }
+}
+
+fn range(ball: Ball) -> Range {
+    [ball.lower(), ball.upper()]
+}
+
+/// The sum of the products of two fields or functionals.
+fn product(f: &[[Ball; 2]], u: &[[Ball; 2]]) -> Ball {
+    f.iter().zip(u).fold(Ball::from(0), |sum, (&f, &u)| sum + dot(f, u))
+}
+
+/// a(v, v)
+fn strain_energy<E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    v: &[[Ball; 2]],
+) -> Ball
+where
+    E: ExactEdge<f64, N, M>,
+{
+    if v.iter().flatten().all(|&v| v == Ball::from(0)) {
+        return Ball::from(0);
+    }
+    let mut forces = vec![[Ball::from(0); 2]; v.len()];
+    precise::add_internal_forces(d, v, &mut forces);
+    product(v, &forces)
+}
+
+/// An enclosure, or why there is none.
+pub type Certificate = Result<Enclosure, Unproved>;

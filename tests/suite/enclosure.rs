@@ -1,0 +1,247 @@
+//! The enclosure of the exact solution of (8) that comes with every solve, and the true limit of gamma0.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use signorini::fem::{Condition, Diagonal, Mesh, Problem, Rectangle};
+use signorini::io::Case;
+use signorini::kernel::{Material, P1, P2, Plane};
+use signorini::solve::enclosure::{self, Enclosure};
+use signorini::solve::system::System;
+use signorini::solve::{
+    Degree, Gamma0, Method, NoLimit, Settings, Solution, SolveError, Unproved, census, check,
+    discretize, solve,
+};
+
+use crate::assembled::Assembled;
+use crate::common::{clamped, constant, function};
+
+const FORCE: [f64; 2] = [0.25, -1.0];
+
+/// A block that is clamped on top and pushed on a floor that rises to one side.
+fn block(n: usize) -> Problem {
+    let mesh = Rectangle { width: 1.0, height: 1.0, nx: n, ny: n, diagonal: Diagonal::Left };
+    Problem::new(
+        mesh.mesh().unwrap(),
+        Material::lame(1.0, 1.0, Plane::Strain),
+        FORCE.map(constant),
+        BTreeMap::from([
+            ("top".to_owned(), clamped()),
+            ("bottom".to_owned(), Condition::Contact { gap: function(|[x, _]| x / 4.0) }),
+        ]),
+    )
+}
+
+fn with_degree(degree: Degree) -> Method {
+    Method { degree, ..Method::default() }
+}
+
+fn solved(problem: &Problem, degree: Degree) -> Solution {
+    solve(problem, &with_degree(degree), &Settings::default()).unwrap().0
+}
+
+/// The enclosure around a displacement.
+fn around(problem: &Problem, degree: Degree, u: &[[f64; 2]]) -> Enclosure {
+    let method = with_degree(degree);
+    match degree {
+        Degree::One => {
+            let d = discretize::<P1, 3, 2>(problem, &method).unwrap();
+            enclosure::enclose(&System::new(&d).unwrap(), u, None).unwrap()
+        }
+        Degree::Two => {
+            let d = discretize::<P2, 6, 3>(problem, &method).unwrap();
+            enclosure::enclose(&System::new(&d).unwrap(), u, None).unwrap()
+        }
+    }
+}
+
+/// The true error over |u|_a, by the independent solver in double-double arithmetic.
+fn true_error(problem: &Problem, degree: Degree, solution: &Solution, u: &[[f64; 2]]) -> f64 {
+    let again = Assembled::new(problem, degree, solution.gamma.gamma0, FORCE);
+    let answer = again.solve(Some(&solution.displacement)).unwrap();
+    again.error(&answer, u)
+}
+
+#[test]
+fn on_blocks_the_bound_is_less_than_three_times_the_error_that_rounding_leaves() {
+    for (degree, n) in [(Degree::One, 4), (Degree::One, 16), (Degree::Two, 4), (Degree::Two, 8)] {
+        let problem = block(n);
+        let solution = solved(&problem, degree);
+        let bound = solution.enclosure.as_ref().unwrap().relative.unwrap();
+        let error = true_error(&problem, degree, &solution, &solution.displacement);
+        println!("{degree:?}, n = {n}: error {error:.2e}, bound {bound:.2e}");
+        assert!(error <= bound && bound < 3.0 * error, "{n}: {error:e} {bound:e}");
+        assert!(bound < 1e-12);
+    }
+}
+
+#[test]
+fn a_perturbed_solution_raises_the_bound_by_the_perturbation_and_no_more_than_its_stiffness() {
+    for degree in [Degree::One, Degree::Two] {
+        let problem = block(6);
+        let solution = solved(&problem, degree);
+        let mut u = solution.displacement.clone();
+        let top = |x: &[f64; 2]| x[1] == 1.0;
+        for (i, (u, x)) in u.iter_mut().zip(&solution.nodes).enumerate() {
+            if !top(x) {
+                u[0] += 1e-7 * (i as f64).sin();
+                u[1] += 1e-7 * (3.0 * i as f64).cos();
+            }
+        }
+        let error = true_error(&problem, degree, &solution, &u);
+        let bound = around(&problem, degree, &u).relative.unwrap();
+        assert!(error <= bound && bound <= 30.0 * error, "{error:e} {bound:e}");
+    }
+}
+
+#[test]
+fn control_the_solution_for_another_load_is_not_enclosed_closely() {
+    let problem = block(6);
+    let mut other = block(6);
+    other.body_force = [constant(0.25), constant(-1.0 - 1e-9)];
+    let solution = solved(&other, Degree::One);
+    let bound = around(&problem, Degree::One, &solution.displacement).relative.unwrap();
+    assert!(bound > 1e-10, "{bound:e}");
+    assert!(solution.enclosure.unwrap().relative.unwrap() < 1e-13);
+}
+
+#[test]
+fn what_is_reported_lies_in_its_interval() {
+    for degree in [Degree::One, Degree::Two] {
+        let solution = solved(&block(8), degree);
+        let enclosure = solution.enclosure.as_ref().unwrap();
+        let (of, q) = (&enclosure.intervals, &solution.quantities);
+        // The doubles are rounded, the intervals are not wide.
+        let inside = |[low, high]: [f64; 2], x: f64, size: f64| {
+            let slack = 1e-12 * size;
+            assert!(low - slack <= x && x <= high + slack, "{x} in [{low}, {high}]");
+            assert!(high - low <= 1e-9 * size, "[{low}, {high}]");
+        };
+        inside(of.energy, q.energy, q.energy);
+        inside(of.max_displacement, q.max_displacement, q.max_displacement);
+        inside(of.contact[0].force, q.contact_force, q.contact_force);
+        for c in 0..2 {
+            inside(of.contact[0].resultant[c], q.contact_resultant[c], q.contact_force);
+            inside(of.reactions["top"][c], q.reactions["top"][c], 1.0);
+        }
+    }
+}
+
+#[test]
+fn a_body_at_rest_has_next_to_no_radius() {
+    let mut problem = block(4);
+    problem.body_force = [constant(0.0), constant(0.0)];
+    let solution = solved(&problem, Degree::One);
+    let enclosure = solution.enclosure.unwrap();
+    // It touches the floor in a point, where the sign of P is known to a hundred bits only.
+    assert!(enclosure.radius <= 1e-25 && enclosure.pressure <= 1e-25);
+    assert_eq!(enclosure.relative, None);
+}
+
+#[test]
+fn where_kappa_is_1_or_contact_alone_holds_the_body_nothing_is_claimed() {
+    let problem = block(4);
+    let limit = check(&problem, &Method::default()).unwrap().gamma.coercivity.limit();
+    let method = Method {
+        gamma0: Gamma0::Value(1.01 * limit),
+        allow_noncoercive: true,
+        ..Method::default()
+    };
+    let (solution, _) = solve(&problem, &method, &Settings::default()).unwrap();
+    assert!(matches!(solution.enclosure, Err(Unproved::NotCoercive { kappa }) if kappa >= 1.0));
+
+    let case = case("disk_force", &[]);
+    let (solution, _) = solve(&case.problem, &case.method, &case.settings).unwrap();
+    assert_eq!(solution.enclosure, Err(Unproved::HeldByContact));
+    assert_eq!(solution.gamma.true_limit, Err(NoLimit::HeldByContact));
+}
+
+#[test]
+fn the_cases_whose_supports_hold_them_are_certified() {
+    for name in ["block", "gap", "smooth", "singular", "corner", "cantilever", "disk", "pin"] {
+        let case = case(name, &[]);
+        let (solution, _) = solve(&case.problem, &case.method, &case.settings).unwrap();
+        let relative = solution.enclosure.unwrap().relative.unwrap();
+        println!("{name}: {relative:.1e}");
+        assert!(relative < 1e-9, "{name}: {relative:e}");
+    }
+}
+
+fn case(name: &str, settings: &[&str]) -> Case {
+    let file = format!("cases/{name}.toml");
+    let text = std::fs::read_to_string(&file).unwrap();
+    let settings: Vec<String> = settings.iter().map(|&s| s.to_owned()).collect();
+    Case::parse(Path::new(&file), &text, &settings).unwrap()
+}
+
+#[test]
+fn two_solutions_and_none_are_told_apart_from_a_failure_to_converge() {
+    let outcome = |name, settings: &[&str]| {
+        let case = case(name, settings);
+        solve(&case.problem, &case.method, &case.settings).map(|(solution, _)| solution)
+    };
+    let error = |name| outcome(name, &[]).unwrap_err();
+    assert_eq!(error("two_solutions"), SolveError::SeveralSolutions { count: 2 });
+    assert_eq!(error("no_solution"), SolveError::NoSolution);
+    for name in ["two_solutions", "no_solution"] {
+        let gamma0 = "method.gamma0=0.06666666666666667";
+        let solution = outcome(name, &[gamma0]).unwrap();
+        assert!(solution.enclosure.unwrap().relative.unwrap() < 1e-14);
+        // Below the true limit, 6/5, there is one although kappa >= 1.
+        let found = outcome(name, &["method.gamma0=1.1"]).unwrap();
+        assert!(matches!(found.enclosure, Err(Unproved::NotCoercive { .. })));
+        let limit = found.gamma.true_limit.unwrap().gamma0;
+        assert!((limit - 1.2).abs() <= 1e-12, "{limit}");
+    }
+}
+
+#[test]
+fn control_the_search_finds_one_solution_where_there_is_one() {
+    for (name, gamma0) in [("two_solutions", 0.06), ("no_solution", 0.06), ("no_solution", 1.1)] {
+        let mut case = case(name, &[]);
+        case.method.gamma0 = Gamma0::Value(gamma0);
+        let d = discretize::<P1, 3, 2>(&case.problem, &case.method).unwrap();
+        assert_eq!(census::count(&System::new(&d).unwrap()), Some(1), "{name}, {gamma0}");
+    }
+}
+
+/// The trapezoid of docs/theory.md, 2.4, whose true limit is between the bound and (1 + epsilon/6) times it.
+#[test]
+fn the_true_limit_of_the_trapezoid_is_next_to_the_bound() {
+    let epsilon = 1.0 / 64.0;
+    let vertices = vec![[-3.0, 0.0], [3.0, 0.0], [0.0, 4.0], [epsilon, 4.0]];
+    let named = [("bottom", [0, 1]), ("top", [2, 3])];
+    let named = named.map(|(name, edge)| (name.to_owned(), vec![edge]));
+    let mesh = Mesh::new(vertices, vec![[0, 1, 2], [1, 3, 2]], named).unwrap();
+    let problem = Problem::new(
+        mesh,
+        Material::lame(1.0, 1.0, Plane::Strain),
+        FORCE.map(constant),
+        BTreeMap::from([
+            ("top".to_owned(), clamped()),
+            ("bottom".to_owned(), Condition::Contact { gap: constant(0.0) }),
+        ]),
+    );
+    for degree in [Degree::One, Degree::Two] {
+        let gamma = check(&problem, &with_degree(degree)).unwrap().gamma;
+        let (bound, limit) = (gamma.coercivity.limit(), gamma.true_limit.unwrap());
+        assert!(bound <= limit.gamma0 && limit.gamma0 <= bound * (1.0 + epsilon / 6.0 + 1e-12));
+        assert_eq!(limit.edge, [[-3.0, 0.0], [3.0, 0.0]]);
+    }
+}
+
+#[test]
+fn the_true_limit_is_the_same_from_the_stiffness_and_from_the_factor_of_any_solve() {
+    let problem = block(8);
+    for degree in [Degree::One, Degree::Two] {
+        let checked = check(&problem, &with_degree(degree)).unwrap().gamma;
+        let bound = checked.coercivity.limit();
+        for share in [0.01, 0.5, 0.99] {
+            let method = Method { gamma0: Gamma0::Value(share * bound), ..with_degree(degree) };
+            let (solution, _) = solve(&problem, &method, &Settings::default()).unwrap();
+            let (one, other) = (checked.true_limit.unwrap(), solution.gamma.true_limit.unwrap());
+            assert!((one.gamma0 - other.gamma0).abs() <= 1e-10 * one.gamma0);
+            assert!(one.gamma0 >= bound);
+        }
+    }
+}
