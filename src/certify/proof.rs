@@ -332,7 +332,7 @@ impl Certificate {
                         }
                     }
                     if let Some(owner) = owners[e][0] {
-                        on_contact[owner.piece] = on_contact[owner.piece] + contact.term;
+                        on_contact[owner.piece] += contact.term;
                     }
                     contact.force
                 }
@@ -366,15 +366,15 @@ impl Certificate {
                 root * root
             } + on_contact[t];
             shares.push(share.upper());
-            square = square + share;
+            square += share;
             let internal = complementary(&material, sigma) * double_area / S::from(2);
-            norm = norm + internal;
+            norm += internal;
             // f is constant on the parts; the mean of v on part i is (4 (v_0 + v_1 + v_2) - 3 v_i) / 9.
             let total = nodal[0] + nodal[1] + nodal[2];
             let mut work = zero;
             for i in 0..3 {
                 let mean = total * S::from(4) - nodal[i] * S::from(3);
-                work = work + exactly::<S>(piece.body[i]).dot(&mean);
+                work += exactly::<S>(piece.body[i]).dot(&mean);
             }
             energy = energy + internal / S::from(2) - work * double_area / S::from(54);
         }
@@ -383,7 +383,7 @@ impl Certificate {
                 let [a, b] = edge.ends.map(|vertex| v[vertex]);
                 for c in 0..2 {
                     let force = [forces[e][0][c], forces[e][1][c]];
-                    energy = energy - integral_of_product(force, [a[c], b[c]]);
+                    energy -= integral_of_product(force, [a[c], b[c]]);
                 }
             }
         }
