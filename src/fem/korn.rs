@@ -6,7 +6,7 @@
 //! leave; along the tree that adds up to |r_T - r_root| <= S_T^{1/2} |v|_a; and three prescribed components hold the root's.
 //!
 //! Everything but the areas and the inverse of a matrix of order 3, which are intervals, is a sum or product of positive
-//! doubles of some million terms at most: rounding changes it by far less than the factor [`SAFETY`].
+//! doubles of some million terms at most: rounding changes it by far less than the factor `SAFETY`.
 
 use std::collections::VecDeque;
 

@@ -11,7 +11,7 @@
 //! ```
 //!
 //! A radius is such a bound plus u |m|, computed in doubles too. No radius here takes more than eight roundings, each of
-//! which loses a factor 1 - u at most, and eta/2 if it underflows; [`GROWTH`] and [`TINY`] give back more. A sum or a product
+//! which loses a factor 1 - u at most, and eta/2 if it underflows; `GROWTH` and `TINY` give back more. A sum or a product
 //! that is zero without underflow stays sharp. What can't be bounded has the centre NaN, or the radius oo.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};

@@ -27,8 +27,8 @@ use crate::kernel::element::displacement_gradient;
 use crate::kernel::positive_part;
 
 /// What one part of Gamma_C carries, in the units of the case.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize), serde(default))]
 #[non_exhaustive]
 pub struct ContactBoundary {
     /// Its name.
@@ -42,7 +42,6 @@ pub struct ContactBoundary {
     /// The measure of {P > 0}.
     pub length: f64,
     /// The ends of each stretch with contact, in the undeformed body, in the direction of the boundary.
-    #[cfg_attr(feature = "files", serde(default))]
     pub stretches: Vec<[[f64; 2]; 2]>,
     /// The largest recovered pressure.
     pub peak_pressure: f64,

@@ -329,7 +329,7 @@ fn eliminate(mut a: Vec<Vec<Ball>>, mut right: Vec<Vec<Ball>>) -> Option<Vec<Vec
             let top = column[k] / of_pivot[k];
             column[k] = top;
             for i in k + 1..n {
-                column[i] = column[i] - of_pivot[i] * top;
+                column[i] -= of_pivot[i] * top;
             }
         }
     }
@@ -338,7 +338,7 @@ fn eliminate(mut a: Vec<Vec<Ball>>, mut right: Vec<Vec<Ball>>) -> Option<Vec<Vec
         for k in (0..n).rev() {
             let known = column[k];
             for i in 0..k {
-                column[i] = column[i] - a[k][i] * known;
+                column[i] -= a[k][i] * known;
             }
         }
     }

@@ -83,10 +83,10 @@ impl TwofoldFactor {
             for column in reached.drain(..).rev() {
                 let entry = std::mem::replace(&mut row[column], zero);
                 for p in starts[column]..ends[column] {
-                    row[rows[p]] = row[rows[p]] - values[p] * entry;
+                    row[rows[p]] -= values[p] * entry;
                 }
                 let l = entry / diagonal[column];
-                pivot = pivot - l * entry;
+                pivot -= l * entry;
                 (rows[ends[column]], values[ends[column]]) = (k, l);
                 ends[column] += 1;
             }
@@ -107,7 +107,7 @@ impl TwofoldFactor {
             }
         }
         for k in (0..y.len()).rev() {
-            y[k] = y[k] / self.diagonal[k];
+            y[k] /= self.diagonal[k];
             for p in self.starts[k]..self.starts[k + 1] {
                 y[k] = y[k] - self.values[p] * y[self.rows[p]];
             }

@@ -118,7 +118,7 @@ fn check_reports_and_writes_nothing() {
         "Block
   mesh        32 P1 triangles, 50 unknowns, 4 contact edges, h = 0.3536
   prescribed  10 of the unknowns
-  coercivity  gamma0 = 0.05893 (limit 0.1179 at the edge (0, 0)-(0.25, 0)), kappa = 0.5 < 1: coercive
+  coercivity  gamma0 = 0.05893 (limit 0.1179 at the edge (0, 0)-(0.25, 0)), kappa = 0.5 < 1: coercive; true limit 0.1351 at the edge (0.75, 0)-(1, 0)
   quadrature  exact: contact edges are cut at the roots of P
 "
     );

@@ -168,7 +168,7 @@ pub fn the_turning_factor_is_attained<S: Ordered>([w, c, s]: [S; 3]) -> Verdict 
     let (zero, one, two) = (S::from(0), S::from(1), S::from(2));
     given!(c * c + s * s == one);
     given!(c >= zero && c <= one);
-    given!(w > zero || w < zero);
+    given!(w > S::from(0) || w < S::from(0));
     let a = (two - c) * w;
     let r = s * w;
     let b = -(c * r + s * a) / two;
@@ -385,7 +385,7 @@ fn same_bits<E: Element<N, M>, const N: usize, const M: usize>(
     for edge in line {
         let triangle = problem.mesh.triangle(edge.edge.triangle);
         let material = problem.material.of(edge.edge.triangle);
-        let (n, gamma) = (edge.normal.into(), edge.gamma);
+        let (n, gamma) = (edge.normal, edge.gamma);
         let paper =
             ContactEdge::<f64, N, M>::new::<E>(&triangle, edge.edge.local, n, material, gamma);
         let bits = |a: &ContactEdge<f64, N, M>| -> Vec<u64> {
@@ -715,7 +715,7 @@ fn one_material_for_kappa() -> Outcome {
 pub fn materials() -> Claim {
     Claim {
         id: "21",
-        items: &["the solver"],
+        items: &[],
         title: "Several materials",
         paper: "Not in the paper: one material, A constant.",
         statement: "Each triangle has one material. kappa_T has that of its triangle, and kappa is the largest. Where two materials meet, fields that are affine on either side with one traction across are discrete solutions: a bar of two materials in contact along its foot has its closed form at all nodes, P1 and P2.",
@@ -863,7 +863,7 @@ fn nodal_lambda_for_the_recovered_pressure() -> Outcome {
 pub fn recovered() -> Claim {
     Claim {
         id: "22",
-        items: &["the solver"],
+        items: &[],
         title: "The recovered pressure",
         paper: "Not in the paper, whose pressure is lambda^h.",
         statement: "The nodal contact pressure is the mean of -lambda^h weighted by the node's hat function on the line (for P2 on half edges). The hats are not negative and add up to one, so it is between 0 and the largest -lambda^h, and its integral over a boundary is that of -lambda^h: the same force, to rounding. Away from the ends of the line it is of second order on equal edges where the pressure is smooth, measured between 24 and 48 edges; -lambda^h at the nodes is not for P1.",

@@ -153,7 +153,7 @@ fn moments(rule: &[(f64, f64)], most: usize) -> Vec<Exact> {
         let (x, w) = (Exact::of_double(2.0 * s - 1.0), Exact::of_double(w));
         let (mut before, mut p) = (Exact::from(0), Exact::from(1));
         for (k, sum) in sums.iter_mut().enumerate() {
-            *sum = *sum + w * p;
+            *sum += w * p;
             let k = Exact::of_double(k as f64);
             let next = ((k + k + Exact::from(1)) * x * p - k * before) / (k + Exact::from(1));
             (before, p) = (p, next);
