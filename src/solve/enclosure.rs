@@ -62,6 +62,7 @@ pub struct Intervals {
     /// What each contact boundary carries.
     pub contact: Vec<ContactIntervals>,
     /// The force of each displacement boundary on the body.
+    /// Empty where there are more than 64 displacement boundaries.
     pub reactions: BTreeMap<String, [Range; 2]>,
 }
 
@@ -571,9 +572,16 @@ impl Evaluation {
             });
             (boundary.clone(), ranges)
         };
-        d.constraints.holders().iter().map(of).collect()
+        let holders = d.constraints.holders();
+        if holders.len() > MOST_REACTIONS {
+            return BTreeMap::new();
+        }
+        holders.iter().map(of).collect()
     }
 }
+
+/// Each reaction takes a pass over the body: with more displacement boundaries than these none is enclosed.
+const MOST_REACTIONS: usize = 64;
 
 fn range(ball: Ball) -> Range {
     [ball.lower(), ball.upper()]

@@ -81,6 +81,9 @@ where
     Ok(TrueLimit { gamma0: gamma0 + 1.0 / mu, edge: mesh.ends(edge).map(|v| mesh.vertices()[v]) })
 }
 
+/// Bytes for each node that matrices, their structure and the factor take, and more.
+const PER_NODE: u64 = 4096;
+
 /// The limit of a discretization that is not being solved: with the factor of the stiffness matrix.
 ///
 /// # Errors
@@ -95,6 +98,7 @@ where
         return Err(NoLimit::HeldByContact);
     }
     let unknown = |_: SolveError| NoLimit::NoFactor;
+    memory::ensure(PER_NODE * d.space.nodes().len() as u64).map_err(unknown)?;
     let system = System::new(d).map_err(unknown)?;
     if Prediction::of(&system).1.route() != RouteName::Condensed {
         return Err(NoLimit::Assembled);
