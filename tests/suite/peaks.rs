@@ -242,7 +242,7 @@ fn peaks_on_a_pin_in_a_bearing_and_under_a_disk_are_those_of_other_programs_and_
 }
 
 #[test]
-#[ignore = "takes minutes; prints the table of docs/parts.md"]
+#[ignore = "takes most of a minute; run by .ci/run, prints the table of docs/parts.md"]
 fn peaks_converge_over_four_refinements() {
     peaks_are_right_on(0..4);
 }

@@ -26,7 +26,7 @@ mod definition;
 mod draw;
 mod given;
 mod roots;
-mod solver;
+pub(super) mod solver;
 
 use compare::{Shares, compared};
 use definition::Mistake;

@@ -15,11 +15,9 @@ use signorini::solve::evaluated::Evaluated;
 use signorini::solve::iterate::{Evaluation, Iterate};
 use signorini::solve::newton::Until;
 use signorini::solve::system::System;
-use signorini::solve::{
-    Method, MethodReport, NewtonReport, NoLimit, Report, RouteName, Settings, Solution, SolveError,
-    Status, Unproved, discretize, solve_discrete,
-};
+use signorini::solve::{Method, Settings, Solution, SolveError, discretize, solve_discrete};
 
+use super::assembled::solver::unsolved;
 use crate::claim::Outcome;
 use crate::proof::sampler::Random;
 use crate::{draws, sharpness};
@@ -264,25 +262,6 @@ fn noticed(outcome: Outcome) -> Outcome {
         Err(why) => Ok(format!("rejected: {why}")),
         Ok(said) => Err(format!("not noticed: {said}")),
     }
-}
-
-/// The report that goes with a displacement that nothing was solved for.
-fn unsolved() -> Report {
-    let newton = NewtonReport {
-        status: Status::Converged,
-        residuals: Vec::new(),
-        residual: 0.0,
-        factorizations: 0,
-    };
-    let method = MethodReport {
-        route: RouteName::Condensed,
-        predicted_operations: 0.0,
-        condition: 1.0,
-        forward_error: 0.0,
-        threads: 1,
-        slides: 0,
-    };
-    Report { newton, method, enclosure: Err(Unproved::NotHeld), limit: Err(NoLimit::Assembled) }
 }
 
 /// The von Mises stress of a mean stress by its principal stresses, sigma_zz from Hooke's law; `plane` may be a mistake.

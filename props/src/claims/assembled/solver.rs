@@ -11,7 +11,7 @@ use signorini::solve::{
 use super::definition::Named;
 
 /// The report that goes with a displacement that nothing was solved for.
-pub(super) fn unsolved() -> Report {
+pub(in crate::claims) fn unsolved() -> Report {
     let newton = NewtonReport {
         status: Status::Converged,
         residuals: Vec::new(),

@@ -422,13 +422,13 @@ fn real_meshes() -> Outcome {
 
 /// The contact terms with the other sign.
 fn contact_added() -> Outcome {
-    draws::reject(100, meshes(), |&mesh| either(mesh, |weight| weight))
+    draws::reject(10, meshes(), |&mesh| either(mesh, |weight| weight))
 }
 
 /// Neighbours along two of the three sides of each triangle only: in a cell the nodes across the diagonal are
 /// forgotten.
 fn third_side_forgotten() -> Outcome {
-    draws::reject(100, meshes(), |&mesh| {
+    draws::reject(10, meshes(), |&mesh| {
         let forget = |draw: &Draw<3>| {
             let sides: Vec<[usize; 2]> =
                 draw.elements.iter().flat_map(|&[a, b, c]| [[a, b], [b, c]]).collect();
