@@ -61,24 +61,27 @@ impl Parabola {
         if inside && step.magnitude() < 1e-6 { better } else { at }
     }
 
-    /// The largest value of `sign` P on \[a, b\], or more: at an end, or, where the parabola opens downwards and has its
-    /// vertex inside, below the tangent at a point near it.
+    /// The largest value of `sign` P on \[a, b\], or more: at an end; or below the tangent at a point near the vertex, and, where
+    /// the parabola may open upwards, what its curvature adds to that.
     fn largest(&self, sign: i32, a: Ball, b: Ball) -> f64 {
         let sign = Ball::from(sign);
         let ends = larger((sign * self.at(a)).upper(), (sign * self.at(b)).upper());
         let slopes = [a, b].map(|s| sign * self.slope(s));
         let monotone =
             slopes.iter().all(|s| s.lower() >= 0.0) || slopes.iter().all(|s| s.upper() <= 0.0);
-        let opens_upwards = (sign * self.0[2]).lower() >= 0.0;
-        if monotone || opens_upwards {
+        let curvature = sign * self.0[2];
+        if monotone || curvature.lower() >= 0.0 {
             return ends;
         }
+        // A parabola whose curvature is zero to rounding has no vertex to be near to: any point will do.
         let vertex = -self.0[1].head() / (2.0 * self.0[2].head());
+        let vertex = if vertex.is_nan() { a.head() } else { vertex };
         let near = Ball::from(vertex.clamp(a.head(), b.head()));
-        let tangent =
-            sign * self.at(near) + Ball::from((sign * self.slope(near)).magnitude()) * (b - a);
+        let (slope, length) = (Ball::from((sign * self.slope(near)).magnitude()), b - a);
+        let bend = Ball::from(larger(curvature.upper(), 0.0)) * length * length;
+        let tangent = sign * self.at(near) + slope * length + bend;
         // A point a rounding error outside [a, b] would be at most |b - a| away, too, but for that error.
-        let slack = (sign * self.slope(near)).magnitude() * 4.0 * f64::EPSILON;
+        let slack = slope.magnitude() * 4.0 * f64::EPSILON;
         larger(ends, tangent.upper() + slack)
     }
 }
@@ -145,6 +148,9 @@ mod tests {
             [1.0, -1.0, 0.0],
             [-0.25, -0.25, 0.0],
             [1e-300, -1e-300, 1e-300],
+            // The same value three times, which no ball knows to be a parabola without curvature.
+            [0.1; 3],
+            [-0.1; 3],
         ];
         let mut x = 0.7_f64;
         for _ in 0..400 {
