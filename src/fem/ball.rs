@@ -36,10 +36,6 @@ fn up(x: f64) -> f64 {
 impl Ball {
     const EVERYTHING: Ball = Ball { head: 0.0, tail: 0.0, radius: f64::INFINITY };
 
-    fn point(centre: Twofold) -> Self {
-        Ball { head: centre.head(), tail: centre.tail(), radius: 0.0 }
-    }
-
     /// The centre alone.
     pub fn centre(self) -> Self {
         Ball { radius: 0.0, ..self }
@@ -116,7 +112,7 @@ impl Ball {
         }
         let first = self.head.sqrt();
         let rest = self - Ball::from(first) * Ball::from(first);
-        let root = Ball::point(Twofold::sum(first, rest.head / (2.0 * first)));
+        let root = Ball::from(Twofold::sum(first, rest.head / (2.0 * first)));
         // |x^(1/2) - s| = |x - s^2| / (x^(1/2) + s)
         let off = (self - root * root).magnitude() / root.least_magnitude();
         root.widened(up(off + TINY))
@@ -126,6 +122,12 @@ impl Ball {
 impl From<f64> for Ball {
     fn from(a: f64) -> Self {
         Ball { head: a, tail: 0.0, radius: 0.0 }
+    }
+}
+
+impl From<Twofold> for Ball {
+    fn from(a: Twofold) -> Self {
+        Ball { head: a.head(), tail: a.tail(), radius: 0.0 }
     }
 }
 
@@ -197,7 +199,7 @@ impl Div for Ball {
         }
         let first = self.head / b.head;
         let rest = self - b * Ball::from(first);
-        let quotient = Ball::point(Twofold::sum(first, rest.head / b.head));
+        let quotient = Ball::from(Twofold::sum(first, rest.head / b.head));
         let off = (self - b * quotient).magnitude() / least;
         quotient.widened(up(off + TINY))
     }

@@ -3,21 +3,25 @@
 //! triangles), and it is used where that does no harm: times residuals that are far below rounding.
 //!
 //! On a triangle v is a rigid motion r_T up to c_T |v|_{a,T}. Motions of neighbours differ on their common edge by what both
-//! leave; along the tree that adds up to |r_T - r_root| <= S_T^{1/2} |v|_a; and three prescribed components hold the root's.
+//! leave; along the tree that adds up to |r_T - r_root| <= S_T^{1/2} |v|_a. Each part of the body has a root, and prescribed
+//! components and hinges between the parts hold the motions of the roots.
 //!
-//! Everything but the areas and the inverse of a matrix of order 3, which are intervals, is a sum or product of positive
+//! Everything but the areas and the matrix of those equations, which are intervals, is a sum or product of positive
 //! doubles of some million terms at most: rounding changes it by far less than the factor `SAFETY`.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 
 use super::constraints::Constraints;
-use super::rigid::Parts;
+use super::rigid::{Hinge, Parts};
 use super::space::Space;
 use crate::fem::Materials;
 use crate::kernel::{Element, Interval, Triangle};
 
 /// Covers the rounding of sums and products of positive numbers.
 const SAFETY: f64 = 1.001;
+
+/// Hinges hold no more parts together than these: their motions are found by dense elimination.
+const MOST_HINGED: usize = 32;
 
 /// |v(x_i)| <= `nodes[i]` |v|_a for all v in V^h and all nodes i.
 #[derive(Clone, Debug)]
@@ -27,8 +31,8 @@ pub struct Korn {
 }
 
 impl Korn {
-    /// The bound for the fields that vanish at the prescribed components. `None` where a part of the body is not held by
-    /// itself, or hardly.
+    /// The bound for the fields that vanish at the prescribed components. `None` where they hardly hold a part of the body,
+    /// or where hinges join more than 32 parts.
     pub fn new<E: Element<N, M>, const N: usize, const M: usize>(
         space: &Space<E, N, M>,
         materials: &Materials,
@@ -55,25 +59,12 @@ impl Korn {
             });
         let size = (high[0] - low[0]).hypot(high[1] - low[1]);
 
-        // The prescribed components, by the part of a triangle at their node.
-        let mut holds: Vec<Vec<Hold>> = vec![Vec::new(); parts.count()];
-        let mut seen = vec![usize::MAX; space.nodes().len()];
-        for (t, nodes) in space.elements().iter().enumerate() {
-            let part = parts.of_triangle()[t];
-            // Vertices, whose places are exact. A node counts once for each part.
-            for &node in &nodes[..3] {
-                if seen[node] != part {
-                    seen[node] = part;
-                    let at = space.nodes()[node];
-                    let directions = constraints.directions(node);
-                    holds[part].extend(directions.map(|direction| Hold { t, at, direction }));
-                }
-            }
-        }
+        let equations = equations(space, constraints, &parts);
         let mut along = vec![f64::INFINITY; count];
-        let mut root_motion = vec![0.0; parts.count()];
-        for (part, holds) in holds.iter().enumerate() {
-            let root = holds.first()?.t;
+        let mut origins = Vec::with_capacity(parts.count());
+        for of_part in &by_part(&equations, &parts) {
+            let root = equations[*of_part.first()?].triangle_in(origins.len(), &parts)?;
+            origins.push(mesh.vertices()[mesh.triangles()[root][0]]);
             along[root] = 0.0;
             let mut queue = VecDeque::from([root]);
             while let Some(t) = queue.pop_front() {
@@ -86,9 +77,14 @@ impl Korn {
                     queue.push_back(other);
                 }
             }
-            let origin = mesh.vertices()[mesh.triangles()[root][0]];
-            let of = |hold: &Hold| left[hold.t].sqrt() + along[hold.t].sqrt();
-            root_motion[part] = held(holds, origin, size, of)?;
+        }
+        let of = |t: usize| left[t].sqrt() + along[t].sqrt();
+        let mut root_motion = vec![f64::INFINITY; parts.count()];
+        for group in groups(&parts) {
+            let system = Roots { parts: &parts, group: &group, origins: &origins, size };
+            for (&part, bound) in group.iter().zip(system.held(&equations, of)?) {
+                root_motion[part] = bound;
+            }
         }
         let mut nodes = vec![f64::INFINITY; space.nodes().len()];
         for (t, members) in space.elements().iter().enumerate() {
@@ -112,12 +108,94 @@ impl Korn {
     }
 }
 
-/// A prescribed component: v(at) . direction = 0, on triangle t.
-#[derive(Clone, Copy, Debug)]
-struct Hold {
-    t: usize,
+/// What holds the motions r_T of triangles: sum +-r_T(at) . direction is what v has left there, for v is prescribed at the
+/// place, or is one thing on both sides of a hinge.
+#[derive(Clone, Debug)]
+struct Equation {
+    /// The triangles, each with its sign.
+    triangles: Vec<(usize, i32)>,
     at: [f64; 2],
     direction: [f64; 2],
+}
+
+impl Equation {
+    fn triangle_in(&self, part: usize, parts: &Parts) -> Option<usize> {
+        self.triangles.iter().map(|t| t.0).find(|&t| parts.of_triangle()[t] == part)
+    }
+}
+
+/// The prescribed components and the hinges, with one triangle of each part that has the node. Vertices alone: their places
+/// are exact.
+fn equations<E: Element<N, M>, const N: usize, const M: usize>(
+    space: &Space<E, N, M>,
+    constraints: &Constraints,
+    parts: &Parts,
+) -> Vec<Equation> {
+    let mut equations = Vec::new();
+    let mut seen = vec![usize::MAX; space.nodes().len()];
+    let mut at_hinge: BTreeMap<(usize, usize), usize> = BTreeMap::new();
+    let hinges: BTreeMap<usize, &Hinge> = parts.hinges().iter().map(|h| (h.vertex, h)).collect();
+    for (t, nodes) in space.elements().iter().enumerate() {
+        let part = parts.of_triangle()[t];
+        for &node in &nodes[..3] {
+            if hinges.contains_key(&node) && at_hinge.insert((node, part), t).is_some() {
+                continue;
+            }
+            if seen[node] != part {
+                seen[node] = part;
+                let at = space.nodes()[node];
+                let here = constraints.directions(node);
+                equations.extend(here.map(|direction| Equation {
+                    triangles: vec![(t, 1)],
+                    at,
+                    direction,
+                }));
+            }
+        }
+    }
+    for (&vertex, hinge) in &hinges {
+        let mut triangles = hinge.parts.iter().filter_map(|&part| at_hinge.get(&(vertex, part)));
+        let Some(&first) = triangles.next() else { continue };
+        for &other in triangles {
+            for direction in [[1.0, 0.0], [0.0, 1.0]] {
+                let triangles = vec![(first, 1), (other, -1)];
+                equations.push(Equation { triangles, at: space.nodes()[vertex], direction });
+            }
+        }
+    }
+    equations
+}
+
+/// For each part the equations that it is in, supports first.
+fn by_part(equations: &[Equation], parts: &Parts) -> Vec<Vec<usize>> {
+    let mut all = vec![Vec::new(); parts.count()];
+    for (i, equation) in equations.iter().enumerate() {
+        for &(t, _) in &equation.triangles {
+            all[parts.of_triangle()[t]].push(i);
+        }
+    }
+    all
+}
+
+/// The parts that hinges join, with or without others between them.
+fn groups(parts: &Parts) -> Vec<Vec<usize>> {
+    let mut label: Vec<usize> = (0..parts.count()).collect();
+    let mut changed = true;
+    while changed {
+        changed = false;
+        for hinge in parts.hinges() {
+            let least = hinge.parts.iter().map(|&p| label[p]).min().unwrap_or_default();
+            for &part in &hinge.parts {
+                changed |= label[part] != least;
+                label[part] = least;
+            }
+        }
+    }
+    let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for (part, &label) in label.iter().enumerate() {
+        groups.entry(label).or_default().push(part);
+    }
+    groups.into_values().collect()
 }
 
 /// c_T^2
@@ -145,18 +223,88 @@ fn squared_remainder<E: Element<N, M>, const N: usize, const M: usize>(
     })
 }
 
-/// |r| <= this times |v|_a for the rigid motion r of the root, where |r(at) . direction| <= `of` |direction| |v|_a.
-fn held(holds: &[Hold], origin: [f64; 2], size: f64, of: impl Fn(&Hold) -> f64) -> Option<f64> {
-    // r = (a, b) + c J (x - origin) / size
-    let row = |hold: &Hold| -> [f64; 3] {
-        let ([x, y], [p, q]) = (hold.at, hold.direction);
-        [p, q, (q * (x - origin[0]) - p * (y - origin[1])) / size]
-    };
-    // Three rows that are far from dependent, one after the other.
-    let mut rest: Vec<[f64; 3]> = holds.iter().map(row).collect();
-    let mut chosen = Vec::with_capacity(3);
-    for _ in 0..3 {
-        let norm = |r: &[f64; 3]| r.iter().map(|c| c * c).sum::<f64>();
+/// The motions r = (a, b) + c J (x - origin) / size of the roots of some parts, three unknowns each.
+struct Roots<'a> {
+    parts: &'a Parts,
+    group: &'a [usize],
+    /// Of all parts.
+    origins: &'a [[f64; 2]],
+    size: f64,
+}
+
+impl Roots<'_> {
+    /// |r| <= these times |v|_a on the body, for each root of the group, where r_T - r_root and v - r_T are together at most
+    /// `of`(T) |v|_a at the nodes of T.
+    fn held(&self, equations: &[Equation], of: impl Fn(usize) -> f64) -> Option<Vec<f64>> {
+        if self.group.len() > MOST_HINGED {
+            return None;
+        }
+        let here = |e: &&Equation| {
+            let part = e.triangles.first().map(|t| self.parts.of_triangle()[t.0]);
+            part.is_some_and(|part| self.group.contains(&part))
+        };
+        let equations: Vec<&Equation> = equations.iter().filter(here).collect();
+        let rows: Vec<Vec<Interval>> = equations.iter().map(|e| self.row(e)).collect();
+        let doubles: Vec<Vec<f64>> = rows
+            .iter()
+            .map(|row| row.iter().map(|c| c.lo() / 2.0 + c.hi() / 2.0).collect())
+            .collect();
+        let chosen = independent(&doubles, 3 * self.group.len())?;
+        let inverse = inverse(chosen.iter().map(|&i| doubles[i].clone()).collect())?;
+        // With M q = t and any R: q = R t + (1 - R M) q.
+        let off = (0..chosen.len()).map(|i| {
+            let entry = |j: usize| {
+                let product = chosen.iter().zip(&inverse[i]);
+                let unit = Interval::from(i32::from(i == j));
+                let left =
+                    product.fold(unit, |sum, (&k, &r)| sum - Interval::point(r) * rows[k][j]);
+                larger(left.lo().abs(), left.hi().abs())
+            };
+            (0..chosen.len()).map(entry).sum::<f64>()
+        });
+        let off = SAFETY * off.fold(0.0, larger);
+        let data: Vec<f64> = chosen
+            .iter()
+            .map(|&i| {
+                let Equation { triangles, direction: [p, q], .. } = equations[i];
+                p.hypot(*q) * triangles.iter().map(|t| of(t.0)).sum::<f64>()
+            })
+            .collect();
+        let image: Vec<f64> = inverse
+            .iter()
+            .map(|row| row.iter().zip(&data).map(|(r, d)| r.abs() * d).sum::<f64>())
+            .collect();
+        if !(off < 0.5) {
+            return None;
+        }
+        let rest = off / (1.0 - off) * image.iter().copied().fold(0.0, larger);
+        let bound = |q: &[f64]| SAFETY * ((q[0] + rest).hypot(q[1] + rest) + q[2] + rest);
+        let bounds: Vec<f64> = image.chunks_exact(3).map(bound).collect();
+        bounds.iter().all(|b| b.is_finite()).then_some(bounds)
+    }
+
+    fn row(&self, equation: &Equation) -> Vec<Interval> {
+        let mut row = vec![Interval::from(0); 3 * self.group.len()];
+        let [at, [p, q]] = [equation.at, equation.direction].map(|v| v.map(Interval::point));
+        for &(t, sign) in &equation.triangles {
+            let part = self.parts.of_triangle()[t];
+            let Some(k) = self.group.iter().position(|&other| other == part) else { continue };
+            let from = [0, 1].map(|c| at[c] - Interval::point(self.origins[part][c]));
+            let turn = (q * from[0] - p * from[1]) / Interval::point(self.size);
+            for (c, entry) in [p, q, turn].into_iter().enumerate() {
+                row[3 * k + c] = Interval::from(sign) * entry;
+            }
+        }
+        row
+    }
+}
+
+/// `count` rows that are far from dependent, one after the other.
+fn independent(rows: &[Vec<f64>], count: usize) -> Option<Vec<usize>> {
+    let mut rest = rows.to_vec();
+    let mut chosen = Vec::with_capacity(count);
+    for _ in 0..count {
+        let norm = |r: &Vec<f64>| r.iter().map(|c| c * c).sum::<f64>();
         let (best, largest) = rest
             .iter()
             .map(norm)
@@ -166,38 +314,48 @@ fn held(holds: &[Hold], origin: [f64; 2], size: f64, of: impl Fn(&Hold) -> f64) 
             return None;
         }
         chosen.push(best);
-        let axis = rest[best].map(|c| c / largest.sqrt());
+        let axis: Vec<f64> = rest[best].iter().map(|c| c / largest.sqrt()).collect();
         for r in &mut rest {
-            let along: f64 = (0..3).map(|i| r[i] * axis[i]).sum();
-            *r = std::array::from_fn(|i| r[i] - along * axis[i]);
+            let along: f64 = r.iter().zip(&axis).map(|(r, a)| r * a).sum();
+            for (r, a) in r.iter_mut().zip(&axis) {
+                *r -= along * a;
+            }
         }
     }
-    let exact = |hold: &Hold| -> [Interval; 3] {
-        let (at, d) = (hold.at.map(Interval::point), hold.direction.map(Interval::point));
-        let from = [0, 1].map(|c| at[c] - Interval::point(origin[c]));
-        [d[0], d[1], (d[1] * from[0] - d[0] * from[1]) / Interval::point(size)]
-    };
-    let m: Vec<[Interval; 3]> = chosen.iter().map(|&i| exact(&holds[i])).collect();
-    let minor = |i: usize, j: usize| {
-        let [(a, b), (c, e)] = [i, j].map(|k| ((k + 1) % 3, (k + 2) % 3));
-        m[a][c] * m[b][e] - m[a][e] * m[b][c]
-    };
-    let determinant = m[0][0] * minor(0, 0) + m[0][1] * minor(0, 1) + m[0][2] * minor(0, 2);
-    if determinant.contains(0.0) || determinant.is_nan() {
-        return None;
+    Some(chosen)
+}
+
+/// The inverse of a square matrix in doubles, by Gauss and Jordan. Nothing depends on its being right.
+fn inverse(mut m: Vec<Vec<f64>>) -> Option<Vec<Vec<f64>>> {
+    let n = m.len();
+    for (i, row) in m.iter_mut().enumerate() {
+        row.extend((0..n).map(|j| f64::from(u8::from(i == j))));
     }
-    let mut inverse = 0.0;
-    for i in 0..3 {
-        for j in 0..3 {
-            let entry = minor(i, j) / determinant;
-            inverse += entry.lo().abs().max(entry.hi().abs()).powi(2);
+    for column in 0..n {
+        let pivot =
+            (column..n).max_by(|&i, &j| m[i][column].abs().total_cmp(&m[j][column].abs()))?;
+        m.swap(column, pivot);
+        let by = m[column][column];
+        if by == 0.0 {
+            return None;
+        }
+        m[column].iter_mut().for_each(|entry| *entry /= by);
+        let from = m[column].clone();
+        for (_, row) in m.iter_mut().enumerate().filter(|(i, _)| *i != column) {
+            let factor = row[column];
+            row.iter_mut().zip(&from).for_each(|(entry, from)| *entry -= factor * from);
         }
     }
-    let data = chosen.iter().map(|&i| {
-        let [p, q] = holds[i].direction;
-        (p * p + q * q) * of(&holds[i]).powi(2)
-    });
-    // |r| <= |(a, b)| + |c|
-    let bound = (2.0 * inverse * data.sum::<f64>()).sqrt();
-    bound.is_finite().then_some(SAFETY * bound)
+    Some(m.into_iter().map(|row| row[n..].to_vec()).collect())
+}
+
+/// The larger one; infinite if one is no number.
+fn larger(a: f64, b: f64) -> f64 {
+    if a >= b {
+        a
+    } else if b >= a {
+        b
+    } else {
+        f64::INFINITY
+    }
 }

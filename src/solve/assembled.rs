@@ -93,6 +93,11 @@ where
         })
     }
 
+    /// L of A.
+    pub(super) fn factor_without_contact(&self) -> Result<Result<Tangent, Indefinite>, SolveError> {
+        self.factor_tangent(&Derivatives { gradient: Vec::new(), hessian: Vec::new() })
+    }
+
     /// The same with a little of the springs of all edges added.
     fn supported(&self, at: &Derivatives<M>) -> Derivatives<M> {
         let edges = ContactEdges { d: self.system.d, order: &self.order };
@@ -139,14 +144,14 @@ struct TwofoldSystem<const N: usize, const M: usize> {
 type Factored<const M: usize> = (Tangent, Vec<[[f64; M]; M]>);
 
 /// The factor of a tangent.
-enum Tangent {
+pub(super) enum Tangent {
     Double(Factor),
     Twofold(TwofoldFactor),
 }
 
 impl Tangent {
     /// x <- H^-1 x
-    fn solve(&self, x: &mut [f64]) {
+    pub(super) fn solve(&self, x: &mut [f64]) {
         match self {
             Tangent::Double(factor) => {
                 factor.forward(x);

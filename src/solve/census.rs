@@ -69,7 +69,7 @@ impl Condensed {
         // The columns of A, of B^T, and l.
         let a: Vec<Vec<Ball>> = (0..n)
             .map(|j| {
-                let unit: Vec<f64> = (0..n).map(|i| f64::from(u8::from(i == j))).collect();
+                let unit: Vec<Ball> = (0..n).map(|i| Ball::from(i32::from(i == j))).collect();
                 times_matrix(system, &lines, &unit)
             })
             .collect();

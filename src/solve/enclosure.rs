@@ -19,7 +19,8 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::factor::Factor;
+use super::assembled::{Assembled, Tangent};
+use super::factor::{Factor, Indefinite};
 use super::system::System;
 use crate::fem::Discretization;
 use crate::fem::ball::Ball;
@@ -95,9 +96,11 @@ pub enum Unproved {
     HeldByContact,
     #[error("kappa = {kappa} is not below 1: (8) may have several solutions, or none")]
     NotCoercive { kappa: f64 },
-    #[error("a part of the body is not held by displacement boundaries of its own")]
+    #[error(
+        "displacement boundaries hardly hold a part of the body, or hinges join more than 32 parts"
+    )]
     NotHeld,
-    #[error("A has no Cholesky factor in double precision")]
+    #[error("A has no Cholesky factor in the precision of the solve")]
     NoFactor,
     #[error("the bound over- or underflows double precision")]
     OutOfRange,
@@ -134,17 +137,46 @@ fn root(square: Ball) -> f64 {
 const SMALL: f64 = 1e-2;
 
 /// Corrections of z, at most.
-const CORRECTIONS: usize = 3;
+const CORRECTIONS: usize = 12;
 
-/// Encloses the solution of (8) around `u`. A factor of A, if one is at hand, is taken as it is: nothing depends on its
-/// being right.
+/// Which factor of A nearly solves A z = r. Nothing depends on its being right.
+pub enum FactorOfA {
+    /// One that is there.
+    AtHand(Factor),
+    /// One to be made in doubles.
+    Double,
+    /// One to be made in twofold numbers, for bodies that need them.
+    Twofold,
+}
+
+impl FactorOfA {
+    fn of<E, const N: usize, const M: usize>(
+        self,
+        system: &System<E, N, M>,
+    ) -> Result<Tangent, Unproved>
+    where
+        E: ExactEdge<f64, N, M>,
+    {
+        let assembled = match self {
+            FactorOfA::AtHand(factor) => return Ok(Tangent::Double(factor)),
+            FactorOfA::Double => Assembled::new(system, 1.0),
+            FactorOfA::Twofold => Assembled::twofold(system, 1.0),
+        };
+        match assembled.factor_without_contact() {
+            Ok(factor) => factor.map_err(|Indefinite| Unproved::NoFactor),
+            Err(_) => Err(Unproved::OutOfMemory),
+        }
+    }
+}
+
+/// Encloses the solution of (8) around `u`.
 ///
 /// # Errors
 /// Why nothing can be proved.
 pub fn enclose<E, const N: usize, const M: usize>(
     system: &System<E, N, M>,
     u: &[[f64; 2]],
-    factor: Option<Factor>,
+    factor: FactorOfA,
 ) -> Result<Enclosure, Unproved>
 where
     E: ExactEdge<f64, N, M>,
@@ -161,7 +193,7 @@ where
 pub fn enclose_with<E, const N: usize, const M: usize>(
     system: &System<E, N, M>,
     u: &[[f64; 2]],
-    factor: Option<Factor>,
+    factor: FactorOfA,
     load: &[[Ball; 2]],
 ) -> Result<Enclosure, Unproved>
 where
@@ -184,15 +216,7 @@ where
     let rho = if r.iter().all(|&r| r == Ball::from(0)) {
         0.0
     } else {
-        let factor = match factor {
-            Some(factor) => factor,
-            None => match Factor::with(&system.structure, &system.matrix) {
-                Ok(Ok(factor)) => factor,
-                Ok(Err(_)) => return Err(Unproved::NoFactor),
-                Err(_) => return Err(Unproved::OutOfMemory),
-            },
-        };
-        dual_norm(system, &lines, &factor, &r, rest)
+        dual_norm(system, &lines, &factor.of(system)?, &r, rest)
     };
     let exact = up(rho / coercivity.sqrt());
     let radius = up(exact + at.moved);
@@ -318,7 +342,7 @@ fn axes(axis: [f64; 2]) -> [[Ball; 2]; 2] {
 /// The field with these components, `known` at the free ones and the prescribed ones as `prescribed` has them.
 fn field<E, const N: usize, const M: usize>(
     system: &System<E, N, M>,
-    known: impl Fn(usize, usize, usize) -> f64,
+    known: impl Fn(usize, usize, usize) -> Ball,
     prescribed: impl Fn(usize, usize) -> f64,
 ) -> Vec<[Ball; 2]>
 where
@@ -326,11 +350,9 @@ where
 {
     let frames = system.d.constraints.frames();
     let at = |(node, numbers): (usize, &[Option<usize>; 2])| {
-        let parts = [0, 1].map(|c| {
-            Ball::from(match numbers[c] {
-                Some(number) => known(number, node, c),
-                None => prescribed(node, c),
-            })
+        let parts = [0, 1].map(|c| match numbers[c] {
+            Some(number) => known(number, node, c),
+            None => Ball::from(prescribed(node, c)),
         });
         match frames.get(&node) {
             None => parts,
@@ -347,7 +369,7 @@ where
 pub(super) fn times_matrix<E, const N: usize, const M: usize>(
     system: &System<E, N, M>,
     lines: &[OnEdge<Ball, N, M>],
-    z: &[f64],
+    z: &[Ball],
 ) -> Vec<Ball>
 where
     E: ExactEdge<f64, N, M>,
@@ -365,36 +387,34 @@ where
 fn dual_norm<E, const N: usize, const M: usize>(
     system: &System<E, N, M>,
     lines: &[OnEdge<Ball, N, M>],
-    factor: &Factor,
+    factor: &Tangent,
     r: &[Ball],
     crude: f64,
 ) -> f64
 where
     E: ExactEdge<f64, N, M>,
 {
-    let mut z = vec![0.0; r.len()];
+    let mut z = vec![Ball::from(0); r.len()];
     let mut left = r.to_vec();
     let mut best = f64::INFINITY;
     for _ in 0..CORRECTIONS {
         let mut correction: Vec<f64> = left.iter().map(|t| t.head()).collect();
-        factor.forward(&mut correction);
-        factor.backward(&mut correction);
+        factor.solve(&mut correction);
         for (z, c) in z.iter_mut().zip(&correction) {
-            *z += c;
+            *z = (*z + Ball::from(*c)).centre();
         }
         let az = times_matrix(system, lines, &z);
-        let square =
-            z.iter().zip(&az).fold(Ball::from(0), |sum, (&z, &az)| sum + Ball::from(z) * az);
+        let square = z.iter().zip(&az).fold(Ball::from(0), |sum, (&z, &az)| sum + z * az);
         let energy = root(square);
         left = r.iter().zip(&az).map(|(&r, &az)| r - az).collect();
         let rest = up(crude * norm(&left));
         let bound = up(energy + rest);
-        let enough = !(rest > SMALL * energy);
-        if !(bound < best) {
-            break;
+        if !(rest > SMALL * energy) {
+            return bound.min(best);
         }
-        best = bound;
-        if enough {
+        let stuck = !(bound < best / 2.0);
+        best = bound.min(best);
+        if stuck {
             break;
         }
     }
@@ -438,9 +458,11 @@ impl Evaluation {
     {
         let d = system.d;
         let frames = d.constraints.frames();
-        let component = |_, node: usize, c: usize| match frames.get(&node) {
-            Some(&axis) => crate::fem::constraints::in_frame(axis, u[node])[c],
-            None => u[node][c],
+        let component = |_, node: usize, c: usize| {
+            Ball::from(match frames.get(&node) {
+                Some(&axis) => crate::fem::constraints::in_frame(axis, u[node])[c],
+                None => u[node][c],
+            })
         };
         let prescribed =
             |node: usize, c: usize| d.constraints.values()[node][c].unwrap_or_default();

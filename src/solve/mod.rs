@@ -34,6 +34,7 @@ use self::accuracy::Outcome;
 pub use self::answers::{ContactBoundary, EnergyBalance};
 pub use self::checked::{MOST_GAUSS_POINTS, MOST_ITERATIONS};
 pub use self::course::{Course, Phase};
+use self::enclosure::FactorOfA;
 pub use self::enclosure::{Enclosure, Intervals, Unproved};
 use self::evaluated::Evaluated;
 pub use self::ladder::{Ladder, LadderError, Level};
@@ -368,6 +369,11 @@ where
         Some(factor) => limit::true_limit(&system, factor, d.gamma0),
         None if d.slides.is_some() => Err(NoLimit::HeldByContact),
         None => Err(NoLimit::Assembled),
+    };
+    let factor = match (factor, method.route) {
+        (Some(factor), _) => FactorOfA::AtHand(factor),
+        (None, RouteName::Twofold) => FactorOfA::Twofold,
+        (None, _) => FactorOfA::Double,
     };
     let enclosure = enclosure::enclose(&system, &evaluated.u, factor);
     times.certify = watch.lap();

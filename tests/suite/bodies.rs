@@ -419,43 +419,48 @@ fn well_posed_bodies_are_solved_as_an_independent_assembled_newton_solves_them()
 /// The share of |u|_a that the two solvers' problems may differ by: they integrate the same load by other rules, in doubles.
 const SAME_LOAD: f64 = 1e-15;
 
-/// Of a body that is solved: the true error and the enclosure's bound of it, relative; `None` where nothing is claimed.
-fn error_and_bound(body: &Body) -> Option<(f64, f64)> {
+/// Of a body: the true error and the enclosure's bound of it, relative.
+fn error_and_bound(body: &Body) -> Result<(f64, f64), String> {
     let settings = Settings { max_iterations: 200, ..Settings::default() };
-    let (solution, _) = solve(&body.problem, &body.method, &settings).ok()?;
-    let bound = solution.enclosure.ok()?.relative?;
+    let (solution, _) =
+        solve(&body.problem, &body.method, &settings).map_err(|error| error.to_string())?;
+    let bound = solution.enclosure.map_err(|why| why.to_string())?.relative.ok_or("no strain")?;
     let again = Assembled::new(&body.problem, body.method.degree, body.gamma0, body.force);
-    let answer = again.solve(Some(&solution.displacement))?;
-    Some((again.error(&answer, &solution.displacement), bound))
+    let answer = again.solve(Some(&solution.displacement)).ok_or("no independent answer")?;
+    Ok((again.error(&answer, &solution.displacement), bound))
 }
 
 #[test]
-fn the_enclosure_contains_the_independent_solution() {
+fn every_well_posed_body_gets_an_enclosure_that_contains_the_independent_solution() {
     let seeds = seeds(40);
     let count = seeds.end - seeds.start;
-    let (mut failures, mut factors) = (Vec::new(), Vec::new());
+    let (mut failures, mut factors, mut bounds) = (Vec::new(), Vec::new(), Vec::new());
     for seed in seeds {
         let body = well_posed(seed);
-        if let Some((error, bound)) = error_and_bound(&body) {
-            factors.push(bound / (error + SAME_LOAD));
-            if !(error <= bound + SAME_LOAD) {
-                let why = format!("{}: error {error:.1e}, bound {bound:.1e}", body.kind);
-                failures.push((seed, why));
+        let why = match error_and_bound(&body) {
+            Err(why) => why,
+            Ok((error, bound)) => {
+                factors.push(bound / (error + SAME_LOAD));
+                bounds.push(bound);
+                if error <= bound + SAME_LOAD {
+                    continue;
+                }
+                format!("error {error:.1e}, bound {bound:.1e}")
             }
-        }
+        };
+        failures.push((seed, format!("{}: {why} [{}]", body.kind, body.said)));
     }
-    factors.sort_unstable_by(f64::total_cmp);
-    let at = |share: usize| factors[(factors.len() - 1) * share / 10];
-    println!(
-        "{} of {count} bodies enclosed; bound over error: median {:.1}, nine of ten below {:.1}, largest {:.1}",
-        factors.len(),
-        at(5),
-        at(9),
-        at(10)
-    );
+    for (what, numbers) in [("bound over error", &mut factors), ("bound", &mut bounds)] {
+        numbers.sort_unstable_by(f64::total_cmp);
+        let at = |share: usize| numbers[(numbers.len() - 1) * share / 10];
+        println!(
+            "{what}: median {:.1e}, nine of ten below {:.1e}, largest {:.1e}",
+            at(5),
+            at(9),
+            at(10)
+        );
+    }
     report(&failures, count);
-    // Nothing is claimed of bodies that contact holds, or too slender ones.
-    assert!(2 * factors.len() as u64 >= count, "{} of {count} enclosed", factors.len());
 }
 
 #[test]

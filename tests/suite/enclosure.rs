@@ -6,7 +6,7 @@ use std::path::Path;
 use signorini::fem::{Condition, Diagonal, Mesh, Problem, Rectangle};
 use signorini::io::Case;
 use signorini::kernel::{Material, P1, P2, Plane};
-use signorini::solve::enclosure::{self, Enclosure};
+use signorini::solve::enclosure::{self, Enclosure, FactorOfA};
 use signorini::solve::system::System;
 use signorini::solve::{
     Degree, Gamma0, Method, NoLimit, Settings, Solution, SolveError, Unproved, census, check,
@@ -46,11 +46,11 @@ fn around(problem: &Problem, degree: Degree, u: &[[f64; 2]]) -> Enclosure {
     match degree {
         Degree::One => {
             let d = discretize::<P1, 3, 2>(problem, &method).unwrap();
-            enclosure::enclose(&System::new(&d).unwrap(), u, None).unwrap()
+            enclosure::enclose(&System::new(&d).unwrap(), u, FactorOfA::Double).unwrap()
         }
         Degree::Two => {
             let d = discretize::<P2, 6, 3>(problem, &method).unwrap();
-            enclosure::enclose(&System::new(&d).unwrap(), u, None).unwrap()
+            enclosure::enclose(&System::new(&d).unwrap(), u, FactorOfA::Double).unwrap()
         }
     }
 }

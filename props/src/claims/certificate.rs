@@ -25,7 +25,7 @@ use signorini::fem::{
 };
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::{Material, P1, P2, Plane};
-use signorini::solve::enclosure::{self, Enclosure};
+use signorini::solve::enclosure::{self, Enclosure, FactorOfA};
 use signorini::solve::system::System;
 use signorini::solve::{ContactQuadrature, Degree, Gamma0, Method, Settings, discretize, solve};
 
@@ -424,7 +424,7 @@ where
     let Ok(system) = System::new(&d) else { return Verdict::Fails("there is no system") };
     let load: Vec<[Ball; 2]> =
         d.load.iter().map(|l| l.map(|l| Ball::from(l * asked.load))).collect();
-    let Ok(enclosure) = enclosure::enclose_with(&system, &u, None, &load) else {
+    let Ok(enclosure) = enclosure::enclose_with(&system, &u, FactorOfA::Double, &load) else {
         return Verdict::Fails("there is an enclosure");
     };
     let certifier = Certifier::new(&d);
