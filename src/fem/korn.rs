@@ -359,3 +359,112 @@ fn larger(a: f64, b: f64) -> f64 {
         f64::INFINITY
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fem::contact_line::EdgeRule;
+    use crate::fem::{BoxedFunction, Condition, Discretization, Mesh, Problem, precise};
+    use crate::kernel::edge_integral::ExactEdge;
+    use crate::kernel::{Material, P1, P2, Plane};
+
+    fn zero() -> BoxedFunction {
+        Box::new(|_: [f64; 2]| 0.0)
+    }
+
+    /// Two unit squares that share the vertex (1, 1), the upper one clamped above. The lower one turns about the vertex
+    /// unless its left side is held along y.
+    fn hinged(left_is_held: bool) -> Problem {
+        let vertices = vec![
+            [0.0, 0.0],
+            [1.0, 0.0],
+            [1.0, 1.0],
+            [0.0, 1.0],
+            [2.0, 1.0],
+            [2.0, 2.0],
+            [1.0, 2.0],
+        ];
+        let triangles = vec![[0, 1, 2], [0, 2, 3], [2, 4, 5], [2, 5, 6]];
+        let named = [
+            ("top".to_owned(), vec![[5, 6]]),
+            ("left".to_owned(), vec![[3, 0]]),
+            ("bottom".to_owned(), vec![[0, 1]]),
+        ];
+        let left = left_is_held.then(|| Condition::Displacement([None, Some(zero())]));
+        let mut conditions = BTreeMap::from([
+            ("top".to_owned(), Condition::Displacement([Some(zero()), Some(zero())])),
+            ("bottom".to_owned(), Condition::Contact { gap: zero() }),
+        ]);
+        conditions.extend(left.map(|left| ("left".to_owned(), left)));
+        Problem::new(
+            Mesh::new(vertices, triangles, named).unwrap(),
+            Material::lame(3.0, 0.7, Plane::Strain),
+            [zero(), zero()],
+            conditions,
+        )
+    }
+
+    /// The largest |v_c(x_i)| over |v|_a for each node and component, from the inverse of the stiffness matrix.
+    fn true_factors<E: ExactEdge<f64, N, M>, const N: usize, const M: usize>(
+        d: &Discretization<E, N, M>,
+    ) -> BTreeMap<(usize, usize), f64> {
+        let free: Vec<(usize, usize)> = (0..d.space.nodes().len())
+            .flat_map(|node| [(node, 0), (node, 1)])
+            .filter(|&(node, c)| d.constraints.values()[node][c].is_none())
+            .collect();
+        let column = |&(node, c): &(usize, usize)| -> Vec<f64> {
+            let mut unit = vec![[0.0; 2]; d.space.nodes().len()];
+            let mut forces = unit.clone();
+            unit[node][c] = 1.0;
+            precise::add_internal_forces(d, &unit, &mut forces);
+            free.iter().map(|&(node, c)| forces[node][c]).collect()
+        };
+        let inverse = inverse(free.iter().map(column).collect()).unwrap();
+        free.iter().enumerate().map(|(i, &at)| (at, inverse[i][i].sqrt())).collect()
+    }
+
+    fn bounds<E: ExactEdge<f64, N, M>, const N: usize, const M: usize>() {
+        let problem = hinged(true);
+        let d = Discretization::<E, N, M>::new(&problem, |c| c.limit() / 2.0, EdgeRule::Exact);
+        let d = d.unwrap();
+        let korn = Korn::new(&d.space, &problem.material, &d.constraints).unwrap();
+        let mut tightest = f64::INFINITY;
+        for ((node, c), factor) in true_factors(&d) {
+            let bound = korn.nodes[node];
+            assert!(factor <= bound, "node {node}, component {c}: {factor} > {bound}");
+            tightest = tightest.min(bound / factor);
+        }
+        // It is crude, for P2 more so, but not without a meaning: ten thousand times smaller it would be wrong.
+        assert!(tightest < 1e4, "{tightest}");
+    }
+
+    #[test]
+    fn no_displacement_of_a_hinged_body_is_larger_at_a_node_than_the_bound() {
+        bounds::<P1, 3, 2>();
+        bounds::<P2, 6, 3>();
+    }
+
+    #[test]
+    fn control_a_part_that_turns_about_its_hinge_has_no_bound() {
+        for held in [true, false] {
+            let problem = hinged(held);
+            let space = Space::<P1, 3, 2>::new(&problem.mesh);
+            let constraints = Constraints::new(&problem, &space).unwrap();
+            let korn = Korn::new(&space, &problem.material, &constraints);
+            assert_eq!(korn.is_some(), held);
+        }
+    }
+
+    #[test]
+    fn an_inverse_times_its_matrix_is_one() {
+        let m = vec![vec![0.0, 2.0, 1.0], vec![4.0, -1.0, 0.5], vec![1.0, 1.0, 1.0]];
+        let r = inverse(m.clone()).unwrap();
+        for i in 0..3 {
+            for j in 0..3 {
+                let entry: f64 = (0..3).map(|k| r[i][k] * m[k][j]).sum();
+                approx::assert_abs_diff_eq!(entry, f64::from(u8::from(i == j)), epsilon = 1e-15);
+            }
+        }
+        assert!(inverse(vec![vec![1.0, 2.0], vec![2.0, 4.0]]).is_none());
+    }
+}

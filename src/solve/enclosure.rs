@@ -29,6 +29,7 @@ use crate::fem::korn::Korn;
 use crate::fem::loads;
 use crate::fem::moments::moments;
 use crate::fem::precise::{self, EdgeNumbers, OnEdge};
+use crate::fem::twofold::Twofold;
 use crate::kernel::contact_edge::{coercivity_constant, turning_factor};
 use crate::kernel::edge_integral::ExactEdge;
 
@@ -169,13 +170,15 @@ impl FactorOfA {
     }
 }
 
-/// Encloses the solution of (8) around `u`.
+/// Encloses the solution of (8) around `u`, by the residual there, or at a field `near` it that is known in twofold numbers:
+/// rounding a displacement to doubles moves it little, its forces more.
 ///
 /// # Errors
 /// Why nothing can be proved.
 pub fn enclose<E, const N: usize, const M: usize>(
     system: &System<E, N, M>,
     u: &[[f64; 2]],
+    near: Option<&[[Twofold; 2]]>,
     factor: FactorOfA,
 ) -> Result<Enclosure, Unproved>
 where
@@ -183,7 +186,7 @@ where
 {
     let d = system.d;
     let load = loads::assemble_as::<Ball, E, N, M>(d.problem, &d.space);
-    enclose_with(system, u, factor, &load.map_err(|_| Unproved::Loads)?)
+    enclose_with(system, u, near, factor, &load.map_err(|_| Unproved::Loads)?)
 }
 
 /// The same for a given load: L(v) for every basis function.
@@ -193,6 +196,7 @@ where
 pub fn enclose_with<E, const N: usize, const M: usize>(
     system: &System<E, N, M>,
     u: &[[f64; 2]],
+    near: Option<&[[Twofold; 2]]>,
     factor: FactorOfA,
     load: &[[Ball; 2]],
 ) -> Result<Enclosure, Unproved>
@@ -210,7 +214,7 @@ where
     }
     let coercivity = (1.0 - kappa) * (1.0 - 4.0 * f64::EPSILON);
     let korn = Korn::new(&d.space, &d.problem.material, &d.constraints).ok_or(Unproved::NotHeld)?;
-    let at = Evaluation::new(system, &lines, u, load)?;
+    let at = Evaluation::new(system, &lines, u, near, load)?;
     let r = free(system, &at.residual);
     let rest = up((korn.sum_of_squares() / coercivity).sqrt());
     let rho = if r.iter().all(|&r| r == Ball::from(0)) {
@@ -432,13 +436,13 @@ fn norm(v: &[Ball]) -> f64 {
     scale * sum.sqrt() * (1.0 + f64::EPSILON * (v.len() + 16) as f64)
 }
 
-/// (8) at u~.
+/// (8) at u~, or near it.
 struct Evaluation {
     /// The residual at every basis function.
     residual: Vec<[Ball; 2]>,
-    /// u~ with its prescribed components where they should be.
+    /// u~, or the field near it, with its prescribed components where they should be.
     u: Vec<[Ball; 2]>,
-    /// The energy norm of what that moved, at most.
+    /// The energy norm of what that is off u~, at most.
     moved: f64,
     /// a(u~, u~)
     energy: Ball,
@@ -451,6 +455,7 @@ impl Evaluation {
         system: &System<E, N, M>,
         lines: &[OnEdge<Ball, N, M>],
         u: &[[f64; 2]],
+        near: Option<&[[Twofold; 2]]>,
         load: &[[Ball; 2]],
     ) -> Result<Self, Unproved>
     where
@@ -458,11 +463,13 @@ impl Evaluation {
     {
         let d = system.d;
         let frames = d.constraints.frames();
-        let component = |_, node: usize, c: usize| {
-            Ball::from(match frames.get(&node) {
-                Some(&axis) => crate::fem::constraints::in_frame(axis, u[node])[c],
-                None => u[node][c],
-            })
+        let at = |node: usize| match near {
+            Some(near) => near[node].map(Ball::from),
+            None => u[node].map(Ball::from),
+        };
+        let component = |_, node: usize, c: usize| match frames.get(&node) {
+            Some(&axis) => crate::fem::constraints::in_frame(axis, at(node))[c].centre(),
+            None => at(node)[c],
         };
         let prescribed =
             |node: usize, c: usize| d.constraints.values()[node][c].unwrap_or_default();

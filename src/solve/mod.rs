@@ -357,8 +357,8 @@ where
     let (outcome, method, factorizations, factor) = found.map_err(|e| told(&system, e))?;
     let status = accuracy::judge(&outcome, settings).map_err(|e| told(&system, e))?;
     let Outcome { u, fine, residuals, residual, .. } = outcome;
-    let mut evaluated = match fine {
-        Some(fine) => Evaluated::precisely(d, &fine),
+    let mut evaluated = match &fine {
+        Some(fine) => Evaluated::precisely(d, fine),
         None => Evaluated::new(d, u),
     };
     // This changes neither P nor the forces.
@@ -375,7 +375,7 @@ where
         (None, RouteName::Twofold) => FactorOfA::Twofold,
         (None, _) => FactorOfA::Double,
     };
-    let enclosure = enclosure::enclose(&system, &evaluated.u, factor);
+    let enclosure = enclosure::enclose(&system, &evaluated.u, fine.as_deref(), factor);
     times.certify = watch.lap();
     Ok((evaluated, Report { newton, method, enclosure, limit }, times))
 }

@@ -46,11 +46,11 @@ fn around(problem: &Problem, degree: Degree, u: &[[f64; 2]]) -> Enclosure {
     match degree {
         Degree::One => {
             let d = discretize::<P1, 3, 2>(problem, &method).unwrap();
-            enclosure::enclose(&System::new(&d).unwrap(), u, FactorOfA::Double).unwrap()
+            enclosure::enclose(&System::new(&d).unwrap(), u, None, FactorOfA::Double).unwrap()
         }
         Degree::Two => {
             let d = discretize::<P2, 6, 3>(problem, &method).unwrap();
-            enclosure::enclose(&System::new(&d).unwrap(), u, FactorOfA::Double).unwrap()
+            enclosure::enclose(&System::new(&d).unwrap(), u, None, FactorOfA::Double).unwrap()
         }
     }
 }

@@ -424,7 +424,7 @@ where
     let Ok(system) = System::new(&d) else { return Verdict::Fails("there is no system") };
     let load: Vec<[Ball; 2]> =
         d.load.iter().map(|l| l.map(|l| Ball::from(l * asked.load))).collect();
-    let Ok(enclosure) = enclosure::enclose_with(&system, &u, FactorOfA::Double, &load) else {
+    let Ok(enclosure) = enclosure::enclose_with(&system, &u, None, FactorOfA::Double, &load) else {
         return Verdict::Fails("there is an enclosure");
     };
     let certifier = Certifier::new(&d);
