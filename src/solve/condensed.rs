@@ -13,6 +13,8 @@
 //! contact, G w nearly cancels what it is subtracted from) a second pass finds again, from the u and w of the first and
 //! their true residual: nothing cancels there, because everything is small.
 
+use std::collections::BTreeMap;
+
 use faer::linalg::solvers::Solve;
 use faer::{Col, Mat, Side};
 
@@ -33,6 +35,10 @@ pub struct Condensed<'a, 'd, 'p, E, const N: usize, const M: usize> {
     factor: &'a Factor,
     reach: &'a Reach,
     compliance: Compliance<'a>,
+    /// The entries of B^T: the functional, and the row among those that are not empty.
+    forces: Vec<(usize, usize, f64)>,
+    /// How many rows these are.
+    rows: usize,
     /// What residuals are relative to.
     reference: f64,
     w: Vec<f64>,
@@ -55,8 +61,18 @@ where
                 system.functionals(e, |row, a, entry| add(row, position * M + a, entry));
             }
         });
+        let mut place: BTreeMap<usize, usize> = BTreeMap::new();
+        let mut forces = Vec::new();
+        for (position, &e) in reach.order.iter().enumerate() {
+            system.functionals(e, |row, a, entry| {
+                let next = place.len();
+                let row = *place.entry(row).or_insert(next);
+                forces.push((position * M + a, row, entry));
+            });
+        }
         let w = vec![0.0; reach.functionals()];
-        Condensed { system, factor, reach, compliance, reference, w, first: true }
+        let rows = place.len();
+        Condensed { system, factor, reach, compliance, forces, rows, reference, w, first: true }
     }
 
     /// r <- r + B^T w
@@ -135,14 +151,11 @@ where
 
     /// The norm of B^T s, or of |B|^T |s|, relative to the reference.
     fn norm(&self, s: &[f64], of: impl Fn(f64) -> f64) -> f64 {
-        let route = self.route;
-        let mut sum = vec![0.0; route.system.numbering.count];
-        for (position, &e) in route.reach.order.iter().enumerate() {
-            route.system.functionals(e, |row, a, entry| {
-                sum[row] += of(entry) * s[position * M + a];
-            });
+        let mut sum = vec![0.0; self.route.rows];
+        for &(functional, row, entry) in &self.route.forces {
+            sum[row] += of(entry) * s[functional];
         }
-        sum.iter().map(|r| r * r).sum::<f64>().sqrt() / route.reference
+        sum.iter().map(|r| r * r).sum::<f64>().sqrt() / self.route.reference
     }
 
     /// The columns of R with their edges.

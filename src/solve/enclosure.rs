@@ -220,7 +220,8 @@ where
     let rho = if r.iter().all(|&r| r == Ball::from(0)) {
         0.0
     } else {
-        dual_norm(system, &lines, &factor.of(system)?, &r, rest)
+        let negligible = SMALL * at.moved * coercivity.sqrt();
+        dual_norm(system, &lines, &factor.of(system)?, &r, rest, negligible)
     };
     let exact = up(rho / coercivity.sqrt());
     let radius = up(exact + at.moved);
@@ -387,13 +388,14 @@ where
     free(system, &forces)
 }
 
-/// |r|_A* at most, where |t|_A* <= `crude` |t|_2 for every t.
+/// |r|_A* at most, where |t|_A* <= `crude` |t|_2 for every t. What is `negligible` need not be known better.
 fn dual_norm<E, const N: usize, const M: usize>(
     system: &System<E, N, M>,
     lines: &[OnEdge<Ball, N, M>],
     factor: &Tangent,
     r: &[Ball],
     crude: f64,
+    negligible: f64,
 ) -> f64
 where
     E: ExactEdge<f64, N, M>,
@@ -413,7 +415,7 @@ where
         left = r.iter().zip(&az).map(|(&r, &az)| r - az).collect();
         let rest = up(crude * norm(&left));
         let bound = up(energy + rest);
-        if !(rest > SMALL * energy) {
+        if !(rest > (SMALL * energy).max(negligible)) {
             return bound.min(best);
         }
         let stuck = !(bound < best / 2.0);
