@@ -72,9 +72,9 @@ pub fn add_internal_forces<S, E, const N: usize, const M: usize>(
     E: ExactEdge<f64, N, M>,
 {
     let zero = <S as From<i32>>::from(0);
-    let two = <S as From<i32>>::from(2);
+    let half = <S as From<f64>>::from(0.5);
     let mut points = Vec::new();
-    E::at_stiffness_points(|l: [S; 3], weight| points.push((l, weight / two)));
+    E::at_stiffness_points(|l: [S; 3], weight| points.push((l, weight)));
     for (t, (triangle, nodes)) in d.space.triangles().enumerate() {
         let nodal = nodes.map(|node| Vector2::from(u[node]));
         if nodal.iter().all(|u| u.iter().all(|&u| u == zero)) {
@@ -82,13 +82,15 @@ pub fn add_internal_forces<S, E, const N: usize, const M: usize>(
         }
         let triangle = exactly(triangle);
         let material = d.problem.material.of(t).map(<S as From<f64>>::from);
-        // Gradients times 2|T|, so that two factors 1/(2|T|) and the area are one division.
-        let barycentric = [0, 1, 2].map(|i| -triangle.scaled_normal(i));
+        // As `Triangle::barycentric_gradients` has them, with one division: in these numbers they are dear.
         let double_area = triangle.double_area();
-        for &(l, half_weight) in &points {
+        let inverse = <S as From<i32>>::from(1) / double_area;
+        let barycentric = [0, 1, 2].map(|i| -triangle.scaled_normal(i) * inverse);
+        let area = double_area * half;
+        for &(l, weight) in &points {
             let gradients = E::gradients(l, barycentric);
             let stress = material.stress(displacement_gradient(&nodal, &gradients));
-            let factor = half_weight / double_area;
+            let factor = weight * area;
             for (&node, g) in nodes.iter().zip(gradients) {
                 let force = stress.traction(g);
                 for c in 0..2 {
