@@ -103,6 +103,8 @@ pub enum Unproved {
     NotHeld,
     #[error("A has no Cholesky factor in the precision of the solve")]
     NoFactor,
+    #[error("kappa, rounded up, over- or underflows double precision")]
+    NoKappa,
     #[error("the bound over- or underflows double precision")]
     OutOfRange,
     #[error("out of memory")]
@@ -119,7 +121,10 @@ fn up(x: f64) -> f64 {
 impl Unproved {
     /// Whether (8) is known to have exactly one solution all the same.
     pub fn is_unique(&self) -> bool {
-        !matches!(self, Unproved::HeldByContact | Unproved::NotCoercive { .. })
+        !matches!(
+            self,
+            Unproved::HeldByContact | Unproved::NotCoercive { .. } | Unproved::NoKappa
+        )
     }
 }
 
@@ -209,6 +214,9 @@ where
     }
     let lines = lines(d);
     let kappa = kappa(d, &lines);
+    if !kappa.is_finite() {
+        return Err(Unproved::NoKappa);
+    }
     if !(kappa < 1.0) {
         return Err(Unproved::NotCoercive { kappa });
     }

@@ -447,16 +447,24 @@ where
     E: ExactEdge<f64, N, M>,
 {
     method.check()?;
-    let gamma = |c: &Coercivity| match method.gamma0 {
-        Gamma0::Auto => Gamma::Uniform(c.limit() / 2.0),
-        Gamma0::Value(gamma0) => Gamma::Uniform(gamma0),
-        Gamma0::Local(kappa) => Gamma::Local(kappa),
+    let mut limit = 1.0;
+    let gamma = |c: &Coercivity| {
+        limit = c.limit();
+        match method.gamma0 {
+            Gamma0::Auto => Gamma::Uniform(limit / 2.0),
+            Gamma0::Value(gamma0) => Gamma::Uniform(gamma0),
+            Gamma0::Local(kappa) => Gamma::Local(kappa),
+        }
     };
     let rule = match method.quadrature {
         ContactQuadrature::Exact => EdgeRule::Exact,
         ContactQuadrature::Gauss(points) => EdgeRule::gauss(points),
     };
-    let d = Discretization::new(problem, gamma, rule)?;
+    let d = Discretization::new(problem, gamma, rule);
+    if !limit.is_normal() {
+        return Err(SolveError::OutOfRange);
+    }
+    let d = d?;
     if d.kappa() < 1.0 || method.allow_noncoercive {
         Ok(d)
     } else {

@@ -98,7 +98,7 @@ where
     E: ExactEdge<f64, N, M>,
 {
     let reference = accuracy::reference(system.d);
-    if !(system.norm().is_normal() && reference.is_normal()) {
+    if !(system.norm().is_normal() && reference.is_normal() && contact_is_in_range(system)) {
         return Err(SolveError::OutOfRange);
     }
     let held = system.d.slides.is_none();
@@ -118,6 +118,21 @@ where
         }
     }
     by(RouteName::Twofold, system, settings, times)
+}
+
+/// Whether what the matrix is made of on the contact edges neither over- nor underflows.
+fn contact_is_in_range<E, const N: usize, const M: usize>(system: &System<E, N, M>) -> bool
+where
+    E: ExactEdge<f64, N, M>,
+{
+    system.d.contact.iter().all(|edge| {
+        let stresses = edge.functionals.sigma_n.iter().flatten();
+        let stress = stresses.flat_map(|v| v.iter()).fold(0.0, |m: f64, s| m.max(s.abs()));
+        let (gamma, length) = (edge.gamma, edge.length);
+        [stress * stress, gamma * stress, length / gamma, gamma * length]
+            .iter()
+            .all(|x| x.is_normal())
+    })
 }
 
 /// Solves the system by a given route.

@@ -29,3 +29,4 @@ mod reference;
 mod routes;
 #[cfg(feature = "cli")]
 mod set_and_sweep;
+mod units;
