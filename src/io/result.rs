@@ -545,6 +545,7 @@ mod tests {
             balance: None,
             probes: Vec::new(),
             certificate: None,
+            adapt: None,
             errors: None,
             seconds: Seconds { read: 0.25, assemble: 0.5, solve: 1.0, certify: 1.5, write: 2.0 },
         }

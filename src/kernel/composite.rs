@@ -327,7 +327,9 @@ mod tests {
         };
         same(tau.centre, at(centroid(&T)));
         for i in 0..3 {
-            [1, 2].map(|k| same(tau.corners[i][k - 1], at(T.vertices[(i + k) % 3])));
+            for k in 1..3 {
+                same(tau.corners[i][k - 1], at(T.vertices[(i + k) % 3]));
+            }
         }
         // Control: a quadratic one, with the same tractions at corners, is another at the centroid.
         let bent = |p: Vector2<f64>| at(p) + Stress::new([p.x * p.y, 0.0, 0.0]);
