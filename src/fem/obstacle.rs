@@ -26,6 +26,7 @@ pub const MOST_OFF: f64 = 0.1;
 
 /// A rigid obstacle.
 #[derive(Clone)]
+#[non_exhaustive]
 pub enum Obstacle {
     /// The half plane behind a straight line.
     Plane {

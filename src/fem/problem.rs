@@ -8,6 +8,7 @@ use super::mesh::Mesh;
 use super::obstacle::Obstacle;
 
 /// What holds on a named part of the boundary; on the rest the traction is zero.
+#[non_exhaustive]
 pub enum Condition {
     /// Gamma_D: the given components of the displacement; `None` leaves a component free (sliding).
     Displacement([Option<BoxedFunction>; 2]),

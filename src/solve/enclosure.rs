@@ -36,6 +36,7 @@ pub type Range = [f64; 2];
 
 /// Where u^h is, and what is known of it.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Enclosure {
     /// kappa of (11), rounded up.
     pub kappa: f64,
@@ -54,6 +55,7 @@ pub struct Enclosure {
 /// Intervals that contain what the exact solution of (8) has.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
+#[non_exhaustive]
 pub struct Intervals {
     /// a(u, u)
     pub energy: Range,
@@ -78,6 +80,7 @@ impl Intervals {
 /// Of a contact boundary.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
+#[non_exhaustive]
 pub struct ContactIntervals {
     /// Its name.
     pub boundary: String,
@@ -90,6 +93,7 @@ pub struct ContactIntervals {
 /// Why nothing is proved.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
+#[non_exhaustive]
 pub enum Unproved {
     #[error("the body is held by contact alone, and A is singular")]
     HeldByContact,

@@ -17,6 +17,7 @@ use crate::kernel::edge_integral::ExactEdge;
 
 /// gamma0* and the edge that sets it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct TrueLimit {
     /// gamma0*, in 1 / stress.
     pub gamma0: f64,
@@ -26,6 +27,7 @@ pub struct TrueLimit {
 
 /// Why it is not known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum NoLimit {
     /// The assembled route has no condensed matrix.
     Assembled,
