@@ -184,12 +184,12 @@ fn read_sections(cursor: &mut Cursor) -> Result<Content> {
         cursor.end_of(section)?;
     }
     let missing = |section| cursor.wrong(Place::File, GmshMistake::NoSection { section });
-    let elements = elements.ok_or_else(|| missing("Elements"))?;
-    let groups = match version {
-        Version::Four => groups.ok_or_else(|| missing("Entities"))?,
-        Version::Two => msh2::groups(&elements),
-    };
+    if version == Version::Four && groups.is_none() {
+        return Err(missing("Entities"));
+    }
     let nodes = nodes.ok_or_else(|| missing("Nodes"))?;
+    let elements = elements.ok_or_else(|| missing("Elements"))?;
+    let groups = groups.unwrap_or_else(|| msh2::groups(&elements));
     Ok(Content { names: names.unwrap_or_default(), groups, nodes, elements })
 }
 
