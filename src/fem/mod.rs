@@ -41,6 +41,7 @@ pub use errors::Errors;
 pub use exact::{Exact, ExactSolution};
 pub use function::{BoxedFunction, Function};
 pub use materials::Materials;
+pub use mesh::bisection::Refinement;
 pub use mesh::{BoundaryEdge, Mesh, MeshError};
 pub use obstacle::{Closest, Distance, Obstacle, Side};
 pub use problem::{Condition, PointSupport, Problem, SurfaceForce};
