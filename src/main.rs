@@ -38,6 +38,7 @@ mod command {
     use signorini::certify::adapt::Stage;
     use signorini::certify::certify_field;
     use signorini::fem::MeshError;
+    use signorini::io::certificate::AuditError;
     use signorini::io::convergence::{self, Meshes, StudyError};
     use signorini::io::field::read_field;
     use signorini::io::files::{reason, spare};
@@ -70,7 +71,12 @@ mod command {
     }
 
     pub fn run() -> ExitCode {
-        let Arguments { task, quiet } = Arguments::parse();
+        let Arguments { task, quiet } = match Arguments::try_parse() {
+            Ok(arguments) => arguments,
+            Err(error) if error.use_stderr() => error.exit(),
+            // What was asked for: help, or the version.
+            Err(text) => return ended(heard(text.print()).map(|()| 0)),
+        };
         signals::watch();
         let done = match &task {
             Task::Solve { case, out, json, certificate, engine, ranks, reference } => {
@@ -106,7 +112,11 @@ mod command {
             Task::Completions { shell } => Ok(completions(*shell)),
             Task::Man { task } => man(task.as_deref()),
         };
-        let said = done.and_then(|Done { text, code }| say(&text).map(|()| code));
+        ended(done.and_then(|Done { text, code }| say(&text).map(|()| code)))
+    }
+
+    /// The exit code, after a word about a failure.
+    fn ended(said: Result<u8, Failure>) -> ExitCode {
         match said {
             Ok(code) => ExitCode::from(code),
             Err(Failure { message, code }) => {
@@ -117,10 +127,15 @@ mod command {
         }
     }
 
-    /// Says it on standard output. A reader who has left has heard enough; the files are written in any case.
+    /// Says it on standard output.
     fn say(text: &str) -> Result<(), Failure> {
         let mut out = io::stdout().lock();
-        match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        heard(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
+    }
+
+    /// A reader who has left has heard enough; the files are written in any case.
+    fn heard(written: io::Result<()>) -> Result<(), Failure> {
+        match written {
             Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
                 let message = format!("cannot write to standard output: {}", reason(&error));
                 Err(Failure { message, code: FAILED })
@@ -244,8 +259,10 @@ mod command {
 
     /// Verifies a certificate from scratch.
     fn audit(path: &Path) -> Result<String, Failure> {
-        let audit = certificate::audit(path)
-            .map_err(|e| failure(FAILED)(&format!("{}: {e}", path.display())))?;
+        let audit = certificate::audit(path).map_err(|error| match error {
+            AuditError::Rejected(_) => failure(FAILED)(&format!("{}: {error}", quote::path(path))),
+            error => failure(FAILED)(&error),
+        })?;
         Ok(summary::audited(&audit))
     }
 

@@ -3,9 +3,10 @@
 
 use std::collections::BTreeMap;
 
+use super::function::BoxedFunction;
 use super::materials::Materials;
 use super::mesh::Mesh;
-use super::problem::{BoxedFunction, Condition, Problem};
+use super::problem::{Condition, Problem};
 
 fn zero() -> BoxedFunction {
     Box::new(|_| 0.0)

@@ -11,8 +11,10 @@
 
 use std::collections::BTreeMap;
 
+use super::data::{DataError, finite};
+use super::function::BoxedFunction;
 use super::mesh::BoundaryEdge;
-use super::problem::{BoxedFunction, Condition, DataError, Problem, finite};
+use super::problem::{Condition, Problem};
 use super::rigid::{self, FreeMotion, Parts};
 use super::smooth::SmoothBoundary;
 use super::space::Space;

@@ -10,9 +10,10 @@ use std::sync::Arc;
 
 use nalgebra::Vector2;
 
+use super::data::{DataError, finite};
 use super::mesh::BoundaryEdge;
 use super::obstacle::Closest;
-use super::problem::{Condition, DataError, Problem, finite};
+use super::problem::{Condition, Problem};
 use super::quadrature;
 use super::smooth::{SmoothBoundary, SmoothPoint};
 use super::space::Space;

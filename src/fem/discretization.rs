@@ -9,10 +9,12 @@ use nalgebra::Vector2;
 
 use super::constraints::{Constraints, in_frame};
 use super::contact_line::{self, Coercivity, ContactLineEdge, EdgeRule, Gamma};
+use super::data::DataError;
+use super::dense::inner;
 use super::held;
 use super::loads;
 use super::material;
-use super::problem::{DataError, Problem};
+use super::problem::Problem;
 use super::space::Space;
 use crate::kernel::edge_integral::ExactEdge;
 use crate::kernel::element::displacement_gradient;
@@ -252,11 +254,6 @@ where
         }
         energy
     }
-}
-
-/// The sum of the products of two fields or functionals.
-pub fn inner(f: &[[f64; 2]], u: &[[f64; 2]]) -> f64 {
-    f.iter().zip(u).map(|(f, u)| f[0] * u[0] + f[1] * u[1]).sum()
 }
 
 fn norm_1(v: Vector2<f64>) -> f64 {

@@ -37,11 +37,28 @@ struct Outline<'m> {
     around: Vec<usize>,
 }
 
+impl Mesh {
+    /// The mesh with these vertices, these triangles (counter-clockwise) and these named boundary parts (edges as pairs
+    /// of vertices, in any direction). An edge of the boundary needs no name.
+    ///
+    /// # Errors
+    /// Whatever makes it no conforming mesh, with the numbers of the vertices and triangles concerned.
+    pub fn new(
+        vertices: Vec<[f64; 2]>,
+        triangles: Vec<[usize; 3]>,
+        named: impl IntoIterator<Item = (String, Vec<[usize; 2]>)>,
+    ) -> Result<Mesh, MeshError> {
+        let mesh = Mesh::of_edges(vertices, triangles, named)?;
+        check(&mesh)?;
+        Ok(mesh)
+    }
+}
+
 /// Checks all of it.
 ///
 /// # Errors
 /// [`MeshError::Hanging`], [`MeshError::Near`], [`MeshError::Overlapping`].
-pub fn check(mesh: &Mesh) -> Result<(), MeshError> {
+fn check(mesh: &Mesh) -> Result<(), MeshError> {
     let outline = Outline::new(mesh);
     // What nearly touches often crosses too, and is better called by its name: it comes first.
     (0..outline.ends.len()).try_for_each(|e| outline.check_vertices(e))?;

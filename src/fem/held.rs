@@ -8,11 +8,10 @@
 //!
 //! The solution is unique up to motions that slide along all obstacles; the one of least norm is taken.
 
-use faer::Mat;
-use faer::linalg::solvers::SolveLstsq;
 use nalgebra::Vector2;
 
 use super::contact_line::ContactLineEdge;
+use super::dense::{dot, inner, least_squares, singular_vectors};
 use super::space::Space;
 use crate::kernel::Element;
 
@@ -52,16 +51,15 @@ pub fn slides<E: Element<N, M>, const N: usize, const M: usize>(
     }
     // In units of the largest work of single loads.
     let loads: Vec<f64> = motions.iter().map(|r| work(r, |w| w) / scale).collect();
-    let values = Mat::from_fn(rows.len(), dimension, |i, j| rows[i][j]);
-    let svd = values.svd().ok()?;
-    let direction = |j: usize| (0..dimension).map(|i| svd.V()[(i, j)]).collect::<Vec<f64>>();
-    let singular = |j: usize| if j < rows.len() { svd.S()[j] } else { 0.0 };
-    let largest = (0..dimension).map(singular).fold(0.0, f64::max);
-    let stopped = |j: &usize| singular(*j) > SLIDES * largest.max(1.0);
+    let columns = (0..dimension).map(|j| rows.iter().map(|row| row[j]).collect()).collect();
+    let directions = singular_vectors(columns);
+    let largest = directions.first().map_or(0.0, |(value, _)| *value);
+    let (stopped, sliding): (Vec<_>, Vec<_>) =
+        directions.iter().partition(|(value, _)| *value > SLIDES * largest.max(1.0));
     let holds = |loads: &[f64]| leaving(&rows, loads, BALANCED).is_none();
-    let pressed = (0..dimension).filter(stopped).all(|j| {
+    let pressed = stopped.iter().all(|(_, direction)| {
         [-1.0, 1.0].iter().all(|sign| {
-            let change = direction(j).into_iter().map(|d| sign * MARGIN * d);
+            let change = direction.iter().map(|d| sign * MARGIN * d);
             let changed: Vec<f64> = loads.iter().zip(change).map(|(l, c)| l + c).collect();
             holds(&changed)
         })
@@ -69,8 +67,7 @@ pub fn slides<E: Element<N, M>, const N: usize, const M: usize>(
     if !(largest > 0.0 && pressed && holds(&loads)) {
         return None;
     }
-    let sliding = (0..dimension).filter(|j| !stopped(j)).map(|j| {
-        let weights = direction(j);
+    let sliding = sliding.into_iter().map(|(_, weights)| {
         let mut field = vec![[0.0; 2]; space.nodes().len()];
         for (motion, weight) in motions.iter().zip(weights) {
             for (field, r) in field.iter_mut().zip(motion) {
@@ -87,10 +84,10 @@ fn orthonormal(fields: impl Iterator<Item = Vec<[f64; 2]>>) -> Vec<Vec<[f64; 2]>
     let mut basis: Vec<Vec<[f64; 2]>> = Vec::new();
     for mut field in fields {
         for b in &basis {
-            let along = super::discretization::inner(b, &field);
+            let along = inner(b, &field);
             subtract(&mut field, b, along);
         }
-        let norm = super::discretization::inner(&field, &field).sqrt();
+        let norm = inner(&field, &field).sqrt();
         basis.push(field.iter().map(|f| f.map(|f| f / norm)).collect());
     }
     basis
@@ -106,7 +103,7 @@ fn subtract(field: &mut [[f64; 2]], other: &[[f64; 2]], weight: f64) {
 /// u less its part along `slides`: of all solutions the one of least norm.
 pub fn least_norm(u: &mut [[f64; 2]], slides: &[Vec<[f64; 2]>]) {
     for slide in slides {
-        let along = super::discretization::inner(slide, u);
+        let along = inner(slide, u);
         subtract(u, slide, along);
     }
 }
@@ -133,7 +130,6 @@ pub fn pins(slides: &[Vec<[f64; 2]>], free: impl Fn(usize, usize) -> bool) -> Ve
 
 /// The part of `target` that no combination of the rows with weights >= 0 reaches, if it is larger than `tolerance`.
 fn leaving(rows: &[Vec<f64>], target: &[f64], tolerance: f64) -> Option<Vec<f64>> {
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     // The rows in use and their weights.
     let mut used: Vec<(usize, f64)> = Vec::new();
     let mut rest = target.to_vec();
@@ -149,24 +145,23 @@ fn leaving(rows: &[Vec<f64>], target: &[f64], tolerance: f64) -> Option<Vec<f64>
         let Some(best) = best.filter(|i| gain(i) > tolerance * 1e-3) else { break };
         used.push((best, 0.0));
         loop {
-            let columns = Mat::from_fn(target.len(), used.len(), |i, j| rows[used[j].0][i]);
-            let right = Mat::from_fn(target.len(), 1, |i, _| target[i]);
             // Rows that depend on each other have no unique weights: the last one adds nothing.
             if used.len() > target.len() {
                 used.sort_by(|a, b| a.1.total_cmp(&b.1));
                 used.remove(0);
                 continue;
             }
-            let weights = columns.qr().solve_lstsq(&right);
+            let columns = used.iter().map(|(i, _)| rows[*i].clone()).collect();
+            let weights = least_squares(columns, target);
             let step = used
                 .iter()
                 .enumerate()
-                .filter(|(j, _)| weights[(*j, 0)] <= 0.0)
-                .map(|(j, (_, old))| old / (old - weights[(j, 0)]))
+                .filter(|(j, _)| weights[*j] <= 0.0)
+                .map(|(j, (_, old))| old / (old - weights[j]))
                 .fold(f64::INFINITY, f64::min);
             let t = step.min(1.0);
             for (j, (_, weight)) in used.iter_mut().enumerate() {
-                *weight += t * (weights[(j, 0)] - *weight);
+                *weight += t * (weights[j] - *weight);
             }
             if step > 1.0 {
                 break;

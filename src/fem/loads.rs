@@ -1,9 +1,9 @@
 //! L(v) = int_Omega f . v + int_{Gamma_N} t . v for every basis function v.
 
+use super::data::{DataError, checked};
+use super::function::{BoxedFunction, Function};
 use super::pieces::{Features, Rule};
-use super::problem::{
-    BoxedFunction, Condition, DataError, Function, Problem, SurfaceForce, checked,
-};
+use super::problem::{Condition, Problem, SurfaceForce};
 use super::space::Space;
 use crate::kernel::{Element, Scalar};
 use crate::quote::key;

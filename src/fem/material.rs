@@ -8,6 +8,7 @@ use crate::kernel::{Material, Plane};
 /// Why there is no such material.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
+#[non_exhaustive]
 pub enum MaterialError {
     #[error("{name} is {value}; expected {expected}")]
     Modulus { name: &'static str, value: f64, expected: &'static str },

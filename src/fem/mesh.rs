@@ -19,7 +19,6 @@ mod error;
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
-use super::embedding;
 use super::tree::{Bounds, Tree};
 use crate::kernel::Triangle;
 use crate::memory::{self, bytes_of};
@@ -55,12 +54,8 @@ pub struct BoundaryEdge {
 }
 
 impl Mesh {
-    /// The mesh with these vertices, these triangles (counter-clockwise) and these named boundary parts (edges as pairs
-    /// of vertices, in any direction). An edge of the boundary needs no name.
-    ///
-    /// # Errors
-    /// Whatever makes it no conforming mesh, with the numbers of the vertices and triangles concerned.
-    pub fn new(
+    /// The mesh of [`Mesh::new`], of which is checked all but how its triangles lie in the plane.
+    pub(super) fn of_edges(
         vertices: Vec<[f64; 2]>,
         triangles: Vec<[usize; 3]>,
         named: impl IntoIterator<Item = (String, Vec<[usize; 2]>)>,
@@ -75,7 +70,7 @@ impl Mesh {
         let outline: Vec<BoundaryEdge> =
             edges.edges.iter().filter(|e| !e.inner).map(|e| e.owner).collect();
         let (boundaries, inner) = name_boundaries(&edges, &vertices, named)?;
-        let mesh = Mesh {
+        Ok(Mesh {
             vertices,
             triangles,
             triangle_edges,
@@ -86,9 +81,7 @@ impl Mesh {
             surfaces: BTreeMap::new(),
             points: BTreeMap::new(),
             boxes: OnceLock::new(),
-        };
-        embedding::check(&mesh)?;
-        Ok(mesh)
+        })
     }
 
     /// The same mesh with named parts of the body, as lists of triangles, and named points, as vertices. Numbers beyond the

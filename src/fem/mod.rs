@@ -5,10 +5,13 @@ pub mod ball;
 mod build;
 pub mod constraints;
 pub mod contact_line;
+pub mod data;
+pub mod dense;
 pub mod discretization;
 pub mod embedding;
 pub mod errors;
 pub mod exact;
+pub mod function;
 pub mod held;
 pub mod korn;
 pub mod loads;
@@ -32,16 +35,16 @@ pub mod trapezoid;
 pub mod tree;
 pub mod twofold;
 
+pub use data::DataError;
 pub use discretization::Discretization;
 pub use errors::Errors;
 pub use exact::{Exact, ExactSolution};
+pub use function::{BoxedFunction, Function};
 pub use materials::Materials;
 pub use mesh::bisection::Refinement;
 pub use mesh::{BoundaryEdge, Mesh, MeshError};
 pub use obstacle::{Closest, Distance, Obstacle, Side};
-pub use problem::{
-    BoxedFunction, Condition, DataError, Function, PointSupport, Problem, SurfaceForce,
-};
+pub use problem::{Condition, PointSupport, Problem, SurfaceForce};
 pub use rectangle::{Diagonal, Rectangle};
 pub use rigid::{FreeMotion, Parts};
 pub use space::Space;

@@ -17,14 +17,16 @@ use std::sync::Arc;
 
 use nalgebra::Vector2;
 
+use super::data::{DataError, finite};
+use super::function::Function;
 use super::mesh::length;
-use super::problem::{DataError, Function, finite};
 
 /// The length of grad phi may be off 1 by this much.
 pub const MOST_OFF: f64 = 0.1;
 
 /// A rigid obstacle.
 #[derive(Clone)]
+#[non_exhaustive]
 pub enum Obstacle {
     /// The half plane behind a straight line.
     Plane {

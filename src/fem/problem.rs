@@ -2,48 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use thiserror::Error;
-
-use super::material::MaterialError;
+use super::function::BoxedFunction;
 use super::materials::Materials;
+use super::mesh::Mesh;
 use super::mesh::bisection::Refinement;
-use super::mesh::{Mesh, MeshError};
 use super::obstacle::Obstacle;
-use super::rigid::FreeMotion;
-use crate::quote::{number, quoted};
-
-/// A function of the place, such as a component of the body force.
-pub trait Function: Send + Sync {
-    /// The value at `x`; NaN or infinite where the function has none, which the assembly reports as an error.
-    fn at(&self, x: [f64; 2]) -> f64;
-
-    /// The value at `x` on the boundary with the outward normal `n`: a traction may depend on the normal.
-    fn on_boundary(&self, x: [f64; 2], _n: [f64; 2]) -> f64 {
-        self.at(x)
-    }
-
-    /// The degree in x and y, if the function is known to be a polynomial, on the boundary too: it is then integrated
-    /// exactly, with no more points than that takes.
-    fn degree(&self) -> Option<u32> {
-        None
-    }
-
-    /// c, if the function is smooth only on either side of the line x = c: its integrals are cut there.
-    fn kink(&self) -> Option<f64> {
-        None
-    }
-}
-
-impl<F: Fn([f64; 2]) -> f64 + Send + Sync> Function for F {
-    fn at(&self, x: [f64; 2]) -> f64 {
-        self(x)
-    }
-}
-
-/// A [`Function`] that a problem owns.
-pub type BoxedFunction = Box<dyn Function>;
 
 /// What holds on a named part of the boundary; on the rest the traction is zero.
+#[non_exhaustive]
 pub enum Condition {
     /// Gamma_D: the given components of the displacement; `None` leaves a component free (sliding).
     Displacement([Option<BoxedFunction>; 2]),
@@ -150,85 +116,5 @@ impl Problem {
         }
         self.mesh = mesh;
         self
-    }
-}
-
-/// Why a problem can't be posed on its mesh.
-#[derive(Clone, Debug, Error, PartialEq)]
-#[non_exhaustive]
-#[expect(missing_docs, reason = "the message of each variant says what it is")]
-pub enum DataError {
-    #[error(transparent)]
-    Mesh(#[from] MeshError),
-    #[error("{what} is {value} at ({}, {}); expected a finite number at every point of the mesh", number(*x), number(*y))]
-    NotFinite { what: String, value: f64, x: f64, y: f64 },
-    #[error(
-        "the displacement boundaries {} and {} meet at ({}, {}) and disagree there: u_{} = {} and {}; expected one value",
-        quoted(first, '\''), quoted(second, '\''), number(*x), number(*y), ["x", "y"][*component], number(values[0]), number(values[1])
-    )]
-    Disagree { first: String, second: String, x: f64, y: f64, component: usize, values: [f64; 2] },
-    #[error(
-        "the displacement boundaries {} and {} meet at ({}, {}) and disagree there: u . ({}, {}) = {} and {}; expected one value",
-        quoted(first, '\''), quoted(second, '\''), number(*x), number(*y), number(direction[0]), number(direction[1]), number(values[0]), number(values[1])
-    )]
-    DisagreeAlong {
-        first: String,
-        second: String,
-        x: f64,
-        y: f64,
-        direction: [f64; 2],
-        values: [f64; 2],
-    },
-    #[error(
-        "no displacement is prescribed that stops the {}; expected displacement boundaries that leave no rigid body motion free, or loads that press the body against its obstacles (contact pushes, it doesn't hold)",
-        listed(motions)
-    )]
-    RigidMotion { motions: Vec<FreeMotion> },
-    #[error(
-        "{what} has a gradient of length {} at ({}, {}); expected a distance there, with a gradient between {least} and {most}",
-        number(*length), number(*x), number(*y)
-    )]
-    NoDistance { what: String, length: f64, x: f64, y: f64, least: f64, most: f64 },
-    #[error("the material is none: {0}")]
-    Material(#[from] MaterialError),
-    #[error("{what} is {found}; expected {expected}")]
-    Value { what: &'static str, found: String, expected: &'static str },
-    #[error("no boundary has contact; expected one with contact = {{ gap = ... }}")]
-    NoContact,
-}
-
-/// So many free motions are told one by one.
-const TOLD: usize = 4;
-
-fn listed(motions: &[FreeMotion]) -> String {
-    let told: Vec<String> = motions.iter().take(TOLD).map(FreeMotion::to_string).collect();
-    let more = match motions.len().saturating_sub(TOLD) {
-        0 => String::new(),
-        more => format!("; nor {more} more"),
-    };
-    told.join("; nor the ") + &more
-}
-
-/// The value of `function`, which the case calls `what()`, at `x`.
-///
-/// # Errors
-/// [`DataError::NotFinite`].
-pub fn finite(
-    function: &dyn Function,
-    x: [f64; 2],
-    what: impl Fn() -> String,
-) -> Result<f64, DataError> {
-    checked(function.at(x), x, what)
-}
-
-/// `value`, which is that of `what()` at `x`.
-///
-/// # Errors
-/// [`DataError::NotFinite`].
-pub fn checked(value: f64, x: [f64; 2], what: impl Fn() -> String) -> Result<f64, DataError> {
-    if value.is_finite() {
-        Ok(value)
-    } else {
-        Err(DataError::NotFinite { what: what(), value, x: x[0], y: x[1] })
     }
 }

@@ -15,6 +15,7 @@ const MODULI: [&str; 4] = ["lambda", "mu", "young", "poisson"];
 
 /// A material as the case has it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct MaterialEcho {
     /// The physical surfaces made of it; none if the mesh has no named surface.
     pub surfaces: Vec<String>,

@@ -5,6 +5,7 @@ use thiserror::Error;
 /// Why data make no file.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
+#[non_exhaustive]
 pub enum DataError {
     #[error("{name} has {found} entries; expected {expected}")]
     Length { name: String, found: usize, expected: usize },

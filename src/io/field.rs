@@ -69,7 +69,9 @@ fn at_vertices(points: &Points, mesh: &Mesh) -> Result<Vec<[f64; 2]>, String> {
     let mut grid: BTreeMap<[i64; 2], Vec<usize>> = BTreeMap::new();
     for (i, (x, u)) in points.iter().enumerate() {
         if !x.iter().chain(u).all(|c| c.is_finite()) {
-            return Err(format!("point {i} has a number that is NaN or infinite"));
+            return Err(format!(
+                "point {i} has a number that is NaN or infinite; expected finite ones"
+            ));
         }
         grid.entry(cell(*x)).or_default().push(i);
     }

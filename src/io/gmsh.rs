@@ -162,16 +162,16 @@ impl Elements {
 }
 
 fn read_sections(cursor: &mut Cursor) -> Result<Content> {
-    if read_format(cursor)? == Version::Two {
-        return msh2::read_sections(cursor);
-    }
+    let version = read_format(cursor)?;
     let (mut names, mut groups, mut nodes, mut elements) = (None, None, None, None);
     while let Some((start, section)) = cursor.section()? {
-        let first = match section {
-            "PhysicalNames" => names.replace(read_names(cursor)?).is_none(),
-            "Entities" => groups.replace(read_entities(cursor)?).is_none(),
-            "Nodes" => nodes.replace(read_nodes(cursor)?).is_none(),
-            "Elements" => elements.replace(read_elements(cursor)?).is_none(),
+        let first = match (section, version) {
+            ("PhysicalNames", _) => names.replace(read_names(cursor)?).is_none(),
+            ("Entities", Version::Four) => groups.replace(read_entities(cursor)?).is_none(),
+            ("Nodes", Version::Four) => nodes.replace(read_nodes(cursor)?).is_none(),
+            ("Nodes", Version::Two) => nodes.replace(msh2::read_nodes(cursor)?).is_none(),
+            ("Elements", Version::Four) => elements.replace(read_elements(cursor)?).is_none(),
+            ("Elements", Version::Two) => elements.replace(msh2::read_elements(cursor)?).is_none(),
             _ => {
                 cursor.skip_to_end_of(section)?;
                 true
@@ -184,12 +184,13 @@ fn read_sections(cursor: &mut Cursor) -> Result<Content> {
         cursor.end_of(section)?;
     }
     let missing = |section| cursor.wrong(Place::File, GmshMistake::NoSection { section });
-    Ok(Content {
-        names: names.unwrap_or_default(),
-        groups: groups.ok_or_else(|| missing("Entities"))?,
-        nodes: nodes.ok_or_else(|| missing("Nodes"))?,
-        elements: elements.ok_or_else(|| missing("Elements"))?,
-    })
+    if version == Version::Four && groups.is_none() {
+        return Err(missing("Entities"));
+    }
+    let nodes = nodes.ok_or_else(|| missing("Nodes"))?;
+    let elements = elements.ok_or_else(|| missing("Elements"))?;
+    let groups = groups.unwrap_or_else(|| msh2::groups(&elements));
+    Ok(Content { names: names.unwrap_or_default(), groups, nodes, elements })
 }
 
 /// `$MeshFormat`: version, text or binary, size of a `size_t`; in a binary file then the number 1.

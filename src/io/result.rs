@@ -4,12 +4,13 @@
 //! together with its name: `null` never stands in the file, and a NaN or an infinity is an error that names it, where
 //! JSON alone would turn it into `null` without a word. Everything but [`Seconds`] is the same from run to run.
 
+mod layout;
+
 use std::collections::BTreeMap;
-use std::io::{self, Write};
 use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
-use serde_json::ser::{Formatter, Serializer};
+use serde_json::ser::Serializer;
 
 use super::body::MaterialEcho;
 use super::case::Units;
@@ -23,6 +24,7 @@ use crate::solve::{
     ContactBoundary, ContactQuadrature, EnergyBalance, Gamma0, GammaReport, Method, MethodReport,
     Quantities, Status, Times,
 };
+use layout::Layout;
 
 /// The content of result.json, in its order.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -96,6 +98,7 @@ fn first() -> u32 {
 
 /// The method as the case chose it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Choices {
     /// The polynomial degree.
     pub degree: usize,
@@ -196,6 +199,7 @@ pub struct NewtonHistory {
 
 /// How wrong the solution can be.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Certificates {
     /// The distance from the exact solution of (8).
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -218,6 +222,7 @@ pub struct Adaptation {
 
 /// The distance of the solution u~ that was computed from the exact solution u^h of (8).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct DiscreteCertificate {
     /// |u~ - u^h|_a is at most this.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -268,6 +273,7 @@ impl From<&enclosure::Certificate> for DiscreteCertificate {
 
 /// The distance of the admissible part v of the solution from the true solution u of (1)-(2).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct ContinuousCertificate {
     /// |u - v|_a is at most this.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -362,113 +368,6 @@ pub fn result_json(results: &Results) -> Result<String, DataError> {
     written.map_err(|error| DataError::NotFinite { place: error.to_string() })?;
     bytes.push(b'\n');
     Ok(String::from_utf8_lossy(&bytes).into_owned())
-}
-
-/// One name a line, arrays on one line, and a refusal to write `null`.
-#[derive(Default)]
-struct Layout {
-    /// Where in the file we are.
-    path: Vec<Step>,
-    in_name: bool,
-    /// The object at hand has a member.
-    has_member: bool,
-}
-
-enum Step {
-    Name(String),
-    Index(usize),
-}
-
-impl Layout {
-    fn new_line<W: ?Sized + Write>(&self, to: &mut W) -> io::Result<()> {
-        write!(to, "\n{:width$}", "", width = 2 * self.path.len())
-    }
-
-    fn place(&self) -> String {
-        let mut place = String::new();
-        for step in &self.path {
-            match step {
-                Step::Name(name) if place.is_empty() => place.push_str(name),
-                Step::Name(name) => place.extend([".", name]),
-                Step::Index(i) => place.push_str(&format!("[{i}]")),
-            }
-        }
-        place
-    }
-}
-
-impl Formatter for Layout {
-    /// serde_json comes here for a NaN or an infinity.
-    fn write_null<W: ?Sized + Write>(&mut self, _: &mut W) -> io::Result<()> {
-        Err(io::Error::other(self.place()))
-    }
-
-    fn begin_array<W: ?Sized + Write>(&mut self, to: &mut W) -> io::Result<()> {
-        self.path.push(Step::Index(0));
-        to.write_all(b"[")
-    }
-
-    fn begin_array_value<W: ?Sized + Write>(&mut self, to: &mut W, first: bool) -> io::Result<()> {
-        if first {
-            return Ok(());
-        }
-        if let Some(Step::Index(i)) = self.path.last_mut() {
-            *i += 1;
-        }
-        to.write_all(b", ")
-    }
-
-    fn end_array<W: ?Sized + Write>(&mut self, to: &mut W) -> io::Result<()> {
-        self.path.pop();
-        to.write_all(b"]")
-    }
-
-    fn begin_object<W: ?Sized + Write>(&mut self, to: &mut W) -> io::Result<()> {
-        self.has_member = false;
-        to.write_all(b"{")
-    }
-
-    fn begin_object_key<W: ?Sized + Write>(&mut self, to: &mut W, first: bool) -> io::Result<()> {
-        if !first {
-            to.write_all(b",")?;
-        }
-        self.path.push(Step::Name(String::new()));
-        self.in_name = true;
-        self.new_line(to)
-    }
-
-    fn write_string_fragment<W: ?Sized + Write>(
-        &mut self,
-        to: &mut W,
-        fragment: &str,
-    ) -> io::Result<()> {
-        if let (true, Some(Step::Name(name))) = (self.in_name, self.path.last_mut()) {
-            name.push_str(fragment);
-        }
-        to.write_all(fragment.as_bytes())
-    }
-
-    fn end_object_key<W: ?Sized + Write>(&mut self, _: &mut W) -> io::Result<()> {
-        self.in_name = false;
-        Ok(())
-    }
-
-    fn begin_object_value<W: ?Sized + Write>(&mut self, to: &mut W) -> io::Result<()> {
-        to.write_all(b": ")
-    }
-
-    fn end_object_value<W: ?Sized + Write>(&mut self, _: &mut W) -> io::Result<()> {
-        self.path.pop();
-        self.has_member = true;
-        Ok(())
-    }
-
-    fn end_object<W: ?Sized + Write>(&mut self, to: &mut W) -> io::Result<()> {
-        if self.has_member {
-            self.new_line(to)?;
-        }
-        to.write_all(b"}")
-    }
 }
 
 #[cfg(test)]

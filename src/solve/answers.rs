@@ -20,7 +20,8 @@ use serde::{Deserialize, Serialize};
 use nalgebra::Vector2;
 
 use crate::fem::contact_line::{ContactLineEdge, EdgeRule};
-use crate::fem::discretization::{Discretization, inner};
+use crate::fem::dense::inner;
+use crate::fem::discretization::Discretization;
 use crate::fem::mesh::length;
 use crate::kernel::edge_integral::{self, ExactEdge, value_at};
 use crate::kernel::element::displacement_gradient;

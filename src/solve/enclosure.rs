@@ -38,6 +38,7 @@ pub type Range = [f64; 2];
 
 /// Where u^h is, and what is known of it.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Enclosure {
     /// kappa of (11), rounded up.
     pub kappa: f64,
@@ -56,6 +57,7 @@ pub struct Enclosure {
 /// Intervals that contain what the exact solution of (8) has.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
+#[non_exhaustive]
 pub struct Intervals {
     /// a(u, u)
     pub energy: Range,
@@ -80,6 +82,7 @@ impl Intervals {
 /// Of a contact boundary.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
+#[non_exhaustive]
 pub struct ContactIntervals {
     /// Its name.
     pub boundary: String,
@@ -92,6 +95,7 @@ pub struct ContactIntervals {
 /// Why nothing is proved.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
+#[non_exhaustive]
 pub enum Unproved {
     #[error("the body is held by contact alone, and A is singular")]
     HeldByContact,

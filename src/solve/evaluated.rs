@@ -10,6 +10,7 @@ use crate::kernel::edge_integral::ExactEdge;
 
 /// A displacement with its forces.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Evaluated<const M: usize> {
     /// Nodal values.
     pub u: Vec<[f64; 2]>,

@@ -3,7 +3,7 @@
 //! weighted so that S^T S is the matrix of int h_T sigma_n sigma_n, and mu the largest eigenvalue of S A^-1 S^T,
 //! gamma0* = gamma0 + 1/mu. It is computed in doubles, by Lanczos' method; nothing is proved with it.
 
-use faer::{Mat, Side};
+use faer::Mat;
 
 use super::SolveError;
 use super::compliance::{Compliance, Reach};
@@ -17,6 +17,7 @@ use crate::kernel::edge_integral::ExactEdge;
 
 /// gamma0* and the edge that sets it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct TrueLimit {
     /// gamma0*, in 1 / stress.
     pub gamma0: f64,
@@ -26,6 +27,7 @@ pub struct TrueLimit {
 
 /// Why it is not known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum NoLimit {
     /// The assembled route has no condensed matrix.
     Assembled,
@@ -169,21 +171,65 @@ fn largest_eigenpair(g: &Mat<f64>) -> Option<(f64, Vec<f64>)> {
         }
         next = w;
     }
-    let m = basis.len();
-    let tridiagonal = Mat::from_fn(m, m, |i, j| match i.abs_diff(j) {
-        0 => diagonal[i],
-        1 => beside[i.min(j)],
-        _ => 0.0,
-    });
-    let eigen = tridiagonal.self_adjoint_eigen(Side::Lower).ok()?;
-    let values = eigen.S().column_vector();
-    let best = (0..m).max_by(|&a, &b| values[a].total_cmp(&values[b]))?;
-    let mu = values[best];
-    let coefficients = eigen.U().col(best);
-    let vector = (0..q)
-        .map(|i| basis.iter().zip(coefficients.iter()).map(|(b, c)| b[(i, 0)] * c).sum())
-        .collect();
+    let (mu, coefficients) = largest_of_tridiagonal(&diagonal, &beside)?;
+    let vector =
+        (0..q).map(|i| basis.iter().zip(&coefficients).map(|(b, c)| b[(i, 0)] * c).sum()).collect();
     (mu > 0.0).then_some((mu, vector))
+}
+
+/// Halvings of an interval, after which its ends are neighbours.
+const HALVINGS: usize = 60;
+
+/// Steps of inverse iteration with a shift that is the eigenvalue but for rounding; each brings all digits that there are.
+const INVERSE_STEPS: usize = 3;
+
+/// The largest eigenvalue of the symmetric matrix T with this diagonal and these entries beside it, and its eigenvector of
+/// length 1; `None` if an entry is not finite. The eigenvalue is the infimum of all mu for which mu I - T is positive
+/// definite, found by bisection of Gershgorin's interval.
+fn largest_of_tridiagonal(diagonal: &[f64], beside: &[f64]) -> Option<(f64, Vec<f64>)> {
+    let m = diagonal.len();
+    let at = |i: usize| beside.get(i).map_or(0.0, |b| b.abs());
+    let around = |i: usize| if i == 0 { at(0) } else { at(i - 1) + at(i) };
+    let mut low = diagonal.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let mut high = (0..m).map(|i| diagonal[i] + around(i)).fold(low, f64::max);
+    // mu I - T = L D L^T with positive D, or not.
+    let pivots = |mu: f64| -> Option<Vec<f64>> {
+        let mut pivots = Vec::with_capacity(m);
+        for i in 0..m {
+            let before = if i == 0 { 0.0 } else { beside[i - 1] * beside[i - 1] / pivots[i - 1] };
+            let pivot = mu - diagonal[i] - before;
+            if !(pivot > 0.0) {
+                return None;
+            }
+            pivots.push(pivot);
+        }
+        Some(pivots)
+    };
+    // Gershgorin's end may be the eigenvalue itself.
+    high += f64::EPSILON * (high.abs() + (high - low));
+    let mut factor = pivots(high)?;
+    for _ in 0..HALVINGS {
+        let middle = low / 2.0 + high / 2.0;
+        match pivots(middle) {
+            Some(pivots) => (high, factor) = (middle, pivots),
+            None => low = middle,
+        }
+    }
+    let mut x = vec![1.0; m];
+    for _ in 0..INVERSE_STEPS {
+        for i in 1..m {
+            x[i] += beside[i - 1] / factor[i - 1] * x[i - 1];
+        }
+        for i in (0..m).rev() {
+            let after = if i + 1 < m { beside[i] * x[i + 1] } else { 0.0 };
+            x[i] = (x[i] + after) / factor[i];
+        }
+        let length = x.iter().map(|x| x * x).sum::<f64>().sqrt();
+        x.iter_mut().for_each(|x| *x /= length);
+    }
+    let own = x.iter().zip(diagonal).map(|(x, d)| d * x * x).sum::<f64>();
+    let mixed = x.iter().zip(&x[m.min(1)..]).zip(beside).map(|((x, next), b)| b * x * next);
+    Some((own + 2.0 * mixed.sum::<f64>(), x))
 }
 
 #[cfg(test)]

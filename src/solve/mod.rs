@@ -51,7 +51,7 @@ use crate::kernel::edge_integral::ExactEdge;
 use crate::kernel::{P1, P2};
 use crate::quote::{fixed, number};
 
-/// The free choices of method (8).
+/// The free choices of method (8). Written as `Method { degree, ..Method::default() }`, for fields may come.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Method {
     /// The polynomial degree of V^h, 1 or 2.
@@ -85,6 +85,7 @@ impl Degree {
 
 /// gamma0 of (7), in 1 / stress.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Gamma0 {
     /// Half of the coercivity limit.
     Auto,
@@ -104,7 +105,7 @@ pub enum ContactQuadrature {
     Gauss(usize),
 }
 
-/// When Newton's method stops.
+/// When Newton's method stops. Written as `Settings { tolerance, ..Settings::default() }`, for fields may come.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// The relative residual to reach.

@@ -101,6 +101,21 @@ fn a_full_standard_output_ends_with_exit_code_1_and_the_files_are_there() {
 }
 
 #[test]
+fn help_that_nobody_can_be_given_is_a_failure_and_a_reader_of_it_who_leaves_is_none() {
+    let folder = folder("full-help");
+    for arguments in [&["--help"][..], &["--version"], &["help", "solve"], &["man"]] {
+        let child = command(&folder, arguments).stdout(full()).stderr(Stdio::piped()).spawn();
+        let output = output(child.unwrap());
+        let said = "error: cannot write to standard output: No space left on device\n";
+        assert_eq!((output.status.code(), text(&output.stderr)), (Some(1), said), "{arguments:?}");
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let status = command(&folder, arguments).stdout(writer).status().unwrap();
+        assert_eq!(status.code(), Some(0), "{arguments:?}");
+    }
+}
+
+#[test]
 fn a_full_standard_error_leaves_the_exit_code_as_it_is() {
     let folder = folder("full-error");
     for (arguments, code) in [

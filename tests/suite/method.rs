@@ -4,7 +4,7 @@
 
 use crate::common::*;
 use signorini::fem::contact_line::EdgeRule;
-use signorini::fem::discretization::inner;
+use signorini::fem::dense::inner;
 use signorini::fem::matrix::{self, Neighbours, Numbering};
 use signorini::fem::quadrature::gauss;
 use signorini::fem::{Condition, Diagonal, Discretization, Problem, Rectangle};

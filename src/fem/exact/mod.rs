@@ -28,9 +28,10 @@ pub use smooth::Smooth;
 
 use nalgebra::Matrix2;
 
+use super::function::{BoxedFunction, Function};
 use super::mesh::Mesh;
 use super::pieces::Features;
-use super::problem::{BoxedFunction, Condition, Function, Problem};
+use super::problem::{Condition, Problem};
 use crate::kernel::{Material, Scalar, Stress};
 
 /// A displacement field that solves (1)-(2), with its data.

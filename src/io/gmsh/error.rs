@@ -47,6 +47,7 @@ impl fmt::Display for Place {
 /// What is wrong with a mesh file. Nodes, elements, curves and physical groups go by their tags.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
+#[non_exhaustive]
 pub enum GmshMistake {
     #[error("{0}")]
     Input(#[from] InputError),

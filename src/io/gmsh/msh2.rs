@@ -7,43 +7,13 @@
 
 use std::collections::BTreeMap;
 
-use super::{
-    ByDimension, Content, Cursor, Elements, Form, GmshMistake, Node, Place, Result, read_names,
-};
+use super::{ByDimension, Cursor, Elements, Form, GmshMistake, Node, Result};
 
 const NODE: &str = "the tag of a node";
 const COORDINATE: &str = "a coordinate of a node";
 
-pub(super) fn read_sections(cursor: &mut Cursor) -> Result<Content> {
-    let (mut names, mut nodes, mut elements) = (None, None, None);
-    while let Some((start, section)) = cursor.section()? {
-        let first = match section {
-            "PhysicalNames" => names.replace(read_names(cursor)?).is_none(),
-            "Nodes" => nodes.replace(read_nodes(cursor)?).is_none(),
-            "Elements" => elements.replace(read_elements(cursor)?).is_none(),
-            _ => {
-                cursor.skip_to_end_of(section)?;
-                true
-            }
-        };
-        if !first {
-            let section = section.to_owned();
-            return Err(cursor.wrong_at(start, GmshMistake::SectionTwice { section }));
-        }
-        cursor.end_of(section)?;
-    }
-    let missing = |section| cursor.wrong(Place::File, GmshMistake::NoSection { section });
-    let elements: Elements = elements.ok_or_else(|| missing("Elements"))?;
-    Ok(Content {
-        names: names.unwrap_or_default(),
-        groups: groups(&elements),
-        nodes: nodes.ok_or_else(|| missing("Nodes"))?,
-        elements,
-    })
-}
-
 /// Each physical group as an entity of its own, which is what `Elements` have here in place of one; 0 is in no group.
-fn groups(elements: &Elements) -> ByDimension<BTreeMap<i32, Vec<i32>>> {
+pub(super) fn groups(elements: &Elements) -> ByDimension<BTreeMap<i32, Vec<i32>>> {
     let of = |group: i32| (group, if group == 0 { Vec::new() } else { vec![group] });
     [
         elements.points.iter().map(|piece| of(piece.entity)).collect(),
@@ -70,7 +40,7 @@ fn tag(cursor: &mut Cursor, expected: &str) -> Result<usize> {
     usize::try_from(number).map_err(|_| cursor.unexpected(start, number.to_string(), expected))
 }
 
-fn read_nodes(cursor: &mut Cursor) -> Result<Vec<Node>> {
+pub(super) fn read_nodes(cursor: &mut Cursor) -> Result<Vec<Node>> {
     let mut nodes = Vec::new();
     for _ in 0..count(cursor, "the number of nodes")? {
         let node = tag(cursor, NODE)?;
@@ -85,7 +55,7 @@ fn read_nodes(cursor: &mut Cursor) -> Result<Vec<Node>> {
     Ok(nodes)
 }
 
-fn read_elements(cursor: &mut Cursor) -> Result<Elements> {
+pub(super) fn read_elements(cursor: &mut Cursor) -> Result<Elements> {
     let mut elements = Elements::default();
     let mut left = count(cursor, "the number of elements")?;
     while left > 0 {
