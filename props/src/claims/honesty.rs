@@ -41,6 +41,8 @@ fn loaded_bodies() -> Result<Vec<(String, Problem)>, String> {
         // One side is moved: two that meet would have to agree.
         problem.conditions.retain(|name, _| !displacement(name));
         problem.conditions.extend(held);
+        let gap: BoxedFunction = Box::new(|[x, _]: [f64; 2]| 0.02 + 0.01 * x);
+        problem.conditions.insert("bottom".to_owned(), Condition::Contact { gap });
         bodies.push((body.name, problem));
     }
     Ok(bodies)
