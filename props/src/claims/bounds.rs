@@ -722,7 +722,6 @@ pub fn claim() -> Claim {
             "material::Material::stress",
             "certify::proof::Certificate::evaluate",
             "certify::proof::Certificate::audit",
-            "certify::certify",
         ],
         preconditions: "The data are those of the certificate: the checker does not see the problem that it was made for. Green's formula.",
         limits: "Pieces that are cut, and how a certificate is made of a problem (`certify::build`, `sweeps`, `oscillation`), are looked at through their results only: a mistake there makes the bound of another problem, or a larger one. True errors are by quadrature.",

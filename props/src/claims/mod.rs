@@ -25,6 +25,8 @@ pub mod enclosed;
 pub mod engine;
 pub mod foundations;
 #[cfg(not(kani))]
+pub mod geometry;
+#[cfg(not(kani))]
 pub mod honesty;
 pub mod lemma_3_1;
 pub mod lemma_3_2;
