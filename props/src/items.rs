@@ -528,10 +528,7 @@ pub const ITEMS: &[Item] = &[
     Item {
         name: "the proof engine",
         says: "not in the paper: what is false is refused",
-        basis: Basis::Checks(&[(
-            "23",
-            &["parts_add_up", "young", "a_square_is_not_minus_two", "a_quotient_is_a_sum"],
-        )]),
+        basis: Basis::Checks(&[("23", &["true_neighbours_of_false_statements_are_proved"])]),
     },
 ];
 

@@ -105,7 +105,7 @@ fn between<S: Enclosing>(a: f64, b: f64) -> S {
         return S::exactly(a);
     }
     let third = S::from(1) / S::from(3);
-    (third - third).split(|_| S::exactly(a), |_| S::exactly(b))
+    (third + -third).split(|_| S::exactly(a), |_| S::exactly(b))
 }
 
 /// Single precision: the results of members are in the results.

@@ -1,12 +1,16 @@
 //! The proof engine itself: what is false is refused, and true neighbours of it are proved. Its trusted part has tests of its
 //! own (`proof`); here it is asked like any other engine, by statements that it has not been built for.
 
-use crate::claim::{Check, Claim, false_statement, proved};
-use crate::proof::falsehoods;
+use crate::claim::{Check, Claim, Engine, by, false_statement};
+use crate::claims::falsehoods;
 
 /// The row.
 pub fn claim() -> Claim {
-    let mut checks: Vec<Check> = falsehoods::neighbours().into_iter().map(proved).collect();
+    let mut checks: Vec<Check> = vec![by(
+        Engine::Proof,
+        "true_neighbours_of_false_statements_are_proved",
+        falsehoods::neighbours_are_proved,
+    )];
     checks.extend(falsehoods::all().into_iter().map(false_statement));
     Claim {
         id: "23",

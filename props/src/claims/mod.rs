@@ -23,6 +23,8 @@ pub mod discrete_forms;
 pub mod enclosed;
 #[cfg(not(kani))]
 pub mod engine;
+#[cfg(not(kani))]
+pub mod falsehoods;
 pub mod foundations;
 #[cfg(not(kani))]
 pub mod geometry;

@@ -6,7 +6,6 @@
 
 pub mod certificate;
 pub mod explorer;
-pub mod falsehoods;
 pub mod float;
 pub mod polynomial;
 pub mod sampler;

@@ -3,7 +3,8 @@
 
 use signorini::kernel::{positive_part, positive_part_slope};
 
-use super::{prove, refute};
+use crate::claim::Outcome;
+use crate::proof::{prove, refute};
 use crate::statement::Statement;
 use crate::verdict::{Ordered, Verdict};
 use crate::{ensure, given, statement};
@@ -469,7 +470,7 @@ fn a_square_lies_below_its_chord_between_the_ends<S: Ordered>([a, b, t]: [S; 3])
 }
 
 /// True neighbours of some of them: what the engine refuses above is not refused for its form.
-pub fn neighbours() -> Vec<Statement> {
+fn neighbours() -> Vec<Statement> {
     vec![
         statement!(parts_add_up, [a, b], ["all"]),
         statement!(young, [a, b, beta], ["all"]),
@@ -485,6 +486,19 @@ pub fn neighbours() -> Vec<Statement> {
         statement!(a_square_lies_below_its_chord_between_the_ends, [a, b, t], ["all"])
             .with_hints(|v| vec![v[0] - v[1]]),
     ]
+}
+
+/// The neighbours are proved.
+///
+/// # Errors
+/// One that is not.
+pub fn neighbours_are_proved() -> Outcome {
+    let all = neighbours();
+    for statement in &all {
+        prove(statement)
+            .map_err(|why| format!("{} is true, and refused: {why}", statement.name))?;
+    }
+    Ok(format!("{} statements", all.len()))
 }
 
 /// Refuses a false statement: the engine does not prove it, and where it names a conclusion, that is what fails at a
