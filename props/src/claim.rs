@@ -46,6 +46,8 @@ pub enum Subject {
     Function(fn() -> Outcome),
     /// A harness.
     Harness(Harness),
+    /// A false statement, which the proof engine must refuse.
+    Falsehood(Statement),
 }
 
 /// One piece of evidence.
@@ -120,6 +122,7 @@ impl Check {
         match (self.subject, self.engine, self.control) {
             (Subject::Function(run), _, _) => run(),
             (Subject::Harness(harness), _, _) => harness.run(),
+            (Subject::Falsehood(s), _, _) => crate::claims::falsehoods::refuse(&s),
             (Subject::Statement(s), Engine::Proof, false) => proof::prove(&s),
             (Subject::Statement(s), Engine::Proof, true) => proof::refute(&s),
             (Subject::Statement(s), Engine::Exact, false) => draws::hold_exactly(&s),
@@ -167,6 +170,16 @@ pub fn by(engine: Engine, name: &'static str, run: fn() -> Outcome) -> Check {
 /// A negative control by a function of its own.
 pub fn control(engine: Engine, name: &'static str, run: fn() -> Outcome) -> Check {
     Check { name, engine, control: true, subject: Subject::Function(run) }
+}
+
+/// A false statement, refused by the proof engine.
+pub fn false_statement(statement: Statement) -> Check {
+    Check {
+        name: statement.name,
+        engine: Engine::Proof,
+        control: true,
+        subject: Subject::Falsehood(statement),
+    }
 }
 
 /// A harness, as evidence or, if it is the false twin of one, as a control.

@@ -106,6 +106,20 @@ where
         pairs.filter(|(number, _)| number.is_some()).map(|(_, &value)| value).collect()
     }
 
+    /// The prescribed components of each node.
+    pub fn prescribed(&self) -> &[[Option<f64>; 2]] {
+        self.d.constraints.values()
+    }
+
+    /// Gives the prescribed components of a field their values.
+    pub fn prescribe(&self, field: &mut [[Exact; 2]]) {
+        for (values, prescribed) in field.iter_mut().zip(self.prescribed()) {
+            for c in 0..2 {
+                values[c] = prescribed[c].map_or(values[c], Exact::of_double);
+            }
+        }
+    }
+
     /// The field with a vector over the free components subtracted.
     pub fn less(&self, field: &[[Exact; 2]], step: &[Exact]) -> Nodal {
         let component = |(number, &value): (&Option<usize>, &Exact)| match number {
@@ -188,6 +202,33 @@ where
 
     /// The residual of (8) at u over the free components.
     pub fn residual(&self, u: &[[Exact; 2]]) -> Vec<Exact> {
+        self.free(&self.reactions(u))
+    }
+
+    /// a(u, u)
+    pub fn energy(&self, u: &[[Exact; 2]]) -> Exact {
+        let mut energy = Exact::from(0);
+        for (t, k) in self.stiffness.iter().enumerate() {
+            let u = self.local(t, u);
+            for i in 0..N {
+                for j in 0..N {
+                    energy += u[i].dot(&(k[i][j] * u[j]));
+                }
+            }
+        }
+        energy
+    }
+
+    /// int \[P(u)\]+/gamma: the force of contact.
+    pub fn contact_force(&self, u: &[[Exact; 2]]) -> Exact {
+        self.edges.iter().enumerate().fold(Exact::from(0), |force, (e, edge)| {
+            let gradient = self.integrals(self.p(e, u)).gradient;
+            force + edge.length / edge.gamma * sum(gradient, |g| g)
+        })
+    }
+
+    /// The residual of (8) at u for every basis function: at the prescribed components the reactions.
+    pub fn reactions(&self, u: &[[Exact; 2]]) -> Nodal {
         let load = |l: &[f64; 2]| l.map(|l| -Exact::of_double(l));
         let mut residual: Nodal = self.d.load.iter().map(load).collect();
         let mut add = |t: usize, i: usize, c: usize, value: Exact| {
@@ -223,7 +264,7 @@ where
                 }
             }
         }
-        self.free(&residual)
+        residual
     }
 
     /// The derivative of the residual at u that Newton's method uses.

@@ -322,7 +322,14 @@ pub const ITEMS: &[Item] = &[
                     "the_bound_holds_for_the_errors_of_the_solver",
                 ],
             ),
-            ("17", &["plain_bound_is_that_of_theorem_3_4"]),
+            (
+                "17",
+                &[
+                    "plain_bound_is_that_of_theorem_3_4",
+                    "three_facts_give_inequality_9_6",
+                    "inequality_9_6_gives_the_sharp_bound_9_5",
+                ],
+            ),
         ]),
     },
     Item {
@@ -500,6 +507,28 @@ pub const ITEMS: &[Item] = &[
                 "the_verdict_accepts_small_forward_errors_only",
             ],
         )]),
+    },
+    Item {
+        name: "the error bound",
+        says: "not in the paper: |u - v|_a without an unknown constant, by certificate",
+        basis: Basis::Both(
+            &[(
+                "24",
+                &[
+                    "the_square_of_the_bound_splits_at_a_point",
+                    "what_contact_adds_is_not_negative",
+                    "the_checker_finds_what_the_definitions_say",
+                    "the_checker_refuses_what_the_theorem_does_not_allow",
+                    "the_bound_of_the_solvers_displacement_is_above_its_error",
+                ],
+            )],
+            "Green's formula",
+        ),
+    },
+    Item {
+        name: "the proof engine",
+        says: "not in the paper: what is false is refused",
+        basis: Basis::Checks(&[("23", &["true_neighbours_of_false_statements_are_proved"])]),
     },
 ];
 

@@ -159,7 +159,7 @@ fn evidence(claim: &Claim) -> impl Iterator<Item = &Check> {
 /// The directory under `src` where an item of a claim is: that of the kernel unless its path begins with another one.
 pub fn source(path: &str) -> &str {
     let first = path.split("::").next().unwrap_or(path);
-    if ["fem", "solve"].contains(&first) { first } else { "kernel" }
+    if ["certify", "fem", "solve"].contains(&first) { first } else { "kernel" }
 }
 
 fn row(claim: &Claim) -> String {

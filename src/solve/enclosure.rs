@@ -125,10 +125,7 @@ fn up(x: f64) -> f64 {
 impl Unproved {
     /// Whether (8) is known to have exactly one solution all the same.
     pub fn is_unique(&self) -> bool {
-        !matches!(
-            self,
-            Unproved::HeldByContact | Unproved::NotCoercive { .. } | Unproved::NoKappa
-        )
+        !matches!(self, Unproved::HeldByContact | Unproved::NotCoercive { .. } | Unproved::NoKappa)
     }
 }
 

@@ -81,7 +81,8 @@ fn extreme_units_give_the_same_solution_or_say_that_they_are_out_of_range() {
                     Ok(other) => {
                         // All but the residuals, which are rounding.
                         let values = in_its_units(&other, length, modulus);
-                        let count = one.len() - solved(degree, 0, 0).unwrap().newton.residuals.len();
+                        let count =
+                            one.len() - solved(degree, 0, 0).unwrap().newton.residuals.len();
                         for (a, b) in one.iter().zip(&values).take(count) {
                             let off = (a - b).abs();
                             assert!(off <= 1e-12 * largest, "2^{length}, 2^{modulus}: {a} {b}");

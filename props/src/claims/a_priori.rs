@@ -63,6 +63,45 @@ pub fn three_facts_give_inequality_9_6<S: Ordered>(
     Verdict::Holds("always")
 }
 
+/// The Cauchy-Schwarz inequality of the proof of [9.5]: (b E + Q Z)^2 <= (b^2/delta + Q^2) (delta E^2 + Z^2).
+pub fn the_right_side_of_9_6_is_bounded_by_the_left_one<S: Ordered>(
+    [e, z, b, q, delta]: [S; 5],
+) -> Verdict {
+    given!(delta > S::from(0));
+    let linear = b * e + q * z;
+    let square = delta * e * e + z * z;
+    ensure!(delta * linear * linear <= (b * b + delta * q * q) * square);
+    ensure!(linear * linear <= (b * b / delta + q * q) * square);
+    Verdict::Holds("always")
+}
+
+/// [9.5] from [9.6]: let l = b E + Q Z, X = (delta E^2 + Z^2)^(1/2), r = (b^2/delta + Q^2)^(1/2), so that l^2 <= r^2 X^2, and
+/// w = (r^2 + 4 c)^(1/2). [9.6] is X^2 <= l + c; then X is at most the larger root y = (r + w)/2 of y^2 = r y + c, and [9.5] is
+/// X/m <= y/m, m = delta^(1/2).
+pub fn inequality_9_6_gives_the_sharp_bound_9_5<S: Ordered>([l, c, x, r, w, m]: [S; 6]) -> Verdict {
+    let (zero, two, four) = (S::from(0), S::from(2), S::from(4));
+    given!(m > zero && c >= zero && x >= zero && r >= zero && w >= zero);
+    given!(w * w == r * r + four * c);
+    given!(l * l <= r * x * (r * x) && x * x <= l + c);
+    ensure!(r * x >= zero);
+    ensure!(l <= r * x);
+    ensure!(w >= r);
+    let y = (r + w) / two;
+    ensure!(y * y == r * y + c);
+    ensure!(x <= y);
+    ensure!(x / m <= (r + w) / (two * m));
+    Verdict::Holds(if c == zero { "c = 0" } else { "c > 0" })
+}
+
+/// The root with 2 c in the place of 4 c.
+pub fn control_9_5_with_half_the_constant<S: Ordered>([c, x, r, w]: [S; 4]) -> Verdict {
+    let zero = S::from(0);
+    given!(c >= zero && x >= zero && r >= zero && w >= zero);
+    given!(w * w == r * r + S::from(2) * c && x * x <= r * x + c);
+    ensure!(x <= (r + w) / S::from(2));
+    Verdict::Holds("always")
+}
+
 /// (i), (ii) and (iii) for the a-orthogonal projection, a(eta, w) = 0: what Theorem 9.4 starts from.
 pub fn three_facts_give_the_hypothesis_of_theorem_9_4<S: Ordered>(
     [w, z, s, big, k, d, q, r, t]: [S; 9],
@@ -199,7 +238,18 @@ pub fn claim() -> Claim {
         [w, z, s, big, k, d, q, r, t],
         ["always"]
     );
-    let all = [plain, terms, sharp_facts, projected_facts, projected, corollary];
+    let cauchy = statement!(
+        the_right_side_of_9_6_is_bounded_by_the_left_one,
+        [e, z, b, q, delta],
+        ["always"]
+    )
+    .with_hints(|v| vec![v[2] * v[1] - v[3] * v[4] * v[0]]);
+    let sharp = statement!(
+        inequality_9_6_gives_the_sharp_bound_9_5,
+        [l, c, x, r, w, m],
+        ["c = 0", "c > 0"]
+    );
+    let all = [plain, terms, sharp_facts, cauchy, sharp, projected_facts, projected, corollary];
     let mut checks: Vec<_> = all.into_iter().map(proved).collect();
     checks.extend([tested(terms)]);
     checks.extend([
@@ -214,13 +264,18 @@ pub fn claim() -> Claim {
             [s, e, h, k],
             fails "s + k * (e + h) <= a_priori::corollary_bound(k * k, e, [h, s])"
         )),
+        refuted(statement!(
+            control_9_5_with_half_the_constant,
+            [c, x, r, w],
+            fails "x <= (r + w) / S::from(2)"
+        )),
     ]);
     Claim {
         id: "17",
         items: &["Theorem 3.4", "Corollary 3.6"],
         title: "The bounds that the solver prints",
         paper: "The right sides of Theorem 3.4 and of Corollary 3.6, with C.",
-        statement: "The functions of `fem::a_priori`, by which the solver prints the bounds of Theorem 3.4 (plain, and for the a-orthogonal projection of u) and Corollary 3.6, are the right sides that rows 11 and docs/theory.md, 9 prove, over symbols; the terms b and c of the sharp bound are those of Theorem 9.3, whose inequality [9.6] follows from the facts of the proof of Theorem 3.4; the hypothesis of Theorem 9.4 likewise. In doubles, squared, each is within 64 roundings of the same function over rationals, the root of kappa in Corollary 3.6 is a root, and the sharp bound is a root of its quadratic equation.",
+        statement: "The functions of `fem::a_priori`, by which the solver prints the bounds of Theorem 3.4 (plain, and for the a-orthogonal projection of u) and Corollary 3.6, are the right sides that rows 11 and docs/theory.md, 9 prove, over symbols; the terms b and c of the sharp bound are those of Theorem 9.3, whose inequality [9.6] follows from the facts of the proof of Theorem 3.4, and the bound [9.5] from [9.6]; the hypothesis of Theorem 9.4 likewise. In doubles, squared, each is within 64 roundings of the same function over rationals, the root of kappa in Corollary 3.6 is a root, and the sharp bound is a root of its quadratic equation.",
         numbers: "every ordered field (proof), with k = kappa^(1/2) as data; doubles against rationals.",
         kernel: &[
             "fem::a_priori::left",
@@ -234,7 +289,7 @@ pub fn claim() -> Claim {
             "fem::a_priori::corollary",
         ],
         preconditions: "0 <= kappa < 1; the hypotheses of row 11.",
-        limits: "The norms that are put in are those of row 12's quadrature. That [9.5] follows from [9.6] is proved in docs/theory.md, not here.",
+        limits: "The norms that are put in are those of row 12's quadrature.",
         single: None,
         checks,
     }

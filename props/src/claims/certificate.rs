@@ -25,7 +25,8 @@ use signorini::fem::{
 };
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::{Material, P1, P2, Plane};
-use signorini::solve::enclosure::{self, Enclosure, FactorOfA};
+use signorini::solve::census;
+use signorini::solve::enclosure::{self, Enclosure, FactorOfA, Unproved};
 use signorini::solve::system::System;
 use signorini::solve::{ContactQuadrature, Degree, Gamma0, Method, Settings, discretize, solve};
 
@@ -415,12 +416,8 @@ where
     let Ok(d) = discretize::<E, N, M>(&solved.problem, &solved.method) else {
         return Verdict::Fails("there is no discrete problem");
     };
-    let mut u = moved(&solved.u, asked.noise);
-    for (values, prescribed) in u.iter_mut().zip(d.constraints.values()) {
-        for c in 0..2 {
-            values[c] = prescribed[c].unwrap_or(values[c]);
-        }
-    }
+    // Prescribed components too: the enclosure counts what they are off by.
+    let u = moved(&solved.u, asked.noise);
     let Ok(system) = System::new(&d) else { return Verdict::Fails("there is no system") };
     let load: Vec<[Ball; 2]> =
         d.load.iter().map(|l| l.map(|l| Ball::from(l * asked.load))).collect();
@@ -449,8 +446,9 @@ where
         if radius * radius > share * share * scale {
             return Err("the radius is at most 2^-share |u~|_a");
         }
-        let start = self.point(found.clone());
-        let mut point = Point { u: found.clone(), residual: start.residual };
+        let mut start = found.clone();
+        self.problem.prescribe(&mut start);
+        let mut point = self.point(start);
         let mut slack = Exact::from(0);
         let mut class = IRRATIONAL;
         for step in 0.. {
@@ -484,8 +482,13 @@ where
         [factor, slack]: [Exact; 2],
     ) -> Verdict {
         let most = |radius: f64| factor * Exact::of_double(radius) + slack;
-        let error = self.difference(found, exact);
-        ensure!(square(&self.k, &error) <= most(enclosure.radius) * most(enclosure.radius));
+        let error: Nodal =
+            found.iter().zip(exact).map(|(u, v)| [u[0] - v[0], u[1] - v[1]]).collect();
+        ensure!(self.problem.energy(&error) <= most(enclosure.radius) * most(enclosure.radius));
+        // At the nodes from where the prescribed components should be.
+        let mut found = found.to_vec();
+        self.problem.prescribe(&mut found);
+        let found = &found[..];
         for ((u, exact), &node) in found.iter().zip(exact).zip(&enclosure.nodes) {
             let off = [u[0] - exact[0], u[1] - exact[1]];
             ensure!(off[0] * off[0] + off[1] * off[1] <= most(node) * most(node));
@@ -495,6 +498,39 @@ where
         {
             ensure!(apart <= most(enclosure.pressure) * most(enclosure.pressure));
         }
+        if slack == Exact::from(0) {
+            self.reported(exact, enclosure, factor)
+        } else {
+            Verdict::Holds("within")
+        }
+    }
+
+    /// What is reported of u^h lies in its intervals, which are made narrower by `factor`.
+    fn reported(&self, u: &[[Exact; 2]], enclosure: &Enclosure, factor: Exact) -> Verdict {
+        let zero = Exact::from(0);
+        let two = Exact::from(2);
+        let inside = |[low, high]: [f64; 2], x: Exact| {
+            let [low, high] = [low, high].map(Exact::of_double);
+            let (middle, half) = ((low + high) / two, (high - low) / two * factor);
+            middle - half <= x && x <= middle + half
+        };
+        let intervals = &enclosure.intervals;
+        ensure!(inside(intervals.energy, self.problem.energy(u)));
+        let largest = u.iter().map(|u| u[0] * u[0] + u[1] * u[1]);
+        let largest = largest.fold(zero, |most, x| if x > most { x } else { most });
+        let [low, high] = intervals.max_displacement.map(Exact::of_double);
+        ensure!(low * low <= largest && largest <= high * high);
+        // One boundary, the lower side, with the normal (0, -1); the upper side is held in both components.
+        let force = self.problem.contact_force(u);
+        let [contact] = &intervals.contact[..] else { return Verdict::Fails("one boundary") };
+        ensure!(inside(contact.force, force));
+        ensure!(inside(contact.resultant[0], zero) && inside(contact.resultant[1], force));
+        let held = self.problem.reactions(u).into_iter().zip(self.problem.prescribed());
+        let reaction = held
+            .filter(|(_, p)| p[0].is_some())
+            .fold([zero; 2], |sum, (r, _)| [sum[0] + r[0], sum[1] + r[1]]);
+        let Some(ranges) = intervals.reactions.get("top") else { return Verdict::Fails("top") };
+        ensure!((0..2).all(|c| inside(ranges[c], reaction[c])));
         Verdict::Holds("within")
     }
 }
@@ -665,14 +701,58 @@ fn refused_beyond_the_limit() -> Outcome {
                     return Err(format!("gamma0 = {gamma0:?}: the certificate is wrong"));
                 }
             }
+            let system = System::new(&d).map_err(|error| error.to_string())?;
+            let enclosure =
+                enclosure::enclose(&system, &d.constraints.lift(), None, FactorOfA::Double);
+            let refused = matches!(enclosure, Err(Unproved::NotCoercive { .. }));
+            if refused == unique {
+                return Err(format!("gamma0 = {gamma0:?}: the enclosure is {enclosure:?}"));
+            }
         }
         Ok("gamma0 = 8/5: two solutions, refused; gamma0 = 1/15: accepted".to_owned())
     })
 }
 
+/// The solver's count of the solutions on the triangle, for the load (-1, 0) or its opposite; `scale` of gamma0.
+fn counted(scale: f64) -> Outcome {
+    for (gamma0, force, expected) in
+        [(1.6, -0.5, 2), (1.6, 0.5, 0), (1.0 / 15.0, -0.5, 1), (1.0 / 15.0, 0.5, 1)]
+    {
+        let mut problem = triangle()?;
+        problem.body_force = [constant(force), constant(0.0)];
+        let gamma0 = Gamma0::Value(scale * gamma0);
+        let method = Method { gamma0, allow_noncoercive: true, ..Method::default() };
+        let d = discretize::<P1, 3, 2>(&problem, &method).map_err(|error| error.to_string())?;
+        let system = System::new(&d).map_err(|error| error.to_string())?;
+        let found = census::count(&system);
+        if found != Some(expected) {
+            return Err(format!("{gamma0:?}, force {force}: {found:?} solutions, not {expected}"));
+        }
+    }
+    Ok("two, none and one solution on a triangle".to_owned())
+}
+
+fn solutions_are_counted() -> Outcome {
+    counted(1.0)
+}
+
+/// gamma0 a hundredth of what is said: there is always one solution.
+fn counted_below_the_limit() -> Outcome {
+    match counted(0.01) {
+        Err(why) => Ok(format!("rejected: {why}")),
+        Ok(said) => Err(format!("not noticed: {said}")),
+    }
+}
+
 /// The checks, for the row of Theorem 3.3.
-pub fn checks() -> [Check; 12] {
+pub fn checks() -> [Check; 14] {
     [
+        by(
+            Engine::Doubles,
+            "solutions_beyond_the_limit_are_counted_as_there_are",
+            solutions_are_counted,
+        ),
+        control(Engine::Doubles, "control_solutions_below_the_limit", counted_below_the_limit),
         by(
             Engine::Exact,
             "the_enclosure_that_is_reported_contains_the_solution_around_the_result",

@@ -91,7 +91,7 @@ mod row {
     use signorini::kernel::{P1, positive_part_slope};
 
     use crate::claim::{Claim, Engine, Outcome, by, control, model_checked};
-    use crate::claims::conditions;
+    use crate::claims::{balls, conditions, geometry};
     use crate::numbers::Exact;
     use crate::verdict::Verdict;
     use crate::{draws, ensure, given};
@@ -322,6 +322,36 @@ mod row {
                 "the_residual_in_twofold_numbers_is_that_in_doubles",
                 conditions::residual_in_twofold_numbers_is_that_in_doubles,
             ),
+            by(
+                Engine::Doubles,
+                "operations_of_balls_contain_the_exact_results",
+                balls::balls_contain_the_exact_results,
+            ),
+            by(
+                Engine::Doubles,
+                "operations_of_balls_of_twice_the_precision_contain_the_exact_results",
+                balls::fine_balls_contain_the_exact_results,
+            ),
+            by(
+                Engine::Doubles,
+                "factors_in_twofold_numbers_solve_what_doubles_cannot",
+                geometry::factors_in_twofold_numbers_solve_what_doubles_cannot,
+            ),
+            control(
+                Engine::Doubles,
+                "control_factors_in_doubles_for_those_in_twofold_numbers",
+                geometry::factors_in_doubles_solve_it_too,
+            ),
+            control(
+                Engine::Doubles,
+                "control_doubles_for_balls",
+                balls::doubles_contain_the_exact_results,
+            ),
+            control(
+                Engine::Doubles,
+                "control_centres_for_balls_of_twice_the_precision",
+                balls::centres_contain_the_exact_results,
+            ),
             control(
                 Engine::Doubles,
                 "control_the_residual_in_doubles_has_18_digits",
@@ -354,7 +384,7 @@ mod row {
             items: &["floating point"],
             title: "What the above rests on in floating point",
             paper: "Nothing: the paper computes in R.",
-            statement: "For intervals X, Y of doubles and numbers x in X, y in Y: x + y, x - y, x y, x / y (y not 0) and sqrt(x) lie in X + Y, X - Y, X Y, X / Y and sqrt(X). [X]+ is [[lo]+, [hi]+], sharp across zero, and the slope of [X]+ contains that at each number, for X = [0, hi] that at 0. Of two numbers the result is at most two doubles wide, and exact where it is zero without underflow; an end may be infinite (no bound); a NaN makes both ends NaN. The integrals over a cut P1 edge, by the same source line over intervals, contain the exact ones. Sums and products of two doubles as twofold numbers are exact, and +, -, *, / of these are off by at most 2^-100 of what goes in; in them the forces of a translation of a block, P1 and P2, vanish to 2^-90, and A(u, .) - L and P at random fields are those in doubles, to 1e-15 of their magnitudes.",
+            statement: "For intervals X, Y of doubles and numbers x in X, y in Y: x + y, x - y, x y, x / y (y not 0) and sqrt(x) lie in X + Y, X - Y, X Y, X / Y and sqrt(X). [X]+ is [[lo]+, [hi]+], sharp across zero, and the slope of [X]+ contains that at each number, for X = [0, hi] that at 0. Of two numbers the result is at most two doubles wide, and exact where it is zero without underflow; an end may be infinite (no bound); a NaN makes both ends NaN. The integrals over a cut P1 edge, by the same source line over intervals, contain the exact ones. The same for the balls in which certificates are checked and the discrete solution is enclosed (a double, or a number of twice the precision, with a radius): the results of members of the operands, and chains of three, lie in the results, which for numbers without a radius are known to 1e-14, or to 2^-98. Sums and products of two doubles as twofold numbers are exact, and +, -, *, / of these are off by at most 2^-100 of what goes in; in them the forces of a translation of a block, P1 and P2, vanish to 2^-90, and A(u, .) - L and P at random fields are those in doubles, to 1e-15 of their magnitudes. The factor L D L^T in them solves a system with Pascal's matrix of order 24 plus the identity, whose solution doubles do not know to 1e-9, to that, and a matrix with a negative entry on its diagonal has none.",
             numbers: "doubles against exact rational arithmetic, drawn from all finite doubles with subnormals, overflow and ties.",
             kernel: &[
                 "interval::Interval::new",
@@ -369,6 +399,10 @@ mod row {
                 "fem::twofold::Twofold::sum",
                 "fem::twofold::Twofold::product",
                 "fem::precise::evaluate",
+                "fem::ball::Ball::widened",
+                "fem::ball::Ball::sqrt",
+                "certify::proof::Enclosing::exactly",
+                "solve::ldl::TwofoldFactor::solve",
             ],
             preconditions: "The processor rounds +, -, *, / and sqrt to nearest, as IEEE 754 says.",
             limits: "The enclosure of a rounded operation is tested, not proved, over all doubles: no solver at hand decides it.",

@@ -7,6 +7,7 @@
 
 use std::collections::BTreeMap;
 
+use signorini::fem::twofold::Twofold;
 use signorini::fem::{BoxedFunction, Condition, Discretization, Problem};
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::{Material, P1, P2, Plane};
@@ -41,6 +42,8 @@ fn loaded_bodies() -> Result<Vec<(String, Problem)>, String> {
         // One side is moved: two that meet would have to agree.
         problem.conditions.retain(|name, _| !displacement(name));
         problem.conditions.extend(held);
+        let gap: BoxedFunction = Box::new(|[x, _]: [f64; 2]| 0.02 + 0.01 * x);
+        problem.conditions.insert("bottom".to_owned(), Condition::Contact { gap });
         bodies.push((body.name, problem));
     }
     Ok(bodies)
@@ -165,6 +168,14 @@ where
     let residual = free_square(&d, &d.residual(&outcome.u).values).sqrt() / forces(&d);
     if !((accuracy::reference(&d) - forces(&d)).abs() <= 1e-12 * forces(&d)) {
         return Err(format!("reference {}, by definition {}", accuracy::reference(&d), forces(&d)));
+    }
+    if let Some(fine) = &outcome.fine {
+        // What rounding to doubles takes away is an error too.
+        let lost: Vec<[f64; 2]> = fine.iter().map(|u| u.map(Twofold::tail)).collect();
+        let lost = size(&lost) / size(&outcome.u);
+        if !(outcome.forward_error >= outcome.correction + lost * (1.0 - 1e-9)) {
+            return Err(format!("a forward error of {:e}", outcome.forward_error));
+        }
     }
     Ok(Told { residual, error: size(&difference) / size(&outcome.u), outcome })
 }

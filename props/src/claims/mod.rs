@@ -6,6 +6,10 @@ pub mod a_priori;
 #[cfg(not(kani))]
 pub mod assembled;
 #[cfg(not(kani))]
+pub mod balls;
+#[cfg(not(kani))]
+pub mod bounds;
+#[cfg(not(kani))]
 pub mod certificate;
 #[cfg(not(kani))]
 pub mod conditions;
@@ -17,7 +21,13 @@ pub mod directions;
 pub mod discrete_forms;
 #[cfg(not(kani))]
 pub mod enclosed;
+#[cfg(not(kani))]
+pub mod engine;
+#[cfg(not(kani))]
+pub mod falsehoods;
 pub mod foundations;
+#[cfg(not(kani))]
+pub mod geometry;
 #[cfg(not(kani))]
 pub mod honesty;
 pub mod lemma_3_1;
@@ -68,6 +78,8 @@ pub fn all() -> Vec<Claim> {
         parts::direction(),
         parts::materials(),
         parts::recovered(),
+        engine::claim(),
+        bounds::claim(),
     ];
     claims.sort_by_key(|claim| claim.id.parse::<u32>().expect("the id of a row is a number"));
     claims
@@ -126,5 +138,7 @@ mod tests {
         every_check_of_row_20_passes "20",
         every_check_of_row_21_passes "21",
         every_check_of_row_22_passes "22",
+        every_check_of_row_23_passes "23",
+        every_check_of_row_24_passes "24",
     }
 }

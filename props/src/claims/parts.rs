@@ -29,6 +29,7 @@ use signorini::solve::{ContactQuadrature, Degree, Method, Settings, Solution, di
 
 use crate::bodies::{Body, Draw, Kernel, bodies, sum};
 use crate::claim::{Claim, Engine, Outcome, by, control, proved, refuted};
+use crate::claims::geometry;
 use crate::draws;
 use crate::numbers::Exact;
 use crate::statement;
@@ -525,6 +526,26 @@ pub fn direction() -> Claim {
             "the_peak_pressure_of_a_ring_on_a_pin_converges",
             pressure_on_a_circle_converges,
         ),
+        by(
+            Engine::Doubles,
+            "gaps_and_directions_of_obstacles_are_their_definitions",
+            geometry::obstacles_are_their_definitions,
+        ),
+        by(
+            Engine::Doubles,
+            "the_smooth_boundary_of_a_circle_is_the_circle",
+            geometry::smooth_boundaries_are_exact_on_circles,
+        ),
+        control(
+            Engine::Doubles,
+            "control_directions_away_from_the_obstacle",
+            geometry::directions_away_from_the_obstacle,
+        ),
+        control(
+            Engine::Doubles,
+            "control_middles_of_facets_for_those_of_the_curves",
+            geometry::middles_of_facets_for_those_of_the_curves,
+        ),
         control(Engine::Doubles, "control_normals_of_the_facets_on_a_circle", normals_of_facets),
         refuted(statement!(
             control_shear_modulus_for_the_stiffness,
@@ -545,12 +566,14 @@ pub fn direction() -> Claim {
         items: &["(11)", "Lemma 3.2"],
         title: "The direction of contact as a field",
         paper: "Gamma_C is a straight segment in the paper, and its normal constant.",
-        statement: "With unit vectors n~ at the nodes of Gamma_C in place of n, and s(v) = n~ . sigma(v) n in place of sigma_n (docs/theory.md, 2.1): |n~ . sigma n|^2 <= (lambda + 2 mu) sigma:eps for vectors of any length, scaled, with lambda as it acts in the plane: lambda* in plane stress, for which row 9 proves lambda* + mu > 0. On an edge along which n~ turns by an angle with the cosine c >= 0, int s^2 <= (2 - c) int |sigma n|^2 for an affine traction (P2), a factor that is attained, and 1 for a constant one (P1); so (11) holds with an edge counted 2 - c times. The kernel's functionals are n~ . v - gamma s(v) and s(v) by their definitions; with n~ = n they are the paper's over rationals, and in the solver on straight lines bit for bit. The peak pressure of a ring on a pin tends to that of an independent program; with the normals of the facets its error does not fall.",
+        statement: "With unit vectors n~ at the nodes of Gamma_C in place of n, and s(v) = n~ . sigma(v) n in place of sigma_n (docs/theory.md, 2.1): |n~ . sigma n|^2 <= (lambda + 2 mu) sigma:eps for vectors of any length, scaled, with lambda as it acts in the plane: lambda* in plane stress, for which row 9 proves lambda* + mu > 0. On an edge along which n~ turns by an angle with the cosine c >= 0, int s^2 <= (2 - c) int |sigma n|^2 for an affine traction (P2), a factor that is attained, and 1 for a constant one (P1); so (11) holds with an edge counted 2 - c times. The kernel's functionals are n~ . v - gamma s(v) and s(v) by their definitions; with n~ = n they are the paper's over rationals, and in the solver on straight lines bit for bit. Gap and direction of a plane, of a circle from outside and inside, and of a distance by its values lead to a point of the obstacle, and grow and stay one step back; a distance whose gradient is off by more than a tenth is refused. On a circle with unequal facets the normals and the middles of the curves are those of the circle. The peak pressure of a ring on a pin tends to that of an independent program; with the normals of the facets its error does not fall.",
         numbers: "every ordered field (proof); random bodies over rationals; doubles.",
         kernel: &[
             "contact_edge::ContactEdge::along",
             "contact_edge::turning_factor",
             "material::Material::traction_of_shape",
+            "fem::obstacle::Obstacle::closest",
+            "fem::smooth::SmoothBoundary::along",
         ],
         preconditions: "mu > 0 and lambda + mu > 0 with lambda as it acts in the plane. n~ turns by no more than a right angle along an edge: by less than 40 degrees where the line is smooth, by definition.",
         limits: "Convergence is measured on one body and two meshes here, on four meshes and four bodies in tests/suite/peaks.rs. The pressure's error is not bounded by theory: the paper's estimates are for straight lines.",

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use signorini::fem::exact::{Corner, Kind, Singular};
+use signorini::fem::exact::{Corner, Kind, Singular, Smooth};
 use signorini::fem::{Diagonal, Errors, Exact, Rectangle, Structured, Trapezoid};
 use signorini::kernel::{Material, Plane};
 use signorini::solve::ladder::fitted_slope;
@@ -58,6 +58,31 @@ fn end_of_contact(degree: Degree) -> Ladder {
     let square = Rectangle { width: 1.0, height: 1.0, nx: n, ny: n, diagonal };
     let solution = Singular { material: material(), c: 0.5, amplitude: 1.0 };
     ladder(Arc::new(solution), Structured::Rectangle(square), [Kind::Displacement; 3], degree)
+}
+
+/// Exact solutions of P1 for which a bound can be compared with the error: an end of contact, the wedge, and a smooth one.
+///
+/// # Errors
+/// A wedge that is none.
+pub fn bodies_with_a_known_error() -> Result<[(&'static str, Ladder); 3], String> {
+    let (n, diagonal) = (COARSEST, Diagonal::Right);
+    let square = Rectangle { width: 1.0, height: 1.0, nx: n, ny: n, diagonal };
+    let (c, k, m, ap, aq) = (1.0 / 3.0, 3.0, 2.0, 8.0, 4.0);
+    let smooth = Smooth { material: material(), c, k, m, ap, aq, gap: Vec::new() };
+    let square = Structured::Rectangle(square);
+    Ok([
+        ("the end of contact", end_of_contact(Degree::One)),
+        ("the wedge", wedge(Degree::One)?.0),
+        (
+            "a smooth solution",
+            ladder(
+                Arc::new(smooth),
+                square,
+                [Kind::Traction, Kind::Traction, Kind::Displacement],
+                Degree::One,
+            ),
+        ),
+    ])
 }
 
 /// The slopes of the energy, contact and normal stress errors.

@@ -208,7 +208,7 @@ mod row {
     use crate::claim::{
         Claim, Engine, Outcome, by, control, in_doubles, model_checked, proved, refuted, tested,
     };
-    use crate::claims::certificate;
+    use crate::claims::{certificate, geometry};
     use crate::draws;
     use crate::numbers::Exact;
     use crate::statement;
@@ -346,6 +346,18 @@ mod row {
             refuted(statement!(control_monotonicity_turned, [a, b], fails "d * e <= d * d")),
             refuted(statement!(control_half_the_curvature, [a, b], fails "q * q <= p * p + S::from(2) * p * e + e * e / S::from(2)")),
         ]);
+        checks.extend([
+            by(
+                Engine::Doubles,
+                "nodes_move_no_further_than_korns_constants_say",
+                geometry::nodes_move_no_further_than_korns_constants_say,
+            ),
+            control(
+                Engine::Doubles,
+                "control_korns_constants_a_thousandth_as_large",
+                geometry::korns_constants_a_thousandth_as_large,
+            ),
+        ]);
         checks.extend(certificate::checks());
         checks.extend(HARNESSES.iter().copied().map(model_checked));
         Claim {
@@ -353,7 +365,7 @@ mod row {
             items: &["Theorem 3.3", "(12)"],
             title: "One solution",
             paper: "Suppose that gamma0 is sufficiently small. Then the problem (8) admits one unique solution u^h in V^h. In the proof: ([a]+ - [b]+)(a - b) >= ([a]+ - [b]+)^2 >= 0 and |[a]+ - [b]+| <= |a - b|, for all a, b; (12); phi is Lipschitz.",
-            statement: "Both inequalities as printed, and the steps of the first one by one; the integrand of phi is Lipschitz with the paper's constant; [.]+^2 lies between its tangent and the parabola above it, so J_h is convex and C^1. On random bodies with kappa < 1, for P1 without quadrature error and P2 by points: (12) with the constant 1 - kappa, and phi is Lipschitz with the paper's constant. On random problems with kappa < 1 that the solver has solved, its data and its result u~ taken for the rationals that they are: A is positive definite by exact elimination, so there is exactly one solution u^h, and the residual of (8) at u~, exact, encloses it: |u~ - u^h|_A <= |r|_A*, |u~ - u^h|_a <= |r|_a*/(1 - kappa), and the radius is below 2^-40 |u~|_a. u^h itself is found, with a residual that is exactly zero, wherever it is rational (P1 with no edge cut inside, P1 and P2 by points), and lies in the enclosure; elsewhere a point with a radius a thousand times smaller does, to that accuracy. The enclosure that every solve reports, in balls of doubles, contains it likewise: its radius, its bound at each node and that of the contact pressure, around the result and around points moved from it. The hypothesis is needed: for one triangle and gamma0 = 8/5, twelve times the limit, one load has two solutions and another has none (proved over all displacements).",
+            statement: "Both inequalities as printed, and the steps of the first one by one; the integrand of phi is Lipschitz with the paper's constant; [.]+^2 lies between its tangent and the parabola above it, so J_h is convex and C^1. On random bodies with kappa < 1, for P1 without quadrature error and P2 by points: (12) with the constant 1 - kappa, and phi is Lipschitz with the paper's constant. On random problems with kappa < 1 that the solver has solved, its data and its result u~ taken for the rationals that they are: A is positive definite by exact elimination, so there is exactly one solution u^h, and the residual of (8) at u~, exact, encloses it: |u~ - u^h|_A <= |r|_A*, |u~ - u^h|_a <= |r|_a*/(1 - kappa), and the radius is below 2^-40 |u~|_a. u^h itself is found, with a residual that is exactly zero, wherever it is rational (P1 with no edge cut inside, P1 and P2 by points), and lies in the enclosure; elsewhere a point with a radius a thousand times smaller does, to that accuracy. The enclosure that every solve reports, in balls of doubles, contains it likewise: its radius, its bound at each node and that of the contact pressure, around the result and around points moved from it, prescribed components too; and where u^h is rational, its energy, largest displacement, contact force and reactions are in the intervals that are reported. Korn's constants, with which residuals far below rounding are bounded there, are no smaller than what the inverse of the stiffness matrix attains at each node, on eleven bodies, P1 and P2. The hypothesis is needed: for one triangle and gamma0 = 8/5, twelve times the limit, one load has two solutions and another has none (proved over all displacements); there the enclosure is refused, and the solver's census counts two, none and, below the limit, one.",
             numbers: "every ordered field (proof); rationals, the solver's doubles among them; the Lipschitz bound and monotony, for ordered numbers, in all finite doubles: together they are the sign form.",
             kernel: &[
                 "positive_part::positive_part",
@@ -363,6 +375,9 @@ mod row {
                 "edge_integral::ExactEdge::exact",
                 "edge_integral::gauss",
                 "element::stiffness",
+                "solve::enclosure::enclose_with",
+                "solve::census::count",
+                "fem::korn::Korn::new",
             ],
             preconditions: "None at a point; kappa < 1 on bodies, in place of 'gamma0 sufficiently small'.",
             limits: "The corollary of Brezis that the paper cites is not checked. On a given mesh it is not needed: that a strictly convex, coercive C^1 function on a space of finite dimension has exactly one stationary point is a textbook fact, and where u^h is rational it is there to be seen. The enclosures are of small meshes (up to 10 free nodes, and one with 20), over the solver's data as they are rounded: gamma, the loads and, in plane stress, lambda*. P2 without quadrature error is left out, for its roots are irrational. Residual and matrices are made by the kernel's functions, which rows 5 and 6 compare with the definitions; the elimination (`props/src/elimination.rs`) is trusted.",

@@ -6,8 +6,6 @@
 
 pub mod certificate;
 pub mod explorer;
-#[cfg(test)]
-mod falsehoods;
 pub mod float;
 pub mod polynomial;
 pub mod sampler;

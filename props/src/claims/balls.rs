@@ -1,0 +1,158 @@
+//! Balls, the numbers in which errors are enclosed: those of the kernel (a double and a radius), in which certificates are
+//! checked, and those of `fem::ball` (twice the precision), in which the discrete solution is enclosed. Each operation on
+//! members of the operands is one of exact rationals, and must lie in the result.
+
+use proptest::prelude::*;
+use signorini::certify::proof::Enclosing;
+use signorini::fem::ball::Ball as Fine;
+use signorini::kernel::{Ball, Interval, positive_part};
+
+use crate::claim::Outcome;
+use crate::numbers::Exact;
+use crate::verdict::Verdict;
+use crate::{draws, ensure};
+
+/// Two pairs of doubles and two relative widths.
+type Draw = ([f64; 4], [f64; 2]);
+
+fn data() -> impl Strategy<Value = Draw> {
+    let size = || prop_oneof![3 => 1e-3_f64..1e3, 3 => -1e3_f64..-1e-3, 1 => Just(0.0)];
+    let width = || prop_oneof![2 => Just(0.0), 1 => 1e-12_f64..1e-9, 1 => 1e-3_f64..3.0];
+    ([size(), size(), size(), size()], [width(), width()])
+}
+
+/// The centre of a ball of twice the precision: its head is a double, and so is what is left.
+fn centre(ball: Fine) -> Exact {
+    let tail = (ball.centre() - Fine::from(ball.head())).head();
+    Exact::of_double(ball.head()) + Exact::of_double(tail)
+}
+
+/// |x - centre| <= `share` times the radius.
+fn covers(ball: Fine, x: Exact, share: f64) -> bool {
+    (x - centre(ball)).abs() <= Exact::of_double(ball.radius()) * Exact::of_double(share)
+}
+
+/// A number of twice the precision, without a radius.
+fn fine(a: f64, b: f64) -> Fine {
+    (Fine::from(a) + Fine::from(b * 2.0_f64.powi(-54))).centre()
+}
+
+/// Both ends of a ball, and its centre.
+fn members(ball: Fine) -> [Exact; 3] {
+    let (centre, radius) = (centre(ball), Exact::of_double(ball.radius()));
+    [centre - radius, centre, centre + radius]
+}
+
+/// Twice the precision: `share` of each radius covers what is off.
+fn fine_balls(&([a, b, c, d], [r, s]): &Draw, share: f64) -> Verdict {
+    Exact::scope(|| {
+        let zero = Exact::from(0);
+        let (x, y) = (fine(a, b), fine(c, d));
+        let (x, y) = (x.widened(r * a.abs()), y.widened(s * c.abs()));
+        for ball in [x, y, x * y, x - y] {
+            let [low, _, high] = members(ball);
+            ensure!(
+                Exact::of_double(ball.lower()) <= low && high <= Exact::of_double(ball.upper())
+            );
+            let most = Exact::of_double(ball.magnitude());
+            ensure!(low.abs() <= most && high.abs() <= most);
+            let least = Exact::of_double(ball.least_magnitude());
+            ensure!(least == zero || (low > zero) == (high > zero));
+            ensure!(least <= low.abs() && least <= high.abs());
+        }
+        let divides = y.least_magnitude() > 0.0;
+        for u in members(x) {
+            ensure!(covers(positive_part(x), positive_part(u), share));
+            for v in members(y) {
+                ensure!(covers(x + y, u + v, share));
+                ensure!(covers(x - y, u - v, share));
+                ensure!(covers(x * y, u * v, share));
+                ensure!(!divides || covers(x / y, u / v, share));
+            }
+        }
+        if x.lower() > 0.0 {
+            let [low, _, high] = members(x.sqrt());
+            let [least, _, most] = members(x);
+            ensure!(low > zero && low * low <= least && most <= high * high);
+        }
+        if r == 0.0 && s == 0.0 {
+            // Numbers without a radius: results to a hundred bits or so.
+            let small = Exact::of_double(2.0_f64.powi(-98));
+            let [u, v] = [centre(x).abs(), centre(y).abs()];
+            let narrow = |ball: Fine, size: Exact| Exact::of_double(ball.radius()) <= small * size;
+            ensure!(narrow(x + y, u + v) && narrow(x - y, u + v));
+            ensure!(u * v == zero || narrow(x * y, u * v));
+            ensure!(!divides || u == zero || narrow(x / y, u / v));
+            return Verdict::Holds("numbers");
+        }
+        Verdict::Holds("wide")
+    })
+}
+
+/// Row 13: balls of twice the precision.
+pub fn fine_balls_contain_the_exact_results() -> Outcome {
+    draws::hold(1000, data(), &["numbers", "wide"], |draw| fine_balls(draw, 1.0))
+}
+
+/// With no radius they do not.
+pub fn centres_contain_the_exact_results() -> Outcome {
+    draws::reject(100, data(), |draw| fine_balls(draw, 0.0))
+}
+
+/// Numbers that contain both `a` and `b`: what a number across zero answers with `a` below and `b` above.
+fn between<S: Enclosing>(a: f64, b: f64) -> S {
+    if a == b {
+        return S::exactly(a);
+    }
+    let third = S::from(1) / S::from(3);
+    (third + -third).split(|_| S::exactly(a), |_| S::exactly(b))
+}
+
+/// Single precision: the results of members are in the results.
+fn balls<S: Enclosing>(&([a, b, c, d], [r, s]): &Draw) -> Verdict {
+    Exact::scope(|| {
+        let ends = |a: f64, r: f64| [a - r * a.abs(), a + r * a.abs()];
+        let ([al, ah], [cl, ch]) = (ends(a, r), ends(c, s));
+        let (x, y): (S, S) = (between(al, ah), between(cl, ch));
+        let z = S::exactly(b) * S::exactly(d);
+        let contains = |found: S, exact: Exact| {
+            Exact::of_double(found.lower()) <= exact && exact <= Exact::of_double(found.upper())
+        };
+        let [b, d] = [b, d].map(Exact::of_double);
+        let divides = y.lower() > 0.0 || y.upper() < 0.0;
+        for u in [al, ah].map(Exact::of_double) {
+            ensure!(contains(x, u) && contains(-x, -u));
+            ensure!(contains(positive_part(x), positive_part(u)));
+            for v in [cl, ch].map(Exact::of_double) {
+                ensure!(contains(x + y, u + v) && contains(x - y, u - v));
+                ensure!(contains(x * y, u * v) && contains(z, b * d));
+                ensure!(contains((x + y) * z - x * y, (u + v) * (b * d) - u * v));
+                ensure!(!divides || contains(x / y, u / v));
+                ensure!(!divides || contains((x * z) / y + x, u * (b * d) / v + u));
+            }
+            if x.lower() >= 0.0 {
+                let [low, high] = [x.sqrt().lower(), x.sqrt().upper()].map(Exact::of_double);
+                ensure!(low >= Exact::from(0) && low * low <= u && u <= high * high);
+            }
+        }
+        if r == 0.0 && s == 0.0 {
+            let narrow = |found: S, size: f64| found.upper() - found.lower() <= 1e-14 * size;
+            ensure!(narrow(x + y, a.abs() + c.abs()) && narrow(x * y, (a * c).abs()));
+            return Verdict::Holds("numbers");
+        }
+        Verdict::Holds("wide")
+    })
+}
+
+/// Row 13: the balls and intervals that certificates are checked in.
+pub fn balls_contain_the_exact_results() -> Outcome {
+    let classes = ["numbers", "wide"];
+    let single = draws::hold(1500, data(), &classes, balls::<Ball>)?;
+    let intervals = draws::hold(500, data(), &classes, balls::<Interval>)?;
+    Ok(format!("balls: {single}; intervals: {intervals}"))
+}
+
+/// Doubles do not.
+pub fn doubles_contain_the_exact_results() -> Outcome {
+    draws::reject(100, data(), balls::<f64>)
+}

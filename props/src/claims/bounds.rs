@@ -1,0 +1,772 @@
+//! The bound of the distance from the true solution, and the checker of its certificates (docs/theory.md, 7.2 and 7.3).
+//!
+//! At a point, with e, t, s for the strains of v, of C^-1 tau and of u, the theorem is |e - t|^2 = |e - s|^2 + |s - t|^2 + 2 (e - s) :
+//! C (s - t), and what contact adds to the integral of the last product is not negative.
+//!
+//! The checker is given certificates that are made by hand, of dyadic numbers, so that tractions are doubles and equilibrium is
+//! exact: v has random nodal values, and tau is affine, in equilibrium with a constant body force,
+//!
+//! tau_xx = a + b x + c y, tau_yy = d + e x + f y, tau_xy = h y, body force (-b - h, -f), no shear at y = 0.
+//!
+//! What it finds is compared with integrals of the definitions over rationals; and what is not as the theorem asks is refused.
+
+use std::collections::BTreeMap;
+
+use proptest::prelude::*;
+use signorini::certify::proof::{Certificate, Claim as Said, Edge, Enclosing, Piece, Role};
+use signorini::certify::{Rejection, certify};
+use signorini::fem::{Errors, Space, contact_line};
+use signorini::kernel::{Ball, Interval, Material, P1, Plane};
+use signorini::nalgebra::Matrix2;
+
+use super::rates;
+use crate::claim::{Claim, Engine, Outcome, by, control, proved, refuted, tested};
+use crate::numbers::Exact;
+use crate::verdict::{Ordered, Verdict};
+use crate::{draws, ensure, given, statement};
+
+/// The inner product of two strains in C.
+fn product<S: Ordered>(material: &Material<S>, a: Matrix2<S>, b: Matrix2<S>) -> S {
+    let [xx, yy, xy] = material.stress(a).components();
+    xx * b.m11 + yy * b.m22 + xy * (b.m12 + b.m21)
+}
+
+/// The square of C e - tau splits, with C s = sigma(u) and C t = tau; given as differences from s.
+pub fn the_square_of_the_bound_splits_at_a_point<S: Ordered>(
+    [exx, eyy, exy, txx, tyy, txy, lambda, mu]: [S; 8],
+) -> Verdict {
+    let (zero, two) = (S::from(0), S::from(2));
+    given!(mu > zero && lambda + mu > zero);
+    let material = Material::lame(lambda, mu, Plane::Strain);
+    // e - s and s - t.
+    let (e, t) = (Matrix2::new(exx, exy, exy, eyy), Matrix2::new(txx, txy, txy, tyy));
+    let squares = product(&material, e, e) + product(&material, t, t);
+    ensure!(product(&material, e + t, e + t) == squares + two * product(&material, e, t));
+    ensure!(product(&material, e, e) >= zero);
+    Verdict::Holds("always")
+}
+
+/// What contact adds: (v_n - u_n)(sigma_n - tau_n) + tau_n (v_n - g) is not negative where u satisfies (2), v_n <= g and
+/// tau_n <= 0; and it is sigma_n (v_n - g) where u_n = g.
+pub fn what_contact_adds_is_not_negative<S: Ordered>([u, s, v, t, g]: [S; 5]) -> Verdict {
+    let zero = S::from(0);
+    given!(u <= g && s <= zero && s * (u - g) == zero);
+    given!(v <= g && t <= zero);
+    let added = (v - u) * (s - t) + t * (v - g);
+    ensure!(added == s * (v - g) + t * (u - g));
+    ensure!(added >= zero);
+    Verdict::Holds(if s < zero { "pressed" } else { "not pressed" })
+}
+
+/// Under a tension tau_n.
+pub fn control_contact_adds_under_tension<S: Ordered>([u, s, v, t, g]: [S; 5]) -> Verdict {
+    let zero = S::from(0);
+    given!(u <= g && s <= zero && s * (u - g) == zero && v <= g);
+    ensure!((v - u) * (s - t) + t * (v - g) >= zero);
+    Verdict::Holds("always")
+}
+
+/// A certificate by hand, in sixteenths: cells of a rectangle, v, tau and the gap.
+#[derive(Clone, Debug)]
+struct Draw {
+    cells: [usize; 2],
+    /// Which diagonal each cell has.
+    left: bool,
+    lame: [i32; 2],
+    /// v at the vertices.
+    v: Vec<[i32; 2]>,
+    /// a, b, c, d, e, f, h
+    tau: [i32; 7],
+    gap: [i32; 2],
+    oscillation: i32,
+}
+
+fn sixteenth(k: i32) -> f64 {
+    f64::from(k) / 16.0
+}
+
+/// `strip`: one cell beside the other, upwards, so that the triangles form a chain.
+fn draws_of(strip: bool) -> impl Strategy<Value = Draw> {
+    let cells = if strip { (1..=1_usize, 2..=4_usize) } else { (1..=3_usize, 1..=3_usize) };
+    let tau = prop::array::uniform7(-16..=16);
+    let v = prop::collection::vec([-32..=32, -32..=32], 16);
+    let lame = [-4..=32, 8..=32];
+    (cells, any::<bool>(), lame, v, tau, [-8..=16, -8..=8], 0..=2).prop_map(
+        |(cells, left, lame, v, [a, b, c, d, e, f, h], gap, oscillation)| Draw {
+            cells: [cells.0, cells.1],
+            left,
+            lame,
+            v,
+            // On Gamma_C, y = 0 and x >= 0, tau_yy is not positive.
+            tau: [a, b, c, -i32::abs(d), -i32::abs(e), f, h],
+            gap,
+            oscillation: oscillation * 4,
+        },
+    )
+}
+
+impl Draw {
+    /// tau at a place, xx, yy, xy.
+    fn tau<S>(&self, [x, y]: [S; 2], unit: S) -> [S; 3]
+    where
+        S: From<i32> + Copy + std::ops::Add<Output = S> + std::ops::Mul<Output = S>,
+    {
+        let [a, b, c, d, e, f, h] = self.tau.map(|k| unit * S::from(k));
+        [a + b * x + c * y, d + e * x + f * y, h * y]
+    }
+
+    /// The body force.
+    fn body(&self) -> [f64; 2] {
+        let [_, b, _, _, _, f, h] = self.tau.map(sixteenth);
+        [-b - h, -f]
+    }
+
+    fn certificate(&self) -> Certificate {
+        let [nx, ny] = self.cells;
+        let number = |i: usize, j: usize| j * (nx + 1) + i;
+        let mut vertices = Vec::new();
+        for j in 0..=ny {
+            // Cells of different heights.
+            let y = (j * (j + 1)) as f64 / 2.0;
+            vertices.extend((0..=nx).map(|i| [i as f64, y]));
+        }
+        let mut corners = Vec::new();
+        for j in 0..ny {
+            for i in 0..nx {
+                let [a, b, c, d] =
+                    [number(i, j), number(i + 1, j), number(i + 1, j + 1), number(i, j + 1)];
+                let two = if self.left { [[a, b, d], [b, c, d]] } else { [[a, b, c], [a, c, d]] };
+                corners.extend(two);
+            }
+        }
+        let top = number(0, ny);
+        let gap_at = |x: f64| sixteenth(self.gap[0]) + sixteenth(self.gap[1]) * x;
+        let displacement: Vec<[f64; 2]> = vertices
+            .iter()
+            .enumerate()
+            .map(|(k, &[x, y])| {
+                let v = self.v[k % self.v.len()].map(sixteenth);
+                // -v_y <= g on Gamma_C, by a margin where the checker rounds |E| g.
+                let margin = if self.gap == [0; 2] { 0.0 } else { sixteenth(1) };
+                if y == 0.0 { [v[0], v[1].max(margin - gap_at(x))] } else { v }
+            })
+            .collect();
+        let prescribed = (0..vertices.len())
+            .map(|k| if k < top { [None; 2] } else { displacement[k].map(Some) })
+            .collect();
+        let mut edges: Vec<Edge> = Vec::new();
+        let mut known: BTreeMap<[usize; 2], usize> = BTreeMap::new();
+        let width = nx as f64;
+        let role = |ends: [usize; 2]| {
+            let [p, q] = ends.map(|k| vertices[k]);
+            let normal = [q[1] - p[1], p[0] - q[0]];
+            let at = [p, q].map(|x| self.tau(x, 1.0 / 16.0));
+            let force = at.map(|[xx, yy, xy]| {
+                [xx * normal[0] + xy * normal[1], xy * normal[0] + yy * normal[1]]
+            });
+            if p[1] == 0.0 && q[1] == 0.0 {
+                let gap = [gap_at(p[0]), gap_at(q[0])];
+                Role::Contact { pressure: at.map(|t| t[1]), gap, along: None }
+            } else if ends.iter().all(|&k| k >= top) {
+                Role::Held([true; 2], force)
+            } else if p[0] == 0.0 && q[0] == 0.0 {
+                Role::Loaded(at.map(|[xx, _, xy]| [-xx, -xy]))
+            } else if p[0] == width && q[0] == width && self.tau[6] == 0 {
+                Role::Pressed(at.map(|[xx, ..]| -xx))
+            } else if p[0] == width && q[0] == width {
+                Role::Loaded(at.map(|[xx, _, xy]| [xx, xy]))
+            } else {
+                Role::Inner(force)
+            }
+        };
+        let mut pieces = Vec::new();
+        for piece in corners {
+            let own = [0, 1, 2].map(|i| {
+                let ends = [piece[(i + 1) % 3], piece[(i + 2) % 3]];
+                let mut key = ends;
+                key.sort_unstable();
+                *known.entry(key).or_insert_with(|| {
+                    edges.push(Edge { ends, role: role(ends) });
+                    edges.len() - 1
+                })
+            });
+            pieces.push(Piece {
+                vertices: piece,
+                edges: own,
+                material: self.lame.map(sixteenth),
+                body: [self.body(); 3],
+                oscillation: sixteenth(self.oscillation),
+            });
+        }
+        Certificate { vertices, cuts: Vec::new(), displacement, prescribed, pieces, edges }
+    }
+
+    /// By the definitions, over rationals.
+    fn by_definition(&self, certificate: &Certificate) -> Definition {
+        let exact = Exact::of_double;
+        let [zero, one, two, six] = [0, 1, 2, 6].map(Exact::from);
+        let [lambda, mu] = self.lame.map(|k| exact(sixteenth(k)));
+        let material = Material::lame(lambda, mu, Plane::Strain);
+        let places: Vec<[Exact; 2]> = certificate.vertices.iter().map(|x| x.map(exact)).collect();
+        let v: Vec<[Exact; 2]> = certificate.displacement.iter().map(|x| x.map(exact)).collect();
+        // s : C^-1 s for s = xx, yy, xy.
+        let complementary = |[xx, yy, xy]: [Exact; 3]| {
+            let trace = lambda / (two * (lambda + mu)) * (xx + yy);
+            (xx * (xx - trace) + yy * (yy - trace) + two * xy * xy) / (two * mu)
+        };
+        let mean = |p: [Exact; 2], q: [Exact; 2]| [0, 1].map(|c| (p[c] + q[c]) / two);
+        let unit = one / Exact::from(16);
+        let body = self.body().map(exact);
+        let mut squares = Vec::new();
+        let (mut norm, mut energy) = (zero, zero);
+        for piece in &certificate.pieces {
+            let [a, b, c] = piece.vertices.map(|k| places[k]);
+            let cross = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+            let area = cross / two;
+            // grad v by the differences of its values.
+            let nodal = piece.vertices.map(|k| v[k]);
+            let gradient = |i: usize| {
+                let (first, second) = (nodal[1][i] - nodal[0][i], nodal[2][i] - nodal[0][i]);
+                let by_x = first * (c[1] - a[1]) - second * (b[1] - a[1]);
+                let by_y = second * (b[0] - a[0]) - first * (c[0] - a[0]);
+                [by_x / cross, by_y / cross]
+            };
+            let [[xx, xy], [yx, yy]] = [gradient(0), gradient(1)];
+            let sigma = material.stress(Matrix2::new(xx, xy, yx, yy)).components();
+            // The middles of the edges: exact for squares of affine functions.
+            let middles = [mean(a, b), mean(b, c), mean(c, a)];
+            let square = middles.iter().fold(zero, |sum, &x| {
+                let tau = self.tau(x, unit);
+                sum + complementary([0, 1, 2].map(|k| sigma[k] - tau[k]))
+            });
+            squares.push(area * square / Exact::from(3));
+            let internal = area * complementary(sigma);
+            norm += internal;
+            let work = nodal.iter().fold(zero, |sum, v| sum + v[0] * body[0] + v[1] * body[1]);
+            energy += internal / two - area * work / Exact::from(3);
+        }
+        let mut contact = zero;
+        for edge in &certificate.edges {
+            let [p, q] = edge.ends.map(|k| places[k]);
+            let [v, w] = edge.ends.map(|k| v[k]);
+            let simpson = |f: [Exact; 2], g: [Exact; 2]| {
+                (f[0] * (two * g[0] + g[1]) + f[1] * (g[0] + two * g[1])) / six
+            };
+            match edge.role {
+                Role::Contact { gap, .. } => {
+                    let tau = [p, q].map(|x| self.tau(x, unit)[1]);
+                    let beyond = [-v[1] - exact(gap[0]), -w[1] - exact(gap[1])];
+                    contact += two * (q[0] - p[0]) * simpson(tau, beyond);
+                }
+                Role::Loaded(_) | Role::Pressed(_) => {
+                    let normal = q[1] - p[1];
+                    for (c, component) in [0, 2].into_iter().enumerate() {
+                        let force = [p, q].map(|x| self.tau(x, unit)[component] * normal);
+                        energy -= simpson(force, [v[c], w[c]]);
+                    }
+                }
+                _ => {}
+            }
+        }
+        Definition { squares, contact, norm, energy }
+    }
+}
+
+/// |C eps(v) - tau|^2 on each triangle, 2 int tau_n (v_n - g), |v|_a^2 and J(v).
+struct Definition {
+    squares: Vec<Exact>,
+    contact: Exact,
+    norm: Exact,
+    energy: Exact,
+}
+
+/// What is left of a square: the checker carries what each triangle is out of balance by, in numbers that are rounded, from
+/// triangle to triangle and adds the squares of differences that are as far off.
+const CLOSE: f64 = 1e-10;
+
+/// |a - b| <= `CLOSE` size
+fn near(a: f64, b: Exact, size: Exact) -> bool {
+    (Exact::of_double(a) - b).abs() <= Exact::of_double(CLOSE) * size
+}
+
+/// The checker against the definitions; the square of its bound is `share` of what it says.
+fn evaluated<S: Enclosing>(draw: &Draw, share: f64) -> Verdict {
+    let certificate = draw.certificate();
+    let Ok(proof) = certificate.evaluate::<S>() else {
+        return Verdict::Fails("the certificate is accepted");
+    };
+    Exact::scope(|| {
+        let definition = draw.by_definition(&certificate);
+        let (zero, one) = (Exact::from(0), Exact::from(1));
+        let total = definition.squares.iter().fold(zero, |sum, &s| sum + s);
+        let size = one + total + definition.contact.abs();
+        let found = Exact::of_double(share) * Exact::of_double(proof.bound);
+        let found = found * Exact::of_double(proof.bound);
+        if draw.oscillation == 0 {
+            let square = total + definition.contact;
+            ensure!(square >= zero);
+            ensure!(found >= square);
+            ensure!(found - square <= Exact::of_double(CLOSE) * size);
+        } else {
+            // (|.|_T + o)^2 = |.|_T^2 + 2 o |.|_T + o^2, with roots in doubles.
+            let o = sixteenth(draw.oscillation);
+            let roots: f64 = definition.squares.iter().map(|s| to_double(*s).sqrt()).sum();
+            let more = 2.0 * o * roots + o * o * definition.squares.len() as f64;
+            let square = to_double(total) + to_double(definition.contact) + more;
+            ensure!((to_double(found) - square).abs() <= CLOSE * (1.0 + square));
+        }
+        ensure!(near(proof.norm * proof.norm, definition.norm, one + definition.norm));
+        let magnitude = size + definition.norm + definition.energy.abs();
+        ensure!(proof.energy.iter().all(|&e| near(e, definition.energy, magnitude)));
+        ensure!(Exact::of_double(proof.energy[0]) <= definition.energy);
+        ensure!(definition.energy <= Exact::of_double(proof.energy[1]));
+        Verdict::Holds(if draw.oscillation == 0 { "exact data" } else { "data that oscillate" })
+    })
+}
+
+fn to_double(x: Exact) -> f64 {
+    use num_traits::ToPrimitive;
+    x.value().to_f64().unwrap_or(f64::NAN)
+}
+
+const CLASSES: [&str; 2] = ["exact data", "data that oscillate"];
+
+fn bounds_are_the_definitions() -> Outcome {
+    let balls = draws::hold(60, draws_of(false), &CLASSES, |draw| evaluated::<Ball>(draw, 1.0))?;
+    let intervals =
+        draws::hold(40, draws_of(false), &CLASSES, |draw| evaluated::<Interval>(draw, 1.0))?;
+    Ok(format!("in balls: {balls}; in intervals: {intervals}"))
+}
+
+/// A bound that is a millionth too small.
+fn a_bound_too_small() -> Outcome {
+    draws::reject(60, draws_of(false), |draw| evaluated::<Ball>(draw, 1.0 - 1e-6))
+}
+
+/// Tractions on inner edges and on Gamma_D that are out of balance by what the checker may add: it finds the balanced ones
+/// again, for the triangles form a chain. With `gross` something else is added too.
+fn balanced(draw: &Draw, gross: bool) -> Verdict {
+    let certificate = draw.certificate();
+    let Ok(before) = certificate.evaluate::<Interval>() else {
+        return Verdict::Fails("the certificate is accepted");
+    };
+    let mut moved = certificate.clone();
+    for (e, edge) in moved.edges.iter_mut().enumerate() {
+        let [p, q] = edge.ends.map(|k| certificate.vertices[k]);
+        let part = |k: usize| sixteenth(draw.v[(e + k) % draw.v.len()][k % 2]);
+        let turn = if gross { [part(3), part(4)] } else { [0.0; 2] };
+        match &mut edge.role {
+            Role::Inner([start, end]) => {
+                // A constant, and (2 s - 1) N times a factor.
+                let normal = [q[1] - p[1], p[0] - q[0]];
+                for c in 0..2 {
+                    start[c] += part(c) - part(2) * normal[c] + turn[c];
+                    end[c] += part(c) + part(2) * normal[c];
+                }
+            }
+            Role::Held(_, [start, end]) => {
+                for c in 0..2 {
+                    start[c] += part(c);
+                    end[c] += part(c);
+                }
+                start[1] -= part(2);
+                end[1] += part(2);
+            }
+            _ => {}
+        }
+    }
+    let Ok(after) = moved.evaluate::<Interval>() else {
+        return Verdict::Fails("what is out of balance is balanced");
+    };
+    // A bound is a root: near zero it is known to half the digits.
+    let [before, after] = [before.bound, after.bound].map(|b| b * b);
+    ensure!((after - before).abs() <= 1e-9 * (1.0 + before));
+    Verdict::Holds("always")
+}
+
+fn tractions_are_balanced() -> Outcome {
+    draws::hold(60, draws_of(true), &["always"], |draw| balanced(draw, false))
+}
+
+/// Tractions that vary along an edge as no balance asks for make another stress.
+fn tractions_that_no_balance_takes() -> Outcome {
+    draws::reject(20, draws_of(true), |draw| balanced(draw, true))
+}
+
+/// One thing that the theorem does not allow.
+type Tampering = (&'static str, fn(&mut Certificate), fn(&Rejection) -> bool);
+
+fn of_contact(certificate: &mut Certificate, change: impl Fn(&mut Role)) {
+    let contact = |edge: &&mut Edge| matches!(edge.role, Role::Contact { .. });
+    certificate.edges.iter_mut().filter(contact).take(1).for_each(|edge| change(&mut edge.role));
+}
+
+fn of_held(certificate: &mut Certificate, change: impl Fn(&mut Role)) {
+    let held = |edge: &&mut Edge| matches!(edge.role, Role::Held(..));
+    certificate.edges.iter_mut().filter(held).take(1).for_each(|edge| change(&mut edge.role));
+}
+
+/// The vertices of the first edge of Gamma_C.
+fn ends_on_contact(certificate: &Certificate) -> [usize; 2] {
+    let contact = |edge: &&Edge| matches!(edge.role, Role::Contact { .. });
+    certificate.edges.iter().find(contact).map_or([0; 2], |edge| edge.ends)
+}
+
+const TAMPERINGS: [Tampering; 22] = [
+    (
+        "a tension at one end",
+        |c| {
+            of_contact(c, |role| {
+                if let Role::Contact { pressure, .. } = role {
+                    pressure[1] = 1e-3;
+                }
+            });
+        },
+        |why| matches!(why, Rejection::Tension { .. }),
+    ),
+    (
+        "a pressure that is no number",
+        |c| {
+            of_contact(c, |role| {
+                if let Role::Contact { pressure, .. } = role {
+                    pressure[0] = f64::NAN;
+                }
+            });
+        },
+        |_| true,
+    ),
+    (
+        "v through the obstacle by 1e-6",
+        |c| {
+            let [a, _] = ends_on_contact(c);
+            let Some(Role::Contact { gap, .. }) =
+                c.edges.iter().map(|e| e.role).find(|r| matches!(r, Role::Contact { .. }))
+            else {
+                return;
+            };
+            c.displacement[a][1] = -gap[0] - 1e-6;
+        },
+        |why| matches!(why, Rejection::Penetration { .. }),
+    ),
+    (
+        "a gap that is smaller than v takes",
+        |c| {
+            of_contact(c, |role| {
+                if let Role::Contact { gap, .. } = role {
+                    *gap = [-3.0; 2];
+                }
+            });
+        },
+        |why| matches!(why, Rejection::Penetration { .. }),
+    ),
+    (
+        "v through the obstacle between the ends of an edge along which the direction turns",
+        |c| {
+            let [a, b] = ends_on_contact(c);
+            // v . d is 0 at both ends and positive between them.
+            c.displacement[a] = [1.0, 0.0];
+            c.displacement[b] = [0.0, -1.0];
+            of_contact(c, |role| {
+                *role = Role::Contact {
+                    pressure: [-1.0; 2],
+                    gap: [0.0; 2],
+                    along: Some([[0.0, -1.0], [1.0, 0.0]]),
+                };
+            });
+        },
+        |why| matches!(why, Rejection::Penetration { .. }),
+    ),
+    (
+        "a pressure that varies along a direction that turns",
+        |c| {
+            of_contact(c, |role| {
+                *role = Role::Contact {
+                    pressure: [-1.0, -2.0],
+                    gap: [9.0; 2],
+                    along: Some([[0.0, -1.0], [0.6, -0.8]]),
+                };
+            });
+        },
+        |why| matches!(why, Rejection::Wrong { .. }),
+    ),
+    (
+        "a prescribed value that v misses by a rounding error",
+        |c| {
+            if let Some(value) = c.prescribed.last_mut().and_then(|p| p[0].as_mut()) {
+                *value = value.next_up();
+            }
+        },
+        |why| matches!(why, Rejection::NotPrescribed { .. }),
+    ),
+    (
+        "an end of Gamma_D without a prescribed value",
+        |c| {
+            if let Some(values) = c.prescribed.last_mut() {
+                values[1] = None;
+            }
+        },
+        |why| matches!(why, Rejection::Wrong { .. }),
+    ),
+    (
+        "a prescribed value off Gamma_D",
+        |c| c.prescribed[0] = [Some(c.displacement[0][0]), None],
+        |why| matches!(why, Rejection::Wrong { .. }),
+    ),
+    (
+        "a force where nothing is held, at the start",
+        |c| of_held(c, |role| *role = Role::Held([true, false], [[0.0, 1.0], [0.0, 0.0]])),
+        |why| matches!(why, Rejection::Wrong { .. }),
+    ),
+    (
+        "a force where nothing is held, at the end",
+        |c| of_held(c, |role| *role = Role::Held([false, true], [[0.0, 0.0], [1.0, 0.0]])),
+        |why| matches!(why, Rejection::Wrong { .. }),
+    ),
+    (
+        "a body that nothing holds",
+        |c| {
+            for edge in &mut c.edges {
+                if let Role::Held(_, force) = edge.role {
+                    edge.role = Role::Loaded(force);
+                }
+            }
+            c.prescribed.fill([None; 2]);
+        },
+        |why| matches!(why, Rejection::Unbalanced(_)),
+    ),
+    (
+        "a triangle that is clockwise",
+        |c| c.vertices[0] = [5.0, 5.0],
+        |why| matches!(why, Rejection::Orientation { .. }),
+    ),
+    (
+        "a triangle without area",
+        |c| c.vertices[0] = c.vertices[1],
+        |why| matches!(why, Rejection::Orientation { .. }),
+    ),
+    (
+        "a shear modulus of zero",
+        |c| c.pieces[0].material[1] = 0.0,
+        |why| matches!(why, Rejection::Wrong { .. }),
+    ),
+    (
+        "lambda + mu that is not positive",
+        |c| c.pieces[0].material[0] = -c.pieces[0].material[1],
+        |why| matches!(why, Rejection::Wrong { .. }),
+    ),
+    (
+        "a negative oscillation",
+        |c| c.pieces[0].oscillation = -1e-3,
+        |why| matches!(why, Rejection::Wrong { .. }),
+    ),
+    (
+        "a place that is no number",
+        |c| c.vertices[1][0] = f64::NAN,
+        |why| matches!(why, Rejection::Wrong { .. }),
+    ),
+    (
+        "a displacement that is missing",
+        |c| {
+            c.displacement.pop();
+        },
+        |why| matches!(why, Rejection::Length { .. }),
+    ),
+    (
+        "a triangle with an edge of other vertices",
+        |c| c.pieces[0].edges.swap(0, 1),
+        |why| matches!(why, Rejection::Wrong { .. }),
+    ),
+    (
+        "an inner edge with one triangle",
+        |c| {
+            c.pieces.pop();
+        },
+        |why| matches!(why, Rejection::Wrong { .. }),
+    ),
+    (
+        "an inner edge that is called loaded, where tractions may jump",
+        |c| {
+            let inner = |edge: &&mut Edge| matches!(edge.role, Role::Inner(_));
+            c.edges.iter_mut().find(inner).into_iter().for_each(|edge| {
+                edge.role = Role::Loaded([[0.0; 2]; 2]);
+            });
+        },
+        |why| matches!(why, Rejection::Wrong { .. }),
+    ),
+];
+
+/// What is claimed of a certificate that is as it was made.
+fn claimed(certificate: &Certificate) -> Result<Said, String> {
+    let proof = certificate.evaluate::<Ball>().map_err(|e| e.to_string())?;
+    Ok(Said { shares: proof.shares, bound: proof.bound })
+}
+
+/// A body of 2 x 2 cells that the draws above may be.
+fn example() -> Draw {
+    let v = (0..16).map(|k| [(k * 7) % 11 - 5, (k * 5) % 13 - 6]).collect();
+    let (cells, lame, tau) = ([2, 2], [12, 16], [3, -4, 5, -6, -2, 1, 2]);
+    Draw { cells, left: true, lame, v, tau, gap: [2, 1], oscillation: 0 }
+}
+
+/// Every tampering is refused, for its own reason; without one the certificate is accepted.
+fn refusals(tamper: bool) -> Outcome {
+    let good = example().certificate();
+    good.evaluate::<Ball>().map_err(|e| format!("refused as it was made: {e}"))?;
+    for (what, change, reason) in TAMPERINGS {
+        let mut certificate = good.clone();
+        if tamper {
+            change(&mut certificate);
+        }
+        for found in [certificate.evaluate::<Ball>(), certificate.evaluate::<Interval>()] {
+            match found {
+                Ok(proof) => return Err(format!("{what}: accepted with {}", proof.bound)),
+                Err(why) if !reason(&why) => return Err(format!("{what}: refused, but: {why}")),
+                Err(_) => {}
+            }
+        }
+    }
+    // What is claimed must follow, and the certificate be as it was made.
+    let said = claimed(&good)?;
+    good.audit(&said).map_err(|e| format!("refused as it was made: {e}"))?;
+    let smaller = Said { bound: said.bound.next_down(), ..said.clone() };
+    let mut other = said.clone();
+    other.shares[0] = other.shares[0].next_up();
+    let fewer = Said { shares: said.shares[1..].to_vec(), ..said.clone() };
+    for wrong in [smaller, other, fewer] {
+        if good.audit(&wrong).is_ok() {
+            return Err("a claim that does not follow is accepted".to_owned());
+        }
+    }
+    let mut unbalanced = good;
+    for edge in &mut unbalanced.edges {
+        if let Role::Inner(force) = &mut edge.role {
+            force[0][0] += 1e-9;
+            break;
+        }
+    }
+    match unbalanced.audit(&claimed(&unbalanced)?) {
+        Err(Rejection::OutOfBalance { .. }) => {}
+        other => return Err(format!("a traction that is off by 1e-9: {other:?}")),
+    }
+    Ok(format!("{} tamperings and 4 claims", TAMPERINGS.len()))
+}
+
+fn what_the_theorem_asks_for_is_asked() -> Outcome {
+    refusals(true)
+}
+
+/// Without a tampering nothing is refused.
+fn certificates_as_they_were_made_are_refused() -> Outcome {
+    match refusals(false) {
+        Err(why) => Ok(format!("rejected: {why}")),
+        Ok(said) => Err(format!("not noticed: {said}")),
+    }
+}
+
+/// The bound of what the solver ends with on exact solutions, times a factor, beside the true error; and no more than
+/// `MOST` times it.
+fn above_the_error(factor: f64) -> Outcome {
+    let mut seen = Vec::new();
+    for (what, ladder) in rates::bodies_with_a_known_error()? {
+        for level in 1..3 {
+            let (_, problem, solution) = ladder.solve(level).map_err(|e| e.to_string())?;
+            let certified = certify(&problem, &solution).map_err(|e| e.to_string())?;
+            let space = Space::<P1, 3, 2>::new(&problem.mesh);
+            let contact = contact_line::assemble(&problem, &space, solution.gamma.gamma0)
+                .map_err(|e| e.to_string())?;
+            let v = &certified.certificate.displacement;
+            let error = Errors::new(&space, &contact, v, &*ladder.solution).energy;
+            let ratio = factor * certified.bound / error;
+            if !((1.0..MOST).contains(&ratio)) {
+                return Err(format!("{what}, level {level}: {ratio:.3} times the error"));
+            }
+            seen.push(format!("{ratio:.2}"));
+        }
+    }
+    Ok(format!("{} times the true error", seen.join(", ")))
+}
+
+/// On these meshes of 8 and 16 cells a side.
+const MOST: f64 = 3.0;
+
+fn bounds_are_above_the_error() -> Outcome {
+    above_the_error(1.0)
+}
+
+/// Half the bound.
+fn half_the_bound() -> Outcome {
+    match above_the_error(0.5) {
+        Err(why) => Ok(format!("rejected: {why}")),
+        Ok(said) => Err(format!("not noticed: {said}")),
+    }
+}
+
+/// The row.
+pub fn claim() -> Claim {
+    let squares = statement!(
+        the_square_of_the_bound_splits_at_a_point,
+        [exx, eyy, exy, txx, tyy, txy, lambda, mu],
+        ["always"]
+    )
+    .with_hints(|v| vec![v[0] + v[1], v[0] - v[1], v[2]]);
+    let contact =
+        statement!(what_contact_adds_is_not_negative, [u, s, v, t, g], ["pressed", "not pressed"]);
+    Claim {
+        id: "24",
+        items: &["the error bound"],
+        title: "The bound of the distance from the true solution, and its checker",
+        paper: "Nothing: the estimates of the paper have unknown constants.",
+        statement: "|u - v|_a^2 + |sigma(u) - tau|^2 <= |C eps(v) - tau|^2 + 2 int tau_n (v_n - g), in the norm of C^-1, for v that is admissible and tau in equilibrium with the loads, without shear and tension on Gamma_C (docs/theory.md, 7.2): at a point the squares split, and what contact adds to the integral of their product is not negative. The checker of certificates, on certificates of random v and affine tau that are made by hand of dyadic numbers: the square of its bound, |v|_a and J(v) are the integrals of their definitions, never below, to 1e-10; with data that oscillate, each triangle's share has its term; tractions that are out of balance by what the checker may add are balanced again. It refuses what the theorem does not allow, for its own reason, in 22 ways, among them a tension, a penetration of 1e-6 or between the ends of an edge, a prescribed value missed by a rounding error, a body that nothing holds; and the audit refuses a claim that is smaller by one double, another share, and a traction that is off by 1e-9. On three exact solutions the bound of the solver's displacement is above its true error, and at most 3 times it.",
+        numbers: "every ordered field at a point (proof); balls and intervals against rationals; doubles for the true errors.",
+        kernel: &[
+            "material::Material::stress",
+            "certify::proof::Certificate::evaluate",
+            "certify::proof::Certificate::audit",
+        ],
+        preconditions: "The data are those of the certificate: the checker does not see the problem that it was made for. Green's formula.",
+        limits: "Pieces that are cut, and how a certificate is made of a problem (`certify::build`, `sweeps`, `oscillation`), are looked at through their results only: a mistake there makes the bound of another problem, or a larger one. True errors are by quadrature.",
+        single: None,
+        checks: vec![
+            proved(squares),
+            proved(contact),
+            tested(contact),
+            by(
+                Engine::Exact,
+                "the_checker_finds_what_the_definitions_say",
+                bounds_are_the_definitions,
+            ),
+            by(
+                Engine::Doubles,
+                "tractions_out_of_balance_are_balanced_again",
+                tractions_are_balanced,
+            ),
+            by(
+                Engine::Doubles,
+                "the_checker_refuses_what_the_theorem_does_not_allow",
+                what_the_theorem_asks_for_is_asked,
+            ),
+            by(
+                Engine::Doubles,
+                "the_bound_of_the_solvers_displacement_is_above_its_error",
+                bounds_are_above_the_error,
+            ),
+            refuted(statement!(
+                control_contact_adds_under_tension,
+                [u, s, v, t, g],
+                fails "(v - u) * (s - t) + t * (v - g) >= zero"
+            )),
+            control(Engine::Exact, "control_a_bound_a_millionth_too_small", a_bound_too_small),
+            control(
+                Engine::Doubles,
+                "control_tractions_that_no_balance_takes",
+                tractions_that_no_balance_takes,
+            ),
+            control(
+                Engine::Doubles,
+                "control_certificates_as_they_were_made_are_refused",
+                certificates_as_they_were_made_are_refused,
+            ),
+            control(Engine::Doubles, "control_half_the_bound", half_the_bound),
+        ],
+    }
+}

@@ -1,0 +1,340 @@
+//! Where contact acts and what the solver proves with: obstacles, the smooth boundary behind facets, the limit of gamma0 that
+//! is printed, Korn's constants of the enclosure, and the factor in numbers of twice the precision.
+
+use std::sync::Arc;
+
+use proptest::prelude::*;
+use signorini::fem::korn::Korn;
+use signorini::fem::matrix::{self, LowerTriangle, Neighbours};
+use signorini::fem::obstacle::MOST_OFF;
+use signorini::fem::smooth::SmoothBoundary;
+use signorini::fem::twofold::Twofold;
+use signorini::fem::{Diagonal, Distance, Function, Mesh, Obstacle, Problem, Rectangle, Side};
+use signorini::kernel::edge_integral::ExactEdge;
+use signorini::kernel::{Material, P1, P2, Plane};
+use signorini::solve::factor::Factor;
+use signorini::solve::ldl::TwofoldFactor;
+use signorini::solve::system::System;
+use signorini::solve::{Degree, Method, discretize, limit};
+
+use crate::claim::Outcome;
+use crate::verdict::Verdict;
+use crate::{draws, ensure, sharpness};
+
+fn text(error: impl ToString) -> String {
+    error.to_string()
+}
+
+/// A planted mistake must not pass.
+fn noticed(outcome: Outcome) -> Outcome {
+    match outcome {
+        Err(why) => Ok(format!("rejected: {why}")),
+        Ok(said) => Err(format!("not noticed: {said}")),
+    }
+}
+
+/// `factor` times the distance from a circle, whose gradient has the length `factor`.
+struct Round {
+    center: [f64; 2],
+    radius: f64,
+    factor: f64,
+}
+
+impl Function for Round {
+    fn at(&self, x: [f64; 2]) -> f64 {
+        self.factor * ((x[0] - self.center[0]).hypot(x[1] - self.center[1]) - self.radius)
+    }
+}
+
+impl Distance for Round {
+    fn gradient(&self, x: [f64; 2]) -> [f64; 2] {
+        let [p, q] = [x[0] - self.center[0], x[1] - self.center[1]];
+        [p, q].map(|c| self.factor * c / p.hypot(q))
+    }
+}
+
+/// Centre, radius, the place of the body by its distance from the centre and its angle, and a factor.
+type Seen = ([f64; 2], f64, f64, f64, f64);
+
+/// Gap and direction of each kind of obstacle: x + g n~ lies on it, |n~| = 1, and one step back along n~ the gap is larger by as
+/// much; `turn` is the sign of n~.
+fn obstacle(&(center, radius, away, angle, factor): &Seen, turn: f64) -> Verdict {
+    let unit = [angle.cos(), angle.sin()];
+    let x = [0, 1].map(|c| center[c] + away * unit[c]);
+    let round = |factor: f64| Obstacle::Distance(Arc::new(Round { center, radius, factor }));
+    let side = if away > radius { Side::Outside } else { Side::Inside };
+    let plane = Obstacle::Plane { point: center, normal: unit };
+    let circle = Obstacle::Circle { center, radius, side };
+    let size = 1.0 + away + radius + center[0].abs() + center[1].abs();
+    let near = |a: f64, b: f64| (a - b).abs() <= 1e-13 * size;
+    let from_centre = |x: [f64; 2]| (x[0] - center[0]).hypot(x[1] - center[1]);
+    for (kind, obstacle) in [plane, circle, round(factor)].into_iter().enumerate() {
+        let Ok(seen) = obstacle.closest(x, String::new) else {
+            return Verdict::Fails("the body sees the obstacle");
+        };
+        let n = [turn * seen.direction[0], turn * seen.direction[1]];
+        ensure!(near(n[0].hypot(n[1]), 1.0));
+        let on = [0, 1].map(|c| x[c] + seen.gap * n[c]);
+        if kind == 0 {
+            ensure!(near((on[0] - center[0]) * unit[0] + (on[1] - center[1]) * unit[1], 0.0));
+        } else {
+            ensure!(near(from_centre(on), radius));
+        }
+        let step = 0.25 * (away - radius).abs().min(away);
+        let back = [0, 1].map(|c| x[c] - step * n[c]);
+        let Ok(behind) = obstacle.closest(back, String::new) else {
+            return Verdict::Fails("the body sees the obstacle one step back");
+        };
+        ensure!(near(behind.gap, seen.gap + step));
+    }
+    for off in [1.0 - 1.2 * MOST_OFF, 1.0 + 1.2 * MOST_OFF, 0.5, 2.0] {
+        ensure!(round(off).closest(x, String::new).is_err());
+    }
+    ensure!(Obstacle::Circle { center, radius, side }.closest(center, String::new).is_err());
+    Verdict::Holds(if side == Side::Outside { "outside" } else { "inside" })
+}
+
+fn places() -> impl Strategy<Value = Seen> {
+    let factor = 1.0 - 0.9 * MOST_OFF..1.0 + 0.9 * MOST_OFF;
+    ([-2.0_f64..2.0, -2.0_f64..2.0], 0.5_f64..3.0, 0.2_f64..1.8, 0.0_f64..6.25, factor).prop_map(
+        |(center, radius, share, angle, factor)| {
+            let share = if (share - 1.0).abs() < 0.05 { 1.2 } else { share };
+            (center, radius, share * radius, angle, factor)
+        },
+    )
+}
+
+/// Row 20: obstacles.
+pub fn obstacles_are_their_definitions() -> Outcome {
+    draws::hold(500, places(), &["outside", "inside"], |draw| obstacle(draw, 1.0))
+}
+
+/// Directions away from the obstacle.
+pub fn directions_away_from_the_obstacle() -> Outcome {
+    draws::reject(20, places(), |draw| obstacle(draw, -1.0))
+}
+
+/// On a circle with unequal facets of up to 35 degrees the normals at the vertices and the middles of the curves are those of
+/// the circle; `facets`: with the facet's middle in place of the curve's.
+fn circle(angles: &[f64], facets: bool) -> Verdict {
+    let mut at: Vec<f64> = Vec::new();
+    let total: f64 = angles.iter().sum();
+    let mut sum = 0.0;
+    for a in angles {
+        at.push(sum);
+        sum += a / total * std::f64::consts::TAU;
+    }
+    let mut vertices = vec![[0.0, 0.0]];
+    vertices.extend(at.iter().map(|a| [2.0 * a.cos(), 2.0 * a.sin()]));
+    let n = at.len();
+    let triangles = (0..n).map(|i| [0, 1 + i, 1 + (i + 1) % n]).collect();
+    let Ok(mesh) = Mesh::new(vertices, triangles, []) else { return Verdict::Fails("a mesh") };
+    let smooth = SmoothBoundary::new(&mesh);
+    for &edge in mesh.outline() {
+        let Some(points) = smooth.along(&mesh, edge) else { return Verdict::Fails("a curve") };
+        for (k, point) in points.into_iter().enumerate() {
+            let [p, q] = if facets && k == 2 {
+                let [a, b] = mesh.ends(edge).map(|v| mesh.vertices()[v]);
+                [(a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0]
+            } else {
+                point.place
+            };
+            ensure!((p.hypot(q) - 2.0).abs() <= 1e-13);
+            ensure!((point.normal[0] - p / 2.0).hypot(point.normal[1] - q / 2.0) <= 1e-12);
+        }
+    }
+    Verdict::Holds("always")
+}
+
+fn facets() -> impl Strategy<Value = Vec<f64>> {
+    prop::collection::vec(0.5_f64..1.0, 20..40)
+}
+
+/// Row 20: the smooth boundary.
+pub fn smooth_boundaries_are_exact_on_circles() -> Outcome {
+    draws::hold(50, facets(), &["always"], |angles| circle(angles, false))
+}
+
+/// The middles of the facets.
+pub fn middles_of_facets_for_those_of_the_curves() -> Outcome {
+    draws::reject(5, facets(), |angles| circle(angles, true))
+}
+
+/// The limit that is printed, from A and from the stiffness matrix, against that of dense algebra times `factor`.
+fn limits_on<E, const N: usize, const M: usize>(
+    problem: &Problem,
+    degree: Degree,
+    factor: f64,
+) -> Result<(), String>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let expected = sharpness::limits::<E, N, M>(problem, degree, |diameter, _| diameter)?;
+    let method = Method { degree, ..Method::default() };
+    let d = discretize::<E, N, M>(problem, &method).map_err(text)?;
+    let system = System::new(&d).map_err(text)?;
+    let neighbours = Neighbours::new(d.space.nodes().len(), d.space.elements());
+    let stiffness = matrix::assemble_stiffness(&d, &system.numbering, &neighbours);
+    for (matrix, gamma0) in [(&system.matrix, d.gamma0), (&stiffness, 0.0)] {
+        let of = Factor::with(&system.structure, matrix).map_err(text)?;
+        let of = of.map_err(|_| "no factor")?;
+        let found = limit::true_limit(&system, &of, gamma0).map_err(|e| e.reason().to_owned())?;
+        if !((found.gamma0 - factor * expected.sharp).abs() <= 1e-9 * expected.sharp) {
+            return Err(format!("gamma0* = {}, expected {}", found.gamma0, expected.sharp));
+        }
+    }
+    Ok(())
+}
+
+fn limits(factor: f64) -> Outcome {
+    let bodies = sharpness::small_bodies()?;
+    for body in &bodies {
+        let with = |why| format!("{}: {why}", body.name);
+        limits_on::<P1, 3, 2>(&body.problem, Degree::One, factor).map_err(with)?;
+        limits_on::<P2, 6, 3>(&body.problem, Degree::Two, factor).map_err(with)?;
+    }
+    Ok(format!("{} bodies, P1 and P2, from A and from K", bodies.len()))
+}
+
+/// Row 9: the limit of gamma0.
+pub fn the_printed_limit_is_that_of_dense_algebra() -> Outcome {
+    limits(1.0)
+}
+
+/// A limit that is off by a millionth.
+pub fn a_limit_off_by_a_millionth() -> Outcome {
+    noticed(limits(1.0 + 1e-6))
+}
+
+/// |v(x)| at each node is at most its constant times |v|_a: the largest such v by the inverse of the stiffness matrix. The
+/// constants are divided by `by`.
+fn korn_on<E, const N: usize, const M: usize>(problem: &Problem, by: f64) -> Result<f64, String>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let degree = if N == 3 { Degree::One } else { Degree::Two };
+    let method = Method { degree, ..Method::default() };
+    let d = discretize::<E, N, M>(problem, &method).map_err(text)?;
+    let system = System::new(&d).map_err(text)?;
+    let neighbours = Neighbours::new(d.space.nodes().len(), d.space.elements());
+    let stiffness = matrix::assemble_stiffness(&d, &system.numbering, &neighbours);
+    let factor = Factor::with(&system.structure, &stiffness).map_err(text)?;
+    let factor = factor.map_err(|_| "no factor")?;
+    let korn = Korn::new(&d.space, &problem.material, &d.constraints).ok_or("not held")?;
+    let mut least = f64::INFINITY;
+    for (numbers, constant) in system.numbering.of.iter().zip(&korn.nodes) {
+        for number in numbers.iter().flatten() {
+            let mut unit = vec![0.0; system.numbering.count];
+            unit[*number] = 1.0;
+            factor.forward(&mut unit);
+            let largest = unit.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let ratio = constant / by / largest;
+            if !(ratio >= 1.0 - 1e-9) {
+                return Err(format!(
+                    "a node moves by {largest}, at most {} is said",
+                    constant / by
+                ));
+            }
+            least = least.min(ratio);
+        }
+    }
+    Ok(least)
+}
+
+fn korn(by: f64) -> Outcome {
+    let strain = || Material::lame(1.0, 1.0, Plane::Strain);
+    let mut bodies: Vec<Problem> =
+        sharpness::small_bodies()?.into_iter().map(|body| body.problem).collect();
+    let beam = Rectangle { width: 24.0, height: 1.0, nx: 24, ny: 1, diagonal: Diagonal::Right };
+    bodies.push(sharpness::clamped(beam.mesh().map_err(text)?, strain(), &["left"]));
+    let named = [("top", [1, 2]), ("bottom", [0, 1])].map(|(n, e)| (n.to_owned(), vec![e]));
+    let tall = Mesh::new(vec![[0.0, 0.0], [0.3, 4.0], [-0.3, 4.0]], vec![[0, 1, 2]], named);
+    bodies.push(sharpness::clamped(tall.map_err(text)?, strain(), &["top"]));
+    let mut least = f64::INFINITY;
+    for problem in &bodies {
+        least = least.min(korn_on::<P1, 3, 2>(problem, by)?);
+        least = least.min(korn_on::<P2, 6, 3>(problem, by)?);
+    }
+    Ok(format!("{} bodies, P1 and P2; at least {least:.2} times what is attained", bodies.len()))
+}
+
+/// Row 10: Korn's constants.
+pub fn nodes_move_no_further_than_korns_constants_say() -> Outcome {
+    korn(1.0)
+}
+
+/// Constants a thousandth as large.
+pub fn korns_constants_a_thousandth_as_large() -> Outcome {
+    noticed(korn(1e3))
+}
+
+/// Pascal's matrix of order n plus the identity: a condition number of 10^12 for n = 24.
+fn pascal(n: usize) -> LowerTriangle<Twofold> {
+    let mut entry = vec![vec![1.0; n]; n];
+    for i in 1..n {
+        for j in 1..n {
+            entry[i][j] = entry[i - 1][j] + entry[i][j - 1];
+        }
+    }
+    for (i, row) in entry.iter_mut().enumerate() {
+        row[i] += 1.0;
+    }
+    let (mut starts, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
+    for j in 0..n {
+        for (i, row) in entry.iter().enumerate().skip(j) {
+            rows.push(i);
+            values.push(Twofold::from(row[j]));
+        }
+        starts.push(rows.len());
+    }
+    LowerTriangle { starts, rows, values }
+}
+
+/// A system of which doubles know next to nothing: the solution is one of whole numbers, to 1e-9; and what is not definite has
+/// no factor. The planted mistake is the factor in doubles.
+fn factored(in_doubles: bool) -> Outcome {
+    let n = 24;
+    let matrix = pascal(n);
+    let expected: Vec<f64> = (0..n).map(|i| f64::from((i * 7 % 11) as i32 - 5)).collect();
+    // Whole numbers below 2^53: the right side is exact.
+    let mut x = vec![0.0; n];
+    for j in 0..n {
+        for k in matrix.starts[j]..matrix.starts[j + 1] {
+            let (i, value) = (matrix.rows[k], matrix.values[k].head());
+            x[i] += value * expected[j];
+            if i != j {
+                x[j] += value * expected[i];
+            }
+        }
+    }
+    if in_doubles {
+        let LowerTriangle { starts, rows, values } = pascal(n);
+        let values = values.into_iter().map(Twofold::head).collect();
+        let factor = Factor::new(&LowerTriangle { starts, rows, values }).map_err(text)?;
+        factor.forward(&mut x);
+        factor.backward(&mut x);
+    } else {
+        TwofoldFactor::new(&matrix).map_err(|_| "no factor")?.solve(&mut x);
+    }
+    let far = x.iter().zip(&expected).map(|(x, e)| (x - e).abs()).fold(0.0, f64::max);
+    if !(far <= 1e-9) {
+        return Err(format!("the solution is off by {far:e}"));
+    }
+    let mut indefinite = pascal(n);
+    // The first entry, which is 2, and with it the first pivot, is -1.
+    indefinite.values[0] -= Twofold::from(3);
+    if TwofoldFactor::new(&indefinite).is_ok() {
+        return Err("a matrix with a negative eigenvalue has a factor".to_owned());
+    }
+    Ok(format!("Pascal's matrix of order {n} plus the identity, off by {far:.0e}"))
+}
+
+/// Row 13: the factor in twofold numbers.
+pub fn factors_in_twofold_numbers_solve_what_doubles_cannot() -> Outcome {
+    factored(false)
+}
+
+/// The factor in doubles.
+pub fn factors_in_doubles_solve_it_too() -> Outcome {
+    noticed(factored(true))
+}
