@@ -17,7 +17,7 @@ pub struct Arguments {
     pub quiet: bool,
 }
 
-const EXIT_CODES: &str = "Exit codes: 0 solved; 1 could not solve, write or accept a certificate; 2 the case is wrong, and then nothing \
+const EXIT_CODES: &str = "Exit codes: 0 solved; 1 could not solve, write or accept a certificate, or adapt the mesh to its target; 2 the case is wrong, and then nothing \
                           is written. A signal ends it as a signal does (130, 143, 129 to a shell); a reader of standard \
                           output who leaves (| head) is no failure, a full standard output is one: 1.";
 

@@ -1,7 +1,7 @@
 //! The command `signorini`: reads a case file, solves it (once, or on finer and finer meshes), writes the files and says
 //! what came out.
 //!
-//! Exit codes: 0 solved; 1 could not solve, or could not write; 2 the case is wrong, and then nothing is written. Nobody
+//! Exit codes: 0 solved; 1 could not solve, could not write, or did not reach the target of \[adapt\]; 2 the case is wrong, and then nothing is written. Nobody
 //! listening at standard output (`| head`) is no failure, a standard output that is full is one: 1. A signal ends the
 //! program as a signal does: 130, 143 or 129 to a shell.
 
@@ -35,6 +35,7 @@ mod command {
     use std::time::{Duration, Instant};
 
     use clap::{CommandFactory, Parser};
+    use signorini::certify::adapt::Stage;
     use signorini::certify::certify_field;
     use signorini::fem::MeshError;
     use signorini::io::convergence::{self, Meshes, StudyError};
@@ -43,10 +44,11 @@ mod command {
     use signorini::io::input;
     use signorini::io::outputs::{self, Certified};
     use signorini::io::result::{Results, Seconds, result_json};
+    use signorini::io::run::{self, RunError, Solved};
     use signorini::io::sweep::{self, Axis, SweepError};
     use signorini::io::{Case, CaseError, certificate};
     use signorini::quote;
-    use signorini::solve::{self, Course, Degree, LadderError, Solution, SolveError, Times};
+    use signorini::solve::{self, Course, Degree, LadderError, Solution, Times};
 
     use crate::arguments::{Arguments, CaseArguments, Engine, Mesh, Task};
     use crate::progress::Phases;
@@ -180,10 +182,12 @@ mod command {
             let names = [&outputs::FILES[..], &certificate::FILES].concat();
             spare(&folder, &names, &case.sources).map_err(|e| failure(WRONG)(&e))?;
         }
-        let (solution, times) = solved(&case, &phases)?;
-        let certified = certificate.then(|| {
-            phases.enter("certifying");
-            Certified::new(&case, &solution)
+        let (case, Solved { solution, times, certified }) = as_asked(case, &phases)?;
+        let certified = certified.or_else(|| {
+            certificate.then(|| {
+                phases.enter("certifying");
+                Certified::new(&case, &solution)
+            })
         });
         if let Some(Err(error)) = certified.as_ref().map(|certified| &certified.result) {
             let message = format!("{}: no certificate: {error}", case.file.display());
@@ -191,11 +195,10 @@ mod command {
         }
         let (files, results) = match (wanted, out) {
             (Wanted::Json, None) => {
-                let mut seconds = Seconds::new(read, &times, Duration::ZERO);
-                seconds.certify += certified.as_ref().map_or(0.0, |c| c.time.as_secs_f64());
+                let seconds = Seconds::new(read, &times, Duration::ZERO);
                 let results = outputs::results(&case, &solution, seconds);
                 let mut results = results.map_err(|e| failure(FAILED)(&e))?;
-                results.add_certificate(certified.as_ref().map(Certified::report));
+                certified.iter().for_each(|certified| certified.add_to(&mut results));
                 (Vec::new(), results)
             }
             _ => {
@@ -212,7 +215,9 @@ mod command {
             }
         };
         drop(phases);
-        wanted.text(&results, &files, quiet)
+        let done = wanted.text(&results, &files, quiet)?;
+        let missed = results.adapt.is_some_and(|adapt| !adapt.met);
+        Ok(Done { code: if missed { FAILED } else { done.code }, ..done })
     }
 
     /// How wrong a displacement is that any program computed.
@@ -244,11 +249,22 @@ mod command {
         Ok(summary::audited(&audit))
     }
 
+    /// On its own mesh, or on adapted ones.
+    fn as_asked(case: Case, phases: &Phases) -> Result<(Case, Solved), Failure> {
+        let file = case.file.clone();
+        let watcher = |stage| match stage {
+            Stage::Solve(phase) => phases.enter_solve(phase),
+            Stage::Certify(level) => phases.enter(format!("certifying level {level}")),
+            _ => phases.enter("refining the mesh"),
+        };
+        run::solve(case, None, &watcher).map_err(|e| unsolvable(&file, &e))
+    }
+
     fn solved(case: &Case, phases: &Phases) -> Result<(Solution, Times), Failure> {
         let watcher = |phase| phases.enter_solve(phase);
         let course = Course::default().watched_by(&watcher);
         solve::solve_along(&case.problem, &case.method, &case.settings, course)
-            .map_err(|e| unsolvable(&case.file, &e))
+            .map_err(|e| unsolvable(&case.file, &e.into()))
     }
 
     /// How the engine fenicsx is to be run.
@@ -454,7 +470,8 @@ mod command {
             StudyError::Level { error, .. } => match error {
                 LadderError::Mesh(MeshError::OutOfMemory(_)) => FAILED,
                 LadderError::Mesh(_) => WRONG,
-                LadderError::Solve(error) => code(error),
+                LadderError::Solve(error) if error.is_wrong_case() => WRONG,
+                LadderError::Solve(_) => FAILED,
             },
         };
         Failure { message: format!("{}: {error}", quote::path(file)), code }
@@ -462,16 +479,16 @@ mod command {
 
     fn check(arguments: &CaseArguments) -> Result<String, Failure> {
         let case = read(arguments)?;
-        let outline =
-            solve::check(&case.problem, &case.method).map_err(|e| unsolvable(&case.file, &e))?;
+        let outline = solve::check(&case.problem, &case.method)
+            .map_err(|e| unsolvable(&case.file, &e.into()))?;
         Ok(summary::checked(&case, &outline))
     }
 
-    fn unsolvable(file: &Path, error: &SolveError) -> Failure {
+    fn unsolvable(file: &Path, error: &RunError) -> Failure {
         Failure { message: format!("{}: {error}", quote::path(file)), code: code(error) }
     }
 
-    fn code(error: &SolveError) -> u8 {
+    fn code(error: &RunError) -> u8 {
         if error.is_wrong_case() { WRONG } else { FAILED }
     }
 }

@@ -7,7 +7,7 @@ use signorini::certify::Continuous;
 use signorini::io::certificate::Audit;
 use signorini::io::convergence::Study;
 use signorini::io::result::{
-    ContinuousCertificate, DiscreteCertificate, GammaChoice, NewtonHistory, Results,
+    Adaptation, ContinuousCertificate, DiscreteCertificate, GammaChoice, NewtonHistory, Results,
 };
 use signorini::io::sweep::Sweep;
 use signorini::io::{Case, numbers};
@@ -139,6 +139,9 @@ pub fn solved(r: &Results, files: &[PathBuf]) -> String {
     if let Some(continuous) = certificates.and_then(|c| c.continuous.as_ref()) {
         lines.line("error", distance(continuous));
     }
+    if let Some(adapt) = &r.adapt {
+        lines.line("adapted", adapted(adapt));
+    }
     for remark in &r.remarks {
         lines.line("remark", remark);
     }
@@ -248,6 +251,23 @@ fn enclosed(certificate: &DiscreteCertificate) -> String {
     } else {
         within
     }
+}
+
+/// Whether the target was met, and how the bound fell.
+fn adapted(adapt: &Adaptation) -> String {
+    let percent = |relative: f64| format!("{} %", numbers::short(100.0 * relative, 2));
+    let bounds: Vec<String> = adapt.levels.iter().map(|level| percent(level.relative)).collect();
+    let verdict = if adapt.met {
+        "met"
+    } else {
+        "not met: the next mesh has more unknowns than adapt.max_unknowns allows"
+    };
+    format!(
+        "target {} {verdict}; {}: {}",
+        percent(adapt.target),
+        count(adapt.levels.len(), "level"),
+        bounds.join(" ")
+    )
 }
 
 /// How far the solution can be from the true one.

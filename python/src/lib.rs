@@ -12,8 +12,9 @@ use signorini::fem::Mesh;
 use signorini::io::Case;
 use signorini::io::outputs;
 use signorini::io::result::{Seconds, result_json};
+use signorini::io::run::{self, RunError};
 use signorini::kernel::Stress;
-use signorini::solve::{Solution, SolveError};
+use signorini::solve::Solution;
 
 create_exception!(_signorini, CaseError, PyValueError, "The case is wrong.");
 create_exception!(
@@ -34,7 +35,7 @@ fn solve_case<'py>(
         let start = Instant::now();
         let text = Case::text(&path).map_err(wrong)?;
         let case = Case::parse(&path, &text, &settings).map_err(wrong)?;
-        solved(&case, start)
+        solved(case, start)
     });
     raw(py, &solved?)
 }
@@ -56,7 +57,7 @@ fn solve<'py>(
             .collect::<PyResult<Vec<_>>>()?;
         let mesh = Mesh::new(doubles(points), indices(triangles)?, boundaries).map_err(wrong)?;
         let case = Case::on_mesh(Path::new("case"), text, mesh).map_err(wrong)?;
-        solved(&case, start)
+        solved(case, start)
     });
     raw(py, &solved?)
 }
@@ -99,18 +100,19 @@ struct Solved {
     results: String,
 }
 
-fn solved(case: &Case, start: Instant) -> PyResult<Solved> {
+fn solved(case: Case, start: Instant) -> PyResult<Solved> {
     let read = start.elapsed();
-    let (solution, times) = signorini::solve(&case.problem, &case.method, &case.settings)
-        .map_err(|error| unsolved(&error))?;
+    let (case, run::Solved { solution, times, certified }) =
+        run::solve(case, None, &|_| {}).map_err(|error| unsolved(&error))?;
     let no_results = |error: &dyn std::fmt::Display| SolutionError::new_err(error.to_string());
     let seconds = Seconds::new(read, &times, std::time::Duration::ZERO);
-    let results = outputs::results(case, &solution, seconds).map_err(|e| no_results(&e))?;
+    let mut results = outputs::results(&case, &solution, seconds).map_err(|e| no_results(&e))?;
+    certified.iter().for_each(|certified| certified.add_to(&mut results));
     let results = result_json(&results).map_err(|e| no_results(&e))?;
     Ok(Solved { solution, results })
 }
 
-fn unsolved(error: &SolveError) -> PyErr {
+fn unsolved(error: &RunError) -> PyErr {
     if error.is_wrong_case() { wrong(error) } else { SolutionError::new_err(error.to_string()) }
 }
 

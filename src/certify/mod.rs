@@ -9,13 +9,17 @@
 //! | `build` | v and tau from the discrete solution |
 //! | `sweeps` | a better tau |
 //! | `oscillation` | data outside the exact class |
+//! | `adapt` | meshes that are refined until the bound meets a target |
 
+pub mod adapt;
 mod balance;
 mod build;
 mod oscillation;
 pub mod proof;
 mod sweeps;
 
+pub use self::adapt::{AdaptError, Adapted, Target, adapt};
+use self::proof::Role;
 pub use self::proof::{Certificate, Proof, Rejection};
 use crate::fem::constraints::Constraints;
 use crate::fem::contact_line;
@@ -50,6 +54,9 @@ pub struct Continuous {
     pub indicators: Vec<f64>,
     /// J(u) lies between these; `None` where the data are outside the exact class.
     pub energy: Option<[f64; 2]>,
+    /// The compliance L(u) lies between these; `None` where J(u) is not bounded, or where displacements or gaps other than 0
+    /// are prescribed beside the loads.
+    pub compliance: Option<[f64; 2]>,
     /// What proves it.
     pub certificate: Certificate,
     /// What it proves.
@@ -117,6 +124,10 @@ fn certify_near(
         let below = Interval::point(proof.energy[0]) - b * b / Interval::from(2);
         [below.lo(), proof.energy[1]]
     });
+    // Doubling is exact.
+    let compliance = energy
+        .filter(|_| is_loaded_only(&certificate))
+        .map(|[low, high]| [-2.0 * high, -2.0 * low]);
     let distances = squared_distances(problem, &certificate.displacement, field);
     let clipping = distances.iter().fold(Interval::from(0), |sum, &d| sum + Interval::point(d));
     let mut shares = vec![0.0; problem.mesh.triangles().len()];
@@ -131,11 +142,23 @@ fn certify_near(
         effectivity_hint: (estimate > 0.0).then(|| bound / estimate),
         indicators: shares.into_iter().zip(&distances).map(both).collect(),
         energy,
+        compliance,
         certificate,
         proof,
         lift: oscillation.lift,
         clipping: clipping.sqrt().hi(),
     })
+}
+
+/// Whether u_D = 0 and g = 0, so that with u all its multiples t u, t >= 0, are admissible: then a(u, u) = L(u) and
+/// J(u) = -L(u) / 2.
+fn is_loaded_only(certificate: &Certificate) -> bool {
+    let is_zero = |gap: [f64; 2]| gap == [0.0; 2];
+    certificate.prescribed.iter().flatten().flatten().all(|&u| u == 0.0)
+        && certificate.edges.iter().all(|edge| match edge.role {
+            Role::Contact { gap, .. } => is_zero(gap),
+            _ => true,
+        })
 }
 
 /// Upper bounds of |v - w|_a^2 on the triangles, for two fields that are affine on them.
@@ -170,7 +193,7 @@ pub enum CertifyError {
     #[error("no bound of the distance to the true solution: {0}")]
     Unsupported(String),
     #[error(
-        "certificates are made for degree 1: the composite stress has affine tractions on edges, and for degree 2 they would have to be quadratic"
+        "certificates are made for degree 1: for degree 2 the prescribed values, v_n - g and the pressure would be quadratic on edges, which the certificate and its checker hold as affine functions"
     )]
     Degree,
     #[error("the certificate does not hold: {0}")]

@@ -54,6 +54,15 @@ impl Materials {
         Materials { distinct, of_triangle: self.of_triangle.clone() }
     }
 
+    /// The materials on parts of these triangles: part i is one of triangle `origin[i]`.
+    #[must_use]
+    pub fn on_parts(&self, origin: &[usize]) -> Self {
+        let one = self.of_triangle.is_empty();
+        let of_triangle =
+            if one { Vec::new() } else { origin.iter().map(|&t| self.place_of(t)).collect() };
+        Materials { distinct: self.distinct.clone(), of_triangle }
+    }
+
     /// Each material once, whether a triangle is made of it or not.
     pub fn distinct(&self) -> &[Material<f64>] {
         &self.distinct

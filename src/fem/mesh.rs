@@ -12,6 +12,7 @@
 //!
 //! A [`Mesh`] that exists is valid: everything is checked when it is made, and nothing is checked again.
 
+pub mod bisection;
 mod edges;
 mod error;
 

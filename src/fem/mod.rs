@@ -36,6 +36,7 @@ pub use discretization::Discretization;
 pub use errors::Errors;
 pub use exact::{Exact, ExactSolution};
 pub use materials::Materials;
+pub use mesh::bisection::Refinement;
 pub use mesh::{BoundaryEdge, Mesh, MeshError};
 pub use obstacle::{Closest, Distance, Obstacle, Side};
 pub use problem::{

@@ -6,6 +6,7 @@ use thiserror::Error;
 
 use super::material::MaterialError;
 use super::materials::Materials;
+use super::mesh::bisection::Refinement;
 use super::mesh::{Mesh, MeshError};
 use super::obstacle::Obstacle;
 use super::rigid::FreeMotion;
@@ -133,6 +134,22 @@ impl Problem {
             conditions,
             points: Vec::new(),
         }
+    }
+
+    /// The same problem on a refinement of its mesh. What holds on boundaries and in points, and which forces act where, has
+    /// the same names and places.
+    #[must_use]
+    pub fn refined(mut self, Refinement { mesh, origin, .. }: Refinement) -> Self {
+        self.material = self.material.on_parts(&origin);
+        for force in &mut self.surface_forces {
+            // Triangles are numbered in the order of those that they are parts of.
+            let parts = |&t: &usize| {
+                origin.partition_point(|&o| o < t)..origin.partition_point(|&o| o <= t)
+            };
+            force.triangles = force.triangles.iter().flat_map(parts).collect();
+        }
+        self.mesh = mesh;
+        self
     }
 }
 

@@ -28,6 +28,9 @@
 //! [solver]
 //! tolerance = 1e-10                         # relative residual; between 0 and 1
 //! max_iterations = 200
+//! [adapt]                                   # refine the mesh until the error is proved to be as small as this
+//! target = "1 %"                            # of the energy norm
+//! max_unknowns = 500000                     # the default
 //! [output]
 //! probes = [[0.5, 0.5]]                     # places where result.json gives the displacement
 //! [exact]                                   # instead of [load]: a built-in exact solution, which supplies all data;
@@ -86,6 +89,7 @@ pub use super::mistake::{CaseError, CaseMistake, Place};
 use super::setting;
 use super::source::Source;
 use super::table::{Table, Value};
+use crate::certify::Target;
 use crate::fem::exact::Kind;
 use crate::fem::rectangle::MOST_CELLS;
 use crate::fem::{Diagonal, Exact, Mesh, Perturbation, Problem, Rectangle, Structured, Trapezoid};
@@ -107,6 +111,8 @@ pub struct Case {
     pub method: Method,
     /// How accurately.
     pub settings: Settings,
+    /// How small the error is to be, if the mesh is to be adapted until that is proved.
+    pub adapt: Option<Target>,
     /// The places where the displacement is wanted.
     pub probes: Vec<[f64; 2]>,
     /// The materials as the case has them.
@@ -239,7 +245,7 @@ const MEMORY_PER_BYTE: u64 = 400;
 fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, CaseError> {
     root.only(&[
         "title", "mesh", "material", "load", "exact", "boundary", "obstacle", "point", "method",
-        "solver", "output", "units",
+        "solver", "adapt", "output", "units",
     ])?;
     let title = match root.get("title") {
         Some(title) => title.text()?.to_owned(),
@@ -269,6 +275,7 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, CaseErro
     let boundaries = read_boundaries(root, solution.as_ref())?;
     let method = read_method(root.section("method")?)?;
     let settings = read_settings(root.section("solver")?)?;
+    let adapt = root.section("adapt")?.map(|table| read_target(&table, &method)).transpose()?;
     let output = root.section("output")?;
     let units = root.section("units")?.map(|table| read_units(&table)).transpose()?;
     // The mesh, and what needs it, comes last: it is what takes time.
@@ -290,6 +297,7 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, CaseErro
         units,
         method,
         settings,
+        adapt,
         probes,
         exact: solution.map(|solution| ExactCase { solution, kinds, structured, perturbation }),
         sources: std::iter::once(file.to_owned()).chain(mesh_file).collect(),
@@ -477,6 +485,32 @@ fn read_settings(table: Option<Table>) -> Result<Settings, CaseError> {
     Ok(settings)
 }
 
+/// Meshes are refined up to so many unknowns where the case says nothing.
+const MOST_UNKNOWNS: usize = 500_000;
+
+fn read_target(table: &Table, method: &Method) -> Result<Target, CaseError> {
+    table.only(&["target", "max_unknowns"])?;
+    if method.degree != Degree::One {
+        return Err(table.wrong(CaseMistake::Combination {
+            name: table.name().to_owned(),
+            found: "method.degree = 2 beside it".to_owned(),
+            expected: "degree 1, for which there are certificates".to_owned(),
+        }));
+    }
+    let expected = "a share of the energy norm above 0 % and below 100 %, such as \"1 %\"";
+    let target = table.require("target", expected)?;
+    let percent = target.as_text().and_then(|text| text.strip_suffix('%'));
+    let percent = percent.and_then(|number| number.trim().parse::<f64>().ok());
+    let relative = percent.map(|percent| percent / 100.0).filter(|&r| 0.0 < r && r < 1.0);
+    let most = 2 * MOST_CELLS;
+    let unknowns =
+        table.get("max_unknowns").map(|value| value.whole_number(1..=most)).transpose()?;
+    Ok(Target {
+        relative: relative.ok_or_else(|| target.wrong(expected))?,
+        max_unknowns: unknowns.unwrap_or(MOST_UNKNOWNS),
+    })
+}
+
 fn read_probes(table: Option<Table>, mesh: &Mesh) -> Result<Vec<[f64; 2]>, CaseError> {
     let Some(table) = table else { return Ok(Vec::new()) };
     table.only(&["probes"])?;
@@ -518,6 +552,7 @@ mod tests {
         assert_eq!(case.method, Method::default());
         assert_eq!(case.settings, Settings::default());
         assert!(case.probes.is_empty());
+        assert_eq!(case.adapt, None);
         assert_eq!(case.problem.material, Material::young_poisson(2.5, 0.25, Plane::Strain).into());
         assert_eq!(case.problem.mesh.vertices()[5], [2.0, 1.0]);
         assert_eq!(case.problem.mesh.triangles()[0], [0, 1, 4], "the diagonal is right");
@@ -582,6 +617,21 @@ mod tests {
         );
         assert_eq!(case.settings, Settings { tolerance: 1e-8, max_iterations: 7 });
         assert_eq!(case.probes, [[0.0, 1.0], [0.5, 0.25]]);
+    }
+
+    #[test]
+    fn a_target_is_a_share_in_percent_and_beside_degree_1_only() {
+        let with = |adapt: &str| read(&format!("{SMALL}\n{adapt}")).map(|case| case.adapt);
+        let target = with("adapt.target = \"0.5 %\"").unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(target, Some(Target { relative: 0.005, max_unknowns: MOST_UNKNOWNS }));
+        for wrong in ["\"0 %\"", "\"100 %\"", "\"1\"", "0.01", "\"%\"", "\"nan %\""] {
+            let error = with(&format!("adapt.target = {wrong}")).unwrap_err().to_string();
+            assert!(error.contains("such as \"1 %\""), "{error}");
+        }
+        let error = with("adapt.max_unknowns = 10").unwrap_err().to_string();
+        assert!(error.contains("target"), "{error}");
+        let error = with("adapt.target = \"1 %\"\nmethod.degree = 2").unwrap_err().to_string();
+        assert!(error.contains("for which there are certificates"), "{error}");
     }
 
     #[test]

@@ -32,6 +32,8 @@ pub mod plot;
 #[cfg(feature = "files")]
 pub mod result;
 #[cfg(feature = "files")]
+pub mod run;
+#[cfg(feature = "files")]
 mod setting;
 #[cfg(feature = "files")]
 mod source;

@@ -15,8 +15,8 @@ use super::files::{Output, WriteError};
 use super::numbers::short;
 use super::picture::{ContactSample, Scene, picture};
 use super::result::{
-    Certificates, Choices, ContinuousCertificate, DiscreteCertificate, GammaChoice, MeshSizes,
-    NewtonHistory, Results, SCHEMA, Seconds, result_json,
+    Adaptation, Certificates, Choices, DiscreteCertificate, GammaChoice, MeshSizes, NewtonHistory,
+    Results, SCHEMA, Seconds, result_json,
 };
 use super::vtu::{CellKind, Field, Grid, Values, vtu};
 use crate::certify::{CertifyError, Continuous, certify};
@@ -68,6 +68,8 @@ pub struct Certified {
     pub result: Result<Continuous, CertifyError>,
     /// The time.
     pub time: Duration,
+    /// How the mesh was adapted to it, if it was.
+    pub adaptation: Option<Adaptation>,
 }
 
 impl Certified {
@@ -75,12 +77,14 @@ impl Certified {
     pub fn new(case: &Case, solution: &Solution) -> Self {
         let start = Instant::now();
         let result = certify(&case.problem, solution);
-        Certified { result, time: start.elapsed() }
+        Certified { result, time: start.elapsed(), adaptation: None }
     }
 
-    /// As result.json has it.
-    pub fn report(&self) -> ContinuousCertificate {
-        (&self.result).into()
+    /// Adds what is known to the content of result.json.
+    pub fn add_to(&self, results: &mut Results) {
+        results.seconds.certify += self.time.as_secs_f64();
+        results.certificate.get_or_insert_default().continuous = Some((&self.result).into());
+        results.adapt.clone_from(&self.adaptation);
     }
 }
 
@@ -120,10 +124,10 @@ pub fn write(
             stage(file, bytes)?;
         }
     }
-    let mut seconds = Seconds::new(read, &times, start.elapsed());
-    seconds.certify += certified.map_or(0.0, |c| c.time.as_secs_f64());
-    let mut results = results(case, solution, seconds)?;
-    results.add_certificate(certified.map(Certified::report));
+    let mut results = results(case, solution, Seconds::new(read, &times, start.elapsed()))?;
+    if let Some(certified) = certified {
+        certified.add_to(&mut results);
+    }
     stage("result.json", result_json(&results).map(String::into_bytes))?;
     Ok((output.publish()?, results))
 }
@@ -241,6 +245,7 @@ pub fn results(
         balance: Some(solution.balance),
         probes,
         certificate: Some(Certificates { discrete: Some(discrete), continuous: None }),
+        adapt: None,
         errors,
         seconds,
     })

@@ -14,6 +14,7 @@ use serde_json::ser::{Formatter, Serializer};
 use super::body::MaterialEcho;
 use super::case::Units;
 use super::data::DataError;
+use crate::certify::adapt::Level;
 use crate::certify::{CertifyError, Continuous};
 use crate::fem::Errors;
 use crate::fem::contact_line::Gamma;
@@ -75,18 +76,14 @@ pub struct Results {
     /// How wrong the solution can be; left out if nothing is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub certificate: Option<Certificates>,
+    /// How the mesh was adapted; left out if it was not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub adapt: Option<Adaptation>,
     /// The distances from the exact solution; left out if the case has none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub errors: Option<Errors>,
     /// Where the time went.
     pub seconds: Seconds,
-}
-
-impl Results {
-    /// Adds what is known of the distance from the true solution.
-    pub fn add_certificate(&mut self, continuous: Option<ContinuousCertificate>) {
-        self.certificate.get_or_insert_default().continuous = continuous;
-    }
 }
 
 /// The version of the layout of result.json. 2: an entry for each contact boundary, balance, units, materials, choices.
@@ -208,6 +205,17 @@ pub struct Certificates {
     pub continuous: Option<ContinuousCertificate>,
 }
 
+/// How the mesh was adapted to a target.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Adaptation {
+    /// The bound over the energy norm was to be at most this.
+    pub target: f64,
+    /// It is.
+    pub met: bool,
+    /// All meshes, from the coarsest on; the results are those of the last.
+    pub levels: Vec<Level>,
+}
+
 /// The distance of the solution u~ that was computed from the exact solution u^h of (8).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct DiscreteCertificate {
@@ -273,6 +281,9 @@ pub struct ContinuousCertificate {
     /// The potential energy of u lies between these.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub potential_energy: Option<[f64; 2]>,
+    /// The compliance L(u) lies between these.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub compliance: Option<[f64; 2]>,
     /// Every step is proved, rounding included.
     pub rigorous: bool,
     /// Why not.
@@ -289,6 +300,7 @@ impl From<&Result<Continuous, CertifyError>> for ContinuousCertificate {
                 relative: Some(c.relative).filter(|r| r.is_finite()),
                 effectivity_hint: c.effectivity_hint,
                 potential_energy: c.energy,
+                compliance: c.compliance,
                 rigorous: c.rigorous,
                 reason: c.reason.clone(),
             },
@@ -533,6 +545,7 @@ mod tests {
             balance: None,
             probes: Vec::new(),
             certificate: None,
+            adapt: None,
             errors: None,
             seconds: Seconds { read: 0.25, assemble: 0.5, solve: 1.0, certify: 1.5, write: 2.0 },
         }

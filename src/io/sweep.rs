@@ -14,7 +14,8 @@ use super::files::{Output, WriteError};
 use super::numbers::short;
 use super::outputs::{self, Certified, OutputError};
 use super::result::{Results, Seconds};
-use crate::solve::{self, Course, Solution, SolveError};
+use super::run::{self, RunError, Solved};
+use crate::solve::Solution;
 
 /// More runs than this are a mistake of the person who asks for them.
 pub const MOST_RUNS: usize = 10_000;
@@ -61,7 +62,7 @@ fn items(list: &str) -> Option<Vec<String>> {
 }
 
 /// What a run gives: the quantities of the solution, or why there is none.
-pub type Outcome = Result<Results, SolveError>;
+pub type Outcome = Result<Results, RunError>;
 
 /// One solve of a sweep.
 #[derive(Clone, Debug)]
@@ -151,7 +152,7 @@ pub fn run(
     for i in 0..count {
         let (case, values) = read(i)?;
         let folder = folders.map(|folder| folder.join((i + 1).to_string()));
-        runs.push(Run { values, outcome: solve(&case, folder.as_deref(), &mut last)? });
+        runs.push(Run { values, outcome: solve(case, folder.as_deref(), &mut last)? });
         done();
     }
     Ok(Sweep { title, keys: axes.iter().map(|axis| axis.key.clone()).collect(), runs })
@@ -170,23 +171,27 @@ fn combination(axes: &[Axis], mut i: usize) -> Vec<String> {
 
 /// Solves from the `last` solution, and leaves its own there.
 fn solve(
-    case: &Case,
+    case: Case,
     folder: Option<&Path>,
     last: &mut Option<Solution>,
 ) -> Result<Outcome, OutputError> {
-    let course = last.as_ref().map_or(Course::default(), |last| Course::default().from(last));
-    let solved = solve::solve_along(&case.problem, &case.method, &case.settings, course);
-    let (solution, times) = match solved {
-        Ok(solved) => solved,
-        Err(error) => return Ok(Err(error)),
-    };
+    let (case, Solved { solution, times, certified }) =
+        match run::solve(case, last.as_ref(), &|_| {}) {
+            Ok(solved) => solved,
+            Err(error) => return Ok(Err(error)),
+        };
     let read = Duration::ZERO;
     let results = match folder {
         Some(folder) => {
-            let certified = Certified::new(case, &solution);
-            outputs::write(folder, case, &solution, read, times, Some(&certified), false)?.1
+            let certified = certified.unwrap_or_else(|| Certified::new(&case, &solution));
+            outputs::write(folder, &case, &solution, read, times, Some(&certified), false)?.1
         }
-        None => outputs::results(case, &solution, Seconds::new(read, &times, Duration::ZERO))?,
+        None => {
+            let seconds = Seconds::new(read, &times, Duration::ZERO);
+            let mut results = outputs::results(&case, &solution, seconds)?;
+            certified.iter().for_each(|certified| certified.add_to(&mut results));
+            results
+        }
     };
     *last = Some(solution);
     Ok(Ok(results))

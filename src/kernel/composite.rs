@@ -311,6 +311,36 @@ mod tests {
     }
 
     #[test]
+    fn an_affine_stress_in_equilibrium_is_reproduced() {
+        // xx, yy, xy as multiples of 1, x, y; div tau = -f.
+        let coefficients = [[0.4, 0.3, -0.7], [-0.2, 0.5, 0.9], [0.1, -0.6, 0.8]];
+        let at = |p: Vector2<f64>| Stress::new(coefficients.map(|[a, b, c]| a + b * p.x + c * p.y));
+        let [xx, yy, xy] = coefficients;
+        let f = Vector2::new(-(xx[1] + xy[2]), -(xy[1] + yy[2]));
+        let forces = [0, 1, 2]
+            .map(|i| [1, 2].map(|k| at(T.vertices[(i + k) % 3]).traction(T.scaled_normal(i))));
+        let tau = Composite::new(&T, &Loads { forces, body: [f; 3] });
+        let same = |a: Stress<f64>, b: Stress<f64>| {
+            for (a, b) in a.components().into_iter().zip(b.components()) {
+                assert_abs_diff_eq!(a, b, epsilon = ROUNDING);
+            }
+        };
+        same(tau.centre, at(centroid(&T)));
+        for i in 0..3 {
+            for k in 1..3 {
+                same(tau.corners[i][k - 1], at(T.vertices[(i + k) % 3]));
+            }
+        }
+        // Control: a quadratic one, with the same tractions at corners, is another at the centroid.
+        let bent = |p: Vector2<f64>| at(p) + Stress::new([p.x * p.y, 0.0, 0.0]);
+        let forces = [0, 1, 2]
+            .map(|i| [1, 2].map(|k| bent(T.vertices[(i + k) % 3]).traction(T.scaled_normal(i))));
+        let tau = Composite::new(&T, &Loads { forces, body: [f; 3] });
+        let [xx, ..] = (tau.centre - bent(centroid(&T))).components();
+        assert!(xx.abs() > 1e-2, "{xx}");
+    }
+
+    #[test]
     fn a_constant_stress_is_reproduced_and_its_energy_is_stress_times_strain() {
         let material = Material::lame(1.3, 0.7, Plane::Strain);
         let gradient = Matrix2::new(0.3, -0.2, 0.5, 0.9);

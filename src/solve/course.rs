@@ -1,6 +1,7 @@
 //! The course of a solve: where Newton's method starts, and who is told how far it is.
 //!
-//! A start is the solution of another problem on the same nodes, such as the load step before. What is taken of it is on which
+//! A start is the solution of another problem on the same nodes, such as the load step before, or a displacement, such as
+//! that of a coarser mesh between its vertices. What is taken of it is on which
 //! parts of the contact edges P is positive. With H = Psi'' there, the first step solves the problem whose springs
 //! of contact are these and no others,
 //!
@@ -38,15 +39,27 @@ pub enum Phase {
 /// Where a solve starts, and who watches.
 #[derive(Clone, Copy, Default)]
 pub struct Course<'a> {
-    start: Option<&'a Solution>,
+    start: Option<Start<'a>>,
     watcher: Option<&'a dyn Fn(Phase)>,
+}
+
+#[derive(Clone, Copy)]
+enum Start<'a> {
+    Solution(&'a Solution),
+    Displacement(&'a [[f64; 2]]),
 }
 
 impl<'a> Course<'a> {
     /// Starts from a solution on the same nodes; one on others is no start, and Newton's method starts as without.
     #[must_use]
     pub fn from(self, start: &'a Solution) -> Self {
-        Course { start: Some(start), ..self }
+        Course { start: Some(Start::Solution(start)), ..self }
+    }
+
+    /// Starts from a displacement at the nodes of the problem; another number of values is no start.
+    #[must_use]
+    pub fn from_displacement(self, start: &'a [[f64; 2]]) -> Self {
+        Course { start: Some(Start::Displacement(start)), ..self }
     }
 
     /// Calls `watcher` as each phase begins.
@@ -74,10 +87,15 @@ impl<'a> Course<'a> {
     where
         E: ExactEdge<f64, N, M>,
     {
-        let start = self.start?;
-        let same =
-            start.nodes == d.space.nodes() && start.elements == d.space.elements().as_flattened();
-        let u = &start.displacement;
+        let nodes = d.space.nodes();
+        let (same, u) = match self.start? {
+            Start::Solution(start) => {
+                let elements = d.space.elements().as_flattened();
+                let same = start.nodes == nodes && start.elements == elements;
+                (same, start.displacement.as_slice())
+            }
+            Start::Displacement(u) => (u.len() == nodes.len(), u),
+        };
         let p = |edge: &crate::fem::contact_line::ContactLineEdge<N, M>| {
             edge.p(&d.space.on_triangle(edge.edge.triangle, u))
         };

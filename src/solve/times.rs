@@ -29,6 +29,23 @@ pub struct Times {
 }
 
 impl Times {
+    /// Of two solves together.
+    #[must_use]
+    pub fn plus(&self, other: &Times) -> Times {
+        Times {
+            discretize: self.discretize + other.discretize,
+            matrix: self.matrix + other.matrix,
+            factor: self.factor + other.factor,
+            forward: self.forward + other.forward,
+            compliance: self.compliance + other.compliance,
+            newton: self.newton + other.newton,
+            backward: self.backward + other.backward,
+            judge: self.judge + other.judge,
+            certify: self.certify + other.certify,
+            evaluate: self.evaluate + other.evaluate,
+        }
+    }
+
     /// All that comes before the factorisation.
     pub fn assemble(&self) -> Duration {
         self.discretize + self.matrix

@@ -136,6 +136,41 @@ fn data_of_the_exact_class_make_the_bound_rigorous_and_enclose_the_potential_ene
     }
 }
 
+#[test]
+fn where_loads_are_the_only_data_the_compliance_is_enclosed() {
+    let loaded = |n: usize, gap: &str, lift: &str| {
+        let problem = Problem::new(
+            unit_square(n).mesh().unwrap(),
+            Material::lame(1.0, 1.0, Plane::Strain),
+            [expression("0.8"), expression("-1")],
+            conditions([
+                ("top", Condition::Displacement([Some(expression("0")), Some(expression(lift))])),
+                ("bottom", Condition::Contact { gap: expression(gap) }),
+            ]),
+        );
+        let (solution, _) = solve(&problem, &Method::default(), &Settings::default()).unwrap();
+        (certify(&problem, &solution).unwrap(), solution.quantities.work)
+    };
+    let (fine, work) = loaded(64, "0", "0");
+    let [fine_low, fine_high] = fine.compliance.unwrap();
+    for n in [4, 8, 16] {
+        let (coarse, _) = loaded(n, "0", "0");
+        let [low, high] = coarse.compliance.unwrap();
+        // Both contain L(u), and what the finest mesh says of it is inside all others.
+        assert!(low < work && work < high && low < fine_low && fine_high < high, "{n}");
+        let [below, above] = coarse.energy.unwrap();
+        assert_eq!([-2.0 * above, -2.0 * below], [low, high]);
+    }
+    // A gap or a support that moves does work of its own: no statement.
+    for (gap, lift) in [("0.01", "0"), ("0", "-0.01")] {
+        let (other, work) = loaded(8, gap, lift);
+        assert!(other.compliance.is_none());
+        // And rightly: here L(u) = -2 J(u) is wrong.
+        let [low, high] = other.energy.unwrap();
+        assert!(!(-2.0 * high..=-2.0 * low).contains(&work), "{gap} {lift}");
+    }
+}
+
 /// A case of the folder `cases`, with elements of degree 1.
 fn of_the_cases(name: &str) -> (Problem, Solution) {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("cases").join(name);

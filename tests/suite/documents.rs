@@ -9,7 +9,7 @@ use serde_json::Value;
 use signorini::io::Case;
 use signorini::io::outputs::{self, Certified};
 use signorini::io::result::Seconds;
-use signorini::solve;
+use signorini::io::run::{self, Solved};
 
 fn page(name: &str) -> String {
     fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(name)).unwrap()
@@ -59,6 +59,7 @@ fn the_page_on_result_json_lists_exactly_what_is_written() {
             ][..],
         ),
         ("cases/singular.toml", &["mesh.rectangle.nx=2", "mesh.rectangle.ny=2"]),
+        ("cases/singular.toml", &["method.degree=1", "adapt.target=\"20 %\""]),
         (
             "cases/block.toml",
             &["mesh.rectangle.nx=4", "method.gamma0=auto", "load.body=[\"0\", \"-1\"]"],
@@ -68,11 +69,13 @@ fn the_page_on_result_json_lists_exactly_what_is_written() {
     ] {
         let settings: Vec<String> = settings.iter().map(|&s| s.to_owned()).collect();
         let case = Case::parse(Path::new(file), &page(file), &settings).unwrap();
-        let (solution, times) = solve(&case.problem, &case.method, &case.settings).unwrap();
+        let (case, Solved { solution, times, certified }) =
+            run::solve(case, None, &|_| {}).unwrap();
         let zero = std::time::Duration::ZERO;
         let seconds = Seconds::new(zero, &times, zero);
         let mut results = outputs::results(&case, &solution, seconds).unwrap();
-        results.add_certificate(Some(Certified::new(&case, &solution).report()));
+        let certified = certified.unwrap_or_else(|| Certified::new(&case, &solution));
+        certified.add_to(&mut results);
         paths("", &serde_json::to_value(results).unwrap(), &mut written);
     }
     assert_eq!(written, first_cells(&page("docs/result.md")));
@@ -98,7 +101,7 @@ fn known_to(file: &str, text: &str, settings: &[&str], table: &str) -> BTreeSet<
 }
 
 /// The tables of a case, each with a case that has it and with its name on the page.
-const TABLES: [(&str, &[&str], &str, &str); 17] = [
+const TABLES: [(&str, &[&str], &str, &str); 18] = [
     ("cases/block.toml", &[], "", ""),
     ("cases/block.toml", &[], "mesh", "mesh"),
     ("cases/block.toml", &[], "mesh.rectangle", "mesh.rectangle"),
@@ -110,6 +113,7 @@ const TABLES: [(&str, &[&str], &str, &str); 17] = [
     ("cases/block.toml", &[], "boundary.bottom.contact", "boundary.NAME.contact"),
     ("cases/block.toml", &["method.degree=1"], "method", "method"),
     ("cases/block.toml", &["solver.tolerance=1e-9"], "solver", "solver"),
+    ("cases/block.toml", &["method.degree=1", "adapt.target=\"1 %\""], "adapt", "adapt"),
     ("cases/pin.toml", &[], "units", "units"),
     ("cases/pin.toml", &[], "obstacle.pin", "obstacle.NAME"),
     ("cases/pin.toml", &[], "obstacle.pin.circle", "obstacle.NAME.circle"),

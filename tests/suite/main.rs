@@ -3,6 +3,7 @@
 
 mod common;
 
+mod adapt;
 mod assembled;
 mod bad_input;
 mod bodies;

@@ -1,0 +1,224 @@
+//! Adaptivity to a proved target: solve, bound the distance to the true solution, bisect the triangles that have the largest
+//! shares in the square of the bound, and again, until the bound is as small as it is to be.
+//!
+//! A mesh is refined where the fewest triangles have the share [`THETA`] of the whole (Doerfler's marking), by
+//! [`newest-vertex bisection`](crate::fem::mesh::bisection). Newton's method starts from the coarser solution.
+//!
+//! Every level has a certificate of its own, for the problem on its own mesh: nothing that is proved rests on the levels
+//! before. The body is the polygon of the first mesh: the middle of a straight edge lies on it, but for rounding.
+
+#[cfg(feature = "files")]
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use super::{CertifyError, Continuous, certify};
+use crate::fem::contact_line;
+use crate::fem::{Condition, MeshError, Problem, Space};
+use crate::kernel::P1;
+use crate::solve::{
+    Course, Degree, Method, Phase, Settings, Solution, SolveError, Times, solve_along,
+};
+
+/// The share of the square of the bound that the marked triangles have. With more, levels are fewer and grow faster.
+pub const THETA: f64 = 0.5;
+
+/// When to stop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Target {
+    /// The bound over the energy norm is to be at most this.
+    pub relative: f64,
+    /// No mesh has more degrees of freedom than this, but for the first.
+    pub max_unknowns: usize,
+}
+
+/// What came out on one mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
+#[non_exhaustive]
+pub struct Level {
+    /// Degrees of freedom: twice the vertices.
+    pub unknowns: usize,
+    /// Triangles.
+    pub triangles: usize,
+    /// How many steps Newton's method took.
+    pub newton_steps: usize,
+    /// |u - v|_a is at most this.
+    pub bound: f64,
+    /// The bound over |v|_a.
+    pub relative: f64,
+}
+
+/// The last level, with those before.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct Adapted {
+    /// Its solution.
+    pub solution: Solution,
+    /// How long the solves took, all levels together.
+    pub times: Times,
+    /// Its bound.
+    pub certified: Continuous,
+    /// How long the certificates and the meshes took, all levels together.
+    pub certifying: std::time::Duration,
+    /// All levels, from the coarsest on.
+    pub levels: Vec<Level>,
+    /// The bound meets the target; otherwise a finer mesh would have too many unknowns.
+    pub met: bool,
+}
+
+/// What goes on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Stage {
+    /// A part of a solve.
+    Solve(Phase),
+    /// The bound, on the level of this number, from 0.
+    Certify(usize),
+    /// The next mesh.
+    Refine,
+}
+
+/// Why there is no level that meets the target, nor one that is as fine as allowed.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[expect(missing_docs, reason = "the message of each variant says what it is")]
+#[non_exhaustive]
+pub enum AdaptError {
+    #[error("level {level}: {error}")]
+    Solve { level: usize, error: SolveError },
+    #[error("no mesh can be adapted to a proved target: {0}")]
+    Certify(#[from] CertifyError),
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    #[error(
+        "no mesh can be adapted: '{boundary}' is curved and has a gap along its normal, and bisection keeps the straight edges of the mesh; expected a straight boundary, or an [obstacle]"
+    )]
+    Curved { boundary: String },
+    #[error(
+        "no mesh can be adapted to a share of the energy norm: the body is at rest, its energy is 0"
+    )]
+    AtRest,
+}
+
+impl AdaptError {
+    /// Whether the case is wrong. Otherwise it is right, but there is no result of it here.
+    pub fn is_wrong_case(&self) -> bool {
+        match self {
+            AdaptError::Solve { error, .. } => error.is_wrong_case(),
+            AdaptError::Certify(error) => matches!(
+                error,
+                CertifyError::Data(_) | CertifyError::Unsupported(_) | CertifyError::Degree
+            ),
+            AdaptError::Curved { .. } => true,
+            AdaptError::Mesh(_) | AdaptError::AtRest => false,
+        }
+    }
+}
+
+/// Solves `problem` by P1 on meshes that are refined until the bound meets the `target`, and leaves the problem on the last
+/// of them; `watcher` is told what goes on.
+///
+/// # Errors
+/// A level without a solution or without a certificate, a mesh that can't be refined further, a body at rest.
+pub fn adapt(
+    mut problem: Problem,
+    method: &Method,
+    settings: &Settings,
+    target: Target,
+    watcher: &dyn Fn(Stage),
+) -> Result<(Problem, Adapted), AdaptError> {
+    if method.degree != Degree::One {
+        return Err(CertifyError::Degree.into());
+    }
+    check_straight(&problem)?;
+    let of_solve = |phase| watcher(Stage::Solve(phase));
+    let mut newest = problem.mesh.opposite_longest();
+    let mut start: Option<Vec<[f64; 2]>> = None;
+    let (mut levels, mut times) = (Vec::new(), Times::default());
+    let mut certifying = std::time::Duration::ZERO;
+    loop {
+        let level = levels.len();
+        let course = Course::default().watched_by(&of_solve);
+        let course = start.as_deref().map_or(course, |start| course.from_displacement(start));
+        let (solution, took) = solve_along(&problem, method, settings, course)
+            .map_err(|error| AdaptError::Solve { level, error })?;
+        times = times.plus(&took);
+        watcher(Stage::Certify(level));
+        let begin = std::time::Instant::now();
+        let certified = certify(&problem, &solution)?;
+        if !certified.relative.is_finite() {
+            return Err(AdaptError::AtRest);
+        }
+        levels.push(Level {
+            unknowns: 2 * problem.mesh.vertices().len(),
+            triangles: problem.mesh.triangles().len(),
+            newton_steps: solution.newton.iterations(),
+            bound: certified.bound,
+            relative: certified.relative,
+        });
+        let met = certified.relative <= target.relative;
+        watcher(Stage::Refine);
+        let finer = if met {
+            None
+        } else {
+            let finer = problem.mesh.bisected(&newest, &marked(&certified.indicators))?;
+            Some(finer).filter(|f| 2 * f.mesh.vertices().len() <= target.max_unknowns)
+        };
+        certifying += begin.elapsed();
+        let Some(finer) = finer else {
+            return Ok((problem, Adapted { solution, times, certified, certifying, levels, met }));
+        };
+        start = Some(finer.prolonged(&solution.displacement));
+        newest = vec![0; finer.mesh.triangles().len()];
+        problem = problem.refined(finer);
+    }
+}
+
+/// Where contact acts along normals, these are those of straight edges.
+fn check_straight(problem: &Problem) -> Result<(), AdaptError> {
+    let space = Space::<P1, 3, 2>::new(&problem.mesh);
+    // The direction of contact does not depend on gamma.
+    let contact = contact_line::assemble(problem, &space, 1.0).map_err(CertifyError::Data)?;
+    let along_its_normal = |name: &str| {
+        let condition = problem.conditions.get(name);
+        matches!(condition, Some(Condition::Contact { .. }))
+    };
+    let curved = contact
+        .iter()
+        .find(|edge| along_its_normal(&edge.boundary) && edge.directions != [edge.normal; 2]);
+    match curved {
+        Some(edge) => Err(AdaptError::Curved { boundary: edge.boundary.to_string() }),
+        None => Ok(()),
+    }
+}
+
+/// The fewest triangles whose shares make up [`THETA`] of the whole; `indicators` are the roots of the shares. Where all
+/// shares are 0, all triangles.
+pub fn marked(indicators: &[f64]) -> Vec<usize> {
+    let share = |&t: &usize| indicators[t] * indicators[t];
+    let mut order: Vec<usize> = (0..indicators.len()).collect();
+    order.sort_by(|a, b| indicators[*b].total_cmp(&indicators[*a]));
+    let whole: f64 = order.iter().map(share).sum();
+    let mut sum = 0.0;
+    let mut count = 0;
+    for t in &order {
+        sum += share(t);
+        count += 1;
+        if sum >= THETA * whole && whole > 0.0 {
+            break;
+        }
+    }
+    order.truncate(count);
+    order
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_fewest_triangles_with_half_of_the_whole_are_marked() {
+        assert_eq!(marked(&[1.0, 3.0, 2.0, 2.0]), [1], "9 of 18");
+        assert_eq!(marked(&[1.0, 2.0, 2.0, 2.0]), [1, 2], "8 of 13");
+        assert_eq!(marked(&[0.0, 0.0]), [0, 1]);
+    }
+}

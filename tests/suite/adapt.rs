@@ -1,0 +1,264 @@
+//! Adaptivity to a proved target: where the solution is singular the error falls as the square root of the number of
+//! unknowns does, which uniform refinement does not reach; the target that is reported as met is met; and what cannot be
+//! adapted is refused.
+
+use std::path::Path;
+
+use crate::common::exact::{corner, on_square, on_trapezoid, singular};
+use crate::common::{clamped, conditions, constant, function, unit_square};
+use signorini::certify::adapt::AdaptError;
+use signorini::certify::{Adapted, CertifyError, Target, adapt, certify};
+use signorini::fem::{
+    BoxedFunction, Condition, Errors, Materials, PointSupport, Problem, Space, contact_line,
+};
+use signorini::io::run::{self, RunError};
+use signorini::io::{Case, Expression, case};
+use signorini::kernel::{Material, P1, Plane};
+use signorini::solve::ladder::fitted_slope;
+use signorini::solve::{Degree, Ladder, Method, Settings, solve};
+
+/// To a mesh of at most so many unknowns, whatever the bound is there.
+fn as_fine_as(max_unknowns: usize) -> Target {
+    Target { relative: 0.0, max_unknowns }
+}
+
+fn adapted(ladder: &Ladder, target: Target) -> (Problem, Adapted) {
+    let problem = ladder.problem(0).unwrap();
+    adapt(problem, &ladder.method, &ladder.settings, target, &|_| {}).unwrap()
+}
+
+fn error_of(problem: &Problem, ladder: &Ladder, gamma0: f64, v: &[[f64; 2]]) -> f64 {
+    let space = Space::<P1, 3, 2>::new(&problem.mesh);
+    let contact = contact_line::assemble(problem, &space, gamma0).unwrap();
+    Errors::new(&space, &contact, v, &*ladder.solution).energy
+}
+
+/// Unknowns, true error and bound.
+struct Point {
+    unknowns: f64,
+    error: f64,
+    bound: f64,
+}
+
+/// The slopes of error and bound over the unknowns.
+fn slopes(points: &[Point]) -> [f64; 2] {
+    let unknowns: Vec<f64> = points.iter().map(|p| p.unknowns).collect();
+    [|p: &Point| p.error, |p: &Point| p.bound].map(|of| {
+        let values: Vec<f64> = points.iter().map(of).collect();
+        fitted_slope(&unknowns, &values)
+    })
+}
+
+fn on_adapted_meshes(ladder: &Ladder) -> Vec<Point> {
+    let on = |most| {
+        let (problem, a) = adapted(ladder, as_fine_as(most));
+        let v = &a.certified.certificate.displacement;
+        let error = error_of(&problem, ladder, a.solution.gamma.gamma0, v);
+        let last = a.levels.last().unwrap();
+        assert!(
+            !a.met && error <= last.bound && last.bound < 2.0 * error,
+            "{}",
+            last.bound / error
+        );
+        Point { unknowns: last.unknowns as f64, error, bound: last.bound }
+    };
+    [500, 1000, 2000, 4000, 8000].map(on).into()
+}
+
+fn on_uniform_meshes(ladder: &Ladder) -> Vec<Point> {
+    let on = |level| {
+        let (_, problem, solution) = ladder.solve(level).unwrap();
+        let bound = certify(&problem, &solution).unwrap().bound;
+        let v = &solution.displacement;
+        let error = error_of(&problem, ladder, solution.gamma.gamma0, v);
+        Point { unknowns: 2.0 * v.len() as f64, error, bound }
+    };
+    (1..=4).map(on).collect()
+}
+
+/// The rate 1/2 of P1 for smooth solutions, but for what a fit over a factor of 16 in the unknowns may be off.
+const RECOVERED: f64 = -0.45;
+
+#[test]
+fn error_and_bound_fall_as_for_smooth_solutions_on_adapted_meshes_where_uniform_ones_do_not_reach_it()
+ {
+    for omega in [0.75, 0.6] {
+        let (solution, alpha) = corner(omega);
+        let ladder = on_trapezoid(&solution, omega, Degree::One, 4);
+        let [error, bound] = slopes(&on_adapted_meshes(&ladder));
+        assert!(error < RECOVERED && bound < RECOVERED, "(c) {omega}: {error:.3} {bound:.3}");
+        // Control: h^alpha is the power -alpha/2 of the unknowns, and fails the same demand.
+        let [error, bound] = slopes(&on_uniform_meshes(&ladder));
+        assert!(error > RECOVERED && bound > RECOVERED, "(c) {omega}: {error:.3} {bound:.3}");
+        assert!((error + alpha / 2.0).abs() < 0.03, "(c) {omega}: {error:.3}");
+    }
+    // (b) is in H^2, so P1 has its full rate on any mesh.
+    let ladder = on_square(&singular(1.0 / 3.0), Degree::One, 4);
+    let [error, bound] = slopes(&on_adapted_meshes(&ladder));
+    assert!(error < RECOVERED && bound < RECOVERED, "(b): {error:.3} {bound:.3}");
+}
+
+#[test]
+fn a_target_is_met_with_far_fewer_unknowns_than_on_uniform_meshes() {
+    let (solution, _) = corner(0.75);
+    let ladder = on_trapezoid(&solution, 0.75, Degree::One, 4);
+    let target = Target { relative: 0.06, max_unknowns: 1_000_000 };
+    let (problem, a) = adapted(&ladder, target);
+    assert!(a.met && a.certified.relative <= 0.06);
+    let last = a.levels.last().unwrap();
+    assert_eq!((last.bound, last.unknowns), (a.certified.bound, 2 * problem.mesh.vertices().len()));
+    assert!(a.levels.iter().rev().skip(1).all(|level| level.relative > 0.06));
+    // A uniform mesh with twenty times as many is further away.
+    let (_, problem, solution) = ladder.solve(5).unwrap();
+    assert!(solution.displacement.len() * 2 > 20 * last.unknowns);
+    assert!(certify(&problem, &solution).unwrap().relative > 0.06);
+}
+
+#[test]
+fn newton_starts_from_the_coarser_solution_and_takes_fewer_steps() {
+    let ladder = on_square(&singular(1.0 / 3.0), Degree::One, 4);
+    let (problem, a) = adapted(&ladder, as_fine_as(4000));
+    let (afresh, _) = solve(&problem, &ladder.method, &ladder.settings).unwrap();
+    let last = a.levels.last().unwrap().newton_steps;
+    assert!(last < afresh.newton.iterations(), "{last} of {}", afresh.newton.iterations());
+    let far = a.solution.displacement.as_flattened().iter().zip(afresh.displacement.as_flattened());
+    let far = far.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    // Both are solutions to the tolerance of the solver, 1e-10 of the loads.
+    assert!(far < 1e-9, "{far:e}");
+}
+
+/// A function that knows that it is a polynomial.
+fn expression(text: &str) -> BoxedFunction {
+    Box::new(text.parse::<Expression>().unwrap())
+}
+
+/// A block of two materials, pulled aside, with data of the exact class.
+fn two_materials() -> Problem {
+    let mesh = unit_square(4).mesh().unwrap();
+    let left: Vec<usize> = (0..mesh.triangles().len())
+        .filter(|&t| mesh.triangle(t).point([1.0 / 3.0; 3]).x < 0.5)
+        .collect();
+    let [soft, hard] = [1.0, 10.0].map(|mu| Material::lame(1.0, mu, Plane::Strain));
+    let materials = Materials::in_parts(soft, mesh.triangles().len(), [(hard, left.as_slice())]);
+    let surfaces = [("left half".to_owned(), left)].into();
+    let mesh = mesh.with_names(surfaces, [("foot".to_owned(), 0)].into());
+    Problem::new(
+        mesh,
+        materials,
+        [expression("0.4"), expression("-1")],
+        conditions([
+            ("top", Condition::Displacement([Some(expression("0")), Some(expression("0"))])),
+            ("left", Condition::Traction([expression("0.3"), expression("0")])),
+            ("bottom", Condition::Contact { gap: expression("0.01") }),
+        ]),
+    )
+}
+
+#[test]
+fn materials_names_and_boundary_data_stay_where_they_are_and_the_bound_stays_rigorous() {
+    let method = Method::default();
+    let target = Target { relative: 0.1, max_unknowns: 20_000 };
+    let (problem, a) =
+        adapt(two_materials(), &method, &Settings::default(), target, &|_| {}).unwrap();
+    assert!(a.met && a.levels.len() > 2, "{:?}", a.levels);
+    assert!(a.certified.rigorous, "{:?}", a.certified.reason);
+    let mesh = &problem.mesh;
+    for t in 0..mesh.triangles().len() {
+        let is_left = mesh.triangle(t).point([1.0 / 3.0; 3]).x < 0.5;
+        assert_eq!(problem.material.of(t).mu(), if is_left { 10.0 } else { 1.0 });
+        assert_eq!(mesh.surface("left half").unwrap().contains(&t), is_left);
+    }
+    assert_eq!(mesh.vertices()[mesh.point("foot").unwrap()], [0.0; 2]);
+    for (name, c, value) in [("top", 1, 1.0), ("left", 0, 0.0), ("bottom", 1, 0.0)] {
+        let edges = mesh.edges_of(name).unwrap();
+        assert!(
+            edges.iter().all(|&e| mesh.ends(e).iter().all(|&v| mesh.vertices()[v][c] == value))
+        );
+        let length: f64 = edges.iter().map(|&e| mesh.length_and_normal(e).0).sum();
+        assert!((length - 1.0).abs() < 1e-12, "{name}: {length}");
+    }
+}
+
+#[test]
+fn what_has_no_certificate_is_refused_with_the_reason() {
+    let refused = |problem: Problem, method: &Method| {
+        let target = Target { relative: 0.1, max_unknowns: 1000 };
+        let error = adapt(problem, method, &Settings::default(), target, &|_| {}).err().unwrap();
+        assert!(error.is_wrong_case(), "{error}");
+        error
+    };
+    let of_degree_2 = Method { degree: Degree::Two, ..Method::default() };
+    let error = refused(two_materials(), &of_degree_2);
+    assert_eq!(error, AdaptError::Certify(CertifyError::Degree));
+    let mut pointed = two_materials();
+    let displacement = [Some(constant(0.0)), None];
+    pointed.points.push(PointSupport { name: "foot".to_owned(), vertex: 0, displacement });
+    let error = refused(pointed, &Method::default()).to_string();
+    assert!(error.contains("[point.foot] holds a point"), "{error}");
+    // A floor that bends, with the gap along its normals.
+    let mut vertices = unit_square(8).mesh().unwrap().vertices().to_vec();
+    let flat = unit_square(8).mesh().unwrap();
+    vertices.iter_mut().for_each(|x| x[1] -= 0.1 * (1.0 - x[1]) * x[0] * (1.0 - x[0]));
+    let named = ["bottom", "top"].map(|name| {
+        let edges = flat.edges_of(name).unwrap().iter().map(|&e| flat.ends(e)).collect();
+        (name.to_owned(), edges)
+    });
+    let mesh = signorini::fem::Mesh::new(vertices, flat.triangles().to_vec(), named).unwrap();
+    let bent = Problem::new(
+        mesh,
+        Material::lame(1.0, 1.0, Plane::Strain),
+        [constant(0.0), constant(-1.0)],
+        conditions([("top", clamped()), ("bottom", Condition::Contact { gap: constant(0.0) })]),
+    );
+    let error = refused(bent, &Method::default());
+    assert_eq!(error, AdaptError::Curved { boundary: "bottom".to_owned() });
+}
+
+#[test]
+fn a_body_at_rest_has_no_energy_to_compare_with() {
+    let problem = Problem::new(
+        unit_square(4).mesh().unwrap(),
+        Material::lame(1.0, 1.0, Plane::Strain),
+        [constant(0.0), constant(0.0)],
+        conditions([("top", clamped()), ("bottom", Condition::Contact { gap: function(|_| 0.1) })]),
+    );
+    let target = Target { relative: 0.1, max_unknowns: 1000 };
+    let error = adapt(problem, &Method::default(), &Settings::default(), target, &|_| {});
+    assert_eq!(error.err(), Some(AdaptError::AtRest));
+}
+
+fn of_the_file(settings: &[&str]) -> case::Case {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/corner.toml");
+    let settings: Vec<String> = settings.iter().map(|&s| s.to_owned()).collect();
+    Case::parse(&file, &Case::text(&file).unwrap(), &settings).unwrap()
+}
+
+#[test]
+fn a_case_with_a_target_is_solved_on_the_adapted_mesh() {
+    let small = ["method.degree=1", "mesh.trapezoid.n=4"];
+    let case = of_the_file(&[&small[..], &["adapt.target=\"15 %\""]].concat());
+    let (case, solved) = run::solve(case, None, &|_| {}).unwrap();
+    let certified = solved.certified.unwrap();
+    let adaptation = certified.adaptation.unwrap();
+    assert!(adaptation.met && adaptation.levels.len() > 3);
+    assert_eq!(solved.solution.nodes, case.problem.mesh.vertices());
+    let last = adaptation.levels.last().unwrap();
+    assert_eq!(last.unknowns, 2 * solved.solution.nodes.len());
+    assert!(last.relative <= 0.15);
+    // Without a target the mesh stays.
+    let (case, solved) = run::solve(of_the_file(&small), None, &|_| {}).unwrap();
+    assert!(solved.certified.is_none() && case.problem.mesh.triangles().len() == 32);
+    // Too few unknowns: no error, but said.
+    let few = ["adapt.target=\"1 %\"", "adapt.max_unknowns=100"];
+    let (_, solved) = run::solve(of_the_file(&[&small[..], &few].concat()), None, &|_| {}).unwrap();
+    let adaptation = solved.certified.unwrap().adaptation.unwrap();
+    assert!(!adaptation.met && adaptation.levels.iter().all(|l| l.unknowns <= 100));
+}
+
+#[test]
+fn a_level_without_a_solution_says_which() {
+    let few = ["method.degree=1", "solver.max_iterations=1", "adapt.target=\"1 %\""];
+    let error = run::solve(of_the_file(&few), None, &|_| {}).err().unwrap();
+    assert!(matches!(error, RunError::Adapt(AdaptError::Solve { level: 0, .. })), "{error}");
+    assert!(error.to_string().starts_with("[adapt]: level 0: no convergence"), "{error}");
+}
