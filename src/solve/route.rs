@@ -129,9 +129,9 @@ where
         let stresses = edge.functionals.sigma_n.iter().flatten();
         let stress = stresses.flat_map(|v| v.iter()).fold(0.0, |m: f64, s| m.max(s.abs()));
         let (gamma, length) = (edge.gamma, edge.length);
-        [stress * stress, gamma * stress, length / gamma, gamma * length]
-            .iter()
-            .all(|x| x.is_normal())
+        let springs = [length / gamma, gamma * length].iter().all(|x| x.is_normal());
+        springs
+            && (stress == 0.0 || [stress * stress, gamma * stress].iter().all(|x| x.is_normal()))
     })
 }
 
