@@ -128,7 +128,7 @@ where
         at = iterate.evaluate(system, precisely);
         let (force, noise) = residual_of(system, &at);
         residual = force / reference;
-        let size = d.strain_energy(&iterate.rounded()).sqrt();
+        let size = size_of(d, &iterate.rounded());
         cut = change.left > 0.0;
         let moved = change.energy.max(change.left).sqrt();
         correction = if moved == 0.0 { 0.0 } else { moved / size };
@@ -152,13 +152,29 @@ where
         }
     }
     let u = iterate.rounded();
-    let size = d.strain_energy(&u).sqrt();
+    let size = size_of(d, &u);
     let rounding = d.strain_energy(&iterate.remainder()).sqrt();
     let rounding = if rounding > 0.0 { rounding / size } else { 0.0 };
     let forward_error = correction + rounding;
     let condition = (system.norm() * softness).max(1.0);
     let fine = at.precisely.then(|| iterate.into_twofold());
     Ok(Outcome { u, fine, residuals, residual, correction, forward_error, condition })
+}
+
+/// |u|_a, which errors are relative to. A body without loads that is moved as a whole has no strain but that of rounding: there
+/// it is what the terms of a(u, u) would add up to if they did not cancel.
+fn size_of<E, const N: usize, const M: usize>(d: &Discretization<E, N, M>, u: &[[f64; 2]]) -> f64
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let size = d.strain_energy(u).sqrt();
+    if d.load.as_flattened().iter().any(|&l| l != 0.0) {
+        return size;
+    }
+    let magnitudes = d.residual(u).magnitudes;
+    let terms = magnitudes.as_flattened().iter().zip(u.as_flattened()).map(|(m, u)| m * u.abs());
+    let most = terms.sum::<f64>().sqrt();
+    if size > NOISE * f64::EPSILON * most { size } else { most }
 }
 
 /// The norm of the residual of (8) where its linear part is `at`, and a norm that rounding alone may give it.

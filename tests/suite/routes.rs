@@ -137,6 +137,50 @@ fn a_lift_that_is_the_solution_has_converged() {
     assert!(s.newton.residuals.iter().all(|r| r.is_finite()));
 }
 
+/// A block without loads whose upper side is moved down by 1/16; the floor is at `gap`.
+fn moved_down(n: usize, gap: signorini::fem::BoxedFunction) -> Problem {
+    let material = signorini::kernel::Material::lame(4.0, 1.0, signorini::kernel::Plane::Strain);
+    let moved =
+        signorini::fem::Condition::Displacement([Some(constant(0.0)), Some(constant(-0.0625))]);
+    let conditions =
+        conditions([("top", moved), ("bottom", signorini::fem::Condition::Contact { gap })]);
+    Problem::new(
+        unit_square(n).mesh().unwrap(),
+        material,
+        [constant(0.0), constant(0.0)],
+        conditions,
+    )
+}
+
+#[test]
+fn a_body_that_is_moved_as_a_whole_to_where_it_touches_is_solved() {
+    for degree in [Degree::One, Degree::Two] {
+        for n in [1, 2, 3, 5, 8] {
+            // The floor is touched along all of the side, in a corner, or not at all.
+            for slope in [0.0, 0.0625, -0.03125, 0.5] {
+                let start = if slope < 0.0 { 0.0625 - slope } else { 0.0625 };
+                let gap = function(move |[x, _]: [f64; 2]| start + slope * x);
+                let solved =
+                    solve(&moved_down(n, gap), &method(degree, EXACT), &Settings::default());
+                let (s, _) = solved.unwrap_or_else(|e| panic!("n = {n}, slope {slope}: {e}"));
+                for u in &s.displacement {
+                    assert!(u[0].abs() < 1e-15 && (u[1] + 0.0625).abs() < 1e-15, "{u:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn control_where_the_floor_is_reached_earlier_it_is_not_moved_as_a_whole() {
+    let problem = moved_down(4, constant(0.0625 - 1e-9));
+    let (s, _) = solve(&problem, &method(Degree::One, EXACT), &Settings::default()).unwrap();
+    // Pressed together by 1e-9: sigma_n = -(lambda + 2 mu) 1e-9 where the sides do not bulge, 4 mu (lambda + mu) / (lambda + 2 mu)
+    // times 1e-9 where they are free to.
+    assert!((3e-9..6e-9).contains(&s.quantities.contact_force), "{:e}", s.quantities.contact_force);
+    assert!(s.enclosure.unwrap().relative.unwrap() < 1e-5);
+}
+
 /// The block with one triangle on the floor cut in three, of which the one at the floor is a sliver of this height.
 fn with_a_sliver(height: f64) -> Problem {
     let mesh = unit_square(16).mesh().unwrap();
