@@ -107,7 +107,9 @@ pub enum Unproved {
     NotHeld,
     #[error("A has no Cholesky factor in the precision of the solve")]
     NoFactor,
-    #[error("kappa, rounded up, over- or underflows double precision")]
+    #[error(
+        "kappa is 1 or more when its rounding is counted: it over- or underflows double precision, or is next to 1"
+    )]
     NoKappa,
     #[error("the bound over- or underflows double precision")]
     OutOfRange,
@@ -215,7 +217,7 @@ where
     }
     let lines = lines(d);
     let kappa = kappa(d, &lines);
-    if !kappa.is_finite() {
+    if !(kappa < 1.0) && (d.kappa() < 1.0 || !kappa.is_finite()) {
         return Err(Unproved::NoKappa);
     }
     if !(kappa < 1.0) {

