@@ -366,8 +366,9 @@ fn the_files_of_the_engine_replace_those_of_this_program_and_the_other_way_round
 fn a_signal_reaches_the_processes_of_the_engine_and_nothing_half_written_stays() {
     for (name, number) in [("TERM", 15), ("INT", 2), ("HUP", 1)] {
         let folder = folder(&format!("signal-{name}"));
-        // A process that the engine has started, as mpirun starts those that compute.
-        let script = r#"(trap 'echo told > "$NOTES/told"; exit' TERM; touch "$NOTES/ready"; sleep 60 & wait) & wait"#;
+        // A process that the engine has started, as mpirun starts those that compute. A shell that has forked and has not yet
+        // become `sleep` loses a signal: it says when it waits, and `sleep` does not keep the standard error open.
+        let script = r#"(trap 'echo told > "$NOTES/told"; exit' TERM; sleep 60 2>/dev/null & touch "$NOTES/ready"; wait) & wait"#;
         with_engine(&folder, script);
         let notes = folder.join("notes");
         fs::create_dir(&notes).unwrap();
