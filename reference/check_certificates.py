@@ -134,7 +134,10 @@ def check(text):
 
 def main(directory, ledger=None):
     files = {path.stem: path for path in sorted(Path(directory).glob("*.proof"))}
-    named = set(re.findall(r"^\| proof \| (?:\[)?`(?!control_)(\w+)`", Path(ledger).read_text(), re.M)) if ledger else set()
+    rows = re.split(r"^## ", Path(ledger).read_text(), flags=re.M) if ledger else []
+    # The row about the engine itself has false statements, and proves others on the way.
+    rows = [row for row in rows if "(the proof engine)" not in row]
+    named = {name for row in rows for name in re.findall(r"^\| proof \| (?:\[)?`(?!control_)(\w+)`", row, re.M)}
     wrong = [f"{name}: named in {ledger}, not exported" for name in sorted(named - files.keys())]
     total = [0, 0]
     for name, path in files.items():
