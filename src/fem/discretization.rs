@@ -44,19 +44,31 @@ pub struct Discretization<'a, E, const N: usize, const M: usize> {
     pub slides: Option<Vec<Vec<[f64; 2]>>>,
 }
 
-/// A functional at every basis function, and for each of its values the sum of the magnitudes of the products that were
-/// added up for it: times the unit roundoff it tells how well the value is known.
+/// What a displacement u does at every basis function, and for each of the values the sum of the magnitudes of the products
+/// that were added up for it: times the unit roundoff it tells how well the value is known.
 #[derive(Clone, Debug)]
 pub struct Functional {
     /// The values.
     pub values: Vec<[f64; 2]>,
     /// The sums of magnitudes.
     pub magnitudes: Vec<[f64; 2]>,
+    /// a(u, u), from the strains: forces times displacements would cancel where a body moves far and bends little.
+    pub energy: f64,
+}
+
+/// The value of a displacement at the first node less that at the second.
+pub trait Difference: Fn(usize, usize) -> Vector2<f64> {}
+
+impl<F: Fn(usize, usize) -> Vector2<f64>> Difference for F {}
+
+fn in_doubles(u: &[[f64; 2]]) -> impl Difference {
+    |node, from| Vector2::from(u[node]) - Vector2::from(u[from])
 }
 
 impl Functional {
     fn zero(nodes: usize) -> Self {
-        Functional { values: vec![[0.0; 2]; nodes], magnitudes: vec![[0.0; 2]; nodes] }
+        let zero = || vec![[0.0; 2]; nodes];
+        Functional { values: zero(), magnitudes: zero(), energy: 0.0 }
     }
 
     fn add(&mut self, node: usize, value: Vector2<f64>, magnitude: f64) {
@@ -150,9 +162,16 @@ where
 
     /// A(u, v) - L(v) for every basis function v.
     pub fn linear_residual(&self, u: &[[f64; 2]]) -> Functional {
-        let mut r = self.internal_forces(u);
+        self.linear_residual_by(in_doubles(u))
+    }
+
+    /// The same of a displacement that is known to more than double precision, by its differences between nodes: the first
+    /// node's value less the second one's.
+    pub fn linear_residual_by(&self, difference: impl Difference) -> Functional {
+        let mut r = self.internal_forces_by(&difference);
         for edge in &self.contact {
-            let [start, end] = edge.sigma_n(&self.space.on_triangle(edge.edge.triangle, u));
+            let nodes = &self.space.elements()[edge.edge.triangle];
+            let [start, end] = edge.sigma_n(&nodes.map(|node| difference(node, nodes[0])));
             let mass = -edge.gamma * edge.length / 6.0;
             let stress = [mass * (2.0 * start + end), mass * (start + 2.0 * end)];
             self.add_functionals(edge, &edge.functionals.sigma_n, &stress, &mut r);
@@ -165,9 +184,14 @@ where
 
     /// a(u, v) = int sigma(u):eps(v) for every basis function v.
     pub fn internal_forces(&self, u: &[[f64; 2]]) -> Functional {
-        let mut forces = Functional::zero(u.len());
+        self.internal_forces_by(&in_doubles(u))
+    }
+
+    /// Stresses are those of the differences from a node of the triangle: what moves it as a whole would cancel.
+    fn internal_forces_by(&self, difference: &impl Difference) -> Functional {
+        let mut forces = Functional::zero(self.space.nodes().len());
         for (t, (triangle, nodes)) in self.space.triangles().enumerate() {
-            let nodal = self.space.on_triangle(t, u);
+            let nodal = nodes.map(|node| difference(node, nodes[0]));
             // Most of a lift: prescribed data are zero but on the boundary.
             if nodal == [Vector2::zeros(); N] {
                 continue;
@@ -178,7 +202,11 @@ where
             let area = triangle.double_area() / 2.0;
             E::at_stiffness_points(|l, weight| {
                 let gradients = E::gradients(l, barycentric);
-                let stress = material.stress(displacement_gradient(&nodal, &gradients));
+                let gradient = displacement_gradient(&nodal, &gradients);
+                let stress = material.stress(gradient);
+                let [xx, yy, xy] = stress.components();
+                let shear = xy * (gradient.m12 + gradient.m21);
+                forces.energy += weight * area * (xx * gradient.m11 + yy * gradient.m22 + shear);
                 let strain: f64 =
                     nodal.iter().zip(&gradients).map(|(u, g)| norm_1(*u) * norm_1(*g)).sum();
                 for (&node, g) in nodes.iter().zip(gradients) {
@@ -190,23 +218,9 @@ where
         forces
     }
 
-    /// a(u, u) = int sigma(u):eps(u), from the strains: forces times displacements would cancel where a body moves far and
-    /// bends little.
+    /// a(u, u) = int sigma(u):eps(u).
     pub fn strain_energy(&self, u: &[[f64; 2]]) -> f64 {
-        let mut energy = 0.0;
-        for (t, (triangle, _)) in self.space.triangles().enumerate() {
-            let material = self.problem.material.of(t);
-            let nodal = self.space.on_triangle(t, u);
-            let barycentric = triangle.barycentric_gradients();
-            let area = triangle.double_area() / 2.0;
-            E::at_stiffness_points(|l, weight| {
-                let strain = displacement_gradient(&nodal, &E::gradients(l, barycentric));
-                let [xx, yy, xy] = material.stress(strain).components();
-                let shear = xy * (strain.m12 + strain.m21);
-                energy += weight * area * (xx * strain.m11 + yy * strain.m22 + shear);
-            });
-        }
-        energy
+        self.internal_forces(u).energy
     }
 
     /// Adds the functionals of an edge, each times its factor.
@@ -244,7 +258,7 @@ where
 
     /// J_h(u) = 1/2 A(u, u) + 1/2 int (1/gamma) \[P(u)\]+^2 - L(u), whose derivative is the residual.
     pub fn energy(&self, u: &[[f64; 2]]) -> f64 {
-        let mut energy = inner(&self.internal_forces(u).values, u) / 2.0 - inner(&self.load, u);
+        let mut energy = self.strain_energy(u) / 2.0 - inner(&self.load, u);
         for edge in &self.contact {
             let nodal = self.space.on_triangle(edge.edge.triangle, u);
             let sigma_n = edge.sigma_n(&nodal);

@@ -3,8 +3,8 @@
 //!
 //! The correction of a pass is the error of what it corrects, but for the error of the correction, which is smaller by the
 //! same factor again. Its energy norm |du|_A beside that of u, and that of what the displacement loses when it is rounded to
-//! doubles at the end, is the **forward error** that is reported; a small residual
-//! alone says nothing where the condition number is large. Residuals are evaluated in doubles as long as these can tell: where
+//! doubles at the end, is the **forward error** that is reported; a small residual alone says nothing where the condition
+//! number is large. Residuals are evaluated in doubles as long as these can tell: where
 //! their rounding, carried through the body at its softest, may move it by more than the bound for corrections, a residual that
 //! vanishes in doubles is no evidence, for Newton's method drives the rounding to zero with it.
 
@@ -23,14 +23,15 @@ pub trait Route<E, const N: usize, const M: usize> {
         false
     }
 
-    /// Moves `iterate`, where the linear part of (8) is `at`, to where the residual of (8) vanishes, as far as one pass can.
+    /// Moves `iterate` to where the residual of (8) vanishes, as far as one pass can, and `at`, what the linear part of (8) is
+    /// there, with it.
     ///
     /// # Errors
     /// As [`newton::minimise`].
     fn pass(
         &mut self,
         iterate: &mut Iterate,
-        at: Evaluation,
+        at: &mut Evaluation,
         residuals: &mut Vec<f64>,
         until: Until,
     ) -> Result<Pass, SolveError>;
@@ -54,6 +55,10 @@ pub struct Outcome {
     pub u: Vec<[f64; 2]>,
     /// The same before it was rounded to doubles, where its forces in doubles are noise.
     pub fine: Option<Vec<[Twofold; 2]>>,
+    /// A(u, v) - L(v) for every basis function v, of the displacement before it was rounded.
+    pub forces: Vec<[f64; 2]>,
+    /// P(u) at the nodes of the contact edges.
+    pub p: Vec<f64>,
     /// The relative residual of (8) before each Newton step and after the last.
     pub residuals: Vec<f64>,
     /// The relative residual of the displacement, from the definitions.
@@ -82,10 +87,13 @@ impl Outcome {
 const RIGHT: f64 = 1e-9;
 
 /// A correction this small, relative, leaves nothing to correct.
-const SMALL: f64 = 1e-11;
+const SMALL: f64 = 1e-10;
 
-/// Rounding of the residual calls for twofold numbers where it is more than this, relative, or may move the body by more.
+/// Rounding of the residual calls for twofold numbers where its bound is more than this beside the forces,
 const BLURRED: f64 = 1e-9;
+
+/// or may move the body by more than this beside its displacement, if all of it adds up.
+const MOVED: f64 = 1e-8;
 
 /// A correction ends where the residual is this share of the tolerance.
 const GOOD_ENOUGH: f64 = 1e-2;
@@ -113,93 +121,121 @@ where
     let mut iterate = Iterate::lift(d);
     let mut residuals = Vec::new();
     let mut at = iterate.evaluate(system, route.precisely());
+    // The first pass goes as far as it can. It comes from nowhere: what it moves is no error.
+    let mut until = Until { steps: settings.max_iterations, residual: 0.0 };
+    let Pass { left, mut softness, .. } =
+        route.pass(&mut iterate, &mut at, &mut residuals, until)?;
+    let good_enough = GOOD_ENOUGH * settings.tolerance;
     let mut correction = f64::INFINITY;
-    let mut softness: f64 = 0.0;
-    let mut residual = f64::INFINITY;
-    let mut cut = false;
-    for pass in 0..MOST_PASSES {
-        let precisely = at.precisely;
-        // The first pass goes as far as it can; a correction need not better what is good enough.
-        let enough = if pass == 0 || cut { 0.0 } else { GOOD_ENOUGH * settings.tolerance };
-        let until = Until { steps: settings.max_iterations, residual: enough };
-        let change = route.pass(&mut iterate, at, &mut residuals, until)?;
+    let mut cut = left > 0.0;
+    let mut residual = residual_of(system, &at) / reference;
+    for _ in 1..MOST_PASSES {
+        if residuals.len() > settings.max_iterations && !(residual <= settings.tolerance) {
+            break;
+        }
+        let size = size_of(d, at.energy, &iterate);
+        if !at.precisely && is_blurred(system, &at, softness, size, reference) {
+            at = iterate.evaluate(system, true);
+        }
+        // A correction need not better what is good enough.
+        until.residual = if cut { 0.0 } else { good_enough };
+        let change = route.pass(&mut iterate, &mut at, &mut residuals, until)?;
         softness = softness.max(change.softness);
-        let before = correction;
-        at = iterate.evaluate(system, precisely);
-        let (force, noise) = residual_of(system, &at);
-        residual = force / reference;
-        let size = size_of(d, &iterate.rounded());
         cut = change.left > 0.0;
+        let before = correction;
         let moved = change.energy.max(change.left).sqrt();
         correction = if moved == 0.0 { 0.0 } else { moved / size };
-        if pass == 0 {
-            // The first pass comes from nowhere: what it moved is no error.
-            correction = f64::INFINITY;
-        }
-        let out_of_steps =
-            residuals.len() > settings.max_iterations && !(residual <= settings.tolerance);
-        let blurred = noise * softness.sqrt() > BLURRED * size || noise > BLURRED * reference;
-        let blurred = blurred && !precisely;
-        if out_of_steps || (residual <= settings.tolerance && correction <= SMALL && !blurred) {
+        residual = residual_of(system, &at) / reference;
+        if residual <= settings.tolerance && correction <= SMALL {
             break;
         }
-        if pass > 0 && !precisely {
-            // Doubles were not enough.
-            at = iterate.evaluate(system, true);
-            correction = f64::INFINITY;
-        } else if pass > 0 && !cut && !(correction < before / 2.0) {
+        if cut || correction < before / 2.0 {
+            continue;
+        }
+        if at.precisely {
             break;
         }
+        // Doubles are not enough.
+        at = iterate.evaluate(system, true);
+        residual = residual_of(system, &at) / reference;
+        correction = f64::INFINITY;
     }
     let u = iterate.rounded();
-    let size = size_of(d, &u);
-    let rounding = d.strain_energy(&iterate.remainder()).sqrt();
-    let rounding = if rounding > 0.0 { rounding / size } else { 0.0 };
+    let rounding = system.energy_of_noise(&iterate.remainder()).sqrt();
+    let rounding = if rounding > 0.0 { rounding / size_of(d, at.energy, &iterate) } else { 0.0 };
     let forward_error = correction + rounding;
-    let condition = (system.norm() * softness).max(1.0);
-    let fine = at.precisely.then(|| iterate.into_twofold());
-    Ok(Outcome { u, fine, residuals, residual, correction, forward_error, condition })
+    let condition = (system.largest() * softness).max(1.0);
+    let Evaluation { forces, p, precisely, .. } = at;
+    let fine = precisely.then(|| iterate.into_twofold());
+    Ok(Outcome { u, fine, forces, p, residuals, residual, correction, forward_error, condition })
 }
 
 /// |u|_a, which errors are relative to. A body without loads that is moved as a whole has no strain but that of rounding: there
 /// it is what the terms of a(u, u) would add up to if they did not cancel.
-fn size_of<E, const N: usize, const M: usize>(d: &Discretization<E, N, M>, u: &[[f64; 2]]) -> f64
+fn size_of<E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    energy: f64,
+    iterate: &Iterate,
+) -> f64
 where
     E: ExactEdge<f64, N, M>,
 {
-    let size = d.strain_energy(u).sqrt();
+    let size = energy.sqrt();
     if d.load.as_flattened().iter().any(|&l| l != 0.0) {
         return size;
     }
-    let magnitudes = d.residual(u).magnitudes;
+    let u = iterate.rounded();
+    let magnitudes = d.residual(&u).magnitudes;
     let terms = magnitudes.as_flattened().iter().zip(u.as_flattened()).map(|(m, u)| m * u.abs());
     let most = terms.sum::<f64>().sqrt();
     if size > NOISE * f64::EPSILON * most { size } else { most }
 }
 
-/// The norm of the residual of (8) where its linear part is `at`, and a norm that rounding alone may give it.
-fn residual_of<E, const N: usize, const M: usize>(
-    system: &System<E, N, M>,
-    at: &Evaluation,
-) -> (f64, f64)
+/// The norm of the residual of (8) where its linear part is `at`.
+fn residual_of<E, const N: usize, const M: usize>(system: &System<E, N, M>, at: &Evaluation) -> f64
 where
     E: ExactEdge<f64, N, M>,
 {
     let d = system.d;
     let mut r = at.linear.clone();
-    let mut blur = vec![0.0; r.len()];
+    for (e, edge) in d.contact.iter().enumerate() {
+        let integrals = d.rule.integrals::<E, N, M>(newton::block(&at.p, e));
+        let weight = edge.length / edge.gamma;
+        system.functionals(e, |row, a, entry| {
+            r[row] += entry * weight * integrals.gradient[a];
+        });
+    }
+    norm(&r)
+}
+
+/// Whether rounding alone may give the residual `at` a displacement of this `size` a norm that tells too little.
+fn is_blurred<E, const N: usize, const M: usize>(
+    system: &System<E, N, M>,
+    at: &Evaluation,
+    softness: f64,
+    size: f64,
+    reference: f64,
+) -> bool
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let d = system.d;
+    let mut contact = vec![0.0; at.linear.len()];
     for (e, edge) in d.contact.iter().enumerate() {
         let integrals = d.rule.integrals::<E, N, M>(newton::block(&at.p, e));
         let magnitudes: [f64; M] = newton::block(&at.p_magnitudes, e);
         let weight = edge.length / edge.gamma;
         system.functionals(e, |row, a, entry| {
-            r[row] += entry * weight * integrals.gradient[a];
             let h = integrals.hessian[a].iter().zip(magnitudes);
-            blur[row] += (entry * weight).abs() * h.map(|(h, p)| h.abs() * p).sum::<f64>();
+            contact[row] += (entry * weight).abs() * h.map(|(h, p)| h.abs() * p).sum::<f64>();
         });
     }
-    let norm = |v: &[f64]| v.iter().map(|v| v * v).sum::<f64>().sqrt();
-    (norm(&r), at.noise + f64::EPSILON * norm(&blur))
+    let noise = at.noise + f64::EPSILON * norm(&contact);
+    noise * softness.sqrt() > MOVED * size || noise > BLURRED * reference
+}
+
+fn norm(v: &[f64]) -> f64 {
+    v.iter().map(|v| v * v).sum::<f64>().sqrt()
 }
 
 /// What residuals are relative to: |L| + |residual of the prescribed data| over the free degrees of freedom, or, where these

@@ -173,7 +173,7 @@ where
     fn pass(
         &mut self,
         iterate: &mut Iterate,
-        at: Evaluation,
+        at: &mut Evaluation,
         residuals: &mut Vec<f64>,
         until: Until,
     ) -> Result<Pass, SolveError> {
@@ -192,7 +192,7 @@ where
 struct Full<'r, 'i, 'a, 'd, 'p, E, const N: usize, const M: usize> {
     route: &'r mut Assembled<'a, 'd, 'p, E, N, M>,
     iterate: &'i mut Iterate,
-    at: Evaluation,
+    at: &'i mut Evaluation,
     /// The step.
     d: Vec<f64>,
     /// The largest energy of the steps of this pass, and the largest square of one beside its energy.
@@ -323,7 +323,7 @@ where
 
     fn advance(&mut self, t: f64, step: &Step) {
         self.iterate.add(self.route.system, t, &self.d);
-        self.at = self.iterate.evaluate(self.route.system, self.route.precisely);
+        *self.at = self.iterate.evaluate(self.route.system, self.route.precisely);
         self.energy = self.energy.max(-t * t * step.slope);
         if step.slope < 0.0 {
             let square: f64 = self.d.iter().map(|d| d * d).sum();

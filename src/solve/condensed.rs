@@ -90,11 +90,11 @@ where
     fn pass(
         &mut self,
         iterate: &mut Iterate,
-        at: Evaluation,
+        at: &mut Evaluation,
         residuals: &mut Vec<f64>,
         until: Until,
     ) -> Result<Pass, SolveError> {
-        let mut v = at.linear;
+        let mut v = at.linear.clone();
         self.add_contact_forces(&self.w, &mut v);
         v.iter_mut().for_each(|v| *v = -*v);
         self.factor.forward(&mut v);
@@ -113,13 +113,14 @@ where
         let left = newton::minimise(&edges, &mut body, soft, residuals, until)?;
         let change = body.change;
         self.compliance.subtract(&change, &mut v);
+        let energy: f64 = v.iter().map(|v| v * v).sum();
         for (w, change) in self.w.iter_mut().zip(&change) {
             *w += change;
         }
         self.first = false;
-        let energy: f64 = v.iter().map(|v| v * v).sum();
         self.factor.backward(&mut v);
         iterate.add(self.system, 1.0, &v);
+        *at = iterate.evaluate(self.system, at.precisely);
         let square: f64 = v.iter().map(|v| v * v).sum();
         let softness = if energy > 0.0 { square / energy } else { 0.0 };
         Ok(Pass { energy, left, softness })

@@ -4,8 +4,6 @@
 
 use super::newton::block;
 use crate::fem::discretization::Discretization;
-use crate::fem::precise;
-use crate::fem::twofold::Twofold;
 use crate::kernel::edge_integral::ExactEdge;
 
 /// A displacement with its forces.
@@ -27,18 +25,25 @@ impl<const M: usize> Evaluated<M> {
         E: ExactEdge<f64, N, M>,
     {
         let on_edge = |t: usize| d.space.on_triangle(t, &u);
-        let p = d.contact.iter().map(|edge| edge.p(&on_edge(edge.edge.triangle))).collect();
-        let residual = d.residual(&u).values;
-        Evaluated { u, p, residual }
+        let p: Vec<f64> =
+            d.contact.iter().flat_map(|edge| edge.p(&on_edge(edge.edge.triangle))).collect();
+        let forces = d.linear_residual(&u).values;
+        Evaluated::with(d, u, forces, &p)
     }
 
-    /// Of a displacement in twofold numbers.
-    pub fn precisely<E, const N: usize>(d: &Discretization<E, N, M>, u: &[[Twofold; 2]]) -> Self
+    /// Of a displacement whose `forces`, A(u, v) - L(v) for every basis function v, and whose P at the nodes of the contact edges
+    /// are known.
+    pub fn with<E, const N: usize>(
+        d: &Discretization<E, N, M>,
+        u: Vec<[f64; 2]>,
+        forces: Vec<[f64; 2]>,
+        p: &[f64],
+    ) -> Self
     where
         E: ExactEdge<f64, N, M>,
     {
-        let (mut residual, p) = precise::evaluate(d, u);
-        let p: Vec<[f64; M]> = (0..d.contact.len()).map(|e| block(&p, e)).collect();
+        let p: Vec<[f64; M]> = (0..d.contact.len()).map(|e| block(p, e)).collect();
+        let mut residual = forces;
         for (edge, &p) in d.contact.iter().zip(&p) {
             let pressure = d.rule.integrals::<E, N, M>(p).gradient;
             for (g, functional) in pressure.iter().zip(&edge.functionals.p0) {
@@ -50,7 +55,6 @@ impl<const M: usize> Evaluated<M> {
                 }
             }
         }
-        let u = u.iter().map(|u| u.map(Twofold::head)).collect();
         Evaluated { u, p, residual }
     }
 }

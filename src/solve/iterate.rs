@@ -1,11 +1,13 @@
 //! A displacement on its way to the solution, and what the definitions say of it: in doubles as long as these tell enough,
 //! in [twofold](crate::fem::twofold) numbers where rounding would blur it. It is known to more than double precision
-//! itself: rounding the displacement of a slender body to doubles changes its forces by more than its loads.
+//! itself: rounding the displacement of a slender body to doubles changes its forces by more than its loads. In doubles, too,
+//! stresses are those of its differences from node to node, which keep what rounding it would lose.
 
 use nalgebra::Vector2;
 
 use super::system::System;
-use crate::fem::discretization::Discretization;
+use crate::fem::contact_line::{ContactLineEdge, apply};
+use crate::fem::discretization::{Discretization, Functional};
 use crate::fem::precise;
 use crate::fem::twofold::Twofold;
 use crate::kernel::edge_integral::ExactEdge;
@@ -20,12 +22,16 @@ pub struct Iterate {
 
 /// What the linear part of (8) is at a displacement.
 pub struct Evaluation {
-    /// A(u, v) - L(v) for every free degree of freedom.
+    /// A(u, v) - L(v) for every basis function v.
+    pub forces: Vec<[f64; 2]>,
+    /// The same for every free degree of freedom.
     pub linear: Vec<f64>,
     /// P(u) at the nodes of the contact edges.
     pub p: Vec<f64>,
     /// The magnitudes that these were added up from.
     pub p_magnitudes: Vec<f64>,
+    /// a(u, u)
+    pub energy: f64,
     /// A norm that rounding alone may give the residual.
     pub noise: f64,
     /// In twofold numbers.
@@ -86,15 +92,20 @@ impl Iterate {
             let noise = NOISE * f64::EPSILON * d.free_norm(&forces).max(d.free_norm(&d.load));
             let p_magnitudes = p.iter().map(|p| p.abs()).collect();
             let linear = system.numbering.gather(&forces);
-            return Evaluation { linear, p, p_magnitudes, noise, precisely };
+            let energy = d.strain_energy(&self.rounded());
+            return Evaluation { forces, linear, p, p_magnitudes, energy, noise, precisely };
         }
-        let u = self.rounded();
-        let forces = d.linear_residual(&u);
-        let p = d
-            .contact
-            .iter()
-            .flat_map(|edge| edge.p(&d.space.on_triangle(edge.edge.triangle, &u)))
-            .collect();
+        let head = |node: usize| Vector2::from(self.u[node].map(Twofold::head));
+        let tail = |node: usize| Vector2::from(self.u[node].map(Twofold::tail));
+        let Functional { values: forces, magnitudes, energy } = d
+            .linear_residual_by(|node, from| (head(node) - head(from)) + (tail(node) - tail(from)));
+        let nodes = |edge: &ContactLineEdge<N, M>| d.space.elements()[edge.edge.triangle];
+        let p = |edge: &ContactLineEdge<N, M>| {
+            let p = edge.p(&nodes(edge).map(head));
+            let of_tail = edge.functionals.p0.map(|f| apply(&f, &nodes(edge).map(tail)));
+            std::array::from_fn::<_, M, _>(|a| p[a] + of_tail[a])
+        };
+        let p = d.contact.iter().flat_map(p).collect();
         let magnitude = |functional: &[Vector2<f64>; N], nodal: &[Vector2<f64>; N]| {
             let pairs = functional.iter().flatten().zip(nodal.iter().flatten());
             pairs.map(|(f, u)| (f * u).abs()).sum::<f64>()
@@ -103,12 +114,12 @@ impl Iterate {
             .contact
             .iter()
             .flat_map(|edge| {
-                let nodal = d.space.on_triangle(edge.edge.triangle, &u);
+                let nodal = nodes(edge).map(head);
                 edge.functionals.p0.map(|functional| magnitude(&functional, &nodal))
             })
             .collect();
-        let noise = NOISE * f64::EPSILON * d.free_norm(&forces.magnitudes);
-        let linear = system.numbering.gather(&forces.values);
-        Evaluation { linear, p, p_magnitudes, noise, precisely }
+        let noise = NOISE * f64::EPSILON * d.free_norm(&magnitudes);
+        let linear = system.numbering.gather(&forces);
+        Evaluation { forces, linear, p, p_magnitudes, energy, noise, precisely }
     }
 }

@@ -357,11 +357,8 @@ where
     let found = route::solve(&system, settings, &mut times);
     let (outcome, method, factorizations, factor) = found.map_err(|e| told(&system, e))?;
     let status = accuracy::judge(&outcome, settings).map_err(|e| told(&system, e))?;
-    let Outcome { u, fine, residuals, residual, .. } = outcome;
-    let mut evaluated = match &fine {
-        Some(fine) => Evaluated::precisely(d, fine),
-        None => Evaluated::new(d, u),
-    };
+    let Outcome { u, fine, forces, p, residuals, residual, .. } = outcome;
+    let mut evaluated = Evaluated::with(d, u, forces, &p);
     // This changes neither P nor the forces.
     held::least_norm(&mut evaluated.u, d.slides.as_deref().unwrap_or_default());
     let newton = NewtonReport { status, residuals, residual, factorizations };

@@ -98,7 +98,7 @@ where
     E: ExactEdge<f64, N, M>,
 {
     let reference = accuracy::reference(system.d);
-    if !(system.norm().is_normal() && reference.is_normal() && contact_is_in_range(system)) {
+    if !(system.largest().is_normal() && reference.is_normal() && contact_is_in_range(system)) {
         return Err(SolveError::OutOfRange);
     }
     let held = system.d.slides.is_none();

@@ -9,6 +9,7 @@ use super::SolveError;
 use super::course::{Course, Phase};
 use super::factor::Structure;
 use super::ordering::nested_dissection;
+use crate::fem::ball::larger;
 use crate::fem::discretization::Discretization;
 use crate::fem::matrix::{self, LowerTriangle, Neighbours, Numbering};
 use crate::kernel::edge_integral::ExactEdge;
@@ -93,18 +94,19 @@ where
         }
     }
 
-    /// The largest sum of the magnitudes of a row of A: a bound of its largest eigenvalue.
-    pub fn norm(&self) -> f64 {
-        let LowerTriangle { starts, rows, values } = &self.matrix;
-        let mut sums = vec![0.0; self.numbering.count];
-        for column in 0..sums.len() {
-            for k in starts[column]..starts[column + 1] {
-                sums[rows[k]] += values[k].abs();
-                if rows[k] != column {
-                    sums[column] += values[k].abs();
-                }
-            }
-        }
-        sums.into_iter().fold(0.0, f64::max)
+    /// The largest diagonal entry of A, infinite if one is no number. The largest eigenvalue is no smaller.
+    pub fn largest(&self) -> f64 {
+        self.diagonal().fold(0.0, larger)
+    }
+
+    /// What A(v, v) is to be expected for a `v` of these magnitudes whose signs know nothing of each other.
+    pub fn energy_of_noise(&self, v: &[[f64; 2]]) -> f64 {
+        let v = self.numbering.gather(v);
+        self.diagonal().zip(v).map(|(a, v)| a * v * v).sum()
+    }
+
+    fn diagonal(&self) -> impl Iterator<Item = f64> {
+        let LowerTriangle { starts, values, .. } = &self.matrix;
+        starts[..self.numbering.count].iter().map(|&k| values[k])
     }
 }

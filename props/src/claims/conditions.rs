@@ -14,6 +14,7 @@ use signorini::fem::{
 };
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::{Material, P1, P2, Plane};
+use signorini::solve::accuracy::Outcome as Solved;
 use signorini::solve::evaluated::Evaluated;
 use signorini::solve::system::System;
 use signorini::solve::times::Times;
@@ -312,12 +313,12 @@ where
     let mut far: f64 = 0.0;
     for name in [RouteName::Assembled, RouteName::Twofold] {
         let outcome = by(name).map_err(text)?;
-        let b = outcome.u;
+        let Solved { u: b, fine, forces, p, .. } = outcome;
         let pairs = a.as_flattened().iter().zip(b.as_flattened());
         far = far.max(pairs.map(|(a, b)| (a - share * b).abs()).fold(0.0, f64::max) / size);
         // The forces of the displacement before it is rounded are those of the rounded one, which bends little here.
-        if let Some(fine) = outcome.fine {
-            let [p, q] = [Evaluated::precisely(&d, &fine), Evaluated::new(&d, b)];
+        if fine.is_some() {
+            let [p, q] = [Evaluated::with(&d, b.clone(), forces, &p), Evaluated::new(&d, b)];
             let largest = q.residual.as_flattened().iter().map(|r| r.abs()).fold(0.0, f64::max);
             let pairs = p.residual.as_flattened().iter().zip(q.residual.as_flattened());
             let off = pairs.map(|(p, q)| (p - q).abs()).fold(0.0, f64::max) / largest;

@@ -100,17 +100,15 @@ where
     fn pass(
         &mut self,
         iterate: &mut Iterate,
-        _: Evaluation,
+        at: &mut Evaluation,
         residuals: &mut Vec<f64>,
         _: Until,
     ) -> Result<Pass, SolveError> {
         let last = self.shares.len() - 1;
         let share = self.shares[self.passes.min(last)];
-        self.passes += 1;
         let here = self.system.numbering.gather(&iterate.rounded());
         let goal = self.target.iter().zip(&self.error).map(|(u, e)| u + share * e);
         let step: Vec<f64> = goal.zip(&here).map(|(goal, u)| goal - u).collect();
-        iterate.add(self.system, 1.0, &step);
         residuals.push(1.0);
         let d = self.system.d;
         let mut field = vec![[0.0; 2]; d.space.nodes().len()];
@@ -122,6 +120,9 @@ where
             let square = (start * start + start * end + end * end) / 3.0;
             energy -= edge.gamma * edge.length * square;
         }
+        self.passes += 1;
+        iterate.add(self.system, 1.0, &step);
+        *at = iterate.evaluate(self.system, at.precisely);
         Ok(Pass { energy, left: 0.0, softness: 0.0 })
     }
 }
@@ -400,14 +401,19 @@ where
     let nodes = d.space.nodes().len();
     let mut random = Random::new(draws::seed());
     let u = field(nodes, &mut random);
+    // Of all basis functions, one by one: of a sum of them the magnitudes are no larger than these.
     let mut least = vec![[0.0; 2]; nodes];
+    let mut one_by_one = vec![[0.0; 2]; nodes];
     for j in 0..nodes {
         for c in 0..2 {
             let mut bump = vec![[0.0; 2]; nodes];
-            bump[j][c] = 1.0;
-            let column = d.internal_forces(&bump).values;
-            for (least, entry) in least.iter_mut().flatten().zip(column.as_flattened()) {
-                *least += (entry * u[j][c]).abs();
+            bump[j][c] = u[j][c];
+            let column = d.internal_forces(&bump);
+            for node in 0..nodes {
+                for k in 0..2 {
+                    least[node][k] += column.values[node][k].abs();
+                    one_by_one[node][k] += column.magnitudes[node][k];
+                }
             }
         }
     }
@@ -418,14 +424,16 @@ where
             let sizes = [&inner, &linear, &whole].map(|f| scale * f.magnitudes[node][c]);
             let values = [&inner, &linear, &whole].map(|f| f.values[node][c]);
             let room = 1.0 + 1e-12;
-            let ratio = sizes[0] / least[node][c];
+            let ratio = scale * one_by_one[node][c] / least[node][c];
             most = most.max(ratio);
             // Differences of sums that are rounded, each to a roundoff of itself.
             let added = |from: usize, to: usize| {
                 let rounding = 8.0 * f64::EPSILON * sizes[to];
                 (values[to] - values[from]).abs() <= (sizes[to] - sizes[from]) * room + rounding
             };
-            if !(ratio * room >= 1.0 && ratio <= COARSE && added(0, 1) && added(1, 2)) {
+            let whole =
+                sizes[0] >= scale * values[0].abs() && sizes[0] <= one_by_one[node][c] * room;
+            if !(ratio * room >= 1.0 && ratio <= COARSE && whole && added(0, 1) && added(1, 2)) {
                 return Err(format!("node {node}: {sizes:?} for {values:?}, a(u, .) {ratio:.2}"));
             }
         }

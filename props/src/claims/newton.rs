@@ -219,6 +219,8 @@ fn verdict_is_honest(accepted: f64) -> Outcome {
                 let (u, correction, condition) = (Vec::new(), forward_error, 1.0);
                 let solved = Solved {
                     u,
+                    forces: Vec::new(),
+                    p: Vec::new(),
                     fine: None,
                     residuals,
                     residual,
