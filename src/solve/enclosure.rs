@@ -212,11 +212,9 @@ where
     }
     let lines = lines(d);
     let kappa = kappa(d, &lines);
-    if !(kappa < 1.0) && (d.kappa() < 1.0 || !kappa.is_finite()) {
-        return Err(Unproved::NoKappa);
-    }
     if !(kappa < 1.0) {
-        return Err(Unproved::NotCoercive { kappa });
+        let unknown = d.kappa() < 1.0 || !kappa.is_finite();
+        return Err(if unknown { Unproved::NoKappa } else { Unproved::NotCoercive { kappa } });
     }
     let coercivity = (1.0 - kappa) * (1.0 - 4.0 * f64::EPSILON);
     let korn = Korn::new(&d.space, &d.problem.material, &d.constraints).ok_or(Unproved::NotHeld)?;
