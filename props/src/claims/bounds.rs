@@ -20,7 +20,7 @@ use signorini::kernel::{Ball, Interval, Material, P1, Plane};
 use signorini::nalgebra::Matrix2;
 
 use super::rates;
-use crate::claim::{Claim, Engine, Outcome, by, control, proved, refuted, tested};
+use crate::claim::{Claim, Engine, Outcome, by, control, noticed, proved, refuted, tested, text};
 use crate::numbers::Exact;
 use crate::verdict::{Ordered, Verdict};
 use crate::{draws, ensure, given, statement};
@@ -597,7 +597,7 @@ const TAMPERINGS: [Tampering; 22] = [
 
 /// What is claimed of a certificate that is as it was made.
 fn claimed(certificate: &Certificate) -> Result<Said, String> {
-    let proof = certificate.evaluate::<Ball>().map_err(|e| e.to_string())?;
+    let proof = certificate.evaluate::<Ball>().map_err(text)?;
     Ok(Said { shares: proof.shares, bound: proof.bound })
 }
 
@@ -657,10 +657,7 @@ fn what_the_theorem_asks_for_is_asked() -> Outcome {
 
 /// Without a tampering nothing is refused.
 fn certificates_as_they_were_made_are_refused() -> Outcome {
-    match refusals(false) {
-        Err(why) => Ok(format!("rejected: {why}")),
-        Ok(said) => Err(format!("not noticed: {said}")),
-    }
+    noticed(refusals(false))
 }
 
 /// The bound of what the solver ends with on exact solutions, times a factor, beside the true error; and no more than
@@ -669,11 +666,11 @@ fn above_the_error(factor: f64) -> Outcome {
     let mut seen = Vec::new();
     for (what, ladder) in rates::bodies_with_a_known_error()? {
         for level in 1..3 {
-            let (_, problem, solution) = ladder.solve(level).map_err(|e| e.to_string())?;
-            let certified = certify(&problem, &solution).map_err(|e| e.to_string())?;
+            let (_, problem, solution) = ladder.solve(level).map_err(text)?;
+            let certified = certify(&problem, &solution).map_err(text)?;
             let space = Space::<P1, 3, 2>::new(&problem.mesh);
-            let contact = contact_line::assemble(&problem, &space, solution.gamma.gamma0)
-                .map_err(|e| e.to_string())?;
+            let contact =
+                contact_line::assemble(&problem, &space, solution.gamma.gamma0).map_err(text)?;
             let v = &certified.certificate.displacement;
             let error = Errors::new(&space, &contact, v, &*ladder.solution).energy;
             let ratio = factor * certified.bound / error;
@@ -695,10 +692,7 @@ fn bounds_are_above_the_error() -> Outcome {
 
 /// Half the bound.
 fn half_the_bound() -> Outcome {
-    match above_the_error(0.5) {
-        Err(why) => Ok(format!("rejected: {why}")),
-        Ok(said) => Err(format!("not noticed: {said}")),
-    }
+    noticed(above_the_error(0.5))
 }
 
 /// The row.

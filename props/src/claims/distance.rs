@@ -22,7 +22,7 @@ use signorini::kernel::{Ball, Material, P1, Plane};
 use signorini::nalgebra::Matrix2;
 use signorini::solve::{Method, Settings, solve};
 
-use crate::claim::{Claim, Engine, Outcome, by, control};
+use crate::claim::{Claim, Engine, Outcome, by, control, noticed, text};
 use crate::numbers::Exact;
 use crate::verdict::Verdict;
 use crate::{draws, ensure};
@@ -83,7 +83,7 @@ impl Draw {
             ("bottom", Condition::Contact { gap: affine(self.gap[0], self.gap[1]) }),
         ];
         Ok(Problem::new(
-            mesh.map_err(|e| e.to_string())?,
+            mesh.map_err(text)?,
             Material::lame(self.lambda, 1.0, Plane::Strain),
             self.load.map(|f| affine(f, 0.0)),
             conditions.map(|(name, condition)| (name.to_owned(), condition)).into(),
@@ -93,8 +93,8 @@ impl Draw {
     fn certified(&self) -> Result<(Problem, Vec<[f64; 2]>, Continuous), String> {
         let problem = self.problem()?;
         let solved = solve(&problem, &Method::default(), &Settings::default());
-        let (solution, _) = solved.map_err(|e| e.to_string())?;
-        let certified = certify(&problem, &solution).map_err(|e| e.to_string())?;
+        let (solution, _) = solved.map_err(text)?;
+        let certified = certify(&problem, &solution).map_err(text)?;
         if !certified.rigorous {
             return Err("data of the exact class are not known to be".to_owned());
         }
@@ -228,7 +228,7 @@ fn raised_by_a_perturbation(draw: &Draw, size: f64, factor: f64) -> Verdict {
     let moved = || -> Result<_, String> {
         let problem = draw.problem()?;
         let solved = solve(&problem, &Method::default(), &Settings::default());
-        let (solution, _) = solved.map_err(|e| e.to_string())?;
+        let (solution, _) = solved.map_err(text)?;
         let mut state = 7_u64;
         let mut noise = || {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
@@ -236,8 +236,8 @@ fn raised_by_a_perturbation(draw: &Draw, size: f64, factor: f64) -> Verdict {
         };
         let field: Vec<[f64; 2]> =
             solution.displacement.iter().map(|u| u.map(|u| u + noise())).collect();
-        let own = certify(&problem, &solution).map_err(|e| e.to_string())?;
-        let other = certify_field(&problem, &solution, &field).map_err(|e| e.to_string())?;
+        let own = certify(&problem, &solution).map_err(text)?;
+        let other = certify_field(&problem, &solution, &field).map_err(text)?;
         let apart = distance(&problem, &solution.displacement, &field);
         Ok((apart, own.bound + own.clipping, other.bound + other.clipping))
     };
@@ -341,7 +341,7 @@ fn without_the_sign_test() -> Outcome {
             edge.role = Role::Pressed(pressure.map(|p| -p));
         }
     }
-    let proof = Exact::scope(|| certificate.evaluate::<Exact>()).map_err(|e| e.to_string())?;
+    let proof = Exact::scope(|| certificate.evaluate::<Exact>()).map_err(text)?;
     if proof.bound < 1e-3 * error {
         Ok(format!("accepted: {:.1e} for the distance {error:.3}", proof.bound))
     } else {
@@ -361,7 +361,7 @@ fn with_the_contact_term(keep: bool) -> Outcome {
             }
         }
     }
-    let proof = Exact::scope(|| certificate.evaluate::<Exact>()).map_err(|e| e.to_string())?;
+    let proof = Exact::scope(|| certificate.evaluate::<Exact>()).map_err(text)?;
     let error = 2.0_f64.sqrt() * d;
     // v is d (1 - y) but for the rounding errors by which it is kept off the floor.
     if error * (1.0 - 1e-9) <= proof.bound {
@@ -377,10 +377,7 @@ fn the_contact_term_is_there() -> Outcome {
 
 /// With the floor where tau takes it to be the contact term vanishes: this is the bound without it.
 fn the_contact_term_is_dropped() -> Outcome {
-    match with_the_contact_term(false) {
-        Err(why) => Ok(format!("rejected: {why}")),
-        Ok(said) => Err(format!("not noticed: {said}")),
-    }
+    noticed(with_the_contact_term(false))
 }
 
 /// An exact solution with its parameters, and the mesh.

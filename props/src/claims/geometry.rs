@@ -17,21 +17,9 @@ use signorini::solve::ldl::TwofoldFactor;
 use signorini::solve::system::System;
 use signorini::solve::{Degree, Method, discretize, limit};
 
-use crate::claim::Outcome;
+use crate::claim::{Outcome, noticed, text};
 use crate::verdict::Verdict;
 use crate::{draws, ensure, sharpness};
-
-fn text(error: impl ToString) -> String {
-    error.to_string()
-}
-
-/// A planted mistake must not pass.
-fn noticed(outcome: Outcome) -> Outcome {
-    match outcome {
-        Err(why) => Ok(format!("rejected: {why}")),
-        Ok(said) => Err(format!("not noticed: {said}")),
-    }
-}
 
 /// `factor` times the distance from a circle, whose gradient has the length `factor`.
 struct Round {
