@@ -201,6 +201,19 @@ impl Draw {
         Certificate { vertices, cuts: Vec::new(), displacement, prescribed, pieces, edges }
     }
 
+    /// The same with every other inner edge named from its other side.
+    fn turned(&self) -> Certificate {
+        let mut certificate = self.certificate();
+        for edge in certificate.edges.iter_mut().step_by(2) {
+            if let Role::Inner([start, end]) = edge.role {
+                let minus = |f: [f64; 2]| f.map(|x| -x);
+                edge.ends.reverse();
+                edge.role = Role::Inner([minus(end), minus(start)]);
+            }
+        }
+        certificate
+    }
+
     /// By the definitions, over rationals.
     fn by_definition(&self, certificate: &Certificate) -> Definition {
         let exact = Exact::of_double;
@@ -291,7 +304,7 @@ fn near(a: f64, b: Exact, size: Exact) -> bool {
 
 /// The checker against the definitions; the square of its bound is `share` of what it says.
 fn evaluated<S: Enclosing>(draw: &Draw, share: f64) -> Verdict {
-    let certificate = draw.certificate();
+    let certificate = draw.turned();
     let Ok(proof) = certificate.evaluate::<S>() else {
         return Verdict::Fails("the certificate is accepted");
     };
@@ -346,7 +359,7 @@ fn a_bound_too_small() -> Outcome {
 /// Tractions on inner edges and on Gamma_D that are out of balance by what the checker may add: it finds the balanced ones
 /// again, for the triangles form a chain. With `gross` something else is added too.
 fn balanced(draw: &Draw, gross: bool) -> Verdict {
-    let certificate = draw.certificate();
+    let certificate = draw.turned();
     let Ok(before) = certificate.evaluate::<Interval>() else {
         return Verdict::Fails("the certificate is accepted");
     };
@@ -401,9 +414,20 @@ fn of_contact(certificate: &mut Certificate, change: impl Fn(&mut Role)) {
     certificate.edges.iter_mut().filter(contact).take(1).for_each(|edge| change(&mut edge.role));
 }
 
-fn of_held(certificate: &mut Certificate, change: impl Fn(&mut Role)) {
-    let held = |edge: &&mut Edge| matches!(edge.role, Role::Held(..));
-    certificate.edges.iter_mut().filter(held).take(1).for_each(|edge| change(&mut edge.role));
+/// What is wrong with a force in a direction that is free.
+const NOT_HELD: &str = "a force where nothing is held";
+
+/// Lets all held edges go but for one component, in which they stay held, and puts a force on the first of them.
+fn hold_one(certificate: &mut Certificate, component: usize, force: [[f64; 2]; 2]) {
+    let mut first = Some(force);
+    for edge in &mut certificate.edges {
+        if let Role::Held(held, old) = &mut edge.role {
+            held[1 - component] = false;
+            old.iter_mut().for_each(|f| f[1 - component] = 0.0);
+            *old = first.take().unwrap_or(*old);
+        }
+    }
+    certificate.prescribed.iter_mut().for_each(|data| data[1 - component] = None);
 }
 
 /// The vertices of the first edge of Gamma_C.
@@ -463,9 +487,9 @@ const TAMPERINGS: [Tampering; 22] = [
         "v through the obstacle between the ends of an edge along which the direction turns",
         |c| {
             let [a, b] = ends_on_contact(c);
-            // v . d is 0 at both ends and positive between them.
-            c.displacement[a] = [1.0, 0.0];
-            c.displacement[b] = [0.0, -1.0];
+            // v . d is 0 at both ends and positive between them; on the next edge v stays below its gap.
+            c.displacement[a] = [0.0625, 0.0];
+            c.displacement[b] = [0.0, -0.0625];
             of_contact(c, |role| {
                 *role = Role::Contact {
                     pressure: [-1.0; 2],
@@ -514,13 +538,13 @@ const TAMPERINGS: [Tampering; 22] = [
     ),
     (
         "a force where nothing is held, at the start",
-        |c| of_held(c, |role| *role = Role::Held([true, false], [[0.0, 1.0], [0.0, 0.0]])),
-        |why| matches!(why, Rejection::Wrong { .. }),
+        |c| hold_one(c, 0, [[0.0, 1.0], [0.0, 0.0]]),
+        |why| matches!(why, Rejection::Wrong { what: "edge", problem: NOT_HELD, .. }),
     ),
     (
         "a force where nothing is held, at the end",
-        |c| of_held(c, |role| *role = Role::Held([false, true], [[0.0, 0.0], [1.0, 0.0]])),
-        |why| matches!(why, Rejection::Wrong { .. }),
+        |c| hold_one(c, 1, [[0.0, 0.0], [1.0, 0.0]]),
+        |why| matches!(why, Rejection::Wrong { what: "edge", problem: NOT_HELD, .. }),
     ),
     (
         "a body that nothing holds",
