@@ -13,14 +13,16 @@
 use std::collections::BTreeMap;
 
 use proptest::prelude::*;
-use signorini::certify::proof::{Certificate, Claim as Said, Edge, Enclosing, Piece, Role};
+use signorini::certify::proof::{Certificate, Claim as Said, Edge, Piece, Role};
 use signorini::certify::{Rejection, certify};
 use signorini::fem::{Errors, Space, contact_line};
-use signorini::kernel::{Ball, Interval, Material, P1, Plane};
+use signorini::kernel::{Ball, Enclosing, Interval, Material, P1, Plane};
 use signorini::nalgebra::Matrix2;
 
-use super::rates;
-use crate::claim::{Claim, Engine, Outcome, by, control, noticed, proved, refuted, tested, text};
+use super::{checker, rates};
+use crate::claim::{
+    Claim, Engine, Outcome, by, control, model_checked, noticed, proved, refuted, tested, text,
+};
 use crate::numbers::Exact;
 use crate::verdict::{Ordered, Verdict};
 use crate::{draws, ensure, given, statement};
@@ -335,6 +337,55 @@ fn evaluated<S: Enclosing>(draw: &Draw, share: f64) -> Verdict {
         ensure!(definition.energy <= Exact::of_double(proof.energy[1]));
         Verdict::Holds(if draw.oscillation == 0 { "exact data" } else { "data that oscillate" })
     })
+}
+
+/// The load of each of the three parts of a triangle is counted in J(v), v = (v_j + v_k + (v_0 + v_1 + v_2) / 3) / 3 at the
+/// centroid of part i; or that of the first part for all.
+fn loads_on_parts(draw: &Draw, own: bool) -> Verdict {
+    let plain = draw.certificate();
+    let more = |t: usize, i: usize| draw.v[(3 * t + i) % draw.v.len()].map(sixteenth);
+    let mut loaded = plain.clone();
+    for (t, piece) in loaded.pieces.iter_mut().enumerate() {
+        for i in 0..3 {
+            (0..2).for_each(|c| piece.body[i][c] += more(t, i)[c]);
+        }
+    }
+    let Ok(proof) = loaded.evaluate::<Ball>() else {
+        return Verdict::Fails("the certificate is accepted");
+    };
+    Exact::scope(|| {
+        let definition = draw.by_definition(&plain);
+        let (mut energy, mut size) = (definition.energy, Exact::from(1) + definition.norm);
+        let three = Exact::from(3);
+        for (t, piece) in plain.pieces.iter().enumerate() {
+            let [a, b, c] = piece.vertices.map(|k| plain.vertices[k].map(Exact::of_double));
+            let cross = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+            let v = piece.vertices.map(|k| plain.displacement[k].map(Exact::of_double));
+            for i in 0..3 {
+                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                for c in 0..2 {
+                    let centre = (v[0][c] + v[1][c] + v[2][c]) / three;
+                    let force = Exact::of_double(more(t, if own { i } else { 0 })[c]);
+                    let work =
+                        force * (v[j][c] + v[k][c] + centre) / three * cross / Exact::from(6);
+                    energy -= work;
+                    size += work.abs();
+                }
+            }
+        }
+        ensure!(Exact::of_double(proof.energy[0]) <= energy);
+        ensure!(energy <= Exact::of_double(proof.energy[1]));
+        ensure!(proof.energy.iter().all(|&e| near(e, energy, size + energy.abs())));
+        Verdict::Holds("always")
+    })
+}
+
+fn parts_have_loads() -> Outcome {
+    draws::hold(40, draws_of(false), &["always"], |draw| loads_on_parts(draw, true))
+}
+
+fn the_load_of_the_first_part_on_all() -> Outcome {
+    draws::reject(40, draws_of(false), |draw| loads_on_parts(draw, false))
 }
 
 fn to_double(x: Exact) -> f64 {
@@ -734,7 +785,7 @@ pub fn claim() -> Claim {
         items: &["the error bound"],
         title: "The bound of the distance from the true solution, and its checker",
         paper: "Nothing: the estimates of the paper have unknown constants.",
-        statement: "|u - v|_a^2 + |sigma(u) - tau|^2 <= |C eps(v) - tau|^2 + 2 int tau_n (v_n - g), in the norm of C^-1, for v that is admissible and tau in equilibrium with the loads, without shear and tension on Gamma_C (docs/theory.md, 7.2): at a point the squares split, and what contact adds to the integral of their product is not negative. The checker of certificates, on certificates of random v and affine tau that are made by hand of dyadic numbers: the square of its bound, |v|_a and J(v) are the integrals of their definitions, never below, to 1e-10; with data that oscillate, each triangle's share has its term; tractions that are out of balance by what the checker may add are balanced again. It refuses what the theorem does not allow, for its own reason, in 22 ways, among them a tension, a penetration of 1e-6 or between the ends of an edge, a prescribed value missed by a rounding error, a body that nothing holds; and the audit refuses a claim that is smaller by one double, another share, and a traction that is off by 1e-9. On three exact solutions the bound of the solver's displacement is above its true error, and at most 3 times it.",
+        statement: "|u - v|_a^2 + |sigma(u) - tau|^2 <= |C eps(v) - tau|^2 + 2 int tau_n (v_n - g), in the norm of C^-1, for v that is admissible and tau in equilibrium with the loads, without shear and tension on Gamma_C (docs/theory.md, 7.2): at a point the squares split, and what contact adds to the integral of their product is not negative. The checker of certificates, on certificates of random v and affine tau that are made by hand of dyadic numbers: the square of its bound, |v|_a and J(v) are the integrals of their definitions, never below, to 1e-10; with data that oscillate, each triangle's share has its term; tractions that are out of balance by what the checker may add are balanced again. It refuses what the theorem does not allow, for its own reason, in 22 ways, among them a tension, a penetration of 1e-6 or between the ends of an edge, a prescribed value missed by a rounding error, a body that nothing holds; and the audit refuses a claim that is smaller by one double, another share, and a traction that is off by 1e-9. What it concludes from balls, a sign, an order, an end, a root, and nothing from a NaN, are harnesses of the model checker, on the functions that it calls. On three exact solutions the bound of the solver's displacement is above its true error, and at most 3 times it.",
         numbers: "every ordered field at a point (proof); balls and intervals against rationals; doubles for the true errors.",
         kernel: &[
             "material::Material::stress",
@@ -744,47 +795,61 @@ pub fn claim() -> Claim {
         preconditions: "The data are those of the certificate: the checker does not see the problem that it was made for. Green's formula.",
         limits: "Pieces that are cut, and how a certificate is made of a problem (`certify::build`, `sweeps`, `oscillation`), are looked at through their results only: a mistake there makes the bound of another problem, or a larger one. True errors are by quadrature.",
         single: None,
-        checks: vec![
-            proved(squares),
-            proved(contact),
-            tested(contact),
-            by(
-                Engine::Exact,
-                "the_checker_finds_what_the_definitions_say",
-                bounds_are_the_definitions,
-            ),
-            by(
-                Engine::Doubles,
-                "tractions_out_of_balance_are_balanced_again",
-                tractions_are_balanced,
-            ),
-            by(
-                Engine::Doubles,
-                "the_checker_refuses_what_the_theorem_does_not_allow",
-                what_the_theorem_asks_for_is_asked,
-            ),
-            by(
-                Engine::Doubles,
-                "the_bound_of_the_solvers_displacement_is_above_its_error",
-                bounds_are_above_the_error,
-            ),
-            refuted(statement!(
-                control_contact_adds_under_tension,
-                [u, s, v, t, g],
-                fails "(v - u) * (s - t) + t * (v - g) >= zero"
-            )),
-            control(Engine::Exact, "control_a_bound_a_millionth_too_small", a_bound_too_small),
-            control(
-                Engine::Doubles,
-                "control_tractions_that_no_balance_takes",
-                tractions_that_no_balance_takes,
-            ),
-            control(
-                Engine::Doubles,
-                "control_certificates_as_they_were_made_are_refused",
-                certificates_as_they_were_made_are_refused,
-            ),
-            control(Engine::Doubles, "control_half_the_bound", half_the_bound),
-        ],
+        checks: [
+            vec![
+                proved(squares),
+                proved(contact),
+                tested(contact),
+                by(
+                    Engine::Exact,
+                    "the_checker_finds_what_the_definitions_say",
+                    bounds_are_the_definitions,
+                ),
+                by(
+                    Engine::Doubles,
+                    "tractions_out_of_balance_are_balanced_again",
+                    tractions_are_balanced,
+                ),
+                by(
+                    Engine::Doubles,
+                    "the_checker_refuses_what_the_theorem_does_not_allow",
+                    what_the_theorem_asks_for_is_asked,
+                ),
+                by(
+                    Engine::Doubles,
+                    "the_bound_of_the_solvers_displacement_is_above_its_error",
+                    bounds_are_above_the_error,
+                ),
+                refuted(statement!(
+                    control_contact_adds_under_tension,
+                    [u, s, v, t, g],
+                    fails "(v - u) * (s - t) + t * (v - g) >= zero"
+                )),
+                control(Engine::Exact, "control_a_bound_a_millionth_too_small", a_bound_too_small),
+                control(
+                    Engine::Doubles,
+                    "control_tractions_that_no_balance_takes",
+                    tractions_that_no_balance_takes,
+                ),
+                control(
+                    Engine::Doubles,
+                    "control_certificates_as_they_were_made_are_refused",
+                    certificates_as_they_were_made_are_refused,
+                ),
+                by(
+                    Engine::Exact,
+                    "the_potential_energy_has_the_load_of_each_part",
+                    parts_have_loads,
+                ),
+                control(
+                    Engine::Exact,
+                    "control_the_load_of_the_first_part_on_all",
+                    the_load_of_the_first_part_on_all,
+                ),
+                control(Engine::Doubles, "control_half_the_bound", half_the_bound),
+            ],
+            checker::HARNESSES.iter().copied().map(model_checked).collect(),
+        ]
+        .concat(),
     }
 }

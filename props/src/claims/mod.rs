@@ -11,6 +11,7 @@ pub mod balls;
 pub mod bounds;
 #[cfg(not(kani))]
 pub mod certificate;
+pub mod checker;
 #[cfg(not(kani))]
 pub mod conditions;
 pub mod constants;

@@ -11,8 +11,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive, Zero};
-use signorini::certify::proof::Enclosing;
-use signorini::kernel::Scalar;
+use signorini::kernel::{Enclosing, Scalar};
 
 struct Arena {
     scope: u32,
