@@ -4,7 +4,7 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
-use std::ops::{Add, Neg, Sub};
+use std::ops::{Add, Mul, Neg, Sub};
 
 use num_rational::BigRational;
 use num_traits::{One, Signed, Zero};
@@ -261,11 +261,13 @@ impl Sub for &Polynomial {
     }
 }
 
-/// Of small powers, in tests.
-#[cfg(test)]
-impl std::ops::Mul for &Polynomial {
+/// For polynomials that a claim writes down: their powers are small. The engine, which meets any, asks for
+/// [`times`](Polynomial::times).
+impl Mul for &Polynomial {
     type Output = Polynomial;
 
+    /// # Panics
+    /// Where an exponent would be beyond the largest [`Exponent`].
     fn mul(self, other: &Polynomial) -> Polynomial {
         self.times(other).expect("exponents below 2^16")
     }
