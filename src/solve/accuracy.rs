@@ -95,6 +95,9 @@ const BLURRED: f64 = 1e-9;
 /// or may move the body by more than this beside its displacement, if all of it adds up.
 const MOVED: f64 = 1e-8;
 
+/// What is left of the forces on the body may be this share of them.
+const BALANCED: f64 = 1e-10;
+
 /// A correction ends where the residual is this share of the tolerance.
 const GOOD_ENOUGH: f64 = 1e-2;
 
@@ -128,9 +131,9 @@ where
     let good_enough = GOOD_ENOUGH * settings.tolerance;
     let mut correction = f64::INFINITY;
     let mut cut = left > 0.0;
-    let mut residual = residual_of(system, &at) / reference;
+    let mut residual = Residual::new(system, &at, reference);
     for _ in 1..MOST_PASSES {
-        if residuals.len() > settings.max_iterations && !(residual <= settings.tolerance) {
+        if residuals.len() > settings.max_iterations && !(residual.norm <= settings.tolerance) {
             break;
         }
         let size = size_of(d, at.energy, &iterate);
@@ -145,8 +148,8 @@ where
         let before = correction;
         let moved = change.energy.max(change.left).sqrt();
         correction = if moved == 0.0 { 0.0 } else { moved / size };
-        residual = residual_of(system, &at) / reference;
-        if residual <= settings.tolerance && correction <= SMALL {
+        residual = Residual::new(system, &at, reference);
+        if residual.norm <= settings.tolerance && residual.balanced && correction <= SMALL {
             break;
         }
         if cut || correction < before / 2.0 {
@@ -157,7 +160,7 @@ where
         }
         // Doubles are not enough.
         at = iterate.evaluate(system, true);
-        residual = residual_of(system, &at) / reference;
+        residual = Residual::new(system, &at, reference);
         correction = f64::INFINITY;
     }
     let u = iterate.rounded();
@@ -165,6 +168,7 @@ where
     let rounding = if rounding > 0.0 { rounding / size_of(d, at.energy, &iterate) } else { 0.0 };
     let forward_error = correction + rounding;
     let condition = (system.largest() * softness).max(1.0);
+    let residual = residual.norm;
     let Evaluation { forces, p, precisely, .. } = at;
     let fine = precisely.then(|| iterate.into_twofold());
     Ok(Outcome { u, fine, forces, p, residuals, residual, correction, forward_error, condition })
@@ -191,21 +195,38 @@ where
     if size > NOISE * f64::EPSILON * most { size } else { most }
 }
 
-/// The norm of the residual of (8) where its linear part is `at`.
-fn residual_of<E, const N: usize, const M: usize>(system: &System<E, N, M>, at: &Evaluation) -> f64
-where
-    E: ExactEdge<f64, N, M>,
-{
-    let d = system.d;
-    let mut r = at.linear.clone();
-    for (e, edge) in d.contact.iter().enumerate() {
-        let integrals = d.rule.integrals::<E, N, M>(newton::block(&at.p, e));
-        let weight = edge.length / edge.gamma;
-        system.functionals(e, |row, a, entry| {
-            r[row] += entry * weight * integrals.gradient[a];
-        });
+/// The residual of (8) at an iterate.
+struct Residual {
+    /// Its norm, relative to the reference.
+    norm: f64,
+    /// The free degrees of freedom leave so little of the forces on the body that loads, contact and reactions balance.
+    balanced: bool,
+}
+
+impl Residual {
+    fn new<E, const N: usize, const M: usize>(
+        system: &System<E, N, M>,
+        at: &Evaluation,
+        reference: f64,
+    ) -> Self
+    where
+        E: ExactEdge<f64, N, M>,
+    {
+        let d = system.d;
+        let mut r = at.linear.clone();
+        let one = |v: &[f64]| v.iter().map(|v| v.abs()).sum::<f64>();
+        // Reactions but for contact, and loads.
+        let mut forces = one(at.forces.as_flattened()) - one(&r) + one(d.load.as_flattened());
+        for (e, edge) in d.contact.iter().enumerate() {
+            let integrals = d.rule.integrals::<E, N, M>(newton::block(&at.p, e));
+            let weight = edge.length / edge.gamma;
+            forces += weight * one(&integrals.gradient);
+            system.functionals(e, |row, a, entry| {
+                r[row] += entry * weight * integrals.gradient[a];
+            });
+        }
+        Residual { norm: norm(&r) / reference, balanced: one(&r) <= BALANCED * forces.abs() }
     }
-    norm(&r)
 }
 
 /// Whether rounding alone may give the residual `at` a displacement of this `size` a norm that tells too little.
