@@ -63,6 +63,8 @@ pub struct Outcome {
     pub residuals: Vec<f64>,
     /// The relative residual of the displacement, from the definitions.
     pub residual: f64,
+    /// What loads, contact and reactions may be out of balance, beside loads and contact.
+    pub unbalanced: f64,
     /// |du|_A / |u|_a of the last correction.
     pub correction: f64,
     /// The same, and that of what rounding the displacement to doubles takes away.
@@ -72,9 +74,9 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Whether the residual is within the tolerance and the last correction next to nothing.
+    /// Whether the residual is within the tolerance, the forces are balanced and the last correction is next to nothing.
     pub fn is_right(&self, settings: &Settings) -> bool {
-        self.residual <= settings.tolerance && self.correction <= RIGHT
+        self.residual <= settings.tolerance && self.correction <= RIGHT && self.unbalanced <= RIGHT
     }
 
     /// Whether Newton's method took all the steps that it may.
@@ -83,13 +85,14 @@ impl Outcome {
     }
 }
 
-/// A correction up to this needs no better arithmetic.
+/// A correction, and forces out of balance, up to this need no better arithmetic.
 const RIGHT: f64 = 1e-9;
 
 /// A correction this small, relative, leaves nothing to correct.
 const SMALL: f64 = 1e-10;
 
-/// Rounding of the residual calls for twofold numbers where its bound is more than this beside the forces,
+/// Rounding of the residual calls for twofold numbers where its bound is more than this beside what residuals are relative to,
+/// or that of its sums beside the forces on the body,
 const BLURRED: f64 = 1e-9;
 
 /// or may move the body by more than this beside its displacement, if all of it adds up.
@@ -137,7 +140,7 @@ where
             break;
         }
         let size = size_of(d, at.energy, &iterate);
-        if !at.precisely && is_blurred(system, &at, softness, size, reference) {
+        if !at.precisely && is_blurred(system, &at, softness, size, reference, residual.forces) {
             at = iterate.evaluate(system, true);
         }
         // A correction need not better what is good enough.
@@ -149,7 +152,10 @@ where
         let moved = change.energy.max(change.left).sqrt();
         correction = if moved == 0.0 { 0.0 } else { moved / size };
         residual = Residual::new(system, &at, reference);
-        if residual.norm <= settings.tolerance && residual.balanced && correction <= SMALL {
+        if residual.norm <= settings.tolerance
+            && residual.unbalanced <= BALANCED
+            && correction <= SMALL
+        {
             break;
         }
         if cut || correction < before / 2.0 {
@@ -168,10 +174,21 @@ where
     let rounding = if rounding > 0.0 { rounding / size_of(d, at.energy, &iterate) } else { 0.0 };
     let forward_error = correction + rounding;
     let condition = (system.largest() * softness).max(1.0);
-    let residual = residual.norm;
+    let Residual { norm: residual, unbalanced, .. } = residual;
     let Evaluation { forces, p, precisely, .. } = at;
     let fine = precisely.then(|| iterate.into_twofold());
-    Ok(Outcome { u, fine, forces, p, residuals, residual, correction, forward_error, condition })
+    Ok(Outcome {
+        u,
+        fine,
+        forces,
+        p,
+        residuals,
+        residual,
+        unbalanced,
+        correction,
+        forward_error,
+        condition,
+    })
 }
 
 /// |u|_a, which errors are relative to. A body without loads that is moved as a whole has no strain but that of rounding: there
@@ -199,8 +216,10 @@ where
 struct Residual {
     /// Its norm, relative to the reference.
     norm: f64,
-    /// The free degrees of freedom leave so little of the forces on the body that loads, contact and reactions balance.
-    balanced: bool,
+    /// The sum of its magnitudes beside the forces on the body: what loads, contact and reactions may be out of balance.
+    unbalanced: f64,
+    /// The forces on the body: loads and contact, or, where there are none, reactions, which may balance each other node by node.
+    forces: f64,
 }
 
 impl Residual {
@@ -215,8 +234,7 @@ impl Residual {
         let d = system.d;
         let mut r = at.linear.clone();
         let one = |v: &[f64]| v.iter().map(|v| v.abs()).sum::<f64>();
-        // Reactions but for contact, and loads.
-        let mut forces = one(at.forces.as_flattened()) - one(&r) + one(d.load.as_flattened());
+        let mut forces = one(d.load.as_flattened());
         for (e, edge) in d.contact.iter().enumerate() {
             let integrals = d.rule.integrals::<E, N, M>(newton::block(&at.p, e));
             let weight = edge.length / edge.gamma;
@@ -225,7 +243,11 @@ impl Residual {
                 r[row] += entry * weight * integrals.gradient[a];
             });
         }
-        Residual { norm: norm(&r) / reference, balanced: one(&r) <= BALANCED * forces.abs() }
+        if forces == 0.0 {
+            forces = one(at.forces.as_flattened());
+        }
+        let unbalanced = if forces > 0.0 { one(&r) / forces } else { 0.0 };
+        Residual { norm: norm(&r) / reference, unbalanced, forces }
     }
 }
 
@@ -236,6 +258,7 @@ fn is_blurred<E, const N: usize, const M: usize>(
     softness: f64,
     size: f64,
     reference: f64,
+    forces: f64,
 ) -> bool
 where
     E: ExactEdge<f64, N, M>,
@@ -252,7 +275,8 @@ where
         });
     }
     let noise = at.noise + f64::EPSILON * norm(&contact);
-    noise * softness.sqrt() > MOVED * size || noise > BLURRED * reference
+    let sum = at.noise_of_sums + f64::EPSILON * contact.iter().sum::<f64>();
+    noise * softness.sqrt() > MOVED * size || noise > BLURRED * reference || sum > BLURRED * forces
 }
 
 fn norm(v: &[f64]) -> f64 {

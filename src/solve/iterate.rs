@@ -34,6 +34,8 @@ pub struct Evaluation {
     pub energy: f64,
     /// A norm that rounding alone may give the residual.
     pub noise: f64,
+    /// What rounding alone may add up to in the forces.
+    pub noise_of_sums: f64,
     /// In twofold numbers.
     pub precisely: bool,
 }
@@ -93,7 +95,17 @@ impl Iterate {
             let p_magnitudes = p.iter().map(|p| p.abs()).collect();
             let linear = system.numbering.gather(&forces);
             let energy = d.strain_energy(&self.rounded());
-            return Evaluation { forces, linear, p, p_magnitudes, energy, noise, precisely };
+            let noise_of_sums = 0.0;
+            return Evaluation {
+                forces,
+                linear,
+                p,
+                p_magnitudes,
+                energy,
+                noise,
+                noise_of_sums,
+                precisely,
+            };
         }
         let head = |node: usize| Vector2::from(self.u[node].map(Twofold::head));
         let tail = |node: usize| Vector2::from(self.u[node].map(Twofold::tail));
@@ -119,7 +131,8 @@ impl Iterate {
             })
             .collect();
         let noise = NOISE * f64::EPSILON * d.free_norm(&magnitudes);
+        let noise_of_sums = NOISE * f64::EPSILON * magnitudes.as_flattened().iter().sum::<f64>();
         let linear = system.numbering.gather(&forces);
-        Evaluation { forces, linear, p, p_magnitudes, energy, noise, precisely }
+        Evaluation { forces, linear, p, p_magnitudes, energy, noise, noise_of_sums, precisely }
     }
 }

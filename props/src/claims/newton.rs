@@ -221,6 +221,7 @@ fn verdict_is_honest(accepted: f64) -> Outcome {
                     fine: None,
                     residuals,
                     residual,
+                    unbalanced: 0.0,
                     correction,
                     forward_error,
                     condition,
