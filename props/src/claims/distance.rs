@@ -531,7 +531,7 @@ fn half_the_bound() -> Outcome {
 pub fn claim() -> Claim {
     Claim {
         id: "25",
-        items: &[],
+        items: &["the error bound"],
         title: "The certificate of the distance to the true solution",
         paper: "Nothing: the paper's estimates have an unknown constant. Its problem (1)-(2) is what is meant.",
         statement: "Theorem 7.2 (docs/theory.md, 7.2 to 7.4): for admissible v and tau, |u - v|_a^2 + |sigma(u) - tau|^2 is at most |C eps(v) - tau|^2 + 2 int tau_n (v_n - g), in the norms of energy. The checker `certify::proof` evaluates the right side; it is generic over its numbers, and the same source runs over exact rationals: with balls of doubles no share, no bound is below the rational one, and the potential energy encloses it. What balls lose on a triangle is bounded by its shape: forces known to r make stresses known to 48 h^3 r / (2 |T|)^2, so a sliver that is cut off at the end of contact loses most. The intervals of J(u) on a coarse and on a fine mesh meet, and so do those of the compliance, which is given where loads alone act. A field that is moved raises the bound at least by what moves it, by the triangle inequality; so does the load of another problem; a stress that glues the body to its floor is rejected for its sign alone, and without that test it would be accepted with a bound of 0; without the contact term there would be no bound. 300 exact solutions with drawn parameters, (a), (b) and (c) of docs/theory.md, 10: the true error is never above the bound. That 1,000 tampered certificates are rejected: tests/suite/certify.rs.",
