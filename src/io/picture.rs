@@ -322,6 +322,30 @@ mod tests {
     }
 
     #[test]
+    fn nothing_is_stretched_where_the_contact_line_is_curved() {
+        let mut sample = Sample::stretched(1e-3);
+        assert_ne!(Stretch::of(&sample.scene()).factor(), 1.0);
+        sample.contact[0].iter_mut().for_each(|s| s.position[1] = 0.1 * s.position[0].powi(2));
+        assert_eq!(Stretch::of(&sample.scene()).factor(), 1.0);
+    }
+
+    #[test]
+    fn the_words_at_a_peak_beside_the_body_are_on_the_page() {
+        let mut sample = Sample::block(4);
+        let at_left = |(i, s): (usize, &mut ContactSample)| {
+            (s.position, s.normal) = ([0.0, 1.0 - 0.25 * i as f64], [-1.0, 0.0]);
+        };
+        sample.contact[0].iter_mut().enumerate().for_each(at_left);
+        let scene = Scene { unit: Some("N/mm²"), ..sample.scene() };
+        let svg = picture(&scene).unwrap();
+        let peak = svg.split("<text").find(|text| text.contains("peak 0.5 N/mm²")).unwrap();
+        assert!(peak.contains("text-anchor=\"end\""), "{peak}");
+        let place = peak.split(" x=\"").nth(1).unwrap().split('"').next().unwrap();
+        let place: f64 = place.parse().unwrap();
+        assert!(place >= width_of("peak 0.5 N/mm²", 13.0 / 0.85), "{place}");
+    }
+
+    #[test]
     fn the_body_touches_the_obstacle_where_u_n_is_the_gap_at_any_stretch() {
         let mut sample = Sample::block(4);
         for s in sample.contact.iter_mut().flatten() {
