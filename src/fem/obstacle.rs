@@ -108,7 +108,7 @@ impl Obstacle {
                 let out = Vector2::from(x) - Vector2::from(*center);
                 let distance = length(out);
                 if distance == 0.0 {
-                    return Err(no_distance(0.0));
+                    return Err(DataError::NoClosestPoint { what: what(), x: x[0], y: x[1] });
                 }
                 let out = out / distance;
                 Ok(match side {
