@@ -231,8 +231,8 @@ mod command {
         };
         drop(phases);
         let done = wanted.text(&results, &files, quiet)?;
-        let missed = results.adapt.is_some_and(|adapt| !adapt.met);
-        Ok(Done { code: if missed { FAILED } else { done.code }, ..done })
+        let code = if results.misses_its_target() { FAILED } else { done.code };
+        Ok(Done { code, ..done })
     }
 
     /// How wrong a displacement is that any program computed.
@@ -396,7 +396,7 @@ mod command {
         let sweep = sweep::run(&file, &text, axes, folders, || bar.inc(1)).map_err(no_sweep)?;
         bar.finish_and_clear();
         let code = |outcome: &sweep::Outcome| match outcome {
-            Ok(_) => None,
+            Ok(results) => results.misses_its_target().then_some(FAILED),
             Err(error) => Some(code(error)),
         };
         let codes: Vec<u8> = sweep.runs.iter().filter_map(|run| code(&run.outcome)).collect();

@@ -1,5 +1,6 @@
 //! Balls: all real numbers within a radius of a [twofold](super::twofold) number, for statements that hold whatever rounding
-//! does. An operation gives a ball that contains the exact results for all numbers of its operands' balls.
+//! does. An operation gives a ball that contains the exact results for all numbers of its operands' balls. (The balls of the
+//! kernel have a double in the middle: quicker, with half of the digits.)
 //!
 //! The centres carry some 106 bits, so that residuals keep their digits where they cancel; the radii are doubles, rounded up.
 //! Trusted are IEEE 754 double precision, rounding to nearest, and the exactness of the sum and the product of two doubles as
@@ -29,8 +30,19 @@ const PRODUCT: f64 = 4.0 * SUM;
 const TINY: f64 = f64::from_bits((1023 - 890) << 52);
 
 /// A sum or product of a few nonnegative doubles, each operation rounded to nearest, is no more than this times that.
-fn up(x: f64) -> f64 {
+pub(crate) fn up(x: f64) -> f64 {
     x * (1.0 + 16.0 * f64::EPSILON)
+}
+
+/// The larger of two bounds; infinite if one is no number.
+pub(crate) fn larger(a: f64, b: f64) -> f64 {
+    if a >= b {
+        a
+    } else if b >= a {
+        b
+    } else {
+        f64::INFINITY
+    }
 }
 
 impl Ball {

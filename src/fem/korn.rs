@@ -11,6 +11,7 @@
 
 use std::collections::{BTreeMap, VecDeque};
 
+use super::ball::larger;
 use super::constraints::Constraints;
 use super::rigid::{Hinge, Parts};
 use super::space::Space;
@@ -347,17 +348,6 @@ fn inverse(mut m: Vec<Vec<f64>>) -> Option<Vec<Vec<f64>>> {
         }
     }
     Some(m.into_iter().map(|row| row[n..].to_vec()).collect())
-}
-
-/// The larger one; infinite if one is no number.
-fn larger(a: f64, b: f64) -> f64 {
-    if a >= b {
-        a
-    } else if b >= a {
-        b
-    } else {
-        f64::INFINITY
-    }
 }
 
 #[cfg(test)]

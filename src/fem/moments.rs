@@ -5,7 +5,7 @@
 //! the sign on a piece is not the one that was taken, |P| is bounded, and the piece's length times that bound is added to the
 //! radius. A cut that is off by e leaves |P| = O(e) there, and Newton's method in balls makes e some 2^-100.
 
-use super::ball::Ball;
+use super::ball::{Ball, larger};
 use super::contact_line::EdgeRule;
 use crate::kernel::Element;
 use crate::kernel::edge_integral::{gauss, roots, value_at};
@@ -83,17 +83,6 @@ impl Parabola {
         // A point a rounding error outside [a, b] would be at most |b - a| away, too, but for that error.
         let slack = slope.magnitude() * 4.0 * f64::EPSILON;
         larger(ends, tangent.upper() + slack)
-    }
-}
-
-/// The larger one; infinite if one is no number.
-fn larger(a: f64, b: f64) -> f64 {
-    if a >= b {
-        a
-    } else if b >= a {
-        b
-    } else {
-        f64::INFINITY
     }
 }
 

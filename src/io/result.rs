@@ -317,6 +317,23 @@ impl From<&Result<Continuous, CertifyError>> for ContinuousCertificate {
     }
 }
 
+impl Results {
+    /// Whether the bound that \[adapt\] asks for was not reached.
+    pub fn misses_its_target(&self) -> bool {
+        self.adapt.as_ref().is_some_and(|adapt| !adapt.met)
+    }
+
+    /// How the solve ended, in words.
+    pub fn verdict(&self) -> String {
+        let newton = self.newton.verdict();
+        if self.misses_its_target() {
+            format!("{newton}, but the target of [adapt] is not reached")
+        } else {
+            newton.to_owned()
+        }
+    }
+}
+
 impl NewtonHistory {
     /// How it ended, in words.
     pub fn verdict(&self) -> &'static str {

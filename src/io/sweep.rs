@@ -240,7 +240,7 @@ impl Sweep {
                 .columns()
                 .map(|(_, cell)| results.and_then(|r| cell(r, shown)).unwrap_or_default());
             let status = match &run.outcome {
-                Ok(results) => results.newton.verdict().to_owned(),
+                Ok(results) => results.verdict(),
                 Err(error) => error.to_string(),
             };
             run.values.iter().cloned().chain(cells).chain([status]).collect()

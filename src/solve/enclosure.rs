@@ -23,7 +23,7 @@ use super::assembled::{Assembled, Tangent};
 use super::factor::{Factor, Indefinite};
 use super::system::System;
 use crate::fem::Discretization;
-use crate::fem::ball::Ball;
+use crate::fem::ball::{Ball, larger, up};
 use crate::fem::contact_line::ContactLineEdge;
 use crate::fem::korn::Korn;
 use crate::fem::loads;
@@ -117,11 +117,6 @@ pub enum Unproved {
     OutOfMemory,
     #[error("the loads cannot be evaluated again")]
     Loads,
-}
-
-/// A number that is rounded up: no more than a few roundings ago it was exact.
-fn up(x: f64) -> f64 {
-    x * (1.0 + 16.0 * f64::EPSILON)
 }
 
 impl Unproved {
@@ -313,17 +308,6 @@ where
         coercivity_constant::<E, Ball, N, M>(&material, gamma, length, area).upper()
     };
     lengths.iter().map(of).fold(0.0, larger)
-}
-
-/// The larger one; NaN if one of them is.
-fn larger(a: f64, b: f64) -> f64 {
-    if a >= b {
-        a
-    } else if b >= a {
-        b
-    } else {
-        f64::NAN
-    }
 }
 
 /// The components of a functional at the free unknowns, in the frames of their nodes.

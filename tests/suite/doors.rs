@@ -362,6 +362,16 @@ fn the_files_of_the_engine_replace_those_of_this_program_and_the_other_way_round
     assert_eq!(names(&folder.join("out/case")), FILES);
 }
 
+/// The same, where the signals that end a program end it: a shell starts what runs in the background with SIGINT ignored, and
+/// what is ignored stays so.
+fn with_default_signals(command: &Command) -> Command {
+    let mut env = Command::new("env");
+    env.arg("--default-signal=TERM,INT,HUP").arg(command.get_program()).args(command.get_args());
+    let variables = command.get_envs().filter_map(|(name, value)| Some((name, value?)));
+    env.envs(variables).current_dir(command.get_current_dir().unwrap()).stdin(Stdio::null());
+    env
+}
+
 #[test]
 fn a_signal_reaches_the_processes_of_the_engine_and_nothing_half_written_stays() {
     for (name, number) in [("TERM", 15), ("INT", 2), ("HUP", 1)] {
@@ -372,7 +382,7 @@ fn a_signal_reaches_the_processes_of_the_engine_and_nothing_half_written_stays()
         with_engine(&folder, script);
         let notes = folder.join("notes");
         fs::create_dir(&notes).unwrap();
-        let mut solve = engine(&folder, &["case.toml"]);
+        let mut solve = with_default_signals(&engine(&folder, &["case.toml"]));
         let child = solve.env("NOTES", &notes).stderr(Stdio::piped()).spawn().unwrap();
         let start = Instant::now();
         while !notes.join("ready").exists() {
