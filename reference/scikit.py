@@ -211,7 +211,8 @@ class Model:
             counted = edge["length"] * (1 if self.degree == 1 else 2 - np.minimum(cosine, 1))
             np.add.at(lengths, edge["cells"], counted)
             diameters[edge["cells"]] = edge["diameter"]
-        (a, b), (c, d) = self.mesh.p[:, self.mesh.t[1]] - self.mesh.p[:, self.mesh.t[0]], self.mesh.p[:, self.mesh.t[2]] - self.mesh.p[:, self.mesh.t[0]]
+        first, second, third = (self.mesh.p[:, vertices] for vertices in self.mesh.t)
+        (a, b), (c, d) = second - first, third - first
         area = np.abs(a * d - b * c) / 2
         return np.max({1: 1, 2: 3}[self.degree] * (self.lam + 2 * self.mu) * diameters * lengths / area)
 
@@ -299,10 +300,8 @@ class Model:
             answers[f"{name} moment"] = np.sum(edge["x"][0] * vectors[1] - edge["x"][1] * vectors[0])
         for name, demands in self.case.held.items():
             dofs = self.basis.get_dofs(self.curves[name]).all()
-            points = [self.basis.nodal_dofs[c, np.argmin(np.hypot(*(self.mesh.p - np.array(x)[:, None])))]
-                      for x, held in self.case.held_points.items() for c in held]
             for c in demands:
-                own = dofs[(self.component[dofs] == c) & ~np.isin(dofs, points)]
+                own = dofs[self.component[dofs] == c]
                 answers[f"{name} reaction {'xy'[c]}"] = np.sum(r[own])
         vertices = self.basis.nodal_dofs
         return answers, {tuple(x): u[vertices[:, v]] for v, x in enumerate(self.mesh.p.T)}

@@ -346,6 +346,31 @@ mod tests {
     }
 
     #[test]
+    fn the_axis_of_a_closed_line_stands_opposite_its_peak() {
+        let mut block = Sample::block(4);
+        let on_hole = |i: i32| {
+            let (sin, cos) = (std::f64::consts::TAU * f64::from(-i) / 24.0).sin_cos();
+            ContactSample {
+                position: [0.5 + 0.3 * cos, 0.5 + 0.3 * sin],
+                normal: [-cos, -sin],
+                displacement: [0.0; 2],
+                gap: 0.0,
+                pressure: sin.max(0.0),
+            }
+        };
+        block.contact = vec![(0..=24).map(on_hole).collect()];
+        let svg = draw(&block);
+        // The y of the first text after some words.
+        let height = |words: &str| -> f64 {
+            let text = svg.split(words).nth(1).unwrap().split("<text").nth(1).unwrap();
+            text.split(" y=\"").nth(1).unwrap().split('"').next().unwrap().parse().unwrap()
+        };
+        let (zero, peak) =
+            (height("fill=\"#d62728\" font-size=\"11\""), height("font-weight=\"bold\">\n<rect"));
+        assert!(zero > peak + 50.0, "{zero} {peak}");
+    }
+
+    #[test]
     fn the_body_touches_the_obstacle_where_u_n_is_the_gap_at_any_stretch() {
         let mut sample = Sample::block(4);
         for s in sample.contact.iter_mut().flatten() {
