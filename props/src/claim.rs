@@ -192,6 +192,22 @@ pub fn model_checked(harness: Harness) -> Check {
     }
 }
 
+/// The words of an error that a check did not expect.
+pub fn text(error: impl ToString) -> String {
+    error.to_string()
+}
+
+/// The outcome of a control that runs a check with a planted mistake: that must not pass.
+///
+/// # Errors
+/// What the check said where it passed.
+pub fn noticed(outcome: Outcome) -> Outcome {
+    match outcome {
+        Err(why) => Ok(format!("rejected: {why}")),
+        Ok(said) => Err(format!("not noticed: {said}")),
+    }
+}
+
 /// One row of the ledger.
 pub struct Claim {
     /// Its number in the ledger.

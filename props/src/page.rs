@@ -170,7 +170,7 @@ const STYLE: &str = "body{font:16px/1.5 sans-serif;max-width:64em;margin:2em aut
     code{overflow-wrap:anywhere;font-size:.9em}td:first-child{white-space:nowrap}\
     .bad{background:#fdd}.control td:nth-child(2){padding-left:1.5em}\
     .verdict{font-size:1.2em;border-left:.4em solid #393;padding-left:.6em}.verdict.bad{border-color:#c22}\
-    nav a{margin-right:.8em;white-space:nowrap}@media print{nav{display:none}}\
+    nav{display:flex;flex-wrap:wrap;gap:0 .8em}nav a{white-space:nowrap}@media print{nav{display:none}}\
     @media(max-width:40em){table{display:block;overflow-x:auto}td:first-child{white-space:normal}}";
 
 /// The page. `at` is where it will be: links to the sources are relative to that.

@@ -7,10 +7,10 @@
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use super::proof::{Certificate, Enclosing, Owner, Role};
+use super::proof::{Certificate, Owner, Role};
 use crate::fem::mesh::length;
-use crate::kernel::Triangle;
 use crate::kernel::composite::{Loads, Wrench};
+use crate::kernel::{Enclosing, Triangle};
 
 /// Why there is no equilibrium to be had.
 #[derive(Clone, Debug, Error, PartialEq)]

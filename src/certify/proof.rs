@@ -20,77 +20,7 @@ use thiserror::Error;
 use super::balance::{self, Tree, Unbalanced};
 use crate::kernel::composite::{Composite, Loads, complementary};
 use crate::kernel::contact_edge::integral_of_product;
-use crate::kernel::{Ball, Interval, Material, Plane, Scalar, Stress, Triangle};
-
-/// A number that stands for a real one: a double for a quick look, a ball or an interval for a proof, a rational for the
-/// truth.
-pub trait Enclosing: Scalar {
-    /// This double.
-    fn exactly(value: f64) -> Self;
-
-    /// The root of what is not negative.
-    fn sqrt(self) -> Self;
-
-    /// A double that it doesn't exceed.
-    fn upper(self) -> f64;
-
-    /// A double that it is not below.
-    fn lower(self) -> f64;
-}
-
-impl Enclosing for f64 {
-    fn exactly(value: f64) -> f64 {
-        value
-    }
-
-    fn sqrt(self) -> f64 {
-        f64::sqrt(self)
-    }
-
-    fn upper(self) -> f64 {
-        self
-    }
-
-    fn lower(self) -> f64 {
-        self
-    }
-}
-
-impl Enclosing for Ball {
-    fn exactly(value: f64) -> Ball {
-        Ball::point(value)
-    }
-
-    fn sqrt(self) -> Ball {
-        Ball::sqrt(self)
-    }
-
-    fn upper(self) -> f64 {
-        Ball::upper(self)
-    }
-
-    fn lower(self) -> f64 {
-        Ball::lower(self)
-    }
-}
-
-impl Enclosing for Interval {
-    fn exactly(value: f64) -> Interval {
-        Interval::point(value)
-    }
-
-    fn sqrt(self) -> Interval {
-        Interval::sqrt(self)
-    }
-
-    fn upper(self) -> f64 {
-        self.hi()
-    }
-
-    fn lower(self) -> f64 {
-        self.lo()
-    }
-}
+use crate::kernel::{Ball, Enclosing, Material, Plane, Scalar, Stress, Triangle};
 
 /// v, tau and the problem that they belong to.
 #[derive(Clone, Debug, PartialEq)]
@@ -279,7 +209,7 @@ impl Certificate {
                 return Err(Rejection::Share { triangle, claimed, found });
             }
         }
-        if !(claim.bound >= proof.bound) {
+        if !proof.bound.is_at_most(claim.bound) {
             return Err(Rejection::Bound { claimed: claim.bound, found: proof.bound });
         }
         Ok(proof)
@@ -309,7 +239,7 @@ impl Certificate {
                 }
                 Role::Pressed(p) => p.map(|p| -(normal * S::exactly(p))),
                 Role::Contact { pressure, gap, along } => {
-                    if let Some(&value) = pressure.iter().find(|&&p| !(p <= 0.0)) {
+                    if let Some(&value) = pressure.iter().find(|p| !p.is_at_most(0.0)) {
                         return Err(Rejection::Tension { edge: e, value });
                     }
                     let at_ends = edge.ends.map(|vertex| v[vertex]);
@@ -326,10 +256,8 @@ impl Certificate {
                             along_directions(at_ends, along.map(exactly), pressure, gap, length())
                         }
                     };
-                    for value in contact.beyond.map(S::upper) {
-                        if !(value <= 0.0) {
-                            return Err(Rejection::Penetration { edge: e, value });
-                        }
+                    if let Some(value) = contact.beyond.into_iter().find(|b| !b.is_at_most(0.0)) {
+                        return Err(Rejection::Penetration { edge: e, value: value.upper() });
                     }
                     if let Some(owner) = owners[e][0] {
                         on_contact[owner.piece] += contact.term;
@@ -480,7 +408,7 @@ impl Certificate {
     ) -> Result<Vec<Triangle<S>>, Rejection> {
         let triangle = |(t, piece): (usize, &Piece)| {
             let triangle = Triangle { vertices: piece.vertices.map(|p| points[p]) };
-            if triangle.double_area().lower() > 0.0 {
+            if triangle.double_area().is_positive() {
                 Ok(triangle)
             } else {
                 Err(Rejection::Orientation { triangle: t })

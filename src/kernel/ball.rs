@@ -40,6 +40,11 @@ impl Ball {
         Ball { centre: value, radius: 0.0 }
     }
 
+    /// All numbers that are at most `radius` >= 0 from `centre`.
+    pub fn around(centre: f64, radius: f64) -> Ball {
+        Ball { centre, radius }
+    }
+
     /// The smallest double known to be no smaller than any of its numbers. NaN if there is none to be known.
     pub(crate) fn upper(self) -> f64 {
         let end = self.centre + self.radius;
@@ -165,10 +170,6 @@ mod tests {
         f64::from(k % 128) / 16.0
     }
 
-    fn ball(centre: f64, radius: f64) -> Ball {
-        Ball { centre, radius }
-    }
-
     fn contains(ball: Ball, value: f64) -> bool {
         ball.lower() <= value && value <= ball.upper()
     }
@@ -179,7 +180,7 @@ mod tests {
         for k in 0..400 {
             let (a, r) = (multiple(37 * k - 64), multiple(k % 7));
             let (b, s) = (multiple(101 * k - 50), multiple(k % 5));
-            let (x, y) = (ball(a, r), ball(b, s));
+            let (x, y) = (Ball::around(a, r), Ball::around(b, s));
             for (u, v) in [(a - r, b - s), (a - r, b + s), (a + r, b - s), (a + r, b + s), (a, b)] {
                 assert!(contains(x + y, u + v) && contains(x - y, u - v) && contains(x * y, u * v));
                 if b.abs() > s {
@@ -228,8 +229,8 @@ mod tests {
     #[test]
     fn zero_stays_sharp_and_an_underflow_does_not() {
         let zero = Ball::from(0);
-        assert_eq!(ball(3.0, 1.0) * zero, zero);
-        assert_eq!(zero / ball(3.0, 1.0), zero);
+        assert_eq!(Ball::around(3.0, 1.0) * zero, zero);
+        assert_eq!(zero / Ball::around(3.0, 1.0), zero);
         assert_eq!(Ball::point(0.1) - Ball::point(0.1), zero);
         let tiny = Ball::point(1e-200) * Ball::point(1e-200);
         assert!(tiny.lower() < 0.0 && tiny.upper() > 0.0);
@@ -237,7 +238,7 @@ mod tests {
 
     #[test]
     fn what_has_no_bound_passes_no_comparison() {
-        let unbounded = Ball::from(1) / ball(0.5, 1.0);
+        let unbounded = Ball::from(1) / Ball::around(0.5, 1.0);
         for x in
             [unbounded, unbounded * Ball::from(2), unbounded + Ball::from(1), Ball::from(-1).sqrt()]
         {
@@ -249,9 +250,9 @@ mod tests {
     #[test]
     fn a_ball_across_zero_gets_both_answers() {
         let positive_part = |x: Ball| x.split(|_| Ball::from(0), |x| x);
-        assert_eq!(positive_part(ball(-2.0, 1.0)), Ball::from(0));
-        assert_eq!(positive_part(ball(3.0, 1.0)), ball(3.0, 1.0));
-        let across = positive_part(ball(0.5, 1.0));
+        assert_eq!(positive_part(Ball::around(-2.0, 1.0)), Ball::from(0));
+        assert_eq!(positive_part(Ball::around(3.0, 1.0)), Ball::around(3.0, 1.0));
+        let across = positive_part(Ball::around(0.5, 1.0));
         assert!(contains(across, 0.0) && contains(across, 1.5) && across.upper() < 1.5 + 1e-12);
     }
 }

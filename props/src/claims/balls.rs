@@ -3,9 +3,8 @@
 //! members of the operands is one of exact rationals, and must lie in the result.
 
 use proptest::prelude::*;
-use signorini::certify::proof::Enclosing;
 use signorini::fem::ball::Ball as Fine;
-use signorini::kernel::{Ball, Interval, positive_part};
+use signorini::kernel::{Ball, Enclosing, Interval, positive_part};
 
 use crate::claim::Outcome;
 use crate::numbers::Exact;

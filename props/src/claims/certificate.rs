@@ -31,7 +31,7 @@ use signorini::solve::system::System;
 use signorini::solve::{ContactQuadrature, Degree, Gamma0, Method, Settings, discretize, solve};
 
 use crate::bodies::MaybeExact;
-use crate::claim::{Check, Engine, Outcome, by, control};
+use crate::claim::{Check, Engine, Outcome, by, control, noticed, text};
 use crate::discrete::{CUT, Discrete, Nodal, exactly};
 use crate::elimination::{Matrix, combined, dot, solve_definite, square};
 use crate::numbers::Exact;
@@ -176,7 +176,7 @@ impl Draw {
         let [nx, ny] = self.cells;
         let (width, height) = (nx as f64, ny as f64);
         let rectangle = Rectangle { width, height, nx, ny, diagonal: self.diagonal };
-        rectangle.mesh().map_err(|error| error.to_string())
+        rectangle.mesh().map_err(text)
     }
 
     /// A body that is held and pushed down at the top, with a body force and a gap at the bottom.
@@ -209,8 +209,7 @@ impl Solved {
         let kappa = f64::from(draw.kappa) / 20.0;
         let method = sharpness::at_kappa(&problem, degree, kappa)?;
         let method = Method { quadrature, allow_noncoercive: false, ..method };
-        let (solution, _) =
-            solve(&problem, &method, &Settings::default()).map_err(|error| error.to_string())?;
+        let (solution, _) = solve(&problem, &method, &Settings::default()).map_err(text)?;
         Ok(Solved { problem, method, u: solution.displacement })
     }
 }
@@ -672,7 +671,7 @@ fn triangle() -> Result<Problem, String> {
     let named = [("bottom", [0, 1]), ("left", [2, 0])];
     let named = named.map(|(name, edge)| (name.to_owned(), vec![edge]));
     let mesh = Mesh::new(vec![[0.0, 0.0], [3.0, 0.0], [0.0, 4.0]], vec![[0, 1, 2]], named)
-        .map_err(|error| error.to_string())?;
+        .map_err(text)?;
     let mut problem = sharpness::clamped(mesh, Material::lame(1.0, 1.0, Plane::Strain), &["left"]);
     problem.body_force = [constant(-0.5), constant(0.0)];
     Ok(problem)
@@ -687,7 +686,7 @@ fn refused_beyond_the_limit() -> Outcome {
         for (gamma0, unique) in [(1.6, false), (1.0 / 15.0, true)] {
             let gamma0 = Gamma0::Value(gamma0);
             let method = Method { gamma0, allow_noncoercive: true, ..Method::default() };
-            let d = discretize::<P1, 3, 2>(&problem, &method).map_err(|error| error.to_string())?;
+            let d = discretize::<P1, 3, 2>(&problem, &method).map_err(text)?;
             let certifier = Certifier::new(&d);
             // The solver's load, -1 up to rounding; with it the solutions are scaled.
             let scale = -Exact::of_double(d.load[1][0]);
@@ -701,7 +700,7 @@ fn refused_beyond_the_limit() -> Outcome {
                     return Err(format!("gamma0 = {gamma0:?}: the certificate is wrong"));
                 }
             }
-            let system = System::new(&d).map_err(|error| error.to_string())?;
+            let system = System::new(&d).map_err(text)?;
             let enclosure =
                 enclosure::enclose(&system, &d.constraints.lift(), None, FactorOfA::Double);
             let refused = matches!(enclosure, Err(Unproved::NotCoercive { .. }));
@@ -722,8 +721,8 @@ fn counted(scale: f64) -> Outcome {
         problem.body_force = [constant(force), constant(0.0)];
         let gamma0 = Gamma0::Value(scale * gamma0);
         let method = Method { gamma0, allow_noncoercive: true, ..Method::default() };
-        let d = discretize::<P1, 3, 2>(&problem, &method).map_err(|error| error.to_string())?;
-        let system = System::new(&d).map_err(|error| error.to_string())?;
+        let d = discretize::<P1, 3, 2>(&problem, &method).map_err(text)?;
+        let system = System::new(&d).map_err(text)?;
         let found = census::count(&system);
         if found != Some(expected) {
             return Err(format!("{gamma0:?}, force {force}: {found:?} solutions, not {expected}"));
@@ -738,10 +737,7 @@ fn solutions_are_counted() -> Outcome {
 
 /// gamma0 a hundredth of what is said: there is always one solution.
 fn counted_below_the_limit() -> Outcome {
-    match counted(0.01) {
-        Err(why) => Ok(format!("rejected: {why}")),
-        Ok(said) => Err(format!("not noticed: {said}")),
-    }
+    noticed(counted(0.01))
 }
 
 /// The checks, for the row of Theorem 3.3.

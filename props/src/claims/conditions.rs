@@ -21,7 +21,7 @@ use signorini::solve::{
     Degree, Method, RouteName, Settings, Solution, SolveError, discretize, route, solve,
 };
 
-use crate::claim::Outcome;
+use crate::claim::{Outcome, noticed, text};
 use crate::numbers::Exact;
 use crate::proof::sampler::Random;
 use crate::verdict::Verdict;
@@ -29,18 +29,6 @@ use crate::{draws, ensure};
 
 fn constant(value: f64) -> BoxedFunction {
     Box::new(move |_: [f64; 2]| value)
-}
-
-fn text(error: impl ToString) -> String {
-    error.to_string()
-}
-
-/// A planted mistake must not pass.
-fn noticed(outcome: Outcome) -> Outcome {
-    match outcome {
-        Err(why) => Ok(format!("rejected: {why}")),
-        Ok(said) => Err(format!("not noticed: {said}")),
-    }
 }
 
 /// A vector turned to the left by an angle.

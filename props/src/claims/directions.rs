@@ -17,13 +17,9 @@ use signorini::kernel::{Material, P1, P2, Plane};
 use signorini::nalgebra::Vector2;
 use signorini::solve::{Method, discretize};
 
-use crate::claim::Outcome;
+use crate::claim::{Outcome, text};
 use crate::draws;
 use crate::proof::sampler::Random;
-
-fn text(error: impl ToString) -> String {
-    error.to_string()
-}
 
 fn constant(value: f64) -> BoxedFunction {
     Box::new(move |_: [f64; 2]| value)

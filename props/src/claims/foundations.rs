@@ -401,7 +401,7 @@ mod row {
                 "fem::precise::evaluate",
                 "fem::ball::Ball::widened",
                 "fem::ball::Ball::sqrt",
-                "certify::proof::Enclosing::exactly",
+                "ball::Ball::around",
                 "solve::ldl::TwofoldFactor::solve",
             ],
             preconditions: "The processor rounds +, -, *, / and sqrt to nearest, as IEEE 754 says.",

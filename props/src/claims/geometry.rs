@@ -17,21 +17,9 @@ use signorini::solve::ldl::TwofoldFactor;
 use signorini::solve::system::System;
 use signorini::solve::{Degree, Method, discretize, limit};
 
-use crate::claim::Outcome;
+use crate::claim::{Outcome, noticed, text};
 use crate::verdict::Verdict;
 use crate::{draws, ensure, sharpness};
-
-fn text(error: impl ToString) -> String {
-    error.to_string()
-}
-
-/// A planted mistake must not pass.
-fn noticed(outcome: Outcome) -> Outcome {
-    match outcome {
-        Err(why) => Ok(format!("rejected: {why}")),
-        Ok(said) => Err(format!("not noticed: {said}")),
-    }
-}
 
 /// `factor` times the distance from a circle, whose gradient has the length `factor`.
 struct Round {
@@ -290,8 +278,8 @@ fn pascal(n: usize) -> LowerTriangle<Twofold> {
     LowerTriangle { starts, rows, values }
 }
 
-/// A system of which doubles know next to nothing: the solution is one of whole numbers, to 1e-9; and what is not definite has
-/// no factor. The planted mistake is the factor in doubles.
+/// A system of which doubles know next to nothing. The solution is one of whole numbers, to 2e-16: the condition number is
+/// below 1e14, times 24 and 2^-104. What is not definite has no factor. The planted mistake is the factor in doubles.
 fn factored(in_doubles: bool) -> Outcome {
     let n = 24;
     let matrix = pascal(n);
@@ -317,7 +305,7 @@ fn factored(in_doubles: bool) -> Outcome {
         TwofoldFactor::new(&matrix).map_err(|_| "no factor")?.solve(&mut x);
     }
     let far = x.iter().zip(&expected).map(|(x, e)| (x - e).abs()).fold(0.0, f64::max);
-    if !(far <= 1e-9) {
+    if !(far <= 2e-16) {
         return Err(format!("the solution is off by {far:e}"));
     }
     let mut indefinite = pascal(n);

@@ -18,7 +18,7 @@ use signorini::solve::system::System;
 use signorini::solve::{Method, Settings, Solution, SolveError, discretize, solve_discrete};
 
 use super::assembled::solver::unsolved;
-use crate::claim::Outcome;
+use crate::claim::{Outcome, noticed, text};
 use crate::proof::sampler::Random;
 use crate::{draws, sharpness};
 
@@ -144,10 +144,10 @@ fn told<E, const N: usize, const M: usize>(
 where
     E: ExactEdge<f64, N, M>,
 {
-    let d = discretize::<E, N, M>(problem, &Method::default()).map_err(|e| e.to_string())?;
+    let d = discretize::<E, N, M>(problem, &Method::default()).map_err(text)?;
     let settings = Settings::default();
-    let (Evaluated { u, .. }, _, _) = solve_discrete(&d, &settings).map_err(|e| e.to_string())?;
-    let system = System::new(&d).map_err(|e| e.to_string())?;
+    let (Evaluated { u, .. }, _, _) = solve_discrete(&d, &settings).map_err(text)?;
+    let system = System::new(&d).map_err(text)?;
     let mut random = Random::new(draws::seed());
     let target = system.numbering.gather(&u);
     let mut away = d.constraints.lift();
@@ -159,8 +159,7 @@ where
     let scale = FIRST * size(&u) / size(&only);
     error.iter_mut().for_each(|e| *e *= scale);
     let mut route = Known { system: &system, target, error, shares: shares.to_vec(), passes: 0 };
-    let outcome =
-        accuracy::refine(&system, &mut route, forces(&d), &settings).map_err(|e| e.to_string())?;
+    let outcome = accuracy::refine(&system, &mut route, forces(&d), &settings).map_err(text)?;
     away.copy_from_slice(&outcome.u);
     let difference: Vec<[f64; 2]> =
         away.iter().zip(&u).map(|(a, b)| [a[0] - b[0], a[1] - b[1]]).collect();
@@ -258,14 +257,6 @@ pub fn forward_error_too_small() -> Outcome {
     noticed(forward_error_is_told(1e-3))
 }
 
-/// A planted mistake must not pass.
-fn noticed(outcome: Outcome) -> Outcome {
-    match outcome {
-        Err(why) => Ok(format!("rejected: {why}")),
-        Ok(said) => Err(format!("not noticed: {said}")),
-    }
-}
-
 /// The von Mises stress of a mean stress by its principal stresses, sigma_zz from Hooke's law; `plane` may be a mistake.
 fn von_mises(material: &Material<f64>, plane: Plane, [xx, yy, xy]: [f64; 3]) -> f64 {
     let (middle, radius) = ((xx + yy) / 2.0, ((xx - yy) / 2.0).hypot(xy));
@@ -283,7 +274,7 @@ fn stresses_on<E, const N: usize, const M: usize>(
 where
     E: ExactEdge<f64, N, M>,
 {
-    let d = discretize::<E, N, M>(problem, &Method::default()).map_err(|e| e.to_string())?;
+    let d = discretize::<E, N, M>(problem, &Method::default()).map_err(text)?;
     let mut random = Random::new(draws::seed());
     let u = field(d.space.nodes().len(), &mut random);
     let solution = Solution::new(&d, Evaluated::new(&d, u.clone()), unsolved());
@@ -396,7 +387,7 @@ fn magnitudes_on<E, const N: usize, const M: usize>(
 where
     E: ExactEdge<f64, N, M>,
 {
-    let d = discretize::<E, N, M>(problem, &Method::default()).map_err(|e| e.to_string())?;
+    let d = discretize::<E, N, M>(problem, &Method::default()).map_err(text)?;
     let nodes = d.space.nodes().len();
     let mut random = Random::new(draws::seed());
     let u = field(nodes, &mut random);

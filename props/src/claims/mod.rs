@@ -11,6 +11,7 @@ pub mod balls;
 pub mod bounds;
 #[cfg(not(kani))]
 pub mod certificate;
+pub mod checker;
 #[cfg(not(kani))]
 pub mod conditions;
 pub mod constants;
@@ -19,6 +20,8 @@ pub mod curved;
 #[cfg(not(kani))]
 pub mod directions;
 pub mod discrete_forms;
+#[cfg(not(kani))]
+pub mod distance;
 #[cfg(not(kani))]
 pub mod enclosed;
 #[cfg(not(kani))]
@@ -80,6 +83,7 @@ pub fn all() -> Vec<Claim> {
         parts::recovered(),
         engine::claim(),
         bounds::claim(),
+        distance::claim(),
     ];
     claims.sort_by_key(|claim| claim.id.parse::<u32>().expect("the id of a row is a number"));
     claims
@@ -140,5 +144,6 @@ mod tests {
         every_check_of_row_22_passes "22",
         every_check_of_row_23_passes "23",
         every_check_of_row_24_passes "24",
+        every_check_of_row_25_passes "25",
     }
 }

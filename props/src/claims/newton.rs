@@ -9,7 +9,7 @@ use signorini::solve::accuracy::{self, Outcome as Solved};
 use signorini::solve::newton::{self, Derivatives, Edges, Residual, Start, Step, Until};
 use signorini::solve::{Settings, SolveError, Status};
 
-use crate::claim::{Claim, Engine, Outcome, by, control};
+use crate::claim::{Claim, Engine, Outcome, by, control, noticed, text};
 use crate::claims::{conditions, honesty};
 use crate::verdict::Verdict;
 use crate::{draws, ensure};
@@ -141,7 +141,7 @@ const MOST: usize = 60;
 fn ends(body: &mut Body, first: bool) -> Result<(f64, usize), String> {
     let mut residuals = Vec::new();
     let until = Until { steps: MOST, residual: 0.0 };
-    newton::minimise(&Springs, body, first, &mut residuals, until).map_err(|e| e.to_string())?;
+    newton::minimise(&Springs, body, first, &mut residuals, until).map_err(text)?;
     let at = newton::derivatives(&Springs, newton::Body::y(body));
     let Residual { norm, noise } = newton::Body::residual(body, &at);
     Ok((norm / noise, residuals.len()))
@@ -166,10 +166,7 @@ fn ends_where_full_steps_cycle() -> Outcome {
 }
 
 fn full_steps_cycle() -> Outcome {
-    the_cycle(true).map_or_else(
-        |why| Ok(format!("rejected: {why}")),
-        |said| Err(format!("full steps end: {said}")),
-    )
+    noticed(the_cycle(true))
 }
 
 /// Any symmetric positive definite B = R R^T + 1/10, f, and start.
@@ -256,10 +253,7 @@ fn verdict() -> Outcome {
 }
 
 fn everything_is_accepted() -> Outcome {
-    verdict_is_honest(f64::INFINITY).map_or_else(
-        |why| Ok(format!("rejected: {why}")),
-        |said| Err(format!("not noticed: {said}")),
-    )
+    noticed(verdict_is_honest(f64::INFINITY))
 }
 
 /// The row.

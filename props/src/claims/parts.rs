@@ -28,7 +28,7 @@ use signorini::solve::solution::ContactValues;
 use signorini::solve::{ContactQuadrature, Degree, Method, Settings, Solution, discretize, solve};
 
 use crate::bodies::{Body, Draw, Kernel, bodies, sum};
-use crate::claim::{Claim, Engine, Outcome, by, control, proved, refuted};
+use crate::claim::{Claim, Engine, Outcome, by, control, noticed, proved, refuted, text};
 use crate::claims::geometry;
 use crate::draws;
 use crate::numbers::Exact;
@@ -352,13 +352,13 @@ fn problem<const K: usize>(
 
 fn square(n: usize, diagonal: Diagonal) -> Result<Mesh, String> {
     let cells = Rectangle { width: 1.0, height: 1.0, nx: n, ny: n, diagonal };
-    cells.mesh().map_err(|e| e.to_string())
+    cells.mesh().map_err(text)
 }
 
 fn solved(problem: &Problem, degree: Degree) -> Result<Solution, String> {
     let method = Method { degree, quadrature: ContactQuadrature::Exact, ..Method::default() };
     let solved = solve(problem, &method, &Settings::default());
-    solved.map(|(solution, _)| solution).map_err(|e| e.to_string())
+    solved.map(|(solution, _)| solution).map_err(text)
 }
 
 /// On a straight line without an obstacle the functionals of the solver are those of the paper, bit for bit.
@@ -370,10 +370,10 @@ fn straight_lines_are_the_papers() -> Outcome {
         let conditions = [("top", prescribed(0.0, -0.2)), ("bottom", contact)];
         let problem = problem(square(7, diagonal)?, material, conditions);
         let (one, two) = (Method { degree: Degree::One, ..Method::default() }, Method::default());
-        let d = discretize::<P1, 3, 2>(&problem, &one).map_err(|e| e.to_string())?;
+        let d = discretize::<P1, 3, 2>(&problem, &one).map_err(text)?;
         edges += same_bits::<P1, 3, 2>(&problem, &d.contact)?;
         let two = Method { degree: Degree::Two, ..two };
-        let d = discretize::<P2, 6, 3>(&problem, &two).map_err(|e| e.to_string())?;
+        let d = discretize::<P2, 6, 3>(&problem, &two).map_err(text)?;
         edges += same_bits::<P2, 6, 3>(&problem, &d.contact)?;
     }
     Ok(format!("{edges} edges"))
@@ -435,7 +435,7 @@ fn peak_of_a_ring(n: usize, facets: bool) -> Result<f64, String> {
         named.push(("pin".to_owned(), around(0)));
         conditions.insert("pin".to_owned(), Condition::Obstacle("pin".to_owned(), pin));
     }
-    let mesh = Mesh::new(vertices.collect(), triangles, named).map_err(|e| e.to_string())?;
+    let mesh = Mesh::new(vertices.collect(), triangles, named).map_err(text)?;
     let material = Material::lame(1.0, 1.0, Plane::Strain);
     let problem = Problem::new(mesh, material, [constant(0.0), constant(0.0)], conditions);
     let solution = solved(&problem, Degree::One)?;
@@ -458,13 +458,6 @@ fn error_of_the_peak_falls(facets: bool) -> Outcome {
 
 fn pressure_on_a_circle_converges() -> Outcome {
     error_of_the_peak_falls(false)
-}
-
-fn noticed(outcome: Outcome) -> Outcome {
-    match outcome {
-        Ok(what) => Err(format!("accepted: {what}")),
-        Err(why) => Ok(format!("rejected: {why}")),
-    }
 }
 
 fn normals_of_facets() -> Outcome {
@@ -702,7 +695,7 @@ fn constants_are_own(with_one: bool) -> Outcome {
     );
     let mut lengths: BTreeMap<usize, f64> = BTreeMap::new();
     for name in ["bottom", "left"] {
-        for &edge in problem.mesh.edges_of(name).map_err(|e| e.to_string())? {
+        for &edge in problem.mesh.edges_of(name).map_err(text)? {
             *lengths.entry(edge.triangle).or_default() += problem.mesh.length_and_normal(edge).0;
         }
     }
@@ -715,8 +708,8 @@ fn constants_are_own(with_one: bool) -> Outcome {
         lengths.iter().map(of).fold(0.0, f64::max)
     };
     let found = [
-        Coercivity::new::<P1, 3, 2>(&problem).map_err(|e| e.to_string())?.constant,
-        Coercivity::new::<P2, 6, 3>(&problem).map_err(|e| e.to_string())?.constant,
+        Coercivity::new::<P1, 3, 2>(&problem).map_err(text)?.constant,
+        Coercivity::new::<P2, 6, 3>(&problem).map_err(text)?.constant,
     ];
     for (found, expected) in found.into_iter().zip([largest(1.0), largest(3.0)]) {
         if !((found / expected - 1.0).abs() < 1e-14) {

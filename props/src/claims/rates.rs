@@ -15,7 +15,7 @@ use signorini::kernel::{Material, Plane};
 use signorini::solve::ladder::fitted_slope;
 use signorini::solve::{Degree, Ladder, Method, Settings, Theorem};
 
-use crate::claim::{Claim, Engine, Outcome, by, control};
+use crate::claim::{Claim, Engine, Outcome, by, control, noticed, text};
 
 /// Cells a side on the coarsest mesh, and how many meshes.
 const COARSEST: usize = 4;
@@ -87,11 +87,11 @@ pub fn bodies_with_a_known_error() -> Result<[(&'static str, Ladder); 3], String
 
 /// The slopes of the energy, contact and normal stress errors.
 fn slopes(ladder: Ladder) -> Result<[f64; 3], String> {
-    let ladder = ladder.with_one_gamma0(LEVELS).map_err(|e| e.to_string())?;
+    let ladder = ladder.with_one_gamma0(LEVELS).map_err(text)?;
     let mut h = Vec::new();
     let mut errors: Vec<Errors> = Vec::new();
     for level in 0..LEVELS {
-        let (level, _, _) = ladder.solve(level).map_err(|e| e.to_string())?;
+        let (level, _, _) = ladder.solve(level).map_err(text)?;
         h.push(level.h);
         errors.push(level.errors);
     }
@@ -124,14 +124,6 @@ fn wedge_rates() -> Outcome {
     wedge_rates_are(0.0)
 }
 
-/// A planted mistake must not pass.
-fn noticed(outcome: Outcome) -> Outcome {
-    match outcome {
-        Err(why) => Ok(format!("rejected: {why}")),
-        Ok(said) => Err(format!("not noticed: {said}")),
-    }
-}
-
 /// The rate that a solution smoother by 0.2 would have.
 fn wedge_rates_too_high() -> Outcome {
     noticed(wedge_rates_are(0.2))
@@ -150,9 +142,8 @@ fn both_sides(scale: f64) -> Outcome {
     let mut least = f64::INFINITY;
     for degree in [Degree::One, Degree::Two] {
         for ladder in [wedge(degree)?.0, end_of_contact(degree)] {
-            let (_, problem, solution) = ladder.solve(1).map_err(|e| e.to_string())?;
-            let t =
-                Theorem::new(&problem, &solution, &*ladder.solution).map_err(|e| e.to_string())?;
+            let (_, problem, solution) = ladder.solve(1).map_err(text)?;
+            let t = Theorem::new(&problem, &solution, &*ladder.solution).map_err(text)?;
             let (left, right) = (scale * t.left(), t.plain());
             // Both sides are integrals known to 1e-9.
             if !(left <= right * (1.0 + 1e-9)) {
@@ -179,9 +170,8 @@ fn nearest(other: impl Fn(&Theorem) -> f64) -> Outcome {
     let mut least = f64::INFINITY;
     for degree in [Degree::One, Degree::Two] {
         for ladder in [wedge(degree)?.0, end_of_contact(degree)] {
-            let (_, problem, solution) = ladder.solve(1).map_err(|e| e.to_string())?;
-            let t =
-                Theorem::new(&problem, &solution, &*ladder.solution).map_err(|e| e.to_string())?;
+            let (_, problem, solution) = ladder.solve(1).map_err(text)?;
+            let t = Theorem::new(&problem, &solution, &*ladder.solution).map_err(text)?;
             let (projection, other) = (t.projection.energy, other(&t));
             // Both are integrals known to 1e-9.
             if !(projection <= other * (1.0 + 1e-9)) {

@@ -24,20 +24,12 @@ use signorini::kernel::{EdgeIntegrals, Element, Material, P1, P2, Plane, positiv
 use signorini::nalgebra::Matrix2;
 use signorini::solve::{ContactQuadrature, Degree, Gamma0, Method, SolveError, discretize};
 
-use crate::claim::{Claim, Engine, Outcome, by, control};
+use crate::claim::{Claim, Engine, Outcome, by, control, noticed, text};
 use crate::claims::{conditions, rates};
 use crate::numbers::Exact;
 use crate::proof::sampler::Random;
 use crate::verdict::Verdict;
 use crate::{draws, ensure, sharpness};
-
-/// A planted mistake must not pass.
-fn noticed(outcome: Outcome) -> Outcome {
-    match outcome {
-        Err(why) => Ok(format!("rejected: {why}")),
-        Ok(said) => Err(format!("not noticed: {said}")),
-    }
-}
 
 /// The verdict on gamma0 = `share` times the limit, and kappa where it is taken.
 fn kappa_at<E, const N: usize, const M: usize>(
@@ -64,7 +56,7 @@ where
     E: ExactEdge<f64, N, M>,
 {
     let method = Method::default();
-    let d = discretize::<E, N, M>(problem, &method).map_err(|e| e.to_string())?;
+    let d = discretize::<E, N, M>(problem, &method).map_err(text)?;
     let most = d.coercivity.limit();
     for share in [1e-6, 0.5, 0.999, 1.0 - 1e-9, 1.0 + 1e-9, 1.001, 1.5, 1.999, 10.0] {
         let found = kappa_at::<E, N, M>(problem, Gamma0::Value(share * most))?;
@@ -107,7 +99,7 @@ fn constant(value: f64) -> BoxedFunction {
 /// Whether two sides that meet in a vertex, and prescribe values that differ by `by` there, are refused.
 fn disagreement(by: f64, component: usize) -> Result<bool, String> {
     let cells = Rectangle { width: 1.0, height: 1.0, nx: 2, ny: 2, diagonal: Diagonal::Right };
-    let mesh = cells.mesh().map_err(|e| e.to_string())?;
+    let mesh = cells.mesh().map_err(text)?;
     let sides = [("top", 0.0), ("left", by)].map(|(name, value)| {
         let values = [0, 1].map(|c| Some(constant(1.0 + if c == component { value } else { 0.0 })));
         (name.to_owned(), Condition::Displacement(values))
@@ -195,9 +187,7 @@ fn rule_is_the_one_asked_for() -> Outcome {
     let bodies = sharpness::small_bodies()?;
     let rule = |quadrature| {
         let method = Method { quadrature, ..Method::default() };
-        discretize::<P1, 3, 2>(&bodies[0].problem, &method)
-            .map(|d| d.rule)
-            .map_err(|e| e.to_string())
+        discretize::<P1, 3, 2>(&bodies[0].problem, &method).map(|d| d.rule).map_err(text)
     };
     if rule(ContactQuadrature::Exact)? != EdgeRule::Exact {
         return Err("not exact".to_owned());
@@ -329,7 +319,7 @@ impl ExactSolution for Quadratic {
 /// difference: int_0^1 of products of polynomials by their end and middle values. `inverted` takes gamma for 1/gamma.
 fn errors_on(problem: &Problem, sign: f64, inverted: bool) -> Result<(), String> {
     let method = Method { degree: Degree::Two, ..Method::default() };
-    let d = discretize::<P2, 6, 3>(problem, &method).map_err(|e| e.to_string())?;
+    let d = discretize::<P2, 6, 3>(problem, &method).map_err(text)?;
     let mut random = Random::new(draws::seed());
     let mut number = || random.below(2001) as f64 / 1000.0 - 1.0;
     let exact = Quadratic {

@@ -50,6 +50,8 @@ pub enum Refusal {
     NotAnEquation,
     /// No product is strictly positive.
     NothingStrict,
+    /// A product has a power that its exponents can't hold.
+    PowerTooLarge,
     /// The sum is not zero.
     DoesNotCancel,
 }
@@ -73,10 +75,11 @@ pub fn check(facts: &[Fact], certificate: &Certificate) -> Result<(), Refusal> {
                 return Err(Refusal::NotAnInequality);
             }
             positive &= fact.sense == Sense::Positive;
-            product = &product * &fact.polynomial;
+            product = product.times(&fact.polynomial).ok_or(Refusal::PowerTooLarge)?;
         }
         for square in &term.squares {
-            product = &(&product * square) * square;
+            let once = product.times(square);
+            product = once.and_then(|p| p.times(square)).ok_or(Refusal::PowerTooLarge)?;
         }
         strict |= positive;
         sum = &sum + &product;
@@ -86,7 +89,8 @@ pub fn check(facts: &[Fact], certificate: &Certificate) -> Result<(), Refusal> {
         if fact.sense != Sense::Zero {
             return Err(Refusal::NotAnEquation);
         }
-        sum = &sum + &(multiplier * &fact.polynomial);
+        let multiple = multiplier.times(&fact.polynomial).ok_or(Refusal::PowerTooLarge)?;
+        sum = &sum + &multiple;
     }
     match (strict, sum.is_zero()) {
         (false, _) => Err(Refusal::NothingStrict),
@@ -135,6 +139,23 @@ mod tests {
             fact(square.clone(), Sense::Zero),
             fact(-&square, Sense::Nonnegative),
         ]
+    }
+
+    #[test]
+    fn a_product_with_a_power_too_large_is_refused_and_not_searched() {
+        let high = Polynomial::term(vec![40_000], integer(1));
+        let positive = [fact(high.clone(), Sense::Positive), fact(-&x(), Sense::Positive)];
+        let too_large = Err(Refusal::PowerTooLarge);
+        for certificate in [
+            Certificate::default().with(1, &[0, 0], &[]),
+            Certificate::default().with(1, &[], std::slice::from_ref(&high)),
+        ] {
+            assert_eq!(check(&positive, &certificate), too_large);
+        }
+        let zero = [fact(high.clone(), Sense::Zero), fact(high.clone(), Sense::Positive)];
+        let multiple = Certificate { terms: vec![], multiples: vec![(high, 0)] };
+        assert_eq!(check(&zero, &multiple), too_large);
+        assert!(crate::proof::search::search(&positive, 1, &[]).is_none());
     }
 
     fn verdict(certificate: &Certificate) -> Result<(), Refusal> {

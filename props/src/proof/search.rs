@@ -72,7 +72,7 @@ fn attempt(facts: &[Fact], degree: usize, squares: &[Polynomial]) -> Option<Cert
         .map(|(i, fact)| (i, &fact.polynomial))
         .collect();
     let multipliers = multipliers(&products, &equations);
-    let rows = rows(&products, &equations, &multipliers);
+    let rows = rows(&products, &equations, &multipliers)?;
     let (weights, free) = weights(rows, &products)?;
     let terms = products
         .iter()
@@ -92,7 +92,7 @@ fn attempt(facts: &[Fact], degree: usize, squares: &[Polynomial]) -> Option<Cert
     Some(Certificate { terms, multiples })
 }
 
-/// All products of at most `degree` factors; nothing if there are too many.
+/// All products of at most `degree` factors; nothing if there are too many, or one has a power too large.
 fn products(facts: &[Fact], degree: usize, squares: &[Polynomial]) -> Option<Vec<Product>> {
     let inequalities = facts.iter().enumerate().filter(|(_, f)| f.sense != Sense::Zero);
     let mut factors: Vec<Factor<'_>> = inequalities.map(|(i, f)| Factor::Fact(i, f)).collect();
@@ -106,7 +106,7 @@ fn products(facts: &[Fact], degree: usize, squares: &[Polynomial]) -> Option<Vec
         for &(of, from) in &last {
             for (i, factor) in factors.iter().enumerate().skip(from) {
                 longer.push((all.len(), i));
-                all.push(all[of].times(factor));
+                all.push(all[of].times(factor)?);
                 if all.len() > MOST_PRODUCTS {
                     return None;
                 }
@@ -118,18 +118,19 @@ fn products(facts: &[Fact], degree: usize, squares: &[Polynomial]) -> Option<Vec
 }
 
 impl Product {
-    fn times(&self, factor: &Factor<'_>) -> Product {
+    fn times(&self, factor: &Factor<'_>) -> Option<Product> {
         let (mut facts, mut squares) = (self.facts.clone(), self.squares.clone());
         match factor {
             Factor::Fact(i, fact) => {
                 facts.push(*i);
                 let strict = self.strict && fact.sense == Sense::Positive;
-                Product { facts, squares, value: &self.value * &fact.polynomial, strict }
+                let value = self.value.times(&fact.polynomial)?;
+                Some(Product { facts, squares, value, strict })
             }
             Factor::Square(root) => {
                 squares.push((*root).clone());
-                let value = &(&self.value * root) * root;
-                Product { facts, squares, value, strict: false }
+                let value = self.value.times(root)?.times(root)?;
+                Some(Product { facts, squares, value, strict: false })
             }
         }
     }
@@ -149,8 +150,12 @@ fn multipliers(products: &[Product], equations: &[(usize, &Polynomial)]) -> Vec<
                     if found.len() >= MOST_MULTIPLIERS {
                         return found.into_iter().collect();
                     }
-                    new_targets.extend(equation.terms().map(|(m, _)| product(m, &multiplier)));
-                    found.insert((multiplier, j));
+                    let multiple: Option<Vec<Monomial>> =
+                        equation.terms().map(|(m, _)| product(m, &multiplier)).collect();
+                    if let Some(multiple) = multiple {
+                        new_targets.extend(multiple);
+                        found.insert((multiplier, j));
+                    }
                 }
             }
         }
@@ -159,12 +164,13 @@ fn multipliers(products: &[Product], equations: &[(usize, &Polynomial)]) -> Vec<
     found.into_iter().collect()
 }
 
-/// One row per monomial; the products are the first columns, the multiples of equations follow.
+/// One row per monomial; the products are the first columns, the multiples of equations follow. Nothing if a multiple has a
+/// power too large.
 fn rows(
     products: &[Product],
     equations: &[(usize, &Polynomial)],
     multipliers: &[(Monomial, usize)],
-) -> Vec<Row> {
+) -> Option<Vec<Row>> {
     let mut rows: BTreeMap<Monomial, Row> = BTreeMap::new();
     for (column, product) in products.iter().enumerate() {
         for (monomial, coefficient) in product.value.terms() {
@@ -173,11 +179,11 @@ fn rows(
     }
     for (i, (multiplier, j)) in multipliers.iter().enumerate() {
         for (monomial, coefficient) in equations[*j].1.terms() {
-            let row = rows.entry(product(monomial, multiplier)).or_default();
+            let row = rows.entry(product(monomial, multiplier)?).or_default();
             row.insert(products.len() + i, coefficient.clone());
         }
     }
-    rows.into_values().collect()
+    Some(rows.into_values().collect())
 }
 
 /// Weights of the products (not negative, the strict ones adding up to 1) and of the other columns that satisfy the

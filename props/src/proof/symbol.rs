@@ -3,7 +3,7 @@
 //! A run knows for each (monic) polynomial that was asked about which signs are still possible on this path. A question
 //! whose answer is implied forks nothing; any other is answered one way now and the other ways in later runs, and the
 //! answer is remembered. A division by something that isn't a constant asks whether it is zero: the path on which it is
-//! has failed; on the others a new variable stands for the inverse.
+//! has failed; on the others a new variable stands for the inverse. A path on which a power grows too large has failed too.
 //!
 //! Trusted: `ask` and the operators decide which paths there are.
 
@@ -106,6 +106,9 @@ pub(super) struct Run {
     pub(super) failed: Option<&'static str>,
 }
 
+/// Why a path fails on which a number is multiplied so often that its power can't be kept: nothing is proved of it.
+const TOO_LARGE: &str = "a power beyond 2^16";
+
 thread_local! {
     static RUN: RefCell<Run> = RefCell::new(Run::default());
     /// How many runs were started: each has a number of its own, and 0 belongs to none.
@@ -185,8 +188,10 @@ impl Run {
         self.steps.push(Step::Inverted(monic.clone(), variable));
         let x = Polynomial::variable(variable);
         let one = Polynomial::constant(integer(1));
-        let (definition, _) = (&(monic * &x) - &one).monic();
-        self.signs.insert(definition, Signs::ZERO);
+        // x is new, so no power grows.
+        if let Some(product) = monic.times(&x) {
+            self.signs.insert((&product - &one).monic().0, Signs::ZERO);
+        }
         if let Some(&sign) = self.signs.get(monic) {
             self.signs.insert(x, sign);
         }
@@ -196,6 +201,15 @@ impl Run {
     fn value(&self, symbol: Sym) -> &Polynomial {
         assert_eq!(symbol.run, self.number, "a symbol outlived its run");
         &self.values[symbol.index as usize]
+    }
+
+    /// Keeps a value; where there is none, the path fails.
+    fn keep_or_fail(&mut self, value: Result<Polynomial, &'static str>) -> Sym {
+        let value = value.unwrap_or_else(|why| {
+            self.failed.get_or_insert(why);
+            Polynomial::default()
+        });
+        self.keep(value)
     }
 
     fn keep(&mut self, value: Polynomial) -> Sym {
@@ -264,7 +278,10 @@ impl Mul for Sym {
     type Output = Sym;
 
     fn mul(self, other: Sym) -> Sym {
-        self.combined(other, |a, b| a * b)
+        RUN.with_borrow_mut(|run| {
+            let product = run.value(self).times(run.value(other)).ok_or(TOO_LARGE);
+            run.keep_or_fail(product)
+        })
     }
 }
 
@@ -286,13 +303,10 @@ impl Div for Sym {
         RUN.with_borrow_mut(|run| {
             let (a, b) = (run.value(self).clone(), run.value(divisor).clone());
             let quotient = match run.inverse(&b) {
-                Some(inverse) => &a * &inverse,
-                None => {
-                    run.failed.get_or_insert("division by zero");
-                    Polynomial::default()
-                }
+                Some(inverse) => a.times(&inverse).ok_or(TOO_LARGE),
+                None => Err("division by zero"),
             };
-            run.keep(quotient)
+            run.keep_or_fail(quotient)
         })
     }
 }

@@ -1,0 +1,84 @@
+//! Numbers that enclose a real one, and what may be concluded from them: the comparisons of the checker of certificates. A
+//! conclusion holds for every number that is enclosed; where nothing is known, and of a NaN, nothing is concluded.
+
+use super::{Ball, Interval, Scalar};
+
+/// A number that stands for a real one: a double for a quick look, a ball or an interval for a proof, a rational for the
+/// truth.
+pub trait Enclosing: Scalar {
+    /// This double.
+    fn exactly(value: f64) -> Self;
+
+    /// The root of what is not negative.
+    fn sqrt(self) -> Self;
+
+    /// A double that it doesn't exceed.
+    fn upper(self) -> f64;
+
+    /// A double that it is not below.
+    fn lower(self) -> f64;
+
+    /// Whether it is known to be positive.
+    fn is_positive(self) -> bool {
+        self.lower() > 0.0
+    }
+
+    /// Whether it is known to be no more than `most`.
+    fn is_at_most(self, most: f64) -> bool {
+        self.upper() <= most
+    }
+}
+
+impl Enclosing for f64 {
+    fn exactly(value: f64) -> f64 {
+        value
+    }
+
+    fn sqrt(self) -> f64 {
+        f64::sqrt(self)
+    }
+
+    fn upper(self) -> f64 {
+        self
+    }
+
+    fn lower(self) -> f64 {
+        self
+    }
+}
+
+impl Enclosing for Ball {
+    fn exactly(value: f64) -> Ball {
+        Ball::point(value)
+    }
+
+    fn sqrt(self) -> Ball {
+        Ball::sqrt(self)
+    }
+
+    fn upper(self) -> f64 {
+        Ball::upper(self)
+    }
+
+    fn lower(self) -> f64 {
+        Ball::lower(self)
+    }
+}
+
+impl Enclosing for Interval {
+    fn exactly(value: f64) -> Interval {
+        Interval::point(value)
+    }
+
+    fn sqrt(self) -> Interval {
+        Interval::sqrt(self)
+    }
+
+    fn upper(self) -> f64 {
+        self.hi()
+    }
+
+    fn lower(self) -> f64 {
+        self.lo()
+    }
+}
