@@ -3,6 +3,7 @@
 
     python3 .ci/planted.py                    every mistake must be noticed by its check, and no check without one
     python3 .ci/planted.py --only TEXT        those with TEXT in their name
+    python3 .ci/planted.py --check            none is planted: only that each text is found in the sources
     python3 .ci/planted.py --survey           all rows for each: which checks notice it (hours)
 
 The sources themselves stay as they are: a copy of them is made in the target folder, in which `old` becomes
@@ -143,10 +144,14 @@ def ask(number, row=None, check=None, seconds=600):
 def main():
     arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     arguments.add_argument("--only", default="", metavar="TEXT")
+    arguments.add_argument("--check", action="store_true")
     arguments.add_argument("--survey", action="store_true")
     arguments.add_argument("--seconds", type=float, default=600)
     options = arguments.parse_args()
     entries = [e for e in mistakes(ROOT / "props/planted.toml") if options.only in e["name"]]
+    if options.check:
+        print(f"{len(entries)} mistakes, each found in the sources")
+        return
     table, bad, asked = [], 0, set()
     for group in batches(entries):
         plant(group)

@@ -1,5 +1,5 @@
 // A quarter of a plate with a hole of radius 20, which sits on a rigid pin of the same radius.
-// The mesh is made by: gmsh -2 -format msh41 -o pin.msh pin.geo   (Gmsh 4.15.2)
+// The mesh is made by: gmsh -2 -format msh41 -o pin.msh pin.geo   (Gmsh 4.8.4)
 
 DefineConstant[h = 1.5];                    // the edges on the hole
 
@@ -23,16 +23,9 @@ Physical Curve("symmetry") = {4};
 Physical Curve("cut") = {1};
 Physical Surface("plate") = {1};
 
-// Edges of h on the hole, growing to 5 h away from it.
-Field[1] = Distance;
-Field[1].CurvesList = {5};
-Field[1].Sampling = 200;
-Field[2] = Threshold;
-Field[2].InField = 1;
-Field[2].DistMin = h;
-Field[2].SizeMin = h;
-Field[2].DistMax = 40;
-Field[2].SizeMax = 5*h;
-Background Field = 2;
+// Edges of h on the hole, growing to 5 h at 40 from it.
+Field[1] = MathEval;
+Field[1].F = Sprintf("%g*(1 + (Sqrt(x*x + y*y) - 20)/10)", h);
+Background Field = 1;
 Mesh.MeshSizeExtendFromBoundary = 0;
 Mesh.MeshSizeFromPoints = 0;

@@ -104,6 +104,14 @@ PARTS = {  # name: (what is in it, material, the rest)
                    '[obstacle.floor]\nplane = { point = [0, -0.08], normal = [-0.03, 1] }\n\n[point.peg]\ndisplacement = [0, "free"]\n\n'
                    '[boundary.top]\ndisplacement = ["free", "-0.05 - 0.01*x"]\ntraction = ["0.02*x", 0]\n\n'
                    '[boundary.right]\npressure = "0.03*(1 + y)"\n\n[boundary.bottom]\ncontact = { obstacle = "floor" }'),
+    "lug": ("two materials, contact with a floor, a wall and a pin in a bore, pressure on a fillet",
+            'plane = "strain"\n\n[material.rubber]\nyoung = 20\npoisson = 0.45\n\n[material.steel]\nyoung = 210000\npoisson = 0.3',
+            '[load.steel]\nbody = [0, -0.05]\n\n[obstacle.floor]\nplane = { point = [0, 0.01], normal = [0, 1] }\n\n'
+            '[obstacle.wall]\nplane = { point = [0, 0], normal = [2, 0] }\n\n'
+            '[obstacle.pin]\ncircle = { center = [8, 30.005], radius = 3.99, side = "outside" }\n\n[boundary.base]\n'
+            'contact = { obstacle = "floor" }\n\n[boundary.back]\ncontact = { obstacle = "wall" }\n\n[boundary.bore]\n'
+            'contact = { obstacle = "pin" }\n\n[boundary.fillet]\npressure = 3\n\n[boundary.right]\ntraction = [-2, 0]\n\n'
+            '[boundary.top]\ndisplacement = [-0.004, -0.01]'),
     "seat": ("a shaft in a bearing, pushed along the normal of its chord, held at a point", "lambda = 1.5\nmu = 1.0",
              '[obstacle.bearing]\ncircle = { center = [0.005, -0.01], radius = 1.02, side = "inside" }\n\n[point.key]\n'
              'displacement = [0.01, "free"]\n\n[boundary.chord]\nnormal = "-0.05 + 0.01*x"\n\n[boundary.arc]\ncontact = { obstacle = "bearing" }'),

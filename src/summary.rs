@@ -91,16 +91,18 @@ pub fn solved(r: &Results, files: &[PathBuf]) -> String {
             ),
         );
         if contact.length > 0.0 {
-            lines.line(
-                "",
-                format!(
-                    "peak pressure {}{stress} at {}, penetration {}{length} at {}",
-                    short(contact.peak_pressure),
-                    vector(contact.peak_at),
-                    short(contact.penetration),
-                    vector(contact.penetration_at)
-                ),
-            );
+            let place = |place: [f64; 2]| match place {
+                [x, y] if x.is_finite() && y.is_finite() => format!(" at {}", vector(place)),
+                // The reference in FEniCSx does not say.
+                _ => String::new(),
+            };
+            let mut words = format!("peak pressure {}{stress}", short(contact.peak_pressure));
+            words += &place(contact.peak_at);
+            if contact.penetration.is_finite() {
+                words += &format!(", penetration {}{length}", short(contact.penetration));
+                words += &place(contact.penetration_at);
+            }
+            lines.line("", words);
         }
     }
     for (i, (boundary, reaction)) in q.reactions.iter().enumerate() {

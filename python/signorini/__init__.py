@@ -48,8 +48,10 @@ class Contact:
     """The initial gap g along n."""
     sigma_n: Floats
     """The normal stress, negative in compression."""
+    lambda_h: Floats
+    """lambda^h = -(1/gamma) [P]+, which jumps from edge to edge."""
     pressure: Floats
-    """The contact pressure -lambda, never negative: the one to report."""
+    """The recovered contact pressure, never negative: the one to report."""
 
 
 @dataclass(frozen=True)
@@ -196,6 +198,7 @@ def _solution(raw: _signorini.Raw) -> Solution:
             u_n=floats("u_n", -1),
             gap=floats("gap", -1),
             sigma_n=floats("sigma_n", -1),
+            lambda_h=floats("lambda_h", -1),
             pressure=floats("pressure", -1),
         ),
         results=json.loads(raw["results"]),

@@ -20,6 +20,7 @@ class Raw(TypedDict):
     u_n: bytes
     gap: bytes
     sigma_n: bytes
+    lambda_h: bytes
     pressure: bytes
     results: str
 

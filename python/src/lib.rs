@@ -143,8 +143,8 @@ fn raw<'py>(py: Python<'py>, solved: &Solved) -> PyResult<Bound<'py, PyDict>> {
     floats("u_n", &mut points().map(|p| p.u_n))?;
     floats("gap", &mut points().map(|p| p.gap))?;
     floats("sigma_n", &mut points().map(|p| p.sigma_n))?;
-    // + 0 makes a positive zero of a negative one.
-    floats("pressure", &mut points().map(|p| -p.lambda + 0.0))?;
+    floats("lambda_h", &mut points().map(|p| p.lambda))?;
+    floats("pressure", &mut points().map(|p| p.pressure))?;
     dict.set_item("results", results)?;
     Ok(dict)
 }

@@ -45,6 +45,9 @@ def test_a_case_file_gives_arrays_that_fit_together():
     assert solution.stress.shape == (128, 4) and solution.von_mises.shape == (128,)
     assert solution.contact.arc.shape == solution.contact.pressure.shape == (16,)
     assert (solution.contact.pressure >= 0).all() and solution.contact.pressure.max() > 1
+    # The pressure is the recovered one, of the summary and contact.csv; lambda^h is beside it.
+    assert solution.contact.pressure.max() == solution.results["contact"][0]["peak_pressure"]
+    assert -solution.contact.lambda_h.min() == solution.results["quantities"]["peak_pressure"] != solution.contact.pressure.max()
     largest = np.hypot(*solution.displacement.T).max()
     assert largest == pytest.approx(solution.results["quantities"]["max_displacement"], rel=1e-15)
     # The contact line is the bottom, from left to right.

@@ -188,7 +188,8 @@ class ContactEdges:
 
     def boundaries(self, u):
         """For each contact boundary the force, resultant, moment about the origin and length of contact, and the largest recovered
-        pressure: at each node the mean of -lambda^h weighted by the hat function of the line's nodes (docs/parts.md)."""
+        pressure: at each node the mean of -lambda^h weighted by its hat function, for P2 on half edges where the line is straight
+        (docs/parts.md)."""
         P = self.P(u)
         forces, w, active = self._forces(P)
         at = np.linspace(0, 1, self.p + 1)
@@ -197,9 +198,12 @@ class ContactEdges:
         moments = np.sum(places[..., 0] * vectors[..., 1] - places[..., 1] * vectors[..., 0], axis=1)
         s, fine, (pressed, _) = self.rule(P, np.tile(2 * at - 1, (len(P), 1)))  # cut at the middle, too
         pressure = np.where(pressed, self.at(P, s), 0) / self.gamma[:, None]
-        hats = np.maximum(0, 1 - self.p * np.abs(s[..., None] - at))
+        is_end = (at == 0) | (at == 1)
+        curved = np.array([self.problem.smooth.oriented(*ends) in self.problem.smooth.ends for ends in self.vertices], bool)[:, None]
+        slope = np.where(curved, 1, self.p)[..., None]
+        hats = np.maximum(0, 1 - slope * np.abs(s[..., None] - at)) * (is_end | ~curved)[:, None]
         work = np.einsum("eq,eqi->ei", fine * pressure, hats)
-        weight = self.length[:, None] * np.where((at == 0) | (at == 1), 0.5, 1) / self.p
+        weight = self.length[:, None] * np.where(curved, np.where(is_end, 0.5, 0), np.where(is_end, 0.5, 1) / self.p)
         parts = zip(self.names, self.vertices, forces.sum(axis=1), vectors.sum(axis=1), moments, np.sum(w * active, axis=1), work, weight,
                     self.directions)
         parts = [part for of in self.comm.allgather(list(parts)) for part in of]
@@ -218,7 +222,7 @@ class ContactEdges:
                     at.append([n, value, size])
         sums = [sum(column) for column in zip(*(part[1:5] for part in parts))]
         return {"boundary": name, "force": float(sums[0]), "resultant": sums[1].tolist(), "moment": float(sums[2]), "length": float(sums[3]),
-                "peak_pressure": float(max(value / size for at in nodes.values() for _, value, size in at))}
+                "peak_pressure": float(max(value / size for at in nodes.values() for _, value, size in at if size > 0))}
 
     def _largest(self, P):
         """The maximum of P on each edge: at an end, or for p = 2 at the vertex of the parabola."""

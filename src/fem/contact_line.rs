@@ -35,6 +35,8 @@ pub struct ContactLineEdge<const N: usize, const M: usize> {
     pub directions: [Vector2<f64>; M],
     /// Where the nodes lie on the smooth boundary, from which the gap is measured.
     pub places: [[f64; 2]; M],
+    /// The smooth boundary is curved along it: the edge is a chord.
+    pub curved: bool,
     /// The name of the boundary.
     pub boundary: Arc<str>,
     /// gamma = gamma0 h_T
@@ -241,6 +243,7 @@ pub fn assemble<E: Element<N, M>, const N: usize, const M: usize>(
             normal,
             directions,
             places,
+            curved: sight.is_curved(edge),
             boundary,
             gamma,
             gap,
@@ -264,6 +267,10 @@ impl<'a> Sight<'a> {
     /// Start (0), end (1) or middle (2) of the smooth boundary along an edge, if it is not straight there.
     fn point(&self, edge: BoundaryEdge, a: usize) -> Option<SmoothPoint> {
         self.smooth.along(&self.problem.mesh, edge).map(|points| points[a])
+    }
+
+    fn is_curved(&self, edge: BoundaryEdge) -> bool {
+        self.smooth.at_ends(edge).is_some()
     }
 
     /// Gap and direction at a point of the boundary `name`.

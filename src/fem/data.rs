@@ -40,10 +40,15 @@ pub enum DataError {
     )]
     RigidMotion { motions: Vec<FreeMotion> },
     #[error(
-        "{what} has a gradient of length {} at ({}, {}); expected a distance there, with a gradient between {least} and {most}",
+        "{what} has a gradient of length {} at ({}, {}); expected a distance there, with a gradient between {least} and {most}: divide the expression by the length of its gradient",
         number(*length), number(*x), number(*y)
     )]
     NoDistance { what: String, length: f64, x: f64, y: f64, least: f64, most: f64 },
+    #[error(
+        "{what} has no closest point to ({}, {}), its centre; expected a contact line that does not reach there",
+        number(*x), number(*y)
+    )]
+    NoClosestPoint { what: String, x: f64, y: f64 },
     #[error("the material is none: {0}")]
     Material(#[from] MaterialError),
     #[error("{what} is {found}; expected {expected}")]

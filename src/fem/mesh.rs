@@ -114,7 +114,7 @@ impl Mesh {
     pub fn surface(&self, name: &str) -> Result<&[usize], MeshError> {
         self.surfaces.get(name).map(Vec::as_slice).ok_or_else(|| MeshError::NoSuchSurface {
             name: name.to_owned(),
-            known: listed(self.surfaces.keys(), "no named surface"),
+            known: listed(self.surfaces.keys(), "none (in Gmsh a Physical Surface is one)"),
         })
     }
 
@@ -125,7 +125,7 @@ impl Mesh {
     pub fn point(&self, name: &str) -> Result<usize, MeshError> {
         self.points.get(name).copied().ok_or_else(|| MeshError::NoSuchPoint {
             name: name.to_owned(),
-            known: listed(self.points.keys(), "no named point"),
+            known: listed(self.points.keys(), "none (in Gmsh a Physical Point is one)"),
         })
     }
 
@@ -170,7 +170,7 @@ impl Mesh {
         }
         self.boundaries.get(boundary).map(Vec::as_slice).ok_or_else(|| MeshError::NoSuchBoundary {
             name: boundary.to_owned(),
-            known: listed(self.boundaries.keys(), "no named boundary"),
+            known: listed(self.boundaries.keys(), "none (in Gmsh a Physical Curve is one)"),
         })
     }
 
@@ -365,7 +365,10 @@ mod tests {
         let e = m.edges_of("flor").unwrap_err().to_string();
         assert_eq!(e, "no boundary named 'flor'; this mesh has: floor, roof");
         let e = named(&[]).unwrap().edges_of("a").unwrap_err().to_string();
-        assert_eq!(e, "no boundary named 'a'; this mesh has: no named boundary");
+        assert_eq!(
+            e,
+            "no boundary named 'a'; this mesh has: none (in Gmsh a Physical Curve is one)"
+        );
     }
 
     #[test]

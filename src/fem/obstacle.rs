@@ -108,7 +108,7 @@ impl Obstacle {
                 let out = Vector2::from(x) - Vector2::from(*center);
                 let distance = length(out);
                 if distance == 0.0 {
-                    return Err(no_distance(0.0));
+                    return Err(DataError::NoClosestPoint { what: what(), x: x[0], y: x[1] });
                 }
                 let out = out / distance;
                 Ok(match side {
@@ -227,9 +227,16 @@ mod tests {
     #[test]
     fn what_is_no_distance_is_refused_and_so_is_the_centre_of_a_circle() {
         let twice = Obstacle::Distance(Arc::new(Around(2.0)));
-        for (obstacle, x) in [(twice, [4.0, 4.0]), (circle(Side::Outside), [1.0, 0.0])] {
-            let error = obstacle.closest(x, || "[obstacle.cam] distance".to_owned()).unwrap_err();
-            assert!(error.to_string().contains("expected a distance"), "{error}");
+        for (obstacle, x, said) in [
+            (
+                twice,
+                [4.0, 4.0],
+                "o has a gradient of length 2 at (4, 4); expected a distance there",
+            ),
+            (circle(Side::Outside), [1.0, 0.0], "o has no closest point to (1, 0), its centre"),
+        ] {
+            let error = obstacle.closest(x, || "o".to_owned()).unwrap_err();
+            assert!(error.to_string().starts_with(said), "{error}");
         }
     }
 

@@ -322,6 +322,55 @@ mod tests {
     }
 
     #[test]
+    fn nothing_is_stretched_where_the_contact_line_is_curved() {
+        let mut sample = Sample::stretched(1e-3);
+        assert_ne!(Stretch::of(&sample.scene()).factor(), 1.0);
+        sample.contact[0].iter_mut().for_each(|s| s.position[1] = 0.1 * s.position[0].powi(2));
+        assert_eq!(Stretch::of(&sample.scene()).factor(), 1.0);
+    }
+
+    #[test]
+    fn the_words_at_a_peak_beside_the_body_are_on_the_page() {
+        let mut sample = Sample::block(4);
+        let at_left = |(i, s): (usize, &mut ContactSample)| {
+            (s.position, s.normal) = ([0.0, 1.0 - 0.25 * i as f64], [-1.0, 0.0]);
+        };
+        sample.contact[0].iter_mut().enumerate().for_each(at_left);
+        let scene = Scene { unit: Some("N/mm²"), ..sample.scene() };
+        let svg = picture(&scene).unwrap();
+        let peak = svg.split("<text").find(|text| text.contains("peak 0.5 N/mm²")).unwrap();
+        assert!(peak.contains("text-anchor=\"end\""), "{peak}");
+        let place = peak.split(" x=\"").nth(1).unwrap().split('"').next().unwrap();
+        let place: f64 = place.parse().unwrap();
+        assert!(place >= width_of("peak 0.5 N/mm²", 13.0 / 0.85), "{place}");
+    }
+
+    #[test]
+    fn the_axis_of_a_closed_line_stands_opposite_its_peak() {
+        let mut block = Sample::block(4);
+        let on_hole = |i: i32| {
+            let (sin, cos) = (std::f64::consts::TAU * f64::from(-i) / 24.0).sin_cos();
+            ContactSample {
+                position: [0.5 + 0.3 * cos, 0.5 + 0.3 * sin],
+                normal: [-cos, -sin],
+                displacement: [0.0; 2],
+                gap: 0.0,
+                pressure: sin.max(0.0),
+            }
+        };
+        block.contact = vec![(0..=24).map(on_hole).collect()];
+        let svg = draw(&block);
+        // The y of the first text after some words.
+        let height = |words: &str| -> f64 {
+            let text = svg.split(words).nth(1).unwrap().split("<text").nth(1).unwrap();
+            text.split(" y=\"").nth(1).unwrap().split('"').next().unwrap().parse().unwrap()
+        };
+        let (zero, peak) =
+            (height("fill=\"#d62728\" font-size=\"11\""), height("font-weight=\"bold\">\n<rect"));
+        assert!(zero > peak + 50.0, "{zero} {peak}");
+    }
+
+    #[test]
     fn the_body_touches_the_obstacle_where_u_n_is_the_gap_at_any_stretch() {
         let mut sample = Sample::block(4);
         for s in sample.contact.iter_mut().flatten() {

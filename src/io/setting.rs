@@ -1,8 +1,8 @@
 //! Keys set over a case file, as by the option `--set`: `method.gamma0=1e-3`, `material.young=2`,
 //! `boundary.bottom.contact.gap="0.1*x"`.
 //!
-//! A setting is a line of TOML, so its value has the type that it has in the file; only a bare word needs no quotes
-//! (`method.gamma0=auto`). A table is laid over the one that is there, anything else takes its place, and a later setting
+//! A setting is a line of TOML, so its value has the type that it has in the file; only a bare word or path needs no
+//! quotes (`method.gamma0=auto`). A table is laid over the one that is there, anything else takes its place, and a later setting
 //! wins over an earlier one. The reader of the case then cannot tell a setting from the file, but where a mistake is.
 
 use toml::de::{DeTable, DeValue};
@@ -62,7 +62,7 @@ fn merge<'s>(below: &mut DeTable<'s>, above: DeTable<'s>) {
     }
 }
 
-/// The setting, its value in quotes if that is a bare word.
+/// The setting, its value in quotes if that is a bare word or a path.
 fn with_quotes(setting: &str) -> String {
     match setting.split_once('=') {
         Some((key, value)) if is_word(value) => format!("{key}=\"{value}\""),
@@ -70,9 +70,25 @@ fn with_quotes(setting: &str) -> String {
     }
 }
 
-/// Whether this is a word that TOML has no other meaning for.
+/// Whether this is a word, or the path of a file, that TOML has no other meaning for.
 fn is_word(text: &str) -> bool {
-    text.starts_with(|c: char| c.is_ascii_alphabetic())
-        && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')
+    let is_path = ["/", "./", "../"].iter().any(|start| text.starts_with(start));
+    (is_path || text.starts_with(|c: char| c.is_ascii_alphabetic()))
+        && text.chars().all(|c| c.is_ascii_alphanumeric() || "_-./".contains(c))
         && !["true", "false", "inf", "nan"].contains(&text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_and_paths_of_files_need_no_quotes() {
+        for word in ["auto", "part.msh", "meshes/part-2.msh", "./part.msh", "../part.msh", "/a/b"] {
+            assert_eq!(with_quotes(&format!("key={word}")), format!("key=\"{word}\""));
+        }
+        for other in ["1e-3", ".5", "true", "nan", "[0, 1]", "\"a\"", "a b", "x*y", ""] {
+            assert_eq!(with_quotes(&format!("key={other}")), format!("key={other}"));
+        }
+    }
 }

@@ -6,11 +6,17 @@
 //! to rounding.
 //!
 //! **The recovered pressure** at a node is the mean of -lambda^h weighted by the node's hat function on the contact line (for
-//! P2 on its half edges): p_a = int (-lambda^h) phi_a / int phi_a. The hats are not negative and add up to one, so
-//! 0 <= p_a <= max(-lambda^h), and sum p_a phi_a has the same integral as -lambda^h on every part of Gamma_C, to rounding.
-//! -lambda^h jumps from edge to edge by what sigma_n does; the mean takes out the jumps. It is of second order where the
-//! pressure is smooth and neighbouring edges differ little in length (docs/parts.md has the numbers). At a corner, where the
-//! direction of contact jumps, each side has its own value.
+//! P2 on half edges where the line is straight): p_a = int (-lambda^h) phi_a / int phi_a. The hats are not negative and add
+//! up to one, so 0 <= p_a <= max(-lambda^h), and sum p_a phi_a has the same integral as -lambda^h on every part of Gamma_C,
+//! to rounding. -lambda^h jumps from edge to edge by what sigma_n does; the mean takes out the jumps. It is of second order
+//! where the pressure is smooth and neighbouring edges differ little in length (docs/parts.md has the numbers). At a corner,
+//! where the direction of contact jumps, each side has its own value.
+//!
+//! On a curved line the edge is a chord, off the boundary by delta = s (|E| - s) / 2R at s, and u there is off by delta times
+//! the derivative of u along n: a wave along the line with the period of the edges, of order |E|^2, which sigma_n of P2 sees
+//! as one of order |E| that is even on each edge and has the mean 0. The hats of whole edges have the mean of a wave like that
+//! for theirs, so they take it out; those of half edges would keep it. So on a curved edge only its ends have a hat, and the
+//! value in the middle is the mean of theirs.
 
 use std::collections::BTreeMap;
 
@@ -46,12 +52,26 @@ pub struct ContactBoundary {
     pub stretches: Vec<[[f64; 2]; 2]>,
     /// The largest recovered pressure.
     pub peak_pressure: f64,
-    /// Where that is, in the undeformed body.
+    /// Where that is, in the undeformed body; NaN in a result that does not say so.
+    #[cfg_attr(feature = "files", serde(default = "unknown_place"))]
     pub peak_at: [f64; 2],
-    /// The largest u_n - g: how far the body reaches into the obstacle; negative if it nowhere touches it.
+    /// The largest u_n - g: how far the body reaches into the obstacle; negative if it nowhere touches it, NaN in a result
+    /// that does not say so.
+    #[cfg_attr(feature = "files", serde(default = "unknown"))]
     pub penetration: f64,
-    /// Where that is, in the undeformed body.
+    /// Where that is, in the undeformed body; NaN in a result that does not say so.
+    #[cfg_attr(feature = "files", serde(default = "unknown_place"))]
     pub penetration_at: [f64; 2],
+}
+
+#[cfg(feature = "files")]
+fn unknown() -> f64 {
+    f64::NAN
+}
+
+#[cfg(feature = "files")]
+fn unknown_place() -> [f64; 2] {
+    [f64::NAN; 2]
 }
 
 /// a(u, u) = loads + supports + contact: what the strains hold is twice the work of the three on u.
@@ -140,37 +160,66 @@ where
     let groups = groups(d);
     let count = groups.iter().flatten().max().map_or(0, |last| last + 1);
     let (mut work, mut weight) = (vec![0.0; count], vec![0.0; count]);
-    let hats: [f64; M] =
-        if M == 2 { [0.5; M] } else { std::array::from_fn(|a| [0.25, 0.25, 0.5][a]) };
     for ((edge, &p), groups) in d.contact.iter().zip(p).zip(&groups) {
-        let of_edge = hat_integrals::<E, N, M>(p, &d.rule);
+        let hats = if M == 2 || edge.curved { Hats::Whole } else { Hats::Halves };
+        let of_edge = hat_integrals::<E, N, M>(p, &d.rule, hats);
+        let of_one: [f64; M] = hats.integrals();
         for (a, &group) in groups.iter().enumerate() {
             work[group] += edge.length / edge.gamma * of_edge[a];
-            weight[group] += edge.length * hats[a];
+            weight[group] += edge.length * of_one[a];
         }
     }
-    groups.iter().map(|groups| groups.map(|group| work[group] / weight[group])).collect()
+    let mean = |group: usize| work[group] / weight[group];
+    let on_edge = |groups: &[usize; M]| {
+        let middle = (mean(groups[0]) + mean(groups[1])) / 2.0;
+        groups.map(|group| if weight[group] > 0.0 { mean(group) } else { middle })
+    };
+    groups.iter().map(on_edge).collect()
 }
 
-/// The hat functions of an edge's nodes at `s`: start, end, middle.
-fn hats<const M: usize>(s: f64) -> [f64; M] {
-    let all = match (M, s <= 0.5) {
-        (2, _) => [1.0 - s, s, 0.0],
-        (_, true) => [1.0 - 2.0 * s, 0.0, 2.0 * s],
-        (_, false) => [0.0, 2.0 * s - 1.0, 2.0 - 2.0 * s],
-    };
-    std::array::from_fn(|a| all[a])
+/// The hat functions of an edge's nodes.
+#[derive(Clone, Copy)]
+enum Hats {
+    /// Those of its ends.
+    Whole,
+    /// Those of its ends and its middle.
+    Halves,
+}
+
+impl Hats {
+    /// Their values at `s`: start, end, middle.
+    fn at<const M: usize>(self, s: f64) -> [f64; M] {
+        let all = match (self, s <= 0.5) {
+            (Hats::Whole, _) => [1.0 - s, s, 0.0],
+            (Hats::Halves, true) => [1.0 - 2.0 * s, 0.0, 2.0 * s],
+            (Hats::Halves, false) => [0.0, 2.0 * s - 1.0, 2.0 - 2.0 * s],
+        };
+        std::array::from_fn(|a| all[a])
+    }
+
+    /// Their integrals over the edge, as shares of its length.
+    fn integrals<const M: usize>(self) -> [f64; M] {
+        let all = match self {
+            Hats::Whole => [0.5, 0.5, 0.0],
+            Hats::Halves => [0.25, 0.25, 0.5],
+        };
+        std::array::from_fn(|a| all[a])
+    }
 }
 
 /// int_0^1 \[P\]+ phi_a by the rule of the method.
-fn hat_integrals<E, const N: usize, const M: usize>(p: [f64; M], rule: &EdgeRule) -> [f64; M]
+fn hat_integrals<E, const N: usize, const M: usize>(
+    p: [f64; M],
+    rule: &EdgeRule,
+    hats: Hats,
+) -> [f64; M]
 where
     E: ExactEdge<f64, N, M>,
 {
     let mut sums = [0.0; M];
     let mut add = |s: f64, weight: f64| {
         let value = positive_part(value_at::<E, f64, N, M>(p, s));
-        let hats: [f64; M] = hats(s);
+        let hats: [f64; M] = hats.at(s);
         (0..M).for_each(|a| sums[a] += weight * value * hats[a]);
     };
     match rule {
@@ -335,7 +384,8 @@ mod tests {
     fn hats_are_not_negative_and_add_up_to_one() {
         for i in 0..=20 {
             let s = f64::from(i) / 20.0;
-            for hats in [hats::<3>(s).to_vec(), hats::<2>(s).to_vec()] {
+            let all = [Hats::Whole.at::<2>(s).to_vec(), Hats::Whole.at::<3>(s).to_vec()];
+            for hats in all.into_iter().chain([Hats::Halves.at::<3>(s).to_vec()]) {
                 assert!(hats.iter().all(|&h| h >= 0.0));
                 assert!((hats.iter().sum::<f64>() - 1.0).abs() < 1e-15);
             }
@@ -347,12 +397,14 @@ mod tests {
         for p in [[1.0, -2.0, 0.3], [-1.0, -1.0, 1.0], [2.0, 0.5, 1.0], [-1.0, -2.0, -3.0]] {
             for rule in [EdgeRule::Exact, EdgeRule::Gauss(quadrature::gauss(4))] {
                 let whole: f64 = rule.integrals::<P2, 6, 3>(p).gradient.iter().sum();
-                let parts = hat_integrals::<P2, 6, 3>(p, &rule);
-                assert!((parts.iter().sum::<f64>() - whole).abs() < 1e-15, "{p:?}");
-                assert!(parts.iter().all(|&part| part >= 0.0));
+                for hats in [Hats::Whole, Hats::Halves] {
+                    let parts = hat_integrals::<P2, 6, 3>(p, &rule, hats);
+                    assert!((parts.iter().sum::<f64>() - whole).abs() < 1e-15, "{p:?}");
+                    assert!(parts.iter().all(|&part| part >= 0.0));
+                }
                 let p = [p[0], p[1]];
                 let gradient = rule.integrals::<P1, 3, 2>(p).gradient;
-                let parts = hat_integrals::<P1, 3, 2>(p, &rule);
+                let parts = hat_integrals::<P1, 3, 2>(p, &rule, Hats::Whole);
                 assert!((parts[0] - gradient[0]).abs() + (parts[1] - gradient[1]).abs() < 1e-15);
             }
         }

@@ -11,6 +11,8 @@ use signorini::io::outputs::{self, Certified};
 use signorini::io::result::Seconds;
 use signorini::io::run::{self, Solved};
 
+use super::command::signorini;
+
 fn page(name: &str) -> String {
     fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(name)).unwrap()
 }
@@ -199,6 +201,18 @@ fn the_page_on_case_files_lists_exactly_the_parameters_of_the_exact_solutions() 
         solutions.push(solution);
     }
     assert_eq!(solutions, ["smooth", "singular", "corner", "patch"]);
+}
+
+#[test]
+fn the_picture_of_the_readme_is_that_of_its_case() {
+    let folder = std::env::temp_dir().join(format!("signorini-{}-readme", std::process::id()));
+    let out = folder.to_str().unwrap();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let run = signorini(root, &["solve", "cases/block.toml", "--quiet", "--out", out]);
+    assert!(run.status.success(), "{run:?}");
+    let drawn = fs::read_to_string(folder.join("picture.svg")).unwrap();
+    fs::remove_dir_all(folder).unwrap();
+    assert!(drawn == page("docs/block.svg"), "copy the picture.svg of cases/block.toml there");
 }
 
 #[test]

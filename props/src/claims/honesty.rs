@@ -8,7 +8,7 @@
 use std::collections::BTreeMap;
 
 use signorini::fem::{BoxedFunction, Condition, Discretization, Problem};
-use signorini::kernel::edge_integral::ExactEdge;
+use signorini::kernel::edge_integral::{ExactEdge, value_at};
 use signorini::kernel::{Material, P1, P2, Plane};
 use signorini::solve::accuracy::{self, Pass, Route};
 use signorini::solve::evaluated::Evaluated;
@@ -315,6 +315,19 @@ where
             .sum();
         if !((force - part.force).abs() <= 1e-12 * part.force) {
             return Err(format!("a recovered force of {force:e}, a force of {:e}", part.force));
+        }
+    }
+    for part in &solution.boundaries {
+        // Where P > 0, counted at 1000 places of each edge: of two roots each costs one of them.
+        let lines = d.contact.iter().filter(|line| *line.boundary == *part.boundary);
+        let [counted, whole] = lines.fold([0.0; 2], |[counted, whole], line| {
+            let p = line.p(&d.space.on_triangle(line.edge.triangle, &u));
+            let places = (0..1000).map(|k| (f64::from(k) + 0.5) / 1000.0);
+            let pressed = places.filter(|&s| value_at::<E, f64, N, M>(p, s) > 0.0).count();
+            [counted + line.length * pressed as f64 / 1000.0, whole + line.length]
+        });
+        if !((counted - part.length).abs() <= 2e-3 * whole) {
+            return Err(format!("a contact length of {}, counted {counted}", part.length));
         }
     }
     let squares = u.iter().map(|[x, y]| x * x + y * y);

@@ -882,7 +882,7 @@ pub fn recovered() -> Claim {
         items: &[],
         title: "The recovered pressure",
         paper: "Not in the paper, whose pressure is lambda^h.",
-        statement: "The nodal contact pressure is the mean of -lambda^h weighted by the node's hat function on the line (for P2 on half edges). The hats are not negative and add up to one, so it is between 0 and the largest -lambda^h, and its integral over a boundary is that of -lambda^h: the same force, to rounding. Away from the ends of the line it is of second order on equal edges where the pressure is smooth, measured between 24 and 48 edges; -lambda^h at the nodes is not for P1.",
+        statement: "The nodal contact pressure is the mean of -lambda^h weighted by the node's hat function on the line (for P2 on half edges where the line is straight). The hats are not negative and add up to one, so it is between 0 and the largest -lambda^h, and its integral over a boundary is that of -lambda^h: the same force, to rounding. Away from the ends of the line it is of second order on equal edges where the pressure is smooth, measured between 24 and 48 edges; -lambda^h at the nodes is not for P1.",
         numbers: "every ordered field (proof) for means by hats; doubles.",
         kernel: &["contact::ContactPoint::pressure"],
         preconditions: "At the ends of a line the hat is one-sided, and the order one.",

@@ -3,6 +3,7 @@
 use super::contact_line::ContactLine;
 use super::page::{HEADER, MARGIN};
 use super::path::Point;
+use super::pressure::room_beside;
 use super::scene::{Scene, bounds};
 
 /// From the plane to the page.
@@ -23,7 +24,8 @@ impl Frame {
             .flat_map(|line| line.tip.iter().copied().chain(line.wall.iter().flatten().copied()));
         let [low, high] = bounds(scene.points.iter().chain(deformed).copied().chain(lines));
         let sideways = scene.contact.iter().flatten().any(|s| s.normal[0].abs() > 0.5);
-        let space = [if sideways { 2.0 * 80.0 } else { 2.0 * 20.0 }, 2.0 * 34.0];
+        let beside = contact.iter().map(|line| room_beside(line, scene.unit)).fold(80.0, f64::max);
+        let space = [2.0 * if sideways { beside } else { 20.0 }, 2.0 * 34.0];
         let extent = [0, 1].map(|c| high[c] - low[c]);
         let room = [800.0 - space[0], 560.0 - space[1]];
         let scale = (room[0] / extent[0]).min(room[1] / extent[1]);

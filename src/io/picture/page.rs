@@ -1,6 +1,6 @@
 //! The page: its margins, colours and letters, and what is put on it.
 
-use svg::node::element::{Path as PathElement, Text};
+use svg::node::element::{Group, Path as PathElement, Rectangle, Text};
 
 use super::path::{Path, Point};
 use crate::io::numbers;
@@ -43,6 +43,25 @@ pub(super) fn shape(path: Path) -> PathElement {
 
 pub(super) fn stroke(path: Path, colour: &str, width: f64) -> PathElement {
     shape(path).set("fill", "none").set("stroke", colour).set("stroke-width", width)
+}
+
+/// A text on a pale ground, so that it can be read over what is drawn below it. `anchor` is the part of it at `place`.
+pub(super) fn label(content: &str, place: Point, anchor: &str, size: f64) -> Group {
+    let width = width_of(content, size);
+    let left = match anchor {
+        "start" => 0.0,
+        "end" => width,
+        _ => width / 2.0,
+    };
+    let ground = Rectangle::new()
+        .set("x", rounded(place[0] - left))
+        .set("y", rounded(place[1] - 0.85 * size))
+        .set("width", rounded(width))
+        .set("height", rounded(1.1 * size))
+        .set("rx", 2)
+        .set("fill", "white")
+        .set("fill-opacity", 0.75);
+    Group::new().add(ground).add(text(content, place).set("text-anchor", anchor))
 }
 
 /// The width of a text, roughly: no font is at hand, and the reader's may be another.

@@ -3,7 +3,7 @@
 use svg::node::element::Group;
 
 use super::contact_line::ContactLine;
-use super::page::{RED, shape, short, stroke, text, width_of};
+use super::page::{RED, label, shape, short, stroke, width_of};
 use super::path::{Path, Point, between, direction, distance, moved, places, thinned};
 use crate::io::numbers::ticks;
 
@@ -24,6 +24,25 @@ pub(super) fn pressure(contact: &[ContactLine], unit: Option<&str>) -> Option<Gr
         }
     }
     some.then_some(group)
+}
+
+/// Bold letters of this size are as wide as plain ones of the next.
+const PEAK_SIZE: f64 = 13.0 / 0.85;
+
+/// How far the axis is from the end of the line.
+const AXIS_OFF: f64 = 12.0;
+
+/// How far its words are from the peak.
+const PEAK_OFF: f64 = 12.0;
+
+fn peak_words(pressure: f64, unit: Option<&str>) -> String {
+    let unit = unit.map_or(String::new(), |unit| format!(" {unit}"));
+    format!("peak {}{unit}", short(pressure))
+}
+
+/// The room beside a peak that its words need, if the pressure is drawn sideways.
+pub(super) fn room_beside(line: &ContactLine, unit: Option<&str>) -> f64 {
+    PEAK_OFF + width_of(&peak_words(line.peak(), unit), PEAK_SIZE)
 }
 
 /// The pressure of one surface.
@@ -57,10 +76,9 @@ fn pressure_of(contact: &[&ContactLine], unit: Option<&str>) -> Option<Group> {
         }
     }
     let out = direction(peak_base, peak_tip).unwrap_or([0.0, 1.0]);
-    let [x, y] = moved(peak_tip, out, 12.0);
-    let unit = unit.map_or(String::new(), |unit| format!(" {unit}"));
-    let label = text(format!("peak {}{unit}", short(highest.pressure[at])), [x, y + 4.0])
-        .set("text-anchor", anchor(out))
+    let [x, y] = moved(peak_tip, out, PEAK_OFF);
+    let words = peak_words(highest.pressure[at], unit);
+    let label = label(&words, [x, y + 4.0], anchor(out), PEAK_SIZE)
         .set("font-weight", "bold")
         .set("fill", RED);
     let group = Group::new()
@@ -71,23 +89,31 @@ fn pressure_of(contact: &[&ContactLine], unit: Option<&str>) -> Option<Group> {
     Some(group.add(axis(highest, at, height)).add(label))
 }
 
-/// An axis for the pressure of a surface, at the end of the line with the peak that is further from it.
+/// An axis for the pressure of a surface, at the end of the line with the peak that is further from it; on a closed line,
+/// where that is furthest from it.
 fn axis(line: &ContactLine, at: usize, height: f64) -> Group {
-    let last = line.base.len() - 1;
-    let [first, end] = [line.base[0], line.base[last]];
     let peak = line.base[at];
-    let (foot, inner) = if distance(first, peak) > distance(end, peak) {
-        (first, line.base[1.min(last)])
-    } else {
-        (end, line.base[last.saturating_sub(1)])
+    let steps = line.base.windows(2).filter_map(|pair| Some((pair, direction(pair[0], pair[1])?)));
+    let steps: Vec<(&[Point], Point)> = steps.collect();
+    let (first, last) = match (steps.first(), steps.last()) {
+        (Some(&first), Some(&last)) => (first, last),
+        _ => return Group::new(),
     };
-    // Away from the line, and up along it.
-    let aside = direction(inner, foot).unwrap_or([1.0, 0.0]);
-    let out = direction(peak, line.tip[at]).unwrap_or([0.0, 1.0]);
-    let turned = [-aside[1], aside[0]];
-    let up =
-        if turned[0] * out[0] + turned[1] * out[1] < 0.0 { turned.map(|c| -c) } else { turned };
-    let foot = moved(foot, aside, 12.0);
+    let further = |a: Point, b: Point| distance(a, peak) > distance(b, peak);
+    let (start, end) = (first.0[0], last.0[1]);
+    // Where it stands, the direction of the line there, and the direction away from the line.
+    let (foot, along, aside) = if distance(start, end) < 1e-6 {
+        let (pair, along) =
+            steps.iter().fold(first, |a, &b| if further(b.0[0], a.0[0]) { b } else { a });
+        (pair[0], along, along)
+    } else if further(start, end) {
+        let aside = first.1.map(|c| -c);
+        (moved(start, aside, AXIS_OFF), first.1, aside)
+    } else {
+        (moved(end, last.1, AXIS_OFF), last.1, last.1)
+    };
+    // The body is on the left, on a page whose second axis points down.
+    let up = [-along[1], along[0]];
     let mut marks = Path::default();
     marks.line([foot, moved(foot, up, height)]);
     let mut labels = Group::new().set("font-size", 11).set("fill", RED);
@@ -102,7 +128,7 @@ fn axis(line: &ContactLine, at: usize, height: f64) -> Group {
             free = along + room;
             marks.line([place, moved(place, aside, 4.0)]);
             let [x, y] = moved(place, aside, 9.0);
-            labels = labels.add(text(content, [x, y + 4.0]).set("text-anchor", anchor(aside)));
+            labels = labels.add(label(&content, [x, y + 4.0], anchor(aside), 11.0));
         }
     }
     Group::new().add(stroke(marks, RED, 1.0)).add(labels)

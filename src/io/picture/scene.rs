@@ -1,6 +1,6 @@
 //! What is drawn, as data.
 
-use super::path::{Point, distance, moved};
+use super::path::{Point, direction, distance, moved};
 use crate::io::data::{DataError, check_finite, check_length, check_points};
 
 /// What is drawn.
@@ -86,11 +86,16 @@ impl Scene<'_> {
 }
 
 impl Scene<'_> {
-    /// The contact line has more than one direction.
+    /// A part of the contact line is no straight line with one direction.
     pub(super) fn contact_turns(&self) -> bool {
-        self.contact
-            .iter()
-            .any(|part| part.windows(2).any(|pair| distance(pair[0].normal, pair[1].normal) > 1e-6))
+        let turns = |a: Point, b: Point| distance(a, b) > 1e-6;
+        self.contact.iter().any(|part| {
+            let mut steps =
+                part.windows(2).filter_map(|pair| direction(pair[0].position, pair[1].position));
+            let first = steps.next();
+            part.windows(2).any(|pair| turns(pair[0].normal, pair[1].normal))
+                || steps.any(|step| first.is_some_and(|first| turns(first, step)))
+        })
     }
 }
 

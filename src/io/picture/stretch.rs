@@ -9,8 +9,8 @@ pub(super) struct Stretch(Option<Round>);
 
 impl Stretch {
     /// True scale if the largest displacement is between 1% and 30% of the body: one sees it, and the body keeps its
-    /// shape. True scale also if it is mere rounding, or if a stretched gap would bend the obstacle: normals that turn
-    /// along the contact line would pull a flat floor out of shape. Otherwise the largest round factor that keeps the
+    /// shape. True scale also if it is mere rounding, or if a stretched gap would bend the obstacle: a contact line that is
+    /// curved, or along which the direction turns, would pull a flat floor out of shape. Otherwise the largest round factor that keeps the
     /// displacement within 10%.
     pub(super) fn of(scene: &Scene) -> Stretch {
         let largest = scene.displacement.iter().map(|&u| distance(u, [0.0; 2])).fold(0.0, f64::max);
