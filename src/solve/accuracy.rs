@@ -139,7 +139,7 @@ where
         if residuals.len() > settings.max_iterations && !(residual.norm <= settings.tolerance) {
             break;
         }
-        let size = size_of(d, at.energy, &iterate);
+        let size = size_of(system, &at, &iterate);
         if !at.precisely && is_blurred(system, &at, softness, size, reference, residual.forces) {
             at = iterate.evaluate(system, true);
         }
@@ -170,8 +170,8 @@ where
         correction = f64::INFINITY;
     }
     let u = iterate.rounded();
-    let rounding = system.energy_of_noise(&iterate.remainder()).sqrt();
-    let rounding = if rounding > 0.0 { rounding / size_of(d, at.energy, &iterate) } else { 0.0 };
+    let rounding = system.energy_of_unrelated(&iterate.remainder()).sqrt();
+    let rounding = if rounding > 0.0 { rounding / size_of(system, &at, &iterate) } else { 0.0 };
     let forward_error = correction + rounding;
     let condition = (system.largest() * softness).max(1.0);
     let Residual { norm: residual, unbalanced, .. } = residual;
@@ -192,25 +192,25 @@ where
 }
 
 /// |u|_a, which errors are relative to. A body without loads that is moved as a whole has no strain but that of rounding: there
-/// it is what the terms of a(u, u) would add up to if they did not cancel.
+/// it is what it would be if the components of u knew nothing of each other.
 fn size_of<E, const N: usize, const M: usize>(
-    d: &Discretization<E, N, M>,
-    energy: f64,
+    system: &System<E, N, M>,
+    at: &Evaluation,
     iterate: &Iterate,
 ) -> f64
 where
     E: ExactEdge<f64, N, M>,
 {
-    let size = energy.sqrt();
-    if d.load.as_flattened().iter().any(|&l| l != 0.0) {
+    let size = at.energy.sqrt();
+    if system.d.load.as_flattened().iter().any(|&l| l != 0.0) {
         return size;
     }
-    let u = iterate.rounded();
-    let magnitudes = d.residual(&u).magnitudes;
-    let terms = magnitudes.as_flattened().iter().zip(u.as_flattened()).map(|(m, u)| m * u.abs());
-    let most = terms.sum::<f64>().sqrt();
-    if size > NOISE * f64::EPSILON * most { size } else { most }
+    let most = system.energy_of_unrelated(&iterate.rounded()).sqrt();
+    if size > STRAIN_OF_ROUNDING * most { size } else { most }
 }
+
+/// A strain this small beside the displacement is that of rounding.
+const STRAIN_OF_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// The residual of (8) at an iterate.
 struct Residual {

@@ -99,8 +99,8 @@ where
         self.diagonal().fold(0.0, larger)
     }
 
-    /// What A(v, v) is to be expected for a `v` of these magnitudes whose signs know nothing of each other.
-    pub fn energy_of_noise(&self, v: &[[f64; 2]]) -> f64 {
+    /// What A(v, v) is to be expected for a `v` of these magnitudes whose components know nothing of each other.
+    pub fn energy_of_unrelated(&self, v: &[[f64; 2]]) -> f64 {
         let v = self.numbering.gather(v);
         self.diagonal().zip(v).map(|(a, v)| a * v * v).sum()
     }
