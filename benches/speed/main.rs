@@ -75,6 +75,7 @@ fn main() {
     let mut text = vec![
         provenance::head(&arguments),
         own::ratio_table(&own),
+        own::others(plan.repetitions()),
         own::growth_table(&own),
         own::newton_table(&own),
         own::phases(plan.detail(), plan.repetitions()),

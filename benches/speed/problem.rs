@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use signorini::fem::matrix::{self, LowerTriangle, Neighbours, Numbering};
-use signorini::fem::{BoxedFunction, Condition, Diagonal, Discretization, Problem, Rectangle};
+use signorini::fem::{
+    BoundaryEdge, BoxedFunction, Condition, Diagonal, Discretization, Mesh, Problem, Rectangle,
+};
 use signorini::io::Expression;
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::{Material, P1, P2, Plane};
@@ -31,20 +33,54 @@ impl Size {
 
 /// The block on the floor: the unit square, clamped at the top, pressed down on the left and lifted on the right.
 pub fn block(n: usize) -> Problem {
+    let square = Rectangle { width: 1.0, height: 1.0, nx: n, ny: n, diagonal: Diagonal::Right };
+    body(square.mesh().expect("a valid mesh"), "top", "-4 + 10*x", "0")
+}
+
+/// A body of lambda = mu = 1, clamped at one side, over a floor.
+fn body(mesh: Mesh, clamped: &str, force: &str, gap: &str) -> Problem {
     let expression = |text: &str| -> BoxedFunction {
         Box::new(text.parse::<Expression>().expect("a valid expression"))
     };
     let zero = || expression("0");
-    let square = Rectangle { width: 1.0, height: 1.0, nx: n, ny: n, diagonal: Diagonal::Right };
     Problem::new(
-        square.mesh().expect("a valid mesh"),
+        mesh,
         Material::lame(1.0, 1.0, Plane::Strain),
-        [zero(), expression("-4 + 10*x")],
+        [zero(), expression(force)],
         BTreeMap::from([
-            ("top".to_owned(), Condition::Displacement([Some(zero()), Some(zero())])),
-            ("bottom".to_owned(), Condition::Contact { gap: zero() }),
+            (clamped.to_owned(), Condition::Displacement([Some(zero()), Some(zero())])),
+            ("bottom".to_owned(), Condition::Contact { gap: expression(gap) }),
         ]),
     )
+}
+
+/// Bodies that are no squares, each with what it is.
+pub fn others() -> [(&'static str, Problem); 3] {
+    let crossed = |width, height, nx, ny| {
+        let rectangle = Rectangle { width, height, nx, ny, diagonal: Diagonal::Crossed };
+        rectangle.mesh().expect("a valid mesh")
+    };
+    let square = crossed(1.0, 1.0, 96, 96);
+    let graded = square.vertices().iter().map(|&[x, y]| [x, y.powi(3)]).collect();
+    let sides = square.boundary_names().map(|name| {
+        let edges = square.edges_of(name).expect("a name of its own").iter();
+        let ends = |e: &BoundaryEdge| {
+            [0, 1].map(|k| square.triangles()[e.triangle][(e.local + 1 + k) % 3])
+        };
+        (name.to_owned(), edges.map(ends).collect())
+    });
+    let graded = Mesh::new(graded, square.triangles().to_vec(), sides);
+    [
+        (
+            "strip 500 : 1, 1000 x 2 cells",
+            body(crossed(500.0, 1.0, 1000, 2), "top", "-4 + x/50", "0"),
+        ),
+        ("beam 20 : 1, 320 x 16 cells", body(crossed(20.0, 1.0, 320, 16), "left", "-1e-4", "0.01")),
+        (
+            "square, 96 x 96 cells, graded to the floor by y^3",
+            body(graded.expect("a valid mesh"), "top", "-4 + 10*x", "0"),
+        ),
+    ]
 }
 
 /// Method (8) with gamma0 at half the coercivity limit.

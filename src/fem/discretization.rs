@@ -200,6 +200,7 @@ where
             let stiffness = material.lambda().abs() + 2.0 * material.mu();
             let barycentric = triangle.barycentric_gradients();
             let area = triangle.double_area() / 2.0;
+            let sizes = nodal.map(norm_1);
             E::at_stiffness_points(|l, weight| {
                 let gradients = E::gradients(l, barycentric);
                 let gradient = displacement_gradient(&nodal, &gradients);
@@ -207,11 +208,11 @@ where
                 let [xx, yy, xy] = stress.components();
                 let shear = xy * (gradient.m12 + gradient.m21);
                 forces.energy += weight * area * (xx * gradient.m11 + yy * gradient.m22 + shear);
-                let strain: f64 =
-                    nodal.iter().zip(&gradients).map(|(u, g)| norm_1(*u) * norm_1(*g)).sum();
-                for (&node, g) in nodes.iter().zip(gradients) {
-                    let force = weight * area * stress.traction(g);
-                    forces.add(node, force, weight * area * stiffness * strain * norm_1(g));
+                let slopes = gradients.map(norm_1);
+                let strain: f64 = sizes.iter().zip(slopes).map(|(u, g)| u * g).sum();
+                let most = weight * area * stiffness * strain;
+                for ((&node, g), slope) in nodes.iter().zip(gradients).zip(slopes) {
+                    forces.add(node, weight * area * stress.traction(g), most * slope);
                 }
             });
         }

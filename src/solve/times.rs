@@ -12,14 +12,10 @@ pub struct Times {
     pub matrix: Duration,
     /// Sparse Cholesky factorisation.
     pub factor: Duration,
-    /// The right-hand side and the substitution forward.
-    pub forward: Duration,
     /// The contact functionals: X, G, y0.
     pub compliance: Duration,
-    /// Newton's method.
+    /// Newton's method, with the substitutions and residuals of all passes.
     pub newton: Duration,
-    /// The substitution backward.
-    pub backward: Duration,
     /// The residual of the solution in the full system, and its reference.
     pub judge: Duration,
     /// Enclosing the exact solution of (8), and the true limit of gamma0.
@@ -36,10 +32,8 @@ impl Times {
             discretize: self.discretize + other.discretize,
             matrix: self.matrix + other.matrix,
             factor: self.factor + other.factor,
-            forward: self.forward + other.forward,
             compliance: self.compliance + other.compliance,
             newton: self.newton + other.newton,
-            backward: self.backward + other.backward,
             judge: self.judge + other.judge,
             certify: self.certify + other.certify,
             evaluate: self.evaluate + other.evaluate,
@@ -53,8 +47,7 @@ impl Times {
 
     /// From the factorisation to a solution that has been judged.
     pub fn solve(&self) -> Duration {
-        let substitution = self.forward + self.backward;
-        self.factor + substitution + self.compliance + self.newton + self.judge
+        self.factor + self.compliance + self.newton + self.judge
     }
 }
 
