@@ -4,9 +4,10 @@
 //! The correction of a pass is the error of what it corrects, but for the error of the correction, which is smaller by the
 //! same factor again. Its energy norm |du|_A beside that of u, and that of what the displacement loses when it is rounded to
 //! doubles at the end, is the **forward error** that is reported; a small residual alone says nothing where the condition
-//! number is large. Residuals are evaluated in doubles as long as these can tell: where
-//! their rounding, carried through the body at its softest, may move it by more than the bound for corrections, a residual that
-//! vanishes in doubles is no evidence, for Newton's method drives the rounding to zero with it.
+//! number is large. Residuals are evaluated in doubles as long as these can tell: where their rounding, carried through the body
+//! at its softest, may move it by more than the bound for corrections, a residual that vanishes in doubles is no evidence, for
+//! Newton's method drives the rounding to zero with it. And where contact is stiff, next to no energy is a force: a solve goes on
+//! until loads, contact and reactions balance. docs/theory.md, 5.7, has the rules.
 
 use super::iterate::{Evaluation, Iterate};
 use super::newton::{self, Until};
