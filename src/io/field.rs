@@ -106,7 +106,7 @@ fn from_csv(text: &str) -> Result<Points, String> {
         names.iter().position(|n| *n == name).ok_or_else(|| {
             format!(
                 "line 1 has no column '{name}' among {}; expected x, y, ux and uy",
-                names.join(", ")
+                quote::names(names.iter().copied())
             )
         })
     };
@@ -117,7 +117,8 @@ fn from_csv(text: &str) -> Result<Points, String> {
         let number = |c: usize| {
             let cell = cells.get(c).copied().unwrap_or_default();
             cell.parse::<f64>().map_err(|_| {
-                format!("line {}: '{cell}' is no number; expected {}", i + 1, names[c])
+                let cell = quote::quoted(cell, '\'');
+                format!("line {}: {cell} is no number; expected {}", i + 1, names[c])
             })
         };
         let [x, y, u, v] = columns.map(number);
@@ -199,10 +200,9 @@ fn from_vtu(text: &str) -> Result<Points, String> {
         (Some(field), _) => field,
         (None, [only]) => only,
         _ => {
-            let names: Vec<&str> = vectors.iter().filter_map(|a| a.attribute("Name")).collect();
+            let names = quote::names(vectors.iter().filter_map(|a| a.attribute("Name")));
             return Err(format!(
-                "its vectors on points are [{}]; expected one called displacement or u, or just one",
-                names.join(", ")
+                "its vectors on points are [{names}]; expected one called displacement or u, or just one"
             ));
         }
     };
@@ -215,24 +215,33 @@ fn from_vtu(text: &str) -> Result<Points, String> {
             u.len()
         ));
     }
+    let piece = text.find("<Piece").and_then(|from| text[from..].split('>').next());
+    let said = piece.and_then(|piece| attribute(piece, "NumberOfPoints"));
+    if let Some(said) = said.filter(|said| said.parse() != Ok(x.len() / dim)) {
+        let (said, has) = (quote::cut(said), x.len() / dim);
+        return Err(format!("it says NumberOfPoints = {said}, and points are there: {has}"));
+    }
     let pairs = x.chunks_exact(dim).zip(u.chunks_exact(components));
     Ok(pairs.map(|(x, u)| ([x[0], x[1]], [u[0], u[1]])).collect())
 }
 
 /// The numbers of an array.
 fn numbers(array: &Array, head: &str) -> Result<Vec<f64>, String> {
-    let name = array.attribute("Name").unwrap_or("Points");
+    let name = quote::cut(array.attribute("Name").unwrap_or("Points"));
     let bytes = match array.attribute("format") {
         Some("ascii") | None => {
-            let number =
-                |word: &str| word.parse().map_err(|_| format!("{name}: '{word}' is no number"));
+            let number = |word: &str| {
+                let wrong = |_| format!("{name}: {} is no number", quote::quoted(word, '\''));
+                word.parse().map_err(wrong)
+            };
             return array.text.split_whitespace().map(number).collect();
         }
         Some("binary") => {
             blocks(array.text, head).map_err(|problem| format!("{name}: {problem}"))?
         }
         Some(other) => {
-            return Err(format!("{name} has the format '{other}'; expected ascii or binary"));
+            let other = quote::quoted(other, '\'');
+            return Err(format!("{name} has the format {other}; expected ascii or binary"));
         }
     };
     if attribute(head, "byte_order").is_some_and(|order| order != "LittleEndian") {
@@ -245,7 +254,10 @@ fn numbers(array: &Array, head: &str) -> Result<Vec<f64>, String> {
         Some("Float32") => {
             Ok(bytes.as_chunks::<4>().0.iter().map(|b| f32::from_le_bytes(*b).into()).collect())
         }
-        other => Err(format!("{name} has the type {other:?}; expected Float64 or Float32")),
+        other => {
+            let other = quote::quoted(other.unwrap_or_default(), '\'');
+            Err(format!("{name} has the type {other}; expected Float64 or Float32"))
+        }
     }
 }
 
@@ -272,7 +284,8 @@ fn blocks(code: &str, head: &str) -> Result<Vec<u8>, String> {
             .ok_or("the code ends too early".to_owned());
     };
     if compressor != "vtkZLibDataCompressor" {
-        return Err(format!("it is compressed by {compressor}; expected vtkZLibDataCompressor"));
+        let found = quote::quoted(compressor, '\'');
+        return Err(format!("it is compressed by {found}; expected vtkZLibDataCompressor"));
     }
     let code_length = |bytes: usize| bytes.div_ceil(3) * 4;
     let start = decode(code.get(..code_length(word)).ok_or("the code ends too early")?)?;
@@ -407,6 +420,18 @@ mod tests {
         assert!(
             from_csv("x,y,ux,uy\n1,2,a,4\n").unwrap_err().starts_with("line 2: 'a' is no number")
         );
+        let long = from_csv(&format!("x,y,ux,uy\n1,2,\u{7}{},4\n", "7x".repeat(99))).unwrap_err();
+        assert!(long.len() < 120 && long.contains("'\\u{7}7x7x"), "{long}");
         assert!(from_vtu("<VTKFile>").unwrap_err().contains("<Points>"));
+        let one = "type=\"Float64\" NumberOfComponents=\"3\">1 2 0</DataArray>";
+        let file = |points: usize| {
+            format!(
+                "<VTKFile><Piece NumberOfPoints=\"{points}\"><Points><DataArray {one}</Points>\
+                 <PointData><DataArray Name=\"u\" {one}</PointData></Piece></VTKFile>"
+            )
+        };
+        assert_eq!(from_vtu(&file(1)).unwrap(), [([1.0, 2.0], [1.0, 2.0])]);
+        let error = from_vtu(&file(2)).unwrap_err();
+        assert_eq!(error, "it says NumberOfPoints = 2, and points are there: 1");
     }
 }
