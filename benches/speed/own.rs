@@ -101,8 +101,8 @@ pub fn ratio_table(own: &[Measured]) -> String {
 The linear solve is of the same body with a free floor: same mesh, data, assembly and factorisation, ordered by the same
 nested dissection without a contact layer.
 
-The solve ends with a correction from the residual by the definitions: its size is the forward error that is reported. Two
-substitutions and two residuals are what it costs, most of what exceeds 1.15.
+The solve ends with a correction from the residual by the definitions: its size is the forward error that is reported. It
+costs two substitutions and a residual, and another residual says how good it is.
 
 {}",
         table(&head, &rows)
