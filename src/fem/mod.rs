@@ -39,7 +39,7 @@ pub use data::DataError;
 pub use discretization::Discretization;
 pub use errors::Errors;
 pub use exact::{Exact, ExactSolution};
-pub use function::{BoxedFunction, Function};
+pub use function::{Function, SharedFunction};
 pub use materials::Materials;
 pub use mesh::bisection::Refinement;
 pub use mesh::{BoundaryEdge, Mesh, MeshError};

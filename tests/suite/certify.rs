@@ -5,6 +5,8 @@
 //! which is what the stress costs; on the coarsest mesh of (a), n = 8, the oscillation of its body force adds as much again
 //! (it falls with h^2, the error with h).
 
+use std::sync::Arc;
+
 use crate::common::exact::{
     corner, moved, on_square, on_trapezoid, singular, smooth, smooth_with_gap,
 };
@@ -12,7 +14,7 @@ use crate::common::{Random, clamped, conditions, constant, unit_square};
 use signorini::certify::proof::Role;
 use signorini::certify::{Continuous, Rejection, certify, certify_field};
 use signorini::fem::{
-    BoxedFunction, Condition, Errors, Obstacle, Problem, Side, Space, contact_line,
+    Condition, Errors, Obstacle, Problem, SharedFunction, Side, Space, contact_line,
 };
 use signorini::io::certificate::{self, Header};
 use signorini::io::{Case, Expression};
@@ -87,8 +89,8 @@ fn any_field_has_its_error_bounded() {
     }
 }
 
-fn expression(text: &str) -> BoxedFunction {
-    Box::new(text.parse::<Expression>().unwrap())
+fn expression(text: &str) -> SharedFunction {
+    Arc::new(text.parse::<Expression>().unwrap())
 }
 
 /// A clamped block with data of the exact class, that bends so that a part of its lower side stays in contact.
