@@ -34,6 +34,7 @@ pub mod structured;
 pub mod trapezoid;
 pub mod tree;
 pub mod twofold;
+pub mod units;
 
 pub use data::DataError;
 pub use discretization::Discretization;
@@ -50,3 +51,4 @@ pub use rigid::{FreeMotion, Parts};
 pub use space::Space;
 pub use structured::{Perturbation, Structured};
 pub use trapezoid::Trapezoid;
+pub use units::Units;
