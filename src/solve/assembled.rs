@@ -4,6 +4,8 @@
 //!
 //! The tangent is added up and factored in doubles or, for bodies whose condition number is beyond these, in twofold numbers.
 
+use std::collections::BTreeMap;
+
 use super::SolveError;
 use super::accuracy::{Pass, Route};
 use super::contact_edges::ContactEdges;
@@ -12,6 +14,7 @@ use super::factor::{Factor, Indefinite};
 use super::iterate::{Evaluation, Iterate};
 use super::ldl::TwofoldFactor;
 use super::newton::{self, Body, Derivatives, Edges, Residual, Start, Step, Until, block};
+use super::relaxation::follow;
 use super::system::System;
 use crate::fem::matrix::LowerTriangle;
 use crate::fem::precise;
@@ -267,10 +270,13 @@ where
 
     /// The body without contact, or, where it does not hold without, on springs of all edges, which pull as well as push.
     fn start(&mut self, edges: &impl Edges<M>) -> Result<Start, SolveError> {
+        let mut forces = vec![0.0; self.at.p.len()];
         if let Some(p) = self.route.system.start() {
-            let step = self.step(&course::frozen(edges, &p, self.y()))?;
+            let frozen = course::frozen(edges, &p, self.y());
+            let step = self.step(&frozen)?;
             self.advance(1.0, &step);
-            return Ok(Start::Given);
+            follow(&mut forces, &frozen, &step, 1.0);
+            return Ok(Start { forces, contact: None });
         }
         let none = newton::derivatives(edges, &vec![-1.0; self.at.p.len()]);
         if self.route.system.d.slides.is_none() {
@@ -278,7 +284,8 @@ where
                 Ok(step) => {
                     self.advance(1.0, &step);
                     let at = newton::derivatives(edges, self.y());
-                    return self.stiffness(&at).map(Start::Free);
+                    let contact = self.stiffness(&at)?;
+                    return Ok(Start { forces, contact: Some(contact) });
                 }
                 Err(SolveError::Singular) => {}
                 Err(error) => return Err(error),
@@ -294,7 +301,8 @@ where
         }
         let step = self.step(&pulling)?;
         self.advance(1.0, &step);
-        Ok(Start::Free(SOFTEST))
+        follow(&mut forces, &pulling, &step, 1.0);
+        Ok(Start { forces, contact: Some(SOFTEST) })
     }
 
     fn step(&mut self, at: &Derivatives<M>) -> Result<Step, SolveError> {
@@ -319,6 +327,25 @@ where
         let curvature = -slope - springs;
         self.d = d;
         Ok(Step { dy, slope, curvature })
+    }
+
+    /// B D^-1 B^T with the diagonal D of A, which is all that is at hand.
+    fn compliance(&self, e: usize) -> [[f64; M]; M] {
+        let LowerTriangle { starts, values, .. } = &self.route.system.matrix;
+        let mut rows: BTreeMap<usize, [f64; M]> = BTreeMap::new();
+        self.route.system.functionals(e, |row, a, entry| {
+            rows.entry(row).or_insert([0.0; M])[a] += entry;
+        });
+        let mut compliance = [[0.0; M]; M];
+        for (row, entries) in rows {
+            let diagonal = values[starts[row]];
+            for a in 0..M {
+                for b in 0..M {
+                    compliance[a][b] += entries[a] * entries[b] / diagonal;
+                }
+            }
+        }
+        compliance
     }
 
     fn advance(&mut self, t: f64, step: &Step) {

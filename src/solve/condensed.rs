@@ -26,6 +26,7 @@ use super::course;
 use super::factor::Factor;
 use super::iterate::{Evaluation, Iterate};
 use super::newton::{self, Body, Derivatives, Edges, Residual, Start, Step, Until, block};
+use super::relaxation::follow;
 use super::system::System;
 use crate::kernel::edge_integral::ExactEdge;
 
@@ -217,11 +218,16 @@ where
         if !(stiffness <= STIFFEST) {
             return Err(SolveError::Singular);
         }
-        let Some(p) = self.route.system.start() else { return Ok(Start::Free(stiffness)) };
+        let mut forces = vec![0.0; self.y.len()];
+        let Some(p) = self.route.system.start() else {
+            return Ok(Start { forces, contact: Some(stiffness) });
+        };
         let p: Vec<f64> = self.route.reach.order.iter().flat_map(|&e| block::<M>(&p, e)).collect();
-        let step = self.step(&course::frozen(edges, &p, &self.y))?;
+        let frozen = course::frozen(edges, &p, &self.y);
+        let step = self.step(&frozen)?;
         self.advance(1.0, &step);
-        Ok(Start::Given)
+        follow(&mut forces, &frozen, &step, 1.0);
+        Ok(Start { forces, contact: None })
     }
 
     fn step(&mut self, at: &Derivatives<M>) -> Result<Step, SolveError> {
@@ -257,6 +263,12 @@ where
         let curvature = -dw.iter().zip(&dy).map(|(dw, dy)| dw * dy).sum::<f64>();
         self.dw = dw;
         Ok(Step { dy, slope, curvature })
+    }
+
+    fn compliance(&self, e: usize) -> [[f64; M]; M] {
+        let g = &self.route.compliance.g;
+        let entry = |a: usize, b: usize| g[(e * M + a.max(b), e * M + a.min(b))];
+        std::array::from_fn(|a| std::array::from_fn(|b| entry(a, b)))
     }
 
     fn advance(&mut self, t: f64, step: &Step) {

@@ -20,6 +20,7 @@ pub mod limit;
 mod memory;
 pub mod newton;
 pub mod ordering;
+mod relaxation;
 pub mod route;
 pub mod solution;
 pub mod system;

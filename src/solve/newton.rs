@@ -13,14 +13,19 @@
 //! positive. Nothing cancels, so the search works down to the rounding level. Its derivative in t does not decrease; the
 //! search finds where it vanishes, to a hundredth of its value at 0, and Armijo's rule is asked of what it finds.
 //!
+//! **The linearisation.** From a start without contact, a step is linearised where contact would go on each edge by itself
+//! ([`super::relaxation`]), if that is a way downhill. After a step like this that was cut short, or that left more than half of
+//! the residual, the next one is Newton's own: so Newton's method ends as if all of them were, or ends sooner.
+//!
 //! **The start.** A body that bends, started as if without contact, lets go of about one edge a step. So the springs are soft
-//! at first: s Psi in place of Psi, with s so small that contact and body are equally stiff. When the residual at s is small
-//! beside the one that stiffer springs bring, the springs get stiffer, by a factor that grows while single steps will do and
-//! falls where they don't: the contact zone of stiff springs is narrow, and a minimiser is found from near only.
+//! at first: s Psi in place of Psi, with s so small that contact is not much stiffer than the body. When the residual at s is
+//! small beside the one that stiffer springs bring, the springs get stiffer, by a factor that grows while single steps will do
+//! and falls where they don't: the contact zone of stiff springs is narrow, and a minimiser is found from near only.
 //! At s = 1 it is Newton's method on J_h, from a start that knows something. Going to the body without contact counts as a
 //! step where it takes one. A start that is given ([`super::course`]) needs no soft springs.
 
 use super::SolveError;
+use super::relaxation::{follow, relaxed};
 
 /// What Newton's method needs to know of the contact edges.
 pub trait Edges<const M: usize> {
@@ -48,18 +53,21 @@ pub trait Body<const M: usize> {
     /// # Errors
     /// A tangent that is not positive definite, and lack of memory.
     fn step(&mut self, at: &Derivatives<M>) -> Result<Step, SolveError>;
+    /// What forces at the nodes of edge `e` do to P there, or the part of it that is known: how fast Newton's method ends
+    /// depends on it, not where.
+    fn compliance(&self, e: usize) -> [[f64; M]; M];
     /// Moves the iterate by `t` times `step`, the last one.
     fn advance(&mut self, t: f64, step: &Step);
 }
 
 /// Where Newton's method starts.
-#[derive(Clone, Copy, Debug)]
-pub enum Start {
-    /// At the body without contact, as far as it holds without. Contact is that much stiffer there than the body: the largest
-    /// eigenvalue of B^T Psi'' B with regard to A, roughly.
-    Free(f64),
-    /// One step from a start that was given.
-    Given,
+#[derive(Clone, Debug)]
+pub struct Start {
+    /// The forces of contact at the nodes of the edges that the body is in equilibrium with.
+    pub forces: Vec<f64>,
+    /// Contact is that much stiffer than the body: the largest eigenvalue of B^T Psi'' B with regard to A, roughly. `None` if
+    /// it is one step from a start that was given.
+    pub contact: Option<f64>,
 }
 
 /// The size of a residual.
@@ -95,11 +103,20 @@ const SUFFICIENT: f64 = 1e-4;
 /// The line search ends where the derivative along the step is this small beside the one at its start.
 const FLAT: f64 = 1e-2;
 
-/// How much stiffer the springs of contact get at first, and at most, from one stiffness to the next.
-const STIFFENING: [f64; 2] = [4.0, 8.0];
+/// How many times stiffer than the body the springs of contact are at first,
+const SOFT: f64 = 20.0;
+
+/// and how much stiffer they get from one stiffness to the next, at least and at most.
+const STIFFENING: [f64; 2] = [2.0, 8.0];
 
 /// The springs get stiffer when the residual is this share of what that will make of it.
 const DONE: f64 = 0.1;
+
+/// A step goes downhill if its slope is this much of its curvature.
+const DOWNHILL: f64 = 1e-3;
+
+/// A step of which this much is made is not cut short.
+const WHOLE: f64 = 0.5;
 
 /// A step whose energy is this small beside that of the largest (the square root of this as a length) is the last one:
 /// Newton's method converges superlinearly, so what remains is far smaller.
@@ -135,29 +152,46 @@ pub fn minimise<const M: usize>(
     until: Until,
 ) -> Result<f64, SolveError> {
     let mut springs = Springs::new(1.0);
+    // The forces of contact that the body is in equilibrium with, if they are known.
+    let mut forces: Option<Vec<f64>> = None;
     if first {
         residuals.push(body.residual(&derivatives(edges, body.y())).norm);
-        match body.start(edges)? {
-            Start::Free(contact) => springs = Springs::new(1.0 / contact.max(1.0)),
-            Start::Given => residuals.push(body.residual(&derivatives(edges, body.y())).norm),
+        let start = body.start(edges)?;
+        match start.contact {
+            Some(contact) => springs = Springs::new((SOFT / contact).min(1.0)),
+            None => residuals.push(body.residual(&derivatives(edges, body.y())).norm),
         }
+        forces = Some(start.forces);
     }
     let mut at = derivatives(edges, body.y());
     let mut largest: f64 = 0.0;
     let mut left = 0.0;
     let (mut best, mut idle) = (f64::INFINITY, 0);
     let mut residual = body.residual(&at);
+    let mut relaxing = true;
     // A later call makes a step in any case: its size is what tells how good the end of the first was.
     while (residual.norm > residual.noise / 4.0 || (!first && largest == 0.0))
         && residuals.len() <= until.steps
     {
-        let scaled = at.times(springs.stiffness);
-        let step = body.step(&scaled)?;
-        let Some(t) = line_search(edges, body.y(), springs.stiffness, &scaled, &step) else {
+        let stiffness = springs.stiffness;
+        let scaled = at.times(stiffness);
+        let size = body.residual(&scaled).norm;
+        let known = forces.as_deref().filter(|_| relaxing);
+        let (model, step) = next_step(edges, body, &scaled, known, stiffness)?;
+        let Some(t) = line_search(edges, body.y(), stiffness, &scaled, &step) else {
+            if model.is_some() {
+                relaxing = false;
+                continue;
+            }
             return Ok(-step.slope);
         };
+        if let Some(forces) = &mut forces {
+            follow(forces, model.as_ref().unwrap_or(&scaled), &step, t);
+        }
         body.advance(t, &step);
         at = derivatives(edges, body.y());
+        let halved = body.residual(&at.times(stiffness)).norm <= size / 2.0;
+        relaxing = model.is_none() || (t >= WHOLE && halved);
         let before = std::mem::replace(&mut residual, body.residual(&at));
         residuals.push(residual.norm);
         let decrement = -step.slope;
@@ -183,6 +217,28 @@ pub fn minimise<const M: usize>(
     Ok(left)
 }
 
+/// The next step downhill from where J_h has the derivatives `at`, linearised where contact would go on each edge by itself if
+/// that leads downhill and the forces of contact are known: then with what it was linearised as.
+fn next_step<const M: usize>(
+    edges: &impl Edges<M>,
+    body: &mut impl Body<M>,
+    at: &Derivatives<M>,
+    forces: Option<&[f64]>,
+    stiffness: f64,
+) -> Result<(Option<Derivatives<M>>, Step), SolveError> {
+    if let Some(forces) = forces {
+        let model = relaxed(edges, body, forces, stiffness);
+        if let Ok(mut step) = body.step(&model) {
+            let off = at.gradient.iter().zip(&model.gradient).map(|(g, m)| g - m);
+            step.slope += off.zip(&step.dy).map(|(off, dy)| off * dy).sum::<f64>();
+            if step.slope < -DOWNHILL * step.curvature {
+                return Ok((Some(model), step));
+            }
+        }
+    }
+    Ok((None, body.step(at)?))
+}
+
 /// s of s Psi, on its way to 1.
 struct Springs {
     stiffness: f64,
@@ -194,7 +250,7 @@ struct Springs {
 
 impl Springs {
     fn new(stiffness: f64) -> Self {
-        Springs { stiffness, stiffening: STIFFENING[0], steps: 0 }
+        Springs { stiffness, stiffening: STIFFENING[1], steps: 0 }
     }
 
     fn are_soft(&self) -> bool {
@@ -213,7 +269,7 @@ impl Springs {
             let stiffening = if self.steps == 1 { grown } else { self.stiffening };
             *self = Springs { stiffness: stiffer, stiffening, steps: 0 };
         } else {
-            self.stiffening = (self.stiffening / 4.0).max(2.0);
+            self.stiffening = (self.stiffening / 4.0).max(STIFFENING[0]);
         }
     }
 }
