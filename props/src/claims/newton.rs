@@ -361,7 +361,7 @@ pub fn claim() -> Claim {
             "solve::route::by",
         ],
         preconditions: "The tangent is positive definite (kappa < 1).",
-        limits: "Small J, of three unknowns; theory 4.2 has the proof for all. The forward error that the verdict rests on is an estimate, the size of the last correction: passes that got slower and slower could deceive it. The condition number may be a hundredth of the true one. The enclosures of row 10 are not used by the solver.",
+        limits: "Small J, of three unknowns; theory 4.2 has the proof for all. The forward error that the verdict rests on is an estimate, the size of the last correction: passes that got slower and slower could deceive it. The condition number may be a thousandth of the true one. The enclosures of row 10 are not used by the solver.",
         single: Some(
             "An iteration until a tolerance has no finite tree of paths, and its result is a double.",
         ),
