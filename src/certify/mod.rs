@@ -112,8 +112,8 @@ fn certify_near(
     let parts = build::Parts::new(problem, &contact, &constraints)?;
     let v = build::admissible(&parts, start);
     let (mut certificate, origins, oscillation) = build::build(&parts, &solution.displacement, v);
-    sweeps::improve(&mut certificate, SWEEPS)?;
-    let proof = certificate.evaluate::<Ball>()?;
+    let topology = sweeps::improve(&mut certificate, SWEEPS)?;
+    let proof = certificate.evaluate_on::<Ball>(topology)?;
     let bound = match oscillation.lift {
         0.0 => proof.bound,
         lift => (proof.bound + lift).next_up(),
