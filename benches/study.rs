@@ -16,8 +16,8 @@ use std::sync::Arc;
 use signorini::certify::{Target, adapt, certify};
 use signorini::fem::exact::{Corner, Kind, Singular, Smooth};
 use signorini::fem::{
-    Condition, Diagonal, Errors, Exact, Function, Mesh, Perturbation, Problem, Rectangle, Space,
-    Structured, Trapezoid, contact_line,
+    Condition, Diagonal, Errors, Exact, Function, Mesh, Perturbation, Problem, Rectangle,
+    SharedFunction, Space, Structured, Trapezoid, contact_line,
 };
 use signorini::io::Case;
 use signorini::io::convergence::{self, Meshes, NORMS, Study};
@@ -424,11 +424,11 @@ fn scaled(mesh: &Mesh, factor: f64) -> Result<Mesh> {
 /// The right half of a block on a parabolic floor; the left side is the line of symmetry.
 fn hertz_block(n: usize) -> Result<Problem> {
     let rectangle = Rectangle { width: 1.0, height: 1.0, nx: n, ny: n, diagonal: Diagonal::Right };
-    let constant = |value| -> Box<dyn Function> { Box::new(Constant(value)) };
+    let constant = |value| -> SharedFunction { Arc::new(Constant(value)) };
     let conditions = [
         ("left", Condition::Displacement([Some(constant(0.0)), None])),
         ("top", Condition::Displacement([None, Some(constant(-0.015))])),
-        ("bottom", Condition::Contact { gap: Box::new(|[x, _]: [f64; 2]| x * x / 2.0) }),
+        ("bottom", Condition::Contact { gap: Arc::new(|[x, _]: [f64; 2]| x * x / 2.0) }),
     ];
     Ok(Problem::new(
         rectangle.mesh()?,
@@ -494,16 +494,16 @@ fn literature(text: &mut String) -> Result<()> {
     );
     const YOUNG: f64 = 25.0;
     let mesh = scaled(&case.problem.mesh, 0.2)?;
-    let zero = || -> Box<dyn Function> { Box::new(Constant(0.0)) };
+    let zero = || -> SharedFunction { Arc::new(Constant(0.0)) };
     let disk = Problem::new(
         mesh,
         Material::young_poisson(YOUNG, 0.25, Plane::Strain),
-        [zero(), Box::new(Constant(-20.0))],
+        [zero(), Arc::new(Constant(-20.0))],
         BTreeMap::from([
             ("top".to_owned(), Condition::Displacement([Some(zero()), Some(zero())])),
             (
                 "contact".to_owned(),
-                Condition::Contact { gap: Box::new(|[_, y]: [f64; 2]| y / (1.0 - 5.0 * y)) },
+                Condition::Contact { gap: Arc::new(|[_, y]: [f64; 2]| y / (1.0 - 5.0 * y)) },
             ),
         ]),
     );

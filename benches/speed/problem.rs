@@ -1,11 +1,12 @@
 //! The case that is timed, and the plain linear elastic solve beside it.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use signorini::fem::matrix::{self, LowerTriangle, Neighbours, Numbering};
 use signorini::fem::{
-    BoundaryEdge, BoxedFunction, Condition, Diagonal, Discretization, Mesh, Problem, Rectangle,
+    BoundaryEdge, Condition, Diagonal, Discretization, Mesh, Problem, Rectangle, SharedFunction,
 };
 use signorini::io::Expression;
 use signorini::kernel::edge_integral::ExactEdge;
@@ -39,8 +40,8 @@ pub fn block(n: usize) -> Problem {
 
 /// A body of lambda = mu = 1, clamped at one side, over a floor.
 fn body(mesh: Mesh, clamped: &str, force: &str, gap: &str) -> Problem {
-    let expression = |text: &str| -> BoxedFunction {
-        Box::new(text.parse::<Expression>().expect("a valid expression"))
+    let expression = |text: &str| -> SharedFunction {
+        Arc::new(text.parse::<Expression>().expect("a valid expression"))
     };
     let zero = || expression("0");
     Problem::new(

@@ -9,11 +9,12 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::fmt::Write;
 use std::path::Path;
+use std::sync::Arc;
 
 use faer::{Mat, Side};
 use signorini::fem::matrix::{self, LowerTriangle, Neighbours, Numbering};
 use signorini::fem::{
-    BoxedFunction, Condition, Diagonal, Discretization, Mesh, Perturbation, Problem, Rectangle,
+    Condition, Diagonal, Discretization, Mesh, Perturbation, Problem, Rectangle, SharedFunction,
     Structured, Trapezoid,
 };
 use signorini::io::Case;
@@ -34,8 +35,8 @@ pub struct Specimen {
     pub problem: Problem,
 }
 
-fn constant(value: f64) -> BoxedFunction {
-    Box::new(move |_: [f64; 2]| value)
+fn constant(value: f64) -> SharedFunction {
+    Arc::new(move |_: [f64; 2]| value)
 }
 
 /// The body clamped on the named sides, in contact at the bottom.

@@ -25,7 +25,7 @@ use crate::fem::constraints::Constraints;
 use crate::fem::contact_line::ContactLineEdge;
 use crate::fem::mesh::length;
 use crate::fem::pieces::{Features, Rule};
-use crate::fem::{BoundaryEdge, BoxedFunction, Condition, Function, Mesh, Problem};
+use crate::fem::{BoundaryEdge, Condition, Function, Mesh, Problem, SharedFunction};
 use crate::kernel::composite::complementary;
 use crate::kernel::contact_edge::integral_of_product;
 use crate::kernel::edge_integral::{ExactEdge, positive_interval};
@@ -99,7 +99,7 @@ impl<'a> Parts<'a> {
                         Boundary::Held(held)
                     }
                     Condition::Support { normal, tangential } => {
-                        let affine = |f: &BoxedFunction| is_within(f, 1);
+                        let affine = |f: &SharedFunction| is_within(f, 1);
                         if ![normal, tangential].into_iter().flatten().all(affine) {
                             return unsupported(format!("the support of '{name}' is not affine"));
                         }

@@ -23,7 +23,7 @@ use super::build::{Boundary, Parts, place, rule};
 use super::proof::{Certificate, Piece, Role};
 use crate::fem::mesh::length;
 use crate::fem::pieces::Rule;
-use crate::fem::{BoxedFunction, Condition, Problem, quadrature};
+use crate::fem::{Condition, Problem, SharedFunction, quadrature};
 use crate::kernel::{Material, Triangle};
 
 /// Quadrature points in each direction.
@@ -32,18 +32,18 @@ pub(super) const POINTS: usize = 8;
 /// The body forces of a problem as a certificate needs them.
 pub(super) struct Data<'a> {
     /// Those on the whole body, then those on parts of it.
-    forces: Vec<(&'a [BoxedFunction; 2], [Rule; 2])>,
+    forces: Vec<(&'a [SharedFunction; 2], [Rule; 2])>,
     /// Which of the latter act on a triangle.
     local: BTreeMap<usize, Vec<usize>>,
 }
 
 /// Both components are polynomials of at most this degree.
-fn within(functions: &[BoxedFunction; 2], degree: u32) -> bool {
+fn within(functions: &[SharedFunction; 2], degree: u32) -> bool {
     functions.iter().all(|f| is_within(f, degree))
 }
 
 /// The function is a polynomial of at most this degree.
-pub(super) fn is_within(function: &BoxedFunction, degree: u32) -> bool {
+pub(super) fn is_within(function: &SharedFunction, degree: u32) -> bool {
     function.degree().is_some_and(|d| d <= degree)
 }
 
@@ -59,7 +59,7 @@ impl<'a> Data<'a> {
     }
 
     /// The component c of each force that acts on triangle `t`, with its rule.
-    fn acting(&self, t: usize) -> impl Iterator<Item = (usize, &BoxedFunction, &Rule)> {
+    fn acting(&self, t: usize) -> impl Iterator<Item = (usize, &SharedFunction, &Rule)> {
         let here = self.local.get(&t).into_iter().flatten().copied();
         std::iter::once(0).chain(here).flat_map(|k| {
             let (functions, rules) = &self.forces[k];
@@ -95,9 +95,9 @@ impl<'a> Data<'a> {
 #[derive(Clone, Copy)]
 pub(super) enum Traction<'a> {
     /// Its components.
-    Vector(&'a [BoxedFunction; 2]),
+    Vector(&'a [SharedFunction; 2]),
     /// -p n
-    Pressure(&'a BoxedFunction),
+    Pressure(&'a SharedFunction),
 }
 
 impl Traction<'_> {
@@ -183,7 +183,7 @@ impl Oscillation {
             inexact.push(format!("the body force on '{}' is not known to be affine", part.surface));
         }
         for (name, condition) in &problem.conditions {
-            let affine = |f: &BoxedFunction| is_within(f, 1);
+            let affine = |f: &SharedFunction| is_within(f, 1);
             let (what, exact) = match condition {
                 Condition::Displacement(u) => ("displacement", u.iter().flatten().all(affine)),
                 Condition::Mixed { displacement, .. } => {

@@ -2,14 +2,15 @@
 //! place are closures; a [`Function`](super::Function) that knows more of itself goes into the fields.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
-use super::function::BoxedFunction;
+use super::function::SharedFunction;
 use super::materials::Materials;
 use super::mesh::Mesh;
 use super::problem::{Condition, Problem};
 
-fn zero() -> BoxedFunction {
-    Box::new(|_| 0.0)
+fn zero() -> SharedFunction {
+    Arc::new(|_| 0.0)
 }
 
 impl Condition {
@@ -23,7 +24,7 @@ impl Condition {
         x: impl Fn([f64; 2]) -> f64 + Send + Sync + 'static,
         y: impl Fn([f64; 2]) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        Condition::Displacement([Some(Box::new(x)), Some(Box::new(y))])
+        Condition::Displacement([Some(Arc::new(x)), Some(Arc::new(y))])
     }
 
     /// The traction (a stress) with these components.
@@ -31,12 +32,12 @@ impl Condition {
         x: impl Fn([f64; 2]) -> f64 + Send + Sync + 'static,
         y: impl Fn([f64; 2]) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        Condition::Traction([Box::new(x), Box::new(y)])
+        Condition::Traction([Arc::new(x), Arc::new(y)])
     }
 
     /// Contact at this initial gap (a length along the outward normal).
     pub fn contact(gap: impl Fn([f64; 2]) -> f64 + Send + Sync + 'static) -> Self {
-        Condition::Contact { gap: Box::new(gap) }
+        Condition::Contact { gap: Arc::new(gap) }
     }
 }
 
@@ -52,7 +53,7 @@ impl Problem {
         x: impl Fn([f64; 2]) -> f64 + Send + Sync + 'static,
         y: impl Fn([f64; 2]) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        Problem { body_force: [Box::new(x), Box::new(y)], ..self }
+        Problem { body_force: [Arc::new(x), Arc::new(y)], ..self }
     }
 
     /// The same with this condition on a named part of the boundary, in place of what held there.

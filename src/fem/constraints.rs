@@ -12,7 +12,7 @@
 use std::collections::BTreeMap;
 
 use super::data::{DataError, finite};
-use super::function::BoxedFunction;
+use super::function::SharedFunction;
 use super::mesh::BoundaryEdge;
 use super::problem::{Condition, Problem};
 use super::rigid::{self, FreeMotion, Parts};
@@ -256,7 +256,7 @@ fn demands<'a, E: Element<N, M>, const N: usize, const M: usize>(
     let mut ask = |node: usize,
                    name: &'a str,
                    direction: [f64; 2],
-                   function: &BoxedFunction,
+                   function: &SharedFunction,
                    key: &dyn Fn() -> String| {
         let at_node: &mut Vec<Demand> = demands.entry(node).or_default();
         // Both edges at a node ask.

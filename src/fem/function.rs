@@ -1,5 +1,7 @@
 //! Functions of the place: loads, gaps, prescribed displacements, distances. A closure is one; what knows more of itself says it.
 
+use std::sync::Arc;
+
 /// A function of the place, such as a component of the body force.
 pub trait Function: Send + Sync {
     /// The value at `x`; NaN or infinite where the function has none, which the assembly reports as an error.
@@ -28,5 +30,5 @@ impl<F: Fn([f64; 2]) -> f64 + Send + Sync> Function for F {
     }
 }
 
-/// A [`Function`] that a problem owns.
-pub type BoxedFunction = Box<dyn Function>;
+/// A [`Function`] that problems own together: one in other units has the same loads.
+pub type SharedFunction = Arc<dyn Function>;

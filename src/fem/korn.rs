@@ -354,12 +354,13 @@ fn inverse(mut m: Vec<Vec<f64>>) -> Option<Vec<Vec<f64>>> {
 mod tests {
     use super::*;
     use crate::fem::contact_line::EdgeRule;
-    use crate::fem::{BoxedFunction, Condition, Discretization, Mesh, Problem, precise};
+    use crate::fem::{Condition, Discretization, Mesh, Problem, SharedFunction, precise};
     use crate::kernel::edge_integral::ExactEdge;
     use crate::kernel::{Material, P1, P2, Plane};
+    use std::sync::Arc;
 
-    fn zero() -> BoxedFunction {
-        Box::new(|_: [f64; 2]| 0.0)
+    fn zero() -> SharedFunction {
+        Arc::new(|_: [f64; 2]| 0.0)
     }
 
     /// Two unit squares that share the vertex (1, 1), the upper one clamped above. The lower one turns about the vertex

@@ -1,7 +1,7 @@
 //! L(v) = int_Omega f . v + int_{Gamma_N} t . v for every basis function v.
 
 use super::data::{DataError, checked};
-use super::function::{BoxedFunction, Function};
+use super::function::{Function, SharedFunction};
 use super::pieces::{Features, Rule};
 use super::problem::{Condition, Problem, SurfaceForce};
 use super::space::Space;
@@ -122,7 +122,7 @@ where
 }
 
 /// The components of a load that act somewhere.
-fn acting(load: &[BoxedFunction; 2]) -> impl Iterator<Item = (usize, &dyn Function)> {
+fn acting(load: &[SharedFunction; 2]) -> impl Iterator<Item = (usize, &dyn Function)> {
     load.iter().map(|f| &**f).enumerate().filter(|(_, f)| !vanishes(*f))
 }
 
@@ -188,6 +188,7 @@ fn add<S: Scalar + From<f64>>(
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeMap;
+    use std::sync::Arc;
 
     use super::*;
     use crate::fem::{Diagonal, Rectangle};
@@ -211,14 +212,14 @@ mod tests {
 
     /// The total force of x^power on the square of side 2: as a body force in x, as a traction in y.
     fn totals(power: i32, known: bool) -> [f64; 2] {
-        let zero = || -> BoxedFunction { Box::new(Monomial { power: 0, known: true }) };
-        let load = || -> BoxedFunction { Box::new(Monomial { power, known }) };
+        let zero = || -> SharedFunction { Arc::new(Monomial { power: 0, known: true }) };
+        let load = || -> SharedFunction { Arc::new(Monomial { power, known }) };
         let diagonal = Diagonal::Right;
         let mesh = Rectangle { width: 2.0, height: 2.0, nx: 1, ny: 1, diagonal }.mesh().unwrap();
         let problem = Problem::new(
             mesh,
             Material::lame(1.0, 1.0, Plane::Strain),
-            [load(), Box::new(|_: [f64; 2]| 0.0)],
+            [load(), Arc::new(|_: [f64; 2]| 0.0)],
             BTreeMap::from([("top".to_owned(), Condition::Traction([zero(), load()]))]),
         );
         let space = Space::<P2, 6, 3>::new(&problem.mesh);

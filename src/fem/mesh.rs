@@ -17,9 +17,10 @@ mod edges;
 mod error;
 
 use std::collections::BTreeMap;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use super::tree::{Bounds, Tree};
+use super::units::scaled;
 use crate::kernel::Triangle;
 use crate::memory::{self, bytes_of};
 use crate::quote;
@@ -31,6 +32,15 @@ use nalgebra::Vector2;
 #[derive(Clone, Debug)]
 pub struct Mesh {
     vertices: Vec<[f64; 2]>,
+    /// Where the vertices are is not part of it: meshes in other units share it.
+    topology: Arc<Topology>,
+    /// The boxes of the triangles, made when a point is first looked for.
+    boxes: OnceLock<Tree>,
+}
+
+/// Which triangles have which vertices and edges, and what they are called.
+#[derive(Clone, Debug)]
+struct Topology {
     triangles: Vec<[usize; 3]>,
     triangle_edges: Vec<[usize; 3]>,
     edge_count: usize,
@@ -40,8 +50,6 @@ pub struct Mesh {
     inner: BTreeMap<String, [[f64; 2]; 2]>,
     surfaces: BTreeMap<String, Vec<usize>>,
     points: BTreeMap<String, usize>,
-    /// The boxes of the triangles, made when a point is first looked for.
-    boxes: OnceLock<Tree>,
 }
 
 /// An edge on the boundary, by the triangle that owns it: edge `local` lies opposite the triangle's vertex `local`.
@@ -70,8 +78,7 @@ impl Mesh {
         let outline: Vec<BoundaryEdge> =
             edges.edges.iter().filter(|e| !e.inner).map(|e| e.owner).collect();
         let (boundaries, inner) = name_boundaries(&edges, &vertices, named)?;
-        Ok(Mesh {
-            vertices,
+        let topology = Topology {
             triangles,
             triangle_edges,
             edge_count: edges.edges.len(),
@@ -80,8 +87,8 @@ impl Mesh {
             inner,
             surfaces: BTreeMap::new(),
             points: BTreeMap::new(),
-            boxes: OnceLock::new(),
-        })
+        };
+        Ok(Mesh { vertices, topology: Arc::new(topology), boxes: OnceLock::new() })
     }
 
     /// The same mesh with named parts of the body, as lists of triangles, and named points, as vertices. Numbers beyond the
@@ -92,19 +99,27 @@ impl Mesh {
         surfaces: BTreeMap<String, Vec<usize>>,
         points: BTreeMap<String, usize>,
     ) -> Mesh {
-        let (triangles, vertices) = (self.triangles.len(), self.vertices.len());
+        let (triangles, vertices) = (self.triangles().len(), self.vertices.len());
         let inside = |(name, mut members): (String, Vec<usize>)| {
             members.retain(|&t| t < triangles);
             (name, members)
         };
-        self.surfaces = surfaces.into_iter().map(inside).collect();
-        self.points = points.into_iter().filter(|(_, v)| *v < vertices).collect();
+        let topology = Arc::make_mut(&mut self.topology);
+        topology.surfaces = surfaces.into_iter().map(inside).collect();
+        topology.points = points.into_iter().filter(|(_, v)| *v < vertices).collect();
         self
+    }
+
+    /// The same mesh with its lengths multiplied by 2^`exponent`.
+    #[must_use]
+    pub(super) fn scaled(&self, exponent: i32) -> Mesh {
+        let vertices = self.vertices.iter().map(|v| v.map(|c| scaled(c, exponent))).collect();
+        Mesh { vertices, topology: Arc::clone(&self.topology), boxes: OnceLock::new() }
     }
 
     /// The named parts of the body with their triangles, in alphabetical order.
     pub fn surfaces(&self) -> &BTreeMap<String, Vec<usize>> {
-        &self.surfaces
+        &self.topology.surfaces
     }
 
     /// The triangles of a named part of the body.
@@ -112,9 +127,14 @@ impl Mesh {
     /// # Errors
     /// [`MeshError::NoSuchSurface`], with the names that there are.
     pub fn surface(&self, name: &str) -> Result<&[usize], MeshError> {
-        self.surfaces.get(name).map(Vec::as_slice).ok_or_else(|| MeshError::NoSuchSurface {
-            name: name.to_owned(),
-            known: listed(self.surfaces.keys(), "none (in Gmsh a Physical Surface is one)"),
+        self.topology.surfaces.get(name).map(Vec::as_slice).ok_or_else(|| {
+            MeshError::NoSuchSurface {
+                name: name.to_owned(),
+                known: listed(
+                    self.topology.surfaces.keys(),
+                    "none (in Gmsh a Physical Surface is one)",
+                ),
+            }
         })
     }
 
@@ -123,9 +143,9 @@ impl Mesh {
     /// # Errors
     /// [`MeshError::NoSuchPoint`], with the names that there are.
     pub fn point(&self, name: &str) -> Result<usize, MeshError> {
-        self.points.get(name).copied().ok_or_else(|| MeshError::NoSuchPoint {
+        self.topology.points.get(name).copied().ok_or_else(|| MeshError::NoSuchPoint {
             name: name.to_owned(),
-            known: listed(self.points.keys(), "none (in Gmsh a Physical Point is one)"),
+            known: listed(self.topology.points.keys(), "none (in Gmsh a Physical Point is one)"),
         })
     }
 
@@ -136,27 +156,27 @@ impl Mesh {
 
     /// The vertices of each triangle, counter-clockwise.
     pub fn triangles(&self) -> &[[usize; 3]] {
-        &self.triangles
+        &self.topology.triangles
     }
 
     /// The number of each triangle's edge i, opposite vertex i; the edges of the mesh are counted from 0.
     pub fn triangle_edges(&self) -> &[[usize; 3]] {
-        &self.triangle_edges
+        &self.topology.triangle_edges
     }
 
     /// How many edges there are.
     pub fn edge_count(&self) -> usize {
-        self.edge_count
+        self.topology.edge_count
     }
 
     /// The whole boundary, named or not.
     pub fn outline(&self) -> &[BoundaryEdge] {
-        &self.outline
+        &self.topology.outline
     }
 
     /// The names of the boundary parts, in alphabetical order.
     pub fn boundary_names(&self) -> impl Iterator<Item = &str> {
-        self.boundaries.keys().map(String::as_str)
+        self.topology.boundaries.keys().map(String::as_str)
     }
 
     /// The edges of a named boundary part.
@@ -165,18 +185,23 @@ impl Mesh {
     /// [`MeshError::NoSuchBoundary`], with the names that there are; [`MeshError::InnerEdge`] for a named curve inside the
     /// body.
     pub fn edges_of(&self, boundary: &str) -> Result<&[BoundaryEdge], MeshError> {
-        if let Some(&ends) = self.inner.get(boundary) {
+        if let Some(&ends) = self.topology.inner.get(boundary) {
             return Err(MeshError::InnerEdge { boundary: boundary.to_owned(), ends });
         }
-        self.boundaries.get(boundary).map(Vec::as_slice).ok_or_else(|| MeshError::NoSuchBoundary {
-            name: boundary.to_owned(),
-            known: listed(self.boundaries.keys(), "none (in Gmsh a Physical Curve is one)"),
+        self.topology.boundaries.get(boundary).map(Vec::as_slice).ok_or_else(|| {
+            MeshError::NoSuchBoundary {
+                name: boundary.to_owned(),
+                known: listed(
+                    self.topology.boundaries.keys(),
+                    "none (in Gmsh a Physical Curve is one)",
+                ),
+            }
         })
     }
 
     /// Triangle `t` with its coordinates.
     pub fn triangle(&self, t: usize) -> Triangle<f64> {
-        Triangle { vertices: self.triangles[t].map(|v| self.vertices[v].into()) }
+        Triangle { vertices: self.topology.triangles[t].map(|v| self.vertices[v].into()) }
     }
 
     /// h_T of (7): the diameter of triangle `t`, which is its longest edge.
@@ -186,7 +211,7 @@ impl Mesh {
 
     /// The vertices at the start and at the end of a boundary edge, the body on its left.
     pub fn ends(&self, edge: BoundaryEdge) -> [usize; 2] {
-        let t = self.triangles[edge.triangle];
+        let t = self.topology.triangles[edge.triangle];
         [t[(edge.local + 1) % 3], t[(edge.local + 2) % 3]]
     }
 
@@ -204,7 +229,7 @@ impl Mesh {
             let boxed = |t: [[f64; 2]; 3]| {
                 Bounds::around(t).widened(4.0 * OUTSIDE * Bounds::around(t).size())
             };
-            Tree::new(self.triangles.iter().map(corners).map(boxed).collect())
+            Tree::new(self.topology.triangles.iter().map(corners).map(boxed).collect())
         });
         let mut near = Vec::new();
         boxes.meeting(Bounds::around([x]), |t| near.push(t));

@@ -20,6 +20,7 @@ use nalgebra::Vector2;
 use super::data::{DataError, finite};
 use super::function::Function;
 use super::mesh::length;
+use super::units::scaled;
 
 /// The length of grad phi may be off 1 by this much.
 pub const MOST_OFF: f64 = 0.1;
@@ -46,6 +47,16 @@ pub enum Obstacle {
     },
     /// The set where a signed distance is negative.
     Distance(Arc<dyn Distance>),
+    /// Another obstacle where places and gaps have units of their own.
+    Seen(Arc<Seen>),
+}
+
+/// An obstacle seen in other units.
+#[derive(Clone, Debug)]
+pub struct Seen {
+    obstacle: Obstacle,
+    length: i32,
+    gap: i32,
 }
 
 /// On which side of a circle the body is.
@@ -71,6 +82,7 @@ impl fmt::Debug for Obstacle {
                 write!(f, "circle around {center:?}, radius {radius}, body {side:?}")
             }
             Obstacle::Distance(_) => write!(f, "distance"),
+            Obstacle::Seen(seen) => write!(f, "{:?} in other units", seen.obstacle),
         }
     }
 }
@@ -131,43 +143,17 @@ impl Obstacle {
                     Err(no_distance(length))
                 }
             }
-        }
-    }
-
-    /// The same obstacle with all lengths multiplied by `factor` > 0.
-    #[must_use]
-    pub fn scaled(&self, factor: f64) -> Obstacle {
-        match self {
-            Obstacle::Plane { point, normal } => {
-                Obstacle::Plane { point: point.map(|c| factor * c), normal: *normal }
-            }
-            Obstacle::Circle { center, radius, side } => Obstacle::Circle {
-                center: center.map(|c| factor * c),
-                radius: factor * radius,
-                side: *side,
-            },
-            Obstacle::Distance(distance) => {
-                Obstacle::Distance(Arc::new(Scaled { distance: Arc::clone(distance), factor }))
+            Obstacle::Seen(seen) => {
+                let Seen { obstacle, length, gap } = &**seen;
+                let closest = obstacle.closest(x.map(|c| scaled(c, *length)), what)?;
+                Ok(Closest { gap: scaled(closest.gap, -gap), ..closest })
             }
         }
     }
-}
 
-/// factor phi(x / factor)
-struct Scaled {
-    distance: Arc<dyn Distance>,
-    factor: f64,
-}
-
-impl Function for Scaled {
-    fn at(&self, x: [f64; 2]) -> f64 {
-        self.factor * self.distance.at(x.map(|c| c / self.factor))
-    }
-}
-
-impl Distance for Scaled {
-    fn gradient(&self, x: [f64; 2]) -> [f64; 2] {
-        self.distance.gradient(x.map(|c| c / self.factor))
+    /// The same obstacle where places are given in units of 2^`length` and gaps in units of 2^`gap`.
+    pub(super) fn seen(&self, length: i32, gap: i32) -> Obstacle {
+        Obstacle::Seen(Arc::new(Seen { obstacle: self.clone(), length, gap }))
     }
 }
 
@@ -241,11 +227,11 @@ mod tests {
     }
 
     #[test]
-    fn scaling_multiplies_the_gap_and_keeps_the_direction() {
+    fn other_units_scale_the_gap_and_keep_the_direction() {
         let floor = Obstacle::Plane { point: [0.0, 1.0], normal: [0.0, 1.0] };
         for o in [floor, circle(Side::Outside), Obstacle::Distance(Arc::new(Around(1.0)))] {
-            let (one, four) = (at(&o, [4.0, 4.0]), at(&o.scaled(4.0), [16.0, 16.0]));
-            assert_eq!((4.0 * one.gap, one.direction), (four.gap, four.direction));
+            let (one, other) = (at(&o, [4.0, 4.0]), at(&o.seen(-2, 3), [16.0, 16.0]));
+            assert_eq!((one.gap / 8.0, one.direction), (other.gap, other.direction));
         }
     }
 }

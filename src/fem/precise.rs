@@ -187,25 +187,26 @@ impl<'d, S: Scalar + From<f64>, const N: usize, const M: usize> OnEdge<'d, S, N,
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeMap;
+    use std::sync::Arc;
 
     use super::*;
     use crate::fem::contact_line::EdgeRule;
-    use crate::fem::{BoxedFunction, Condition, Diagonal, Problem, Rectangle};
+    use crate::fem::{Condition, Diagonal, Problem, Rectangle, SharedFunction};
     use crate::kernel::{Material, P1, P2, Plane};
 
     fn block() -> Problem {
-        let zero = || -> BoxedFunction { Box::new(|_: [f64; 2]| 0.0) };
+        let zero = || -> SharedFunction { Arc::new(|_: [f64; 2]| 0.0) };
         Problem::new(
             Rectangle { width: 3.0, height: 1.0, nx: 3, ny: 2, diagonal: Diagonal::Left }
                 .mesh()
                 .unwrap(),
             Material::lame(3.0, 0.7, Plane::Strain),
-            [zero(), Box::new(|[x, _]: [f64; 2]| x - 1.0)],
+            [zero(), Arc::new(|[x, _]: [f64; 2]| x - 1.0)],
             BTreeMap::from([
                 ("top".to_owned(), Condition::Displacement([Some(zero()), Some(zero())])),
                 (
                     "bottom".to_owned(),
-                    Condition::Contact { gap: Box::new(|[x, _]: [f64; 2]| x / 7.0) },
+                    Condition::Contact { gap: Arc::new(|[x, _]: [f64; 2]| x / 7.0) },
                 ),
             ]),
         )

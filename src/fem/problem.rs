@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::function::BoxedFunction;
+use super::function::SharedFunction;
 use super::materials::Materials;
 use super::mesh::Mesh;
 use super::mesh::bisection::Refinement;
@@ -12,30 +12,30 @@ use super::obstacle::Obstacle;
 #[non_exhaustive]
 pub enum Condition {
     /// Gamma_D: the given components of the displacement; `None` leaves a component free (sliding).
-    Displacement([Option<BoxedFunction>; 2]),
+    Displacement([Option<SharedFunction>; 2]),
     /// Gamma_N: sigma n = the given traction (a stress).
-    Traction([BoxedFunction; 2]),
+    Traction([SharedFunction; 2]),
     /// Gamma_N: sigma n = -p n for the given pressure p.
-    Pressure(BoxedFunction),
+    Pressure(SharedFunction),
     /// A displacement in one component and a traction in the other: where the first is `None`, the second acts.
     Mixed {
         /// The given components of the displacement.
-        displacement: [Option<BoxedFunction>; 2],
+        displacement: [Option<SharedFunction>; 2],
         /// The traction.
-        traction: [BoxedFunction; 2],
+        traction: [SharedFunction; 2],
     },
     /// u . n and u . t are given, t being n turned to the left; `None` leaves one free. A plane of symmetry, or a roller at
     /// any angle, has u . n = 0.
     Support {
         /// u . n
-        normal: Option<BoxedFunction>,
+        normal: Option<SharedFunction>,
         /// u . t
-        tangential: Option<BoxedFunction>,
+        tangential: Option<SharedFunction>,
     },
     /// Gamma_C: conditions (2) with the given initial gap (a length along the outward normal).
     Contact {
         /// g
-        gap: BoxedFunction,
+        gap: SharedFunction,
     },
     /// Gamma_C: conditions (2) along the way to the closest point of a rigid obstacle, which has this name.
     Obstacle(String, Obstacle),
@@ -55,7 +55,7 @@ pub struct SurfaceForce {
     /// Its triangles.
     pub triangles: Vec<usize>,
     /// f there.
-    pub force: [BoxedFunction; 2],
+    pub force: [SharedFunction; 2],
 }
 
 /// A support in one point.
@@ -65,7 +65,7 @@ pub struct PointSupport {
     /// The vertex of the mesh.
     pub vertex: usize,
     /// The given components of its displacement; `None` leaves a component free.
-    pub displacement: [Option<BoxedFunction>; 2],
+    pub displacement: [Option<SharedFunction>; 2],
 }
 
 /// A unilateral contact problem on a mesh.
@@ -75,7 +75,7 @@ pub struct Problem {
     /// What it is made of.
     pub material: Materials,
     /// f, the force per unit of area.
-    pub body_force: [BoxedFunction; 2],
+    pub body_force: [SharedFunction; 2],
     /// Forces on parts of the body beside it.
     pub surface_forces: Vec<SurfaceForce>,
     /// What holds on the named parts of the boundary.
@@ -89,7 +89,7 @@ impl Problem {
     pub fn new(
         mesh: Mesh,
         material: impl Into<Materials>,
-        body_force: [BoxedFunction; 2],
+        body_force: [SharedFunction; 2],
         conditions: BTreeMap<String, Condition>,
     ) -> Self {
         Problem {

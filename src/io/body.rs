@@ -1,13 +1,15 @@
 //! What the body is made of and what pulls at it: `[material]` and `[load]` of a case file, for the whole body or for its
 //! physical surfaces one by one.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
 use super::expression::Expression;
 use super::mistake::{CaseError, CaseMistake};
 use super::table::{Table, Value};
 use crate::fem::exact;
-use crate::fem::{BoxedFunction, Exact, Materials, Mesh, SurfaceForce};
+use crate::fem::{Exact, Materials, Mesh, SharedFunction, SurfaceForce};
 use crate::kernel::{Material, Plane};
 use crate::quote::{self, key as shown, quoted};
 
@@ -195,11 +197,11 @@ fn read_material(table: &Table, plane: Plane) -> Result<(Material<f64>, Material
 }
 
 /// A body force on one surface: where it stands, the surface, and f.
-type OnSurface<'s> = (Value<'s>, &'s str, [BoxedFunction; 2]);
+type OnSurface<'s> = (Value<'s>, &'s str, [SharedFunction; 2]);
 
 /// The loads as read, not yet on a mesh.
 pub(super) struct LoadTable<'s> {
-    pub body: [BoxedFunction; 2],
+    pub body: [SharedFunction; 2],
     by_surface: Vec<OnSurface<'s>>,
 }
 
@@ -243,7 +245,7 @@ impl LoadTable<'_> {
     pub fn on_the_mesh(
         self,
         mesh: &Mesh,
-    ) -> Result<([BoxedFunction; 2], Vec<SurfaceForce>), CaseError> {
+    ) -> Result<([SharedFunction; 2], Vec<SurfaceForce>), CaseError> {
         let mut forces = Vec::new();
         for (value, key, force) in self.by_surface {
             let triangles = on_surface(mesh, &value, key, || format!("[load.{}]", shown(key)))?;
@@ -255,11 +257,11 @@ impl LoadTable<'_> {
 }
 
 /// Two components.
-pub(super) fn functions(value: &Value) -> Result<[BoxedFunction; 2], CaseError> {
+pub(super) fn functions(value: &Value) -> Result<[SharedFunction; 2], CaseError> {
     let [x, y] = value.pair()?;
     Ok([x.function()?, y.function()?])
 }
 
-pub(super) fn zero() -> BoxedFunction {
-    Box::new(Expression::from(0.0))
+pub(super) fn zero() -> SharedFunction {
+    Arc::new(Expression::from(0.0))
 }

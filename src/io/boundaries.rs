@@ -10,7 +10,7 @@ use super::mistake::{CaseError, CaseMistake};
 use super::table::{Table, Value};
 use crate::fem::exact::Kind;
 use crate::fem::{
-    BoxedFunction, Condition, Distance, Exact, Function, Mesh, Obstacle, PointSupport, Side,
+    Condition, Distance, Exact, Function, Mesh, Obstacle, PointSupport, SharedFunction, Side,
 };
 use crate::quote::{key as shown, names};
 
@@ -109,13 +109,13 @@ fn read_condition(
     }
 }
 
-fn components(value: &Value) -> Result<[Option<BoxedFunction>; 2], CaseError> {
+fn components(value: &Value) -> Result<[Option<SharedFunction>; 2], CaseError> {
     let [x, y] = value.pair()?;
     Ok([component(&x)?, component(&y)?])
 }
 
 /// A component of a displacement, `None` if it is free.
-fn component(value: &Value) -> Result<Option<BoxedFunction>, CaseError> {
+fn component(value: &Value) -> Result<Option<SharedFunction>, CaseError> {
     if value.as_text() == Some("free") { Ok(None) } else { value.function().map(Some) }
 }
 

@@ -5,6 +5,7 @@
 //! "a number or "auto"" into "did not match any variant", and forget the line.
 
 use std::ops::RangeInclusive;
+use std::sync::Arc;
 
 use toml::Spanned;
 use toml::de::{DeInteger, DeTable, DeValue};
@@ -12,7 +13,7 @@ use toml::de::{DeInteger, DeTable, DeValue};
 use super::expression::Expression;
 use super::mistake::{CaseError, CaseMistake};
 use super::source::Source;
-use crate::fem::BoxedFunction;
+use crate::fem::SharedFunction;
 use crate::quote::{cut, key as shown, listed, number, quoted};
 
 /// A table of the file.
@@ -256,8 +257,8 @@ impl<'s> Value<'s> {
     }
 
     /// The same as a function.
-    pub fn function(&self) -> Result<BoxedFunction, CaseError> {
-        Ok(Box::new(self.expression()?))
+    pub fn function(&self) -> Result<SharedFunction, CaseError> {
+        Ok(Arc::new(self.expression()?))
     }
 
     /// The complaint that this should have been as `expected`.

@@ -222,18 +222,19 @@ impl<'a> Compliance<'a> {
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeMap;
+    use std::sync::Arc;
 
     use super::*;
     use crate::fem::contact_line::EdgeRule;
-    use crate::fem::{BoxedFunction, Condition, Diagonal, Discretization, Problem, Rectangle};
+    use crate::fem::{Condition, Diagonal, Discretization, Problem, Rectangle, SharedFunction};
     use crate::kernel::edge_integral::ExactEdge;
     use crate::kernel::{Material, P1, P2, Plane};
     use crate::solve::system::System;
 
     /// Two sides of a crossed rectangle in contact, so that their paths in the elimination tree meet high up only.
     fn problem() -> Problem {
-        let zero = || -> BoxedFunction { Box::new(|_: [f64; 2]| 0.0) };
-        let contact = || Condition::Contact { gap: Box::new(|_: [f64; 2]| 0.0) };
+        let zero = || -> SharedFunction { Arc::new(|_: [f64; 2]| 0.0) };
+        let contact = || Condition::Contact { gap: Arc::new(|_: [f64; 2]| 0.0) };
         let mesh = Rectangle { width: 2.0, height: 1.0, nx: 7, ny: 4, diagonal: Diagonal::Crossed };
         Problem::new(
             mesh.mesh().unwrap(),

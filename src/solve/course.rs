@@ -13,6 +13,7 @@
 use super::newton::{self, Derivatives, Edges};
 use super::solution::Solution;
 use crate::fem::discretization::Discretization;
+use crate::fem::units::{Units, scaled};
 use crate::kernel::edge_integral::ExactEdge;
 
 /// A phase of a solve, as it begins.
@@ -40,6 +41,8 @@ pub enum Phase {
 #[derive(Clone, Copy, Default)]
 pub struct Course<'a> {
     start: Option<Start<'a>>,
+    /// The units that the problem is solved in; the start has those of the case.
+    units: Units,
     watcher: Option<&'a dyn Fn(Phase)>,
 }
 
@@ -68,6 +71,11 @@ impl<'a> Course<'a> {
         Course { watcher: Some(watcher), ..self }
     }
 
+    /// The same for the problem in these units.
+    pub(super) fn in_units(self, units: Units) -> Self {
+        Course { units, ..self }
+    }
+
     /// The same without a start, where there is one.
     pub(super) fn afresh(self) -> Option<Self> {
         self.start.map(|_| Course { start: None, ..self })
@@ -91,13 +99,16 @@ impl<'a> Course<'a> {
         let (same, u) = match self.start? {
             Start::Solution(start) => {
                 let elements = d.space.elements().as_flattened();
-                let same = start.nodes == nodes && start.elements == elements;
+                let own = |x: &[f64; 2]| x.map(|c| scaled(c, -self.units.length()));
+                let same = start.elements == elements
+                    && start.nodes.iter().map(own).eq(nodes.iter().copied());
                 (same, start.displacement.as_slice())
             }
             Start::Displacement(u) => (u.len() == nodes.len(), u),
         };
         let p = |edge: &crate::fem::contact_line::ContactLineEdge<N, M>| {
-            edge.p(&d.space.on_triangle(edge.edge.triangle, u))
+            let nodal = d.space.on_triangle(edge.edge.triangle, u);
+            edge.p(&nodal.map(|u| u.map(|c| scaled(c, -self.units.displacement()))))
         };
         same.then(|| d.contact.iter().flat_map(p).collect())
     }

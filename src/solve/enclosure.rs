@@ -71,7 +71,7 @@ pub struct Intervals {
 }
 
 impl Intervals {
-    fn are_finite(&self) -> bool {
+    pub(super) fn are_finite(&self) -> bool {
         let contact = self.contact.iter().flat_map(|c| [c.force, c.resultant[0], c.resultant[1]]);
         let all = contact.chain(self.reactions.values().copied().flatten());
         let all = all.chain([self.energy, self.max_displacement]);

@@ -25,6 +25,7 @@ pub mod solution;
 pub mod system;
 pub mod theorem;
 pub mod times;
+mod units;
 
 #[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
@@ -46,7 +47,7 @@ pub use self::theorem::Theorem;
 use self::times::Stopwatch;
 pub use self::times::Times;
 use crate::fem::contact_line::{Coercivity, EdgeRule, Gamma};
-use crate::fem::{DataError, Discretization, MeshError, Problem, held};
+use crate::fem::{DataError, Discretization, MeshError, Problem, Units, held};
 use crate::kernel::edge_integral::ExactEdge;
 use crate::kernel::{P1, P2};
 use crate::quote::{fixed, number};
@@ -315,7 +316,10 @@ where
 {
     let mut watch = Stopwatch::start();
     course.enters(Phase::Assemble);
-    let d = discretize::<E, N, M>(problem, method)?;
+    let units = Units::of(problem);
+    let own = problem.in_units(units);
+    let d = discretize_in::<E, N, M>(units, &own, problem, method)?;
+    let course = course.in_units(units);
     let discretize = watch.lap();
     let (evaluated, report, times) =
         match (solve_discrete_along(&d, settings, course), course.afresh()) {
@@ -324,8 +328,23 @@ where
         };
     course.enters(Phase::Evaluate);
     watch.lap();
-    let solution = Solution::new(&d, evaluated, report);
+    let solution = units::solution(units, Solution::new(&d, evaluated, report))?;
     Ok((solution, Times { discretize, evaluate: watch.lap(), ..times }))
+}
+
+/// The discretization of `own`, which is `problem` in these units; what is wrong with it is said in those of the problem.
+fn discretize_in<'a, E, const N: usize, const M: usize>(
+    units: Units,
+    own: &'a Problem,
+    problem: &Problem,
+    method: &Method,
+) -> Result<Discretization<'a, E, N, M>, SolveError>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    method.check()?;
+    discretize(own, &method.in_units(units))
+        .map_err(|_| discretize::<E, N, M>(problem, method).err().unwrap_or(SolveError::OutOfRange))
 }
 
 /// Solves a discretization: the displacement with its forces, how it was found, and how long that took.
@@ -400,9 +419,21 @@ where
 /// As [`solve`], as far as they show before anything is solved.
 pub fn check(problem: &Problem, method: &Method) -> Result<Outline, SolveError> {
     match method.degree {
-        Degree::One => Ok(Outline::new(&discretize::<P1, 3, 2>(problem, method)?)),
-        Degree::Two => Ok(Outline::new(&discretize::<P2, 6, 3>(problem, method)?)),
+        Degree::One => outline::<P1, 3, 2>(problem, method),
+        Degree::Two => outline::<P2, 6, 3>(problem, method),
     }
+}
+
+fn outline<E, const N: usize, const M: usize>(
+    problem: &Problem,
+    method: &Method,
+) -> Result<Outline, SolveError>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let units = Units::of(problem);
+    let own = problem.in_units(units);
+    units::outline(units, Outline::new(&discretize_in::<E, N, M>(units, &own, problem, method)?))
 }
 
 /// The size of a discrete problem and its coercivity.

@@ -3,13 +3,14 @@
 //! adapted is refused.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use crate::common::exact::{corner, on_square, on_trapezoid, singular};
 use crate::common::{clamped, conditions, constant, function, unit_square};
 use signorini::certify::adapt::AdaptError;
 use signorini::certify::{Adapted, CertifyError, Target, adapt, certify};
 use signorini::fem::{
-    BoxedFunction, Condition, Errors, Materials, PointSupport, Problem, Space, contact_line,
+    Condition, Errors, Materials, PointSupport, Problem, SharedFunction, Space, contact_line,
 };
 use signorini::io::run::{self, RunError};
 use signorini::io::{Case, Expression, case};
@@ -128,8 +129,8 @@ fn newton_starts_from_the_coarser_solution_and_takes_fewer_steps() {
 }
 
 /// A function that knows that it is a polynomial.
-fn expression(text: &str) -> BoxedFunction {
-    Box::new(text.parse::<Expression>().unwrap())
+fn expression(text: &str) -> SharedFunction {
+    Arc::new(text.parse::<Expression>().unwrap())
 }
 
 /// A block of two materials, pulled aside, with data of the exact class.

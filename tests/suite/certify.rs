@@ -4,6 +4,8 @@
 //! Effectivity is bound over error. What is expected: below 2 where the solution is smooth and below 3 where it is singular,
 //! which is what the stress costs.
 
+use std::sync::Arc;
+
 use crate::common::exact::{
     corner, moved, on_square, on_trapezoid, singular, smooth, smooth_with_gap,
 };
@@ -11,7 +13,7 @@ use crate::common::{Random, clamped, conditions, constant, unit_square};
 use signorini::certify::proof::Role;
 use signorini::certify::{Continuous, Rejection, certify, certify_field};
 use signorini::fem::{
-    BoxedFunction, Condition, Errors, Obstacle, Problem, Side, Space, contact_line,
+    Condition, Errors, Obstacle, Problem, SharedFunction, Side, Space, contact_line,
 };
 use signorini::io::certificate::{self, Header};
 use signorini::io::{Case, Expression};
@@ -85,8 +87,8 @@ fn any_field_has_its_error_bounded() {
     }
 }
 
-fn expression(text: &str) -> BoxedFunction {
-    Box::new(text.parse::<Expression>().unwrap())
+fn expression(text: &str) -> SharedFunction {
+    Arc::new(text.parse::<Expression>().unwrap())
 }
 
 /// A clamped block with data of the exact class, that bends so that a part of its lower side stays in contact.

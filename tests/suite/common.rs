@@ -1,19 +1,20 @@
 //! Problems that the tests share.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
-use signorini::fem::{BoxedFunction, Condition, Diagonal, Mesh, Problem, Rectangle};
+use signorini::fem::{Condition, Diagonal, Mesh, Problem, Rectangle, SharedFunction};
 use signorini::kernel::{Material, Plane};
 use signorini::solve::{ContactQuadrature, Degree, Gamma0, Method};
 
 pub const EXACT: ContactQuadrature = ContactQuadrature::Exact;
 pub const GAUSS: ContactQuadrature = ContactQuadrature::Gauss(4);
 
-pub fn function(f: impl Fn([f64; 2]) -> f64 + Send + Sync + 'static) -> BoxedFunction {
-    Box::new(f)
+pub fn function(f: impl Fn([f64; 2]) -> f64 + Send + Sync + 'static) -> SharedFunction {
+    Arc::new(f)
 }
 
-pub fn constant(value: f64) -> BoxedFunction {
+pub fn constant(value: f64) -> SharedFunction {
     function(move |_| value)
 }
 

@@ -7,7 +7,7 @@
 //! happens, P = 0 everywhere), d5 an interference fit.
 
 use crate::common::*;
-use signorini::fem::{BoxedFunction, Condition, Diagonal, Problem};
+use signorini::fem::{Condition, Diagonal, Problem, SharedFunction};
 use signorini::kernel::{Material, Plane};
 use signorini::solve::{Degree, Solution, solve};
 
@@ -89,7 +89,7 @@ fn constants((lambda, mu): (f64, f64)) -> Constants {
 fn problem(patch: &Patch, c: Constants, diagonal: Diagonal) -> Problem {
     let u = patch.u;
     let component =
-        move |i: usize| -> Option<BoxedFunction> { Some(function(move |x| u(c, x)[i])) };
+        move |i: usize| -> Option<SharedFunction> { Some(function(move |x| u(c, x)[i])) };
     let side = |sign: f64| Condition::Traction((patch.right)(c).map(|t| constant(sign * t)));
     let gap = patch.gap;
     Problem::new(

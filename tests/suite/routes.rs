@@ -138,7 +138,7 @@ fn a_lift_that_is_the_solution_has_converged() {
 }
 
 /// A block without loads whose upper side is moved down by 1/16; the floor is at `gap`.
-fn moved_down(n: usize, gap: signorini::fem::BoxedFunction) -> Problem {
+fn moved_down(n: usize, gap: signorini::fem::SharedFunction) -> Problem {
     let material = signorini::kernel::Material::lame(4.0, 1.0, signorini::kernel::Plane::Strain);
     let moved =
         signorini::fem::Condition::Displacement([Some(constant(0.0)), Some(constant(-0.0625))]);

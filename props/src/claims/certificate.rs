@@ -15,13 +15,14 @@
 //! u', whose own enclosure is so small that |u~ - u'| stands for the error.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use proptest::prelude::*;
 use signorini::fem::ball::Ball;
 use signorini::fem::{
-    BoxedFunction, Condition, Diagonal, Discretization, Mesh, Problem, Rectangle,
+    Condition, Diagonal, Discretization, Mesh, Problem, Rectangle, SharedFunction,
 };
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::{Material, P1, P2, Plane};
@@ -164,8 +165,8 @@ fn problems(most: [usize; 2], gap: Gap) -> impl Strategy<Value = Draw> {
     )
 }
 
-fn constant(value: f64) -> BoxedFunction {
-    Box::new(move |_: [f64; 2]| value)
+fn constant(value: f64) -> SharedFunction {
+    Arc::new(move |_: [f64; 2]| value)
 }
 
 impl Draw {
@@ -182,7 +183,7 @@ impl Draw {
     /// A body that is held and pushed down at the top, with a body force and a gap at the bottom.
     fn problem(&self) -> Result<Problem, String> {
         let [g0, g1] = self.gap;
-        let gap: BoxedFunction = Box::new(move |[x, _]: [f64; 2]| g0 + g1 * x);
+        let gap: SharedFunction = Arc::new(move |[x, _]: [f64; 2]| g0 + g1 * x);
         let push = [constant(0.0), constant(-self.push)];
         Ok(Problem::new(
             self.mesh()?,

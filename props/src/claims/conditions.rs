@@ -5,11 +5,12 @@
 //! prescribed component and a pressure a traction, which rows 5 and 6 are about: so they are right at every angle.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use proptest::prelude::*;
 use signorini::fem::twofold::Twofold;
 use signorini::fem::{
-    BoxedFunction, Condition, DataError, Diagonal, Discretization, Mesh, Problem, Rectangle,
+    Condition, DataError, Diagonal, Discretization, Mesh, Problem, Rectangle, SharedFunction,
     precise,
 };
 use signorini::kernel::edge_integral::ExactEdge;
@@ -29,8 +30,8 @@ use crate::proof::sampler::Random;
 use crate::verdict::Verdict;
 use crate::{draws, ensure};
 
-fn constant(value: f64) -> BoxedFunction {
-    Box::new(move |_: [f64; 2]| value)
+fn constant(value: f64) -> SharedFunction {
+    Arc::new(move |_: [f64; 2]| value)
 }
 
 /// A vector turned to the left by an angle.

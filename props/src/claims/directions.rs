@@ -5,10 +5,11 @@
 //! whose side of contact is bent, against displacements and stresses of random fields.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use signorini::fem::contact_line::ContactLineEdge;
 use signorini::fem::{
-    BoxedFunction, Condition, Diagonal, Discretization, Mesh, Problem, Rectangle,
+    Condition, Diagonal, Discretization, Mesh, Problem, Rectangle, SharedFunction,
 };
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::element::displacement_gradient;
@@ -21,8 +22,8 @@ use crate::claim::{Outcome, text};
 use crate::draws;
 use crate::proof::sampler::Random;
 
-fn constant(value: f64) -> BoxedFunction {
-    Box::new(move |_: [f64; 2]| value)
+fn constant(value: f64) -> SharedFunction {
+    Arc::new(move |_: [f64; 2]| value)
 }
 
 /// A block of 2 x 1 whose lower side is bent upwards: 4 edges with a bend of some 10 degrees at each vertex.
@@ -38,7 +39,7 @@ fn bent(plane: Plane) -> Result<Problem, String> {
     }
     let mesh = Mesh::new(vertices, grid.triangles().to_vec(), named).map_err(text)?;
     let zero = [0, 1].map(|_| Some(constant(0.0)));
-    let gap: BoxedFunction = Box::new(|[x, y]: [f64; 2]| 0.1 * x - 0.2 * y);
+    let gap: SharedFunction = Arc::new(|[x, y]: [f64; 2]| 0.1 * x - 0.2 * y);
     let conditions = BTreeMap::from([
         ("top".to_owned(), Condition::Displacement(zero)),
         ("bottom".to_owned(), Condition::Contact { gap }),

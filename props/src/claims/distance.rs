@@ -14,7 +14,7 @@ use signorini::certify::proof::Role;
 use signorini::certify::{Certificate, Continuous, Rejection, certify, certify_field};
 use signorini::fem::exact::{self, Corner, Kind, Singular, Smooth};
 use signorini::fem::{
-    BoxedFunction, Condition, Diagonal, Errors, Exact as Solution, Problem, Rectangle, Space,
+    Condition, Diagonal, Errors, Exact as Solution, Problem, Rectangle, SharedFunction, Space,
     Structured, Trapezoid, contact_line,
 };
 use signorini::io::Expression;
@@ -31,12 +31,12 @@ use crate::{draws, ensure};
 const WHOLE: f64 = 1.0;
 
 /// a + b x, as a function that knows its degree.
-fn affine(a: f64, b: f64) -> BoxedFunction {
+fn affine(a: f64, b: f64) -> SharedFunction {
     if b == 0.0 {
-        return Box::new(Expression::from(a));
+        return Arc::new(Expression::from(a));
     }
     let text = format!("{a:?} + {b:?}*x");
-    Box::new(text.parse::<Expression>().unwrap_or_else(|_| Expression::from(f64::NAN)))
+    Arc::new(text.parse::<Expression>().unwrap_or_else(|_| Expression::from(f64::NAN)))
 }
 
 /// A body of cells of size 1 that is held at the top and loaded, on a floor. Data in sixteenths.
@@ -528,9 +528,9 @@ fn half_the_bound() -> Outcome {
 }
 
 /// c x (1 - x): 0 at both ends of a side of length 1.
-fn bent(c: f64) -> BoxedFunction {
+fn bent(c: f64) -> SharedFunction {
     let text = format!("{c:?}*x*(1 - x)");
-    Box::new(text.parse::<Expression>().unwrap_or_else(|_| Expression::from(f64::NAN)))
+    Arc::new(text.parse::<Expression>().unwrap_or_else(|_| Expression::from(f64::NAN)))
 }
 
 /// The unit square over a floor that it does not reach, its top bent, a load that varies, all of it times `scale`.

@@ -6,8 +6,9 @@
 //! or not at all. So what the loop reports can be compared with what is true.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
-use signorini::fem::{BoxedFunction, Condition, Discretization, Problem};
+use signorini::fem::{Condition, Discretization, Problem, SharedFunction};
 use signorini::kernel::edge_integral::{ExactEdge, value_at};
 use signorini::kernel::{Material, P1, P2, Plane};
 use signorini::solve::accuracy::{self, Pass, Route};
@@ -22,8 +23,8 @@ use crate::claim::{Outcome, noticed, text};
 use crate::proof::sampler::Random;
 use crate::{draws, sharpness};
 
-fn constant(value: f64) -> BoxedFunction {
-    Box::new(move |_: [f64; 2]| value)
+fn constant(value: f64) -> SharedFunction {
+    Arc::new(move |_: [f64; 2]| value)
 }
 
 /// The small bodies of row 9 under a load and a displacement of their upper side, half of them pressed on their obstacle.
@@ -41,7 +42,7 @@ fn loaded_bodies() -> Result<Vec<(String, Problem)>, String> {
         // One side is moved: two that meet would have to agree.
         problem.conditions.retain(|name, _| !displacement(name));
         problem.conditions.extend(held);
-        let gap: BoxedFunction = Box::new(|[x, _]: [f64; 2]| 0.02 + 0.01 * x);
+        let gap: SharedFunction = Arc::new(|[x, _]: [f64; 2]| 0.02 + 0.01 * x);
         problem.conditions.insert("bottom".to_owned(), Condition::Contact { gap });
         bodies.push((body.name, problem));
     }

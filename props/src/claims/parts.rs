@@ -13,12 +13,13 @@
 
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 use proptest::prelude::Strategy;
 use signorini::fem::contact_line::Coercivity;
 use signorini::fem::exact::Kind;
 use signorini::fem::{
-    BoxedFunction, Condition, Diagonal, Materials, Mesh, Obstacle, Problem, Rectangle, Side, exact,
+    Condition, Diagonal, Materials, Mesh, Obstacle, Problem, Rectangle, SharedFunction, Side, exact,
 };
 use signorini::kernel::contact_edge::{coercivity_constant, integral_of_product, turning_factor};
 use signorini::kernel::triangle::on_edge;
@@ -333,8 +334,8 @@ fn the_bound_11_holds() -> Outcome {
     })
 }
 
-fn constant(value: f64) -> BoxedFunction {
-    Box::new(move |_: [f64; 2]| value)
+fn constant(value: f64) -> SharedFunction {
+    Arc::new(move |_: [f64; 2]| value)
 }
 
 fn prescribed(x: f64, y: f64) -> Condition {

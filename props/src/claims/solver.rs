@@ -10,13 +10,14 @@
 //! - the a-orthogonal projection of u, which the solver computes for Theorem 9.4, is nearer to u than u^h.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use proptest::prelude::*;
 use signorini::fem::contact_line::EdgeRule;
 use signorini::fem::pieces::{Features, Rule};
 use signorini::fem::quadrature;
 use signorini::fem::{
-    BoxedFunction, Condition, DataError, Diagonal, Errors, ExactSolution, Problem, Rectangle,
+    Condition, DataError, Diagonal, Errors, ExactSolution, Problem, Rectangle, SharedFunction,
 };
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::element::displacement_gradient;
@@ -92,8 +93,8 @@ fn kappa_below_2_is_taken() -> Outcome {
     noticed(refusal(2.0))
 }
 
-fn constant(value: f64) -> BoxedFunction {
-    Box::new(move |_: [f64; 2]| value)
+fn constant(value: f64) -> SharedFunction {
+    Arc::new(move |_: [f64; 2]| value)
 }
 
 /// A unit square on a floor, with conditions on top and to the left.

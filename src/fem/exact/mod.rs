@@ -28,7 +28,7 @@ pub use smooth::Smooth;
 
 use nalgebra::Matrix2;
 
-use super::function::{BoxedFunction, Function};
+use super::function::{Function, SharedFunction};
 use super::mesh::Mesh;
 use super::pieces::Features;
 use super::problem::{Condition, Problem};
@@ -96,7 +96,7 @@ impl Kind {
 }
 
 /// The body force of a solution.
-pub fn body_force(solution: &Exact) -> [BoxedFunction; 2] {
+pub fn body_force(solution: &Exact) -> [SharedFunction; 2] {
     [0, 1].map(|c| field(solution, Part::BodyForce(c)))
 }
 
@@ -120,8 +120,8 @@ enum Part {
     Gap,
 }
 
-fn field(solution: &Exact, part: Part) -> BoxedFunction {
-    Box::new(Field { solution: Arc::clone(solution), part })
+fn field(solution: &Exact, part: Part) -> SharedFunction {
+    Arc::new(Field { solution: Arc::clone(solution), part })
 }
 
 impl Function for Field {

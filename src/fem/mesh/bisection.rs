@@ -14,6 +14,7 @@
 //! similar triangles (Mitchell, ACM Trans. Math. Softw. 15 (1989) 326): no angle is smaller than the smallest of these.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use super::{Mesh, MeshError, length};
 
@@ -58,14 +59,14 @@ struct Halved {
 
 impl Halved {
     fn none(mesh: &Mesh) -> Halved {
-        let middles = vec![None; mesh.edge_count];
+        let middles = vec![None; mesh.edge_count()];
         Halved { middles, vertices: mesh.vertices.clone(), parents: Vec::new() }
     }
 
     fn halve(&mut self, mesh: &Mesh, t: usize, local: usize) {
-        let middle_of = &mut self.middles[mesh.triangle_edges[t][local]];
+        let middle_of = &mut self.middles[mesh.triangle_edges()[t][local]];
         if middle_of.is_none() {
-            let ends = [1, 2].map(|k| mesh.triangles[t][(local + k) % 3]);
+            let ends = [1, 2].map(|k| mesh.triangles()[t][(local + k) % 3]);
             *middle_of = Some(self.vertices.len());
             self.vertices.push(middle(mesh.vertices[ends[0]], mesh.vertices[ends[1]]));
             self.parents.push(ends);
@@ -78,7 +79,7 @@ impl Halved {
         let mut count = None;
         while count != Some(self.parents.len()) {
             count = Some(self.parents.len());
-            for (t, edges) in mesh.triangle_edges.iter().enumerate() {
+            for (t, edges) in mesh.triangle_edges().iter().enumerate() {
                 if edges.iter().any(|&e| self.middles[e].is_some()) {
                     self.halve(mesh, t, newest[t]);
                 }
@@ -94,13 +95,13 @@ impl Mesh {
         let opposite = |t: usize| {
             let triangle = self.triangle(t);
             let lengths = [0, 1, 2].map(|i| length(triangle.edge(i)));
-            let edges = self.triangle_edges[t];
+            let edges = self.triangle_edges()[t];
             let longer = |&i: &usize, &j: &usize| {
                 lengths[i].total_cmp(&lengths[j]).then(edges[j].cmp(&edges[i]))
             };
             (0..3).max_by(longer).unwrap_or(0)
         };
-        (0..self.triangles.len()).map(opposite).collect()
+        (0..self.triangles().len()).map(opposite).collect()
     }
 
     /// The mesh with all three edges of the `marked` triangles halved, and whatever else that takes; `newest` is the newest
@@ -113,15 +114,15 @@ impl Mesh {
         marked.iter().for_each(|&t| (0..3).for_each(|local| halved.halve(self, t, local)));
         halved.close(self, newest);
         let Halved { middles, vertices, parents } = halved;
-        let mut triangles = Vec::with_capacity(self.triangles.len() + 3 * marked.len());
+        let mut triangles = Vec::with_capacity(self.triangles().len() + 3 * marked.len());
         let mut origin = Vec::with_capacity(triangles.capacity());
         // Where the parts of each triangle begin.
-        let mut first = Vec::with_capacity(self.triangles.len() + 1);
-        for (t, corners) in self.triangles.iter().enumerate() {
+        let mut first = Vec::with_capacity(self.triangles().len() + 1);
+        for (t, corners) in self.triangles().iter().enumerate() {
             first.push(triangles.len());
             let place = |k: usize| (newest[t] + k) % 3;
             let whole = [0, 1, 2].map(|k| corners[place(k)]);
-            let [cut, right, left] = [0, 1, 2].map(|k| middles[self.triangle_edges[t][place(k)]]);
+            let [cut, right, left] = [0, 1, 2].map(|k| middles[self.triangle_edges()[t][place(k)]]);
             match cut {
                 None => triangles.push(whole),
                 Some(m) => {
@@ -140,11 +141,11 @@ impl Mesh {
             members.iter().flat_map(|&t| first[t]..first[t + 1]).collect::<Vec<usize>>()
         };
         let surfaces: BTreeMap<String, Vec<usize>> =
-            self.surfaces.iter().map(|(name, members)| (name.clone(), parts(members))).collect();
-        let named = self.boundaries.iter().map(|(name, edges)| {
+            self.surfaces().iter().map(|(name, members)| (name.clone(), parts(members))).collect();
+        let named = self.topology.boundaries.iter().map(|(name, edges)| {
             let halved = edges.iter().flat_map(|&edge| {
                 let [a, b] = self.ends(edge);
-                match middles[self.triangle_edges[edge.triangle][edge.local]] {
+                match middles[self.triangle_edges()[edge.triangle][edge.local]] {
                     None => vec![[a, b]],
                     Some(m) => vec![[a, m], [m, b]],
                 }
@@ -152,8 +153,8 @@ impl Mesh {
             (name.clone(), halved.collect())
         });
         let mut mesh = Mesh::new(vertices, triangles, named)?;
-        mesh.inner.clone_from(&self.inner);
-        let mesh = mesh.with_names(surfaces, self.points.clone());
+        Arc::make_mut(&mut mesh.topology).inner.clone_from(&self.topology.inner);
+        let mesh = mesh.with_names(surfaces, self.topology.points.clone());
         Ok(Refinement { mesh, parents, origin })
     }
 }

@@ -1,11 +1,12 @@
 //! The problems: random small ones in doubles, as plain data and as the solver is given them.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use proptest::prelude::*;
 use signorini::fem::contact_line::EdgeRule;
 use signorini::fem::{
-    BoundaryEdge, BoxedFunction, Condition, Diagonal, Function, Mesh, Problem, Rectangle,
+    BoundaryEdge, Condition, Diagonal, Function, Mesh, Problem, Rectangle, SharedFunction,
 };
 use signorini::kernel::{Material, Plane};
 
@@ -273,21 +274,21 @@ impl Draw {
         let named = sides.into_iter().map(|(name, edges)| (name.to_owned(), edges));
         let mesh = Mesh::new(vertices, triangles, named).expect("moved a little, it is a mesh");
         let plane = if self.stress { Plane::Stress } else { Plane::Strain };
-        let boxed = |p: Polynomial| -> BoxedFunction { Box::new(p) };
+        let shared = |p: Polynomial| -> SharedFunction { Arc::new(p) };
         let mut conditions = BTreeMap::new();
         for &name in self.contact() {
-            conditions.insert(name.to_owned(), Condition::Contact { gap: boxed(self.gap()) });
+            conditions.insert(name.to_owned(), Condition::Contact { gap: shared(self.gap()) });
         }
         for (name, components) in self.displacement() {
-            let given = [0, 1].map(|c| components[c].then(|| boxed(self.data[4 + c])));
+            let given = [0, 1].map(|c| components[c].then(|| shared(self.data[4 + c])));
             conditions.insert((*name).to_owned(), Condition::Displacement(given));
         }
         if let Some(name) = self.traction() {
-            let traction = self.tractions().map(|t| -> BoxedFunction { Box::new(t) });
+            let traction = self.tractions().map(|t| -> SharedFunction { Arc::new(t) });
             conditions.insert(name.to_owned(), Condition::Traction(traction));
         }
         let material = Material::lame(self.lambda, self.mu, plane);
-        Problem::new(mesh, material, [boxed(self.data[0]), boxed(self.data[1])], conditions)
+        Problem::new(mesh, material, [shared(self.data[0]), shared(self.data[1])], conditions)
     }
 
     pub(super) fn rule(&self) -> EdgeRule {

@@ -2,12 +2,13 @@
 //! of a small size, and on meshes.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use proptest::prelude::*;
 use signorini::fem::contact_line::EdgeRule;
 use signorini::fem::matrix::{LowerTriangle, Neighbours, Numbering, assemble};
 use signorini::fem::{
-    BoxedFunction, Condition, Diagonal, Discretization, Problem, Rectangle, Trapezoid,
+    Condition, Diagonal, Discretization, Problem, Rectangle, SharedFunction, Trapezoid,
 };
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::element::stiffness;
@@ -336,7 +337,7 @@ fn problem((which, [nx, ny], _, _): Mesh) -> Problem {
         2 => rectangle(Diagonal::Crossed),
         _ => Trapezoid { omega: 2.0, n: nx }.mesh(),
     };
-    let zero = || -> BoxedFunction { Box::new(|_: [f64; 2]| 0.0) };
+    let zero = || -> SharedFunction { Arc::new(|_: [f64; 2]| 0.0) };
     let conditions = BTreeMap::from([
         ("top".to_owned(), Condition::Displacement([Some(zero()), Some(zero())])),
         ("bottom".to_owned(), Condition::Contact { gap: zero() }),
