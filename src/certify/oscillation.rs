@@ -268,7 +268,7 @@ fn loads(parts: &Parts, data: &Data, certificate: &Certificate, piece: &Piece, t
     let mut square = 0.0;
     // All by the rule of the force that asks for most.
     let curved = data.acting(t).filter(|(_, f, _)| !is_within(f, 1));
-    let demand = |f: &BoxedFunction| (f.kink().is_some(), f.degree().unwrap_or(u32::MAX));
+    let demand = |f: &SharedFunction| (f.kink().is_some(), f.degree().unwrap_or(u32::MAX));
     if let Some((_, _, rule)) = curved.max_by_key(|(_, f, _)| demand(f)) {
         let affine = piece.body.map(Vector2::from);
         rule.on_triangle(&triangle, |l, x, weight| {
