@@ -168,7 +168,9 @@ fn length_and_normal(ends: [[f64; 2]; 2]) -> (f64, [f64; 2]) {
 pub(super) struct Oscillation {
     /// Why the bound rests on quadrature, if it does.
     pub reason: Option<String>,
-    /// |z|_a of the lifts: to be added to the bound once more, for |u - v| <= |u - v - z| + |z|.
+    /// |z|_a of the lifts on each triangle of the mesh; none where nothing is lifted.
+    pub lifts: Vec<f64>,
+    /// |z|_a of all: with its square the bound is one of |u - v|, where v lacks z.
     pub lift: f64,
 }
 
@@ -215,7 +217,7 @@ impl Oscillation {
         });
         let reasons: Vec<String> = measured.into_iter().chain(named).collect();
         let reason = (!reasons.is_empty()).then(|| reasons.join("; "));
-        Oscillation { reason, lift: 0.0 }
+        Oscillation { reason, lifts: Vec::new(), lift: 0.0 }
     }
 
     /// Puts the oscillation of the data into the pieces of a certificate; `origins` are their triangles in the mesh.
@@ -229,13 +231,13 @@ impl Oscillation {
         if self.reason.is_none() {
             return;
         }
-        let lifts = lifts(parts);
-        self.lift = lifts.iter().map(|z| z * z).sum::<f64>().sqrt();
+        self.lifts = lifts(parts);
+        self.lift = self.lifts.iter().map(|z| z * z).sum::<f64>().sqrt();
         let pieces: Vec<f64> = certificate
             .pieces
             .iter()
             .zip(origins)
-            .map(|(piece, &t)| lifts[t] + loads(parts, data, certificate, piece, t))
+            .map(|(piece, &t)| loads(parts, data, certificate, piece, t))
             .collect();
         for (piece, oscillation) in certificate.pieces.iter_mut().zip(pieces) {
             piece.oscillation = oscillation;

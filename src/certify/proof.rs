@@ -168,12 +168,7 @@ impl Certificate {
     /// # Errors
     /// The first condition that does not hold, or can't be decided in `S`.
     pub fn evaluate<S: Enclosing>(&self) -> Result<Proof, Rejection> {
-        self.evaluate_on::<S>(self.topology()?)
-    }
-
-    /// The same, where it is known already how triangles and edges hang together.
-    pub(super) fn evaluate_on<S: Enclosing>(&self, topology: Topology) -> Result<Proof, Rejection> {
-        let state = self.balanced::<S>(topology)?;
+        let state = self.balanced::<S>(self.topology()?)?;
         self.sum(&state)
     }
 
@@ -285,8 +280,18 @@ impl Certificate {
         Ok(state)
     }
 
+    /// The right side of the theorem with the strain of another displacement, given at the vertices; what contact adds stays
+    /// that of v.
+    pub(super) fn sum_at<S: Enclosing>(
+        &self,
+        state: Balanced<S>,
+        field: &[[f64; 2]],
+    ) -> Result<Proof, Rejection> {
+        self.sum(&Balanced { v: self.values(field), ..state })
+    }
+
     /// The right side of the theorem.
-    fn sum<S: Enclosing>(&self, state: &Balanced<S>) -> Result<Proof, Rejection> {
+    pub(super) fn sum<S: Enclosing>(&self, state: &Balanced<S>) -> Result<Proof, Rejection> {
         let Balanced { triangles, v, forces, on_contact, .. } = state;
         let zero = S::from(0);
         let (mut square, mut norm, mut energy) = (zero, zero, zero);

@@ -78,7 +78,7 @@ fn any_field_has_its_error_bounded() {
             .collect();
         let certified = certify_field(&problem, &solution, &field).unwrap();
         let error = error_of(&problem, &ladder, &solution, &field);
-        let effectivity = (certified.bound + certified.clipping) / error;
+        let effectivity = certified.of_field / error;
         assert!((1.0..2.0).contains(&effectivity), "{size}: {effectivity}");
         // Far from u the error of tau hardly counts.
         assert!(size < 0.1 || effectivity < 1.1, "{size}: {effectivity}");

@@ -291,7 +291,7 @@ fn raised_by_a_perturbation(draw: &Draw, size: f64, factor: f64) -> Verdict {
         let own = certify(&problem, &solution).map_err(text)?;
         let other = certify_field(&problem, &solution, &field).map_err(text)?;
         let apart = distance(&problem, &solution.displacement, &field);
-        Ok((apart, own.bound + own.clipping, other.bound + other.clipping))
+        Ok((apart, own.of_field, other.of_field))
     };
     let Ok((apart, own, other)) = moved() else { return Verdict::Fails("there are bounds") };
     // The distance is a sum of doubles.
@@ -325,7 +325,7 @@ fn seen_by_the_bound(draw: &Draw, old: bool) -> Verdict {
     let Ok(proof) = forged.evaluate::<Ball>() else { return Verdict::Fails("a bound") };
     let bound = if old { first.bound } else { proof.bound };
     let apart = distance(&problem, &forged.displacement, &u);
-    ensure!(apart * (1.0 - 1e-12) <= bound + second.bound + second.clipping);
+    ensure!(apart * (1.0 - 1e-12) <= bound + second.of_field);
     Verdict::Holds(class(&forged))
 }
 
