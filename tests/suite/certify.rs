@@ -87,6 +87,28 @@ fn any_field_has_its_error_bounded() {
     }
 }
 
+#[test]
+fn fields_that_penetrate_are_bounded_by_less_than_twice_their_error() {
+    let (solution, _) = corner(0.75);
+    let ladder = on_trapezoid(&solution, 0.75, Degree::One, 8);
+    for level in 0..3 {
+        let (_, problem, solution) = ladder.solve(level).unwrap();
+        let method =
+            Method { gamma0: Gamma0::Value(solution.gamma.gamma0 / 8.0), ..Method::default() };
+        let (other, _) = solve(&problem, &method, &Settings::default()).unwrap();
+        for field in [&solution.displacement, &other.displacement] {
+            let certified = certify_field(&problem, &solution, field).unwrap();
+            let ratio = certified.of_field / error_of(&problem, &ladder, &solution, field);
+            assert!((1.0..2.0).contains(&ratio), "level {level}: {ratio}");
+            assert!(certified.clipping > 0.0);
+        }
+        // Control: by the triangle inequality it would be more.
+        let certified = certify_field(&problem, &solution, &solution.displacement).unwrap();
+        let error = error_of(&problem, &ladder, &solution, &solution.displacement);
+        assert!(certified.bound + certified.clipping > 2.0 * error, "level {level}");
+    }
+}
+
 fn expression(text: &str) -> SharedFunction {
     Arc::new(text.parse::<Expression>().unwrap())
 }
