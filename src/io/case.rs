@@ -135,6 +135,16 @@ pub struct Units {
 }
 
 impl Units {
+    /// Of forces in the plane: per length across it.
+    pub fn force_across(&self) -> String {
+        format!("{}/{}", self.force, self.length)
+    }
+
+    /// Of their moments and of energies, per length likewise.
+    pub fn moment_across(&self) -> String {
+        format!("{} {}/{}", self.force, self.length, self.length)
+    }
+
     /// Of stresses.
     pub fn stress(&self) -> String {
         match (&*self.force, &*self.length) {
