@@ -344,7 +344,9 @@ fn read_probes(table: Option<Table>, mesh: &Mesh) -> Result<Vec<[f64; 2]>, CaseE
 mod tests {
     use super::*;
     use crate::fem::Condition;
+    use crate::io::method::MOST_UNKNOWNS;
     use crate::kernel::{Material, Plane};
+    use crate::solve::{ContactQuadrature, Degree, Gamma0};
 
     fn read(text: &str) -> Result<Case, CaseError> {
         let file = Path::new("x.toml");

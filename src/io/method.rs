@@ -70,7 +70,7 @@ pub(super) fn read_settings(table: Option<Table>) -> Result<Settings, CaseError>
 }
 
 /// Meshes are refined up to so many unknowns where the case says nothing.
-const MOST_UNKNOWNS: usize = 500_000;
+pub(super) const MOST_UNKNOWNS: usize = 500_000;
 
 pub(super) fn read_target(table: &Table, method: &Method) -> Result<Target, CaseError> {
     table.only(&["target", "max_unknowns"])?;
