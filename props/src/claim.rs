@@ -1,6 +1,9 @@
 //! A claim: an item of the paper, what is said about it here, and the checks that say so. Tests, ledger and audit walk
 //! over the same claims, so no name in `VERIFY.md` can go stale.
 
+use std::any::Any;
+use std::panic::{self, AssertUnwindSafe};
+
 use crate::draws;
 use crate::harness::Harness;
 use crate::proof;
@@ -110,12 +113,14 @@ impl Check {
         }
     }
 
-    /// Runs it.
+    /// Runs it. One that panics has failed, a control too: where a polynomial that a claim writes down has a power that can't be
+    /// kept, nothing is proved.
     ///
     /// # Errors
     /// What was found instead.
     pub fn run(&self) -> Outcome {
-        draws::named(self.name, || self.run_here())
+        let run = AssertUnwindSafe(|| draws::named(self.name, || self.run_here()));
+        panic::catch_unwind(run).unwrap_or_else(|why| Err(format!("it panicked: {}", said(&*why))))
     }
 
     fn run_here(&self) -> Outcome {
@@ -131,6 +136,12 @@ impl Check {
             (Subject::Statement(_), _, _) => Err("this engine has no such check".to_owned()),
         }
     }
+}
+
+/// What a panic said.
+pub(crate) fn said(why: &(dyn Any + Send)) -> String {
+    let text = why.downcast_ref::<&str>().map(|s| (*s).to_owned());
+    text.or_else(|| why.downcast_ref::<String>().cloned()).unwrap_or_default()
 }
 
 /// Proved over every ordered field.
@@ -232,4 +243,25 @@ pub struct Claim {
     pub single: Option<&'static str>,
     /// The evidence.
     pub checks: Vec<Check>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::proof::polynomial::Polynomial;
+
+    /// x^(2^16), as a claim may write it down.
+    fn too_large_a_power() -> Outcome {
+        let x = Polynomial::variable(0);
+        let power = (0..16).fold(x, |power, _| &power * &power);
+        Ok(format!("{} terms", power.terms().count()))
+    }
+
+    #[test]
+    fn a_check_that_panics_has_failed_and_a_control_is_not_passed_by_it() {
+        let check = by(Engine::Exact, "too_large_a_power", too_large_a_power);
+        let why = check.run().unwrap_err();
+        assert!(why.contains("it panicked") && why.contains("exponents below 2^16"), "{why}");
+        assert!(control(Engine::Exact, "too_large_a_power", too_large_a_power).run().is_err());
+    }
 }

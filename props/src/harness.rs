@@ -267,11 +267,7 @@ mod stand_in {
             match result {
                 Ok(()) => End::Passed,
                 Err(why) if why.is::<AssumptionFailed>() => End::NotAssumed,
-                Err(why) => {
-                    let text = why.downcast_ref::<&str>().map(|s| (*s).to_owned());
-                    let text = text.or_else(|| why.downcast_ref::<String>().cloned());
-                    End::Panicked(text.unwrap_or_default())
-                }
+                Err(why) => End::Panicked(crate::claim::said(&*why)),
             }
         }
     }

@@ -89,9 +89,9 @@ from the seed and its own name, and replays the failures that it remembers (`pro
 both. `PROPS_SEED=random` draws other random data and prints the seed; `PROPS_SEED=<number>` repeats it.
 
 **Mistakes planted in the sources:** `.ci/planted.py` plants those of `props/planted.toml`, one at a time, and asks the check
-that is named there. `cargo mutants` (with cargo-nextest; hours) plants small ones in kernel, assembly and solver and asks
-the claims alone; with `--workspace --config .cargo/mutants-proof.toml` in the trusted part of the proof engine, and asks
-the engine's own tests. What came of it: `props/mutants.md`.
+that is named there. `cargo mutants -F src/kernel/contact.rs` (with cargo-nextest) plants small ones in a file of kernel,
+assembly, solver or certificates, and asks the claims alone; with `--workspace --config .cargo/mutants-proof.toml` in the trusted part of the proof engine, and asks
+the engine's own tests. What came of it: `props/mutants.md`. What the harnesses are expected to cost: `props/kani.md`.
 
 **How to add a row:** write the predicate in `props/src/claims/`, generic over `Ordered`, with `given!` for hypotheses and
 `ensure!` for conclusions; plant a mistake as a control; list both in a `Claim`, and the claim in `claims::all`; print the

@@ -330,7 +330,7 @@ where
 }
 
 /// The columns of a symmetric matrix.
-fn dense(lower: &LowerTriangle) -> Vec<Vec<f64>> {
+pub(crate) fn dense(lower: &LowerTriangle) -> Vec<Vec<f64>> {
     let n = lower.starts.len() - 1;
     let mut columns = vec![vec![0.0; n]; n];
     for column in 0..n {

@@ -4,7 +4,10 @@
 
 use proptest::prelude::*;
 use signorini::fem::ball::Ball as Fine;
-use signorini::kernel::{Ball, Enclosing, Interval, positive_part};
+use signorini::fem::contact_line::EdgeRule;
+use signorini::fem::moments::moments;
+use signorini::kernel::edge_integral::ExactEdge;
+use signorini::kernel::{Ball, Enclosing, Interval, P1, positive_part};
 
 use crate::claim::Outcome;
 use crate::numbers::Exact;
@@ -154,4 +157,38 @@ pub fn balls_contain_the_exact_results() -> Outcome {
 /// Doubles do not.
 pub fn doubles_contain_the_exact_results() -> Outcome {
     draws::reject(100, data(), balls::<f64>)
+}
+
+/// int \[P\]+ N_a for P of P1 in balls contains that of each of their numbers, cut at its own root; `share` of each radius
+/// covers what is off.
+fn moments_of(draw: &Draw, share: f64) -> Verdict {
+    let &([a, b, ..], [r, s]) = draw;
+    let p = [Fine::from(a).widened(r * a.abs()), Fine::from(b).widened(s * b.abs())];
+    let found = moments::<P1, 3, 2>(&EdgeRule::Exact, p);
+    Exact::scope(|| {
+        for start in members(p[0]) {
+            for end in members(p[1]) {
+                let exact = <P1 as ExactEdge<Exact, 3, 2>>::exact([start, end]).gradient;
+                for (found, exact) in found.into_iter().zip(exact) {
+                    ensure!(covers(found, exact, share));
+                }
+            }
+        }
+        Verdict::Holds(match (r > 0.0 || s > 0.0, (a > 0.0) != (b > 0.0)) {
+            (true, true) => "balls, cut",
+            (true, false) => "balls, not cut",
+            (false, _) => "points",
+        })
+    })
+}
+
+/// Row 13: the contact terms in balls.
+pub fn moments_of_balls_contain_those_of_their_numbers() -> Outcome {
+    let classes = ["balls, cut", "balls, not cut", "points"];
+    draws::hold(300, data(), &classes, |draw| moments_of(draw, 1.0))
+}
+
+/// A twentieth of their radii.
+pub fn moments_of_balls_within_a_twentieth_of_them() -> Outcome {
+    draws::reject(100, data(), |draw| moments_of(draw, 0.05))
 }

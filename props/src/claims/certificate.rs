@@ -21,16 +21,21 @@ use num_bigint::BigInt;
 use num_rational::BigRational;
 use proptest::prelude::*;
 use signorini::fem::ball::Ball;
+use signorini::fem::matrix::LowerTriangle;
 use signorini::fem::{
-    Condition, Diagonal, Discretization, Mesh, Problem, Rectangle, SharedFunction,
+    Condition, Diagonal, Discretization, Mesh, Obstacle, Problem, Rectangle, SharedFunction, Side,
 };
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::{Material, P1, P2, Plane};
 use signorini::solve::census;
 use signorini::solve::enclosure::{self, Enclosure, FactorOfA, Unproved};
+use signorini::solve::factor::Factor;
 use signorini::solve::system::System;
-use signorini::solve::{ContactQuadrature, Degree, Gamma0, Method, Settings, discretize, solve};
+use signorini::solve::{
+    ContactQuadrature, Degree, Gamma0, Method, Settings, discretize, solve, solve_discrete,
+};
 
+use super::answers;
 use crate::bodies::MaybeExact;
 use crate::claim::{Check, Engine, Outcome, by, control, noticed, text};
 use crate::discrete::{CUT, Discrete, Nodal, exactly};
@@ -180,15 +185,33 @@ impl Draw {
         rectangle.mesh().map_err(text)
     }
 
+    /// Whether the whole problem is turned by a right angle, counter-clockwise: forces of contact are along x then.
+    fn is_turned(&self) -> bool {
+        self.kappa % 2 == 1
+    }
+
+    /// A vector of the problem as it is drawn.
+    fn turned<S: Copy + std::ops::Neg<Output = S>>(&self, [x, y]: [S; 2]) -> [S; 2] {
+        if self.is_turned() { [-y, x] } else { [x, y] }
+    }
+
     /// A body that is held and pushed down at the top, with a body force and a gap at the bottom.
     fn problem(&self) -> Result<Problem, String> {
-        let [g0, g1] = self.gap;
-        let gap: SharedFunction = Arc::new(move |[x, _]: [f64; 2]| g0 + g1 * x);
-        let push = [constant(0.0), constant(-self.push)];
+        let ([g0, g1], turned) = (self.gap, self.is_turned());
+        let along = move |[x, y]: [f64; 2]| if turned { y } else { x };
+        let gap: SharedFunction = Arc::new(move |x: [f64; 2]| g0 + g1 * along(x));
+        let push = self.turned([0.0, -self.push]).map(constant);
+        let mesh = self.mesh()?;
+        let mut named = Vec::new();
+        for name in mesh.boundary_names() {
+            let edges = mesh.edges_of(name).map_err(text)?.iter().map(|&edge| mesh.ends(edge));
+            named.push((name.to_owned(), edges.collect::<Vec<_>>()));
+        }
+        let vertices = mesh.vertices().iter().map(|&x| self.turned(x)).collect();
         Ok(Problem::new(
-            self.mesh()?,
+            Mesh::new(vertices, mesh.triangles().to_vec(), named).map_err(text)?,
             Material::lame(self.lambda, 1.0, self.plane),
-            self.load.map(constant),
+            self.turned(self.load).map(constant),
             BTreeMap::from([
                 ("top".to_owned(), Condition::Displacement(push.map(Some))),
                 ("bottom".to_owned(), Condition::Contact { gap }),
@@ -389,13 +412,19 @@ struct InDoubles {
     factor: f64,
     /// So is the load that the residual is evaluated with.
     load: f64,
+    /// And the matrix whose factor is at hand.
+    matrix: f64,
 }
 
 /// The enclosure that every solve makes, around the solver's result.
-const REPORTED: InDoubles = InDoubles { noise: 0.0, share: 40, factor: 1.0, load: 1.0 };
+const REPORTED: InDoubles =
+    InDoubles { noise: 0.0, share: 40, factor: 1.0, load: 1.0, matrix: 1.0 };
 
 /// Around any point: a perturbation raises the radius at least to what it moves u~ by.
 const REPORTED_MOVED: InDoubles = InDoubles { noise: 1e-3, share: -40, ..REPORTED };
+
+/// With the factor of another matrix: the bound is a large one.
+const ANOTHER_FACTOR: InDoubles = InDoubles { matrix: 1e3, share: -400, ..REPORTED_MOVED };
 
 /// The enclosure of the solver, in balls of doubles, contains the exact solution: its radius is compared with the error in
 /// exact arithmetic, or with the distance from a point whose own radius is a thousand times smaller.
@@ -421,11 +450,17 @@ where
     let Ok(system) = System::new(&d) else { return Verdict::Fails("there is no system") };
     let load: Vec<[Ball; 2]> =
         d.load.iter().map(|l| l.map(|l| Ball::from(l * asked.load))).collect();
-    let Ok(enclosure) = enclosure::enclose_with(&system, &u, None, FactorOfA::Double, &load) else {
+    let LowerTriangle { starts, rows, values } = &system.matrix;
+    let values = values.iter().map(|a| asked.matrix * a).collect();
+    let matrix = LowerTriangle { starts: starts.clone(), rows: rows.clone(), values };
+    let Ok(factor) = Factor::new(&matrix) else { return Verdict::Fails("there is a factor") };
+    let factor = if asked.matrix == 1.0 { FactorOfA::Double } else { FactorOfA::AtHand(factor) };
+    let Ok(enclosure) = enclosure::enclose_with(&system, &u, None, factor, &load) else {
         return Verdict::Fails("there is an enclosure");
     };
     let certifier = Certifier::new(&d);
-    match certifier.contained(exactly(&u), &enclosure, asked) {
+    let up = draw.turned([0, 1]).map(Exact::from);
+    match certifier.contained(exactly(&u), &enclosure, asked, up) {
         Ok(verdict) => verdict,
         Err(why) => Verdict::Fails(why),
     }
@@ -440,6 +475,7 @@ where
         found: Nodal,
         enclosure: &Enclosure,
         asked: InDoubles,
+        up: [Exact; 2],
     ) -> Result<Verdict, &'static str> {
         let radius = Exact::of_double(enclosure.radius) * Exact::of_double(asked.factor);
         let (share, scale) = (power(asked.share), square(&self.k, &self.problem.free(&found)));
@@ -468,8 +504,8 @@ where
             }
             point = self.newton_step(&point)?;
         }
-        let verdict =
-            self.within(&found, &point.u, enclosure, [Exact::of_double(asked.factor), slack]);
+        let factors = [Exact::of_double(asked.factor), slack];
+        let verdict = self.within(&found, &point.u, enclosure, factors, up);
         Ok(if verdict.fails() { verdict } else { Verdict::Holds(class) })
     }
 
@@ -480,6 +516,7 @@ where
         exact: &[[Exact; 2]],
         enclosure: &Enclosure,
         [factor, slack]: [Exact; 2],
+        up: [Exact; 2],
     ) -> Verdict {
         let most = |radius: f64| factor * Exact::of_double(radius) + slack;
         let error: Nodal =
@@ -499,14 +536,20 @@ where
             ensure!(apart <= most(enclosure.pressure) * most(enclosure.pressure));
         }
         if slack == Exact::from(0) {
-            self.reported(exact, enclosure, factor)
+            self.reported(exact, enclosure, factor, up)
         } else {
             Verdict::Holds("within")
         }
     }
 
     /// What is reported of u^h lies in its intervals, which are made narrower by `factor`.
-    fn reported(&self, u: &[[Exact; 2]], enclosure: &Enclosure, factor: Exact) -> Verdict {
+    fn reported(
+        &self,
+        u: &[[Exact; 2]],
+        enclosure: &Enclosure,
+        factor: Exact,
+        up: [Exact; 2],
+    ) -> Verdict {
         let zero = Exact::from(0);
         let two = Exact::from(2);
         let inside = |[low, high]: [f64; 2], x: Exact| {
@@ -520,11 +563,11 @@ where
         let largest = largest.fold(zero, |most, x| if x > most { x } else { most });
         let [low, high] = intervals.max_displacement.map(Exact::of_double);
         ensure!(low * low <= largest && largest <= high * high);
-        // One boundary, the lower side, with the normal (0, -1); the upper side is held in both components.
+        // One boundary, the lower side, with the normal -`up`; the upper side is held in both components.
         let force = self.problem.contact_force(u);
         let [contact] = &intervals.contact[..] else { return Verdict::Fails("one boundary") };
         ensure!(inside(contact.force, force));
-        ensure!(inside(contact.resultant[0], zero) && inside(contact.resultant[1], force));
+        ensure!((0..2).all(|c| inside(contact.resultant[c], force * up[c])));
         let held = self.problem.reactions(u).into_iter().zip(self.problem.prescribed());
         let reaction = held
             .filter(|(_, p)| p[0].is_some())
@@ -555,6 +598,65 @@ fn reported_around_the_result() -> Outcome {
 
 fn reported_around_any_point() -> Outcome {
     hold_in_doubles(REPORTED_MOVED)
+}
+
+fn reported_by_another_factor() -> Outcome {
+    hold_in_doubles(ANOTHER_FACTOR)
+}
+
+/// A body on a round obstacle, so that directions of contact turn along each edge: the kappa that the enclosure proves is that
+/// of the method, times `scale`, rounded up.
+fn proved_kappa(scale: f64) -> Outcome {
+    let mut turning: f64 = 0.0;
+    for radius in [1.0, 3.0, 20.0] {
+        let cells = Rectangle { width: 2.0, height: 1.0, nx: 3, ny: 2, diagonal: Diagonal::Left };
+        let center = [0.7, -0.05 - radius];
+        let round = Obstacle::Circle { center, radius, side: Side::Outside };
+        let held = Condition::Displacement([0.0, -0.1].map(|x| Some(constant(x))));
+        let conditions = [("top", held), ("bottom", Condition::Obstacle("round".into(), round))];
+        let problem = Problem::new(
+            cells.mesh().map_err(text)?,
+            Material::lame(1.0, 1.0, Plane::Strain),
+            [constant(0.0), constant(0.0)],
+            conditions.map(|(name, condition)| (name.to_owned(), condition)).into(),
+        );
+        for gamma0 in [Gamma0::Auto, Gamma0::Local(0.5)] {
+            turning = turning.max(proved_kappa_on::<P1, 3, 2>(&problem, gamma0, scale)?);
+            turning = turning.max(proved_kappa_on::<P2, 6, 3>(&problem, gamma0, scale)?);
+        }
+    }
+    Ok(format!("3 obstacles, P1 and P2; directions turn by up to {turning:.2}"))
+}
+
+fn proved_kappa_on<E, const N: usize, const M: usize>(
+    problem: &Problem,
+    gamma0: Gamma0,
+    scale: f64,
+) -> Result<f64, String>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let d = discretize::<E, N, M>(problem, &Method { gamma0, ..Method::default() });
+    let d = d.map_err(text)?;
+    let (solved, ..) = solve_discrete(&d, &Settings::default()).map_err(text)?;
+    let system = System::new(&d).map_err(text)?;
+    let enclosure = enclosure::enclose(&system, &solved.u, None, FactorOfA::Double);
+    let (proved, kappa) = (scale * enclosure.map_err(text)?.kappa, d.kappa());
+    // Some dozen roundings of doubles on the one side.
+    if !((proved - kappa).abs() <= 1e-14 * kappa) {
+        return Err(format!("kappa = {kappa}, and {proved} is proved"));
+    }
+    let turns =
+        d.contact.iter().map(|edge| (edge.directions[0] - edge.directions[1]).map(f64::abs).max());
+    Ok(turns.fold(0.0, f64::max))
+}
+
+fn kappa_is_proved_where_directions_turn() -> Outcome {
+    proved_kappa(1.0)
+}
+
+fn a_kappa_that_is_a_millionth_smaller() -> Outcome {
+    noticed(proved_kappa(1.0 - 1e-6))
 }
 
 fn reported_rejected(asked: InDoubles) -> Outcome {
@@ -742,7 +844,7 @@ fn counted_below_the_limit() -> Outcome {
 }
 
 /// The checks, for the row of Theorem 3.3.
-pub fn checks() -> [Check; 14] {
+pub fn checks() -> [Check; 19] {
     [
         by(
             Engine::Doubles,
@@ -754,6 +856,31 @@ pub fn checks() -> [Check; 14] {
             Engine::Exact,
             "the_enclosure_that_is_reported_contains_the_solution_around_the_result",
             reported_around_the_result,
+        ),
+        by(
+            Engine::Doubles,
+            "the_enclosure_contains_the_solution_whatever_the_factor",
+            reported_by_another_factor,
+        ),
+        by(
+            Engine::Doubles,
+            "errors_at_points_are_those_of_the_nodes",
+            answers::errors_at_points_are_those_of_the_nodes,
+        ),
+        control(
+            Engine::Doubles,
+            "control_half_the_error_at_a_point",
+            answers::half_the_error_at_a_point,
+        ),
+        by(
+            Engine::Doubles,
+            "kappa_is_proved_where_directions_turn",
+            kappa_is_proved_where_directions_turn,
+        ),
+        control(
+            Engine::Doubles,
+            "control_a_kappa_that_is_a_millionth_smaller",
+            a_kappa_that_is_a_millionth_smaller,
         ),
         by(
             Engine::Exact,

@@ -198,7 +198,11 @@ fn over_body<const N: usize>(
     let mut total = BigRational::zero();
     for (right, exact) in &sides(body, c) {
         for (t, corners) in body.triangles.iter().enumerate() {
-            let density = density(exact, &test_function::<N>(body, t, v));
+            let test = test_function::<N>(body, t, v);
+            if test.iter().all(Polynomial::is_zero) {
+                continue;
+            }
+            let density = density(exact, &test);
             let polygon = clipped(&corners.map(|vertex| corner(body, vertex)), c, *right);
             for k in 1..polygon.len().saturating_sub(1) {
                 total += over_triangle(&density, [&polygon[0], &polygon[k], &polygon[k + 1]]);
@@ -317,9 +321,7 @@ fn consistent<E: Element<N, M>, const N: usize, const M: usize>(
             (a[0] < c) != (b[0] < c)
         });
         given!(cut_edge);
-        // For P2 one v^h out of the whole space: each takes seconds.
-        let basis = if N == 3 { body.basis::<N>() } else { vec![body.clamped(body.drawn(0))] };
-        for v in basis {
+        for v in body.basis::<N>() {
             ensure!(residual::<E, N, M>(&body, &c, &v, weight).is_zero());
         }
         Verdict::Holds("an edge with contact and gap")
@@ -339,7 +341,7 @@ pub fn residual_vanishes() -> Outcome {
 
 /// The same for P2.
 pub fn residual_vanishes_for_p2() -> Outcome {
-    draws::hold(8, data(), &CLASSES, |(draw, c)| consistent::<P2, 6, 3>(draw, *c, 1))
+    draws::hold(3, data(), &CLASSES, |(draw, c)| consistent::<P2, 6, 3>(draw, *c, 1))
 }
 
 /// Without the contact term: the penalty-free method is not consistent.

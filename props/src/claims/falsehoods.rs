@@ -340,6 +340,114 @@ fn leading_terms_are_all_there_is<S: Ordered>([x]: [S; 1]) -> Verdict {
     Verdict::Holds("all")
 }
 
+/// A definite form of two variables without the bound of its mixed term.
+fn a_mixed_term_is_at_most_its_squares<S: Ordered>([a, b, x, y]: [S; 4]) -> Verdict {
+    given!(a > S::from(0) && b > S::from(0));
+    ensure!(a * x * x + b * y * y >= S::from(2) * x * y);
+    Verdict::Holds("all")
+}
+
+/// From opposite signs of the values a root between, from the values' product a sign of their sum.
+fn what_has_a_root_between_has_a_mean_of_zero<S: Ordered>([p, q]: [S; 2]) -> Verdict {
+    given!(p < S::from(0) && q > S::from(0));
+    let root = p / (p - q);
+    ensure!(root + root == S::from(1));
+    Verdict::Holds("all")
+}
+
+/// The integral of a positive part over an edge is that of the mean.
+fn the_part_of_a_mean_is_the_mean_of_the_parts<S: Ordered>([p, q]: [S; 2]) -> Verdict {
+    let two = S::from(2);
+    ensure!(positive_part((p + q) / two) >= (positive_part(p) + positive_part(q)) / two);
+    Verdict::Holds("all")
+}
+
+/// A gap that is forgotten on one side of complementarity.
+fn complementarity_without_the_gap<S: Ordered>([u, g, sigma]: [S; 3]) -> Verdict {
+    given!(u <= g && sigma <= S::from(0) && sigma * (u - g) == S::from(0));
+    ensure!(sigma * u == S::from(0));
+    Verdict::Holds("all")
+}
+
+/// Coercivity with the constant doubled.
+fn a_difference_keeps_half_of_a_square<S: Ordered>([a, b, kappa]: [S; 3]) -> Verdict {
+    given!(kappa >= S::from(0) && kappa < S::from(1) && b * b <= kappa * a * a);
+    ensure!(a * a - b * b >= (S::from(1) - kappa * kappa) * a * a);
+    Verdict::Holds("all")
+}
+
+/// The triangle inequality, turned.
+fn a_norm_of_a_sum_is_at_least_the_sum<S: Ordered>([a, b]: [S; 2]) -> Verdict {
+    let size = |x: S| positive_part(x) + positive_part(-x);
+    ensure!(size(a + b) >= size(a) + size(b));
+    Verdict::Holds("all")
+}
+
+/// A quotient of squares is at most that of what is larger above and below.
+fn a_quotient_grows_with_both<S: Ordered>([a, b, c, d]: [S; 4]) -> Verdict {
+    given!(S::from(0) < a && a <= c && S::from(0) < b && b <= d);
+    ensure!(a / b <= c / d);
+    Verdict::Holds("all")
+}
+
+/// The means of three numbers in the wrong order.
+fn the_geometric_mean_is_the_larger_one<S: Ordered>([a, b]: [S; 2]) -> Verdict {
+    given!(a > S::from(0) && b > S::from(0));
+    ensure!(S::from(4) * a * b >= (a + b) * (a + b));
+    Verdict::Holds("all")
+}
+
+/// Two conditions that exclude each other only nearly: a line touches a circle.
+fn a_tangent_misses_its_circle<S: Ordered>([x, y]: [S; 2]) -> Verdict {
+    given!(S::from(3) * x + S::from(4) * y == S::from(5));
+    ensure!(x * x + y * y > S::from(1));
+    Verdict::Holds("all")
+}
+
+/// (5) determines u: where sigma is zero any u below the gap will do.
+fn a_pressure_determines_the_displacement<S: Ordered>([u, v, g, sigma, gamma]: [S; 5]) -> Verdict {
+    given!(gamma > S::from(0));
+    given!(gamma * sigma == -positive_part(u - g - gamma * sigma));
+    given!(gamma * sigma == -positive_part(v - g - gamma * sigma));
+    ensure!(u == v);
+    Verdict::Holds("all")
+}
+
+/// A cubic that is monotone on one side of its vertex.
+fn a_cubic_is_monotone<S: Ordered>([a, b]: [S; 2]) -> Verdict {
+    let cubic = |x: S| x * x * x - x / S::from(4);
+    given!(a <= b);
+    ensure!(cubic(a) <= cubic(b));
+    Verdict::Holds("all")
+}
+
+/// The inverse of an inverse of a sum, with a sign lost.
+fn an_inverse_of_a_difference_is_symmetric<S: Ordered>([a, b]: [S; 2]) -> Verdict {
+    given!(a != b);
+    ensure!(S::from(1) / (a - b) == S::from(1) / (b - a));
+    Verdict::Holds("all")
+}
+
+/// A hypothesis that is true at one point only, and a conclusion that is wrong there.
+fn what_follows_at_a_single_point<S: Ordered>([x, y]: [S; 2]) -> Verdict {
+    given!(x * x + y * y <= S::from(2) * (x + y) - S::from(2));
+    ensure!(x + y < S::from(2));
+    Verdict::Holds("all")
+}
+
+/// The slope of the positive part times the number is more than the part.
+fn slope_times_number_is_below_the_part<S: Ordered>([a]: [S; 1]) -> Verdict {
+    ensure!(positive_part_slope(a) * a < positive_part(a) || a <= S::from(0));
+    Verdict::Holds("all")
+}
+
+/// A transitivity with one of three comparisons turned.
+fn a_circle_of_comparisons_is_an_equality<S: Ordered>([a, b, c]: [S; 3]) -> Verdict {
+    given!(a <= b && b <= c && a * c >= S::from(0));
+    ensure!(a * b + b * c <= b * b + a * c);
+    Verdict::Holds("all")
+}
+
 /// The statements, with the conclusion of each that a rational point refutes, where there is one.
 pub fn all() -> Vec<Statement> {
     vec![
@@ -417,6 +525,33 @@ pub fn all() -> Vec<Statement> {
             .failing("a * b <= S::from(0)"),
         statement!(leading_terms_are_all_there_is, [x], ["all"])
             .failing("(power + x) / power == S::from(1)"),
+        statement!(a_mixed_term_is_at_most_its_squares, [a, b, x, y], ["all"])
+            .failing("a * x * x + b * y * y >= S::from(2) * x * y"),
+        statement!(what_has_a_root_between_has_a_mean_of_zero, [p, q], ["all"])
+            .failing("root + root == S::from(1)"),
+        statement!(the_part_of_a_mean_is_the_mean_of_the_parts, [p, q], ["all"])
+            .failing("positive_part((p + q) / two) >= (positive_part(p) + positive_part(q)) / two"),
+        statement!(complementarity_without_the_gap, [u, g, sigma], ["all"])
+            .failing("sigma * u == S::from(0)"),
+        statement!(a_difference_keeps_half_of_a_square, [a, b, kappa], ["all"])
+            .failing("a * a - b * b >= (S::from(1) - kappa * kappa) * a * a"),
+        statement!(a_norm_of_a_sum_is_at_least_the_sum, [a, b], ["all"])
+            .failing("size(a + b) >= size(a) + size(b)"),
+        statement!(a_quotient_grows_with_both, [a, b, c, d], ["all"]).failing("a / b <= c / d"),
+        statement!(the_geometric_mean_is_the_larger_one, [a, b], ["all"])
+            .failing("S::from(4) * a * b >= (a + b) * (a + b)"),
+        statement!(a_tangent_misses_its_circle, [x, y], ["all"])
+            .failing("x * x + y * y > S::from(1)"),
+        statement!(a_pressure_determines_the_displacement, [u, v, g, sigma, gamma], ["all"])
+            .failing("u == v"),
+        statement!(a_cubic_is_monotone, [a, b], ["all"]).failing("cubic(a) <= cubic(b)"),
+        statement!(an_inverse_of_a_difference_is_symmetric, [a, b], ["all"])
+            .failing("S::from(1) / (a - b) == S::from(1) / (b - a)"),
+        statement!(what_follows_at_a_single_point, [x, y], ["all"]),
+        statement!(slope_times_number_is_below_the_part, [a], ["all"])
+            .failing("positive_part_slope(a) * a < positive_part(a) || a <= S::from(0)"),
+        statement!(a_circle_of_comparisons_is_an_equality, [a, b, c], ["all"])
+            .failing("a * b + b * c <= b * b + a * c"),
     ]
 }
 

@@ -334,6 +334,16 @@ mod row {
             ),
             by(
                 Engine::Doubles,
+                "moments_of_balls_contain_those_of_their_numbers",
+                balls::moments_of_balls_contain_those_of_their_numbers,
+            ),
+            control(
+                Engine::Doubles,
+                "control_moments_of_balls_within_a_twentieth_of_them",
+                balls::moments_of_balls_within_a_twentieth_of_them,
+            ),
+            by(
+                Engine::Doubles,
                 "factors_in_twofold_numbers_solve_what_doubles_cannot",
                 geometry::factors_in_twofold_numbers_solve_what_doubles_cannot,
             ),
@@ -384,7 +394,7 @@ mod row {
             items: &["floating point"],
             title: "What the above rests on in floating point",
             paper: "Nothing: the paper computes in R.",
-            statement: "For intervals X, Y of doubles and numbers x in X, y in Y: x + y, x - y, x y, x / y (y not 0) and sqrt(x) lie in X + Y, X - Y, X Y, X / Y and sqrt(X). [X]+ is [[lo]+, [hi]+], sharp across zero, and the slope of [X]+ contains that at each number, for X = [0, hi] that at 0. Of two numbers the result is at most two doubles wide, and exact where it is zero without underflow; an end may be infinite (no bound); a NaN makes both ends NaN. The integrals over a cut P1 edge, by the same source line over intervals, contain the exact ones. The same for the balls in which certificates are checked and the discrete solution is enclosed (a double, or a number of twice the precision, with a radius): the results of members of the operands, and chains of three, lie in the results, which for numbers without a radius are known to 1e-14, or to 2^-98. Sums and products of two doubles as twofold numbers are exact, and +, -, *, / of these are off by at most 2^-100 of what goes in; in them the forces of a translation of a block, P1 and P2, vanish to 2^-90, and A(u, .) - L and P at random fields are those in doubles, to 1e-15 of their magnitudes. The factor L D L^T in them solves a system with Pascal's matrix of order 24 plus the identity, whose solution doubles do not know to 1e-9, to that, and a matrix with a negative entry on its diagonal has none.",
+            statement: "For intervals X, Y of doubles and numbers x in X, y in Y: x + y, x - y, x y, x / y (y not 0) and sqrt(x) lie in X + Y, X - Y, X Y, X / Y and sqrt(X). [X]+ is [[lo]+, [hi]+], sharp across zero, and the slope of [X]+ contains that at each number, for X = [0, hi] that at 0. Of two numbers the result is at most two doubles wide, and exact where it is zero without underflow; an end may be infinite (no bound); a NaN makes both ends NaN. The integrals over a cut P1 edge, by the same source line over intervals, contain the exact ones. The same for the balls in which certificates are checked and the discrete solution is enclosed (a double, or a number of twice the precision, with a radius): the results of members of the operands, and chains of three, lie in the results, which for numbers without a radius are known to 1e-14, or to 2^-98. Sums and products of two doubles as twofold numbers are exact, and +, -, *, / of these are off by at most 2^-100 of what goes in; in them the forces of a translation of a block, P1 and P2, vanish to 2^-90, and A(u, .) - L and P at random fields are those in doubles, to 1e-15 of their magnitudes. The factor L D L^T in them solves a system with Pascal's matrix of order 24 plus the identity, whose solution doubles do not know to 1e-9, to that, and a matrix with a negative entry on its diagonal has none. The contact terms of P1 over an edge in balls contain those of each of their numbers.",
             numbers: "doubles against exact rational arithmetic, drawn from all finite doubles with subnormals, overflow and ties.",
             kernel: &[
                 "interval::Interval::new",

@@ -12,6 +12,7 @@ use signorini::fem::twofold::Twofold;
 use signorini::fem::{Diagonal, Distance, Function, Mesh, Obstacle, Problem, Rectangle, Side};
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::{Material, P1, P2, Plane};
+use signorini::nalgebra::Vector2;
 use signorini::solve::factor::Factor;
 use signorini::solve::ldl::TwofoldFactor;
 use signorini::solve::system::System;
@@ -148,6 +149,47 @@ pub fn middles_of_facets_for_those_of_the_curves() -> Outcome {
     draws::reject(5, facets(), |angles| circle(angles, true))
 }
 
+/// On an ellipse, where an edge has another bend at each end: the cubic with the tangents at the ends, as fast as to go through the
+/// middle that is given, has the normal that is given there; `facets`: with the facet's normal in place of it.
+fn ellipse(angles: &[f64], facets: bool) -> Verdict {
+    let n = angles.len();
+    let total: f64 = angles.iter().sum();
+    let (mut vertices, mut sum) = (vec![[0.0, 0.0]], 0.0);
+    for a in angles {
+        vertices.push([2.0 * f64::cos(sum), 1.6 * f64::sin(sum)]);
+        sum += a / total * std::f64::consts::TAU;
+    }
+    let triangles = (0..n).map(|i| [0, 1 + i, 1 + (i + 1) % n]).collect();
+    let Ok(mesh) = Mesh::new(vertices, triangles, []) else { return Verdict::Fails("a mesh") };
+    let smooth = SmoothBoundary::new(&mesh);
+    for &edge in mesh.outline() {
+        let Some([start, end, middle]) = smooth.along(&mesh, edge) else {
+            return Verdict::Fails("a curve");
+        };
+        let tangent = |normal: Vector2<f64>| Vector2::new(-normal.y, normal.x);
+        let (t, s) = (tangent(start.normal), tangent(end.normal));
+        let [a, b, m] = [start, end, middle].map(|point| Vector2::from(point.place));
+        let (chord, bulge) = (b - a, m - (a + b) / 2.0);
+        let speed = 8.0 * bulge.dot(&(t - s)) / (t - s).dot(&(t - s));
+        let along = chord * 1.5 - (t + s) * (speed / 4.0);
+        let (_, facet) = mesh.length_and_normal(edge);
+        let normal = if facets { facet } else { middle.normal };
+        ensure!(normal.dot(&along).abs() <= 1e-10 * along.dot(&along).sqrt());
+        ensure!((normal.dot(&normal) - 1.0).abs() <= 1e-14);
+    }
+    Verdict::Holds("always")
+}
+
+/// Row 20: the smooth boundary where bends differ.
+pub fn middles_of_smooth_boundaries_have_the_normals_of_their_curves() -> Outcome {
+    draws::hold(50, facets(), &["always"], |angles| ellipse(angles, false))
+}
+
+/// The normals of the facets.
+pub fn normals_of_facets_for_those_of_the_curves() -> Outcome {
+    draws::reject(5, facets(), |angles| ellipse(angles, true))
+}
+
 /// The limit that is printed, from A and from the stiffness matrix, against that of dense algebra times `factor`.
 fn limits_on<E, const N: usize, const M: usize>(
     problem: &Problem,
@@ -238,6 +280,12 @@ fn korn(by: f64) -> Outcome {
     let named = [("top", [1, 2]), ("bottom", [0, 1])].map(|(n, e)| (n.to_owned(), vec![e]));
     let tall = Mesh::new(vec![[0.0, 0.0], [0.3, 4.0], [-0.3, 4.0]], vec![[0, 1, 2]], named);
     bodies.push(sharpness::clamped(tall.map_err(text)?, strain(), &["top"]));
+    // Far from its support a slender body moves much further than one of its triangles lets it, and so does a soft one.
+    let long = Rectangle { width: 512.0, height: 1.0, nx: 512, ny: 1, diagonal: Diagonal::Right };
+    bodies.push(sharpness::clamped(long.mesh().map_err(text)?, strain(), &["left"]));
+    let soft = Rectangle { width: 2.0, height: 1.0, nx: 2, ny: 1, diagonal: Diagonal::Right };
+    let soft = soft.mesh().map_err(text)?;
+    bodies.push(sharpness::clamped(soft, Material::lame(1e-8, 1e-8, Plane::Strain), &["left"]));
     let mut least = f64::INFINITY;
     for problem in &bodies {
         least = least.min(korn_on::<P1, 3, 2>(problem, by)?);

@@ -50,7 +50,7 @@ fn loaded_bodies() -> Result<Vec<(String, Problem)>, String> {
 }
 
 /// Numbers between -1 and 1.
-fn field(nodes: usize, random: &mut Random) -> Vec<[f64; 2]> {
+pub(super) fn field(nodes: usize, random: &mut Random) -> Vec<[f64; 2]> {
     (0..nodes).map(|_| [0, 1].map(|_| random.below(2001) as f64 / 1000.0 - 1.0)).collect()
 }
 
@@ -92,6 +92,8 @@ struct Known<'s, 'd, 'p, E, const N: usize, const M: usize> {
     error: Vec<f64>,
     shares: Vec<f64>,
     passes: usize,
+    /// The largest |d|^2 / |d|_A^2, as it says.
+    softness: f64,
 }
 
 impl<E, const N: usize, const M: usize> Route<E, N, M> for Known<'_, '_, '_, E, N, M>
@@ -124,14 +126,15 @@ where
         self.passes += 1;
         iterate.add(self.system, 1.0, &step);
         *at = iterate.evaluate(self.system, at.precisely);
-        Ok(Pass { energy, left: 0.0, softness: 0.0 })
+        Ok(Pass { energy, left: 0.0, softness: self.softness })
     }
 }
 
 /// What the loop says of a route whose error falls as `shares`, and what is true: the relative residual by its definition, and
 /// the error in the energy norm, relative to the displacement.
-struct Told {
-    outcome: accuracy::Outcome,
+pub(super) struct Told {
+    /// What it says.
+    pub(super) outcome: accuracy::Outcome,
     residual: f64,
     error: f64,
 }
@@ -147,9 +150,21 @@ where
     E: ExactEdge<f64, N, M>,
 {
     let d = discretize::<E, N, M>(problem, &Method::default()).map_err(text)?;
-    let settings = Settings::default();
-    let (Evaluated { u, .. }, _, _) = solve_discrete(&d, &settings).map_err(text)?;
-    let system = System::new(&d).map_err(text)?;
+    passes(&d, shares, &Settings::default(), 0.0)
+}
+
+/// The same on a discretization, until `settings` are met, on a body that is as soft as the route says.
+pub(super) fn passes<E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    shares: &[f64],
+    settings: &Settings,
+    softness: f64,
+) -> Result<Told, String>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let (Evaluated { u, .. }, _, _) = solve_discrete(d, &Settings::default()).map_err(text)?;
+    let system = System::new(d).map_err(text)?;
     let mut random = Random::new(draws::seed());
     let target = system.numbering.gather(&u);
     let mut away = d.constraints.lift();
@@ -160,19 +175,22 @@ where
     spread(&error, &mut only);
     let scale = FIRST * size(&u) / size(&only);
     error.iter_mut().for_each(|e| *e *= scale);
-    let mut route = Known { system: &system, target, error, shares: shares.to_vec(), passes: 0 };
-    let outcome = accuracy::refine(&system, &mut route, forces(&d), &settings).map_err(text)?;
+    let mut route =
+        Known { system: &system, target, error, shares: shares.to_vec(), passes: 0, softness };
+    let outcome = accuracy::refine(&system, &mut route, forces(d), settings).map_err(text)?;
     away.copy_from_slice(&outcome.u);
     let difference: Vec<[f64; 2]> =
         away.iter().zip(&u).map(|(a, b)| [a[0] - b[0], a[1] - b[1]]).collect();
-    let residual = free_square(&d, &d.residual(&outcome.u).values).sqrt() / forces(&d);
-    if !((accuracy::reference(&d) - forces(&d)).abs() <= 1e-12 * forces(&d)) {
-        return Err(format!("reference {}, by definition {}", accuracy::reference(&d), forces(&d)));
+    let residual = free_square(d, &d.residual(&outcome.u).values).sqrt() / forces(d);
+    if !((accuracy::reference(d) - forces(d)).abs() <= 1e-12 * forces(d)) {
+        return Err(format!("reference {}, by definition {}", accuracy::reference(d), forces(d)));
     }
     Ok(Told { residual, error: size(&difference) / size(&outcome.u), outcome })
 }
 
-fn on_bodies(check: impl Fn(&Problem, usize) -> Result<(), String>) -> Result<usize, String> {
+pub(super) fn on_bodies(
+    check: impl Fn(&Problem, usize) -> Result<(), String>,
+) -> Result<usize, String> {
     let bodies = loaded_bodies()?;
     for (name, problem) in &bodies {
         for degree in [1, 2] {

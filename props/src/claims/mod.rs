@@ -4,6 +4,8 @@
 #[cfg(not(kani))]
 pub mod a_priori;
 #[cfg(not(kani))]
+pub mod answers;
+#[cfg(not(kani))]
 pub mod assembled;
 #[cfg(not(kani))]
 pub mod balls;
@@ -41,6 +43,8 @@ pub mod mixed;
 pub mod newton;
 #[cfg(not(kani))]
 pub mod parts;
+#[cfg(not(kani))]
+pub mod passes;
 pub mod pattern;
 pub mod positive_part;
 pub mod prop_2_1;

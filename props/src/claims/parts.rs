@@ -30,7 +30,7 @@ use signorini::solve::{ContactQuadrature, Degree, Method, Settings, Solution, di
 
 use crate::bodies::{Body, Draw, Kernel, bodies, sum};
 use crate::claim::{Claim, Engine, Outcome, by, control, noticed, proved, refuted, text};
-use crate::claims::geometry;
+use crate::claims::{answers, geometry};
 use crate::draws;
 use crate::numbers::Exact;
 use crate::statement;
@@ -530,6 +530,16 @@ pub fn direction() -> Claim {
             "the_smooth_boundary_of_a_circle_is_the_circle",
             geometry::smooth_boundaries_are_exact_on_circles,
         ),
+        by(
+            Engine::Doubles,
+            "middles_of_smooth_boundaries_have_the_normals_of_their_curves",
+            geometry::middles_of_smooth_boundaries_have_the_normals_of_their_curves,
+        ),
+        control(
+            Engine::Doubles,
+            "control_normals_of_facets_for_those_of_the_curves",
+            geometry::normals_of_facets_for_those_of_the_curves,
+        ),
         control(
             Engine::Doubles,
             "control_directions_away_from_the_obstacle",
@@ -883,7 +893,7 @@ pub fn recovered() -> Claim {
         items: &[],
         title: "The recovered pressure",
         paper: "Not in the paper, whose pressure is lambda^h.",
-        statement: "The nodal contact pressure is the mean of -lambda^h weighted by the node's hat function on the line (for P2 on half edges where the line is straight). The hats are not negative and add up to one, so it is between 0 and the largest -lambda^h, and its integral over a boundary is that of -lambda^h: the same force, to rounding. Away from the ends of the line it is of second order on equal edges where the pressure is smooth, measured between 24 and 48 edges; -lambda^h at the nodes is not for P1.",
+        statement: "The nodal contact pressure is the mean of -lambda^h weighted by the node's hat function on the line (for P2 on half edges where the line is straight). The hats are not negative and add up to one, so it is between 0 and the largest -lambda^h, and its integral over a boundary is that of -lambda^h: the same force, to rounding. Away from the ends of the line it is of second order on equal edges where the pressure is smooth, measured between 24 and 48 edges; -lambda^h at the nodes is not for P1. At a corner each side has its own mean. Stresses at the nodes are the means by areas of what the triangles around have there.",
         numbers: "every ordered field (proof) for means by hats; doubles.",
         kernel: &["contact::ContactPoint::pressure"],
         preconditions: "At the ends of a line the hat is one-sided, and the order one.",
@@ -891,6 +901,26 @@ pub fn recovered() -> Claim {
         single: None,
         checks: vec![
             proved(statement!(means_by_hats_keep_integral_and_bounds, [s, t, v, w, m], ["always"])),
+            by(
+                Engine::Doubles,
+                "nodal_stresses_are_means_by_areas",
+                answers::nodal_stresses_are_means_by_areas,
+            ),
+            control(
+                Engine::Doubles,
+                "control_plain_means_of_stresses",
+                answers::plain_means_of_stresses,
+            ),
+            by(
+                Engine::Doubles,
+                "recovered_pressures_are_means_on_one_side_of_a_corner",
+                answers::recovered_pressures_are_means_on_one_side_of_a_corner,
+            ),
+            control(
+                Engine::Doubles,
+                "control_means_across_a_corner",
+                answers::means_across_a_corner,
+            ),
             by(
                 Engine::Doubles,
                 "recovered_pressure_has_the_force_of_lambda",

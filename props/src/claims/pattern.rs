@@ -367,7 +367,7 @@ harnesses! {
     /// Two numbers have an entry in the lower triangle for each time that the node of the column is listed around that of
     /// the row, and no other.
     holds columns_are_complete_for_three_numbers_and_neighbours_of_any_value() {
-        let members = [any(), any(), any(), any()];
+        let members = [any(), 0, 1, any()];
         let columns = Columns::new(&members);
         let (row, column) = (two_bits(), two_bits());
         assume(row < 3 && column < 3);
@@ -376,10 +376,8 @@ harnesses! {
         assert!(times::<6>(columns.of(column), row) == expected);
     }
     /// The false twin: the whole matrix in place of the lower triangle.
-    fails control_columns_are_those_of_the_whole_matrix_for_three_numbers([
-        0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0,
-    ]) {
-        let members = [any(), any(), any(), any()];
+    fails control_columns_are_those_of_the_whole_matrix_for_three_numbers([9.0, 0.0, 0.0, 0.0, 0.0, 1.0]) {
+        let members = [any(), 0, 1, any()];
         let columns = Columns::new(&members);
         let (row, column) = (two_bits(), two_bits());
         assume(row < 3 && column < 3);
@@ -512,16 +510,16 @@ harnesses! {
         let rows: [usize; 2] = [any(), any()];
         let mut values = [0_u8; 2];
         let columns = Lists { starts: &[0, 1, 2], members: &rows };
-        add(&of, columns, &mut values, &[any(), any()], |_, _| [[1; 2]; 2]);
-        assert!(values[0] <= 16 && values[1] <= 16);
+        add(&of, columns, &mut values, &[any()], |_, _| [[1; 2]; 2]);
+        assert!(values[0] <= 4 && values[1] <= 4);
     }
     /// The false twin: nothing is added.
-    fails control_nothing_is_added_to_wrong_columns([1.0, 0.0, 0.0, 0.0, 9.0, 0.0, 9.0]) within 4 {
+    fails control_nothing_is_added_to_wrong_columns([1.0, 0.0, 0.0, 0.0, 9.0, 0.0]) within 4 {
         let of = [[perhaps(), perhaps()]];
         let rows: [usize; 2] = [any(), any()];
         let mut values = [0_u8; 2];
         let columns = Lists { starts: &[0, 1, 2], members: &rows };
-        add(&of, columns, &mut values, &[any(), any()], |_, _| [[1; 2]; 2]);
+        add(&of, columns, &mut values, &[any()], |_, _| [[1; 2]; 2]);
         assert!(values[0] == 0);
     }
     /// Wrong numbers: what there is no place for is neither gathered nor scattered.

@@ -26,7 +26,7 @@ use signorini::nalgebra::Matrix2;
 use signorini::solve::{ContactQuadrature, Degree, Gamma0, Method, SolveError, discretize};
 
 use crate::claim::{Claim, Engine, Outcome, by, control, noticed, text};
-use crate::claims::{conditions, rates};
+use crate::claims::{answers, conditions, rates};
 use crate::numbers::Exact;
 use crate::proof::sampler::Random;
 use crate::verdict::Verdict;
@@ -543,6 +543,26 @@ pub fn claim() -> Claim {
         ),
         by(
             Engine::Doubles,
+            "of_bodies_that_slide_the_solution_of_least_norm_is_given",
+            answers::of_bodies_that_slide_the_solution_of_least_norm_is_given,
+        ),
+        control(
+            Engine::Doubles,
+            "control_a_solution_that_has_slid",
+            answers::a_solution_that_has_slid,
+        ),
+        by(
+            Engine::Doubles,
+            "solutions_are_the_same_in_all_units",
+            answers::solutions_are_the_same_in_all_units,
+        ),
+        control(
+            Engine::Doubles,
+            "control_units_that_are_off_by_a_rounding",
+            answers::units_that_are_off_by_a_rounding,
+        ),
+        by(
+            Engine::Doubles,
             "bodies_that_neither_supports_nor_contact_hold_are_refused",
             conditions::bodies_that_can_move_are_refused,
         ),
@@ -571,7 +591,7 @@ pub fn claim() -> Claim {
         items: &["the solver"],
         title: "What the solver refuses, and the rules by which it integrates",
         paper: "gamma0 sufficiently small; the rest is not in the paper.",
-        statement: "On nine small bodies, P1 and P2: gamma0 with kappa >= 1 is refused (from 1 + 1e-9 on), with kappa < 1 taken (up to 1 - 1e-9), and gamma0 = auto is kappa = 1/2. Displacements that two sides prescribe at a common vertex and that differ by 1e-9 or more are refused, those of a support, which count along its normal, too. Tractions along what is held are no load. A local gamma gives each triangle on Gamma_C the kappa that is asked for. A block that neither its supports nor contact under its load hold is refused, one that they hold is taken, on the verge of tipping it is refused (15 cases). The Gauss rules with n <= 10 points have the moments 0 with the Legendre polynomials of degree 1 to 2n - 1, to a few units of roundoff, and not with that of degree 2n; contact edges are integrated by the one that is asked for. The rule for errors, told to cut an edge, integrates a kink there exactly, 1e-7 from an end too. The integrals of [P]+ over an edge, P1 and P2, for 2^k P, |k| <= 60, are those for P times the power of two, bit for bit. The errors in all six norms of random P2 fields from quadratic ones, on nine bodies, open and pressed, are those of their definitions. The a-orthogonal projection of the exact solution is nearer to it in the energy norm than u^h and than the interpolant.",
+        statement: "On nine small bodies, P1 and P2: gamma0 with kappa >= 1 is refused (from 1 + 1e-9 on), with kappa < 1 taken (up to 1 - 1e-9), and gamma0 = auto is kappa = 1/2. Displacements that two sides prescribe at a common vertex and that differ by 1e-9 or more are refused, those of a support, which count along its normal, too. Tractions along what is held are no load. A local gamma gives each triangle on Gamma_C the kappa that is asked for. A block that neither its supports nor contact under its load hold is refused, one that they hold is taken, on the verge of tipping it is refused (15 cases). The Gauss rules with n <= 10 points have the moments 0 with the Legendre polynomials of degree 1 to 2n - 1, to a few units of roundoff, and not with that of degree 2n; contact edges are integrated by the one that is asked for. The rule for errors, told to cut an edge, integrates a kink there exactly, 1e-7 from an end too. The integrals of [P]+ over an edge, P1 and P2, for 2^k P, |k| <= 60, are those for P times the power of two, bit for bit. The errors in all six norms of random P2 fields from quadratic ones, on nine bodies, open and pressed, are those of their definitions. The a-orthogonal projection of the exact solution is nearer to it in the energy norm than u^h and than the interpolant. Of the solutions of a block that slides along its floor the one of least norm is given. In units that are powers of two a solution has the same bits.",
         numbers: "doubles; the moments from the doubles of the rules over rationals.",
         kernel: &[
             "fem::quadrature::gauss",

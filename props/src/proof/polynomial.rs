@@ -267,7 +267,7 @@ impl Mul for &Polynomial {
     type Output = Polynomial;
 
     /// # Panics
-    /// Where an exponent would be beyond the largest [`Exponent`].
+    /// Where an exponent would be beyond the largest [`Exponent`]: a check in which that happens has failed.
     fn mul(self, other: &Polynomial) -> Polynomial {
         self.times(other).expect("exponents below 2^16")
     }

@@ -1,0 +1,695 @@
+//! When the solver's loop of corrections ends, in which arithmetic it looks at what is left, and what its routes do on the way
+//! (docs/theory.md, 5.7).
+//!
+//! - where contact is stiff, next to no energy is a force: the loop goes on until loads, contact and reactions balance;
+//! - stresses are those of the differences of the displacement from node to node, and of what doubles can't hold of it;
+//! - a body so slender that doubles blur its residual ends where the arithmetic of twice the precision does;
+//! - what rounding the displacement to doubles takes away is in the forward error;
+//! - the condition number that is reported is below the true one, and of its size, in any units;
+//! - the routes take the same steps.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use faer::{Mat, Side};
+use signorini::fem::precise;
+use signorini::fem::twofold::Twofold;
+use signorini::fem::{Condition, Diagonal, Problem, Rectangle, SharedFunction};
+use signorini::kernel::edge_integral::ExactEdge;
+use signorini::kernel::{Material, P1, P2, Plane};
+use signorini::solve::accuracy::{self, Outcome as Solved, Pass, Route};
+use signorini::solve::iterate::{Evaluation, Iterate};
+use signorini::solve::newton::Until;
+use signorini::solve::route::{self, RouteName};
+use signorini::solve::system::System;
+use signorini::solve::times::Times;
+use signorini::solve::{Gamma0, Method, Settings, SolveError, discretize};
+
+use super::honesty::{self, field};
+use crate::claim::{Outcome, noticed, text};
+use crate::proof::sampler::Random;
+use crate::{draws, sharpness};
+
+fn constant(value: f64) -> SharedFunction {
+    Arc::new(move |_: [f64; 2]| value)
+}
+
+fn sum_of_magnitudes(v: &[[f64; 2]]) -> f64 {
+    v.as_flattened().iter().map(|v| v.abs()).sum()
+}
+
+/// gamma0 in units of its limit: contact is that much stiffer than the body.
+const SOFT: f64 = 1e-4;
+
+/// From pass to pass the error falls like this.
+const FALL: f64 = 0.03;
+
+/// What loads, contact and reactions may be out of balance, beside loads and contact.
+const BALANCED: f64 = 1e-10;
+
+/// A tolerance that is met long before the forces balance.
+const LOOSE: f64 = 1e-2;
+
+/// The forces that are left over at the end of passes with the errors `shares`, beside loads and contact: by the definitions and
+/// as reported.
+fn left_over<E, const N: usize, const M: usize>(
+    problem: &Problem,
+    shares: &[f64],
+) -> Result<[f64; 2], String>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let plain = discretize::<E, N, M>(problem, &Method::default()).map_err(text)?;
+    let gamma0 = Gamma0::Value(SOFT * plain.coercivity.limit());
+    let method = Method { gamma0, ..Method::default() };
+    let d = discretize::<E, N, M>(problem, &method).map_err(text)?;
+    let settings = Settings { tolerance: LOOSE, ..Settings::default() };
+    let outcome = honesty::passes(&d, shares, &settings, 0.0)?.outcome;
+    let residual = d.residual(&outcome.u).values;
+    let held = d.constraints.values();
+    let free = residual
+        .iter()
+        .zip(held)
+        .flat_map(|(r, held)| [0, 1].map(|c| if held[c].is_none() { r[c].abs() } else { 0.0 }));
+    let mut forces = sum_of_magnitudes(&d.load);
+    for edge in &d.contact {
+        let p = edge.p(&d.space.on_triangle(edge.edge.triangle, &outcome.u));
+        let moments = E::exact(p).gradient;
+        forces += edge.length / edge.gamma * moments.iter().map(|g| g.abs()).sum::<f64>();
+    }
+    Ok([free.sum::<f64>() / forces, outcome.unbalanced])
+}
+
+/// `most` may be left over, `scale` times what is reported.
+fn balanced(most: f64, scale: f64) -> Outcome {
+    let falling: Vec<f64> = (0..20).map(|k| FALL.powi(k)).collect();
+    let largest = std::cell::Cell::new(0.0_f64);
+    let bodies = honesty::on_bodies(|problem, degree| {
+        let left = |shares: &[f64]| match degree {
+            1 => left_over::<P1, 3, 2>(problem, shares),
+            _ => left_over::<P2, 6, 3>(problem, shares),
+        };
+        let [by_definition, reported] = left(&[1.0])?;
+        if !((scale * reported - by_definition).abs() <= 1e-6 * by_definition) {
+            return Err(format!("{by_definition:e} is left over, {reported:e} is reported"));
+        }
+        let [by_definition, _] = left(&falling)?;
+        largest.set(largest.get().max(by_definition));
+        // What doubles leave of forces that are 1/`SOFT` times as stiff.
+        if by_definition <= most + 64.0 * f64::EPSILON / SOFT {
+            Ok(())
+        } else {
+            Err(format!("{by_definition:e} of the forces is left over"))
+        }
+    })?;
+    Ok(format!(
+        "{bodies} bodies, P1 and P2, a tolerance of {LOOSE}: at most {:.0e} is left over",
+        largest.get()
+    ))
+}
+
+/// Row 19: loads, contact and reactions balance.
+pub fn loads_contact_and_reactions_balance() -> Outcome {
+    balanced(BALANCED, 1.0)
+}
+
+/// Half of what is left over is reported.
+pub fn half_of_what_is_left_over() -> Outcome {
+    noticed(balanced(BALANCED, 0.5))
+}
+
+/// A route is left for one with more digits where the residual is above the tolerance, or where the last correction or what
+/// is out of balance is more than 1e-9.
+fn digits_are_missed(right: f64) -> Outcome {
+    let sizes = [0.0, 1e-11, 1e-10, 1e-9, 1.1e-9, 1e-8, 1e-3, 1.0, f64::INFINITY, f64::NAN];
+    let settings = Settings { tolerance: 1e-10, max_iterations: 50 };
+    let mut right_ones = 0;
+    for residual in sizes {
+        for correction in sizes {
+            for unbalanced in sizes {
+                let solved = Solved {
+                    u: Vec::new(),
+                    fine: None,
+                    forces: Vec::new(),
+                    p: Vec::new(),
+                    residuals: vec![1.0],
+                    residual,
+                    unbalanced,
+                    correction,
+                    forward_error: correction,
+                    condition: 1.0,
+                };
+                let expected =
+                    residual <= settings.tolerance && correction <= right && unbalanced <= right;
+                if solved.is_right(&settings) != expected {
+                    return Err(format!(
+                        "residual {residual:e}, correction {correction:e}, {unbalanced:e} out of balance: expected {expected}"
+                    ));
+                }
+                right_ones += usize::from(expected);
+            }
+        }
+    }
+    Ok(format!("{right_ones} of {} outcomes need no more digits", sizes.len().pow(3)))
+}
+
+/// Row 19: which outcomes need no better arithmetic.
+pub fn a_route_is_left_where_digits_are_missing() -> Outcome {
+    digits_are_missed(1e-9)
+}
+
+/// A correction of a tenth would do.
+pub fn a_tenth_is_no_missing_digit() -> Outcome {
+    noticed(digits_are_missed(0.1))
+}
+
+/// A body without loads whose upper side is moved by `by` in both directions.
+fn carried(by: f64) -> Result<Problem, String> {
+    let cells = Rectangle { width: 2.0, height: 1.0, nx: 4, ny: 2, diagonal: Diagonal::Right };
+    let top = Condition::Displacement([0, 1].map(|_| Some(constant(by))));
+    let floor = Condition::Contact { gap: constant(0.0) };
+    let conditions = [("top", top), ("bottom", floor)];
+    Ok(Problem::new(
+        cells.mesh().map_err(text)?,
+        Material::lame(1.5, 1.0, Plane::Strain),
+        [constant(0.0), constant(0.0)],
+        conditions.map(|(name, condition)| (name.to_owned(), condition)).into(),
+    ))
+}
+
+/// A(u, v) for every basis function, in doubles, of a body that is carried along by `by` and bent by 2^`bits` times a field of
+/// whole numbers, next to 2^`bits` times the forces of that field alone.
+fn forces_of_differences<E, const N: usize, const M: usize>(
+    by: f64,
+    bits: i32,
+    share: f64,
+) -> Result<(), String>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let size = 2.0_f64.powi(bits);
+    let forces = |by: f64, size: f64| -> Result<Vec<[f64; 2]>, String> {
+        let problem = carried(by)?;
+        let d = discretize::<E, N, M>(&problem, &Method::default()).map_err(text)?;
+        let system = System::new(&d).map_err(text)?;
+        let mut random = Random::new(draws::seed());
+        let bent = field(d.space.nodes().len(), &mut random).into_iter();
+        let bent: Vec<[f64; 2]> = bent.map(|v| v.map(|v| size * (1000.0 * v).round())).collect();
+        let whole = vec![[by; 2]; bent.len()];
+        let mut iterate = Iterate::lift(&d);
+        iterate.add(&system, 1.0, &system.numbering.gather(&whole));
+        iterate.add(&system, 1.0, &system.numbering.gather(&bent));
+        Ok(iterate.evaluate(&system, false).forces)
+    };
+    let (alone, carried) = (forces(0.0, 1.0)?, forces(by, size)?);
+    let largest = alone.as_flattened().iter().fold(0.0, |m: f64, f| m.max(f.abs()));
+    let pairs = alone.as_flattened().iter().zip(carried.as_flattened());
+    let off = pairs.map(|(a, b)| (a - share * b / size).abs()).fold(0.0, f64::max) / largest;
+    // Differences of whole numbers times powers of two are exact; so is all that follows, but for a power of two.
+    if off <= 1e-15 {
+        Ok(())
+    } else {
+        Err(format!("carried along by {by:e}, bent by 2^{bits}: forces are off by {off:e}"))
+    }
+}
+
+/// Powers of two: within doubles beside 2^30, and far below.
+const BENDS: [i32; 4] = [0, -10, -20, -60];
+
+fn differences(share: f64) -> Outcome {
+    for bits in BENDS {
+        for by in [0.0, 1.0, 2.0_f64.powi(30)] {
+            forces_of_differences::<P1, 3, 2>(by, bits, share)?;
+            forces_of_differences::<P2, 6, 3>(by, bits, share)?;
+        }
+    }
+    Ok(format!("P1 and P2, bent by 2^{BENDS:?}, carried along by up to 2^30"))
+}
+
+/// Row 19: stresses in doubles are those of differences, and see what doubles can't hold of a displacement.
+pub fn stresses_are_those_of_differences_between_nodes() -> Outcome {
+    differences(1.0)
+}
+
+/// Forces that are larger by some roundings.
+pub fn differences_that_are_off_by_rounding() -> Outcome {
+    noticed(differences(1.0 + 16.0 * f64::EPSILON))
+}
+
+/// A beam on a wall, `cells` times as long as high, that its load bends down onto an obstacle.
+fn beam(cells: usize) -> Result<Problem, String> {
+    let length = cells as f64;
+    let shape =
+        Rectangle { width: length, height: 1.0, nx: cells, ny: 1, diagonal: Diagonal::Right };
+    let wall = Condition::Displacement([0, 1].map(|_| Some(constant(0.0))));
+    // Under its own weight f it bends by f L^4 / (8 E/12), E/(1 - nu^2) = 8/3: a third of that is free.
+    let weight = 1e-3 / length.powi(3);
+    let floor = Condition::Contact { gap: constant(weight * length.powi(4) * 4.5 / 8.0 / 3.0) };
+    let conditions = BTreeMap::from([("left".to_owned(), wall), ("bottom".to_owned(), floor)]);
+    Ok(Problem::new(
+        shape.mesh().map_err(text)?,
+        Material::lame(1.0, 1.0, Plane::Strain),
+        [constant(0.0), constant(-weight)],
+        conditions,
+    ))
+}
+
+/// How far the routes in doubles end from the one in twofold numbers, relative to the largest displacement, and whether they
+/// asked for twofold residuals.
+fn slender<E, const N: usize, const M: usize>(cells: usize) -> Result<(f64, bool), String>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let problem = beam(cells)?;
+    let d = discretize::<E, N, M>(&problem, &Method::default()).map_err(text)?;
+    let system = System::new(&d).map_err(text)?;
+    let by = |name| {
+        route::by(name, &system, &Settings::default(), &mut Times::default()).map(|done| done.0)
+    };
+    let best = by(RouteName::Twofold).map_err(text)?.u;
+    let size = best.as_flattened().iter().fold(0.0, |m: f64, u| m.max(u.abs()));
+    let (mut far, mut precise) = (0.0_f64, false);
+    for name in [RouteName::Condensed, RouteName::Assembled] {
+        let outcome = match by(name) {
+            Err(SolveError::Singular) => continue,
+            other => other.map_err(text)?,
+        };
+        let pairs = best.as_flattened().iter().zip(outcome.u.as_flattened());
+        let off = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / size;
+        // What it says itself is no evidence of more.
+        if outcome.is_right(&Settings::default()) {
+            far = far.max(off);
+        }
+        precise |= outcome.fine.is_some();
+    }
+    Ok((far, precise))
+}
+
+/// Enough cells for doubles to lose half of their digits, and more.
+const LENGTHS: [usize; 5] = [8, 32, 128, 512, 1024];
+
+/// `most` apart, and the slender ones with residuals in twofold numbers.
+fn slender_beams(most: f64) -> Outcome {
+    let (mut farthest, mut first) = (0.0_f64, None);
+    for cells in LENGTHS {
+        let mut found = vec![slender::<P1, 3, 2>(cells)?];
+        if cells <= 128 {
+            found.push(slender::<P2, 6, 3>(cells)?);
+        }
+        for (far, precise) in found {
+            if !(far <= most) {
+                return Err(format!("{cells} cells: the routes end {far:e} apart"));
+            }
+            farthest = farthest.max(far);
+            first = first.or(precise.then_some(cells));
+        }
+    }
+    match first {
+        Some(cells) if cells > LENGTHS[0] => Ok(format!(
+            "up to {} times as long as high, at most {farthest:.0e} apart, in twofold numbers from {cells} on",
+            LENGTHS[LENGTHS.len() - 1]
+        )),
+        other => Err(format!("in twofold numbers from {other:?} cells on")),
+    }
+}
+
+/// Row 19: slender bodies. A displacement that is called right is right to 1e-10.
+pub fn slender_bodies_end_where_twice_the_precision_does() -> Outcome {
+    slender_beams(1e-10)
+}
+
+/// To the last bits of a double they don't.
+pub fn slender_bodies_to_all_digits() -> Outcome {
+    noticed(slender_beams(1e-18))
+}
+
+/// P at the nodes of the contact edges of a loaded block that is carried along by `by`, downwards onto a floor that is as far
+/// away, and pressed by 2^-7: all of them doubles, and P loses `by` / 2^-7 in sums of doubles.
+fn pressed<E, const N: usize, const M: usize>(by: f64) -> Result<Vec<Vec<f64>>, String>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let mut problem = carried(by)?;
+    problem.body_force = [constant(0.0), constant(-0.01)];
+    let down = [0.0, -(by + 2.0_f64.powi(-7))].map(|u| Some(constant(u)));
+    problem.conditions.insert("top".to_owned(), Condition::Displacement(down));
+    problem.conditions.insert("bottom".to_owned(), Condition::Contact { gap: constant(by) });
+    let d = discretize::<E, N, M>(&problem, &Method::default()).map_err(text)?;
+    let system = System::new(&d).map_err(text)?;
+    [RouteName::Condensed, RouteName::Assembled, RouteName::Twofold]
+        .into_iter()
+        .map(|name| {
+            let done = route::by(name, &system, &Settings::default(), &mut Times::default());
+            done.map(|done| done.0.p).map_err(text)
+        })
+        .collect()
+}
+
+/// `most` apart, relative to the largest P.
+fn carried_blocks(most: f64) -> Outcome {
+    let mut farthest = 0.0_f64;
+    for degree in [1, 2] {
+        let of = |by| if degree == 1 { pressed::<P1, 3, 2>(by) } else { pressed::<P2, 6, 3>(by) };
+        let at_rest = of(0.0)?;
+        let largest = at_rest[2].iter().fold(0.0, |m: f64, p| m.max(p.abs()));
+        for bits in [10, 20, 30] {
+            for (name, p) in
+                ["condensed", "assembled", "twofold"].iter().zip(of(2.0_f64.powi(bits))?)
+            {
+                let pairs = p.iter().zip(&at_rest[2]);
+                let off = pairs.map(|(p, q)| (p - q).abs()).fold(0.0, f64::max) / largest;
+                if !(off <= most) {
+                    return Err(format!("{name}, carried by 2^{bits}: P is off by {off:e}"));
+                }
+                farthest = farthest.max(off);
+            }
+        }
+    }
+    Ok(format!("carried by 2^10 to 2^30, three routes, P1 and P2: P is off by {farthest:.0e}"))
+}
+
+/// Row 19: where doubles blur P, a solve goes on in numbers of twice the precision.
+pub fn what_doubles_blur_is_evaluated_in_twofold_numbers() -> Outcome {
+    carried_blocks(1e-9)
+}
+
+/// To all digits.
+pub fn what_doubles_blur_to_all_digits() -> Outcome {
+    noticed(carried_blocks(1e-18))
+}
+
+/// What rounding does to the residual at the end of passes, times the root of `softness`, beside the displacement: how far it may
+/// move a body that is so soft; and whether the passes ended in twofold numbers.
+fn moved_by_rounding<E, const N: usize, const M: usize>(
+    problem: &Problem,
+    softness: f64,
+) -> Result<(f64, bool), String>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let d = discretize::<E, N, M>(problem, &Method::default()).map_err(text)?;
+    let shares: Vec<f64> = (0..20).map(|k| 0.01_f64.powi(k)).collect();
+    let outcome = honesty::passes(&d, &shares, &Settings::default(), softness)?.outcome;
+    let exactly: Vec<[Twofold; 2]> = outcome.u.iter().map(|u| u.map(Twofold::from)).collect();
+    let (precise, _) = precise::evaluate(&d, &exactly);
+    let rounded = d.linear_residual(&outcome.u).values;
+    let off: Vec<[f64; 2]> =
+        precise.iter().zip(&rounded).map(|(p, r)| [p[0] - r[0], p[1] - r[1]]).collect();
+    let size = d.strain_energy(&outcome.u).sqrt();
+    Ok((d.free_norm(&off) * softness.sqrt() / size, outcome.fine.is_some()))
+}
+
+/// Bodies are as soft as to move by ten times `moved`.
+fn soft_bodies(moved: f64) -> Outcome {
+    let bodies = honesty::on_bodies(|problem, degree| {
+        let of = |softness| match degree {
+            1 => moved_by_rounding::<P1, 3, 2>(problem, softness),
+            _ => moved_by_rounding::<P2, 6, 3>(problem, softness),
+        };
+        let (unit, precise) = of(1.0)?;
+        if precise {
+            return Err("a stiff body ends in twofold numbers".to_owned());
+        }
+        match of((10.0 * moved / unit).powi(2))? {
+            (_, true) => Ok(()),
+            (by, false) => Err(format!("rounding moves the body by {by:e}, in doubles")),
+        }
+    })?;
+    Ok(format!("{bodies} bodies, P1 and P2, that rounding moves by {:e}", 10.0 * moved))
+}
+
+/// Row 19: where the rounding of residuals moves a soft body by 1e-8 and more, they are evaluated in numbers of twice the precision.
+pub fn rounding_that_moves_a_soft_body_calls_for_twofold_numbers() -> Outcome {
+    soft_bodies(1e-8)
+}
+
+/// Moves of 1e-12.
+pub fn every_rounding_calls_for_twofold_numbers() -> Outcome {
+    noticed(soft_bodies(1e-12))
+}
+
+/// Whether passes that take the error down by `fall` each end in twofold numbers.
+fn goes_on_precisely<E, const N: usize, const M: usize>(
+    problem: &Problem,
+    fall: f64,
+) -> Result<bool, String>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let d = discretize::<E, N, M>(problem, &Method::default()).map_err(text)?;
+    let shares: Vec<f64> = (0..20).map(|k| fall.powi(k)).collect();
+    Ok(honesty::passes(&d, &shares, &Settings::default(), 0.0)?.outcome.fine.is_some())
+}
+
+/// Passes go on in twofold numbers where an error does not fall to less than `least` from one to the next.
+fn stuck(least: f64) -> Outcome {
+    let bodies = honesty::on_bodies(|problem, degree| {
+        for fall in [0.1, 0.3, 0.45, 0.55, 0.7, -1.0] {
+            let precise = match degree {
+                1 => goes_on_precisely::<P1, 3, 2>(problem, fall),
+                _ => goes_on_precisely::<P2, 6, 3>(problem, fall),
+            }?;
+            if precise != (f64::abs(fall) > least) {
+                return Err(format!("an error that falls by {fall}: twofold numbers {precise}"));
+            }
+        }
+        Ok(())
+    })?;
+    Ok(format!("{bodies} bodies, P1 and P2, 6 falls of the error"))
+}
+
+/// Row 19: where doubles get no nearer, a solve goes on in numbers of twice the precision.
+pub fn passes_that_get_no_nearer_go_on_in_twofold_numbers() -> Outcome {
+    stuck(0.5)
+}
+
+/// Only where the error grows.
+pub fn passes_that_get_further_away_only() -> Outcome {
+    noticed(stuck(2.0))
+}
+
+/// The residuals of a route at each step.
+fn history<E, const N: usize, const M: usize>(
+    system: &System<E, N, M>,
+    name: RouteName,
+) -> Result<Vec<f64>, String>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let done = route::by(name, system, &Settings::default(), &mut Times::default());
+    Ok(done.map_err(text)?.0.residuals)
+}
+
+/// The start of the routes rests on how stiff contact is, to within a factor by the power method, each from vectors of its own.
+const START: f64 = 0.02;
+
+/// A residual this small is near the end, where rounding takes part.
+const END: f64 = 1e-7;
+
+/// Both routes, and that in twofold numbers, have the same residuals after each step, those of the first `scale` times; and none
+/// goes on for more than two steps after the end.
+fn same_steps<E, const N: usize, const M: usize>(
+    problem: &Problem,
+    scale: f64,
+) -> Result<usize, String>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let d = discretize::<E, N, M>(problem, &Method::default()).map_err(text)?;
+    let system = System::new(&d).map_err(text)?;
+    let assembled = history(&system, RouteName::Assembled)?;
+    let mut compared = 0;
+    for (name, near) in [(RouteName::Condensed, START), (RouteName::Twofold, 1e-6)] {
+        let other = history(&system, name)?;
+        // The first residual of the condensed route is that of the lift.
+        for (k, (a, b)) in assembled.iter().zip(&other).enumerate().skip(1) {
+            if a.max(*b) > END {
+                compared += 1;
+                if !((a - scale * b).abs() <= near * a) {
+                    return Err(format!("{name:?}, step {k}: {b:e}, assembled {a:e}"));
+                }
+            }
+        }
+        let after = |h: &[f64]| h.iter().rev().take_while(|r| **r <= END).count();
+        let long = [&assembled, &other].into_iter().find(|h| after(h) > MOST_AFTER);
+        if let Some(long) = long {
+            return Err(format!("{name:?}: {long:?} goes on after the end"));
+        }
+    }
+    Ok(compared)
+}
+
+/// The step that gets there, the one of the pass after it, and what these leave.
+const MOST_AFTER: usize = 4;
+
+fn steps(scale: f64) -> Outcome {
+    let count = std::cell::Cell::new(0);
+    let bodies = honesty::on_bodies(|problem, degree| {
+        let compared = match degree {
+            1 => same_steps::<P1, 3, 2>(problem, scale),
+            _ => same_steps::<P2, 6, 3>(problem, scale),
+        };
+        count.set(count.get() + compared?);
+        Ok(())
+    })?;
+    Ok(format!("{bodies} bodies, P1 and P2, {} residuals", count.get()))
+}
+
+/// Row 19: the routes take the same steps.
+pub fn the_routes_take_the_same_steps() -> Outcome {
+    steps(1.0)
+}
+
+/// Residuals that are a tenth larger.
+pub fn steps_that_are_a_tenth_off() -> Outcome {
+    noticed(steps(1.1))
+}
+
+/// The condition number by the eigenvalues of the dense matrix, and those that the routes report, of the body with its moduli
+/// and loads times 2^`bits`.
+fn conditions<E, const N: usize, const M: usize>(
+    mut problem: Problem,
+    bits: i32,
+) -> Result<(f64, [f64; 2]), String>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let by = 2.0_f64.powi(bits);
+    problem.material = Material::lame(by, by, Plane::Strain).into();
+    problem.body_force = [constant(0.3 * by), constant(-by)];
+    let d = discretize::<E, N, M>(&problem, &Method::default()).map_err(text)?;
+    let system = System::new(&d).map_err(text)?;
+    let columns = sharpness::dense(&system.matrix);
+    let matrix = Mat::from_fn(columns.len(), columns.len(), |i, j| columns[j][i]);
+    let all = matrix.self_adjoint_eigenvalues(Side::Lower).map_err(|e| format!("{e:?}"))?;
+    let reported = |name| {
+        let done = route::by(name, &system, &Settings::default(), &mut Times::default());
+        done.map(|done| done.0.condition).map_err(text)
+    };
+    let routes = [reported(RouteName::Condensed)?, reported(RouteName::Assembled)?];
+    Ok((all[all.len() - 1] / all[0], routes))
+}
+
+/// The condition number that is reported, times `scale`, is at least 1 and no larger than the true one, in any units the same.
+fn condition_is_told(scale: f64) -> Outcome {
+    let mut least = f64::INFINITY;
+    for cells in [2, 6, 12] {
+        let of = |bits| conditions::<P1, 3, 2>(beam(cells)?, bits);
+        let (truth, plain) = of(0)?;
+        for bits in [-30, 30] {
+            let (_, other) = of(bits)?;
+            if other != plain {
+                return Err(format!("{plain:?}, and {other:?} with moduli times 2^{bits}"));
+            }
+        }
+        for reported in plain {
+            let share = scale * reported / truth;
+            if !(reported >= 1.0 && share <= 1.0 + 1e-9) {
+                return Err(format!("{reported:e} for {truth:e}"));
+            }
+            least = least.min(share);
+        }
+    }
+    Ok(format!("3 beams in 3 units, at least {least:.0e} of the true one"))
+}
+
+/// Row 19: the condition number.
+pub fn the_condition_number_is_told_from_below() -> Outcome {
+    condition_is_told(1.0)
+}
+
+/// A hundred times as much.
+pub fn the_condition_number_a_hundred_times_as_large() -> Outcome {
+    noticed(condition_is_told(100.0))
+}
+
+/// A route that ends where it begins, at a displacement that no double is.
+struct Fine<'s, 'd, 'p, E, const N: usize, const M: usize> {
+    system: &'s System<'d, 'p, E, N, M>,
+    /// Doubles over the free degrees of freedom, and what is added to them.
+    parts: Vec<Vec<f64>>,
+}
+
+impl<E, const N: usize, const M: usize> Route<E, N, M> for Fine<'_, '_, '_, E, N, M>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    fn precisely(&self) -> bool {
+        true
+    }
+
+    fn pass(
+        &mut self,
+        iterate: &mut Iterate,
+        at: &mut Evaluation,
+        residuals: &mut Vec<f64>,
+        _: Until,
+    ) -> Result<Pass, SolveError> {
+        for part in self.parts.drain(..) {
+            iterate.add(self.system, 1.0, &part);
+        }
+        residuals.push(1.0);
+        *at = iterate.evaluate(self.system, true);
+        Ok(Pass { energy: 0.0, left: 0.0, softness: 0.0 })
+    }
+}
+
+/// The forward error of a route that has nothing to correct, `scale` times, beside the energy norm of what rounding takes away.
+fn rounding_on<E, const N: usize, const M: usize>(
+    problem: &Problem,
+    scale: f64,
+) -> Result<f64, String>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let d = discretize::<E, N, M>(problem, &Method::default()).map_err(text)?;
+    let system = System::new(&d).map_err(text)?;
+    let mut random = Random::new(draws::seed());
+    let nodes = d.space.nodes().len();
+    let fields = [field(nodes, &mut random), field(nodes, &mut random)];
+    // Below half a unit in the last place of any component but 0.
+    let [large, small] = fields.map(|field| system.numbering.gather(&field));
+    let small: Vec<f64> = large.iter().zip(small).map(|(u, s)| u * s * 2.0_f64.powi(-54)).collect();
+    let mut lost = vec![[0.0; 2]; nodes];
+    system.numbering.scatter(&small, &mut lost);
+    let mut route = Fine { system: &system, parts: vec![large, small] };
+    let reference = accuracy::reference(&d);
+    let outcome = accuracy::refine(&system, &mut route, reference, &Settings::default());
+    let outcome = outcome.map_err(text)?;
+    let size = |field: &[[f64; 2]]| d.strain_energy(field).sqrt();
+    Ok(scale * outcome.forward_error * size(&outcome.u) / size(&lost))
+}
+
+/// What components that know nothing of each other add up to is told to within this factor.
+const UNRELATED: f64 = 4.0;
+
+fn rounding(scale: f64) -> Outcome {
+    let found = std::cell::RefCell::new(Vec::new());
+    let bodies = honesty::on_bodies(|problem, degree| {
+        let ratio = match degree {
+            1 => rounding_on::<P1, 3, 2>(problem, scale),
+            _ => rounding_on::<P2, 6, 3>(problem, scale),
+        }?;
+        found.borrow_mut().push(ratio);
+        if ratio * UNRELATED >= 1.0 && ratio <= UNRELATED {
+            Ok(())
+        } else {
+            Err(format!("{ratio} times what rounding takes away is told"))
+        }
+    })?;
+    let found = found.into_inner();
+    let [low, high] = found
+        .iter()
+        .fold([f64::INFINITY, 0.0], |[low, high]: [f64; 2], &r| [low.min(r), high.max(r)]);
+    Ok(format!("{bodies} bodies, P1 and P2, {low:.2} to {high:.2} times what rounding takes away"))
+}
+
+/// Row 19: what rounding takes away is told.
+pub fn rounding_is_in_the_forward_error() -> Outcome {
+    rounding(1.0)
+}
+
+/// A tenth of it.
+pub fn a_tenth_of_what_rounding_takes_away() -> Outcome {
+    noticed(rounding(0.1))
+}
