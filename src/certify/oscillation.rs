@@ -75,7 +75,7 @@ impl<'a> Data<'a> {
                 let value = f.at(part.vertices[0].into()) * part.double_area() / 6.0;
                 moments.iter_mut().for_each(|m| m[c] += value);
             } else {
-                rule.on_triangle(part, &mut |l, x, weight| {
+                rule.on_triangle(part, |l, x, weight| {
                     let value = weight * f.at(x);
                     (0..3).for_each(|a| moments[a][c] += l[a] * value);
                 });
@@ -139,7 +139,7 @@ impl Traction<'_> {
         let length = length(normal);
         let unit = (normal / length).into();
         let mut moments = [Vector2::zeros(); 2];
-        self.rule().on_edge(ends, &[], &mut |point| {
+        self.rule().on_edge(ends, [], |point| {
             let t = Vector2::from(self.at(point.x, unit));
             moments[0] += t * ((1.0 - point.s) * point.weight * length);
             moments[1] += t * (point.s * point.weight * length);
@@ -282,7 +282,7 @@ fn loads(parts: &Parts, data: &Data, certificate: &Certificate, piece: &Piece, t
         for i in 0..3 {
             let mut vertices = triangle.vertices;
             vertices[i] = triangle.point([1.0 / 3.0; 3]);
-            rule.on_triangle(&Triangle { vertices }, &mut |_, x, weight| {
+            rule.on_triangle(&Triangle { vertices }, |_, x, weight| {
                 let mut difference = -Vector2::from(piece.body[i]);
                 data.acting(t).for_each(|(c, f, _)| difference[c] += f.at(x));
                 square += weight * difference.dot(&difference);
@@ -304,7 +304,7 @@ fn loads(parts: &Parts, data: &Data, certificate: &Certificate, piece: &Piece, t
             _ => continue,
         };
         let mut square = 0.0;
-        traction.rule().on_edge(ends, &[], &mut |point| {
+        traction.rule().on_edge(ends, [], |point| {
             let t = traction.at(point.x, unit);
             for c in 0..2 {
                 let there = (1.0 - point.s) * affine[0][c] + point.s * affine[1][c];

@@ -103,7 +103,7 @@ impl Errors {
         E: Element<N, M>,
     {
         let barycentric = triangle.barycentric_gradients();
-        rule.on_triangle(triangle, &mut |l, x, weight| {
+        rule.on_triangle(triangle, |l, x, weight| {
             let shapes = E::values(l);
             let value: Vector2<f64> = shapes.iter().zip(nodal).map(|(n, v)| *n * v).sum();
             let e = Vector2::from(exact.displacement(x)) - value;
@@ -129,8 +129,7 @@ impl Errors {
         let (n, gamma) = (edge.normal, edge.gamma);
         let p = edge.p(nodal);
         let stress = edge.sigma_n(nodal);
-        let cuts: Vec<f64> = roots::<E, N, M>(p).collect();
-        rule.on_edge(ends, &cuts, &mut |point| {
+        rule.on_edge(ends, roots::<E, N, M>(p), |point| {
             let (s, x) = (point.s, point.x);
             let exact = ContactPoint {
                 u_n: Vector2::from(exact.displacement(x)).dot(&n),

@@ -51,7 +51,7 @@ pub fn assemble_with<E: Element<N, M>, const N: usize, const M: usize>(
     space: &Space<E, N, M>,
     points: impl Fn(&dyn Function) -> usize,
 ) -> Result<Vec<[f64; 2]>, DataError> {
-    assemble_in(problem, space, &points)
+    assemble_in(problem, space, points)
 }
 
 /// The same as [`assemble`] in other numbers: the forces at the points of the rules, weight times value, are doubles, and what
@@ -66,13 +66,13 @@ pub fn assemble_as<S, E: Element<N, M>, const N: usize, const M: usize>(
 where
     S: Scalar + From<f64>,
 {
-    assemble_in(problem, space, &|load| points(load, E::DEGREE))
+    assemble_in(problem, space, |load| points(load, E::DEGREE))
 }
 
 fn assemble_in<S, E: Element<N, M>, const N: usize, const M: usize>(
     problem: &Problem,
     space: &Space<E, N, M>,
-    points: &dyn Fn(&dyn Function) -> usize,
+    points: impl Fn(&dyn Function) -> usize,
 ) -> Result<Vec<[S; 2]>, DataError>
 where
     S: Scalar + From<f64>,
@@ -83,14 +83,13 @@ where
     let mut load = vec![[<S as From<i32>>::from(0); 2]; space.nodes().len()];
     for (c, f) in acting(&problem.body_force) {
         let what = || format!("[load] body[{c}]");
-        let mut triangles = 0..space.elements().len();
-        add_body_force(c, f, &rule(f), space, &mut triangles, &what, &mut load)?;
+        add_body_force(c, f, &rule(f), space, 0..space.elements().len(), what, &mut load)?;
     }
     for SurfaceForce { surface, triangles, force } in &problem.surface_forces {
         for (c, f) in acting(force) {
             let what = || format!("[load.{surface}] body[{c}]");
-            let mut triangles = triangles.iter().copied();
-            add_body_force(c, f, &rule(f), space, &mut triangles, &what, &mut load)?;
+            let triangles = triangles.iter().copied();
+            add_body_force(c, f, &rule(f), space, triangles, what, &mut load)?;
         }
     }
     for (name, condition) in &problem.conditions {
@@ -99,21 +98,21 @@ where
                 for (c, t) in acting(traction) {
                     let what = || format!("[boundary.{}] traction[{c}]", key(name));
                     let value = |x, n| checked(t.on_boundary(x, n), x, what);
-                    add_on_boundary(name, c, &value, &rule(t), space, &mut load)?;
+                    add_on_boundary(name, c, value, &rule(t), space, &mut load)?;
                 }
             }
             Condition::Mixed { displacement, traction } => {
                 for (c, t) in acting(traction).filter(|(c, _)| displacement[*c].is_none()) {
                     let what = || format!("[boundary.{}] traction[{c}]", key(name));
                     let value = |x, n| checked(t.on_boundary(x, n), x, what);
-                    add_on_boundary(name, c, &value, &rule(t), space, &mut load)?;
+                    add_on_boundary(name, c, value, &rule(t), space, &mut load)?;
                 }
             }
             Condition::Pressure(p) => {
                 let what = || format!("[boundary.{}] pressure", key(name));
                 for c in 0..2 {
                     let value = |x, n: [f64; 2]| Ok(-n[c] * checked(p.on_boundary(x, n), x, what)?);
-                    add_on_boundary(name, c, &value, &rule(&**p), space, &mut load)?;
+                    add_on_boundary(name, c, value, &rule(&**p), space, &mut load)?;
                 }
             }
             _ => {}
@@ -132,20 +131,18 @@ fn add_body_force<S: Scalar + From<f64>, E: Element<N, M>, const N: usize, const
     f: &dyn Function,
     rule: &Rule,
     space: &Space<E, N, M>,
-    triangles: &mut dyn Iterator<Item = usize>,
-    what: &dyn Fn() -> String,
+    triangles: impl Iterator<Item = usize>,
+    what: impl Fn() -> String,
     load: &mut [[S; 2]],
 ) -> Result<(), DataError> {
     let mut wrong = None;
     for t in triangles {
         let nodes = &space.elements()[t];
-        rule.on_triangle(&space.mesh().triangle(t), &mut |l, x, weight| match checked(
-            f.at(x),
-            x,
-            what,
-        ) {
-            Ok(f) => add(load, c, nodes, &E::values(l.map(<S as From<f64>>::from)), weight * f),
-            Err(error) => wrong = wrong.take().or(Some(error)),
+        rule.on_triangle(&space.mesh().triangle(t), |l, x, weight| {
+            match checked(f.at(x), x, &what) {
+                Ok(f) => add(load, c, nodes, &E::values(l.map(<S as From<f64>>::from)), weight * f),
+                Err(error) => wrong = wrong.take().or(Some(error)),
+            }
         });
     }
     wrong.map_or(Ok(()), Err)
@@ -155,7 +152,7 @@ fn add_body_force<S: Scalar + From<f64>, E: Element<N, M>, const N: usize, const
 fn add_on_boundary<S: Scalar + From<f64>, E: Element<N, M>, const N: usize, const M: usize>(
     name: &str,
     c: usize,
-    value: &dyn Fn([f64; 2], [f64; 2]) -> Result<f64, DataError>,
+    value: impl Fn([f64; 2], [f64; 2]) -> Result<f64, DataError>,
     rule: &Rule,
     space: &Space<E, N, M>,
     load: &mut [[S; 2]],
@@ -165,7 +162,7 @@ fn add_on_boundary<S: Scalar + From<f64>, E: Element<N, M>, const N: usize, cons
         let (length, normal) = space.mesh().length_and_normal(edge);
         let ends = space.mesh().ends(edge).map(|vertex| space.mesh().vertices()[vertex]);
         let nodes = space.edge_nodes(edge);
-        rule.on_edge(ends, &[], &mut |point| match value(point.x, normal.into()) {
+        rule.on_edge(ends, [], |point| match value(point.x, normal.into()) {
             Ok(t) => {
                 let shapes: [S; M] = E::edge_values(<S as From<f64>>::from(point.s));
                 add(load, c, &nodes, &shapes, point.weight * length * t);

@@ -126,7 +126,7 @@ where
     for edge in &d.contact {
         let ends = d.space.mesh().ends(edge.edge).map(|vertex| d.space.mesh().vertices()[vertex]);
         let nodes = d.space.edge_nodes(edge.edge);
-        rule.on_edge(ends, &[], &mut |point| {
+        rule.on_edge(ends, [], |point| {
             let sigma_n = exact.stress(point.x).normal(edge.normal);
             let shapes: [f64; M] = E::edge_values(point.s);
             for (node, shape) in nodes.into_iter().zip(shapes) {

@@ -305,7 +305,7 @@ fn other_rules() -> Outcome {
 fn with_a_kink(c: f64, cut: Option<f64>) -> bool {
     let rule = Rule::new(Features::default(), 4);
     let (mut sum, mut total) = (0.0, 0.0);
-    rule.on_edge([[0.5, 1.0], [0.5, 3.0]], cut.as_slice(), &mut |point| {
+    rule.on_edge([[0.5, 1.0], [0.5, 3.0]], cut, |point| {
         sum += point.weight * (point.s - c).max(0.0);
         total += point.weight;
     });
