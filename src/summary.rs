@@ -205,7 +205,7 @@ pub fn certified(case: &Case, field: &Path, c: &Continuous, files: &[PathBuf]) -
         ),
     );
     lines.line("error", format!("at most {} of that one: {proved}", size(c.bound)));
-    lines.line("", format!("at most {} as it is", size((c.bound + c.clipping).next_up())));
+    lines.line("", format!("at most {} as it is", size(c.of_field)));
     lines.line("written", written(files));
     lines.0
 }
