@@ -46,7 +46,7 @@ mod command {
     use signorini::io::outputs::{self, Certified};
     use signorini::io::result::{Results, Seconds, result_json};
     use signorini::io::run::{self, RunError, Solved};
-    use signorini::io::sweep::{self, Axis, SweepError};
+    use signorini::io::sweep::{self, Axis, Sweep, SweepError};
     use signorini::io::{Case, CaseError, certificate};
     use signorini::quote;
     use signorini::solve::{self, Course, Degree, LadderError, Solution, Times};
@@ -59,6 +59,9 @@ mod command {
     const WRONG: u8 = 2;
     /// The case is right, but there is no result.
     const FAILED: u8 = 1;
+
+    /// A sweep writes the table of what it has solved so often.
+    const BETWEEN_TABLES: Duration = Duration::from_secs(1);
 
     /// A message for people and an exit code.
     struct Failure {
@@ -393,7 +396,18 @@ mod command {
             .map_err(|e| failure(WRONG)(&e))?;
         let bar = progress::bar(runs, "runs", quiet);
         let folders = files.then_some(folder.as_path());
-        let sweep = sweep::run(&file, &text, axes, folders, || bar.inc(1)).map_err(no_sweep)?;
+        // A sweep that is stopped leaves the table of what it has solved.
+        let mut written = Instant::now();
+        let done = |sweep: &Sweep| {
+            bar.inc(1);
+            let some = sweep.runs.iter().any(|run| run.outcome.is_ok());
+            if some && !sweep.to_come.is_empty() && written.elapsed() >= BETWEEN_TABLES {
+                sweep.write(&folder)?;
+                written = Instant::now();
+            }
+            Ok(())
+        };
+        let sweep = sweep::run(&file, &text, axes, folders, done).map_err(no_sweep)?;
         bar.finish_and_clear();
         let code = |outcome: &sweep::Outcome| match outcome {
             Ok(results) => results.misses_its_target().then_some(FAILED),

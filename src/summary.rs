@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use signorini::certify::Continuous;
+use signorini::io::case::Units;
 use signorini::io::certificate::Audit;
 use signorini::io::convergence::Study;
 use signorini::io::result::{
@@ -64,25 +65,27 @@ pub fn solved(r: &Results, files: &[PathBuf]) -> String {
             format!("{of}: E = {young}, nu = {poisson}, plane {}", material.plane),
         );
     }
+    let unit = |of: fn(&Units) -> String| {
+        r.units.as_ref().map_or(String::new(), |units| format!(" {}", of(units)))
+    };
+    let (length, stress) = (unit(|units| units.length.clone()), unit(Units::stress));
+    let (force, moment) = (unit(Units::force_across), unit(Units::moment_across));
     if r.contact.is_empty() {
         lines.line(
             "contact",
             format!(
-                "force {}, length {}, peak pressure {}",
+                "force {}{force}, length {}{length}, peak pressure {}{stress}",
                 short(q.contact_force),
                 short(q.contact_length),
                 short(q.peak_pressure)
             ),
         );
     }
-    let unit = |unit: Option<String>| unit.map_or(String::new(), |unit| format!(" {unit}"));
-    let length = unit(r.units.as_ref().map(|u| u.length.clone()));
-    let stress = unit(r.units.as_ref().map(|u| u.stress()));
     for contact in &r.contact {
         lines.line(
             "contact",
             format!(
-                "{}: force {} {}, moment {}, length {}{length}",
+                "{}: force {} {}{force}, moment {}{moment}, length {}{length}",
                 quote::cut(&contact.boundary),
                 short(contact.force),
                 vector(contact.resultant),
@@ -107,16 +110,17 @@ pub fn solved(r: &Results, files: &[PathBuf]) -> String {
     }
     for (i, (boundary, reaction)) in q.reactions.iter().enumerate() {
         let name = if i == 0 { "reactions" } else { "" };
-        let moment = match r.reaction_moments.get(boundary) {
-            Some(moment) => format!(", moment {}", short(*moment)),
+        let turning = match r.reaction_moments.get(boundary) {
+            Some(turning) => format!(", moment {}{moment}", short(*turning)),
             None => String::new(),
         };
-        lines.line(name, format!("{}: {}{moment}", quote::cut(boundary), vector(*reaction)));
+        let reaction = vector(*reaction);
+        lines.line(name, format!("{}: {reaction}{force}{turning}", quote::cut(boundary)));
     }
     lines.line(
         "energy",
         format!(
-            "a(u,u) = {}, L(u) = {}, largest displacement {}",
+            "a(u,u) = {}{moment}, L(u) = {}{moment}, largest displacement {}{length}",
             short(q.energy),
             short(q.work),
             short(q.max_displacement)
@@ -201,7 +205,7 @@ pub fn certified(case: &Case, field: &Path, c: &Continuous, files: &[PathBuf]) -
         ),
     );
     lines.line("error", format!("at most {} of that one: {proved}", size(c.bound)));
-    lines.line("", format!("at most {} as it is", size((c.bound + c.clipping).next_up())));
+    lines.line("", format!("at most {} as it is", size(c.of_field)));
     lines.line("written", written(files));
     lines.0
 }

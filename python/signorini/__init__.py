@@ -32,6 +32,7 @@ __all__ = ["CaseError", "Contact", "Solution", "SolveError", "__version__", "fro
 
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
+Texts = npt.NDArray[np.str_]
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,8 @@ class Contact:
     """lambda^h = -(1/gamma) [P]+, which jumps from edge to edge."""
     pressure: Floats
     """The recovered contact pressure, never negative: the one to report."""
+    boundary: Texts
+    """The name of the boundary."""
 
 
 @dataclass(frozen=True)
@@ -180,26 +183,27 @@ def _bytes(values: Any, dtype: Any, columns: int, name: str) -> bytes:
 
 
 def _solution(raw: _signorini.Raw) -> Solution:
-    def floats(name: str, *shape: int) -> Floats:
-        return np.frombuffer(raw[name], dtype=np.float64).reshape(*shape).copy()
+    def floats(data: bytes, *shape: int) -> Floats:
+        return np.frombuffer(data, dtype=np.float64).reshape(*shape).copy()
 
-    def integers(name: str, *shape: int) -> Integers:
-        return np.frombuffer(raw[name], dtype=np.int64).reshape(*shape).copy()
+    def integers(data: bytes, *shape: int) -> Integers:
+        return np.frombuffer(data, dtype=np.int64).reshape(*shape).copy()
 
     return Solution(
-        nodes=floats("nodes", -1, 2),
-        elements=integers("elements", -1, raw["nodes_per_triangle"]),
-        displacement=floats("displacement", -1, 2),
-        stress=floats("stress", -1, 4),
-        von_mises=floats("von_mises", -1),
+        nodes=floats(raw["nodes"], -1, 2),
+        elements=integers(raw["elements"], -1, raw["nodes_per_triangle"]),
+        displacement=floats(raw["displacement"], -1, 2),
+        stress=floats(raw["stress"], -1, 4),
+        von_mises=floats(raw["von_mises"], -1),
         contact=Contact(
-            arc=floats("arc", -1),
-            node=integers("node", -1),
-            u_n=floats("u_n", -1),
-            gap=floats("gap", -1),
-            sigma_n=floats("sigma_n", -1),
-            lambda_h=floats("lambda_h", -1),
-            pressure=floats("pressure", -1),
+            arc=floats(raw["arc"], -1),
+            node=integers(raw["node"], -1),
+            u_n=floats(raw["u_n"], -1),
+            gap=floats(raw["gap"], -1),
+            sigma_n=floats(raw["sigma_n"], -1),
+            lambda_h=floats(raw["lambda_h"], -1),
+            pressure=floats(raw["pressure"], -1),
+            boundary=np.array(raw["boundary"], dtype=np.str_),
         ),
         results=json.loads(raw["results"]),
     )

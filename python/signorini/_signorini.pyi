@@ -22,6 +22,7 @@ class Raw(TypedDict):
     sigma_n: bytes
     lambda_h: bytes
     pressure: bytes
+    boundary: List[str]
     results: str
 
 def solve_case(path: str, settings: List[str]) -> Raw: ...

@@ -145,6 +145,8 @@ fn raw<'py>(py: Python<'py>, solved: &Solved) -> PyResult<Bound<'py, PyDict>> {
     floats("sigma_n", &mut points().map(|p| p.sigma_n))?;
     floats("lambda_h", &mut points().map(|p| p.lambda))?;
     floats("pressure", &mut points().map(|p| p.pressure))?;
+    let names = s.contact.iter().flat_map(|edge| edge.points.iter().map(|_| &*edge.boundary));
+    dict.set_item("boundary", names.collect::<Vec<&str>>())?;
     dict.set_item("results", results)?;
     Ok(dict)
 }

@@ -53,6 +53,7 @@ def test_a_case_file_gives_arrays_that_fit_together():
     # The contact line is the bottom, from left to right.
     assert (solution.nodes[solution.contact.node][:, 1] == 0).all()
     assert (np.diff(solution.contact.arc) >= 0).all()
+    assert solution.contact.boundary.tolist() == 16 * ["bottom"]
 
 
 def test_a_mesh_of_arrays_gives_the_same_as_the_case_file_to_the_bit():

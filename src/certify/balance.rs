@@ -9,8 +9,8 @@ use thiserror::Error;
 
 use super::proof::{Certificate, Owner, Role};
 use crate::fem::mesh::length;
-use crate::kernel::composite::{Loads, Wrench};
-use crate::kernel::{Enclosing, Triangle};
+use crate::kernel::Enclosing;
+use crate::kernel::composite::Wrench;
 
 /// Why there is no equilibrium to be had.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -92,20 +92,19 @@ impl Tree {
     }
 }
 
-/// Adds to the tractions of `loads` those that put every triangle in equilibrium.
+/// Adds to the forces on the edges of the triangles, `outward`, those that put every one in equilibrium; `wrenches` are their
+/// resultants, with the loads.
 ///
 /// # Errors
 /// A connected part that Gamma_D doesn't hold.
 pub(super) fn close<S: Enclosing>(
     certificate: &Certificate,
     tree: &Tree,
-    triangles: &[Triangle<S>],
     owners: &[[Option<Owner>; 2]],
     points: &[Vector2<S>],
-    loads: &mut [Loads<S>],
+    wrenches: &mut [Wrench<S>],
+    outward: &mut [[[Vector2<S>; 2]; 3]],
 ) -> Result<(), Unbalanced> {
-    let mut wrenches: Vec<Wrench<S>> =
-        loads.iter().zip(triangles).map(|(loads, triangle)| loads.resultant(triangle)).collect();
     for (k, &first) in tree.parts.iter().enumerate() {
         let end = tree.parts.get(k + 1).copied().unwrap_or(tree.order.len());
         let part = &tree.order[first..end];
@@ -124,7 +123,7 @@ pub(super) fn close<S: Enclosing>(
             let Some(owner) = owners[hold.edge][0] else { continue };
             let [start, end] = certificate.edges[hold.edge].ends.map(|p| points[p]);
             let force = profile(hold).map(|f| Vector2::from(f.map(S::from)) * factor);
-            add(&mut loads[owner.piece].forces[owner.local], force);
+            add(&mut outward[owner.piece][owner.local], force);
             let wrench = unit_wrench(hold, start, end);
             let wrench =
                 Wrench { force: wrench.force * factor, moment: wrench.moment * factor, ..wrench };
@@ -145,8 +144,8 @@ pub(super) fn close<S: Enclosing>(
             } else {
                 ([minus[1], minus[0]], force)
             };
-            add(&mut loads[behind.piece].forces[behind.local], here);
-            add(&mut loads[before.piece].forces[before.local], there);
+            add(&mut outward[behind.piece][behind.local], here);
+            add(&mut outward[before.piece][before.local], there);
             wrenches[before.piece] = wrenches[before.piece].plus(wrench);
         }
     }

@@ -222,7 +222,9 @@ pub(super) fn build(
     let data = oscillation::Data::new(parts.problem);
     let whole: Vec<Triangle<f64>> = (0..mesh.triangles().len()).map(|t| mesh.triangle(t)).collect();
     let stress = stresses(parts, u, &whole);
-    let moments = moments(parts, &data, u, &whole, &stress);
+    let bodies: Vec<[Vector2<f64>; 3]> =
+        whole.iter().enumerate().map(|(t, triangle)| data.body_on(t, triangle)).collect();
+    let moments = moments(parts, &bodies, u, &whole, &stress);
     let mut oscillation = Oscillation::new(parts);
     let mut certificate = Certificate {
         vertices: mesh.vertices().to_vec(),
@@ -270,7 +272,7 @@ pub(super) fn build(
     }
     let mut origins = Vec::with_capacity(whole.len());
     for t in 0..whole.len() {
-        add_triangle(parts, &data, t, u, &stress, &mut certificate);
+        add_triangle(parts, &data, (t, bodies[t]), u, &stress, &mut certificate);
         origins.resize(certificate.pieces.len(), t);
     }
     oscillation.measure(parts, &data, &mut certificate, &origins);
@@ -284,7 +286,7 @@ const NEAR_THE_END: f64 = 1e-3;
 fn add_triangle(
     parts: &Parts,
     data: &oscillation::Data,
-    t: usize,
+    (t, whole): (usize, [Vector2<f64>; 3]),
     u: &[[f64; 2]],
     stress: &[Stress<f64>],
     certificate: &mut Certificate,
@@ -292,8 +294,11 @@ fn add_triangle(
     let (corners, edges) = (parts.mesh.triangles()[t], parts.mesh.triangle_edges()[t]);
     let material = [parts.material(t).lambda(), parts.material(t).mu()];
     let add = |vertices: [usize; 3], edges: [usize; 3], certificate: &mut Certificate| {
-        let triangle = Triangle { vertices: vertices.map(|p| place(certificate, p)) };
-        let body = data.body_on(t, &triangle);
+        let own = || {
+            let triangle = Triangle { vertices: vertices.map(|p| place(certificate, p)) };
+            data.body_on(t, &triangle)
+        };
+        let body = if vertices == corners { whole } else { own() }.map(Into::into);
         certificate.pieces.push(Piece { vertices, edges, material, body, oscillation: 0.0 });
     };
     let cut = (0..3).find_map(|local| {
@@ -389,7 +394,7 @@ fn stresses(parts: &Parts, u: &[[f64; 2]], triangles: &[Triangle<f64>]) -> Vec<S
 /// that has the edge.
 fn moments(
     parts: &Parts,
-    data: &oscillation::Data,
+    bodies: &[[Vector2<f64>; 3]],
     u: &[[f64; 2]],
     triangles: &[Triangle<f64>],
     stress: &[Stress<f64>],
@@ -451,8 +456,6 @@ fn moments(
         }
     }
     let averaged = moments.clone();
-    let body: Vec<[Vector2<f64>; 3]> =
-        triangles.iter().enumerate().map(|(t, triangle)| data.body_moments(t, triangle)).collect();
     for (a, fan) in fans.iter().enumerate() {
         go_round(
             a,
@@ -465,7 +468,7 @@ fn moments(
                 known: &known,
                 triangles,
                 stress,
-                body: &body,
+                bodies,
             },
             &mut moments,
         );
@@ -482,13 +485,20 @@ struct Around<'a> {
     known: &'a [[bool; 2]],
     triangles: &'a [Triangle<f64>],
     stress: &'a [Stress<f64>],
-    body: &'a [[Vector2<f64>; 3]],
+    /// The body force at the vertices, affine between them.
+    bodies: &'a [[Vector2<f64>; 3]],
 }
 
 impl Around<'_> {
     /// The triangle at the other side of edge `e`.
     fn beyond(&self, t: usize, e: usize) -> Option<usize> {
         self.owners[e].into_iter().flatten().map(|(other, _)| other).find(|&other| other != t)
+    }
+
+    /// int f phi over triangle `t`, phi the hat function of its vertex `l`: |T| / 12 (f_0 + f_1 + f_2 + f_l).
+    fn load(&self, t: usize, l: usize) -> Vector2<f64> {
+        let body = &self.bodies[t];
+        (body[0] + body[1] + body[2] + body[l]) * (self.triangles[t].double_area() / 24.0)
     }
 
     /// Edge `e` as the place of its moment at vertex `a`, and 1 if its moments point outside `t`, else -1.
@@ -529,7 +539,7 @@ fn go_round(a: usize, fan: &[(usize, usize)], around: &Around, moments: &mut [[V
         signs.push((k, -sign));
         for &(t, l) in &chain {
             let normal = around.triangles[t].scaled_normal(l);
-            sum = sum - around.stress[t].traction(normal) / 2.0 - around.body[t][l];
+            sum = sum - around.stress[t].traction(normal) / 2.0 - around.load(t, l);
             let e = around.edges[t][(l + 1) % 3];
             edges.push(e);
             sums.push(sum);
@@ -569,27 +579,36 @@ fn go_round(a: usize, fan: &[(usize, usize)], around: &Around, moments: &mut [[V
 
 /// A rule for a function of the place.
 pub(super) fn rule(function: &dyn Function) -> Rule {
-    Rule::new(Features { kink: function.kink(), singular: None }, oscillation::POINTS)
+    // n points are exact for the square of a polynomial of degree n - 1.
+    let known = function.degree().and_then(|degree| usize::try_from(degree).ok());
+    let points = known.map_or(oscillation::POINTS, |degree| oscillation::POINTS.min(degree + 1));
+    Rule::new(Features { kink: function.kink(), singular: None }, points)
 }
 
 /// Zienkiewicz and Zhu's estimate of the error of v: the distance of its stress from the stress that is averaged at the
 /// vertices, triangle by triangle of each material.
 pub(super) fn averaging_estimate(parts: &Parts, v: &[[f64; 2]]) -> f64 {
     let mesh = parts.mesh;
-    let mut sums: BTreeMap<(usize, usize), (Stress<f64>, f64)> = BTreeMap::new();
+    let place = |t: usize| parts.problem.material.place_of(t);
     let zero = Stress::new([0.0; 3]);
+    // At each vertex the sums and weights of the few materials there.
+    let mut sums: Vec<Vec<(usize, Stress<f64>, f64)>> = vec![Vec::new(); mesh.vertices().len()];
     let stress_of = |t: usize, triangle: &Triangle<f64>| {
         let nodal = nodal(v, mesh.triangles()[t]);
         parts.material(t).stress(super::proof::displacement_gradient(triangle, &nodal))
     };
-    let place = |t: usize| parts.problem.material.place_of(t);
     for (t, corners) in mesh.triangles().iter().enumerate() {
         let triangle = mesh.triangle(t);
         let (s, area) = (stress_of(t, &triangle), triangle.double_area());
         for &vertex in corners {
-            let (sum, weight) = sums.entry((vertex, place(t))).or_insert((zero, 0.0));
-            *sum = *sum + s * area;
-            *weight += area;
+            let known = sums[vertex].iter_mut().find(|(material, ..)| *material == place(t));
+            match known {
+                Some((_, sum, weight)) => {
+                    *sum = *sum + s * area;
+                    *weight += area;
+                }
+                None => sums[vertex].push((place(t), s * area, area)),
+            }
         }
     }
     let mut square = 0.0;
@@ -599,8 +618,9 @@ pub(super) fn averaging_estimate(parts: &Parts, v: &[[f64; 2]]) -> f64 {
         let mut total = zero;
         let mut share = 0.0;
         for &vertex in corners {
-            let Some((sum, weight)) = sums.get(&(vertex, place(t))) else { continue };
-            let difference = *sum / *weight - s;
+            let known = sums[vertex].iter().find(|(material, ..)| *material == place(t));
+            let Some(&(_, sum, weight)) = known else { continue };
+            let difference = sum / weight - s;
             share += complementary(parts.material(t), difference);
             total = total + difference;
         }

@@ -1,6 +1,6 @@
 //! Data that a composite stress and an affine displacement can't follow, and what they cost: oscillation terms.
 //!
-//! The certificate is exact where f is constant, t and u_D are affine on edges and g is affine along Gamma_C. Elsewhere it
+//! The certificate is exact where f is affine, t and u_D are affine on edges and g is affine along Gamma_C. Elsewhere it
 //! is a certificate for data f_h, t_h, u_h, g_h near those of the problem, and the bound grows by explicit terms
 //! (docs/theory.md, section 7.4).
 //!
@@ -67,35 +67,27 @@ impl<'a> Data<'a> {
         })
     }
 
-    /// int f phi_a over a part of triangle `t`, for each of its vertices a.
-    pub fn body_moments(&self, t: usize, part: &Triangle<f64>) -> [Vector2<f64>; 3] {
-        let mut moments = [Vector2::zeros(); 3];
+    /// f on a part of triangle `t` at the part's vertices, affine between them: f itself where it is affine, else with the same
+    /// moments. f_a = (12 F_a - 3 sum F) / |T| for F_a = int f l_a.
+    pub fn body_on(&self, t: usize, part: &Triangle<f64>) -> [Vector2<f64>; 3] {
+        let mut body = [Vector2::zeros(); 3];
         for (c, f, rule) in self.acting(t) {
-            if f.degree() == Some(0) {
-                let value = f.at(part.vertices[0].into()) * part.double_area() / 6.0;
-                moments.iter_mut().for_each(|m| m[c] += value);
-            } else {
-                rule.on_triangle(part, |l, x, weight| {
-                    let value = weight * f.at(x);
-                    (0..3).for_each(|a| moments[a][c] += l[a] * value);
-                });
+            let mut add = |values: [f64; 3]| (0..3).for_each(|a| body[a][c] += values[a]);
+            match f.degree() {
+                Some(0) => add([f.at(part.vertices[0].into()); 3]),
+                Some(1) => add(part.vertices.map(|x| f.at(x.into()))),
+                _ => {
+                    let mut moments = [0.0; 3];
+                    rule.on_triangle(part, |l, x, weight| {
+                        let value = weight * f.at(x);
+                        (0..3).for_each(|a| moments[a] += l[a] * value);
+                    });
+                    let (total, area) = (moments.iter().sum::<f64>(), part.double_area() / 2.0);
+                    add(moments.map(|m| (12.0 * m - 3.0 * total) / area));
+                }
             }
         }
-        moments
-    }
-
-    /// f_h on the three parts of the composite element: constants with the moments of f, (4 sum F - 9 F_i) / |T|.
-    pub fn body_on(&self, t: usize, part: &Triangle<f64>) -> [[f64; 2]; 3] {
-        let constant = self.acting(t).all(|(_, f, _)| f.degree() == Some(0));
-        if constant {
-            let mut sum = [0.0; 2];
-            self.acting(t).for_each(|(c, f, _)| sum[c] += f.at(part.vertices[0].into()));
-            return [sum; 3];
-        }
-        let moments = self.body_moments(t, part);
-        let area = part.double_area() / 2.0;
-        let total: Vector2<f64> = moments.iter().sum();
-        moments.map(|m| ((total * 4.0 - m * 9.0) / area).into())
+        body
     }
 }
 
@@ -176,7 +168,9 @@ fn length_and_normal(ends: [[f64; 2]; 2]) -> (f64, [f64; 2]) {
 pub(super) struct Oscillation {
     /// Why the bound rests on quadrature, if it does.
     pub reason: Option<String>,
-    /// |z|_a of the lifts: to be added to the bound once more, for |u - v| <= |u - v - z| + |z|.
+    /// |z|_a of the lifts on each triangle of the mesh; none where nothing is lifted.
+    pub lifts: Vec<f64>,
+    /// |z|_a of all: with its square the bound is one of |u - v|, where v lacks z.
     pub lift: f64,
 }
 
@@ -184,12 +178,11 @@ impl Oscillation {
     pub fn new(parts: &Parts) -> Self {
         let (problem, turning) = (parts.problem, parts.turning());
         let mut inexact = Vec::new();
-        if !within(&problem.body_force, 0) {
-            inexact.push("the body force is not known to be constant".to_owned());
+        if !within(&problem.body_force, 1) {
+            inexact.push("the body force is not known to be affine".to_owned());
         }
-        for part in problem.surface_forces.iter().filter(|part| !within(&part.force, 0)) {
-            inexact
-                .push(format!("the body force on '{}' is not known to be constant", part.surface));
+        for part in problem.surface_forces.iter().filter(|part| !within(&part.force, 1)) {
+            inexact.push(format!("the body force on '{}' is not known to be affine", part.surface));
         }
         for (name, condition) in &problem.conditions {
             let affine = |f: &SharedFunction| is_within(f, 1);
@@ -224,7 +217,7 @@ impl Oscillation {
         });
         let reasons: Vec<String> = measured.into_iter().chain(named).collect();
         let reason = (!reasons.is_empty()).then(|| reasons.join("; "));
-        Oscillation { reason, lift: 0.0 }
+        Oscillation { reason, lifts: Vec::new(), lift: 0.0 }
     }
 
     /// Puts the oscillation of the data into the pieces of a certificate; `origins` are their triangles in the mesh.
@@ -238,13 +231,13 @@ impl Oscillation {
         if self.reason.is_none() {
             return;
         }
-        let lifts = lifts(parts);
-        self.lift = lifts.iter().map(|z| z * z).sum::<f64>().sqrt();
+        self.lifts = lifts(parts);
+        self.lift = self.lifts.iter().map(|z| z * z).sum::<f64>().sqrt();
         let pieces: Vec<f64> = certificate
             .pieces
             .iter()
             .zip(origins)
-            .map(|(piece, &t)| lifts[t] + loads(parts, data, certificate, piece, t))
+            .map(|(piece, &t)| loads(parts, data, certificate, piece, t))
             .collect();
         for (piece, oscillation) in certificate.pieces.iter_mut().zip(pieces) {
             piece.oscillation = oscillation;
@@ -275,19 +268,16 @@ fn loads(parts: &Parts, data: &Data, certificate: &Certificate, piece: &Piece, t
     let (k, h) = korn(&triangle);
     let poincare = k * h / std::f64::consts::PI;
     let mut square = 0.0;
-    if data.acting(t).any(|(_, f, _)| f.degree() != Some(0)) {
-        // Each component by the rule of the first force that is smooth only piece by piece.
-        let kinked = data.acting(t).find(|(_, f, _)| f.kink().is_some());
-        let Some((_, _, rule)) = kinked.or_else(|| data.acting(t).next()) else { return 0.0 };
-        for i in 0..3 {
-            let mut vertices = triangle.vertices;
-            vertices[i] = triangle.point([1.0 / 3.0; 3]);
-            rule.on_triangle(&Triangle { vertices }, |_, x, weight| {
-                let mut difference = -Vector2::from(piece.body[i]);
-                data.acting(t).for_each(|(c, f, _)| difference[c] += f.at(x));
-                square += weight * difference.dot(&difference);
-            });
-        }
+    // All by the rule of the force that asks for most.
+    let curved = data.acting(t).filter(|(_, f, _)| !is_within(f, 1));
+    let demand = |f: &SharedFunction| (f.kink().is_some(), f.degree().unwrap_or(u32::MAX));
+    if let Some((_, _, rule)) = curved.max_by_key(|(_, f, _)| demand(f)) {
+        let affine = piece.body.map(Vector2::from);
+        rule.on_triangle(&triangle, |l, x, weight| {
+            let mut difference = -(affine[0] * l[0] + affine[1] * l[1] + affine[2] * l[2]);
+            data.acting(t).for_each(|(c, f, _)| difference[c] += f.at(x));
+            square += weight * difference.dot(&difference);
+        });
     }
     let mut sum = poincare * square.sqrt();
     for e in piece.edges {

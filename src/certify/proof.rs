@@ -18,7 +18,7 @@ use nalgebra::{Matrix2, Vector2};
 use thiserror::Error;
 
 use super::balance::{self, Tree, Unbalanced};
-use crate::kernel::composite::{Composite, Loads, complementary};
+use crate::kernel::composite::{Composite, Frame, Loads, complementary};
 use crate::kernel::contact_edge::integral_of_product;
 use crate::kernel::{Ball, Enclosing, Material, Plane, Scalar, Stress, Triangle};
 
@@ -57,7 +57,7 @@ pub struct Piece {
     pub edges: [usize; 3],
     /// lambda (as it acts in the plane) and mu.
     pub material: [f64; 2],
-    /// f on the three parts of the composite element.
+    /// f at its vertices, affine between them.
     pub body: [[f64; 2]; 3],
     /// What the data of the problem differ from those above: to be added to |C eps(v) - tau|. Zero where nothing does.
     pub oscillation: f64,
@@ -168,7 +168,7 @@ impl Certificate {
     /// # Errors
     /// The first condition that does not hold, or can't be decided in `S`.
     pub fn evaluate<S: Enclosing>(&self) -> Result<Proof, Rejection> {
-        let state = self.balanced::<S>()?;
+        let state = self.balanced::<S>(self.topology()?)?;
         self.sum(&state)
     }
 
@@ -179,7 +179,7 @@ impl Certificate {
     /// # Errors
     /// As [`Certificate::evaluate`]; a triangle that is out of balance; a claim that does not follow.
     pub fn audit(&self, claim: &Claim) -> Result<Proof, Rejection> {
-        let state = self.balanced::<Ball>()?;
+        let state = self.balanced::<Ball>(self.topology()?)?;
         for (t, piece) in self.pieces.iter().enumerate() {
             let loads = state.loads_as_given(self, t);
             let triangle = &state.triangles[t];
@@ -215,14 +215,22 @@ impl Certificate {
         Ok(proof)
     }
 
-    /// Checks all conditions and puts the triangles in equilibrium.
-    pub(super) fn balanced<S: Enclosing>(&self) -> Result<Balanced<S>, Rejection> {
+    /// How triangles and edges hang together.
+    pub(super) fn topology(&self) -> Result<Topology, Rejection> {
         self.check_shape()?;
+        let owners = self.owners()?;
+        Ok(Topology { tree: Tree::new(self, &owners), owners })
+    }
+
+    /// Checks all other conditions and puts the triangles in equilibrium.
+    pub(super) fn balanced<S: Enclosing>(
+        &self,
+        topology: Topology,
+    ) -> Result<Balanced<S>, Rejection> {
         let points: Vec<Vector2<S>> = self.values(&self.vertices);
         let v: Vec<Vector2<S>> = self.values(&self.displacement);
         let triangles = self.triangles(&points)?;
         self.check_displacement()?;
-        let owners = self.owners()?;
         let mut forces = Vec::with_capacity(self.edges.len());
         let mut on_contact = vec![S::from(0); self.pieces.len()];
         for (e, edge) in self.edges.iter().enumerate() {
@@ -259,22 +267,31 @@ impl Certificate {
                     if let Some(value) = contact.beyond.into_iter().find(|b| !b.is_at_most(0.0)) {
                         return Err(Rejection::Penetration { edge: e, value: value.upper() });
                     }
-                    if let Some(owner) = owners[e][0] {
+                    if let Some(owner) = topology.owners[e][0] {
                         on_contact[owner.piece] += contact.term;
                     }
                     contact.force
                 }
             });
         }
-        let tree = Tree::new(self, &owners);
         let mut state =
-            Balanced { points, triangles, v, owners, tree, forces, loads: Vec::new(), on_contact };
+            Balanced { points, triangles, v, topology, forces, outward: Vec::new(), on_contact };
         state.close(self)?;
         Ok(state)
     }
 
+    /// The right side of the theorem with the strain of another displacement, given at the vertices; what contact adds stays
+    /// that of v.
+    pub(super) fn sum_at<S: Enclosing>(
+        &self,
+        state: Balanced<S>,
+        field: &[[f64; 2]],
+    ) -> Result<Proof, Rejection> {
+        self.sum(&Balanced { v: self.values(field), ..state })
+    }
+
     /// The right side of the theorem.
-    fn sum<S: Enclosing>(&self, state: &Balanced<S>) -> Result<Proof, Rejection> {
+    pub(super) fn sum<S: Enclosing>(&self, state: &Balanced<S>) -> Result<Proof, Rejection> {
         let Balanced { triangles, v, forces, on_contact, .. } = state;
         let zero = S::from(0);
         let (mut square, mut norm, mut energy) = (zero, zero, zero);
@@ -297,14 +314,13 @@ impl Certificate {
             square += share;
             let internal = complementary(&material, sigma) * double_area / S::from(2);
             norm += internal;
-            // f is constant on the parts; the mean of v on part i is (4 (v_0 + v_1 + v_2) - 3 v_i) / 9.
+            // int_T l_i v = |T| / 12 (v_0 + v_1 + v_2 + v_i)
             let total = nodal[0] + nodal[1] + nodal[2];
             let mut work = zero;
             for i in 0..3 {
-                let mean = total * S::from(4) - nodal[i] * S::from(3);
-                work += exactly::<S>(piece.body[i]).dot(&mean);
+                work += exactly::<S>(piece.body[i]).dot(&(total + nodal[i]));
             }
-            energy = energy + internal / S::from(2) - work * double_area / S::from(54);
+            energy = energy + internal / S::from(2) - work * double_area / S::from(24);
         }
         for (e, edge) in self.edges.iter().enumerate() {
             if let Role::Loaded(_) | Role::Pressed(_) = edge.role {
@@ -556,6 +572,13 @@ fn along_directions<S: Enclosing>(
     }
 }
 
+/// How the triangles of a certificate hang together.
+pub(super) struct Topology {
+    /// The triangles of each edge.
+    pub owners: Vec<[Option<Owner>; 2]>,
+    tree: Tree,
+}
+
 /// A certificate whose triangles are in equilibrium, in the numbers `S`.
 pub(super) struct Balanced<S> {
     /// Vertices and cuts.
@@ -563,23 +586,28 @@ pub(super) struct Balanced<S> {
     pub triangles: Vec<Triangle<S>>,
     /// v at the points.
     v: Vec<Vector2<S>>,
-    pub owners: Vec<[Option<Owner>; 2]>,
-    tree: Tree,
+    pub topology: Topology,
     /// tau N on the edges as the certificate has it.
     forces: Vec<[Vector2<S>; 2]>,
-    /// On each triangle, in equilibrium.
-    loads: Vec<Loads<S>>,
+    /// tau N on the edges of each triangle towards its outside, in equilibrium.
+    outward: Vec<[[Vector2<S>; 2]; 3]>,
     /// 2 int tau_n (v_n - g) over the edges of each triangle.
     on_contact: Vec<S>,
 }
 
 impl<S: Enclosing> Balanced<S> {
-    /// The loads on the triangles from the forces on the edges, put in equilibrium.
+    /// The forces on the triangles from those on the edges, put in equilibrium.
     fn close(&mut self, certificate: &Certificate) -> Result<(), Unbalanced> {
-        self.loads =
-            (0..certificate.pieces.len()).map(|t| self.loads_as_given(certificate, t)).collect();
-        let Balanced { points, triangles, owners, tree, loads, .. } = self;
-        balance::close(certificate, tree, triangles, owners, points, loads)
+        let count = certificate.pieces.len();
+        self.outward.clear();
+        let mut wrenches = Vec::with_capacity(count);
+        for t in 0..count {
+            let loads = self.loads_as_given(certificate, t);
+            wrenches.push(loads.resultant(&self.triangles[t]));
+            self.outward.push(loads.forces);
+        }
+        let Balanced { points, topology: Topology { owners, tree }, outward, .. } = self;
+        balance::close(certificate, tree, owners, points, &mut wrenches, outward)
     }
 
     /// The forces on triangle `t` towards its outside, and its body force.
@@ -587,7 +615,7 @@ impl<S: Enclosing> Balanced<S> {
         let piece = &certificate.pieces[t];
         let outward = piece.edges.map(|e| {
             let [a, b] = self.forces[e];
-            match self.owners[e][0] {
+            match self.topology.owners[e][0] {
                 Some(owner) if owner.piece == t => [a, b],
                 _ => [-b, -a],
             }
@@ -601,7 +629,10 @@ impl<S: Enclosing> Balanced<S> {
         let nodal = piece.vertices.map(|vertex| self.v[vertex]);
         let gradient = displacement_gradient(&self.triangles[t], &nodal);
         let sigma = piece.material().stress(gradient);
-        let tau = Composite::new(&self.triangles[t], &self.loads[t]);
+        let frame = Frame::new(&self.triangles[t]);
+        let loads = Loads { forces: self.outward[t], body: piece.body.map(exactly) };
+        let tau = Composite::new(&frame, &loads);
+        let tau = if piece.is_bent() { tau.bent(&frame, &loads.body) } else { tau };
         (sigma, tau.distance_from(sigma))
     }
 }
@@ -609,10 +640,10 @@ impl<S: Enclosing> Balanced<S> {
 impl Balanced<f64> {
     /// Gives the edges of the certificate the tractions that balance.
     pub fn give(&self, certificate: &mut Certificate) {
-        for (edge, owner) in certificate.edges.iter_mut().zip(&self.owners) {
+        for (edge, owner) in certificate.edges.iter_mut().zip(&self.topology.owners) {
             let Some(Owner { piece, local }) = owner[0] else { continue };
             if let Role::Inner(force) | Role::Held(_, force) = &mut edge.role {
-                *force = self.loads[piece].forces[local].map(Into::into);
+                *force = self.outward[piece][local].map(Into::into);
             }
         }
     }
@@ -638,6 +669,11 @@ pub struct Owner {
 }
 
 impl Piece {
+    /// f is not constant.
+    fn is_bent(&self) -> bool {
+        self.body.iter().any(|&f| f != self.body[0])
+    }
+
     /// The material. lambda is the one that acts in the plane, so plane strain is the formula to use.
     pub fn material<S: Enclosing>(&self) -> Material<S> {
         let [lambda, mu] = self.material;

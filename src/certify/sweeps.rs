@@ -10,31 +10,39 @@
 //! since the integral of grad Phi along the edge, which is that of q . N, is Phi_b - Phi_a; z . E is the edge's own
 //! unknown. One sweep goes to every vertex and solves for its three unknowns and those of its edges together. A triangle has
 //! twelve unknowns, three for each vertex and one for each edge; the energy's second derivative by them is computed once,
-//! and the small systems of the vertices are factorised once.
+//! and the small systems of the vertices are factorised once. What a body force that is not constant bends tau by is
+//! not seen here: it falls with h^2.
 
 use nalgebra::Vector2;
 
-use super::proof::{Balanced, Certificate, Rejection, Role};
+use super::proof::{Balanced, Certificate, Rejection, Role, Topology};
 use crate::kernel::Stress;
-use crate::kernel::composite::{Composite, Loads};
+use crate::kernel::composite::{Composite, Frame, Loads};
 
 /// The unknowns of a triangle: Phi, Phi_x, Phi_y at its vertices, then those of its edges.
 const UNKNOWNS: usize = 12;
 
+/// Columns of a block of products.
+const BLOCK: usize = 4;
+
 /// |C eps(v) - tau|^2 / 2 on a triangle as a function of its unknowns.
 struct Energy {
-    /// The second derivative.
-    hessian: [[f64; UNKNOWNS]; UNKNOWNS],
+    /// The second derivative, over its largest entry: it is all that the sweeps read again and again, and need not be known
+    /// to more digits than the best step.
+    hessian: [[f32; UNKNOWNS]; UNKNOWNS],
+    /// Its largest entry.
+    scale: f64,
     /// The derivative at the present stress.
     gradient: [f64; UNKNOWNS],
 }
 
-/// Improves the tractions of `certificate` in `count` sweeps, and leaves them in equilibrium up to rounding.
+/// Improves the tractions of `certificate` in `count` sweeps, and leaves them in equilibrium up to rounding. Returns how its
+/// triangles and edges hang together.
 ///
 /// # Errors
 /// A condition of the theorem that does not hold.
-pub(super) fn improve(certificate: &mut Certificate, count: usize) -> Result<(), Rejection> {
-    let mut state = certificate.balanced::<f64>()?;
+pub(super) fn improve(certificate: &mut Certificate, count: usize) -> Result<Topology, Rejection> {
+    let mut state = certificate.balanced::<f64>(certificate.topology()?)?;
     let mut sweeps = Sweeps::new(certificate, &state);
     for sweep in 0..count {
         sweeps.go(sweep % 2 == 1);
@@ -44,7 +52,7 @@ pub(super) fn improve(certificate: &mut Certificate, count: usize) -> Result<(),
     // The sums have left their rounding errors.
     state.rebalance(certificate)?;
     state.give(certificate);
-    Ok(())
+    Ok(state.topology)
 }
 
 /// The triangles around each point, one list after the other: the list of point p is `of[first[p]..first[p + 1]]`.
@@ -89,9 +97,10 @@ struct Sweeps {
     /// The unknowns: of the points, and of the edges.
     at_points: Vec<[f64; 3]>,
     on_edges: Vec<f64>,
-    /// The systems of the stars: their columns, in the order of `stars.of`; the free edges at the points, and the factors,
-    /// each with the place where a point's begin. A point has no factor before the first sweep.
-    columns: Vec<Column>,
+    /// The systems of the stars: of each triangle in the order of `stars.of` the numbers of the edges beside its vertex; the
+    /// free edges at the points, and the factors, each with the place where a point's begin. A point has no factor before
+    /// the first sweep.
+    sides: Vec<[Option<u32>; 2]>,
     star_edges: Vec<usize>,
     first_edge: Vec<usize>,
     factors: Vec<f64>,
@@ -114,7 +123,7 @@ impl Sweeps {
         }
         let stars = Stars::new(certificate, points);
         let mut sweeps = Sweeps {
-            columns: Vec::with_capacity(stars.of.len()),
+            sides: Vec::with_capacity(stars.of.len()),
             stars,
             star_edges: Vec::with_capacity(2 * free_edge.len()),
             first_edge: Vec::with_capacity(points + 1),
@@ -130,16 +139,23 @@ impl Sweeps {
             free_edge,
         };
         sweeps.number();
-        sweeps.factorise();
+        let size = |n: usize| n * (n + 1) / 2;
+        sweeps.factors.reserve_exact((0..points).map(|point| size(sweeps.unknowns(point))).sum());
+        sweeps.first_factor.push(0);
         sweeps
     }
 
     /// To every point and its star, forwards or backwards.
     fn go(&mut self, backwards: bool) {
         let points = self.at_points.len();
-        let mut values = Vec::new();
+        let (mut values, mut matrix) = (Vec::new(), Vec::new());
         for k in 0..points {
-            self.minimise(if backwards { points - 1 - k } else { k }, &mut values);
+            let point = if backwards { points - 1 - k } else { k };
+            // The first sweep goes forwards, and finds a star in the cache.
+            if self.first_factor.len() == point + 1 {
+                self.factorise(point, &mut matrix);
+            }
+            self.minimise(point, &mut values);
         }
     }
 
@@ -153,56 +169,64 @@ impl Sweeps {
         for point in 0..self.at_points.len() {
             let first = self.star_edges.len();
             self.first_edge.push(first);
-            let own = self.own(point);
             for &(triangle, local) in self.stars.around(point) {
-                let mut column = Column { triangle, count: 0, places: [(0, 0); 5] };
-                (0..own).for_each(|k| column.push(3 * local + k, k));
-                for side in [(local + 1) % 3, (local + 2) % 3] {
-                    let e = self.edges[triangle][side];
+                self.sides.push([1, 2].map(|k| {
+                    let e = self.edges[triangle][(local + k) % 3];
                     if !self.free_edge[e] {
-                        continue;
+                        return None;
                     }
                     let seen = &self.star_edges[first..];
                     let place = seen.iter().position(|&other| other == e).unwrap_or(seen.len());
                     if place == seen.len() {
                         self.star_edges.push(e);
                     }
-                    column.push(9 + side, own + place);
-                }
-                self.columns.push(column);
+                    u32::try_from(place).ok()
+                }));
             }
         }
         self.first_edge.push(self.star_edges.len());
     }
 
-    /// The columns of a star, and its free edges.
-    fn star(&self, point: usize) -> (&[Column], &[usize]) {
-        let columns = &self.columns[self.stars.first[point]..self.stars.first[point + 1]];
-        (columns, &self.star_edges[self.first_edge[point]..self.first_edge[point + 1]])
+    /// How many unknowns a star has.
+    fn unknowns(&self, point: usize) -> usize {
+        self.own(point) + self.first_edge[point + 1] - self.first_edge[point]
     }
 
-    /// The factors of the systems of the stars, the rows of their lower halves; none where there are no unknowns, or where
-    /// these are not independent.
-    fn factorise(&mut self) {
-        let mut matrix = Vec::new();
-        for point in 0..self.at_points.len() {
-            self.first_factor.push(self.factors.len());
-            let (columns, edges) = self.star(point);
-            let n = self.own(point) + edges.len();
-            matrix.clear();
-            matrix.resize(n * n, 0.0);
-            for column in columns {
-                let hessian = &self.energies[column.triangle].hessian;
-                for &(a, i) in column.places() {
-                    for &(b, j) in column.places() {
-                        matrix[i * n + j] += hessian[a][b];
-                    }
+    /// The triangles of a star, each with its unknowns there and their numbers in the star.
+    fn star(&self, point: usize) -> impl Iterator<Item = (usize, Places)> {
+        let own = self.own(point);
+        let of = self.stars.first[point]..self.stars.first[point + 1];
+        self.stars.of[of.clone()].iter().zip(&self.sides[of]).map(
+            move |(&(triangle, local), sides)| {
+                let mut places = Places { count: 0, of: [(0, 0); 5] };
+                (0..own).for_each(|k| places.push(3 * local + k, k));
+                for (k, place) in sides.iter().enumerate() {
+                    place
+                        .iter()
+                        .for_each(|&p| places.push(9 + (local + 1 + k) % 3, own + p as usize));
+                }
+                (triangle, places)
+            },
+        )
+    }
+
+    /// The factor of the system of the next star, the rows of its lower half; none where there are no unknowns, or where these
+    /// are not independent.
+    fn factorise(&mut self, point: usize, matrix: &mut Vec<f64>) {
+        let n = self.unknowns(point);
+        matrix.clear();
+        matrix.resize(n * n, 0.0);
+        for (triangle, places) in self.star(point) {
+            let Energy { hessian, scale, .. } = &self.energies[triangle];
+            for &(a, i) in places.all() {
+                for &(b, j) in places.all() {
+                    matrix[i * n + j] += scale * f64::from(hessian[a][b]);
                 }
             }
-            if n > 0 && factor_positive(&mut matrix, n) {
-                for (i, row) in matrix.chunks_exact(n).enumerate() {
-                    self.factors.extend_from_slice(&row[..=i]);
-                }
+        }
+        if n > 0 && factor_positive(matrix, n) {
+            for (i, row) in matrix.chunks_exact(n).enumerate() {
+                self.factors.extend_from_slice(&row[..=i]);
             }
         }
         self.first_factor.push(self.factors.len());
@@ -214,28 +238,29 @@ impl Sweeps {
             return;
         }
         let own = self.own(point);
-        let columns = &self.columns[self.stars.first[point]..self.stars.first[point + 1]];
-        let edges = &self.star_edges[self.first_edge[point]..self.first_edge[point + 1]];
         x.clear();
-        x.resize(own + edges.len(), 0.0);
-        for column in columns {
-            let gradient = &self.energies[column.triangle].gradient;
-            column.places().iter().for_each(|&(a, i)| x[i] -= gradient[a]);
+        x.resize(self.unknowns(point), 0.0);
+        for (triangle, places) in self.star(point) {
+            let gradient = &self.energies[triangle].gradient;
+            places.all().iter().for_each(|&(a, i)| x[i] -= gradient[a]);
         }
         substitute(factor, x);
-        for column in columns {
-            let Energy { hessian, gradient } = &mut self.energies[column.triangle];
-            for &(a, i) in column.places() {
-                let value = x[i];
-                for (gradient, h) in gradient.iter_mut().zip(&hessian[a]) {
-                    *gradient += value * h;
-                }
+        let mut energies = std::mem::take(&mut self.energies);
+        for (triangle, places) in self.star(point) {
+            let Energy { hessian, scale, gradient } = &mut energies[triangle];
+            let mut sum = *gradient;
+            for &(a, i) in places.all() {
+                let value = x[i] * *scale;
+                sum.iter_mut().zip(&hessian[a]).for_each(|(sum, &h)| *sum += value * f64::from(h));
             }
+            *gradient = sum;
         }
+        self.energies = energies;
         for (value, x) in self.at_points[point].iter_mut().zip(&x[..own]) {
             *value += x;
         }
-        for (&e, x) in edges.iter().zip(&x[own..]) {
+        let free = self.first_edge[point]..self.first_edge[point + 1];
+        for (&e, x) in self.star_edges[free].iter().zip(&x[own..]) {
             self.on_edges[e] += x;
         }
     }
@@ -266,21 +291,20 @@ fn add(force: &mut [[f64; 2]; 2], factor: f64, mode: &[Vector2<f64>; 2]) {
     }
 }
 
-/// What one triangle has to do with a star: its unknowns there, each with its number in the star.
-struct Column {
-    triangle: usize,
+/// The unknowns of a triangle in a star, each with its number in the star.
+struct Places {
     count: usize,
-    places: [(usize, usize); 5],
+    of: [(usize, usize); 5],
 }
 
-impl Column {
+impl Places {
     fn push(&mut self, unknown: usize, number: usize) {
-        self.places[self.count] = (unknown, number);
+        self.of[self.count] = (unknown, number);
         self.count += 1;
     }
 
-    fn places(&self) -> &[(usize, usize)] {
-        &self.places[..self.count]
+    fn all(&self) -> &[(usize, usize)] {
+        &self.of[..self.count]
     }
 }
 
@@ -296,15 +320,16 @@ fn energy(certificate: &Certificate, state: &Balanced<f64>, t: usize) -> Energy 
     let [lambda, mu] = piece.material;
     let roots = [(scale / mu).sqrt(), (scale / (lambda + mu)).sqrt()];
     let distance = features(&state.stresses(certificate, t).1, roots);
+    let frame = Frame::new(triangle);
     let mut units = [[0.0; UNKNOWNS]; FEATURES];
     let (zero, body) = ([[Vector2::zeros(); 2]; 3], [Vector2::zeros(); 3]);
     let mut put = |k: usize, forces: [[Vector2<f64>; 2]; 3]| {
-        let tau = features(&Composite::new(triangle, &Loads { forces, body }), roots);
+        let tau = features(&Composite::new(&frame, &Loads { forces, body }), roots);
         units.iter_mut().zip(tau).for_each(|(row, value)| row[k] = value);
     };
     let mut at_vertices = [zero; 9];
     for (side, &e) in piece.edges.iter().enumerate() {
-        let left = state.owners[e][0].is_some_and(|owner| owner.piece == t);
+        let left = state.topology.owners[e][0].is_some_and(|owner| owner.piece == t);
         let outward = |[a, b]: [Vector2<f64>; 2]| if left { [a, b] } else { [-b, -a] };
         let ends = certificate.edges[e].ends;
         let places = ends.map(|p| state.points[p]);
@@ -326,17 +351,33 @@ fn energy(certificate: &Certificate, state: &Balanced<f64>, t: usize) -> Energy 
     for (k, forces) in at_vertices.into_iter().enumerate() {
         put(k, forces);
     }
-    let mut hessian = [[0.0; UNKNOWNS]; UNKNOWNS];
     let mut gradient = [0.0; UNKNOWNS];
     for (row, distance) in units.iter().zip(distance) {
-        for (i, sums) in hessian.iter_mut().enumerate() {
-            for (sum, unit) in sums.iter_mut().zip(row) {
-                *sum += row[i] * unit;
-            }
-        }
         gradient.iter_mut().zip(row).for_each(|(sum, unit)| *sum -= unit * distance);
     }
-    Energy { hessian, gradient }
+    let exact = gram(&units);
+    let scale = exact.as_flattened().iter().fold(0.0, |most: f64, h| most.max(h.abs()));
+    Energy { hessian: exact.map(|row| row.map(|h| (h / scale) as f32)), scale, gradient }
+}
+
+/// The products of the columns, by blocks that stay in registers; the upper half is the lower one.
+fn gram(rows: &[[f64; UNKNOWNS]; FEATURES]) -> [[f64; UNKNOWNS]; UNKNOWNS] {
+    let mut products = [[0.0; UNKNOWNS]; UNKNOWNS];
+    for i in (0..UNKNOWNS).step_by(BLOCK) {
+        for j in (0..=i).step_by(BLOCK) {
+            let mut block = [[0.0; BLOCK]; BLOCK];
+            for row in rows {
+                for (sums, a) in block.iter_mut().zip(&row[i..i + BLOCK]) {
+                    sums.iter_mut().zip(&row[j..j + BLOCK]).for_each(|(sum, b)| *sum += a * b);
+                }
+            }
+            for (k, sums) in block.iter().enumerate() {
+                products[i + k][j..j + BLOCK].copy_from_slice(sums);
+                (0..BLOCK).for_each(|l| products[j + l][i + k] = sums[l]);
+            }
+        }
+    }
+    products
 }
 
 /// Numbers whose sum of squares is [`Composite::energy`]; `roots` are those of |T|/144 over mu and over lambda + mu.

@@ -1,4 +1,6 @@
 //! Two problems of linear algebra with few columns, as accurate as their data: the rigid motions of a body are three to a piece.
+//! faer has both, but what it takes for them (bidiagonal forms, divide and conquer, QR) is seven seconds of compiling, a
+//! twentieth of what the release command takes.
 
 /// The sum of the products of two lists.
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {

@@ -3,13 +3,15 @@
 //! triangles), and it is used where that does no harm: times residuals that are far below rounding.
 //!
 //! On a triangle v is a rigid motion r_T up to c_T |v|_{a,T}. Motions of neighbours differ on their common edge by what both
-//! leave; along the tree that adds up to |r_T - r_root| <= S_T^{1/2} |v|_a. Each part of the body has a root, and prescribed
+//! leave; along the tree that adds up to |r_T - r_root| <= S_T^{1/2} |v|_a. The tree is that of the smallest S_T: next to the
+//! short edges of a graded mesh it goes round by long ones. Each part of the body has a root, and prescribed
 //! components and hinges between the parts hold the motions of the roots.
 //!
 //! Everything but the areas and the matrix of those equations, which are intervals, is a sum or product of positive
 //! doubles of some million terms at most: rounding changes it by far less than the factor `SAFETY`.
 
-use std::collections::{BTreeMap, VecDeque};
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BinaryHeap};
 
 use super::ball::larger;
 use super::constraints::Constraints;
@@ -67,15 +69,22 @@ impl Korn {
             let root = equations[*of_part.first()?].triangle_in(origins.len(), &parts)?;
             origins.push(mesh.vertices()[mesh.triangles()[root][0]]);
             along[root] = 0.0;
-            let mut queue = VecDeque::from([root]);
-            while let Some(t) = queue.pop_front() {
+            // Positive doubles are in the order of their bits.
+            let mut queue = BinaryHeap::from([Reverse((0, root))]);
+            while let Some(Reverse((reached, t))) = queue.pop() {
+                if reached > along[t].to_bits() {
+                    continue;
+                }
                 for (i, &edge) in mesh.triangle_edges()[t].iter().enumerate() {
                     let other = of_edge[edge].into_iter().find(|&o| o != t && o < count);
-                    let Some(other) = other.filter(|&o| along[o].is_infinite()) else { continue };
+                    let Some(other) = other else { continue };
                     let edge = mesh.triangle(t).edge(i);
                     let w = 1.0 + 2.0 * size / edge[0].hypot(edge[1]);
-                    along[other] = along[t] + 2.0 * w * w * (left[t] + left[other]);
-                    queue.push_back(other);
+                    let there = along[t] + 2.0 * w * w * (left[t] + left[other]);
+                    if there < along[other] {
+                        along[other] = there;
+                        queue.push(Reverse((there.to_bits(), other)));
+                    }
                 }
             }
         }
@@ -96,11 +105,6 @@ impl Korn {
             }
         }
         nodes.iter().all(|n| n.is_finite()).then_some(Korn { nodes })
-    }
-
-    /// |x|_2^2 <= this times |v|_a^2 for the free components x of v.
-    pub fn sum_of_squares(&self) -> f64 {
-        SAFETY * self.nodes.iter().map(|n| n * n).sum::<f64>()
     }
 
     /// The largest of the factors.

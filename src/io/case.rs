@@ -81,9 +81,10 @@ use toml::de::DeTable;
 
 use super::body::{MaterialEcho, read_loads, read_materials};
 use super::boundaries::{on_the_mesh, read_boundaries, read_points};
-use super::exact::{angle, read_exact};
-use super::gmsh;
+use super::exact::read_exact;
 use super::input::{self, InputError, MOST_OF_A_CASE};
+use super::meshed::{Meshed, read_mesh};
+use super::method::{read_method, read_settings, read_target};
 use super::mistake::no_toml;
 pub use super::mistake::{CaseError, CaseMistake, Place};
 use super::setting;
@@ -91,12 +92,9 @@ use super::source::Source;
 use super::table::{Table, Value};
 use crate::certify::Target;
 use crate::fem::exact::Kind;
-use crate::fem::rectangle::MOST_CELLS;
-use crate::fem::{Diagonal, Exact, Mesh, Perturbation, Problem, Rectangle, Structured, Trapezoid};
+use crate::fem::{Exact, Mesh, Perturbation, Problem, Structured};
 use crate::memory;
-use crate::solve::{
-    ContactQuadrature, Degree, Gamma0, MOST_GAUSS_POINTS, MOST_ITERATIONS, Method, Settings,
-};
+use crate::solve::{Method, Settings};
 
 /// A contact problem and how to solve it.
 #[non_exhaustive]
@@ -135,6 +133,16 @@ pub struct Units {
 }
 
 impl Units {
+    /// Of forces in the plane: per length across it.
+    pub fn force_across(&self) -> String {
+        format!("{}/{}", self.force, self.length)
+    }
+
+    /// Of their moments and of energies, per length likewise.
+    pub fn moment_across(&self) -> String {
+        format!("{} {}/{}", self.force, self.length, self.length)
+    }
+
     /// Of stresses.
     pub fn stress(&self) -> String {
         match (&*self.force, &*self.length) {
@@ -310,205 +318,10 @@ enum Body<'s> {
     Told(Table<'s>),
 }
 
-/// A mesh and how it was made.
-struct Meshed {
-    mesh: Mesh,
-    structured: Option<Structured>,
-    perturbation: Option<Perturbation>,
-    file: Option<PathBuf>,
-}
-
-/// `directory` is the one of the case file.
-fn read_mesh(table: &Table, directory: &Path) -> Result<Meshed, CaseError> {
-    const SHAPES: [&str; 3] = ["rectangle", "trapezoid", "gmsh"];
-    table.only(&["rectangle", "trapezoid", "gmsh", "perturb", "merge"])?;
-    let perturbation = table.get("perturb").map(|value| read_perturbation(&value)).transpose()?;
-    let merge = table.get("merge").map(|value| read_merge(&value)).transpose()?;
-    let shapes = SHAPES.map(|key| table.get(key));
-    if merge.is_some() && shapes[2].is_none() {
-        return Err(table.combination(&[SHAPES[0], SHAPES[1], "merge"], "merge beside gmsh only"));
-    }
-    let (value, structured) = match shapes {
-        [Some(value), None, None] => {
-            let rectangle = read_rectangle(&value.table()?)?;
-            (value, Structured::Rectangle(rectangle))
-        }
-        [None, Some(value), None] => {
-            let trapezoid = read_trapezoid(&value.table()?)?;
-            (value, Structured::Trapezoid(trapezoid))
-        }
-        [None, None, Some(value)] => {
-            if perturbation.is_some() {
-                return Err(table.combination(
-                    &["gmsh", "perturb"],
-                    "perturb beside rectangle or trapezoid only",
-                ));
-            }
-            let name = value.text()?;
-            if name.is_empty() {
-                return Err(value.wrong("the name of a mesh file"));
-            }
-            let file = directory.join(name);
-            let mesh =
-                merge.map_or_else(|| gmsh::read(&file), |share| gmsh::read_merged(&file, share));
-            let mesh = mesh.map_err(|error| value.mistake(CaseMistake::Gmsh(error)))?;
-            return Ok(Meshed { mesh, structured: None, perturbation: None, file: Some(file) });
-        }
-        _ => {
-            let expected = format!("exactly one of {}", SHAPES.join(", "));
-            return Err(table.combination(&SHAPES, &expected));
-        }
-    };
-    let mesh = structured.mesh(perturbation).map_err(|error| {
-        let name = value.name().to_owned();
-        value.mistake(CaseMistake::Mesh { name, error })
-    })?;
-    Ok(Meshed { mesh, structured: Some(structured), perturbation, file: None })
-}
-
-fn read_trapezoid(table: &Table) -> Result<Trapezoid, CaseError> {
-    table.only(&["omega", "n"])?;
-    let (omega, _) = angle(table)?;
-    let most = MOST_CELLS.isqrt();
-    Ok(Trapezoid { omega, n: table.require("n", "a number of cells")?.whole_number(1..=most)? })
-}
-
-/// Vertices further apart than this share of the body are not one by mistake.
-const MOST_MERGED: f64 = 0.01;
-
-fn read_merge(value: &Value) -> Result<f64, CaseError> {
-    let expected = format!("a share of the body's size, above 0 and at most {MOST_MERGED}");
-    value.number_that(|share| 0.0 < share && share <= MOST_MERGED, &expected)
-}
-
-/// Beyond this share of a cell, triangles may turn over.
-const MOST_MOVED: f64 = 0.25;
-
-fn read_perturbation(value: &Value) -> Result<Perturbation, CaseError> {
-    let table = value.table()?;
-    table.only(&["amount", "seed"])?;
-    let expected = format!("a number of cells from 0 to {MOST_MOVED}");
-    let amount = table.require("amount", &expected)?;
-    let amount = amount.number_that(|a| (0.0..=MOST_MOVED).contains(&a), &expected)?;
-    let seed = table.get("seed").map_or(Ok(0), |seed| seed.whole_number(0..=MOST_SEEDS))?;
-    Ok(Perturbation { amount, seed: seed as u64 })
-}
-
-/// Seeds that every reader of TOML can hold.
-const MOST_SEEDS: usize = 1 << 31;
-
-fn read_rectangle(table: &Table) -> Result<Rectangle, CaseError> {
-    table.only(&["width", "height", "nx", "ny", "diagonal"])?;
-    let length =
-        |key| table.require(key, "a length")?.number_that(|x| x > 0.0, "a positive number");
-    let cells = |key| table.require(key, "a number of cells")?.whole_number(1..=MOST_CELLS);
-    Ok(Rectangle {
-        width: length("width")?,
-        height: length("height")?,
-        nx: cells("nx")?,
-        ny: cells("ny")?,
-        diagonal: match table.get("diagonal") {
-            Some(diagonal) => diagonal.one_of(&[
-                ("right", Diagonal::Right),
-                ("left", Diagonal::Left),
-                ("crossed", Diagonal::Crossed),
-            ])?,
-            None => Diagonal::Right,
-        },
-    })
-}
-
 fn read_units(table: &Table) -> Result<Units, CaseError> {
     table.only(&["length", "force"])?;
     let word = |key: &str, example: &str| table.require(key, example)?.text().map(str::to_owned);
     Ok(Units { length: word("length", "such as \"mm\"")?, force: word("force", "such as \"N\"")? })
-}
-
-fn read_method(table: Option<Table>) -> Result<Method, CaseError> {
-    let mut method = Method::default();
-    let Some(table) = table else { return Ok(method) };
-    table.only(&["degree", "gamma0", "kappa", "contact_quadrature", "allow_noncoercive"])?;
-    if let Some(degree) = table.get("degree") {
-        method.degree = match degree.whole_number(1..=2).map_err(|_| degree.wrong("1 or 2"))? {
-            1 => Degree::One,
-            _ => Degree::Two,
-        };
-    }
-    if let Some(gamma0) = table.get("gamma0") {
-        method.gamma0 = match gamma0.as_text() {
-            Some("auto") => Gamma0::Auto,
-            Some(_) => return Err(gamma0.wrong("a positive number or \"auto\"")),
-            None => {
-                Gamma0::Value(gamma0.number_that(|g| g > 0.0, "a positive number or \"auto\"")?)
-            }
-        };
-    }
-    if let Some(kappa) = table.get("kappa") {
-        if table.get("gamma0").is_some() {
-            return Err(kappa.wrong("gamma0 or kappa, not both"));
-        }
-        method.gamma0 = Gamma0::Local(kappa.number_that(|k| k > 0.0, "a positive number")?);
-    }
-    if let Some(quadrature) = table.get("contact_quadrature") {
-        method.quadrature = read_quadrature(&quadrature)?;
-    }
-    if let Some(allow) = table.get("allow_noncoercive") {
-        method.allow_noncoercive = allow.flag()?;
-    }
-    Ok(method)
-}
-
-fn read_quadrature(value: &Value) -> Result<ContactQuadrature, CaseError> {
-    if value.as_text() == Some("exact") {
-        return Ok(ContactQuadrature::Exact);
-    }
-    if !value.is_table() {
-        return Err(value.wrong("\"exact\" or { gauss = points per edge }"));
-    }
-    let table = value.table()?;
-    table.only(&["gauss"])?;
-    let points = table.require("gauss", "a number of points per edge")?;
-    Ok(ContactQuadrature::Gauss(points.whole_number(1..=MOST_GAUSS_POINTS)?))
-}
-
-fn read_settings(table: Option<Table>) -> Result<Settings, CaseError> {
-    let mut settings = Settings::default();
-    let Some(table) = table else { return Ok(settings) };
-    table.only(&["tolerance", "max_iterations"])?;
-    if let Some(tolerance) = table.get("tolerance") {
-        settings.tolerance =
-            tolerance.number_that(|t| 0.0 < t && t < 1.0, "a number above 0 and below 1")?;
-    }
-    if let Some(most) = table.get("max_iterations") {
-        settings.max_iterations = most.whole_number(1..=MOST_ITERATIONS)?;
-    }
-    Ok(settings)
-}
-
-/// Meshes are refined up to so many unknowns where the case says nothing.
-const MOST_UNKNOWNS: usize = 500_000;
-
-fn read_target(table: &Table, method: &Method) -> Result<Target, CaseError> {
-    table.only(&["target", "max_unknowns"])?;
-    if method.degree != Degree::One {
-        return Err(table.wrong(CaseMistake::Combination {
-            name: table.name().to_owned(),
-            found: "method.degree = 2 beside it".to_owned(),
-            expected: "degree 1, for which there are certificates".to_owned(),
-        }));
-    }
-    let expected = "a share of the energy norm above 0 % and below 100 %, such as \"1 %\"";
-    let target = table.require("target", expected)?;
-    let percent = target.as_text().and_then(|text| text.strip_suffix('%'));
-    let percent = percent.and_then(|number| number.trim().parse::<f64>().ok());
-    let relative = percent.map(|percent| percent / 100.0).filter(|&r| 0.0 < r && r < 1.0);
-    let most = 2 * MOST_CELLS;
-    let unknowns =
-        table.get("max_unknowns").map(|value| value.whole_number(1..=most)).transpose()?;
-    Ok(Target {
-        relative: relative.ok_or_else(|| target.wrong(expected))?,
-        max_unknowns: unknowns.unwrap_or(MOST_UNKNOWNS),
-    })
 }
 
 fn read_probes(table: Option<Table>, mesh: &Mesh) -> Result<Vec<[f64; 2]>, CaseError> {
@@ -531,7 +344,9 @@ fn read_probes(table: Option<Table>, mesh: &Mesh) -> Result<Vec<[f64; 2]>, CaseE
 mod tests {
     use super::*;
     use crate::fem::Condition;
+    use crate::io::method::MOST_UNKNOWNS;
     use crate::kernel::{Material, Plane};
+    use crate::solve::{ContactQuadrature, Degree, Gamma0};
 
     fn read(text: &str) -> Result<Case, CaseError> {
         let file = Path::new("x.toml");

@@ -21,6 +21,10 @@ pub mod files;
 pub mod gmsh;
 pub mod input;
 #[cfg(feature = "files")]
+mod meshed;
+#[cfg(feature = "files")]
+mod method;
+#[cfg(feature = "files")]
 mod mistake;
 pub mod numbers;
 #[cfg(feature = "files")]

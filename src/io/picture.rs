@@ -371,6 +371,42 @@ mod tests {
     }
 
     #[test]
+    fn the_words_at_a_peak_in_a_small_hole_do_not_cover_the_curve() {
+        let mut block = Sample::block(4);
+        // Half of a hole, its lower part, pressed all along.
+        let on_hole = |i: i32| {
+            let (sin, cos) = (std::f64::consts::PI * f64::from(i) / 24.0).sin_cos();
+            ContactSample {
+                position: [0.5 + 0.06 * cos, 0.5 - 0.06 * sin],
+                normal: [-cos, sin],
+                displacement: [0.0; 2],
+                gap: 0.0,
+                pressure: 0.5 + 0.5 * sin,
+            }
+        };
+        block.contact = vec![(0..=24).map(on_hole).collect()];
+        let svg = draw(&block);
+        let curve = svg.split("stroke-width=\"1.5\"").next().unwrap();
+        let curve = curve.rsplit("<path").next().unwrap().split(" d=\"").nth(1);
+        let numbers = curve.unwrap().split('"').next().unwrap();
+        let numbers: Vec<f64> = numbers
+            .split(|c: char| !(c.is_ascii_digit() || c == '.' || c == '-'))
+            .filter_map(|number| number.parse().ok())
+            .collect();
+        let peak = svg.split("font-weight=\"bold\">\n<rect").last().unwrap();
+        let [x, y, width, height] = ["x", "y", "width", "height"].map(|name| -> f64 {
+            let value = peak.split(&format!(" {name}=\"")).nth(1).unwrap();
+            value.split('"').next().unwrap().parse().unwrap()
+        });
+        assert!(numbers.len() > 20 && width > 40.0, "{numbers:?} {width}");
+        for place in numbers.chunks_exact(2) {
+            let inside =
+                (x..=x + width).contains(&place[0]) && (y..=y + height).contains(&place[1]);
+            assert!(!inside, "{place:?} in {:?}", [x, y, width, height]);
+        }
+    }
+
+    #[test]
     fn the_body_touches_the_obstacle_where_u_n_is_the_gap_at_any_stretch() {
         let mut sample = Sample::block(4);
         for s in sample.contact.iter_mut().flatten() {

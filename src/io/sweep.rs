@@ -1,6 +1,7 @@
 //! The command `signorini sweep`: one case, solved for every combination of the values that some of its keys are given, as
 //! a table for people and as CSV.
 
+use std::collections::VecDeque;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -95,6 +96,9 @@ impl From<WriteError> for SweepError {
     }
 }
 
+/// What the table says of a run that is still to come: of all that a sweep was stopped before.
+const NOT_SOLVED: &str = "not solved";
+
 /// The name of the file.
 pub const FILE: &str = "sweep.csv";
 
@@ -108,6 +112,8 @@ pub struct Sweep {
     pub keys: Vec<String>,
     /// The runs; the last key changes first.
     pub runs: Vec<Run>,
+    /// The values of the runs that are still to come.
+    pub to_come: VecDeque<Vec<String>>,
 }
 
 /// How many runs these axes make.
@@ -124,17 +130,18 @@ pub fn count(axes: &[Axis]) -> Result<usize, SweepError> {
 }
 
 /// Solves the case with this text (see [`Case::parse`]) for each combination of the axes' values, each from the solution of
-/// the one before where the nodes are the same, and calls `done` after each. Where `folders` is given, the files of run i (from 1) are written into its folder i.
+/// the one before where the nodes are the same, and calls `done` with what there is after each. Where `folders` is given, the
+/// files of run i (from 1) are written into its folder i.
 ///
 /// # Errors
-/// A mistake in the case or in one of the values, found before anything is solved; files that can't be written. A run that
-/// has no solution is no error but a [`Run`].
+/// A mistake in the case or in one of the values, found before anything is solved; files that can't be written; what `done`
+/// gives. A run that has no solution is no error but a [`Run`].
 pub fn run(
     file: &Path,
     text: &str,
     axes: &[Axis],
     folders: Option<&Path>,
-    mut done: impl FnMut(),
+    mut done: impl FnMut(&Sweep) -> Result<(), SweepError>,
 ) -> Result<Sweep, SweepError> {
     let count = count(axes)?;
     let read = |i| {
@@ -147,15 +154,18 @@ pub fn run(
     for i in 0..count {
         title = read(i)?.0.title;
     }
-    let mut runs = Vec::with_capacity(count);
+    let keys = axes.iter().map(|axis| axis.key.clone()).collect();
+    let to_come = (0..count).map(|i| combination(axes, i)).collect();
+    let mut sweep = Sweep { title, keys, runs: Vec::with_capacity(count), to_come };
     let mut last = None;
     for i in 0..count {
         let (case, values) = read(i)?;
         let folder = folders.map(|folder| folder.join((i + 1).to_string()));
-        runs.push(Run { values, outcome: solve(case, folder.as_deref(), &mut last)? });
-        done();
+        sweep.runs.push(Run { values, outcome: solve(case, folder.as_deref(), &mut last)? });
+        sweep.to_come.pop_front();
+        done(&sweep)?;
     }
-    Ok(Sweep { title, keys: axes.iter().map(|axis| axis.key.clone()).collect(), runs })
+    Ok(sweep)
 }
 
 /// The values of run `i`: its digits, the last axis first.
@@ -245,7 +255,11 @@ impl Sweep {
             };
             run.values.iter().cloned().chain(cells).chain([status]).collect()
         };
-        self.runs.iter().map(row).collect()
+        let empty = |values: &Vec<String>| {
+            let cells = self.columns().map(|_| String::new());
+            values.iter().cloned().chain(cells).chain([NOT_SOLVED.to_owned()]).collect()
+        };
+        self.runs.iter().map(row).chain(self.to_come.iter().map(empty)).collect()
     }
 
     /// The table for people: columns with four digits, aligned.
@@ -349,6 +363,24 @@ mod tests {
         assert_eq!(said, "--set makes 10201 runs; expected at most 10000");
         let said = count(&[axis("a=1"), axis("a=2")]).unwrap_err().to_string();
         assert_eq!(said, "--set a is there twice; expected each key once, with all its values");
+    }
+
+    #[test]
+    fn what_is_still_to_come_stands_in_the_table_as_not_solved() {
+        let to_come = [vec!["1e-3".to_owned()], vec!["1e-2".to_owned()]].into();
+        let sweep = Sweep {
+            title: String::new(),
+            keys: vec!["method.gamma0".to_owned()],
+            runs: Vec::new(),
+            to_come,
+        };
+        let csv = sweep.csv();
+        let lines: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
+        assert_eq!(lines.len(), 3);
+        for (line, gamma0) in lines[1..].iter().zip(["1e-3", "1e-2"]) {
+            assert_eq!(line.len(), lines[0].len());
+            assert_eq!((line[0], line[line.len() - 1]), (gamma0, "not solved"));
+        }
     }
 
     #[test]

@@ -9,7 +9,7 @@
 //! 1. kappa < 1, rounded up: (8) has exactly one solution, and A(v, v) >= (1 - kappa) a(v, v).
 //! 2. The residual r of (8) at u~ in [balls](crate::fem::ball), and any z that nearly solves A z = r, as the factor at hand
 //!    gives it: |r|_A* <= (z.A z)^{1/2} + |r - A z|_A*, where the last residual is again one in balls, and is turned into a
-//!    dual norm by [Korn's inequality](crate::fem::korn), crudely.
+//!    dual norm by [Korn's inequality](crate::fem::korn) at each node, crudely.
 //! 3. (C2): with rho = |r|_A*, |u~ - u^h|_a <= rho (1 - kappa)^{-1/2}, |gamma^{1/2}(lambda~ - lambda^h)| <= rho / 2.
 
 use std::collections::BTreeMap;
@@ -220,12 +220,12 @@ where
     let korn = Korn::new(&d.space, &d.problem.material, &d.constraints).ok_or(Unproved::NotHeld)?;
     let at = Evaluation::new(system, &lines, u, near, load)?;
     let r = free(system, &at.residual);
-    let rest = up((korn.sum_of_squares() / coercivity).sqrt());
+    let crude = crude_norms(system, &korn, coercivity);
     let rho = if r.iter().all(|&r| r == Ball::from(0)) {
         0.0
     } else {
         let negligible = SMALL * at.moved * coercivity.sqrt();
-        dual_norm(system, &lines, &factor.of(system)?, &r, rest, negligible)
+        dual_norm(system, &lines, &factor.of(system)?, &r, &crude, negligible)
     };
     let exact = up(rho / coercivity.sqrt());
     let radius = up(exact + at.moved);
@@ -381,13 +381,31 @@ where
     free(system, &forces)
 }
 
-/// |r|_A* at most, where |t|_A* <= `crude` |t|_2 for every t. What is `negligible` need not be known better.
+/// |t|_A* <= sum of these times |t_i|: k_i (1 - kappa)^{-1/2} with the factor k_i of the node of unknown i.
+fn crude_norms<E, const N: usize, const M: usize>(
+    system: &System<E, N, M>,
+    korn: &Korn,
+    coercivity: f64,
+) -> Vec<f64>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let mut crude = vec![0.0; system.numbering.count];
+    for (numbers, factor) in system.numbering.of.iter().zip(&korn.nodes) {
+        for number in numbers.iter().flatten() {
+            crude[*number] = up(factor / coercivity.sqrt());
+        }
+    }
+    crude
+}
+
+/// |r|_A* at most, where |t|_A* <= sum of `crude`_i |t_i| for every t. What is `negligible` need not be known better.
 fn dual_norm<E, const N: usize, const M: usize>(
     system: &System<E, N, M>,
     lines: &[OnEdge<Ball, N, M>],
     factor: &Tangent,
     r: &[Ball],
-    crude: f64,
+    crude: &[f64],
     negligible: f64,
 ) -> f64
 where
@@ -406,7 +424,7 @@ where
         let square = z.iter().zip(&az).fold(Ball::from(0), |sum, (&z, &az)| sum + z * az);
         let energy = root(square);
         left = r.iter().zip(&az).map(|(&r, &az)| r - az).collect();
-        let rest = up(crude * norm(&left));
+        let rest = weighted(&left, crude);
         let bound = up(energy + rest);
         if !(rest > (SMALL * energy).max(negligible)) {
             return bound.min(best);
@@ -420,15 +438,12 @@ where
     best
 }
 
-/// The Euclidean norm at most.
-fn norm(v: &[Ball]) -> f64 {
-    let scale = v.iter().map(|v| v.magnitude()).fold(0.0, larger);
-    if !(scale > 0.0 && scale.is_finite()) {
-        return if scale == 0.0 { 0.0 } else { f64::INFINITY };
-    }
-    let sum: f64 = v.iter().map(|v| (v.magnitude() / scale).powi(2)).sum();
-    // As many roundings as terms, and what is less than 2^-1000 of the largest.
-    scale * sum.sqrt() * (1.0 + f64::EPSILON * (v.len() + 16) as f64)
+/// The sum of the magnitudes, each times its weight, at most.
+fn weighted(v: &[Ball], weights: &[f64]) -> f64 {
+    let sum: f64 = v.iter().zip(weights).map(|(v, weight)| v.magnitude() * weight).sum();
+    // As many roundings as terms; a product may underflow.
+    let underflown = f64::MIN_POSITIVE * v.len() as f64;
+    sum * (1.0 + f64::EPSILON * (v.len() + 16) as f64) + underflown
 }
 
 /// (8) at u~, or near it.

@@ -403,6 +403,40 @@ fn a_signal_reaches_the_processes_of_the_engine_and_nothing_half_written_stays()
     }
 }
 
+#[test]
+fn a_sweep_that_is_stopped_leaves_the_table_of_what_it_has_solved() {
+    let folder = folder("sweep-signal");
+    let case = include_str!("../../cases/block.toml");
+    fs::write(folder.join("case.toml"), case).unwrap();
+    // 1,000 runs.
+    let loads: Vec<String> = (1..=100).map(|i| format!("[\"0\",\"-{i}e-4\"]")).collect();
+    let most: Vec<String> = (191..=200).map(|most| most.to_string()).collect();
+    let axes = [("load.body", loads), ("solver.max_iterations", most)]
+        .map(|(k, v)| format!("{k}={}", v.join(",")));
+    let arguments = ["sweep", "case.toml", "--set", &*axes[0], "--set", &*axes[1]];
+    let sweep = command(&folder, &arguments);
+    let child = with_default_signals(&sweep).stderr(Stdio::piped()).spawn().unwrap();
+    let table = folder.join("out/case/sweep.csv");
+    let start = Instant::now();
+    while !table.exists() {
+        assert!(start.elapsed() < Duration::from_secs(60), "there is no table");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(kill.unwrap().success());
+    let output = output(child);
+    assert_eq!(output.status.signal(), Some(2), "{}", text(&output.stderr));
+    assert_eq!(names(&folder.join("out/case")), ["sweep.csv"]);
+    let table = fs::read_to_string(table).unwrap();
+    let (head, rows) = table.split_once('\n').unwrap();
+    assert!(head.starts_with("load.body,solver.max_iterations,gamma0,"), "{head}");
+    let solved = rows.lines().take_while(|line| line.ends_with(",converged")).count();
+    let rest: Vec<&str> = rows.lines().skip(solved).collect();
+    assert!(solved > 0 && !rest.is_empty(), "{solved} solved, {} not", rest.len());
+    assert!(rest.iter().all(|line| line.ends_with(",not solved")), "{}", rest[0]);
+    assert_eq!(solved + rest.len(), 1000);
+}
+
 /// In `bytes` of address space.
 fn within(bytes: u64, folder: &Path, arguments: &str) -> Output {
     let script = format!("ulimit -v {}; exec \"$0\" {arguments}", bytes / 1024);

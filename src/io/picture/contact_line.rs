@@ -68,6 +68,12 @@ impl ContactLine {
         }
     }
 
+    /// The steps of the curve of the pressure.
+    pub(super) fn pressed_tips(&self) -> impl Iterator<Item = [Point; 2]> {
+        let step = |i: usize| [self.tip[i], self.tip[i + 1]];
+        self.pressed().into_iter().flat_map(move |range| (*range.start()..*range.end()).map(step))
+    }
+
     /// Where the pressure is positive, with the sample before and the one after.
     pub(super) fn pressed(&self) -> Vec<std::ops::RangeInclusive<usize>> {
         let mut ranges = Vec::new();

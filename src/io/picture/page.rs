@@ -45,19 +45,52 @@ pub(super) fn stroke(path: Path, colour: &str, width: f64) -> PathElement {
     shape(path).set("fill", "none").set("stroke", colour).set("stroke-width", width)
 }
 
-/// A text on a pale ground, so that it can be read over what is drawn below it. `anchor` is the part of it at `place`.
-pub(super) fn label(content: &str, place: Point, anchor: &str, size: f64) -> Group {
+/// An upright rectangle.
+pub(super) struct Ground {
+    low: Point,
+    size: Point,
+}
+
+impl Ground {
+    /// Some of the step from `a` to `b` lies in it.
+    pub(super) fn meets(&self, a: Point, b: Point) -> bool {
+        // The part of the step between the sides of both pairs.
+        let (mut from, mut to) = (0.0_f64, 1.0_f64);
+        for k in 0..2 {
+            let (low, high) = (self.low[k] - a[k], self.low[k] + self.size[k] - a[k]);
+            let step = b[k] - a[k];
+            if step == 0.0 {
+                if low > 0.0 || high < 0.0 {
+                    return false;
+                }
+            } else {
+                from = from.max((low / step).min(high / step));
+                to = to.min((low / step).max(high / step));
+            }
+        }
+        from <= to
+    }
+}
+
+/// Where a text lies. `anchor` is the part of it at `place`.
+pub(super) fn ground(content: &str, place: Point, anchor: &str, size: f64) -> Ground {
     let width = width_of(content, size);
     let left = match anchor {
         "start" => 0.0,
         "end" => width,
         _ => width / 2.0,
     };
+    Ground { low: [place[0] - left, place[1] - 0.85 * size], size: [width, 1.1 * size] }
+}
+
+/// A text on a pale ground, so that it can be read over what is drawn below it. `anchor` is the part of it at `place`.
+pub(super) fn label(content: &str, place: Point, anchor: &str, size: f64) -> Group {
+    let Ground { low: [x, y], size: [width, height] } = ground(content, place, anchor, size);
     let ground = Rectangle::new()
-        .set("x", rounded(place[0] - left))
-        .set("y", rounded(place[1] - 0.85 * size))
+        .set("x", rounded(x))
+        .set("y", rounded(y))
         .set("width", rounded(width))
-        .set("height", rounded(1.1 * size))
+        .set("height", rounded(height))
         .set("rx", 2)
         .set("fill", "white")
         .set("fill-opacity", 0.75);

@@ -3,7 +3,7 @@
 use svg::node::element::Group;
 
 use super::contact_line::ContactLine;
-use super::page::{RED, label, shape, short, stroke, width_of};
+use super::page::{RED, ground, label, shape, short, stroke, width_of};
 use super::path::{Path, Point, between, direction, distance, moved, places, thinned};
 use crate::io::numbers::ticks;
 
@@ -34,6 +34,9 @@ const AXIS_OFF: f64 = 12.0;
 
 /// How far its words are from the peak.
 const PEAK_OFF: f64 = 12.0;
+
+/// How often they are put half of that further away, where they would cover the curve.
+const MOST_MOVES: i32 = 40;
 
 fn peak_words(pressure: f64, unit: Option<&str>) -> String {
     let unit = unit.map_or(String::new(), |unit| format!(" {unit}"));
@@ -76,9 +79,20 @@ fn pressure_of(contact: &[&ContactLine], unit: Option<&str>) -> Option<Group> {
         }
     }
     let out = direction(peak_base, peak_tip).unwrap_or([0.0, 1.0]);
-    let [x, y] = moved(peak_tip, out, PEAK_OFF);
     let words = peak_words(highest.pressure[at], unit);
-    let label = label(&words, [x, y + 4.0], anchor(out), PEAK_SIZE)
+    // In a small hole the curve is on both sides of its peak, and the words are wider than the room between: they go on, past
+    // the curve.
+    let place = |off: f64| {
+        let [x, y] = moved(peak_tip, out, off);
+        [x, y + 4.0]
+    };
+    let free = |off: &f64| {
+        let ground = ground(&words, place(*off), anchor(out), PEAK_SIZE);
+        let mut steps = contact.iter().flat_map(|line| line.pressed_tips());
+        !steps.any(|[a, b]| ground.meets(a, b))
+    };
+    let mut offs = (0..MOST_MOVES).map(|i| PEAK_OFF + f64::from(i) * PEAK_OFF / 2.0);
+    let label = label(&words, place(offs.find(free).unwrap_or(PEAK_OFF)), anchor(out), PEAK_SIZE)
         .set("font-weight", "bold")
         .set("fill", RED);
     let group = Group::new()
