@@ -480,14 +480,15 @@ where
     Ok(done.map_err(text)?.0.residuals)
 }
 
-/// The start of the routes rests on how stiff contact is, to within a factor by the power method, each from vectors of its own.
-const START: f64 = 0.02;
-
 /// A residual this small is near the end, where rounding takes part.
 const END: f64 = 1e-7;
 
-/// Both routes, and that in twofold numbers, have the same residuals after each step, those of the first `scale` times; and none
-/// goes on for more than two steps after the end.
+/// The condensed route knows the compliance of the body at its edges, by which steps are linearised: it may take this many steps
+/// more than the assembled one, which knows a part of it, and mostly takes fewer.
+const MORE: usize = 2;
+
+/// The assembled route has in twofold numbers `scale` times the residuals that it has in doubles, after each step; the condensed
+/// one needs no more steps than that, but for [`MORE`]; and none goes on for more than two steps after the end.
 fn same_steps<E, const N: usize, const M: usize>(
     problem: &Problem,
     scale: f64,
@@ -498,23 +499,27 @@ where
     let d = discretize::<E, N, M>(problem, &Method::default()).map_err(text)?;
     let system = System::new(&d).map_err(text)?;
     let assembled = history(&system, RouteName::Assembled)?;
+    let [condensed, twofold] =
+        [RouteName::Condensed, RouteName::Twofold].map(|name| history(&system, name));
+    let (condensed, twofold) = (condensed?, twofold?);
     let mut compared = 0;
-    for (name, near) in [(RouteName::Condensed, START), (RouteName::Twofold, 1e-6)] {
-        let other = history(&system, name)?;
-        // The first residual of the condensed route is that of the lift.
-        for (k, (a, b)) in assembled.iter().zip(&other).enumerate().skip(1) {
-            if a.max(*b) > END {
-                compared += 1;
-                if !((a - scale * b).abs() <= near * a) {
-                    return Err(format!("{name:?}, step {k}: {b:e}, assembled {a:e}"));
-                }
+    for (k, (a, b)) in assembled.iter().zip(&twofold).enumerate() {
+        if a.max(*b) > END {
+            compared += 1;
+            if !((a - scale * b).abs() <= 1e-6 * a) {
+                return Err(format!("step {k}: {b:e} in twofold numbers, {a:e} in doubles"));
             }
         }
-        let after = |h: &[f64]| h.iter().rev().take_while(|r| **r <= END).count();
-        let long = [&assembled, &other].into_iter().find(|h| after(h) > MOST_AFTER);
-        if let Some(long) = long {
-            return Err(format!("{name:?}: {long:?} goes on after the end"));
-        }
+    }
+    let before = |h: &[f64]| h.iter().take_while(|r| **r > END).count();
+    let [many, few] = [&assembled, &condensed].map(|h| before(h));
+    if few > many + MORE {
+        return Err(format!("{few} steps of the condensed route, {many} of the assembled one"));
+    }
+    let after = |h: &[f64]| h.iter().rev().take_while(|r| **r <= END).count();
+    let long = [&assembled, &condensed, &twofold].into_iter().find(|h| after(h) > MOST_AFTER);
+    if let Some(long) = long {
+        return Err(format!("{long:?} goes on after the end"));
     }
     Ok(compared)
 }
@@ -535,8 +540,8 @@ fn steps(scale: f64) -> Outcome {
     Ok(format!("{bodies} bodies, P1 and P2, {} residuals", count.get()))
 }
 
-/// Row 19: the routes take the same steps.
-pub fn the_routes_take_the_same_steps() -> Outcome {
+/// Row 19: the routes take the same steps, or fewer.
+pub fn the_routes_take_the_same_steps_or_fewer() -> Outcome {
     steps(1.0)
 }
 
