@@ -22,6 +22,7 @@ pub mod merge;
 pub mod mesh;
 pub mod moments;
 pub mod obstacle;
+mod own_units;
 pub mod pieces;
 pub mod precise;
 pub mod problem;

@@ -1,5 +1,4 @@
-//! Units don't matter: a problem in units of its own, powers of two times those of its case, so that all bodies of one shape
-//! are solved with the same numbers, and multiplying by them rounds nothing.
+//! Units that are powers of two times others: multiplying by them rounds nothing.
 //!
 //! Three units are free: of lengths, l; of moduli, e; and of displacements, d, for (8) is positively homogeneous in loads,
 //! gaps and prescribed displacements. The others follow from them:
@@ -13,14 +12,6 @@
 //! | moment | e d l |
 //! | energy | e d^2 |
 //! | gamma0 | 1 / e |
-
-use std::collections::BTreeMap;
-use std::sync::Arc;
-
-use super::function::{Function, SharedFunction};
-use super::mesh::Mesh;
-use super::problem::{Condition, PointSupport, Problem, SurfaceForce};
-use crate::kernel::Material;
 
 /// Units, by their binary logarithms.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -40,77 +31,16 @@ pub fn scaled(x: f64, exponent: i32) -> f64 {
 }
 
 /// The binary logarithm of |x|, rounded down; `None` of zero and of what is not finite.
-fn exponent(x: f64) -> Option<i32> {
+pub(super) fn exponent(x: f64) -> Option<i32> {
     let biased = |x: f64| (x.to_bits() >> 52 & 0x7ff) as i32 - 1023;
     let known = x != 0.0 && x.is_finite();
     known.then(|| if x.is_normal() { biased(x) } else { biased(x * 2.0_f64.powi(60)) - 60 })
 }
 
-/// Loads on the body are looked at on so many triangles.
-const SAMPLES: usize = 4096;
-
 impl Units {
-    /// The units in which a problem's body is between 1 and 2 long, its stiffest material has a modulus between 1 and 2, and
-    /// the loads and prescribed displacements, or, where there are none, the gaps, move it by about 1.
-    pub fn of(problem: &Problem) -> Units {
-        let mesh = &problem.mesh;
-        let extent = |c: usize| {
-            let coordinates = || mesh.vertices().iter().map(|v| v[c]);
-            let low = coordinates().fold(f64::INFINITY, f64::min);
-            coordinates().fold(f64::NEG_INFINITY, f64::max) - low
-        };
-        let length = exponent(f64::max(extent(0), extent(1))).unwrap_or(0);
-        let stiffness = problem.material.distinct().iter().map(Material::normal_stiffness);
-        let modulus = stiffness.fold(0.0, f64::max);
-        let modulus = exponent(modulus).unwrap_or(0);
-        let units = Units { length, modulus, displacement: 0 };
-        let displacement = units.of_loads(problem).or_else(|| of_gaps(problem)).unwrap_or(length);
-        Units { displacement, ..units }
-    }
-
-    /// The binary logarithm of the largest displacement that is prescribed or that a load would cause in a body like this.
-    fn of_loads(self, problem: &Problem) -> Option<i32> {
-        let mesh = &problem.mesh;
-        let all = 0..mesh.triangles().len();
-        let on_area = |force: &[SharedFunction; 2], triangles: &mut dyn Iterator<Item = usize>| {
-            let places = triangles.map(|t| mesh.vertices()[mesh.triangles()[t][0]]);
-            let values = places.flat_map(|x| force.each_ref().map(|f| f.at(x)));
-            Some(exponent(largest(values))? - self.force_per_area())
-        };
-        let step = all.len() / SAMPLES + 1;
-        let mut sizes = vec![on_area(&problem.body_force, &mut all.step_by(step))];
-        for SurfaceForce { triangles, force, .. } in &problem.surface_forces {
-            let step = triangles.len() / SAMPLES + 1;
-            sizes.push(on_area(force, &mut triangles.iter().copied().step_by(step)));
-        }
-        for (name, condition) in &problem.conditions {
-            let stress = |f: &SharedFunction| {
-                let values = along(mesh, name).map(|(x, n)| f.on_boundary(x, n));
-                Some(exponent(largest(values))? - self.stress())
-            };
-            let displacement =
-                |f: &SharedFunction| exponent(largest(along(mesh, name).map(|(x, _)| f.at(x))));
-            match condition {
-                Condition::Displacement(u) => {
-                    sizes.extend(u.iter().flatten().map(displacement));
-                }
-                Condition::Traction(t) => sizes.extend(t.iter().map(stress)),
-                Condition::Pressure(p) => sizes.push(stress(p)),
-                Condition::Mixed { displacement: u, traction } => {
-                    sizes.extend(u.iter().flatten().map(displacement));
-                    sizes.extend(traction.iter().map(stress));
-                }
-                Condition::Support { normal, tangential } => {
-                    sizes.extend([normal, tangential].into_iter().flatten().map(displacement));
-                }
-                Condition::Contact { .. } | Condition::Obstacle(..) => {}
-            }
-        }
-        for PointSupport { vertex, displacement, .. } in &problem.points {
-            let at = |f: &SharedFunction| exponent(f.at(*mesh.vertices().get(*vertex)?));
-            sizes.extend(displacement.iter().flatten().map(at));
-        }
-        sizes.into_iter().flatten().max()
+    /// Those with these binary logarithms of the units of lengths, moduli and displacements.
+    pub(super) fn new(length: i32, modulus: i32, displacement: i32) -> Units {
+        Units { length, modulus, displacement }
     }
 
     /// Of lengths and places.
@@ -161,109 +91,6 @@ impl Units {
     /// Of gamma0.
     pub fn gamma0(self) -> i32 {
         -self.modulus
-    }
-}
-
-/// The places where the edges of a boundary begin, with their normals.
-fn along(mesh: &Mesh, name: &str) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
-    let edges = mesh.edges_of(name).unwrap_or_default();
-    edges
-        .iter()
-        .map(|&edge| (mesh.vertices()[mesh.ends(edge)[0]], mesh.length_and_normal(edge).1.into()))
-}
-
-/// The largest magnitude of those that are finite.
-fn largest(values: impl Iterator<Item = f64>) -> f64 {
-    values.filter(|v| v.is_finite()).fold(0.0, |most, v| most.max(v.abs()))
-}
-
-/// The binary logarithm of the largest gap.
-fn of_gaps(problem: &Problem) -> Option<i32> {
-    let gaps = problem.conditions.iter().flat_map(|(name, condition)| {
-        along(&problem.mesh, name).map(move |(x, _)| match condition {
-            Condition::Contact { gap } => gap.at(x),
-            Condition::Obstacle(_, obstacle) => {
-                obstacle.closest(x, String::new).map_or(0.0, |closest| closest.gap)
-            }
-            _ => 0.0,
-        })
-    });
-    exponent(largest(gaps))
-}
-
-/// A function in other units: of places in units of 2^length, with values in units of 2^value.
-struct Seen {
-    function: SharedFunction,
-    length: i32,
-    value: i32,
-}
-
-impl Function for Seen {
-    fn at(&self, x: [f64; 2]) -> f64 {
-        scaled(self.function.at(x.map(|c| scaled(c, self.length))), -self.value)
-    }
-
-    fn on_boundary(&self, x: [f64; 2], n: [f64; 2]) -> f64 {
-        scaled(self.function.on_boundary(x.map(|c| scaled(c, self.length)), n), -self.value)
-    }
-
-    fn degree(&self) -> Option<u32> {
-        self.function.degree()
-    }
-
-    fn kink(&self) -> Option<f64> {
-        self.function.kink().map(|c| scaled(c, -self.length))
-    }
-}
-
-impl Problem {
-    /// The same problem in these units.
-    #[must_use]
-    pub fn in_units(&self, units: Units) -> Problem {
-        let seen = |f: &SharedFunction, value: i32| -> SharedFunction {
-            Arc::new(Seen { function: Arc::clone(f), length: units.length, value })
-        };
-        let moved = |f: &SharedFunction| seen(f, units.displacement);
-        let components =
-            |u: &[Option<SharedFunction>; 2]| u.each_ref().map(|u| u.as_ref().map(moved));
-        let both = |f: &[SharedFunction; 2], value: i32| f.each_ref().map(|f| seen(f, value));
-        let condition = |condition: &Condition| match condition {
-            Condition::Displacement(u) => Condition::Displacement(components(u)),
-            Condition::Traction(t) => Condition::Traction(both(t, units.stress())),
-            Condition::Pressure(p) => Condition::Pressure(seen(p, units.stress())),
-            Condition::Mixed { displacement, traction } => Condition::Mixed {
-                displacement: components(displacement),
-                traction: both(traction, units.stress()),
-            },
-            Condition::Support { normal, tangential } => Condition::Support {
-                normal: normal.as_ref().map(moved),
-                tangential: tangential.as_ref().map(moved),
-            },
-            Condition::Contact { gap } => Condition::Contact { gap: moved(gap) },
-            Condition::Obstacle(name, obstacle) => {
-                Condition::Obstacle(name.clone(), obstacle.seen(units.length, units.displacement))
-            }
-        };
-        let surface_force = |f: &SurfaceForce| SurfaceForce {
-            surface: f.surface.clone(),
-            triangles: f.triangles.clone(),
-            force: both(&f.force, units.force_per_area()),
-        };
-        let point = |p: &PointSupport| PointSupport {
-            name: p.name.clone(),
-            vertex: p.vertex,
-            displacement: components(&p.displacement),
-        };
-        let conditions = self.conditions.iter().map(|(name, c)| (name.clone(), condition(c)));
-        let modulus = |m: &Material<f64>| m.map(|m| scaled(m, -units.modulus));
-        Problem {
-            mesh: self.mesh.scaled(-units.length),
-            material: self.material.map(modulus),
-            body_force: both(&self.body_force, units.force_per_area()),
-            surface_forces: self.surface_forces.iter().map(surface_force).collect(),
-            conditions: conditions.collect::<BTreeMap<_, _>>(),
-            points: self.points.iter().map(point).collect(),
-        }
     }
 }
 

@@ -317,7 +317,7 @@ where
 {
     let mut watch = Stopwatch::start();
     course.enters(Phase::Assemble);
-    let units = Units::of(problem);
+    let units = problem.own_units();
     let own = problem.in_units(units);
     let d = discretize_in::<E, N, M>(units, &own, problem, method)?;
     let course = course.in_units(units);
@@ -432,7 +432,7 @@ fn outline<E, const N: usize, const M: usize>(
 where
     E: ExactEdge<f64, N, M>,
 {
-    let units = Units::of(problem);
+    let units = problem.own_units();
     let own = problem.in_units(units);
     units::outline(units, Outline::new(&discretize_in::<E, N, M>(units, &own, problem, method)?))
 }
