@@ -22,7 +22,7 @@
 //! tractions and f are in equilibrium and the mean stress is the one of `Composite::new`.
 //!
 //! **A load f that is affine**, with the values m_f + w_a at the vertices, asks for more, quadratic stresses without tractions
-//! ([`Composite::bent`]): E_i (x) E_i l_j l_k has the divergence E_i (l_j - l_k), and on part i, in its own coordinates mu (0 at
+//! (`Composite::bent`): E_i (x) E_i l_j l_k has the divergence E_i (l_j - l_k), and on part i, in its own coordinates mu (0 at
 //! m),
 //!
 //! mu_0 ((mu_k - mu_j) (1/2 E_i (x) E_i - 3/4 t_i (x) t_i) + 1/4 (mu_j + mu_k) sym(E_i (x) t_i))

@@ -14,7 +14,7 @@
 //! search finds where it vanishes, to a hundredth of its value at 0, and Armijo's rule is asked of what it finds.
 //!
 //! **The linearisation.** From a start without contact, a step is linearised where contact would go on each edge by itself
-//! ([`super::relaxation`]), if that is a way downhill. After a step like this that was cut short, or that left more than half of
+//! (`relaxation`), if that is a way downhill. After a step like this that was cut short, or that left more than half of
 //! the residual, the next one is Newton's own: so Newton's method ends as if all of them were, or ends sooner.
 //!
 //! **The start.** A body that bends, started as if without contact, lets go of about one edge a step. So the springs are soft
