@@ -228,6 +228,7 @@ fn next_step<const M: usize>(
 ) -> Result<(Option<Derivatives<M>>, Step), SolveError> {
     if let Some(forces) = forces {
         let model = relaxed(edges, body, forces, stiffness);
+        // What hinders this step hinders Newton's own, which says so.
         if let Ok(mut step) = body.step(&model) {
             let off = at.gradient.iter().zip(&model.gradient).map(|(g, m)| g - m);
             step.slope += off.zip(&step.dy).map(|(off, dy)| off * dy).sum::<f64>();

@@ -47,8 +47,8 @@ const ENOUGH: usize = 30;
 const PER_ENTRY: f64 = 12.0;
 
 /// Multiplications of a dense factorisation that cost as much as one of the sparse one: only edges in contact take part, about half
-/// of them and so an eighth of the work, and the rest runs at twice the speed or more. With it the route that was taken took at
-/// most 1.1 times as long as the other on some thirty strips, beams, squares and graded squares.
+/// of them and so an eighth of the work, and the rest runs at twice the speed or more. Of some thirty strips, beams, squares and
+/// graded squares that both routes were timed on, it picks the faster one or one that took 1.1 times as long.
 const DENSE: f64 = 16.0;
 
 /// What each route is predicted to take.
