@@ -130,7 +130,7 @@ pub fn solved(r: &Results, files: &[PathBuf]) -> String {
         lines.line(
             "balance",
             format!(
-                "a(u,u) = loads {} + supports {} + contact {}, up to {:.0e}",
+                "a(u,u) = loads {} + supports {} + contact {}{moment}, relative imbalance {:.0e}",
                 short(balance.loads),
                 short(balance.supports),
                 short(balance.contact),

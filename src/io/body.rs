@@ -171,9 +171,10 @@ fn read_material(table: &Table, plane: Plane) -> Result<(Material<f64>, Material
             let least = quote::number(-2.0 / 3.0 * mu);
             let expected = format!("a number above {least}, for 3 lambda + 2 mu > 0");
             let lambda = lambda.number_that(|l| 3.0 * l + 2.0 * mu > 0.0, &expected)?;
-            let young = mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu);
-            let poisson = lambda / (2.0 * (lambda + mu));
-            (Material::lame(lambda, mu, plane), [young, poisson])
+            // E = mu (3 lambda + 2 mu) / (lambda + mu) and nu = lambda / (2 (lambda + mu)), so that nothing overflows that
+            // need not.
+            let ratio = lambda / (lambda + mu);
+            (Material::lame(lambda, mu, plane), [mu * (2.0 + ratio), ratio / 2.0])
         }
         [None, None, Some(young), Some(poisson)] => {
             let young = young.number_that(|e| e > 0.0, "a positive number")?;
@@ -191,7 +192,7 @@ fn read_material(table: &Table, plane: Plane) -> Result<(Material<f64>, Material
         Err(table.wrong(CaseMistake::Combination {
             name: table.name().to_owned(),
             found: format!("moduli with lambda + 2 mu = {} in the plane", quote::number(stiffness)),
-            expected: "a positive finite sum".to_owned(),
+            expected: "a positive finite sum; choose other units".to_owned(),
         }))
     }
 }

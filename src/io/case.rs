@@ -435,6 +435,24 @@ mod tests {
     }
 
     #[test]
+    fn the_echo_of_lame_coefficients_does_not_overflow_where_the_moduli_do_not() {
+        for [lambda, mu, young, poisson] in [
+            [1.0, 1.0, 2.5, 0.25],
+            [1.0, 1e300, 2e300, 5e-301],
+            [1e308, 1e300, 3e300, 0.5],
+            [-0.5, 1.0, 1.0, -0.5],
+        ] {
+            let material = format!("{{ lambda = {lambda:e}, mu = {mu:e} }}");
+            let text = SMALL.replace("{ young = 2.5, poisson = 0.25 }", &material);
+            let case = read(&text).unwrap_or_else(|e| panic!("{e}"));
+            let echo = &case.materials[0];
+            // The three roundings of the quotient and of the factor of mu.
+            approx::assert_relative_eq!(echo.young, young, max_relative = 4.0 * f64::EPSILON);
+            approx::assert_relative_eq!(echo.poisson, poisson, max_relative = 4.0 * f64::EPSILON);
+        }
+    }
+
+    #[test]
     fn a_target_is_a_share_in_percent_and_beside_degree_1_only() {
         let with = |adapt: &str| read(&format!("{SMALL}\n{adapt}")).map(|case| case.adapt);
         let target = with("adapt.target = \"0.5 %\"").unwrap_or_else(|e| panic!("{e}"));

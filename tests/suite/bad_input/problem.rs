@@ -50,7 +50,14 @@ fn materials() {
             ),
             (
                 ["lambda = 1.0\nmu = 1.0", "young = 1e308\npoisson = 0.4999999"],
-                "bad.toml:4: [material]: found moduli with lambda + 2 mu = inf in the plane; expected a positive finite sum",
+                "bad.toml:4: [material]: found moduli with lambda + 2 mu = inf in the plane; expected a positive finite sum; choose other units",
+            ),
+            (
+                [
+                    "lambda = 1.0\nmu = 1.0\nplane = \"strain\"",
+                    "lambda = 1e10\nmu = 1e300\nplane = \"stress\"",
+                ],
+                "bad.toml:4: [material]: found moduli with lambda + 2 mu = inf in the plane; expected a positive finite sum; choose other units",
             ),
             (
                 ["plane = \"strain\"", "plane = \"stain\""],
