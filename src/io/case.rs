@@ -439,7 +439,7 @@ mod tests {
         for [lambda, mu, young, poisson] in [
             [1.0, 1.0, 2.5, 0.25],
             [1.0, 1e300, 2e300, 5e-301],
-            [1e308, 1e300, 3e300, 0.5],
+            [1e308, 1e290, 3e290, 0.5],
             [-0.5, 1.0, 1.0, -0.5],
         ] {
             let material = format!("{{ lambda = {lambda:e}, mu = {mu:e} }}");
