@@ -19,7 +19,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::build::{Boundary, Parts, place, rule};
+use super::build::{Boundary, Parts, bulge_of, place, rule};
 use super::proof::{Certificate, Piece, Role};
 use crate::fem::mesh::length;
 use crate::fem::pieces::Rule;
@@ -175,7 +175,8 @@ pub(super) struct Oscillation {
 }
 
 impl Oscillation {
-    pub fn new(parts: &Parts) -> Self {
+    /// `quadratic` tells whether v is, so that it follows data of degree 2.
+    pub fn new(parts: &Parts, quadratic: bool) -> Self {
         let (problem, turning) = (parts.problem, parts.turning());
         let mut inexact = Vec::new();
         if !within(&problem.body_force, 1) {
@@ -186,10 +187,11 @@ impl Oscillation {
         }
         for (name, condition) in &problem.conditions {
             let affine = |f: &SharedFunction| is_within(f, 1);
+            let followed = |f: &SharedFunction| is_within(f, if quadratic { 2 } else { 1 });
             let (what, exact) = match condition {
-                Condition::Displacement(u) => ("displacement", u.iter().flatten().all(affine)),
+                Condition::Displacement(u) => ("displacement", u.iter().flatten().all(followed)),
                 Condition::Mixed { displacement, .. } => {
-                    ("displacement", displacement.iter().flatten().all(affine))
+                    ("displacement", displacement.iter().flatten().all(followed))
                 }
                 Condition::Support { normal, tangential } => {
                     ("displacement", [normal, tangential].into_iter().flatten().all(affine))
@@ -197,13 +199,17 @@ impl Oscillation {
                 Condition::Traction(traction) => ("traction", within(traction, 1)),
                 Condition::Pressure(p) => ("pressure", affine(p)),
                 Condition::Contact { gap } => {
-                    ("gap", affine(gap) || turning.contains(name.as_str()))
+                    ("gap", followed(gap) || turning.contains(name.as_str()))
                 }
                 // A plane's distance is affine; other distances turn.
                 Condition::Obstacle(..) => continue,
             };
             if !exact {
-                inexact.push(format!("the {what} of '{name}' is not known to be affine"));
+                let class = match what {
+                    "displacement" | "gap" if quadratic => "quadratic",
+                    _ => "affine",
+                };
+                inexact.push(format!("the {what} of '{name}' is not known to be {class}"));
             }
         }
         let measured = (!inexact.is_empty())
@@ -211,8 +217,9 @@ impl Oscillation {
         let named = (!turning.is_empty()).then(|| {
             let names: Vec<String> = turning.iter().map(|name| format!("'{name}'")).collect();
             format!(
-                "the problem that is bounded has the polygon of the mesh, and on {} a direction and a gap that are affine between its vertices",
-                names.join(", ")
+                "the problem that is bounded has the polygon of the mesh, and on {} a direction and a gap that are {} between its vertices",
+                names.join(", "),
+                if quadratic { "affine and quadratic" } else { "affine" }
             )
         });
         let reasons: Vec<String> = measured.into_iter().chain(named).collect();
@@ -231,7 +238,7 @@ impl Oscillation {
         if self.reason.is_none() {
             return;
         }
-        self.lifts = lifts(parts);
+        self.lifts = lifts(parts, certificate.curved.is_some());
         self.lift = self.lifts.iter().map(|z| z * z).sum::<f64>().sqrt();
         let pieces: Vec<f64> = certificate
             .pieces
@@ -310,7 +317,7 @@ fn loads(parts: &Parts, data: &Data, certificate: &Certificate, piece: &Piece, t
 }
 
 /// |z|_a of what the displacement and the gap ask for beyond v, on each triangle of the mesh.
-fn lifts(parts: &Parts) -> Vec<f64> {
+fn lifts(parts: &Parts, quadratic: bool) -> Vec<f64> {
     let mesh = parts.mesh;
     let mut lifts = vec![0.0; mesh.triangles().len()];
     let turning = parts.turning();
@@ -321,23 +328,24 @@ fn lifts(parts: &Parts) -> Vec<f64> {
             let (_, normal) = mesh.length_and_normal(edge);
             let between = |s: f64, value: [f64; 2]| (1.0 - s) * value[0] + s * value[1];
             let at = |s: f64| [0, 1].map(|c| between(s, [ends[0][c], ends[1][c]]));
+            // What v follows: f at the ends and, if it is quadratic, in the middle.
+            let lacks = move |f: &SharedFunction, s: f64| {
+                let bulge = if quadratic { bulge_of(f, ends) } else { 0.0 };
+                f.at(at(s)) - between(s, ends.map(|x| f.at(x))) - 4.0 * s * (1.0 - s) * bulge
+            };
+            let is_followed = |f: &SharedFunction| is_within(f, if quadratic { 2 } else { 1 });
             let lacking: Box<dyn Fn(f64) -> [f64; 2]> = match condition {
                 Condition::Displacement(functions)
                 | Condition::Mixed { displacement: functions, .. } => Box::new(move |s| {
                     [0, 1].map(|c| match &functions[c] {
-                        Some(f) if !is_within(f, 1) => {
-                            f.at(at(s)) - between(s, ends.map(|x| f.at(x)))
-                        }
+                        Some(f) if !is_followed(f) => lacks(f, s),
                         _ => 0.0,
                     })
                 }),
                 Condition::Contact { gap }
-                    if !is_within(gap, 1) && !turning.contains(name.as_str()) =>
+                    if !is_followed(gap) && !turning.contains(name.as_str()) =>
                 {
-                    Box::new(move |s| {
-                        let lacking = gap.at(at(s)) - between(s, ends.map(|x| gap.at(x)));
-                        (normal * lacking).into()
-                    })
+                    Box::new(move |s| (normal * lacks(gap, s)).into())
                 }
                 _ => continue,
             };

@@ -190,7 +190,7 @@ fn what_has_no_certificate_is_refused_with_the_reason() {
     };
     let of_degree_2 = Method { degree: Degree::Two, ..Method::default() };
     let error = refused(two_materials(), &of_degree_2);
-    assert_eq!(error, AdaptError::Certify(CertifyError::Degree));
+    assert_eq!(error, AdaptError::Degree);
     let mut pointed = two_materials();
     let displacement = [Some(constant(0.0)), None];
     pointed.points.push(PointSupport { name: "foot".to_owned(), vertex: 0, displacement });

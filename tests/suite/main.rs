@@ -4,6 +4,7 @@
 mod common;
 
 mod adapt;
+mod zz;
 mod assembled;
 mod bad_input;
 mod bodies;

@@ -200,7 +200,15 @@ impl Draw {
                 oscillation: sixteenth(self.oscillation),
             });
         }
-        Certificate { vertices, cuts: Vec::new(), displacement, prescribed, pieces, edges }
+        Certificate {
+            vertices,
+            cuts: Vec::new(),
+            displacement,
+            curved: None,
+            prescribed,
+            pieces,
+            edges,
+        }
     }
 
     /// The same with every other inner edge named from its other side.
