@@ -106,10 +106,9 @@ impl AdaptError {
     pub fn is_wrong_case(&self) -> bool {
         match self {
             AdaptError::Solve { error, .. } => error.is_wrong_case(),
-            AdaptError::Certify(error) => matches!(
-                error,
-                CertifyError::Data(_) | CertifyError::Unsupported(_)
-            ),
+            AdaptError::Certify(error) => {
+                matches!(error, CertifyError::Data(_) | CertifyError::Unsupported(_))
+            }
             AdaptError::Degree | AdaptError::Curved { .. } => true,
             AdaptError::Mesh(_) | AdaptError::AtRest => false,
         }

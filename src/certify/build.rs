@@ -17,7 +17,7 @@
 //! A triangle whose contact edge holds the end of contact is cut there, so that lambda^h is affine on the edges. For P2 it is
 //! quadratic, and the affine pressure with its force and its centroid would be a tension at one end where the centroid
 //! is not in the middle third: then it acts on three times the way to the centroid only, and the triangle is cut there
-//! ([`Profile`]). Force and moment are those of lambda^h in any case. Where n~ turns along an edge, tau n is affine along
+//! ([`Profile`]). Force and moment are those of lambda^h, unless that way is too short to cut a triangle there. Where n~ turns along an edge, tau n is affine along
 //! it only if the pressure is constant: then it is the mean of lambda^h.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -169,9 +169,9 @@ impl Profile {
         let centroid = if turned { m[0] } else { m[1] } / force;
         let end = end.map_or(1.0, |end| if turned { 1.0 - end } else { end });
         let reach = match end.min(3.0 * centroid) {
-            x if x <= 1.0 - NEAR_THE_END => x.max(NEAR_THE_END),
-            // Half of the way is the least that is allowed.
-            _ if 3.0 * centroid < 1.0 => 1.0 - 64.0 * NEAR_THE_END,
+            x if x <= 1.0 - LEAST_PART => x.max(LEAST_PART),
+            // Three halves of the way would be enough.
+            _ if 3.0 * centroid < 1.0 => 1.0 - LEAST_PART,
             _ => 1.0,
         };
         let place = (centroid / reach).clamp(1.0 / 3.0, 2.0 / 3.0);
@@ -217,8 +217,7 @@ impl Contact {
         let sigma_n = edge.sigma_n(u);
         let excess = Vector2::from([0, 1].map(|c| {
             let stress = integral_of_product(sigma_n, directions.map(|d| d[c]));
-            -(positive[0] * directions[0][c] + positive[1] * directions[1][c])
-                - edge.gamma * stress
+            -(positive[0] * directions[0][c] + positive[1] * directions[1][c]) - edge.gamma * stress
         }));
         let gap = [edge.gap[0], edge.gap[1]];
         let turns = directions[0] != directions[1];
@@ -320,12 +319,10 @@ impl<'a> Parts<'a> {
             // The names were found when the problem was discretised.
             for &edge in mesh.edges_of(name).unwrap_or_default() {
                 let what = match condition {
-                    Condition::Displacement(functions) => {
-                        Boundary::Held(
-                            [functions[0].is_some(), functions[1].is_some()],
-                            functions.each_ref().map(Option::as_ref),
-                        )
-                    }
+                    Condition::Displacement(functions) => Boundary::Held(
+                        [functions[0].is_some(), functions[1].is_some()],
+                        functions.each_ref().map(Option::as_ref),
+                    ),
                     Condition::Mixed { displacement, traction } => {
                         let held = [0, 1].map(|c| displacement[c].is_some());
                         let vanishes = |c: usize| {
@@ -470,7 +467,8 @@ pub(super) fn admissible(parts: &Parts, u: &Field) -> Field {
         for edge in &parts.contact {
             let BoundaryEdge { triangle, local } = edge.edge;
             let bulge = &mut bulges[parts.mesh.triangle_edges()[triangle][local]];
-            let at_ends = parts.mesh.ends(edge.edge).map(|vertex| Vector2::from(field.vertices[vertex]));
+            let at_ends =
+                parts.mesh.ends(edge.edge).map(|vertex| Vector2::from(field.vertices[vertex]));
             push_between(edge, at_ends, bulge, [reach, size]);
         }
     }
@@ -479,7 +477,12 @@ pub(super) fn admissible(parts: &Parts, u: &Field) -> Field {
 
 /// Makes the Bernstein coefficients of v . d - g between the ends of an edge of Gamma_C negative, by the bulge of v. The body
 /// reaches as far out as `reach` and v is at most `size`.
-fn push_between(edge: &Contact, v: [Vector2<f64>; 2], bulge: &mut [f64; 2], [reach, size]: [f64; 2]) {
+fn push_between(
+    edge: &Contact,
+    v: [Vector2<f64>; 2],
+    bulge: &mut [f64; 2],
+    [reach, size]: [f64; 2],
+) {
     let ([d, e], [g, h]) = (edge.directions, edge.gap);
     let (mean, own) = ((d + e) / 2.0, Vector2::from(*bulge));
     let middle = (v[0] + v[1]) / 2.0 + own * 2.0;
@@ -639,6 +642,10 @@ pub(super) fn build(parts: &Parts, u: &Field, v: &Field) -> Built {
 
 /// Contact that ends this near an end of its edge, in units of the edge, leaves it whole: the triangles would be slivers.
 const NEAR_THE_END: f64 = 1e-3;
+
+/// The least part of an edge that is cut off where lambda^h is not affine: a sliver bounds badly, and the force of what is
+/// shorter has so little moment that the balance of the triangles may carry it.
+const LEAST_PART: f64 = 0.15;
 
 /// A triangle of the mesh or a part of it.
 struct Part {

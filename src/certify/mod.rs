@@ -9,10 +9,12 @@
 //! | `build` | v and tau from the discrete solution |
 //! | `sweeps` | a better tau |
 //! | `oscillation` | data outside the exact class |
+//! | `bubbles` | stresses for what affine loads lack |
 //! | `adapt` | meshes that are refined until the bound meets a target |
 
 pub mod adapt;
 mod balance;
+mod bubbles;
 mod build;
 mod oscillation;
 pub mod proof;
@@ -111,8 +113,7 @@ fn certify_near(
         _ => Parts::new::<P2, 6, 3>(problem, solution)?,
     };
     let mesh = &problem.mesh;
-    let [u, start, _] =
-        [&solution.displacement, start, field].map(|nodal| Field::new(mesh, nodal));
+    let [u, start, _] = [&solution.displacement, start, field].map(|nodal| Field::new(mesh, nodal));
     let v = build::admissible(&parts, &start?);
     let mut built = build::build(&parts, &u?, &v);
     let topology = sweeps::improve(&mut built.certificate, SWEEPS)?;
@@ -134,9 +135,8 @@ fn certify_near(
         [below.lo(), proof.energy[1]]
     });
     // Doubling is exact.
-    let compliance = energy
-        .filter(|_| is_loaded_only(certificate))
-        .map(|[low, high]| [-2.0 * high, -2.0 * low]);
+    let compliance =
+        energy.filter(|_| is_loaded_only(certificate)).map(|[low, high]| [-2.0 * high, -2.0 * low]);
     let distances = squared_distances(problem, &built, field);
     let clipping = distances.iter().fold(Interval::from(0), |sum, &d| sum + Interval::point(d));
     let clipping = clipping.sqrt().hi();

@@ -19,6 +19,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Matrix2, Vector2};
 
+use super::bubbles;
 use super::build::{Boundary, Parts, bulge_of, place, rule};
 use super::proof::{Certificate, Piece, Role};
 use crate::fem::mesh::length;
@@ -274,20 +275,27 @@ fn loads(parts: &Parts, data: &Data, certificate: &Certificate, piece: &Piece, t
     let triangle = Triangle { vertices: piece.vertices.map(|p| place(certificate, p)) };
     let (k, h) = korn(&triangle);
     let poincare = k * h / std::f64::consts::PI;
-    let mut square = 0.0;
     // All by the rule of the force that asks for most.
     let curved = data.acting(t).filter(|(_, f, _)| !is_within(f, 1));
     let demand = |f: &SharedFunction| (f.kink().is_some(), f.degree().unwrap_or(u32::MAX));
+    let mut lacking = Vec::new();
     if let Some((_, _, rule)) = curved.max_by_key(|(_, f, _)| demand(f)) {
         let affine = piece.body.map(Vector2::from);
         rule.on_triangle(&triangle, |l, x, weight| {
             let mut difference = -(affine[0] * l[0] + affine[1] * l[1] + affine[2] * l[2]);
             data.acting(t).for_each(|(c, f, _)| difference[c] += f.at(x));
-            square += weight * difference.dot(&difference);
+            lacking.push((l, weight, difference));
         });
     }
+    // Beside a v that is affine all this hardly counts.
+    let mut of_bubbles = if certificate.curved.is_some() {
+        bubbles::take_off(&triangle, &piece.material(), &mut lacking)
+    } else {
+        0.0
+    };
+    let square: f64 = lacking.iter().map(|(_, weight, f)| weight * f.dot(f)).sum();
     let mut sum = poincare * square.sqrt();
-    for e in piece.edges {
+    for (local, e) in piece.edges.into_iter().enumerate() {
         let edge = certificate.edges[e];
         let Some(Boundary::Loaded(traction)) = parts.boundary.get(&e) else { continue };
         if traction.is_affine() {
@@ -300,20 +308,28 @@ fn loads(parts: &Parts, data: &Data, certificate: &Certificate, piece: &Piece, t
             Role::Pressed(p) => p.map(|p| unit.map(|n| -p * n)),
             _ => continue,
         };
-        let mut square = 0.0;
+        let (mut square, mut legendre) = (0.0, Vector2::zeros());
         traction.rule().on_edge(ends, [], |point| {
             let t = traction.at(point.x, unit);
+            let p = shifted_legendre(2, point.s)[0];
             for c in 0..2 {
                 let there = (1.0 - point.s) * affine[0][c] + point.s * affine[1][c];
-                square += point.weight * length * (t[c] - there) * (t[c] - there);
+                let lacking = t[c] - there;
+                square += point.weight * length * lacking * lacking;
+                legendre[c] += 5.0 * point.weight * lacking * p;
             }
         });
+        if certificate.curved.is_some() {
+            of_bubbles += bubbles::of_traction(&triangle, &piece.material(), local, legendre);
+            // int P_2^2 = 1/5
+            square = (square - length / 5.0 * legendre.dot(&legendre)).max(0.0);
+        }
         let trace = (length / (triangle.double_area() / 2.0)
             * (poincare * poincare + h * poincare * k))
             .sqrt();
         sum += trace * square.sqrt();
     }
-    sum / least_stiffness(&piece.material()).sqrt()
+    of_bubbles + sum / least_stiffness(&piece.material()).sqrt()
 }
 
 /// |z|_a of what the displacement and the gap ask for beyond v, on each triangle of the mesh.

@@ -277,9 +277,10 @@ impl Certificate {
                     let shape = OnEdge {
                         v: edge.ends.map(|vertex| v.points[vertex]),
                         gap,
-                        bulges: self.curved.as_ref().map(|curved| {
-                            (exactly(curved.bulges[e]), curved.data[e][0])
-                        }),
+                        bulges: self
+                            .curved
+                            .as_ref()
+                            .map(|curved| (exactly(curved.bulges[e]), curved.data[e][0])),
                     };
                     let contact = match along {
                         None => along_the_normal(&shape, normal, pressure, length),
@@ -676,8 +677,7 @@ fn along_directions<S: Enclosing>(
     let (beyond, integral) = if let Some((bulge, gap)) = shape.bulges {
         let gap = S::exactly(gap);
         // v and g have the middle coefficients (v_0 + v_1) / 2 + 2 b; v . d is a cubic, of which two are the thirds of these.
-        let (middle, between) =
-            ((v[0] + v[1]) / two + bulge * two, (g + h) / two + gap * two);
+        let (middle, between) = ((v[0] + v[1]) / two + bulge * two, (g + h) / two + gap * two);
         let one = (middle.dot(&d[0]) - between) * two + v[0].dot(&d[1]) - g;
         let other = (middle.dot(&d[1]) - between) * two + v[1].dot(&d[0]) - h;
         let integral = if constant {

@@ -26,9 +26,7 @@ use thiserror::Error;
 
 use super::input::{self, InputError};
 use crate::certify::Continuous;
-use crate::certify::proof::{
-    Certificate, Claim, Curved, Cut, Edge, Piece, Proof, Rejection, Role,
-};
+use crate::certify::proof::{Certificate, Claim, Curved, Cut, Edge, Piece, Proof, Rejection, Role};
 use crate::quote;
 
 /// The names of the files: the claim, and the arrays beside it.

@@ -211,6 +211,14 @@ impl<S: Scalar> Composite<S> {
         Composite { centre, bulges: Some(bulges), ..self }
     }
 
+    /// tau on part i at mu, the coordinates of the centroid and of the corners i + 1 and i + 2.
+    pub(crate) fn at(&self, i: usize, [m, j, k]: [S; 3]) -> Stress<S> {
+        let affine = self.centre * m + self.corners[i][0] * j + self.corners[i][1] * k;
+        let Some(bulges) = &self.bulges else { return affine };
+        let [outer, to_j, to_k] = bulges[i];
+        affine + (outer * (j * k) + to_j * (m * j) + to_k * (m * k)) * S::from(4)
+    }
+
     /// sigma - tau.
     pub(crate) fn distance_from(&self, sigma: &Affine<S>) -> Composite<S> {
         let negative = |tau: Stress<S>| tau * S::from(-1);
@@ -411,14 +419,6 @@ mod tests {
         of(loads).bent(&Frame::new(&T), &loads.body)
     }
 
-    /// tau on part i at mu, the coordinates of m and of the corners i + 1 and i + 2.
-    fn at(tau: &Composite<f64>, i: usize, [m, j, k]: [f64; 3]) -> Stress<f64> {
-        let affine = tau.centre * m + tau.corners[i][0] * j + tau.corners[i][1] * k;
-        let Some(bulges) = tau.bulges else { return affine };
-        let [outer, to_j, to_k] = bulges[i];
-        affine + outer * (4.0 * j * k) + to_j * (4.0 * m * j) + to_k * (4.0 * m * k)
-    }
-
     /// Points of a part.
     const INSIDE: [[f64; 3]; 3] = [[0.6, 0.1, 0.3], [0.2, 0.7, 0.1], [0.25, 0.25, 0.5]];
 
@@ -462,7 +462,7 @@ mod tests {
         let (b, c) = (T.vertices[(i + 1) % 3], T.vertices[(i + 2) % 3]);
         let g = Triangle { vertices: [centroid(&T), b, c] }.barycentric_gradients();
         let along = |axis: usize| {
-            let moved = |step: f64| at(tau, i, [0, 1, 2].map(|k| mu[k] + step * g[k][axis]));
+            let moved = |step: f64| tau.at(i, [0, 1, 2].map(|k| mu[k] + step * g[k][axis]));
             (moved(0.5) - moved(-0.5)).matrix().column(axis).into_owned()
         };
         along(0) + along(1)
@@ -499,14 +499,16 @@ mod tests {
         let mut added: f64 = 0.0;
         for i in 0..3 {
             for s in [0.1, 0.5, 0.8] {
-                let at_edge = |tau| at(tau, i, [0.0, 1.0 - s, s]).traction(T.scaled_normal(i));
+                let at_edge = |tau: &Composite<f64>| {
+                    tau.at(i, [0.0, 1.0 - s, s]).traction(T.scaled_normal(i))
+                };
                 assert_abs_diff_eq!(at_edge(&tau), at_edge(&plain), epsilon = ROUNDING);
                 let [x, y] = arms(&T)[i].into();
-                let on_cut = |part: usize, mu| at(&tau, part, mu).traction(Vector2::new(y, -x));
+                let on_cut = |part: usize, mu| tau.at(part, mu).traction(Vector2::new(y, -x));
                 let (first, second) = ((i + 1) % 3, (i + 2) % 3);
                 let (one, other) = ([1.0 - s, 0.0, s], [1.0 - s, s, 0.0]);
                 assert_abs_diff_eq!(on_cut(first, one), on_cut(second, other), epsilon = ROUNDING);
-                let there = at(&tau, first, one) - at(&plain, first, one);
+                let there = tau.at(first, one) - plain.at(first, one);
                 added = added.max(there.matrix().abs().max());
             }
         }
@@ -521,7 +523,7 @@ mod tests {
         let mut integral = 0.0;
         for i in 0..3 {
             for (mu, weight) in crate::fem::quadrature::triangle(4) {
-                integral += weight * part * complementary(&material, at(&tau, i, mu));
+                integral += weight * part * complementary(&material, tau.at(i, mu));
             }
         }
         let energy = tau.energy(&material, T.double_area());
@@ -615,7 +617,7 @@ mod tests {
                 let mut l = [mu[0] / 3.0; 3];
                 l[(i + 1) % 3] += mu[1];
                 l[(i + 2) % 3] += mu[2];
-                same(at(&distance, i, mu), stress(T.point(l)) - at(&tau, i, mu));
+                same(distance.at(i, mu), stress(T.point(l)) - tau.at(i, mu));
             }
         }
         // Control: without the bulges it is another stress.

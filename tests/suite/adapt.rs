@@ -8,7 +8,7 @@ use std::sync::Arc;
 use crate::common::exact::{corner, on_square, on_trapezoid, singular};
 use crate::common::{clamped, conditions, constant, function, unit_square};
 use signorini::certify::adapt::AdaptError;
-use signorini::certify::{Adapted, CertifyError, Target, adapt, certify};
+use signorini::certify::{Adapted, Target, adapt, certify};
 use signorini::fem::{
     Condition, Errors, Materials, PointSupport, Problem, SharedFunction, Space, contact_line,
 };

@@ -4,7 +4,6 @@
 mod common;
 
 mod adapt;
-mod zz;
 mod assembled;
 mod bad_input;
 mod bodies;
