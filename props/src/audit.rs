@@ -7,6 +7,7 @@ use std::time::Instant;
 
 use crate::claim::Claim;
 use crate::claims;
+use crate::draws;
 use crate::page::{self, Line, Provenance, Report};
 
 /// Runs the row with this id, or all of them; of a row, the checks with this name, or all of them. True if every check
@@ -30,7 +31,7 @@ pub fn audit(id: Option<&str>, name: Option<&str>) -> io::Result<bool> {
         return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
     }
     let lines: Vec<Line> = claims.iter().flat_map(run).collect();
-    println!("\n{}", table(&claims, &lines));
+    println!("\n{}{}", table(&claims, &lines), failures(&lines));
     let passed = lines.iter().all(|line| line.outcome.is_ok());
     let report = Report { provenance: Provenance::now(), claims, complete: id.is_none(), lines };
     let stem = match (id, name) {
@@ -110,9 +111,45 @@ fn table(claims: &[Claim], results: &[Line]) -> String {
     text
 }
 
+/// The checks that failed, each with its reason and the command that repeats it: the last lines, which a log keeps.
+fn failures(lines: &[Line]) -> String {
+    let failed = lines.iter().filter_map(|line| Some((line, line.outcome.as_ref().err()?)));
+    let one = |(line, why): (&Line, &String)| {
+        let Line { row, engine, name, declared, .. } = line;
+        format!(
+            "FAILED in row {row}: {engine} {name}: {why}\n  again: PROPS_SEED={} cargo run -p props -- audit {row} {declared}\n",
+            draws::seed()
+        )
+    };
+    failed.map(one).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_failed_is_named_last_with_its_reason_and_the_command_that_repeats_it() {
+        let line = |name, outcome| Line {
+            row: "10",
+            engine: "exact",
+            name,
+            declared: "one_solution",
+            receipt: None,
+            control: false,
+            seconds: 0.5,
+            outcome,
+        };
+        let found = failures(&[
+            line("this_one".into(), Ok("fine".into())),
+            line("that_one".into(), Err("left >= right fails".into())),
+        ]);
+        let seed = draws::seed();
+        let expected = format!(
+            "FAILED in row 10: exact that_one: left >= right fails\n  again: PROPS_SEED={seed} cargo run -p props -- audit 10 one_solution\n"
+        );
+        assert_eq!(found, expected);
+    }
 
     #[test]
     fn an_unknown_row_names_the_known_ones_and_an_unknown_check_is_an_error() {

@@ -213,7 +213,7 @@ fn what_the_solver_calls() -> Outcome {
 
 /// kappa^2 under the root: kappa for kappa^(1/2).
 fn kappa_for_its_root() -> Outcome {
-    draws::reject(40, numbers(), |draw| called(draw, |kappa| kappa * kappa))
+    draws::reject(numbers(), |draw| called(draw, |kappa| kappa * kappa))
 }
 
 /// The row of the bounds.

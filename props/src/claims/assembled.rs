@@ -93,7 +93,7 @@ pub fn p2() -> Outcome {
 }
 
 fn rejected(mistake: Mistake) -> Outcome {
-    draws::reject(100, problems(Contact::Any, true), |draw| {
+    draws::reject(problems(Contact::Any, true), |draw| {
         compared::<P1, 3, 2>(draw, mistake, false, &Shares::default())
     })
 }

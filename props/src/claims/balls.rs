@@ -98,7 +98,7 @@ pub fn fine_balls_contain_the_exact_results() -> Outcome {
 
 /// With no radius they do not.
 pub fn centres_contain_the_exact_results() -> Outcome {
-    draws::reject(100, data(), |draw| fine_balls(draw, 0.0))
+    draws::reject(data(), |draw| fine_balls(draw, 0.0))
 }
 
 /// Numbers that contain both `a` and `b`: what a number across zero answers with `a` below and `b` above.
@@ -156,7 +156,7 @@ pub fn balls_contain_the_exact_results() -> Outcome {
 
 /// Doubles do not.
 pub fn doubles_contain_the_exact_results() -> Outcome {
-    draws::reject(100, data(), balls::<f64>)
+    draws::reject(data(), balls::<f64>)
 }
 
 /// int \[P\]+ N_a for P of P1 in balls contains that of each of their numbers, cut at its own root; `share` of each radius
@@ -190,5 +190,5 @@ pub fn moments_of_balls_contain_those_of_their_numbers() -> Outcome {
 
 /// A twentieth of their radii.
 pub fn moments_of_balls_within_a_twentieth_of_them() -> Outcome {
-    draws::reject(100, data(), |draw| moments_of(draw, 0.05))
+    draws::reject(data(), |draw| moments_of(draw, 0.05))
 }

@@ -487,7 +487,7 @@ fn bounds_and_energies_differ_by_what_tau_says() -> Outcome {
 }
 
 fn vertices_exchanged() -> Outcome {
-    draws::reject(60, draws_of(false), |draw| duality_gap(draw, true))
+    draws::reject(draws_of(false), |draw| duality_gap(draw, true))
 }
 
 fn vertices_have_loads() -> Outcome {
@@ -495,7 +495,7 @@ fn vertices_have_loads() -> Outcome {
 }
 
 fn the_load_of_the_first_vertex_at_all() -> Outcome {
-    draws::reject(40, draws_of(false), |draw| loads_at_vertices(draw, false))
+    draws::reject(draws_of(false), |draw| loads_at_vertices(draw, false))
 }
 
 fn to_double(x: Exact) -> f64 {
@@ -514,7 +514,7 @@ fn bounds_are_the_definitions() -> Outcome {
 
 /// A bound that is a millionth too small.
 fn a_bound_too_small() -> Outcome {
-    draws::reject(60, draws_of(false), |draw| evaluated::<Ball>(draw, 1.0 - 1e-6))
+    draws::reject(draws_of(false), |draw| evaluated::<Ball>(draw, 1.0 - 1e-6))
 }
 
 /// Tractions on inner edges and on Gamma_D that are out of balance by what the checker may add: it finds the balanced ones
@@ -564,7 +564,7 @@ fn tractions_are_balanced() -> Outcome {
 
 /// Tractions that vary along an edge as no balance asks for make another stress.
 fn tractions_that_no_balance_takes() -> Outcome {
-    draws::reject(20, draws_of(true), |draw| balanced(draw, true))
+    draws::reject(draws_of(true), |draw| balanced(draw, true))
 }
 
 /// One thing that the theorem does not allow.
@@ -941,7 +941,7 @@ fn the_curvature_of_v_counts() -> Outcome {
 }
 
 fn the_curvature_of_v_dropped() -> Outcome {
-    draws::reject(40, draws_of(false), |draw| of_a_body_at_rest(draw, false))
+    draws::reject(draws_of(false), |draw| of_a_body_at_rest(draw, false))
 }
 
 /// What is claimed of a certificate that is as it was made.

@@ -660,7 +660,7 @@ fn a_kappa_that_is_a_millionth_smaller() -> Outcome {
 }
 
 fn reported_rejected(asked: InDoubles) -> Outcome {
-    draws::reject(60, problems([2, 2], NARROW), |draw| {
+    draws::reject(problems([2, 2], NARROW), |draw| {
         Exact::scope(|| enclosed_in_doubles::<P1, 3, 2>(draw, ContactQuadrature::Exact, asked))
     })
 }
@@ -745,10 +745,10 @@ fn around_any_point_by_points() -> Outcome {
 
 /// In full contact, where u^h is rational and each of the bounds is looked at.
 fn rejected(demand: Demand) -> Outcome {
-    let p1 = draws::reject(60, problems([2, 1], NARROW), |draw| {
+    let p1 = draws::reject(problems([2, 1], NARROW), |draw| {
         Exact::scope(|| enclosed::<P1, 3, 2>(draw, ContactQuadrature::Exact, demand))
     })?;
-    let p2 = draws::reject(30, problems([1, 1], NARROW), |draw| {
+    let p2 = draws::reject(problems([1, 1], NARROW), |draw| {
         Exact::scope(|| enclosed::<P2, 6, 3>(draw, ContactQuadrature::Gauss(3), demand))
     })?;
     Ok(format!("P1: {p1}; P2: {p2}"))

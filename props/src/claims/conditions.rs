@@ -383,7 +383,7 @@ pub fn twofold_numbers_keep_a_hundred_bits() -> Outcome {
 
 /// To 120 bits they are not.
 pub fn twofold_numbers_keep_120_bits() -> Outcome {
-    draws::reject(20, doubles(), |draw| operations(draw, -120))
+    draws::reject(doubles(), |draw| operations(draw, -120))
 }
 
 /// The forces of a translation that no double is, without loads: nothing is left of terms of size 1 but 2^-90; and P is what it

@@ -342,7 +342,7 @@ mod row {
 
     /// The length of the contact edge in place of the diameter in gamma = gamma0 h_T.
     fn edge_length_for_diameter() -> Outcome {
-        draws::reject(BODIES, bodies(2), |draw| {
+        draws::reject(bodies(2), |draw| {
             Exact::scope(|| {
                 let mut spoilt = draw.body();
                 for side in &spoilt.contact {
@@ -355,7 +355,7 @@ mod row {
 
     /// lambda and mu exchanged.
     fn lame_exchanged() -> Outcome {
-        draws::reject(BODIES, bodies(2), |draw| {
+        draws::reject(bodies(2), |draw| {
             Exact::scope(|| {
                 let mut spoilt = draw.body();
                 let material = Material::lame(spoilt.hooke.mu, spoilt.hooke.lambda, Plane::Strain);

@@ -224,8 +224,8 @@ fn balls_are_above_the_rationals() -> Outcome {
 
 /// Doubles for balls.
 fn doubles_are_below() -> Outcome {
-    let p1 = draws::reject(60, bodies(2), |d| above_the_rationals::<f64>(d, Degree::One))?;
-    let p2 = draws::reject(60, bodies(2), |d| above_the_rationals::<f64>(d, Degree::Two))?;
+    let p1 = draws::reject(bodies(2), |d| above_the_rationals::<f64>(d, Degree::One))?;
+    let p2 = draws::reject(bodies(2), |d| above_the_rationals::<f64>(d, Degree::Two))?;
     Ok(format!("P1: {p1}; P2: {p2}"))
 }
 
@@ -273,7 +273,7 @@ fn energies_lie_in_the_intervals() -> Outcome {
 
 /// A quarter of the square of the bound for the whole.
 fn a_quarter_of_the_interval() -> Outcome {
-    draws::reject(40, bodies(2), |draw| energies_agree(draw, 0.25))
+    draws::reject(bodies(2), |draw| energies_agree(draw, 0.25))
 }
 
 /// a(u - v, u - v)^(1/2) for two fields of P1.
@@ -328,7 +328,7 @@ fn perturbations_raise_the_bound() -> Outcome {
 
 /// Nine tenths of the bound of the field that was moved.
 fn nine_tenths_of_a_perturbation() -> Outcome {
-    draws::reject(40, bodies(3), |draw| raised_by_a_perturbation(draw, 100.0, 0.9))
+    draws::reject(bodies(3), |draw| raised_by_a_perturbation(draw, 100.0, 0.9))
 }
 
 /// The certificate of one load with the body force of another: v is still v, so its bound must reach the solution for
@@ -355,7 +355,7 @@ fn a_wrong_load_raises_the_bound() -> Outcome {
 }
 
 fn the_bound_before() -> Outcome {
-    draws::reject(100, bodies(4), |draw| seen_by_the_bound(draw, true))
+    draws::reject(bodies(4), |draw| seen_by_the_bound(draw, true))
 }
 
 /// The unit square with lambda = 0 and mu = 1 whose top is moved by (0, `d`), on a floor at height 0 or `floor`.
@@ -568,7 +568,7 @@ fn true_errors_are_below() -> Outcome {
 }
 
 fn half_the_bound() -> Outcome {
-    draws::reject(300, samples(), |sample| above_the_true_error(sample, WHOLE / 2.0))
+    draws::reject(samples(), |sample| above_the_true_error(sample, WHOLE / 2.0))
 }
 
 /// c x (1 - x): 0 at both ends of a side of length 1.
@@ -626,7 +626,7 @@ fn data_between_vertices_count() -> Outcome {
 }
 
 fn without_what_is_lacking() -> Outcome {
-    draws::reject(40, bodies(1), |draw| between_the_vertices(draw, false))
+    draws::reject(bodies(1), |draw| between_the_vertices(draw, false))
 }
 
 /// K of Korn's inequality on a right triangle with equal legs (docs/theory.md, 7.4): by the radius of its inner circle, (1 + 1 -
@@ -726,7 +726,7 @@ fn data_cost_what_they_should() -> Outcome {
 }
 
 fn data_cost_a_tenth_more() -> Outcome {
-    draws::reject(40, bodies(1), |draw| costs(draw, 1.1))
+    draws::reject(bodies(1), |draw| costs(draw, 1.1))
 }
 
 /// All data times 2^-10: so is the bound. With `load` another one for the scaled body.
@@ -747,7 +747,7 @@ fn bounds_scale() -> Outcome {
 }
 
 fn bounds_of_another_load_scale() -> Outcome {
-    draws::reject(40, bodies(1), |draw| scaled(draw, 2.0))
+    draws::reject(bodies(1), |draw| scaled(draw, 2.0))
 }
 
 /// The row.

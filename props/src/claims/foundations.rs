@@ -229,7 +229,7 @@ mod row {
 
     /// The sum rounded to nearest, without the step outwards.
     fn no_step_outwards() -> Outcome {
-        draws::reject(5000, pairs(), |pair| {
+        draws::reject(pairs(), |pair| {
             operations(pair, |x, y| Interval::new(x.lo() + y.lo(), x.hi() + y.hi()))
         })
     }
@@ -289,7 +289,7 @@ mod row {
 
     /// An interval [0, hi] counts as positive.
     fn slopes_by_the_upper_end() -> Outcome {
-        draws::reject(2000, intervals(), |pair| {
+        draws::reject(intervals(), |pair| {
             branches(
                 pair,
                 |x| {

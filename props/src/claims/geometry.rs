@@ -100,7 +100,7 @@ pub fn obstacles_are_their_definitions() -> Outcome {
 
 /// Directions away from the obstacle.
 pub fn directions_away_from_the_obstacle() -> Outcome {
-    draws::reject(20, places(), |draw| obstacle(draw, -1.0))
+    draws::reject(places(), |draw| obstacle(draw, -1.0))
 }
 
 /// On a circle with unequal facets of up to 35 degrees the normals at the vertices and the middles of the curves are those of
@@ -146,7 +146,7 @@ pub fn smooth_boundaries_are_exact_on_circles() -> Outcome {
 
 /// The middles of the facets.
 pub fn middles_of_facets_for_those_of_the_curves() -> Outcome {
-    draws::reject(5, facets(), |angles| circle(angles, true))
+    draws::reject(facets(), |angles| circle(angles, true))
 }
 
 /// On an ellipse, where an edge has another bend at each end: the cubic with the tangents at the ends, as fast as to go through the
@@ -187,7 +187,7 @@ pub fn middles_of_smooth_boundaries_have_the_normals_of_their_curves() -> Outcom
 
 /// The normals of the facets.
 pub fn normals_of_facets_for_those_of_the_curves() -> Outcome {
-    draws::reject(5, facets(), |angles| ellipse(angles, true))
+    draws::reject(facets(), |angles| ellipse(angles, true))
 }
 
 /// The limit that is printed, from A and from the stiffness matrix, against that of dense algebra times `factor`.

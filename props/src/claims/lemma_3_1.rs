@@ -158,7 +158,7 @@ mod row {
         let found = draws::hold(60, (bodies(1), patches()), &["strict"], |(draw, patch)| {
             Exact::scope(|| inequality_3(draw, patch, false))
         })?;
-        let rejected = draws::reject(60, (bodies(1), patches()), |(draw, patch)| {
+        let rejected = draws::reject((bodies(1), patches()), |(draw, patch)| {
             Exact::scope(|| inequality_3(draw, patch, true))
         })?;
         Ok(format!("{found}; into the obstacle: {rejected}"))
@@ -218,7 +218,7 @@ mod row {
 
     /// An obstacle that is nearer than the solution allows.
     fn wrong_gap() -> Outcome {
-        draws::reject(90, (bodies(1), patches()), |(draw, patch)| {
+        draws::reject((bodies(1), patches()), |(draw, patch)| {
             Exact::scope(|| consistent::<P1, 3, 2>(draw, patch, true))
         })
     }

@@ -361,7 +361,7 @@ mod row {
     /// theta = -1 and theta = 0 in the test function, which are other methods.
     fn other_theta() -> Outcome {
         for theta in [-1, 0] {
-            draws::reject(BODIES, bodies(3), |draw| {
+            draws::reject(bodies(3), |draw| {
                 Exact::scope(|| residual::<P1, 3, 2>(&draw.body(), Rule::Exact, Exact::from(theta)))
             })?;
         }
@@ -370,7 +370,7 @@ mod row {
 
     /// The gap left out.
     fn gap_missing() -> Outcome {
-        draws::reject(BODIES, bodies(3), |draw| {
+        draws::reject(bodies(3), |draw| {
             Exact::scope(|| {
                 let (body, mut spoilt) = (draw.body(), draw.body());
                 for side in &mut spoilt.contact {

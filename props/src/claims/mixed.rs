@@ -227,7 +227,7 @@ mod row {
     }
 
     fn sign_of_the_multiplier() -> Outcome {
-        draws::reject(60, bodies(3), |draw| Exact::scope(|| mixed(&draw.body(), Exact::from(-1))))
+        draws::reject(bodies(3), |draw| Exact::scope(|| mixed(&draw.body(), Exact::from(-1))))
     }
 
     /// lambda^h in doubles lies within rounding of (9) with equality: l (u_n - g + gamma (l - sigma_n)) = 0, relative to

@@ -303,7 +303,7 @@ fn line_searches_end_where_it_is_flat() -> Outcome {
 }
 
 fn line_searches_of_full_steps() -> Outcome {
-    draws::reject(20, bodies(), |body| watched(&Body { full: true, ..body.clone() }).0)
+    draws::reject(bodies(), |body| watched(&Body { full: true, ..body.clone() }).0)
 }
 
 /// The verdict: a result is accepted only with a forward error of at most 1e-6, is called converged only within the

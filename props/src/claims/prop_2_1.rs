@@ -323,7 +323,7 @@ mod row {
 
     /// (5) as written, in doubles: contact with a force that does not survive the division.
     fn as_written() -> Outcome {
-        draws::reject(20_000, draws::doubles(4), |v| {
+        draws::reject(draws::doubles(4), |v| {
             given!(v[3] > 1e-3 && v[3] < 1e3 && v[2].abs() > 1e-3 && v[2].abs() < 1e3);
             conditions_2_are_equation_5([v[1], v[1], v[2], v[3]])
         })

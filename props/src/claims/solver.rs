@@ -326,7 +326,7 @@ fn edges_are_cut() -> Outcome {
 }
 
 fn edges_are_not_cut() -> Outcome {
-    draws::reject(20, places(), |&c| {
+    draws::reject(places(), |&c| {
         ensure!(with_a_kink(c, None));
         Verdict::Holds("cut")
     })
@@ -374,7 +374,7 @@ fn integrals_scale() -> Outcome {
 
 /// An energy of degree 1.
 fn energy_of_another_degree() -> Outcome {
-    draws::reject(20, scalings(), |&(p, k)| scales::<P2, 6, 3>(p, k, 1))
+    draws::reject(scalings(), |&(p, k)| scales::<P2, 6, 3>(p, k, 1))
 }
 
 /// A displacement of degree 2: coefficients of 1, x, y, x^2, xy, y^2 for each component. P2 has it exactly.

@@ -273,7 +273,7 @@ mod row {
 
     /// Ten times the constant of (12).
     fn larger_constant() -> Outcome {
-        draws::reject(200, (bodies(2), draws::positive()), |(draw, kappa)| {
+        draws::reject((bodies(2), draws::positive()), |(draw, kappa)| {
             Exact::scope(|| {
                 monotone_on_bodies::<P1, 3, 2>(draw, *kappa, Rule::Exact, Exact::from(10))
             })

@@ -59,7 +59,7 @@ pub fn square_roots() -> Outcome {
 
 /// The control of [`square_roots`]: one edge for the longest one.
 pub fn first_edge_for_the_longest() -> Outcome {
-    draws::reject(10, problems(Contact::Any, false), |draw| {
+    draws::reject(problems(Contact::Any, false), |draw| {
         geometry(draw, |mesh, t| {
             let [x, y]: [f64; 2] = mesh.triangle(t).edge(0).into();
             x.hypot(y)
@@ -104,5 +104,5 @@ pub fn gamma_by_the_diameter() -> Outcome {
 
 /// The control of [`gamma_by_the_diameter`]: |E| for h_T.
 pub fn gamma_by_the_edge() -> Outcome {
-    draws::reject(20, problems(Contact::Any, false), |draw| gamma_is(draw, |squares, i| squares[i]))
+    draws::reject(problems(Contact::Any, false), |draw| gamma_is(draw, |squares, i| squares[i]))
 }

@@ -94,16 +94,16 @@ fn coercive_p2() -> Outcome {
 
 /// The constant one part in a hundred smaller.
 fn smaller_constant() -> Outcome {
-    draws::reject(60, bodies(1), |draw| {
+    draws::reject(bodies(1), |draw| {
         Exact::scope(|| coercive::<P1, 3, 2>(&draw.body(), Exact::ratio(99, 100)))
     })?;
-    draws::reject(60, bodies(1), |draw| {
+    draws::reject(bodies(1), |draw| {
         Exact::scope(|| coercive::<P2, 6, 3>(&draw.body(), Exact::ratio(99, 100)))
     })?;
-    draws::reject(60, bodies(1), |draw| {
+    draws::reject(bodies(1), |draw| {
         Exact::scope(|| coercive_for_all::<P1, 3, 2>(&draw.body(), Exact::ratio(99, 100)))
     })?;
-    draws::reject(60, bodies(1), |draw| {
+    draws::reject(bodies(1), |draw| {
         Exact::scope(|| coercive_for_all::<P2, 6, 3>(&draw.body(), Exact::ratio(99, 100)))
     })
 }

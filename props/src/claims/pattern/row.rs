@@ -423,13 +423,13 @@ fn real_meshes() -> Outcome {
 
 /// The contact terms with the other sign.
 fn contact_added() -> Outcome {
-    draws::reject(10, meshes(), |&mesh| either(mesh, |weight| weight))
+    draws::reject(meshes(), |&mesh| either(mesh, |weight| weight))
 }
 
 /// Neighbours along two of the three sides of each triangle only: in a cell the nodes across the diagonal are
 /// forgotten.
 fn third_side_forgotten() -> Outcome {
-    draws::reject(10, meshes(), |&mesh| {
+    draws::reject(meshes(), |&mesh| {
         let forget = |draw: &Draw<3>| {
             let sides: Vec<[usize; 2]> =
                 draw.elements.iter().flat_map(|&[a, b, c]| [[a, b], [b, c]]).collect();
@@ -441,7 +441,7 @@ fn third_side_forgotten() -> Outcome {
 }
 
 fn rejects(spoil: fn(&mut Made)) -> Outcome {
-    draws::reject(200, draws::<3>(), |draw| {
+    draws::reject(draws::<3>(), |draw| {
         let mut made = draw.made();
         spoil(&mut made);
         draw.judge(&made)
@@ -482,7 +482,7 @@ fn start_too_early() -> Outcome {
 
 /// Prescribed components numbered like free ones.
 fn prescribed_numbered() -> Outcome {
-    draws::reject(200, draws::<3>(), |draw| {
+    draws::reject(draws::<3>(), |draw| {
         let numbering = Numbering::new(&draw.order, &vec![[None; 2]; draw.nodes()]);
         draw.judge(&draw.made_with(&draw.neighbours(), &numbering, block))
     })
@@ -490,7 +490,7 @@ fn prescribed_numbered() -> Outcome {
 
 /// Rows and columns of the element matrices exchanged.
 fn blocks_transposed() -> Outcome {
-    draws::reject(200, draws::<3>(), |draw| {
+    draws::reject(draws::<3>(), |draw| {
         let transposed = |e, i, j| {
             let [[a, b], [c, d]] = block(e, j, i);
             [[a, c], [b, d]]

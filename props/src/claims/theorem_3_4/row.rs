@@ -88,10 +88,10 @@ const OF_18: [Dimension; 4] = [STRESS, STRESS, GAMMA, NUMBER];
 
 /// (17) and (18) as printed, without the factor gamma.
 fn printed_dimensions() -> Outcome {
-    draws::reject(200, draws::ratios(6), |values| {
+    draws::reject(draws::ratios(6), |values| {
         with_dimensions(values, onto_17, OF_17, control_step_17_as_printed)
     })?;
-    draws::reject(200, draws::ratios(4), |values| {
+    draws::reject(draws::ratios(4), |values| {
         with_dimensions(values, |_| {}, OF_18, control_step_18_as_printed)
     })
 }
