@@ -237,7 +237,7 @@ mod tests {
         let c = Vector2::new(0.7, -0.4);
         for i in 0..3 {
             let (bubble, tau) = with_traction(&T, i, c);
-            let length = T.scaled_normal(i).norm();
+            let length = crate::fem::mesh::length(T.scaled_normal(i));
             for side in 0..3 {
                 for s in [0.0, 0.2, 0.7] {
                     let mut l = [0.0; 3];
