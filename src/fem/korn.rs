@@ -26,6 +26,19 @@ const SAFETY: f64 = 1.001;
 /// Hinges hold no more parts together than these: their motions are found by dense elimination.
 const MOST_HINGED: usize = 32;
 
+/// What holds a body beside its supports: a component of v at a place of a triangle is at most `most` where |v|_a is at most 1.
+#[derive(Clone, Copy, Debug)]
+pub struct Hold {
+    /// The triangle.
+    pub triangle: usize,
+    /// The place, one of its vertices.
+    pub at: [f64; 2],
+    /// The direction of the component.
+    pub direction: [Interval; 2],
+    /// The bound.
+    pub most: f64,
+}
+
 /// |v(x_i)| <= `nodes[i]` |v|_a for all v in V^h and all nodes i.
 #[derive(Clone, Debug)]
 pub struct Korn {
@@ -34,12 +47,13 @@ pub struct Korn {
 }
 
 impl Korn {
-    /// The bound for the fields that vanish at the prescribed components. `None` where they hardly hold a part of the body,
-    /// or where hinges join more than 32 parts.
+    /// The bound for the fields that vanish at the prescribed components and do what `holds` say. `None` where these hardly hold
+    /// a part of the body, or where hinges join more than 32 parts.
     pub fn new<E: Element<N, M>, const N: usize, const M: usize>(
         space: &Space<E, N, M>,
         materials: &Materials,
         constraints: &Constraints,
+        holds: &[Hold],
     ) -> Option<Self> {
         let mesh = space.mesh();
         let count = mesh.triangles().len();
@@ -62,7 +76,13 @@ impl Korn {
             });
         let size = (high[0] - low[0]).hypot(high[1] - low[1]);
 
-        let equations = equations(space, constraints, &parts);
+        let mut equations = equations(space, constraints, &parts);
+        equations.extend(holds.iter().map(|&Hold { triangle, at, direction, most }| Equation {
+            triangles: vec![(triangle, 1)],
+            at,
+            direction,
+            most,
+        }));
         let mut along = vec![f64::INFINITY; count];
         let mut origins = Vec::with_capacity(parts.count());
         for of_part in &by_part(&equations, &parts) {
@@ -120,7 +140,9 @@ struct Equation {
     /// The triangles, each with its sign.
     triangles: Vec<(usize, i32)>,
     at: [f64; 2],
-    direction: [f64; 2],
+    direction: [Interval; 2],
+    /// And this times |v|_a beside what v has left there.
+    most: f64,
 }
 
 impl Equation {
@@ -142,7 +164,7 @@ fn equations<E: Element<N, M>, const N: usize, const M: usize>(
     let hinges: BTreeMap<usize, &Hinge> = parts.hinges().iter().map(|h| (h.vertex, h)).collect();
     for (t, nodes) in space.elements().iter().enumerate() {
         let part = parts.of_triangle()[t];
-        for &node in &nodes[..3] {
+        for &node in nodes {
             if hinges.contains_key(&node) && at_hinge.insert((node, part), t).is_some() {
                 continue;
             }
@@ -153,7 +175,8 @@ fn equations<E: Element<N, M>, const N: usize, const M: usize>(
                 equations.extend(here.map(|direction| Equation {
                     triangles: vec![(t, 1)],
                     at,
-                    direction,
+                    direction: direction.map(Interval::point),
+                    most: 0.0,
                 }));
             }
         }
@@ -162,9 +185,10 @@ fn equations<E: Element<N, M>, const N: usize, const M: usize>(
         let mut triangles = hinge.parts.iter().filter_map(|&part| at_hinge.get(&(vertex, part)));
         let Some(&first) = triangles.next() else { continue };
         for &other in triangles {
-            for direction in [[1.0, 0.0], [0.0, 1.0]] {
+            for direction in [[1, 0], [0, 1]] {
                 let triangles = vec![(first, 1), (other, -1)];
-                equations.push(Equation { triangles, at: space.nodes()[vertex], direction });
+                let (at, direction) = (space.nodes()[vertex], direction.map(Interval::from));
+                equations.push(Equation { triangles, at, direction, most: 0.0 });
             }
         }
     }
@@ -271,8 +295,9 @@ impl Roots<'_> {
         let data: Vec<f64> = chosen
             .iter()
             .map(|&i| {
-                let Equation { triangles, direction: [p, q], .. } = equations[i];
-                p.hypot(*q) * triangles.iter().map(|t| of(t.0)).sum::<f64>()
+                let Equation { triangles, direction, most, .. } = equations[i];
+                let [p, q] = direction.map(|d| larger(d.lo().abs(), d.hi().abs()));
+                p.hypot(q) * triangles.iter().map(|t| of(t.0)).sum::<f64>() + most
             })
             .collect();
         let image: Vec<f64> = inverse
@@ -290,7 +315,7 @@ impl Roots<'_> {
 
     fn row(&self, equation: &Equation) -> Vec<Interval> {
         let mut row = vec![Interval::from(0); 3 * self.group.len()];
-        let [at, [p, q]] = [equation.at, equation.direction].map(|v| v.map(Interval::point));
+        let (at, [p, q]) = (equation.at.map(Interval::point), equation.direction);
         for &(t, sign) in &equation.triangles {
             let part = self.parts.of_triangle()[t];
             let Some(k) = self.group.iter().position(|&other| other == part) else { continue };
@@ -422,7 +447,7 @@ mod tests {
         let problem = hinged(true);
         let d = Discretization::<E, N, M>::new(&problem, |c| c.limit() / 2.0, EdgeRule::Exact);
         let d = d.unwrap();
-        let korn = Korn::new(&d.space, &problem.material, &d.constraints).unwrap();
+        let korn = Korn::new(&d.space, &problem.material, &d.constraints, &[]).unwrap();
         let mut tightest = f64::INFINITY;
         for ((node, c), factor) in true_factors(&d) {
             let bound = korn.nodes[node];
@@ -445,7 +470,7 @@ mod tests {
             let problem = hinged(held);
             let space = Space::<P1, 3, 2>::new(&problem.mesh);
             let constraints = Constraints::new(&problem, &space).unwrap();
-            let korn = Korn::new(&space, &problem.material, &constraints);
+            let korn = Korn::new(&space, &problem.material, &constraints, &[]);
             assert_eq!(korn.is_some(), held);
         }
     }

@@ -96,9 +96,15 @@ where
         })
     }
 
-    /// L of A.
-    pub(super) fn factor_without_contact(&self) -> Result<Result<Tangent, Indefinite>, SolveError> {
-        self.factor_tangent(&Derivatives { gradient: Vec::new(), hessian: Vec::new() })
+    /// L of A and the springs of the edges that are `pressed`.
+    pub(super) fn factor_where(
+        &self,
+        pressed: impl Iterator<Item = bool>,
+    ) -> Result<Result<Tangent, Indefinite>, SolveError> {
+        let edges = ContactEdges { d: self.system.d, order: &self.order };
+        let signs: Vec<f64> =
+            pressed.flat_map(|pressed| [if pressed { 1.0 } else { -1.0 }; M]).collect();
+        self.factor_tangent(&newton::derivatives(&edges, &signs))
     }
 
     /// The same with a little of the springs of all edges added.

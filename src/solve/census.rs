@@ -12,6 +12,7 @@
 //! halved. For P1 without quadrature error Psi' is monotone in each nodal value, so that its range over a box is known.
 
 use super::enclosure::{Lines, free, lines, times_matrix};
+use super::pressed::Pressed;
 use super::system::System;
 use crate::fem::ball::Ball;
 use crate::fem::contact_line::EdgeRule;
@@ -70,7 +71,7 @@ impl Condensed {
         let a: Vec<Vec<Ball>> = (0..n)
             .map(|j| {
                 let unit: Vec<Ball> = (0..n).map(|i| Ball::from(i32::from(i == j))).collect();
-                times_matrix(system, &lines, &unit)
+                times_matrix(system, &lines, &Pressed::nowhere(0), &unit)
             })
             .collect();
         let mut right: Vec<Vec<Ball>> = Vec::with_capacity(q + 1);

@@ -21,10 +21,12 @@ use thiserror::Error;
 
 use super::assembled::{Assembled, Tangent};
 use super::factor::{Factor, Indefinite};
+use super::pressed::Pressed;
 use super::system::System;
 use crate::fem::Discretization;
 use crate::fem::ball::{Ball, larger, up};
 use crate::fem::contact_line::ContactLineEdge;
+use crate::fem::held;
 use crate::fem::korn::Korn;
 use crate::fem::loads;
 use crate::fem::moments::moments;
@@ -97,7 +99,9 @@ pub struct ContactIntervals {
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
 #[non_exhaustive]
 pub enum Unproved {
-    #[error("the body is held by contact alone, and A is singular")]
+    #[error(
+        "the body is held by contact alone, and the edges that are surely pressed hardly hold it"
+    )]
     HeldByContact,
     #[error("kappa = {kappa} is not below 1: (8) may have several solutions, or none")]
     NotCoercive { kappa: f64 },
@@ -157,6 +161,7 @@ impl FactorOfA {
     fn of<E, const N: usize, const M: usize>(
         self,
         system: &System<E, N, M>,
+        pressed: &Pressed<M>,
     ) -> Result<Tangent, Unproved>
     where
         E: ExactEdge<f64, N, M>,
@@ -166,14 +171,14 @@ impl FactorOfA {
             FactorOfA::Double => Assembled::new(system, 1.0),
             FactorOfA::Twofold => Assembled::twofold(system, 1.0),
         };
-        match assembled.factor_without_contact() {
+        match assembled.factor_where(pressed.edges()) {
             Ok(factor) => factor.map_err(|Indefinite| Unproved::NoFactor),
             Err(_) => Err(Unproved::OutOfMemory),
         }
     }
 }
 
-/// Encloses the solution of (8) around `u`, by the residual there, or at a field `near` it that is known in twofold numbers:
+/// Encloses the solution of (8) around `u`, with the motions that slide still stopped at one component each, by the residual there, or at a field `near` it that is known in twofold numbers:
 /// rounding a displacement to doubles moves it little, its forces more.
 ///
 /// # Errors
@@ -207,9 +212,6 @@ where
     E: ExactEdge<f64, N, M>,
 {
     let d = system.d;
-    if d.slides.is_some() {
-        return Err(Unproved::HeldByContact);
-    }
     let lines = lines(d);
     let kappa = kappa(d, &lines);
     if !(kappa < 1.0) {
@@ -217,16 +219,29 @@ where
         return Err(if unknown { Unproved::NoKappa } else { Unproved::NotCoercive { kappa } });
     }
     let coercivity = (1.0 - kappa) * (1.0 - 4.0 * f64::EPSILON);
-    let korn = Korn::new(&d.space, &d.problem.material, &d.constraints).ok_or(Unproved::NotHeld)?;
-    let at = Evaluation::new(system, &lines, u, near, load)?;
+    let slides = d.slides.as_deref().unwrap_or_default();
+    let mut reported = u.to_vec();
+    held::least_norm(&mut reported, slides);
+    let at = Evaluation::new(system, &lines, (u, &reported), near, load)?;
+    // What holds the body, and what is not proved if that does not.
+    let (pressed, loose) = match d.slides {
+        None => (Pressed::nowhere(lines.len()), Unproved::NotHeld),
+        Some(_) => (Pressed::at(d, &lines, &at.u), Unproved::HeldByContact),
+    };
+    let holds = pressed.holds(d, &lines);
+    let korn = Korn::new(&d.space, &d.problem.material, &d.constraints, &holds);
+    let korn = korn.ok_or(loose)?;
     let r = free(system, &at.residual);
     let crude = crude_norms(system, &korn, coercivity);
     let rho = if r.iter().all(|&r| r == Ball::from(0)) {
         0.0
     } else {
         let negligible = SMALL * at.moved * coercivity.sqrt();
-        dual_norm(system, &lines, &factor.of(system)?, &r, &crude, negligible)
+        dual_norm(system, &lines, &pressed, &factor.of(system, &pressed)?, &r, &crude, negligible)
     };
+    if !pressed.stay(rho) {
+        return Err(Unproved::HeldByContact);
+    }
     let exact = up(rho / coercivity.sqrt());
     let radius = up(exact + at.moved);
     if !radius.is_finite() {
@@ -234,7 +249,13 @@ where
     }
     let size = at.energy.upper().max(0.0).sqrt();
     let nodes: Vec<f64> = korn.nodes.iter().map(|n| up(n * exact)).collect();
-    let intervals = at.intervals(d, &lines, &nodes, rho, exact);
+    let (exactly, mut nodes) = less_slides(at.u.clone(), nodes, slides);
+    for (node, (exactly, reported)) in nodes.iter_mut().zip(exactly.iter().zip(&reported)) {
+        let off = [0, 1].map(|c| exactly[c] - Ball::from(reported[c]));
+        *node = up(*node + root(dot(off, off)));
+    }
+    let pressure = if holds.is_empty() { rho / 2.0 } else { rho };
+    let intervals = at.intervals(d, &lines, (&exactly, &nodes), [rho, pressure], exact);
     if !intervals.are_finite() {
         return Err(Unproved::OutOfRange);
     }
@@ -242,10 +263,32 @@ where
         kappa,
         radius,
         relative: (size > 0.0).then(|| radius / size),
-        pressure: rho / 2.0,
+        pressure,
         nodes,
         intervals,
     })
+}
+
+/// u less its part along the motions that slide, as [`held::least_norm`] takes it out, and the bounds at the nodes that this has
+/// for a u within the bounds `nodes`.
+fn less_slides(
+    mut u: Vec<[Ball; 2]>,
+    mut nodes: Vec<f64>,
+    slides: &[Vec<[f64; 2]>],
+) -> (Vec<[Ball; 2]>, Vec<f64>) {
+    for slide in slides {
+        let slide: Vec<[Ball; 2]> = slide.iter().map(|s| s.map(Ball::from)).collect();
+        let lengths: Vec<f64> = slide.iter().map(|&s| root(dot(s, s))).collect();
+        let along = product(&slide, &u);
+        let off = nodes.iter().zip(&lengths).map(|(node, s)| node * s).sum::<f64>();
+        let off = off * (1.0 + f64::EPSILON * (nodes.len() + 16) as f64);
+        for ((u, node), (s, length)) in u.iter_mut().zip(&mut nodes).zip(slide.iter().zip(lengths))
+        {
+            *u = [0, 1].map(|c| u[c] - along * s[c]);
+            *node = up(*node + off * length);
+        }
+    }
+    (u, nodes)
 }
 
 /// The contact edges in balls.
@@ -363,10 +406,11 @@ where
     system.numbering.of.iter().enumerate().map(at).collect()
 }
 
-/// A(v, .) at the free unknowns for the field with the components `z`.
+/// A(v, .), and what the springs where it is `pressed` do, at the free unknowns for the field with the components `z`.
 pub(super) fn times_matrix<E, const N: usize, const M: usize>(
     system: &System<E, N, M>,
-    lines: &[OnEdge<Ball, N, M>],
+    lines: &Lines<N, M>,
+    pressed: &Pressed<M>,
     z: &[Ball],
 ) -> Vec<Ball>
 where
@@ -378,6 +422,7 @@ where
     for line in lines {
         line.add_stresses(&v, &mut forces);
     }
+    pressed.add_springs(lines, &v, &mut forces);
     free(system, &forces)
 }
 
@@ -402,7 +447,8 @@ where
 /// |r|_A* at most, where |t|_A* <= sum of `crude`_i |t_i| for every t. What is `negligible` need not be known better.
 fn dual_norm<E, const N: usize, const M: usize>(
     system: &System<E, N, M>,
-    lines: &[OnEdge<Ball, N, M>],
+    lines: &Lines<N, M>,
+    pressed: &Pressed<M>,
     factor: &Tangent,
     r: &[Ball],
     crude: &[f64],
@@ -420,7 +466,7 @@ where
         for (z, c) in z.iter_mut().zip(&correction) {
             *z = (*z + Ball::from(*c)).centre();
         }
-        let az = times_matrix(system, lines, &z);
+        let az = times_matrix(system, lines, pressed, &z);
         let square = z.iter().zip(&az).fold(Ball::from(0), |sum, (&z, &az)| sum + z * az);
         let energy = root(square);
         left = r.iter().zip(&az).map(|(&r, &az)| r - az).collect();
@@ -452,7 +498,7 @@ struct Evaluation {
     residual: Vec<[Ball; 2]>,
     /// u~, or the field near it, with its prescribed components where they should be.
     u: Vec<[Ball; 2]>,
-    /// The energy norm of what that is off u~, at most.
+    /// The energy norm of what that is off the displacement that is reported, at most.
     moved: f64,
     /// a(u~, u~)
     energy: Ball,
@@ -464,7 +510,7 @@ impl Evaluation {
     fn new<E, const N: usize, const M: usize>(
         system: &System<E, N, M>,
         lines: &[OnEdge<Ball, N, M>],
-        u: &[[f64; 2]],
+        (u, reported): (&[[f64; 2]], &[[f64; 2]]),
         near: Option<&[[Twofold; 2]]>,
         load: &[[Ball; 2]],
     ) -> Result<Self, Unproved>
@@ -486,7 +532,7 @@ impl Evaluation {
         let exact = field(system, component, prescribed);
         let off: Vec<[Ball; 2]> = exact
             .iter()
-            .zip(u)
+            .zip(reported)
             .map(|(exact, u)| [0, 1].map(|c| exact[c] - Ball::from(u[c])))
             .collect();
         let moved = root(strain_energy(d, &off));
@@ -514,13 +560,14 @@ impl Evaluation {
         Ok(Evaluation { residual, u: exact, moved, energy, pressures })
     }
 
-    /// What is reported, with |u~ - u^h|_A <= `rho`, |u~ - u^h|_a <= `radius`, |u~ - u^h| <= `nodes` at the nodes.
+    /// What is reported, with |u~ - u^h|_A <= `rho`, |u~ - u^h|_a <= `radius`, the norm of gamma^{1/2} (lambda~ - lambda^h) at most
+    /// `pressure`, and displacements at the nodes with their bounds.
     fn intervals<E, const N: usize, const M: usize>(
         &self,
         d: &Discretization<E, N, M>,
         lines: &[OnEdge<Ball, N, M>],
-        nodes: &[f64],
-        rho: f64,
+        (u, nodes): (&[[Ball; 2]], &[f64]),
+        [rho, pressure]: [f64; 2],
         radius: f64,
     ) -> Intervals
     where
@@ -532,7 +579,7 @@ impl Evaluation {
         let high = up(root(self.energy) + radius);
         let energy = [low * low * (1.0 - 2.0 * f64::EPSILON), up(high * high)];
 
-        let lengths = self.u.iter().map(|&u| dot(u, u));
+        let lengths = u.iter().map(|&u| dot(u, u));
         let mut max_displacement = [0.0_f64; 2];
         for (square, by) in lengths.zip(nodes) {
             let low = square.lower().max(0.0).sqrt() * (1.0 - 2.0 * f64::EPSILON);
@@ -567,14 +614,14 @@ impl Evaluation {
             .into_iter()
             .map(|(boundary, sums, weight)| {
                 // |int mu n~_c| <= (int 1/gamma)^{1/2} |gamma^{1/2} mu|
-                let off = up(root(weight) * rho / 2.0);
+                let off = up(root(weight) * pressure);
                 let [force, x, y] = sums.map(|sum| range(sum.widened(off)));
                 // lambda^h <= 0
                 let force = [force[0].max(0.0), force[1]];
                 ContactIntervals { boundary: boundary.to_string(), force, resultant: [x, y] }
             })
             .collect();
-        let reactions = self.reactions(d, lines, rho);
+        let reactions = self.reactions(d, lines, [rho, pressure]);
         Intervals { energy, max_displacement, contact, reactions }
     }
 
@@ -583,7 +630,7 @@ impl Evaluation {
         &self,
         d: &Discretization<E, N, M>,
         lines: &[OnEdge<Ball, N, M>],
-        rho: f64,
+        [rho, pressure]: [f64; 2],
     ) -> BTreeMap<String, [Range; 2]>
     where
         E: ExactEdge<f64, N, M>,
@@ -607,7 +654,7 @@ impl Evaluation {
                     sum + weight * Ball::from(most) * Ball::from(most)
                 });
                 let by_contact = root(by_contact);
-                range(reaction.widened(up(rho * (by_body + by_contact / 2.0))))
+                range(reaction.widened(up(rho * by_body + pressure * by_contact)))
             });
             (boundary.clone(), ranges)
         };

@@ -20,6 +20,7 @@ pub mod limit;
 mod memory;
 pub mod newton;
 pub mod ordering;
+mod pressed;
 mod relaxation;
 pub mod route;
 pub mod solution;
@@ -379,8 +380,6 @@ where
     let status = accuracy::judge(&outcome, settings).map_err(|e| told(&system, e))?;
     let Outcome { u, fine, forces, p, residuals, residual, .. } = outcome;
     let mut evaluated = Evaluated::with(d, u, forces, &p);
-    // This changes neither P nor the forces.
-    held::least_norm(&mut evaluated.u, d.slides.as_deref().unwrap_or_default());
     let newton = NewtonReport { status, residuals, residual, factorizations };
     watch.lap();
     let limit = match &factor {
@@ -395,6 +394,8 @@ where
     };
     let enclosure = enclosure::enclose(&system, &evaluated.u, fine.as_deref(), factor);
     times.certify = watch.lap();
+    // This changes neither P nor the forces.
+    held::least_norm(&mut evaluated.u, d.slides.as_deref().unwrap_or_default());
     Ok((evaluated, Report { newton, method, enclosure, limit }, times))
 }
 

@@ -66,8 +66,8 @@ fn the_page_on_result_json_lists_exactly_what_is_written() {
             "cases/block.toml",
             &["mesh.rectangle.nx=4", "method.gamma0=auto", "load.body=[\"0\", \"-1\"]"],
         ),
-        // Held by contact alone.
-        ("cases/disk_force.toml", &[]),
+        // Held by contact alone, of which a rule with one point sees too little for an enclosure.
+        ("cases/disk_force.toml", &["method.contact_quadrature={gauss=1}"]),
     ] {
         let settings: Vec<String> = settings.iter().map(|&s| s.to_owned()).collect();
         let case = Case::parse(Path::new(file), &page(file), &settings).unwrap();

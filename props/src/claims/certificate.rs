@@ -38,7 +38,7 @@ use signorini::solve::{
 use super::answers;
 use crate::bodies::MaybeExact;
 use crate::claim::{Check, Engine, Outcome, by, control, noticed, text};
-use crate::discrete::{CUT, Discrete, Nodal, exactly};
+use crate::discrete::{BOTH, CUT, Discrete, Nodal, exactly};
 use crate::elimination::{Matrix, combined, dot, solve_definite, square};
 use crate::numbers::Exact;
 use crate::verdict::Verdict;
@@ -138,6 +138,8 @@ struct Draw {
     push: f64,
     /// In twentieths.
     kappa: u8,
+    /// Only guided at one side and pressed from the top by a traction of 1: contact alone stops it from falling.
+    by_contact: bool,
 }
 
 /// The gap at x = 0 in sixty-fourths: so wide that there is no contact, so narrow that there is nothing else, or between.
@@ -166,8 +168,17 @@ fn problems(most: [usize; 2], gap: Gap) -> impl Strategy<Value = Draw> {
             gap: [line.0, line.1],
             push: line.2,
             kappa,
+            by_contact: false,
         },
     )
+}
+
+/// Such problems of bodies that contact alone holds, on floors that are steeper.
+fn problems_by_contact(most: [usize; 2]) -> impl Strategy<Value = Draw> {
+    problems(most, BETWEEN).prop_map(|draw| {
+        let gap = [draw.gap[0], 6.0 * draw.gap[1]];
+        Draw { gap, by_contact: true, ..draw }
+    })
 }
 
 fn constant(value: f64) -> SharedFunction {
@@ -195,12 +206,23 @@ impl Draw {
         if self.is_turned() { [-y, x] } else { [x, y] }
     }
 
-    /// A body that is held and pushed down at the top, with a body force and a gap at the bottom.
+    /// A body that is held and pushed down at the top, or pressed there and guided at a side, with a body force and a gap at
+    /// the bottom.
     fn problem(&self) -> Result<Problem, String> {
         let ([g0, g1], turned) = (self.gap, self.is_turned());
         let along = move |[x, y]: [f64; 2]| if turned { y } else { x };
         let gap: SharedFunction = Arc::new(move |x: [f64; 2]| g0 + g1 * along(x));
-        let push = self.turned([0.0, -self.push]).map(constant);
+        let floor = ("bottom".to_owned(), Condition::Contact { gap });
+        let conditions = if self.by_contact {
+            let none = || [0.0; 2].map(constant);
+            let guided = self.turned([1, 0]).map(|c| (c != 0).then(|| constant(0.0)));
+            let guided = Condition::Mixed { displacement: guided, traction: none() };
+            let pressed = Condition::Traction(self.turned([0.0, -1.0]).map(constant));
+            BTreeMap::from([floor, ("left".to_owned(), guided), ("top".to_owned(), pressed)])
+        } else {
+            let push = self.turned([0.0, -self.push]).map(|c| Some(constant(c)));
+            BTreeMap::from([floor, ("top".to_owned(), Condition::Displacement(push))])
+        };
         let mesh = self.mesh()?;
         let mut named = Vec::new();
         for name in mesh.boundary_names() {
@@ -212,10 +234,7 @@ impl Draw {
             Mesh::new(vertices, mesh.triangles().to_vec(), named).map_err(text)?,
             Material::lame(self.lambda, 1.0, self.plane),
             self.turned(self.load).map(constant),
-            BTreeMap::from([
-                ("top".to_owned(), Condition::Displacement(push.map(Some))),
-                ("bottom".to_owned(), Condition::Contact { gap }),
-            ]),
+            conditions,
         ))
     }
 }
@@ -450,17 +469,24 @@ where
     let Ok(system) = System::new(&d) else { return Verdict::Fails("there is no system") };
     let load: Vec<[Ball; 2]> =
         d.load.iter().map(|l| l.map(|l| Ball::from(l * asked.load))).collect();
-    let LowerTriangle { starts, rows, values } = &system.matrix;
-    let values = values.iter().map(|a| asked.matrix * a).collect();
-    let matrix = LowerTriangle { starts: starts.clone(), rows: rows.clone(), values };
-    let Ok(factor) = Factor::new(&matrix) else { return Verdict::Fails("there is a factor") };
-    let factor = if asked.matrix == 1.0 { FactorOfA::Double } else { FactorOfA::AtHand(factor) };
-    let Ok(enclosure) = enclosure::enclose_with(&system, &u, None, factor, &load) else {
-        return Verdict::Fails("there is an enclosure");
+    let factor = if asked.matrix == 1.0 {
+        FactorOfA::Double
+    } else {
+        let LowerTriangle { starts, rows, values } = &system.matrix;
+        let values = values.iter().map(|a| asked.matrix * a).collect();
+        let matrix = LowerTriangle { starts: starts.clone(), rows: rows.clone(), values };
+        let Ok(factor) = Factor::new(&matrix) else { return Verdict::Fails("there is a factor") };
+        FactorOfA::AtHand(factor)
+    };
+    let enclosure = match enclosure::enclose_with(&system, &u, None, factor, &load) {
+        Ok(enclosure) => enclosure,
+        // No edge may be pressed from end to end.
+        Err(Unproved::HeldByContact) if draw.by_contact => return Verdict::Vacuous,
+        Err(_) => return Verdict::Fails("there is an enclosure"),
     };
     let certifier = Certifier::new(&d);
     let up = draw.turned([0, 1]).map(Exact::from);
-    match certifier.contained(exactly(&u), &enclosure, asked, up) {
+    match certifier.contained(exactly(&u), &enclosure, asked, up, draw.by_contact) {
         Ok(verdict) => verdict,
         Err(why) => Verdict::Fails(why),
     }
@@ -476,6 +502,7 @@ where
         enclosure: &Enclosure,
         asked: InDoubles,
         up: [Exact; 2],
+        by_contact: bool,
     ) -> Result<Verdict, &'static str> {
         let radius = Exact::of_double(enclosure.radius) * Exact::of_double(asked.factor);
         let (share, scale) = (power(asked.share), square(&self.k, &self.problem.free(&found)));
@@ -491,6 +518,14 @@ where
             if point.is_solution() {
                 class = self.problem.class(&point.u);
                 break;
+            }
+            if by_contact {
+                // Without a certificate in exact arithmetic only a rational solution will do.
+                if step == 8 {
+                    return Ok(Verdict::Vacuous);
+                }
+                point = self.newton_step(&point)?;
+                continue;
             }
             let refined = self.certify(&point)?;
             let kept = Exact::from(1) - self.problem.kappa();
@@ -563,16 +598,18 @@ where
         let largest = largest.fold(zero, |most, x| if x > most { x } else { most });
         let [low, high] = intervals.max_displacement.map(Exact::of_double);
         ensure!(low * low <= largest && largest <= high * high);
-        // One boundary, the lower side, with the normal -`up`; the upper side is held in both components.
+        // One boundary, the lower side, with the normal -`up`; and one that holds.
         let force = self.problem.contact_force(u);
         let [contact] = &intervals.contact[..] else { return Verdict::Fails("one boundary") };
         ensure!(inside(contact.force, force));
         ensure!((0..2).all(|c| inside(contact.resultant[c], force * up[c])));
         let held = self.problem.reactions(u).into_iter().zip(self.problem.prescribed());
-        let reaction = held
-            .filter(|(_, p)| p[0].is_some())
-            .fold([zero; 2], |sum, (r, _)| [sum[0] + r[0], sum[1] + r[1]]);
-        let Some(ranges) = intervals.reactions.get("top") else { return Verdict::Fails("top") };
+        let reaction = held.fold([zero; 2], |sum, (r, p)| {
+            [0, 1].map(|c| if p[c].is_some() { sum[c] + r[c] } else { sum[c] })
+        });
+        let Some(ranges) = intervals.reactions.values().next() else {
+            return Verdict::Fails("a boundary holds");
+        };
         ensure!((0..2).all(|c| inside(ranges[c], reaction[c])));
         Verdict::Holds("within")
     }
@@ -594,6 +631,32 @@ fn hold_in_doubles(asked: InDoubles) -> Outcome {
 
 fn reported_around_the_result() -> Outcome {
     hold_in_doubles(REPORTED)
+}
+
+/// Draws of bodies that contact alone holds, around the result and around any point near it.
+fn reported_of_what_contact_holds() -> Outcome {
+    let mut text = Vec::new();
+    let moved = InDoubles { noise: 1e-4, ..REPORTED_MOVED };
+    let classes: [(InDoubles, &[&'static str]); 2] =
+        [(REPORTED, &["pressed", BOTH]), (moved, &["pressed"])];
+    for (asked, classes) in classes {
+        text.push(draws::hold(12, problems_by_contact([2, 2]), classes, |draw| {
+            Exact::scope(|| enclosed_in_doubles::<P1, 3, 2>(draw, ContactQuadrature::Exact, asked))
+        })?);
+        text.push(draws::hold(4, problems_by_contact([1, 1]), &["pressed"], |draw| {
+            let gauss = ContactQuadrature::Gauss(3);
+            Exact::scope(|| enclosed_in_doubles::<P2, 6, 3>(draw, gauss, asked))
+        })?);
+    }
+    Ok(text.join("; "))
+}
+
+/// A third of the radii there.
+fn a_third_of_what_contact_holds() -> Outcome {
+    let asked = InDoubles { factor: 1.0 / 3.0, noise: 1e-4, ..REPORTED_MOVED };
+    draws::reject(problems_by_contact([2, 2]), |draw| {
+        Exact::scope(|| enclosed_in_doubles::<P1, 3, 2>(draw, ContactQuadrature::Exact, asked))
+    })
 }
 
 fn reported_around_any_point() -> Outcome {
@@ -713,6 +776,7 @@ fn on_a_finer_mesh() -> Outcome {
         gap: [-0.25, 0.125],
         push: 0.0,
         kappa: 10,
+        by_contact: false,
     };
     Exact::scope(|| match enclosed::<P1, 3, 2>(&draw, ContactQuadrature::Exact, SOLVER) {
         Verdict::Holds(IRRATIONAL) => Ok(format!("40 unknowns: {IRRATIONAL}")),
@@ -844,7 +908,7 @@ fn counted_below_the_limit() -> Outcome {
 }
 
 /// The checks, for the row of Theorem 3.3.
-pub fn checks() -> [Check; 19] {
+pub fn checks() -> [Check; 21] {
     [
         by(
             Engine::Doubles,
@@ -856,6 +920,16 @@ pub fn checks() -> [Check; 19] {
             Engine::Exact,
             "the_enclosure_that_is_reported_contains_the_solution_around_the_result",
             reported_around_the_result,
+        ),
+        by(
+            Engine::Exact,
+            "the_enclosure_of_what_contact_alone_holds_contains_the_solution",
+            reported_of_what_contact_holds,
+        ),
+        control(
+            Engine::Exact,
+            "control_a_third_of_the_radius_where_contact_holds",
+            a_third_of_what_contact_holds,
         ),
         by(
             Engine::Doubles,

@@ -250,7 +250,7 @@ where
     let stiffness = matrix::assemble_stiffness(&d, &system.numbering, &neighbours);
     let factor = Factor::with(&system.structure, &stiffness).map_err(text)?;
     let factor = factor.map_err(|_| "no factor")?;
-    let korn = Korn::new(&d.space, &problem.material, &d.constraints).ok_or("not held")?;
+    let korn = Korn::new(&d.space, &problem.material, &d.constraints, &[]).ok_or("not held")?;
     let mut least = f64::INFINITY;
     for (numbers, constant) in system.numbering.of.iter().zip(&korn.nodes) {
         for number in numbers.iter().flatten() {
