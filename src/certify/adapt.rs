@@ -89,6 +89,8 @@ pub enum AdaptError {
     Certify(#[from] CertifyError),
     #[error(transparent)]
     Mesh(#[from] MeshError),
+    #[error("meshes are adapted for degree 1; expected method.degree = 1")]
+    Degree,
     #[error(
         "no mesh can be adapted: '{boundary}' is curved and has a gap along its normal, and bisection keeps the straight edges of the mesh; expected a straight boundary, or an [obstacle]"
     )]
@@ -104,11 +106,10 @@ impl AdaptError {
     pub fn is_wrong_case(&self) -> bool {
         match self {
             AdaptError::Solve { error, .. } => error.is_wrong_case(),
-            AdaptError::Certify(error) => matches!(
-                error,
-                CertifyError::Data(_) | CertifyError::Unsupported(_) | CertifyError::Degree
-            ),
-            AdaptError::Curved { .. } => true,
+            AdaptError::Certify(error) => {
+                matches!(error, CertifyError::Data(_) | CertifyError::Unsupported(_))
+            }
+            AdaptError::Degree | AdaptError::Curved { .. } => true,
             AdaptError::Mesh(_) | AdaptError::AtRest => false,
         }
     }
@@ -127,7 +128,7 @@ pub fn adapt(
     watcher: &dyn Fn(Stage),
 ) -> Result<(Problem, Adapted), AdaptError> {
     if method.degree != Degree::One {
-        return Err(CertifyError::Degree.into());
+        return Err(AdaptError::Degree);
     }
     check_straight(&problem)?;
     let of_solve = |phase| watcher(Stage::Solve(phase));

@@ -11,31 +11,39 @@
 //! is chosen such that they are near those of the mean stress; where the boundary prescribes a traction, it is known. The
 //! affine traction with the moments M_a, M_b is 4 M_a - 2 M_b at a, per unit of the edge's parameter.
 //!
-//! A triangle whose contact edge holds the end of contact is cut there, so that lambda^h is affine on the edges. Where n~
-//! turns along an edge, tau n is affine along it only if the pressure is constant: then it is the mean of lambda^h.
+//! Hat functions are in the space of P2, too: there s_T is the mean of sigma(u^h) with the same terms, and the moments are to be
+//! near those of the affine stress sigma(u^h), which is nearer to the true one than its means are.
+//!
+//! A triangle whose contact edge holds the end of contact is cut there, so that lambda^h is affine on the edges. For P2 it is
+//! quadratic, and the affine pressure with its force and its centroid would be a tension at one end where the centroid
+//! is not in the middle third: then it acts on three times the way to the centroid only, and the triangle is cut there
+//! ([`Profile`]). Force and moment are those of lambda^h, unless that way is too short to cut a triangle there. Where n~ turns along an edge, tau n is affine along
+//! it only if the pressure is constant: then it is the mean of lambda^h.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use nalgebra::{Matrix2, Vector2};
 
 use super::CertifyError;
 use super::oscillation::{self, Oscillation, Traction, is_within};
-use super::proof::{Certificate, Cut, Edge, Piece, Role};
+use super::proof::{Certificate, Curved, Cut, Edge, Piece, Role, Shape, exactly};
 use crate::fem::constraints::Constraints;
-use crate::fem::contact_line::ContactLineEdge;
+use crate::fem::contact_line::{self, ContactLineEdge};
 use crate::fem::mesh::length;
 use crate::fem::pieces::{Features, Rule};
-use crate::fem::{BoundaryEdge, Condition, Function, Mesh, Problem, SharedFunction};
-use crate::kernel::composite::complementary;
+use crate::fem::{BoundaryEdge, Condition, Function, Mesh, Problem, SharedFunction, Space};
+use crate::kernel::composite::{Affine, complementary};
 use crate::kernel::contact_edge::integral_of_product;
-use crate::kernel::edge_integral::{ExactEdge, positive_interval};
-use crate::kernel::{Material, P1, Stress, Triangle};
+use crate::kernel::edge_integral::{self, ExactEdge, positive_interval};
+use crate::kernel::{Enclosing, Material, Stress, Triangle};
+use crate::solve::Solution;
 
 /// What a boundary edge prescribes.
 #[derive(Clone, Copy)]
 pub(super) enum Boundary<'a> {
-    /// The components that are held.
-    Held([bool; 2]),
+    /// The components that are held, and the functions that they are, if these may be other than affine.
+    Held([bool; 2], [Option<&'a SharedFunction>; 2]),
     /// The traction.
     Loaded(Traction<'a>),
     /// Nothing: traction 0.
@@ -44,14 +52,233 @@ pub(super) enum Boundary<'a> {
     Contact(usize),
 }
 
+/// A displacement on the mesh: affine on its triangles, or quadratic.
+#[derive(Clone)]
+pub(super) struct Field {
+    /// At the vertices.
+    pub vertices: Vec<[f64; 2]>,
+    /// What it is in the middle of each edge beyond the mean of the ends.
+    pub bulges: Option<Vec<[f64; 2]>>,
+}
+
+impl Field {
+    /// The field with these values at the vertices, and at the middles of the edges if there are so many.
+    pub fn new(mesh: &Mesh, nodal: &[[f64; 2]]) -> Result<Field, CertifyError> {
+        let (vertices, nodes) = (mesh.vertices().len(), mesh.vertices().len() + mesh.edge_count());
+        if nodal.len() != vertices && nodal.len() != nodes {
+            let found = nodal.len();
+            return Err(CertifyError::Field { found, vertices, nodes });
+        }
+        let (ends, middles) = nodal.split_at(vertices);
+        let bulges = (!middles.is_empty()).then(|| {
+            let mut bulges = vec![[0.0; 2]; middles.len()];
+            for (corners, edges) in mesh.triangles().iter().zip(mesh.triangle_edges()) {
+                for (local, &e) in edges.iter().enumerate() {
+                    let [a, b] = [1, 2].map(|k| ends[corners[(local + k) % 3]]);
+                    bulges[e] = [0, 1].map(|c| middles[e][c] - (a[c] + b[c]) / 2.0);
+                }
+            }
+            bulges
+        });
+        Ok(Field { vertices: ends.to_vec(), bulges })
+    }
+
+    /// The values at the vertices, and at the middles of the edges if it is quadratic.
+    pub fn nodal(&self, mesh: &Mesh) -> Vec<[f64; 2]> {
+        let mut nodal = self.vertices.clone();
+        if let Some(bulges) = &self.bulges {
+            nodal.resize(nodal.len() + bulges.len(), [0.0; 2]);
+            for (corners, edges) in mesh.triangles().iter().zip(mesh.triangle_edges()) {
+                for (local, &e) in edges.iter().enumerate() {
+                    let [a, b] = [1, 2].map(|k| self.vertices[corners[(local + k) % 3]]);
+                    let middle = [0, 1].map(|c| (a[c] + b[c]) / 2.0 + bulges[e][c]);
+                    nodal[self.vertices.len() + e] = middle;
+                }
+            }
+        }
+        nodal
+    }
+
+    /// C eps of it on triangle `t`.
+    fn stress(&self, parts: &Parts, t: usize, triangle: &Triangle<f64>) -> Affine<f64> {
+        let mesh = parts.mesh;
+        let nodal = mesh.triangles()[t].map(|vertex| self.vertices[vertex].into());
+        let bulges = self.bulges.as_ref();
+        let bulges = bulges.map(|all| mesh.triangle_edges()[t].map(|e| all[e].into()));
+        Affine::of_displacement(triangle, &nodal, bulges.as_ref(), parts.material(t))
+    }
+}
+
+/// An edge of Gamma_C with what the solution says there.
+pub(super) struct Contact {
+    pub edge: BoundaryEdge,
+    pub boundary: Arc<str>,
+    pub length: f64,
+    pub normal: Vector2<f64>,
+    /// The direction of contact at both ends.
+    pub directions: [Vector2<f64>; 2],
+    /// g at both ends.
+    pub gap: [f64; 2],
+    /// What it is in the middle beyond their mean; 0 where it is known to be affine.
+    pub gap_bulge: f64,
+    /// int lambda^h n~ phi for them.
+    moments: [Vector2<f64>; 2],
+    /// c_E
+    excess: Vector2<f64>,
+    pressure: Profile,
+}
+
+/// tau_n along an edge of Gamma_C: affine, or with a jump at a place between the ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Profile {
+    /// The place.
+    cut: Option<f64>,
+    /// Before and after it, each at both ends.
+    values: [[f64; 2]; 2],
+}
+
+impl Profile {
+    fn whole(pressure: [f64; 2]) -> Profile {
+        Profile { cut: None, values: [pressure; 2] }
+    }
+
+    /// lambda^h = -\[P\]+/gamma itself, for P with the values `p` at the ends.
+    fn of_affine(p: [f64; 2], gamma: f64) -> Profile {
+        let pressure = p.map(|p| -(p.max(0.0) / gamma));
+        let [start, end] = positive_interval(p);
+        let at = if p[0] > 0.0 { end } else { start };
+        let changes = (p[0] > 0.0) != (p[1] > 0.0);
+        let inside = NEAR_THE_END < at && at < 1.0 - NEAR_THE_END;
+        if changes && inside {
+            Profile { cut: Some(at), values: [[pressure[0], 0.0], [0.0, pressure[1]]] }
+        } else {
+            Profile::whole(pressure)
+        }
+    }
+
+    /// The pressure with the moments `m` of a lambda^h that is not affine; `starts` tells whether P is positive at the start, `end`
+    /// is the place where it changes its sign, if there is one only. Affine up to the end of contact, if the centroid is in
+    /// the middle third of that; else up to three times the way to the centroid.
+    fn of_moments(m: [f64; 2], starts: bool, end: Option<f64>) -> Profile {
+        let force = m[0] + m[1];
+        if !(force < 0.0) {
+            return Profile::whole([0.0; 2]);
+        }
+        // Seen from where contact is, or where most of it is.
+        let turned = if end.is_some() { !starts } else { m[1] < m[0] };
+        let centroid = if turned { m[0] } else { m[1] } / force;
+        let end = end.map_or(1.0, |end| if turned { 1.0 - end } else { end });
+        let reach = match end.min(3.0 * centroid) {
+            x if x <= 1.0 - LEAST_PART => x.max(LEAST_PART),
+            // Three halves of the way would be enough.
+            _ if 3.0 * centroid < 1.0 => 1.0 - LEAST_PART,
+            _ => 1.0,
+        };
+        let place = (centroid / reach).clamp(1.0 / 3.0, 2.0 / 3.0);
+        let mean = force / reach;
+        let ends = [mean * (4.0 - 6.0 * place), mean * (6.0 * place - 2.0)].map(|p| p.min(0.0));
+        match (reach < 1.0, turned) {
+            (false, false) => Profile::whole(ends),
+            (false, true) => Profile::whole([ends[1], ends[0]]),
+            (true, false) => Profile { cut: Some(reach), values: [ends, [0.0; 2]] },
+            (true, true) => {
+                Profile { cut: Some(1.0 - reach), values: [[0.0; 2], [ends[1], ends[0]]] }
+            }
+        }
+    }
+}
+
+impl Contact {
+    fn new<E, const N: usize, const M: usize>(
+        problem: &Problem,
+        edge: &ContactLineEdge<N, M>,
+        u: &[Vector2<f64>; N],
+    ) -> Contact
+    where
+        E: ExactEdge<f64, N, M>,
+    {
+        let p = edge.p(u);
+        // int \[P\]+ N_a; a hat function is N_a and half of that of the middle.
+        let nodal = E::exact(p).gradient;
+        let middle = nodal.get(2).copied();
+        let positive = [0, 1].map(|a| middle.map_or(nodal[a], |m| nodal[a] + m / 2.0));
+        let directions = [edge.directions[0], edge.directions[1]];
+        let mesh = &problem.mesh;
+        let moments = if edge.directions.iter().all(|d| *d == edge.normal) {
+            let normal = mesh.triangle(edge.edge.triangle).scaled_normal(edge.edge.local);
+            positive.map(|p| normal * -(p / edge.gamma))
+        } else {
+            let along = |a: usize, p: f64| edge.directions[a] * -(edge.length * p / edge.gamma);
+            [0, 1].map(|a| {
+                let own = along(a, nodal[a]);
+                middle.map_or(own, |m| own + along(2, m / 2.0))
+            })
+        };
+        let sigma_n = edge.sigma_n(u);
+        let excess = Vector2::from([0, 1].map(|c| {
+            let stress = integral_of_product(sigma_n, directions.map(|d| d[c]));
+            -(positive[0] * directions[0][c] + positive[1] * directions[1][c]) - edge.gamma * stress
+        }));
+        let gap = [edge.gap[0], edge.gap[1]];
+        let turns = directions[0] != directions[1];
+        let condition = problem.conditions.get(&*edge.boundary);
+        let gap_bulge = match (condition, edge.directions.get(2), edge.gap.get(2)) {
+            // The direction in the middle is the mean of those at the ends, a little shorter than 1.
+            (_, Some(d), Some(gap_there)) if turns => {
+                let mean = (directions[0] + directions[1]) / 2.0;
+                gap_there * mean.dot(d) - (gap[0] + gap[1]) / 2.0
+            }
+            (Some(Condition::Contact { gap }), ..) if !turns => {
+                bulge_of(gap, mesh.ends(edge.edge).map(|vertex| mesh.vertices()[vertex]))
+            }
+            // The distance to a plane.
+            _ => 0.0,
+        };
+        let pressure = if turns {
+            // The mean: then tau n is affine.
+            Profile::whole([-((positive[0] + positive[1]) / edge.gamma); 2])
+        } else if E::DEGREE == 1 {
+            Profile::of_affine([p[0], p[1]], edge.gamma)
+        } else {
+            let mut ends = edge_integral::roots::<E, N, M>(p);
+            let end = ends.next().filter(|_| ends.next().is_none());
+            Profile::of_moments(positive.map(|p| -(p / edge.gamma)), p[0] > 0.0, end)
+        };
+        Contact {
+            edge: edge.edge,
+            boundary: Arc::clone(&edge.boundary),
+            length: edge.length,
+            normal: edge.normal,
+            directions,
+            gap,
+            gap_bulge,
+            moments,
+            excess,
+            pressure,
+        }
+    }
+
+    /// Whether the direction of contact turns along it.
+    pub fn turns(&self) -> bool {
+        self.directions[0] != self.directions[1]
+    }
+}
+
+/// What `f` is in the middle of an edge beyond the mean of its ends; 0 where it is known to be affine.
+pub(super) fn bulge_of(f: &SharedFunction, ends: [[f64; 2]; 2]) -> f64 {
+    let [a, b] = ends;
+    let middle = [0, 1].map(|c| (a[c] + b[c]) / 2.0);
+    if is_within(f, 1) { 0.0 } else { f.at(middle) - (f.at(a) + f.at(b)) / 2.0 }
+}
+
 /// The parts of a problem that certificates are made from.
 pub(super) struct Parts<'a> {
     pub problem: &'a Problem,
     pub mesh: &'a Mesh,
-    /// Gamma_C with P and sigma_n.
-    pub contact: &'a [ContactLineEdge<3, 2>],
+    /// Gamma_C.
+    pub contact: Vec<Contact>,
     /// u_D at the vertices.
-    pub prescribed: &'a [[Option<f64>; 2]],
+    pub prescribed: Vec<[Option<f64>; 2]>,
     /// What boundary edges are, by their numbers in the mesh.
     pub boundary: BTreeMap<usize, Boundary<'a>>,
 }
@@ -59,11 +286,21 @@ pub(super) struct Parts<'a> {
 impl<'a> Parts<'a> {
     /// # Errors
     /// Conditions that no composite stress can satisfy.
-    pub fn new(
+    pub fn new<E, const N: usize, const M: usize>(
         problem: &'a Problem,
-        contact: &'a [ContactLineEdge<3, 2>],
-        constraints: &'a Constraints,
-    ) -> Result<Self, CertifyError> {
+        solution: &Solution,
+    ) -> Result<Self, CertifyError>
+    where
+        E: ExactEdge<f64, N, M>,
+    {
+        let space = Space::<E, N, M>::new(&problem.mesh);
+        let constraints = Constraints::new(problem, &space)?;
+        let contact = contact_line::assemble(problem, &space, solution.gamma.gamma)?;
+        let contact = contact.iter().map(|edge| {
+            let u = space.on_triangle(edge.edge.triangle, &solution.displacement);
+            Contact::new::<E, N, M>(problem, edge, &u)
+        });
+        let contact: Vec<Contact> = contact.collect();
         let unsupported = |why: String| Err(CertifyError::Unsupported(why));
         if let Some(point) = problem.points.first() {
             return unsupported(format!(
@@ -82,9 +319,10 @@ impl<'a> Parts<'a> {
             // The names were found when the problem was discretised.
             for &edge in mesh.edges_of(name).unwrap_or_default() {
                 let what = match condition {
-                    Condition::Displacement(functions) => {
-                        Boundary::Held([functions[0].is_some(), functions[1].is_some()])
-                    }
+                    Condition::Displacement(functions) => Boundary::Held(
+                        [functions[0].is_some(), functions[1].is_some()],
+                        functions.each_ref().map(Option::as_ref),
+                    ),
                     Condition::Mixed { displacement, traction } => {
                         let held = [0, 1].map(|c| displacement[c].is_some());
                         let vanishes = |c: usize| {
@@ -96,7 +334,7 @@ impl<'a> Parts<'a> {
                                 "'{name}' has a traction beside a prescribed component"
                             ));
                         }
-                        Boundary::Held(held)
+                        Boundary::Held(held, displacement.each_ref().map(Option::as_ref))
                     }
                     Condition::Support { normal, tangential } => {
                         let affine = |f: &SharedFunction| is_within(f, 1);
@@ -112,14 +350,14 @@ impl<'a> Parts<'a> {
                                 return unsupported(format!("'{name}' holds an oblique direction"));
                             }
                         };
-                        Boundary::Held(held)
+                        Boundary::Held(held, [None; 2])
                     }
                     Condition::Traction(traction) => Boundary::Loaded(Traction::Vector(traction)),
                     Condition::Pressure(p) => Boundary::Loaded(Traction::Pressure(p)),
                     Condition::Contact { .. } | Condition::Obstacle(..) => continue,
                 };
                 let what = match what {
-                    Boundary::Held([false, false]) => Boundary::Free,
+                    Boundary::Held([false, false], _) => Boundary::Free,
                     what => what,
                 };
                 boundary.insert(number(edge), what);
@@ -128,12 +366,34 @@ impl<'a> Parts<'a> {
         for (k, edge) in contact.iter().enumerate() {
             boundary.insert(number(edge.edge), Boundary::Contact(k));
         }
-        Ok(Parts { problem, mesh, contact, prescribed: constraints.values(), boundary })
+        let prescribed = constraints.values()[..mesh.vertices().len()].to_vec();
+        Ok(Parts { problem, mesh, contact, prescribed, boundary })
+    }
+
+    /// Gives v the bulges of u_D on Gamma_D.
+    fn hold_between(&self, bulges: &mut [[f64; 2]]) {
+        for (corners, edges) in self.mesh.triangles().iter().zip(self.mesh.triangle_edges()) {
+            for (local, &e) in edges.iter().enumerate() {
+                let Some(Boundary::Held(held, _)) = self.boundary.get(&e) else { continue };
+                let ends = [1, 2].map(|k| self.mesh.vertices()[corners[(local + k) % 3]]);
+                let data = self.prescribed_bulge(e, ends);
+                (0..2).filter(|&c| held[c]).for_each(|c| bulges[e][c] = data[c]);
+            }
+        }
+    }
+
+    /// u_D beyond the mean of the ends in the middle of an edge of Gamma_D; 0 where it is known to be affine.
+    fn prescribed_bulge(&self, e: usize, ends: [[f64; 2]; 2]) -> [f64; 2] {
+        let Some(Boundary::Held(held, functions)) = self.boundary.get(&e) else { return [0.0; 2] };
+        [0, 1].map(|c| match functions[c] {
+            Some(f) if held[c] => bulge_of(f, ends),
+            _ => 0.0,
+        })
     }
 
     /// The contact boundaries whose direction turns along an edge, so that it and the gap are known at vertices only.
     pub fn turning(&self) -> BTreeSet<&str> {
-        let turning = self.contact.iter().filter(|edge| turns(edge));
+        let turning = self.contact.iter().filter(|edge| edge.turns());
         turning.map(|edge| &*edge.boundary).collect()
     }
 
@@ -143,30 +403,24 @@ impl<'a> Parts<'a> {
     }
 }
 
-/// Whether the direction of contact turns along an edge.
-pub(super) fn turns(edge: &ContactLineEdge<3, 2>) -> bool {
-    edge.directions[0] != edge.directions[1]
-}
-
-/// v: u with the prescribed values, and pushed out of the obstacle at the vertices of Gamma_C.
-pub(super) fn admissible(parts: &Parts, u: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    let mut v = u.to_vec();
-    let hold = |v: &mut Vec<[f64; 2]>| {
-        for (v, data) in v.iter_mut().zip(parts.prescribed) {
-            for c in 0..2 {
-                if let Some(data) = data[c] {
-                    v[c] = data;
-                }
+/// v: u with the prescribed values, and pushed out of the obstacle at the vertices of Gamma_C and, if it is quadratic, between
+/// them.
+pub(super) fn admissible(parts: &Parts, u: &Field) -> Field {
+    let mut field = u.clone();
+    let v = &mut field.vertices;
+    for (v, data) in v.iter_mut().zip(&parts.prescribed) {
+        for c in 0..2 {
+            if let Some(data) = data[c] {
+                v[c] = data;
             }
         }
-    };
-    hold(&mut v);
+    }
     let reach = parts.mesh.vertices().iter().flatten().fold(0.0_f64, |max, x| max.max(x.abs()));
-    let size = u.iter().flatten().fold(0.0_f64, |max, u| max.max(u.abs()));
+    let size = u.vertices.iter().flatten().fold(0.0_f64, |max, u| max.max(u.abs()));
     // At a corner two edges push; the second may push back into the first, so some rounds.
     for _ in 0..8 {
         let mut moved = false;
-        for edge in parts.contact {
+        for edge in &parts.contact {
             let ends = parts.mesh.ends(edge.edge);
             let free = [0, 1].map(|k| {
                 let (n, data) = (edge.directions[k], parts.prescribed[ends[k]]);
@@ -188,7 +442,7 @@ pub(super) fn admissible(parts: &Parts, u: &[[f64; 2]]) -> Vec<[f64; 2]> {
                     moved = true;
                 }
             }
-            if turns(edge) {
+            if edge.turns() && u.bulges.is_none() {
                 // Between the ends it is at most the mean of the products of each with the other's direction.
                 let [d, e] = edge.directions;
                 let along = free[0].dot(&e) + free[1].dot(&d);
@@ -208,31 +462,134 @@ pub(super) fn admissible(parts: &Parts, u: &[[f64; 2]]) -> Vec<[f64; 2]> {
             break;
         }
     }
-    v
+    if let Some(bulges) = &mut field.bulges {
+        parts.hold_between(bulges);
+        for edge in &parts.contact {
+            let BoundaryEdge { triangle, local } = edge.edge;
+            let bulge = &mut bulges[parts.mesh.triangle_edges()[triangle][local]];
+            let at_ends =
+                parts.mesh.ends(edge.edge).map(|vertex| Vector2::from(field.vertices[vertex]));
+            push_between(edge, at_ends, bulge, [reach, size]);
+        }
+    }
+    field
 }
 
-/// The certificate with equilibrated tractions, before any improvement; the triangles of the mesh that its pieces come
-/// from; and what the data of the problem leave out.
-pub(super) fn build(
-    parts: &Parts,
-    u: &[[f64; 2]],
-    v: Vec<[f64; 2]>,
-) -> (Certificate, Vec<usize>, Oscillation) {
+/// Makes the Bernstein coefficients of v . d - g between the ends of an edge of Gamma_C negative, by the bulge of v. The body
+/// reaches as far out as `reach` and v is at most `size`.
+fn push_between(
+    edge: &Contact,
+    v: [Vector2<f64>; 2],
+    bulge: &mut [f64; 2],
+    [reach, size]: [f64; 2],
+) {
+    let ([d, e], [g, h]) = (edge.directions, edge.gap);
+    let (mean, own) = ((d + e) / 2.0, Vector2::from(*bulge));
+    let middle = (v[0] + v[1]) / 2.0 + own * 2.0;
+    let between = (g + h) / 2.0 + 2.0 * edge.gap_bulge;
+    let tilted = if d[0] != 0.0 && d[1] != 0.0 { size } else { 0.0 };
+    let largest = v[0].dot(&d).abs() + v[1].dot(&e).abs() + own.dot(&d).abs() + tilted;
+    let scale = largest + g.abs() + h.abs() + edge.gap_bulge.abs();
+    let margin = 64.0 * f64::EPSILON * scale * reach / edge.length / NEAR_THE_END;
+    let step = if edge.turns() {
+        // v . d is a cubic: three times its coefficients.
+        let one = 2.0 * (middle.dot(&d) - between) + v[0].dot(&e) - g;
+        let other = 2.0 * (middle.dot(&e) - between) + v[1].dot(&d) - h;
+        let step = |beyond: f64, along: f64| (beyond + 6.0 * margin) / (4.0 * along);
+        step(one, mean.dot(&d)).max(step(other, mean.dot(&e)))
+    } else {
+        (middle.dot(&d) - between + 2.0 * margin) / (2.0 * d.dot(&d))
+    };
+    if step > 0.0 {
+        *bulge = (own - mean * step).into();
+    }
+}
+
+/// A certificate with equilibrated tractions, before any improvement.
+pub(super) struct Built {
+    pub certificate: Certificate,
+    /// The triangles of the mesh that its pieces come from.
+    pub origins: Vec<usize>,
+    /// What the data of the problem leave out.
+    pub oscillation: Oscillation,
+    divisions: Vec<Division>,
+}
+
+/// A triangle that was cut in two, from a place on the edge `base` to the opposite vertex. The edge's second part and the cut
+/// are the next two edges of the certificate.
+struct Division {
+    /// The ends of the edge, and the place between them.
+    ends: [usize; 2],
+    at: f64,
+    /// The edge, whose first part keeps its number.
+    base: usize,
+    /// The edges from the opposite vertex to both ends.
+    sides: [usize; 2],
+}
+
+impl Built {
+    /// A displacement of the mesh on the pieces: given at the vertices, and at the middles of the edges if it is quadratic.
+    pub fn shape<S: Enclosing>(&self, mesh: &Mesh, nodal: &[[f64; 2]]) -> Shape<S> {
+        let (ends, middles) = nodal.split_at(mesh.vertices().len());
+        let points: Vec<Vector2<S>> = ends.iter().map(|&v| exactly(v)).collect();
+        let bulges = (!middles.is_empty()).then(|| {
+            let mut bulges = vec![Vector2::zeros(); middles.len()];
+            for (corners, edges) in mesh.triangles().iter().zip(mesh.triangle_edges()) {
+                for (local, &e) in edges.iter().enumerate() {
+                    let [a, b] = [1, 2].map(|k| points[corners[(local + k) % 3]]);
+                    bulges[e] = exactly::<S>(middles[e]) - (a + b) / S::from(2);
+                }
+            }
+            bulges
+        });
+        divided(Shape { points, bulges }, &self.divisions)
+    }
+}
+
+/// The same displacement with values at the cuts, and bulges on their edges: on a part of length s of an edge, s^2 times the bulge
+/// b of the whole; on the cut, the second difference of the quadratic along it.
+fn divided<S: Enclosing>(mut shape: Shape<S>, divisions: &[Division]) -> Shape<S> {
+    for division in divisions {
+        let s = S::exactly(division.at);
+        let r = S::from(1) - s;
+        let [a, b] = division.ends.map(|end| shape.points[end]);
+        let mut there = a * r + b * s;
+        if let Some(bulges) = &mut shape.bulges {
+            let bulge = bulges[division.base];
+            let [to_a, to_b] = division.sides.map(|e| bulges[e]);
+            there += bulge * (S::from(4) * r * s);
+            bulges[division.base] = bulge * (s * s);
+            bulges.push(bulge * (r * r));
+            bulges.push(to_a * r + to_b * s - bulge * (r * s));
+        }
+        shape.points.push(there);
+    }
+    shape
+}
+
+/// The certificate of the stress of `u` and of the displacement `v`.
+pub(super) fn build(parts: &Parts, u: &Field, v: &Field) -> Built {
     let mesh = parts.mesh;
     let data = oscillation::Data::new(parts.problem);
     let whole: Vec<Triangle<f64>> = (0..mesh.triangles().len()).map(|t| mesh.triangle(t)).collect();
     let stress = stresses(parts, u, &whole);
     let bodies: Vec<[Vector2<f64>; 3]> =
         whole.iter().enumerate().map(|(t, triangle)| data.body_on(t, triangle)).collect();
-    let moments = moments(parts, &bodies, u, &whole, &stress);
-    let mut oscillation = Oscillation::new(parts);
-    let mut certificate = Certificate {
-        vertices: mesh.vertices().to_vec(),
-        cuts: Vec::new(),
-        displacement: v,
-        prescribed: parts.prescribed.to_vec(),
-        pieces: Vec::with_capacity(whole.len()),
-        edges: Vec::with_capacity(mesh.edge_count()),
+    let moments = moments(parts, &bodies, &whole, &stress);
+    let quadratic = v.bulges.is_some();
+    let mut built = Built {
+        certificate: Certificate {
+            vertices: mesh.vertices().to_vec(),
+            cuts: Vec::new(),
+            displacement: v.vertices.clone(),
+            curved: quadratic.then(Curved::default),
+            prescribed: parts.prescribed.clone(),
+            pieces: Vec::with_capacity(whole.len()),
+            edges: Vec::with_capacity(mesh.edge_count()),
+        },
+        origins: Vec::with_capacity(whole.len()),
+        oscillation: Oscillation::new(parts, quadratic),
+        divisions: Vec::new(),
     };
     // The edges of the mesh, each as the first triangle that has it sees it.
     let mut ends = vec![None; mesh.edge_count()];
@@ -244,100 +601,143 @@ pub(super) fn build(
     for (e, (ends, m)) in ends.into_iter().zip(&moments).enumerate() {
         let force = [0, 1].map(|k| [0, 1].map(|c| 4.0 * m[k][c] - 2.0 * m[1 - k][c]));
         let ends = ends.unwrap_or_default();
+        let places = || ends.map(|vertex| mesh.vertices()[vertex]);
+        let mut bulge = [0.0; 2];
         let role = match parts.boundary.get(&e) {
             None => Role::Inner(force),
-            Some(Boundary::Held(held)) => {
+            Some(Boundary::Held(held, _)) => {
+                bulge = parts.prescribed_bulge(e, places());
                 Role::Held(*held, force.map(|f| [0, 1].map(|c| if held[c] { f[c] } else { 0.0 })))
             }
             Some(Boundary::Free) => Role::Loaded([[0.0; 2]; 2]),
-            Some(Boundary::Loaded(traction)) => {
-                traction.affine(ends.map(|vertex| mesh.vertices()[vertex]), force)
-            }
+            Some(Boundary::Loaded(traction)) => traction.affine(places(), force),
             Some(Boundary::Contact(k)) => {
                 let edge = &parts.contact[*k];
-                let p = edge.p(&nodal(u, mesh.triangles()[edge.edge.triangle]));
+                bulge = [edge.gap_bulge, 0.0];
                 let along = (edge.directions != [edge.normal; 2])
                     .then(|| edge.directions.map(<[f64; 2]>::from));
-                let pressure = if turns(edge) {
-                    // The mean: then tau n is affine.
-                    let [a, b] = P1::exact(p).gradient;
-                    [-((a + b) / edge.gamma); 2]
-                } else {
-                    p.map(|p| -(p.max(0.0) / edge.gamma))
-                };
-                Role::Contact { pressure, gap: edge.gap, along }
+                Role::Contact { pressure: edge.pressure.values[0], gap: edge.gap, along }
             }
         };
-        certificate.edges.push(Edge { ends, role });
+        built.certificate.edges.push(Edge { ends, role });
+        if let Some(curved) = &mut built.certificate.curved {
+            curved.data.push(bulge);
+        }
     }
-    let mut origins = Vec::with_capacity(whole.len());
     for t in 0..whole.len() {
-        add_triangle(parts, &data, (t, bodies[t]), u, &stress, &mut certificate);
-        origins.resize(certificate.pieces.len(), t);
+        add_triangle(parts, &data, (t, bodies[t]), &stress[t], &mut built);
+        built.origins.resize(built.certificate.pieces.len(), t);
     }
-    oscillation.measure(parts, &data, &mut certificate, &origins);
-    (certificate, origins, oscillation)
+    let Built { certificate, origins, oscillation, divisions } = &mut built;
+    if let (Some(curved), Some(bulges)) = (&mut certificate.curved, &v.bulges) {
+        let vectors = |values: &[[f64; 2]]| values.iter().copied().map(Vector2::from).collect();
+        let shape = Shape { points: vectors(&v.vertices), bulges: Some(vectors(bulges)) };
+        let shape = divided::<f64>(shape, divisions);
+        curved.at_cuts = shape.points[v.vertices.len()..].iter().map(|&v| v.into()).collect();
+        curved.bulges = shape.bulges.iter().flatten().map(|&v| v.into()).collect();
+    }
+    oscillation.measure(parts, &data, certificate, origins);
+    built
 }
 
 /// Contact that ends this near an end of its edge, in units of the edge, leaves it whole: the triangles would be slivers.
 const NEAR_THE_END: f64 = 1e-3;
 
-/// Triangle `t`, cut in two where contact ends on one of its edges.
+/// The least part of an edge that is cut off where lambda^h is not affine: a sliver bounds badly, and the force of what is
+/// shorter has so little moment that the balance of the triangles may carry it.
+const LEAST_PART: f64 = 0.15;
+
+/// A triangle of the mesh or a part of it.
+struct Part {
+    vertices: [usize; 3],
+    edges: [usize; 3],
+    /// The barycentric coordinates of its vertices in the triangle of the mesh.
+    places: [[f64; 3]; 3],
+}
+
+/// Triangle `t`, cut where contact ends on one of its edges.
 fn add_triangle(
     parts: &Parts,
     data: &oscillation::Data,
     (t, whole): (usize, [Vector2<f64>; 3]),
-    u: &[[f64; 2]],
-    stress: &[Stress<f64>],
-    certificate: &mut Certificate,
+    stress: &Affine<f64>,
+    built: &mut Built,
 ) {
     let (corners, edges) = (parts.mesh.triangles()[t], parts.mesh.triangle_edges()[t]);
+    let unit = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let mut found = vec![Part { vertices: corners, edges, places: unit }];
+    for e in edges {
+        let Some(&Boundary::Contact(k)) = parts.boundary.get(&e) else { continue };
+        let Profile { cut: Some(at), values } = parts.contact[k].pressure else { continue };
+        let Some(owner) = found.iter().position(|part| part.edges.contains(&e)) else { continue };
+        let part = found.remove(owner);
+        found.extend(cut(part, (e, at, values), parts.contact[k].gap_bulge, stress, built));
+    }
     let material = [parts.material(t).lambda(), parts.material(t).mu()];
-    let add = |vertices: [usize; 3], edges: [usize; 3], certificate: &mut Certificate| {
+    for Part { vertices, edges, .. } in found {
+        let certificate = &mut built.certificate;
         let own = || {
             let triangle = Triangle { vertices: vertices.map(|p| place(certificate, p)) };
             data.body_on(t, &triangle)
         };
         let body = if vertices == corners { whole } else { own() }.map(Into::into);
         certificate.pieces.push(Piece { vertices, edges, material, body, oscillation: 0.0 });
-    };
-    let cut = (0..3).find_map(|local| {
-        let Some(&Boundary::Contact(k)) = parts.boundary.get(&edges[local]) else { return None };
-        let edge = &parts.contact[k];
-        let p = edge.p(&nodal(u, corners));
-        let [start, end] = positive_interval(p);
-        let at = if p[0] > 0.0 { end } else { start };
-        let changes = (p[0] > 0.0) != (p[1] > 0.0);
-        let inside = NEAR_THE_END < at && at < 1.0 - NEAR_THE_END;
-        (changes && inside && !turns(edge)).then_some((local, at))
-    });
-    let Some((local, at)) = cut else {
-        add(corners, edges, certificate);
-        return;
-    };
-    let [a, b, c] = [0, 1, 2].map(|k| corners[(local + k) % 3]);
-    let [opposite, next, last] = [0, 1, 2].map(|k| edges[(local + k) % 3]);
+    }
+}
+
+/// Both halves of a part whose edge `base` is cut at a place, with the pressures before and after it.
+fn cut(
+    part: Part,
+    (base, at, pressures): (usize, f64, [[f64; 2]; 2]),
+    gap_bulge: f64,
+    stress: &Affine<f64>,
+    built: &mut Built,
+) -> Vec<Part> {
+    let certificate = &mut built.certificate;
+    let local = part.edges.iter().position(|&e| e == base).unwrap_or_default();
+    let [a, b, c] = [0, 1, 2].map(|k| part.vertices[(local + k) % 3]);
+    let [at_a, at_b, at_c] = [0, 1, 2].map(|k| part.places[(local + k) % 3]);
+    let [next, last] = [1, 2].map(|k| part.edges[(local + k) % 3]);
+    let whole = certificate.edges[base];
+    let Role::Contact { gap, along, .. } = whole.role else { return vec![part] };
     let middle = certificate.vertices.len() + certificate.cuts.len();
     certificate.cuts.push(Cut { ends: [b, c], at });
-    let whole = certificate.edges[opposite];
-    let Role::Contact { pressure, gap, along } = whole.role else { return };
-    let inside = gap[0] + at * (gap[1] - gap[0]);
+    let gap_bulge = if certificate.curved.is_some() { gap_bulge } else { 0.0 };
+    let inside = gap[0] + at * (gap[1] - gap[0]) + 4.0 * at * (1.0 - at) * gap_bulge;
+    let [first, second] = pressures;
     // The first half keeps the number of the edge.
-    certificate.edges[opposite] = Edge {
+    certificate.edges[base] = Edge {
         ends: [b, middle],
-        role: Role::Contact { pressure: [pressure[0], 0.0], gap: [gap[0], inside], along },
+        role: Role::Contact { pressure: first, gap: [gap[0], inside], along },
     };
-    let second = certificate.edges.len();
+    let other = certificate.edges.len();
     certificate.edges.push(Edge {
         ends: [middle, c],
-        role: Role::Contact { pressure: [0.0, pressure[1]], gap: [inside, gap[1]], along },
+        role: Role::Contact { pressure: second, gap: [inside, gap[1]], along },
     });
     let [from, to] = [middle, a].map(|p| place(certificate, p));
     let normal = Vector2::new(to.y - from.y, from.x - to.x);
-    let force = stress[t].traction(normal).into();
-    certificate.edges.push(Edge { ends: [middle, a], role: Role::Inner([force; 2]) });
-    add([a, b, middle], [opposite, second + 1, last], certificate);
-    add([a, middle, c], [second, next, second + 1], certificate);
+    let at_middle = [0, 1, 2].map(|i| at_b[i] + at * (at_c[i] - at_b[i]));
+    let force = [at_middle, at_a].map(|l| stress.at(l).traction(normal).into());
+    certificate.edges.push(Edge { ends: [middle, a], role: Role::Inner(force) });
+    if let Some(curved) = &mut certificate.curved {
+        curved.data[base] = [gap_bulge * at * at, 0.0];
+        curved.data.push([gap_bulge * (1.0 - at) * (1.0 - at), 0.0]);
+        curved.data.push([0.0; 2]);
+    }
+    built.divisions.push(Division { ends: [b, c], at, base, sides: [last, next] });
+    vec![
+        Part {
+            vertices: [a, b, middle],
+            edges: [base, other + 1, last],
+            places: [at_a, at_b, at_middle],
+        },
+        Part {
+            vertices: [a, middle, c],
+            edges: [other, next, other + 1],
+            places: [at_a, at_middle, at_c],
+        },
+    ]
 }
 
 /// Where point `p` of a certificate lies.
@@ -357,35 +757,20 @@ pub(super) fn at_point(values: &[[f64; 2]], cuts: &[Cut], p: usize) -> Vector2<f
     }
 }
 
-/// The values of `u` at the vertices of a triangle.
-fn nodal(u: &[[f64; 2]], corners: [usize; 3]) -> [Vector2<f64>; 3] {
-    corners.map(|vertex| u[vertex].into())
-}
-
-/// s_T on each triangle.
-fn stresses(parts: &Parts, u: &[[f64; 2]], triangles: &[Triangle<f64>]) -> Vec<Stress<f64>> {
-    let mesh = parts.mesh;
-    let nodal = |t: usize| nodal(u, mesh.triangles()[t]);
-    let mut stress: Vec<Stress<f64>> = triangles
-        .iter()
-        .enumerate()
-        .map(|(t, triangle)| {
-            parts.material(t).stress(super::proof::displacement_gradient(triangle, &nodal(t)))
-        })
-        .collect();
-    for edge in parts.contact {
+/// s_T on each triangle, and beside it what sigma(u) has beyond its mean.
+fn stresses(parts: &Parts, u: &Field, triangles: &[Triangle<f64>]) -> Vec<Affine<f64>> {
+    let of_u = |(t, triangle): (usize, &Triangle<f64>)| {
+        let sigma = u.stress(parts, t, triangle);
+        let mean = sigma.mean();
+        let beyond = sigma.beyond.map(|_| [0, 1, 2].map(|i| sigma.at_corner(i) - mean));
+        Affine { base: mean, beyond }
+    };
+    let mut stress: Vec<Affine<f64>> = triangles.iter().enumerate().map(of_u).collect();
+    for edge in &parts.contact {
         let (t, n) = (edge.edge.triangle, edge.normal);
-        let nodal = nodal(t);
-        let pressure = P1::exact(edge.p(&nodal)).gradient;
-        let sigma_n = edge.sigma_n(&nodal);
-        let d = edge.directions;
-        let excess = Vector2::from([0, 1].map(|c| {
-            let stress = integral_of_product(sigma_n, [d[0][c], d[1][c]]);
-            -(pressure[0] * d[0][c] + pressure[1] * d[1][c]) - edge.gamma * stress
-        }));
         let factor = edge.length / (triangles[t].double_area() / 2.0);
-        let strain = Matrix2::from_fn(|i, j| factor * excess[i] * n[j]);
-        stress[t] = stress[t] + parts.material(t).stress(strain);
+        let strain = Matrix2::from_fn(|i, j| factor * edge.excess[i] * n[j]);
+        stress[t].base = stress[t].base + parts.material(t).stress(strain);
     }
     stress
 }
@@ -395,9 +780,8 @@ fn stresses(parts: &Parts, u: &[[f64; 2]], triangles: &[Triangle<f64>]) -> Vec<S
 fn moments(
     parts: &Parts,
     bodies: &[[Vector2<f64>; 3]],
-    u: &[[f64; 2]],
     triangles: &[Triangle<f64>],
-    stress: &[Stress<f64>],
+    stress: &[Affine<f64>],
 ) -> Vec<[Vector2<f64>; 2]> {
     let mesh = parts.mesh;
     let (corners, edges) = (mesh.triangles(), mesh.triangle_edges());
@@ -420,15 +804,27 @@ fn moments(
     for (e, owner) in owners.iter().enumerate() {
         let [Some((t, local)), second] = *owner else { continue };
         let normal = triangles[t].scaled_normal(local);
-        let here = stress[t].traction(normal);
+        let here = stress[t].base.traction(normal);
         let force = match second {
-            Some((other, _)) => (here + stress[other].traction(normal)) / 2.0,
+            Some((other, _)) => (here + stress[other].base.traction(normal)) / 2.0,
             None => here,
         };
         moments[e] = [force / 2.0; 2];
+        // What comes to the mean, p and q at the ends, has the moments (2 p + q) / 6 and (p + 2 q) / 6.
+        let ends = [1, 2].map(|k| corners[t][(local + k) % 3]);
+        let sides = if second.is_some() { 2.0 } else { 1.0 };
+        for (other, _) in owner.iter().flatten() {
+            let Some(beyond) = &stress[*other].beyond else { continue };
+            for (corner, beyond) in corners[*other].iter().zip(beyond) {
+                let Some(k) = ends.iter().position(|end| end == corner) else { continue };
+                let sixth = beyond.traction(normal) / (6.0 * sides);
+                moments[e][k] += sixth * 2.0;
+                moments[e][1 - k] += sixth;
+            }
+        }
         match parts.boundary.get(&e) {
             None => {}
-            Some(Boundary::Held(held)) => {
+            Some(Boundary::Held(held, _)) => {
                 for c in (0..2).filter(|&c| !held[c]) {
                     known[e][c] = true;
                     moments[e].iter_mut().for_each(|m| m[c] = 0.0);
@@ -445,13 +841,7 @@ fn moments(
             }
             Some(Boundary::Contact(k)) => {
                 known[e] = [true; 2];
-                let edge = &parts.contact[*k];
-                let positive = P1::exact(edge.p(&nodal(u, corners[t]))).gradient;
-                moments[e] = if edge.directions == [edge.normal; 2] {
-                    positive.map(|p| normal * -(p / edge.gamma))
-                } else {
-                    [0, 1].map(|k| edge.directions[k] * -(edge.length * positive[k] / edge.gamma))
-                };
+                moments[e] = parts.contact[*k].moments;
             }
         }
     }
@@ -484,7 +874,7 @@ struct Around<'a> {
     averaged: &'a [[Vector2<f64>; 2]],
     known: &'a [[bool; 2]],
     triangles: &'a [Triangle<f64>],
-    stress: &'a [Stress<f64>],
+    stress: &'a [Affine<f64>],
     /// The body force at the vertices, affine between them.
     bodies: &'a [[Vector2<f64>; 3]],
 }
@@ -539,7 +929,7 @@ fn go_round(a: usize, fan: &[(usize, usize)], around: &Around, moments: &mut [[V
         signs.push((k, -sign));
         for &(t, l) in &chain {
             let normal = around.triangles[t].scaled_normal(l);
-            sum = sum - around.stress[t].traction(normal) / 2.0 - around.load(t, l);
+            sum = sum - around.stress[t].base.traction(normal) / 2.0 - around.load(t, l);
             let e = around.edges[t][(l + 1) % 3];
             edges.push(e);
             sums.push(sum);
@@ -587,20 +977,17 @@ pub(super) fn rule(function: &dyn Function) -> Rule {
 
 /// Zienkiewicz and Zhu's estimate of the error of v: the distance of its stress from the stress that is averaged at the
 /// vertices, triangle by triangle of each material.
-pub(super) fn averaging_estimate(parts: &Parts, v: &[[f64; 2]]) -> f64 {
+pub(super) fn averaging_estimate(parts: &Parts, v: &Field) -> f64 {
     let mesh = parts.mesh;
     let place = |t: usize| parts.problem.material.place_of(t);
     let zero = Stress::new([0.0; 3]);
     // At each vertex the sums and weights of the few materials there.
     let mut sums: Vec<Vec<(usize, Stress<f64>, f64)>> = vec![Vec::new(); mesh.vertices().len()];
-    let stress_of = |t: usize, triangle: &Triangle<f64>| {
-        let nodal = nodal(v, mesh.triangles()[t]);
-        parts.material(t).stress(super::proof::displacement_gradient(triangle, &nodal))
-    };
     for (t, corners) in mesh.triangles().iter().enumerate() {
         let triangle = mesh.triangle(t);
-        let (s, area) = (stress_of(t, &triangle), triangle.double_area());
-        for &vertex in corners {
+        let (stress, area) = (v.stress(parts, t, &triangle), triangle.double_area());
+        for (i, &vertex) in corners.iter().enumerate() {
+            let s = stress.at_corner(i);
             let known = sums[vertex].iter_mut().find(|(material, ..)| *material == place(t));
             match known {
                 Some((_, sum, weight)) => {
@@ -614,13 +1001,13 @@ pub(super) fn averaging_estimate(parts: &Parts, v: &[[f64; 2]]) -> f64 {
     let mut square = 0.0;
     for (t, corners) in mesh.triangles().iter().enumerate() {
         let triangle = mesh.triangle(t);
-        let s = stress_of(t, &triangle);
+        let stress = v.stress(parts, t, &triangle);
         let mut total = zero;
         let mut share = 0.0;
-        for &vertex in corners {
+        for (i, &vertex) in corners.iter().enumerate() {
             let known = sums[vertex].iter().find(|(material, ..)| *material == place(t));
             let Some(&(_, sum, weight)) = known else { continue };
-            let difference = sum / weight - s;
+            let difference = sum / weight - stress.at_corner(i);
             share += complementary(parts.material(t), difference);
             total = total + difference;
         }

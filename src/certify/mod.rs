@@ -9,23 +9,25 @@
 //! | `build` | v and tau from the discrete solution |
 //! | `sweeps` | a better tau |
 //! | `oscillation` | data outside the exact class |
+//! | `bubbles` | stresses for what affine loads lack |
 //! | `adapt` | meshes that are refined until the bound meets a target |
 
 pub mod adapt;
 mod balance;
+mod bubbles;
 mod build;
 mod oscillation;
 pub mod proof;
 mod sweeps;
 
 pub use self::adapt::{AdaptError, Adapted, Target, adapt};
-use self::proof::Role;
+use nalgebra::Vector2;
+
+use self::build::{Built, Field, Parts};
 pub use self::proof::{Certificate, Proof, Rejection};
-use crate::fem::constraints::Constraints;
-use crate::fem::contact_line;
-use crate::fem::{DataError, Problem, Space};
-use crate::kernel::composite::complementary;
-use crate::kernel::{Ball, Interval, Material, P1, Plane, Triangle};
+use self::proof::{Role, Shape};
+use crate::fem::{DataError, Problem};
+use crate::kernel::{Ball, Interval, P1, P2, Triangle};
 use crate::memory::{self, OutOfMemory};
 use crate::solve::Solution;
 
@@ -44,6 +46,8 @@ pub struct Continuous {
     pub bound: f64,
     /// The bound over |v|_a.
     pub relative: f64,
+    /// v, at the vertices, and at the middles of the edges if it is quadratic.
+    pub displacement: Vec<[f64; 2]>,
     /// The bound over an estimate of the error that proves nothing (Zienkiewicz and Zhu's): how sharp the bound may be.
     pub effectivity_hint: Option<f64>,
     /// Whether every step is proved, rounding included.
@@ -69,7 +73,7 @@ pub struct Continuous {
     pub lift: f64,
 }
 
-/// Certifies the P1 `solution` of `problem`.
+/// Certifies the `solution` of `problem`.
 ///
 /// # Errors
 /// Data that don't make the problem; a solution that no certificate can be made for, with the reason.
@@ -77,8 +81,8 @@ pub fn certify(problem: &Problem, solution: &Solution) -> Result<Continuous, Cer
     certify_field(problem, solution, &solution.displacement)
 }
 
-/// Certifies any displacement `field` of `problem`, given at the vertices of the mesh. The stress comes from our own P1
-/// `solution`; v is the field, clipped into the admissible set, or our own solution, whichever gives the smaller bound of the
+/// Certifies any displacement `field` of `problem`, given at the vertices of the mesh, and at the middles of its edges if it is
+/// quadratic on the triangles. The stress comes from our own `solution`; v is the field, clipped into the admissible set, or our own solution, whichever gives the smaller bound of the
 /// field's own error: what is clipped at vertices only may cost more than the way to a good solution.
 ///
 /// # Errors
@@ -103,17 +107,17 @@ fn certify_near(
     start: &[[f64; 2]],
     field: &[[f64; 2]],
 ) -> Result<Continuous, CertifyError> {
-    if solution.degree != 1 {
-        return Err(CertifyError::Degree);
-    }
     memory::check(PER_TRIANGLE * problem.mesh.triangles().len() as u64)?;
-    let space = Space::<P1, 3, 2>::new(&problem.mesh);
-    let constraints = Constraints::new(problem, &space)?;
-    let contact = contact_line::assemble(problem, &space, solution.gamma.gamma)?;
-    let parts = build::Parts::new(problem, &contact, &constraints)?;
-    let v = build::admissible(&parts, start);
-    let (mut certificate, origins, oscillation) = build::build(&parts, &solution.displacement, v);
-    let topology = sweeps::improve(&mut certificate, SWEEPS)?;
+    let parts = match solution.degree {
+        1 => Parts::new::<P1, 3, 2>(problem, solution)?,
+        _ => Parts::new::<P2, 6, 3>(problem, solution)?,
+    };
+    let mesh = &problem.mesh;
+    let [u, start, _] = [&solution.displacement, start, field].map(|nodal| Field::new(mesh, nodal));
+    let v = build::admissible(&parts, &start?);
+    let mut built = build::build(&parts, &u?, &v);
+    let topology = sweeps::improve(&mut built.certificate, SWEEPS)?;
+    let (certificate, oscillation) = (&built.certificate, &built.oscillation);
     let state = certificate.balanced::<Ball>(topology)?;
     let proof = certificate.sum(&state)?;
     let together = |bound: f64, beside: f64| match beside {
@@ -131,27 +135,28 @@ fn certify_near(
         [below.lo(), proof.energy[1]]
     });
     // Doubling is exact.
-    let compliance = energy
-        .filter(|_| is_loaded_only(&certificate))
-        .map(|[low, high]| [-2.0 * high, -2.0 * low]);
-    let distances = squared_distances(problem, &certificate.displacement, field);
+    let compliance =
+        energy.filter(|_| is_loaded_only(certificate)).map(|[low, high]| [-2.0 * high, -2.0 * low]);
+    let distances = squared_distances(problem, &built, field);
     let clipping = distances.iter().fold(Interval::from(0), |sum, &d| sum + Interval::point(d));
     let clipping = clipping.sqrt().hi();
     let of_field = if clipping == 0.0 {
         bound
     } else {
-        let as_it_is = certificate.sum_at(state, field)?.bound;
+        let as_it_is = certificate.sum_at(state, built.shape(mesh, field))?.bound;
         let beside = (clipping + oscillation.lift).next_up();
         together(as_it_is, beside).min((bound + clipping).next_up())
     };
     let mut shares = vec![0.0; problem.mesh.triangles().len()];
-    origins.iter().zip(&proof.shares).for_each(|(&t, share)| shares[t] += share);
+    built.origins.iter().zip(&proof.shares).for_each(|(&t, share)| shares[t] += share);
     shares.iter_mut().zip(&oscillation.lifts).for_each(|(share, z)| *share += z * z);
-    let estimate = build::averaging_estimate(&parts, &certificate.displacement);
+    let estimate = build::averaging_estimate(&parts, &v);
     let both = |(share, distance): (f64, &f64)| share.max(0.0).sqrt() + distance.sqrt();
+    let Built { certificate, oscillation, .. } = built;
     Ok(Continuous {
         bound,
         relative,
+        displacement: v.nodal(mesh),
         rigorous: oscillation.reason.is_none(),
         reason: oscillation.reason,
         effectivity_hint: (estimate > 0.0).then(|| bound / estimate),
@@ -170,31 +175,42 @@ fn certify_near(
 /// J(u) = -L(u) / 2.
 fn is_loaded_only(certificate: &Certificate) -> bool {
     let is_zero = |gap: [f64; 2]| gap == [0.0; 2];
-    certificate.prescribed.iter().flatten().flatten().all(|&u| u == 0.0)
+    let data = certificate.curved.iter().flat_map(|curved| &curved.data);
+    data.into_iter().all(|&bulge| is_zero(bulge))
+        && certificate.prescribed.iter().flatten().flatten().all(|&u| u == 0.0)
         && certificate.edges.iter().all(|edge| match edge.role {
             Role::Contact { gap, .. } => is_zero(gap),
             _ => true,
         })
 }
 
-/// Upper bounds of |v - w|_a^2 on the triangles, for two fields that are affine on them.
-fn squared_distances(problem: &Problem, v: &[[f64; 2]], w: &[[f64; 2]]) -> Vec<f64> {
-    let exactly = proof::exactly::<Interval>;
-    let on_triangle = |(t, corners): (usize, &[usize; 3])| {
-        if corners.iter().all(|&k| v[k] == w[k]) {
-            return 0.0;
-        }
-        let vertices = corners.map(|k| exactly(problem.mesh.vertices()[k]));
-        let triangle = Triangle { vertices };
-        let difference = corners.map(|k| exactly(v[k]) - exactly(w[k]));
-        let of = problem.material.of(t);
-        let [lambda, mu] = [of.lambda(), of.mu()].map(Interval::point);
-        let material = Material::lame(lambda, mu, Plane::Strain);
-        let sigma = material.stress(proof::displacement_gradient(&triangle, &difference));
-        let square = complementary(&material, sigma) * triangle.double_area() / Interval::from(2);
-        square.hi().max(0.0)
+/// Upper bounds of |v - w|_a^2 on the triangles, for the v of a certificate and a field w.
+fn squared_distances(problem: &Problem, built: &Built, w: &[[f64; 2]]) -> Vec<f64> {
+    let mesh = &problem.mesh;
+    let certificate = &built.certificate;
+    let ends = w.split_at(mesh.vertices().len()).0;
+    let affine = certificate.curved.is_none() && ends.len() == w.len();
+    let (v, w) = (certificate.shape::<Interval>(), built.shape::<Interval>(mesh, w));
+    let minus = |a: &[Vector2<Interval>], b: &[Vector2<Interval>]| {
+        a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>()
     };
-    problem.mesh.triangles().iter().enumerate().map(on_triangle).collect()
+    let bulges = match (v.bulges, w.bulges) {
+        (Some(v), Some(w)) => Some(minus(&v, &w)),
+        (v, w) => v.or(w),
+    };
+    let difference = Shape { points: minus(&v.points, &w.points), bulges };
+    let places = certificate.places::<Interval>();
+    let mut squares = vec![Interval::from(0); mesh.triangles().len()];
+    for (piece, &t) in certificate.pieces.iter().zip(&built.origins) {
+        let same = |&k: &usize| certificate.displacement[k] == ends[k];
+        if affine && mesh.triangles()[t].iter().all(same) {
+            continue;
+        }
+        let triangle = Triangle { vertices: piece.vertices.map(|p| places[p]) };
+        let stress = difference.stress(piece, &triangle);
+        squares[t] += stress.energy(&piece.material(), triangle.double_area());
+    }
+    squares.into_iter().map(|square| square.hi().max(0.0)).collect()
 }
 
 /// Why there is no certificate.
@@ -209,9 +225,9 @@ pub enum CertifyError {
     #[error("no bound of the distance to the true solution: {0}")]
     Unsupported(String),
     #[error(
-        "certificates are made for degree 1: for degree 2 the prescribed values, v_n - g and the pressure would be quadratic on edges, which the certificate and its checker hold as affine functions"
+        "the displacement has {found} values; expected one at each of the {vertices} vertices, or at these and the middles of edges, {nodes}"
     )]
-    Degree,
+    Field { found: usize, vertices: usize, nodes: usize },
     #[error("the certificate does not hold: {0}")]
     Rejected(#[from] Rejection),
 }

@@ -19,7 +19,8 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::build::{Boundary, Parts, place, rule};
+use super::bubbles;
+use super::build::{Boundary, Parts, bulge_of, place, rule};
 use super::proof::{Certificate, Piece, Role};
 use crate::fem::mesh::length;
 use crate::fem::pieces::Rule;
@@ -175,7 +176,8 @@ pub(super) struct Oscillation {
 }
 
 impl Oscillation {
-    pub fn new(parts: &Parts) -> Self {
+    /// `quadratic` tells whether v is, so that it follows data of degree 2.
+    pub fn new(parts: &Parts, quadratic: bool) -> Self {
         let (problem, turning) = (parts.problem, parts.turning());
         let mut inexact = Vec::new();
         if !within(&problem.body_force, 1) {
@@ -186,10 +188,11 @@ impl Oscillation {
         }
         for (name, condition) in &problem.conditions {
             let affine = |f: &SharedFunction| is_within(f, 1);
+            let followed = |f: &SharedFunction| is_within(f, if quadratic { 2 } else { 1 });
             let (what, exact) = match condition {
-                Condition::Displacement(u) => ("displacement", u.iter().flatten().all(affine)),
+                Condition::Displacement(u) => ("displacement", u.iter().flatten().all(followed)),
                 Condition::Mixed { displacement, .. } => {
-                    ("displacement", displacement.iter().flatten().all(affine))
+                    ("displacement", displacement.iter().flatten().all(followed))
                 }
                 Condition::Support { normal, tangential } => {
                     ("displacement", [normal, tangential].into_iter().flatten().all(affine))
@@ -197,13 +200,17 @@ impl Oscillation {
                 Condition::Traction(traction) => ("traction", within(traction, 1)),
                 Condition::Pressure(p) => ("pressure", affine(p)),
                 Condition::Contact { gap } => {
-                    ("gap", affine(gap) || turning.contains(name.as_str()))
+                    ("gap", followed(gap) || turning.contains(name.as_str()))
                 }
                 // A plane's distance is affine; other distances turn.
                 Condition::Obstacle(..) => continue,
             };
             if !exact {
-                inexact.push(format!("the {what} of '{name}' is not known to be affine"));
+                let class = match what {
+                    "displacement" | "gap" if quadratic => "quadratic",
+                    _ => "affine",
+                };
+                inexact.push(format!("the {what} of '{name}' is not known to be {class}"));
             }
         }
         let measured = (!inexact.is_empty())
@@ -211,8 +218,9 @@ impl Oscillation {
         let named = (!turning.is_empty()).then(|| {
             let names: Vec<String> = turning.iter().map(|name| format!("'{name}'")).collect();
             format!(
-                "the problem that is bounded has the polygon of the mesh, and on {} a direction and a gap that are affine between its vertices",
-                names.join(", ")
+                "the problem that is bounded has the polygon of the mesh, and on {} a direction and a gap that are {} between its vertices",
+                names.join(", "),
+                if quadratic { "affine and quadratic" } else { "affine" }
             )
         });
         let reasons: Vec<String> = measured.into_iter().chain(named).collect();
@@ -231,7 +239,7 @@ impl Oscillation {
         if self.reason.is_none() {
             return;
         }
-        self.lifts = lifts(parts);
+        self.lifts = lifts(parts, certificate.curved.is_some());
         self.lift = self.lifts.iter().map(|z| z * z).sum::<f64>().sqrt();
         let pieces: Vec<f64> = certificate
             .pieces
@@ -267,20 +275,27 @@ fn loads(parts: &Parts, data: &Data, certificate: &Certificate, piece: &Piece, t
     let triangle = Triangle { vertices: piece.vertices.map(|p| place(certificate, p)) };
     let (k, h) = korn(&triangle);
     let poincare = k * h / std::f64::consts::PI;
-    let mut square = 0.0;
     // All by the rule of the force that asks for most.
     let curved = data.acting(t).filter(|(_, f, _)| !is_within(f, 1));
     let demand = |f: &SharedFunction| (f.kink().is_some(), f.degree().unwrap_or(u32::MAX));
+    let mut lacking = Vec::new();
     if let Some((_, _, rule)) = curved.max_by_key(|(_, f, _)| demand(f)) {
         let affine = piece.body.map(Vector2::from);
         rule.on_triangle(&triangle, |l, x, weight| {
             let mut difference = -(affine[0] * l[0] + affine[1] * l[1] + affine[2] * l[2]);
             data.acting(t).for_each(|(c, f, _)| difference[c] += f.at(x));
-            square += weight * difference.dot(&difference);
+            lacking.push((l, weight, difference));
         });
     }
+    // Beside a v that is affine all this hardly counts.
+    let mut of_bubbles = if certificate.curved.is_some() {
+        bubbles::take_off(&triangle, &piece.material(), &mut lacking)
+    } else {
+        0.0
+    };
+    let square: f64 = lacking.iter().map(|(_, weight, f)| weight * f.dot(f)).sum();
     let mut sum = poincare * square.sqrt();
-    for e in piece.edges {
+    for (local, e) in piece.edges.into_iter().enumerate() {
         let edge = certificate.edges[e];
         let Some(Boundary::Loaded(traction)) = parts.boundary.get(&e) else { continue };
         if traction.is_affine() {
@@ -293,24 +308,32 @@ fn loads(parts: &Parts, data: &Data, certificate: &Certificate, piece: &Piece, t
             Role::Pressed(p) => p.map(|p| unit.map(|n| -p * n)),
             _ => continue,
         };
-        let mut square = 0.0;
+        let (mut square, mut legendre) = (0.0, Vector2::zeros());
         traction.rule().on_edge(ends, [], |point| {
             let t = traction.at(point.x, unit);
+            let p = shifted_legendre(2, point.s)[0];
             for c in 0..2 {
                 let there = (1.0 - point.s) * affine[0][c] + point.s * affine[1][c];
-                square += point.weight * length * (t[c] - there) * (t[c] - there);
+                let lacking = t[c] - there;
+                square += point.weight * length * lacking * lacking;
+                legendre[c] += 5.0 * point.weight * lacking * p;
             }
         });
+        if certificate.curved.is_some() {
+            of_bubbles += bubbles::of_traction(&triangle, &piece.material(), local, legendre);
+            // int P_2^2 = 1/5
+            square = (square - length / 5.0 * legendre.dot(&legendre)).max(0.0);
+        }
         let trace = (length / (triangle.double_area() / 2.0)
             * (poincare * poincare + h * poincare * k))
             .sqrt();
         sum += trace * square.sqrt();
     }
-    sum / least_stiffness(&piece.material()).sqrt()
+    of_bubbles + sum / least_stiffness(&piece.material()).sqrt()
 }
 
 /// |z|_a of what the displacement and the gap ask for beyond v, on each triangle of the mesh.
-fn lifts(parts: &Parts) -> Vec<f64> {
+fn lifts(parts: &Parts, quadratic: bool) -> Vec<f64> {
     let mesh = parts.mesh;
     let mut lifts = vec![0.0; mesh.triangles().len()];
     let turning = parts.turning();
@@ -321,23 +344,24 @@ fn lifts(parts: &Parts) -> Vec<f64> {
             let (_, normal) = mesh.length_and_normal(edge);
             let between = |s: f64, value: [f64; 2]| (1.0 - s) * value[0] + s * value[1];
             let at = |s: f64| [0, 1].map(|c| between(s, [ends[0][c], ends[1][c]]));
+            // What v follows: f at the ends and, if it is quadratic, in the middle.
+            let lacks = move |f: &SharedFunction, s: f64| {
+                let bulge = if quadratic { bulge_of(f, ends) } else { 0.0 };
+                f.at(at(s)) - between(s, ends.map(|x| f.at(x))) - 4.0 * s * (1.0 - s) * bulge
+            };
+            let is_followed = |f: &SharedFunction| is_within(f, if quadratic { 2 } else { 1 });
             let lacking: Box<dyn Fn(f64) -> [f64; 2]> = match condition {
                 Condition::Displacement(functions)
                 | Condition::Mixed { displacement: functions, .. } => Box::new(move |s| {
                     [0, 1].map(|c| match &functions[c] {
-                        Some(f) if !is_within(f, 1) => {
-                            f.at(at(s)) - between(s, ends.map(|x| f.at(x)))
-                        }
+                        Some(f) if !is_followed(f) => lacks(f, s),
                         _ => 0.0,
                     })
                 }),
                 Condition::Contact { gap }
-                    if !is_within(gap, 1) && !turning.contains(name.as_str()) =>
+                    if !is_followed(gap) && !turning.contains(name.as_str()) =>
                 {
-                    Box::new(move |s| {
-                        let lacking = gap.at(at(s)) - between(s, ends.map(|x| gap.at(x)));
-                        (normal * lacking).into()
-                    })
+                    Box::new(move |s| (normal * lacks(gap, s)).into())
                 }
                 _ => continue,
             };

@@ -13,14 +13,18 @@
 //!
 //! Contact may also act along a direction d, affine on each edge, in place of n: v . d <= g, and tau n = p d with p <= 0. The
 //! theorem holds as it stands, for the solution u of the problem with that d (section 7.2).
+//!
+//! v is affine on the triangles of the mesh, or quadratic on those of the certificate ([`Curved`]): then it has a vector for each
+//! edge, too, the *bulge* by which it is beyond the mean of the edge's ends in the middle. C eps(v) is affine, and v_n - g
+//! is known not to be positive where its Bernstein coefficients are not.
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::Vector2;
 use thiserror::Error;
 
 use super::balance::{self, Tree, Unbalanced};
-use crate::kernel::composite::{Composite, Frame, Loads, complementary};
+use crate::kernel::composite::{Affine, Composite, Frame, Loads};
 use crate::kernel::contact_edge::integral_of_product;
-use crate::kernel::{Ball, Enclosing, Material, Plane, Scalar, Stress, Triangle};
+use crate::kernel::{Ball, Enclosing, Material, Plane, Triangle};
 
 /// v, tau and the problem that they belong to.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,14 +33,29 @@ pub struct Certificate {
     pub vertices: Vec<[f64; 2]>,
     /// Further vertices, numbered after these: each lies on the straight line between two of them.
     pub cuts: Vec<Cut>,
-    /// v at the vertices; affine on the triangles of the mesh, so at a cut it follows.
+    /// v at the vertices; if it is affine on the triangles of the mesh, at a cut it follows.
     pub displacement: Vec<[f64; 2]>,
+    /// What makes v, u_D and g quadratic; `None` where they are affine.
+    pub curved: Option<Curved>,
     /// u_D at the vertices of Gamma_D.
     pub prescribed: Vec<[Option<f64>; 2]>,
     /// The triangles.
     pub pieces: Vec<Piece>,
     /// Their edges.
     pub edges: Vec<Edge>,
+}
+
+/// v quadratic on the triangles, u_D and g quadratic along edges. A bulge is the value in the middle of an edge less the mean
+/// of its ends: 4 s (1 - s) times it is what comes to the affine function.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Curved {
+    /// v at the cuts.
+    pub at_cuts: Vec<[f64; 2]>,
+    /// The bulge of v on each edge.
+    pub bulges: Vec<[f64; 2]>,
+    /// The bulges of the data on each edge: of u_D on Gamma_D in the components that are held, of g on Gamma_C as the first of two;
+    /// all others are 0.
+    pub data: Vec<[f64; 2]>,
 }
 
 /// The point (1 - at) x_a + at x_b.
@@ -132,11 +151,16 @@ pub enum Rejection {
     #[error("edge {edge} has tau_n = {value} on Gamma_C; expected no tension")]
     Tension { edge: usize, value: f64 },
     #[error(
-        "edge {edge}: v_n - g can't be shown to be <= 0 at its ends (it is up to {value} times the length)"
+        "edge {edge}: v_n - g can't be shown to be <= 0 (a Bernstein coefficient is up to {value}, per unit of length where contact is along the normal)"
     )]
     Penetration { edge: usize, value: f64 },
     #[error("vertex {vertex}: v_{} = {found}; expected the prescribed {expected}", ["x", "y"][*component])]
     NotPrescribed { vertex: usize, component: usize, found: f64, expected: f64 },
+    #[error(
+        "edge {edge}: in the middle v_{} is {found} beyond the mean of the ends; expected the prescribed {expected}",
+        ["x", "y"][*component]
+    )]
+    NotPrescribedBetween { edge: usize, component: usize, found: f64, expected: f64 },
     #[error("triangle {triangle} is not counter-clockwise, or too flat to tell")]
     Orientation { triangle: usize },
     #[error(transparent)]
@@ -227,8 +251,8 @@ impl Certificate {
         &self,
         topology: Topology,
     ) -> Result<Balanced<S>, Rejection> {
-        let points: Vec<Vector2<S>> = self.values(&self.vertices);
-        let v: Vec<Vector2<S>> = self.values(&self.displacement);
+        let points: Vec<Vector2<S>> = self.places();
+        let v = self.shape();
         let triangles = self.triangles(&points)?;
         self.check_displacement()?;
         let mut forces = Vec::with_capacity(self.edges.len());
@@ -250,9 +274,16 @@ impl Certificate {
                     if let Some(&value) = pressure.iter().find(|p| !p.is_at_most(0.0)) {
                         return Err(Rejection::Tension { edge: e, value });
                     }
-                    let at_ends = edge.ends.map(|vertex| v[vertex]);
+                    let shape = OnEdge {
+                        v: edge.ends.map(|vertex| v.points[vertex]),
+                        gap,
+                        bulges: self
+                            .curved
+                            .as_ref()
+                            .map(|curved| (exactly(curved.bulges[e]), curved.data[e][0])),
+                    };
                     let contact = match along {
-                        None => along_the_normal(at_ends, normal, pressure, gap, length),
+                        None => along_the_normal(&shape, normal, pressure, length),
                         Some([a, b]) if a != b && pressure[0] != pressure[1] => {
                             return Err(wrong(
                                 "edge",
@@ -261,7 +292,7 @@ impl Certificate {
                             ));
                         }
                         Some(along) => {
-                            along_directions(at_ends, along.map(exactly), pressure, gap, length())
+                            along_directions(&shape, along.map(exactly), pressure, length())
                         }
                     };
                     if let Some(value) = contact.beyond.into_iter().find(|b| !b.is_at_most(0.0)) {
@@ -280,14 +311,13 @@ impl Certificate {
         Ok(state)
     }
 
-    /// The right side of the theorem with the strain of another displacement, given at the vertices; what contact adds stays
-    /// that of v.
+    /// The right side of the theorem with the strain of another displacement; what contact adds stays that of v.
     pub(super) fn sum_at<S: Enclosing>(
         &self,
         state: Balanced<S>,
-        field: &[[f64; 2]],
+        field: Shape<S>,
     ) -> Result<Proof, Rejection> {
-        self.sum(&Balanced { v: self.values(field), ..state })
+        self.sum(&Balanced { v: field, ..state })
     }
 
     /// The right side of the theorem.
@@ -299,7 +329,7 @@ impl Certificate {
         for (t, piece) in self.pieces.iter().enumerate() {
             let material = piece.material();
             let double_area = triangles[t].double_area();
-            let nodal = piece.vertices.map(|vertex| v[vertex]);
+            let nodal = piece.vertices.map(|vertex| v.points[vertex]);
             let (sigma, distance) = state.stresses(self, t);
             let distance = distance.energy(&material, double_area);
             let share = if piece.oscillation == 0.0 {
@@ -312,7 +342,7 @@ impl Certificate {
             } + on_contact[t];
             shares.push(share.upper());
             square += share;
-            let internal = complementary(&material, sigma) * double_area / S::from(2);
+            let internal = sigma.energy(&material, double_area);
             norm += internal;
             // int_T l_i v = |T| / 12 (v_0 + v_1 + v_2 + v_i)
             let total = nodal[0] + nodal[1] + nodal[2];
@@ -320,14 +350,26 @@ impl Certificate {
             for i in 0..3 {
                 work += exactly::<S>(piece.body[i]).dot(&(total + nodal[i]));
             }
+            if let Some(bulges) = v.bulges_of(piece) {
+                // int_T 4 l_j l_k l_i = |T| / 15, and twice that for l_j and l_k in place of l_i.
+                let body = piece.body.map(exactly::<S>);
+                let sum = body[0] + body[1] + body[2];
+                let fifteenth = S::from(24) / S::from(30);
+                for i in 0..3 {
+                    work += (sum * S::from(2) - body[i]).dot(&bulges[i]) * fifteenth;
+                }
+            }
             energy = energy + internal / S::from(2) - work * double_area / S::from(24);
         }
         for (e, edge) in self.edges.iter().enumerate() {
             if let Role::Loaded(_) | Role::Pressed(_) = edge.role {
-                let [a, b] = edge.ends.map(|vertex| v[vertex]);
+                let [a, b] = edge.ends.map(|vertex| v.points[vertex]);
                 for c in 0..2 {
                     let force = [forces[e][0][c], forces[e][1][c]];
                     energy -= integral_of_product(force, [a[c], b[c]]);
+                }
+                if let Some(bulges) = &v.bulges {
+                    energy -= (forces[e][0] + forces[e][1]).dot(&bulges[e]) / S::from(3);
                 }
             }
         }
@@ -359,6 +401,20 @@ impl Certificate {
         for (i, (x, v)) in self.vertices.iter().zip(&self.displacement).enumerate() {
             if !(finite(x) && finite(v)) {
                 return Err(wrong("vertex", i, "a number is not finite"));
+            }
+        }
+        if let Some(Curved { at_cuts, bulges, data }) = &self.curved {
+            for (what, values, expected) in [
+                ("v at cuts", at_cuts, self.cuts.len()),
+                ("bulges", bulges, self.edges.len()),
+                ("bulges of data", data, self.edges.len()),
+            ] {
+                if values.len() != expected {
+                    return Err(Rejection::Length { what, found: values.len(), expected });
+                }
+                if let Some(i) = values.iter().position(|x| !finite(x)) {
+                    return Err(wrong(what, i, "a number is not finite"));
+                }
             }
         }
         for (i, cut) in self.cuts.iter().enumerate() {
@@ -416,6 +472,22 @@ impl Certificate {
             all.push(a * (S::from(1) - s) + b * s);
         }
         all
+    }
+
+    /// Vertices and cuts.
+    pub(super) fn places<S: Enclosing>(&self) -> Vec<Vector2<S>> {
+        self.values(&self.vertices)
+    }
+
+    /// v.
+    pub(super) fn shape<S: Enclosing>(&self) -> Shape<S> {
+        let Some(curved) = &self.curved else {
+            return Shape { points: self.values(&self.displacement), bulges: None };
+        };
+        let all = |values: &[[f64; 2]]| values.iter().copied().map(exactly).collect::<Vec<_>>();
+        let mut points = all(&self.displacement);
+        points.extend(all(&curved.at_cuts));
+        Shape { points, bulges: Some(all(&curved.bulges)) }
     }
 
     fn triangles<S: Enclosing>(
@@ -479,6 +551,34 @@ impl Certificate {
                 }
             }
         }
+        self.curved.as_ref().map_or(Ok(()), |curved| self.check_between(curved))
+    }
+
+    /// v = u_D between the ends of the edges of Gamma_D, and there are bulges of data where there are such data only.
+    fn check_between(&self, curved: &Curved) -> Result<(), Rejection> {
+        for (e, edge) in self.edges.iter().enumerate() {
+            let (bulge, data) = (curved.bulges[e], curved.data[e]);
+            let held = match edge.role {
+                Role::Held(held, _) => held,
+                Role::Contact { .. } => [data[0] != 0.0, false],
+                Role::Inner(_) | Role::Loaded(_) | Role::Pressed(_) => [false; 2],
+            };
+            let is_held = matches!(edge.role, Role::Held(..));
+            for component in 0..2 {
+                let (found, expected) = (bulge[component], data[component]);
+                if !held[component] && expected != 0.0 {
+                    return Err(wrong("edge", e, "a bulge of data where there are none"));
+                }
+                if is_held && held[component] && found != expected {
+                    return Err(Rejection::NotPrescribedBetween {
+                        edge: e,
+                        component,
+                        found,
+                        expected,
+                    });
+                }
+            }
+        }
         Ok(())
     }
 
@@ -516,58 +616,89 @@ impl Certificate {
     }
 }
 
+/// v and g on an edge of Gamma_C.
+struct OnEdge<S> {
+    /// v at both ends.
+    v: [Vector2<S>; 2],
+    /// g at both ends.
+    gap: [f64; 2],
+    /// The bulges of both; `None` where they are affine.
+    bulges: Option<(Vector2<S>, f64)>,
+}
+
 /// An edge of Gamma_C.
 struct OnContact<S> {
     /// tau N at both ends.
     force: [Vector2<S>; 2],
-    /// v_n - g at both ends, and what it is at most between them: none may be positive.
-    beyond: [S; 3],
+    /// What v_n - g is at most, the Bernstein coefficients of it or of a multiple: none may be positive.
+    beyond: [S; 4],
     /// 2 int tau_n (v_n - g)
     term: S,
 }
 
 /// Contact along the normal. All is in units of the length, which is needed only where there is a gap.
 fn along_the_normal<S: Enclosing>(
-    v: [Vector2<S>; 2],
+    shape: &OnEdge<S>,
     normal: Vector2<S>,
     pressure: [f64; 2],
-    gap: [f64; 2],
     length: impl Fn() -> S,
 ) -> OnContact<S> {
-    let [a, b] = [0, 1].map(|k| {
-        let beyond = v[k].dot(&normal);
-        if gap[k] == 0.0 { beyond } else { beyond - length() * S::exactly(gap[k]) }
-    });
-    let pressure = pressure.map(S::exactly);
+    let less_gap = |beyond: S, gap: f64| {
+        if gap == 0.0 { beyond } else { beyond - length() * S::exactly(gap) }
+    };
+    let [a, b] = [0, 1].map(|k| less_gap(shape.v[k].dot(&normal), shape.gap[k]));
+    let bulge = shape.bulges.map(|(v, gap)| less_gap(v.dot(&normal), gap));
+    let [p, q] = pressure.map(S::exactly);
+    // 4 s (1 - s) has the Bernstein coefficients 0, 2, 0 and, times p (1 - s) + q s, the integral (p + q) / 3.
+    let integral = integral_of_product([p, q], [a, b]);
+    let integral = bulge.map_or(integral, |bulge| integral + (p + q) * bulge / S::from(3));
+    let middle = bulge.map_or(a, |bulge| (a + b) / S::from(2) + S::from(2) * bulge);
     OnContact {
-        force: pressure.map(|p| normal * p),
-        beyond: [a, a, b],
-        term: S::from(2) * integral_of_product(pressure, [a, b]),
+        force: [p, q].map(|p| normal * p),
+        beyond: [a, middle, middle, b],
+        term: S::from(2) * integral,
     }
 }
 
-/// Contact along a direction d that is affine between the ends, with tau N = |E| p d: either d or p is constant. v . d - g has
-/// the Bernstein coefficients b_0, b_1 / 2, b_2, whose mean is its integral; it is at most their largest.
+/// Contact along a direction d that is affine between the ends, with tau N = |E| p d: either d or p is constant. The mean of the
+/// Bernstein coefficients of v . d - g is its integral; it is at most their largest.
 fn along_directions<S: Enclosing>(
-    v: [Vector2<S>; 2],
+    shape: &OnEdge<S>,
     d: [Vector2<S>; 2],
     pressure: [f64; 2],
-    gap: [f64; 2],
     length: S,
 ) -> OnContact<S> {
-    let (two, [g, h]) = (S::from(2), gap.map(S::exactly));
+    let (v, [g, h]) = (shape.v, shape.gap.map(S::exactly));
+    let (two, three) = (S::from(2), S::from(3));
     let first = v[0].dot(&d[0]) - g;
-    let middle = v[0].dot(&d[1]) + v[1].dot(&d[0]) - g - h;
     let last = v[1].dot(&d[1]) - h;
     let [p, q] = pressure.map(S::exactly);
-    let integral = if pressure[0] == pressure[1] {
-        p * (two * first + middle + two * last) / S::from(6)
+    let constant = pressure[0] == pressure[1];
+    let (beyond, integral) = if let Some((bulge, gap)) = shape.bulges {
+        let gap = S::exactly(gap);
+        // v and g have the middle coefficients (v_0 + v_1) / 2 + 2 b; v . d is a cubic, of which two are the thirds of these.
+        let (middle, between) = ((v[0] + v[1]) / two + bulge * two, (g + h) / two + gap * two);
+        let one = (middle.dot(&d[0]) - between) * two + v[0].dot(&d[1]) - g;
+        let other = (middle.dot(&d[1]) - between) * two + v[1].dot(&d[0]) - h;
+        let integral = if constant {
+            p * (three * first + one + other + three * last) / S::from(12)
+        } else {
+            let beyond = bulge.dot(&d[0]) - gap;
+            integral_of_product([p, q], [first, last]) + (p + q) * beyond / three
+        };
+        ([first, one, other, last], integral)
     } else {
-        integral_of_product([p, q], [first, last])
+        let middle = v[0].dot(&d[1]) + v[1].dot(&d[0]) - g - h;
+        let integral = if constant {
+            p * (two * first + middle + two * last) / S::from(6)
+        } else {
+            integral_of_product([p, q], [first, last])
+        };
+        ([first, middle, middle, last], integral)
     };
     OnContact {
         force: [d[0] * (length * p), d[1] * (length * q)],
-        beyond: [first, middle, last],
+        beyond,
         term: two * length * integral,
     }
 }
@@ -579,13 +710,34 @@ pub(super) struct Topology {
     tree: Tree,
 }
 
+/// A displacement on the triangles of a certificate.
+#[derive(Clone)]
+pub(super) struct Shape<S> {
+    /// At vertices and cuts.
+    pub points: Vec<Vector2<S>>,
+    /// The bulge on each edge, if it is quadratic.
+    pub bulges: Option<Vec<Vector2<S>>>,
+}
+
+impl<S: Enclosing> Shape<S> {
+    fn bulges_of(&self, piece: &Piece) -> Option<[Vector2<S>; 3]> {
+        self.bulges.as_ref().map(|bulges| piece.edges.map(|e| bulges[e]))
+    }
+
+    /// C eps of it on a triangle.
+    pub fn stress(&self, piece: &Piece, triangle: &Triangle<S>) -> Affine<S> {
+        let nodal = piece.vertices.map(|vertex| self.points[vertex]);
+        let bulges = self.bulges_of(piece);
+        Affine::of_displacement(triangle, &nodal, bulges.as_ref(), &piece.material())
+    }
+}
+
 /// A certificate whose triangles are in equilibrium, in the numbers `S`.
 pub(super) struct Balanced<S> {
     /// Vertices and cuts.
     pub points: Vec<Vector2<S>>,
     pub triangles: Vec<Triangle<S>>,
-    /// v at the points.
-    v: Vec<Vector2<S>>,
+    v: Shape<S>,
     pub topology: Topology,
     /// tau N on the edges as the certificate has it.
     forces: Vec<[Vector2<S>; 2]>,
@@ -624,16 +776,14 @@ impl<S: Enclosing> Balanced<S> {
     }
 
     /// C eps(v) and C eps(v) - tau on triangle `t`.
-    pub fn stresses(&self, certificate: &Certificate, t: usize) -> (Stress<S>, Composite<S>) {
+    pub fn stresses(&self, certificate: &Certificate, t: usize) -> (Affine<S>, Composite<S>) {
         let piece = &certificate.pieces[t];
-        let nodal = piece.vertices.map(|vertex| self.v[vertex]);
-        let gradient = displacement_gradient(&self.triangles[t], &nodal);
-        let sigma = piece.material().stress(gradient);
+        let sigma = self.v.stress(piece, &self.triangles[t]);
         let frame = Frame::new(&self.triangles[t]);
         let loads = Loads { forces: self.outward[t], body: piece.body.map(exactly) };
         let tau = Composite::new(&frame, &loads);
         let tau = if piece.is_bent() { tau.bent(&frame, &loads.body) } else { tau };
-        (sigma, tau.distance_from(sigma))
+        (sigma, tau.distance_from(&sigma))
     }
 }
 
@@ -679,16 +829,4 @@ impl Piece {
         let [lambda, mu] = self.material;
         Material::lame(S::exactly(lambda), S::exactly(mu), Plane::Strain)
     }
-}
-
-/// The gradient of the affine field with these values at the vertices.
-pub(super) fn displacement_gradient<S: Scalar>(
-    triangle: &Triangle<S>,
-    nodal: &[Vector2<S>; 3],
-) -> Matrix2<S> {
-    // From differences, so that a translation has no gradient in any number type.
-    let double_area = triangle.double_area();
-    let (u, w) = (triangle.scaled_normal(1), triangle.scaled_normal(2));
-    let (a, b) = (nodal[1] - nodal[0], nodal[2] - nodal[0]);
-    Matrix2::from_fn(|i, j| -((a[i] * u[j] + b[i] * w[j]) / double_area))
 }

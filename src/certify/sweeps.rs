@@ -11,7 +11,7 @@
 //! unknown. One sweep goes to every vertex and solves for its three unknowns and those of its edges together. A triangle has
 //! twelve unknowns, three for each vertex and one for each edge; the energy's second derivative by them is computed once,
 //! and the small systems of the vertices are factorised once. What a body force that is not constant bends tau by is
-//! not seen here: it falls with h^2.
+//! not seen here: it falls with h^2, and where v is quadratic to see it gains nothing.
 
 use nalgebra::Vector2;
 
@@ -421,7 +421,7 @@ fn modes([start, end]: [Vector2<f64>; 2], at_end: bool) -> [[Vector2<f64>; 2]; 4
 
 /// The Cholesky factor of a small positive definite matrix, in its lower half; false if it is
 /// not definite, as for a star whose unknowns are not independent. The diagonal holds the reciprocals.
-fn factor_positive(matrix: &mut [f64], n: usize) -> bool {
+pub(super) fn factor_positive(matrix: &mut [f64], n: usize) -> bool {
     for i in 0..n {
         let (above, row) = matrix.split_at_mut(i * n);
         let row = &mut row[..n];
@@ -441,7 +441,7 @@ fn factor_positive(matrix: &mut [f64], n: usize) -> bool {
 }
 
 /// Solves with that factor, of which the rows of the lower half are given, in place.
-fn substitute(factor: &[f64], x: &mut [f64]) {
+pub(super) fn substitute(factor: &[f64], x: &mut [f64]) {
     let n = x.len();
     let mut rest = factor;
     for i in 0..n {

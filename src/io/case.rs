@@ -464,7 +464,7 @@ mod tests {
         let error = with("adapt.max_unknowns = 10").unwrap_err().to_string();
         assert!(error.contains("target"), "{error}");
         let error = with("adapt.target = \"1 %\"\nmethod.degree = 2").unwrap_err().to_string();
-        assert!(error.contains("for which there are certificates"), "{error}");
+        assert!(error.contains("for which meshes are adapted"), "{error}");
     }
 
     #[test]

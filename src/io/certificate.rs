@@ -11,9 +11,11 @@
 //! | triangles | 3 points, 3 edges (n), lambda, mu, the body force at the three points, the oscillation (f) |
 //! | edges | start, end, role (n), four numbers of the role (f) |
 //! | directions, of contact where it does not act along the normal | the edge (n), d at its start and at its end (f) |
+//! | if v is quadratic: v at the cuts | v_x v_y (f) |
+//! | if v is quadratic: bulges, of the edges | of v, and of the data: u_D, or g and 0, or 0 0 (f f f f) |
 //! | shares, of the triangles | the claimed share in the square of the bound (f) |
 //!
-//! Points are vertices, then cuts. Roles: 0 inner (tau N at start and end), 1, 2, 3 held in x, in y, in both (tau N at start
+//! A bulge is the value in the middle of an edge less the mean of its ends. Points are vertices, then cuts. Roles: 0 inner (tau N at start and end), 1, 2, 3 held in x, in y, in both (tau N at start
 //! and end), 4 given traction (t at start and end), 5 given pressure (p at start and end, 0 0), 6 contact (tau_n at start and
 //! end, g at start and end).
 
@@ -24,7 +26,7 @@ use thiserror::Error;
 
 use super::input::{self, InputError};
 use crate::certify::Continuous;
-use crate::certify::proof::{Certificate, Claim, Cut, Edge, Piece, Proof, Rejection, Role};
+use crate::certify::proof::{Certificate, Claim, Curved, Cut, Edge, Piece, Proof, Rejection, Role};
 use crate::quote;
 
 /// The names of the files: the claim, and the arrays beside it.
@@ -34,7 +36,7 @@ pub const FILES: [&str; 2] = ["certificate.json", "certificate.bin"];
 const MOST: u64 = 4 << 30;
 
 /// The format that this program writes and reads.
-const FORMAT: u32 = 3;
+const FORMAT: u32 = 4;
 
 /// certificate.json.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -46,6 +48,8 @@ pub struct Header {
     pub title: String,
     /// In words.
     pub statement: String,
+    /// The degree of v: 1 or 2.
+    pub degree: u8,
     /// |u - v|_a is at most this.
     pub bound: f64,
     /// The bound that the arrays prove; the rest of `bound` is the lift of what u_D and g lack.
@@ -110,6 +114,7 @@ pub fn encode(title: &str, certified: &Continuous) -> (Header, Vec<u8>) {
         format: FORMAT,
         title: title.to_owned(),
         statement: STATEMENT.to_owned(),
+        degree: if certificate.curved.is_some() { 2 } else { 1 },
         bound: beyond_reading(certified.bound),
         proved: beyond_reading(certified.proof.bound),
         rigorous: certified.rigorous,
@@ -173,7 +178,11 @@ pub fn decode(header: &Header, bytes: &[u8]) -> Result<(Certificate, Claim), Str
     if found != header.hash {
         return Err(format!("its hash is {found}; certificate.json says {}", header.hash));
     }
+    if ![1, 2].contains(&header.degree) {
+        return Err(format!("the degree of v is {}; expected 1 or 2", header.degree));
+    }
     let Counts { vertices, cuts, triangles, edges, directions } = header.counts;
+    let quadratic = header.degree == 2;
     let words = |entries: usize, each: usize| entries.checked_mul(each);
     let expected = [
         words(vertices, 8),
@@ -181,6 +190,8 @@ pub fn decode(header: &Header, bytes: &[u8]) -> Result<(Certificate, Claim), Str
         words(triangles, 16),
         words(edges, 7),
         words(directions, 5),
+        words(cuts, if quadratic { 2 } else { 0 }),
+        words(edges, if quadratic { 4 } else { 0 }),
     ]
     .into_iter()
     .try_fold(0_usize, |sum, words| sum.checked_add(words?))
@@ -192,6 +203,7 @@ pub fn decode(header: &Header, bytes: &[u8]) -> Result<(Certificate, Claim), Str
     let mut certificate = Certificate {
         vertices: (0..vertices).map(|_| words.pair()).collect(),
         displacement: (0..vertices).map(|_| words.pair()).collect(),
+        curved: None,
         prescribed: Vec::with_capacity(vertices),
         cuts: Vec::with_capacity(cuts),
         pieces: Vec::with_capacity(triangles),
@@ -238,6 +250,11 @@ pub fn decode(header: &Header, bytes: &[u8]) -> Result<(Certificate, Claim), Str
             _ => return Err(format!("a direction of contact for edge {e}, which has none")),
         }
     }
+    if quadratic {
+        let at_cuts = (0..cuts).map(|_| words.pair()).collect();
+        let (bulges, data) = (0..edges).map(|_| (words.pair(), words.pair())).unzip();
+        certificate.curved = Some(Curved { at_cuts, bulges, data });
+    }
     let shares = (0..triangles).map(|_| words.number()).collect();
     Ok((certificate, Claim { shares, bound: header.proved }))
 }
@@ -254,7 +271,8 @@ fn counts(certificate: &Certificate) -> Counts {
 
 fn arrays(certificate: &Certificate, shares: &[f64]) -> Vec<u8> {
     let Counts { vertices, cuts, triangles, edges, directions: turned } = counts(certificate);
-    let words = 8 * vertices + 3 * cuts + 16 * triangles + 7 * edges + 5 * turned;
+    let curved = if certificate.curved.is_some() { 2 * cuts + 4 * edges } else { 0 };
+    let words = 8 * vertices + 3 * cuts + 16 * triangles + 7 * edges + 5 * turned + curved;
     let mut bytes = Vec::with_capacity(8 * words);
     let mut word = |word: u64| bytes.extend_from_slice(&word.to_le_bytes());
     let number = |x: f64| x.to_bits();
@@ -290,6 +308,10 @@ fn arrays(certificate: &Certificate, shares: &[f64]) -> Vec<u8> {
     for (e, along) in directions(certificate) {
         word(index(e));
         along.as_flattened().iter().for_each(|&x| word(number(x)));
+    }
+    if let Some(Curved { at_cuts, bulges, data }) = &certificate.curved {
+        let of_edges = bulges.iter().zip(data).flat_map(|(bulge, data)| [bulge, data]);
+        at_cuts.iter().chain(of_edges).flatten().for_each(|&x| word(number(x)));
     }
     shares.iter().for_each(|&x| word(number(x)));
     bytes

@@ -5,7 +5,8 @@
 //!   base64, as they are or compressed by zlib: what this program, meshio, FEniCSx, GetFEM and scikit-fem write. Not the
 //!   appended section that VTK itself prefers.
 //!
-//! Points are matched to vertices by their place; other points, such as midpoints of edges, are passed over.
+//! Points are matched to vertices by their place. A field on quadratic triangles of VTU (with six points each, VTK's types 22 and
+//! 69) is read at the middles of the edges, too; otherwise other points are passed over.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -14,7 +15,8 @@ use miniz_oxide::inflate::decompress_to_vec_zlib_with_limit;
 use thiserror::Error;
 
 use super::input::{self, InputError};
-use crate::fem::Mesh;
+use crate::fem::{Mesh, Space};
+use crate::kernel::P2;
 use crate::quote;
 
 /// Why there is no field.
@@ -34,7 +36,8 @@ const MOST: u64 = 2 << 30;
 /// A point is a vertex when it is this near, in units of the body's extent: coordinates written in single precision pass.
 const NEAR: f64 = 1e-6;
 
-/// The displacement in the file at the vertices of `mesh`.
+/// The displacement in the file at the vertices of `mesh` and, if it is quadratic, at the middles of its edges: at the nodes of
+/// degree 1 or 2.
 ///
 /// # Errors
 /// A file that can't be read or understood, or that lacks a vertex of the mesh.
@@ -43,19 +46,19 @@ pub fn read_field(path: &Path, mesh: &Mesh) -> Result<Vec<[f64; 2]>, FieldError>
         .map_err(|error| FieldError::Read { path: path.to_owned(), error })?;
     let text = String::from_utf8_lossy(&bytes);
     let points = match path.extension().and_then(|e| e.to_str()) {
-        Some("csv") => from_csv(&text),
-        Some("vtu") => from_vtu(&text),
+        Some("csv") => from_csv(&text).map(|points| (points, false)),
+        Some("vtu") => from_vtu(&text).map(|points| (points, has_quadratic_triangles(&text))),
         _ => Err("expected a file that ends in .vtu or .csv".to_owned()),
     };
     points
-        .and_then(|points| at_vertices(&points, mesh))
+        .and_then(|(points, quadratic)| at_nodes(&points, mesh, quadratic))
         .map_err(|problem| FieldError::Format { path: path.to_owned(), problem })
 }
 
 /// Places with displacements.
 type Points = Vec<([f64; 2], [f64; 2])>;
 
-fn at_vertices(points: &Points, mesh: &Mesh) -> Result<Vec<[f64; 2]>, String> {
+fn at_nodes(points: &Points, mesh: &Mesh, quadratic: bool) -> Result<Vec<[f64; 2]>, String> {
     let vertices = mesh.vertices();
     let extent = (0..2)
         .map(|c| {
@@ -89,13 +92,38 @@ fn at_vertices(points: &Points, mesh: &Mesh) -> Result<Vec<[f64; 2]>, String> {
     let value = |(v, &x): (usize, &[f64; 2])| match nearest(x) {
         Some(k) => Ok(points[k].1),
         None => Err(format!(
-            "none of its {} points lies at vertex {v} of the mesh, ({}, {}); expected the displacement at every vertex",
+            "none of its {} points lies at {} of the mesh, ({}, {}); expected the displacement at {}",
             points.len(),
+            if v < vertices.len() {
+                format!("vertex {v}")
+            } else {
+                "the middle of an edge".to_owned()
+            },
             x[0],
-            x[1]
+            x[1],
+            if quadratic { "every vertex and every middle of an edge" } else { "every vertex" }
         )),
     };
+    if quadratic {
+        let space = Space::<P2, 6, 3>::new(mesh);
+        return space.nodes().iter().enumerate().map(value).collect();
+    }
     vertices.iter().enumerate().map(value).collect()
+}
+
+/// Whether all cells of a VTU file are triangles with six points.
+fn has_quadratic_triangles(text: &str) -> bool {
+    let head = text.find("<VTKFile").and_then(|from| text[from..].split('>').next());
+    let cells = section(text, "Cells").map(arrays).unwrap_or_default();
+    let named = |name: &str| {
+        let array = cells.iter().find(|array| array.attribute("Name") == Some(name))?;
+        numbers(array, head?).ok()
+    };
+    let (Some(types), Some(offsets)) = (named("types"), named("offsets")) else { return false };
+    let starts = std::iter::once(0.0).chain(offsets.iter().copied());
+    !types.is_empty()
+        && types.iter().all(|&kind| kind == 22.0 || kind == 69.0)
+        && offsets.iter().zip(starts).all(|(end, start)| end - start == 6.0)
 }
 
 fn from_csv(text: &str) -> Result<Points, String> {
@@ -254,6 +282,14 @@ fn numbers(array: &Array, head: &str) -> Result<Vec<f64>, String> {
         Some("Float32") => {
             Ok(bytes.as_chunks::<4>().0.iter().map(|b| f32::from_le_bytes(*b).into()).collect())
         }
+        Some("UInt8" | "Int8") => Ok(bytes.iter().map(|&b| b.into()).collect()),
+        Some("Int32" | "UInt32") => {
+            Ok(bytes.as_chunks::<4>().0.iter().map(|b| u32::from_le_bytes(*b).into()).collect())
+        }
+        // Numbers of points, far below 2^53.
+        Some("Int64" | "UInt64") => {
+            Ok(bytes.as_chunks::<8>().0.iter().map(|b| u64::from_le_bytes(*b) as f64).collect())
+        }
         other => {
             let other = quote::quoted(other.unwrap_or_default(), '\'');
             Err(format!("{name} has the type {other}; expected Float64 or Float32"))
@@ -363,8 +399,32 @@ mod tests {
             point_data: &[Field { name: "displacement", values: Values::Vectors(&u) }],
             cell_data: &[],
         });
-        let points = from_vtu(&String::from_utf8(file.unwrap()).unwrap()).unwrap();
-        assert_eq!(at_vertices(&points, &mesh).unwrap(), u);
+        let text = String::from_utf8(file.unwrap()).unwrap();
+        assert!(!has_quadratic_triangles(&text));
+        assert_eq!(at_nodes(&from_vtu(&text).unwrap(), &mesh, false).unwrap(), u);
+    }
+
+    #[test]
+    fn a_field_on_quadratic_triangles_is_read_at_the_middles_of_the_edges_too() {
+        let mesh = mesh();
+        let space = Space::<P2, 6, 3>::new(&mesh);
+        let u: Vec<[f64; 2]> = space.nodes().iter().map(|[x, y]| [x * x, 0.3 * x * y]).collect();
+        let file = vtu(&Grid {
+            kind: CellKind::QuadraticTriangle,
+            points: space.nodes(),
+            connectivity: space.elements().as_flattened(),
+            point_data: &[Field { name: "displacement", values: Values::Vectors(&u) }],
+            cell_data: &[],
+        });
+        let text = String::from_utf8(file.unwrap()).unwrap();
+        assert!(has_quadratic_triangles(&text));
+        let mut points = from_vtu(&text).unwrap();
+        assert_eq!(at_nodes(&points, &mesh, true).unwrap(), u);
+        assert_eq!(at_nodes(&points, &mesh, false).unwrap(), u[..mesh.vertices().len()]);
+        // Where the middle of one edge is missing, that is said.
+        points.pop();
+        let error = at_nodes(&points, &mesh, true).unwrap_err();
+        assert!(error.contains("at the middle of an edge of the mesh"), "{error}");
     }
 
     #[test]
@@ -375,7 +435,7 @@ mod tests {
         for ([x, y], [a, b]) in mesh.vertices().iter().zip(&u).rev() {
             text.push_str(&format!("{b},{x},{y},{a}\n"));
         }
-        assert_eq!(at_vertices(&from_csv(&text).unwrap(), &mesh).unwrap(), u);
+        assert_eq!(at_nodes(&from_csv(&text).unwrap(), &mesh, false).unwrap(), u);
     }
 
     /// In the layout that meshio writes: text, and zlib with a header of its own code.
@@ -414,7 +474,7 @@ mod tests {
         let mesh = mesh();
         let mut points: Points = mesh.vertices().iter().map(|&x| (x, [0.0; 2])).collect();
         points.remove(4);
-        let error = at_vertices(&points, &mesh).unwrap_err();
+        let error = at_nodes(&points, &mesh, false).unwrap_err();
         assert!(error.contains("at vertex 4 of the mesh, (0, 1)"), "{error}");
         assert!(from_csv("x,y,u\n").unwrap_err().contains("no column 'ux'"));
         assert!(

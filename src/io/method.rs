@@ -78,7 +78,7 @@ pub(super) fn read_target(table: &Table, method: &Method) -> Result<Target, Case
         return Err(table.wrong(CaseMistake::Combination {
             name: table.name().to_owned(),
             found: "method.degree = 2 beside it".to_owned(),
-            expected: "degree 1, for which there are certificates".to_owned(),
+            expected: "degree 1, for which meshes are adapted".to_owned(),
         }));
     }
     let expected = "a share of the energy norm above 0 % and below 100 %, such as \"1 %\"";

@@ -20,8 +20,8 @@ use super::result::{
 };
 use super::vtu::{CellKind, Field, Grid, Values, vtu};
 use crate::certify::{CertifyError, Continuous, certify};
-use crate::fem::{self, contact_line::Gamma};
-use crate::kernel::Stress;
+use crate::fem::{self, Space, contact_line::Gamma};
+use crate::kernel::{P2, Stress};
 use crate::memory::{self, OutOfMemory};
 use crate::solve::solution::ContactValues;
 use crate::solve::{Solution, Times};
@@ -145,16 +145,34 @@ pub fn write_certified(
 ) -> Result<Vec<PathBuf>, OutputError> {
     let mut output = Output::new(folder)?;
     let mesh = &case.problem.mesh;
+    let space = Space::<P2, 6, 3>::new(mesh);
+    // The one of degree 1 has its values at the middles of edges, too, where the other is of degree 2.
+    let nodes = field.len().max(certified.displacement.len());
+    let [field, admissible] = [field, &certified.displacement].map(|values| {
+        let mut all = values.to_vec();
+        all.resize(nodes, [0.0; 2]);
+        if values.len() < nodes {
+            for element in space.elements() {
+                for i in 0..3 {
+                    let [a, b] = [1, 2].map(|k| all[element[(i + k) % 3]]);
+                    all[element[3 + i]] = [0, 1].map(|c| (a[c] + b[c]) / 2.0);
+                }
+            }
+        }
+        all
+    });
+    let quadratic = nodes > mesh.vertices().len();
     let grid = vtu(&Grid {
-        kind: CellKind::Triangle,
-        points: mesh.vertices(),
-        connectivity: mesh.triangles().as_flattened(),
+        kind: if quadratic { CellKind::QuadraticTriangle } else { CellKind::Triangle },
+        points: if quadratic { space.nodes() } else { mesh.vertices() },
+        connectivity: if quadratic {
+            space.elements().as_flattened()
+        } else {
+            mesh.triangles().as_flattened()
+        },
         point_data: &[
-            Field { name: "displacement", values: Values::Vectors(field) },
-            Field {
-                name: "admissible",
-                values: Values::Vectors(&certified.certificate.displacement),
-            },
+            Field { name: "displacement", values: Values::Vectors(&field) },
+            Field { name: "admissible", values: Values::Vectors(&admissible) },
         ],
         cell_data: &[Field { name: "error_bound", values: Values::Scalars(&certified.indicators) }],
     });

@@ -54,6 +54,15 @@ pub struct Composite<S> {
     pub bulges: Option<[[Stress<S>; 3]; 3]>,
 }
 
+/// C eps(v) of a displacement v of degree 1 or 2: a stress that is constant on the triangle or affine.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Affine<S> {
+    /// That of the affine function with the values of v at the vertices.
+    pub base: Stress<S>,
+    /// What comes to it at each vertex; `None` where v is affine.
+    pub beyond: Option<[Stress<S>; 3]>,
+}
+
 /// What does not depend on the loads of a triangle.
 pub(crate) struct Frame<S> {
     normals: [Vector2<S>; 3],
@@ -85,6 +94,64 @@ impl<S: Scalar> Frame<S> {
             double_area,
             per_area: S::from(1) / double_area,
         }
+    }
+}
+
+impl<S: Scalar> Affine<S> {
+    /// C eps(v) for v with the values `nodal` at the vertices and, in the middle of edge i, `bulges[i]` beyond the mean of its
+    /// ends: v is sum v_i l_i + 4 sum b_i l_j l_k, so that the gradient at vertex i has 4 (b_j (x) grad l_k + b_k (x) grad l_j)
+    /// beside that of the first sum (i, j, k in turn).
+    pub(crate) fn of_displacement(
+        triangle: &Triangle<S>,
+        nodal: &[Vector2<S>; 3],
+        bulges: Option<&[Vector2<S>; 3]>,
+        material: &Material<S>,
+    ) -> Self {
+        // From differences, so that a translation has no gradient in any number type.
+        let double_area = triangle.double_area();
+        let (u, w) = (triangle.scaled_normal(1), triangle.scaled_normal(2));
+        let (a, b) = (nodal[1] - nodal[0], nodal[2] - nodal[0]);
+        let gradient = Matrix2::from_fn(|i, j| -((a[i] * u[j] + b[i] * w[j]) / double_area));
+        let at_vertex = |bulges: &[Vector2<S>; 3], i: usize| {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            // grad l is minus the scaled normal over 2 |T|.
+            let (toward_j, toward_k) = (triangle.scaled_normal(j), triangle.scaled_normal(k));
+            let four = S::from(-4) / double_area;
+            let entry = |r, c| bulges[j][r] * toward_k[c] + bulges[k][r] * toward_j[c];
+            material.stress(Matrix2::from_fn(|r, c| entry(r, c) * four))
+        };
+        Affine {
+            base: material.stress(gradient),
+            beyond: bulges.map(|bulges| [0, 1, 2].map(|i| at_vertex(bulges, i))),
+        }
+    }
+
+    /// At vertex `i` (mod 3).
+    pub(crate) fn at_corner(&self, i: usize) -> Stress<S> {
+        self.beyond.map_or(self.base, |beyond| self.base + beyond[i % 3])
+    }
+
+    /// At the point with the barycentric coordinates `l`.
+    pub(crate) fn at(&self, l: [S; 3]) -> Stress<S> {
+        let at = |[a, b, c]: [Stress<S>; 3]| self.base + (a * l[0] + b * l[1] + c * l[2]);
+        self.beyond.map_or(self.base, at)
+    }
+
+    /// At the centroid.
+    pub(crate) fn mean(&self) -> Stress<S> {
+        let third = |sum: Stress<S>| self.base + sum / S::from(3);
+        self.beyond.map_or(self.base, |[a, b, c]| third(a + b + c))
+    }
+
+    /// int_T sigma : C^-1 sigma. The square of an affine function with the values s_i has the integral
+    /// |T| / 12 (sum s_i^2 + (sum s_i)^2).
+    pub(crate) fn energy(&self, material: &Material<S>, double_area: S) -> S {
+        if self.beyond.is_none() {
+            return complementary(material, self.base) * double_area / S::from(2);
+        }
+        let [a, b, c] = [0, 1, 2].map(|i| self.at_corner(i));
+        let square = |s: Stress<S>| complementary(material, s);
+        (square(a) + square(b) + square(c) + square(a + b + c)) * double_area / S::from(24)
     }
 }
 
@@ -144,13 +211,21 @@ impl<S: Scalar> Composite<S> {
         Composite { centre, bulges: Some(bulges), ..self }
     }
 
-    /// sigma - tau for a constant stress sigma.
-    pub(crate) fn distance_from(&self, sigma: Stress<S>) -> Composite<S> {
-        let minus = |tau: Stress<S>| sigma - tau;
+    /// tau on part i at mu, the coordinates of the centroid and of the corners i + 1 and i + 2.
+    pub(crate) fn at(&self, i: usize, [m, j, k]: [S; 3]) -> Stress<S> {
+        let affine = self.centre * m + self.corners[i][0] * j + self.corners[i][1] * k;
+        let Some(bulges) = &self.bulges else { return affine };
+        let [outer, to_j, to_k] = bulges[i];
+        affine + (outer * (j * k) + to_j * (m * j) + to_k * (m * k)) * S::from(4)
+    }
+
+    /// sigma - tau.
+    pub(crate) fn distance_from(&self, sigma: &Affine<S>) -> Composite<S> {
         let negative = |tau: Stress<S>| tau * S::from(-1);
+        let corners = |i: usize| [1, 2].map(|k| sigma.at_corner(i + k) - self.corners[i][k - 1]);
         Composite {
-            corners: self.corners.map(|part| part.map(minus)),
-            centre: minus(self.centre),
+            corners: [0, 1, 2].map(corners),
+            centre: sigma.mean() - self.centre,
             bulges: self.bulges.map(|all| all.map(|part| part.map(negative))),
         }
     }
@@ -344,14 +419,6 @@ mod tests {
         of(loads).bent(&Frame::new(&T), &loads.body)
     }
 
-    /// tau on part i at mu, the coordinates of m and of the corners i + 1 and i + 2.
-    fn at(tau: &Composite<f64>, i: usize, [m, j, k]: [f64; 3]) -> Stress<f64> {
-        let affine = tau.centre * m + tau.corners[i][0] * j + tau.corners[i][1] * k;
-        let Some(bulges) = tau.bulges else { return affine };
-        let [outer, to_j, to_k] = bulges[i];
-        affine + outer * (4.0 * j * k) + to_j * (4.0 * m * j) + to_k * (4.0 * m * k)
-    }
-
     /// Points of a part.
     const INSIDE: [[f64; 3]; 3] = [[0.6, 0.1, 0.3], [0.2, 0.7, 0.1], [0.25, 0.25, 0.5]];
 
@@ -395,7 +462,7 @@ mod tests {
         let (b, c) = (T.vertices[(i + 1) % 3], T.vertices[(i + 2) % 3]);
         let g = Triangle { vertices: [centroid(&T), b, c] }.barycentric_gradients();
         let along = |axis: usize| {
-            let moved = |step: f64| at(tau, i, [0, 1, 2].map(|k| mu[k] + step * g[k][axis]));
+            let moved = |step: f64| tau.at(i, [0, 1, 2].map(|k| mu[k] + step * g[k][axis]));
             (moved(0.5) - moved(-0.5)).matrix().column(axis).into_owned()
         };
         along(0) + along(1)
@@ -432,14 +499,16 @@ mod tests {
         let mut added: f64 = 0.0;
         for i in 0..3 {
             for s in [0.1, 0.5, 0.8] {
-                let at_edge = |tau| at(tau, i, [0.0, 1.0 - s, s]).traction(T.scaled_normal(i));
+                let at_edge = |tau: &Composite<f64>| {
+                    tau.at(i, [0.0, 1.0 - s, s]).traction(T.scaled_normal(i))
+                };
                 assert_abs_diff_eq!(at_edge(&tau), at_edge(&plain), epsilon = ROUNDING);
                 let [x, y] = arms(&T)[i].into();
-                let on_cut = |part: usize, mu| at(&tau, part, mu).traction(Vector2::new(y, -x));
+                let on_cut = |part: usize, mu| tau.at(part, mu).traction(Vector2::new(y, -x));
                 let (first, second) = ((i + 1) % 3, (i + 2) % 3);
                 let (one, other) = ([1.0 - s, 0.0, s], [1.0 - s, s, 0.0]);
                 assert_abs_diff_eq!(on_cut(first, one), on_cut(second, other), epsilon = ROUNDING);
-                let there = at(&tau, first, one) - at(&plain, first, one);
+                let there = tau.at(first, one) - plain.at(first, one);
                 added = added.max(there.matrix().abs().max());
             }
         }
@@ -454,7 +523,7 @@ mod tests {
         let mut integral = 0.0;
         for i in 0..3 {
             for (mu, weight) in crate::fem::quadrature::triangle(4) {
-                integral += weight * part * complementary(&material, at(&tau, i, mu));
+                integral += weight * part * complementary(&material, tau.at(i, mu));
             }
         }
         let energy = tau.energy(&material, T.double_area());
@@ -503,13 +572,68 @@ mod tests {
     }
 
     #[test]
+    fn the_stress_of_a_quadratic_displacement_is_that_of_its_strain_and_its_energy_the_integral() {
+        let material = Material::lame(1.3, 0.7, Plane::Strain);
+        // v_c = a_c . (1, x, y, x^2, x y, y^2)
+        let a = [[0.1, 0.3, -0.2, 0.7, -0.4, 0.2], [-0.3, 0.6, 0.5, -0.1, 0.9, -0.8]];
+        let v = |p: Vector2<f64>| {
+            let powers = [1.0, p.x, p.y, p.x * p.x, p.x * p.y, p.y * p.y];
+            Vector2::from(a.map(|a| a.iter().zip(powers).map(|(a, x)| a * x).sum::<f64>()))
+        };
+        let stress = |p: Vector2<f64>| {
+            let row = |a: [f64; 6]| {
+                [a[1] + 2.0 * a[3] * p.x + a[4] * p.y, a[2] + a[4] * p.x + 2.0 * a[5] * p.y]
+            };
+            let [x, y] = a.map(row);
+            material.stress(Matrix2::new(x[0], x[1], y[0], y[1]))
+        };
+        let nodal = T.vertices.map(v);
+        let bulges = [0, 1, 2].map(|i| {
+            let (b, c) = ((i + 1) % 3, (i + 2) % 3);
+            v((T.vertices[b] + T.vertices[c]) / 2.0) - (nodal[b] + nodal[c]) / 2.0
+        });
+        let sigma = Affine::of_displacement(&T, &nodal, Some(&bulges), &material);
+        let same = |a: Stress<f64>, b: Stress<f64>| {
+            assert_abs_diff_eq!(*a.matrix(), *b.matrix(), epsilon = ROUNDING);
+        };
+        for i in 0..3 {
+            same(sigma.at_corner(i), stress(T.vertices[i]));
+            same(sigma.at(INSIDE[i]), stress(T.point(INSIDE[i])));
+        }
+        same(sigma.mean(), stress(centroid(&T)));
+        let integral = |of: &dyn Fn([f64; 3]) -> Stress<f64>| {
+            let points = crate::fem::quadrature::triangle(4);
+            let values = points.into_iter().map(|(l, w)| w * complementary(&material, of(l)));
+            values.sum::<f64>() * T.double_area() / 2.0
+        };
+        let energy = sigma.energy(&material, T.double_area());
+        let expected = integral(&|l| stress(T.point(l)));
+        assert_relative_eq!(energy, expected, max_relative = ROUNDING);
+        // And so is its distance from a composite stress; on part i the coordinates of T from those of the part.
+        let tau = bent(&balanced());
+        let distance = tau.distance_from(&sigma);
+        for i in 0..3 {
+            for mu in INSIDE {
+                let mut l = [mu[0] / 3.0; 3];
+                l[(i + 1) % 3] += mu[1];
+                l[(i + 2) % 3] += mu[2];
+                same(distance.at(i, mu), stress(T.point(l)) - tau.at(i, mu));
+            }
+        }
+        // Control: without the bulges it is another stress.
+        let flat = Affine::of_displacement(&T, &nodal, None, &material);
+        assert!((flat.energy(&material, T.double_area()) / expected - 1.0).abs() > 1e-2);
+    }
+
+    #[test]
     fn a_constant_stress_is_reproduced_and_its_energy_is_stress_times_strain() {
         let material = Material::lame(1.3, 0.7, Plane::Strain);
         let gradient = Matrix2::new(0.3, -0.2, 0.5, 0.9);
         let sigma = material.stress(gradient);
         let forces = [0, 1, 2].map(|i| [sigma.traction(T.scaled_normal(i)); 2]);
         let tau = of(&Loads { forces, ..UNLOADED });
-        let distance = tau.distance_from(sigma).energy(&material, T.double_area());
+        let constant = Affine { base: sigma, beyond: None };
+        let distance = tau.distance_from(&constant).energy(&material, T.double_area());
         // A sum of squares of rounding errors.
         assert_abs_diff_eq!(distance, 0.0, epsilon = ROUNDING * ROUNDING);
         let expected = sigma.matrix().dot(&gradient) * T.double_area() / 2.0;
