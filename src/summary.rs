@@ -242,7 +242,11 @@ pub fn audited(audit: &Audit) -> String {
 /// How far the solution can be from the exact solution of (8), and whether there is one.
 fn enclosed(certificate: &DiscreteCertificate) -> String {
     let reason = certificate.reason.as_deref().unwrap_or_default();
-    let one = if certificate.unique { "(8) has exactly one solution" } else { "" };
+    let one = match (certificate.unique, certificate.radius) {
+        (true, _) => "(8) has exactly one solution",
+        (false, Some(_)) => "(8) has one solution but for motions along the obstacles",
+        (false, None) => "",
+    };
     let Some(radius) = certificate.radius else {
         let one = if one.is_empty() { String::new() } else { format!("; {one}") };
         return format!("no: {reason}{one}");

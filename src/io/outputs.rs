@@ -223,6 +223,7 @@ pub fn results(
     });
     let probes: Vec<[f64; 4]> = probes.collect();
     let mut discrete = DiscreteCertificate::from(&solution.enclosure);
+    discrete.unique &= solution.method.slides == 0;
     if let Ok(enclosure) = &solution.enclosure {
         let places = case.probes.iter().filter_map(|&x| mesh.locate(x));
         let off = places.map(|(t, l)| solution.displacement_error_at(&enclosure.nodes, t, l));

@@ -225,8 +225,8 @@ pub enum SolveError {
     )]
     SeveralSolutions { count: usize },
     #[error(
-        "no convergence: the relative residual is {residual:.1e} after {} Newton step{}, all that max_iterations allows; expected at most {tolerance:e}. Nothing is written.\nresiduals: {}",
-        residuals.len().saturating_sub(1), if residuals.len() == 2 { "" } else { "s" }, history(residuals)
+        "no convergence: the relative residual is {residual:.1e} after {} Newton step{}, all that max_iterations allows; expected {}. Nothing is written.\nresiduals: {}",
+        residuals.len().saturating_sub(1), if residuals.len() == 2 { "" } else { "s" }, awaited(*residual, *tolerance), history(residuals)
     )]
     NotConverged { residual: f64, residuals: Vec<f64>, tolerance: f64 },
     #[error(
@@ -251,6 +251,15 @@ fn known(forward_error: f64) -> String {
         format!("the displacement is known to a relative error of {forward_error:.0e} only")
     } else {
         "no digit of the displacement is known".to_owned()
+    }
+}
+
+/// What a solve that ran out of steps did not reach.
+fn awaited(residual: f64, tolerance: f64) -> String {
+    if residual <= tolerance {
+        format!("a step that moves the displacement by at most {:e}, too", accuracy::ACCEPTABLE)
+    } else {
+        format!("at most {tolerance:e}")
     }
 }
 

@@ -268,6 +268,23 @@ fn an_output_folder_that_cannot_be_made_ends_with_exit_code_1() {
 }
 
 #[test]
+fn a_body_that_may_slide_is_certified_but_for_that() {
+    let pressed = [
+        ["displacement = [\"0\", \"0\"]", "traction = [\"0\", \"-0.5\"]"],
+        ["body = [\"0\", \"-4 + 10*x\"]", "body = [\"0\", \"0\"]"],
+    ];
+    let folder = folder("slides", &pressed);
+    let output = signorini(&folder, &["solve", "case.toml"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let said = text(&output.stdout);
+    assert!(said.contains("certified   (8) has one solution but for motions along the"), "{said}");
+    let results = fs::read_to_string(folder.join("out/case/result.json")).unwrap();
+    let results: serde_json::Value = serde_json::from_str(&results).unwrap();
+    let discrete = &results["certificate"]["discrete"];
+    assert_eq!((&discrete["rigorous"], &discrete["unique"]), (&true.into(), &false.into()));
+}
+
+#[test]
 fn wrong_arguments_end_with_exit_code_2() {
     let folder = folder("arguments", &[]);
     for arguments in [&["solve"][..], &["slove", "case.toml"], &["solve", "case.toml", "--fast"]] {
