@@ -27,6 +27,8 @@ pub struct Constraints {
     values: Vec<[Option<f64>; 2]>,
     frames: BTreeMap<usize, [f64; 2]>,
     holders: BTreeMap<String, Vec<Held>>,
+    /// By how much the directions of supports may be off.
+    rounding: f64,
 }
 
 /// A direction in which a node is held.
@@ -59,7 +61,7 @@ struct Demand<'a> {
 /// may differ by their rounding errors.
 const AGREEMENT: f64 = 1e-12;
 
-/// Two directions with a sine below this are parallel.
+/// Two directions with a sine below this, or below what rounding may turn them by, are parallel.
 const PARALLEL: f64 = 1e-8;
 
 /// The demands at each node.
@@ -81,11 +83,13 @@ impl Constraints {
             values: vec![[None; 2]; space.nodes().len()],
             frames: BTreeMap::new(),
             holders: BTreeMap::new(),
+            rounding: rounding_of_supports(problem)?,
         };
         for (&node, at_node) in &mut demands {
             // Coordinate directions first: a value that is given for a component is taken as it is.
             at_node.sort_by_key(|demand| demand.axis().is_none());
-            let holding = independent(at_node, space.nodes()[node], AGREEMENT * largest)?;
+            let tolerances = [PARALLEL.max(constraints.rounding), AGREEMENT * largest];
+            let holding = independent(at_node, space.nodes()[node], tolerances)?;
             constraints.prescribe(node, &holding);
         }
         Ok(constraints)
@@ -97,8 +101,14 @@ impl Constraints {
         space: &Space<E, N, M>,
     ) -> (Parts, Vec<FreeMotion>) {
         let parts = Parts::new(space.mesh());
-        let motions = rigid::free_motions(&parts, space, |node| self.directions(node));
+        let held = |node| self.directions(node);
+        let motions = rigid::free_motions(&parts, space, held, self.rounding);
         (parts, motions)
+    }
+
+    /// By how much the directions in which nodes are held may be off because vertices are rounded.
+    pub fn rounding(&self) -> f64 {
+        self.rounding
     }
 
     /// Holds component `c` of a node without a frame of its own where it is: a motion that changes nothing is stopped.
@@ -206,17 +216,30 @@ fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
-/// The first one or two demands at a node that are independent; the others must agree with them to within `tolerance`.
+/// By how much the normals of all supports may be off.
+fn rounding_of_supports(problem: &Problem) -> Result<f64, DataError> {
+    let mut rounding: f64 = 0.0;
+    for (name, condition) in &problem.conditions {
+        if matches!(condition, Condition::Support { .. }) {
+            let edges = problem.mesh.edges_of(name)?.iter().copied();
+            rounding = rounding.max(problem.mesh.turned_by_rounding(edges));
+        }
+    }
+    Ok(rounding)
+}
+
+/// The first one or two demands at a node that are independent, whose directions have a sine above the first of the tolerances; the
+/// others must agree with them to within the second.
 fn independent<'d, 'a>(
     demands: &'d [Demand<'a>],
     [x, y]: [f64; 2],
-    tolerance: f64,
+    [parallel, tolerance]: [f64; 2],
 ) -> Result<Vec<&'d Demand<'a>>, DataError> {
     let mut chosen: Vec<&Demand> = Vec::new();
     for demand in demands {
         let d = demand.direction;
-        let parallel = chosen.iter().find(|other| cross(other.direction, d).abs() <= PARALLEL);
-        let (first, value) = match (parallel, &chosen[..]) {
+        let along = chosen.iter().find(|other| cross(other.direction, d).abs() <= parallel);
+        let (first, value) = match (along, &chosen[..]) {
             (Some(one), _) => {
                 let sign = one.direction[0] * d[0] + one.direction[1] * d[1];
                 (one.name, one.value * sign.signum())

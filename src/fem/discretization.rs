@@ -118,7 +118,8 @@ where
         if !motions.is_empty() {
             let fields: Vec<_> =
                 motions.iter().map(|motion| motion.field(&parts, &space)).collect();
-            let Some(sliding) = held::slides(&fields, &space, &load, &contact) else {
+            let rounding = constraints.rounding();
+            let Some(sliding) = held::slides(&fields, &space, &load, &contact, rounding) else {
                 return Err(DataError::RigidMotion { motions });
             };
             let free = |node: usize, c: usize| {

@@ -21,20 +21,22 @@ const BALANCED: f64 = 1e-9;
 /// Loads must go on pressing when they are changed by this share: a body on the verge of tipping is not held.
 const MARGIN: f64 = 1e-6;
 
-/// Singular values of the c_i below this share of the largest, or of motions of size 1, belong to motions that slide.
+/// Singular values of the c_i below this share of the largest, or of motions of size 1, belong to motions that slide; a c_i below
+/// it is zero but for rounding. Where the body is far from the origin, rounding its vertices makes more than this.
 const SLIDES: f64 = 1e-10;
 
 /// The motions among the combinations of `motions` that slide along every obstacle, as fields with orthonormal nodal
-/// values; `None` if contact and `load` do not hold the body.
+/// values; `None` if contact and `load` do not hold the body. The motions may be off by `rounding`.
 pub fn slides<E: Element<N, M>, const N: usize, const M: usize>(
     motions: &[Vec<[f64; 2]>],
     space: &Space<E, N, M>,
     load: &[[f64; 2]],
     contact: &[ContactLineEdge<N, M>],
+    rounding: f64,
 ) -> Option<Vec<Vec<[f64; 2]>>> {
     let dimension = motions.len();
     // r_n, and not P0(r): the stress of a rigid motion is zero but for rounding.
-    let rows: Vec<Vec<f64>> = contact
+    let mut rows: Vec<Vec<f64>> = contact
         .iter()
         .flat_map(|edge| {
             let nodes = space.edge_nodes(edge.edge).into_iter().zip(edge.directions);
@@ -54,8 +56,12 @@ pub fn slides<E: Element<N, M>, const N: usize, const M: usize>(
     let columns = (0..dimension).map(|j| rows.iter().map(|row| row[j]).collect()).collect();
     let directions = singular_vectors(columns);
     let largest = directions.first().map_or(0.0, |(value, _)| *value);
+    let of_contact = space.mesh().turned_by_rounding(contact.iter().map(|edge| edge.edge));
+    let of_all = rounding.max(of_contact) * (rows.len() as f64).sqrt();
+    let none = SLIDES.max(of_all) * largest.max(1.0);
+    rows.retain(|row| dot(row, row).sqrt() > none);
     let (stopped, sliding): (Vec<_>, Vec<_>) =
-        directions.iter().partition(|(value, _)| *value > SLIDES * largest.max(1.0));
+        directions.iter().partition(|(value, _)| *value > none);
     let holds = |loads: &[f64]| leaving(&rows, loads, BALANCED).is_none();
     let pressed = stopped.iter().all(|(_, direction)| {
         [-1.0, 1.0].iter().all(|sign| {
@@ -64,7 +70,7 @@ pub fn slides<E: Element<N, M>, const N: usize, const M: usize>(
             holds(&changed)
         })
     });
-    if !(largest > 0.0 && pressed && holds(&loads)) {
+    if rows.is_empty() || !(pressed && holds(&loads)) {
         return None;
     }
     let sliding = sliding.into_iter().map(|(_, weights)| {

@@ -222,6 +222,17 @@ impl Mesh {
         (length, normal / length)
     }
 
+    /// By how much the normals of these boundary edges may be off because the ends are rounded to doubles; 0 for none.
+    pub(super) fn turned_by_rounding(&self, edges: impl IntoIterator<Item = BoundaryEdge>) -> f64 {
+        let of = |edge: BoundaryEdge| {
+            let ends = self.ends(edge).map(|v| self.vertices[v]);
+            let far = ends.as_flattened().iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+            // A unit in the last place of four coordinates, at two nodes that are compared.
+            8.0 * f64::EPSILON * far / self.length_and_normal(edge).0
+        };
+        edges.into_iter().map(of).fold(0.0, f64::max)
+    }
+
     /// The first triangle that contains the point `x`, with its barycentric coordinates there; `None` outside the body.
     pub fn locate(&self, x: [f64; 2]) -> Option<(usize, [f64; 3])> {
         let boxes = self.boxes.get_or_init(|| {

@@ -21,6 +21,7 @@ mod null_space;
 use std::collections::BTreeMap;
 use std::fmt;
 
+use super::dense::singular_vectors;
 use super::mesh::Mesh;
 use super::space::Space;
 use crate::kernel::Element;
@@ -224,18 +225,19 @@ impl Parts {
     }
 }
 
-/// All rigid motions that are free when each node is held in the directions `held` of it: a basis, empty if the
-/// body is held. Motions that turn a part come with as few other parts as the elimination gives.
+/// All rigid motions that are free when each node is held in the directions `held` of it, which may be off by `rounding`: a basis,
+/// empty if the body is held. Motions that turn a part come with as few other parts as the elimination gives.
 pub fn free_motions<E, I, const N: usize, const M: usize>(
     parts: &Parts,
     space: &Space<E, N, M>,
     held: impl Fn(usize) -> I,
+    rounding: f64,
 ) -> Vec<FreeMotion>
 where
     E: Element<N, M>,
     I: Iterator<Item = [f64; 2]>,
 {
-    let mut equations = supports(parts, space, held);
+    let mut equations = supports(parts, space, held, rounding);
     for hinge in &parts.hinges {
         let x = space.mesh().vertices()[hinge.vertex];
         for pair in hinge.parts.windows(2) {
@@ -249,11 +251,13 @@ where
     null.iter().map(|values| parts.motion(space.mesh(), values)).collect()
 }
 
-/// What the prescribed components ask of each part: at most three equations, equivalent to all of them.
+/// What the prescribed components ask of each part: at most three equations, equivalent to all of them but for what directions that
+/// are off by `rounding` may ask.
 fn supports<E, I, const N: usize, const M: usize>(
     parts: &Parts,
     space: &Space<E, N, M>,
     held: impl Fn(usize) -> I,
+    rounding: f64,
 ) -> Vec<Vec<(usize, [f64; 3])>>
 where
     E: Element<N, M>,
@@ -275,9 +279,12 @@ where
     let mut equations = Vec::new();
     for (part, mut rows) in by_part {
         rows.triangularise(0);
-        let largest = rows.values.iter().fold(0.0, |max: f64, v| max.max(v.abs()));
-        for row in rows.values.chunks(3) {
-            equations.push(vec![(part, [row[0], row[1], row[2]].map(|v| v / largest))]);
+        let column = |c: usize| rows.values.chunks(3).map(|row| row[c]).collect();
+        let directions = singular_vectors((0..3).map(column).collect());
+        let largest = directions.first().map_or(0.0, |(value, _)| *value);
+        for (value, v) in directions.iter().filter(|(value, _)| *value > rounding * largest) {
+            let weight = value / largest;
+            equations.push(vec![(part, [0, 1, 2].map(|k| weight * v[k]))]);
         }
     }
     equations
@@ -349,7 +356,7 @@ mod tests {
             axes.filter(|(held, _)| *held).map(|(_, axis)| axis)
         };
         let parts = Parts::new(mesh);
-        let motions = free_motions(&parts, &space, directions);
+        let motions = free_motions(&parts, &space, directions, 0.0);
         for motion in &motions {
             vanishes_where_held_and_agrees_at_hinges(motion, &parts, &space, held);
         }

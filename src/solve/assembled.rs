@@ -225,7 +225,7 @@ where
 
     /// How much stiffer contact is than the body, by the power method on A^-1 B^T Psi'' B; A is what was factored last.
     fn stiffness(&self, at: &Derivatives<M>) -> Result<f64, SolveError> {
-        let Some((factor, _)) = &self.route.factored else { return Ok(SOFTEST) };
+        let Some((factor, _)) = &self.route.factored else { return Ok(self.springs()) };
         Ok(newton::largest_eigenvalue(self.route.system.numbering.count, |x| {
             let p = self.values_of_p0(x);
             let mut force = vec![0.0; x.len()];
@@ -238,6 +238,16 @@ where
             factor.solve(&mut force);
             force
         }))
+    }
+
+    /// How much stiffer than the body in shear, the sum of |E| / (gamma mu), the springs of all edges are: what is known where
+    /// the body has no compliance, because nothing else holds it.
+    fn springs(&self) -> f64 {
+        let d = self.route.system.d;
+        let stiffer = d.contact.iter().map(|edge| {
+            edge.length / (edge.gamma * d.problem.material.of(edge.edge.triangle).mu())
+        });
+        stiffer.sum::<f64>().max(1.0)
     }
 
     /// B x
@@ -298,7 +308,8 @@ where
             }
         }
         let all = newton::derivatives(edges, &vec![1.0; self.at.p.len()]);
-        let mut pulling = all.times(1.0 / SOFTEST);
+        let springs = self.springs();
+        let mut pulling = all.times(1.0 / springs);
         for e in 0..self.route.order.len() {
             let p: [f64; M] = block(&self.at.p, e);
             for a in 0..M {
@@ -308,7 +319,7 @@ where
         let step = self.step(&pulling)?;
         self.advance(1.0, &step);
         follow(&mut forces, &pulling, &step, 1.0);
-        Ok(Start { forces, contact: Some(SOFTEST) })
+        Ok(Start { forces, contact: Some(springs) })
     }
 
     fn step(&mut self, at: &Derivatives<M>) -> Result<Step, SolveError> {
@@ -364,10 +375,6 @@ where
         }
     }
 }
-
-/// How much softer than contact the springs are that hold a body at the start which nothing else holds: about as soft as
-/// the body.
-const SOFTEST: f64 = 1e3;
 
 /// The share of the springs of all edges that is added to a tangent which has no factor: the edges that are in contact at an
 /// iterate need not hold the body that those of the solution hold. The step goes downhill all the same.

@@ -271,7 +271,7 @@ where
 
 /// u less its part along the motions that slide, as [`held::least_norm`] takes it out, and the bounds at the nodes that this has
 /// for a u within the bounds `nodes`.
-fn less_slides(
+pub fn less_slides(
     mut u: Vec<[Ball; 2]>,
     mut nodes: Vec<f64>,
     slides: &[Vec<[f64; 2]>],
@@ -292,10 +292,10 @@ fn less_slides(
 }
 
 /// The contact edges in balls.
-pub(super) type Lines<'d, const N: usize, const M: usize> = Vec<OnEdge<'d, Ball, N, M>>;
+pub type Lines<'d, const N: usize, const M: usize> = Vec<OnEdge<'d, Ball, N, M>>;
 
 /// Those of a discretization.
-pub(super) fn lines<'d, E, const N: usize, const M: usize>(
+pub fn lines<'d, E, const N: usize, const M: usize>(
     d: &'d Discretization<E, N, M>,
 ) -> Lines<'d, N, M>
 where

@@ -20,7 +20,7 @@ pub mod limit;
 mod memory;
 pub mod newton;
 pub mod ordering;
-mod pressed;
+pub mod pressed;
 mod relaxation;
 pub mod route;
 pub mod solution;

@@ -98,19 +98,22 @@ pub fn solve<E, const N: usize, const M: usize>(
     system: &System<E, N, M>,
     settings: &Settings,
     times: &mut Times,
-) -> Result<(Outcome, MethodReport, usize, Option<Factor>), SolveError>
+) -> Result<Solved, SolveError>
 where
     E: ExactEdge<f64, N, M>,
 {
-    let reference = accuracy::reference(system.d);
-    if !(system.largest().is_normal() && reference.is_normal() && contact_is_in_range(system)) {
+    let mut watch = Stopwatch::start();
+    let outset = Outset::of(system);
+    let in_range = system.largest().is_normal() && outset.reference.is_normal();
+    if !(in_range && contact_is_in_range(system)) {
         return Err(SolveError::OutOfRange);
     }
     let held = system.d.slides.is_none();
-    let condensed = held && Prediction::of(system).1.route() == RouteName::Condensed;
+    let condensed = held && outset.prediction.route() == RouteName::Condensed;
+    times.judge += watch.lap();
     let doubles = [RouteName::Condensed, RouteName::Assembled];
     for name in &doubles[usize::from(!condensed)..] {
-        match by(*name, system, settings, times) {
+        match outset.go(*name, system, settings, times) {
             // Contact may hold what the supports hardly hold.
             Err(SolveError::Singular) => {}
             Ok(done) if done.0.is_right(settings) => return Ok(done),
@@ -122,7 +125,7 @@ where
             Err(error) => return Err(error),
         }
     }
-    by(RouteName::Twofold, system, settings, times)
+    outset.go(RouteName::Twofold, system, settings, times)
 }
 
 /// Whether what the matrix is made of on the contact edges neither over- nor underflows.
@@ -149,54 +152,86 @@ pub fn by<E, const N: usize, const M: usize>(
     system: &System<E, N, M>,
     settings: &Settings,
     times: &mut Times,
-) -> Result<(Outcome, MethodReport, usize, Option<Factor>), SolveError>
+) -> Result<Solved, SolveError>
 where
     E: ExactEdge<f64, N, M>,
 {
-    let mut watch = Stopwatch::start();
-    let (reach, prediction) = Prediction::of(system);
-    let reference = accuracy::reference(system.d);
-    times.judge += watch.lap();
-    let (outcome, predicted_operations, factorizations, factor) = match name {
-        RouteName::Condensed => {
-            let q = reach.functionals();
-            memory::ensure(8 * (reach.stored_entries(&system.structure) + 3 * q * q) as u64)?;
-            system.enters(Phase::Factor);
-            let factor = match Factor::with(&system.structure, &system.matrix)? {
-                Ok(factor) => factor,
-                Err(Indefinite) if system.d.kappa() < 1.0 => return Err(SolveError::Singular),
-                Err(Indefinite) => return Err(SolveError::NotPositiveDefinite),
-            };
-            times.factor += watch.lap();
-            system.enters(Phase::Condense);
-            let mut route = Condensed::new(system, &factor, &reach, reference);
-            times.compliance += watch.lap();
-            let outcome = accuracy::refine(system, &mut route, reference, settings)?;
-            (outcome, prediction.condensed, 1, Some(factor))
-        }
-        RouteName::Assembled | RouteName::Twofold => {
-            let mut route = if name == RouteName::Twofold {
-                memory::ensure(
-                    (2 * size_of::<Twofold>() * system.structure.stored_entries()) as u64,
-                )?;
-                Assembled::twofold(system, reference)
-            } else {
-                Assembled::new(system, reference)
-            };
-            let outcome = accuracy::refine(system, &mut route, reference, settings)?;
-            (outcome, prediction.assembled, route.factorizations(), None)
-        }
-    };
-    times.newton += watch.lap();
-    let Outcome { condition, forward_error, .. } = outcome;
-    let slides = system.d.slides.as_ref().map_or(0, Vec::len);
-    let report = MethodReport {
-        route: name,
-        predicted_operations,
-        condition,
-        forward_error,
-        threads: 1,
-        slides,
-    };
-    Ok((outcome, report, factorizations, factor))
+    Outset::of(system).go(name, system, settings, times)
+}
+
+/// What a route ends with: the outcome, how it was found, the factorisations, and the factor of A where there is one.
+pub type Solved = (Outcome, MethodReport, usize, Option<Factor>);
+
+/// What is known of a system before a route is taken.
+struct Outset {
+    reach: Reach,
+    prediction: Prediction,
+    /// What residuals are relative to.
+    reference: f64,
+}
+
+impl Outset {
+    fn of<E, const N: usize, const M: usize>(system: &System<E, N, M>) -> Self
+    where
+        E: ExactEdge<f64, N, M>,
+    {
+        let (reach, prediction) = Prediction::of(system);
+        Outset { reach, prediction, reference: accuracy::reference(system.d) }
+    }
+
+    fn go<E, const N: usize, const M: usize>(
+        &self,
+        name: RouteName,
+        system: &System<E, N, M>,
+        settings: &Settings,
+        times: &mut Times,
+    ) -> Result<Solved, SolveError>
+    where
+        E: ExactEdge<f64, N, M>,
+    {
+        let mut watch = Stopwatch::start();
+        let Outset { reach, prediction, reference } = self;
+        let (outcome, predicted_operations, factorizations, factor) = match name {
+            RouteName::Condensed => {
+                let q = reach.functionals();
+                memory::ensure(8 * (reach.stored_entries(&system.structure) + 3 * q * q) as u64)?;
+                system.enters(Phase::Factor);
+                let factor = match Factor::with(&system.structure, &system.matrix)? {
+                    Ok(factor) => factor,
+                    Err(Indefinite) if system.d.kappa() < 1.0 => return Err(SolveError::Singular),
+                    Err(Indefinite) => return Err(SolveError::NotPositiveDefinite),
+                };
+                times.factor += watch.lap();
+                system.enters(Phase::Condense);
+                let mut route = Condensed::new(system, &factor, reach, *reference);
+                times.compliance += watch.lap();
+                let outcome = accuracy::refine(system, &mut route, *reference, settings)?;
+                (outcome, prediction.condensed, 1, Some(factor))
+            }
+            RouteName::Assembled | RouteName::Twofold => {
+                let mut route = if name == RouteName::Twofold {
+                    memory::ensure(
+                        (2 * size_of::<Twofold>() * system.structure.stored_entries()) as u64,
+                    )?;
+                    Assembled::twofold(system, *reference)
+                } else {
+                    Assembled::new(system, *reference)
+                };
+                let outcome = accuracy::refine(system, &mut route, *reference, settings)?;
+                (outcome, prediction.assembled, route.factorizations(), None)
+            }
+        };
+        times.newton += watch.lap();
+        let Outcome { condition, forward_error, .. } = outcome;
+        let slides = system.d.slides.as_ref().map_or(0, Vec::len);
+        let report = MethodReport {
+            route: name,
+            predicted_operations,
+            condition,
+            forward_error,
+            threads: 1,
+            slides,
+        };
+        Ok((outcome, report, factorizations, factor))
+    }
 }

@@ -125,12 +125,27 @@ struct Element {
     stiffness: Vec<D>,
 }
 
+/// The circle that the nodes of a contact line lie on. Contact is in the direction of its radii, away from the body.
+#[derive(Clone, Copy, Debug)]
+pub struct Circle {
+    /// The center.
+    pub center: [f64; 2],
+    /// The radius.
+    pub radius: f64,
+    /// The body lies within.
+    pub is_around: bool,
+}
+
 /// An edge of Gamma_C in its triangle: P(s) = sum over the nodes of p0(s) . u - g(s).
 struct Edge {
     element: usize,
+    lambda: D,
+    mu: D,
     gamma: D,
     length: D,
     normal: V,
+    /// n~ at the two ends and, for P2, in the middle.
+    directions: Vec<V>,
     gradients: [V; 3],
     local: usize,
     gap: Vec<D>,
@@ -139,13 +154,12 @@ struct Edge {
 /// The discrete problem in units of its own size.
 pub struct Assembled {
     degree: usize,
-    lambda: D,
-    mu: D,
     elements: Vec<Element>,
     edges: Vec<Edge>,
     load: Vec<V>,
     prescribed: Vec<[Option<D>; 2]>,
     length: f64,
+    modulus: f64,
 }
 
 /// The exact discrete solution: u / length at each node.
@@ -156,10 +170,15 @@ fn power_of_two(x: f64) -> f64 {
 }
 
 impl Assembled {
-    /// Method (8) of this degree with this gamma0 for a body of one material under a constant force.
-    pub fn new(problem: &Problem, degree: Degree, gamma0: f64, force: [f64; 2]) -> Self {
+    /// Method (8) of this degree with this gamma0 for a body under a constant force, its contact line straight or on a circle.
+    pub fn new(
+        problem: &Problem,
+        degree: Degree,
+        gamma0: f64,
+        force: [f64; 2],
+        circle: Option<Circle>,
+    ) -> Self {
         let (mesh, degree) = (&problem.mesh, degree.number());
-        let material = problem.material.only().unwrap();
         let all = || mesh.vertices().iter();
         let extent = |c: usize| {
             let (low, high) = all().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
@@ -168,9 +187,12 @@ impl Assembled {
             high - low
         };
         let length = power_of_two(extent(0).max(extent(1)));
-        let modulus = power_of_two(material.mu());
+        let modulus = power_of_two(problem.material.of(0).mu());
         let scaled = |x: f64, unit: f64| D::from(x / unit);
-        let (lambda, mu) = (scaled(material.lambda(), modulus), scaled(material.mu(), modulus));
+        let lame = |t: usize| {
+            let material = problem.material.of(t);
+            [scaled(material.lambda(), modulus), scaled(material.mu(), modulus)]
+        };
         let origin = mesh.vertices()[0];
         // Differences of doubles within a factor of two are exact; the others are exact as pairs.
         let place = |v: usize| {
@@ -183,7 +205,9 @@ impl Assembled {
         places.resize(count, [0.0; 2]);
         let (mut elements, mut load) = (Vec::new(), vec![[ZERO; 2]; count]);
         let force = force.map(|f| D::from(f * length / modulus));
-        for (corners, middles) in mesh.triangles().iter().zip(mesh.triangle_edges()) {
+        for (t, (corners, middles)) in
+            mesh.triangles().iter().zip(mesh.triangle_edges()).enumerate()
+        {
             let mut nodes = corners.to_vec();
             if degree == 2 {
                 nodes.extend(middles.iter().map(|e| vertices + e));
@@ -193,6 +217,7 @@ impl Assembled {
                 }
             }
             let (area2, gradients) = geometry(corners.map(place));
+            let [lambda, mu] = lame(t);
             let stiffness = stiffness(degree, lambda, mu, area2, gradients);
             let share = area2 / D::from(6.0);
             for (i, &node) in nodes.iter().enumerate() {
@@ -235,16 +260,22 @@ impl Assembled {
                         let long = |i: usize| dot(side(i), side(i)).sqrt();
                         let h = (0..3).map(long).fold(ZERO, |h, l| if l > h { l } else { h });
                         let length_of_edge = long(at.local);
+                        let normal = [dy / length_of_edge, -dx / length_of_edge];
+                        let seen = |node: usize| on_circle(circle, places[node], normal);
+                        let [lambda, mu] = lame(at.triangle);
                         edges.push(Edge {
                             element: at.triangle,
+                            lambda,
+                            mu,
                             gamma: D::from(gamma0 * modulus) * h,
                             length: length_of_edge,
-                            normal: [dy / length_of_edge, -dx / length_of_edge],
+                            normal,
+                            directions: on_edge.iter().map(|&node| seen(node).1).collect(),
                             gradients,
                             local: at.local,
                             gap: on_edge
                                 .iter()
-                                .map(|&node| scaled(gap.at(places[node]), length))
+                                .map(|&node| scaled(gap.at(seen(node).0), length))
                                 .collect(),
                         });
                     }
@@ -252,30 +283,43 @@ impl Assembled {
                 }
             }
         }
-        Assembled { degree, lambda, mu, elements, edges, load, prescribed, length }
+        Assembled { degree, elements, edges, load, prescribed, length, modulus }
     }
 
-    /// P0 and sigma_n of each node and component of the triangle, and g, at `s` on the edge.
-    fn functionals(&self, edge: &Edge, s: D) -> (Vec<V>, Vec<V>, D) {
-        let one = D::from(1.0);
+    /// n~ . sigma(v) n of each node and component of the triangle at an end of the edge.
+    fn stress(&self, edge: &Edge, end: usize) -> Vec<V> {
         let mut l = [ZERO; 3];
-        l[(edge.local + 1) % 3] = one - s;
-        l[(edge.local + 2) % 3] = s;
-        let n = edge.normal;
-        let (mut p0, mut sigma) = (Vec::new(), Vec::new());
-        for (value, gradient) in shapes(self.degree, l, edge.gradients) {
-            let across = self.mu.times(2.0) * dot(gradient, n);
-            let stress = [0, 1].map(|c| self.lambda * gradient[c] + across * n[c]);
-            p0.push([0, 1].map(|c| value * n[c] - edge.gamma * stress[c]));
-            sigma.push(stress);
-        }
-        let g = &edge.gap;
-        let gap = if self.degree == 1 {
-            (one - s) * g[0] + s * g[1]
-        } else {
-            let t = one - s;
-            g[0] * t * (t - s) + g[1] * s * (s - t) + g[2] * (s * t).times(4.0)
+        l[(edge.local + 1 + end) % 3] = D::from(1.0);
+        let (n, d) = (edge.normal, edge.directions[end]);
+        let turn = dot(n, d);
+        let stress = |g: V| {
+            let (across, along) = (edge.mu * dot(g, n), edge.mu * dot(g, d));
+            [0, 1].map(|c| edge.lambda * turn * g[c] + across * d[c] + along * n[c])
         };
+        shapes(self.degree, l, edge.gradients).into_iter().map(|(_, g)| stress(g)).collect()
+    }
+
+    /// P0 and sigma_n of each node and component of the triangle, and g, at `s` on the edge: sigma_n is affine, the rest is given
+    /// by its values at the nodes.
+    fn functionals(&self, edge: &Edge, s: D) -> (Vec<V>, Vec<V>, D) {
+        let t = D::from(1.0) - s;
+        let shapes = if self.degree == 1 {
+            vec![t, s]
+        } else {
+            vec![t * (t - s), s * (s - t), (s * t).times(4.0)]
+        };
+        let affine = |(a, b): (&V, &V)| [0, 1].map(|c| t * a[c] + s * b[c]);
+        let ends = [0, 1].map(|end| self.stress(edge, end));
+        let sigma: Vec<V> = ends[0].iter().zip(&ends[1]).map(affine).collect();
+        let mut p0: Vec<V> = sigma.iter().map(|v| v.map(|c| -(edge.gamma * c))).collect();
+        let nodes = [(edge.local + 1) % 3, (edge.local + 2) % 3, 3 + edge.local];
+        let mut gap = ZERO;
+        for (a, &shape) in shapes.iter().enumerate() {
+            for c in 0..2 {
+                p0[nodes[a]][c] = p0[nodes[a]][c] + shape * edge.directions[a][c];
+            }
+            gap = gap + shape * edge.gap[a];
+        }
         (p0, sigma, gap)
     }
 
@@ -450,6 +494,11 @@ impl Assembled {
         self.error(answer, &rounded)
     }
 
+    /// a(u, u) in the units of the problem.
+    pub fn energy(&self, Answer(u): &Answer) -> f64 {
+        self.energy_product(u, u).0 * self.length * self.modulus * self.length
+    }
+
     /// |v - u|_a / |u|_a for nodal displacements `v` of another solver.
     pub fn error(&self, answer: &Answer, v: &[[f64; 2]]) -> f64 {
         let e: Vec<V> = answer
@@ -462,6 +511,15 @@ impl Assembled {
             (self.energy_product(&e, &e).0, self.energy_product(&answer.0, &answer.0).0);
         if error <= 0.0 { 0.0 } else { (error / size).sqrt() }
     }
+}
+
+/// Where a node of a contact line lies behind its facet, and n~ there.
+fn on_circle(circle: Option<Circle>, place: [f64; 2], normal: V) -> ([f64; 2], V) {
+    let Some(Circle { center, radius, is_around }) = circle else { return (place, normal) };
+    let from = [0, 1].map(|c| place[c] - center[c]);
+    let out = from.map(|x| x / from[0].hypot(from[1]));
+    let sign = if is_around { 1.0 } else { -1.0 };
+    ([0, 1].map(|c| center[c] + radius * out[c]), out.map(|x| D::from(sign * x)))
 }
 
 /// Twice the area and the gradients of the barycentric coordinates.

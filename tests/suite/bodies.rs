@@ -8,13 +8,13 @@
 
 use std::collections::BTreeMap;
 
-use signorini::fem::{Condition, DataError, Mesh, MeshError, Problem};
+use signorini::fem::{Condition, DataError, Materials, Mesh, MeshError, Problem};
 use signorini::kernel::{Material, Plane};
 use signorini::solve::{
     ContactQuadrature, Degree, Gamma0, Method, Settings, SolveError, Unproved, solve,
 };
 
-use crate::assembled::Assembled;
+use crate::assembled::{Assembled, Circle};
 use crate::common::{clamped, constant, function};
 
 fn number_from(variable: &str, default: u64) -> u64 {
@@ -138,6 +138,15 @@ struct Body {
     method: Method,
     gamma0: f64,
     force: [f64; 2],
+    /// What its contact line lies on, if it is no straight line.
+    circle: Option<Circle>,
+}
+
+impl Body {
+    /// The independent solver of it.
+    fn again(&self) -> Assembled {
+        Assembled::new(&self.problem, self.method.degree, self.gamma0, self.force, self.circle)
+    }
 }
 
 /// What all kinds of bodies have in common: element, material, units, gamma0.
@@ -186,12 +195,25 @@ impl Choice {
         force: [f64; 2],
         conditions: Vec<(&str, Condition)>,
     ) -> Body {
+        self.body_of(self.material.into(), kind, said, mesh, force, conditions)
+    }
+
+    /// The same, of these materials.
+    fn body_of(
+        &self,
+        materials: Materials,
+        kind: &'static str,
+        said: &str,
+        mesh: Mesh,
+        force: [f64; 2],
+        conditions: Vec<(&str, Condition)>,
+    ) -> Body {
         let force = force.map(|f| f * self.modulus / self.length);
         let conditions: BTreeMap<String, Condition> =
             conditions.into_iter().map(|(name, c)| (name.to_owned(), c)).collect();
-        let gamma0 = self.share * limit(&mesh, &self.material, self.degree, &conditions);
+        let gamma0 = self.share * limit(&mesh, &materials, self.degree, &conditions);
         let load = force.map(constant);
-        let problem = Problem::new(mesh, self.material, load, conditions);
+        let problem = Problem::new(mesh, materials, load, conditions);
         let method = Method {
             degree: self.degree,
             gamma0: Gamma0::Value(gamma0),
@@ -199,7 +221,7 @@ impl Choice {
             ..Method::default()
         };
         let said = format!("{said}; {}", self.said);
-        Body { kind, said, problem, method, gamma0, force }
+        Body { kind, said, problem, method, gamma0, force, circle: None }
     }
 
     /// Contact with a floor at a gap that is affine along x, in units of the length.
@@ -214,7 +236,7 @@ impl Choice {
 /// The gamma0 at which kappa = 1, from the definition.
 fn limit(
     mesh: &Mesh,
-    material: &Material<f64>,
+    materials: &Materials,
     degree: Degree,
     conditions: &BTreeMap<String, Condition>,
 ) -> f64 {
@@ -233,9 +255,10 @@ fn limit(
         let area = ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2.0;
         let side = |p: [f64; 2], q: [f64; 2]| (p[0] - q[0]).hypot(p[1] - q[1]);
         let h = side(a, b).max(side(b, c)).max(side(c, a));
-        worst.max(h / area * length)
+        let material = materials.of(t);
+        worst.max((material.lambda() + 2.0 * material.mu()) * (h / area * length))
     });
-    1.0 / (p * (material.lambda() + 2.0 * material.mu()) * worst)
+    1.0 / (p * worst)
 }
 
 fn slides(c: usize) -> Condition {
@@ -336,14 +359,105 @@ fn hinged(dice: &mut Dice) -> Body {
     choice.body("hinged", &said, mesh, [0.0, -dice.decades(-3.0, 0.0)], conditions)
 }
 
+/// Blocks and beams of two materials, in layers, in columns or mixed cell by cell.
+fn layered(dice: &mut Dice) -> Body {
+    let choice = Choice::new(dice);
+    let slenderness = dice.decades(0.0, 1.5);
+    let cells = [dice.whole(4, 24), dice.whole(2, 6)];
+    let place =
+        |[i, j]: [f64; 2]| choice.place([i / cells[0] as f64, j / cells[1] as f64 / slenderness]);
+    let mesh = Grid { cells, cut: choice.cut, solid: &everywhere, place: &place }.mesh();
+    let Ok(mesh) = mesh else { return layered(dice) };
+    let (ratio, poisson) = (dice.decades(-6.0, 6.0), dice.between(-0.2, 0.49));
+    let other = Material::young_poisson(choice.modulus * ratio, poisson, choice.material.plane());
+    let order = dice.whole(0, 2);
+    let per_cell = if choice.cut == Cut::Crossed { 4 } else { 2 };
+    let is_other = |t: &usize| {
+        let (i, j) = (t / per_cell % cells[0], t / per_cell / cells[0]);
+        match order {
+            0 => j % 2 == 1,
+            1 => i % 3 == 1,
+            _ => (7 * i + 5 * j) % 4 < 2,
+        }
+    };
+    let members: Vec<usize> = (0..mesh.triangles().len()).filter(is_other).collect();
+    let materials =
+        Materials::in_parts(choice.material, mesh.triangles().len(), [(other, &members[..])]);
+    let soft = ratio.min(1.0);
+    let force = -soft * dice.decades(-3.0, -1.0) / slenderness;
+    let gap = if dice.one_in(2) { 0.0 } else { dice.decades(-4.0, -2.0) / slenderness };
+    let held = dice.pick(&["top", "left"]);
+    let conditions = vec![(held, clamped()), ("bottom", choice.floor(gap, 0.0))];
+    let order = ["layers", "columns", "cells"][order];
+    let said = format!(
+        "1 x 1/{slenderness:.1}, {cells:?} cells, {order} of {ratio:.1e} times the stiffness, held {held}, gap {gap:e}"
+    );
+    choice.body_of(materials, "layered", &said, mesh, [0.0, force], conditions)
+}
+
+/// Arches: a part of a ring, from a thick one to a strip, that stands on its back over a floor or lies over a hill. Contact is
+/// along a circle.
+fn arch(dice: &mut Dice) -> Body {
+    let mut choice = Choice::new(dice);
+    // On the circle to the last bits of a double.
+    choice.offset = 0.0;
+    let thickness = dice.decades(-2.0, -0.3);
+    let cells = [dice.whole(6, 40), dice.whole(1, 4)];
+    let span = dice.between(0.3, 3.0);
+    let stands = dice.one_in(2);
+    let place = |[i, j]: [f64; 2]| {
+        let (angle, across) = (span * (i / cells[0] as f64 - 0.5), thickness * j / cells[1] as f64);
+        let (r, up) = if stands { (1.0 - across, -1.0) } else { (1.0 + across, 1.0) };
+        choice.place([r * angle.sin(), up * r * angle.cos()])
+    };
+    let mesh = Grid { cells, cut: choice.cut, solid: &everywhere, place: &place }.mesh();
+    // A cell may be thinner than its arc is high.
+    let Ok(mesh) = mesh else { return arch(dice) };
+    let near = thickness * dice.decades(-3.0, -1.0);
+    let length = choice.length;
+    let gap = function(move |[x, y]| {
+        let [x, y] = [x / length, y / length];
+        length * (near + if stands { y + 1.0 } else { 0.3 * x * x })
+    });
+    let force = -thickness * dice.decades(-3.0, -0.5);
+    let mut conditions = vec![("left", clamped()), ("bottom", Condition::Contact { gap })];
+    match dice.whole(0, 2) {
+        0 => conditions.push(("right", clamped())),
+        1 => conditions.push(("right", slides(0))),
+        _ => {}
+    }
+    // What the direction of contact turns by along an edge takes of the limit (docs/theory.md, Lemma 2.1b).
+    if choice.degree == Degree::Two {
+        choice.share /= 2.0 - (span / cells[0] as f64).cos();
+    }
+    let said = format!(
+        "{thickness:.1e} thick, {span:.2} wide, {cells:?} cells, {near:e} over {}",
+        if stands { "a floor" } else { "a hill" }
+    );
+    let body = choice.body("arch", &said, mesh, [0.0, force], conditions);
+    Body { circle: Some(Circle { center: [0.0; 2], radius: length, is_around: stands }), ..body }
+}
+
+/// Blocks that only their weight holds on the floor: a side is guided.
+fn resting(dice: &mut Dice) -> Body {
+    let choice = Choice::new(dice);
+    let slenderness = dice.decades(-1.0, 1.0);
+    let cells = [dice.whole(2, 16), dice.whole(1, 8)];
+    let place =
+        |[i, j]: [f64; 2]| choice.place([i / cells[0] as f64, j / cells[1] as f64 / slenderness]);
+    let mesh = Grid { cells, cut: choice.cut, solid: &everywhere, place: &place }.mesh();
+    let Ok(mesh) = mesh else { return resting(dice) };
+    let force = [dice.between(-0.05, 0.05), -dice.decades(-3.0, -0.5)];
+    let (gap, slope) = (dice.between(0.0, 0.01), dice.between(-0.01, 0.01));
+    let conditions = vec![("left", slides(0)), ("bottom", choice.floor(gap, slope))];
+    let said = format!("1 x 1/{slenderness:.1}, {cells:?} cells, gap {gap:e}, slope {slope:e}");
+    choice.body("resting", &said, mesh, force, conditions)
+}
+
 fn well_posed(seed: u64) -> Body {
     let mut dice = Dice(seed);
-    match seed % 4 {
-        0 => beam(&mut dice),
-        1 => sheet(&mut dice),
-        2 => graded(&mut dice),
-        _ => hinged(&mut dice),
-    }
+    let kinds = [beam, sheet, graded, hinged, layered, arch, resting];
+    kinds[(seed % 7) as usize](&mut dice)
 }
 
 /// How far the solver's answer may be off, in the energy norm.
@@ -354,7 +468,7 @@ const BEYOND_DOUBLES: f64 = 1e-7;
 
 /// What is wrong with the solver's answer to this body, if anything is.
 fn wrong(body: &Body) -> Option<String> {
-    let again = Assembled::new(&body.problem, body.method.degree, body.gamma0, body.force);
+    let again = body.again();
     let (solution, _) = match solve(
         &body.problem,
         &body.method,
@@ -363,6 +477,11 @@ fn wrong(body: &Body) -> Option<String> {
         Ok(solution) => solution,
         Err(SolveError::IllConditioned { .. })
             if again.solve(None).is_some_and(|u| again.rounding(&u) > BEYOND_DOUBLES) =>
+        {
+            return None;
+        }
+        Err(SolveError::OutOfRange)
+            if again.solve(None).is_some_and(|u| !again.energy(&u).is_normal()) =>
         {
             return None;
         }
@@ -376,12 +495,15 @@ fn wrong(body: &Body) -> Option<String> {
         return Some(format!("off by {error:.1e} in the energy norm"));
     }
     let quantities = &solution.quantities;
-    out_of_balance(body, &quantities.contact_resultant, &quantities.reactions)
+    // Where P2 touches in less than a 1e-5 of an edge, P in doubles knows its forces to less, and the residual says so.
+    let known = CLOSE.max(solution.newton.residual);
+    out_of_balance(body, known, &quantities.contact_resultant, &quantities.reactions)
 }
 
-/// Body force, reactions and contact must balance to [`CLOSE`] of their sizes.
+/// Body force, reactions and contact must balance to this share of their sizes.
 fn out_of_balance(
     body: &Body,
+    share: f64,
     contact: &[f64; 2],
     reactions: &BTreeMap<String, [f64; 2]>,
 ) -> Option<String> {
@@ -391,7 +513,7 @@ fn out_of_balance(
         let forces = reactions.values().map(|r| r[c]).chain([contact[c], body.force[c] * area]);
         let (sum, size) = forces.fold((0.0, 0.0), |(s, m): (f64, f64), f| (s + f, m + f.abs()));
         let weight = body.force[0].hypot(body.force[1]) * area;
-        if !(sum.abs() <= CLOSE * size.max(weight)) {
+        if !(sum.abs() <= share * size.max(weight)) {
             return Some(format!("forces along {} add up to {sum:e} of {size:e}", ["x", "y"][c]));
         }
     }
@@ -407,7 +529,7 @@ fn report(failures: &[(u64, String)], count: u64) {
 
 #[test]
 fn well_posed_bodies_are_solved_as_an_independent_assembled_newton_solves_them() {
-    let seeds = seeds(120);
+    let seeds = seeds(140);
     let count = seeds.end - seeds.start;
     let failures: Vec<(u64, String)> = seeds
         .filter_map(|seed| {
@@ -421,17 +543,22 @@ fn well_posed_bodies_are_solved_as_an_independent_assembled_newton_solves_them()
 /// The share of |u|_a that the two solvers' problems may differ by: they integrate the same load by other rules, in doubles.
 const SAME_LOAD: f64 = 1e-15;
 
-/// Of a body: the true error and the enclosure's bound of it, relative; `None` where its numbers leave the range of doubles, or
-/// A alone has no factor in them.
+/// On a circle, also by the normals: vertices that are rounded to doubles know them to 1e-16 over the length of a facet.
+const SAME_CIRCLE: f64 = 1e-12;
+
+/// Of a body: the true error and the enclosure's bound of it, relative; `None` where its numbers leave the range of doubles, A
+/// alone has no factor in them, or no edge is surely pressed enough to hold it.
 fn error_and_bound(body: &Body) -> Result<Option<(f64, f64)>, String> {
     let settings = Settings { max_iterations: 200, ..Settings::default() };
     let (solution, _) =
         solve(&body.problem, &body.method, &settings).map_err(|error| error.to_string())?;
     let bound = match solution.enclosure {
-        Err(Unproved::NoKappa | Unproved::OutOfRange | Unproved::NoFactor) => return Ok(None),
+        Err(
+            Unproved::NoKappa | Unproved::OutOfRange | Unproved::NoFactor | Unproved::HeldByContact,
+        ) => return Ok(None),
         enclosure => enclosure.map_err(|why| why.to_string())?.relative.ok_or("no strain")?,
     };
-    let again = Assembled::new(&body.problem, body.method.degree, body.gamma0, body.force);
+    let again = body.again();
     let answer = again.solve(Some(&solution.displacement)).ok_or("no independent answer")?;
     Ok(Some((again.error(&answer, &solution.displacement), bound)))
 }
@@ -449,7 +576,8 @@ fn nineteen_of_twenty_bodies_get_an_enclosure_and_each_contains_the_independent_
             Ok(Some((error, bound))) => {
                 factors.push(bound / (error + SAME_LOAD));
                 bounds.push(bound);
-                if error <= bound + SAME_LOAD {
+                let same = if body.circle.is_some() { SAME_CIRCLE } else { SAME_LOAD };
+                if error <= bound + same {
                     continue;
                 }
                 format!("error {error:.1e}, bound {bound:.1e}")
@@ -474,9 +602,9 @@ fn nineteen_of_twenty_bodies_get_an_enclosure_and_each_contains_the_independent_
 
 #[test]
 fn control_the_independent_answer_notices_a_displacement_that_is_off_by_1e_7() {
-    let body = well_posed(4);
+    let body = well_posed(7);
     let (solution, _) = solve(&body.problem, &body.method, &Settings::default()).unwrap();
-    let again = Assembled::new(&body.problem, body.method.degree, body.gamma0, body.force);
+    let again = body.again();
     let off: Vec<[f64; 2]> =
         solution.displacement.iter().map(|u| u.map(|c| c * (1.0 + 1e-7))).collect();
     let answer = again.solve(Some(&off)).unwrap();
@@ -486,9 +614,9 @@ fn control_the_independent_answer_notices_a_displacement_that_is_off_by_1e_7() {
 
 #[test]
 fn the_independent_solver_ends_at_the_same_answer_from_wherever_it_starts() {
-    for seed in [4, 5, 6, 7] {
+    for seed in 7..13 {
         let body = well_posed(seed);
-        let again = Assembled::new(&body.problem, body.method.degree, body.gamma0, body.force);
+        let again = body.again();
         let from_zero = again.solve(None).unwrap();
         let (solution, _) = solve(&body.problem, &body.method, &Settings::default()).unwrap();
         assert!(again.error(&from_zero, &solution.displacement) < CLOSE, "{}", body.said);
@@ -594,6 +722,19 @@ fn ill_posed(seed: u64) -> IllPosed {
     let floor = || ("bottom", choice.floor(0.01, 0.0));
     let method = Method { degree: choice.degree, ..Method::default() };
     let (said, outcome, reason): (&str, _, fn(&SolveError) -> bool) = match seed % 10 {
+        0 if dice.one_in(3) => {
+            // The force drives the body along its roller; contact is on the other side.
+            let (sin, cos) = dice.between(-3.0, 3.0).sin_cos();
+            let place = |[i, j]: [f64; 2]| {
+                let [x, y] = [i / nx, j / ny];
+                choice.place([cos * x - sin * y, sin * x + cos * y])
+            };
+            let mesh = Grid { cells, cut: choice.cut, solid: &everywhere, place: &place }.mesh();
+            let roller = Condition::Support { normal: Some(constant(0.0)), tangential: None };
+            let side = ("right", choice.floor(0.01, 0.0));
+            let problem = |mesh| with(mesh, vec![("left", roller), side]);
+            ("a body on one roller", attempt(mesh, problem, &method), is_free)
+        }
         0 => {
             // The force lifts the body and pushes it along the floor.
             let held = dice.whole(0, 2);
@@ -683,7 +824,7 @@ fn ill_posed(seed: u64) -> IllPosed {
             let problem = |mesh| with(mesh, vec![("top", clamped()), floor()]);
             let mesh = block().unwrap();
             let conditions = BTreeMap::from([("bottom".to_owned(), choice.floor(0.0, 0.0))]);
-            let most = limit(&mesh, &choice.material, choice.degree, &conditions);
+            let most = limit(&mesh, &choice.material.into(), choice.degree, &conditions);
             let gamma0 = Gamma0::Value(most * dice.decades(0.01, 6.0));
             let method = Method { gamma0, ..method };
             ("gamma0 beyond the limit", attempt(Ok(mesh), problem, &method), is_not_coercive)

@@ -57,7 +57,7 @@ fn around(problem: &Problem, degree: Degree, u: &[[f64; 2]]) -> Enclosure {
 
 /// The true error over |u|_a, by the independent solver in double-double arithmetic.
 fn true_error(problem: &Problem, degree: Degree, solution: &Solution, u: &[[f64; 2]]) -> f64 {
-    let again = Assembled::new(problem, degree, solution.gamma.gamma0, FORCE);
+    let again = Assembled::new(problem, degree, solution.gamma.gamma0, FORCE, None);
     let answer = again.solve(Some(&solution.displacement)).unwrap();
     again.error(&answer, u)
 }
