@@ -42,7 +42,7 @@ pub(super) struct Tree {
 }
 
 impl Tree {
-    /// Breadth first; edges inside a triangle that was cut come before all others.
+    /// Breadth first; edges inside a triangle that was cut, elsewhere than in the middle of an edge, come before all others.
     pub fn new(certificate: &Certificate, owners: &[[Option<Owner>; 2]]) -> Tree {
         let vertices = certificate.vertices.len();
         let count = certificate.pieces.len();
@@ -52,7 +52,10 @@ impl Tree {
             parts: Vec::new(),
         };
         let mut seen = vec![false; count];
-        let is_cut = |e: usize| certificate.edges[e].ends.iter().any(|&p| p >= vertices);
+        let is_cut = |e: usize| {
+            let cut = |p: &usize| p.checked_sub(vertices).map(|cut| certificate.cuts[cut].at);
+            certificate.edges[e].ends.iter().filter_map(cut).any(|at| at != 0.5)
+        };
         let beyond = |t: usize, e: usize| {
             let [left, right] = owners[e];
             [left, right].into_iter().flatten().map(|owner| owner.piece).find(|&piece| piece != t)

@@ -33,7 +33,7 @@ use crate::fem::contact_line::{self, ContactLineEdge};
 use crate::fem::mesh::length;
 use crate::fem::pieces::{Features, Rule};
 use crate::fem::{BoundaryEdge, Condition, Function, Mesh, Problem, SharedFunction, Space};
-use crate::kernel::composite::{Affine, complementary};
+use crate::kernel::composite::{Affine, Loads, complementary};
 use crate::kernel::contact_edge::integral_of_product;
 use crate::kernel::edge_integral::{self, ExactEdge, positive_interval};
 use crate::kernel::{Enclosing, Material, Stress, Triangle};
@@ -126,6 +126,8 @@ pub(super) struct Contact {
     /// c_E
     excess: Vector2<f64>,
     pressure: Profile,
+    /// Pressure and moments on both halves of the edge.
+    on_halves: [(Profile, [Vector2<f64>; 2]); 2],
 }
 
 /// tau_n along an edge of Gamma_C: affine, or with a jump at a place between the ends.
@@ -199,19 +201,27 @@ impl Contact {
     {
         let p = edge.p(u);
         // int \[P\]+ N_a; a hat function is N_a and half of that of the middle.
-        let nodal = E::exact(p).gradient;
-        let middle = nodal.get(2).copied();
-        let positive = [0, 1].map(|a| middle.map_or(nodal[a], |m| nodal[a] + m / 2.0));
+        let nodal = |p: [f64; M]| E::exact(p).gradient;
+        let with_hats = |p: [f64; M]| {
+            let nodal = nodal(p);
+            let middle = nodal.get(2).copied();
+            [0, 1].map(|a| middle.map_or(nodal[a], |m| nodal[a] + m / 2.0))
+        };
+        let positive = with_hats(p);
         let directions = [edge.directions[0], edge.directions[1]];
         let mesh = &problem.mesh;
-        let moments = if edge.directions.iter().all(|d| *d == edge.normal) {
-            let normal = mesh.triangle(edge.edge.triangle).scaled_normal(edge.edge.local);
-            positive.map(|p| normal * -(p / edge.gamma))
-        } else {
-            let along = |a: usize, p: f64| edge.directions[a] * -(edge.length * p / edge.gamma);
+        // On a part of the edge, `share` of its length, with P and the directions at its nodes.
+        let straight = edge.directions.iter().all(|d| *d == edge.normal);
+        let normal = mesh.triangle(edge.edge.triangle).scaled_normal(edge.edge.local);
+        let moments = |p: [f64; M], directions: [Vector2<f64>; M], share: f64| {
+            if straight {
+                return with_hats(p).map(|p| normal * -(share * p / edge.gamma));
+            }
+            let nodal = nodal(p);
+            let along = |a: usize, p: f64| directions[a] * -(share * edge.length * p / edge.gamma);
             [0, 1].map(|a| {
                 let own = along(a, nodal[a]);
-                middle.map_or(own, |m| own + along(2, m / 2.0))
+                nodal.get(2).map_or(own, |m| own + along(2, m / 2.0))
             })
         };
         let sigma_n = edge.sigma_n(u);
@@ -234,16 +244,26 @@ impl Contact {
             // The distance to a plane.
             _ => 0.0,
         };
-        let pressure = if turns {
-            // The mean: then tau n is affine.
-            Profile::whole([-((positive[0] + positive[1]) / edge.gamma); 2])
-        } else if E::DEGREE == 1 {
-            Profile::of_affine([p[0], p[1]], edge.gamma)
-        } else {
-            let mut ends = edge_integral::roots::<E, N, M>(p);
-            let end = ends.next().filter(|_| ends.next().is_none());
-            Profile::of_moments(positive.map(|p| -(p / edge.gamma)), p[0] > 0.0, end)
+        let profile = |p: [f64; M]| {
+            let positive = with_hats(p);
+            if turns {
+                // The mean: then tau n is affine.
+                Profile::whole([-((positive[0] + positive[1]) / edge.gamma); 2])
+            } else if E::DEGREE == 1 {
+                Profile::of_affine([p[0], p[1]], edge.gamma)
+            } else {
+                let mut ends = edge_integral::roots::<E, N, M>(p);
+                let end = ends.next().filter(|_| ends.next().is_none());
+                Profile::of_moments(positive.map(|p| -(p / edge.gamma)), p[0] > 0.0, end)
+            }
         };
+        let on_halves = [0.0, 0.5].map(|start| {
+            let shapes = E::edge_positions().map(|s: f64| E::edge_values(start + s / 2.0));
+            let here = shapes.map(|n| n.iter().zip(p).map(|(n, p)| n * p).sum());
+            let directions =
+                shapes.map(|n| n.iter().zip(&edge.directions).map(|(n, d)| d * *n).sum());
+            (profile(here), moments(here, directions, 0.5))
+        });
         Contact {
             edge: edge.edge,
             boundary: Arc::clone(&edge.boundary),
@@ -252,10 +272,16 @@ impl Contact {
             directions,
             gap,
             gap_bulge,
-            moments,
+            moments: moments(p, edge.directions, 1.0),
             excess,
-            pressure,
+            pressure: profile(p),
+            on_halves,
         }
+    }
+
+    /// The directions, if they are not the normal.
+    fn along(&self) -> Option<[[f64; 2]; 2]> {
+        (self.directions != [self.normal; 2]).then(|| self.directions.map(<[f64; 2]>::from))
     }
 
     /// Whether the direction of contact turns along it.
@@ -512,6 +538,8 @@ pub(super) struct Built {
     pub origins: Vec<usize>,
     /// What the data of the problem leave out.
     pub oscillation: Oscillation,
+    /// Its triangles are quarters of those of the mesh.
+    quartered: bool,
     divisions: Vec<Division>,
 }
 
@@ -542,8 +570,38 @@ impl Built {
             }
             bulges
         });
-        divided(Shape { points, bulges }, &self.divisions)
+        let shape = Shape { points, bulges };
+        let shape = if self.quartered { halved(shape, mesh, &mesh_edges(mesh)) } else { shape };
+        divided(shape, &self.divisions)
     }
+}
+
+/// The ends of the mesh's edges, each as the first triangle that has it sees it.
+fn mesh_edges(mesh: &Mesh) -> Vec<[usize; 2]> {
+    let mut ends = vec![None; mesh.edge_count()];
+    for (corners, edges) in mesh.triangles().iter().zip(mesh.triangle_edges()) {
+        for local in 0..3 {
+            ends[edges[local]].get_or_insert([corners[(local + 1) % 3], corners[(local + 2) % 3]]);
+        }
+    }
+    ends.into_iter().map(Option::unwrap_or_default).collect()
+}
+
+/// The same displacement with values in the middles of the mesh's edges, and bulges on their halves and on the edges between
+/// middles: each is parallel to an edge and half as long, and the second difference of a quadratic along it is a quarter.
+fn halved<S: Enclosing>(mut shape: Shape<S>, mesh: &Mesh, ends: &[[usize; 2]]) -> Shape<S> {
+    let vertices = shape.points.len();
+    for (e, [a, b]) in ends.iter().enumerate() {
+        let mean = (shape.points[*a] + shape.points[*b]) / S::from(2);
+        shape.points.push(shape.bulges.as_ref().map_or(mean, |bulges| mean + bulges[e]));
+    }
+    debug_assert_eq!(shape.points.len(), vertices + ends.len());
+    shape.bulges = shape.bulges.map(|bulges| {
+        let quarters = bulges.iter().map(|&bulge| bulge / S::from(4));
+        let inside = mesh.triangle_edges().iter().flatten().map(|&e| bulges[e] / S::from(4));
+        quarters.clone().chain(quarters).chain(inside).collect()
+    });
+    shape
 }
 
 /// The same displacement with values at the cuts, and bulges on their edges: on a part of length s of an edge, s^2 times the bulge
@@ -577,6 +635,8 @@ pub(super) fn build(parts: &Parts, u: &Field, v: &Field) -> Built {
         whole.iter().enumerate().map(|(t, triangle)| data.body_on(t, triangle)).collect();
     let moments = moments(parts, &bodies, &whole, &stress);
     let quadratic = v.bulges.is_some();
+    // A stress that is constant on the triangles says nothing of their quarters.
+    let quartered = quadratic && u.bulges.is_some();
     let mut built = Built {
         certificate: Certificate {
             vertices: mesh.vertices().to_vec(),
@@ -589,34 +649,83 @@ pub(super) fn build(parts: &Parts, u: &Field, v: &Field) -> Built {
         },
         origins: Vec::with_capacity(whole.len()),
         oscillation: Oscillation::new(parts, quadratic),
+        quartered,
         divisions: Vec::new(),
     };
-    // The edges of the mesh, each as the first triangle that has it sees it.
-    let mut ends = vec![None; mesh.edge_count()];
-    for (corners, edges) in mesh.triangles().iter().zip(mesh.triangle_edges()) {
-        for local in 0..3 {
-            ends[edges[local]].get_or_insert([corners[(local + 1) % 3], corners[(local + 2) % 3]]);
+    let ends = mesh_edges(mesh);
+    if quartered {
+        add_halves(parts, &ends, &moments, &mut built);
+    } else {
+        add_edges(parts, &ends, &moments, &mut built);
+    }
+    let cut_up = |t: usize| {
+        let unit = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let (vertices, edges) = (mesh.triangles()[t], mesh.triangle_edges()[t]);
+        vec![(Part { vertices, edges, places: unit }, bodies[t])]
+    };
+    let all: Vec<Vec<(Part, [Vector2<f64>; 3])>> = if quartered {
+        (0..whole.len()).map(|t| quarters(parts, &data, t, &stress[t], &mut built)).collect()
+    } else {
+        (0..whole.len()).map(cut_up).collect()
+    };
+    for (t, found) in all.into_iter().enumerate() {
+        for (part, body) in found {
+            add_part(parts, &data, (t, &stress[t]), (part, body), &mut built);
+        }
+        built.origins.resize(built.certificate.pieces.len(), t);
+    }
+    let Built { certificate, origins, oscillation, divisions, .. } = &mut built;
+    if let (Some(curved), Some(bulges)) = (&mut certificate.curved, &v.bulges) {
+        let vectors = |values: &[[f64; 2]]| values.iter().copied().map(Vector2::from).collect();
+        let shape = Shape { points: vectors(&v.vertices), bulges: Some(vectors(bulges)) };
+        let shape = if quartered { halved(shape, mesh, &ends) } else { shape };
+        let shape = divided::<f64>(shape, divisions);
+        curved.at_cuts = shape.points[v.vertices.len()..].iter().map(|&v| v.into()).collect();
+        curved.bulges = shape.bulges.iter().flatten().map(|&v| v.into()).collect();
+        // v is what is prescribed, in the middles too.
+        curved.prescribed = vec![[None; 2]; curved.at_cuts.len()];
+        for edge in &certificate.edges {
+            let Role::Held(held, _) = edge.role else { continue };
+            for cut in edge.ends.iter().filter_map(|end| end.checked_sub(v.vertices.len())) {
+                (0..2)
+                    .filter(|&c| held[c])
+                    .for_each(|c| curved.prescribed[cut][c] = Some(curved.at_cuts[cut][c]));
+            }
         }
     }
-    for (e, (ends, m)) in ends.into_iter().zip(&moments).enumerate() {
-        let force = [0, 1].map(|k| [0, 1].map(|c| 4.0 * m[k][c] - 2.0 * m[1 - k][c]));
-        let ends = ends.unwrap_or_default();
-        let places = || ends.map(|vertex| mesh.vertices()[vertex]);
+    oscillation.measure(parts, &data, certificate, (origins, quartered));
+    built
+}
+
+/// The affine force, per unit of an edge's parameter, that has the moments `m` with the hat functions of the ends.
+fn force_of(m: &[Vector2<f64>; 2]) -> [[f64; 2]; 2] {
+    [0, 1].map(|k| [0, 1].map(|c| 4.0 * m[k][c] - 2.0 * m[1 - k][c]))
+}
+
+/// The force on the held components.
+fn held_only(held: [bool; 2], force: [[f64; 2]; 2]) -> Role {
+    Role::Held(held, force.map(|f| [0, 1].map(|c| if held[c] { f[c] } else { 0.0 })))
+}
+
+/// The edges of the mesh.
+fn add_edges(parts: &Parts, all: &[[usize; 2]], moments: &[[Vector2<f64>; 2]], built: &mut Built) {
+    for (e, (&ends, m)) in all.iter().zip(moments).enumerate() {
+        let force = force_of(m);
+        let places = ends.map(|vertex| parts.mesh.vertices()[vertex]);
         let mut bulge = [0.0; 2];
         let role = match parts.boundary.get(&e) {
             None => Role::Inner(force),
             Some(Boundary::Held(held, _)) => {
-                bulge = parts.prescribed_bulge(e, places());
-                Role::Held(*held, force.map(|f| [0, 1].map(|c| if held[c] { f[c] } else { 0.0 })))
+                bulge = parts.prescribed_bulge(e, places);
+                held_only(*held, force)
             }
             Some(Boundary::Free) => Role::Loaded([[0.0; 2]; 2]),
-            Some(Boundary::Loaded(traction)) => traction.affine(places(), force),
+            Some(Boundary::Loaded(traction)) => traction.affine(places, force),
             Some(Boundary::Contact(k)) => {
                 let edge = &parts.contact[*k];
-                bulge = [edge.gap_bulge, 0.0];
-                let along = (edge.directions != [edge.normal; 2])
-                    .then(|| edge.directions.map(<[f64; 2]>::from));
-                Role::Contact { pressure: edge.pressure.values[0], gap: edge.gap, along }
+                bulge[0] = edge.gap_bulge;
+                let (pressure, along) = (edge.pressure.values[0], edge.along());
+                Role::Contact { pressure, gap: edge.gap, along }
             }
         };
         built.certificate.edges.push(Edge { ends, role });
@@ -624,20 +733,151 @@ pub(super) fn build(parts: &Parts, u: &Field, v: &Field) -> Built {
             curved.data.push(bulge);
         }
     }
-    for t in 0..whole.len() {
-        add_triangle(parts, &data, (t, bodies[t]), &stress[t], &mut built);
-        built.origins.resize(built.certificate.pieces.len(), t);
+}
+
+/// The halves of the edges of the mesh, first all first ones, then all second ones; the middles of the edges are the first cuts.
+fn add_halves(parts: &Parts, all: &[[usize; 2]], moments: &[[Vector2<f64>; 2]], built: &mut Built) {
+    let certificate = &mut built.certificate;
+    certificate.cuts = all.iter().map(|&ends| Cut { ends, at: 0.5 }).collect();
+    let vertices = certificate.vertices.len();
+    let mut data = Vec::with_capacity(2 * all.len());
+    for half in 0..2 {
+        for (e, (&[a, b], m)) in all.iter().zip(moments).enumerate() {
+            let ends = if half == 0 { [a, vertices + e] } else { [vertices + e, b] };
+            let places = || ends.map(|p| place(certificate, p));
+            // Per unit of the half's parameter it is half of that per unit of the edge's.
+            let whole = force_of(m).map(|f| Vector2::from(f) / 2.0);
+            let middle = (whole[0] + whole[1]) / 2.0;
+            let force = if half == 0 { [whole[0], middle] } else { [middle, whole[1]] };
+            let force = force.map(<[f64; 2]>::from);
+            let mut bulge = [0.0; 2];
+            let role = match parts.boundary.get(&e) {
+                None => Role::Inner(force),
+                Some(Boundary::Held(held, _)) => {
+                    let ends = [a, b].map(|vertex| parts.mesh.vertices()[vertex]);
+                    bulge = parts.prescribed_bulge(e, ends).map(|bulge| bulge / 4.0);
+                    held_only(*held, force)
+                }
+                Some(Boundary::Free) => Role::Loaded([[0.0; 2]; 2]),
+                Some(Boundary::Loaded(traction)) => {
+                    let [start, end] = places();
+                    let ends = [start, end].map(<[f64; 2]>::from);
+                    let normal = Vector2::new(end.y - start.y, start.x - end.x);
+                    traction.affine(ends, force_of(&traction.moments(ends, normal)))
+                }
+                Some(Boundary::Contact(k)) => {
+                    let edge = &parts.contact[*k];
+                    bulge[0] = edge.gap_bulge / 4.0;
+                    let [g, h] = edge.gap;
+                    let middle = (g + h) / 2.0 + edge.gap_bulge;
+                    let gap = if half == 0 { [g, middle] } else { [middle, h] };
+                    let along = edge.along().map(|[d, e]| {
+                        let middle = [0, 1].map(|c| (d[c] + e[c]) / 2.0);
+                        if half == 0 { [d, middle] } else { [middle, e] }
+                    });
+                    Role::Contact { pressure: edge.on_halves[half].0.values[0], gap, along }
+                }
+            };
+            certificate.edges.push(Edge { ends, role });
+            data.push(bulge);
+        }
     }
-    let Built { certificate, origins, oscillation, divisions } = &mut built;
-    if let (Some(curved), Some(bulges)) = (&mut certificate.curved, &v.bulges) {
-        let vectors = |values: &[[f64; 2]]| values.iter().copied().map(Vector2::from).collect();
-        let shape = Shape { points: vectors(&v.vertices), bulges: Some(vectors(bulges)) };
-        let shape = divided::<f64>(shape, divisions);
-        curved.at_cuts = shape.points[v.vertices.len()..].iter().map(|&v| v.into()).collect();
-        curved.bulges = shape.bulges.iter().flatten().map(|&v| v.into()).collect();
+    if let Some(curved) = &mut certificate.curved {
+        curved.data = data;
     }
-    oscillation.measure(parts, &data, certificate, origins);
-    built
+}
+
+/// The four triangles of triangle `t` between its corners and the middles of its edges, each with its body force. On an edge
+/// between middles tau N is that of sigma(u) and what balances the corner that it cuts off; the triangle in the middle is in
+/// equilibrium with the whole.
+fn quarters(
+    parts: &Parts,
+    data: &oscillation::Data,
+    t: usize,
+    stress: &Affine<f64>,
+    built: &mut Built,
+) -> Vec<(Part, [Vector2<f64>; 3])> {
+    let (corners, edges) = (parts.mesh.triangles()[t], parts.mesh.triangle_edges()[t]);
+    let (vertices, count) = (parts.mesh.vertices().len(), parts.mesh.edge_count());
+    let certificate = &mut built.certificate;
+    let middles = edges.map(|e| vertices + e);
+    let inside = [0, 1, 2].map(|i| certificate.edges.len() + i);
+    let at_middle = |i: usize| [0, 1, 2].map(|l| if l == i { 0.0 } else { 0.5 });
+    let mut found = Vec::with_capacity(4);
+    for i in 0..3 {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        // As t is numbered: its corner i, and the middles of the edges there.
+        let (mut part, mut own, mut places) = (middles, inside, [0, 1, 2].map(at_middle));
+        (part[i], part[j], part[k]) = (corners[i], middles[k], middles[j]);
+        places[i] = [0, 1, 2].map(|l| if l == i { 1.0 } else { 0.0 });
+        (places[j], places[k]) = (at_middle(k), at_middle(j));
+        for l in [j, k] {
+            let first = certificate.edges[edges[l]].ends.contains(&corners[i]);
+            own[l] = if first { edges[l] } else { count + edges[l] };
+        }
+        let triangle = Triangle { vertices: part.map(|p| place(certificate, p)) };
+        let mut forces = [[Vector2::zeros(); 2]; 3];
+        for l in [j, k] {
+            let ends = [part[(l + 1) % 3], part[(l + 2) % 3]];
+            forces[l] = outward(parts, certificate, own[l], ends, triangle.scaled_normal(l));
+        }
+        forces[i] =
+            [places[j], places[k]].map(|l| stress.at(l).traction(triangle.scaled_normal(i)));
+        let body = data.body_on(t, &triangle);
+        let off = Loads { forces, body }.resultant(&triangle);
+        let balance = off.on_edge(triangle.vertices[j], triangle.vertices[k]);
+        let force = [0, 1].map(|end| (forces[i][end] - balance[end]).into());
+        certificate.edges.push(Edge { ends: [part[j], part[k]], role: Role::Inner(force) });
+        if let Some(curved) = &mut certificate.curved {
+            curved.data.push([0.0; 2]);
+        }
+        found.push((Part { vertices: part, edges: own, places }, body));
+    }
+    let triangle = Triangle { vertices: middles.map(|p| place(certificate, p)) };
+    let places = [0, 1, 2].map(at_middle);
+    found.push((Part { vertices: middles, edges: inside, places }, data.body_on(t, &triangle)));
+    found
+}
+
+/// The force on half `e` of an edge towards the outside of a triangle that goes along it between these ends.
+fn outward(
+    parts: &Parts,
+    certificate: &Certificate,
+    e: usize,
+    ends: [usize; 2],
+    normal: Vector2<f64>,
+) -> [Vector2<f64>; 2] {
+    let (edge, count) = (&certificate.edges[e], parts.mesh.edge_count());
+    match edge.role {
+        Role::Inner(force) | Role::Held(_, force) => {
+            let [a, b] = force.map(Vector2::from);
+            if edge.ends == ends { [a, b] } else { [-b, -a] }
+        }
+        Role::Loaded(traction) => traction.map(|t| Vector2::from(t) * length(normal)),
+        Role::Pressed(p) => p.map(|p| normal * -p),
+        Role::Contact { .. } => match parts.boundary.get(&(e % count)) {
+            Some(&Boundary::Contact(k)) => {
+                force_of(&parts.contact[k].on_halves[e / count].1).map(Vector2::from)
+            }
+            _ => [Vector2::zeros(); 2],
+        },
+    }
+}
+
+/// The pressure on edge `e` and the bulge of the gap, where it is one of Gamma_C or the half of one.
+fn on_contact(parts: &Parts, quartered: bool, e: usize) -> Option<(Profile, f64)> {
+    let count = parts.mesh.edge_count();
+    let half = e / count;
+    if half > usize::from(quartered) {
+        return None;
+    }
+    let Some(&Boundary::Contact(k)) = parts.boundary.get(&(e % count)) else { return None };
+    let edge = &parts.contact[k];
+    Some(if quartered {
+        (edge.on_halves[half].0, edge.gap_bulge / 4.0)
+    } else {
+        (edge.pressure, edge.gap_bulge)
+    })
 }
 
 /// Contact that ends this near an end of its edge, in units of the edge, leaves it whole: the triangles would be slivers.
@@ -655,23 +895,22 @@ struct Part {
     places: [[f64; 3]; 3],
 }
 
-/// Triangle `t`, cut where contact ends on one of its edges.
-fn add_triangle(
+/// A part of triangle `t`, cut where contact ends on one of its edges.
+fn add_part(
     parts: &Parts,
     data: &oscillation::Data,
-    (t, whole): (usize, [Vector2<f64>; 3]),
-    stress: &Affine<f64>,
+    (t, stress): (usize, &Affine<f64>),
+    (part, body): (Part, [Vector2<f64>; 3]),
     built: &mut Built,
 ) {
-    let (corners, edges) = (parts.mesh.triangles()[t], parts.mesh.triangle_edges()[t]);
-    let unit = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    let mut found = vec![Part { vertices: corners, edges, places: unit }];
+    let (corners, edges) = (part.vertices, part.edges);
+    let mut found = vec![part];
     for e in edges {
-        let Some(&Boundary::Contact(k)) = parts.boundary.get(&e) else { continue };
-        let Profile { cut: Some(at), values } = parts.contact[k].pressure else { continue };
+        let Some((profile, gap_bulge)) = on_contact(parts, built.quartered, e) else { continue };
+        let Profile { cut: Some(at), values } = profile else { continue };
         let Some(owner) = found.iter().position(|part| part.edges.contains(&e)) else { continue };
         let part = found.remove(owner);
-        found.extend(cut(part, (e, at, values), parts.contact[k].gap_bulge, stress, built));
+        found.extend(cut(part, (e, at, values), gap_bulge, stress, built));
     }
     let material = [parts.material(t).lambda(), parts.material(t).mu()];
     for Part { vertices, edges, .. } in found {
@@ -680,7 +919,7 @@ fn add_triangle(
             let triangle = Triangle { vertices: vertices.map(|p| place(certificate, p)) };
             data.body_on(t, &triangle)
         };
-        let body = if vertices == corners { whole } else { own() }.map(Into::into);
+        let body = if vertices == corners { body } else { own() }.map(Into::into);
         certificate.pieces.push(Piece { vertices, edges, material, body, oscillation: 0.0 });
     }
 }
@@ -698,10 +937,10 @@ fn cut(
     let [a, b, c] = [0, 1, 2].map(|k| part.vertices[(local + k) % 3]);
     let [at_a, at_b, at_c] = [0, 1, 2].map(|k| part.places[(local + k) % 3]);
     let [next, last] = [1, 2].map(|k| part.edges[(local + k) % 3]);
-    let whole = certificate.edges[base];
-    let Role::Contact { gap, along, .. } = whole.role else { return vec![part] };
+    let Role::Contact { gap, along, .. } = certificate.edges[base].role else { return vec![part] };
     let middle = certificate.vertices.len() + certificate.cuts.len();
-    certificate.cuts.push(Cut { ends: [b, c], at });
+    let (whole, at) = on_whole(certificate, [b, c], at);
+    certificate.cuts.push(whole);
     let gap_bulge = if certificate.curved.is_some() { gap_bulge } else { 0.0 };
     let inside = gap[0] + at * (gap[1] - gap[0]) + 4.0 * at * (1.0 - at) * gap_bulge;
     let [first, second] = pressures;
@@ -738,6 +977,21 @@ fn cut(
             places: [at_a, at_middle, at_c],
         },
     ]
+}
+
+/// A place on an edge between two vertices, or on a half of one, as a place on the whole; and the place that this is on the
+/// half, exactly.
+fn on_whole(certificate: &Certificate, ends: [usize; 2], at: f64) -> (Cut, f64) {
+    let half =
+        |p: usize| p.checked_sub(certificate.vertices.len()).map(|cut| certificate.cuts[cut]);
+    match ends.map(half) {
+        [None, Some(Cut { ends, .. })] => (Cut { ends, at: at / 2.0 }, at),
+        [Some(Cut { ends, .. }), _] => {
+            let on_whole = 0.5 + at / 2.0;
+            (Cut { ends, at: on_whole }, 2.0 * on_whole - 1.0)
+        }
+        [None, None] => (Cut { ends, at }, at),
+    }
 }
 
 /// Where point `p` of a certificate lies.

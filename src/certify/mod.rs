@@ -25,16 +25,16 @@ use nalgebra::Vector2;
 
 use self::build::{Built, Field, Parts};
 pub use self::proof::{Certificate, Proof, Rejection};
-use self::proof::{Role, Shape};
-use crate::fem::{DataError, Problem};
-use crate::kernel::{Ball, Interval, P1, P2, Triangle};
+use self::proof::{Piece, Role, Shape};
+use crate::fem::{DataError, Mesh, Problem};
+use crate::kernel::{Ball, Interval, P1, P2, Scalar, Triangle};
 use crate::memory::{self, OutOfMemory};
 use crate::solve::Solution;
 
 /// How often the stress is improved around every vertex.
 pub const SWEEPS: usize = 2;
 
-/// The bytes that a certificate takes for each triangle while it is made: the second derivatives of the sweeps, 1,250, and
+/// The bytes that a certificate takes for each triangle while it is made: the second derivatives of the sweeps, 700, and
 /// the forces, wrenches and tractions in doubles and in intervals.
 const PER_TRIANGLE: u64 = 3000;
 
@@ -107,7 +107,10 @@ fn certify_near(
     start: &[[f64; 2]],
     field: &[[f64; 2]],
 ) -> Result<Continuous, CertifyError> {
-    memory::check(PER_TRIANGLE * problem.mesh.triangles().len() as u64)?;
+    // Beside a quadratic v each is cut in four.
+    let quadratic = solution.degree == 2 && start.len() > problem.mesh.vertices().len();
+    let quarters = if quadratic { 4 } else { 1 };
+    memory::check(quarters * PER_TRIANGLE * problem.mesh.triangles().len() as u64)?;
     let parts = match solution.degree {
         1 => Parts::new::<P1, 3, 2>(problem, solution)?,
         _ => Parts::new::<P2, 6, 3>(problem, solution)?,
@@ -137,19 +140,23 @@ fn certify_near(
     // Doubling is exact.
     let compliance =
         energy.filter(|_| is_loaded_only(certificate)).map(|[low, high]| [-2.0 * high, -2.0 * low]);
-    let distances = squared_distances(problem, &built, field);
-    let clipping = distances.iter().fold(Interval::from(0), |sum, &d| sum + Interval::point(d));
-    let clipping = clipping.sqrt().hi();
+    let distances = distances(&problem.mesh, &built, field);
+    let square = |&d: &f64| Ball::point(d) * Ball::point(d);
+    let clipping = distances.iter().map(square).fold(Ball::from(0), |sum, d| sum + d);
+    let clipping = clipping.sqrt().upper();
     let of_field = if clipping == 0.0 {
         bound
     } else {
-        let as_it_is = certificate.sum_at(state, built.shape(mesh, field))?.bound;
+        let shape = built.shape(mesh, field);
+        let as_it_is = certificate.bound_at(state, &proof, (shape, &distances));
         let beside = (clipping + oscillation.lift).next_up();
         together(as_it_is, beside).min((bound + clipping).next_up())
     };
     let mut shares = vec![0.0; problem.mesh.triangles().len()];
     built.origins.iter().zip(&proof.shares).for_each(|(&t, share)| shares[t] += share);
     shares.iter_mut().zip(&oscillation.lifts).for_each(|(share, z)| *share += z * z);
+    let mut apart = vec![0.0; shares.len()];
+    built.origins.iter().zip(&distances).for_each(|(&t, d)| apart[t] += d * d);
     let estimate = build::averaging_estimate(&parts, &v);
     let both = |(share, distance): (f64, &f64)| share.max(0.0).sqrt() + distance.sqrt();
     let Built { certificate, oscillation, .. } = built;
@@ -160,7 +167,7 @@ fn certify_near(
         rigorous: oscillation.reason.is_none(),
         reason: oscillation.reason,
         effectivity_hint: (estimate > 0.0).then(|| bound / estimate),
-        indicators: shares.into_iter().zip(&distances).map(both).collect(),
+        indicators: shares.into_iter().zip(&apart).map(both).collect(),
         energy,
         compliance,
         certificate,
@@ -176,22 +183,23 @@ fn certify_near(
 fn is_loaded_only(certificate: &Certificate) -> bool {
     let is_zero = |gap: [f64; 2]| gap == [0.0; 2];
     let data = certificate.curved.iter().flat_map(|curved| &curved.data);
+    let at_cuts = certificate.curved.iter().flat_map(|curved| &curved.prescribed);
+    let prescribed = certificate.prescribed.iter().chain(at_cuts);
     data.into_iter().all(|&bulge| is_zero(bulge))
-        && certificate.prescribed.iter().flatten().flatten().all(|&u| u == 0.0)
+        && prescribed.flatten().flatten().all(|&u| u == 0.0)
         && certificate.edges.iter().all(|edge| match edge.role {
             Role::Contact { gap, .. } => is_zero(gap),
             _ => true,
         })
 }
 
-/// Upper bounds of |v - w|_a^2 on the triangles, for the v of a certificate and a field w.
-fn squared_distances(problem: &Problem, built: &Built, w: &[[f64; 2]]) -> Vec<f64> {
-    let mesh = &problem.mesh;
+/// Upper bounds of |v - w|_a on the triangles of a certificate, for its v and a field w.
+fn distances(mesh: &Mesh, built: &Built, w: &[[f64; 2]]) -> Vec<f64> {
     let certificate = &built.certificate;
     let ends = w.split_at(mesh.vertices().len()).0;
     let affine = certificate.curved.is_none() && ends.len() == w.len();
-    let (v, w) = (certificate.shape::<Interval>(), built.shape::<Interval>(mesh, w));
-    let minus = |a: &[Vector2<Interval>], b: &[Vector2<Interval>]| {
+    let (v, w) = (certificate.shape::<Ball>(), built.shape::<Ball>(mesh, w));
+    let minus = |a: &[Vector2<Ball>], b: &[Vector2<Ball>]| {
         a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>()
     };
     let bulges = match (v.bulges, w.bulges) {
@@ -199,18 +207,18 @@ fn squared_distances(problem: &Problem, built: &Built, w: &[[f64; 2]]) -> Vec<f6
         (v, w) => v.or(w),
     };
     let difference = Shape { points: minus(&v.points, &w.points), bulges };
-    let places = certificate.places::<Interval>();
-    let mut squares = vec![Interval::from(0); mesh.triangles().len()];
-    for (piece, &t) in certificate.pieces.iter().zip(&built.origins) {
+    let places = certificate.places::<Ball>();
+    let distance = |(piece, &t): (&Piece, &usize)| {
         let same = |&k: &usize| certificate.displacement[k] == ends[k];
         if affine && mesh.triangles()[t].iter().all(same) {
-            continue;
+            return 0.0;
         }
         let triangle = Triangle { vertices: piece.vertices.map(|p| places[p]) };
         let stress = difference.stress(piece, &triangle);
-        squares[t] += stress.energy(&piece.material(), triangle.double_area());
-    }
-    squares.into_iter().map(|square| square.hi().max(0.0)).collect()
+        let square = stress.energy(&piece.material(), triangle.double_area());
+        square.split(|_| Ball::from(0), |square| square).sqrt().upper()
+    };
+    certificate.pieces.iter().zip(&built.origins).map(distance).collect()
 }
 
 /// Why there is no certificate.

@@ -228,13 +228,13 @@ impl Oscillation {
         Oscillation { reason, lifts: Vec::new(), lift: 0.0 }
     }
 
-    /// Puts the oscillation of the data into the pieces of a certificate; `origins` are their triangles in the mesh.
+    /// Puts the oscillation of the data into the pieces of a certificate; `origins` are their triangles in the mesh, of which they may be quarters.
     pub fn measure(
         &mut self,
         parts: &Parts,
         data: &Data,
         certificate: &mut Certificate,
-        origins: &[usize],
+        (origins, quartered): (&[usize], bool),
     ) {
         if self.reason.is_none() {
             return;
@@ -245,7 +245,7 @@ impl Oscillation {
             .pieces
             .iter()
             .zip(origins)
-            .map(|(piece, &t)| loads(parts, data, certificate, piece, t))
+            .map(|(piece, &t)| loads(parts, data, certificate, (piece, quartered), t))
             .collect();
         for (piece, oscillation) in certificate.pieces.iter_mut().zip(pieces) {
             piece.oscillation = oscillation;
@@ -271,7 +271,13 @@ fn least_stiffness(material: &Material<f64>) -> f64 {
 }
 
 /// What f and t cost on one piece of triangle `t`.
-fn loads(parts: &Parts, data: &Data, certificate: &Certificate, piece: &Piece, t: usize) -> f64 {
+fn loads(
+    parts: &Parts,
+    data: &Data,
+    certificate: &Certificate,
+    (piece, quartered): (&Piece, bool),
+    t: usize,
+) -> f64 {
     let triangle = Triangle { vertices: piece.vertices.map(|p| place(certificate, p)) };
     let (k, h) = korn(&triangle);
     let poincare = k * h / std::f64::consts::PI;
@@ -297,7 +303,10 @@ fn loads(parts: &Parts, data: &Data, certificate: &Certificate, piece: &Piece, t
     let mut sum = poincare * square.sqrt();
     for (local, e) in piece.edges.into_iter().enumerate() {
         let edge = certificate.edges[e];
-        let Some(Boundary::Loaded(traction)) = parts.boundary.get(&e) else { continue };
+        // Both halves of an edge of the mesh are numbered from 0 and from its count of edges on.
+        let count = parts.mesh.edge_count();
+        let whole = if quartered && e < 2 * count { e % count } else { e };
+        let Some(Boundary::Loaded(traction)) = parts.boundary.get(&whole) else { continue };
         if traction.is_affine() {
             continue;
         }

@@ -51,6 +51,8 @@ pub struct Certificate {
 pub struct Curved {
     /// v at the cuts.
     pub at_cuts: Vec<[f64; 2]>,
+    /// u_D at the cuts on Gamma_D.
+    pub prescribed: Vec<[Option<f64>; 2]>,
     /// The bulge of v on each edge.
     pub bulges: Vec<[f64; 2]>,
     /// The bulges of the data on each edge: of u_D on Gamma_D in the components that are held, of g on Gamma_C as the first of two;
@@ -139,6 +141,9 @@ pub struct Claim {
 /// rounded.
 const IMBALANCE: f64 = 128.0 * f64::EPSILON;
 
+/// Fields whose distance on a triangle is below this part of the bound, shared out equally, differ by rounding.
+const NEGLIGIBLE: f64 = 1e-9;
+
 /// Why a certificate proves nothing.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
@@ -154,8 +159,8 @@ pub enum Rejection {
         "edge {edge}: v_n - g can't be shown to be <= 0 (a Bernstein coefficient is up to {value}, per unit of length where contact is along the normal)"
     )]
     Penetration { edge: usize, value: f64 },
-    #[error("vertex {vertex}: v_{} = {found}; expected the prescribed {expected}", ["x", "y"][*component])]
-    NotPrescribed { vertex: usize, component: usize, found: f64, expected: f64 },
+    #[error("point {point}: v_{} = {found}; expected the prescribed {expected}", ["x", "y"][*component])]
+    NotPrescribed { point: usize, component: usize, found: f64, expected: f64 },
     #[error(
         "edge {edge}: in the middle v_{} is {found} beyond the mean of the ends; expected the prescribed {expected}",
         ["x", "y"][*component]
@@ -217,8 +222,11 @@ impl Certificate {
             let body: f64 = piece.body.iter().flatten().map(|f| f.abs()).sum();
             let allowed = IMBALANCE * (forces + area * body);
             let resultant = loads.resultant(triangle);
-            let force = resultant.force.map(size).iter().copied().fold(0.0, f64::max);
-            if !(force <= allowed && size(resultant.moment) <= allowed * reach) {
+            // Places of cuts are not doubles: what their balls leave open may be balance.
+            let near = |x: &Ball, most: f64| x.lower() <= most && x.upper() >= -most;
+            if !(resultant.force.iter().all(|f| near(f, allowed))
+                && near(&resultant.moment, allowed * reach))
+            {
                 return Err(Rejection::OutOfBalance { triangle: t });
             }
         }
@@ -311,18 +319,49 @@ impl Certificate {
         Ok(state)
     }
 
-    /// The right side of the theorem with the strain of another displacement; what contact adds stays that of v.
-    pub(super) fn sum_at<S: Enclosing>(
+    /// The root of the right side of the theorem with the strain of another displacement w; what contact adds stays that of v.
+    /// `distances` are upper bounds of |v - w|_a on the triangles. Where that is the rounding of their data, the root of the
+    /// share grows by it at most, by the triangle inequality, since what contact adds is not negative.
+    pub(super) fn bound_at<S: Enclosing>(
         &self,
         state: Balanced<S>,
-        field: Shape<S>,
-    ) -> Result<Proof, Rejection> {
-        self.sum(&Balanced { v: field, ..state })
+        proof: &Proof,
+        (field, distances): (Shape<S>, &[f64]),
+    ) -> f64 {
+        let state = Balanced { v: field, ..state };
+        let zero = S::from(0);
+        let negligible = NEGLIGIBLE * proof.bound / (self.pieces.len() as f64).sqrt();
+        let mut sum = zero;
+        for (t, (&share, &distance)) in proof.shares.iter().zip(distances).enumerate() {
+            sum += if distance <= negligible {
+                let root = S::exactly(share).split(|_| zero, |s| s).sqrt() + S::exactly(distance);
+                root * root
+            } else {
+                let (_, apart) = state.stresses(self, t);
+                self.share(&state, t, &apart)
+            };
+        }
+        sum.split(|_| zero, |sum| sum).sqrt().upper()
+    }
+
+    /// What triangle `t` has of the right side, C eps(v) being that far from tau.
+    fn share<S: Enclosing>(&self, state: &Balanced<S>, t: usize, apart: &Composite<S>) -> S {
+        let piece = &self.pieces[t];
+        let distance = apart.energy(&piece.material(), state.triangles[t].double_area());
+        let distance = if piece.oscillation == 0.0 {
+            distance
+        } else {
+            // A sum of squares is not negative, whatever an interval around it says.
+            let distance = distance.split(|_| S::from(0), |d| d);
+            let root = distance.sqrt() + S::exactly(piece.oscillation);
+            root * root
+        };
+        distance + state.on_contact[t]
     }
 
     /// The right side of the theorem.
     pub(super) fn sum<S: Enclosing>(&self, state: &Balanced<S>) -> Result<Proof, Rejection> {
-        let Balanced { triangles, v, forces, on_contact, .. } = state;
+        let Balanced { triangles, v, forces, .. } = state;
         let zero = S::from(0);
         let (mut square, mut norm, mut energy) = (zero, zero, zero);
         let mut shares = Vec::with_capacity(self.pieces.len());
@@ -331,15 +370,7 @@ impl Certificate {
             let double_area = triangles[t].double_area();
             let nodal = piece.vertices.map(|vertex| v.points[vertex]);
             let (sigma, distance) = state.stresses(self, t);
-            let distance = distance.energy(&material, double_area);
-            let share = if piece.oscillation == 0.0 {
-                distance
-            } else {
-                // A sum of squares is not negative, whatever an interval around it says.
-                let distance = distance.split(|_| zero, |d| d);
-                let root = distance.sqrt() + S::exactly(piece.oscillation);
-                root * root
-            } + on_contact[t];
+            let share = self.share(state, t, &distance);
             shares.push(share.upper());
             square += share;
             let internal = sigma.energy(&material, double_area);
@@ -403,7 +434,11 @@ impl Certificate {
                 return Err(wrong("vertex", i, "a number is not finite"));
             }
         }
-        if let Some(Curved { at_cuts, bulges, data }) = &self.curved {
+        if let Some(Curved { at_cuts, prescribed, bulges, data }) = &self.curved {
+            if prescribed.len() != self.cuts.len() {
+                let (found, expected) = (prescribed.len(), self.cuts.len());
+                return Err(Rejection::Length { what: "prescribed at cuts", found, expected });
+            }
             for (what, values, expected) in [
                 ("v at cuts", at_cuts, self.cuts.len()),
                 ("bulges", bulges, self.edges.len()),
@@ -463,13 +498,18 @@ impl Certificate {
         Ok(())
     }
 
-    /// Values at the vertices, and at the cuts between them.
+    /// Values at the vertices, and at the cuts between them. Between equal numbers lies the same number: so the normal of an
+    /// edge along an axis is known exactly.
     fn values<S: Enclosing>(&self, at: &[[f64; 2]]) -> Vec<Vector2<S>> {
         let mut all: Vec<Vector2<S>> = at.iter().map(|&x| exactly(x)).collect();
         for cut in &self.cuts {
-            let [a, b] = cut.ends.map(|end| all[end]);
-            let s = S::exactly(cut.at);
-            all.push(a * (S::from(1) - s) + b * s);
+            let ([a, b], s) = (cut.ends.map(|end| at[end]), S::exactly(cut.at));
+            let between = [0, 1].map(|c| {
+                let [a, b] = [a[c], b[c]];
+                let mean = || S::exactly(a) * (S::from(1) - s) + S::exactly(b) * s;
+                if a == b { S::exactly(a) } else { mean() }
+            });
+            all.push(between.into());
         }
         all
     }
@@ -508,18 +548,25 @@ impl Certificate {
     /// v = u_D at both ends of the edges of Gamma_D, nothing is prescribed elsewhere, and there is no force in a direction
     /// that is not held.
     fn check_displacement(&self) -> Result<(), Rejection> {
-        let mut held_at = vec![[false; 2]; self.vertices.len()];
+        let (v_at_cuts, at_cuts) = self
+            .curved
+            .as_ref()
+            .map_or((&[][..], &[][..]), |curved| (&curved.at_cuts[..], &curved.prescribed[..]));
+        let prescribed = || self.prescribed.iter().chain(at_cuts);
+        let known: Vec<([f64; 2], [Option<f64>; 2])> =
+            self.displacement.iter().chain(v_at_cuts).copied().zip(prescribed().copied()).collect();
+        let mut held_at = vec![[false; 2]; known.len()];
         for edge in &self.edges {
             let Role::Held(held, _) = edge.role else { continue };
-            for vertex in edge.ends {
-                if let Some(at) = held_at.get_mut(vertex) {
+            for point in edge.ends {
+                if let Some(at) = held_at.get_mut(point) {
                     *at = [0, 1].map(|c| at[c] || held[c]);
                 }
             }
         }
-        for (vertex, (data, held)) in self.prescribed.iter().zip(held_at).enumerate() {
+        for (point, (data, held)) in prescribed().zip(held_at).enumerate() {
             if (0..2).any(|c| data[c].is_some() && !held[c]) {
-                return Err(wrong("vertex", vertex, "a prescribed value off Gamma_D"));
+                return Err(wrong("point", point, "a prescribed value off Gamma_D"));
             }
         }
         for (e, edge) in self.edges.iter().enumerate() {
@@ -531,16 +578,16 @@ impl Certificate {
                     }
                     continue;
                 }
-                for vertex in edge.ends {
-                    let Some(&data) = self.prescribed.get(vertex) else {
+                for point in edge.ends {
+                    let Some((v, data)) = known.get(point) else {
                         return Err(wrong("edge", e, "an end without a prescribed value"));
                     };
-                    let found = self.displacement[vertex][component];
+                    let found = v[component];
                     match data[component] {
                         Some(expected) if expected == found => {}
                         Some(expected) => {
                             return Err(Rejection::NotPrescribed {
-                                vertex,
+                                point,
                                 component,
                                 found,
                                 expected,
@@ -776,14 +823,32 @@ impl<S: Enclosing> Balanced<S> {
     }
 
     /// C eps(v) and C eps(v) - tau on triangle `t`.
-    pub fn stresses(&self, certificate: &Certificate, t: usize) -> (Affine<S>, Composite<S>) {
+    fn stresses(&self, certificate: &Certificate, t: usize) -> (Affine<S>, Composite<S>) {
         let piece = &certificate.pieces[t];
+        if !piece.is_bent() {
+            return self.without_bending(certificate, t);
+        }
+        let (frame, loads) = self.loads(piece, t);
         let sigma = self.v.stress(piece, &self.triangles[t]);
-        let frame = Frame::new(&self.triangles[t]);
-        let loads = Loads { forces: self.outward[t], body: piece.body.map(exactly) };
-        let tau = Composite::new(&frame, &loads);
-        let tau = if piece.is_bent() { tau.bent(&frame, &loads.body) } else { tau };
+        let tau = Composite::new(&frame, &loads).bent(&frame, &loads.body);
         (sigma, tau.distance_from(&sigma))
+    }
+
+    /// The same without what a load that is not constant bends tau by.
+    pub fn without_bending(
+        &self,
+        certificate: &Certificate,
+        t: usize,
+    ) -> (Affine<S>, Composite<S>) {
+        let piece = &certificate.pieces[t];
+        let (frame, loads) = self.loads(piece, t);
+        let sigma = self.v.stress(piece, &self.triangles[t]);
+        (sigma, Composite::new(&frame, &loads).distance_from(&sigma))
+    }
+
+    fn loads(&self, piece: &Piece, t: usize) -> (Frame<S>, Loads<S>) {
+        let loads = Loads { forces: self.outward[t], body: piece.body.map(exactly) };
+        (Frame::new(&self.triangles[t]), loads)
     }
 }
 

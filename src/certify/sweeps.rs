@@ -9,15 +9,15 @@
 //!
 //! since the integral of grad Phi along the edge, which is that of q . N, is Phi_b - Phi_a; z . E is the edge's own
 //! unknown. One sweep goes to every vertex and solves for its three unknowns and those of its edges together. A triangle has
-//! twelve unknowns, three for each vertex and one for each edge; the energy's second derivative by them is computed once,
-//! and the small systems of the vertices are factorised once. What a body force that is not constant bends tau by is
+//! twelve unknowns, three for each vertex and one for each edge; the energy's second derivative by them is computed once for
+//! each shape of triangle that is met, and the small systems of the vertices are factorised once. What a body force that is not constant bends tau by is
 //! not seen here: it falls with h^2, and where v is quadratic to see it gains nothing.
 
 use nalgebra::Vector2;
 
 use super::proof::{Balanced, Certificate, Rejection, Role, Topology};
-use crate::kernel::Stress;
 use crate::kernel::composite::{Composite, Frame, Loads};
+use crate::kernel::{Stress, Triangle};
 
 /// The unknowns of a triangle: Phi, Phi_x, Phi_y at its vertices, then those of its edges.
 const UNKNOWNS: usize = 12;
@@ -25,15 +25,26 @@ const UNKNOWNS: usize = 12;
 /// Columns of a block of products.
 const BLOCK: usize = 4;
 
-/// |C eps(v) - tau|^2 / 2 on a triangle as a function of its unknowns.
-struct Energy {
-    /// The second derivative, over its largest entry: it is all that the sweeps read again and again, and need not be known
-    /// to more digits than the best step.
+/// The second derivative of |C eps(v) - tau|^2 / 2 on a triangle by its unknowns, over its largest entry: it is what the sweeps
+/// read again and again, and need not be known to more digits than the best step. So triangles of one material whose edges are
+/// the same to single precision share it.
+struct Form {
     hessian: [[f32; UNKNOWNS]; UNKNOWNS],
     /// Its largest entry.
     scale: f64,
-    /// The derivative at the present stress.
-    gradient: [f64; UNKNOWNS],
+}
+
+/// How many forms are looked through: meshes that were refined have few, others as many as triangles.
+const RECENT: usize = 8;
+
+/// What tells forms apart: two edges and the moduli.
+type Shape = ([[f32; 2]; 2], [f64; 2]);
+
+/// A form that was met, by its number, with the stresses of its unknowns.
+struct Met {
+    shape: Shape,
+    form: u32,
+    units: [[f64; UNKNOWNS]; FEATURES],
 }
 
 /// Improves the tractions of `certificate` in `count` sweeps, and leaves them in equilibrium up to rounding. Returns how its
@@ -89,7 +100,11 @@ impl Stars {
 struct Sweeps {
     /// The edges of each triangle.
     edges: Vec<[usize; 3]>,
-    energies: Vec<Energy>,
+    forms: Vec<Form>,
+    /// The form of each triangle, and the derivative at the present stress.
+    energies: Vec<(u32, [f64; UNKNOWNS])>,
+    /// The sign of each edge's own unknown in a triangle: -1 where the edge runs the other way round.
+    signs: Vec<[f64; 3]>,
     stars: Stars,
     /// Whose traction is free.
     free_edge: Vec<bool>,
@@ -122,7 +137,18 @@ impl Sweeps {
             }
         }
         let stars = Stars::new(certificate, points);
+        let (forms, energies) = energies(certificate, state);
+        let sign = |t: usize| {
+            let piece = &certificate.pieces[t];
+            piece.edges.map(|e| match state.topology.owners[e][0] {
+                Some(owner) if owner.piece == t => 1.0,
+                _ => -1.0,
+            })
+        };
         let mut sweeps = Sweeps {
+            forms,
+            energies,
+            signs: (0..certificate.pieces.len()).map(sign).collect(),
             sides: Vec::with_capacity(stars.of.len()),
             stars,
             star_edges: Vec::with_capacity(2 * free_edge.len()),
@@ -130,9 +156,6 @@ impl Sweeps {
             factors: Vec::new(),
             first_factor: Vec::with_capacity(points + 1),
             edges: certificate.pieces.iter().map(|piece| piece.edges).collect(),
-            energies: (0..certificate.pieces.len())
-                .map(|t| energy(certificate, state, t))
-                .collect(),
             free_point,
             at_points: vec![[0.0; 3]; points],
             on_edges: vec![0.0; free_edge.len()],
@@ -198,12 +221,12 @@ impl Sweeps {
         let of = self.stars.first[point]..self.stars.first[point + 1];
         self.stars.of[of.clone()].iter().zip(&self.sides[of]).map(
             move |(&(triangle, local), sides)| {
-                let mut places = Places { count: 0, of: [(0, 0); 5] };
-                (0..own).for_each(|k| places.push(3 * local + k, k));
+                let mut places = Places { count: 0, of: [(0, 0, 0.0); 5] };
+                (0..own).for_each(|k| places.push((3 * local + k, k, 1.0)));
                 for (k, place) in sides.iter().enumerate() {
-                    place
-                        .iter()
-                        .for_each(|&p| places.push(9 + (local + 1 + k) % 3, own + p as usize));
+                    let side = (local + 1 + k) % 3;
+                    let sign = self.signs[triangle][side];
+                    place.iter().for_each(|&p| places.push((9 + side, own + p as usize, sign)));
                 }
                 (triangle, places)
             },
@@ -217,10 +240,10 @@ impl Sweeps {
         matrix.clear();
         matrix.resize(n * n, 0.0);
         for (triangle, places) in self.star(point) {
-            let Energy { hessian, scale, .. } = &self.energies[triangle];
-            for &(a, i) in places.all() {
-                for &(b, j) in places.all() {
-                    matrix[i * n + j] += scale * f64::from(hessian[a][b]);
+            let Form { hessian, scale } = &self.forms[self.energies[triangle].0 as usize];
+            for &(a, i, sign) in places.all() {
+                for &(b, j, other) in places.all() {
+                    matrix[i * n + j] += scale * sign * other * f64::from(hessian[a][b]);
                 }
             }
         }
@@ -241,16 +264,17 @@ impl Sweeps {
         x.clear();
         x.resize(self.unknowns(point), 0.0);
         for (triangle, places) in self.star(point) {
-            let gradient = &self.energies[triangle].gradient;
-            places.all().iter().for_each(|&(a, i)| x[i] -= gradient[a]);
+            let gradient = &self.energies[triangle].1;
+            places.all().iter().for_each(|&(a, i, sign)| x[i] -= sign * gradient[a]);
         }
         substitute(factor, x);
         let mut energies = std::mem::take(&mut self.energies);
         for (triangle, places) in self.star(point) {
-            let Energy { hessian, scale, gradient } = &mut energies[triangle];
+            let (form, gradient) = &mut energies[triangle];
+            let Form { hessian, scale } = &self.forms[*form as usize];
             let mut sum = *gradient;
-            for &(a, i) in places.all() {
-                let value = x[i] * *scale;
+            for &(a, i, sign) in places.all() {
+                let value = x[i] * sign * scale;
                 sum.iter_mut().zip(&hessian[a]).for_each(|(sum, &h)| *sum += value * f64::from(h));
             }
             *gradient = sum;
@@ -291,19 +315,19 @@ fn add(force: &mut [[f64; 2]; 2], factor: f64, mode: &[Vector2<f64>; 2]) {
     }
 }
 
-/// The unknowns of a triangle in a star, each with its number in the star.
+/// The unknowns of a triangle in a star, each with its number in the star and its sign in the triangle.
 struct Places {
     count: usize,
-    of: [(usize, usize); 5],
+    of: [(usize, usize, f64); 5],
 }
 
 impl Places {
-    fn push(&mut self, unknown: usize, number: usize) {
-        self.of[self.count] = (unknown, number);
+    fn push(&mut self, place: (usize, usize, f64)) {
+        self.of[self.count] = place;
         self.count += 1;
     }
 
-    fn all(&self) -> &[(usize, usize)] {
+    fn all(&self) -> &[(usize, usize, f64)] {
         &self.of[..self.count]
     }
 }
@@ -311,15 +335,51 @@ impl Places {
 /// How many numbers [`features`] are.
 const FEATURES: usize = 21;
 
-/// |C eps(v) - tau|^2 / 2 on triangle `t`.
-fn energy(certificate: &Certificate, state: &Balanced<f64>, t: usize) -> Energy {
-    let piece = &certificate.pieces[t];
-    let triangle = &state.triangles[t];
-    let double_area = triangle.double_area();
-    let scale = double_area / 288.0;
-    let [lambda, mu] = piece.material;
-    let roots = [(scale / mu).sqrt(), (scale / (lambda + mu)).sqrt()];
-    let distance = features(&state.stresses(certificate, t).1, roots);
+/// |C eps(v) - tau|^2 / 2 on the triangles, as a function of their unknowns.
+fn energies(
+    certificate: &Certificate,
+    state: &Balanced<f64>,
+) -> (Vec<Form>, Vec<(u32, [f64; UNKNOWNS])>) {
+    let (mut forms, mut recent): (Vec<Form>, Vec<Met>) = (Vec::new(), Vec::with_capacity(RECENT));
+    let mut energies = Vec::with_capacity(certificate.pieces.len());
+    let mut oldest = 0;
+    for (t, piece) in certificate.pieces.iter().enumerate() {
+        let triangle = &state.triangles[t];
+        let single = |edge: Vector2<f64>| [edge.x as f32, edge.y as f32];
+        let shape = ([0, 1].map(|i| single(triangle.edge(i))), piece.material);
+        let known = recent.iter().position(|met| met.shape == shape).unwrap_or_else(|| {
+            let units = units(triangle, roots(piece.material, triangle));
+            let form = forms.len() as u32;
+            forms.push(form_of(&units));
+            let met = Met { shape, form, units };
+            if recent.len() < RECENT {
+                recent.push(met);
+                return recent.len() - 1;
+            }
+            oldest = (oldest + 1) % RECENT;
+            recent[oldest] = met;
+            oldest
+        });
+        let Met { form, units, .. } = &recent[known];
+        let distance = state.without_bending(certificate, t).1;
+        let distance = features(&distance, roots(piece.material, triangle));
+        let mut gradient = [0.0; UNKNOWNS];
+        for (row, distance) in units.iter().zip(distance) {
+            gradient.iter_mut().zip(row).for_each(|(sum, unit)| *sum -= unit * distance);
+        }
+        energies.push((*form, gradient));
+    }
+    (forms, energies)
+}
+
+/// The roots of |T|/144 over mu and over lambda + mu.
+fn roots([lambda, mu]: [f64; 2], triangle: &Triangle<f64>) -> [f64; 2] {
+    let scale = triangle.double_area() / 288.0;
+    [(scale / mu).sqrt(), (scale / (lambda + mu)).sqrt()]
+}
+
+/// The [`features`] of the stresses of a triangle's unknowns, with edges that go round it.
+fn units(triangle: &Triangle<f64>, roots: [f64; 2]) -> [[f64; UNKNOWNS]; FEATURES] {
     let frame = Frame::new(triangle);
     let mut units = [[0.0; UNKNOWNS]; FEATURES];
     let (zero, body) = ([[Vector2::zeros(); 2]; 3], [Vector2::zeros(); 3]);
@@ -328,22 +388,15 @@ fn energy(certificate: &Certificate, state: &Balanced<f64>, t: usize) -> Energy 
         units.iter_mut().zip(tau).for_each(|(row, value)| row[k] = value);
     };
     let mut at_vertices = [zero; 9];
-    for (side, &e) in piece.edges.iter().enumerate() {
-        let left = state.topology.owners[e][0].is_some_and(|owner| owner.piece == t);
-        let outward = |[a, b]: [Vector2<f64>; 2]| if left { [a, b] } else { [-b, -a] };
-        let ends = certificate.edges[e].ends;
-        let places = ends.map(|p| state.points[p]);
-        for (k, &p) in ends.iter().enumerate() {
+    for side in 0..3 {
+        let vertices = [1, 2].map(|k| (side + k) % 3);
+        let places = vertices.map(|vertex| triangle.vertices[vertex]);
+        for (k, vertex) in vertices.into_iter().enumerate() {
             let modes = modes(places, k == 1);
-            // The start of the edge in this triangle is vertex side + 1.
-            let vertex = (side + if left { 1 + k } else { 2 - k }) % 3;
-            debug_assert_eq!(piece.vertices[vertex], p);
-            for c in 0..3 {
-                at_vertices[3 * vertex + c][side] = outward(modes[c]);
-            }
+            (0..3).for_each(|c| at_vertices[3 * vertex + c][side] = modes[c]);
             if k == 0 {
                 let mut forces = zero;
-                forces[side] = outward(modes[3]);
+                forces[side] = modes[3];
                 put(9 + side, forces);
             }
         }
@@ -351,13 +404,13 @@ fn energy(certificate: &Certificate, state: &Balanced<f64>, t: usize) -> Energy 
     for (k, forces) in at_vertices.into_iter().enumerate() {
         put(k, forces);
     }
-    let mut gradient = [0.0; UNKNOWNS];
-    for (row, distance) in units.iter().zip(distance) {
-        gradient.iter_mut().zip(row).for_each(|(sum, unit)| *sum -= unit * distance);
-    }
-    let exact = gram(&units);
+    units
+}
+
+fn form_of(units: &[[f64; UNKNOWNS]; FEATURES]) -> Form {
+    let exact = gram(units);
     let scale = exact.as_flattened().iter().fold(0.0, |most: f64, h| most.max(h.abs()));
-    Energy { hessian: exact.map(|row| row.map(|h| (h / scale) as f32)), scale, gradient }
+    Form { hessian: exact.map(|row| row.map(|h| (h / scale) as f32)), scale }
 }
 
 /// The products of the columns, by blocks that stay in registers; the upper half is the lower one.
@@ -380,7 +433,7 @@ fn gram(rows: &[[f64; UNKNOWNS]; FEATURES]) -> [[f64; UNKNOWNS]; UNKNOWNS] {
     products
 }
 
-/// Numbers whose sum of squares is [`Composite::energy`]; `roots` are those of |T|/144 over mu and over lambda + mu.
+/// Numbers whose sum of squares is [`Composite::energy`] of a stress that is not bent.
 ///
 /// On a part with the corners a, b and the centre c, a^2 + b^2 + c^2 + (a + b + c)^2 is, with s = a + b + 2/3 c,
 /// 3/2 s^2 + 1/2 (a - b)^2 + 4/3 c^2.

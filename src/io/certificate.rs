@@ -12,6 +12,7 @@
 //! | edges | start, end, role (n), four numbers of the role (f) |
 //! | directions, of contact where it does not act along the normal | the edge (n), d at its start and at its end (f) |
 //! | if v is quadratic: v at the cuts | v_x v_y (f) |
+//! | if v is quadratic: prescribed, of the cuts | as of the vertices (n f n f) |
 //! | if v is quadratic: bulges, of the edges | of v, and of the data: u_D, or g and 0, or 0 0 (f f f f) |
 //! | shares, of the triangles | the claimed share in the square of the bound (f) |
 //!
@@ -36,7 +37,7 @@ pub const FILES: [&str; 2] = ["certificate.json", "certificate.bin"];
 const MOST: u64 = 4 << 30;
 
 /// The format that this program writes and reads.
-const FORMAT: u32 = 4;
+const FORMAT: u32 = 5;
 
 /// certificate.json.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -190,7 +191,7 @@ pub fn decode(header: &Header, bytes: &[u8]) -> Result<(Certificate, Claim), Str
         words(triangles, 16),
         words(edges, 7),
         words(directions, 5),
-        words(cuts, if quadratic { 2 } else { 0 }),
+        words(cuts, if quadratic { 6 } else { 0 }),
         words(edges, if quadratic { 4 } else { 0 }),
     ]
     .into_iter()
@@ -210,12 +211,7 @@ pub fn decode(header: &Header, bytes: &[u8]) -> Result<(Certificate, Claim), Str
         edges: Vec::with_capacity(edges),
     };
     for _ in 0..vertices {
-        let mut component = || match (words.whole(), words.number()) {
-            (0, 0.0) => Ok(None),
-            (1, value) => Ok(Some(value)),
-            _ => Err("a prescribed value is neither there nor not".to_owned()),
-        };
-        certificate.prescribed.push([component()?, component()?]);
+        certificate.prescribed.push(words.prescribed()?);
     }
     for _ in 0..cuts {
         certificate.cuts.push(Cut { ends: [words.index(), words.index()], at: words.number() });
@@ -252,8 +248,9 @@ pub fn decode(header: &Header, bytes: &[u8]) -> Result<(Certificate, Claim), Str
     }
     if quadratic {
         let at_cuts = (0..cuts).map(|_| words.pair()).collect();
+        let prescribed = (0..cuts).map(|_| words.prescribed()).collect::<Result<_, _>>()?;
         let (bulges, data) = (0..edges).map(|_| (words.pair(), words.pair())).unzip();
-        certificate.curved = Some(Curved { at_cuts, bulges, data });
+        certificate.curved = Some(Curved { at_cuts, prescribed, bulges, data });
     }
     let shares = (0..triangles).map(|_| words.number()).collect();
     Ok((certificate, Claim { shares, bound: header.proved }))
@@ -271,7 +268,7 @@ fn counts(certificate: &Certificate) -> Counts {
 
 fn arrays(certificate: &Certificate, shares: &[f64]) -> Vec<u8> {
     let Counts { vertices, cuts, triangles, edges, directions: turned } = counts(certificate);
-    let curved = if certificate.curved.is_some() { 2 * cuts + 4 * edges } else { 0 };
+    let curved = if certificate.curved.is_some() { 6 * cuts + 4 * edges } else { 0 };
     let words = 8 * vertices + 3 * cuts + 16 * triangles + 7 * edges + 5 * turned + curved;
     let mut bytes = Vec::with_capacity(8 * words);
     let mut word = |word: u64| bytes.extend_from_slice(&word.to_le_bytes());
@@ -280,10 +277,13 @@ fn arrays(certificate: &Certificate, shares: &[f64]) -> Vec<u8> {
     for pair in certificate.vertices.iter().chain(&certificate.displacement) {
         pair.iter().for_each(|&x| word(number(x)));
     }
-    for data in certificate.prescribed.iter().flatten() {
-        word(u64::from(data.is_some()));
-        word(number(data.unwrap_or(0.0)));
-    }
+    let prescribed = |data: &[[Option<f64>; 2]], word: &mut dyn FnMut(u64)| {
+        for data in data.iter().flatten() {
+            word(u64::from(data.is_some()));
+            word(number(data.unwrap_or(0.0)));
+        }
+    };
+    prescribed(&certificate.prescribed, &mut word);
     for cut in &certificate.cuts {
         cut.ends.iter().for_each(|&i| word(index(i)));
         word(number(cut.at));
@@ -309,9 +309,11 @@ fn arrays(certificate: &Certificate, shares: &[f64]) -> Vec<u8> {
         word(index(e));
         along.as_flattened().iter().for_each(|&x| word(number(x)));
     }
-    if let Some(Curved { at_cuts, bulges, data }) = &certificate.curved {
+    if let Some(Curved { at_cuts, prescribed: data_at_cuts, bulges, data }) = &certificate.curved {
+        at_cuts.iter().flatten().for_each(|&x| word(number(x)));
+        prescribed(data_at_cuts, &mut word);
         let of_edges = bulges.iter().zip(data).flat_map(|(bulge, data)| [bulge, data]);
-        at_cuts.iter().chain(of_edges).flatten().for_each(|&x| word(number(x)));
+        of_edges.flatten().for_each(|&x| word(number(x)));
     }
     shares.iter().for_each(|&x| word(number(x)));
     bytes
@@ -348,6 +350,15 @@ impl Words<'_> {
 
     fn number(&mut self) -> f64 {
         f64::from_bits(self.whole())
+    }
+
+    fn prescribed(&mut self) -> Result<[Option<f64>; 2], String> {
+        let mut component = || match (self.whole(), self.number()) {
+            (0, 0.0) => Ok(None),
+            (1, value) => Ok(Some(value)),
+            _ => Err("a prescribed value is neither there nor not".to_owned()),
+        };
+        Ok([component()?, component()?])
     }
 
     fn pair(&mut self) -> [f64; 2] {

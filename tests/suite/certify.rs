@@ -13,7 +13,7 @@ use crate::common::{Random, clamped, conditions, constant, unit_square};
 use signorini::certify::proof::Role;
 use signorini::certify::{Continuous, Rejection, certify, certify_field};
 use signorini::fem::{
-    Condition, Errors, Obstacle, Problem, SharedFunction, Side, Space, contact_line,
+    Condition, Errors, Mesh, Obstacle, Problem, SharedFunction, Side, Space, contact_line,
 };
 use signorini::io::certificate::{self, Header};
 use signorini::io::{Case, Expression};
@@ -76,15 +76,14 @@ fn the_bound_is_above_the_error_and_below_thrice_the_error_of_singular_solutions
     bounds("(c)", &on_trapezoid(&solution, 0.75, Degree::One, 8), 4, |_| 3.0);
 }
 
-/// What the stress costs for P2: affine on three parts of each triangle, it is 2.5 times as far from that of a smooth u as
-/// C eps(u^h) is. On coarse meshes data that oscillate come to it.
+/// The stress is affine on three parts of each quarter of a triangle: a little farther from that of a smooth u than C eps(u^h) is.
 #[test]
-fn the_bound_of_p2_falls_with_h_squared_and_is_at_most_three_and_a_half_times_the_error() {
+fn the_bound_of_p2_falls_with_h_squared_and_is_below_twice_the_error_of_smooth_solutions() {
     for (what, solution) in
         [("(a) 4 3", smooth(4.0, 3.0, 1.0 / 3.0)), ("(a) 4 3 with a gap", smooth_with_gap())]
     {
         let ladder = on_square(&solution, Degree::Two, 8);
-        bounds(what, &ladder, 4, |level| if level == 0 { 3.5 } else { 3.0 });
+        bounds(what, &ladder, 4, |_| 2.0);
         let bound = |level: usize| {
             let (_, problem, solution) = ladder.solve(level).unwrap();
             certify(&problem, &solution).unwrap().bound
@@ -93,14 +92,18 @@ fn the_bound_of_p2_falls_with_h_squared_and_is_at_most_three_and_a_half_times_th
         assert!((1.9..2.2).contains(&rate), "{what}: {rate}");
     }
     // The body force jumps inside triangles: above the error, and not of its order.
-    bounds("(a) 3 2", &on_square(&smooth(3.0, 2.0, 1.0 / 3.0), Degree::Two, 8), 3, |_| 15.0);
+    bounds("(a) 3 2", &on_square(&smooth(3.0, 2.0, 1.0 / 3.0), Degree::Two, 8), 3, |_| 5.0);
+}
+
+#[test]
+fn the_bound_of_p2_is_below_thrice_the_error_of_singular_solutions() {
     for c in [0.5, 1.0 / 3.0] {
         let ladder = on_square(&singular(c), Degree::Two, 8);
-        bounds(&format!("(b) c = {c}"), &ladder, 4, |_| 3.5);
-        bounds(&format!("(b) c = {c} moved"), &moved(ladder), 3, |_| 3.5);
+        bounds(&format!("(b) c = {c}"), &ladder, 4, |_| 3.0);
+        bounds(&format!("(b) c = {c} moved"), &moved(ladder), 3, |_| 3.0);
     }
     let (solution, _) = corner(0.75);
-    bounds("(c)", &on_trapezoid(&solution, 0.75, Degree::Two, 8), 4, |_| 3.5);
+    bounds("(c)", &on_trapezoid(&solution, 0.75, Degree::Two, 8), 4, |_| 3.0);
 }
 
 #[test]
@@ -530,6 +533,50 @@ fn a_certificate_is_accepted_as_it_was_written() {
     }
 }
 
+/// Where contact ends, and the middles of edges, are no doubles: in balls they are as uncertain as their coordinates are large, and
+/// the triangles are small beside these.
+#[test]
+fn certificates_of_bodies_far_from_the_origin_are_accepted() {
+    let [far, small] = [3000.1, 0.1];
+    for (degree, place, angle) in [
+        (Degree::One, small, 0.0),
+        (Degree::Two, small, 0.0),
+        (Degree::One, far, 0.0),
+        (Degree::Two, far, 0.0),
+        (Degree::One, far, 0.5),
+        (Degree::Two, far, 0.5),
+    ] {
+        let (sin, cos) = f64::sin_cos(angle);
+        let there = |[x, y]: [f64; 2]| [place + cos * x - sin * y, place + sin * x + cos * y];
+        let square = unit_square(8).mesh().unwrap();
+        let vertices = square.vertices().iter().copied().map(there).collect();
+        let sides = ["top", "bottom"].map(|side| {
+            let edges = square.edges_of(side).unwrap();
+            (side.to_owned(), edges.iter().map(|&edge| square.ends(edge)).collect())
+        });
+        // It presses on the left, and lifts on the right.
+        let down = format!("4 - 10*({cos:?}*(x - {place:?}) + {sin:?}*(y - {place:?}))");
+        let problem = Problem::new(
+            Mesh::new(vertices, square.triangles().to_vec(), sides).unwrap(),
+            Material::lame(1.0, 1.0, Plane::Strain),
+            [sin, -cos].map(|along| expression(&format!("{along:?}*({down})"))),
+            conditions([
+                ("top", Condition::Displacement([Some(expression("0")), Some(expression("0"))])),
+                ("bottom", Condition::Contact { gap: expression("0") }),
+            ]),
+        );
+        let method = Method { degree, gamma0: Gamma0::Auto, ..Method::default() };
+        let (solution, _) = solve(&problem, &method, &Settings::default()).unwrap();
+        let certified = certify(&problem, &solution).unwrap();
+        assert_eq!(certified.reason, None);
+        assert!(!certified.certificate.cuts.is_empty());
+        let most = if degree == Degree::One { 0.4 } else { 0.1 };
+        assert!(certified.relative < most, "{place} {angle}: {}", certified.relative);
+        let (header, bytes) = certificate::encode("far away", &certified);
+        assert_eq!(accepts(&header, &bytes), Ok(()), "{place} {angle}");
+    }
+}
+
 /// The reader of decimals may be one double off; many certificates, for it rarely is.
 #[test]
 fn certificates_are_accepted_from_their_files() {
@@ -576,6 +623,7 @@ fn kind(header: &Header, bytes: &[u8], word: usize) -> Word {
         (counts.edges, 7, 0..3),
         (counts.directions, 5, 0..1),
         (2 * counts.cuts * quadratic, 1, 0..0),
+        (2 * counts.cuts * quadratic, 2, 0..1),
         (counts.edges * quadratic, 4, 0..0),
     ] {
         if word < first + entries * each {
