@@ -33,11 +33,9 @@ displacement = ["0", "0"]
 contact = {{ gap = "0" }}
 """
 FILES = {"contact.csv", "contact.vtu", "picture.svg", "result.json", "solution.vtu"}
-PANIC = 101
 
-
-# Seconds of processor time for a large input: it should take less than 2; a quadratic one takes minutes.
-PATIENCE = 5
+# Seconds of processor time for a large input, at most; a quadratic one takes minutes.
+PATIENCE = 2
 
 
 class Fault(Exception):
@@ -257,9 +255,13 @@ class Bench:
         for name, text in inputs.items():
             file = folder / "case.toml"
             file.write_text(text)
-            before = processor_time()
-            run = self.run("solve", file, "--quiet", "--out", folder / "out")
-            seconds = processor_time() - before
+            # What else the machine does lengthens a run: the quickest of up to three counts.
+            for _ in range(3):
+                before = processor_time()
+                run = self.run("solve", file, "--quiet", "--out", folder / "out")
+                seconds = processor_time() - before
+                if seconds <= PATIENCE:
+                    break
             expected = 2 if "not there" in name else 0
             expect(run.returncode == expected, f"large inputs: {name}: {run.returncode}: {run.stderr[:2000]}")
             expect(len(run.stderr) < 3000, f"large inputs: {name}: a message of {len(run.stderr)} characters")

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use clap::builder::StyledStr;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use clap_complete::Shell;
 use signorini::io::sweep::Axis;
@@ -21,6 +23,31 @@ const EXIT_CODES: &str = "Exit codes: 0 solved; 1 could not solve, write or acce
                           is written. A signal ends it as a signal does (130, 143, 129 to a shell); a reader of standard \
                           output who leaves (| head) is no failure, a full standard output is one: 1.";
 
+impl Arguments {
+    /// What the command was given, or a complaint that says what was probably meant.
+    pub fn read() -> Result<Arguments, clap::Error> {
+        Arguments::try_parse().map_err(|mut error| {
+            let is_similar = error.get(ContextKind::SuggestedArg).is_some();
+            let tip = match (error.kind(), error.get(ContextKind::InvalidSubcommand)) {
+                (ErrorKind::InvalidSubcommand, Some(ContextValue::String(task)))
+                    if task.ends_with(".toml") =>
+                {
+                    "a case is solved by 'signorini solve CASE.toml'"
+                }
+                (ErrorKind::UnknownArgument, _) if !is_similar => {
+                    "a key of the case file is set by --set, such as '--set method.degree=2'"
+                }
+                _ => return error,
+            };
+            error.insert(
+                ContextKind::Suggested,
+                ContextValue::StyledStrs(vec![StyledStr::from(tip)]),
+            );
+            error
+        })
+    }
+}
+
 #[derive(Subcommand)]
 pub enum Task {
     /// Solve a case; write solution.vtu, contact.vtu, contact.csv, picture.svg and result.json
@@ -34,7 +61,7 @@ pub enum Task {
         #[arg(long)]
         json: bool,
         /// Bound the distance to the true solution, too, and write the proof, certificate.json and certificate.bin, for
-        /// `signorini audit`; takes several times as long as the solution
+        /// `signorini audit`; takes about as long again as the solution
         #[arg(long)]
         certificate: bool,
         /// Who solves: this program, or the reference in FEniCSx, which runs on many processes

@@ -34,7 +34,7 @@ mod command {
     use std::process::ExitCode;
     use std::time::{Duration, Instant};
 
-    use clap::{CommandFactory, Parser};
+    use clap::CommandFactory;
     use signorini::certify::adapt::Stage;
     use signorini::certify::certify_field;
     use signorini::fem::MeshError;
@@ -74,7 +74,7 @@ mod command {
     }
 
     pub fn run() -> ExitCode {
-        let Arguments { task, quiet } = match Arguments::try_parse() {
+        let Arguments { task, quiet } = match Arguments::read() {
             Ok(arguments) => arguments,
             Err(error) if error.use_stderr() => error.exit(),
             // What was asked for: help, or the version.
@@ -200,7 +200,7 @@ mod command {
             let names = [&outputs::FILES[..], &certificate::FILES].concat();
             spare(&folder, &names, &case.sources).map_err(|e| failure(WRONG)(&e))?;
         }
-        let (case, Solved { solution, times, certified }) = as_asked(case, &phases)?;
+        let (case, Solved { solution, times, certified, .. }) = as_asked(case, &phases)?;
         let certified = certified.or_else(|| {
             certificate.then(|| {
                 phases.enter("certifying");
@@ -226,13 +226,13 @@ mod command {
                 let written =
                     outputs::write(&folder, &case, &solution, read, times, certified, certificate)
                         .map_err(|e| failure(FAILED)(&e))?;
+                drop(phases);
                 if let (Some(remark), false) = (remark, quiet) {
                     complain(&remark);
                 }
                 written
             }
         };
-        drop(phases);
         let done = wanted.text(&results, &files, quiet)?;
         let code = if results.misses_its_target() { FAILED } else { done.code };
         Ok(Done { code, ..done })
@@ -394,12 +394,12 @@ mod command {
         let (file, text) = read_text(file)?;
         spare(&folder, &[sweep::FILE], std::slice::from_ref(&file))
             .map_err(|e| failure(WRONG)(&e))?;
-        let bar = progress::bar(runs, "runs", quiet);
+        let count = progress::Count::start(runs, "runs", quiet);
         let folders = files.then_some(folder.as_path());
         // A sweep that is stopped leaves the table of what it has solved.
         let mut written = Instant::now();
         let done = |sweep: &Sweep| {
-            bar.inc(1);
+            count.one_more();
             let some = sweep.runs.iter().any(|run| run.outcome.is_ok());
             if some && !sweep.to_come.is_empty() && written.elapsed() >= BETWEEN_TABLES {
                 sweep.write(&folder)?;
@@ -408,7 +408,7 @@ mod command {
             Ok(())
         };
         let sweep = sweep::run(&file, &text, axes, folders, done).map_err(no_sweep)?;
-        bar.finish_and_clear();
+        drop(count);
         let code = |outcome: &sweep::Outcome| match outcome {
             Ok(results) => results.misses_its_target().then_some(FAILED),
             Err(error) => Some(code(error)),
@@ -472,19 +472,19 @@ mod command {
         let degrees = or_none(wanted.degree.iter().map(degree).collect());
         let meshes = or_none(wanted.mesh.iter().map(mesh).collect());
         let count = degrees.len() * meshes.len() * wanted.levels;
-        let progress = progress::bar(count, "meshes", quiet);
+        let progress = progress::Count::start(count, "meshes", quiet);
         let mut studies = Vec::new();
         for degree in &degrees {
             for meshes in &meshes {
                 let study = convergence::ladder(&case, *degree, *meshes)
                     .and_then(|(ladder, meshes)| {
-                        convergence::climb(ladder, meshes, wanted.levels, || progress.inc(1))
+                        convergence::climb(ladder, meshes, wanted.levels, || progress.one_more())
                     })
                     .map_err(|e| no_study(&case.file, &e))?;
                 studies.push(study);
             }
         }
-        progress.finish_and_clear();
+        drop(progress);
         let files =
             convergence::write(&folder, &case.title, &studies).map_err(|e| failure(FAILED)(&e))?;
         Ok(summary::studied(&case, &studies, &files))

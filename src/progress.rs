@@ -1,64 +1,64 @@
-//! What goes on, on standard error if that is a terminal, else nothing.
+//! What goes on, on standard error if that is a terminal, else nothing: one line, drawn again and again.
 
-use std::borrow::Cow;
+use std::cell::Cell;
+use std::io::{IsTerminal, Write, stderr};
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use signorini::solve::Phase;
 
 /// Shorter work is not worth a word.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// A bar of `count` things, such as "meshes".
-pub fn bar(count: usize, things: &str, quiet: bool) -> ProgressBar {
-    let bar = if quiet { ProgressBar::hidden() } else { ProgressBar::new(count as u64) };
-    let bar_of = if colour() { "{bar:30.cyan}" } else { "{bar:30}" };
-    styled(bar, &format!("  {bar_of} {{pos}} of {{len}} {things}, {{elapsed}}"))
-}
+/// Between two drawings.
+const TICK: Duration = Duration::from_millis(100);
 
-fn styled(bar: ProgressBar, template: &str) -> ProgressBar {
-    match ProgressStyle::with_template(template) {
-        Ok(style) => bar.with_style(style),
-        Err(_) => bar,
-    }
-}
+/// What turns while one waits.
+const SPINNER: [char; 10] = ['⠋', '⠙', '⠹', '⠸', '⠼', '⠴', '⠦', '⠧', '⠇', '⠏'];
 
-fn colour() -> bool {
-    std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
-}
+/// To the start of the line, which is emptied.
+const CLEAR: &str = "\r\x1b[2K";
 
 /// The phase of work that has no known length. It is shown once the work takes longer than a second, and removed when this
 /// is dropped.
 pub struct Phases {
-    bar: ProgressBar,
+    phase: Arc<Mutex<String>>,
     watch: Option<(Sender<()>, JoinHandle<()>)>,
 }
 
 impl Phases {
     /// Shown unless `quiet`.
     pub fn start(quiet: bool) -> Phases {
-        let spinner = if colour() { "{spinner:.cyan}" } else { "{spinner}" };
-        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
-        let bar = styled(bar, &format!("  {spinner} {{msg}}, {{elapsed}}"));
-        let watch = (!quiet).then(|| {
+        let phase = Arc::new(Mutex::new(String::new()));
+        let watch = (!quiet && is_shown()).then(|| {
             let (stop, stopped) = mpsc::channel();
-            let shown = bar.clone();
-            let show = move || {
-                if stopped.recv_timeout(PATIENCE) == Err(RecvTimeoutError::Timeout) {
-                    shown.set_draw_target(ProgressDrawTarget::stderr());
-                    shown.enable_steady_tick(Duration::from_millis(100));
+            let shown = Arc::clone(&phase);
+            let draw = move || {
+                let (begin, colours) = (Instant::now(), colours());
+                let mut wait = PATIENCE;
+                let mut frames = SPINNER.iter().cycle();
+                while stopped.recv_timeout(wait) == Err(RecvTimeoutError::Timeout) {
+                    let spinner = frames.next().unwrap_or(&' ');
+                    let [before, after] = if colours { ["\x1b[36m", "\x1b[0m"] } else { ["", ""] };
+                    let phase = shown.lock().unwrap_or_else(PoisonError::into_inner).clone();
+                    let seconds = begin.elapsed().as_secs();
+                    show(&format!("{CLEAR}  {before}{spinner}{after} {phase}, {seconds} s"));
+                    wait = TICK;
+                }
+                if wait == TICK {
+                    show(CLEAR);
                 }
             };
-            (stop, thread::spawn(show))
+            (stop, thread::spawn(draw))
         });
-        Phases { bar, watch }
+        Phases { phase, watch }
     }
 
     /// The phase that begins, such as "certifying".
-    pub fn enter(&self, phase: impl Into<Cow<'static, str>>) {
-        self.bar.set_message(phase);
+    pub fn enter(&self, phase: impl Into<String>) {
+        *self.phase.lock().unwrap_or_else(PoisonError::into_inner) = phase.into();
     }
 
     /// A phase inside a solve.
@@ -68,9 +68,9 @@ impl Phases {
             Phase::Order => "ordering and assembling the matrix".into(),
             Phase::Factor => "factoring".into(),
             Phase::Condense => "condensing the body onto its contact line".into(),
-            Phase::Newton { step } => Cow::from(format!("Newton step {step}")),
+            Phase::Newton { step } => format!("Newton step {step}"),
             Phase::Evaluate => "evaluating stresses and pressures".into(),
-            _ => "solving".into(),
+            _ => "solving".to_owned(),
         });
     }
 }
@@ -82,6 +82,46 @@ impl Drop for Phases {
             // It cannot have panicked; if it did, there is nothing to show, which is what is wanted here.
             let _ = thread.join();
         }
-        self.bar.finish_and_clear();
     }
+}
+
+/// How many of `count` things, such as "meshes", are done.
+pub struct Count {
+    phases: Phases,
+    done: Cell<usize>,
+    count: usize,
+    things: &'static str,
+}
+
+impl Count {
+    /// Shown unless `quiet`.
+    pub fn start(count: usize, things: &'static str, quiet: bool) -> Count {
+        let counted = Count { phases: Phases::start(quiet), done: Cell::new(0), count, things };
+        counted.say();
+        counted
+    }
+
+    /// One more is done.
+    pub fn one_more(&self) {
+        self.done.set(self.done.get() + 1);
+        self.say();
+    }
+
+    fn say(&self) {
+        self.phases.enter(format!("{} of {} {}", self.done.get(), self.count, self.things));
+    }
+}
+
+/// A line that cannot be shown is no reason to stop.
+fn show(line: &str) {
+    let mut stderr = stderr().lock();
+    let _ = stderr.write_all(line.as_bytes()).and_then(|()| stderr.flush());
+}
+
+fn is_shown() -> bool {
+    stderr().is_terminal() && std::env::var_os("TERM").is_some_and(|term| term != "dumb")
+}
+
+fn colours() -> bool {
+    std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
 }

@@ -16,10 +16,10 @@ use signorini::io::run::{self, RunError};
 use signorini::kernel::Stress;
 use signorini::solve::Solution;
 
-create_exception!(_signorini, CaseError, PyValueError, "The case is wrong.");
+create_exception!(signorini, CaseError, PyValueError, "The case is wrong.");
 create_exception!(
-    _signorini,
-    SolutionError,
+    signorini,
+    SolveError,
     PyRuntimeError,
     "The case is right, but there is no solution."
 );
@@ -102,9 +102,9 @@ struct Solved {
 
 fn solved(case: Case, start: Instant) -> PyResult<Solved> {
     let read = start.elapsed();
-    let (case, run::Solved { solution, times, certified }) =
+    let (case, run::Solved { solution, times, certified, .. }) =
         run::solve(case, None, &|_| {}).map_err(|error| unsolved(&error))?;
-    let no_results = |error: &dyn std::fmt::Display| SolutionError::new_err(error.to_string());
+    let no_results = |error: &dyn std::fmt::Display| SolveError::new_err(error.to_string());
     let seconds = Seconds::new(read, &times, std::time::Duration::ZERO);
     let mut results = outputs::results(&case, &solution, seconds).map_err(|e| no_results(&e))?;
     certified.iter().for_each(|certified| certified.add_to(&mut results));
@@ -113,7 +113,7 @@ fn solved(case: Case, start: Instant) -> PyResult<Solved> {
 }
 
 fn unsolved(error: &RunError) -> PyErr {
-    if error.is_wrong_case() { wrong(error) } else { SolutionError::new_err(error.to_string()) }
+    if error.is_wrong_case() { wrong(error) } else { SolveError::new_err(error.to_string()) }
 }
 
 fn raw<'py>(py: Python<'py>, solved: &Solved) -> PyResult<Bound<'py, PyDict>> {
@@ -156,7 +156,7 @@ fn raw<'py>(py: Python<'py>, solved: &Solved) -> PyResult<Bound<'py, PyDict>> {
 fn _signorini(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("CaseError", module.py().get_type::<CaseError>())?;
-    module.add("SolveError", module.py().get_type::<SolutionError>())?;
+    module.add("SolveError", module.py().get_type::<SolveError>())?;
     module.add_function(wrap_pyfunction!(solve_case, module)?)?;
     module.add_function(wrap_pyfunction!(solve, module)?)
 }

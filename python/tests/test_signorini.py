@@ -139,6 +139,11 @@ def test_a_case_that_does_not_converge_is_a_runtime_error():
     assert isinstance(caught.value, RuntimeError)
 
 
+def test_an_error_is_shown_by_the_name_that_catches_it():
+    for error in (signorini.CaseError, signorini.SolveError):
+        assert getattr(signorini, error.__name__) is error and error.__module__ == "signorini"
+
+
 def test_a_missing_file_is_named():
     with pytest.raises(signorini.CaseError, match="nowhere.toml: there is no such file"):
         signorini.solve_case("nowhere.toml")

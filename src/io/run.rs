@@ -10,6 +10,7 @@ use crate::solve::{Course, Solution, SolveError, Times, solve_along};
 
 /// A solved case.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct Solved {
     /// The solution, on the mesh that the case has now.
     pub solution: Solution,
@@ -21,6 +22,7 @@ pub struct Solved {
 
 /// Why a case is not solved.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum RunError {
     /// On its own mesh.
     #[error(transparent)]

@@ -16,7 +16,7 @@ pub fn layers(source: &Source) -> Vec<String> {
     let mut layers = Vec::with_capacity(source.settings.len());
     for setting in source.settings {
         start += 1;
-        layers.push(format!("{:start$}{}", "", with_quotes(setting)));
+        layers.push(" ".repeat(start) + &with_quotes(setting));
         start += setting.len();
     }
     layers

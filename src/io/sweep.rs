@@ -16,6 +16,7 @@ use super::numbers::short;
 use super::outputs::{self, Certified, OutputError};
 use super::result::{Results, Seconds};
 use super::run::{self, RunError, Solved};
+use crate::quote;
 use crate::solve::Solution;
 
 /// More runs than this are a mistake of the person who asks for them.
@@ -264,8 +265,11 @@ impl Sweep {
 
     /// The table for people: columns with four digits, aligned.
     pub fn table(&self) -> String {
-        let mut lines = vec![self.names().into_iter().map(str::to_owned).collect::<Vec<_>>()];
+        let mut lines = vec![self.names().into_iter().map(quote::line).collect::<Vec<_>>()];
         lines.extend(self.rows(&|x| short(x, 4)));
+        for line in &mut lines[1..] {
+            line[..self.keys.len()].iter_mut().for_each(|value| *value = quote::line(value));
+        }
         let width = |c: usize| lines.iter().map(|line| line[c].chars().count()).max().unwrap_or(0);
         let columns = lines[0].len();
         let widths: Vec<usize> = (0..columns).map(width).collect();

@@ -93,7 +93,7 @@ impl<S: Scalar> Material<S> {
     pub fn stress_zz(&self, stress: Stress<S>) -> S {
         let [xx, yy, _] = stress.components();
         match self.plane {
-            Plane::Strain => self.lambda * (xx + yy) / (S::from(2) * (self.lambda + self.mu)),
+            Plane::Strain => self.lambda / (S::from(2) * (self.lambda + self.mu)) * (xx + yy),
             Plane::Stress => S::from(0),
         }
     }
@@ -230,6 +230,14 @@ mod tests {
         let m = Material::lame(3.0_f64, 0.7, Plane::Strain);
         let s = m.stress(Matrix2::new(0.2, 0.5, -0.1, -0.7));
         assert_relative_eq!(m.stress_zz(s), 3.0 * (0.2 - 0.7), max_relative = ROUNDING);
+    }
+
+    #[test]
+    fn the_stress_across_the_plane_is_finite_where_lambda_times_a_stress_is_not() {
+        let m = Material::lame(1e150_f64, 1e200, Plane::Strain);
+        let s = Stress::new([3e200, -1e200, 0.0]);
+        assert!((m.lambda() * 2e200).is_infinite());
+        assert_relative_eq!(m.stress_zz(s), 1e150, max_relative = ROUNDING);
     }
 
     #[test]

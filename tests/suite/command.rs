@@ -296,3 +296,25 @@ fn wrong_arguments_end_with_exit_code_2() {
     assert_eq!(output.status.code(), Some(2));
     assert_eq!(text(&output.stderr), "error: nowhere.toml: there is no such file\n");
 }
+
+#[test]
+fn a_complaint_about_arguments_says_what_was_probably_meant() {
+    let folder = folder("tips", &[]);
+    let [solve, set, json] = [
+        "tip: a case is solved by 'signorini solve CASE.toml'",
+        "'--set method.degree=2'",
+        "'--json'",
+    ];
+    for (arguments, tip) in [
+        (&["case.toml"][..], solve),
+        (&["solve", "case.toml", "--degree", "2"], set),
+        (&["solve", "case.toml", "--jsn"], json),
+    ] {
+        let output = signorini(&folder, arguments);
+        let said = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        for other in [solve, set, json] {
+            assert_eq!(said.contains(other), other == tip, "{arguments:?}: {said}");
+        }
+    }
+}

@@ -71,7 +71,7 @@ fn the_page_on_result_json_lists_exactly_what_is_written() {
     ] {
         let settings: Vec<String> = settings.iter().map(|&s| s.to_owned()).collect();
         let case = Case::parse(Path::new(file), &page(file), &settings).unwrap();
-        let (case, Solved { solution, times, certified }) =
+        let (case, Solved { solution, times, certified, .. }) =
             run::solve(case, None, &|_| {}).unwrap();
         let zero = std::time::Duration::ZERO;
         let seconds = Seconds::new(zero, &times, zero);

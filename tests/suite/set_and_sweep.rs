@@ -156,6 +156,27 @@ fn a_sweep_prints_and_writes_one_line_for_each_combination() {
 }
 
 #[test]
+fn settings_lie_over_a_long_case_and_may_be_long_themselves() {
+    let folder = folder("long-settings", &[]);
+    let case = fs::read_to_string(folder.join("case.toml")).unwrap();
+    let long = "# A remark.\n".repeat(10_000) + &case;
+    fs::write(folder.join("long.toml"), &long).unwrap();
+    let force = format!("load.body=[\"0\", \"-2{}\"]", " + 0".repeat(20_000));
+    assert!(long.len() > 1 << 16 && force.len() > 1 << 16);
+    for (task, file, setting) in [
+        ("check", "long.toml", "method.degree=2"),
+        ("sweep", "long.toml", "method.degree=1,2"),
+        ("check", "case.toml", &force),
+        ("sweep", "case.toml", &force),
+    ] {
+        let output = signorini(&folder, &[task, file, "--set", setting]);
+        assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), ""), "{task} {file}");
+        let longest = text(&output.stdout).lines().map(str::len).max();
+        assert!(longest.is_some_and(|length| length < 500), "{task} {file}: {longest:?}");
+    }
+}
+
+#[test]
 fn a_sweep_over_lists_writes_the_files_of_each_run_where_asked() {
     let folder = folder("sweep-files", &[]);
     let loads = "load.body=[\"0\", \"-1\"],[\"0\", \"-2\"]";
