@@ -11,7 +11,7 @@ use signorini::fem::{Condition, Diagonal, Mesh, Problem, Rectangle, SharedFuncti
 use signorini::kernel::edge_integral::{ExactEdge, value_at};
 use signorini::kernel::{Material, P1, P2, Plane};
 use signorini::solve::evaluated::Evaluated;
-use signorini::solve::{Degree, Method, Settings, Solution, discretize, solve};
+use signorini::solve::{Degree, Method, Settings, Solution, SolveError, discretize, solve};
 
 use super::assembled::solver::unsolved;
 use super::honesty::field;
@@ -190,23 +190,34 @@ pub fn means_across_a_corner() -> Outcome {
     noticed(around_corners(true))
 }
 
-/// A block that is held on top and pressed on its floor, with a length of 2^`length` and moduli of 2^`modulus`; its displacement
-/// and the forces on it in these units.
-fn in_units(degree: Degree, [length, modulus]: [i32; 2]) -> Result<Vec<f64>, String> {
-    let (l, e) = (2.0_f64.powi(length), 2.0_f64.powi(modulus));
+/// A block that is held on top and pressed on its floor, with a length of 2^`length`, moduli of 2^`modulus` and displacements of
+/// 2^`displacement`.
+fn in_units(
+    degree: Degree,
+    plane: Plane,
+    [length, modulus, displacement]: [i32; 3],
+) -> Result<Solution, String> {
+    let [l, e, d] = [length, modulus, displacement].map(|k| 2.0_f64.powi(k));
     let cells =
         Rectangle { width: 3.0 * l, height: 2.0 * l, nx: 3, ny: 2, diagonal: Diagonal::Left };
-    let held = Condition::Displacement([0.01, -0.05].map(|u| Some(constant(u * l))));
-    let floor = Condition::Contact { gap: Arc::new(move |[x, _]: [f64; 2]| 0.02 * l - 0.01 * x) };
+    let held = Condition::Displacement([0.01, -0.05].map(|u| Some(constant(u * d))));
+    let gap = move |[x, _]: [f64; 2]| 0.02 * d - 0.01 * (x / l * d);
+    let floor = Condition::Contact { gap: Arc::new(gap) };
     let conditions = [("top", held), ("bottom", floor)];
     let problem = Problem::new(
         cells.mesh().map_err(text)?,
-        Material::lame(1.5 * e, e, Plane::Stress),
-        [0.05, -0.1].map(|f| constant(f * e / l)),
+        Material::lame(1.5 * e, e, plane),
+        [0.05, -0.1].map(|f| constant(f * (e * d) / l / l)),
         conditions.map(|(name, condition)| (name.to_owned(), condition)).into(),
     );
     let method = Method { degree, ..Method::default() };
-    let (solution, _) = solve(&problem, &method, &Settings::default()).map_err(text)?;
+    solve(&problem, &method, &Settings::default()).map(|(solution, _)| solution).map_err(text)
+}
+
+/// Its displacement and the forces on it in these units.
+fn values_in_units(degree: Degree, [length, modulus]: [i32; 2]) -> Result<Vec<f64>, String> {
+    let solution = in_units(degree, Plane::Stress, [length, modulus, length])?;
+    let (l, e) = (2.0_f64.powi(length), 2.0_f64.powi(modulus));
     let displacement = solution.displacement.as_flattened().iter().map(|u| u / l);
     let force = solution.quantities.contact_force / e / l;
     let stresses = solution.von_mises.iter().map(|s| s / e);
@@ -216,9 +227,9 @@ fn in_units(degree: Degree, [length, modulus]: [i32; 2]) -> Result<Vec<f64>, Str
 /// Bit for bit in all units, the forces and displacements in units that are off by `off`.
 fn units(off: f64) -> Outcome {
     for degree in [Degree::One, Degree::Two] {
-        let plain = in_units(degree, [0, 0])?;
+        let plain = values_in_units(degree, [0, 0])?;
         for units in [[-30, 0], [30, 0], [0, -30], [0, 30], [-300, 300], [200, -300], [300, 200]] {
-            let other = in_units(degree, units)?;
+            let other = values_in_units(degree, units)?;
             if let Some((a, b)) = plain.iter().zip(&other).find(|(a, b)| **a != off * **b) {
                 return Err(format!("length and modulus 2^{units:?}: {b:e}, not {a:e}"));
             }
@@ -235,6 +246,96 @@ pub fn solutions_are_the_same_in_all_units() -> Outcome {
 /// To the last bit.
 pub fn units_that_are_off_by_a_rounding() -> Outcome {
     noticed(units(1.0 + f64::EPSILON))
+}
+
+/// Whether a solid block under this force and with these moduli, powers of two, is refused because its numbers are no doubles.
+fn is_out_of_range(force: i32, modulus: i32) -> Result<bool, String> {
+    let [f, e] = [force, modulus].map(|k| 2.0_f64.powi(k));
+    let cells = Rectangle { width: 3.0, height: 2.0, nx: 3, ny: 2, diagonal: Diagonal::Left };
+    let held = Condition::Displacement([0.0; 2].map(|u| Some(constant(u))));
+    let conditions = [("top", held), ("bottom", Condition::Contact { gap: constant(0.0) })];
+    let problem = Problem::new(
+        cells.mesh().map_err(text)?,
+        Material::lame(1.5 * e, e, Plane::Strain),
+        [0.05, -0.1].map(|x| constant(x * f)),
+        conditions.map(|(name, condition)| (name.to_owned(), condition)).into(),
+    );
+    match solve(&problem, &Method::default(), &Settings::default()) {
+        Ok((solution, _)) if solution.displacement.as_flattened().iter().any(|u| u.is_normal()) => {
+            Ok(false)
+        }
+        Ok(_) => {
+            Err(format!("no number of 2^{force} over 2^{modulus} is left, and none is missed"))
+        }
+        Err(SolveError::OutOfRange) => Ok(true),
+        Err(other) => Err(other.to_string()),
+    }
+}
+
+/// A displacement of some 2^-1200, of 2^1200, and, unless `far`, of 2^-400 and 2^400.
+fn range(far: bool) -> Outcome {
+    for (force, modulus) in [(-600_i32, 600), (600, -600), (-200, 200), (200, -200)] {
+        let expected = far || force.abs() > 500;
+        if is_out_of_range(force, modulus)? != expected {
+            return Err(format!("a force of 2^{force} on moduli of 2^{modulus}"));
+        }
+    }
+    Ok("forces and moduli of 2^-600 to 2^600".to_owned())
+}
+
+/// Row 18: numbers that are no doubles.
+pub fn solutions_out_of_range_are_refused() -> Outcome {
+    range(false)
+}
+
+/// Those that are.
+pub fn solutions_in_range_refused() -> Outcome {
+    noticed(range(true))
+}
+
+/// The bounds of an enclosure in these units, times `share`: none is below what it is in others, and those of energy norms
+/// have the root of an energy for their unit.
+fn bounds_in_units(share: f64) -> Outcome {
+    let of = |solution: Solution| solution.enclosure.map_err(text);
+    for degree in [Degree::One, Degree::Two] {
+        let plain = of(in_units(degree, Plane::Strain, [0; 3])?)?;
+        // Of the last bounds at the nodes are no normal numbers.
+        for units in [[0, 1, 0], [0, -1, 0], [3, 5, -2], [-7, -20, 1], [0, 960, -985]] {
+            let found = of(in_units(degree, Plane::Strain, units)?)?;
+            let [_, modulus, displacement] = units;
+            let d = 2.0_f64.powi(displacement);
+            let least = 5e-324 / d;
+            for (bound, plain) in found.nodes.iter().zip(&plain.nodes) {
+                let bound = share * (bound / d);
+                if !(*plain <= bound && bound <= plain + least) {
+                    return Err(format!("2^{units:?}: {bound:e} at a node, not {plain:e}"));
+                }
+            }
+            let root =
+                |k: i32| 2.0_f64.powi(k.div_euclid(2)) * f64::from(1 + k.rem_euclid(2)).sqrt();
+            let energy = root(modulus) * d;
+            let pairs = [(found.radius, plain.radius), (found.pressure, plain.pressure)];
+            for (found, plain) in pairs.map(|(found, plain)| (found / energy, plain)) {
+                // One of them is exact, the other times a root of 2 that is rounded up.
+                if !((found - plain).abs() <= 4.0 * f64::EPSILON * plain) {
+                    return Err(format!(
+                        "2^{units:?}: {found:e} in the energy norm, not {plain:e}"
+                    ));
+                }
+            }
+        }
+    }
+    Ok("a block in 6 systems of units, P1 and P2".to_owned())
+}
+
+/// Row 10: bounds in other units.
+pub fn bounds_have_their_units() -> Outcome {
+    bounds_in_units(1.0)
+}
+
+/// A rounding below.
+pub fn bounds_a_rounding_below() -> Outcome {
+    noticed(bounds_in_units(1.0 - f64::EPSILON))
 }
 
 /// A random displacement of a block of unequal triangles as a solution.

@@ -21,6 +21,7 @@ use num_bigint::BigInt;
 use num_rational::BigRational;
 use proptest::prelude::*;
 use signorini::fem::ball::Ball;
+use signorini::fem::korn::Korn;
 use signorini::fem::matrix::LowerTriangle;
 use signorini::fem::{
     Condition, Diagonal, Discretization, Mesh, Obstacle, Problem, Rectangle, SharedFunction, Side,
@@ -35,7 +36,7 @@ use signorini::solve::{
     ContactQuadrature, Degree, Gamma0, Method, Settings, discretize, solve, solve_discrete,
 };
 
-use super::answers;
+use super::{answers, pressed};
 use crate::bodies::MaybeExact;
 use crate::claim::{Check, Engine, Outcome, by, control, noticed, text};
 use crate::discrete::{BOTH, CUT, Discrete, Nodal, exactly};
@@ -668,7 +669,7 @@ fn reported_by_another_factor() -> Outcome {
 }
 
 /// A body on a round obstacle, so that directions of contact turn along each edge: the kappa that the enclosure proves is that
-/// of the method, times `scale`, rounded up.
+/// of the method, times `scale`, rounded up, and its bounds at the nodes are Korn's factors times the radius.
 fn proved_kappa(scale: f64) -> Outcome {
     let mut turning: f64 = 0.0;
     for radius in [1.0, 3.0, 20.0] {
@@ -704,7 +705,16 @@ where
     let (solved, ..) = solve_discrete(&d, &Settings::default()).map_err(text)?;
     let system = System::new(&d).map_err(text)?;
     let enclosure = enclosure::enclose(&system, &solved.u, None, FactorOfA::Double);
-    let (proved, kappa) = (scale * enclosure.map_err(text)?.kappa, d.kappa());
+    let enclosure = enclosure.map_err(text)?;
+    let korn = Korn::new(&d.space, &problem.material, &d.constraints, &[]).ok_or("not held")?;
+    for (bound, factor) in enclosure.nodes.iter().zip(korn.nodes) {
+        // What is prescribed is a double: rounding moves nothing, and all of the radius is that of the residual, each rounded up.
+        let expected = factor * enclosure.radius;
+        if !((bound - expected).abs() <= 1e-14 * expected) {
+            return Err(format!("a bound of {bound:e} at a node, by Korn {expected:e}"));
+        }
+    }
+    let (proved, kappa) = (scale * enclosure.kappa, d.kappa());
     // Some dozen roundings of doubles on the one side.
     if !((proved - kappa).abs() <= 1e-14 * kappa) {
         return Err(format!("kappa = {kappa}, and {proved} is proved"));
@@ -908,7 +918,7 @@ fn counted_below_the_limit() -> Outcome {
 }
 
 /// The checks, for the row of Theorem 3.3.
-pub fn checks() -> [Check; 21] {
+pub fn checks() -> [Check; 31] {
     [
         by(
             Engine::Doubles,
@@ -948,7 +958,57 @@ pub fn checks() -> [Check; 21] {
         ),
         by(
             Engine::Doubles,
-            "kappa_is_proved_where_directions_turn",
+            "edges_that_are_taken_for_pressed_stay_so",
+            pressed::edges_that_are_taken_for_pressed_stay_so,
+        ),
+        control(
+            Engine::Doubles,
+            "control_edges_stay_pressed_on_a_larger_ball",
+            pressed::edges_stay_pressed_on_a_larger_ball,
+        ),
+        by(
+            Engine::Doubles,
+            "pressed_edges_hold_their_ends",
+            pressed::pressed_edges_hold_their_ends,
+        ),
+        control(
+            Engine::Doubles,
+            "control_pressed_edges_hold_their_ends_by_a_quarter",
+            pressed::pressed_edges_hold_their_ends_by_a_quarter,
+        ),
+        by(
+            Engine::Doubles,
+            "springs_of_pressed_edges_are_those_of_p0",
+            pressed::springs_are_those_of_p0,
+        ),
+        control(
+            Engine::Doubles,
+            "control_springs_of_pressed_edges_are_stiffer",
+            pressed::springs_are_stiffer,
+        ),
+        by(
+            Engine::Doubles,
+            "bounds_hold_where_slides_are_taken_out",
+            pressed::bounds_hold_where_slides_are_taken_out,
+        ),
+        control(
+            Engine::Doubles,
+            "control_half_the_bounds_where_slides_are_taken_out",
+            pressed::half_the_bounds_where_slides_are_taken_out,
+        ),
+        by(
+            Engine::Doubles,
+            "bounds_are_no_smaller_in_other_units",
+            answers::bounds_have_their_units,
+        ),
+        control(
+            Engine::Doubles,
+            "control_bounds_a_rounding_below_in_other_units",
+            answers::bounds_a_rounding_below,
+        ),
+        by(
+            Engine::Doubles,
+            "kappa_and_bounds_at_nodes_are_proved_where_directions_turn",
             kappa_is_proved_where_directions_turn,
         ),
         control(

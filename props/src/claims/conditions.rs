@@ -5,6 +5,7 @@
 //! prescribed component and a pressure a traction, which rows 5 and 6 are about: so they are right at every angle.
 
 use std::collections::BTreeMap;
+use std::f64::consts::FRAC_PI_4;
 use std::sync::Arc;
 
 use proptest::prelude::*;
@@ -273,7 +274,59 @@ fn bodies_are_held(without: bool) -> Outcome {
             return Err(format!("{prescribed:?}, force {force:?}: {found:?}, not {expected:?}"));
         }
     }
-    Ok(format!("{} cases", cases.len()))
+    for angle in TURNS {
+        for (sides, expected) in [(&["left"][..], false), (&["left", "bottom"], true)] {
+            for load in [-1.0, 1.0] {
+                if on_rollers(angle, sides, load)? != expected {
+                    return Err(format!("on rollers at {sides:?}, by {angle}: not {expected}"));
+                }
+            }
+        }
+    }
+    for (top, expected) in [([2.0, 2.0], true), ([2.0, 0.5], true), ([2.0, 0.0], false)] {
+        if is_arch_held(top)? != expected {
+            return Err(format!("an arch of two parts that meet at {top:?}: not {expected}"));
+        }
+    }
+    Ok(format!("{} cases, {} turned blocks on rollers, 3 arches", cases.len(), TURNS.len()))
+}
+
+/// Whether an arch is taken: two parts on a clamped base, hinged to it at (0, 0) and (4, 0) and to each other at the top.
+fn is_arch_held(top: [f64; 2]) -> Result<bool, String> {
+    let base = [[0.0, 0.0], [4.0, 0.0], [2.0, -3.0], [2.0, -1.0]];
+    let vertices = [&base[..], &[top, [6.0, 5.0], [-2.0, 5.0]]].concat();
+    let named = [("base", vec![[0, 2], [2, 1]]), ("side", vec![[1, 5]])];
+    let triangles = vec![[0, 2, 3], [2, 1, 3], [1, 5, 4], [4, 6, 0]];
+    let mesh = Mesh::new(vertices, triangles, named.map(|(name, edges)| (name.to_owned(), edges)));
+    let clamped = Condition::Displacement([0; 2].map(|_| Some(constant(0.0))));
+    let conditions = [("base", clamped), ("side", Condition::Contact { gap: constant(1.0) })];
+    let conditions = conditions.map(|(name, condition)| (name.to_owned(), condition)).into();
+    let material = Material::lame(1.0, 1.0, Plane::Strain);
+    // It drives the hinge at the top down, off the obstacle.
+    let force = [-1.0, -1.0].map(constant);
+    taken(&Problem::new(mesh.map_err(text)?, material, force, conditions))
+}
+
+/// Whether a body is held; other refusals are errors.
+fn taken(problem: &Problem) -> Result<bool, String> {
+    match discretize::<P2, 6, 3>(problem, &Method::default()) {
+        Ok(_) => Ok(true),
+        Err(SolveError::Data(DataError::RigidMotion { .. })) => Ok(false),
+        Err(other) => Err(other.to_string()),
+    }
+}
+
+/// Angles of a block on rollers.
+const TURNS: [f64; 5] = [0.0, 0.4, FRAC_PI_4, 2.0, -FRAC_PI_4];
+
+/// Whether a turned block is taken that has rollers at these sides; a load drives it along the left one.
+fn on_rollers(angle: f64, sides: &[&str], load: f64) -> Result<bool, String> {
+    let roller = || Condition::Support { normal: Some(constant(0.0)), tangential: None };
+    let conditions = sides.iter().map(|side| ((*side).to_owned(), roller()));
+    let floor = ("right".to_owned(), Condition::Contact { gap: constant(1.0) });
+    let force = turned(angle, [0.0, load]).map(constant);
+    let material = Material::lame(1.0, 1.0, Plane::Strain);
+    taken(&Problem::new(block(angle)?, material, force, conditions.chain([floor]).collect()))
 }
 
 /// Row 18: bodies that can move are refused.

@@ -8,6 +8,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use signorini::fem::contact_line::ContactLineEdge;
 use signorini::fem::{Condition, Discretization, Problem, SharedFunction};
 use signorini::kernel::edge_integral::{ExactEdge, value_at};
 use signorini::kernel::{Material, P1, P2, Plane};
@@ -16,7 +17,10 @@ use signorini::solve::evaluated::Evaluated;
 use signorini::solve::iterate::{Evaluation, Iterate};
 use signorini::solve::newton::Until;
 use signorini::solve::system::System;
-use signorini::solve::{Method, Settings, Solution, SolveError, discretize, solve_discrete};
+use signorini::solve::{
+    ContactBoundary, EnergyBalance, Method, Settings, Solution, SolveError, discretize,
+    solve_discrete,
+};
 
 use super::assembled::solver::unsolved;
 use crate::claim::{Outcome, noticed, text};
@@ -349,10 +353,77 @@ where
             return Err(format!("a contact length of {}, counted {counted}", part.length));
         }
     }
+    // Pressed on all edges, too, where a stretch goes on from one to the next.
+    let down: Vec<[f64; 2]> = u.iter().map(|[x, y]| [*x, y - 1e3]).collect();
+    for u in [&u, &down] {
+        let solution = Solution::new(&d, Evaluated::new(&d, u.clone()), unsolved());
+        for part in &solution.boundaries {
+            stretches_are_those_of_contact(&d, u, &solution, part)?;
+        }
+    }
+    let EnergyBalance { strain, loads, supports, contact, imbalance, .. } = solution.balance;
+    let largest = [strain, loads, supports, contact].map(f64::abs).into_iter().fold(0.0, f64::max);
+    let expected = (strain - loads - supports - contact) / largest;
+    if !((imbalance - expected).abs() <= 1e-13) {
+        return Err(format!("energies out of balance by {imbalance:e}, expected {expected:e}"));
+    }
     let squares = u.iter().map(|[x, y]| x * x + y * y);
     let expected = squares.fold(0.0, f64::max).sqrt();
     let found = solution.quantities.max_displacement;
     if near(found, expected) { Ok(()) } else { Err(format!("{found}, expected {expected}")) }
+}
+
+/// The stretches of contact, by the arc lengths of their ends: P > 0 inside and not outside, none begins where another ends, and
+/// together they are as long as the contact.
+fn stretches_are_those_of_contact<E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    u: &[[f64; 2]],
+    solution: &Solution,
+    part: &ContactBoundary,
+) -> Result<(), String>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let edges = || {
+        let all = d.contact.iter().zip(&solution.contact);
+        all.filter(|(line, _)| *line.boundary == *part.boundary)
+    };
+    let ends = |line: &ContactLineEdge<N, M>| {
+        d.space.mesh().ends(line.edge).map(|v| d.space.mesh().vertices()[v])
+    };
+    let far = |[a, b]: [f64; 2], [x, y]: [f64; 2]| (a - x).hypot(b - y);
+    // Of a place on an edge: where its distances from the ends add up to the length.
+    let arc = |x: [f64; 2]| {
+        let on = edges().find(|(line, _)| {
+            let [a, b] = ends(line);
+            far(a, x) + far(x, b) <= (1.0 + 1e-12) * line.length
+        });
+        on.map(|(line, told)| told.points[0].arc + far(ends(line)[0], x))
+            .ok_or(format!("a stretch ends at {x:?}, off the boundary"))
+    };
+    let mut stretches = Vec::new();
+    for &[from, to] in &part.stretches {
+        stretches.push([arc(from)?, arc(to)?]);
+    }
+    let whole: f64 = edges().map(|(line, _)| line.length).sum();
+    let together: f64 = stretches.iter().map(|[from, to]| to - from).sum();
+    let apart = stretches.windows(2).all(|pair| pair[1][0] > pair[0][1] + 1e-12 * whole);
+    if !((together - part.length).abs() <= 1e-12 * whole && apart) {
+        return Err(format!("stretches {stretches:?}, {} long", part.length));
+    }
+    for (line, told) in edges() {
+        let p = line.p(&d.space.on_triangle(line.edge.triangle, u));
+        for s in (0..100).map(|k| (f64::from(k) + 0.5) / 100.0) {
+            let place = told.points[0].arc + s * line.length;
+            let inside = stretches.iter().any(|&[from, to]| from <= place && place <= to);
+            let pressed = value_at::<E, f64, N, M>(p, s);
+            let size = p.iter().map(|p| p.abs()).fold(0.0, f64::max);
+            if inside != (pressed > 0.0) && pressed.abs() > 1e-9 * size {
+                return Err(format!("P = {pressed:e} at arc length {place}, of {stretches:?}"));
+            }
+        }
+    }
+    Ok(())
 }
 
 fn stresses(plane: Option<Plane>) -> Outcome {

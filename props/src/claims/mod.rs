@@ -37,6 +37,8 @@ pub mod geometry;
 pub mod honesty;
 pub mod lemma_3_1;
 pub mod lemma_3_2;
+#[cfg(not(kani))]
+pub mod meshes;
 pub mod method;
 pub mod mixed;
 #[cfg(not(kani))]
@@ -47,6 +49,8 @@ pub mod parts;
 pub mod passes;
 pub mod pattern;
 pub mod positive_part;
+#[cfg(not(kani))]
+pub mod pressed;
 pub mod prop_2_1;
 #[cfg(not(kani))]
 pub mod rates;

@@ -1,0 +1,350 @@
+//! What contact alone holds (`solve::pressed`, docs/theory.md, 7.5), on a square with one contact edge:
+//!
+//! - an edge that is taken for pressed is pressed all along, and stays so on the ball for which it is said to: moved to its
+//!   border by the fields whose P0 is largest at an end beside |v|_S;
+//! - the bounds of n . v at its ends hold for all v, by the inverse of the matrix of |v|_S;
+//! - its springs are those of P0(v)^2 / gamma; a rule with too few points to see all of P0 has none;
+//! - where motions that slide are taken out of a solution, its bounds grow by what of it they may be.
+
+use std::sync::Arc;
+
+use faer::linalg::solvers::Solve;
+use faer::{Mat, Side};
+
+use signorini::fem::ball::Ball;
+use signorini::fem::contact_line::{ContactLineEdge, EdgeRule};
+use signorini::fem::{Condition, Diagonal, Discretization, Problem, Rectangle, SharedFunction};
+use signorini::kernel::contact_edge::integral_of_product;
+use signorini::kernel::edge_integral::{ExactEdge, value_at};
+use signorini::kernel::{Material, P1, P2, Plane};
+use signorini::solve::enclosure::{Lines, less_slides, lines};
+use signorini::solve::pressed::Pressed;
+
+use super::honesty::field;
+use crate::claim::{Outcome, noticed, text};
+use crate::draws;
+use crate::proof::sampler::Random;
+
+fn constant(value: f64) -> SharedFunction {
+    Arc::new(move |_: [f64; 2]| value)
+}
+
+/// Between 0 and 1.
+fn number(random: &mut Random) -> f64 {
+    random.below(1001) as f64 / 1000.0
+}
+
+/// A square on its floor under its weight.
+fn square() -> Result<Problem, String> {
+    let cells = Rectangle { width: 1.0, height: 1.0, nx: 1, ny: 1, diagonal: Diagonal::Right };
+    let floor = Condition::Contact { gap: constant(0.0) };
+    Ok(Problem::new(
+        cells.mesh().map_err(text)?,
+        Material::lame(1.0, 1.0, Plane::Strain),
+        [0.0, -1.0].map(constant),
+        [("bottom".to_owned(), floor)].into(),
+    ))
+}
+
+/// A displacement, and what is known of it.
+struct At<'a, 'p, E, const N: usize, const M: usize> {
+    d: &'a Discretization<'p, E, N, M>,
+    lines: Lines<'a, N, M>,
+}
+
+fn balls(u: &[[f64; 2]]) -> Vec<[Ball; 2]> {
+    u.iter().map(|u| u.map(Ball::from)).collect()
+}
+
+impl<'a, 'p, E, const N: usize, const M: usize> At<'a, 'p, E, N, M>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    fn new(d: &'a Discretization<'p, E, N, M>) -> Self {
+        At { d, lines: lines(d) }
+    }
+
+    fn edge(&self) -> &'a ContactLineEdge<N, M> {
+        &self.d.contact[0]
+    }
+
+    fn pressed(&self, u: &[[f64; 2]]) -> Pressed<M> {
+        Pressed::at(self.d, &self.lines, &balls(u))
+    }
+
+    /// P at the nodes of the edge. There is no gap: it is P0.
+    fn p(&self, u: &[[f64; 2]]) -> [f64; M] {
+        self.edge().p(&self.d.space.on_triangle(self.edge().edge.triangle, u))
+    }
+
+    /// Whether it is positive at a few hundred places.
+    fn is_positive(p: [f64; M]) -> bool {
+        let mut places = (0..=400).map(|k| f64::from(k) / 400.0);
+        places.all(|s| value_at::<E, f64, N, M>(p, s) > 0.0)
+    }
+
+    /// The field that has these values of n . v at the nodes of the edge, and is 0 elsewhere.
+    fn field(&self, values: [f64; M]) -> Vec<[f64; 2]> {
+        let mut v = vec![[0.0; 2]; self.d.space.nodes().len()];
+        for (node, value) in self.d.space.edge_nodes(self.edge().edge).into_iter().zip(values) {
+            v[node][1] = -value;
+        }
+        v
+    }
+
+    /// |E| / gamma int P0(v)^2, by a rule that is exact for it.
+    fn springs(&self, v: &[[f64; 2]]) -> f64 {
+        let p = self.p(v);
+        let rule = signorini::fem::quadrature::gauss(3).into_iter();
+        let square = |s| value_at::<E, f64, N, M>(p, s).powi(2);
+        self.edge().length / self.edge().gamma * rule.map(|(s, w)| w * square(s)).sum::<f64>()
+    }
+
+    /// |v|_S^2
+    fn square(&self, v: &[[f64; 2]]) -> f64 {
+        let sigma = self.edge().sigma_n(&self.d.space.on_triangle(self.edge().edge.triangle, v));
+        let stress = self.edge().gamma * self.edge().length * integral_of_product(sigma, sigma);
+        self.d.strain_energy(v) - stress + self.springs(v)
+    }
+
+    /// The largest radius on which the edge is said to stay pressed.
+    fn radius(pressed: &Pressed<M>) -> f64 {
+        let (mut low, mut high) = (0.0, 1.0);
+        while pressed.stay(high) && high < 1e300 {
+            high *= 2.0;
+        }
+        for _ in 0..200 {
+            let middle = (low + high) / 2.0;
+            if pressed.stay(middle) { low = middle } else { high = middle }
+        }
+        low
+    }
+}
+
+/// The polynomials of degree 1 and 2 that are 1 at the start and have the least mean square: by their values at the nodes.
+const STEEPEST: [f64; 3] = [1.0, -0.5, 0.0];
+const STEEPEST_OF_2: [f64; 3] = [1.0, 1.0 / 3.0, -1.0 / 6.0];
+
+fn stays_on<E, const N: usize, const M: usize>(
+    rule: EdgeRule,
+    times: f64,
+) -> Result<[usize; 2], String>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let problem = square()?;
+    // Springs beside which the body is soft: what moves P most is their own field.
+    let d = Discretization::<E, N, M>::new(&problem, |c| 1e-9 * c.limit(), rule).map_err(text)?;
+    let at = At::new(&d);
+    let steepest = if M == 2 { STEEPEST } else { STEEPEST_OF_2 };
+    let mut random = Random::new(draws::seed());
+    let mut seen = [0, 0];
+    for draw in 0..400 {
+        let values: [f64; M] = std::array::from_fn(|_| match draw {
+            0 => 1.0,
+            _ => (4.0 * number(&mut random) - 1.0).powi(3),
+        });
+        let u = at.field(values);
+        let p = at.p(&u);
+        let pressed = at.pressed(&u);
+        if !pressed.edges().any(|is| is) {
+            seen[0] += 1;
+            continue;
+        }
+        seen[1] += 1;
+        let rho = times * At::<E, N, M>::radius(&pressed);
+        for turned in [false, true] {
+            let mut values: [f64; M] = std::array::from_fn(|a| -steepest[a]);
+            if turned {
+                values.swap(0, 1);
+            }
+            let v = at.field(values);
+            let share = rho / at.square(&v).sqrt();
+            let moved = at.p(&v).map(|p| share * p);
+            let there: [f64; M] = std::array::from_fn(|a| p[a] + moved[a]);
+            if ![p, there].into_iter().all(At::<E, N, M>::is_positive) {
+                return Err(format!("P = {p:?}, on the ball of radius {rho:e} P = {there:?}"));
+            }
+        }
+    }
+    Ok(seen)
+}
+
+/// On balls that are larger by a factor.
+fn stays(times: f64) -> Outcome {
+    let mut sum = [0, 0];
+    for seen in [
+        stays_on::<P1, 3, 2>(EdgeRule::Exact, times)?,
+        stays_on::<P1, 3, 2>(EdgeRule::gauss(2), times)?,
+        stays_on::<P2, 6, 3>(EdgeRule::Exact, times)?,
+        stays_on::<P2, 6, 3>(EdgeRule::gauss(3), times)?,
+    ] {
+        sum = [sum[0] + seen[0], sum[1] + seen[1]];
+    }
+    if sum.contains(&0) {
+        return Err(format!("{} fields that press, {} that don't", sum[1], sum[0]));
+    }
+    Ok(format!("{} fields that press, {} that don't, P1 and P2", sum[1], sum[0]))
+}
+
+/// Row 10: pressed edges.
+pub fn edges_that_are_taken_for_pressed_stay_so() -> Outcome {
+    stays(1.0)
+}
+
+/// A ball whose radius is a hundredth larger.
+pub fn edges_stay_pressed_on_a_larger_ball() -> Outcome {
+    noticed(stays(1.01))
+}
+
+fn holds_on<E, const N: usize, const M: usize>(kappa: f64, share: f64) -> Result<f64, String>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let problem = square()?;
+    let d = Discretization::<E, N, M>::new(&problem, |c| kappa * c.limit(), EdgeRule::Exact);
+    let d = d.map_err(text)?;
+    let at = At::new(&d);
+    let pressed = at.pressed(&at.field([1.0; M]));
+    // The matrix of |v|_S by the squares of unit fields and of their sums, without the first node's x, along which it slides.
+    let count = 2 * d.space.nodes().len();
+    let units = |columns: [usize; 2]| {
+        let mut v = vec![[0.0; 2]; count / 2];
+        columns.map(|c| c + 1).iter().for_each(|dof| v[dof / 2][dof % 2] += 1.0);
+        v
+    };
+    let entry = |i: usize, j: usize| {
+        let unit = |i| at.square(&units([i, i])) / 4.0;
+        (at.square(&units([i, j])) - unit(i) - unit(j)) / 2.0
+    };
+    let matrix = Mat::from_fn(count - 1, count - 1, entry);
+    let factor = matrix.llt(Side::Lower).map_err(|_| "|v|_S is no norm")?;
+    let holds = pressed.holds(&d, &at.lines);
+    if holds.len() != 2 {
+        return Err(format!("{} ends are held", holds.len()));
+    }
+    let mut nearest: f64 = 0.0;
+    for (end, hold) in holds.iter().enumerate() {
+        let node = d.space.edge_nodes(at.edge().edge)[end];
+        let component = Mat::from_fn(count - 1, 1, |i, _| f64::from(u8::from(i == 2 * node)));
+        let attained = (component.transpose() * factor.solve(&component))[(0, 0)].sqrt();
+        // |v|_S (1 - kappa)^(-1/2) <= 1
+        let attained = attained * (1.0 - d.kappa()).sqrt();
+        if !(attained <= share * hold.most && hold.at == d.space.nodes()[node]) {
+            return Err(format!("n . v = {attained} at {:?}, at most {}", hold.at, hold.most));
+        }
+        nearest = nearest.max(attained / hold.most);
+    }
+    Ok(nearest)
+}
+
+/// With a share of the bounds.
+fn holds(share: f64) -> Outcome {
+    let mut nearest: f64 = 0.0;
+    for kappa in [1e-6, 0.1, 0.5, 0.9] {
+        nearest = nearest.max(holds_on::<P1, 3, 2>(kappa, share)?);
+        nearest = nearest.max(holds_on::<P2, 6, 3>(kappa, share)?);
+    }
+    Ok(format!("four gammas, P1 and P2; up to {nearest:.2} of the bound is attained"))
+}
+
+/// Row 10: what pressed edges hold.
+pub fn pressed_edges_hold_their_ends() -> Outcome {
+    holds(1.0)
+}
+
+/// A quarter of the bound.
+pub fn pressed_edges_hold_their_ends_by_a_quarter() -> Outcome {
+    noticed(holds(0.25))
+}
+
+fn springs_on<E, const N: usize, const M: usize>(scale: f64) -> Result<(), String>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let problem = square()?;
+    for points in [None, Some(1), Some(M - 1), Some(M), Some(5)] {
+        let rule = points.map_or(EdgeRule::Exact, EdgeRule::gauss);
+        let d = Discretization::<E, N, M>::new(&problem, |c| 0.3 * c.limit(), rule);
+        let d = d.map_err(text)?;
+        let at = At::new(&d);
+        let pressed = at.pressed(&at.field([1.0; M]));
+        let sees = points.is_none_or(|n| n >= M);
+        if pressed.edges().any(|is| is) != sees {
+            return Err(format!("{points:?} points, P{}: pressed or not", M - 1));
+        }
+        let mut random = Random::new(draws::seed());
+        let v = field(d.space.nodes().len(), &mut random);
+        let mut forces = vec![[Ball::from(0); 2]; v.len()];
+        pressed.add_springs(&at.lines, &balls(&v), &mut forces);
+        let pairs = forces.iter().flatten().zip(v.as_flattened());
+        let found: f64 = pairs.map(|(f, v)| f.head() * v).sum();
+        let expected = if sees { scale * at.springs(&v) } else { 0.0 };
+        if !((found - expected).abs() <= 1e-12 * expected) {
+            return Err(format!("{points:?} points: springs {found:e}, expected {expected:e}"));
+        }
+    }
+    Ok(())
+}
+
+fn springs(scale: f64) -> Outcome {
+    springs_on::<P1, 3, 2>(scale)?;
+    springs_on::<P2, 6, 3>(scale)?;
+    Ok("five rules, P1 and P2".to_owned())
+}
+
+/// Row 10: the springs of pressed edges.
+pub fn springs_are_those_of_p0() -> Outcome {
+    springs(1.0)
+}
+
+/// By a rounding error and a little.
+pub fn springs_are_stiffer() -> Outcome {
+    noticed(springs(1.0 + 1e-9))
+}
+
+/// Nodes of a body that slides.
+const NODES: usize = 12;
+
+/// A field within the bounds of another, less its part along a motion that slides, is within `share` of what the bounds are then:
+/// at each node for the field that is on the border there and on the other side everywhere else.
+fn slides(share: f64) -> Outcome {
+    let (mut random, mut nearest) = (Random::new(draws::seed()), 0.0_f64);
+    for angle in [0.0_f64, 0.7, 2.0] {
+        let (sin, cos) = angle.sin_cos();
+        let root = (NODES as f64).sqrt();
+        let slide = vec![[cos / root, sin / root]; NODES];
+        let u = field(NODES, &mut random);
+        let bounds: Vec<f64> = u.iter().map(|_| number(&mut random)).collect();
+        let taken = |u: &[[f64; 2]]| {
+            let (u, bounds) = less_slides(balls(u), bounds.clone(), std::slice::from_ref(&slide));
+            (u.iter().map(|u| u.map(Ball::head)).collect::<Vec<_>>(), bounds)
+        };
+        let (least, most) = taken(&u);
+        for node in 0..NODES {
+            let mut moved = u.clone();
+            for (i, (u, bound)) in moved.iter_mut().zip(&bounds).enumerate() {
+                let side = if i == node { -1.0 } else { 1.0 };
+                *u = [u[0] + side * bound * cos, u[1] + side * bound * sin];
+            }
+            let (moved, _) = taken(&moved);
+            let off = (moved[node][0] - least[node][0]).hypot(moved[node][1] - least[node][1]);
+            // A dozen roundings of numbers below 2.
+            if !(off <= share * most[node] + 1e-14) {
+                return Err(format!("off by {off} at node {node}, at most {}", most[node]));
+            }
+            nearest = nearest.max(off / most[node]);
+        }
+    }
+    Ok(format!("{NODES} nodes, 3 directions; up to {nearest:.2} of the bound is attained"))
+}
+
+/// Row 10: bounds of what slides.
+pub fn bounds_hold_where_slides_are_taken_out() -> Outcome {
+    slides(1.0)
+}
+
+/// Half of them.
+pub fn half_the_bounds_where_slides_are_taken_out() -> Outcome {
+    noticed(slides(0.5))
+}
