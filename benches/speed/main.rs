@@ -81,6 +81,7 @@ fn main() {
         own::phases(plan.detail(), plan.repetitions()),
         limits::table_of_limits(plan.detail(), plan.repetitions(), &own),
         limits::orderings(plan.detail(), plan.repetitions()),
+        limits::LEFT_OUT.to_owned(),
     ];
     let rivals = plan.peers.then(|| peers::measure(plan.peer_sizes(), plan.repetitions()));
     text.push(match &rivals {

@@ -135,6 +135,26 @@ where
     LinearTimes { assemble, solve: start.elapsed() }
 }
 
+/// The same by the solver itself: corrected, with its residual and its forward error.
+pub fn linear_judged(problem: &Problem, degree: usize) -> Duration {
+    match degree {
+        1 => linear_judged_with::<P1, 3, 2>(problem),
+        _ => linear_judged_with::<P2, 6, 3>(problem),
+    }
+}
+
+fn linear_judged_with<E, const N: usize, const M: usize>(problem: &Problem) -> Duration
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let start = Instant::now();
+    let d = without_contact::<E, N, M>(problem);
+    let discretize = start.elapsed();
+    let (u, _, times) = solve::solve_discrete(&d, &Settings::default()).expect("a clamped body");
+    std::hint::black_box(&u);
+    discretize + times.matrix + times.solve()
+}
+
 /// The discretization of the body with a free floor.
 pub fn without_contact<E, const N: usize, const M: usize>(
     problem: &Problem,
