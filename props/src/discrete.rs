@@ -14,9 +14,6 @@ use crate::bodies::{MaybeExact, sum};
 use crate::elimination::{Matrix, combined, dot};
 use crate::numbers::Exact;
 
-/// No edge is cut, and not all are open or pressed.
-pub const BOTH: &str = "open and pressed edges";
-
 /// The class of fields for which P has both signs on an edge.
 pub const CUT: &str = "an edge is cut";
 
@@ -328,7 +325,7 @@ where
             (true, _) => CUT,
             (_, 0) => "open",
             (_, all) if all == M * values.len() => "pressed",
-            _ => BOTH,
+            _ => "open and pressed edges",
         }
     }
 
