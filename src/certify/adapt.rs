@@ -11,7 +11,8 @@
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::{CertifyError, Continuous, certify};
+use super::errors::CertifyError;
+use super::{Continuous, certify};
 use crate::fem::contact_line;
 use crate::fem::{Condition, MeshError, Problem, Space};
 use crate::kernel::P1;

@@ -7,7 +7,7 @@
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use super::proof::{Certificate, Owner, Role};
+use super::certificate::{Certificate, Owner, Role};
 use crate::fem::mesh::length;
 use crate::kernel::Enclosing;
 use crate::kernel::composite::Wrench;

@@ -4,31 +4,52 @@
 //!
 //! | module | what it does |
 //! | --- | --- |
-//! | `proof` | the certificate, and the checker that evaluates it |
+//! | `proof` | the checker: it evaluates a certificate |
+//! | `certificate`, `checks`, `on_contact`, `balanced` | its parts: the numbers; what they must satisfy; the edges of Gamma_C; the triangles, put in equilibrium |
 //! | `balance` | tractions in exact equilibrium |
-//! | `build` | v and tau from the discrete solution |
+//! | `parts`, `contact`, `field`, `data` | the problem and its discrete solution, as certificates see them |
+//! | `admissible` | v |
+//! | `tractions`, `quarters`, `divide`, `build` | tau: moments of tractions; the triangles in four; those that are cut; all together |
 //! | `sweeps` | a better tau |
 //! | `oscillation` | data outside the exact class |
 //! | `bubbles` | stresses for what affine loads lack |
 //! | `adapt` | meshes that are refined until the bound meets a target |
 
 pub mod adapt;
+mod admissible;
 mod balance;
+mod balanced;
 mod bubbles;
 mod build;
+mod certificate;
+mod checks;
+mod contact;
+mod data;
+mod divide;
+mod errors;
+mod estimate;
+mod field;
+mod on_contact;
 mod oscillation;
+mod parts;
 pub mod proof;
+mod quarters;
 mod sweeps;
+mod tractions;
 
 pub use self::adapt::{AdaptError, Adapted, Target, adapt};
 use nalgebra::Vector2;
 
-use self::build::{Built, Field, Parts};
+use self::build::Built;
+use self::certificate::Shape;
+pub use self::errors::CertifyError;
+use self::field::Field;
+use self::parts::Parts;
 pub use self::proof::{Certificate, Proof, Rejection};
-use self::proof::{Piece, Role, Shape};
-use crate::fem::{DataError, Mesh, Problem};
+use self::proof::{Piece, Role};
+use crate::fem::{Mesh, Problem};
 use crate::kernel::{Ball, Interval, P1, P2, Scalar, Triangle};
-use crate::memory::{self, OutOfMemory};
+use crate::memory;
 use crate::solve::Solution;
 
 /// How often the stress is improved around every vertex.
@@ -117,7 +138,7 @@ fn certify_near(
     };
     let mesh = &problem.mesh;
     let [u, start, _] = [&solution.displacement, start, field].map(|nodal| Field::new(mesh, nodal));
-    let v = build::admissible(&parts, &start?);
+    let v = admissible::admissible(&parts, &start?);
     let mut built = build::build(&parts, &u?, &v);
     let topology = sweeps::improve(&mut built.certificate, SWEEPS)?;
     let (certificate, oscillation) = (&built.certificate, &built.oscillation);
@@ -157,7 +178,7 @@ fn certify_near(
     shares.iter_mut().zip(&oscillation.lifts).for_each(|(share, z)| *share += z * z);
     let mut apart = vec![0.0; shares.len()];
     built.origins.iter().zip(&distances).for_each(|(&t, d)| apart[t] += d * d);
-    let estimate = build::averaging_estimate(&parts, &v);
+    let estimate = estimate::averaging_estimate(&parts, &v);
     let both = |(share, distance): (f64, &f64)| share.max(0.0).sqrt() + distance.sqrt();
     let Built { certificate, oscillation, .. } = built;
     Ok(Continuous {
@@ -219,23 +240,4 @@ fn distances(mesh: &Mesh, built: &Built, w: &[[f64; 2]]) -> Vec<f64> {
         square.split(|_| Ball::from(0), |square| square).sqrt().upper()
     };
     certificate.pieces.iter().zip(&built.origins).map(distance).collect()
-}
-
-/// Why there is no certificate.
-#[derive(Clone, Debug, thiserror::Error, PartialEq)]
-#[expect(missing_docs, reason = "the message of each variant says what it is")]
-#[non_exhaustive]
-pub enum CertifyError {
-    #[error(transparent)]
-    Data(#[from] DataError),
-    #[error(transparent)]
-    OutOfMemory(#[from] OutOfMemory),
-    #[error("no bound of the distance to the true solution: {0}")]
-    Unsupported(String),
-    #[error(
-        "the displacement has {found} values; expected one at each of the {vertices} vertices, or at these and the middles of edges, {nodes}"
-    )]
-    Field { found: usize, vertices: usize, nodes: usize },
-    #[error("the certificate does not hold: {0}")]
-    Rejected(#[from] Rejection),
 }

@@ -15,154 +15,15 @@
 //!
 //! These integrals are by quadrature, so a bound that contains one is not rigorous: [`Oscillation::reason`] says so.
 
-use std::collections::BTreeMap;
-
 use nalgebra::{Matrix2, Vector2};
 
 use super::bubbles;
-use super::build::{Boundary, Parts, bulge_of, place, rule};
-use super::proof::{Certificate, Piece, Role};
+use super::certificate::{Certificate, Piece, Role, place};
+use super::data::{Data, POINTS, bulge_of, is_within, length_and_normal, within};
+use super::parts::{Boundary, Parts};
 use crate::fem::mesh::length;
-use crate::fem::pieces::Rule;
-use crate::fem::{Condition, Problem, SharedFunction, quadrature};
+use crate::fem::{Condition, SharedFunction, quadrature};
 use crate::kernel::{Material, Triangle};
-
-/// Quadrature points in each direction.
-pub(super) const POINTS: usize = 8;
-
-/// The body forces of a problem as a certificate needs them.
-pub(super) struct Data<'a> {
-    /// Those on the whole body, then those on parts of it.
-    forces: Vec<(&'a [SharedFunction; 2], [Rule; 2])>,
-    /// Which of the latter act on a triangle.
-    local: BTreeMap<usize, Vec<usize>>,
-}
-
-/// Both components are polynomials of at most this degree.
-fn within(functions: &[SharedFunction; 2], degree: u32) -> bool {
-    functions.iter().all(|f| is_within(f, degree))
-}
-
-/// The function is a polynomial of at most this degree.
-pub(super) fn is_within(function: &SharedFunction, degree: u32) -> bool {
-    function.degree().is_some_and(|d| d <= degree)
-}
-
-impl<'a> Data<'a> {
-    pub fn new(problem: &'a Problem) -> Self {
-        let parts = problem.surface_forces.iter().map(|part| &part.force);
-        let all = std::iter::once(&problem.body_force).chain(parts);
-        let mut local: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        for (k, part) in problem.surface_forces.iter().enumerate() {
-            part.triangles.iter().for_each(|&t| local.entry(t).or_default().push(k + 1));
-        }
-        Data { forces: all.map(|f| (f, [0, 1].map(|c| rule(&*f[c])))).collect(), local }
-    }
-
-    /// The component c of each force that acts on triangle `t`, with its rule.
-    fn acting(&self, t: usize) -> impl Iterator<Item = (usize, &SharedFunction, &Rule)> {
-        let here = self.local.get(&t).into_iter().flatten().copied();
-        std::iter::once(0).chain(here).flat_map(|k| {
-            let (functions, rules) = &self.forces[k];
-            (0..2).map(move |c| (c, &functions[c], &rules[c]))
-        })
-    }
-
-    /// f on a part of triangle `t` at the part's vertices, affine between them: f itself where it is affine, else with the same
-    /// moments. f_a = (12 F_a - 3 sum F) / |T| for F_a = int f l_a.
-    pub fn body_on(&self, t: usize, part: &Triangle<f64>) -> [Vector2<f64>; 3] {
-        let mut body = [Vector2::zeros(); 3];
-        for (c, f, rule) in self.acting(t) {
-            let mut add = |values: [f64; 3]| (0..3).for_each(|a| body[a][c] += values[a]);
-            match f.degree() {
-                Some(0) => add([f.at(part.vertices[0].into()); 3]),
-                Some(1) => add(part.vertices.map(|x| f.at(x.into()))),
-                _ => {
-                    let mut moments = [0.0; 3];
-                    rule.on_triangle(part, |l, x, weight| {
-                        let value = weight * f.at(x);
-                        (0..3).for_each(|a| moments[a] += l[a] * value);
-                    });
-                    let (total, area) = (moments.iter().sum::<f64>(), part.double_area() / 2.0);
-                    add(moments.map(|m| (12.0 * m - 3.0 * total) / area));
-                }
-            }
-        }
-        body
-    }
-}
-
-/// A given traction.
-#[derive(Clone, Copy)]
-pub(super) enum Traction<'a> {
-    /// Its components.
-    Vector(&'a [SharedFunction; 2]),
-    /// -p n
-    Pressure(&'a SharedFunction),
-}
-
-impl Traction<'_> {
-    /// It is affine along a straight edge.
-    fn is_affine(&self) -> bool {
-        match self {
-            Traction::Vector(t) => within(t, 1),
-            Traction::Pressure(p) => is_within(p, 1),
-        }
-    }
-
-    fn at(&self, x: [f64; 2], n: [f64; 2]) -> [f64; 2] {
-        match self {
-            Traction::Vector(t) => [0, 1].map(|c| t[c].on_boundary(x, n)),
-            Traction::Pressure(p) => {
-                let pressure = p.on_boundary(x, n);
-                n.map(|n| -n * pressure)
-            }
-        }
-    }
-
-    fn rule(&self) -> Rule {
-        match self {
-            Traction::Vector([x, y]) => rule(if x.kink().is_some() { &**x } else { &**y }),
-            Traction::Pressure(p) => rule(&***p),
-        }
-    }
-
-    /// int_E t phi for both ends of an edge with the scaled normal N.
-    pub fn moments(&self, ends: [[f64; 2]; 2], normal: Vector2<f64>) -> [Vector2<f64>; 2] {
-        let length = length(normal);
-        let unit = (normal / length).into();
-        let mut moments = [Vector2::zeros(); 2];
-        self.rule().on_edge(ends, [], |point| {
-            let t = Vector2::from(self.at(point.x, unit));
-            moments[0] += t * ((1.0 - point.s) * point.weight * length);
-            moments[1] += t * (point.s * point.weight * length);
-        });
-        moments
-    }
-
-    /// t_h at both ends: t itself where it is affine, else the affine function whose `force` has the moments of t.
-    pub fn affine(&self, ends: [[f64; 2]; 2], force: [[f64; 2]; 2]) -> Role {
-        let (length, unit) = length_and_normal(ends);
-        let role = match self {
-            Traction::Vector(_) if self.is_affine() => Role::Loaded(ends.map(|x| self.at(x, unit))),
-            Traction::Vector(_) => Role::Loaded(force.map(|f| f.map(|f| f / length))),
-            Traction::Pressure(p) if self.is_affine() => {
-                Role::Pressed(ends.map(|x| p.on_boundary(x, unit)))
-            }
-            Traction::Pressure(_) => {
-                Role::Pressed(force.map(|f| -(f[0] * unit[0] + f[1] * unit[1]) / length))
-            }
-        };
-        // No load has one role only.
-        if role == Role::Pressed([0.0; 2]) { Role::Loaded([[0.0; 2]; 2]) } else { role }
-    }
-}
-
-fn length_and_normal(ends: [[f64; 2]; 2]) -> (f64, [f64; 2]) {
-    let normal = Vector2::new(ends[1][1] - ends[0][1], ends[0][0] - ends[1][0]);
-    let length = length(normal);
-    (length, (normal / length).into())
-}
 
 /// What the data of a problem leave out of a certificate.
 #[derive(Clone, Debug)]

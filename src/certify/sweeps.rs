@@ -15,7 +15,9 @@
 
 use nalgebra::Vector2;
 
-use super::proof::{Balanced, Certificate, Rejection, Role, Topology};
+use super::balanced::{Balanced, Topology};
+use super::certificate::{Certificate, Role};
+use super::checks::Rejection;
 use crate::kernel::composite::{Composite, Frame, Loads};
 use crate::kernel::{Stress, Triangle};
 

@@ -1,0 +1,251 @@
+//! What a certificate must satisfy before there is anything to evaluate: its indices name things that exist, its triangles hang
+//! together along its edges, v is what is prescribed, and no force acts where nothing holds.
+
+use thiserror::Error;
+
+use super::balance::Unbalanced;
+use super::certificate::{Certificate, Curved, Owner, Role};
+
+/// Why a certificate proves nothing.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[expect(missing_docs, reason = "the message of each variant says what it is")]
+#[non_exhaustive]
+pub enum Rejection {
+    #[error("{what} has {found} entries; expected {expected}")]
+    Length { what: &'static str, found: usize, expected: usize },
+    #[error("{what} {index}: {problem}")]
+    Wrong { what: &'static str, index: usize, problem: &'static str },
+    #[error("edge {edge} has tau_n = {value} on Gamma_C; expected no tension")]
+    Tension { edge: usize, value: f64 },
+    #[error(
+        "edge {edge}: v_n - g can't be shown to be <= 0 (a Bernstein coefficient is up to {value}, per unit of length where contact is along the normal)"
+    )]
+    Penetration { edge: usize, value: f64 },
+    #[error("point {point}: v_{} = {found}; expected the prescribed {expected}", ["x", "y"][*component])]
+    NotPrescribed { point: usize, component: usize, found: f64, expected: f64 },
+    #[error(
+        "edge {edge}: in the middle v_{} is {found} beyond the mean of the ends; expected the prescribed {expected}",
+        ["x", "y"][*component]
+    )]
+    NotPrescribedBetween { edge: usize, component: usize, found: f64, expected: f64 },
+    #[error("triangle {triangle} is not counter-clockwise, or too flat to tell")]
+    Orientation { triangle: usize },
+    #[error(transparent)]
+    Unbalanced(#[from] Unbalanced),
+    #[error(
+        "triangle {triangle} is not in equilibrium: its tractions and its body force don't balance to rounding"
+    )]
+    OutOfBalance { triangle: usize },
+    #[error("triangle {triangle} claims the share {claimed}; its data give {found}")]
+    Share { triangle: usize, claimed: f64, found: f64 },
+    #[error("the claimed bound is {claimed}; the data give {found}")]
+    Bound { claimed: f64, found: f64 },
+    #[error("the bound is not a finite number")]
+    NotFinite,
+}
+
+pub(super) fn wrong(what: &'static str, index: usize, problem: &'static str) -> Rejection {
+    Rejection::Wrong { what, index, problem }
+}
+
+impl Certificate {
+    /// The indices name things that exist, and the numbers are finite.
+    pub(super) fn check_shape(&self) -> Result<(), Rejection> {
+        let (vertices, points) = (self.vertices.len(), self.vertices.len() + self.cuts.len());
+        for (what, found) in
+            [("displacement", self.displacement.len()), ("prescribed", self.prescribed.len())]
+        {
+            if found != vertices {
+                return Err(Rejection::Length { what, found, expected: vertices });
+            }
+        }
+        if self.pieces.is_empty() {
+            return Err(Rejection::Length { what: "triangles", found: 0, expected: 1 });
+        }
+        let finite = |values: &[f64]| values.iter().all(|x| x.is_finite());
+        for (i, (x, v)) in self.vertices.iter().zip(&self.displacement).enumerate() {
+            if !(finite(x) && finite(v)) {
+                return Err(wrong("vertex", i, "a number is not finite"));
+            }
+        }
+        if let Some(Curved { at_cuts, prescribed, bulges, data }) = &self.curved {
+            if prescribed.len() != self.cuts.len() {
+                let (found, expected) = (prescribed.len(), self.cuts.len());
+                return Err(Rejection::Length { what: "prescribed at cuts", found, expected });
+            }
+            for (what, values, expected) in [
+                ("v at cuts", at_cuts, self.cuts.len()),
+                ("bulges", bulges, self.edges.len()),
+                ("bulges of data", data, self.edges.len()),
+            ] {
+                if values.len() != expected {
+                    return Err(Rejection::Length { what, found: values.len(), expected });
+                }
+                if let Some(i) = values.iter().position(|x| !finite(x)) {
+                    return Err(wrong(what, i, "a number is not finite"));
+                }
+            }
+        }
+        for (i, cut) in self.cuts.iter().enumerate() {
+            if !(0.0 < cut.at && cut.at < 1.0 && cut.ends.iter().all(|&end| end < vertices)) {
+                return Err(wrong("cut", i, "expected a place between two vertices"));
+            }
+        }
+        for (i, piece) in self.pieces.iter().enumerate() {
+            if !(piece.vertices.iter().all(|&p| p < points)
+                && piece.edges.iter().all(|&e| e < self.edges.len()))
+            {
+                return Err(wrong("triangle", i, "a vertex or an edge does not exist"));
+            }
+            let [lambda, mu] = piece.material;
+            let body = finite(piece.body.as_flattened());
+            if !(body
+                && lambda.is_finite()
+                && mu.is_finite()
+                && mu > 0.0
+                && (lambda + mu).next_down() > 0.0)
+            {
+                return Err(wrong(
+                    "triangle",
+                    i,
+                    "expected mu > 0, lambda + mu > 0 and a finite body force",
+                ));
+            }
+            if !(piece.oscillation >= 0.0 && piece.oscillation.is_finite()) {
+                return Err(wrong("triangle", i, "expected an oscillation that is not negative"));
+            }
+        }
+        for (i, edge) in self.edges.iter().enumerate() {
+            let numbers = match edge.role {
+                Role::Inner(f) | Role::Held(_, f) | Role::Loaded(f) => finite(f.as_flattened()),
+                Role::Pressed(p) => finite(&p),
+                Role::Contact { pressure, gap, along } => {
+                    finite(&pressure)
+                        && finite(&gap)
+                        && along.is_none_or(|d| finite(d.as_flattened()))
+                }
+            };
+            if !(numbers && edge.ends.iter().all(|&p| p < points) && edge.ends[0] != edge.ends[1]) {
+                return Err(wrong("edge", i, "expected two different vertices and finite numbers"));
+            }
+        }
+        Ok(())
+    }
+
+    /// v = u_D at both ends of the edges of Gamma_D, nothing is prescribed elsewhere, and there is no force in a direction
+    /// that is not held.
+    pub(super) fn check_displacement(&self) -> Result<(), Rejection> {
+        let (v_at_cuts, at_cuts) = self
+            .curved
+            .as_ref()
+            .map_or((&[][..], &[][..]), |curved| (&curved.at_cuts[..], &curved.prescribed[..]));
+        let prescribed = || self.prescribed.iter().chain(at_cuts);
+        let known: Vec<([f64; 2], [Option<f64>; 2])> =
+            self.displacement.iter().chain(v_at_cuts).copied().zip(prescribed().copied()).collect();
+        let mut held_at = vec![[false; 2]; known.len()];
+        for edge in &self.edges {
+            let Role::Held(held, _) = edge.role else { continue };
+            for point in edge.ends {
+                if let Some(at) = held_at.get_mut(point) {
+                    *at = [0, 1].map(|c| at[c] || held[c]);
+                }
+            }
+        }
+        for (point, (data, held)) in prescribed().zip(held_at).enumerate() {
+            if (0..2).any(|c| data[c].is_some() && !held[c]) {
+                return Err(wrong("point", point, "a prescribed value off Gamma_D"));
+            }
+        }
+        for (e, edge) in self.edges.iter().enumerate() {
+            let Role::Held(held, force) = edge.role else { continue };
+            for component in 0..2 {
+                if !held[component] {
+                    if force[0][component] != 0.0 || force[1][component] != 0.0 {
+                        return Err(wrong("edge", e, "a force where nothing is held"));
+                    }
+                    continue;
+                }
+                for point in edge.ends {
+                    let Some((v, data)) = known.get(point) else {
+                        return Err(wrong("edge", e, "an end without a prescribed value"));
+                    };
+                    let found = v[component];
+                    match data[component] {
+                        Some(expected) if expected == found => {}
+                        Some(expected) => {
+                            return Err(Rejection::NotPrescribed {
+                                point,
+                                component,
+                                found,
+                                expected,
+                            });
+                        }
+                        None => return Err(wrong("edge", e, "an end without a prescribed value")),
+                    }
+                }
+            }
+        }
+        self.curved.as_ref().map_or(Ok(()), |curved| self.check_between(curved))
+    }
+
+    /// v = u_D between the ends of the edges of Gamma_D, and there are bulges of data where there are such data only.
+    fn check_between(&self, curved: &Curved) -> Result<(), Rejection> {
+        for (e, edge) in self.edges.iter().enumerate() {
+            let (bulge, data) = (curved.bulges[e], curved.data[e]);
+            let held = match edge.role {
+                Role::Held(held, _) => held,
+                Role::Contact { .. } => [data[0] != 0.0, false],
+                Role::Inner(_) | Role::Loaded(_) | Role::Pressed(_) => [false; 2],
+            };
+            let is_held = matches!(edge.role, Role::Held(..));
+            for component in 0..2 {
+                let (found, expected) = (bulge[component], data[component]);
+                if !held[component] && expected != 0.0 {
+                    return Err(wrong("edge", e, "a bulge of data where there are none"));
+                }
+                if is_held && held[component] && found != expected {
+                    return Err(Rejection::NotPrescribedBetween {
+                        edge: e,
+                        component,
+                        found,
+                        expected,
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The triangles of each edge, the one on its left first: inner edges have two, the others one.
+    pub(super) fn owners(&self) -> Result<Vec<[Option<Owner>; 2]>, Rejection> {
+        let mut owners = vec![[None; 2]; self.edges.len()];
+        for (t, piece) in self.pieces.iter().enumerate() {
+            for local in 0..3 {
+                let e = piece.edges[local];
+                let seen = [piece.vertices[(local + 1) % 3], piece.vertices[(local + 2) % 3]];
+                let [a, b] = self.edges[e].ends;
+                let side = if seen == [a, b] {
+                    0
+                } else if seen == [b, a] {
+                    1
+                } else {
+                    return Err(wrong("triangle", t, "one of its edges joins other vertices"));
+                };
+                if owners[e][side].replace(Owner { piece: t, local }).is_some() {
+                    return Err(wrong("edge", e, "two triangles on the same side"));
+                }
+            }
+        }
+        for (e, (owner, edge)) in owners.iter().zip(&self.edges).enumerate() {
+            let inner = matches!(edge.role, Role::Inner(_));
+            if owner[0].is_none() || owner[1].is_some() != inner {
+                return Err(wrong(
+                    "edge",
+                    e,
+                    "expected two triangles at an inner edge, one on the left at others",
+                ));
+            }
+        }
+        Ok(owners)
+    }
+}

@@ -1,0 +1,94 @@
+//! An edge of Gamma_C in a certificate: the force of tau on it, what v . d - g is at most, and the contact term of the theorem.
+//! v . d - g is known not to be positive where its Bernstein coefficients are not.
+
+use nalgebra::Vector2;
+
+use crate::kernel::Enclosing;
+use crate::kernel::contact_edge::integral_of_product;
+
+/// v and g on an edge of Gamma_C.
+pub(super) struct OnEdge<S> {
+    /// v at both ends.
+    pub v: [Vector2<S>; 2],
+    /// g at both ends.
+    pub gap: [f64; 2],
+    /// The bulges of both; `None` where they are affine.
+    pub bulges: Option<(Vector2<S>, f64)>,
+}
+
+/// An edge of Gamma_C.
+pub(super) struct OnContact<S> {
+    /// tau N at both ends.
+    pub force: [Vector2<S>; 2],
+    /// What v_n - g is at most, the Bernstein coefficients of it or of a multiple: none may be positive.
+    pub beyond: [S; 4],
+    /// 2 int tau_n (v_n - g)
+    pub term: S,
+}
+
+/// Contact along the normal. All is in units of the length, which is needed only where there is a gap.
+pub(super) fn along_the_normal<S: Enclosing>(
+    shape: &OnEdge<S>,
+    normal: Vector2<S>,
+    pressure: [f64; 2],
+    length: impl Fn() -> S,
+) -> OnContact<S> {
+    let less_gap = |beyond: S, gap: f64| {
+        if gap == 0.0 { beyond } else { beyond - length() * S::exactly(gap) }
+    };
+    let [a, b] = [0, 1].map(|k| less_gap(shape.v[k].dot(&normal), shape.gap[k]));
+    let bulge = shape.bulges.map(|(v, gap)| less_gap(v.dot(&normal), gap));
+    let [p, q] = pressure.map(S::exactly);
+    // 4 s (1 - s) has the Bernstein coefficients 0, 2, 0 and, times p (1 - s) + q s, the integral (p + q) / 3.
+    let integral = integral_of_product([p, q], [a, b]);
+    let integral = bulge.map_or(integral, |bulge| integral + (p + q) * bulge / S::from(3));
+    let middle = bulge.map_or(a, |bulge| (a + b) / S::from(2) + S::from(2) * bulge);
+    OnContact {
+        force: [p, q].map(|p| normal * p),
+        beyond: [a, middle, middle, b],
+        term: S::from(2) * integral,
+    }
+}
+
+/// Contact along a direction d that is affine between the ends, with tau N = |E| p d: either d or p is constant. The mean of the
+/// Bernstein coefficients of v . d - g is its integral; it is at most their largest.
+pub(super) fn along_directions<S: Enclosing>(
+    shape: &OnEdge<S>,
+    d: [Vector2<S>; 2],
+    pressure: [f64; 2],
+    length: S,
+) -> OnContact<S> {
+    let (v, [g, h]) = (shape.v, shape.gap.map(S::exactly));
+    let (two, three) = (S::from(2), S::from(3));
+    let first = v[0].dot(&d[0]) - g;
+    let last = v[1].dot(&d[1]) - h;
+    let [p, q] = pressure.map(S::exactly);
+    let constant = pressure[0] == pressure[1];
+    let (beyond, integral) = if let Some((bulge, gap)) = shape.bulges {
+        let gap = S::exactly(gap);
+        // v and g have the middle coefficients (v_0 + v_1) / 2 + 2 b; v . d is a cubic, of which two are the thirds of these.
+        let (middle, between) = ((v[0] + v[1]) / two + bulge * two, (g + h) / two + gap * two);
+        let one = (middle.dot(&d[0]) - between) * two + v[0].dot(&d[1]) - g;
+        let other = (middle.dot(&d[1]) - between) * two + v[1].dot(&d[0]) - h;
+        let integral = if constant {
+            p * (three * first + one + other + three * last) / S::from(12)
+        } else {
+            let beyond = bulge.dot(&d[0]) - gap;
+            integral_of_product([p, q], [first, last]) + (p + q) * beyond / three
+        };
+        ([first, one, other, last], integral)
+    } else {
+        let middle = v[0].dot(&d[1]) + v[1].dot(&d[0]) - g - h;
+        let integral = if constant {
+            p * (two * first + middle + two * last) / S::from(6)
+        } else {
+            integral_of_product([p, q], [first, last])
+        };
+        ([first, middle, middle, last], integral)
+    };
+    OnContact {
+        force: [d[0] * (length * p), d[1] * (length * q)],
+        beyond,
+        term: two * length * integral,
+    }
+}

@@ -1,0 +1,166 @@
+//! The triangles of a mesh in four between the middles of their edges, for the stress beside a quadratic v.
+
+use nalgebra::Vector2;
+
+use super::certificate::{Certificate, Cut, Edge, Role, Shape, place};
+use super::data::Data;
+use super::divide::Part;
+use super::parts::{Boundary, Parts};
+use super::tractions::{force_of, held_only};
+use crate::fem::Mesh;
+use crate::fem::mesh::length;
+use crate::kernel::composite::{Affine, Loads};
+use crate::kernel::{Enclosing, Triangle};
+
+/// The halves of the edges of the mesh, first all first ones, then all second ones; the middles of the edges are the first cuts.
+pub(super) fn add_halves(
+    parts: &Parts,
+    all: &[[usize; 2]],
+    moments: &[[Vector2<f64>; 2]],
+    certificate: &mut Certificate,
+) {
+    certificate.cuts = all.iter().map(|&ends| Cut { ends, at: 0.5 }).collect();
+    let vertices = certificate.vertices.len();
+    let mut data = Vec::with_capacity(2 * all.len());
+    for half in 0..2 {
+        for (e, (&[a, b], m)) in all.iter().zip(moments).enumerate() {
+            let ends = if half == 0 { [a, vertices + e] } else { [vertices + e, b] };
+            let places = || ends.map(|p| place(certificate, p));
+            // Per unit of the half's parameter it is half of that per unit of the edge's.
+            let whole = force_of(m).map(|f| Vector2::from(f) / 2.0);
+            let middle = (whole[0] + whole[1]) / 2.0;
+            let force = if half == 0 { [whole[0], middle] } else { [middle, whole[1]] };
+            let force = force.map(<[f64; 2]>::from);
+            let mut bulge = [0.0; 2];
+            let role = match parts.boundary.get(&e) {
+                None => Role::Inner(force),
+                Some(Boundary::Held(held, _)) => {
+                    let ends = [a, b].map(|vertex| parts.mesh.vertices()[vertex]);
+                    bulge = parts.prescribed_bulge(e, ends).map(|bulge| bulge / 4.0);
+                    held_only(*held, force)
+                }
+                Some(Boundary::Free) => Role::Loaded([[0.0; 2]; 2]),
+                Some(Boundary::Loaded(traction)) => {
+                    let [start, end] = places();
+                    let ends = [start, end].map(<[f64; 2]>::from);
+                    let normal = Vector2::new(end.y - start.y, start.x - end.x);
+                    traction.affine(ends, force_of(&traction.moments(ends, normal)))
+                }
+                Some(Boundary::Contact(k)) => {
+                    let edge = &parts.contact[*k];
+                    bulge[0] = edge.gap_bulge / 4.0;
+                    let [g, h] = edge.gap;
+                    let middle = (g + h) / 2.0 + edge.gap_bulge;
+                    let gap = if half == 0 { [g, middle] } else { [middle, h] };
+                    let along = edge.along().map(|[d, e]| {
+                        let middle = [0, 1].map(|c| (d[c] + e[c]) / 2.0);
+                        if half == 0 { [d, middle] } else { [middle, e] }
+                    });
+                    Role::Contact { pressure: edge.on_halves[half].0.values[0], gap, along }
+                }
+            };
+            certificate.edges.push(Edge { ends, role });
+            data.push(bulge);
+        }
+    }
+    if let Some(curved) = &mut certificate.curved {
+        curved.data = data;
+    }
+}
+
+/// The four triangles of triangle `t` between its corners and the middles of its edges, each with its body force. On an edge
+/// between middles tau N is that of sigma(u) and what balances the corner that it cuts off; the triangle in the middle is in
+/// equilibrium with the whole.
+pub(super) fn quarters(
+    parts: &Parts,
+    data: &Data,
+    t: usize,
+    stress: &Affine<f64>,
+    certificate: &mut Certificate,
+) -> Vec<(Part, [Vector2<f64>; 3])> {
+    let (corners, edges) = (parts.mesh.triangles()[t], parts.mesh.triangle_edges()[t]);
+    let (vertices, count) = (parts.mesh.vertices().len(), parts.mesh.edge_count());
+    let middles = edges.map(|e| vertices + e);
+    let inside = [0, 1, 2].map(|i| certificate.edges.len() + i);
+    let at_middle = |i: usize| [0, 1, 2].map(|l| if l == i { 0.0 } else { 0.5 });
+    let mut found = Vec::with_capacity(4);
+    for i in 0..3 {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        // As t is numbered: its corner i, and the middles of the edges there.
+        let (mut part, mut own, mut places) = (middles, inside, [0, 1, 2].map(at_middle));
+        (part[i], part[j], part[k]) = (corners[i], middles[k], middles[j]);
+        places[i] = [0, 1, 2].map(|l| if l == i { 1.0 } else { 0.0 });
+        (places[j], places[k]) = (at_middle(k), at_middle(j));
+        for l in [j, k] {
+            let first = certificate.edges[edges[l]].ends.contains(&corners[i]);
+            own[l] = if first { edges[l] } else { count + edges[l] };
+        }
+        let triangle = Triangle { vertices: part.map(|p| place(certificate, p)) };
+        let mut forces = [[Vector2::zeros(); 2]; 3];
+        for l in [j, k] {
+            let ends = [part[(l + 1) % 3], part[(l + 2) % 3]];
+            forces[l] = outward(parts, certificate, own[l], ends, triangle.scaled_normal(l));
+        }
+        forces[i] =
+            [places[j], places[k]].map(|l| stress.at(l).traction(triangle.scaled_normal(i)));
+        let body = data.body_on(t, &triangle);
+        let off = Loads { forces, body }.resultant(&triangle);
+        let balance = off.on_edge(triangle.vertices[j], triangle.vertices[k]);
+        let force = [0, 1].map(|end| (forces[i][end] - balance[end]).into());
+        certificate.edges.push(Edge { ends: [part[j], part[k]], role: Role::Inner(force) });
+        if let Some(curved) = &mut certificate.curved {
+            curved.data.push([0.0; 2]);
+        }
+        found.push((Part { vertices: part, edges: own, places }, body));
+    }
+    let triangle = Triangle { vertices: middles.map(|p| place(certificate, p)) };
+    let places = [0, 1, 2].map(at_middle);
+    found.push((Part { vertices: middles, edges: inside, places }, data.body_on(t, &triangle)));
+    found
+}
+
+/// The force on half `e` of an edge towards the outside of a triangle that goes along it between these ends.
+fn outward(
+    parts: &Parts,
+    certificate: &Certificate,
+    e: usize,
+    ends: [usize; 2],
+    normal: Vector2<f64>,
+) -> [Vector2<f64>; 2] {
+    let (edge, count) = (&certificate.edges[e], parts.mesh.edge_count());
+    match edge.role {
+        Role::Inner(force) | Role::Held(_, force) => {
+            let [a, b] = force.map(Vector2::from);
+            if edge.ends == ends { [a, b] } else { [-b, -a] }
+        }
+        Role::Loaded(traction) => traction.map(|t| Vector2::from(t) * length(normal)),
+        Role::Pressed(p) => p.map(|p| normal * -p),
+        Role::Contact { .. } => match parts.boundary.get(&(e % count)) {
+            Some(&Boundary::Contact(k)) => {
+                force_of(&parts.contact[k].on_halves[e / count].1).map(Vector2::from)
+            }
+            _ => [Vector2::zeros(); 2],
+        },
+    }
+}
+
+/// The same displacement with values in the middles of the mesh's edges, and bulges on their halves and on the edges between
+/// middles: each is parallel to an edge and half as long, and the second difference of a quadratic along it is a quarter.
+pub(super) fn halved<S: Enclosing>(
+    mut shape: Shape<S>,
+    mesh: &Mesh,
+    ends: &[[usize; 2]],
+) -> Shape<S> {
+    let vertices = shape.points.len();
+    for (e, [a, b]) in ends.iter().enumerate() {
+        let mean = (shape.points[*a] + shape.points[*b]) / S::from(2);
+        shape.points.push(shape.bulges.as_ref().map_or(mean, |bulges| mean + bulges[e]));
+    }
+    debug_assert_eq!(shape.points.len(), vertices + ends.len());
+    shape.bulges = shape.bulges.map(|bulges| {
+        let quarters = bulges.iter().map(|&bulge| bulge / S::from(4));
+        let inside = mesh.triangle_edges().iter().flatten().map(|&e| bulges[e] / S::from(4));
+        quarters.clone().chain(quarters).chain(inside).collect()
+    });
+    shape
+}

@@ -1,0 +1,244 @@
+//! The moments of tau's tractions with the hat functions, from the discrete solution.
+//!
+//! Take lambda^h = -(1/gamma) \[P(u^h)\]+ and on each triangle s_T = sigma(u^h) + sum_E C (c_E (x) n) / |T|, with
+//! c_E = int_E gamma (lambda^h - sigma_n(u^h)) n~ over its edges on Gamma_C (n~ = n, or the direction of contact). Then (8) for P1 reads int s : eps(v) = L(v) + int
+//! lambda^h v_n: Nitsche's terms have gone into the stress. Tested with a hat function phi_a it says that around each
+//! vertex a there are moments M_E of tractions, one for each edge E at a, with
+//!
+//! sum_{E of T at a} M_E = |T| s_T grad phi_a - int_T f phi_a   for the triangles T around a
+//!
+//! (M_E towards the outside of T): going round a, the differences of neighbouring moments are known. The one that is free
+//! is chosen such that they are near those of the mean stress; where the boundary prescribes a traction, it is known. The
+//! affine traction with the moments M_a, M_b is 4 M_a - 2 M_b at a, per unit of the edge's parameter.
+//!
+//! Hat functions are in the space of P2, too: there s_T is the mean of sigma(u^h) with the same terms, and the moments are to be
+//! near those of the affine stress sigma(u^h), which is nearer to the true one than its means are.
+
+use nalgebra::{Matrix2, Vector2};
+
+use super::certificate::Role;
+use super::field::Field;
+use super::parts::{Boundary, Parts};
+use crate::fem::mesh::length;
+use crate::kernel::Triangle;
+use crate::kernel::composite::Affine;
+
+/// s_T on each triangle, and beside it what sigma(u) has beyond its mean.
+pub(super) fn stresses(parts: &Parts, u: &Field, triangles: &[Triangle<f64>]) -> Vec<Affine<f64>> {
+    let of_u = |(t, triangle): (usize, &Triangle<f64>)| {
+        let sigma = u.stress(parts, t, triangle);
+        let mean = sigma.mean();
+        let beyond = sigma.beyond.map(|_| [0, 1, 2].map(|i| sigma.at_corner(i) - mean));
+        Affine { base: mean, beyond }
+    };
+    let mut stress: Vec<Affine<f64>> = triangles.iter().enumerate().map(of_u).collect();
+    for edge in &parts.contact {
+        let (t, n) = (edge.edge.triangle, edge.normal);
+        let factor = edge.length / (triangles[t].double_area() / 2.0);
+        let strain = Matrix2::from_fn(|i, j| factor * edge.excess[i] * n[j]);
+        stress[t].base = stress[t].base + parts.material(t).stress(strain);
+    }
+    stress
+}
+
+/// The moments of the traction on each edge with the hat functions of its ends, towards the outside of the first triangle
+/// that has the edge.
+pub(super) fn moments(
+    parts: &Parts,
+    bodies: &[[Vector2<f64>; 3]],
+    triangles: &[Triangle<f64>],
+    stress: &[Affine<f64>],
+) -> Vec<[Vector2<f64>; 2]> {
+    let mesh = parts.mesh;
+    let (corners, edges) = (mesh.triangles(), mesh.triangle_edges());
+    let mut owners = vec![[None; 2]; mesh.edge_count()];
+    let mut fans = vec![Vec::new(); mesh.vertices().len()];
+    for t in 0..corners.len() {
+        for local in 0..3 {
+            let [first, second] = &mut owners[edges[t][local]];
+            if first.is_none() {
+                *first = Some((t, local))
+            } else {
+                *second = Some((t, local))
+            }
+            fans[corners[t][local]].push((t, local));
+        }
+    }
+    // What the mean stress of the neighbours gives, and what the boundary prescribes.
+    let mut moments = vec![[Vector2::zeros(); 2]; mesh.edge_count()];
+    let mut known = vec![[false; 2]; mesh.edge_count()];
+    for (e, owner) in owners.iter().enumerate() {
+        let [Some((t, local)), second] = *owner else { continue };
+        let normal = triangles[t].scaled_normal(local);
+        let here = stress[t].base.traction(normal);
+        let force = match second {
+            Some((other, _)) => (here + stress[other].base.traction(normal)) / 2.0,
+            None => here,
+        };
+        moments[e] = [force / 2.0; 2];
+        // What comes to the mean, p and q at the ends, has the moments (2 p + q) / 6 and (p + 2 q) / 6.
+        let ends = [1, 2].map(|k| corners[t][(local + k) % 3]);
+        let sides = if second.is_some() { 2.0 } else { 1.0 };
+        for (other, _) in owner.iter().flatten() {
+            let Some(beyond) = &stress[*other].beyond else { continue };
+            for (corner, beyond) in corners[*other].iter().zip(beyond) {
+                let Some(k) = ends.iter().position(|end| end == corner) else { continue };
+                let sixth = beyond.traction(normal) / (6.0 * sides);
+                moments[e][k] += sixth * 2.0;
+                moments[e][1 - k] += sixth;
+            }
+        }
+        match parts.boundary.get(&e) {
+            None => {}
+            Some(Boundary::Held(held, _)) => {
+                for c in (0..2).filter(|&c| !held[c]) {
+                    known[e][c] = true;
+                    moments[e].iter_mut().for_each(|m| m[c] = 0.0);
+                }
+            }
+            Some(Boundary::Free) => {
+                known[e] = [true; 2];
+                moments[e] = [Vector2::zeros(); 2];
+            }
+            Some(Boundary::Loaded(traction)) => {
+                known[e] = [true; 2];
+                let ends = [1, 2].map(|k| mesh.vertices()[corners[t][(local + k) % 3]]);
+                moments[e] = traction.moments(ends, normal);
+            }
+            Some(Boundary::Contact(k)) => {
+                known[e] = [true; 2];
+                moments[e] = parts.contact[*k].moments;
+            }
+        }
+    }
+    let averaged = moments.clone();
+    for (a, fan) in fans.iter().enumerate() {
+        go_round(
+            a,
+            fan,
+            &Around {
+                corners,
+                edges,
+                owners: &owners,
+                averaged: &averaged,
+                known: &known,
+                triangles,
+                stress,
+                bodies,
+            },
+            &mut moments,
+        );
+    }
+    moments
+}
+
+/// What the triangles around a vertex have.
+struct Around<'a> {
+    corners: &'a [[usize; 3]],
+    edges: &'a [[usize; 3]],
+    owners: &'a [[Option<(usize, usize)>; 2]],
+    averaged: &'a [[Vector2<f64>; 2]],
+    known: &'a [[bool; 2]],
+    triangles: &'a [Triangle<f64>],
+    stress: &'a [Affine<f64>],
+    /// The body force at the vertices, affine between them.
+    bodies: &'a [[Vector2<f64>; 3]],
+}
+
+impl Around<'_> {
+    /// The triangle at the other side of edge `e`.
+    fn beyond(&self, t: usize, e: usize) -> Option<usize> {
+        self.owners[e].into_iter().flatten().map(|(other, _)| other).find(|&other| other != t)
+    }
+
+    /// int f phi over triangle `t`, phi the hat function of its vertex `l`: |T| / 12 (f_0 + f_1 + f_2 + f_l).
+    fn load(&self, t: usize, l: usize) -> Vector2<f64> {
+        let body = &self.bodies[t];
+        (body[0] + body[1] + body[2] + body[l]) * (self.triangles[t].double_area() / 24.0)
+    }
+
+    /// Edge `e` as the place of its moment at vertex `a`, and 1 if its moments point outside `t`, else -1.
+    fn moment(&self, a: usize, t: usize, e: usize) -> (usize, f64) {
+        match self.owners[e][0] {
+            Some((first, local)) => {
+                let start = self.corners[first][(local + 1) % 3];
+                (usize::from(start != a), if first == t { 1.0 } else { -1.0 })
+            }
+            None => (0, 1.0),
+        }
+    }
+}
+
+/// The moments at the edges around vertex `a`, whose triangles are `fan`: one or more chains, or a ring.
+fn go_round(a: usize, fan: &[(usize, usize)], around: &Around, moments: &mut [[Vector2<f64>; 2]]) {
+    let mut left: Vec<(usize, usize)> = fan.to_vec();
+    while !left.is_empty() {
+        // A chain starts at a triangle with no neighbour clockwise; without one, anywhere.
+        let start = left
+            .iter()
+            .position(|&(t, l)| around.beyond(t, around.edges[t][(l + 2) % 3]).is_none())
+            .unwrap_or(0);
+        let mut chain = vec![left.swap_remove(start)];
+        while let Some(&(t, l)) = chain.last() {
+            let Some(next) = around.beyond(t, around.edges[t][(l + 1) % 3]) else { break };
+            let Some(place) = left.iter().position(|&(t, _)| t == next) else { break };
+            chain.push(left.swap_remove(place));
+        }
+        // X_i on the edge after triangle i, counter-clockwise, and X_0 on the one before the first.
+        let (first, l) = chain[0];
+        let mut edges = vec![around.edges[first][(l + 2) % 3]];
+        let mut sum = Vector2::zeros();
+        let mut sums = vec![sum];
+        // Signs: X points counter-clockwise, out of the triangle before the edge.
+        let mut signs = Vec::new();
+        let (k, sign) = around.moment(a, first, edges[0]);
+        signs.push((k, -sign));
+        for &(t, l) in &chain {
+            let normal = around.triangles[t].scaled_normal(l);
+            sum = sum - around.stress[t].base.traction(normal) / 2.0 - around.load(t, l);
+            let e = around.edges[t][(l + 1) % 3];
+            edges.push(e);
+            sums.push(sum);
+            signs.push(around.moment(a, t, e));
+        }
+        let last = edges.len() - 1;
+        let ring = edges[0] == edges[last];
+        for c in 0..2 {
+            let target = |i: usize| signs[i].1 * around.averaged[edges[i]][signs[i].0][c];
+            let offset = if around.known[edges[0]][c] {
+                target(0)
+            } else if around.known[edges[last]][c] {
+                target(last) - sums[last][c]
+            } else {
+                let count = if ring { last } else { last + 1 };
+                let (mut weighted, mut weights) = (0.0, 0.0);
+                for i in 0..count {
+                    let normal = match around.owners[edges[i]][0] {
+                        Some((t, local)) => around.triangles[t].scaled_normal(local),
+                        None => Vector2::x(),
+                    };
+                    let weight = 1.0 / length(normal);
+                    weighted += weight * (target(i) - sums[i][c]);
+                    weights += weight;
+                }
+                weighted / weights
+            };
+            for i in 0..=last {
+                let done = around.known[edges[i]][c] || (ring && i == last);
+                if !done {
+                    moments[edges[i]][signs[i].0][c] = signs[i].1 * (offset + sums[i][c]);
+                }
+            }
+        }
+    }
+}
+
+/// The affine force, per unit of an edge's parameter, that has the moments `m` with the hat functions of the ends.
+pub(super) fn force_of(m: &[Vector2<f64>; 2]) -> [[f64; 2]; 2] {
+    [0, 1].map(|k| [0, 1].map(|c| 4.0 * m[k][c] - 2.0 * m[1 - k][c]))
+}
+
+/// The force on the held components.
+pub(super) fn held_only(held: [bool; 2], force: [[f64; 2]; 2]) -> Role {
+    Role::Held(held, force.map(|f| [0, 1].map(|c| if held[c] { f[c] } else { 0.0 })))
+}
