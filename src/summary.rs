@@ -143,7 +143,7 @@ pub fn solved(r: &Results, files: &[PathBuf]) -> String {
         lines.line("certified", enclosed(discrete));
     }
     if let Some(continuous) = certificates.and_then(|c| c.continuous.as_ref()) {
-        lines.line("error", distance(continuous));
+        distance(continuous, &mut lines);
     }
     if let Some(adapt) = &r.adapt {
         lines.line("adapted", adapted(adapt));
@@ -280,18 +280,29 @@ fn adapted(adapt: &Adaptation) -> String {
     )
 }
 
-/// How far the solution can be from the true one.
-fn distance(certificate: &ContinuousCertificate) -> String {
+/// How far the solution can be from the true one: as it is, and pushed out of the obstacle, where that is another number.
+fn distance(certificate: &ContinuousCertificate, lines: &mut Lines) {
     let reason = certificate.reason.as_deref().unwrap_or_default();
-    let Some(bound) = certificate.bound else { return format!("not bounded: {reason}") };
-    let size = match certificate.relative {
-        Some(relative) => format!("{} % of the energy norm", numbers::short(100.0 * relative, 2)),
-        None => short(bound),
+    let (Some(bound), Some(of_solution)) = (certificate.bound, certificate.of_solution) else {
+        return lines.line("error", format!("not bounded: {reason}"));
     };
-    if certificate.rigorous {
-        format!("energy error at most {size}: proved")
+    let size = |error: f64| match certificate.relative {
+        Some(relative) => {
+            let percent = 100.0 * relative * if bound > 0.0 { error / bound } else { 1.0 };
+            format!("{} % of the energy norm", numbers::short(percent, 2))
+        }
+        None => short(error),
+    };
+    let [as_it_is, pushed_out] = [of_solution, bound].map(size);
+    let proved = if certificate.rigorous {
+        ": proved".to_owned()
     } else {
-        format!("energy error at most {size}, with a reservation ({reason})")
+        format!(", with a reservation ({reason})")
+    };
+    lines.line("error", format!("energy error at most {as_it_is}{proved}"));
+    if as_it_is != pushed_out {
+        let of = "for the displacement pushed out of the obstacle, as in certificate.json";
+        lines.line("", format!("at most {pushed_out} {of}"));
     }
 }
 

@@ -17,7 +17,7 @@ use crate::kernel::composite::Wrench;
 pub enum Unbalanced {
     /// Loads that nothing takes.
     #[error(
-        "the part of the body with triangle {triangle} is not held: forces on Gamma_D can't balance its loads"
+        "nothing balances the loads on the part of the body with triangle {triangle}; expected, for each part that edges join, displacement boundaries whose forces can"
     )]
     Free {
         /// A triangle of the part.

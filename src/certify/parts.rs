@@ -55,6 +55,11 @@ impl<'a> Parts<'a> {
         });
         let contact: Vec<Contact> = contact.collect();
         let unsupported = |why: String| Err(CertifyError::Unsupported(why));
+        if let Some(motion) = constraints.free_motions(&space).1.first() {
+            return unsupported(format!(
+                "the supports leave free a {motion}; contact may, but a stress that is proved is balanced by the traction on them: expected supports that hold the body without contact"
+            ));
+        }
         if let Some(point) = problem.points.first() {
             return unsupported(format!(
                 "[point.{}] holds a point, which a true solution does not feel",

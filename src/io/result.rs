@@ -281,6 +281,9 @@ pub struct ContinuousCertificate {
     /// The same over |v|_a.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub relative: Option<f64>,
+    /// |u - u^h|_a is at most this, u^h being the solution as it is written, which may go through the obstacle.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub of_solution: Option<f64>,
     /// The bound over an estimate of the error, which proves nothing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub effectivity_hint: Option<f64>,
@@ -304,6 +307,7 @@ impl From<&Result<Continuous, CertifyError>> for ContinuousCertificate {
                 bound: Some(c.bound),
                 // A body at rest has no energy to compare with.
                 relative: Some(c.relative).filter(|r| r.is_finite()),
+                of_solution: Some(c.of_field),
                 effectivity_hint: c.effectivity_hint,
                 potential_energy: c.energy,
                 compliance: c.compliance,

@@ -16,6 +16,7 @@ use signorini::fem::{
     Condition, Errors, Mesh, Obstacle, Problem, SharedFunction, Side, Space, contact_line,
 };
 use signorini::io::certificate::{self, Header};
+use signorini::io::result::ContinuousCertificate;
 use signorini::io::{Case, Expression};
 use signorini::kernel::{Ball, Element, Interval, Material, P1, P2, Plane};
 use signorini::solve::{Degree, Gamma0, Ladder, Method, Settings, Solution, solve};
@@ -156,6 +157,28 @@ fn fields_that_penetrate_are_bounded_by_less_than_twice_their_error() {
         let certified = certify_field(&problem, &solution, &solution.displacement).unwrap();
         let error = error_of(&problem, &ladder, &solution, &solution.displacement);
         assert!(certified.bound + certified.clipping > 2.0 * error, "level {level}");
+    }
+}
+
+/// Of u^h, which goes through the obstacle, and of v, which does not, each is above its own error.
+#[test]
+fn the_error_of_the_solution_as_it_is_written_is_bounded_too() {
+    let (solution, _) = corner(0.75);
+    for degree in [Degree::One, Degree::Two] {
+        let ladder = on_trapezoid(&solution, 0.75, degree, 8);
+        let (_, problem, solution) = ladder.solve(1).unwrap();
+        let result = certify(&problem, &solution);
+        let said = ContinuousCertificate::from(&result);
+        let certified = result.unwrap();
+        for (bound, field) in [
+            (said.bound, &certified.displacement),
+            (said.of_solution, &solution.displacement),
+        ] {
+            let ratio = bound.unwrap() / error_of(&problem, &ladder, &solution, field);
+            assert!((1.0..3.0).contains(&ratio), "{degree:?}: {ratio}");
+        }
+        // Control: they are two numbers.
+        assert!(said.bound != said.of_solution && certified.clipping > 0.0);
     }
 }
 
