@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use super::contact::{Contact, NEAR_THE_END};
 use super::field::Field;
-use super::parts::Parts;
+use super::parts::{Parts, held_along};
 use crate::fem::BoundaryEdge;
 
 /// v: u with the prescribed values, and pushed out of the obstacle at the vertices of Gamma_C and, if it is quadratic, between
@@ -12,12 +12,12 @@ use crate::fem::BoundaryEdge;
 pub(super) fn admissible(parts: &Parts, u: &Field) -> Field {
     let mut field = u.clone();
     let v = &mut field.vertices;
-    for (v, data) in v.iter_mut().zip(&parts.prescribed) {
-        for c in 0..2 {
-            if let Some(data) = data[c] {
-                v[c] = data;
-            }
-        }
+    for (vertex, v) in v.iter_mut().enumerate() {
+        *v = match (parts.held_alone(vertex), parts.prescribed[vertex]) {
+            (Some((d, w)), _) => held_along(d, w, *v),
+            (None, [Some(x), Some(y)]) => [x, y],
+            (None, _) => *v,
+        };
     }
     let reach = parts.mesh.vertices().iter().flatten().fold(0.0_f64, |max, x| max.max(x.abs()));
     let size = u.vertices.iter().flatten().fold(0.0_f64, |max, u| max.max(u.abs()));
@@ -28,12 +28,20 @@ pub(super) fn admissible(parts: &Parts, u: &Field) -> Field {
             let ends = parts.mesh.ends(edge.edge);
             let free = [0, 1].map(|k| {
                 let (n, data) = (edge.directions[k], parts.prescribed[ends[k]]);
-                Vector2::from([0, 1].map(|c| if data[c].is_none() { n[c] } else { 0.0 }))
+                match parts.frames.get(&ends[k]) {
+                    Some(&d) => {
+                        let across = Vector2::new(-d[1], d[0]);
+                        across * across.dot(&n)
+                    }
+                    None => [0, 1].map(|c| if data[c].is_none() { n[c] } else { 0.0 }).into(),
+                }
             });
+            let oblique = ends.map(|vertex| parts.frames.contains_key(&vertex));
             let margin = |k: usize| {
                 let n = edge.directions[k];
                 // Balls must see it, also on a part of the edge between places as far out as the body reaches.
-                let scale = edge.gap[k].abs() + if n[0] != 0.0 && n[1] != 0.0 { size } else { 0.0 };
+                let is_rounded = oblique[k] || (n[0] != 0.0 && n[1] != 0.0);
+                let scale = edge.gap[k].abs() + if is_rounded { size } else { 0.0 };
                 64.0 * f64::EPSILON * scale * reach / edge.length / NEAR_THE_END
             };
             for (k, vertex) in ends.into_iter().enumerate() {

@@ -7,7 +7,7 @@
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use super::certificate::{Certificate, Owner, Role};
+use super::certificate::{Certificate, Owner, Role, exactly};
 use crate::fem::mesh::length;
 use crate::kernel::Enclosing;
 use crate::kernel::composite::Wrench;
@@ -25,11 +25,11 @@ pub enum Unbalanced {
     },
 }
 
-/// A traction on Gamma_D: component `component`, 1 or 2 s - 1 along the edge.
+/// A traction on Gamma_D: `direction` times 1 or 2 s - 1 along the edge.
 #[derive(Clone, Copy)]
 struct Hold {
     edge: usize,
-    component: usize,
+    direction: [f64; 2],
     linear: bool,
 }
 
@@ -125,7 +125,7 @@ pub(super) fn close<S: Enclosing>(
         for (hold, factor) in holds.into_iter().zip(solve(unit, total)) {
             let Some(owner) = owners[hold.edge][0] else { continue };
             let [start, end] = certificate.edges[hold.edge].ends.map(|p| points[p]);
-            let force = profile(hold).map(|f| Vector2::from(f.map(S::from)) * factor);
+            let force = profile(hold).map(|f| exactly::<S>(f) * factor);
             add(&mut outward[owner.piece][owner.local], force);
             let wrench = unit_wrench(hold, start, end);
             let wrench =
@@ -162,26 +162,22 @@ fn add<S: Enclosing>(to: &mut [Vector2<S>; 2], force: [Vector2<S>; 2]) {
 }
 
 /// The traction of a hold at both ends of its edge.
-fn profile(hold: Hold) -> [[i32; 2]; 2] {
-    let mut force = [[0; 2]; 2];
-    force[0][hold.component] = if hold.linear { -1 } else { 1 };
-    force[1][hold.component] = 1;
-    force
+fn profile(hold: Hold) -> [[f64; 2]; 2] {
+    let d = hold.direction;
+    [if hold.linear { d.map(|d| -d) } else { d }, d]
 }
 
 /// Its wrench, about the middle of the edge.
 fn unit_wrench<S: Enclosing>(hold: Hold, start: Vector2<S>, end: Vector2<S>) -> Wrench<S> {
     let about = (start + end) / S::from(2);
-    let (mut force, mut moment) = (Vector2::zeros(), S::from(0));
+    let d = exactly::<S>(hold.direction);
     if hold.linear {
-        // int (s - 1/2) E x (2 s - 1) e_c = E x e_c / 6
+        // int (s - 1/2) E x (2 s - 1) d = E x d / 6
         let along = end - start;
-        let turn = if hold.component == 0 { -along[1] } else { along[0] };
-        moment = turn / S::from(6);
-    } else {
-        force[hold.component] = S::from(1);
+        let turn = along[0] * d[1] - along[1] * d[0];
+        return Wrench { force: Vector2::zeros(), moment: turn / S::from(6), about };
     }
-    Wrench { force, moment, about }
+    Wrench { force: d, moment: S::from(0), about }
 }
 
 /// Three holds of a part whose wrenches are as independent as any: greedily, by what is left after those before.
@@ -198,16 +194,21 @@ fn choose<S: Enclosing>(
     for &t in part {
         for e in certificate.pieces[t].edges {
             let edge = &certificate.edges[e];
-            let Role::Held(held, _) = edge.role else { continue };
+            let axes = [[1.0, 0.0], [0.0, 1.0]];
+            let held = match edge.role {
+                Role::Held(held, _) => [0, 1].map(|c| held[c].then_some(axes[c])),
+                Role::Supported { along, .. } => [Some(along), None],
+                _ => continue,
+            };
             if owners[e][0].is_none_or(|owner| owner.piece != t) {
                 continue;
             }
             let [start, end] = edge.ends.map(double);
             size = size.max(length(start - origin));
             size = size.max(length(end - origin));
-            for component in (0..2).filter(|&c| held[c]) {
+            for direction in held.into_iter().flatten() {
                 for linear in [false, true] {
-                    let hold = Hold { edge: e, component, linear };
+                    let hold = Hold { edge: e, direction, linear };
                     let wrench = unit_wrench(hold, start, end).about(origin);
                     candidates.push((hold, [wrench.force[0], wrench.force[1], wrench.moment]));
                 }

@@ -4,9 +4,10 @@
 use nalgebra::Vector2;
 
 use super::balance::{self, Tree, Unbalanced};
-use super::certificate::{Certificate, Owner, Piece, Role, Shape, exactly};
+use super::certificate::{Certificate, Owner, Piece, Role, Shape, exactly, support};
 use super::checks::{Rejection, wrong};
 use super::on_contact::{OnEdge, along_directions, along_the_normal};
+use crate::fem::mesh;
 use crate::kernel::composite::{Affine, Composite, Frame, Loads};
 use crate::kernel::{Enclosing, Triangle};
 
@@ -58,6 +59,9 @@ impl Certificate {
             let length = || along.dot(&along).sqrt();
             forces.push(match edge.role {
                 Role::Inner(force) | Role::Held(_, force) => force.map(exactly),
+                Role::Supported { along, force, traction } => {
+                    support(along, force, traction, length)
+                }
                 Role::Loaded(traction) if traction == [[0.0; 2]; 2] => [Vector2::zeros(); 2],
                 Role::Loaded(traction) => {
                     let length = length();
@@ -184,17 +188,28 @@ impl Balanced<f64> {
     pub fn give(&self, certificate: &mut Certificate) {
         for (edge, owner) in certificate.edges.iter_mut().zip(&self.topology.owners) {
             let Some(Owner { piece, local }) = owner[0] else { continue };
-            if let Role::Inner(force) | Role::Held(_, force) = &mut edge.role {
-                *force = self.outward[piece][local].map(Into::into);
+            let outward = self.outward[piece][local];
+            match &mut edge.role {
+                Role::Inner(force) | Role::Held(_, force) => *force = outward.map(Into::into),
+                Role::Supported { along, force, .. } => {
+                    let d = Vector2::from(*along);
+                    *force = outward.map(|f| f.dot(&d) / d.dot(&d));
+                }
+                Role::Loaded(_) | Role::Pressed(_) | Role::Contact { .. } => {}
             }
         }
     }
 
-    /// The same with the forces that the certificate has now on inner and held edges.
+    /// The same with the forces that the certificate has now on edges between triangles and of Gamma_D.
     pub fn rebalance(&mut self, certificate: &Certificate) -> Result<(), Unbalanced> {
         for (force, edge) in self.forces.iter_mut().zip(&certificate.edges) {
-            if let Role::Inner(now) | Role::Held(_, now) = edge.role {
-                *force = now.map(Into::into);
+            match edge.role {
+                Role::Inner(now) | Role::Held(_, now) => *force = now.map(Into::into),
+                Role::Supported { along, force: now, traction } => {
+                    let [start, end] = edge.ends.map(|p| self.points[p]);
+                    *force = support(along, now, traction, || mesh::length(end - start));
+                }
+                Role::Loaded(_) | Role::Pressed(_) | Role::Contact { .. } => {}
             }
         }
         self.close(certificate)

@@ -3,7 +3,9 @@
 
 use nalgebra::Vector2;
 
-use super::certificate::{Certificate, Curved, Edge, Piece, Role, Shape, exactly, place};
+use super::certificate::{
+    Certificate, Curved, Edge, Piece, Role, Shape, exactly, is_oblique, place,
+};
 use super::contact::Profile;
 use super::data::Data;
 use super::divide::{Division, Part, cut, divided};
@@ -11,7 +13,7 @@ use super::field::Field;
 use super::oscillation::Oscillation;
 use super::parts::{Boundary, Parts};
 use super::quarters::{add_halves, halved, quarters};
-use super::tractions::{force_of, held_only, moments, stresses};
+use super::tractions::{force_of, held_only, moments, stresses, supported};
 use crate::fem::Mesh;
 use crate::kernel::composite::Affine;
 use crate::kernel::{Enclosing, Triangle};
@@ -79,6 +81,7 @@ pub(super) fn build(parts: &Parts, u: &Field, v: &Field) -> Built {
             displacement: v.vertices.clone(),
             curved: quadratic.then(Curved::default),
             prescribed: parts.prescribed.clone(),
+            frames: parts.frames.clone(),
             pieces: Vec::with_capacity(whole.len()),
             edges: Vec::with_capacity(mesh.edge_count()),
         },
@@ -122,11 +125,23 @@ pub(super) fn build(parts: &Parts, u: &Field, v: &Field) -> Built {
         // v is what is prescribed, in the middles too.
         curved.prescribed = vec![[None; 2]; curved.at_cuts.len()];
         for edge in &certificate.edges {
-            let Role::Held(held, _) = edge.role else { continue };
-            for cut in edge.ends.iter().filter_map(|end| end.checked_sub(v.vertices.len())) {
-                (0..2)
-                    .filter(|&c| held[c])
-                    .for_each(|c| curved.prescribed[cut][c] = Some(curved.at_cuts[cut][c]));
+            for point in edge.ends {
+                let Some(cut) = point.checked_sub(v.vertices.len()) else { continue };
+                let there = curved.at_cuts[cut];
+                let held = match edge.role {
+                    Role::Held(held, _) => held,
+                    Role::Supported { along: d, .. } if is_oblique(d) => {
+                        let w = there[0] * d[0] + there[1] * d[1];
+                        curved.prescribed[cut] = [Some(w), None];
+                        certificate.frames.insert(point, d);
+                        continue;
+                    }
+                    Role::Supported { along, .. } => along.map(|d| d != 0.0),
+                    _ => continue,
+                };
+                for c in (0..2).filter(|&c| held[c]) {
+                    curved.prescribed[cut][c] = Some(there[c]);
+                }
             }
         }
     }
@@ -142,9 +157,13 @@ fn add_edges(parts: &Parts, all: &[[usize; 2]], moments: &[[Vector2<f64>; 2]], b
         let mut bulge = [0.0; 2];
         let role = match parts.boundary.get(&e) {
             None => Role::Inner(force),
-            Some(Boundary::Held(held, _)) => {
-                bulge = parts.prescribed_bulge(e, places);
-                held_only(*held, force)
+            Some(&Boundary::Held(held, data)) => {
+                bulge = data;
+                held_only(held, force)
+            }
+            Some(&Boundary::Supported(d, data, traction)) => {
+                bulge[0] = data;
+                supported(d, places, force, traction.map(|t| (t, force)))
             }
             Some(Boundary::Free) => Role::Loaded([[0.0; 2]; 2]),
             Some(Boundary::Loaded(traction)) => traction.affine(places, force),

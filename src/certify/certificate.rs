@@ -1,5 +1,7 @@
 //! What a certificate is made of: v, tau, and the problem that they belong to, as numbers and nothing else.
 
+use std::collections::BTreeMap;
+
 use nalgebra::Vector2;
 
 use crate::kernel::composite::Affine;
@@ -18,6 +20,9 @@ pub struct Certificate {
     pub curved: Option<Curved>,
     /// u_D at the vertices of Gamma_D.
     pub prescribed: Vec<[Option<f64>; 2]>,
+    /// The points that are held along an oblique direction d only: what is prescribed there is u . d, as the first of the two.
+    /// v is the nearest to the doubles above that has it: only along an axis can doubles themselves.
+    pub frames: BTreeMap<usize, [f64; 2]>,
     /// The triangles.
     pub pieces: Vec<Piece>,
     /// Their edges.
@@ -34,8 +39,8 @@ pub struct Curved {
     pub prescribed: Vec<[Option<f64>; 2]>,
     /// The bulge of v on each edge.
     pub bulges: Vec<[f64; 2]>,
-    /// The bulges of the data on each edge: of u_D on Gamma_D in the components that are held, of g on Gamma_C as the first of two;
-    /// all others are 0.
+    /// The bulges of the data on each edge: of u_D on Gamma_D in the components that are held, of u . d where the direction d is, and of
+    /// g on Gamma_C, as the first of two; all others are 0.
     pub data: Vec<[f64; 2]>,
 }
 
@@ -79,6 +84,15 @@ pub enum Role {
     Inner([[f64; 2]; 2]),
     /// Gamma_D for the components that are held; on the others the force is zero.
     Held([bool; 2], [[f64; 2]; 2]),
+    /// Gamma_D along the direction d alone: tau n = p d + q e, e being d turned to the left, where q is given.
+    Supported {
+        /// d
+        along: [f64; 2],
+        /// |E| p at both ends.
+        force: [f64; 2],
+        /// q at both ends.
+        traction: [f64; 2],
+    },
     /// Gamma_N: the traction t that is given (a stress, not a force).
     Loaded([[f64; 2]; 2]),
     /// Gamma_N: the pressure p that is given, t = -p n.
@@ -99,17 +113,54 @@ pub(super) fn exactly<S: Enclosing>(components: [f64; 2]) -> Vector2<S> {
     components.map(S::exactly).into()
 }
 
+/// d turned to the left.
+pub(super) fn turned<S: Enclosing>(d: Vector2<S>) -> Vector2<S> {
+    Vector2::new(-d[1], d[0])
+}
+
+/// Whether d is not along an axis.
+pub(super) fn is_oblique(d: [f64; 2]) -> bool {
+    d[0] != 0.0 && d[1] != 0.0
+}
+
+/// The vector nearest to v with v . d = w.
+fn nearest<S: Enclosing>(v: [f64; 2], d: [f64; 2], w: f64) -> Vector2<S> {
+    let (v, d) = (exactly::<S>(v), exactly::<S>(d));
+    v - d * ((v.dot(&d) - S::exactly(w)) / d.dot(&d))
+}
+
+/// tau N on an edge that is held along `d`, of the given `length`.
+pub(super) fn support<S: Enclosing>(
+    d: [f64; 2],
+    force: [f64; 2],
+    traction: [f64; 2],
+    length: impl Fn() -> S,
+) -> [Vector2<S>; 2] {
+    let d = exactly::<S>(d);
+    let held = force.map(|p| d * S::exactly(p));
+    if traction == [0.0; 2] {
+        return held;
+    }
+    let across = turned(d) * length();
+    [0, 1].map(|k| held[k] + across * S::exactly(traction[k]))
+}
+
 impl Certificate {
     /// Values at the vertices, and at the cuts between them. Between equal numbers lies the same number: so the normal of an
-    /// edge along an axis is known exactly.
-    fn values<S: Enclosing>(&self, at: &[[f64; 2]]) -> Vec<Vector2<S>> {
-        let mut all: Vec<Vector2<S>> = at.iter().map(|&x| exactly(x)).collect();
+    /// edge along an axis is known exactly. `is_known` tells of a vertex whether its values are the doubles `at`.
+    fn with_cuts<S: Enclosing>(
+        &self,
+        mut all: Vec<Vector2<S>>,
+        at: &[[f64; 2]],
+        is_known: impl Fn(usize) -> bool,
+    ) -> Vec<Vector2<S>> {
         for cut in &self.cuts {
-            let ([a, b], s) = (cut.ends.map(|end| at[end]), S::exactly(cut.at));
+            let s = S::exactly(cut.at);
+            let ([v, w], [a, b]) = (cut.ends.map(|end| all[end]), cut.ends.map(|end| at[end]));
+            let known = cut.ends.iter().all(|&end| is_known(end));
             let between = [0, 1].map(|c| {
-                let [a, b] = [a[c], b[c]];
-                let mean = || S::exactly(a) * (S::from(1) - s) + S::exactly(b) * s;
-                if a == b { S::exactly(a) } else { mean() }
+                let mean = || v[c] * (S::from(1) - s) + w[c] * s;
+                if known && a[c] == b[c] { v[c] } else { mean() }
             });
             all.push(between.into());
         }
@@ -118,18 +169,47 @@ impl Certificate {
 
     /// Vertices and cuts.
     pub(super) fn places<S: Enclosing>(&self) -> Vec<Vector2<S>> {
-        self.values(&self.vertices)
+        let vertices = self.vertices.iter().map(|&x| exactly(x)).collect();
+        self.with_cuts(vertices, &self.vertices, |_| true)
+    }
+
+    /// v at a point that has its own, and what is prescribed there.
+    pub(super) fn at_own(&self, point: usize) -> Option<([f64; 2], [Option<f64>; 2])> {
+        let of =
+            |v: &[[f64; 2]], data: &[[Option<f64>; 2]], k: usize| Some((*v.get(k)?, *data.get(k)?));
+        match (point.checked_sub(self.vertices.len()), &self.curved) {
+            (None, _) => of(&self.displacement, &self.prescribed, point),
+            (Some(cut), Some(curved)) => of(&curved.at_cuts, &curved.prescribed, cut),
+            (Some(_), None) => None,
+        }
     }
 
     /// v.
     pub(super) fn shape<S: Enclosing>(&self) -> Shape<S> {
-        let Some(curved) = &self.curved else {
-            return Shape { points: self.values(&self.displacement), bulges: None };
-        };
         let all = |values: &[[f64; 2]]| values.iter().copied().map(exactly).collect::<Vec<_>>();
         let mut points = all(&self.displacement);
-        points.extend(all(&curved.at_cuts));
-        Shape { points, bulges: Some(all(&curved.bulges)) }
+        points.extend(self.curved.iter().flat_map(|curved| all(&curved.at_cuts)));
+        for (&point, &d) in &self.frames {
+            if let Some((v, [Some(w), _])) = self.at_own(point) {
+                points[point] = nearest(v, d, w);
+            }
+        }
+        let Some(curved) = &self.curved else {
+            let is_known = |vertex: usize| !self.frames.contains_key(&vertex);
+            return Shape {
+                points: self.with_cuts(points, &self.displacement, is_known),
+                bulges: None,
+            };
+        };
+        let mut bulges = all(&curved.bulges);
+        for (e, edge) in self.edges.iter().enumerate() {
+            if let Role::Supported { along, .. } = edge.role
+                && is_oblique(along)
+            {
+                bulges[e] = nearest(curved.bulges[e], along, curved.data[e][0]);
+            }
+        }
+        Shape { points, bulges: Some(bulges) }
     }
 }
 

@@ -4,7 +4,7 @@
 use thiserror::Error;
 
 use super::balance::Unbalanced;
-use super::certificate::{Certificate, Curved, Owner, Role};
+use super::certificate::{Certificate, Curved, Owner, Role, is_oblique};
 
 /// Why a certificate proves nothing.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -24,6 +24,14 @@ pub enum Rejection {
     #[error("point {point}: v_{} = {found}; expected the prescribed {expected}", ["x", "y"][*component])]
     NotPrescribed { point: usize, component: usize, found: f64, expected: f64 },
     #[error(
+        "point {point}: v . d = {found} along the direction that is held; expected the prescribed {expected}"
+    )]
+    NotPrescribedAlong { point: usize, found: f64, expected: f64 },
+    #[error(
+        "edge {edge}: in the middle v . d is {found} beyond the mean of the ends along the direction that is held; expected the prescribed {expected}"
+    )]
+    NotPrescribedAlongBetween { edge: usize, found: f64, expected: f64 },
+    #[error(
         "edge {edge}: in the middle v_{} is {found} beyond the mean of the ends; expected the prescribed {expected}",
         ["x", "y"][*component]
     )]
@@ -42,6 +50,39 @@ pub enum Rejection {
     Bound { claimed: f64, found: f64 },
     #[error("the bound is not a finite number")]
     NotFinite,
+}
+
+const AXES: [[f64; 2]; 2] = [[1.0, 0.0], [0.0, 1.0]];
+
+/// v . d, if it is not w: to rounding where d is oblique, for there doubles can't be nearer.
+fn along(v: [f64; 2], d: [f64; 2], w: f64) -> Option<f64> {
+    let [x, y] = [v[0] * d[0], v[1] * d[1]];
+    let allowed =
+        if is_oblique(d) { 16.0 * f64::EPSILON * (x.abs() + y.abs() + w.abs()) } else { 0.0 };
+    if (x + y - w).abs() <= allowed { None } else { Some(x + y) }
+}
+
+/// d has a length between 1/2 and 2.
+fn has_length(d: [f64; 2]) -> bool {
+    (0.25..=4.0).contains(&(d[0] * d[0] + d[1] * d[1]))
+}
+
+/// The directions in which a point is held: one, or all.
+#[derive(Clone, Copy, Default)]
+struct Directions {
+    first: Option<[f64; 2]>,
+    all: bool,
+}
+
+impl Directions {
+    fn add(&mut self, d: [f64; 2]) {
+        let f = *self.first.get_or_insert(d);
+        self.all |= f[0] * d[1] != f[1] * d[0];
+    }
+
+    fn has(&self, d: [f64; 2]) -> bool {
+        self.all || self.first.is_some_and(|f| f[0] * d[1] == f[1] * d[0])
+    }
 }
 
 pub(super) fn wrong(what: &'static str, index: usize, problem: &'static str) -> Rejection {
@@ -115,10 +156,19 @@ impl Certificate {
                 return Err(wrong("triangle", i, "expected an oscillation that is not negative"));
             }
         }
+        for (&point, &d) in &self.frames {
+            let held = self.at_own(point).map(|(_, data)| data);
+            if !(matches!(held, Some([Some(_), None])) && has_length(d) && is_oblique(d)) {
+                return Err(wrong("point", point, "expected a value along an oblique direction"));
+            }
+        }
         for (i, edge) in self.edges.iter().enumerate() {
             let numbers = match edge.role {
                 Role::Inner(f) | Role::Held(_, f) | Role::Loaded(f) => finite(f.as_flattened()),
                 Role::Pressed(p) => finite(&p),
+                Role::Supported { along, force, traction } => {
+                    finite(&force) && finite(&traction) && has_length(along)
+                }
                 Role::Contact { pressure, gap, along } => {
                     finite(&pressure)
                         && finite(&gap)
@@ -135,57 +185,79 @@ impl Certificate {
     /// v = u_D at both ends of the edges of Gamma_D, nothing is prescribed elsewhere, and there is no force in a direction
     /// that is not held.
     pub(super) fn check_displacement(&self) -> Result<(), Rejection> {
-        let (v_at_cuts, at_cuts) = self
-            .curved
-            .as_ref()
-            .map_or((&[][..], &[][..]), |curved| (&curved.at_cuts[..], &curved.prescribed[..]));
-        let prescribed = || self.prescribed.iter().chain(at_cuts);
-        let known: Vec<([f64; 2], [Option<f64>; 2])> =
-            self.displacement.iter().chain(v_at_cuts).copied().zip(prescribed().copied()).collect();
-        let mut held_at = vec![[false; 2]; known.len()];
+        let count = self.vertices.len() + self.curved.as_ref().map_or(0, |_| self.cuts.len());
+        let mut held_at = vec![Directions::default(); count];
         for edge in &self.edges {
-            let Role::Held(held, _) = edge.role else { continue };
             for point in edge.ends {
-                if let Some(at) = held_at.get_mut(point) {
-                    *at = [0, 1].map(|c| at[c] || held[c]);
+                let Some(at) = held_at.get_mut(point) else { continue };
+                match edge.role {
+                    Role::Held(held, _) => {
+                        (0..2).filter(|&c| held[c]).for_each(|c| at.add(AXES[c]));
+                    }
+                    Role::Supported { along, .. } => at.add(along),
+                    _ => {}
                 }
             }
         }
-        for (point, (data, held)) in prescribed().zip(held_at).enumerate() {
-            if (0..2).any(|c| data[c].is_some() && !held[c]) {
+        for (point, held) in held_at.iter().enumerate() {
+            let Some((_, data)) = self.at_own(point) else { continue };
+            let frame = self.frames.get(&point);
+            let axes = frame.map_or(AXES, |&d| [d, d]);
+            if (0..2).any(|c| data[c].is_some() && !held.has(axes[c])) {
                 return Err(wrong("point", point, "a prescribed value off Gamma_D"));
             }
         }
         for (e, edge) in self.edges.iter().enumerate() {
-            let Role::Held(held, force) = edge.role else { continue };
-            for component in 0..2 {
-                if !held[component] {
-                    if force[0][component] != 0.0 || force[1][component] != 0.0 {
+            match edge.role {
+                Role::Held(held, force) => {
+                    if (0..2).any(|c| !held[c] && (force[0][c] != 0.0 || force[1][c] != 0.0)) {
                         return Err(wrong("edge", e, "a force where nothing is held"));
                     }
-                    continue;
-                }
-                for point in edge.ends {
-                    let Some((v, data)) = known.get(point) else {
-                        return Err(wrong("edge", e, "an end without a prescribed value"));
-                    };
-                    let found = v[component];
-                    match data[component] {
-                        Some(expected) if expected == found => {}
-                        Some(expected) => {
-                            return Err(Rejection::NotPrescribed {
-                                point,
-                                component,
-                                found,
-                                expected,
-                            });
-                        }
-                        None => return Err(wrong("edge", e, "an end without a prescribed value")),
+                    for point in edge.ends {
+                        self.check_components(e, point, held)?;
                     }
                 }
+                Role::Supported { along, .. } => {
+                    for point in edge.ends {
+                        self.check_along(e, point, along)?;
+                    }
+                }
+                _ => {}
             }
         }
         self.curved.as_ref().map_or(Ok(()), |curved| self.check_between(curved))
+    }
+
+    /// v = u_D at an end of edge `e` in the components that are held.
+    fn check_components(&self, e: usize, point: usize, held: [bool; 2]) -> Result<(), Rejection> {
+        let missing = || wrong("edge", e, "an end without a prescribed value");
+        let (v, data) = self.at_own(point).ok_or_else(missing)?;
+        if self.frames.contains_key(&point) {
+            return Err(missing());
+        }
+        for component in (0..2).filter(|&c| held[c]) {
+            let (found, expected) = (v[component], data[component].ok_or_else(missing)?);
+            if expected != found {
+                return Err(Rejection::NotPrescribed { point, component, found, expected });
+            }
+        }
+        Ok(())
+    }
+
+    /// v . d is prescribed at an end of edge `e`: along that d, along an axis that d is, or with both components, and then w = v . d.
+    fn check_along(&self, e: usize, point: usize, d: [f64; 2]) -> Result<(), Rejection> {
+        let missing =
+            || wrong("edge", e, "an end without a value along the direction that is held");
+        let Some(&frame) = self.frames.get(&point) else {
+            let oblique = is_oblique(d);
+            return self.check_components(e, point, d.map(|c| oblique || c != 0.0));
+        };
+        let (v, data) = self.at_own(point).ok_or_else(missing)?;
+        let expected = data[0].filter(|_| frame == d).ok_or_else(missing)?;
+        match along(v, d, expected) {
+            Some(found) => Err(Rejection::NotPrescribedAlong { point, found, expected }),
+            None => Ok(()),
+        }
     }
 
     /// v = u_D between the ends of the edges of Gamma_D, and there are bulges of data where there are such data only.
@@ -195,6 +267,17 @@ impl Certificate {
             let held = match edge.role {
                 Role::Held(held, _) => held,
                 Role::Contact { .. } => [data[0] != 0.0, false],
+                Role::Supported { along: d, .. } => {
+                    if let Some(found) = along(bulge, d, data[0]) {
+                        let expected = data[0];
+                        return Err(Rejection::NotPrescribedAlongBetween {
+                            edge: e,
+                            found,
+                            expected,
+                        });
+                    }
+                    [data[0] != 0.0, false]
+                }
                 Role::Inner(_) | Role::Loaded(_) | Role::Pressed(_) => [false; 2],
             };
             let is_held = matches!(edge.role, Role::Held(..));

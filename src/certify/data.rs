@@ -82,6 +82,8 @@ pub(super) enum Traction<'a> {
     Vector(&'a [SharedFunction; 2]),
     /// -p n
     Pressure(&'a SharedFunction),
+    /// One component; the other is held.
+    Component(usize, &'a SharedFunction),
 }
 
 impl Traction<'_> {
@@ -89,7 +91,7 @@ impl Traction<'_> {
     pub fn is_affine(&self) -> bool {
         match self {
             Traction::Vector(t) => within(t, 1),
-            Traction::Pressure(p) => is_within(p, 1),
+            Traction::Pressure(f) | Traction::Component(_, f) => is_within(f, 1),
         }
     }
 
@@ -100,13 +102,18 @@ impl Traction<'_> {
                 let pressure = p.on_boundary(x, n);
                 n.map(|n| -n * pressure)
             }
+            Traction::Component(c, f) => {
+                let mut t = [0.0; 2];
+                t[*c] = f.on_boundary(x, n);
+                t
+            }
         }
     }
 
     pub fn rule(&self) -> Rule {
         match self {
             Traction::Vector([x, y]) => rule(if x.kink().is_some() { &**x } else { &**y }),
-            Traction::Pressure(p) => rule(&***p),
+            Traction::Pressure(f) | Traction::Component(_, f) => rule(&***f),
         }
     }
 
@@ -128,7 +135,9 @@ impl Traction<'_> {
         let (length, unit) = length_and_normal(ends);
         let role = match self {
             Traction::Vector(_) if self.is_affine() => Role::Loaded(ends.map(|x| self.at(x, unit))),
-            Traction::Vector(_) => Role::Loaded(force.map(|f| f.map(|f| f / length))),
+            Traction::Vector(_) | Traction::Component(..) => {
+                Role::Loaded(force.map(|f| f.map(|f| f / length)))
+            }
             Traction::Pressure(p) if self.is_affine() => {
                 Role::Pressed(ends.map(|x| p.on_boundary(x, unit)))
             }
@@ -138,6 +147,17 @@ impl Traction<'_> {
         };
         // No load has one role only.
         if role == Role::Pressed([0.0; 2]) { Role::Loaded([[0.0; 2]; 2]) } else { role }
+    }
+
+    /// The component across the direction `d`, along d turned to the left, of t_h at both ends.
+    pub fn across(&self, d: [f64; 2], ends: [[f64; 2]; 2], force: [[f64; 2]; 2]) -> [f64; 2] {
+        let (length, unit) = length_and_normal(ends);
+        let t = if self.is_affine() {
+            ends.map(|x| self.at(x, unit))
+        } else {
+            force.map(|f| f.map(|f| f / length))
+        };
+        t.map(|t| d[0] * t[1] - d[1] * t[0])
     }
 }
 

@@ -230,7 +230,9 @@ fn distances(mesh: &Mesh, built: &Built, w: &[[f64; 2]]) -> Vec<f64> {
     let difference = Shape { points: minus(&v.points, &w.points), bulges };
     let places = certificate.places::<Ball>();
     let distance = |(piece, &t): (&Piece, &usize)| {
-        let same = |&k: &usize| certificate.displacement[k] == ends[k];
+        let same = |k: &usize| {
+            certificate.displacement[*k] == ends[*k] && !certificate.frames.contains_key(k)
+        };
         if affine && mesh.triangles()[t].iter().all(same) {
             return 0.0;
         }

@@ -50,13 +50,16 @@ impl Oscillation {
         for (name, condition) in &problem.conditions {
             let affine = |f: &SharedFunction| is_within(f, 1);
             let followed = |f: &SharedFunction| is_within(f, if quadratic { 2 } else { 1 });
+            let mut exact_traction = true;
             let (what, exact) = match condition {
                 Condition::Displacement(u) => ("displacement", u.iter().flatten().all(followed)),
-                Condition::Mixed { displacement, .. } => {
+                Condition::Mixed { displacement, traction } => {
+                    let acts = |c: usize| displacement[c].is_none();
+                    exact_traction = (0..2).all(|c| !acts(c) || affine(&traction[c]));
                     ("displacement", displacement.iter().flatten().all(followed))
                 }
                 Condition::Support { normal, tangential } => {
-                    ("displacement", [normal, tangential].into_iter().flatten().all(affine))
+                    ("displacement", [normal, tangential].into_iter().flatten().all(followed))
                 }
                 Condition::Traction(traction) => ("traction", within(traction, 1)),
                 Condition::Pressure(p) => ("pressure", affine(p)),
@@ -66,6 +69,9 @@ impl Oscillation {
                 // A plane's distance is affine; other distances turn.
                 Condition::Obstacle(..) => continue,
             };
+            if !exact_traction {
+                inexact.push(format!("the traction of '{name}' is not known to be affine"));
+            }
             if !exact {
                 let class = match what {
                     "displacement" | "gap" if quadratic => "quadratic",
@@ -167,7 +173,11 @@ fn loads(
         // Both halves of an edge of the mesh are numbered from 0 and from its count of edges on.
         let count = parts.mesh.edge_count();
         let whole = if quartered && e < 2 * count { e % count } else { e };
-        let Some(Boundary::Loaded(traction)) = parts.boundary.get(&whole) else { continue };
+        let (Boundary::Loaded(traction) | Boundary::Supported(_, _, Some(traction))) =
+            parts.boundary.get(&whole).unwrap_or(&Boundary::Free)
+        else {
+            continue;
+        };
         if traction.is_affine() {
             continue;
         }
@@ -176,6 +186,7 @@ fn loads(
         let affine = match edge.role {
             Role::Loaded(affine) => affine,
             Role::Pressed(p) => p.map(|p| unit.map(|n| -p * n)),
+            Role::Supported { along: d, traction, .. } => traction.map(|q| [-d[1] * q, d[0] * q]),
             _ => continue,
         };
         let (mut square, mut legendre) = (0.0, Vector2::zeros());
@@ -228,6 +239,16 @@ fn lifts(parts: &Parts, quadratic: bool) -> Vec<f64> {
                         _ => 0.0,
                     })
                 }),
+                Condition::Support { normal: along, tangential: across } => {
+                    let left = Vector2::new(-normal.y, normal.x);
+                    Box::new(move |s| {
+                        let lacking = [along, across].map(|f| match f {
+                            Some(f) if !is_followed(f) => lacks(f, s),
+                            _ => 0.0,
+                        });
+                        (normal * lacking[0] + left * lacking[1]).into()
+                    })
+                }
                 Condition::Contact { gap }
                     if !is_followed(gap) && !turning.contains(name.as_str()) =>
                 {

@@ -2,10 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::certificate::is_oblique;
 use super::contact::Contact;
-use super::data::{Traction, bulge_of, is_within};
+use super::data::{Traction, bulge_of};
 use super::errors::CertifyError;
 use crate::fem::constraints::Constraints;
+use crate::fem::smooth::SmoothBoundary;
 use crate::fem::{BoundaryEdge, Condition, Mesh, Problem, SharedFunction, Space, contact_line};
 use crate::kernel::Material;
 use crate::kernel::edge_integral::ExactEdge;
@@ -14,8 +16,11 @@ use crate::solve::Solution;
 /// What a boundary edge prescribes.
 #[derive(Clone, Copy)]
 pub(super) enum Boundary<'a> {
-    /// The components that are held, and the functions that they are, if these may be other than affine.
-    Held([bool; 2], [Option<&'a SharedFunction>; 2]),
+    /// The components that are held, and what they are in the middle beyond the mean of the ends.
+    Held([bool; 2], [f64; 2]),
+    /// The direction that is held alone, and what the displacement along it is in the middle beyond the mean of the ends; the
+    /// traction, if there is one, of which the component across the direction acts.
+    Supported([f64; 2], f64, Option<Traction<'a>>),
     /// The traction.
     Loaded(Traction<'a>),
     /// Nothing: traction 0.
@@ -32,6 +37,8 @@ pub(super) struct Parts<'a> {
     pub contact: Vec<Contact>,
     /// u_D at the vertices.
     pub prescribed: Vec<[Option<f64>; 2]>,
+    /// The vertices that are held along an oblique direction alone, and this: what is prescribed there is along it.
+    pub frames: BTreeMap<usize, [f64; 2]>,
     /// What boundary edges are, by their numbers in the mesh.
     pub boundary: BTreeMap<usize, Boundary<'a>>,
 }
@@ -66,49 +73,68 @@ impl<'a> Parts<'a> {
                 point.name
             ));
         }
-        if !constraints.frames().is_empty() {
-            return unsupported("a support holds an oblique direction".to_owned());
-        }
         let mesh = &problem.mesh;
         let number = |edge: BoundaryEdge| mesh.triangle_edges()[edge.triangle][edge.local];
+        let mut smooth: Option<SmoothBoundary> = None;
+        let mut directions = Directions { known: Vec::new(), rounding: constraints.rounding() };
         let mut boundary: BTreeMap<usize, Boundary> =
             mesh.outline().iter().map(|&edge| (number(edge), Boundary::Free)).collect();
         for (name, condition) in &problem.conditions {
             // The names were found when the problem was discretised.
             for &edge in mesh.edges_of(name).unwrap_or_default() {
+                let ends = mesh.ends(edge).map(|vertex| mesh.vertices()[vertex]);
+                let bulge =
+                    |f: &Option<SharedFunction>| f.as_ref().map_or(0.0, |f| bulge_of(f, ends));
                 let what = match condition {
-                    Condition::Displacement(functions) => Boundary::Held(
-                        [functions[0].is_some(), functions[1].is_some()],
-                        functions.each_ref().map(Option::as_ref),
-                    ),
+                    Condition::Displacement(functions) => {
+                        Boundary::Held(is_some(functions), functions.each_ref().map(bulge))
+                    }
                     Condition::Mixed { displacement, traction } => {
-                        let held = [0, 1].map(|c| displacement[c].is_some());
-                        let vanishes = |c: usize| {
-                            let t = &traction[c];
-                            t.degree() == Some(0) && t.at([0.0; 2]) == 0.0
-                        };
-                        if !(0..2).all(|c| held[c] || vanishes(c)) {
-                            return unsupported(format!(
-                                "'{name}' has a traction beside a prescribed component"
-                            ));
+                        let bulges = displacement.each_ref().map(bulge);
+                        let beside = |c: usize| Some(Traction::Component(c, &traction[c]));
+                        match is_some(displacement) {
+                            [false, false] => Boundary::Loaded(Traction::Vector(traction)),
+                            [true, false] if !vanishes(&traction[1]) => {
+                                Boundary::Supported([1.0, 0.0], bulges[0], beside(1))
+                            }
+                            [false, true] if !vanishes(&traction[0]) => {
+                                Boundary::Supported([0.0, 1.0], bulges[1], beside(0))
+                            }
+                            held => Boundary::Held(held, bulges),
                         }
-                        Boundary::Held(held, displacement.each_ref().map(Option::as_ref))
                     }
                     Condition::Support { normal, tangential } => {
-                        let affine = |f: &SharedFunction| is_within(f, 1);
-                        if ![normal, tangential].into_iter().flatten().all(affine) {
-                            return unsupported(format!("the support of '{name}' is not affine"));
+                        let smooth = smooth.get_or_insert_with(|| SmoothBoundary::new(mesh));
+                        let given = [normal, tangential].into_iter().flatten();
+                        if smooth.at_ends(edge).is_some() && !given.clone().all(vanishes) {
+                            return unsupported(format!(
+                                "'{name}' is curved, and what its support prescribes turns with it"
+                            ));
                         }
-                        let n = mesh.length_and_normal(edge).1;
-                        let held = match (normal.is_some(), tangential.is_some()) {
-                            (true, true) => [true, true],
-                            (along, across) if n[0] == 0.0 => [across, along],
-                            (along, across) if n[1] == 0.0 => [along, across],
-                            _ => {
-                                return unsupported(format!("'{name}' holds an oblique direction"));
+                        let n = <[f64; 2]>::from(mesh.length_and_normal(edge).1);
+                        let t = [-n[1], n[0]];
+                        match (normal, tangential) {
+                            (Some(_), Some(_)) => {
+                                let [along, across] = [normal, tangential].map(bulge);
+                                let both = [0, 1].map(|c| n[c] * along + t[c] * across);
+                                Boundary::Held([true; 2], both)
                             }
-                        };
-                        Boundary::Held(held, [None; 2])
+                            (None, None) => Boundary::Free,
+                            (Some(f), None) | (None, Some(f)) => {
+                                if smooth.at_ends(edge).is_some() {
+                                    return unsupported(format!(
+                                        "'{name}' is curved, and the direction that its support holds turns"
+                                    ));
+                                }
+                                let d = directions.one_like(if normal.is_some() { n } else { t });
+                                let bulge = bulge_of(f, ends);
+                                if is_oblique(d) {
+                                    Boundary::Supported(d, bulge, None)
+                                } else {
+                                    Boundary::Held(d.map(|d| d != 0.0), d.map(|d| d * bulge))
+                                }
+                            }
+                        }
                     }
                     Condition::Traction(traction) => Boundary::Loaded(Traction::Vector(traction)),
                     Condition::Pressure(p) => Boundary::Loaded(Traction::Pressure(p)),
@@ -124,29 +150,66 @@ impl<'a> Parts<'a> {
         for (k, edge) in contact.iter().enumerate() {
             boundary.insert(number(edge.edge), Boundary::Contact(k));
         }
-        let prescribed = constraints.values()[..mesh.vertices().len()].to_vec();
-        Ok(Parts { problem, mesh, contact, prescribed, boundary })
+        let vertices = mesh.vertices().len();
+        let mut prescribed = constraints.values()[..vertices].to_vec();
+        let mut frames = BTreeMap::new();
+        for (&vertex, &d) in constraints.frames().range(..vertices) {
+            let d = directions.one_like(d);
+            if is_oblique(d) {
+                frames.insert(vertex, d);
+            } else {
+                let along = prescribed[vertex][0];
+                prescribed[vertex] = d.map(|d| along.filter(|_| d != 0.0).map(|w| d * w));
+            }
+        }
+        let parts = Parts { problem, mesh, contact, prescribed, frames, boundary };
+        parts.check_directions()?;
+        Ok(parts)
+    }
+
+    /// At the ends of an edge that is held along a direction the same one is, or all of the displacement.
+    fn check_directions(&self) -> Result<(), CertifyError> {
+        for (name, condition) in &self.problem.conditions {
+            if !matches!(condition, Condition::Support { .. }) {
+                continue;
+            }
+            for &edge in self.mesh.edges_of(name).unwrap_or_default() {
+                let e = self.mesh.triangle_edges()[edge.triangle][edge.local];
+                let Some(Boundary::Supported(d, ..)) = self.boundary.get(&e) else { continue };
+                let is_held = |vertex: usize| match self.frames.get(&vertex) {
+                    Some(frame) => frame == d,
+                    None => self.prescribed[vertex].iter().all(Option::is_some),
+                };
+                if !self.mesh.ends(edge).into_iter().all(is_held) {
+                    let why = format!("the direction that the support of '{name}' holds turns");
+                    return Err(CertifyError::Unsupported(why));
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Gives v the bulges of u_D on Gamma_D.
     pub fn hold_between(&self, bulges: &mut [[f64; 2]]) {
-        for (corners, edges) in self.mesh.triangles().iter().zip(self.mesh.triangle_edges()) {
-            for (local, &e) in edges.iter().enumerate() {
-                let Some(Boundary::Held(held, _)) = self.boundary.get(&e) else { continue };
-                let ends = [1, 2].map(|k| self.mesh.vertices()[corners[(local + k) % 3]]);
-                let data = self.prescribed_bulge(e, ends);
-                (0..2).filter(|&c| held[c]).for_each(|c| bulges[e][c] = data[c]);
+        for (&e, what) in &self.boundary {
+            match *what {
+                Boundary::Held(held, data) => {
+                    (0..2).filter(|&c| held[c]).for_each(|c| bulges[e][c] = data[c]);
+                }
+                Boundary::Supported(d, data, _) => bulges[e] = held_along(d, data, bulges[e]),
+                _ => {}
             }
         }
     }
 
-    /// u_D beyond the mean of the ends in the middle of an edge of Gamma_D; 0 where it is known to be affine.
-    pub fn prescribed_bulge(&self, e: usize, ends: [[f64; 2]; 2]) -> [f64; 2] {
-        let Some(Boundary::Held(held, functions)) = self.boundary.get(&e) else { return [0.0; 2] };
-        [0, 1].map(|c| match functions[c] {
-            Some(f) if held[c] => bulge_of(f, ends),
-            _ => 0.0,
-        })
+    /// The direction that is held at a vertex, if one is alone, and the displacement along it.
+    pub fn held_alone(&self, vertex: usize) -> Option<([f64; 2], f64)> {
+        match (self.frames.get(&vertex), self.prescribed[vertex]) {
+            (Some(&d), [Some(w), _]) => Some((d, w)),
+            (None, [Some(w), None]) => Some(([1.0, 0.0], w)),
+            (None, [None, Some(w)]) => Some(([0.0, 1.0], w)),
+            _ => None,
+        }
     }
 
     /// The contact boundaries whose direction turns along an edge, so that it and the gap are known at vertices only.
@@ -159,4 +222,43 @@ impl<'a> Parts<'a> {
     pub fn material(&self, t: usize) -> &Material<f64> {
         self.problem.material.of(t)
     }
+}
+
+/// Directions of supports, of which those that differ by the rounding of vertices are one: an axis, if one of them is.
+struct Directions {
+    known: Vec<[f64; 2]>,
+    rounding: f64,
+}
+
+impl Directions {
+    fn one_like(&mut self, d: [f64; 2]) -> [f64; 2] {
+        let rounding = self.rounding.max(4.0 * f64::EPSILON);
+        if let Some(c) = d.iter().position(|x| x.abs() <= rounding) {
+            let mut axis = [0.0; 2];
+            axis[1 - c] = d[1 - c].signum();
+            return axis;
+        }
+        let near = |other: &&[f64; 2]| (0..2).all(|c| (other[c] - d[c]).abs() <= rounding);
+        let found = self.known.iter().find(near).copied();
+        found.unwrap_or_else(|| {
+            self.known.push(d);
+            d
+        })
+    }
+}
+
+/// The vector nearest to v with v . d = w; along an axis it has that component.
+pub(super) fn held_along(d: [f64; 2], w: f64, v: [f64; 2]) -> [f64; 2] {
+    let beyond = (v[0] * d[0] + v[1] * d[1] - w) / (d[0] * d[0] + d[1] * d[1]);
+    [0, 1].map(|c| if d[1 - c] == 0.0 { d[c] * w } else { v[c] - beyond * d[c] })
+}
+
+/// Which components are given.
+fn is_some(functions: &[Option<SharedFunction>; 2]) -> [bool; 2] {
+    functions.each_ref().map(Option::is_some)
+}
+
+/// The function is 0, and known to be.
+fn vanishes(f: &SharedFunction) -> bool {
+    f.degree() == Some(0) && f.at([0.0; 2]) == 0.0
 }

@@ -11,6 +11,8 @@
 //! equilibrium, and there the doubles of a file can't be exact. `certify::balance` therefore adds to the tractions those
 //! small ones that make equilibrium exact; they are known as balls, and so is then tau.
 //!
+//! Gamma_D may hold a direction d alone: v . d is prescribed, and tau n = p d + q e with a given q, e across d (section 7.2).
+//!
 //! Contact may also act along a direction d, affine on each edge, in place of n: v . d <= g, and tau n = p d with p <= 0. The
 //! theorem holds as it stands, for the solution u of the problem with that d (section 7.2).
 //!
@@ -186,15 +188,21 @@ impl Certificate {
             energy = energy + internal / S::from(2) - work * double_area / S::from(24);
         }
         for (e, edge) in self.edges.iter().enumerate() {
-            if let Role::Loaded(_) | Role::Pressed(_) = edge.role {
-                let [a, b] = edge.ends.map(|vertex| v.points[vertex]);
-                for c in 0..2 {
-                    let force = [forces[e][0][c], forces[e][1][c]];
-                    energy -= integral_of_product(force, [a[c], b[c]]);
+            let given = match edge.role {
+                Role::Loaded(_) | Role::Pressed(_) => forces[e],
+                // What is given is across the direction that is held.
+                Role::Supported { along, force, traction } if traction != [0.0; 2] => {
+                    let d = exactly::<S>(along);
+                    [0, 1].map(|k| forces[e][k] - d * S::exactly(force[k]))
                 }
-                if let Some(bulges) = &v.bulges {
-                    energy -= (forces[e][0] + forces[e][1]).dot(&bulges[e]) / S::from(3);
-                }
+                _ => continue,
+            };
+            let [a, b] = edge.ends.map(|vertex| v.points[vertex]);
+            for c in 0..2 {
+                energy -= integral_of_product([given[0][c], given[1][c]], [a[c], b[c]]);
+            }
+            if let Some(bulges) = &v.bulges {
+                energy -= (given[0] + given[1]).dot(&bulges[e]) / S::from(3);
             }
         }
         let bound = square.split(|_| zero, |s| s).sqrt().upper();

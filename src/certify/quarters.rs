@@ -2,11 +2,11 @@
 
 use nalgebra::Vector2;
 
-use super::certificate::{Certificate, Cut, Edge, Role, Shape, place};
+use super::certificate::{Certificate, Cut, Edge, Role, Shape, place, support};
 use super::data::Data;
 use super::divide::Part;
 use super::parts::{Boundary, Parts};
-use super::tractions::{force_of, held_only};
+use super::tractions::{force_of, held_only, supported};
 use crate::fem::Mesh;
 use crate::fem::mesh::length;
 use crate::kernel::composite::{Affine, Loads};
@@ -34,10 +34,17 @@ pub(super) fn add_halves(
             let mut bulge = [0.0; 2];
             let role = match parts.boundary.get(&e) {
                 None => Role::Inner(force),
-                Some(Boundary::Held(held, _)) => {
-                    let ends = [a, b].map(|vertex| parts.mesh.vertices()[vertex]);
-                    bulge = parts.prescribed_bulge(e, ends).map(|bulge| bulge / 4.0);
-                    held_only(*held, force)
+                Some(&Boundary::Held(held, data)) => {
+                    bulge = data.map(|bulge| bulge / 4.0);
+                    held_only(held, force)
+                }
+                Some(&Boundary::Supported(d, data, traction)) => {
+                    bulge[0] = data / 4.0;
+                    let [start, end] = places();
+                    let ends = [start, end].map(<[f64; 2]>::from);
+                    let normal = Vector2::new(end.y - start.y, start.x - end.x);
+                    let given = traction.map(|t| (t, force_of(&t.moments(ends, normal))));
+                    supported(d, ends, force, given)
                 }
                 Some(Boundary::Free) => Role::Loaded([[0.0; 2]; 2]),
                 Some(Boundary::Loaded(traction)) => {
@@ -132,6 +139,9 @@ fn outward(
         Role::Inner(force) | Role::Held(_, force) => {
             let [a, b] = force.map(Vector2::from);
             if edge.ends == ends { [a, b] } else { [-b, -a] }
+        }
+        Role::Supported { along, force, traction } => {
+            support(along, force, traction, || length(normal))
         }
         Role::Loaded(traction) => traction.map(|t| Vector2::from(t) * length(normal)),
         Role::Pressed(p) => p.map(|p| normal * -p),

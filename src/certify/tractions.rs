@@ -16,7 +16,8 @@
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::certificate::Role;
+use super::certificate::{Role, turned};
+use super::data::Traction;
 use super::field::Field;
 use super::parts::{Boundary, Parts};
 use crate::fem::mesh::length;
@@ -66,7 +67,7 @@ pub(super) fn moments(
     }
     // What the mean stress of the neighbours gives, and what the boundary prescribes.
     let mut moments = vec![[Vector2::zeros(); 2]; mesh.edge_count()];
-    let mut known = vec![[false; 2]; mesh.edge_count()];
+    let mut known = vec![Known::Nothing; mesh.edge_count()];
     for (e, owner) in owners.iter().enumerate() {
         let [Some((t, local)), second] = *owner else { continue };
         let normal = triangles[t].scaled_normal(local);
@@ -92,21 +93,31 @@ pub(super) fn moments(
             None => {}
             Some(Boundary::Held(held, _)) => {
                 for c in (0..2).filter(|&c| !held[c]) {
-                    known[e][c] = true;
+                    let mut across = Vector2::zeros();
+                    across[c] = 1.0;
+                    known[e] = Known::Along(across);
                     moments[e].iter_mut().for_each(|m| m[c] = 0.0);
                 }
             }
+            Some(&Boundary::Supported(d, _, traction)) => {
+                let across = turned(Vector2::from(d));
+                known[e] = Known::Along(across);
+                let ends = [1, 2].map(|k| mesh.vertices()[corners[t][(local + k) % 3]]);
+                let given = traction.map(|traction| traction.moments(ends, normal));
+                let given = given.unwrap_or_default();
+                moments[e] = [0, 1].map(|k| with_along(across, given[k], moments[e][k]));
+            }
             Some(Boundary::Free) => {
-                known[e] = [true; 2];
+                known[e] = Known::All;
                 moments[e] = [Vector2::zeros(); 2];
             }
             Some(Boundary::Loaded(traction)) => {
-                known[e] = [true; 2];
+                known[e] = Known::All;
                 let ends = [1, 2].map(|k| mesh.vertices()[corners[t][(local + k) % 3]]);
                 moments[e] = traction.moments(ends, normal);
             }
             Some(Boundary::Contact(k)) => {
-                known[e] = [true; 2];
+                known[e] = Known::All;
                 moments[e] = parts.contact[*k].moments;
             }
         }
@@ -132,13 +143,63 @@ pub(super) fn moments(
     moments
 }
 
+/// What is known of the moments on an edge: all, or what they are along a unit vector.
+#[derive(Clone, Copy)]
+enum Known {
+    Nothing,
+    Along(Vector2<f64>),
+    All,
+}
+
+impl Known {
+    fn directions(self) -> [Option<Vector2<f64>>; 2] {
+        match self {
+            Known::Nothing => [None; 2],
+            Known::Along(k) => [Some(k), None],
+            Known::All => [Some(Vector2::x()), Some(Vector2::y())],
+        }
+    }
+}
+
+/// The vector that is `given` along k and `other` across it.
+fn with_along(k: Vector2<f64>, given: Vector2<f64>, other: Vector2<f64>) -> Vector2<f64> {
+    let across = turned(k);
+    k * k.dot(&given) + across * across.dot(&other)
+}
+
+/// Vectors with a sine below this are parallel.
+const PARALLEL: f64 = 1e-6;
+
+/// The vector that has the given products with the first two of these that are not parallel, and as much of `otherwise` as they leave.
+fn combined(
+    demands: impl Iterator<Item = (Vector2<f64>, f64)>,
+    otherwise: impl FnOnce() -> Vector2<f64>,
+) -> Vector2<f64> {
+    let mut first: Option<(Vector2<f64>, f64)> = None;
+    for (k, value) in demands {
+        match first {
+            None => first = Some((k, value)),
+            Some((l, other)) => {
+                let sine = l.perp(&k);
+                if sine.abs() > PARALLEL {
+                    return (turned(l) * value - turned(k) * other) / sine;
+                }
+            }
+        }
+    }
+    match first {
+        Some((k, value)) => with_along(k, k * value, otherwise()),
+        None => otherwise(),
+    }
+}
+
 /// What the triangles around a vertex have.
 struct Around<'a> {
     corners: &'a [[usize; 3]],
     edges: &'a [[usize; 3]],
     owners: &'a [[Option<(usize, usize)>; 2]],
     averaged: &'a [[Vector2<f64>; 2]],
-    known: &'a [[bool; 2]],
+    known: &'a [Known],
     triangles: &'a [Triangle<f64>],
     stress: &'a [Affine<f64>],
     /// The body force at the vertices, affine between them.
@@ -203,32 +264,34 @@ fn go_round(a: usize, fan: &[(usize, usize)], around: &Around, moments: &mut [[V
         }
         let last = edges.len() - 1;
         let ring = edges[0] == edges[last];
-        for c in 0..2 {
-            let target = |i: usize| signs[i].1 * around.averaged[edges[i]][signs[i].0][c];
-            let offset = if around.known[edges[0]][c] {
-                target(0)
-            } else if around.known[edges[last]][c] {
-                target(last) - sums[last][c]
-            } else {
-                let count = if ring { last } else { last + 1 };
-                let (mut weighted, mut weights) = (0.0, 0.0);
-                for i in 0..count {
-                    let normal = match around.owners[edges[i]][0] {
-                        Some((t, local)) => around.triangles[t].scaled_normal(local),
-                        None => Vector2::x(),
-                    };
-                    let weight = 1.0 / length(normal);
-                    weighted += weight * (target(i) - sums[i][c]);
-                    weights += weight;
-                }
-                weighted / weights
-            };
-            for i in 0..=last {
-                let done = around.known[edges[i]][c] || (ring && i == last);
-                if !done {
-                    moments[edges[i]][signs[i].0][c] = signs[i].1 * (offset + sums[i][c]);
-                }
+        // What the moment on edge i, near its target or equal to it, says of X_0.
+        let offset_at = |i: usize| around.averaged[edges[i]][signs[i].0] * signs[i].1 - sums[i];
+        let demands = [0, last].into_iter().flat_map(|i| {
+            let along = around.known[edges[i]].directions();
+            along.map(move |along| along.map(|k| (k, k.dot(&offset_at(i)))))
+        });
+        let offset = combined(demands.flatten(), || {
+            let count = if ring { last } else { last + 1 };
+            let (mut weighted, mut weights) = (Vector2::zeros(), 0.0);
+            for (i, &e) in edges.iter().enumerate().take(count) {
+                let normal = match around.owners[e][0] {
+                    Some((t, local)) => around.triangles[t].scaled_normal(local),
+                    None => Vector2::x(),
+                };
+                let weight = 1.0 / length(normal);
+                weighted += offset_at(i) * weight;
+                weights += weight;
             }
+            weighted / weights
+        });
+        for i in 0..if ring { last } else { last + 1 } {
+            let moment = &mut moments[edges[i]][signs[i].0];
+            let free = (offset + sums[i]) * signs[i].1;
+            *moment = match around.known[edges[i]] {
+                Known::Nothing => free,
+                Known::Along(k) => with_along(k, *moment, free),
+                Known::All => continue,
+            };
         }
     }
 }
@@ -236,6 +299,20 @@ fn go_round(a: usize, fan: &[(usize, usize)], around: &Around, moments: &mut [[V
 /// The affine force, per unit of an edge's parameter, that has the moments `m` with the hat functions of the ends.
 pub(super) fn force_of(m: &[Vector2<f64>; 2]) -> [[f64; 2]; 2] {
     [0, 1].map(|k| [0, 1].map(|c| 4.0 * m[k][c] - 2.0 * m[1 - k][c]))
+}
+
+/// The part of a force along the direction `d` that is held, and what is given across it between the places `ends`: a traction, with
+/// the affine force that has its moments.
+pub(super) fn supported(
+    d: [f64; 2],
+    ends: [[f64; 2]; 2],
+    force: [[f64; 2]; 2],
+    given: Option<(Traction, [[f64; 2]; 2])>,
+) -> Role {
+    let squared = d[0] * d[0] + d[1] * d[1];
+    let along = |f: [f64; 2]| (f[0] * d[0] + f[1] * d[1]) / squared;
+    let traction = given.map_or([0.0; 2], |(traction, force)| traction.across(d, ends, force));
+    Role::Supported { along: d, force: force.map(along), traction }
 }
 
 /// The force on the held components.

@@ -10,7 +10,8 @@
 //! | cuts | the two vertices (n n), the place between them (f) |
 //! | triangles | 3 points, 3 edges (n), lambda, mu, the body force at the three points, the oscillation (f) |
 //! | edges | start, end, role (n), four numbers of the role (f) |
-//! | directions, of contact where it does not act along the normal | the edge (n), d at its start and at its end (f) |
+//! | directions, of contact where it does not act along the normal, and of role 7 | the edge (n), d at its start and at its end (f) |
+//! | frames: points that are held along an oblique direction alone | the point (n), d (f) |
 //! | if v is quadratic: v at the cuts | v_x v_y (f) |
 //! | if v is quadratic: prescribed, of the cuts | as of the vertices (n f n f) |
 //! | if v is quadratic: bulges, of the edges | of v, and of the data: u_D, or g and 0, or 0 0 (f f f f) |
@@ -18,8 +19,11 @@
 //!
 //! A bulge is the value in the middle of an edge less the mean of its ends. Points are vertices, then cuts. Roles: 0 inner (tau N at start and end), 1, 2, 3 held in x, in y, in both (tau N at start
 //! and end), 4 given traction (t at start and end), 5 given pressure (p at start and end, 0 0), 6 contact (tau_n at start and
-//! end, g at start and end).
+//! end, g at start and end), 7 held along the direction d alone (tau N . d at start and end, the traction that is given along d turned to
+//! the left at start and end; d is the same at both). In a frame the first of the prescribed numbers is u_D . d, and v is the vector nearest
+//! to the doubles of the file that has it.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -37,7 +41,7 @@ pub const FILES: [&str; 2] = ["certificate.json", "certificate.bin"];
 const MOST: u64 = 4 << 30;
 
 /// The format that this program writes and reads.
-const FORMAT: u32 = 5;
+const FORMAT: u32 = 6;
 
 /// certificate.json.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -78,8 +82,16 @@ pub struct Counts {
     pub triangles: usize,
     /// Edges.
     pub edges: usize,
-    /// Directions of contact.
+    /// Directions of contact, and of edges that are held along one alone.
     pub directions: usize,
+    /// Points that are held along an oblique direction alone.
+    pub frames: usize,
+}
+
+/// What every version of the format has.
+#[derive(Deserialize)]
+struct Version {
+    format: u32,
 }
 
 /// Why a certificate is not accepted.
@@ -142,8 +154,17 @@ pub fn audit(path: &Path) -> Result<Audit, AuditError> {
     let text = read(path)?;
     let wrong =
         |path: &Path, problem: String| AuditError::Format { path: path.to_owned(), problem };
-    let header: Header =
-        serde_json::from_slice(&text).map_err(|e| wrong(path, format!("no certificate: {e}")))?;
+    let none = |e| wrong(path, format!("no certificate: {e}"));
+    let Version { format } = serde_json::from_slice(&text).map_err(none)?;
+    if format != FORMAT {
+        return Err(wrong(
+            path,
+            format!(
+                "the certificate is of format {format}; expected {FORMAT}, the one that this program writes and verifies"
+            ),
+        ));
+    }
+    let header: Header = serde_json::from_slice(&text).map_err(none)?;
     let arrays = path.with_file_name(FILES[1]);
     let bytes = read(&arrays)?;
     let (certificate, claim) =
@@ -182,7 +203,7 @@ pub fn decode(header: &Header, bytes: &[u8]) -> Result<(Certificate, Claim), Str
     if ![1, 2].contains(&header.degree) {
         return Err(format!("the degree of v is {}; expected 1 or 2", header.degree));
     }
-    let Counts { vertices, cuts, triangles, edges, directions } = header.counts;
+    let Counts { vertices, cuts, triangles, edges, directions, frames } = header.counts;
     let quadratic = header.degree == 2;
     let words = |entries: usize, each: usize| entries.checked_mul(each);
     let expected = [
@@ -191,6 +212,7 @@ pub fn decode(header: &Header, bytes: &[u8]) -> Result<(Certificate, Claim), Str
         words(triangles, 16),
         words(edges, 7),
         words(directions, 5),
+        words(frames, 3),
         words(cuts, if quadratic { 6 } else { 0 }),
         words(edges, if quadratic { 4 } else { 0 }),
     ]
@@ -206,6 +228,7 @@ pub fn decode(header: &Header, bytes: &[u8]) -> Result<(Certificate, Claim), Str
         displacement: (0..vertices).map(|_| words.pair()).collect(),
         curved: None,
         prescribed: Vec::with_capacity(vertices),
+        frames: BTreeMap::new(),
         cuts: Vec::with_capacity(cuts),
         pieces: Vec::with_capacity(triangles),
         edges: Vec::with_capacity(edges),
@@ -235,6 +258,7 @@ pub fn decode(header: &Header, bytes: &[u8]) -> Result<(Certificate, Claim), Str
             4 => Role::Loaded([start, end]),
             5 if end == [0.0; 2] && start != [0.0; 2] => Role::Pressed(start),
             6 => Role::Contact { pressure: start, gap: end, along: None },
+            7 => Role::Supported { along: [0.0; 2], force: start, traction: end },
             _ => return Err(format!("edge {e} has an unknown role")),
         };
         certificate.edges.push(Edge { ends, role });
@@ -243,7 +267,16 @@ pub fn decode(header: &Header, bytes: &[u8]) -> Result<(Certificate, Claim), Str
         let (e, d) = (words.index(), [words.pair(), words.pair()]);
         match certificate.edges.get_mut(e).map(|edge| &mut edge.role) {
             Some(Role::Contact { along: along @ None, .. }) => *along = Some(d),
-            _ => return Err(format!("a direction of contact for edge {e}, which has none")),
+            Some(Role::Supported { along: along @ [0.0, 0.0], .. }) if d[0] == d[1] => {
+                *along = d[0];
+            }
+            _ => return Err(format!("a direction for edge {e}, which has none, or has one")),
+        }
+    }
+    for _ in 0..frames {
+        let (point, d) = (words.index(), words.pair());
+        if certificate.frames.insert(point, d).is_some() {
+            return Err(format!("two frames at point {point}"));
         }
     }
     if quadratic {
@@ -263,13 +296,16 @@ fn counts(certificate: &Certificate) -> Counts {
         triangles: certificate.pieces.len(),
         edges: certificate.edges.len(),
         directions: directions(certificate).count(),
+        frames: certificate.frames.len(),
     }
 }
 
 fn arrays(certificate: &Certificate, shares: &[f64]) -> Vec<u8> {
-    let Counts { vertices, cuts, triangles, edges, directions: turned } = counts(certificate);
+    let Counts { vertices, cuts, triangles, edges, directions: turned, frames } =
+        counts(certificate);
     let curved = if certificate.curved.is_some() { 6 * cuts + 4 * edges } else { 0 };
-    let words = 8 * vertices + 3 * cuts + 16 * triangles + 7 * edges + 5 * turned + curved;
+    let words =
+        8 * vertices + 3 * cuts + 16 * triangles + 7 * edges + 5 * turned + 3 * frames + curved;
     let mut bytes = Vec::with_capacity(8 * words);
     let mut word = |word: u64| bytes.extend_from_slice(&word.to_le_bytes());
     let number = |x: f64| x.to_bits();
@@ -301,6 +337,7 @@ fn arrays(certificate: &Certificate, shares: &[f64]) -> Vec<u8> {
             Role::Loaded(traction) => (4, traction),
             Role::Pressed(pressure) => (5, [pressure, [0.0; 2]]),
             Role::Contact { pressure, gap, .. } => (6, [pressure, gap]),
+            Role::Supported { force, traction, .. } => (7, [force, traction]),
         };
         word(role);
         start.iter().chain(&end).for_each(|&x| word(number(x)));
@@ -308,6 +345,10 @@ fn arrays(certificate: &Certificate, shares: &[f64]) -> Vec<u8> {
     for (e, along) in directions(certificate) {
         word(index(e));
         along.as_flattened().iter().for_each(|&x| word(number(x)));
+    }
+    for (&point, d) in &certificate.frames {
+        word(index(point));
+        d.iter().for_each(|&x| word(number(x)));
     }
     if let Some(Curved { at_cuts, prescribed: data_at_cuts, bulges, data }) = &certificate.curved {
         at_cuts.iter().flatten().for_each(|&x| word(number(x)));
@@ -319,10 +360,11 @@ fn arrays(certificate: &Certificate, shares: &[f64]) -> Vec<u8> {
     bytes
 }
 
-/// The directions of contact that are not the edges' normals, with the edges.
+/// The directions of contact that are not the edges' normals, and of edges that are held along one alone, with the edges.
 fn directions(certificate: &Certificate) -> impl Iterator<Item = (usize, [[f64; 2]; 2])> {
     certificate.edges.iter().enumerate().filter_map(|(e, edge)| match edge.role {
         Role::Contact { along, .. } => Some((e, along?)),
+        Role::Supported { along, .. } => Some((e, [along; 2])),
         _ => None,
     })
 }

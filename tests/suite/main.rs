@@ -7,6 +7,7 @@ mod adapt;
 mod assembled;
 mod bad_input;
 mod bodies;
+mod certified_supports;
 mod certify;
 #[cfg(feature = "cli")]
 mod command;

@@ -170,6 +170,9 @@ fn lost(certificate: &Certificate, t: usize, q: f64) -> f64 {
     let force = certificate.edges.iter().fold(0.0, |most: f64, edge| {
         most.max(match edge.role {
             Role::Inner(force) | Role::Held(_, force) => largest(force.as_flattened()),
+            Role::Supported { force, traction, .. } => {
+                largest(&force) + largest(&traction) * long(edge.ends)
+            }
             Role::Loaded(traction) => largest(traction.as_flattened()) * long(edge.ends),
             Role::Pressed(p) | Role::Contact { pressure: p, .. } => largest(&p) * long(edge.ends),
         })
@@ -392,7 +395,7 @@ fn glued() -> Result<(Certificate, f64), String> {
                 force.as_flattened_mut().iter_mut().for_each(turn);
             }
             Role::Contact { pressure, .. } => pressure.iter_mut().for_each(turn),
-            Role::Loaded(_) | Role::Pressed(_) => {}
+            Role::Loaded(_) | Role::Pressed(_) | Role::Supported { .. } => {}
         }
     }
     Ok((certificate, 2.0_f64.sqrt() * d))
