@@ -14,7 +14,7 @@ use thiserror::Error;
 use super::errors::CertifyError;
 use super::{Continuous, certify};
 use crate::fem::contact_line;
-use crate::fem::{Condition, MeshError, Problem, Space};
+use crate::fem::{Condition, Mesh, MeshError, Problem, Space};
 use crate::kernel::P1;
 use crate::solve::{
     Course, Degree, Method, Phase, Settings, Solution, SolveError, Times, solve_along,
@@ -37,7 +37,7 @@ pub struct Target {
 #[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 #[non_exhaustive]
 pub struct Level {
-    /// Degrees of freedom: twice the vertices.
+    /// Degrees of freedom: twice the nodes.
     pub unknowns: usize,
     /// Triangles.
     pub triangles: usize,
@@ -90,8 +90,6 @@ pub enum AdaptError {
     Certify(#[from] CertifyError),
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    #[error("meshes are adapted for degree 1; expected method.degree = 1")]
-    Degree,
     #[error(
         "no mesh can be adapted: '{boundary}' is curved and has a gap along its normal, and bisection keeps the straight edges of the mesh; expected a straight boundary, or an [obstacle]"
     )]
@@ -110,13 +108,13 @@ impl AdaptError {
             AdaptError::Certify(error) => {
                 matches!(error, CertifyError::Data(_) | CertifyError::Unsupported(_))
             }
-            AdaptError::Degree | AdaptError::Curved { .. } => true,
+            AdaptError::Curved { .. } => true,
             AdaptError::Mesh(_) | AdaptError::AtRest => false,
         }
     }
 }
 
-/// Solves `problem` by P1 on meshes that are refined until the bound meets the `target`, and leaves the problem on the last
+/// Solves `problem` on meshes that are refined until the bound meets the `target`, and leaves the problem on the last
 /// of them; `watcher` is told what goes on.
 ///
 /// # Errors
@@ -128,9 +126,6 @@ pub fn adapt(
     target: Target,
     watcher: &dyn Fn(Stage),
 ) -> Result<(Problem, Adapted), AdaptError> {
-    if method.degree != Degree::One {
-        return Err(AdaptError::Degree);
-    }
     check_straight(&problem)?;
     let of_solve = |phase| watcher(Stage::Solve(phase));
     let mut newest = problem.mesh.opposite_longest();
@@ -151,7 +146,7 @@ pub fn adapt(
             return Err(AdaptError::AtRest);
         }
         levels.push(Level {
-            unknowns: 2 * problem.mesh.vertices().len(),
+            unknowns: unknowns(&problem.mesh, method.degree),
             triangles: problem.mesh.triangles().len(),
             newton_steps: solution.newton.iterations(),
             bound: certified.bound,
@@ -163,16 +158,25 @@ pub fn adapt(
             None
         } else {
             let finer = problem.mesh.bisected(&newest, &marked(&certified.indicators))?;
-            Some(finer).filter(|f| 2 * f.mesh.vertices().len() <= target.max_unknowns)
+            Some(finer).filter(|f| unknowns(&f.mesh, method.degree) <= target.max_unknowns)
         };
         certifying += begin.elapsed();
         let Some(finer) = finer else {
             return Ok((problem, Adapted { solution, times, certified, certifying, levels, met }));
         };
-        start = Some(finer.prolonged(&solution.displacement));
+        start = Some(finer.prolonged(&problem.mesh, &solution.displacement));
         newest = vec![0; finer.mesh.triangles().len()];
         problem = problem.refined(finer);
     }
+}
+
+/// Degrees of freedom on a mesh.
+fn unknowns(mesh: &Mesh, degree: Degree) -> usize {
+    let middles = match degree {
+        Degree::One => 0,
+        Degree::Two => mesh.edge_count(),
+    };
+    2 * (mesh.vertices().len() + middles)
 }
 
 /// Where contact acts along normals, these are those of straight edges.

@@ -283,7 +283,7 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, CaseErro
     let boundaries = read_boundaries(root, solution.as_ref())?;
     let method = read_method(root.section("method")?)?;
     let settings = read_settings(root.section("solver")?)?;
-    let adapt = root.section("adapt")?.map(|table| read_target(&table, &method)).transpose()?;
+    let adapt = root.section("adapt")?.map(|table| read_target(&table)).transpose()?;
     let output = root.section("output")?;
     let units = root.section("units")?.map(|table| read_units(&table)).transpose()?;
     // The mesh, and what needs it, comes last: it is what takes time.
@@ -453,7 +453,7 @@ mod tests {
     }
 
     #[test]
-    fn a_target_is_a_share_in_percent_and_beside_degree_1_only() {
+    fn a_target_is_a_share_in_percent() {
         let with = |adapt: &str| read(&format!("{SMALL}\n{adapt}")).map(|case| case.adapt);
         let target = with("adapt.target = \"0.5 %\"").unwrap_or_else(|e| panic!("{e}"));
         assert_eq!(target, Some(Target { relative: 0.005, max_unknowns: MOST_UNKNOWNS }));
@@ -463,8 +463,6 @@ mod tests {
         }
         let error = with("adapt.max_unknowns = 10").unwrap_err().to_string();
         assert!(error.contains("target"), "{error}");
-        let error = with("adapt.target = \"1 %\"\nmethod.degree = 2").unwrap_err().to_string();
-        assert!(error.contains("for which meshes are adapted"), "{error}");
     }
 
     #[test]

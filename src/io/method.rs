@@ -1,6 +1,6 @@
 //! The tables [method], [solver] and [adapt] of a case file: how it is solved.
 
-use super::mistake::{CaseError, CaseMistake};
+use super::mistake::CaseError;
 use super::table::{Table, Value};
 use crate::certify::Target;
 use crate::fem::rectangle::MOST_CELLS;
@@ -72,15 +72,8 @@ pub(super) fn read_settings(table: Option<Table>) -> Result<Settings, CaseError>
 /// Meshes are refined up to so many unknowns where the case says nothing.
 pub(super) const MOST_UNKNOWNS: usize = 500_000;
 
-pub(super) fn read_target(table: &Table, method: &Method) -> Result<Target, CaseError> {
+pub(super) fn read_target(table: &Table) -> Result<Target, CaseError> {
     table.only(&["target", "max_unknowns"])?;
-    if method.degree != Degree::One {
-        return Err(table.wrong(CaseMistake::Combination {
-            name: table.name().to_owned(),
-            found: "method.degree = 2 beside it".to_owned(),
-            expected: "degree 1, for which meshes are adapted".to_owned(),
-        }));
-    }
     let expected = "a share of the energy norm above 0 % and below 100 %, such as \"1 %\"";
     let target = table.require("target", expected)?;
     let percent = target.as_text().and_then(|text| text.strip_suffix('%'));

@@ -16,6 +16,8 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use nalgebra::Vector2;
+
 use super::{Mesh, MeshError, length};
 
 /// A mesh made from another by bisection. The vertices of the old one keep their numbers; the newest vertex of each triangle
@@ -31,10 +33,42 @@ pub struct Refinement {
 }
 
 impl Refinement {
-    /// The values at the vertices of a field that is affine on the triangles of the old mesh and has the values `u` there.
-    pub fn prolonged(&self, u: &[[f64; 2]]) -> Vec<[f64; 2]> {
-        let between = |&[a, b]: &[usize; 2]| middle(u[a], u[b]);
-        u.iter().copied().chain(self.parents.iter().map(between)).collect()
+    /// The nodal values on this mesh of a field that has the values `u` at the vertices of the `old` one, and at the middles of its edges
+    /// if it is quadratic on its triangles.
+    pub fn prolonged(&self, old: &Mesh, u: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        let (ends, middles) = u.split_at(old.vertices.len());
+        if middles.is_empty() {
+            let between = |&[a, b]: &[usize; 2]| middle(u[a], u[b]);
+            return u.iter().copied().chain(self.parents.iter().map(between)).collect();
+        }
+        let mesh = &self.mesh;
+        let vertices = mesh.vertices.len();
+        let mut finer = vec![[0.0; 2]; vertices + mesh.edge_count()];
+        for (t, &origin) in self.origin.iter().enumerate() {
+            let (corners, edges) = (mesh.triangles()[t], mesh.triangle_edges()[t]);
+            let whole = old.triangle(origin);
+            let (centre, gradients) = (whole.point([1.0 / 3.0; 3]), whole.barycentric_gradients());
+            let at_vertices = old.triangles()[origin].map(|vertex| ends[vertex]);
+            let at_middles = old.triangle_edges()[origin].map(|e| middles[e]);
+            let value = |x: Vector2<f64>| {
+                let l = gradients.map(|gradient| 1.0 / 3.0 + gradient.dot(&(x - centre)));
+                [0, 1].map(|c| {
+                    let of = |i: usize| {
+                        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                        at_vertices[i][c] * l[i] * (2.0 * l[i] - 1.0)
+                            + at_middles[i][c] * 4.0 * l[j] * l[k]
+                    };
+                    of(0) + of(1) + of(2)
+                })
+            };
+            let part = mesh.triangle(t);
+            for i in 0..3 {
+                finer[corners[i]] = value(part.vertices[i]);
+                let [a, b] = [1, 2].map(|k| part.vertices[(i + k) % 3]);
+                finer[vertices + edges[i]] = value((a + b) / 2.0);
+            }
+        }
+        finer
     }
 }
 
@@ -162,7 +196,8 @@ impl Mesh {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fem::{Diagonal, Rectangle, Trapezoid};
+    use crate::fem::{Diagonal, Rectangle, Space, Trapezoid};
+    use crate::kernel::P2;
 
     /// The cosines of a triangle's angles in order, to nine digits: the same for similar triangles.
     fn class(mesh: &Mesh, t: usize) -> [i64; 3] {
@@ -273,7 +308,17 @@ mod tests {
         let fine = coarse.bisected(&newest, &[1]).unwrap();
         let u: Vec<[f64; 2]> = coarse.vertices().iter().map(|&x| affine(x)).collect();
         let expected: Vec<[f64; 2]> = fine.mesh.vertices().iter().map(|&x| affine(x)).collect();
-        assert_eq!(fine.prolonged(&u), expected, "binary fractions, so exactly");
+        assert_eq!(fine.prolonged(&coarse, &u), expected, "binary fractions, so exactly");
+        let quadratic = |[x, y]: [f64; 2]| [x * x - x * y, 1.0 + y * y - 2.0 * x];
+        let nodes = |mesh: &Mesh| Space::<P2, 6, 3>::new(mesh).nodes().to_vec();
+        let u: Vec<[f64; 2]> = nodes(&coarse).into_iter().map(quadratic).collect();
+        let found = fine.prolonged(&coarse, &u);
+        for (found, x) in found.iter().zip(nodes(&fine.mesh)) {
+            let expected = quadratic(x);
+            // A dozen operations on numbers below 4.
+            assert!((0..2).all(|c| (found[c] - expected[c]).abs() < 1e-14), "{x:?}: {found:?}");
+        }
+        assert_eq!(found.len(), nodes(&fine.mesh).len());
         let upper: f64 = fine
             .mesh
             .surface("upper")
