@@ -187,7 +187,7 @@ pub fn certified(case: &Case, field: &Path, c: &Continuous, files: &[PathBuf]) -
     let size = |bound: f64| {
         let percent = 100.0 * bound / norm;
         if percent.is_finite() {
-            format!("{} % of its energy norm", numbers::short(percent, 3))
+            format!("{} ({} % of its energy norm)", short(bound), numbers::short(percent, 3))
         } else {
             short(bound)
         }
