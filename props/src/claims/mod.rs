@@ -34,6 +34,8 @@ pub mod foundations;
 #[cfg(not(kani))]
 pub mod geometry;
 #[cfg(not(kani))]
+pub mod given;
+#[cfg(not(kani))]
 pub mod honesty;
 pub mod lemma_3_1;
 pub mod lemma_3_2;

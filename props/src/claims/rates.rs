@@ -16,6 +16,7 @@ use signorini::solve::ladder::fitted_slope;
 use signorini::solve::{Degree, Ladder, Method, Settings, Theorem};
 
 use crate::claim::{Claim, Engine, Outcome, by, control, noticed, text};
+use crate::claims::given;
 
 /// Cells a side on the coarsest mesh, and how many meshes.
 const COARSEST: usize = 4;
@@ -200,13 +201,23 @@ pub fn claim() -> Claim {
         items: &["Theorem 3.5", "(21)", "(25)", "Remark 3.7"],
         title: "Rates of convergence",
         paper: "|u - u^h|_1 + |gamma^1/2 (sigma_n(u) + (1/gamma)[P_gamma(u^h)]+)| <= C h^(1/2 + nu) |u|_(3/2 + nu), 0 < nu <= 1/2; the same rate for |gamma^1/2 sigma_n(u - u_h)|; for quadratic elements 0 < nu <= 3/2.",
-        statement: "Observed, not established: on the wedge of angle 3 pi/4, u in H^(1 + alpha), the energy, contact and normal stress errors of P1 and P2 fall at the rate alpha; at the end of contact, u in H^(5/2), the energy error at the rates 1 (P1) and 3/2 (P2). The whole study, more solutions and meshes, and the variants of the method that lose the rates: `cargo test --test suite convergence`, docs/convergence.md. The step from (13) with its constant to the rate of Corollary 3.6 is proved in row 11.",
+        statement: "Observed, not established: on the wedge of angle 3 pi/4, u in H^(1 + alpha), the energy, contact and normal stress errors of P1 and P2 fall at the rate alpha; at the end of contact, u in H^(5/2), the energy error at the rates 1 (P1) and 3/2 (P2). The whole study, more solutions and meshes, and the variants of the method that lose the rates: `cargo test --test suite convergence`, docs/convergence.md. What the exact solutions promise is min(p, s - 1) for their s; a ladder has four times the triangles on each level, and half the least limit of its levels as its gamma0. The step from (13) with its constant to the rate of Corollary 3.6 is proved in row 11.",
         numbers: "doubles: slopes fitted over four meshes of the solver, 4 to 32 cells a side.",
         kernel: &[],
         preconditions: "The regularity of the solution.",
         limits: "The rates themselves: the interpolation estimates (22)-(24) are taken from the literature, and an observed rate is no proof.",
         single: Some("A rate is a limit: it can be observed in floating point only."),
         checks: vec![
+            by(
+                Engine::Doubles,
+                "exact_solutions_promise_their_rates",
+                given::exact_solutions_promise_their_rates,
+            ),
+            control(
+                Engine::Doubles,
+                "control_smoother_solutions_promise_more",
+                given::smoother_solutions_promise_more,
+            ),
             by(Engine::Doubles, "the_wedge_converges_at_the_rate_alpha", wedge_rates),
             by(Engine::Doubles, "the_end_of_contact_has_the_rates_1_and_3_2", energy_rates),
             control(

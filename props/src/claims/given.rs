@@ -1,0 +1,318 @@
+//! What a problem is made of before anything is solved: structured meshes and their families, exact solutions and the rates
+//! that they promise, and the numbers that methods, settings and materials may have.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use signorini::fem::exact::{Corner, Kind, Singular, Smooth};
+use signorini::fem::{
+    Condition, DataError, Diagonal, Exact, Mesh, Perturbation, Problem, Rectangle, SharedFunction,
+    Structured, Trapezoid,
+};
+use signorini::kernel::{Material, P1, Plane};
+use signorini::solve::ladder::{fitted_slope, rates};
+use signorini::solve::{
+    ContactQuadrature, Degree, Gamma0, Ladder, MOST_GAUSS_POINTS, MOST_ITERATIONS, Method,
+    Settings, SolveError, discretize,
+};
+
+use crate::claim::{Outcome, noticed, text};
+use crate::draws;
+use crate::proof::sampler::Random;
+
+fn constant(value: f64) -> SharedFunction {
+    Arc::new(move |_: [f64; 2]| value)
+}
+
+/// A place of the unit square on its way to a mesh: the rectangle's, or the trapezoid's of an angle.
+type Map = Box<dyn Fn([f64; 2]) -> [f64; 2]>;
+
+/// The vertices of `mesh` are those of nx x ny cells of the unit square under `map`, with the middles of the cells if these are
+/// crossed, each off by at most `amount` cells in the square; the corners are where they are, and the sides on their lines.
+fn laid_out(
+    mesh: &Mesh,
+    [nx, ny]: [usize; 2],
+    crossed: bool,
+    map: &Map,
+    back: &Map,
+    amount: f64,
+) -> Result<(), String> {
+    let mut places = Vec::new();
+    for j in 0..=ny {
+        places.extend((0..=nx).map(|i| [i as f64, j as f64]));
+    }
+    if crossed {
+        for j in 0..ny {
+            places.extend((0..nx).map(|i| [i as f64 + 0.5, j as f64 + 0.5]));
+        }
+    }
+    let cells = [nx as f64, ny as f64];
+    let in_square = |place: [f64; 2]| [place[0] / cells[0], place[1] / cells[1]];
+    let mut left: Vec<[f64; 2]> = mesh.vertices().to_vec();
+    for place in places {
+        let straight = map(in_square(place));
+        let off = |x: &[f64; 2]| {
+            let at = back(*x);
+            [0, 1].map(|c| (at[c] * cells[c] - place[c]).abs())
+        };
+        let moves = [0, 1].map(|c| 0.0 < place[c] && place[c] < cells[c]);
+        let near = left.iter().position(|x| {
+            let off = off(x);
+            (0..2).all(|c| off[c] <= if moves[c] { amount } else { 0.0 } + 1e-12)
+        });
+        let found = near.ok_or(format!("no vertex at {straight:?}"))?;
+        left.swap_remove(found);
+    }
+    let triangles = nx * ny * if crossed { 4 } else { 2 };
+    if !left.is_empty() || mesh.triangles().len() != triangles {
+        return Err(format!("{} vertices and {} triangles", left.len(), mesh.triangles().len()));
+    }
+    for (name, c, at) in [("left", 0, 0.0), ("right", 0, 1.0), ("bottom", 1, 0.0), ("top", 1, 1.0)]
+    {
+        let edges = mesh.edges_of(name).map_err(text)?;
+        let ends = edges.iter().flat_map(|&e| mesh.ends(e)).map(|v| back(mesh.vertices()[v]));
+        if edges.len() != [ny, nx][c] || { ends }.any(|x| (x[c] - at).abs() > 1e-12) {
+            return Err(format!("the side {name}"));
+        }
+    }
+    Ok(())
+}
+
+/// Rectangles and trapezoids, refined and moved at random, are laid out as they are said to be, where a trapezoid has
+/// `turned` times its angle.
+fn structured(turned: f64) -> Outcome {
+    let mut random = Random::new(draws::seed());
+    let mut count = 0;
+    for diagonal in [Diagonal::Left, Diagonal::Right, Diagonal::Crossed] {
+        for factor in [1, 2, 3] {
+            let [nx, ny] = [1, 1].map(|least: usize| least + random.below(4));
+            let [width, height] = [1.0, 0.1].map(|unit| unit * (1 + random.below(40)) as f64);
+            let rectangle = Rectangle { width, height, nx, ny, diagonal };
+            let n = nx;
+            let omega = (1.6 + 0.01 * random.below(120) as f64) * turned;
+            let lean = 1.0 / (omega / turned).tan();
+            let bodies: [(Structured, [usize; 2], bool, Map, Map); 2] = [
+                (
+                    Structured::Rectangle(rectangle),
+                    [nx, ny],
+                    diagonal == Diagonal::Crossed,
+                    Box::new(move |[s, t]| [width * s, height * t]),
+                    Box::new(move |[x, y]| [x / width, y / height]),
+                ),
+                (
+                    Structured::Trapezoid(Trapezoid { omega, n }),
+                    [n, n],
+                    false,
+                    Box::new(move |[s, t]| [s + (1.0 - s) * t * lean, t]),
+                    Box::new(move |[x, t]| [(x - t * lean) / (1.0 - t * lean), t]),
+                ),
+            ];
+            for (body, cells, crossed, map, back) in &bodies {
+                let cells = cells.map(|n| factor * n);
+                for amount in [0.0, 0.2] {
+                    let seed = random.below(1000) as u64;
+                    let moved = (amount > 0.0).then_some(Perturbation { amount, seed });
+                    let mesh = body.refined(factor).mesh(moved).map_err(text)?;
+                    laid_out(&mesh, cells, *crossed, map, back, amount)
+                        .map_err(|why| format!("{body:?} refined by {factor}, {moved:?}: {why}"))?;
+                    count += 1;
+                }
+            }
+        }
+    }
+    Ok(format!("{count} meshes"))
+}
+
+/// Row 18: structured meshes.
+pub fn structured_meshes_are_laid_out_as_they_say() -> Outcome {
+    structured(1.0)
+}
+
+/// The angle of a trapezoid is off by a thousandth.
+pub fn trapezoids_lean_by_other_angles() -> Outcome {
+    noticed(structured(1.001))
+}
+
+/// The exact solutions promise min(p, s - 1), s being their regularity plus `more`; the wedge's exponent is the root of its
+/// equation; and one gamma0 for a ladder is half the least limit of its levels.
+fn promised(more: f64) -> Outcome {
+    let material = Material::lame(1.0, 1.0, Plane::Strain);
+    let omega: f64 = 2.2;
+    let corner = Corner::new(material, omega).ok_or("no wedge of this angle")?;
+    let alpha = corner.alpha();
+    let wedge = (2.0 * alpha * omega).sin() + alpha * (2.0 * omega).sin();
+    if !(wedge.abs() <= 1e-14 && 0.5 < alpha && alpha < 1.0) {
+        return Err(format!("alpha = {alpha}: {wedge:e} is left of the equation of the wedge"));
+    }
+    let smooth = |k: f64, m: f64| -> Exact {
+        Arc::new(Smooth { material, c: 0.5, k, m, ap: 1.0, aq: 1.0, gap: vec![0.0] })
+    };
+    let end: Exact = Arc::new(Singular { material, c: 0.5, amplitude: 1.0 });
+    // [t]+^k is in H^s for s < k + 1/2; p' and q are in u, so that s is the least of k - 1/2 and m + 1/2.
+    let known: [(Exact, f64); 5] = [
+        (smooth(4.0, 2.0), 2.5),
+        (smooth(3.0, 4.0), 2.5),
+        (smooth(3.25, 2.5), 2.75),
+        (end, 2.5),
+        (Arc::new(corner), 1.0 + alpha),
+    ];
+    let square = Rectangle { width: 1.0, height: 1.0, nx: 2, ny: 2, diagonal: Diagonal::Left };
+    for (i, (solution, regularity)) in known.iter().enumerate() {
+        for (degree, p) in [(Degree::One, 1.0), (Degree::Two, 2.0_f64)] {
+            let kinds = [("bottom", Kind::Contact), ("top", Kind::Displacement)];
+            let ladder = Ladder {
+                solution: Arc::clone(solution),
+                kinds: BTreeMap::from(kinds.map(|(name, kind)| (name.to_owned(), kind))),
+                body: Structured::Rectangle(square),
+                perturbation: Some(Perturbation { amount: 0.1, seed: 3 }),
+                method: Method { degree, ..Method::default() },
+                settings: Settings::default(),
+            };
+            let expected = p.min(regularity + more - 1.0);
+            let found = ladder.promised_rate();
+            if !((found - expected).abs() <= 1e-12) {
+                return Err(format!("solution {i} promises {found}, expected {expected}"));
+            }
+            let mut least = f64::INFINITY;
+            for level in 0..3 {
+                let cells = ladder.problem(level).map_err(text)?.mesh.triangles().len();
+                if cells != 8 << (2 * level) {
+                    return Err(format!("{cells} triangles on level {level}"));
+                }
+                least = least.min(ladder.outline(level).map_err(text)?.gamma.coercivity.limit());
+            }
+            let with_one = ladder.with_one_gamma0(3).map_err(text)?.method.gamma0;
+            if with_one != Gamma0::Value(least / 2.0) {
+                return Err(format!("{with_one:?} for a least limit of {least}"));
+            }
+        }
+    }
+    let h = [0.5, 0.3, 0.1, 0.02];
+    let errors = h.map(|h: f64| 3.0 * h.powf(1.25));
+    let slopes = rates(&h, &errors).into_iter().chain([fitted_slope(&h, &errors)]);
+    if { slopes }.any(|slope| !((slope - 1.25).abs() <= 1e-12)) {
+        return Err("a power of h has another slope".to_owned());
+    }
+    Ok("five solutions, P1 and P2, three levels".to_owned())
+}
+
+/// Row 12: what exact solutions and ladders promise.
+pub fn exact_solutions_promise_their_rates() -> Outcome {
+    promised(0.0)
+}
+
+/// Solutions that are smoother by a half.
+pub fn smoother_solutions_promise_more() -> Outcome {
+    noticed(promised(0.5))
+}
+
+/// Methods, settings and materials with these numbers are taken or refused; the limits are `wider`.
+fn limits(wider: f64) -> Outcome {
+    let nan = f64::NAN;
+    let tolerance = |t: f64| Settings::new(t, 10).is_ok();
+    let steps = |n: usize| Settings::new(1e-10, n).is_ok();
+    let gauss = |n: usize| ContactQuadrature::gauss(n).is_ok();
+    let gamma0 = |g: f64| Gamma0::value(g).is_ok() && Gamma0::local(g).is_ok();
+    let poisson = |nu: f64, plane| Material::stable_young_poisson(1.0, nu, plane).is_ok();
+    let young = |e: f64, plane| Material::stable_young_poisson(e, 0.3, plane).is_ok();
+    let lame = |lambda: f64, mu: f64, plane| Material::stable_lame(lambda, mu, plane).is_ok();
+    let just = 1e-9;
+    let mut cases: Vec<(&str, f64, bool, bool)> = Vec::new();
+    for (t, taken) in [(0.0, false), (1e-300, true), (1.0 - just, true), (1.0 + wider, false)] {
+        cases.push(("tolerance", t, tolerance(t), taken));
+    }
+    for (t, taken) in [(1.0, false), (5.0, false), (-1e-9, false), (nan, false)] {
+        cases.push(("tolerance", t, tolerance(t), taken));
+    }
+    for (n, taken) in [(0, false), (1, true), (MOST_ITERATIONS, true), (MOST_ITERATIONS + 1, false)]
+    {
+        cases.push(("steps", n as f64, steps(n), taken));
+    }
+    for (n, taken) in
+        [(0, false), (1, true), (MOST_GAUSS_POINTS, true), (MOST_GAUSS_POINTS + 1, false)]
+    {
+        cases.push(("Gauss points", n as f64, gauss(n), taken));
+    }
+    for (g, taken) in
+        [(0.0, false), (-1.0, false), (1e-300, true), (f64::INFINITY, false), (nan, false)]
+    {
+        cases.push(("gamma0", g, gamma0(g), taken));
+    }
+    for plane in [Plane::Strain, Plane::Stress] {
+        for (nu, taken) in [
+            (0.5, false),
+            (0.5 - just, true),
+            (0.0, true),
+            (-1.0 + just, true),
+            (-1.0 - wider, false),
+            (nan, false),
+        ] {
+            cases.push(("Poisson's ratio", nu, poisson(nu, plane), taken));
+        }
+        for (e, taken) in [(0.0, false), (-1.0, false), (1e-150, true), (nan, false)] {
+            cases.push(("Young's modulus", e, young(e, plane), taken));
+        }
+        let least = -2.0 / 3.0;
+        for (lambda, taken) in [(least + just, true), (least - wider, false), (1e12, true)] {
+            cases.push(("lambda", lambda, lame(lambda, 1.0, plane), taken));
+        }
+        cases.push(("mu", 0.0, lame(1.0, 0.0, plane), false));
+    }
+    for (what, value, taken, expected) in &cases {
+        if taken != expected {
+            let what = format!("{what} of {value}");
+            return Err(format!("{what} is {}", if *taken { "taken" } else { "refused" }));
+        }
+    }
+    Ok(format!("{} numbers", cases.len()))
+}
+
+/// Row 18: what methods, settings and materials may be.
+pub fn numbers_beyond_their_limits_are_refused() -> Outcome {
+    limits(1e-9)
+}
+
+/// Limits that are exceeded by nothing.
+pub fn numbers_on_the_near_side_are_refused() -> Outcome {
+    noticed(limits(-1e-9))
+}
+
+/// The left side in two parts, the lower one moved by u_x = `moved`, the upper one by -u_x = 0.01 along its normal.
+fn opposite(moved: f64) -> Result<(), SolveError> {
+    let corners = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 2.0], [0.0, 2.0], [0.0, 1.0]];
+    let triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4]];
+    let sides = [("lower", [0, 4]), ("upper", [3, 4]), ("right", [1, 2]), ("top", [2, 3])];
+    let named = sides.map(|(name, edge)| (name.to_owned(), vec![edge]));
+    let mesh = Mesh::new(corners, triangles, named).map_err(DataError::from)?;
+    let conditions = [
+        ("lower", Condition::Displacement([Some(constant(moved)), None])),
+        ("upper", Condition::Support { normal: Some(constant(0.01)), tangential: None }),
+        ("top", Condition::Displacement([None, Some(constant(0.0))])),
+        ("right", Condition::Contact { gap: constant(0.0) }),
+    ];
+    let conditions = conditions.map(|(name, condition)| (name.to_owned(), condition));
+    let material = Material::lame(1.0, 1.0, Plane::Strain);
+    let problem = Problem::new(mesh, material, [0.0, 0.0].map(constant), conditions.into());
+    discretize::<P1, 3, 2>(&problem, &Method::default()).map(|_| ())
+}
+
+/// Where two boundaries meet, a displacement and a support against each other agree if `moved` is the support's along x.
+fn agreeing(moved: f64) -> Outcome {
+    opposite(moved).map_err(text)?;
+    match opposite(-moved) {
+        Err(SolveError::Data(DataError::Disagree { .. } | DataError::DisagreeAlong { .. })) => {
+            Ok("taken, and refused with the other sign".to_owned())
+        }
+        other => Err(format!("with the other sign: {other:?}")),
+    }
+}
+
+/// Row 18: supports against each other.
+pub fn supports_count_along_their_own_normals() -> Outcome {
+    agreeing(-0.01)
+}
+
+/// Along the other's.
+pub fn supports_count_along_the_normals_of_others() -> Outcome {
+    noticed(agreeing(0.01))
+}
