@@ -7,6 +7,7 @@
 
 use nalgebra::Vector2;
 
+use super::ball::Ball;
 use super::constraints::{Constraints, in_frame};
 use super::contact_line::{self, Coercivity, ContactLineEdge, EdgeRule, Gamma};
 use super::data::DataError;
@@ -29,6 +30,8 @@ pub struct Discretization<'a, E, const N: usize, const M: usize> {
     pub constraints: Constraints,
     /// L(v) for every basis function.
     pub load: Vec<[f64; 2]>,
+    /// The same sums with bounds of their rounding.
+    pub enclosed_load: Vec<[Ball; 2]>,
     /// C_h of kappa = gamma0 C_h.
     pub coercivity: Coercivity,
     /// gamma along Gamma_C.
@@ -111,7 +114,7 @@ where
         }
         let space = Space::new(&problem.mesh);
         let mut constraints = Constraints::new(problem, &space)?;
-        let load = loads::assemble(problem, &space)?;
+        let (load, enclosed_load) = loads::assemble_twice(problem, &space)?;
         let contact = contact_line::assemble(problem, &space, gamma)?;
         let (parts, motions) = constraints.free_motions(&space);
         let mut slides = None;
@@ -135,6 +138,7 @@ where
             space,
             constraints,
             load,
+            enclosed_load,
             coercivity,
             gamma,
             gamma0,

@@ -1,5 +1,6 @@
 //! L(v) = int_Omega f . v + int_{Gamma_N} t . v for every basis function v.
 
+use super::ball::Ball;
 use super::data::{DataError, checked};
 use super::function::{Function, SharedFunction};
 use super::pieces::{Features, Rule};
@@ -51,45 +52,89 @@ pub fn assemble_with<E: Element<N, M>, const N: usize, const M: usize>(
     space: &Space<E, N, M>,
     points: impl Fn(&dyn Function) -> usize,
 ) -> Result<Vec<[f64; 2]>, DataError> {
-    assemble_in(problem, space, points)
+    let mut load = vec![[0.0; 2]; space.nodes().len()];
+    each_force(problem, space, points, |force| force.add_to::<f64, E, N, M>(&mut load))?;
+    Ok(load)
 }
 
-/// The same as [`assemble`] in other numbers: the forces at the points of the rules, weight times value, are doubles, and what
-/// they add up to is computed in those.
+/// The same as [`assemble`] in doubles and in balls: the forces at the points of the rules, weight times value, are doubles, and
+/// what they add up to is computed in either. A load may be long to evaluate.
 ///
 /// # Errors
 /// As [`assemble`].
-pub fn assemble_as<S, E: Element<N, M>, const N: usize, const M: usize>(
+pub fn assemble_twice<E: Element<N, M>, const N: usize, const M: usize>(
     problem: &Problem,
     space: &Space<E, N, M>,
-) -> Result<Vec<[S; 2]>, DataError>
-where
-    S: Scalar + From<f64>,
-{
-    assemble_in(problem, space, |load| points(load, E::DEGREE))
+) -> Result<(Vec<[f64; 2]>, Vec<[Ball; 2]>), DataError> {
+    let mut load = vec![[0.0; 2]; space.nodes().len()];
+    let mut enclosed = vec![[Ball::from(0.0); 2]; space.nodes().len()];
+    each_force(
+        problem,
+        space,
+        |load| points(load, E::DEGREE),
+        |force| {
+            force.add_to::<f64, E, N, M>(&mut load);
+            force.add_to::<Ball, E, N, M>(&mut enclosed);
+        },
+    )?;
+    Ok((load, enclosed))
 }
 
-fn assemble_in<S, E: Element<N, M>, const N: usize, const M: usize>(
+/// Where on an element.
+#[derive(Clone, Copy)]
+enum Place {
+    /// Barycentric coordinates.
+    Inside([f64; 3]),
+    /// Between the ends of an edge, from 0 to 1.
+    OnEdge(f64),
+}
+
+/// Weight times value of a load at a point of its rule.
+struct Force<'a> {
+    /// The component.
+    c: usize,
+    value: f64,
+    /// The nodes of the triangle or the edge.
+    nodes: &'a [usize],
+    place: Place,
+}
+
+impl Force<'_> {
+    fn add_to<S, E: Element<N, M>, const N: usize, const M: usize>(&self, load: &mut [[S; 2]])
+    where
+        S: Scalar + From<f64>,
+    {
+        let mut add = |shapes: &[S]| {
+            for (&node, &shape) in self.nodes.iter().zip(shapes) {
+                load[node][self.c] += <S as From<f64>>::from(self.value) * shape;
+            }
+        };
+        match self.place {
+            Place::Inside(l) => add(&E::values(l.map(<S as From<f64>>::from))),
+            Place::OnEdge(s) => add(&E::edge_values(<S as From<f64>>::from(s))),
+        }
+    }
+}
+
+/// Calls `add` with each force at each point.
+fn each_force<E: Element<N, M>, const N: usize, const M: usize>(
     problem: &Problem,
     space: &Space<E, N, M>,
     points: impl Fn(&dyn Function) -> usize,
-) -> Result<Vec<[S; 2]>, DataError>
-where
-    S: Scalar + From<f64>,
-{
+    mut add: impl FnMut(Force),
+) -> Result<(), DataError> {
     let rule = |load: &dyn Function| {
         Rule::new(Features { kink: load.kink(), singular: None }, points(load))
     };
-    let mut load = vec![[<S as From<i32>>::from(0); 2]; space.nodes().len()];
     for (c, f) in acting(&problem.body_force) {
         let what = || format!("[load] body[{c}]");
-        add_body_force(c, f, &rule(f), space, 0..space.elements().len(), what, &mut load)?;
+        each_body_force(c, f, &rule(f), space, 0..space.elements().len(), what, &mut add)?;
     }
     for SurfaceForce { surface, triangles, force } in &problem.surface_forces {
         for (c, f) in acting(force) {
             let what = || format!("[load.{surface}] body[{c}]");
             let triangles = triangles.iter().copied();
-            add_body_force(c, f, &rule(f), space, triangles, what, &mut load)?;
+            each_body_force(c, f, &rule(f), space, triangles, what, &mut add)?;
         }
     }
     for (name, condition) in &problem.conditions {
@@ -98,27 +143,27 @@ where
                 for (c, t) in acting(traction) {
                     let what = || format!("[boundary.{}] traction[{c}]", key(name));
                     let value = |x, n| checked(t.on_boundary(x, n), x, what);
-                    add_on_boundary(name, c, value, &rule(t), space, &mut load)?;
+                    each_force_on_boundary(name, c, value, &rule(t), space, &mut add)?;
                 }
             }
             Condition::Mixed { displacement, traction } => {
                 for (c, t) in acting(traction).filter(|(c, _)| displacement[*c].is_none()) {
                     let what = || format!("[boundary.{}] traction[{c}]", key(name));
                     let value = |x, n| checked(t.on_boundary(x, n), x, what);
-                    add_on_boundary(name, c, value, &rule(t), space, &mut load)?;
+                    each_force_on_boundary(name, c, value, &rule(t), space, &mut add)?;
                 }
             }
             Condition::Pressure(p) => {
                 let what = || format!("[boundary.{}] pressure", key(name));
                 for c in 0..2 {
                     let value = |x, n: [f64; 2]| Ok(-n[c] * checked(p.on_boundary(x, n), x, what)?);
-                    add_on_boundary(name, c, value, &rule(&**p), space, &mut load)?;
+                    each_force_on_boundary(name, c, value, &rule(&**p), space, &mut add)?;
                 }
             }
             _ => {}
         }
     }
-    Ok(load)
+    Ok(())
 }
 
 /// The components of a load that act somewhere.
@@ -126,63 +171,61 @@ fn acting(load: &[SharedFunction; 2]) -> impl Iterator<Item = (usize, &dyn Funct
     load.iter().map(|f| &**f).enumerate().filter(|(_, f)| !vanishes(*f))
 }
 
-fn add_body_force<S: Scalar + From<f64>, E: Element<N, M>, const N: usize, const M: usize>(
+/// A load is evaluated on so many triangles at a time.
+const AT_A_TIME: usize = 64;
+
+fn each_body_force<E: Element<N, M>, const N: usize, const M: usize>(
     c: usize,
     f: &dyn Function,
     rule: &Rule,
     space: &Space<E, N, M>,
-    triangles: impl Iterator<Item = usize>,
+    mut triangles: impl Iterator<Item = usize>,
     what: impl Fn() -> String,
-    load: &mut [[S; 2]],
+    mut add: impl FnMut(Force),
 ) -> Result<(), DataError> {
-    let mut wrong = None;
-    for t in triangles {
-        let nodes = &space.elements()[t];
-        rule.on_triangle(&space.mesh().triangle(t), |l, x, weight| {
-            match checked(f.at(x), x, &what) {
-                Ok(f) => add(load, c, nodes, &E::values(l.map(<S as From<f64>>::from)), weight * f),
-                Err(error) => wrong = wrong.take().or(Some(error)),
-            }
-        });
+    let (mut points, mut places) = (Vec::new(), Vec::new());
+    loop {
+        for t in triangles.by_ref().take(AT_A_TIME) {
+            rule.on_triangle(&space.mesh().triangle(t), |l, x, weight| {
+                points.push((t, l, weight));
+                places.push(x);
+            });
+        }
+        if places.is_empty() {
+            return Ok(());
+        }
+        for ((&(t, l, weight), &x), f) in points.iter().zip(&places).zip(f.at_all(&places)) {
+            let (value, nodes) = (weight * checked(f, x, &what)?, &space.elements()[t]);
+            add(Force { c, value, nodes, place: Place::Inside(l) });
+        }
+        points.clear();
+        places.clear();
     }
-    wrong.map_or(Ok(()), Err)
 }
 
-/// Adds a traction's component c, `value` of the place and the outward normal.
-fn add_on_boundary<S: Scalar + From<f64>, E: Element<N, M>, const N: usize, const M: usize>(
+/// A traction's component c, `value` of the place and the outward normal.
+fn each_force_on_boundary<E: Element<N, M>, const N: usize, const M: usize>(
     name: &str,
     c: usize,
     value: impl Fn([f64; 2], [f64; 2]) -> Result<f64, DataError>,
     rule: &Rule,
     space: &Space<E, N, M>,
-    load: &mut [[S; 2]],
+    mut add: impl FnMut(Force),
 ) -> Result<(), DataError> {
     let mut wrong = None;
     for &edge in space.mesh().edges_of(name)? {
         let (length, normal) = space.mesh().length_and_normal(edge);
         let ends = space.mesh().ends(edge).map(|vertex| space.mesh().vertices()[vertex]);
-        let nodes = space.edge_nodes(edge);
+        let nodes = &space.edge_nodes(edge);
         rule.on_edge(ends, [], |point| match value(point.x, normal.into()) {
             Ok(t) => {
-                let shapes: [S; M] = E::edge_values(<S as From<f64>>::from(point.s));
-                add(load, c, &nodes, &shapes, point.weight * length * t);
+                let value = point.weight * length * t;
+                add(Force { c, value, nodes, place: Place::OnEdge(point.s) });
             }
             Err(error) => wrong = wrong.take().or(Some(error)),
         });
     }
     wrong.map_or(Ok(()), Err)
-}
-
-fn add<S: Scalar + From<f64>>(
-    load: &mut [[S; 2]],
-    c: usize,
-    nodes: &[usize],
-    shapes: &[S],
-    force: f64,
-) {
-    for (&node, &shape) in nodes.iter().zip(shapes) {
-        load[node][c] += <S as From<f64>>::from(force) * shape;
-    }
 }
 
 #[cfg(test)]

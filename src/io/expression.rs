@@ -17,11 +17,14 @@
 //! means repeated multiplication: x^2 is x*x to the bit, x^-2 is 1/(x*x), x^0 is 1 for every x. Any other power is
 //! [`f64::powf`]: 2^0.5 is the square root of 2, and (-8)^(1/3) is NaN. A NaN stays a NaN, in min and max too.
 //!
-//! An [`Expression`] is a flat postfix program, not a tree: evaluation is a loop over its steps, a sum of a hundred
-//! thousand terms is no deeper than a sum of two, and [`MOST_LEVELS`] bounds what does nest.
+//! An [`Expression`] is a flat list of steps, not a tree: evaluation is a loop over them, a sum of a hundred thousand terms is no
+//! deeper than a sum of two, and [`MOST_LEVELS`] bounds what does nest. What stands in a text twice is computed once, and at many
+//! places a step is a loop over a block of them: both change no bit.
 
 mod gradient;
 mod parser;
+mod polynomial;
+mod steps;
 
 use thiserror::Error;
 
@@ -33,9 +36,10 @@ pub const MOST_LEVELS: usize = 200;
 /// A function of x and y; made by [`str::parse`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expression {
-    program: Vec<Step>,
-    /// How many values wait at the same time.
-    depth: usize,
+    /// The last one gives the value.
+    steps: Vec<Step>,
+    /// How many values are kept at the same time.
+    slots: usize,
 }
 
 /// Where and why a text is no expression.
@@ -50,17 +54,25 @@ pub struct ExpressionError {
     pub expected: String,
 }
 
-/// One step of a program: push a value, or replace the last one or two values by one.
+/// One step: a value, and the slot that keeps it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Step {
-    Number(f64),
-    X,
-    Y,
-    Unary(Unary),
-    Binary(Binary),
+struct Step {
+    value: Value,
+    slot: u32,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A value, by the slots of its operands (while a text is read, by their places among all values).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum Value {
+    /// The bits of a double: 0 and -0 are two numbers.
+    Number(u64),
+    X,
+    Y,
+    Unary(Unary, u32),
+    Binary(Binary, u32, u32),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Unary {
     Negate,
     WholePower(i32),
@@ -71,7 +83,7 @@ enum Unary {
     Abs,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Binary {
     Add,
     Subtract,
@@ -81,17 +93,6 @@ enum Binary {
     Min,
     Max,
 }
-
-/// The functions, in the order in which messages list them.
-const FUNCTIONS: [(&str, Step); 7] = [
-    ("sqrt", Step::Unary(Unary::Sqrt)),
-    ("sin", Step::Unary(Unary::Sin)),
-    ("cos", Step::Unary(Unary::Cos)),
-    ("exp", Step::Unary(Unary::Exp)),
-    ("abs", Step::Unary(Unary::Abs)),
-    ("min", Step::Binary(Binary::Min)),
-    ("max", Step::Binary(Binary::Max)),
-];
 
 impl Unary {
     fn of(self, a: f64) -> f64 {
@@ -123,9 +124,6 @@ impl Binary {
     }
 }
 
-/// Beyond this exponent repeated multiplication gains no time and loses digits: its error grows like the exponent.
-const MOST_FACTORS: f64 = 16.0;
-
 /// a^n by repeated multiplication.
 fn whole_power(a: f64, n: i32) -> f64 {
     let product = (0..n.unsigned_abs()).fold(1.0, |product, _| product * a);
@@ -133,116 +131,66 @@ fn whole_power(a: f64, n: i32) -> f64 {
 }
 
 impl Expression {
-    fn run(&self, [x, y]: [f64; 2], stack: &mut [f64]) -> f64 {
-        let mut top = 0;
-        for &step in &self.program {
-            match step {
-                Step::Unary(f) => stack[top - 1] = f.of(stack[top - 1]),
-                Step::Binary(f) => {
-                    top -= 1;
-                    stack[top - 1] = f.of(stack[top - 1], stack[top]);
-                }
-                Step::Number(_) | Step::X | Step::Y => {
-                    stack[top] = match step {
-                        Step::Number(c) => c,
-                        Step::X => x,
-                        _ => y,
-                    };
-                    top += 1;
-                }
-            }
+    /// What `of` makes of each step from what it made of the operands, in slots that begin as `slots`; the last of it.
+    fn run<'s, T>(&self, slots: &'s mut [T], of: impl Fn(Value, &[T]) -> T) -> Option<&'s T> {
+        for step in &self.steps {
+            slots[step.slot as usize] = of(step.value, slots);
         }
-        stack[0]
+        slots.get(self.steps.last()?.slot as usize)
     }
 
-    fn push(&mut self, step: Step) {
-        // The last steps of a postfix program are its last operands, if they are numbers.
-        let step = match (step, self.program.as_slice()) {
-            (Step::Unary(f), [.., Step::Number(a)]) => {
-                let value = f.of(*a);
-                self.program.pop();
-                Step::Number(value)
-            }
-            (Step::Binary(f), [.., Step::Number(a), Step::Number(b)]) => {
-                let value = f.of(*a, *b);
-                self.program.truncate(self.program.len() - 2);
-                Step::Number(value)
-            }
-            _ => step,
+    fn value(&self, x: [f64; 2], slots: &mut [f64]) -> f64 {
+        let of = |value, slots: &[f64]| match value {
+            Value::Number(bits) => f64::from_bits(bits),
+            Value::X => x[0],
+            Value::Y => x[1],
+            Value::Unary(f, a) => f.of(slots[a as usize]),
+            Value::Binary(f, a, b) => f.of(slots[a as usize], slots[b as usize]),
         };
-        self.program.push(step);
+        self.run(slots, of).copied().unwrap_or(f64::NAN)
     }
-}
 
-impl Expression {
-    /// The value, if the program is nothing but a number.
+    /// The value, if the expression is nothing but a number.
     pub fn constant(&self) -> Option<f64> {
-        match self.program.as_slice() {
-            [Step::Number(c)] => Some(*c),
+        match self.steps.as_slice() {
+            [Step { value: Value::Number(bits), .. }] => Some(f64::from_bits(*bits)),
             _ => None,
         }
     }
 }
 
-impl Expression {
-    /// The coefficients of 1, x, x^2, .., if the expression is a polynomial in x alone.
-    pub fn polynomial_in_x(&self) -> Option<Vec<f64>> {
-        let mut stack: Vec<Vec<f64>> = Vec::new();
-        for &step in &self.program {
-            let result = match step {
-                Step::Number(c) => vec![c],
-                Step::X => vec![0.0, 1.0],
-                Step::Y => return None,
-                Step::Unary(f) => f.of_polynomial(&stack.pop()?)?,
-                Step::Binary(f) => {
-                    let b = stack.pop()?;
-                    f.of_polynomials(&stack.pop()?, &b)?
-                }
-            };
-            stack.push(result);
-        }
-        stack.pop()
-    }
-}
+/// So many places at a time: long enough to forget what it takes to choose the operation, short enough for the first cache.
+const BLOCK: usize = 128;
 
-/// The product of two polynomials by their coefficients.
-fn product(a: &[f64], b: &[f64]) -> Vec<f64> {
-    let mut product = vec![0.0; a.len() + b.len() - 1];
-    for (i, a) in a.iter().enumerate() {
-        for (j, b) in b.iter().enumerate() {
-            product[i + j] += a * b;
-        }
-    }
-    product
-}
-
-/// The longest polynomial that is multiplied out.
-const MOST_COEFFICIENTS: usize = 64;
-
-impl Unary {
-    fn of_polynomial(self, a: &[f64]) -> Option<Vec<f64>> {
+impl Value {
+    /// The value at all `places`, from those of the operands.
+    fn at_all(self, places: &[[f64; 2]], slots: &[Vec<f64>], result: &mut [f64]) {
         match self {
-            Unary::Negate => Some(product(a, &[-1.0])),
-            Unary::WholePower(n) if n >= 0 => {
-                (0..n).try_fold(vec![1.0], |power, _| Binary::Multiply.of_polynomials(&power, a))
+            Value::Number(bits) => result.fill(f64::from_bits(bits)),
+            Value::X => result.iter_mut().zip(places).for_each(|(r, x)| *r = x[0]),
+            Value::Y => result.iter_mut().zip(places).for_each(|(r, x)| *r = x[1]),
+            Value::Unary(f, a) => {
+                result.iter_mut().zip(&slots[a as usize]).for_each(|(r, &a)| *r = f.of(a));
             }
-            _ => None,
+            Value::Binary(f, a, b) => {
+                f.of_all(&slots[a as usize], &slots[b as usize], result);
+            }
         }
     }
 }
 
 impl Binary {
-    fn of_polynomials(self, a: &[f64], b: &[f64]) -> Option<Vec<f64>> {
-        let sum = |sign: f64| {
-            let at = |p: &[f64], i: usize| p.get(i).copied().unwrap_or(0.0);
-            Some((0..a.len().max(b.len())).map(|i| at(a, i) + sign * at(b, i)).collect())
-        };
-        match (self, b) {
-            (Binary::Add, _) => sum(1.0),
-            (Binary::Subtract, _) => sum(-1.0),
-            (Binary::Multiply, _) if a.len() + b.len() <= MOST_COEFFICIENTS => Some(product(a, b)),
-            (Binary::Divide, [c]) => Some(a.iter().map(|a| a / c).collect()),
-            _ => None,
+    /// The quick ones each have a loop of their own, which runs over several places at a time.
+    fn of_all(self, a: &[f64], b: &[f64], result: &mut [f64]) {
+        fn each(a: &[f64], b: &[f64], result: &mut [f64], f: impl Fn(f64, f64) -> f64) {
+            result.iter_mut().zip(a).zip(b).for_each(|((r, &a), &b)| *r = f(a, b));
+        }
+        match self {
+            Binary::Add => each(a, b, result, |a, b| Binary::Add.of(a, b)),
+            Binary::Subtract => each(a, b, result, |a, b| Binary::Subtract.of(a, b)),
+            Binary::Multiply => each(a, b, result, |a, b| Binary::Multiply.of(a, b)),
+            Binary::Divide => each(a, b, result, |a, b| Binary::Divide.of(a, b)),
+            _ => each(a, b, result, |a, b| self.of(a, b)),
         }
     }
 }
@@ -250,57 +198,38 @@ impl Binary {
 impl Function for Expression {
     fn at(&self, x: [f64; 2]) -> f64 {
         const FEW: usize = 16;
-        if self.depth <= FEW {
-            self.run(x, &mut [0.0; FEW])
+        if self.slots <= FEW {
+            self.value(x, &mut [0.0; FEW])
         } else {
-            self.run(x, &mut vec![0.0; self.depth])
+            self.value(x, &mut vec![0.0; self.slots])
         }
+    }
+
+    fn at_all(&self, places: &[[f64; 2]]) -> Vec<f64> {
+        let mut slots = vec![vec![0.0; BLOCK.min(places.len())]; self.slots];
+        let mut values = Vec::with_capacity(places.len());
+        for places in places.chunks(BLOCK) {
+            for &Step { value, slot } in &self.steps {
+                // No operand is in the slot of the result.
+                let mut result = std::mem::take(&mut slots[slot as usize]);
+                value.at_all(places, &slots, &mut result);
+                slots[slot as usize] = result;
+            }
+            let last = self.steps.last().map_or(&[][..], |step| &slots[step.slot as usize]);
+            values.extend_from_slice(&last[..places.len()]);
+        }
+        values
     }
 
     fn degree(&self) -> Option<u32> {
-        let mut stack: Vec<Option<u32>> = Vec::with_capacity(self.depth);
-        for &step in &self.program {
-            let degree = match step {
-                Step::Number(_) => Some(0),
-                Step::X | Step::Y => Some(1),
-                Step::Unary(f) => f.degree(stack.pop()??),
-                Step::Binary(f) => {
-                    let b = stack.pop()??;
-                    f.degree(stack.pop()??, b)
-                }
-            };
-            stack.push(degree);
-        }
-        stack.pop()?
-    }
-}
-
-impl Unary {
-    /// The degree of the result for an operand of degree `a`.
-    fn degree(self, a: u32) -> Option<u32> {
-        match self {
-            Unary::Negate => Some(a),
-            Unary::WholePower(n) => a.checked_mul(u32::try_from(n).ok()?),
-            Unary::Sqrt | Unary::Sin | Unary::Cos | Unary::Exp | Unary::Abs => None,
-        }
-    }
-}
-
-impl Binary {
-    /// The degree of the result for operands of degrees `a` and `b`.
-    fn degree(self, a: u32, b: u32) -> Option<u32> {
-        match self {
-            Binary::Add | Binary::Subtract => Some(a.max(b)),
-            Binary::Multiply => a.checked_add(b),
-            Binary::Divide if b == 0 => Some(a),
-            Binary::Divide | Binary::Power | Binary::Min | Binary::Max => None,
-        }
+        self.polynomial_degree()
     }
 }
 
 impl From<f64> for Expression {
     fn from(value: f64) -> Expression {
-        Expression { program: vec![Step::Number(value)], depth: 1 }
+        let value = Value::Number(value.to_bits());
+        Expression { steps: vec![Step { value, slot: 0 }], slots: 1 }
     }
 }
 
@@ -314,7 +243,7 @@ mod tests {
 
     fn message(text: &str) -> String {
         match text.parse::<Expression>() {
-            Ok(e) => format!("no error, but {:?}", e.program),
+            Ok(e) => format!("no error, but {:?}", e.steps),
             Err(e) => e.to_string(),
         }
     }
@@ -524,14 +453,36 @@ mod tests {
         );
         let sum = parse(&("x".to_owned() + &"+y".repeat(100_000)));
         assert_eq!(sum.at([1.0, 2.0]), 200_001.0);
-        assert_eq!(sum.depth, 2);
+        assert_eq!(sum.slots, 4);
     }
 
     #[test]
     fn deep_expressions_are_evaluated_as_flat_ones() {
-        let deep = "x+(".repeat(150) + "y" + &")".repeat(150);
-        assert_eq!(parse(&deep).at([2.0, 1.0]), 301.0);
-        assert!(parse(&deep).depth > 16);
+        let deep: String = (0..150).map(|k| format!("{k}*x+(")).collect();
+        let deep = parse(&(deep + "y" + &")".repeat(150)));
+        assert_eq!(deep.at([2.0, 1.0]), 22351.0);
+        assert!(deep.slots > 16);
+    }
+
+    #[test]
+    fn values_at_many_places_are_those_at_each_to_the_bit() {
+        let places: Vec<[f64; 2]> = (0..3 * BLOCK + 17)
+            .map(|i| [f64::from(i as u32) * 0.37 - 70.0, 1.0 / f64::from(i as u32)])
+            .collect();
+        for text in [
+            "7",
+            "y",
+            "-4 + 10*x - x/y",
+            "sin(x)*cos(y) + sin(x) - exp(-x)/sqrt(x)",
+            "min(x, y)^2 + max(abs(x), 1/y)^-3 - (x*y)^0.5",
+            "x^y + 0*x - 0*x",
+        ] {
+            let expression = parse(text);
+            let bits = |values: Vec<f64>| values.into_iter().map(f64::to_bits).collect::<Vec<_>>();
+            let one_by_one = places.iter().map(|&x| expression.at(x)).collect();
+            assert_eq!(bits(expression.at_all(&places)), bits(one_by_one), "{text}");
+        }
+        assert!(parse("x").at_all(&[]).is_empty());
     }
 
     #[test]

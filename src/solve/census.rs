@@ -16,7 +16,6 @@ use super::pressed::Pressed;
 use super::system::System;
 use crate::fem::ball::Ball;
 use crate::fem::contact_line::EdgeRule;
-use crate::fem::loads;
 use crate::fem::precise;
 use crate::kernel::edge_integral::{EdgeIntegrals, ExactEdge};
 use crate::kernel::{Interval, P1};
@@ -92,8 +91,7 @@ impl Condensed {
         for line in &lines {
             line.add_stresses(&lift, &mut residual);
         }
-        let load = loads::assemble_as::<Ball, E, N, M>(d.problem, &d.space).ok()?;
-        for (r, l) in residual.iter_mut().zip(load) {
+        for (r, l) in residual.iter_mut().zip(&d.enclosed_load) {
             *r = [l[0] - r[0], l[1] - r[1]];
         }
         right.push(free(system, &residual));

@@ -28,7 +28,6 @@ use crate::fem::ball::{Ball, larger, up};
 use crate::fem::contact_line::ContactLineEdge;
 use crate::fem::held;
 use crate::fem::korn::Korn;
-use crate::fem::loads;
 use crate::fem::moments::moments;
 use crate::fem::precise::{self, EdgeNumbers, OnEdge};
 use crate::fem::twofold::Twofold;
@@ -119,8 +118,6 @@ pub enum Unproved {
     OutOfRange,
     #[error("out of memory")]
     OutOfMemory,
-    #[error("the loads cannot be evaluated again")]
-    Loads,
 }
 
 impl Unproved {
@@ -192,9 +189,7 @@ pub fn enclose<E, const N: usize, const M: usize>(
 where
     E: ExactEdge<f64, N, M>,
 {
-    let d = system.d;
-    let load = loads::assemble_as::<Ball, E, N, M>(d.problem, &d.space);
-    enclose_with(system, u, near, factor, &load.map_err(|_| Unproved::Loads)?)
+    enclose_with(system, u, near, factor, &system.d.enclosed_load)
 }
 
 /// The same for a given load: L(v) for every basis function.

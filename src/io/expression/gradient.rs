@@ -1,6 +1,6 @@
-//! The gradient of an expression, by the chain rule along its program: exact up to rounding, no differences are taken.
+//! The gradient of an expression, by the chain rule along its steps: exact up to rounding, no differences are taken.
 
-use super::{Binary, Expression, Step, Unary};
+use super::{Binary, Expression, Unary, Value};
 
 /// A value with its derivatives along x and y.
 #[derive(Clone, Copy)]
@@ -13,24 +13,15 @@ impl Expression {
     /// The derivatives along x and y at this place; NaN where there is none. At the kink of abs, min or max, that of one
     /// side.
     pub fn gradient(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        let mut stack: Vec<Dual> = Vec::with_capacity(self.depth);
-        for &step in &self.program {
-            let result = match step {
-                Step::Number(value) => Dual { value, slope: [0.0; 2] },
-                Step::X => Dual { value: x, slope: [1.0, 0.0] },
-                Step::Y => Dual { value: y, slope: [0.0, 1.0] },
-                Step::Unary(f) => match stack.pop() {
-                    Some(a) => f.of_dual(a),
-                    None => return [f64::NAN; 2],
-                },
-                Step::Binary(f) => match (stack.pop(), stack.pop()) {
-                    (Some(b), Some(a)) => f.of_duals(a, b),
-                    _ => return [f64::NAN; 2],
-                },
-            };
-            stack.push(result);
-        }
-        stack.pop().map_or([f64::NAN; 2], |result| result.slope)
+        let mut slots = vec![Dual { value: f64::NAN, slope: [f64::NAN; 2] }; self.slots];
+        let gradient = self.run(&mut slots, |value, slots| match value {
+            Value::Number(bits) => Dual { value: f64::from_bits(bits), slope: [0.0; 2] },
+            Value::X => Dual { value: x, slope: [1.0, 0.0] },
+            Value::Y => Dual { value: y, slope: [0.0, 1.0] },
+            Value::Unary(f, a) => f.of_dual(slots[a as usize]),
+            Value::Binary(f, a, b) => f.of_duals(slots[a as usize], slots[b as usize]),
+        });
+        gradient.map_or([f64::NAN; 2], |dual| dual.slope)
     }
 }
 

@@ -1,10 +1,9 @@
-//! From a text to a program: recursive descent, one function for each line of the grammar.
+//! From a text to its values: recursive descent, one function for each line of the grammar.
 
+use std::collections::HashMap;
 use std::str::FromStr;
 
-use super::{
-    Binary, Expression, ExpressionError, FUNCTIONS, MOST_FACTORS, MOST_LEVELS, Step, Unary,
-};
+use super::{Binary, Expression, ExpressionError, MOST_LEVELS, Unary, Value, steps};
 use crate::quote::quoted;
 
 impl FromStr for Expression {
@@ -12,71 +11,99 @@ impl FromStr for Expression {
 
     fn from_str(text: &str) -> Result<Expression, ExpressionError> {
         let mut parser = Parser::new(text)?;
-        parser.expression(1)?;
+        let result = parser.expression(1)?;
         match parser.token {
-            Token::End => Ok(parser.done),
+            Token::End => Ok(steps::expression(&parser.values, result)),
             _ => Err(parser.wrong("an operator (+ - * / ^) or the end")),
         }
     }
 }
 
+/// The functions, in the order in which messages list them.
+const FUNCTIONS: [(&str, Function); 7] = [
+    ("sqrt", Function::Unary(Unary::Sqrt)),
+    ("sin", Function::Unary(Unary::Sin)),
+    ("cos", Function::Unary(Unary::Cos)),
+    ("exp", Function::Unary(Unary::Exp)),
+    ("abs", Function::Unary(Unary::Abs)),
+    ("min", Function::Binary(Binary::Min)),
+    ("max", Function::Binary(Binary::Max)),
+];
+
+#[derive(Clone, Copy)]
+enum Function {
+    Unary(Unary),
+    Binary(Binary),
+}
+
+/// Beyond this exponent repeated multiplication gains no time and loses digits: its error grows like the exponent.
+const MOST_FACTORS: f64 = 16.0;
+
+/// So many values are found again where they stand a second time; the memory that they take is bounded so.
+const MOST_SHARED: usize = 4096;
+
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Token<'t> {
+enum Token<'t> {
     Number(f64),
     Name(&'t str),
     Symbol(char),
     End,
 }
 
-/// Recursive descent, one function for each line of the grammar. `level` counts the nesting and `waiting` the values that
-/// wait for their operator: both are 1 deep at the start.
-pub(super) struct Parser<'t> {
-    pub(super) text: &'t str,
+/// Recursive descent, one function for each line of the grammar, each of which returns the place of its value. `level` counts the
+/// nesting, from 1.
+struct Parser<'t> {
+    text: &'t str,
     /// The token under consideration, and the bytes it takes.
-    pub(super) token: Token<'t>,
-    pub(super) start: usize,
-    pub(super) end: usize,
-    pub(super) waiting: usize,
-    pub(super) done: Expression,
+    token: Token<'t>,
+    start: usize,
+    end: usize,
+    /// Each after its operands.
+    values: Vec<Value>,
+    places: HashMap<Value, u32>,
 }
 
 impl<'t> Parser<'t> {
-    pub(super) fn new(text: &'t str) -> Result<Self, ExpressionError> {
-        let done = Expression { program: Vec::new(), depth: 0 };
-        let mut parser = Parser { text, token: Token::End, start: 0, end: 0, waiting: 0, done };
+    fn new(text: &'t str) -> Result<Self, ExpressionError> {
+        let (values, places) = (Vec::new(), HashMap::new());
+        let mut parser = Parser { text, token: Token::End, start: 0, end: 0, values, places };
+        // Every value has a byte of its own, so that their places are numbers of 32 bits.
+        if u32::try_from(text.len()).is_err() {
+            return Err(parser.wrong("less than 4 GiB"));
+        }
         parser.advance()?;
         Ok(parser)
     }
 
-    pub(super) fn expression(&mut self, level: usize) -> Result<(), ExpressionError> {
-        self.term(level)?;
+    fn expression(&mut self, level: usize) -> Result<u32, ExpressionError> {
+        let mut sum = self.term(level)?;
         loop {
             let operator = match self.token {
                 Token::Symbol('+') => Binary::Add,
                 Token::Symbol('-') => Binary::Subtract,
-                _ => return Ok(()),
+                _ => return Ok(sum),
             };
             self.advance()?;
-            self.term(level)?;
-            self.emit(Step::Binary(operator));
+            let term = self.term(level)?;
+            sum = self.binary(operator, sum, term);
         }
     }
 
-    pub(super) fn term(&mut self, level: usize) -> Result<(), ExpressionError> {
-        self.factor(level)?;
+    fn term(&mut self, level: usize) -> Result<u32, ExpressionError> {
+        let mut product = self.factor(level)?;
         loop {
             let operator = match self.token {
                 Token::Symbol('*') => Binary::Multiply,
                 Token::Symbol('/') => Binary::Divide,
-                _ => return Ok(()),
+                _ => return Ok(product),
             };
             self.advance()?;
-            self.factor(level)?;
-            self.emit(Step::Binary(operator));
+            let factor = self.factor(level)?;
+            product = self.binary(operator, product, factor);
         }
     }
 
-    pub(super) fn factor(&mut self, level: usize) -> Result<(), ExpressionError> {
+    fn factor(&mut self, level: usize) -> Result<u32, ExpressionError> {
         if level > MOST_LEVELS {
             return Err(self.wrong(&format!("at most {MOST_LEVELS} levels of nesting")));
         }
@@ -87,51 +114,49 @@ impl<'t> Parser<'t> {
             }
             Token::Symbol('-') => {
                 self.advance()?;
-                self.factor(level + 1)?;
-                self.emit(Step::Unary(Unary::Negate));
-                Ok(())
+                let factor = self.factor(level + 1)?;
+                Ok(self.unary(Unary::Negate, factor))
             }
             _ => self.power(level),
         }
     }
 
-    pub(super) fn power(&mut self, level: usize) -> Result<(), ExpressionError> {
-        self.atom(level)?;
-        if self.token == Token::Symbol('^') {
-            self.advance()?;
-            self.factor(level + 1)?;
-            match self.done.program.last() {
-                Some(&Step::Number(n)) if n.trunc() == n && n.abs() <= MOST_FACTORS => {
-                    self.done.program.pop();
-                    self.waiting -= 1;
-                    self.emit(Step::Unary(Unary::WholePower(n as i32)));
-                }
-                _ => self.emit(Step::Binary(Binary::Power)),
-            }
+    fn power(&mut self, level: usize) -> Result<u32, ExpressionError> {
+        let atom = self.atom(level)?;
+        if self.token != Token::Symbol('^') {
+            return Ok(atom);
         }
-        Ok(())
+        self.advance()?;
+        let exponent = self.factor(level + 1)?;
+        Ok(match self.number(exponent) {
+            Some(n) if n.trunc() == n && n.abs() <= MOST_FACTORS => {
+                self.unary(Unary::WholePower(n as i32), atom)
+            }
+            _ => self.binary(Binary::Power, atom, exponent),
+        })
     }
 
-    pub(super) fn atom(&mut self, level: usize) -> Result<(), ExpressionError> {
+    fn atom(&mut self, level: usize) -> Result<u32, ExpressionError> {
         let value = match self.token {
-            Token::Number(value) => Step::Number(value),
-            Token::Name("x") => Step::X,
-            Token::Name("y") => Step::Y,
-            Token::Name("pi") => Step::Number(std::f64::consts::PI),
+            Token::Number(value) => Value::Number(value.to_bits()),
+            Token::Name("x") => Value::X,
+            Token::Name("y") => Value::Y,
+            Token::Name("pi") => Value::Number(std::f64::consts::PI.to_bits()),
             Token::Name(name) => return self.function(name, level),
             Token::Symbol('(') => {
                 self.advance()?;
-                self.expression(level + 1)?;
-                return self.skip(')', "an operator (+ - * / ^) or ')'");
+                let inside = self.expression(level + 1)?;
+                self.skip(')', "an operator (+ - * / ^) or ')'")?;
+                return Ok(inside);
             }
             Token::Symbol(_) | Token::End => return Err(self.no_atom()),
         };
-        self.emit(value);
-        self.advance()
+        self.advance()?;
+        Ok(self.place(value))
     }
 
-    pub(super) fn function(&mut self, name: &str, level: usize) -> Result<(), ExpressionError> {
-        let Some((_, step)) = FUNCTIONS.iter().find(|f| f.0 == name) else {
+    fn function(&mut self, name: &str, level: usize) -> Result<u32, ExpressionError> {
+        let Some((_, function)) = FUNCTIONS.iter().find(|f| f.0 == name) else {
             return Err(if self.text[self.end..].trim_start().starts_with('(') {
                 let known = FUNCTIONS.map(|f| f.0).join(", ");
                 self.wrong(&format!("one of the functions {known}"))
@@ -141,33 +166,63 @@ impl<'t> Parser<'t> {
         };
         self.advance()?;
         self.skip('(', &format!("'(' after {name}"))?;
-        self.expression(level + 1)?;
-        if matches!(step, Step::Binary(_)) {
-            self.skip(',', &format!("an operator (+ - * / ^) or ',': {name} takes two arguments"))?;
-            self.expression(level + 1)?;
+        let first = self.expression(level + 1)?;
+        let end = |count| format!("an operator (+ - * / ^) or ')': {name} takes {count}");
+        match *function {
+            Function::Unary(f) => {
+                self.skip(')', &end("one argument"))?;
+                Ok(self.unary(f, first))
+            }
+            Function::Binary(f) => {
+                let comma = format!("an operator (+ - * / ^) or ',': {name} takes two arguments");
+                self.skip(',', &comma)?;
+                let second = self.expression(level + 1)?;
+                self.skip(')', &end("two arguments"))?;
+                Ok(self.binary(f, first, second))
+            }
         }
-        let count = if matches!(step, Step::Binary(_)) { "two arguments" } else { "one argument" };
-        self.skip(')', &format!("an operator (+ - * / ^) or ')': {name} takes {count}"))?;
-        self.emit(*step);
-        Ok(())
     }
 
-    pub(super) fn emit(&mut self, step: Step) {
-        match step {
-            Step::Number(_) | Step::X | Step::Y => self.waiting += 1,
-            Step::Unary(_) => {}
-            Step::Binary(_) => self.waiting -= 1,
+    fn number(&self, place: u32) -> Option<f64> {
+        match self.values[place as usize] {
+            Value::Number(bits) => Some(f64::from_bits(bits)),
+            _ => None,
         }
-        self.done.depth = self.done.depth.max(self.waiting);
-        self.done.push(step);
     }
 
-    pub(super) fn skip(&mut self, symbol: char, expected: &str) -> Result<(), ExpressionError> {
+    fn unary(&mut self, f: Unary, a: u32) -> u32 {
+        self.place(match self.number(a) {
+            Some(a) => Value::Number(f.of(a).to_bits()),
+            None => Value::Unary(f, a),
+        })
+    }
+
+    fn binary(&mut self, f: Binary, a: u32, b: u32) -> u32 {
+        self.place(match (self.number(a), self.number(b)) {
+            (Some(a), Some(b)) => Value::Number(f.of(a, b).to_bits()),
+            _ => Value::Binary(f, a, b),
+        })
+    }
+
+    /// Where this value stands, for the first time now or since before.
+    fn place(&mut self, value: Value) -> u32 {
+        if let Some(&place) = self.places.get(&value) {
+            return place;
+        }
+        let place = self.values.len() as u32;
+        self.values.push(value);
+        if self.places.len() < MOST_SHARED {
+            self.places.insert(value, place);
+        }
+        place
+    }
+
+    fn skip(&mut self, symbol: char, expected: &str) -> Result<(), ExpressionError> {
         if self.token == Token::Symbol(symbol) { self.advance() } else { Err(self.wrong(expected)) }
     }
 
     /// Reads the next token.
-    pub(super) fn advance(&mut self) -> Result<(), ExpressionError> {
+    fn advance(&mut self) -> Result<(), ExpressionError> {
         let rest = self.text[self.end..].trim_start();
         self.start = self.text.len() - rest.len();
         let (token, length) = match rest.chars().next() {
@@ -194,7 +249,7 @@ impl<'t> Parser<'t> {
     }
 
     /// How many bytes at the start of `rest` are a number; 1 for a lonely point.
-    pub(super) fn number_length(&self, rest: &str) -> Result<usize, ExpressionError> {
+    fn number_length(&self, rest: &str) -> Result<usize, ExpressionError> {
         let mut length = digits(rest);
         if rest[length..].starts_with('.') {
             length += 1;
@@ -216,21 +271,16 @@ impl<'t> Parser<'t> {
         Ok(start + count - self.start)
     }
 
-    pub(super) fn no_atom(&self) -> ExpressionError {
+    fn no_atom(&self) -> ExpressionError {
         self.wrong("a number, x, y, pi, a function or '('")
     }
 
-    pub(super) fn wrong(&self, expected: &str) -> ExpressionError {
+    fn wrong(&self, expected: &str) -> ExpressionError {
         let found = &self.text[self.start..self.end];
         self.wrong_at(self.start, Some(found).filter(|f| !f.is_empty()), expected)
     }
 
-    pub(super) fn wrong_at(
-        &self,
-        start: usize,
-        found: Option<&str>,
-        expected: &str,
-    ) -> ExpressionError {
+    fn wrong_at(&self, start: usize, found: Option<&str>, expected: &str) -> ExpressionError {
         ExpressionError {
             column: self.text[..start].chars().count() + 1,
             found: found.map_or("the end".to_owned(), |found| quoted(found, '\'')),
@@ -240,10 +290,10 @@ impl<'t> Parser<'t> {
 }
 
 /// How many digits stand at the start of `text`.
-pub(super) fn digits(text: &str) -> usize {
+fn digits(text: &str) -> usize {
     text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len())
 }
 
-pub(super) fn is_letter(c: char) -> bool {
+fn is_letter(c: char) -> bool {
     c.is_alphabetic() || c == '_'
 }
