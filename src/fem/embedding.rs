@@ -17,12 +17,9 @@
 
 use nalgebra::Vector2;
 
-use super::mesh::{BoundaryEdge, Mesh, MeshError, length};
+use super::mesh::{BoundaryEdge, Mesh, MeshError, TOUCHING, length};
 use super::tree::{Bounds, Tree};
 use crate::kernel::pattern::{self, Lists};
-
-/// A void narrower than this times the local edge is none.
-pub const TOUCHING: f64 = 1e-3;
 
 /// The outline of a mesh, with what it takes to look at what is near.
 struct Outline<'m> {

@@ -26,6 +26,7 @@ use crate::memory::{self, bytes_of};
 use crate::quote;
 use edges::{Edge, match_edges, name_boundaries};
 pub use error::MeshError;
+pub(super) use error::TOUCHING;
 use nalgebra::Vector2;
 
 /// A conforming triangulation with named parts of its boundary.

@@ -9,8 +9,9 @@
 //! Newton's method drives the rounding to zero with it. And where contact is stiff, next to no energy is a force: a solve goes on
 //! until loads, contact and reactions balance. docs/theory.md, 5.7, has the rules.
 
+use super::body::block;
 use super::iterate::{Evaluation, Iterate};
-use super::newton::{self, Until};
+use super::newton::Until;
 use super::system::System;
 use super::{Settings, SolveError, Status};
 use crate::fem::discretization::Discretization;
@@ -28,7 +29,7 @@ pub trait Route<E, const N: usize, const M: usize> {
     /// there, with it.
     ///
     /// # Errors
-    /// As [`newton::minimise`].
+    /// As [`super::newton::minimise`].
     fn pass(
         &mut self,
         iterate: &mut Iterate,
@@ -114,7 +115,7 @@ pub const ACCEPTABLE: f64 = 1e-6;
 /// Passes of `route` from the lift of the prescribed data on.
 ///
 /// # Errors
-/// As [`newton::minimise`].
+/// As [`super::newton::minimise`].
 pub fn refine<E, const N: usize, const M: usize>(
     system: &System<E, N, M>,
     route: &mut impl Route<E, N, M>,
@@ -237,7 +238,7 @@ impl Residual {
         let one = |v: &[f64]| v.iter().map(|v| v.abs()).sum::<f64>();
         let mut forces = one(d.load.as_flattened());
         for (e, edge) in d.contact.iter().enumerate() {
-            let integrals = d.rule.integrals::<E, N, M>(newton::block(&at.p, e));
+            let integrals = d.rule.integrals::<E, N, M>(block(&at.p, e));
             let weight = edge.length / edge.gamma;
             forces += weight * one(&integrals.gradient);
             system.functionals(e, |row, a, entry| {
@@ -267,8 +268,8 @@ where
     let d = system.d;
     let mut contact = vec![0.0; at.linear.len()];
     for (e, edge) in d.contact.iter().enumerate() {
-        let integrals = d.rule.integrals::<E, N, M>(newton::block(&at.p, e));
-        let magnitudes: [f64; M] = newton::block(&at.p_magnitudes, e);
+        let integrals = d.rule.integrals::<E, N, M>(block(&at.p, e));
+        let magnitudes: [f64; M] = block(&at.p_magnitudes, e);
         let weight = edge.length / edge.gamma;
         system.functionals(e, |row, a, entry| {
             let h = integrals.hessian[a].iter().zip(magnitudes);

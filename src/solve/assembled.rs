@@ -8,12 +8,13 @@ use std::collections::BTreeMap;
 
 use super::SolveError;
 use super::accuracy::{Pass, Route};
+use super::body::{Body, Derivatives, Edges, Residual, Start, Step, block, derivatives};
 use super::contact_edges::ContactEdges;
 use super::course;
 use super::factor::{Factor, Indefinite};
 use super::iterate::{Evaluation, Iterate};
 use super::ldl::TwofoldFactor;
-use super::newton::{self, Body, Derivatives, Edges, Residual, Start, Step, Until, block};
+use super::newton::{self, Until};
 use super::relaxation::follow;
 use super::system::System;
 use crate::fem::matrix::LowerTriangle;
@@ -104,13 +105,13 @@ where
         let edges = ContactEdges { d: self.system.d, order: &self.order };
         let signs: Vec<f64> =
             pressed.flat_map(|pressed| [if pressed { 1.0 } else { -1.0 }; M]).collect();
-        self.factor_tangent(&newton::derivatives(&edges, &signs))
+        self.factor_tangent(&derivatives(&edges, &signs))
     }
 
     /// The same with a little of the springs of all edges added.
     fn supported(&self, at: &Derivatives<M>) -> Derivatives<M> {
         let edges = ContactEdges { d: self.system.d, order: &self.order };
-        let all = newton::derivatives(&edges, &vec![1.0; at.gradient.len()]);
+        let all = derivatives(&edges, &vec![1.0; at.gradient.len()]);
         let sum = |(h, all): (&[[f64; M]; M], &[[f64; M]; M])| {
             std::array::from_fn(|a| std::array::from_fn(|b| h[a][b] + SUPPORT * all[a][b]))
         };
@@ -294,12 +295,12 @@ where
             follow(&mut forces, &frozen, &step, 1.0);
             return Ok(Start { forces, contact: None });
         }
-        let none = newton::derivatives(edges, &vec![-1.0; self.at.p.len()]);
+        let none = derivatives(edges, &vec![-1.0; self.at.p.len()]);
         if self.route.system.d.slides.is_none() {
             match self.step(&none) {
                 Ok(step) => {
                     self.advance(1.0, &step);
-                    let at = newton::derivatives(edges, self.y());
+                    let at = derivatives(edges, self.y());
                     let contact = self.stiffness(&at)?;
                     return Ok(Start { forces, contact: Some(contact) });
                 }
@@ -307,7 +308,7 @@ where
                 Err(error) => return Err(error),
             }
         }
-        let all = newton::derivatives(edges, &vec![1.0; self.at.p.len()]);
+        let all = derivatives(edges, &vec![1.0; self.at.p.len()]);
         let springs = self.springs();
         let mut pulling = all.times(1.0 / springs);
         for e in 0..self.route.order.len() {

@@ -11,7 +11,8 @@
 //! 0 is not in F(box), or Krawczyk's operator maps the box into itself and there is exactly one solution in it, or the box is
 //! halved. For P1 without quadrature error Psi' is monotone in each nodal value, so that its range over a box is known.
 
-use super::enclosure::{Lines, free, lines, times_matrix};
+use super::balls::{Lines, free, lines};
+use super::enclosure::times_matrix;
 use super::pressed::Pressed;
 use super::system::System;
 use crate::fem::ball::Ball;

@@ -20,12 +20,13 @@ use faer::{Col, Mat, Side};
 
 use super::SolveError;
 use super::accuracy::{Pass, Route};
+use super::body::{Body, Derivatives, Edges, Residual, Start, Step, block, derivatives};
 use super::compliance::{Compliance, Reach};
 use super::contact_edges::ContactEdges;
 use super::course;
 use super::factor::Factor;
 use super::iterate::{Evaluation, Iterate};
-use super::newton::{self, Body, Derivatives, Edges, Residual, Start, Step, Until, block};
+use super::newton::{self, Until};
 use super::relaxation::follow;
 use super::system::System;
 use crate::kernel::edge_integral::ExactEdge;
@@ -202,7 +203,7 @@ where
 
     /// The body without contact is where it is already; the stiffness is by the power method on R^T G R.
     fn start(&mut self, edges: &impl Edges<M>) -> Result<Start, SolveError> {
-        let at = newton::derivatives(edges, &self.y);
+        let at = derivatives(edges, &self.y);
         let roots = Self::roots(&at);
         let stiffness = newton::largest_eigenvalue(roots.len(), |x| {
             let mut rx = vec![0.0; self.y.len()];

@@ -1,6 +1,6 @@
 //! Psi of a discretization, edge by edge in a given order.
 
-use super::newton::Edges;
+use super::body::Edges;
 use crate::fem::contact_line::ContactLineEdge;
 use crate::fem::discretization::Discretization;
 use crate::kernel::edge_integral::ExactEdge;

@@ -10,8 +10,7 @@
 //! which is the solution where contact stays as it was, for Psi'(y) = Psi''(y) y. Any start leads to the same solution: (8)
 //! has one, and the verdict on it is as strict.
 
-use super::newton::{self, Derivatives, Edges};
-use super::solution::Solution;
+use super::body::{Derivatives, Edges, block, derivatives};
 use crate::fem::discretization::Discretization;
 use crate::fem::units::{Units, scaled};
 use crate::kernel::edge_integral::ExactEdge;
@@ -47,22 +46,28 @@ pub struct Course<'a> {
 }
 
 #[derive(Clone, Copy)]
-enum Start<'a> {
-    Solution(&'a Solution),
-    Displacement(&'a [[f64; 2]]),
+struct Start<'a> {
+    displacement: &'a [[f64; 2]],
+    /// The nodes of the elements, one element after the other, and the places of the nodes, where they are known.
+    nodes: Option<(&'a [usize], &'a [[f64; 2]])>,
 }
 
 impl<'a> Course<'a> {
-    /// Starts from a solution on the same nodes; one on others is no start, and Newton's method starts as without.
-    #[must_use]
-    pub fn from(self, start: &'a Solution) -> Self {
-        Course { start: Some(Start::Solution(start)), ..self }
-    }
-
-    /// Starts from a displacement at the nodes of the problem; another number of values is no start.
+    /// Starts from a displacement at the nodes of the problem; another number of values is no start, and Newton's method starts
+    /// as without.
     #[must_use]
     pub fn from_displacement(self, start: &'a [[f64; 2]]) -> Self {
-        Course { start: Some(Start::Displacement(start)), ..self }
+        Course { start: Some(Start { displacement: start, nodes: None }), ..self }
+    }
+
+    /// Starts from a displacement at `places`, the nodes of `elements`; one at others is no start.
+    pub(super) fn starting_at(
+        self,
+        elements: &'a [usize],
+        places: &'a [[f64; 2]],
+        displacement: &'a [[f64; 2]],
+    ) -> Self {
+        Course { start: Some(Start { displacement, nodes: Some((elements, places)) }), ..self }
     }
 
     /// Calls `watcher` as each phase begins.
@@ -95,16 +100,14 @@ impl<'a> Course<'a> {
     where
         E: ExactEdge<f64, N, M>,
     {
-        let nodes = d.space.nodes();
-        let (same, u) = match self.start? {
-            Start::Solution(start) => {
-                let elements = d.space.elements().as_flattened();
-                let own = |x: &[f64; 2]| x.map(|c| scaled(c, -self.units.length()));
-                let same = start.elements == elements
-                    && start.nodes.iter().map(own).eq(nodes.iter().copied());
-                (same, start.displacement.as_slice())
+        let Start { displacement: u, nodes } = self.start?;
+        let own = |x: &[f64; 2]| x.map(|c| scaled(c, -self.units.length()));
+        let same = match nodes {
+            Some((elements, places)) => {
+                elements == d.space.elements().as_flattened()
+                    && places.iter().map(own).eq(d.space.nodes().iter().copied())
             }
-            Start::Displacement(u) => (u.len() == nodes.len(), u),
+            None => u.len() == d.space.nodes().len(),
         };
         let p = |edge: &crate::fem::contact_line::ContactLineEdge<N, M>| {
             let nodal = d.space.on_triangle(edge.edge.triangle, u);
@@ -120,9 +123,9 @@ pub(super) fn frozen<const M: usize>(
     p: &[f64],
     y: &[f64],
 ) -> Derivatives<M> {
-    let Derivatives { hessian, .. } = newton::derivatives(edges, p);
+    let Derivatives { hessian, .. } = derivatives(edges, p);
     let gradient = hessian.iter().enumerate().flat_map(|(e, h)| {
-        let y: [f64; M] = newton::block(y, e);
+        let y: [f64; M] = block(y, e);
         h.map(|row| (0..M).map(|b| row[b] * y[b]).sum::<f64>())
     });
     Derivatives { gradient: gradient.collect(), hessian }

@@ -2,7 +2,7 @@
 //! degrees of freedom, prescribed ones included, where it is the reaction. Forces are differences of stiffnesses times nodal
 //! values: where rounding the displacement to doubles would blur them, they are those of the displacement before rounding.
 
-use super::newton::block;
+use super::body::block;
 use crate::fem::discretization::Discretization;
 use crate::kernel::edge_integral::ExactEdge;
 

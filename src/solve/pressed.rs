@@ -5,7 +5,7 @@
 //!
 //! |v|_S^2 = A(v, v) + sum over S of the rule's integral of P0(v)^2 / gamma
 
-use super::enclosure::Lines;
+use super::balls::Lines;
 use crate::fem::Discretization;
 use crate::fem::ball::{Ball, up};
 use crate::fem::contact_line::EdgeRule;

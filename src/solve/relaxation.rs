@@ -14,7 +14,7 @@
 //! sees the contact zone as it will be and not as it was: springs can be stiffened by a factor of eight in one step. It is theory
 //! 4.6.
 
-use super::newton::{Body, Derivatives, Edges, Step, block};
+use super::body::{Body, Derivatives, Edges, Step, block};
 
 /// Newton's steps on an edge.
 const MOST_STEPS: usize = 30;

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::answers::{self, ContactBoundary, EnergyBalance};
+use super::course::Course;
 use super::enclosure::Certificate;
 use super::evaluated::Evaluated;
 use super::{MethodReport, NewtonReport, NoLimit, Report, TrueLimit};
@@ -263,6 +264,14 @@ fn nodal_stresses<E: Element<N, M>, const N: usize, const M: usize>(
         }
     }
     sums.into_iter().map(|(sum, weight)| sum.map(|s| s / weight)).collect()
+}
+
+impl<'a> Course<'a> {
+    /// Starts from a solution on the same nodes; one on others is no start, and Newton's method starts as without.
+    #[must_use]
+    pub fn from(self, start: &'a Solution) -> Self {
+        self.starting_at(&start.elements, &start.nodes, &start.displacement)
+    }
 }
 
 impl GammaReport {

@@ -4,7 +4,8 @@
 use std::f64::consts::SQRT_2;
 
 use super::answers::{ContactBoundary, EnergyBalance};
-use super::enclosure::{Certificate, ContactIntervals, Enclosure, Intervals, Range, Unproved};
+use super::enclosure::{Certificate, Enclosure, Unproved};
+use super::intervals::{ContactIntervals, Intervals, Range};
 use super::solution::{ContactValues, GammaReport, Quantities, Solution};
 use super::{Gamma0, Method, Outline, SolveError, TrueLimit};
 use crate::fem::contact_line::{Coercivity, Gamma};

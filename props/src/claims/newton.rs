@@ -6,7 +6,8 @@
 
 use proptest::prelude::*;
 use signorini::solve::accuracy::{self, Outcome as Solved};
-use signorini::solve::newton::{self, Derivatives, Edges, Residual, Start, Step, Until};
+use signorini::solve::body::{self, Body as _, Derivatives, Edges, Residual, Start, Step};
+use signorini::solve::newton::{self, Until};
 use signorini::solve::{Settings, SolveError, Status};
 
 use crate::claim::{Claim, Engine, Outcome, by, control, noticed, text};
@@ -100,7 +101,7 @@ impl Body {
     }
 }
 
-impl newton::Body<1> for Body {
+impl body::Body<1> for Body {
     fn y(&self) -> &[f64] {
         &self.x
     }
@@ -152,8 +153,8 @@ fn ends(body: &mut Body, first: bool) -> Result<(f64, usize), String> {
     let mut residuals = Vec::new();
     let until = Until { steps: MOST, residual: 0.0 };
     newton::minimise(&Springs, body, first, &mut residuals, until).map_err(text)?;
-    let at = newton::derivatives(&Springs, newton::Body::y(body));
-    let Residual { norm, noise } = newton::Body::residual(body, &at);
+    let at = body::derivatives(&Springs, body.y());
+    let Residual { norm, noise } = body.residual(&at);
     Ok((norm / noise, residuals.len()))
 }
 
@@ -235,13 +236,13 @@ impl Watched {
     }
 }
 
-impl newton::Body<1> for Watched {
+impl body::Body<1> for Watched {
     fn y(&self) -> &[f64] {
         &self.body.x
     }
 
     fn residual(&self, at: &Derivatives<1>) -> Residual {
-        newton::Body::residual(&self.body, at)
+        body::Body::residual(&self.body, at)
     }
 
     fn start(&mut self, _: &impl Edges<1>) -> Result<Start, SolveError> {
@@ -250,7 +251,7 @@ impl newton::Body<1> for Watched {
     }
 
     fn compliance(&self, e: usize) -> [[f64; 1]; 1] {
-        newton::Body::compliance(&self.body, e)
+        body::Body::compliance(&self.body, e)
     }
 
     fn step(&mut self, at: &Derivatives<1>) -> Result<Step, SolveError> {
@@ -374,7 +375,7 @@ pub fn claim() -> Claim {
         numbers: "doubles.",
         kernel: &[
             "solve::newton::minimise",
-            "solve::newton::derivatives",
+            "solve::body::derivatives",
             "solve::accuracy::judge",
             "solve::accuracy::refine",
             "solve::accuracy::reference",

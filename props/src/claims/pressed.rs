@@ -17,7 +17,8 @@ use signorini::fem::{Condition, Diagonal, Discretization, Problem, Rectangle, Sh
 use signorini::kernel::contact_edge::integral_of_product;
 use signorini::kernel::edge_integral::{ExactEdge, value_at};
 use signorini::kernel::{Material, P1, P2, Plane};
-use signorini::solve::enclosure::{Lines, less_slides, lines};
+use signorini::solve::balls::{Lines, lines};
+use signorini::solve::enclosure::less_slides;
 use signorini::solve::pressed::Pressed;
 
 use super::honesty::field;

@@ -2,9 +2,11 @@
 
 use thiserror::Error;
 
-use crate::fem::embedding;
 use crate::memory::OutOfMemory;
 use crate::quote::{number, quoted};
+
+/// A void narrower than this times the local edge is none.
+pub(in crate::fem) const TOUCHING: f64 = 1e-3;
 
 /// Why there is no such mesh. Vertices and triangles are counted from 0, or by the numbers of the file they came from.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -31,7 +33,7 @@ pub enum MeshError {
     Overlap { triangles: [usize; 2], vertices: [usize; 2] },
     #[error("triangles {} and {} overlap at ({}, {}): expected triangles that cover no point twice", triangles[0], triangles[1], number(*x), number(*y))]
     Overlapping { triangles: [usize; 2], x: f64, y: f64 },
-    #[error("vertices {} at ({}, {}) and {} at ({}, {}) are {:e} apart with no triangle between them, beside edges of length {}: the body would be torn there; expected one vertex, or a gap of more than {} times the edge (mesh.merge = {merge:e} makes them one)", vertices[0], number(places[0][0]), number(places[0][1]), vertices[1], number(places[1][0]), number(places[1][1]), short(*distance), short(*local), embedding::TOUCHING)]
+    #[error("vertices {} at ({}, {}) and {} at ({}, {}) are {:e} apart with no triangle between them, beside edges of length {}: the body would be torn there; expected one vertex, or a gap of more than {} times the edge (mesh.merge = {merge:e} makes them one)", vertices[0], number(places[0][0]), number(places[0][1]), vertices[1], number(places[1][0]), number(places[1][1]), short(*distance), short(*local), TOUCHING)]
     Near { vertices: [usize; 2], places: [[f64; 2]; 2], distance: f64, local: f64, merge: f64 },
     #[error("vertex {vertex} at ({}, {}) hangs inside the edge between vertices {} and {} of triangle {triangle}{}: neighbours must share whole edges", number(*x), number(*y), edge[0], edge[1], beside(*off))]
     Hanging { vertex: usize, x: f64, y: f64, edge: [usize; 2], triangle: usize, off: f64 },

@@ -1,0 +1,100 @@
+//! What Newton's method ([`super::newton`]) knows of the contact edges and of the body, whichever way its equations are solved.
+
+use super::SolveError;
+
+/// What Newton's method needs to know of the contact edges.
+pub trait Edges<const M: usize> {
+    /// How many there are.
+    fn count(&self) -> usize;
+    /// The gradient and the Hessian of Psi on edge `e`, where P has the nodal values `p`.
+    fn derivatives(&self, e: usize, p: [f64; M]) -> ([f64; M], [[f64; M]; M]);
+    /// The Bregman distance of Psi on edge `e` from `p` to `q`.
+    fn bregman(&self, e: usize, p: [f64; M], q: [f64; M]) -> f64;
+}
+
+/// The body with its loads, at an iterate.
+pub trait Body<const M: usize> {
+    /// y, the values of P at the nodes of each edge.
+    fn y(&self) -> &[f64];
+    /// The residual of (8) at the iterate, relative, where Psi has the derivatives `at`; and how much of it may be noise.
+    fn residual(&self, at: &Derivatives<M>) -> Residual;
+    /// Goes to the start.
+    ///
+    /// # Errors
+    /// As [`Body::step`].
+    fn start(&mut self, edges: &impl Edges<M>) -> Result<Start, SolveError>;
+    /// The Newton step from the iterate.
+    ///
+    /// # Errors
+    /// A tangent that is not positive definite, and lack of memory.
+    fn step(&mut self, at: &Derivatives<M>) -> Result<Step, SolveError>;
+    /// What forces at the nodes of edge `e` do to P there, or the part of it that is known: how fast Newton's method ends
+    /// depends on it, not where.
+    fn compliance(&self, e: usize) -> [[f64; M]; M];
+    /// Moves the iterate by `t` times `step`, the last one.
+    fn advance(&mut self, t: f64, step: &Step);
+}
+
+/// Where Newton's method starts.
+#[derive(Clone, Debug)]
+pub struct Start {
+    /// The forces of contact at the nodes of the edges that the body is in equilibrium with.
+    pub forces: Vec<f64>,
+    /// Contact is that much stiffer than the body: the largest eigenvalue of B^T Psi'' B with regard to A, roughly. `None` if
+    /// it is one step from a start that was given.
+    pub contact: Option<f64>,
+}
+
+/// The size of a residual.
+#[derive(Clone, Copy, Debug)]
+pub struct Residual {
+    /// Its norm, relative to the reference of the problem.
+    pub norm: f64,
+    /// A norm that rounding alone may have.
+    pub noise: f64,
+}
+
+/// The derivatives of s Psi at y.
+pub struct Derivatives<const M: usize> {
+    /// Nodal values of the gradient.
+    pub gradient: Vec<f64>,
+    /// The Hessian, edge by edge.
+    pub hessian: Vec<[[f64; M]; M]>,
+}
+
+/// A step d.
+pub struct Step {
+    /// B d
+    pub dy: Vec<f64>,
+    /// DJ d <= 0
+    pub slope: f64,
+    /// d^T A d
+    pub curvature: f64,
+}
+
+/// The derivatives of Psi at `y`.
+pub fn derivatives<const M: usize>(edges: &impl Edges<M>, y: &[f64]) -> Derivatives<M> {
+    let mut gradient = Vec::with_capacity(y.len());
+    let mut hessian = Vec::with_capacity(edges.count());
+    for e in 0..edges.count() {
+        let (g, h) = edges.derivatives(e, block(y, e));
+        gradient.extend(g);
+        hessian.push(h);
+    }
+    Derivatives { gradient, hessian }
+}
+
+impl<const M: usize> Derivatives<M> {
+    /// The derivatives of s times the function.
+    pub fn times(&self, s: f64) -> Self {
+        Derivatives {
+            gradient: self.gradient.iter().map(|g| s * g).collect(),
+            hessian: self.hessian.iter().map(|h| h.map(|row| row.map(|v| s * v))).collect(),
+        }
+    }
+}
+
+/// The values of edge `e`.
+pub fn block<const M: usize>(v: &[f64], e: usize) -> [f64; M] {
+    std::array::from_fn(|a| v[e * M + a])
+}

@@ -1,0 +1,239 @@
+//! (8) at a displacement, in balls, and the intervals of what is reported of its solution near there.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+#[cfg(feature = "files")]
+use serde::{Deserialize, Serialize};
+
+use super::balls::{dot, field, product, root, strain_energy};
+use super::system::System;
+use crate::fem::Discretization;
+use crate::fem::ball::{Ball, up};
+use crate::fem::moments::moments;
+use crate::fem::precise::{self, OnEdge};
+use crate::fem::twofold::Twofold;
+use crate::kernel::edge_integral::ExactEdge;
+
+/// An interval `[low, high]`.
+pub type Range = [f64; 2];
+
+/// Intervals that contain what the exact solution of (8) has.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
+#[non_exhaustive]
+pub struct Intervals {
+    /// a(u, u)
+    pub energy: Range,
+    /// The largest length of u at a node.
+    pub max_displacement: Range,
+    /// What each contact boundary carries.
+    pub contact: Vec<ContactIntervals>,
+    /// The force of each displacement boundary on the body.
+    /// Empty where there are more than 64 displacement boundaries.
+    pub reactions: BTreeMap<String, [Range; 2]>,
+}
+
+impl Intervals {
+    pub(super) fn are_finite(&self) -> bool {
+        let contact = self.contact.iter().flat_map(|c| [c.force, c.resultant[0], c.resultant[1]]);
+        let all = contact.chain(self.reactions.values().copied().flatten());
+        let all = all.chain([self.energy, self.max_displacement]);
+        all.flatten().all(f64::is_finite)
+    }
+}
+
+/// Of a contact boundary.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
+#[non_exhaustive]
+pub struct ContactIntervals {
+    /// Its name.
+    pub boundary: String,
+    /// -int lambda^h
+    pub force: Range,
+    /// int lambda^h n~
+    pub resultant: [Range; 2],
+}
+
+/// (8) at u~, or near it.
+pub(super) struct Evaluation {
+    /// The residual at every basis function.
+    pub residual: Vec<[Ball; 2]>,
+    /// u~, or the field near it, with its prescribed components where they should be.
+    pub u: Vec<[Ball; 2]>,
+    /// The energy norm of what that is off the displacement that is reported, at most.
+    pub moved: f64,
+    /// a(u~, u~)
+    pub energy: Ball,
+    /// int \[P\]+ N_a / gamma on each contact edge.
+    pressures: Vec<Vec<Ball>>,
+}
+
+impl Evaluation {
+    /// None if it over- or underflows double precision.
+    pub fn new<E, const N: usize, const M: usize>(
+        system: &System<E, N, M>,
+        lines: &[OnEdge<Ball, N, M>],
+        (u, reported): (&[[f64; 2]], &[[f64; 2]]),
+        near: Option<&[[Twofold; 2]]>,
+        load: &[[Ball; 2]],
+    ) -> Option<Self>
+    where
+        E: ExactEdge<f64, N, M>,
+    {
+        let d = system.d;
+        let frames = d.constraints.frames();
+        let at = |node: usize| match near {
+            Some(near) => near[node].map(Ball::from),
+            None => u[node].map(Ball::from),
+        };
+        let component = |_, node: usize, c: usize| match frames.get(&node) {
+            Some(&axis) => crate::fem::constraints::in_frame(axis, at(node))[c].centre(),
+            None => at(node)[c],
+        };
+        let prescribed =
+            |node: usize, c: usize| d.constraints.values()[node][c].unwrap_or_default();
+        let exact = field(system, component, prescribed);
+        let off: Vec<[Ball; 2]> = exact
+            .iter()
+            .zip(reported)
+            .map(|(exact, u)| [0, 1].map(|c| exact[c] - Ball::from(u[c])))
+            .collect();
+        let moved = root(strain_energy(d, &off));
+
+        let mut residual = vec![[Ball::from(0); 2]; u.len()];
+        precise::add_internal_forces(d, &exact, &mut residual);
+        let energy = product(&exact, &residual);
+        let mut pressures = Vec::with_capacity(lines.len());
+        for (edge, line) in d.contact.iter().zip(lines) {
+            line.add_stresses(&exact, &mut residual);
+            let weight = line.numbers.length / line.numbers.gamma;
+            let moments = moments::<E, N, M>(&d.rule, line.p(edge, &exact));
+            let pressure = moments.map(|moment| weight * moment);
+            line.add_contact(&pressure, &mut residual);
+            pressures.push(pressure.to_vec());
+        }
+        for (r, &l) in residual.iter_mut().zip(load) {
+            *r = [r[0] - l[0], r[1] - l[1]];
+        }
+        let all = residual.iter().chain(&exact).flatten();
+        let squares = exact.iter().map(|&u| dot(u, u)).chain([energy]);
+        if !(all.into_iter().all(|b| b.is_finite()) && squares.into_iter().all(Ball::is_finite)) {
+            return None;
+        }
+        Some(Evaluation { residual, u: exact, moved, energy, pressures })
+    }
+
+    /// What is reported, with |u~ - u^h|_A <= `rho`, |u~ - u^h|_a <= `radius`, the norm of gamma^{1/2} (lambda~ - lambda^h) at most
+    /// `pressure`, and displacements at the nodes with their bounds.
+    pub fn intervals<E, const N: usize, const M: usize>(
+        &self,
+        d: &Discretization<E, N, M>,
+        lines: &[OnEdge<Ball, N, M>],
+        (u, nodes): (&[[Ball; 2]], &[f64]),
+        [rho, pressure]: [f64; 2],
+        radius: f64,
+    ) -> Intervals
+    where
+        E: ExactEdge<f64, N, M>,
+    {
+        // |u^h|_a is within the radius of |u~|_a.
+        let low = self.energy.lower().max(0.0).sqrt() * (1.0 - 2.0 * f64::EPSILON);
+        let low = ((low - radius) * (1.0 - 2.0 * f64::EPSILON)).max(0.0);
+        let high = up(root(self.energy) + radius);
+        let energy = [low * low * (1.0 - 2.0 * f64::EPSILON), up(high * high)];
+
+        let lengths = u.iter().map(|&u| dot(u, u));
+        let mut max_displacement = [0.0_f64; 2];
+        for (square, by) in lengths.zip(nodes) {
+            let low = square.lower().max(0.0).sqrt() * (1.0 - 2.0 * f64::EPSILON);
+            let high = root(square);
+            let low = (low - by) * (1.0 - 2.0 * f64::EPSILON);
+            max_displacement =
+                [max_displacement[0].max(low), max_displacement[1].max(up(high + by))];
+        }
+
+        let mut contact: Vec<(Arc<str>, [Ball; 3], Ball)> = Vec::new();
+        for ((edge, line), pressure) in d.contact.iter().zip(lines).zip(&self.pressures) {
+            let along: [[Ball; 2]; M] = if edge.directions == [edge.normal; M] {
+                [line.numbers.normal.into(); M]
+            } else {
+                edge.directions.map(|n| n.map(Ball::from).into())
+            };
+            let zero = Ball::from(0);
+            let of: [Ball; 3] = pressure
+                .iter()
+                .zip(along)
+                .fold([zero; 3], |sum, (&p, n)| [sum[0] + p, sum[1] - p * n[0], sum[2] - p * n[1]]);
+            let weight = line.numbers.length / line.numbers.gamma;
+            match contact.iter_mut().find(|(name, ..)| *name == edge.boundary) {
+                Some((_, sum, weights)) => {
+                    *sum = [0, 1, 2].map(|i| sum[i] + of[i]);
+                    *weights += weight;
+                }
+                None => contact.push((Arc::clone(&edge.boundary), of, weight)),
+            }
+        }
+        let contact = contact
+            .into_iter()
+            .map(|(boundary, sums, weight)| {
+                // |int mu n~_c| <= (int 1/gamma)^{1/2} |gamma^{1/2} mu|
+                let off = up(root(weight) * pressure);
+                let [force, x, y] = sums.map(|sum| range(sum.widened(off)));
+                // lambda^h <= 0
+                let force = [force[0].max(0.0), force[1]];
+                ContactIntervals { boundary: boundary.to_string(), force, resultant: [x, y] }
+            })
+            .collect();
+        let reactions = self.reactions(d, lines, [rho, pressure]);
+        Intervals { energy, max_displacement, contact, reactions }
+    }
+
+    /// The residual at the held directions, and how far that of u^h can be from it.
+    fn reactions<E, const N: usize, const M: usize>(
+        &self,
+        d: &Discretization<E, N, M>,
+        lines: &[OnEdge<Ball, N, M>],
+        [rho, pressure]: [f64; 2],
+    ) -> BTreeMap<String, [Range; 2]>
+    where
+        E: ExactEdge<f64, N, M>,
+    {
+        let of = |(boundary, held): (&String, &Vec<crate::fem::constraints::Held>)| {
+            let ranges = [0, 1].map(|c| {
+                // The reaction is the residual at this field.
+                let mut test = vec![[Ball::from(0); 2]; self.u.len()];
+                for held in held {
+                    let direction = Ball::from(held.direction[c]);
+                    for k in 0..2 {
+                        let dual = Ball::from(held.dual[k]);
+                        test[held.node][k] += direction * dual;
+                    }
+                }
+                let reaction = product(&test, &self.residual);
+                let by_body = root(strain_energy(d, &test));
+                let by_contact = lines.iter().fold(Ball::from(0), |sum, line| {
+                    let most = line.p0(&test).iter().fold(0.0, |sum, p| up(sum + p.magnitude()));
+                    let weight = line.numbers.length / line.numbers.gamma;
+                    sum + weight * Ball::from(most) * Ball::from(most)
+                });
+                let by_contact = root(by_contact);
+                range(reaction.widened(up(rho * by_body + pressure * by_contact)))
+            });
+            (boundary.clone(), ranges)
+        };
+        let holders = d.constraints.holders();
+        if holders.len() > MOST_REACTIONS {
+            return BTreeMap::new();
+        }
+        holders.iter().map(of).collect()
+    }
+}
+
+/// Each reaction takes a pass over the body: with more displacement boundaries than these none is enclosed.
+const MOST_REACTIONS: usize = 64;
+
+fn range(ball: Ball) -> Range {
+    [ball.lower(), ball.upper()]
+}
