@@ -13,7 +13,7 @@ use super::contact_line::{self, Coercivity, ContactLineEdge, EdgeRule, Gamma};
 use super::data::DataError;
 use super::dense::inner;
 use super::held;
-use super::loads;
+use super::loads::{self, Loads};
 use super::material;
 use super::problem::Problem;
 use super::space::Space;
@@ -114,7 +114,8 @@ where
         }
         let space = Space::new(&problem.mesh);
         let mut constraints = Constraints::new(problem, &space)?;
-        let (load, enclosed_load) = loads::assemble_twice(problem, &space)?;
+        let Loads { in_doubles: load, in_balls: enclosed_load } =
+            loads::assemble_twice(problem, &space)?;
         let contact = contact_line::assemble(problem, &space, gamma)?;
         let (parts, motions) = constraints.free_motions(&space);
         let mut slides = None;

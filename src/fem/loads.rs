@@ -57,6 +57,14 @@ pub fn assemble_with<E: Element<N, M>, const N: usize, const M: usize>(
     Ok(load)
 }
 
+/// L at every node and component.
+pub struct Loads {
+    /// In doubles.
+    pub in_doubles: Vec<[f64; 2]>,
+    /// The same sums with bounds of their rounding.
+    pub in_balls: Vec<[Ball; 2]>,
+}
+
 /// The same as [`assemble`] in doubles and in balls: the forces at the points of the rules, weight times value, are doubles, and
 /// what they add up to is computed in either. A load may be long to evaluate.
 ///
@@ -65,19 +73,19 @@ pub fn assemble_with<E: Element<N, M>, const N: usize, const M: usize>(
 pub fn assemble_twice<E: Element<N, M>, const N: usize, const M: usize>(
     problem: &Problem,
     space: &Space<E, N, M>,
-) -> Result<(Vec<[f64; 2]>, Vec<[Ball; 2]>), DataError> {
-    let mut load = vec![[0.0; 2]; space.nodes().len()];
-    let mut enclosed = vec![[Ball::from(0.0); 2]; space.nodes().len()];
+) -> Result<Loads, DataError> {
+    let mut in_doubles = vec![[0.0; 2]; space.nodes().len()];
+    let mut in_balls = vec![[Ball::from(0.0); 2]; space.nodes().len()];
     each_force(
         problem,
         space,
         |load| points(load, E::DEGREE),
         |force| {
-            force.add_to::<f64, E, N, M>(&mut load);
-            force.add_to::<Ball, E, N, M>(&mut enclosed);
+            force.add_to::<f64, E, N, M>(&mut in_doubles);
+            force.add_to::<Ball, E, N, M>(&mut in_balls);
         },
     )?;
-    Ok((load, enclosed))
+    Ok(Loads { in_doubles, in_balls })
 }
 
 /// Where on an element.
@@ -171,8 +179,8 @@ fn acting(load: &[SharedFunction; 2]) -> impl Iterator<Item = (usize, &dyn Funct
     load.iter().map(|f| &**f).enumerate().filter(|(_, f)| !vanishes(*f))
 }
 
-/// A load is evaluated on so many triangles at a time.
-const AT_A_TIME: usize = 64;
+/// A load is evaluated at so many points at a time, or a few more.
+const AT_A_TIME: usize = 1 << 16;
 
 fn each_body_force<E: Element<N, M>, const N: usize, const M: usize>(
     c: usize,
@@ -185,7 +193,9 @@ fn each_body_force<E: Element<N, M>, const N: usize, const M: usize>(
 ) -> Result<(), DataError> {
     let (mut points, mut places) = (Vec::new(), Vec::new());
     loop {
-        for t in triangles.by_ref().take(AT_A_TIME) {
+        while places.len() < AT_A_TIME
+            && let Some(t) = triangles.next()
+        {
             rule.on_triangle(&space.mesh().triangle(t), |l, x, weight| {
                 points.push((t, l, weight));
                 places.push(x);

@@ -18,9 +18,9 @@
 //! [`f64::powf`]: 2^0.5 is the square root of 2, and (-8)^(1/3) is NaN. A NaN stays a NaN, in min and max too.
 //!
 //! An [`Expression`] is a flat list of steps, not a tree: evaluation is a loop over them, a sum of a hundred thousand terms is no
-//! deeper than a sum of two, and [`MOST_LEVELS`] bounds what does nest. What stands in a text twice is computed once, and at many
-//! places a step is a loop over a block of them: both change no bit.
+//! deeper than a sum of two, and [`MOST_LEVELS`] bounds what does nest. What stands in a text twice is computed once.
 
+mod blocks;
 mod gradient;
 mod parser;
 mod polynomial;
@@ -159,42 +159,6 @@ impl Expression {
     }
 }
 
-/// So many places at a time: long enough to forget what it takes to choose the operation, short enough for the first cache.
-const BLOCK: usize = 128;
-
-impl Value {
-    /// The value at all `places`, from those of the operands.
-    fn at_all(self, places: &[[f64; 2]], slots: &[Vec<f64>], result: &mut [f64]) {
-        match self {
-            Value::Number(bits) => result.fill(f64::from_bits(bits)),
-            Value::X => result.iter_mut().zip(places).for_each(|(r, x)| *r = x[0]),
-            Value::Y => result.iter_mut().zip(places).for_each(|(r, x)| *r = x[1]),
-            Value::Unary(f, a) => {
-                result.iter_mut().zip(&slots[a as usize]).for_each(|(r, &a)| *r = f.of(a));
-            }
-            Value::Binary(f, a, b) => {
-                f.of_all(&slots[a as usize], &slots[b as usize], result);
-            }
-        }
-    }
-}
-
-impl Binary {
-    /// The quick ones each have a loop of their own, which runs over several places at a time.
-    fn of_all(self, a: &[f64], b: &[f64], result: &mut [f64]) {
-        fn each(a: &[f64], b: &[f64], result: &mut [f64], f: impl Fn(f64, f64) -> f64) {
-            result.iter_mut().zip(a).zip(b).for_each(|((r, &a), &b)| *r = f(a, b));
-        }
-        match self {
-            Binary::Add => each(a, b, result, |a, b| Binary::Add.of(a, b)),
-            Binary::Subtract => each(a, b, result, |a, b| Binary::Subtract.of(a, b)),
-            Binary::Multiply => each(a, b, result, |a, b| Binary::Multiply.of(a, b)),
-            Binary::Divide => each(a, b, result, |a, b| Binary::Divide.of(a, b)),
-            _ => each(a, b, result, |a, b| self.of(a, b)),
-        }
-    }
-}
-
 impl Function for Expression {
     fn at(&self, x: [f64; 2]) -> f64 {
         const FEW: usize = 16;
@@ -206,19 +170,7 @@ impl Function for Expression {
     }
 
     fn at_all(&self, places: &[[f64; 2]]) -> Vec<f64> {
-        let mut slots = vec![vec![0.0; BLOCK.min(places.len())]; self.slots];
-        let mut values = Vec::with_capacity(places.len());
-        for places in places.chunks(BLOCK) {
-            for &Step { value, slot } in &self.steps {
-                // No operand is in the slot of the result.
-                let mut result = std::mem::take(&mut slots[slot as usize]);
-                value.at_all(places, &slots, &mut result);
-                slots[slot as usize] = result;
-            }
-            let last = self.steps.last().map_or(&[][..], |step| &slots[step.slot as usize]);
-            values.extend_from_slice(&last[..places.len()]);
-        }
-        values
+        self.values(places)
     }
 
     fn degree(&self) -> Option<u32> {
@@ -453,7 +405,7 @@ mod tests {
         );
         let sum = parse(&("x".to_owned() + &"+y".repeat(100_000)));
         assert_eq!(sum.at([1.0, 2.0]), 200_001.0);
-        assert_eq!(sum.slots, 4);
+        assert_eq!(sum.slots, 3);
     }
 
     #[test]
@@ -462,27 +414,6 @@ mod tests {
         let deep = parse(&(deep + "y" + &")".repeat(150)));
         assert_eq!(deep.at([2.0, 1.0]), 22351.0);
         assert!(deep.slots > 16);
-    }
-
-    #[test]
-    fn values_at_many_places_are_those_at_each_to_the_bit() {
-        let places: Vec<[f64; 2]> = (0..3 * BLOCK + 17)
-            .map(|i| [f64::from(i as u32) * 0.37 - 70.0, 1.0 / f64::from(i as u32)])
-            .collect();
-        for text in [
-            "7",
-            "y",
-            "-4 + 10*x - x/y",
-            "sin(x)*cos(y) + sin(x) - exp(-x)/sqrt(x)",
-            "min(x, y)^2 + max(abs(x), 1/y)^-3 - (x*y)^0.5",
-            "x^y + 0*x - 0*x",
-        ] {
-            let expression = parse(text);
-            let bits = |values: Vec<f64>| values.into_iter().map(f64::to_bits).collect::<Vec<_>>();
-            let one_by_one = places.iter().map(|&x| expression.at(x)).collect();
-            assert_eq!(bits(expression.at_all(&places)), bits(one_by_one), "{text}");
-        }
-        assert!(parse("x").at_all(&[]).is_empty());
     }
 
     #[test]
