@@ -119,7 +119,8 @@ fn show(line: &str) {
 }
 
 fn is_shown() -> bool {
-    stderr().is_terminal() && std::env::var_os("TERM").is_some_and(|term| term != "dumb")
+    stderr().is_terminal()
+        && std::env::var_os("TERM").is_some_and(|term| !term.is_empty() && term != "dumb")
 }
 
 fn colours() -> bool {

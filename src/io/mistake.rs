@@ -73,6 +73,12 @@ pub enum CaseMistake {
     Gmsh(GmshError),
     #[error("found no key with a value; expected KEY=VALUE, such as method.gamma0=1e-3")]
     NoSetting,
+    #[error(
+        "{} is a list, whose entries have no keys; expected all of it: {}=[...]",
+        quoted(list, '\''),
+        quote::cut(list)
+    )]
+    InList { list: String },
 }
 
 impl CaseError {

@@ -5,7 +5,8 @@
 //! quotes (`method.gamma0=auto`). A table is laid over the one that is there, anything else takes its place, and a later setting
 //! wins over an earlier one. The reader of the case then cannot tell a setting from the file, but where a mistake is.
 
-use toml::de::{DeTable, DeValue};
+use toml::Spanned;
+use toml::de::{DeString, DeTable, DeValue};
 
 use super::mistake::{CaseError, CaseMistake, no_toml};
 use super::source::Source;
@@ -25,7 +26,7 @@ pub fn layers(source: &Source) -> Vec<String> {
 /// Lays the settings over the file's entries.
 ///
 /// # Errors
-/// A setting that is not of the form KEY=VALUE in TOML.
+/// A setting that is not of the form KEY=VALUE in TOML, or of an entry of a list.
 pub fn lay<'s>(
     source: Source<'s>,
     layers: &'s [String],
@@ -43,23 +44,35 @@ pub fn lay<'s>(
         if table.is_empty() {
             return Err(no_setting());
         }
-        merge(entries, table);
+        merge(entries, table, "").map_err(|list| source.wrong(start, list))?;
     }
     Ok(())
 }
 
-fn merge<'s>(below: &mut DeTable<'s>, above: DeTable<'s>) {
+/// Lays one table over another, which is that of the key `path`, if that is not empty.
+fn merge<'s>(below: &mut DeTable<'s>, above: DeTable<'s>, path: &str) -> Result<(), CaseMistake> {
     for (key, mut value) in above {
-        if let (Some(old), DeValue::Table(new)) = (below.get_mut(&**key.get_ref()), value.get_mut())
-            && let DeValue::Table(old) = old.get_mut()
-        {
-            merge(old, std::mem::take(new));
-        } else {
-            // With the key, so that the place is the new one.
-            below.remove(&**key.get_ref());
-            below.insert(key, value);
+        let name = &**key.get_ref();
+        let path = if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
+        match (below.get_mut(name).map(|old| old.get_mut()), value.get_mut()) {
+            (Some(DeValue::Table(old)), DeValue::Table(new)) => {
+                merge(old, std::mem::take(new), &path)?;
+            }
+            (Some(DeValue::Array(_)), DeValue::Table(new)) if new.keys().all(is_number) => {
+                return Err(CaseMistake::InList { list: path });
+            }
+            _ => {
+                // With the key, so that the place is the new one.
+                below.remove(name);
+                below.insert(key, value);
+            }
         }
     }
+    Ok(())
+}
+
+fn is_number(key: &Spanned<DeString>) -> bool {
+    key.get_ref().bytes().all(|b| b.is_ascii_digit())
 }
 
 /// The setting, its value in quotes if that is a bare word or a path.

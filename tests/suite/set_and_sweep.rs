@@ -81,6 +81,10 @@ fn a_mistake_in_a_setting_is_reported_with_the_setting_and_exit_code_2() {
             "method.gamma0",
             "found no key with a value; expected KEY=VALUE, such as method.gamma0=1e-3",
         ),
+        (
+            "load.body.1=2",
+            "'load.body' is a list, whose entries have no keys; expected all of it: load.body=[...]",
+        ),
         ("# a=1", "found no key with a value; expected KEY=VALUE, such as method.gamma0=1e-3"),
     ] {
         let output = checked(&folder, &["title=\"a\"", setting, "mesh.rectangle.ny=5"]);
