@@ -35,8 +35,10 @@ fn refused(seam: f64) -> Outcome {
     let hanging = |e: &MeshError| matches!(e, MeshError::Hanging { .. });
     let overlapping = |e: &MeshError| matches!(e, MeshError::Overlapping { .. });
     type Reason<'a> = Option<&'a dyn Fn(&MeshError) -> bool>;
-    let cases: [([f64; 2], f64, Reason); 7] = [
+    let cases: [([f64; 2], f64, Reason); 8] = [
         ([1.1, 0.0], 1.0, None),
+        // Beside an edge by a little more than 1e-3 of the smaller square.
+        ([1.000_55, 0.3], 0.5, None),
         // Corner to corner, and corner to edge.
         ([1.0 + seam, 0.0], 1.0, Some(&near)),
         ([1.0 + seam, 0.3], 0.5, Some(&hanging)),
@@ -61,7 +63,9 @@ fn refused(seam: f64) -> Outcome {
 
 /// Row 18: meshes that are none.
 pub fn meshes_that_are_none_are_refused() -> Outcome {
-    refused(1e-5)
+    let narrow = refused(1e-5)?;
+    // A little less than 1e-3 of the smaller square.
+    refused(0.45e-3).map(|wide| format!("seams of 1e-5: {narrow}; of 0.45e-3: {wide}"))
 }
 
 /// A seam as wide as a hundredth of the squares is a gap.

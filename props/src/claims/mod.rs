@@ -50,6 +50,8 @@ pub mod parts;
 #[cfg(not(kani))]
 pub mod passes;
 pub mod pattern;
+#[cfg(not(kani))]
+pub mod places;
 pub mod positive_part;
 #[cfg(not(kani))]
 pub mod pressed;

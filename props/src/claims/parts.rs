@@ -30,7 +30,7 @@ use signorini::solve::{ContactQuadrature, Degree, Method, Settings, Solution, di
 
 use crate::bodies::{Body, Draw, Kernel, bodies, sum};
 use crate::claim::{Claim, Engine, Outcome, by, control, noticed, proved, refuted, text};
-use crate::claims::{answers, geometry};
+use crate::claims::{answers, geometry, places};
 use crate::draws;
 use crate::numbers::Exact;
 use crate::statement;
@@ -529,6 +529,12 @@ pub fn direction() -> Claim {
             Engine::Doubles,
             "the_smooth_boundary_of_a_circle_is_the_circle",
             geometry::smooth_boundaries_are_exact_on_circles,
+        ),
+        by(Engine::Doubles, "many_corners_are_a_curve", places::many_corners_are_a_curve),
+        control(
+            Engine::Doubles,
+            "control_four_corners_are_a_curve",
+            places::four_corners_are_a_curve,
         ),
         by(
             Engine::Doubles,

@@ -26,7 +26,7 @@ use signorini::nalgebra::Matrix2;
 use signorini::solve::{ContactQuadrature, Degree, Gamma0, Method, SolveError, discretize};
 
 use crate::claim::{Claim, Engine, Outcome, by, control, noticed, text};
-use crate::claims::{answers, conditions, given, meshes, rates};
+use crate::claims::{answers, conditions, given, meshes, places, rates};
 use crate::numbers::Exact;
 use crate::proof::sampler::Random;
 use crate::verdict::Verdict;
@@ -603,6 +603,46 @@ pub fn claim() -> Claim {
         ),
         by(
             Engine::Doubles,
+            "points_are_found_in_their_triangles",
+            places::points_are_found_in_their_triangles,
+        ),
+        control(
+            Engine::Doubles,
+            "control_points_are_found_beside_their_triangles",
+            places::points_are_found_beside_their_triangles,
+        ),
+        by(
+            Engine::Doubles,
+            "loads_are_integrated_exactly_to_their_degrees",
+            places::loads_are_integrated_exactly_to_their_degrees,
+        ),
+        control(
+            Engine::Doubles,
+            "control_loads_are_integrated_exactly_beyond_their_degrees",
+            places::loads_are_integrated_exactly_beyond_their_degrees,
+        ),
+        by(
+            Engine::Doubles,
+            "free_motions_are_called_what_they_are",
+            places::free_motions_are_called_what_they_are,
+        ),
+        control(
+            Engine::Doubles,
+            "control_free_motions_are_called_others",
+            places::free_motions_are_called_others,
+        ),
+        by(
+            Engine::Doubles,
+            "constants_of_a_line_are_its_largest_and_its_middle_one",
+            places::constants_of_a_line_are_its_largest_and_its_middle_one,
+        ),
+        control(
+            Engine::Doubles,
+            "control_constants_of_a_line_are_larger",
+            places::constants_of_a_line_are_larger,
+        ),
+        by(
+            Engine::Doubles,
             "meshes_that_are_none_are_refused",
             meshes::meshes_that_are_none_are_refused,
         ),
@@ -681,7 +721,7 @@ pub fn claim() -> Claim {
         items: &["the solver"],
         title: "What the solver refuses, and the rules by which it integrates",
         paper: "gamma0 sufficiently small; the rest is not in the paper.",
-        statement: "On nine small bodies, P1 and P2: gamma0 with kappa >= 1 is refused (from 1 + 1e-9 on), with kappa < 1 taken (up to 1 - 1e-9), and gamma0 = auto is kappa = 1/2. Displacements that two sides prescribe at a common vertex and that differ by 1e-9 or more are refused, those of a support, which count along its normal, too. Tractions along what is held are no load. A local gamma gives each triangle on Gamma_C the kappa that is asked for. A block that neither its supports nor contact under its load hold is refused, one that they hold is taken, on the verge of tipping it is refused (15 cases); turned by five angles, two rollers hold it, and one does not; an arch of two parts hinged to each other and to its base is held, unless the hinges are in line. The Gauss rules with n <= 10 points have the moments 0 with the Legendre polynomials of degree 1 to 2n - 1, to a few units of roundoff, and not with that of degree 2n; contact edges are integrated by the one that is asked for. The rule for errors, told to cut an edge, integrates a kink there exactly, 1e-7 from an end too. The integrals of [P]+ over an edge, P1 and P2, for 2^k P, |k| <= 60, are those for P times the power of two, bit for bit. The errors in all six norms of random P2 fields from quadratic ones, on nine bodies, open and pressed, are those of their definitions. The a-orthogonal projection of the exact solution is nearer to it in the energy norm than u^h and than the interpolant. Of the solutions of a block that slides along its floor the one of least norm is given. In units that are powers of two a solution has the same bits, and one whose numbers are no doubles is refused. Rectangles and trapezoids, refined and moved at random, are laid out as they are said to be. Tolerances, numbers of steps and of Gauss points, gamma0 and moduli beyond their limits are refused, those next to them taken; a support counts along its own normal where it meets another. Meshes that are torn or cover a point twice are refused, vertices are merged by chains of short steps only, a refined problem has the materials and loads of the coarse one, the fewest triangles with half of the square of the bound are refined until the target is met, and data that are not finite are refused.",
+        statement: "On nine small bodies, P1 and P2: gamma0 with kappa >= 1 is refused (from 1 + 1e-9 on), with kappa < 1 taken (up to 1 - 1e-9), and gamma0 = auto is kappa = 1/2. Displacements that two sides prescribe at a common vertex and that differ by 1e-9 or more are refused, those of a support, which count along its normal, too. Tractions along what is held are no load. A local gamma gives each triangle on Gamma_C the kappa that is asked for. A block that neither its supports nor contact under its load hold is refused, one that they hold is taken, on the verge of tipping it is refused (15 cases); turned by five angles, two rollers hold it, and one does not; an arch of two parts hinged to each other and to its base is held, unless the hinges are in line. The Gauss rules with n <= 10 points have the moments 0 with the Legendre polynomials of degree 1 to 2n - 1, to a few units of roundoff, and not with that of degree 2n; contact edges are integrated by the one that is asked for. The rule for errors, told to cut an edge, integrates a kink there exactly, 1e-7 from an end too. The integrals of [P]+ over an edge, P1 and P2, for 2^k P, |k| <= 60, are those for P times the power of two, bit for bit. The errors in all six norms of random P2 fields from quadratic ones, on nine bodies, open and pressed, are those of their definitions. The a-orthogonal projection of the exact solution is nearer to it in the energy norm than u^h and than the interpolant. Of the solutions of a block that slides along its floor the one of least norm is given. In units that are powers of two a solution has the same bits, and one whose numbers are no doubles is refused. Rectangles and trapezoids, refined and moved at random, are laid out as they are said to be. Tolerances, numbers of steps and of Gauss points, gamma0 and moduli beyond their limits are refused, those next to them taken; a support counts along its own normal where it meets another. Points are found in the triangles that have them, corners and edges too. Loads of degree 7, with a kink of degree 13, and polynomials of the degree that they tell are integrated exactly. A body held in a point turns about it, on rollers it slides along them, and what hangs on a vertex turns there: so it is said. The constant of a contact line is the largest of its triangles', the typical one stands in the middle of their order. Meshes that are torn or cover a point twice are refused, vertices are merged by chains of short steps only, a refined problem has the materials and loads of the coarse one, the fewest triangles with half of the square of the bound are refined until the target is met, and data that are not finite are refused.",
         numbers: "doubles; the moments from the doubles of the rules over rationals.",
         kernel: &[
             "fem::quadrature::gauss",

@@ -1,0 +1,286 @@
+//! What a mesh and its data say of places: which triangle a point is in, which rigid motions supports leave free and how these
+//! are called, where a boundary is curved, and that loads are integrated exactly as far as they are said to be.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use signorini::fem::constraints::Constraints;
+use signorini::fem::{
+    Condition, Diagonal, Function, Mesh, PointSupport, Problem, Rectangle, SharedFunction, Space,
+    contact_line, loads,
+};
+use signorini::kernel::{Element, Material, P1, P2, Plane};
+
+use crate::claim::{Outcome, noticed, text};
+use crate::draws;
+use crate::proof::sampler::Random;
+
+fn constant(value: f64) -> SharedFunction {
+    Arc::new(move |_: [f64; 2]| value)
+}
+
+fn body(mesh: Mesh) -> Problem {
+    let material = Material::lame(1.0, 1.0, Plane::Strain);
+    Problem::new(mesh, material, [0.0, 0.0].map(constant), [].into())
+}
+
+/// A rectangle with its vertices moved at random, in cells of side 1 before.
+fn moved([nx, ny]: [usize; 2], seed: u64) -> Result<Mesh, String> {
+    let (width, height) = (nx as f64, ny as f64);
+    let cells = Rectangle { width, height, nx, ny, diagonal: Diagonal::Crossed };
+    cells.perturbed(0.2, seed).map_err(text)
+}
+
+/// Points of each triangle, corners and points of edges among them, are found in a triangle that has them, a shift of `off`
+/// along x counted; points beside the body are not found.
+fn located(off: f64) -> Outcome {
+    let mut random = Random::new(draws::seed());
+    let mesh = moved([3, 2], random.below(1000) as u64)?;
+    let mut count = 0;
+    for t in 0..mesh.triangles().len() {
+        for _ in 0..20 {
+            let mut weights = [0, 0, 0].map(|_: i32| random.below(4) as f64);
+            if weights == [0.0; 3] {
+                weights[random.below(3)] = 1.0;
+            }
+            let sum: f64 = weights.iter().sum();
+            let l = weights.map(|w| w / sum);
+            let x = mesh.triangle(t).point(l);
+            let (found, at) = mesh.locate([x.x + off, x.y]).ok_or(format!("{x:?} is nowhere"))?;
+            let there = mesh.triangle(found).point(at);
+            let inside = at.iter().all(|&l| l >= -1e-11);
+            if !(inside && (there.x - x.x).abs() <= 1e-11 && (there.y - x.y).abs() <= 1e-11) {
+                return Err(format!("{x:?} is found at {there:?}"));
+            }
+            count += 1;
+        }
+    }
+    for outside in [[-0.001, 1.0], [3.001, 1.0], [1.5, -0.001], [1.5, 2.001]] {
+        if mesh.locate(outside).is_some() {
+            return Err(format!("{outside:?} is in the body"));
+        }
+    }
+    Ok(format!("{count} points"))
+}
+
+/// Row 18: places of points.
+pub fn points_are_found_in_their_triangles() -> Outcome {
+    located(0.0)
+}
+
+/// Points looked for a hundredth beside where they are.
+pub fn points_are_found_beside_their_triangles() -> Outcome {
+    noticed(located(0.01))
+}
+
+/// A polynomial of this degree along x + y / 2 from x + y / 2 = `from` on, of which so much is told.
+struct Power {
+    degree: u32,
+    from: Option<f64>,
+    told: bool,
+}
+
+impl Function for Power {
+    fn at(&self, [x, y]: [f64; 2]) -> f64 {
+        let along = match self.from {
+            Some(c) => (x - c).max(0.0),
+            None => x + y / 2.0,
+        };
+        along.powi(self.degree as i32)
+    }
+
+    fn degree(&self) -> Option<u32> {
+        self.told.then_some(self.degree)
+    }
+
+    fn kink(&self) -> Option<f64> {
+        self.from
+    }
+}
+
+/// Body forces and tractions of degree 7 that tell nothing, of degree 13 with a kink, and of any degree that is told are
+/// integrated as by thirty points a direction; those that tell nothing have a degree `higher` by that.
+fn integrated<E: Element<N, M>, const N: usize, const M: usize>(higher: u32) -> Outcome {
+    let told = |degree| Power { degree, from: None, told: true };
+    let mut powers = vec![
+        Power { degree: 7 + higher, from: None, told: false },
+        Power { degree: 13 + higher, from: Some(0.4), told: false },
+    ];
+    powers.extend([1, 2, 3, 5, 8, 12, 17].map(told));
+    let cells = Rectangle { width: 1.0, height: 1.0, nx: 1, ny: 1, diagonal: Diagonal::Left };
+    let count = powers.len();
+    for power in powers {
+        let (degree, kink) = (power.degree, power.from);
+        let power: SharedFunction = Arc::new(power);
+        let mut problem = body(cells.mesh().map_err(text)?);
+        problem.body_force = [Arc::clone(&power), constant(0.0)];
+        for name in ["right", "top"] {
+            let traction = Condition::Traction([constant(0.0), Arc::clone(&power)]);
+            problem.conditions.insert(name.to_owned(), traction);
+        }
+        let space = Space::<E, N, M>::new(&problem.mesh);
+        let found = loads::assemble(&problem, &space).map_err(text)?;
+        let many = loads::assemble_with(&problem, &space, |_| 30).map_err(text)?;
+        let size = many.as_flattened().iter().fold(0.0, |most: f64, l| most.max(l.abs()));
+        let pairs = found.as_flattened().iter().zip(many.as_flattened());
+        let off = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        if !(off <= 1e-13 * size) {
+            return Err(format!("degree {degree}, kink {kink:?}: off by {:e}", off / size));
+        }
+    }
+    Ok(format!("{count} powers"))
+}
+
+/// Row 18: loads.
+pub fn loads_are_integrated_exactly_to_their_degrees() -> Outcome {
+    let p1 = integrated::<P1, 3, 2>(0)?;
+    integrated::<P2, 6, 3>(0).map(|p2| format!("P1: {p1}; P2: {p2}"))
+}
+
+/// Two degrees more than what is promised.
+pub fn loads_are_integrated_exactly_beyond_their_degrees() -> Outcome {
+    noticed(integrated::<P1, 3, 2>(2))
+}
+
+/// What the supports of a problem leave free, in words, with how far each motion moves the place `x`.
+fn free(problem: &Problem, x: [f64; 2]) -> Result<Vec<(String, f64)>, String> {
+    let space = Space::<P1, 3, 2>::new(&problem.mesh);
+    let constraints = Constraints::new(problem, &space).map_err(text)?;
+    let (_, motions) = constraints.free_motions(&space);
+    let moved = |part: &signorini::fem::rigid::PartMotion| {
+        let [ux, uy] = part.at(x);
+        ux.hypot(uy)
+    };
+    Ok(motions
+        .iter()
+        .map(|m| (m.to_string(), m.parts.iter().map(moved).fold(0.0, f64::max)))
+        .collect())
+}
+
+/// A block held in a point turns about it; rollers leave it free along them; and what hangs on a vertex turns there. The point
+/// is said to be `off` along x.
+fn named(off: f64) -> Outcome {
+    let cells = Rectangle { width: 4.0, height: 2.0, nx: 4, ny: 2, diagonal: Diagonal::Left };
+    let block = || cells.mesh().map(body).map_err(text);
+    let expect = |found: Vec<(String, f64)>, words: String| match &found[..] {
+        [(said, moved)] if said.contains(&words) && *moved <= 1e-12 => Ok(()),
+        _ => Err(format!("{found:?}; expected one: {words}")),
+    };
+    let vertices = block()?.mesh.vertices().to_vec();
+    for (vertex, &[x, y]) in vertices.iter().enumerate() {
+        let mut problem = block()?;
+        let displacement = [0.01, 0.0].map(|u| Some(constant(u)));
+        problem.points.push(PointSupport { name: "pin".to_owned(), vertex, displacement });
+        let about = x + off;
+        let words = format!(
+            "rotation about ({about}, {y}): u_x off the line y = {y} would stop it, or u_y off x = {about}"
+        );
+        expect(free(&problem, [x, y])?, words)?;
+    }
+    for (side, held, words) in [
+        ("top", [None, Some(constant(0.0))], "translation along (1, 0): u_x would stop it"),
+        ("left", [Some(constant(0.0)), None], "translation along (0, 1): u_y would stop it"),
+    ] {
+        let mut problem = block()?;
+        problem.conditions.insert(side.to_owned(), Condition::Displacement(held));
+        match &free(&problem, [0.0; 2])?[..] {
+            [(said, _)] if said == words => {}
+            found => return Err(format!("{found:?}; expected {words}")),
+        }
+    }
+    // Two triangles that share the vertex (1, 0), the left one held.
+    let corners = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [2.0, 0.0], [2.0, 1.0]];
+    let mesh = Mesh::new(corners, vec![[0, 1, 2], [1, 3, 4]], [("left".to_owned(), vec![[2, 0]])]);
+    let mut problem = body(mesh.map_err(text)?);
+    problem.conditions.insert("left".to_owned(), Condition::clamped());
+    let found = free(&problem, [1.0, 0.0])?;
+    let hinged = "a vertex alone joins it to the rest there";
+    expect(found, hinged.to_owned())?;
+    Ok(format!("{} pins, two rollers, one hinge", vertices.len()))
+}
+
+/// Row 18: what supports leave free.
+pub fn free_motions_are_called_what_they_are() -> Outcome {
+    named(0.0)
+}
+
+/// Centres a quarter beside where they are.
+pub fn free_motions_are_called_others() -> Outcome {
+    noticed(named(0.25))
+}
+
+/// The edges of a polygon of `corners` corners are those of a curve where these are many, and are straight where they are few.
+fn curved(corners: usize, expected: bool) -> Outcome {
+    let rim = |k: usize| {
+        let (sine, cosine) = (TAU * k as f64 / corners as f64).sin_cos();
+        [cosine, sine]
+    };
+    let vertices = [[0.0, 0.0]].into_iter().chain((0..corners).map(rim)).collect();
+    let next = |k: usize| 1 + (k + 1) % corners;
+    let triangles = (0..corners).map(|k| [0, 1 + k, next(k)]).collect();
+    let edges = (0..corners).map(|k| [1 + k, next(k)]).collect();
+    let mesh = Mesh::new(vertices, triangles, [("rim".to_owned(), edges)]).map_err(text)?;
+    let mut problem = body(mesh);
+    let contact = Condition::Contact { gap: constant(0.0) };
+    problem.conditions.insert("rim".to_owned(), contact);
+    let space = Space::<P1, 3, 2>::new(&problem.mesh);
+    let line = contact_line::assemble(&problem, &space, 1e-3).map_err(text)?;
+    match line.iter().position(|edge| edge.curved != expected) {
+        Some(e) => Err(format!("{corners} corners: edge {e} is not what it should be")),
+        None => Ok(format!("{corners} corners")),
+    }
+}
+
+/// Row 20: curved edges.
+pub fn many_corners_are_a_curve() -> Outcome {
+    let many = curved(48, true)?;
+    curved(4, false).map(|few| format!("{many} and {few}"))
+}
+
+/// Four corners are none.
+pub fn four_corners_are_a_curve() -> Outcome {
+    noticed(curved(4, true))
+}
+
+/// The constant of a line is the largest of its triangles', the typical one that in the middle of their order, and a local
+/// gamma is reported as its kappa times the limit, all `times` that.
+fn ordered(times: f64) -> Outcome {
+    let mut random = Random::new(draws::seed());
+    for nx in [1, 4, 9] {
+        let mesh = moved([nx, 1], random.below(1000) as u64)?;
+        let mut problem = body(mesh);
+        let contact = Condition::Contact { gap: constant(0.0) };
+        problem.conditions.insert("bottom".to_owned(), contact);
+        let space = Space::<P1, 3, 2>::new(&problem.mesh);
+        // Each edge by itself: gamma of kappa = 1 is h_T over the constant of its triangle.
+        let local = contact_line::Gamma::Local(1.0);
+        let line = contact_line::assemble(&problem, &space, local).map_err(text)?;
+        let h = |e: &contact_line::ContactLineEdge<3, 2>| problem.mesh.diameter(e.edge.triangle);
+        let mut constants: Vec<f64> = line.iter().map(|edge| h(edge) / edge.gamma).collect();
+        constants.sort_by(f64::total_cmp);
+        let found = contact_line::Coercivity::new::<P1, 3, 2>(&problem).map_err(text)?;
+        let largest = constants[constants.len() - 1];
+        let expected = [
+            (found.constant, largest),
+            (found.typical, constants[constants.len() / 2]),
+            (found.gamma0(contact_line::Gamma::Local(0.3)), 0.3 / largest),
+            (found.gamma0(contact_line::Gamma::Uniform(0.3)), 0.3),
+        ];
+        for (found, expected) in expected {
+            if !((found - times * expected).abs() <= 1e-12 * expected) {
+                return Err(format!("{nx} cells: {found} and not {expected}"));
+            }
+        }
+    }
+    Ok("three lines".to_owned())
+}
+
+/// Row 18: the constants of a contact line.
+pub fn constants_of_a_line_are_its_largest_and_its_middle_one() -> Outcome {
+    ordered(1.0)
+}
+
+/// All a thousandth larger.
+pub fn constants_of_a_line_are_larger() -> Outcome {
+    noticed(ordered(1.001))
+}
