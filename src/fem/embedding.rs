@@ -8,11 +8,11 @@
 //! - just outside each chain of the outline the winding number is 0. It does not change along a chain that nothing
 //!   crosses; chains end where the outline meets itself in a vertex. It is counted on a ray;
 //! - no vertex of the outline lies on an edge that is not its own, or beside it across a void narrower than
-//!   [`TOUCHING`] times the local edge, and no two vertices are that close across a void.
+//!   `TOUCHING` times the local edge, and no two vertices are that close across a void.
 //!
 //! The last is a matter of tolerance. A mesh rounded to six decimals has voids, or overlaps, of 1e-6: 1e-3 of edges of
 //! length 1e-3. What is inside the body does not count: a sliver's apex may be as close to its base as it likes. A slot
-//! that is meant needs edges along it shorter than 1/[`TOUCHING`] times its width. The local edge of a vertex is the
+//! that is meant needs edges along it shorter than 1/`TOUCHING` times its width. The local edge of a vertex is the
 //! shortest one of the outline that ends there; of two places that nearly touch the smaller counts.
 
 use nalgebra::Vector2;
