@@ -17,6 +17,9 @@ pub struct Arguments {
     /// Print nothing but errors
     #[arg(long, global = true)]
     pub quiet: bool,
+    /// Print how it was solved, too: mesh, coercivity, Newton's method, accuracy, balance of energies, times
+    #[arg(long, global = true, conflicts_with = "quiet")]
+    pub verbose: bool,
 }
 
 const EXIT_CODES: &str = "Exit codes: 0 solved; 1 could not solve, write or accept a certificate, or adapt the mesh to its target; 2 the case is wrong, and then nothing \

@@ -74,7 +74,7 @@ mod command {
     }
 
     pub fn run() -> ExitCode {
-        let Arguments { task, quiet } = match Arguments::read() {
+        let Arguments { task, quiet, verbose } = match Arguments::read() {
             Ok(arguments) => arguments,
             Err(error) if error.use_stderr() => error.exit(),
             // What was asked for: help, or the version.
@@ -84,7 +84,7 @@ mod command {
         let done = match &task {
             Task::Solve { case, out, json, certificate, engine, ranks, reference } => {
                 let out = out.as_deref();
-                let wanted = if *json { Wanted::Json } else { Wanted::Summary };
+                let wanted = if *json { Wanted::Json } else { Wanted::Summary { verbose } };
                 match (engine, ranks) {
                     (Engine::Fenicsx, ranks) => {
                         let reference = reference.as_deref();
@@ -165,14 +165,16 @@ mod command {
     /// What a solve shall print.
     #[derive(Clone, Copy, PartialEq, Eq)]
     enum Wanted {
-        Summary,
+        Summary { verbose: bool },
         Json,
     }
 
     impl Wanted {
         fn text(self, results: &Results, files: &[PathBuf], quiet: bool) -> Result<Done, Failure> {
             match self {
-                Wanted::Summary => Ok(summarised(quiet)(summary::solved(results, files))),
+                Wanted::Summary { verbose } => {
+                    Ok(summarised(quiet)(summary::solved(results, files, verbose)))
+                }
                 Wanted::Json => match result_json(results) {
                     Ok(text) => Ok(Done { text, code: 0 }),
                     Err(error) => {
@@ -196,7 +198,7 @@ mod command {
         let case = read(arguments)?;
         let read = start.elapsed();
         let folder = folder(&arguments.file, out);
-        if wanted == Wanted::Summary || out.is_some() {
+        if wanted != Wanted::Json || out.is_some() {
             let names = [&outputs::FILES[..], &certificate::FILES].concat();
             spare(&folder, &names, &case.sources).map_err(|e| failure(WRONG)(&e))?;
         }

@@ -1,4 +1,4 @@
-//! What the command says on the terminal: the result in five seconds.
+//! The summaries that the command prints.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -9,12 +9,13 @@ use signorini::io::certificate::Audit;
 use signorini::io::convergence::Study;
 use signorini::io::result::{
     Adaptation, ContinuousCertificate, DiscreteCertificate, GammaChoice, NewtonHistory, Results,
+    StressPeak,
 };
 use signorini::io::sweep::Sweep;
 use signorini::io::{Case, numbers};
 use signorini::quote;
 use signorini::solve::accuracy::ACCEPTABLE;
-use signorini::solve::{ContactQuadrature, MethodReport, Outline, RouteName, history};
+use signorini::solve::{ContactQuadrature, MethodReport, Outline, RouteName, Status};
 
 /// Lines of a name and a text.
 #[derive(Default)]
@@ -27,120 +28,35 @@ impl Lines {
 
     fn line(&mut self, name: &str, text: impl AsRef<str>) {
         // Writing to a string cannot fail.
-        let _ = writeln!(self.0, "  {name:<11} {}", text.as_ref());
+        let _ = writeln!(self.0, "  {name:<12} {}", text.as_ref());
     }
 }
 
-/// Of a solved case, whoever solved it.
-pub fn solved(r: &Results, files: &[PathBuf]) -> String {
-    let (q, seconds) = (&r.quantities, &r.seconds);
-    // P1 has its nodes at the vertices alone.
-    let degree = if r.mesh.dofs == 2 * r.mesh.vertices { 1 } else { 2 };
+/// A contact residual, a relative error or an imbalance above this is shown without being asked for.
+const WORTH_SHOWING: f64 = 1e-8;
+
+/// The summary of a solved case: what it carries, then what is proved, then how it was solved. The last part is printed if
+/// it is asked for, and each of its lines where something about it is not as it should be.
+pub fn solved(r: &Results, files: &[PathBuf], verbose: bool) -> String {
     let mut lines = Lines::titled(&r.title);
-    lines.line(
-        "mesh",
-        sizes(r.mesh.triangles, degree, r.mesh.dofs, r.mesh.contact_edges, r.mesh.h_max),
-    );
-    lines.line("coercivity", coercivity(&r.gamma));
-    lines.line("newton", newton(&r.newton));
-    lines.line("", history(&r.newton.residuals));
-    if let Some(method) = &r.method {
-        lines.line("accuracy", accuracy(method));
-        if method.slides > 0 {
-            lines.line("", format!(
-                "contact holds the body; {} along the obstacles is stopped by nothing: the displacement of least norm is given, friction would be needed to know more",
-                count(method.slides, "motion")
-            ));
-        }
+    let shown = Shown::of(r);
+    contact(r, &shown, verbose, &mut lines);
+    stress(r, &shown, &mut lines);
+    reactions(r, &shown, verbose, &mut lines);
+    let largest = r.quantities.max_displacement;
+    lines.line("displacement", format!("up to {}{}", short(largest), shown.length));
+    for remark in &r.remarks {
+        lines.line("remark", remark);
     }
-    for material in &r.materials {
-        let of = if material.surfaces.is_empty() {
-            "the whole body".to_owned()
-        } else {
-            quote::names(material.surfaces.iter().map(String::as_str))
-        };
-        let (young, poisson) = (short(material.young), short(material.poisson));
-        lines.line(
-            "material",
-            format!("{of}: E = {young}, nu = {poisson}, plane {}", material.plane),
-        );
-    }
-    let unit = |of: fn(&Units) -> String| {
-        r.units.as_ref().map_or(String::new(), |units| format!(" {}", of(units)))
-    };
-    let (length, stress) = (unit(|units| units.length.clone()), unit(Units::stress));
-    let (force, moment) = (unit(Units::force_across), unit(Units::moment_across));
-    if r.contact.is_empty() {
-        lines.line(
-            "contact",
-            format!(
-                "force {}{force}, length {}{length}, peak pressure {}{stress}",
-                short(q.contact_force),
-                short(q.contact_length),
-                short(q.peak_pressure)
-            ),
-        );
-    }
-    for contact in &r.contact {
-        lines.line(
-            "contact",
-            format!(
-                "{}: force {} {}{force}, moment {}{moment}, length {}{length}",
-                quote::cut(&contact.boundary),
-                short(contact.force),
-                vector(contact.resultant),
-                short(contact.moment),
-                short(contact.length)
-            ),
-        );
-        if contact.length > 0.0 {
-            let place = |place: [f64; 2]| match place {
-                [x, y] if x.is_finite() && y.is_finite() => format!(" at {}", vector(place)),
-                // The reference in FEniCSx does not say.
-                _ => String::new(),
-            };
-            let mut words = format!("peak pressure {}{stress}", short(contact.peak_pressure));
-            words += &place(contact.peak_at);
-            if contact.penetration.is_finite() {
-                words += &format!(", penetration {}{length}", short(contact.penetration));
-                words += &place(contact.penetration_at);
-            }
-            lines.line("", words);
-        }
-    }
-    for (i, (boundary, reaction)) in q.reactions.iter().enumerate() {
-        let name = if i == 0 { "reactions" } else { "" };
-        let turning = match r.reaction_moments.get(boundary) {
-            Some(turning) => format!(", moment {}{moment}", short(*turning)),
-            None => String::new(),
-        };
-        let reaction = vector(*reaction);
-        lines.line(name, format!("{}: {reaction}{force}{turning}", quote::cut(boundary)));
-    }
-    lines.line(
-        "energy",
-        format!(
-            "a(u,u) = {}{moment}, L(u) = {}{moment}, largest displacement {}{length}",
-            short(q.energy),
-            short(q.work),
-            short(q.max_displacement)
-        ),
-    );
-    if let Some(balance) = &r.balance {
-        lines.line(
-            "balance",
-            format!(
-                "a(u,u) = loads {} + supports {} + contact {}{moment}, relative imbalance {:.0e}",
-                short(balance.loads),
-                short(balance.supports),
-                short(balance.contact),
-                balance.imbalance.abs()
-            ),
-        );
+    if let Some(slides) = r.method.as_ref().map(|method| method.slides).filter(|&n| n > 0) {
+        lines.line("remark", format!(
+            "the body can still slide in {}: no obstacle and no support stops it there. The displacement of least norm is given; friction would be needed to know more",
+            count(slides, "direction")
+        ));
     }
     let certificates = r.certificate.as_ref();
     if let Some(discrete) = certificates.and_then(|c| c.discrete.as_ref()) {
-        lines.line("certified", enclosed(discrete));
+        lines.line("proved", enclosed(discrete));
     }
     if let Some(continuous) = certificates.and_then(|c| c.continuous.as_ref()) {
         distance(continuous, &mut lines);
@@ -148,20 +64,6 @@ pub fn solved(r: &Results, files: &[PathBuf]) -> String {
     if let Some(adapt) = &r.adapt {
         lines.line("adapted", adapted(adapt));
     }
-    for remark in &r.remarks {
-        lines.line("remark", remark);
-    }
-    lines.line(
-        "time",
-        format!(
-            "read {}, assemble {}, solve {}, certify {}, write {}",
-            time(seconds.read),
-            time(seconds.assemble),
-            time(seconds.solve),
-            time(seconds.certify),
-            time(seconds.write)
-        ),
-    );
     if let Some(errors) = &r.errors {
         lines.line(
             "errors",
@@ -175,11 +77,178 @@ pub fn solved(r: &Results, files: &[PathBuf]) -> String {
             ),
         );
     }
+    how_it_was_solved(r, &shown, verbose, &mut lines);
     lines.line("written", written(files));
     lines.0
 }
 
-/// Of a displacement from elsewhere.
+/// How quantities are shown: each with its unit, those per unit of thickness times the thickness.
+struct Shown {
+    length: String,
+    stress: String,
+    force: String,
+    moment: String,
+    thickness: f64,
+    /// Components of forces below this are rounding.
+    no_force: f64,
+}
+
+impl Shown {
+    fn of(r: &Results) -> Shown {
+        let unit = |of: &dyn Fn(&Units) -> String| {
+            r.units.as_ref().map_or(String::new(), |units| format!(" {}", of(units)))
+        };
+        Shown {
+            length: unit(&|units| units.length.clone()),
+            stress: unit(&Units::stress),
+            force: unit(&|units| units.force(r.thickness)),
+            moment: unit(&|units| units.moment(r.thickness)),
+            thickness: r.thickness.unwrap_or(1.0),
+            no_force: 1e-10 * r.all_forces(),
+        }
+    }
+
+    /// The components of a force, without the unit.
+    fn components(&self, f: [f64; 2]) -> String {
+        let [x, y] = f.map(|c| if c.abs() > self.no_force { c * self.thickness } else { 0.0 });
+        vector([x, y])
+    }
+
+    fn moment(&self, m: f64) -> String {
+        format!("{}{}", short(m * self.thickness), self.moment)
+    }
+
+    fn stress(&self, s: f64) -> String {
+        format!("{}{}", short(s), self.stress)
+    }
+}
+
+fn contact(r: &Results, shown: &Shown, verbose: bool, lines: &mut Lines) {
+    let size = |force: f64| format!("{}{}", short(force * shown.thickness), shown.force);
+    if r.contact.is_empty() {
+        let q = &r.quantities;
+        let length = format!("{}{}", short(q.contact_length), shown.length);
+        let peak = shown.stress(q.peak_pressure);
+        let force = size(q.contact_force);
+        lines.line("contact", format!("force {force}, length {length}, peak pressure {peak}"));
+    }
+    for (i, part) in r.contact.iter().enumerate() {
+        let name = if i == 0 { "contact" } else { "" };
+        let boundary = quote::cut(&part.boundary);
+        if !r.is_in_contact(part) {
+            lines.line(name, format!("{boundary}: no contact"));
+            continue;
+        }
+        let at = |place: [f64; 2]| match place {
+            [x, y] if x.is_finite() && y.is_finite() => format!(" at {}", vector(place)),
+            // The reference in FEniCSx does not say.
+            _ => String::new(),
+        };
+        let length = format!("{}{}", short(part.length), shown.length);
+        let [force, components] = [size(part.force), shown.components(part.resultant)];
+        let peak = format!("{}{}", shown.stress(part.peak_pressure), at(part.peak_at));
+        lines.line(name, format!("{boundary}: force {force} {components}, length {length}"));
+        lines.line("", format!("peak pressure {peak}"));
+        if verbose {
+            let mut words = format!("moment {}", shown.moment(part.moment));
+            if part.penetration.is_finite() {
+                let depth = format!("{}{}", short(part.penetration), shown.length);
+                words += &format!(", penetration {depth}{}", at(part.penetration_at));
+            }
+            lines.line("", words);
+        }
+    }
+}
+
+fn stress(r: &Results, shown: &Shown, lines: &mut Lines) {
+    let Some(stress) = &r.stress else { return };
+    let value = |peak: &StressPeak| {
+        let surface = match &peak.surface {
+            Some(surface) if r.materials.len() > 1 => format!(" in {}", quote::cut(surface)),
+            _ => String::new(),
+        };
+        format!("{} at {}{surface}", shown.stress(peak.value), vector(peak.at))
+    };
+    lines.line("stress", format!("von Mises up to {}", value(&stress.von_mises)));
+    let [low, high] = [&stress.principal_min, &stress.principal_max].map(value);
+    lines.line("", format!("principal from {low} to {high}"));
+}
+
+fn reactions(r: &Results, shown: &Shown, verbose: bool, lines: &mut Lines) {
+    for (i, (boundary, reaction)) in r.quantities.reactions.iter().enumerate() {
+        let name = if i == 0 { "reactions" } else { "" };
+        let moment = match r.reaction_moments.get(boundary).filter(|_| verbose) {
+            Some(moment) => format!(", moment {}", shown.moment(*moment)),
+            None => String::new(),
+        };
+        let force = format!("{}{}", shown.components(*reaction), shown.force);
+        lines.line(name, format!("{}: {force}{moment}", quote::cut(boundary)));
+    }
+}
+
+fn how_it_was_solved(r: &Results, shown: &Shown, verbose: bool, lines: &mut Lines) {
+    let (q, seconds) = (&r.quantities, &r.seconds);
+    if verbose {
+        // P1 has its nodes at the vertices alone.
+        let degree = if r.mesh.dofs == 2 * r.mesh.vertices { 1 } else { 2 };
+        let mesh = &r.mesh;
+        let sizes = sizes(mesh.triangles, degree, mesh.dofs, mesh.contact_edges, mesh.h_max);
+        lines.line("mesh", sizes);
+        for material in &r.materials {
+            let of = if material.surfaces.is_empty() {
+                "the whole body".to_owned()
+            } else {
+                quote::names(material.surfaces.iter().map(String::as_str))
+            };
+            let (young, poisson) = (short(material.young), short(material.poisson));
+            let plane = &material.plane;
+            lines.line("material", format!("{of}: E = {young}, nu = {poisson}, plane {plane}"));
+        }
+    }
+    if verbose || !(r.gamma.kappa < 1.0) {
+        lines.line("coercivity", coercivity(&r.gamma));
+    }
+    if verbose || r.newton.status != Status::Converged {
+        lines.line("newton", newton(&r.newton));
+    }
+    if let Some(method) = &r.method
+        && (verbose || !(method.forward_error < WORTH_SHOWING))
+    {
+        lines.line("accuracy", accuracy(method));
+    }
+    if verbose {
+        let [energy, work] = [q.energy, q.work].map(|e| shown.moment(e));
+        lines.line("energy", format!("a(u,u) = {energy}, L(u) = {work}"));
+    }
+    if let Some(balance) = &r.balance
+        && (verbose || !(balance.imbalance.abs() < WORTH_SHOWING))
+    {
+        let parts = [balance.loads, balance.supports, balance.contact];
+        let [loads, supports, contact] = parts.map(|e| shown.moment(e));
+        let imbalance = balance.imbalance.abs();
+        lines.line(
+            "balance",
+            format!(
+                "a(u,u) = loads {loads} + supports {supports} + contact {contact}, relative imbalance {imbalance:.0e}"
+            ),
+        );
+    }
+    if verbose {
+        lines.line(
+            "time",
+            format!(
+                "read {}, assemble {}, solve {}, certify {}, write {}",
+                time(seconds.read),
+                time(seconds.assemble),
+                time(seconds.solve),
+                time(seconds.certify),
+                time(seconds.write)
+            ),
+        );
+    }
+}
+
+/// The summary of what is certified of a displacement from elsewhere.
 pub fn certified(case: &Case, field: &Path, c: &Continuous, files: &[PathBuf]) -> String {
     let mut lines = Lines::titled(&case.title);
     lines.line("field", field.display().to_string());
@@ -210,7 +279,7 @@ pub fn certified(case: &Case, field: &Path, c: &Continuous, files: &[PathBuf]) -
     lines.0
 }
 
-/// Of a certificate that was verified.
+/// The summary of a certificate that was verified.
 pub fn audited(audit: &Audit) -> String {
     let Audit { header, proof, .. } = audit;
     let mut lines = Lines::titled(&header.title);
@@ -239,23 +308,26 @@ pub fn audited(audit: &Audit) -> String {
     lines.0
 }
 
-/// How far the solution can be from the exact solution of (8), and whether there is one.
+/// How far the solution can be from the exact solution of the discrete equations (8), and whether there is one.
 fn enclosed(certificate: &DiscreteCertificate) -> String {
     let reason = certificate.reason.as_deref().unwrap_or_default();
-    let one = match (certificate.unique, certificate.radius) {
-        (true, _) => "(8) has exactly one solution",
-        (false, Some(_)) => "(8) has one solution but for motions along the obstacles",
+    let solutions = match (certificate.unique, certificate.radius) {
+        (true, _) => "the discrete equations have exactly one solution",
+        (false, Some(_)) => "the discrete equations have one solution but for sliding",
         (false, None) => "",
     };
     let Some(radius) = certificate.radius else {
-        let one = if one.is_empty() { String::new() } else { format!("; {one}") };
-        return format!("no: {reason}{one}");
+        let solutions = if solutions.is_empty() { "nothing" } else { solutions };
+        return format!("{solutions}; not how far this one is from it: {reason}");
     };
-    let size = match certificate.relative {
-        Some(relative) => format!("{relative:.0e} of the energy norm"),
-        None => short(radius),
+    // The power of ten above: what rounding leaves differs from processor to processor.
+    let size = match certificate.relative.filter(|relative| *relative > 0.0) {
+        Some(relative) => {
+            format!("1e{} of it (relative, in the energy norm)", relative.log10().ceil())
+        }
+        None => format!("{} of it (in the energy norm)", short(radius)),
     };
-    let within = format!("{one}, within {size} of this: proved, rounding included");
+    let within = format!("{solutions}; this is within {size}, rounding included");
     if certificate.relative.is_some_and(|relative| relative > ACCEPTABLE) {
         format!("not to six digits: {within}")
     } else {
@@ -306,7 +378,7 @@ fn distance(certificate: &ContinuousCertificate, lines: &mut Lines) {
     }
 }
 
-/// Of a case that was only checked.
+/// The summary of a case that was only checked.
 pub fn checked(case: &Case, outline: &Outline) -> String {
     let mesh = &case.problem.mesh;
     let triangles = mesh.triangles().len();
@@ -327,13 +399,13 @@ pub fn checked(case: &Case, outline: &Outline) -> String {
     lines.0
 }
 
-/// Of a case on finer and finer meshes.
+/// The table of a case on finer and finer meshes.
 pub fn studied(case: &Case, studies: &[Study], files: &[PathBuf]) -> String {
     let tables: Vec<String> = studies.iter().map(Study::table).collect();
     format!("{}\n\n{}\nwritten: {}\n", quote::line(&case.title), tables.join("\n"), written(files))
 }
 
-/// Of a case along some axes.
+/// The table of a sweep.
 pub fn swept(sweep: &Sweep, files: &[PathBuf]) -> String {
     format!("{}\n\n{}\nwritten: {}\n", quote::line(&sweep.title), sweep.table(), written(files))
 }
@@ -366,8 +438,9 @@ fn coercivity(gamma: &GammaChoice) -> String {
 }
 
 fn newton(newton: &NewtonHistory) -> String {
+    let first = newton.residuals.first().copied().unwrap_or(newton.residual);
     format!(
-        "{} in {}, {}, relative residual {:.1e}",
+        "{} in {}, {}, relative residual from {first:.0e} to {:.1e}",
         newton.verdict(),
         count(newton.iterations, "step"),
         count(newton.factorizations, "factorisation"),

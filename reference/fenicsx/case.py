@@ -13,7 +13,7 @@ from .obstacle import Circle, Distance, Plane
 
 MOST_CELLS = 4_000_000  # nx * ny of a rectangle, checked before anything is allocated
 KINDS = ("displacement", "traction", "contact")  # beside [exact]
-CONDITIONS = ("displacement", "traction", "pressure", "normal", "tangential", "contact")
+CONDITIONS = ("displacement", "traction", "pressure", "normal", "tangential", "contact", "force")
 MODULI = ("lambda", "mu", "young", "poisson")
 
 
@@ -63,6 +63,7 @@ class Boundary:
 
     displacement: two expressions, None for a free component; `traction`: two expressions that act in the free ones
     traction: two expressions; pressure: an expression; support: u . n and u . t, expressions or None
+    force: two numbers, the whole force on the boundary, for the whole thickness
     contact: the gap, an expression, or an obstacle
     """
 
@@ -89,6 +90,7 @@ class Case:
     max_iterations: int
     exact: object
     probes: list = field(default_factory=list)
+    thickness: float = 1.0
 
     @property
     def material(self):
@@ -225,6 +227,8 @@ def read_case(path):
     solver = root.table("solver", needed=False)
     output = root.table("output", needed=False)
     units = root.table("units", needed=False)
+    body = root.table("body", needed=False)
+    output.get("stretch")  # of the picture, which is not drawn here
     for key in ("length", "force"):
         units.text(key, "")
     case = Case(
@@ -244,8 +248,9 @@ def read_case(path):
         max_iterations=solver.integer("max_iterations", "a positive integer", lambda n: n > 0, default=200),
         exact=solution,
         probes=_probes(output),
+        thickness=body.number("thickness", "a positive number", lambda t: t > 0, default=1.0),
     )
-    for table in (load, method, solver, output, units, root):
+    for table in (load, method, solver, output, units, body, root):
         table.finish()
     return case
 
@@ -337,6 +342,8 @@ def _boundary(table, obstacles):
         return Boundary("contact", _contact(table.table("contact"), obstacles))
     if given == ["traction"]:
         return Boundary("traction", table.pair("traction", table.content["traction"]))
+    if given == ["force"]:
+        return Boundary("force", table.place_of("force"))
     if given == ["pressure"]:
         return Boundary("pressure", table.expression("pressure", table.content["pressure"]))
     if given == ["displacement"] or given == ["displacement", "traction"]:
@@ -350,7 +357,7 @@ def _boundary(table, obstacles):
         return Boundary("displacement", displacement, traction)
     if given and set(given) <= {"normal", "tangential"}:
         return Boundary("support", [table.expression(key, table.content[key]) if key in given else None for key in ("normal", "tangential")])
-    table.refuse("", ", ".join(given), "exactly one of displacement, traction, pressure, normal and tangential, contact")
+    table.refuse("", ", ".join(given), "exactly one of displacement, traction, pressure, normal and tangential, contact, force")
 
 
 def _is_zero(expression):

@@ -288,6 +288,11 @@ class Problem:
             L += there * ufl.inner(zero + _vector(components, x), v) * ufl.dx(self.mesh, metadata=rule)
         for name, pressure in self.case.of_kind("pressure").items():
             L -= pressure.ufl(x) * ufl.inner(ufl.FacetNormal(self.mesh), v) * self.ds(self.number[name], metadata=rule)
+        for name, force in self.case.of_kind("force").items():
+            ds = self.ds(self.number[name], metadata=rule)
+            length = self.comm.allreduce(fem.assemble_scalar(fem.form(fem.Constant(self.mesh, 1.0) * ds)))
+            traction = fem.Constant(self.mesh, force / (length * self.case.thickness))
+            L += ufl.inner(traction, v) * ds
         for name, boundary in sorted(self.case.boundaries.items()):
             components = boundary.data if boundary.kind == "traction" else boundary.traction
             if components:

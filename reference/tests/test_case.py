@@ -14,7 +14,7 @@ CONTACT = '[boundary.bottom]\ncontact = { gap = "0" }\n'
 
 # (what is replaced in BLOCK, by what, message behind the file's name)
 REFUSED = [
-    ("[mesh]", "titel = 1\n[mesh]", "titel: unknown key; known here: material, exact, load, method, solver, output, units, title, mesh, boundary, obstacle, point"),
+    ("[mesh]", "titel = 1\n[mesh]", "titel: unknown key; known here: material, exact, load, method, solver, output, units, body, title, mesh, boundary, obstacle, point"),
     ("[mesh]", "[mesh", "not a TOML file: Expected ']' at the end of a table declaration (at line 2, column 6)"),
     ("[material]\nlambda = 1.0\nmu = 1.0\n", "", "material: found nothing, expected a table"),
     ("mu = 1.0", "mu = -1.0", "material.mu: found -1.0, expected a positive number"),
@@ -36,10 +36,10 @@ REFUSED = [
     ("[material]", "perturb = { amount = 0.2, seed = 1 }\n[material]",
      "mesh.perturb: found {'amount': 0.2, 'seed': 1}, expected no perturb: the reference has no generator of random meshes; give a Gmsh file"),
     (CONTACT, "", "boundary: found top, expected at least one boundary with contact"),
-    (CONTACT, '[boundary.bottom]\n', "boundary.bottom: found nothing, expected exactly one of displacement, traction, pressure, normal and tangential, contact"),
+    (CONTACT, '[boundary.bottom]\n', "boundary.bottom: found nothing, expected exactly one of displacement, traction, pressure, normal and tangential, contact, force"),
     (CONTACT, CONTACT + 'traction = ["0", "0"]\n',
-     "boundary.bottom: found traction, contact, expected exactly one of displacement, traction, pressure, normal and tangential, contact"),
-    (CONTACT, CONTACT + 'friction = 0.3\n', "boundary.bottom.friction: unknown key; known here: displacement, traction, pressure, normal, tangential, contact"),
+     "boundary.bottom: found traction, contact, expected exactly one of displacement, traction, pressure, normal and tangential, contact, force"),
+    (CONTACT, CONTACT + 'friction = 0.3\n', "boundary.bottom.friction: unknown key; known here: displacement, traction, pressure, normal, tangential, contact, force"),
     ('gap = "0"', "gap = true", "boundary.bottom.contact.gap: found true, expected an expression of x and y in a string"),
     ('gap = "0"', 'obstacle = "floor"', 'boundary.bottom.contact.obstacle: found "floor", expected '),
     ("[load]", '[obstacle.o]\nplane = { point = [0, 0], normal = [0, 0] }\n[load]',

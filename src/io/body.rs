@@ -264,5 +264,9 @@ pub(super) fn functions(value: &Value) -> Result<[SharedFunction; 2], CaseError>
 }
 
 pub(super) fn zero() -> SharedFunction {
-    Arc::new(Expression::from(0.0))
+    constant(0.0)
+}
+
+pub(super) fn constant(value: f64) -> SharedFunction {
+    Arc::new(Expression::from(value))
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::body::{functions, zero};
+use super::body::{constant, functions, zero};
 use super::exact::read_kind;
 use super::expression::Expression;
 use super::mistake::{CaseError, CaseMistake};
@@ -21,7 +21,14 @@ pub(super) struct Boundary<'s> {
     pub key: &'s str,
     /// Beside \[exact\] only.
     pub kind: Option<Kind>,
-    condition: Condition,
+    given: Given,
+}
+
+/// What a boundary of the case file gives.
+enum Given {
+    Condition(Condition),
+    /// A whole force, spread evenly: a traction, once the length of the boundary is known.
+    Force([f64; 2]),
 }
 
 pub(super) fn read_boundaries<'s>(
@@ -37,21 +44,22 @@ pub(super) fn read_boundaries<'s>(
     let mut boundaries = Vec::new();
     for key in all.keys() {
         let title = format!("[boundary.{}]", shown(key));
-        let (value, kind, condition) = match solution {
+        let (value, kind, given) = match solution {
             None => {
                 let value = all.require(key, "a table")?;
-                let condition = read_condition(&value.section(title.clone())?, &obstacles)?;
-                (value, None, condition)
+                let given = read_given(&value.section(title.clone())?, &obstacles)?;
+                (value, None, given)
             }
             Some(solution) => {
                 let value = all.require(key, "a kind")?;
                 let kind = read_kind(&value)?;
-                (value, Some(kind), kind.condition(solution))
+                (value, Some(kind), Given::Condition(kind.condition(solution)))
             }
         };
-        boundaries.push(Boundary { value, title, key, kind, condition });
+        boundaries.push(Boundary { value, title, key, kind, given });
     }
-    if !boundaries.iter().any(|b| b.condition.is_contact()) {
+    let is_contact = |b: &Boundary| matches!(&b.given, Given::Condition(c) if c.is_contact());
+    if !boundaries.iter().any(is_contact) {
         return Err(all.wrong(CaseMistake::Combination {
             name: all.name().to_owned(),
             found: "no contact".to_owned(),
@@ -59,7 +67,8 @@ pub(super) fn read_boundaries<'s>(
         }));
     }
     let used = |name: &str| {
-        boundaries.iter().any(|b| matches!(&b.condition, Condition::Obstacle(o, _) if o == name))
+        let with = |b: &Boundary| matches!(&b.given, Given::Condition(Condition::Obstacle(o, _)) if o == name);
+        boundaries.iter().any(with)
     };
     match obstacles.iter().find(|(name, _)| !used(name)) {
         None => Ok(boundaries),
@@ -73,38 +82,50 @@ pub(super) fn read_boundaries<'s>(
     }
 }
 
-const CONDITIONS: [&str; 6] =
-    ["displacement", "traction", "pressure", "normal", "tangential", "contact"];
+const CONDITIONS: [&str; 7] =
+    ["displacement", "traction", "pressure", "normal", "tangential", "contact", "force"];
+
+fn read_given(
+    table: &Table,
+    obstacles: &BTreeMap<&str, (Value, Obstacle)>,
+) -> Result<Given, CaseError> {
+    table.only(&CONDITIONS)?;
+    match table.get("force") {
+        Some(force) if CONDITIONS.iter().filter(|key| table.get(key).is_some()).count() == 1 => {
+            Ok(Given::Force(place(&force)?))
+        }
+        _ => read_condition(table, obstacles).map(Given::Condition),
+    }
+}
 
 fn read_condition(
     table: &Table,
     obstacles: &BTreeMap<&str, (Value, Obstacle)>,
 ) -> Result<Condition, CaseError> {
-    table.only(&CONDITIONS)?;
     match CONDITIONS.map(|key| table.get(key)) {
-        [Some(displacement), None, None, None, None, None] => {
+        [Some(displacement), None, None, None, None, None, None] => {
             Ok(Condition::Displacement(components(&displacement)?))
         }
-        [Some(displacement), Some(traction), None, None, None, None] => {
+        [Some(displacement), Some(traction), None, None, None, None, None] => {
             read_mixed(table, &displacement, &traction)
         }
-        [None, Some(traction), None, None, None, None] => {
+        [None, Some(traction), None, None, None, None, None] => {
             Ok(Condition::Traction(functions(&traction)?))
         }
-        [None, None, Some(pressure), None, None, None] => {
+        [None, None, Some(pressure), None, None, None, None] => {
             Ok(Condition::Pressure(pressure.function()?))
         }
-        [None, None, None, normal, tangential, None]
+        [None, None, None, normal, tangential, None, None]
             if normal.is_some() || tangential.is_some() =>
         {
             let function = |value: Option<Value>| value.map(|v| v.function()).transpose();
             let (normal, tangential) = (function(normal)?, function(tangential)?);
             Ok(Condition::Support { normal, tangential })
         }
-        [None, None, None, None, None, Some(contact)] => read_contact(&contact, obstacles),
+        [None, None, None, None, None, Some(contact), None] => read_contact(&contact, obstacles),
         _ => Err(table.combination(
             &CONDITIONS,
-            "either displacement, traction, pressure, normal, tangential or contact",
+            "either displacement, traction, pressure, normal, tangential, contact or force",
         )),
     }
 }
@@ -237,12 +258,15 @@ impl Distance for FromExpression {
     }
 }
 
+/// The conditions on the boundaries of the mesh. A whole force is divided by the area that it acts on: the length of its
+/// boundary times the thickness, which is 1 if it is not given.
 pub(super) fn on_the_mesh(
     mesh: &Mesh,
     boundaries: Vec<Boundary>,
+    thickness: Option<f64>,
 ) -> Result<BTreeMap<String, Condition>, CaseError> {
     let mut conditions = BTreeMap::new();
-    for Boundary { value, title: name, key, condition, .. } in boundaries {
+    for Boundary { value, title: name, key, given, .. } in boundaries {
         match mesh.edges_of(key) {
             Err(error) => return Err(value.mistake(CaseMistake::Mesh { name, error })),
             Ok([]) => {
@@ -252,8 +276,18 @@ pub(super) fn on_the_mesh(
                     expected: "at least one".to_owned(),
                 }));
             }
-            Ok(_) => conditions.insert(key.to_owned(), condition),
-        };
+            Ok(edges) => {
+                let condition = match given {
+                    Given::Condition(condition) => condition,
+                    Given::Force(force) => {
+                        let length: f64 = edges.iter().map(|&e| mesh.length_and_normal(e).0).sum();
+                        let area = length * thickness.unwrap_or(1.0);
+                        Condition::Traction(force.map(|f| constant(f / area)))
+                    }
+                };
+                conditions.insert(key.to_owned(), condition);
+            }
+        }
     }
     Ok(conditions)
 }

@@ -33,6 +33,7 @@
 //! max_unknowns = 500000                     # the default
 //! [output]
 //! probes = [[0.5, 0.5]]                     # places where result.json gives the displacement
+//! stretch = 50                              # the picture magnifies displacement and gap by this; default: a round factor
 //! [exact]                                   # instead of [load]: a built-in exact solution, which supplies all data;
 //! solution = "singular"                     # result.json then has the errors
 //! c = 0.5
@@ -47,6 +48,8 @@
 //! [units]                                   # words for labels, no conversion
 //! length = "mm"
 //! force = "N"
+//! [body]
+//! thickness = 10                            # across the plane: forces are then those of the whole body
 //! [obstacle.floor]                          # one of plane, circle, distance
 //! plane = { point = [0, 0], normal = [0, 1] }                        # the normal towards the body
 //! # circle = { center = [0, 0], radius = 20, side = "outside" }      # where the body is: outside | inside
@@ -58,6 +61,8 @@
 //! body = [0, -7.7e-5]
 //! [boundary.bore]
 //! pressure = "2 + x"                        # the traction -p n
+//! [boundary.lug]
+//! force = [0, -500]                         # the whole force, spread evenly over the boundary
 //! [boundary.symmetry]
 //! normal = 0                                # u . n at any angle; and tangential = u . t, t being n turned to the left
 //! [boundary.slider]
@@ -117,6 +122,10 @@ pub struct Case {
     pub materials: Vec<MaterialEcho>,
     /// The units of the case, if it names them.
     pub units: Option<Units>,
+    /// The thickness of the body across the plane, if the case gives it.
+    pub thickness: Option<f64>,
+    /// By how much the picture magnifies displacement and gap, if the case says so.
+    pub stretch: Option<f64>,
     /// The exact solution, if there is one.
     pub exact: Option<ExactCase>,
     /// The files that all this was read from.
@@ -128,19 +137,21 @@ pub struct Case {
 pub struct Units {
     /// Of lengths.
     pub length: String,
-    /// Of forces, per length across the plane.
+    /// Of forces.
     pub force: String,
 }
 
 impl Units {
-    /// Of forces in the plane: per length across it.
-    pub fn force_across(&self) -> String {
-        format!("{}/{}", self.force, self.length)
+    /// The unit of forces: of the whole body if its thickness is known, else per length across the plane.
+    pub fn force(&self, thickness: Option<f64>) -> String {
+        let across = if thickness.is_some() { String::new() } else { format!("/{}", self.length) };
+        format!("{}{across}", self.force)
     }
 
-    /// Of their moments and of energies, per length likewise.
-    pub fn moment_across(&self) -> String {
-        format!("{} {}/{}", self.force, self.length, self.length)
+    /// The unit of moments and energies, likewise.
+    pub fn moment(&self, thickness: Option<f64>) -> String {
+        let across = if thickness.is_some() { String::new() } else { format!("/{}", self.length) };
+        format!("{} {}{across}", self.force, self.length)
     }
 
     /// Of stresses.
@@ -253,7 +264,7 @@ const MEMORY_PER_BYTE: u64 = 400;
 fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, CaseError> {
     root.only(&[
         "title", "mesh", "material", "load", "exact", "boundary", "obstacle", "point", "method",
-        "solver", "adapt", "output", "units",
+        "solver", "adapt", "output", "units", "body",
     ])?;
     let title = match root.get("title") {
         Some(title) => title.text()?.to_owned(),
@@ -286,23 +297,30 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, CaseErro
     let adapt = root.section("adapt")?.map(|table| read_target(&table)).transpose()?;
     let output = root.section("output")?;
     let units = root.section("units")?.map(|table| read_units(&table)).transpose()?;
+    let thickness = match root.section("body")? {
+        Some(table) => Some(read_thickness(&table)?),
+        None => None,
+    };
+    let stretch = read_stretch(output.as_ref())?;
     // The mesh, and what needs it, comes last: it is what takes time.
     let Meshed { mesh, structured, perturbation, file: mesh_file } = match mesh {
         Body::Given(mesh) => Meshed { mesh, structured: None, perturbation: None, file: None },
         Body::Told(table) => read_mesh(&table, file.parent().unwrap_or(Path::new("")))?,
     };
     let kinds = boundaries.iter().filter_map(|b| Some((b.key.to_owned(), b.kind?))).collect();
-    let conditions = on_the_mesh(&mesh, boundaries)?;
+    let conditions = on_the_mesh(&mesh, boundaries, thickness)?;
     let (material, materials) = materials.on_the_mesh(&mesh)?;
     let (body_force, surface_forces) = loads.on_the_mesh(&mesh)?;
     let points = read_points(root, &mesh)?;
-    let probes = read_probes(output, &mesh)?;
+    let probes = read_probes(output.as_ref(), &mesh)?;
     Ok(Case {
         file: file.to_owned(),
         title,
         problem: Problem { mesh, material, body_force, surface_forces, conditions, points },
         materials,
         units,
+        thickness,
+        stretch,
         method,
         settings,
         adapt,
@@ -324,10 +342,22 @@ fn read_units(table: &Table) -> Result<Units, CaseError> {
     Ok(Units { length: word("length", "such as \"mm\"")?, force: word("force", "such as \"N\"")? })
 }
 
-fn read_probes(table: Option<Table>, mesh: &Mesh) -> Result<Vec<[f64; 2]>, CaseError> {
-    let Some(table) = table else { return Ok(Vec::new()) };
-    table.only(&["probes"])?;
-    let Some(probes) = table.get("probes") else { return Ok(Vec::new()) };
+fn read_thickness(table: &Table) -> Result<f64, CaseError> {
+    table.only(&["thickness"])?;
+    let expected = "a positive number";
+    table.require("thickness", expected)?.number_that(|t| t > 0.0 && t.is_finite(), expected)
+}
+
+fn read_stretch(output: Option<&Table>) -> Result<Option<f64>, CaseError> {
+    let Some(output) = output else { return Ok(None) };
+    output.only(&["probes", "stretch"])?;
+    let read = |value: Value| value.number_that(|s| s > 0.0, "a positive number");
+    output.get("stretch").map(read).transpose()
+}
+
+fn read_probes(output: Option<&Table>, mesh: &Mesh) -> Result<Vec<[f64; 2]>, CaseError> {
+    let Some(output) = output else { return Ok(Vec::new()) };
+    let Some(probes) = output.get("probes") else { return Ok(Vec::new()) };
     let place = |probe: &Value| {
         let [x, y] = probe.pair()?;
         Ok([x.number()?, y.number()?])

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use thiserror::Error;
 
-use super::case::Case;
+use super::case::{Case, Units};
 use super::certificate;
 use super::csv::{ContactRow, contact_csv};
 use super::data::DataError;
@@ -16,7 +16,7 @@ use super::numbers::short;
 use super::picture::{ContactSample, Scene, picture};
 use super::result::{
     Adaptation, Certificates, Choices, DiscreteCertificate, GammaChoice, MeshSizes, NewtonHistory,
-    Results, SCHEMA, Seconds, result_json,
+    Results, SCHEMA, Seconds, StressPeak, StressPeaks, result_json,
 };
 use super::vtu::{CellKind, Field, Grid, Values, vtu};
 use crate::certify::{CertifyError, Continuous, certify};
@@ -24,7 +24,7 @@ use crate::fem::{self, Space, contact_line::Gamma};
 use crate::kernel::{P2, Stress};
 use crate::memory::{self, OutOfMemory};
 use crate::solve::solution::ContactValues;
-use crate::solve::{Solution, Times};
+use crate::solve::{Extreme, Solution, Times, stresses};
 
 /// The names of the files of a solved case; the last one says that the set is whole.
 pub const FILES: [&str; 5] =
@@ -239,6 +239,7 @@ pub fn results(
         schema: SCHEMA,
         title: case.title.clone(),
         units: case.units.clone(),
+        thickness: case.thickness,
         materials: case.materials.clone(),
         choices: Some(Choices::from(&case.method)),
         remarks: remarks(case, solution),
@@ -260,6 +261,7 @@ pub fn results(
         method: Some(solution.method),
         quantities: solution.quantities.clone(),
         contact: solution.boundaries.clone(),
+        stress: stress_peaks(case, solution),
         reaction_moments: solution.quantities.reaction_moments.clone(),
         balance: Some(solution.balance),
         probes,
@@ -319,16 +321,29 @@ fn remarks(case: &Case, solution: &Solution) -> Vec<String> {
     remarks
 }
 
-/// The larger and the smaller principal stress in the plane.
-fn principal(stresses: &[[f64; 4]]) -> [Vec<f64>; 2] {
-    let of = |sign: f64| {
-        let values = stresses.iter().map(|&[xx, yy, _, xy]| {
-            let (mean, radius) = ((xx + yy) / 2.0, ((xx - yy) / 2.0).hypot(xy));
-            mean + sign * radius
-        });
-        values.collect()
+/// The largest stresses with the names of the physical surfaces that they are in.
+fn stress_peaks(case: &Case, solution: &Solution) -> Option<StressPeaks> {
+    let surfaces = case.problem.mesh.surfaces();
+    let peak = |extreme: Extreme| {
+        let inside =
+            |(_, triangles): &(&String, &Vec<usize>)| triangles.contains(&extreme.triangle);
+        let surface = surfaces.iter().find(inside).map(|(name, _)| name.clone());
+        StressPeak { value: extreme.value, at: extreme.at, surface }
     };
-    [of(1.0), of(-1.0)]
+    solution.largest_stresses(&case.problem).map(|largest| StressPeaks {
+        von_mises: peak(largest.von_mises),
+        principal_max: peak(largest.principal_max),
+        principal_min: peak(largest.principal_min),
+    })
+}
+
+/// For each triangle the number of its physical surface, from 1 on in alphabetical order; 0 in none.
+fn surface_numbers(mesh: &fem::Mesh) -> Vec<f64> {
+    let mut numbers = vec![0.0; mesh.triangles().len()];
+    for (number, triangles) in (1_u32..).zip(mesh.surfaces().values()) {
+        triangles.iter().for_each(|&t| numbers[t] = f64::from(number));
+    }
+    numbers
 }
 
 fn solution_vtu(
@@ -345,11 +360,17 @@ fn solution_vtu(
         Field { name: "stress", values: Values::SymmetricTensors(&stress) },
         Field { name: "von_mises", values: Values::Scalars(&s.von_mises) },
     ];
+    let surfaces = surface_numbers(&problem.mesh);
+    if !problem.mesh.surfaces().is_empty() {
+        cell_data.push(Field { name: "surface", values: Values::Scalars(&surfaces) });
+    }
     if let Some(indicators) = indicators {
         cell_data.push(Field { name: "error_bound", values: Values::Scalars(indicators) });
     }
     let nodal = s.nodal_stresses(problem);
-    let [largest, smallest] = principal(&nodal);
+    let von_mises: Vec<f64> = nodal.iter().map(|&stress| stresses::von_mises(stress)).collect();
+    let (first, second): (Vec<f64>, Vec<f64>) =
+        nodal.iter().map(|&stress| stresses::principal_in_plane(stress).into()).unzip();
     vtu(&Grid {
         kind: if s.degree == 1 { CellKind::Triangle } else { CellKind::QuadraticTriangle },
         points: &s.nodes,
@@ -357,8 +378,9 @@ fn solution_vtu(
         point_data: &[
             Field { name: "displacement", values: Values::Vectors(&s.displacement) },
             Field { name: "nodal_stress", values: Values::SymmetricTensors(&nodal) },
-            Field { name: "principal_1", values: Values::Scalars(&largest) },
-            Field { name: "principal_2", values: Values::Scalars(&smallest) },
+            Field { name: "nodal_von_mises", values: Values::Scalars(&von_mises) },
+            Field { name: "principal_1", values: Values::Scalars(&first) },
+            Field { name: "principal_2", values: Values::Scalars(&second) },
         ],
         cell_data: &cell_data,
     })
@@ -436,7 +458,7 @@ fn draw(case: &Case, s: &Solution) -> Result<String, DataError> {
         };
     let gamma = &s.gamma;
     let (contact, surfaces) = contact_parts(s);
-    let unit = case.units.as_ref().map(|units| format!("{}/{}²", units.force, units.length));
+    let unit = case.units.as_ref().map(Units::stress);
     picture(&Scene {
         title: &case.title,
         subtitle: &format!(

@@ -43,6 +43,9 @@ pub struct Results {
     /// The units of the case; left out if it names none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub units: Option<Units>,
+    /// The thickness of the body across the plane, if the case gives it: forces, moments and energies are per unit of it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub thickness: Option<f64>,
     /// The materials and the physical surfaces made of them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub materials: Vec<MaterialEcho>,
@@ -66,6 +69,9 @@ pub struct Results {
     /// What each contact boundary carries.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub contact: Vec<ContactBoundary>,
+    /// The largest stresses; left out by the engine fenicsx.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stress: Option<StressPeaks>,
     /// The moment about the origin of the force of each displacement boundary, counter-clockwise.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub reaction_moments: BTreeMap<String, f64>,
@@ -181,6 +187,31 @@ impl From<&GammaReport> for GammaChoice {
     }
 }
 
+/// The largest stresses, each node taken once for each material around it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct StressPeaks {
+    /// The largest von Mises stress.
+    pub von_mises: StressPeak,
+    /// The largest principal stress.
+    pub principal_max: StressPeak,
+    /// The smallest principal stress.
+    pub principal_min: StressPeak,
+}
+
+/// A largest or smallest stress.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct StressPeak {
+    /// In the unit of stress of the case.
+    pub value: f64,
+    /// The place in the undeformed body.
+    pub at: [f64; 2],
+    /// The physical surface that it is in; left out if the mesh names none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub surface: Option<String>,
+}
+
 /// Newton's iteration.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
@@ -208,7 +239,22 @@ pub struct Adaptation {
     pub levels: Vec<Level>,
 }
 
+/// A contact force below this share of all forces is rounding.
+const NO_FORCE: f64 = 1e-10;
+
 impl Results {
+    /// The sum of the magnitudes of contact forces and reactions.
+    pub fn all_forces(&self) -> f64 {
+        let contact: f64 = self.contact.iter().map(|part| part.force.abs()).sum();
+        let reactions = self.quantities.reactions.values().map(|[x, y]| x.hypot(*y));
+        contact.max(self.quantities.contact_force.abs()) + reactions.sum::<f64>()
+    }
+
+    /// Whether a boundary carries more than rounding.
+    pub fn is_in_contact(&self, part: &ContactBoundary) -> bool {
+        part.force > NO_FORCE * self.all_forces()
+    }
+
     /// Whether the bound that \[adapt\] asks for was not reached.
     pub fn misses_its_target(&self) -> bool {
         self.adapt.as_ref().is_some_and(|adapt| !adapt.met)
@@ -290,6 +336,7 @@ mod tests {
             schema: SCHEMA,
             title: "A \"block\" <&> null".to_owned(),
             units: Some(Units { length: "mm".to_owned(), force: "N".to_owned() }),
+            thickness: None,
             materials: Vec::new(),
             choices: None,
             remarks: Vec::new(),
@@ -348,6 +395,7 @@ mod tests {
                 penetration: 1e-3,
                 penetration_at: [0.25, 0.0],
             }],
+            stress: None,
             reaction_moments: BTreeMap::from([("top".to_owned(), 0.5)]),
             balance: None,
             probes: Vec::new(),

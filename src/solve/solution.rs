@@ -197,16 +197,6 @@ impl Solution {
         Ok(Errors::new(&space, &contact, &self.displacement, exact))
     }
 
-    /// The stresses sigma_xx, sigma_yy, sigma_zz, sigma_xy at the nodes, of `problem`, which is the one that this solves: the
-    /// means of what the triangles around a node have there, weighted by their areas. Where two materials meet, that is a
-    /// mean of both sides.
-    pub fn nodal_stresses(&self, problem: &Problem) -> Vec<[f64; 4]> {
-        match self.degree {
-            1 => nodal_stresses::<P1, 3, 2>(self, problem),
-            _ => nodal_stresses::<P2, 6, 3>(self, problem),
-        }
-    }
-
     /// u^h at the point with the barycentric coordinates `l` of triangle `t`, as [`Mesh::locate`] finds them.
     ///
     /// [`Mesh::locate`]: crate::fem::Mesh::locate
@@ -233,37 +223,6 @@ impl Solution {
         });
         sum * (1.0 + 1e-14) + 1e-14 * size
     }
-}
-
-/// The area-weighted means at the nodes of the stresses sigma_xx, sigma_yy, sigma_zz, sigma_xy that the triangles around them
-/// have there.
-fn nodal_stresses<E: Element<N, M>, const N: usize, const M: usize>(
-    solution: &Solution,
-    problem: &Problem,
-) -> Vec<[f64; 4]> {
-    let mut sums = vec![([0.0; 4], 0.0); solution.nodes.len()];
-    let (elements, _) = solution.elements.as_chunks::<N>();
-    for (t, nodes) in elements.iter().enumerate() {
-        let (triangle, material) = (problem.mesh.triangle(t), problem.material.of(t));
-        let (barycentric, area) = (triangle.barycentric_gradients(), triangle.double_area());
-        let nodal = nodes.map(|node| solution.displacement[node].into());
-        for (j, &node) in nodes.iter().enumerate() {
-            // Corner j, or the middle of the edge opposite corner j - 3.
-            let l = [0, 1, 2].map(|k| match j {
-                0..3 => f64::from(u8::from(k == j)),
-                _ => f64::from(u8::from(k != j - 3)) / 2.0,
-            });
-            let gradients = E::gradients(l, barycentric);
-            let stress = material.stress(displacement_gradient(&nodal, &gradients));
-            let ([xx, yy, xy], zz) = (stress.components(), material.stress_zz(stress));
-            let (sum, weight) = &mut sums[node];
-            for (sum, s) in sum.iter_mut().zip([xx, yy, zz, xy]) {
-                *sum += area * s;
-            }
-            *weight += area;
-        }
-    }
-    sums.into_iter().map(|(sum, weight)| sum.map(|s| s / weight)).collect()
 }
 
 impl<'a> Course<'a> {

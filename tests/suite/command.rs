@@ -68,8 +68,8 @@ fn a_solved_case_writes_its_files_and_says_so_with_exit_code_0() {
     let said = text(&output.stdout);
     for line in [
         "Block\n",
-        "  mesh        32 P1 triangles, 50 unknowns, 4 contact edges",
-        "kappa = 0.5 < 1",
+        "  contact      bottom: force ",
+        "  proved       the discrete equations have exactly one solution; this is within 1e-",
     ] {
         assert!(said.contains(line), "{said}");
     }
@@ -80,6 +80,56 @@ fn a_solved_case_writes_its_files_and_says_so_with_exit_code_0() {
         rows.starts_with("arc,x,y,u_n,gap,sigma_n,lambda,pressure,boundary\n0.0,0.0,0.0,"),
         "{rows}"
     );
+}
+
+#[test]
+fn how_it_was_solved_is_printed_on_demand() {
+    let folder = folder("verbose", &[]);
+    let output = signorini(&folder, &["solve", "case.toml"]);
+    let brief = text(&output.stdout).to_owned();
+    let output = signorini(&folder, &["solve", "case.toml", "--verbose"]);
+    let said = text(&output.stdout);
+    for line in [
+        "  mesh         32 P1 triangles, 50 unknowns, 4 contact edges",
+        "kappa = 0.5 < 1",
+        "  newton       converged in ",
+        "  accuracy     ",
+        "  balance      ",
+    ] {
+        assert!(said.contains(line) && !brief.contains(line), "{line}: {said}");
+    }
+}
+
+#[test]
+fn a_boundary_that_carries_only_rounding_is_not_in_contact() {
+    let lifted = [["body = [\"0\", \"-4 + 10*x\"]", "body = [\"0\", \"4\"]"]];
+    let folder = folder("lifted", &lifted);
+    let output = signorini(&folder, &["solve", "case.toml"]);
+    let said = text(&output.stdout);
+    assert!(said.contains("  contact      bottom: no contact\n"), "{said}");
+}
+
+/// The reaction of the top of a block that a force presses on the floor, as the summary has it.
+#[test]
+fn a_force_is_spread_over_its_boundary_and_forces_are_those_of_the_whole_thickness() {
+    let units = "[units]\nlength = \"mm\"\nforce = \"N\"\n[load]";
+    for (thickness, unit) in [("", "N/mm"), ("[body]\nthickness = 20\n", "N")] {
+        let pressed = [
+            ["displacement = [\"0\", \"0\"]", "force = [0, -0.5]"],
+            ["body = [\"0\", \"-4 + 10*x\"]", "body = [\"0\", \"0\"]"],
+            ["[load]", &format!("{thickness}{units}")],
+        ];
+        let folder = folder(&format!("force-{}", unit.len()), &pressed);
+        let output = signorini(&folder, &["solve", "case.toml"]);
+        let said = text(&output.stdout);
+        let expected = format!("bottom: force 0.5 {unit} (0, 0.5), length 1 mm\n");
+        assert!(said.contains(&expected), "{said}{}", text(&output.stderr));
+        let results = fs::read_to_string(folder.join("out/case/result.json")).unwrap();
+        let results: serde_json::Value = serde_json::from_str(&results).unwrap();
+        let force = results["quantities"]["contact_force"].as_f64().unwrap();
+        let thickness = results["thickness"].as_f64().unwrap_or(1.0);
+        approx::assert_relative_eq!(force * thickness, 0.5, max_relative = 1e-9);
+    }
 }
 
 #[test]
@@ -116,10 +166,10 @@ fn check_reports_and_writes_nothing() {
     assert_eq!(
         text(&output.stdout),
         "Block
-  mesh        32 P1 triangles, 50 unknowns, 4 contact edges, h = 0.3536
-  prescribed  10 of the unknowns
-  coercivity  gamma0 = 0.05893 (limit 0.1179 at the edge (0, 0)-(0.25, 0)), kappa = 0.5 < 1: coercive; true limit 0.1351 at the edge (0.75, 0)-(1, 0)
-  quadrature  exact: contact edges are cut at the roots of P
+  mesh         32 P1 triangles, 50 unknowns, 4 contact edges, h = 0.3536
+  prescribed   10 of the unknowns
+  coercivity   gamma0 = 0.05893 (limit 0.1179 at the edge (0, 0)-(0.25, 0)), kappa = 0.5 < 1: coercive; true limit 0.1351 at the edge (0.75, 0)-(1, 0)
+  quadrature   exact: contact edges are cut at the roots of P
 "
     );
     assert_eq!(names(&folder), ["case.toml"]);
@@ -277,7 +327,11 @@ fn a_body_that_may_slide_is_certified_but_for_that() {
     let output = signorini(&folder, &["solve", "case.toml"]);
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
     let said = text(&output.stdout);
-    assert!(said.contains("certified   (8) has one solution but for motions along the"), "{said}");
+    assert!(
+        said.contains("proved       the discrete equations have one solution but for sliding"),
+        "{said}"
+    );
+    assert!(said.contains("remark       the body can still slide in 1 direction"), "{said}");
     let results = fs::read_to_string(folder.join("out/case/result.json")).unwrap();
     let results: serde_json::Value = serde_json::from_str(&results).unwrap();
     let discrete = &results["certificate"]["discrete"];

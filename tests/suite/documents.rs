@@ -58,6 +58,7 @@ fn the_page_on_result_json_lists_exactly_what_is_written() {
                 "mesh.rectangle.nx=4",
                 "method.gamma0=auto",
                 "units={length=\"m\", force=\"N\"}",
+                "body.thickness=2",
             ][..],
         ),
         ("cases/singular.toml", &["mesh.rectangle.nx=2", "mesh.rectangle.ny=2"]),
@@ -103,8 +104,9 @@ fn known_to(file: &str, text: &str, settings: &[&str], table: &str) -> BTreeSet<
 }
 
 /// The tables of a case, each with a case that has it and with its name on the page.
-const TABLES: [(&str, &[&str], &str, &str); 18] = [
+const TABLES: [(&str, &[&str], &str, &str); 19] = [
     ("cases/block.toml", &[], "", ""),
+    ("cases/block.toml", &["body.thickness=2"], "body", "body"),
     ("cases/block.toml", &[], "mesh", "mesh"),
     ("cases/block.toml", &[], "mesh.rectangle", "mesh.rectangle"),
     ("cases/corner.toml", &[], "mesh.trapezoid", "mesh.trapezoid"),

@@ -166,15 +166,31 @@ fn boundaries() {
             ),
             (
                 ["[boundary.top]\n", "[boundary.top]\ncontact = {}\n"],
-                "bad.toml:10: [boundary.top]: found displacement and contact; expected either displacement, traction, pressure, normal, tangential or contact",
+                "bad.toml:10: [boundary.top]: found displacement and contact; expected either displacement, traction, pressure, normal, tangential, contact or force",
             ),
             (
                 ["displacement = [\"0\", \"free\"]\n", ""],
-                "bad.toml:10: [boundary.top]: found none; expected either displacement, traction, pressure, normal, tangential or contact",
+                "bad.toml:10: [boundary.top]: found none; expected either displacement, traction, pressure, normal, tangential, contact or force",
+            ),
+            (
+                ["[boundary.top]\n", "[boundary.top]\nforce = [0, -1]\n"],
+                "bad.toml:10: [boundary.top]: found displacement and force; expected either displacement, traction, pressure, normal, tangential, contact or force",
+            ),
+            (
+                ["displacement = [\"0\", \"free\"]", "force = [0, \"-x\"]"],
+                "bad.toml:11: [boundary.top] force[1] = \"-x\"; expected a number",
+            ),
+            (
+                ["[load]", "[body]\nthickness = 0\n[load]"],
+                "bad.toml:9: [body] thickness = 0; expected a positive number",
+            ),
+            (
+                ["[output]", "[output]\nstretch = -1"],
+                "bad.toml:23: [output] stretch = -1; expected a positive number",
             ),
             (
                 ["displacement =", "displacment ="],
-                "bad.toml:11: unknown key 'displacment' in [boundary.top]; expected displacement, traction, pressure, normal, tangential or contact",
+                "bad.toml:11: unknown key 'displacment' in [boundary.top]; expected displacement, traction, pressure, normal, tangential, contact or force",
             ),
             (
                 ["displacement = [\"0\", \"free\"]", "displacement = [\"0\", \"fixed\"]"],
@@ -210,7 +226,7 @@ fn boundaries() {
             ),
             (
                 ["[boundary.bottom]\ncontact", "[boundary]\nbottom"],
-                "bad.toml:13: unknown key 'gap' in [boundary.bottom]; expected displacement, traction, pressure, normal, tangential or contact",
+                "bad.toml:13: unknown key 'gap' in [boundary.bottom]; expected displacement, traction, pressure, normal, tangential, contact or force",
             ),
         ],
     );
