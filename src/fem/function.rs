@@ -7,12 +7,6 @@ pub trait Function: Send + Sync {
     /// The value at `x`; NaN or infinite where the function has none, which the assembly reports as an error.
     fn at(&self, x: [f64; 2]) -> f64;
 
-    /// The values at all `places`, those of [`at`](Function::at) to the bit: quicker, if what is to be done at each is known
-    /// only while the program runs.
-    fn at_all(&self, places: &[[f64; 2]]) -> Vec<f64> {
-        places.iter().map(|&x| self.at(x)).collect()
-    }
-
     /// The value at `x` on the boundary with the outward normal `n`: a traction may depend on the normal.
     fn on_boundary(&self, x: [f64; 2], _n: [f64; 2]) -> f64 {
         self.at(x)

@@ -179,38 +179,26 @@ fn acting(load: &[SharedFunction; 2]) -> impl Iterator<Item = (usize, &dyn Funct
     load.iter().map(|f| &**f).enumerate().filter(|(_, f)| !vanishes(*f))
 }
 
-/// A load is evaluated at so many points at a time, or a few more.
-const AT_A_TIME: usize = 1 << 16;
-
 fn each_body_force<E: Element<N, M>, const N: usize, const M: usize>(
     c: usize,
     f: &dyn Function,
     rule: &Rule,
     space: &Space<E, N, M>,
-    mut triangles: impl Iterator<Item = usize>,
+    triangles: impl Iterator<Item = usize>,
     what: impl Fn() -> String,
     mut add: impl FnMut(Force),
 ) -> Result<(), DataError> {
-    let (mut points, mut places) = (Vec::new(), Vec::new());
-    loop {
-        while places.len() < AT_A_TIME
-            && let Some(t) = triangles.next()
-        {
-            rule.on_triangle(&space.mesh().triangle(t), |l, x, weight| {
-                points.push((t, l, weight));
-                places.push(x);
-            });
-        }
-        if places.is_empty() {
-            return Ok(());
-        }
-        for ((&(t, l, weight), &x), f) in points.iter().zip(&places).zip(f.at_all(&places)) {
-            let (value, nodes) = (weight * checked(f, x, &what)?, &space.elements()[t]);
-            add(Force { c, value, nodes, place: Place::Inside(l) });
-        }
-        points.clear();
-        places.clear();
+    let mut wrong = None;
+    for t in triangles {
+        let nodes = &space.elements()[t];
+        rule.on_triangle(&space.mesh().triangle(t), |l, x, weight| {
+            match checked(f.at(x), x, &what) {
+                Ok(f) => add(Force { c, value: weight * f, nodes, place: Place::Inside(l) }),
+                Err(error) => wrong = wrong.take().or(Some(error)),
+            }
+        });
     }
+    wrong.map_or(Ok(()), Err)
 }
 
 /// A traction's component c, `value` of the place and the outward normal.

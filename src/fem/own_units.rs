@@ -38,8 +38,7 @@ impl Problem {
         let all = 0..mesh.triangles().len();
         let on_area = |force: &[SharedFunction; 2], triangles: &mut dyn Iterator<Item = usize>| {
             let places = triangles.map(|t| mesh.vertices()[mesh.triangles()[t][0]]);
-            let places: Vec<[f64; 2]> = places.collect();
-            let values = force.iter().flat_map(|f| f.at_all(&places));
+            let values = places.flat_map(|x| force.each_ref().map(|f| f.at(x)));
             Some(exponent(largest(values))? - units.force_per_area())
         };
         let step = all.len() / SAMPLES + 1;
@@ -116,12 +115,6 @@ struct Seen {
 impl Function for Seen {
     fn at(&self, x: [f64; 2]) -> f64 {
         scaled(self.function.at(x.map(|c| scaled(c, self.length))), -self.value)
-    }
-
-    fn at_all(&self, places: &[[f64; 2]]) -> Vec<f64> {
-        let places: Vec<_> = places.iter().map(|x| x.map(|c| scaled(c, self.length))).collect();
-        let values = self.function.at_all(&places);
-        values.into_iter().map(|value| scaled(value, -self.value)).collect()
     }
 
     fn on_boundary(&self, x: [f64; 2], n: [f64; 2]) -> f64 {

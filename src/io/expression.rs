@@ -13,18 +13,16 @@
 //! ```
 //!
 //! So ^ is right-associative and binds tighter than a sign: -x^2 = -(x^2), 2^3^2 = 2^9, 2^-1 = 1/2. There is no implicit
-//! product: `2x` is an error. White space may stand between any two symbols. A whole constant exponent from -16 to 16
-//! means repeated multiplication: x^2 is x*x to the bit, x^-2 is 1/(x*x), x^0 is 1 for every x. Any other power is
-//! [`f64::powf`]: 2^0.5 is the square root of 2, and (-8)^(1/3) is NaN. A NaN stays a NaN, in min and max too.
+//! product: `2x` is an error. White space may stand between any two symbols. Numbers and pi are the nearest doubles. A whole
+//! constant exponent from -16 to 16 means repeated multiplication: x^2 is x*x to the bit, x^-2 is 1/(x*x), x^0 is 1 for every x.
+//! Any other power is [`f64::powf`]: 2^0.5 is the square root of 2, and (-8)^(1/3) is NaN. A NaN stays a NaN, in min and max too.
 //!
-//! An [`Expression`] is a flat list of steps, not a tree: evaluation is a loop over them, a sum of a hundred thousand terms is no
-//! deeper than a sum of two, and [`MOST_LEVELS`] bounds what does nest. What stands in a text twice is computed once.
+//! An [`Expression`] is a list of steps in postfix order, evaluated in one loop over any [`Number`]: other than in a recursive walk
+//! over a tree, a sum of [`MOST_OPERATIONS`] terms needs no deeper call stack than a sum of two. [`MOST_LEVELS`] bounds what nests.
 
-mod blocks;
 mod gradient;
 mod parser;
 mod polynomial;
-mod steps;
 
 use thiserror::Error;
 
@@ -33,13 +31,14 @@ use crate::fem::Function;
 /// How deep parentheses, functions, signs and powers may nest.
 pub const MOST_LEVELS: usize = 200;
 
+/// The most operators, signs and functions of an expression.
+pub const MOST_OPERATIONS: usize = 10_000;
+
 /// A function of x and y; made by [`str::parse`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expression {
-    /// The last one gives the value.
+    /// In postfix order: each operation comes after its operands.
     steps: Vec<Step>,
-    /// How many values are kept at the same time.
-    slots: usize,
 }
 
 /// Where and why a text is no expression.
@@ -54,27 +53,23 @@ pub struct ExpressionError {
     pub expected: String,
 }
 
-/// One step: a value, and the slot that keeps it.
+/// A value. Its last operand is the step before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Step {
-    value: Value,
-    slot: u32,
-}
-
-/// A value, by the slots of its operands (while a text is read, by their places among all values).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-enum Value {
-    /// The bits of a double: 0 and -0 are two numbers.
-    Number(u64),
+enum Step {
+    Number(f64),
     X,
     Y,
-    Unary(Unary, u32),
-    Binary(Binary, u32, u32),
+    Unary(Unary),
+    /// The first operand is so many steps before.
+    Binary(Binary, u32),
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-enum Unary {
+/// A function of one argument.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "named after what each computes")]
+pub enum Unary {
     Negate,
+    /// A power by repeated multiplication.
     WholePower(i32),
     Sqrt,
     Sin,
@@ -83,8 +78,10 @@ enum Unary {
     Abs,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-enum Binary {
+/// An operator, or a function of two arguments.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "named after what each computes")]
+pub enum Binary {
     Add,
     Subtract,
     Multiply,
@@ -94,9 +91,25 @@ enum Binary {
     Max,
 }
 
-impl Unary {
-    fn of(self, a: f64) -> f64 {
-        match self {
+/// A number type over which expressions can be evaluated: doubles, doubles with derivatives, enclosures, degrees.
+pub trait Number: Clone {
+    /// The number that is this double.
+    fn from_double(value: f64) -> Self;
+
+    /// f(a)
+    fn unary(f: Unary, a: Self) -> Self;
+
+    /// f(a, b)
+    fn binary(f: Binary, a: Self, b: Self) -> Self;
+}
+
+impl Number for f64 {
+    fn from_double(value: f64) -> f64 {
+        value
+    }
+
+    fn unary(f: Unary, a: f64) -> f64 {
+        match f {
             Unary::Negate => -a,
             Unary::WholePower(n) => whole_power(a, n),
             Unary::Sqrt => a.sqrt(),
@@ -106,11 +119,9 @@ impl Unary {
             Unary::Abs => a.abs(),
         }
     }
-}
 
-impl Binary {
-    fn of(self, a: f64, b: f64) -> f64 {
-        match self {
+    fn binary(f: Binary, a: f64, b: f64) -> f64 {
+        match f {
             Binary::Add => a + b,
             Binary::Subtract => a - b,
             Binary::Multiply => a * b,
@@ -130,47 +141,54 @@ fn whole_power(a: f64, n: i32) -> f64 {
     if n < 0 { 1.0 / product } else { product }
 }
 
-impl Expression {
-    /// What `of` makes of each step from what it made of the operands, in slots that begin as `slots`; the last of it.
-    fn run<'s, T>(&self, slots: &'s mut [T], of: impl Fn(Value, &[T]) -> T) -> Option<&'s T> {
-        for step in &self.steps {
-            slots[step.slot as usize] = of(step.value, slots);
-        }
-        slots.get(self.steps.last()?.slot as usize)
-    }
+/// The value of the last step at (x, y).
+fn evaluate<T: Number>(steps: &[Step], at: [T; 2]) -> T {
+    run(steps, &at, &mut vec![at[0].clone(); steps.len()])
+}
 
-    fn value(&self, x: [f64; 2], slots: &mut [f64]) -> f64 {
-        let of = |value, slots: &[f64]| match value {
-            Value::Number(bits) => f64::from_bits(bits),
-            Value::X => x[0],
-            Value::Y => x[1],
-            Value::Unary(f, a) => f.of(slots[a as usize]),
-            Value::Binary(f, a, b) => f.of(slots[a as usize], slots[b as usize]),
+/// Fills `values` with those of the steps; returns the last.
+fn run<T: Number>(steps: &[Step], [x, y]: &[T; 2], values: &mut [T]) -> T {
+    for (i, step) in steps.iter().enumerate() {
+        values[i] = match *step {
+            Step::Number(value) => T::from_double(value),
+            Step::X => x.clone(),
+            Step::Y => y.clone(),
+            Step::Unary(f) => T::unary(f, values[i - 1].clone()),
+            Step::Binary(f, back) => {
+                T::binary(f, values[i - back as usize].clone(), values[i - 1].clone())
+            }
         };
-        self.run(slots, of).copied().unwrap_or(f64::NAN)
+    }
+    values[steps.len() - 1].clone()
+}
+
+/// The value of the steps, if neither x nor y is among them.
+fn constant(steps: &[Step]) -> Option<f64> {
+    let varies = steps.iter().any(|step| matches!(step, Step::X | Step::Y));
+    (!varies).then(|| evaluate(steps, [f64::NAN; 2]))
+}
+
+impl Expression {
+    /// The value at (x, y), over any number type.
+    pub fn evaluate<T: Number>(&self, at: [T; 2]) -> T {
+        evaluate(&self.steps, at)
     }
 
-    /// The value, if the expression is nothing but a number.
+    /// The value, if the expression has neither x nor y.
     pub fn constant(&self) -> Option<f64> {
-        match self.steps.as_slice() {
-            [Step { value: Value::Number(bits), .. }] => Some(f64::from_bits(*bits)),
-            _ => None,
-        }
+        constant(&self.steps)
     }
 }
 
 impl Function for Expression {
     fn at(&self, x: [f64; 2]) -> f64 {
+        // Room for the values of an ordinary expression, without an allocation.
         const FEW: usize = 16;
-        if self.slots <= FEW {
-            self.value(x, &mut [0.0; FEW])
+        if self.steps.len() <= FEW {
+            run(&self.steps, &x, &mut [0.0; FEW])
         } else {
-            self.value(x, &mut vec![0.0; self.slots])
+            self.evaluate(x)
         }
-    }
-
-    fn at_all(&self, places: &[[f64; 2]]) -> Vec<f64> {
-        self.values(places)
     }
 
     fn degree(&self) -> Option<u32> {
@@ -180,8 +198,7 @@ impl Function for Expression {
 
 impl From<f64> for Expression {
     fn from(value: f64) -> Expression {
-        let value = Value::Number(value.to_bits());
-        Expression { steps: vec![Step { value, slot: 0 }], slots: 1 }
+        Expression { steps: vec![Step::Number(value)] }
     }
 }
 
@@ -388,7 +405,7 @@ mod tests {
     }
 
     #[test]
-    fn nesting_has_a_limit_and_long_sums_have_none() {
+    fn nesting_and_operations_have_limits() {
         let nested = |open: &str, n: usize, close: &str| open.repeat(n) + "x" + &close.repeat(n);
         for (open, close) in
             [("(", ")"), ("-", ""), ("sin(", ")"), ("2^", ""), ("1+2*3^min(x,", ")")]
@@ -403,17 +420,21 @@ mod tests {
             message(&"(".repeat(1 << 20)),
             "column 201: found '(', expected at most 200 levels of nesting"
         );
-        let sum = parse(&("x".to_owned() + &"+y".repeat(100_000)));
-        assert_eq!(sum.at([1.0, 2.0]), 200_001.0);
-        assert_eq!(sum.slots, 3);
+        let sum = |terms: usize| "x".to_owned() + &"+y".repeat(terms);
+        assert_eq!(parse(&sum(MOST_OPERATIONS)).at([1.0, 2.0]), 20_001.0);
+        assert_eq!(
+            message(&sum(MOST_OPERATIONS + 1)),
+            "column 20004: found the end, expected at most 10000 operations"
+        );
     }
 
     #[test]
     fn deep_expressions_are_evaluated_as_flat_ones() {
-        let deep: String = (0..150).map(|k| format!("{k}*x+(")).collect();
+        let deep: String = (0..150).map(|k| format!("sin({k}*x)*(y - ")).collect();
         let deep = parse(&(deep + "y" + &")".repeat(150)));
-        assert_eq!(deep.at([2.0, 1.0]), 22351.0);
-        assert!(deep.slots > 16);
+        let [x, y] = [0.3, 0.7];
+        let expected = (0..150).rev().fold(y, |sum, k| (f64::from(k) * x).sin() * (y - sum));
+        assert_eq!(deep.at([x, y]), expected);
     }
 
     #[test]

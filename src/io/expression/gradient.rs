@@ -1,6 +1,6 @@
 //! The gradient of an expression, by the chain rule along its steps: exact up to rounding, no differences are taken.
 
-use super::{Binary, Expression, Unary, Value};
+use super::{Binary, Expression, Number, Unary};
 
 /// A value with its derivatives along x and y.
 #[derive(Clone, Copy)]
@@ -13,41 +13,37 @@ impl Expression {
     /// The derivatives along x and y at this place; NaN where there is none. At the kink of abs, min or max, that of one
     /// side.
     pub fn gradient(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        let mut slots = vec![Dual { value: f64::NAN, slope: [f64::NAN; 2] }; self.slots];
-        let gradient = self.run(&mut slots, |value, slots| match value {
-            Value::Number(bits) => Dual { value: f64::from_bits(bits), slope: [0.0; 2] },
-            Value::X => Dual { value: x, slope: [1.0, 0.0] },
-            Value::Y => Dual { value: y, slope: [0.0, 1.0] },
-            Value::Unary(f, a) => f.of_dual(slots[a as usize]),
-            Value::Binary(f, a, b) => f.of_duals(slots[a as usize], slots[b as usize]),
-        });
-        gradient.map_or([f64::NAN; 2], |dual| dual.slope)
+        let [x, y] = [(x, [1.0, 0.0]), (y, [0.0, 1.0])].map(|(value, slope)| Dual { value, slope });
+        self.evaluate([x, y]).slope
     }
 }
 
-impl Unary {
-    fn of_dual(self, a: Dual) -> Dual {
-        let value = self.of(a.value);
-        let factor = match self {
+impl Number for Dual {
+    fn from_double(value: f64) -> Dual {
+        Dual { value, slope: [0.0; 2] }
+    }
+
+    fn unary(f: Unary, a: Dual) -> Dual {
+        let value = f64::unary(f, a.value);
+        let factor = match f {
             Unary::Negate => -1.0,
             Unary::WholePower(0) => 0.0,
-            Unary::WholePower(n) => f64::from(n) * Unary::WholePower(n - 1).of(a.value),
+            Unary::WholePower(n) => f64::from(n) * f64::unary(Unary::WholePower(n - 1), a.value),
             Unary::Sqrt => 0.5 / value,
             Unary::Sin => a.value.cos(),
             Unary::Cos => -a.value.sin(),
             Unary::Exp => value,
             Unary::Abs => 1.0_f64.copysign(a.value),
         };
-        Dual { value, slope: a.slope.map(|slope| factor * slope) }
+        // A factor is not asked for where the operand is constant: it may be infinite there.
+        let constant = a.slope == [0.0; 2];
+        Dual { value, slope: if constant { a.slope } else { a.slope.map(|slope| factor * slope) } }
     }
-}
 
-impl Binary {
-    fn of_duals(self, a: Dual, b: Dual) -> Dual {
-        let value = self.of(a.value, b.value);
-        // d = factors[0] da + factors[1] db; a factor is not asked for where its operand is constant.
-        let constant = |d: Dual| d.slope == [0.0; 2];
-        let factors = match self {
+    fn binary(f: Binary, a: Dual, b: Dual) -> Dual {
+        let value = f64::binary(f, a.value, b.value);
+        // d = factors[0] da + factors[1] db
+        let factors = match f {
             Binary::Add => [1.0, 1.0],
             Binary::Subtract => [1.0, -1.0],
             Binary::Multiply => [b.value, a.value],
@@ -57,6 +53,7 @@ impl Binary {
             Binary::Max if a.value > b.value => [1.0, 0.0],
             Binary::Min | Binary::Max => [0.0, 1.0],
         };
+        let constant = |d: Dual| d.slope == [0.0; 2];
         let part =
             |factor: f64, d: Dual, c: usize| if constant(d) { 0.0 } else { factor * d.slope[c] };
         let slope = [0, 1].map(|c| part(factors[0], a, c) + part(factors[1], b, c));

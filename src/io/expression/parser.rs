@@ -1,9 +1,10 @@
-//! From a text to its values: recursive descent, one function for each line of the grammar.
+//! From a text to its steps: recursive descent, one function for each line of the grammar.
 
-use std::collections::HashMap;
 use std::str::FromStr;
 
-use super::{Binary, Expression, ExpressionError, MOST_LEVELS, Unary, Value, steps};
+use super::{
+    Binary, Expression, ExpressionError, MOST_LEVELS, MOST_OPERATIONS, Step, Unary, constant,
+};
 use crate::quote::quoted;
 
 impl FromStr for Expression {
@@ -11,9 +12,9 @@ impl FromStr for Expression {
 
     fn from_str(text: &str) -> Result<Expression, ExpressionError> {
         let mut parser = Parser::new(text)?;
-        let result = parser.expression(1)?;
+        parser.expression(1)?;
         match parser.token {
-            Token::End => Ok(steps::expression(&parser.values, result)),
+            Token::End => Ok(Expression { steps: parser.steps }),
             _ => Err(parser.wrong("an operator (+ - * / ^) or the end")),
         }
     }
@@ -39,9 +40,6 @@ enum Function {
 /// Beyond this exponent repeated multiplication gains no time and loses digits: its error grows like the exponent.
 const MOST_FACTORS: f64 = 16.0;
 
-/// So many values are found again where they stand a second time; the memory that they take is bounded so.
-const MOST_SHARED: usize = 4096;
-
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Token<'t> {
     Number(f64),
@@ -50,7 +48,7 @@ enum Token<'t> {
     End,
 }
 
-/// Recursive descent, one function for each line of the grammar, each of which returns the place of its value. `level` counts the
+/// Recursive descent, one function for each line of the grammar, each of which appends the steps of what it reads. `level` counts the
 /// nesting, from 1.
 struct Parser<'t> {
     text: &'t str,
@@ -58,52 +56,64 @@ struct Parser<'t> {
     token: Token<'t>,
     start: usize,
     end: usize,
-    /// Each after its operands.
-    values: Vec<Value>,
-    places: HashMap<Value, u32>,
+    steps: Vec<Step>,
+    /// Of the steps, those that are no numbers and no variables.
+    operations: usize,
 }
 
 impl<'t> Parser<'t> {
     fn new(text: &'t str) -> Result<Self, ExpressionError> {
-        let (values, places) = (Vec::new(), HashMap::new());
-        let mut parser = Parser { text, token: Token::End, start: 0, end: 0, values, places };
-        // Every value has a byte of its own, so that their places are numbers of 32 bits.
-        if u32::try_from(text.len()).is_err() {
-            return Err(parser.wrong("less than 4 GiB"));
-        }
+        let (steps, operations) = (Vec::new(), 0);
+        let mut parser = Parser { text, token: Token::End, start: 0, end: 0, steps, operations };
         parser.advance()?;
         Ok(parser)
     }
 
-    fn expression(&mut self, level: usize) -> Result<u32, ExpressionError> {
-        let mut sum = self.term(level)?;
+    fn operation(&mut self, step: Step) -> Result<(), ExpressionError> {
+        self.operations += 1;
+        if self.operations > MOST_OPERATIONS {
+            return Err(self.wrong(&format!("at most {MOST_OPERATIONS} operations")));
+        }
+        self.steps.push(step);
+        Ok(())
+    }
+
+    /// The operation whose second operand begins at step `second`.
+    fn binary(&mut self, f: Binary, second: usize) -> Result<(), ExpressionError> {
+        self.operation(Step::Binary(f, (self.steps.len() + 1 - second) as u32))
+    }
+
+    fn expression(&mut self, level: usize) -> Result<(), ExpressionError> {
+        self.term(level)?;
         loop {
             let operator = match self.token {
                 Token::Symbol('+') => Binary::Add,
                 Token::Symbol('-') => Binary::Subtract,
-                _ => return Ok(sum),
+                _ => return Ok(()),
             };
             self.advance()?;
-            let term = self.term(level)?;
-            sum = self.binary(operator, sum, term);
+            let second = self.steps.len();
+            self.term(level)?;
+            self.binary(operator, second)?;
         }
     }
 
-    fn term(&mut self, level: usize) -> Result<u32, ExpressionError> {
-        let mut product = self.factor(level)?;
+    fn term(&mut self, level: usize) -> Result<(), ExpressionError> {
+        self.factor(level)?;
         loop {
             let operator = match self.token {
                 Token::Symbol('*') => Binary::Multiply,
                 Token::Symbol('/') => Binary::Divide,
-                _ => return Ok(product),
+                _ => return Ok(()),
             };
             self.advance()?;
-            let factor = self.factor(level)?;
-            product = self.binary(operator, product, factor);
+            let second = self.steps.len();
+            self.factor(level)?;
+            self.binary(operator, second)?;
         }
     }
 
-    fn factor(&mut self, level: usize) -> Result<u32, ExpressionError> {
+    fn factor(&mut self, level: usize) -> Result<(), ExpressionError> {
         if level > MOST_LEVELS {
             return Err(self.wrong(&format!("at most {MOST_LEVELS} levels of nesting")));
         }
@@ -114,48 +124,49 @@ impl<'t> Parser<'t> {
             }
             Token::Symbol('-') => {
                 self.advance()?;
-                let factor = self.factor(level + 1)?;
-                Ok(self.unary(Unary::Negate, factor))
+                self.factor(level + 1)?;
+                self.operation(Step::Unary(Unary::Negate))
             }
             _ => self.power(level),
         }
     }
 
-    fn power(&mut self, level: usize) -> Result<u32, ExpressionError> {
-        let atom = self.atom(level)?;
+    fn power(&mut self, level: usize) -> Result<(), ExpressionError> {
+        self.atom(level)?;
         if self.token != Token::Symbol('^') {
-            return Ok(atom);
+            return Ok(());
         }
         self.advance()?;
-        let exponent = self.factor(level + 1)?;
-        Ok(match self.number(exponent) {
+        let second = self.steps.len();
+        self.factor(level + 1)?;
+        match constant(&self.steps[second..]) {
             Some(n) if n.trunc() == n && n.abs() <= MOST_FACTORS => {
-                self.unary(Unary::WholePower(n as i32), atom)
+                self.steps.truncate(second);
+                self.operation(Step::Unary(Unary::WholePower(n as i32)))
             }
-            _ => self.binary(Binary::Power, atom, exponent),
-        })
+            _ => self.binary(Binary::Power, second),
+        }
     }
 
-    fn atom(&mut self, level: usize) -> Result<u32, ExpressionError> {
-        let value = match self.token {
-            Token::Number(value) => Value::Number(value.to_bits()),
-            Token::Name("x") => Value::X,
-            Token::Name("y") => Value::Y,
-            Token::Name("pi") => Value::Number(std::f64::consts::PI.to_bits()),
+    fn atom(&mut self, level: usize) -> Result<(), ExpressionError> {
+        let step = match self.token {
+            Token::Number(value) => Step::Number(value),
+            Token::Name("x") => Step::X,
+            Token::Name("y") => Step::Y,
+            Token::Name("pi") => Step::Number(std::f64::consts::PI),
             Token::Name(name) => return self.function(name, level),
             Token::Symbol('(') => {
                 self.advance()?;
-                let inside = self.expression(level + 1)?;
-                self.skip(')', "an operator (+ - * / ^) or ')'")?;
-                return Ok(inside);
+                self.expression(level + 1)?;
+                return self.skip(')', "an operator (+ - * / ^) or ')'");
             }
             Token::Symbol(_) | Token::End => return Err(self.no_atom()),
         };
-        self.advance()?;
-        Ok(self.place(value))
+        self.steps.push(step);
+        self.advance()
     }
 
-    fn function(&mut self, name: &str, level: usize) -> Result<u32, ExpressionError> {
+    fn function(&mut self, name: &str, level: usize) -> Result<(), ExpressionError> {
         let Some((_, function)) = FUNCTIONS.iter().find(|f| f.0 == name) else {
             return Err(if self.text[self.end..].trim_start().starts_with('(') {
                 let known = FUNCTIONS.map(|f| f.0).join(", ");
@@ -166,55 +177,22 @@ impl<'t> Parser<'t> {
         };
         self.advance()?;
         self.skip('(', &format!("'(' after {name}"))?;
-        let first = self.expression(level + 1)?;
+        self.expression(level + 1)?;
         let end = |count| format!("an operator (+ - * / ^) or ')': {name} takes {count}");
         match *function {
             Function::Unary(f) => {
                 self.skip(')', &end("one argument"))?;
-                Ok(self.unary(f, first))
+                self.operation(Step::Unary(f))
             }
             Function::Binary(f) => {
                 let comma = format!("an operator (+ - * / ^) or ',': {name} takes two arguments");
                 self.skip(',', &comma)?;
-                let second = self.expression(level + 1)?;
+                let second = self.steps.len();
+                self.expression(level + 1)?;
                 self.skip(')', &end("two arguments"))?;
-                Ok(self.binary(f, first, second))
+                self.binary(f, second)
             }
         }
-    }
-
-    fn number(&self, place: u32) -> Option<f64> {
-        match self.values[place as usize] {
-            Value::Number(bits) => Some(f64::from_bits(bits)),
-            _ => None,
-        }
-    }
-
-    fn unary(&mut self, f: Unary, a: u32) -> u32 {
-        self.place(match self.number(a) {
-            Some(a) => Value::Number(f.of(a).to_bits()),
-            None => Value::Unary(f, a),
-        })
-    }
-
-    fn binary(&mut self, f: Binary, a: u32, b: u32) -> u32 {
-        self.place(match (self.number(a), self.number(b)) {
-            (Some(a), Some(b)) => Value::Number(f.of(a, b).to_bits()),
-            _ => Value::Binary(f, a, b),
-        })
-    }
-
-    /// Where this value stands, for the first time now or since before.
-    fn place(&mut self, value: Value) -> u32 {
-        if let Some(&place) = self.places.get(&value) {
-            return place;
-        }
-        let place = self.values.len() as u32;
-        self.values.push(value);
-        if self.places.len() < MOST_SHARED {
-            self.places.insert(value, place);
-        }
-        place
     }
 
     fn skip(&mut self, symbol: char, expected: &str) -> Result<(), ExpressionError> {

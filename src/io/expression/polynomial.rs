@@ -1,94 +1,99 @@
 //! Expressions that are polynomials: their degree, and in x alone their coefficients.
 
-use super::{Binary, Expression, Unary, Value};
+use super::{Binary, Expression, Number, Unary};
+
+/// The degree of a polynomial in x and y; `None` of what is none by its form.
+#[derive(Clone, Copy)]
+struct Degree(Option<u32>);
+
+/// The coefficients of 1, x, x^2, ..; `None` of what is no polynomial in x by its form, or has too many.
+#[derive(Clone)]
+struct Coefficients(Option<Vec<f64>>);
 
 impl Expression {
     /// The degree in x and y, if the expression is a polynomial by its form.
     pub(super) fn polynomial_degree(&self) -> Option<u32> {
-        *self.run(&mut vec![None; self.slots], |value, slots: &[Option<u32>]| match value {
-            Value::Number(_) => Some(0),
-            Value::X | Value::Y => Some(1),
-            Value::Unary(f, a) => f.degree(slots[a as usize]?),
-            Value::Binary(f, a, b) => f.degree(slots[a as usize]?, slots[b as usize]?),
-        })?
+        self.evaluate([Degree(Some(1)); 2]).0
     }
 
     /// The coefficients of 1, x, x^2, .., if the expression is a polynomial in x alone.
     pub fn polynomial_in_x(&self) -> Option<Vec<f64>> {
-        self.run(&mut vec![None; self.slots], |value, slots: &[Option<Vec<f64>>]| match value {
-            Value::Number(bits) => Some(vec![f64::from_bits(bits)]),
-            Value::X => Some(vec![0.0, 1.0]),
-            Value::Y => None,
-            Value::Unary(f, a) => f.of_polynomial(slots[a as usize].as_ref()?),
-            Value::Binary(f, a, b) => {
-                f.of_polynomials(slots[a as usize].as_ref()?, slots[b as usize].as_ref()?)
-            }
-        })?
-        .clone()
+        self.evaluate([Coefficients(Some(vec![0.0, 1.0])), Coefficients(None)]).0
     }
 }
 
-impl Unary {
-    /// The degree of the result for an operand of degree `a`.
-    fn degree(self, a: u32) -> Option<u32> {
-        match self {
+impl Number for Degree {
+    fn from_double(_: f64) -> Degree {
+        Degree(Some(0))
+    }
+
+    fn unary(f: Unary, Degree(a): Degree) -> Degree {
+        Degree(a.and_then(|a| match f {
             Unary::Negate => Some(a),
-            Unary::WholePower(n) => a.checked_mul(u32::try_from(n).ok()?),
-            Unary::Sqrt | Unary::Sin | Unary::Cos | Unary::Exp | Unary::Abs => None,
-        }
+            Unary::WholePower(n) if n >= 0 => a.checked_mul(n.unsigned_abs()),
+            _ if a == 0 => Some(0),
+            _ => None,
+        }))
     }
-}
 
-impl Binary {
-    /// The degree of the result for operands of degrees `a` and `b`.
-    fn degree(self, a: u32, b: u32) -> Option<u32> {
-        match self {
+    fn binary(f: Binary, Degree(a): Degree, Degree(b): Degree) -> Degree {
+        Degree(a.zip(b).and_then(|(a, b)| match f {
             Binary::Add | Binary::Subtract => Some(a.max(b)),
             Binary::Multiply => a.checked_add(b),
             Binary::Divide if b == 0 => Some(a),
+            _ if (a, b) == (0, 0) => Some(0),
             Binary::Divide | Binary::Power | Binary::Min | Binary::Max => None,
-        }
+        }))
     }
 }
 
+/// The longest polynomial that is multiplied out.
+const MOST_COEFFICIENTS: usize = 64;
+
 /// The product of two polynomials by their coefficients.
-fn product(a: &[f64], b: &[f64]) -> Vec<f64> {
+fn product(a: &[f64], b: &[f64]) -> Option<Vec<f64>> {
+    if a.len() + b.len() > MOST_COEFFICIENTS {
+        return None;
+    }
     let mut product = vec![0.0; a.len() + b.len() - 1];
     for (i, a) in a.iter().enumerate() {
         for (j, b) in b.iter().enumerate() {
             product[i + j] += a * b;
         }
     }
-    product
+    Some(product)
 }
 
-/// The longest polynomial that is multiplied out.
-const MOST_COEFFICIENTS: usize = 64;
+/// a + sign b
+fn sum(a: &[f64], sign: f64, b: &[f64]) -> Vec<f64> {
+    let at = |p: &[f64], i: usize| p.get(i).copied().unwrap_or(0.0);
+    (0..a.len().max(b.len())).map(|i| at(a, i) + sign * at(b, i)).collect()
+}
 
-impl Unary {
-    fn of_polynomial(self, a: &[f64]) -> Option<Vec<f64>> {
-        match self {
-            Unary::Negate => Some(product(a, &[-1.0])),
-            Unary::WholePower(n) if n >= 0 => {
-                (0..n).try_fold(vec![1.0], |power, _| Binary::Multiply.of_polynomials(&power, a))
+impl Number for Coefficients {
+    fn from_double(value: f64) -> Coefficients {
+        Coefficients(Some(vec![value]))
+    }
+
+    fn unary(f: Unary, Coefficients(a): Coefficients) -> Coefficients {
+        Coefficients(a.and_then(|a| match (f, a.as_slice()) {
+            (_, &[a]) => Some(vec![f64::unary(f, a)]),
+            (Unary::Negate, a) => product(a, &[-1.0]),
+            (Unary::WholePower(n), a) if n >= 0 => {
+                (0..n).try_fold(vec![1.0], |power, _| product(&power, a))
             }
             _ => None,
-        }
+        }))
     }
-}
 
-impl Binary {
-    fn of_polynomials(self, a: &[f64], b: &[f64]) -> Option<Vec<f64>> {
-        let sum = |sign: f64| {
-            let at = |p: &[f64], i: usize| p.get(i).copied().unwrap_or(0.0);
-            Some((0..a.len().max(b.len())).map(|i| at(a, i) + sign * at(b, i)).collect())
-        };
-        match (self, b) {
-            (Binary::Add, _) => sum(1.0),
-            (Binary::Subtract, _) => sum(-1.0),
-            (Binary::Multiply, _) if a.len() + b.len() <= MOST_COEFFICIENTS => Some(product(a, b)),
-            (Binary::Divide, [c]) => Some(a.iter().map(|a| a / c).collect()),
+    fn binary(f: Binary, Coefficients(a): Coefficients, Coefficients(b): Coefficients) -> Self {
+        Coefficients(a.zip(b).and_then(|(a, b)| match (f, a.as_slice(), b.as_slice()) {
+            (_, &[a], &[b]) => Some(vec![f64::binary(f, a, b)]),
+            (Binary::Add, a, b) => Some(sum(a, 1.0, b)),
+            (Binary::Subtract, a, b) => Some(sum(a, -1.0, b)),
+            (Binary::Multiply, a, b) => product(a, b),
+            (Binary::Divide, a, &[c]) => Some(a.iter().map(|a| a / c).collect()),
             _ => None,
-        }
+        }))
     }
 }
