@@ -571,9 +571,10 @@ fn adapted(ladder: &Ladder, max_unknowns: usize) -> Result<(Measured, usize)> {
     let target = Target { relative: 0.0, max_unknowns };
     let (method, settings) = (&ladder.method, &ladder.settings);
     let (problem, adapted) = adapt(ladder.problem(0)?, method, settings, target, &|_| {})?;
-    let v = &adapted.certified.certificate.displacement;
+    let certified = adapted.certified?;
+    let v = &certified.certificate.displacement;
     let error = energy_error(&problem, &adapted.solution, v, &ladder.solution)?;
-    Ok(((2 * v.len(), error, adapted.certified.bound), adapted.levels.len()))
+    Ok(((2 * v.len(), error, certified.bound), adapted.levels.len()))
 }
 
 fn uniform(ladder: &Ladder, level: usize) -> Result<Measured> {

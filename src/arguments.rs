@@ -22,8 +22,9 @@ pub struct Arguments {
     pub verbose: bool,
 }
 
-const EXIT_CODES: &str = "Exit codes: 0 solved; 1 could not solve, write or accept a certificate, or adapt the mesh to its target; 2 the case is wrong, and then nothing \
-                          is written. A signal ends it as a signal does (130, 143, 129 to a shell); a reader of standard \
+const EXIT_CODES: &str = "Exit codes: 0 solved and proved; 1 no result: could not solve, write or accept a certificate; 2 the case is wrong, and then \
+                          nothing is written; 3 results that are not proved, or without a certificate or a target that was asked \
+                          for. A signal ends it as a signal does (130, 143, 129 to a shell); a reader of standard \
                           output who leaves (| head) is no failure, a full standard output is one: 1.";
 
 impl Arguments {

@@ -14,7 +14,6 @@ use signorini::io::result::{
 use signorini::io::sweep::Sweep;
 use signorini::io::{Case, numbers};
 use signorini::quote;
-use signorini::solve::accuracy::ACCEPTABLE;
 use signorini::solve::{ContactQuadrature, MethodReport, Outline, RouteName, Status};
 
 /// Lines of a name and a text.
@@ -38,7 +37,10 @@ const WORTH_SHOWING: f64 = 1e-8;
 /// The summary of a solved case: what it carries, then what is proved, then how it was solved. The last part is printed if
 /// it is asked for, and each of its lines where something about it is not as it should be.
 pub fn solved(r: &Results, files: &[PathBuf], verbose: bool) -> String {
-    let mut lines = Lines::titled(&r.title);
+    let mut lines = Lines::titled(&match r.outcome().filter(|_| r.falls_short()) {
+        Some(outcome) => format!("{}: {outcome}", r.title),
+        None => r.title.clone(),
+    });
     let shown = Shown::of(r);
     contact(r, &shown, verbose, &mut lines);
     stress(r, &shown, &mut lines);
@@ -327,22 +329,16 @@ fn enclosed(certificate: &DiscreteCertificate) -> String {
         }
         None => format!("{} of it (in the energy norm)", short(radius)),
     };
-    let within = format!("{solutions}; this is within {size}, rounding included");
-    if certificate.relative.is_some_and(|relative| relative > ACCEPTABLE) {
-        format!("not to six digits: {within}")
-    } else {
-        within
-    }
+    format!("{solutions}; this is within {size}, rounding included")
 }
 
 /// Whether the target was met, and how the bound fell.
 fn adapted(adapt: &Adaptation) -> String {
     let percent = |relative: f64| format!("{} %", numbers::short(100.0 * relative, 2));
     let bounds: Vec<String> = adapt.levels.iter().map(|level| percent(level.relative)).collect();
-    let verdict = if adapt.met {
-        "met"
-    } else {
-        "not met: the next mesh has more unknowns than adapt.max_unknowns allows"
+    let verdict = match &adapt.reason {
+        Some(reason) => format!("not met: {reason}"),
+        None => "met".to_owned(),
     };
     format!(
         "target {} {verdict}; {}: {}",
@@ -418,16 +414,8 @@ fn sizes(triangles: usize, degree: usize, dofs: usize, contact_edges: usize, h: 
 fn coercivity(gamma: &GammaChoice) -> String {
     let [a, b] = gamma.limiting_edge;
     let verdict = if gamma.kappa < 1.0 { "< 1: coercive" } else { ">= 1: no promise" };
-    let truth = match (gamma.true_limit, gamma.true_limiting_edge, &gamma.no_true_limit) {
-        (Some(limit), Some([c, d]), _) if [c, d] != [a, b] => {
-            format!("; true limit {} at the edge {}-{}", short(limit), vector(c), vector(d))
-        }
-        (Some(limit), ..) => format!("; true limit {}", short(limit)),
-        (None, _, Some(why)) => format!("; true limit not known: {why}"),
-        _ => String::new(),
-    };
     format!(
-        "gamma0 = {}{} (limit {} at the edge {}-{}), kappa = {} {verdict}{truth}",
+        "gamma0 = {}{} (limit {} at the edge {}-{}), kappa = {} {verdict}",
         if gamma.local { "on each edge its own, from " } else { "" },
         short(gamma.gamma0),
         short(gamma.limit),

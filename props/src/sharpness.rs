@@ -3,7 +3,7 @@
 //! int h_T sigma_n(u) sigma_n(v), so lambda_min = 1 - gamma0/gamma0* (docs/theory.md, 2.4).
 //!
 //! M_1 = S^T S with at most two rows of S for each contact edge. Hence, with the solver's own matrices,
-//! 1/gamma0* = mu_max(S K^-1 S^T) and lambda_min = 1/(1 + gamma0 mu_max(S A^-1 S^T)) (docs/theory.md, 5.6).
+//! 1/gamma0* = mu_max(S K^-1 S^T) and lambda_min = 1/(1 + gamma0 mu_max(S A^-1 S^T)) (docs/theory.md, 2.4).
 
 use std::collections::BTreeMap;
 use std::f64::consts::PI;

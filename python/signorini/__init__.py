@@ -12,13 +12,15 @@ or, with a mesh of your own (arrays, or a meshio mesh in place of the three):
     )
 
 The keyword arguments of `solve` are the tables of a case file (docs/case.md), all but [mesh]. A wrong case raises CaseError,
-which is a ValueError; a case that has no solution raises SolveError, which is a RuntimeError.
+which is a ValueError; a case that has no solution raises SolveError, which is a RuntimeError. A solution that is not proved,
+or that lacks something else that the case asks for, comes with a warning: `solution.verdict` is "proved" or "not proved".
 """
 
 from __future__ import annotations
 
 import json
 import os
+import warnings
 from dataclasses import dataclass
 from typing import Any, Mapping, Optional, Union
 
@@ -74,6 +76,11 @@ class Solution:
     contact: Contact
     results: dict[str, Any]
     """What result.json says (docs/result.md)."""
+
+    @property
+    def verdict(self) -> str:
+        """ "proved": the exact solution of the discrete problem is within `solver.proof` of this one; or "not proved"."""
+        return str(self.results["verdict"])
 
 
 def solve_case(
@@ -189,6 +196,10 @@ def _solution(raw: _signorini.Raw) -> Solution:
     def integers(data: bytes, *shape: int) -> Integers:
         return np.frombuffer(data, dtype=np.int64).reshape(*shape).copy()
 
+    results = json.loads(raw["results"])
+    short = [f"not proved: {results['reason']}"] if "reason" in results else []
+    for what in short + [f"no {what}" for what in results.get("missing", [])]:
+        warnings.warn(what, RuntimeWarning, stacklevel=3)
     return Solution(
         nodes=floats(raw["nodes"], -1, 2),
         elements=integers(raw["elements"], -1, raw["nodes_per_triangle"]),
@@ -205,5 +216,5 @@ def _solution(raw: _signorini.Raw) -> Solution:
             pressure=floats(raw["pressure"], -1),
             boundary=np.array(raw["boundary"], dtype=np.str_),
         ),
-        results=json.loads(raw["results"]),
+        results=results,
     )

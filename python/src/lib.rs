@@ -107,7 +107,7 @@ fn solved(case: Case, start: Instant) -> PyResult<Solved> {
     let no_results = |error: &dyn std::fmt::Display| SolveError::new_err(error.to_string());
     let seconds = Seconds::new(read, &times, std::time::Duration::ZERO);
     let mut results = outputs::results(&case, &solution, seconds).map_err(|e| no_results(&e))?;
-    certified.iter().for_each(|certified| certified.add_to(&mut results));
+    certified.iter().for_each(|certified| certified.add_to(&mut results, false));
     let results = result_json(&results).map_err(|e| no_results(&e))?;
     Ok(Solved { solution, results })
 }

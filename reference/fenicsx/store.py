@@ -28,14 +28,10 @@ COMMAND = "PYTHONPATH=reference python3 -m fenicsx.store"
 TOLERANCE = 1e-11
 
 
-# (8) has none, or two.
-WITHOUT_ONE_SOLUTION = {"no_solution", "two_solutions"}
-
-
 def cases():
     """{name: case file}"""
     files = [*sorted((ROOT / "cases").glob("*.toml")), *sorted((ROOT / "reference" / "cases").glob("*.toml"))]
-    return {file.stem: file for file in files if file.stem not in WITHOUT_ONE_SOLUTION}
+    return {file.stem: file for file in files}
 
 
 def fresh(file):

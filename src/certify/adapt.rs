@@ -57,14 +57,14 @@ pub struct Adapted {
     pub solution: Solution,
     /// How long the solves took, all levels together.
     pub times: Times,
-    /// Its bound.
-    pub certified: Continuous,
+    /// Its bound, or why there is none.
+    pub certified: Result<Continuous, CertifyError>,
     /// How long the certificates and the meshes took, all levels together.
     pub certifying: std::time::Duration,
     /// All levels, from the coarsest on.
     pub levels: Vec<Level>,
-    /// The bound meets the target; otherwise a finer mesh would have too many unknowns.
-    pub met: bool,
+    /// Why the bound does not meet the target.
+    pub unmet: Option<String>,
 }
 
 /// What goes on.
@@ -94,10 +94,6 @@ pub enum AdaptError {
         "no mesh can be adapted: '{boundary}' is curved and has a gap along its normal, and bisection keeps the straight edges of the mesh; expected a straight boundary, or an [obstacle]"
     )]
     Curved { boundary: String },
-    #[error(
-        "no mesh can be adapted to a share of the energy norm: the body is at rest, its energy is 0"
-    )]
-    AtRest,
 }
 
 impl AdaptError {
@@ -109,7 +105,7 @@ impl AdaptError {
                 matches!(error, CertifyError::Data(_) | CertifyError::Unsupported(_))
             }
             AdaptError::Curved { .. } => true,
-            AdaptError::Mesh(_) | AdaptError::AtRest => false,
+            AdaptError::Mesh(_) => false,
         }
     }
 }
@@ -118,7 +114,7 @@ impl AdaptError {
 /// of them; `watcher` is told what goes on.
 ///
 /// # Errors
-/// A level without a solution or without a certificate, a mesh that can't be refined further, a body at rest.
+/// A level without a solution, a mesh that can't be refined further. A level without a certificate is the last one.
 pub fn adapt(
     mut problem: Problem,
     method: &Method,
@@ -141,10 +137,15 @@ pub fn adapt(
         times = times.plus(&took);
         watcher(Stage::Certify(level));
         let begin = std::time::Instant::now();
-        let certified = certify(&problem, &solution)?;
-        if !certified.relative.is_finite() {
-            return Err(AdaptError::AtRest);
-        }
+        let certified = match certify(&problem, &solution) {
+            Ok(certified) => certified,
+            Err(error) => {
+                let unmet = Some(format!("level {level} has no certificate: {error}"));
+                let (certified, certifying) = (Err(error), certifying + begin.elapsed());
+                let last = Adapted { solution, times, certified, certifying, levels, unmet };
+                return Ok((problem, last));
+            }
+        };
         levels.push(Level {
             unknowns: unknowns(&problem.mesh, method.degree),
             triangles: problem.mesh.triangles().len(),
@@ -153,8 +154,10 @@ pub fn adapt(
             relative: certified.relative,
         });
         let met = certified.relative <= target.relative;
+        // There is no share of an energy that is 0.
+        let at_rest = !certified.relative.is_finite();
         watcher(Stage::Refine);
-        let finer = if met {
+        let finer = if met || at_rest {
             None
         } else {
             let finer = problem.mesh.bisected(&newest, &marked(&certified.indicators))?;
@@ -162,7 +165,17 @@ pub fn adapt(
         };
         certifying += begin.elapsed();
         let Some(finer) = finer else {
-            return Ok((problem, Adapted { solution, times, certified, certifying, levels, met }));
+            let reason = if at_rest {
+                "the body is at rest, its energy is 0"
+            } else {
+                "the next mesh has more unknowns than adapt.max_unknowns allows"
+            };
+            let unmet = (!met).then(|| reason.to_owned());
+            let certified = Ok(certified);
+            return Ok((
+                problem,
+                Adapted { solution, times, certified, certifying, levels, unmet },
+            ));
         };
         start = Some(finer.prolonged(&problem.mesh, &solution.displacement));
         newest = vec![0; finer.mesh.triangles().len()];

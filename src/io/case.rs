@@ -436,6 +436,7 @@ mod tests {
             [solver]
             tolerance = 1e-8
             max_iterations = 7
+            proof = 1e-7
             [output]
             probes = [[0, 1], [0.5, 0.25]]
             "#,
@@ -460,7 +461,7 @@ mod tests {
                 allow_noncoercive: true,
             }
         );
-        assert_eq!(case.settings, Settings { tolerance: 1e-8, max_iterations: 7 });
+        assert_eq!(case.settings, Settings { tolerance: 1e-8, max_iterations: 7, proof: 1e-7 });
         assert_eq!(case.probes, [[0.0, 1.0], [0.5, 0.25]]);
     }
 

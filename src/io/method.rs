@@ -58,10 +58,11 @@ fn read_quadrature(value: &Value) -> Result<ContactQuadrature, CaseError> {
 pub(super) fn read_settings(table: Option<Table>) -> Result<Settings, CaseError> {
     let mut settings = Settings::default();
     let Some(table) = table else { return Ok(settings) };
-    table.only(&["tolerance", "max_iterations"])?;
-    if let Some(tolerance) = table.get("tolerance") {
-        settings.tolerance =
-            tolerance.number_that(|t| 0.0 < t && t < 1.0, "a number above 0 and below 1")?;
+    table.only(&["tolerance", "max_iterations", "proof"])?;
+    for (key, setting) in [("tolerance", &mut settings.tolerance), ("proof", &mut settings.proof)] {
+        if let Some(value) = table.get(key) {
+            *setting = value.number_that(|x| 0.0 < x && x < 1.0, "a number above 0 and below 1")?;
+        }
     }
     if let Some(most) = table.get("max_iterations") {
         settings.max_iterations = most.whole_number(1..=MOST_ITERATIONS)?;

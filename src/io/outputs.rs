@@ -24,7 +24,7 @@ use crate::fem::{self, Space, contact_line::Gamma};
 use crate::kernel::{P2, Stress};
 use crate::memory::{self, OutOfMemory};
 use crate::solve::solution::ContactValues;
-use crate::solve::{Extreme, Solution, Times, stresses};
+use crate::solve::{Extreme, Solution, Times, Verdict, stresses};
 
 /// The names of the files of a solved case; the last one says that the set is whole.
 pub const FILES: [&str; 5] =
@@ -80,8 +80,14 @@ impl Certified {
         Certified { result, time: start.elapsed(), adaptation: None }
     }
 
-    /// Adds what is known to the content of result.json.
-    pub fn add_to(&self, results: &mut Results) {
+    /// Adds what is known to the content of result.json; `asked` says whether a certificate was asked for.
+    pub fn add_to(&self, results: &mut Results, asked: bool) {
+        if let (Err(error), true) = (&self.result, asked) {
+            results.missing.push(format!("certificate: {error}"));
+        }
+        if let Some(Adaptation { reason: Some(reason), .. }) = &self.adaptation {
+            results.missing.push(format!("mesh that meets the target of [adapt]: {reason}"));
+        }
         results.seconds.certify += self.time.as_secs_f64();
         results.certificate.get_or_insert_default().continuous = Some((&self.result).into());
         results.adapt.clone_from(&self.adaptation);
@@ -89,7 +95,7 @@ impl Certified {
 }
 
 /// Writes the files of a case into `folder`; returns their paths and the content of result.json. `certificate` asks for
-/// the files certificate.json and certificate.bin, too, where there is a certificate.
+/// the files certificate.json and certificate.bin, too; where there is no certificate, all else is written.
 ///
 /// # Errors
 /// A folder or file that can't be written, a number that is not finite.
@@ -106,14 +112,14 @@ pub fn write(
     memory::check(bytes_to_write(solution))?;
     let mut output = Output::new(folder)?;
     output.replaces(&only_in(&FILES_OF_FENICSX, &FILES));
-    if !certificate {
+    let continuous = certified.and_then(|c| c.result.as_ref().ok());
+    if !(certificate && continuous.is_some()) {
         output.replaces(&certificate::FILES);
     }
     let mut stage = |file, bytes: Result<Vec<u8>, DataError>| -> Result<(), OutputError> {
         let bytes = bytes.map_err(|error| OutputError::Data { file, error })?;
         Ok(output.stage(file, &bytes)?)
     };
-    let continuous = certified.and_then(|c| c.result.as_ref().ok());
     let indicators = continuous.map(|c| c.indicators.as_slice());
     stage("solution.vtu", solution_vtu(solution, &case.problem, indicators))?;
     stage("contact.vtu", contact_vtu(solution))?;
@@ -126,7 +132,7 @@ pub fn write(
     }
     let mut results = results(case, solution, Seconds::new(read, &times, start.elapsed()))?;
     if let Some(certified) = certified {
-        certified.add_to(&mut results);
+        certified.add_to(&mut results, certificate);
     }
     stage("result.json", result_json(&results).map(String::into_bytes))?;
     Ok((output.publish()?, results))
@@ -238,6 +244,9 @@ pub fn results(
         case: Some(case.file.display().to_string()),
         schema: SCHEMA,
         title: case.title.clone(),
+        verdict: Some(solution.verdict.name().to_owned()),
+        reason: solution.verdict.reason().map(str::to_owned),
+        missing: Vec::new(),
         units: case.units.clone(),
         thickness: case.thickness,
         materials: case.materials.clone(),
@@ -462,7 +471,11 @@ fn draw(case: &Case, s: &Solution) -> Result<String, DataError> {
     picture(&Scene {
         title: &case.title,
         subtitle: &format!(
-            "P{}, {} unknowns, gamma0 = {}, kappa = {}",
+            "{}P{}, {} unknowns, gamma0 = {}, kappa = {}",
+            match s.verdict {
+                Verdict::Proved => "",
+                Verdict::NotProved(_) => "NOT PROVED (result.json says why): ",
+            },
             s.degree,
             2 * s.nodes.len(),
             short(gamma.gamma0, 3),

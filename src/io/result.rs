@@ -40,6 +40,16 @@ pub struct Results {
     pub schema: u32,
     /// The title of the case.
     pub title: String,
+    /// "proved" or "not proved": whether the exact solution of (8) is within `solver.proof` of the one here; left out by the
+    /// engine fenicsx.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub verdict: Option<String>,
+    /// Why it is not proved.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+    /// What was asked for beside the solution and could not be had, with the reason; left out if there is nothing.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub missing: Vec<String>,
     /// The units of the case; left out if it names none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub units: Option<Units>,
@@ -161,15 +171,6 @@ pub struct GammaChoice {
     pub kappa: f64,
     /// The ends of the contact edge that sets the limit.
     pub limiting_edge: [[f64; 2]; 2],
-    /// The gamma0 below which A is positive definite.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub true_limit: Option<f64>,
-    /// The ends of the contact edge that has the largest share in it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub true_limiting_edge: Option<[[f64; 2]; 2]>,
-    /// Why it is not known.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub no_true_limit: Option<String>,
 }
 
 impl From<&GammaReport> for GammaChoice {
@@ -180,9 +181,6 @@ impl From<&GammaReport> for GammaChoice {
             limit: gamma.coercivity.limit(),
             kappa: gamma.kappa,
             limiting_edge: gamma.coercivity.limiting_edge,
-            true_limit: gamma.true_limit.ok().map(|limit| limit.gamma0),
-            true_limiting_edge: gamma.true_limit.ok().map(|limit| limit.edge),
-            no_true_limit: gamma.true_limit.err().map(|why| why.reason().to_owned()),
         }
     }
 }
@@ -235,6 +233,9 @@ pub struct Adaptation {
     pub target: f64,
     /// It is.
     pub met: bool,
+    /// Why it is not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
     /// All meshes, from the coarsest on; the results are those of the last.
     pub levels: Vec<Level>,
 }
@@ -255,19 +256,20 @@ impl Results {
         part.force > NO_FORCE * self.all_forces()
     }
 
-    /// Whether the bound that \[adapt\] asks for was not reached.
-    pub fn misses_its_target(&self) -> bool {
-        self.adapt.as_ref().is_some_and(|adapt| !adapt.met)
+    /// Whether the solution is not proved, or something else that was asked for could not be had.
+    pub fn falls_short(&self) -> bool {
+        self.reason.is_some() || !self.missing.is_empty()
     }
 
-    /// How the solve ended, in words.
-    pub fn verdict(&self) -> String {
-        let newton = self.newton.verdict();
-        if self.misses_its_target() {
-            format!("{newton}, but the target of [adapt] is not reached")
-        } else {
-            newton.to_owned()
-        }
+    /// The verdict in one line, with the reasons of all that could not be had; `None` where nothing is said of a proof.
+    pub fn outcome(&self) -> Option<String> {
+        let verdict = self.verdict.as_deref()?;
+        let verdict = match &self.reason {
+            Some(reason) => format!("{}: {reason}", verdict.to_uppercase()),
+            None => verdict.to_owned(),
+        };
+        let missing = self.missing.iter().map(|what| format!("; NO {what}"));
+        Some(verdict + &missing.collect::<String>())
     }
 }
 
@@ -335,6 +337,9 @@ mod tests {
             case: Some("cases/block.toml".to_owned()),
             schema: SCHEMA,
             title: "A \"block\" <&> null".to_owned(),
+            verdict: Some("not proved".to_owned()),
+            reason: Some("no reason".to_owned()),
+            missing: Vec::new(),
             units: Some(Units { length: "mm".to_owned(), force: "N".to_owned() }),
             thickness: None,
             materials: Vec::new(),
@@ -353,9 +358,6 @@ mod tests {
                 limit: 1.0 / 3.0,
                 kappa: 0.3,
                 limiting_edge: [[0.0, 0.0], [1.0, 0.0]],
-                true_limit: Some(0.5),
-                true_limiting_edge: Some([[0.0, 0.0], [1.0, 0.0]]),
-                no_true_limit: None,
             },
             newton: NewtonHistory {
                 iterations: 2,
@@ -413,6 +415,8 @@ mod tests {
   "case": "cases/block.toml",
   "schema": 2,
   "title": "A \"block\" <&> null",
+  "verdict": "not proved",
+  "reason": "no reason",
   "units": {
     "length": "mm",
     "force": "N"
@@ -429,9 +433,7 @@ mod tests {
     "local": false,
     "limit": 0.3333333333333333,
     "kappa": 0.3,
-    "limiting_edge": [[0.0, 0.0], [1.0, 0.0]],
-    "true_limit": 0.5,
-    "true_limiting_edge": [[0.0, 0.0], [1.0, 0.0]]
+    "limiting_edge": [[0.0, 0.0], [1.0, 0.0]]
   },
   "newton": {
     "iterations": 2,

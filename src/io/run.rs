@@ -63,11 +63,12 @@ pub fn solve(
         adapt::adapt(case.problem, &case.method, &case.settings, target, watcher)?;
     case.problem = problem;
     let certified = Certified {
-        result: Ok(adapted.certified),
+        result: adapted.certified,
         time: adapted.certifying,
         adaptation: Some(Adaptation {
             target: target.relative,
-            met: adapted.met,
+            met: adapted.unmet.is_none(),
+            reason: adapted.unmet,
             levels: adapted.levels,
         }),
     };

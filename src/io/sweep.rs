@@ -200,7 +200,7 @@ fn solve(
         None => {
             let seconds = Seconds::new(read, &times, Duration::ZERO);
             let mut results = outputs::results(&case, &solution, seconds)?;
-            certified.iter().for_each(|certified| certified.add_to(&mut results));
+            certified.iter().for_each(|certified| certified.add_to(&mut results, false));
             results
         }
     };
@@ -214,7 +214,8 @@ type Shown<'a> = &'a dyn Fn(f64) -> String;
 /// A column: its name and its cell, where the run has it.
 type Column = (&'static str, fn(&Results, Shown) -> Option<String>);
 
-const COLUMNS: [Column; 9] = [
+const COLUMNS: [Column; 10] = [
+    ("verdict", |r, _| Some(r.outcome().unwrap_or_default())),
     ("gamma0", |r, shown| Some(shown(r.gamma.gamma0))),
     ("kappa", |r, shown| Some(shown(r.gamma.kappa))),
     ("newton_steps", |r, _| Some(r.newton.iterations.to_string())),
@@ -251,7 +252,7 @@ impl Sweep {
                 .columns()
                 .map(|(_, cell)| results.and_then(|r| cell(r, shown)).unwrap_or_default());
             let status = match &run.outcome {
-                Ok(results) => results.verdict(),
+                Ok(results) => results.newton.verdict().to_owned(),
                 Err(error) => error.to_string(),
             };
             run.values.iter().cloned().chain(cells).chain([status]).collect()

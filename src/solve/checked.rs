@@ -85,11 +85,14 @@ impl Settings {
             let expected = "one from 1 to 1000000";
             return Err(refused("the most steps (max_iterations)", max_iterations, expected));
         }
-        Ok(Settings { tolerance, max_iterations })
+        Ok(Settings { tolerance, max_iterations, ..Settings::default() })
     }
 
     /// Nothing, if a case file could ask for these settings.
     pub(super) fn check(&self) -> Result<(), DataError> {
+        if !(self.proof > 0.0 && self.proof < 1.0) {
+            return Err(refused("proof", self.proof, "a number above 0 and below 1"));
+        }
         Settings::new(self.tolerance, self.max_iterations).map(|_| ())
     }
 }

@@ -6,7 +6,6 @@ pub mod answers;
 pub mod assembled;
 pub mod balls;
 pub mod body;
-pub mod census;
 mod checked;
 pub mod compliance;
 pub mod condensed;
@@ -19,7 +18,6 @@ pub mod intervals;
 pub mod iterate;
 pub mod ladder;
 pub mod ldl;
-pub mod limit;
 mod memory;
 pub mod newton;
 pub mod ordering;
@@ -46,7 +44,6 @@ pub use self::enclosure::{Enclosure, Unproved};
 use self::evaluated::Evaluated;
 pub use self::intervals::Intervals;
 pub use self::ladder::{Ladder, LadderError, Level};
-pub use self::limit::{NoLimit, TrueLimit};
 pub use self::route::RouteName;
 pub use self::solution::{GammaReport, Quantities, Solution};
 pub use self::stresses::{Extreme, LargestStresses};
@@ -114,13 +111,16 @@ pub enum ContactQuadrature {
     Gauss(usize),
 }
 
-/// When Newton's method stops. Written as `Settings { tolerance, ..Settings::default() }`, for fields may come.
+/// When Newton's method stops, and what is to be proved. Written as `Settings { tolerance, ..Settings::default() }`, for
+/// fields may come.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// The relative residual to reach.
     pub tolerance: f64,
     /// The most steps.
     pub max_iterations: usize,
+    /// The distance from the exact solution of (8), relative and in the energy norm, that is to be proved.
+    pub proof: f64,
 }
 
 impl Default for Method {
@@ -136,7 +136,51 @@ impl Default for Method {
 
 impl Default for Settings {
     fn default() -> Self {
-        Settings { tolerance: 1e-10, max_iterations: 200 }
+        Settings { tolerance: 1e-10, max_iterations: 200, proof: 1e-6 }
+    }
+}
+
+/// What is proved of a solution.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// The exact solution of (8) is within [`Settings::proof`] of it, rounding included.
+    Proved,
+    /// That is not proved, for this reason.
+    NotProved(String),
+}
+
+impl Verdict {
+    /// The verdict on a solution with this enclosure, of which a relative radius of `proof` is asked.
+    pub fn new(enclosure: &enclosure::Certificate, proof: f64) -> Self {
+        match enclosure {
+            Ok(e) if e.radius == 0.0 || e.relative.is_some_and(|r| r <= proof) => Verdict::Proved,
+            Ok(e) => {
+                let known = match e.relative {
+                    Some(relative) => format!("{relative:.0e} of the energy norm"),
+                    None => format!("{:.0e} (energy norm)", e.radius),
+                };
+                Verdict::NotProved(format!(
+                    "the solution of (8) is proved to be within {known}; expected within {proof:e}"
+                ))
+            }
+            Err(why) => Verdict::NotProved(why.to_string()),
+        }
+    }
+
+    /// "proved" or "not proved".
+    pub fn name(&self) -> &'static str {
+        match self {
+            Verdict::Proved => "proved",
+            Verdict::NotProved(_) => "not proved",
+        }
+    }
+
+    /// Why nothing is proved.
+    pub fn reason(&self) -> Option<&str> {
+        match self {
+            Verdict::Proved => None,
+            Verdict::NotProved(reason) => Some(reason),
+        }
     }
 }
 
@@ -144,10 +188,10 @@ impl Default for Settings {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 pub enum Status {
-    /// The residual is within the tolerance, and the forward error is known to be small.
+    /// The residual is within the tolerance.
     #[cfg_attr(feature = "files", serde(rename = "converged"))]
     Converged,
-    /// The tolerance asks for more than rounding allows; the forward error is known to be small all the same.
+    /// The tolerance asks for more than rounding allows.
     #[cfg_attr(feature = "files", serde(rename = "converged to rounding"))]
     ConvergedToRounding,
 }
@@ -202,8 +246,8 @@ pub struct Report {
     pub method: MethodReport,
     /// Where the exact solution of (8) is, or why nothing is proved of it.
     pub enclosure: enclosure::Certificate,
-    /// The true limit of gamma0, or why it is not known.
-    pub limit: Result<TrueLimit, NoLimit>,
+    /// What is proved.
+    pub verdict: Verdict,
 }
 
 /// Why there is no solution.
@@ -222,14 +266,6 @@ pub enum SolveError {
         "the tangent is not positive definite: gamma0 is beyond the true limit of coercivity, J_h is not convex and a solution need not exist; lower gamma0"
     )]
     NotPositiveDefinite,
-    #[error(
-        "gamma0 is beyond the true limit of coercivity, and (8) has no solution: this is proved, by a search over all displacements; lower gamma0"
-    )]
-    NoSolution,
-    #[error(
-        "gamma0 is beyond the true limit of coercivity, and (8) has exactly {count} solutions: this is proved, by a search over all displacements; lower gamma0"
-    )]
-    SeveralSolutions { count: usize },
     #[error(
         "no convergence: the relative residual is {residual:.1e} after {} Newton step{}, all that max_iterations allows; expected {}. Nothing is written.\nresiduals: {}",
         residuals.len().saturating_sub(1), if residuals.len() == 2 { "" } else { "s" }, awaited(*residual, *tolerance), history(residuals)
@@ -281,8 +317,6 @@ impl SolveError {
             SolveError::Data(DataError::Mesh(MeshError::OutOfMemory(_))) => false,
             SolveError::Data(_) | SolveError::NotCoercive { .. } => true,
             SolveError::NotPositiveDefinite
-            | SolveError::NoSolution
-            | SolveError::SeveralSolutions { .. }
             | SolveError::NotConverged { .. }
             | SolveError::IllConditioned { .. }
             | SolveError::Singular
@@ -391,43 +425,23 @@ where
     let system = System::on(d, course)?;
     times.matrix = watch.lap();
     let found = route::solve(&system, settings, &mut times);
-    let (outcome, method, factorizations, factor) = found.map_err(|e| told(&system, e))?;
-    let status = accuracy::judge(&outcome, settings).map_err(|e| told(&system, e))?;
+    let (outcome, method, factorizations, factor) = found?;
+    let status = accuracy::judge(&outcome, settings)?;
     let Outcome { u, fine, forces, p, residuals, residual, .. } = outcome;
     let mut evaluated = Evaluated::with(d, u, forces, &p);
     let newton = NewtonReport { status, residuals, residual, factorizations };
     watch.lap();
-    let limit = match &factor {
-        Some(factor) => limit::true_limit(&system, factor, d.gamma0),
-        None if d.slides.is_some() => Err(NoLimit::HeldByContact),
-        None => Err(NoLimit::Assembled),
-    };
     let factor = match (factor, method.route) {
         (Some(factor), _) => FactorOfA::AtHand(factor),
         (None, RouteName::Twofold) => FactorOfA::Twofold,
         (None, _) => FactorOfA::Double,
     };
     let enclosure = enclosure::enclose(&system, &evaluated.u, fine.as_deref(), factor);
+    let verdict = Verdict::new(&enclosure, settings.proof);
     times.certify = watch.lap();
     // This changes neither P nor the forces.
     held::least_norm(&mut evaluated.u, d.slides.as_deref().unwrap_or_default());
-    Ok((evaluated, Report { newton, method, enclosure, limit }, times))
-}
-
-/// Where kappa >= 1 and no solution was found: whether (8) has none, or several, if that can be proved.
-fn told<E, const N: usize, const M: usize>(
-    system: &System<E, N, M>,
-    error: SolveError,
-) -> SolveError
-where
-    E: ExactEdge<f64, N, M>,
-{
-    let without_promise = system.d.kappa() >= 1.0;
-    match without_promise.then(|| census::count(system)).flatten() {
-        Some(0) => SolveError::NoSolution,
-        Some(count) if count > 1 => SolveError::SeveralSolutions { count },
-        _ => error,
-    }
+    Ok((evaluated, Report { newton, method, enclosure, verdict }, times))
 }
 
 /// What [`solve`] would solve: everything short of a matrix is built and checked.
@@ -476,7 +490,7 @@ impl Outline {
             nodes: d.space.nodes().len(),
             prescribed: d.constraints.values().iter().flatten().flatten().count(),
             contact_edges: d.contact.len(),
-            gamma: GammaReport::new(d, limit::of_discretization(d)),
+            gamma: GammaReport::new(d),
         }
     }
 }

@@ -10,7 +10,7 @@ use super::answers::{self, ContactBoundary, EnergyBalance};
 use super::course::Course;
 use super::enclosure::Certificate;
 use super::evaluated::Evaluated;
-use super::{MethodReport, NewtonReport, NoLimit, Report, TrueLimit};
+use super::{MethodReport, NewtonReport, Report, Verdict};
 use crate::fem::contact_line::{self, Coercivity, Gamma};
 use crate::fem::dense::inner;
 use crate::fem::discretization::Discretization;
@@ -48,6 +48,8 @@ pub struct Solution {
     pub method: MethodReport,
     /// Where the exact solution of (8) is, or why nothing is proved of it.
     pub enclosure: Certificate,
+    /// Whether the distance from it is proved to be as small as asked for.
+    pub verdict: Verdict,
     /// Energies, forces, lengths.
     pub quantities: Quantities,
     /// What each part of Gamma_C carries.
@@ -70,8 +72,6 @@ pub struct GammaReport {
     pub kappa: f64,
     /// C_h and the edge that sets it.
     pub coercivity: Coercivity,
-    /// The true limit of gamma0, or why it is not known.
-    pub true_limit: Result<TrueLimit, NoLimit>,
 }
 
 /// One edge of Gamma_C: its nodes and the values there, in order along the edge.
@@ -163,10 +163,11 @@ impl Solution {
             boundaries: answers::contact_boundaries(d, &u, &p, &recovered),
             largest_strain: answers::largest_strain(d, &u),
             balance: answers::energy_balance(d, &u, &p, &residual, quantities.energy),
-            gamma: GammaReport::new(d, report.limit),
+            gamma: GammaReport::new(d),
             newton: report.newton,
             method: report.method,
             enclosure: report.enclosure,
+            verdict: report.verdict,
             quantities,
             displacement: u,
         }
@@ -235,15 +236,12 @@ impl<'a> Course<'a> {
 
 impl GammaReport {
     /// Of a discretization.
-    pub fn new<E, const N: usize, const M: usize>(
-        d: &Discretization<E, N, M>,
-        true_limit: Result<TrueLimit, NoLimit>,
-    ) -> Self
+    pub fn new<E, const N: usize, const M: usize>(d: &Discretization<E, N, M>) -> Self
     where
         E: ExactEdge<f64, N, M>,
     {
         let (kappa, coercivity) = (d.kappa(), d.coercivity);
-        GammaReport { gamma: d.gamma, gamma0: d.gamma0, kappa, coercivity, true_limit }
+        GammaReport { gamma: d.gamma, gamma0: d.gamma0, kappa, coercivity }
     }
 }
 

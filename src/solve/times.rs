@@ -18,7 +18,7 @@ pub struct Times {
     pub newton: Duration,
     /// The residual of the solution in the full system, and its reference.
     pub judge: Duration,
-    /// Enclosing the exact solution of (8), and the true limit of gamma0.
+    /// Enclosing the exact solution of (8).
     pub certify: Duration,
     /// Stresses, contact pressure, resultants.
     pub evaluate: Duration,

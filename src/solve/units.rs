@@ -7,7 +7,7 @@ use super::answers::{ContactBoundary, EnergyBalance};
 use super::enclosure::{Certificate, Enclosure, Unproved};
 use super::intervals::{ContactIntervals, Intervals, Range};
 use super::solution::{ContactValues, GammaReport, Quantities, Solution};
-use super::{Gamma0, Method, Outline, SolveError, TrueLimit};
+use super::{Gamma0, Method, Outline, SolveError};
 use crate::fem::contact_line::{Coercivity, Gamma};
 use crate::fem::units::{Units, scaled};
 use crate::kernel::Stress;
@@ -48,7 +48,7 @@ impl Back {
     }
 
     fn gamma(&mut self, units: Units, report: &mut GammaReport) {
-        let GammaReport { gamma, gamma0, coercivity, true_limit, kappa: _ } = report;
+        let GammaReport { gamma, gamma0, coercivity, kappa: _ } = report;
         let Coercivity { constant, typical, limiting_edge } = coercivity;
         let uniform = match gamma {
             Gamma::Uniform(gamma0) => Some(gamma0),
@@ -57,10 +57,6 @@ impl Back {
         self.all(units.gamma0(), uniform.into_iter().chain([gamma0]));
         self.all(units.modulus(), [constant, typical]);
         self.all(units.length(), limiting_edge.as_flattened_mut());
-        if let Ok(TrueLimit { gamma0, edge }) = true_limit {
-            self.all(units.gamma0(), [gamma0]);
-            self.all(units.length(), edge.as_flattened_mut());
-        }
     }
 }
 

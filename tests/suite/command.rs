@@ -339,6 +339,45 @@ fn a_body_that_may_slide_is_certified_but_for_that() {
 }
 
 #[test]
+fn a_solution_that_is_not_proved_is_written_with_exit_code_3_and_the_reason() {
+    let folder = folder("not-proved", &[["[load]", "[solver]\nproof = 1e-18\n[load]"]]);
+    for arguments in [&["solve", "case.toml"][..], &["solve", "case.toml", "--json"]] {
+        let output = signorini(&folder, arguments);
+        assert_eq!(output.status.code(), Some(3), "{}", text(&output.stderr));
+    }
+    let output = signorini(&folder, &["solve", "case.toml"]);
+    let said = text(&output.stdout);
+    assert!(said.starts_with("Block: NOT PROVED: the solution of (8) is proved to be"), "{said}");
+    let results = fs::read_to_string(folder.join("out/case/result.json")).unwrap();
+    let results: serde_json::Value = serde_json::from_str(&results).unwrap();
+    assert_eq!(results["verdict"], "not proved");
+    assert!(results["reason"].as_str().unwrap().ends_with("; expected within 1e-18"));
+    let picture = fs::read_to_string(folder.join("out/case/picture.svg")).unwrap();
+    assert!(picture.contains("NOT PROVED"));
+    let output = signorini(&folder, &["sweep", "case.toml", "--set", "solver.proof=1e-6,1e-18"]);
+    assert_eq!(output.status.code(), Some(3));
+    let csv = fs::read_to_string(folder.join("out/case/sweep.csv")).unwrap();
+    assert!(csv.contains("\n1e-6,proved,") && csv.contains("\n1e-18,NOT PROVED: "), "{csv}");
+}
+
+#[test]
+fn results_are_written_where_a_certificate_that_was_asked_for_cannot_be_had() {
+    let pressed = [
+        ["displacement = [\"0\", \"0\"]", "traction = [\"0\", \"-0.5\"]"],
+        ["body = [\"0\", \"-4 + 10*x\"]", "body = [\"0\", \"0\"]"],
+    ];
+    let folder = folder("no-certificate", &pressed);
+    fs::create_dir_all(folder.join("out/case")).unwrap();
+    fs::write(folder.join("out/case/certificate.json"), "of an earlier run").unwrap();
+    let output = signorini(&folder, &["solve", "case.toml", "--certificate"]);
+    assert_eq!(output.status.code(), Some(3), "{}", text(&output.stderr));
+    assert!(text(&output.stdout).starts_with("Block: proved; NO certificate: "));
+    let names = names(&folder.join("out/case"));
+    assert!(names.contains(&"result.json".to_owned()), "{names:?}");
+    assert!(!names.contains(&"certificate.json".to_owned()), "{names:?}");
+}
+
+#[test]
 fn wrong_arguments_end_with_exit_code_2() {
     let folder = folder("arguments", &[]);
     for arguments in [&["solve"][..], &["slove", "case.toml"], &["solve", "case.toml", "--fast"]] {

@@ -63,6 +63,7 @@ fn the_page_on_result_json_lists_exactly_what_is_written() {
         ),
         ("cases/singular.toml", &["mesh.rectangle.nx=2", "mesh.rectangle.ny=2"]),
         ("cases/singular.toml", &["method.degree=1", "adapt.target=\"20 %\""]),
+        ("cases/singular.toml", &["adapt.target=\"1 %\"", "adapt.max_unknowns=10"]),
         (
             "cases/block.toml",
             &["mesh.rectangle.nx=4", "method.gamma0=auto", "load.body=[\"0\", \"-1\"]"],
@@ -78,7 +79,7 @@ fn the_page_on_result_json_lists_exactly_what_is_written() {
         let seconds = Seconds::new(zero, &times, zero);
         let mut results = outputs::results(&case, &solution, seconds).unwrap();
         let certified = certified.unwrap_or_else(|| Certified::new(&case, &solution));
-        certified.add_to(&mut results);
+        certified.add_to(&mut results, true);
         paths("", &serde_json::to_value(results).unwrap(), &mut written);
     }
     assert_eq!(written, first_cells(&page("docs/result.md")));

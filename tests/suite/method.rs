@@ -468,7 +468,7 @@ fn kappa_at_or_beyond_1_is_refused_with_the_limit_and_its_edge() {
 #[test]
 fn a_tolerance_below_rounding_ends_in_converged_to_rounding() {
     let problem = block(unit_square(16).mesh().unwrap());
-    let settings = Settings { tolerance: 1e-18, max_iterations: 50 };
+    let settings = Settings::new(1e-18, 50).unwrap();
     let (s, _) = solve(&problem, &method(Degree::Two, EXACT), &settings).unwrap();
     assert_eq!(s.newton.status, Status::ConvergedToRounding);
     assert!(s.newton.residual < 1e-11);
@@ -477,7 +477,7 @@ fn a_tolerance_below_rounding_ends_in_converged_to_rounding() {
 #[test]
 fn too_few_iterations_are_no_solution() {
     let problem = block(unit_square(16).mesh().unwrap());
-    let settings = Settings { tolerance: 1e-10, max_iterations: 2 };
+    let settings = Settings::new(1e-10, 2).unwrap();
     let error = solve(&problem, &method(Degree::One, EXACT), &settings).unwrap_err();
     let SolveError::NotConverged { residuals, .. } = &error else { panic!("{error}") };
     assert_eq!(residuals.len(), 3);

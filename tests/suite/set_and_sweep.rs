@@ -140,7 +140,7 @@ fn a_sweep_prints_and_writes_one_line_for_each_combination() {
     let lines: Vec<&str> = csv.lines().collect();
     assert_eq!(
         lines[0],
-        "method.gamma0,method.degree,kappa,newton_steps,contact_force,contact_length,peak_pressure,max_displacement,energy,status"
+        "method.gamma0,method.degree,verdict,kappa,newton_steps,contact_force,contact_length,peak_pressure,max_displacement,energy,status"
     );
     for (line, values) in lines[1..].iter().zip(["1e-3,1", "1e-3,2", "auto,1", "auto,2"]) {
         assert!(line.starts_with(values) && line.ends_with(",converged"), "{line}");
@@ -201,7 +201,7 @@ fn a_run_without_a_solution_is_a_line_of_the_sweep_and_exit_code_1() {
     let csv = fs::read_to_string(folder.join("out/case/sweep.csv")).unwrap();
     let lines: Vec<&str> = csv.lines().collect();
     assert!(lines[1].ends_with(",converged"), "{csv}");
-    assert!(lines[2].starts_with("5,,,,,,,,\"gamma0 = 5 gives kappa = "), "{csv}");
+    assert!(lines[2].starts_with("5,,,,,,,,,\"gamma0 = 5 gives kappa = "), "{csv}");
     let table = text(&output.stdout);
     assert!(table.contains("and coercivity needs kappa < 1\n"), "{table}");
 }

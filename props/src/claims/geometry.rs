@@ -16,7 +16,7 @@ use signorini::nalgebra::Vector2;
 use signorini::solve::factor::Factor;
 use signorini::solve::ldl::TwofoldFactor;
 use signorini::solve::system::System;
-use signorini::solve::{Degree, Method, discretize, limit};
+use signorini::solve::{Degree, Method, discretize};
 
 use crate::claim::{Outcome, noticed, text};
 use crate::verdict::Verdict;
@@ -188,52 +188,6 @@ pub fn middles_of_smooth_boundaries_have_the_normals_of_their_curves() -> Outcom
 /// The normals of the facets.
 pub fn normals_of_facets_for_those_of_the_curves() -> Outcome {
     draws::reject(facets(), |angles| ellipse(angles, true))
-}
-
-/// The limit that is printed, from A and from the stiffness matrix, against that of dense algebra times `factor`.
-fn limits_on<E, const N: usize, const M: usize>(
-    problem: &Problem,
-    degree: Degree,
-    factor: f64,
-) -> Result<(), String>
-where
-    E: ExactEdge<f64, N, M>,
-{
-    let expected = sharpness::limits::<E, N, M>(problem, degree, |diameter, _| diameter)?;
-    let method = Method { degree, ..Method::default() };
-    let d = discretize::<E, N, M>(problem, &method).map_err(text)?;
-    let system = System::new(&d).map_err(text)?;
-    let neighbours = Neighbours::new(d.space.nodes().len(), d.space.elements());
-    let stiffness = matrix::assemble_stiffness(&d, &system.numbering, &neighbours);
-    for (matrix, gamma0) in [(&system.matrix, d.gamma0), (&stiffness, 0.0)] {
-        let of = Factor::with(&system.structure, matrix).map_err(text)?;
-        let of = of.map_err(|_| "no factor")?;
-        let found = limit::true_limit(&system, &of, gamma0).map_err(|e| e.reason().to_owned())?;
-        if !((found.gamma0 - factor * expected.sharp).abs() <= 1e-9 * expected.sharp) {
-            return Err(format!("gamma0* = {}, expected {}", found.gamma0, expected.sharp));
-        }
-    }
-    Ok(())
-}
-
-fn limits(factor: f64) -> Outcome {
-    let bodies = sharpness::small_bodies()?;
-    for body in &bodies {
-        let with = |why| format!("{}: {why}", body.name);
-        limits_on::<P1, 3, 2>(&body.problem, Degree::One, factor).map_err(with)?;
-        limits_on::<P2, 6, 3>(&body.problem, Degree::Two, factor).map_err(with)?;
-    }
-    Ok(format!("{} bodies, P1 and P2, from A and from K", bodies.len()))
-}
-
-/// Row 9: the limit of gamma0.
-pub fn the_printed_limit_is_that_of_dense_algebra() -> Outcome {
-    limits(1.0)
-}
-
-/// A limit that is off by a millionth.
-pub fn a_limit_off_by_a_millionth() -> Outcome {
-    noticed(limits(1.0 + 1e-6))
 }
 
 /// |v(x)| at each node is at most its constant times |v|_a: the largest such v by the inverse of the stiffness matrix. The

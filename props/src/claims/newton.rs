@@ -316,7 +316,7 @@ fn verdict_is_honest(accepted: f64) -> Outcome {
     for residual in sizes {
         for forward_error in sizes {
             for steps in [1, 50] {
-                let settings = Settings { tolerance: 1e-10, max_iterations: 50 };
+                let settings = Settings { max_iterations: 50, ..Settings::default() };
                 let residuals = vec![1.0; steps + 1];
                 let (u, correction, condition) = (Vec::new(), forward_error, 1.0);
                 let solved = Solved {

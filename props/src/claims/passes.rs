@@ -122,7 +122,7 @@ pub fn half_of_what_is_left_over() -> Outcome {
 /// is out of balance is more than 1e-9.
 fn digits_are_missed(right: f64) -> Outcome {
     let sizes = [0.0, 1e-11, 1e-10, 1e-9, 1.1e-9, 1e-8, 1e-3, 1.0, f64::INFINITY, f64::NAN];
-    let settings = Settings { tolerance: 1e-10, max_iterations: 50 };
+    let settings = Settings { max_iterations: 50, ..Settings::default() };
     let mut right_ones = 0;
     for residual in sizes {
         for correction in sizes {

@@ -376,7 +376,6 @@ mod row {
                 "edge_integral::gauss",
                 "element::stiffness",
                 "solve::enclosure::enclose_with",
-                "solve::census::count",
                 "fem::korn::Korn::new",
             ],
             preconditions: "None at a point; kappa < 1 on bodies, in place of 'gamma0 sufficiently small'.",

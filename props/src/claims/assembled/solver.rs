@@ -5,7 +5,7 @@ use signorini::fem::matrix::{self, LowerTriangle, Neighbours, Numbering};
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::solve::evaluated::Evaluated;
 use signorini::solve::{
-    MethodReport, NewtonReport, NoLimit, Report, RouteName, Solution, Status, Unproved,
+    MethodReport, NewtonReport, Report, RouteName, Solution, Status, Unproved, Verdict,
 };
 
 use super::definition::Named;
@@ -26,7 +26,7 @@ pub(in crate::claims) fn unsolved() -> Report {
         threads: 1,
         slides: 0,
     };
-    Report { newton, method, enclosure: Err(Unproved::NotHeld), limit: Err(NoLimit::Assembled) }
+    Report { newton, method, enclosure: Err(Unproved::NotHeld), verdict: Verdict::Proved }
 }
 
 /// The same numbers by the solver, in the same order.
