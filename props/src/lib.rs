@@ -21,6 +21,8 @@ pub mod elimination;
 pub mod enclosure;
 #[cfg(not(kani))]
 pub mod export;
+#[cfg(not(kani))]
+pub mod fingerprint;
 pub mod harness;
 #[cfg(not(kani))]
 pub mod items;

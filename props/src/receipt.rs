@@ -347,6 +347,34 @@ pub fn make(log: &Path) -> io::Result<PathBuf> {
     Ok(path)
 }
 
+/// Gives the runs of a receipt whose hash is that of the present sources the fingerprint of these in its place, and leaves
+/// out the others, whose names it answers.
+///
+/// # Errors
+/// A file that can't be read or is no receipt.
+pub fn rekey(path: &Path) -> io::Result<Vec<String>> {
+    let text = std::fs::read_to_string(path)?;
+    let mut receipt = Receipt::parse("", &text).map_err(io::Error::other)?;
+    let hashes = Sources::read(root())?.harnesses();
+    let fingerprints = crate::fingerprint::Sources::read(root())?.fingerprints();
+    let mut refused = Vec::new();
+    receipt.runs.retain_mut(|run| {
+        let name = run.harness.rsplit("::").next().unwrap_or_default();
+        match (hashes.get(&run.harness) == Some(&run.sources), fingerprints.get(name)) {
+            (true, Some(fingerprint)) => {
+                run.sources.clone_from(fingerprint);
+                true
+            }
+            _ => {
+                refused.push(run.harness.clone());
+                false
+            }
+        }
+    });
+    std::fs::write(path, receipt.text())?;
+    Ok(refused)
+}
+
 /// When a file below the directories was changed last.
 fn newest(directories: &[PathBuf]) -> io::Result<SystemTime> {
     let mut latest = UNIX_EPOCH;
