@@ -64,6 +64,10 @@
 
 /// The vectors and matrices of the interface.
 pub use nalgebra;
+/// Makes a number type an entry of nalgebra's vectors.
+pub use signorini_kernel::entry_of_nalgebra;
+/// The verified core, a crate of its own.
+pub use signorini_kernel as kernel;
 
 #[cfg(not(kani))]
 pub mod certify;
@@ -71,7 +75,6 @@ pub mod certify;
 pub mod fem;
 #[cfg(not(kani))]
 pub mod io;
-pub mod kernel;
 #[cfg(not(kani))]
 pub mod memory;
 #[cfg(not(kani))]

@@ -36,7 +36,7 @@ pub struct Ball {
 
 impl Ball {
     /// The ball that contains this double only.
-    pub(crate) fn point(value: f64) -> Ball {
+    pub fn point(value: f64) -> Ball {
         Ball { centre: value, radius: 0.0 }
     }
 
@@ -46,13 +46,13 @@ impl Ball {
     }
 
     /// The smallest double known to be no smaller than any of its numbers. NaN if there is none to be known.
-    pub(crate) fn upper(self) -> f64 {
+    pub fn upper(self) -> f64 {
         let end = self.centre + self.radius;
         if self.radius == 0.0 { end } else { end.next_up() }
     }
 
     /// The largest double known to be no larger than any of its numbers. NaN if there is none to be known.
-    pub(crate) fn lower(self) -> f64 {
+    pub fn lower(self) -> f64 {
         -(-self).upper()
     }
 
@@ -66,7 +66,7 @@ impl Ball {
     }
 
     /// The square roots of its nonnegative numbers; NaN if it has none.
-    pub(crate) fn sqrt(self) -> Ball {
+    pub fn sqrt(self) -> Ball {
         let (lo, hi) = (self.lower(), self.upper());
         let below = if lo > 0.0 { lo.sqrt().next_down() } else { 0.0 };
         let above = if hi == 0.0 { 0.0 } else { hi.sqrt().next_up() };

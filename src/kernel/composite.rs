@@ -56,7 +56,7 @@ pub struct Composite<S> {
 
 /// C eps(v) of a displacement v of degree 1 or 2: a stress that is constant on the triangle or affine.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Affine<S> {
+pub struct Affine<S> {
     /// That of the affine function with the values of v at the vertices.
     pub base: Stress<S>,
     /// What comes to it at each vertex; `None` where v is affine.
@@ -64,7 +64,7 @@ pub(crate) struct Affine<S> {
 }
 
 /// What does not depend on the loads of a triangle.
-pub(crate) struct Frame<S> {
+pub struct Frame<S> {
     normals: [Vector2<S>; 3],
     edges: [Vector2<S>; 3],
     arms: [Vector2<S>; 3],
@@ -85,7 +85,8 @@ pub struct Wrench<S> {
 }
 
 impl<S: Scalar> Frame<S> {
-    pub(crate) fn new(triangle: &Triangle<S>) -> Self {
+    /// Computes the frame of a triangle.
+    pub fn new(triangle: &Triangle<S>) -> Self {
         let double_area = triangle.double_area();
         Frame {
             normals: [0, 1, 2].map(|i| triangle.scaled_normal(i)),
@@ -101,7 +102,7 @@ impl<S: Scalar> Affine<S> {
     /// C eps(v) for v with the values `nodal` at the vertices and, in the middle of edge i, `bulges[i]` beyond the mean of its
     /// ends: v is sum v_i l_i + 4 sum b_i l_j l_k, so that the gradient at vertex i has 4 (b_j (x) grad l_k + b_k (x) grad l_j)
     /// beside that of the first sum (i, j, k in turn).
-    pub(crate) fn of_displacement(
+    pub fn of_displacement(
         triangle: &Triangle<S>,
         nodal: &[Vector2<S>; 3],
         bulges: Option<&[Vector2<S>; 3]>,
@@ -127,25 +128,25 @@ impl<S: Scalar> Affine<S> {
     }
 
     /// At vertex `i` (mod 3).
-    pub(crate) fn at_corner(&self, i: usize) -> Stress<S> {
+    pub fn at_corner(&self, i: usize) -> Stress<S> {
         self.beyond.map_or(self.base, |beyond| self.base + beyond[i % 3])
     }
 
     /// At the point with the barycentric coordinates `l`.
-    pub(crate) fn at(&self, l: [S; 3]) -> Stress<S> {
+    pub fn at(&self, l: [S; 3]) -> Stress<S> {
         let at = |[a, b, c]: [Stress<S>; 3]| self.base + (a * l[0] + b * l[1] + c * l[2]);
         self.beyond.map_or(self.base, at)
     }
 
     /// At the centroid.
-    pub(crate) fn mean(&self) -> Stress<S> {
+    pub fn mean(&self) -> Stress<S> {
         let third = |sum: Stress<S>| self.base + sum / S::from(3);
         self.beyond.map_or(self.base, |[a, b, c]| third(a + b + c))
     }
 
     /// int_T sigma : C^-1 sigma. The square of an affine function with the values s_i has the integral
     /// |T| / 12 (sum s_i^2 + (sum s_i)^2).
-    pub(crate) fn energy(&self, material: &Material<S>, double_area: S) -> S {
+    pub fn energy(&self, material: &Material<S>, double_area: S) -> S {
         if self.beyond.is_none() {
             return complementary(material, self.base) * double_area / S::from(2);
         }
@@ -158,7 +159,7 @@ impl<S: Scalar> Affine<S> {
 impl<S: Scalar> Composite<S> {
     /// The stress with these tractions whose divergence is minus the load: `loads.body` where that is constant, else the one
     /// that is constant on each part and has the same moments. That takes tractions and body force in equilibrium.
-    pub(crate) fn new(frame: &Frame<S>, loads: &Loads<S>) -> Self {
+    pub fn new(frame: &Frame<S>, loads: &Loads<S>) -> Self {
         let Frame { normals, edges, arms, per_area, .. } = frame;
         let per_area = *per_area;
         let three = S::from(3);
@@ -183,7 +184,7 @@ impl<S: Scalar> Composite<S> {
 
     /// The stress with the same tractions and the same mean whose divergence is minus the affine `body`: with c_i and b from
     /// w_a = c_k E_k - c_j E_j + b E_a (a, j, k in turn), minus what the module's head has c_i and b times.
-    pub(crate) fn bent(self, frame: &Frame<S>, body: &[Vector2<S>; 3]) -> Self {
+    pub fn bent(self, frame: &Frame<S>, body: &[Vector2<S>; 3]) -> Self {
         let Frame { edges, arms, per_area, .. } = frame;
         let part = |numerator: i32, denominator: i32| S::from(numerator) / S::from(denominator);
         let mean = (body[0] + body[1] + body[2]) * part(1, 3);
@@ -212,7 +213,7 @@ impl<S: Scalar> Composite<S> {
     }
 
     /// tau on part i at mu, the coordinates of the centroid and of the corners i + 1 and i + 2.
-    pub(crate) fn at(&self, i: usize, [m, j, k]: [S; 3]) -> Stress<S> {
+    pub fn at(&self, i: usize, [m, j, k]: [S; 3]) -> Stress<S> {
         let affine = self.centre * m + self.corners[i][0] * j + self.corners[i][1] * k;
         let Some(bulges) = &self.bulges else { return affine };
         let [outer, to_j, to_k] = bulges[i];
@@ -220,7 +221,7 @@ impl<S: Scalar> Composite<S> {
     }
 
     /// sigma - tau.
-    pub(crate) fn distance_from(&self, sigma: &Affine<S>) -> Composite<S> {
+    pub fn distance_from(&self, sigma: &Affine<S>) -> Composite<S> {
         let negative = |tau: Stress<S>| tau * S::from(-1);
         let corners = |i: usize| [1, 2].map(|k| sigma.at_corner(i + k) - self.corners[i][k - 1]);
         Composite {
@@ -233,7 +234,7 @@ impl<S: Scalar> Composite<S> {
     /// int_T tau : C^-1 tau. For a square form, a^2 + b^2 + c^2 + (a + b + c)^2 is, with s = a + b + 2/3 c,
     /// 3/2 s^2 + 1/2 (a - b)^2 + 4/3 c^2. On a part of the area A with the bulges h, 4 mu_p mu_q h_pq each, there is
     /// 2/15 A sum h_pq (2 a_p + 2 a_q + a_r) and 4/45 A (sum h^2 + (sum h)^2) more.
-    pub(crate) fn energy(&self, material: &Material<S>, double_area: S) -> S {
+    pub fn energy(&self, material: &Material<S>, double_area: S) -> S {
         let (three, eight) = (S::from(3), S::from(8));
         let two_thirds = self.centre * (S::from(2) / three);
         let mut sum = squares(self.centre).map(|x| eight * x);
@@ -260,7 +261,7 @@ impl<S: Scalar> Composite<S> {
 
 impl<S: Scalar> Loads<S> {
     /// The resultant of tractions and body force, about the centroid.
-    pub(crate) fn resultant(&self, triangle: &Triangle<S>) -> Wrench<S> {
+    pub fn resultant(&self, triangle: &Triangle<S>) -> Wrench<S> {
         let arms = arms(triangle);
         let (two, six) = (S::from(2), S::from(6));
         let part = triangle.double_area() / six;
@@ -281,13 +282,13 @@ impl<S: Scalar> Loads<S> {
 
 impl<S: Scalar> Wrench<S> {
     /// The same forces, their moment about another point.
-    pub(crate) fn about(self, point: Vector2<S>) -> Self {
+    pub fn about(self, point: Vector2<S>) -> Self {
         let arm = self.about - point;
         Wrench { moment: self.moment + arm.perp(&self.force), about: point, ..self }
     }
 
     /// The sum with another wrench, about this one's point.
-    pub(crate) fn plus(self, other: Wrench<S>) -> Self {
+    pub fn plus(self, other: Wrench<S>) -> Self {
         let other = other.about(self.about);
         Wrench {
             force: self.force + other.force,
@@ -299,7 +300,7 @@ impl<S: Scalar> Wrench<S> {
     /// The affine force per unit of parameter, at both ends of the edge from `start` to `end`, that amounts to this wrench:
     /// a constant, and (2 s - 1) times a multiple of the edge's normal N, whose moment about the middle is |E|^2 / 6 times
     /// the multiple, clockwise.
-    pub(crate) fn on_edge(self, start: Vector2<S>, end: Vector2<S>) -> [Vector2<S>; 2] {
+    pub fn on_edge(self, start: Vector2<S>, end: Vector2<S>) -> [Vector2<S>; 2] {
         let wrench = self.about((start + end) / S::from(2));
         let edge = end - start;
         let normal = Vector2::new(edge[1], -edge[0]);
@@ -309,7 +310,7 @@ impl<S: Scalar> Wrench<S> {
 }
 
 /// tau : C^-1 tau: what is deviatoric over 2 mu, what is spherical over 2 (lambda + mu), both squares.
-pub(crate) fn complementary<S: Scalar>(material: &Material<S>, tau: Stress<S>) -> S {
+pub fn complementary<S: Scalar>(material: &Material<S>, tau: Stress<S>) -> S {
     per_moduli(material, squares(tau)) / S::from(4)
 }
 
@@ -389,7 +390,7 @@ mod tests {
     use approx::{assert_abs_diff_eq, assert_relative_eq};
 
     use super::*;
-    use crate::kernel::Plane;
+    use crate::Plane;
 
     const T: Triangle<f64> = Triangle {
         vertices: [Vector2::new(0.3, -0.2), Vector2::new(2.0, 0.1), Vector2::new(0.7, 1.9)],
@@ -397,6 +398,18 @@ mod tests {
 
     /// What some dozen operations on numbers of size 1 to 10, divided by 2 |T| = 3.3, may be off.
     const ROUNDING: f64 = 1e-13;
+
+    /// A rule on a triangle that is exact for polynomials of degree 4: barycentric points with weights that add up to 1.
+    fn rule() -> Vec<([f64; 3], f64)> {
+        let of = |sign: f64| {
+            let root = 10_f64.sqrt();
+            let a = (8.0 - root + sign * (38.0 - 44.0 * 0.4_f64.sqrt()).sqrt()) / 18.0;
+            let weight = (620.0 + sign * (213_125.0 - 53_320.0 * root).sqrt()) / 3720.0;
+            let at = |i: usize| ([0, 1, 2].map(|j| if i == j { 1.0 - 2.0 * a } else { a }), weight);
+            [0, 1, 2].map(at)
+        };
+        [of(1.0), of(-1.0)].concat()
+    }
 
     /// Tractions in equilibrium with f: any on two edges, and on the third what balances.
     fn balanced() -> Loads<f64> {
@@ -522,7 +535,7 @@ mod tests {
         let part = T.double_area() / 6.0;
         let mut integral = 0.0;
         for i in 0..3 {
-            for (mu, weight) in crate::fem::quadrature::triangle(4) {
+            for (mu, weight) in rule() {
                 integral += weight * part * complementary(&material, tau.at(i, mu));
             }
         }
@@ -602,7 +615,7 @@ mod tests {
         }
         same(sigma.mean(), stress(centroid(&T)));
         let integral = |of: &dyn Fn([f64; 3]) -> Stress<f64>| {
-            let points = crate::fem::quadrature::triangle(4);
+            let points = rule();
             let values = points.into_iter().map(|(l, w)| w * complementary(&material, of(l)));
             values.sum::<f64>() * T.double_area() / 2.0
         };

@@ -116,8 +116,8 @@ mod tests {
     use approx::assert_abs_diff_eq;
 
     use super::*;
-    use crate::kernel::element::displacement_gradient;
-    use crate::kernel::{ContactPoint, P1, P2, Plane};
+    use crate::element::displacement_gradient;
+    use crate::{ContactPoint, P1, P2, Plane};
 
     const T: Triangle<f64> = Triangle {
         vertices: [Vector2::new(0.0, 0.0), Vector2::new(3.0, 0.0), Vector2::new(0.0, 4.0)],

@@ -198,8 +198,8 @@ mod tests {
     use nalgebra::Vector2;
 
     use super::*;
-    use crate::kernel::Plane;
-    use crate::kernel::triangle::on_edge;
+    use crate::Plane;
+    use crate::triangle::on_edge;
 
     const T: Triangle<f64> = Triangle {
         vertices: [Vector2::new(1.0, 1.0), Vector2::new(4.0, 2.0), Vector2::new(2.0, 5.0)],

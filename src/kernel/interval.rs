@@ -203,7 +203,7 @@ impl Scalar for Interval {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kernel::{positive_part, positive_part_slope};
+    use crate::{positive_part, positive_part_slope};
 
     fn interval(lo: f64, hi: f64) -> Interval {
         Interval::new(lo, hi)

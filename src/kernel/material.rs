@@ -52,7 +52,7 @@ impl<S: Scalar> Material<S> {
 
     /// The same material in another number type.
     #[cfg(not(kani))]
-    pub(crate) fn map<T>(&self, f: impl Fn(S) -> T) -> Material<T> {
+    pub fn map<T>(&self, f: impl Fn(S) -> T) -> Material<T> {
         Material { lambda: f(self.lambda), mu: f(self.mu), plane: self.plane }
     }
 

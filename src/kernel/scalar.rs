@@ -57,7 +57,7 @@ macro_rules! entry_of_nalgebra {
         $crate::entry_of_nalgebra!($number, MulAssign mul_assign *);
         $crate::entry_of_nalgebra!($number, DivAssign div_assign /);
 
-        impl $crate::kernel::scalar::Zero for $number {
+        impl $crate::scalar::Zero for $number {
             fn zero() -> Self {
                 <$number>::from(0)
             }
@@ -67,7 +67,7 @@ macro_rules! entry_of_nalgebra {
             }
         }
 
-        impl $crate::kernel::scalar::One for $number {
+        impl $crate::scalar::One for $number {
             fn one() -> Self {
                 <$number>::from(1)
             }
