@@ -64,10 +64,10 @@
 
 /// The vectors and matrices of the interface.
 pub use nalgebra;
-/// Makes a number type an entry of nalgebra's vectors.
-pub use signorini_kernel::entry_of_nalgebra;
 /// The verified core, a crate of its own.
 pub use signorini_kernel as kernel;
+/// Makes a number type an entry of nalgebra's vectors.
+pub use signorini_kernel::entry_of_nalgebra;
 
 #[cfg(not(kani))]
 pub mod certify;

@@ -3,7 +3,7 @@
 //! A fingerprint covers the harness itself, the items of the kernel and of this crate that it reaches, and what the model
 //! checker compiles them with: edition, Kani's flags, and the packages that the kernel depends on. An item reaches the items
 //! whose names it mentions, wherever they stand; an `impl` belongs to its type, or to its trait where the type is foreign, and
-//! a trait is reached by the names of its methods, too. Items count by their tokens without comments, visibility and the
+//! a trait is reached by the names of its methods, too. Items count by their tokens without comments, hints to inline, visibility and the
 //! modules in front of a name, so that a fingerprint outlives moves between files and crates, renamed modules and formatting.
 //! Names are taken for what they say: two items of one name are both reached.
 
@@ -17,10 +17,10 @@ use sha2::{Digest, Sha256};
 use syn::{Item, Meta, Type, UseTree};
 
 /// The crates that the model checker compiles, by their roots.
-const CRATES: [&str; 2] = ["src/lib.rs", "props/src/lib.rs"];
+const CRATES: [&str; 2] = ["src/kernel/lib.rs", "props/src/lib.rs"];
 
 /// The manifests that say with what.
-const MANIFESTS: [&str; 2] = ["Cargo.toml", "props/Cargo.toml"];
+const MANIFESTS: [&str; 3] = ["src/kernel/Cargo.toml", "Cargo.toml", "props/Cargo.toml"];
 
 /// The macros that make a function a harness: in every fingerprint.
 const MACROS: [&str; 3] = ["harnesses", "harness_function", "counterexample"];
@@ -277,7 +277,7 @@ fn holds(condition: &Meta) -> Option<bool> {
     }
 }
 
-/// The tokens of a source without documentation, visibility, the modules in front of a name, and commas before a bracket
+/// The tokens of a source without documentation, hints to inline, visibility, the modules in front of a name, and commas before a bracket
 /// that closes.
 fn normal(stream: TokenStream) -> Vec<String> {
     let mut tokens = Vec::new();
@@ -295,7 +295,11 @@ fn add_normal(stream: TokenStream, tokens: &mut Vec<String>) {
     let mut at = 0;
     while at < trees.len() {
         match &trees[at] {
-            TokenTree::Punct(_) if punct(at, '#') && begins(trees.get(at + 1), &["doc"]) => at += 1,
+            TokenTree::Punct(_)
+                if punct(at, '#') && begins(trees.get(at + 1), &["doc", "inline"]) =>
+            {
+                at += 1;
+            }
             TokenTree::Punct(_)
                 if punct(at, '$') && ident(at + 1).is_some_and(|i| i == "crate") => {}
             TokenTree::Punct(sign) => {
@@ -440,12 +444,13 @@ mod row {
             .join(format!("signorini-fingerprint-{}-{number}", std::process::id()));
         let mut files = BTreeMap::from([
             (CRATES[0], KERNEL),
-            ("src/flat.rs", FLAT),
-            ("src/round.rs", ROUND),
+            ("src/kernel/flat.rs", FLAT),
+            ("src/kernel/round.rs", ROUND),
             (CRATES[1], "mod areas;\n"),
             ("props/src/areas.rs", CLAIM),
             (MANIFESTS[0], MANIFEST),
-            (MANIFESTS[1], "[dependencies]\nsignorini = { path = \"..\" }\n"),
+            (MANIFESTS[1], ""),
+            (MANIFESTS[2], "[dependencies]\nsignorini = { path = \"..\" }\n"),
             ("Cargo.lock", LOCK),
         ]);
         files.extend(changes.iter().copied());
@@ -470,8 +475,8 @@ mod row {
             assert!(text.contains(from));
             changed(&[(path, &text.replace(from, to))])
         };
-        assert_eq!(one("src/flat.rs", FLAT, "scale(1)", "scale(2)"), [true; 2]);
-        assert_eq!(one("src/round.rs", ROUND, "    a\n", "    a + 1\n"), [true; 2]);
+        assert_eq!(one("src/kernel/flat.rs", FLAT, "scale(1)", "scale(2)"), [true; 2]);
+        assert_eq!(one("src/kernel/round.rs", ROUND, "    a\n", "    a + 1\n"), [true; 2]);
         assert_eq!(one("props/src/areas.rs", CLAIM, "a > 0", "a >= 0"), [true, false]);
         assert_eq!(one("props/src/areas.rs", CLAIM, "== 0", "== 7"), [false, true]);
         assert_eq!(one(MANIFESTS[0], MANIFEST, "2024", "2021"), [true; 2]);
@@ -489,8 +494,8 @@ mod row {
             assert!(text.contains(from));
             changed(&[(path, &text.replace(from, to))])
         };
-        assert_eq!(one("src/round.rs", ROUND, "    3\n", "    4\n"), [false; 2]);
-        assert_eq!(one("src/flat.rs", FLAT, "pub fn", "/// An area.\n    fn"), [false; 2]);
+        assert_eq!(one("src/kernel/round.rs", ROUND, "    3\n", "    4\n"), [false; 2]);
+        assert_eq!(one("src/kernel/flat.rs", FLAT, "pub fn", "/// An area.\n    fn"), [false; 2]);
         assert_eq!(one("props/src/areas.rs", CLAIM, "fn draws() {}", "fn others() {}"), [false; 2]);
         assert_eq!(one("props/src/areas.rs", CLAIM, "/// True.", "/// Quite true."), [false; 2]);
         assert_eq!(one("Cargo.lock", LOCK, "version = \"2\"", "version = \"3\""), [false; 2]);

@@ -42,8 +42,6 @@ pub mod sharpness;
 #[cfg(not(kani))]
 pub mod solvers;
 #[cfg(not(kani))]
-pub mod sources;
-#[cfg(not(kani))]
 pub mod statement;
 pub mod verdict;
 

@@ -36,12 +36,6 @@ fn main() -> std::process::ExitCode {
             println!("VERIFY.md follows it: cargo run -p props -- ledger > VERIFY.md");
             true
         }),
-        ["rekey", receipt] => props::receipt::rekey(receipt.as_ref()).map(|refused| {
-            for harness in &refused {
-                println!("refused: {harness} was run for other sources");
-            }
-            refused.is_empty()
-        }),
         ["sharpness"] => props::sharpness::rows().map_err(std::io::Error::other).map(|rows| {
             print!("{}", props::sharpness::table(&rows));
             true

@@ -1,5 +1,5 @@
 //! Receipts of runs of the model checker Kani, `props/receipts/kani-DATE.tsv`: which harness got which verdict, in how many
-//! seconds, by which versions, and for which sources (see [`crate::sources`]).
+//! seconds, by which versions, and for which sources (see [`crate::fingerprint`]).
 //!
 //! ```text
 //! cargo kani 2>&1 | tee LOG               at the root, with Kani installed
@@ -18,8 +18,8 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use crate::claim::Subject;
 use crate::claims;
+use crate::fingerprint::Sources;
 use crate::harness::Harness;
-use crate::sources::Sources;
 
 /// What the model checker said of a harness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,7 +44,7 @@ impl Answer {
 /// One harness of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
-    /// Its path in this crate.
+    /// Its path in the crate where it stood.
     pub harness: String,
     /// Whether it is a false twin, which must fail.
     pub control: bool,
@@ -54,7 +54,7 @@ pub struct Run {
     pub seconds: Option<f64>,
     /// How many conditions were decided, where that is known.
     pub conditions: Option<u32>,
-    /// The hash of the sources that it was about.
+    /// The fingerprint of the sources that it was about.
     pub sources: String,
 }
 
@@ -153,7 +153,7 @@ impl Receipt {
         let mut runs = Vec::new();
         for block in log.split("Checking harness ").skip(1) {
             let name = block.lines().next().unwrap_or_default().trim_end_matches('.');
-            let Some(sources) = hashes.get(name) else {
+            let Some(sources) = hashes.get(own_name(name)) else {
                 return Err(format!(
                     "the log has the harness '{name}', which these sources have not"
                 ));
@@ -174,6 +174,11 @@ impl Receipt {
     }
 }
 
+/// The name of a harness without the modules in front of it, which may be others after a move: no two have the same.
+fn own_name(path: &str) -> &str {
+    path.rsplit("::").next().unwrap_or(path)
+}
+
 fn expected(control: bool) -> &'static str {
     if control { "should_panic" } else { "success" }
 }
@@ -191,7 +196,7 @@ fn run(name: &str, block: &str, sources: &str) -> Run {
     let seconds = after("Verification Time: ").and_then(|t| t.trim_end_matches('s').parse().ok());
     let of =
         after("** ").and_then(|rest| rest.split(" of ").nth(1)?.split(' ').next()?.parse().ok());
-    let control = name.rsplit("::").next().unwrap_or(name).starts_with("control_");
+    let control = own_name(name).starts_with("control_");
     Run {
         harness: name.to_owned(),
         control,
@@ -219,7 +224,11 @@ impl Standing {
     fn of(harness: &str, sources: &str, receipts: &[Receipt]) -> Standing {
         let runs = || {
             receipts.iter().flat_map(|receipt| {
-                receipt.runs.iter().filter(|r| r.harness == harness).map(move |run| (receipt, run))
+                receipt
+                    .runs
+                    .iter()
+                    .filter(|r| own_name(&r.harness) == harness)
+                    .map(move |run| (receipt, run))
             })
         };
         for answer in [Answer::Failed, Answer::Verified, Answer::NoAnswer] {
@@ -285,14 +294,14 @@ pub fn standing(harness: &Harness) -> Standing {
     static STANDINGS: OnceLock<BTreeMap<String, Standing>> = OnceLock::new();
     let standings = STANDINGS.get_or_init(|| {
         let receipts = stored().expect("props/receipts can be read");
-        let hashes = Sources::read(root()).expect("the sources can be read").harnesses();
+        let hashes = Sources::read(root()).expect("the sources can be read").fingerprints();
         let of = |(harness, sources): (String, String)| {
             let standing = Standing::of(&harness, &sources, &receipts);
             (harness, standing)
         };
         hashes.into_iter().map(of).collect()
     });
-    standings.get(&harness.path()).cloned().unwrap_or(Standing::Never)
+    standings.get(harness.name).cloned().unwrap_or(Standing::Never)
 }
 
 /// Whether a harness is decided by running it on all its values, which are few.
@@ -324,7 +333,7 @@ pub fn make(log: &Path) -> io::Result<PathBuf> {
     let at = |why: io::Error| io::Error::new(why.kind(), format!("{}: {why}", log.display()));
     let text = std::fs::read_to_string(log).map_err(at)?;
     let ended = std::fs::metadata(log).and_then(|data| data.modified()).map_err(at)?;
-    let hashes = Sources::read(root())?.harnesses();
+    let hashes = Sources::read(root())?.fingerprints();
     let mut receipt = Receipt::from_log(&date(ended), &text, &hashes).map_err(io::Error::other)?;
     let seconds: f64 = receipt.runs.iter().filter_map(|run| run.seconds).sum();
     let newest = newest(&[root().join("src/kernel"), root().join("props/src")])?;
@@ -345,34 +354,6 @@ pub fn make(log: &Path) -> io::Result<PathBuf> {
     let path = directory().join(format!("kani-{}.tsv", receipt.date));
     std::fs::write(&path, receipt.text())?;
     Ok(path)
-}
-
-/// Gives the runs of a receipt whose hash is that of the present sources the fingerprint of these in its place, and leaves
-/// out the others, whose names it answers.
-///
-/// # Errors
-/// A file that can't be read or is no receipt.
-pub fn rekey(path: &Path) -> io::Result<Vec<String>> {
-    let text = std::fs::read_to_string(path)?;
-    let mut receipt = Receipt::parse("", &text).map_err(io::Error::other)?;
-    let hashes = Sources::read(root())?.harnesses();
-    let fingerprints = crate::fingerprint::Sources::read(root())?.fingerprints();
-    let mut refused = Vec::new();
-    receipt.runs.retain_mut(|run| {
-        let name = run.harness.rsplit("::").next().unwrap_or_default();
-        match (hashes.get(&run.harness) == Some(&run.sources), fingerprints.get(name)) {
-            (true, Some(fingerprint)) => {
-                run.sources.clone_from(fingerprint);
-                true
-            }
-            _ => {
-                refused.push(run.harness.clone());
-                false
-            }
-        }
-    });
-    std::fs::write(path, receipt.text())?;
-    Ok(refused)
 }
 
 /// When a file below the directories was changed last.
@@ -450,7 +431,7 @@ Checking harness claims::a::ended...
 
     fn hashes() -> BTreeMap<String, String> {
         ["holds", "control_fails", "wrong", "slow", "ended"]
-            .map(|name| (format!("claims::a::{name}"), format!("hash of {name}")))
+            .map(|name| (name.to_owned(), format!("hash of {name}")))
             .into()
     }
 
@@ -493,9 +474,7 @@ Checking harness claims::a::ended...
     #[test]
     fn a_receipt_stands_behind_the_sources_it_is_about_and_no_others() {
         let receipts = [receipt()];
-        let of = |name: &str, sources: &str| {
-            Standing::of(&format!("claims::a::{name}"), sources, &receipts).to_string()
-        };
+        let of = |name: &str, sources: &str| Standing::of(name, sources, &receipts).to_string();
         assert_eq!(of("holds", "hash of holds"), "verified by receipt 2026-11-21");
         assert_eq!(of("holds", "another hash"), "never run since the sources changed");
         assert_eq!(of("wrong", "hash of wrong"), "REFUTED by receipt 2026-11-21");
@@ -506,9 +485,8 @@ Checking harness claims::a::ended...
     #[test]
     fn a_verdict_counts_more_than_none_and_a_failure_most() {
         let mut receipts = vec![receipt(); 3];
-        let slow = |receipts: &[Receipt]| {
-            Standing::of("claims::a::slow", "hash of slow", receipts).to_string()
-        };
+        let slow =
+            |receipts: &[Receipt]| Standing::of("slow", "hash of slow", receipts).to_string();
         receipts[1].runs[3].answer = Answer::Verified;
         receipts[1].date = "2026-11-22".to_owned();
         assert_eq!(slow(&receipts), "verified by receipt 2026-11-22");
@@ -526,19 +504,12 @@ Checking harness claims::a::ended...
     }
 
     #[test]
-    fn every_receipt_is_about_harnesses_that_exist_each_once_and_none_refutes_one() {
-        let known: BTreeMap<String, bool> =
-            harnesses().iter().map(|h| (h.path(), h.counterexample.is_some())).collect();
+    fn every_receipt_names_a_harness_once_and_none_refutes_one() {
         for receipt in stored().expect("receipts") {
             let mut seen = BTreeSet::new();
             for run in &receipt.runs {
                 let what = format!("receipt {}: {}", receipt.date, run.harness);
-                assert_eq!(
-                    known.get(&run.harness),
-                    Some(&run.control),
-                    "{what} is no such harness"
-                );
-                assert!(seen.insert(&run.harness), "{what} is there twice");
+                assert!(seen.insert(own_name(&run.harness)), "{what} is there twice");
             }
         }
         for harness in harnesses() {
@@ -549,9 +520,9 @@ Checking harness claims::a::ended...
     }
 
     #[test]
-    fn the_harnesses_in_the_sources_are_those_of_the_claims() {
-        let sources = Sources::read(root()).expect("the sources").harnesses();
-        let mut claimed: Vec<String> = harnesses().iter().map(Harness::path).collect();
+    fn the_harnesses_in_the_sources_are_those_of_the_claims_and_no_two_have_one_name() {
+        let sources = Sources::read(root()).expect("the sources").fingerprints();
+        let mut claimed: Vec<&str> = harnesses().iter().map(|harness| harness.name).collect();
         claimed.sort_unstable();
         assert!(claimed.len() > 50 && sources.keys().eq(&claimed), "{sources:?}\n{claimed:?}");
     }

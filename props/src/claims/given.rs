@@ -213,9 +213,13 @@ fn limits(wider: f64) -> Outcome {
     let steps = |n: usize| Settings::new(1e-10, n).is_ok();
     let gauss = |n: usize| ContactQuadrature::gauss(n).is_ok();
     let gamma0 = |g: f64| Gamma0::value(g).is_ok() && Gamma0::local(g).is_ok();
-    let poisson = |nu: f64, plane| Material::stable_young_poisson(1.0, nu, plane).is_ok();
-    let young = |e: f64, plane| Material::stable_young_poisson(e, 0.3, plane).is_ok();
-    let lame = |lambda: f64, mu: f64, plane| Material::stable_lame(lambda, mu, plane).is_ok();
+    let poisson =
+        |nu: f64, plane| signorini::fem::material::stable_young_poisson(1.0, nu, plane).is_ok();
+    let young =
+        |e: f64, plane| signorini::fem::material::stable_young_poisson(e, 0.3, plane).is_ok();
+    let lame = |lambda: f64, mu: f64, plane| {
+        signorini::fem::material::stable_lame(lambda, mu, plane).is_ok()
+    };
     let just = 1e-9;
     let mut cases: Vec<(&str, f64, bool, bool)> = Vec::new();
     for (t, taken) in [(0.0, false), (1e-300, true), (1.0 - just, true), (1.0 + wider, false)] {
