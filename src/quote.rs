@@ -28,7 +28,7 @@ pub fn cut(text: &str) -> String {
     cut_at(text, MOST)
 }
 
-/// A title, on one line.
+/// A text of a file, on one line of at most 200 characters.
 pub fn line(text: &str) -> String {
     cut_at(text, MOST_OF_A_LINE)
 }
@@ -72,7 +72,12 @@ pub fn fixed(x: f64, decimals: usize) -> String {
 
 /// What goes to a terminal: lines of text, and no other control characters.
 pub fn lines(text: &str) -> String {
-    text.split('\n').map(|line| escaped(line.chars())).collect::<Vec<_>>().join("\n")
+    text.split('\n').map(unbroken).collect::<Vec<_>>().join("\n")
+}
+
+/// One line of any length, with control characters escaped.
+pub fn unbroken(text: &str) -> String {
+    escaped(text.chars())
 }
 
 fn escaped(text: impl Iterator<Item = char>) -> String {

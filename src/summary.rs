@@ -25,9 +25,10 @@ impl Lines {
         Lines(format!("{}\n", quote::line(title)))
     }
 
+    /// One line, whatever names of a file the text has.
     fn line(&mut self, name: &str, text: impl AsRef<str>) {
         // Writing to a string cannot fail.
-        let _ = writeln!(self.0, "  {name:<12} {}", text.as_ref());
+        let _ = writeln!(self.0, "  {name:<12} {}", quote::unbroken(text.as_ref()));
     }
 }
 
@@ -253,7 +254,7 @@ fn how_it_was_solved(r: &Results, shown: &Shown, verbose: bool, lines: &mut Line
 /// The summary of what is certified of a displacement from elsewhere.
 pub fn certified(case: &Case, field: &Path, c: &Continuous, files: &[PathBuf]) -> String {
     let mut lines = Lines::titled(&case.title);
-    lines.line("field", field.display().to_string());
+    lines.line("field", quote::path(field));
     let norm = c.proof.norm;
     let size = |bound: f64| {
         let percent = 100.0 * bound / norm;

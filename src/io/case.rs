@@ -338,7 +338,8 @@ enum Body<'s> {
 
 fn read_units(table: &Table) -> Result<Units, CaseError> {
     table.only(&["length", "force"])?;
-    let word = |key: &str, example: &str| table.require(key, example)?.text().map(str::to_owned);
+    // Labels of summaries, tables and pictures: one line each.
+    let word = |key: &str, example: &str| table.require(key, example)?.text().map(quote::line);
     Ok(Units { length: word("length", "such as \"mm\"")?, force: word("force", "such as \"N\"")? })
 }
 
