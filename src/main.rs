@@ -39,7 +39,6 @@ mod command {
     use signorini::certify::adapt::Stage;
     use signorini::certify::certify_field;
     use signorini::fem::MeshError;
-    use signorini::io::certificate::AuditError;
     use signorini::io::convergence::{self, Meshes, StudyError};
     use signorini::io::field::read_field;
     use signorini::io::files::{reason, spare};
@@ -263,11 +262,8 @@ mod command {
 
     /// Verifies a certificate from scratch.
     fn audit(path: &Path) -> Result<String, Failure> {
-        let audit = certificate::audit(path).map_err(|error| match error {
-            AuditError::Rejected(_) => failure(FAILED)(&format!("{}: {error}", quote::path(path))),
-            error => failure(FAILED)(&error),
-        })?;
-        Ok(summary::audited(&audit))
+        let audit = certificate::audit(path).map_err(|error| failure(FAILED)(&error))?;
+        Ok(summary::audited(&audit, None))
     }
 
     /// On its own mesh, or on adapted ones.

@@ -283,15 +283,23 @@ pub fn certified(case: &Case, field: &Path, c: &Continuous, files: &[PathBuf]) -
 }
 
 /// The summary of a certificate that was verified.
-pub fn audited(audit: &Audit) -> String {
-    let Audit { header, proof, .. } = audit;
+pub fn audited(audit: &Audit, case: Option<&Path>) -> String {
+    let Audit { header, certificate, proof, reservations, .. } = audit;
     let mut lines = Lines::titled(&header.title);
-    let counts = header.counts;
-    lines.line(
-        "certificate",
-        format!("accepted: {} triangles, {} edges", counts.triangles, counts.edges),
-    );
+    let (triangles, edges) = (certificate.pieces.len(), certificate.edges.len());
+    lines.line("certificate", format!("accepted: {triangles} triangles, {edges} edges"));
     lines.line("statement", &header.statement);
+    lines.line(
+        "problem",
+        match case {
+            Some(case) => format!(
+                "that of {}: its mesh, materials, supports, loads and obstacles",
+                quote::path(case)
+            ),
+            None => "that of the numbers in this file; --case CASE.toml compares them with a case"
+                .to_owned(),
+        },
+    );
     let relative = 100.0 * header.bound / proof.norm;
     let size = if relative.is_finite() {
         format!(", {} % of |v|_a", numbers::short(relative, 2))
@@ -301,11 +309,10 @@ pub fn audited(audit: &Audit) -> String {
     lines.line("bound", format!("{}{size}", short(header.bound)));
     lines.line(
         "rigorous",
-        match &header.reason {
-            None if header.rigorous => "yes, rounding included".to_owned(),
-            reason => {
-                format!("with a reservation: {}", reason.as_deref().unwrap_or("no reason given"))
-            }
+        if reservations.is_empty() {
+            "yes, rounding included".to_owned()
+        } else {
+            format!("with a reservation: {reservations}")
         },
     );
     lines.0

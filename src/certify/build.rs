@@ -84,6 +84,8 @@ pub(super) fn build(parts: &Parts, u: &Field, v: &Field) -> Built {
             frames: parts.frames.clone(),
             pieces: Vec::with_capacity(whole.len()),
             edges: Vec::with_capacity(mesh.edge_count()),
+            lifts: Vec::new(),
+            polygon: Vec::new(),
         },
         origins: Vec::with_capacity(whole.len()),
         oscillation: Oscillation::new(parts, quadratic),

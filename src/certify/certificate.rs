@@ -1,14 +1,15 @@
 //! What a certificate is made of: v, tau, and the problem that they belong to, as numbers and nothing else.
 
 use std::collections::BTreeMap;
+use std::fmt;
 
 use nalgebra::Vector2;
 
 use crate::kernel::composite::Affine;
-use crate::kernel::{Enclosing, Material, Plane, Triangle};
+use crate::kernel::{Ball, Enclosing, Material, Plane, Triangle};
 
 /// v, tau and the problem that they belong to.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Certificate {
     /// The vertices of the mesh.
     pub vertices: Vec<[f64; 2]>,
@@ -27,6 +28,56 @@ pub struct Certificate {
     pub pieces: Vec<Piece>,
     /// Their edges.
     pub edges: Vec<Edge>,
+    /// What the prescribed displacements and gaps of the problem have beyond those above.
+    pub lifts: Vec<Lift>,
+    /// The edges that stand for a part of a curved boundary.
+    pub polygon: Vec<usize>,
+}
+
+/// A displacement z that vanishes outside the triangle of the mesh between three vertices: with its traces there, the
+/// prescribed displacements and gaps are those of the problem.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lift {
+    /// The vertices.
+    pub corners: [usize; 3],
+    /// |z|_a is at most this.
+    pub norm: f64,
+}
+
+/// What stands between the problem that a certificate was made for and the one that its arrays are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Reservations {
+    /// Triangles whose loads are measured by quadrature.
+    pub measured: usize,
+    /// Triangles in which prescribed displacements or gaps are.
+    pub lifted: usize,
+    /// Edges of Gamma_C along which the direction of contact turns.
+    pub turning: usize,
+    /// Edges that stand for a part of a curved boundary.
+    pub polygon: usize,
+}
+
+impl Reservations {
+    /// The bound is one of the problem itself.
+    pub fn is_empty(&self) -> bool {
+        *self == Reservations::default()
+    }
+}
+
+impl fmt::Display for Reservations {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Reservations { measured, lifted, turning, polygon } = *self;
+        let parts = [
+            (measured, "triangles with loads that are measured by quadrature"),
+            (lifted, "triangles with prescribed values or gaps that are"),
+            (polygon, "edges of a polygon in place of a curved boundary"),
+            (turning, "edges with a direction of contact that is affine between their ends"),
+        ];
+        let parts = parts.iter().filter(|(count, _)| *count > 0);
+        let words: Vec<String> = parts.map(|(count, what)| format!("{count} {what}")).collect();
+        f.write_str(if words.is_empty() { "none" } else { "" })?;
+        f.write_str(&words.join(", "))
+    }
 }
 
 /// v quadratic on the triangles, u_D and g quadratic along edges. A bulge is the value in the middle of an edge less the mean
@@ -64,7 +115,8 @@ pub struct Piece {
     pub material: [f64; 2],
     /// f at its vertices, affine between them.
     pub body: [[f64; 2]; 3],
-    /// What the data of the problem differ from those above: to be added to |C eps(v) - tau|. Zero where nothing does.
+    /// What the loads of the problem cost beyond those above: to be added to |C eps(v) - tau|. Positive where that is measured
+    /// by quadrature.
     pub oscillation: f64,
 }
 
@@ -146,6 +198,33 @@ pub(super) fn support<S: Enclosing>(
 }
 
 impl Certificate {
+    /// What its numbers themselves say of the problem that they don't have.
+    pub fn reservations(&self) -> Reservations {
+        let turns =
+            |edge: &&Edge| matches!(edge.role, Role::Contact { along: Some([d, e]), .. } if d != e);
+        Reservations {
+            measured: self.pieces.iter().filter(|piece| piece.oscillation != 0.0).count(),
+            lifted: self.lifts.len(),
+            turning: self.edges.iter().filter(turns).count(),
+            polygon: self.polygon.len(),
+        }
+    }
+
+    /// An upper bound of |z|_a for the sum z of the lifts, which meet on edges only.
+    pub fn lift(&self) -> f64 {
+        if self.lifts.is_empty() { 0.0 } else { self.with_lifts(0.0) }
+    }
+
+    /// (bound^2 + |z|_a^2)^(1/2), rounded upwards: the bound of |u - v|_a that is left of one for the v that has z, too.
+    pub fn with_lifts(&self, bound: f64) -> f64 {
+        if self.lifts.is_empty() {
+            return bound;
+        }
+        let square = |x: f64| Ball::exactly(x) * Ball::exactly(x);
+        let sum = self.lifts.iter().fold(square(bound), |sum, lift| sum + square(lift.norm));
+        sum.sqrt().upper()
+    }
+
     /// Values at the vertices, and at the cuts between them. Between equal numbers lies the same number: so the normal of an
     /// edge along an axis is known exactly. `is_known` tells of a vertex whether its values are the doubles `at`.
     fn with_cuts<S: Enclosing>(

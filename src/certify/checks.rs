@@ -1,10 +1,12 @@
 //! What a certificate must satisfy before there is anything to evaluate: its indices name things that exist, its triangles hang
 //! together along its edges, v is what is prescribed, and no force acts where nothing holds.
 
+use std::collections::BTreeSet;
+
 use thiserror::Error;
 
 use super::balance::Unbalanced;
-use super::certificate::{Certificate, Curved, Owner, Role, is_oblique};
+use super::certificate::{Certificate, Curved, Lift, Owner, Role, is_oblique};
 
 /// Why a certificate proves nothing.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -179,7 +181,19 @@ impl Certificate {
                 return Err(wrong("edge", i, "expected two different vertices and finite numbers"));
             }
         }
-        Ok(())
+        let mut lifted = BTreeSet::new();
+        for (i, &Lift { mut corners, norm }) in self.lifts.iter().enumerate() {
+            corners.sort_unstable();
+            let distinct = corners[0] < corners[1] && corners[1] < corners[2];
+            let measured = norm >= 0.0 && norm.is_finite();
+            if !(distinct && corners[2] < vertices && measured && lifted.insert(corners)) {
+                return Err(wrong("lift", i, "expected a triangle of its own and its norm"));
+            }
+        }
+        match self.polygon.iter().position(|&e| e >= self.edges.len()) {
+            Some(i) => Err(wrong("edge of the polygon", i, "this edge does not exist")),
+            None => Ok(()),
+        }
     }
 
     /// v = u_D at both ends of the edges of Gamma_D, nothing is prescribed elsewhere, and there is no force in a direction

@@ -5,6 +5,7 @@
 //! | module | what it does |
 //! | --- | --- |
 //! | `proof` | the checker: it evaluates a certificate |
+//! | `format` | a certificate as files |
 //! | `certificate`, `checks`, `on_contact`, `balanced` | its parts: the numbers; what they must satisfy; the edges of Gamma_C; the triangles, put in equilibrium |
 //! | `balance` | tractions in exact equilibrium |
 //! | `parts`, `contact`, `field`, `data` | the problem and its discrete solution, as certificates see them |
@@ -29,6 +30,8 @@ mod divide;
 mod errors;
 mod estimate;
 mod field;
+#[cfg(feature = "files")]
+pub mod format;
 mod on_contact;
 mod oscillation;
 mod parts;
@@ -90,8 +93,6 @@ pub struct Continuous {
     pub clipping: f64,
     /// |u - w|_a is at most this.
     pub of_field: f64,
-    /// |z|_a of the lift of section 7.4, whose square the bound has beside that of the proof.
-    pub lift: f64,
 }
 
 /// Certifies the `solution` of `problem`.
@@ -144,14 +145,7 @@ fn certify_near(
     let (certificate, oscillation) = (&built.certificate, &built.oscillation);
     let state = certificate.balanced::<Ball>(topology)?;
     let proof = certificate.sum(&state)?;
-    let together = |bound: f64, beside: f64| match beside {
-        0.0 => bound,
-        beside => {
-            let [bound, beside] = [bound, beside].map(Interval::point);
-            (bound * bound + beside * beside).sqrt().hi()
-        }
-    };
-    let bound = together(proof.bound, oscillation.lift);
+    let bound = certificate.with_lifts(proof.bound);
     let relative = (Interval::point(bound) / Interval::point(proof.norm)).hi();
     let energy = oscillation.reason.is_none().then(|| {
         let b = Interval::point(proof.bound);
@@ -170,12 +164,14 @@ fn certify_near(
     } else {
         let shape = built.shape(mesh, field);
         let as_it_is = certificate.bound_at(state, &proof, (shape, &distances));
-        let beside = (clipping + oscillation.lift).next_up();
-        together(as_it_is, beside).min((bound + clipping).next_up())
+        let beside = (clipping + certificate.lift()).next_up();
+        let [as_it_is, beside] = [as_it_is, beside].map(Interval::point);
+        let together = (as_it_is * as_it_is + beside * beside).sqrt().hi();
+        together.min((bound + clipping).next_up())
     };
     let mut shares = vec![0.0; problem.mesh.triangles().len()];
     built.origins.iter().zip(&proof.shares).for_each(|(&t, share)| shares[t] += share);
-    shares.iter_mut().zip(&oscillation.lifts).for_each(|(share, z)| *share += z * z);
+    oscillation.lifts.iter().for_each(|(&t, z)| shares[t] += z * z);
     let mut apart = vec![0.0; shares.len()];
     built.origins.iter().zip(&distances).for_each(|(&t, d)| apart[t] += d * d);
     let estimate = estimate::averaging_estimate(&parts, &v);
@@ -193,7 +189,6 @@ fn certify_near(
         compliance,
         certificate,
         proof,
-        lift: oscillation.lift,
         clipping,
         of_field,
     })

@@ -15,10 +15,12 @@
 //!
 //! These integrals are by quadrature, so a bound that contains one is not rigorous: [`Oscillation::reason`] says so.
 
+use std::collections::BTreeMap;
+
 use nalgebra::{Matrix2, Vector2};
 
 use super::bubbles;
-use super::certificate::{Certificate, Piece, Role, place};
+use super::certificate::{Certificate, Lift, Piece, Role, place};
 use super::data::{Data, POINTS, bulge_of, is_within, length_and_normal, within};
 use super::parts::{Boundary, Parts};
 use crate::fem::mesh::length;
@@ -30,10 +32,8 @@ use crate::kernel::{Material, Triangle};
 pub(super) struct Oscillation {
     /// Why the bound rests on quadrature, if it does.
     pub reason: Option<String>,
-    /// |z|_a of the lifts on each triangle of the mesh; none where nothing is lifted.
-    pub lifts: Vec<f64>,
-    /// |z|_a of all: with its square the bound is one of |u - v|, where v lacks z.
-    pub lift: f64,
+    /// |z|_a of the lifts on the triangles of the mesh where v lacks z.
+    pub lifts: BTreeMap<usize, f64>,
 }
 
 impl Oscillation {
@@ -92,7 +92,7 @@ impl Oscillation {
         });
         let reasons: Vec<String> = measured.into_iter().chain(named).collect();
         let reason = (!reasons.is_empty()).then(|| reasons.join("; "));
-        Oscillation { reason, lifts: Vec::new(), lift: 0.0 }
+        Oscillation { reason, lifts: BTreeMap::new() }
     }
 
     /// Puts the oscillation of the data into the pieces of a certificate; `origins` are their triangles in the mesh, of which they may be quarters.
@@ -107,7 +107,8 @@ impl Oscillation {
             return;
         }
         self.lifts = lifts(parts, certificate.curved.is_some());
-        self.lift = self.lifts.iter().map(|z| z * z).sum::<f64>().sqrt();
+        let lift = |(&t, &norm): (&usize, &f64)| Lift { corners: parts.mesh.triangles()[t], norm };
+        certificate.lifts = self.lifts.iter().map(lift).collect();
         let pieces: Vec<f64> = certificate
             .pieces
             .iter()
@@ -137,7 +138,7 @@ fn least_stiffness(material: &Material<f64>) -> f64 {
     2.0 * material.mu().min(material.lambda() + material.mu())
 }
 
-/// What f and t cost on one piece of triangle `t`.
+/// What f and t cost on one piece of triangle `t`: positive if that is measured.
 fn loads(
     parts: &Parts,
     data: &Data,
@@ -152,7 +153,9 @@ fn loads(
     let curved = data.acting(t).filter(|(_, f, _)| !is_within(f, 1));
     let demand = |f: &SharedFunction| (f.kink().is_some(), f.degree().unwrap_or(u32::MAX));
     let mut lacking = Vec::new();
+    let mut least = 0.0;
     if let Some((_, _, rule)) = curved.max_by_key(|(_, f, _)| demand(f)) {
+        least = f64::MIN_POSITIVE;
         let affine = piece.body.map(Vector2::from);
         rule.on_triangle(&triangle, |l, x, weight| {
             let mut difference = -(affine[0] * l[0] + affine[1] * l[1] + affine[2] * l[2]);
@@ -181,6 +184,7 @@ fn loads(
         if traction.is_affine() {
             continue;
         }
+        least = f64::MIN_POSITIVE;
         let ends = edge.ends.map(|p| place(certificate, p).into());
         let (length, unit) = length_and_normal(ends);
         let affine = match edge.role {
@@ -210,13 +214,13 @@ fn loads(
             .sqrt();
         sum += trace * square.sqrt();
     }
-    of_bubbles + sum / least_stiffness(&piece.material()).sqrt()
+    (of_bubbles + sum / least_stiffness(&piece.material()).sqrt()).max(least)
 }
 
 /// |z|_a of what the displacement and the gap ask for beyond v, on each triangle of the mesh.
-fn lifts(parts: &Parts, quadratic: bool) -> Vec<f64> {
+fn lifts(parts: &Parts, quadratic: bool) -> BTreeMap<usize, f64> {
     let mesh = parts.mesh;
-    let mut lifts = vec![0.0; mesh.triangles().len()];
+    let mut lifts = BTreeMap::new();
     let turning = parts.turning();
     for (name, condition) in &parts.problem.conditions {
         for &edge in mesh.edges_of(name).unwrap_or_default() {
@@ -233,13 +237,19 @@ fn lifts(parts: &Parts, quadratic: bool) -> Vec<f64> {
             let is_followed = |f: &SharedFunction| is_within(f, if quadratic { 2 } else { 1 });
             let lacking: Box<dyn Fn(f64) -> [f64; 2]> = match condition {
                 Condition::Displacement(functions)
-                | Condition::Mixed { displacement: functions, .. } => Box::new(move |s| {
-                    [0, 1].map(|c| match &functions[c] {
-                        Some(f) if !is_followed(f) => lacks(f, s),
-                        _ => 0.0,
+                | Condition::Mixed { displacement: functions, .. }
+                    if !functions.iter().flatten().all(is_followed) =>
+                {
+                    Box::new(move |s| {
+                        [0, 1].map(|c| match &functions[c] {
+                            Some(f) if !is_followed(f) => lacks(f, s),
+                            _ => 0.0,
+                        })
                     })
-                }),
-                Condition::Support { normal: along, tangential: across } => {
+                }
+                Condition::Support { normal: along, tangential: across }
+                    if ![along, across].into_iter().flatten().all(is_followed) =>
+                {
                     let left = Vector2::new(-normal.y, normal.x);
                     Box::new(move |s| {
                         let lacking = [along, across].map(|f| match f {
@@ -257,7 +267,8 @@ fn lifts(parts: &Parts, quadratic: bool) -> Vec<f64> {
                 _ => continue,
             };
             let t = edge.triangle;
-            lifts[t] += lift(&mesh.triangle(t), edge.local, lacking, parts.material(t));
+            *lifts.entry(t).or_insert(0.0) +=
+                lift(&mesh.triangle(t), edge.local, lacking, parts.material(t));
         }
     }
     lifts

@@ -20,7 +20,9 @@
 //! edge, too, the *bulge* by which it is beyond the mean of the edge's ends in the middle. C eps(v) is affine, and v_n - g
 //! is known not to be positive where its Bernstein coefficients are not.
 
-pub use super::certificate::{Certificate, Curved, Cut, Edge, Owner, Piece, Role};
+pub use super::certificate::{
+    Certificate, Curved, Cut, Edge, Lift, Owner, Piece, Reservations, Role,
+};
 pub use super::checks::Rejection;
 
 use super::balanced::Balanced;
@@ -34,7 +36,7 @@ use crate::kernel::{Ball, Enclosing};
 pub struct Proof {
     /// Upper bounds of the share of each triangle in the square of the bound, the contact term of its edges included.
     pub shares: Vec<f64>,
-    /// An upper bound of |u - v|_a, where no data oscillate outside the class.
+    /// An upper bound of |u - v|_a where there are no lifts; [`Certificate::with_lifts`] adds them.
     pub bound: f64,
     /// A lower bound of |v|_a.
     pub norm: f64,
@@ -47,7 +49,7 @@ pub struct Proof {
 pub struct Claim {
     /// As in [`Proof`].
     pub shares: Vec<f64>,
-    /// As in [`Proof`].
+    /// |u - v|_a is at most this, with the lifts.
     pub bound: f64,
 }
 
@@ -108,8 +110,9 @@ impl Certificate {
                 return Err(Rejection::Share { triangle, claimed, found });
             }
         }
-        if !proof.bound.is_at_most(claim.bound) {
-            return Err(Rejection::Bound { claimed: claim.bound, found: proof.bound });
+        let bound = self.with_lifts(proof.bound);
+        if !bound.is_at_most(claim.bound) {
+            return Err(Rejection::Bound { claimed: claim.bound, found: bound });
         }
         Ok(proof)
     }

@@ -99,6 +99,7 @@ use crate::certify::Target;
 use crate::fem::exact::Kind;
 use crate::fem::{Exact, Mesh, Perturbation, Problem, Structured};
 use crate::memory;
+use crate::quote;
 use crate::solve::{Method, Settings};
 
 /// A contact problem and how to solve it.

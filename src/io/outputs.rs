@@ -196,7 +196,7 @@ fn certificate_files(
     title: &str,
     certified: &Continuous,
 ) -> [(&'static str, Result<Vec<u8>, DataError>); 2] {
-    let (header, arrays) = certificate::encode(title, certified);
+    let (header, arrays) = certificate::encode(title, &certified.certificate, &certified.proof);
     let text = serde_json::to_vec_pretty(&header)
         .map_err(|_| DataError::NotFinite { place: certificate::FILES[0].to_owned() });
     [(certificate::FILES[0], text), (certificate::FILES[1], Ok(arrays))]

@@ -77,7 +77,7 @@ fn a_body_that_is_turned_has_the_bound_of_the_body_as_it_stands() {
             assert!(apart < ROUNDING, "{degree:?}, {angle}: {} {}", turned.bound, still.bound);
             let ([low, high], [l, h]) = (turned.energy.unwrap(), still.energy.unwrap());
             assert!((low - l).abs() + (high - h).abs() < ROUNDING, "{low} {l} {high} {h}");
-            let (header, bytes) = certificate::encode("turned", &turned);
+            let (header, bytes) = certificate::encode("turned", &turned.certificate, &turned.proof);
             assert_eq!(accepts(&header, &bytes), Ok(()), "{degree:?}, {angle}");
         }
     }
@@ -90,7 +90,7 @@ fn supports_that_are_not_affine_cost_what_they_cost_at_any_angle() {
     for degree in [Degree::One, Degree::Two] {
         let (_, still) = certified(&turned(8, 0.0, parabola), degree);
         assert_eq!(still.rigorous, degree == Degree::Two, "{:?}", still.reason);
-        assert_eq!(still.lift > 0.0, degree == Degree::One);
+        assert_eq!(still.certificate.lift() > 0.0, degree == Degree::One);
         for angle in ANGLES {
             // A product of two affine functions of x and y, not expanded, is known to be of degree 2.
             let (_, turned) = certified(&turned(8, angle, parabola), degree);
@@ -170,7 +170,8 @@ fn control_another_traction_beside_a_support_is_rejected() {
     for degree in [Degree::One, Degree::Two] {
         let (_, certified) = certified(&problem, degree);
         assert!(certified.rigorous, "{:?}", certified.reason);
-        let (header, bytes) = certificate::encode("shear", &certified);
+        let (header, bytes) =
+            certificate::encode("shear", &certified.certificate, &certified.proof);
         let (good, claim) = certificate::decode(&header, &bytes).unwrap();
         assert!(good.audit(&claim).is_ok());
         for change in [0.0, 0.99, 1.0 + 1e-9] {
@@ -235,7 +236,7 @@ fn supports_that_are_not_affine_have_the_bound_of_the_same_displacement() {
             with(&ladder, 0, "right", |[x, y], _| Condition::Displacement([Some(x), Some(y)]));
         let apart = (support.bound / displacement.bound - 1.0).abs();
         assert!(apart < 1e-9, "{degree:?}: {} {}", support.bound, displacement.bound);
-        assert!(support.bound > error && support.lift > 0.0);
+        assert!(support.bound > error && support.certificate.lift() > 0.0);
     }
 }
 
@@ -243,8 +244,9 @@ fn supports_that_are_not_affine_have_the_bound_of_the_same_displacement() {
 fn tampered_certificates_of_oblique_supports_are_rejected() {
     for degree in [Degree::One, Degree::Two] {
         let (_, certified) = certified(&turned(4, 0.3, "0.01*(1 - Y)"), degree);
-        let (header, bytes) = certificate::encode("turned", &certified);
-        assert!(header.counts.frames > 0);
+        let (header, bytes) =
+            certificate::encode("turned", &certified.certificate, &certified.proof);
+        assert!(header.arrays.iter().any(|array| array.name == "frames"));
         rejects_what_is_tampered(&header, &bytes);
     }
 }
@@ -253,7 +255,8 @@ fn tampered_certificates_of_oblique_supports_are_rejected() {
 fn tampered_certificates_of_tractions_beside_supports_are_rejected() {
     for degree in [Degree::One, Degree::Two] {
         let (_, certified) = certified(&with_shear(), degree);
-        let (header, bytes) = certificate::encode("shear", &certified);
+        let (header, bytes) =
+            certificate::encode("shear", &certified.certificate, &certified.proof);
         rejects_what_is_tampered(&header, &bytes);
     }
 }
@@ -264,8 +267,8 @@ fn a_certificate_of_an_older_format_is_refused_by_its_number() {
     let folder = std::env::temp_dir().join(format!("signorini-format-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
     let json = folder.join(certificate::FILES[0]);
-    std::fs::write(&json, "{\"format\": 5, \"counts\": {\"vertices\": 9}}").unwrap();
+    std::fs::write(&json, "{\"format\": 6, \"counts\": {\"vertices\": 9}}").unwrap();
     let error = certificate::audit(&json).unwrap_err().to_string();
-    assert!(error.contains("of format 5; expected 6"), "{error}");
+    assert!(error.contains("of format 6; expected 7"), "{error}");
     std::fs::remove_dir_all(&folder).unwrap();
 }

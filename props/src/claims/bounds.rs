@@ -210,7 +210,8 @@ impl Draw {
         }
         let curved = (!self.curve.is_empty()).then(|| self.curved(&edges));
         let (cuts, frames) = (Vec::new(), BTreeMap::new());
-        Certificate { vertices, cuts, displacement, curved, prescribed, frames, pieces, edges }
+        let lists = Certificate { pieces, edges, ..Certificate::default() };
+        Certificate { vertices, cuts, displacement, curved, prescribed, frames, ..lists }
     }
 
     /// The bulges of v: those of u_D on Gamma_D, and on Gamma_C as large as g asks for.

@@ -819,8 +819,10 @@ fn costs(draw: &Draw, share: f64) -> Verdict {
         let density = xx * g.m11 + yy * g.m22 + xy * (g.m12 + g.m21);
         square += density * double_area / 2.0 / 2000.0;
     }
-    ensure!((moved.lift - share * square.sqrt()).abs() <= 1e-5 * moved.lift);
-    let together = moved.proof.bound.hypot(moved.lift);
+    ensure!(
+        (moved.certificate.lift() - share * square.sqrt()).abs() <= 1e-5 * moved.certificate.lift()
+    );
+    let together = moved.proof.bound.hypot(moved.certificate.lift());
     ensure!((moved.bound - together).abs() <= 1e-12 * together);
     Verdict::Holds("always")
 }
