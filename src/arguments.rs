@@ -83,6 +83,13 @@ pub enum Task {
         /// The file certificate.json, with certificate.bin beside it
         #[arg(value_hint = ValueHint::FilePath)]
         certificate: PathBuf,
+        /// A case file: refuse a certificate of another problem. Its mesh, or one that refines it, materials, supports, loads and
+        /// obstacles are compared
+        #[arg(long, value_name = "CASE.toml", value_hint = ValueHint::FilePath)]
+        case: Option<PathBuf>,
+        /// Set a key over the case file, as for solve
+        #[arg(long = "set", value_name = "KEY=VALUE", requires = "case")]
+        settings: Vec<String>,
     },
     /// Bound the error of a displacement that any program computed for a case; write certified.vtu, certificate.json and
     /// certificate.bin

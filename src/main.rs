@@ -37,6 +37,7 @@ mod command {
 
     use clap::CommandFactory;
     use signorini::certify::adapt::Stage;
+    use signorini::certify::binding::compare;
     use signorini::certify::certify_field;
     use signorini::fem::MeshError;
     use signorini::io::convergence::{self, Meshes, StudyError};
@@ -102,7 +103,9 @@ mod command {
                     }),
                 }
             }
-            Task::Audit { certificate } => audit(certificate).map(summarised(quiet)),
+            Task::Audit { certificate, case, settings } => {
+                audit(certificate, case.as_deref(), settings).map(summarised(quiet))
+            }
             Task::Certify { case, displacement, out } => {
                 certify(case, displacement, out.as_deref(), quiet).map(summarised(quiet))
             }
@@ -260,10 +263,23 @@ mod command {
         Ok(summary::certified(&case, displacement, &certified, &files))
     }
 
-    /// Verifies a certificate from scratch.
-    fn audit(path: &Path) -> Result<String, Failure> {
+    /// Verifies a certificate from scratch, and that it is of a case if one is named.
+    fn audit(path: &Path, case: Option<&Path>, settings: &[String]) -> Result<String, Failure> {
+        let case = case.map(|file| {
+            let settings = settings.to_vec();
+            read(&CaseArguments { file: file.to_owned(), settings })
+        });
+        let case = case.transpose()?;
         let audit = certificate::audit(path).map_err(|error| failure(FAILED)(&error))?;
-        Ok(summary::audited(&audit, None))
+        let file = case.as_ref().map(|case| case.file.clone());
+        if let Some(Case { problem, file, .. }) = case {
+            compare(problem, &audit.certificate).map_err(|difference| {
+                let [path, file] = [path, &file].map(quote::path);
+                let text = format!("{path}: not a certificate of {file}: {difference}");
+                failure(FAILED)(&text)
+            })?;
+        }
+        Ok(summary::audited(&audit, file.as_deref()))
     }
 
     /// On its own mesh, or on adapted ones.

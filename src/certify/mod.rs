@@ -14,12 +14,14 @@
 //! | `sweeps` | a better tau |
 //! | `oscillation` | data outside the exact class |
 //! | `bubbles` | stresses for what affine loads lack |
+//! | `binding` | whether a certificate is one of a problem
 //! | `adapt` | meshes that are refined until the bound meets a target |
 
 pub mod adapt;
 mod admissible;
 mod balance;
 mod balanced;
+pub mod binding;
 mod bubbles;
 mod build;
 mod certificate;
@@ -134,8 +136,8 @@ fn certify_near(
     let quarters = if quadratic { 4 } else { 1 };
     memory::check(quarters * PER_TRIANGLE * problem.mesh.triangles().len() as u64)?;
     let parts = match solution.degree {
-        1 => Parts::new::<P1, 3, 2>(problem, solution)?,
-        _ => Parts::new::<P2, 6, 3>(problem, solution)?,
+        1 => Parts::new::<P1, 3, 2>(problem, solution.gamma.gamma, &solution.displacement)?,
+        _ => Parts::new::<P2, 6, 3>(problem, solution.gamma.gamma, &solution.displacement)?,
     };
     let mesh = &problem.mesh;
     let [u, start, _] = [&solution.displacement, start, field].map(|nodal| Field::new(mesh, nodal));

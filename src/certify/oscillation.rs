@@ -106,6 +106,9 @@ impl Oscillation {
         if self.reason.is_none() {
             return;
         }
+        // Both halves of an edge of the mesh are numbered from 0 and from its count of edges on.
+        let count = parts.mesh.edge_count();
+        let whole = |e: usize| if quartered && e < 2 * count { e % count } else { e };
         self.lifts = lifts(parts, certificate.curved.is_some());
         let lift = |(&t, &norm): (&usize, &f64)| Lift { corners: parts.mesh.triangles()[t], norm };
         certificate.lifts = self.lifts.iter().map(lift).collect();
@@ -113,7 +116,7 @@ impl Oscillation {
             .pieces
             .iter()
             .zip(origins)
-            .map(|(piece, &t)| loads(parts, data, certificate, (piece, quartered), t))
+            .map(|(piece, &t)| loads(parts, data, certificate, (piece, &whole), t))
             .collect();
         for (piece, oscillation) in certificate.pieces.iter_mut().zip(pieces) {
             piece.oscillation = oscillation;
@@ -138,12 +141,13 @@ fn least_stiffness(material: &Material<f64>) -> f64 {
     2.0 * material.mu().min(material.lambda() + material.mu())
 }
 
-/// What f and t cost on one piece of triangle `t`: positive if that is measured.
-fn loads(
+/// What f and t cost on one piece of triangle `t`: positive if that is measured. `whole` tells which edge of the mesh an edge of
+/// Gamma_N is, or is a part of.
+pub(super) fn loads(
     parts: &Parts,
     data: &Data,
     certificate: &Certificate,
-    (piece, quartered): (&Piece, bool),
+    (piece, whole): (&Piece, &dyn Fn(usize) -> usize),
     t: usize,
 ) -> f64 {
     let triangle = Triangle { vertices: piece.vertices.map(|p| place(certificate, p)) };
@@ -173,11 +177,8 @@ fn loads(
     let mut sum = poincare * square.sqrt();
     for (local, e) in piece.edges.into_iter().enumerate() {
         let edge = certificate.edges[e];
-        // Both halves of an edge of the mesh are numbered from 0 and from its count of edges on.
-        let count = parts.mesh.edge_count();
-        let whole = if quartered && e < 2 * count { e % count } else { e };
         let (Boundary::Loaded(traction) | Boundary::Supported(_, _, Some(traction))) =
-            parts.boundary.get(&whole).unwrap_or(&Boundary::Free)
+            parts.boundary.get(&whole(e)).unwrap_or(&Boundary::Free)
         else {
             continue;
         };
@@ -218,7 +219,7 @@ fn loads(
 }
 
 /// |z|_a of what the displacement and the gap ask for beyond v, on each triangle of the mesh.
-fn lifts(parts: &Parts, quadratic: bool) -> BTreeMap<usize, f64> {
+pub(super) fn lifts(parts: &Parts, quadratic: bool) -> BTreeMap<usize, f64> {
     let mesh = parts.mesh;
     let mut lifts = BTreeMap::new();
     let turning = parts.turning();

@@ -7,11 +7,11 @@ use super::contact::Contact;
 use super::data::{Traction, bulge_of};
 use super::errors::CertifyError;
 use crate::fem::constraints::Constraints;
+use crate::fem::contact_line::Gamma;
 use crate::fem::smooth::SmoothBoundary;
 use crate::fem::{BoundaryEdge, Condition, Mesh, Problem, SharedFunction, Space, contact_line};
 use crate::kernel::Material;
 use crate::kernel::edge_integral::ExactEdge;
-use crate::solve::Solution;
 
 /// What a boundary edge prescribes.
 #[derive(Clone, Copy)]
@@ -48,16 +48,17 @@ impl<'a> Parts<'a> {
     /// Conditions that no composite stress can satisfy.
     pub fn new<E, const N: usize, const M: usize>(
         problem: &'a Problem,
-        solution: &Solution,
+        gamma: Gamma,
+        displacement: &[[f64; 2]],
     ) -> Result<Self, CertifyError>
     where
         E: ExactEdge<f64, N, M>,
     {
         let space = Space::<E, N, M>::new(&problem.mesh);
         let constraints = Constraints::new(problem, &space)?;
-        let contact = contact_line::assemble(problem, &space, solution.gamma.gamma)?;
+        let contact = contact_line::assemble(problem, &space, gamma)?;
         let contact = contact.iter().map(|edge| {
-            let u = space.on_triangle(edge.edge.triangle, &solution.displacement);
+            let u = space.on_triangle(edge.edge.triangle, displacement);
             Contact::new::<E, N, M>(problem, edge, &u)
         });
         let contact: Vec<Contact> = contact.collect();
