@@ -15,8 +15,8 @@ OBLIQUE = """
 mesh.trapezoid = { omega = 2.2, n = 4 }
 material = { lambda = 1, mu = 1 }
 boundary.left.normal = 0
-boundary.bottom.displacement = ["0.05", "0"]
-boundary.top.traction = ["0", "-0.02*x"]
+boundary.bottom.displacement = ["0", "0"]
+boundary.top.traction = ["0.1", "-0.02*x"]
 boundary.right.contact = { gap = "0.01" }
 """
 ADAPTED = ["--set", 'adapt.target="10 %"', "--set", "adapt.max_unknowns=2000"]

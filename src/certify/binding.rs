@@ -198,17 +198,24 @@ fn sides(mesh: &Mesh) -> BTreeMap<[usize; 2], (usize, [usize; 2])> {
     mesh.outline().iter().map(side).collect()
 }
 
-/// The largest prescribed displacement or gap, and the largest traction or pressure.
+/// The largest prescribed displacement or gap, and the largest traction.
 fn sizes(certificate: &Certificate) -> (f64, f64) {
     let largest =
         |size: f64, numbers: &[f64]| numbers.iter().fold(size, |size, x| size.max(x.abs()));
     let prescribed = certificate.prescribed.iter().flatten().flatten();
     let lengths = prescribed.fold(0.0, |size: f64, x| size.max(x.abs()));
-    certificate.edges.iter().fold((lengths, 0.0), |(lengths, loads), edge| match edge.role {
-        Role::Contact { gap, .. } => (largest(lengths, &gap), loads),
-        Role::Loaded(t) => (lengths, largest(loads, t.as_flattened())),
-        Role::Pressed(p) | Role::Supported { traction: p, .. } => (lengths, largest(loads, &p)),
-        Role::Inner(_) | Role::Held(..) => (lengths, loads),
+    certificate.edges.iter().fold((lengths, 0.0), |(lengths, loads), edge| {
+        let (length, _) = length_and_normal(edge.ends.map(|p| place(certificate, p).into()));
+        match edge.role {
+            Role::Contact { gap, pressure, .. } => {
+                (largest(lengths, &gap), largest(loads, &pressure))
+            }
+            Role::Loaded(t) => (lengths, largest(loads, t.as_flattened())),
+            Role::Pressed(p) | Role::Supported { traction: p, .. } => (lengths, largest(loads, &p)),
+            Role::Inner(force) | Role::Held(_, force) => {
+                (lengths, largest(loads, force.map(|f| f.map(|f| f / length)).as_flattened()))
+            }
+        }
     })
 }
 

@@ -69,7 +69,7 @@ impl fmt::Display for Reservations {
         let Reservations { measured, lifted, turning, polygon } = *self;
         let parts = [
             (measured, "triangles with loads that are measured by quadrature"),
-            (lifted, "triangles with prescribed values or gaps that are"),
+            (lifted, "triangles with prescribed values or gaps that are measured by quadrature"),
             (polygon, "edges of a polygon in place of a curved boundary"),
             (turning, "edges with a direction of contact that is affine between their ends"),
         ];

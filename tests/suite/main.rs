@@ -5,6 +5,7 @@ mod common;
 
 mod adapt;
 mod assembled;
+mod audit;
 mod bad_input;
 mod bodies;
 mod certified_supports;

@@ -1,0 +1,197 @@
+//! What `audit` concludes from the files of a certificate and from nothing else: the bound, the reservations, whose problem it is;
+//! and what it shows of their text.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use signorini::certify::binding::compare;
+use signorini::certify::{Continuous, Rejection, certify};
+use signorini::io::certificate::{self, AuditError, Header};
+use signorini::io::{Case, run};
+
+const LOADED: &str = r#"
+mesh.rectangle = { width = 1, height = 1, nx = 4, ny = 4 }
+material = { lambda = 1, mu = 1 }
+load.body = ["0.1", "-1 + 3*x"]
+boundary.top.displacement = ["0.02", "-0.1 + 0.01*x"]
+boundary.left.traction = ["0.1*y", "0"]
+boundary.right.pressure = "0.05"
+boundary.bottom.contact = { gap = "0.01*x" }
+"#;
+
+const CURVED_DATA: &str = r#"
+mesh.rectangle = { width = 1, height = 1, nx = 4, ny = 4 }
+material = { lambda = 1, mu = 1 }
+load.body = ["0", "-sin(3*x)"]
+boundary.top.displacement = ["0", "-0.1 + 0.01*sin(x)"]
+boundary.left.traction = ["0.1*sin(y)", "0"]
+boundary.bottom.contact = { gap = "0.01*sin(x)" }
+"#;
+
+const OBLIQUE: &str = r#"
+mesh.trapezoid = { omega = 2.2, n = 4 }
+material = { lambda = 1, mu = 1 }
+boundary.left.normal = 0
+boundary.bottom.displacement = ["0", "0"]
+boundary.top.traction = ["0.1", "-0.02*x"]
+boundary.right.contact = { gap = "0.005" }
+"#;
+
+const QUADRATIC: &[&str] = &["method.degree=2", "method.gamma0=auto"];
+const ADAPTED: &[&str] =
+    &["method.degree=2", "method.gamma0=auto", "adapt.target=\"0.1 %\"", "adapt.max_unknowns=900"];
+
+fn case(text: &str, settings: &[&str]) -> Case {
+    let settings: Vec<String> = settings.iter().map(|&setting| setting.to_owned()).collect();
+    Case::parse(Path::new("case.toml"), text, &settings).unwrap()
+}
+
+fn certified(text: &str, settings: &[&str]) -> Continuous {
+    let (case, solved) = run::solve(case(text, settings), None, &|_| {}).unwrap();
+    match solved.certified {
+        Some(certified) => certified.result.unwrap(),
+        None => certify(&case.problem, &solved.solution).unwrap(),
+    }
+}
+
+fn encoded(certified: &Continuous) -> (Header, Vec<u8>) {
+    certificate::encode("Block", &certified.certificate, &certified.proof)
+}
+
+/// Writes a certificate into a folder of its own.
+fn written(name: &str, header: &str, arrays: &[u8]) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("audit").join(name);
+    fs::create_dir_all(&folder).unwrap();
+    fs::write(folder.join(certificate::FILES[1]), arrays).unwrap();
+    let file = folder.join(certificate::FILES[0]);
+    fs::write(&file, header).unwrap();
+    file
+}
+
+#[test]
+fn reservations_and_the_whole_bound_come_from_the_arrays() {
+    let certified = certified(CURVED_DATA, &[]);
+    let (header, arrays) = encoded(&certified);
+    let json = |header: &Header| serde_json::to_string(header).unwrap();
+    let audit = certificate::audit(&written("honest", &json(&header), &arrays)).unwrap();
+    assert!(audit.header.bound >= certified.bound);
+    // All triangles have the body force; four edges of the top and four of the floor are not affine, two of them at one triangle.
+    let said = audit.reservations;
+    assert_eq!(
+        (said.measured, said.turning, said.polygon),
+        (certified.certificate.pieces.len(), 0, 0)
+    );
+    assert!((7..=8).contains(&said.lifted), "{said}");
+
+    // The bound of the arrays without their lifts.
+    let smaller = Header { bound: certified.proof.bound * (1.0 + 1e-9), ..header.clone() };
+    assert!(smaller.bound < header.bound);
+    let error = certificate::audit(&written("smaller", &json(&smaller), &arrays)).unwrap_err();
+    let bound = |error: &AuditError| {
+        matches!(error, AuditError::Rejected { rejection: Rejection::Bound { .. }, .. })
+    };
+    assert!(bound(&error), "{error}");
+
+    let rigorous = json(&header).replacen('{', "{\"rigorous\":true,", 1);
+    let error = certificate::audit(&written("rigorous", &rigorous, &arrays)).unwrap_err();
+    assert!(error.to_string().contains("unknown field `rigorous`"), "{error}");
+}
+
+#[test]
+fn a_certificate_is_one_of_its_case() {
+    for text in [LOADED, CURVED_DATA, OBLIQUE] {
+        for settings in [&[][..], QUADRATIC, ADAPTED] {
+            let certified = certified(text, settings);
+            let adapted = certified.certificate.vertices.len()
+                > case(text, &[]).problem.mesh.vertices().len();
+            assert_eq!(adapted, settings == ADAPTED);
+            let same = compare(case(text, &[]).problem, &certified.certificate);
+            assert_eq!(same, Ok(()), "{text}{settings:?}");
+        }
+    }
+}
+
+#[test]
+fn a_certificate_is_not_one_of_another_case() {
+    for settings in [&[][..], QUADRATIC, ADAPTED] {
+        for (text, changes) in [
+            (
+                LOADED,
+                &[
+                    ("mu = 1 ", "mu = 1.0001 ", "lambda and mu"),
+                    ("-1 + 3*x", "-1 + 3.0001*x", "body force"),
+                    ("0.02\"", "0.020001\"", "displacement"),
+                    ("\"0.02\"", "\"free\"", "displacement"),
+                    ("0.1*y", "0.1001*y", "traction"),
+                    ("\"0.05\"", "\"0.050001\"", "pressure"),
+                    ("right.pressure = \"0.05\"", "right.traction = [\"-0.05\", \"0\"]", "acts"),
+                    ("boundary.right.pressure = \"0.05\"", "", "nothing acts"),
+                    ("0.01*x\" }", "0.009*x\" }", "gap"),
+                    ("width = 1,", "width = 1.01,", "covered"),
+                    ("height = 1,", "height = 0.9,", "lies in no triangle"),
+                ][..],
+            ),
+            (
+                CURVED_DATA,
+                &[
+                    ("-sin(3*x)", "-sin(3.01*x)", "body force"),
+                    ("0.1*sin(y)", "0.1*sin(1.01*y)", "traction"),
+                    ("gap = \"0.01*sin(x)\"", "gap = \"0.01*sin(1.01*x)\"", "gap"),
+                ],
+            ),
+            (
+                OBLIQUE,
+                &[
+                    ("left.normal", "left.tangential", "direction"),
+                    ("boundary.left.normal = 0", "", "direction"),
+                    ("omega = 2.2", "omega = 2.2001", "triangle"),
+                ],
+            ),
+        ] {
+            let certificate = certified(text, settings).certificate;
+            for (from, to, difference) in changes {
+                let other = text.replacen(from, to, 1);
+                assert_ne!(other, text, "{from}");
+                let found = compare(case(&other, &[]).problem, &certificate).unwrap_err();
+                assert!(found.to_string().contains(difference), "{from} -> {to}: {found}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_measured_by_quadrature_is_measured_again_for_a_case() {
+    for settings in [&[][..], QUADRATIC] {
+        let whole = certified(CURVED_DATA, settings).certificate;
+        let mut halved = whole.clone();
+        halved.pieces[7].oscillation /= 2.0;
+        let mut without = whole.clone();
+        without.lifts.pop();
+        let mut smaller = whole.clone();
+        smaller.lifts[0].norm *= 0.99;
+        for (certificate, difference) in
+            [(halved, "the oscillation"), (without, "lacks its lift"), (smaller, "the lift")]
+        {
+            let found = compare(case(CURVED_DATA, &[]).problem, &certificate).unwrap_err();
+            assert!(found.to_string().contains(difference), "{found}");
+        }
+    }
+}
+
+#[test]
+fn the_text_of_a_file_is_shown_on_one_short_line() {
+    let (header, arrays) = encoded(&certified(LOADED, &[]));
+    let forged = "x\n  rigorous    yes\u{1b}[2J".repeat(10_000);
+    let quoted = serde_json::to_string(&forged).unwrap();
+    let json = serde_json::to_string(&header).unwrap();
+    let key = json.replacen('{', &format!("{{{quoted}:1,"), 1);
+    let mut renamed = header.clone();
+    renamed.arrays[0].name = forged;
+    for (name, json) in [("key", key), ("array", serde_json::to_string(&renamed).unwrap())] {
+        let error = certificate::audit(&written(name, &json, &arrays)).unwrap_err().to_string();
+        assert!(error.len() < 1000 && !error.contains(char::is_control), "{error}");
+    }
+    let units = r#"units = { length = "mm\u001b\nerror: forged", force = "N" }"#;
+    let units = case(&format!("{units}\n{LOADED}"), &[]).units.unwrap();
+    assert_eq!(units.length, "mm\\u{1b}\\nerror: forged");
+}
