@@ -119,11 +119,11 @@ pub fn encode(title: &str, certificate: &Certificate, proof: &Proof) -> (Header,
     (header, bytes)
 }
 
-/// Verifies everything anew, from the bytes of certificate.json and of certificate.bin.
+/// The header in the bytes of certificate.json.
 ///
 /// # Errors
-/// Bytes that are no certificate; whatever [`Certificate::audit`] rejects.
-pub fn audit(header: &[u8], arrays: &[u8]) -> Result<Audit, AuditError> {
+/// [`AuditError::Header`].
+pub fn read_header(header: &[u8]) -> Result<Header, AuditError> {
     let none = |e| AuditError::Header(format!("no certificate: {e}"));
     let Version { format } = serde_json::from_slice(header).map_err(none)?;
     if format != FORMAT {
@@ -131,7 +131,14 @@ pub fn audit(header: &[u8], arrays: &[u8]) -> Result<Audit, AuditError> {
             "the certificate is of format {format}; expected {FORMAT}, the one that this program writes and verifies"
         )));
     }
-    let header: Header = serde_json::from_slice(header).map_err(none)?;
+    serde_json::from_slice(header).map_err(none)
+}
+
+/// Verifies everything anew, from the header and the bytes of certificate.bin.
+///
+/// # Errors
+/// Bytes that are no certificate; whatever [`Certificate::audit`] rejects.
+pub fn audit(header: Header, arrays: &[u8]) -> Result<Audit, AuditError> {
     let (certificate, claim) = decode(&header, arrays).map_err(AuditError::Arrays)?;
     let proof = certificate.audit(&claim)?;
     let reservations = certificate.reservations();

@@ -37,11 +37,12 @@ pub fn audit(path: &Path) -> Result<Audit, AuditError> {
     let read = |path: &Path| {
         input::read(path, MOST).map_err(|error| AuditError::Read { path: path.to_owned(), error })
     };
-    let header = read(path)?;
     let arrays = path.with_file_name(FILES[1]);
-    format::audit(&header, &read(&arrays)?).map_err(|error| match error {
-        Refused::Arrays(problem) => AuditError::Format { path: arrays, problem },
+    let refused = |error| match error {
+        Refused::Arrays(problem) => AuditError::Format { path: arrays.clone(), problem },
         Refused::Rejected(rejection) => AuditError::Rejected { path: path.to_owned(), rejection },
         error => AuditError::Format { path: path.to_owned(), problem: error.to_string() },
-    })
+    };
+    let header = format::read_header(&read(path)?).map_err(refused)?;
+    format::audit(header, &read(&arrays)?).map_err(refused)
 }
