@@ -1,6 +1,6 @@
 //! Why there is no certificate.
 
-use super::checks::Rejection;
+use super::proof::Rejection;
 use crate::fem::DataError;
 use crate::memory::OutOfMemory;
 

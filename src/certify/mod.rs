@@ -4,40 +4,29 @@
 //!
 //! | module | what it does |
 //! | --- | --- |
-//! | `proof` | the checker: it evaluates a certificate |
-//! | `format` | a certificate as files |
-//! | `certificate`, `checks`, `on_contact`, `balanced` | its parts: the numbers; what they must satisfy; the edges of Gamma_C; the triangles, put in equilibrium |
-//! | `balance` | tractions in exact equilibrium |
+//! | `proof` | the checker, of the crate `signorini-audit`: it evaluates a certificate |
 //! | `parts`, `contact`, `field`, `data` | the problem and its discrete solution, as certificates see them |
 //! | `admissible` | v |
 //! | `tractions`, `quarters`, `divide`, `build` | tau: moments of tractions; the triangles in four; those that are cut; all together |
 //! | `sweeps` | a better tau |
 //! | `oscillation` | data outside the exact class |
 //! | `bubbles` | stresses for what affine loads lack |
-//! | `binding` | whether a certificate is one of a problem
+//! | `binding` | whether a certificate is one of a problem |
 //! | `adapt` | meshes that are refined until the bound meets a target |
 
 pub mod adapt;
 mod admissible;
-mod balance;
-mod balanced;
 pub mod binding;
 mod bubbles;
 mod build;
-mod certificate;
-mod checks;
 mod contact;
 mod data;
 mod divide;
 mod errors;
 mod estimate;
 mod field;
-#[cfg(feature = "files")]
-pub mod format;
-mod on_contact;
 mod oscillation;
 mod parts;
-pub mod proof;
 mod quarters;
 mod sweeps;
 mod tractions;
@@ -51,6 +40,11 @@ pub use self::errors::CertifyError;
 use self::field::Field;
 use self::parts::Parts;
 pub use self::proof::{Certificate, Proof, Rejection};
+#[cfg(feature = "files")]
+pub use signorini_audit::format;
+pub use signorini_audit::proof;
+use signorini_audit::{balanced, certificate};
+
 use self::proof::{Piece, Role};
 use crate::fem::{Mesh, Problem};
 use crate::kernel::{Ball, Interval, P1, P2, Scalar, Triangle};

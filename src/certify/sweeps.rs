@@ -17,7 +17,7 @@ use nalgebra::Vector2;
 
 use super::balanced::{Balanced, Topology};
 use super::certificate::{Certificate, Role};
-use super::checks::Rejection;
+use super::proof::Rejection;
 use crate::kernel::composite::{Composite, Frame, Loads};
 use crate::kernel::{Stress, Triangle};
 

@@ -20,6 +20,7 @@
 //! edge, too, the *bulge* by which it is beyond the mean of the edge's ends in the middle. C eps(v) is affine, and v_n - g
 //! is known not to be positive where its Bernstein coefficients are not.
 
+pub use super::balance::Unbalanced;
 pub use super::certificate::{
     Certificate, Curved, Cut, Edge, Lift, Owner, Piece, Reservations, Role,
 };
@@ -120,7 +121,8 @@ impl Certificate {
     /// The root of the right side of the theorem with the strain of another displacement w; what contact adds stays that of v.
     /// `distances` are upper bounds of |v - w|_a on the triangles. Where that is the rounding of their data, the root of the
     /// share grows by it at most, by the triangle inequality, since what contact adds is not negative.
-    pub(super) fn bound_at<S: Enclosing>(
+    #[doc(hidden)]
+    pub fn bound_at<S: Enclosing>(
         &self,
         state: Balanced<S>,
         proof: &Proof,
@@ -158,7 +160,8 @@ impl Certificate {
     }
 
     /// The right side of the theorem.
-    pub(super) fn sum<S: Enclosing>(&self, state: &Balanced<S>) -> Result<Proof, Rejection> {
+    #[doc(hidden)]
+    pub fn sum<S: Enclosing>(&self, state: &Balanced<S>) -> Result<Proof, Rejection> {
         let Balanced { triangles, v, forces, .. } = state;
         let zero = S::from(0);
         let (mut square, mut norm, mut energy) = (zero, zero, zero);

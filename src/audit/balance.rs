@@ -8,7 +8,6 @@ use nalgebra::Vector2;
 use thiserror::Error;
 
 use super::certificate::{Certificate, Owner, Role, exactly};
-use crate::fem::mesh::length;
 use crate::kernel::Enclosing;
 use crate::kernel::composite::Wrench;
 
@@ -204,8 +203,9 @@ fn choose<S: Enclosing>(
                 continue;
             }
             let [start, end] = edge.ends.map(double);
-            size = size.max(length(start - origin));
-            size = size.max(length(end - origin));
+            for x in [start - origin, end - origin] {
+                size = size.max(x.x.hypot(x.y));
+            }
             for direction in held.into_iter().flatten() {
                 for linear in [false, true] {
                     let hold = Hold { edge: e, direction, linear };

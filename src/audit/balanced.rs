@@ -7,19 +7,18 @@ use super::balance::{self, Tree, Unbalanced};
 use super::certificate::{Certificate, Owner, Piece, Role, Shape, exactly, support};
 use super::checks::{Rejection, wrong};
 use super::on_contact::{OnEdge, along_directions, along_the_normal};
-use crate::fem::mesh;
 use crate::kernel::composite::{Affine, Composite, Frame, Loads};
 use crate::kernel::{Enclosing, Triangle};
 
 /// How the triangles of a certificate hang together.
-pub(super) struct Topology {
+pub struct Topology {
     /// The triangles of each edge.
     pub owners: Vec<[Option<Owner>; 2]>,
     tree: Tree,
 }
 
 /// A certificate whose triangles are in equilibrium, in the numbers `S`.
-pub(super) struct Balanced<S> {
+pub struct Balanced<S> {
     /// Vertices and cuts.
     pub points: Vec<Vector2<S>>,
     pub triangles: Vec<Triangle<S>>,
@@ -35,17 +34,14 @@ pub(super) struct Balanced<S> {
 
 impl Certificate {
     /// How triangles and edges hang together.
-    pub(super) fn topology(&self) -> Result<Topology, Rejection> {
+    pub fn topology(&self) -> Result<Topology, Rejection> {
         self.check_shape()?;
         let owners = self.owners()?;
         Ok(Topology { tree: Tree::new(self, &owners), owners })
     }
 
     /// Checks all other conditions and puts the triangles in equilibrium.
-    pub(super) fn balanced<S: Enclosing>(
-        &self,
-        topology: Topology,
-    ) -> Result<Balanced<S>, Rejection> {
+    pub fn balanced<S: Enclosing>(&self, topology: Topology) -> Result<Balanced<S>, Rejection> {
         let points: Vec<Vector2<S>> = self.places();
         let v = self.shape();
         let triangles = self.triangles(&points)?;
@@ -207,7 +203,8 @@ impl Balanced<f64> {
                 Role::Inner(now) | Role::Held(_, now) => *force = now.map(Into::into),
                 Role::Supported { along, force: now, traction } => {
                     let [start, end] = edge.ends.map(|p| self.points[p]);
-                    *force = support(along, now, traction, || mesh::length(end - start));
+                    let edge = end - start;
+                    *force = support(along, now, traction, || edge.x.hypot(edge.y));
                 }
                 Role::Loaded(_) | Role::Pressed(_) | Role::Contact { .. } => {}
             }

@@ -161,17 +161,20 @@ pub enum Role {
 }
 
 /// The vector with these components.
-pub(super) fn exactly<S: Enclosing>(components: [f64; 2]) -> Vector2<S> {
+#[doc(hidden)]
+pub fn exactly<S: Enclosing>(components: [f64; 2]) -> Vector2<S> {
     components.map(S::exactly).into()
 }
 
 /// d turned to the left.
-pub(super) fn turned<S: Enclosing>(d: Vector2<S>) -> Vector2<S> {
+#[doc(hidden)]
+pub fn turned<S: Enclosing>(d: Vector2<S>) -> Vector2<S> {
     Vector2::new(-d[1], d[0])
 }
 
 /// Whether d is not along an axis.
-pub(super) fn is_oblique(d: [f64; 2]) -> bool {
+#[doc(hidden)]
+pub fn is_oblique(d: [f64; 2]) -> bool {
     d[0] != 0.0 && d[1] != 0.0
 }
 
@@ -182,7 +185,8 @@ fn nearest<S: Enclosing>(v: [f64; 2], d: [f64; 2], w: f64) -> Vector2<S> {
 }
 
 /// tau N on an edge that is held along `d`, of the given `length`.
-pub(super) fn support<S: Enclosing>(
+#[doc(hidden)]
+pub fn support<S: Enclosing>(
     d: [f64; 2],
     force: [f64; 2],
     traction: [f64; 2],
@@ -247,13 +251,14 @@ impl Certificate {
     }
 
     /// Vertices and cuts.
-    pub(super) fn places<S: Enclosing>(&self) -> Vec<Vector2<S>> {
+    #[doc(hidden)]
+    pub fn places<S: Enclosing>(&self) -> Vec<Vector2<S>> {
         let vertices = self.vertices.iter().map(|&x| exactly(x)).collect();
         self.with_cuts(vertices, &self.vertices, |_| true)
     }
 
     /// v at a point that has its own, and what is prescribed there.
-    pub(super) fn at_own(&self, point: usize) -> Option<([f64; 2], [Option<f64>; 2])> {
+    pub(crate) fn at_own(&self, point: usize) -> Option<([f64; 2], [Option<f64>; 2])> {
         let of =
             |v: &[[f64; 2]], data: &[[Option<f64>; 2]], k: usize| Some((*v.get(k)?, *data.get(k)?));
         match (point.checked_sub(self.vertices.len()), &self.curved) {
@@ -264,7 +269,8 @@ impl Certificate {
     }
 
     /// v.
-    pub(super) fn shape<S: Enclosing>(&self) -> Shape<S> {
+    #[doc(hidden)]
+    pub fn shape<S: Enclosing>(&self) -> Shape<S> {
         let all = |values: &[[f64; 2]]| values.iter().copied().map(exactly).collect::<Vec<_>>();
         let mut points = all(&self.displacement);
         points.extend(self.curved.iter().flat_map(|curved| all(&curved.at_cuts)));
@@ -294,7 +300,8 @@ impl Certificate {
 
 /// A displacement on the triangles of a certificate.
 #[derive(Clone)]
-pub(super) struct Shape<S> {
+#[doc(hidden)]
+pub struct Shape<S> {
     /// At vertices and cuts.
     pub points: Vec<Vector2<S>>,
     /// The bulge on each edge, if it is quadratic.
@@ -302,7 +309,8 @@ pub(super) struct Shape<S> {
 }
 
 impl<S: Enclosing> Shape<S> {
-    pub(super) fn bulges_of(&self, piece: &Piece) -> Option<[Vector2<S>; 3]> {
+    #[doc(hidden)]
+    pub fn bulges_of(&self, piece: &Piece) -> Option<[Vector2<S>; 3]> {
         self.bulges.as_ref().map(|bulges| piece.edges.map(|e| bulges[e]))
     }
 
@@ -325,7 +333,7 @@ pub struct Owner {
 
 impl Piece {
     /// f is not constant.
-    pub(super) fn is_bent(&self) -> bool {
+    pub(crate) fn is_bent(&self) -> bool {
         self.body.iter().any(|&f| f != self.body[0])
     }
 
@@ -337,12 +345,14 @@ impl Piece {
 }
 
 /// Where point `p` of a certificate lies.
-pub(super) fn place(certificate: &Certificate, p: usize) -> Vector2<f64> {
+#[doc(hidden)]
+pub fn place(certificate: &Certificate, p: usize) -> Vector2<f64> {
     at_point(&certificate.vertices, &certificate.cuts, p)
 }
 
 /// The value at point `p` of what has these values at the vertices and is affine between them.
-pub(super) fn at_point(values: &[[f64; 2]], cuts: &[Cut], p: usize) -> Vector2<f64> {
+#[doc(hidden)]
+pub fn at_point(values: &[[f64; 2]], cuts: &[Cut], p: usize) -> Vector2<f64> {
     match values.get(p) {
         Some(&value) => value.into(),
         None => {
