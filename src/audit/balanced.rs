@@ -1,5 +1,5 @@
 //! A certificate whose triangles are in equilibrium: its conditions are verified, and its tractions are those of the file and the
-//! small ones of `certify::balance`.
+//! small ones of `audit::balance`.
 
 use nalgebra::Vector2;
 

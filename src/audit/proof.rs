@@ -8,7 +8,7 @@
 //!
 //! A [`Certificate`] holds v by its values at vertices, and tau by its tractions on edges: an edge has one traction, so
 //! that tau n is continuous, and on Gamma_C it is a nonpositive multiple of n. What is left is that each triangle is in
-//! equilibrium, and there the doubles of a file can't be exact. `certify::balance` therefore adds to the tractions those
+//! equilibrium, and there the doubles of a file can't be exact. `audit::balance` therefore adds to the tractions those
 //! small ones that make equilibrium exact; they are known as balls, and so is then tau.
 //!
 //! Gamma_D may hold a direction d alone: v . d is prescribed, and tau n = p d + q e with a given q, e across d (section 7.2).
