@@ -1,4 +1,4 @@
-//! What the command can be asked to do. The help, the manual page and what a shell completes are all made from this.
+//! What the command can be asked to do. The help and what a shell completes are made from this.
 
 use std::path::PathBuf;
 
@@ -144,11 +144,6 @@ pub enum Task {
     Completions {
         /// The shell
         shell: Shell,
-    },
-    /// Print the manual page of this command, or of one of its tasks, in the format of man(1)
-    Man {
-        /// The task, such as solve
-        task: Option<String>,
     },
 }
 

@@ -118,7 +118,6 @@ mod command {
                 study(case, &wanted, out.as_deref(), quiet).map(summarised(quiet))
             }
             Task::Completions { shell } => Ok(completions(*shell)),
-            Task::Man { task } => man(task.as_deref()),
         };
         ended(done.and_then(|Done { text, code }| say(&text).map(|()| code)))
     }
@@ -445,23 +444,6 @@ mod command {
         let mut bytes = Vec::new();
         clap_complete::generate(shell, &mut Arguments::command(), "signorini", &mut bytes);
         Done { text: String::from_utf8_lossy(&bytes).into_owned(), code: 0 }
-    }
-
-    fn man(task: Option<&str>) -> Result<Done, Failure> {
-        let mut command = Arguments::command();
-        command.build();
-        let command = match task {
-            None => &command,
-            Some(task) => command.find_subcommand(task).ok_or_else(|| {
-                let tasks: Vec<&str> = command.get_subcommands().map(|c| c.get_name()).collect();
-                failure(WRONG)(&format!("no task '{task}'; expected one of {}", tasks.join(", ")))
-            })?,
-        };
-        let mut bytes = Vec::new();
-        clap_mangen::Man::new(command.clone())
-            .render(&mut bytes)
-            .map_err(|e| failure(FAILED)(&e))?;
-        Ok(Done { text: String::from_utf8_lossy(&bytes).into_owned(), code: 0 })
     }
 
     /// What the study shall cover; empty lists stand for what the case says.

@@ -103,7 +103,7 @@ fn a_full_standard_output_ends_with_exit_code_1_and_the_files_are_there() {
 #[test]
 fn help_that_nobody_can_be_given_is_a_failure_and_a_reader_of_it_who_leaves_is_none() {
     let folder = folder("full-help");
-    for arguments in [&["--help"][..], &["--version"], &["help", "solve"], &["man"]] {
+    for arguments in [&["--help"][..], &["--version"], &["help", "solve"]] {
         let child = command(&folder, arguments).stdout(full()).stderr(Stdio::piped()).spawn();
         let output = output(child.unwrap());
         let said = "error: cannot write to standard output: No space left on device\n";

@@ -1,4 +1,4 @@
-//! Keys set over a case, sweeps, JSON, standard input, completions and the manual page.
+//! Keys set over a case, sweeps, JSON, standard input and completions.
 
 use std::fs;
 use std::io::Write;
@@ -265,23 +265,10 @@ fn two_cases_of_one_name_in_one_folder_are_remarked_on() {
 }
 
 #[test]
-fn completions_and_manual_pages_know_every_option() {
-    let folder = folder("man", &[]);
+fn completions_know_every_option() {
+    let folder = folder("completions", &[]);
     for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
         let output = signorini(&folder, &["completions", shell]);
         assert!(output.status.success() && text(&output.stdout).contains("ranks"), "{shell}");
     }
-    let page = |arguments: &[&str]| {
-        let output = signorini(&folder, arguments);
-        assert!(output.status.success());
-        text(&output.stdout).to_owned()
-    };
-    assert!(page(&["man"]).contains("signorini\\-sweep(1)"));
-    assert!(page(&["man", "solve"]).contains("\\fB\\-\\-ranks\\fR"));
-    let output = signorini(&folder, &["man", "sove"]);
-    assert_eq!(output.status.code(), Some(2));
-    assert_eq!(
-        text(&output.stderr),
-        "error: no task 'sove'; expected one of solve, audit, certify, check, sweep, convergence, completions, man, help\n"
-    );
 }
