@@ -20,7 +20,6 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
 use super::tree::{Bounds, Tree};
-use super::units::scaled;
 use crate::kernel::Triangle;
 use crate::memory::{self, bytes_of};
 use crate::quote;
@@ -109,13 +108,6 @@ impl Mesh {
         topology.surfaces = surfaces.into_iter().map(inside).collect();
         topology.points = points.into_iter().filter(|(_, v)| *v < vertices).collect();
         self
-    }
-
-    /// The same mesh with its lengths multiplied by 2^`exponent`.
-    #[must_use]
-    pub(super) fn scaled(&self, exponent: i32) -> Mesh {
-        let vertices = self.vertices.iter().map(|v| v.map(|c| scaled(c, exponent))).collect();
-        Mesh { vertices, topology: Arc::clone(&self.topology), boxes: OnceLock::new() }
     }
 
     /// The named parts of the body with their triangles, in alphabetical order.

@@ -20,7 +20,6 @@ use nalgebra::Vector2;
 use super::data::{DataError, finite};
 use super::function::Function;
 use super::mesh::length;
-use super::units::scaled;
 
 /// The length of grad phi may be off 1 by this much.
 pub const MOST_OFF: f64 = 0.1;
@@ -47,16 +46,6 @@ pub enum Obstacle {
     },
     /// The set where a signed distance is negative.
     Distance(Arc<dyn Distance>),
-    /// Another obstacle where places and gaps have units of their own.
-    Seen(Arc<Seen>),
-}
-
-/// An obstacle seen in other units.
-#[derive(Clone, Debug)]
-pub struct Seen {
-    obstacle: Obstacle,
-    length: i32,
-    gap: i32,
 }
 
 /// On which side of a circle the body is.
@@ -82,7 +71,6 @@ impl fmt::Debug for Obstacle {
                 write!(f, "circle around {center:?}, radius {radius}, body {side:?}")
             }
             Obstacle::Distance(_) => write!(f, "distance"),
-            Obstacle::Seen(seen) => write!(f, "{:?} in other units", seen.obstacle),
         }
     }
 }
@@ -143,17 +131,7 @@ impl Obstacle {
                     Err(no_distance(length))
                 }
             }
-            Obstacle::Seen(seen) => {
-                let Seen { obstacle, length, gap } = &**seen;
-                let closest = obstacle.closest(x.map(|c| scaled(c, *length)), what)?;
-                Ok(Closest { gap: scaled(closest.gap, -gap), ..closest })
-            }
         }
-    }
-
-    /// The same obstacle where places are given in units of 2^`length` and gaps in units of 2^`gap`.
-    pub(super) fn seen(&self, length: i32, gap: i32) -> Obstacle {
-        Obstacle::Seen(Arc::new(Seen { obstacle: self.clone(), length, gap }))
     }
 }
 

@@ -12,7 +12,6 @@
 
 use super::body::{Derivatives, Edges, block, derivatives};
 use crate::fem::discretization::Discretization;
-use crate::fem::units::{Units, scaled};
 use crate::kernel::edge_integral::ExactEdge;
 
 /// A phase of a solve, as it begins.
@@ -40,8 +39,6 @@ pub enum Phase {
 #[derive(Clone, Copy, Default)]
 pub struct Course<'a> {
     start: Option<Start<'a>>,
-    /// The units that the problem is solved in; the start has those of the case.
-    units: Units,
     watcher: Option<&'a dyn Fn(Phase)>,
 }
 
@@ -76,11 +73,6 @@ impl<'a> Course<'a> {
         Course { watcher: Some(watcher), ..self }
     }
 
-    /// The same for the problem in these units.
-    pub(super) fn in_units(self, units: Units) -> Self {
-        Course { units, ..self }
-    }
-
     /// The same without a start, where there is one.
     pub(super) fn afresh(self) -> Option<Self> {
         self.start.map(|_| Course { start: None, ..self })
@@ -101,17 +93,14 @@ impl<'a> Course<'a> {
         E: ExactEdge<f64, N, M>,
     {
         let Start { displacement: u, nodes } = self.start?;
-        let own = |x: &[f64; 2]| x.map(|c| scaled(c, -self.units.length()));
         let same = match nodes {
             Some((elements, places)) => {
-                elements == d.space.elements().as_flattened()
-                    && places.iter().map(own).eq(d.space.nodes().iter().copied())
+                elements == d.space.elements().as_flattened() && places == d.space.nodes()
             }
             None => u.len() == d.space.nodes().len(),
         };
         let p = |edge: &crate::fem::contact_line::ContactLineEdge<N, M>| {
-            let nodal = d.space.on_triangle(edge.edge.triangle, u);
-            edge.p(&nodal.map(|u| u.map(|c| scaled(c, -self.units.displacement()))))
+            edge.p(&d.space.on_triangle(edge.edge.triangle, u))
         };
         same.then(|| d.contact.iter().flat_map(p).collect())
     }

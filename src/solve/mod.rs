@@ -29,7 +29,6 @@ pub mod stresses;
 pub mod system;
 pub mod theorem;
 pub mod times;
-mod units;
 
 #[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
@@ -52,9 +51,9 @@ pub use self::theorem::Theorem;
 use self::times::Stopwatch;
 pub use self::times::Times;
 use crate::fem::contact_line::{Coercivity, EdgeRule, Gamma};
-use crate::fem::{DataError, Discretization, MeshError, Problem, Units, held};
+use crate::fem::{DataError, Discretization, MeshError, Problem, held};
 use crate::kernel::edge_integral::ExactEdge;
-use crate::kernel::{P1, P2};
+use crate::kernel::{Material, P1, P2};
 use crate::quote::{fixed, number};
 
 /// The free choices of method (8). Written as `Method { degree, ..Method::default() }`, for fields may come.
@@ -367,10 +366,7 @@ where
 {
     let mut watch = Stopwatch::start();
     course.enters(Phase::Assemble);
-    let units = problem.own_units();
-    let own = problem.in_units(units);
-    let d = discretize_in::<E, N, M>(units, &own, problem, method)?;
-    let course = course.in_units(units);
+    let d = discretize::<E, N, M>(problem, method)?;
     let discretize = watch.lap();
     let (evaluated, report, times) =
         match (solve_discrete_along(&d, settings, course), course.afresh()) {
@@ -379,23 +375,32 @@ where
         };
     course.enters(Phase::Evaluate);
     watch.lap();
-    let solution = units::solution(units, Solution::new(&d, evaluated, report))?;
+    let solution = Solution::new(&d, evaluated, report);
+    let displacement = solution.quantities.max_displacement;
+    if displacement > 0.0 && !is_in_range(stiffest(problem) * displacement * displacement, 1e270) {
+        return Err(SolveError::OutOfRange);
+    }
     Ok((solution, Times { discretize, evaluate: watch.lap(), ..times }))
 }
 
-/// The discretization of `own`, which is `problem` in these units; what is wrong with it is said in those of the problem.
-fn discretize_in<'a, E, const N: usize, const M: usize>(
-    units: Units,
-    own: &'a Problem,
-    problem: &Problem,
-    method: &Method,
-) -> Result<Discretization<'a, E, N, M>, SolveError>
-where
-    E: ExactEdge<f64, N, M>,
-{
-    method.check()?;
-    discretize(own, &method.in_units(units))
-        .map_err(|_| discretize::<E, N, M>(problem, method).err().unwrap_or(SolveError::OutOfRange))
+/// Whether 1/far <= x <= far.
+fn is_in_range(x: f64, far: f64) -> bool {
+    (1.0 / far..=far).contains(&x)
+}
+
+/// The largest lambda + 2 mu.
+fn stiffest(problem: &Problem) -> f64 {
+    problem.material.distinct().iter().map(Material::normal_stiffness).fold(0.0, f64::max)
+}
+
+/// Whether the products of the lengths and moduli of a problem, some of each, are normal doubles.
+fn can_be_multiplied(problem: &Problem) -> bool {
+    let extent = |c: usize| {
+        let coordinates = || problem.mesh.vertices().iter().map(|x| x[c]);
+        let low = coordinates().fold(f64::INFINITY, f64::min);
+        coordinates().fold(f64::NEG_INFINITY, f64::max) - low
+    };
+    is_in_range(extent(0).max(extent(1)), 1e40) && is_in_range(stiffest(problem), 1e80)
 }
 
 /// Solves a discretization: the displacement with its forces, how it was found, and how long that took.
@@ -462,9 +467,7 @@ fn outline<E, const N: usize, const M: usize>(
 where
     E: ExactEdge<f64, N, M>,
 {
-    let units = problem.own_units();
-    let own = problem.in_units(units);
-    units::outline(units, Outline::new(&discretize_in::<E, N, M>(units, &own, problem, method)?))
+    Ok(Outline::new(&discretize::<E, N, M>(problem, method)?))
 }
 
 /// The size of a discrete problem and its coercivity.
@@ -521,7 +524,7 @@ where
         ContactQuadrature::Gauss(points) => EdgeRule::gauss(points),
     };
     let d = Discretization::new(problem, gamma, rule);
-    if !limit.is_normal() {
+    if !(limit.is_normal() && can_be_multiplied(problem)) {
         return Err(SolveError::OutOfRange);
     }
     let d = d?;

@@ -965,16 +965,6 @@ pub fn checks() -> [Check; 29] {
         ),
         by(
             Engine::Doubles,
-            "bounds_are_no_smaller_in_other_units",
-            answers::bounds_have_their_units,
-        ),
-        control(
-            Engine::Doubles,
-            "control_bounds_a_rounding_below_in_other_units",
-            answers::bounds_a_rounding_below,
-        ),
-        by(
-            Engine::Doubles,
             "kappa_and_bounds_at_nodes_are_proved_where_directions_turn",
             kappa_is_proved_where_directions_turn,
         ),
