@@ -5,13 +5,12 @@
 //! JSON alone would turn it into `null` without a word. Everything but [`Seconds`] is the same from run to run.
 
 mod certificates;
-mod layout;
 
 use std::collections::BTreeMap;
 use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
-use serde_json::ser::Serializer;
+use serde_json::Value;
 
 use super::body::MaterialEcho;
 use super::case::Units;
@@ -24,7 +23,6 @@ use crate::solve::{
     Quantities, Status, Times,
 };
 pub use certificates::{Certificates, ContinuousCertificate, DiscreteCertificate};
-use layout::Layout;
 
 /// The content of result.json, in its order.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -318,12 +316,30 @@ impl Seconds {
 /// # Errors
 /// [`DataError::NotFinite`], with the path of the number.
 pub fn result_json(results: &Results) -> Result<String, DataError> {
-    let mut bytes = Vec::new();
-    let written = results.serialize(&mut Serializer::with_formatter(&mut bytes, Layout::default()));
-    // The only thing that can go wrong is what `Layout::write_null` reports, and its error is the path.
-    written.map_err(|error| DataError::NotFinite { place: error.to_string() })?;
-    bytes.push(b'\n');
-    Ok(String::from_utf8_lossy(&bytes).into_owned())
+    let value_and_text = serde_json::to_value(results)
+        .and_then(|value| Ok((value, serde_json::to_string_pretty(results)?)));
+    let (value, text) =
+        value_and_text.map_err(|error| DataError::NotFinite { place: error.to_string() })?;
+    if let Some(place) = null_in(&value, "") {
+        return Err(DataError::NotFinite { place });
+    }
+    Ok(text + "\n")
+}
+
+/// The path of a `null`, which is what serde_json makes of a NaN or an infinity: nothing else becomes one here.
+fn null_in(value: &Value, place: &str) -> Option<String> {
+    match value {
+        Value::Null => Some(place.to_owned()),
+        Value::Array(items) => {
+            let mut items = items.iter().enumerate();
+            items.find_map(|(i, item)| null_in(item, &format!("{place}[{i}]")))
+        }
+        Value::Object(members) => members.iter().find_map(|(name, member)| {
+            let dot = if place.is_empty() { "" } else { "." };
+            null_in(member, &format!("{place}{dot}{name}"))
+        }),
+        _ => None,
+    }
 }
 
 #[cfg(test)]
@@ -433,11 +449,24 @@ mod tests {
     "local": false,
     "limit": 0.3333333333333333,
     "kappa": 0.3,
-    "limiting_edge": [[0.0, 0.0], [1.0, 0.0]]
+    "limiting_edge": [
+      [
+        0.0,
+        0.0
+      ],
+      [
+        1.0,
+        0.0
+      ]
+    ]
   },
   "newton": {
     "iterations": 2,
-    "residuals": [1.0, 0.001, 2.5e-17],
+    "residuals": [
+      1.0,
+      0.001,
+      2.5e-17
+    ],
     "residual": 3e-17,
     "factorizations": 1,
     "status": "converged to rounding"
@@ -455,25 +484,53 @@ mod tests {
     "work": -0.0,
     "max_displacement": 0.5,
     "contact_force": 2.0,
-    "contact_resultant": [0.0, 2.0],
+    "contact_resultant": [
+      0.0,
+      2.0
+    ],
     "contact_length": 1.0,
     "peak_pressure": 2.0,
     "reactions": {
-      "top": [0.0, 2.0]
+      "top": [
+        0.0,
+        2.0
+      ]
     }
   },
-  "contact": [{
+  "contact": [
+    {
       "boundary": "floor",
       "force": 2.0,
-      "resultant": [0.0, 2.0],
+      "resultant": [
+        0.0,
+        2.0
+      ],
       "moment": 1.0,
       "length": 1.0,
-      "stretches": [[[0.0, 0.0], [1.0, 0.0]]],
+      "stretches": [
+        [
+          [
+            0.0,
+            0.0
+          ],
+          [
+            1.0,
+            0.0
+          ]
+        ]
+      ],
       "peak_pressure": 2.5,
-      "peak_at": [0.5, 0.0],
+      "peak_at": [
+        0.5,
+        0.0
+      ],
       "penetration": 0.001,
-      "penetration_at": [0.25, 0.0]
-    }],
+      "penetration_at": [
+        0.25,
+        0.0
+      ]
+    }
+  ],
   "reaction_moments": {
     "top": 0.5
   },
