@@ -1,4 +1,4 @@
-//! Meshes from Gmsh: the formats MSH 4.1 and 2.2, text or binary, of either byte order. Here is 4.1 and what both share;
+//! Meshes from Gmsh: the formats MSH 4.1 and 2.2, text or binary (little endian). Here is 4.1 and what both share;
 //! what 2.2 writes otherwise is in `msh2`, how bytes are read in `cursor`, and what mesh they make in `made`.
 //!
 //! A file is a list of sections, `$Name` .. `$EndName`. Four matter here; the others are skipped:
@@ -213,15 +213,19 @@ fn read_format(cursor: &mut Cursor) -> Result<Version> {
     if binary == 1 {
         cursor.line();
         let start = cursor.at;
-        cursor.form = match cursor.take("the number 1, which shows the order of the bytes")? {
-            [1, 0, 0, 0] => Form::LittleEndian,
-            [0, 0, 0, 1] => Form::BigEndian,
-            other => {
-                cursor.form = Form::LittleEndian;
-                let found = format!("the bytes {other:?}");
-                return Err(cursor.unexpected(start, found, "the number 1 in 4 bytes"));
-            }
+        let one: [u8; 4] = cursor.take("the number 1, which shows the order of the bytes")?;
+        cursor.form = Form::Binary;
+        let (found, expected) = match one {
+            [1, 0, 0, 0] => (String::new(), ""),
+            [0, 0, 0, 1] => (
+                "the bytes of a big-endian machine".to_owned(),
+                "little-endian numbers: export the mesh as text (Mesh.Binary = 0)",
+            ),
+            other => (format!("the bytes {other:?}"), "the number 1 in 4 bytes"),
         };
+        if !found.is_empty() {
+            return Err(cursor.unexpected(start, found, expected));
+        }
     }
     cursor.end_of("MeshFormat")?;
     Ok(version)

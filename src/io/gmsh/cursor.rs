@@ -12,8 +12,7 @@ use crate::quote::{self, quoted};
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Form {
     Text,
-    LittleEndian,
-    BigEndian,
+    Binary,
 }
 
 /// A place in the bytes of a file, and what can be read from there on.
@@ -96,25 +95,18 @@ impl<'b> Cursor<'b> {
         number.ok_or_else(|| self.unexpected(start, shown(word), expected))
     }
 
-    /// The next bytes, lowest first.
+    /// The next bytes.
     pub(super) fn take<const N: usize>(&mut self, expected: &str) -> Result<[u8; N]> {
         match self.rest().first_chunk() {
             Some(&bytes) => {
                 self.at += N;
-                Ok(self.lowest_first(bytes))
+                Ok(bytes)
             }
             None => {
                 self.at = self.bytes.len();
                 Err(self.cut_short(expected))
             }
         }
-    }
-
-    pub(super) fn lowest_first<const N: usize>(&self, mut bytes: [u8; N]) -> [u8; N] {
-        if self.form == Form::BigEndian {
-            bytes.reverse();
-        }
-        bytes
     }
 
     pub(super) fn int(&mut self, expected: &str) -> Result<i32> {
