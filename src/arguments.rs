@@ -99,7 +99,7 @@ pub enum Task {
         /// The displacement at the vertices of the case's mesh: .vtu, or .csv with x, y, ux, uy
         #[arg(long, value_name = "FIELD", value_hint = ValueHint::FilePath)]
         displacement: PathBuf,
-        /// The folder to write to [default: out/ and the name of the case]
+        /// The folder to write to [default: out/, the name of the case, and certified]
         #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
         out: Option<PathBuf>,
     },

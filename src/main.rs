@@ -250,12 +250,19 @@ mod command {
         let phases = Phases::start(quiet);
         phases.enter("reading the case and its mesh");
         let case = read(arguments)?;
+        let folder =
+            out.map_or_else(|| folder(&arguments.file, None).join("certified"), Path::to_owned);
+        if folder.join("result.json").exists() {
+            return Err(failure(WRONG)(&format!(
+                "{} has the result.json of a solve, to which this certificate would seem to belong; expected another folder: --out DIR",
+                quote::path(&folder)
+            )));
+        }
         let field = read_field(displacement, &case.problem.mesh).map_err(|e| failure(WRONG)(&e))?;
         let (solution, _) = solved(&case, &phases)?;
         phases.enter("certifying");
         let certified = certify_field(&case.problem, &solution, &field)
             .map_err(|e| failure(FAILED)(&format!("{}: {e}", displacement.display())))?;
-        let folder = folder(&arguments.file, out);
         let files = outputs::write_certified(&folder, &case, &field, &certified)
             .map_err(|e| failure(FAILED)(&e))?;
         drop(phases);
@@ -343,7 +350,7 @@ mod command {
     }
 
     fn no_case(error: &CaseError) -> Failure {
-        failure(if error.is_lack_of_memory() { FAILED } else { WRONG })(error)
+        failure(if error.is_lack() { FAILED } else { WRONG })(error)
     }
 
     /// The text of a case, and what messages call its file.
@@ -396,7 +403,7 @@ mod command {
         let no_sweep = |error: SweepError| {
             let code = match error {
                 SweepError::Output(_) => FAILED,
-                SweepError::Case(ref error) if error.is_lack_of_memory() => FAILED,
+                SweepError::Case(ref error) if error.is_lack() => FAILED,
                 _ => WRONG,
             };
             failure(code)(&error)
@@ -407,7 +414,6 @@ mod command {
         spare(&folder, &[sweep::FILE], std::slice::from_ref(&file))
             .map_err(|e| failure(WRONG)(&e))?;
         let count = progress::Count::start(runs, "runs", quiet);
-        let folders = files.then_some(folder.as_path());
         // A sweep that is stopped leaves the table of what it has solved.
         let mut written = Instant::now();
         let done = |sweep: &Sweep| {
@@ -419,7 +425,7 @@ mod command {
             }
             Ok(())
         };
-        let sweep = sweep::run(&file, &text, axes, folders, done).map_err(no_sweep)?;
+        let sweep = sweep::run(&file, &text, axes, &folder, files, done).map_err(no_sweep)?;
         drop(count);
         let code = |outcome: &sweep::Outcome| match outcome {
             Ok(results) => results.falls_short().then_some(SHORT),

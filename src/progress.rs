@@ -32,7 +32,7 @@ impl Phases {
     /// Shown unless `quiet`.
     pub fn start(quiet: bool) -> Phases {
         let phase = Arc::new(Mutex::new(String::new()));
-        let watch = (!quiet && is_shown()).then(|| {
+        let start = || {
             let (stop, stopped) = mpsc::channel();
             let shown = Arc::clone(&phase);
             let draw = move || {
@@ -51,8 +51,10 @@ impl Phases {
                     show(CLEAR);
                 }
             };
-            (stop, thread::spawn(draw))
-        });
+            // Where there is no thread to be had, nothing is shown.
+            Some((stop, thread::Builder::new().spawn(draw).ok()?))
+        };
+        let watch = if !quiet && is_shown() { start() } else { None };
         Phases { phase, watch }
     }
 

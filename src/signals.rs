@@ -13,12 +13,13 @@ mod unix {
     use std::os::unix::process::CommandExt;
     use std::process::{Child, Command, Output};
     use std::sync::atomic::{AtomicBool, Ordering};
-    use std::sync::{Mutex, MutexGuard, PoisonError};
+    use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
     use std::thread;
     use std::time::{Duration, Instant};
 
     use rustix::process::{Pid, Signal, kill_process_group};
-    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
+    use signal_hook::flag;
     use signal_hook::iterator::Signals;
     use signal_hook::low_level::emulate_default_handler;
     use signorini::io::files;
@@ -46,10 +47,13 @@ mod unix {
     /// Watches for signals from now on. Where that is not possible, they do what they do without.
     pub fn watch() {
         let ignored = ignored();
-        let watched =
-            [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|signal| !ignored.contains(signal));
-        let Ok(mut signals) = Signals::new(watched) else { return };
-        thread::spawn(move || {
+        let watched = [SIGINT, SIGTERM, SIGHUP].into_iter();
+        let watched: Vec<i32> = watched.filter(|signal| !ignored.contains(signal)).collect();
+        // A file that grows beyond what the process may write (`ulimit -f`) is an error of the write then.
+        let _ = flag::register(SIGXFSZ, Arc::default());
+        // In the thread: where there is none to be had, the signals do what they do without.
+        let watch = move || {
+            let Ok(mut signals) = Signals::new(watched) else { return };
             if let Some(signal) = signals.forever().next() {
                 ENDING.store(true, Ordering::SeqCst);
                 stop_worker();
@@ -58,7 +62,8 @@ mod unix {
                 let _ = emulate_default_handler(signal);
                 std::process::exit(128 + signal);
             }
-        });
+        };
+        let _ = thread::Builder::new().spawn(watch);
     }
 
     /// The signals that this process was started to ignore; where the system does not tell, SIGHUP could be one.

@@ -47,18 +47,22 @@ pub fn contact_csv(rows: &[ContactRow]) -> Result<String, DataError> {
             // Writing to a string cannot fail. The debug form is the one that uses exponents where they are shorter.
             let _ = write!(text, "{number:?},");
         }
-        text.push_str(&word(row.boundary));
+        text.push_str(&cell(row.boundary));
         text.push('\n');
     }
     Ok(text)
 }
 
-/// A name as RFC 4180 has it: in quotes if it needs them.
-fn word(name: &str) -> String {
-    if name.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", name.replace('"', "\"\""))
+/// A cell as RFC 4180 has it: in quotes if it needs them. A text that a spreadsheet would take for a formula and obey gets an
+/// apostrophe before it; a number stays one.
+pub(super) fn cell(text: &str) -> String {
+    let is_formula =
+        text.starts_with(['=', '+', '-', '@', '\t', '\r']) && text.parse::<f64>().is_err();
+    let mark = if is_formula { "'" } else { "" };
+    if text.contains([',', '"', '\n', '\r']) {
+        format!("\"{mark}{}\"", text.replace('"', "\"\""))
     } else {
-        name.to_owned()
+        format!("{mark}{text}")
     }
 }
 
@@ -89,6 +93,21 @@ mod tests {
              0.1,0.3333333333333333,-0.0,-1e-17,0.0,5e-324,-1.5e300,2.0,floor\n\
              2.0,0.3333333333333333,-0.0,-1e-17,0.0,5e-324,-1.5e300,2.0,\"the \"\"floor\"\", left\"\n"
         );
+    }
+
+    #[test]
+    fn formulas_are_marked_as_texts_and_numbers_stay_numbers() {
+        for (text, expected) in [
+            ("=1+1", "'=1+1"),
+            ("@SUM(1)", "'@SUM(1)"),
+            ("-2+3", "'-2+3"),
+            ("=HYPERLINK(\"a\",1)", "\"'=HYPERLINK(\"\"a\"\",1)\""),
+            ("-2.5e-3", "-2.5e-3"),
+            ("+7", "+7"),
+            ("floor", "floor"),
+        ] {
+            assert_eq!(cell(text), expected);
+        }
     }
 
     #[test]

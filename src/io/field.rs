@@ -17,6 +17,7 @@ use thiserror::Error;
 use super::input::{self, InputError};
 use crate::fem::{Mesh, Space};
 use crate::kernel::P2;
+use crate::memory;
 use crate::quote;
 
 /// Why there is no field.
@@ -68,7 +69,9 @@ fn at_nodes(points: &Points, mesh: &Mesh, quadratic: bool) -> Result<Vec<[f64; 2
         })
         .fold(0.0, f64::max);
     let width = 4.0 * NEAR * extent;
-    let cell = |x: [f64; 2]| x.map(|c| (c / width).floor() as i64);
+    // From a vertex on, so that the numbers of the cells near the body are small wherever it lies.
+    let origin = vertices[0];
+    let cell = |x: [f64; 2]| [0, 1].map(|c| ((x[c] - origin[c]) / width).floor() as i64);
     let mut grid: BTreeMap<[i64; 2], Vec<usize>> = BTreeMap::new();
     for (i, (x, u)) in points.iter().enumerate() {
         if !x.iter().chain(u).all(|c| c.is_finite()) {
@@ -117,7 +120,7 @@ fn has_quadratic_triangles(text: &str) -> bool {
     let cells = section(text, "Cells").map(arrays).unwrap_or_default();
     let named = |name: &str| {
         let array = cells.iter().find(|array| array.attribute("Name") == Some(name))?;
-        numbers(array, head?).ok()
+        numbers(array, head?, count(text, "NumberOfCells")?).ok()
     };
     let (Some(types), Some(offsets)) = (named("types"), named("offsets")) else { return false };
     let starts = std::iter::once(0.0).chain(offsets.iter().copied());
@@ -234,8 +237,9 @@ fn from_vtu(text: &str) -> Result<Points, String> {
             ));
         }
     };
-    let (x, u) = (numbers(places, head)?, numbers(field, head)?);
     let (dim, components) = (places.components().max(2), field.components());
+    let points = count(text, "NumberOfPoints").ok_or("its <Piece> has no NumberOfPoints")?;
+    let (x, u) = (numbers(places, head, points)?, numbers(field, head, points)?);
     if x.len() / dim != u.len() / components || x.len() % dim != 0 {
         return Err(format!(
             "{} coordinates and {} components of vectors don't fit",
@@ -243,18 +247,22 @@ fn from_vtu(text: &str) -> Result<Points, String> {
             u.len()
         ));
     }
-    let piece = text.find("<Piece").and_then(|from| text[from..].split('>').next());
-    let said = piece.and_then(|piece| attribute(piece, "NumberOfPoints"));
-    if let Some(said) = said.filter(|said| said.parse() != Ok(x.len() / dim)) {
-        let (said, has) = (quote::cut(said), x.len() / dim);
-        return Err(format!("it says NumberOfPoints = {said}, and points are there: {has}"));
+    if points != x.len() / dim {
+        let has = x.len() / dim;
+        return Err(format!("it says NumberOfPoints = {points}, and points are there: {has}"));
     }
     let pairs = x.chunks_exact(dim).zip(u.chunks_exact(components));
     Ok(pairs.map(|(x, u)| ([x[0], x[1]], [u[0], u[1]])).collect())
 }
 
-/// The numbers of an array.
-fn numbers(array: &Array, head: &str) -> Result<Vec<f64>, String> {
+/// The attribute `name` of the piece, `NumberOfPoints` or `NumberOfCells`.
+fn count(text: &str, name: &str) -> Option<usize> {
+    let piece = text.find("<Piece").and_then(|from| text[from..].split('>').next())?;
+    attribute(piece, name)?.trim().parse().ok()
+}
+
+/// The numbers of an array, the components of `count` points or cells.
+fn numbers(array: &Array, head: &str, count: usize) -> Result<Vec<f64>, String> {
     let name = quote::cut(array.attribute("Name").unwrap_or("Points"));
     let bytes = match array.attribute("format") {
         Some("ascii") | None => {
@@ -265,7 +273,10 @@ fn numbers(array: &Array, head: &str) -> Result<Vec<f64>, String> {
             return array.text.split_whitespace().map(number).collect();
         }
         Some("binary") => {
-            blocks(array.text, head).map_err(|problem| format!("{name}: {problem}"))?
+            // No number has more bytes than a double. As bytes, as code and as doubles at a time.
+            let most = count.saturating_mul(8 * array.components());
+            memory::check(3 * most as u64).map_err(|lack| format!("{name}: {lack}"))?;
+            blocks(array.text, head, most).map_err(|problem| format!("{name}: {problem}"))?
         }
         Some(other) => {
             let other = quote::quoted(other, '\'');
@@ -275,21 +286,18 @@ fn numbers(array: &Array, head: &str) -> Result<Vec<f64>, String> {
     if attribute(head, "byte_order").is_some_and(|order| order != "LittleEndian") {
         return Err("its byte order is not LittleEndian".to_owned());
     }
+    fn each<const N: usize>(bytes: &[u8], number: fn([u8; N]) -> f64) -> Vec<f64> {
+        bytes.as_chunks().0.iter().map(|&bytes| number(bytes)).collect()
+    }
     match array.attribute("type") {
-        Some("Float64") => {
-            Ok(bytes.as_chunks::<8>().0.iter().map(|b| f64::from_le_bytes(*b)).collect())
-        }
-        Some("Float32") => {
-            Ok(bytes.as_chunks::<4>().0.iter().map(|b| f32::from_le_bytes(*b).into()).collect())
-        }
-        Some("UInt8" | "Int8") => Ok(bytes.iter().map(|&b| b.into()).collect()),
-        Some("Int32" | "UInt32") => {
-            Ok(bytes.as_chunks::<4>().0.iter().map(|b| u32::from_le_bytes(*b).into()).collect())
-        }
-        // Numbers of points, far below 2^53.
-        Some("Int64" | "UInt64") => {
-            Ok(bytes.as_chunks::<8>().0.iter().map(|b| u64::from_le_bytes(*b) as f64).collect())
-        }
+        Some("Float64") => Ok(each(&bytes, f64::from_le_bytes)),
+        Some("Float32") => Ok(each(&bytes, |b| f32::from_le_bytes(b).into())),
+        Some("UInt8") => Ok(each(&bytes, |b| u8::from_le_bytes(b).into())),
+        Some("Int8") => Ok(each(&bytes, |b| i8::from_le_bytes(b).into())),
+        Some("UInt32") => Ok(each(&bytes, |b| u32::from_le_bytes(b).into())),
+        Some("Int32") => Ok(each(&bytes, |b| i32::from_le_bytes(b).into())),
+        Some("UInt64") => Ok(each(&bytes, |b| u64::from_le_bytes(b) as f64)),
+        Some("Int64") => Ok(each(&bytes, |b| i64::from_le_bytes(b) as f64)),
         other => {
             let other = quote::quoted(other.unwrap_or_default(), '\'');
             Err(format!("{name} has the type {other}; expected Float64 or Float32"))
@@ -298,8 +306,8 @@ fn numbers(array: &Array, head: &str) -> Result<Vec<f64>, String> {
 }
 
 /// The bytes of a base64 array: its length, then the data; or, compressed, the number of blocks, their size, the size of the
-/// last one, their compressed sizes, and in a code of its own the blocks.
-fn blocks(code: &str, head: &str) -> Result<Vec<u8>, String> {
+/// last one, their compressed sizes, and in a code of its own the blocks. All together are at most `most` bytes.
+fn blocks(code: &str, head: &str, most: usize) -> Result<Vec<u8>, String> {
     let word = match attribute(head, "header_type") {
         Some("UInt64") => 8,
         _ => 4,
@@ -341,6 +349,9 @@ fn blocks(code: &str, head: &str) -> Result<Vec<u8>, String> {
         let end = from.checked_add(length).ok_or("a length is too large")?;
         let block = data.get(from..end).ok_or("the code ends too early")?;
         let size = if k + 1 == count && last > 0 { last } else { full };
+        if size > most - all.len() {
+            return Err(format!("it is longer than the {most} bytes that its points can have"));
+        }
         let plain = decompress_to_vec_zlib_with_limit(block, size)
             .map_err(|e| format!("block {k} can't be decompressed: {e}"))?;
         all.extend(plain);
@@ -467,6 +478,72 @@ mod tests {
                 &format!("Name=\"u\" NumberOfComponents=\"2\" format=\"binary\">{code}"),
             );
         assert_eq!(from_vtu(&compressed).unwrap(), expected);
+    }
+
+    /// A field of one point, (1, 2), whose displacement is this array of this type, in base64.
+    fn of_one_point(kind: &str, bytes: &[u8]) -> Result<Points, String> {
+        let mut code = Vec::new();
+        crate::io::vtu::encode(&[&(bytes.len() as u32).to_le_bytes(), bytes].concat(), &mut code);
+        let code = String::from_utf8(code).unwrap();
+        from_vtu(&format!(
+            "<VTKFile><Piece NumberOfPoints=\"1\"><Points><DataArray type=\"Float64\" \
+             NumberOfComponents=\"3\">1 2 0</DataArray></Points><PointData><DataArray Name=\"u\" \
+             type=\"{kind}\" NumberOfComponents=\"2\" format=\"binary\">{code}</DataArray>\
+             </PointData></Piece></VTKFile>"
+        ))
+    }
+
+    #[test]
+    fn integers_are_read_with_their_sign() {
+        let pair = |a: &[u8], b: &[u8]| [a, b].concat();
+        for (kind, bytes, expected) in [
+            ("Int8", pair(&(-1_i8).to_le_bytes(), &[7]), [-1.0, 7.0]),
+            ("UInt8", pair(&[255], &[7]), [255.0, 7.0]),
+            ("Int32", pair(&(-1_i32).to_le_bytes(), &7_i32.to_le_bytes()), [-1.0, 7.0]),
+            ("UInt32", pair(&u32::MAX.to_le_bytes(), &[7, 0, 0, 0]), [4294967295.0, 7.0]),
+            ("Int64", pair(&(-1_i64).to_le_bytes(), &7_i64.to_le_bytes()), [-1.0, 7.0]),
+            (
+                "UInt64",
+                pair(&(1_u64 << 63).to_le_bytes(), &7_u64.to_le_bytes()),
+                [2f64.powi(63), 7.0],
+            ),
+        ] {
+            assert_eq!(of_one_point(kind, &bytes), Ok(vec![([1.0, 2.0], expected)]), "{kind}");
+        }
+        assert!(of_one_point("Float16", &[0; 4]).unwrap_err().contains("has the type 'Float16'"));
+    }
+
+    #[test]
+    fn compressed_blocks_longer_than_the_points_are_refused_unread() {
+        let packed = miniz_oxide::deflate::compress_to_vec_zlib(&vec![0; 1 << 20], 9);
+        let file = |points: usize| {
+            let words = [1, 1 << 20, 0, packed.len() as u32];
+            let header: Vec<u8> = words.iter().flat_map(|n| n.to_le_bytes()).collect();
+            let mut code = Vec::new();
+            crate::io::vtu::encode(&header, &mut code);
+            crate::io::vtu::encode(&packed, &mut code);
+            let array = format!(
+                "<DataArray type=\"Float64\" NumberOfComponents=\"2\" Name=\"u\" format=\"binary\">{}</DataArray>",
+                String::from_utf8(code).unwrap()
+            );
+            format!(
+                "<VTKFile compressor=\"vtkZLibDataCompressor\"><Piece NumberOfPoints=\"{points}\">\
+                 <Points>{array}</Points><PointData>{array}</PointData></Piece></VTKFile>"
+            )
+        };
+        let error = from_vtu(&file(9)).unwrap_err();
+        assert_eq!(error, "u: it is longer than the 144 bytes that its points can have");
+        assert_eq!(from_vtu(&file(1 << 16)).unwrap().len(), 1 << 16, "control: as many as it says");
+    }
+
+    #[test]
+    fn a_small_body_far_from_the_origin_finds_its_points() {
+        let at = |x: f64| 1e5 + x * 2f64.powi(-33);
+        let places = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|x| x.map(at));
+        let none: [(String, Vec<[usize; 2]>); 0] = [];
+        let mesh = Mesh::new(places.to_vec(), vec![[0, 1, 2], [0, 2, 3]], none).unwrap();
+        let points: Points = places.iter().map(|&x| (x, [0.0, -1e-13])).collect();
+        assert_eq!(at_nodes(&points, &mesh, false), Ok(vec![[0.0, -1e-13]; 4]));
     }
 
     #[test]

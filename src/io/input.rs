@@ -28,6 +28,15 @@ pub enum InputError {
     TooLong { most: u64 },
     #[error("{0}")]
     OutOfMemory(#[from] OutOfMemory),
+    #[error("{0}")]
+    Lack(String),
+}
+
+impl InputError {
+    /// Whether the file may be right, but the system has not what it takes to read it: memory, or files to open.
+    pub fn is_lack(&self) -> bool {
+        matches!(self, InputError::OutOfMemory(_) | InputError::Lack(_))
+    }
 }
 
 /// The bytes of a regular file of at most `most` bytes.
@@ -95,11 +104,17 @@ fn kind(metadata: &Metadata) -> &'static str {
 
 /// Why a file can't be read, in words that don't depend on the system where that is possible.
 fn unreadable(error: io::Error) -> InputError {
+    // ENFILE and EMFILE, which have no kind.
+    if matches!(error.raw_os_error(), Some(23 | 24)) && cfg!(unix) {
+        return InputError::Lack(super::files::reason(&error));
+    }
     InputError::Unreadable(match error.kind() {
         io::ErrorKind::NotFound => "there is no such file".to_owned(),
         io::ErrorKind::IsADirectory => return InputError::NotAFile("a directory"),
         io::ErrorKind::PermissionDenied => "there is no permission to read this file".to_owned(),
-        io::ErrorKind::OutOfMemory => "there is not enough memory to read this file".to_owned(),
+        io::ErrorKind::OutOfMemory => {
+            return InputError::Lack("there is not enough memory to read this file".to_owned());
+        }
         _ => super::files::reason(&error),
     })
 }
@@ -112,6 +127,14 @@ mod tests {
     fn a_stream_without_end_is_read_to_the_limit_and_no_further() {
         assert_eq!(read_from(io::repeat(0), 1000), Err(InputError::TooLong { most: 1000 }));
         assert_eq!(read_from(io::repeat(7).take(1000), 1000), Ok(vec![7; 1000]));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn too_many_open_files_are_a_lack_and_a_missing_file_is_none() {
+        for (number, is_lack) in [(23, true), (24, true), (2, false), (13, false)] {
+            assert_eq!(unreadable(io::Error::from_raw_os_error(number)).is_lack(), is_lack);
+        }
     }
 
     #[test]

@@ -82,12 +82,12 @@ pub enum CaseMistake {
 }
 
 impl CaseError {
-    /// The case may be right, but there is not enough memory to read it.
-    pub fn is_lack_of_memory(&self) -> bool {
+    /// Whether the case may be right, but the system has not the memory or the files that it takes to read it.
+    pub fn is_lack(&self) -> bool {
         match &*self.mistake {
-            CaseMistake::Input(InputError::OutOfMemory(_))
-            | CaseMistake::Mesh { error: MeshError::OutOfMemory(_), .. } => true,
-            CaseMistake::Gmsh(error) => error.is_lack_of_memory(),
+            CaseMistake::Input(error) => error.is_lack(),
+            CaseMistake::Mesh { error: MeshError::OutOfMemory(_), .. } => true,
+            CaseMistake::Gmsh(error) => error.is_lack(),
             _ => false,
         }
     }

@@ -30,6 +30,9 @@ use crate::solve::{Extreme, Solution, Times, Verdict, stresses};
 pub const FILES: [&str; 5] =
     ["solution.vtu", "contact.vtu", "contact.csv", "picture.svg", "result.json"];
 
+/// The field of a displacement from elsewhere that is certified.
+const CERTIFIED: &str = "certified.vtu";
+
 /// The same of the engine fenicsx.
 pub const FILES_OF_FENICSX: [&str; 3] = ["solution.xdmf", "solution.h5", "result.json"];
 
@@ -112,6 +115,7 @@ pub fn write(
     memory::check(bytes_to_write(solution))?;
     let mut output = Output::new(folder)?;
     output.replaces(&only_in(&FILES_OF_FENICSX, &FILES));
+    output.replaces(&[CERTIFIED]);
     let continuous = certified.and_then(|c| c.result.as_ref().ok());
     if !(certificate && continuous.is_some()) {
         output.replaces(&certificate::FILES);
@@ -182,8 +186,8 @@ pub fn write_certified(
         ],
         cell_data: &[Field { name: "error_bound", values: Values::Scalars(&certified.indicators) }],
     });
-    let grid = grid.map_err(|error| OutputError::Data { file: "certified.vtu", error })?;
-    output.stage("certified.vtu", &grid)?;
+    let grid = grid.map_err(|error| OutputError::Data { file: CERTIFIED, error })?;
+    output.stage(CERTIFIED, &grid)?;
     for (file, bytes) in certificate_files(&case.title, certified) {
         let bytes = bytes.map_err(|error| OutputError::Data { file, error })?;
         output.stage(file, &bytes)?;

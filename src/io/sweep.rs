@@ -3,6 +3,7 @@
 
 use std::collections::VecDeque;
 use std::fmt::Write;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::time::Duration;
@@ -11,6 +12,7 @@ use thiserror::Error;
 use toml::de::{DeTable, DeValue};
 
 use super::case::{Case, CaseError};
+use super::csv::cell;
 use super::files::{Output, WriteError};
 use super::numbers::short;
 use super::outputs::{self, Certified, OutputError};
@@ -131,8 +133,8 @@ pub fn count(axes: &[Axis]) -> Result<usize, SweepError> {
 }
 
 /// Solves the case with this text (see [`Case::parse`]) for each combination of the axes' values, each from the solution of
-/// the one before where the nodes are the same, and calls `done` with what there is after each. Where `folders` is given, the
-/// files of run i (from 1) are written into its folder i.
+/// the one before where the nodes are the same, and calls `done` with what there is after each. With `files`, those of run i
+/// (from 1) are written into the folder i of `folder`; those that an earlier sweep wrote there go before the first run.
 ///
 /// # Errors
 /// A mistake in the case or in one of the values, found before anything is solved; files that can't be written; what `done`
@@ -141,7 +143,8 @@ pub fn run(
     file: &Path,
     text: &str,
     axes: &[Axis],
-    folders: Option<&Path>,
+    folder: &Path,
+    files: bool,
     mut done: impl FnMut(&Sweep) -> Result<(), SweepError>,
 ) -> Result<Sweep, SweepError> {
     let count = count(axes)?;
@@ -155,18 +158,35 @@ pub fn run(
     for i in 0..count {
         title = read(i)?.0.title;
     }
+    clear(folder);
     let keys = axes.iter().map(|axis| axis.key.clone()).collect();
     let to_come = (0..count).map(|i| combination(axes, i)).collect();
     let mut sweep = Sweep { title, keys, runs: Vec::with_capacity(count), to_come };
     let mut last = None;
     for i in 0..count {
         let (case, values) = read(i)?;
-        let folder = folders.map(|folder| folder.join((i + 1).to_string()));
+        let folder = files.then(|| of_run(folder, i));
         sweep.runs.push(Run { values, outcome: solve(case, folder.as_deref(), &mut last)? });
         sweep.to_come.pop_front();
         done(&sweep)?;
     }
     Ok(sweep)
+}
+
+/// The folder of run `i` in that of its sweep.
+fn of_run(folder: &Path, i: usize) -> PathBuf {
+    folder.join((i + 1).to_string())
+}
+
+/// Removes the files that an earlier sweep into `folder` has written of its runs, result.json first, and the folders of runs
+/// that are empty then. What can't be removed stays.
+fn clear(folder: &Path) {
+    for run in (0..MOST_RUNS).map(|i| of_run(folder, i)).filter(|run| run.is_dir()) {
+        for name in outputs::FILES.iter().rev() {
+            let _ = fs::remove_file(run.join(name));
+        }
+        let _ = fs::remove_dir(run);
+    }
 }
 
 /// The values of run `i`: its digits, the last axis first.
@@ -290,7 +310,7 @@ impl Sweep {
     /// The text of sweep.csv: each number the shortest decimal that reads back to the same double.
     pub fn csv(&self) -> String {
         let line = |cells: &[String]| {
-            cells.iter().map(|cell| field(cell)).collect::<Vec<_>>().join(",") + "\n"
+            cells.iter().map(|text| cell(text)).collect::<Vec<_>>().join(",") + "\n"
         };
         let names: Vec<String> = self.names().into_iter().map(str::to_owned).collect();
         let rows = self.rows(&|x| format!("{x:?}"));
@@ -305,15 +325,6 @@ impl Sweep {
         let mut output = Output::new(folder)?;
         output.stage(FILE, self.csv().as_bytes())?;
         output.publish()
-    }
-}
-
-/// A field of a CSV file (RFC 4180): in quotes where it needs them.
-fn field(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
-    } else {
-        text.to_owned()
     }
 }
 

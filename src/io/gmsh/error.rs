@@ -97,13 +97,13 @@ pub enum GmshMistake {
 }
 
 impl GmshError {
-    /// The file may be right, but there is not enough memory to read it.
-    pub fn is_lack_of_memory(&self) -> bool {
-        matches!(
-            *self.mistake,
-            GmshMistake::Input(InputError::OutOfMemory(_))
-                | GmshMistake::OutOfMemory(_)
-                | GmshMistake::Mesh { error: MeshError::OutOfMemory(_), .. }
-        )
+    /// Whether the file may be right, but the system has not the memory or the files that it takes to read it.
+    pub fn is_lack(&self) -> bool {
+        match &*self.mistake {
+            GmshMistake::Input(error) => error.is_lack(),
+            GmshMistake::OutOfMemory(_)
+            | GmshMistake::Mesh { error: MeshError::OutOfMemory(_), .. } => true,
+            _ => false,
+        }
     }
 }

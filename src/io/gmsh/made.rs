@@ -9,7 +9,7 @@ use crate::fem::merge::merge;
 use crate::fem::mesh::length;
 use crate::fem::{Mesh, MeshError};
 use crate::memory::{self, bytes_of};
-use crate::quote::quoted;
+use crate::quote;
 
 // Notes on errors of the mesh.
 pub(super) const TAGS: &str = "the numbers are tags of the file";
@@ -171,8 +171,8 @@ pub(super) fn name_entities(
                 }
             }
             if found.len() > 1 {
-                let names: Vec<String> = found.iter().map(|name| quoted(name, '\'')).collect();
-                let (kind, names) = (KINDS[dimension], names.join(" and "));
+                let names = quote::names(found.iter().map(|name| name.as_str()));
+                let kind = KINDS[dimension];
                 return Err(GmshMistake::SeveralNames { kind, entity, names });
             }
             all[dimension].insert(entity, found.first().map(|name| (*name).clone()));

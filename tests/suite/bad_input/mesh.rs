@@ -113,7 +113,7 @@ fn meshes_of_gmsh() {
             ),
             (
                 ["1 0 0 0 1 0 0 1 1 0", "1 0 0 0 1 0 0 2 1 2 0"],
-                "bad.msh: curve 1 belongs to the physical curves 'bottom' and 'top'; expected it in one of them only",
+                "bad.msh: curve 1 belongs to the physical curves bottom, top; expected it in one of them only",
             ),
             (
                 ["1 0 0 0 1 0 0 1 1 0", "1 0 0 0 1 0 0 1 7 0"],
