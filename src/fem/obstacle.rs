@@ -203,13 +203,4 @@ mod tests {
             assert!(error.to_string().starts_with(said), "{error}");
         }
     }
-
-    #[test]
-    fn other_units_scale_the_gap_and_keep_the_direction() {
-        let floor = Obstacle::Plane { point: [0.0, 1.0], normal: [0.0, 1.0] };
-        for o in [floor, circle(Side::Outside), Obstacle::Distance(Arc::new(Around(1.0)))] {
-            let (one, other) = (at(&o, [4.0, 4.0]), at(&o.seen(-2, 3), [16.0, 16.0]));
-            assert_eq!((one.gap / 8.0, one.direction), (other.gap, other.direction));
-        }
-    }
 }

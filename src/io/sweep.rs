@@ -398,10 +398,4 @@ mod tests {
             assert_eq!((line[0], line[line.len() - 1]), (gamma0, "not solved"));
         }
     }
-
-    #[test]
-    fn a_field_of_the_csv_is_in_quotes_where_it_needs_them() {
-        assert_eq!(field("1e-3"), "1e-3");
-        assert_eq!(field("[\"0\", \"1\"]"), "\"[\"\"0\"\", \"\"1\"\"]\"");
-    }
 }
