@@ -165,7 +165,8 @@ fn settings_lie_over_a_long_case_and_may_be_long_themselves() {
     let case = fs::read_to_string(folder.join("case.toml")).unwrap();
     let long = "# A remark.\n".repeat(10_000) + &case;
     fs::write(folder.join("long.toml"), &long).unwrap();
-    let force = format!("load.body=[\"0\", \"-2{}\"]", " + 0".repeat(20_000));
+    let force =
+        format!("load.body=[\"0\", \"-2{}\"]", format!(" + {}0", " ".repeat(40)).repeat(2000));
     assert!(long.len() > 1 << 16 && force.len() > 1 << 16);
     for (task, file, setting) in [
         ("check", "long.toml", "method.degree=2"),

@@ -891,7 +891,7 @@ fn refused_beyond_the_limit() -> Outcome {
 }
 
 /// The checks, for the row of Theorem 3.3.
-pub fn checks() -> [Check; 29] {
+pub fn checks() -> [Check; 27] {
     [
         by(
             Engine::Exact,
