@@ -72,6 +72,11 @@ row has a **control**, a planted mistake that the same check must reject (of a s
 control names), and a harness has a false twin, which must fail on the counterexample
 that is stored with it.
 
+**The trusted core** of what the program computes is a list that `cargo tree -p signorini-audit -e normal` prints: the crate `src/audit`,
+which checks certificates of the error, the crate `src/kernel`, their vectors, a reader of JSON; no solver, no mesh, no linear algebra
+(`.ci/run` fails when they are in it). `reference/check_bound.py` checks the same certificates with nothing of it, from their documented
+format (`docs/certificates.md`).
+
 **What is trusted:** the compiler and the standard library; num-rational and num-bigint; of this crate, the arithmetic of
 polynomials, the forking of paths and the checker (`props/src/proof/polynomial.rs`, `symbol.rs`, `explorer.rs`,
 `certificate.rs`), which have tests of their own: every random point lies on exactly one path and has its verdict, and the
@@ -159,7 +164,7 @@ fn evidence(claim: &Claim) -> impl Iterator<Item = &Check> {
 /// The directory under `src` where an item of a claim is: that of the kernel unless its path begins with another one.
 pub fn source(path: &str) -> &str {
     let first = path.split("::").next().unwrap_or(path);
-    if ["certify", "fem", "solve"].contains(&first) { first } else { "kernel" }
+    if ["audit", "certify", "fem", "solve"].contains(&first) { first } else { "kernel" }
 }
 
 fn row(claim: &Claim) -> String {

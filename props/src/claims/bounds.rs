@@ -1121,10 +1121,10 @@ pub fn claim() -> Claim {
             "composite::Wrench::on_edge",
             "composite::complementary",
             "material::Material::map",
-            "certify::proof::Certificate::evaluate",
-            "certify::proof::Certificate::audit",
+            "audit::proof::Certificate::evaluate",
+            "audit::proof::Certificate::audit",
         ],
-        preconditions: "The data are those of the certificate: the checker does not see the problem that it was made for. Green's formula.",
+        preconditions: "The data are those of the certificate: the checker does not see the problem that it was made for; `signorini audit --case` compares them with it (tests/suite/audit.rs). Green's formula.",
         limits: "Pieces that are cut, and how a certificate is made of a problem (`certify::build`, `sweeps`, `oscillation`), are looked at through their results only: a mistake there makes the bound of another problem, or a larger one. True errors are by quadrature.",
         single: None,
         checks: [
