@@ -63,8 +63,8 @@ TAMPERINGS = {
     "a stiffer material": lambda h, a: number(a("triangles")[3], 7, lambda mu: 2 * mu),
     "a body force": lambda h, a: number(a("triangles")[2], 9, lambda f: f + 0.1),
     "a triangle turned round": lambda h, a: a("triangles")[0, :2].__setitem__(slice(None), a("triangles")[0, 1::-1].copy()),
-    "a triangle without its neighbour": lambda h, a: a("triangles")[0, 3:4].__setitem__(0, a("triangles")[1, 4]),
-    "a lift that is negative": lambda h, a: number(a("lifts")[0], 3, lambda z: -z),
+    "a triangle with another edge": lambda h, a: a("triangles")[0, 3:4].__iadd__(np.uint64(1)),
+    "a lift that is negative": lambda h, a: number(a("lifts")[0], 3, lambda z: -1),
     "an array of another name": lambda h, a: h["arrays"][-1].update(name="w"),
     "a reservation in the header": lambda h, a: h.update(rigorous=True),
 }
