@@ -436,7 +436,7 @@ def main(paths):
     for path in paths:
         try:
             print(f"{path}: accepted: {check(pathlib.Path(path))}")
-        except (Refused, OSError, ValueError, KeyError, TypeError) as error:
+        except (Refused, OSError, ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
             refused = True
             print(f"{path}: refused: {error}", file=sys.stderr)
     return 1 if refused or not paths else 0
