@@ -27,6 +27,10 @@ fn main() -> std::process::ExitCode {
             println!("{count} problems in {directory}");
             true
         }),
+        ["export", "--rocq", directory] => props::export::rocq(directory.as_ref()).map(|count| {
+            println!("{count} theorems in {directory}/paper.v");
+            true
+        }),
         ["export", directory] => props::export::certificates(directory.as_ref()).map(|count| {
             println!("{count} proofs in {directory}");
             true
@@ -45,6 +49,9 @@ fn main() -> std::process::ExitCode {
             eprintln!("props audit [ROW [CHECK]]  run every check, or those of a row, or one");
             eprintln!("props smt DIR      write the paths of the proofs as SMT-LIB 2 problems");
             eprintln!("props export DIR   write the proofs with their certificates as text");
+            eprintln!(
+                "props export --rocq DIR    write the headline statements with proofs for Rocq"
+            );
             eprintln!(
                 "props receipt LOG  keep the output of cargo kani as a receipt in props/receipts"
             );

@@ -8,6 +8,7 @@ pub mod certificate;
 pub mod explorer;
 pub mod float;
 pub mod polynomial;
+pub mod rocq;
 pub mod sampler;
 pub mod search;
 mod simplex;
