@@ -78,9 +78,9 @@ def main():
     print(f"{seconds.ru_utime + seconds.ru_stime:.0f} s of processor time")
     if options.receipt:
         path = options.receipt / f"rocq-{datetime.date.today().isoformat()}.tsv"
-        lines = [f"# Rocq {version}", f"# axioms {' '.join(sorted(axioms))}", "theorem\tstatement\tfalse twin"]
         refused = {path.stem for path in planted}
-        lines += [f"{name}\t{digest}\t{'refused' if name in refused else '-'}" for name, digest in theorems.items()]
+        lines = [f"# Rocq {version}", f"#axioms: {' '.join(sorted(axioms))}", "theorem\tstatement\tfalse twin\tRocq"]
+        lines += [f"{name}\t{said}\t{'refused' if name in refused else '-'}\tproved" for name, said in theorems.items()]
         path.write_text("\n".join(lines) + "\n")
         print(f"written: {path}")
 

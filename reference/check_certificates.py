@@ -5,8 +5,10 @@
 Of each file NAME.proof: the questions of its paths are a tree in which the answers to a question leave out no sign that
 is still possible, so every point lies on a path; and each path that ends in `fails` contradicts itself: its facts follow
 from its answers, and its certificate, weights >= 0 times products of facts and squares plus multiples of equations, is
-zero, though one product is positive. With VERIFY.md, each proof named there has its file. Format: transcript.rs in
-props/src/proof. Fractions and integers only.
+zero, though one product is positive. The statement is that of the file's name, and only its unknowns occur. With
+VERIFY.md, each proof listed there has its file, with as many paths, as many of them refuted, and the same classes reached:
+which paths fail is the predicate's to say, so a path relabelled is seen there. Format: transcript.rs in props/src/proof.
+Fractions and integers only.
 """
 import re, sys
 from fractions import Fraction
@@ -16,12 +18,17 @@ SIGNS = {"<": {-1}, "<=": {-1, 0}, "=": {0}, ">=": {0, 1}, ">": {1}}
 
 
 def polynomial(text):
-    """A dict from monomials, sorted tuples of (name, exponent), to coefficients."""
+    """A dict from monomials, sorted tuples of (name, exponent >= 1) with each name once, to coefficients."""
     sum = {}
     for term in text.split(" + "):
         number, *factors = term.split()
-        powers = (factor.partition("^") for factor in factors)
-        monomial = tuple(sorted((name, int(exponent or 1)) for name, _, exponent in powers))
+        powers = {}
+        for factor in factors:
+            name, power, exponent = factor.partition("^")
+            demand(re.fullmatch(r"[a-z_]\w*", name, re.A | re.I), f"'{factor}' is no power of an unknown")
+            demand(not power or re.fullmatch(r"[1-9][0-9]*", exponent, re.A), f"the exponent of '{factor}'")
+            powers[name] = powers.get(name, 0) + int(exponent or 1)
+        monomial = tuple(sorted(powers.items()))
         sum[monomial] = sum.get(monomial, 0) + Fraction(number)
     return {m: c for m, c in sum.items() if c}
 
@@ -116,33 +123,58 @@ def covers(paths, known, depth=0):
     return sum(covers(below(step), {**known, key: signs}, depth + 1) for step, (_, signs) in answers.items())
 
 
-def check(text):
-    """The numbers of paths and of paths refuted; a ValueError says what is wrong."""
+def check(text, name=None):
+    """The paths, the paths refuted and the classes reached; a ValueError says what is wrong."""
     head, *blocks = text.split("\npath\n")
-    unknowns = head.split("\nunknowns ")[1].split()
-    paths = []
+    title = re.fullmatch(r"statement (\w+)\nunknowns((?: \w+)*) ?", head, re.A)
+    demand(title and name in (None, title[1]), f"the head of {name} is '{head}'")
+    unknowns = title[2].split()
+    demand(len(set(unknowns)) == len(unknowns), "an unknown twice")
+    paths, classes = [], set()
     for block in blocks:
         lines = block.strip().split("\n")
         of = [line for line in lines if line.startswith(("ask ", "inverse "))]
         demand(lines[: len(of)] == of and len(lines) > len(of), "a step after the end of a path")
         steps = [tuple(line.split(" ", 2)) for line in of]
-        demand(not any(s[0] == "inverse" and s[1] in unknowns for s in steps), "an inverse that is an unknown")
-        paths.append((steps, lines[len(of)], lines[len(of) + 1 :]))
-    demand(paths, "no path")
-    return len(paths), covers(paths, {})
+        inverses = [s[1] for s in steps if s[0] == "inverse"]
+        demand(not set(inverses) & set(unknowns), "an inverse that is an unknown")
+        end, certificate = lines[len(of)], lines[len(of) + 1 :]
+        demand(end.startswith("fails ") or not certificate, "a certificate of a path that does not fail")
+        shown = [s[2] for s in steps] + [part for line in certificate for part in certified(line)]
+        used = {name for text in shown for m in polynomial(text) for name, _ in m}
+        demand(used <= {*unknowns, *inverses}, f"{used - {*unknowns, *inverses}} is no unknown")
+        classes |= {end[6:]} if end.startswith("holds ") else set()
+        paths.append((steps, end, certificate))
+    demand(classes, "no path holds: nothing is said of anything")
+    return len(paths), covers(paths, {}), classes
+
+
+def certified(line):
+    """The polynomials of a line of a certificate."""
+    kind, _, rest = line.partition(" ")
+    if kind == "fact":
+        return [rest.partition(" ")[2]]
+    parts = rest.split("|")
+    return [text for text in parts[2].split(" ; ") if text.strip()] if kind == "term" else parts[:1]
+
+
+def listed(ledger):
+    """The proofs of VERIFY.md: by name, paths, paths refuted and classes."""
+    lines = re.findall(r"^- `(\w+)`: (\d+) paths?, (\d+) refuted; (.*)$", Path(ledger).read_text(), re.M)
+    return {name: (int(paths), int(refuted), set(re.sub(r"\. Rocq: .*", "", classes).split(" | "))) for name, paths, refuted, classes in lines}
 
 
 def main(directory, ledger=None):
     files = {path.stem: path for path in sorted(Path(directory).glob("*.proof"))}
-    rows = re.split(r"^## ", Path(ledger).read_text(), flags=re.M) if ledger else []
-    # The row about the engine itself has false statements, and proves others on the way.
-    rows = [row for row in rows if "(the proof engine)" not in row]
-    named = {name for row in rows for name in re.findall(r"^\| proof \| (?:\[)?`(?!control_)(\w+)`", row, re.M)}
-    wrong = [f"{name}: named in {ledger}, not exported" for name in sorted(named - files.keys())]
+    expected = listed(ledger) if ledger else {}
+    wrong = [f"{name}: in {ledger}, not exported" for name in sorted(expected.keys() - files.keys())]
+    wrong += [f"{name}: exported, not in {ledger}" for name in sorted(files.keys() - expected.keys()) if ledger]
     total = [0, 0]
     for name, path in files.items():
         try:
-            total = [a + b for a, b in zip(total, check(path.read_text()))]
+            found = check(path.read_text(), name)
+            demand(found == expected.get(name, found), f"{found}, but {ledger} says {expected.get(name)}")
+            total = [a + b for a, b in zip(total, found)]
         except (ValueError, IndexError, KeyError) as why:
             wrong.append(f"{name}: {why!r}")
     print(f"{len(files)} proofs, {total[0]} paths, {total[1]} refuted by certificates; {len(wrong)} wrong", *wrong, sep="\n")

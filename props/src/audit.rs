@@ -1,4 +1,4 @@
-//! Runs the rows of the ledger: progress and a table on the terminal, and a page with its twins (`page`) in `target/audit`.
+//! Runs the rows of the ledger: progress and a table on the terminal, and a page with its twin (`page`) in `target/audit`.
 
 use std::fmt::Write as _;
 use std::io::{self, IsTerminal, Write as _};
@@ -11,7 +11,7 @@ use crate::draws;
 use crate::page::{self, Line, Provenance, Report};
 
 /// Runs the row with this id, or all of them; of a row, the checks with this name, or all of them. True if every check
-/// passed. Writes a page with its twins in JSON and JUnit; a part of the ledger goes to files of its own.
+/// passed. Writes a page with its twin in JSON; a part of the ledger goes to files of its own.
 ///
 /// # Errors
 /// An unknown id or name, or a file that can't be written.
@@ -44,8 +44,7 @@ pub fn audit(id: Option<&str>, name: Option<&str>) -> io::Result<bool> {
     let at = folder.join(format!("{stem}.html"));
     std::fs::write(&at, page::html(&report, &at))?;
     std::fs::write(at.with_extension("json"), page::json(&report))?;
-    std::fs::write(at.with_extension("xml"), page::junit(&report))?;
-    println!("written: {}, and the same as .json and .xml", at.display());
+    println!("written: {}, and the same as .json", at.display());
     Ok(passed)
 }
 

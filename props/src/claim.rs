@@ -127,7 +127,7 @@ impl Check {
         match (self.subject, self.engine, self.control) {
             (Subject::Function(run), _, _) => run(),
             (Subject::Harness(harness), _, _) => harness.run(),
-            (Subject::Falsehood(s), _, _) => crate::claims::falsehoods::refuse(&s),
+            (Subject::Falsehood(s), _, _) => proof::refuse(&s),
             (Subject::Statement(s), Engine::Proof, false) => proof::prove(&s),
             (Subject::Statement(s), Engine::Proof, true) => proof::refute(&s),
             (Subject::Statement(s), Engine::Exact, false) => draws::hold_exactly(&s),

@@ -7,14 +7,14 @@
 //! `unsat` where this engine has a certificate, `sat` where it has a point, `unknown` where it has neither. A solver that
 //! contradicts it is news.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::io;
 
 use crate::claim::{Engine, Subject};
 use crate::claims;
 use crate::proof::explorer::{Path, explore};
 use crate::proof::float::problems;
-use crate::proof::{Fate, analyse, rocq, smt, transcript};
+use crate::proof::{Fate, analyse, smt, transcript};
 use crate::statement::Statement;
 
 /// Writes every proof as text into `directory`, one file `NAME.proof` each, and answers how many.
@@ -36,79 +36,6 @@ pub fn certificates(directory: &std::path::Path) -> io::Result<usize> {
         }
     }
     Ok(seen.len())
-}
-
-/// The headline statements, by hand, with a comment in place of each proof.
-const PAPER: &str = include_str!("../rocq/paper.v");
-
-/// A theorem of [`PAPER`]: its text without the comments, and the false statement that its proof must not prove.
-struct Theorem<'a> {
-    name: &'a str,
-    text: &'a str,
-    planted: Option<(&'a str, &'a str)>,
-}
-
-/// The theorems of [`PAPER`], after what stands before the first one.
-fn theorems() -> (&'static str, Vec<Theorem<'static>>) {
-    let start = PAPER.find("\nTheorem ").map_or(PAPER.len(), |at| at + 1);
-    let (head, rest) = PAPER.split_at(start);
-    let theorem = |text: &'static str| {
-        let name = text.split([' ', ':']).next().unwrap_or_default();
-        let planted = text.split_once("(* false: ").and_then(|(_, rest)| rest.split_once(" *)"));
-        let planted = planted.and_then(|(planted, _)| planted.split_once(" => "));
-        let text = text.split_once("Qed.\n").map_or(text, |(text, _)| text);
-        Theorem { name, text, planted }
-    };
-    (
-        head,
-        rest.split("\nTheorem ").map(|text| theorem(text.trim_start_matches("Theorem "))).collect(),
-    )
-}
-
-/// Writes the headline statements with their proofs into `directory`, for Rocq: `paper.v`, and for each theorem that has one,
-/// in `false`, the false statement beside it with the same proof. Answers how many theorems.
-///
-/// # Errors
-/// A predicate that is no claim or is not proved, a planted mistake that is not in its theorem, and whatever keeps the files
-/// from being written.
-pub fn rocq(directory: &std::path::Path) -> io::Result<usize> {
-    let claims = claims::all();
-    let checks = claims.iter().flat_map(|claim| &claim.checks);
-    let statements: BTreeMap<&str, Statement> = checks
-        .filter_map(|check| match (check.subject, check.engine, check.control) {
-            (Subject::Statement(statement), Engine::Proof, false) => {
-                Some((statement.name, statement))
-            }
-            _ => None,
-        })
-        .collect();
-    let tactics = |name: &str| {
-        let statement = statements.get(name).ok_or(format!("{name} is no claim that is proved"))?;
-        rocq::tactics(statement)
-    };
-    std::fs::create_dir_all(directory.join("false"))?;
-    let (head, theorems) = theorems();
-    let mut paper = head.to_owned();
-    for theorem in &theorems {
-        let mut text = format!("Theorem {}", theorem.text);
-        if let Some((before, rest)) = theorem.text.split_once("(* paths of ")
-            && let Some((name, after)) = rest.split_once(" *)")
-        {
-            text = format!("Theorem {before}{}{after}", tactics(name).map_err(io::Error::other)?);
-        }
-        paper += &format!("{text}Qed.\nPrint Assumptions {}.\n\n", theorem.name);
-        let Some((old, new)) = theorem.planted else { continue };
-        if !text.contains(old) {
-            return Err(io::Error::other(format!("{}: '{old}' is not in it", theorem.name)));
-        }
-        let text = format!(
-            "Require Import Reals Lra.\nFrom Signorini Require Import paper.\nOpen Scope R_scope.\n\n{}Qed.\n",
-            text.replacen(old, new, 1)
-        );
-        std::fs::write(directory.join(format!("false/{}.v", theorem.name)), text)?;
-    }
-    std::fs::write(directory.join("paper.v"), paper)?;
-    Ok(theorems.len())
 }
 
 /// Writes the SMT-LIB problems into `directory` and answers how many.

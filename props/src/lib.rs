@@ -34,6 +34,8 @@ pub mod numbers;
 #[cfg(not(kani))]
 pub mod page;
 #[cfg(not(kani))]
+pub mod paper;
+#[cfg(not(kani))]
 pub mod proof;
 #[cfg(not(kani))]
 pub mod receipt;

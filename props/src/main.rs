@@ -27,7 +27,7 @@ fn main() -> std::process::ExitCode {
             println!("{count} problems in {directory}");
             true
         }),
-        ["export", "--rocq", directory] => props::export::rocq(directory.as_ref()).map(|count| {
+        ["export", "--rocq", directory] => props::paper::export(directory.as_ref()).map(|count| {
             println!("{count} theorems in {directory}/paper.v");
             true
         }),

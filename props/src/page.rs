@@ -1,11 +1,9 @@
-//! What an audit found, for those who read it: a page to attach to a review, its twin in JSON, and JUnit for machines that
-//! run tests. All three say where it was run, and on what.
+//! What an audit found: a page to attach to a review, and its twin in JSON. Both say where it was run, and on what.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::time::{SystemTime, UNIX_EPOCH};
 
 use crate::claim::{Claim, Outcome};
 use crate::items::{ITEMS, Item};
@@ -75,30 +73,13 @@ impl Provenance {
             ("build", format!("{profile} debug assertions")),
             ("host", known(output("uname", &["-srm"]))),
             ("processors", cores.to_string()),
-            ("date", utc(SystemTime::now())),
+            ("date", known(output("date", &["-u", "+%Y-%m-%dT%H:%M:%SZ"]))),
             ("seed of the draws", draws::seed().to_string()),
         ])
     }
 }
 
-/// A time as in 2026-01-31T12:00:00Z.
-fn utc(time: SystemTime) -> String {
-    let seconds = time.duration_since(UNIX_EPOCH).map_or(0, |d| d.as_secs());
-    let (days, rest) = (seconds / 86_400, seconds % 86_400);
-    // Days since 0000-03-01, in eras of 400 years, so that the leap day is the last of a year.
-    let days = days + 719_468;
-    let (era, day) = (days / 146_097, days % 146_097);
-    let year = (day - day / 1_460 + day / 36_524 - day / 146_096) / 365;
-    let day = day - (365 * year + year / 4 - year / 100);
-    let month = (5 * day + 2) / 153;
-    let day = day - (153 * month + 2) / 5 + 1;
-    let (year, month) = (era * 400 + year, if month < 10 { month + 3 } else { month - 9 });
-    let year = if month <= 2 { year + 1 } else { year };
-    let (hour, minute, second) = (rest / 3_600, rest / 60 % 60, rest % 60);
-    format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}Z")
-}
-
-/// Everything that the three forms show.
+/// Everything that the page and its twin show.
 pub struct Report {
     /// Where it was run.
     pub provenance: Provenance,
@@ -181,8 +162,7 @@ pub fn html(report: &Report, at: &Path) -> String {
         "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><meta name=\"viewport\" \
          content=\"width=device-width\"><title>signorini: audit</title><style>{STYLE}</style>\
          <h1>signorini: audit</h1><p class=\"verdict{bad}\">{}</p><p>{}</p><nav><a href=\"#provenance\">Provenance</a>\
-         <a href=\"#summary\">Summary</a><a href=\"#legend\">For the auditor</a><a href=\"#what-is-trusted\">What is \
-         trusted</a><a href=\"#errata-of-the-paper\">Errata</a><a href=\"#items\">Items of the paper</a>",
+         <a href=\"#summary\">Summary</a><a href=\"#items\">Items of the paper</a>",
         escape(&report.summary()),
         escape(&by_engine(report)),
     );
@@ -207,9 +187,12 @@ pub fn html(report: &Report, at: &Path) -> String {
             id = claim.id,
         );
     }
-    text += "</table><section id=\"legend\">";
-    text += &rendered(ledger::HEAD);
-    text += "</section><h2 id=\"items\">Items of the paper</h2><nav>";
+    let _ = write!(
+        text,
+        "</table><p>What the engines are, what is trusted, and the errata of the paper: <a href=\"{}VERIFY.md\">VERIFY.md</a>.</p>\
+         <h2 id=\"items\">Items of the paper</h2><nav>",
+        escape(&sources.up)
+    );
     // A part of the ledger says nothing of the others.
     let shown = |item: &&Item| report.complete || !item.found(&report.claims).is_empty();
     for item in ITEMS.iter().filter(shown) {
@@ -238,7 +221,11 @@ fn item_view(item: &Item, report: &Report) -> String {
         escape(item.says)
     );
     if let Some(literature) = item.literature() {
-        let _ = write!(text, " <b>Taken from analysis and literature:</b> {}.", escape(literature));
+        let _ = write!(
+            text,
+            " <b>Not checked, or taken from the literature:</b> {}.",
+            escape(literature)
+        );
     }
     text += "</p>";
     let found = item.found(&report.claims);
@@ -423,63 +410,6 @@ fn declared(line: &str) -> Vec<String> {
     names
 }
 
-/// The little Markdown that the head of the ledger is written in: headings, paragraphs, lists, tables, code and bold.
-fn rendered(markdown: &str) -> String {
-    let mut text = String::new();
-    for block in markdown.split("\n\n").map(str::trim).filter(|block| !block.is_empty()) {
-        if let Some(heading) = block.strip_prefix("## ") {
-            let _ = write!(text, "<h2 id=\"{}\">{}</h2>", slug(heading), inline(heading));
-        } else if block.starts_with("# ") || block.starts_with("Printed by ") {
-        } else if block.starts_with('|') {
-            text += "<table>";
-            for (i, row) in block.lines().enumerate().filter(|(i, _)| *i != 1) {
-                let cell = if i == 0 { "th" } else { "td" };
-                text += "<tr>";
-                for content in row.trim_matches('|').split('|') {
-                    let _ = write!(text, "<{cell}>{}", inline(content.trim()));
-                }
-                text += "</tr>";
-            }
-            text += "</table>";
-        } else if block.starts_with("- ") {
-            text += "<ul>";
-            for entry in format!("\n{block}").split("\n- ").skip(1) {
-                let _ = write!(text, "<li>{}", inline(entry));
-            }
-            text += "</ul>";
-        } else {
-            // A paragraph that begins with its subject can be linked to.
-            let subject = block.strip_prefix("**").and_then(|rest| rest.split("**").next());
-            let id = subject.map_or(String::new(), |s| format!(" id=\"{}\"", slug(s)));
-            let _ = write!(text, "<p{id}>{}</p>", inline(block));
-        }
-    }
-    text
-}
-
-fn inline(text: &str) -> String {
-    let paired = |text: &str, mark: &str, tag: &str| -> String {
-        let parts = text.split(mark).enumerate();
-        parts
-            .map(
-                |(i, part)| {
-                    if i % 2 == 1 { format!("<{tag}>{part}</{tag}>") } else { part.to_owned() }
-                },
-            )
-            .collect()
-    };
-    let text = paired(&paired(&escape(text), "`", "code"), "**", "b");
-    // A star within code is part of a path.
-    text.split("<code>").enumerate().fold(String::new(), |all, (i, part)| {
-        match part.split_once("</code>") {
-            Some((code, rest)) if i > 0 => {
-                all + "<code>" + code + "</code>" + &paired(rest, "*", "i")
-            }
-            _ => all + &paired(part, "*", "i"),
-        }
-    })
-}
-
 /// A text in JSON.
 fn quoted(text: &str) -> String {
     let mut quoted = String::from('"');
@@ -558,45 +488,8 @@ pub fn json(report: &Report) -> String {
     )
 }
 
-/// The same for machines that read the results of tests.
-pub fn junit(report: &Report) -> String {
-    let mut text = format!(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites tests=\"{}\" failures=\"{}\">\n",
-        report.lines.len(),
-        report.failed()
-    );
-    for claim in &report.claims {
-        let lines: Vec<&Line> = report.of(claim.id).collect();
-        let failed = lines.iter().filter(|line| line.outcome.is_err()).count();
-        let seconds: f64 = lines.iter().map(|line| line.seconds).sum();
-        let _ = writeln!(
-            text,
-            "<testsuite name=\"row {}: {}\" tests=\"{}\" failures=\"{failed}\" time=\"{seconds:.3}\">",
-            claim.id,
-            escape(claim.title),
-            lines.len()
-        );
-        for line in lines {
-            let _ = write!(
-                text,
-                "<testcase classname=\"row {}.{}\" name=\"{}\" time=\"{:.3}\">",
-                claim.id, line.engine, line.name, line.seconds
-            );
-            let _ = match &line.outcome {
-                Ok(said) => write!(text, "<system-out>{}</system-out>", escape(said)),
-                Err(why) => write!(text, "<failure message=\"{}\"/>", escape(why)),
-            };
-            text += "</testcase>\n";
-        }
-        text += "</testsuite>\n";
-    }
-    text + "</testsuites>\n"
-}
-
 #[cfg(test)]
 mod tests {
-    use std::time::Duration;
-
     use super::*;
     use crate::claims;
 
@@ -627,10 +520,7 @@ mod tests {
             "FAILED: a &lt; b",
             "1 checks and 0 controls in 1 row: 1 FAILED. This is a part",
             "Checks by engine: proof 1.",
-            "href=\"#what-is-trusted\"",
-            "id=\"what-is-trusted\"",
-            "href=\"#errata-of-the-paper\"",
-            "id=\"errata-of-the-paper\"",
+            "../../VERIFY.md",
             "href=\"#item-4\"",
             "id=\"item-4\"",
             "a &lt;= [a]+",
@@ -639,7 +529,6 @@ mod tests {
             "href=\"#check-1-proof-positive_part_satisfies_4\"",
             "../../props/src/claims/positive_part.rs",
             "../../src/kernel/positive_part.rs",
-            "Errata of the paper",
         ] {
             assert!(page.contains(part), "{part}");
         }
@@ -660,19 +549,9 @@ mod tests {
     }
 
     #[test]
-    fn json_and_junit_quote_what_they_contain() {
+    fn json_quotes_what_it_contains() {
         let report = report(Err("say \"no\"\n<\\>".to_owned()));
         assert!(json(&report).contains(r#""said": "say \"no\"\n<\\>""#));
         assert!(json(&report).contains("\"failed\": 1"));
-        assert!(junit(&report).contains("message=\"say &quot;no&quot;\n&lt;\\&gt;\""));
-        assert!(junit(&report).contains("failures=\"1\""));
-    }
-
-    #[test]
-    fn times_are_those_of_the_calendar() {
-        let at = |seconds| utc(UNIX_EPOCH + Duration::from_secs(seconds));
-        assert_eq!(at(0), "1970-01-01T00:00:00Z");
-        assert_eq!(at(951_782_400), "2000-02-29T00:00:00Z");
-        assert_eq!(at(1_798_761_599), "2026-12-31T23:59:59Z");
     }
 }

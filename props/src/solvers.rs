@@ -48,7 +48,8 @@ impl Field {
         }
     }
 
-    fn receipt(self) -> &'static Receipt {
+    /// The newest receipt about its problems.
+    pub fn receipt(self) -> &'static Receipt {
         static DOUBLES: OnceLock<Receipt> = OnceLock::new();
         static REALS: OnceLock<Receipt> = OnceLock::new();
         let receipt = match self {
@@ -62,17 +63,21 @@ impl Field {
 
 /// What the solvers were asked, and what they answered.
 #[derive(Clone, Debug, Default, PartialEq)]
-struct Receipt {
-    date: String,
+pub struct Receipt {
+    /// When.
+    pub date: String,
     /// Names and versions.
-    solvers: Vec<String>,
+    pub solvers: Vec<String>,
     /// By the problem: the hash of its text, and the answer of each solver.
-    answers: BTreeMap<String, (String, Vec<String>)>,
+    pub answers: BTreeMap<String, (String, Vec<String>)>,
 }
 
 impl Receipt {
-    /// The newest one in a folder.
-    fn newest(folder: &Path, prefix: &str) -> Result<Receipt, String> {
+    /// The newest one in a folder, of those whose names begin with `prefix`.
+    ///
+    /// # Errors
+    /// That there is none, that it can't be read, or a line that has not as many columns as it should.
+    pub fn newest(folder: &Path, prefix: &str) -> Result<Receipt, String> {
         let failed = |why: std::io::Error| format!("{}: {why}", folder.display());
         let mut newest: Option<(String, std::path::PathBuf)> = None;
         for entry in std::fs::read_dir(folder).map_err(failed)? {
@@ -169,7 +174,8 @@ pub fn opinion(statement: &Statement, field: Field) -> Option<Opinion> {
     (!problems.is_empty()).then(|| field.receipt().opinion(&problems))
 }
 
-fn hash(problem: &str) -> String {
+/// The hash by which a receipt knows a text.
+pub fn hash(problem: &str) -> String {
     let digest = Sha256::digest(problem.as_bytes());
     digest[..8].iter().map(|byte| format!("{byte:02x}")).collect()
 }

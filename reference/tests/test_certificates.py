@@ -1,9 +1,12 @@
 """The checker of certificates accepts a proof and refuses it when anything in it is tampered with."""
 
+import contextlib
+import io
+import tempfile
 import unittest
 from pathlib import Path
 
-from check_certificates import check
+from check_certificates import check, main
 
 PROOF = Path(__file__).with_name("quotient.proof").read_text()
 
@@ -21,13 +24,14 @@ class Certificates(unittest.TestCase):
             check(text)
 
     def test_the_proof_is_accepted(self):
-        paths, refuted = check(PROOF)
+        paths, refuted, classes = check(PROOF, "a_quotient_of_squares_is_not_negative")
+        self.assertEqual(classes, {"always"})
         self.assertEqual(paths, PROOF.count("\npath\n"))
         self.assertGreater(refuted, 0)
 
     def test_a_path_left_out_is_noticed(self):
         for number in range(PROOF.count("\npath\n")):
-            self.refused(without_path(number), "is left out")
+            self.refused(without_path(number), "is left out|no path holds")
 
     def test_an_answer_made_narrower_is_noticed(self):
         self.refused(PROOF.replace("ask <= ", "ask < "), "left out|follow")
@@ -51,3 +55,52 @@ class Certificates(unittest.TestCase):
 
     def test_an_inverse_of_what_may_be_zero_is_noticed(self):
         self.refused(PROOF.replace("ask > 1 b", "ask >= 1 b").replace("ask <= 1 b", "ask < 1 b"), "may be zero")
+
+    def test_a_power_written_as_two_factors_is_that_power(self):
+        # "No number is negative": false, and refused however its powers are written.
+        unsound = """statement a_number_is_not_negative
+unknowns a
+path
+ask >= 1 a
+holds always
+path
+ask < 1 a
+fails a >= S::from(0)
+fact > -1 a
+term 1 | 0 |
+multiple 1 a | 0"""
+        squares = unsound.replace("multiple 1 a | 0", "term 1 | | 1 a a")
+        for text in (unsound, squares, unsound.replace("multiple 1 a | 0", "term 1 | 0 0 | 1 a^0")):
+            self.refused(text, "multiple of an inequality|not zero|exponent")
+        self.refused(PROOF.replace("1 a^2", "1 a^-2"), "exponent")
+        self.assertEqual(check(PROOF.replace("1 a^2", "1 a a")), check(PROOF))
+
+    def test_an_unknown_removed_from_the_head_is_noticed(self):
+        self.refused(PROOF.replace("unknowns a b", "unknowns a"), "is no unknown")
+
+    def test_a_proof_under_another_name_is_noticed(self):
+        with self.assertRaisesRegex(ValueError, "head of another_theorem"):
+            check(PROOF, "another_theorem")
+
+    def test_a_proof_without_a_path_that_holds_is_noticed(self):
+        self.refused("statement a_theorem\nunknowns a b\npath\nvacuous", "no path holds")
+
+    def test_a_failing_path_relabelled_is_noticed_by_the_ledger(self):
+        name = "a_quotient_of_squares_is_not_negative"
+        start = PROOF.index("fails ")
+        end = PROOF.index("path\n", start)
+        with tempfile.TemporaryDirectory() as folder:
+            ledger = Path(folder, "VERIFY.md")
+            ledger.write_text(f"- `{name}`: 3 paths, 1 refuted; always\n")
+
+            def accepted(text):
+                Path(folder, f"{name}.proof").write_text(text)
+                with contextlib.redirect_stdout(io.StringIO()):
+                    return main(folder, ledger) == 0
+
+            self.assertTrue(accepted(PROOF))
+            for label in ("holds always", "vacuous"):
+                self.assertFalse(accepted(PROOF[:start] + label + "\n" + PROOF[end:]), label)
+            self.assertFalse(accepted(PROOF.replace("holds always", "holds sometimes")))
+            ledger.write_text(ledger.read_text() + "- `another_theorem`: 1 path, 0 refuted; always\n")
+            self.assertFalse(accepted(PROOF))

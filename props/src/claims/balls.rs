@@ -159,6 +159,47 @@ pub fn doubles_contain_the_exact_results() -> Outcome {
     draws::reject(data(), balls::<f64>)
 }
 
+/// A dividend, twelve divisors, and radii that are small beside the first, which is near 1.
+type Chain = (f64, [u8; 12], f64, [f64; 16]);
+
+fn chains() -> impl Strategy<Value = Chain> {
+    let small = 0.0..f64::EPSILON / 2.0;
+    (0.1_f64..10.0, prop::array::uniform12(3_u8..100), 1.0_f64..1.5, prop::array::uniform16(small))
+}
+
+/// Roundings add up: of twelve quotients in the centre, of sixteen sums in the radius. What one double outwards hides of a
+/// single operation it does not hide of a chain.
+fn chain<S: Enclosing>(&(start, divisors, radius, radii): &Chain, around: fn(f64) -> S) -> Verdict {
+    Exact::scope(|| {
+        let (mut found, mut exact) = (S::exactly(start), Exact::of_double(start));
+        for divisor in divisors.map(i32::from) {
+            found = found / S::from(divisor);
+            exact = exact / Exact::from(i64::from(divisor));
+        }
+        let inside = |found: &S, exact: Exact| {
+            Exact::of_double(found.lower()) <= exact && exact <= Exact::of_double(found.upper())
+        };
+        ensure!(inside(&found, exact));
+        let (mut sum, mut end) = (around(radius), Exact::of_double(radius));
+        for radius in radii {
+            sum = sum + around(radius);
+            end += Exact::of_double(radius);
+        }
+        ensure!(inside(&sum, end) && inside(&sum, -end));
+        Verdict::Holds("always")
+    })
+}
+
+/// Row 13: chains of balls.
+pub fn chains_of_balls_contain_the_exact_results() -> Outcome {
+    draws::hold(300, chains(), &["always"], |data| chain(data, |r| Ball::around(0.0, r)))
+}
+
+/// Chains of doubles do not contain them.
+pub fn chains_of_doubles_are_exact() -> Outcome {
+    draws::reject(chains(), |data| chain(data, |r| r))
+}
+
 /// int \[P\]+ N_a for P of P1 in balls contains that of each of their numbers, cut at its own root; `share` of each radius
 /// covers what is off.
 fn moments_of(draw: &Draw, share: f64) -> Verdict {

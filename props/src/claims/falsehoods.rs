@@ -4,7 +4,7 @@
 use signorini::kernel::{positive_part, positive_part_slope};
 
 use crate::claim::Outcome;
-use crate::proof::{prove, refute};
+use crate::proof::prove;
 use crate::statement::Statement;
 use crate::verdict::{Ordered, Verdict};
 use crate::{ensure, given, statement};
@@ -634,19 +634,6 @@ pub fn neighbours_are_proved() -> Outcome {
             .map_err(|why| format!("{} is true, and refused: {why}", statement.name))?;
     }
     Ok(format!("{} statements", all.len()))
-}
-
-/// Refuses a false statement: the engine does not prove it, and where it names a conclusion, that is what fails at a
-/// rational point.
-///
-/// # Errors
-/// That it is proved, or that its conclusion does not fail.
-pub fn refuse(statement: &Statement) -> Result<String, String> {
-    match (prove(statement), statement.conclusion) {
-        (Ok(said), _) => Err(format!("false, and proved: {said}")),
-        (Err(_), Some(_)) => refute(statement),
-        (Err(why), None) => Ok(format!("not proved: {why}")),
-    }
 }
 
 /// A power whose exponent no number of its width holds is refused, in every build, be it false or true what is said of it.

@@ -2,7 +2,7 @@
 //! over intervals, contain their values.
 
 use signorini::kernel::interval::sorted;
-use signorini::kernel::{Interval, positive_part};
+use signorini::kernel::{Ball, Enclosing, Interval, positive_part};
 
 use crate::harness::{any, assume};
 use crate::harnesses;
@@ -78,6 +78,29 @@ harnesses! {
         let v = [any(), any(), any(), any()].map(|v: i8| i32::from(v));
         let [a, b, c, d] = sorted(v);
         assert!(a < b && b < c && c < d);
+    }
+    /// Each quotient adds its rounding: 1/9/5/11/17 in balls has 1/8415, and so the double nearest to that.
+    holds four_quotients_of_balls_keep_their_roundings() {
+        let quotient = [9, 5, 11, 17].into_iter().fold(Ball::from(1), |q, d| q / Ball::from(d));
+        let nearest = 1.0 / 8415.0;
+        assert!(quotient.lower() <= nearest && nearest <= quotient.upper());
+    }
+    /// The false twin: the same quotients of doubles.
+    fails control_four_quotients_of_doubles_are_the_nearest([]) {
+        let quotient = Ball::exactly(1.0 / 9.0 / 5.0 / 11.0 / 17.0);
+        let nearest = 1.0 / 8415.0;
+        assert!(quotient.lower() <= nearest && nearest <= quotient.upper());
+    }
+    /// Radii are rounded upwards: to 1 the radius 2^-54 is added eight times.
+    holds radii_are_not_lost_in_eight_sums() within 10 {
+        let small = Ball::around(0.0, f64::EPSILON / 4.0);
+        let sum = (0..8).fold(Ball::around(0.0, 1.0), |sum, _| sum + small);
+        assert!(sum.upper() >= 1.0 + 2.0 * f64::EPSILON);
+    }
+    /// The false twin: radii rounded to nearest.
+    fails control_radii_are_rounded_to_nearest_in_eight_sums([]) within 10 {
+        let sum = (0..8).fold(1.0, |sum: f64, _| sum + f64::EPSILON / 4.0);
+        assert!(sum >= 1.0 + 2.0 * f64::EPSILON);
     }
 }
 
@@ -326,6 +349,16 @@ mod row {
                 Engine::Doubles,
                 "operations_of_balls_contain_the_exact_results",
                 balls::balls_contain_the_exact_results,
+            ),
+            by(
+                Engine::Doubles,
+                "chains_of_balls_contain_the_exact_results",
+                balls::chains_of_balls_contain_the_exact_results,
+            ),
+            control(
+                Engine::Doubles,
+                "control_chains_of_doubles_are_exact",
+                balls::chains_of_doubles_are_exact,
             ),
             by(
                 Engine::Doubles,

@@ -212,6 +212,38 @@ pub fn the_trace_bound_gives_coercivity<S: Ordered>([a, s, kappa]: [S; 3]) -> Ve
     Verdict::Holds("always")
 }
 
+/// Continuity of a(., .): sigma:eps against a constant times |grad v|^2.
+fn energy_below<S: Ordered>([xx, xy, yx, yy, lambda, mu]: [S; 6], constant: S) -> Verdict {
+    let (zero, two) = (S::from(0), S::from(2));
+    given!(mu > zero && lambda + mu > zero);
+    let g = gradient([xx, xy, yx, yy]);
+    let energy = energy_density(Material::lame(lambda, mu, Plane::Strain).stress(g), g);
+    let squares = xx * xx + xy * xy + yx * yx + yy * yy;
+    let (difference, trace) = (xx - yy, xx + yy);
+    ensure!(
+        (xy - yx) * (xy - yx) >= zero && difference * difference >= zero && trace * trace >= zero
+    );
+    if lambda >= zero {
+        ensure!(lambda * (difference * difference) >= zero && mu * ((xy - yx) * (xy - yx)) >= zero);
+        ensure!(lambda * (xy * xy + yx * yx) >= zero && two * lambda >= zero);
+    } else {
+        ensure!(lambda * (trace * trace) <= zero && mu * ((xy - yx) * (xy - yx)) >= zero);
+    }
+    ensure!(energy <= constant * squares);
+    Verdict::Holds(if lambda >= zero { "lambda >= 0" } else { "lambda < 0" })
+}
+
+/// sigma:eps <= (2 mu + 2 \[lambda\]+) |grad v|^2 at every point, so a(v, v) <= (2 mu + 2 \[lambda\]+) |v|_1^2.
+pub fn the_energy_is_bounded_by_the_gradient<S: Ordered>(v: [S; 6]) -> Verdict {
+    let [.., lambda, mu] = v;
+    energy_below(v, S::from(2) * (mu + signorini::kernel::positive_part(lambda)))
+}
+
+/// 2 \[lambda\]+ alone.
+pub fn control_the_energy_is_bounded_without_mu<S: Ordered>(v: [S; 6]) -> Verdict {
+    energy_below(v, S::from(2) * signorini::kernel::positive_part(v[4]))
+}
+
 /// lambda + mu in place of lambda + 2 mu.
 pub fn control_lambda_plus_mu_for_the_stiffness<S: Ordered>(
     [xx, xy, yx, yy, lambda, mu]: [S; 6],

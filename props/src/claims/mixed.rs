@@ -120,7 +120,8 @@ mod row {
     use crate::bodies::{
         Body, Definition, Kernel, MaybeExact, Rule, Side, bodies, contact_class, sum,
     };
-    use crate::claim::{Claim, Engine, Outcome, by, control, proved, refuted, tested};
+    use crate::claim::{Claim, Engine, Outcome, by, control, noticed, proved, refuted, tested};
+    use crate::claims::theorem_3_3::one_triangle;
     use crate::draws;
     use crate::naive::Line;
     use crate::numbers::Exact;
@@ -330,6 +331,41 @@ mod row {
         Ok(format!("rejected in {}", SOLVED.join(", ")))
     }
 
+    /// The remark before (9): the triangle of row 10 with gamma0 = 1/15, half of the limit, in full contact. u^h = (-1, t) at the
+    /// free vertex is the solution of (8) for the load that (8) has there, which is that of the mixed form with lambda^h; and
+    /// lambda^h differs from sigma_n(u^h).
+    fn stress_beside_multiplier(t: Exact) -> Outcome {
+        let ratio = Exact::ratio;
+        let (s, gamma) = (ratio(-1, 1), ratio(1, 3));
+        // Hooke: eps_xx = s/3, sigma_n = lambda eps_xx with lambda = 1.
+        let sigma_n = s * ratio(1, 3);
+        let [fixed, free] =
+            [ratio(0, 1), -t].map(|u_n| point([u_n, ratio(0, 1), sigma_n, gamma]).pressure());
+        if fixed >= ratio(0, 1) || free >= ratio(0, 1) {
+            return Err(format!("open: {fixed:?}, {free:?}"));
+        }
+        let stabilised = gamma * (ratio(3, 2) * (fixed + free) - ratio(3, 1) * sigma_n);
+        let mixed = [
+            ratio(2, 1) * s + stabilised * ratio(1, 3),
+            ratio(2, 3) * t + ratio(1, 2) * fixed + free,
+        ];
+        let load = one_triangle([s, t], ratio(1, 15));
+        match (load == mixed, free != sigma_n) {
+            (true, true) => Ok(format!("sigma_n = {sigma_n:?}, lambda^h = {free:?} at the vertex")),
+            (true, false) => Err(format!("both are {sigma_n:?}")),
+            (false, _) => Err(format!("(8) has the load {load:?}, its mixed form {mixed:?}")),
+        }
+    }
+
+    fn stress_is_not_the_multiplier() -> Outcome {
+        Exact::scope(|| stress_beside_multiplier(Exact::ratio(1, 18)))
+    }
+
+    /// The vertex on the floor: there they agree.
+    fn stress_is_the_multiplier_on_the_floor() -> Outcome {
+        noticed(Exact::scope(|| stress_beside_multiplier(Exact::from(0))))
+    }
+
     fn onto_9(v: &mut [Exact]) {
         let gamma = v[3].abs() + Exact::ratio(1, 7);
         let p = v[0] - v[1] - gamma * v[2];
@@ -365,6 +401,16 @@ mod row {
         checks.extend(all.into_iter().map(tested));
         checks.extend([
             by(Engine::Exact, "mixed_form_9_and_10_hold_on_random_bodies_for_p1", mixed_p1),
+            by(
+                Engine::Exact,
+                "sigma_n_of_a_discrete_solution_is_not_its_multiplier",
+                stress_is_not_the_multiplier,
+            ),
+            control(
+                Engine::Exact,
+                "control_sigma_n_is_the_multiplier_without_penetration",
+                stress_is_the_multiplier_on_the_floor,
+            ),
             by(Engine::Exact, "mixed_form_by_points_holds_on_random_bodies_for_p2", mixed_p2),
             by(
                 Engine::Doubles,
@@ -392,7 +438,7 @@ mod row {
         ]);
         Claim {
             id: "7",
-            items: &["(9)", "(10)"],
+            items: &["(9)", "(10)", "the mixed problem"],
             title: "The contact pressure as a projection, and the mixed form",
             paper: "lambda^h := -(1/gamma)[P_gamma(u^h)]+ can be interpreted as the L^2-projection of -(1/gamma)P_gamma(u^h) on the cone of the nonpositive mu: (9); (9) is equivalent to (10); the method is equivalent to a mixed method with stabilisation.",
             statement: "At a point: (9) and (10) hold for lambda^h and every mu <= 0, with equality for mu = 0 and mu = 2 lambda^h; (10) is -gamma times (9) for any multiplier; as integrals over edges with different gamma the two are not equivalent for one fixed mu (a control has the counterexample), but for all mu they are, for a mu that differs from lambda^h on one edge only localises both (docs/theory.md, 8); a multiplier l <= 0 that satisfies (9) for three choices of mu is lambda^h. On random bodies, for every u^h and not the solution alone: the left side of (8) equals that of the first mixed equation, and the integrals (9) and (10) have their signs for random mu <= 0. For the discrete solution: lambda^h, u_n and sigma_n as the solver reports them on three of the example cases (P1, P2, exact integrals and Gauss points) satisfy (10) at every node of Gamma_C, for mu <= 0 near and far.",

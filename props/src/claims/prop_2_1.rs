@@ -392,7 +392,7 @@ mod row {
         checks.extend(HARNESSES.iter().copied().map(model_checked));
         Claim {
             id: "2",
-            items: &["(2)", "Proposition 2.1", "(5)"],
+            items: &["(2)", "Proposition 2.1", "(5)", "P_gamma, A_gamma"],
             title: "Contact as one equation",
             paper: "Let gamma > 0. The contact conditions (2)(i)-(iii) on Gamma_C are equivalent to: sigma_n(u) = -(1/gamma)[u_n - gamma sigma_n(u)]+.",
             statement: "With a gap g: u_n - g <= 0, sigma_n <= 0 and sigma_n (u_n - g) = 0 hold together exactly if sigma_n = -(1/gamma)[u_n - g - gamma sigma_n]+, the kernel's lambda^h. P, P0, lambda^h and the violation of (2) are their definitions. In doubles, with s = gamma sigma_n: (2) implies s = -[u - s]+; and s = -[u - s]+ implies s <= 0, u <= 0 where s = 0, and |u| <= 2^-52 |s| where s < 0.",

@@ -88,7 +88,7 @@ pub fn square_of_the_positive_part_is_convex_and_smooth<S: Ordered>([a, b]: [S; 
 
 /// Method (8) on the triangle (0, 0), (3, 0), (0, 4) with contact at y = 0, all but (3, 0) clamped, lambda = mu = 1,
 /// h_T = 5: the left side at u = (s, t) there, for both test functions.
-fn one_triangle<S: Ordered>([s, t]: [S; 2], gamma0: S) -> [S; 2] {
+pub fn one_triangle<S: Ordered>([s, t]: [S; 2], gamma0: S) -> [S; 2] {
     let (zero, one) = (S::from(0), S::from(1));
     let of = |x, y| Vector2::new(S::from(x), S::from(y));
     let triangle = Triangle { vertices: [of(0, 0), of(3, 0), of(0, 4)] };

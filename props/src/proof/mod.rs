@@ -149,6 +149,19 @@ pub fn refute(statement: &Statement) -> Result<String, String> {
     }
 }
 
+/// Refuses a false statement: the engine does not prove it, and where it names a conclusion, that is what fails at a
+/// rational point.
+///
+/// # Errors
+/// That it is proved, or that its conclusion does not fail.
+pub fn refuse(statement: &Statement) -> Result<String, String> {
+    match (prove(statement), statement.conclusion) {
+        (Ok(said), _) => Err(format!("false, and proved: {said}")),
+        (Err(_), Some(_)) => refute(statement),
+        (Err(why), None) => Ok(format!("not proved: {why}")),
+    }
+}
+
 fn place(statement: &Statement, point: &[BigRational]) -> String {
     let mut text = String::new();
     for (name, value) in statement.variables.iter().zip(point) {
