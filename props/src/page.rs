@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::claim::{Claim, Outcome};
-use crate::items::{ITEMS, Item};
+use crate::items::{Item, items};
 use crate::{draws, ledger};
 
 /// A check that was run.
@@ -195,11 +195,11 @@ pub fn html(report: &Report, at: &Path) -> String {
     );
     // A part of the ledger says nothing of the others.
     let shown = |item: &&Item| report.complete || !item.found(&report.claims).is_empty();
-    for item in ITEMS.iter().filter(shown) {
+    for item in items().iter().filter(shown) {
         let _ = write!(text, "<a href=\"#{}\">{}</a>", item_anchor(item), escape(item.name));
     }
     text += "</nav>";
-    for item in ITEMS.iter().filter(shown) {
+    for item in items().iter().filter(shown) {
         text += &item_view(item, report);
     }
     for claim in &report.claims {
@@ -220,12 +220,9 @@ fn item_view(item: &Item, report: &Report) -> String {
         escape(item.name),
         escape(item.says)
     );
-    if let Some(literature) = item.literature() {
-        let _ = write!(
-            text,
-            " <b>Not checked, or taken from the literature:</b> {}.",
-            escape(literature)
-        );
+    if !item.missing.is_empty() {
+        let missing = escape(item.missing);
+        let _ = write!(text, " <b>Not checked, or taken from the literature:</b> {missing}.");
     }
     text += "</p>";
     let found = item.found(&report.claims);
@@ -260,7 +257,8 @@ fn anchor(row: &str, engine: &str, name: &str) -> String {
 
 /// The items of a row, with links.
 fn items_of(claim: &Claim) -> String {
-    let link = |name: &&str| match ITEMS.iter().find(|item| item.name == *name) {
+    let all = items();
+    let link = |name: &&str| match all.iter().find(|item| item.name == *name) {
         Some(item) => format!("<a href=\"#{}\">{}</a>", item_anchor(item), escape(name)),
         None => escape(name),
     };
@@ -455,7 +453,7 @@ pub fn json(report: &Report) -> String {
             )
         })
         .collect();
-    let items: Vec<String> = ITEMS
+    let items: Vec<String> = items()
         .iter()
         .map(|item| {
             let checks: Vec<String> = item
@@ -473,7 +471,7 @@ pub fn json(report: &Report) -> String {
                 "{{\"name\": {}, \"says\": {}, \"literature\": {}, \"checks\": [{}]}}",
                 quoted(item.name),
                 quoted(item.says),
-                item.literature().map_or("null".to_owned(), quoted),
+                if item.missing.is_empty() { "null".to_owned() } else { quoted(item.missing) },
                 checks.join(", ")
             )
         })

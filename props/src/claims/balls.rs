@@ -174,7 +174,7 @@ fn chain<S: Enclosing>(&(start, divisors, radius, radii): &Chain, around: fn(f64
         let (mut found, mut exact) = (S::exactly(start), Exact::of_double(start));
         for divisor in divisors.map(i32::from) {
             found = found / S::from(divisor);
-            exact = exact / Exact::from(i64::from(divisor));
+            exact = exact / Exact::from(divisor);
         }
         let inside = |found: &S, exact: Exact| {
             Exact::of_double(found.lower()) <= exact && exact <= Exact::of_double(found.upper())
