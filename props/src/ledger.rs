@@ -49,6 +49,10 @@ each check with what it found, and links to the functions. How the engines are r
 
 ## What is trusted
 
+**The trusted core** of what the program computes is a list that `cargo tree -p signorini-audit -e normal` prints: `src/audit`,
+which checks certificates of the error, `src/kernel`, their vectors, a reader of JSON; no solver, no mesh, no linear algebra.
+`reference/check_bound.py` checks the same certificates with nothing of it, from their documented format.
+
 The compiler, the standard library, num-rational, num-bigint, proptest, and faer for eigenvalues in doubles. Of this crate, the
 arithmetic of polynomials, the forking of paths and the checker of certificates (`polynomial.rs`, `symbol.rs`, `explorer.rs`,
 `certificate.rs` in `props/src/proof`); the search for certificates is not trusted, and `reference/check_certificates.py`
@@ -180,7 +184,7 @@ pub fn engines<'a>(checks: impl Iterator<Item = &'a Check>) -> String {
 /// The directory under `src` where an item of a claim is: that of the kernel unless its path begins with another one.
 pub fn source(path: &str) -> &str {
     let first = path.split("::").next().unwrap_or(path);
-    if ["certify", "fem", "solve"].contains(&first) { first } else { "kernel" }
+    if ["audit", "certify", "fem", "solve"].contains(&first) { first } else { "kernel" }
 }
 
 /// A row as a paragraph.
