@@ -289,9 +289,9 @@ fn gamma_sweep(text: &mut String, figures: &Path, samples: &[Sample]) -> Result<
             let name = sample.name.split(',').next().unwrap_or_default();
             let name = format!("{name}, P{p}");
             let colour = match sample.file {
-                "smooth-43-third" => "#1f77b4",
-                "singular-half" => "#2ca02c",
-                _ => "#d62728",
+                "smooth-43-third" => plot::COLOURS[0],
+                "singular-half" => plot::COLOURS[2],
+                _ => plot::COLOURS[1],
             };
             sweeps.push(Sweep { name, degree, colour, points });
         }
@@ -323,7 +323,7 @@ fn locking(text: &mut String, figures: &Path) -> Result<()> {
         .map(|degree| Sweep {
             name: format!("P{}", degree.number()),
             degree,
-            colour: if degree == Degree::One { "#1f77b4" } else { "#d62728" },
+            colour: if degree == Degree::One { plot::COLOURS[0] } else { plot::COLOURS[1] },
             points: Vec::new(),
         })
         .into();
@@ -641,7 +641,11 @@ fn adaptivity(text: &mut String, figures: &Path, samples: &[Sample]) -> Result<(
             lines[1].push(point(|m| m.2));
             styles.push(Style {
                 name: format!("{name}, {mesh}"),
-                colour: if sample.file == "corner-135" { "#d62728" } else { "#1f77b4" },
+                colour: if sample.file == "corner-135" {
+                    plot::COLOURS[1]
+                } else {
+                    plot::COLOURS[0]
+                },
                 dashed,
             });
         }

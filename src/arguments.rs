@@ -68,6 +68,9 @@ pub enum Task {
         /// `signorini audit`; takes about as long again as the solution
         #[arg(long)]
         certificate: bool,
+        /// Write report.html, too: picture, numbers, what is proved and the case, in one file to send on
+        #[arg(long)]
+        report: bool,
         /// Who solves: this program, or the reference in FEniCSx, which runs on many processes
         #[arg(long, value_enum, default_value_t = Engine::Signorini)]
         engine: Engine,

@@ -14,8 +14,6 @@ mod engine;
 mod progress;
 #[cfg(not(kani))]
 mod signals;
-#[cfg(not(kani))]
-mod summary;
 
 #[cfg(not(kani))]
 fn main() -> std::process::ExitCode {
@@ -44,17 +42,17 @@ mod command {
     use signorini::io::field::read_field;
     use signorini::io::files::{reason, spare};
     use signorini::io::input;
-    use signorini::io::outputs::{self, Certified};
+    use signorini::io::outputs::{self, Certified, Extra};
     use signorini::io::result::{Results, Seconds, result_json};
     use signorini::io::run::{self, RunError, Solved};
     use signorini::io::sweep::{self, Axis, Sweep, SweepError};
-    use signorini::io::{Case, CaseError, certificate};
+    use signorini::io::{Case, CaseError, certificate, report, summary};
     use signorini::quote;
     use signorini::solve::{self, Course, Degree, LadderError, Solution, Times};
 
     use crate::arguments::{Arguments, CaseArguments, Engine, Mesh, Task};
     use crate::progress::Phases;
-    use crate::{engine, progress, signals, summary};
+    use crate::{engine, progress, signals};
 
     /// The case is wrong.
     const WRONG: u8 = 2;
@@ -85,8 +83,9 @@ mod command {
         };
         signals::watch();
         let done = match &task {
-            Task::Solve { case, out, json, certificate, engine, ranks, reference } => {
+            Task::Solve { case, out, json, certificate, report, engine, ranks, reference } => {
                 let out = out.as_deref();
+                let extra = Extra { certificate: *certificate, report: *report };
                 let wanted = if *json { Wanted::Json } else { Wanted::Summary { verbose } };
                 match (engine, ranks) {
                     (Engine::Fenicsx, ranks) => {
@@ -94,7 +93,7 @@ mod command {
                         let by = Fenicsx { ranks: ranks.unwrap_or(1), reference };
                         solve_by_fenicsx(case, out, by, wanted, quiet)
                     }
-                    (Engine::Signorini, None) => solve(case, out, wanted, *certificate, quiet),
+                    (Engine::Signorini, None) => solve(case, out, wanted, extra, quiet),
                     (Engine::Signorini, Some(ranks)) => Err(Failure {
                         message: format!(
                             "--ranks {ranks}: this program solves in one process; expected --engine fenicsx beside it"
@@ -193,7 +192,7 @@ mod command {
         arguments: &CaseArguments,
         out: Option<&Path>,
         wanted: Wanted,
-        certificate: bool,
+        extra: Extra,
         quiet: bool,
     ) -> Result<Done, Failure> {
         let phases = Phases::start(quiet);
@@ -203,12 +202,12 @@ mod command {
         let read = start.elapsed();
         let folder = folder(&arguments.file, out);
         if wanted != Wanted::Json || out.is_some() {
-            let names = [&outputs::FILES[..], &certificate::FILES].concat();
+            let names = [&outputs::FILES[..], &certificate::FILES, &[report::FILE]].concat();
             spare(&folder, &names, &case.sources).map_err(|e| failure(WRONG)(&e))?;
         }
         let (case, Solved { solution, times, certified, .. }) = as_asked(case, &phases)?;
         let certified = certified.or_else(|| {
-            certificate.then(|| {
+            extra.certificate.then(|| {
                 phases.enter("certifying");
                 Certified::new(&case, &solution)
             })
@@ -218,7 +217,9 @@ mod command {
                 let seconds = Seconds::new(read, &times, Duration::ZERO);
                 let results = outputs::results(&case, &solution, seconds);
                 let mut results = results.map_err(|e| failure(FAILED)(&e))?;
-                certified.iter().for_each(|certified| certified.add_to(&mut results, certificate));
+                certified
+                    .iter()
+                    .for_each(|certified| certified.add_to(&mut results, extra.certificate));
                 (Vec::new(), results)
             }
             _ => {
@@ -226,7 +227,7 @@ mod command {
                 let remark = remark_of_another_case(&folder, &case.file);
                 let certified = certified.as_ref();
                 let written =
-                    outputs::write(&folder, &case, &solution, read, times, certified, certificate)
+                    outputs::write(&folder, &case, &solution, read, times, certified, extra)
                         .map_err(|e| failure(FAILED)(&e))?;
                 drop(phases);
                 if let (Some(remark), false) = (remark, quiet) {

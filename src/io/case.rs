@@ -129,6 +129,8 @@ pub struct Case {
     pub stretch: Option<f64>,
     /// The exact solution, if there is one.
     pub exact: Option<ExactCase>,
+    /// The text that it was read from, with a comment for each setting laid over it.
+    pub text: String,
     /// The files that all this was read from.
     pub sources: Vec<PathBuf>,
 }
@@ -240,7 +242,12 @@ fn parse(source: Source, mesh: Option<Mesh>) -> Result<Case, CaseError> {
     let layers = setting::layers(&source);
     let mut entries = entries.into_inner();
     setting::lay(source, &layers, &mut entries)?;
-    case(source.file, &Table::whole(source, &entries), mesh)
+    let mut case = case(source.file, &Table::whole(source, &entries), mesh)?;
+    case.text = source.text.to_owned();
+    for setting in source.settings {
+        case.text += &format!("# --set {}\n", setting.replace('\n', " "));
+    }
+    Ok(case)
 }
 
 /// Where the first key with more parts than the TOML reader takes stands: of that mistake it does not give the place.
@@ -327,6 +334,7 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, CaseErro
         adapt,
         probes,
         exact: solution.map(|solution| ExactCase { solution, kinds, structured, perturbation }),
+        text: String::new(),
         sources: std::iter::once(file.to_owned()).chain(mesh_file).collect(),
     })
 }

@@ -9,7 +9,7 @@ use thiserror::Error;
 use super::case::Case;
 use super::data::DataError;
 use super::files::{Output, WriteError};
-use super::plot::{Figure, Panel, Style, figure};
+use super::plot::{COLOURS, Figure, Panel, Style, figure};
 use crate::fem::{Errors, Perturbation};
 use crate::solve::ladder::{fitted_slope, rates};
 use crate::solve::{Degree, Ladder, LadderError, Level, Method};
@@ -240,7 +240,7 @@ pub fn plot(title: &str, studies: &[Study]) -> Figure {
             .iter()
             .map(|study| Style {
                 name: study.name(),
-                colour: if study.degree == Degree::One { "#1f77b4" } else { "#d62728" },
+                colour: COLOURS[usize::from(study.degree != Degree::One)],
                 dashed: study.meshes == Meshes::Perturbed,
             })
             .collect(),

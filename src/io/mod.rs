@@ -17,6 +17,7 @@ mod exact;
 pub mod expression;
 #[cfg(feature = "files")]
 pub mod field;
+pub mod fields;
 pub mod files;
 pub mod gmsh;
 pub mod input;
@@ -34,6 +35,8 @@ pub mod picture;
 #[cfg(feature = "files")]
 pub mod plot;
 #[cfg(feature = "files")]
+pub mod report;
+#[cfg(feature = "files")]
 pub mod result;
 #[cfg(feature = "files")]
 pub mod run;
@@ -41,6 +44,8 @@ pub mod run;
 mod setting;
 #[cfg(feature = "files")]
 mod source;
+#[cfg(feature = "files")]
+pub mod summary;
 #[cfg(feature = "files")]
 pub mod sweep;
 #[cfg(feature = "files")]

@@ -1,19 +1,19 @@
-//! The files of a solved case: solution.vtu, contact.vtu, contact.csv, picture.svg and result.json, written together or
-//! not at all.
+//! The files of a solved case: solution.vtu, contact.vtu, contact.csv, picture.svg, result.json and, on demand, report.html
+//! and the certificate, written together or not at all.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use thiserror::Error;
 
-use super::case::{Case, Units};
+use super::case::Case;
 use super::certificate;
-use super::csv::{ContactRow, contact_csv};
 use super::data::DataError;
+use super::fields::fields;
 use super::files::{Output, WriteError};
 use super::numbers::short;
-use super::picture::{ContactSample, Scene, picture};
+use super::picture::draw;
+use super::report;
 use super::result::{
     Adaptation, Certificates, Choices, DiscreteCertificate, GammaChoice, MeshSizes, NewtonHistory,
     Results, SCHEMA, Seconds, StressPeak, StressPeaks, result_json,
@@ -21,10 +21,9 @@ use super::result::{
 use super::vtu::{CellKind, Field, Grid, Values, vtu};
 use crate::certify::{CertifyError, Continuous, certify};
 use crate::fem::{self, Space, contact_line::Gamma};
-use crate::kernel::{P2, Stress};
+use crate::kernel::P2;
 use crate::memory::{self, OutOfMemory};
-use crate::solve::solution::ContactValues;
-use crate::solve::{Extreme, Solution, Times, Verdict, stresses};
+use crate::solve::{Extreme, Solution, Times};
 
 /// The names of the files of a solved case; the last one says that the set is whole.
 pub const FILES: [&str; 5] =
@@ -97,8 +96,17 @@ impl Certified {
     }
 }
 
-/// Writes the files of a case into `folder`; returns their paths and the content of result.json. `certificate` asks for
-/// the files certificate.json and certificate.bin, too; where there is no certificate, all else is written.
+/// What is written beside [`FILES`].
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Extra {
+    /// certificate.json and certificate.bin, where there is a certificate.
+    pub certificate: bool,
+    /// report.html
+    pub report: bool,
+}
+
+/// Writes the files of a case into `folder`; returns their paths and the content of result.json. Where a certificate is asked
+/// for and there is none, all else is written.
 ///
 /// # Errors
 /// A folder or file that can't be written, a number that is not finite.
@@ -109,7 +117,7 @@ pub fn write(
     read: Duration,
     times: Times,
     certified: Option<&Certified>,
-    certificate: bool,
+    extra: Extra,
 ) -> Result<(Vec<PathBuf>, Results), OutputError> {
     let start = Instant::now();
     memory::check(bytes_to_write(solution))?;
@@ -117,27 +125,36 @@ pub fn write(
     output.replaces(&only_in(&FILES_OF_FENICSX, &FILES));
     output.replaces(&[CERTIFIED]);
     let continuous = certified.and_then(|c| c.result.as_ref().ok());
-    if !(certificate && continuous.is_some()) {
+    if !(extra.certificate && continuous.is_some()) {
         output.replaces(&certificate::FILES);
+    }
+    if !extra.report {
+        output.replaces(&[report::FILE]);
     }
     let mut stage = |file, bytes: Result<Vec<u8>, DataError>| -> Result<(), OutputError> {
         let bytes = bytes.map_err(|error| OutputError::Data { file, error })?;
         Ok(output.stage(file, &bytes)?)
     };
     let indicators = continuous.map(|c| c.indicators.as_slice());
-    stage("solution.vtu", solution_vtu(solution, &case.problem, indicators))?;
-    stage("contact.vtu", contact_vtu(solution))?;
-    stage("contact.csv", contact_csv(&contact_rows(solution)).map(String::into_bytes))?;
-    stage("picture.svg", draw(case, solution).map(String::into_bytes))?;
-    if let (Some(continuous), true) = (continuous, certificate) {
+    let mut results = results(case, solution, Seconds::new(read, &times, Duration::ZERO))?;
+    if let Some(certified) = certified {
+        certified.add_to(&mut results, extra.certificate);
+    }
+    for (file, bytes) in fields(solution, &case.problem, indicators) {
+        stage(file, bytes)?;
+    }
+    let picture = draw(case, solution, &results)
+        .map_err(|error| OutputError::Data { file: "picture.svg", error })?;
+    if extra.report {
+        stage(report::FILE, Ok(report::html(case, &results, &picture).into_bytes()))?;
+    }
+    stage("picture.svg", Ok(picture.into_bytes()))?;
+    if let (Some(continuous), true) = (continuous, extra.certificate) {
         for (file, bytes) in certificate_files(&case.title, continuous) {
             stage(file, bytes)?;
         }
     }
-    let mut results = results(case, solution, Seconds::new(read, &times, start.elapsed()))?;
-    if let Some(certified) = certified {
-        certified.add_to(&mut results, certificate);
-    }
+    results.seconds.write = start.elapsed().as_secs_f64();
     stage("result.json", result_json(&results).map(String::into_bytes))?;
     Ok((output.publish()?, results))
 }
@@ -348,209 +365,4 @@ fn stress_peaks(case: &Case, solution: &Solution) -> Option<StressPeaks> {
         principal_max: peak(largest.principal_max),
         principal_min: peak(largest.principal_min),
     })
-}
-
-/// For each triangle the number of its physical surface, from 1 on in alphabetical order; 0 in none.
-fn surface_numbers(mesh: &fem::Mesh) -> Vec<f64> {
-    let mut numbers = vec![0.0; mesh.triangles().len()];
-    for (number, triangles) in (1_u32..).zip(mesh.surfaces().values()) {
-        triangles.iter().for_each(|&t| numbers[t] = f64::from(number));
-    }
-    numbers
-}
-
-fn solution_vtu(
-    s: &Solution,
-    problem: &fem::Problem,
-    indicators: Option<&[f64]>,
-) -> Result<Vec<u8>, DataError> {
-    let all = |(stress, zz): &(Stress<f64>, f64)| {
-        let [xx, yy, xy] = stress.components();
-        [xx, yy, *zz, xy]
-    };
-    let stress: Vec<[f64; 4]> = s.stress.iter().map(all).collect();
-    let mut cell_data = vec![
-        Field { name: "stress", values: Values::SymmetricTensors(&stress) },
-        Field { name: "von_mises", values: Values::Scalars(&s.von_mises) },
-    ];
-    let surfaces = surface_numbers(&problem.mesh);
-    if !problem.mesh.surfaces().is_empty() {
-        cell_data.push(Field { name: "surface", values: Values::Scalars(&surfaces) });
-    }
-    if let Some(indicators) = indicators {
-        cell_data.push(Field { name: "error_bound", values: Values::Scalars(indicators) });
-    }
-    let nodal = s.nodal_stresses(problem);
-    let von_mises: Vec<f64> = nodal.iter().map(|&stress| stresses::von_mises(stress)).collect();
-    let (first, second): (Vec<f64>, Vec<f64>) =
-        nodal.iter().map(|&stress| stresses::principal_in_plane(stress).into()).unzip();
-    vtu(&Grid {
-        kind: if s.degree == 1 { CellKind::Triangle } else { CellKind::QuadraticTriangle },
-        points: &s.nodes,
-        connectivity: &s.elements,
-        point_data: &[
-            Field { name: "displacement", values: Values::Vectors(&s.displacement) },
-            Field { name: "nodal_stress", values: Values::SymmetricTensors(&nodal) },
-            Field { name: "nodal_von_mises", values: Values::Scalars(&von_mises) },
-            Field { name: "principal_1", values: Values::Scalars(&first) },
-            Field { name: "principal_2", values: Values::Scalars(&second) },
-        ],
-        cell_data: &cell_data,
-    })
-}
-
-/// Each edge has points of its own, for sigma_n and lambda^h jump from edge to edge.
-fn contact_vtu(s: &Solution) -> Result<Vec<u8>, DataError> {
-    let points: Vec<&ContactValues> = s.contact.iter().flat_map(|edge| &edge.points).collect();
-    let per_edge = s.degree + 1;
-    let connectivity: Vec<usize> = (0..s.contact.len())
-        .flat_map(|e| {
-            let first = e * per_edge;
-            // Ends first, then what lies between them.
-            [first, first + s.degree].into_iter().chain(first + 1..first + s.degree)
-        })
-        .collect();
-    let places: Vec<[f64; 2]> = points.iter().map(|p| s.nodes[p.node]).collect();
-    let displacement: Vec<[f64; 2]> = points.iter().map(|p| s.displacement[p.node]).collect();
-    let scalars = |of: fn(&ContactValues) -> f64| points.iter().map(|p| of(p)).collect::<Vec<_>>();
-    let (u_n, gap) = (scalars(|p| p.u_n), scalars(|p| p.gap));
-    let (sigma_n, lambda) = (scalars(|p| p.sigma_n), scalars(|p| p.lambda));
-    let pressure = scalars(|p| p.pressure);
-    let direction: Vec<[f64; 2]> = points.iter().map(|p| p.direction).collect();
-    vtu(&Grid {
-        kind: if s.degree == 1 { CellKind::Line } else { CellKind::QuadraticLine },
-        points: &places,
-        connectivity: &connectivity,
-        point_data: &[
-            Field { name: "displacement", values: Values::Vectors(&displacement) },
-            Field { name: "u_n", values: Values::Scalars(&u_n) },
-            Field { name: "gap", values: Values::Scalars(&gap) },
-            Field { name: "sigma_n", values: Values::Scalars(&sigma_n) },
-            Field { name: "lambda", values: Values::Scalars(&lambda) },
-            Field { name: "pressure", values: Values::Scalars(&pressure) },
-            Field { name: "direction", values: Values::Vectors(&direction) },
-        ],
-        cell_data: &[],
-    })
-}
-
-fn contact_rows(s: &Solution) -> Vec<ContactRow<'_>> {
-    let mut rows = Vec::new();
-    for edge in &s.contact {
-        for p in &edge.points {
-            let [x, y] = s.nodes[p.node];
-            let ContactValues { arc, u_n, gap, sigma_n, lambda, pressure, .. } = *p;
-            let boundary = &*edge.boundary;
-            rows.push(ContactRow { arc, x, y, u_n, gap, sigma_n, lambda, pressure, boundary });
-        }
-    }
-    rows
-}
-
-fn draw(case: &Case, s: &Solution) -> Result<String, DataError> {
-    let mesh = &case.problem.mesh;
-    let ends = mesh.outline().iter().map(|&edge| (edge, mesh.ends(edge)));
-    let (triangles, von_mises, outline): (Vec<[usize; 3]>, Vec<f64>, Vec<[usize; 2]>) =
-        if s.degree == 1 {
-            let outline = ends.map(|(_, ends)| ends).collect();
-            (mesh.triangles().to_vec(), s.von_mises.clone(), outline)
-        } else {
-            // A quadratic triangle is drawn as four, its edges as two.
-            let (elements, _) = s.elements.as_chunks::<6>();
-            let quarters =
-                |&[a, b, c, d, e, f]: &[usize; 6]| [[a, f, e], [f, b, d], [e, d, c], [d, e, f]];
-            let halves = ends.flat_map(|(edge, [a, b])| {
-                let middle = elements[edge.triangle][3 + edge.local];
-                [[a, middle], [middle, b]]
-            });
-            (
-                elements.iter().flat_map(quarters).collect(),
-                s.von_mises.iter().flat_map(|&v| [v; 4]).collect(),
-                halves.collect(),
-            )
-        };
-    let gamma = &s.gamma;
-    let (contact, surfaces) = contact_parts(s);
-    let unit = case.units.as_ref().map(Units::stress);
-    picture(&Scene {
-        title: &case.title,
-        subtitle: &format!(
-            "{}P{}, {} unknowns, gamma0 = {}, kappa = {}",
-            match s.verdict {
-                Verdict::Proved => "",
-                Verdict::NotProved(_) => "NOT PROVED (result.json says why): ",
-            },
-            s.degree,
-            2 * s.nodes.len(),
-            short(gamma.gamma0, 3),
-            short(gamma.kappa, 3)
-        ),
-        points: &s.nodes,
-        displacement: &s.displacement,
-        triangles: &triangles,
-        von_mises: &von_mises,
-        unit: unit.as_deref(),
-        interfaces: &interfaces(case, s),
-        outline: &outline,
-        contact: &contact,
-        surfaces: &surfaces,
-    })
-}
-
-/// The edges between triangles of different materials, for P2 in two halves.
-fn interfaces(case: &Case, s: &Solution) -> Vec<[usize; 2]> {
-    let (mesh, materials) = (&case.problem.mesh, &case.problem.material);
-    let mut found = Vec::new();
-    if materials.only().is_some() {
-        return found;
-    }
-    let mut material_at = BTreeMap::new();
-    for (t, corners) in mesh.triangles().iter().enumerate() {
-        let material = materials.place_of(t);
-        for i in 0..3 {
-            let [a, b] = [corners[(i + 1) % 3], corners[(i + 2) % 3]];
-            match material_at.insert([a.min(b), a.max(b)], material) {
-                Some(other) if other != material && s.degree == 1 => found.push([a, b]),
-                Some(other) if other != material => {
-                    let middle = s.elements[6 * t + 3 + i];
-                    found.extend([[a, middle], [middle, b]]);
-                }
-                _ => {}
-            }
-        }
-    }
-    found
-}
-
-/// The connected parts of the contact line, and the number of each one's boundary.
-fn contact_parts(s: &Solution) -> (Vec<Vec<ContactSample>>, Vec<usize>) {
-    let mut parts: Vec<Vec<ContactSample>> = Vec::new();
-    let (mut surfaces, mut surface) = (Vec::new(), 0);
-    let mut end = None;
-    let mut boundary = "";
-    for edge in &s.contact {
-        if *edge.boundary != *boundary {
-            end = None;
-            surface += 1;
-        }
-        boundary = &edge.boundary;
-        let samples = edge.points.iter().map(|p| ContactSample {
-            position: s.nodes[p.node],
-            normal: p.direction,
-            displacement: s.displacement[p.node],
-            gap: p.gap,
-            pressure: p.pressure,
-        });
-        match parts.last_mut() {
-            Some(part) if end.is_some() && end == edge.points.first().map(|p| p.node) => {
-                part.extend(samples)
-            }
-            _ => {
-                parts.push(samples.collect());
-                surfaces.push(surface);
-            }
-        }
-        end = edge.points.last().map(|p| p.node);
-    }
-    (parts, surfaces)
 }

@@ -7,6 +7,7 @@ use svg::node::element::{Circle, Group, Line, Path as PathElement, Rectangle, TS
 use svg::{Document, Node};
 
 use super::data::{DataError, check_finite};
+use super::picture::{DARK, FONT, GREY, rounded, width_of};
 
 /// A figure.
 #[derive(Clone, Debug)]
@@ -43,9 +44,9 @@ pub struct Style {
     pub dashed: bool,
 }
 
-const FONT: &str = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
-const DARK: &str = "#222222";
-const GREY: &str = "#666666";
+/// Colours that the colour-blind tell apart, too.
+pub const COLOURS: [&str; 3] = ["#0072b2", "#d55e00", "#009e73"];
+
 const LIGHT: &str = "#dddddd";
 
 /// The drawing area of a panel, and the space around it.
@@ -57,8 +58,8 @@ const TOP: f64 = 74.0;
 const BELOW: f64 = 48.0;
 const LEGEND_LINE: f64 = 20.0;
 
-/// Legend entries on one line for each panel.
-const PER_PANEL: usize = 2;
+/// The room of a legend entry beside its name.
+const LEGEND_MARK: f64 = 68.0;
 
 /// The text of the SVG file.
 ///
@@ -73,7 +74,8 @@ pub fn figure(figure: &Figure) -> Result<String, DataError> {
     }
     let columns = figure.panels.len().max(1);
     let width = columns as f64 * (LEFT + WIDTH + RIGHT);
-    let per_line = PER_PANEL * columns;
+    let widths = figure.styles.iter().map(|style| width_of(&style.name, 12.0) + LEGEND_MARK);
+    let per_line = ((width / widths.fold(width / 6.0, f64::max)) as usize).max(1);
     let legend_lines = figure.styles.len().div_ceil(per_line) as f64;
     let height = TOP + HEIGHT + BELOW + legend_lines * LEGEND_LINE + 8.0;
     let mut document = Document::new()
@@ -104,11 +106,6 @@ pub fn figure(figure: &Figure) -> Result<String, DataError> {
 
 fn label(text: &str, x: f64, y: f64, anchor: &str) -> Text {
     Text::new(text).set("x", rounded(x)).set("y", rounded(y)).set("text-anchor", anchor)
-}
-
-/// Coordinates in hundredths, which keeps the file small and the same everywhere.
-fn rounded(x: f64) -> f64 {
-    (x * 100.0).round() / 100.0 + 0.0
 }
 
 fn stroke(from: [f64; 2], to: [f64; 2], style: &Style) -> Line {
@@ -283,7 +280,7 @@ mod tests {
                 lines: vec![points],
                 slopes: vec![(0, 1.5)],
             }],
-            styles: vec![Style { name: "P1".to_owned(), colour: "#1f77b4", dashed: false }],
+            styles: vec![Style { name: "P1".to_owned(), colour: COLOURS[0], dashed: false }],
         }
     }
 
@@ -293,6 +290,19 @@ mod tests {
         // One mark more in the legend.
         assert_eq!(text.matches("<circle").count(), 4);
         assert!(text.contains("A &lt; B") && text.contains("\n1.5\n"));
+    }
+
+    #[test]
+    fn entries_of_the_legend_do_not_run_into_each_other() {
+        let mut sample = sample(vec![[0.1, 1e-3]]);
+        sample.styles[0].name = "a name of some forty letters, or a few more".to_owned();
+        sample.styles.push(sample.styles[0].clone());
+        let text = figure(&sample).unwrap();
+        let mut places = text.split(sample.styles[0].name.as_str()).map(|before| {
+            before.rsplit(" y=\"").next().and_then(|y| y.split('"').next()?.parse::<f64>().ok())
+        });
+        let (first, second) = (places.next().flatten().unwrap(), places.next().flatten().unwrap());
+        assert_eq!(second - first, LEGEND_LINE);
     }
 
     #[test]

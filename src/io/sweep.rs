@@ -15,7 +15,7 @@ use super::case::{Case, CaseError};
 use super::csv::cell;
 use super::files::{Output, WriteError};
 use super::numbers::short;
-use super::outputs::{self, Certified, OutputError};
+use super::outputs::{self, Certified, Extra, OutputError};
 use super::result::{Results, Seconds};
 use super::run::{self, RunError, Solved};
 use crate::quote;
@@ -105,6 +105,9 @@ const NOT_SOLVED: &str = "not solved";
 /// The name of the file.
 pub const FILE: &str = "sweep.csv";
 
+/// The name of the file that ParaView opens, where the runs have files.
+pub const COLLECTION: &str = "sweep.pvd";
+
 /// A case and what became of it along some axes.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
@@ -115,6 +118,8 @@ pub struct Sweep {
     pub keys: Vec<String>,
     /// The runs; the last key changes first.
     pub runs: Vec<Run>,
+    /// The files of each run are written, too.
+    pub with_files: bool,
     /// The values of the runs that are still to come.
     pub to_come: VecDeque<Vec<String>>,
 }
@@ -161,7 +166,8 @@ pub fn run(
     clear(folder);
     let keys = axes.iter().map(|axis| axis.key.clone()).collect();
     let to_come = (0..count).map(|i| combination(axes, i)).collect();
-    let mut sweep = Sweep { title, keys, runs: Vec::with_capacity(count), to_come };
+    let runs = Vec::with_capacity(count);
+    let mut sweep = Sweep { title, keys, runs, with_files: folders.is_some(), to_come };
     let mut last = None;
     for i in 0..count {
         let (case, values) = read(i)?;
@@ -215,7 +221,16 @@ fn solve(
     let results = match folder {
         Some(folder) => {
             let certified = certified.unwrap_or_else(|| Certified::new(&case, &solution));
-            outputs::write(folder, &case, &solution, read, times, Some(&certified), false)?.1
+            outputs::write(
+                folder,
+                &case,
+                &solution,
+                read,
+                times,
+                Some(&certified),
+                Extra::default(),
+            )?
+            .1
         }
         None => {
             let seconds = Seconds::new(read, &times, Duration::ZERO);
@@ -228,68 +243,106 @@ fn solve(
     Ok(Ok(results))
 }
 
+/// A number of a run by its name; those that are `brief` stand in the table for people, too.
+struct Cell {
+    name: String,
+    brief: bool,
+    value: String,
+}
+
 /// How a number is shown.
 type Shown<'a> = &'a dyn Fn(f64) -> String;
 
-/// A column: its name and its cell, where the run has it.
-type Column = (&'static str, fn(&Results, Shown) -> Option<String>);
-
-const COLUMNS: [Column; 10] = [
-    ("verdict", |r, _| Some(r.outcome().unwrap_or_default())),
-    ("gamma0", |r, shown| Some(shown(r.gamma.gamma0))),
-    ("kappa", |r, shown| Some(shown(r.gamma.kappa))),
-    ("newton_steps", |r, _| Some(r.newton.iterations.to_string())),
-    ("contact_force", |r, shown| Some(shown(r.quantities.contact_force))),
-    ("contact_length", |r, shown| Some(shown(r.quantities.contact_length))),
+/// The numbers of a run: forces, moments and energies times the thickness, if the case has one.
+fn cells(r: &Results, shown: Shown) -> Vec<Cell> {
+    let (q, thickness) = (&r.quantities, r.thickness.unwrap_or(1.0));
     // That of the summary: the recovered one.
-    ("peak_pressure", |r, shown| {
-        r.contact.iter().map(|part| part.peak_pressure).reduce(f64::max).map(shown)
-    }),
-    ("max_displacement", |r, shown| Some(shown(r.quantities.max_displacement))),
-    ("energy", |r, shown| Some(shown(r.quantities.energy))),
-    // Only of a case with an exact solution.
-    ("energy_error", |r, shown| r.errors.as_ref().map(|errors| shown(errors.energy))),
-];
+    let peak = r.contact.iter().map(|part| part.peak_pressure).reduce(f64::max);
+    let brief = [
+        ("verdict", Some(r.outcome().unwrap_or_default())),
+        ("gamma0", Some(shown(r.gamma.gamma0))),
+        ("kappa", Some(shown(r.gamma.kappa))),
+        ("newton_steps", Some(r.newton.iterations.to_string())),
+        ("contact_force", Some(shown(q.contact_force * thickness))),
+        ("contact_length", Some(shown(q.contact_length))),
+        ("peak_pressure", peak.map(shown)),
+        ("max_von_mises", r.stress.as_ref().map(|stress| shown(stress.von_mises.value))),
+        ("max_displacement", Some(shown(q.max_displacement))),
+        ("energy", Some(shown(q.energy * thickness))),
+        ("energy_error", r.errors.as_ref().map(|errors| shown(errors.energy))),
+    ];
+    let mut cells: Vec<Cell> = Vec::new();
+    for (name, value) in brief {
+        cells.extend(value.map(|value| Cell { name: name.to_owned(), brief: true, value }));
+    }
+    let mut add = |name: String, x: f64| cells.push(Cell { name, brief: false, value: shown(x) });
+    for part in &r.contact {
+        let name = |what: &str| format!("{}.{what}", part.boundary);
+        add(name("force"), part.force * thickness);
+        add(name("length"), part.length);
+        add(name("peak_pressure"), part.peak_pressure);
+    }
+    let proved = r.certificate.as_ref().and_then(|c| c.discrete.as_ref()?.intervals.as_ref());
+    for part in proved.iter().flat_map(|intervals| &intervals.contact) {
+        // Outwards, should the product be rounded.
+        add(format!("{}.force_low", part.boundary), (part.force[0] * thickness).next_down());
+        add(format!("{}.force_high", part.boundary), (part.force[1] * thickness).next_up());
+    }
+    for (boundary, force) in &q.reactions {
+        for (axis, value) in ["x", "y"].into_iter().zip(force) {
+            add(format!("{boundary}.reaction_{axis}"), value * thickness);
+        }
+    }
+    for (i, [_, _, u_x, u_y]) in (1..).zip(&r.probes) {
+        add(format!("probe_{i}.u_x"), *u_x);
+        add(format!("probe_{i}.u_y"), *u_y);
+    }
+    cells
+}
 
 impl Sweep {
-    fn columns(&self) -> impl Iterator<Item = Column> {
-        // gamma0 as a key stands there already; an error that no run has is no column.
+    /// The columns between the values and the status: what any run has, in the order of [`cells`].
+    fn columns(&self, brief: bool) -> Vec<String> {
+        let mut columns: Vec<String> = Vec::new();
+        // gamma0 as a key stands there already.
         let new = |name: &str| !self.keys.iter().any(|key| key == &format!("method.{name}"));
-        let exact = self.runs.iter().any(|r| r.outcome.as_ref().is_ok_and(|r| r.errors.is_some()));
-        COLUMNS.into_iter().filter(move |(name, _)| new(name) && (exact || *name != "energy_error"))
+        let solved = self.runs.iter().filter_map(|run| run.outcome.as_ref().ok());
+        for cell in solved.flat_map(|results| cells(results, &|_| String::new())) {
+            if new(&cell.name) && (cell.brief || !brief) && !columns.contains(&cell.name) {
+                columns.push(cell.name);
+            }
+        }
+        columns
     }
 
-    fn names(&self) -> Vec<&str> {
-        let names = self.columns().map(|(name, _)| name);
-        self.keys.iter().map(String::as_str).chain(names).chain(["status"]).collect()
-    }
-
-    /// A line for each run: the values, the numbers, and how it ended.
-    fn rows(&self, shown: Shown) -> Vec<Vec<String>> {
-        let row = |run: &Run| {
-            let results = run.outcome.as_ref().ok();
-            let cells = self
-                .columns()
-                .map(|(_, cell)| results.and_then(|r| cell(r, shown)).unwrap_or_default());
-            let status = match &run.outcome {
-                Ok(results) => results.newton.verdict().to_owned(),
-                Err(error) => error.to_string(),
+    /// The heading and a line for each run: the values, the numbers, and how it ended.
+    fn lines(&self, brief: bool, shown: Shown) -> Vec<Vec<String>> {
+        let columns = self.columns(brief);
+        let heading = self.keys.iter().chain(&columns).cloned().chain(["status".to_owned()]);
+        let row = |values: &[String], cells: Vec<Cell>, status: String| -> Vec<String> {
+            let cell = |name: &String| {
+                let cell = cells.iter().find(|cell| cell.name == *name);
+                cell.map_or(String::new(), |cell| cell.value.clone())
             };
-            run.values.iter().cloned().chain(cells).chain([status]).collect()
+            values.iter().cloned().chain(columns.iter().map(cell)).chain([status]).collect()
         };
-        let empty = |values: &Vec<String>| {
-            let cells = self.columns().map(|_| String::new());
-            values.iter().cloned().chain(cells).chain([NOT_SOLVED.to_owned()]).collect()
-        };
-        self.runs.iter().map(row).chain(self.to_come.iter().map(empty)).collect()
+        let solved = self.runs.iter().map(|run| match &run.outcome {
+            Ok(results) => {
+                row(&run.values, cells(results, shown), results.newton.verdict().to_owned())
+            }
+            Err(error) => row(&run.values, Vec::new(), error.to_string()),
+        });
+        let to_come =
+            self.to_come.iter().map(|values| row(values, Vec::new(), NOT_SOLVED.to_owned()));
+        [heading.collect()].into_iter().chain(solved).chain(to_come).collect()
     }
 
     /// The table for people: columns with four digits, aligned.
     pub fn table(&self) -> String {
-        let mut lines = vec![self.names().into_iter().map(quote::line).collect::<Vec<_>>()];
-        lines.extend(self.rows(&|x| short(x, 4)));
-        for line in &mut lines[1..] {
-            line[..self.keys.len()].iter_mut().for_each(|value| *value = quote::line(value));
+        let mut lines = self.lines(true, &|x| short(x, 4));
+        for line in &mut lines {
+            let status = line.len() - 1;
+            line[..status].iter_mut().for_each(|value| *value = quote::line(value));
         }
         let width = |c: usize| lines.iter().map(|line| line[c].chars().count()).max().unwrap_or(0);
         let columns = lines[0].len();
@@ -312,17 +365,32 @@ impl Sweep {
         let line = |cells: &[String]| {
             cells.iter().map(|text| cell(text)).collect::<Vec<_>>().join(",") + "\n"
         };
-        let names: Vec<String> = self.names().into_iter().map(str::to_owned).collect();
-        let rows = self.rows(&|x| format!("{x:?}"));
-        line(&names) + &rows.iter().map(|row| line(row)).collect::<String>()
+        self.lines(false, &|x| format!("{x:?}")).iter().map(|cells| line(cells)).collect()
     }
 
-    /// Writes sweep.csv into `folder` and returns its path.
+    /// The text of sweep.pvd: the solutions of the runs as the steps of one animation, for ParaView.
+    fn pvd(&self) -> String {
+        let mut text = String::from(
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n",
+        );
+        for (i, _) in (1..).zip(&self.runs).filter(|(_, run)| run.outcome.is_ok()) {
+            // Writing to a string cannot fail.
+            let _ = writeln!(text, "<DataSet timestep=\"{i}\" file=\"{i}/solution.vtu\"/>");
+        }
+        text + "</Collection>\n</VTKFile>\n"
+    }
+
+    /// Writes sweep.csv into `folder`, and sweep.pvd where the runs have files; returns their paths.
     ///
     /// # Errors
     /// A folder or file that can't be written.
     pub fn write(&self, folder: &Path) -> Result<Vec<PathBuf>, WriteError> {
         let mut output = Output::new(folder)?;
+        if self.with_files {
+            output.stage(COLLECTION, self.pvd().as_bytes())?;
+        } else {
+            output.replaces(&[COLLECTION]);
+        }
         output.stage(FILE, self.csv().as_bytes())?;
         output.publish()
     }
@@ -388,6 +456,7 @@ mod tests {
             title: String::new(),
             keys: vec!["method.gamma0".to_owned()],
             runs: Vec::new(),
+            with_files: false,
             to_come,
         };
         let csv = sweep.csv();

@@ -140,7 +140,7 @@ fn a_sweep_prints_and_writes_one_line_for_each_combination() {
     let lines: Vec<&str> = csv.lines().collect();
     assert_eq!(
         lines[0],
-        "method.gamma0,method.degree,verdict,kappa,newton_steps,contact_force,contact_length,peak_pressure,max_displacement,energy,status"
+        "method.gamma0,method.degree,verdict,kappa,newton_steps,contact_force,contact_length,peak_pressure,max_von_mises,max_displacement,energy,bottom.force,bottom.length,bottom.peak_pressure,bottom.force_low,bottom.force_high,top.reaction_x,top.reaction_y,probe_1.u_x,probe_1.u_y,probe_2.u_x,probe_2.u_y,status"
     );
     for (line, values) in lines[1..].iter().zip(["1e-3,1", "1e-3,2", "auto,1", "auto,2"]) {
         assert!(line.starts_with(values) && line.ends_with(",converged"), "{line}");
@@ -188,7 +188,12 @@ fn a_sweep_over_lists_writes_the_files_of_each_run_where_asked() {
     let output =
         signorini(&folder, &["sweep", "case.toml", "--set", loads, "--files", "--out", "o"]);
     assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), ""));
-    assert_eq!(names(&folder.join("o")), ["1", "2", "sweep.csv"]);
+    assert_eq!(names(&folder.join("o")), ["1", "2", "sweep.csv", "sweep.pvd"]);
+    let collection = fs::read_to_string(folder.join("o/sweep.pvd")).unwrap();
+    assert!(
+        collection.contains("<DataSet timestep=\"2\" file=\"2/solution.vtu\"/>"),
+        "{collection}"
+    );
     assert!(names(&folder.join("o/2")).contains(&"picture.svg".to_owned()));
     let csv = fs::read_to_string(folder.join("o/sweep.csv")).unwrap();
     assert!(csv.contains("\n\"[\"\"0\"\", \"\"-2\"\"]\","), "{csv}");
@@ -202,7 +207,10 @@ fn a_run_without_a_solution_is_a_line_of_the_sweep_and_exit_code_1() {
     let csv = fs::read_to_string(folder.join("out/case/sweep.csv")).unwrap();
     let lines: Vec<&str> = csv.lines().collect();
     assert!(lines[1].ends_with(",converged"), "{csv}");
-    assert!(lines[2].starts_with("5,,,,,,,,,\"gamma0 = 5 gives kappa = "), "{csv}");
+    assert!(
+        lines[2].starts_with("5,,,") && lines[2].contains(",,\"gamma0 = 5 gives kappa = "),
+        "{csv}"
+    );
     let table = text(&output.stdout);
     assert!(table.contains("and coercivity needs kappa < 1\n"), "{table}");
 }

@@ -5,7 +5,7 @@
 //! is lost. Cells on the border, whose centre is outside, copy their neighbours; the picture is cut along the deformed
 //! outline afterwards, so the border is as sharp as with triangles.
 
-use super::path::Point;
+use super::draw::Point;
 
 /// Cells in columns and rows, each with a value if it touches the body.
 pub struct Cells {

@@ -1,7 +1,8 @@
-//! What is drawn, as data.
+//! What is drawn, as data; by how much it is magnified; and where it lies on the page.
 
-use super::path::{Point, direction, distance, moved};
+use super::draw::{Point, distance, moved, short};
 use crate::io::data::{DataError, check_finite, check_length, check_points};
+use crate::io::numbers::Round;
 
 /// What is drawn.
 #[derive(Clone, Copy, Debug)]
@@ -18,22 +19,33 @@ pub struct Scene<'a> {
     pub triangles: &'a [[usize; 3]],
     /// The von Mises stress in each.
     pub von_mises: &'a [f64],
-    /// The unit of stress, if the case has units.
-    pub unit: Option<&'a str>,
+    /// The units of stress and of length, if the case has units.
+    pub units: Option<[&'a str; 2]>,
+    /// By how much displacement and gap are magnified; chosen here if it is not given.
+    pub stretch: Option<f64>,
     /// The edges between triangles of different materials.
     pub interfaces: &'a [[usize; 2]],
     /// The edges of the whole boundary, from start to end, the body on their left.
     pub outline: &'a [[usize; 2]],
-    /// The connected parts of the contact line, each from start to end, the body on its left. Where the pressure jumps
-    /// there are two samples at one place.
-    pub contact: &'a [Vec<ContactSample>],
-    /// For each of these the number of its surface: parts of one surface share a scale.
-    pub surfaces: &'a [usize],
+    /// The contact boundaries.
+    pub contact: &'a [ContactSurface],
 }
 
-/// A point of the contact line.
+/// A contact boundary.
+#[derive(Clone, Debug)]
+pub struct ContactSurface {
+    /// Its name.
+    pub name: String,
+    /// Its connected parts, each from start to end, the body on its left. Where the pressure jumps there are two samples at
+    /// one place.
+    pub parts: Vec<Vec<ContactSample>>,
+}
+
+/// A point of a contact boundary.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactSample {
+    /// Arc length along the boundary.
+    pub arc: f64,
     /// The place in the undeformed body.
     pub position: [f64; 2],
     /// The unit outward normal there.
@@ -44,6 +56,14 @@ pub struct ContactSample {
     pub gap: f64,
     /// The recovered pressure, >= 0.
     pub pressure: f64,
+}
+
+impl ContactSurface {
+    /// The sample with the largest pressure, if that is positive.
+    pub(super) fn peak(&self) -> Option<&ContactSample> {
+        let largest = self.parts.iter().flatten().max_by(|a, b| a.pressure.total_cmp(&b.pressure));
+        largest.filter(|sample| sample.pressure > 0.0)
+    }
 }
 
 impl Scene<'_> {
@@ -57,17 +77,16 @@ impl Scene<'_> {
         check_points("triangles", self.triangles.iter().flatten(), count)?;
         check_points("outline", self.outline.iter().flatten(), count)?;
         check_points("interfaces", self.interfaces.iter().flatten(), count)?;
-        check_length("surfaces", self.surfaces.len(), self.contact.len())?;
         check_finite("points", self.points.iter().map(<[f64; 2]>::as_slice))?;
         check_finite("displacement", self.displacement.iter().map(<[f64; 2]>::as_slice))?;
         check_finite("von_mises", self.von_mises.chunks(1))?;
-        let numbers = |sample: &ContactSample| {
-            let ContactSample { position: [x, y], normal: [n, m], displacement: [u, v], .. } =
-                *sample;
-            [x, y, n, m, u, v, sample.gap, sample.pressure]
+        let numbers = |s: &ContactSample| {
+            let ([x, y], [n, m], [u, v]) = (s.position, s.normal, s.displacement);
+            [s.arc, x, y, n, m, u, v, s.gap, s.pressure]
         };
-        let samples: Vec<[f64; 8]> = self.contact.iter().flatten().map(numbers).collect();
-        check_finite("contact", samples.iter().map(<[f64; 8]>::as_slice))
+        let samples = self.contact.iter().flat_map(|surface| surface.parts.iter().flatten());
+        let samples: Vec<[f64; 9]> = samples.map(numbers).collect();
+        check_finite("contact", samples.iter().map(<[f64; 9]>::as_slice))
     }
 
     /// The larger of the body's extents along x and y.
@@ -80,22 +99,21 @@ impl Scene<'_> {
         self.points.iter().zip(self.displacement).map(|(&x, &u)| moved(x, u, factor)).collect()
     }
 
-    pub(super) fn peak(&self) -> f64 {
-        self.contact.iter().flatten().map(|sample| sample.pressure).fold(0.0, f64::max)
-    }
-}
-
-impl Scene<'_> {
-    /// A part of the contact line is no straight line with one direction.
-    pub(super) fn contact_turns(&self) -> bool {
-        let turns = |a: Point, b: Point| distance(a, b) > 1e-6;
-        self.contact.iter().any(|part| {
-            let mut steps =
-                part.windows(2).filter_map(|pair| direction(pair[0].position, pair[1].position));
-            let first = steps.next();
-            part.windows(2).any(|pair| turns(pair[0].normal, pair[1].normal))
-                || steps.any(|step| first.is_some_and(|first| turns(first, step)))
-        })
+    /// By how much displacement and gap are magnified, and the words for it. True scale if the largest displacement is
+    /// between 1% and 30% of the body, so that one sees it and the body keeps its shape, or if it is mere rounding; else the
+    /// largest round factor that keeps it within 10%.
+    pub(super) fn magnification(&self) -> (f64, String) {
+        let words = |factor: &str| format!("deformation and gap × {factor}");
+        let largest = self.displacement.iter().map(|&u| distance(u, [0.0; 2])).fold(0.0, f64::max);
+        let part = largest / self.size();
+        match self.stretch {
+            Some(factor) if factor != 1.0 => (factor, words(&short(factor))),
+            None if !(0.01..=0.3).contains(&part) && part > 1e-12 => {
+                let round = Round::below(0.1 / part);
+                (round.times(1), words(&round.text(1)))
+            }
+            _ => (1.0, "deformation at true scale".to_owned()),
+        }
     }
 }
 
@@ -105,4 +123,49 @@ pub(super) fn bounds(points: impl IntoIterator<Item = Point>) -> [Point; 2] {
     points.into_iter().fold(empty, |[low, high], p| {
         [[low[0].min(p[0]), low[1].min(p[1])], [high[0].max(p[0]), high[1].max(p[1])]]
     })
+}
+
+/// The drawing of the body on the page: the map from the plane, and the room that it takes.
+pub(super) struct Frame {
+    corner: Point,
+    scale: f64,
+    /// What is at the centre of the drawing.
+    centre: Point,
+    pub(super) width: f64,
+    pub(super) height: f64,
+}
+
+/// The room around the drawing, for the letters of the contact boundaries.
+const AROUND: f64 = 34.0;
+
+impl Frame {
+    /// Around some points of the plane, its upper left corner on the page at `corner`.
+    pub(super) fn around(points: impl IntoIterator<Item = Point>, corner: Point) -> Frame {
+        let [low, high] = bounds(points);
+        let extent = [0, 1].map(|c| high[c] - low[c]);
+        let room = [800.0, 520.0].map(|most| most - 2.0 * AROUND);
+        let scale = (room[0] / extent[0]).min(room[1] / extent[1]);
+        let scale = if scale.is_finite() { scale } else { 1.0 };
+        Frame {
+            corner,
+            scale,
+            centre: [0, 1].map(|c| low[c] + extent[c] / 2.0),
+            width: (scale * extent[0] + 2.0 * AROUND).clamp(600.0, 800.0),
+            height: (scale * extent[1] + 2.0 * AROUND).clamp(260.0, 520.0),
+        }
+    }
+
+    pub(super) fn page(&self, [x, y]: Point) -> Point {
+        [
+            self.corner[0] + self.width / 2.0 + self.scale * (x - self.centre[0]),
+            self.corner[1] + self.height / 2.0 - self.scale * (y - self.centre[1]),
+        ]
+    }
+
+    /// Whether a circle lies within the frame.
+    pub(super) fn holds(&self, [x, y]: Point, radius: f64) -> bool {
+        let [left, top] = self.corner;
+        (left + radius..=left + self.width - radius).contains(&x)
+            && (top + radius..=top + self.height - radius).contains(&y)
+    }
 }

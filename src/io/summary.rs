@@ -3,45 +3,55 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use signorini::certify::Continuous;
-use signorini::io::case::Units;
-use signorini::io::certificate::Audit;
-use signorini::io::convergence::Study;
-use signorini::io::result::{
+use super::case::Units;
+use super::certificate::Audit;
+use super::convergence::Study;
+use super::result::{
     Adaptation, ContinuousCertificate, DiscreteCertificate, GammaChoice, NewtonHistory, Results,
     StressPeak,
 };
-use signorini::io::sweep::Sweep;
-use signorini::io::{Case, numbers};
-use signorini::quote;
-use signorini::solve::{ContactQuadrature, MethodReport, Outline, RouteName, Status};
+use super::sweep::Sweep;
+use super::{Case, numbers};
+use crate::certify::Continuous;
+use crate::quote;
+use crate::solve::{ContactQuadrature, MethodReport, Outline, RouteName, Status};
 
-/// Lines of a name and a text.
+/// Lines of a name and a text; one without a name goes on with what the one before it is about.
 #[derive(Default)]
-struct Lines(String);
+struct Lines(Vec<(String, String)>);
 
 impl Lines {
-    fn titled(title: &str) -> Self {
-        Lines(format!("{}\n", quote::line(title)))
+    fn line(&mut self, name: &str, text: impl Into<String>) {
+        self.0.push((name.to_owned(), text.into()));
     }
 
-    /// One line, whatever names of a file the text has.
-    fn line(&mut self, name: &str, text: impl AsRef<str>) {
-        // Writing to a string cannot fail.
-        let _ = writeln!(self.0, "  {name:<12} {}", quote::unbroken(text.as_ref()));
+    fn under(&self, title: &str) -> String {
+        let mut text = format!("{}\n", quote::line(title));
+        for (name, line) in &self.0 {
+            // Writing to a string cannot fail.
+            let _ = writeln!(text, "  {name:<12} {}", quote::unbroken(line));
+        }
+        text
     }
 }
 
 /// A contact residual, a relative error or an imbalance above this is shown without being asked for.
 const WORTH_SHOWING: f64 = 1e-8;
 
-/// The summary of a solved case: what it carries, then what is proved, then how it was solved. The last part is printed if
-/// it is asked for, and each of its lines where something about it is not as it should be.
+/// The summary of a solved case.
 pub fn solved(r: &Results, files: &[PathBuf], verbose: bool) -> String {
-    let mut lines = Lines::titled(&match r.outcome().filter(|_| r.falls_short()) {
+    let mut lines = Lines(lines_of(r, verbose));
+    lines.line("written", written(files));
+    lines.under(&match r.outcome().filter(|_| r.falls_short()) {
         Some(outcome) => format!("{}: {outcome}", r.title),
         None => r.title.clone(),
-    });
+    })
+}
+
+/// The lines of the summary: what the case carries, then what is proved, then how it was solved. The last part is there if
+/// it is asked for, and each of its lines where something about it is not as it should be.
+pub fn lines_of(r: &Results, verbose: bool) -> Vec<(String, String)> {
+    let mut lines = Lines::default();
     let shown = Shown::of(r);
     contact(r, &shown, verbose, &mut lines);
     stress(r, &shown, &mut lines);
@@ -81,7 +91,6 @@ pub fn solved(r: &Results, files: &[PathBuf], verbose: bool) -> String {
         );
     }
     how_it_was_solved(r, &shown, verbose, &mut lines);
-    lines.line("written", written(files));
     lines.0
 }
 
@@ -253,7 +262,7 @@ fn how_it_was_solved(r: &Results, shown: &Shown, verbose: bool, lines: &mut Line
 
 /// The summary of what is certified of a displacement from elsewhere.
 pub fn certified(case: &Case, field: &Path, c: &Continuous, files: &[PathBuf]) -> String {
-    let mut lines = Lines::titled(&case.title);
+    let mut lines = Lines::default();
     lines.line("field", quote::path(field));
     let norm = c.proof.norm;
     let size = |bound: f64| {
@@ -279,13 +288,13 @@ pub fn certified(case: &Case, field: &Path, c: &Continuous, files: &[PathBuf]) -
     lines.line("error", format!("at most {} of that one: {proved}", size(c.bound)));
     lines.line("", format!("at most {} as it is", size(c.of_field)));
     lines.line("written", written(files));
-    lines.0
+    lines.under(&case.title)
 }
 
 /// The summary of a certificate that was verified.
 pub fn audited(audit: &Audit, case: Option<&Path>) -> String {
     let Audit { header, certificate, proof, reservations, .. } = audit;
-    let mut lines = Lines::titled(&header.title);
+    let mut lines = Lines::default();
     let (triangles, edges) = (certificate.pieces.len(), certificate.edges.len());
     lines.line("certificate", format!("accepted: {triangles} triangles, {edges} edges"));
     lines.line("statement", &header.statement);
@@ -315,7 +324,7 @@ pub fn audited(audit: &Audit, case: Option<&Path>) -> String {
             format!("with a reservation: {reservations}")
         },
     );
-    lines.0
+    lines.under(&header.title)
 }
 
 /// How far the solution can be from the exact solution of the discrete equations (8), and whether there is one.
@@ -388,7 +397,7 @@ pub fn checked(case: &Case, outline: &Outline) -> String {
     let triangles = mesh.triangles().len();
     let h_max = (0..triangles).map(|t| mesh.diameter(t)).fold(0.0, f64::max);
     let degree = case.method.degree.number();
-    let mut lines = Lines::titled(&case.title);
+    let mut lines = Lines::default();
     lines.line("mesh", sizes(triangles, degree, 2 * outline.nodes, outline.contact_edges, h_max));
     lines.line("prescribed", format!("{} of the unknowns", outline.prescribed));
     lines.line("coercivity", coercivity(&GammaChoice::from(&outline.gamma)));
@@ -400,7 +409,7 @@ pub fn checked(case: &Case, outline: &Outline) -> String {
             ContactQuadrature::Gauss(n) => format!("{n} Gauss points on each contact edge"),
         },
     );
-    lines.0
+    lines.under(&case.title)
 }
 
 /// The table of a case on finer and finer meshes.
@@ -460,7 +469,8 @@ fn accuracy(method: &MethodReport) -> String {
     )
 }
 
-fn vector([x, y]: [f64; 2]) -> String {
+/// A place or a vector, with four digits.
+pub(super) fn vector([x, y]: [f64; 2]) -> String {
     format!("({}, {})", short(x), short(y))
 }
 

@@ -1,0 +1,158 @@
+//! The fields of a solution for other programs: solution.vtu, contact.vtu and contact.csv.
+
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use super::csv::{ContactRow, contact_csv};
+use super::data::DataError;
+use super::files::{Output, WriteError};
+use super::vtu::{CellKind, Field, Grid, Values, vtu};
+use crate::fem::{Mesh, Problem};
+use crate::kernel::Stress;
+use crate::solve::solution::ContactValues;
+use crate::solve::{Solution, stresses};
+
+/// Why the fields of a solution could not be written.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum FieldsError {
+    /// A file or folder.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// What was to go into a file.
+    #[error("{file} cannot be made: {error}")]
+    Data {
+        /// The name of the file.
+        file: &'static str,
+        /// What is wrong with its data.
+        error: DataError,
+    },
+}
+
+impl Solution {
+    /// Writes solution.vtu, contact.vtu and contact.csv into `folder`, of `problem`, which is the one that this solves;
+    /// returns their paths.
+    ///
+    /// # Errors
+    /// A folder or file that can't be written, a number that is not finite.
+    pub fn write(&self, problem: &Problem, folder: &Path) -> Result<Vec<PathBuf>, FieldsError> {
+        let mut output = Output::new(folder)?;
+        for (file, bytes) in fields(self, problem, None) {
+            let bytes = bytes.map_err(|error| FieldsError::Data { file, error })?;
+            output.stage(file, &bytes)?;
+        }
+        Ok(output.publish()?)
+    }
+}
+
+/// The files by their names. `indicators` are the shares of the triangles in the bound of the error, if it is known.
+pub(super) fn fields<'a>(
+    solution: &'a Solution,
+    problem: &'a Problem,
+    indicators: Option<&'a [f64]>,
+) -> impl Iterator<Item = (&'static str, Result<Vec<u8>, DataError>)> + 'a {
+    // One after the other: each takes its memory.
+    (0..3).map(move |i| match i {
+        0 => ("solution.vtu", solution_vtu(solution, problem, indicators)),
+        1 => ("contact.vtu", contact_vtu(solution)),
+        _ => ("contact.csv", contact_csv(&contact_rows(solution)).map(String::into_bytes)),
+    })
+}
+
+/// For each triangle the number of its physical surface, from 1 on in alphabetical order; 0 in none.
+fn surface_numbers(mesh: &Mesh) -> Vec<f64> {
+    let mut numbers = vec![0.0; mesh.triangles().len()];
+    for (number, triangles) in (1_u32..).zip(mesh.surfaces().values()) {
+        triangles.iter().for_each(|&t| numbers[t] = f64::from(number));
+    }
+    numbers
+}
+
+fn solution_vtu(
+    s: &Solution,
+    problem: &Problem,
+    indicators: Option<&[f64]>,
+) -> Result<Vec<u8>, DataError> {
+    let all = |(stress, zz): &(Stress<f64>, f64)| {
+        let [xx, yy, xy] = stress.components();
+        [xx, yy, *zz, xy]
+    };
+    let stress: Vec<[f64; 4]> = s.stress.iter().map(all).collect();
+    let mut cell_data = vec![
+        Field { name: "stress", values: Values::SymmetricTensors(&stress) },
+        Field { name: "von_mises", values: Values::Scalars(&s.von_mises) },
+    ];
+    let surfaces = surface_numbers(&problem.mesh);
+    if !problem.mesh.surfaces().is_empty() {
+        cell_data.push(Field { name: "surface", values: Values::Scalars(&surfaces) });
+    }
+    if let Some(indicators) = indicators {
+        cell_data.push(Field { name: "error_bound", values: Values::Scalars(indicators) });
+    }
+    let nodal = s.nodal_stresses(problem);
+    let von_mises: Vec<f64> = nodal.iter().map(|&stress| stresses::von_mises(stress)).collect();
+    let (first, second): (Vec<f64>, Vec<f64>) =
+        nodal.iter().map(|&stress| stresses::principal_in_plane(stress).into()).unzip();
+    vtu(&Grid {
+        kind: if s.degree == 1 { CellKind::Triangle } else { CellKind::QuadraticTriangle },
+        points: &s.nodes,
+        connectivity: &s.elements,
+        point_data: &[
+            Field { name: "displacement", values: Values::Vectors(&s.displacement) },
+            Field { name: "nodal_stress", values: Values::SymmetricTensors(&nodal) },
+            Field { name: "nodal_von_mises", values: Values::Scalars(&von_mises) },
+            Field { name: "principal_1", values: Values::Scalars(&first) },
+            Field { name: "principal_2", values: Values::Scalars(&second) },
+        ],
+        cell_data: &cell_data,
+    })
+}
+
+/// Each edge has points of its own, for sigma_n and lambda^h jump from edge to edge.
+fn contact_vtu(s: &Solution) -> Result<Vec<u8>, DataError> {
+    let points: Vec<&ContactValues> = s.contact.iter().flat_map(|edge| &edge.points).collect();
+    let per_edge = s.degree + 1;
+    let connectivity: Vec<usize> = (0..s.contact.len())
+        .flat_map(|e| {
+            let first = e * per_edge;
+            // Ends first, then what lies between them.
+            [first, first + s.degree].into_iter().chain(first + 1..first + s.degree)
+        })
+        .collect();
+    let places: Vec<[f64; 2]> = points.iter().map(|p| s.nodes[p.node]).collect();
+    let displacement: Vec<[f64; 2]> = points.iter().map(|p| s.displacement[p.node]).collect();
+    let scalars = |of: fn(&ContactValues) -> f64| points.iter().map(|p| of(p)).collect::<Vec<_>>();
+    let (u_n, gap) = (scalars(|p| p.u_n), scalars(|p| p.gap));
+    let (sigma_n, lambda) = (scalars(|p| p.sigma_n), scalars(|p| p.lambda));
+    let pressure = scalars(|p| p.pressure);
+    let direction: Vec<[f64; 2]> = points.iter().map(|p| p.direction).collect();
+    vtu(&Grid {
+        kind: if s.degree == 1 { CellKind::Line } else { CellKind::QuadraticLine },
+        points: &places,
+        connectivity: &connectivity,
+        point_data: &[
+            Field { name: "displacement", values: Values::Vectors(&displacement) },
+            Field { name: "u_n", values: Values::Scalars(&u_n) },
+            Field { name: "gap", values: Values::Scalars(&gap) },
+            Field { name: "sigma_n", values: Values::Scalars(&sigma_n) },
+            Field { name: "lambda", values: Values::Scalars(&lambda) },
+            Field { name: "pressure", values: Values::Scalars(&pressure) },
+            Field { name: "direction", values: Values::Vectors(&direction) },
+        ],
+        cell_data: &[],
+    })
+}
+
+fn contact_rows(s: &Solution) -> Vec<ContactRow<'_>> {
+    let mut rows = Vec::new();
+    for edge in &s.contact {
+        for p in &edge.points {
+            let [x, y] = s.nodes[p.node];
+            let ContactValues { arc, u_n, gap, sigma_n, lambda, pressure, .. } = *p;
+            let boundary = &*edge.boundary;
+            rows.push(ContactRow { arc, x, y, u_n, gap, sigma_n, lambda, pressure, boundary });
+        }
+    }
+    rows
+}

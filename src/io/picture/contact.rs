@@ -1,0 +1,302 @@
+//! The contact boundaries on the body: the pressure as a curve with arrows, the obstacle with its hatching, and a letter for
+//! each where there are several.
+
+use svg::node::element::{Circle, Group};
+
+use super::draw::{
+    DARK, GREY, Path, Point, RED, between, direction, distance, distance_from_segment, moved,
+    places, shape, stroke, text, thinned,
+};
+use super::scene::{ContactSample, Frame, Scene};
+
+/// A connected part of a contact boundary as it is drawn: for each sample the deformed point, the end of its pressure, and
+/// the point of the obstacle.
+#[derive(Clone, Debug)]
+pub(super) struct ContactLine {
+    /// The place of its boundary among all.
+    pub(super) surface: usize,
+    pub(super) base: Vec<Point>,
+    pub(super) tip: Vec<Point>,
+    pub(super) wall: Vec<Option<Point>>,
+    pressure: Vec<f64>,
+}
+
+/// The largest pressure of a boundary is drawn as high as this part of the body's size.
+const HIGHEST: f64 = 0.15;
+
+/// Of a hollow line's radius, at most so much: arrows along its normals meet at the centre.
+const OF_THE_RADIUS: f64 = 0.6;
+
+/// An obstacle whose magnified gap is more than this part of the body's size is left out.
+const FURTHEST: f64 = 0.2;
+
+/// Likewise where the gap is magnified along a line that is not straight: there the obstacle is drawn bent.
+const FURTHEST_WHERE_BENT: f64 = 0.06;
+
+impl ContactLine {
+    /// All parts of the contact boundaries, in the plane.
+    pub(super) fn all(scene: &Scene, factor: f64) -> Vec<ContactLine> {
+        let size = scene.size();
+        let mut lines: Vec<(ContactLine, Vec<Point>)> = Vec::new();
+        for (surface, boundary) in scene.contact.iter().enumerate() {
+            for samples in &boundary.parts {
+                let normals = smooth_normals(samples);
+                let base: Vec<Point> =
+                    samples.iter().map(|s| moved(s.position, s.displacement, factor)).collect();
+                let bent = factor != 1.0 && turns(samples);
+                let furthest = size * if bent { FURTHEST_WHERE_BENT } else { FURTHEST };
+                let wall = |(s, &n): (&ContactSample, &Point)| {
+                    let gap = factor * s.gap;
+                    (gap.abs() <= furthest).then(|| moved(s.position, n, gap))
+                };
+                let line = ContactLine {
+                    surface,
+                    tip: base.clone(),
+                    wall: samples.iter().zip(&normals).map(wall).collect(),
+                    pressure: samples.iter().map(|s| s.pressure).collect(),
+                    base,
+                };
+                lines.push((line, normals));
+            }
+        }
+        let heights: Vec<f64> = lines.iter().map(|(line, _)| height(&lines, line, size)).collect();
+        for ((line, normals), height) in lines.iter_mut().zip(heights) {
+            for (i, tip) in line.tip.iter_mut().enumerate() {
+                *tip = moved(line.base[i], normals[i], height * line.pressure[i]);
+            }
+        }
+        lines.into_iter().map(|(line, _)| line).collect()
+    }
+
+    /// The same line with its points on the page.
+    pub(super) fn on(self, frame: &Frame) -> ContactLine {
+        let all = |points: Vec<Point>| points.into_iter().map(|p| frame.page(p)).collect();
+        ContactLine {
+            base: all(self.base),
+            tip: all(self.tip),
+            wall: self.wall.into_iter().map(|p| p.map(|p| frame.page(p))).collect(),
+            ..self
+        }
+    }
+
+    /// Where the pressure is positive, with the sample before and the one after.
+    fn pressed(&self) -> Vec<std::ops::RangeInclusive<usize>> {
+        let mut ranges = Vec::new();
+        let mut start = 0;
+        for run in self.pressure.chunk_by(|&a, &b| (a > 0.0) == (b > 0.0)) {
+            let end = start + run.len();
+            if run.first().is_some_and(|&pressure| pressure > 0.0) {
+                ranges.push(start.saturating_sub(1)..=end.min(self.pressure.len() - 1));
+            }
+            start = end;
+        }
+        ranges
+    }
+}
+
+/// The line is no straight one with one direction.
+fn turns(samples: &[ContactSample]) -> bool {
+    let step = |pair: &[ContactSample]| direction(pair[0].position, pair[1].position);
+    let first = samples.windows(2).find_map(step);
+    let differs = |a: Point, b: Point| distance(a, b) > 1e-6;
+    samples.windows(2).any(|pair| {
+        let along = step(pair).zip(first).is_some_and(|(a, b)| differs(a, b));
+        along || differs(pair[0].normal, pair[1].normal)
+    })
+}
+
+/// The height of a unit of pressure on the boundary of a line.
+fn height(lines: &[(ContactLine, Vec<Point>)], line: &ContactLine, size: f64) -> f64 {
+    let (mut peak, mut highest) = (0.0_f64, HIGHEST * size);
+    for (other, normals) in lines.iter().filter(|(other, _)| other.surface == line.surface) {
+        peak = other.pressure.iter().copied().fold(peak, f64::max);
+        for (base, n) in other.base.windows(2).zip(normals.windows(2)) {
+            let step = [base[1][0] - base[0][0], base[1][1] - base[0][1]];
+            let turn = [n[1][0] - n[0][0], n[1][1] - n[0][1]];
+            let closing = -(step[0] * turn[0] + step[1] * turn[1]);
+            if closing > 0.0 {
+                let radius = (step[0] * step[0] + step[1] * step[1]) / closing;
+                highest = highest.min(OF_THE_RADIUS * radius);
+            }
+        }
+    }
+    if peak > 0.0 { highest / peak } else { 0.0 }
+}
+
+/// The normals, except that two samples at one place share the mean of theirs: the facets of a curved line would otherwise
+/// show as steps. A true corner (more than 45 degrees) stays one.
+fn smooth_normals(samples: &[ContactSample]) -> Vec<Point> {
+    let mut normals: Vec<Point> = samples.iter().map(|s| s.normal).collect();
+    for i in 1..samples.len() {
+        let ([a, b], [c, d]) = (normals[i - 1], normals[i]);
+        if samples[i - 1].position == samples[i].position && a * c + b * d > 0.7 {
+            let length = (a + c).hypot(b + d);
+            normals[i - 1] = [(a + c) / length, (b + d) / length];
+            normals[i] = normals[i - 1];
+        }
+    }
+    normals
+}
+
+/// The pressure as a filled curve, with arrows that push against the body.
+pub(super) fn pressure(contact: &[ContactLine]) -> Option<Group> {
+    let (mut area, mut curve, mut arrows) = (Path::default(), Path::default(), Path::default());
+    for line in contact {
+        for range in line.pressed() {
+            let (base, tip) = (&line.base[range.clone()], &line.tip[range]);
+            let mut border: Vec<Point> = base.first().into_iter().chain(tip).copied().collect();
+            border.extend(base.last());
+            let border = thinned(&border);
+            area.polygon(border.iter().copied().chain(thinned(base).into_iter().rev()));
+            curve.line(border);
+            for (i, fraction) in places(base, 22.0) {
+                let foot = between(base[i], base[i + 1], fraction);
+                arrow(between(tip[i], tip[i + 1], fraction), foot, &mut arrows);
+            }
+        }
+    }
+    (!curve.is_empty()).then(|| {
+        Group::new()
+            .set("stroke-linejoin", "round")
+            .add(shape(area).set("fill", RED).set("fill-opacity", 0.25))
+            .add(stroke(curve, RED, 1.5))
+            .add(stroke(arrows, RED, 1.3))
+    })
+}
+
+/// An arrow, unless it would be all head.
+fn arrow(from: Point, to: Point, arrows: &mut Path) {
+    if let (true, Some([x, y])) = (distance(from, to) > 8.0, direction(from, to)) {
+        let wing = |side: f64| moved(to, [-x - side * 0.5 * y, -y + side * 0.5 * x], 6.0);
+        arrows.line([from, to]);
+        arrows.line([wing(1.0), to, wing(-1.0)]);
+    }
+}
+
+/// The obstacle's border, hatched on its side.
+pub(super) fn obstacle(contact: &[ContactLine]) -> Option<Group> {
+    let (mut border, mut hatching) = (Path::default(), Path::default());
+    for line in contact {
+        for run in line.wall.chunk_by(|a, b| a.is_some() == b.is_some()) {
+            let run: Vec<Point> = run.iter().flatten().copied().collect();
+            let run = thinned(&run);
+            if run.len() > 1 {
+                hatch(&run, &mut hatching);
+                border.line(run);
+            }
+        }
+    }
+    (!border.is_empty())
+        .then(|| Group::new().add(stroke(hatching, GREY, 0.9)).add(stroke(border, DARK, 1.6)))
+}
+
+pub(super) fn hatch(border: &[Point], hatching: &mut Path) {
+    for (i, fraction) in places(border, 8.0) {
+        let (a, b) = (border[i], border[i + 1]);
+        if let Some([x, y]) = direction(a, b) {
+            // The body is on the left, so the obstacle is on the right.
+            let foot = between(a, b, fraction);
+            hatching.line([foot, moved(foot, [-y - 0.8 * x, x - 0.8 * y], 10.0)]);
+        }
+    }
+}
+
+/// The letter of a contact boundary: the same at its panel.
+pub(super) fn letter(surface: usize) -> String {
+    match u8::try_from(surface) {
+        Ok(i @ 0..26) => char::from(b'A' + i).to_string(),
+        _ => (surface + 1).to_string(),
+    }
+}
+
+/// The radius of the circle around a letter.
+pub(super) const RADIUS: f64 = 9.0;
+
+/// A letter in a circle.
+pub(super) fn tag(surface: usize, [x, y]: Point) -> Group {
+    let circle = Circle::new().set("cx", x.round()).set("cy", y.round()).set("r", RADIUS);
+    let letter = text(letter(surface), [x.round(), y.round() + 4.0]);
+    Group::new()
+        .add(circle.set("fill", "white").set("stroke", RED))
+        .add(letter.set("text-anchor", "middle").set("font-size", 12).set("fill", RED))
+}
+
+/// A letter at each contact boundary, off the highest pressure (or the middle) of its longest part and away from the body:
+/// the first place outward where it covers neither body nor pressure. `outline` are the lines around the deformed body.
+pub(super) fn tags(
+    contact: &[ContactLine],
+    count: usize,
+    outline: &[[Point; 2]],
+    frame: &Frame,
+) -> Group {
+    let mut group = Group::new();
+    for surface in 0..count {
+        let lines = || contact.iter().filter(|line| line.surface == surface);
+        let Some(line) = lines().max_by_key(|line| line.base.len()) else { continue };
+        let highest =
+            (0..line.pressure.len()).max_by(|&i, &j| line.pressure[i].total_cmp(&line.pressure[j]));
+        let pressed = highest.filter(|&i| line.pressure[i] > 0.0);
+        let i = pressed.unwrap_or(line.base.len() / 2);
+        let Some(&base) = line.base.get(i) else { continue };
+        // The body is on the left of the line, on a page whose second axis points down.
+        let ends = [line.base[i.saturating_sub(1)], line.base[(i + 1).min(line.base.len() - 1)]];
+        let [x, y] = direction(ends[0], ends[1]).unwrap_or([1.0, 0.0]);
+        let out = direction(base, line.tip[i]).unwrap_or([-y, x]);
+        let place = |off: f64| moved(line.tip[i], out, RADIUS + 6.0 + off);
+        let tips = contact.iter().flat_map(|line| line.tip.windows(2).map(|w| [w[0], w[1]]));
+        let near: Vec<[Point; 2]> = outline.iter().copied().chain(tips).collect();
+        let free = |off: &f64| {
+            let p = place(*off);
+            frame.holds(p, RADIUS)
+                && !inside(p, outline)
+                && near.iter().all(|&[a, b]| distance_from_segment(p, a, b) > RADIUS + 2.0)
+        };
+        let mut offs = (0..20).map(|i| 5.0 * f64::from(i));
+        let tag = tag(surface, place(offs.find(free).unwrap_or(0.0)));
+        group = group.add(tag);
+    }
+    group
+}
+
+/// Whether a point lies inside closed lines: a ray from it crosses them an odd number of times.
+fn inside([x, y]: Point, outline: &[[Point; 2]]) -> bool {
+    let crosses = |&&[a, b]: &&[Point; 2]| {
+        (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
+    };
+    outline.iter().filter(crosses).count() % 2 == 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn facets_share_their_normal_and_corners_do_not() {
+        let sample = |position, normal| ContactSample {
+            arc: 0.0,
+            position,
+            normal,
+            displacement: [0.0; 2],
+            gap: 0.0,
+            pressure: 0.0,
+        };
+        let line = [
+            sample([0.0, 0.0], [0.6, -0.8]),
+            sample([0.0, 0.0], [0.8, -0.6]),
+            sample([1.0, 0.0], [0.8, -0.6]),
+            sample([1.0, 0.0], [0.6, 0.8]),
+        ];
+        let [a, b, c, d] = smooth_normals(&line).try_into().unwrap();
+        assert_eq!(a, b);
+        assert!((a[0] + a[1]).abs() < 1e-15 && (a[0].hypot(a[1]) - 1.0).abs() < 1e-15);
+        assert_eq!([c, d], [[0.8, -0.6], [0.6, 0.8]]);
+    }
+
+    #[test]
+    fn a_point_is_inside_a_square_or_outside_it() {
+        let corners = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
+        let square: Vec<[Point; 2]> = (0..4).map(|i| [corners[i], corners[(i + 1) % 4]]).collect();
+        assert!(inside([1.0, 3.0], &square));
+        assert!(!inside([5.0, 3.0], &square) && !inside([-1.0, 3.0], &square));
+    }
+}

@@ -1,0 +1,268 @@
+//! What the pictures are drawn with: colours, letters, SVG paths, and places along a line.
+
+use svg::node::element::{Path as PathElement, Text};
+
+use crate::io::numbers;
+
+/// The letters of all pictures.
+pub(in crate::io) const FONT: &str =
+    "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
+pub(in crate::io) const DARK: &str = "#222222";
+pub(in crate::io) const GREY: &str = "#666666";
+pub(super) const LIGHT: &str = "#dddddd";
+pub(super) const RED: &str = "#d62728";
+
+/// A point on the page, y downwards.
+pub(super) type Point = [f64; 2];
+
+/// A number as labels have it.
+pub(super) fn short(x: f64) -> String {
+    numbers::short(x, 3)
+}
+
+/// Text that XML allows.
+pub(super) fn clean(text: &str) -> String {
+    let allowed = |c: char| !(c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}'));
+    text.chars().map(|c| if allowed(c) { c } else { ' ' }).collect()
+}
+
+/// A text that starts at a point.
+pub(super) fn text(content: impl Into<String>, [x, y]: Point) -> Text {
+    Text::new(content).set("x", rounded(x)).set("y", rounded(y))
+}
+
+/// Coordinates in hundredths, which keeps the file small and the same everywhere.
+pub(in crate::io) fn rounded(x: f64) -> f64 {
+    (x * 100.0).round() / 100.0 + 0.0
+}
+
+/// The width of a text, roughly: no font is at hand, and the reader's may be another.
+pub(in crate::io) fn width_of(text: &str, size: f64) -> f64 {
+    0.56 * size * text.chars().count() as f64
+}
+
+/// The size at which a text fits into a width, at most `size`.
+pub(super) fn fitting(text: &str, size: f64, width: f64) -> f64 {
+    rounded((size * width / width_of(text, size)).min(size))
+}
+
+pub(super) fn shape(path: Path) -> PathElement {
+    PathElement::new().set("d", path.d)
+}
+
+pub(super) fn stroke(path: Path, colour: &str, width: f64) -> PathElement {
+    shape(path).set("fill", "none").set("stroke", colour).set("stroke-width", width)
+}
+
+/// The `d` attribute of a path, in hundredths of the page's unit.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Path {
+    d: String,
+}
+
+impl Path {
+    pub(super) fn is_empty(&self) -> bool {
+        self.d.is_empty()
+    }
+
+    /// Adds a line through these points.
+    pub(super) fn line(&mut self, points: impl IntoIterator<Item = Point>) {
+        let mut command = 'M';
+        for [x, y] in points {
+            self.d.push(command);
+            self.number(x);
+            self.d.push(' ');
+            self.number(y);
+            command = if command == 'M' { 'L' } else { ' ' };
+        }
+    }
+
+    /// Adds a line through these points and back to the first.
+    pub(super) fn polygon(&mut self, points: impl IntoIterator<Item = Point>) {
+        self.line(points);
+        self.d.push('Z');
+    }
+
+    fn number(&mut self, x: f64) {
+        let hundredths = (x * 100.0).round() as i64;
+        let (whole, part) = (hundredths.abs() / 100, hundredths.abs() % 100);
+        let sign = if hundredths < 0 { "-" } else { "" };
+        self.d.push_str(&match (part / 10, part % 10) {
+            (0, 0) => format!("{sign}{whole}"),
+            (tenths, 0) => format!("{sign}{whole}.{tenths}"),
+            _ => format!("{sign}{whole}.{part:02}"),
+        });
+    }
+}
+
+/// The points of a line without those that lie less than half a unit from the one before them; first and last stay.
+/// Nobody sees the difference, and the size of the picture no longer depends on the fineness of the mesh.
+pub(super) fn thinned(points: &[Point]) -> Vec<Point> {
+    let mut kept: Vec<Point> = Vec::new();
+    for (i, &p) in points.iter().enumerate() {
+        let near = kept.last().is_some_and(|&last| distance(last, p) < 0.5);
+        if near && i + 1 < points.len() {
+            continue;
+        }
+        if near && kept.len() > 1 {
+            kept.pop();
+        }
+        kept.push(p);
+    }
+    kept
+}
+
+/// Places along a line, `spacing` apart and as far from either end: the segment and the fraction of it.
+pub(super) fn places(points: &[Point], spacing: f64) -> Vec<(usize, f64)> {
+    let length: f64 = points.windows(2).map(|w| distance(w[0], w[1])).sum();
+    let count = (length / spacing).floor();
+    let mut next = (length - (count - 1.0) * spacing) / 2.0;
+    let mut start = 0.0;
+    let mut places = Vec::new();
+    for (i, segment) in points.windows(2).enumerate() {
+        let end = start + distance(segment[0], segment[1]);
+        while next < end && places.len() < count as usize {
+            places.push((i, (next - start) / (end - start)));
+            next += spacing;
+        }
+        start = end;
+    }
+    places
+}
+
+/// The point at a fraction of the way from `a` to `b`.
+pub(super) fn between(a: Point, b: Point, fraction: f64) -> Point {
+    [a[0] + fraction * (b[0] - a[0]), a[1] + fraction * (b[1] - a[1])]
+}
+
+/// `a` + `factor` `d`
+pub(super) fn moved(a: Point, d: Point, factor: f64) -> Point {
+    [a[0] + factor * d[0], a[1] + factor * d[1]]
+}
+
+/// |a - b|
+pub(super) fn distance(a: Point, b: Point) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// The direction from `a` to `b`, or nothing if they are the same point.
+pub(super) fn direction(a: Point, b: Point) -> Option<Point> {
+    let length = distance(a, b);
+    (length > 0.0).then(|| [(b[0] - a[0]) / length, (b[1] - a[1]) / length])
+}
+
+/// The distance of `p` from the segment from `a` to `b`.
+pub(super) fn distance_from_segment(p: Point, a: Point, b: Point) -> f64 {
+    let [dx, dy] = [b[0] - a[0], b[1] - a[1]];
+    let square = dx * dx + dy * dy;
+    let along = (p[0] - a[0]) * dx + (p[1] - a[1]) * dy;
+    let fraction = if square > 0.0 { (along / square).clamp(0.0, 1.0) } else { 0.0 };
+    distance(p, between(a, b, fraction))
+}
+
+/// The closed lines that the edges make up, each by its points. An edge goes on where another starts.
+pub(super) fn loops(edges: &[[usize; 2]], points: usize) -> Vec<Vec<usize>> {
+    let mut from: Vec<Vec<usize>> = vec![Vec::new(); points];
+    for &[start, end] in edges.iter().rev() {
+        from[start].push(end);
+    }
+    let mut loops = Vec::new();
+    for &[start, _] in edges {
+        let mut points = Vec::new();
+        let mut at = start;
+        while let Some(next) = from[at].pop() {
+            points.push(at);
+            at = next;
+        }
+        if !points.is_empty() {
+            loops.push(points);
+        }
+    }
+    loops
+}
+
+/// The colour map viridis at 0, 1/8, ..., 1: equal steps of the value look like equal steps of the colour, in print and to
+/// the colour-blind.
+pub(super) const VIRIDIS: [[u8; 3]; 9] = [
+    [0x44, 0x01, 0x54],
+    [0x47, 0x2d, 0x7b],
+    [0x3b, 0x52, 0x8b],
+    [0x2c, 0x72, 0x8e],
+    [0x21, 0x91, 0x8c],
+    [0x28, 0xae, 0x80],
+    [0x5e, 0xc9, 0x62],
+    [0xad, 0xdc, 0x30],
+    [0xfd, 0xe7, 0x25],
+];
+
+/// The colour at `t` as SVG has it, linear between the stops; below 0 and above 1 that of the end.
+pub(super) fn viridis(t: f64) -> String {
+    let place = t.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
+    let below = (place as usize).min(VIRIDIS.len() - 2);
+    let part = place - below as f64;
+    let mix = |c: usize| {
+        let [from, to] = [VIRIDIS[below][c], VIRIDIS[below + 1][c]].map(f64::from);
+        (from + part * (to - from)).round() as u8
+    };
+    format!("#{:02x}{:02x}{:02x}", mix(0), mix(1), mix(2))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn coordinates_have_two_decimals_at_most() {
+        let mut path = Path::default();
+        path.polygon([[1.0, -2.5], [0.004, -0.006], [123.456, -0.001], [0.1, 100.99]]);
+        path.line([[0.0, 0.0], [1.0, 1.0]]);
+        assert_eq!(path.d, "M1 -2.5L0 -0.01 123.46 0 0.1 100.99ZM0 0L1 1");
+    }
+
+    #[test]
+    fn places_are_evenly_spaced_and_centred() {
+        let line = [[0.0, 0.0], [4.0, 0.0], [4.0, 6.0]];
+        assert_eq!(places(&line, 4.0), [(0, 0.75), (1, 0.5)]);
+        assert_eq!(places(&line, 11.0), []);
+        assert_eq!(places(&line[..1], 1.0), []);
+    }
+
+    #[test]
+    fn thinning_keeps_the_ends() {
+        let line: Vec<Point> = (0..=100).map(|i| [f64::from(i) * 0.1, 0.0]).collect();
+        let kept = thinned(&line);
+        assert_eq!(kept.len(), 21);
+        assert_eq!((kept[0], kept[20]), (line[0], line[100]));
+        assert_eq!(thinned(&[]), Vec::<Point>::new());
+    }
+
+    #[test]
+    fn a_segment_is_nearest_at_its_ends_or_between_them() {
+        let [a, b] = [[0.0, 0.0], [4.0, 0.0]];
+        for (p, expected) in [([1.0, 3.0], 3.0), ([-3.0, 4.0], 5.0), ([7.0, -4.0], 5.0)] {
+            assert_eq!(distance_from_segment(p, a, b), expected);
+        }
+        assert_eq!(distance_from_segment([3.0, 4.0], a, a), 5.0);
+    }
+
+    #[test]
+    fn loops_use_every_edge_once() {
+        // A square with a triangular hole that touches it in vertex 0.
+        let edges =
+            [[0, 1], [1, 2], [2, 3], [3, 0], [0, 5], [5, 4], [4, 0], [6, 7], [7, 8], [8, 6]];
+        assert_eq!(loops(&edges, 9), [vec![0, 1, 2, 3, 0, 5, 4], vec![6, 7, 8]]);
+    }
+
+    #[test]
+    fn the_colour_map_passes_through_its_stops_and_grows_brighter_from_end_to_end() {
+        for (t, expected) in
+            [(0.0, "#440154"), (1.0 / 16.0, "#461768"), (0.5, "#21918c"), (1.0, "#fde725")]
+        {
+            assert_eq!(viridis(t), expected);
+        }
+        assert_eq!([viridis(-1.0), viridis(2.0)], [viridis(0.0), viridis(1.0)]);
+        let brightness =
+            |[r, g, b]: [u8; 3]| 299 * u32::from(r) + 587 * u32::from(g) + 114 * u32::from(b);
+        assert!(VIRIDIS.map(brightness).is_sorted_by(|a, b| a < b));
+    }
+}
