@@ -1,6 +1,27 @@
 //! Unilateral (Signorini) contact in linear elasticity by Nitsche's method, after Chouly & Hild, *A Nitsche-based method
 //! for unilateral contact problems: numerical analysis*, SIAM J. Numer. Anal. 51 (2013) 1295-1307 ("the paper").
 //!
+//! A block on a rigid floor, of which its right half is lifted off; more in the folder
+//! `examples`.
+//!
+//! ```
+//! use signorini::{Condition, Diagonal, Material, Method, Obstacle, Plane, Problem, Rectangle, Settings, solve};
+//!
+//! let (nx, ny, diagonal) = (16, 16, Diagonal::Right);
+//! let mesh = Rectangle { width: 1.0, height: 1.0, nx, ny, diagonal }.mesh()?;
+//! let floor = Obstacle::Plane { point: [0.0, 0.0], normal: [0.0, 1.0] };
+//! let problem = Problem::of(mesh, Material::lame(1.0, 1.0, Plane::Strain))
+//!     .with_body_force(|_| 0.0, |[x, _]| -4.0 + 10.0 * x)
+//!     .with("top", Condition::clamped())
+//!     .with("bottom", Condition::obstacle("floor", floor));
+//! let (solution, _) = solve(&problem, &Method::default(), &Settings::default())?;
+//! assert!((solution.quantities.contact_force - 0.42).abs() < 0.01);
+//! let stress = solution.largest_stresses(&problem).unwrap().von_mises;
+//! assert!(stress.value > 4.0 && stress.at[1] > 0.9);
+//! solution.write(&problem, &std::env::temp_dir().join("signorini-example"))?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! # The problem
 //!
 //! An elastic body is clamped (or moved) on Gamma_D, loaded in Omega and on Gamma_N, and may touch a rigid obstacle along
@@ -37,24 +58,6 @@
 //! | A_gamma as a matrix | [`fem::matrix`] |
 //! | the solution of (8) | [`solve::condensed`], [`solve::newton`] |
 //!
-//! # Example
-//!
-//! A block on a rigid floor; its right half is lifted off. More in the folder `examples`.
-//!
-//! ```
-//! use signorini::{Condition, Diagonal, Material, Method, Plane, Problem, Rectangle, Settings, solve};
-//!
-//! let (nx, ny, diagonal) = (16, 16, Diagonal::Right);
-//! let mesh = Rectangle { width: 1.0, height: 1.0, nx, ny, diagonal }.mesh()?;
-//! let problem = Problem::of(mesh, Material::lame(1.0, 1.0, Plane::Strain))
-//!     .with_body_force(|_| 0.0, |[x, _]| -4.0 + 10.0 * x)
-//!     .with("top", Condition::clamped())
-//!     .with("bottom", Condition::contact(|_| 0.0));
-//! let (solution, _) = solve(&problem, &Method::default(), &Settings::default())?;
-//! assert!((solution.quantities.contact_force - 0.42).abs() < 0.01);
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
-//!
 //! # Features
 //!
 //! `cli` (default) is the command; it needs `files`: case files ([`io::case`]), result.json and pictures. Without both
@@ -82,9 +85,9 @@ pub mod quote;
 #[cfg(not(kani))]
 pub mod solve;
 
-// What a program needs that has its problem in code.
+// For a program with its problem in code.
 #[cfg(not(kani))]
-pub use fem::{Condition, Diagonal, Mesh, Problem, Rectangle};
+pub use fem::{Condition, Diagonal, Mesh, Obstacle, Problem, Rectangle, Side};
 #[cfg(all(not(kani), feature = "files"))]
 pub use io::Case;
 #[cfg(not(kani))]

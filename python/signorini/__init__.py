@@ -22,27 +22,30 @@ import json
 import os
 import warnings
 from dataclasses import dataclass
-from typing import Any, Mapping, Optional, Union
+from typing import Any, List, Mapping, NamedTuple, Optional, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _signorini
 from ._signorini import CaseError, SolveError, __version__
+from .results import Results
 
-__all__ = ["CaseError", "Contact", "Solution", "SolveError", "__version__", "from_meshio", "solve", "solve_case"]
+__all__ = [
+    "CaseError", "Contact", "Mesh", "Results", "Solution", "SolveError", "__version__", "from_meshio", "solve", "solve_case",
+]
 
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
 Texts = npt.NDArray[np.str_]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Contact:
-    """The contact line, by arc length. A node between two edges is there twice: sigma_n jumps."""
+    """The contact boundaries, by arc length. A node between two edges is there twice: sigma_n jumps."""
 
     arc: Floats
-    """Arc length from the start of the contact line."""
+    """Arc length from the start of the boundary."""
     node: Integers
     """The number of the node."""
     u_n: Floats
@@ -59,9 +62,9 @@ class Contact:
     """The name of the boundary."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Solution:
-    """A solved case, in its own units."""
+    """A solved case, in its own units. Printed, it is its summary; in a notebook, its picture."""
 
     nodes: Floats
     """(nodes, 2): the vertices of the mesh, then, for degree 2, the middles of its edges."""
@@ -74,8 +77,34 @@ class Solution:
     von_mises: Floats
     """(triangles,)"""
     contact: Contact
-    results: dict[str, Any]
-    """What result.json says (docs/result.md)."""
+    results: Results
+    """What result.json has (docs/result.md)."""
+    summary: str
+    """What the command prints."""
+    _solved: Optional[_signorini.Solved]
+
+    def __repr__(self) -> str:
+        return self.summary
+
+    def _repr_svg_(self) -> str:
+        return self._here().picture()
+
+    def write(self, folder: Union[str, "os.PathLike[str]"], *, report: bool = False) -> List[str]:
+        """Write the files that the command writes, with `report` report.html, too; return their paths."""
+        return self._here().write(os.fspath(folder), report)
+
+    def _here(self) -> _signorini.Solved:
+        if self._solved is None:
+            raise RuntimeError("a solution that comes from another process (pickle) has its arrays only: draw and write it there")
+        return self._solved
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_solved": None}
+
+    @property
+    def certified(self) -> bool:
+        """Whether the exact solution of the discrete equations is proved to be this one to `solver.proof`."""
+        return self.verdict == "proved"
 
     @property
     def verdict(self) -> str:
@@ -95,16 +124,19 @@ def solve(
     points: Any,
     triangles: Optional[npt.ArrayLike] = None,
     boundaries: Optional[Mapping[str, npt.ArrayLike]] = None,
+    surfaces: Optional[Mapping[str, npt.ArrayLike]] = None,
+    named_points: Optional[Mapping[str, int]] = None,
     **tables: Any,
 ) -> Solution:
     """Solve a contact problem on a mesh: points (n, 2), triangles (m, 3), counter-clockwise, and for each named boundary its
-    edges (k, 2) as pairs of points; or a meshio mesh in place of the three.
+    edges (k, 2) as pairs of points; for materials and loads by surface the triangles (k,) of each, and for supports in points the
+    number of each. Or a meshio mesh in place of them all.
 
     The tables are those of a case file: material, boundary, load, method, solver, output, ... A number may stand where the
     file has an expression.
     """
     if triangles is None and boundaries is None and hasattr(points, "cells"):
-        points, triangles, boundaries = from_meshio(points)
+        points, triangles, boundaries, surfaces, named_points = from_meshio(points)
     if triangles is None or boundaries is None:
         raise TypeError("expected points, triangles and boundaries, or a meshio mesh")
     text = "".join(f"{_key(name)} = {_toml(table)}\n" for name, table in tables.items())
@@ -114,13 +146,24 @@ def solve(
             _bytes(points, np.float64, 2, "points"),
             _bytes(triangles, np.int64, 3, "triangles"),
             [(name, _bytes(edges, np.int64, 2, f"boundary '{name}'")) for name, edges in boundaries.items()],
+            [(name, _numbers(members, f"surface '{name}'")) for name, members in (surfaces or {}).items()],
+            [(name, int(point)) for name, point in (named_points or {}).items()],
         )
     )
 
 
-def from_meshio(mesh: Any) -> tuple[Floats, Integers, dict[str, Integers]]:
-    """Points, triangles and named boundaries of a meshio mesh, the latter from its physical names (as Gmsh writes them) or
-    its cell sets. Points that no triangle uses are left out, and triangles are turned counter-clockwise."""
+class Mesh(NamedTuple):
+    """A mesh as `solve` takes it."""
+
+    points: Floats
+    triangles: Integers
+    boundaries: dict[str, Integers]
+    surfaces: dict[str, Integers]
+    named_points: dict[str, int]
+
+
+def from_meshio(mesh: Any) -> Mesh:
+    """Points, triangles and what is named of a meshio mesh, by its physical names (as Gmsh writes them) or its cell sets. Points that no triangle uses are left out, and triangles are turned counter-clockwise."""
     triangles = [block.data for block in mesh.cells if block.type == "triangle"]
     if not triangles:
         found = ", ".join(sorted({block.type for block in mesh.cells})) or "no cells"
@@ -138,21 +181,29 @@ def from_meshio(mesh: Any) -> tuple[Floats, Integers, dict[str, Integers]]:
     clockwise = (b - a)[:, 0] * (c - a)[:, 1] < (b - a)[:, 1] * (c - a)[:, 0]
     corners[clockwise] = corners[clockwise][:, [0, 2, 1]]
 
-    boundaries: dict[str, list[Integers]] = {}
-    names = {int(tag): name for name, (tag, dimension) in mesh.field_data.items() if dimension == 1}
+    named: dict[str, dict[str, list[Integers]]] = {"vertex": {}, "line": {}, "triangle": {}}
+    names = {(dimension, int(tag)): name for name, (tag, dimension) in mesh.field_data.items()}
     physical = mesh.cell_data.get("gmsh:physical", [None] * len(mesh.cells))
+    first = 0
     for i, block in enumerate(mesh.cells):
-        if block.type != "line":
+        if block.type not in named:
             continue
+        of_type, dimension = named[block.type], list(named).index(block.type)
+        members = np.arange(first, first + len(block.data)) if block.type == "triangle" else number[block.data]
+        first += len(block.data) if block.type == "triangle" else 0
         if physical[i] is not None:
             for tag in np.unique(physical[i]):
-                if int(tag) in names:
-                    edges = block.data[np.asarray(physical[i]) == tag]
-                    boundaries.setdefault(names[int(tag)], []).append(number[edges])
+                if (dimension, int(tag)) in names:
+                    chosen = members[np.asarray(physical[i]) == tag]
+                    of_type.setdefault(names[dimension, int(tag)], []).append(chosen)
         for name, cells in mesh.cell_sets.items():
             if not name.startswith("gmsh:") and cells[i] is not None and len(cells[i]) and name not in names.values():
-                boundaries.setdefault(name, []).append(number[block.data[np.asarray(cells[i], dtype=np.int64)]])
-    return points, corners, {name: np.concatenate(parts) for name, parts in boundaries.items()}
+                of_type.setdefault(name, []).append(members[np.asarray(cells[i], dtype=np.int64)])
+    points_by_name = {name: int(np.concatenate(parts)[0, 0]) for name, parts in named["vertex"].items()}
+    boundaries, surfaces = (
+        {name: np.concatenate(parts) for name, parts in named[kind].items()} for kind in ("line", "triangle")
+    )
+    return Mesh(points, corners, boundaries, surfaces, points_by_name)
 
 
 def _key(name: str) -> str:
@@ -189,14 +240,23 @@ def _bytes(values: Any, dtype: Any, columns: int, name: str) -> bytes:
     return np.ascontiguousarray(array, dtype=dtype).tobytes()
 
 
-def _solution(raw: _signorini.Raw) -> Solution:
+def _numbers(values: Any, name: str) -> bytes:
+    array = np.asarray(values)
+    if array.ndim != 1 or not np.issubdtype(array.dtype, np.integer):
+        raise CaseError(f"{name} has shape {array.shape} of {array.dtype}; expected a list of whole numbers")
+    return np.ascontiguousarray(array, dtype=np.int64).tobytes()
+
+
+def _solution(solved: _signorini.Solved) -> Solution:
+    raw = solved.arrays()
+
     def floats(data: bytes, *shape: int) -> Floats:
         return np.frombuffer(data, dtype=np.float64).reshape(*shape).copy()
 
     def integers(data: bytes, *shape: int) -> Integers:
         return np.frombuffer(data, dtype=np.int64).reshape(*shape).copy()
 
-    results = json.loads(raw["results"])
+    results: Results = json.loads(raw["results"])
     short = [f"not proved: {results['reason']}"] if "reason" in results else []
     for what in short + [f"no {what}" for what in results.get("missing", [])]:
         warnings.warn(what, RuntimeWarning, stacklevel=3)
@@ -217,4 +277,6 @@ def _solution(raw: _signorini.Raw) -> Solution:
             boundary=np.array(raw["boundary"], dtype=np.str_),
         ),
         results=results,
+        summary=solved.summary(),
+        _solved=solved,
     )

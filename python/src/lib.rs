@@ -2,19 +2,21 @@
 //! is `signorini/__init__.py`, which makes arrays of them.
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use pyo3::create_exception;
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use signorini::fem::Mesh;
 use signorini::io::Case;
-use signorini::io::outputs;
-use signorini::io::result::{Seconds, result_json};
+use signorini::io::outputs::{self, Certified, Extra};
+use signorini::io::picture::draw;
+use signorini::io::result::{Results, Seconds, result_json};
 use signorini::io::run::{self, RunError};
+use signorini::io::summary;
 use signorini::kernel::Stress;
-use signorini::solve::Solution;
+use signorini::solve::{Solution, Times};
 
 create_exception!(signorini, CaseError, PyValueError, "The case is wrong.");
 create_exception!(
@@ -26,40 +28,44 @@ create_exception!(
 
 /// Solves the case in a file, with these settings over it.
 #[pyfunction]
-fn solve_case<'py>(
-    py: Python<'py>,
-    path: PathBuf,
-    settings: Vec<String>,
-) -> PyResult<Bound<'py, PyDict>> {
-    let solved = py.detach(|| {
+fn solve_case(py: Python<'_>, path: PathBuf, settings: Vec<String>) -> PyResult<Solved> {
+    py.detach(|| {
         let start = Instant::now();
         let text = Case::text(&path).map_err(wrong)?;
         let case = Case::parse(&path, &text, &settings).map_err(wrong)?;
         solved(case, start)
-    });
-    raw(py, &solved?)
+    })
 }
 
-/// Solves a case without a mesh on this one: points as pairs of doubles, triangles and edges as 64-bit numbers.
+/// Solves a case without a mesh on this one: points as pairs of doubles, triangles, edges and the triangles of surfaces as
+/// 64-bit numbers.
 #[pyfunction]
-fn solve<'py>(
-    py: Python<'py>,
+fn solve(
+    py: Python<'_>,
     text: &str,
     points: &[u8],
     triangles: &[u8],
     boundaries: Vec<(String, Vec<u8>)>,
-) -> PyResult<Bound<'py, PyDict>> {
-    let solved = py.detach(|| {
+    surfaces: Vec<(String, Vec<u8>)>,
+    named_points: Vec<(String, usize)>,
+) -> PyResult<Solved> {
+    py.detach(|| {
         let start = Instant::now();
         let boundaries = boundaries
             .iter()
             .map(|(name, edges)| Ok((name.clone(), indices(edges)?)))
             .collect::<PyResult<Vec<_>>>()?;
+        let members =
+            |bytes: &[u8]| Ok(indices(bytes)?.into_iter().map(|[t]: [usize; 1]| t).collect());
+        let surfaces = surfaces
+            .into_iter()
+            .map(|(name, bytes)| Ok((name, members(&bytes)?)))
+            .collect::<PyResult<_>>()?;
         let mesh = Mesh::new(doubles(points), indices(triangles)?, boundaries).map_err(wrong)?;
+        let mesh = mesh.with_names(surfaces, named_points.into_iter().collect());
         let case = Case::on_mesh(Path::new("case"), text, mesh).map_err(wrong)?;
         solved(case, start)
-    });
-    raw(py, &solved?)
+    })
 }
 
 fn wrong(error: impl ToString) -> PyErr {
@@ -94,30 +100,64 @@ fn indices<const K: usize>(bytes: &[u8]) -> PyResult<Vec<[usize; K]>> {
         .collect()
 }
 
-/// A solution and the text of result.json.
+/// A solved case.
+#[pyclass(frozen, module = "signorini._signorini")]
 struct Solved {
+    case: Case,
     solution: Solution,
-    results: String,
+    results: Results,
+    read: Duration,
+    times: Times,
+    certified: Option<Certified>,
+}
+
+#[pymethods]
+impl Solved {
+    /// The arrays of the solution, and the text of result.json.
+    fn arrays<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        raw(py, &self.solution, &result_json(&self.results).map_err(no_results)?)
+    }
+
+    /// What the command prints.
+    fn summary(&self) -> String {
+        summary::solved(&self.results, &[], false)
+    }
+
+    /// The text of picture.svg.
+    fn picture(&self, py: Python<'_>) -> PyResult<String> {
+        py.detach(|| draw(&self.case, &self.solution, &self.results)).map_err(no_results)
+    }
+
+    /// Writes the files that the command writes, and returns their paths.
+    fn write(&self, py: Python<'_>, folder: PathBuf, report: bool) -> PyResult<Vec<PathBuf>> {
+        let (read, times, certified) = (self.read, self.times, self.certified.as_ref());
+        let extra = Extra { report, ..Extra::default() };
+        let written = py.detach(|| {
+            outputs::write(&folder, &self.case, &self.solution, read, times, certified, extra)
+        });
+        Ok(written.map_err(|error| PyOSError::new_err(error.to_string()))?.0)
+    }
+}
+
+fn no_results(error: impl ToString) -> PyErr {
+    SolveError::new_err(error.to_string())
 }
 
 fn solved(case: Case, start: Instant) -> PyResult<Solved> {
     let read = start.elapsed();
     let (case, run::Solved { solution, times, certified, .. }) =
         run::solve(case, None, &|_| {}).map_err(|error| unsolved(&error))?;
-    let no_results = |error: &dyn std::fmt::Display| SolveError::new_err(error.to_string());
-    let seconds = Seconds::new(read, &times, std::time::Duration::ZERO);
-    let mut results = outputs::results(&case, &solution, seconds).map_err(|e| no_results(&e))?;
+    let seconds = Seconds::new(read, &times, Duration::ZERO);
+    let mut results = outputs::results(&case, &solution, seconds).map_err(no_results)?;
     certified.iter().for_each(|certified| certified.add_to(&mut results, false));
-    let results = result_json(&results).map_err(|e| no_results(&e))?;
-    Ok(Solved { solution, results })
+    Ok(Solved { case, solution, results, read, times, certified })
 }
 
 fn unsolved(error: &RunError) -> PyErr {
     if error.is_wrong_case() { wrong(error) } else { SolveError::new_err(error.to_string()) }
 }
 
-fn raw<'py>(py: Python<'py>, solved: &Solved) -> PyResult<Bound<'py, PyDict>> {
-    let Solved { solution: s, results } = solved;
+fn raw<'py>(py: Python<'py>, s: &Solution, results: &str) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     let floats = |name: &str, values: &mut dyn Iterator<Item = f64>| {
         let bytes: Vec<u8> = values.flat_map(f64::to_ne_bytes).collect();
@@ -157,6 +197,7 @@ fn _signorini(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("CaseError", module.py().get_type::<CaseError>())?;
     module.add("SolveError", module.py().get_type::<SolveError>())?;
+    module.add_class::<Solved>()?;
     module.add_function(wrap_pyfunction!(solve_case, module)?)?;
     module.add_function(wrap_pyfunction!(solve, module)?)
 }

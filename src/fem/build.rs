@@ -7,6 +7,7 @@ use std::sync::Arc;
 use super::function::SharedFunction;
 use super::materials::Materials;
 use super::mesh::Mesh;
+use super::obstacle::Obstacle;
 use super::problem::{Condition, Problem};
 
 fn zero() -> SharedFunction {
@@ -33,6 +34,21 @@ impl Condition {
         y: impl Fn([f64; 2]) -> f64 + Send + Sync + 'static,
     ) -> Self {
         Condition::Traction([Arc::new(x), Arc::new(y)])
+    }
+
+    /// The traction -p n with this pressure p.
+    pub fn pressure(p: impl Fn([f64; 2]) -> f64 + Send + Sync + 'static) -> Self {
+        Condition::Pressure(Arc::new(p))
+    }
+
+    /// No displacement along the normal, at any angle: a roller, or a plane of symmetry.
+    pub fn roller() -> Self {
+        Condition::Support { normal: Some(zero()), tangential: None }
+    }
+
+    /// Contact with a rigid obstacle, which messages call by this name.
+    pub fn obstacle(name: impl Into<String>, obstacle: Obstacle) -> Self {
+        Condition::Obstacle(name.into(), obstacle)
     }
 
     /// Contact at this initial gap (a length along the outward normal).

@@ -35,7 +35,7 @@ pub enum DataError {
         values: [f64; 2],
     },
     #[error(
-        "no displacement is prescribed that stops the {}; expected displacement boundaries that leave no rigid body motion free, or loads that press the body against its obstacles (contact pushes, it doesn't hold)",
+        "the body is not held: nothing stops the {}; expected displacements that stop it, or loads that press the body against its obstacles (contact pushes, it doesn't pull)",
         listed(motions)
     )]
     RigidMotion { motions: Vec<FreeMotion> },

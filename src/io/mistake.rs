@@ -104,6 +104,12 @@ pub(super) fn no_toml(error: &toml::de::Error, text: &str) -> CaseMistake {
         m if m.starts_with("string values must be quoted") => {
             "expected a value; a text must be in quotes".to_owned()
         }
+        m if ["invalid float", "unexpected key or value", "unexpected leading zero"]
+            .iter()
+            .any(|start| m.starts_with(start)) =>
+        {
+            "expected a value; an expression must be in quotes (\"0.1 - x\"), a list in brackets, and decimals have a point (0.5, not 0,5)".to_owned()
+        }
         m => m.replace('\n', ", "),
     };
     let at = match error.span().and_then(|span| text.get(span)).map(str::trim) {

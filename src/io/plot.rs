@@ -75,7 +75,7 @@ pub fn figure(figure: &Figure) -> Result<String, DataError> {
     let columns = figure.panels.len().max(1);
     let width = columns as f64 * (LEFT + WIDTH + RIGHT);
     let widths = figure.styles.iter().map(|style| width_of(&style.name, 12.0) + LEGEND_MARK);
-    let per_line = ((width / widths.fold(width / 6.0, f64::max)) as usize).max(1);
+    let per_line = ((width / widths.fold(1.0, f64::max)) as usize).clamp(1, 2 * columns);
     let legend_lines = figure.styles.len().div_ceil(per_line) as f64;
     let height = TOP + HEIGHT + BELOW + legend_lines * LEGEND_LINE + 8.0;
     let mut document = Document::new()

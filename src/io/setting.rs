@@ -1,13 +1,14 @@
 //! Keys set over a case file, as by the option `--set`: `method.gamma0=1e-3`, `material.young=2`,
 //! `boundary.bottom.contact.gap="0.1*x"`.
 //!
-//! A setting is a line of TOML, so its value has the type that it has in the file; only a bare word or path needs no
-//! quotes (`method.gamma0=auto`). A table is laid over the one that is there, anything else takes its place, and a later setting
+//! A setting is a line of TOML, so its value has the type that it has in the file; only a bare word, a path or an
+//! expression needs no quotes (`method.gamma0=auto`, `boundary.bottom.contact.gap=0.1*x`). A table is laid over the one that is there, anything else takes its place, and a later setting
 //! wins over an earlier one. The reader of the case then cannot tell a setting from the file, but where a mistake is.
 
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
+use super::expression::Expression;
 use super::mistake::{CaseError, CaseMistake, no_toml};
 use super::source::Source;
 
@@ -75,10 +76,16 @@ fn is_number(key: &Spanned<DeString>) -> bool {
     key.get_ref().bytes().all(|b| b.is_ascii_digit())
 }
 
-/// The setting, its value in quotes if that is a bare word or a path.
+/// The setting, its value in quotes if that is a bare word, a path, or an expression that is no value of TOML.
 fn with_quotes(setting: &str) -> String {
+    let is_expression = |value: &str| {
+        let has_place = value.len() < 1000 && value.contains(['x', 'y']);
+        has_place && DeTable::parse(setting).is_err() && value.parse::<Expression>().is_ok()
+    };
     match setting.split_once('=') {
-        Some((key, value)) if is_word(value) => format!("{key}=\"{value}\""),
+        Some((key, value)) if is_word(value) || is_expression(value) => {
+            format!("{key}=\"{value}\"")
+        }
         _ => setting.to_owned(),
     }
 }
@@ -100,7 +107,11 @@ mod tests {
         for word in ["auto", "part.msh", "meshes/part-2.msh", "./part.msh", "../part.msh", "/a/b"] {
             assert_eq!(with_quotes(&format!("key={word}")), format!("key=\"{word}\""));
         }
-        for other in ["1e-3", ".5", "true", "nan", "[0, 1]", "\"a\"", "a b", "x*y", ""] {
+        for expression in ["0.1-x", "x*y", "2 - sin(x)"] {
+            let quoted = format!("key=\"{expression}\"");
+            assert_eq!(with_quotes(&format!("key={expression}")), quoted);
+        }
+        for other in ["1e-3", ".5", "true", "nan", "[0, 1]", "\"a\"", "a b", "1000,5", ""] {
             assert_eq!(with_quotes(&format!("key={other}")), format!("key={other}"));
         }
     }

@@ -11,7 +11,7 @@ use signorini::io::outputs::{self, Certified};
 use signorini::io::result::Seconds;
 use signorini::io::run::{self, Solved};
 
-use super::command::signorini;
+use super::command::{signorini, text};
 
 fn page(name: &str) -> String {
     fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(name)).unwrap()
@@ -207,15 +207,19 @@ fn the_page_on_case_files_lists_exactly_the_parameters_of_the_exact_solutions() 
 }
 
 #[test]
-fn the_picture_of_the_readme_is_that_of_its_case() {
+fn output_and_picture_of_the_readme_are_those_of_its_command() {
     let folder = std::env::temp_dir().join(format!("signorini-{}-readme", std::process::id()));
-    let out = folder.to_str().unwrap();
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let run = signorini(root, &["solve", "cases/block.toml", "--quiet", "--out", out]);
+    fs::create_dir_all(&folder).unwrap();
+    let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/bracket.toml");
+    let run = signorini(&folder, &["solve", case.to_str().unwrap()]);
     assert!(run.status.success(), "{run:?}");
-    let drawn = fs::read_to_string(folder.join("picture.svg")).unwrap();
+    let drawn = fs::read_to_string(folder.join("out/bracket/picture.svg")).unwrap();
     fs::remove_dir_all(folder).unwrap();
-    assert!(drawn == page("docs/block.svg"), "copy the picture.svg of cases/block.toml there");
+    let readme = page("README.md");
+    assert!(readme.contains("\ncargo run --release -- solve cases/bracket.toml\n"));
+    let shown = readme.split("```text\n").nth(1).and_then(|rest| rest.split("```").next());
+    assert_eq!(shown, Some(text(&run.stdout)), "copy what the command prints there");
+    assert!(drawn == page("docs/bracket.svg"), "copy the picture.svg of cases/bracket.toml there");
 }
 
 #[test]

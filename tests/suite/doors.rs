@@ -433,7 +433,7 @@ fn a_sweep_that_is_stopped_leaves_the_table_of_what_it_has_solved() {
     assert_eq!(names(&folder.join("out/case")), ["sweep.csv"]);
     let table = fs::read_to_string(table).unwrap();
     let (head, rows) = table.split_once('\n').unwrap();
-    assert!(head.starts_with("load.body,solver.max_iterations,gamma0,"), "{head}");
+    assert!(head.starts_with("load.body,solver.max_iterations,verdict,gamma0,"), "{head}");
     let solved = rows.lines().take_while(|line| line.ends_with(",converged")).count();
     let rest: Vec<&str> = rows.lines().skip(solved).collect();
     assert!(solved > 0 && !rest.is_empty(), "{solved} solved, {} not", rest.len());

@@ -76,7 +76,11 @@ fn a_mistake_in_a_setting_is_reported_with_the_setting_and_exit_code_2() {
             "boundary.bottom.contact.gap=\"z\"",
             "[boundary.bottom] contact.gap = \"z\": column 1: found 'z', expected a number, x, y, pi, a function or '('",
         ),
-        ("method.gamma0=1+x", "invalid TOML at '1+x': expected a value; a text must be in quotes"),
+        ("method.gamma0=1+x", "[method] gamma0 = \"1+x\"; expected a positive number or \"auto\""),
+        (
+            "material.mu=1,5",
+            "invalid TOML: expected a value; an expression must be in quotes (\"0.1 - x\"), a list in brackets, and decimals have a point (0.5, not 0,5)",
+        ),
         (
             "method.gamma0",
             "found no key with a value; expected KEY=VALUE, such as method.gamma0=1e-3",
