@@ -1,4 +1,8 @@
+<<<<<<< HEAD
 //! What the command can be asked to do. The help and what a shell completes are made from this.
+=======
+//! The command line: tasks and options. The help, the manual page and shell completions are made from it.
+>>>>>>> 24f61e1 (docs: plain English, what to read first; Python tests of surfaces, points, pictures, pickles and types; the wheel and the source archive in .ci/run)
 
 use std::path::PathBuf;
 
@@ -22,13 +26,13 @@ pub struct Arguments {
     pub verbose: bool,
 }
 
-const EXIT_CODES: &str = "Exit codes: 0 solved and proved; 1 no result: could not solve, write or accept a certificate; 2 the case is wrong, and then \
-                          nothing is written; 3 results that are not proved, or without a certificate or a target that was asked \
-                          for. A signal ends it as a signal does (130, 143, 129 to a shell); a reader of standard \
-                          output who leaves (| head) is no failure, a full standard output is one: 1.";
+const EXIT_CODES: &str = "Exit codes: 0 solved and proved; 1 no result: could not solve, write or accept a certificate; 2 the case is wrong, and \
+                          nothing is written; 3 results that are not proved, or lack a certificate or a target that was asked for. \
+                          Signals end the command as usual (130, 143, 129 in a shell). A closed pipe (| head) is no failure; a \
+                          full standard output is: 1.";
 
 impl Arguments {
-    /// What the command was given, or a complaint that says what was probably meant.
+    /// Reads the command line; an error suggests what was probably meant.
     pub fn read() -> Result<Arguments, clap::Error> {
         Arguments::try_parse().map_err(|mut error| {
             let is_similar = error.get(ContextKind::SuggestedArg).is_some();
@@ -71,7 +75,7 @@ pub enum Task {
         /// Write report.html, too: picture, numbers, what is proved and the case, in one file to send on
         #[arg(long)]
         report: bool,
-        /// Who solves: this program, or the reference in FEniCSx, which runs on many processes
+        /// The solver: this program, or the reference in FEniCSx, which runs on many processes
         #[arg(long, value_enum, default_value_t = Engine::Signorini)]
         engine: Engine,
         /// MPI processes for --engine fenicsx [default: 1]
@@ -81,7 +85,7 @@ pub enum Task {
         #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
         reference: Option<PathBuf>,
     },
-    /// Verify a certificate from scratch, trusting no solver
+    /// Verify a certificate from scratch, without the solver
     Audit {
         /// The file certificate.json, with certificate.bin beside it
         #[arg(value_hint = ValueHint::FilePath)]
@@ -143,7 +147,7 @@ pub enum Task {
         #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
         out: Option<PathBuf>,
     },
-    /// Print what a shell needs to complete this command
+    /// Print the completion script for a shell
     Completions {
         /// The shell
         shell: Shell,

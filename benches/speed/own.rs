@@ -257,7 +257,7 @@ impl Command {
         let (solution, times) =
             solve::solve(&case.problem, &case.method, &case.settings).expect("a solution");
         let start = Instant::now();
-        outputs::write(folder, &case, &solution, read, times, None, false)
+        outputs::write(folder, &case, &solution, read, times, None, Default::default())
             .expect("a writable folder");
         Command { read, times, write: start.elapsed() }
     }

@@ -55,8 +55,9 @@ fn solve(
             .iter()
             .map(|(name, edges)| Ok((name.clone(), indices(edges)?)))
             .collect::<PyResult<Vec<_>>>()?;
-        let members =
-            |bytes: &[u8]| Ok(indices(bytes)?.into_iter().map(|[t]: [usize; 1]| t).collect());
+        let members = |bytes: &[u8]| -> PyResult<Vec<usize>> {
+            Ok(indices(bytes)?.into_iter().map(|[t]: [usize; 1]| t).collect())
+        };
         let surfaces = surfaces
             .into_iter()
             .map(|(name, bytes)| Ok((name, members(&bytes)?)))

@@ -1,8 +1,10 @@
 """What the Python module promises. Run by pytest, with the module, meshio and mypy installed."""
 
 import json
+import pickle
 import subprocess
 import sys
+import typing
 from pathlib import Path
 
 import meshio
@@ -149,14 +151,108 @@ def test_a_missing_file_is_named():
         signorini.solve_case("nowhere.toml")
 
 
+def test_surfaces_and_points_of_a_meshio_mesh_keep_their_names():
+    steel, rubber = {"young": 210000.0, "poisson": 0.3}, {"young": 10.0, "poisson": 0.45}
+    solution = signorini.solve(
+        meshio.read(CASES / "bracket.msh"),
+        material={"steel": steel, "rubber": rubber},
+        load={"steel": {"body": [0, -7.7e-5]}},
+        obstacle={
+            "ground": {"plane": {"point": [0, -4], "normal": [0, 1]}},
+            "masonry": {"plane": {"point": [0, 0], "normal": [1, 0]}},
+        },
+        boundary={
+            "hole": {"displacement": [-0.03, -0.08]},
+            "floor": {"contact": {"obstacle": "ground"}},
+            "wall": {"contact": {"obstacle": "masonry"}},
+        },
+        method={"degree": 2},
+    )
+    theirs = signorini.solve_case(CASES / "bracket.toml")
+    assert solution.results["stress"]["von_mises"]["surface"] == "steel"
+    force = solution.results["quantities"]["contact_force"]
+    assert force == pytest.approx(theirs.results["quantities"]["contact_force"], rel=1e-9)
+
+
+def test_named_points_hold_a_body():
+    points, triangles, boundaries = square(2)
+    case = {**BLOCK, "boundary": {"bottom": {"contact": {"gap": 0}}, "top": {"traction": [0, -0.01]}}}
+    held = signorini.solve(
+        points, triangles, boundaries, named_points={"pivot": 0}, point={"pivot": {"displacement": [0, "free"]}},
+        **{**case, "load": {}},
+    )
+    assert held.displacement[0, 0] == 0 and held.results["method"]["slides"] == 0
+    with pytest.raises(signorini.CaseError, match="surface 'part' has shape"):
+        signorini.solve(points, triangles, boundaries, surfaces={"part": [[0]]}, **BLOCK)
+
+
+def test_a_solution_is_shown_compared_pickled_and_written(tmp_path):
+    solution, other = (signorini.solve(*square(4), **BLOCK) for _ in range(2))
+    assert repr(solution).startswith("case\n  contact      bottom: force ") and "written" not in repr(solution)
+    assert solution._repr_svg_().startswith("<svg") and "peak" in solution._repr_svg_()
+    assert solution == solution and solution != other and solution.contact != other.contact
+    assert solution.certified and solution.verdict == "proved"
+    written = solution.write(tmp_path / "out", report=True)
+    names = {"solution.vtu", "contact.vtu", "contact.csv", "picture.svg", "report.html", "result.json"}
+    assert {Path(path).name for path in written} == names
+    assert (tmp_path / "out" / "picture.svg").read_text() == solution._repr_svg_()
+    again = pickle.loads(pickle.dumps(solution))
+    assert (again.displacement == solution.displacement).all() and repr(again) == repr(solution)
+    with pytest.raises(RuntimeError, match="pickle"):
+        again.write(tmp_path / "again")
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OSError, match="cannot make the folder"):
+        solution.write(tmp_path / "file" / "out")
+
+
+def missing(value, declared, path=""):
+    """The keys of a result that its type does not declare."""
+    if not isinstance(value, dict) or not hasattr(declared, "__annotations__"):
+        return []
+    hints = typing.get_type_hints(declared)
+    found = [f"{path}{key}" for key in value if key not in hints]
+    for key in value.keys() & hints.keys():
+        hint, inner = hints[key], value[key]
+        if typing.get_origin(hint) is list and inner:
+            hint, inner = typing.get_args(hint)[0], inner[0]
+        found += missing(inner, hint, f"{path}{key}.")
+    return found
+
+
+def test_the_types_of_the_results_declare_every_key():
+    for case, settings in [
+        ("bracket", {"body.thickness": 2, "output.probes": [[20, 10]]}),
+        ("singular", {"mesh.rectangle.nx": 2, "mesh.rectangle.ny": 2}),
+    ]:
+        results = signorini.solve_case(CASES / f"{case}.toml", set=settings).results
+        assert missing(results, signorini.Results) == []
+        required = signorini.Results.__required_keys__
+        assert required <= results.keys(), required - results.keys()
+
+
+def test_the_design_study_of_the_readme_runs(tmp_path, monkeypatch):
+    import matplotlib
+
+    matplotlib.use("Agg")
+    monkeypatch.chdir(tmp_path)
+    readme = (Path(__file__).resolve().parents[1] / "README.md").read_text()
+    program = readme.split("## A design study")[1].split("```python\n")[1].split("```")[0]
+    space = {}
+    exec(program.replace("np.geomspace(5, 100, 30)", "np.geomspace(5, 100, 3)"), space)
+    assert (tmp_path / "cam.png").stat().st_size > 1000
+    assert space["peaks"] == sorted(space["peaks"], reverse=True)
+
+
 def test_the_types_are_what_mypy_expects(tmp_path):
     program = tmp_path / "program.py"
     program.write_text(
         "import numpy as np\nimport signorini\n"
         "s = signorini.solve_case('a.toml', set={'method.degree': 2})\n"
         "reveal_type(s.displacement)\nx: int = s.nodes\n"
+        "peak: float = max(part['peak_pressure'] for part in s.results['contact'])\n"
+        "print(s.certified, s.write('out'), s.results['quantities']['contact_force'])\n"
     )
-    run = subprocess.run([sys.executable, "-m", "mypy", str(program)], capture_output=True, text=True)
+    run = subprocess.run([sys.executable, "-m", "mypy", "--strict", str(program)], capture_output=True, text=True)
     assert "floating" in run.stdout or "float64" in run.stdout, run.stdout
     assert "Found 1 error" in run.stdout and "Incompatible types in assignment" in run.stdout, run.stdout
 
