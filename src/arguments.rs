@@ -1,8 +1,4 @@
-<<<<<<< HEAD
-//! What the command can be asked to do. The help and what a shell completes are made from this.
-=======
-//! The command line: tasks and options. The help, the manual page and shell completions are made from it.
->>>>>>> 24f61e1 (docs: plain English, what to read first; Python tests of surfaces, points, pictures, pickles and types; the wheel and the source archive in .ci/run)
+//! The command line: tasks and options. The help and shell completions are made from it.
 
 use std::path::PathBuf;
 
