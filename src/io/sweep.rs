@@ -167,7 +167,7 @@ pub fn run(
     let keys = axes.iter().map(|axis| axis.key.clone()).collect();
     let to_come = (0..count).map(|i| combination(axes, i)).collect();
     let runs = Vec::with_capacity(count);
-    let mut sweep = Sweep { title, keys, runs, with_files: folders.is_some(), to_come };
+    let mut sweep = Sweep { title, keys, runs, with_files: files, to_come };
     let mut last = None;
     for i in 0..count {
         let (case, values) = read(i)?;
