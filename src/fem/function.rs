@@ -30,5 +30,5 @@ impl<F: Fn([f64; 2]) -> f64 + Send + Sync> Function for F {
     }
 }
 
-/// A [`Function`] that problems own together: one in other units has the same loads.
+/// A [`Function`] that problems own together.
 pub type SharedFunction = Arc<dyn Function>;

@@ -32,7 +32,6 @@ use nalgebra::Vector2;
 #[derive(Clone, Debug)]
 pub struct Mesh {
     vertices: Vec<[f64; 2]>,
-    /// Where the vertices are is not part of it: meshes in other units share it.
     topology: Arc<Topology>,
     /// The boxes of the triangles, made when a point is first looked for.
     boxes: OnceLock<Tree>,
