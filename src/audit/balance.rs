@@ -1,8 +1,10 @@
 //! Equilibrium made exact. The tractions of a certificate are doubles, so every triangle is out of balance by some
 //! rounding errors: a force and a moment. They are carried along the edges of a tree, from the leaves to the root, each
 //! edge getting the affine traction that balances the triangle behind it; what all triangles together are out of balance
-//! by is taken by three components of traction on Gamma_D, where tractions are free. The additional tractions exist as
-//! real numbers, and intervals contain them.
+//! by is taken by three components of traction on Gamma_D, where tractions are free, or of the pressure on Gamma_C, which
+//! stays one as long as none changes by more than itself. The additional tractions exist as real numbers, and intervals
+//! contain them. Where a motion is left that neither stops, as a round shaft turns in its bearing, the problem meant has a
+//! support against it, which takes a force no larger than rounding ([`STOP`]).
 
 use nalgebra::Vector2;
 use thiserror::Error;
@@ -16,7 +18,7 @@ use crate::kernel::composite::Wrench;
 pub enum Unbalanced {
     /// Loads that nothing takes.
     #[error(
-        "nothing balances the loads on the part of the body with triangle {triangle}; expected, for each part that edges join, displacement boundaries whose forces can"
+        "nothing balances the loads on the part of the body with triangle {triangle}; expected, for each part that edges join, supports or contact whose forces can"
     )]
     Free {
         /// A triangle of the part.
@@ -24,16 +26,53 @@ pub enum Unbalanced {
     },
 }
 
-/// A traction on Gamma_D: `direction` times 1 or 2 s - 1 along the edge.
+/// A force on an edge that may have any multiple.
 #[derive(Clone, Copy)]
 struct Hold {
     edge: usize,
-    direction: [f64; 2],
-    linear: bool,
+    profile: Profile,
 }
 
+/// How it varies along the edge.
+#[derive(Clone, Copy)]
+enum Profile {
+    /// On Gamma_D, this direction.
+    Constant([f64; 2]),
+    /// On Gamma_D, this direction times 2 s - 1.
+    Linear([f64; 2]),
+    /// On Gamma_C, the force that is there, at these ends.
+    Pressure([bool; 2]),
+    /// A support of the root of a part, against one component of its motion.
+    Stop(usize),
+}
+
+/// What equilibrium adds to the pressures at both ends of edge `edge` of Gamma_C, in units of themselves.
+#[derive(Clone, Copy)]
+pub(crate) struct Change<S> {
+    pub edge: usize,
+    pub factors: [S; 2],
+}
+
+/// What equilibrium needs beside tractions.
+pub(crate) struct Closed<S> {
+    pub changes: Vec<Change<S>>,
+    pub stops: Vec<Stop<S>>,
+}
+
+/// A support of triangle `root` against a motion that the conditions leave free: a force along its edge 0, at both ends.
+pub(crate) struct Stop<S> {
+    pub root: usize,
+    pub force: [Vector2<S>; 2],
+    /// Its force, or its moment over the size of the body, in units of the forces on the boundary.
+    pub share: f64,
+}
+
+/// A support against a motion that is free may take this part of the forces on the boundary: what the loads, which do no work on
+/// such a motion, do by rounding and by what Newton's method leaves.
+const STOP: f64 = 1e-10;
+
 /// The tree over the triangles of each connected part: an order from the root on, and the edge towards the root.
-pub(super) struct Tree {
+pub(crate) struct Tree {
     pub order: Vec<usize>,
     pub towards_root: Vec<Option<usize>>,
     /// Where in `order` each part begins.
@@ -94,146 +133,220 @@ impl Tree {
     }
 }
 
-/// Adds to the forces on the edges of the triangles, `outward`, those that put every one in equilibrium; `wrenches` are their
-/// resultants, with the loads.
-///
-/// # Errors
-/// A connected part that Gamma_D doesn't hold.
-pub(super) fn close<S: Enclosing>(
-    certificate: &Certificate,
-    tree: &Tree,
-    owners: &[[Option<Owner>; 2]],
-    points: &[Vector2<S>],
-    wrenches: &mut [Wrench<S>],
-    outward: &mut [[[Vector2<S>; 2]; 3]],
-) -> Result<(), Unbalanced> {
-    for (k, &first) in tree.parts.iter().enumerate() {
-        let end = tree.parts.get(k + 1).copied().unwrap_or(tree.order.len());
-        let part = &tree.order[first..end];
-        let root = part[0];
-        let mut total = wrenches[root];
-        for &t in &part[1..] {
-            total = total.plus(wrenches[t]);
+/// The edges of a certificate with the forces that it has on them.
+pub(crate) struct OnEdges<'a, S> {
+    pub certificate: &'a Certificate,
+    pub owners: &'a [[Option<Owner>; 2]],
+    pub points: &'a [Vector2<S>],
+    /// tau N at both ends.
+    pub forces: &'a [[Vector2<S>; 2]],
+}
+
+impl<S: Enclosing> OnEdges<'_, S> {
+    /// Adds to the forces on the edges of the triangles, `outward`, those that put every one in equilibrium; `wrenches` are their
+    /// resultants, with the loads. Returns what changes on Gamma_C.
+    ///
+    /// # Errors
+    /// A connected part that neither Gamma_D nor pressures on Gamma_C balance.
+    pub fn close(
+        &self,
+        tree: &Tree,
+        wrenches: &mut [Wrench<S>],
+        outward: &mut [[[Vector2<S>; 2]; 3]],
+    ) -> Result<Closed<S>, Unbalanced> {
+        let mut closed = Closed { changes: Vec::new(), stops: Vec::new() };
+        for (k, &first) in tree.parts.iter().enumerate() {
+            let end = tree.parts.get(k + 1).copied().unwrap_or(tree.order.len());
+            let part = &tree.order[first..end];
+            let root = part[0];
+            let mut total = wrenches[root];
+            for &t in &part[1..] {
+                total = total.plus(wrenches[t]);
+            }
+            let free = Unbalanced::Free { triangle: root };
+            let Some((holds, size)) = self.choose(part) else { return Err(free) };
+            let pull = self.pull(part);
+            let unit = holds.map(|hold| match hold.profile {
+                Profile::Stop(c) => stop(c, total.about),
+                _ => self.wrench(hold).about(total.about),
+            });
+            for (hold, factor) in holds.into_iter().zip(solve(unit, total)) {
+                if let Profile::Stop(c) = hold.profile {
+                    let most = factor.upper().max(-factor.lower());
+                    let share = most / if c == 2 { pull * size } else { pull };
+                    if !(most == 0.0 || share <= STOP) {
+                        return Err(free);
+                    }
+                    let wrench = times(stop(c, total.about), factor);
+                    let [start, end] =
+                        [1, 2].map(|k| self.points[self.certificate.pieces[root].vertices[k]]);
+                    let force = wrench.on_edge(start, end);
+                    closed.stops.push(Stop { root, force, share });
+                    wrenches[root] = wrenches[root].plus(wrench);
+                    continue;
+                }
+                let Some(owner) = self.owners[hold.edge][0] else { continue };
+                let force = self.unit(hold).map(|f| f * factor);
+                add(&mut outward[owner.piece][owner.local], force);
+                let wrench = times(self.wrench(hold), factor);
+                wrenches[owner.piece] = wrenches[owner.piece].plus(wrench);
+                if let Profile::Pressure(ends) = hold.profile {
+                    let factors = ends.map(|end| if end { factor } else { S::from(0) });
+                    closed.changes.push(Change { edge: hold.edge, factors });
+                }
+            }
+            for &t in part[1..].iter().rev() {
+                let Some(e) = tree.towards_root[t] else { continue };
+                let [Some(left), Some(right)] = self.owners[e] else { continue };
+                let [start, end] = self.certificate.edges[e].ends.map(|p| self.points[p]);
+                let wrench = wrenches[t];
+                let force = wrench.on_edge(start, end);
+                let minus = force.map(|f| -f);
+                // The triangle behind the edge gets minus its resultant, the one before it the resultant; its edge runs the
+                // other way round.
+                let (behind, before) = if left.piece == t { (left, right) } else { (right, left) };
+                let (here, there) = if left.piece == t {
+                    (minus, [force[1], force[0]])
+                } else {
+                    ([minus[1], minus[0]], force)
+                };
+                add(&mut outward[behind.piece][behind.local], here);
+                add(&mut outward[before.piece][before.local], there);
+                wrenches[before.piece] = wrenches[before.piece].plus(wrench);
+            }
         }
-        let holds = choose(certificate, owners, part, points);
-        let Some(holds) = holds else { return Err(Unbalanced::Free { triangle: root }) };
-        let unit = holds.map(|hold| {
-            let [start, end] = certificate.edges[hold.edge].ends.map(|p| points[p]);
-            unit_wrench(hold, start, end).about(total.about)
-        });
-        for (hold, factor) in holds.into_iter().zip(solve(unit, total)) {
-            let Some(owner) = owners[hold.edge][0] else { continue };
-            let [start, end] = certificate.edges[hold.edge].ends.map(|p| points[p]);
-            let force = profile(hold).map(|f| exactly::<S>(f) * factor);
-            add(&mut outward[owner.piece][owner.local], force);
-            let wrench = unit_wrench(hold, start, end);
-            let wrench =
-                Wrench { force: wrench.force * factor, moment: wrench.moment * factor, ..wrench };
-            wrenches[owner.piece] = wrenches[owner.piece].plus(wrench);
-        }
-        for &t in part[1..].iter().rev() {
-            let Some(e) = tree.towards_root[t] else { continue };
-            let [Some(left), Some(right)] = owners[e] else { continue };
-            let [start, end] = certificate.edges[e].ends.map(|p| points[p]);
-            let wrench = wrenches[t];
-            let force = wrench.on_edge(start, end);
-            let minus = force.map(|f| -f);
-            // The triangle behind the edge gets minus its resultant, the one before it the resultant; its edge runs the
-            // other way round.
-            let (behind, before) = if left.piece == t { (left, right) } else { (right, left) };
-            let (here, there) = if left.piece == t {
-                (minus, [force[1], force[0]])
-            } else {
-                ([minus[1], minus[0]], force)
-            };
-            add(&mut outward[behind.piece][behind.local], here);
-            add(&mut outward[before.piece][before.local], there);
-            wrenches[before.piece] = wrenches[before.piece].plus(wrench);
+        Ok(closed)
+    }
+
+    /// The sum of the forces on the boundary of a part.
+    fn pull(&self, part: &[usize]) -> f64 {
+        let edges = part.iter().flat_map(|&t| self.certificate.pieces[t].edges);
+        let outer = edges.filter(|&e| self.owners[e][1].is_none());
+        let size = |x: &S| x.upper().max(-x.lower());
+        outer.flat_map(|e| &self.forces[e]).flatten().map(size).sum()
+    }
+
+    /// The force of a hold at both ends of its edge.
+    fn unit(&self, hold: Hold) -> [Vector2<S>; 2] {
+        match hold.profile {
+            Profile::Constant(d) => [exactly(d); 2],
+            Profile::Linear(d) => [-exactly::<S>(d), exactly(d)],
+            Profile::Stop(_) => [Vector2::zeros(); 2],
+            Profile::Pressure(ends) => {
+                let force = self.forces[hold.edge];
+                [0, 1].map(|k| if ends[k] { force[k] } else { Vector2::zeros() })
+            }
         }
     }
-    Ok(())
+
+    /// Its wrench, about the middle of the edge: int (s - 1/2) E x (f + s (g - f)) = E x (g - f) / 12.
+    fn wrench(&self, hold: Hold) -> Wrench<S> {
+        let [start, end] = self.certificate.edges[hold.edge].ends.map(|p| self.points[p]);
+        let [f, g] = self.unit(hold);
+        Wrench {
+            force: (f + g) / S::from(2),
+            moment: (end - start).perp(&(g - f)) / S::from(12),
+            about: (start + end) / S::from(2),
+        }
+    }
+
+    /// What may change on edge `e`: tractions on Gamma_D, and each pressure on Gamma_C by a part of itself. Where the direction of
+    /// contact turns it is the same at both ends, and stays so.
+    fn candidates(&self, e: usize) -> impl Iterator<Item = Hold> {
+        let profiles = match self.certificate.edges[e].role {
+            Role::Held(held, _) => {
+                let axes = [[1.0, 0.0], [0.0, 1.0]];
+                let of = |c: usize| [Profile::Constant(axes[c]), Profile::Linear(axes[c])];
+                (0..2).filter(|&c| held[c]).flat_map(of).collect()
+            }
+            Role::Supported { along, .. } => {
+                vec![Profile::Constant(along), Profile::Linear(along)]
+            }
+            Role::Contact { pressure, along, .. } if pressure != [0.0; 2] => {
+                if along.is_some_and(|[a, b]| a != b) {
+                    vec![Profile::Pressure([true; 2])]
+                } else {
+                    vec![Profile::Pressure([true, false]), Profile::Pressure([false, true])]
+                }
+            }
+            _ => Vec::new(),
+        };
+        profiles.into_iter().map(move |profile| Hold { edge: e, profile })
+    }
+
+    /// Three holds of a part whose wrenches are as independent as any: greedily, by what is left after those before. Those of Gamma_D
+    /// come first, where any traction is admissible; a motion that neither stops gets a support. Also how far the part reaches.
+    fn choose(&self, part: &[usize]) -> Option<([Hold; 3], f64)> {
+        let double = |x: Vector2<S>| x.map(|c| (c.lower() + c.upper()) / 2.0);
+        let origin = double(self.points[self.certificate.pieces[part[0]].vertices[0]]);
+        let mut candidates = Vec::new();
+        let mut size = 0.0_f64;
+        for &t in part {
+            for e in self.certificate.pieces[t].edges {
+                if self.owners[e][0].is_none_or(|owner| owner.piece != t) {
+                    continue;
+                }
+                for hold in self.candidates(e) {
+                    let wrench = self.wrench(hold);
+                    let (force, arm) = (double(wrench.force), double(wrench.about) - origin);
+                    let moment = (wrench.moment.lower() + wrench.moment.upper()) / 2.0;
+                    size = size.max(arm[0].hypot(arm[1]));
+                    candidates.push((hold, [force[0], force[1], moment + arm.perp(&force)]));
+                }
+            }
+        }
+        let norm = |row: &[f64; 3]| row.iter().map(|x| x * x).sum::<f64>();
+        let mut chosen: Vec<(Hold, [f64; 3])> = Vec::with_capacity(3);
+        let stops = [0, 1, 2].map(|c| {
+            let row = [0, 1, 2].map(|d| if c == d { 1.0 } else { 0.0 });
+            (
+                Hold { edge: self.certificate.pieces[part[0]].edges[0], profile: Profile::Stop(c) },
+                row,
+            )
+        });
+        for (_, row) in &mut candidates {
+            row[2] /= size;
+        }
+        let (of_contact, of_supports) = candidates
+            .into_iter()
+            .partition(|(hold, _)| matches!(hold.profile, Profile::Pressure(_)));
+        for candidates in [of_supports, of_contact, Vec::from(stops)] {
+            let left = |row: &[f64; 3], chosen: &[(Hold, [f64; 3])]| {
+                chosen.iter().fold(*row, |row, (_, other)| {
+                    let along = (0..3).map(|c| row[c] * other[c]).sum::<f64>() / norm(other);
+                    [0, 1, 2].map(|c| row[c] - along * other[c])
+                })
+            };
+            // Below this part of the largest, three rows in the plane are dependent up to rounding.
+            let least = 1e-16 * candidates.iter().map(|(_, row)| norm(row)).fold(0.0, f64::max);
+            while chosen.len() < 3 {
+                let rest = candidates.iter().map(|(hold, row)| (*hold, left(row, &chosen)));
+                let best = rest.max_by(|a, b| norm(&a.1).total_cmp(&norm(&b.1)));
+                let Some(best) = best.filter(|(_, row)| norm(row) > least) else { break };
+                chosen.push(best);
+            }
+        }
+        match chosen[..] {
+            [(a, _), (b, _), (c, _)] => Some(([a, b, c], size)),
+            _ => None,
+        }
+    }
+}
+
+/// A unit force along x, along y, or a unit moment.
+fn stop<S: Enclosing>(c: usize, about: Vector2<S>) -> Wrench<S> {
+    let [x, y, moment] = [0, 1, 2].map(|k| S::from(i32::from(k == c)));
+    Wrench { force: Vector2::new(x, y), moment, about }
+}
+
+fn times<S: Enclosing>(wrench: Wrench<S>, factor: S) -> Wrench<S> {
+    Wrench { force: wrench.force * factor, moment: wrench.moment * factor, ..wrench }
 }
 
 fn add<S: Enclosing>(to: &mut [Vector2<S>; 2], force: [Vector2<S>; 2]) {
     for (to, force) in to.iter_mut().zip(force) {
         *to += force;
     }
-}
-
-/// The traction of a hold at both ends of its edge.
-fn profile(hold: Hold) -> [[f64; 2]; 2] {
-    let d = hold.direction;
-    [if hold.linear { d.map(|d| -d) } else { d }, d]
-}
-
-/// Its wrench, about the middle of the edge.
-fn unit_wrench<S: Enclosing>(hold: Hold, start: Vector2<S>, end: Vector2<S>) -> Wrench<S> {
-    let about = (start + end) / S::from(2);
-    let d = exactly::<S>(hold.direction);
-    if hold.linear {
-        // int (s - 1/2) E x (2 s - 1) d = E x d / 6
-        let along = end - start;
-        let turn = along[0] * d[1] - along[1] * d[0];
-        return Wrench { force: Vector2::zeros(), moment: turn / S::from(6), about };
-    }
-    Wrench { force: d, moment: S::from(0), about }
-}
-
-/// Three holds of a part whose wrenches are as independent as any: greedily, by what is left after those before.
-fn choose<S: Enclosing>(
-    certificate: &Certificate,
-    owners: &[[Option<Owner>; 2]],
-    part: &[usize],
-    points: &[Vector2<S>],
-) -> Option<[Hold; 3]> {
-    let double = |p: usize| points[p].map(|c| (c.lower() + c.upper()) / 2.0);
-    let origin = double(certificate.pieces[part[0]].vertices[0]);
-    let mut candidates = Vec::new();
-    let mut size = 0.0_f64;
-    for &t in part {
-        for e in certificate.pieces[t].edges {
-            let edge = &certificate.edges[e];
-            let axes = [[1.0, 0.0], [0.0, 1.0]];
-            let held = match edge.role {
-                Role::Held(held, _) => [0, 1].map(|c| held[c].then_some(axes[c])),
-                Role::Supported { along, .. } => [Some(along), None],
-                _ => continue,
-            };
-            if owners[e][0].is_none_or(|owner| owner.piece != t) {
-                continue;
-            }
-            let [start, end] = edge.ends.map(double);
-            for x in [start - origin, end - origin] {
-                size = size.max(x.x.hypot(x.y));
-            }
-            for direction in held.into_iter().flatten() {
-                for linear in [false, true] {
-                    let hold = Hold { edge: e, direction, linear };
-                    let wrench = unit_wrench(hold, start, end).about(origin);
-                    candidates.push((hold, [wrench.force[0], wrench.force[1], wrench.moment]));
-                }
-            }
-        }
-    }
-    for (_, row) in &mut candidates {
-        row[2] /= size;
-    }
-    let mut chosen = Vec::with_capacity(3);
-    for _ in 0..3 {
-        let norm = |row: &[f64; 3]| row.iter().map(|x| x * x).sum::<f64>();
-        let best = candidates.iter().max_by(|a, b| norm(&a.1).total_cmp(&norm(&b.1)))?;
-        let (hold, row) = *best;
-        // Below this, three rows in the plane of size 1 are dependent up to rounding.
-        if !(norm(&row) > 1e-16) {
-            return None;
-        }
-        chosen.push(hold);
-        for (_, other) in &mut candidates {
-            let along = (0..3).map(|c| other[c] * row[c]).sum::<f64>() / norm(&row);
-            *other = [0, 1, 2].map(|c| other[c] - along * row[c]);
-        }
-    }
-    Some([chosen[0], chosen[1], chosen[2]])
 }
 
 /// The factors with which three wrenches about one point add up to minus `total`, by Cramer's rule.

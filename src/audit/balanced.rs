@@ -3,12 +3,12 @@
 
 use nalgebra::Vector2;
 
-use super::balance::{self, Tree, Unbalanced};
-use super::certificate::{Certificate, Owner, Piece, Role, Shape, exactly, support};
+use super::balance::{Change, Closed, OnEdges, Tree, Unbalanced};
+use super::certificate::{Certificate, Edge, Owner, Piece, Role, Shape, exactly, support};
 use super::checks::{Rejection, wrong};
-use super::on_contact::{OnEdge, along_directions, along_the_normal};
+use super::on_contact::{OnContact, OnEdge, along_directions, along_the_normal};
 use crate::kernel::composite::{Affine, Composite, Frame, Loads};
-use crate::kernel::{Enclosing, Triangle};
+use crate::kernel::{Ball, Enclosing, Triangle};
 
 /// How the triangles of a certificate hang together.
 pub struct Topology {
@@ -28,6 +28,8 @@ pub struct Balanced<S> {
     pub forces: Vec<[Vector2<S>; 2]>,
     /// tau N on the edges of each triangle towards its outside, in equilibrium.
     pub outward: Vec<[[Vector2<S>; 2]; 3]>,
+    /// What else equilibrium needs.
+    pub(crate) closed: Closed<S>,
     /// 2 int tau_n (v_n - g) over the edges of each triangle.
     pub on_contact: Vec<S>,
 }
@@ -51,7 +53,6 @@ impl Certificate {
         for (e, edge) in self.edges.iter().enumerate() {
             let [start, end] = edge.ends.map(|vertex| points[vertex]);
             let along = end - start;
-            let normal = Vector2::new(along[1], -along[0]);
             let length = || along.dot(&along).sqrt();
             forces.push(match edge.role {
                 Role::Inner(force) | Role::Held(_, force) => force.map(exactly),
@@ -63,32 +64,15 @@ impl Certificate {
                     let length = length();
                     traction.map(|t| exactly(t) * length)
                 }
-                Role::Pressed(p) => p.map(|p| -(normal * S::exactly(p))),
-                Role::Contact { pressure, gap, along } => {
+                Role::Pressed(p) => {
+                    let normal = Vector2::new(along[1], -along[0]);
+                    p.map(|p| -(normal * S::exactly(p)))
+                }
+                Role::Contact { pressure, .. } => {
                     if let Some(&value) = pressure.iter().find(|p| !p.is_at_most(0.0)) {
                         return Err(Rejection::Tension { edge: e, value });
                     }
-                    let shape = OnEdge {
-                        v: edge.ends.map(|vertex| v.points[vertex]),
-                        gap,
-                        bulges: self
-                            .curved
-                            .as_ref()
-                            .map(|curved| (exactly(curved.bulges[e]), curved.data[e][0])),
-                    };
-                    let contact = match along {
-                        None => along_the_normal(&shape, normal, pressure, length),
-                        Some([a, b]) if a != b && pressure[0] != pressure[1] => {
-                            return Err(wrong(
-                                "edge",
-                                e,
-                                "a pressure that varies along a direction that turns",
-                            ));
-                        }
-                        Some(along) => {
-                            along_directions(&shape, along.map(exactly), pressure, length())
-                        }
-                    };
+                    let contact = self.on_contact(e, &v, &points, pressure.map(S::exactly))?;
                     if let Some(value) = contact.beyond.into_iter().find(|b| !b.is_at_most(0.0)) {
                         return Err(Rejection::Penetration { edge: e, value: value.upper() });
                     }
@@ -99,10 +83,92 @@ impl Certificate {
                 }
             });
         }
+        let (outward, closed) = (Vec::new(), Closed { changes: Vec::new(), stops: Vec::new() });
         let mut state =
-            Balanced { points, triangles, v, topology, forces, outward: Vec::new(), on_contact };
+            Balanced { points, triangles, v, topology, forces, outward, closed, on_contact };
         state.close(self)?;
+        for &Change { edge, factors } in &state.closed.changes {
+            let Role::Contact { pressure, .. } = self.edges[edge].role else { continue };
+            // p (1 + factor) is no tension.
+            if let Some(k) = (0..2).find(|&k| !(-factors[k]).is_at_most(1.0)) {
+                return Err(Rejection::Tension { edge, value: pressure[k] });
+            }
+            let added = [0, 1].map(|k| S::exactly(pressure[k]) * factors[k]);
+            let contact = self.on_contact(edge, &state.v, &state.points, added)?;
+            if let Some(owner) = state.topology.owners[edge][0] {
+                state.on_contact[owner.piece] += contact.term;
+            }
+        }
         Ok(state)
+    }
+
+    /// The edges of Gamma_C on which v can't be shown to be outside the obstacle, each with how far it may be inside.
+    pub fn penetrations(&self) -> Vec<(usize, f64)> {
+        let (v, points): (Shape<Ball>, Vec<Vector2<Ball>>) = (self.shape(), self.places());
+        let inside = |(e, edge): (usize, &Edge)| {
+            let Role::Contact { along, .. } = edge.role else { return None };
+            let contact = self.on_contact(e, &v, &points, [Ball::from(0); 2]).ok()?;
+            let most = contact.beyond.into_iter().map(Ball::upper).fold(0.0, f64::max);
+            let span = self.span(edge.ends, &points);
+            let unit = if along.is_none() { span.dot(&span).sqrt().lower() } else { 1.0 };
+            (most > 0.0).then_some((e, most / unit))
+        };
+        self.edges.iter().enumerate().filter_map(inside).collect()
+    }
+
+    /// What a pressure does on edge `e` of Gamma_C.
+    fn on_contact<S: Enclosing>(
+        &self,
+        e: usize,
+        v: &Shape<S>,
+        points: &[Vector2<S>],
+        pressure: [S; 2],
+    ) -> Result<OnContact<S>, Rejection> {
+        let edge = &self.edges[e];
+        let Role::Contact { pressure: given, gap, along } = edge.role else {
+            return Err(wrong("edge", e, "expected one of Gamma_C"));
+        };
+        let shape = OnEdge {
+            v: edge.ends.map(|vertex| v.points[vertex]),
+            gap,
+            bulges: self
+                .curved
+                .as_ref()
+                .map(|curved| (exactly(curved.bulges[e]), curved.data[e][0])),
+        };
+        let span = self.span(edge.ends, points);
+        let length = || span.dot(&span).sqrt();
+        match along {
+            None => {
+                let normal = Vector2::new(span[1], -span[0]);
+                Ok(along_the_normal(&shape, normal, pressure, length))
+            }
+            Some([a, b]) if a != b && given[0] != given[1] => {
+                Err(wrong("edge", e, "a pressure that varies along a direction that turns"))
+            }
+            Some([a, b]) => {
+                let directions = ([a, b].map(exactly), a != b);
+                Ok(along_directions(&shape, directions, pressure, length()))
+            }
+        }
+    }
+
+    /// From one end to the other: between places on one line from vertex to vertex, the part that it is of that line, which is as
+    /// sharp for a short part as for a long one.
+    fn span<S: Enclosing>(&self, ends: [usize; 2], points: &[Vector2<S>]) -> Vector2<S> {
+        let cut = |p: usize| p.checked_sub(self.vertices.len()).map(|cut| self.cuts[cut]);
+        let [start, end] = ends;
+        if let Some(line) = cut(start).or(cut(end)) {
+            let at = |p: usize| match cut(p) {
+                Some(cut) if cut.ends == line.ends => Some(S::exactly(cut.at)),
+                Some(_) => None,
+                None => line.ends.iter().position(|&end| end == p).map(|k| S::from(k as i32)),
+            };
+            if let (Some(s), Some(t)) = (at(start), at(end)) {
+                return (points[line.ends[1]] - points[line.ends[0]]) * (t - s);
+            }
+        }
+        points[end] - points[start]
     }
 
     fn triangles<S: Enclosing>(
@@ -132,8 +198,10 @@ impl<S: Enclosing> Balanced<S> {
             wrenches.push(loads.resultant(&self.triangles[t]));
             self.outward.push(loads.forces);
         }
-        let Balanced { points, topology: Topology { owners, tree }, outward, .. } = self;
-        balance::close(certificate, tree, owners, points, &mut wrenches, outward)
+        let Balanced { points, topology: Topology { owners, tree }, forces, outward, .. } = self;
+        let on_edges = OnEdges { certificate, owners, points, forces };
+        self.closed = on_edges.close(tree, &mut wrenches, outward)?;
+        Ok(())
     }
 
     /// The forces on triangle `t` towards its outside, and its body force.
@@ -174,7 +242,10 @@ impl<S: Enclosing> Balanced<S> {
     }
 
     fn loads(&self, piece: &Piece, t: usize) -> (Frame<S>, Loads<S>) {
-        let loads = Loads { forces: self.outward[t], body: piece.body.map(exactly) };
+        let mut loads = Loads { forces: self.outward[t], body: piece.body.map(exactly) };
+        for stop in self.closed.stops.iter().filter(|stop| stop.root == t) {
+            (0..2).for_each(|k| loads.forces[0][k] += stop.force[k]);
+        }
         (Frame::new(&self.triangles[t]), loads)
     }
 }
@@ -194,6 +265,11 @@ impl Balanced<f64> {
                 Role::Loaded(_) | Role::Pressed(_) | Role::Contact { .. } => {}
             }
         }
+        for &Change { edge, factors } in &self.closed.changes {
+            if let Role::Contact { pressure, .. } = &mut certificate.edges[edge].role {
+                (0..2).for_each(|k| pressure[k] = (pressure[k] * (1.0 + factors[k])).min(0.0));
+            }
+        }
     }
 
     /// The same with the forces that the certificate has now on edges between triangles and of Gamma_D.
@@ -208,6 +284,9 @@ impl Balanced<f64> {
                 }
                 Role::Loaded(_) | Role::Pressed(_) | Role::Contact { .. } => {}
             }
+        }
+        for &Change { edge, factors } in &self.closed.changes {
+            (0..2).for_each(|k| self.forces[edge][k] *= 1.0 + factors[k]);
         }
         self.close(certificate)
     }

@@ -30,7 +30,7 @@ pub(super) struct OnContact<S> {
 pub(super) fn along_the_normal<S: Enclosing>(
     shape: &OnEdge<S>,
     normal: Vector2<S>,
-    pressure: [f64; 2],
+    [p, q]: [S; 2],
     length: impl Fn() -> S,
 ) -> OnContact<S> {
     let less_gap = |beyond: S, gap: f64| {
@@ -38,7 +38,6 @@ pub(super) fn along_the_normal<S: Enclosing>(
     };
     let [a, b] = [0, 1].map(|k| less_gap(shape.v[k].dot(&normal), shape.gap[k]));
     let bulge = shape.bulges.map(|(v, gap)| less_gap(v.dot(&normal), gap));
-    let [p, q] = pressure.map(S::exactly);
     // 4 s (1 - s) has the Bernstein coefficients 0, 2, 0 and, times p (1 - s) + q s, the integral (p + q) / 3.
     let integral = integral_of_product([p, q], [a, b]);
     let integral = bulge.map_or(integral, |bulge| integral + (p + q) * bulge / S::from(3));
@@ -50,27 +49,25 @@ pub(super) fn along_the_normal<S: Enclosing>(
     }
 }
 
-/// Contact along a direction d that is affine between the ends, with tau N = |E| p d: either d or p is constant. The mean of the
+/// Contact along a direction d that is affine between the ends, with tau N = |E| p d: p is constant where d `turns`. The mean of the
 /// Bernstein coefficients of v . d - g is its integral; it is at most their largest.
 pub(super) fn along_directions<S: Enclosing>(
     shape: &OnEdge<S>,
-    d: [Vector2<S>; 2],
-    pressure: [f64; 2],
+    (d, turns): ([Vector2<S>; 2], bool),
+    [p, q]: [S; 2],
     length: S,
 ) -> OnContact<S> {
     let (v, [g, h]) = (shape.v, shape.gap.map(S::exactly));
     let (two, three) = (S::from(2), S::from(3));
     let first = v[0].dot(&d[0]) - g;
     let last = v[1].dot(&d[1]) - h;
-    let [p, q] = pressure.map(S::exactly);
-    let constant = pressure[0] == pressure[1];
     let (beyond, integral) = if let Some((bulge, gap)) = shape.bulges {
         let gap = S::exactly(gap);
         // v and g have the middle coefficients (v_0 + v_1) / 2 + 2 b; v . d is a cubic, of which two are the thirds of these.
         let (middle, between) = ((v[0] + v[1]) / two + bulge * two, (g + h) / two + gap * two);
         let one = (middle.dot(&d[0]) - between) * two + v[0].dot(&d[1]) - g;
         let other = (middle.dot(&d[1]) - between) * two + v[1].dot(&d[0]) - h;
-        let integral = if constant {
+        let integral = if turns {
             p * (three * first + one + other + three * last) / S::from(12)
         } else {
             let beyond = bulge.dot(&d[0]) - gap;
@@ -79,7 +76,7 @@ pub(super) fn along_directions<S: Enclosing>(
         ([first, one, other, last], integral)
     } else {
         let middle = v[0].dot(&d[1]) + v[1].dot(&d[0]) - g - h;
-        let integral = if constant {
+        let integral = if turns {
             p * (two * first + middle + two * last) / S::from(6)
         } else {
             integral_of_product([p, q], [first, last])

@@ -43,6 +43,9 @@ pub struct Proof {
     pub norm: f64,
     /// J(v) from below and from above.
     pub energy: [f64; 2],
+    /// The most that a support takes against a motion which neither supports nor contact stop, in units of the forces on the
+    /// boundary; 0 where there is none, else a rounding error.
+    pub stop: f64,
 }
 
 /// What a certificate is said to prove.
@@ -94,8 +97,11 @@ impl Certificate {
             let resultant = loads.resultant(triangle);
             // Places of cuts are not doubles: what their balls leave open may be balance.
             let near = |x: &Ball, most: f64| x.lower() <= most && x.upper() >= -most;
-            if !(resultant.force.iter().all(|f| near(f, allowed))
-                && near(&resultant.moment, allowed * reach))
+            // What a support against a free motion takes is not on the edges.
+            let is_stopped = state.closed.stops.iter().any(|stop| stop.root == t);
+            if !is_stopped
+                && !(resultant.force.iter().all(|f| near(f, allowed))
+                    && near(&resultant.moment, allowed * reach))
             {
                 return Err(Rejection::OutOfBalance { triangle: t });
             }
@@ -213,7 +219,9 @@ impl Certificate {
         }
         let bound = square.split(|_| zero, |s| s).sqrt().upper();
         let norm = norm.split(|_| zero, |n| n).sqrt().lower();
-        let proof = Proof { shares, bound, norm, energy: [energy.lower(), energy.upper()] };
+        let energy = [energy.lower(), energy.upper()];
+        let stop = state.closed.stops.iter().map(|stop| stop.share).fold(0.0, f64::max);
+        let proof = Proof { shares, bound, norm, energy, stop };
         if proof.bound.is_finite() && norm.is_finite() && proof.energy.iter().all(|e| e.is_finite())
         {
             Ok(proof)

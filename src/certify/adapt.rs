@@ -14,7 +14,7 @@ use thiserror::Error;
 use super::errors::CertifyError;
 use super::{Continuous, certify};
 use crate::fem::contact_line;
-use crate::fem::{Condition, Mesh, MeshError, Problem, Space};
+use crate::fem::{Condition, Mesh, Problem, Space};
 use crate::kernel::P1;
 use crate::solve::{
     Course, Degree, Method, Phase, Settings, Solution, SolveError, Times, solve_along,
@@ -22,6 +22,9 @@ use crate::solve::{
 
 /// The share of the square of the bound that the marked triangles have. With more, levels are fewer and grow faster.
 pub const THETA: f64 = 0.5;
+
+/// After so many levels in a row whose bound is no smaller than one before, finer meshes are not tried.
+const NO_BETTER: usize = 3;
 
 /// When to stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,7 +52,7 @@ pub struct Level {
     pub relative: f64,
 }
 
-/// The last level, with those before.
+/// The level with the smallest bound, with all others.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Adapted {
@@ -63,6 +66,8 @@ pub struct Adapted {
     pub certifying: std::time::Duration,
     /// All levels, from the coarsest on.
     pub levels: Vec<Level>,
+    /// The number of the one that is given, from 0.
+    pub level: usize,
     /// Why the bound does not meet the target.
     pub unmet: Option<String>,
 }
@@ -88,8 +93,6 @@ pub enum AdaptError {
     Solve { level: usize, error: SolveError },
     #[error("no mesh can be adapted to a proved target: {0}")]
     Certify(#[from] CertifyError),
-    #[error(transparent)]
-    Mesh(#[from] MeshError),
     #[error(
         "no mesh can be adapted: '{boundary}' is curved and has a gap along its normal, and bisection keeps the straight edges of the mesh; expected a straight boundary, or an [obstacle]"
     )]
@@ -105,16 +108,15 @@ impl AdaptError {
                 matches!(error, CertifyError::Data(_) | CertifyError::Unsupported(_))
             }
             AdaptError::Curved { .. } => true,
-            AdaptError::Mesh(_) => false,
         }
     }
 }
 
-/// Solves `problem` on meshes that are refined until the bound meets the `target`, and leaves the problem on the last
-/// of them; `watcher` is told what goes on.
+/// Solves `problem` on meshes that are refined until the bound meets the `target` or falls no more, and gives the problem on the
+/// mesh with the smallest bound; `watcher` is told what goes on. A failure on a finer mesh than the first ends the refinement.
 ///
 /// # Errors
-/// A level without a solution, a mesh that can't be refined further. A level without a certificate is the last one.
+/// A first level without a solution.
 pub fn adapt(
     mut problem: Problem,
     method: &Method,
@@ -128,58 +130,91 @@ pub fn adapt(
     let mut start: Option<Vec<[f64; 2]>> = None;
     let (mut levels, mut times) = (Vec::new(), Times::default());
     let mut certifying = std::time::Duration::ZERO;
-    loop {
+    let mut before: Option<Best> = None;
+    let (best, unmet) = loop {
         let level = levels.len();
         let course = Course::default().watched_by(&of_solve);
         let course = start.as_deref().map_or(course, |start| course.from_displacement(start));
-        let (solution, took) = solve_along(&problem, method, settings, course)
-            .map_err(|error| AdaptError::Solve { level, error })?;
+        let (solution, took) =
+            match (solve_along(&problem, method, settings, course), before.take()) {
+                (Ok(solved), best) => {
+                    before = best;
+                    solved
+                }
+                (Err(error), None) => return Err(AdaptError::Solve { level, error }),
+                (Err(error), Some(best)) => {
+                    break (best, Some(format!("level {level} has no solution: {error}")));
+                }
+            };
         times = times.plus(&took);
         watcher(Stage::Certify(level));
         let begin = std::time::Instant::now();
-        let certified = match certify(&problem, &solution) {
+        let certified = certify(&problem, &solution);
+        certifying += begin.elapsed();
+        let certified = match certified {
             Ok(certified) => certified,
             Err(error) => {
                 let unmet = Some(format!("level {level} has no certificate: {error}"));
-                let (certified, certifying) = (Err(error), certifying + begin.elapsed());
-                let last = Adapted { solution, times, certified, certifying, levels, unmet };
-                return Ok((problem, last));
+                let this = || Best { problem, solution, certified: Err(error), level };
+                break (before.unwrap_or_else(this), unmet);
             }
         };
+        let (bound, relative) = (certified.bound, certified.relative);
         levels.push(Level {
             unknowns: unknowns(&problem.mesh, method.degree),
             triangles: problem.mesh.triangles().len(),
             newton_steps: solution.newton.iterations(),
-            bound: certified.bound,
-            relative: certified.relative,
+            bound,
+            relative,
         });
-        let met = certified.relative <= target.relative;
-        // There is no share of an energy that is 0.
-        let at_rest = !certified.relative.is_finite();
+        let met = relative <= target.relative;
         watcher(Stage::Refine);
-        let finer = if met || at_rest {
-            None
+        let begin = std::time::Instant::now();
+        // There is no share of an energy that is 0.
+        let finer = if met {
+            Err(None)
+        } else if relative.is_finite() {
+            let finer = problem.mesh.bisected(&newest, &marked(&certified.indicators));
+            finer.map_err(|error| Some(error.to_string()))
         } else {
-            let finer = problem.mesh.bisected(&newest, &marked(&certified.indicators))?;
-            Some(finer).filter(|f| unknowns(&f.mesh, method.degree) <= target.max_unknowns)
+            Err(Some("the body is at rest, its energy is 0".to_owned()))
         };
         certifying += begin.elapsed();
-        let Some(finer) = finer else {
-            let reason = if at_rest {
-                "the body is at rest, its energy is 0"
-            } else {
-                "the next mesh has more unknowns than adapt.max_unknowns allows"
-            };
-            let unmet = (!met).then(|| reason.to_owned());
-            let certified = Ok(certified);
-            return Ok((
-                problem,
-                Adapted { solution, times, certified, certifying, levels, unmet },
-            ));
+        start = finer.iter().map(|f| f.prolonged(&problem.mesh, &solution.displacement)).next();
+        let best = match before.take() {
+            Some(best) if !met && best.bound() <= bound => best,
+            _ => Best { problem: problem.clone(), solution, certified: Ok(certified), level },
         };
-        start = Some(finer.prolonged(&problem.mesh, &solution.displacement));
+        let finer = match finer {
+            Ok(finer) => finer,
+            Err(unmet) => break (best, unmet),
+        };
+        if level >= best.level + NO_BETTER {
+            break (best, Some(format!("the bound has not fallen for {NO_BETTER} levels")));
+        }
+        if unknowns(&finer.mesh, method.degree) > target.max_unknowns {
+            let reason = "the next mesh has more unknowns than adapt.max_unknowns allows";
+            break (best, Some(reason.to_owned()));
+        }
         newest = vec![0; finer.mesh.triangles().len()];
         problem = problem.refined(finer);
+        before = Some(best);
+    };
+    let Best { problem, solution, certified, level } = best;
+    Ok((problem, Adapted { solution, times, certified, certifying, levels, level, unmet }))
+}
+
+/// A level whose bound is the smallest so far, with its problem.
+struct Best {
+    problem: Problem,
+    solution: Solution,
+    certified: Result<Continuous, CertifyError>,
+    level: usize,
+}
+
+impl Best {
+    fn bound(&self) -> f64 {
+        self.certified.as_ref().map_or(f64::INFINITY, |certified| certified.bound)
     }
 }
 

@@ -1,15 +1,17 @@
 //! v from a displacement: it gets the prescribed values, and is pushed out of the obstacle.
 
+use std::collections::BTreeMap;
+
 use nalgebra::Vector2;
 
-use super::contact::{Contact, NEAR_THE_END};
+use super::contact::Contact;
 use super::field::Field;
 use super::parts::{Parts, held_along};
 use crate::fem::BoundaryEdge;
 
 /// v: u with the prescribed values, and pushed out of the obstacle at the vertices of Gamma_C and, if it is quadratic, between
-/// them.
-pub(super) fn admissible(parts: &Parts, u: &Field) -> Field {
+/// them; on the edge k of Gamma_C by `further[k]` more than doubles ask for.
+pub(super) fn admissible(parts: &Parts, u: &Field, further: &[f64]) -> Field {
     let mut field = u.clone();
     let v = &mut field.vertices;
     for (vertex, v) in v.iter_mut().enumerate() {
@@ -19,55 +21,51 @@ pub(super) fn admissible(parts: &Parts, u: &Field) -> Field {
             (None, _) => *v,
         };
     }
-    let reach = parts.mesh.vertices().iter().flatten().fold(0.0_f64, |max, x| max.max(x.abs()));
     let size = u.vertices.iter().flatten().fold(0.0_f64, |max, u| max.max(u.abs()));
-    // At a corner two edges push; the second may push back into the first, so some rounds.
+    let mut walls: BTreeMap<usize, Vec<Wall>> = BTreeMap::new();
+    for (edge, further) in parts.contact.iter().zip(further) {
+        for (k, vertex) in parts.mesh.ends(edge.edge).into_iter().enumerate() {
+            let (n, gap) = (edge.directions[k], edge.gap[k]);
+            // Balls must see it.
+            let is_rounded = parts.frames.contains_key(&vertex) || (n[0] != 0.0 && n[1] != 0.0);
+            let scale = gap.abs() + if is_rounded { size } else { 0.0 };
+            let margin = 64.0 * f64::EPSILON * scale + further;
+            walls.entry(vertex).or_default().push(Wall { n, most: gap - margin, margin });
+        }
+    }
+    // On an edge along which the direction turns, both ends may have to give way.
     for _ in 0..8 {
-        let mut moved = false;
-        for edge in &parts.contact {
-            let ends = parts.mesh.ends(edge.edge);
-            let free = [0, 1].map(|k| {
-                let (n, data) = (edge.directions[k], parts.prescribed[ends[k]]);
-                match parts.frames.get(&ends[k]) {
-                    Some(&d) => {
-                        let across = Vector2::new(-d[1], d[0]);
-                        across * across.dot(&n)
-                    }
-                    None => [0, 1].map(|c| if data[c].is_none() { n[c] } else { 0.0 }).into(),
-                }
-            });
-            let oblique = ends.map(|vertex| parts.frames.contains_key(&vertex));
-            let margin = |k: usize| {
-                let n = edge.directions[k];
-                // Balls must see it, also on a part of the edge between places as far out as the body reaches.
-                let is_rounded = oblique[k] || (n[0] != 0.0 && n[1] != 0.0);
-                let scale = edge.gap[k].abs() + if is_rounded { size } else { 0.0 };
-                64.0 * f64::EPSILON * scale * reach / edge.length / NEAR_THE_END
+        for (&vertex, walls) in &walls {
+            let free = parts.free_at(vertex);
+            let out = out_of(walls, v[vertex].into(), free);
+            v[vertex] = match (parts.frames.get(&vertex), parts.held_alone(vertex)) {
+                (Some(_), Some((d, w))) => held_along(d, w, out.into()),
+                _ => out.into(),
             };
-            for (k, vertex) in ends.into_iter().enumerate() {
-                let along = free[k].dot(&edge.directions[k]);
-                let beyond = Vector2::from(v[vertex]).dot(&edge.directions[k]) - edge.gap[k];
-                let margin = margin(k);
-                if beyond > -margin && along > 0.0 && (beyond > 0.0 || margin > 0.0) {
-                    let step = (beyond + 2.0 * margin) / along;
-                    v[vertex] = (Vector2::from(v[vertex]) - free[k] * step).into();
-                    moved = true;
-                }
+        }
+        let mut moved = false;
+        for (edge, further) in parts.contact.iter().zip(further) {
+            if !edge.turns() || u.bulges.is_some() {
+                continue;
             }
-            if edge.turns() && u.bulges.is_none() {
-                // Between the ends it is at most the mean of the products of each with the other's direction.
-                let [d, e] = edge.directions;
-                let along = free[0].dot(&e) + free[1].dot(&d);
-                let at = ends.map(|vertex| Vector2::from(v[vertex]));
-                let beyond = at[0].dot(&e) + at[1].dot(&d) - edge.gap[0] - edge.gap[1];
-                let margin = margin(0) + margin(1);
-                if beyond > -margin && along > 0.0 {
-                    let step = (beyond + 2.0 * margin) / along;
-                    for k in 0..2 {
-                        v[ends[k]] = (at[k] - free[k] * step).into();
-                    }
-                    moved = true;
+            // Between the ends it is at most the mean of the products of each with the other's direction.
+            let (ends, [d, e]) = (parts.mesh.ends(edge.edge), edge.directions);
+            let free = [0, 1].map(|k| match parts.free_at(ends[k]) {
+                Free::All => edge.directions[k],
+                Free::Along(t) => t * t.dot(&edge.directions[k]),
+                Free::Nothing => Vector2::zeros(),
+            });
+            let along = free[0].dot(&e) + free[1].dot(&d);
+            let at = ends.map(|vertex| Vector2::from(v[vertex]));
+            let beyond = at[0].dot(&e) + at[1].dot(&d) - edge.gap[0] - edge.gap[1];
+            let scale = edge.gap[0].abs() + edge.gap[1].abs() + 2.0 * size;
+            let margin = 64.0 * f64::EPSILON * scale + 2.0 * further;
+            if beyond > -margin && along > 0.0 {
+                let step = (beyond + 2.0 * margin) / along;
+                for k in 0..2 {
+                    v[ends[k]] = (at[k] - free[k] * step).into();
                 }
+                moved = true;
             }
         }
         if !moved {
@@ -76,24 +74,77 @@ pub(super) fn admissible(parts: &Parts, u: &Field) -> Field {
     }
     if let Some(bulges) = &mut field.bulges {
         parts.hold_between(bulges);
-        for edge in &parts.contact {
+        for (edge, further) in parts.contact.iter().zip(further) {
             let BoundaryEdge { triangle, local } = edge.edge;
             let bulge = &mut bulges[parts.mesh.triangle_edges()[triangle][local]];
             let at_ends =
                 parts.mesh.ends(edge.edge).map(|vertex| Vector2::from(field.vertices[vertex]));
-            push_between(edge, at_ends, bulge, [reach, size]);
+            push_between(edge, at_ends, bulge, (size, *further));
         }
     }
     field
 }
 
-/// Makes the Bernstein coefficients of v . d - g between the ends of an edge of Gamma_C negative, by the bulge of v. The body
-/// reaches as far out as `reach` and v is at most `size`.
+/// How a vertex may move.
+#[derive(Clone, Copy)]
+pub(super) enum Free {
+    All,
+    /// Along a vector near a unit one.
+    Along(Vector2<f64>),
+    Nothing,
+}
+
+/// v . n is to be at most `most`, which is `margin` less than what is allowed.
+struct Wall {
+    n: Vector2<f64>,
+    most: f64,
+    margin: f64,
+}
+
+/// The place nearest to v on the right side of all walls; where there is none, a place on that of one of them.
+fn out_of(walls: &[Wall], v: Vector2<f64>, free: Free) -> Vector2<f64> {
+    let is_out = |x: &Vector2<f64>| walls.iter().all(|w| x.dot(&w.n) <= w.most + w.margin / 2.0);
+    if is_out(&v) {
+        return v;
+    }
+    let (alone, n): (Vec<_>, Vec<_>) = walls
+        .iter()
+        .filter_map(|wall| {
+            let n = match free {
+                Free::All => wall.n,
+                Free::Along(t) => t * t.dot(&wall.n),
+                Free::Nothing => return None,
+            };
+            let along = n.dot(&wall.n);
+            let step = (v.dot(&wall.n) - wall.most) / along;
+            (along > 0.0).then(|| (v - n * step, wall))
+        })
+        .unzip();
+    let mut places = alone.clone();
+    if matches!(free, Free::All) {
+        for (k, a) in n.iter().enumerate() {
+            for b in &n[..k] {
+                let sine = a.n.perp(&b.n);
+                if sine.abs() > 1e-6 {
+                    let turned = |n: Vector2<f64>| Vector2::new(-n.y, n.x);
+                    places.push((turned(a.n) * b.most - turned(b.n) * a.most) / sine);
+                }
+            }
+        }
+    }
+    let far = |x: &Vector2<f64>| (x - v).dot(&(x - v));
+    let nearest = places.into_iter().filter(is_out).min_by(|a, b| far(a).total_cmp(&far(b)));
+    let farthest = || alone.into_iter().max_by(|a, b| far(a).total_cmp(&far(b)));
+    nearest.or_else(farthest).unwrap_or(v)
+}
+
+/// Makes the Bernstein coefficients of v . d - g between the ends of an edge of Gamma_C negative, by the bulge of v, which is at most
+/// `size`, and `further` than that.
 fn push_between(
     edge: &Contact,
     v: [Vector2<f64>; 2],
     bulge: &mut [f64; 2],
-    [reach, size]: [f64; 2],
+    (size, further): (f64, f64),
 ) {
     let ([d, e], [g, h]) = (edge.directions, edge.gap);
     let (mean, own) = ((d + e) / 2.0, Vector2::from(*bulge));
@@ -102,7 +153,7 @@ fn push_between(
     let tilted = if d[0] != 0.0 && d[1] != 0.0 { size } else { 0.0 };
     let largest = v[0].dot(&d).abs() + v[1].dot(&e).abs() + own.dot(&d).abs() + tilted;
     let scale = largest + g.abs() + h.abs() + edge.gap_bulge.abs();
-    let margin = 64.0 * f64::EPSILON * scale * reach / edge.length / NEAR_THE_END;
+    let margin = 64.0 * f64::EPSILON * scale + further;
     let step = if edge.turns() {
         // v . d is a cubic: three times its coefficients.
         let one = 2.0 * (middle.dot(&d) - between) + v[0].dot(&e) - g;

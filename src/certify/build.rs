@@ -1,6 +1,8 @@
 //! A certificate from a discrete solution: v as it was made admissible, tau by equilibrated tractions (`tractions`), on the triangles
 //! of the mesh or on their quarters (`quarters`), cut where contact ends (`divide`).
 
+use std::collections::BTreeMap;
+
 use nalgebra::Vector2;
 
 use super::certificate::{
@@ -48,6 +50,25 @@ impl Built {
         let shape = Shape { points, bulges };
         let shape = if self.quartered { halved(shape, mesh, &mesh_edges(mesh)) } else { shape };
         divided(shape, &self.divisions)
+    }
+
+    /// The edges of Gamma_C, by their numbers in `parts`, of the triangles where v can't be shown to be outside the obstacle, and how
+    /// far it may be inside.
+    pub fn penetrations(&self, parts: &Parts) -> Vec<(usize, f64)> {
+        let found = self.certificate.penetrations();
+        if found.is_empty() {
+            return Vec::new();
+        }
+        let mut of: BTreeMap<usize, f64> = BTreeMap::new();
+        let by_edge: BTreeMap<usize, f64> = found.into_iter().collect();
+        for (piece, &t) in self.certificate.pieces.iter().zip(&self.origins) {
+            for by in piece.edges.iter().filter_map(|e| by_edge.get(e)) {
+                let most = of.entry(t).or_default();
+                *most = most.max(*by);
+            }
+        }
+        let contact = parts.contact.iter().enumerate();
+        contact.filter_map(|(k, edge)| Some((k, *of.get(&edge.edge.triangle)?))).collect()
     }
 }
 

@@ -23,7 +23,6 @@ mod contact;
 mod data;
 mod divide;
 mod errors;
-mod estimate;
 mod field;
 mod oscillation;
 mod parts;
@@ -46,6 +45,7 @@ pub use signorini_audit::proof;
 use signorini_audit::{balanced, certificate};
 
 use self::proof::{Piece, Role};
+use crate::fem::smooth::SmoothBoundary;
 use crate::fem::{Mesh, Problem};
 use crate::kernel::{Ball, Interval, P1, P2, Scalar, Triangle};
 use crate::memory;
@@ -53,6 +53,9 @@ use crate::solve::Solution;
 
 /// How often the stress is improved around every vertex.
 pub const SWEEPS: usize = 2;
+
+/// How often v is pushed out of the obstacle by what the check finds it to be inside.
+const PUSHES: usize = 5;
 
 /// The bytes that a certificate takes for each triangle while it is made: the second derivatives of the sweeps, 700, and
 /// the forces, wrenches and tractions in doubles and in intervals.
@@ -68,14 +71,14 @@ pub struct Continuous {
     pub relative: f64,
     /// v, at the vertices, and at the middles of the edges if it is quadratic.
     pub displacement: Vec<[f64; 2]>,
-    /// The bound over an estimate of the error that proves nothing (Zienkiewicz and Zhu's): how sharp the bound may be.
-    pub effectivity_hint: Option<f64>,
     /// Whether every step is proved, rounding included.
     pub rigorous: bool,
     /// Why it is not rigorous.
     pub reason: Option<String>,
     /// The square root of each triangle's share in the square of the bound, and |v - w|_a there, by the triangles of the mesh.
     pub indicators: Vec<f64>,
+    /// How the problem that is bounded differs from the one that is meant, if it does; `rigorous` is about the former.
+    pub problem: Option<String>,
     /// J(u) lies between these; `None` where the data are outside the exact class.
     pub energy: Option<[f64; 2]>,
     /// The compliance L(u) lies between these; `None` where J(u) is not bounded, or where displacements or gaps other than 0
@@ -89,6 +92,9 @@ pub struct Continuous {
     pub clipping: f64,
     /// |u - w|_a is at most this.
     pub of_field: f64,
+    /// The largest |w - u_D| at the nodes of Gamma_D and, where w is quadratic or u_D is, of the bulges between them: bounds in
+    /// the energy norm don't see a w that is moved as a whole.
+    pub missed: f64,
 }
 
 /// Certifies the `solution` of `problem`.
@@ -134,9 +140,25 @@ fn certify_near(
         _ => Parts::new::<P2, 6, 3>(problem, solution.gamma.gamma, &solution.displacement)?,
     };
     let mesh = &problem.mesh;
-    let [u, start, _] = [&solution.displacement, start, field].map(|nodal| Field::new(mesh, nodal));
-    let v = admissible::admissible(&parts, &start?);
-    let mut built = build::build(&parts, &u?, &v);
+    let [u, start, w] = [&solution.displacement, start, field].map(|nodal| Field::new(mesh, nodal));
+    let missed = parts.missed(&w?);
+    let (u, start) = (u?, start?);
+    let mut further = vec![0.0; parts.contact.len()];
+    let mut outside = || {
+        let v = admissible::admissible(&parts, &start, &further);
+        let built = build::build(&parts, &u, &v);
+        let found = built.penetrations(&parts);
+        found.iter().for_each(|&(k, by)| further[k] += 2.0 * by);
+        (v, built, found.is_empty())
+    };
+    // As far as balls ask for.
+    let (mut v, mut built, mut is_out) = outside();
+    for _ in 0..PUSHES {
+        if is_out {
+            break;
+        }
+        (v, built, is_out) = outside();
+    }
     let topology = sweeps::improve(&mut built.certificate, SWEEPS)?;
     let (certificate, oscillation) = (&built.certificate, &built.oscillation);
     let state = certificate.balanced::<Ball>(topology)?;
@@ -170,7 +192,7 @@ fn certify_near(
     oscillation.lifts.iter().for_each(|(&t, z)| shares[t] += z * z);
     let mut apart = vec![0.0; shares.len()];
     built.origins.iter().zip(&distances).for_each(|(&t, d)| apart[t] += d * d);
-    let estimate = estimate::averaging_estimate(&parts, &v);
+    let problem = problem_bounded(mesh, &proof);
     let both = |(share, distance): (f64, &f64)| share.max(0.0).sqrt() + distance.sqrt();
     let Built { certificate, oscillation, .. } = built;
     Ok(Continuous {
@@ -179,7 +201,7 @@ fn certify_near(
         displacement: v.nodal(mesh),
         rigorous: oscillation.reason.is_none(),
         reason: oscillation.reason,
-        effectivity_hint: (estimate > 0.0).then(|| bound / estimate),
+        problem,
         indicators: shares.into_iter().zip(&apart).map(both).collect(),
         energy,
         compliance,
@@ -187,7 +209,23 @@ fn certify_near(
         proof,
         clipping,
         of_field,
+        missed,
     })
+}
+
+/// How the problem that is bounded differs from the one that is meant.
+fn problem_bounded(mesh: &Mesh, proof: &Proof) -> Option<String> {
+    let body = SmoothBoundary::new(mesh)
+        .is_curved()
+        .then(|| "the polygon of the mesh as its body".to_owned());
+    let support = (proof.stop > 0.0).then(|| {
+        format!(
+            "a support against a motion that nothing else stops, which takes {:.0e} of the forces on the boundary or less",
+            proof.stop
+        )
+    });
+    let differences: Vec<String> = body.into_iter().chain(support).collect();
+    (!differences.is_empty()).then(|| differences.join(" and "))
 }
 
 /// Whether u_D = 0 and g = 0, so that with u all its multiples t u, t >= 0, are admissible: then a(u, u) = L(u) and

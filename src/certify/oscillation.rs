@@ -85,7 +85,7 @@ impl Oscillation {
         let named = (!turning.is_empty()).then(|| {
             let names: Vec<String> = turning.iter().map(|name| format!("'{name}'")).collect();
             format!(
-                "the problem that is bounded has the polygon of the mesh, and on {} a direction and a gap that are {} between its vertices",
+                "the problem that is bounded has on {} a direction and a gap that are {} between its vertices",
                 names.join(", "),
                 if quadratic { "affine and quadratic" } else { "affine" }
             )

@@ -2,10 +2,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use nalgebra::Vector2;
+
+use super::admissible::Free;
 use super::certificate::is_oblique;
 use super::contact::Contact;
 use super::data::{Traction, bulge_of};
 use super::errors::CertifyError;
+use super::field::Field;
 use crate::fem::constraints::Constraints;
 use crate::fem::contact_line::Gamma;
 use crate::fem::smooth::SmoothBoundary;
@@ -63,11 +67,6 @@ impl<'a> Parts<'a> {
         });
         let contact: Vec<Contact> = contact.collect();
         let unsupported = |why: String| Err(CertifyError::Unsupported(why));
-        if let Some(motion) = constraints.free_motions(&space).1.first() {
-            return unsupported(format!(
-                "the supports leave free a {motion}; contact may, but a stress that is proved is balanced by the traction on them: expected supports that hold the body without contact"
-            ));
-        }
         if let Some(point) = problem.points.first() {
             return unsupported(format!(
                 "[point.{}] holds a point, which a true solution does not feel",
@@ -210,6 +209,42 @@ impl<'a> Parts<'a> {
             (None, [Some(w), None]) => Some(([1.0, 0.0], w)),
             (None, [None, Some(w)]) => Some(([0.0, 1.0], w)),
             _ => None,
+        }
+    }
+
+    /// The largest |w - u_D| for a field w, at the vertices of Gamma_D and in the middles of its edges, in the components that
+    /// are held.
+    pub fn missed(&self, w: &Field) -> f64 {
+        let along = |d: [f64; 2], u: [f64; 2], given: f64| {
+            (u[0] * d[0] + u[1] * d[1] - given).abs() / d[0].hypot(d[1])
+        };
+        let at_vertex = |(vertex, &w): (usize, &[f64; 2])| {
+            if let Some((d, given)) = self.held_alone(vertex) {
+                return along(d, w, given);
+            }
+            let off = |c: usize| self.prescribed[vertex][c].map_or(0.0, |u| (w[c] - u).abs());
+            off(0).max(off(1))
+        };
+        let between = |(&e, what): (&usize, &Boundary)| {
+            let bulge = w.bulges.as_ref().map_or([0.0; 2], |bulges| bulges[e]);
+            match *what {
+                Boundary::Held(held, data) => (0..2)
+                    .map(|c| if held[c] { (bulge[c] - data[c]).abs() } else { 0.0 })
+                    .fold(0.0, f64::max),
+                Boundary::Supported(d, data, _) => along(d, bulge, data),
+                _ => 0.0,
+            }
+        };
+        let at_vertices = w.vertices.iter().enumerate().map(at_vertex);
+        at_vertices.chain(self.boundary.iter().map(between)).fold(0.0, f64::max)
+    }
+
+    /// How v may move at a vertex.
+    pub fn free_at(&self, vertex: usize) -> Free {
+        match (self.held_alone(vertex), self.prescribed[vertex]) {
+            (Some((d, _)), _) => Free::Along(Vector2::new(-d[1], d[0])),
+            (None, [None, None]) => Free::All,
+            (None, _) => Free::Nothing,
         }
     }
 

@@ -10,6 +10,7 @@ use super::obstacle::Obstacle;
 
 /// What holds on a named part of the boundary; on the rest the traction is zero.
 #[non_exhaustive]
+#[derive(Clone)]
 pub enum Condition {
     /// Gamma_D: the given components of the displacement; `None` leaves a component free (sliding).
     Displacement([Option<SharedFunction>; 2]),
@@ -49,6 +50,7 @@ impl Condition {
 }
 
 /// A force per unit of area on a part of the body, beside [`Problem::body_force`].
+#[derive(Clone)]
 pub struct SurfaceForce {
     /// The part's name.
     pub surface: String,
@@ -59,6 +61,7 @@ pub struct SurfaceForce {
 }
 
 /// A support in one point.
+#[derive(Clone)]
 pub struct PointSupport {
     /// The point's name.
     pub name: String,
@@ -69,6 +72,7 @@ pub struct PointSupport {
 }
 
 /// A unilateral contact problem on a mesh.
+#[derive(Clone)]
 pub struct Problem {
     /// The body.
     pub mesh: Mesh,

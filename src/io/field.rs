@@ -6,7 +6,8 @@
 //!   appended section that VTK itself prefers.
 //!
 //! Points are matched to vertices by their place. A field on quadratic triangles of VTU (with six points each, VTK's types 22 and
-//! 69) is read at the middles of the edges, too; otherwise other points are passed over.
+//! 69) is read at the middles of the edges, too. A field with points elsewhere, or with several values at one place, is refused: a
+//! bound would be of another field.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -41,7 +42,7 @@ const NEAR: f64 = 1e-6;
 /// degree 1 or 2.
 ///
 /// # Errors
-/// A file that can't be read or understood, or that lacks a vertex of the mesh.
+/// A file that can't be read or understood, that lacks a node of the mesh or has points that are none, or two values at one.
 pub fn read_field(path: &Path, mesh: &Mesh) -> Result<Vec<[f64; 2]>, FieldError> {
     let bytes = input::read(path, MOST)
         .map_err(|error| FieldError::Read { path: path.to_owned(), error })?;
@@ -60,11 +61,16 @@ pub fn read_field(path: &Path, mesh: &Mesh) -> Result<Vec<[f64; 2]>, FieldError>
 type Points = Vec<([f64; 2], [f64; 2])>;
 
 fn at_nodes(points: &Points, mesh: &Mesh, quadratic: bool) -> Result<Vec<[f64; 2]>, String> {
-    let vertices = mesh.vertices();
+    let vertices = mesh.vertices().len();
+    let nodes: Vec<[f64; 2]> = if quadratic {
+        Space::<P2, 6, 3>::new(mesh).nodes().to_vec()
+    } else {
+        mesh.vertices().to_vec()
+    };
     let extent = (0..2)
         .map(|c| {
             let of =
-                |pick: fn(f64, f64) -> f64, start| vertices.iter().map(|x| x[c]).fold(start, pick);
+                |pick: fn(f64, f64) -> f64, start| nodes.iter().map(|x| x[c]).fold(start, pick);
             of(f64::max, f64::NEG_INFINITY) - of(f64::min, f64::INFINITY)
         })
         .fold(0.0, f64::max);
@@ -73,45 +79,69 @@ fn at_nodes(points: &Points, mesh: &Mesh, quadratic: bool) -> Result<Vec<[f64; 2
     let origin = vertices[0];
     let cell = |x: [f64; 2]| [0, 1].map(|c| ((x[c] - origin[c]) / width).floor() as i64);
     let mut grid: BTreeMap<[i64; 2], Vec<usize>> = BTreeMap::new();
-    for (i, (x, u)) in points.iter().enumerate() {
-        if !x.iter().chain(u).all(|c| c.is_finite()) {
-            return Err(format!(
-                "point {i} has a number that is NaN or infinite; expected finite ones"
-            ));
-        }
-        grid.entry(cell(*x)).or_default().push(i);
+    for (k, &x) in nodes.iter().enumerate() {
+        grid.entry(cell(x)).or_default().push(k);
     }
+    let distance = |k: usize, x: [f64; 2]| (nodes[k][0] - x[0]).hypot(nodes[k][1] - x[1]);
     let nearest = |x: [f64; 2]| {
         let [i, j] = cell(x);
-        let cells = (i - 1..=i + 1).flat_map(|i| (j - 1..=j + 1).map(move |j| [i, j]));
-        let distance = |k: usize| (points[k].0[0] - x[0]).hypot(points[k].0[1] - x[1]);
+        let around = |i: i64| i.saturating_sub(1)..=i.saturating_add(1);
+        let cells = around(i).flat_map(|i| around(j).map(move |j| [i, j]));
         cells
             .filter_map(|cell| grid.get(&cell))
             .flatten()
             .copied()
-            .min_by(|&a, &b| distance(a).total_cmp(&distance(b)))
-            .filter(|&k| distance(k) <= NEAR * extent)
+            .min_by(|&a, &b| distance(a, x).total_cmp(&distance(b, x)))
+            .filter(|&k| distance(k, x) <= NEAR * extent)
     };
-    let value = |(v, &x): (usize, &[f64; 2])| match nearest(x) {
-        Some(k) => Ok(points[k].1),
-        None => Err(format!(
-            "none of its {} points lies at {} of the mesh, ({}, {}); expected the displacement at {}",
+    let what = if quadratic { "vertex or middle of an edge" } else { "vertex" };
+    let size = points.iter().flat_map(|(_, u)| u).fold(0.0_f64, |max, u| max.max(u.abs()));
+    // The nearest point to each node.
+    let mut found: Vec<Option<usize>> = vec![None; nodes.len()];
+    let mut elsewhere = Vec::new();
+    for (i, &(x, u)) in points.iter().enumerate() {
+        if !x.iter().chain(&u).all(|c| c.is_finite()) {
+            return Err(format!(
+                "point {i} has a number that is NaN or infinite; expected finite ones"
+            ));
+        }
+        let Some(k) = nearest(x) else {
+            elsewhere.push(x);
+            continue;
+        };
+        let Some(other) = found[k].replace(i) else { continue };
+        let (y, w) = points[other];
+        if (0..2).any(|c| (u[c] - w[c]).abs() > NEAR * size) {
+            return Err(format!(
+                "points {other} and {i} lie at one {what}, ({}, {}), and have the displacements ({}, {}) and ({}, {}); expected one",
+                x[0], x[1], w[0], w[1], u[0], u[1]
+            ));
+        }
+        if distance(k, y) < distance(k, x) {
+            found[k] = Some(other);
+        }
+    }
+    if let Some(x) = elsewhere.first() {
+        return Err(format!(
+            "{} of its {} points lie at no {what} of the case's mesh, the first at ({}, {}); expected a field on that mesh, as what it does elsewhere would not be seen",
+            elsewhere.len(),
             points.len(),
-            if v < vertices.len() {
-                format!("vertex {v}")
-            } else {
-                "the middle of an edge".to_owned()
-            },
             x[0],
-            x[1],
-            if quadratic { "every vertex and every middle of an edge" } else { "every vertex" }
+            x[1]
+        ));
+    }
+    let value = |(k, found): (usize, Option<usize>)| match found {
+        Some(i) => Ok(points[i].1),
+        None => Err(format!(
+            "none of its {} points lies at {} of the mesh, ({}, {}); expected the displacement at every {}",
+            points.len(),
+            if k < vertices { format!("vertex {k}") } else { "the middle of an edge".to_owned() },
+            nodes[k][0],
+            nodes[k][1],
+            if quadratic { "vertex and every middle of an edge" } else { "vertex" }
         )),
     };
-    if quadratic {
-        let space = Space::<P2, 6, 3>::new(mesh);
-        return space.nodes().iter().enumerate().map(value).collect();
-    }
-    vertices.iter().enumerate().map(value).collect()
+    found.into_iter().enumerate().map(value).collect()
 }
 
 /// Whether all cells of a VTU file are triangles with six points.
@@ -431,11 +461,27 @@ mod tests {
         assert!(has_quadratic_triangles(&text));
         let mut points = from_vtu(&text).unwrap();
         assert_eq!(at_nodes(&points, &mesh, true).unwrap(), u);
-        assert_eq!(at_nodes(&points, &mesh, false).unwrap(), u[..mesh.vertices().len()]);
+        let error = at_nodes(&points, &mesh, false).unwrap_err();
+        let middles = mesh.edge_count();
+        assert!(error.starts_with(&format!("{middles} of its {} points", u.len())), "{error}");
         // Where the middle of one edge is missing, that is said.
         points.pop();
         let error = at_nodes(&points, &mesh, true).unwrap_err();
         assert!(error.contains("at the middle of an edge of the mesh"), "{error}");
+    }
+
+    #[test]
+    fn a_place_may_come_twice_with_one_value_only() {
+        let mesh = mesh();
+        let u = field(&mesh);
+        let mut points: Points = mesh.vertices().iter().copied().zip(u.iter().copied()).collect();
+        points.extend(points.clone());
+        assert_eq!(at_nodes(&points, &mesh, false).unwrap(), u);
+        let last = points.len() - 1;
+        points[last].1[1] += 0.01;
+        let error = at_nodes(&points, &mesh, false).unwrap_err();
+        let pair = format!("points {} and {last} lie at one vertex", last / 2);
+        assert!(error.starts_with(&pair), "{error}");
     }
 
     #[test]

@@ -234,7 +234,9 @@ pub struct Adaptation {
     /// Why it is not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// All meshes, from the coarsest on; the results are those of the last.
+    /// The mesh of these results, by its number in `levels`, from 0.
+    pub level: usize,
+    /// All meshes, from the coarsest on.
     pub levels: Vec<Level>,
 }
 

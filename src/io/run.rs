@@ -69,6 +69,7 @@ pub fn solve(
             target: target.relative,
             met: adapted.unmet.is_none(),
             reason: adapted.unmet,
+            level: adapted.level,
             levels: adapted.levels,
         }),
     };

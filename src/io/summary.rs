@@ -273,11 +273,7 @@ pub fn certified(case: &Case, field: &Path, c: &Continuous, files: &[PathBuf]) -
             short(bound)
         }
     };
-    let proved = if c.rigorous {
-        "proved".to_owned()
-    } else {
-        format!("with a reservation ({})", c.reason.as_deref().unwrap_or_default())
-    };
+    let proved = proved(c.rigorous, c.reason.as_deref(), c.problem.as_deref());
     lines.line(
         "admissible",
         format!(
@@ -287,8 +283,24 @@ pub fn certified(case: &Case, field: &Path, c: &Continuous, files: &[PathBuf]) -
     );
     lines.line("error", format!("at most {} of that one: {proved}", size(c.bound)));
     lines.line("", format!("at most {} as it is", size(c.of_field)));
+    if c.missed > 0.0 {
+        let of = "the energy norm does not see a field that is moved as a whole";
+        let missed = short(c.missed);
+        lines.line("prescribed", format!("the field misses it by up to {missed}; {of}"));
+    }
     lines.line("written", written(files));
     lines.under(&case.title)
+}
+
+/// Whether a bound is proved, and of which problem, where that is not the one that is meant.
+fn proved(rigorous: bool, reason: Option<&str>, problem: Option<&str>) -> String {
+    let with = problem.map(|problem| format!(", of the problem with {problem}"));
+    let with = with.unwrap_or_default();
+    if rigorous {
+        format!("proved{with}")
+    } else {
+        format!("with a reservation ({}){with}", reason.unwrap_or_default())
+    }
 }
 
 /// The summary of a certificate that was verified.
@@ -379,12 +391,9 @@ fn distance(certificate: &ContinuousCertificate, lines: &mut Lines) {
         None => short(error),
     };
     let [as_it_is, pushed_out] = [of_solution, bound].map(size);
-    let proved = if certificate.rigorous {
-        ": proved".to_owned()
-    } else {
-        format!(", with a reservation ({reason})")
-    };
-    lines.line("error", format!("energy error at most {as_it_is}{proved}"));
+    let proved =
+        proved(certificate.rigorous, certificate.reason.as_deref(), certificate.problem.as_deref());
+    lines.line("error", format!("energy error at most {as_it_is}: {proved}"));
     if as_it_is != pushed_out {
         let of = "for the displacement pushed out of the obstacle, as in certificate.json";
         lines.line("", format!("at most {pushed_out} {of}"));

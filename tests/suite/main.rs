@@ -8,6 +8,7 @@ mod assembled;
 mod audit;
 mod bad_input;
 mod bodies;
+mod certified_contact;
 mod certified_supports;
 mod certify;
 #[cfg(feature = "cli")]

@@ -81,9 +81,6 @@ pub struct ContinuousCertificate {
     /// |u - u^h|_a is at most this, u^h being the solution as it is written, which may go through the obstacle.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub of_solution: Option<f64>,
-    /// The bound over an estimate of the error, which proves nothing.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub effectivity_hint: Option<f64>,
     /// The potential energy of u lies between these.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub potential_energy: Option<[f64; 2]>,
@@ -95,6 +92,10 @@ pub struct ContinuousCertificate {
     /// Why not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
+    /// How the problem that is bounded differs from the one that is meant: a polygon for a round body, a support against a motion
+    /// that is free.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub problem: Option<String>,
 }
 
 impl From<&Result<Continuous, CertifyError>> for ContinuousCertificate {
@@ -105,11 +106,11 @@ impl From<&Result<Continuous, CertifyError>> for ContinuousCertificate {
                 // A body at rest has no energy to compare with.
                 relative: Some(c.relative).filter(|r| r.is_finite()),
                 of_solution: Some(c.of_field),
-                effectivity_hint: c.effectivity_hint,
                 potential_energy: c.energy,
                 compliance: c.compliance,
                 rigorous: c.rigorous,
                 reason: c.reason.clone(),
+                problem: c.problem.clone(),
             },
             Err(error) => {
                 ContinuousCertificate { reason: Some(error.to_string()), ..Default::default() }

@@ -1,0 +1,155 @@
+//! Certificates of bodies that contact alone holds, and of v pushed out of obstacles of every kind: what balances the loads is the
+//! pressure on Gamma_C, and v is as far outside as balls can see.
+
+use std::path::{Path, PathBuf};
+
+use crate::certify::accepts;
+use signorini::certify::proof::{Certificate, Role};
+use signorini::certify::{Continuous, Rejection, certify};
+use signorini::io::{Case, certificate};
+use signorini::kernel::Ball;
+use signorini::solve::solve;
+
+fn certified(text: &str, settings: &[&str]) -> Continuous {
+    let settings: Vec<String> = settings.iter().map(|&s| s.to_owned()).collect();
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/in_a_test.toml");
+    let case = Case::parse(&file, text, &settings).unwrap();
+    let (solution, _) = solve(&case.problem, &case.method, &case.settings).unwrap();
+    let certified = certify(&case.problem, &solution).unwrap_or_else(|e| panic!("{e}: {text}"));
+    let (header, bytes) = certificate::encode("in a test", &certified);
+    assert_eq!(accepts(&header, &bytes), Ok(()), "{text}");
+    certified
+}
+
+const SQUARE: &str = "[mesh]\nrectangle = { width = 1.0, height = 1.0, nx = 8, ny = 8 }\n[material]\nlambda = 1.0\nmu = 1.0\n";
+
+/// The right half of a block, on a floor.
+const HALF: &str = "[boundary.left]\nnormal = 0\n[boundary.top]\ntraction = [\"0\", \"-0.05 + 0.02*x\"]\n[boundary.bottom]\ncontact = { gap = \"0\" }\n";
+
+/// A block that is free to slide on its floor.
+const SLIDING: &str = "[load]\nbody = [\"0\", \"-0.1\"]\n[boundary.top]\npressure = \"0.05 + 0.02*x\"\n[boundary.bottom]\ncontact = { gap = \"0\" }\n";
+
+/// Two rollers, a third side that comes to rest on a wall.
+const ROLLERS: &str = "[boundary.left]\nnormal = 0\n[boundary.bottom]\ncontact = { gap = \"0\" }\n[boundary.top]\npressure = \"0.05\"\n[boundary.right]\ncontact = { gap = \"0.001*y\" }\n";
+
+#[test]
+fn bodies_that_contact_alone_holds_have_certificates_that_enclose_the_potential_energy() {
+    for (text, has_stop) in [(HALF, false), (SLIDING, true), (ROLLERS, false)] {
+        let text = format!("{SQUARE}{text}");
+        let mut before: Option<(f64, [f64; 2])> = None;
+        for degree in ["1", "2"] {
+            for n in ["4", "8", "16"] {
+                let settings =
+                    ["mesh.rectangle.nx=", "mesh.rectangle.ny="].map(|s| s.to_owned() + n);
+                let degree = format!("method.degree={degree}");
+                let found = certified(&text, &[&settings[0], &settings[1], &degree]);
+                assert!(found.rigorous && found.relative < 0.4, "{text}: {}", found.relative);
+                assert!(found.proof.stop < 1e-12 && (has_stop || found.proof.stop == 0.0));
+                let [low, high] = found.energy.unwrap();
+                if let Some((bound, [l, h])) = before {
+                    assert!(low.max(l) <= high.min(h), "{text}: {low} {l} {high} {h}");
+                    // P2 starts on a mesh four times as wide.
+                    assert!(found.bound < bound, "{text}: {} after {bound}", found.bound);
+                }
+                before = Some((found.bound, [low, high]));
+            }
+        }
+    }
+}
+
+fn disk(settings: &[&str]) -> Continuous {
+    let cases = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("cases");
+    certified(&Case::text(&cases.join("disk_force.toml")).unwrap(), settings)
+}
+
+/// It may turn about its centre, and it is the polygon of the mesh.
+#[test]
+fn the_disk_under_a_force_has_a_certificate_that_names_its_polygon_and_its_support() {
+    for degree in ["1", "2"] {
+        let found = disk(&[&format!("method.degree={degree}"), "method.gamma0=auto"]);
+        assert!(found.relative < 0.1, "{}", found.relative);
+        let problem = found.problem.unwrap();
+        assert!(problem.starts_with("the polygon of the mesh as its body"), "{problem}");
+        assert!(found.proof.stop < 1e-10, "{}", found.proof.stop);
+    }
+}
+
+fn every_pressure(certificate: &mut Certificate, factor: f64) {
+    for edge in &mut certificate.edges {
+        if let Role::Contact { pressure, .. } = &mut edge.role {
+            *pressure = pressure.map(|p| p * factor);
+        }
+    }
+}
+
+#[test]
+fn control_pressures_that_balance_nothing_are_rejected() {
+    let text = format!("{SQUARE}{HALF}");
+    let found = |factor: f64| {
+        let mut certificate = certified(&text, &[]).certificate;
+        every_pressure(&mut certificate, factor);
+        certificate.evaluate::<Ball>()
+    };
+    assert!(found(1.0).is_ok());
+    assert!(matches!(found(0.0), Err(Rejection::Unbalanced(_))), "{:?}", found(0.0));
+    // The few edges that are to take the whole load would be multiplied by more than a hundred: a bound, and a bad one.
+    assert!(found(0.01).unwrap().bound > 10.0 * found(1.0).unwrap().bound);
+    // Where there is too much pressure, what is taken back is a tension.
+    assert!(matches!(found(100.0), Err(Rejection::Tension { .. })), "{:?}", found(100.0));
+}
+
+#[test]
+fn control_a_force_along_the_floor_is_not_a_rounding_error() {
+    let text = format!("{SQUARE}{SLIDING}");
+    let found = certified(&text, &[]).certificate;
+    let pushed = |force: f64| {
+        let mut pushed = found.clone();
+        let right = pushed.edges.iter_mut().find_map(|edge| match &mut edge.role {
+            Role::Loaded(traction) => Some(traction),
+            _ => None,
+        });
+        *right.unwrap() = [[force, 0.0]; 2];
+        pushed.evaluate::<Ball>()
+    };
+    assert!(pushed(1e-14).is_ok());
+    assert!(matches!(pushed(1e-6), Err(Rejection::Unbalanced(_))), "{:?}", pushed(1e-6));
+}
+
+/// A wedge whose slanted side is a plane of symmetry.
+const WEDGE: &str = "[mesh]\ntrapezoid = { omega = 2.2, n = 4 }\n[material]\nlambda = 1.0\nmu = 1.0\n[boundary.left]\nnormal = 0\n[boundary.top]\ndisplacement = [\"free\", \"-0.05\"]\n";
+
+#[test]
+fn a_roller_at_an_angle_may_meet_the_contact_line() {
+    for gap in ["0", "0.001 + 0.01*x", "0.01*x"] {
+        let text = format!("{WEDGE}[boundary.bottom]\ncontact = {{ gap = \"{gap}\" }}\n");
+        for degree in ["method.degree=1", "method.degree=2"] {
+            for n in ["4", "7", "16"] {
+                let found = certified(&text, &[degree, &format!("mesh.trapezoid.n={n}")]);
+                assert!(found.rigorous && !found.certificate.frames.is_empty());
+            }
+        }
+    }
+}
+
+/// Blocks on a floor that slopes, on two floors at an angle, and far from the origin.
+#[test]
+fn v_is_pushed_out_of_slopes_and_of_two_floors_at_a_time() {
+    let slope = "[obstacle.f]\nplane = { point = [0.0, -0.01], normal = [-0.3, 1.0] }\n[obstacle.w]\nplane = { point = [1.01, 0.0], normal = [-1.0, -0.2] }\n";
+    let load = "[boundary.top]\ndisplacement = [\"0.03\", \"-0.05 - 0.01*x\"]\n[boundary.bottom]\ncontact = { obstacle = \"f\" }\n";
+    let wall = "[boundary.right]\ncontact = { obstacle = \"w\" }\n";
+    for walls in ["", wall] {
+        let text = format!("{SQUARE}{slope}{load}{walls}");
+        let text = if walls.is_empty() {
+            text.replace("[obstacle.w]", "#").replace("plane = { point = [1.01", "#")
+        } else {
+            text
+        };
+        for degree in ["method.degree=1", "method.degree=2"] {
+            for n in ["5", "16"] {
+                let [nx, ny] = ["nx", "ny"].map(|k| format!("mesh.rectangle.{k}={n}"));
+                let found = certified(&text, &[degree, &nx, &ny]);
+                assert!(found.rigorous && found.relative < 1.0, "{}", found.relative);
+            }
+        }
+    }
+}
