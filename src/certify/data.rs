@@ -8,7 +8,7 @@ use super::certificate::Role;
 use crate::fem::mesh::length;
 use crate::fem::pieces::{Features, Rule};
 use crate::fem::{Function, Problem, SharedFunction};
-use crate::kernel::Triangle;
+use crate::kernel::{Ball, Enclosing, Triangle};
 
 /// Quadrature points in each direction.
 pub(super) const POINTS: usize = 8;
@@ -173,6 +173,27 @@ pub(super) fn rule(function: &dyn Function) -> Rule {
     let known = function.degree().and_then(|degree| usize::try_from(degree).ok());
     let points = known.map_or(POINTS, |degree| POINTS.min(degree + 1));
     Rule::new(Features { kink: function.kink(), singular: None }, points)
+}
+
+/// Data that doubles know to this part of their size are taken for known.
+const KNOWN: f64 = 1e-10;
+
+/// By how much `f` may be off at some of these places, where its terms cancel in doubles and that is not negligible beside its
+/// values.
+pub(super) fn cancellation(
+    f: &SharedFunction,
+    places: impl Iterator<Item = [f64; 2]>,
+) -> Option<f64> {
+    let (mut off, mut size) = (0.0_f64, 0.0_f64);
+    for x in places {
+        let value = f.at(x);
+        let apart = f.enclosed(x)? - Ball::exactly(value);
+        let here = apart.upper().max(-apart.lower());
+        // A value without a bound is off by any amount.
+        off = if here.is_nan() { f64::INFINITY } else { off.max(here) };
+        size = size.max(value.abs());
+    }
+    (off > KNOWN * size).then_some(off)
 }
 
 /// What `f` is in the middle of an edge beyond the mean of its ends; 0 where it is known to be affine.

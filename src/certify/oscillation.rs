@@ -21,7 +21,7 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::bubbles;
 use super::certificate::{Certificate, Lift, Piece, Role, place};
-use super::data::{Data, POINTS, bulge_of, is_within, length_and_normal, within};
+use super::data::{Data, POINTS, bulge_of, cancellation, is_within, length_and_normal, within};
 use super::parts::{Boundary, Parts};
 use crate::fem::mesh::length;
 use crate::fem::{Condition, SharedFunction, quadrature};
@@ -80,6 +80,7 @@ impl Oscillation {
                 inexact.push(format!("the {what} of '{name}' is not known to be {class}"));
             }
         }
+        let cancelled = cancellations(parts);
         let measured = (!inexact.is_empty())
             .then(|| format!("{}: its oscillation is measured by quadrature", inexact.join("; ")));
         let named = (!turning.is_empty()).then(|| {
@@ -90,7 +91,7 @@ impl Oscillation {
                 if quadratic { "affine and quadratic" } else { "affine" }
             )
         });
-        let reasons: Vec<String> = measured.into_iter().chain(named).collect();
+        let reasons: Vec<String> = measured.into_iter().chain(named).chain(cancelled).collect();
         let reason = (!reasons.is_empty()).then(|| reasons.join("; "));
         Oscillation { reason, lifts: BTreeMap::new() }
     }
@@ -122,6 +123,55 @@ impl Oscillation {
             piece.oscillation = oscillation;
         }
     }
+}
+
+/// The data whose terms cancel in doubles: the problem that is bounded has what is left of them.
+fn cancellations(parts: &Parts) -> Option<String> {
+    let (problem, mesh) = (parts.problem, parts.mesh);
+    let mut found = Vec::new();
+    let mut look = |what: String,
+                    f: &SharedFunction,
+                    places: &mut dyn Iterator<Item = [f64; 2]>| {
+        if let Some(off) = cancellation(f, places) {
+            found.push(format!("{what} is known to within {off:.0e} only, as its terms cancel"));
+        }
+    };
+    for f in &problem.body_force {
+        look("the body force".to_owned(), f, &mut mesh.vertices().iter().copied());
+    }
+    for part in &problem.surface_forces {
+        let corners = || part.triangles.iter().flat_map(|&t| mesh.triangles()[t]);
+        for f in &part.force {
+            let what = format!("the body force on '{}'", part.surface);
+            look(what, f, &mut corners().map(|vertex| mesh.vertices()[vertex]));
+        }
+    }
+    for (name, condition) in &problem.conditions {
+        let functions: Vec<(&str, &SharedFunction)> = match condition {
+            Condition::Displacement(u) => u.iter().flatten().map(|f| ("displacement", f)).collect(),
+            Condition::Mixed { displacement, traction } => displacement
+                .iter()
+                .flatten()
+                .map(|f| ("displacement", f))
+                .chain(traction.iter().map(|f| ("traction", f)))
+                .collect(),
+            Condition::Support { normal, tangential } => {
+                [normal, tangential].into_iter().flatten().map(|f| ("displacement", f)).collect()
+            }
+            Condition::Traction(t) => t.iter().map(|f| ("traction", f)).collect(),
+            Condition::Pressure(p) => vec![("pressure", p)],
+            Condition::Contact { gap } => vec![("gap", gap)],
+            Condition::Obstacle(..) => Vec::new(),
+        };
+        let edges = || mesh.edges_of(name).unwrap_or_default().iter();
+        for (what, f) in functions {
+            let mut places = edges().flat_map(|&e| mesh.ends(e)).map(|v| mesh.vertices()[v]);
+            look(format!("the {what} of '{name}'"), f, &mut places);
+        }
+    }
+    (!found.is_empty()).then(|| {
+        format!("{}: the problem that is bounded has what doubles leave", found.join("; "))
+    })
 }
 
 /// K and h_T of a triangle: |grad (w - r)| <= K |eps(w)|, |w - r| <= K (h_T / pi) |eps(w)|.

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use crate::kernel::Ball;
+
 /// A function of the place, such as a component of the body force.
 pub trait Function: Send + Sync {
     /// The value at `x`; NaN or infinite where the function has none, which the assembly reports as an error.
@@ -15,6 +17,12 @@ pub trait Function: Send + Sync {
     /// The degree in x and y, if the function is known to be a polynomial, on the boundary too: it is then integrated
     /// exactly, with no more points than that takes.
     fn degree(&self) -> Option<u32> {
+        None
+    }
+
+    /// A ball that contains the exact value at `x`, where [`Function::at`] has what doubles make of it; `None` if that is the exact one
+    /// or there is no other.
+    fn enclosed(&self, _x: [f64; 2]) -> Option<Ball> {
         None
     }
 

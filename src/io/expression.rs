@@ -20,6 +20,7 @@
 //! An [`Expression`] is a list of steps in postfix order, evaluated in one loop over any [`Number`]: other than in a recursive walk
 //! over a tree, a sum of [`MOST_OPERATIONS`] terms needs no deeper call stack than a sum of two. [`MOST_LEVELS`] bounds what nests.
 
+mod enclosure;
 mod gradient;
 mod parser;
 mod polynomial;
@@ -27,6 +28,7 @@ mod polynomial;
 use thiserror::Error;
 
 use crate::fem::Function;
+use crate::kernel::{Ball, Enclosing};
 
 /// How deep parentheses, functions, signs and powers may nest.
 pub const MOST_LEVELS: usize = 200;
@@ -193,6 +195,10 @@ impl Function for Expression {
 
     fn degree(&self) -> Option<u32> {
         self.polynomial_degree()
+    }
+
+    fn enclosed(&self, x: [f64; 2]) -> Option<Ball> {
+        Some(self.evaluate(x.map(Ball::exactly)))
     }
 }
 

@@ -358,7 +358,9 @@ fn enclosed(certificate: &DiscreteCertificate) -> String {
         }
         None => format!("{} of it (in the energy norm)", short(radius)),
     };
-    format!("{solutions}; this is within {size}, rounding included")
+    format!(
+        "{solutions}; this is within {size}, rounding included, with the loads as their rule has them"
+    )
 }
 
 /// Whether the target was met, and how the bound fell.

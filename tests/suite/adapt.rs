@@ -303,3 +303,26 @@ fn a_level_without_a_solution_says_which() {
     assert!(matches!(error, RunError::Adapt(AdaptError::Solve { level: 0, .. })), "{error}");
     assert!(error.to_string().starts_with("[adapt]: level 0: no convergence"), "{error}");
 }
+
+/// Edges of some thousandths of the body, by which a margin that is known to the rounding of coordinates only is divided: the bound
+/// stopped falling, rose, or was no number.
+#[test]
+fn the_best_level_is_kept_and_no_level_is_lost() {
+    let circle = "[mesh]\nrectangle = { width = 1.0, height = 1.0, nx = 8, ny = 8 }\n[material]\nlambda = 1.0\nmu = 1.0\n[boundary.top]\ndisplacement = [\"0\", \"-0.03\"]\n[obstacle.c]\ncircle = { center = [0.4, -1.0], radius = 1.0, side = \"outside\" }\n[boundary.bottom]\ncontact = { obstacle = \"c\" }\n";
+    let wedge = "[mesh]\ntrapezoid = { omega = 2.2, n = 4 }\n[material]\nlambda = 1.0\nmu = 1.0\n[boundary.left]\nnormal = \"0.01-0.01*y\"\n[boundary.top]\ndisplacement = [\"free\", \"-0.05\"]\n[boundary.bottom]\ncontact = { gap = \"0.01+0.03*x\" }\n";
+    for text in [circle, wedge] {
+        let settings = ["method.degree=2", "adapt.target=\"0.01 %\"", "adapt.max_unknowns=6000"];
+        let settings = settings.map(str::to_owned);
+        let case = Case::parse(Path::new("in_a_test.toml"), text, &settings).unwrap();
+        let (_, solved) = run::solve(case, None, &|_| {}).unwrap();
+        let certified = solved.certified.unwrap();
+        let adaptation = certified.adaptation.unwrap();
+        let bounds: Vec<f64> = adaptation.levels.iter().map(|level| level.bound).collect();
+        let best = bounds.iter().copied().fold(f64::INFINITY, f64::min);
+        assert_eq!(bounds[adaptation.level], best, "{bounds:?}");
+        assert_eq!(certified.result.unwrap().bound, best);
+        assert!(!adaptation.met && bounds.len() > 8, "{:?}: {bounds:?}", adaptation.reason);
+        // It is the last here: nothing spoils it.
+        assert_eq!(adaptation.level + 1, bounds.len(), "{bounds:?}");
+    }
+}

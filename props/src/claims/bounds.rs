@@ -751,8 +751,10 @@ const TAMPERINGS: [Tampering; 22] = [
         "a body that nothing holds",
         |c| {
             for edge in &mut c.edges {
-                if let Role::Held(_, force) = edge.role {
-                    edge.role = Role::Loaded(force);
+                match &mut edge.role {
+                    Role::Held(_, force) => edge.role = Role::Loaded(*force),
+                    Role::Contact { pressure, .. } => *pressure = [0.0; 2],
+                    _ => {}
                 }
             }
             c.prescribed.fill([None; 2]);
