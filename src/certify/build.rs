@@ -1,7 +1,7 @@
 //! A certificate from a discrete solution: v as it was made admissible, tau by equilibrated tractions (`tractions`), on the triangles
 //! of the mesh or on their quarters (`quarters`), cut where contact ends (`divide`).
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::Vector2;
 
@@ -17,6 +17,7 @@ use super::parts::{Boundary, Parts};
 use super::quarters::{add_halves, halved, quarters};
 use super::tractions::{force_of, held_only, moments, stresses, supported};
 use crate::fem::Mesh;
+use crate::fem::smooth::SmoothBoundary;
 use crate::kernel::composite::Affine;
 use crate::kernel::{Enclosing, Triangle};
 
@@ -168,8 +169,30 @@ pub(super) fn build(parts: &Parts, u: &Field, v: &Field) -> Built {
             }
         }
     }
+    certificate.polygon = polygon(mesh, certificate);
     oscillation.measure(parts, &data, certificate, (origins, quartered));
     built
+}
+
+/// The edges that stand for a part of a curved boundary.
+fn polygon(mesh: &Mesh, certificate: &Certificate) -> Vec<usize> {
+    let smooth = SmoothBoundary::new(mesh);
+    let curved = mesh.outline().iter().filter(|&&edge| smooth.at_ends(edge).is_some());
+    let sorted = |[a, b]: [usize; 2]| if a < b { [a, b] } else { [b, a] };
+    let curved: BTreeSet<[usize; 2]> = curved.map(|&edge| sorted(mesh.ends(edge))).collect();
+    let is_curved = |edge: &Edge| {
+        let cut =
+            |p: usize| Some(certificate.cuts[p.checked_sub(certificate.vertices.len())?].ends);
+        let line = edge.ends.into_iter().find_map(cut).unwrap_or(edge.ends);
+        !matches!(edge.role, Role::Inner(_)) && curved.contains(&sorted(line))
+    };
+    certificate
+        .edges
+        .iter()
+        .enumerate()
+        .filter(|(_, edge)| is_curved(edge))
+        .map(|(e, _)| e)
+        .collect()
 }
 
 /// The edges of the mesh.

@@ -45,7 +45,6 @@ pub use signorini_audit::proof;
 use signorini_audit::{balanced, certificate};
 
 use self::proof::{Piece, Role};
-use crate::fem::smooth::SmoothBoundary;
 use crate::fem::{Mesh, Problem};
 use crate::kernel::{Ball, Interval, P1, P2, Scalar, Triangle};
 use crate::memory;
@@ -192,7 +191,7 @@ fn certify_near(
     oscillation.lifts.iter().for_each(|(&t, z)| shares[t] += z * z);
     let mut apart = vec![0.0; shares.len()];
     built.origins.iter().zip(&distances).for_each(|(&t, d)| apart[t] += d * d);
-    let problem = problem_bounded(mesh, &proof);
+    let problem = problem_bounded(certificate, &proof);
     let both = |(share, distance): (f64, &f64)| share.max(0.0).sqrt() + distance.sqrt();
     let Built { certificate, oscillation, .. } = built;
     Ok(Continuous {
@@ -214,10 +213,9 @@ fn certify_near(
 }
 
 /// How the problem that is bounded differs from the one that is meant.
-fn problem_bounded(mesh: &Mesh, proof: &Proof) -> Option<String> {
-    let body = SmoothBoundary::new(mesh)
-        .is_curved()
-        .then(|| "the polygon of the mesh as its body".to_owned());
+fn problem_bounded(certificate: &Certificate, proof: &Proof) -> Option<String> {
+    let body =
+        (!certificate.polygon.is_empty()).then(|| "the polygon of the mesh as its body".to_owned());
     let support = (proof.stop > 0.0).then(|| {
         format!(
             "a support against a motion that nothing else stops, which takes {:.0e} of the forces on the boundary or less",

@@ -125,11 +125,6 @@ impl SmoothBoundary {
         SmoothBoundary { normals }
     }
 
-    /// Whether some of it is taken for curved: then the polygon of the mesh is another body.
-    pub fn is_curved(&self) -> bool {
-        !self.normals.is_empty()
-    }
-
     /// The normals at the start and at the end of an edge, if they are not both its facet's.
     pub fn at_ends(&self, edge: BoundaryEdge) -> Option<[Vector2<f64>; 2]> {
         self.normals.get(&(edge.triangle, edge.local)).copied()

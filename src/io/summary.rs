@@ -336,6 +336,10 @@ pub fn audited(audit: &Audit, case: Option<&Path>) -> String {
             format!("with a reservation: {reservations}")
         },
     );
+    if proof.stop > 0.0 {
+        let share = short(proof.stop);
+        lines.line("support", format!("against a motion that nothing else stops; it takes {share} of the forces on the boundary or less"));
+    }
     lines.under(&header.title)
 }
 
