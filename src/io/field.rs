@@ -76,7 +76,7 @@ fn at_nodes(points: &Points, mesh: &Mesh, quadratic: bool) -> Result<Vec<[f64; 2
         .fold(0.0, f64::max);
     let width = 4.0 * NEAR * extent;
     // From a vertex on, so that the numbers of the cells near the body are small wherever it lies.
-    let origin = vertices[0];
+    let origin = nodes[0];
     let cell = |x: [f64; 2]| [0, 1].map(|c| ((x[c] - origin[c]) / width).floor() as i64);
     let mut grid: BTreeMap<[i64; 2], Vec<usize>> = BTreeMap::new();
     for (k, &x) in nodes.iter().enumerate() {
