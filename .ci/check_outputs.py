@@ -20,7 +20,7 @@ import pyvista
 
 # Field: (components, belongs to points or cells)
 SOLUTION = {"displacement": (3, "points"), "stress": (6, "cells"), "von_mises": (1, "cells")}
-SOLUTION |= {"nodal_stress": (6, "points"), "principal_1": (1, "points"), "principal_2": (1, "points")}
+SOLUTION |= {"nodal_stress": (6, "points"), "nodal_von_mises": (1, "points"), "principal_1": (1, "points"), "principal_2": (1, "points")}
 CONTACT = {name: (1, "points") for name in ("u_n", "gap", "sigma_n", "lambda")} | {"displacement": (3, "points")}
 
 # VTK's number of a cell: meshio's name, corners, and the corners on both sides of each middle node.
