@@ -598,7 +598,7 @@ mod tests {
         let text = result_json(&results).unwrap();
         let (_, rest) = text.split_once("\"residuals\": [").unwrap();
         let (list, _) = rest.split_once(']').unwrap();
-        let written: Vec<&str> = list.split(", ").collect();
+        let written: Vec<&str> = list.split(',').map(str::trim).collect();
         assert_eq!(written.len(), numbers.len());
         let digits = |text: &str| {
             let (mantissa, _) = text.split_once('e').unwrap_or((text, ""));
