@@ -61,7 +61,8 @@ pub enum DataError {
 const TOLD: usize = 4;
 
 fn listed(motions: &[FreeMotion]) -> String {
-    let told: Vec<String> = motions.iter().take(TOLD).map(FreeMotion::to_string).collect();
+    let said = |motion: &FreeMotion| format!("{motion}: {}", motion.remedy());
+    let told: Vec<String> = motions.iter().take(TOLD).map(said).collect();
     let more = match motions.len().saturating_sub(TOLD) {
         0 => String::new(),
         more => format!("; nor {more} more"),

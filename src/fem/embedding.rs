@@ -1,5 +1,5 @@
 //! Whether the triangles of a mesh cover no point twice, and whether its boundary is a boundary: seams that don't quite
-//! match look like cracks, and would be solved as such.
+//! match look like cracks, and would be solved as such; parts of the body that only a vertex joins are refused.
 //!
 //! Triangles that are counter-clockwise and share whole edges cover a point as often as their outline winds around it. So
 //! it is enough to look at the outline, near linear time in its edges:
@@ -18,6 +18,7 @@
 use nalgebra::Vector2;
 
 use super::mesh::{BoundaryEdge, Mesh, MeshError, TOUCHING, length};
+use super::rigid::connected_by_edges;
 use super::tree::{Bounds, Tree};
 use crate::kernel::pattern::{self, Lists};
 
@@ -54,13 +55,29 @@ impl Mesh {
 /// Checks all of it.
 ///
 /// # Errors
-/// [`MeshError::Hanging`], [`MeshError::Near`], [`MeshError::Overlapping`].
+/// [`MeshError::Hanging`], [`MeshError::Near`], [`MeshError::Overlapping`], [`MeshError::JoinedAtVertex`].
 fn check(mesh: &Mesh) -> Result<(), MeshError> {
     let outline = Outline::new(mesh);
     // What nearly touches often crosses too, and is better called by its name: it comes first.
     (0..outline.ends.len()).try_for_each(|e| outline.check_vertices(e))?;
     (0..outline.ends.len()).try_for_each(|e| outline.check_crossings(e))?;
-    outline.chains().into_iter().try_for_each(|e| outline.check_outside(e))
+    outline.chains().into_iter().try_for_each(|e| outline.check_outside(e))?;
+    check_joints(mesh)
+}
+
+/// Triangles that have a vertex in common must be in one part of the body, connected by edges: a point of H^1 holds nothing.
+fn check_joints(mesh: &Mesh) -> Result<(), MeshError> {
+    let mut part_at: Vec<Option<usize>> = vec![None; mesh.vertices().len()];
+    let parts = connected_by_edges(mesh);
+    for (corners, &part) in mesh.triangles().iter().zip(&parts) {
+        for &vertex in corners {
+            if *part_at[vertex].get_or_insert(part) != part {
+                let [x, y] = mesh.vertices()[vertex];
+                return Err(MeshError::JoinedAtVertex { vertex, x, y });
+            }
+        }
+    }
+    Ok(())
 }
 
 impl<'m> Outline<'m> {
@@ -404,7 +421,7 @@ mod tests {
     }
 
     #[test]
-    fn a_body_inside_the_hole_of_another_and_bodies_hinged_at_a_corner_do_not_overlap() {
+    fn a_body_inside_the_hole_of_another_is_taken_and_bodies_joined_at_a_corner_are_not() {
         let (v, t) = grid([3, 3], [0.0, 0.0], [3.0, 3.0], |x| x);
         let holed: Vec<[usize; 3]> =
             t.into_iter().enumerate().filter(|(i, _)| i / 2 != 4).map(|(_, t)| t).collect();
@@ -416,7 +433,24 @@ mod tests {
         let v = vec![[0.0, 0.0], [4.0, 0.0], [0.0, 4.0], [1.0, 0.5], [0.5, 1.0]];
         assert!(overlaps(&Mesh::new(v, vec![[0, 1, 2], [0, 3, 4]], [])));
         let v = vec![[0.0, 0.0], [4.0, 0.0], [0.0, 4.0], [-1.0, -0.5], [-0.5, -1.0]];
-        assert!(Mesh::new(v, vec![[0, 1, 2], [0, 3, 4]], []).is_ok());
+        let joined = Mesh::new(v, vec![[0, 1, 2], [0, 3, 4]], []);
+        assert!(matches!(joined, Err(MeshError::JoinedAtVertex { vertex: 0, .. })));
+    }
+
+    #[test]
+    fn a_part_that_meets_itself_in_a_vertex_is_taken() {
+        // Two cells that meet in (1, 1), connected by edges around it.
+        let (v, t) = grid([3, 3], [0.0, 0.0], [3.0, 3.0], |x| x);
+        let without: Vec<[usize; 3]> = t
+            .into_iter()
+            .enumerate()
+            .filter(|(i, _)| ![1, 3].contains(&(i / 2)))
+            .map(|(_, t)| t)
+            .collect();
+        assert!(together(&[(v.clone(), without.clone())]).is_ok());
+        let corner: Vec<[usize; 3]> = without.into_iter().filter(|t| !t.contains(&0)).collect();
+        assert_eq!(corner.len(), 12, "the cell in the corner goes with its vertex");
+        assert!(together(&[(v, corner)]).is_ok());
     }
 
     #[test]

@@ -56,9 +56,7 @@ pub enum Unproved {
     HeldByContact,
     #[error("kappa = {kappa} is not below 1: (8) may have several solutions, or none")]
     NotCoercive { kappa: f64 },
-    #[error(
-        "displacement boundaries hardly hold a part of the body, or hinges join more than 32 parts"
-    )]
+    #[error("displacement boundaries hardly hold a part of the body")]
     NotHeld,
     #[error("A has no Cholesky factor in the precision of the solve")]
     NoFactor,

@@ -37,6 +37,8 @@ pub enum MeshError {
     Near { vertices: [usize; 2], places: [[f64; 2]; 2], distance: f64, local: f64, merge: f64 },
     #[error("vertex {vertex} at ({}, {}) hangs inside the edge between vertices {} and {} of triangle {triangle}{}: neighbours must share whole edges", number(*x), number(*y), edge[0], edge[1], beside(*off))]
     Hanging { vertex: usize, x: f64, y: f64, edge: [usize; 2], triangle: usize, off: f64 },
+    #[error("vertex {vertex} at ({}, {}) alone joins two parts of the body: a point holds nothing, and they would move as if it were not there; expected parts that share an edge, or no vertex", number(*x), number(*y))]
+    JoinedAtVertex { vertex: usize, x: f64, y: f64 },
     #[error("boundary {}: no triangle has an edge between vertices {} and {}", quoted(boundary, '\''), vertices[0], vertices[1])]
     NoSuchEdge { boundary: String, vertices: [usize; 2] },
     #[error("boundary {}: its edge from ({}, {}) to ({}, {}) lies inside the body, between two triangles; nothing can be prescribed there", quoted(boundary, '\''), number(ends[0][0]), number(ends[0][1]), number(ends[1][0]), number(ends[1][1]))]
@@ -80,7 +82,9 @@ impl MeshError {
         let two = |pair: &mut [usize; 2]| *pair = pair.map(&of_vertex);
         match &mut self {
             OutOfMemory(_) => {}
-            NotFinite { vertex, .. } | Unused { vertex, .. } => *vertex = of_vertex(*vertex),
+            NotFinite { vertex, .. } | Unused { vertex, .. } | JoinedAtVertex { vertex, .. } => {
+                *vertex = of_vertex(*vertex);
+            }
             NoSuchVertex { triangle, .. } => *triangle = of_triangle(*triangle),
             Clockwise { triangle, vertices, .. } | Flat { triangle, vertices, .. } => {
                 *triangle = of_triangle(*triangle);
