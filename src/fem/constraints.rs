@@ -13,6 +13,7 @@ use std::collections::BTreeMap;
 
 use super::data::{DataError, finite};
 use super::function::SharedFunction;
+use super::held::pins;
 use super::mesh::BoundaryEdge;
 use super::problem::{Condition, Problem};
 use super::rigid::{self, FreeMotion, Parts};
@@ -27,6 +28,8 @@ pub struct Constraints {
     values: Vec<[Option<f64>; 2]>,
     frames: BTreeMap<usize, [f64; 2]>,
     holders: BTreeMap<String, Vec<Held>>,
+    /// Components that are held where they are, so that a motion that changes nothing is stopped.
+    pins: Vec<(usize, usize)>,
     /// By how much the directions of supports may be off.
     rounding: f64,
 }
@@ -83,6 +86,7 @@ impl Constraints {
             values: vec![[None; 2]; space.nodes().len()],
             frames: BTreeMap::new(),
             holders: BTreeMap::new(),
+            pins: Vec::new(),
             rounding: rounding_of_supports(problem)?,
         };
         for (&node, at_node) in &mut demands {
@@ -111,9 +115,21 @@ impl Constraints {
         self.rounding
     }
 
-    /// Holds component `c` of a node without a frame of its own where it is: a motion that changes nothing is stopped.
-    pub fn pin(&mut self, node: usize, c: usize) {
-        self.values[node][c] = Some(0.0);
+    /// These constraints with one component of a node held where `u` has it for each of the `motions`, in place of what was held
+    /// so before: motions that change nothing are stopped.
+    #[must_use]
+    pub(super) fn pinned(mut self, motions: &[Vec<[f64; 2]>], u: &[[f64; 2]]) -> Self {
+        for (node, c) in std::mem::take(&mut self.pins) {
+            self.values[node][c] = None;
+        }
+        let free = |node: usize, c: usize| {
+            self.values[node][c].is_none() && !self.frames.contains_key(&node)
+        };
+        self.pins = pins(motions, free);
+        for &(node, c) in &self.pins {
+            self.values[node][c] = Some(u[node][c]);
+        }
+        self
     }
 
     /// Prescribes one or two independent demands at a node.

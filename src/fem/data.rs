@@ -35,10 +35,10 @@ pub enum DataError {
         values: [f64; 2],
     },
     #[error(
-        "the body is not held: nothing stops the {}; expected displacements that stop it, or loads that press the body against its obstacles (contact pushes, it doesn't pull)",
-        listed(motions)
+        "the body is not held: nothing stops the {}{}; expected displacements that stop it, or loads that press the body against its obstacles (contact pushes, it doesn't pull)",
+        listed(motions), driven(motions, *drive)
     )]
-    RigidMotion { motions: Vec<FreeMotion> },
+    RigidMotion { motions: Vec<FreeMotion>, drive: Option<f64> },
     #[error(
         "{what} has a gradient of length {} at ({}, {}); expected a distance there, with a gradient between {least} and {most}: divide the expression by the length of its gradient",
         number(*length), number(*x), number(*y)
@@ -68,6 +68,13 @@ fn listed(motions: &[FreeMotion]) -> String {
         more => format!("; nor {more} more"),
     };
     told.join("; nor the ") + &more
+}
+
+fn driven(motions: &[FreeMotion], drive: Option<f64>) -> String {
+    let (Some(drive), Some(motion)) = (drive, motions.first()) else { return String::new() };
+    let what = if motion.about().is_some() { "moment" } else { "force" };
+    let drive = format!("{drive:.3e}").parse().unwrap_or(drive);
+    format!("; the loads drive it with a {what} of {}", number(drive))
 }
 
 /// The value of `function`, which the case calls `what()`, at `x`.

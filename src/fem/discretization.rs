@@ -12,11 +12,13 @@ use super::constraints::{Constraints, in_frame};
 use super::contact_line::{self, Coercivity, ContactLineEdge, EdgeRule, Gamma};
 use super::data::DataError;
 use super::dense::inner;
-use super::held;
+use super::held::{self, NotHeld, Slides};
 use super::loads::{self, Loads};
 use super::material;
 use super::problem::Problem;
+use super::rigid::FreeMotion;
 use super::space::Space;
+use crate::kernel::Element;
 use crate::kernel::edge_integral::ExactEdge;
 use crate::kernel::element::displacement_gradient;
 
@@ -42,9 +44,10 @@ pub struct Discretization<'a, E, const N: usize, const M: usize> {
     pub contact: Vec<ContactLineEdge<N, M>>,
     /// The rule for the contact terms.
     pub rule: EdgeRule,
-    /// Where supports alone leave the body free to move and contact holds it: the motions that slide along all obstacles,
-    /// with orthonormal nodal values.
-    pub slides: Option<Vec<Vec<[f64; 2]>>>,
+    /// The rigid motions that supports leave free, part by part.
+    pub motions: Vec<FreeMotion>,
+    /// Where there are any and contact holds the body: those that it does not stop.
+    pub slides: Option<Slides>,
 }
 
 /// What a displacement u does at every basis function, and for each of the values the sum of the magnitudes of the products
@@ -120,18 +123,10 @@ where
         let (parts, motions) = constraints.free_motions(&space);
         let mut slides = None;
         if !motions.is_empty() {
-            let fields: Vec<_> =
-                motions.iter().map(|motion| motion.field(&parts, &space)).collect();
-            let rounding = constraints.rounding();
-            let Some(sliding) = held::slides(&fields, &space, &load, &contact, rounding) else {
-                return Err(DataError::RigidMotion { motions });
-            };
-            let free = |node: usize, c: usize| {
-                constraints.values()[node][c].is_none() && !constraints.frames().contains_key(&node)
-            };
-            for (node, c) in held::pins(&sliding, free) {
-                constraints.pin(node, c);
-            }
+            let rounding = rounding_of_directions(&constraints, &space, &contact);
+            let sliding = held::slides(&motions, &parts, &space, &load, &contact, rounding)
+                .map_err(|NotHeld { motions, drive }| DataError::RigidMotion { motions, drive })?;
+            constraints = constraints.pinned(&sliding.basis, &vec![[0.0; 2]; space.nodes().len()]);
             slides = Some(sliding);
         }
         Ok(Discretization {
@@ -145,8 +140,35 @@ where
             gamma0,
             contact,
             rule,
+            motions,
             slides,
         })
+    }
+
+    /// The same where these motions are not stopped: one component for each is held where `u` has it.
+    #[must_use]
+    pub fn sliding(&self, slides: Slides, u: &[[f64; 2]]) -> Self {
+        Discretization {
+            constraints: self.constraints.clone().pinned(&slides.basis, u),
+            slides: Some(slides),
+            space: Space::new(self.space.mesh()),
+            load: self.load.clone(),
+            enclosed_load: self.enclosed_load.clone(),
+            contact: self.contact.clone(),
+            rule: self.rule.clone(),
+            motions: self.motions.clone(),
+            ..*self
+        }
+    }
+
+    /// Whether contact edge `e` presses in no solution, because the loads drive the body away from it or not towards it.
+    pub fn is_idle(&self, e: usize) -> bool {
+        self.slides.as_ref().is_some_and(|slides| slides.is_idle(e))
+    }
+
+    /// By how much the directions of supports and of contact may be off because vertices are rounded.
+    pub fn rounding_of_directions(&self) -> f64 {
+        rounding_of_directions(&self.constraints, &self.space, &self.contact)
     }
 
     /// kappa = gamma0 C_h.
@@ -275,6 +297,15 @@ where
         }
         energy
     }
+}
+
+fn rounding_of_directions<E: Element<N, M>, const N: usize, const M: usize>(
+    constraints: &Constraints,
+    space: &Space<E, N, M>,
+    contact: &[ContactLineEdge<N, M>],
+) -> f64 {
+    let edges = contact.iter().map(|edge| edge.edge);
+    constraints.rounding().max(space.mesh().turned_by_rounding(edges))
 }
 
 fn norm_1(v: Vector2<f64>) -> f64 {

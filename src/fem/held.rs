@@ -1,19 +1,24 @@
 //! Bodies that supports leave free to move, held by contact because the loads press them against their obstacles.
 //!
-//! Let R be the rigid motions that the supports leave free, and c_i(r) = r_n at the nodes of Gamma_C. J_h has a minimiser if
-//! L(r) < 0 for every r of R that the obstacles admit (c_i(r) <= 0 for all i), but for those that slide along all of them
-//! (c_i(r) = 0 for all i), which must have L(r) = 0 (Fichera; Lions & Stampacchia). In other words, L on R is a combination
-//! of the c_i with weights >= 0, the contact forces, and stays one if it is changed a little within their span: that is
-//! decided by non-negative least squares (Lawson & Hanson), whose residual is the motion on which the body leaves.
+//! Let R be the rigid motions of a part of the body that the supports leave free, and c_i(r) = r_n at the nodes of Gamma_C.
+//! J_h has a minimiser if the loads on R are the work of a pressure, L(r) = sum over some edges of Gamma_C and their nodes of
+//! mu_i c_i(r) with all mu_i > 0 (docs/theory.md, Proposition 5.5). That is decided by non-negative least squares (Lawson &
+//! Hanson), whose residual is the motion that the loads drive. Motions with c = 0 on all of Gamma_C slide.
 //!
-//! The solution is unique up to motions that slide along all obstacles; the one of least norm is taken.
+//! Of a solution u, u + r with r of R is one, too, if and only if r_n = 0 where u presses and r_n <= -P(u) where it does not:
+//! the solutions are u and a polyhedron, of which the displacement of least norm is taken.
 
 use nalgebra::Vector2;
+#[cfg(feature = "files")]
+use serde::{Deserialize, Serialize};
 
 use super::contact_line::ContactLineEdge;
 use super::dense::{dot, inner, least_squares, singular_vectors};
+use super::discretization::Discretization;
+use super::rigid::{FreeMotion, Parts, null_space};
 use super::space::Space;
 use crate::kernel::Element;
+use crate::kernel::edge_integral::ExactEdge;
 
 /// Work below this share of the largest work of single loads is rounding.
 const BALANCED: f64 = 1e-9;
@@ -25,64 +30,379 @@ const MARGIN: f64 = 1e-6;
 /// it is zero but for rounding. Where the body is far from the origin, rounding its vertices makes more than this.
 const SLIDES: f64 = 1e-10;
 
-/// The motions among the combinations of `motions` that slide along every obstacle, as fields with orthonormal nodal
-/// values; `None` if contact and `load` do not hold the body. The motions may be off by `rounding`.
+/// The cosine of a motion that leaves a node with the direction of contact there is below minus this.
+const LEAVES: f64 = 1e-8;
+
+/// An edge presses where P is above this share of the largest; below it P is rounding.
+const PRESSES: f64 = 1e-10;
+
+/// The motions that contact and loads do not hold.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NotHeld {
+    /// A basis of them, or the one that the loads drive.
+    pub motions: Vec<FreeMotion>,
+    /// The force of the loads along that one, or their moment about its centre.
+    pub drive: Option<f64>,
+}
+
+/// The solutions of a body that contact holds: with u those u + sum_j x_j b_j with row . (x + b . u) <= bound.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Slides {
+    /// b_j, fields with orthonormal nodal values: the motions that contact does not stop.
+    pub basis: Vec<Vec<[f64; 2]>>,
+    /// Motions that span the same, each with its components along the basis.
+    motions: Vec<(FreeMotion, Vec<f64>)>,
+    /// Where edges that do not press stop them.
+    bounds: Vec<(Vec<f64>, f64)>,
+    /// For each contact edge whether it presses in no solution; empty if all may.
+    pub idle: Vec<bool>,
+}
+
+/// How far a body may move along a motion that neither supports nor what presses stops, from the displacement that is given,
+/// which is one of several solutions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
+#[non_exhaustive]
+pub struct Play {
+    /// The centre of a rotation; left out for a translation.
+    #[cfg_attr(feature = "files", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub about: Option<[f64; 2]>,
+    /// The direction of a translation, a unit vector; left out for a rotation.
+    #[cfg_attr(feature = "files", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub along: Option<[f64; 2]>,
+    /// The distance, or the angle counter-clockwise, that it may go back, at most 0; left out where nothing ends it.
+    #[cfg_attr(feature = "files", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub least: Option<f64>,
+    /// The distance or angle that it may go on; left out where nothing ends it.
+    #[cfg_attr(feature = "files", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub most: Option<f64>,
+}
+
+/// The rows c_i of a contact edge: r_n at its nodes for each of the motions, and not P0(r): the stress of a rigid motion is zero
+/// but for rounding.
+fn rows<E: Element<N, M>, const N: usize, const M: usize>(
+    space: &Space<E, N, M>,
+    edge: &ContactLineEdge<N, M>,
+    motion: impl Fn(usize, usize) -> [f64; 2],
+    count: usize,
+) -> [Vec<f64>; M] {
+    let nodes = space.edge_nodes(edge.edge);
+    std::array::from_fn(|a| {
+        let along = |k: usize| Vector2::from(motion(k, nodes[a])).dot(&edge.directions[a]);
+        (0..count).map(along).collect()
+    })
+}
+
+/// A value of c_i below this is zero but for rounding.
+fn negligible(rows: &[Vec<f64>], count: usize, rounding: f64) -> f64 {
+    let columns = (0..count).map(|j| rows.iter().map(|row| row[j]).collect()).collect();
+    let largest = singular_vectors(columns).first().map_or(0.0, |(value, _)| *value);
+    SLIDES.max(rounding * (rows.len() as f64).sqrt()) * largest.max(1.0)
+}
+
+fn norm(v: &[f64]) -> f64 {
+    dot(v, v).sqrt()
+}
+
+/// The motions among the combinations of `motions`, which may be off by `rounding`, that slide along every obstacle.
+///
+/// # Errors
+/// What contact and `load` leave free.
 pub fn slides<E: Element<N, M>, const N: usize, const M: usize>(
-    motions: &[Vec<[f64; 2]>],
+    motions: &[FreeMotion],
+    parts: &Parts,
     space: &Space<E, N, M>,
     load: &[[f64; 2]],
     contact: &[ContactLineEdge<N, M>],
     rounding: f64,
-) -> Option<Vec<Vec<[f64; 2]>>> {
-    let dimension = motions.len();
-    // r_n, and not P0(r): the stress of a rigid motion is zero but for rounding.
-    let mut rows: Vec<Vec<f64>> = contact
-        .iter()
-        .flat_map(|edge| {
-            let nodes = space.edge_nodes(edge.edge).into_iter().zip(edge.directions);
-            nodes.map(|(node, n)| motions.iter().map(|r| Vector2::from(r[node]).dot(&n)).collect())
-        })
-        .collect();
-    let work = |r: &[[f64; 2]], of: fn(f64) -> f64| -> f64 {
-        let pairs = load.as_flattened().iter().zip(r.as_flattened());
-        pairs.map(|(l, r)| of(l * r)).sum()
-    };
-    let scale = motions.iter().map(|r| work(r, f64::abs)).fold(0.0, f64::max);
-    if !(scale > 0.0) {
-        return None;
+) -> Result<Slides, NotHeld> {
+    let mut sliding = Vec::new();
+    let mut idle = vec![false; contact.len()];
+    for of_part in motions.chunk_by(|a, b| a.part == b.part) {
+        let count = of_part.len();
+        let at = |k: usize, node: usize| of_part[k].at(space.nodes()[node]);
+        let touches =
+            |e: &ContactLineEdge<N, M>| parts.of_triangle()[e.edge.triangle] == of_part[0].part;
+        let edges: Vec<(usize, Vec<Vec<f64>>)> = contact
+            .iter()
+            .enumerate()
+            .filter(|(_, e)| touches(e))
+            .map(|(i, e)| (i, rows(space, e, at, count).into()))
+            .collect();
+        if edges.is_empty() {
+            return Err(NotHeld { motions: of_part.to_vec(), drive: None });
+        }
+        let fields: Vec<_> = of_part.iter().map(|motion| motion.field(parts, space)).collect();
+        let work = |of: fn(f64) -> f64, r: &Vec<[f64; 2]>| -> f64 {
+            let pairs = load.as_flattened().iter().zip(r.as_flattened());
+            pairs.map(|(l, r)| of(l * r)).sum()
+        };
+        let scale = fields.iter().map(|r| work(f64::abs, r)).fold(0.0, f64::max);
+        // In units of the largest work of single loads.
+        let unit = if scale > 0.0 { scale } else { 1.0 };
+        let loads: Vec<f64> = fields.iter().map(|r| work(|w| w, r) / unit).collect();
+        let all: Vec<Vec<f64>> = edges.iter().flat_map(|(_, rows)| rows.clone()).collect();
+        let none = negligible(&all, count, rounding);
+        let kept = press(edges.clone(), &loads, none).map_err(|left| match left {
+            Some((weights, driven)) => {
+                let motion = parts.combined(of_part, &weights);
+                let drive = work(|w| w, &motion.field(parts, space)) / motion.size();
+                NotHeld { drive: driven.then_some(drive), motions: vec![motion] }
+            }
+            None => NotHeld { motions: of_part.to_vec(), drive: None },
+        })?;
+        let columns = |rows: &[Vec<f64>]| -> Vec<Vec<f64>> {
+            (0..count).map(|j| rows.iter().map(|row| row[j]).collect()).collect()
+        };
+        for (i, rows) in &edges {
+            idle[*i] = rows.iter().any(|row| norm(row) > none) && kept.iter().all(|(k, _)| k != i);
+        }
+        let kept: Vec<Vec<f64>> = kept.into_iter().flat_map(|(_, rows)| rows).collect();
+        let free = null_space(columns(&kept), |value, _| value > none);
+        sliding.extend(free.iter().map(|weights| parts.combined(of_part, weights)));
     }
-    // In units of the largest work of single loads.
-    let loads: Vec<f64> = motions.iter().map(|r| work(r, |w| w) / scale).collect();
-    let columns = (0..dimension).map(|j| rows.iter().map(|row| row[j]).collect()).collect();
-    let directions = singular_vectors(columns);
-    let largest = directions.first().map_or(0.0, |(value, _)| *value);
-    let of_contact = space.mesh().turned_by_rounding(contact.iter().map(|edge| edge.edge));
-    let of_all = rounding.max(of_contact) * (rows.len() as f64).sqrt();
-    let none = SLIDES.max(of_all) * largest.max(1.0);
-    rows.retain(|row| dot(row, row).sqrt() > none);
-    let (stopped, sliding): (Vec<_>, Vec<_>) =
-        directions.iter().partition(|(value, _)| *value > none);
-    let holds = |loads: &[f64]| leaving(&rows, loads, BALANCED).is_none();
-    let pressed = stopped.iter().all(|(_, direction)| {
-        [-1.0, 1.0].iter().all(|sign| {
-            let change = direction.iter().map(|d| sign * MARGIN * d);
-            let changed: Vec<f64> = loads.iter().zip(change).map(|(l, c)| l + c).collect();
-            holds(&changed)
-        })
-    });
-    if rows.is_empty() || !(pressed && holds(&loads)) {
-        return None;
+    Ok(Slides { idle, ..Slides::new(sliding, parts, space) })
+}
+
+/// The edges that may press: `loads` are the work of a pressure on whole edges among them, given by their rows, of which those below
+/// `none` are zero, and still so if they are changed a little within the span of these rows.
+///
+/// # Errors
+/// The motion on which the body leaves, and whether the loads drive it: on the verge they do next to no work. Nothing where no edge
+/// can press.
+fn press(
+    mut edges: Vec<(usize, Vec<Vec<f64>>)>,
+    loads: &[f64],
+    none: f64,
+) -> Result<Vec<(usize, Vec<Vec<f64>>)>, Option<(Vec<f64>, bool)>> {
+    for (_, edge) in &mut edges {
+        edge.retain(|row| norm(row) > none);
     }
-    let sliding = sliding.into_iter().map(|(_, weights)| {
-        let mut field = vec![[0.0; 2]; space.nodes().len()];
-        for (motion, weight) in motions.iter().zip(weights) {
-            for (field, r) in field.iter_mut().zip(motion) {
-                *field = [field[0] + weight * r[0], field[1] + weight * r[1]];
+    edges.retain(|(_, edge)| !edge.is_empty());
+    let stopped_at_first = !edges.is_empty();
+    let mut verge: Option<Vec<f64>> = None;
+    loop {
+        let rows: Vec<Vec<f64>> = edges.iter().flat_map(|(_, rows)| rows.clone()).collect();
+        if let Some(motion) = leaving(&rows, loads, BALANCED) {
+            let driven = verge.is_none();
+            return Err(Some((verge.unwrap_or(motion), driven)));
+        }
+        let columns = (0..loads.len()).map(|j| rows.iter().map(|row| row[j]).collect()).collect();
+        let directions = singular_vectors(columns).into_iter().filter(|(value, _)| *value > none);
+        let leaves = directions.into_iter().find_map(|(_, direction)| {
+            [-MARGIN, MARGIN].into_iter().find_map(|by| {
+                let changed: Vec<f64> =
+                    loads.iter().zip(&direction).map(|(l, d)| l + by * d).collect();
+                leaving(&rows, &changed, BALANCED)
+            })
+        });
+        let Some(motion) = leaves else { break };
+        // No pressure that does the work of the loads acts where this motion leaves the obstacle.
+        let before = edges.len();
+        let stays = |row: &Vec<f64>| dot(row, &motion) >= -LEAVES * norm(row) * norm(&motion);
+        edges.retain(|(_, edge)| edge.iter().all(stays));
+        if edges.len() == before {
+            return Err(Some((motion, false)));
+        }
+        verge = Some(motion);
+    }
+    if stopped_at_first && edges.is_empty() { Err(None) } else { Ok(edges) }
+}
+
+impl Slides {
+    fn new<E: Element<N, M>, const N: usize, const M: usize>(
+        motions: Vec<FreeMotion>,
+        parts: &Parts,
+        space: &Space<E, N, M>,
+    ) -> Self {
+        let fields: Vec<_> = motions.iter().map(|motion| motion.field(parts, space)).collect();
+        let basis = orthonormal(fields.iter().cloned());
+        let along = fields.iter().map(|field| basis.iter().map(|b| inner(b, field)).collect());
+        Slides {
+            motions: motions.into_iter().zip(along).collect(),
+            basis,
+            bounds: Vec::new(),
+            idle: Vec::new(),
+        }
+    }
+
+    /// All motions that nothing stops where `u` solves (8), within the clearance of the edges that do not press. `None` where
+    /// supports hold the body.
+    pub fn around<E, const N: usize, const M: usize>(
+        d: &Discretization<E, N, M>,
+        u: &[[f64; 2]],
+    ) -> Option<Slides>
+    where
+        E: ExactEdge<f64, N, M>,
+    {
+        let idle = &d.slides.as_ref()?.idle;
+        let size = |v: &[f64]| v.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+        let on_edge = |e: &ContactLineEdge<N, M>| e.p(&d.space.on_triangle(e.edge.triangle, u));
+        let p: Vec<[f64; M]> = d.contact.iter().map(on_edge).collect();
+        let most = |p: &[f64; M]| bernstein(*p).into_iter().fold(0.0, f64::max);
+        let largest = p.iter().map(most).fold(0.0, f64::max);
+        let far = size(u.as_flattened());
+        let presses = |(p, edge): (&[f64; M], &ContactLineEdge<N, M>)| {
+            let rounding = 8.0 * f64::EPSILON * (far + size(&edge.gap));
+            most(p) > rounding.max(PRESSES * largest)
+                && d.rule.integrals::<E, N, M>(*p).active > 0.0
+        };
+        let pressing = p.iter().zip(&d.contact).map(presses);
+        let pressing: Vec<bool> = pressing.zip(idle).map(|(yes, idle)| yes && !idle).collect();
+        let parts = Parts::new(d.space.mesh());
+        let slides = Slides::new(free_where(d, &parts, &pressing), &parts, &d.space);
+        let (at, basis) = (slides.at(u), &slides.basis);
+        let rounding = SLIDES.max(d.rounding_of_directions());
+        let mut bounds = Vec::new();
+        for (((edge, p), pressing), idle) in d.contact.iter().zip(&p).zip(pressing).zip(idle) {
+            let nodes = d.space.edge_nodes(edge.edge);
+            let lengths = basis.iter().flat_map(|b| nodes.map(|node| b[node]));
+            let none = rounding * lengths.fold(0.0, |m: f64, [x, y]| m.max(x.hypot(y)));
+            let row = |a: usize| {
+                let along = |b: &Vec<[f64; 2]>| dot(&b[nodes[a]], edge.directions[a].as_slice());
+                basis.iter().map(along).collect::<Vec<f64>>()
+            };
+            let rows: [Vec<f64>; M] = std::array::from_fn(row);
+            let coefficients = bernstein(*p);
+            // Not a step towards an edge of which a coefficient is positive although P is not.
+            let open = *idle || coefficients.iter().all(|p| *p <= 0.0);
+            for (a, coefficient) in coefficients.into_iter().enumerate() {
+                let row: Vec<f64> = (0..basis.len())
+                    .map(|j| bernstein(rows.each_ref().map(|row| row[j]))[a])
+                    .collect();
+                if !pressing && norm(&row) > none {
+                    let bound = if open { -coefficient } else { 0.0 } + dot(&row, &at);
+                    bounds.push((row, bound));
+                }
             }
         }
-        field
-    });
-    Some(orthonormal(sliding))
+        Some(Slides { bounds, idle: idle.clone(), ..slides })
+    }
+
+    /// How many motions there are.
+    pub fn count(&self) -> usize {
+        self.basis.len()
+    }
+
+    /// Whether an obstacle that the body does not touch ends one of the motions.
+    pub fn are_bounded(&self) -> bool {
+        !self.bounds.is_empty()
+    }
+
+    /// What leads from u to the solution of least norm: the weights of the basis.
+    pub fn to_least_norm(&self, u: &[[f64; 2]]) -> Vec<f64> {
+        let at = self.at(u);
+        let to = self.nearest(0.0).unwrap_or_else(|| at.clone());
+        to.iter().zip(at).map(|(to, at)| to - at).collect()
+    }
+
+    /// What leads from u to a solution that is away from all obstacles that do not press it, if there is one.
+    pub fn to_inside(&self, u: &[[f64; 2]]) -> Option<Vec<f64>> {
+        let at = self.at(u);
+        let size = self.bounds.iter().map(|(row, bound)| bound.abs() / norm(row));
+        let size = size.fold(norm(&at), f64::max).max(f64::MIN_POSITIVE);
+        let to = (1..12).find_map(|k| self.nearest(size * 0.1_f64.powi(k)))?;
+        Some(to.iter().zip(at).map(|(to, at)| to - at).collect())
+    }
+
+    /// Moves u by the basis with these weights.
+    pub fn move_by(&self, weights: &[f64], u: &mut [[f64; 2]]) {
+        for (b, weight) in self.basis.iter().zip(weights) {
+            subtract(u, b, -weight);
+        }
+    }
+
+    /// u as the solution of least norm.
+    pub fn least_norm(&self, u: &mut [[f64; 2]]) {
+        self.move_by(&self.to_least_norm(u), u);
+    }
+
+    /// Whether contact edge `e` presses in no solution.
+    pub fn is_idle(&self, e: usize) -> bool {
+        self.idle.get(e).is_some_and(|idle| *idle)
+    }
+
+    fn at(&self, u: &[[f64; 2]]) -> Vec<f64> {
+        self.basis.iter().map(|b| inner(b, u)).collect()
+    }
+
+    /// The x of least norm with row . x <= bound, and less than that by `margin`: as non-negative least squares (Lawson & Hanson,
+    /// *Solving least squares problems*, 23.4). `None` if there is none.
+    fn nearest(&self, margin: f64) -> Option<Vec<f64>> {
+        let bound = |(row, bound): &(Vec<f64>, f64)| bound - margin * norm(row);
+        let violated = |b: &(Vec<f64>, f64)| -bound(b) / norm(&b.0);
+        let scale = self.bounds.iter().map(violated).fold(0.0, f64::max);
+        if scale == 0.0 {
+            return Some(vec![0.0; self.count()]);
+        }
+        let row = |b: &(Vec<f64>, f64)| {
+            let length = norm(&b.0);
+            let negative = b.0.iter().map(|r| -r / length);
+            negative.chain([-bound(b) / length / scale]).collect()
+        };
+        let rows: Vec<Vec<f64>> = self.bounds.iter().map(row).collect();
+        let mut target = vec![0.0; self.count() + 1];
+        target[self.count()] = 1.0;
+        let mut rest = leaving(&rows, &target, INFEASIBLE)?;
+        let last = rest.pop()?;
+        (last > INFEASIBLE).then(|| rest.iter().map(|r| -scale * r / last).collect())
+    }
+
+    /// How far each motion may go from u.
+    pub fn plays(&self, u: &[[f64; 2]]) -> Vec<Play> {
+        let at = self.at(u);
+        let play = |(motion, along): &(FreeMotion, Vec<f64>)| {
+            let mut range = [None::<f64>; 2];
+            for (row, bound) in &self.bounds {
+                let speed = dot(row, along);
+                if speed.abs() > SLIDES * norm(row) * norm(along) {
+                    let way = ((bound - dot(row, &at)).max(0.0) / speed) * motion.size();
+                    let end = &mut range[usize::from(way > 0.0 || (way == 0.0 && speed > 0.0))];
+                    let nearer = end.is_none_or(|end| way.abs() < end.abs());
+                    *end = if nearer { Some(way) } else { *end };
+                }
+            }
+            let [least, most] = range;
+            let about = motion.about();
+            let along = motion.shift.map(|c| c / motion.size());
+            Play { about, along: about.is_none().then_some(along), least, most }
+        };
+        self.motions.iter().map(play).collect()
+    }
+}
+
+/// The motions of `d` that neither supports nor the contact edges that are pressing stop.
+pub fn free_where<E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    parts: &Parts,
+    pressing: &[bool],
+) -> Vec<FreeMotion>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let mut free = Vec::new();
+    for of_part in d.motions.chunk_by(|a, b| a.part == b.part) {
+        let count = of_part.len();
+        let at = |k: usize, node: usize| of_part[k].at(d.space.nodes()[node]);
+        let pressing = d.contact.iter().zip(pressing).filter(|(edge, pressing)| {
+            **pressing && parts.of_triangle()[edge.edge.triangle] == of_part[0].part
+        });
+        let rows: Vec<Vec<f64>> =
+            pressing.flat_map(|(edge, _)| rows(&d.space, edge, at, count)).collect();
+        let none = negligible(&rows, count, d.rounding_of_directions());
+        let columns = (0..count).map(|j| rows.iter().map(|row| row[j]).collect()).collect();
+        let weights = null_space(columns, |value, _| value > none);
+        free.extend(weights.iter().map(|weights| parts.combined(of_part, weights)));
+    }
+    free
+}
+
+/// The Bernstein coefficients of a polynomial on an edge from its values at the nodes: it is between the least and the largest.
+fn bernstein<const M: usize>(mut p: [f64; M]) -> [f64; M] {
+    if M == 3 {
+        p[2] = 2.0 * p[2] - (p[0] + p[1]) / 2.0;
+    }
+    p
 }
 
 /// Fields with orthonormal nodal values that span the same.
@@ -106,14 +426,6 @@ fn subtract(field: &mut [[f64; 2]], other: &[[f64; 2]], weight: f64) {
     }
 }
 
-/// u less its part along `slides`: of all solutions the one of least norm.
-pub fn least_norm(u: &mut [[f64; 2]], slides: &[Vec<[f64; 2]>]) {
-    for slide in slides {
-        let along = inner(slide, u);
-        subtract(u, slide, along);
-    }
-}
-
 /// One component of a node for each slide, so that no slide is left free when these components are held: those among
 /// `free` that move most.
 pub fn pins(slides: &[Vec<[f64; 2]>], free: impl Fn(usize, usize) -> bool) -> Vec<(usize, usize)> {
@@ -133,6 +445,9 @@ pub fn pins(slides: &[Vec<[f64; 2]>], free: impl Fn(usize, usize) -> bool) -> Ve
     }
     pins
 }
+
+/// A problem of least distance has no solution where what is left of its target is below this.
+const INFEASIBLE: f64 = 1e-10;
 
 /// The part of `target` that no combination of the rows with weights >= 0 reaches, if it is larger than `tolerance`.
 fn leaving(rows: &[Vec<f64>], target: &[f64], tolerance: f64) -> Option<Vec<f64>> {

@@ -90,6 +90,11 @@ impl FreeMotion {
         (turn != 0.0).then(|| [self.centre[0] - sy / turn, self.centre[1] + sx / turn])
     }
 
+    /// The distance of a translation, or the angle of a rotation, counter-clockwise.
+    pub fn size(&self) -> f64 {
+        if self.turn == 0.0 { self.shift[0].hypot(self.shift[1]) } else { self.turn }
+    }
+
     /// What would stop it.
     pub fn remedy(&self) -> String {
         match self.about() {
@@ -181,17 +186,16 @@ impl Parts {
         FreeMotion { part, centre, shift: [x, y], turn: w / half, half, place }
     }
 
-    /// The motion of one part that is the sum of these motions of it, each times its weight.
-    pub fn combined(&self, motions: &[FreeMotion], weights: &[f64]) -> Option<FreeMotion> {
-        let FreeMotion { part, half, .. } = *motions.first()?;
+    /// The sum of these motions of one part, each times its weight, with the largest coefficient made 1.
+    pub(super) fn combined(&self, motions: &[FreeMotion], weights: &[f64]) -> FreeMotion {
         let mut values = [0.0; 3];
         for (motion, weight) in motions.iter().zip(weights) {
             let [x, y] = motion.shift;
-            for (value, of) in values.iter_mut().zip([x, y, motion.turn * half]) {
+            for (value, of) in values.iter_mut().zip([x, y, motion.turn * motion.half]) {
                 *value += weight * of;
             }
         }
-        Some(self.motion(part, values))
+        self.motion(motions.first().map_or(0, |m| m.part), values)
     }
 }
 
@@ -224,43 +228,44 @@ where
     }
     let mut motions = Vec::new();
     for (part, columns) in columns.into_iter().enumerate() {
-        motions.extend(null_space(columns.into(), rounding).map(|v| parts.motion(part, v)));
+        let stops = |value: f64, largest: f64| value > rounding.max(FREE) * largest;
+        let free = null_space(columns.into(), stops);
+        motions.extend(free.iter().map(|v| parts.motion(part, [v[0], v[1], v[2]])));
     }
     motions
 }
 
-/// The solutions of homogeneous equations in three unknowns, given by their columns: a basis in which as many unknowns as can
-/// be are zero.
-fn null_space(columns: Vec<Vec<f64>>, rounding: f64) -> impl Iterator<Item = [f64; 3]> {
+/// The solutions of homogeneous equations in at most three unknowns, given by their columns: a basis in which as many unknowns as
+/// can be are zero. A direction in which the equations have a singular value that `stops` is not free, beside the largest value.
+pub(super) fn null_space(
+    columns: Vec<Vec<f64>>,
+    stops: impl Fn(f64, f64) -> bool,
+) -> Vec<Vec<f64>> {
+    let count = columns.len();
     let directions = singular_vectors(columns);
     let largest = directions.first().map_or(0.0, |(value, _)| *value);
-    let stopped: Vec<[f64; 3]> = directions
-        .iter()
-        .filter(|(value, _)| *value > rounding.max(FREE) * largest)
-        .map(|(_, v)| [v[0], v[1], v[2]])
-        .collect();
-    let unit = |k: usize| std::array::from_fn(|j| f64::from(u8::from(j == k)));
-    let basis: Vec<[f64; 3]> = match stopped[..] {
-        [] => (0..3).map(unit).collect(),
+    let stopped: Vec<Vec<f64>> =
+        directions.into_iter().filter(|d| stops(d.0, largest)).map(|d| d.1).collect();
+    let unit = |k: usize| (0..count).map(|j| f64::from(u8::from(j == k))).collect::<Vec<f64>>();
+    match &stopped[..] {
+        [] => (0..count).map(unit).collect(),
         [v] => {
-            let pivot = (0..3).find(|&k| v[k].abs() > STILL).unwrap_or(0);
-            let others = (0..3).filter(|&k| k != pivot);
+            let pivot = (0..count).find(|&k| v[k].abs() > STILL).unwrap_or(0);
             let motion = |k: usize| {
                 let mut motion = unit(k);
                 motion[pivot] = -v[k] / v[pivot];
                 motion
             };
-            others.map(motion).collect()
+            (0..count).filter(|&k| k != pivot).map(motion).collect()
         }
-        [a, b] => {
+        [a, b] if count == 3 => {
             let minor = |i: usize, j: usize| a[i] * b[j] - a[j] * b[i];
             let [x, y, w] = [minor(1, 2), minor(2, 0), minor(0, 1)];
             let last = [w, y, x].into_iter().find(|c| c.abs() > STILL).unwrap_or(1.0);
-            vec![[x, y, w].map(|c| c / last)]
+            vec![[x, y, w].map(|c| c / last).to_vec()]
         }
         _ => Vec::new(),
-    };
-    basis.into_iter()
+    }
 }
 
 /// The number of the part of each triangle: triangles with an edge in common are in one part.

@@ -294,6 +294,7 @@ pub fn results(
             status: solution.newton.status,
         },
         method: Some(solution.method),
+        play: solution.plays.clone(),
         quantities: solution.quantities.clone(),
         contact: solution.boundaries.clone(),
         stress: stress_peaks(case, solution),

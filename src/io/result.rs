@@ -18,6 +18,7 @@ use super::data::DataError;
 use crate::certify::adapt::Level;
 use crate::fem::Errors;
 use crate::fem::contact_line::Gamma;
+use crate::fem::held::Play;
 use crate::solve::{
     ContactBoundary, ContactQuadrature, EnergyBalance, Gamma0, GammaReport, Method, MethodReport,
     Quantities, Status, Times,
@@ -72,6 +73,9 @@ pub struct Results {
     /// The route and the accuracy; left out by the engine fenicsx.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub method: Option<MethodReport>,
+    /// How far the body may still move; left out where supports or what presses hold it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub play: Vec<Play>,
     /// The solution in numbers.
     pub quantities: Quantities,
     /// What each contact boundary carries.
@@ -392,6 +396,7 @@ mod tests {
                 threads: 1,
                 slides: 1,
             }),
+            play: Vec::new(),
             quantities: Quantities {
                 energy: 1.0,
                 work: -0.0,

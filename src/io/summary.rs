@@ -13,6 +13,7 @@ use super::result::{
 use super::sweep::Sweep;
 use super::{Case, numbers};
 use crate::certify::Continuous;
+use crate::fem::held::Play;
 use crate::quote;
 use crate::solve::{ContactQuadrature, MethodReport, Outline, RouteName, Status};
 
@@ -61,11 +62,8 @@ pub fn lines_of(r: &Results, verbose: bool) -> Vec<(String, String)> {
     for remark in &r.remarks {
         lines.line("remark", remark);
     }
-    if let Some(slides) = r.method.as_ref().map(|method| method.slides).filter(|&n| n > 0) {
-        lines.line("remark", format!(
-            "the body can still slide in {}: no obstacle and no support stops it there. The displacement of least norm is given; friction would be needed to know more",
-            count(slides, "direction")
-        ));
+    for play in &r.play {
+        lines.line("remark", free(play, &shown));
     }
     let certificates = r.certificate.as_ref();
     if let Some(discrete) = certificates.and_then(|c| c.discrete.as_ref()) {
@@ -487,6 +485,25 @@ fn accuracy(method: &MethodReport) -> String {
 /// A place or a vector, with four digits.
 pub(super) fn vector([x, y]: [f64; 2]) -> String {
     format!("({}, {})", short(x), short(y))
+}
+
+/// A motion that nothing stops, and how far it may go.
+fn free(play: &Play, shown: &Shown) -> String {
+    let (motion, unit) = match (play.about, play.along) {
+        (Some(about), _) => (format!("turn about {}", vector(about)), " rad"),
+        (_, Some(along)) => (format!("move along {}", vector(along)), &*shown.length),
+        _ => return String::new(),
+    };
+    let end = |end: f64| format!("{}{unit}", short(end));
+    let range = match (play.least, play.most) {
+        (None, None) => "without an end".to_owned(),
+        (Some(least), None) => format!("from {} on", end(least)),
+        (None, Some(most)) => format!("up to {}", end(most)),
+        (Some(least), Some(most)) => format!("from {} to {}", end(least), end(most)),
+    };
+    format!(
+        "the body can still {motion}, {range}: no support and no obstacle that it presses stops it there. The displacement of least norm is given; friction would be needed to know more"
+    )
 }
 
 /// Four significant digits.

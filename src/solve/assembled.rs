@@ -17,8 +17,10 @@ use super::ldl::TwofoldFactor;
 use super::newton::{self, Until};
 use super::relaxation::follow;
 use super::system::System;
+use crate::fem::held;
 use crate::fem::matrix::LowerTriangle;
 use crate::fem::precise;
+use crate::fem::rigid::Parts;
 use crate::fem::twofold::Twofold;
 use crate::kernel::ContactEdge;
 use crate::kernel::edge_integral::ExactEdge;
@@ -108,6 +110,17 @@ where
         self.factor_tangent(&derivatives(&edges, &signs))
     }
 
+    /// Whether the edges that are in contact leave a motion free that contact stops: the tangent is singular then.
+    fn is_loose(&self, at: &Derivatives<M>) -> bool {
+        let d = self.system.d;
+        let Some(slides) = &d.slides else { return false };
+        let springs = at.hessian.iter();
+        let pressing: Vec<bool> =
+            springs.map(|h| h.as_flattened().iter().any(|h| *h != 0.0)).collect();
+        let parts = Parts::new(d.space.mesh());
+        held::free_where(d, &parts, &pressing).len() > slides.count()
+    }
+
     /// The same with a little of the springs of all edges added.
     fn supported(&self, at: &Derivatives<M>) -> Derivatives<M> {
         let edges = ContactEdges { d: self.system.d, order: &self.order };
@@ -123,10 +136,13 @@ where
         let (factor, hessian) = match self.factored.take() {
             Some((factor, old)) if old == at.hessian => (factor, old),
             _ => {
-                let mut factored = self.factor_tangent(at)?;
-                let mut hessian = at.hessian.clone();
-                self.factorizations += 1;
                 let coercive = self.system.d.kappa() < 1.0;
+                let mut hessian = at.hessian.clone();
+                let mut factored = Err(Indefinite);
+                if !(coercive && self.is_loose(at)) {
+                    factored = self.factor_tangent(at)?;
+                    self.factorizations += 1;
+                }
                 if factored.is_err() && coercive {
                     let supported = self.supported(at);
                     factored = self.factor_tangent(&supported)?;

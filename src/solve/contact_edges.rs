@@ -1,4 +1,4 @@
-//! Psi of a discretization, edge by edge in a given order.
+//! Psi of a discretization, edge by edge in a given order, without the edges that press in no solution.
 
 use super::body::Edges;
 use crate::fem::contact_line::ContactLineEdge;
@@ -33,6 +33,9 @@ where
     }
 
     fn derivatives(&self, e: usize, p: [f64; M]) -> ([f64; M], [[f64; M]; M]) {
+        if self.d.is_idle(self.order[e]) {
+            return ([0.0; M], [[0.0; M]; M]);
+        }
         let integrals = self.d.rule.integrals::<E, N, M>(p);
         let weight = self.weight(e);
         (
@@ -42,6 +45,9 @@ where
     }
 
     fn bregman(&self, e: usize, p: [f64; M], q: [f64; M]) -> f64 {
+        if self.d.is_idle(self.order[e]) {
+            return 0.0;
+        }
         self.weight(e) * self.d.rule.bregman::<E, N, M>(p, q)
     }
 }

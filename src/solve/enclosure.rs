@@ -15,13 +15,14 @@
 use thiserror::Error;
 
 use super::assembled::{Assembled, Tangent};
-use super::balls::{Lines, dot, field, free, kappa, lines, product, root};
+use super::balls::{Lines, dot, field, free, kappa, lines, root};
 use super::factor::{Factor, Indefinite};
 use super::intervals::{Evaluation, Intervals};
-use super::pressed::Pressed;
+use super::pressed::{self, Pressed};
 use super::system::System;
+use crate::fem::Discretization;
 use crate::fem::ball::{Ball, up};
-use crate::fem::held;
+use crate::fem::held::Slides;
 use crate::fem::korn::Korn;
 use crate::fem::precise;
 use crate::fem::twofold::Twofold;
@@ -114,8 +115,9 @@ impl FactorOfA {
     }
 }
 
-/// Encloses the solution of (8) around `u`, with the motions that slide still stopped at one component each, by the residual there, or at a field `near` it that is known in twofold numbers:
-/// rounding a displacement to doubles moves it little, its forces more.
+/// Encloses the solution of (8) around `u` by the residual there, or at a field `near` it that is known in twofold numbers:
+/// rounding a displacement to doubles moves it little, its forces more. Of a body that may slide, with these motions still stopped at
+/// one component each, one of the solutions is enclosed around the displacement of least norm.
 ///
 /// # Errors
 /// Why nothing can be proved.
@@ -146,6 +148,40 @@ where
     E: ExactEdge<f64, N, M>,
 {
     let d = system.d;
+    let slides = Slides::around(d, u);
+    let mut reported = u.to_vec();
+    slides.iter().for_each(|slides| slides.least_norm(&mut reported));
+    let stopped = d.slides.as_ref().map_or(0, Slides::count);
+    let ends = |slides: &Slides| slides.count() > stopped || slides.are_bounded();
+    let Some(loose) = slides.filter(ends) else {
+        return around(system, u, &reported, near, factor, load);
+    };
+    // Motions that only edges stop which do not press: of all solutions one that is away from these.
+    let Some(inside) = loose.to_inside(u) else { return Err(Unproved::HeldByContact) };
+    let mut u = u.to_vec();
+    loose.move_by(&inside, &mut u);
+    let d = d.sliding(loose, &u);
+    let system = System::new(&d).map_err(|_| Unproved::OutOfMemory)?;
+    let factor = match factor {
+        FactorOfA::Twofold => FactorOfA::Twofold,
+        _ => FactorOfA::Double,
+    };
+    around(&system, &u, &reported, None, factor, load)
+}
+
+/// Encloses a solution around `u`, and what `reported` is, which differs from `u` by motions that slide.
+fn around<E, const N: usize, const M: usize>(
+    system: &System<E, N, M>,
+    u: &[[f64; 2]],
+    reported: &[[f64; 2]],
+    near: Option<&[[Twofold; 2]]>,
+    factor: FactorOfA,
+    load: &[[Ball; 2]],
+) -> Result<Enclosure, Unproved>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let d = system.d;
     let lines = lines(d);
     let kappa = kappa(d, &lines);
     if !(kappa < 1.0) {
@@ -153,10 +189,7 @@ where
         return Err(if unknown { Unproved::NoKappa } else { Unproved::NotCoercive { kappa } });
     }
     let coercivity = (1.0 - kappa) * (1.0 - 4.0 * f64::EPSILON);
-    let slides = d.slides.as_deref().unwrap_or_default();
-    let mut reported = u.to_vec();
-    held::least_norm(&mut reported, slides);
-    let at = Evaluation::new(system, &lines, (u, &reported), near, load);
+    let at = Evaluation::new(system, &lines, (u, reported), near, load);
     let at = at.ok_or(Unproved::OutOfRange)?;
     // What holds the body, and what is not proved if that does not.
     let (pressed, loose) = match d.slides {
@@ -183,9 +216,12 @@ where
         return Err(Unproved::OutOfRange);
     }
     let size = at.energy.upper().max(0.0).sqrt();
-    let nodes: Vec<f64> = korn.nodes.iter().map(|n| up(n * exact)).collect();
-    let (exactly, mut nodes) = less_slides(at.u.clone(), nodes, slides);
-    for (node, (exactly, reported)) in nodes.iter_mut().zip(exactly.iter().zip(&reported)) {
+    let mut nodes: Vec<f64> = korn.nodes.iter().map(|n| up(n * exact)).collect();
+    if !stays_off(d, &lines, &pressed, &at.u, (&nodes, exact)) {
+        return Err(Unproved::HeldByContact);
+    }
+    let exactly = slid(at.u.clone(), reported, d.slides.as_ref());
+    for (node, (exactly, reported)) in nodes.iter_mut().zip(exactly.iter().zip(reported)) {
         let off = [0, 1].map(|c| exactly[c] - Ball::from(reported[c]));
         *node = up(*node + root(dot(off, off)));
     }
@@ -204,26 +240,40 @@ where
     })
 }
 
-/// u less its part along the motions that slide, as [`held::least_norm`] takes it out, and the bounds at the nodes that this has
-/// for a u within the bounds `nodes`.
-pub fn less_slides(
-    mut u: Vec<[Ball; 2]>,
-    mut nodes: Vec<f64>,
-    slides: &[Vec<[f64; 2]>],
-) -> (Vec<[Ball; 2]>, Vec<f64>) {
-    for slide in slides {
-        let slide: Vec<[Ball; 2]> = slide.iter().map(|s| s.map(Ball::from)).collect();
-        let lengths: Vec<f64> = slide.iter().map(|&s| root(dot(s, s))).collect();
-        let along = product(&slide, &u);
-        let off = nodes.iter().zip(&lengths).map(|(node, s)| node * s).sum::<f64>();
-        let off = off * (1.0 + f64::EPSILON * (nodes.len() + 16) as f64);
-        for ((u, node), (s, length)) in u.iter_mut().zip(&mut nodes).zip(slide.iter().zip(lengths))
-        {
-            *u = [0, 1].map(|c| u[c] - along * s[c]);
-            *node = up(*node + off * length);
+/// u moved along the motions that slide, to where `reported` is.
+fn slid(mut u: Vec<[Ball; 2]>, reported: &[[f64; 2]], slides: Option<&Slides>) -> Vec<[Ball; 2]> {
+    for slide in slides.map_or(&[][..], |slides| &slides.basis) {
+        let off = u.iter().zip(reported).zip(slide);
+        let weight: f64 =
+            off.map(|((u, r), s)| (0..2).map(|c| (r[c] - u[c].head()) * s[c]).sum::<f64>()).sum();
+        for (u, s) in u.iter_mut().zip(slide) {
+            *u = [0, 1].map(|c| u[c] + Ball::from(weight) * Ball::from(s[c]));
         }
     }
-    (u, nodes)
+    u
+}
+
+/// Whether the edges that are not pressed and could end a motion that slides have P <= 0 for all fields that differ from u by as
+/// much as `nodes` say, and by `radius` in the norm of A_S: then the motion changes nothing.
+fn stays_off<E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    lines: &Lines<N, M>,
+    pressed: &Pressed<M>,
+    u: &[[Ball; 2]],
+    (nodes, radius): (&[f64], f64),
+) -> bool
+where
+    E: ExactEdge<f64, N, M>,
+{
+    if d.slides.as_ref().is_none_or(|slides| !slides.are_bounded()) {
+        return true;
+    }
+    let edges = d.contact.iter().zip(lines).zip(pressed.edges());
+    edges.filter(|(_, pressed)| !pressed).all(|((edge, line), _)| {
+        let far =
+            d.space.edge_nodes(edge.edge).map(|node| nodes[node]).into_iter().fold(0.0, f64::max);
+        pressed::greatest(line.p(edge, u)) + pressed::change(line, far, radius) <= 0.0
+    })
 }
 
 /// A(v, .), and what the springs where it is `pressed` do, at the free unknowns for the field with the components `z`.

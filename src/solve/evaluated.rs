@@ -4,6 +4,7 @@
 
 use super::body::block;
 use crate::fem::discretization::Discretization;
+use crate::fem::held::{Play, Slides};
 use crate::kernel::edge_integral::ExactEdge;
 
 /// A displacement with its forces.
@@ -56,5 +57,22 @@ impl<const M: usize> Evaluated<M> {
             }
         }
         Evaluated { u, p, residual }
+    }
+
+    /// Goes to the solution of least norm, where contact holds the body and there are several: neither the forces nor P where it
+    /// presses change by it. Gives how far the body may move from there.
+    pub fn settle<E, const N: usize>(&mut self, d: &Discretization<E, N, M>) -> Vec<Play>
+    where
+        E: ExactEdge<f64, N, M>,
+    {
+        let Some(slides) = Slides::around(d, &self.u) else { return Vec::new() };
+        slides.least_norm(&mut self.u);
+        for (edge, p) in d.contact.iter().zip(&mut self.p) {
+            if p.iter().all(|p| *p <= 0.0) {
+                let there = edge.p(&d.space.on_triangle(edge.edge.triangle, &self.u));
+                *p = there.map(|p| p.min(0.0));
+            }
+        }
+        slides.plays(&self.u)
     }
 }

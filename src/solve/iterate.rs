@@ -26,7 +26,7 @@ pub struct Evaluation {
     pub forces: Vec<[f64; 2]>,
     /// The same for every free degree of freedom.
     pub linear: Vec<f64>,
-    /// P(u) at the nodes of the contact edges.
+    /// P(u) at the nodes of the contact edges; negative on those that press in no solution.
     pub p: Vec<f64>,
     /// The magnitudes that these were added up from.
     pub p_magnitudes: Vec<f64>,
@@ -88,8 +88,11 @@ impl Iterate {
         E: ExactEdge<f64, N, M>,
     {
         let d = system.d;
+        // Edges that press in no solution: the body is moved away from them in the end.
+        let idle = |(i, p): (usize, f64)| if d.is_idle(i / M) { -p.abs() } else { p };
         if precisely {
             let (forces, p) = precise::evaluate(d, &self.u);
+            let p: Vec<f64> = p.into_iter().enumerate().map(idle).collect();
             // The forces of contact are added to these in doubles, and the loads are doubles.
             let noise = NOISE * f64::EPSILON * d.free_norm(&forces).max(d.free_norm(&d.load));
             let p_magnitudes = p.iter().map(|p| p.abs()).collect();
@@ -117,7 +120,7 @@ impl Iterate {
             let of_tail = edge.functionals.p0.map(|f| apply(&f, &nodes(edge).map(tail)));
             std::array::from_fn::<_, M, _>(|a| p[a] + of_tail[a])
         };
-        let p = d.contact.iter().flat_map(p).collect();
+        let p = d.contact.iter().flat_map(p).enumerate().map(idle).collect();
         let magnitude = |functional: &[Vector2<f64>; N], nodal: &[Vector2<f64>; N]| {
             let pairs = functional.iter().flatten().zip(nodal.iter().flatten());
             pairs.map(|(f, u)| (f * u).abs()).sum::<f64>()

@@ -51,7 +51,8 @@ pub use self::theorem::Theorem;
 use self::times::Stopwatch;
 pub use self::times::Times;
 use crate::fem::contact_line::{Coercivity, EdgeRule, Gamma};
-use crate::fem::{DataError, Discretization, MeshError, Problem, held};
+use crate::fem::held::Play;
+use crate::fem::{DataError, Discretization, MeshError, Problem};
 use crate::kernel::edge_integral::ExactEdge;
 use crate::kernel::{Material, P1, P2};
 use crate::quote::{fixed, number};
@@ -231,8 +232,8 @@ pub struct MethodReport {
     pub forward_error: f64,
     /// How many threads worked.
     pub threads: usize,
-    /// Independent motions of the body that slide along all obstacles and that no support stops: the solution is one up to
-    /// these, and the one of least norm is given. Friction would be needed to know more.
+    /// Independent motions of the body that neither supports nor what presses stops: the solution is one up to these, and the
+    /// one of least norm is given. Friction would be needed to know more.
     pub slides: usize,
 }
 
@@ -247,6 +248,8 @@ pub struct Report {
     pub enclosure: enclosure::Certificate,
     /// What is proved.
     pub verdict: Verdict,
+    /// How far a body that contact holds may still move.
+    pub plays: Vec<Play>,
 }
 
 /// Why there is no solution.
@@ -447,9 +450,9 @@ where
     let enclosure = enclosure::enclose(&system, &evaluated.u, fine.as_deref(), factor);
     let verdict = Verdict::new(&enclosure, settings.proof);
     times.certify = watch.lap();
-    // This changes neither P nor the forces.
-    held::least_norm(&mut evaluated.u, d.slides.as_deref().unwrap_or_default());
-    Ok((evaluated, Report { newton, method, enclosure, verdict }, times))
+    let plays = evaluated.settle(d);
+    let method = MethodReport { slides: plays.len(), ..method };
+    Ok((evaluated, Report { newton, method, enclosure, verdict, plays }, times))
 }
 
 /// What [`solve`] would solve: everything short of a matrix is built and checked.

@@ -137,6 +137,21 @@ fn least<const M: usize>(p: [Ball; M]) -> f64 {
     ends.min((two * p[M - 1] - half * (p[0] + p[1])).lower())
 }
 
+/// An upper bound of it.
+pub fn greatest<const M: usize>(p: [Ball; M]) -> f64 {
+    -least(p.map(|p| -p))
+}
+
+/// How much P0(v) is along an edge at most where |v| is at most `far` at its nodes and `radius` in the energy norm a: n~ . v is at most
+/// 5/4 of the largest nodal value, gamma |s(v)| at most 2 (gamma / |E|)^{1/2} |v|_a.
+pub fn change<const N: usize, const M: usize>(
+    line: &OnEdge<Ball, N, M>,
+    far: f64,
+    radius: f64,
+) -> f64 {
+    up(SAFETY * (1.25 * far + 2.0 * root_of(line) * radius))
+}
+
 /// The rule's integrals of N_a N_b, of which those of \[P\]+ N_a are made: p = \[p\]+ - \[-p\]+.
 fn mass<E, const N: usize, const M: usize>(rule: &EdgeRule) -> [[Ball; M]; M]
 where

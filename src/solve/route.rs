@@ -223,14 +223,13 @@ impl Outset {
         };
         times.newton += watch.lap();
         let Outcome { condition, forward_error, .. } = outcome;
-        let slides = system.d.slides.as_ref().map_or(0, Vec::len);
         let report = MethodReport {
             route: name,
             predicted_operations,
             condition,
             forward_error,
             threads: 1,
-            slides,
+            slides: 0,
         };
         Ok((outcome, report, factorizations, factor))
     }

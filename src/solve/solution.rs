@@ -14,6 +14,7 @@ use super::{MethodReport, NewtonReport, Report, Verdict};
 use crate::fem::contact_line::{self, Coercivity, Gamma};
 use crate::fem::dense::inner;
 use crate::fem::discretization::Discretization;
+use crate::fem::held::Play;
 use crate::fem::{DataError, Errors, ExactSolution, Problem, Space};
 use crate::kernel::contact::pressure;
 use crate::kernel::edge_integral::{self, ExactEdge};
@@ -46,6 +47,8 @@ pub struct Solution {
     pub newton: NewtonReport,
     /// By which route, and how accurately.
     pub method: MethodReport,
+    /// How far the body may still move where contact holds it: the motions that neither supports nor what presses stops.
+    pub plays: Vec<Play>,
     /// Where the exact solution of (8) is, or why nothing is proved of it.
     pub enclosure: Certificate,
     /// Whether the distance from it is proved to be as small as asked for.
@@ -166,6 +169,7 @@ impl Solution {
             gamma: GammaReport::new(d),
             newton: report.newton,
             method: report.method,
+            plays: report.plays,
             enclosure: report.enclosure,
             verdict: report.verdict,
             quantities,

@@ -2,9 +2,11 @@
 //! equilibrium, and from the same bodies on supports that happen to carry nothing.
 
 use approx::assert_abs_diff_eq;
-use signorini::fem::{Condition, DataError, Mesh, Problem};
+use signorini::fem::{Condition, DataError, Mesh, Obstacle, PointSupport, Problem, Side};
 use signorini::kernel::{Material, Plane};
-use signorini::solve::{Degree, RouteName, Settings, Solution, SolveError, solve};
+use signorini::solve::{
+    Course, Degree, RouteName, Settings, Solution, SolveError, solve, solve_along,
+};
 
 use crate::common::*;
 
@@ -101,4 +103,122 @@ fn a_block_on_the_verge_of_tipping_is_refused_and_one_short_of_it_is_solved() {
     assert!(tipping(6.0).is_err());
     assert!(tipping(6.1).is_err());
     assert!(tipping(-6.1).is_err());
+}
+
+/// A body without loads.
+fn unloaded(mesh: Mesh, parts: Vec<(&'static str, Condition)>) -> Problem {
+    block_under(mesh, [0.0, 0.0], parts)
+}
+
+#[test]
+fn bodies_without_loads_are_held_by_what_squeezes_them() {
+    for degree in DEGREES {
+        let cell = || unit_square(4).mesh().unwrap();
+        let tight = |sides: [&'static str; 4]| sides.map(|side| (side, contact(|_| -0.005)));
+        let squeezed = unloaded(cell(), tight(["left", "right", "bottom", "top"]).into());
+        let s = solved(&squeezed, degree);
+        // Strains of -0.01 both ways: a pressure of 0.01 E / ((1 + nu) (1 - 2 nu)) on four sides of length 1, but for what Nitsche's
+        // method lets through, which is nothing here.
+        let pressure = 0.01 / (1.3 * 0.4);
+        assert_abs_diff_eq!(s.quantities.contact_force, 4.0 * pressure, epsilon = SOLVED);
+        assert_eq!(s.method.slides, 0);
+
+        let held = |u_x, u_y| Condition::Displacement([u_x, u_y]);
+        let roller = ("left", held(Some(constant(0.0)), None));
+        let [floor, ceiling] = ["bottom", "top"].map(|side| (side, contact(|_| -0.005)));
+        let shrunk = solved(&unloaded(cell(), vec![roller, floor, ceiling]), degree);
+        let pressure = 0.01 / (1.0 - 0.09);
+        assert_abs_diff_eq!(shrunk.quantities.contact_force, 2.0 * pressure, epsilon = SOLVED);
+
+        let platen = ("top", held(None, Some(constant(-0.01))));
+        let parts = vec![platen, ("bottom", contact(|_| 0.0))];
+        let pressed = solved(&unloaded(cell(), parts), degree);
+        assert_abs_diff_eq!(pressed.quantities.contact_force, pressure, epsilon = SOLVED);
+        let [play] = pressed.plays[..] else { panic!("{:?}", pressed.plays) };
+        assert_eq!((play.along, play.least, play.most), (Some([1.0, 0.0]), None, None));
+
+        // A point above the middle is pushed down, and the floor stops the rotation about it.
+        let mesh = cell();
+        let at = mesh.vertices().iter().position(|&x| x == [0.5, 1.0]).unwrap();
+        let mut pivot = unloaded(mesh, vec![("bottom", contact(|[x, _]| 0.002 * (x - 0.5)))]);
+        let displacement = [0.0, -0.01].map(|u| Some(constant(u)));
+        pivot.points.push(PointSupport { name: "pivot".to_owned(), vertex: at, displacement });
+        let s = solved(&pivot, degree);
+        assert_eq!(s.method.slides, 0);
+        assert!(s.quantities.contact_force > 1e-3, "{}", s.quantities.contact_force);
+    }
+}
+
+/// A block on a floor under a load that leans, beside walls at these gaps.
+fn beside_walls(gaps: [Option<f64>; 2]) -> Problem {
+    let mut parts = vec![("bottom", contact(|_| 0.0))];
+    for (side, gap) in ["left", "right"].into_iter().zip(gaps) {
+        parts.extend(gap.map(|gap| (side, contact(move |_| gap))));
+    }
+    let mut problem = block_under(unit_square(6).mesh().unwrap(), [0.0, 0.0], parts);
+    problem.body_force = [constant(0.0), function(|[x, _]| -0.02 - 0.01 * x)];
+    problem
+}
+
+#[test]
+fn a_block_between_walls_that_it_does_not_touch_is_where_its_displacement_is_least() {
+    for degree in DEGREES {
+        let alone = solved(&beside_walls([None, None]), degree);
+        for gaps in [[Some(0.1), Some(0.1)], [Some(0.1), None], [Some(-0.03), Some(0.2)]] {
+            let problem = beside_walls(gaps);
+            let s = solved(&problem, degree);
+            // From where it leans on the right wall, and from twice the load.
+            let start: Vec<[f64; 2]> =
+                s.displacement.iter().map(|u| [u[0] + 0.1, 2.0 * u[1]]).collect();
+            let again = Course::default().from_displacement(&start);
+            let settings = Settings::default();
+            let (again, _) =
+                solve_along(&problem, &method(degree, EXACT), &settings, again).unwrap();
+            let shift = gaps[0].map_or(0.0, |gap| (-gap).max(0.0));
+            for (a, (b, c)) in
+                s.displacement.iter().zip(again.displacement.iter().zip(&alone.displacement))
+            {
+                assert_abs_diff_eq!(a[..], b[..], epsilon = SOLVED);
+                if shift == 0.0 {
+                    assert_abs_diff_eq!(a[..], c[..], epsilon = SOLVED);
+                }
+            }
+            let [play] = s.plays[..] else { panic!("{:?}", s.plays) };
+            assert_eq!(play.along, Some([1.0, 0.0]));
+            let side = s.displacement.iter().zip(&s.nodes);
+            let least = side.filter(|(_, x)| x[0] == 0.0).map(|(u, _)| u[0]).fold(1.0, f64::min);
+            let gap = gaps[0].unwrap();
+            assert_abs_diff_eq!(play.least.unwrap(), -gap - least, epsilon = SOLVED);
+            assert_eq!(play.most.is_some(), gaps[1].is_some());
+            assert!(s.enclosure.is_ok(), "{:?}", s.enclosure.err());
+        }
+    }
+}
+
+#[test]
+fn a_shaft_that_the_loads_turn_in_its_bearing_is_refused_with_the_moment() {
+    let corners = 32;
+    let rim = |k: usize| {
+        let (sine, cosine) = (std::f64::consts::TAU * k as f64 / corners as f64).sin_cos();
+        [cosine, sine]
+    };
+    let vertices = [[0.0, 0.0]].into_iter().chain((0..corners).map(rim)).collect();
+    let next = |k: usize| 1 + (k + 1) % corners;
+    let triangles = (0..corners).map(|k| [0, 1 + k, next(k)]).collect();
+    let edges = (0..corners).map(|k| [1 + k, next(k)]).collect();
+    let mesh = Mesh::new(vertices, triangles, [("rim".to_owned(), edges)]).unwrap();
+    let bearing = Obstacle::Circle { center: [0.0; 2], radius: 1.0, side: Side::Inside };
+    let condition = Condition::Obstacle("bearing".to_owned(), bearing);
+    let mut problem = block_under(mesh, [0.0, -0.1], vec![("rim", condition)]);
+    assert_eq!(solved(&problem, Degree::One).plays.len(), 1, "it may turn");
+    problem.body_force[1] = function(|[x, _]| -0.1 - 0.01 * x);
+    let error = solve(&problem, &method(Degree::One, EXACT), &Settings::default()).unwrap_err();
+    let SolveError::Data(DataError::RigidMotion { motions, drive }) = &error else {
+        panic!("{error}")
+    };
+    // int -0.01 x^2 over a polygon of 32 corners.
+    assert_eq!(motions.len(), 1);
+    assert_abs_diff_eq!(drive.unwrap(), -0.01 * std::f64::consts::PI / 4.0, epsilon = 2e-4);
+    assert!(error.to_string().contains("rotation about (0, 0)"), "{error}");
+    assert!(error.to_string().contains("drive it with a moment of -0.007"), "{error}");
 }

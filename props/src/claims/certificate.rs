@@ -955,13 +955,13 @@ pub fn checks() -> [Check; 27] {
         ),
         by(
             Engine::Doubles,
-            "bounds_hold_where_slides_are_taken_out",
-            pressed::bounds_hold_where_slides_are_taken_out,
+            "all_that_is_within_the_clearance_is_a_solution",
+            pressed::all_that_is_within_the_clearance_is_a_solution,
         ),
         control(
             Engine::Doubles,
-            "control_half_the_bounds_where_slides_are_taken_out",
-            pressed::half_the_bounds_where_slides_are_taken_out,
+            "control_what_is_beyond_the_clearance_is_a_solution",
+            pressed::what_is_beyond_the_clearance_is_a_solution,
         ),
         by(
             Engine::Doubles,

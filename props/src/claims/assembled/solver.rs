@@ -26,7 +26,13 @@ pub(in crate::claims) fn unsolved() -> Report {
         threads: 1,
         slides: 0,
     };
-    Report { newton, method, enclosure: Err(Unproved::NotHeld), verdict: Verdict::Proved }
+    Report {
+        newton,
+        method,
+        enclosure: Err(Unproved::NotHeld),
+        verdict: Verdict::Proved,
+        plays: Vec::new(),
+    }
 }
 
 /// The same numbers by the solver, in the same order.
