@@ -199,7 +199,7 @@ fn chains(problem: &Problem, edges: &[BoundaryEdge]) -> Vec<BoundaryEdge> {
 /// All edges of Gamma_C.
 ///
 /// # Errors
-/// [`DataError::NoContact`], a gap that is not finite, and unknown boundary names.
+/// [`DataError::NoContact`], a gap that is not finite, an obstacle on the other side of the body, and unknown boundary names.
 pub fn assemble<E: Element<N, M>, const N: usize, const M: usize>(
     problem: &Problem,
     space: &Space<E, N, M>,
@@ -225,6 +225,16 @@ pub fn assemble<E: Element<N, M>, const N: usize, const M: usize>(
             let point = sight.point(edge, a).unwrap_or(on_facet);
             places[a] = point.place;
             Closest { gap: gap[a], direction: directions[a] } = sight.closest(name, point)?;
+        }
+        if directions.iter().all(|direction| direction.dot(&normal) <= 0.0) {
+            let [x, y] = places[0];
+            return Err(DataError::WrongSide {
+                obstacle: problem.obstacle_of(name).unwrap_or_default().to_owned(),
+                boundary: name.to_owned(),
+                x,
+                y,
+                direction: directions[0].into(),
+            });
         }
         let triangle = mesh.triangle(edge.triangle);
         let material = problem.material.of(edge.triangle);

@@ -6,7 +6,7 @@ use super::function::Function;
 use super::material::MaterialError;
 use super::mesh::MeshError;
 use super::rigid::FreeMotion;
-use crate::quote::{number, quoted};
+use crate::quote::{key, number, quoted};
 
 /// Why a problem can't be posed on its mesh.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -49,6 +49,11 @@ pub enum DataError {
         number(*x), number(*y)
     )]
     NoClosestPoint { what: String, x: f64, y: f64 },
+    #[error(
+        "[obstacle.{}] lies on the other side of the body: from ({}, {}) on the boundary {} its direction ({}, {}) leads into the body; expected a normal (or a distance that grows) towards the body, or a boundary without edges that face away from the obstacle",
+        key(obstacle), number(*x), number(*y), quoted(boundary, '\''), number(direction[0]), number(direction[1])
+    )]
+    WrongSide { obstacle: String, boundary: String, x: f64, y: f64, direction: [f64; 2] },
     #[error("the material is none: {0}")]
     Material(#[from] MaterialError),
     #[error("{what} is {found}; expected {expected}")]

@@ -106,6 +106,14 @@ impl Problem {
         }
     }
 
+    /// The name of the obstacle that the boundary of this name may touch, if it has one.
+    pub fn obstacle_of(&self, boundary: &str) -> Option<&str> {
+        match self.conditions.get(boundary) {
+            Some(Condition::Obstacle(name, _)) => Some(name),
+            _ => None,
+        }
+    }
+
     /// The same problem on a refinement of its mesh. What holds on boundaries and in points, and which forces act where, has
     /// the same names and places.
     #[must_use]

@@ -20,9 +20,12 @@ use super::result::{
 };
 use super::vtu::{CellKind, Field, Grid, Values, vtu};
 use crate::certify::{CertifyError, Continuous, certify};
-use crate::fem::{self, Space, contact_line::Gamma};
-use crate::kernel::P2;
+use crate::fem::contact_line::{self, Gamma};
+use crate::fem::{self, Space};
+use crate::kernel::{P1, P2};
 use crate::memory::{self, OutOfMemory};
+use crate::quote;
+use crate::solve::solution::{ContactEdgeValues, ContactValues};
 use crate::solve::{Extreme, Solution, Times};
 
 /// The names of the files of a solved case; the last one says that the set is whole.
@@ -332,7 +335,7 @@ fn remarks(case: &Case, solution: &Solution) -> Vec<String> {
             short(a, 3), short(b, 3), short(c, 3), short(d, 3), coercivity.constant / coercivity.typical
         ));
     }
-    let length = case.units.as_ref().map_or(String::new(), |units| format!(" {}", units.length));
+    let length = length_unit(case);
     let strain = solution.largest_strain;
     if strain > LARGE_STRAIN {
         remarks.push(format!(
@@ -341,6 +344,8 @@ fn remarks(case: &Case, solution: &Solution) -> Vec<String> {
             short(100.0 * LARGE_STRAIN, 3)
         ));
     }
+    remarks.extend(overlap(case));
+    remarks.extend(no_contact(case, solution));
     let vertices = case.problem.mesh.vertices();
     let extent = |c: usize| {
         let (low, high) = vertices
@@ -358,6 +363,59 @@ fn remarks(case: &Case, solution: &Solution) -> Vec<String> {
         ));
     }
     remarks
+}
+
+/// What a contact boundary lies on, in words.
+fn obstacle_of(case: &Case, boundary: &str) -> String {
+    match case.problem.obstacle_of(boundary) {
+        Some(obstacle) => quote::quoted(obstacle, '\''),
+        None => format!("the obstacle of {}", quote::quoted(boundary, '\'')),
+    }
+}
+
+/// Where the body is deepest in its obstacle before it is loaded, if it is.
+pub fn overlap(case: &Case) -> Option<String> {
+    let space = Space::<P1, 3, 2>::new(&case.problem.mesh);
+    let line = contact_line::assemble(&case.problem, &space, 1.0).ok()?;
+    let points =
+        line.iter().flat_map(|e| e.gap.iter().zip(&e.places).map(move |(g, x)| (*g, *x, e)));
+    let (gap, [x, y], edge) = points.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|p| p.0 < 0.0)?;
+    let obstacle = obstacle_of(case, &edge.boundary);
+    let length = length_unit(case);
+    let question = match case.problem.obstacle_of(&edge.boundary) {
+        Some(_) => ": does its normal point to the body?",
+        None => "",
+    };
+    Some(format!(
+        "the body overlaps {obstacle} by {}{length} at ({}, {}) before loading{question}",
+        short(-gap, 3),
+        short(x, 4),
+        short(y, 4)
+    ))
+}
+
+/// Where a body that touches nothing is nearest to its obstacle.
+fn no_contact(case: &Case, solution: &Solution) -> Option<String> {
+    if solution.quantities.contact_length > 0.0 {
+        return None;
+    }
+    let distance = |edge: &ContactEdgeValues, point: &ContactValues| {
+        (point.gap - point.u_n, solution.nodes[point.node], edge.boundary.clone())
+    };
+    let points = solution.contact.iter().flat_map(|e| e.points.iter().map(|p| distance(e, p)));
+    let (gap, [x, y], boundary) = points.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(format!(
+        "the body touches no obstacle: it is nearest to {} at ({}, {}), where a gap of {}{} is left",
+        obstacle_of(case, &boundary),
+        short(x, 4),
+        short(y, 4),
+        short(gap, 3),
+        length_unit(case)
+    ))
+}
+
+fn length_unit(case: &Case) -> String {
+    case.units.as_ref().map_or(String::new(), |units| format!(" {}", units.length))
 }
 
 /// The largest stresses with the names of the physical surfaces that they are in.

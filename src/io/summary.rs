@@ -422,6 +422,9 @@ pub fn checked(case: &Case, outline: &Outline) -> String {
             ContactQuadrature::Gauss(n) => format!("{n} Gauss points on each contact edge"),
         },
     );
+    if let Some(overlap) = super::outputs::overlap(case) {
+        lines.line("remark", overlap);
+    }
     lines.under(&case.title)
 }
 

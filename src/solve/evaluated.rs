@@ -66,9 +66,12 @@ impl<const M: usize> Evaluated<M> {
         E: ExactEdge<f64, N, M>,
     {
         let Some(slides) = Slides::around(d, &self.u) else { return Vec::new() };
+        if slides.count() == 0 {
+            return Vec::new();
+        }
         slides.least_norm(&mut self.u);
         for (edge, p) in d.contact.iter().zip(&mut self.p) {
-            if p.iter().all(|p| *p <= 0.0) {
+            if d.rule.integrals::<E, N, M>(*p).active == 0.0 {
                 let there = edge.p(&d.space.on_triangle(edge.edge.triangle, &self.u));
                 *p = there.map(|p| p.min(0.0));
             }

@@ -198,7 +198,7 @@ fn wrong_cases_end_with_exit_code_2_and_write_nothing() {
         (
             "free",
             &[["[boundary.top]\ndisplacement = [\"0\", \"0\"]\n", ""]],
-            "case.toml: the body is not held: nothing stops the translation along (1, 0): u_x would stop it; nor the translation along (0, 1): u_y would stop it; nor the rotation about (0.5, 0.5): u_x off the line y = 0.5 would stop it, or u_y off x = 0.5; expected displacements that stop it, or loads that press the body against its obstacles (contact pushes, it doesn't pull)",
+            "case.toml: the body is not held: nothing stops the rotation about (0, 0.5): u_x off the line y = 0.5 would stop it, or u_y off x = 0; the loads drive it with a moment of 1.333; expected displacements that stop it, or loads that press the body against its obstacles (contact pushes, it doesn't pull)",
         ),
         (
             "sliding",
@@ -206,12 +206,12 @@ fn wrong_cases_end_with_exit_code_2_and_write_nothing() {
                 ["displacement = [\"0\", \"0\"]", "displacement = [\"free\", \"0\"]"],
                 ["body = [\"0\"", "body = [\"1\""],
             ],
-            "case.toml: the body is not held: nothing stops the translation along (1, 0): u_x would stop it; expected displacements that stop it, or loads that press the body against its obstacles (contact pushes, it doesn't pull)",
+            "case.toml: the body is not held: nothing stops the translation along (1, 0): u_x would stop it; the loads drive it with a force of 1; expected displacements that stop it, or loads that press the body against its obstacles (contact pushes, it doesn't pull)",
         ),
         (
             "sliding-up",
             &[["displacement = [\"0\", \"0\"]", "displacement = [\"0\", \"free\"]"]],
-            "case.toml: the body is not held: nothing stops the translation along (0, 1): u_y would stop it; nor the rotation about (0.5, 1): u_x off the line y = 1 would stop it, or u_y off x = 0.5; expected displacements that stop it, or loads that press the body against its obstacles (contact pushes, it doesn't pull)",
+            "case.toml: the body is not held: nothing stops the rotation about (0, 1): u_x off the line y = 1 would stop it, or u_y off x = 0; the loads drive it with a moment of 1.333; expected displacements that stop it, or loads that press the body against its obstacles (contact pushes, it doesn't pull)",
         ),
         (
             "disagree",

@@ -149,7 +149,7 @@ fn bodies_without_loads_are_held_by_what_squeezes_them() {
     }
 }
 
-/// A block on a floor under a load that leans, beside walls at these gaps.
+/// A block on a floor under a load that grows to the right, beside walls at these gaps.
 fn beside_walls(gaps: [Option<f64>; 2]) -> Problem {
     let mut parts = vec![("bottom", contact(|_| 0.0))];
     for (side, gap) in ["left", "right"].into_iter().zip(gaps) {
@@ -163,7 +163,6 @@ fn beside_walls(gaps: [Option<f64>; 2]) -> Problem {
 #[test]
 fn a_block_between_walls_that_it_does_not_touch_is_where_its_displacement_is_least() {
     for degree in DEGREES {
-        let alone = solved(&beside_walls([None, None]), degree);
         for gaps in [[Some(0.1), Some(0.1)], [Some(0.1), None], [Some(-0.03), Some(0.2)]] {
             let problem = beside_walls(gaps);
             let s = solved(&problem, degree);
@@ -174,15 +173,12 @@ fn a_block_between_walls_that_it_does_not_touch_is_where_its_displacement_is_lea
             let settings = Settings::default();
             let (again, _) =
                 solve_along(&problem, &method(degree, EXACT), &settings, again).unwrap();
-            let shift = gaps[0].map_or(0.0, |gap| (-gap).max(0.0));
-            for (a, (b, c)) in
-                s.displacement.iter().zip(again.displacement.iter().zip(&alone.displacement))
-            {
+            for (a, b) in s.displacement.iter().zip(&again.displacement) {
                 assert_abs_diff_eq!(a[..], b[..], epsilon = SOLVED);
-                if shift == 0.0 {
-                    assert_abs_diff_eq!(a[..], c[..], epsilon = SOLVED);
-                }
             }
+            let mean: f64 = s.displacement.iter().map(|u| u[0]).sum();
+            let pushed = gaps[0].is_some_and(|gap| gap < 0.0);
+            assert!(if pushed { mean > 0.01 } else { mean.abs() < 100.0 * SOLVED }, "{mean}");
             let [play] = s.plays[..] else { panic!("{:?}", s.plays) };
             assert_eq!(play.along, Some([1.0, 0.0]));
             let side = s.displacement.iter().zip(&s.nodes);
