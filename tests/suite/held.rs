@@ -184,7 +184,8 @@ fn a_block_between_walls_that_it_does_not_touch_is_where_its_displacement_is_lea
             let side = s.displacement.iter().zip(&s.nodes);
             let least = side.filter(|(_, x)| x[0] == 0.0).map(|(u, _)| u[0]).fold(1.0, f64::min);
             let gap = gaps[0].unwrap();
-            assert_abs_diff_eq!(play.least.unwrap(), -gap - least, epsilon = SOLVED);
+            // Until P is zero somewhere: at the gap but for gamma times a stress.
+            assert_abs_diff_eq!(play.least.unwrap(), -gap - least, epsilon = 1e-3);
             assert_eq!(play.most.is_some(), gaps[1].is_some());
             assert!(s.enclosure.is_ok(), "{:?}", s.enclosure.err());
         }
