@@ -17,6 +17,7 @@ use super::problem::{Condition, Problem};
 use super::quadrature;
 use super::smooth::{SmoothBoundary, SmoothPoint};
 use super::space::Space;
+use super::twofold::Twofold;
 use crate::kernel::contact_edge::{coercivity_constant, turning_factor};
 use crate::kernel::edge_integral::{self, ExactEdge};
 use crate::kernel::{ContactEdge, EdgeIntegrals, Element};
@@ -334,27 +335,52 @@ impl EdgeRule {
         EdgeRule::Gauss(quadrature::gauss(n))
     }
 
-    /// The integrals of (8) and J_h over an edge, for P with the nodal values `p`.
-    pub fn integrals<E, const N: usize, const M: usize>(&self, p: [f64; M]) -> EdgeIntegrals<f64, M>
+    /// The integrals of (8) and J_h over an edge, for P with the nodal values `p`. At the points of a Gauss rule P is evaluated in
+    /// twofold numbers: where gamma is small it is far smaller there than at the nodes.
+    pub fn integrals<E, const N: usize, const M: usize>(
+        &self,
+        p: [impl Into<Twofold>; M],
+    ) -> EdgeIntegrals<f64, M>
     where
         E: ExactEdge<f64, N, M>,
     {
+        let p: [Twofold; M] = p.map(Into::into);
         match self {
-            EdgeRule::Exact => E::exact(p),
-            EdgeRule::Gauss(rule) => edge_integral::gauss::<E, f64, N, M>(p, rule.iter().copied()),
+            EdgeRule::Exact => E::exact(p.map(Twofold::head)),
+            EdgeRule::Gauss(rule) => {
+                let fine = edge_integral::gauss::<E, Twofold, N, M>(p, in_twofold(rule));
+                EdgeIntegrals {
+                    energy: fine.energy.head(),
+                    gradient: fine.gradient.map(Twofold::head),
+                    hessian: fine.hessian.map(|row| row.map(Twofold::head)),
+                    active: fine.active.head(),
+                }
+            }
         }
     }
 
     /// The integral of the Bregman distance of 1/2 \[.\]+^2 from P to Q.
-    pub fn bregman<E, const N: usize, const M: usize>(&self, p: [f64; M], q: [f64; M]) -> f64
+    pub fn bregman<E, const N: usize, const M: usize>(
+        &self,
+        p: [impl Into<Twofold>; M],
+        q: [impl Into<Twofold>; M],
+    ) -> f64
     where
         E: ExactEdge<f64, N, M>,
     {
+        let (p, q): ([Twofold; M], [Twofold; M]) = (p.map(Into::into), q.map(Into::into));
         match self {
-            EdgeRule::Exact => edge_integral::exact_bregman::<E, N, M>(p, q),
+            EdgeRule::Exact => {
+                edge_integral::exact_bregman::<E, N, M>(p.map(Twofold::head), q.map(Twofold::head))
+            }
             EdgeRule::Gauss(rule) => {
-                edge_integral::gauss_bregman::<E, f64, N, M>(p, q, rule.iter().copied())
+                edge_integral::gauss_bregman::<E, Twofold, N, M>(p, q, in_twofold(rule)).head()
             }
         }
     }
+}
+
+/// Points and weights, exactly.
+fn in_twofold(rule: &[(f64, f64)]) -> impl Iterator<Item = (Twofold, Twofold)> {
+    rule.iter().map(|&(s, weight)| (s.into(), weight.into()))
 }

@@ -14,7 +14,7 @@ use crate::kernel::{ContactEdge, Scalar, Triangle};
 pub fn evaluate<E, const N: usize, const M: usize>(
     d: &Discretization<E, N, M>,
     u: &[[Twofold; 2]],
-) -> (Vec<[f64; 2]>, Vec<f64>)
+) -> (Vec<[f64; 2]>, Vec<Twofold>)
 where
     E: ExactEdge<f64, N, M>,
 {
@@ -24,10 +24,21 @@ where
     let mut p = Vec::with_capacity(M * d.contact.len());
     for edge in &d.contact {
         let line = on_edge(d, edge);
-        p.extend(line.p(edge, u).map(Twofold::head));
+        p.extend(line.p(edge, u));
         line.add_stresses(u, &mut forces);
     }
     (forces.into_iter().map(|f| f.map(Twofold::head)).collect(), p)
+}
+
+/// The values of P(u) at the nodes of each contact edge.
+pub fn p<E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    u: &[[Twofold; 2]],
+) -> impl Iterator<Item = Twofold>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    d.contact.iter().flat_map(move |edge| on_edge(d, edge).p(edge, u))
 }
 
 /// P0 and sigma_n on a contact edge.
@@ -236,7 +247,8 @@ mod tests {
         }
         let (_, moved) = evaluate(&d, &fine);
         // A translation by shift along y changes u_n by -shift and no stress.
-        let change: Vec<f64> = p.iter().zip(&moved).map(|(p, moved)| moved - p).collect();
+        let change: Vec<f64> =
+            p.iter().zip(&moved).map(|(&p, &moved)| (moved - p).head()).collect();
         assert!(change.iter().all(|c| c.abs() <= f64::EPSILON), "{change:?}");
         let at = d.contact[0].edge.triangle;
         let node = d.space.edge_nodes(d.contact[0].edge)[0];

@@ -60,7 +60,7 @@ pub struct Outcome {
     /// A(u, v) - L(v) for every basis function v, of the displacement before it was rounded.
     pub forces: Vec<[f64; 2]>,
     /// P(u) at the nodes of the contact edges.
-    pub p: Vec<f64>,
+    pub p: Vec<Twofold>,
     /// The relative residual of (8) before each Newton step and after the last.
     pub residuals: Vec<f64>,
     /// The relative residual of the displacement, from the definitions.
@@ -238,7 +238,7 @@ impl Residual {
         let one = |v: &[f64]| v.iter().map(|v| v.abs()).sum::<f64>();
         let mut forces = one(d.load.as_flattened());
         for (e, edge) in d.contact.iter().enumerate() {
-            let integrals = d.rule.integrals::<E, N, M>(block(&at.p, e));
+            let integrals = d.rule.integrals::<E, N, M>(block::<Twofold, M>(&at.p, e));
             let weight = edge.length / edge.gamma;
             forces += weight * one(&integrals.gradient);
             system.functionals(e, |row, a, entry| {
@@ -268,7 +268,7 @@ where
     let d = system.d;
     let mut contact = vec![0.0; at.linear.len()];
     for (e, edge) in d.contact.iter().enumerate() {
-        let integrals = d.rule.integrals::<E, N, M>(block(&at.p, e));
+        let integrals = d.rule.integrals::<E, N, M>(block::<Twofold, M>(&at.p, e));
         let magnitudes: [f64; M] = block(&at.p_magnitudes, e);
         let weight = edge.length / edge.gamma;
         system.functionals(e, |row, a, entry| {

@@ -29,6 +29,7 @@ use crate::fem::contact_line::{ContactLineEdge, EdgeRule};
 use crate::fem::dense::inner;
 use crate::fem::discretization::Discretization;
 use crate::fem::mesh::length;
+use crate::fem::twofold::Twofold;
 use crate::kernel::edge_integral::{self, ExactEdge, value_at};
 use crate::kernel::element::displacement_gradient;
 use crate::kernel::positive_part;
@@ -95,7 +96,7 @@ pub struct EnergyBalance {
 pub fn energy_balance<E, const N: usize, const M: usize>(
     d: &Discretization<E, N, M>,
     u: &[[f64; 2]],
-    p: &[[f64; M]],
+    p: &[[Twofold; M]],
     residual: &[[f64; 2]],
     strain: f64,
 ) -> EnergyBalance
@@ -115,7 +116,7 @@ where
         contact += edge.gamma * edge.length * product;
         let gradient = d.rule.integrals::<E, N, M>(p).gradient;
         for a in 0..M {
-            contact -= edge.length / edge.gamma * gradient[a] * (p[a] + edge.gap[a]);
+            contact -= edge.length / edge.gamma * gradient[a] * (p[a].head() + edge.gap[a]);
         }
     }
     let largest = [strain, loads, supports, contact].map(f64::abs).into_iter().fold(0.0, f64::max);
@@ -152,7 +153,7 @@ where
 /// The recovered pressure at the nodes of each edge, in the order of the edge's nodes.
 pub fn recovered_pressure<E, const N: usize, const M: usize>(
     d: &Discretization<E, N, M>,
-    p: &[[f64; M]],
+    p: &[[Twofold; M]],
 ) -> Vec<[f64; M]>
 where
     E: ExactEdge<f64, N, M>,
@@ -209,7 +210,7 @@ impl Hats {
 
 /// int_0^1 \[P\]+ phi_a by the rule of the method.
 fn hat_integrals<E, const N: usize, const M: usize>(
-    p: [f64; M],
+    p: [impl Into<Twofold>; M],
     rule: &EdgeRule,
     hats: Hats,
 ) -> [f64; M]
@@ -217,8 +218,14 @@ where
     E: ExactEdge<f64, N, M>,
 {
     let mut sums = [0.0; M];
+    let fine: [Twofold; M] = p.map(Into::into);
+    let p = fine.map(Twofold::head);
     let mut add = |s: f64, weight: f64| {
-        let value = positive_part(value_at::<E, f64, N, M>(p, s));
+        let value = match rule {
+            EdgeRule::Exact => value_at::<E, f64, N, M>(p, s),
+            EdgeRule::Gauss(_) => value_at::<E, Twofold, N, M>(fine, s.into()).head(),
+        };
+        let value = positive_part(value);
         let hats: [f64; M] = hats.at(s);
         (0..M).for_each(|a| sums[a] += weight * value * hats[a]);
     };
@@ -280,7 +287,7 @@ fn same(a: Vector2<f64>, b: Vector2<f64>) -> bool {
 pub fn contact_boundaries<E, const N: usize, const M: usize>(
     d: &Discretization<E, N, M>,
     u: &[[f64; 2]],
-    p: &[[f64; M]],
+    p: &[[Twofold; M]],
     recovered: &[[f64; M]],
 ) -> Vec<ContactBoundary>
 where
@@ -322,7 +329,7 @@ impl ContactBoundary {
         d: &Discretization<E, N, M>,
         u: &[[f64; 2]],
         edge: &ContactLineEdge<N, M>,
-        p: [f64; M],
+        p: [Twofold; M],
         recovered: &[f64; M],
         open: &mut Option<usize>,
     ) where
@@ -356,11 +363,12 @@ impl ContactBoundary {
                 (self.penetration, self.penetration_at) = (depth, place(s));
             }
         }
-        let mut cuts: Vec<f64> = edge_integral::roots::<E, N, M>(p).chain([0.0, 1.0]).collect();
+        let mut cuts: Vec<f64> =
+            edge_integral::roots::<E, N, M>(p.map(Twofold::head)).chain([0.0, 1.0]).collect();
         cuts.sort_unstable_by(f64::total_cmp);
         let [start, end] = [nodes[0], nodes[1]];
         for pair in cuts.windows(2) {
-            let middle = value_at::<E, f64, N, M>(p, (pair[0] + pair[1]) / 2.0);
+            let middle = value_at::<E, f64, N, M>(p.map(Twofold::head), (pair[0] + pair[1]) / 2.0);
             if !(middle > 0.0) {
                 continue;
             }

@@ -4,6 +4,7 @@
 //!
 //! The tangent is added up and factored in doubles or, for bodies whose condition number is beyond these, in twofold numbers.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use super::SolveError;
@@ -281,8 +282,8 @@ impl<E, const N: usize, const M: usize> Body<M> for Full<'_, '_, '_, '_, '_, E, 
 where
     E: ExactEdge<f64, N, M>,
 {
-    fn y(&self) -> &[f64] {
-        &self.at.p
+    fn y(&self) -> Cow<'_, [Twofold]> {
+        Cow::Borrowed(&self.at.p)
     }
 
     fn residual(&self, at: &Derivatives<M>) -> Residual {
@@ -305,7 +306,7 @@ where
     fn start(&mut self, edges: &impl Edges<M>) -> Result<Start, SolveError> {
         let mut forces = vec![0.0; self.at.p.len()];
         if let Some(p) = self.route.system.start() {
-            let frozen = course::frozen(edges, &p, self.y());
+            let frozen = course::frozen(edges, &p, &self.y());
             let step = self.step(&frozen)?;
             self.advance(1.0, &step);
             follow(&mut forces, &frozen, &step, 1.0);
@@ -316,7 +317,7 @@ where
             match self.step(&none) {
                 Ok(step) => {
                     self.advance(1.0, &step);
-                    let at = derivatives(edges, self.y());
+                    let at = derivatives(edges, &self.y());
                     let contact = self.stiffness(&at)?;
                     return Ok(Start { forces, contact: Some(contact) });
                 }
@@ -328,7 +329,7 @@ where
         let springs = self.springs();
         let mut pulling = all.times(1.0 / springs);
         for e in 0..self.route.order.len() {
-            let p: [f64; M] = block(&self.at.p, e);
+            let p: [f64; M] = block(&self.at.p, e).map(Twofold::head);
             for a in 0..M {
                 pulling.gradient[e * M + a] = (0..M).map(|b| pulling.hessian[e][a][b] * p[b]).sum();
             }

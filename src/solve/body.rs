@@ -1,21 +1,24 @@
 //! What Newton's method ([`super::newton`]) knows of the contact edges and of the body, whichever way its equations are solved.
 
+use std::borrow::Cow;
+
 use super::SolveError;
+use crate::fem::twofold::Twofold;
 
 /// What Newton's method needs to know of the contact edges.
 pub trait Edges<const M: usize> {
     /// How many there are.
     fn count(&self) -> usize;
     /// The gradient and the Hessian of Psi on edge `e`, where P has the nodal values `p`.
-    fn derivatives(&self, e: usize, p: [f64; M]) -> ([f64; M], [[f64; M]; M]);
+    fn derivatives(&self, e: usize, p: [Twofold; M]) -> ([f64; M], [[f64; M]; M]);
     /// The Bregman distance of Psi on edge `e` from `p` to `q`.
-    fn bregman(&self, e: usize, p: [f64; M], q: [f64; M]) -> f64;
+    fn bregman(&self, e: usize, p: [Twofold; M], q: [Twofold; M]) -> f64;
 }
 
 /// The body with its loads, at an iterate.
 pub trait Body<const M: usize> {
-    /// y, the values of P at the nodes of each edge.
-    fn y(&self) -> &[f64];
+    /// y, the values of P at the nodes of each edge, in twofold numbers: between the nodes P may be far smaller.
+    fn y(&self) -> Cow<'_, [Twofold]>;
     /// The residual of (8) at the iterate, relative, where Psi has the derivatives `at`; and how much of it may be noise.
     fn residual(&self, at: &Derivatives<M>) -> Residual;
     /// Goes to the start.
@@ -73,11 +76,14 @@ pub struct Step {
 }
 
 /// The derivatives of Psi at `y`.
-pub fn derivatives<const M: usize>(edges: &impl Edges<M>, y: &[f64]) -> Derivatives<M> {
+pub fn derivatives<const M: usize>(
+    edges: &impl Edges<M>,
+    y: &[impl Copy + Into<Twofold>],
+) -> Derivatives<M> {
     let mut gradient = Vec::with_capacity(y.len());
     let mut hessian = Vec::with_capacity(edges.count());
     for e in 0..edges.count() {
-        let (g, h) = edges.derivatives(e, block(y, e));
+        let (g, h) = edges.derivatives(e, std::array::from_fn(|a| y[e * M + a].into()));
         gradient.extend(g);
         hessian.push(h);
     }
@@ -95,6 +101,6 @@ impl<const M: usize> Derivatives<M> {
 }
 
 /// The values of edge `e`.
-pub fn block<const M: usize>(v: &[f64], e: usize) -> [f64; M] {
+pub fn block<T: Copy, const M: usize>(v: &[T], e: usize) -> [T; M] {
     std::array::from_fn(|a| v[e * M + a])
 }

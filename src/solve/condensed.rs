@@ -13,6 +13,7 @@
 //! contact, G w nearly cancels what it is subtracted from) a second pass finds again, from the u and w of the first and
 //! their true residual: nothing cancels there, because everything is small.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use faer::linalg::solvers::Solve;
@@ -29,6 +30,7 @@ use super::iterate::{Evaluation, Iterate};
 use super::newton::{self, Until};
 use super::relaxation::follow;
 use super::system::System;
+use crate::fem::twofold::Twofold;
 use crate::kernel::edge_integral::ExactEdge;
 
 /// The body, factored, and the forces of contact on it.
@@ -100,15 +102,15 @@ where
         self.add_contact_forces(&self.w, &mut v);
         v.iter_mut().for_each(|v| *v = -*v);
         self.factor.forward(&mut v);
-        let mut y: Vec<f64> = Vec::with_capacity(at.p.len());
+        let mut y: Vec<Twofold> = Vec::with_capacity(at.p.len());
         for &e in &self.reach.order {
-            y.extend(block::<M>(&at.p, e));
+            y.extend(block::<_, M>(&at.p, e));
         }
         for (y, change) in y.iter_mut().zip(self.compliance.transpose_times(&v)) {
-            *y += change;
+            *y += change.into();
         }
         let edges = ContactEdges { d: self.system.d, order: &self.reach.order };
-        let start = y.iter().map(|y| y.abs()).collect();
+        let start = y.iter().map(|y| y.head().abs()).collect();
         let soft = self.first;
         let change = vec![0.0; y.len()];
         let mut body = Reduced { route: self, y, start, change, dw: Vec::new() };
@@ -133,7 +135,7 @@ where
 /// where contact is stiff, those of w are too few for it.
 struct Reduced<'r, 'a, 'd, 'p, E, const N: usize, const M: usize> {
     route: &'r Condensed<'a, 'd, 'p, E, N, M>,
-    y: Vec<f64>,
+    y: Vec<Twofold>,
     /// The magnitudes that y was computed from.
     start: Vec<f64>,
     change: Vec<f64>,
@@ -178,8 +180,8 @@ impl<E, const N: usize, const M: usize> Body<M> for Reduced<'_, '_, '_, '_, E, N
 where
     E: ExactEdge<f64, N, M>,
 {
-    fn y(&self) -> &[f64] {
-        &self.y
+    fn y(&self) -> Cow<'_, [Twofold]> {
+        Cow::Borrowed(&self.y)
     }
 
     fn residual(&self, at: &Derivatives<M>) -> Residual {
@@ -189,7 +191,8 @@ where
                 let i = e * M + a;
                 let spread: f64 = (0..M)
                     .map(|b| {
-                        hessian[a][b].abs() * (self.y[e * M + b].abs() + self.start[e * M + b])
+                        hessian[a][b].abs()
+                            * (self.y[e * M + b].head().abs() + self.start[e * M + b])
                     })
                     .sum();
                 magnitudes.push(self.route.w[i].abs() + at.gradient[i].abs() + spread);
@@ -223,7 +226,8 @@ where
         let Some(p) = self.route.system.start() else {
             return Ok(Start { forces, contact: Some(stiffness) });
         };
-        let p: Vec<f64> = self.route.reach.order.iter().flat_map(|&e| block::<M>(&p, e)).collect();
+        let p: Vec<f64> =
+            self.route.reach.order.iter().flat_map(|&e| block::<_, M>(&p, e)).collect();
         let frozen = course::frozen(edges, &p, &self.y);
         let step = self.step(&frozen)?;
         self.advance(1.0, &step);
@@ -277,7 +281,7 @@ where
             *change += t * dw;
         }
         for (y, dy) in self.y.iter_mut().zip(&step.dy) {
-            *y += t * dy;
+            *y += (t * dy).into();
         }
     }
 }

@@ -5,6 +5,7 @@
 use super::body::block;
 use crate::fem::discretization::Discretization;
 use crate::fem::held::{Play, Slides};
+use crate::fem::twofold::Twofold;
 use crate::kernel::edge_integral::ExactEdge;
 
 /// A displacement with its forces.
@@ -14,7 +15,7 @@ pub struct Evaluated<const M: usize> {
     /// Nodal values.
     pub u: Vec<[f64; 2]>,
     /// P(u) at the nodes of each contact edge.
-    pub p: Vec<[f64; M]>,
+    pub p: Vec<[Twofold; M]>,
     /// R(u; v) for every basis function v.
     pub residual: Vec<[f64; 2]>,
 }
@@ -26,8 +27,8 @@ impl<const M: usize> Evaluated<M> {
         E: ExactEdge<f64, N, M>,
     {
         let on_edge = |t: usize| d.space.on_triangle(t, &u);
-        let p: Vec<f64> =
-            d.contact.iter().flat_map(|edge| edge.p(&on_edge(edge.edge.triangle))).collect();
+        let p = d.contact.iter().flat_map(|edge| edge.p(&on_edge(edge.edge.triangle)));
+        let p: Vec<Twofold> = p.map(Twofold::from).collect();
         let forces = d.linear_residual(&u).values;
         Evaluated::with(d, u, forces, &p)
     }
@@ -38,12 +39,12 @@ impl<const M: usize> Evaluated<M> {
         d: &Discretization<E, N, M>,
         u: Vec<[f64; 2]>,
         forces: Vec<[f64; 2]>,
-        p: &[f64],
+        p: &[Twofold],
     ) -> Self
     where
         E: ExactEdge<f64, N, M>,
     {
-        let p: Vec<[f64; M]> = (0..d.contact.len()).map(|e| block(p, e)).collect();
+        let p: Vec<[Twofold; M]> = (0..d.contact.len()).map(|e| block(p, e)).collect();
         let mut residual = forces;
         for (edge, &p) in d.contact.iter().zip(&p) {
             let pressure = d.rule.integrals::<E, N, M>(p).gradient;
@@ -73,7 +74,7 @@ impl<const M: usize> Evaluated<M> {
         for (edge, p) in d.contact.iter().zip(&mut self.p) {
             if d.rule.integrals::<E, N, M>(*p).active == 0.0 {
                 let there = edge.p(&d.space.on_triangle(edge.edge.triangle, &self.u));
-                *p = there.map(|p| p.min(0.0));
+                *p = there.map(|p| p.min(0.0).into());
             }
         }
         slides.plays(&self.u)

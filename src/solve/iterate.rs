@@ -6,7 +6,7 @@
 use nalgebra::Vector2;
 
 use super::system::System;
-use crate::fem::contact_line::{ContactLineEdge, apply};
+use crate::fem::contact_line::{ContactLineEdge, EdgeRule, apply};
 use crate::fem::discretization::{Discretization, Functional};
 use crate::fem::precise;
 use crate::fem::twofold::Twofold;
@@ -27,7 +27,7 @@ pub struct Evaluation {
     /// The same for every free degree of freedom.
     pub linear: Vec<f64>,
     /// P(u) at the nodes of the contact edges; negative on those that press in no solution.
-    pub p: Vec<f64>,
+    pub p: Vec<Twofold>,
     /// The magnitudes that these were added up from.
     pub p_magnitudes: Vec<f64>,
     /// a(u, u)
@@ -89,13 +89,15 @@ impl Iterate {
     {
         let d = system.d;
         // Edges that press in no solution: the body is moved away from them in the end.
-        let idle = |(i, p): (usize, f64)| if d.is_idle(i / M) { -p.abs() } else { p };
+        let idle = |(i, p): (usize, Twofold)| {
+            if d.is_idle(i / M) && p.head() > 0.0 { -p } else { p }
+        };
         if precisely {
             let (forces, p) = precise::evaluate(d, &self.u);
-            let p: Vec<f64> = p.into_iter().enumerate().map(idle).collect();
+            let p: Vec<Twofold> = p.into_iter().enumerate().map(idle).collect();
             // The forces of contact are added to these in doubles, and the loads are doubles.
             let noise = NOISE * f64::EPSILON * d.free_norm(&forces).max(d.free_norm(&d.load));
-            let p_magnitudes = p.iter().map(|p| p.abs()).collect();
+            let p_magnitudes = p.iter().map(|p| p.head().abs()).collect();
             let linear = system.numbering.gather(&forces);
             let energy = d.strain_energy(&self.rounded());
             let noise_of_sums = 0.0;
@@ -120,19 +122,27 @@ impl Iterate {
             let of_tail = edge.functionals.p0.map(|f| apply(&f, &nodes(edge).map(tail)));
             std::array::from_fn::<_, M, _>(|a| p[a] + of_tail[a])
         };
-        let p = d.contact.iter().flat_map(p).enumerate().map(idle).collect();
+        let by_points = matches!(d.rule, EdgeRule::Gauss(_));
+        let p: Vec<Twofold> = if by_points {
+            precise::p(d, &self.u).enumerate().map(idle).collect()
+        } else {
+            d.contact.iter().flat_map(p).map(Twofold::from).enumerate().map(idle).collect()
+        };
         let magnitude = |functional: &[Vector2<f64>; N], nodal: &[Vector2<f64>; N]| {
             let pairs = functional.iter().flatten().zip(nodal.iter().flatten());
             pairs.map(|(f, u)| (f * u).abs()).sum::<f64>()
         };
-        let p_magnitudes = d
-            .contact
-            .iter()
-            .flat_map(|edge| {
-                let nodal = nodes(edge).map(head);
-                edge.functionals.p0.map(|functional| magnitude(&functional, &nodal))
-            })
-            .collect();
+        let p_magnitudes = if by_points {
+            p.iter().map(|p| p.tail().abs()).collect()
+        } else {
+            d.contact
+                .iter()
+                .flat_map(|edge| {
+                    let nodal = nodes(edge).map(head);
+                    edge.functionals.p0.map(|functional| magnitude(&functional, &nodal))
+                })
+                .collect()
+        };
         let noise = NOISE * f64::EPSILON * d.free_norm(&magnitudes);
         let noise_of_sums = NOISE * f64::EPSILON * magnitudes.as_flattened().iter().sum::<f64>();
         let linear = system.numbering.gather(&forces);

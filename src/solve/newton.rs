@@ -27,6 +27,7 @@
 use super::SolveError;
 use super::body::{Body, Derivatives, Edges, Step, block, derivatives};
 use super::relaxation::{follow, relaxed};
+use crate::fem::twofold::Twofold;
 
 /// Armijo's sigma.
 const SUFFICIENT: f64 = 1e-4;
@@ -86,15 +87,15 @@ pub fn minimise<const M: usize>(
     // The forces of contact that the body is in equilibrium with, if they are known.
     let mut forces: Option<Vec<f64>> = None;
     if first {
-        residuals.push(body.residual(&derivatives(edges, body.y())).norm);
+        residuals.push(body.residual(&derivatives(edges, &body.y())).norm);
         let start = body.start(edges)?;
         match start.contact {
             Some(contact) => springs = Springs::new((SOFT / contact).min(1.0)),
-            None => residuals.push(body.residual(&derivatives(edges, body.y())).norm),
+            None => residuals.push(body.residual(&derivatives(edges, &body.y())).norm),
         }
         forces = Some(start.forces);
     }
-    let mut at = derivatives(edges, body.y());
+    let mut at = derivatives(edges, &body.y());
     let mut largest: f64 = 0.0;
     let mut left = 0.0;
     let (mut best, mut idle) = (f64::INFINITY, 0);
@@ -109,7 +110,7 @@ pub fn minimise<const M: usize>(
         let size = body.residual(&scaled).norm;
         let known = forces.as_deref().filter(|_| relaxing);
         let (model, step) = next_step(edges, body, &scaled, known, stiffness)?;
-        let Some(t) = line_search(edges, body.y(), stiffness, &scaled, &step) else {
+        let Some(t) = line_search(edges, &body.y(), stiffness, &scaled, &step) else {
             if model.is_some() {
                 relaxing = false;
                 continue;
@@ -120,7 +121,7 @@ pub fn minimise<const M: usize>(
             follow(forces, model.as_ref().unwrap_or(&scaled), &step, t);
         }
         body.advance(t, &step);
-        at = derivatives(edges, body.y());
+        at = derivatives(edges, &body.y());
         let halved = body.residual(&at.times(stiffness)).norm <= size / 2.0;
         relaxing = model.is_none() || (t >= WHOLE && halved);
         let before = std::mem::replace(&mut residual, body.residual(&at));
@@ -209,14 +210,14 @@ impl Springs {
 /// Where along the step J_h with the springs times `stiffness` is least; `None` if its decrease is lost in rounding.
 fn line_search<const M: usize>(
     edges: &impl Edges<M>,
-    y: &[f64],
+    y: &[Twofold],
     stiffness: f64,
     at: &Derivatives<M>,
     step: &Step,
 ) -> Option<f64> {
-    let point = |e: usize, t: f64| -> [f64; M] {
-        let (p, d): ([f64; M], [f64; M]) = (block(y, e), block(&step.dy, e));
-        std::array::from_fn(|a| p[a] + t * d[a])
+    let point = |e: usize, t: f64| -> [Twofold; M] {
+        let (p, d): ([Twofold; M], [f64; M]) = (block(y, e), block(&step.dy, e));
+        std::array::from_fn(|a| p[a] + Twofold::from(t * d[a]))
     };
     // The first and the second derivative of J_h along the step.
     let derivatives = |t: f64| {

@@ -15,6 +15,7 @@ use crate::fem::contact_line::{self, Coercivity, Gamma};
 use crate::fem::dense::inner;
 use crate::fem::discretization::Discretization;
 use crate::fem::held::Play;
+use crate::fem::twofold::Twofold;
 use crate::fem::{DataError, Errors, ExactSolution, Problem, Space};
 use crate::kernel::contact::pressure;
 use crate::kernel::edge_integral::{self, ExactEdge};
@@ -280,7 +281,7 @@ where
 fn contact_values<E, const N: usize, const M: usize>(
     d: &Discretization<E, N, M>,
     u: &[[f64; 2]],
-    p: &[[f64; M]],
+    p: &[[Twofold; M]],
     recovered: &[[f64; M]],
 ) -> Vec<ContactEdgeValues>
 where
@@ -307,7 +308,7 @@ where
                     u_n: x * edge.directions[a][0] + y * edge.directions[a][1],
                     gap: edge.gap[a],
                     sigma_n: (1.0 - positions[a]) * sigma_n[0] + positions[a] * sigma_n[1],
-                    lambda: pressure(p[a], edge.gamma) + 0.0,
+                    lambda: pressure(p[a].head(), edge.gamma) + 0.0,
                     pressure: recovered[a],
                 }
             })
@@ -349,7 +350,7 @@ where
             }
         }
         q.contact_length += edge.length * integrals.active;
-        let peak = -pressure(edge_integral::maximum::<E, N, M>(p), edge.gamma);
+        let peak = -pressure(edge_integral::maximum::<E, N, M>(p.map(Twofold::head)), edge.gamma);
         q.peak_pressure = q.peak_pressure.max(peak);
     }
     for (boundary, held) in d.constraints.holders() {

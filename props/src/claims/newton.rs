@@ -4,7 +4,10 @@
 //! `solve::newton` asks a body what a step does to it. Here the body is a small symmetric positive definite matrix B and P =
 //! x, with springs of stiffness 1000: J(x) = 1/2 x^T B x - f^T x + 500 sum \[x_i\]+^2, the example of 4.4.
 
+use std::borrow::Cow;
+
 use proptest::prelude::*;
+use signorini::fem::twofold::Twofold;
 use signorini::solve::accuracy::{self, Outcome as Solved};
 use signorini::solve::body::{self, Body as _, Derivatives, Edges, Residual, Start, Step};
 use signorini::solve::newton::{self, Until};
@@ -29,11 +32,13 @@ impl Edges<1> for Springs {
         3
     }
 
-    fn derivatives(&self, _: usize, [p]: [f64; 1]) -> ([f64; 1], [[f64; 1]; 1]) {
+    fn derivatives(&self, _: usize, [p]: [Twofold; 1]) -> ([f64; 1], [[f64; 1]; 1]) {
+        let p = p.head();
         if p > 0.0 { ([STIFFNESS * p], [[STIFFNESS]]) } else { ([0.0], [[0.0]]) }
     }
 
-    fn bregman(&self, _: usize, [p]: [f64; 1], [q]: [f64; 1]) -> f64 {
+    fn bregman(&self, _: usize, p: [Twofold; 1], q: [Twofold; 1]) -> f64 {
+        let ([p], [q]) = (p.map(Twofold::head), q.map(Twofold::head));
         let step = q.max(0.0) - p.max(0.0);
         STIFFNESS * (step * step / 2.0 + p.max(0.0) * (-q).max(0.0))
     }
@@ -102,8 +107,8 @@ impl Body {
 }
 
 impl body::Body<1> for Body {
-    fn y(&self) -> &[f64] {
-        &self.x
+    fn y(&self) -> Cow<'_, [Twofold]> {
+        self.x.iter().map(|&x| x.into()).collect()
     }
 
     fn residual(&self, at: &Derivatives<1>) -> Residual {
@@ -153,7 +158,7 @@ fn ends(body: &mut Body, first: bool) -> Result<(f64, usize), String> {
     let mut residuals = Vec::new();
     let until = Until { steps: MOST, residual: 0.0 };
     newton::minimise(&Springs, body, first, &mut residuals, until).map_err(text)?;
-    let at = body::derivatives(&Springs, body.y());
+    let at = body::derivatives(&Springs, &body.y());
     let Residual { norm, noise } = body.residual(&at);
     Ok((norm / noise, residuals.len()))
 }
@@ -237,8 +242,8 @@ impl Watched {
 }
 
 impl body::Body<1> for Watched {
-    fn y(&self) -> &[f64] {
-        &self.body.x
+    fn y(&self) -> Cow<'_, [Twofold]> {
+        self.body.y()
     }
 
     fn residual(&self, at: &Derivatives<1>) -> Residual {
