@@ -269,7 +269,7 @@ where
     };
     let Solved { u: best, p, .. } = by(RouteName::Twofold).map_err(text)?;
     let size = best.as_flattened().iter().fold(0.0, |m: f64, u| m.max(u.abs()));
-    if !(p.iter().any(|p| *p > 0.0)) {
+    if !(p.iter().any(|p| p.head() > 0.0)) {
         return Err(format!("a beam of {cells} cells that touches nothing"));
     }
     let (mut far, mut precise) = (0.0_f64, false);
@@ -344,7 +344,7 @@ where
         .into_iter()
         .map(|name| {
             let done = route::by(name, &system, &Settings::default(), &mut Times::default());
-            done.map(|done| done.0.p).map_err(text)
+            done.map(|done| done.0.p.iter().map(|p| p.head()).collect()).map_err(text)
         })
         .collect()
 }
