@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use nalgebra::Vector2;
 use thiserror::Error;
 
+use super::build;
 use super::certificate::{Certificate, Edge, Lift, Role, is_oblique, place};
 use super::data::{Data, length_and_normal};
 use super::errors::CertifyError;
@@ -63,6 +64,10 @@ pub fn compare(problem: Problem, certificate: &Certificate) -> Result<(), Differ
         if !matches!(edge.role, Role::Inner(_)) {
             comparison.edge(e, edge)?;
         }
+    }
+    let lacking = build::polygon(&problem.mesh, certificate);
+    if let Some(&e) = lacking.iter().find(|e| !certificate.polygon.contains(e)) {
+        return Err(outside("edge", e, "does not say that it is part of a curved boundary"));
     }
     comparison.pieces(&origins)?;
     comparison.lifts()

@@ -175,7 +175,7 @@ pub(super) fn build(parts: &Parts, u: &Field, v: &Field) -> Built {
 }
 
 /// The edges that stand for a part of a curved boundary.
-fn polygon(mesh: &Mesh, certificate: &Certificate) -> Vec<usize> {
+pub(super) fn polygon(mesh: &Mesh, certificate: &Certificate) -> Vec<usize> {
     let smooth = SmoothBoundary::new(mesh);
     let curved = mesh.outline().iter().filter(|&&edge| smooth.at_ends(edge).is_some());
     let sorted = |[a, b]: [usize; 2]| if a < b { [a, b] } else { [b, a] };

@@ -194,3 +194,16 @@ fn the_text_of_a_file_is_shown_on_one_short_line() {
     let units = case(&format!("{units}\n{LOADED}"), &[]).units.unwrap();
     assert_eq!(units.length, "mm\\u{1b}\\nerror: forged");
 }
+
+#[test]
+fn a_polygon_in_place_of_a_round_body_says_so() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/disk.toml");
+    let case = || Case::read(&file).unwrap();
+    let (_, solved) = run::solve(case(), None, &|_| {}).unwrap();
+    let mut certificate = certify(&case().problem, &solved.solution).unwrap().certificate;
+    assert!(certificate.reservations().polygon > 0);
+    assert_eq!(compare(case().problem, &certificate), Ok(()));
+    certificate.polygon.pop();
+    let found = compare(case().problem, &certificate).unwrap_err().to_string();
+    assert!(found.contains("part of a curved boundary"), "{found}");
+}
