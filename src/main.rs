@@ -278,15 +278,15 @@ mod command {
         });
         let case = case.transpose()?;
         let audit = certificate::audit(path).map_err(|error| failure(FAILED)(&error))?;
-        let file = case.as_ref().map(|case| case.file.clone());
-        if let Some(Case { problem, file, .. }) = case {
-            compare(problem, &audit.certificate).map_err(|difference| {
-                let [path, file] = [path, &file].map(quote::path);
-                let text = format!("{path}: not a certificate of {file}: {difference}");
-                failure(FAILED)(&text)
-            })?;
-        }
-        Ok(summary::audited(&audit, file.as_deref()))
+        let Some(Case { problem, file, .. }) = case else {
+            return Ok(summary::audited(&audit, None));
+        };
+        let reason = compare(problem, &audit.certificate).map_err(|difference| {
+            let [path, file] = [path, &file].map(quote::path);
+            let text = format!("{path}: not a certificate of {file}: {difference}");
+            failure(FAILED)(&text)
+        })?;
+        Ok(summary::audited(&audit, Some((&file, reason.as_deref()))))
     }
 
     /// On its own mesh, or on adapted ones.

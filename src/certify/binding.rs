@@ -10,7 +10,7 @@ use super::build;
 use super::certificate::{Certificate, Edge, Lift, Role, is_oblique, place};
 use super::data::{Data, length_and_normal};
 use super::errors::CertifyError;
-use super::oscillation;
+use super::oscillation::{self, Oscillation};
 use super::parts::{Boundary, Parts};
 use super::tractions::force_of;
 use crate::fem::mesh::bisection::Refinement;
@@ -38,11 +38,12 @@ pub enum Difference {
     Mesh(#[from] MeshError),
 }
 
-/// Compares a `certificate` that an audit has accepted with a `problem`, on its mesh or on one that refines it.
+/// Compares a `certificate` that an audit has accepted with a `problem`, on its mesh or on one that refines it. Returns why the bound
+/// is not rigorous for that, if it is not: the numbers don't know how the data of the problem were rounded.
 ///
 /// # Errors
 /// The first difference.
-pub fn compare(problem: Problem, certificate: &Certificate) -> Result<(), Difference> {
+pub fn compare(problem: Problem, certificate: &Certificate) -> Result<Option<String>, Difference> {
     let (refinement, origins) = refinement(&problem.mesh, certificate)?;
     let problem = problem.refined(refinement);
     // Between the middles of a triangle's edges lies the fourth of its quarters.
@@ -70,7 +71,8 @@ pub fn compare(problem: Problem, certificate: &Certificate) -> Result<(), Differ
         return Err(outside("edge", e, "does not say that it is part of a curved boundary"));
     }
     comparison.pieces(&origins)?;
-    comparison.lifts()
+    comparison.lifts()?;
+    Ok(Oscillation::new(&parts, certificate.curved.is_some()).reason)
 }
 
 fn outside(what: &'static str, index: usize, problem: &'static str) -> Difference {

@@ -302,7 +302,7 @@ fn proved(rigorous: bool, reason: Option<&str>, problem: Option<&str>) -> String
 }
 
 /// The summary of a certificate that was verified.
-pub fn audited(audit: &Audit, case: Option<&Path>) -> String {
+pub fn audited(audit: &Audit, case: Option<(&Path, Option<&str>)>) -> String {
     let Audit { header, certificate, proof, reservations, .. } = audit;
     let mut lines = Lines::default();
     let (triangles, edges) = (certificate.pieces.len(), certificate.edges.len());
@@ -311,7 +311,7 @@ pub fn audited(audit: &Audit, case: Option<&Path>) -> String {
     lines.line(
         "problem",
         match case {
-            Some(case) => format!(
+            Some((case, _)) => format!(
                 "that of {}: its mesh, materials, supports, loads and obstacles",
                 quote::path(case)
             ),
@@ -328,10 +328,10 @@ pub fn audited(audit: &Audit, case: Option<&Path>) -> String {
     lines.line("bound", format!("{}{size}", short(header.bound)));
     lines.line(
         "rigorous",
-        if reservations.is_empty() {
-            "yes, rounding included".to_owned()
-        } else {
-            format!("with a reservation: {reservations}")
+        match case {
+            Some((_, Some(reason))) => format!("with a reservation: {reason}"),
+            _ if reservations.is_empty() => "yes, rounding included".to_owned(),
+            _ => format!("with a reservation: {reservations}"),
         },
     );
     if proof.stop > 0.0 {

@@ -105,8 +105,8 @@ fn a_certificate_is_one_of_its_case() {
             let adapted = certified.certificate.vertices.len()
                 > case(text, &[]).problem.mesh.vertices().len();
             assert_eq!(adapted, settings == ADAPTED);
-            let same = compare(case(text, &[]).problem, &certified.certificate);
-            assert_eq!(same, Ok(()), "{text}{settings:?}");
+            let reason = compare(case(text, &[]).problem, &certified.certificate).unwrap();
+            assert_eq!(reason.is_none(), certified.rigorous, "{text}{settings:?}: {reason:?}");
         }
     }
 }
@@ -196,13 +196,22 @@ fn the_text_of_a_file_is_shown_on_one_short_line() {
 }
 
 #[test]
+fn data_that_cancel_are_a_reservation_of_the_case() {
+    let text = LOADED.replacen("-1 + 3*x", "((10*x + 1e18) - 1e18) - 4", 1);
+    let certified = certified(&text, &[]);
+    let reason = compare(case(&text, &[]).problem, &certified.certificate).unwrap();
+    assert_eq!(reason, certified.reason);
+    assert!(reason.unwrap().contains("cancel"));
+}
+
+#[test]
 fn a_polygon_in_place_of_a_round_body_says_so() {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/disk.toml");
     let case = || Case::read(&file).unwrap();
     let (_, solved) = run::solve(case(), None, &|_| {}).unwrap();
     let mut certificate = certify(&case().problem, &solved.solution).unwrap().certificate;
     assert!(certificate.reservations().polygon > 0);
-    assert_eq!(compare(case().problem, &certificate), Ok(()));
+    assert_eq!(compare(case().problem, &certificate), Ok(None));
     certificate.polygon.pop();
     let found = compare(case().problem, &certificate).unwrap_err().to_string();
     assert!(found.contains("part of a curved boundary"), "{found}");
