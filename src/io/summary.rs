@@ -42,7 +42,9 @@ const WORTH_SHOWING: f64 = 1e-8;
 /// The summary of a solved case.
 pub fn solved(r: &Results, files: &[PathBuf], verbose: bool) -> String {
     let mut lines = Lines(lines_of(r, verbose));
-    lines.line("written", written(files));
+    if !files.is_empty() {
+        lines.line("written", written(files));
+    }
     lines.under(&match r.outcome().filter(|_| r.falls_short()) {
         Some(outcome) => format!("{}: {outcome}", r.title),
         None => r.title.clone(),
