@@ -173,8 +173,8 @@ fn chain<S: Enclosing>(&(start, divisors, radius, radii): &Chain, around: fn(f64
     Exact::scope(|| {
         let (mut found, mut exact) = (S::exactly(start), Exact::of_double(start));
         for divisor in divisors.map(i32::from) {
-            found = found / S::from(divisor);
-            exact = exact / Exact::from(divisor);
+            found /= S::from(divisor);
+            exact /= Exact::from(divisor);
         }
         let inside = |found: &S, exact: Exact| {
             Exact::of_double(found.lower()) <= exact && exact <= Exact::of_double(found.upper())
@@ -182,7 +182,7 @@ fn chain<S: Enclosing>(&(start, divisors, radius, radii): &Chain, around: fn(f64
         ensure!(inside(&found, exact));
         let (mut sum, mut end) = (around(radius), Exact::of_double(radius));
         for radius in radii {
-            sum = sum + around(radius);
+            sum += around(radius);
             end += Exact::of_double(radius);
         }
         ensure!(inside(&sum, end) && inside(&sum, -end));
