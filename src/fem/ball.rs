@@ -58,6 +58,11 @@ impl Ball {
         self.head
     }
 
+    /// What the nearest double leaves of the centre.
+    pub fn tail(self) -> f64 {
+        self.tail
+    }
+
     /// How far the numbers of the ball are from its centre, at most.
     pub fn radius(self) -> f64 {
         self.radius

@@ -1,14 +1,16 @@
 //! The linear part of (8) at a displacement that is known to more than double precision, evaluated from the definitions in
-//! [twofold](crate::fem::twofold) numbers: what is left of forces that cancel is then known to the last bit of a double.
+//! [twofold](crate::fem::twofold) numbers: what is left of forces that cancel is then known to the last bit of a double; and
+//! its forces from [stresses in doubles](add_forces_of_rounded_stresses), off by no more than a proved norm.
 
 use nalgebra::Vector2;
 
+use super::ball::Ball;
 use super::contact_line::ContactLineEdge;
 use super::discretization::Discretization;
 use crate::fem::twofold::Twofold;
 use crate::kernel::edge_integral::ExactEdge;
 use crate::kernel::element::displacement_gradient;
-use crate::kernel::{ContactEdge, Scalar, Triangle};
+use crate::kernel::{ContactEdge, Material, Scalar, Triangle};
 
 /// A(u, v) - L(v) for every basis function v, and the values of P(u) at the nodes of each contact edge.
 pub fn evaluate<E, const N: usize, const M: usize>(
@@ -109,6 +111,130 @@ pub fn add_internal_forces<S, E, const N: usize, const M: usize>(
                 }
             }
         }
+    }
+}
+
+/// Adds int s:eps(v) for every basis function v, in balls, where s is the stress of `u` that doubles give. Returns a b with
+/// |int (s - sigma(u)):eps(v)| <= b |v|_a for all v: docs/theory.md, 7.5. Infinite or NaN where there is none.
+pub fn add_forces_of_rounded_stresses<E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    u: &[[Ball; 2]],
+    forces: &mut [[Ball; 2]],
+) -> f64
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let mut points = Vec::new();
+    E::at_stiffness_points(|l: [Ball; 3], weight| points.push((l, weight * Ball::from(-0.5))));
+    let mut square = 0.0;
+    for (t, (triangle, nodes)) in d.space.triangles().enumerate() {
+        let Some(rounded) = RoundedStrain::new::<E, M>(&triangle, nodes.map(|node| u[node])) else {
+            continue;
+        };
+        let material = d.problem.material.of(t);
+        square += rounded.stress_error_squared(material);
+        let normals = [0, 1, 2].map(|i| exactly::<Ball>(triangle).scaled_normal(i));
+        for &(l, weight) in &points {
+            // The area times a gradient is half a scaled normal, or a sum of such.
+            let gradients = E::gradients(l.map(Ball::head), rounded.barycentric);
+            let stress = material.stress(displacement_gradient(&rounded.differences, &gradients));
+            let [xx, yy, xy] = stress.components().map(|s| weight * Ball::from(s));
+            for (&node, g) in nodes.iter().zip(E::gradients(l, normals)) {
+                forces[node][0] += xx * g[0] + xy * g[1];
+                forces[node][1] += xy * g[0] + yy * g[1];
+            }
+        }
+    }
+    SAFETY * square.sqrt()
+}
+
+/// |v|_a at most, in doubles: crude, for fields that are next to nothing.
+pub fn energy_norm_at_most<E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    v: &[[Ball; 2]],
+) -> f64
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let of = |(t, (triangle, nodes)): (usize, (Triangle<f64>, &[usize; N]))| {
+        RoundedStrain::new::<E, M>(&triangle, nodes.map(|node| v[node]))
+            .map_or(0.0, |rounded| rounded.energy_at_most(d.problem.material.of(t)))
+    };
+    SAFETY * d.space.triangles().enumerate().map(of).sum::<f64>().sqrt()
+}
+
+/// Covers the rounding of sums and products of positive numbers, some million of them, and areas that are off by a thousandth.
+const SAFETY: f64 = 1.01;
+
+/// A triangle is too flat for doubles where the products that its area is the difference of are larger beside it.
+const FLAT: f64 = (1_u64 << 40) as f64;
+
+/// The differences of nodal values on a triangle and the gradients of its barycentric coordinates, in doubles, with what
+/// bounds their rounding.
+struct RoundedStrain<const N: usize> {
+    /// Nodal values less the first one.
+    differences: [Vector2<f64>; N],
+    barycentric: [Vector2<f64>; 3],
+    area: f64,
+    /// sum over the nodes of |difference|_1 times what the gradients of shape functions are at most, in this norm.
+    strain: f64,
+    /// What the strain is off by, at most, the rounding of the stress beside it included; infinite for a flat triangle.
+    error: f64,
+}
+
+impl<const N: usize> RoundedStrain<N> {
+    /// None where all nodes have the same value.
+    fn new<E: ExactEdge<f64, N, M>, const M: usize>(
+        triangle: &Triangle<f64>,
+        nodal: [[Ball; 2]; N],
+    ) -> Option<Self> {
+        let first = nodal[0];
+        if nodal.iter().all(|u| *u == first) && first.iter().all(|c| c.radius() == 0.0) {
+            return None;
+        }
+        let difference = |u: [Ball; 2], c: usize| {
+            (u[c].head() - first[c].head()) + (u[c].tail() - first[c].tail())
+        };
+        let differences = nodal.map(|u| Vector2::new(difference(u, 0), difference(u, 1)));
+        // What the differences are off by, beside what is relative to them.
+        let off: f64 = nodal
+            .iter()
+            .flat_map(|u| u.iter().zip(&first))
+            .map(|(u, first)| {
+                let tails = u.tail().abs() + first.tail().abs();
+                2.0 * f64::EPSILON * tails + u.radius() + first.radius()
+            })
+            .sum();
+        let [a, b] = [1, 2].map(|i| triangle.edge(i));
+        let double_area = triangle.double_area();
+        let skew = ((a[0] * b[1]).abs() + (a[1] * b[0]).abs()) / double_area;
+        let barycentric = triangle.barycentric_gradients();
+        let slope = E::DEGREE as f64 * barycentric.iter().flatten().map(|g| g.abs()).sum::<f64>();
+        let sizes: f64 = differences.iter().flatten().map(|d| d.abs()).sum();
+        let roundings = N as f64 + 4.0 + 4.0 * skew;
+        let sound = double_area > 1e-200 && skew <= FLAT;
+        let error = slope * (f64::EPSILON * roundings * sizes + off + f64::MIN_POSITIVE);
+        Some(RoundedStrain {
+            differences,
+            barycentric,
+            area: double_area / 2.0,
+            strain: slope * sizes,
+            error: if sound { error } else { f64::INFINITY },
+        })
+    }
+
+    /// An upper bound of the square of the stress error in the norm dual to |v|_a on the triangle: |sigma:eps| is at most
+    /// |sigma| |eps|, and 2 min(mu, lambda + mu) |eps|^2 at most sigma(v):eps(v).
+    fn stress_error_squared(&self, material: &Material<f64>) -> f64 {
+        let (lambda, mu) = (material.lambda(), material.mu());
+        let off = 2.0 * (lambda.abs() + mu) * self.error + f64::MIN_POSITIVE;
+        self.area * off * off / (2.0 * mu.min(lambda + mu))
+    }
+
+    /// An upper bound of a(v, v) on the triangle.
+    fn energy_at_most(&self, material: &Material<f64>) -> f64 {
+        let strain = self.strain + self.error;
+        self.area * 2.0 * (material.lambda().abs() + material.mu()) * strain * strain
     }
 }
 

@@ -6,6 +6,7 @@
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use super::SolveError;
 use super::accuracy::{Pass, Route};
@@ -96,7 +97,7 @@ where
             for (edge, h) in edges {
                 tangent.add_contact_springs(d, numbering, edge, &edge.functionals, h);
             }
-            Factor::with(structure, &tangent)?.map(Tangent::Double)
+            Factor::with(structure, &tangent)?.map(|factor| Tangent::Double(Arc::new(factor)))
         })
     }
 
@@ -172,7 +173,7 @@ type Factored<const M: usize> = (Tangent, Vec<[[f64; M]; M]>);
 
 /// The factor of a tangent.
 pub(super) enum Tangent {
-    Double(Factor),
+    Double(Arc<Factor>),
     Twofold(TwofoldFactor),
 }
 

@@ -12,19 +12,22 @@
 //!    dual norm by [Korn's inequality](crate::fem::korn) at each node, crudely.
 //! 3. (C2): with rho = |r|_A*, |u~ - u^h|_a <= rho (1 - kappa)^{-1/2}, |gamma^{1/2}(lambda~ - lambda^h)| <= rho / 2.
 
+use std::sync::Arc;
+use std::time::Duration;
+
 use thiserror::Error;
 
 use super::assembled::{Assembled, Tangent};
 use super::balls::{Lines, dot, field, free, kappa, lines, root};
 use super::factor::{Factor, Indefinite};
-use super::intervals::{Evaluation, Intervals};
+use super::intervals::{Evaluation, Intervals, Stresses};
 use super::pressed::{self, Pressed};
 use super::system::System;
+use super::times::Stopwatch;
 use crate::fem::Discretization;
 use crate::fem::ball::{Ball, up};
 use crate::fem::held::Slides;
 use crate::fem::korn::Korn;
-use crate::fem::precise;
 use crate::fem::twofold::Twofold;
 use crate::kernel::edge_integral::ExactEdge;
 
@@ -55,6 +58,8 @@ pub enum Unproved {
         "the body is held by contact alone, and the edges that are surely pressed hardly hold it"
     )]
     HeldByContact,
+    #[error("Newton's method did not end")]
+    NotReached,
     #[error("kappa = {kappa} is not below 1: (8) may have several solutions, or none")]
     NotCoercive { kappa: f64 },
     #[error("displacement boundaries hardly hold a part of the body")]
@@ -72,6 +77,11 @@ pub enum Unproved {
 }
 
 impl Unproved {
+    /// Whether a displacement that is nearer, or better arithmetic, may tell more.
+    pub fn may_be_rounding(&self) -> bool {
+        !matches!(self, Unproved::NotCoercive { .. } | Unproved::NoKappa | Unproved::NotHeld)
+    }
+
     /// Whether (8) is known to have exactly one solution all the same.
     pub fn is_unique(&self) -> bool {
         !matches!(self, Unproved::HeldByContact | Unproved::NotCoercive { .. } | Unproved::NoKappa)
@@ -85,39 +95,17 @@ const SMALL: f64 = 1e-2;
 const CORRECTIONS: usize = 12;
 
 /// Which factor of A nearly solves A z = r. Nothing depends on its being right.
+#[derive(Clone)]
 pub enum FactorOfA {
     /// One that is there.
-    AtHand(Factor),
+    AtHand(Arc<Factor>),
     /// One to be made in doubles.
     Double,
     /// One to be made in twofold numbers, for bodies that need them.
     Twofold,
 }
 
-impl FactorOfA {
-    fn of<E, const N: usize, const M: usize>(
-        self,
-        system: &System<E, N, M>,
-        pressed: &Pressed<M>,
-    ) -> Result<Tangent, Unproved>
-    where
-        E: ExactEdge<f64, N, M>,
-    {
-        let assembled = match self {
-            FactorOfA::AtHand(factor) => return Ok(Tangent::Double(factor)),
-            FactorOfA::Double => Assembled::new(system, 1.0),
-            FactorOfA::Twofold => Assembled::twofold(system, 1.0),
-        };
-        match assembled.factor_where(pressed.edges()) {
-            Ok(factor) => factor.map_err(|Indefinite| Unproved::NoFactor),
-            Err(_) => Err(Unproved::OutOfMemory),
-        }
-    }
-}
-
-/// Encloses the solution of (8) around `u` by the residual there, or at a field `near` it that is known in twofold numbers:
-/// rounding a displacement to doubles moves it little, its forces more. Of a body that may slide, with these motions still stopped at
-/// one component each, one of the solutions is enclosed around the displacement of least norm.
+/// Encloses the solution of (8) around the displacement `u`, in balls throughout: as [`Verifier::enclose`].
 ///
 /// # Errors
 /// Why nothing can be proved.
@@ -130,114 +118,228 @@ pub fn enclose<E, const N: usize, const M: usize>(
 where
     E: ExactEdge<f64, N, M>,
 {
-    enclose_with(system, u, near, factor, &system.d.enclosed_load)
+    Verifier::new(system, factor).enclose(u, near, Stresses::InBalls)
 }
 
-/// The same for a given load: L(v) for every basis function.
-///
-/// # Errors
-/// As [`enclose`].
-pub fn enclose_with<E, const N: usize, const M: usize>(
-    system: &System<E, N, M>,
-    u: &[[f64; 2]],
-    near: Option<&[[Twofold; 2]]>,
+/// Encloses the solution of (8) around one displacement after the other: what does not depend on them is done once.
+pub struct Verifier<'s, 'd, 'p, E, const N: usize, const M: usize> {
+    system: &'s System<'d, 'p, E, N, M>,
+    load: &'s [[Ball; 2]],
+    lines: Lines<'d, N, M>,
+    kappa: f64,
     factor: FactorOfA,
-    load: &[[Ball; 2]],
-) -> Result<Enclosure, Unproved>
+    /// For the edges that are pressed: the bounds at the nodes, and the factor, once it is needed.
+    held: Option<Held>,
+    unbalanced: f64,
+    time: Duration,
+}
+
+/// What belongs to a set of pressed edges.
+struct Held {
+    pressed: Vec<bool>,
+    korn: Option<Korn>,
+    factor: Option<Tangent>,
+}
+
+impl<'s, 'd, 'p, E, const N: usize, const M: usize> Verifier<'s, 'd, 'p, E, N, M>
 where
     E: ExactEdge<f64, N, M>,
 {
-    let d = system.d;
-    let slides = Slides::around(d, u);
-    let mut reported = u.to_vec();
-    slides.iter().for_each(|slides| slides.least_norm(&mut reported));
-    let stopped = d.slides.as_ref().map_or(0, Slides::count);
-    let ends = |slides: &Slides| slides.count() > stopped || slides.are_bounded();
-    let Some(loose) = slides.filter(ends) else {
-        return around(system, u, &reported, near, factor, load);
-    };
-    // Motions that only edges stop which do not press: of all solutions one that is away from these.
-    let Some(inside) = loose.to_inside(u) else { return Err(Unproved::HeldByContact) };
-    let mut u = u.to_vec();
-    loose.move_by(&inside, &mut u);
-    let d = d.sliding(loose, &u);
-    let system = System::new(&d).map_err(|_| Unproved::OutOfMemory)?;
-    let factor = match factor {
-        FactorOfA::Twofold => FactorOfA::Twofold,
-        _ => FactorOfA::Double,
-    };
-    around(&system, &u, &reported, None, factor, load)
+    /// Of a system, with the loads that it has.
+    pub fn new(system: &'s System<'d, 'p, E, N, M>, factor: FactorOfA) -> Self {
+        Verifier::with_load(system, factor, &system.d.enclosed_load)
+    }
+
+    /// Of a system with a given load: L(v) for every basis function.
+    pub fn with_load(
+        system: &'s System<'d, 'p, E, N, M>,
+        factor: FactorOfA,
+        load: &'s [[Ball; 2]],
+    ) -> Self {
+        let mut watch = Stopwatch::start();
+        let lines = lines(system.d);
+        let kappa = kappa(system.d, &lines);
+        let time = watch.lap();
+        Verifier { system, load, lines, kappa, factor, held: None, unbalanced: f64::INFINITY, time }
+    }
+
+    /// The time that it has taken.
+    pub fn time(&self) -> Duration {
+        self.time
+    }
+
+    /// The sum of the magnitudes of the residual where it was last evaluated.
+    pub fn unbalanced(&self) -> f64 {
+        self.unbalanced
+    }
+
+    /// Proves a relative radius of `proof` if it can: with stresses in doubles, and where that falls short in balls.
+    ///
+    /// # Errors
+    /// Why nothing can be proved.
+    pub fn prove(
+        &mut self,
+        u: &[[f64; 2]],
+        near: Option<&[[Twofold; 2]]>,
+        proof: f64,
+    ) -> Result<Enclosure, Unproved> {
+        let first = self.enclose(u, near, Stresses::InDoubles);
+        match first {
+            Ok(first) if first.is_within(proof) => Ok(first),
+            Err(ref why) if !why.may_be_rounding() => first,
+            first => self.enclose(u, near, Stresses::InBalls).or(first),
+        }
+    }
+
+    /// Encloses the solution around `u` by the residual there, or at a field `near` it that is known in twofold numbers: rounding a
+    /// displacement to doubles moves it little, its forces more. Of a body that may slide, with these motions still stopped at one
+    /// component each, one of the solutions is enclosed around the displacement of least norm.
+    ///
+    /// # Errors
+    /// Why nothing can be proved.
+    pub fn enclose(
+        &mut self,
+        u: &[[f64; 2]],
+        near: Option<&[[Twofold; 2]]>,
+        stresses: Stresses,
+    ) -> Result<Enclosure, Unproved> {
+        let mut watch = Stopwatch::start();
+        let enclosure = self.enclosed(u, near, stresses);
+        self.time += watch.lap();
+        enclosure
+    }
+
+    fn enclosed(
+        &mut self,
+        u: &[[f64; 2]],
+        near: Option<&[[Twofold; 2]]>,
+        stresses: Stresses,
+    ) -> Result<Enclosure, Unproved> {
+        let (system, d) = (self.system, self.system.d);
+        let slides = Slides::around(d, u);
+        let mut reported = u.to_vec();
+        slides.iter().for_each(|slides| slides.least_norm(&mut reported));
+        let stopped = d.slides.as_ref().map_or(0, Slides::count);
+        let ends = |slides: &Slides| slides.count() > stopped || slides.are_bounded();
+        let Some(loose) = slides.filter(ends) else {
+            return self.around(u, &reported, near, stresses);
+        };
+        // Motions that only edges stop which do not press: of all solutions one that is away from these.
+        let Some(inside) = loose.to_inside(u) else { return Err(Unproved::HeldByContact) };
+        let mut u = u.to_vec();
+        loose.move_by(&inside, &mut u);
+        let d = d.sliding(loose, &u);
+        let system = System::new(&d).map_err(|_| Unproved::OutOfMemory)?;
+        let factor = match self.factor {
+            FactorOfA::Twofold => FactorOfA::Twofold,
+            _ => FactorOfA::Double,
+        };
+        let mut other = Verifier::with_load(&system, factor, self.load);
+        let enclosure = other.around(&u, &reported, None, stresses);
+        self.unbalanced = other.unbalanced;
+        enclosure
+    }
+
+    /// Encloses a solution around `u`, and what `reported` is, which differs from `u` by motions that slide.
+    fn around(
+        &mut self,
+        u: &[[f64; 2]],
+        reported: &[[f64; 2]],
+        near: Option<&[[Twofold; 2]]>,
+        stresses: Stresses,
+    ) -> Result<Enclosure, Unproved> {
+        let (system, d, kappa) = (self.system, self.system.d, self.kappa);
+        if !(kappa < 1.0) {
+            let unknown = d.kappa() < 1.0 || !kappa.is_finite();
+            return Err(if unknown { Unproved::NoKappa } else { Unproved::NotCoercive { kappa } });
+        }
+        let coercivity = (1.0 - kappa) * (1.0 - 4.0 * f64::EPSILON);
+        let at = Evaluation::new(system, &self.lines, (u, reported), near, (self.load, stresses));
+        let at = at.ok_or(Unproved::OutOfRange)?;
+        let r = free(system, &at.residual);
+        self.unbalanced = r.iter().map(|r| r.magnitude()).sum();
+        // What holds the body, and what is not proved if that does not.
+        let (pressed, loose) = match d.slides {
+            None => (Pressed::nowhere(self.lines.len()), Unproved::NotHeld),
+            Some(_) => (Pressed::at(d, &self.lines, &at.u), Unproved::HeldByContact),
+        };
+        let edges: Vec<bool> = pressed.edges().collect();
+        if self.held.as_ref().is_none_or(|held| held.pressed != edges) {
+            let holds = pressed.holds(d, &self.lines);
+            let korn = Korn::new(&d.space, &d.problem.material, &d.constraints, &holds);
+            self.held = Some(Held { pressed: edges, korn, factor: None });
+        }
+        let Some(Held { korn: Some(korn), factor, pressed: edges }) = &mut self.held else {
+            return Err(loose);
+        };
+        let up_to = up(at.off / coercivity.sqrt());
+        let rho = if r.iter().all(|&r| r == Ball::from(0)) {
+            up_to
+        } else {
+            let factor = match factor {
+                Some(factor) => factor,
+                None => factor.insert(self.factor.clone().of(system, edges)?),
+            };
+            let crude = crude_norms(system, korn, coercivity);
+            let negligible = SMALL * (at.moved * coercivity.sqrt()).max(up_to);
+            let product = Product { system, lines: &self.lines, pressed: &pressed, stresses };
+            up(dual_norm(&product, factor, &r, &crude, coercivity, negligible) + up_to)
+        };
+        if !pressed.stay(rho) {
+            return Err(Unproved::HeldByContact);
+        }
+        let exact = up(rho / coercivity.sqrt());
+        let radius = up(exact + at.moved);
+        if !radius.is_finite() {
+            return Err(Unproved::OutOfRange);
+        }
+        let mut nodes: Vec<f64> = korn.nodes.iter().map(|n| up(n * exact)).collect();
+        if !stays_off(d, &self.lines, &pressed, &at.u, (&nodes, exact)) {
+            return Err(Unproved::HeldByContact);
+        }
+        let exactly = slid(at.u.clone(), reported, d.slides.as_ref());
+        for (node, (exactly, reported)) in nodes.iter_mut().zip(exactly.iter().zip(reported)) {
+            let off = [0, 1].map(|c| exactly[c] - Ball::from(reported[c]));
+            *node = up(*node + root(dot(off, off)));
+        }
+        let pressure = if edges.contains(&true) { rho } else { rho / 2.0 };
+        let intervals = at.intervals(d, &self.lines, (&exactly, &nodes), [rho, pressure], exact);
+        if !intervals.are_finite() {
+            return Err(Unproved::OutOfRange);
+        }
+        let size = at.energy.lower().max(0.0).sqrt() * (1.0 - 2.0 * f64::EPSILON);
+        let size = system.size(size, u);
+        let relative = (size > 0.0).then(|| up(radius / size));
+        Ok(Enclosure { kappa, radius, relative, pressure, nodes, intervals })
+    }
 }
 
-/// Encloses a solution around `u`, and what `reported` is, which differs from `u` by motions that slide.
-fn around<E, const N: usize, const M: usize>(
-    system: &System<E, N, M>,
-    u: &[[f64; 2]],
-    reported: &[[f64; 2]],
-    near: Option<&[[Twofold; 2]]>,
-    factor: FactorOfA,
-    load: &[[Ball; 2]],
-) -> Result<Enclosure, Unproved>
-where
-    E: ExactEdge<f64, N, M>,
-{
-    let d = system.d;
-    let lines = lines(d);
-    let kappa = kappa(d, &lines);
-    if !(kappa < 1.0) {
-        let unknown = d.kappa() < 1.0 || !kappa.is_finite();
-        return Err(if unknown { Unproved::NoKappa } else { Unproved::NotCoercive { kappa } });
+impl Enclosure {
+    /// Whether the relative radius is at most `proof`.
+    pub fn is_within(&self, proof: f64) -> bool {
+        self.radius == 0.0 || self.relative.is_some_and(|relative| relative <= proof)
     }
-    let coercivity = (1.0 - kappa) * (1.0 - 4.0 * f64::EPSILON);
-    let at = Evaluation::new(system, &lines, (u, reported), near, load);
-    let at = at.ok_or(Unproved::OutOfRange)?;
-    // What holds the body, and what is not proved if that does not.
-    let (pressed, loose) = match d.slides {
-        None => (Pressed::nowhere(lines.len()), Unproved::NotHeld),
-        Some(_) => (Pressed::at(d, &lines, &at.u), Unproved::HeldByContact),
-    };
-    let holds = pressed.holds(d, &lines);
-    let korn = Korn::new(&d.space, &d.problem.material, &d.constraints, &holds);
-    let korn = korn.ok_or(loose)?;
-    let r = free(system, &at.residual);
-    let crude = crude_norms(system, &korn, coercivity);
-    let rho = if r.iter().all(|&r| r == Ball::from(0)) {
-        0.0
-    } else {
-        let negligible = SMALL * at.moved * coercivity.sqrt();
-        dual_norm(system, &lines, &pressed, &factor.of(system, &pressed)?, &r, &crude, negligible)
-    };
-    if !pressed.stay(rho) {
-        return Err(Unproved::HeldByContact);
+}
+
+impl FactorOfA {
+    fn of<E, const N: usize, const M: usize>(
+        self,
+        system: &System<E, N, M>,
+        pressed: &[bool],
+    ) -> Result<Tangent, Unproved>
+    where
+        E: ExactEdge<f64, N, M>,
+    {
+        let assembled = match self {
+            FactorOfA::AtHand(factor) => return Ok(Tangent::Double(factor)),
+            FactorOfA::Double => Assembled::new(system, 1.0),
+            FactorOfA::Twofold => Assembled::twofold(system, 1.0),
+        };
+        match assembled.factor_where(pressed.iter().copied()) {
+            Ok(factor) => factor.map_err(|Indefinite| Unproved::NoFactor),
+            Err(_) => Err(Unproved::OutOfMemory),
+        }
     }
-    let exact = up(rho / coercivity.sqrt());
-    let radius = up(exact + at.moved);
-    if !radius.is_finite() {
-        return Err(Unproved::OutOfRange);
-    }
-    let size = at.energy.upper().max(0.0).sqrt();
-    let mut nodes: Vec<f64> = korn.nodes.iter().map(|n| up(n * exact)).collect();
-    if !stays_off(d, &lines, &pressed, &at.u, (&nodes, exact)) {
-        return Err(Unproved::HeldByContact);
-    }
-    let exactly = slid(at.u.clone(), reported, d.slides.as_ref());
-    for (node, (exactly, reported)) in nodes.iter_mut().zip(exactly.iter().zip(reported)) {
-        let off = [0, 1].map(|c| exactly[c] - Ball::from(reported[c]));
-        *node = up(*node + root(dot(off, off)));
-    }
-    let pressure = if holds.is_empty() { rho / 2.0 } else { rho };
-    let intervals = at.intervals(d, &lines, (&exactly, &nodes), [rho, pressure], exact);
-    if !intervals.are_finite() {
-        return Err(Unproved::OutOfRange);
-    }
-    Ok(Enclosure {
-        kappa,
-        radius,
-        relative: (size > 0.0).then(|| radius / size),
-        pressure,
-        nodes,
-        intervals,
-    })
 }
 
 /// u moved along the motions that slide, to where `reported` is.
@@ -276,24 +378,30 @@ where
     })
 }
 
-/// A(v, .), and what the springs where it is `pressed` do, at the free unknowns for the field with the components `z`.
-pub(super) fn times_matrix<E, const N: usize, const M: usize>(
-    system: &System<E, N, M>,
-    lines: &Lines<N, M>,
-    pressed: &Pressed<M>,
-    z: &[Ball],
-) -> Vec<Ball>
+/// A, with the springs where it is `pressed`.
+struct Product<'a, 'd, 'p, E, const N: usize, const M: usize> {
+    system: &'a System<'d, 'p, E, N, M>,
+    lines: &'a Lines<'d, N, M>,
+    pressed: &'a Pressed<M>,
+    stresses: Stresses,
+}
+
+impl<E, const N: usize, const M: usize> Product<'_, '_, '_, E, N, M>
 where
     E: ExactEdge<f64, N, M>,
 {
-    let v = field(system, |number, _, _| z[number], |_, _| 0.0);
-    let mut forces = vec![[Ball::from(0); 2]; v.len()];
-    precise::add_internal_forces(system.d, &v, &mut forces);
-    for line in lines {
-        line.add_stresses(&v, &mut forces);
+    /// A(v, .) at the free unknowns for the field v with the components `z`, off by a functional r with |r(w)| <= b |w|_a for the b
+    /// that comes with it.
+    fn times(&self, z: &[Ball]) -> (Vec<Ball>, f64) {
+        let v = field(self.system, |number, _, _| z[number], |_, _| 0.0);
+        let mut forces = vec![[Ball::from(0); 2]; v.len()];
+        let off = self.stresses.add_forces(self.system.d, &v, &mut forces);
+        for line in self.lines {
+            line.add_stresses(&v, &mut forces);
+        }
+        self.pressed.add_springs(self.lines, &v, &mut forces);
+        (free(self.system, &forces), off)
     }
-    pressed.add_springs(lines, &v, &mut forces);
-    free(system, &forces)
 }
 
 /// |t|_A* <= sum of these times |t_i|: k_i (1 - kappa)^{-1/2} with the factor k_i of the node of unknown i.
@@ -314,14 +422,14 @@ where
     crude
 }
 
-/// |r|_A* at most, where |t|_A* <= sum of `crude`_i |t_i| for every t. What is `negligible` need not be known better.
+/// |r|_A* at most, where |t|_A* <= sum of `crude`_i |t_i| for every t, and |v|_a^2 <= |v|_A^2 / `coercivity`. What is
+/// `negligible` need not be known better.
 fn dual_norm<E, const N: usize, const M: usize>(
-    system: &System<E, N, M>,
-    lines: &Lines<N, M>,
-    pressed: &Pressed<M>,
+    a: &Product<E, N, M>,
     factor: &Tangent,
     r: &[Ball],
     crude: &[f64],
+    coercivity: f64,
     negligible: f64,
 ) -> f64
 where
@@ -336,11 +444,13 @@ where
         for (z, c) in z.iter_mut().zip(&correction) {
             *z = (*z + Ball::from(*c)).centre();
         }
-        let az = times_matrix(system, lines, pressed, &z);
+        let (az, off) = a.times(&z);
+        let off = up(off / coercivity.sqrt());
         let square = z.iter().zip(&az).fold(Ball::from(0), |sum, (&z, &az)| sum + z * az);
-        let energy = root(square);
+        // x^2 = z . A z is off q = z . az by off x at most, so x <= off + q^(1/2).
+        let energy = up(off + root(square));
         left = r.iter().zip(&az).map(|(&r, &az)| r - az).collect();
-        let rest = weighted(&left, crude);
+        let rest = up(weighted(&left, crude) + off);
         let bound = up(energy + rest);
         if !(rest > (SMALL * energy).max(negligible)) {
             return bound.min(best);

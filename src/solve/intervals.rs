@@ -56,6 +56,36 @@ pub struct ContactIntervals {
     pub resultant: [Range; 2],
 }
 
+/// How stresses of the body are evaluated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stresses {
+    /// In doubles: what they are off by is bounded as a whole.
+    InDoubles,
+    /// In balls, each of some 106 bits.
+    InBalls,
+}
+
+impl Stresses {
+    /// Adds a(u, v) for every basis function v, off by a functional r with |r(v)| <= b |v|_a for the b that is returned.
+    pub(super) fn add_forces<E, const N: usize, const M: usize>(
+        self,
+        d: &Discretization<E, N, M>,
+        u: &[[Ball; 2]],
+        forces: &mut [[Ball; 2]],
+    ) -> f64
+    where
+        E: ExactEdge<f64, N, M>,
+    {
+        match self {
+            Stresses::InDoubles => precise::add_forces_of_rounded_stresses(d, u, forces),
+            Stresses::InBalls => {
+                precise::add_internal_forces(d, u, forces);
+                0.0
+            }
+        }
+    }
+}
+
 /// (8) at u~, or near it.
 pub(super) struct Evaluation {
     /// The residual at every basis function.
@@ -66,6 +96,8 @@ pub(super) struct Evaluation {
     pub moved: f64,
     /// a(u~, u~)
     pub energy: Ball,
+    /// The residual is off by no more than a functional r with |r(v)| <= this times |v|_a.
+    pub off: f64,
     /// int \[P\]+ N_a / gamma on each contact edge.
     pressures: Vec<Vec<Ball>>,
 }
@@ -77,7 +109,7 @@ impl Evaluation {
         lines: &[OnEdge<Ball, N, M>],
         (u, reported): (&[[f64; 2]], &[[f64; 2]]),
         near: Option<&[[Twofold; 2]]>,
-        load: &[[Ball; 2]],
+        (load, stresses): (&[[Ball; 2]], Stresses),
     ) -> Option<Self>
     where
         E: ExactEdge<f64, N, M>,
@@ -100,11 +132,16 @@ impl Evaluation {
             .zip(reported)
             .map(|(exact, u)| [0, 1].map(|c| exact[c] - Ball::from(u[c])))
             .collect();
-        let moved = root(strain_energy(d, &off));
+        let moved = match stresses {
+            Stresses::InBalls => root(strain_energy(d, &off)),
+            Stresses::InDoubles => precise::energy_norm_at_most(d, &off),
+        };
 
         let mut residual = vec![[Ball::from(0); 2]; u.len()];
-        precise::add_internal_forces(d, &exact, &mut residual);
+        let off = stresses.add_forces(d, &exact, &mut residual);
+        // x^2 = a(u~, u~) is off q = u~ . forces by off x at most, so x <= off + q^(1/2).
         let energy = product(&exact, &residual);
+        let energy = energy.widened(up(off * (off + root(energy))));
         let mut pressures = Vec::with_capacity(lines.len());
         for (edge, line) in d.contact.iter().zip(lines) {
             line.add_stresses(&exact, &mut residual);
@@ -122,7 +159,7 @@ impl Evaluation {
         if !(all.into_iter().all(|b| b.is_finite()) && squares.into_iter().all(Ball::is_finite)) {
             return None;
         }
-        Some(Evaluation { residual, u: exact, moved, energy, pressures })
+        Some(Evaluation { residual, u: exact, moved, energy, off, pressures })
     }
 
     /// What is reported, with |u~ - u^h|_A <= `rho`, |u~ - u^h|_a <= `radius`, the norm of gamma^{1/2} (lambda~ - lambda^h) at most
@@ -219,7 +256,7 @@ impl Evaluation {
                     sum + weight * Ball::from(most) * Ball::from(most)
                 });
                 let by_contact = root(by_contact);
-                range(reaction.widened(up(rho * by_body + pressure * by_contact)))
+                range(reaction.widened(up((rho + self.off) * by_body + pressure * by_contact)))
             });
             (boundary.clone(), ranges)
         };

@@ -55,8 +55,8 @@ impl Iterate {
     }
 
     /// As it is.
-    pub fn into_twofold(self) -> Vec<[Twofold; 2]> {
-        self.u
+    pub fn as_twofold(&self) -> &[[Twofold; 2]] {
+        &self.u
     }
 
     /// What rounding to doubles leaves out.

@@ -5,8 +5,10 @@
 //! - assembled: one factorisation for each Newton step.
 //!
 //! Both give the same numbers. Where A alone has no factor or a bad one although the method is coercive, the assembled route
-//! is taken all the same: there contact holds the body. Where doubles are not enough to factor the tangent or to correct
+//! is taken all the same: there contact holds the body. Where doubles are not enough to factor the tangent or to prove
 //! what came of it, it is the assembled route in twofold numbers, which takes some fifty times as long.
+
+use std::sync::Arc;
 
 #[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
@@ -16,6 +18,7 @@ use super::assembled::Assembled;
 use super::compliance::Reach;
 use super::condensed::Condensed;
 use super::course::Phase;
+use super::enclosure::{FactorOfA, Verifier};
 use super::factor::{Factor, Indefinite, Structure};
 use super::memory;
 use super::system::System;
@@ -90,7 +93,8 @@ impl Prediction {
     }
 }
 
-/// Solves the system by the route that is predicted to take less. The factor of A comes with it where there is one.
+/// Solves the system by the route that is predicted to take less, and by the next ones while nothing is proved: what is nearest
+/// to the exact solution, as far as is proved.
 ///
 /// # Errors
 /// As [`solve_discrete`](super::solve_discrete).
@@ -111,21 +115,31 @@ where
     let held = system.d.slides.is_none();
     let condensed = held && outset.prediction.route() == RouteName::Condensed;
     times.judge += watch.lap();
-    let doubles = [RouteName::Condensed, RouteName::Assembled];
-    for name in &doubles[usize::from(!condensed)..] {
+    let routes = [RouteName::Condensed, RouteName::Assembled, RouteName::Twofold];
+    let mut best: Result<Solved, SolveError> = Err(SolveError::Singular);
+    for name in &routes[usize::from(!condensed)..] {
         match outset.go(*name, system, settings, times) {
-            // Contact may hold what the supports hardly hold.
-            Err(SolveError::Singular) => {}
-            Ok(done) if done.0.is_right(settings) => return Ok(done),
+            Ok(done) if done.0.is_proved(settings) => return Ok(done),
             // With enough steps Newton's method ends: if it did not, digits were missing.
             Ok(done) if settings.max_iterations < ENOUGH && done.0.is_out_of_steps(settings) => {
                 return Ok(done);
             }
-            Ok(_) => {}
-            Err(error) => return Err(error),
+            Ok(done) => {
+                let hopeless = done.0.enclosure.as_ref().is_err_and(|why| !why.may_be_rounding());
+                if best.as_ref().map_or(true, |(best, ..)| done.0.is_better_than(best)) {
+                    best = Ok(done);
+                }
+                // No arithmetic proves what is not true.
+                if hopeless && best.as_ref().is_ok_and(|(b, ..)| b.residual <= settings.tolerance) {
+                    break;
+                }
+            }
+            // Contact may hold what the supports hardly hold.
+            Err(SolveError::Singular) => {}
+            Err(error) => return best.or(Err(error)),
         }
     }
-    outset.go(RouteName::Twofold, system, settings, times)
+    best
 }
 
 /// Whether what the matrix is made of on the contact edges neither over- nor underflows.
@@ -159,8 +173,8 @@ where
     Outset::of(system).go(name, system, settings, times)
 }
 
-/// What a route ends with: the outcome, how it was found, the factorisations, and the factor of A where there is one.
-pub type Solved = (Outcome, MethodReport, usize, Option<Factor>);
+/// What a route ends with: the outcome, how it was found, and the factorisations.
+pub type Solved = (Outcome, MethodReport, usize);
 
 /// What is known of a system before a route is taken.
 struct Outset {
@@ -191,13 +205,14 @@ impl Outset {
     {
         let mut watch = Stopwatch::start();
         let Outset { reach, prediction, reference } = self;
-        let (outcome, predicted_operations, factorizations, factor) = match name {
+        let proving;
+        let (outcome, predicted_operations, factorizations) = match name {
             RouteName::Condensed => {
                 let q = reach.functionals();
                 memory::ensure(8 * (reach.stored_entries(&system.structure) + 3 * q * q) as u64)?;
                 system.enters(Phase::Factor);
                 let factor = match Factor::with(&system.structure, &system.matrix)? {
-                    Ok(factor) => factor,
+                    Ok(factor) => Arc::new(factor),
                     Err(Indefinite) if system.d.kappa() < 1.0 => return Err(SolveError::Singular),
                     Err(Indefinite) => return Err(SolveError::NotPositiveDefinite),
                 };
@@ -205,8 +220,11 @@ impl Outset {
                 system.enters(Phase::Condense);
                 let mut route = Condensed::new(system, &factor, reach, *reference);
                 times.compliance += watch.lap();
-                let outcome = accuracy::refine(system, &mut route, *reference, settings)?;
-                (outcome, prediction.condensed, 1, Some(factor))
+                let mut verifier = Verifier::new(system, FactorOfA::AtHand(Arc::clone(&factor)));
+                let outcome =
+                    accuracy::refine(system, &mut route, &mut verifier, *reference, settings)?;
+                proving = verifier.time();
+                (outcome, prediction.condensed, 1)
             }
             RouteName::Assembled | RouteName::Twofold => {
                 let mut route = if name == RouteName::Twofold {
@@ -217,11 +235,19 @@ impl Outset {
                 } else {
                     Assembled::new(system, *reference)
                 };
-                let outcome = accuracy::refine(system, &mut route, *reference, settings)?;
-                (outcome, prediction.assembled, route.factorizations(), None)
+                let factor = match name {
+                    RouteName::Twofold => FactorOfA::Twofold,
+                    _ => FactorOfA::Double,
+                };
+                let mut verifier = Verifier::new(system, factor);
+                let outcome =
+                    accuracy::refine(system, &mut route, &mut verifier, *reference, settings)?;
+                proving = verifier.time();
+                (outcome, prediction.assembled, route.factorizations())
             }
         };
-        times.newton += watch.lap();
+        times.newton += watch.lap().saturating_sub(proving);
+        times.certify += proving;
         let Outcome { condition, forward_error, .. } = outcome;
         let report = MethodReport {
             route: name,
@@ -231,6 +257,6 @@ impl Outset {
             threads: 1,
             slides: 0,
         };
-        Ok((outcome, report, factorizations, factor))
+        Ok((outcome, report, factorizations))
     }
 }

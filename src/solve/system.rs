@@ -105,8 +105,21 @@ where
         self.diagonal().zip(v).map(|(a, v)| a * v * v).sum()
     }
 
+    /// What errors of `u` are relative to: |u|_a, which is `norm`. A body without loads that is moved as a whole has no strain but
+    /// that of rounding: there it is what the norm would be if the components of u knew nothing of each other.
+    pub fn size(&self, norm: f64, u: &[[f64; 2]]) -> f64 {
+        if self.d.load.as_flattened().iter().any(|&l| l != 0.0) {
+            return norm;
+        }
+        let most = self.energy_of_unrelated(u).sqrt();
+        if norm > STRAIN_OF_ROUNDING * most { norm } else { most }
+    }
+
     fn diagonal(&self) -> impl Iterator<Item = f64> {
         let LowerTriangle { starts, values, .. } = &self.matrix;
         starts[..self.numbering.count].iter().map(|&k| values[k])
     }
 }
+
+/// A strain this small beside the displacement is that of rounding.
+const STRAIN_OF_ROUNDING: f64 = 64.0 * f64::EPSILON;
