@@ -165,7 +165,9 @@ where
         let moved = change.energy.max(change.left).sqrt();
         correction = if moved == 0.0 { 0.0 } else { moved / size };
         residual = Residual::new(system, &at, reference);
-        let done = residual.norm <= settings.tolerance && correction <= SMALL;
+        let done = residual.norm <= settings.tolerance
+            && residual.unbalanced <= BALANCED
+            && correction <= SMALL;
         if !done && (cut || correction < before / 2.0) {
             continue;
         }
@@ -207,6 +209,8 @@ where
 struct Residual {
     /// Its norm, relative to the reference.
     norm: f64,
+    /// The sum of its magnitudes beside the forces on the body: what loads, contact and reactions may be out of balance.
+    unbalanced: f64,
     /// The forces on the body: loads and contact, or, where there are none, reactions, which may balance each other node by node.
     forces: f64,
 }
@@ -235,7 +239,8 @@ impl Residual {
         if forces == 0.0 {
             forces = one(at.forces.as_flattened());
         }
-        Residual { norm: norm(&r) / reference, forces }
+        let unbalanced = if forces > 0.0 { one(&r) / forces } else { 0.0 };
+        Residual { norm: norm(&r) / reference, unbalanced, forces }
     }
 }
 

@@ -152,7 +152,7 @@ impl Verdict {
     /// The verdict on a solution with this enclosure, of which a relative radius of `proof` is asked.
     pub fn new(enclosure: &enclosure::Certificate, proof: f64) -> Self {
         match enclosure {
-            Ok(e) if e.radius == 0.0 || e.relative.is_some_and(|r| r <= proof) => Verdict::Proved,
+            Ok(e) if e.is_within(proof) => Verdict::Proved,
             Ok(e) => {
                 let known = match e.relative {
                     Some(relative) => format!("{relative:.0e} of the energy norm"),

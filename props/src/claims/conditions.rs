@@ -340,11 +340,11 @@ where
     let mut far: f64 = 0.0;
     for name in [RouteName::Assembled, RouteName::Twofold] {
         let outcome = by(name).map_err(text)?;
-        let Solved { u: b, fine, forces, p, .. } = outcome;
+        let Solved { u: b, forces, p, .. } = outcome;
         let pairs = a.as_flattened().iter().zip(b.as_flattened());
         far = far.max(pairs.map(|(a, b)| (a - share * b).abs()).fold(0.0, f64::max) / size);
         // The forces of the displacement before it is rounded are those of the rounded one, which bends little here.
-        if fine.is_some() {
+        if name == RouteName::Twofold {
             let [p, q] = [Evaluated::with(&d, b.clone(), forces, &p), Evaluated::new(&d, b)];
             let largest = q.residual.as_flattened().iter().map(|r| r.abs()).fold(0.0, f64::max);
             let pairs = p.residual.as_flattened().iter().zip(q.residual.as_flattened());

@@ -4,7 +4,6 @@
 //! - where contact is stiff, next to no energy is a force: the loop goes on until loads, contact and reactions balance;
 //! - stresses are those of the differences of the displacement from node to node, and of what doubles can't hold of it;
 //! - a body so slender that doubles blur its residual ends where the arithmetic of twice the precision does;
-//! - what rounding the displacement to doubles takes away is in the forward error;
 //! - the condition number that is reported is below the true one, and of its size, in any units;
 //! - the routes take the same steps.
 
@@ -12,14 +11,11 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use faer::{Mat, Side};
-use signorini::fem::precise;
-use signorini::fem::twofold::Twofold;
 use signorini::fem::{Condition, Diagonal, Problem, Rectangle, SharedFunction};
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::{Material, P1, P2, Plane};
-use signorini::solve::accuracy::{self, Outcome as Solved, Pass, Route};
-use signorini::solve::iterate::{Evaluation, Iterate};
-use signorini::solve::newton::Until;
+use signorini::solve::accuracy::Outcome as Solved;
+use signorini::solve::iterate::Iterate;
 use signorini::solve::route::{self, RouteName};
 use signorini::solve::system::System;
 use signorini::solve::times::Times;
@@ -50,12 +46,11 @@ const BALANCED: f64 = 1e-10;
 /// A tolerance that is met long before the forces balance.
 const LOOSE: f64 = 1e-2;
 
-/// The forces that are left over at the end of passes with the errors `shares`, beside loads and contact: by the definitions and
-/// as reported.
+/// The forces that are left over at the end of passes with the errors `shares`, beside loads and contact, by the definitions.
 fn left_over<E, const N: usize, const M: usize>(
     problem: &Problem,
     shares: &[f64],
-) -> Result<[f64; 2], String>
+) -> Result<f64, String>
 where
     E: ExactEdge<f64, N, M>,
 {
@@ -64,7 +59,7 @@ where
     let method = Method { gamma0, ..Method::default() };
     let d = discretize::<E, N, M>(problem, &method).map_err(text)?;
     let settings = Settings { tolerance: LOOSE, ..Settings::default() };
-    let outcome = honesty::passes(&d, shares, &settings, 0.0)?.outcome;
+    let outcome = honesty::passes(&d, shares, &settings)?.outcome;
     let residual = d.residual(&outcome.u).values;
     let held = d.constraints.values();
     let free = residual
@@ -77,10 +72,10 @@ where
         let moments = E::exact(p).gradient;
         forces += edge.length / edge.gamma * moments.iter().map(|g| g.abs()).sum::<f64>();
     }
-    Ok([free.sum::<f64>() / forces, outcome.unbalanced])
+    Ok(free.sum::<f64>() / forces)
 }
 
-/// `most` may be left over, `scale` times what is reported.
+/// `most` may be left over, and what doubles leave, `scale` times.
 fn balanced(most: f64, scale: f64) -> Outcome {
     let falling: Vec<f64> = (0..20).map(|k| FALL.powi(k)).collect();
     let largest = std::cell::Cell::new(0.0_f64);
@@ -89,14 +84,10 @@ fn balanced(most: f64, scale: f64) -> Outcome {
             1 => left_over::<P1, 3, 2>(problem, shares),
             _ => left_over::<P2, 6, 3>(problem, shares),
         };
-        let [by_definition, reported] = left(&[1.0])?;
-        if !((scale * reported - by_definition).abs() <= 1e-6 * by_definition) {
-            return Err(format!("{by_definition:e} is left over, {reported:e} is reported"));
-        }
-        let [by_definition, _] = left(&falling)?;
+        let by_definition = left(&falling)?;
         largest.set(largest.get().max(by_definition));
         // What doubles leave of forces that are 1/`SOFT` times as stiff.
-        if by_definition <= most + 64.0 * f64::EPSILON / SOFT {
+        if by_definition <= most + scale * 64.0 * f64::EPSILON / SOFT {
             Ok(())
         } else {
             Err(format!("{by_definition:e} of the forces is left over"))
@@ -113,54 +104,9 @@ pub fn loads_contact_and_reactions_balance() -> Outcome {
     balanced(BALANCED, 1.0)
 }
 
-/// Half of what is left over is reported.
-pub fn half_of_what_is_left_over() -> Outcome {
-    noticed(balanced(BALANCED, 0.5))
-}
-
-/// A route is left for one with more digits where the residual is above the tolerance, or where the last correction or what
-/// is out of balance is more than 1e-9.
-fn digits_are_missed(right: f64) -> Outcome {
-    let sizes = [0.0, 1e-11, 1e-10, 1e-9, 1.1e-9, 1e-8, 1e-3, 1.0, f64::INFINITY, f64::NAN];
-    let settings = Settings { max_iterations: 50, ..Settings::default() };
-    let mut right_ones = 0;
-    for residual in sizes {
-        for correction in sizes {
-            for unbalanced in sizes {
-                let solved = Solved {
-                    u: Vec::new(),
-                    fine: None,
-                    forces: Vec::new(),
-                    p: Vec::new(),
-                    residuals: vec![1.0],
-                    residual,
-                    unbalanced,
-                    correction,
-                    forward_error: correction,
-                    condition: 1.0,
-                };
-                let expected =
-                    residual <= settings.tolerance && correction <= right && unbalanced <= right;
-                if solved.is_right(&settings) != expected {
-                    return Err(format!(
-                        "residual {residual:e}, correction {correction:e}, {unbalanced:e} out of balance: expected {expected}"
-                    ));
-                }
-                right_ones += usize::from(expected);
-            }
-        }
-    }
-    Ok(format!("{right_ones} of {} outcomes need no more digits", sizes.len().pow(3)))
-}
-
-/// Row 19: which outcomes need no better arithmetic.
-pub fn a_route_is_left_where_digits_are_missing() -> Outcome {
-    digits_are_missed(1e-9)
-}
-
-/// A correction of a tenth would do.
-pub fn a_tenth_is_no_missing_digit() -> Outcome {
-    noticed(digits_are_missed(0.1))
+/// Nothing is left over.
+pub fn forces_that_balance_to_all_digits() -> Outcome {
+    noticed(balanced(0.0, 0.0))
 }
 
 /// A body without loads whose upper side is moved by `by` in both directions.
@@ -255,9 +201,9 @@ fn beam(cells: usize) -> Result<Problem, String> {
     ))
 }
 
-/// How far the routes in doubles end from the one in twofold numbers, relative to the largest displacement, and whether they
-/// asked for twofold residuals.
-fn slender<E, const N: usize, const M: usize>(cells: usize) -> Result<(f64, bool), String>
+/// How far the routes in doubles end from the one in twofold numbers, relative to the largest displacement, where
+/// they are proved.
+fn slender<E, const N: usize, const M: usize>(cells: usize) -> Result<f64, String>
 where
     E: ExactEdge<f64, N, M>,
 {
@@ -272,7 +218,7 @@ where
     if !(p.iter().any(|p| p.head() > 0.0)) {
         return Err(format!("a beam of {cells} cells that touches nothing"));
     }
-    let (mut far, mut precise) = (0.0_f64, false);
+    let mut far = 0.0_f64;
     for name in [RouteName::Condensed, RouteName::Assembled] {
         let outcome = match by(name) {
             Err(SolveError::Singular) => continue,
@@ -281,40 +227,33 @@ where
         let pairs = best.as_flattened().iter().zip(outcome.u.as_flattened());
         let off = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / size;
         // What it says itself is no evidence of more.
-        if outcome.is_right(&Settings::default()) {
+        if outcome.is_proved(&Settings::default()) {
             far = far.max(off);
         }
-        precise |= outcome.fine.is_some();
     }
-    Ok((far, precise))
+    Ok(far)
 }
 
 /// Enough cells for doubles to lose half of their digits, and more.
 const LENGTHS: [usize; 5] = [8, 32, 128, 512, 1024];
 
-/// `most` apart, and the slender ones with residuals in twofold numbers.
+/// `most` apart.
 fn slender_beams(most: f64) -> Outcome {
-    let (mut farthest, mut first) = (0.0_f64, None);
+    let mut farthest = 0.0_f64;
     for cells in LENGTHS {
         let mut found = vec![slender::<P1, 3, 2>(cells)?];
         if cells <= 128 {
             found.push(slender::<P2, 6, 3>(cells)?);
         }
-        for (far, precise) in found {
+        for far in found {
             if !(far <= most) {
                 return Err(format!("{cells} cells: the routes end {far:e} apart"));
             }
             farthest = farthest.max(far);
-            first = first.or(precise.then_some(cells));
         }
     }
-    match first {
-        Some(cells) if cells > LENGTHS[0] => Ok(format!(
-            "up to {} times as long as high, at most {farthest:.0e} apart, in twofold numbers from {cells} on",
-            LENGTHS[LENGTHS.len() - 1]
-        )),
-        other => Err(format!("in twofold numbers from {other:?} cells on")),
-    }
+    let longest = LENGTHS[LENGTHS.len() - 1];
+    Ok(format!("up to {longest} times as long as high, at most {farthest:.0e} apart"))
 }
 
 /// Row 19: slender bodies. A displacement that is called right is right to 1e-10.
@@ -380,96 +319,6 @@ pub fn what_doubles_blur_is_evaluated_in_twofold_numbers() -> Outcome {
 /// To all digits.
 pub fn what_doubles_blur_to_all_digits() -> Outcome {
     noticed(carried_blocks(1e-18))
-}
-
-/// What rounding does to the residual at the end of passes, times the root of `softness`, beside the displacement: how far it may
-/// move a body that is so soft; and whether the passes ended in twofold numbers.
-fn moved_by_rounding<E, const N: usize, const M: usize>(
-    problem: &Problem,
-    softness: f64,
-) -> Result<(f64, bool), String>
-where
-    E: ExactEdge<f64, N, M>,
-{
-    let d = discretize::<E, N, M>(problem, &Method::default()).map_err(text)?;
-    let shares: Vec<f64> = (0..20).map(|k| 0.01_f64.powi(k)).collect();
-    let outcome = honesty::passes(&d, &shares, &Settings::default(), softness)?.outcome;
-    let exactly: Vec<[Twofold; 2]> = outcome.u.iter().map(|u| u.map(Twofold::from)).collect();
-    let (precise, _) = precise::evaluate(&d, &exactly);
-    let rounded = d.linear_residual(&outcome.u).values;
-    let off: Vec<[f64; 2]> =
-        precise.iter().zip(&rounded).map(|(p, r)| [p[0] - r[0], p[1] - r[1]]).collect();
-    let size = d.strain_energy(&outcome.u).sqrt();
-    Ok((d.free_norm(&off) * softness.sqrt() / size, outcome.fine.is_some()))
-}
-
-/// Bodies are as soft as to move by ten times `moved`.
-fn soft_bodies(moved: f64) -> Outcome {
-    let bodies = honesty::on_bodies(|problem, degree| {
-        let of = |softness| match degree {
-            1 => moved_by_rounding::<P1, 3, 2>(problem, softness),
-            _ => moved_by_rounding::<P2, 6, 3>(problem, softness),
-        };
-        let (unit, precise) = of(1.0)?;
-        if precise {
-            return Err("a stiff body ends in twofold numbers".to_owned());
-        }
-        match of((10.0 * moved / unit).powi(2))? {
-            (_, true) => Ok(()),
-            (by, false) => Err(format!("rounding moves the body by {by:e}, in doubles")),
-        }
-    })?;
-    Ok(format!("{bodies} bodies, P1 and P2, that rounding moves by {:e}", 10.0 * moved))
-}
-
-/// Row 19: where the rounding of residuals moves a soft body by 1e-8 and more, they are evaluated in numbers of twice the precision.
-pub fn rounding_that_moves_a_soft_body_calls_for_twofold_numbers() -> Outcome {
-    soft_bodies(1e-8)
-}
-
-/// Moves of 1e-12.
-pub fn every_rounding_calls_for_twofold_numbers() -> Outcome {
-    noticed(soft_bodies(1e-12))
-}
-
-/// Whether passes that take the error down by `fall` each end in twofold numbers.
-fn goes_on_precisely<E, const N: usize, const M: usize>(
-    problem: &Problem,
-    fall: f64,
-) -> Result<bool, String>
-where
-    E: ExactEdge<f64, N, M>,
-{
-    let d = discretize::<E, N, M>(problem, &Method::default()).map_err(text)?;
-    let shares: Vec<f64> = (0..20).map(|k| fall.powi(k)).collect();
-    Ok(honesty::passes(&d, &shares, &Settings::default(), 0.0)?.outcome.fine.is_some())
-}
-
-/// Passes go on in twofold numbers where an error does not fall to less than `least` from one to the next.
-fn stuck(least: f64) -> Outcome {
-    let bodies = honesty::on_bodies(|problem, degree| {
-        for fall in [0.1, 0.3, 0.45, 0.55, 0.7, -1.0] {
-            let precise = match degree {
-                1 => goes_on_precisely::<P1, 3, 2>(problem, fall),
-                _ => goes_on_precisely::<P2, 6, 3>(problem, fall),
-            }?;
-            if precise != (f64::abs(fall) > least) {
-                return Err(format!("an error that falls by {fall}: twofold numbers {precise}"));
-            }
-        }
-        Ok(())
-    })?;
-    Ok(format!("{bodies} bodies, P1 and P2, 6 falls of the error"))
-}
-
-/// Row 19: where doubles get no nearer, a solve goes on in numbers of twice the precision.
-pub fn passes_that_get_no_nearer_go_on_in_twofold_numbers() -> Outcome {
-    stuck(0.5)
-}
-
-/// Only where the error grows.
-pub fn passes_that_get_further_away_only() -> Outcome {
-    noticed(stuck(2.0))
 }
 
 /// The residuals of a route at each step.
@@ -615,95 +464,4 @@ pub fn the_condition_number_is_told_from_below() -> Outcome {
 /// A hundred times as much.
 pub fn the_condition_number_a_hundred_times_as_large() -> Outcome {
     noticed(condition_is_told(100.0))
-}
-
-/// A route that ends where it begins, at a displacement that no double is.
-struct Fine<'s, 'd, 'p, E, const N: usize, const M: usize> {
-    system: &'s System<'d, 'p, E, N, M>,
-    /// Doubles over the free degrees of freedom, and what is added to them.
-    parts: Vec<Vec<f64>>,
-}
-
-impl<E, const N: usize, const M: usize> Route<E, N, M> for Fine<'_, '_, '_, E, N, M>
-where
-    E: ExactEdge<f64, N, M>,
-{
-    fn precisely(&self) -> bool {
-        true
-    }
-
-    fn pass(
-        &mut self,
-        iterate: &mut Iterate,
-        at: &mut Evaluation,
-        residuals: &mut Vec<f64>,
-        _: Until,
-    ) -> Result<Pass, SolveError> {
-        for part in self.parts.drain(..) {
-            iterate.add(self.system, 1.0, &part);
-        }
-        residuals.push(1.0);
-        *at = iterate.evaluate(self.system, true);
-        Ok(Pass { energy: 0.0, left: 0.0, softness: 0.0 })
-    }
-}
-
-/// The forward error of a route that has nothing to correct, `scale` times, beside the energy norm of what rounding takes away.
-fn rounding_on<E, const N: usize, const M: usize>(
-    problem: &Problem,
-    scale: f64,
-) -> Result<f64, String>
-where
-    E: ExactEdge<f64, N, M>,
-{
-    let d = discretize::<E, N, M>(problem, &Method::default()).map_err(text)?;
-    let system = System::new(&d).map_err(text)?;
-    let mut random = Random::new(draws::seed());
-    let nodes = d.space.nodes().len();
-    let fields = [field(nodes, &mut random), field(nodes, &mut random)];
-    // Below half a unit in the last place of any component but 0.
-    let [large, small] = fields.map(|field| system.numbering.gather(&field));
-    let small: Vec<f64> = large.iter().zip(small).map(|(u, s)| u * s * 2.0_f64.powi(-54)).collect();
-    let mut lost = vec![[0.0; 2]; nodes];
-    system.numbering.scatter(&small, &mut lost);
-    let mut route = Fine { system: &system, parts: vec![large, small] };
-    let reference = accuracy::reference(&d);
-    let outcome = accuracy::refine(&system, &mut route, reference, &Settings::default());
-    let outcome = outcome.map_err(text)?;
-    let size = |field: &[[f64; 2]]| d.strain_energy(field).sqrt();
-    Ok(scale * outcome.forward_error * size(&outcome.u) / size(&lost))
-}
-
-/// What components that know nothing of each other add up to is told to within this factor.
-const UNRELATED: f64 = 4.0;
-
-fn rounding(scale: f64) -> Outcome {
-    let found = std::cell::RefCell::new(Vec::new());
-    let bodies = honesty::on_bodies(|problem, degree| {
-        let ratio = match degree {
-            1 => rounding_on::<P1, 3, 2>(problem, scale),
-            _ => rounding_on::<P2, 6, 3>(problem, scale),
-        }?;
-        found.borrow_mut().push(ratio);
-        if ratio * UNRELATED >= 1.0 && ratio <= UNRELATED {
-            Ok(())
-        } else {
-            Err(format!("{ratio} times what rounding takes away is told"))
-        }
-    })?;
-    let found = found.into_inner();
-    let [low, high] = found
-        .iter()
-        .fold([f64::INFINITY, 0.0], |[low, high]: [f64; 2], &r| [low.min(r), high.max(r)]);
-    Ok(format!("{bodies} bodies, P1 and P2, {low:.2} to {high:.2} times what rounding takes away"))
-}
-
-/// Row 19: what rounding takes away is told.
-pub fn rounding_is_in_the_forward_error() -> Outcome {
-    rounding(1.0)
-}
-
-/// A tenth of it.
-pub fn a_tenth_of_what_rounding_takes_away() -> Outcome {
-    noticed(rounding(0.1))
 }
