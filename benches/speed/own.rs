@@ -262,7 +262,7 @@ impl Command {
         Command { read, times, write: start.elapsed() }
     }
 
-    fn parts(&self) -> [(&'static str, Duration); 9] {
+    fn parts(&self) -> [(&'static str, Duration); 10] {
         let t = &self.times;
         [
             ("reading the case, making the mesh", self.read),
@@ -272,6 +272,7 @@ impl Command {
             ("contact functionals: X, G", t.compliance),
             ("Newton's method", t.newton),
             ("residual in the full system", t.judge),
+            ("enclosure of the exact solution", t.certify),
             ("stresses, pressure, resultants", t.evaluate),
             ("writing the files", self.write),
         ]
@@ -289,11 +290,11 @@ pub fn phases(n: usize, repetitions: usize) -> String {
             (0..repetitions).map(|_| Command::run(&file, &folder.join("out"))).collect();
         let parts = runs[0].parts().map(|part| part.0);
         let least = |k: usize| runs.iter().map(|r| r.parts()[k].1).min().unwrap_or_default();
-        std::array::from_fn::<_, 9, _>(|k| (parts[k], least(k)))
+        std::array::from_fn::<_, 10, _>(|k| (parts[k], least(k)))
     });
     fs::remove_dir_all(&folder).expect("the folder made above");
     let totals = columns.each_ref().map(|c| c.iter().map(|part| part.1).sum::<Duration>());
-    let rows: Vec<Vec<String>> = (0..9)
+    let rows: Vec<Vec<String>> = (0..10)
         .map(|k| {
             let mut row = vec![columns[0][k].0.to_owned()];
             for (column, total) in columns.iter().zip(totals) {

@@ -19,8 +19,8 @@ Written by `cargo bench --bench speed{tail}` on {date}, at commit {commit}.
   (plane strain), body force (0, -4 + 10 x), the top clamped, contact below, gamma0 at half the coercivity limit.
 - Times are minima of runs that take turns. Ratios within this page are its claims; the times belong to this machine.
 - Memory is the peak resident memory of a process that does nothing else.
-- Clocks start with the mesh in memory and stop at the displacements (of the contact solve: judged by their residual in
-  the full system).
+- Clocks start with the mesh in memory and stop at the displacements (of the contact solve: with their residual in
+  the full system). The proof of how far these are from the exact solution is a phase of its own.
 
 ![Time and memory against unknowns](speed.svg)
 ",

@@ -142,6 +142,14 @@ impl From<f64> for Ball {
     }
 }
 
+impl From<crate::kernel::Ball> for Ball {
+    fn from(a: crate::kernel::Ball) -> Self {
+        let (low, high) = (a.lower(), a.upper());
+        let middle = low / 2.0 + high / 2.0;
+        Ball { head: middle, tail: 0.0, radius: up((high - middle).max(middle - low)) }
+    }
+}
+
 impl From<Twofold> for Ball {
     fn from(a: Twofold) -> Self {
         Ball { head: a.head(), tail: a.tail(), radius: 0.0 }

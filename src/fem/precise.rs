@@ -114,18 +114,23 @@ pub fn add_internal_forces<S, E, const N: usize, const M: usize>(
     }
 }
 
-/// Adds int s:eps(v) for every basis function v, in balls, where s is the stress of `u` that doubles give. Returns a b with
-/// |int (s - sigma(u)):eps(v)| <= b |v|_a for all v: docs/theory.md, 7.5. Infinite or NaN where there is none.
-pub fn add_forces_of_rounded_stresses<E, const N: usize, const M: usize>(
+/// Adds int s:eps(v) for every basis function v, where s is the stress of `u` that doubles give, in numbers into which `exactly`
+/// takes doubles. Returns a b with |int (s - sigma(u)):eps(v)| <= b |v|_a for all v: docs/theory.md, 7.5. Infinite or NaN where
+/// there is none.
+pub fn add_forces_of_rounded_stresses<S, E, const N: usize, const M: usize>(
     d: &Discretization<E, N, M>,
     u: &[[Ball; 2]],
-    forces: &mut [[Ball; 2]],
+    exactly: impl Fn(f64) -> S + Copy,
+    forces: &mut [[S; 2]],
 ) -> f64
 where
+    S: Scalar,
     E: ExactEdge<f64, N, M>,
 {
     let mut points = Vec::new();
-    E::at_stiffness_points(|l: [Ball; 3], weight| points.push((l, weight * Ball::from(-0.5))));
+    E::at_stiffness_points(|l: [S; 3], weight| points.push((l, weight * exactly(-0.5))));
+    let mut places = Vec::new();
+    E::at_stiffness_points(|l: [f64; 3], _| places.push(l));
     let mut square = 0.0;
     for (t, (triangle, nodes)) in d.space.triangles().enumerate() {
         let Some(rounded) = RoundedStrain::new::<E, M>(&triangle, nodes.map(|node| u[node])) else {
@@ -133,12 +138,13 @@ where
         };
         let material = d.problem.material.of(t);
         square += rounded.stress_error_squared(material);
-        let normals = [0, 1, 2].map(|i| exactly::<Ball>(triangle).scaled_normal(i));
-        for &(l, weight) in &points {
+        let exact = Triangle { vertices: triangle.vertices.map(|x| x.map(exactly)) };
+        let normals = [0, 1, 2].map(|i| exact.scaled_normal(i));
+        for (&(l, weight), &place) in points.iter().zip(&places) {
             // The area times a gradient is half a scaled normal, or a sum of such.
-            let gradients = E::gradients(l.map(Ball::head), rounded.barycentric);
+            let gradients = E::gradients(place, rounded.barycentric);
             let stress = material.stress(displacement_gradient(&rounded.differences, &gradients));
-            let [xx, yy, xy] = stress.components().map(|s| weight * Ball::from(s));
+            let [xx, yy, xy] = stress.components().map(|s| weight * exactly(s));
             for (&node, g) in nodes.iter().zip(E::gradients(l, normals)) {
                 forces[node][0] += xx * g[0] + xy * g[1];
                 forces[node][1] += xy * g[0] + yy * g[1];

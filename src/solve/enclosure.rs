@@ -28,7 +28,9 @@ use crate::fem::Discretization;
 use crate::fem::ball::{Ball, up};
 use crate::fem::held::Slides;
 use crate::fem::korn::Korn;
+use crate::fem::precise;
 use crate::fem::twofold::Twofold;
+use crate::kernel;
 use crate::kernel::edge_integral::ExactEdge;
 
 /// Where u^h is, and what is known of it.
@@ -394,8 +396,21 @@ where
     /// that comes with it.
     fn times(&self, z: &[Ball]) -> (Vec<Ball>, f64) {
         let v = field(self.system, |number, _, _| z[number], |_, _| 0.0);
+        let d = self.system.d;
         let mut forces = vec![[Ball::from(0); 2]; v.len()];
-        let off = self.stresses.add_forces(self.system.d, &v, &mut forces);
+        let off = match self.stresses {
+            Stresses::InBalls => self.stresses.add_forces(d, &v, &mut forces),
+            // z is next to nothing beside u~: balls of doubles will do.
+            Stresses::InDoubles => {
+                let mut sums = vec![[kernel::Ball::point(0.0); 2]; v.len()];
+                let exactly = kernel::Ball::point;
+                let off = precise::add_forces_of_rounded_stresses(d, &v, exactly, &mut sums);
+                for (force, sum) in forces.iter_mut().zip(sums) {
+                    *force = sum.map(Ball::from);
+                }
+                off
+            }
+        };
         for line in self.lines {
             line.add_stresses(&v, &mut forces);
         }

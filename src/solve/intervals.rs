@@ -77,7 +77,9 @@ impl Stresses {
         E: ExactEdge<f64, N, M>,
     {
         match self {
-            Stresses::InDoubles => precise::add_forces_of_rounded_stresses(d, u, forces),
+            Stresses::InDoubles => {
+                precise::add_forces_of_rounded_stresses(d, u, Ball::from, forces)
+            }
             Stresses::InBalls => {
                 precise::add_internal_forces(d, u, forces);
                 0.0

@@ -18,7 +18,7 @@ use super::assembled::Assembled;
 use super::compliance::Reach;
 use super::condensed::Condensed;
 use super::course::Phase;
-use super::enclosure::{FactorOfA, Verifier};
+use super::enclosure::{FactorOfA, Unproved, Verifier};
 use super::factor::{Factor, Indefinite, Structure};
 use super::memory;
 use super::system::System;
@@ -125,7 +125,10 @@ where
                 return Ok(done);
             }
             Ok(done) => {
-                let hopeless = done.0.enclosure.as_ref().is_err_and(|why| !why.may_be_rounding());
+                let hopeless =
+                    done.0.enclosure.as_ref().is_err_and(|why| {
+                        !why.may_be_rounding() || *why == Unproved::HeldByContact
+                    });
                 if best.as_ref().map_or(true, |(best, ..)| done.0.is_better_than(best)) {
                     best = Ok(done);
                 }

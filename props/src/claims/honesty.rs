@@ -309,7 +309,7 @@ where
         .map(|u| u.map(Ball::centre))
         .collect();
     let mut sums = [vec![[Ball::from(0); 2]; nodes], vec![[Ball::from(0); 2]; nodes]];
-    let bound = precise::add_forces_of_rounded_stresses(&d, &u, &mut sums[0]);
+    let bound = precise::add_forces_of_rounded_stresses(&d, &u, Ball::from, &mut sums[0]);
     precise::add_internal_forces(&d, &u, &mut sums[1]);
     let off: Vec<[f64; 2]> =
         (0..nodes).map(|i| [0, 1].map(|c| (sums[0][i][c] - sums[1][i][c]).head())).collect();
