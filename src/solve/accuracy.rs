@@ -103,7 +103,7 @@ impl Outcome {
             Ok(Status::Converged)
         } else if self.is_proved(settings) {
             Ok(Status::ConvergedToRounding)
-        } else if self.is_out_of_steps(settings) {
+        } else if self.is_out_of_steps(settings) && condition < HOPELESS {
             let residuals = self.residuals.clone();
             Err(SolveError::NotConverged { residual, residuals, tolerance: settings.tolerance })
         } else {
@@ -120,6 +120,9 @@ const BALANCED: f64 = 1e-10;
 
 /// A correction ends where the residual is this share of the tolerance.
 const GOOD_ENOUGH: f64 = 1e-2;
+
+/// A condition number beyond this leaves Newton's method nothing to go by: which of two messages a refusal has.
+const HOPELESS: f64 = 1e14;
 
 /// No more passes than these: each takes the error down by a factor, or there is no point.
 const MOST_PASSES: usize = 12;

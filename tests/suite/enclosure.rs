@@ -36,8 +36,13 @@ fn with_degree(degree: Degree) -> Method {
     Method { degree, ..Method::default() }
 }
 
+/// Settings that ask for all digits.
+fn tight() -> Settings {
+    Settings { proof: 1e-14, ..Settings::default() }
+}
+
 fn solved(problem: &Problem, degree: Degree) -> Solution {
-    solve(problem, &with_degree(degree), &Settings::default()).unwrap().0
+    solve(problem, &with_degree(degree), &tight()).unwrap().0
 }
 
 /// The enclosure around a displacement.
@@ -148,7 +153,7 @@ fn where_kappa_is_1_nothing_is_claimed() {
         allow_noncoercive: true,
         ..Method::default()
     };
-    let (solution, _) = solve(&problem, &method, &Settings::default()).unwrap();
+    let (solution, _) = solve(&problem, &method, &tight()).unwrap();
     assert!(matches!(solution.enclosure, Err(Unproved::NotCoercive { kappa }) if kappa >= 1.0));
 }
 
@@ -182,7 +187,7 @@ fn what_is_exact_of_a_body_that_contact_alone_holds_lies_in_its_intervals() {
             for quadrature in [ContactQuadrature::Exact, ContactQuadrature::Gauss(4)] {
                 let problem = pressed(n, p, guided);
                 let method = Method { degree, quadrature, ..Method::default() };
-                let (solution, _) = solve(&problem, &method, &Settings::default()).unwrap();
+                let (solution, _) = solve(&problem, &method, &tight()).unwrap();
                 assert_eq!(solution.method.slides, usize::from(!guided));
                 let enclosure = solution.enclosure.unwrap();
                 let of = &enclosure.intervals;
@@ -257,7 +262,7 @@ fn control_where_the_perturbation_may_lift_the_body_off_nothing_is_claimed() {
 #[test]
 fn a_disk_that_a_force_presses_is_enclosed_and_its_contact_force_is_the_load() {
     let case = case("disk_force", &[]);
-    let (solution, _) = solve(&case.problem, &case.method, &case.settings).unwrap();
+    let (solution, _) = solve(&case.problem, &case.method, &tight()).unwrap();
     let enclosure = solution.enclosure.unwrap();
     assert!(enclosure.relative.unwrap() < 1e-10, "{:?}", enclosure.relative);
     let [low, high] = enclosure.intervals.contact[0].resultant[1];
@@ -269,7 +274,7 @@ fn a_disk_that_a_force_presses_is_enclosed_and_its_contact_force_is_the_load() {
 fn the_cases_whose_supports_hold_them_are_certified() {
     for name in ["block", "gap", "smooth", "singular", "corner", "cantilever", "disk", "pin"] {
         let case = case(name, &[]);
-        let (solution, _) = solve(&case.problem, &case.method, &case.settings).unwrap();
+        let (solution, _) = solve(&case.problem, &case.method, &tight()).unwrap();
         let relative = solution.enclosure.unwrap().relative.unwrap();
         println!("{name}: {relative:.1e}");
         assert!(relative < 1e-9, "{name}: {relative:e}");
