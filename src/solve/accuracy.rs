@@ -14,6 +14,7 @@ use super::newton::Until;
 use super::system::System;
 use super::{Settings, SolveError, Status};
 use crate::fem::discretization::Discretization;
+use crate::fem::twofold::Twofold;
 use crate::kernel::edge_integral::ExactEdge;
 
 /// A way to better an iterate.

@@ -217,7 +217,7 @@ where
         near: Option<&[[Twofold; 2]]>,
         stresses: Stresses,
     ) -> Result<Enclosure, Unproved> {
-        let (system, d) = (self.system, self.system.d);
+        let d = self.system.d;
         let slides = Slides::around(d, u);
         let mut reported = u.to_vec();
         slides.iter().for_each(|slides| slides.least_norm(&mut reported));
