@@ -111,6 +111,17 @@ class Solution:
         """ "proved": the exact solution of the discrete problem is within `solver.proof` of this one; or "not proved"."""
         return str(self.results["verdict"])
 
+    @property
+    def certified(self) -> dict[tuple[str, str], tuple[float, float]]:
+        """Between what numbers of the true solution lie, as in certified["contact force", "floor"]; empty without a certificate,
+        which `adapt` makes. The upper end of a peak pressure is infinite. docs/result.md has the names."""
+        continuous = self.results.get("certificate", {}).get("continuous", {})
+        return {
+            (q["name"], q["boundary"]): tuple(q["interval"]) if "interval" in q else (q["at_least"], np.inf)
+            for q in continuous.get("quantities", [])
+            if ("interval" in q or "at_least" in q) and "weight" not in q
+        }
+
 
 def solve_case(
     path: Union[str, "os.PathLike[str]"], *, set: Optional[Mapping[str, Any]] = None

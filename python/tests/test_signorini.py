@@ -260,3 +260,15 @@ def test_the_types_are_what_mypy_expects(tmp_path):
 def test_results_are_plain_json():
     solution = signorini.solve(*square(2), **BLOCK)
     assert json.loads(json.dumps(solution.results)) == solution.results
+
+
+def test_an_adapted_solution_has_forces_between_two_numbers():
+    solution = signorini.solve_case(
+        CASES / "block.toml", set={"mesh.rectangle.nx": 4, "mesh.rectangle.ny": 4, "adapt.target": "40 %"}
+    )
+    low, high = solution.certified["contact force", "bottom"]
+    assert 0 <= low <= solution.results["quantities"]["contact_force"] <= high
+    low, high = solution.certified["peak pressure", "bottom"]
+    assert low > 0 and high == float("inf")
+    assert solution.certified["reaction y", "top"][0] < 0
+    assert signorini.solve_case(CASES / "block.toml").certified == {}

@@ -6,6 +6,7 @@ use std::fmt;
 use nalgebra::Vector2;
 
 use crate::kernel::composite::Affine;
+use crate::kernel::contact_edge::integral_of_product;
 use crate::kernel::{Ball, Enclosing, Material, Plane, Triangle};
 
 /// v, tau and the problem that they belong to.
@@ -231,7 +232,7 @@ impl Certificate {
 
     /// Values at the vertices, and at the cuts between them. Between equal numbers lies the same number: so the normal of an
     /// edge along an axis is known exactly. `is_known` tells of a vertex whether its values are the doubles `at`.
-    fn with_cuts<S: Enclosing>(
+    pub(super) fn with_cuts<S: Enclosing>(
         &self,
         mut all: Vec<Vector2<S>>,
         at: &[[f64; 2]],
@@ -312,6 +313,38 @@ impl<S: Enclosing> Shape<S> {
     #[doc(hidden)]
     pub fn bulges_of(&self, piece: &Piece) -> Option<[Vector2<S>; 3]> {
         self.bulges.as_ref().map(|bulges| piece.edges.map(|e| bulges[e]))
+    }
+
+    /// 12 / |T| times the work of the body force on it.
+    pub fn work(&self, piece: &Piece) -> S {
+        // int_T l_i v = |T| / 12 (v_0 + v_1 + v_2 + v_i)
+        let nodal = piece.vertices.map(|vertex| self.points[vertex]);
+        let total = nodal[0] + nodal[1] + nodal[2];
+        let mut work = S::from(0);
+        for i in 0..3 {
+            work += exactly::<S>(piece.body[i]).dot(&(total + nodal[i]));
+        }
+        if let Some(bulges) = self.bulges_of(piece) {
+            // int_T 4 l_j l_k l_i = |T| / 15, and twice that for l_j and l_k in place of l_i.
+            let body = piece.body.map(exactly::<S>);
+            let sum = body[0] + body[1] + body[2];
+            let fifteenth = S::from(24) / S::from(30);
+            for i in 0..3 {
+                work += (sum * S::from(2) - body[i]).dot(&bulges[i]) * fifteenth;
+            }
+        }
+        work
+    }
+
+    /// The work on it of a force on edge `e`, affine between its ends, per unit of the edge's parameter.
+    pub fn work_of(&self, force: [Vector2<S>; 2], ends: [usize; 2], e: usize) -> S {
+        let [a, b] = ends.map(|p| self.points[p]);
+        let work = |c: usize| integral_of_product([force[0][c], force[1][c]], [a[c], b[c]]);
+        let work = work(0) + work(1);
+        match &self.bulges {
+            Some(bulges) => work + (force[0] + force[1]).dot(&bulges[e]) / S::from(3),
+            None => work,
+        }
     }
 
     /// C eps of it on a triangle.

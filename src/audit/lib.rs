@@ -11,6 +11,7 @@
 //! | `checks`, `on_contact` | what they must satisfy; the edges of Gamma_C |
 //! | `balance`, `balanced` | tractions in exact equilibrium |
 //! | [`proof`] | the bound |
+//! | [`forces`], [`dual`] | forces of the true solution between two numbers; to second order |
 #![cfg(not(kani))]
 
 mod balance;
@@ -18,6 +19,8 @@ mod balance;
 pub mod balanced;
 pub mod certificate;
 mod checks;
+pub mod dual;
+pub mod forces;
 #[cfg(feature = "files")]
 pub mod format;
 mod on_contact;

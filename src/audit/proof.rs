@@ -26,10 +26,11 @@ pub use super::certificate::{
 };
 pub use super::checks::Rejection;
 
+use nalgebra::Vector2;
+
 use super::balanced::Balanced;
 use super::certificate::{Shape, exactly};
 use crate::kernel::composite::Composite;
-use crate::kernel::contact_edge::integral_of_product;
 use crate::kernel::{Ball, Enclosing};
 
 /// What a certificate proves.
@@ -165,40 +166,13 @@ impl Certificate {
         distance + state.on_contact[t]
     }
 
-    /// The right side of the theorem.
-    #[doc(hidden)]
-    pub fn sum<S: Enclosing>(&self, state: &Balanced<S>) -> Result<Proof, Rejection> {
-        let Balanced { triangles, v, forces, .. } = state;
-        let zero = S::from(0);
-        let (mut square, mut norm, mut energy) = (zero, zero, zero);
-        let mut shares = Vec::with_capacity(self.pieces.len());
-        for (t, piece) in self.pieces.iter().enumerate() {
-            let material = piece.material();
-            let double_area = triangles[t].double_area();
-            let nodal = piece.vertices.map(|vertex| v.points[vertex]);
-            let (sigma, distance) = state.stresses(self, t);
-            let share = self.share(state, t, &distance);
-            shares.push(share.upper());
-            square += share;
-            let internal = sigma.energy(&material, double_area);
-            norm += internal;
-            // int_T l_i v = |T| / 12 (v_0 + v_1 + v_2 + v_i)
-            let total = nodal[0] + nodal[1] + nodal[2];
-            let mut work = zero;
-            for i in 0..3 {
-                work += exactly::<S>(piece.body[i]).dot(&(total + nodal[i]));
-            }
-            if let Some(bulges) = v.bulges_of(piece) {
-                // int_T 4 l_j l_k l_i = |T| / 15, and twice that for l_j and l_k in place of l_i.
-                let body = piece.body.map(exactly::<S>);
-                let sum = body[0] + body[1] + body[2];
-                let fifteenth = S::from(24) / S::from(30);
-                for i in 0..3 {
-                    work += (sum * S::from(2) - body[i]).dot(&bulges[i]) * fifteenth;
-                }
-            }
-            energy = energy + internal / S::from(2) - work * double_area / S::from(24);
-        }
+    /// The work of the tractions that are given on a displacement; `forces` are tau N on the edges.
+    pub(crate) fn work_of_tractions<S: Enclosing>(
+        &self,
+        forces: &[[Vector2<S>; 2]],
+        v: &Shape<S>,
+    ) -> S {
+        let mut work = S::from(0);
         for (e, edge) in self.edges.iter().enumerate() {
             let given = match edge.role {
                 Role::Loaded(_) | Role::Pressed(_) => forces[e],
@@ -209,14 +183,31 @@ impl Certificate {
                 }
                 _ => continue,
             };
-            let [a, b] = edge.ends.map(|vertex| v.points[vertex]);
-            for c in 0..2 {
-                energy -= integral_of_product([given[0][c], given[1][c]], [a[c], b[c]]);
-            }
-            if let Some(bulges) = &v.bulges {
-                energy -= (given[0] + given[1]).dot(&bulges[e]) / S::from(3);
-            }
+            work += v.work_of(given, edge.ends, e);
         }
+        work
+    }
+
+    /// The right side of the theorem.
+    #[doc(hidden)]
+    pub fn sum<S: Enclosing>(&self, state: &Balanced<S>) -> Result<Proof, Rejection> {
+        let Balanced { triangles, v, forces, .. } = state;
+        let zero = S::from(0);
+        let (mut square, mut norm, mut energy) = (zero, zero, zero);
+        let mut shares = Vec::with_capacity(self.pieces.len());
+        for (t, piece) in self.pieces.iter().enumerate() {
+            let material = piece.material();
+            let double_area = triangles[t].double_area();
+            let (sigma, distance) = state.stresses(self, t);
+            let share = self.share(state, t, &distance);
+            shares.push(share.upper());
+            square += share;
+            let internal = sigma.energy(&material, double_area);
+            norm += internal;
+            let work = v.work(piece);
+            energy = energy + internal / S::from(2) - work * double_area / S::from(24);
+        }
+        energy = energy - self.work_of_tractions(forces, v);
         let bound = square.split(|_| zero, |s| s).sqrt().upper();
         let norm = norm.split(|_| zero, |n| n).sqrt().lower();
         let energy = [energy.lower(), energy.upper()];

@@ -14,9 +14,11 @@ use super::divide::{Division, Part, cut, divided};
 use super::field::Field;
 use super::oscillation::Oscillation;
 use super::parts::{Boundary, Parts};
+use super::quantities::{Line, Station};
 use super::quarters::{add_halves, halved, quarters};
 use super::tractions::{force_of, held_only, moments, stresses, supported};
 use crate::fem::Mesh;
+use crate::fem::mesh::length;
 use crate::fem::smooth::SmoothBoundary;
 use crate::kernel::composite::Affine;
 use crate::kernel::{Enclosing, Triangle};
@@ -30,7 +32,7 @@ pub(super) struct Built {
     pub oscillation: Oscillation,
     /// Its triangles are quarters of those of the mesh.
     quartered: bool,
-    divisions: Vec<Division>,
+    pub divisions: Vec<Division>,
 }
 
 impl Built {
@@ -70,6 +72,56 @@ impl Built {
         }
         let contact = parts.contact.iter().enumerate();
         contact.filter_map(|(k, edge)| Some((k, *of.get(&edge.edge.triangle)?))).collect()
+    }
+}
+
+impl Built {
+    /// Where the boundaries of the problem are on the edges of the certificate.
+    pub fn line(&self, parts: &Parts) -> Line {
+        let (mesh, edges) = (parts.mesh, &self.certificate.edges);
+        let count = mesh.edge_count();
+        // A division keeps its edge for the first part and adds the second one and the cut.
+        let first = edges.len() - 2 * self.divisions.len();
+        let second: BTreeMap<usize, usize> =
+            self.divisions.iter().enumerate().map(|(i, d)| (d.base, first + 2 * i)).collect();
+        let halves = if self.quartered { 2 } else { 1 };
+        let on = |whole: usize| {
+            let halves = (0..halves).map(move |half| half * count + whole);
+            halves.flat_map(|e| std::iter::once(e).chain(second.get(&e).copied()))
+        };
+        let mut line =
+            Line { names: Vec::new(), of: vec![None; edges.len()], stations: Vec::new() };
+        for name in parts.problem.conditions.keys() {
+            for &edge in mesh.edges_of(name).unwrap_or_default() {
+                let whole = mesh.triangle_edges()[edge.triangle][edge.local];
+                on(whole).for_each(|e| line.of[e] = Some(line.names.len()));
+            }
+            line.names.push(name.clone());
+        }
+        let mut before: Option<(usize, usize)> = None;
+        let mut arc = 0.0;
+        for contact in &parts.contact {
+            let whole = mesh.triangle_edges()[contact.edge.triangle][contact.edge.local];
+            for e in on(whole) {
+                let (ends, Some(name)) = (edges[e].ends, line.of[e]) else { continue };
+                if before.is_none_or(|(boundary, _)| boundary != name) {
+                    arc = 0.0;
+                }
+                let joined = before == Some((name, ends[0]));
+                let [a, b] = ends.map(|p| place(&self.certificate, p));
+                let from = arc;
+                arc += length(b - a);
+                line.stations.push(Station {
+                    edge: e,
+                    from,
+                    to: arc,
+                    ends: [a.into(), b.into()],
+                    joined,
+                });
+                before = Some((name, ends[1]));
+            }
+        }
+        line
     }
 }
 
@@ -254,8 +306,14 @@ fn add_part(
     let (corners, edges) = (part.vertices, part.edges);
     let mut found = vec![part];
     for e in edges {
-        let Some((profile, gap_bulge)) = on_contact(parts, built.quartered, e) else { continue };
-        let Profile { cut: Some(at), values } = profile else { continue };
+        let (at, values, gap_bulge) = match on_contact(parts, built.quartered, e) {
+            Some((Profile { cut: Some(at), values }, gap_bulge)) => (at, values, gap_bulge),
+            Some(_) => continue,
+            None => match parts.cuts.get(&e) {
+                Some(&at) => (at, [[0.0; 2]; 2], 0.0),
+                None => continue,
+            },
+        };
         let Some(owner) = found.iter().position(|part| part.edges.contains(&e)) else { continue };
         let part = found.remove(owner);
         let Built { certificate, divisions, .. } = &mut *built;

@@ -38,23 +38,24 @@ pub(super) fn cut(
     let [a, b, c] = [0, 1, 2].map(|k| part.vertices[(local + k) % 3]);
     let [at_a, at_b, at_c] = [0, 1, 2].map(|k| part.places[(local + k) % 3]);
     let [next, last] = [1, 2].map(|k| part.edges[(local + k) % 3]);
-    let Role::Contact { gap, along, .. } = certificate.edges[base].role else { return vec![part] };
+    let role = certificate.edges[base].role;
     let middle = certificate.vertices.len() + certificate.cuts.len();
     let (whole, at) = on_whole(certificate, [b, c], at);
     certificate.cuts.push(whole);
     let gap_bulge = if certificate.curved.is_some() { gap_bulge } else { 0.0 };
-    let inside = gap[0] + at * (gap[1] - gap[0]) + 4.0 * at * (1.0 - at) * gap_bulge;
-    let [first, second] = pressures;
-    // The first half keeps the number of the edge.
-    certificate.edges[base] = Edge {
-        ends: [b, middle],
-        role: Role::Contact { pressure: first, gap: [gap[0], inside], along },
-    };
-    let other = certificate.edges.len();
-    certificate.edges.push(Edge {
-        ends: [middle, c],
-        role: Role::Contact { pressure: second, gap: [inside, gap[1]], along },
+    let [first, second] = [0, 1].map(|half| match role {
+        Role::Contact { gap, along, .. } => {
+            let inside = gap[0] + at * (gap[1] - gap[0]) + 4.0 * at * (1.0 - at) * gap_bulge;
+            let gap = if half == 0 { [gap[0], inside] } else { [inside, gap[1]] };
+            Role::Contact { pressure: pressures[half], gap, along }
+        }
+        // Without a traction.
+        other => other,
     });
+    // The first half keeps the number of the edge.
+    certificate.edges[base] = Edge { ends: [b, middle], role: first };
+    let other = certificate.edges.len();
+    certificate.edges.push(Edge { ends: [middle, c], role: second });
     let [from, to] = [middle, a].map(|p| place(certificate, p));
     let normal = Vector2::new(to.y - from.y, from.x - to.x);
     let at_middle = [0, 1, 2].map(|i| at_b[i] + at * (at_c[i] - at_b[i]));

@@ -12,6 +12,7 @@
 //! | `oscillation` | data outside the exact class |
 //! | `bubbles` | stresses for what affine loads lack |
 //! | `binding` | whether a certificate is one of a problem |
+//! | `quantities`, `lifting` | forces between two numbers, and where contact can act, by `signorini_audit::forces`; the displacements that prove them |
 //! | `adapt` | meshes that are refined until the bound meets a target |
 
 pub mod adapt;
@@ -24,8 +25,10 @@ mod data;
 mod divide;
 mod errors;
 mod field;
+mod lifting;
 mod oscillation;
 mod parts;
+pub mod quantities;
 mod quarters;
 mod sweeps;
 mod tractions;
@@ -39,12 +42,14 @@ pub use self::errors::CertifyError;
 use self::field::Field;
 use self::parts::Parts;
 pub use self::proof::{Certificate, Proof, Rejection};
+pub use signorini_audit::forces::Ramp;
 #[cfg(feature = "files")]
 pub use signorini_audit::format;
-pub use signorini_audit::proof;
 use signorini_audit::{balanced, certificate};
+pub use signorini_audit::{dual, forces, proof};
 
 use self::proof::{Piece, Role};
+pub use self::quantities::Quantities;
 use crate::fem::{Mesh, Problem};
 use crate::kernel::{Ball, Interval, P1, P2, Scalar, Triangle};
 use crate::memory;
@@ -94,6 +99,8 @@ pub struct Continuous {
     /// The largest |w - u_D| at the nodes of Gamma_D and, where w is quadratic or u_D is, of the bulges between them: bounds in
     /// the energy norm don't see a w that is moved as a whole.
     pub missed: f64,
+    /// What it proves of contact itself.
+    pub quantities: Quantities,
 }
 
 /// Certifies the `solution` of `problem`.
@@ -101,7 +108,28 @@ pub struct Continuous {
 /// # Errors
 /// Data that don't make the problem; a solution that no certificate can be made for, with the reason.
 pub fn certify(problem: &Problem, solution: &Solution) -> Result<Continuous, CertifyError> {
-    certify_field(problem, solution, &solution.displacement)
+    certify_with(problem, solution, &Asked::default())
+}
+
+/// What is asked of a certificate beside what it always has.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Asked {
+    /// Forces of the pressure times weights, each with the name of its contact boundary.
+    pub weights: Vec<(String, Ramp)>,
+    /// Contact forces of second order, by dual pairs: each costs two certificates more.
+    pub second_order: bool,
+}
+
+/// Certifies the `solution` of `problem`, and what is asked beside.
+///
+/// # Errors
+/// As [`certify`].
+pub fn certify_with(
+    problem: &Problem,
+    solution: &Solution,
+    asked: &Asked,
+) -> Result<Continuous, CertifyError> {
+    certify_near(problem, solution, (&solution.displacement, &solution.displacement), asked)
 }
 
 /// Certifies any displacement `field` of `problem`, given at the vertices of the mesh, and at the middles of its edges if it is
@@ -115,11 +143,11 @@ pub fn certify_field(
     solution: &Solution,
     field: &[[f64; 2]],
 ) -> Result<Continuous, CertifyError> {
-    let clipped = certify_near(problem, solution, field, field)?;
+    let clipped = certify_near(problem, solution, (field, field), &Asked::default())?;
     if clipped.clipping == 0.0 || field == solution.displacement {
         return Ok(clipped);
     }
-    let own = certify_near(problem, solution, &solution.displacement, field)?;
+    let own = certify_near(problem, solution, (&solution.displacement, field), &Asked::default())?;
     Ok(if own.of_field < clipped.of_field { own } else { clipped })
 }
 
@@ -127,8 +155,8 @@ pub fn certify_field(
 fn certify_near(
     problem: &Problem,
     solution: &Solution,
-    start: &[[f64; 2]],
-    field: &[[f64; 2]],
+    (start, field): (&[[f64; 2]], &[[f64; 2]]),
+    asked: &Asked,
 ) -> Result<Continuous, CertifyError> {
     // Beside a quadratic v each is cut in four.
     let quadratic = solution.degree == 2 && start.len() > problem.mesh.vertices().len();
@@ -162,6 +190,7 @@ fn certify_near(
     let (certificate, oscillation) = (&built.certificate, &built.oscillation);
     let state = certificate.balanced::<Ball>(topology)?;
     let proof = certificate.sum(&state)?;
+    let quantities = quantities::prove(&parts, (solution, &v), &built, (&state, &proof), asked);
     let bound = certificate.with_lifts(proof.bound);
     let relative = (Interval::point(bound) / Interval::point(proof.norm)).hi();
     let energy = oscillation.reason.is_none().then(|| {
@@ -209,6 +238,7 @@ fn certify_near(
         clipping,
         of_field,
         missed,
+        quantities,
     })
 }
 

@@ -45,6 +45,8 @@ pub(super) struct Parts<'a> {
     pub frames: BTreeMap<usize, [f64; 2]>,
     /// What boundary edges are, by their numbers in the mesh.
     pub boundary: BTreeMap<usize, Boundary<'a>>,
+    /// Where edges without a traction are cut, by their numbers in the certificate.
+    pub cuts: BTreeMap<usize, f64>,
 }
 
 impl<'a> Parts<'a> {
@@ -162,7 +164,8 @@ impl<'a> Parts<'a> {
                 prescribed[vertex] = d.map(|d| along.filter(|_| d != 0.0).map(|w| d * w));
             }
         }
-        let parts = Parts { problem, mesh, contact, prescribed, frames, boundary };
+        let cuts = BTreeMap::new();
+        let parts = Parts { problem, mesh, contact, prescribed, frames, boundary, cuts };
         parts.check_directions()?;
         Ok(parts)
     }

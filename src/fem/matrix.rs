@@ -41,8 +41,16 @@ impl Numbering {
 
     /// Numbers the components that are free under `constraints`, in the frames of their nodes.
     pub fn under(order: &[usize], constraints: &Constraints) -> Self {
-        let frames = constraints.frames().clone();
-        Numbering { frames, ..Numbering::new(order, constraints.values()) }
+        Numbering::in_frames(order, constraints.values(), constraints.frames().clone())
+    }
+
+    /// Numbers the components that are not `prescribed`, along the first axes in `frames` and across them at those nodes.
+    pub fn in_frames(
+        order: &[usize],
+        prescribed: &[[Option<f64>; 2]],
+        frames: BTreeMap<usize, [f64; 2]>,
+    ) -> Self {
+        Numbering { frames, ..Numbering::new(order, prescribed) }
     }
 
     fn numbers(&self) -> Numbers<'_> {

@@ -23,7 +23,9 @@ use crate::solve::{
     ContactBoundary, ContactQuadrature, EnergyBalance, Gamma0, GammaReport, Method, MethodReport,
     Quantities, Status, Times,
 };
-pub use certificates::{Certificates, ContinuousCertificate, DiscreteCertificate};
+pub use certificates::{
+    Certificates, CertifiedQuantity, CertifiedZone, ContinuousCertificate, DiscreteCertificate,
+};
 
 /// The content of result.json, in its order.
 #[derive(Clone, Debug, Serialize, Deserialize)]

@@ -159,7 +159,11 @@ fn contact(r: &Results, shown: &Shown, verbose: bool, lines: &mut Lines) {
         let length = format!("{}{}", short(part.length), shown.length);
         let [force, components] = [size(part.force), shown.components(part.resultant)];
         let peak = format!("{}{}", shown.stress(part.peak_pressure), at(part.peak_at));
-        lines.line(name, format!("{boundary}: force {force} {components}, length {length}"));
+        let components = match proved_force(r, &part.boundary, shown.thickness) {
+            Some(proved) => format!(", {proved}; components {components}"),
+            None => format!(" {components}"),
+        };
+        lines.line(name, format!("{boundary}: force {force}{components}, length {length}"));
         lines.line("", format!("peak pressure {peak}"));
         if verbose {
             let mut words = format!("moment {}", shown.moment(part.moment));
@@ -170,6 +174,16 @@ fn contact(r: &Results, shown: &Shown, verbose: bool, lines: &mut Lines) {
             lines.line("", words);
         }
     }
+}
+
+/// Between what the true contact force of a boundary is proved to lie, rounded outwards.
+fn proved_force(r: &Results, boundary: &str, thickness: f64) -> Option<String> {
+    let continuous = r.certificate.as_ref()?.continuous.as_ref()?;
+    let [low, high] = continuous.quantity("contact force", boundary)?.interval?;
+    // Half of the last of four digits, for a number that begins with 1.
+    let outward = |end: f64, sign: f64| short((end + sign * 5e-4 * end.abs()) * thickness);
+    let proved = if continuous.rigorous { "proved" } else { "with a reservation" };
+    Some(format!("{proved} between {} and {}", outward(low, -1.0), outward(high, 1.0)))
 }
 
 fn stress(r: &Results, shown: &Shown, lines: &mut Lines) {

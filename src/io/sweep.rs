@@ -288,6 +288,13 @@ fn cells(r: &Results, shown: Shown) -> Vec<Cell> {
         add(format!("{}.force_low", part.boundary), (part.force[0] * thickness).next_down());
         add(format!("{}.force_high", part.boundary), (part.force[1] * thickness).next_up());
     }
+    let certified = r.certificate.as_ref().and_then(|c| c.continuous.as_ref());
+    for part in &r.contact {
+        let proved = certified.and_then(|c| c.quantity("contact force", &part.boundary)?.interval);
+        let Some([low, high]) = proved else { continue };
+        add(format!("{}.true_force_low", part.boundary), (low * thickness).next_down());
+        add(format!("{}.true_force_high", part.boundary), (high * thickness).next_up());
+    }
     for (boundary, force) in &q.reactions {
         for (axis, value) in ["x", "y"].into_iter().zip(force) {
             add(format!("{boundary}.reaction_{axis}"), value * thickness);

@@ -29,6 +29,7 @@ mod method;
 mod parts;
 mod patch;
 mod peaks;
+mod quantities;
 mod reference;
 mod routes;
 #[cfg(feature = "cli")]

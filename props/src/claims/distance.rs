@@ -41,13 +41,13 @@ fn affine(a: f64, b: f64) -> SharedFunction {
 
 /// A body of cells of size 1 that is held at the top and loaded, on a floor. Data in sixteenths.
 #[derive(Clone, Debug)]
-struct Draw {
-    cells: [usize; 2],
+pub(super) struct Draw {
+    pub(super) cells: [usize; 2],
     diagonal: Diagonal,
     lambda: f64,
-    load: [f64; 2],
+    pub(super) load: [f64; 2],
     /// By how much it grows with x.
-    slope: [f64; 2],
+    pub(super) slope: [f64; 2],
     /// g = g0 + g1 x
     gap: [f64; 2],
     /// The displacement of the top.
@@ -55,7 +55,7 @@ struct Draw {
     pressure: f64,
 }
 
-fn bodies(most: usize) -> impl Strategy<Value = Draw> {
+pub(super) fn bodies(most: usize) -> impl Strategy<Value = Draw> {
     let diagonal = prop::sample::select(&[Diagonal::Left, Diagonal::Right, Diagonal::Crossed]);
     let part = |range: std::ops::RangeInclusive<i32>| range.prop_map(|k| f64::from(k) / 16.0);
     let lambda = prop::sample::select(&[0.0, 1.0, 4.0]);
@@ -100,24 +100,38 @@ impl Draw {
         ))
     }
 
-    fn certified(&self) -> Result<(Problem, Vec<[f64; 2]>, Continuous), String> {
+    pub(super) fn certified(&self) -> Result<(Problem, Vec<[f64; 2]>, Continuous), String> {
         self.certified_with(Degree::One)
     }
 
-    fn certified_with(
+    pub(super) fn certified_with(
         &self,
         degree: Degree,
     ) -> Result<(Problem, Vec<[f64; 2]>, Continuous), String> {
-        let problem = self.problem()?;
-        let method = Method { degree, ..Method::default() };
-        let solved = solve(&problem, &method, &Settings::default());
-        let (solution, _) = solved.map_err(text)?;
-        let certified = certify(&problem, &solution).map_err(text)?;
-        if !certified.rigorous {
-            return Err("data of the exact class are not known to be".to_owned());
-        }
-        Ok((problem, solution.displacement, certified))
+        certified(self.problem()?, degree)
     }
+
+    /// By P1, with each side of a cell divided into `finer` parts.
+    pub(super) fn certified_on(
+        &self,
+        finer: usize,
+    ) -> Result<(Problem, Vec<[f64; 2]>, Continuous), String> {
+        certified(self.problem_on(finer)?, Degree::One)
+    }
+}
+
+fn certified(
+    problem: Problem,
+    degree: Degree,
+) -> Result<(Problem, Vec<[f64; 2]>, Continuous), String> {
+    let method = Method { degree, ..Method::default() };
+    let solved = solve(&problem, &method, &Settings::default());
+    let (solution, _) = solved.map_err(text)?;
+    let certified = certify(&problem, &solution).map_err(text)?;
+    if !certified.rigorous {
+        return Err("data of the exact class are not known to be".to_owned());
+    }
+    Ok((problem, solution.displacement, certified))
 }
 
 /// How a certificate sees its contact line.

@@ -56,6 +56,7 @@ pub mod positive_part;
 #[cfg(not(kani))]
 pub mod pressed;
 pub mod prop_2_1;
+pub mod quantities;
 #[cfg(not(kani))]
 pub mod rates;
 #[cfg(not(kani))]
@@ -96,6 +97,7 @@ pub fn all() -> Vec<Claim> {
         engine::claim(),
         bounds::claim(),
         distance::claim(),
+        quantities::claim(),
     ];
     claims.sort_by_key(|claim| claim.id.parse::<u32>().expect("the id of a row is a number"));
     claims
@@ -157,5 +159,6 @@ mod tests {
         every_check_of_row_23_passes "23",
         every_check_of_row_24_passes "24",
         every_check_of_row_25_passes "25",
+        every_check_of_row_26_passes "26",
     }
 }

@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::certify::{CertifyError, Continuous};
+use crate::certify::quantities::{Limit, Quantity, Zone};
+use crate::certify::{CertifyError, Continuous, Ramp};
 use crate::solve::{Intervals, enclosure};
 
 /// How wrong the solution can be.
@@ -96,6 +97,127 @@ pub struct ContinuousCertificate {
     /// that is free.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub problem: Option<String>,
+    /// The distance of the true stress from (C eps(v) + tau) / 2 is at most this, in the norm of energy.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mean_stress: Option<f64>,
+    /// Forces, moments, reactions and peaks of the true solution.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub quantities: Vec<CertifiedQuantity>,
+    /// Where contact can hardly act, and where the body can hardly be off the obstacle.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub zones: Vec<CertifiedZone>,
+}
+
+/// A number of the true solution between two others.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct CertifiedQuantity {
+    /// Which one: `contact force`, `contact moment`, `reaction x` and so on.
+    pub name: String,
+    /// Of which boundary.
+    pub boundary: String,
+    /// The weight of the pressure, if there is one: it is 1 where the coordinate `along` is between two numbers, and falls to 0 over a width.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub weight: Option<Weight>,
+    /// What the true solution has lies between these.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub interval: Option<[f64; 2]>,
+    /// It is at least this, where it has no upper bound: a peak pressure.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at_least: Option<f64>,
+    /// What the discrete solution has.
+    pub value: f64,
+    /// Every step is proved, rounding included.
+    pub rigorous: bool,
+    /// Why not, or why there is no interval.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+}
+
+/// A weight along a contact boundary.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Weight {
+    /// `x` or `y`.
+    pub along: Axis,
+    /// Where it is 1.
+    pub between: [f64; 2],
+    /// Over which it falls to 0 beyond.
+    pub ramp: f64,
+}
+
+/// A coordinate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Axis {
+    /// x
+    X,
+    /// y
+    Y,
+}
+
+impl From<Ramp> for Weight {
+    fn from(ramp: Ramp) -> Self {
+        let along = if ramp.axis == 0 { Axis::X } else { Axis::Y };
+        Weight { along, between: ramp.between, ramp: ramp.width }
+    }
+}
+
+/// A stretch of a contact boundary.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct CertifiedZone {
+    /// The boundary.
+    pub boundary: String,
+    /// Where it begins: arc length from the start of the boundary's first edge.
+    pub from: f64,
+    /// Where it ends.
+    pub to: f64,
+    /// The places of both, in the undeformed body.
+    pub ends: [[f64; 2]; 2],
+    /// The contact force of the true solution there is at most this.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub force_at_most: Option<f64>,
+    /// The integral of its opening there is at most this.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub opening_at_most: Option<f64>,
+}
+
+impl From<&Zone> for CertifiedZone {
+    fn from(zone: &Zone) -> Self {
+        let (force_at_most, opening_at_most) = match zone.limit {
+            Limit::Force(most) => (Some(most), None),
+            Limit::Opening(most) => (None, Some(most)),
+        };
+        let Zone { boundary, from, to, ends, .. } = zone.clone();
+        CertifiedZone { boundary, from, to, ends, force_at_most, opening_at_most }
+    }
+}
+
+impl CertifiedQuantity {
+    fn new(quantity: &Quantity, certified: &Continuous) -> Self {
+        let is_finite = |ends: &[f64; 2]| ends.iter().all(|end| end.is_finite());
+        let proved = quantity.interval.as_ref();
+        CertifiedQuantity {
+            name: quantity.name.text().to_owned(),
+            boundary: quantity.boundary.clone(),
+            weight: quantity.weight.map(Weight::from),
+            interval: proved.ok().copied().filter(is_finite),
+            at_least: proved.ok().filter(|ends| !is_finite(ends)).map(|ends| ends[0]),
+            value: quantity.value,
+            rigorous: certified.rigorous && proved.is_ok(),
+            reason: proved.err().cloned().or_else(|| certified.reason.clone()),
+        }
+    }
+}
+
+impl ContinuousCertificate {
+    /// The number of a boundary with this name, of the pressure as it is.
+    pub fn quantity(&self, name: &str, boundary: &str) -> Option<&CertifiedQuantity> {
+        let is =
+            |q: &&CertifiedQuantity| q.name == name && q.boundary == boundary && q.weight.is_none();
+        self.quantities.iter().find(is)
+    }
 }
 
 impl From<&Result<Continuous, CertifyError>> for ContinuousCertificate {
@@ -111,6 +233,14 @@ impl From<&Result<Continuous, CertifyError>> for ContinuousCertificate {
                 rigorous: c.rigorous,
                 reason: c.reason.clone(),
                 problem: c.problem.clone(),
+                mean_stress: Some(c.quantities.mean_stress),
+                quantities: c
+                    .quantities
+                    .list
+                    .iter()
+                    .map(|q| CertifiedQuantity::new(q, c))
+                    .collect(),
+                zones: c.quantities.zones.iter().map(CertifiedZone::from).collect(),
             },
             Err(error) => {
                 ContinuousCertificate { reason: Some(error.to_string()), ..Default::default() }

@@ -1,0 +1,402 @@
+//! Forces of the true solution between two numbers (docs/theory.md, 7.7): the identity behind the mean stress, the signs of what
+//! contact adds, where contact can act, and the largest value of what is not known; and the checker that evaluates them.
+
+use crate::verdict::{Ordered, Verdict};
+use crate::{ensure, given};
+
+/// |s - (q + t) / 2|^2 = |q - t|^2 / 4 + (s - q) (s - t), a component of the stresses sigma(u), C eps(v) and tau.
+pub fn the_mean_of_two_stresses_splits<S: Ordered>([s, q, t]: [S; 3]) -> Verdict {
+    let two = S::from(2);
+    let (m, half) = ((q + t) / two, (q - t) / two);
+    ensure!((s - m) * (s - m) == half * half + (s - q) * (s - t));
+    Verdict::Holds("always")
+}
+
+/// (sigma_n - tau_n) (u_n - v_n) = G - A - B at a point of Gamma_C, and A and B are not negative.
+pub fn contact_adds_two_terms_that_are_not_negative<S: Ordered>(
+    [u, v, g, s, t]: [S; 5],
+) -> Verdict {
+    let zero = S::from(0);
+    given!(u <= g && s <= zero && s * (u - g) == zero);
+    given!(v <= g && t <= zero);
+    let (a, b) = (s * (v - g), t * (u - g));
+    ensure!((s - t) * (u - v) == t * (v - g) - a - b);
+    ensure!(a >= zero && b >= zero);
+    Verdict::Holds(if s < zero { "contact" } else { "no force" })
+}
+
+/// Where v is off the obstacle by d, the force is at most A / d.
+pub fn little_force_where_there_is_a_gap<S: Ordered>([v, g, s, d]: [S; 4]) -> Verdict {
+    let zero = S::from(0);
+    given!(d > zero && g - v >= d && s <= zero);
+    ensure!(-s * d <= s * (v - g));
+    Verdict::Holds("always")
+}
+
+/// Where tau presses with p, the opening is at most B / p.
+pub fn little_opening_where_there_is_pressure<S: Ordered>([u, g, t, p]: [S; 4]) -> Verdict {
+    let zero = S::from(0);
+    given!(p > zero && t <= -p && u <= g);
+    ensure!((g - u) * p <= t * (u - g));
+    Verdict::Holds("always")
+}
+
+/// x eta + k (M^2 - x^2) is at most k M^2 + eta^2 / (4 k).
+pub fn what_is_missed_is_largest_inside<S: Ordered>([x, eta, k, m]: [S; 4]) -> Verdict {
+    let four = S::from(4);
+    given!(k > S::from(0));
+    let value = x * eta + k * (m * m - x * x);
+    ensure!(four * k * value <= four * k * k * m * m + eta * eta);
+    Verdict::Holds("always")
+}
+
+/// Where eta >= 2 k M it is at most M eta for 0 <= x <= M.
+pub fn what_is_missed_is_largest_at_the_end<S: Ordered>([x, eta, k, m]: [S; 4]) -> Verdict {
+    let zero = S::from(0);
+    given!(k >= zero && zero <= x && x <= m && eta >= S::from(2) * k * m);
+    ensure!(x * eta + k * (m * m - x * x) <= m * eta);
+    Verdict::Holds("always")
+}
+
+/// \[7.8\] with a point's products for the integrals: x for C eps(w) - rho, so for |sigma_n| omega.
+pub fn a_dual_pair_gives_the_force<S: Ordered>(
+    [l, avw, s, q, t, x, r, u, v, g, so]: [S; 11],
+) -> Verdict {
+    let two = S::from(2);
+    let force = l - (avw + (s - q) * x + r * (u - v)) + so;
+    let near = l - avw + r * (v - g) + (q - t) * x / two;
+    ensure!(force == near - (s - (q + t) / two) * x + r * (g - u) + so);
+    Verdict::Holds("always")
+}
+
+/// r of the wrong sign.
+pub fn control_the_traction_turned<S: Ordered>(
+    [l, avw, s, q, t, x, r, u, v, g, so]: [S; 11],
+) -> Verdict {
+    let two = S::from(2);
+    let force = l - (avw + (s - q) * x + r * (u - v)) + so;
+    let near = l - avw - r * (v - g) + (q - t) * x / two;
+    ensure!(force == near - (s - (q + t) / two) * x + r * (g - u) + so);
+    Verdict::Holds("always")
+}
+
+/// M with an eighth in place of a quarter: the factor 1/2 lost.
+pub fn control_an_eighth_of_the_distance<S: Ordered>([s, q, t]: [S; 3]) -> Verdict {
+    let m = (q + t) / S::from(2);
+    ensure!((s - m) * (s - m) == (q - t) * (q - t) / S::from(8) + (s - q) * (s - t));
+    Verdict::Holds("always")
+}
+
+/// tau in place of the mean.
+pub fn control_tau_in_place_of_the_mean<S: Ordered>([s, q, t]: [S; 3]) -> Verdict {
+    let half = (q - t) / S::from(2);
+    ensure!((s - t) * (s - t) == half * half + (s - q) * (s - t));
+    Verdict::Holds("always")
+}
+
+/// B dropped.
+pub fn control_without_the_opening_under_tau<S: Ordered>([u, v, g, s, t]: [S; 5]) -> Verdict {
+    let zero = S::from(0);
+    given!(u <= g && s <= zero && s * (u - g) == zero);
+    given!(v <= g && t <= zero);
+    ensure!((s - t) * (u - v) == t * (v - g) - s * (v - g));
+    Verdict::Holds("always")
+}
+
+/// k M^2 alone.
+pub fn control_without_the_square_of_eta<S: Ordered>([x, eta, k, m]: [S; 4]) -> Verdict {
+    given!(k > S::from(0));
+    let value = x * eta + k * (m * m - x * x);
+    ensure!(value <= k * m * m);
+    Verdict::Holds("always")
+}
+
+#[cfg(not(kani))]
+pub use row::claim;
+
+#[cfg(not(kani))]
+mod row {
+    use signorini::certify::Continuous;
+    use signorini::certify::forces::WrongLifting;
+    use signorini::certify::proof::Role;
+    use signorini::certify::quantities::Name;
+    use signorini::kernel::Ball;
+    use signorini::solve::Degree;
+
+    use super::*;
+    use crate::claim::{Claim, Engine, Outcome, by, control, proved, refuted, tested};
+    use crate::claims::distance::{Draw, bodies};
+    use crate::draws;
+    use crate::numbers::Exact;
+    use crate::statement;
+
+    /// u_n = g where the force is not zero, and the other signs.
+    fn onto_contact(x: &mut [Exact]) {
+        let zero = Exact::from(0);
+        x[3] = -x[3].abs();
+        x[4] = -x[4].abs();
+        if x[1] > x[2] {
+            x.swap(1, 2);
+        }
+        if x[0] > x[2] {
+            x[0] = x[2];
+        } else {
+            x[3] = zero;
+        }
+    }
+
+    fn onto_the_gap(x: &mut [Exact]) {
+        x[3] = x[3].abs() + Exact::from(1);
+        x[0] = x[1] - x[3] - x[0].abs();
+        x[2] = -x[2].abs();
+    }
+
+    fn onto_the_pressure(x: &mut [Exact]) {
+        x[3] = x[3].abs() + Exact::from(1);
+        x[2] = -x[3] - x[2].abs();
+        x[0] = x[1] - x[0].abs();
+    }
+
+    fn onto_the_inside(x: &mut [Exact]) {
+        x[2] = x[2].abs() + Exact::from(1);
+    }
+
+    fn onto_the_end(x: &mut [Exact]) {
+        for x in &mut *x {
+            *x = x.abs();
+        }
+        x[3] = x[3] + x[0];
+        x[1] = x[1] + Exact::from(2) * x[2] * x[3];
+    }
+
+    /// The numbers of balls are around those of rationals, `outside` of them by that much, and by no more than rounding.
+    fn around(draw: &Draw, degree: Degree, outside: f64) -> Verdict {
+        let Ok((_, _, certified)) = draw.certified_with(degree) else {
+            return Verdict::Fails("there is a certificate");
+        };
+        let (certificate, evidence) = (&certified.certificate, &certified.quantities.evidence);
+        let (Ok(exact), Ok(found)) = (
+            Exact::scope(|| certificate.forces::<Exact>(evidence)),
+            certificate.forces::<Ball>(evidence),
+        ) else {
+            return Verdict::Fails("both accept");
+        };
+        ensure!(exact.len() == found.len() && !found.is_empty());
+        for pair in exact.into_iter().zip(found) {
+            let (Ok([a, b]), Ok([low, high])) = pair else {
+                return Verdict::Fails("both enclose");
+            };
+            ensure!(low <= a - outside && high >= b + outside);
+            // Balls of a few hundred operations on numbers below 100.
+            ensure!(a - low <= 1e-9 && high - b <= 1e-9);
+        }
+        Verdict::Holds(if degree == Degree::One { "P1" } else { "P2" })
+    }
+
+    fn balls_are_around_the_rationals() -> Outcome {
+        let one = draws::hold(12, bodies(1), &["P1"], |draw| around(draw, Degree::One, 0.0))?;
+        let two = draws::hold(4, bodies(1), &["P2"], |draw| around(draw, Degree::Two, 0.0))?;
+        Ok(format!("{one}; {two}"))
+    }
+
+    fn balls_far_around_the_rationals() -> Outcome {
+        draws::reject(bodies(1), |draw| around(draw, Degree::One, 1e-6))
+    }
+
+    fn of(certified: &Continuous, name: Name, boundary: &str) -> Option<[f64; 2]> {
+        let is = |q: &&_| {
+            let q: &signorini::certify::quantities::Quantity = q;
+            q.name == name && q.boundary == boundary
+        };
+        certified.quantities.list.iter().find(is)?.interval.clone().ok()
+    }
+
+    /// What floor, top and load do to the body adds up to 0, and a finer mesh does not contradict a coarse one. With `factor` times the
+    /// load.
+    fn balanced(draw: &Draw, factor: f64) -> Verdict {
+        let (Ok((_, _, coarse)), Ok((_, _, fine))) = (draw.certified_on(1), draw.certified_on(2))
+        else {
+            return Verdict::Fails("there are certificates");
+        };
+        let area = draw.cells.map(|n| n as f64).iter().product::<f64>();
+        let middle = draw.cells[0] as f64 / 2.0;
+        let load = factor * area * (draw.load[1] + draw.slope[1] * middle);
+        for certified in [&coarse, &fine] {
+            let (Some(floor), Some(top)) = (
+                of(certified, Name::ContactComponent(1), "bottom"),
+                of(certified, Name::Reaction(1), "top"),
+            ) else {
+                return Verdict::Fails("forces have intervals");
+            };
+            ensure!(floor[0] + top[0] + load <= 1e-12 && floor[1] + top[1] + load >= -1e-12);
+        }
+        for quantity in &coarse.quantities.list {
+            let Some(other) = of(&fine, quantity.name, &quantity.boundary) else {
+                return Verdict::Fails("both have the same quantities");
+            };
+            let Ok([low, high]) = quantity.interval else {
+                return Verdict::Fails("forces have intervals");
+            };
+            ensure!(low <= other[1] && other[0] <= high);
+        }
+        let pressed = coarse.certificate.edges.iter().any(
+            |edge| matches!(edge.role, Role::Contact { pressure, .. } if pressure != [0.0; 2]),
+        );
+        Verdict::Holds(if pressed { "contact" } else { "no contact" })
+    }
+
+    fn forces_agree() -> Outcome {
+        draws::hold(30, bodies(2), &["contact", "no contact"], |draw| balanced(draw, 1.0))
+    }
+
+    fn forces_of_another_load() -> Outcome {
+        draws::reject(bodies(2), |draw| balanced(draw, 4.0))
+    }
+
+    /// A lifting that is off by 2^-20 at a vertex of the boundary is refused in rationals, too, unless the body is open there.
+    fn misses(draw: &Draw, at_boundary: bool) -> Verdict {
+        let Ok((_, _, certified)) = draw.certified() else {
+            return Verdict::Fails("there is a certificate");
+        };
+        let certificate = &certified.certificate;
+        let pressed = certificate.edges.iter().find(
+            |edge| matches!(edge.role, Role::Contact { pressure: [p, q], .. } if p < -1e-3 && q < -1e-3),
+        );
+        let Some(edge) = pressed else { return Verdict::Holds("no edge is pressed") };
+        let vertex = if at_boundary {
+            edge.ends.into_iter().find(|&p| p < certificate.vertices.len())
+        } else {
+            (0..certificate.vertices.len()).find(|&p| {
+                let on = |edge: &&signorini::certify::proof::Edge| {
+                    !matches!(edge.role, Role::Inner(_)) && edge.ends.contains(&p)
+                };
+                !certificate.edges.iter().any(|edge| on(&edge))
+            })
+        };
+        let Some(vertex) = vertex else { return Verdict::Vacuous };
+        let mut evidence = certified.quantities.evidence.clone();
+        // Without a cover: what it covers has a price, and here nothing has.
+        evidence.cover = None;
+        evidence.liftings.iter_mut().for_each(|(_, w)| {
+            w.vertices[vertex][1] += 2.0_f64.powi(-20);
+        });
+        let Ok(found) = Exact::scope(|| certificate.forces::<Exact>(&evidence)) else {
+            return Verdict::Fails("the certificate holds");
+        };
+        ensure!(found.iter().all(|f| matches!(f, Err(WrongLifting::OnContact { .. }))));
+        Verdict::Holds("an edge is pressed")
+    }
+
+    fn a_missed_vertex_is_refused() -> Outcome {
+        let classes = &["an edge is pressed"];
+        draws::hold(40, bodies(2), classes, |draw| misses(draw, true))
+    }
+
+    fn a_missed_vertex_inside_is_not() -> Outcome {
+        draws::reject(bodies(2), |draw| misses(draw, false))
+    }
+
+    /// The row.
+    pub fn claim() -> Claim {
+        let mean = statement!(the_mean_of_two_stresses_splits, [s, q, t], ["always"]);
+        let terms = statement!(
+            contact_adds_two_terms_that_are_not_negative,
+            [u_n, v_n, g, sigma_n, tau_n],
+            ["contact", "no force"]
+        )
+        .prepared(onto_contact);
+        let force = statement!(little_force_where_there_is_a_gap, [v_n, g, sigma_n, d], ["always"])
+            .prepared(onto_the_gap);
+        let opening =
+            statement!(little_opening_where_there_is_pressure, [u_n, g, tau_n, p], ["always"])
+                .prepared(onto_the_pressure);
+        let inside = statement!(what_is_missed_is_largest_inside, [x, eta, k, m], ["always"])
+            .prepared(onto_the_inside);
+        let end = statement!(what_is_missed_is_largest_at_the_end, [x, eta, k, m], ["always"])
+            .prepared(onto_the_end);
+        let pair = statement!(
+            a_dual_pair_gives_the_force,
+            [l, a_v_w, s, q, t, x, r, u_n, v_n, g, s_o],
+            ["always"]
+        );
+        Claim {
+            id: "26",
+            items: &["the error bound"],
+            title: "Forces of the true solution between two numbers",
+            paper: "Nothing: the paper bounds the error of the displacement and of the contact pressure with an unknown constant.",
+            statement: "docs/theory.md, 7.7. At a point, |sigma(u) - m|^2 = |C eps(v) - tau|^2 / 4 + (sigma(u) - C eps(v)) (sigma(u) - tau) for m = (C eps(v) + tau) / 2, and on Gamma_C (sigma_n - tau_n) (u_n - v_n) = G - A - B with A, B >= 0: so |sigma(u) - m|^2 + A + B = M^2 = D^2 / 4 + G. Where v is off the obstacle by d the true force is at most A / d, where tau presses with p the true opening is at most B / p. x eta + k (M^2 - x^2) is at most k M^2 + eta^2 / (4 k), and M eta if eta >= 2 k M. The force by a dual pair (w, rho), [7.8], is an identity. The checker of forces `certify::forces` is generic over its numbers: with balls its intervals are around those in rationals, by no more than rounding. Forces of floor, top and load on drawn bodies add up to 0 within their intervals, and those on a coarse and on a fine mesh meet. A displacement w that misses its value at one pressed vertex of Gamma_C is refused.",
+            numbers: "every ordered field (proof); rationals; doubles.",
+            kernel: &[],
+            preconditions: "Green's formula, by which the integrals of these products over the body are those over its boundary.",
+            limits: "An upper bound of the peak pressure is not provable, and is not given.",
+            single: None,
+            checks: vec![
+                proved(mean),
+                proved(terms),
+                proved(force),
+                proved(opening),
+                proved(inside),
+                proved(end),
+                proved(pair),
+                tested(mean),
+                tested(terms),
+                tested(force),
+                tested(opening),
+                tested(inside),
+                tested(end),
+                tested(pair),
+                refuted(statement!(
+                    control_the_traction_turned,
+                    [l, a_v_w, s, q, t, x, r, u_n, v_n, g, s_o],
+                    fails "force == near - (s - (q + t) / two) * x + r * (g - u) + so"
+                )),
+                refuted(statement!(
+                    control_an_eighth_of_the_distance,
+                    [s, q, t],
+                    fails "(s - m) * (s - m) == (q - t) * (q - t) / S::from(8) + (s - q) * (s - t)"
+                )),
+                refuted(statement!(
+                    control_tau_in_place_of_the_mean,
+                    [s, q, t],
+                    fails "(s - t) * (s - t) == half * half + (s - q) * (s - t)"
+                )),
+                refuted(statement!(
+                    control_without_the_opening_under_tau,
+                    [u_n, v_n, g, sigma_n, tau_n],
+                    fails "(s - t) * (u - v) == t * (v - g) - s * (v - g)"
+                )),
+                refuted(statement!(
+                    control_without_the_square_of_eta,
+                    [x, eta, k, m],
+                    fails "value <= k * m * m"
+                )),
+                by(
+                    Engine::Exact,
+                    "forces_in_balls_are_around_those_in_rationals",
+                    balls_are_around_the_rationals,
+                ),
+                control(
+                    Engine::Exact,
+                    "control_forces_a_millionth_outside",
+                    balls_far_around_the_rationals,
+                ),
+                by(Engine::Doubles, "forces_balance_and_meet_those_of_a_finer_mesh", forces_agree),
+                control(
+                    Engine::Doubles,
+                    "control_forces_beside_four_times_the_load",
+                    forces_of_another_load,
+                ),
+                by(
+                    Engine::Exact,
+                    "a_displacement_that_misses_a_pressed_vertex_is_refused",
+                    a_missed_vertex_is_refused,
+                ),
+                control(
+                    Engine::Exact,
+                    "control_a_vertex_inside_the_body",
+                    a_missed_vertex_inside_is_not,
+                ),
+            ],
+        }
+    }
+}

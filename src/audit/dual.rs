@@ -1,0 +1,198 @@
+//! A contact force between two numbers of second order, by a dual pair (w, rho): w a displacement as in [`forces`](super::forces), rho a stress
+//! with div rho = 0, rho n = 0 on Gamma_N and rho n = r n on Gamma_C. Exactly
+//!
+//! R = R0 - int C^-1 (sigma(u) - m) : (C eps(w) - rho) + int r (g - u_n) + int |sigma_n| omega,   omega = phi - w_n,
+//! R0 = L(w) - a(v, w) + int r (v_n - g) + 1/2 int C^-1 (C eps(v) - tau) : (C eps(w) - rho)                          \[Q4\]
+//!
+//! (docs/theory.md, 7.7). With eta = |C eps(w) - rho|, r >= 0 and omega >= 0 it is at least R0 - M eta. In general the two integrals over Gamma_C
+//! are bounded by B and A where r is bounded by multiples of |tau_n| and omega by multiples of g - v_n.
+//!
+//! The pair is itself a certificate on the same triangles, of the linear problem whose contact edges are held along their normal, or free.
+
+use super::balanced::Balanced;
+use super::certificate::{Certificate, Role, is_oblique};
+use super::checks::Rejection;
+use super::forces::{Cover, Forces, Target, WrongLifting, inner, reach};
+use crate::kernel::composite::Composite;
+use crate::kernel::{Enclosing, Interval};
+
+/// Why a dual pair proves nothing.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the message of each variant says what it is")]
+#[non_exhaustive]
+pub enum WrongPair {
+    #[error(transparent)]
+    Rejected(#[from] Rejection),
+    #[error(transparent)]
+    Lifting(#[from] WrongLifting),
+    #[error("{what} {index} of the dual pair is not that of the certificate, without its data")]
+    Differs { what: &'static str, index: usize },
+}
+
+/// a + b, or a - b.
+fn combined<S: Enclosing>(a: &Composite<S>, b: &Composite<S>, sign: i32) -> Composite<S> {
+    let sign = S::from(sign);
+    let bulges = match (a.bulges, b.bulges) {
+        (Some(a), Some(b)) => Some([0, 1, 2].map(|i| [0, 1, 2].map(|k| a[i][k] + b[i][k] * sign))),
+        (a, b) => a.or(b.map(|b| b.map(|part| part.map(|s| s * sign)))),
+    };
+    Composite {
+        corners: [0, 1, 2].map(|i| [0, 1].map(|k| a.corners[i][k] + b.corners[i][k] * sign)),
+        centre: a.centre + b.centre * sign,
+        bulges,
+    }
+}
+
+/// The largest ratio of a to b, not below 0: infinite where b is 0 and a is not.
+fn ratio(a: f64, b: f64) -> f64 {
+    if a <= 0.0 {
+        return 0.0;
+    }
+    let ratio = (Interval::point(a) / Interval::point(b)).hi();
+    if b > 0.0 && ratio.is_finite() { ratio } else { f64::INFINITY }
+}
+
+impl<S: Enclosing> Forces<'_, S> {
+    /// The pair has the triangles of the certificate, no loads, and w = 0 on Gamma_D.
+    fn check_pair(&self, pair: &Certificate) -> Result<(), WrongPair> {
+        let certificate = self.certificate;
+        let differs = |what, index| Err(WrongPair::Differs { what, index });
+        let same_points = pair.vertices == certificate.vertices && pair.cuts == certificate.cuts;
+        if !same_points || !pair.lifts.is_empty() {
+            return differs("a point", 0);
+        }
+        if pair.pieces.len() != certificate.pieces.len()
+            || pair.edges.len() != certificate.edges.len()
+        {
+            return differs("the number of triangles or edges", pair.pieces.len());
+        }
+        for (t, (own, other)) in certificate.pieces.iter().zip(&pair.pieces).enumerate() {
+            let same = (own.vertices, own.edges, own.material)
+                == (other.vertices, other.edges, other.material);
+            if !same || other.body != [[0.0; 2]; 3] || other.oscillation != 0.0 {
+                return differs("triangle", t);
+            }
+        }
+        for (e, (own, other)) in certificate.edges.iter().zip(&pair.edges).enumerate() {
+            let is_zero = |p: usize, c: usize| pair.at_own(p).is_none_or(|(w, _)| w[c] == 0.0);
+            let straight =
+                |c: usize| pair.curved.as_ref().is_none_or(|curved| curved.bulges[e][c] == 0.0);
+            let at_rest = |held: [bool; 2]| {
+                let still = |c: usize| straight(c) && other.ends.iter().all(|&p| is_zero(p, c));
+                (0..2).all(|c| !held[c] || still(c))
+            };
+            let right = own.ends == other.ends
+                && match (own.role, other.role) {
+                    (Role::Inner(_), Role::Inner(_)) => true,
+                    (Role::Held(held, _), Role::Held(same, _)) => held == same && at_rest(held),
+                    (
+                        Role::Supported { along, .. },
+                        Role::Supported { along: same, traction, .. },
+                    ) => {
+                        let framed = |p: &usize| match (pair.frames.get(p), pair.at_own(*p)) {
+                            (Some(_), Some((_, [w, _]))) => w == Some(0.0),
+                            _ => at_rest([true; 2]),
+                        };
+                        let data = pair.curved.as_ref().is_none_or(|c| c.data[e] == [0.0; 2]);
+                        along == same
+                            && traction == [0.0; 2]
+                            && if is_oblique(along) {
+                                data && other.ends.iter().all(framed)
+                            } else {
+                                at_rest(along.map(|d| d != 0.0))
+                            }
+                    }
+                    (Role::Loaded(_) | Role::Pressed(_), Role::Loaded(t)) => t == [[0.0; 2]; 2],
+                    (Role::Contact { .. }, Role::Loaded(t)) => t == [[0.0; 2]; 2],
+                    // Along the normal only, which is an axis.
+                    (Role::Contact { along: None, .. }, Role::Held(held, _)) => {
+                        let d = self.certificate.directions::<S>(e, &self.state.points)[0];
+                        let across = d.map(|d| d.lower() != 0.0 || d.upper() != 0.0);
+                        held == [across[0], across[1]] && held != [true; 2]
+                    }
+                    _ => false,
+                };
+            if !right {
+                return differs("edge", e);
+            }
+        }
+        Ok(())
+    }
+
+    /// What the contact force with the weight of `target` lies between by a dual pair; an end may be infinite.
+    ///
+    /// # Errors
+    /// A pair that is none.
+    pub fn by_pair(
+        &self,
+        pair: &Certificate,
+        target: Target,
+        cover: Option<&Cover>,
+    ) -> Result<[f64; 2], WrongPair> {
+        self.check_pair(pair)?;
+        let dual: Balanced<S> = pair.balanced(pair.topology()?)?;
+        let (certificate, state) = (self.certificate, self.state);
+        let zero = S::from(0);
+        let (mut middle, mut eta, mut norm) = (zero, zero, zero);
+        for (t, piece) in certificate.pieces.iter().enumerate() {
+            let (material, double_area) = (piece.material(), state.triangles[t].double_area());
+            let (of_v, apart) = state.stresses(certificate, t);
+            let (of_w, missed) = dual.stresses(pair, t);
+            let energy = |tau: &Composite<S>| tau.energy(&material, double_area);
+            let [sum, difference] = [1, -1].map(|sign| energy(&combined(&apart, &missed, sign)));
+            middle += dual.v.work(piece) * double_area / S::from(24);
+            middle -= inner(&material, &of_v, &of_w, double_area);
+            middle += (sum - difference) / S::from(8);
+            eta += energy(&missed);
+            norm += of_w.energy(&material, double_area);
+        }
+        middle += certificate.work_of_tractions(&state.forces, &dual.v);
+        // r is at least and at most these times |tau_n|.
+        let mut most = [0.0_f64; 2];
+        for e in self.contact() {
+            let Role::Contact { pressure, .. } = certificate.edges[e].role else { continue };
+            if matches!(pair.edges[e].role, Role::Loaded(_)) {
+                continue;
+            }
+            let Some(owner) = dual.topology.owners[e][0] else { continue };
+            let d = certificate.directions(e, &state.points);
+            let [start, end] = certificate.edges[e].ends.map(|p| state.points[p]);
+            let length = (end - start).dot(&(end - start)).sqrt();
+            // |E| r at both ends.
+            let force = dual.outward[owner.piece][owner.local];
+            let r: [S; 2] = [force[0].dot(&d[0]), force[1].dot(&d[1])];
+            let g = certificate.gap(e, state);
+            let (four, three, two) = (S::from(4), S::from(3), S::from(2));
+            let at_start = g[0] * four + g[1] * three + g[2] * two + g[3];
+            let at_end = g[0] + g[1] * two + g[2] * three + g[3] * four;
+            middle -= (r[0] * at_start + r[1] * at_end) / S::from(20);
+            for k in 0..2 {
+                let r = r[k] / length;
+                most[0] = most[0].max(ratio(-r.lower(), -pressure[k]));
+                most[1] = most[1].max(ratio(r.upper(), -pressure[k]));
+            }
+        }
+        let missed = self.all_missed(&dual.v, target, cover)?;
+        let root = |square: S| square.split(|_| zero, |s| s).sqrt().upper();
+        let point = Interval::point;
+        let (eta, norm) = (point(root(eta)), point(root(norm)));
+        let force = point(cover.map_or(0.0, |cover| cover.force));
+        let loose = point(2.0 * self.loose) * (norm + eta / Interval::from(2));
+        let away = |side: usize| {
+            let k = most[side].max(missed.open[side]);
+            if k.is_finite() {
+                (reach(eta, point(k), self.mean) + point(missed.covered[side]) * force + loose).hi()
+            } else {
+                f64::INFINITY
+            }
+        };
+        let ends = [
+            (point(middle.lower()) - point(away(0))).lo(),
+            (point(middle.upper()) + point(away(1))).hi(),
+        ];
+        Ok([
+            if ends[0].is_nan() { f64::NEG_INFINITY } else { ends[0] },
+            if ends[1].is_nan() { f64::INFINITY } else { ends[1] },
+        ])
+    }
+}

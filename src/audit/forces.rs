@@ -1,0 +1,631 @@
+//! A force between two numbers: the functional R(w) = L(w) - int sigma(u) : eps(w) of a [`Lifting`] w, enclosed.
+//!
+//! By Green's formula R(w) = -int_{Gamma_D} sigma n . w - int_{Gamma_C} sigma_n w_n: where w is a rigid motion on one boundary, and does
+//! no work on the others, it is minus a component of the force or the moment of that boundary on the body. It lies within M |w|_a of
+//! L(w) - int m : eps(w) \[Q3\], and int tau : eps(w) is again a sum over the boundary.
+//!
+//! On Gamma_D w must be that motion exactly. On Gamma_C it may miss its target phi by omega = phi - w . d, at a price: what is meant is
+//! R(w) + int |sigma_n| omega, and with -beta' (g - v_n) - e' w0_n <= omega <= beta (g - v_n) + e w0_n
+//! that integral is at most beta A + e R(w0), by \[Q2\] with A <= M^2 - |sigma - m|^2. So w may leave its target where the body is off
+//! the obstacle; w0 is 1 on Gamma_C and covers rounding.
+
+use nalgebra::Vector2;
+
+use super::balanced::Balanced;
+use super::certificate::{Certificate, Edge, Piece, Role, Shape, exactly, is_oblique};
+use super::checks::Rejection;
+use super::dual::WrongPair;
+use super::proof::Proof;
+use crate::kernel::composite::Affine;
+use crate::kernel::{Enclosing, Interval, Material, Scalar, Stress};
+
+/// M and G, from above.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mean {
+    /// M^2
+    pub square: f64,
+    /// M
+    pub root: f64,
+}
+
+impl Mean {
+    /// |C eps(v) - tau| = D is at most (bound^2 - 2 G)^(1/2), and by the triangle inequality at most the lift of section 7.4 more for v with its lift.
+    pub fn new<S: Enclosing>(state: &Balanced<S>, proof: &Proof, lift: f64) -> Mean {
+        let zero = S::from(0);
+        let contact = state.on_contact.iter().fold(zero, |sum, &term| sum + term);
+        let bound = S::exactly(proof.bound);
+        let whole = bound * bound;
+        let square = if lift == 0.0 {
+            (whole + contact) / S::from(4)
+        } else {
+            let apart = (whole - contact).split(|_| zero, |d| d).sqrt() + S::exactly(lift);
+            apart * apart / S::from(4) + contact / S::from(2)
+        };
+        let square = square.split(|_| zero, |s| s);
+        Mean { square: square.upper(), root: square.sqrt().upper() }
+    }
+}
+
+/// The Bernstein coefficients of w . d on an edge, for w with these values at the ends and this bulge in the middle, and d affine.
+pub(crate) fn along<S: Enclosing>(
+    w: [Vector2<S>; 2],
+    bulge: Vector2<S>,
+    d: [Vector2<S>; 2],
+) -> [S; 4] {
+    let (two, three) = (S::from(2), S::from(3));
+    let middle = (w[0] + w[1]) / two + bulge * two;
+    [
+        w[0].dot(&d[0]),
+        (middle.dot(&d[0]) * two + w[0].dot(&d[1])) / three,
+        (w[1].dot(&d[0]) + middle.dot(&d[1]) * two) / three,
+        w[1].dot(&d[1]),
+    ]
+}
+
+/// The Bernstein coefficients of a function with these values at the ends and this bulge in the middle.
+pub(crate) fn elevated<S: Enclosing>([a, b]: [S; 2], bulge: S) -> [S; 4] {
+    let (two, three) = (S::from(2), S::from(3));
+    let middle = (a + b) / two + bulge * two;
+    [a, (a + middle * two) / three, (b + middle * two) / three, b]
+}
+
+impl Certificate {
+    /// The direction of contact on an edge of Gamma_C, at both ends.
+    pub fn directions<S: Enclosing>(&self, e: usize, points: &[Vector2<S>]) -> [Vector2<S>; 2] {
+        if let Role::Contact { along: Some(d), .. } = self.edges[e].role {
+            return d.map(exactly);
+        }
+        let [start, end] = self.edges[e].ends.map(|p| points[p]);
+        let edge = end - start;
+        let is_zero = |x: S| x.lower() == 0.0 && x.upper() == 0.0;
+        // Along an axis it is known exactly.
+        let sign = |x: S| S::from(if x.is_positive() { 1 } else { -1 });
+        let zero = S::from(0);
+        let n = if is_zero(edge[0]) {
+            Vector2::new(sign(edge[1]), zero)
+        } else if is_zero(edge[1]) {
+            Vector2::new(zero, -sign(edge[0]))
+        } else {
+            Vector2::new(edge[1], -edge[0]) / edge.dot(&edge).sqrt()
+        };
+        [n; 2]
+    }
+
+    /// g - v . d on an edge of Gamma_C: its Bernstein coefficients.
+    pub fn gap<S: Enclosing>(&self, e: usize, state: &Balanced<S>) -> [S; 4] {
+        let Role::Contact { gap, .. } = self.edges[e].role else { return [S::from(0); 4] };
+        let bulge = self.curved.as_ref().map_or(0.0, |curved| curved.data[e][0]);
+        let g = elevated(gap.map(S::exactly), S::exactly(bulge));
+        let v = self.edges[e].ends.map(|p| state.v.points[p]);
+        let bulge = state.v.bulges.as_ref().map_or_else(Vector2::zeros, |bulges| bulges[e]);
+        let v = along(v, bulge, self.directions(e, &state.points));
+        [0, 1, 2, 3].map(|k| g[k] - v[k])
+    }
+}
+
+/// A displacement w by doubles: at the vertices, and if it is quadratic what it is beyond its mean at the cuts and in the middles of the
+/// edges of a certificate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lifting {
+    /// At the vertices. At a point that is held along an oblique direction w is the nearest vector that does there what it should.
+    pub vertices: Vec<[f64; 2]>,
+    /// At the cuts, and on the edges.
+    pub beyond: Option<[Vec<[f64; 2]>; 2]>,
+}
+
+/// What w is on the boundary that is asked for; on all others it does no work.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Motion {
+    /// w . d = phi on Gamma_C along the direction d of contact.
+    Along(Option<Ramp>),
+    /// A translation by 1.
+    Axis(usize),
+    /// A rotation about the origin, counter-clockwise.
+    Turn,
+}
+
+/// A weight along a boundary: 1 where coordinate `axis` is between two numbers, falling to 0 outside, affinely over `width`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ramp {
+    /// 0 for x, 1 for y.
+    pub axis: usize,
+    /// Where it is 1.
+    pub between: [f64; 2],
+    /// Over which it falls.
+    pub width: f64,
+}
+
+impl Ramp {
+    /// The weight at this coordinate.
+    pub fn at<S: Enclosing>(&self, x: S) -> S {
+        // From its feet, where it is exactly 0.
+        let [foot, from, to, end] = self.kinks().map(S::exactly);
+        let (zero, one) = (S::from(0), S::from(1));
+        let positive = |x: S| x.split(|_| zero, |x| x);
+        let least = |a: S, b: S| if a == b { a } else { a - positive(a - b) };
+        let (rising, falling) = ((x - foot) / (from - foot), (end - x) / (end - to));
+        let inside = least(positive(rising), positive(falling));
+        // Of 0 nothing is taken away.
+        if inside == zero { zero } else { least(inside, one) }
+    }
+
+    /// The coordinates where its slope jumps.
+    fn kinks(&self) -> [f64; 4] {
+        let [from, to] = self.between;
+        [from - self.width, from, to, to + self.width]
+    }
+}
+
+/// A motion of one boundary; of all contact boundaries where there is none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Target {
+    /// The boundary's number.
+    pub boundary: Option<usize>,
+    /// What w does there.
+    pub motion: Motion,
+}
+
+impl Motion {
+    /// The rigid motion at a place, if it is one.
+    pub fn at<S: Scalar>(self, x: Vector2<S>) -> Option<Vector2<S>> {
+        match self {
+            Motion::Along(_) => None,
+            Motion::Axis(c) => {
+                let mut axis = Vector2::zeros();
+                axis[c] = S::from(1);
+                Some(axis)
+            }
+            Motion::Turn => Some(Vector2::new(-x[1], x[0])),
+        }
+    }
+}
+
+/// What proves forces beside a certificate.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Evidence {
+    /// The boundaries.
+    pub names: Vec<String>,
+    /// The boundary of each edge of the certificate, by its place among the names.
+    pub of: Vec<Option<usize>>,
+    /// w0 of the module's head.
+    pub cover: Option<Lifting>,
+    /// The displacements with what they are to do.
+    pub liftings: Vec<(Target, Lifting)>,
+    /// Dual pairs for contact forces (`certify::dual`).
+    pub pairs: Vec<(Target, Certificate)>,
+}
+
+/// Why w proves nothing of a force.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the message of each variant says what it is")]
+#[non_exhaustive]
+pub enum WrongLifting {
+    #[error("w has {found} entries; expected {expected}")]
+    Length { found: usize, expected: usize },
+    #[error("edge {edge}: w is not what it should be on a part of the boundary that is held")]
+    OnSupport { edge: usize },
+    #[error(
+        "edge {edge}: w along the direction of contact is up to {off} from what it should be, where the body may touch the obstacle"
+    )]
+    OnContact { edge: usize, off: f64 },
+    #[error("the force is not a finite number")]
+    NotFinite,
+}
+
+/// R(w) without what w misses on Gamma_C.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Value<S> {
+    /// L(w) - int m : eps(w)
+    pub middle: S,
+    /// |w|_a
+    pub norm: S,
+}
+
+/// w0 of the module's head: its Bernstein coefficients on the edges of Gamma_C, and R(w0) from above.
+pub struct Cover {
+    along: Vec<Option<[f64; 4]>>,
+    pub(crate) force: f64,
+}
+
+/// What omega is at most and at least: times g - v_n, and times w0_n.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Missed {
+    pub open: [f64; 2],
+    pub covered: [f64; 2],
+}
+
+/// A certificate whose triangles are in equilibrium, with what its data and its bound are worth for forces.
+pub struct Forces<'a, S> {
+    /// The certificate.
+    pub certificate: &'a Certificate,
+    /// It in equilibrium.
+    pub state: &'a Balanced<S>,
+    /// The boundary of each edge.
+    pub of: &'a [Option<usize>],
+    /// M
+    pub mean: Mean,
+    /// What L(w) and a(v, w) may be off for each unit of |w|_a, as data oscillate.
+    pub loose: f64,
+}
+
+impl Certificate {
+    /// What R(w) of each lifting lies between, in units of the case: verifies all conditions of the theorem, and those of the
+    /// liftings.
+    ///
+    /// # Errors
+    /// As [`Certificate::evaluate`]; a dual pair that is none; inside, a lifting that is not what it should be on the boundary.
+    pub fn forces<S: Enclosing>(
+        &self,
+        evidence: &Evidence,
+    ) -> Result<Vec<Result<[f64; 2], WrongLifting>>, WrongPair> {
+        let state = self.balanced::<S>(self.topology()?)?;
+        let mean = Mean::new(&state, &self.sum(&state)?, self.lift());
+        if evidence.of.len() != self.edges.len() {
+            let (what, found) = ("boundaries of edges", evidence.of.len());
+            return Err(Rejection::Length { what, found, expected: self.edges.len() }.into());
+        }
+        let forces = Forces::new(self, &state, &evidence.of, mean);
+        let cover = evidence.cover.as_ref().and_then(|w| forces.cover(w).ok());
+        let mut found = forces.between(&evidence.liftings, cover.as_ref());
+        for (target, pair) in &evidence.pairs {
+            let by_pair = forces.by_pair(pair, *target, cover.as_ref())?;
+            let of = evidence.liftings.iter().position(|(other, _)| other == target);
+            if let Some(Ok(ends)) = of.map(|k| &mut found[k]) {
+                *ends = [ends[0].max(by_pair[0]), ends[1].min(by_pair[1])];
+            }
+        }
+        Ok(found)
+    }
+}
+
+impl<'a, S: Enclosing> Forces<'a, S> {
+    /// With M.
+    pub fn new(
+        certificate: &'a Certificate,
+        state: &'a Balanced<S>,
+        of: &'a [Option<usize>],
+        mean: Mean,
+    ) -> Self {
+        let square = |piece: &Piece| piece.oscillation * piece.oscillation;
+        let oscillation = certificate.pieces.iter().map(square).sum::<f64>().sqrt();
+        // Quadrature is not rounded outwards, either.
+        Forces { certificate, state, of, mean, loose: (oscillation + certificate.lift()) / 2.0 }
+    }
+
+    /// The displacement of a lifting on the triangles of the certificate.
+    pub fn shape(&self, w: &Lifting, target: Target) -> Result<Shape<S>, WrongLifting> {
+        let certificate = self.certificate;
+        let (vertices, cuts) = (certificate.vertices.len(), certificate.cuts.len());
+        let length = |found: usize, expected: usize| {
+            if found == expected { Ok(()) } else { Err(WrongLifting::Length { found, expected }) }
+        };
+        length(w.vertices.len(), vertices)?;
+        let mut points: Vec<Vector2<S>> = w.vertices.iter().map(|&w| exactly(w)).collect();
+        let frames = &certificate.frames;
+        for (e, edge) in certificate.edges.iter().enumerate() {
+            let Role::Supported { along: d, .. } = edge.role else { continue };
+            for p in edge.ends.into_iter().flat_map(|p| self.bases(p)) {
+                if frames.get(&p) != Some(&d) {
+                    continue;
+                }
+                let (value, d) = (self.on_support(e, p, target), exactly::<S>(d));
+                points[p] = points[p] - d * ((points[p] - value).dot(&d) / d.dot(&d));
+            }
+        }
+        points = certificate.with_cuts(points, &w.vertices, |p| !frames.contains_key(&p));
+        let Some([at_cuts, bulges]) = &w.beyond else { return Ok(Shape { points, bulges: None }) };
+        length(at_cuts.len(), cuts)?;
+        length(bulges.len(), certificate.edges.len())?;
+        for (point, &beyond) in points[vertices..].iter_mut().zip(at_cuts) {
+            *point += exactly::<S>(beyond);
+        }
+        let bulges = bulges.iter().map(|&bulge| exactly(bulge)).collect();
+        Ok(Shape { points, bulges: Some(bulges) })
+    }
+
+    /// The edges of Gamma_C.
+    pub(crate) fn contact(&self) -> impl Iterator<Item = usize> {
+        let edges = self.certificate.edges.iter().enumerate();
+        edges.filter(|(_, edge)| matches!(edge.role, Role::Contact { .. })).map(|(e, _)| e)
+    }
+
+    /// The vertices that a point lies between, or it itself.
+    fn bases(&self, p: usize) -> [usize; 2] {
+        match p.checked_sub(self.certificate.vertices.len()) {
+            None => [p; 2],
+            Some(cut) => self.certificate.cuts[cut].ends,
+        }
+    }
+
+    /// Whether the motion is asked for on an edge.
+    fn is_meant(&self, e: usize, target: Target) -> bool {
+        target.boundary.is_none_or(|boundary| self.of[e] == Some(boundary))
+    }
+
+    /// What w should be at vertex `p` of edge `e` of Gamma_D.
+    fn on_support(&self, e: usize, p: usize, target: Target) -> Vector2<S> {
+        let motion = || target.motion.at(exactly(self.certificate.vertices[p]));
+        let motion = self.is_meant(e, target).then(motion).flatten();
+        motion.unwrap_or_else(Vector2::zeros)
+    }
+
+    /// Verifies w on Gamma_D.
+    fn check_supports(&self, w: &Lifting, target: Target) -> Result<(), WrongLifting> {
+        let certificate = self.certificate;
+        for (edge, Edge { ends, role }) in certificate.edges.iter().enumerate() {
+            let (held, oblique) = match *role {
+                Role::Held(held, _) => (held, None),
+                Role::Supported { along: d, .. } if is_oblique(d) => ([true; 2], Some(d)),
+                Role::Supported { along: d, .. } => (d.map(|d| d != 0.0), None),
+                _ => continue,
+            };
+            let is =
+                |value: f64, expected: S| expected.lower() == value && expected.upper() == value;
+            for p in ends.iter().flat_map(|&p| self.bases(p)) {
+                let framed = certificate.frames.get(&p);
+                let expected = self.on_support(edge, p, target);
+                let right = match (framed, oblique) {
+                    (Some(frame), Some(d)) => *frame == d,
+                    (Some(_), None) => false,
+                    (None, _) => (0..2).all(|c| !held[c] || is(w.vertices[p][c], expected[c])),
+                };
+                if !right {
+                    return Err(WrongLifting::OnSupport { edge });
+                }
+            }
+            let Some([at_cuts, bulges]) = &w.beyond else { continue };
+            let is_zero = |x: [f64; 2]| (0..2).all(|c| !held[c] || x[c] == 0.0);
+            let cuts = ends.iter().filter_map(|p| p.checked_sub(certificate.vertices.len()));
+            if !is_zero(bulges[edge]) || !cuts.into_iter().all(|cut| is_zero(at_cuts[cut])) {
+                return Err(WrongLifting::OnSupport { edge });
+            }
+        }
+        Ok(())
+    }
+
+    /// L(w) - int m : eps(w) and |w|_a of some displacements, in one pass over the triangles.
+    fn values(&self, shapes: &[Shape<S>]) -> Vec<Value<S>> {
+        let (certificate, state) = (self.certificate, self.state);
+        let zero = S::from(0);
+        // L(w) + a(v, w) + int tau : eps(w), the latter two negative and halved; |w|_a^2
+        let mut sums = vec![(zero, zero); shapes.len()];
+        for (t, piece) in certificate.pieces.iter().enumerate() {
+            let (triangle, material) = (&state.triangles[t], piece.material());
+            let double_area = triangle.double_area();
+            let loaded = piece.body != [[0.0; 2]; 3];
+            let of_v = state.v.stress(piece, triangle);
+            for ((middle, square), w) in sums.iter_mut().zip(shapes) {
+                let of_w = w.stress(piece, triangle);
+                *square += of_w.energy(&material, double_area);
+                let mut twice = -inner(&material, &of_v, &of_w, double_area);
+                if loaded {
+                    // int f . w is in L(w), and half of it in int tau : eps(w).
+                    twice += w.work(piece) * double_area / S::from(24);
+                }
+                *middle += twice / S::from(2);
+            }
+        }
+        let given: Vec<S> =
+            shapes.iter().map(|w| certificate.work_of_tractions(&state.forces, w)).collect();
+        for ((middle, _), work) in sums.iter_mut().zip(given) {
+            *middle += work;
+        }
+        for (e, edge) in certificate.edges.iter().enumerate() {
+            let [Some(owner), None] = state.topology.owners[e] else { continue };
+            let force = state.outward[owner.piece][owner.local];
+            for ((middle, _), w) in sums.iter_mut().zip(shapes) {
+                *middle -= w.work_of(force, edge.ends, e) / S::from(2);
+            }
+        }
+        let value = |(middle, square): (S, S)| Value {
+            middle,
+            norm: square.split(|_| zero, |square| square).sqrt(),
+        };
+        sums.into_iter().map(value).collect()
+    }
+
+    /// phi - w . d on an edge of Gamma_C: what its Bernstein coefficients are at least and at most.
+    fn missed(&self, e: usize, w: &Shape<S>, target: Target) -> [[f64; 2]; 4] {
+        let certificate = self.certificate;
+        let ends = certificate.edges[e].ends;
+        let d = certificate.directions(e, &self.state.points);
+        let bulge = w.bulges.as_ref().map_or_else(Vector2::zeros, |bulges| bulges[e]);
+        let [a, b] = ends.map(|p| w.points[p]);
+        let off = |x: S| [x.lower(), x.upper()];
+        if !self.is_meant(e, target) {
+            return along([-a, -b], -bulge, d).map(off);
+        }
+        let places = ends.map(|p| self.state.points[p]);
+        if let (Some(r), Some(s)) = (target.motion.at(places[0]), target.motion.at(places[1])) {
+            return along([r - a, s - b], -bulge, d).map(off);
+        }
+        let one = S::from(1);
+        let constant = d[0] == d[1];
+        // Where d is constant, omega at the ends and its bulge: 0 stays 0.
+        let missed = |phi: [S; 2]| {
+            if constant {
+                elevated([phi[0] - a.dot(&d[0]), phi[1] - b.dot(&d[1])], -bulge.dot(&d[0]))
+            } else {
+                let (phi, w) = (elevated(phi, S::from(0)), along([a, b], bulge, d));
+                [0, 1, 2, 3].map(|k| phi[k] - w[k])
+            }
+        };
+        let Motion::Along(Some(ramp)) = target.motion else {
+            return missed([one; 2]).map(off);
+        };
+        let [p, q] = places.map(|x| x[ramp.axis]);
+        let phi = [p, q].map(|x| ramp.at(x));
+        // Between its kinks the ramp is affine: what it is beyond the chord is largest and least at these, or 0 at the ends.
+        let mut beyond = [0.0_f64; 2];
+        for kink in ramp.kinks() {
+            let (x, inside) =
+                (S::exactly(kink), (p.lower().min(q.lower()), p.upper().max(q.upper())));
+            if inside.0 < kink && kink < inside.1 {
+                let s = (x - p) / (q - p);
+                let [low, high] = off(ramp.at(x) - (phi[0] + (phi[1] - phi[0]) * s));
+                beyond = [beyond[0].min(low), beyond[1].max(high)];
+                // Too short to tell: a weight is between 0 and 1.
+                if !(low.is_finite() && high.is_finite()) {
+                    beyond = [-1.0, 1.0];
+                }
+            }
+        }
+        if beyond == [0.0; 2] {
+            return missed(phi).map(off);
+        }
+        let add = |a: f64, b: f64| Interval::point(a) + Interval::point(b);
+        missed(phi).map(|omega| {
+            let [low, high] = off(omega);
+            [add(low, beyond[0]).lo(), add(high, beyond[1]).hi()]
+        })
+    }
+
+    /// By what phi - w . d is bounded on Gamma_C.
+    pub(crate) fn all_missed(
+        &self,
+        w: &Shape<S>,
+        target: Target,
+        cover: Option<&Cover>,
+    ) -> Result<Missed, WrongLifting> {
+        let mut missed = Missed::default();
+        for edge in self.contact() {
+            let off = self.missed(edge, w, target);
+            if off == [[0.0; 2]; 4] {
+                continue;
+            }
+            let gap = self.certificate.gap(edge, self.state).map(|g| g.lower());
+            let covered = cover.and_then(|cover| cover.along[edge]);
+            let largest = |sizes: [f64; 4], side: usize| {
+                let sizes = sizes.into_iter().zip(off).map(|(size, off)| {
+                    let off = if side == 0 { -off[0] } else { off[1] };
+                    let ratio = (Interval::point(off) / Interval::point(size)).hi();
+                    if off <= 0.0 {
+                        0.0
+                    } else if size > 0.0 && ratio.is_finite() {
+                        ratio
+                    } else {
+                        f64::INFINITY
+                    }
+                });
+                sizes.fold(0.0, f64::max)
+            };
+            for side in 0..2 {
+                let by_gap = largest(gap, side);
+                let by_cover = covered.map_or(f64::INFINITY, |covered| largest(covered, side));
+                // What is cheaper.
+                let costs = [by_gap * self.mean.square, by_cover * cover.map_or(0.0, |c| c.force)];
+                if by_gap.is_finite() && !(by_cover.is_finite() && costs[1] <= costs[0]) {
+                    missed.open[side] = missed.open[side].max(by_gap);
+                } else if by_cover.is_finite() {
+                    missed.covered[side] = missed.covered[side].max(by_cover);
+                } else {
+                    let off = off.iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
+                    return Err(WrongLifting::OnContact { edge, off });
+                }
+            }
+        }
+        Ok(missed)
+    }
+
+    /// w0 of the module's head, from a lifting that is 1 along contact where it can be.
+    pub fn cover(&self, w: &Lifting) -> Result<Cover, WrongLifting> {
+        let target = Target { boundary: None, motion: Motion::Along(None) };
+        // On Gamma_D a motion along contact is 0.
+        self.check_supports(w, target)?;
+        let shape = self.shape(w, target)?;
+        let mut along_all = vec![None; self.certificate.edges.len()];
+        for e in self.contact() {
+            let bulge = shape.bulges.as_ref().map_or_else(Vector2::zeros, |bulges| bulges[e]);
+            let w = self.certificate.edges[e].ends.map(|p| shape.points[p]);
+            let d = self.certificate.directions(e, &self.state.points);
+            let w = along(w, bulge, d).map(|w| w.lower());
+            along_all[e] = w.iter().all(|&w| w >= 0.0).then_some(w);
+            if along_all[e].is_none() {
+                return Err(WrongLifting::OnContact { edge: e, off: 1.0 });
+            }
+        }
+        let values = self.values(std::slice::from_ref(&shape));
+        let force = self.enclose(values[0], Missed::default(), None)[1];
+        Ok(Cover { along: along_all, force })
+    }
+
+    /// What R(w) + int |sigma_n| omega lies between.
+    fn enclose(&self, value: Value<S>, missed: Missed, cover: Option<&Cover>) -> [f64; 2] {
+        let point = Interval::point;
+        let norm = point(value.norm.upper());
+        let force = point(cover.map_or(0.0, |cover| cover.force));
+        let away = |side: usize| {
+            let covered = point(missed.covered[side]) * force;
+            let loose = point(self.loose) * norm;
+            (reach(norm, point(missed.open[side]), self.mean) + covered + loose).hi()
+        };
+        let below = point(value.middle.lower()) - point(away(0));
+        let above = point(value.middle.upper()) + point(away(1));
+        [below.lo(), above.hi()]
+    }
+
+    /// The forces of some liftings, each between two numbers.
+    pub fn between(
+        &self,
+        liftings: &[(Target, Lifting)],
+        cover: Option<&Cover>,
+    ) -> Vec<Result<[f64; 2], WrongLifting>> {
+        let checked = liftings.iter().map(|(target, w)| {
+            let target = *target;
+            self.check_supports(w, target)?;
+            let shape = self.shape(w, target)?;
+            let missed = self.all_missed(&shape, target, cover)?;
+            Ok((shape, missed))
+        });
+        let checked: Vec<Result<_, WrongLifting>> = checked.collect();
+        let shapes: Vec<Shape<S>> = checked.iter().flatten().map(|(w, _)| w.clone()).collect();
+        let mut values = self.values(&shapes).into_iter();
+        let found = checked.into_iter().map(|checked| {
+            let (_, missed) = checked?;
+            let value = values.next().ok_or(WrongLifting::NotFinite)?;
+            let ends = self.enclose(value, missed, cover);
+            if ends.iter().all(|end| end.is_finite()) {
+                Ok(ends)
+            } else {
+                Err(WrongLifting::NotFinite)
+            }
+        });
+        found.collect()
+    }
+}
+
+/// The largest value of x eta + k (M^2 - x^2) for 0 <= x <= M: k M^2 + eta^2 / (4 k) where that is taken inside, M eta at the end.
+pub(crate) fn reach(eta: Interval, k: Interval, mean: Mean) -> Interval {
+    let root = Interval::point(mean.root);
+    let two = Interval::from(2);
+    if eta.lo() >= (two * k * root).hi() {
+        return root * eta;
+    }
+    k * Interval::point(mean.square) + eta * eta / (two * two * k)
+}
+
+/// a : C^-1 b
+fn paired<S: Scalar>(material: &Material<S>, a: Stress<S>, b: Stress<S>) -> S {
+    let ([x, y, s], [p, q, t]) = (a.components(), b.components());
+    let two = S::from(2);
+    // As the square is: the deviators over 2 mu, the spheres over 2 (lambda + mu).
+    let deviators = (x - y) * (p - q) / two + two * s * t;
+    let spheres = (x + y) * (p + q) / two;
+    deviators / (two * material.mu()) + spheres / (two * (material.lambda() + material.mu()))
+}
+
+/// int_T a : C^-1 b. Affine functions with the values a_i, b_i have the integral |T| / 12 (sum a_i b_i + sum a_i sum b_i).
+pub(crate) fn inner<S: Scalar>(
+    material: &Material<S>,
+    a: &Affine<S>,
+    b: &Affine<S>,
+    double_area: S,
+) -> S {
+    if a.beyond.is_none() && b.beyond.is_none() {
+        return paired(material, a.base, b.base) * double_area / S::from(2);
+    }
+    let [p, q, r] = [0, 1, 2].map(|i| a.at_corner(i));
+    let [s, t, u] = [0, 1, 2].map(|i| b.at_corner(i));
+    let pair = |a, b| paired(material, a, b);
+    (pair(p, s) + pair(q, t) + pair(r, u) + pair(p + q + r, s + t + u)) * double_area / S::from(24)
+}

@@ -1,0 +1,322 @@
+//! Displacements w for `certify::forces`: of least energy among those that do on the boundary what is asked of them. Where the body is
+//! far off the obstacle, w is free: it costs the square of the bound there, not its first power.
+//!
+//! One matrix serves all: that of a(.,.) with the body held on Gamma_D, and on Gamma_C along the direction of contact.
+
+use std::collections::BTreeMap;
+
+use nalgebra::Vector2;
+
+use super::SWEEPS;
+use super::build::{Built, build};
+use super::certificate::{Certificate, Cut, Role, is_oblique};
+use super::errors::CertifyError;
+use super::field::Field;
+use super::forces::{Lifting, Motion, Target};
+use super::parts::{Boundary, Parts};
+use super::sweeps::improve;
+use crate::fem::matrix::{LowerTriangle, Neighbours, Numbering};
+use crate::fem::mesh::length;
+use crate::fem::{BoundaryEdge, Problem, Space};
+use crate::kernel::Element;
+use crate::kernel::element::stiffness;
+use crate::solve::factor::Factor;
+use crate::solve::ordering::nested_dissection;
+
+/// w . direction is prescribed at a node, because of an edge of this boundary.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Demand {
+    direction: Vector2<f64>,
+    boundary: usize,
+    contact: bool,
+}
+
+/// Makes displacements w.
+pub(super) struct Lifter<'a, E, const N: usize, const M: usize> {
+    parts: &'a Parts<'a>,
+    names: &'a [String],
+    space: Space<'a, E, N, M>,
+    /// At each node; those of Gamma_D first.
+    demands: BTreeMap<usize, Vec<Demand>>,
+    numbering: Numbering,
+    factor: Factor,
+}
+
+/// Two directions with a sine below this are parallel.
+const PARALLEL: f64 = 1e-8;
+
+/// Two values at a node that differ by more, beside 1, contradict one another.
+const AGREEMENT: f64 = 1e-9;
+
+/// The first of the demands that are independent.
+fn independent(demands: &[Demand]) -> (Option<Demand>, Option<Demand>) {
+    let Some(&first) = demands.first() else { return (None, None) };
+    let across = |d: &&Demand| first.direction.perp(&d.direction).abs() > PARALLEL;
+    (Some(first), demands.iter().find(across).copied())
+}
+
+impl<'a, E: Element<N, M>, const N: usize, const M: usize> Lifter<'a, E, N, M> {
+    /// For the boundaries with these `names`; `open` tells of the edges of Gamma_C, by their place in `parts.contact`, where w is free.
+    pub fn new(
+        parts: &'a Parts<'a>,
+        names: &'a [String],
+        open: &[bool],
+    ) -> Result<Self, CertifyError> {
+        let space = Space::<E, N, M>::new(parts.mesh);
+        let mut demands: BTreeMap<usize, Vec<Demand>> = BTreeMap::new();
+        let mut add = |edge: BoundaryEdge,
+                       boundary: usize,
+                       contact,
+                       of: &dyn Fn(usize) -> Vec<Vector2<f64>>| {
+            for (a, node) in space.edge_nodes(edge).into_iter().enumerate() {
+                let at_node = demands.entry(node).or_default();
+                for direction in of(a) {
+                    let demand = Demand { direction, boundary, contact };
+                    if !at_node.contains(&demand) {
+                        at_node.push(demand);
+                    }
+                }
+            }
+        };
+        for contact in [false, true] {
+            for (boundary, name) in names.iter().enumerate() {
+                for &edge in parts.mesh.edges_of(name).unwrap_or_default() {
+                    let e = parts.mesh.triangle_edges()[edge.triangle][edge.local];
+                    match parts.boundary.get(&e) {
+                        Some(&Boundary::Held(held, _)) if !contact => {
+                            let axes = [Vector2::x(), Vector2::y()];
+                            let held: Vec<_> =
+                                (0..2).filter(|&c| held[c]).map(|c| axes[c]).collect();
+                            add(edge, boundary, contact, &|_| held.clone());
+                        }
+                        Some(&Boundary::Supported(d, ..)) if !contact => {
+                            add(edge, boundary, contact, &|_| vec![d.into()]);
+                        }
+                        Some(&Boundary::Contact(k)) if contact && !open[k] => {
+                            let [d, e] = parts.contact[k].directions;
+                            add(edge, boundary, contact, &|a| vec![[d, e, (d + e) / 2.0][a]]);
+                        }
+                        _ => {}
+                    }
+                }
+            }
+        }
+        let mut prescribed = vec![[None; 2]; space.nodes().len()];
+        let mut frames = BTreeMap::new();
+        for (&node, demands) in &demands {
+            prescribed[node] = match independent(demands) {
+                (Some(_), Some(_)) => [Some(0.0); 2],
+                (Some(one), None) => {
+                    let d = one.direction;
+                    if is_oblique(d.into()) {
+                        frames.insert(node, (d / length(d)).into());
+                        [Some(0.0), None]
+                    } else {
+                        [0, 1].map(|c| (d[c] != 0.0).then_some(0.0))
+                    }
+                }
+                _ => [None; 2],
+            };
+        }
+        let neighbours = Neighbours::new(space.nodes().len(), space.elements());
+        let order = nested_dissection(space.nodes(), &neighbours);
+        let numbering = Numbering::in_frames(&order, &prescribed, frames);
+        let mut matrix = LowerTriangle::zero(&numbering, &neighbours);
+        for (t, (triangle, nodes)) in space.triangles().enumerate() {
+            let k = stiffness::<E, f64, N, M>(&triangle, parts.material(t));
+            matrix.add(&numbering, nodes, |i, j| k[i][j]);
+        }
+        let factor = Factor::new(&matrix).map_err(|error| {
+            CertifyError::Unsupported(format!(
+                "no displacement of least energy for the forces: {error}"
+            ))
+        })?;
+        Ok(Lifter { parts, names, space, demands, numbering, factor })
+    }
+
+    /// What a demand at a node asks for; at a place where the boundaries contradict one another, with `strict` an error.
+    fn value(&self, node: usize, demand: &Demand, target: Target) -> f64 {
+        let x = self.space.nodes()[node];
+        if target.boundary.is_some_and(|boundary| boundary != demand.boundary) {
+            return 0.0;
+        }
+        match target.motion {
+            Motion::Along(ramp) if demand.contact => ramp.map_or(1.0, |ramp| ramp.at(x[ramp.axis])),
+            motion => motion.at(Vector2::from(x)).map_or(0.0, |r| r.dot(&demand.direction)),
+        }
+    }
+
+    /// w at the nodes, of least energy.
+    ///
+    /// # Errors
+    /// A place where two boundaries ask for what is not to be had together.
+    pub fn field(&self, target: Target) -> Result<Vec<[f64; 2]>, String> {
+        let mut field = vec![[0.0; 2]; self.space.nodes().len()];
+        for (&node, demands) in &self.demands {
+            let value = |demand: &Demand| self.value(node, demand, target);
+            let w =
+                match independent(demands) {
+                    (Some(a), Some(b)) => {
+                        let (d, e) = (a.direction, b.direction);
+                        let turned = |d: Vector2<f64>| Vector2::new(d[1], -d[0]);
+                        let axes = |d: Vector2<f64>| !is_oblique(d.into());
+                        if axes(d) && axes(e) {
+                            // d or e has component c alone.
+                            Vector2::from([0, 1].map(|c| {
+                                if d[c] != 0.0 { d[c] * value(&a) } else { e[c] * value(&b) }
+                            }))
+                        } else {
+                            (turned(e) * value(&a) - turned(d) * value(&b)) / d.perp(&e)
+                        }
+                    }
+                    (Some(a), None) => a.direction * (value(&a) / a.direction.dot(&a.direction)),
+                    _ => continue,
+                };
+            // All contact boundaries together yield to what holds.
+            if target.boundary.is_some() {
+                let off = |demand: &&Demand| {
+                    (w.dot(&demand.direction) - value(demand)).abs() > AGREEMENT * (1.0 + length(w))
+                };
+                if let Some(other) = demands.iter().find(off) {
+                    return Err(self.contradiction(node, demands, other));
+                }
+            }
+            field[node] = w.into();
+        }
+        // -K w on the free unknowns.
+        let mut right = vec![[0.0; 2]; field.len()];
+        for (t, (triangle, nodes)) in self.space.triangles().enumerate() {
+            let nodal = nodes.map(|node| Vector2::from(field[node]));
+            if nodal == [Vector2::zeros(); N] {
+                continue;
+            }
+            let k = stiffness::<E, f64, N, M>(&triangle, self.parts.material(t));
+            for (i, &node) in nodes.iter().enumerate() {
+                for (j, w) in nodal.iter().enumerate() {
+                    let force = k[i][j] * w;
+                    (0..2).for_each(|c| right[node][c] -= force[c]);
+                }
+            }
+        }
+        let prescribed = field.clone();
+        let mut x = self.numbering.gather(&right);
+        self.factor.forward(&mut x);
+        self.factor.backward(&mut x);
+        self.numbering.scatter(&x, &mut field);
+        // Turning a vector into a frame and back rounds what is prescribed.
+        for (&node, demands) in &self.demands {
+            if demands.iter().all(|demand| !is_oblique(demand.direction.into())) {
+                for c in (0..2).filter(|&c| demands.iter().any(|d| d.direction[c] != 0.0)) {
+                    field[node][c] = prescribed[node][c];
+                }
+            }
+        }
+        Ok(field)
+    }
+
+    /// The dual pair of `certify::dual`: w of least energy, and a stress in equilibrium near C eps(w), on the triangles of `built`; `open` tells
+    /// of the edges of Gamma_C where w is free and rho has no traction.
+    ///
+    /// # Errors
+    /// A place where boundaries contradict one another; contact along a direction that is not an axis.
+    pub fn pair(
+        &self,
+        target: Target,
+        built: &Built,
+        open: &[bool],
+    ) -> Result<Certificate, String> {
+        let (parts, mesh) = (self.parts, self.parts.mesh);
+        let mut w = Field::new(mesh, &self.field(target)?).map_err(|error| error.to_string())?;
+        let at_rest = |values: &[Option<f64>; 2]| values.map(|value| value.map(|_| 0.0));
+        let mut prescribed: Vec<[Option<f64>; 2]> = parts.prescribed.iter().map(at_rest).collect();
+        let mut boundary = BTreeMap::new();
+        for (&e, what) in &parts.boundary {
+            boundary.insert(
+                e,
+                match *what {
+                    Boundary::Held(held, _) => Boundary::Held(held, [0.0; 2]),
+                    Boundary::Supported(d, ..) => Boundary::Supported(d, 0.0, None),
+                    Boundary::Contact(k) if !open[k] => {
+                        let d = parts.contact[k].directions[0];
+                        if is_oblique(d.into()) || parts.contact[k].along().is_some() {
+                            return Err("contact is not along the normal of an axis".to_owned());
+                        }
+                        let held = [d[0] != 0.0, d[1] != 0.0];
+                        for vertex in mesh.ends(parts.contact[k].edge) {
+                            for c in (0..2).filter(|&c| held[c]) {
+                                prescribed[vertex][c] = Some(w.vertices[vertex][c]);
+                            }
+                        }
+                        Boundary::Held(held, [0.0; 2])
+                    }
+                    Boundary::Loaded(_) | Boundary::Free | Boundary::Contact(_) => Boundary::Free,
+                },
+            );
+        }
+        let problem = Problem::of(mesh.clone(), parts.problem.material.clone());
+        let cuts = built.divisions.iter().map(|division| (division.base, division.at)).collect();
+        let frames = parts.frames.clone();
+        let dual = Parts {
+            problem: &problem,
+            mesh,
+            contact: Vec::new(),
+            prescribed,
+            frames,
+            boundary,
+            cuts,
+        };
+        if let Some(bulges) = &mut w.bulges {
+            dual.hold_between(bulges);
+        }
+        let mut pair = build(&dual, &w, &w).certificate;
+        improve(&mut pair, SWEEPS).map_err(|error| error.to_string())?;
+        Ok(pair)
+    }
+
+    fn contradiction(&self, node: usize, demands: &[Demand], other: &Demand) -> String {
+        let [x, y] = self.space.nodes()[node];
+        let names = |demand: &Demand| format!("'{}'", self.names[demand.boundary]);
+        let with = demands.iter().find(|demand| demand.boundary != other.boundary);
+        let with = with.map_or_else(String::new, |with| format!(" and {}", names(with)));
+        format!(
+            "at ({x}, {y}), where {}{with} meet, the force of one alone has no bound in the energy norm",
+            names(other)
+        )
+    }
+
+    /// w on the triangles of a certificate, what is exact on the boundary made so.
+    pub fn lifting(&self, target: Target, built: &Built) -> Result<Lifting, String> {
+        let field = self.field(target)?;
+        let certificate = &built.certificate;
+        let mesh = self.parts.mesh;
+        let shape = built.shape::<f64>(mesh, &field);
+        let vertices: Vec<[f64; 2]> =
+            shape.points[..mesh.vertices().len()].iter().map(|&w| w.into()).collect();
+        let Some(bulges) = shape.bulges else { return Ok(Lifting { vertices, beyond: None }) };
+        let mean = |cut: &Cut| {
+            let [a, b] = cut.ends.map(|end| Vector2::from(vertices[end]));
+            a + (b - a) * cut.at
+        };
+        let at_cuts = shape.points[vertices.len()..].iter().zip(&certificate.cuts);
+        let mut at_cuts: Vec<[f64; 2]> = at_cuts.map(|(w, cut)| (w - mean(cut)).into()).collect();
+        let mut bulges: Vec<[f64; 2]> = bulges.into_iter().map(Into::into).collect();
+        for (e, edge) in certificate.edges.iter().enumerate() {
+            // w is affine along what holds.
+            let across = match edge.role {
+                Role::Held(held, _) => held,
+                Role::Supported { along, .. } if is_oblique(along) => [true; 2],
+                Role::Supported { along, .. } => along.map(|d| d != 0.0),
+                _ => continue,
+            };
+            for c in (0..2).filter(|&c| across[c]) {
+                bulges[e][c] = 0.0;
+                for p in edge.ends {
+                    if let Some(cut) = p.checked_sub(vertices.len()) {
+                        at_cuts[cut][c] = 0.0;
+                    }
+                }
+            }
+        }
+        Ok(Lifting { vertices, beyond: Some([at_cuts, bulges]) })
+    }
+}

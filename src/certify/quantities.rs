@@ -1,0 +1,465 @@
+//! What a certificate proves of contact itself: forces, moments and reactions between two numbers, where contact can act, and how
+//! high the pressure is at least.
+//!
+//! Docs: docs/theory.md, section 7.7. For admissible v and tau let m = (C eps(v) + tau) / 2 and
+//!
+//! M^2 = |C eps(v) - tau|^2 / 4 + int tau_n (v_n - g),   A = int sigma_n (v_n - g) >= 0,   B = int tau_n (u_n - g) >= 0.
+//!
+//! Then |sigma(u) - m|^2 + A + B = M^2 \[Q2\]: the mean stress has about half the bound of theorem 7.2. From it follow
+//!
+//! - int_S |sigma_n| <= M^2 / d where g - v_n >= d on S, and int_S (g - u_n) <= M^2 / p where tau_n <= -p on S ([`Zone`]);
+//! - for every w in H^1 the functional R(w) = L(w) - int sigma(u) : eps(w), which is the force of the body on whatever holds it, in
+//!   the mean with w on the boundary, lies within M |w|_a of L(w) - int m : eps(w) \[Q3\].
+
+use nalgebra::Vector2;
+
+use super::Asked;
+use super::balanced::Balanced;
+use super::build::Built;
+use super::certificate::{Certificate, Role};
+use super::contact::Profile;
+use super::field::Field;
+use super::forces::{Evidence, Forces, Mean, Motion, Ramp, Target};
+use super::lifting::Lifter;
+use super::parts::{Boundary, Parts};
+use super::proof::Proof;
+use crate::kernel::{Ball, Element, Enclosing, Interval, P1, P2};
+use crate::solve::Solution;
+
+/// What a certificate proves beside the bound.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Quantities {
+    /// M: the distance of the true stress sigma(u) from m is at most this, in the norm of energy.
+    pub mean_stress: f64,
+    /// Where contact can hardly act, and where the body can hardly be off the obstacle.
+    pub zones: Vec<Zone>,
+    /// Forces, moments and reactions between two numbers.
+    pub list: Vec<Quantity>,
+    /// What proves them, beside the certificate.
+    pub evidence: Evidence,
+}
+
+/// A number of the true solution, between two others.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Quantity {
+    /// Which one.
+    pub name: Name,
+    /// Of which boundary.
+    pub boundary: String,
+    /// Of the pressure times this weight.
+    pub weight: Option<Ramp>,
+    /// What the discrete solution has.
+    pub value: f64,
+    /// What the true solution has lies between these, or why nothing is known; the upper end of a peak pressure is infinite.
+    pub interval: Result<[f64; 2], String>,
+}
+
+/// Which number of a boundary.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum Name {
+    /// int |sigma_n| over a contact boundary.
+    ContactForce,
+    /// A component of the force of an obstacle on the body.
+    ContactComponent(usize),
+    /// The moment of that force about the origin, counter-clockwise.
+    ContactMoment,
+    /// sup |sigma_n| over a contact boundary, which has no upper bound that could be proved.
+    PeakPressure,
+    /// A component of the force of a support on the body.
+    Reaction(usize),
+    /// The moment of that force about the origin, counter-clockwise.
+    ReactionMoment,
+}
+
+impl Name {
+    /// Its name in result.json.
+    pub fn text(self) -> &'static str {
+        match self {
+            Name::ContactForce => "contact force",
+            Name::ContactComponent(c) => ["contact force x", "contact force y"][c],
+            Name::ContactMoment => "contact moment",
+            Name::PeakPressure => "peak pressure",
+            Name::Reaction(c) => ["reaction x", "reaction y"][c],
+            Name::ReactionMoment => "reaction moment",
+        }
+    }
+
+    fn motion(self, weight: Option<Ramp>) -> Motion {
+        match self {
+            Name::ContactForce | Name::PeakPressure => Motion::Along(weight),
+            Name::ContactComponent(c) | Name::Reaction(c) => Motion::Axis(c),
+            Name::ContactMoment | Name::ReactionMoment => Motion::Turn,
+        }
+    }
+
+    /// The forces on the body are minus R(w).
+    fn of_functional(self, [low, high]: [f64; 2]) -> [f64; 2] {
+        match self {
+            Name::ContactForce | Name::PeakPressure => [low.max(0.0), high],
+            _ => [-high, -low],
+        }
+    }
+}
+
+/// A stretch of a contact boundary, with what the true solution has there at most.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Zone {
+    /// The boundary.
+    pub boundary: String,
+    /// Arc length along the boundary, from the start of its first edge, where the stretch begins.
+    pub from: f64,
+    /// Where it ends.
+    pub to: f64,
+    /// The places of both, in the undeformed body.
+    pub ends: [[f64; 2]; 2],
+    /// What is bounded.
+    pub limit: Limit,
+}
+
+/// What is bounded on a [`Zone`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Limit {
+    /// The contact force int |sigma_n| is at most this (per unit of thickness).
+    Force(f64),
+    /// The integral of the opening int (g - u_n) is at most this.
+    Opening(f64),
+}
+
+/// The boundaries of the problem on the edges of a certificate.
+pub(super) struct Line {
+    pub names: Vec<String>,
+    /// The boundary of each edge, by its place among the names.
+    pub of: Vec<Option<usize>>,
+    /// The edges of Gamma_C, along it.
+    pub stations: Vec<Station>,
+}
+
+/// An edge of Gamma_C along its boundary.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Station {
+    pub edge: usize,
+    /// Arc length at its ends.
+    pub from: f64,
+    pub to: f64,
+    pub ends: [[f64; 2]; 2],
+    /// It starts where the one before it ends.
+    pub joined: bool,
+}
+
+/// Parts of the largest gap, and of the largest pressure, from which stretches are made.
+const LEVELS: [f64; 3] = [0.5, 0.125, 0.03125];
+
+/// A stretch says something if it has less than this part of the boundary's force, or of the opening that its displacement could have.
+const TELLING: f64 = 0.1;
+
+/// Where contact can hardly act, and where the body can hardly be off the obstacle.
+pub(super) fn zones<S: Enclosing>(
+    certificate: &Certificate,
+    state: &Balanced<S>,
+    line: &Line,
+    mean: Mean,
+) -> Vec<Zone> {
+    let smallest = |c: &[S; 4]| c.iter().fold(f64::INFINITY, |least, c| least.min(c.lower()));
+    let mut zones = Vec::new();
+    for (boundary, name) in line.names.iter().enumerate() {
+        let stations: Vec<Station> =
+            line.stations.iter().copied().filter(|s| line.of[s.edge] == Some(boundary)).collect();
+        let pressure = |s: &Station| match certificate.edges[s.edge].role {
+            Role::Contact { pressure, .. } => pressure.map(|p| -p),
+            _ => [0.0; 2],
+        };
+        let gaps: Vec<f64> =
+            stations.iter().map(|s| smallest(&certificate.gap(s.edge, state))).collect();
+        let pressures: Vec<f64> =
+            stations.iter().map(|s| pressure(s)[0].min(pressure(s)[1])).collect();
+        let force: f64 = stations
+            .iter()
+            .map(|s| (pressure(s)[0] + pressure(s)[1]) / 2.0 * (s.to - s.from))
+            .sum();
+        let moved = stations.iter().flat_map(|s| certificate.edges[s.edge].ends);
+        let moved =
+            moved.map(|p| state.v.points[p].map(|x| x.upper().abs()).amax()).fold(0.0, f64::max);
+        let mut add = |sizes: &[f64], limit: fn(f64) -> Limit, telling: &dyn Fn(f64) -> f64| {
+            let largest = sizes.iter().copied().fold(0.0, f64::max);
+            let mut last = Vec::new();
+            for level in LEVELS {
+                let runs = runs(&stations, |i| sizes[i] > 0.0 && sizes[i] >= level * largest);
+                for &(first, end) in runs.iter().filter(|run| !last.contains(*run)) {
+                    let least = sizes[first..end].iter().copied().fold(f64::INFINITY, f64::min);
+                    let most = (Interval::point(mean.square) / Interval::point(least)).hi();
+                    let (from, to) = (stations[first], stations[end - 1]);
+                    if most <= TELLING * telling(to.to - from.from) {
+                        let ends = [from.ends[0], to.ends[1]];
+                        let (from, to, limit) = (from.from, to.to, limit(most));
+                        zones.push(Zone { boundary: name.clone(), from, to, ends, limit });
+                    }
+                }
+                last = runs;
+            }
+        };
+        add(&gaps, Limit::Force, &|_| if force > 0.0 { force } else { f64::INFINITY });
+        add(&pressures, Limit::Opening, &|length| length * moved);
+    }
+    zones
+}
+
+/// The stretches of stations, from the first to before the last, that have a property and hang together.
+fn runs(stations: &[Station], has: impl Fn(usize) -> bool) -> Vec<(usize, usize)> {
+    let mut runs: Vec<(usize, usize)> = Vec::new();
+    for (i, station) in stations.iter().enumerate().filter(|&(i, _)| has(i)) {
+        match runs.last_mut() {
+            Some((_, end)) if *end == i && station.joined => *end = i + 1,
+            _ => runs.push((i, i + 1)),
+        }
+    }
+    runs
+}
+
+/// Everything that `built` proves of the true solution near `solution`, v being the displacement that is proved with.
+pub(super) fn prove(
+    parts: &Parts,
+    (solution, v): (&Solution, &Field),
+    built: &Built,
+    (state, proof): (&Balanced<Ball>, &Proof),
+    asked: &Asked,
+) -> Quantities {
+    let line = built.line(parts);
+    let mean = Mean::new(state, proof, built.certificate.lift());
+    let zones = zones(&built.certificate, state, &line, mean);
+    let forces = Forces::new(&built.certificate, state, &line.of, mean);
+    let open = open(parts, v);
+    let (list, mut evidence) = match solution.degree {
+        1 => list::<P1, 3, 2>(parts, built, (&forces, &line.names), (&open, asked)),
+        _ => list::<P2, 6, 3>(parts, built, (&forces, &line.names), (&open, asked)),
+    };
+    let mut list: Vec<Quantity> = list
+        .into_iter()
+        .map(|(name, boundary, weight, interval)| {
+            let boundary = line.names[boundary].clone();
+            let value = match weight {
+                Some(weight) => weighted(solution, &boundary, weight),
+                None => value(solution, name, &boundary),
+            };
+            Quantity { name, boundary, weight, value, interval }
+        })
+        .collect();
+    let peaks: Vec<Quantity> =
+        list.iter().filter_map(|force| peak(force, &zones, &line, solution)).collect();
+    list.extend(peaks);
+    list.sort_by(|a, b| (&a.boundary, a.name).cmp(&(&b.boundary, b.name)));
+    (evidence.names, evidence.of) = (line.names, line.of);
+    Quantities { mean_stress: mean.root, zones, list, evidence }
+}
+
+/// What the discrete solution has.
+fn value(solution: &Solution, name: Name, boundary: &str) -> f64 {
+    let contact = solution.boundaries.iter().find(|b| b.boundary == boundary);
+    let of_contact = |get: &dyn Fn(&crate::solve::ContactBoundary) -> f64| contact.map_or(0.0, get);
+    let quantities = &solution.quantities;
+    match name {
+        Name::ContactForce => of_contact(&|b| b.force),
+        Name::ContactComponent(c) => of_contact(&|b| b.resultant[c]),
+        Name::ContactMoment => of_contact(&|b| b.moment),
+        Name::PeakPressure => of_contact(&|b| b.peak_pressure),
+        Name::Reaction(c) => quantities.reactions.get(boundary).map_or(0.0, |r| r[c]),
+        Name::ReactionMoment => quantities.reaction_moments.get(boundary).copied().unwrap_or(0.0),
+    }
+}
+
+/// int phi |lambda^h| by the trapezoidal rule between the nodes.
+fn weighted(solution: &Solution, boundary: &str, weight: Ramp) -> f64 {
+    let edges = solution.contact.iter().filter(|edge| &*edge.boundary == boundary);
+    let nodes = edges.flat_map(|edge| edge.points.windows(2));
+    nodes.fold(0.0, |sum, pair| {
+        let at = |k: usize| -pair[k].lambda * weight.at(solution.nodes[pair[k].node][weight.axis]);
+        sum + (at(0) + at(1)) / 2.0 * (pair[1].arc - pair[0].arc)
+    })
+}
+
+/// The edges of Gamma_C where v is off the obstacle by half of what it is at most on that boundary: there w may be free.
+fn open(parts: &Parts, v: &Field) -> Vec<bool> {
+    let gaps: Vec<f64> = parts
+        .contact
+        .iter()
+        .map(|edge| {
+            let ends = parts.mesh.ends(edge.edge);
+            let gap = |k: usize| {
+                edge.gap[k] - Vector2::from(v.vertices[ends[k]]).dot(&edge.directions[k])
+            };
+            gap(0).min(gap(1))
+        })
+        .collect();
+    let largest = |boundary: &str| {
+        let of = parts.contact.iter().zip(&gaps).filter(|(edge, _)| &*edge.boundary == boundary);
+        of.fold(0.0, |most: f64, (_, &gap)| most.max(gap))
+    };
+    let is_open =
+        |(k, &gap): (usize, &f64)| gap > 0.0 && gap >= largest(&parts.contact[k].boundary) / 2.0;
+    gaps.iter().enumerate().map(is_open).collect()
+}
+
+/// The edges of Gamma_C that are not pressed from end to end, and as many of their neighbours on each side as are `eroded`.
+fn off_contact(parts: &Parts, eroded: usize) -> Vec<bool> {
+    let is_full =
+        |profile: &Profile| profile.cut.is_none() && profile.values[0].iter().all(|&p| p < 0.0);
+    let mut open: Vec<bool> = parts
+        .contact
+        .iter()
+        .map(|edge| {
+            !(is_full(&edge.pressure) || edge.on_halves.iter().all(|(half, _)| is_full(half)))
+        })
+        .collect();
+    let ends: Vec<[usize; 2]> =
+        parts.contact.iter().map(|edge| parts.mesh.ends(edge.edge)).collect();
+    for _ in 0..eroded {
+        let before = open.clone();
+        for k in 1..open.len() {
+            if ends[k - 1][1] == ends[k][0] {
+                open[k] |= before[k - 1];
+                open[k - 1] |= before[k];
+            }
+        }
+    }
+    open
+}
+
+/// The peak is at least the mean over all of a boundary, or over what is left of it without a stretch that has little force.
+fn peak(force: &Quantity, zones: &[Zone], line: &Line, solution: &Solution) -> Option<Quantity> {
+    let (Name::ContactForce, None, Ok([low, _])) = (force.name, force.weight, &force.interval)
+    else {
+        return None;
+    };
+    let boundary = force.boundary.clone();
+    let point = Interval::point;
+    let stations =
+        line.stations.iter().filter(|s| line.of[s.edge].is_some_and(|b| line.names[b] == boundary));
+    // Arc lengths are doubles near the true ones.
+    let length = stations.fold(0.0, |sum, s| sum + (s.to - s.from)) * (1.0 + 1e-12);
+    let mut least = (point(*low) / point(length)).lo();
+    for zone in zones.iter().filter(|zone| zone.boundary == boundary) {
+        if let Limit::Force(most) = zone.limit {
+            let left = length - (zone.to - zone.from) * (1.0 - 1e-12);
+            if left > 0.0 {
+                least = least.max(((point(*low) - point(most)) / point(left)).lo());
+            }
+        }
+    }
+    let name = Name::PeakPressure;
+    let interval = Ok([least.max(0.0), f64::INFINITY]);
+    let value = value(solution, name, &boundary);
+    Some(Quantity { name, boundary, weight: None, value, interval })
+}
+
+/// A number of a boundary between two others, or why not.
+type Found = (Name, usize, Option<Ramp>, Result<[f64; 2], String>);
+
+/// Forces, moments and reactions of all boundaries.
+fn list<E: Element<N, M>, const N: usize, const M: usize>(
+    parts: &Parts,
+    built: &Built,
+    (forces, names): (&Forces<Ball>, &[String]),
+    (open, Asked { weights, second_order }): (&[bool], &Asked),
+) -> (Vec<Found>, Evidence) {
+    let mut asked: Vec<(Name, usize, Option<Ramp>)> = Vec::new();
+    // The direction of contact of a boundary, if it is along an axis: then the force says all of its components.
+    let mut axes = vec![None; names.len()];
+    for (boundary, name) in names.iter().enumerate() {
+        let edges = parts.mesh.edges_of(name).unwrap_or_default();
+        let what: Vec<&Boundary> = edges
+            .iter()
+            .filter_map(|edge| {
+                parts.boundary.get(&parts.mesh.triangle_edges()[edge.triangle][edge.local])
+            })
+            .collect();
+        let mut along = what.iter().filter_map(|what| match what {
+            Boundary::Contact(k) => Some(parts.contact[*k].directions),
+            _ => None,
+        });
+        if let Some([d, _]) = along.next() {
+            let constant = along.all(|other| other == [d, d]);
+            axes[boundary] = (0..2).find(|&c| constant && d[1 - c] == 0.0).map(|c| (c, d[c]));
+            asked.push((Name::ContactForce, boundary, None));
+            let own = weights.iter().filter(|(of, _)| of == name);
+            asked.extend(own.map(|&(_, ramp)| (Name::ContactForce, boundary, Some(ramp))));
+            if axes[boundary].is_none() {
+                asked.extend([0, 1].map(|c| (Name::ContactComponent(c), boundary, None)));
+            }
+            asked.push((Name::ContactMoment, boundary, None));
+        } else if what
+            .iter()
+            .any(|what| matches!(what, Boundary::Held(..) | Boundary::Supported(..)))
+        {
+            asked.extend([0, 1].map(|c| (Name::Reaction(c), boundary, None)));
+            asked.push((Name::ReactionMoment, boundary, None));
+        }
+    }
+    let lifter = match Lifter::<E, N, M>::new(parts, names, open) {
+        Ok(lifter) => lifter,
+        Err(error) => {
+            let why = |(name, boundary, weight)| (name, boundary, weight, Err(error.to_string()));
+            return (asked.into_iter().map(why).collect(), Evidence::default());
+        }
+    };
+    let all = Target { boundary: None, motion: Motion::Along(None) };
+    let mut evidence = Evidence { cover: lifter.lifting(all, built).ok(), ..Evidence::default() };
+    let cover = evidence.cover.as_ref().and_then(|w| forces.cover(w).ok());
+    let mut refused = Vec::with_capacity(asked.len());
+    for &(name, boundary, weight) in &asked {
+        let target = Target { boundary: Some(boundary), motion: name.motion(weight) };
+        refused.push(match lifter.lifting(target, built) {
+            Ok(w) => {
+                evidence.liftings.push((target, w));
+                None
+            }
+            Err(why) => Some(why),
+        });
+    }
+    let mut between = forces.between(&evidence.liftings, cover.as_ref());
+    if *second_order {
+        for open in [0, 1].map(|eroded| off_contact(parts, eroded)) {
+            let Ok(lifter) = Lifter::<E, N, M>::new(parts, names, &open) else { continue };
+            for (k, &(target, _)) in evidence.liftings.iter().enumerate() {
+                let (Motion::Along(_), Some(ends)) = (target.motion, between[k].as_mut().ok())
+                else {
+                    continue;
+                };
+                let Ok(pair) = lifter.pair(target, built, &open) else { continue };
+                let Ok([low, high]) = forces.by_pair(&pair, target, cover.as_ref()) else {
+                    continue;
+                };
+                if low > ends[0] || high < ends[1] {
+                    *ends = [ends[0].max(low), ends[1].min(high)];
+                    evidence.pairs.push((target, pair));
+                }
+            }
+        }
+    }
+    let mut between = between.into_iter();
+    let mut found: Vec<Found> = Vec::with_capacity(asked.len());
+    for ((name, boundary, weight), refused) in asked.into_iter().zip(refused) {
+        let interval = match refused {
+            Some(why) => Err(why),
+            None => {
+                between.next().map_or(Err(String::new()), |ends| ends.map_err(|e| e.to_string()))
+            }
+        };
+        let interval = interval.map(|ends| name.of_functional(ends));
+        if let (Name::ContactForce, None, Some((axis, sign))) = (name, weight, axes[boundary]) {
+            for c in 0..2 {
+                let along = |[low, high]: [f64; 2]| match (c == axis, sign > 0.0) {
+                    (true, true) => [-high, -low],
+                    (true, false) => [low, high],
+                    (false, _) => [0.0; 2],
+                };
+                let interval = interval.clone().map(along);
+                found.push((Name::ContactComponent(c), boundary, None, interval));
+            }
+        }
+        found.push((name, boundary, weight, interval));
+    }
+    (found, evidence)
+}

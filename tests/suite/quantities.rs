@@ -1,0 +1,309 @@
+//! Forces of the true solution between two numbers, and where contact can act (docs/theory.md, 7.7).
+
+use std::sync::Arc;
+
+use signorini::certify::dual::WrongPair;
+use signorini::certify::forces::WrongLifting;
+use signorini::certify::proof::Role;
+use signorini::certify::quantities::{Limit, Name};
+use signorini::certify::{Asked, Continuous, Ramp, Target, adapt, certify, certify_with};
+use signorini::fem::exact::{self, Kind, Patch};
+use signorini::fem::{
+    Condition, Diagonal, Exact, Perturbation, Problem, Rectangle, SharedFunction, Structured,
+};
+use signorini::io::Expression;
+use signorini::kernel::{Ball, Material, Plane};
+use signorini::solve::{Degree, Method, Settings, Solution, solve};
+
+use super::common::exact::singular;
+
+fn expression(text: &str) -> SharedFunction {
+    Arc::new(text.parse::<Expression>().unwrap())
+}
+
+fn square(n: usize) -> Rectangle {
+    Rectangle { width: 1.0, height: 1.0, nx: n, ny: n, diagonal: Diagonal::Right }
+}
+
+/// The unit square on a floor, its top pushed down by 0.1 at the left and raised by 0.05 at the right.
+fn tilted_punch(n: usize) -> Problem {
+    let top = ["0", "-0.1 + 0.15*x"].map(|u| Some(expression(u)));
+    let material = Material::lame(1.0, 1.0, Plane::Strain);
+    let problem = Problem::of(square(n).mesh().unwrap(), material);
+    Problem { body_force: [expression("0"), expression("0")], ..problem }
+        .with("top", Condition::Displacement(top))
+        .with("bottom", Condition::Contact { gap: expression("0") })
+}
+
+/// Its contact force: P2 on 256 x 256 cells has 0.0867719534, P2 on adapted meshes 0.0867715163.
+const FORCE: f64 = 0.086_771_5;
+
+fn solved(problem: &Problem, degree: Degree) -> Solution {
+    let method = Method { degree, ..Method::default() };
+    solve(problem, &method, &Settings::default()).unwrap().0
+}
+
+fn certified(problem: &Problem, degree: Degree) -> Continuous {
+    certify(problem, &solved(problem, degree)).unwrap()
+}
+
+fn interval(certified: &Continuous, name: Name, boundary: &str) -> [f64; 2] {
+    let of = certified.quantities.list.iter().find(|q| q.name == name && q.boundary == boundary);
+    of.unwrap().interval.clone().unwrap()
+}
+
+/// Half the width of an interval over the contact force of the tilted punch, in per cent.
+fn half_width([low, high]: [f64; 2]) -> f64 {
+    100.0 * (high - low) / 2.0 / FORCE
+}
+
+#[test]
+fn the_force_of_the_tilted_punch_lies_between_two_numbers_that_near_each_other_as_h() {
+    for (n, half) in [(8, 16.5), (16, 8.4), (32, 4.4)] {
+        let c = certified(&tilted_punch(n), Degree::One);
+        let force = interval(&c, Name::ContactForce, "bottom");
+        assert!(c.rigorous && force[0] <= FORCE && FORCE <= force[1], "n = {n}: {force:?}");
+        assert!(half_width(force) <= 1.3 * half, "n = {n}: {} %", half_width(force));
+        // With the whole bound in place of M it would be beyond that.
+        assert!(half_width(force) * c.bound / c.quantities.mean_stress > 1.3 * half);
+        // M is between a half and 1 / sqrt 2 of the bound.
+        let ratio = c.quantities.mean_stress / c.bound;
+        assert!((0.5 - 1e-12..0.71).contains(&ratio), "M is {ratio} of the bound");
+        // Nothing else holds the body: the reaction is minus the force, within both intervals.
+        let reaction = interval(&c, Name::Reaction(1), "top");
+        assert!(reaction[0] <= -FORCE && -FORCE <= reaction[1]);
+        let [low, high] = interval(&c, Name::PeakPressure, "bottom");
+        assert!(0.08 < low && low < 0.3 && high == f64::INFINITY, "peak at least {low}");
+    }
+}
+
+fn by_a_dual_pair(problem: &Problem, degree: Degree) -> Continuous {
+    let asked = Asked { weights: Vec::new(), second_order: true };
+    certify_with(problem, &solved(problem, degree), &asked).unwrap()
+}
+
+/// The ends of the contact force of the tilted punch by dual pairs, beside it, in per cent.
+fn ends_to_second_order(n: usize) -> [f64; 2] {
+    let c = by_a_dual_pair(&tilted_punch(n), Degree::One);
+    assert!(c.rigorous && !c.quantities.evidence.pairs.is_empty());
+    let ends = interval(&c, Name::ContactForce, "bottom");
+    assert!(ends[0] <= FORCE && FORCE <= ends[1], "n = {n}: {ends:?}");
+    // The checker finds the same again.
+    let again = c.certificate.forces::<Ball>(&c.quantities.evidence).unwrap();
+    assert!(again.iter().flatten().any(|found| *found == ends));
+    let relative = |end: f64| 100.0 * (end - FORCE).abs() / FORCE;
+    let ends = ends.map(relative);
+    eprintln!("n = {n}: {ends:?} %");
+    ends
+}
+
+#[test]
+fn a_dual_pair_bounds_the_force_to_second_order() {
+    let [coarse, fine] = [8, 16].map(ends_to_second_order);
+    assert!(coarse[0] <= 1.3 * 3.6 && fine[0] <= 1.3 * 1.35, "from below: {coarse:?} {fine:?}");
+    assert!(coarse[1] <= 1.3 * 9.3 && fine[1] <= 1.3 * 3.9, "from above: {coarse:?} {fine:?}");
+}
+
+#[test]
+#[ignore = "a minute: run by .ci/run"]
+fn a_dual_pair_bounds_the_force_from_below_with_the_power_one_and_a_third() {
+    let ends = [8, 16, 32, 64].map(ends_to_second_order);
+    let below = [3.6, 1.35, 0.52, 0.21];
+    let above = [9.3, 3.9, 1.73, 0.93];
+    for (ends, (below, above)) in ends.iter().zip(below.into_iter().zip(above)) {
+        assert!(
+            ends[0] <= 1.3 * below && ends[1] <= 1.3 * above,
+            "{ends:?} beside {below}, {above}"
+        );
+    }
+    let order = (ends[0][0] / ends[3][0]).log2() / 3.0;
+    assert!(order >= 1.3, "order {order}");
+}
+
+#[test]
+fn of_a_patch_test_the_force_is_known_to_rounding() {
+    let p = 0.25;
+    let material = Material::lame(1.0, 1.0, Plane::Strain);
+    let patches = [
+        (Patch::compression(material, p), p),
+        (Patch::inclined(material, p, 0.125, 0.0625), p),
+        (Patch::interference(material, 0.25), 0.75),
+    ];
+    for (k, (patch, force)) in patches.into_iter().enumerate() {
+        for degree in [Degree::One, Degree::Two] {
+            let kinds = [("top", Kind::Displacement), ("bottom", Kind::Contact)];
+            let sides = [("left", Kind::Traction), ("right", Kind::Traction)];
+            let kinds = kinds.into_iter().chain(sides).map(|(name, kind)| (name.to_owned(), kind));
+            let solution: Exact = Arc::new(patch.clone());
+            let problem = exact::problem(&solution, square(4).mesh().unwrap(), &kinds.collect());
+            let c = by_a_dual_pair(&problem, degree);
+            let [low, high] = interval(&c, Name::ContactForce, "bottom");
+            eprintln!("{k} {degree:?}: {} {} rigorous {}", low - force, high - force, c.rigorous);
+            assert!(
+                low <= force + 1e-13 && force - 1e-13 <= high,
+                "{k} {degree:?}: [{low}, {high}]"
+            );
+            assert!(high - low <= 1e-12, "{k} {degree:?}: [{low}, {high}]");
+        }
+    }
+}
+
+#[test]
+fn a_dual_stress_that_is_not_one_is_refused() {
+    let c = by_a_dual_pair(&tilted_punch(8), Degree::One);
+    // A traction on Gamma_N.
+    let mut evidence = c.quantities.evidence.clone();
+    let edges = &mut evidence.pairs[0].1.edges;
+    let free = edges.iter_mut().find(|edge| matches!(edge.role, Role::Loaded(_))).unwrap();
+    free.role = Role::Loaded([[1e-9, 0.0]; 2]);
+    let found = c.certificate.forces::<Ball>(&evidence);
+    assert!(matches!(found, Err(WrongPair::Differs { .. })), "{found:?}");
+    // A body force.
+    let mut evidence = c.quantities.evidence.clone();
+    evidence.pairs[0].1.pieces[0].body = [[0.0, 1e-9]; 3];
+    assert!(matches!(c.certificate.forces::<Ball>(&evidence), Err(WrongPair::Differs { .. })));
+}
+
+#[test]
+#[ignore = "a minute: run by .ci/run"]
+fn adapted_to_a_fifth_of_a_per_cent_the_force_is_known_to_a_tenth() {
+    let target = Target { relative: 0.002, max_unknowns: 20_000 };
+    let method = Method { degree: Degree::Two, ..Method::default() };
+    let (_, adapted) =
+        adapt(tilted_punch(4), &method, &Settings::default(), target, &|_| {}).unwrap();
+    let c = adapted.certified.unwrap();
+    let force = interval(&c, Name::ContactForce, "bottom");
+    eprintln!("{:?} {force:?} +-{} %", adapted.levels.last(), half_width(force));
+    assert!(c.rigorous && force[0] <= FORCE && FORCE <= force[1], "{force:?}");
+    assert!(half_width(force) <= 0.11, "{} %", half_width(force));
+}
+
+#[test]
+fn no_more_contact_and_no_more_opening_than_the_zones_say() {
+    let fine = solved(&tilted_punch(64), Degree::Two);
+    for n in [8, 16, 32] {
+        let c = certified(&tilted_punch(n), Degree::One);
+        let mut limits = [0, 0];
+        for zone in &c.quantities.zones {
+            let within =
+                fine.contact.iter().flat_map(|edge| edge.points.windows(2)).filter(|pair| {
+                    let middle = (pair[0].arc + pair[1].arc) / 2.0;
+                    zone.from < middle && middle < zone.to
+                });
+            let sum = |of: &dyn Fn(usize, &[_]) -> f64| {
+                within.clone().fold(
+                    0.0,
+                    |sum, pair: &[signorini::solve::solution::ContactValues]| {
+                        sum + (of(0, pair) + of(1, pair)) / 2.0 * (pair[1].arc - pair[0].arc)
+                    },
+                )
+            };
+            let (found, most) = match zone.limit {
+                Limit::Force(most) => {
+                    limits[0] += 1;
+                    (sum(&|k, p: &[signorini::solve::solution::ContactValues]| -p[k].lambda), most)
+                }
+                Limit::Opening(most) => {
+                    limits[1] += 1;
+                    (sum(&|k, p| (p[k].gap - p[k].u_n).max(0.0)), most)
+                }
+            };
+            assert!(found <= most, "n = {n}: {found} in {zone:?}");
+        }
+        assert!(limits[0] > 0 && limits[1] > 0, "n = {n}: zones of both kinds");
+    }
+    // Nearly nothing of the force beyond three quarters.
+    let c = certified(&tilted_punch(32), Degree::One);
+    let beyond =
+        c.quantities.zones.iter().find(|zone| zone.from <= 0.79 && zone.to == 1.0).unwrap();
+    assert!(matches!(beyond.limit, Limit::Force(most) if most <= 0.006 * FORCE), "{beyond:?}");
+}
+
+/// Where the end of contact is known in closed form, (b) of docs/theory.md, 10.3, held all around: int min(1, 4 x) |sigma_n|.
+const WEIGHTED: f64 = 0.155_228_476_579_77;
+
+fn weighted_force(n: usize, perturbation: Option<Perturbation>, degree: Degree) -> [f64; 2] {
+    let kinds = [("bottom", Kind::Contact), ("left", Kind::Displacement)];
+    let more = [("right", Kind::Displacement), ("top", Kind::Displacement)];
+    let kinds = kinds.into_iter().chain(more).map(|(name, kind)| (name.to_owned(), kind));
+    let mesh = Structured::Rectangle(square(n)).mesh(perturbation).unwrap();
+    let problem = exact::problem(&singular(0.5), mesh, &kinds.collect());
+    let weight = Ramp { axis: 0, between: [0.25, 1.0], width: 0.25 };
+    let asked = Asked { weights: vec![("bottom".to_owned(), weight)], second_order: false };
+    let c = certify_with(&problem, &solved(&problem, degree), &asked).unwrap();
+    // The whole force has no bound: at the left, contact meets a support under pressure.
+    let of = |weight| {
+        c.quantities.list.iter().find(|q| q.name == Name::ContactForce && q.weight == weight)
+    };
+    let whole = of(None).unwrap().interval.clone();
+    assert!(whole.is_err_and(|why| why.contains("'bottom'") && why.contains("'left'")));
+    of(Some(weight)).unwrap().interval.clone().unwrap()
+}
+
+fn contains_the_weighted_force(n: usize, perturbation: Option<Perturbation>, degree: Degree) {
+    let [low, high] = weighted_force(n, perturbation, degree);
+    eprintln!("{n} {perturbation:?} {degree:?}: {low} {high}");
+    assert!(
+        low <= WEIGHTED && WEIGHTED <= high,
+        "{n} {perturbation:?} {degree:?}: [{low}, {high}]"
+    );
+    assert!(high - low < 1.5 * WEIGHTED, "{n} {perturbation:?} {degree:?}: [{low}, {high}]");
+}
+
+#[test]
+fn a_weighted_force_that_is_known_lies_between_its_numbers() {
+    for degree in [Degree::One, Degree::Two] {
+        for n in [8, 16] {
+            contains_the_weighted_force(n, None, degree);
+        }
+        for seed in 1..=3 {
+            contains_the_weighted_force(8, Some(Perturbation { amount: 0.2, seed }), degree);
+        }
+    }
+}
+
+#[test]
+#[ignore = "a minute: run by .ci/run"]
+fn a_weighted_force_that_is_known_lies_between_its_numbers_on_many_meshes() {
+    for degree in [Degree::One, Degree::Two] {
+        for n in [8, 16, 32, 64] {
+            contains_the_weighted_force(n, None, degree);
+        }
+        for seed in 1..=20 {
+            contains_the_weighted_force(12, Some(Perturbation { amount: 0.2, seed }), degree);
+        }
+    }
+}
+
+#[test]
+fn evidence_that_is_wrong_at_one_vertex_of_the_boundary_is_refused() {
+    let problem = tilted_punch(8);
+    let c = certified(&problem, Degree::One);
+    let evidence = &c.quantities.evidence;
+    let as_made = c.certificate.forces::<Ball>(evidence).unwrap();
+    assert!(as_made.iter().all(Result::is_ok));
+    let vertex =
+        |place: [f64; 2]| problem.mesh.vertices().iter().position(|x| *x == place).unwrap();
+    let (pressed, held, inside) = (vertex([0.25, 0.0]), vertex([0.5, 1.0]), vertex([0.5, 0.5]));
+    for (vertex, component) in [(pressed, 1), (held, 0), (inside, 1)] {
+        let mut evidence = evidence.clone();
+        // It covers small misses, at a price.
+        evidence.cover = None;
+        for (_, w) in &mut evidence.liftings {
+            w.vertices[vertex][component] += 1e-6;
+        }
+        let found = c.certificate.forces::<Ball>(&evidence).unwrap();
+        for (found, as_made) in found.iter().zip(&as_made) {
+            match found {
+                Err(WrongLifting::OnContact { .. }) if vertex == pressed => {}
+                Err(WrongLifting::OnSupport { .. }) if vertex == held => {}
+                // Inside the body w is free.
+                Ok(ends) if vertex == inside => {
+                    let [low, high] = as_made.clone().unwrap();
+                    assert!(ends[0] <= high && low <= ends[1]);
+                }
+                other => panic!("vertex {vertex}: {other:?}"),
+            }
+        }
+    }
+}
