@@ -269,6 +269,8 @@ impl<'a, E: Element<N, M>, const N: usize, const M: usize> Lifter<'a, E, N, M> {
             dual.hold_between(bulges);
         }
         let mut pair = build(&dual, &w, &w).certificate;
+        // There is no load that could oscillate.
+        pair.pieces.iter_mut().for_each(|piece| piece.oscillation = 0.0);
         improve(&mut pair, SWEEPS).map_err(|error| error.to_string())?;
         Ok(pair)
     }
