@@ -5,6 +5,11 @@
 //! That two sums of doubles are the same, or ordered, is more than a SAT solver can show: where it comes to that, numbers are
 //! whole. Roots are left to row 13, which has exact squares.
 
+#![allow(
+    clippy::manual_range_contains,
+    reason = "the text of a harness is what its receipt is about"
+)]
+
 use signorini::kernel::{Ball, Enclosing, positive_part};
 
 use crate::harness::{any, assume};
