@@ -163,6 +163,8 @@ where
         // A correction need not better what is good enough.
         until.residual = if cut { 0.0 } else { GOOD_ENOUGH * settings.tolerance };
         let change = route.pass(&mut iterate, &mut at, &mut residuals, until)?;
+        // What was proved is proved of another displacement.
+        enclosure = Err(Unproved::NotReached);
         softness = softness.max(change.softness);
         cut = change.left > 0.0;
         let before = correction;
