@@ -422,7 +422,7 @@ mod tests {
         assert_eq!(
             said(&mesh, &|[x, y]| [x == 0.0, x == 0.0 || (x > 2.5 && y == 0.0)]),
             [
-                "translation along (1, 0) of the part of the body at (3.666667, 0.333333): u_x would stop it"
+                "translation along (1, 0) of the part of the body at (3.66667, 0.33333): u_x would stop it"
             ]
         );
         assert_eq!(said(&mesh, &|_| [false; 2]).len(), 6);

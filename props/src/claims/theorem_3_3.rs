@@ -375,7 +375,7 @@ mod row {
                 "edge_integral::ExactEdge::exact",
                 "edge_integral::gauss",
                 "element::stiffness",
-                "solve::enclosure::enclose_with",
+                "solve::enclosure::enclose",
                 "fem::korn::Korn::new",
             ],
             preconditions: "None at a point; kappa < 1 on bodies, in place of 'gamma0 sufficiently small'.",
