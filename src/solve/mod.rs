@@ -382,15 +382,15 @@ where
     watch.lap();
     let solution = Solution::new(&d, evaluated, report);
     let displacement = solution.quantities.max_displacement;
-    if displacement > 0.0 && !is_in_range(stiffest(problem) * displacement * displacement, 1e270) {
+    if is_out_of_range(stiffest(problem) * displacement * displacement, 1e270) {
         return Err(SolveError::OutOfRange);
     }
     Ok((solution, Times { discretize, evaluate: watch.lap(), ..times }))
 }
 
-/// Whether 1/far <= x <= far.
-fn is_in_range(x: f64, far: f64) -> bool {
-    (1.0 / far..=far).contains(&x)
+/// Whether a number is positive and not between 1/far and far.
+fn is_out_of_range(x: f64, far: f64) -> bool {
+    x > 0.0 && !(1.0 / far..=far).contains(&x)
 }
 
 /// The largest lambda + 2 mu.
@@ -398,14 +398,15 @@ fn stiffest(problem: &Problem) -> f64 {
     problem.material.distinct().iter().map(Material::normal_stiffness).fold(0.0, f64::max)
 }
 
-/// Whether the products of the lengths and moduli of a problem, some of each, are normal doubles.
+/// Whether the products of the lengths and moduli of a problem, some of each, are normal doubles, as far as the numbers are
+/// lengths and moduli at all.
 fn can_be_multiplied(problem: &Problem) -> bool {
     let extent = |c: usize| {
         let coordinates = || problem.mesh.vertices().iter().map(|x| x[c]);
         let low = coordinates().fold(f64::INFINITY, f64::min);
         coordinates().fold(f64::NEG_INFINITY, f64::max) - low
     };
-    is_in_range(extent(0).max(extent(1)), 1e40) && is_in_range(stiffest(problem), 1e80)
+    !is_out_of_range(extent(0).max(extent(1)), 1e40) && !is_out_of_range(stiffest(problem), 1e80)
 }
 
 /// Solves a discretization: the displacement with its forces, how it was found, and how long that took.
@@ -521,10 +522,13 @@ where
         ContactQuadrature::Gauss(points) => EdgeRule::gauss(points),
     };
     let d = Discretization::new(problem, gamma, rule);
-    if !(limit.is_normal() && can_be_multiplied(problem)) {
+    if !can_be_multiplied(problem) {
         return Err(SolveError::OutOfRange);
     }
     let d = d?;
+    if !limit.is_normal() {
+        return Err(SolveError::OutOfRange);
+    }
     if d.kappa() < 1.0 || method.allow_noncoercive {
         Ok(d)
     } else {

@@ -171,9 +171,8 @@ impl Choice {
             if dice.one_in(3) { 0.5 - dice.decades(-7.0, -1.0) } else { dice.between(-0.3, 0.45) };
         let share =
             if dice.one_in(3) { dice.decades(-8.0, -0.3) } else { dice.between(0.05, 0.95) };
-        let length = if dice.one_in(4) { dice.decades(-140.0, 140.0) } else { 1.0 };
-        let modulus =
-            if length == 1.0 && dice.one_in(3) { dice.decades(-140.0, 140.0) } else { 1.0 };
+        let length = if dice.one_in(4) { dice.decades(-30.0, 30.0) } else { 1.0 };
+        let modulus = if length == 1.0 && dice.one_in(3) { dice.decades(-30.0, 30.0) } else { 1.0 };
         let offset = if dice.one_in(4) { dice.decades(0.0, 8.0) } else { 0.0 };
         let material = Material::young_poisson(modulus, poisson, plane);
         let said = format!(

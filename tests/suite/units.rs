@@ -147,7 +147,7 @@ fn errors_name_places_in_the_units_of_the_case() {
     loose.conditions.remove("top");
     loose.conditions.remove("left");
     let message = check(&loose, &Method::default()).unwrap_err().to_string();
-    assert!(message.contains("(64, 64)"), "{message}");
+    assert!(message.contains("a force of 12800000;"), "{message}");
     let strong = Method { gamma0: Gamma0::Value(1.0), ..Method::default() };
     let message = check(&block(far), &strong).unwrap_err().to_string();
     assert!(message.contains("gamma0 = 1 gives kappa"), "{message}");
