@@ -62,6 +62,16 @@ pub(crate) fn along<S: Enclosing>(
     ]
 }
 
+/// w . d, without a rounding error where d is an axis.
+fn component<S: Enclosing>(w: Vector2<S>, d: Vector2<S>) -> S {
+    let (zero, one) = (S::from(0), S::from(1));
+    match (0..2).find(|&c| d[1 - c] == zero && (d[c] == one || d[c] == -one)) {
+        Some(c) if d[c] == one => w[c],
+        Some(c) => -w[c],
+        None => w.dot(&d),
+    }
+}
+
 /// The Bernstein coefficients of a function with these values at the ends and this bulge in the middle.
 pub(crate) fn elevated<S: Enclosing>([a, b]: [S; 2], bulge: S) -> [S; 4] {
     let (two, three) = (S::from(2), S::from(3));
@@ -444,7 +454,8 @@ impl<'a, S: Enclosing> Forces<'a, S> {
         // Where d is constant, omega at the ends and its bulge: 0 stays 0.
         let missed = |phi: [S; 2]| {
             if constant {
-                elevated([phi[0] - a.dot(&d[0]), phi[1] - b.dot(&d[1])], -bulge.dot(&d[0]))
+                let [a, b, bulge] = [a, b, bulge].map(|w| component(w, d[0]));
+                elevated([phi[0] - a, phi[1] - b], -bulge)
             } else {
                 let (phi, w) = (elevated(phi, S::from(0)), along([a, b], bulge, d));
                 [0, 1, 2, 3].map(|k| phi[k] - w[k])

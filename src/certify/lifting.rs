@@ -211,6 +211,19 @@ impl<'a, E: Element<N, M>, const N: usize, const M: usize> Lifter<'a, E, N, M> {
                 }
             }
         }
+        // w0 is 1 where w is free, too: it need not have the least energy.
+        if target.boundary.is_none() {
+            for edge in &self.parts.contact {
+                let [d, e] = edge.directions;
+                for (a, node) in self.space.edge_nodes(edge.edge).into_iter().enumerate() {
+                    if !self.demands.contains_key(&node) {
+                        let d = [d, e, (d + e) / 2.0][a];
+                        let w = Vector2::from(field[node]);
+                        field[node] = (w + d * ((1.0 - w.dot(&d)) / d.dot(&d))).into();
+                    }
+                }
+            }
+        }
         Ok(field)
     }
 

@@ -11,6 +11,8 @@
 //! - for every w in H^1 the functional R(w) = L(w) - int sigma(u) : eps(w), which is the force of the body on whatever holds it, in
 //!   the mean with w on the boundary, lies within M |w|_a of L(w) - int m : eps(w) \[Q3\].
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use nalgebra::Vector2;
 
 use super::Asked;
@@ -23,6 +25,7 @@ use super::forces::{Evidence, Forces, Mean, Motion, Ramp, Target};
 use super::lifting::Lifter;
 use super::parts::{Boundary, Parts};
 use super::proof::Proof;
+use crate::fem::mesh::length;
 use crate::kernel::{Ball, Element, Enclosing, Interval, P1, P2};
 use crate::solve::Solution;
 
@@ -231,7 +234,7 @@ pub(super) fn prove(
     let mean = Mean::new(state, proof, built.certificate.lift());
     let zones = zones(&built.certificate, state, &line, mean);
     let forces = Forces::new(&built.certificate, state, &line.of, mean);
-    let open = open(parts, v);
+    let open = open(parts, v, mean);
     let (list, mut evidence) = match solution.degree {
         1 => list::<P1, 3, 2>(parts, built, (&forces, &line.names), (&open, asked)),
         _ => list::<P2, 6, 3>(parts, built, (&forces, &line.names), (&open, asked)),
@@ -280,8 +283,12 @@ fn weighted(solution: &Solution, boundary: &str, weight: Ramp) -> f64 {
     })
 }
 
-/// The edges of Gamma_C where v is off the obstacle by half of what it is at most on that boundary: there w may be free.
-fn open(parts: &Parts, v: &Field) -> Vec<bool> {
+/// What w may cost where it is free, in parts of the boundary's force.
+const PRICE: f64 = 0.1;
+
+/// The edges of Gamma_C where v is off the obstacle by half of what it is at most on that boundary, and by so much that little force
+/// is possible there: w may be free.
+fn open(parts: &Parts, v: &Field, mean: Mean) -> Vec<bool> {
     let gaps: Vec<f64> = parts
         .contact
         .iter()
@@ -297,8 +304,18 @@ fn open(parts: &Parts, v: &Field) -> Vec<bool> {
         let of = parts.contact.iter().zip(&gaps).filter(|(edge, _)| &*edge.boundary == boundary);
         of.fold(0.0, |most: f64, (_, &gap)| most.max(gap))
     };
-    let is_open =
-        |(k, &gap): (usize, &f64)| gap > 0.0 && gap >= largest(&parts.contact[k].boundary) / 2.0;
+    let force = |boundary: &str| -> f64 {
+        let of = parts.contact.iter().filter(|edge| &*edge.boundary == boundary);
+        of.map(|edge| length(edge.moments[0] + edge.moments[1])).sum()
+    };
+    let names: BTreeSet<&str> = parts.contact.iter().map(|edge| &*edge.boundary).collect();
+    let least: BTreeMap<&str, f64> = names
+        .into_iter()
+        .map(|name| (name, (largest(name) / 2.0).max(mean.square / (PRICE * force(name)))))
+        .collect();
+    let is_open = |(k, &gap): (usize, &f64)| {
+        least.get(&*parts.contact[k].boundary).is_some_and(|&least| gap > 0.0 && gap >= least)
+    };
     gaps.iter().enumerate().map(is_open).collect()
 }
 

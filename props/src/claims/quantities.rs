@@ -117,7 +117,6 @@ pub use row::claim;
 #[cfg(not(kani))]
 mod row {
     use signorini::certify::Continuous;
-    use signorini::certify::forces::WrongLifting;
     use signorini::certify::proof::Role;
     use signorini::certify::quantities::Name;
     use signorini::kernel::Ball;
@@ -187,8 +186,8 @@ mod row {
                 return Verdict::Fails("both enclose");
             };
             ensure!(low <= a - outside && high >= b + outside);
-            // Balls of a few hundred operations on numbers below 100.
-            ensure!(a - low <= 1e-9 && high - b <= 1e-9);
+            // Where v is the solution M is 0, and in balls the root of a sum of some hundred rounding errors.
+            ensure!(a - low <= 1e-6 && high - b <= 1e-6);
         }
         Verdict::Holds(if degree == Degree::One { "P1" } else { "P2" })
     }
@@ -200,7 +199,7 @@ mod row {
     }
 
     fn balls_far_around_the_rationals() -> Outcome {
-        draws::reject(bodies(1), |draw| around(draw, Degree::One, 1e-6))
+        draws::reject(bodies(1), |draw| around(draw, Degree::One, 1e-5))
     }
 
     fn of(certified: &Continuous, name: Name, boundary: &str) -> Option<[f64; 2]> {
@@ -253,49 +252,6 @@ mod row {
         draws::reject(bodies(2), |draw| balanced(draw, 4.0))
     }
 
-    /// A lifting that is off by 2^-20 at a vertex of the boundary is refused in rationals, too, unless the body is open there.
-    fn misses(draw: &Draw, at_boundary: bool) -> Verdict {
-        let Ok((_, _, certified)) = draw.certified() else {
-            return Verdict::Fails("there is a certificate");
-        };
-        let certificate = &certified.certificate;
-        let pressed = certificate.edges.iter().find(
-            |edge| matches!(edge.role, Role::Contact { pressure: [p, q], .. } if p < -1e-3 && q < -1e-3),
-        );
-        let Some(edge) = pressed else { return Verdict::Holds("no edge is pressed") };
-        let vertex = if at_boundary {
-            edge.ends.into_iter().find(|&p| p < certificate.vertices.len())
-        } else {
-            (0..certificate.vertices.len()).find(|&p| {
-                let on = |edge: &&signorini::certify::proof::Edge| {
-                    !matches!(edge.role, Role::Inner(_)) && edge.ends.contains(&p)
-                };
-                !certificate.edges.iter().any(|edge| on(&edge))
-            })
-        };
-        let Some(vertex) = vertex else { return Verdict::Vacuous };
-        let mut evidence = certified.quantities.evidence.clone();
-        // Without a cover: what it covers has a price, and here nothing has.
-        evidence.cover = None;
-        evidence.liftings.iter_mut().for_each(|(_, w)| {
-            w.vertices[vertex][1] += 2.0_f64.powi(-20);
-        });
-        let Ok(found) = Exact::scope(|| certificate.forces::<Exact>(&evidence)) else {
-            return Verdict::Fails("the certificate holds");
-        };
-        ensure!(found.iter().all(|f| matches!(f, Err(WrongLifting::OnContact { .. }))));
-        Verdict::Holds("an edge is pressed")
-    }
-
-    fn a_missed_vertex_is_refused() -> Outcome {
-        let classes = &["an edge is pressed"];
-        draws::hold(40, bodies(2), classes, |draw| misses(draw, true))
-    }
-
-    fn a_missed_vertex_inside_is_not() -> Outcome {
-        draws::reject(bodies(2), |draw| misses(draw, false))
-    }
-
     /// The row.
     pub fn claim() -> Claim {
         let mean = statement!(the_mean_of_two_stresses_splits, [s, q, t], ["always"]);
@@ -324,11 +280,11 @@ mod row {
             items: &["the error bound"],
             title: "Forces of the true solution between two numbers",
             paper: "Nothing: the paper bounds the error of the displacement and of the contact pressure with an unknown constant.",
-            statement: "docs/theory.md, 7.7. At a point, |sigma(u) - m|^2 = |C eps(v) - tau|^2 / 4 + (sigma(u) - C eps(v)) (sigma(u) - tau) for m = (C eps(v) + tau) / 2, and on Gamma_C (sigma_n - tau_n) (u_n - v_n) = G - A - B with A, B >= 0: so |sigma(u) - m|^2 + A + B = M^2 = D^2 / 4 + G. Where v is off the obstacle by d the true force is at most A / d, where tau presses with p the true opening is at most B / p. x eta + k (M^2 - x^2) is at most k M^2 + eta^2 / (4 k), and M eta if eta >= 2 k M. The force by a dual pair (w, rho), [7.8], is an identity. The checker of forces `certify::forces` is generic over its numbers: with balls its intervals are around those in rationals, by no more than rounding. Forces of floor, top and load on drawn bodies add up to 0 within their intervals, and those on a coarse and on a fine mesh meet. A displacement w that misses its value at one pressed vertex of Gamma_C is refused.",
+            statement: "docs/theory.md, 7.7. At a point, |sigma(u) - m|^2 = |C eps(v) - tau|^2 / 4 + (sigma(u) - C eps(v)) (sigma(u) - tau) for m = (C eps(v) + tau) / 2, and on Gamma_C (sigma_n - tau_n) (u_n - v_n) = G - A - B with A, B >= 0: so |sigma(u) - m|^2 + A + B = M^2 = D^2 / 4 + G. Where v is off the obstacle by d the true force is at most A / d, where tau presses with p the true opening is at most B / p. x eta + k (M^2 - x^2) is at most k M^2 + eta^2 / (4 k), and M eta if eta >= 2 k M. The force by a dual pair (w, rho), [7.8], is an identity. The checker of forces `certify::forces` is generic over its numbers: with balls its intervals are around those in rationals, by no more than rounding. Forces of floor, top and load on drawn bodies add up to 0 within their intervals, and those on a coarse and on a fine mesh meet.",
             numbers: "every ordered field (proof); rationals; doubles.",
             kernel: &[],
             preconditions: "Green's formula, by which the integrals of these products over the body are those over its boundary.",
-            limits: "An upper bound of the peak pressure is not provable, and is not given.",
+            limits: "That a w that misses its value at a vertex of Gamma_C, and a dual pair with a load or a traction of its own, are refused: tests/suite/quantities.rs. An upper bound of the peak pressure is not provable, and is not given.",
             single: None,
             checks: vec![
                 proved(mean),
@@ -377,7 +333,7 @@ mod row {
                 ),
                 control(
                     Engine::Exact,
-                    "control_forces_a_millionth_outside",
+                    "control_forces_far_outside",
                     balls_far_around_the_rationals,
                 ),
                 by(Engine::Doubles, "forces_balance_and_meet_those_of_a_finer_mesh", forces_agree),
@@ -385,16 +341,6 @@ mod row {
                     Engine::Doubles,
                     "control_forces_beside_four_times_the_load",
                     forces_of_another_load,
-                ),
-                by(
-                    Engine::Exact,
-                    "a_displacement_that_misses_a_pressed_vertex_is_refused",
-                    a_missed_vertex_is_refused,
-                ),
-                control(
-                    Engine::Exact,
-                    "control_a_vertex_inside_the_body",
-                    a_missed_vertex_inside_is_not,
                 ),
             ],
         }
