@@ -100,10 +100,9 @@ impl Certificate {
             let near = |x: &Ball, most: f64| x.lower() <= most && x.upper() >= -most;
             // What a support against a free motion takes is not on the edges.
             let is_stopped = state.closed.stops.iter().any(|stop| stop.root == t);
-            if !is_stopped
-                && !(resultant.force.iter().all(|f| near(f, allowed))
-                    && near(&resultant.moment, allowed * reach))
-            {
+            let balances = resultant.force.iter().all(|f| near(f, allowed))
+                && near(&resultant.moment, allowed * reach);
+            if !(is_stopped || balances) {
                 return Err(Rejection::OutOfBalance { triangle: t });
             }
         }
@@ -207,7 +206,7 @@ impl Certificate {
             let work = v.work(piece);
             energy = energy + internal / S::from(2) - work * double_area / S::from(24);
         }
-        energy = energy - self.work_of_tractions(forces, v);
+        energy -= self.work_of_tractions(forces, v);
         let bound = square.split(|_| zero, |s| s).sqrt().upper();
         let norm = norm.split(|_| zero, |n| n).sqrt().lower();
         let energy = [energy.lower(), energy.upper()];
