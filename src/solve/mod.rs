@@ -406,7 +406,9 @@ fn can_be_multiplied(problem: &Problem) -> bool {
         let low = coordinates().fold(f64::INFINITY, f64::min);
         coordinates().fold(f64::NEG_INFINITY, f64::max) - low
     };
-    !is_out_of_range(extent(0).max(extent(1)), 1e40) && !is_out_of_range(stiffest(problem), 1e80)
+    let modulus = stiffest(problem);
+    let can_be_a_modulus = modulus.is_infinite() || !is_out_of_range(modulus, 1e80);
+    !is_out_of_range(extent(0).max(extent(1)), 1e40) && can_be_a_modulus
 }
 
 /// Solves a discretization: the displacement with its forces, how it was found, and how long that took.
