@@ -33,8 +33,8 @@ const SLIDES: f64 = 1e-10;
 /// The cosine of a motion that leaves a node with the direction of contact there is below minus this.
 const LEAVES: f64 = 1e-8;
 
-/// An edge presses where P is above this share of the largest; below it P is rounding.
-const PRESSES: f64 = 1e-10;
+/// An edge presses where P is above this share of the largest; below it P is what the tolerance of Newton's method leaves.
+const PRESSES: f64 = 1e-8;
 
 /// The motions that contact and loads do not hold.
 #[derive(Clone, Debug, PartialEq)]
@@ -164,6 +164,9 @@ pub fn slides<E: Element<N, M>, const N: usize, const M: usize>(
     Ok(Slides { idle, ..Slides::new(sliding, parts, space) })
 }
 
+/// A part and combinations of its motions.
+type OfPart = (usize, Vec<Vec<f64>>);
+
 /// The edges that may press: `loads` are the work of a pressure on whole edges among them, given by their rows, of which those below
 /// `none` are zero, and still so if they are changed a little within the span of these rows.
 ///
@@ -174,7 +177,7 @@ fn press(
     mut edges: Vec<(usize, Vec<Vec<f64>>)>,
     loads: &[f64],
     none: f64,
-) -> Result<Vec<(usize, Vec<Vec<f64>>)>, Option<(Vec<f64>, bool)>> {
+) -> Result<Vec<OfPart>, Option<(Vec<f64>, bool)>> {
     for (_, edge) in &mut edges {
         edge.retain(|row| norm(row) > none);
     }

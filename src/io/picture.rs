@@ -381,7 +381,7 @@ mod tests {
     fn words_stay_on_the_page_however_long_and_wherever_the_contact_is() {
         let mut samples = vec![
             Sample::hole(3.2, 0.0, 0.06, |angle| 0.5 + 0.5 * angle.sin()),
-            Sample::hole(0.0, -6.28, 0.3, |angle| angle.sin().max(0.0)),
+            Sample::hole(0.0, -std::f64::consts::TAU, 0.3, |angle| angle.sin().max(0.0)),
             Sample::block(4),
         ];
         let at_left = |(i, s): (usize, &mut ContactSample)| {

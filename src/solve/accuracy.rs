@@ -177,6 +177,9 @@ where
         if !done && (cut || correction < before / 2.0) {
             continue;
         }
+        if done && settings.proof.is_infinite() {
+            break;
+        }
         enclosure =
             verifier.enclose(&iterate.rounded(), Some(iterate.as_twofold()), Stresses::InDoubles);
         let near = match &enclosure {

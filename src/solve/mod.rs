@@ -118,7 +118,8 @@ pub struct Settings {
     pub tolerance: f64,
     /// The most steps.
     pub max_iterations: usize,
-    /// The distance from the exact solution of (8), relative and in the energy norm, that is to be proved.
+    /// The distance from the exact solution of (8), relative and in the energy norm, that is to be proved; infinite where none
+    /// is asked for.
     pub proof: f64,
 }
 

@@ -125,8 +125,8 @@ where
                 return Ok(done);
             }
             Ok(done) => {
-                let hopeless =
-                    done.0.enclosure.as_ref().is_err_and(|why| {
+                let hopeless = settings.proof.is_infinite()
+                    || done.0.enclosure.as_ref().is_err_and(|why| {
                         !why.may_be_rounding() || *why == Unproved::HeldByContact
                     });
                 if best.as_ref().map_or(true, |(best, ..)| done.0.is_better_than(best)) {
