@@ -164,8 +164,8 @@ pub fn slides<E: Element<N, M>, const N: usize, const M: usize>(
     Ok(Slides { idle, ..Slides::new(sliding, parts, space) })
 }
 
-/// A part and combinations of its motions.
-type OfPart = (usize, Vec<Vec<f64>>);
+/// The number of a contact edge and its rows c_i.
+type EdgeRows = (usize, Vec<Vec<f64>>);
 
 /// The edges that may press: `loads` are the work of a pressure on whole edges among them, given by their rows, of which those below
 /// `none` are zero, and still so if they are changed a little within the span of these rows.
@@ -174,10 +174,10 @@ type OfPart = (usize, Vec<Vec<f64>>);
 /// The motion on which the body leaves, and whether the loads drive it: on the verge they do next to no work. Nothing where no edge
 /// can press.
 fn press(
-    mut edges: Vec<(usize, Vec<Vec<f64>>)>,
+    mut edges: Vec<EdgeRows>,
     loads: &[f64],
     none: f64,
-) -> Result<Vec<OfPart>, Option<(Vec<f64>, bool)>> {
+) -> Result<Vec<EdgeRows>, Option<(Vec<f64>, bool)>> {
     for (_, edge) in &mut edges {
         edge.retain(|row| norm(row) > none);
     }

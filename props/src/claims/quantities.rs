@@ -164,8 +164,8 @@ mod row {
         for x in &mut *x {
             *x = x.abs();
         }
-        x[3] = x[3] + x[0];
-        x[1] = x[1] + Exact::from(2) * x[2] * x[3];
+        x[3] += x[0];
+        x[1] += Exact::from(2) * x[2] * x[3];
     }
 
     /// The numbers of balls are around those of rationals, `outside` of them by that much, and by no more than rounding.
