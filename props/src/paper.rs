@@ -17,7 +17,7 @@ const PAPER: &str = include_str!("../rocq/paper.v");
 /// Where the tactics begin: what stands before are the definitions.
 const TACTICS: &str = "(** The tactics of the proofs.";
 
-/// A theorem of [`PAPER`].
+/// A theorem of `PAPER`.
 pub struct Theorem {
     /// Its name.
     pub name: &'static str,

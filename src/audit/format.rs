@@ -2,7 +2,7 @@
 //! holds them. docs/certificates.md, "The files", says what each of their words is.
 //!
 //! An array that a reader does not know is refused: what it says may change what the others prove. So a new one is added by its
-//! name, here in [`layout`], [`encode`] and [`decode`], without another version of the format; files without it stay what they are.
+//! name, here in `layout`, [`encode`] and [`decode`], without another version of the format; files without it stay what they are.
 
 use std::collections::BTreeMap;
 

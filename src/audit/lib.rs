@@ -7,7 +7,7 @@
 //! | module | what it does |
 //! | --- | --- |
 //! | [`certificate`] | v, tau and the problem that they belong to, as numbers |
-//! | [`format`] | the same as two files |
+//! | [`format`](mod@format) | the same as two files |
 //! | `checks`, `on_contact` | what they must satisfy; the edges of Gamma_C |
 //! | `balance`, `balanced` | tractions in exact equilibrium |
 //! | [`proof`] | the bound |
