@@ -385,7 +385,7 @@ pub fn claim() -> Claim {
         kernel: &[
             "solve::newton::minimise",
             "solve::body::derivatives",
-            "solve::Verdict::new",
+            "solve::accuracy::Outcome::is_proved",
             "solve::accuracy::refine",
             "solve::accuracy::reference",
             "solve::route::by",
