@@ -102,11 +102,6 @@ class Solution:
         return {**self.__dict__, "_solved": None}
 
     @property
-    def certified(self) -> bool:
-        """Whether the exact solution of the discrete equations is proved to be this one to `solver.proof`."""
-        return self.verdict == "proved"
-
-    @property
     def verdict(self) -> str:
         """ "proved": the exact solution of the discrete problem is within `solver.proof` of this one; or "not proved"."""
         return str(self.results["verdict"])
