@@ -64,7 +64,7 @@ pub fn corollary_bound<S: Scalar>(root: S, e: S, [h, s]: [S; 2]) -> S {
     s + root * (e + h)
 }
 
-/// The same for the errors of u^h and the distances of v^h from u.
+/// [`corollary_bound`] for the errors of u^h and the distances of v^h from u.
 pub fn corollary(kappa: f64, e: &Errors, eta: &Errors) -> f64 {
     corollary_bound(kappa.sqrt(), e.energy, [eta.energy, eta.normal_stress])
 }

@@ -59,7 +59,7 @@ impl Errors {
         Errors::with_points(space, contact, v, exact, POINTS)
     }
 
-    /// The same with `points` quadrature points in each direction.
+    /// [`Errors::new`] with `points` quadrature points in each direction.
     pub fn with_points<E, const N: usize, const M: usize>(
         space: &Space<E, N, M>,
         contact: &[ContactLineEdge<N, M>],

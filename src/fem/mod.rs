@@ -13,6 +13,7 @@ pub mod errors;
 pub mod exact;
 pub mod function;
 pub mod held;
+pub mod interpolation;
 pub mod korn;
 pub mod loads;
 pub mod material;

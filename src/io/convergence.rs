@@ -10,7 +10,7 @@ use super::case::Case;
 use super::data::DataError;
 use super::files::{Output, WriteError};
 use super::plot::{COLOURS, Figure, Panel, Style, figure};
-use crate::fem::{Errors, Perturbation};
+use crate::fem::{Errors, Perturbation, a_priori};
 use crate::solve::ladder::{fitted_slope, rates};
 use crate::solve::{Degree, Ladder, LadderError, Level, Method};
 
@@ -123,6 +123,10 @@ pub const NORMS: [Norm; 5] = [
     ("normal_stress", |e| e.normal_stress, true),
 ];
 
+/// The legend of the column "proved".
+const PROVED: &str = "proved: (energy^2 + contact_residual^2 / (1 - kappa))^(1/2) is at most this (Theorem 3.5 with its \
+                      constant), and how many times that is\n";
+
 /// How many of the finest levels the slope is fitted to.
 pub const FITTED: usize = 4;
 
@@ -163,7 +167,14 @@ impl Study {
         for (name, _, _) in NORMS {
             let _ = write!(text, "{:>18}", name);
         }
-        let _ = writeln!(text, "{:>8}{:>7}", "newton", "kappa");
+        let bounded = self.levels.iter().any(|level| level.proved.is_some());
+        let _ = writeln!(
+            text,
+            "{:>8}{:>7}{}",
+            "newton",
+            "kappa",
+            if bounded { "            proved" } else { "" }
+        );
         let rates: Vec<Vec<f64>> =
             NORMS.iter().map(|(_, of, _)| rates(&self.sizes(), &self.error(*of))).collect();
         for (i, level) in self.levels.iter().enumerate() {
@@ -172,7 +183,12 @@ impl Study {
                 let rate = i.checked_sub(1).and_then(|before| rates.get(before));
                 let _ = write!(text, "{:>12.3e}{:>6}", of(&level.errors), shown(rate.copied()));
             }
-            let _ = writeln!(text, "{:>8}{:>7.3}", level.newton_steps, level.kappa);
+            let _ = write!(text, "{:>8}{:>7.3}", level.newton_steps, level.kappa);
+            if let Some(bound) = level.proved {
+                let error = a_priori::left(level.kappa, &level.errors);
+                let _ = write!(text, "{bound:>12.3e}{:>6}", shown(Some(bound / error)));
+            }
+            text.push('\n');
         }
         let finest = self.levels.len().min(FITTED);
         let _ = write!(text, "{:>20}", format!("slope, last {finest}"));
@@ -185,6 +201,9 @@ impl Study {
             let _ = write!(text, "{:>18}", shown(rate));
         }
         text.push('\n');
+        if bounded {
+            text.push_str(PROVED);
+        }
         text
     }
 }
@@ -206,7 +225,7 @@ pub fn csv(studies: &[Study]) -> String {
     for (name, _, _) in NORMS {
         let _ = write!(text, ",{name}");
     }
-    text.push_str(",newton_steps,gamma0,kappa\n");
+    text.push_str(",newton_steps,gamma0,kappa,proved\n");
     for study in studies {
         let meshes = match study.meshes {
             Meshes::Structured => "structured",
@@ -218,8 +237,9 @@ pub fn csv(studies: &[Study]) -> String {
             for (_, of, _) in NORMS {
                 let _ = write!(text, ",{:?}", of(&level.errors));
             }
-            let Level { newton_steps, gamma0, kappa, .. } = level;
-            let _ = writeln!(text, ",{newton_steps},{gamma0:?},{kappa:?}");
+            let Level { newton_steps, gamma0, kappa, proved, .. } = level;
+            let proved = proved.map_or_else(String::new, |bound| format!("{bound:?}"));
+            let _ = writeln!(text, ",{newton_steps},{gamma0:?},{kappa:?},{proved}");
         }
     }
     text
@@ -275,7 +295,7 @@ pub enum StudyFileError {
     /// A file or folder.
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// What was to be drawn.
+    /// The data of the figure.
     #[error("convergence.svg cannot be made: {0}")]
     Data(#[from] DataError),
 }
@@ -310,7 +330,16 @@ mod tests {
                 normal_stress: 0.0,
                 operator: 0.0,
             };
-            Level { h, unknowns: 8 << (2 * i), errors, newton_steps: 3, gamma0: 0.1, kappa: 0.5 }
+            let proved = Some(5.0 * h);
+            Level {
+                h,
+                unknowns: 8 << (2 * i),
+                errors,
+                newton_steps: 3,
+                gamma0: 0.1,
+                kappa: 0.5,
+                proved,
+            }
         };
         Study {
             degree: Degree::One,
@@ -324,7 +353,8 @@ mod tests {
     fn the_table_has_rates_slopes_and_promises_and_a_dash_where_there_is_none() {
         let text = study(3).table();
         let lines: Vec<&str> = text.lines().collect();
-        assert_eq!(lines.len(), 7);
+        assert_eq!(lines.len(), 8);
+        assert!(lines[1].ends_with("proved") && lines[7].starts_with("proved: "));
         assert_eq!(lines[0], "P1, structured: gamma0 = 1.0000e-1");
         assert!(lines[4].contains("2.500e-1  1.00") && lines[4].contains("1.250e-1  1.50"));
         let words = |line: &str| line.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
@@ -338,9 +368,9 @@ mod tests {
         let text = csv(&[study(2)]);
         assert_eq!(
             text,
-            "degree,mesh,h,unknowns,energy,h1,l2,contact_residual,normal_stress,newton_steps,gamma0,kappa\n\
-             1,structured,1.0,8,1.0,1.0,1.0,1.0,0.0,3,0.1,0.5\n\
-             1,structured,0.5,32,0.5,0.5,0.25,0.3535533905932738,0.0,3,0.1,0.5\n"
+            "degree,mesh,h,unknowns,energy,h1,l2,contact_residual,normal_stress,newton_steps,gamma0,kappa,proved\n\
+             1,structured,1.0,8,1.0,1.0,1.0,1.0,0.0,3,0.1,0.5,5.0\n\
+             1,structured,0.5,32,0.5,0.5,0.25,0.3535533905932738,0.0,3,0.1,0.5,2.5\n"
         );
     }
 }

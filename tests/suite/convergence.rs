@@ -17,8 +17,10 @@
 use crate::common::exact::{
     corner, moved, on_square, on_trapezoid, singular, smooth, smooth_with_gap,
 };
-use signorini::fem::contact_line::{ContactLineEdge, EdgeRule};
-use signorini::fem::{Discretization, Errors, loads};
+use approx::assert_relative_eq;
+use signorini::fem::contact_line::{ContactLineEdge, EdgeRule, assemble};
+use signorini::fem::interpolation::{Interpolation, seminorms};
+use signorini::fem::{Discretization, Errors, Exact, Space, a_priori, loads};
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::{P1, P2};
 use signorini::nalgebra::Vector2;
@@ -225,6 +227,45 @@ fn theorem_3_4_bounds_the_error_on_every_mesh_at_every_kappa() {
             }
         }
     }
+}
+
+#[test]
+fn theorem_3_5_bounds_the_error_by_a_number_and_the_second_derivatives() {
+    // The bound grows as 1 / (1 - kappa).
+    for (what, ladder) in theorem_ladders() {
+        let in_h2 = ladder.method.degree == Degree::One && !what.starts_with("(c)");
+        for level in 0..3 {
+            for kappa in [0.1, 0.5, 0.9] {
+                let (level, _, _) = at_kappa(&ladder, level, kappa).solve(level).unwrap();
+                let left = a_priori::left(level.kappa, &level.errors);
+                let ratio = level.proved.map(|proved| proved / left);
+                println!("{what}, kappa {kappa}: {ratio:.2?}");
+                assert_eq!(ratio.is_some(), in_h2, "{what}");
+                assert!(
+                    ratio.is_none_or(|ratio| (1.0..10.0 / (1.0 - kappa)).contains(&ratio)),
+                    "{what}: {ratio:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn the_number_of_theorem_3_5_is_5_legs_of_the_triangles_and_the_seminorms_are_known() {
+    // lambda = mu = 1, right isosceles triangles with legs of 1/4, kappa = 1/2.
+    let ladder = at_kappa(&on_square(&singular(0.5), Degree::One, 4), 0, 0.5);
+    let (_, problem, solution) = ladder.solve(0).unwrap();
+    let space = Space::<P1, 3, 2>::new(&problem.mesh);
+    let contact = assemble(&problem, &space, solution.gamma.gamma).unwrap();
+    let constants = Interpolation::new(&space, &contact, ladder.solution.material());
+    assert_relative_eq!(4.0 * constants.constant(0.5), 5.073, epsilon = 1e-3);
+    let seminorm = |exact: &Exact| {
+        let all = seminorms(&space, &**exact).unwrap();
+        all.iter().map(|u| u * u).sum::<f64>().sqrt()
+    };
+    // Found by another program.
+    assert_relative_eq!(seminorm(&smooth(4.0, 3.0, 1.0 / 3.0)), 42.479, epsilon = 1e-3);
+    assert_relative_eq!(seminorm(&singular(0.5)), 0.98103, epsilon = 1e-5);
 }
 
 #[test]
