@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Certificates of degree 1 and 2, with circles, oblique supports and adapted meshes, checked by reference/check_bound.py; and tampered
+"""Certificates of degree 1 and 2, with circles, oblique supports, motions that nothing stops and adapted meshes, checked by reference/check_bound.py; and tampered
 ones, with their hashes, which it must refuse: second_checker.py PROGRAM FOLDER."""
 import json
 import pathlib
@@ -19,14 +19,25 @@ boundary.bottom.displacement = ["0", "0"]
 boundary.top.traction = ["0.1", "-0.02*x"]
 boundary.right.contact = { gap = "0.01" }
 """
+SLIDE = """
+mesh.rectangle = { width = 1, height = 1, nx = 8, ny = 8 }
+material = { lambda = 1, mu = 1 }
+load.body = ["0", "-0.1"]
+boundary.top.pressure = "0.05 + 0.02*x"
+boundary.bottom.contact = { gap = "0" }
+"""
+OWN = {"oblique": OBLIQUE, "slide": SLIDE}
+FORCES = ["--set", 'certify.quantities=["force bottom", "force bottom x 0 0.25 ramp 0.1"]']
 ADAPTED = ["--set", 'adapt.target="10 %"', "--set", "adapt.max_unknowns=2000"]
 P2 = ["--set", "method.degree=2", "--set", "method.gamma0=auto"]
 CASES = {
     "block 1": ["cases/block.toml"], "block 2": ["cases/block.toml", *P2],
+    "forces 1": ["cases/block.toml", *FORCES], "forces 2": ["cases/block.toml", *P2, *FORCES],
     "gap 1": ["cases/gap.toml"], "gap 2": ["cases/gap.toml", *P2],
     "pin 1": ["cases/pin.toml"], "pin 2": ["cases/pin.toml", *P2],
     "disk": ["cases/disk.toml"], "bracket": ["cases/bracket.toml"], "cantilever": ["cases/cantilever.toml"],
     "oblique 1": ["oblique"], "oblique 2": ["oblique", *P2],
+    "slide 1": ["slide"], "slide 2": ["slide", *P2], "shaft": ["cases/disk_force.toml", *P2],
     "adapted 1": ["cases/corner.toml", *ADAPTED], "adapted 2": ["cases/corner.toml", *ADAPTED, *P2],
 }
 
@@ -52,7 +63,13 @@ def first(rows, role):
     return next(row for row in rows if row[2] == role and row[3:].any())
 
 
+def pushed(force):
+    """Pushes the first triangle along x: what balances a motion that nothing stops is left there."""
+    return lambda h, a: [number(a("triangles")[0], k, lambda f: f + force) for k in (8, 10, 12)]
+
+
 TAMPERINGS = {
+    "a force in the first triangle": pushed(1e-3),
     "a bound that is smaller": lambda h, a: h.update(bound=0.9 * h["bound"]),
     "a share that is smaller": lambda h, a: number(a("shares")[0], 0, lambda x: 0.5 * x),
     "a force that is larger": lambda h, a: number(first(a("edges"), 0), 3, lambda f: 1.001 * f + 1e-6),
@@ -65,7 +82,19 @@ TAMPERINGS = {
     "a triangle turned round": lambda h, a: a("triangles")[0, :2].__setitem__(slice(None), a("triangles")[0, 1::-1].copy()),
     "a triangle with another edge": lambda h, a: a("triangles")[0, 3:4].__iadd__(np.uint64(1)),
     "a lift that is negative": lambda h, a: number(a("lifts")[0], 3, lambda z: -1),
-    "an array of another name": lambda h, a: h["arrays"][-1].update(name="w"),
+    "a force between nearer numbers": lambda h, a: number(a("forces")[1], 6, lambda low: low + 0.05 * abs(low) + 1e-9),
+    "a force of a smaller patch": lambda h, a: number(next(row for row in a("forces") if row[2] > 0), 4, lambda to: to - 0.2),
+    "a w that is off on the boundary": lambda h, a: [number(row, k, lambda w: w + 1e-3) for row in a("w") for k in (0, 1)],
+    "a w that does not begin with 0": lambda h, a: number(a("w")[0], 1, lambda w: w - 1),
+    "a force of another motion": lambda h, a: a("forces")[1, 0:1].__iadd__(np.uint64(1)),
+    "a force on a boundary without a name": lambda h, a: (a("forces")[1], h.update(boundaries=[])),
+    "edges of another boundary": lambda h, a: [
+        row[1:2].__iadd__(np.uint64(1)) for row in a("boundaries") if row[1] == a("forces")[1, 1]],
+    "a dual w": lambda h, a: number(a("dual w")[7], 1, lambda w: w + 0.1),
+    "a dual force": lambda h, a: number(next(row for row in a("dual edges") if row[0] == 0 and row[1:].any()), 1, lambda f: f + 0.1),
+    "a dual traction on Gamma_N": lambda h, a: number(next(row for row in a("dual edges") if row[0] == 4), 1, lambda t: 1e-9),
+    "a dual edge of another role": lambda h, a: next(row for row in a("dual edges") if row[0] == 2)[0:1].__imul__(np.uint64(2)),
+    "an array of another name": lambda h, a: h["arrays"][-1].update(name="z"),
     "a reservation in the header": lambda h, a: h.update(rigorous=True),
 }
 
@@ -76,7 +105,7 @@ def tampered(folder, out, change):
     words = np.frombuffer((folder / "certificate.bin").read_bytes(), "<u8").copy()
     try:
         change(header, lambda name: array(header, words, name))
-    except (KeyError, StopIteration):
+    except (IndexError, KeyError, StopIteration):
         return False
     header["hash"] = check_bound.hash_of(words.tobytes())
     out.mkdir(parents=True, exist_ok=True)
@@ -88,10 +117,11 @@ def tampered(folder, out, change):
 def main(program, folder):
     folder = pathlib.Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "oblique.toml").write_text(OBLIQUE)
+    for name, case in OWN.items():
+        (folder / f"{name}.toml").write_text(case)
     good = []
     for name, (case, *settings) in CASES.items():
-        case = folder / "oblique.toml" if case == "oblique" else case
+        case = folder / f"{case}.toml" if case in OWN else case
         out = folder / name.replace(" ", "_")
         # With a target that is not met the certificate is written all the same.
         subprocess.run([program, "--quiet", "solve", case, "--certificate", "--out", out, *settings], check=False)
@@ -108,6 +138,12 @@ def main(program, folder):
                 wrong = 1
             except check_bound.Refused:
                 refused += 1
+    for name in ("slide_1", "slide_2"):
+        words = check_bound.check(folder / name / "certificate.json")
+        tampered(folder / name, folder / "tampered", pushed(1e-14))
+        if not words.count("a motion that nothing else stops") or check_bound.main([str(folder / "tampered" / "certificate.json")]):
+            print(f"{name}: a support is not named, or does not take a rounding error: {words}", file=sys.stderr)
+            wrong = 1
     print(f"{refused} tampered certificates refused")
     return wrong or refused < 100
 

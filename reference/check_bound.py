@@ -6,7 +6,8 @@
 It reads certificate.json and the arrays beside it, verifies the conditions of the theorem (docs/theory.md, 7.2) in doubles
 with room for rounding, and evaluates the bound with a stress of its own: on each of the three parts of a triangle of degree
 2, and of all stresses with the forces of the file the one that is nearest to C eps(v). So what it finds is at most what
-`signorini audit` finds, and it shares no formula of stresses with that. Exit code 0 if every certificate is accepted, else 1.
+`signorini audit` finds, and it shares no formula of stresses with that. Likewise for the forces that a certificate has, which lie
+between numbers that are no further apart. Exit code 0 if every certificate is accepted, else 1.
 """
 import json
 import pathlib
@@ -16,8 +17,11 @@ import numpy as np
 
 WORDS = {"vertices": "ff", "displacement": "ff", "prescribed": "nfnf", "cuts": "nnf", "triangles": "nnnnnnfffffffff",
          "edges": "nnnffff", "directions": "nffff", "frames": "nff", "displacement at cuts": "ff",
-         "prescribed at cuts": "nfnf", "bulges": "ffff", "lifts": "nnnf", "polygon": "n", "shares": "f"}
+         "prescribed at cuts": "nfnf", "bulges": "ffff", "lifts": "nnnf", "polygon": "n", "shares": "f",
+         "boundaries": "nn", "forces": "nnnfffff", "w": "ff", "w at cuts": "ff", "w bulges": "ff",
+         "dual forces": "nff", "dual w": "ff", "dual w at cuts": "ff", "dual w bulges": "ff", "dual edges": "nffff"}
 NEAR = 1e-11  # relative room for rounding
+STOP = 1e-10  # what a support against a free motion may take, in parts of the forces on the boundary
 
 
 class Refused(Exception):
@@ -42,8 +46,9 @@ def hash_of(data):
 def read(path):
     """The header, and whole numbers and doubles of each array: an entry a row."""
     header = json.loads(path.read_text())
-    demand(header["format"] == 7, f"format {header['format']}; expected 7")
-    demand(set(header) == {"format", "title", "statement", "degree", "bound", "arrays", "hash"}, "an unknown key")
+    demand(header["format"] == 8, f"format {header['format']}; expected 8")
+    keys = {"format", "title", "statement", "degree", "bound", "arrays", "hash"}
+    demand(keys <= set(header) <= keys | {"boundaries"}, "an unknown key")
     demand(header["degree"] in (1, 2), "a degree other than 1 and 2")
     data = path.with_name("certificate.bin").read_bytes()
     demand(len(data) % 8 == 0 and hash_of(data) == header["hash"], "the hash is another")
@@ -63,7 +68,7 @@ def read(path):
         demand((block[:, n] < 2**62).all(), f"{name}: a number that names nothing")
         whole[name] = block[:, n].astype(int)
         real[name] = np.ascontiguousarray(block[:, ~n]).view("<f8")
-        demand(np.isfinite(real[name]).all(), f"{name}: a number is not finite")
+        demand(name == "dual forces" or np.isfinite(real[name]).all(), f"{name}: a number is not finite")
     demand(at == len(words), "words that no array has")
     return header, whole, real
 
@@ -84,6 +89,15 @@ def turned(d):
 def nearest(v, d, w):
     """The vector nearest to v with v . d = w."""
     return v - d * ((dot(v, d) - w) / dot(d, d))[:, None]
+
+
+def along(v, d):
+    """v . d on edges for v of degree 2 and d affine, by Bernstein coefficients."""
+    found = np.zeros((len(v), 4))
+    for i in range(3):
+        for k in range(2):
+            found[:, i + k] += [1, 2, 1][i] / [1, 3, 3, 1][i + k] * dot(v[:, i], d[:, k])
+    return found
 
 
 class Body:
@@ -167,6 +181,7 @@ class Body:
         owners = np.zeros((len(self.ends), 2), int)
         self.left = np.zeros(self.sides.shape, bool)
         self.owner = np.zeros(len(self.ends), int)
+        right = np.zeros(len(self.ends), int)
         for i in range(3):
             seen = self.corners[:, [(i + 1) % 3, (i + 2) % 3]]
             ends = self.ends[self.sides[:, i]]
@@ -175,7 +190,18 @@ class Body:
             np.add.at(owners, (self.sides[:, i], 1 - self.left[:, i].astype(int)), 1)
             here = self.left[:, i]
             self.owner[self.sides[here, i]] = np.flatnonzero(here)
+            right[self.sides[~here, i]] = np.flatnonzero(~here)
         demand(owners == np.stack([np.ones(len(owners)), self.role == 0], 1), "triangles on the sides: edge")
+
+        # The number of the first triangle of each part that inner edges join.
+        self.part, joined = np.arange(len(self.corners)), np.stack([self.owner, right])[:, self.role == 0]
+        before = None
+        while before is None or (self.part != before).any():
+            before = self.part.copy()
+            least = self.part[joined].min(0)
+            for side in joined:
+                np.minimum.at(self.part, side, least)
+            self.part = self.part[self.part]
 
     def check_prescribed(self):
         """v is what is prescribed at and between the ends of edges that are held, and nothing is prescribed elsewhere."""
@@ -226,11 +252,7 @@ class Body:
         # v and g by their Bernstein coefficients of degree 2, d by its two; the product is of degree 3.
         v = np.stack([v[:, 0], v.mean(1) + 2 * b, v[:, 1]], 1)
         g = np.stack([gap[:, 0], gap.mean(1) + 2 * bulge, gap[:, 1]], 1)
-        beyond = np.zeros((len(on), 4))
-        for i in range(3):
-            for k in range(2):
-                weight = [1, 2, 1][i] / [1, 3, 3, 1][i + k]
-                beyond[:, i + k] += weight * (dot(v[:, i], d[:, k]) - g[:, i])
+        beyond = along(v, d) - along(g[:, :, None], np.ones((len(on), 2, 1)))
         size = np.abs(v).max((1, 2)) + np.abs(g).max(1)
         demand(beyond <= NEAR * size[:, None], "v goes through the obstacle on Gamma_C: number")
         # Bernstein coefficients of the product with the pressure, of degree 4, whose mean is its integral.
@@ -241,7 +263,7 @@ class Body:
         self.on_contact = np.zeros(len(self.corners))
         np.add.at(self.on_contact, self.owner[on], 2 * length * integral)
         self.turning = int((turns & self.has_direction[on]).sum())
-        self.contact, self.contact_d = on, d
+        self.contact, self.contact_d, self.gap = on, d, np.maximum(-beyond, 0)
 
     def forces(self):
         """tau N on the sides of the triangles, towards their outside."""
@@ -259,11 +281,11 @@ class Body:
         d = self.direction[supported]
         force[supported] = (d * self.numbers[supported, 0, :, None]
                             + length[supported] * turned(d) * self.numbers[supported, 1, :, None])
-        out = force[self.sides]
+        self.edge_forces, out = force, force[self.sides]
         return np.where(self.left[:, :, None, None], out, -out[:, :, ::-1])
 
     def check_balance(self, forces):
-        """Forces and body force of each triangle balance, to rounding."""
+        """Forces and body force of each triangle balance, to rounding; and what a motion that nothing stops asks of a support."""
         x = self.x[self.corners]
         middle = x.mean(1)
         arm = x - middle[:, None]
@@ -276,8 +298,53 @@ class Body:
         # Coordinates of cuts are rounded where they are large.
         off = 1 + np.abs(x).max((1, 2)) / np.sqrt(self.area)
         reach = np.abs(arm).max((1, 2))
-        demand(np.abs(total).max(1) <= 1e-13 * off * size, "forces that do not balance: triangle")
-        demand(np.abs(moment) <= 1e-13 * off * size * reach, "moments that do not balance: triangle")
+        force_room, moment_room = 1e-13 * off * size, 1e-13 * off * size * reach
+        self.free, self.stop = 0, 0.0
+        for first in np.unique(self.part):
+            here = self.part == first
+            origin = middle[here].mean(0)
+            length = np.abs(middle[here] - origin).max() + reach[here].max()
+            outer = np.flatnonzero((self.role != 0) & here[self.owner])
+            pull = np.abs(self.edge_forces[outer]).sum()
+            motions = self.free_motions(outer, origin, length)
+            if len(motions) == 0:
+                continue
+            turn = (moment[here] + cross(middle[here] - origin, total[here])).sum() / length
+            work = np.abs(motions @ np.append(total[here].sum(0), turn))
+            demand(work <= STOP * pull, f"a motion that nothing stops and the forces drive: the part of triangle {first}, motion")
+            self.free += len(motions)
+            self.stop = max([self.stop, *work / pull] if pull > 0 else [self.stop])
+            # The support is one of the first triangle.
+            force_room[first] += STOP * pull
+            moment_room[first] += STOP * pull * length
+        demand(np.abs(total).max(1) <= force_room, "forces that do not balance: triangle")
+        demand(np.abs(moment) <= moment_room, "moments that do not balance: triangle")
+
+    def free_motions(self, outer, origin, length):
+        """An orthonormal basis of the motions (along x, along y, turn about the origin times length) of a part on which no force
+        that these edges of its outline may have more of does work."""
+        start, end = (self.x[self.ends[outer, k]] - origin for k in range(2))
+        role, d, f = self.role[outer], self.direction[outer, 0], self.edge_forces[outer]
+        wrench = lambda here, force, turn: np.column_stack([force, turn / length])[here]
+        supports, contact = [], []
+        axes = ((np.isin(role, (1, 3)), np.array([[1.0, 0.0]])), (np.isin(role, (2, 3)), np.array([[0.0, 1.0]])), (role == 7, d))
+        for here, along in axes:
+            along = np.broadcast_to(along, start.shape)
+            # The same at both ends, and opposite.
+            supports.append(wrench(here, along, cross((start + end) / 2, along)))
+            supports.append(wrench(here, 0 * along, cross(end - start, along) / 6))
+        ends = (f[:, 0] / 2, cross(2 * start + end, f[:, 0]) / 6), (f[:, 1] / 2, cross(start + 2 * end, f[:, 1]) / 6)
+        along = self.direction[outer]
+        turns = self.has_direction[outer] & (along[:, 0] != along[:, 1]).any(1)
+        for force, turn in ends:
+            contact.append(wrench((role == 6) & ~turns, force, turn))
+        contact.append(wrench((role == 6) & turns, ends[0][0] + ends[1][0], ends[0][1] + ends[1][1]))
+        rows = [np.zeros((3, 3))]
+        for kind in (np.vstack(supports), np.vstack(contact)):
+            largest = np.sqrt((kind**2).sum(1)).max(initial=0)
+            rows += [kind / largest] if largest > 0 else []
+        _, sizes, basis = np.linalg.svd(np.vstack(rows), full_matrices=False)
+        return basis[sizes <= 1e-8 * max(sizes[0], 1e-300)]
 
 
 # Degree 2 on a triangle by its corners and the middles of the sides opposite them.
@@ -355,53 +422,325 @@ class Reference:
         self.places = np.array([[*(1 - y.sum(keepdims=True)), *y] for p in self.parts for y in CORNERS_MIDDLES @ p])
 
 
-def shares(body, forces):
-    """The square of |C eps(v) - tau| on each triangle, for the nearest tau of degree 2."""
-    reference = Reference()
-    x, v = body.x[body.corners], body.v[body.corners]
-    f = np.stack([x[:, 1] - x[:, 0], x[:, 2] - x[:, 0]], -1)
-    j = np.linalg.det(f)
-    inverse = np.linalg.inv(f)
-    data = np.concatenate([np.einsum("tab,tikb->tika", inverse, forces).reshape(-1, 12),
-                           (j[:, None, None] * np.einsum("tab,tib->tia", inverse, body.body)).reshape(-1, 6)], 1)
-    start = data @ reference.particular.T
-    missed = np.abs(start @ reference.rows.T - data @ reference.right.T).max(1)
-    off = 1 + np.abs(x).max((1, 2)) / np.sqrt(j)
-    demand(missed <= 1e-10 * off * (np.abs(data).max(1) + 1e-300), "no stress with these forces: triangle")
-    # (xx, yy, xy) of F t F^T / det F.
-    a, b, c, d = (f[:, r, s] for r, s in ((0, 0), (0, 1), (1, 0), (1, 1)))
-    push = np.array([[a * a, b * b, 2 * a * b], [c * c, d * d, 2 * c * d], [a * c, b * d, a * d + b * c]]).transpose(2, 0, 1)
-    push /= j[:, None, None]
-    # C eps(v) at the nodes; grad l by rows.
-    gradients = np.concatenate([-inverse.sum(1, keepdims=True), inverse], 1)
-    bulge = body.bulge[body.sides]
-    slope = np.einsum("tia,tib->tab", v, gradients)[:, None]
-    for i in range(3):
-        k, m = (i + 1) % 3, (i + 2) % 3
-        for p, q in ((k, m), (m, k)):
-            there = 4 * reference.places[:, p]
-            slope = slope + there[:, None, None] * (bulge[:, i, :, None] * gradients[:, q, None, :])[:, None]
-    lam, mu = body.lame.T[:, :, None]
-    trace = slope[..., 0, 0] + slope[..., 1, 1]
-    sigma = np.stack([2 * mu * slope[..., 0, 0] + lam * trace, 2 * mu * slope[..., 1, 1] + lam * trace,
-                      mu * (slope[..., 0, 1] + slope[..., 1, 0])], -1)
-    # s : C^-1 s = (xx^2 + yy^2 + 2 xy^2 - lambda / (2 (lambda + mu)) (xx + yy)^2) / (2 mu) as a sum of squares.
-    mean = np.sqrt(mu / (lam + mu))[:, :, None]
-    unit = np.array([[1, 1, 0], [1, -1, 0], [0, 0, 2]]) / 2
-    weigh = unit[None] * np.concatenate([mean, np.ones_like(mean), np.ones_like(mean)], 1) / np.sqrt(mu)[:, :, None]
-    root = np.linalg.cholesky(MASS).T
-    def weighed(stress):
-        stress = np.einsum("tab,tnbk->tnak", weigh, stress).reshape(len(j), 3, 6, -1)
-        stress = np.einsum("mn,tpnk->tpmk", root, stress) * np.sqrt(j / 6)[:, None, None, None]
-        return stress.reshape(len(j), 54, -1)
-    tau = np.einsum("tab,tnb->tna", push, start.reshape(-1, 18, 3))
-    apart = weighed((sigma - tau)[..., None])
-    change = weighed(np.einsum("tab,nbk->tnak", push, reference.free.reshape(18, 3, -1)))
-    gram = np.einsum("tnk,tnl->tkl", change, change)
-    best = np.linalg.solve(gram, np.einsum("tnk,tno->tko", change, apart))
-    apart = apart - np.einsum("tnk,tko->tno", change, best)
-    distance = np.sqrt((apart**2).sum((1, 2)))
-    return (distance + body.oscillation) ** 2 + body.on_contact
+class Stresses:
+    """Of a body with forces: C eps of displacements, and C eps(v) - tau for the nearest tau of degree 2. Each is given by numbers whose
+    products are those of the energy."""
+
+    def __init__(self, body, forces):
+        reference = self.reference = Reference()
+        x = body.x[body.corners]
+        f = np.stack([x[:, 1] - x[:, 0], x[:, 2] - x[:, 0]], -1)
+        j = self.j = np.linalg.det(f)
+        inverse = np.linalg.inv(f)
+        data = np.concatenate([np.einsum("tab,tikb->tika", inverse, forces).reshape(-1, 12),
+                               (j[:, None, None] * np.einsum("tab,tib->tia", inverse, body.body)).reshape(-1, 6)], 1)
+        start = data @ reference.particular.T
+        missed = np.abs(start @ reference.rows.T - data @ reference.right.T).max(1)
+        off = 1 + np.abs(x).max((1, 2)) / np.sqrt(j)
+        demand(missed <= 1e-10 * off * (np.abs(data).max(1) + 1e-300), "no stress with these forces: triangle")
+        # (xx, yy, xy) of F t F^T / det F.
+        a, b, c, d = (f[:, r, s] for r, s in ((0, 0), (0, 1), (1, 0), (1, 1)))
+        push = np.array([[a * a, b * b, 2 * a * b], [c * c, d * d, 2 * c * d], [a * c, b * d, a * d + b * c]])
+        push = push.transpose(2, 0, 1) / j[:, None, None]
+        # grad l by rows.
+        self.gradients = np.concatenate([-inverse.sum(1, keepdims=True), inverse], 1)
+        self.lame = body.lame.T[:, :, None]
+        # s : C^-1 s = (xx^2 + yy^2 + 2 xy^2 - lambda / (2 (lambda + mu)) (xx + yy)^2) / (2 mu) as a sum of squares.
+        lam, mu = self.lame
+        mean = np.sqrt(mu / (lam + mu))[:, :, None]
+        unit = np.array([[1, 1, 0], [1, -1, 0], [0, 0, 2]]) / 2
+        self.weigh = unit[None] * np.concatenate([mean, np.ones_like(mean), np.ones_like(mean)], 1) / np.sqrt(mu)[:, :, None]
+        self.root = np.linalg.cholesky(MASS).T
+        tau = np.einsum("tab,tnb->tna", push, start.reshape(-1, 18, 3))
+        apart = self.of(body, body.v, body.bulge) - self.weighed(tau[..., None])[..., 0]
+        change = self.weighed(np.einsum("tab,nbk->tnak", push, reference.free.reshape(18, 3, -1)))
+        gram = np.einsum("tnk,tnl->tkl", change, change)
+        best = np.linalg.solve(gram, np.einsum("tnk,tn->tk", change, apart)[..., None])
+        self.apart = apart - np.einsum("tnk,tko->tn", change, best)
+
+    def weighed(self, stress):
+        stress = np.einsum("tab,tnbk->tnak", self.weigh, stress).reshape(len(self.j), 3, 6, -1)
+        stress = np.einsum("mn,tpnk->tpmk", self.root, stress) * np.sqrt(self.j / 6)[:, None, None, None]
+        return stress.reshape(len(self.j), 54, -1)
+
+    def of(self, body, v, bulge):
+        """C eps(v) for v at the points, with bulges on the edges."""
+        slope = np.einsum("tia,tib->tab", v[body.corners], self.gradients)[:, None]
+        bulge = bulge[body.sides]
+        for i in range(3):
+            k, m = (i + 1) % 3, (i + 2) % 3
+            for p, q in ((k, m), (m, k)):
+                there = 4 * self.reference.places[:, p]
+                slope = slope + there[:, None, None] * (bulge[:, i, :, None] * self.gradients[:, q, None, :])[:, None]
+        slope = np.broadcast_to(slope, (len(self.j), 18, 2, 2))
+        lam, mu = self.lame
+        trace = slope[..., 0, 0] + slope[..., 1, 1]
+        sigma = np.stack([2 * mu * slope[..., 0, 0] + lam * trace, 2 * mu * slope[..., 1, 1] + lam * trace,
+                          mu * (slope[..., 0, 1] + slope[..., 1, 0])], -1)
+        return self.weighed(sigma[..., None])[..., 0]
+
+
+def reach(eta, k, m):
+    """The largest x eta + k (m^2 - x^2) for 0 <= x <= m."""
+    if eta >= 2 * k * m:
+        return m * eta
+    return k * m * m + eta * eta / (4 * k) if np.isfinite(k) else np.inf
+
+
+class Forces:
+    """The forces of a certificate, from what proves them."""
+
+    def __init__(self, header, whole, real, body, stresses):
+        self.whole, self.real, self.body, self.stresses = whole, real, body, stresses
+        edges, forces = len(body.ends), whole["forces"]
+        demand(tuple(forces[0]) == (0, 0, 0), "w0 does not come first")
+        self.motion, self.of, self.axis = forces[1:].T
+        self.on = np.zeros(edges, int)
+        named, boundary = whole["boundaries"].T
+        held = np.isin(body.role, (1, 2, 3, 6, 7))
+        demand(np.array_equal(np.sort(named), np.flatnonzero(held)), "boundaries of other edges")
+        self.on[named] = boundary
+        known = (0 < boundary) & (boundary <= len(header["boundaries"]))
+        demand(known, "a boundary without a name")
+        demand((self.motion <= 3).all() and (0 < self.of).all() and (self.of <= len(header["boundaries"])).all()
+               and (self.axis <= 2).all() and (self.axis[self.motion > 0] == 0).all(), "a force of nothing")
+        self.foot = real["forces"][1:, :3]
+        ramps = self.axis > 0
+        demand((self.foot[~ramps] == 0).all() and (self.foot[ramps, 0] <= self.foot[ramps, 1]).all()
+               and (self.foot[ramps, 2] > 0).all(), "a weight is none")
+        distance = np.sqrt((stresses.apart**2).sum(1)) + body.oscillation
+        lift = np.sqrt((body.lift**2).sum())
+        self.square = (np.sqrt((distance**2).sum()) + lift) ** 2 / 4 + body.on_contact.sum() / 2
+        self.m = np.sqrt(self.square)
+        self.loose = (np.sqrt((body.oscillation**2).sum()) + lift) / 2
+        self.of_v = stresses.of(body, body.v, body.bulge)
+        all_w = list(self.displacements("w", len(forces)))
+        points, bulge = all_w[0]
+        points = self.check_supports(points, bulge, np.zeros((edges, 2, 2)))
+        w0 = self.on_contact(points, bulge)
+        demand(w0 >= -NEAR, "w0 pulls on Gamma_C: number")
+        self.cover, self.cover_force = np.maximum(w0, 0), 0.0
+        of_w0 = self.enclose(points, bulge, np.zeros((2, 2)))
+        self.cover_force = of_w0[1]
+        self.found = []
+        for force, (points, bulge) in enumerate(all_w[1:]):
+            points = self.check_supports(points, bulge, self.rigid(force))
+            self.found.append(self.enclose(points, bulge, self.missed(force, points, bulge)))
+        self.pairs()
+        self.found.insert(0, of_w0)
+
+    def displacements(self, name, count):
+        """At points, and bulges on edges, of `count` displacements."""
+        real, cuts = self.real, self.whole["cuts"]
+        vertices, edges = len(real["vertices"]), len(self.body.ends)
+        at = real[name]
+        demand(len(at) == count * vertices, f"{name} of other vertices")
+        curved = len(real[f"{name} bulges"]) > 0
+        for key, each in ((f"{name} at cuts", len(cuts)), (f"{name} bulges", edges)):
+            demand(len(real[key]) == (count * each if curved else 0), f"{key} of other places")
+        for k in range(count):
+            v = at[k * vertices:(k + 1) * vertices]
+            a, b = v[cuts[:, 0]], v[cuts[:, 1]]
+            between = a + (b - a) * real["cuts"]
+            bulge = np.zeros((edges, 2))
+            if curved:
+                own = real[f"{name} at cuts"][k * len(cuts):(k + 1) * len(cuts)]
+                between = own if name == "dual w" else between + own
+                bulge = real[f"{name} bulges"][k * edges:(k + 1) * edges]
+            yield np.concatenate([v, between]), bulge
+
+    def rigid(self, force):
+        """The motion at both ends of the edges where it is meant, 0 on others."""
+        x = self.body.x[self.body.ends]
+        motion = self.motion[force]
+        if motion == 3:
+            found = turned(x)
+        else:
+            found = np.zeros_like(x)
+            if motion:
+                found[..., motion - 1] = 1
+        return found * (self.on == self.of[force])[:, None, None]
+
+    def check_supports(self, points, bulge, motion):
+        """w is the affine motion where the body is held; at a point that is held along an oblique direction it is made so."""
+        body = self.body
+        points = points.copy()
+        size = 1 + np.abs(points).max()
+        for k in range(2):
+            at = body.ends[:, k]
+            here = np.flatnonzero((body.role == 7) & (at < len(body.frame)))
+            here = here[(body.frame[at[here]] == body.direction[here, 0]).all(1)]
+            here = here[(body.frame[at[here]] != 0).any(1)]
+            d = body.direction[here, 0]
+            points[at[here]] = nearest(points[at[here]], d, dot(motion[here, k], d))
+        for off in (points[body.ends[:, 0]] - motion[:, 0], points[body.ends[:, 1]] - motion[:, 1], bulge):
+            for c in range(2):
+                held = np.isin(body.role, (c + 1, 3))
+                demand(~held | (np.abs(off[:, c]) <= NEAR * size), "w is not what it should be where the body is held: edge")
+            there = np.abs(dot(off, body.direction[:, 0]))
+            demand((body.role != 7) | (there <= NEAR * size), "w is not what it should be along a support: edge")
+        return points
+
+    def on_contact(self, points, bulge):
+        """w . d on the edges of Gamma_C."""
+        body, on = self.body, self.body.contact
+        w = points[body.ends[on]]
+        return along(np.stack([w[:, 0], w.mean(1) + 2 * bulge[on], w[:, 1]], 1), body.contact_d)
+
+    def weight(self, force, x):
+        if not self.axis[force]:
+            return np.ones(x.shape[:-1])
+        start, end, width = self.foot[force]
+        x = x[..., self.axis[force] - 1]
+        return np.clip(np.minimum((x - start) / width + 1, (end - x) / width + 1), 0, 1)
+
+    def missed(self, force, points, bulge):
+        """What phi - w . d is at least and at most, in terms of the gap of v, and where that is not enough of w0."""
+        body, on = self.body, self.body.contact
+        meant = self.on[on] == self.of[force]
+        x = body.x[body.ends[on]]
+        beyond = np.zeros((2, len(on)))
+        if self.motion[force]:
+            motion = self.rigid(force)[on]
+            phi = along(np.stack([motion[:, 0], motion.mean(1), motion[:, 1]], 1), body.contact_d)
+        else:
+            ends = self.weight(force, x) * meant[:, None]
+            phi = ends @ np.array([[3, 2, 1, 0], [0, 1, 2, 3]]) / 3
+            # Between the kinks of a ramp it is affine: what it is beyond its chord is largest there.
+            if self.axis[force]:
+                start, end, width = self.foot[force]
+                a, b = (x[:, k, self.axis[force] - 1] for k in range(2))
+                for kink in (start - width, start, end, end + width):
+                    inside = meant & (np.minimum(a, b) < kink) & (kink < np.maximum(a, b))
+                    s = (kink - a[inside]) / (b - a)[inside]
+                    place = np.full((len(s), 2), kink)
+                    chord = ends[inside, 0] * (1 - s) + ends[inside, 1] * s
+                    off = self.weight(force, place) - chord
+                    beyond[0, inside] = np.minimum(beyond[0, inside], off)
+                    beyond[1, inside] = np.maximum(beyond[1, inside], off)
+        omega = phi - self.on_contact(points, bulge)
+        off = np.stack([-(omega + beyond[0][:, None]), omega + beyond[1][:, None]])
+        off[off <= NEAR * (1 + np.abs(phi).max(initial=0))] = 0
+        # By multiples of the gap, and of w0, for each side; the cheaper one on each edge.
+        found = np.zeros((2, 2))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratios = [np.where(off > 0, off / size, 0).max(2) for size in (body.gap, self.cover)]
+        for side in range(2):
+            gap, cover = (ratio[side] for ratio in ratios)
+            demand(np.isfinite(gap) | np.isfinite(cover), "w is not what it should be on Gamma_C: number")
+            with np.errstate(invalid="ignore"):
+                by_gap = ~np.isfinite(cover) | (gap * self.square < cover * self.cover_force)
+            found[0, side] = gap[by_gap].max(initial=0)
+            found[1, side] = cover[~by_gap].max(initial=0)
+        return found
+
+    def loads(self, points, bulge):
+        """The work of the loads on a displacement, that of the body force apart."""
+        body = self.body
+        w = points[body.corners]
+        total, f = w.sum(1, keepdims=True), body.body
+        inner = dot(f, total + w).sum(1) / 12 + dot(2 * f.sum(1, keepdims=True) - f, bulge[body.sides]).sum(1) / 15
+        inner = (body.area * inner).sum()
+        given = np.where(np.isin(body.role, (4, 5))[:, None, None], body.edge_forces, 0)
+        supported = body.role == 7
+        d = body.direction[supported]
+        given[supported] = body.edge_forces[supported] - d * body.numbers[supported, 0, :, None]
+        return inner, inner + self.work(given, points, bulge)
+
+    def work(self, force, points, bulge):
+        """Of forces on the edges of the boundary."""
+        w = points[self.body.ends]
+        p, q = force[:, 0], force[:, 1]
+        works = (dot(2 * p + q, w[:, 0]) + dot(p + 2 * q, w[:, 1])) / 6 + dot(p + q, bulge) / 3
+        return works[self.body.role > 0].sum()
+
+    def enclose(self, points, bulge, missed):
+        """Between what the force lies by L(w) - int m : eps(w)."""
+        inner, loads = self.loads(points, bulge)
+        of_w = self.stresses.of(self.body, points, bulge)
+        norm = np.sqrt((of_w**2).sum())
+        middle = loads - ((self.of_v * of_w).sum() + inner + self.work(self.body.edge_forces, points, bulge)) / 2
+        away = [reach(norm, missed[0, side], self.m) + missed[1, side] * self.cover_force + self.loose * norm for side in range(2)]
+        return np.array([middle - away[0], middle + away[1]])
+
+    def pairs(self):
+        """What forces lie between by dual pairs."""
+        self.of_pairs = []
+        forces = self.whole["dual forces"][:, 0]
+        demand((forces < len(self.found)).all() and (self.motion[forces] == 0).all(), "a dual pair for no force")
+        edges = len(self.body.ends)
+        roles, numbers = self.whole["dual edges"][:, 0], self.real["dual edges"]
+        demand(len(roles) == len(forces) * edges, "dual edges of other edges")
+        for k, (force, (points, bulge)) in enumerate(zip(forces, self.displacements("dual w", len(forces)))):
+            here = slice(k * edges, (k + 1) * edges)
+            self.of_pairs.append(self.by_pair(force, points, bulge, roles[here], numbers[here]))
+
+    def dual(self, points, bulge, roles, numbers):
+        """The pair as a body of its own: without loads, held where the body is held, and along the normal on parts of Gamma_C."""
+        body, whole, real = self.body, dict(self.whole), dict(self.real)
+        on = np.isin(np.arange(len(roles)), body.contact)
+        along_axis = np.zeros((len(roles), 2), bool)
+        along_axis[body.contact] = (body.contact_d[:, 0] != 0) & ~body.has_direction[body.contact, None]
+        pressed = on & (((roles == 1) & (along_axis == [True, False]).all(1)) | ((roles == 2) & (along_axis == [False, True]).all(1)))
+        free = (roles == 4) & (on | np.isin(body.role, (4, 5)))
+        demand(pressed | free | ((roles == body.role) & (roles != 4) & ~on), "a dual edge of another kind: edge")
+        demand(~free | (numbers == 0).all(1), "a dual traction where there is none: edge")
+        demand((roles != 7) | (numbers[:, 2:] == 0).all(1), "a dual traction across a support: edge")
+        v = points if body.quadratic else points[:len(real["vertices"])]
+        given, value = body.given.copy(), np.zeros_like(body.value)
+        for e in np.flatnonzero(pressed):
+            for p in body.ends[e]:
+                if p < len(v) and not given[p, roles[e] - 1]:
+                    given[p, roles[e] - 1], value[p, roles[e] - 1] = True, v[p, roles[e] - 1]
+        count = len(real["vertices"])
+        whole["prescribed"], whole["prescribed at cuts"] = given[:count].astype(int), given[count:].astype(int)
+        real["prescribed"], real["prescribed at cuts"] = value[:count], value[count:]
+        real["displacement"], real["displacement at cuts"] = points[:count], points[count:]
+        real["bulges"] = np.concatenate([bulge, 0 * bulge], 1)
+        real["triangles"] = np.concatenate([real["triangles"][:, :2], np.zeros((len(body.corners), 7))], 1)
+        whole["edges"] = np.concatenate([body.ends, roles[:, None]], 1)
+        real["edges"] = numbers
+        held = np.isin(whole["directions"][:, 0], np.flatnonzero(roles == 7))
+        whole["directions"], real["directions"] = whole["directions"][held], real["directions"][held]
+        whole["lifts"], real["lifts"] = np.zeros((0, 3), int), np.zeros((0, 1))
+        dual = Body({"degree": 2 if body.quadratic else 1}, whole, real)
+        dual.check_edges()
+        dual.check_prescribed()
+        dual.check_contact()
+        return dual, pressed
+
+    def by_pair(self, force, points, bulge, roles, numbers):
+        body = self.body
+        dual, pressed = self.dual(points, bulge, roles, numbers)
+        forces = dual.forces()
+        dual.check_balance(forces)
+        stresses = Stresses(dual, forces)
+        points, bulge = dual.v, dual.bulge
+        of_w = stresses.of(dual, points, bulge)
+        eta, norm = np.sqrt((stresses.apart**2).sum()), np.sqrt((of_w**2).sum())
+        middle = self.loads(points, bulge)[1] - (self.of_v * of_w).sum() + (self.stresses.apart * stresses.apart).sum() / 2
+        # |E| r at both ends of the edges of Gamma_C.
+        on = body.contact
+        r = dot(dual.edge_forces[on], body.contact_d) * pressed[on, None]
+        middle -= (r[:, :1] * body.gap @ np.array([[4], [3], [2], [1]]) + r[:, 1:] * body.gap @ np.array([[1], [2], [3], [4]])).sum() / 20
+        side = body.x[body.ends[on, 1]] - body.x[body.ends[on, 0]]
+        r = r / np.sqrt(dot(side, side))[:, None]
+        r[np.abs(r) <= NEAR * np.abs(r).max(initial=0)] = 0
+        with np.errstate(divide="ignore", invalid="ignore"):
+            most = [np.where(s * r > 0, s * r / -body.numbers[on, 0], 0).max(initial=0) for s in (-1, 1)]
+        missed = self.missed(force, points, bulge)
+        loose = 2 * self.loose * (norm + eta / 2)
+        away = [reach(eta, max(most[s], missed[0, s]), self.m) + missed[1, s] * self.cover_force + loose for s in range(2)]
+        return np.array([middle - away[0], middle + away[1]])
+
+    def check(self):
+        """Verifies what is claimed."""
+        claimed = np.concatenate([self.real["forces"][:, 3:], self.real["dual forces"]])
+        found = np.array(self.found + self.of_pairs)
+        finite = np.where(np.isfinite(found), found, 0)
+        room = 1e-8 * np.abs(finite[:, 1] - finite[:, 0]) + 1e-10 * (1 + np.abs(finite).max(1))
+        demand((claimed[:, 0] <= found[:, 0] + room) & (found[:, 1] <= claimed[:, 1] + room),
+               "a force that is not proved to lie between what is claimed: force")
 
 
 def check(path):
@@ -415,7 +754,8 @@ def check(path):
     body.check_contact()
     forces = body.forces()
     body.check_balance(forces)
-    found = shares(body, forces)
+    stresses = Stresses(body, forces)
+    found = (np.sqrt((stresses.apart**2).sum(1)) + body.oscillation) ** 2 + body.on_contact
     total = found.sum()
     demand(found <= body.shares * (1 + 1e-8) + 1e-9 * total / len(found), "a share that is larger than the claimed one: triangle")
     bound = np.sqrt(total + (body.lift**2).sum())
@@ -425,10 +765,16 @@ def check(path):
         reservations.append(f"quadrature in {measured} triangles and for {len(body.lift)} lifts")
     if body.turning:
         reservations.append(f"a direction of contact that turns on {body.turning} edges")
-    if len(body.polygon):
-        reservations.append(f"{len(body.polygon)} edges of a polygon for a curved boundary")
     words = "; ".join(reservations) or "none"
-    return f"bound {bound:.6g}, {bound / header['bound']:.4f} of the claimed one; reservations: {words}"
+    problem = ["the polygon of the mesh as its body"] if len(body.polygon) else []
+    if body.free:
+        motions = "a motion" if body.free == 1 else f"{body.free} motions"
+        problem.append(f"a support against {motions} that nothing else stops, which takes {body.stop:.0e} of the forces on the boundary")
+    of = f"; of the problem with {' and '.join(problem)}" if problem else ""
+    count = len(whole["forces"])
+    if count:
+        Forces(header, whole, real, body, stresses).check()
+    return f"bound {bound:.6g}, {bound / header['bound']:.4f} of the claimed one; {count} forces; reservations: {words}{of}"
 
 
 def main(paths):

@@ -46,14 +46,14 @@ enum Profile {
     Stop(usize),
 }
 
-/// What equilibrium adds to the pressures at both ends of edge `edge` of Gamma_C, in units of themselves.
+/// The change of the pressures at both ends of edge `edge` of Gamma_C by equilibrium, in units of themselves.
 #[derive(Clone, Copy)]
 pub(crate) struct Change<S> {
     pub edge: usize,
     pub factors: [S; 2],
 }
 
-/// What equilibrium needs beside tractions.
+/// Corrections that equilibrium needs beside tractions.
 pub(crate) struct Closed<S> {
     pub changes: Vec<Change<S>>,
     pub stops: Vec<Stop<S>>,
@@ -250,8 +250,8 @@ impl<S: Enclosing> OnEdges<'_, S> {
         }
     }
 
-    /// What may change on edge `e`: tractions on Gamma_D, and each pressure on Gamma_C by a part of itself. Where the direction of
-    /// contact turns it is the same at both ends, and stays so.
+    /// Quantities that may change on edge `e`: tractions on Gamma_D, and each pressure on Gamma_C by a part of itself. Where
+    /// the direction of contact turns it is the same at both ends, and stays so.
     fn candidates(&self, e: usize) -> impl Iterator<Item = Hold> {
         let profiles = match self.certificate.edges[e].role {
             Role::Held(held, _) => {
@@ -274,8 +274,9 @@ impl<S: Enclosing> OnEdges<'_, S> {
         profiles.into_iter().map(move |profile| Hold { edge: e, profile })
     }
 
-    /// Three holds of a part whose wrenches are as independent as any: greedily, by what is left after those before. Those of Gamma_D
-    /// come first, where any traction is admissible; a motion that neither stops gets a support. Also how far the part reaches.
+    /// Three holds of a part whose wrenches are as independent as any: greedily, by what is left after those before. Those of
+    /// Gamma_D come first, where any traction is admissible; a motion that neither stops gets a support. Also how far the
+    /// part reaches.
     fn choose(&self, part: &[usize]) -> Option<([Hold; 3], f64)> {
         let double = |x: Vector2<S>| x.map(|c| (c.lower() + c.upper()) / 2.0);
         let origin = double(self.points[self.certificate.pieces[part[0]].vertices[0]]);

@@ -28,7 +28,7 @@ pub struct Balanced<S> {
     pub forces: Vec<[Vector2<S>; 2]>,
     /// tau N on the edges of each triangle towards its outside, in equilibrium.
     pub outward: Vec<[[Vector2<S>; 2]; 3]>,
-    /// What else equilibrium needs.
+    /// Corrections that equilibrium needs beside tractions.
     pub(crate) closed: Closed<S>,
     /// 2 int tau_n (v_n - g) over the edges of each triangle.
     pub on_contact: Vec<S>,
@@ -116,7 +116,7 @@ impl Certificate {
         self.edges.iter().enumerate().filter_map(inside).collect()
     }
 
-    /// What a pressure does on edge `e` of Gamma_C.
+    /// The forces of a pressure on edge `e` of Gamma_C.
     fn on_contact<S: Enclosing>(
         &self,
         e: usize,
@@ -229,7 +229,7 @@ impl<S: Enclosing> Balanced<S> {
         (sigma, tau.distance_from(&sigma))
     }
 
-    /// The same without what a load that is not constant bends tau by.
+    /// Leaves out the part by which a load that is not constant bends tau.
     pub fn without_bending(
         &self,
         certificate: &Certificate,
@@ -272,7 +272,7 @@ impl Balanced<f64> {
         }
     }
 
-    /// The same with the forces that the certificate has now on edges between triangles and of Gamma_D.
+    /// Takes over the forces that the certificate has now on edges between triangles and of Gamma_D.
     pub fn rebalance(&mut self, certificate: &Certificate) -> Result<(), Unbalanced> {
         for (force, edge) in self.forces.iter_mut().zip(&certificate.edges) {
             match edge.role {

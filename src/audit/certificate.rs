@@ -1,4 +1,4 @@
-//! What a certificate is made of: v, tau, and the problem that they belong to, as numbers and nothing else.
+//! A certificate: v, tau, and the problem that they belong to, as numbers and nothing else.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -18,7 +18,7 @@ pub struct Certificate {
     pub cuts: Vec<Cut>,
     /// v at the vertices; if it is affine on the triangles of the mesh, at a cut it follows.
     pub displacement: Vec<[f64; 2]>,
-    /// What makes v, u_D and g quadratic; `None` where they are affine.
+    /// The part that makes v, u_D and g quadratic; `None` where they are affine.
     pub curved: Option<Curved>,
     /// u_D at the vertices of Gamma_D.
     pub prescribed: Vec<[Option<f64>; 2]>,
@@ -29,7 +29,7 @@ pub struct Certificate {
     pub pieces: Vec<Piece>,
     /// Their edges.
     pub edges: Vec<Edge>,
-    /// What the prescribed displacements and gaps of the problem have beyond those above.
+    /// The parts of the prescribed displacements and gaps that those above leave out.
     pub lifts: Vec<Lift>,
     /// The edges that stand for a part of a curved boundary.
     pub polygon: Vec<usize>,
@@ -45,7 +45,7 @@ pub struct Lift {
     pub norm: f64,
 }
 
-/// What stands between the problem that a certificate was made for and the one that its arrays are.
+/// Differences between the problem that a certificate was made for and the one that its arrays state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Reservations {
     /// Triangles whose loads are measured by quadrature.
@@ -54,8 +54,6 @@ pub struct Reservations {
     pub lifted: usize,
     /// Edges of Gamma_C along which the direction of contact turns.
     pub turning: usize,
-    /// Edges that stand for a part of a curved boundary.
-    pub polygon: usize,
 }
 
 impl Reservations {
@@ -67,11 +65,10 @@ impl Reservations {
 
 impl fmt::Display for Reservations {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Reservations { measured, lifted, turning, polygon } = *self;
+        let Reservations { measured, lifted, turning } = *self;
         let parts = [
             (measured, "triangles with loads that are measured by quadrature"),
             (lifted, "triangles with prescribed values or gaps that are measured by quadrature"),
-            (polygon, "edges of a polygon in place of a curved boundary"),
             (turning, "edges with a direction of contact that is affine between their ends"),
         ];
         let parts = parts.iter().filter(|(count, _)| *count > 0);
@@ -91,8 +88,8 @@ pub struct Curved {
     pub prescribed: Vec<[Option<f64>; 2]>,
     /// The bulge of v on each edge.
     pub bulges: Vec<[f64; 2]>,
-    /// The bulges of the data on each edge: of u_D on Gamma_D in the components that are held, of u . d where the direction d is, and of
-    /// g on Gamma_C, as the first of two; all others are 0.
+    /// The bulges of the data on each edge: of u_D on Gamma_D in the components that are held, of u . d where the direction d
+    /// is, and of g on Gamma_C, as the first of two; all others are 0.
     pub data: Vec<[f64; 2]>,
 }
 
@@ -116,7 +113,7 @@ pub struct Piece {
     pub material: [f64; 2],
     /// f at its vertices, affine between them.
     pub body: [[f64; 2]; 3],
-    /// What the loads of the problem cost beyond those above: to be added to |C eps(v) - tau|. Positive where that is measured
+    /// The cost of the loads' parts that those above leave out: to be added to |C eps(v) - tau|. Positive where that is measured
     /// by quadrature.
     pub oscillation: f64,
 }
@@ -126,11 +123,11 @@ pub struct Piece {
 pub struct Edge {
     /// Start and end.
     pub ends: [usize; 2],
-    /// What it is, with the traction of tau on it.
+    /// The role of the edge, with the traction of tau on it.
     pub role: Role,
 }
 
-/// What an edge is. A force is tau N, N = |E| n, towards the right: per unit of the edge's parameter, at start and end.
+/// The role of an edge. A force is tau N, N = |E| n, towards the right: per unit of the edge's parameter, at start and end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Role {
     /// Between two triangles.
@@ -203,7 +200,7 @@ pub fn support<S: Enclosing>(
 }
 
 impl Certificate {
-    /// What its numbers themselves say of the problem that they don't have.
+    /// Derives from the arrays how the problem differs from them.
     pub fn reservations(&self) -> Reservations {
         let turns =
             |edge: &&Edge| matches!(edge.role, Role::Contact { along: Some([d, e]), .. } if d != e);
@@ -211,7 +208,6 @@ impl Certificate {
             measured: self.pieces.iter().filter(|piece| piece.oscillation != 0.0).count(),
             lifted: self.lifts.len(),
             turning: self.edges.iter().filter(turns).count(),
-            polygon: self.polygon.len(),
         }
     }
 

@@ -1,4 +1,4 @@
-//! What a certificate must satisfy before there is anything to evaluate: its indices name things that exist, its triangles hang
+//! Conditions of a certificate that come before its evaluation: its indices name things that exist, its triangles hang
 //! together along its edges, v is what is prescribed, and no force acts where nothing holds.
 
 use std::collections::BTreeSet;
@@ -50,6 +50,8 @@ pub enum Rejection {
     Share { triangle: usize, claimed: f64, found: f64 },
     #[error("the claimed bound is {claimed}; the data give {found}")]
     Bound { claimed: f64, found: f64 },
+    #[error("force {force}: {problem}")]
+    Force { force: usize, problem: String },
     #[error("the bound is not a finite number")]
     NotFinite,
 }
@@ -258,7 +260,8 @@ impl Certificate {
         Ok(())
     }
 
-    /// v . d is prescribed at an end of edge `e`: along that d, along an axis that d is, or with both components, and then w = v . d.
+    /// v . d is prescribed at an end of edge `e`: along that d, along an axis that d is, or with both components, and then w
+    /// = v . d.
     fn check_along(&self, e: usize, point: usize, d: [f64; 2]) -> Result<(), Rejection> {
         let missing =
             || wrong("edge", e, "an end without a value along the direction that is held");

@@ -1,16 +1,18 @@
-//! A contact force between two numbers of second order, by a dual pair (w, rho): w a displacement as in [`forces`](super::forces), rho a stress
-//! with div rho = 0, rho n = 0 on Gamma_N and rho n = r n on Gamma_C. Exactly
+//! A contact force between two numbers of second order, by a dual pair (w, rho): w a displacement as in
+//! [`forces`](super::forces), rho a stress with div rho = 0, rho n = 0 on Gamma_N and rho n = r n on Gamma_C. Exactly
 //!
 //! R = R0 - int C^-1 (sigma(u) - m) : (C eps(w) - rho) + int r (g - u_n) + int |sigma_n| omega,   omega = phi - w_n,
 //! R0 = L(w) - a(v, w) + int r (v_n - g) + 1/2 int C^-1 (C eps(v) - tau) : (C eps(w) - rho)                          \[Q4\]
 //!
-//! (docs/theory.md, 7.7). With eta = |C eps(w) - rho|, r >= 0 and omega >= 0 it is at least R0 - M eta. In general the two integrals over Gamma_C
-//! are bounded by B and A where r is bounded by multiples of |tau_n| and omega by multiples of g - v_n.
+//! (docs/theory.md, 7.7). With eta = |C eps(w) - rho|, r >= 0 and omega >= 0 it is at least R0 - M eta. In general the two
+//! integrals over Gamma_C are bounded by B and A where r is bounded by multiples of |tau_n| and omega by multiples of g -
+//! v_n.
 //!
-//! The pair is itself a certificate on the same triangles, of the linear problem whose contact edges are held along their normal, or free.
+//! The pair is itself a certificate on the same triangles, of the linear problem whose contact edges are held along their
+//! normal, or free.
 
 use super::balanced::Balanced;
-use super::certificate::{Certificate, Role, is_oblique};
+use super::certificate::{Certificate, Curved, Edge, Piece, Role, is_oblique};
 use super::checks::Rejection;
 use super::forces::{Cover, Forces, Target, WrongLifting, inner, reach};
 use crate::kernel::composite::Composite;
@@ -50,6 +52,59 @@ fn ratio(a: f64, b: f64) -> f64 {
     }
     let ratio = (Interval::point(a) / Interval::point(b)).hi();
     if b > 0.0 && ratio.is_finite() { ratio } else { f64::INFINITY }
+}
+
+impl Certificate {
+    /// A dual pair on the same triangles: `w` at the vertices and, where v is quadratic, at the cuts and by its bulges; and
+    /// the roles of the edges with the tractions of rho. What holds the body holds w at 0, and contact edges that are held
+    /// have what w is there.
+    pub fn with_dual(
+        &self,
+        w: Vec<[f64; 2]>,
+        beyond: Option<[Vec<[f64; 2]>; 2]>,
+        roles: Vec<Role>,
+    ) -> Certificate {
+        let at_rest = |data: &[Option<f64>; 2]| data.map(|u| u.map(|_| 0.0));
+        let mut prescribed: Vec<_> = self.prescribed.iter().map(at_rest).collect();
+        let mut at_cuts = match &self.curved {
+            Some(curved) => curved.prescribed.iter().map(at_rest).collect(),
+            None => vec![[None; 2]; self.cuts.len()],
+        };
+        for (edge, role) in self.edges.iter().zip(&roles) {
+            let (Role::Contact { .. }, Role::Held(held, _)) = (edge.role, *role) else { continue };
+            for p in edge.ends {
+                let (data, values, k) = match (p.checked_sub(self.vertices.len()), &beyond) {
+                    (None, _) => (&mut prescribed, &w, p),
+                    (Some(cut), Some([values, _])) => (&mut at_cuts, values, cut),
+                    (Some(_), None) => continue,
+                };
+                let (Some(data), Some(value)) = (data.get_mut(k), values.get(k)) else { continue };
+                for c in (0..2).filter(|&c| held[c]) {
+                    data[c].get_or_insert(value[c]);
+                }
+            }
+        }
+        let unloaded = |&piece: &Piece| Piece { body: [[0.0; 2]; 3], oscillation: 0.0, ..piece };
+        let edges = self.edges.iter().zip(roles);
+        let edges: Vec<Edge> = edges.map(|(edge, role)| Edge { ends: edge.ends, role }).collect();
+        Certificate {
+            vertices: self.vertices.clone(),
+            cuts: self.cuts.clone(),
+            displacement: w,
+            curved: beyond.map(|[values, bulges]| Curved {
+                at_cuts: values,
+                prescribed: at_cuts,
+                data: vec![[0.0; 2]; bulges.len()],
+                bulges,
+            }),
+            prescribed,
+            frames: self.frames.clone(),
+            pieces: self.pieces.iter().map(unloaded).collect(),
+            edges,
+            lifts: Vec::new(),
+            polygon: self.polygon.clone(),
+        }
+    }
 }
 
 impl<S: Enclosing> Forces<'_, S> {
@@ -119,7 +174,7 @@ impl<S: Enclosing> Forces<'_, S> {
         Ok(())
     }
 
-    /// What the contact force with the weight of `target` lies between by a dual pair; an end may be infinite.
+    /// Encloses the contact force with the weight of `target` by a dual pair; an end may be infinite.
     ///
     /// # Errors
     /// A pair that is none.
@@ -131,6 +186,7 @@ impl<S: Enclosing> Forces<'_, S> {
     ) -> Result<[f64; 2], WrongPair> {
         self.check_pair(pair)?;
         let dual: Balanced<S> = pair.balanced(pair.topology()?)?;
+        pair.check_balance(&dual)?;
         let (certificate, state) = (self.certificate, self.state);
         let zero = S::from(0);
         let (mut middle, mut eta, mut norm) = (zero, zero, zero);
@@ -176,7 +232,7 @@ impl<S: Enclosing> Forces<'_, S> {
         let root = |square: S| square.split(|_| zero, |s| s).sqrt().upper();
         let point = Interval::point;
         let (eta, norm) = (point(root(eta)), point(root(norm)));
-        let force = point(cover.map_or(0.0, |cover| cover.force));
+        let force = point(cover.map_or(0.0, Cover::force));
         let loose = point(2.0 * self.loose) * (norm + eta / Interval::from(2));
         let away = |side: usize| {
             let k = most[side].max(missed.open[side]);

@@ -1,13 +1,15 @@
 //! A force between two numbers: the functional R(w) = L(w) - int sigma(u) : eps(w) of a [`Lifting`] w, enclosed.
 //!
-//! By Green's formula R(w) = -int_{Gamma_D} sigma n . w - int_{Gamma_C} sigma_n w_n: where w is a rigid motion on one boundary, and does
-//! no work on the others, it is minus a component of the force or the moment of that boundary on the body. It lies within M |w|_a of
-//! L(w) - int m : eps(w) \[Q3\], and int tau : eps(w) is again a sum over the boundary.
+//! By Green's formula R(w) = -int_{Gamma_D} sigma n . w - int_{Gamma_C} sigma_n w_n: where w is a rigid motion on one
+//! boundary, and does no work on the others, it is minus a component of the force or the moment of that boundary on the body.
+//! It lies within M |w|_a of L(w) - int m : eps(w) \[Q3\], and int tau : eps(w) is again a sum over the boundary.
 //!
-//! On Gamma_D w must be that motion exactly. On Gamma_C it may miss its target phi by omega = phi - w . d, at a price: what is meant is
-//! R(w) + int |sigma_n| omega, and with -beta' (g - v_n) - e' w0_n <= omega <= beta (g - v_n) + e w0_n
-//! that integral is at most beta A + e R(w0), by \[Q2\] with A <= M^2 - |sigma - m|^2. So w may leave its target where the body is off
-//! the obstacle; w0 is 1 on Gamma_C and covers rounding.
+//! On Gamma_D w must be that motion exactly. On Gamma_C it may miss its target phi by omega = phi - w . d, at a price: what
+//! is meant is R(w) + int |sigma_n| omega, and with -beta' (g - v_n) - e' w0_n <= omega <= beta (g - v_n) + e w0_n that
+//! integral is at most beta A + e R(w0), by \[Q2\] with A <= M^2 - |sigma - m|^2. So w may leave its target where the body is
+//! off the obstacle; w0 is 1 on Gamma_C and covers rounding.
+
+use std::fmt::Display;
 
 use nalgebra::Vector2;
 
@@ -17,7 +19,7 @@ use super::checks::Rejection;
 use super::dual::WrongPair;
 use super::proof::Proof;
 use crate::kernel::composite::Affine;
-use crate::kernel::{Enclosing, Interval, Material, Scalar, Stress};
+use crate::kernel::{Ball, Enclosing, Interval, Material, Scalar, Stress};
 
 /// M and G, from above.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,7 +31,8 @@ pub struct Mean {
 }
 
 impl Mean {
-    /// |C eps(v) - tau| = D is at most (bound^2 - 2 G)^(1/2), and by the triangle inequality at most the lift of section 7.4 more for v with its lift.
+    /// |C eps(v) - tau| = D is at most (bound^2 - 2 G)^(1/2), and by the triangle inequality at most the lift of section 7.4
+    /// more for v with its lift.
     pub fn new<S: Enclosing>(state: &Balanced<S>, proof: &Proof, lift: f64) -> Mean {
         let zero = S::from(0);
         let contact = state.on_contact.iter().fold(zero, |sum, &term| sum + term);
@@ -46,7 +49,8 @@ impl Mean {
     }
 }
 
-/// The Bernstein coefficients of w . d on an edge, for w with these values at the ends and this bulge in the middle, and d affine.
+/// The Bernstein coefficients of w . d on an edge, for w with these values at the ends and this bulge in the middle, and d
+/// affine.
 pub(crate) fn along<S: Enclosing>(
     w: [Vector2<S>; 2],
     bulge: Vector2<S>,
@@ -113,17 +117,18 @@ impl Certificate {
     }
 }
 
-/// A displacement w by doubles: at the vertices, and if it is quadratic what it is beyond its mean at the cuts and in the middles of the
-/// edges of a certificate.
+/// A displacement w by doubles: at the vertices, and if it is quadratic what it is beyond its mean at the cuts and in the
+/// middles of the edges of a certificate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lifting {
-    /// At the vertices. At a point that is held along an oblique direction w is the nearest vector that does there what it should.
+    /// At the vertices. At a point that is held along an oblique direction w is the nearest vector that does there what it
+    /// should.
     pub vertices: Vec<[f64; 2]>,
     /// At the cuts, and on the edges.
     pub beyond: Option<[Vec<[f64; 2]>; 2]>,
 }
 
-/// What w is on the boundary that is asked for; on all others it does no work.
+/// The values of w on the boundary in question; on all others it does no work.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Motion {
     /// w . d = phi on Gamma_C along the direction d of contact.
@@ -171,7 +176,7 @@ impl Ramp {
 pub struct Target {
     /// The boundary's number.
     pub boundary: Option<usize>,
-    /// What w does there.
+    /// The values of w there.
     pub motion: Motion,
 }
 
@@ -190,7 +195,7 @@ impl Motion {
     }
 }
 
-/// What proves forces beside a certificate.
+/// The evidence for forces that comes beside a certificate.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Evidence {
     /// The boundaries.
@@ -203,6 +208,44 @@ pub struct Evidence {
     pub liftings: Vec<(Target, Lifting)>,
     /// Dual pairs for contact forces (`certify::dual`).
     pub pairs: Vec<(Target, Certificate)>,
+    /// The intervals that they are said to prove.
+    pub between: Option<Between>,
+}
+
+/// Intervals of forces.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Between {
+    /// R(w0); 0 where there is none.
+    pub cover: [f64; 2],
+    /// Each force, by its lifting.
+    pub liftings: Vec<[f64; 2]>,
+    /// The force of each dual pair, by that.
+    pub pairs: Vec<[f64; 2]>,
+}
+
+impl Evidence {
+    /// Without what proves nothing, and with what is `found` of the rest.
+    #[must_use]
+    pub fn proving<E>(
+        mut self,
+        cover: Option<&Cover>,
+        found: &[Result<[f64; 2], E>],
+        pairs: Vec<[f64; 2]>,
+    ) -> Evidence {
+        let mut proved = found.iter().map(Result::is_ok);
+        self.liftings.retain(|_| proved.next() == Some(true));
+        self.cover = self.cover.filter(|_| cover.is_some());
+        let cover = cover.map_or([0.0; 2], |cover| cover.between);
+        let liftings = found.iter().flatten().copied().collect();
+        self.between = Some(Between { cover, liftings, pairs });
+        self
+    }
+
+    /// Intersects the intervals of a force by its lifting and by its dual pairs.
+    pub fn nearest(&self, target: Target, by_lifting: [f64; 2], pairs: &[[f64; 2]]) -> [f64; 2] {
+        let own = self.pairs.iter().zip(pairs).filter(|((other, _), _)| *other == target);
+        own.fold(by_lifting, |[low, high], (_, [l, h])| [low.max(*l), high.min(*h)])
+    }
 }
 
 /// Why w proves nothing of a force.
@@ -231,13 +274,20 @@ struct Value<S> {
     pub norm: S,
 }
 
-/// w0 of the module's head: its Bernstein coefficients on the edges of Gamma_C, and R(w0) from above.
+/// w0 of the module's head: its Bernstein coefficients on the edges of Gamma_C, and what R(w0) lies between.
 pub struct Cover {
     along: Vec<Option<[f64; 4]>>,
-    pub(crate) force: f64,
+    between: [f64; 2],
 }
 
-/// What omega is at most and at least: times g - v_n, and times w0_n.
+impl Cover {
+    /// An upper bound of R(w0).
+    pub(crate) fn force(&self) -> f64 {
+        self.between[1]
+    }
+}
+
+/// Bounds of omega from above and below: times g - v_n, and times w0_n.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Missed {
     pub open: [f64; 2],
@@ -254,12 +304,12 @@ pub struct Forces<'a, S> {
     pub of: &'a [Option<usize>],
     /// M
     pub mean: Mean,
-    /// What L(w) and a(v, w) may be off for each unit of |w|_a, as data oscillate.
+    /// The error of L(w) and a(v, w) for each unit of |w|_a, as data oscillate.
     pub loose: f64,
 }
 
 impl Certificate {
-    /// What R(w) of each lifting lies between, in units of the case: verifies all conditions of the theorem, and those of the
+    /// Encloses R(w) of each lifting, in units of the case: verifies all conditions of the theorem, and those of the
     /// liftings.
     ///
     /// # Errors
@@ -269,24 +319,79 @@ impl Certificate {
         evidence: &Evidence,
     ) -> Result<Vec<Result<[f64; 2], WrongLifting>>, WrongPair> {
         let state = self.balanced::<S>(self.topology()?)?;
-        let mean = Mean::new(&state, &self.sum(&state)?, self.lift());
+        let (_, found, pairs) = self.forces_near(&state, &self.sum(&state)?, evidence)?;
+        let targets = evidence.liftings.iter().map(|(target, _)| *target);
+        let nearest = |(target, ends): (Target, Result<[f64; 2], WrongLifting>)| {
+            ends.map(|ends| evidence.nearest(target, ends, &pairs))
+        };
+        Ok(targets.zip(found).map(nearest).collect())
+    }
+
+    /// Verifies that what is said of forces is what their data give.
+    pub(crate) fn check_forces(
+        &self,
+        state: &Balanced<Ball>,
+        proof: &Proof,
+        evidence: &Evidence,
+    ) -> Result<(), Rejection> {
+        let Some(claimed) = &evidence.between else { return Ok(()) };
+        let wrong = |force: usize, problem: &dyn Display| {
+            Err(Rejection::Force { force, problem: problem.to_string() })
+        };
+        let (cover, found, pairs) = match self.forces_near(state, proof, evidence) {
+            Ok(found) => found,
+            Err(WrongPair::Rejected(rejection)) => return Err(rejection),
+            Err(error) => return wrong(0, &error),
+        };
+        let both = [(claimed.liftings.len(), found.len()), (claimed.pairs.len(), pairs.len())];
+        if let Some(&(found, expected)) = both.iter().find(|(found, expected)| found != expected) {
+            return Err(Rejection::Length { what: "intervals of forces", found, expected });
+        }
+        let same = |a: [f64; 2], b: [f64; 2]| a.map(f64::to_bits) == b.map(f64::to_bits);
+        let of_cover = (&claimed.cover, Ok(cover.map_or([0.0; 2], |cover| cover.between)));
+        let of_pairs = claimed.pairs.iter().zip(pairs.into_iter().map(Ok));
+        let all = claimed.liftings.iter().zip(found).chain(of_pairs);
+        let all = std::iter::once(of_cover).chain(all);
+        for (force, (&claimed, found)) in all.enumerate() {
+            match found {
+                Ok(found) if same(found, claimed) => {}
+                Ok([low, high]) => {
+                    let [least, most] = claimed;
+                    let problem = format!(
+                        "it is said to be between {least} and {most}; its data give {low} and {high}"
+                    );
+                    return wrong(force, &problem);
+                }
+                Err(error) => return wrong(force, &error),
+            }
+        }
+        Ok(())
+    }
+
+    /// [`forces`] of a certificate in equilibrium, with its proof.
+    fn forces_near<S: Enclosing>(
+        &self,
+        state: &Balanced<S>,
+        proof: &Proof,
+        evidence: &Evidence,
+    ) -> Result<Found, WrongPair> {
+        let mean = Mean::new(state, proof, self.lift());
         if evidence.of.len() != self.edges.len() {
             let (what, found) = ("boundaries of edges", evidence.of.len());
             return Err(Rejection::Length { what, found, expected: self.edges.len() }.into());
         }
-        let forces = Forces::new(self, &state, &evidence.of, mean);
+        let forces = Forces::new(self, state, &evidence.of, mean);
         let cover = evidence.cover.as_ref().and_then(|w| forces.cover(w).ok());
-        let mut found = forces.between(&evidence.liftings, cover.as_ref());
-        for (target, pair) in &evidence.pairs {
-            let by_pair = forces.by_pair(pair, *target, cover.as_ref())?;
-            let of = evidence.liftings.iter().position(|(other, _)| other == target);
-            if let Some(Ok(ends)) = of.map(|k| &mut found[k]) {
-                *ends = [ends[0].max(by_pair[0]), ends[1].min(by_pair[1])];
-            }
-        }
-        Ok(found)
+        let found = forces.between(&evidence.liftings, cover.as_ref());
+        let pairs = evidence.pairs.iter();
+        let pairs = pairs.map(|(target, pair)| forces.by_pair(pair, *target, cover.as_ref()));
+        let pairs = pairs.collect::<Result<_, _>>()?;
+        Ok((cover, found, pairs))
     }
 }
+
+/// w0, and what forces lie between by liftings and by dual pairs.
+type Found = (Option<Cover>, Vec<Result<[f64; 2], WrongLifting>>, Vec<[f64; 2]>);
 
 impl<'a, S: Enclosing> Forces<'a, S> {
     /// With M.
@@ -352,7 +457,7 @@ impl<'a, S: Enclosing> Forces<'a, S> {
         target.boundary.is_none_or(|boundary| self.of[e] == Some(boundary))
     }
 
-    /// What w should be at vertex `p` of edge `e` of Gamma_D.
+    /// The value prescribed for w at vertex `p` of edge `e` of Gamma_D.
     fn on_support(&self, e: usize, p: usize, target: Target) -> Vector2<S> {
         let motion = || target.motion.at(exactly(self.certificate.vertices[p]));
         let motion = self.is_meant(e, target).then(motion).flatten();
@@ -524,7 +629,7 @@ impl<'a, S: Enclosing> Forces<'a, S> {
                 let by_gap = largest(gap, side);
                 let by_cover = covered.map_or(f64::INFINITY, |covered| largest(covered, side));
                 // What is cheaper.
-                let costs = [by_gap * self.mean.square, by_cover * cover.map_or(0.0, |c| c.force)];
+                let costs = [by_gap * self.mean.square, by_cover * cover.map_or(0.0, Cover::force)];
                 if by_gap.is_finite() && !(by_cover.is_finite() && costs[1] <= costs[0]) {
                     missed.open[side] = missed.open[side].max(by_gap);
                 } else if by_cover.is_finite() {
@@ -556,15 +661,15 @@ impl<'a, S: Enclosing> Forces<'a, S> {
             }
         }
         let values = self.values(std::slice::from_ref(&shape));
-        let force = self.enclose(values[0], Missed::default(), None)[1];
-        Ok(Cover { along: along_all, force })
+        let between = self.enclose(values[0], Missed::default(), None);
+        Ok(Cover { along: along_all, between })
     }
 
-    /// What R(w) + int |sigma_n| omega lies between.
+    /// Encloses R(w) + int |sigma_n| omega.
     fn enclose(&self, value: Value<S>, missed: Missed, cover: Option<&Cover>) -> [f64; 2] {
         let point = Interval::point;
         let norm = point(value.norm.upper());
-        let force = point(cover.map_or(0.0, |cover| cover.force));
+        let force = point(cover.map_or(0.0, Cover::force));
         let away = |side: usize| {
             let covered = point(missed.covered[side]) * force;
             let loose = point(self.loose) * norm;
@@ -605,7 +710,8 @@ impl<'a, S: Enclosing> Forces<'a, S> {
     }
 }
 
-/// The largest value of x eta + k (M^2 - x^2) for 0 <= x <= M: k M^2 + eta^2 / (4 k) where that is taken inside, M eta at the end.
+/// The largest value of x eta + k (M^2 - x^2) for 0 <= x <= M: k M^2 + eta^2 / (4 k) where that is taken inside, M eta at the
+/// end.
 pub(crate) fn reach(eta: Interval, k: Interval, mean: Mean) -> Interval {
     let root = Interval::point(mean.root);
     let two = Interval::from(2);

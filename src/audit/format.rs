@@ -1,5 +1,5 @@
-//! A certificate as two files: certificate.json, which says what is claimed and which arrays there are, and certificate.bin, which
-//! holds them. docs/certificates.md, "The files", says what each of their words is.
+//! A certificate as two files: certificate.json, which says what is claimed and which arrays there are, and certificate.bin,
+//! which holds them. docs/certificates.md, "The files", says what each of their words is.
 //!
 //! An array that a reader does not know is refused: what it says may change what the others prove. So a new one is added by its
 //! name, here in `layout`, [`encode`] and [`decode`], without another version of the format; files without it stay what they are.
@@ -11,10 +11,11 @@ use thiserror::Error;
 
 use super::certificate::{Certificate, Curved, Cut, Edge, Lift, Piece, Reservations, Role};
 use super::checks::Rejection;
+use super::forces::{Between, Evidence, Lifting, Motion, Ramp, Target};
 use super::proof::{Claim, Proof};
 
 /// The format that is written and read.
-const FORMAT: u32 = 7;
+const FORMAT: u32 = 8;
 
 /// certificate.json.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -30,7 +31,10 @@ pub struct Header {
     pub degree: u8,
     /// |u - v|_a is at most this.
     pub bound: f64,
-    /// What certificate.bin holds, one after the other.
+    /// The boundaries on which there are forces, and all others.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub boundaries: Vec<String>,
+    /// The arrays of certificate.bin, in their order.
     pub arrays: Vec<Array>,
     /// A hash of certificate.bin, in hexadecimal digits: against accidents, not against intent.
     pub hash: String,
@@ -65,10 +69,20 @@ mod layout {
     pub const LIFTS: Layout = ("lifts", "nnnf");
     pub const POLYGON: Layout = ("polygon", "n");
     pub const SHARES: Layout = ("shares", "f");
+    pub const BOUNDARIES: Layout = ("boundaries", "nn");
+    pub const FORCES: Layout = ("forces", "nnnfffff");
+    pub const W: Layout = ("w", "ff");
+    pub const W_AT_CUTS: Layout = ("w at cuts", "ff");
+    pub const W_BULGES: Layout = ("w bulges", "ff");
+    pub const DUAL_FORCES: Layout = ("dual forces", "nff");
+    pub const DUAL_W: Layout = ("dual w", "ff");
+    pub const DUAL_W_AT_CUTS: Layout = ("dual w at cuts", "ff");
+    pub const DUAL_W_BULGES: Layout = ("dual w bulges", "ff");
+    pub const DUAL_EDGES: Layout = ("dual edges", "nffff");
 }
 use layout::Layout;
 
-/// What every version of the format has.
+/// The part that all versions of the format share.
 #[derive(Deserialize)]
 struct Version {
     format: u32,
@@ -87,25 +101,70 @@ pub enum AuditError {
     Rejected(#[from] Rejection),
 }
 
-/// What an audit found.
+/// The findings of an audit.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Audit {
-    /// What is claimed.
+    /// The claim.
     pub header: Header,
-    /// What it is claimed of.
+    /// The certificate that it is made of.
     pub certificate: Certificate,
-    /// What was proved anew.
+    /// The proof, evaluated anew.
     pub proof: Proof,
-    /// What the arrays say of the problem that they don't have.
+    /// Forces of the true solution, each between two numbers.
+    pub forces: Evidence,
+    /// Differences between the arrays and the problem, derived from the arrays.
     pub reservations: Reservations,
+}
+
+impl Audit {
+    /// The forces that are proved, by their names, with what they lie between: those of obstacles and supports on the body.
+    pub fn forces(&self) -> impl Iterator<Item = (String, [f64; 2])> {
+        let forces = &self.forces;
+        let between = forces.between.iter().flat_map(|between| &between.liftings);
+        let pairs = forces.between.as_ref().map_or(&[][..], |between| &between.pairs);
+        forces.liftings.iter().zip(between).map(|((target, _), &ends)| {
+            let [low, high] = forces.nearest(*target, ends, pairs);
+            let edges = self.certificate.edges.iter().zip(&forces.of);
+            let is_contact = |(edge, of): (&Edge, &Option<usize>)| {
+                *of == target.boundary && matches!(edge.role, Role::Contact { .. })
+            };
+            let kind = if edges.into_iter().any(is_contact) { "contact" } else { "reaction" };
+            let name = target.boundary.and_then(|k| forces.names.get(k));
+            let name = name.map_or("", String::as_str);
+            let (what, ends) = match target.motion {
+                Motion::Along(None) => ("force".to_owned(), [low.max(0.0), high]),
+                Motion::Along(Some(Ramp { axis, between: [from, to], width })) => {
+                    let along = ["x", "y"][axis];
+                    let words = format!("force {along} {from} {to} ramp {width}");
+                    (words, [low.max(0.0), high])
+                }
+                Motion::Axis(c) => (["force x", "force y"][c].to_owned(), [-high, -low]),
+                Motion::Turn => ("moment".to_owned(), [-high, -low]),
+            };
+            (format!("{kind} {what} of {name:?}"), ends)
+        })
+    }
 }
 
 const STATEMENT: &str = "|u - v|_a <= bound for the solution u of the contact problem with these data and the displacement v";
 
-/// certificate.json and certificate.bin of a certificate and what it proves.
-pub fn encode(title: &str, certificate: &Certificate, proof: &Proof) -> (Header, Vec<u8>) {
-    let Writer { arrays, bytes } = arrays(certificate, &proof.shares);
+/// certificate.json and certificate.bin of a certificate and what it proves, with forces.
+pub fn encode(
+    title: &str,
+    certificate: &Certificate,
+    proof: &Proof,
+    forces: &Evidence,
+) -> (Header, Vec<u8>) {
+    let mut out = arrays(certificate, &proof.shares);
+    let boundaries = match &forces.between {
+        Some(between) => {
+            add_forces(certificate, forces, between, &mut out);
+            forces.names.clone()
+        }
+        None => Vec::new(),
+    };
+    let Writer { arrays, bytes } = out;
     let header = Header {
         format: FORMAT,
         title: title.to_owned(),
@@ -113,6 +172,7 @@ pub fn encode(title: &str, certificate: &Certificate, proof: &Proof) -> (Header,
         degree: if certificate.curved.is_some() { 2 } else { 1 },
         // Two doubles more: whoever reads the decimals of a number may be off by one.
         bound: certificate.with_lifts(proof.bound).next_up().next_up(),
+        boundaries,
         arrays,
         hash: hash(&bytes),
     };
@@ -142,13 +202,14 @@ pub fn audit(header: Header, arrays: &[u8]) -> Result<Audit, AuditError> {
     let (certificate, claim) = decode(&header, arrays).map_err(AuditError::Arrays)?;
     let proof = certificate.audit(&claim)?;
     let reservations = certificate.reservations();
-    Ok(Audit { header, certificate, proof, reservations })
+    let forces = claim.forces;
+    Ok(Audit { header, certificate, proof, forces, reservations })
 }
 
 /// The certificate and the claim in the arrays.
 ///
 /// # Errors
-/// What makes them none, in words.
+/// A reason, in words, why they are none.
 pub fn decode(header: &Header, bytes: &[u8]) -> Result<(Certificate, Claim), String> {
     if header.format != FORMAT {
         return Err(format!("the format is {}; expected {FORMAT}", header.format));
@@ -205,8 +266,196 @@ pub fn decode(header: &Header, bytes: &[u8]) -> Result<(Certificate, Claim), Str
         other => return Err(format!("the degree of v is {other}; expected 1 or 2")),
     }
     let shares = arrays.next(layout::SHARES)?.map(|[share]| f64::from_bits(share)).collect();
+    let forces = forces(header, &certificate, &mut arrays)?;
     arrays.end()?;
-    Ok((certificate, Claim { shares, bound: header.bound }))
+    Ok((certificate, Claim { shares, bound: header.bound, forces }))
+}
+
+/// Lists of so many entries each, one after the other.
+fn lists<T>(
+    name: &str,
+    entries: impl ExactSizeIterator<Item = T>,
+    count: usize,
+    each: usize,
+) -> Result<Vec<Vec<T>>, String> {
+    if Some(entries.len()) != count.checked_mul(each) {
+        let found = entries.len();
+        return Err(format!("{name:?} has {found} entries; expected {count} times {each}"));
+    }
+    let mut entries = entries;
+    Ok((0..count).map(|_| entries.by_ref().take(each).collect()).collect())
+}
+
+/// The forces, with what proves them.
+fn forces(
+    header: &Header,
+    certificate: &Certificate,
+    arrays: &mut Reader,
+) -> Result<Evidence, String> {
+    let (vertices, cuts) = (certificate.vertices.len(), certificate.cuts.len());
+    let edges = certificate.edges.len();
+    let names = header.boundaries.clone();
+    let boundary = |word: u64| match index(word).checked_sub(1) {
+        Some(k) if k >= names.len() => Err(format!("there is no boundary {word}")),
+        found => Ok(found),
+    };
+    let mut of = vec![None; edges];
+    for [e, word] in arrays.next(layout::BOUNDARIES)? {
+        let edge = certificate.edges.get(index(e)).filter(|edge| is_named(edge));
+        let place = edge.and_then(|_| of.get_mut(index(e)).filter(|of| of.is_none()));
+        *place.ok_or_else(|| format!("edge {e} has a boundary twice, or holds nothing"))? =
+            boundary(word)?;
+    }
+    let mut between = Vec::new();
+    let mut targets = Vec::new();
+    for [motion, of, axis, numbers @ ..] in arrays.next::<8>(layout::FORCES)? {
+        let [from, to, width, low, high]: [f64; 5] = numbers.map(f64::from_bits);
+        let weight = match axis {
+            0 if [from, to, width] == [0.0; 3] => None,
+            // Its kinks lie one after the other.
+            1 | 2 if from <= to && 0.0 < width && (to - from + width).is_finite() => {
+                Some(Ramp { axis: index(axis) - 1, between: [from, to], width })
+            }
+            _ => return Err("a weight is none".to_owned()),
+        };
+        let motion = match (motion, weight) {
+            (0, weight) => Motion::Along(weight),
+            (1 | 2, None) => Motion::Axis(index(motion) - 1),
+            (3, None) => Motion::Turn,
+            _ => return Err(format!("there is no motion {motion} with this weight")),
+        };
+        let boundary = boundary(of)?;
+        // w0 comes first.
+        if boundary.is_none() != targets.is_empty() {
+            return Err("a force is that of no boundary".to_owned());
+        }
+        targets.push(Target { boundary, motion });
+        between.push([low, high]);
+    }
+    let Some((&of_cover, between)) = between.split_first() else {
+        return Ok(Evidence::default());
+    };
+    let named = certificate.edges.iter().zip(&of).all(|(edge, of)| !is_named(edge) || of.is_some());
+    if !named || targets[0].motion != Motion::Along(None) {
+        return Err("a force or an edge is that of no boundary".to_owned());
+    }
+    let (count, targets) = (targets.len(), targets.split_off(1));
+    let list = |arrays: &mut Reader, layout: Layout, count: usize, each: usize| {
+        lists(layout.0, arrays.next(layout)?.map(numbers), count, each)
+    };
+    let displacements = |arrays: &mut Reader, layouts: [Layout; 3], count: usize| {
+        let at_vertices = list(arrays, layouts[0], count, vertices)?;
+        let beyond = if arrays.has(layouts[2]) {
+            let at_cuts = list(arrays, layouts[1], count, cuts)?;
+            let bulges = list(arrays, layouts[2], count, edges)?;
+            at_cuts.into_iter().zip(bulges).map(|(a, b)| Some([a, b])).collect()
+        } else {
+            vec![None; count]
+        };
+        Ok::<_, String>(at_vertices.into_iter().zip(beyond))
+    };
+    let layouts = [layout::W, layout::W_AT_CUTS, layout::W_BULGES];
+    let mut all = displacements(arrays, layouts, count)?
+        .map(|(vertices, beyond)| Lifting { vertices, beyond });
+    let is_zero = |w: &Lifting| {
+        let beyond = w.beyond.iter().flatten().flatten();
+        w.vertices.iter().chain(beyond).all(|&w| w == [0.0; 2])
+    };
+    let cover = all.next().filter(|w| of_cover != [0.0; 2] || !is_zero(w));
+    let liftings = targets.iter().copied().zip(all).collect();
+    let of_pairs = arrays.next(layout::DUAL_FORCES)?;
+    let of_pairs: Vec<(u64, [f64; 2])> =
+        of_pairs.map(|[force, low, high]| (force, numbers([low, high]))).collect();
+    let layouts = [layout::DUAL_W, layout::DUAL_W_AT_CUTS, layout::DUAL_W_BULGES];
+    let duals = displacements(arrays, layouts, of_pairs.len())?;
+    let (name, words) = (layout::DUAL_EDGES.0, arrays.next(layout::DUAL_EDGES)?);
+    let roles = lists(name, words, of_pairs.len(), edges)?;
+    let mut pairs = Vec::with_capacity(of_pairs.len());
+    for ((&(force, _), (w, beyond)), roles) in of_pairs.iter().zip(duals).zip(roles) {
+        let target = targets.get(index(force)).ok_or("a dual pair is for no force")?;
+        let along = |(e, [role, a, b, c, d]): (usize, [u64; 5])| {
+            let edge = edge((e, [0, 0, role, a, b, c, d]))?;
+            Ok(match (edge.role, certificate.edges[e].role) {
+                (Role::Supported { force, traction, .. }, Role::Supported { along, .. }) => {
+                    Role::Supported { along, force, traction }
+                }
+                (role, _) => role,
+            })
+        };
+        let roles = roles.into_iter().enumerate().map(along).collect::<Result<_, String>>()?;
+        pairs.push((*target, certificate.with_dual(w, beyond, roles)));
+    }
+    let between = Some(Between {
+        cover: of_cover,
+        liftings: between.to_vec(),
+        pairs: of_pairs.into_iter().map(|(_, ends)| ends).collect(),
+    });
+    Ok(Evidence { names, of, cover, liftings, pairs, between })
+}
+
+/// An edge that holds something has the name of its boundary.
+fn is_named(edge: &Edge) -> bool {
+    matches!(edge.role, Role::Held(..) | Role::Supported { .. } | Role::Contact { .. })
+}
+
+/// Adds forces, with what proves them.
+fn add_forces(certificate: &Certificate, forces: &Evidence, between: &Between, out: &mut Writer) {
+    let Evidence { of, cover, liftings, pairs, .. } = forces;
+    let words = |xs: &[f64; 2]| xs.map(f64::to_bits);
+    let number = |boundary: &Option<usize>| boundary.map_or(0, |k| k as u64 + 1);
+    let named =
+        certificate.edges.iter().zip(of).enumerate().filter(|(_, (edge, _))| is_named(edge));
+    out.add(layout::BOUNDARIES, named.map(|(e, (_, of))| [e as u64, number(of)]));
+    let of_w0 = Target { boundary: None, motion: Motion::Along(None) };
+    let targets = std::iter::once(&of_w0).chain(liftings.iter().map(|(target, _)| target));
+    let ends = std::iter::once(&between.cover).chain(&between.liftings);
+    out.add(
+        layout::FORCES,
+        targets.zip(ends).map(|(target, [low, high])| {
+            let (motion, weight) = match target.motion {
+                Motion::Along(weight) => (0, weight),
+                Motion::Axis(c) => (c as u64 + 1, None),
+                Motion::Turn => (3, None),
+            };
+            let (axis, [from, to], width) =
+                weight.map_or((0, [0.0; 2], 0.0), |r| (r.axis as u64 + 1, r.between, r.width));
+            let [a, b, c, d, e] = [from, to, width, *low, *high].map(f64::to_bits);
+            [motion, number(&target.boundary), axis, a, b, c, d, e]
+        }),
+    );
+    let none = || Lifting {
+        vertices: vec![[0.0; 2]; certificate.vertices.len()],
+        beyond: liftings.iter().any(|(_, w)| w.beyond.is_some()).then(|| {
+            [certificate.cuts.len(), certificate.edges.len()].map(|count| vec![[0.0; 2]; count])
+        }),
+    };
+    let cover = cover.clone().unwrap_or_else(none);
+    let all = || std::iter::once(&cover).chain(liftings.iter().map(|(_, w)| w));
+    out.add(layout::W, all().flat_map(|w| &w.vertices).map(words));
+    for (k, layout) in [layout::W_AT_CUTS, layout::W_BULGES].into_iter().enumerate() {
+        out.add(layout, all().flat_map(|w| &w.beyond).flat_map(|both| &both[k]).map(words));
+    }
+    let place = |target: &Target| liftings.iter().position(|(other, _)| other == target);
+    let served = pairs.iter().zip(&between.pairs);
+    let served = served.filter_map(|((target, pair), ends)| Some((place(target)?, pair, ends)));
+    let served: Vec<(usize, &Certificate, &[f64; 2])> = served.collect();
+    let ends = |&(force, _, ends): &(usize, &Certificate, &[f64; 2])| {
+        let [low, high] = words(ends);
+        [force as u64, low, high]
+    };
+    out.add(layout::DUAL_FORCES, served.iter().map(ends));
+    let pairs = || served.iter().map(|&(_, pair, _)| pair);
+    out.add(layout::DUAL_W, pairs().flat_map(|pair| &pair.displacement).map(words));
+    let curved = || pairs().flat_map(|pair| &pair.curved);
+    out.add(layout::DUAL_W_AT_CUTS, curved().flat_map(|curved| &curved.at_cuts).map(words));
+    out.add(layout::DUAL_W_BULGES, curved().flat_map(|curved| &curved.bulges).map(words));
+    out.add(
+        layout::DUAL_EDGES,
+        pairs().flat_map(|pair| &pair.edges).map(|edge| {
+            let [_, _, role, a, b, c, d] = edge_words(edge);
+            [role, a, b, c, d]
+        }),
+    );
 }
 
 fn arrays(certificate: &Certificate, shares: &[f64]) -> Writer {
@@ -232,22 +481,7 @@ fn arrays(certificate: &Certificate, shares: &[f64]) -> Writer {
             [a, b, c, d, e, f, lambda, mu, p[0], p[1], q[0], q[1], r[0], r[1], oscillation]
         }),
     );
-    out.add(
-        layout::EDGES,
-        certificate.edges.iter().map(|edge| {
-            let (role, [start, end]) = match edge.role {
-                Role::Inner(force) => (0, force),
-                Role::Held(held, force) => (u64::from(held[0]) + 2 * u64::from(held[1]), force),
-                Role::Loaded(traction) => (4, traction),
-                Role::Pressed(pressure) => (5, [pressure, [0.0; 2]]),
-                Role::Contact { pressure, gap, .. } => (6, [pressure, gap]),
-                Role::Supported { force, traction, .. } => (7, [force, traction]),
-            };
-            let ([a, b], [c, d], [e, f]) =
-                (edge.ends.map(|p| p as u64), words(&start), words(&end));
-            [a, b, role, c, d, e, f]
-        }),
-    );
+    out.add(layout::EDGES, certificate.edges.iter().map(edge_words));
     // Those of contact that are not the edges' normals, and those of edges that are held along one alone.
     out.add(
         layout::DIRECTIONS,
@@ -289,6 +523,20 @@ fn arrays(certificate: &Certificate, shares: &[f64]) -> Writer {
     out.add(layout::POLYGON, certificate.polygon.iter().map(|&e| [e as u64]));
     out.add(layout::SHARES, shares.iter().map(|x| [double(x)]));
     out
+}
+
+fn edge_words(edge: &Edge) -> [u64; 7] {
+    let words = |xs: &[f64; 2]| xs.map(f64::to_bits);
+    let (role, [start, end]) = match edge.role {
+        Role::Inner(force) => (0, force),
+        Role::Held(held, force) => (u64::from(held[0]) + 2 * u64::from(held[1]), force),
+        Role::Loaded(traction) => (4, traction),
+        Role::Pressed(pressure) => (5, [pressure, [0.0; 2]]),
+        Role::Contact { pressure, gap, .. } => (6, [pressure, gap]),
+        Role::Supported { force, traction, .. } => (7, [force, traction]),
+    };
+    let ([a, b], [c, d], [e, f]) = (edge.ends.map(|p| p as u64), words(&start), words(&end));
+    [a, b, role, c, d, e, f]
 }
 
 /// Arrays one after the other.
@@ -347,6 +595,11 @@ impl<'a> Reader<'a> {
             return Err(format!("{name:?} has entries of the words {said:?}; expected {words:?}"));
         }
         Ok(array.as_chunks::<N>().0.iter().map(|entry| entry.map(u64::from_le_bytes)))
+    }
+
+    /// Whether an array is there and not read yet.
+    fn has(&self, (name, _): Layout) -> bool {
+        self.0.contains_key(name)
     }
 
     fn end(self) -> Result<(), String> {

@@ -20,7 +20,7 @@ pub(super) struct OnEdge<S> {
 pub(super) struct OnContact<S> {
     /// tau N at both ends.
     pub force: [Vector2<S>; 2],
-    /// What v_n - g is at most, the Bernstein coefficients of it or of a multiple: none may be positive.
+    /// An upper bound of v_n - g, the Bernstein coefficients of it or of a multiple: none may be positive.
     pub beyond: [S; 4],
     /// 2 int tau_n (v_n - g)
     pub term: S,
@@ -33,11 +33,17 @@ pub(super) fn along_the_normal<S: Enclosing>(
     [p, q]: [S; 2],
     length: impl Fn() -> S,
 ) -> OnContact<S> {
-    let less_gap = |beyond: S, gap: f64| {
-        if gap == 0.0 { beyond } else { beyond - length() * S::exactly(gap) }
+    let is_zero = |x: S| x.lower() == 0.0 && x.upper() == 0.0;
+    let axis = (0..2).find(|&c| is_zero(normal[1 - c]));
+    let less_gap = |v: Vector2<S>, gap: f64| match axis {
+        _ if gap == 0.0 => v.dot(&normal),
+        // Where v is on the obstacle to the last bit, nothing is left.
+        Some(c) if normal[c].is_positive() => (v[c] - S::exactly(gap)) * normal[c],
+        Some(c) => (v[c] + S::exactly(gap)) * normal[c],
+        None => v.dot(&normal) - length() * S::exactly(gap),
     };
-    let [a, b] = [0, 1].map(|k| less_gap(shape.v[k].dot(&normal), shape.gap[k]));
-    let bulge = shape.bulges.map(|(v, gap)| less_gap(v.dot(&normal), gap));
+    let [a, b] = [0, 1].map(|k| less_gap(shape.v[k], shape.gap[k]));
+    let bulge = shape.bulges.map(|(v, gap)| less_gap(v, gap));
     // 4 s (1 - s) has the Bernstein coefficients 0, 2, 0 and, times p (1 - s) + q s, the integral (p + q) / 3.
     let integral = integral_of_product([p, q], [a, b]);
     let integral = bulge.map_or(integral, |bulge| integral + (p + q) * bulge / S::from(3));
@@ -49,8 +55,8 @@ pub(super) fn along_the_normal<S: Enclosing>(
     }
 }
 
-/// Contact along a direction d that is affine between the ends, with tau N = |E| p d: p is constant where d `turns`. The mean of the
-/// Bernstein coefficients of v . d - g is its integral; it is at most their largest.
+/// Contact along a direction d that is affine between the ends, with tau N = |E| p d: p is constant where d `turns`. The mean
+/// of the Bernstein coefficients of v . d - g is its integral; it is at most their largest.
 pub(super) fn along_directions<S: Enclosing>(
     shape: &OnEdge<S>,
     (d, turns): ([Vector2<S>; 2], bool),

@@ -1,4 +1,4 @@
-//! What proves an error bound, and its evaluation: the checker. It trusts no solver and no linear algebra; it reads
+//! Evaluates the proof of an error bound: the checker. It trusts no solver and no linear algebra; it reads
 //! numbers, and computes with [`Enclosing`] ones, so that rounding is part of the answer.
 //!
 //! **Theorem** (docs/theory.md, section 7.3). Let u be the solution of (1)-(2). If v = u_D on Gamma_D and v_n <= g on Gamma_C,
@@ -30,10 +30,11 @@ use nalgebra::Vector2;
 
 use super::balanced::Balanced;
 use super::certificate::{Shape, exactly};
+use super::forces::Evidence;
 use crate::kernel::composite::Composite;
 use crate::kernel::{Ball, Enclosing};
 
-/// What a certificate proves.
+/// The bound that a certificate proves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Proof {
     /// Upper bounds of the share of each triangle in the square of the bound, the contact term of its edges included.
@@ -49,13 +50,15 @@ pub struct Proof {
     pub stop: f64,
 }
 
-/// What a certificate is said to prove.
+/// The bound that a certificate is said to prove.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Claim {
     /// As in [`Proof`].
     pub shares: Vec<f64>,
     /// |u - v|_a is at most this, with the lifts.
     pub bound: f64,
+    /// Forces of the true solution, each between two numbers, with what proves them.
+    pub forces: Evidence,
 }
 
 /// A triangle may be out of balance by this, in units of the forces on it: the tractions and the sums of a dozen terms,
@@ -66,6 +69,21 @@ const IMBALANCE: f64 = 128.0 * f64::EPSILON;
 const NEGLIGIBLE: f64 = 1e-9;
 
 impl Certificate {
+    /// How the problem that `proof` bounds differs from the one that is meant, if it does: its body, and supports that it has
+    /// more.
+    pub fn problem(&self, proof: &Proof) -> Option<String> {
+        let body =
+            (!self.polygon.is_empty()).then(|| "the polygon of the mesh as its body".to_owned());
+        let support = (proof.stop > 0.0).then(|| {
+            format!(
+                "a support against a motion that nothing else stops, which takes {:.0e} of the forces on the boundary or less",
+                proof.stop
+            )
+        });
+        let differences: Vec<String> = body.into_iter().chain(support).collect();
+        (!differences.is_empty()).then(|| differences.join(" and "))
+    }
+
     /// Verifies every condition of the theorem and evaluates its right side.
     ///
     /// # Errors
@@ -75,37 +93,15 @@ impl Certificate {
         self.sum(&state)
     }
 
-    /// The same as [`Certificate::evaluate`] in [balls](Ball), and more than a proof needs: that the certificate is as it was
+    /// [`Certificate::evaluate`] in [balls](Ball), and more than a proof needs: that the certificate is as it was
     /// made. Its tractions balance on every triangle to the rounding of doubles, its shares are the very numbers that
-    /// its data give, and the bound is no smaller.
+    /// its data give, the bound is no smaller, and forces lie between what they are said to.
     ///
     /// # Errors
     /// As [`Certificate::evaluate`]; a triangle that is out of balance; a claim that does not follow.
     pub fn audit(&self, claim: &Claim) -> Result<Proof, Rejection> {
         let state = self.balanced::<Ball>(self.topology()?)?;
-        for (t, piece) in self.pieces.iter().enumerate() {
-            let loads = state.loads_as_given(self, t);
-            let triangle = &state.triangles[t];
-            let size = |x: Ball| x.lower().abs().max(x.upper().abs());
-            let reach = (0..3)
-                .flat_map(|i| <[Ball; 2]>::from(triangle.edge(i)))
-                .map(size)
-                .fold(0.0, f64::max);
-            let area = size(triangle.double_area());
-            let forces: f64 = loads.forces.iter().flatten().flatten().copied().map(size).sum();
-            let body: f64 = piece.body.iter().flatten().map(|f| f.abs()).sum();
-            let allowed = IMBALANCE * (forces + area * body);
-            let resultant = loads.resultant(triangle);
-            // Places of cuts are not doubles: what their balls leave open may be balance.
-            let near = |x: &Ball, most: f64| x.lower() <= most && x.upper() >= -most;
-            // What a support against a free motion takes is not on the edges.
-            let is_stopped = state.closed.stops.iter().any(|stop| stop.root == t);
-            let balances = resultant.force.iter().all(|f| near(f, allowed))
-                && near(&resultant.moment, allowed * reach);
-            if !(is_stopped || balances) {
-                return Err(Rejection::OutOfBalance { triangle: t });
-            }
-        }
+        self.check_balance(&state)?;
         let proof = self.sum(&state)?;
         if claim.shares.len() != proof.shares.len() {
             let (found, expected) = (claim.shares.len(), proof.shares.len());
@@ -121,7 +117,34 @@ impl Certificate {
         if !bound.is_at_most(claim.bound) {
             return Err(Rejection::Bound { claimed: claim.bound, found: bound });
         }
+        self.check_forces(&state, &proof, &claim.forces)?;
         Ok(proof)
+    }
+
+    /// The tractions balance on every triangle to the rounding of doubles.
+    pub(crate) fn check_balance<S: Enclosing>(&self, state: &Balanced<S>) -> Result<(), Rejection> {
+        for (t, piece) in self.pieces.iter().enumerate() {
+            let loads = state.loads_as_given(self, t);
+            let triangle = &state.triangles[t];
+            let size = |x: S| x.lower().abs().max(x.upper().abs());
+            let reach =
+                (0..3).flat_map(|i| <[S; 2]>::from(triangle.edge(i))).map(size).fold(0.0, f64::max);
+            let area = size(triangle.double_area());
+            let forces: f64 = loads.forces.iter().flatten().flatten().copied().map(size).sum();
+            let body: f64 = piece.body.iter().flatten().map(|f| f.abs()).sum();
+            let allowed = IMBALANCE * (forces + area * body);
+            let resultant = loads.resultant(triangle);
+            // Places of cuts are not doubles: what their balls leave open may be balance.
+            let near = |x: &S, most: f64| x.lower() <= most && x.upper() >= -most;
+            // What a support against a free motion takes is not on the edges.
+            let is_stopped = state.closed.stops.iter().any(|stop| stop.root == t);
+            let balances = resultant.force.iter().all(|f| near(f, allowed))
+                && near(&resultant.moment, allowed * reach);
+            if !(is_stopped || balances) {
+                return Err(Rejection::OutOfBalance { triangle: t });
+            }
+        }
+        Ok(())
     }
 
     /// The root of the right side of the theorem with the strain of another displacement w; what contact adds stays that of v.
@@ -150,7 +173,7 @@ impl Certificate {
         sum.split(|_| zero, |sum| sum).sqrt().upper()
     }
 
-    /// What triangle `t` has of the right side, C eps(v) being that far from tau.
+    /// The share of triangle `t` in the right side, C eps(v) being that far from tau.
     fn share<S: Enclosing>(&self, state: &Balanced<S>, t: usize, apart: &Composite<S>) -> S {
         let piece = &self.pieces[t];
         let distance = apart.energy(&piece.material(), state.triangles[t].double_area());

@@ -1,6 +1,9 @@
 //! Adaptivity to a proved target: solve, bound the distance to the true solution, bisect the triangles that have the largest
 //! shares in the square of the bound, and again, until the bound is as small as it is to be.
 //!
+//! The target may be a contact force in place of the energy norm: then the force is to lie between two numbers that are that
+//! near to each other, and the shares are those of the bound times those of the dual pairs that prove the force.
+//!
 //! A mesh is refined where the fewest triangles have the share [`THETA`] of the whole (Doerfler's marking), by
 //! [`newest-vertex bisection`](crate::fem::mesh::bisection). Newton's method starts from the coarser solution.
 //!
@@ -12,7 +15,8 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::errors::CertifyError;
-use super::{Continuous, certify};
+use super::quantities::Name;
+use super::{Asked, Continuous, certify_with};
 use crate::fem::contact_line;
 use crate::fem::{Condition, Mesh, Problem, Space};
 use crate::kernel::P1;
@@ -29,13 +33,13 @@ const NO_BETTER: usize = 3;
 /// When to stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Target {
-    /// The bound over the energy norm is to be at most this.
+    /// The bound over the energy norm, or half the width of what a force lies between over its middle, is to be at most this.
     pub relative: f64,
     /// No mesh has more degrees of freedom than this, but for the first.
     pub max_unknowns: usize,
 }
 
-/// What came out on one mesh.
+/// The result on one mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 #[non_exhaustive]
@@ -50,6 +54,9 @@ pub struct Level {
     pub bound: f64,
     /// The bound over |v|_a.
     pub relative: f64,
+    /// Half the width of what the force lies between over its middle, if a force is the target.
+    #[cfg_attr(feature = "files", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub force: Option<f64>,
 }
 
 /// The level with the smallest bound, with all others.
@@ -72,7 +79,7 @@ pub struct Adapted {
     pub unmet: Option<String>,
 }
 
-/// What goes on.
+/// The stage of the adaptive loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Stage {
@@ -118,13 +125,30 @@ impl AdaptError {
 /// # Errors
 /// A first level without a solution.
 pub fn adapt(
-    mut problem: Problem,
+    problem: Problem,
     method: &Method,
     settings: &Settings,
     target: Target,
     watcher: &dyn Fn(Stage),
 ) -> Result<(Problem, Adapted), AdaptError> {
+    adapt_to(problem, (method, settings), (target, None), &Asked::default(), watcher)
+}
+
+/// [`adapt`], where the target may be the contact force of a boundary; `asked` is what the certificates prove beside it.
+///
+/// # Errors
+/// As [`adapt`].
+pub fn adapt_to(
+    mut problem: Problem,
+    (method, settings): (&Method, &Settings),
+    (target, force): (Target, Option<&str>),
+    asked: &Asked,
+    watcher: &dyn Fn(Stage),
+) -> Result<(Problem, Adapted), AdaptError> {
     check_straight(&problem)?;
+    let mut asked = asked.clone();
+    let whole = force.map(|boundary| (boundary.to_owned(), None));
+    asked.forces.extend(whole.filter(|whole| !asked.forces.contains(whole)));
     let of_solve = |phase| watcher(Stage::Solve(phase));
     let mut newest = problem.mesh.opposite_longest();
     let mut start: Option<Vec<[f64; 2]>> = None;
@@ -143,38 +167,48 @@ pub fn adapt(
                 }
                 (Err(error), None) => return Err(AdaptError::Solve { level, error }),
                 (Err(error), Some(best)) => {
+                    // The residuals of the steps are on lines of their own.
+                    let error = error.to_string();
+                    let error = error.lines().next().unwrap_or_default();
                     break (best, Some(format!("level {level} has no solution: {error}")));
                 }
             };
         times = times.plus(&took);
         watcher(Stage::Certify(level));
         let begin = std::time::Instant::now();
-        let certified = certify(&problem, &solution);
+        let certified = certify_with(&problem, &solution, &asked);
         certifying += begin.elapsed();
         let certified = match certified {
             Ok(certified) => certified,
             Err(error) => {
                 let unmet = Some(format!("level {level} has no certificate: {error}"));
-                let this = || Best { problem, solution, certified: Err(error), level };
+                let this =
+                    || Best { problem, solution, certified: Err(error), level, off: f64::INFINITY };
                 break (before.unwrap_or_else(this), unmet);
             }
         };
         let (bound, relative) = (certified.bound, certified.relative);
+        let within = force.map(|boundary| within(&certified, boundary));
+        // What is to be small, and what the target compares.
+        let (off, reached) = within.map_or((bound, relative), |within| (within, within));
         levels.push(Level {
             unknowns: unknowns(&problem.mesh, method.degree),
             triangles: problem.mesh.triangles().len(),
             newton_steps: solution.newton.iterations(),
             bound,
             relative,
+            force: within.filter(|within| within.is_finite()),
         });
-        let met = relative <= target.relative;
+        let met = reached <= target.relative;
         watcher(Stage::Refine);
         let begin = std::time::Instant::now();
         // There is no share of an energy that is 0.
         let finer = if met {
             Err(None)
+        } else if let Some(Err(reason)) = force.map(|boundary| force_of(&certified, boundary)) {
+            Err(Some(reason))
         } else if relative.is_finite() {
-            let finer = problem.mesh.bisected(&newest, &marked(&certified.indicators));
+            let finer = problem.mesh.bisected(&newest, &marked(&shares(&certified, force)));
             finer.map_err(|error| Some(error.to_string()))
         } else {
             Err(Some("the body is at rest, its energy is 0".to_owned()))
@@ -182,15 +216,16 @@ pub fn adapt(
         certifying += begin.elapsed();
         start = finer.iter().map(|f| f.prolonged(&problem.mesh, &solution.displacement)).next();
         let best = match before.take() {
-            Some(best) if !met && best.bound() <= bound => best,
-            _ => Best { problem: problem.clone(), solution, certified: Ok(certified), level },
+            Some(best) if !met && best.off <= off => best,
+            _ => Best { problem: problem.clone(), solution, certified: Ok(certified), level, off },
         };
         let finer = match finer {
             Ok(finer) => finer,
             Err(unmet) => break (best, unmet),
         };
         if level >= best.level + NO_BETTER {
-            break (best, Some(format!("the bound has not fallen for {NO_BETTER} levels")));
+            let what = if force.is_some() { "what the force lies between" } else { "the bound" };
+            break (best, Some(format!("{what} has not come nearer for {NO_BETTER} levels")));
         }
         if unknowns(&finer.mesh, method.degree) > target.max_unknowns {
             let reason = "the next mesh has more unknowns than adapt.max_unknowns allows";
@@ -200,21 +235,45 @@ pub fn adapt(
         problem = problem.refined(finer);
         before = Some(best);
     };
-    let Best { problem, solution, certified, level } = best;
+    let Best { problem, solution, certified, level, .. } = best;
     Ok((problem, Adapted { solution, times, certified, certifying, levels, level, unmet }))
 }
 
-/// A level whose bound is the smallest so far, with its problem.
+/// The level with what is to be small at its smallest so far, with its problem.
 struct Best {
     problem: Problem,
     solution: Solution,
     certified: Result<Continuous, CertifyError>,
     level: usize,
+    off: f64,
 }
 
-impl Best {
-    fn bound(&self) -> f64 {
-        self.certified.as_ref().map_or(f64::INFINITY, |certified| certified.bound)
+/// The interval of a boundary's contact force, or why it is not known.
+fn force_of(certified: &Continuous, boundary: &str) -> Result<[f64; 2], String> {
+    let mut all = certified.quantities.list.iter();
+    let is = |q: &&super::quantities::Quantity| {
+        q.name == Name::ContactForce && q.boundary == boundary && q.weight.is_none()
+    };
+    all.find(is).map_or_else(
+        || Err(format!("there is no contact on '{boundary}'")),
+        |quantity| quantity.interval.clone(),
+    )
+}
+
+/// Half the width of that over its middle.
+fn within(certified: &Continuous, boundary: &str) -> f64 {
+    force_of(certified, boundary).map_or(f64::INFINITY, |[low, high]| (high - low) / (low + high))
+}
+
+/// The roots of what the triangles share in the bound, or in what a force may be off: that of the bound times that of the
+/// dual pairs.
+fn shares(certified: &Continuous, force: Option<&str>) -> Vec<f64> {
+    let (own, dual) = (&certified.indicators, &certified.quantities.indicators);
+    match force {
+        Some(_) if dual.len() == own.len() => {
+            own.iter().zip(dual).map(|(own, dual)| (own * dual).sqrt()).collect()
+        }
+        _ => own.clone(),
     }
 }
 

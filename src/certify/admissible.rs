@@ -27,10 +27,11 @@ pub(super) fn admissible(parts: &Parts, u: &Field, further: &[f64]) -> Field {
         for (k, vertex) in parts.mesh.ends(edge.edge).into_iter().enumerate() {
             let (n, gap) = (edge.directions[k], edge.gap[k]);
             // Balls must see it.
-            let is_rounded = parts.frames.contains_key(&vertex) || (n[0] != 0.0 && n[1] != 0.0);
+            let is_rounded = parts.frames.contains_key(&vertex) || is_tilted(n);
             let scale = gap.abs() + if is_rounded { size } else { 0.0 };
             let margin = 64.0 * f64::EPSILON * scale + further;
-            walls.entry(vertex).or_default().push(Wall { n, most: gap - margin, margin });
+            let (most, further) = (gap - margin, *further);
+            walls.entry(vertex).or_default().push(Wall { n, gap, further, most, margin });
         }
     }
     // On an edge along which the direction turns, both ends may have to give way.
@@ -72,6 +73,13 @@ pub(super) fn admissible(parts: &Parts, u: &Field, further: &[f64]) -> Field {
             break;
         }
     }
+    for (&vertex, walls) in &mut walls {
+        let all = walls.iter().all(|wall| wall.further == 0.0 && !is_tilted(wall.n));
+        if all && matches!(parts.free_at(vertex), Free::All) {
+            walls.sort_by(|a, b| b.gap.total_cmp(&a.gap));
+            walls.iter().for_each(|wall| touch(wall.n, wall.gap, size, &mut v[vertex]));
+        }
+    }
     if let Some(bulges) = &mut field.bulges {
         parts.hold_between(bulges);
         for (edge, further) in parts.contact.iter().zip(further) {
@@ -80,9 +88,27 @@ pub(super) fn admissible(parts: &Parts, u: &Field, further: &[f64]) -> Field {
             let at_ends =
                 parts.mesh.ends(edge.edge).map(|vertex| Vector2::from(field.vertices[vertex]));
             push_between(edge, at_ends, bulge, (size, *further));
+            if *further == 0.0 && !edge.turns() {
+                touch(edge.directions[0], edge.gap_bulge, size + edge.gap[0].abs(), bulge);
+            }
         }
     }
     field
+}
+
+/// n is not along an axis.
+fn is_tilted(n: Vector2<f64>) -> bool {
+    n[0] != 0.0 && n[1] != 0.0
+}
+
+/// Puts v, which may be `size` large, on the obstacle to the last bit, where it is there but for rounding, and n is along an axis.
+fn touch(n: Vector2<f64>, gap: f64, size: f64, v: &mut [f64; 2]) {
+    let near = 512.0 * f64::EPSILON * (gap.abs() + size);
+    for c in 0..2 {
+        if n[c].abs() == 1.0 && (v[c] * n[c] - gap).abs() <= near {
+            v[c] = n[c] * gap;
+        }
+    }
 }
 
 /// How a vertex may move.
@@ -97,6 +123,9 @@ pub(super) enum Free {
 /// v . n is to be at most `most`, which is `margin` less than what is allowed.
 struct Wall {
     n: Vector2<f64>,
+    gap: f64,
+    /// By how much it is pushed out beyond what doubles ask for.
+    further: f64,
     most: f64,
     margin: f64,
 }
@@ -150,7 +179,7 @@ fn push_between(
     let (mean, own) = ((d + e) / 2.0, Vector2::from(*bulge));
     let middle = (v[0] + v[1]) / 2.0 + own * 2.0;
     let between = (g + h) / 2.0 + 2.0 * edge.gap_bulge;
-    let tilted = if d[0] != 0.0 && d[1] != 0.0 { size } else { 0.0 };
+    let tilted = if is_tilted(d) { size } else { 0.0 };
     let largest = v[0].dot(&d).abs() + v[1].dot(&e).abs() + own.dot(&d).abs() + tilted;
     let scale = largest + g.abs() + h.abs() + edge.gap_bulge.abs();
     let margin = 64.0 * f64::EPSILON * scale + further;

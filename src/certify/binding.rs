@@ -1,7 +1,8 @@
-//! Whether a certificate is one of a problem: its triangles cut up those of the problem's mesh, and what is given on them, materials,
-//! supports, loads and obstacles, is what the problem says there, to rounding; what is measured by quadrature is measured again.
+//! Whether a certificate is one of a problem: its triangles cut up those of the problem's mesh, and what is given on them,
+//! materials, supports, loads and obstacles, is what the problem says there, to rounding; what is measured by quadrature is
+//! measured again.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::Vector2;
 use thiserror::Error;
@@ -10,6 +11,7 @@ use super::build;
 use super::certificate::{Certificate, Edge, Lift, Role, is_oblique, place};
 use super::data::{Data, length_and_normal};
 use super::errors::CertifyError;
+use super::forces::Evidence;
 use super::oscillation::{self, Oscillation};
 use super::parts::{Boundary, Parts};
 use super::tractions::force_of;
@@ -38,12 +40,17 @@ pub enum Difference {
     Mesh(#[from] MeshError),
 }
 
-/// Compares a `certificate` that an audit has accepted with a `problem`, on its mesh or on one that refines it. Returns why the bound
-/// is not rigorous for that, if it is not: the numbers don't know how the data of the problem were rounded.
+/// Compares a `certificate` that an audit has accepted, and the names of the boundaries of its `forces`, with a `problem`, on
+/// its mesh or on one that refines it. Returns why the bound is not rigorous for that, if it is not: the numbers don't know
+/// how the data of the problem were rounded.
 ///
 /// # Errors
 /// The first difference.
-pub fn compare(problem: Problem, certificate: &Certificate) -> Result<Option<String>, Difference> {
+pub fn compare(
+    problem: Problem,
+    certificate: &Certificate,
+    forces: &Evidence,
+) -> Result<Option<String>, Difference> {
     let (refinement, origins) = refinement(&problem.mesh, certificate)?;
     let problem = problem.refined(refinement);
     // Between the middles of a triangle's edges lies the fourth of its quarters.
@@ -66,6 +73,7 @@ pub fn compare(problem: Problem, certificate: &Certificate) -> Result<Option<Str
             comparison.edge(e, edge)?;
         }
     }
+    comparison.names(forces)?;
     let lacking = build::polygon(&problem.mesh, certificate);
     if let Some(&e) = lacking.iter().find(|e| !certificate.polygon.contains(e)) {
         return Err(outside("edge", e, "does not say that it is part of a curved boundary"));
@@ -236,7 +244,25 @@ struct Comparison<'a> {
 }
 
 impl Comparison<'_> {
-    /// What is prescribed at the vertices, and along which directions.
+    /// Each edge whose boundary is named is on that boundary.
+    fn names(&self, forces: &Evidence) -> Result<(), Difference> {
+        let Comparison { certificate, parts: &Parts { mesh, .. }, .. } = *self;
+        let on = |name: &String| -> BTreeSet<usize> {
+            let edges = mesh.edges_of(name).unwrap_or_default().iter();
+            edges.map(|edge| mesh.triangle_edges()[edge.triangle][edge.local]).collect()
+        };
+        let on: Vec<BTreeSet<usize>> = forces.names.iter().map(on).collect();
+        for (e, (edge, of)) in certificate.edges.iter().zip(&forces.of).enumerate() {
+            let side = <[usize; 2]>::try_from(corners(certificate, &edge.ends)).ok();
+            let number = side.and_then(|side| self.sides.get(&side)).map(|&(number, _)| number);
+            if of.is_some_and(|k| number.is_none_or(|number| !on[k].contains(&number))) {
+                return Err(outside("edge", e, "is not on the boundary that it is said to be on"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Compares what is prescribed at the vertices, and along which directions.
     fn points(&self) -> Result<(), Difference> {
         let Certificate { prescribed, frames, .. } = self.certificate;
         for (k, (found, expected)) in prescribed.iter().zip(&self.parts.prescribed).enumerate() {
@@ -278,7 +304,7 @@ impl Comparison<'_> {
         Ok(())
     }
 
-    /// What boundary edge `e` is, and what is given there.
+    /// Compares the role of boundary edge `e`, and its data.
     fn edge(&self, e: usize, edge: &Edge) -> Result<(), Difference> {
         let Comparison { certificate, parts, .. } = *self;
         let side = <[usize; 2]>::try_from(corners(certificate, &edge.ends)).ok();
@@ -393,7 +419,7 @@ impl Comparison<'_> {
         }
     }
 
-    /// What prescribed displacements and gaps have beyond those of the certificate.
+    /// Compares the parts of prescribed displacements and gaps that the certificate's own leave out.
     fn lifts(&self) -> Result<(), Difference> {
         let Comparison { certificate, parts, .. } = *self;
         let key = |mut corners: [usize; 3]| {
@@ -426,7 +452,7 @@ impl Comparison<'_> {
         Err(Difference::Data { what, index, found, expected: format!("{expected:?}") })
     }
 
-    /// The same numbers, to the rounding of the largest of them and of their `size`.
+    /// Compares numbers, to the rounding of the largest of them and of their `size`.
     fn same(
         &self,
         what: &'static str,

@@ -1,5 +1,5 @@
-//! A certificate from a discrete solution: v as it was made admissible, tau by equilibrated tractions (`tractions`), on the triangles
-//! of the mesh or on their quarters (`quarters`), cut where contact ends (`divide`).
+//! A certificate from a discrete solution: v as it was made admissible, tau by equilibrated tractions (`tractions`), on the
+//! triangles of the mesh or on their quarters (`quarters`), cut where contact ends (`divide`).
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -28,7 +28,7 @@ pub(super) struct Built {
     pub certificate: Certificate,
     /// The triangles of the mesh that its pieces come from.
     pub origins: Vec<usize>,
-    /// What the data of the problem leave out.
+    /// The oscillation of the data.
     pub oscillation: Oscillation,
     /// Its triangles are quarters of those of the mesh.
     quartered: bool,
@@ -55,8 +55,8 @@ impl Built {
         divided(shape, &self.divisions)
     }
 
-    /// The edges of Gamma_C, by their numbers in `parts`, of the triangles where v can't be shown to be outside the obstacle, and how
-    /// far it may be inside.
+    /// The edges of Gamma_C, by their numbers in `parts`, of the triangles where v can't be shown to be outside the obstacle,
+    /// and how far it may be inside.
     pub fn penetrations(&self, parts: &Parts) -> Vec<(usize, f64)> {
         let found = self.certificate.penetrations();
         if found.is_empty() {

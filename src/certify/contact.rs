@@ -1,10 +1,11 @@
 //! An edge of Gamma_C with what the discrete solution says there, and the pressure of tau on it.
 //!
-//! Take lambda^h = -(1/gamma) \[P(u^h)\]+. A triangle whose contact edge holds the end of contact is cut there, so that lambda^h is
-//! affine on the edges. For P2 it is quadratic, and the affine pressure with its force and its centroid would be a tension at one
-//! end where the centroid is not in the middle third: then it acts on three times the way to the centroid only, and the triangle is
-//! cut there ([`Profile`]). Force and moment are those of lambda^h, unless that way is too short to cut a triangle there. Where n~
-//! turns along an edge, tau n is affine along it only if the pressure is constant: then it is the mean of lambda^h.
+//! Take lambda^h = -(1/gamma) \[P(u^h)\]+. A triangle whose contact edge holds the end of contact is cut there, so that
+//! lambda^h is affine on the edges. For P2 it is quadratic, and the affine pressure with its force and its centroid would be
+//! a tension at one end where the centroid is not in the middle third: then it acts on three times the way to the centroid
+//! only, and the triangle is cut there ([`Profile`]). Force and moment are those of lambda^h, unless that way is too short to
+//! cut a triangle there. Where n~ turns along an edge, tau n is affine along it only if the pressure is constant: then it is
+//! the mean of lambda^h.
 
 use std::sync::Arc;
 
@@ -26,7 +27,7 @@ pub(super) struct Contact {
     pub directions: [Vector2<f64>; 2],
     /// g at both ends.
     pub gap: [f64; 2],
-    /// What it is in the middle beyond their mean; 0 where it is known to be affine.
+    /// Its value in the middle less their mean; 0 where it is known to be affine.
     pub gap_bulge: f64,
     /// int lambda^h n~ phi for them.
     pub moments: [Vector2<f64>; 2],
@@ -65,9 +66,9 @@ impl Profile {
         }
     }
 
-    /// The pressure with the moments `m` of a lambda^h that is not affine; `starts` tells whether P is positive at the start, `end`
-    /// is the place where it changes its sign, if there is one only. Affine up to the end of contact, if the centroid is in
-    /// the middle third of that; else up to three times the way to the centroid.
+    /// The pressure with the moments `m` of a lambda^h that is not affine; `starts` tells whether P is positive at the start,
+    /// `end` is the place where it changes its sign, if there is one only. Affine up to the end of contact, if the centroid
+    /// is in the middle third of that; else up to three times the way to the centroid.
     fn of_moments(m: [f64; 2], starts: bool, end: Option<f64>) -> Profile {
         let force = m[0] + m[1];
         if !(force < 0.0) {

@@ -1,4 +1,5 @@
-//! The loads of a problem as a certificate has them: f affine on triangles and t affine along edges, with the moments of the true ones.
+//! The loads of a problem as a certificate has them: f affine on triangles and t affine along edges, with the moments of the
+//! true ones.
 
 use std::collections::BTreeMap;
 
@@ -196,7 +197,7 @@ pub(super) fn cancellation(
     (off > KNOWN * size).then_some(off)
 }
 
-/// What `f` is in the middle of an edge beyond the mean of its ends; 0 where it is known to be affine.
+/// The value of `f` in the middle of an edge less the mean of its ends; 0 where it is known to be affine.
 pub(super) fn bulge_of(f: &SharedFunction, ends: [[f64; 2]; 2]) -> f64 {
     let [a, b] = ends;
     let middle = [0, 1].map(|c| (a[c] + b[c]) / 2.0);

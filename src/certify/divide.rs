@@ -96,8 +96,8 @@ fn on_whole(certificate: &Certificate, ends: [usize; 2], at: f64) -> (Cut, f64) 
     }
 }
 
-/// The same displacement with values at the cuts, and bulges on their edges: on a part of length s of an edge, s^2 times the bulge
-/// b of the whole; on the cut, the second difference of the quadratic along it.
+/// Restates a displacement with values at the cuts, and bulges on their edges: on a part of length s of an edge, s^2 times
+/// the bulge b of the whole; on the cut, the second difference of the quadratic along it.
 pub(super) fn divided<S: Enclosing>(mut shape: Shape<S>, divisions: &[Division]) -> Shape<S> {
     for division in divisions {
         let s = S::exactly(division.at);

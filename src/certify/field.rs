@@ -11,7 +11,7 @@ use crate::kernel::composite::Affine;
 pub(super) struct Field {
     /// At the vertices.
     pub vertices: Vec<[f64; 2]>,
-    /// What it is in the middle of each edge beyond the mean of the ends.
+    /// Its values in the middle of each edge less the mean of the ends.
     pub bulges: Option<Vec<[f64; 2]>>,
 }
 

@@ -1,5 +1,5 @@
-//! Displacements w for `certify::forces`: of least energy among those that do on the boundary what is asked of them. Where the body is
-//! far off the obstacle, w is free: it costs the square of the bound there, not its first power.
+//! Displacements w for `certify::forces`: of least energy among those that do on the boundary what is asked of them. Where
+//! the body is far off the obstacle, w is free: it costs the square of the bound there, not its first power.
 //!
 //! One matrix serves all: that of a(.,.) with the body held on Gamma_D, and on Gamma_C along the direction of contact.
 
@@ -7,7 +7,6 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector2;
 
-use super::SWEEPS;
 use super::build::{Built, build};
 use super::certificate::{Certificate, Cut, Role, is_oblique};
 use super::errors::CertifyError;
@@ -42,6 +41,10 @@ pub(super) struct Lifter<'a, E, const N: usize, const M: usize> {
     factor: Factor,
 }
 
+/// How often rho is improved around every vertex: where contact ends its traction is infinite, and what it starts from is not
+/// near.
+const DUAL_SWEEPS: usize = 24;
+
 /// Two directions with a sine below this are parallel.
 const PARALLEL: f64 = 1e-8;
 
@@ -56,7 +59,8 @@ fn independent(demands: &[Demand]) -> (Option<Demand>, Option<Demand>) {
 }
 
 impl<'a, E: Element<N, M>, const N: usize, const M: usize> Lifter<'a, E, N, M> {
-    /// For the boundaries with these `names`; `open` tells of the edges of Gamma_C, by their place in `parts.contact`, where w is free.
+    /// For the boundaries with these `names`; `open` tells of the edges of Gamma_C, by their place in `parts.contact`, where
+    /// w is free.
     pub fn new(
         parts: &'a Parts<'a>,
         names: &'a [String],
@@ -134,7 +138,8 @@ impl<'a, E: Element<N, M>, const N: usize, const M: usize> Lifter<'a, E, N, M> {
         Ok(Lifter { parts, names, space, demands, numbering, factor })
     }
 
-    /// What a demand at a node asks for; at a place where the boundaries contradict one another, with `strict` an error.
+    /// The value that a demand asks for at a node; at a place where the boundaries contradict one another, with `strict` an
+    /// error.
     fn value(&self, node: usize, demand: &Demand, target: Target) -> f64 {
         let x = self.space.nodes()[node];
         if target.boundary.is_some_and(|boundary| boundary != demand.boundary) {
@@ -227,19 +232,21 @@ impl<'a, E: Element<N, M>, const N: usize, const M: usize> Lifter<'a, E, N, M> {
         Ok(field)
     }
 
-    /// The dual pair of `certify::dual`: w of least energy, and a stress in equilibrium near C eps(w), on the triangles of `built`; `open` tells
-    /// of the edges of Gamma_C where w is free and rho has no traction.
+    /// The dual pair of `certify::dual`: a given w, and a stress rho in equilibrium near C eps of our own displacement for
+    /// the target, on the triangles of `built`; `open` tells of the edges of Gamma_C where rho has no traction, those where
+    /// our own displacement is free.
     ///
     /// # Errors
     /// A place where boundaries contradict one another; contact along a direction that is not an axis.
     pub fn pair(
         &self,
-        target: Target,
+        (target, w): (Target, &[[f64; 2]]),
         built: &Built,
         open: &[bool],
     ) -> Result<Certificate, String> {
         let (parts, mesh) = (self.parts, self.parts.mesh);
-        let mut w = Field::new(mesh, &self.field(target)?).map_err(|error| error.to_string())?;
+        let field = |w: &[[f64; 2]]| Field::new(mesh, w).map_err(|error| error.to_string());
+        let (near, mut w) = (field(&self.field(target)?)?, field(w)?);
         let at_rest = |values: &[Option<f64>; 2]| values.map(|value| value.map(|_| 0.0));
         let mut prescribed: Vec<[Option<f64>; 2]> = parts.prescribed.iter().map(at_rest).collect();
         let mut boundary = BTreeMap::new();
@@ -281,10 +288,10 @@ impl<'a, E: Element<N, M>, const N: usize, const M: usize> Lifter<'a, E, N, M> {
         if let Some(bulges) = &mut w.bulges {
             dual.hold_between(bulges);
         }
-        let mut pair = build(&dual, &w, &w).certificate;
+        let mut pair = build(&dual, &near, &w).certificate;
         // There is no load that could oscillate.
         pair.pieces.iter_mut().for_each(|piece| piece.oscillation = 0.0);
-        improve(&mut pair, SWEEPS).map_err(|error| error.to_string())?;
+        improve(&mut pair, DUAL_SWEEPS, true).map_err(|error| error.to_string())?;
         Ok(pair)
     }
 

@@ -33,7 +33,7 @@ mod quarters;
 mod sweeps;
 mod tractions;
 
-pub use self::adapt::{AdaptError, Adapted, Target, adapt};
+pub use self::adapt::{AdaptError, Adapted, Target, adapt, adapt_to};
 use nalgebra::Vector2;
 
 use self::build::Built;
@@ -57,6 +57,9 @@ use crate::solve::Solution;
 
 /// How often the stress is improved around every vertex.
 pub const SWEEPS: usize = 2;
+
+/// The number of sweeps where forces are asked for, beside whose dual pairs they cost little.
+const SWEEPS_FOR_FORCES: usize = 8;
 
 /// How often v is pushed out of the obstacle by what the check finds it to be inside.
 const PUSHES: usize = 5;
@@ -88,9 +91,9 @@ pub struct Continuous {
     /// The compliance L(u) lies between these; `None` where J(u) is not bounded, or where displacements or gaps other than 0
     /// are prescribed beside the loads.
     pub compliance: Option<[f64; 2]>,
-    /// What proves it.
+    /// The certificate.
     pub certificate: Certificate,
-    /// What it proves.
+    /// The proved bound.
     pub proof: Proof,
     /// |v - w|_a is at most this, for the field w that was given.
     pub clipping: f64,
@@ -99,7 +102,7 @@ pub struct Continuous {
     /// The largest |w - u_D| at the nodes of Gamma_D and, where w is quadratic or u_D is, of the bulges between them: bounds in
     /// the energy norm don't see a w that is moved as a whole.
     pub missed: f64,
-    /// What it proves of contact itself.
+    /// Proved forces and zones of contact.
     pub quantities: Quantities,
 }
 
@@ -111,13 +114,12 @@ pub fn certify(problem: &Problem, solution: &Solution) -> Result<Continuous, Cer
     certify_with(problem, solution, &Asked::default())
 }
 
-/// What is asked of a certificate beside what it always has.
+/// Options of a certificate.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Asked {
-    /// Forces of the pressure times weights, each with the name of its contact boundary.
-    pub weights: Vec<(String, Ramp)>,
-    /// Contact forces of second order, by dual pairs: each costs two certificates more.
-    pub second_order: bool,
+    /// Contact forces, each of the boundary with this name and of the pressure times this weight: they are proved to second
+    /// order, by dual pairs, which costs some certificates more for each.
+    pub forces: Vec<(String, Option<Ramp>)>,
 }
 
 /// Certifies the `solution` of `problem`, and what is asked beside.
@@ -133,8 +135,9 @@ pub fn certify_with(
 }
 
 /// Certifies any displacement `field` of `problem`, given at the vertices of the mesh, and at the middles of its edges if it is
-/// quadratic on the triangles. The stress comes from our own `solution`; v is the field, clipped into the admissible set, or our own solution, whichever gives the smaller bound of the
-/// field's own error: what is clipped at vertices only may cost more than the way to a good solution.
+/// quadratic on the triangles. The stress comes from our own `solution`; v is the field, clipped into the admissible set, or
+/// our own solution, whichever gives the smaller bound of the field's own error: what is clipped at vertices only may cost
+/// more than the way to a good solution.
 ///
 /// # Errors
 /// As [`certify`].
@@ -186,7 +189,8 @@ fn certify_near(
         }
         (v, built, is_out) = outside();
     }
-    let topology = sweeps::improve(&mut built.certificate, SWEEPS)?;
+    let sweeps = if asked.forces.is_empty() { SWEEPS } else { SWEEPS_FOR_FORCES };
+    let topology = sweeps::improve(&mut built.certificate, sweeps, false)?;
     let (certificate, oscillation) = (&built.certificate, &built.oscillation);
     let state = certificate.balanced::<Ball>(topology)?;
     let proof = certificate.sum(&state)?;
@@ -220,7 +224,7 @@ fn certify_near(
     oscillation.lifts.iter().for_each(|(&t, z)| shares[t] += z * z);
     let mut apart = vec![0.0; shares.len()];
     built.origins.iter().zip(&distances).for_each(|(&t, d)| apart[t] += d * d);
-    let problem = problem_bounded(certificate, &proof);
+    let problem = certificate.problem(&proof);
     let both = |(share, distance): (f64, &f64)| share.max(0.0).sqrt() + distance.sqrt();
     let Built { certificate, oscillation, .. } = built;
     Ok(Continuous {
@@ -240,20 +244,6 @@ fn certify_near(
         missed,
         quantities,
     })
-}
-
-/// How the problem that is bounded differs from the one that is meant.
-fn problem_bounded(certificate: &Certificate, proof: &Proof) -> Option<String> {
-    let body =
-        (!certificate.polygon.is_empty()).then(|| "the polygon of the mesh as its body".to_owned());
-    let support = (proof.stop > 0.0).then(|| {
-        format!(
-            "a support against a motion that nothing else stops, which takes {:.0e} of the forces on the boundary or less",
-            proof.stop
-        )
-    });
-    let differences: Vec<String> = body.into_iter().chain(support).collect();
-    (!differences.is_empty()).then(|| differences.join(" and "))
 }
 
 /// Whether u_D = 0 and g = 0, so that with u all its multiples t u, t >= 0, are admissible: then a(u, u) = L(u) and

@@ -27,7 +27,7 @@ use crate::fem::mesh::length;
 use crate::fem::{Condition, SharedFunction, quadrature};
 use crate::kernel::{Material, Triangle};
 
-/// What the data of a problem leave out of a certificate.
+/// The parts of a problem's data that a certificate leaves out.
 #[derive(Clone, Debug)]
 pub(super) struct Oscillation {
     /// Why the bound rests on quadrature, if it does.
@@ -96,7 +96,8 @@ impl Oscillation {
         Oscillation { reason, lifts: BTreeMap::new() }
     }
 
-    /// Puts the oscillation of the data into the pieces of a certificate; `origins` are their triangles in the mesh, of which they may be quarters.
+    /// Puts the oscillation of the data into the pieces of a certificate; `origins` are their triangles in the mesh, of which
+    /// they may be quarters.
     pub fn measure(
         &mut self,
         parts: &Parts,
@@ -191,8 +192,8 @@ fn least_stiffness(material: &Material<f64>) -> f64 {
     2.0 * material.mu().min(material.lambda() + material.mu())
 }
 
-/// What f and t cost on one piece of triangle `t`: positive if that is measured. `whole` tells which edge of the mesh an edge of
-/// Gamma_N is, or is a part of.
+/// The cost of f and t on one piece of triangle `t`: positive if that is measured. `whole` tells which edge of the mesh an
+/// edge of Gamma_N is, or is a part of.
 pub(super) fn loads(
     parts: &Parts,
     data: &Data,

@@ -17,7 +17,7 @@ use crate::fem::{BoundaryEdge, Condition, Mesh, Problem, SharedFunction, Space, 
 use crate::kernel::Material;
 use crate::kernel::edge_integral::ExactEdge;
 
-/// What a boundary edge prescribes.
+/// The condition on a boundary edge.
 #[derive(Clone, Copy)]
 pub(super) enum Boundary<'a> {
     /// The components that are held, and what they are in the middle beyond the mean of the ends.
@@ -43,7 +43,7 @@ pub(super) struct Parts<'a> {
     pub prescribed: Vec<[Option<f64>; 2]>,
     /// The vertices that are held along an oblique direction alone, and this: what is prescribed there is along it.
     pub frames: BTreeMap<usize, [f64; 2]>,
-    /// What boundary edges are, by their numbers in the mesh.
+    /// The conditions on boundary edges, by their numbers in the mesh.
     pub boundary: BTreeMap<usize, Boundary<'a>>,
     /// Where edges without a traction are cut, by their numbers in the certificate.
     pub cuts: BTreeMap<usize, f64>,
@@ -257,7 +257,7 @@ impl<'a> Parts<'a> {
         turning.map(|edge| &*edge.boundary).collect()
     }
 
-    /// What triangle `t` is made of.
+    /// The material of triangle `t`.
     pub fn material(&self, t: usize) -> &Material<f64> {
         self.problem.material.of(t)
     }

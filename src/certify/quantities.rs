@@ -1,15 +1,15 @@
-//! What a certificate proves of contact itself: forces, moments and reactions between two numbers, where contact can act, and how
+//! Proved quantities of contact: forces, moments and reactions between two numbers, where contact can act, and how
 //! high the pressure is at least.
 //!
-//! Docs: docs/theory.md, section 7.7. For admissible v and tau let m = (C eps(v) + tau) / 2 and
+//! From docs/theory.md, section 7.7. For admissible v and tau let m = (C eps(v) + tau) / 2 and
 //!
 //! M^2 = |C eps(v) - tau|^2 / 4 + int tau_n (v_n - g),   A = int sigma_n (v_n - g) >= 0,   B = int tau_n (u_n - g) >= 0.
 //!
 //! Then |sigma(u) - m|^2 + A + B = M^2 \[Q2\]: the mean stress has about half the bound of theorem 7.2. From it follow
 //!
 //! - int_S |sigma_n| <= M^2 / d where g - v_n >= d on S, and int_S (g - u_n) <= M^2 / p where tau_n <= -p on S ([`Zone`]);
-//! - for every w in H^1 the functional R(w) = L(w) - int sigma(u) : eps(w), which is the force of the body on whatever holds it, in
-//!   the mean with w on the boundary, lies within M |w|_a of L(w) - int m : eps(w) \[Q3\].
+//! - for every w in H^1 the functional R(w) = L(w) - int sigma(u) : eps(w), which is the force of the body on what holds it,
+//!   in the mean with w on the boundary, lies within M |w|_a of L(w) - int m : eps(w) \[Q3\].
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -21,7 +21,7 @@ use super::build::Built;
 use super::certificate::{Certificate, Role};
 use super::contact::Profile;
 use super::field::Field;
-use super::forces::{Evidence, Forces, Mean, Motion, Ramp, Target};
+use super::forces::{Cover, Evidence, Forces, Mean, Motion, Ramp, Target, WrongLifting};
 use super::lifting::Lifter;
 use super::parts::{Boundary, Parts};
 use super::proof::Proof;
@@ -29,7 +29,7 @@ use crate::fem::mesh::length;
 use crate::kernel::{Ball, Element, Enclosing, Interval, P1, P2};
 use crate::solve::Solution;
 
-/// What a certificate proves beside the bound.
+/// The quantities that a certificate proves beside the bound.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Quantities {
@@ -39,8 +39,10 @@ pub struct Quantities {
     pub zones: Vec<Zone>,
     /// Forces, moments and reactions between two numbers.
     pub list: Vec<Quantity>,
-    /// What proves them, beside the certificate.
+    /// The evidence for them, beside the certificate.
     pub evidence: Evidence,
+    /// |C eps(w) - rho| of the dual pairs on the triangles of the mesh; empty where there are none.
+    pub indicators: Vec<f64>,
 }
 
 /// A number of the true solution, between two others.
@@ -49,13 +51,14 @@ pub struct Quantities {
 pub struct Quantity {
     /// Which one.
     pub name: Name,
-    /// Of which boundary.
+    /// The boundary.
     pub boundary: String,
-    /// Of the pressure times this weight.
+    /// A weight of the pressure, if there is one.
     pub weight: Option<Ramp>,
-    /// What the discrete solution has.
+    /// The value of the discrete solution.
     pub value: f64,
-    /// What the true solution has lies between these, or why nothing is known; the upper end of a peak pressure is infinite.
+    /// The interval that contains the value of the true solution, or why nothing is known; the upper end of a peak pressure
+    /// is infinite.
     pub interval: Result<[f64; 2], String>,
 }
 
@@ -119,11 +122,11 @@ pub struct Zone {
     pub to: f64,
     /// The places of both, in the undeformed body.
     pub ends: [[f64; 2]; 2],
-    /// What is bounded.
+    /// The bounded quantity.
     pub limit: Limit,
 }
 
-/// What is bounded on a [`Zone`].
+/// The quantity that is bounded on a [`Zone`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Limit {
     /// The contact force int |sigma_n| is at most this (per unit of thickness).
@@ -156,7 +159,8 @@ pub(super) struct Station {
 /// Parts of the largest gap, and of the largest pressure, from which stretches are made.
 const LEVELS: [f64; 3] = [0.5, 0.125, 0.03125];
 
-/// A stretch says something if it has less than this part of the boundary's force, or of the opening that its displacement could have.
+/// A stretch says something if it has less than this part of the boundary's force, or of the opening that its displacement
+/// could have.
 const TELLING: f64 = 0.1;
 
 /// Where contact can hardly act, and where the body can hardly be off the obstacle.
@@ -255,10 +259,22 @@ pub(super) fn prove(
     list.extend(peaks);
     list.sort_by(|a, b| (&a.boundary, a.name).cmp(&(&b.boundary, b.name)));
     (evidence.names, evidence.of) = (line.names, line.of);
-    Quantities { mean_stress: mean.root, zones, list, evidence }
+    let indicators = indicators(&evidence, built, parts.mesh.triangles().len());
+    Quantities { mean_stress: mean.root, zones, list, evidence, indicators }
 }
 
-/// What the discrete solution has.
+/// |C eps(w) - rho| of the dual pairs, all together, on the triangles of the mesh.
+fn indicators(evidence: &Evidence, built: &Built, triangles: usize) -> Vec<f64> {
+    let proofs = evidence.pairs.iter().filter_map(|(_, pair)| pair.evaluate::<f64>().ok());
+    let mut squares = Vec::new();
+    for proof in proofs {
+        squares.resize(triangles, 0.0);
+        built.origins.iter().zip(&proof.shares).for_each(|(&t, share)| squares[t] += share);
+    }
+    squares.into_iter().map(|square: f64| square.max(0.0).sqrt()).collect()
+}
+
+/// The value of the discrete solution.
 fn value(solution: &Solution, name: Name, boundary: &str) -> f64 {
     let contact = solution.boundaries.iter().find(|b| b.boundary == boundary);
     let of_contact = |get: &dyn Fn(&crate::solve::ContactBoundary) -> f64| contact.map_or(0.0, get);
@@ -283,11 +299,11 @@ fn weighted(solution: &Solution, boundary: &str, weight: Ramp) -> f64 {
     })
 }
 
-/// What w may cost where it is free, in parts of the boundary's force.
+/// The largest cost of w where it is free, in parts of the boundary's force.
 const PRICE: f64 = 0.1;
 
-/// The edges of Gamma_C where v is off the obstacle by half of what it is at most on that boundary, and by so much that little force
-/// is possible there: w may be free.
+/// The edges of Gamma_C where v is off the obstacle by half of what it is at most on that boundary, and by so much that
+/// little force is possible there: w may be free.
 fn open(parts: &Parts, v: &Field, mean: Mean) -> Vec<bool> {
     let gaps: Vec<f64> = parts
         .contact
@@ -319,8 +335,9 @@ fn open(parts: &Parts, v: &Field, mean: Mean) -> Vec<bool> {
     gaps.iter().enumerate().map(is_open).collect()
 }
 
-/// The edges of Gamma_C that are not pressed from end to end, and as many of their neighbours on each side as are `eroded`.
-fn off_contact(parts: &Parts, eroded: usize) -> Vec<bool> {
+/// The edges of Gamma_C that are not pressed from end to end, but for so many next to those that are; where `beyond` is
+/// negative, so many of these, too.
+fn off_contact(parts: &Parts, beyond: i32) -> Vec<bool> {
     let is_full =
         |profile: &Profile| profile.cut.is_none() && profile.values[0].iter().all(|&p| p < 0.0);
     let mut open: Vec<bool> = parts
@@ -332,16 +349,47 @@ fn off_contact(parts: &Parts, eroded: usize) -> Vec<bool> {
         .collect();
     let ends: Vec<[usize; 2]> =
         parts.contact.iter().map(|edge| parts.mesh.ends(edge.edge)).collect();
-    for _ in 0..eroded {
+    let grows = beyond < 0;
+    for _ in 0..beyond.unsigned_abs() {
         let before = open.clone();
-        for k in 1..open.len() {
-            if ends[k - 1][1] == ends[k][0] {
-                open[k] |= before[k - 1];
-                open[k - 1] |= before[k];
+        for k in (1..open.len()).filter(|&k| ends[k - 1][1] == ends[k][0]) {
+            if before[k - 1] != before[k] {
+                let changed = if before[k] == grows { k - 1 } else { k };
+                open[changed] = grows;
             }
         }
     }
     open
+}
+
+/// Where w is what it is to be, and where rho has a traction: so many edges beyond the last one that is pressed from end to
+/// end. The first is best for lower bounds; for upper ones rho ends where the pressure is not small, and w where the body is
+/// off the obstacle.
+const SPLITS: [[i32; 2]; 4] = [[0, 0], [1, -1], [1, -2], [1, -4]];
+
+/// The dual pairs that bound a contact force from below and from above, each with what it lies between: of those that are
+/// tried the best, if that is nearer than `first`.
+fn best_pairs<E: Element<N, M>, const N: usize, const M: usize>(
+    lifters: &BTreeMap<i32, (Vec<bool>, Lifter<E, N, M>)>,
+    (forces, built): (&Forces<Ball>, &Built),
+    (target, cover): (Target, Option<&Cover>),
+    first: [f64; 2],
+) -> Vec<([f64; 2], Certificate)> {
+    let tried = SPLITS.iter().filter_map(|[of_w, of_rho]| {
+        let ((_, with_w), (open, with_rho)) = (lifters.get(of_w)?, lifters.get(of_rho)?);
+        let w = with_w.field(target).ok()?;
+        let pair = with_rho.pair((target, &w), built, open).ok()?;
+        Some((forces.by_pair(&pair, target, cover).ok()?, pair))
+    });
+    let tried: Vec<([f64; 2], Certificate)> = tried.collect();
+    let lowest = (0..tried.len()).max_by(|&a, &b| tried[a].0[0].total_cmp(&tried[b].0[0]));
+    let highest = (0..tried.len()).min_by(|&a, &b| tried[a].0[1].total_cmp(&tried[b].0[1]));
+    let of_use = [
+        lowest.filter(|&k| tried[k].0[0] > first[0]),
+        highest.filter(|&k| tried[k].0[1] < first[1]),
+    ];
+    let tried = tried.into_iter().enumerate();
+    tried.filter(|(k, _)| of_use.contains(&Some(*k))).map(|(_, pair)| pair).collect()
 }
 
 /// The peak is at least the mean over all of a boundary, or over what is left of it without a stretch that has little force.
@@ -379,7 +427,7 @@ fn list<E: Element<N, M>, const N: usize, const M: usize>(
     parts: &Parts,
     built: &Built,
     (forces, names): (&Forces<Ball>, &[String]),
-    (open, Asked { weights, second_order }): (&[bool], &Asked),
+    (open, asked_for): (&[bool], &Asked),
 ) -> (Vec<Found>, Evidence) {
     let mut asked: Vec<(Name, usize, Option<Ramp>)> = Vec::new();
     // The direction of contact of a boundary, if it is along an axis: then the force says all of its components.
@@ -400,8 +448,8 @@ fn list<E: Element<N, M>, const N: usize, const M: usize>(
             let constant = along.all(|other| other == [d, d]);
             axes[boundary] = (0..2).find(|&c| constant && d[1 - c] == 0.0).map(|c| (c, d[c]));
             asked.push((Name::ContactForce, boundary, None));
-            let own = weights.iter().filter(|(of, _)| of == name);
-            asked.extend(own.map(|&(_, ramp)| (Name::ContactForce, boundary, Some(ramp))));
+            let own = asked_for.forces.iter().filter(|(of, ramp)| of == name && ramp.is_some());
+            asked.extend(own.map(|&(_, ramp)| (Name::ContactForce, boundary, ramp)));
             if axes[boundary].is_none() {
                 asked.extend([0, 1].map(|c| (Name::ContactComponent(c), boundary, None)));
             }
@@ -435,27 +483,40 @@ fn list<E: Element<N, M>, const N: usize, const M: usize>(
             Err(why) => Some(why),
         });
     }
-    let mut between = forces.between(&evidence.liftings, cover.as_ref());
-    if *second_order {
-        for open in [0, 1].map(|eroded| off_contact(parts, eroded)) {
-            let Ok(lifter) = Lifter::<E, N, M>::new(parts, names, &open) else { continue };
-            for (k, &(target, _)) in evidence.liftings.iter().enumerate() {
-                let (Motion::Along(_), Some(ends)) = (target.motion, between[k].as_mut().ok())
-                else {
-                    continue;
-                };
-                let Ok(pair) = lifter.pair(target, built, &open) else { continue };
-                let Ok([low, high]) = forces.by_pair(&pair, target, cover.as_ref()) else {
-                    continue;
-                };
-                if low > ends[0] || high < ends[1] {
-                    *ends = [ends[0].max(low), ends[1].min(high)];
+    let mut by_pairs = Vec::new();
+    let between = forces.between(&evidence.liftings, cover.as_ref());
+    let to_second_order = |target: &Target| {
+        let Motion::Along(weight) = target.motion else { return false };
+        let is = |(of, ramp): &(String, Option<Ramp>)| {
+            *ramp == weight && target.boundary.is_some_and(|boundary| names[boundary] == *of)
+        };
+        asked_for.forces.iter().any(is)
+    };
+    if evidence.liftings.iter().any(|(target, _)| to_second_order(target)) {
+        let splits: BTreeSet<i32> = SPLITS.into_iter().flatten().collect();
+        let lifters = splits.into_iter().filter_map(|beyond| {
+            let open = off_contact(parts, beyond);
+            let lifter = Lifter::<E, N, M>::new(parts, names, &open).ok()?;
+            Some((beyond, (open, lifter)))
+        });
+        let lifters: BTreeMap<i32, _> = lifters.collect();
+        for (k, &(target, _)) in evidence.liftings.iter().enumerate() {
+            if let (true, Ok(ends)) = (to_second_order(&target), &between[k]) {
+                let goal = (target, cover.as_ref());
+                for (ends, pair) in best_pairs(&lifters, (forces, built), goal, *ends) {
                     evidence.pairs.push((target, pair));
+                    by_pairs.push(ends);
                 }
             }
         }
     }
-    let mut between = between.into_iter();
+    let targets = evidence.liftings.iter().map(|(target, _)| *target);
+    let nearest = |(target, ends): (Target, &Result<[f64; 2], WrongLifting>)| {
+        ends.clone().map(|ends| evidence.nearest(target, ends, &by_pairs))
+    };
+    let nearest: Vec<Result<[f64; 2], WrongLifting>> = targets.zip(&between).map(nearest).collect();
+    let evidence = evidence.proving(cover.as_ref(), &between, by_pairs);
+    let mut between = nearest.into_iter();
     let mut found: Vec<Found> = Vec::with_capacity(asked.len());
     for ((name, boundary, weight), refused) in asked.into_iter().zip(refused) {
         let interval = match refused {

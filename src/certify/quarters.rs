@@ -154,7 +154,7 @@ fn outward(
     }
 }
 
-/// The same displacement with values in the middles of the mesh's edges, and bulges on their halves and on the edges between
+/// Restates a displacement with values in the middles of the mesh's edges, and bulges on their halves and on the edges between
 /// middles: each is parallel to an edge and half as long, and the second difference of a quadratic along it is a quarter.
 pub(super) fn halved<S: Enclosing>(
     mut shape: Shape<S>,

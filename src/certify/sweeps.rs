@@ -10,13 +10,13 @@
 //! since the integral of grad Phi along the edge, which is that of q . N, is Phi_b - Phi_a; z . E is the edge's own
 //! unknown. One sweep goes to every vertex and solves for its three unknowns and those of its edges together. A triangle has
 //! twelve unknowns, three for each vertex and one for each edge; the energy's second derivative by them is computed once for
-//! each shape of triangle that is met, and the small systems of the vertices are factorised once. What a body force that is not constant bends tau by is
-//! not seen here: it falls with h^2, and where v is quadratic to see it gains nothing.
+//! each shape of triangle that is met, and the small systems of the vertices are factorised once. What a body force that is
+//! not constant bends tau by is not seen here: it falls with h^2, and where v is quadratic to see it gains nothing.
 
 use nalgebra::Vector2;
 
 use super::balanced::{Balanced, Topology};
-use super::certificate::{Certificate, Role};
+use super::certificate::{Certificate, Edge, Role};
 use super::proof::Rejection;
 use crate::kernel::composite::{Composite, Frame, Loads};
 use crate::kernel::{Stress, Triangle};
@@ -39,7 +39,7 @@ struct Form {
 /// How many forms are looked through: meshes that were refined have few, others as many as triangles.
 const RECENT: usize = 8;
 
-/// What tells forms apart: two edges and the moduli.
+/// The key of a form: two edges and the moduli.
 type Shape = ([[f32; 2]; 2], [f64; 2]);
 
 /// A form that was met, by its number, with the stresses of its unknowns.
@@ -49,14 +49,18 @@ struct Met {
     units: [[f64; UNKNOWNS]; FEATURES],
 }
 
-/// Improves the tractions of `certificate` in `count` sweeps, and leaves them in equilibrium up to rounding. Returns how its
-/// triangles and edges hang together.
+/// Improves the tractions of `certificate` in `count` sweeps, and leaves them in equilibrium up to rounding; `on_rollers`
+/// those of edges that are held along their normal, an axis, too. Returns how its triangles and edges hang together.
 ///
 /// # Errors
 /// A condition of the theorem that does not hold.
-pub(super) fn improve(certificate: &mut Certificate, count: usize) -> Result<Topology, Rejection> {
+pub(super) fn improve(
+    certificate: &mut Certificate,
+    count: usize,
+    on_rollers: bool,
+) -> Result<Topology, Rejection> {
     let mut state = certificate.balanced::<f64>(certificate.topology()?)?;
-    let mut sweeps = Sweeps::new(certificate, &state);
+    let mut sweeps = Sweeps::new(certificate, &state, on_rollers);
     for sweep in 0..count {
         sweeps.go(sweep % 2 == 1);
     }
@@ -110,7 +114,8 @@ struct Sweeps {
     stars: Stars,
     /// Whose traction is free.
     free_edge: Vec<bool>,
-    free_point: Vec<bool>,
+    /// Which of Phi, Phi_x and Phi_y.
+    free_point: Vec<[bool; 3]>,
     /// The unknowns: of the points, and of the edges.
     at_points: Vec<[f64; 3]>,
     on_edges: Vec<f64>,
@@ -125,17 +130,20 @@ struct Sweeps {
 }
 
 impl Sweeps {
-    fn new(certificate: &Certificate, state: &Balanced<f64>) -> Sweeps {
+    fn new(certificate: &Certificate, state: &Balanced<f64>, on_rollers: bool) -> Sweeps {
         let points = state.points.len();
         let free_edge: Vec<bool> = certificate
             .edges
             .iter()
             .map(|edge| matches!(edge.role, Role::Inner(_) | Role::Held([true, true], _)))
             .collect();
-        let mut free_point = vec![true; points];
+        let mut free_point = vec![[true; 3]; points];
         for (edge, free) in certificate.edges.iter().zip(&free_edge) {
             if !free {
-                edge.ends.iter().for_each(|&p| free_point[p] = false);
+                let may = if on_rollers { along_the_normal(edge, state) } else { [false; 3] };
+                for p in edge.ends {
+                    (0..3).for_each(|k| free_point[p][k] &= may[k]);
+                }
             }
         }
         let stars = Stars::new(certificate, points);
@@ -186,7 +194,7 @@ impl Sweeps {
 
     /// How many unknowns a point has.
     fn own(&self, point: usize) -> usize {
-        if self.free_point[point] { 3 } else { 0 }
+        self.free_point[point].iter().filter(|&&free| free).count()
     }
 
     /// Numbers the unknowns of every star: those of the point, if it is free, then one for each free edge at it.
@@ -220,11 +228,13 @@ impl Sweeps {
     /// The triangles of a star, each with its unknowns there and their numbers in the star.
     fn star(&self, point: usize) -> impl Iterator<Item = (usize, Places)> {
         let own = self.own(point);
+        let free = self.free_point[point];
         let of = self.stars.first[point]..self.stars.first[point + 1];
         self.stars.of[of.clone()].iter().zip(&self.sides[of]).map(
             move |(&(triangle, local), sides)| {
                 let mut places = Places { count: 0, of: [(0, 0, 0.0); 5] };
-                (0..own).for_each(|k| places.push((3 * local + k, k, 1.0)));
+                let unknowns = (0..3).filter(|&k| free[k]).enumerate();
+                unknowns.for_each(|(place, k)| places.push((3 * local + k, place, 1.0)));
                 for (k, place) in sides.iter().enumerate() {
                     let side = (local + 1 + k) % 3;
                     let sign = self.signs[triangle][side];
@@ -282,7 +292,8 @@ impl Sweeps {
             *gradient = sum;
         }
         self.energies = energies;
-        for (value, x) in self.at_points[point].iter_mut().zip(&x[..own]) {
+        let values = self.at_points[point].iter_mut().zip(self.free_point[point]);
+        for ((value, _), x) in values.filter(|(_, free)| *free).zip(&x[..own]) {
             *value += x;
         }
         let free = self.first_edge[point]..self.first_edge[point + 1];
@@ -294,26 +305,39 @@ impl Sweeps {
     /// Adds the stress of the unknowns to the tractions of the certificate.
     fn add_to(&self, certificate: &mut Certificate, state: &Balanced<f64>) {
         for (edge, on_edge) in certificate.edges.iter_mut().zip(&self.on_edges) {
-            let (Role::Inner(force) | Role::Held([true, true], force)) = &mut edge.role else {
-                continue;
+            let (held, force) = match &mut edge.role {
+                Role::Inner(force) => ([true; 2], force),
+                Role::Held(held, force) => (*held, force),
+                _ => continue,
             };
             let ends = edge.ends.map(|p| state.points[p]);
             for (side, &p) in edge.ends.iter().enumerate() {
                 let modes = modes(ends, side == 1);
                 for (value, mode) in self.at_points[p].iter().zip(&modes) {
-                    add(force, *value, mode);
+                    add(force, held, *value, mode);
                 }
                 if side == 0 {
-                    add(force, *on_edge, &modes[3]);
+                    add(force, held, *on_edge, &modes[3]);
                 }
             }
         }
     }
 }
 
-fn add(force: &mut [[f64; 2]; 2], factor: f64, mode: &[Vector2<f64>; 2]) {
+fn add(force: &mut [[f64; 2]; 2], held: [bool; 2], factor: f64, mode: &[Vector2<f64>; 2]) {
     for (force, mode) in force.iter_mut().zip(mode) {
-        *force = [force[0] + factor * mode.x, force[1] + factor * mode.y];
+        (0..2).filter(|&c| held[c]).for_each(|c| force[c] += factor * mode[c]);
+    }
+}
+
+/// Which of Phi, Phi_x and Phi_y are free at the ends of an edge that is not free itself: where it is held along its normal,
+/// an axis, Phi and the slope along the edge are, which leave tau N along the normal.
+fn along_the_normal(edge: &Edge, state: &Balanced<f64>) -> [bool; 3] {
+    let [a, b] = edge.ends.map(|p| state.points[p]);
+    match edge.role {
+        Role::Held([true, false], _) if a.x == b.x => [true, false, true],
+        Role::Held([false, true], _) if a.y == b.y => [true, true, false],
+        _ => [false; 3],
     }
 }
 

@@ -1,9 +1,9 @@
 //! The moments of tau's tractions with the hat functions, from the discrete solution.
 //!
 //! Take lambda^h = -(1/gamma) \[P(u^h)\]+ and on each triangle s_T = sigma(u^h) + sum_E C (c_E (x) n) / |T|, with
-//! c_E = int_E gamma (lambda^h - sigma_n(u^h)) n~ over its edges on Gamma_C (n~ = n, or the direction of contact). Then (8) for P1 reads int s : eps(v) = L(v) + int
-//! lambda^h v_n: Nitsche's terms have gone into the stress. Tested with a hat function phi_a it says that around each
-//! vertex a there are moments M_E of tractions, one for each edge E at a, with
+//! c_E = int_E gamma (lambda^h - sigma_n(u^h)) n~ over its edges on Gamma_C (n~ = n, or the direction of contact). Then (8)
+//! for P1 reads int s : eps(v) = L(v) + int lambda^h v_n: Nitsche's terms have gone into the stress. Tested with a hat
+//! function phi_a it says that around each vertex a there are moments M_E of tractions, one for each edge E at a, with
 //!
 //! sum_{E of T at a} M_E = |T| s_T grad phi_a - int_T f phi_a   for the triangles T around a
 //!
@@ -143,7 +143,7 @@ pub(super) fn moments(
     moments
 }
 
-/// What is known of the moments on an edge: all, or what they are along a unit vector.
+/// The known moments on an edge: all, or their components along a unit vector.
 #[derive(Clone, Copy)]
 enum Known {
     Nothing,
@@ -170,7 +170,8 @@ fn with_along(k: Vector2<f64>, given: Vector2<f64>, other: Vector2<f64>) -> Vect
 /// Vectors with a sine below this are parallel.
 const PARALLEL: f64 = 1e-6;
 
-/// The vector that has the given products with the first two of these that are not parallel, and as much of `otherwise` as they leave.
+/// The vector that has the given products with the first two of these that are not parallel, and as much of `otherwise` as
+/// they leave.
 fn combined(
     demands: impl Iterator<Item = (Vector2<f64>, f64)>,
     otherwise: impl FnOnce() -> Vector2<f64>,
@@ -193,7 +194,7 @@ fn combined(
     }
 }
 
-/// What the triangles around a vertex have.
+/// The data of the triangles around a vertex.
 struct Around<'a> {
     corners: &'a [[usize; 3]],
     edges: &'a [[usize; 3]],
@@ -301,8 +302,8 @@ pub(super) fn force_of(m: &[Vector2<f64>; 2]) -> [[f64; 2]; 2] {
     [0, 1].map(|k| [0, 1].map(|c| 4.0 * m[k][c] - 2.0 * m[1 - k][c]))
 }
 
-/// The part of a force along the direction `d` that is held, and what is given across it between the places `ends`: a traction, with
-/// the affine force that has its moments.
+/// The part of a force along the direction `d` that is held, and what is given across it between the places `ends`: a
+/// traction, with the affine force that has its moments.
 pub(super) fn supported(
     d: [f64; 2],
     ends: [[f64; 2]; 2],

@@ -36,27 +36,32 @@ pub struct Ball {
 
 impl Ball {
     /// The ball that contains this double only.
+    #[inline]
     pub fn point(value: f64) -> Ball {
         Ball { centre: value, radius: 0.0 }
     }
 
     /// All numbers that are at most `radius` >= 0 from `centre`.
+    #[inline]
     pub fn around(centre: f64, radius: f64) -> Ball {
         Ball { centre, radius }
     }
 
     /// The smallest double known to be no smaller than any of its numbers. NaN if there is none to be known.
+    #[inline]
     pub fn upper(self) -> f64 {
         let end = self.centre + self.radius;
         if self.radius == 0.0 { end } else { end.next_up() }
     }
 
     /// The largest double known to be no larger than any of its numbers. NaN if there is none to be known.
+    #[inline]
     pub fn lower(self) -> f64 {
         -(-self).upper()
     }
 
     /// A ball that contains all numbers from `lo` to `hi`.
+    #[inline]
     fn between(lo: f64, hi: f64) -> Ball {
         if lo == hi {
             return Ball::point(lo);
@@ -66,6 +71,7 @@ impl Ball {
     }
 
     /// The square roots of its nonnegative numbers; NaN if it has none.
+    #[inline]
     pub fn sqrt(self) -> Ball {
         let (lo, hi) = (self.lower(), self.upper());
         let below = if lo > 0.0 { lo.sqrt().next_down() } else { 0.0 };
@@ -73,12 +79,14 @@ impl Ball {
         Ball::between(below, above)
     }
 
+    #[inline]
     fn is_zero(self) -> bool {
         self.centre == 0.0 && self.radius == 0.0
     }
 }
 
 impl From<i32> for Ball {
+    #[inline]
     fn from(value: i32) -> Ball {
         Ball::point(f64::from(value))
     }
@@ -87,6 +95,7 @@ impl From<i32> for Ball {
 impl Neg for Ball {
     type Output = Ball;
 
+    #[inline]
     fn neg(self) -> Ball {
         Ball { centre: -self.centre, radius: self.radius }
     }
@@ -95,6 +104,7 @@ impl Neg for Ball {
 impl Add for Ball {
     type Output = Ball;
 
+    #[inline]
     fn add(self, other: Ball) -> Ball {
         let centre = self.centre + other.centre;
         Ball { centre, radius: (self.radius + other.radius + UNIT * centre.abs()) * GROWTH }
@@ -104,6 +114,7 @@ impl Add for Ball {
 impl Sub for Ball {
     type Output = Ball;
 
+    #[inline]
     fn sub(self, other: Ball) -> Ball {
         self + -other
     }
@@ -112,6 +123,7 @@ impl Sub for Ball {
 impl Mul for Ball {
     type Output = Ball;
 
+    #[inline]
     fn mul(self, other: Ball) -> Ball {
         let centre = self.centre * other.centre;
         if centre == 0.0 && (self.is_zero() || other.is_zero()) {
@@ -126,6 +138,7 @@ impl Mul for Ball {
 impl Div for Ball {
     type Output = Ball;
 
+    #[inline]
     fn div(self, other: Ball) -> Ball {
         let distance = other.centre.abs() - other.radius;
         if !(distance > 0.0) {
@@ -143,6 +156,7 @@ impl Div for Ball {
 crate::entry_of_nalgebra!(Ball);
 
 impl Scalar for Ball {
+    #[inline]
     fn split(
         self,
         nonpositive: impl FnOnce(Ball) -> Ball,

@@ -59,11 +59,11 @@ pub struct Composite<S> {
 pub struct Affine<S> {
     /// That of the affine function with the values of v at the vertices.
     pub base: Stress<S>,
-    /// What comes to it at each vertex; `None` where v is affine.
+    /// The stress added at each vertex; `None` where v is affine.
     pub beyond: Option<[Stress<S>; 3]>,
 }
 
-/// What does not depend on the loads of a triangle.
+/// The part that does not depend on the loads of a triangle.
 pub struct Frame<S> {
     normals: [Vector2<S>; 3],
     edges: [Vector2<S>; 3],
@@ -281,7 +281,7 @@ impl<S: Scalar> Loads<S> {
 }
 
 impl<S: Scalar> Wrench<S> {
-    /// The same forces, their moment about another point.
+    /// Moves the point of reference of the moment.
     pub fn about(self, point: Vector2<S>) -> Self {
         let arm = self.about - point;
         Wrench { moment: self.moment + arm.perp(&self.force), about: point, ..self }
@@ -396,7 +396,7 @@ mod tests {
         vertices: [Vector2::new(0.3, -0.2), Vector2::new(2.0, 0.1), Vector2::new(0.7, 1.9)],
     };
 
-    /// What some dozen operations on numbers of size 1 to 10, divided by 2 |T| = 3.3, may be off.
+    /// The error of some dozen operations on numbers of size 1 to 10, divided by 2 |T| = 3.3.
     const ROUNDING: f64 = 1e-13;
 
     /// A rule on a triangle that is exact for polynomials of degree 4: barycentric points with weights that add up to 1.

@@ -39,9 +39,9 @@ impl<S: Scalar, const N: usize, const M: usize> ContactEdge<S, N, M> {
         ContactEdge { p0, sigma_n: [sigma_n_at(S::from(0)), sigma_n_at(S::from(1))] }
     }
 
-    /// The same where the direction of contact is a field n~: P0(v) = n~ . v - gamma s(v), s(v) = n~ . sigma(v) n, with the
-    /// unit vectors `directions` at the nodes. s is affine on the edge, from its values at the two ends, in P0 as in A:
-    /// this is what J_h and the consistency of (8) need. With n~ = n it is the functional of [`ContactEdge::new`].
+    /// [`ContactEdge::new`] where the direction of contact is a field n~: P0(v) = n~ . v - gamma s(v), s(v) = n~ . sigma(v)
+    /// n, with the unit vectors `directions` at the nodes. s is affine on the edge, from its values at the two ends, in P0 as
+    /// in A: this is what J_h and the consistency of (8) need. With n~ = n it is the functional of [`ContactEdge::new`].
     #[cfg(not(kani))]
     pub fn along<E: Element<N, M>>(
         triangle: &Triangle<S>,

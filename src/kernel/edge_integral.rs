@@ -160,7 +160,7 @@ where
     cuts.pieces().map(|[start, end]| gauss_bregman::<E, f64, N, M>(p, q, gauss3(start, end))).sum()
 }
 
-/// The same integral by a rule on the whole edge.
+/// The integral by a Gauss rule on the whole edge.
 pub fn gauss_bregman<E, S, const N: usize, const M: usize>(
     p: [S; M],
     q: [S; M],

@@ -68,6 +68,7 @@ impl Element<3, 2> for P1 {
         barycentric
     }
 
+    #[inline]
     fn edge_nodes(i: usize) -> [usize; 2] {
         [(i + 1) % 3, (i + 2) % 3]
     }
@@ -112,6 +113,7 @@ impl Element<6, 3> for P2 {
         [vertex(0), vertex(1), vertex(2), middle(1, 2), middle(2, 0), middle(0, 1)]
     }
 
+    #[inline]
     fn edge_nodes(i: usize) -> [usize; 3] {
         [(i + 1) % 3, (i + 2) % 3, 3 + i % 3]
     }

@@ -19,65 +19,79 @@ pub trait Enclosing: Scalar {
     fn lower(self) -> f64;
 
     /// Whether it is known to be positive.
+    #[inline]
     fn is_positive(self) -> bool {
         self.lower() > 0.0
     }
 
     /// Whether it is known to be no more than `most`.
+    #[inline]
     fn is_at_most(self, most: f64) -> bool {
         self.upper() <= most
     }
 }
 
 impl Enclosing for f64 {
+    #[inline]
     fn exactly(value: f64) -> f64 {
         value
     }
 
+    #[inline]
     fn sqrt(self) -> f64 {
         f64::sqrt(self)
     }
 
+    #[inline]
     fn upper(self) -> f64 {
         self
     }
 
+    #[inline]
     fn lower(self) -> f64 {
         self
     }
 }
 
 impl Enclosing for Ball {
+    #[inline]
     fn exactly(value: f64) -> Ball {
         Ball::point(value)
     }
 
+    #[inline]
     fn sqrt(self) -> Ball {
         Ball::sqrt(self)
     }
 
+    #[inline]
     fn upper(self) -> f64 {
         Ball::upper(self)
     }
 
+    #[inline]
     fn lower(self) -> f64 {
         Ball::lower(self)
     }
 }
 
 impl Enclosing for Interval {
+    #[inline]
     fn exactly(value: f64) -> Interval {
         Interval::point(value)
     }
 
+    #[inline]
     fn sqrt(self) -> Interval {
         Interval::sqrt(self)
     }
 
+    #[inline]
     fn upper(self) -> f64 {
         self.hi()
     }
 
+    #[inline]
     fn lower(self) -> f64 {
         self.lo()
     }

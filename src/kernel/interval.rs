@@ -18,6 +18,7 @@ pub struct Interval {
 
 impl Interval {
     /// The interval from `lo` to `hi`, in either order. NaN if one of them is.
+    #[inline]
     pub fn new(lo: f64, hi: f64) -> Interval {
         if lo <= hi {
             Interval { lo, hi }
@@ -29,6 +30,7 @@ impl Interval {
     }
 
     /// The interval that contains this double only.
+    #[inline]
     pub fn point(value: f64) -> Interval {
         Interval::new(value, value)
     }
@@ -37,26 +39,31 @@ impl Interval {
     const EVERYTHING: Interval = Interval { lo: f64::NEG_INFINITY, hi: f64::INFINITY };
 
     /// The lower end.
+    #[inline]
     pub fn lo(self) -> f64 {
         self.lo
     }
 
     /// The upper end.
+    #[inline]
     pub fn hi(self) -> f64 {
         self.hi
     }
 
     /// Whether it is the result of a NaN.
+    #[inline]
     pub fn is_nan(self) -> bool {
         self.lo.is_nan()
     }
 
     /// Whether `value` lies in it.
+    #[inline]
     pub fn contains(self, value: f64) -> bool {
         self.lo <= value && value <= self.hi
     }
 
     /// The smallest interval that contains both. NaN if one of them is.
+    #[inline]
     pub fn hull(self, other: Interval) -> Interval {
         if self.is_nan() || other.is_nan() {
             return Interval::NAN;
@@ -66,6 +73,7 @@ impl Interval {
     }
 
     /// The square roots of its nonnegative numbers; NaN if it has none.
+    #[inline]
     pub fn sqrt(self) -> Interval {
         if !(self.hi >= 0.0) {
             return Interval::NAN;
@@ -76,6 +84,7 @@ impl Interval {
     }
 
     /// One double further out at each end that isn't an exact zero.
+    #[inline]
     fn outward(lo: f64, hi: f64) -> Interval {
         let lo = if lo == 0.0 { 0.0 } else { lo.next_down() };
         let hi = if hi == 0.0 { 0.0 } else { hi.next_up() };
@@ -94,6 +103,7 @@ pub fn sorted<T: Copy + PartialOrd>(mut values: [T; 4]) -> [T; 4] {
 }
 
 /// x y rounded down and up; exact where it is zero without underflow, also for 0 * oo, where oo stands for "no bound".
+#[inline]
 fn product(x: f64, y: f64) -> Interval {
     if x == 0.0 || y == 0.0 {
         return Interval { lo: 0.0, hi: 0.0 };
@@ -103,6 +113,7 @@ fn product(x: f64, y: f64) -> Interval {
 }
 
 /// x / y rounded down and up, for y != 0; exact where x is zero.
+#[inline]
 fn quotient(x: f64, y: f64) -> Interval {
     if x == 0.0 {
         return Interval { lo: 0.0, hi: 0.0 };
@@ -119,6 +130,7 @@ fn quotient(x: f64, y: f64) -> Interval {
 }
 
 /// The hull of `f` at the four pairs of ends.
+#[inline]
 fn of_ends(a: Interval, b: Interval, f: fn(f64, f64) -> Interval) -> Interval {
     let at = [f(a.lo, b.lo), f(a.lo, b.hi), f(a.hi, b.lo), f(a.hi, b.hi)];
     let [lo, ..] = sorted(at.map(|i| i.lo));
@@ -127,6 +139,7 @@ fn of_ends(a: Interval, b: Interval, f: fn(f64, f64) -> Interval) -> Interval {
 }
 
 impl From<i32> for Interval {
+    #[inline]
     fn from(value: i32) -> Interval {
         Interval::point(f64::from(value))
     }
@@ -135,6 +148,7 @@ impl From<i32> for Interval {
 impl Add for Interval {
     type Output = Interval;
 
+    #[inline]
     fn add(self, other: Interval) -> Interval {
         Interval::outward(self.lo + other.lo, self.hi + other.hi)
     }
@@ -143,6 +157,7 @@ impl Add for Interval {
 impl Neg for Interval {
     type Output = Interval;
 
+    #[inline]
     fn neg(self) -> Interval {
         Interval { lo: -self.hi, hi: -self.lo }
     }
@@ -151,6 +166,7 @@ impl Neg for Interval {
 impl Sub for Interval {
     type Output = Interval;
 
+    #[inline]
     fn sub(self, other: Interval) -> Interval {
         self + -other
     }
@@ -159,6 +175,7 @@ impl Sub for Interval {
 impl Mul for Interval {
     type Output = Interval;
 
+    #[inline]
     fn mul(self, other: Interval) -> Interval {
         if self.is_nan() || other.is_nan() {
             return Interval::NAN;
@@ -170,6 +187,7 @@ impl Mul for Interval {
 impl Div for Interval {
     type Output = Interval;
 
+    #[inline]
     fn div(self, other: Interval) -> Interval {
         if self.is_nan() || other.is_nan() {
             return Interval::NAN;
@@ -184,6 +202,7 @@ impl Div for Interval {
 crate::entry_of_nalgebra!(Interval);
 
 impl Scalar for Interval {
+    #[inline]
     fn split(
         self,
         nonpositive: impl FnOnce(Interval) -> Interval,

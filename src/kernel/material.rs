@@ -50,7 +50,7 @@ impl<S: Scalar> Material<S> {
         Material::lame(lambda, mu, plane)
     }
 
-    /// The same material in another number type.
+    /// Converts the material to another number type.
     #[cfg(not(kani))]
     pub fn map<T>(&self, f: impl Fn(S) -> T) -> Material<T> {
         Material { lambda: f(self.lambda), mu: f(self.mu), plane: self.plane }
@@ -116,7 +116,7 @@ impl<S: Scalar> Material<S> {
         gradient * self.lambda + n * (S::from(2) * self.mu * gradient.dot(&n))
     }
 
-    /// The same for the traction's component along `d`: d . sigma(v) n = s . w for the returned
+    /// The functional of the traction's component along `d`: d . sigma(v) n = s . w for the returned
     /// s = lambda (d . n) grad N + mu ((d . grad N) n + (grad N . n) d). With d = n, n a unit vector, it is that of sigma_n.
     #[cfg(not(kani))]
     pub fn traction_of_shape<const D: usize>(
@@ -200,7 +200,7 @@ mod tests {
 
     const N: Vector2<f64> = Vector2::new(0.6, -0.8);
 
-    /// What a handful of operations may be off, relative to the numbers of size 1 to 10 that enter.
+    /// The error of a handful of operations, relative to the numbers of size 1 to 10 that enter.
     const ROUNDING: f64 = 1e-15;
 
     #[test]

@@ -58,16 +58,19 @@ macro_rules! entry_of_nalgebra {
         $crate::entry_of_nalgebra!($number, DivAssign div_assign /);
 
         impl $crate::scalar::Zero for $number {
+            #[inline]
             fn zero() -> Self {
                 <$number>::from(0)
             }
 
+            #[inline]
             fn is_zero(&self) -> bool {
                 *self == <$number>::from(0)
             }
         }
 
         impl $crate::scalar::One for $number {
+            #[inline]
             fn one() -> Self {
                 <$number>::from(1)
             }
@@ -75,6 +78,7 @@ macro_rules! entry_of_nalgebra {
     };
     ($number:ty, $operator:ident $function:ident $sign:tt) => {
         impl std::ops::$operator for $number {
+            #[inline]
             fn $function(&mut self, other: Self) {
                 *self = *self $sign other;
             }

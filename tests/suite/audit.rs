@@ -5,6 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use signorini::certify::binding::compare;
+use signorini::certify::forces::Evidence;
 use signorini::certify::{Continuous, Rejection, certify};
 use signorini::io::certificate::{self, AuditError, Header};
 use signorini::io::{Case, run};
@@ -55,7 +56,12 @@ fn certified(text: &str, settings: &[&str]) -> Continuous {
 }
 
 fn encoded(certified: &Continuous) -> (Header, Vec<u8>) {
-    certificate::encode("Block", &certified.certificate, &certified.proof)
+    certificate::encode(
+        "Block",
+        &certified.certificate,
+        &certified.proof,
+        &certified.quantities.evidence,
+    )
 }
 
 /// Writes a certificate into a folder of its own.
@@ -77,10 +83,7 @@ fn reservations_and_the_whole_bound_come_from_the_arrays() {
     assert!(audit.header.bound >= certified.bound);
     // All triangles have the body force; four edges of the top and four of the floor are not affine, two of them at one triangle.
     let said = audit.reservations;
-    assert_eq!(
-        (said.measured, said.turning, said.polygon),
-        (certified.certificate.pieces.len(), 0, 0)
-    );
+    assert_eq!((said.measured, said.turning), (certified.certificate.pieces.len(), 0));
     assert!((7..=8).contains(&said.lifted), "{said}");
 
     // The bound of the arrays without their lifts.
@@ -105,7 +108,12 @@ fn a_certificate_is_one_of_its_case() {
             let adapted = certified.certificate.vertices.len()
                 > case(text, &[]).problem.mesh.vertices().len();
             assert_eq!(adapted, settings == ADAPTED);
-            let reason = compare(case(text, &[]).problem, &certified.certificate).unwrap();
+            let reason = compare(
+                case(text, &[]).problem,
+                &certified.certificate,
+                &certified.quantities.evidence,
+            )
+            .unwrap();
             assert_eq!(reason.is_none(), certified.rigorous, "{text}{settings:?}: {reason:?}");
         }
     }
@@ -151,11 +159,22 @@ fn a_certificate_is_not_one_of_another_case() {
             for (from, to, difference) in changes {
                 let other = text.replacen(from, to, 1);
                 assert_ne!(other, text, "{from}");
-                let found = compare(case(&other, &[]).problem, &certificate).unwrap_err();
+                let found = compare(case(&other, &[]).problem, &certificate, &Evidence::default())
+                    .unwrap_err();
                 assert!(found.to_string().contains(difference), "{from} -> {to}: {found}");
             }
         }
     }
+}
+
+#[test]
+fn forces_have_the_names_of_their_boundaries() {
+    let certified = certified(LOADED, &[]);
+    let mut forces = certified.quantities.evidence;
+    assert!(forces.names.len() > 1);
+    forces.names.reverse();
+    let found = compare(case(LOADED, &[]).problem, &certified.certificate, &forces);
+    assert!(found.unwrap_err().to_string().contains("boundary that it is said to be on"));
 }
 
 #[test]
@@ -171,7 +190,8 @@ fn what_is_measured_by_quadrature_is_measured_again_for_a_case() {
         for (certificate, difference) in
             [(halved, "the oscillation"), (without, "lacks its lift"), (smaller, "the lift")]
         {
-            let found = compare(case(CURVED_DATA, &[]).problem, &certificate).unwrap_err();
+            let found = compare(case(CURVED_DATA, &[]).problem, &certificate, &Evidence::default())
+                .unwrap_err();
             assert!(found.to_string().contains(difference), "{found}");
         }
     }
@@ -199,7 +219,9 @@ fn the_text_of_a_file_is_shown_on_one_short_line() {
 fn data_that_cancel_are_a_reservation_of_the_case() {
     let text = LOADED.replacen("-1 + 3*x", "((10*x + 1e18) - 1e18) - 4", 1);
     let certified = certified(&text, &[]);
-    let reason = compare(case(&text, &[]).problem, &certified.certificate).unwrap();
+    let reason =
+        compare(case(&text, &[]).problem, &certified.certificate, &certified.quantities.evidence)
+            .unwrap();
     assert_eq!(reason, certified.reason);
     assert!(reason.unwrap().contains("cancel"));
 }
@@ -210,9 +232,10 @@ fn a_polygon_in_place_of_a_round_body_says_so() {
     let case = || Case::read(&file).unwrap();
     let (_, solved) = run::solve(case(), None, &|_| {}).unwrap();
     let mut certificate = certify(&case().problem, &solved.solution).unwrap().certificate;
-    assert!(certificate.reservations().polygon > 0);
-    assert_eq!(compare(case().problem, &certificate), Ok(None));
+    assert!(!certificate.polygon.is_empty() && certificate.reservations().is_empty());
+    assert_eq!(compare(case().problem, &certificate, &Evidence::default()), Ok(None));
     certificate.polygon.pop();
-    let found = compare(case().problem, &certificate).unwrap_err().to_string();
+    let found =
+        compare(case().problem, &certificate, &Evidence::default()).unwrap_err().to_string();
     assert!(found.contains("part of a curved boundary"), "{found}");
 }

@@ -16,8 +16,12 @@ fn certified(text: &str, settings: &[&str]) -> Continuous {
     let case = Case::parse(&file, text, &settings).unwrap();
     let (solution, _) = solve(&case.problem, &case.method, &case.settings).unwrap();
     let certified = certify(&case.problem, &solution).unwrap_or_else(|e| panic!("{e}: {text}"));
-    let (header, bytes) =
-        certificate::encode("in a test", &certified.certificate, &certified.proof);
+    let (header, bytes) = certificate::encode(
+        "in a test",
+        &certified.certificate,
+        &certified.proof,
+        &certified.quantities.evidence,
+    );
     assert_eq!(accepts(&header, &bytes), Ok(()), "{text}");
     certified
 }

@@ -77,7 +77,12 @@ fn a_body_that_is_turned_has_the_bound_of_the_body_as_it_stands() {
             assert!(apart < ROUNDING, "{degree:?}, {angle}: {} {}", turned.bound, still.bound);
             let ([low, high], [l, h]) = (turned.energy.unwrap(), still.energy.unwrap());
             assert!((low - l).abs() + (high - h).abs() < ROUNDING, "{low} {l} {high} {h}");
-            let (header, bytes) = certificate::encode("turned", &turned.certificate, &turned.proof);
+            let (header, bytes) = certificate::encode(
+                "turned",
+                &turned.certificate,
+                &turned.proof,
+                &turned.quantities.evidence,
+            );
             assert_eq!(accepts(&header, &bytes), Ok(()), "{degree:?}, {angle}");
         }
     }
@@ -170,8 +175,12 @@ fn control_another_traction_beside_a_support_is_rejected() {
     for degree in [Degree::One, Degree::Two] {
         let (_, certified) = certified(&problem, degree);
         assert!(certified.rigorous, "{:?}", certified.reason);
-        let (header, bytes) =
-            certificate::encode("shear", &certified.certificate, &certified.proof);
+        let (header, bytes) = certificate::encode(
+            "shear",
+            &certified.certificate,
+            &certified.proof,
+            &certified.quantities.evidence,
+        );
         let (good, claim) = certificate::decode(&header, &bytes).unwrap();
         assert!(good.audit(&claim).is_ok());
         for change in [0.0, 0.99, 1.0 + 1e-9] {
@@ -244,8 +253,12 @@ fn supports_that_are_not_affine_have_the_bound_of_the_same_displacement() {
 fn tampered_certificates_of_oblique_supports_are_rejected() {
     for degree in [Degree::One, Degree::Two] {
         let (_, certified) = certified(&turned(4, 0.3, "0.01*(1 - Y)"), degree);
-        let (header, bytes) =
-            certificate::encode("turned", &certified.certificate, &certified.proof);
+        let (header, bytes) = certificate::encode(
+            "turned",
+            &certified.certificate,
+            &certified.proof,
+            &certified.quantities.evidence,
+        );
         assert!(header.arrays.iter().any(|array| array.name == "frames"));
         rejects_what_is_tampered(&header, &bytes);
     }
@@ -255,8 +268,12 @@ fn tampered_certificates_of_oblique_supports_are_rejected() {
 fn tampered_certificates_of_tractions_beside_supports_are_rejected() {
     for degree in [Degree::One, Degree::Two] {
         let (_, certified) = certified(&with_shear(), degree);
-        let (header, bytes) =
-            certificate::encode("shear", &certified.certificate, &certified.proof);
+        let (header, bytes) = certificate::encode(
+            "shear",
+            &certified.certificate,
+            &certified.proof,
+            &certified.quantities.evidence,
+        );
         rejects_what_is_tampered(&header, &bytes);
     }
 }
@@ -269,6 +286,6 @@ fn a_certificate_of_an_older_format_is_refused_by_its_number() {
     let json = folder.join(certificate::FILES[0]);
     std::fs::write(&json, "{\"format\": 6, \"counts\": {\"vertices\": 9}}").unwrap();
     let error = certificate::audit(&json).unwrap_err().to_string();
-    assert!(error.contains("of format 6; expected 7"), "{error}");
+    assert!(error.contains("of format 6; expected 8"), "{error}");
     std::fs::remove_dir_all(&folder).unwrap();
 }
