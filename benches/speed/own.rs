@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use signorini::fem::Problem;
 use signorini::io::{Case, outputs};
 use signorini::solve::{self, ContactQuadrature, Times};
 
@@ -160,6 +161,58 @@ pub fn others(repetitions: usize) -> String {
 
 The same ratio where contact edges are many beside the body or the body bends: the assembled route factors a matrix for each
 set of edges in contact that Newton's method meets.
+
+{}",
+        table(&head, &rows)
+    )
+}
+
+/// The squares of the table of proofs.
+const SQUARES: [Size; 5] = [
+    Size { degree: 1, n: 64 },
+    Size { degree: 1, n: 128 },
+    Size { degree: 1, n: 256 },
+    Size { degree: 2, n: 64 },
+    Size { degree: 2, n: 128 },
+];
+
+/// The proof of the solution beside the solve: squares up to `most` cells along a side, and the other bodies.
+pub fn proofs(most: usize, repetitions: usize) -> String {
+    let squares = SQUARES.iter().filter(|size| size.n <= most);
+    let mut bodies: Vec<(String, usize, Problem)> = squares
+        .map(|&Size { degree, n }| (format!("square, {n} x {n} cells"), degree, problem::block(n)))
+        .collect();
+    for degree in [1, 2] {
+        let others = problem::others().into_iter().chain([problem::disk()]);
+        bodies.extend(others.map(|(name, problem)| (name.to_owned(), degree, problem)));
+    }
+    let row = |(name, degree, problem): &(String, usize, Problem)| {
+        let method = problem::method(*degree, ContactQuadrature::Exact);
+        let (mut solve, mut proof) = (Duration::MAX, Duration::MAX);
+        let mut told = [const { String::new() }; 2];
+        let (start, mut runs) = (Instant::now(), 0);
+        while runs < repetitions || (runs < MANY && start.elapsed() < BRIEF) {
+            runs += 1;
+            let (solution, times) = problem::contact(problem, &method);
+            solve = solve.min(times.solve());
+            proof = proof.min(times.certify);
+            let radius = solution.enclosure.as_ref().ok().and_then(|e| e.relative);
+            let radius = radius.map_or("none".to_owned(), |radius| format!("{radius:.0e}"));
+            told = [(2 * solution.displacement.len()).to_string(), radius];
+        }
+        let [unknowns, radius] = told;
+        let share = format!("**{:.2}**", ratio(proof, solve));
+        let degree = format!("P{degree}");
+        vec![name.clone(), degree, unknowns, time(solve), time(proof), share, radius]
+    };
+    let rows: Vec<Vec<String>> = bodies.iter().map(row).collect();
+    let head =
+        ["body", "", "unknowns", "solve", "proof", "proof / solve", "proved: relative radius"];
+    format!(
+        "## The proof
+
+What decides the verdict, the enclosure of the exact solution of (8), beside the solve phase: factorisation, Newton's method and
+the residual, without assembly. `cargo bench --bench speed -- --proof` prints this table alone.
 
 {}",
         table(&head, &rows)

@@ -1,6 +1,7 @@
 //! The case that is timed, and the plain linear elastic solve beside it.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -8,7 +9,7 @@ use signorini::fem::matrix::{self, LowerTriangle, Neighbours, Numbering};
 use signorini::fem::{
     BoundaryEdge, Condition, Diagonal, Discretization, Mesh, Problem, Rectangle, SharedFunction,
 };
-use signorini::io::Expression;
+use signorini::io::{Case, Expression};
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::{Material, P1, P2, Plane};
 use signorini::solve::factor::Factor;
@@ -82,6 +83,12 @@ pub fn others() -> [(&'static str, Problem); 3] {
             body(graded.expect("a valid mesh"), "top", "-4 + 10*x", "0"),
         ),
     ]
+}
+
+/// The half disk on a floor of `cases/disk.toml`.
+pub fn disk() -> (&'static str, Problem) {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/disk.toml");
+    ("half disk", Case::read(&file).expect("a valid case").problem)
 }
 
 /// Method (8) with gamma0 at half the coercivity limit.

@@ -63,7 +63,7 @@ impl Problem {
         Problem::new(mesh, material, [zero(), zero()], BTreeMap::new())
     }
 
-    /// The same with this force per unit of area.
+    /// Sets the force per unit of area.
     pub fn with_body_force(
         self,
         x: impl Fn([f64; 2]) -> f64 + Send + Sync + 'static,
@@ -72,7 +72,7 @@ impl Problem {
         Problem { body_force: [Arc::new(x), Arc::new(y)], ..self }
     }
 
-    /// The same with this condition on a named part of the boundary, in place of what held there.
+    /// Sets the condition on a named part of the boundary, in place of an earlier one.
     pub fn with(mut self, boundary: impl Into<String>, condition: Condition) -> Self {
         self.conditions.insert(boundary.into(), condition);
         self

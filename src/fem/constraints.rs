@@ -187,8 +187,8 @@ impl Constraints {
         lift
     }
 
-    /// What each displacement boundary holds; a direction that two boundaries prescribe counts for the one that is first in
-    /// alphabetical order.
+    /// The components held by each displacement boundary; a direction that two boundaries prescribe counts for the one that
+    /// is first in alphabetical order.
     pub fn holders(&self) -> &BTreeMap<String, Vec<Held>> {
         &self.holders
     }
@@ -244,8 +244,8 @@ fn rounding_of_supports(problem: &Problem) -> Result<f64, DataError> {
     Ok(rounding)
 }
 
-/// The first one or two demands at a node that are independent, whose directions have a sine above the first of the tolerances; the
-/// others must agree with them to within the second.
+/// The first one or two demands at a node that are independent, whose directions have a sine above the first of the
+/// tolerances; the others must agree with them to within the second.
 fn independent<'d, 'a>(
     demands: &'d [Demand<'a>],
     [x, y]: [f64; 2],

@@ -5,7 +5,7 @@
 //! by the normal of the smooth boundary (`smooth`), on which the nodes are placed when the gap is measured. On a straight line
 //! without an obstacle n~ = n, and all is the paper's method to the bit.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use nalgebra::Vector2;
@@ -177,7 +177,7 @@ fn contact_edges(problem: &Problem) -> Result<Vec<(BoundaryEdge, &str)>, DataErr
     if edges.is_empty() { Err(DataError::NoContact) } else { Ok(edges) }
 }
 
-/// The same edges, each followed by the one that starts where it ends, if there is one.
+/// Sorts edges into chains: each is followed by the one that starts where it ends, if there is one.
 fn chains(problem: &Problem, edges: &[BoundaryEdge]) -> Vec<BoundaryEdge> {
     let ends = |edge: BoundaryEdge| problem.mesh.ends(edge);
     let mut from: BTreeMap<usize, BoundaryEdge> = edges.iter().map(|&e| (ends(e)[0], e)).collect();
@@ -227,16 +227,6 @@ pub fn assemble<E: Element<N, M>, const N: usize, const M: usize>(
             places[a] = point.place;
             Closest { gap: gap[a], direction: directions[a] } = sight.closest(name, point)?;
         }
-        if directions.iter().all(|direction| direction.dot(&normal) <= 0.0) {
-            let [x, y] = places[0];
-            return Err(DataError::WrongSide {
-                obstacle: problem.obstacle_of(name).unwrap_or_default().to_owned(),
-                boundary: name.to_owned(),
-                x,
-                y,
-                direction: directions[0].into(),
-            });
-        }
         let triangle = mesh.triangle(edge.triangle);
         let material = problem.material.of(edge.triangle);
         let functionals = if directions == [normal; M] {
@@ -261,10 +251,41 @@ pub fn assemble<E: Element<N, M>, const N: usize, const M: usize>(
             functionals,
         });
     }
+    check_sides(problem, &line)?;
     Ok(line)
 }
 
-/// What the contact line sees of its obstacles.
+/// No edge that faces away from its obstacle lies inside it, and no boundary faces away as a whole: else the obstacle is on the
+/// other side of the body. Other edges may face away, as those of the upper half of a disk on a floor.
+fn check_sides<const N: usize, const M: usize>(
+    problem: &Problem,
+    line: &[ContactLineEdge<N, M>],
+) -> Result<(), DataError> {
+    let is_away = |edge: &&ContactLineEdge<N, M>| {
+        edge.directions.iter().all(|direction| direction.dot(&edge.normal) <= 0.0)
+    };
+    let is_inside = |edge: &&ContactLineEdge<N, M>| edge.gap.iter().all(|&gap| gap <= 0.0);
+    let faces = |edge: &&ContactLineEdge<N, M>| !is_away(edge);
+    let facing: BTreeSet<&str> = line.iter().filter(faces).map(|edge| &*edge.boundary).collect();
+    let is_wrong = |edge: &&ContactLineEdge<N, M>| {
+        is_away(edge) && (is_inside(edge) || !facing.contains(&*edge.boundary))
+    };
+    match line.iter().find(is_wrong) {
+        None => Ok(()),
+        Some(edge) => {
+            let [x, y] = edge.places[0];
+            Err(DataError::WrongSide {
+                obstacle: problem.obstacle_of(&edge.boundary).unwrap_or_default().to_owned(),
+                boundary: edge.boundary.to_string(),
+                x,
+                y,
+                direction: edge.directions[0].into(),
+            })
+        }
+    }
+}
+
+/// The obstacles as seen from the contact line.
 struct Sight<'a> {
     problem: &'a Problem,
     smooth: SmoothBoundary,
@@ -335,8 +356,8 @@ impl EdgeRule {
         EdgeRule::Gauss(quadrature::gauss(n))
     }
 
-    /// The integrals of (8) and J_h over an edge, for P with the nodal values `p`. At the points of a Gauss rule P is evaluated in
-    /// twofold numbers: where gamma is small it is far smaller there than at the nodes.
+    /// The integrals of (8) and J_h over an edge, for P with the nodal values `p`. At the points of a Gauss rule P is
+    /// evaluated in twofold numbers: where gamma is small it is far smaller there than at the nodes.
     pub fn integrals<E, const N: usize, const M: usize>(
         &self,
         p: [impl Into<Twofold>; M],

@@ -32,7 +32,7 @@ pub struct Discretization<'a, E, const N: usize, const M: usize> {
     pub constraints: Constraints,
     /// L(v) for every basis function.
     pub load: Vec<[f64; 2]>,
-    /// The same sums with bounds of their rounding.
+    /// The load with bounds of its rounding.
     pub enclosed_load: Vec<[Ball; 2]>,
     /// C_h of kappa = gamma0 C_h.
     pub coercivity: Coercivity,
@@ -50,7 +50,7 @@ pub struct Discretization<'a, E, const N: usize, const M: usize> {
     pub slides: Option<Slides>,
 }
 
-/// What a displacement u does at every basis function, and for each of the values the sum of the magnitudes of the products
+/// A functional of a displacement u at every basis function, and for each of the values the sum of the magnitudes of the products
 /// that were added up for it: times the unit roundoff it tells how well the value is known.
 #[derive(Clone, Debug)]
 pub struct Functional {
@@ -145,7 +145,7 @@ where
         })
     }
 
-    /// The same where these motions are not stopped: one component for each is held where `u` has it.
+    /// The discretization of a body whose motions `slides` are not stopped: one component for each is held where `u` has it.
     #[must_use]
     pub fn sliding(&self, slides: Slides, u: &[[f64; 2]]) -> Self {
         Discretization {
@@ -193,8 +193,8 @@ where
         self.linear_residual_by(in_doubles(u))
     }
 
-    /// The same of a displacement that is known to more than double precision, by its differences between nodes: the first
-    /// node's value less the second one's.
+    /// [`Discretization::linear_residual`] of a displacement that is known to more than double precision, by its differences
+    /// between nodes: the first node's value less the second one's.
     pub fn linear_residual_by(&self, difference: impl Difference) -> Functional {
         let mut r = self.internal_forces_by(&difference);
         for edge in &self.contact {

@@ -107,7 +107,7 @@ fn norm(v: &[f64]) -> f64 {
 /// The motions among the combinations of `motions`, which may be off by `rounding`, that slide along every obstacle.
 ///
 /// # Errors
-/// What contact and `load` leave free.
+/// The motions that contact and `load` leave free.
 pub fn slides<E: Element<N, M>, const N: usize, const M: usize>(
     motions: &[FreeMotion],
     parts: &Parts,
@@ -167,12 +167,13 @@ pub fn slides<E: Element<N, M>, const N: usize, const M: usize>(
 /// The number of a contact edge and its rows c_i.
 type EdgeRows = (usize, Vec<Vec<f64>>);
 
-/// The edges that may press: `loads` are the work of a pressure on whole edges among them, given by their rows, of which those below
+/// The edges that may press: `loads` are the work of a pressure on whole edges among them, given by their rows, of which
+/// those below
 /// `none` are zero, and still so if they are changed a little within the span of these rows.
 ///
 /// # Errors
-/// The motion on which the body leaves, and whether the loads drive it: on the verge they do next to no work. Nothing where no edge
-/// can press.
+/// The motion on which the body leaves, and whether the loads drive it: on the verge they do next to no work. Nothing where
+/// no edge can press.
 fn press(
     mut edges: Vec<EdgeRows>,
     loads: &[f64],
@@ -292,14 +293,14 @@ impl Slides {
         !self.bounds.is_empty()
     }
 
-    /// What leads from u to the solution of least norm: the weights of the basis.
+    /// The motion that leads from u to the solution of least norm, as weights of the basis.
     pub fn to_least_norm(&self, u: &[[f64; 2]]) -> Vec<f64> {
         let at = self.at(u);
         let to = self.nearest(0.0).unwrap_or_else(|| at.clone());
         to.iter().zip(at).map(|(to, at)| to - at).collect()
     }
 
-    /// What leads from u to a solution that is away from all obstacles that do not press it, if there is one.
+    /// A motion that leads from u to a solution away from all obstacles that do not press it, if there is one.
     pub fn to_inside(&self, u: &[[f64; 2]]) -> Option<Vec<f64>> {
         let at = self.at(u);
         let size = self.bounds.iter().map(|(row, bound)| bound.abs() / norm(row));

@@ -7,7 +7,7 @@
 //! short edges of a graded mesh it goes round by long ones. Each part of the body has a root, and
 //! prescribed components hold its motion.
 //!
-//! Everything but the areas and the matrix of those equations, which are intervals, is a sum or product of positive
+//! Everything but the areas and the matrix of those equations, which are balls, is a sum or product of positive
 //! doubles of some million terms at most: rounding changes it by far less than the factor `SAFETY`.
 
 use std::cmp::Reverse;
@@ -15,15 +15,17 @@ use std::collections::BinaryHeap;
 
 use super::ball::larger;
 use super::constraints::Constraints;
-use super::rigid::Parts;
 use super::space::Space;
-use crate::fem::Materials;
-use crate::kernel::{Element, Interval, Triangle};
+use crate::fem::{Materials, Mesh};
+use crate::kernel::{Ball, Element, Triangle};
 
 /// Covers the rounding of sums and products of positive numbers.
 const SAFETY: f64 = 1.001;
 
-/// What holds a body beside its supports: a component of v at a place of a triangle is at most `most` where |v|_a is at most 1.
+/// The smallest area of a triangle for which there is a bound.
+const SMALLEST: f64 = 1e-200;
+
+/// A hold beside the supports: a component of v at a place of a triangle is at most `most` where |v|_a is at most 1.
 #[derive(Clone, Copy, Debug)]
 pub struct Hold {
     /// The triangle.
@@ -31,7 +33,7 @@ pub struct Hold {
     /// The place, one of its vertices.
     pub at: [f64; 2],
     /// The direction of the component.
-    pub direction: [Interval; 2],
+    pub direction: [Ball; 2],
     /// The bound.
     pub most: f64,
 }
@@ -53,63 +55,40 @@ impl Korn {
         holds: &[Hold],
     ) -> Option<Self> {
         let mesh = space.mesh();
-        let count = mesh.triangles().len();
-        let left: Vec<f64> = (0..count)
-            .map(|t| squared_remainder::<E, N, M>(space, materials, t))
+        let left: Vec<f64> = (0..mesh.triangles().len())
+            .map(|t| squared_remainder::<E, N, M>(mesh, materials, t))
             .collect::<Option<_>>()?;
-        let parts = Parts::new(mesh);
-        let mut of_edge = vec![[usize::MAX; 2]; mesh.edge_count()];
-        for (t, edges) in mesh.triangle_edges().iter().enumerate() {
-            for &edge in edges {
-                let slot = usize::from(of_edge[edge][0] != usize::MAX);
-                of_edge[edge][slot] = t;
-            }
-        }
-        let (low, high) = mesh
-            .vertices()
-            .iter()
-            .fold(([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]), |(low, high), x| {
-                ([0, 1].map(|c| x[c].min(low[c])), [0, 1].map(|c| x[c].max(high[c])))
-            });
-        let size = (high[0] - low[0]).hypot(high[1] - low[1]);
-
-        let mut equations = vec![Vec::new(); parts.count()];
+        let neighbours = neighbours(mesh);
+        let size = extent(mesh);
+        let mut paths = Paths {
+            mesh,
+            neighbours: &neighbours,
+            left: &left,
+            size,
+            along: vec![f64::INFINITY; left.len()],
+            part: vec![usize::MAX; left.len()],
+        };
+        let mut parts: Vec<Vec<Hold>> = Vec::new();
         for hold in supports(space, constraints).into_iter().chain(holds.iter().copied()) {
-            equations[parts.of_triangle()[hold.triangle]].push(hold);
-        }
-        let mut along = vec![f64::INFINITY; count];
-        let mut origins = Vec::with_capacity(parts.count());
-        for of_part in &equations {
-            let root = of_part.first()?.triangle;
-            origins.push(mesh.vertices()[mesh.triangles()[root][0]]);
-            along[root] = 0.0;
-            // Positive doubles are in the order of their bits.
-            let mut queue = BinaryHeap::from([Reverse((0, root))]);
-            while let Some(Reverse((reached, t))) = queue.pop() {
-                if reached > along[t].to_bits() {
-                    continue;
-                }
-                for (i, &edge) in mesh.triangle_edges()[t].iter().enumerate() {
-                    let other = of_edge[edge].into_iter().find(|&o| o != t && o < count);
-                    let Some(other) = other else { continue };
-                    let edge = mesh.triangle(t).edge(i);
-                    let w = 1.0 + 2.0 * size / edge[0].hypot(edge[1]);
-                    let there = along[t] + 2.0 * w * w * (left[t] + left[other]);
-                    if there < along[other] {
-                        along[other] = there;
-                        queue.push(Reverse((there.to_bits(), other)));
-                    }
-                }
+            if paths.part[hold.triangle] == usize::MAX {
+                paths.explore(hold.triangle, parts.len());
+                parts.push(Vec::new());
             }
+            parts[paths.part[hold.triangle]].push(hold);
+        }
+        let Paths { along, part, .. } = paths;
+        if part.contains(&usize::MAX) {
+            return None;
         }
         let of = |t: usize| left[t].sqrt() + along[t].sqrt();
-        let motions = equations.iter().zip(&origins);
-        let root_motion: Vec<f64> =
-            motions.map(|(holds, &o)| motion_of_root(holds, o, size, of)).collect::<Option<_>>()?;
+        let motion = |holds: &Vec<Hold>| {
+            let origin = mesh.vertices()[mesh.triangles()[holds[0].triangle][0]];
+            motion_of_root(holds, origin, size, of)
+        };
+        let root_motion: Vec<f64> = parts.iter().map(motion).collect::<Option<_>>()?;
         let mut nodes = vec![f64::INFINITY; space.nodes().len()];
         for (t, members) in space.elements().iter().enumerate() {
-            let motion = root_motion[parts.of_triangle()[t]];
-            let bound = SAFETY * (left[t].sqrt() + along[t].sqrt() + motion);
+            let bound = SAFETY * (of(t) + root_motion[part[t]]);
             for &node in members {
                 nodes[node] = nodes[node].min(bound);
             }
@@ -120,6 +99,73 @@ impl Korn {
     /// The largest of the factors.
     pub fn largest(&self) -> f64 {
         self.nodes.iter().fold(0.0, |m: f64, &n| m.max(n))
+    }
+}
+
+/// The triangle beyond each edge of each triangle; no triangle's number on the boundary.
+fn neighbours(mesh: &Mesh) -> Vec<[usize; 3]> {
+    let mut first = vec![usize::MAX; mesh.edge_count()];
+    let mut neighbours = vec![[usize::MAX; 3]; mesh.triangles().len()];
+    for (t, edges) in mesh.triangle_edges().iter().enumerate() {
+        for (i, &edge) in edges.iter().enumerate() {
+            let other = std::mem::replace(&mut first[edge], t);
+            if other != usize::MAX {
+                neighbours[t][i] = other;
+                let back = mesh.triangle_edges()[other].iter().position(|&e| e == edge);
+                back.into_iter().for_each(|j| neighbours[other][j] = t);
+            }
+        }
+    }
+    neighbours
+}
+
+/// The diagonal of a rectangle around the body.
+fn extent(mesh: &Mesh) -> f64 {
+    let (low, high) = mesh
+        .vertices()
+        .iter()
+        .fold(([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]), |(low, high), x| {
+            ([0, 1].map(|c| x[c].min(low[c])), [0, 1].map(|c| x[c].max(high[c])))
+        });
+    (high[0] - low[0]).hypot(high[1] - low[1])
+}
+
+/// The shortest paths from triangle to triangle.
+struct Paths<'a> {
+    mesh: &'a Mesh,
+    neighbours: &'a [[usize; 3]],
+    /// c_T^2
+    left: &'a [f64],
+    size: f64,
+    /// S_T
+    along: Vec<f64>,
+    /// The part of the body in which each triangle is, as far as it has been reached.
+    part: Vec<usize>,
+}
+
+impl Paths<'_> {
+    /// To all triangles of the part of the body that `root` is in.
+    fn explore(&mut self, root: usize, part: usize) {
+        (self.along[root], self.part[root]) = (0.0, part);
+        // Positive doubles are in the order of their bits.
+        let mut queue = BinaryHeap::from([Reverse((0, root))]);
+        while let Some(Reverse((reached, t))) = queue.pop() {
+            if reached > self.along[t].to_bits() {
+                continue;
+            }
+            for (i, &other) in self.neighbours[t].iter().enumerate() {
+                if other == usize::MAX {
+                    continue;
+                }
+                let edge = self.mesh.triangle(t).edge(i);
+                let w = 1.0 + 2.0 * self.size / edge.dot(&edge).sqrt();
+                let there = self.along[t] + 2.0 * w * w * (self.left[t] + self.left[other]);
+                if there < self.along[other] {
+                    (self.along[other], self.part[other]) = (there, part);
+                    queue.push(Reverse((there.to_bits(), other)));
+                }
+            }
+        }
     }
 }
 
@@ -134,7 +180,7 @@ fn supports<E: Element<N, M>, const N: usize, const M: usize>(
         for &node in nodes {
             if !std::mem::replace(&mut seen[node], true) {
                 let at = space.nodes()[node];
-                let exactly = |direction: [f64; 2]| direction.map(Interval::point);
+                let exactly = |direction: [f64; 2]| direction.map(Ball::point);
                 holds.extend(constraints.directions(node).map(|direction| Hold {
                     triangle,
                     at,
@@ -149,25 +195,27 @@ fn supports<E: Element<N, M>, const N: usize, const M: usize>(
 
 /// c_T^2
 fn squared_remainder<E: Element<N, M>, const N: usize, const M: usize>(
-    space: &Space<E, N, M>,
+    mesh: &Mesh,
     materials: &Materials,
     t: usize,
 ) -> Option<f64> {
-    let doubles = space.mesh().triangle(t);
-    let exact = Triangle { vertices: doubles.vertices.map(|x| x.map(Interval::point)) };
-    let area = (exact.double_area() / Interval::from(2)).lo();
-    let h = space.mesh().diameter(t);
+    let doubles = mesh.triangle(t);
+    let exact = Triangle { vertices: doubles.vertices.map(|x| x.map(Ball::point)) };
+    let area = (exact.double_area() / Ball::from(2)).lower();
+    let squares = [0, 1, 2].map(|i| doubles.edge(i)).map(|edge| edge.dot(&edge));
+    let square = squares.into_iter().fold(0.0, f64::max);
     let material = materials.of(t);
-    let mu = Interval::point(material.mu());
-    let stiffness = mu.lo().min((mu + Interval::point(material.lambda())).lo());
-    if !(area > 0.0 && stiffness > 0.0) {
+    let mu = Ball::point(material.mu());
+    let stiffness = mu.lower().min((mu + Ball::point(material.lambda())).lower());
+    // Below, squares underflow.
+    if !(area > SMALLEST && stiffness > 0.0) {
         return None;
     }
-    let affine = h * h / (2.0 * stiffness * area);
+    let affine = square / (2.0 * stiffness * area);
     Some(if E::DEGREE == 1 {
         affine
     } else {
-        let turning = 1.0 + 3.0 * h * h / area;
+        let turning = 1.0 + 3.0 * square / area;
         12.0 * affine * turning * turning
     })
 }
@@ -182,11 +230,11 @@ fn motion_of_root(
 ) -> Option<f64> {
     let row = |hold: &Hold| {
         let [p, q] = hold.direction;
-        let from = [0, 1].map(|c| Interval::point(hold.at[c]) - Interval::point(origin[c]));
-        [p, q, (q * from[0] - p * from[1]) / Interval::point(size)]
+        let from = [0, 1].map(|c| Ball::point(hold.at[c]) - Ball::point(origin[c]));
+        [p, q, (q * from[0] - p * from[1]) / Ball::point(size)]
     };
-    let rows: Vec<[Interval; 3]> = holds.iter().map(row).collect();
-    let middle = |row: &[Interval; 3]| row.map(|c| c.lo() / 2.0 + c.hi() / 2.0).to_vec();
+    let rows: Vec<[Ball; 3]> = holds.iter().map(row).collect();
+    let middle = |row: &[Ball; 3]| row.map(|c| c.lower() / 2.0 + c.upper() / 2.0).to_vec();
     let doubles: Vec<Vec<f64>> = rows.iter().map(middle).collect();
     let chosen = independent(&doubles, 3)?;
     let inverse = inverse(chosen.iter().map(|&i| doubles[i].clone()).collect())?;
@@ -194,9 +242,9 @@ fn motion_of_root(
     let off = (0..3).map(|i| {
         let entry = |j: usize| {
             let product = chosen.iter().zip(&inverse[i]);
-            let unit = Interval::from(i32::from(i == j));
-            let left = product.fold(unit, |sum, (&k, &r)| sum - Interval::point(r) * rows[k][j]);
-            larger(left.lo().abs(), left.hi().abs())
+            let unit = Ball::from(i32::from(i == j));
+            let left = product.fold(unit, |sum, (&k, &r)| sum - Ball::point(r) * rows[k][j]);
+            larger(left.lower().abs(), left.upper().abs())
         };
         (0..3).map(entry).sum::<f64>()
     });
@@ -204,7 +252,7 @@ fn motion_of_root(
     let data: Vec<f64> = chosen
         .iter()
         .map(|&i| {
-            let [p, q] = holds[i].direction.map(|d| larger(d.lo().abs(), d.hi().abs()));
+            let [p, q] = holds[i].direction.map(|d| larger(d.lower().abs(), d.upper().abs()));
             p.hypot(q) * of(holds[i].triangle) + holds[i].most
         })
         .collect();

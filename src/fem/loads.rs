@@ -15,7 +15,7 @@ const ENOUGH: u32 = 7;
 /// No polynomial gets a rule beyond this degree: by then every digit is right.
 const PLENTY: u32 = 24;
 
-/// The same for a load with a kink, whose triangles and edges are cut there: it comes from an exact solution, and its
+/// [`ENOUGH`] for a load with a kink, whose triangles and edges are cut there: it comes from an exact solution, and its
 /// quadrature error must not show beside the error of the method.
 const ENOUGH_AT_KINKS: u32 = 13;
 
@@ -43,7 +43,7 @@ pub fn assemble<E: Element<N, M>, const N: usize, const M: usize>(
     assemble_with(problem, space, |load| points(load, E::DEGREE))
 }
 
-/// The same with as many points along each direction as `points` says for a load.
+/// [`assemble`] with as many points along each direction as `points` says for a load.
 ///
 /// # Errors
 /// As [`assemble`].
@@ -61,11 +61,11 @@ pub fn assemble_with<E: Element<N, M>, const N: usize, const M: usize>(
 pub struct Loads {
     /// In doubles.
     pub in_doubles: Vec<[f64; 2]>,
-    /// The same sums with bounds of their rounding.
+    /// The loads with bounds of their rounding.
     pub in_balls: Vec<[Ball; 2]>,
 }
 
-/// The same as [`assemble`] in doubles and in balls: the forces at the points of the rules, weight times value, are doubles, and
+/// [`assemble`] in doubles and in balls: the forces at the points of the rules, weight times value, are doubles, and
 /// what they add up to is computed in either. A load may be long to evaluate.
 ///
 /// # Errors

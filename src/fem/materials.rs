@@ -1,4 +1,4 @@
-//! What a body is made of: one material, or one for each part of it. A triangle has exactly one.
+//! The materials of a body: one, or one for each part of it. A triangle has exactly one.
 
 use crate::kernel::Material;
 
@@ -47,7 +47,7 @@ impl Materials {
         self.of_triangle.get(t).copied().unwrap_or(0)
     }
 
-    /// The same triangles with every material replaced by `f` of it.
+    /// Replaces every material by `f` of it.
     #[must_use]
     pub fn map(&self, f: impl FnMut(&Material<f64>) -> Material<f64>) -> Self {
         let distinct = self.distinct.iter().map(f).collect();

@@ -2,7 +2,8 @@
 //! elimination.
 //!
 //! The pattern is read off the mesh, node by node, and the element matrices are added into it in one pass. Here is where
-//! that is stored; how it is done is `kernel::pattern`.
+//! that is stored; how it is done is `kernel::pattern`. A list of all element entries, sorted by faer
+//! (`SymbolicSparseColMat::try_new_from_indices`), takes 2.1 to 4.3 times as long, P1 with 64 to 256 cells a side.
 
 use std::collections::BTreeMap;
 

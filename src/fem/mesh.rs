@@ -90,7 +90,7 @@ impl Mesh {
         Ok(Mesh { vertices, topology: Arc::new(topology), boxes: OnceLock::new() })
     }
 
-    /// The same mesh with named parts of the body, as lists of triangles, and named points, as vertices. Numbers beyond the
+    /// Names parts of the body, as lists of triangles, and named points, as vertices. Numbers beyond the
     /// last triangle or vertex are passed over.
     #[must_use]
     pub fn with_names(

@@ -75,7 +75,7 @@ impl fmt::Debug for Obstacle {
     }
 }
 
-/// What a point of the body sees of an obstacle.
+/// The obstacle as seen from a point of the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Closest {
     /// g: negative where the obstacle reaches into the body.

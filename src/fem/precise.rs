@@ -2,15 +2,15 @@
 //! [twofold](crate::fem::twofold) numbers: what is left of forces that cancel is then known to the last bit of a double; and
 //! its forces from [stresses in doubles](add_forces_of_rounded_stresses), off by no more than a proved norm.
 
-use nalgebra::Vector2;
+use nalgebra::{Vector2, Vector3};
 
-use super::ball::Ball;
+use super::ball::{Ball, Sum};
 use super::contact_line::ContactLineEdge;
 use super::discretization::Discretization;
 use crate::fem::twofold::Twofold;
 use crate::kernel::edge_integral::ExactEdge;
 use crate::kernel::element::displacement_gradient;
-use crate::kernel::{ContactEdge, Material, Scalar, Triangle};
+use crate::kernel::{ContactEdge, Material, Scalar, Stress, Triangle};
 
 /// A(u, v) - L(v) for every basis function v, and the values of P(u) at the nodes of each contact edge.
 pub fn evaluate<E, const N: usize, const M: usize>(
@@ -89,10 +89,10 @@ pub fn add_internal_forces<S, E, const N: usize, const M: usize>(
     let mut points = Vec::new();
     E::at_stiffness_points(|l: [S; 3], weight| points.push((l, weight)));
     for (t, (triangle, nodes)) in d.space.triangles().enumerate() {
-        let nodal = nodes.map(|node| Vector2::from(u[node]));
-        if nodal.iter().all(|u| u.iter().all(|&u| u == zero)) {
+        if nodes.iter().all(|&node| u[node] == [zero; 2]) {
             continue;
         }
+        let nodal = nodes.map(|node| Vector2::from(u[node]));
         let triangle = exactly(triangle);
         let material = d.problem.material.of(t).map(<S as From<f64>>::from);
         // As `Triangle::barycentric_gradients` has them, with one division: in these numbers they are dear.
@@ -114,47 +114,96 @@ pub fn add_internal_forces<S, E, const N: usize, const M: usize>(
     }
 }
 
-/// Adds int s:eps(v) for every basis function v, where s is the stress of `u` that doubles give, in numbers into which `exactly`
-/// takes doubles. Returns a b with |int (s - sigma(u)):eps(v)| <= b |v|_a for all v: docs/theory.md, 7.5. Infinite or NaN where
-/// there is none.
+/// Adds int s:eps(v) for every basis function v, where s is the stress of `u` that doubles give. Returns a b with
+/// |int (s - sigma(u)):eps(v)| <= b |v|_a for all v: docs/theory.md, 7.5. Infinite or NaN where there is none.
 pub fn add_forces_of_rounded_stresses<S, E, const N: usize, const M: usize>(
     d: &Discretization<E, N, M>,
     u: &[[Ball; 2]],
-    exactly: impl Fn(f64) -> S + Copy,
     forces: &mut [[S; 2]],
 ) -> f64
 where
-    S: Scalar,
+    S: Sum,
     E: ExactEdge<f64, N, M>,
 {
     let mut points = Vec::new();
-    E::at_stiffness_points(|l: [S; 3], weight| points.push((l, weight * exactly(-0.5))));
-    let mut places = Vec::new();
-    E::at_stiffness_points(|l: [f64; 3], _| places.push(l));
+    E::at_stiffness_points(|l: [f64; 3], weight: f64| points.push((l, weight)));
+    let terms = Term::all::<E, M>(&points);
+    let mut stresses = [[0.0; 3]; N];
     let mut square = 0.0;
     for (t, (triangle, nodes)) in d.space.triangles().enumerate() {
-        let Some(rounded) = RoundedStrain::new::<E, M>(&triangle, nodes.map(|node| u[node])) else {
+        if moves_as_a_whole(nodes, u) {
             continue;
-        };
+        }
+        let rounded = RoundedStrain::new::<E, M>(&triangle, nodes.map(|node| u[node]));
         let material = d.problem.material.of(t);
         square += rounded.stress_error_squared(material);
-        let exact = Triangle { vertices: triangle.vertices.map(|x| x.map(exactly)) };
-        let normals = [0, 1, 2].map(|i| exact.scaled_normal(i));
-        for (&(l, weight), &place) in points.iter().zip(&places) {
-            // The area times a gradient is half a scaled normal, or a sum of such.
-            let gradients = E::gradients(place, rounded.barycentric);
-            let stress = material.stress(displacement_gradient(&rounded.differences, &gradients));
-            let [xx, yy, xy] = stress.components().map(|s| weight * exactly(s));
-            for (&node, g) in nodes.iter().zip(E::gradients(l, normals)) {
-                forces[node][0] += xx * g[0] + xy * g[1];
-                forces[node][1] += xy * g[0] + yy * g[1];
+        for (&(l, weight), at) in points.iter().zip(&mut stresses) {
+            *at = rounded.stress::<E, M>(material, l).components().map(|s| weight * s);
+        }
+        if points.len() > 1 {
+            make_sums_exact(&mut stresses);
+        }
+        // The area times the gradient of a barycentric coordinate is half a normal.
+        let normals = [0, 1, 2].map(|i| {
+            let [from, to] = [1, 2].map(|k| triangle.vertices[(i + k) % 3]);
+            let half = |c: usize| S::Factor::from(Twofold::sum(0.5 * to[c], -0.5 * from[c]));
+            [-half(1), half(0)]
+        });
+        for Term { node, side, coefficients } in &terms {
+            let mut sum = [0.0; 3];
+            for (coefficient, stress) in coefficients.iter().zip(&stresses).take(points.len()) {
+                for (sum, s) in sum.iter_mut().zip(stress) {
+                    *sum += coefficient * s;
+                }
             }
+            let [xx, yy, xy] = sum.map(|s| S::Factor::from(Twofold::from(s)));
+            let [x, y] = normals[*side];
+            let [along_x, along_y] = &mut forces[nodes[*node]];
+            along_x.add_products([(xx, x), (xy, y)]);
+            along_y.add_products([(xy, x), (yy, y)]);
         }
     }
     SAFETY * square.sqrt()
 }
 
-/// |v|_a at most, in doubles: crude, for fields that are next to nothing.
+/// The part of the force at a node of a triangle that has the direction of one of its sides: the stresses at the points of the
+/// rule, each times its coefficient, on half the normal there.
+struct Term<const N: usize> {
+    node: usize,
+    side: usize,
+    coefficients: [f64; N],
+}
+
+impl<const N: usize> Term<N> {
+    /// Those that are not zero. At the points of the rules the gradients of the shape functions are sums of those of the
+    /// barycentric coordinates, each once or twice, with either sign.
+    fn all<E: ExactEdge<f64, N, M>, const M: usize>(points: &[([f64; 3], f64)]) -> Vec<Term<N>> {
+        let unit = [Vector3::x(), Vector3::y(), Vector3::z()];
+        let at: Vec<[Vector3<f64>; N]> =
+            points.iter().map(|&(l, _)| E::gradients(l, unit)).collect();
+        let term = |node: usize, side: usize| {
+            let mut coefficients = [0.0; N];
+            for (coefficient, gradients) in coefficients.iter_mut().zip(&at) {
+                *coefficient = gradients[node][side];
+            }
+            Term { node, side, coefficients }
+        };
+        let all = (0..N).flat_map(|node| (0..3).map(move |side| term(node, side)));
+        all.filter(|term| term.coefficients != [0.0; N]).collect()
+    }
+}
+
+/// Rounds numbers to multiples of one power of two, by no more than 2^-50 of the largest: their sums are then exact, while these
+/// are less than eight times the largest.
+fn make_sums_exact<const N: usize>(numbers: &mut [[f64; 3]; N]) {
+    let largest = numbers.iter().flatten().fold(0.0, |m: f64, s| m.max(s.abs()));
+    // The power of two just below.
+    let power = f64::from_bits(largest.to_bits() & f64::INFINITY.to_bits());
+    let shift = 12.0 * power;
+    numbers.iter_mut().flatten().for_each(|s| *s = (*s + shift) - shift);
+}
+
+/// |v|_a at most, to a hundredth: the norm of the stress in doubles, and what that is off by.
 pub fn energy_norm_at_most<E, const N: usize, const M: usize>(
     d: &Discretization<E, N, M>,
     v: &[[Ball; 2]],
@@ -162,11 +211,30 @@ pub fn energy_norm_at_most<E, const N: usize, const M: usize>(
 where
     E: ExactEdge<f64, N, M>,
 {
-    let of = |(t, (triangle, nodes)): (usize, (Triangle<f64>, &[usize; N]))| {
-        RoundedStrain::new::<E, M>(&triangle, nodes.map(|node| v[node]))
-            .map_or(0.0, |rounded| rounded.energy_at_most(d.problem.material.of(t)))
-    };
-    SAFETY * d.space.triangles().enumerate().map(of).sum::<f64>().sqrt()
+    let (mut squares, mut errors) = (0.0, 0.0);
+    for (t, (triangle, nodes)) in d.space.triangles().enumerate() {
+        if moves_as_a_whole(nodes, v) {
+            continue;
+        }
+        let rounded = RoundedStrain::new::<E, M>(&triangle, nodes.map(|node| v[node]));
+        let material = d.problem.material.of(t);
+        errors += rounded.stress_error_squared(material);
+        let (lambda, mu) = (material.lambda(), material.mu());
+        let [bulk, shear] = [lambda + mu, mu].map(|m| (rounded.area / (4.0 * m)).sqrt());
+        E::at_stiffness_points(|l, weight| {
+            let [xx, yy, xy] = rounded.stress::<E, M>(material, l).components();
+            let parts = [bulk * (xx + yy), shear * (xx - yy), 2.0 * shear * xy];
+            squares += weight * parts.map(|s| s * s).iter().sum::<f64>() + f64::MIN_POSITIVE;
+        });
+    }
+    SAFETY * (squares.sqrt() + errors.sqrt())
+}
+
+/// Whether all nodes have the same value, and that is known.
+#[inline]
+fn moves_as_a_whole<const N: usize>(nodes: &[usize; N], u: &[[Ball; 2]]) -> bool {
+    let first = u[nodes[0]];
+    first.iter().all(|c| c.radius() == 0.0) && nodes[1..].iter().all(|&node| u[node] == first)
 }
 
 /// Covers the rounding of sums and products of positive numbers, some million of them, and areas that are off by a thousandth.
@@ -182,22 +250,16 @@ struct RoundedStrain<const N: usize> {
     differences: [Vector2<f64>; N],
     barycentric: [Vector2<f64>; 3],
     area: f64,
-    /// sum over the nodes of |difference|_1 times what the gradients of shape functions are at most, in this norm.
-    strain: f64,
-    /// What the strain is off by, at most, the rounding of the stress beside it included; infinite for a flat triangle.
+    /// A bound of the error of the strain, the rounding of the stress beside it included; infinite for a flat triangle.
     error: f64,
 }
 
 impl<const N: usize> RoundedStrain<N> {
-    /// None where all nodes have the same value.
     fn new<E: ExactEdge<f64, N, M>, const M: usize>(
         triangle: &Triangle<f64>,
         nodal: [[Ball; 2]; N],
-    ) -> Option<Self> {
+    ) -> Self {
         let first = nodal[0];
-        if nodal.iter().all(|u| *u == first) && first.iter().all(|c| c.radius() == 0.0) {
-            return None;
-        }
         let difference = |u: [Ball; 2], c: usize| {
             (u[c].head() - first[c].head()) + (u[c].tail() - first[c].tail())
         };
@@ -213,20 +275,21 @@ impl<const N: usize> RoundedStrain<N> {
             .sum();
         let [a, b] = [1, 2].map(|i| triangle.edge(i));
         let double_area = triangle.double_area();
-        let skew = ((a[0] * b[1]).abs() + (a[1] * b[0]).abs()) / double_area;
-        let barycentric = triangle.barycentric_gradients();
+        let products = (a[0] * b[1]).abs() + (a[1] * b[0]).abs();
+        let inverse = 1.0 / double_area;
+        let skew = products * inverse;
+        let barycentric = [0, 1, 2].map(|i| triangle.scaled_normal(i) * -inverse);
         let slope = E::DEGREE as f64 * barycentric.iter().flatten().map(|g| g.abs()).sum::<f64>();
         let sizes: f64 = differences.iter().flatten().map(|d| d.abs()).sum();
-        let roundings = N as f64 + 4.0 + 4.0 * skew;
+        let roundings = (N + 7 * E::DEGREE - 3) as f64 + 4.0 * skew;
         let sound = double_area > 1e-200 && skew <= FLAT;
         let error = slope * (f64::EPSILON * roundings * sizes + off + f64::MIN_POSITIVE);
-        Some(RoundedStrain {
+        RoundedStrain {
             differences,
             barycentric,
             area: double_area / 2.0,
-            strain: slope * sizes,
             error: if sound { error } else { f64::INFINITY },
-        })
+        }
     }
 
     /// An upper bound of the square of the stress error in the norm dual to |v|_a on the triangle: |sigma:eps| is at most
@@ -234,13 +297,18 @@ impl<const N: usize> RoundedStrain<N> {
     fn stress_error_squared(&self, material: &Material<f64>) -> f64 {
         let (lambda, mu) = (material.lambda(), material.mu());
         let off = 2.0 * (lambda.abs() + mu) * self.error + f64::MIN_POSITIVE;
-        self.area * off * off / (2.0 * mu.min(lambda + mu))
+        let norm = off * (self.area / (2.0 * mu.min(lambda + mu))).sqrt();
+        norm * norm + f64::MIN_POSITIVE
     }
 
-    /// An upper bound of a(v, v) on the triangle.
-    fn energy_at_most(&self, material: &Material<f64>) -> f64 {
-        let strain = self.strain + self.error;
-        self.area * 2.0 * (material.lambda().abs() + material.mu()) * strain * strain
+    /// The stress at the point with the barycentric coordinates `l`.
+    fn stress<E: ExactEdge<f64, N, M>, const M: usize>(
+        &self,
+        material: &Material<f64>,
+        l: [f64; 3],
+    ) -> Stress<f64> {
+        let gradients = E::gradients(l, self.barycentric);
+        material.stress(displacement_gradient(&self.differences, &gradients))
     }
 }
 
@@ -266,7 +334,7 @@ pub struct OnEdge<'d, S, const N: usize, const M: usize> {
 }
 
 impl<'d, S: Scalar + From<f64>, const N: usize, const M: usize> OnEdge<'d, S, N, M> {
-    /// Of an edge of a discretization.
+    /// The functionals of an edge of a discretization.
     pub fn new<E: ExactEdge<f64, N, M>>(
         d: &'d Discretization<E, N, M>,
         edge: &ContactLineEdge<N, M>,

@@ -8,7 +8,7 @@ use super::mesh::Mesh;
 use super::mesh::bisection::Refinement;
 use super::obstacle::Obstacle;
 
-/// What holds on a named part of the boundary; on the rest the traction is zero.
+/// The condition on a named part of the boundary; on the rest the traction is zero.
 #[non_exhaustive]
 #[derive(Clone)]
 pub enum Condition {
@@ -76,13 +76,13 @@ pub struct PointSupport {
 pub struct Problem {
     /// The body.
     pub mesh: Mesh,
-    /// What it is made of.
+    /// The materials.
     pub material: Materials,
     /// f, the force per unit of area.
     pub body_force: [SharedFunction; 2],
     /// Forces on parts of the body beside it.
     pub surface_forces: Vec<SurfaceForce>,
-    /// What holds on the named parts of the boundary.
+    /// The conditions on the named parts of the boundary.
     pub conditions: BTreeMap<String, Condition>,
     /// Supports in single points.
     pub points: Vec<PointSupport>,
@@ -114,7 +114,7 @@ impl Problem {
         }
     }
 
-    /// The same problem on a refinement of its mesh. What holds on boundaries and in points, and which forces act where, has
+    /// Restates the problem on a refinement of its mesh. What holds on boundaries and in points, and which forces act where, has
     /// the same names and places.
     #[must_use]
     pub fn refined(mut self, Refinement { mesh, origin, .. }: Refinement) -> Self {

@@ -50,7 +50,7 @@ impl Rectangle {
         Mesh::new(self.vertices(), self.triangles(), self.sides())
     }
 
-    /// The same with its vertices moved at random: by up to `amount` cells along each axis inside, along the sides on
+    /// The mesh with its vertices moved at random: by up to `amount` cells along each axis inside, along the sides on
     /// them, not at all in the corners. The same `seed` gives the same mesh.
     ///
     /// # Errors

@@ -95,7 +95,7 @@ impl FreeMotion {
         if self.turn == 0.0 { self.shift[0].hypot(self.shift[1]) } else { self.turn }
     }
 
-    /// What would stop it.
+    /// A support that would stop it.
     pub fn remedy(&self) -> String {
         match self.about() {
             Some(about) => {
@@ -328,7 +328,7 @@ mod tests {
     use super::*;
     use crate::kernel::{P1, P2};
 
-    /// What is left of a motion of size 1 where it is stopped: components below [`STILL`] are set to zero, and slender
+    /// The remainder of a motion of size 1 where it is stopped: components below [`STILL`] are set to zero, and slender
     /// parts have coordinates of up to 10 times their half box.
     const STOPPED: f64 = 1e-8;
 

@@ -60,7 +60,7 @@ struct Passage {
 }
 
 impl SmoothBoundary {
-    /// Of the whole boundary of a mesh.
+    /// The normals along the whole boundary of a mesh.
     pub fn new(mesh: &Mesh) -> Self {
         let outline = mesh.outline();
         let facets: Vec<(f64, Vector2<f64>)> =

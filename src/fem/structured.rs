@@ -19,12 +19,12 @@ pub enum Structured {
 pub struct Perturbation {
     /// At most that many cells along each axis.
     pub amount: f64,
-    /// The same seed gives the same mesh.
+    /// The seed of the random numbers: equal seeds give equal meshes.
     pub seed: u64,
 }
 
 impl Structured {
-    /// The same body with `factor` times as many cells along each axis.
+    /// Multiplies the number of cells along each axis by `factor`.
     pub fn refined(&self, factor: usize) -> Self {
         match *self {
             Structured::Rectangle(r) => Structured::Rectangle(Rectangle {

@@ -16,7 +16,7 @@ impl Bounds {
         points.into_iter().fold(nothing, |all, p| all.with(Bounds { low: p, high: p }))
     }
 
-    /// The same, wider by `margin` on each side.
+    /// Widens the box by `margin` on each side.
     #[must_use]
     pub fn widened(self, margin: f64) -> Self {
         Bounds { low: self.low.map(|c| c - margin), high: self.high.map(|c| c + margin) }

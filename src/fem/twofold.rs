@@ -30,7 +30,7 @@ impl Twofold {
         Twofold { head, tail: ((a1 * b1 - head) + a1 * b2 + a2 * b1) + a2 * b2 }
     }
 
-    /// The same number as head and tail, from parts that may overlap; the larger one first.
+    /// Splits a sum of two parts that may overlap, the larger one first, into head and tail.
     fn normal(head: f64, tail: f64) -> Self {
         let sum = head + tail;
         Twofold { head: sum, tail: tail - (sum - head) }
@@ -41,14 +41,14 @@ impl Twofold {
         self.head
     }
 
-    /// What the nearest double leaves.
+    /// The difference from the nearest double.
     pub fn tail(self) -> f64 {
         self.tail
     }
 }
 
 /// a as a sum of two doubles of 26 bits each (Veltkamp).
-fn halves(a: f64) -> [f64; 2] {
+pub(super) fn halves(a: f64) -> [f64; 2] {
     let c = 134_217_729.0 * a;
     let high = c - (c - a);
     [high, a - high]

@@ -6,8 +6,11 @@
 //! same factor again: it says when there is nothing left to correct in the numbers at hand, and nothing more. The verdict is the
 //! proof.
 
+use std::sync::Arc;
+
 use super::body::block;
 use super::enclosure::{Certificate, Unproved, Verifier};
+use super::factor::Factor;
 use super::intervals::Stresses;
 use super::iterate::{Evaluation, Iterate};
 use super::newton::Until;
@@ -22,6 +25,11 @@ pub trait Route<E, const N: usize, const M: usize> {
     /// Whether residuals are to be evaluated in twofold numbers from the start.
     fn precisely(&self) -> bool {
         false
+    }
+
+    /// L of A, if it is at hand.
+    fn factor_of_a(&self) -> Option<Arc<Factor>> {
+        None
     }
 
     /// Moves `iterate` to where the residual of (8) vanishes, as far as one pass can, and `at`, what the linear part of (8) is
@@ -49,7 +57,7 @@ pub struct Pass {
     pub softness: f64,
 }
 
-/// What came out.
+/// The outcome of refinement.
 #[derive(Clone, Debug)]
 pub struct Outcome {
     /// The displacement.
@@ -116,7 +124,7 @@ impl Outcome {
 /// A correction this small, relative, leaves nothing to correct; where the proved radius is larger, better arithmetic is tried.
 const SMALL: f64 = 1e-10;
 
-/// What is left of the forces on the body may be this share of them, or better arithmetic is tried.
+/// The largest imbalance of the forces on the body, in parts of them; beyond it better arithmetic is tried.
 const BALANCED: f64 = 1e-10;
 
 /// A correction ends where the residual is this share of the tolerance.
@@ -180,6 +188,7 @@ where
         if done && settings.proof.is_infinite() {
             break;
         }
+        verifier.use_factor(route.factor_of_a());
         enclosure =
             verifier.enclose(&iterate.rounded(), Some(iterate.as_twofold()), Stresses::InDoubles);
         let near = match &enclosure {
@@ -257,8 +266,8 @@ fn norm(v: &[f64]) -> f64 {
     v.iter().map(|v| v * v).sum::<f64>().sqrt()
 }
 
-/// What residuals are relative to: |L| + |residual of the prescribed data| over the free degrees of freedom, or, where these
-/// are nothing but rounding, the magnitudes of the forces that cancel there. 1 where there is no force at all.
+/// The size that residuals are relative to: |L| + |residual of the prescribed data| over the free degrees of freedom, or,
+/// where these are nothing but rounding, the magnitudes of the forces that cancel there. 1 where there is no force at all.
 pub fn reference<E, const N: usize, const M: usize>(d: &Discretization<E, N, M>) -> f64
 where
     E: ExactEdge<f64, N, M>,

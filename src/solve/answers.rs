@@ -1,4 +1,4 @@
-//! What each part of Gamma_C carries: resultant, moment, where there is contact, the recovered pressure, penetration; and
+//! Quantities of each part of Gamma_C: resultant, moment, where there is contact, the recovered pressure, penetration; and
 //! the balance of energies.
 //!
 //! The force of the obstacle on the body is the functional v -> -int (1/gamma) \[P\]+ I(n~ . v): -G_a n~_a at node a, with
@@ -34,7 +34,7 @@ use crate::kernel::edge_integral::{self, ExactEdge, value_at};
 use crate::kernel::element::displacement_gradient;
 use crate::kernel::positive_part;
 
-/// What one part of Gamma_C carries, in the units of the case.
+/// The quantities of one part of Gamma_C, in the units of the case.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "files", derive(Serialize, Deserialize), serde(default))]
 #[non_exhaustive]
@@ -283,7 +283,7 @@ fn same(a: Vector2<f64>, b: Vector2<f64>) -> bool {
     length(a - b) <= 1e-6
 }
 
-/// What each part of Gamma_C carries, in alphabetical order.
+/// The quantities of each part of Gamma_C, in alphabetical order.
 pub fn contact_boundaries<E, const N: usize, const M: usize>(
     d: &Discretization<E, N, M>,
     u: &[[f64; 2]],

@@ -32,11 +32,13 @@ pub struct Assembled<'a, 'd, 'p, E, const N: usize, const M: usize> {
     system: &'a System<'d, 'p, E, N, M>,
     /// A and the functionals in twofold numbers, if the tangent is to be in these.
     twofold: Option<TwofoldSystem<N, M>>,
-    /// What residuals are relative to.
+    /// The size that residuals are relative to.
     reference: f64,
     /// The contact edges as they come.
     order: Vec<usize>,
     factored: Option<Factored<M>>,
+    /// L of A alone, once it has been made in doubles.
+    body: Option<Arc<Factor>>,
     factorizations: usize,
     precisely: bool,
     first: bool,
@@ -55,6 +57,7 @@ where
             reference,
             order,
             factored: None,
+            body: None,
             factorizations: 0,
             precisely: false,
             first: true,
@@ -66,7 +69,7 @@ where
         self.factorizations
     }
 
-    /// The same with the tangent in twofold numbers.
+    /// The route with the tangent in twofold numbers.
     pub fn twofold(system: &'a System<'d, 'p, E, N, M>, reference: f64) -> Self {
         let d = system.d;
         let mut matrix = LowerTriangle::zero_like(&system.matrix);
@@ -101,15 +104,12 @@ where
         })
     }
 
-    /// L of A and the springs of the edges that are `pressed`.
-    pub(super) fn factor_where(
+    /// L of A and these springs of the contact edges.
+    pub(super) fn factor_with(
         &self,
-        pressed: impl Iterator<Item = bool>,
+        springs: Vec<[[f64; M]; M]>,
     ) -> Result<Result<Tangent, Indefinite>, SolveError> {
-        let edges = ContactEdges { d: self.system.d, order: &self.order };
-        let signs: Vec<f64> =
-            pressed.flat_map(|pressed| [if pressed { 1.0 } else { -1.0 }; M]).collect();
-        self.factor_tangent(&derivatives(&edges, &signs))
+        self.factor_tangent(&Derivatives { stiffness: 1.0, gradient: Vec::new(), hessian: springs })
     }
 
     /// Whether the edges that are in contact leave a motion free that contact stops: the tangent is singular then.
@@ -123,15 +123,15 @@ where
         held::free_where(d, &parts, &pressing).len() > slides.count()
     }
 
-    /// The same with a little of the springs of all edges added.
+    /// Adds a little of the springs of all edges.
     fn supported(&self, at: &Derivatives<M>) -> Derivatives<M> {
         let edges = ContactEdges { d: self.system.d, order: &self.order };
-        let all = derivatives(&edges, &vec![1.0; at.gradient.len()]);
+        let all = derivatives(&edges, &vec![1.0; at.gradient.len()]).times(at.stiffness);
         let sum = |(h, all): (&[[f64; M]; M], &[[f64; M]; M])| {
             std::array::from_fn(|a| std::array::from_fn(|b| h[a][b] + SUPPORT * all[a][b]))
         };
         let hessian = at.hessian.iter().zip(&all.hessian).map(sum).collect();
-        Derivatives { gradient: at.gradient.clone(), hessian }
+        Derivatives { stiffness: at.stiffness, gradient: at.gradient.clone(), hessian }
     }
 
     fn factor(&mut self, at: &Derivatives<M>) -> Result<&Factored<M>, SolveError> {
@@ -158,6 +158,11 @@ where
                 (factor, hessian)
             }
         };
+        if let (Tangent::Double(factor), None) = (&factor, &self.body)
+            && hessian.iter().flatten().flatten().all(|h| *h == 0.0)
+        {
+            self.body = Some(Arc::clone(factor));
+        }
         Ok(self.factored.insert((factor, hessian)))
     }
 }
@@ -196,6 +201,10 @@ where
 {
     fn precisely(&self) -> bool {
         self.twofold.is_some()
+    }
+
+    fn factor_of_a(&self) -> Option<Arc<Factor>> {
+        self.body.clone()
     }
 
     fn pass(

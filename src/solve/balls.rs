@@ -1,4 +1,4 @@
-//! What (8) is made of, in balls: the contact edges, kappa, the components of fields and functionals in the frames of their
+//! The ingredients of (8) in balls: the contact edges, kappa, the components of fields and functionals in the frames of their
 //! nodes, their products.
 
 use std::collections::BTreeMap;
@@ -139,9 +139,6 @@ pub(super) fn strain_energy<E, const N: usize, const M: usize>(
 where
     E: ExactEdge<f64, N, M>,
 {
-    if v.iter().flatten().all(|&v| v == Ball::from(0)) {
-        return Ball::from(0);
-    }
     let mut forces = vec![[Ball::from(0); 2]; v.len()];
     precise::add_internal_forces(d, v, &mut forces);
     product(v, &forces)
@@ -150,6 +147,16 @@ where
 /// a . b
 pub(super) fn dot(a: [Ball; 2], b: [Ball; 2]) -> Ball {
     a[0] * b[0] + a[1] * b[1]
+}
+
+/// The length of a vector, at most.
+pub(super) fn length(v: [Ball; 2]) -> f64 {
+    let [a, b] = v.map(Ball::magnitude);
+    if a == 0.0 && b == 0.0 {
+        return 0.0;
+    }
+    // A square may underflow.
+    up((a * a + b * b + f64::MIN_POSITIVE).sqrt())
 }
 
 /// The square root of what cannot be negative, rounded up; infinite where nothing is known.

@@ -1,11 +1,12 @@
-//! What Newton's method ([`super::newton`]) knows of the contact edges and of the body, whichever way its equations are solved.
+//! The interface between Newton's method ([`super::newton`]) and the contact edges and the body, whichever way its equations
+//! are solved.
 
 use std::borrow::Cow;
 
 use super::SolveError;
 use crate::fem::twofold::Twofold;
 
-/// What Newton's method needs to know of the contact edges.
+/// The contact edges as Newton's method needs them.
 pub trait Edges<const M: usize> {
     /// How many there are.
     fn count(&self) -> usize;
@@ -31,7 +32,7 @@ pub trait Body<const M: usize> {
     /// # Errors
     /// A tangent that is not positive definite, and lack of memory.
     fn step(&mut self, at: &Derivatives<M>) -> Result<Step, SolveError>;
-    /// What forces at the nodes of edge `e` do to P there, or the part of it that is known: how fast Newton's method ends
+    /// The effect of forces at the nodes of edge `e` on P there, or the part of it that is known: how fast Newton's method ends
     /// depends on it, not where.
     fn compliance(&self, e: usize) -> [[f64; M]; M];
     /// Moves the iterate by `t` times `step`, the last one.
@@ -59,6 +60,8 @@ pub struct Residual {
 
 /// The derivatives of s Psi at y.
 pub struct Derivatives<const M: usize> {
+    /// s
+    pub stiffness: f64,
     /// Nodal values of the gradient.
     pub gradient: Vec<f64>,
     /// The Hessian, edge by edge.
@@ -87,13 +90,14 @@ pub fn derivatives<const M: usize>(
         gradient.extend(g);
         hessian.push(h);
     }
-    Derivatives { gradient, hessian }
+    Derivatives { stiffness: 1.0, gradient, hessian }
 }
 
 impl<const M: usize> Derivatives<M> {
     /// The derivatives of s times the function.
     pub fn times(&self, s: f64) -> Self {
         Derivatives {
+            stiffness: s * self.stiffness,
             gradient: self.gradient.iter().map(|g| s * g).collect(),
             hessian: self.hessian.iter().map(|h| h.map(|row| row.map(|v| s * v))).collect(),
         }

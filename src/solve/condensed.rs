@@ -43,7 +43,7 @@ pub struct Condensed<'a, 'd, 'p, E, const N: usize, const M: usize> {
     forces: Vec<(usize, usize, f64)>,
     /// How many rows these are.
     rows: usize,
-    /// What residuals are relative to.
+    /// The size that residuals are relative to.
     reference: f64,
     w: Vec<f64>,
     first: bool,

@@ -8,7 +8,7 @@ use crate::kernel::edge_integral::ExactEdge;
 
 /// The contact edges of `d` in `order`.
 pub struct ContactEdges<'a, 'p, E, const N: usize, const M: usize> {
-    /// What they are the edges of.
+    /// The discretization that they belong to.
     pub d: &'a Discretization<'p, E, N, M>,
     /// Their numbers in its list.
     pub order: &'a [usize],

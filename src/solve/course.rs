@@ -74,7 +74,7 @@ impl<'a> Course<'a> {
         Course { watcher: Some(watcher), ..self }
     }
 
-    /// The same without a start, where there is one.
+    /// Drops the start, if there is one.
     pub(super) fn afresh(self) -> Option<Self> {
         self.start.map(|_| Course { start: None, ..self })
     }
@@ -107,16 +107,16 @@ impl<'a> Course<'a> {
     }
 }
 
-/// What the derivatives of Psi at y would be if contact were as it is where P has the values `p`.
+/// The derivatives of Psi at y with the contact of the values `p` of P.
 pub(super) fn frozen<const M: usize>(
     edges: &impl Edges<M>,
     p: &[f64],
     y: &[Twofold],
 ) -> Derivatives<M> {
-    let Derivatives { hessian, .. } = derivatives(edges, p);
+    let Derivatives { hessian, stiffness, .. } = derivatives(edges, p);
     let gradient = hessian.iter().enumerate().flat_map(|(e, h)| {
         let y: [f64; M] = block(y, e).map(Twofold::head);
         h.map(|row| (0..M).map(|b| row[b] * y[b]).sum::<f64>())
     });
-    Derivatives { gradient: gradient.collect(), hessian }
+    Derivatives { stiffness, gradient: gradient.collect(), hessian }
 }

@@ -18,7 +18,7 @@ use std::time::Duration;
 use thiserror::Error;
 
 use super::assembled::{Assembled, Tangent};
-use super::balls::{Lines, dot, field, free, kappa, lines, root};
+use super::balls::{Lines, field, free, kappa, length, lines, root};
 use super::factor::{Factor, Indefinite};
 use super::intervals::{Evaluation, Intervals, Stresses};
 use super::pressed::{self, Pressed};
@@ -41,13 +41,13 @@ pub struct Enclosure {
     pub kappa: f64,
     /// |u~ - u^h|_a at most.
     pub radius: f64,
-    /// The same over |u~|_a; `None` for a body without strain.
+    /// The radius over |u~|_a; `None` for a body without strain.
     pub relative: Option<f64>,
     /// The norm of gamma^{1/2} (lambda~ - lambda^h) on Gamma_C at most.
     pub pressure: f64,
     /// The length of u~ - u^h at each node at most.
     pub nodes: Vec<f64>,
-    /// What is reported of u^h.
+    /// Intervals of the reported quantities.
     pub intervals: Intervals,
 }
 
@@ -130,15 +130,15 @@ pub struct Verifier<'s, 'd, 'p, E, const N: usize, const M: usize> {
     lines: Lines<'d, N, M>,
     kappa: f64,
     factor: FactorOfA,
-    /// For the edges that are pressed: the bounds at the nodes, and the factor, once it is needed.
-    held: Option<Held>,
+    /// For what is pressed: the bounds at the nodes, and the factor, once it is needed.
+    held: Option<Held<M>>,
     unbalanced: f64,
     time: Duration,
 }
 
-/// What belongs to a set of pressed edges.
-struct Held {
-    pressed: Vec<bool>,
+/// The data of pressed edges with these springs.
+struct Held<const M: usize> {
+    springs: Vec<[[f64; M]; M]>,
     korn: Option<Korn>,
     factor: Option<Tangent>,
 }
@@ -147,12 +147,12 @@ impl<'s, 'd, 'p, E, const N: usize, const M: usize> Verifier<'s, 'd, 'p, E, N, M
 where
     E: ExactEdge<f64, N, M>,
 {
-    /// Of a system, with the loads that it has.
+    /// The verifier of a system, with its own loads.
     pub fn new(system: &'s System<'d, 'p, E, N, M>, factor: FactorOfA) -> Self {
         Verifier::with_load(system, factor, &system.d.enclosed_load)
     }
 
-    /// Of a system with a given load: L(v) for every basis function.
+    /// The verifier of a system with a given load: L(v) for every basis function.
     pub fn with_load(
         system: &'s System<'d, 'p, E, N, M>,
         factor: FactorOfA,
@@ -163,6 +163,13 @@ where
         let kappa = kappa(system.d, &lines);
         let time = watch.lap();
         Verifier { system, load, lines, kappa, factor, held: None, unbalanced: f64::INFINITY, time }
+    }
+
+    /// Takes a factor of A that is at hand for one that is to be made in doubles, where no springs are added to A.
+    pub fn use_factor(&mut self, of_a: Option<Arc<Factor>>) {
+        if let (Some(of_a), FactorOfA::Double, None) = (of_a, &self.factor, &self.system.d.slides) {
+            self.factor = FactorOfA::AtHand(of_a);
+        }
     }
 
     /// The time that it has taken.
@@ -193,9 +200,9 @@ where
         }
     }
 
-    /// Encloses the solution around `u` by the residual there, or at a field `near` it that is known in twofold numbers: rounding a
-    /// displacement to doubles moves it little, its forces more. Of a body that may slide, with these motions still stopped at one
-    /// component each, one of the solutions is enclosed around the displacement of least norm.
+    /// Encloses the solution around `u` by the residual there, or at a field `near` it that is known in twofold numbers:
+    /// rounding a displacement to doubles moves it little, its forces more. Of a body that may slide, with these motions
+    /// still stopped at one component each, one of the solutions is enclosed around the displacement of least norm.
     ///
     /// # Errors
     /// Why nothing can be proved.
@@ -265,13 +272,13 @@ where
             None => (Pressed::nowhere(self.lines.len()), Unproved::NotHeld),
             Some(_) => (Pressed::at(d, &self.lines, &at.u), Unproved::HeldByContact),
         };
-        let edges: Vec<bool> = pressed.edges().collect();
-        if self.held.as_ref().is_none_or(|held| held.pressed != edges) {
+        let springs = pressed.springs(&self.lines);
+        if self.held.as_ref().is_none_or(|held| held.springs != springs) {
             let holds = pressed.holds(d, &self.lines);
             let korn = Korn::new(&d.space, &d.problem.material, &d.constraints, &holds);
-            self.held = Some(Held { pressed: edges, korn, factor: None });
+            self.held = Some(Held { springs, korn, factor: None });
         }
-        let Some(Held { korn: Some(korn), factor, pressed: edges }) = &mut self.held else {
+        let Some(Held { korn: Some(korn), factor, springs }) = &mut self.held else {
             return Err(loose);
         };
         let up_to = up(at.off / coercivity.sqrt());
@@ -280,7 +287,7 @@ where
         } else {
             let factor = match factor {
                 Some(factor) => factor,
-                None => factor.insert(self.factor.clone().of(system, edges)?),
+                None => factor.insert(self.factor.clone().of(system, springs)?),
             };
             let crude = crude_norms(system, korn, coercivity);
             let negligible = SMALL * (at.moved * coercivity.sqrt()).max(up_to);
@@ -302,9 +309,9 @@ where
         let exactly = slid(at.u.clone(), reported, d.slides.as_ref());
         for (node, (exactly, reported)) in nodes.iter_mut().zip(exactly.iter().zip(reported)) {
             let off = [0, 1].map(|c| exactly[c] - Ball::from(reported[c]));
-            *node = up(*node + root(dot(off, off)));
+            *node = up(*node + length(off));
         }
-        let pressure = if edges.contains(&true) { rho } else { rho / 2.0 };
+        let pressure = if pressed.edges().any(|is| is) { rho } else { rho / 2.0 };
         let intervals = at.intervals(d, &self.lines, (&exactly, &nodes), [rho, pressure], exact);
         if !intervals.are_finite() {
             return Err(Unproved::OutOfRange);
@@ -327,7 +334,7 @@ impl FactorOfA {
     fn of<E, const N: usize, const M: usize>(
         self,
         system: &System<E, N, M>,
-        pressed: &[bool],
+        springs: &[[[f64; M]; M]],
     ) -> Result<Tangent, Unproved>
     where
         E: ExactEdge<f64, N, M>,
@@ -337,7 +344,7 @@ impl FactorOfA {
             FactorOfA::Double => Assembled::new(system, 1.0),
             FactorOfA::Twofold => Assembled::twofold(system, 1.0),
         };
-        match assembled.factor_where(pressed.iter().copied()) {
+        match assembled.factor_with(springs.to_vec()) {
             Ok(factor) => factor.map_err(|Indefinite| Unproved::NoFactor),
             Err(_) => Err(Unproved::OutOfMemory),
         }
@@ -372,7 +379,7 @@ where
     if d.slides.as_ref().is_none_or(|slides| !slides.are_bounded()) {
         return true;
     }
-    let edges = d.contact.iter().zip(lines).zip(pressed.edges());
+    let edges = d.contact.iter().zip(lines).zip(pressed.whole(&d.rule));
     edges.filter(|(_, pressed)| !pressed).all(|((edge, line), _)| {
         let far =
             d.space.edge_nodes(edge.edge).map(|node| nodes[node]).into_iter().fold(0.0, f64::max);
@@ -392,19 +399,18 @@ impl<E, const N: usize, const M: usize> Product<'_, '_, '_, E, N, M>
 where
     E: ExactEdge<f64, N, M>,
 {
-    /// A(v, .) at the free unknowns for the field v with the components `z`, off by a functional r with |r(w)| <= b |w|_a for the b
-    /// that comes with it.
+    /// A(v, .) at the free unknowns for the field v with the components `z`, off by a functional r with |r(w)| <= b |w|_a for
+    /// the b that comes with it.
     fn times(&self, z: &[Ball]) -> (Vec<Ball>, f64) {
         let v = field(self.system, |number, _, _| z[number], |_, _| 0.0);
         let d = self.system.d;
         let mut forces = vec![[Ball::from(0); 2]; v.len()];
         let off = match self.stresses {
             Stresses::InBalls => self.stresses.add_forces(d, &v, &mut forces),
-            // z is next to nothing beside u~: balls of doubles will do.
+            // z is next to nothing beside u~: the balls of the kernel will do.
             Stresses::InDoubles => {
                 let mut sums = vec![[kernel::Ball::point(0.0); 2]; v.len()];
-                let exactly = kernel::Ball::point;
-                let off = precise::add_forces_of_rounded_stresses(d, &v, exactly, &mut sums);
+                let off = precise::add_forces_of_rounded_stresses(d, &v, &mut sums);
                 for (force, sum) in forces.iter_mut().zip(sums) {
                     *force = sum.map(Ball::from);
                 }

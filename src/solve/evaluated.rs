@@ -21,7 +21,7 @@ pub struct Evaluated<const M: usize> {
 }
 
 impl<const M: usize> Evaluated<M> {
-    /// Of a displacement in doubles.
+    /// Evaluates a displacement in doubles.
     pub fn new<E, const N: usize>(d: &Discretization<E, N, M>, u: Vec<[f64; 2]>) -> Self
     where
         E: ExactEdge<f64, N, M>,
@@ -33,8 +33,8 @@ impl<const M: usize> Evaluated<M> {
         Evaluated::with(d, u, forces, &p)
     }
 
-    /// Of a displacement whose `forces`, A(u, v) - L(v) for every basis function v, and whose P at the nodes of the contact edges
-    /// are known.
+    /// Evaluates a displacement whose `forces`, A(u, v) - L(v) for every basis function v, and whose P at the nodes of the
+    /// contact edges are known.
     pub fn with<E, const N: usize>(
         d: &Discretization<E, N, M>,
         u: Vec<[f64; 2]>,

@@ -93,6 +93,10 @@ impl Structure {
     }
 }
 
+/// The bytes that a solve takes beside its factor, for each unknown: the functionals of contact, iterates, residuals, the
+/// proof. As measured, and a tenth more.
+const BESIDE: usize = 320;
+
 /// L of H = L L^T.
 pub struct Factor {
     structure: Arc<Structure>,
@@ -124,7 +128,7 @@ impl Factor {
             parallel,
             Default::default(),
         );
-        let bytes = (8 * structure.stored_entries() + scratch.size_bytes()) as u64;
+        let bytes = (8 * structure.stored_entries() + scratch.size_bytes() + BESIDE * n) as u64;
         memory::ensure(bytes)?;
         let mut values = vec![0.0; structure.stored_entries()];
         let mut memory =

@@ -6,7 +6,7 @@ use std::sync::Arc;
 #[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
 
-use super::balls::{dot, field, product, root, strain_energy};
+use super::balls::{field, length, product, root, strain_energy};
 use super::system::System;
 use crate::fem::Discretization;
 use crate::fem::ball::{Ball, up};
@@ -27,7 +27,7 @@ pub struct Intervals {
     pub energy: Range,
     /// The largest length of u at a node.
     pub max_displacement: Range,
-    /// What each contact boundary carries.
+    /// Intervals of each contact boundary's quantities.
     pub contact: Vec<ContactIntervals>,
     /// The force of each displacement boundary on the body.
     /// Empty where there are more than 64 displacement boundaries.
@@ -43,7 +43,7 @@ impl Intervals {
     }
 }
 
-/// Of a contact boundary.
+/// Intervals of a contact boundary's quantities.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 #[non_exhaustive]
@@ -77,13 +77,26 @@ impl Stresses {
         E: ExactEdge<f64, N, M>,
     {
         match self {
-            Stresses::InDoubles => {
-                precise::add_forces_of_rounded_stresses(d, u, Ball::from, forces)
-            }
+            Stresses::InDoubles => precise::add_forces_of_rounded_stresses(d, u, forces),
             Stresses::InBalls => {
                 precise::add_internal_forces(d, u, forces);
                 0.0
             }
+        }
+    }
+
+    /// |v|_a at most.
+    fn energy_norm<E, const N: usize, const M: usize>(
+        self,
+        d: &Discretization<E, N, M>,
+        v: &[[Ball; 2]],
+    ) -> f64
+    where
+        E: ExactEdge<f64, N, M>,
+    {
+        match self {
+            Stresses::InDoubles => precise::energy_norm_at_most(d, v),
+            Stresses::InBalls => root(strain_energy(d, v)),
         }
     }
 }
@@ -102,6 +115,7 @@ pub(super) struct Evaluation {
     pub off: f64,
     /// int \[P\]+ N_a / gamma on each contact edge.
     pressures: Vec<Vec<Ball>>,
+    stresses: Stresses,
 }
 
 impl Evaluation {
@@ -134,10 +148,7 @@ impl Evaluation {
             .zip(reported)
             .map(|(exact, u)| [0, 1].map(|c| exact[c] - Ball::from(u[c])))
             .collect();
-        let moved = match stresses {
-            Stresses::InBalls => root(strain_energy(d, &off)),
-            Stresses::InDoubles => precise::energy_norm_at_most(d, &off),
-        };
+        let moved = stresses.energy_norm(d, &off);
 
         let mut residual = vec![[Ball::from(0); 2]; u.len()];
         let off = stresses.add_forces(d, &exact, &mut residual);
@@ -157,14 +168,15 @@ impl Evaluation {
             *r = [r[0] - l[0], r[1] - l[1]];
         }
         let all = residual.iter().chain(&exact).flatten();
-        let squares = exact.iter().map(|&u| dot(u, u)).chain([energy]);
-        if !(all.into_iter().all(|b| b.is_finite()) && squares.into_iter().all(Ball::is_finite)) {
+        let lengths_are_finite = exact.iter().all(|&u| length(u).is_finite());
+        if !(lengths_are_finite && all.chain([&energy]).all(|b| b.is_finite())) {
             return None;
         }
-        Some(Evaluation { residual, u: exact, moved, energy, off, pressures })
+        Some(Evaluation { residual, u: exact, moved, energy, off, pressures, stresses })
     }
 
-    /// What is reported, with |u~ - u^h|_A <= `rho`, |u~ - u^h|_a <= `radius`, the norm of gamma^{1/2} (lambda~ - lambda^h) at most
+    /// Encloses the reported quantities, with |u~ - u^h|_A <= `rho`, |u~ - u^h|_a <= `radius`, the norm of gamma^{1/2}
+    /// (lambda~ - lambda^h) at most
     /// `pressure`, and displacements at the nodes with their bounds.
     pub fn intervals<E, const N: usize, const M: usize>(
         &self,
@@ -183,14 +195,13 @@ impl Evaluation {
         let high = up(root(self.energy) + radius);
         let energy = [low * low * (1.0 - 2.0 * f64::EPSILON), up(high * high)];
 
-        let lengths = u.iter().map(|&u| dot(u, u));
         let mut max_displacement = [0.0_f64; 2];
-        for (square, by) in lengths.zip(nodes) {
-            let low = square.lower().max(0.0).sqrt() * (1.0 - 2.0 * f64::EPSILON);
-            let high = root(square);
+        for (u, by) in u.iter().zip(nodes) {
+            let [a, b] = u.map(Ball::least_magnitude);
+            let low = (a * a + b * b).sqrt() * (1.0 - 16.0 * f64::EPSILON);
             let low = (low - by) * (1.0 - 2.0 * f64::EPSILON);
-            max_displacement =
-                [max_displacement[0].max(low), max_displacement[1].max(up(high + by))];
+            let high = up(length(*u) + by);
+            max_displacement = [max_displacement[0].max(low), max_displacement[1].max(high)];
         }
 
         let mut contact: Vec<(Arc<str>, [Ball; 3], Ball)> = Vec::new();
@@ -251,7 +262,7 @@ impl Evaluation {
                     }
                 }
                 let reaction = product(&test, &self.residual);
-                let by_body = root(strain_energy(d, &test));
+                let by_body = self.stresses.energy_norm(d, &test);
                 let by_contact = lines.iter().fold(Ball::from(0), |sum, line| {
                     let most = line.p0(&test).iter().fold(0.0, |sum, p| up(sum + p.magnitude()));
                     let weight = line.numbers.length / line.numbers.gamma;

@@ -20,11 +20,11 @@ pub struct Iterate {
     u: Vec<[Twofold; 2]>,
 }
 
-/// What the linear part of (8) is at a displacement.
+/// The linear part of (8) at a displacement.
 pub struct Evaluation {
     /// A(u, v) - L(v) for every basis function v.
     pub forces: Vec<[f64; 2]>,
-    /// The same for every free degree of freedom.
+    /// Its values for every free degree of freedom.
     pub linear: Vec<f64>,
     /// P(u) at the nodes of the contact edges; negative on those that press in no solution.
     pub p: Vec<Twofold>,
@@ -34,7 +34,7 @@ pub struct Evaluation {
     pub energy: f64,
     /// A norm that rounding alone may give the residual.
     pub noise: f64,
-    /// What rounding alone may add up to in the forces.
+    /// A bound of the rounding in the forces.
     pub noise_of_sums: f64,
     /// In twofold numbers.
     pub precisely: bool,
@@ -59,7 +59,7 @@ impl Iterate {
         &self.u
     }
 
-    /// What rounding to doubles leaves out.
+    /// The part that rounding to doubles leaves out.
     pub fn remainder(&self) -> Vec<[f64; 2]> {
         self.u.iter().map(|u| u.map(Twofold::tail)).collect()
     }

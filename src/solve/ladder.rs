@@ -4,16 +4,21 @@ use std::collections::BTreeMap;
 
 use thiserror::Error;
 
-use super::{Gamma0, Method, Outline, Settings, Solution, SolveError, check, solve};
+use super::{
+    ContactQuadrature, Degree, Gamma0, Method, Outline, Settings, Solution, SolveError, check,
+    solve,
+};
 use crate::fem::exact::{self, Kind};
-use crate::fem::{Errors, Exact, MeshError, Perturbation, Problem, Structured};
+use crate::fem::{
+    Errors, Exact, MeshError, Perturbation, Problem, Space, Structured, contact_line, interpolation,
+};
 
 /// A family of meshes with all that is solved on them: level l has 2^l times as many cells along each axis as `body`.
 #[derive(Clone, Debug)]
 pub struct Ladder {
     /// The solution.
     pub solution: Exact,
-    /// What holds on each boundary.
+    /// The condition on each boundary.
     pub kinds: BTreeMap<String, Kind>,
     /// The coarsest mesh.
     pub body: Structured,
@@ -36,7 +41,7 @@ pub enum LadderError {
     Solve(#[from] SolveError),
 }
 
-/// What came out on one mesh.
+/// The result on one mesh.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Level {
@@ -52,6 +57,9 @@ pub struct Level {
     pub gamma0: f64,
     /// kappa = gamma0 C_h.
     pub kappa: f64,
+    /// The bound of [`a_priori::left`](crate::fem::a_priori::left) by Theorem 3.5 with its number; for P1 with exact
+    /// contact integrals, u in H^2 and kappa < 1.
+    pub proved: Option<f64>,
 }
 
 impl Ladder {
@@ -71,13 +79,13 @@ impl Ladder {
     /// The size of a level's discrete problem, and its coercivity.
     ///
     /// # Errors
-    /// What makes it no problem.
+    /// The reason why it is no problem.
     pub fn outline(&self, level: usize) -> Result<Outline, LadderError> {
         let method = Method { allow_noncoercive: true, ..self.method.clone() };
         Ok(check(&self.problem(level)?, &method)?)
     }
 
-    /// The same ladder with one gamma0 for the first `levels` levels: where it is "auto", half the smallest of their limits.
+    /// Fixes one gamma0 for the first `levels` levels: where it is "auto", half the smallest of their limits.
     /// The theory compares meshes at fixed gamma0, and the norms on Gamma_C are proportional to its square root.
     ///
     /// # Errors
@@ -110,12 +118,23 @@ impl Ladder {
             newton_steps: newton.iterations(),
             gamma0: solution.gamma.gamma0,
             kappa: solution.gamma.kappa,
+            proved: self.bound(&problem, &solution)?,
         };
         Ok((level, problem, solution))
     }
 }
 
 impl Ladder {
+    /// [`interpolation::bound`] for the solution of `problem`, where it holds.
+    fn bound(&self, problem: &Problem, solution: &Solution) -> Result<Option<f64>, SolveError> {
+        if self.method.degree != Degree::One || self.method.quadrature != ContactQuadrature::Exact {
+            return Ok(None);
+        }
+        let space = Space::new(&problem.mesh);
+        let contact = contact_line::assemble(problem, &space, solution.gamma.gamma)?;
+        Ok(interpolation::bound(&space, &contact, &*self.solution, solution.gamma.kappa))
+    }
+
     /// The rate that Theorem 3.5 and Remark 3.7 promise for the energy and contact norms: min(p, s - 1) for u in H^s.
     pub fn promised_rate(&self) -> f64 {
         (self.method.degree.number() as f64).min(self.solution.regularity() - 1.0)

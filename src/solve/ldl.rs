@@ -23,7 +23,7 @@ struct Tree {
 }
 
 impl Tree {
-    /// Of a matrix whose upper triangle has these entries, column by column.
+    /// The structure of a matrix whose upper triangle has these entries, column by column.
     fn new(starts: &[usize], rows: &[usize]) -> Self {
         let n = starts.len() - 1;
         let mut tree = Tree { parents: vec![None; n], starts: vec![0; n + 1] };

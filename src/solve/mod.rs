@@ -140,7 +140,7 @@ impl Default for Settings {
     }
 }
 
-/// What is proved of a solution.
+/// The verdict on a solution.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// The exact solution of (8) is within [`Settings::proof`] of it, rounding included.
@@ -204,7 +204,7 @@ pub struct NewtonReport {
     /// The residual of (8), as Newton's method saw it, before the first step and after each one: Euclidean norms over the
     /// free degrees of freedom, relative to |L| + |residual of the prescribed data|.
     pub residuals: Vec<f64>,
-    /// The same of the solution, evaluated from the definitions.
+    /// The relative residual of the solution, evaluated from the definitions.
     pub residual: f64,
     /// How many sparse factorisations it took.
     pub factorizations: usize,
@@ -228,13 +228,27 @@ pub struct MethodReport {
     /// The condition number of the matrix, estimated from below.
     pub condition: f64,
     /// The last correction of the displacement in the energy norm, relative to the displacement: an estimate of the error
-    /// that rounding and iteration leave.
+    /// that rounding and iteration leave; infinite, and left out of result.json, where the steps ended before there was one.
+    #[cfg_attr(
+        feature = "files",
+        serde(default = "no_estimate", skip_serializing_if = "is_no_estimate")
+    )]
     pub forward_error: f64,
     /// How many threads worked.
     pub threads: usize,
     /// Independent motions of the body that neither supports nor what presses stops: the solution is one up to these, and the
     /// one of least norm is given. Friction would be needed to know more.
     pub slides: usize,
+}
+
+#[cfg(feature = "files")]
+fn no_estimate() -> f64 {
+    f64::INFINITY
+}
+
+#[cfg(feature = "files")]
+fn is_no_estimate(error: &f64) -> bool {
+    *error == no_estimate()
 }
 
 /// How a solution was found.
@@ -246,7 +260,7 @@ pub struct Report {
     pub method: MethodReport,
     /// Where the exact solution of (8) is, or why nothing is proved of it.
     pub enclosure: enclosure::Certificate,
-    /// What is proved.
+    /// The verdict.
     pub verdict: Verdict,
     /// How far a body that contact holds may still move.
     pub plays: Vec<Play>,
@@ -269,7 +283,7 @@ pub enum SolveError {
     )]
     NotPositiveDefinite,
     #[error(
-        "no convergence: the relative residual is {residual:.1e} after {} Newton step{}, all that max_iterations allows; expected {}. Nothing is written.\nresiduals: {}",
+        "no convergence: the relative residual is {residual:.1e} after {} Newton step{}, all that max_iterations allows; expected {}\nresiduals: {}",
         residuals.len().saturating_sub(1), if residuals.len() == 2 { "" } else { "s" }, awaited(*residual, *tolerance), history(residuals)
     )]
     NotConverged { residual: f64, residuals: Vec<f64>, tolerance: f64 },
@@ -283,7 +297,7 @@ pub enum SolveError {
     )]
     Singular,
     #[error(
-        "the numbers of this case over- or underflow double precision (lengths, moduli and loads multiply to beyond 1e300, or to below 1e-300); choose other units"
+        "the numbers of this case would over- or underflow double precision; expected lengths from 1e-40 to 1e40, moduli from 1e-80 to 1e80, and energies (modulus times squared displacement) from 1e-270 to 1e270: choose other units"
     )]
     OutOfRange,
     #[error("the solution needs {bytes} bytes of memory, more than there are; use a coarser mesh")]
@@ -298,7 +312,7 @@ fn known(forward_error: f64) -> String {
     }
 }
 
-/// What a solve that ran out of steps did not reach.
+/// The target that a solve did not reach before it ran out of steps.
 fn awaited(residual: f64, tolerance: f64) -> String {
     if residual <= tolerance {
         "a proof of the solution, too".to_owned()
@@ -341,7 +355,7 @@ pub fn solve(
     solve_along(problem, method, settings, Course::default())
 }
 
-/// The same from a given start, or with somebody who watches. A start that leads nowhere is left for the usual one.
+/// Solves from a given start, or with an observer. A start that leads nowhere is left for the usual one.
 ///
 /// # Errors
 /// As [`solve`].
@@ -369,8 +383,8 @@ where
 {
     let mut watch = Stopwatch::start();
     course.enters(Phase::Assemble);
-    // What the degrees of freedom, the pattern and the matrix take for each vertex of the mesh, as measured.
-    let per_vertex = if E::DEGREE == 1 { 1600 } else { 5500 };
+    // What the whole solve takes for each vertex of the mesh at least, as measured: on squares, and on strips more.
+    let per_vertex = if E::DEGREE == 1 { 2900 } else { 11_800 };
     memory::ensure(per_vertex * problem.mesh.vertices().len() as u64)?;
     let d = discretize::<E, N, M>(problem, method)?;
     let discretize = watch.lap();
@@ -450,7 +464,7 @@ where
     Ok((evaluated, Report { newton, method, enclosure, verdict, plays }, times))
 }
 
-/// What [`solve`] would solve: everything short of a matrix is built and checked.
+/// Builds and checks everything that [`solve`] needs, short of a matrix.
 ///
 /// # Errors
 /// As [`solve`], as far as they show before anything is solved.

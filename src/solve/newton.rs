@@ -44,6 +44,10 @@ const STIFFENING: [f64; 2] = [2.0, 8.0];
 /// The springs get stiffer when the residual is this share of what that will make of it.
 const DONE: f64 = 0.1;
 
+/// They get stiffer, too, when the energy of a step is this share of that of the first one at this stiffness: what is left of the
+/// residual then is in springs that hold next to no energy, and stiffer ones will decide about them.
+const SPENT: f64 = 1e-3;
+
 /// A step goes downhill if its slope is this much of its curvature.
 const DOWNHILL: f64 = 1e-3;
 
@@ -144,7 +148,7 @@ pub fn minimise<const M: usize>(
         if last || stalled || idle >= IDLE_STEPS {
             break;
         }
-        springs.after_step(|stiffness| body.residual(&at.times(stiffness)).norm);
+        springs.after_step(decrement, |stiffness| body.residual(&at.times(stiffness)).norm);
     }
     Ok(left)
 }
@@ -179,28 +183,34 @@ struct Springs {
     stiffening: f64,
     /// The steps at this stiffness.
     steps: usize,
+    /// The decrement of the first of them.
+    first: f64,
 }
 
 impl Springs {
     fn new(stiffness: f64) -> Self {
-        Springs { stiffness, stiffening: STIFFENING[1], steps: 0 }
+        Springs { stiffness, stiffening: STIFFENING[1], steps: 0, first: 0.0 }
     }
 
     fn are_soft(&self) -> bool {
         self.stiffness < 1.0
     }
 
-    /// After a step, with the residual as a function of the stiffness.
-    fn after_step(&mut self, residual: impl Fn(f64) -> f64) {
+    /// After a step with this decrement, with the residual as a function of the stiffness.
+    fn after_step(&mut self, decrement: f64, residual: impl Fn(f64) -> f64) {
         if !self.are_soft() {
             return;
         }
         self.steps += 1;
+        if self.steps == 1 {
+            self.first = decrement;
+        }
+        let spent = decrement <= SPENT * self.first;
         let stiffer = (self.stiffness * self.stiffening).min(1.0);
-        if residual(self.stiffness) <= DONE * residual(stiffer) {
+        if spent || residual(self.stiffness) <= DONE * residual(stiffer) {
             let grown = (2.0 * self.stiffening).min(STIFFENING[1]);
             let stiffening = if self.steps == 1 { grown } else { self.stiffening };
-            *self = Springs { stiffness: stiffer, stiffening, steps: 0 };
+            *self = Springs { stiffening, ..Springs::new(stiffer) };
         } else {
             self.stiffening = (self.stiffening / 4.0).max(STIFFENING[0]);
         }

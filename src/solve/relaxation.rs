@@ -46,7 +46,7 @@ pub fn relaxed<const M: usize>(
         gradient.extend((0..M).map(|a| g[a] + row_times(&h[a], |b| y[b] - q[b])));
         hessian.push(h);
     }
-    Derivatives { gradient, hessian }
+    Derivatives { stiffness: s, gradient, hessian }
 }
 
 /// w after `t` times a `step` that was linearised as `at`: with the loads in equilibrium if w was.

@@ -35,7 +35,7 @@ pub enum RouteName {
     Condensed,
     /// Newton's method on the displacement, the tangent factored in each step.
     Assembled,
-    /// The same, the tangent in twofold numbers.
+    /// The assembled route, the tangent in twofold numbers.
     Twofold,
 }
 
@@ -49,12 +49,13 @@ const ENOUGH: usize = 30;
 /// assembly, substitutions, small blocks.
 const PER_ENTRY: f64 = 12.0;
 
-/// Multiplications of a dense factorisation that cost as much as one of the sparse one: only edges in contact take part, about half
-/// of them and so an eighth of the work, and the rest runs at twice the speed or more. Of some thirty strips, beams, squares and
-/// graded squares that both routes were timed on, it picks the faster one or one that took 1.1 times as long.
+/// Multiplications of a dense factorisation that cost as much as one of the sparse one: only edges in contact take part,
+/// about half of them and so an eighth of the work, and the rest runs at twice the speed or more. Of some thirty strips,
+/// beams, squares and graded squares that both routes were timed on, it picks the faster one or one that took 1.1 times as
+/// long.
 const DENSE: f64 = 16.0;
 
-/// What each route is predicted to take.
+/// The predicted operations of each route.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prediction {
     /// Multiplications with an addition; those of dense factorisations count less.
@@ -75,7 +76,7 @@ impl Prediction {
         }
     }
 
-    /// Of a system, with the reach of its contact functionals.
+    /// The prediction for a system, with the reach of its contact functionals.
     pub fn of<E, const N: usize, const M: usize>(system: &System<E, N, M>) -> (Reach, Prediction)
     where
         E: ExactEdge<f64, N, M>,
@@ -126,9 +127,13 @@ where
             }
             Ok(done) => {
                 let hopeless = settings.proof.is_infinite()
-                    || done.0.enclosure.as_ref().is_err_and(|why| {
-                        !why.may_be_rounding() || *why == Unproved::HeldByContact
-                    });
+                    || match &done.0.enclosure {
+                        // The solve has ended: what is too large is the bound.
+                        Ok(_) => {
+                            *name == RouteName::Assembled && done.0.forward_error <= settings.proof
+                        }
+                        Err(why) => !why.may_be_rounding() || *why == Unproved::HeldByContact,
+                    };
                 if best.as_ref().map_or(true, |(best, ..)| done.0.is_better_than(best)) {
                     best = Ok(done);
                 }
@@ -176,14 +181,14 @@ where
     Outset::of(system).go(name, system, settings, times)
 }
 
-/// What a route ends with: the outcome, how it was found, and the factorisations.
+/// The result of a route: the outcome, how it was found, and the factorisations.
 pub type Solved = (Outcome, MethodReport, usize);
 
-/// What is known of a system before a route is taken.
+/// The data of a system before a route is taken.
 struct Outset {
     reach: Reach,
     prediction: Prediction,
-    /// What residuals are relative to.
+    /// The size that residuals are relative to.
     reference: f64,
 }
 

@@ -1,4 +1,4 @@
-//! What a discrete solution says: stresses, the contact line, resultants and reactions.
+//! A discrete solution: stresses, the contact line, resultants and reactions.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -56,7 +56,7 @@ pub struct Solution {
     pub verdict: Verdict,
     /// Energies, forces, lengths.
     pub quantities: Quantities,
-    /// What each part of Gamma_C carries.
+    /// The quantities of each part of Gamma_C.
     pub boundaries: Vec<ContactBoundary>,
     /// Where the energy comes from.
     pub balance: EnergyBalance,
@@ -141,7 +141,7 @@ pub struct Quantities {
 }
 
 impl Solution {
-    /// What there is to say of a displacement.
+    /// Evaluates all reported quantities of a displacement.
     pub fn new<E, const N: usize, const M: usize>(
         d: &Discretization<E, N, M>,
         evaluated: Evaluated<M>,
@@ -240,7 +240,7 @@ impl<'a> Course<'a> {
 }
 
 impl GammaReport {
-    /// Of a discretization.
+    /// The stresses of a discretization.
     pub fn new<E, const N: usize, const M: usize>(d: &Discretization<E, N, M>) -> Self
     where
         E: ExactEdge<f64, N, M>,

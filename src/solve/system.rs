@@ -16,7 +16,7 @@ use crate::kernel::edge_integral::ExactEdge;
 
 /// The matrices of a discretization.
 pub struct System<'d, 'p, E, const N: usize, const M: usize> {
-    /// What it is the system of.
+    /// The discretization.
     pub d: &'d Discretization<'p, E, N, M>,
     /// The free degrees of freedom in the order of elimination.
     pub numbering: Numbering,
@@ -66,7 +66,7 @@ where
         self.course.enters(phase);
     }
 
-    /// The same of a Newton step.
+    /// Reports that a Newton step begins.
     pub(super) fn enters_step(&self) {
         self.steps.set(self.steps.get() + 1);
         self.enters(Phase::Newton { step: self.steps.get() });
@@ -99,14 +99,14 @@ where
         self.diagonal().fold(0.0, larger)
     }
 
-    /// What A(v, v) is to be expected for a `v` of these magnitudes whose components know nothing of each other.
+    /// The expected A(v, v) of a `v` with these magnitudes and independent components.
     pub fn energy_of_unrelated(&self, v: &[[f64; 2]]) -> f64 {
         let v = self.numbering.gather(v);
         self.diagonal().zip(v).map(|(a, v)| a * v * v).sum()
     }
 
-    /// What errors of `u` are relative to: |u|_a, which is `norm`. A body without loads that is moved as a whole has no strain but
-    /// that of rounding: there it is what the norm would be if the components of u knew nothing of each other.
+    /// The size that errors of `u` are relative to: |u|_a, which is `norm`. A body without loads that is moved as a whole has
+    /// no strain but that of rounding: there it is what the norm would be if the components of u knew nothing of each other.
     pub fn size(&self, norm: f64, u: &[[f64; 2]]) -> f64 {
         if self.d.load.as_flattened().iter().any(|&l| l != 0.0) {
             return norm;

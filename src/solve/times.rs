@@ -25,7 +25,7 @@ pub struct Times {
 }
 
 impl Times {
-    /// Of two solves together.
+    /// Adds the times of two solves.
     #[must_use]
     pub fn plus(&self, other: &Times) -> Times {
         Times {

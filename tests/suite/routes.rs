@@ -223,3 +223,15 @@ fn a_sliver_spoils_itself_only_where_gamma_is_local() {
         assert!(one / expected > 1.1, "the control: {degree:?} {one} {expected}");
     }
 }
+
+/// Bodies on which Newton's method takes its longest: two materials of which one is a million times stiffer, stiff springs beside
+/// soft triangles, a nearly incompressible body that slides off an obstacle, and a shaft that its bearing alone holds.
+#[test]
+fn hard_bodies_are_proved_in_a_bounded_number_of_steps() {
+    for (name, most) in [("parts234", 40), ("parts344", 40), ("poly370", 50), ("shaft7012", 25)] {
+        let case = Case::read(format!("tests/newton/{name}.toml").as_ref()).unwrap();
+        let (solution, _) = solve(&case.problem, &case.method, &Settings::default()).unwrap();
+        let (steps, reason) = (solution.newton.iterations(), solution.verdict.reason());
+        assert!(steps <= most && reason.is_none(), "{name}: {steps} steps, {reason:?}");
+    }
+}

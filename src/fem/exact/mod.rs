@@ -36,7 +36,7 @@ use crate::kernel::{Material, Scalar, Stress};
 
 /// A displacement field that solves (1)-(2), with its data.
 pub trait ExactSolution: Debug + Send + Sync {
-    /// What the body is made of.
+    /// The material of the body.
     fn material(&self) -> &Material<f64>;
 
     /// u
@@ -44,6 +44,11 @@ pub trait ExactSolution: Debug + Send + Sync {
 
     /// du_i/dx_j in row i and column j.
     fn gradient(&self, x: [f64; 2]) -> Matrix2<f64>;
+
+    /// \[u_xx, u_xy, u_yy\] of each component; `None` if u is not in H^2.
+    fn second_derivatives(&self, _: [f64; 2]) -> Option<[[f64; 3]; 2]> {
+        None
+    }
 
     /// f = -div sigma(u); `None` if there is none anywhere.
     fn body_force(&self, _: [f64; 2]) -> Option<[f64; 2]> {
@@ -72,7 +77,7 @@ pub trait ExactSolution: Debug + Send + Sync {
 /// An exact solution that problems, loads and error measures share.
 pub type Exact = Arc<dyn ExactSolution>;
 
-/// What a part of the boundary is asked to hold of an exact solution.
+/// The condition that an exact solution prescribes on a part of the boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Its displacement, at the nodes.

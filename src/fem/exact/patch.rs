@@ -77,6 +77,10 @@ impl ExactSolution for Patch {
         self.matrix
     }
 
+    fn second_derivatives(&self, _: [f64; 2]) -> Option<[[f64; 3]; 2]> {
+        Some([[0.0; 3]; 2])
+    }
+
     fn regularity(&self) -> f64 {
         f64::INFINITY
     }

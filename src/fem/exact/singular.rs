@@ -18,7 +18,7 @@ use crate::kernel::Material;
 /// The solution (b).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Singular<S = f64> {
-    /// What the body is made of.
+    /// The material of the body.
     pub material: Material<S>,
     /// Where contact ends, inside (0, 1).
     pub c: S,
@@ -111,6 +111,25 @@ impl ExactSolution for Singular {
 
     fn gradient(&self, x: [f64; 2]) -> Matrix2<f64> {
         self.gradient_at(&self.place(x))
+    }
+
+    /// From Phi' = i am z^(-1/2)/2 and y Phi'' = -i am y z^(-3/2)/4: d/dx and d/dy of the entries of the gradient.
+    fn second_derivatives(&self, x: [f64; 2]) -> Option<[[f64; 3]; 2]> {
+        let Place { x, y, cos, sin, .. } = self.place(x);
+        let r = x.hypot(y);
+        // z^(-1/2) = conj(z^(1/2))/r, z^(-3/2) = z^(-1/2) conj(z)/r^2.
+        let [re, im] = [cos / r, -sin / r];
+        let [re3, im3] = [(re * x + im * y) / (r * r), (im * x - re * y) / (r * r)];
+        let am = self.amplitude;
+        let [p, q] = [-am / 2.0 * im, am / 2.0 * re];
+        let [s, t] = [am / 4.0 * y * im3, -am / 4.0 * y * re3];
+        let k = kolosov(&self.material);
+        let (less, more) = ((k - 1.0) / 2.0, (k + 1.0) / 2.0);
+        let of = |entries: [f64; 3]| entries.map(|entry| entry / (2.0 * self.material.mu()));
+        Some([
+            of([less * p - t, -more * q - s, t - (more + 1.0) * p]),
+            of([more * q - s, less * p + t, (1.0 - less) * q + s]),
+        ])
     }
 
     fn regularity(&self) -> f64 {

@@ -14,7 +14,7 @@ use crate::kernel::Material;
 /// The solution (a).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Smooth {
-    /// What the body is made of.
+    /// The material of the body.
     pub material: Material<f64>,
     /// Where contact ends, inside (0, 1).
     pub c: f64,
@@ -56,6 +56,15 @@ impl Smooth {
             b: [1.0 - 3.0 * y2 + 2.0 * y3, -6.0 * y + 6.0 * y2, -6.0 + 12.0 * y],
         }
     }
+
+    /// \[u_xx, u_xy, u_yy\] of each component.
+    fn hessians(&self, x: [f64; 2]) -> [[f64; 3]; 2] {
+        let Factors { pi, q, a, b } = self.factors(x);
+        [
+            [a[0] * pi[3], a[1] * pi[2], a[2] * pi[1]],
+            [b[0] * pi[2] - a[0] * q[2], b[1] * pi[1] - a[1] * q[1], b[2] * pi[0] - a[2] * q[0]],
+        ]
+    }
 }
 
 /// amplitude \[t\]+^exponent and its first derivatives with respect to t.
@@ -96,16 +105,16 @@ impl ExactSolution for Smooth {
         )
     }
 
+    fn second_derivatives(&self, x: [f64; 2]) -> Option<[[f64; 3]; 2]> {
+        Some(self.hessians(x))
+    }
+
     /// f = -(lambda + mu) grad div u - mu Laplace u
     fn body_force(&self, x: [f64; 2]) -> Option<[f64; 2]> {
-        let Factors { pi, q, a, b } = self.factors(x);
+        let [[xx, xy, yy], [vxx, vxy, vyy]] = self.hessians(x);
         let mu = self.material.mu();
         let both = self.material.lambda() + mu;
-        let grad_div =
-            [a[0] * pi[3] + b[1] * pi[1] - a[1] * q[1], a[1] * pi[2] + b[2] * pi[0] - a[2] * q[0]];
-        let laplace =
-            [a[0] * pi[3] + a[2] * pi[1], b[0] * pi[2] - a[0] * q[2] + b[2] * pi[0] - a[2] * q[0]];
-        Some([0, 1].map(|c| -both * grad_div[c] - mu * laplace[c]))
+        Some([-both * (xx + vxy) - mu * (xx + yy), -both * (xy + vyy) - mu * (vxx + vyy)])
     }
 
     fn gap(&self, [x, _]: [f64; 2]) -> f64 {

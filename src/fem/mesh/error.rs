@@ -71,7 +71,7 @@ fn short(length: f64) -> f64 {
 }
 
 impl MeshError {
-    /// The same error in the numbers of the file that the mesh came from.
+    /// Restates the error in the numbers of the file that the mesh came from.
     #[must_use]
     pub fn renumbered(
         mut self,
