@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Plants the mistakes of `props/planted.toml` in the sources, one at a time, and asks the check of VERIFY.md that is named there.
+"""Plants the mistakes of `props/planted.toml` in the sources, one at a time, and asks what is named there: a check of VERIFY.md
+(`row` and `check`) or a test of `tests/suite` (`test`).
 
     python3 .ci/planted.py                    every mistake must be noticed by its check, and no check without one
     python3 .ci/planted.py --only TEXT        those with TEXT in their name
@@ -39,7 +40,15 @@ pub fn on(k: u32) -> bool {
     *PLANTED.get_or_init(|| std::env::var("PLANTED").ok().and_then(|k| k.parse().ok()).unwrap_or(0)) == k
 }
 """
-KEYS = {"name", "file", "old", "new", "row", "check"}
+KEYS = {"name", "file", "old", "new"}
+
+
+def is_a_test(path):
+    """Whether the file of a test declares it, as a function or as a line of `properties!`."""
+    *modules, name = path.split("::")
+    file = ROOT / "tests/suite" / ("/".join(modules) + ".rs")
+    text = file.read_text() if file.is_file() else ""
+    return f"fn {name}(" in text or f"    {name}:" in text
 
 
 def mistakes(path):
@@ -47,9 +56,11 @@ def mistakes(path):
     found, wrong, names = [], [], set()
     for k, entry in enumerate(tomllib.loads(path.read_text())["mistake"], 1):
         what = f"{path.name}, mistake {k} ({entry.get('name')})"
-        if missing := KEYS - entry.keys():
+        if missing := (KEYS | ({"test"} if "test" in entry else {"row", "check"})) - entry.keys():
             wrong.append(f"{what}: no {', '.join(sorted(missing))}")
             continue
+        if "test" in entry and not is_a_test(entry["test"]):
+            wrong.append(f"{what}: no test {entry['test']}")
         if entry["name"] in names:
             wrong.append(f"{what}: the name is there twice")
         names.add(entry["name"])
@@ -113,12 +124,26 @@ def plant(group):
             path.unlink()
 
 
-def build():
-    """The audit with the mistakes."""
-    command = ["cargo", "build", "--quiet", "-p", "props", "--target-dir", str(BUILD)]
-    done = subprocess.run(command, cwd=TREE, capture_output=True, text=True)
+def build(*command):
+    """The audit, or the tests, with the mistakes; what cargo says of it."""
+    done = subprocess.run(["cargo", *command, "--target-dir", str(BUILD)], cwd=TREE, capture_output=True, text=True)
     if done.returncode != 0:
         sys.exit(f"{done.stderr}\nthe mistakes do not compile: expected an expression in each `old` and `new`")
+    return done.stderr
+
+
+def ask_test(program, number, test, seconds):
+    """The same of a test."""
+    environment = os.environ | {"PLANTED": str(number), "NO_COLOR": "1"}
+    try:
+        done = subprocess.run(
+            [program, "--exact", test], cwd=TREE, env=environment, capture_output=True, text=True, timeout=seconds
+        )
+    except subprocess.TimeoutExpired:
+        return None
+    if "test result: ok. 1 passed" in done.stdout:
+        return {}
+    return {test if "test result: FAILED" in done.stdout else "(no report)": done.stdout.strip().splitlines()[-1:]}
 
 
 def ask(number, row=None, check=None, seconds=600):
@@ -155,16 +180,24 @@ def main():
     table, bad, asked = [], 0, set()
     for group in batches(entries):
         plant(group)
-        build()
+        if options.survey or any("row" in entry for entry in group):
+            build("build", "--quiet", "-p", "props")
+        if not options.survey and any("test" in entry for entry in group):
+            said = build("test", "--test", "suite", "--no-run")
+            tests = str(TREE / said.rsplit("(", 1)[1].split(")")[0])
         for entry in group:
-            row, check = (None, None) if options.survey else (entry["row"], entry["check"])
-            if (row, check) not in asked:
-                asked.add((row, check))
-                if (failed := ask(0, row, check, options.seconds)) != {}:
+            row, check, test = (None if options.survey else entry.get(key) for key in ("row", "check", "test"))
+
+            def asking(number):
+                return ask_test(tests, number, test, options.seconds) if test else ask(number, row, check, options.seconds)
+
+            if (row, check, test) not in asked:
+                asked.add((row, check, test))
+                if (failed := asking(0)) != {}:
                     bad += 1
-                    print(f"WITHOUT A MISTAKE, row {row}, {check or 'all checks'}: {failed}", flush=True)
+                    print(f"WITHOUT A MISTAKE, {test or check or 'all checks'}: {failed}", flush=True)
             start = time.monotonic()
-            failed = ask(entry["number"], row, check, options.seconds)
+            failed = asking(entry["number"])
             took = time.monotonic() - start
             if failed is None:
                 verdict = "no answer in time"
@@ -174,7 +207,7 @@ def main():
                 verdict = f"SURVIVES {failed or ''}"
             bad += not verdict.startswith("noticed")
             print(f"{entry['name']}: {verdict} ({took:.0f} s)", flush=True)
-            table.append(f"| {entry['name']} | `{entry['file']}` | {entry['row']} | {verdict} |")
+            table.append(f"| {entry['name']} | `{entry['file']}` | {entry.get('row', 'test')} | {verdict} |")
     head = ["| mistake | file | row | found |", "| --- | --- | --- | --- |"]
     (TARGET / "table.md").write_text("\n".join(head + table) + "\n")
     print(f"{len(table)} mistakes, {bad} not noticed; written: {TARGET / 'table.md'}")

@@ -173,14 +173,23 @@ fn of_statement(statement: Statement, engine: Engine, control: bool) -> Check {
     Check { name: statement.name, engine, control, subject: Subject::Statement(statement) }
 }
 
-/// A check by a function of its own.
+/// A check by a function of its own; where its name begins with `control_`, a negative control.
 pub fn by(engine: Engine, name: &'static str, run: fn() -> Outcome) -> Check {
-    Check { name, engine, control: false, subject: Subject::Function(run) }
+    Check { name, engine, control: name.starts_with("control_"), subject: Subject::Function(run) }
 }
 
-/// A negative control by a function of its own.
-pub fn control(engine: Engine, name: &'static str, run: fn() -> Outcome) -> Check {
-    Check { name, engine, control: true, subject: Subject::Function(run) }
+/// `exact!("name" => outcome)`: a check in exact numbers, on one line of a row's list.
+macro_rules! exact {
+    ($name:literal => $run:expr) => {
+        $crate::claim::by($crate::claim::Engine::Exact, $name, || $run)
+    };
+}
+
+/// `doubles!("name" => outcome)`: a check in doubles.
+macro_rules! doubles {
+    ($name:literal => $run:expr) => {
+        $crate::claim::by($crate::claim::Engine::Doubles, $name, || $run)
+    };
 }
 
 /// A false statement, refused by the proof engine.
@@ -262,6 +271,7 @@ mod tests {
         let check = by(Engine::Exact, "too_large_a_power", too_large_a_power);
         let why = check.run().unwrap_err();
         assert!(why.contains("it panicked") && why.contains("exponents below 2^16"), "{why}");
-        assert!(control(Engine::Exact, "too_large_a_power", too_large_a_power).run().is_err());
+        let control = by(Engine::Exact, "control_too_large_a_power", too_large_a_power);
+        assert!(control.control && control.run().is_err());
     }
 }

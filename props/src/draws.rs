@@ -248,10 +248,10 @@ const EDGES: &[f64] = &[
 ];
 
 /// Draws of the unknowns of a statement.
-pub const DRAWS: u32 = 2000;
+pub const DRAWS: u32 = 500;
 
 /// The same over doubles.
-pub const DRAWS_OF_DOUBLES: u32 = 10 * DRAWS;
+pub const DRAWS_OF_DOUBLES: u32 = 20_000;
 
 fn at_ratios(statement: &Statement, values: &[(i64, i64)]) -> Verdict {
     Exact::scope(|| {

@@ -9,6 +9,7 @@ pub mod audit;
 #[cfg(not(kani))]
 pub mod bodies;
 #[cfg(not(kani))]
+#[macro_use]
 pub mod claim;
 pub mod claims;
 #[cfg(not(kani))]

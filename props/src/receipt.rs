@@ -8,7 +8,8 @@
 //!
 //! A receipt stands behind a harness as long as the harness and all that it reaches are what they were.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -16,8 +17,6 @@ use std::process::Command;
 use std::sync::OnceLock;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-use crate::claim::Subject;
-use crate::claims;
 use crate::fingerprint::Sources;
 use crate::harness::Harness;
 
@@ -304,25 +303,17 @@ pub fn standing(harness: &Harness) -> Standing {
     standings.get(harness.name).cloned().unwrap_or(Standing::Never)
 }
 
-/// Whether a harness is decided by running it on all its values, which are few.
+/// Whether a harness is decided by running it on all its values, which are few: asked once.
 pub fn is_decided(harness: &Harness) -> bool {
-    static DECIDED: OnceLock<BTreeSet<String>> = OnceLock::new();
-    let decided = DECIDED.get_or_init(|| {
-        harnesses().iter().filter(|harness| harness.is_decided()).map(Harness::path).collect()
-    });
-    decided.contains(&harness.path())
-}
-
-/// All harnesses of the claims.
-pub fn harnesses() -> Vec<Harness> {
-    let claims = claims::all();
-    let checks = claims.iter().flat_map(|claim| &claim.checks);
-    checks
-        .filter_map(|check| match check.subject {
-            Subject::Harness(harness) => Some(harness),
-            _ => None,
-        })
-        .collect()
+    thread_local! {
+        static DECIDED: RefCell<BTreeMap<String, bool>> = const { RefCell::new(BTreeMap::new()) };
+    }
+    let known = DECIDED.with_borrow(|decided| decided.get(&harness.path()).copied());
+    known.unwrap_or_else(|| {
+        let decided = harness.is_decided();
+        DECIDED.with_borrow_mut(|all| all.insert(harness.path(), decided));
+        decided
+    })
 }
 
 /// Writes the receipt of a run of which Kani's output is in the file `log`, and answers where.
@@ -396,7 +387,22 @@ fn date(time: SystemTime) -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
+
     use super::*;
+    use crate::claim::Subject;
+    use crate::claims;
+
+    /// All harnesses of the claims.
+    fn harnesses() -> Vec<Harness> {
+        let checks = claims::all().into_iter().flat_map(|claim| claim.checks);
+        checks
+            .filter_map(|check| match check.subject {
+                Subject::Harness(harness) => Some(harness),
+                _ => None,
+            })
+            .collect()
+    }
 
     const LOG: &str = "\
 Kani Rust Verifier 0.67.0 (cargo plugin)

@@ -5,7 +5,7 @@
 use proptest::prelude::*;
 use signorini::fem::{Errors, a_priori};
 
-use crate::claim::{Claim, Engine, Outcome, by, control, proved, refuted, tested};
+use crate::claim::{Claim, proved, refuted, tested};
 use crate::claims::theorem_3_4::scaled_sides;
 use crate::numbers::Exact;
 use crate::verdict::{Ordered, Verdict};
@@ -207,15 +207,6 @@ fn called(&[kappa, e, z, h, s, q]: &Draw, spoil: impl Fn(Exact) -> Exact) -> Ver
     })
 }
 
-fn what_the_solver_calls() -> Outcome {
-    draws::hold(400, numbers(), &["always"], |draw| called(draw, |kappa| kappa))
-}
-
-/// kappa^2 under the root: kappa for kappa^(1/2).
-fn kappa_for_its_root() -> Outcome {
-    draws::reject(numbers(), |draw| called(draw, |kappa| kappa * kappa))
-}
-
 /// The row of the bounds.
 pub fn claim() -> Claim {
     let plain = statement!(plain_bound_is_that_of_theorem_3_4, [e, h, z, s, q, k], ["always"]);
@@ -253,12 +244,8 @@ pub fn claim() -> Claim {
     let mut checks: Vec<_> = all.into_iter().map(proved).collect();
     checks.extend([tested(terms)]);
     checks.extend([
-        by(
-            Engine::Doubles,
-            "the_bounds_that_the_solver_calls_are_roots_of_these",
-            what_the_solver_calls,
-        ),
-        control(Engine::Doubles, "control_kappa_for_its_root_in_doubles", kappa_for_its_root),
+        doubles!("the_bounds_that_the_solver_calls_are_roots_of_these" => draws::hold(400, numbers(), &["always"], |draw| called(draw, |kappa| kappa))),
+        doubles!("control_kappa_for_its_root_in_doubles" => draws::reject(numbers(), |draw| called(draw, |kappa| kappa * kappa))),
         refuted(statement!(
             control_kappa_for_its_root_in_corollary_3_6,
             [s, e, h, k],

@@ -6,6 +6,7 @@ use proptest::prelude::*;
 use signorini::fem::ball::Ball as Fine;
 use signorini::fem::contact_line::EdgeRule;
 use signorini::fem::moments::moments;
+use signorini::fem::twofold::Twofold;
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::{Ball, Enclosing, Interval, P1, positive_part};
 
@@ -232,4 +233,45 @@ pub fn moments_of_balls_contain_those_of_their_numbers() -> Outcome {
 /// A twentieth of their radii.
 pub fn moments_of_balls_within_a_twentieth_of_them() -> Outcome {
     draws::reject(data(), |draw| moments_of(draw, 0.05))
+}
+
+/// The number that it stands for.
+fn value(a: Twofold) -> Exact {
+    Exact::of_double(a.head()) + Exact::of_double(a.tail())
+}
+
+/// The four operations are exact to 2^`bits` of what they are made of.
+fn twofold(&[a, b, c, d]: &[f64; 4], bits: i32) -> Verdict {
+    Exact::scope(|| {
+        let small = 2.0_f64.powi(-54);
+        let (x, y) = (Twofold::sum(a, b * small), Twofold::sum(c, d * small));
+        let [exact_x, exact_y] = [x, y].map(value);
+        ensure!(exact_x == Exact::of_double(a) + Exact::of_double(b * small));
+        let product = Twofold::product(a, c);
+        ensure!(value(product) == Exact::of_double(a) * Exact::of_double(c));
+        let unit = Exact::of_double(2.0_f64.powi(bits));
+        let near =
+            |found: Twofold, exact: Exact, size: Exact| (value(found) - exact).abs() <= unit * size;
+        let sizes = [exact_x, exact_y].map(Exact::abs);
+        ensure!(near(x + y, exact_x + exact_y, sizes[0] + sizes[1]));
+        ensure!(near(x - y, exact_x - exact_y, sizes[0] + sizes[1]));
+        ensure!(near(x * y, exact_x * exact_y, sizes[0] * sizes[1]));
+        ensure!(near(x / y, exact_x / exact_y, sizes[0] / sizes[1]));
+        Verdict::Holds(if (a > 0.0) == (c > 0.0) { "one sign" } else { "two signs" })
+    })
+}
+
+fn twofold_numbers() -> impl Strategy<Value = [f64; 4]> {
+    let size = || prop_oneof![1e-3_f64..1e3, -1e3_f64..-1e-3];
+    [size(), size(), size(), size()]
+}
+
+/// Row 13: numbers of twice the precision keep 100 bits.
+pub fn twofold_numbers_keep_a_hundred_bits() -> Outcome {
+    draws::hold(500, twofold_numbers(), &["one sign", "two signs"], |draw| twofold(draw, -100))
+}
+
+/// To 120 bits they are not exact.
+pub fn twofold_numbers_keep_120_bits() -> Outcome {
+    draws::reject(twofold_numbers(), |draw| twofold(draw, -120))
 }

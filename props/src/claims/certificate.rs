@@ -38,7 +38,7 @@ use signorini::solve::{
 
 use super::{answers, honesty, pressed};
 use crate::bodies::MaybeExact;
-use crate::claim::{Check, Engine, Outcome, by, control, noticed, text};
+use crate::claim::{Check, Outcome, noticed, text};
 use crate::discrete::{CUT, Discrete, Nodal, exactly};
 use crate::elimination::{Matrix, combined, dot, solve_definite, square};
 use crate::numbers::Exact;
@@ -630,19 +630,15 @@ where
 fn hold_in_doubles(asked: InDoubles) -> Outcome {
     let mut text = Vec::new();
     for (gap, class) in [(WIDE, "open"), (NARROW, "pressed"), (BETWEEN, IRRATIONAL)] {
-        text.push(draws::hold(6, problems([2, 2], gap), &[class], |draw| {
+        text.push(draws::hold(3, problems([2, 2], gap), &[class], |draw| {
             Exact::scope(|| enclosed_in_doubles::<P1, 3, 2>(draw, ContactQuadrature::Exact, asked))
         })?);
     }
     let gauss = ContactQuadrature::Gauss(3);
-    text.push(draws::hold(4, problems([1, 1], BETWEEN), &[], |draw| {
+    text.push(draws::hold(2, problems([1, 1], BETWEEN), &[], |draw| {
         Exact::scope(|| enclosed_in_doubles::<P2, 6, 3>(draw, gauss, asked))
     })?);
     Ok(text.join("; "))
-}
-
-fn reported_around_the_result() -> Outcome {
-    hold_in_doubles(REPORTED)
 }
 
 /// Draws of bodies that contact alone holds, around the result and around any point near it. Where an edge is open in part,
@@ -652,13 +648,13 @@ fn reported_of_what_contact_holds() -> Outcome {
     let moved = InDoubles { noise: 1e-4, ..REPORTED_MOVED };
     let gauss = ContactQuadrature::Gauss(3);
     for asked in [REPORTED, moved] {
-        text.push(draws::hold(8, problems_by_contact([2, 2], 6.0), &["pressed"], |draw| {
+        text.push(draws::hold(3, problems_by_contact([2, 2], 6.0), &["pressed"], |draw| {
             Exact::scope(|| enclosed_in_doubles::<P1, 3, 2>(draw, ContactQuadrature::Exact, asked))
         })?);
-        text.push(draws::hold(8, problems_by_contact([2, 2], 12.0), &["pressed", CUT], |draw| {
+        text.push(draws::hold(3, problems_by_contact([2, 2], 12.0), &["pressed", CUT], |draw| {
             Exact::scope(|| enclosed_in_doubles::<P1, 3, 2>(draw, gauss, asked))
         })?);
-        text.push(draws::hold(4, problems_by_contact([1, 1], 6.0), &["pressed"], |draw| {
+        text.push(draws::hold(2, problems_by_contact([1, 1], 6.0), &["pressed"], |draw| {
             Exact::scope(|| enclosed_in_doubles::<P2, 6, 3>(draw, gauss, asked))
         })?);
     }
@@ -671,14 +667,6 @@ fn a_third_of_what_contact_holds() -> Outcome {
     draws::reject(problems_by_contact([2, 2], 6.0), |draw| {
         Exact::scope(|| enclosed_in_doubles::<P1, 3, 2>(draw, ContactQuadrature::Exact, asked))
     })
-}
-
-fn reported_around_any_point() -> Outcome {
-    hold_in_doubles(REPORTED_MOVED)
-}
-
-fn reported_by_another_factor() -> Outcome {
-    hold_in_doubles(ANOTHER_FACTOR)
 }
 
 /// A body on a round obstacle, so that directions of contact turn along each edge: the kappa that the enclosure proves is that
@@ -737,28 +725,10 @@ where
     Ok(turns.fold(0.0, f64::max))
 }
 
-fn kappa_is_proved_where_directions_turn() -> Outcome {
-    proved_kappa(1.0)
-}
-
-fn a_kappa_that_is_a_millionth_smaller() -> Outcome {
-    noticed(proved_kappa(1.0 - 1e-6))
-}
-
 fn reported_rejected(asked: InDoubles) -> Outcome {
     draws::reject(problems([2, 2], NARROW), |draw| {
         Exact::scope(|| enclosed_in_doubles::<P1, 3, 2>(draw, ContactQuadrature::Exact, asked))
     })
-}
-
-/// A third of the radii around a moved point.
-fn a_third_of_what_is_reported() -> Outcome {
-    reported_rejected(InDoubles { factor: 1.0 / 3.0, ..REPORTED_MOVED })
-}
-
-/// A residual from a load that is off by a millionth, and still a radius of 2^-40.
-fn a_wrong_load() -> Outcome {
-    reported_rejected(InDoubles { load: 1.0 + 1e-6, ..REPORTED })
 }
 
 /// Draws of each kind of gap, with the class that it is to hit; most of them for the one between.
@@ -814,22 +784,6 @@ fn by_points(demand: Demand) -> Outcome {
     Ok(format!("P1: {p1}; P2: {p2}"))
 }
 
-fn around_the_result_for_p1() -> Outcome {
-    by_pieces(SOLVER)
-}
-
-fn around_any_point_for_p1() -> Outcome {
-    by_pieces(MOVED)
-}
-
-fn around_the_result_by_points() -> Outcome {
-    by_points(SOLVER)
-}
-
-fn around_any_point_by_points() -> Outcome {
-    by_points(MOVED)
-}
-
 /// In full contact, where u^h is rational and each of the bounds is looked at.
 fn rejected(demand: Demand) -> Outcome {
     let p1 = draws::reject(problems([2, 1], NARROW), |draw| {
@@ -848,11 +802,6 @@ fn a_tenth() -> Outcome {
         text.push(rejected(Demand { tenth: Some(bound), ..SOLVER })?);
     }
     Ok(text.join("; "))
-}
-
-/// The result moved by up to 1e-9 and still called the solver's.
-fn slightly_moved() -> Outcome {
-    rejected(Demand { noise: 1e-9, ..SOLVER })
 }
 
 /// The triangle (0, 0), (3, 0), (0, 4) in contact at y = 0, all but (3, 0) clamped, lambda = mu = 1, with the body force
@@ -905,130 +854,34 @@ fn refused_beyond_the_limit() -> Outcome {
 /// The checks, for the row of Theorem 3.3.
 pub fn checks() -> [Check; 29] {
     [
-        by(
-            Engine::Exact,
-            "the_enclosure_that_is_reported_contains_the_solution_around_the_result",
-            reported_around_the_result,
-        ),
-        by(
-            Engine::Exact,
-            "the_enclosure_of_what_contact_alone_holds_contains_the_solution",
-            reported_of_what_contact_holds,
-        ),
-        control(
-            Engine::Exact,
-            "control_a_third_of_the_radius_where_contact_holds",
-            a_third_of_what_contact_holds,
-        ),
-        by(
-            Engine::Doubles,
-            "stresses_in_doubles_are_off_by_no_more_than_their_bound",
-            honesty::stresses_in_doubles_are_off_by_no_more_than_their_bound,
-        ),
-        control(
-            Engine::Doubles,
-            "control_a_bound_of_rounding_that_is_too_small",
-            honesty::a_bound_of_rounding_that_is_too_small,
-        ),
-        by(
-            Engine::Doubles,
-            "the_enclosure_contains_the_solution_whatever_the_factor",
-            reported_by_another_factor,
-        ),
-        by(
-            Engine::Doubles,
-            "errors_at_points_are_those_of_the_nodes",
-            answers::errors_at_points_are_those_of_the_nodes,
-        ),
-        control(
-            Engine::Doubles,
-            "control_half_the_error_at_a_point",
-            answers::half_the_error_at_a_point,
-        ),
-        by(
-            Engine::Doubles,
-            "edges_that_are_taken_for_pressed_stay_so",
-            pressed::edges_that_are_taken_for_pressed_stay_so,
-        ),
-        control(
-            Engine::Doubles,
-            "control_edges_stay_pressed_on_a_larger_ball",
-            pressed::edges_stay_pressed_on_a_larger_ball,
-        ),
-        by(
-            Engine::Doubles,
-            "pressed_edges_hold_their_ends",
-            pressed::pressed_edges_hold_their_ends,
-        ),
-        control(
-            Engine::Doubles,
-            "control_pressed_edges_hold_their_ends_by_a_quarter",
-            pressed::pressed_edges_hold_their_ends_by_a_quarter,
-        ),
-        by(
-            Engine::Doubles,
-            "springs_of_pressed_edges_are_those_of_p0",
-            pressed::springs_are_those_of_p0,
-        ),
-        control(
-            Engine::Doubles,
-            "control_springs_of_pressed_edges_are_stiffer",
-            pressed::springs_are_stiffer,
-        ),
-        by(
-            Engine::Doubles,
-            "all_that_is_within_the_clearance_is_a_solution",
-            pressed::all_that_is_within_the_clearance_is_a_solution,
-        ),
-        control(
-            Engine::Doubles,
-            "control_what_is_beyond_the_clearance_is_a_solution",
-            pressed::what_is_beyond_the_clearance_is_a_solution,
-        ),
-        by(
-            Engine::Doubles,
-            "kappa_and_bounds_at_nodes_are_proved_where_directions_turn",
-            kappa_is_proved_where_directions_turn,
-        ),
-        control(
-            Engine::Doubles,
-            "control_a_kappa_that_is_a_millionth_smaller",
-            a_kappa_that_is_a_millionth_smaller,
-        ),
-        by(
-            Engine::Exact,
-            "the_enclosure_that_is_reported_contains_the_solution_around_any_point",
-            reported_around_any_point,
-        ),
-        control(
-            Engine::Exact,
-            "control_a_third_of_the_radius_that_is_reported",
-            a_third_of_what_is_reported,
-        ),
-        control(Engine::Exact, "control_a_residual_from_a_wrong_load", a_wrong_load),
-        by(
-            Engine::Exact,
-            "one_solution_is_enclosed_around_the_result_of_the_solver_for_p1",
-            around_the_result_for_p1,
-        ),
-        by(
-            Engine::Exact,
-            "one_solution_is_enclosed_around_the_result_of_the_solver_by_points",
-            around_the_result_by_points,
-        ),
-        by(
-            Engine::Exact,
-            "one_solution_is_enclosed_around_any_point_for_p1",
-            around_any_point_for_p1,
-        ),
-        by(
-            Engine::Exact,
-            "one_solution_is_enclosed_around_any_point_by_points",
-            around_any_point_by_points,
-        ),
-        by(Engine::Exact, "one_solution_is_enclosed_on_a_finer_mesh", on_a_finer_mesh),
-        control(Engine::Exact, "control_a_tenth_of_the_radius_encloses", a_tenth),
-        control(Engine::Exact, "control_a_moved_result_for_the_solvers", slightly_moved),
-        control(Engine::Exact, "control_certificate_beyond_the_limit", refused_beyond_the_limit),
+        exact!("the_enclosure_that_is_reported_contains_the_solution_around_the_result" => hold_in_doubles(REPORTED)),
+        exact!("the_enclosure_of_what_contact_alone_holds_contains_the_solution" => reported_of_what_contact_holds()),
+        exact!("control_a_third_of_the_radius_where_contact_holds" => a_third_of_what_contact_holds()),
+        doubles!("stresses_in_doubles_are_off_by_no_more_than_their_bound" => honesty::stresses_are_off(1.0)),
+        doubles!("control_a_bound_of_rounding_that_is_too_small" => noticed(honesty::stresses_are_off(1e-3))),
+        doubles!("the_enclosure_contains_the_solution_whatever_the_factor" => hold_in_doubles(ANOTHER_FACTOR)),
+        doubles!("errors_at_points_are_those_of_the_nodes" => answers::errors_at_points(1.0)),
+        doubles!("control_half_the_error_at_a_point" => noticed(answers::errors_at_points(0.5))),
+        doubles!("edges_that_are_taken_for_pressed_stay_so" => pressed::stays(1.0)),
+        doubles!("control_edges_stay_pressed_on_a_larger_ball" => noticed(pressed::stays(1.01))),
+        doubles!("pressed_edges_hold_their_ends" => pressed::holds(1.0)),
+        doubles!("control_pressed_edges_hold_their_ends_by_a_quarter" => noticed(pressed::holds(0.25))),
+        doubles!("springs_of_pressed_edges_are_those_of_p0" => pressed::springs(1.0)),
+        doubles!("control_springs_of_pressed_edges_are_stiffer" => noticed(pressed::springs(1.0 + 1e-9))),
+        doubles!("all_that_is_within_the_clearance_is_a_solution" => pressed::room(1.0 - 1e-9)),
+        doubles!("control_what_is_beyond_the_clearance_is_a_solution" => noticed(pressed::room(1.01))),
+        doubles!("kappa_and_bounds_at_nodes_are_proved_where_directions_turn" => proved_kappa(1.0)),
+        doubles!("control_a_kappa_that_is_a_millionth_smaller" => noticed(proved_kappa(1.0 - 1e-6))),
+        exact!("the_enclosure_that_is_reported_contains_the_solution_around_any_point" => hold_in_doubles(REPORTED_MOVED)),
+        exact!("control_a_third_of_the_radius_that_is_reported" => reported_rejected(InDoubles { factor: 1.0 / 3.0, ..REPORTED_MOVED })),
+        exact!("control_a_residual_from_a_wrong_load" => reported_rejected(InDoubles { load: 1.0 + 1e-6, ..REPORTED })),
+        exact!("one_solution_is_enclosed_around_the_result_of_the_solver_for_p1" => by_pieces(SOLVER)),
+        exact!("one_solution_is_enclosed_around_the_result_of_the_solver_by_points" => by_points(SOLVER)),
+        exact!("one_solution_is_enclosed_around_any_point_for_p1" => by_pieces(MOVED)),
+        exact!("one_solution_is_enclosed_around_any_point_by_points" => by_points(MOVED)),
+        exact!("one_solution_is_enclosed_on_a_finer_mesh" => on_a_finer_mesh()),
+        exact!("control_a_tenth_of_the_radius_encloses" => a_tenth()),
+        exact!("control_a_moved_result_for_the_solvers" => rejected(Demand { noise: 1e-9, ..SOLVER })),
+        exact!("control_certificate_beyond_the_limit" => refused_beyond_the_limit()),
     ]
 }

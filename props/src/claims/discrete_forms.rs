@@ -285,9 +285,7 @@ mod row {
 
     use super::*;
     use crate::bodies::{Body, Definition, Kernel, MaybeExact, bodies, contact_class};
-    use crate::claim::{
-        Claim, Engine, Outcome, by, control, model_checked, proved, refuted, tested,
-    };
+    use crate::claim::{Claim, Outcome, model_checked, proved, refuted, tested};
     use crate::claims::assembled;
     use crate::draws;
     use crate::numbers::Exact;
@@ -449,28 +447,12 @@ mod row {
         let mut checks: Vec<_> = all.into_iter().map(proved).collect();
         checks.extend(all.map(tested));
         checks.extend([
-            by(Engine::Exact, "forms_on_random_bodies_are_their_definitions_for_p1", forms_p1),
-            by(Engine::Exact, "forms_on_random_bodies_are_their_definitions_for_p2", forms_p2),
-            by(
-                Engine::Doubles,
-                "element_matrices_in_doubles_are_near_the_exact_ones",
-                matrices_in_doubles,
-            ),
-            by(
-                Engine::Doubles,
-                "diameters_lengths_and_normals_of_the_solver_are_those_of_the_edges",
-                assembled::square_roots,
-            ),
-            by(
-                Engine::Doubles,
-                "gamma_of_the_solver_is_gamma0_times_the_diameter",
-                assembled::gamma_by_the_diameter,
-            ),
-            control(
-                Engine::Doubles,
-                "control_gamma_by_the_length_of_the_edge",
-                assembled::gamma_by_the_edge,
-            ),
+            exact!("forms_on_random_bodies_are_their_definitions_for_p1" => forms_p1()),
+            exact!("forms_on_random_bodies_are_their_definitions_for_p2" => forms_p2()),
+            doubles!("element_matrices_in_doubles_are_near_the_exact_ones" => matrices_in_doubles()),
+            doubles!("diameters_lengths_and_normals_of_the_solver_are_those_of_the_edges" => assembled::square_roots()),
+            doubles!("gamma_of_the_solver_is_gamma0_times_the_diameter" => assembled::gamma_by_the_diameter()),
+            doubles!("control_gamma_by_the_length_of_the_edge" => assembled::gamma_by_the_edge()),
             refuted(statement!(
                 control_p1_reproduces_quadratic_functions,
                 [c0, c1, c2, c3, c4, c5, x, y],
@@ -481,27 +463,11 @@ mod row {
                 [ax, ay, bx, by, cx, cy],
                 fails "g[0] * d[0] + g[1] * d[1] == S::from(1)"
             )),
-            control(
-                Engine::Exact,
-                "control_edge_length_for_the_diameter",
-                edge_length_for_diameter,
-            ),
-            control(Engine::Exact, "control_lame_coefficients_exchanged", lame_exchanged),
-            control(
-                Engine::Doubles,
-                "control_an_edge_of_the_solver_for_the_longest",
-                assembled::first_edge_for_the_longest,
-            ),
-            control(
-                Engine::Doubles,
-                "control_the_diameter_of_the_solver_taken_wrong",
-                assembled::diameter_taken_wrong,
-            ),
-            control(
-                Engine::Doubles,
-                "control_gamma_edges_or_material_of_the_solver_taken_wrong",
-                assembled::form_taken_wrong,
-            ),
+            exact!("control_edge_length_for_the_diameter" => edge_length_for_diameter()),
+            exact!("control_lame_coefficients_exchanged" => lame_exchanged()),
+            doubles!("control_an_edge_of_the_solver_for_the_longest" => assembled::first_edge_for_the_longest()),
+            doubles!("control_the_diameter_of_the_solver_taken_wrong" => assembled::diameter_taken_wrong()),
+            doubles!("control_gamma_edges_or_material_of_the_solver_taken_wrong" => assembled::form_taken_wrong()),
         ]);
         checks.extend(HARNESSES.iter().copied().map(model_checked));
         Claim {

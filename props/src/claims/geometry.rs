@@ -18,7 +18,7 @@ use signorini::solve::ldl::TwofoldFactor;
 use signorini::solve::system::System;
 use signorini::solve::{Degree, Method, discretize};
 
-use crate::claim::{Outcome, noticed, text};
+use crate::claim::{Outcome, text};
 use crate::verdict::Verdict;
 use crate::{draws, ensure, sharpness};
 
@@ -225,7 +225,7 @@ where
     Ok(least)
 }
 
-fn korn(by: f64) -> Outcome {
+pub(super) fn korn(by: f64) -> Outcome {
     let strain = || Material::lame(1.0, 1.0, Plane::Strain);
     let mut bodies: Vec<Problem> =
         sharpness::small_bodies()?.into_iter().map(|body| body.problem).collect();
@@ -246,16 +246,6 @@ fn korn(by: f64) -> Outcome {
         least = least.min(korn_on::<P2, 6, 3>(problem, by)?);
     }
     Ok(format!("{} bodies, P1 and P2; at least {least:.2} times what is attained", bodies.len()))
-}
-
-/// Row 10: Korn's constants.
-pub fn nodes_move_no_further_than_korns_constants_say() -> Outcome {
-    korn(1.0)
-}
-
-/// Constants a thousandth as large.
-pub fn korns_constants_a_thousandth_as_large() -> Outcome {
-    noticed(korn(1e3))
 }
 
 /// Pascal's matrix of order n plus the identity: a condition number of 10^12 for n = 24.
@@ -282,7 +272,7 @@ fn pascal(n: usize) -> LowerTriangle<Twofold> {
 
 /// A system of which doubles know next to nothing. The solution is one of whole numbers, to 2e-16: the condition number is
 /// below 1e14, times 24 and 2^-104. What is not definite has no factor. The planted mistake is the factor in doubles.
-fn factored(in_doubles: bool) -> Outcome {
+pub(super) fn factored(in_doubles: bool) -> Outcome {
     let n = 24;
     let matrix = pascal(n);
     let expected: Vec<f64> = (0..n).map(|i| f64::from((i * 7 % 11) as i32 - 5)).collect();
@@ -317,14 +307,4 @@ fn factored(in_doubles: bool) -> Outcome {
         return Err("a matrix with a negative eigenvalue has a factor".to_owned());
     }
     Ok(format!("Pascal's matrix of order {n} plus the identity, off by {far:.0e}"))
-}
-
-/// Row 13: the factor in twofold numbers.
-pub fn factors_in_twofold_numbers_solve_what_doubles_cannot() -> Outcome {
-    factored(false)
-}
-
-/// The factor in doubles.
-pub fn factors_in_doubles_solve_it_too() -> Outcome {
-    noticed(factored(true))
 }

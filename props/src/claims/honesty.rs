@@ -212,7 +212,7 @@ fn told_of(problem: &Problem, degree: usize, shares: &[f64]) -> Result<Told, Str
 }
 
 /// The residual that is reported, `scale` times what is reported, is that of (8) by its definition.
-fn residual_is_told(scale: f64) -> Outcome {
+pub(super) fn residual_is_told(scale: f64) -> Outcome {
     let bodies = on_bodies(|problem, degree| {
         for share in [1.0, 1e-3, 1e-6] {
             let told = told_of(problem, degree, &[share])?;
@@ -226,20 +226,10 @@ fn residual_is_told(scale: f64) -> Outcome {
     Ok(format!("{bodies} bodies, P1 and P2, at three distances from the solution"))
 }
 
-/// Row 19: the residual.
-pub fn residual_is_that_of_8() -> Outcome {
-    residual_is_told(1.0)
-}
-
-/// A residual a million times too small.
-pub fn residual_too_small() -> Outcome {
-    noticed(residual_is_told(1e-6))
-}
-
 /// Whether a result is called proved is decided by its enclosure, or, `by_estimate`, by its last correction: what is called so is
 /// enclosed as narrowly as asked for, and its error is within the enclosure. Passes take the error down by the factors of
 /// `FALLS`, or stay at a distance: then there is nothing that they correct.
-fn proved(by_estimate: bool) -> Outcome {
+pub(super) fn proved(by_estimate: bool) -> Outcome {
     let settings = Settings::default();
     let (proved, other) = (std::cell::Cell::new(0), std::cell::Cell::new(0));
     let bodies = on_bodies(|problem, degree| {
@@ -279,16 +269,6 @@ const FALLS: [f64; 4] = [0.01, 0.1, 0.4, -1.0];
 /// The shares of the first error at which passes stay.
 const STAYS: [f64; 3] = [1.0, 1e-3, 1e-9];
 
-/// Row 19: the verdict.
-pub fn nothing_is_proved_that_is_further_away() -> Outcome {
-    proved(false)
-}
-
-/// The estimate that the size of the last correction is.
-pub fn the_last_correction_decides() -> Outcome {
-    noticed(proved(true))
-}
-
 /// a(u, v) by stresses in doubles, for a random u that is carried along by `by`, less a(u, v) in balls: its norm dual to |v|_a on
 /// the v that are free, beside the bound.
 fn rounding_of_stresses<E, const N: usize, const M: usize>(
@@ -309,7 +289,7 @@ where
         .map(|u| u.map(Ball::centre))
         .collect();
     let mut sums = [vec![[Ball::from(0); 2]; nodes], vec![[Ball::from(0); 2]; nodes]];
-    let bound = precise::add_forces_of_rounded_stresses(&d, &u, Ball::from, &mut sums[0]);
+    let bound = precise::add_forces_of_rounded_stresses(&d, &u, &mut sums[0]);
     precise::add_internal_forces(&d, &u, &mut sums[1]);
     let off: Vec<[f64; 2]> =
         (0..nodes).map(|i| [0, 1].map(|c| (sums[0][i][c] - sums[1][i][c]).head())).collect();
@@ -323,7 +303,7 @@ where
 }
 
 /// The rounding of stresses is at most `scale` times its bound.
-fn stresses_are_off(scale: f64) -> Outcome {
+pub(super) fn stresses_are_off(scale: f64) -> Outcome {
     let most = std::cell::Cell::new(0.0_f64);
     let bodies = on_bodies(|problem, degree| {
         for by in [0.0, 1.0, 1e6] {
@@ -339,16 +319,6 @@ fn stresses_are_off(scale: f64) -> Outcome {
         Ok(())
     })?;
     Ok(format!("{bodies} bodies, P1 and P2: off by at most {:.0e} of the bound", most.get()))
-}
-
-/// Row 10: the rounding of stresses in doubles, as a functional, is bounded a priori.
-pub fn stresses_in_doubles_are_off_by_no_more_than_their_bound() -> Outcome {
-    stresses_are_off(1.0)
-}
-
-/// A thousandth of the bound.
-pub fn a_bound_of_rounding_that_is_too_small() -> Outcome {
-    noticed(stresses_are_off(1e-3))
 }
 
 /// The von Mises stress of a mean stress by its principal stresses, sigma_zz from Hooke's law; `plane` may be a mistake.
@@ -496,7 +466,7 @@ where
     Ok(())
 }
 
-fn stresses(plane: Option<Plane>) -> Outcome {
+pub(super) fn stresses(plane: Option<Plane>) -> Outcome {
     let bodies = on_bodies(|problem, degree| {
         if degree == 1 {
             stresses_on::<P1, 3, 2>(problem, plane)
@@ -540,11 +510,6 @@ where
     let [[xx, xy], [yx, yy]] = gradient;
     let (middle, shear) = ((xx + yy) / 2.0, (xy + yx) / 2.0);
     middle.abs() + ((xx - yy) / 2.0).hypot(shear)
-}
-
-/// Row 6: von Mises stresses and the largest displacement.
-pub fn von_mises_stresses_are_their_definitions() -> Outcome {
-    stresses(None)
 }
 
 /// Plane strain without the stress across the plane.
@@ -608,7 +573,7 @@ where
 /// Products of norms are no larger than this many times the products that were added up.
 const COARSE: f64 = 60.0;
 
-fn magnitudes(scale: f64) -> Outcome {
+pub(super) fn magnitudes(scale: f64) -> Outcome {
     let most = std::cell::Cell::new(0.0_f64);
     let bodies = on_bodies(|problem, degree| {
         let found = if degree == 1 {
@@ -620,14 +585,4 @@ fn magnitudes(scale: f64) -> Outcome {
         Ok(())
     })?;
     Ok(format!("{bodies} bodies, P1 and P2; of a(u, .) at most {:.1} times its terms", most.get()))
-}
-
-/// Row 6: the magnitudes by which noise is told.
-pub fn magnitudes_are_those_of_the_terms() -> Outcome {
-    magnitudes(1.0)
-}
-
-/// Magnitudes a hundred times too small.
-pub fn magnitudes_too_small() -> Outcome {
-    noticed(magnitudes(0.01))
 }

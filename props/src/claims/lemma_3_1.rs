@@ -53,7 +53,7 @@ mod row {
 
     use super::*;
     use crate::bodies::{Body, Definition, Draw, Kernel, MaybeExact, Rule, bodies, rotated, sum};
-    use crate::claim::{Claim, Engine, Outcome, by, control, proved, refuted, tested};
+    use crate::claim::{Claim, Outcome, proved, refuted, tested};
     use crate::claims::{curved, enclosed};
     use crate::draws;
     use crate::naive::Tensor;
@@ -257,9 +257,9 @@ mod row {
             checks: vec![
                 proved(six),
                 tested(six),
-                by(Engine::Exact, "green_and_6_hold_at_affine_solutions_for_p1", patch_p1),
+                exact!("green_and_6_hold_at_affine_solutions_for_p1" => patch_p1()),
                 refuted(minus),
-                control(Engine::Exact, "control_obstacle_too_near", wrong_gap),
+                exact!("control_obstacle_too_near" => wrong_gap()),
             ],
         }
     }
@@ -286,124 +286,32 @@ mod row {
             limits: "The wedge (u = O(r^alpha), pressure unbounded) and smooth solutions with other exponents or a gap function are not covered. The enclosures are for a few bodies, of 2 x 1 cells. The derivatives in (1) and the shear on Gamma_C are enclosed at random points. The Taylor arithmetic of `props/src/enclosure.rs` is trusted, with tests on known integrals.",
             single: None,
             checks: vec![
-                by(Engine::Exact, "residual_vanishes_at_affine_solutions_for_p1", patch_p1),
-                by(Engine::Exact, "residual_vanishes_at_affine_solutions_for_p2", patch_p2),
-                by(
-                    Engine::Exact,
-                    "residual_vanishes_at_a_curved_solution_for_p1",
-                    curved::residual_vanishes,
-                ),
-                by(
-                    Engine::Exact,
-                    "residual_vanishes_at_a_curved_solution_for_p2",
-                    curved::residual_vanishes_for_p2,
-                ),
-                by(
-                    Engine::Doubles,
-                    "solver_has_the_curved_solution",
-                    curved::solver_has_the_same_solution,
-                ),
-                by(
-                    Engine::Doubles,
-                    "solver_has_the_load_of_the_curved_solution",
-                    curved::solver_has_the_same_load,
-                ),
-                by(
-                    Engine::Doubles,
-                    "residual_is_enclosed_around_zero_at_the_end_of_contact",
-                    enclosed::residual_contains_zero,
-                ),
-                by(
-                    Engine::Doubles,
-                    "formulas_at_the_end_of_contact_satisfy_1",
-                    enclosed::formulas_are_those_of_a_solution,
-                ),
-                by(
-                    Engine::Doubles,
-                    "formulas_at_the_end_of_contact_satisfy_2",
-                    enclosed::conditions_2_hold,
-                ),
-                control(
-                    Engine::Exact,
-                    "control_contact_term_left_out",
-                    curved::without_the_contact_term,
-                ),
-                control(
-                    Engine::Exact,
-                    "control_contact_term_left_out_for_p2",
-                    curved::without_the_contact_term_for_p2,
-                ),
-                control(Engine::Exact, "control_obstacle_too_near", wrong_gap),
-                control(
-                    Engine::Doubles,
-                    "control_body_force_off_by_a_millionth",
-                    curved::body_force_off_by_a_millionth,
-                ),
-                control(
-                    Engine::Doubles,
-                    "control_load_off_by_a_millionth",
-                    curved::load_off_by_a_millionth,
-                ),
-                control(
-                    Engine::Doubles,
-                    "control_enclosed_load_off_by_a_hundredth",
-                    enclosed::load_off_by_a_hundredth,
-                ),
-                control(
-                    Engine::Doubles,
-                    "control_enclosed_without_the_contact_term",
-                    enclosed::without_the_contact_term,
-                ),
-                control(
-                    Engine::Doubles,
-                    "control_enclosed_without_the_stress_product",
-                    enclosed::without_the_stress_product,
-                ),
-                control(
-                    Engine::Doubles,
-                    "control_theta_minus_one_in_one_place",
-                    enclosed::theta_in_one_place,
-                ),
-                control(
-                    Engine::Doubles,
-                    "control_gamma_doubled_in_one_place",
-                    enclosed::gamma_doubled_in_one_place,
-                ),
-                control(
-                    Engine::Doubles,
-                    "control_wrong_sign_of_sigma_n_in_p",
-                    enclosed::wrong_sign_of_the_stress,
-                ),
-                control(
-                    Engine::Doubles,
-                    "control_enclosed_with_an_obstacle_too_near",
-                    enclosed::obstacle_too_near,
-                ),
-                control(
-                    Engine::Doubles,
-                    "control_wrong_sign_of_the_load",
-                    enclosed::wrong_sign_of_the_load,
-                ),
-                control(
-                    Engine::Doubles,
-                    "control_tension_for_pressure",
-                    enclosed::tension_on_the_contact_line,
-                ),
-                control(
-                    Engine::Doubles,
-                    "control_transposed_gradient",
-                    enclosed::transposed_gradient,
-                ),
-                control(
-                    Engine::Doubles,
-                    "control_stresses_of_another_material",
-                    enclosed::stresses_of_another_material,
-                ),
-                control(
-                    Engine::Doubles,
-                    "control_conditions_2_under_tension",
-                    enclosed::conditions_2_under_tension,
-                ),
+                exact!("residual_vanishes_at_affine_solutions_for_p1" => patch_p1()),
+                exact!("residual_vanishes_at_affine_solutions_for_p2" => patch_p2()),
+                exact!("residual_vanishes_at_a_curved_solution_for_p1" => curved::residual_vanishes()),
+                exact!("residual_vanishes_at_a_curved_solution_for_p2" => curved::residual_vanishes_for_p2()),
+                doubles!("solver_has_the_curved_solution" => curved::solver_has_the_same_solution()),
+                doubles!("solver_has_the_load_of_the_curved_solution" => curved::solver_has_the_same_load()),
+                doubles!("residual_is_enclosed_around_zero_at_the_end_of_contact" => enclosed::residual_contains_zero()),
+                doubles!("formulas_at_the_end_of_contact_satisfy_1" => enclosed::formulas_are_those_of_a_solution()),
+                doubles!("formulas_at_the_end_of_contact_satisfy_2" => enclosed::conditions_2_hold()),
+                exact!("control_contact_term_left_out" => curved::without_the_contact_term()),
+                exact!("control_contact_term_left_out_for_p2" => curved::without_the_contact_term_for_p2()),
+                exact!("control_obstacle_too_near" => wrong_gap()),
+                doubles!("control_body_force_off_by_a_millionth" => curved::body_force_off_by_a_millionth()),
+                doubles!("control_load_off_by_a_millionth" => curved::load_off_by_a_millionth()),
+                doubles!("control_enclosed_load_off_by_a_hundredth" => enclosed::load_off_by_a_hundredth()),
+                doubles!("control_enclosed_without_the_contact_term" => enclosed::without_the_contact_term()),
+                doubles!("control_enclosed_without_the_stress_product" => enclosed::without_the_stress_product()),
+                doubles!("control_theta_minus_one_in_one_place" => enclosed::theta_in_one_place()),
+                doubles!("control_gamma_doubled_in_one_place" => enclosed::gamma_doubled_in_one_place()),
+                doubles!("control_wrong_sign_of_sigma_n_in_p" => enclosed::wrong_sign_of_the_stress()),
+                doubles!("control_enclosed_with_an_obstacle_too_near" => enclosed::obstacle_too_near()),
+                doubles!("control_wrong_sign_of_the_load" => enclosed::wrong_sign_of_the_load()),
+                doubles!("control_tension_for_pressure" => enclosed::tension_on_the_contact_line()),
+                doubles!("control_transposed_gradient" => enclosed::transposed_gradient()),
+                doubles!("control_stresses_of_another_material" => enclosed::stresses_of_another_material()),
+                doubles!("control_conditions_2_under_tension" => enclosed::conditions_2_under_tension()),
             ],
         }
     }

@@ -254,10 +254,8 @@ mod row {
     use crate::bodies::{
         Body, Definition, Kernel, MaybeExact, Rule, bodies, combined, contact_class, sum,
     };
-    use crate::claim::{
-        Claim, Engine, Outcome, by, control, model_checked, proved, refuted, tested,
-    };
-    use crate::claims::{assembled, conditions, honesty};
+    use crate::claim::{Claim, Outcome, model_checked, noticed, proved, refuted, tested};
+    use crate::claims::{assembled, honesty};
     use crate::draws;
     use crate::naive::Line;
     use crate::numbers::Exact;
@@ -647,89 +645,25 @@ mod row {
         let mut checks: Vec<_> = all.into_iter().map(proved).collect();
         checks.extend(all.into_iter().map(tested));
         checks.extend([
-            by(
-                Engine::Exact,
-                "residual_energy_and_hessian_on_random_bodies_are_their_definitions_for_p1",
-                residual_p1,
-            ),
-            by(Engine::Exact, "the_same_by_points_for_p1", residual_p1_by_points),
-            by(Engine::Exact, "the_same_by_points_for_p2", residual_p2_by_points),
-            by(Engine::Exact, "sums_over_points_are_their_definitions", sums_over_points),
-            by(
-                Engine::Doubles,
-                "cut_p1_edges_in_doubles_are_near_the_exact_integrals",
-                p1_in_doubles,
-            ),
-            by(
-                Engine::Doubles,
-                "cut_p2_edges_in_doubles_are_near_the_exact_integrals",
-                p2_in_doubles,
-            ),
-            by(Engine::Doubles, "bregman_distances_are_near_the_exact_ones", bregman_distances),
-            by(Engine::Doubles, "the_maximum_on_an_edge_is_at_an_end_or_at_the_vertex", maxima),
-            by(Engine::Doubles, "signs_change_at_the_simple_roots_inside_an_edge", sign_changes),
-            by(
-                Engine::Doubles,
-                "every_number_of_the_solver_is_near_its_definition_for_p1",
-                assembled::p1,
-            ),
-            by(
-                Engine::Doubles,
-                "every_number_of_the_solver_is_near_its_definition_for_p2",
-                assembled::p2,
-            ),
-            by(
-                Engine::Doubles,
-                "von_mises_stresses_and_the_largest_displacement_are_their_definitions",
-                honesty::von_mises_stresses_are_their_definitions,
-            ),
-            by(
-                Engine::Doubles,
-                "magnitudes_of_a_residual_are_those_of_its_terms",
-                honesty::magnitudes_are_those_of_the_terms,
-            ),
-            by(
-                Engine::Doubles,
-                "turned_problems_have_turned_solutions_with_supports_and_pressures_at_any_angle",
-                conditions::turned_problems_have_turned_solutions,
-            ),
-            by(
-                Engine::Doubles,
-                "reported_forces_moments_and_energies_balance",
-                conditions::forces_moments_and_energies_balance,
-            ),
-            control(
-                Engine::Doubles,
-                "control_solutions_turned_the_wrong_way",
-                conditions::solutions_turned_the_wrong_way,
-            ),
-            control(
-                Engine::Doubles,
-                "control_moment_of_contact_with_the_other_sign",
-                conditions::moment_of_contact_turned,
-            ),
-            control(
-                Engine::Doubles,
-                "control_von_mises_without_the_stress_across_the_plane",
-                honesty::von_mises_without_sigma_zz,
-            ),
-            control(
-                Engine::Doubles,
-                "control_magnitudes_a_hundred_times_too_small",
-                honesty::magnitudes_too_small,
-            ),
-            control(Engine::Exact, "control_theta_other_than_1", other_theta),
-            control(
-                Engine::Doubles,
-                "control_theta_or_the_gap_of_the_solver_taken_wrong",
-                assembled::contact_taken_wrong,
-            ),
-            control(
-                Engine::Doubles,
-                "control_loads_or_reactions_of_the_solver_taken_wrong",
-                assembled::load_taken_wrong,
-            ),
-            control(Engine::Exact, "control_gap_missing", gap_missing),
+            exact!("residual_energy_and_hessian_on_random_bodies_are_their_definitions_for_p1" => residual_p1()),
+            exact!("the_same_by_points_for_p1" => residual_p1_by_points()),
+            exact!("the_same_by_points_for_p2" => residual_p2_by_points()),
+            exact!("sums_over_points_are_their_definitions" => sums_over_points()),
+            doubles!("cut_p1_edges_in_doubles_are_near_the_exact_integrals" => p1_in_doubles()),
+            doubles!("cut_p2_edges_in_doubles_are_near_the_exact_integrals" => p2_in_doubles()),
+            doubles!("bregman_distances_are_near_the_exact_ones" => bregman_distances()),
+            doubles!("the_maximum_on_an_edge_is_at_an_end_or_at_the_vertex" => maxima()),
+            doubles!("signs_change_at_the_simple_roots_inside_an_edge" => sign_changes()),
+            doubles!("every_number_of_the_solver_is_near_its_definition_for_p1" => assembled::p1()),
+            doubles!("every_number_of_the_solver_is_near_its_definition_for_p2" => assembled::p2()),
+            doubles!("von_mises_stresses_and_the_largest_displacement_are_their_definitions" => honesty::stresses(None)),
+            doubles!("magnitudes_of_a_residual_are_those_of_its_terms" => honesty::magnitudes(1.0)),
+            doubles!("control_von_mises_without_the_stress_across_the_plane" => honesty::von_mises_without_sigma_zz()),
+            doubles!("control_magnitudes_a_hundred_times_too_small" => noticed(honesty::magnitudes(0.01))),
+            exact!("control_theta_other_than_1" => other_theta()),
+            doubles!("control_theta_or_the_gap_of_the_solver_taken_wrong" => assembled::contact_taken_wrong()),
+            doubles!("control_loads_or_reactions_of_the_solver_taken_wrong" => assembled::load_taken_wrong()),
+            exact!("control_gap_missing" => gap_missing()),
             refuted(
                 statement!(control_cut_edge_integral_keeps_any_sign, [p0, p1, q0, q1], fails "g0 * q0 + g1 * q1 >= S::from(0)"),
             ),
@@ -741,7 +675,7 @@ mod row {
             items: &["P_gamma, A_gamma", "(8)"],
             title: "The method, and the functional whose gradient it is",
             paper: "Find u^h in V^h such that A_gamma(u^h, v^h) + int (1/gamma)[P_gamma(u^h)]+ P_gamma(v^h) = L(v^h) for all v^h in V^h.",
-            statement: "The left side, by the kernel, is its definition; so are J_h(v) = 1/2 A(v, v) + 1/2 int (1/gamma)[P(v)]+^2 and the second derivative that Newton uses, which is symmetric. J_h(u + d) - J_h(u) - (left side at u, d) lies between 1/2 A(d, d) and 1/2 A(d, d) + 1/2 int P0(d)^2/gamma, so (8) says that J_h - L is stationary. The integrals over a cut edge are their definitions. The solver itself, on random problems in doubles: its load, internal forces, A(u, v) - L(v), residual, J_h, prescribed data and matrices, and what it reports at any u (contact force, resultant, length and peak, lambda^h, u_n, gap, sigma_n, arc length, reactions, mean stresses, a(u, u), L(u)) are near the definitions over rationals, and its residual is the gradient of its J_h in the sense above. On nine bodies with random fields its von Mises stresses are those of the principal stresses of its mean stresses, its largest displacement is the largest, its largest strain that of the mean gradients from the boundaries of the triangles, its penetration no less than u_n - g at a node, its stretches of contact where P is positive and no two of them one, the imbalance of its energies their difference by the largest, the integral of its recovered pressure the contact force, and the magnitudes that come with a(u, .) are at least sum_j |a(N_j, N_i)| |u_j| and at most 60 times that; those of A(u, .) - L and of the residual grow by at least what is added. A block on a roller and under a pressure, turned with all that acts on it, has the turned solution, P1 and P2, and where its sides are along the axes that of prescribed components and a traction; its reported forces, moments and energies balance.",
+            statement: "The left side, by the kernel, is its definition; so are J_h(v) = 1/2 A(v, v) + 1/2 int (1/gamma)[P(v)]+^2 and the second derivative that Newton uses, which is symmetric. J_h(u + d) - J_h(u) - (left side at u, d) lies between 1/2 A(d, d) and 1/2 A(d, d) + 1/2 int P0(d)^2/gamma, so (8) says that J_h - L is stationary. The integrals over a cut edge are their definitions. The solver itself, on random problems in doubles: its load, internal forces, A(u, v) - L(v), residual, J_h, prescribed data and matrices, and what it reports at any u (contact force, resultant, length and peak, lambda^h, u_n, gap, sigma_n, arc length, reactions, mean stresses, a(u, u), L(u)) are near the definitions over rationals, and its residual is the gradient of its J_h in the sense above. On nine bodies with random fields its von Mises stresses are those of the principal stresses of its mean stresses, its largest displacement is the largest, its largest strain that of the mean gradients from the boundaries of the triangles, its penetration no less than u_n - g at a node, its stretches of contact where P is positive and no two of them one, the imbalance of its energies their difference by the largest, the integral of its recovered pressure the contact force, and the magnitudes that come with a(u, .) are at least sum_j |a(N_j, N_i)| |u_j| and at most 60 times that; those of A(u, .) - L and of the residual grow by at least what is added.",
             numbers: "every ordered field for a cut P1 edge (proof); rationals on random bodies: P1 without quadrature error, P1 and P2 by points; doubles for cut P1 and P2 edges and for Bregman distances of the energy, with the bounds stated at the checks; the solver's doubles within c 2^-53 times the sum of the magnitudes of the terms, c = 3 to 96 roundings, P1 and P2, cut at the roots and by 3 Gauss points. The roots of a quadratic P are bracketed by rationals to 2^-60.",
             kernel: &[
                 "edge_integral::EdgeIntegrals::of",

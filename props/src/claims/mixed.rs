@@ -120,7 +120,7 @@ mod row {
     use crate::bodies::{
         Body, Definition, Kernel, MaybeExact, Rule, Side, bodies, contact_class, sum,
     };
-    use crate::claim::{Claim, Engine, Outcome, by, control, noticed, proved, refuted, tested};
+    use crate::claim::{Claim, Outcome, noticed, proved, refuted, tested};
     use crate::claims::theorem_3_3::one_triangle;
     use crate::draws;
     use crate::naive::Line;
@@ -400,30 +400,14 @@ mod row {
         let mut checks: Vec<_> = all.into_iter().map(proved).collect();
         checks.extend(all.into_iter().map(tested));
         checks.extend([
-            by(Engine::Exact, "mixed_form_9_and_10_hold_on_random_bodies_for_p1", mixed_p1),
-            by(
-                Engine::Exact,
-                "sigma_n_of_a_discrete_solution_is_not_its_multiplier",
-                stress_is_not_the_multiplier,
-            ),
-            control(
-                Engine::Exact,
-                "control_sigma_n_is_the_multiplier_without_penetration",
-                stress_is_the_multiplier_on_the_floor,
-            ),
-            by(Engine::Exact, "mixed_form_by_points_holds_on_random_bodies_for_p2", mixed_p2),
-            by(
-                Engine::Doubles,
-                "complementarity_of_the_contact_pressure_holds_up_to_rounding",
-                complementarity_in_doubles,
-            ),
-            by(Engine::Doubles, "the_pressure_of_computed_solutions_is_the_multiplier", solutions),
-            control(
-                Engine::Doubles,
-                "control_normal_stress_of_computed_solutions_for_the_multiplier",
-                discrete_stress_for_the_multiplier,
-            ),
-            control(Engine::Exact, "control_sign_of_the_multiplier_turned", sign_of_the_multiplier),
+            exact!("mixed_form_9_and_10_hold_on_random_bodies_for_p1" => mixed_p1()),
+            exact!("sigma_n_of_a_discrete_solution_is_not_its_multiplier" => stress_is_not_the_multiplier()),
+            exact!("control_sigma_n_is_the_multiplier_without_penetration" => stress_is_the_multiplier_on_the_floor()),
+            exact!("mixed_form_by_points_holds_on_random_bodies_for_p2" => mixed_p2()),
+            doubles!("complementarity_of_the_contact_pressure_holds_up_to_rounding" => complementarity_in_doubles()),
+            doubles!("the_pressure_of_computed_solutions_is_the_multiplier" => solutions()),
+            doubles!("control_normal_stress_of_computed_solutions_for_the_multiplier" => discrete_stress_for_the_multiplier()),
+            exact!("control_sign_of_the_multiplier_turned" => sign_of_the_multiplier()),
             refuted(statement!(
                 control_normal_stress_for_the_multiplier,
                 [u_n, g, sigma_n, gamma, mu],

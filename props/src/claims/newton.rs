@@ -13,8 +13,8 @@ use signorini::solve::body::{self, Body as _, Derivatives, Edges, Residual, Star
 use signorini::solve::newton::{self, Until};
 use signorini::solve::{Method, Settings, SolveError, Status, solve};
 
-use crate::claim::{Claim, Engine, Outcome, by, control, noticed, text};
-use crate::claims::{conditions, honesty, passes};
+use crate::claim::{Claim, Outcome, noticed, text};
+use crate::claims::{honesty, passes};
 use crate::verdict::Verdict;
 use crate::{draws, ensure, sharpness};
 
@@ -177,14 +177,6 @@ fn the_cycle(full: bool) -> Outcome {
     Ok(format!("{steps} steps, J from {start:.4} to {:.4}", body.energy()))
 }
 
-fn ends_where_full_steps_cycle() -> Outcome {
-    the_cycle(false)
-}
-
-fn full_steps_cycle() -> Outcome {
-    noticed(the_cycle(true))
-}
-
 /// Any symmetric positive definite B = R R^T + 1/10, f, and start.
 fn bodies() -> impl Strategy<Value = Body> {
     let vector = || prop::array::uniform3(-5.0_f64..5.0);
@@ -308,10 +300,6 @@ fn line_searches_end_where_it_is_flat() -> Outcome {
     Ok(format!("{drawn}; {} searches with soft springs", soft.get()))
 }
 
-fn line_searches_of_full_steps() -> Outcome {
-    draws::reject(bodies(), |body| watched(&Body { full: true, ..body.clone() }).0)
-}
-
 /// The verdict: what is proved is a result, whatever else is said of it; without a proof a residual within the tolerance makes
 /// one that is not proved, and anything else none. `proof` is the relative radius that is asked for.
 fn verdict_is_honest(proof: f64) -> Outcome {
@@ -369,10 +357,6 @@ fn verdict() -> Outcome {
     verdict_is_honest(Settings::default().proof)
 }
 
-fn everything_is_accepted() -> Outcome {
-    noticed(verdict_is_honest(f64::INFINITY))
-}
-
 /// The row.
 pub fn claim() -> Claim {
     Claim {
@@ -380,7 +364,7 @@ pub fn claim() -> Claim {
         items: &["Newton's method"],
         title: "Newton's method and the verdict",
         paper: "Nothing: the paper leaves open how (8) is solved.",
-        statement: "The solver's Newton method with its line search ends at the minimiser of J, up to 1000 times the noise of the residual: on the example of docs/theory.md, 4.4, where full steps from the same start cycle for ever (the control runs them), and on random strongly convex J with three springs, from random starts and from 1e-8 away, with an energy that is not larger than at the start. The verdict is the proof: nothing leaves as proved whose enclosure is wider than [solver] proof, or whose error is larger than its enclosure, on nine loaded bodies, P1 and P2, with passes whose error is known: where they take it down by factors of 100, 10 and 2.5, where they get no nearer, and where they stop at a distance and have nothing left to correct, which the last correction takes for the end (the control lets it decide). Without a proof a residual within the tolerance makes a result that is not proved, and anything else none; infinities and NaN are no proof. The residual is that of (8) over the free degrees of freedom, relative to |L| + |R(lift) + L|. The condensed and the assembled route, in doubles and in twofold numbers, end at the same displacement, to 1e-10, with the same forces; in twofold numbers the assembled route takes the steps that it takes in doubles, and the condensed one takes at most two more; each line search whose step was linearised where a spring is pressed ends where the derivative is a hundredth of that at its start. When a solve ends: where contact is 10,000 times as stiff as at the limit, passes go on until no more than 1e-10 of loads and contact is out of balance, though a loose tolerance was met long before. In which numbers: stresses are those of the differences of the displacement between nodes, exactly, and of what doubles can't hold of it; where doubles blur P (a body that is carried along by 2^30) and so fall short of a proof, residuals are evaluated in twofold numbers; beams up to 1024 times as long as high that are proved end where these do. The condition number is told from below, in any units the same.",
+        statement: "The solver's Newton method with its line search ends at the minimiser of J, up to 1000 times the noise of the residual: on the example of docs/theory.md, 4.4, where full steps from the same start cycle for ever (the control runs them), and on random strongly convex J with three springs, from random starts and from 1e-8 away, with an energy that is not larger than at the start. The verdict is the proof: nothing leaves as proved whose enclosure is wider than [solver] proof, or whose error is larger than its enclosure, on nine loaded bodies, P1 and P2, with passes whose error is known: where they take it down by factors of 100, 10 and 2.5, where they get no nearer, and where they stop at a distance and have nothing left to correct, which the last correction takes for the end (the control lets it decide). Without a proof a residual within the tolerance makes a result that is not proved, and anything else none; infinities and NaN are no proof. The residual is that of (8) over the free degrees of freedom, relative to |L| + |R(lift) + L|. In twofold numbers the assembled route takes the steps that it takes in doubles, and the condensed one takes at most two more; each line search whose step was linearised where a spring is pressed ends where the derivative is a hundredth of that at its start. When a solve ends: where contact is 10,000 times as stiff as at the limit, passes go on until no more than 1e-10 of loads and contact is out of balance, though a loose tolerance was met long before. In which numbers: stresses are those of the differences of the displacement between nodes, exactly, and of what doubles can't hold of it; where doubles blur P (a body that is carried along by 2^30) and so fall short of a proof, residuals are evaluated in twofold numbers. The condition number is told from below, in any units the same.",
         numbers: "doubles.",
         kernel: &[
             "solve::newton::minimise",
@@ -396,119 +380,27 @@ pub fn claim() -> Claim {
             "An iteration until a tolerance has no finite tree of paths, and its result is a double.",
         ),
         checks: vec![
-            by(
-                Engine::Doubles,
-                "newton_ends_at_the_minimiser_where_full_steps_cycle",
-                ends_where_full_steps_cycle,
-            ),
-            by(Engine::Doubles, "newton_ends_at_the_minimiser_from_any_start", ends_from_any_start),
-            by(Engine::Doubles, "the_verdict_is_the_proof", verdict),
-            by(
-                Engine::Doubles,
-                "the_residual_of_the_verdict_is_that_of_8_relative_to_the_forces",
-                honesty::residual_is_that_of_8,
-            ),
-            by(
-                Engine::Doubles,
-                "nothing_is_proved_that_is_further_away_than_asked_for",
-                honesty::nothing_is_proved_that_is_further_away,
-            ),
-            by(
-                Engine::Doubles,
-                "both_routes_end_at_the_same_displacement",
-                conditions::both_routes_end_at_the_same_displacement,
-            ),
-            by(
-                Engine::Doubles,
-                "loads_contact_and_reactions_balance",
-                passes::loads_contact_and_reactions_balance,
-            ),
-            by(
-                Engine::Doubles,
-                "slender_bodies_end_where_twice_the_precision_does",
-                passes::slender_bodies_end_where_twice_the_precision_does,
-            ),
-            by(
-                Engine::Doubles,
-                "what_doubles_blur_is_evaluated_in_twofold_numbers",
-                passes::what_doubles_blur_is_evaluated_in_twofold_numbers,
-            ),
-            control(
-                Engine::Doubles,
-                "control_what_doubles_blur_to_all_digits",
-                passes::what_doubles_blur_to_all_digits,
-            ),
-            by(
-                Engine::Doubles,
-                "the_routes_take_the_same_steps_or_fewer",
-                passes::the_routes_take_the_same_steps_or_fewer,
-            ),
-            by(
-                Engine::Doubles,
-                "the_line_search_ends_where_the_derivative_is_a_hundredth",
-                line_searches_end_where_it_is_flat,
-            ),
-            by(
-                Engine::Doubles,
-                "the_condition_number_is_told_from_below",
-                passes::the_condition_number_is_told_from_below,
-            ),
-            control(
-                Engine::Doubles,
-                "control_slender_bodies_to_all_digits",
-                passes::slender_bodies_to_all_digits,
-            ),
-            control(
-                Engine::Doubles,
-                "control_steps_that_are_a_tenth_off",
-                passes::steps_that_are_a_tenth_off,
-            ),
-            control(
-                Engine::Doubles,
-                "control_line_searches_of_full_steps",
-                line_searches_of_full_steps,
-            ),
-            control(
-                Engine::Doubles,
-                "control_the_condition_number_a_hundred_times_as_large",
-                passes::the_condition_number_a_hundred_times_as_large,
-            ),
-            by(
-                Engine::Doubles,
-                "stresses_are_those_of_differences_between_nodes",
-                passes::stresses_are_those_of_differences_between_nodes,
-            ),
-            control(
-                Engine::Doubles,
-                "control_forces_that_balance_to_all_digits",
-                passes::forces_that_balance_to_all_digits,
-            ),
-            control(
-                Engine::Doubles,
-                "control_differences_that_are_off_by_rounding",
-                passes::differences_that_are_off_by_rounding,
-            ),
-            control(
-                Engine::Doubles,
-                "control_routes_that_differ_by_a_millionth",
-                conditions::routes_that_differ_by_a_millionth,
-            ),
-            control(
-                Engine::Doubles,
-                "control_a_residual_a_million_times_too_small",
-                honesty::residual_too_small,
-            ),
-            control(
-                Engine::Doubles,
-                "control_the_last_correction_decides",
-                honesty::the_last_correction_decides,
-            ),
-            control(Engine::Doubles, "control_full_steps_cycle", full_steps_cycle),
-            control(
-                Engine::Doubles,
-                "control_a_verdict_that_accepts_every_radius",
-                everything_is_accepted,
-            ),
+            doubles!("newton_ends_at_the_minimiser_where_full_steps_cycle" => the_cycle(false)),
+            doubles!("newton_ends_at_the_minimiser_from_any_start" => ends_from_any_start()),
+            doubles!("the_verdict_is_the_proof" => verdict()),
+            doubles!("the_residual_of_the_verdict_is_that_of_8_relative_to_the_forces" => honesty::residual_is_told(1.0)),
+            doubles!("nothing_is_proved_that_is_further_away_than_asked_for" => honesty::proved(false)),
+            doubles!("loads_contact_and_reactions_balance" => passes::loads_contact_and_reactions_balance()),
+            doubles!("what_doubles_blur_is_evaluated_in_twofold_numbers" => passes::carried_blocks(1e-9)),
+            doubles!("control_what_doubles_blur_to_all_digits" => noticed(passes::carried_blocks(1e-18))),
+            doubles!("the_routes_take_the_same_steps_or_fewer" => passes::steps(1.0)),
+            doubles!("the_line_search_ends_where_the_derivative_is_a_hundredth" => line_searches_end_where_it_is_flat()),
+            doubles!("the_condition_number_is_told_from_below" => passes::condition_is_told(1.0)),
+            doubles!("control_steps_that_are_a_tenth_off" => noticed(passes::steps(1.1))),
+            doubles!("control_line_searches_of_full_steps" => draws::reject(bodies(), |body| watched(&Body { full: true, ..body.clone() }).0)),
+            doubles!("control_the_condition_number_a_hundred_times_as_large" => noticed(passes::condition_is_told(100.0))),
+            doubles!("stresses_are_those_of_differences_between_nodes" => passes::differences(1.0)),
+            doubles!("control_forces_that_balance_to_all_digits" => noticed(passes::balanced(0.0, 0.0))),
+            doubles!("control_differences_that_are_off_by_rounding" => noticed(passes::differences(1.0 + 16.0 * f64::EPSILON))),
+            doubles!("control_a_residual_a_million_times_too_small" => noticed(honesty::residual_is_told(1e-6))),
+            doubles!("control_the_last_correction_decides" => noticed(honesty::proved(true))),
+            doubles!("control_full_steps_cycle" => noticed(the_cycle(true))),
+            doubles!("control_a_verdict_that_accepts_every_radius" => noticed(verdict_is_honest(f64::INFINITY))),
         ],
     }
 }

@@ -29,8 +29,8 @@ use signorini::solve::solution::ContactValues;
 use signorini::solve::{ContactQuadrature, Degree, Method, Settings, Solution, discretize, solve};
 
 use crate::bodies::{Body, Draw, Kernel, bodies, sum};
-use crate::claim::{Claim, Engine, Outcome, by, control, noticed, proved, refuted, text};
-use crate::claims::{answers, geometry, places};
+use crate::claim::{Claim, Outcome, noticed, proved, refuted, text};
+use crate::claims::{answers, geometry};
 use crate::draws;
 use crate::numbers::Exact;
 use crate::statement;
@@ -457,14 +457,6 @@ fn error_of_the_peak_falls(facets: bool) -> Outcome {
     }
 }
 
-fn pressure_on_a_circle_converges() -> Outcome {
-    error_of_the_peak_falls(false)
-}
-
-fn normals_of_facets() -> Outcome {
-    noticed(error_of_the_peak_falls(true))
-}
-
 /// The row on the direction of contact.
 pub fn direction() -> Claim {
     let checks = vec![
@@ -504,59 +496,17 @@ pub fn direction() -> Claim {
                 })
                 .prepared(unit_at_2),
         ),
-        by(
-            Engine::Exact,
-            "functionals_along_directions_are_their_definitions_and_with_n_the_papers",
-            functionals_are_their_definitions,
-        ),
-        by(Engine::Exact, "bound_11_holds_along_turning_directions", the_bound_11_holds),
-        by(
-            Engine::Doubles,
-            "on_straight_lines_the_solver_has_the_papers_functionals_bit_for_bit",
-            straight_lines_are_the_papers,
-        ),
-        by(
-            Engine::Doubles,
-            "the_peak_pressure_of_a_ring_on_a_pin_converges",
-            pressure_on_a_circle_converges,
-        ),
-        by(
-            Engine::Doubles,
-            "gaps_and_directions_of_obstacles_are_their_definitions",
-            geometry::obstacles_are_their_definitions,
-        ),
-        by(
-            Engine::Doubles,
-            "the_smooth_boundary_of_a_circle_is_the_circle",
-            geometry::smooth_boundaries_are_exact_on_circles,
-        ),
-        by(Engine::Doubles, "many_corners_are_a_curve", places::many_corners_are_a_curve),
-        control(
-            Engine::Doubles,
-            "control_four_corners_are_a_curve",
-            places::four_corners_are_a_curve,
-        ),
-        by(
-            Engine::Doubles,
-            "middles_of_smooth_boundaries_have_the_normals_of_their_curves",
-            geometry::middles_of_smooth_boundaries_have_the_normals_of_their_curves,
-        ),
-        control(
-            Engine::Doubles,
-            "control_normals_of_facets_for_those_of_the_curves",
-            geometry::normals_of_facets_for_those_of_the_curves,
-        ),
-        control(
-            Engine::Doubles,
-            "control_directions_away_from_the_obstacle",
-            geometry::directions_away_from_the_obstacle,
-        ),
-        control(
-            Engine::Doubles,
-            "control_middles_of_facets_for_those_of_the_curves",
-            geometry::middles_of_facets_for_those_of_the_curves,
-        ),
-        control(Engine::Doubles, "control_normals_of_the_facets_on_a_circle", normals_of_facets),
+        exact!("functionals_along_directions_are_their_definitions_and_with_n_the_papers" => functionals_are_their_definitions()),
+        exact!("bound_11_holds_along_turning_directions" => the_bound_11_holds()),
+        doubles!("on_straight_lines_the_solver_has_the_papers_functionals_bit_for_bit" => straight_lines_are_the_papers()),
+        doubles!("the_peak_pressure_of_a_ring_on_a_pin_converges" => error_of_the_peak_falls(false)),
+        doubles!("gaps_and_directions_of_obstacles_are_their_definitions" => geometry::obstacles_are_their_definitions()),
+        doubles!("the_smooth_boundary_of_a_circle_is_the_circle" => geometry::smooth_boundaries_are_exact_on_circles()),
+        doubles!("middles_of_smooth_boundaries_have_the_normals_of_their_curves" => geometry::middles_of_smooth_boundaries_have_the_normals_of_their_curves()),
+        doubles!("control_normals_of_facets_for_those_of_the_curves" => geometry::normals_of_facets_for_those_of_the_curves()),
+        doubles!("control_directions_away_from_the_obstacle" => geometry::directions_away_from_the_obstacle()),
+        doubles!("control_middles_of_facets_for_those_of_the_curves" => geometry::middles_of_facets_for_those_of_the_curves()),
+        doubles!("control_normals_of_the_facets_on_a_circle" => noticed(error_of_the_peak_falls(true))),
         refuted(statement!(
             control_shear_modulus_for_the_stiffness,
             [xx, yy, dx, dy, lambda, mu],
@@ -639,63 +589,12 @@ pub fn a_bar_of_two_materials_has_one_pressure<S: Ordered>(
     Verdict::Holds("always")
 }
 
-/// The unit square, its triangles above `from` stiff.
-fn in_two_parts(n: usize, from: f64, stiff: Material<f64>) -> Result<(Mesh, Materials), String> {
-    let mesh = square(n, Diagonal::Crossed)?;
-    let count = mesh.triangles().len();
-    let height =
-        |t: usize| mesh.triangles()[t].iter().map(|&v| mesh.vertices()[v][1]).sum::<f64>() / 3.0;
-    let upper: Vec<usize> = (0..count).filter(|&t| height(t) > from).collect();
-    let materials = Materials::in_parts(soft(), count, [(stiff, &upper[..])]);
-    Ok((mesh, materials))
-}
-
 fn soft() -> Material<f64> {
     Material::lame(1.0, 1.0, Plane::Strain)
 }
 
 fn stiff() -> Material<f64> {
     Material::lame(20.0, 7.0, Plane::Strain)
-}
-
-/// The bar of two materials is its closed form at all nodes, P1 and P2, if the parts meet at `from` = 1/2.
-fn bar(from: f64) -> Outcome {
-    let push = 0.01;
-    for degree in [Degree::One, Degree::Two] {
-        let (mesh, materials) = in_two_parts(8, from, stiff())?;
-        let roller = || Condition::Support { normal: Some(constant(0.0)), tangential: None };
-        let problem = problem(
-            mesh,
-            materials,
-            [
-                ("left", roller()),
-                ("right", roller()),
-                ("top", Condition::Displacement([None, Some(constant(-push))])),
-                ("bottom", Condition::Contact { gap: constant(0.0) }),
-            ],
-        );
-        let s = solved(&problem, degree)?;
-        let [below, above] = [soft(), stiff()].map(|m| 1.0 / m.normal_stiffness());
-        let p = push / (0.5 * below + 0.5 * above);
-        for (x, u) in s.nodes.iter().zip(&s.displacement) {
-            let exact = -p * (x[1].min(0.5) * below + (x[1] - 0.5).max(0.0) * above);
-            if !((u[1] - exact).abs() < 1e-14 && u[0].abs() < 1e-14) {
-                return Err(format!("u = {u:?} at {x:?}, expected (0, {exact:e})"));
-            }
-        }
-        if !((s.boundaries[0].peak_pressure / p - 1.0).abs() < 1e-12) {
-            return Err(format!("the pressure is {:?}, expected {p}", s.boundaries[0]));
-        }
-    }
-    Ok("all nodes of 2 meshes, to 1e-14".to_owned())
-}
-
-fn bar_is_exact() -> Outcome {
-    bar(0.5)
-}
-
-fn interface_one_row_off() -> Outcome {
-    noticed(bar(0.5 + 1.0 / 8.0))
 }
 
 /// kappa / gamma0 is the largest over the contact triangles, each with its own material: stiff ones are every third.
@@ -736,14 +635,6 @@ fn constants_are_own(with_one: bool) -> Outcome {
     Ok(format!("{} contact triangles, P1 and P2", lengths.len()))
 }
 
-fn kappa_has_each_triangles_material() -> Outcome {
-    constants_are_own(false)
-}
-
-fn one_material_for_kappa() -> Outcome {
-    noticed(constants_are_own(true))
-}
-
 /// The row on materials.
 pub fn materials() -> Claim {
     Claim {
@@ -751,7 +642,7 @@ pub fn materials() -> Claim {
         items: &[],
         title: "Several materials",
         paper: "Not in the paper: one material, A constant.",
-        statement: "Each triangle has one material. kappa_T has that of its triangle, and kappa is the largest. Where two materials meet, fields that are affine on either side with one traction across are discrete solutions: a bar of two materials in contact along its foot has its closed form at all nodes, P1 and P2.",
+        statement: "Each triangle has one material. kappa_T has that of its triangle, and kappa is the largest. Where two materials meet, fields that are affine on either side with one traction across are discrete solutions.",
         numbers: "every ordered field (proof) for the stresses; doubles.",
         kernel: &[
             "contact_edge::coercivity_constant",
@@ -759,7 +650,7 @@ pub fn materials() -> Claim {
             "material::Material::plane",
         ],
         preconditions: "The interface consists of edges.",
-        limits: "Two materials on two meshes. The bound (11) of row 9 is by triangles, so it covers bodies of several.",
+        limits: "Two materials on one mesh; that a bar of two has its closed form at all nodes is a test (tests/suite/parts.rs). The bound (11) of row 9 is by triangles, so it covers bodies of several.",
         single: None,
         checks: vec![
             proved(statement!(
@@ -767,14 +658,8 @@ pub fn materials() -> Claim {
                 [p, lambda, mu, other, nu],
                 ["always"]
             )),
-            by(Engine::Doubles, "a_bar_of_two_materials_is_exact_at_all_nodes", bar_is_exact),
-            by(
-                Engine::Doubles,
-                "kappa_is_the_largest_over_triangles_with_their_own_materials",
-                kappa_has_each_triangles_material,
-            ),
-            control(Engine::Doubles, "control_interface_one_row_off", interface_one_row_off),
-            control(Engine::Doubles, "control_one_material_for_kappa", one_material_for_kappa),
+            doubles!("kappa_is_the_largest_over_triangles_with_their_own_materials" => constants_are_own(false)),
+            doubles!("control_one_material_for_kappa" => noticed(constants_are_own(true))),
         ],
     }
 }
@@ -865,33 +750,6 @@ fn order_of_lambda() -> Outcome {
     })
 }
 
-/// The trapezoidal integral of nodal values on the line against the force.
-fn integral_is_the_force(value: impl Fn(&ContactValues) -> f64) -> Outcome {
-    let mut worst = 0.0_f64;
-    for degree in [Degree::One, Degree::Two] {
-        let (s, _) = smooth(12, degree)?;
-        let mut total = 0.0;
-        for pair in s.contact.iter().flat_map(|edge| edge.points.windows(2)) {
-            total += (pair[1].arc - pair[0].arc) * (value(&pair[0]) + value(&pair[1])) / 2.0;
-        }
-        worst = worst.max((total / s.boundaries[0].force - 1.0).abs());
-        let values = s.contact.iter().flat_map(|edge| &edge.points).map(|p| p.pressure);
-        let largest = s.quantities.peak_pressure;
-        if !values.into_iter().all(|p| (0.0..=largest * (1.0 + 1e-14)).contains(&p)) {
-            return Err("a recovered pressure outside the bounds of -lambda^h".to_owned());
-        }
-    }
-    if worst < 1e-13 { Ok(format!("to {worst:.1e}")) } else { Err(format!("off by {worst:.1e}")) }
-}
-
-fn recovered_has_the_force() -> Outcome {
-    integral_is_the_force(|p| p.pressure)
-}
-
-fn nodal_lambda_for_the_recovered_pressure() -> Outcome {
-    noticed(integral_is_the_force(|p| -p.lambda))
-}
-
 /// The row on the recovered pressure.
 pub fn recovered() -> Claim {
     Claim {
@@ -899,7 +757,7 @@ pub fn recovered() -> Claim {
         items: &[],
         title: "The recovered pressure",
         paper: "Not in the paper, whose pressure is lambda^h.",
-        statement: "The nodal contact pressure is the mean of -lambda^h weighted by the node's hat function on the line (for P2 on half edges where the line is straight). The hats are not negative and add up to one, so it is between 0 and the largest -lambda^h, and its integral over a boundary is that of -lambda^h: the same force, to rounding. Away from the ends of the line it is of second order on equal edges where the pressure is smooth, measured between 24 and 48 edges; -lambda^h at the nodes is not for P1. At a corner each side has its own mean. Stresses at the nodes are the means by areas of what the triangles around have there.",
+        statement: "The nodal contact pressure is the mean of -lambda^h weighted by the node's hat function on the line (for P2 on half edges where the line is straight). The hats are not negative and add up to one, so it is between 0 and the largest -lambda^h, and its integral over a boundary is that of -lambda^h: the same force (tests/suite/parts.rs). Away from the ends of the line it is of second order on equal edges where the pressure is smooth, measured between 24 and 48 edges; -lambda^h at the nodes is not for P1. At a corner each side has its own mean. Stresses at the nodes are the means by areas of what the triangles around have there.",
         numbers: "every ordered field (proof) for means by hats; doubles.",
         kernel: &["contact::ContactPoint::pressure"],
         preconditions: "At the ends of a line the hat is one-sided, and the order one.",
@@ -907,38 +765,12 @@ pub fn recovered() -> Claim {
         single: None,
         checks: vec![
             proved(statement!(means_by_hats_keep_integral_and_bounds, [s, t, v, w, m], ["always"])),
-            by(
-                Engine::Doubles,
-                "nodal_stresses_are_means_by_areas",
-                answers::nodal_stresses_are_means_by_areas,
-            ),
-            control(
-                Engine::Doubles,
-                "control_plain_means_of_stresses",
-                answers::plain_means_of_stresses,
-            ),
-            by(
-                Engine::Doubles,
-                "recovered_pressures_are_means_on_one_side_of_a_corner",
-                answers::recovered_pressures_are_means_on_one_side_of_a_corner,
-            ),
-            control(
-                Engine::Doubles,
-                "control_means_across_a_corner",
-                answers::means_across_a_corner,
-            ),
-            by(
-                Engine::Doubles,
-                "recovered_pressure_has_the_force_of_lambda",
-                recovered_has_the_force,
-            ),
-            by(Engine::Doubles, "recovered_pressure_is_of_second_order", recovered_order),
-            control(
-                Engine::Doubles,
-                "control_nodal_lambda_for_the_recovered_pressure",
-                nodal_lambda_for_the_recovered_pressure,
-            ),
-            control(Engine::Doubles, "control_order_of_nodal_lambda", order_of_lambda),
+            doubles!("nodal_stresses_are_means_by_areas" => answers::nodal_stresses(false)),
+            doubles!("control_plain_means_of_stresses" => noticed(answers::nodal_stresses(true))),
+            doubles!("recovered_pressures_are_means_on_one_side_of_a_corner" => answers::around_corners(false)),
+            doubles!("control_means_across_a_corner" => noticed(answers::around_corners(true))),
+            doubles!("recovered_pressure_is_of_second_order" => recovered_order()),
+            doubles!("control_order_of_nodal_lambda" => order_of_lambda()),
         ],
     }
 }

@@ -3,7 +3,6 @@
 //!
 //! - where contact is stiff, next to no energy is a force: the loop goes on until loads, contact and reactions balance;
 //! - stresses are those of the differences of the displacement from node to node, and of what doubles can't hold of it;
-//! - a body so slender that doubles blur its residual ends where the arithmetic of twice the precision does;
 //! - the condition number that is reported is below the true one, and of its size, in any units;
 //! - the routes take the same steps.
 
@@ -14,15 +13,14 @@ use faer::{Mat, Side};
 use signorini::fem::{Condition, Diagonal, Problem, Rectangle, SharedFunction};
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::{Material, P1, P2, Plane};
-use signorini::solve::accuracy::Outcome as Solved;
 use signorini::solve::iterate::Iterate;
 use signorini::solve::route::{self, RouteName};
 use signorini::solve::system::System;
 use signorini::solve::times::Times;
-use signorini::solve::{Gamma0, Method, Settings, SolveError, discretize};
+use signorini::solve::{Gamma0, Method, Settings, discretize};
 
 use super::honesty::{self, field};
-use crate::claim::{Outcome, noticed, text};
+use crate::claim::{Outcome, text};
 use crate::proof::sampler::Random;
 use crate::{draws, sharpness};
 
@@ -76,7 +74,7 @@ where
 }
 
 /// `most` may be left over, and what doubles leave, `scale` times.
-fn balanced(most: f64, scale: f64) -> Outcome {
+pub(super) fn balanced(most: f64, scale: f64) -> Outcome {
     let falling: Vec<f64> = (0..20).map(|k| FALL.powi(k)).collect();
     let largest = std::cell::Cell::new(0.0_f64);
     let bodies = honesty::on_bodies(|problem, degree| {
@@ -102,11 +100,6 @@ fn balanced(most: f64, scale: f64) -> Outcome {
 /// Row 19: loads, contact and reactions balance.
 pub fn loads_contact_and_reactions_balance() -> Outcome {
     balanced(BALANCED, 1.0)
-}
-
-/// Nothing is left over.
-pub fn forces_that_balance_to_all_digits() -> Outcome {
-    noticed(balanced(0.0, 0.0))
 }
 
 /// A body without loads whose upper side is moved by `by` in both directions.
@@ -162,7 +155,7 @@ where
 /// Powers of two: within doubles beside 2^30, and far below.
 const BENDS: [i32; 4] = [0, -10, -20, -60];
 
-fn differences(share: f64) -> Outcome {
+pub(super) fn differences(share: f64) -> Outcome {
     for bits in BENDS {
         for by in [0.0, 1.0, 2.0_f64.powi(30)] {
             forces_of_differences::<P1, 3, 2>(by, bits, share)?;
@@ -170,16 +163,6 @@ fn differences(share: f64) -> Outcome {
         }
     }
     Ok(format!("P1 and P2, bent by 2^{BENDS:?}, carried along by up to 2^30"))
-}
-
-/// Row 19: stresses in doubles are those of differences, and see what doubles can't hold of a displacement.
-pub fn stresses_are_those_of_differences_between_nodes() -> Outcome {
-    differences(1.0)
-}
-
-/// Forces that are larger by some roundings.
-pub fn differences_that_are_off_by_rounding() -> Outcome {
-    noticed(differences(1.0 + 16.0 * f64::EPSILON))
 }
 
 /// A beam on a wall, `cells` times as long as high, that its load bends down onto an obstacle.
@@ -199,71 +182,6 @@ fn beam(cells: usize) -> Result<Problem, String> {
         [constant(0.0), constant(-weight)],
         conditions,
     ))
-}
-
-/// How far the routes in doubles end from the one in twofold numbers, relative to the largest displacement, where
-/// they are proved.
-fn slender<E, const N: usize, const M: usize>(cells: usize) -> Result<f64, String>
-where
-    E: ExactEdge<f64, N, M>,
-{
-    let problem = beam(cells)?;
-    let d = discretize::<E, N, M>(&problem, &Method::default()).map_err(text)?;
-    let system = System::new(&d).map_err(text)?;
-    let by = |name| {
-        route::by(name, &system, &Settings::default(), &mut Times::default()).map(|done| done.0)
-    };
-    let Solved { u: best, p, .. } = by(RouteName::Twofold).map_err(text)?;
-    let size = best.as_flattened().iter().fold(0.0, |m: f64, u| m.max(u.abs()));
-    if !(p.iter().any(|p| p.head() > 0.0)) {
-        return Err(format!("a beam of {cells} cells that touches nothing"));
-    }
-    let mut far = 0.0_f64;
-    for name in [RouteName::Condensed, RouteName::Assembled] {
-        let outcome = match by(name) {
-            Err(SolveError::Singular) => continue,
-            other => other.map_err(text)?,
-        };
-        let pairs = best.as_flattened().iter().zip(outcome.u.as_flattened());
-        let off = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / size;
-        // What it says itself is no evidence of more.
-        if outcome.is_proved(&Settings::default()) {
-            far = far.max(off);
-        }
-    }
-    Ok(far)
-}
-
-/// Enough cells for doubles to lose half of their digits, and more.
-const LENGTHS: [usize; 5] = [8, 32, 128, 512, 1024];
-
-/// `most` apart.
-fn slender_beams(most: f64) -> Outcome {
-    let mut farthest = 0.0_f64;
-    for cells in LENGTHS {
-        let mut found = vec![slender::<P1, 3, 2>(cells)?];
-        if cells <= 128 {
-            found.push(slender::<P2, 6, 3>(cells)?);
-        }
-        for far in found {
-            if !(far <= most) {
-                return Err(format!("{cells} cells: the routes end {far:e} apart"));
-            }
-            farthest = farthest.max(far);
-        }
-    }
-    let longest = LENGTHS[LENGTHS.len() - 1];
-    Ok(format!("up to {longest} times as long as high, at most {farthest:.0e} apart"))
-}
-
-/// Row 19: slender bodies. A displacement that is called right is right to 1e-10.
-pub fn slender_bodies_end_where_twice_the_precision_does() -> Outcome {
-    slender_beams(1e-10)
-}
-
-/// To the last bits of a double they don't.
-pub fn slender_bodies_to_all_digits() -> Outcome {
-    noticed(slender_beams(1e-18))
 }
 
 /// P at the nodes of the contact edges of a loaded block that is carried along by `by`, downwards onto a floor that is as far
@@ -289,7 +207,7 @@ where
 }
 
 /// `most` apart, relative to the largest P.
-fn carried_blocks(most: f64) -> Outcome {
+pub(super) fn carried_blocks(most: f64) -> Outcome {
     let mut farthest = 0.0_f64;
     for degree in [1, 2] {
         let of = |by| if degree == 1 { pressed::<P1, 3, 2>(by) } else { pressed::<P2, 6, 3>(by) };
@@ -309,16 +227,6 @@ fn carried_blocks(most: f64) -> Outcome {
         }
     }
     Ok(format!("carried by 2^10 to 2^30, three routes, P1 and P2: P is off by {farthest:.0e}"))
-}
-
-/// Row 19: where doubles blur P, a solve goes on in numbers of twice the precision.
-pub fn what_doubles_blur_is_evaluated_in_twofold_numbers() -> Outcome {
-    carried_blocks(1e-9)
-}
-
-/// To all digits.
-pub fn what_doubles_blur_to_all_digits() -> Outcome {
-    noticed(carried_blocks(1e-18))
 }
 
 /// The residuals of a route at each step.
@@ -385,7 +293,7 @@ where
 /// The step that gets there, the one of the pass after it, and what these leave.
 const MOST_AFTER: usize = 4;
 
-fn steps(scale: f64) -> Outcome {
+pub(super) fn steps(scale: f64) -> Outcome {
     let count = std::cell::Cell::new(0);
     let bodies = honesty::on_bodies(|problem, degree| {
         let compared = match degree {
@@ -396,16 +304,6 @@ fn steps(scale: f64) -> Outcome {
         Ok(())
     })?;
     Ok(format!("{bodies} bodies, P1 and P2, {} residuals", count.get()))
-}
-
-/// Row 19: the routes take the same steps, or fewer.
-pub fn the_routes_take_the_same_steps_or_fewer() -> Outcome {
-    steps(1.0)
-}
-
-/// Residuals that are a tenth larger.
-pub fn steps_that_are_a_tenth_off() -> Outcome {
-    noticed(steps(1.1))
 }
 
 /// The condition number by the eigenvalues of the dense matrix, and those that the routes report, of the body with its moduli
@@ -434,7 +332,7 @@ where
 }
 
 /// The condition number that is reported, times `scale`, is at least 1 and no larger than the true one, in any units the same.
-fn condition_is_told(scale: f64) -> Outcome {
+pub(super) fn condition_is_told(scale: f64) -> Outcome {
     let mut least = f64::INFINITY;
     for cells in [2, 6, 12] {
         let of = |bits| conditions::<P1, 3, 2>(beam(cells)?, bits);
@@ -454,14 +352,4 @@ fn condition_is_told(scale: f64) -> Outcome {
         }
     }
     Ok(format!("3 beams in 3 units, at least {least:.0e} of the true one"))
-}
-
-/// Row 19: the condition number.
-pub fn the_condition_number_is_told_from_below() -> Outcome {
-    condition_is_told(1.0)
-}
-
-/// A hundred times as much.
-pub fn the_condition_number_a_hundred_times_as_large() -> Outcome {
-    noticed(condition_is_told(100.0))
 }

@@ -175,8 +175,7 @@ pub use row::claim;
 mod row {
     use super::*;
     use crate::claim::{
-        Claim, Engine, Outcome, by, in_doubles, model_checked, proved, refuted, refuted_in_doubles,
-        tested,
+        Claim, Outcome, in_doubles, model_checked, proved, refuted, refuted_in_doubles, tested,
     };
     use crate::statement;
 
@@ -230,7 +229,7 @@ mod row {
             tested(unique),
             tested(slope),
             in_doubles(facts),
-            by(Engine::Doubles, "overflow_zero_and_nan_behave_as_stated", special_doubles),
+            doubles!("overflow_zero_and_nan_behave_as_stated" => special_doubles()),
             refuted(absolute),
             refuted(uncut),
             refuted(negative),

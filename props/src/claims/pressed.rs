@@ -1,8 +1,8 @@
 //! What contact alone holds (`solve::pressed`, docs/theory.md, 7.5), on a square with one contact edge:
 //!
-//! - an edge that is taken for pressed is pressed all along, and stays so on the ball for which it is said to: moved to its
-//!   border by the fields whose P0 is largest at an end beside |v|_S;
-//! - the bounds of n . v at its ends hold for all v, by the inverse of the matrix of |v|_S;
+//! - a piece that is taken for pressed is pressed all along, and stays so on the ball for which it is said to: moved to its
+//!   border by the fields whose P0 is largest at an end of a pressed edge beside |v|_S;
+//! - the bounds of n . v at the ends of the edge hold for all v, by the inverse of the matrix of |v|_S;
 //! - its springs are those of P0(v)^2 / gamma; a rule with too few points to see all of P0 has none;
 //! - where nothing that is pressed stops a motion, all displacements up to the next obstacle are solutions, and no others.
 
@@ -24,7 +24,7 @@ use signorini::solve::pressed::Pressed;
 use signorini::solve::{Degree, Method, Settings, solve};
 
 use super::honesty::field;
-use crate::claim::{Outcome, noticed, text};
+use crate::claim::{Outcome, text};
 use crate::draws;
 use crate::proof::sampler::Random;
 
@@ -80,9 +80,10 @@ where
         self.edge().p(&self.d.space.on_triangle(self.edge().edge.triangle, u))
     }
 
-    /// Whether it is positive at a few hundred places.
-    fn is_positive(p: [f64; M]) -> bool {
-        let mut places = (0..=400).map(|k| f64::from(k) / 400.0);
+    /// Whether it is positive at fifty places of each piece that is taken for pressed.
+    fn is_positive(p: [f64; M], pressed: &Pressed<M>) -> bool {
+        let places = |[a, b]: [f64; 2]| (0..=50).map(move |k| a + (b - a) * f64::from(k) / 50.0);
+        let mut places = pressed.pieces(0).iter().copied().flat_map(places);
         places.all(|s| value_at::<E, f64, N, M>(p, s) > 0.0)
     }
 
@@ -165,7 +166,7 @@ where
             let share = rho / at.square(&v).sqrt();
             let moved = at.p(&v).map(|p| share * p);
             let there: [f64; M] = std::array::from_fn(|a| p[a] + moved[a]);
-            if ![p, there].into_iter().all(At::<E, N, M>::is_positive) {
+            if ![p, there].into_iter().all(|p| At::<E, N, M>::is_positive(p, &pressed)) {
                 return Err(format!("P = {p:?}, on the ball of radius {rho:e} P = {there:?}"));
             }
         }
@@ -174,7 +175,7 @@ where
 }
 
 /// On balls that are larger by a factor.
-fn stays(times: f64) -> Outcome {
+pub(super) fn stays(times: f64) -> Outcome {
     let mut sum = [0, 0];
     for seen in [
         stays_on::<P1, 3, 2>(EdgeRule::Exact, times)?,
@@ -188,16 +189,6 @@ fn stays(times: f64) -> Outcome {
         return Err(format!("{} fields that press, {} that don't", sum[1], sum[0]));
     }
     Ok(format!("{} fields that press, {} that don't, P1 and P2", sum[1], sum[0]))
-}
-
-/// Row 10: pressed edges.
-pub fn edges_that_are_taken_for_pressed_stay_so() -> Outcome {
-    stays(1.0)
-}
-
-/// A ball whose radius is a hundredth larger.
-pub fn edges_stay_pressed_on_a_larger_ball() -> Outcome {
-    noticed(stays(1.01))
 }
 
 fn holds_on<E, const N: usize, const M: usize>(kappa: f64, share: f64) -> Result<f64, String>
@@ -242,23 +233,13 @@ where
 }
 
 /// With a share of the bounds.
-fn holds(share: f64) -> Outcome {
+pub(super) fn holds(share: f64) -> Outcome {
     let mut nearest: f64 = 0.0;
     for kappa in [1e-6, 0.1, 0.5, 0.9] {
         nearest = nearest.max(holds_on::<P1, 3, 2>(kappa, share)?);
         nearest = nearest.max(holds_on::<P2, 6, 3>(kappa, share)?);
     }
     Ok(format!("four gammas, P1 and P2; up to {nearest:.2} of the bound is attained"))
-}
-
-/// Row 10: what pressed edges hold.
-pub fn pressed_edges_hold_their_ends() -> Outcome {
-    holds(1.0)
-}
-
-/// A quarter of the bound.
-pub fn pressed_edges_hold_their_ends_by_a_quarter() -> Outcome {
-    noticed(holds(0.25))
 }
 
 fn springs_on<E, const N: usize, const M: usize>(scale: f64) -> Result<(), String>
@@ -290,20 +271,10 @@ where
     Ok(())
 }
 
-fn springs(scale: f64) -> Outcome {
+pub(super) fn springs(scale: f64) -> Outcome {
     springs_on::<P1, 3, 2>(scale)?;
     springs_on::<P2, 6, 3>(scale)?;
     Ok("five rules, P1 and P2".to_owned())
-}
-
-/// Row 10: the springs of pressed edges.
-pub fn springs_are_those_of_p0() -> Outcome {
-    springs(1.0)
-}
-
-/// By a rounding error and a little.
-pub fn springs_are_stiffer() -> Outcome {
-    noticed(springs(1.0 + 1e-9))
 }
 
 /// A block on a floor beside walls at these gaps, on the left and on the right, negative where they push it away at first.
@@ -351,7 +322,7 @@ fn solves(problem: &Problem, degree: Degree, u: &[[f64; 2]]) -> Result<bool, Str
 
 /// Where walls that a body does not press leave it room, the displacement that is given, and that moved by `share` of what it may
 /// move, solve (8), and the former is enclosed.
-fn room(share: f64) -> Outcome {
+pub(super) fn room(share: f64) -> Outcome {
     let mut ends = 0;
     for angle in [0.0, 0.7] {
         for gaps in [
@@ -387,14 +358,4 @@ fn room(share: f64) -> Outcome {
         }
     }
     Ok(format!("{ends} displacements of blocks beside walls, P1 and P2"))
-}
-
-/// Row 10: the solutions of a body that contact holds in part.
-pub fn all_that_is_within_the_clearance_is_a_solution() -> Outcome {
-    room(1.0 - 1e-9)
-}
-
-/// A hundredth beyond the walls.
-pub fn what_is_beyond_the_clearance_is_a_solution() -> Outcome {
-    noticed(room(1.01))
 }

@@ -294,8 +294,7 @@ pub use row::{claim, remark_2_2};
 mod row {
     use super::*;
     use crate::claim::{
-        Claim, Engine, Outcome, by, control, in_doubles, model_checked, proved, refuted,
-        refuted_in_doubles, tested,
+        Claim, Outcome, in_doubles, model_checked, proved, refuted, refuted_in_doubles, tested,
     };
     use crate::draws;
     use crate::numbers::Exact;
@@ -373,9 +372,9 @@ mod row {
             tested(violation),
             in_doubles(converse),
             in_doubles(rounding),
-            by(Engine::Doubles, "a_displacement_below_rounding_is_kept", kept_counterexample),
+            doubles!("a_displacement_below_rounding_is_kept" => kept_counterexample()),
             refuted_in_doubles(scaled.failing("conditions_2 == equation")),
-            control(Engine::Doubles, "control_equation_5_as_written_in_doubles", as_written),
+            doubles!("control_equation_5_as_written_in_doubles" => as_written()),
             refuted(
                 statement!(control_gap_forgotten, [u_n, g, sigma_n, gamma], fails "conditions_2 == equation_5"),
             ),

@@ -123,7 +123,7 @@ mod row {
     use signorini::solve::Degree;
 
     use super::*;
-    use crate::claim::{Claim, Engine, Outcome, by, control, proved, refuted, tested};
+    use crate::claim::{Claim, Outcome, proved, refuted, tested};
     use crate::claims::distance::{Draw, bodies};
     use crate::draws;
     use crate::numbers::Exact;
@@ -326,22 +326,10 @@ mod row {
                     [x, eta, k, m],
                     fails "value <= k * m * m"
                 )),
-                by(
-                    Engine::Exact,
-                    "forces_in_balls_are_around_those_in_rationals",
-                    balls_are_around_the_rationals,
-                ),
-                control(
-                    Engine::Exact,
-                    "control_forces_far_outside",
-                    balls_far_around_the_rationals,
-                ),
-                by(Engine::Doubles, "forces_balance_and_meet_those_of_a_finer_mesh", forces_agree),
-                control(
-                    Engine::Doubles,
-                    "control_forces_beside_four_times_the_load",
-                    forces_of_another_load,
-                ),
+                exact!("forces_in_balls_are_around_those_in_rationals" => balls_are_around_the_rationals()),
+                exact!("control_forces_far_outside" => balls_far_around_the_rationals()),
+                doubles!("forces_balance_and_meet_those_of_a_finer_mesh" => forces_agree()),
+                doubles!("control_forces_beside_four_times_the_load" => forces_of_another_load()),
             ],
         }
     }

@@ -1,32 +1,26 @@
-//! What the solver is given, what it refuses, and the rules by which it integrates: facts about its own functions that no
-//! item of the paper names, but on which every number rests.
+//! The limit of gamma0, and the rules by which the integrals of (8) and of errors are computed: what no item of the paper names,
+//! but every number rests on.
 //!
 //! - kappa >= 1 is refused, kappa < 1 is not, and gamma0 = "auto" is kappa = 1/2 (Lemma 3.2 asks for kappa < 1);
-//! - two sides that prescribe different displacements at a common vertex are refused, however near the values are;
 //! - the Gauss rules have the moments of the Legendre polynomials: int P_k = 0 for 0 < k < 2 n, and not for k = 2 n;
-//! - the rules for errors cut an edge where they are told to, near its ends too;
 //! - the integrals over a contact edge scale: from P to 2^k P without any error in doubles;
 //! - the errors from an exact solution are their definitions, in each norm;
 //! - the a-orthogonal projection of u, which the solver computes for Theorem 9.4, is nearer to u than u^h.
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 use proptest::prelude::*;
 use signorini::fem::contact_line::EdgeRule;
-use signorini::fem::pieces::{Features, Rule};
 use signorini::fem::quadrature;
-use signorini::fem::{
-    Condition, DataError, Diagonal, Errors, ExactSolution, Problem, Rectangle, SharedFunction,
-};
+use signorini::fem::{Errors, ExactSolution, Problem};
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::element::displacement_gradient;
-use signorini::kernel::{EdgeIntegrals, Element, Material, P1, P2, Plane, positive_part};
+use signorini::kernel::{EdgeIntegrals, Element, Material, P1, P2, positive_part};
 use signorini::nalgebra::Matrix2;
 use signorini::solve::{ContactQuadrature, Degree, Gamma0, Method, SolveError, discretize};
 
-use crate::claim::{Claim, Engine, Outcome, by, control, noticed, text};
-use crate::claims::{answers, conditions, given, meshes, places, rates};
+use crate::claim::{Claim, Outcome, noticed, text};
+use crate::claims::rates;
 use crate::numbers::Exact;
 use crate::proof::sampler::Random;
 use crate::verdict::Verdict;
@@ -85,99 +79,6 @@ fn refusal(limit: f64) -> Outcome {
     Ok(format!("{} bodies, P1 and P2, kappa from 1e-6 to 10, and auto", bodies.len()))
 }
 
-fn kappa_is_refused() -> Outcome {
-    refusal(1.0)
-}
-
-fn kappa_below_2_is_taken() -> Outcome {
-    noticed(refusal(2.0))
-}
-
-fn constant(value: f64) -> SharedFunction {
-    Arc::new(move |_: [f64; 2]| value)
-}
-
-/// A unit square on a floor, with conditions on top and to the left.
-fn square(top: Condition, left: Condition) -> Result<Problem, String> {
-    let cells = Rectangle { width: 1.0, height: 1.0, nx: 2, ny: 2, diagonal: Diagonal::Right };
-    let floor = Condition::Contact { gap: constant(0.0) };
-    let conditions = [("top", top), ("left", left), ("bottom", floor)];
-    Ok(Problem::new(
-        cells.mesh().map_err(text)?,
-        Material::lame(1.0, 1.0, Plane::Strain),
-        [constant(0.0), constant(0.0)],
-        conditions.map(|(name, condition)| (name.to_owned(), condition)).into(),
-    ))
-}
-
-/// Whether two sides that meet in a vertex, and prescribe values that differ by `by` there, are refused. For component 2 the
-/// left side is a support: u . n = -u_x.
-fn disagreement(by: f64, component: usize) -> Result<bool, String> {
-    let values = |by: f64| {
-        let value = |c| Some(constant(1.0 + if c == component { by } else { 0.0 }));
-        Condition::Displacement([0, 1].map(value))
-    };
-    let left = if component == 2 {
-        Condition::Support { normal: Some(constant(-1.0 - by)), tangential: None }
-    } else {
-        values(by)
-    };
-    let problem = square(values(0.0), left)?;
-    let method = Method { degree: Degree::One, ..Method::default() };
-    match discretize::<P1, 3, 2>(&problem, &method) {
-        Ok(_) => Ok(false),
-        Err(SolveError::Data(DataError::Disagree { .. })) => Ok(true),
-        Err(other) => Err(other.to_string()),
-    }
-}
-
-fn disagreements(least: f64) -> Outcome {
-    let mut refused = 0;
-    for component in [0, 1, 2] {
-        for by in [0.0, 1e-9, 1e-6, 1e-4, 1e-3, 9e-3, 1e-2, 0.1, -1e-6] {
-            let expected = f64::abs(by) > least;
-            if disagreement(by, component)? != expected {
-                return Err(format!("component {component}, values that differ by {by}"));
-            }
-            refused += usize::from(expected);
-        }
-    }
-    Ok(format!("{refused} refused, from 1e-9 on; equal values taken"))
-}
-
-fn disagreements_are_refused() -> Outcome {
-    disagreements(0.0)
-}
-
-/// The load of tractions on a side that is held in x: those along y are in it, those along x are not.
-fn load_on_a_held_side(tractions: [f64; 2]) -> Result<Vec<[f64; 2]>, String> {
-    let top = Condition::Mixed {
-        displacement: [Some(constant(0.0)), None],
-        traction: tractions.map(constant),
-    };
-    let left = Condition::Displacement([0, 1].map(|_| Some(constant(0.0))));
-    let problem = square(top, left)?;
-    Ok(discretize::<P1, 3, 2>(&problem, &Method::default()).map_err(text)?.load)
-}
-
-fn same_loads(one: [f64; 2], other: [f64; 2]) -> Outcome {
-    let (one, other) = (load_on_a_held_side(one)?, load_on_a_held_side(other)?);
-    let loaded = one.iter().flatten().filter(|&&f| f != 0.0).count();
-    if one == other && loaded > 0 {
-        Ok(format!("{loaded} entries of the load"))
-    } else {
-        Err(format!("{one:?} and {other:?}"))
-    }
-}
-
-fn tractions_along_what_is_held_are_left_out() -> Outcome {
-    same_loads([7.0, -1.0], [0.0, -1.0])
-}
-
-fn tractions_along_what_is_free_are_left_out() -> Outcome {
-    noticed(same_loads([0.0, -2.0], [0.0, -1.0]))
-}
-
 /// kappa of each triangle on Gamma_C by [2.3] of docs/theory.md, C gamma (lambda + 2 mu) |E| / |T|, for a `gamma0` that asks
 /// for 1/2.
 fn kappa_of_triangles<E, const N: usize, const M: usize>(
@@ -214,19 +115,6 @@ fn kappas(gamma0: Gamma0) -> Outcome {
         count += kappa_of_triangles::<P2, 6, 3>(&body.problem, gamma0, 3.0).map_err(of)?;
     }
     Ok(format!("{count} triangles"))
-}
-
-fn local_gammas() -> Outcome {
-    kappas(Gamma0::Local(0.5))
-}
-
-/// One gamma0 for all triangles.
-fn one_gamma0_for_all() -> Outcome {
-    noticed(kappas(Gamma0::Auto))
-}
-
-fn disagreements_of_a_hundredth_are_taken() -> Outcome {
-    noticed(disagreements(1e-2))
 }
 
 /// The moments of a rule on \[0, 1\] with the Legendre polynomials in 2 s - 1, exactly, from the doubles of the rule.
@@ -301,37 +189,6 @@ fn other_rules() -> Outcome {
     Ok(format!("{more}; {heavier}"))
 }
 
-/// int_0^1 \[s - c\]+ ds by a rule on an edge that is told to cut at `cut`: (1 - c)^2/2.
-fn with_a_kink(c: f64, cut: Option<f64>) -> bool {
-    let rule = Rule::new(Features::default(), 4);
-    let (mut sum, mut total) = (0.0, 0.0);
-    rule.on_edge([[0.5, 1.0], [0.5, 3.0]], cut, |point| {
-        sum += point.weight * (point.s - c).max(0.0);
-        total += point.weight;
-    });
-    let near = |a: f64, b: f64| (a - b).abs() <= 32.0 * f64::EPSILON;
-    near(sum, (1.0 - c) * (1.0 - c) / 2.0) && near(total, 1.0)
-}
-
-/// Places in an edge, near its ends often.
-fn places() -> impl Strategy<Value = f64> {
-    prop_oneof![1e-7_f64..1e-2, (1e-7_f64..1e-2).prop_map(|c| 1.0 - c), 0.01_f64..0.99,]
-}
-
-fn edges_are_cut() -> Outcome {
-    draws::hold(500, places(), &["cut"], |&c| {
-        ensure!(with_a_kink(c, Some(c)));
-        Verdict::Holds("cut")
-    })
-}
-
-fn edges_are_not_cut() -> Outcome {
-    draws::reject(places(), |&c| {
-        ensure!(with_a_kink(c, None));
-        Verdict::Holds("cut")
-    })
-}
-
 /// The integrals for 2^k P are those for P times 2^k for each factor of P in them, bit for bit: a power of two rounds
 /// nothing, and no test of a sign may know of a size. `degree` is that of the energy (2).
 fn scales<E, const N: usize, const M: usize>(p: [f64; M], k: i32, degree: i32) -> Verdict
@@ -370,11 +227,6 @@ fn integrals_scale() -> Outcome {
     })?;
     let p2 = draws::hold(2000, scalings(), &classes, |&(p, k)| scales::<P2, 6, 3>(p, k, 2))?;
     Ok(format!("P1: {p1}; P2: {p2}"))
-}
-
-/// An energy of degree 1.
-fn energy_of_another_degree() -> Outcome {
-    draws::reject(scalings(), |&(p, k)| scales::<P2, 6, 3>(p, k, 1))
 }
 
 /// A displacement of degree 2: coefficients of 1, x, y, x^2, xy, y^2 for each component. P2 has it exactly.
@@ -489,244 +341,33 @@ fn errors_by_definition(inverted: bool) -> Outcome {
     Ok(format!("{} bodies, open and pressed", bodies.len()))
 }
 
-fn errors_are_their_definitions() -> Outcome {
-    errors_by_definition(false)
-}
-
-fn errors_with_gamma_inverted() -> Outcome {
-    noticed(errors_by_definition(true))
-}
-
 /// The row.
 pub fn claim() -> Claim {
     let checks = vec![
-        by(Engine::Doubles, "kappa_of_1_or_more_is_refused_and_less_is_taken", kappa_is_refused),
-        by(
-            Engine::Doubles,
-            "prescribed_displacements_that_disagree_are_refused",
-            disagreements_are_refused,
-        ),
-        by(
-            Engine::Doubles,
-            "tractions_along_what_is_held_are_no_load",
-            tractions_along_what_is_held_are_left_out,
-        ),
-        control(
-            Engine::Doubles,
-            "control_tractions_along_what_is_free_are_no_load",
-            tractions_along_what_is_free_are_left_out,
-        ),
-        by(Engine::Doubles, "local_gammas_give_each_triangle_the_same_kappa", local_gammas),
-        control(Engine::Doubles, "control_one_gamma0_for_all_triangles", one_gamma0_for_all),
-        by(Engine::Exact, "gauss_rules_have_the_moments_of_legendre", gauss_rules),
-        by(Engine::Doubles, "edges_are_cut_where_the_rule_is_told_to", edges_are_cut),
-        by(
-            Engine::Exact,
-            "contact_edges_are_integrated_by_the_rule_that_is_asked_for",
-            rule_is_the_one_asked_for,
-        ),
-        by(
-            Engine::Doubles,
-            "integrals_over_an_edge_scale_by_powers_of_two_without_error",
-            integrals_scale,
-        ),
-        by(
-            Engine::Doubles,
-            "errors_of_p2_fields_from_quadratic_ones_are_their_definitions",
-            errors_are_their_definitions,
-        ),
-        control(Engine::Doubles, "control_operator_error_with_gamma", errors_with_gamma_inverted),
-        by(
-            Engine::Doubles,
-            "the_projection_is_nearer_than_the_discrete_solution_and_the_interpolant",
-            rates::projection_is_the_nearest,
-        ),
-        by(
-            Engine::Doubles,
-            "of_bodies_that_slide_the_solution_of_least_norm_is_given",
-            answers::of_bodies_that_slide_the_solution_of_least_norm_is_given,
-        ),
-        control(
-            Engine::Doubles,
-            "control_a_solution_that_has_slid",
-            answers::a_solution_that_has_slid,
-        ),
-        by(
-            Engine::Doubles,
-            "solutions_are_the_same_in_all_units",
-            answers::solutions_are_the_same_in_all_units,
-        ),
-        control(
-            Engine::Doubles,
-            "control_units_that_are_off_by_a_rounding",
-            answers::units_that_are_off_by_a_rounding,
-        ),
-        by(
-            Engine::Doubles,
-            "solutions_out_of_range_are_refused",
-            answers::solutions_out_of_range_are_refused,
-        ),
-        control(
-            Engine::Doubles,
-            "control_solutions_in_range_refused",
-            answers::solutions_in_range_refused,
-        ),
-        by(
-            Engine::Doubles,
-            "structured_meshes_are_laid_out_as_they_say",
-            given::structured_meshes_are_laid_out_as_they_say,
-        ),
-        control(
-            Engine::Doubles,
-            "control_trapezoids_lean_by_other_angles",
-            given::trapezoids_lean_by_other_angles,
-        ),
-        by(
-            Engine::Doubles,
-            "numbers_beyond_their_limits_are_refused",
-            given::numbers_beyond_their_limits_are_refused,
-        ),
-        control(
-            Engine::Doubles,
-            "control_numbers_on_the_near_side_are_refused",
-            given::numbers_on_the_near_side_are_refused,
-        ),
-        by(
-            Engine::Doubles,
-            "supports_count_along_their_own_normals",
-            given::supports_count_along_their_own_normals,
-        ),
-        control(
-            Engine::Doubles,
-            "control_supports_count_along_the_normals_of_others",
-            given::supports_count_along_the_normals_of_others,
-        ),
-        by(
-            Engine::Doubles,
-            "points_are_found_in_their_triangles",
-            places::points_are_found_in_their_triangles,
-        ),
-        control(
-            Engine::Doubles,
-            "control_points_are_found_beside_their_triangles",
-            places::points_are_found_beside_their_triangles,
-        ),
-        by(
-            Engine::Doubles,
-            "loads_are_integrated_exactly_to_their_degrees",
-            places::loads_are_integrated_exactly_to_their_degrees,
-        ),
-        control(
-            Engine::Doubles,
-            "control_loads_are_integrated_exactly_beyond_their_degrees",
-            places::loads_are_integrated_exactly_beyond_their_degrees,
-        ),
-        by(
-            Engine::Doubles,
-            "free_motions_are_called_what_they_are",
-            places::free_motions_are_called_what_they_are,
-        ),
-        control(
-            Engine::Doubles,
-            "control_free_motions_are_called_others",
-            places::free_motions_are_called_others,
-        ),
-        by(
-            Engine::Doubles,
-            "constants_of_a_line_are_its_largest_and_its_middle_one",
-            places::constants_of_a_line_are_its_largest_and_its_middle_one,
-        ),
-        control(
-            Engine::Doubles,
-            "control_constants_of_a_line_are_larger",
-            places::constants_of_a_line_are_larger,
-        ),
-        by(
-            Engine::Doubles,
-            "meshes_that_are_none_are_refused",
-            meshes::meshes_that_are_none_are_refused,
-        ),
-        control(
-            Engine::Doubles,
-            "control_seams_of_a_hundredth_are_refused",
-            meshes::wide_seams_are_refused,
-        ),
-        by(
-            Engine::Doubles,
-            "vertices_are_merged_by_chains_of_short_steps",
-            meshes::vertices_are_merged_by_chains_of_short_steps,
-        ),
-        control(
-            Engine::Doubles,
-            "control_vertices_are_merged_by_half_the_distance",
-            meshes::vertices_are_merged_by_half_the_distance,
-        ),
-        by(
-            Engine::Doubles,
-            "refined_problems_have_the_same_materials_and_loads",
-            meshes::refined_problems_have_the_same_materials_and_loads,
-        ),
-        control(
-            Engine::Doubles,
-            "control_refined_problems_without_a_load",
-            meshes::refined_problems_without_a_load,
-        ),
-        by(
-            Engine::Doubles,
-            "meshes_are_refined_until_the_target_is_met",
-            meshes::meshes_are_refined_until_the_target_is_met,
-        ),
-        control(
-            Engine::Doubles,
-            "control_meshes_are_refined_by_more",
-            meshes::meshes_are_refined_by_more,
-        ),
-        by(
-            Engine::Doubles,
-            "data_that_are_not_finite_are_refused",
-            meshes::data_that_are_not_finite_are_refused,
-        ),
-        control(
-            Engine::Doubles,
-            "control_large_data_are_not_finite",
-            meshes::large_data_are_not_finite,
-        ),
-        by(
-            Engine::Doubles,
-            "bodies_that_neither_supports_nor_contact_hold_are_refused",
-            conditions::bodies_that_can_move_are_refused,
-        ),
-        control(
-            Engine::Doubles,
-            "control_bodies_are_held_without_a_load",
-            conditions::bodies_held_without_a_load,
-        ),
-        control(Engine::Doubles, "control_kappa_below_2_is_taken", kappa_below_2_is_taken),
-        control(
-            Engine::Doubles,
-            "control_disagreements_of_a_hundredth_are_taken",
-            disagreements_of_a_hundredth_are_taken,
-        ),
-        control(Engine::Exact, "control_another_rule_for_that_of_gauss", other_rules),
-        control(Engine::Doubles, "control_an_edge_that_is_not_cut", edges_are_not_cut),
-        control(Engine::Doubles, "control_energy_of_degree_1", energy_of_another_degree),
-        control(
-            Engine::Doubles,
-            "control_the_interpolant_is_as_near_as_the_projection",
-            rates::interpolant_is_as_near,
-        ),
+        doubles!("kappa_of_1_or_more_is_refused_and_less_is_taken" => refusal(1.0)),
+        doubles!("local_gammas_give_each_triangle_the_same_kappa" => kappas(Gamma0::Local(0.5))),
+        doubles!("control_one_gamma0_for_all_triangles" => noticed(kappas(Gamma0::Auto))),
+        exact!("gauss_rules_have_the_moments_of_legendre" => gauss_rules()),
+        exact!("contact_edges_are_integrated_by_the_rule_that_is_asked_for" => rule_is_the_one_asked_for()),
+        doubles!("integrals_over_an_edge_scale_by_powers_of_two_without_error" => integrals_scale()),
+        doubles!("errors_of_p2_fields_from_quadratic_ones_are_their_definitions" => errors_by_definition(false)),
+        doubles!("control_operator_error_with_gamma" => noticed(errors_by_definition(true))),
+        doubles!("the_projection_is_nearer_than_the_discrete_solution_and_the_interpolant" => rates::projection_is_the_nearest()),
+        doubles!("control_kappa_below_2_is_taken" => noticed(refusal(2.0))),
+        exact!("control_another_rule_for_that_of_gauss" => other_rules()),
+        doubles!("control_energy_of_degree_1" => draws::reject(scalings(), |&(p, k)| scales::<P2, 6, 3>(p, k, 1))),
+        doubles!("control_the_interpolant_is_as_near_as_the_projection" => rates::interpolant_is_as_near()),
     ];
     Claim {
         id: "18",
         items: &["the solver"],
-        title: "What the solver refuses, and the rules by which it integrates",
+        title: "The limit of gamma0, and the rules by which (8) and its errors are integrated",
         paper: "gamma0 sufficiently small; the rest is not in the paper.",
-        statement: "On nine small bodies, P1 and P2: gamma0 with kappa >= 1 is refused (from 1 + 1e-9 on), with kappa < 1 taken (up to 1 - 1e-9), and gamma0 = auto is kappa = 1/2. Displacements that two sides prescribe at a common vertex and that differ by 1e-9 or more are refused, those of a support, which count along its normal, too. Tractions along what is held are no load. A local gamma gives each triangle on Gamma_C the kappa that is asked for. A block that neither its supports nor contact under its load hold is refused, one that they hold is taken, on the verge of tipping it is refused (15 cases); turned by five angles, two rollers hold it, and one does not. The Gauss rules with n <= 10 points have the moments 0 with the Legendre polynomials of degree 1 to 2n - 1, to a few units of roundoff, and not with that of degree 2n; contact edges are integrated by the one that is asked for. The rule for errors, told to cut an edge, integrates a kink there exactly, 1e-7 from an end too. The integrals of [P]+ over an edge, P1 and P2, for 2^k P, |k| <= 60, are those for P times the power of two, bit for bit. The errors in all six norms of random P2 fields from quadratic ones, on nine bodies, open and pressed, are those of their definitions. The a-orthogonal projection of the exact solution is nearer to it in the energy norm than u^h and than the interpolant. Of the solutions of a block that slides along its floor the one of least norm is given. In units that are powers of two a solution has the same bits, and one whose numbers are no doubles is refused. Rectangles and trapezoids, refined and moved at random, are laid out as they are said to be. Tolerances, numbers of steps and of Gauss points, gamma0 and moduli beyond their limits are refused, those next to them taken; a support counts along its own normal where it meets another. Points are found in the triangles that have them, corners and edges too. Loads of degree 7, with a kink of degree 13, and polynomials of the degree that they tell are integrated exactly. A body held in a point turns about it, on rollers it slides along them, and what hangs on a vertex turns there: so it is said. The constant of a contact line is the largest of its triangles', the typical one stands in the middle of their order. Meshes that are torn or cover a point twice are refused, vertices are merged by chains of short steps only, a refined problem has the materials and loads of the coarse one, the fewest triangles with half of the square of the bound are refined until the target is met, and data that are not finite are refused.",
+        statement: "On nine small bodies, P1 and P2: gamma0 with kappa >= 1 is refused (from 1 + 1e-9 on), with kappa < 1 taken (up to 1 - 1e-9), and gamma0 = auto is kappa = 1/2. A local gamma gives each triangle on Gamma_C the kappa that is asked for. The Gauss rules with n <= 10 points have the moments 0 with the Legendre polynomials of degree 1 to 2n - 1, to a few units of roundoff, and not with that of degree 2n; contact edges are integrated by the one that is asked for. The integrals of [P]+ over an edge, P1 and P2, for 2^k P, |k| <= 60, are those for P times the power of two, bit for bit. The errors in all six norms of random P2 fields from quadratic ones, on nine bodies, open and pressed, are those of their definitions. The a-orthogonal projection of the exact solution is nearer to it in the energy norm than u^h and than the interpolant.",
         numbers: "doubles; the moments from the doubles of the rules over rationals.",
         kernel: &[
             "fem::quadrature::gauss",
             "fem::contact_line::EdgeRule::gauss",
-            "fem::pieces::on_edge",
             "fem::errors::with_points",
             "edge_integral::ExactEdge::exact",
         ],

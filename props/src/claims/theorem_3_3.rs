@@ -206,7 +206,7 @@ mod row {
         Definition, Draw, Kernel, MaybeExact, Rule, bodies, combined, contact_class, sum, whole,
     };
     use crate::claim::{
-        Claim, Engine, Outcome, by, control, in_doubles, model_checked, proved, refuted, tested,
+        Claim, Outcome, in_doubles, model_checked, noticed, proved, refuted, tested,
     };
     use crate::claims::{certificate, geometry};
     use crate::draws;
@@ -254,7 +254,7 @@ mod row {
 
     fn monotone_p1() -> Outcome {
         let classes = ["an edge is cut", "open", "pressed"];
-        draws::hold(50, (bodies(2), draws::positive()), &classes, |(draw, kappa)| {
+        draws::hold(15, (bodies(2), draws::positive()), &classes, |(draw, kappa)| {
             Exact::scope(|| {
                 monotone_on_bodies::<P1, 3, 2>(draw, *kappa, Rule::Exact, Exact::from(1))
             })
@@ -262,7 +262,7 @@ mod row {
     }
 
     fn monotone_p2() -> Outcome {
-        draws::hold(15, (bodies(2), draws::positive()), &["an edge is cut"], |(draw, kappa)| {
+        draws::hold(5, (bodies(2), draws::positive()), &["an edge is cut"], |(draw, kappa)| {
             Exact::scope(|| {
                 let points = [[(1, 4), (1, 2)], [(3, 4), (1, 2)]]
                     .map(|p| p.map(|(n, d)| Exact::ratio(n, d)));
@@ -333,12 +333,12 @@ mod row {
         let none =
             statement!(beyond_the_limit_there_may_be_no_solution, [s, t], ["no solution here"]);
         checks.extend([
-            by(Engine::Exact, "12_and_the_bound_of_phi_hold_on_random_bodies_for_p1", monotone_p1),
-            by(Engine::Exact, "12_and_the_bound_of_phi_hold_on_random_bodies_for_p2", monotone_p2),
+            exact!("12_and_the_bound_of_phi_hold_on_random_bodies_for_p1" => monotone_p1()),
+            exact!("12_and_the_bound_of_phi_hold_on_random_bodies_for_p2" => monotone_p2()),
             proved(none),
             tested(none),
-            control(Engine::Exact, "control_12_with_ten_times_the_constant", larger_constant),
-            control(Engine::Exact, "control_two_solutions_beyond_the_limit", two_solutions),
+            exact!("control_12_with_ten_times_the_constant" => larger_constant()),
+            exact!("control_two_solutions_beyond_the_limit" => two_solutions()),
             in_doubles(lipschitz),
             in_doubles(between),
             refuted(statement!(control_absolute_value_is_monotone, [a, b], fails "d * e >= d * d")),
@@ -347,16 +347,8 @@ mod row {
             refuted(statement!(control_half_the_curvature, [a, b], fails "q * q <= p * p + S::from(2) * p * e + e * e / S::from(2)")),
         ]);
         checks.extend([
-            by(
-                Engine::Doubles,
-                "nodes_move_no_further_than_korns_constants_say",
-                geometry::nodes_move_no_further_than_korns_constants_say,
-            ),
-            control(
-                Engine::Doubles,
-                "control_korns_constants_a_thousandth_as_large",
-                geometry::korns_constants_a_thousandth_as_large,
-            ),
+            doubles!("nodes_move_no_further_than_korns_constants_say" => geometry::korn(1.0)),
+            doubles!("control_korns_constants_a_thousandth_as_large" => noticed(geometry::korn(1e3))),
         ]);
         checks.extend(certificate::checks());
         checks.extend(HARNESSES.iter().copied().map(model_checked));

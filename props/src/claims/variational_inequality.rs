@@ -47,7 +47,7 @@ pub use row::claim;
 #[cfg(not(kani))]
 mod row {
     use super::*;
-    use crate::claim::{Claim, Engine, by, proved, refuted, tested};
+    use crate::claim::{Claim, proved, refuted, tested};
     use crate::claims::lemma_3_1::inequality_3_at_affine_solutions;
     use crate::numbers::Exact;
     use crate::statement;
@@ -92,11 +92,7 @@ mod row {
                 proved(converse),
                 tested(sign),
                 tested(converse),
-                by(
-                    Engine::Exact,
-                    "inequality_3_holds_at_affine_solutions_on_random_bodies",
-                    inequality_3_at_affine_solutions,
-                ),
+                exact!("inequality_3_holds_at_affine_solutions_on_random_bodies" => inequality_3_at_affine_solutions()),
                 refuted(statement!(
                     control_sign_of_3_without_complementarity,
                     [u_n, g, sigma_n, v_n],

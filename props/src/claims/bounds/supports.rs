@@ -9,7 +9,7 @@ use super::{
     CLASSES, Draw, Tampering, claimed, draws_of, evaluated_of, example, of_bulges,
     quadratic_example,
 };
-use crate::claim::{Check, Engine, Outcome, by, control, noticed};
+use crate::claim::{Check, Outcome, noticed};
 use crate::draws;
 use crate::verdict::Verdict;
 
@@ -54,15 +54,6 @@ fn supported(draw: &Draw) -> Certificate {
 /// The checker against the definitions; `work` is the share of the work of what is given beside them that is counted.
 fn evaluated_with_supports(draw: &Draw, work: f64) -> Verdict {
     evaluated_of::<Ball>(draw, supported(draw), [1.0, work])
-}
-
-fn supports_are_as_the_definitions_say() -> Outcome {
-    draws::hold(60, draws_of(false), &CLASSES, |draw| evaluated_with_supports(draw, 1.0))
-}
-
-/// J(v) without the work of what is given beside supports.
-fn what_is_given_beside_supports_does_no_work() -> Outcome {
-    draws::reject(draws_of(false), |draw| evaluated_with_supports(draw, 0.0))
 }
 
 /// Changes the role of the first edge that is held along a direction.
@@ -166,36 +157,12 @@ fn refusals_of_supports(tamper: bool) -> Outcome {
     Ok(format!("{} tamperings", 2 * SUPPORT_TAMPERINGS.len() + 3))
 }
 
-fn what_supports_ask_for_is_asked() -> Outcome {
-    refusals_of_supports(true)
-}
-
-fn supports_as_they_were_made_are_refused() -> Outcome {
-    noticed(refusals_of_supports(false))
-}
-
 /// The checks of the row.
 pub(super) fn checks() -> Vec<Check> {
     vec![
-        by(
-            Engine::Exact,
-            "the_checker_finds_what_the_definitions_say_of_supports",
-            supports_are_as_the_definitions_say,
-        ),
-        control(
-            Engine::Exact,
-            "control_what_is_given_beside_supports_does_no_work",
-            what_is_given_beside_supports_does_no_work,
-        ),
-        by(
-            Engine::Doubles,
-            "the_checker_refuses_supports_that_the_theorem_does_not_allow",
-            what_supports_ask_for_is_asked,
-        ),
-        control(
-            Engine::Doubles,
-            "control_supports_as_they_were_made_are_refused",
-            supports_as_they_were_made_are_refused,
-        ),
+        exact!("the_checker_finds_what_the_definitions_say_of_supports" => draws::hold(60, draws_of(false), &CLASSES, |draw| evaluated_with_supports(draw, 1.0))),
+        exact!("control_what_is_given_beside_supports_does_no_work" => draws::reject(draws_of(false), |draw| evaluated_with_supports(draw, 0.0))),
+        doubles!("the_checker_refuses_supports_that_the_theorem_does_not_allow" => refusals_of_supports(true)),
+        doubles!("control_supports_as_they_were_made_are_refused" => noticed(refusals_of_supports(false))),
     ]
 }

@@ -6,7 +6,7 @@ use signorini::kernel::edge_integral::ExactEdge;
 use signorini::solve::{Degree, discretize};
 
 use crate::bodies::{Body, Kernel, MaybeExact, Side, bodies, sum};
-use crate::claim::{Claim, Engine, Outcome, by, control, proved, refuted, tested};
+use crate::claim::{Claim, Outcome, proved, refuted, tested};
 use crate::claims::directions;
 use crate::discrete::Discrete;
 use crate::draws;
@@ -81,13 +81,13 @@ fn along_the_normal<const N: usize>(body: &Body, side: &Side) -> Vec<[Exact; 2]>
 }
 
 fn coercive_p1() -> Outcome {
-    draws::hold(60, bodies(1), &["attained"], |draw| {
+    draws::hold(20, bodies(1), &["attained"], |draw| {
         Exact::scope(|| coercive::<P1, 3, 2>(&draw.body(), Exact::from(1)))
     })
 }
 
 fn coercive_p2() -> Outcome {
-    draws::hold(20, bodies(1), &["attained"], |draw| {
+    draws::hold(8, bodies(1), &["attained"], |draw| {
         Exact::scope(|| coercive::<P2, 6, 3>(&draw.body(), Exact::from(1)))
     })
 }
@@ -385,53 +385,21 @@ pub fn claim() -> Claim {
             fails "energy <= constant * squares"
         )),
         refuted(statement!(control_smaller_trace_constant, [a, b, c], fails "edge <= constant * triangle")),
-        by(Engine::Exact, "11_and_coercivity_hold_on_random_bodies_for_p1", coercive_p1),
-        by(Engine::Exact, "11_and_coercivity_hold_on_random_bodies_for_p2", coercive_p2),
-        by(Engine::Exact, "11_and_coercivity_hold_for_all_fields_for_p1", coercive_for_all_p1),
-        by(Engine::Exact, "11_and_coercivity_hold_for_all_fields_for_p2", coercive_for_all_p2),
-        by(
-            Engine::Exact,
-            "the_smallest_eigenvalue_of_the_solver_is_enclosed_by_exact_counts",
-            smallest_eigenvalues,
-        ),
-        by(
-            Engine::Doubles,
-            "the_smallest_eigenvalue_is_affine_in_gamma0_and_at_least_1_minus_kappa",
-            eigenvalues_agree,
-        ),
-        by(
-            Engine::Doubles,
-            "the_table_of_docs_parameters_is_printed_by_the_code_and_within_the_bound",
-            table,
-        ),
-        by(
-            Engine::Doubles,
-            "functionals_along_directions_that_turn_are_their_definitions",
-            directions::functionals_are_their_definitions,
-        ),
-        by(
-            Engine::Doubles,
-            "kappa_counts_edges_along_which_the_direction_turns",
-            directions::kappa_counts_turning_edges,
-        ),
-        control(
-            Engine::Doubles,
-            "control_normals_of_the_facets_for_the_directions",
-            directions::functionals_by_the_facets,
-        ),
-        control(
-            Engine::Doubles,
-            "control_kappa_counts_edges_once",
-            directions::kappa_that_counts_edges_once,
-        ),
-        control(Engine::Exact, "control_constant_one_percent_smaller", smaller_constant),
-        control(
-            Engine::Exact,
-            "control_1_minus_kappa_one_percent_larger",
-            more_than_1_minus_kappa,
-        ),
-        control(Engine::Exact, "control_length_for_the_diameter", length_for_the_diameter),
-        control(Engine::Exact, "control_coercivity_beyond_the_limit", lost_beyond_the_limit),
+        exact!("11_and_coercivity_hold_on_random_bodies_for_p1" => coercive_p1()),
+        exact!("11_and_coercivity_hold_on_random_bodies_for_p2" => coercive_p2()),
+        exact!("11_and_coercivity_hold_for_all_fields_for_p1" => coercive_for_all_p1()),
+        exact!("11_and_coercivity_hold_for_all_fields_for_p2" => coercive_for_all_p2()),
+        exact!("the_smallest_eigenvalue_of_the_solver_is_enclosed_by_exact_counts" => smallest_eigenvalues()),
+        doubles!("the_smallest_eigenvalue_is_affine_in_gamma0_and_at_least_1_minus_kappa" => eigenvalues_agree()),
+        doubles!("the_table_of_docs_parameters_is_printed_by_the_code_and_within_the_bound" => table()),
+        doubles!("functionals_along_directions_that_turn_are_their_definitions" => directions::functionals_are_their_definitions()),
+        doubles!("kappa_counts_edges_along_which_the_direction_turns" => directions::kappa_counts_turning_edges()),
+        doubles!("control_normals_of_the_facets_for_the_directions" => directions::functionals_by_the_facets()),
+        doubles!("control_kappa_counts_edges_once" => directions::kappa_that_counts_edges_once()),
+        exact!("control_constant_one_percent_smaller" => smaller_constant()),
+        exact!("control_1_minus_kappa_one_percent_larger" => more_than_1_minus_kappa()),
+        exact!("control_length_for_the_diameter" => length_for_the_diameter()),
+        exact!("control_coercivity_beyond_the_limit" => lost_beyond_the_limit()),
     ]);
     Claim {
         id: "9",

@@ -1,7 +1,7 @@
 //! The row of Theorem 3.4: the steps of its proof run over symbols, rationals, quantities with dimensions and doubles.
 
 use super::*;
-use crate::claim::{Claim, Engine, Outcome, by, control, proved, refuted, tested};
+use crate::claim::{Claim, Outcome, noticed, proved, refuted, tested};
 use crate::claims::rates;
 use crate::draws;
 use crate::numbers::{Dimension, Exact, Quantity};
@@ -259,23 +259,11 @@ pub fn claim() -> Claim {
     checks.extend([facts, fourteen, s19, s20, last, end].map(proved));
     checks.extend([identity, z, split, raw, theorem, s14, s15, s16, s17, s18].map(tested));
     checks.extend([
-        by(Engine::Exact, "every_step_has_one_dimension", dimensions),
-        control(
-            Engine::Exact,
-            "control_17_and_18_as_printed_have_two_dimensions",
-            printed_dimensions,
-        ),
-        control(Engine::Exact, "control_17_and_18_as_printed_at_exact_points", errata_points),
-        by(
-            Engine::Doubles,
-            "the_bound_holds_for_the_errors_of_the_solver",
-            rates::theorem_on_computed_errors,
-        ),
-        control(
-            Engine::Doubles,
-            "control_errors_a_hundred_times_as_large",
-            rates::theorem_on_errors_blown_up,
-        ),
+        exact!("every_step_has_one_dimension" => dimensions()),
+        exact!("control_17_and_18_as_printed_have_two_dimensions" => printed_dimensions()),
+        exact!("control_17_and_18_as_printed_at_exact_points" => errata_points()),
+        doubles!("the_bound_holds_for_the_errors_of_the_solver" => rates::both_sides(1.0)),
+        doubles!("control_errors_a_hundred_times_as_large" => noticed(rates::both_sides(100.0))),
         refuted(statement!(control_step_17_as_printed, [gamma, u, su, uh, sh, sv], fails "t + gamma * z * z <= factor * z * (su - sv) + gamma * (su - sh) * (sv - sh)")),
         refuted(statement!(control_step_18_as_printed, [z, d, gamma, beta], fails "factor * z * d <= gamma * z * z / (two * beta) + beta * gamma * d * d / two")),
         refuted(

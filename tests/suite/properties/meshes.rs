@@ -2,24 +2,17 @@
 //! refined problem has the materials and loads of the coarse one; triangles are marked and refined until the target is met.
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 use signorini::certify::adapt::{THETA, Target, adapt, marked};
 use signorini::fem::merge::merge;
 use signorini::fem::{
-    Condition, DataError, Diagonal, Materials, Mesh, MeshError, Problem, Rectangle, SharedFunction,
-    SurfaceForce,
+    Condition, DataError, Diagonal, Materials, Mesh, MeshError, Problem, Rectangle, SurfaceForce,
 };
 use signorini::kernel::{Material, P1, Plane};
 use signorini::solve::{Method, Settings, SolveError, discretize};
 
-use crate::claim::{Outcome, noticed, text};
-use crate::draws;
-use crate::proof::sampler::Random;
-
-fn constant(value: f64) -> SharedFunction {
-    Arc::new(move |_: [f64; 2]| value)
-}
+use super::{Outcome, properties, text};
+use crate::common::{Random, constant};
 
 /// Two squares in one mesh with nothing joined: of side 1 in the origin, and of side `side` with its lower left corner at `at`.
 fn squares(at: [f64; 2], side: f64) -> Result<Mesh, MeshError> {
@@ -58,24 +51,12 @@ fn refused(seam: f64) -> Outcome {
             return Err(format!("a square of side {side} at {at:?}: not what was expected"));
         }
     }
-    Ok(format!("{} pairs of squares", cases.len()))
-}
-
-/// Row 18: meshes that are none.
-pub fn meshes_that_are_none_are_refused() -> Outcome {
-    let narrow = refused(1e-5)?;
-    // A little less than 1e-3 of the smaller square.
-    refused(0.45e-3).map(|wide| format!("seams of 1e-5: {narrow}; of 0.45e-3: {wide}"))
-}
-
-/// A seam as wide as a hundredth of the squares is a gap.
-pub fn wide_seams_are_refused() -> Outcome {
-    noticed(refused(1e-2))
+    Ok(())
 }
 
 /// Vertices are one if and only if a chain of steps within `share` of the body's size joins them, where `told` is asked for.
 fn merged(share: f64, told: f64) -> Outcome {
-    let mut random = Random::new(draws::seed());
+    let mut random = Random(2013);
     let mut joined = 0;
     for _ in 0..40 {
         let mut number = || random.below(11) as f64 / 10.0;
@@ -114,17 +95,7 @@ fn merged(share: f64, told: f64) -> Outcome {
     if joined == 0 {
         return Err("nothing was merged".to_owned());
     }
-    Ok(format!("40 clouds of 26 vertices, {joined} pairs in one"))
-}
-
-/// Row 18: merging.
-pub fn vertices_are_merged_by_chains_of_short_steps() -> Outcome {
-    merged(1e-3, 1e-3)
-}
-
-/// By half the distance.
-pub fn vertices_are_merged_by_half_the_distance() -> Outcome {
-    noticed(merged(1e-3, 0.5e-3))
+    Ok(())
 }
 
 fn block(load: f64) -> Result<Problem, String> {
@@ -168,23 +139,13 @@ fn refined(without: usize) -> Outcome {
             return Err(format!("the loads on triangle {t}, a part of {origin}"));
         }
     }
-    Ok(format!("{} triangles, {count} after", before.mesh.triangles().len()))
-}
-
-/// Row 18: refined problems.
-pub fn refined_problems_have_the_same_materials_and_loads() -> Outcome {
-    refined(0)
-}
-
-/// A load less.
-pub fn refined_problems_without_a_load() -> Outcome {
-    noticed(refined(2))
+    Ok(())
 }
 
 /// The marked triangles are the fewest whose shares make up `theta` of the whole; a target is met by the last level and by none
 /// before.
 fn adapted(theta: f64) -> Outcome {
-    let mut random = Random::new(draws::seed());
+    let mut random = Random(2013);
     for _ in 0..100 {
         let indicators: Vec<f64> = (0..20).map(|_| random.below(1000) as f64 / 1000.0).collect();
         let mut squares: Vec<f64> = indicators.iter().map(|i| i * i).collect();
@@ -213,17 +174,7 @@ fn adapted(theta: f64) -> Outcome {
     if before.is_empty() || !(found.unmet.is_none() && only_last) {
         return Err(format!("a target of {relative}: {:?}", found.levels));
     }
-    Ok(format!("100 draws; half the first bound on {} levels", found.levels.len()))
-}
-
-/// Row 18: adaptive refinement.
-pub fn meshes_are_refined_until_the_target_is_met() -> Outcome {
-    adapted(THETA)
-}
-
-/// Nine tenths of the whole in place of half of it.
-pub fn meshes_are_refined_by_more() -> Outcome {
-    noticed(adapted(0.9))
+    Ok(())
 }
 
 /// Data that are not finite are refused: a load, a gap, a prescribed displacement, each of value `value`.
@@ -243,16 +194,13 @@ fn not_finite(value: f64) -> Outcome {
             _ => return Err(format!("datum {kind} of value {value} is not called infinite")),
         }
     }
-    Ok("a load, a gap and a displacement".to_owned())
+    Ok(())
 }
 
-/// Row 18: data that are not finite.
-pub fn data_that_are_not_finite_are_refused() -> Outcome {
-    let infinite = not_finite(f64::INFINITY)?;
-    not_finite(f64::NAN).map(|_| format!("{infinite}, infinite and NaN"))
-}
-
-/// Data of 1e300.
-pub fn large_data_are_not_finite() -> Outcome {
-    noticed(not_finite(1e300))
+properties! {
+    meshes_that_are_none_are_refused: refused(1e-5), refused(0.45e-3); not refused(1e-2);
+    vertices_are_merged_by_chains_of_short_steps: merged(1e-3, 1e-3); not merged(1e-3, 0.5e-3);
+    refined_problems_have_the_same_materials_and_loads: refined(0); not refined(2);
+    meshes_are_refined_until_the_target_is_met: adapted(THETA); not adapted(0.9);
+    data_that_are_not_finite_are_refused: not_finite(f64::INFINITY), not_finite(f64::NAN); not not_finite(1e300);
 }

@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use signorini::fem::exact::{Corner, Kind, Singular, Smooth};
+use signorini::fem::pieces::{Features, Rule};
 use signorini::fem::{
-    Condition, DataError, Diagonal, Exact, Mesh, Perturbation, Problem, Rectangle, SharedFunction,
-    Structured, Trapezoid,
+    Condition, DataError, Diagonal, Exact, Mesh, Perturbation, Problem, Rectangle, Structured,
+    Trapezoid,
 };
 use signorini::kernel::{Material, P1, Plane};
 use signorini::solve::ladder::{fitted_slope, rates};
@@ -16,13 +17,8 @@ use signorini::solve::{
     Settings, SolveError, discretize,
 };
 
-use crate::claim::{Outcome, noticed, text};
-use crate::draws;
-use crate::proof::sampler::Random;
-
-fn constant(value: f64) -> SharedFunction {
-    Arc::new(move |_: [f64; 2]| value)
-}
+use super::{Outcome, properties, text};
+use crate::common::{Random, constant};
 
 /// A place of the unit square on its way to a mesh: the rectangle's, or the trapezoid's of an angle.
 type Map = Box<dyn Fn([f64; 2]) -> [f64; 2]>;
@@ -81,8 +77,7 @@ fn laid_out(
 /// Rectangles and trapezoids, refined and moved at random, are laid out as they are said to be, where a trapezoid has
 /// `turned` times its angle.
 fn structured(turned: f64) -> Outcome {
-    let mut random = Random::new(draws::seed());
-    let mut count = 0;
+    let mut random = Random(2013);
     for diagonal in [Diagonal::Left, Diagonal::Right, Diagonal::Crossed] {
         for factor in [1, 2, 3] {
             let [nx, ny] = [1, 1].map(|least: usize| least + random.below(4));
@@ -115,22 +110,11 @@ fn structured(turned: f64) -> Outcome {
                     let mesh = body.refined(factor).mesh(moved).map_err(text)?;
                     laid_out(&mesh, cells, *crossed, map, back, amount)
                         .map_err(|why| format!("{body:?} refined by {factor}, {moved:?}: {why}"))?;
-                    count += 1;
                 }
             }
         }
     }
-    Ok(format!("{count} meshes"))
-}
-
-/// Row 18: structured meshes.
-pub fn structured_meshes_are_laid_out_as_they_say() -> Outcome {
-    structured(1.0)
-}
-
-/// The angle of a trapezoid is off by a thousandth.
-pub fn trapezoids_lean_by_other_angles() -> Outcome {
-    noticed(structured(1.001))
+    Ok(())
 }
 
 /// The exact solutions promise min(p, s - 1), s being their regularity plus `more`; the wedge's exponent is the root of its
@@ -193,17 +177,7 @@ fn promised(more: f64) -> Outcome {
     if { slopes }.any(|slope| !((slope - 1.25).abs() <= 1e-12)) {
         return Err("a power of h has another slope".to_owned());
     }
-    Ok("five solutions, P1 and P2, three levels".to_owned())
-}
-
-/// Row 12: what exact solutions and ladders promise.
-pub fn exact_solutions_promise_their_rates() -> Outcome {
-    promised(0.0)
-}
-
-/// Solutions that are smoother by a half.
-pub fn smoother_solutions_promise_more() -> Outcome {
-    noticed(promised(0.5))
+    Ok(())
 }
 
 /// Methods, settings and materials with these numbers are taken or refused; the limits are `wider`.
@@ -268,17 +242,7 @@ fn limits(wider: f64) -> Outcome {
             return Err(format!("{what} is {}", if *taken { "taken" } else { "refused" }));
         }
     }
-    Ok(format!("{} numbers", cases.len()))
-}
-
-/// Row 18: what methods, settings and materials may be.
-pub fn numbers_beyond_their_limits_are_refused() -> Outcome {
-    limits(1e-9)
-}
-
-/// Limits that are exceeded by nothing.
-pub fn numbers_on_the_near_side_are_refused() -> Outcome {
-    noticed(limits(-1e-9))
+    Ok(())
 }
 
 /// The left side in two parts, the lower one moved by u_x = `moved`, the upper one by -u_x = 0.01 along its normal.
@@ -305,18 +269,105 @@ fn agreeing(moved: f64) -> Outcome {
     opposite(moved).map_err(text)?;
     match opposite(-moved) {
         Err(SolveError::Data(DataError::Disagree { .. } | DataError::DisagreeAlong { .. })) => {
-            Ok("taken, and refused with the other sign".to_owned())
+            Ok(())
         }
         other => Err(format!("with the other sign: {other:?}")),
     }
 }
 
-/// Row 18: supports against each other.
-pub fn supports_count_along_their_own_normals() -> Outcome {
-    agreeing(-0.01)
+/// A unit square on a floor, with conditions on top and to the left.
+fn square(top: Condition, left: Condition) -> Result<Problem, String> {
+    let cells = Rectangle { width: 1.0, height: 1.0, nx: 2, ny: 2, diagonal: Diagonal::Right };
+    let floor = Condition::Contact { gap: constant(0.0) };
+    let conditions = [("top", top), ("left", left), ("bottom", floor)];
+    Ok(Problem::new(
+        cells.mesh().map_err(text)?,
+        Material::lame(1.0, 1.0, Plane::Strain),
+        [constant(0.0), constant(0.0)],
+        conditions.map(|(name, condition)| (name.to_owned(), condition)).into(),
+    ))
 }
 
-/// Along the other's.
-pub fn supports_count_along_the_normals_of_others() -> Outcome {
-    noticed(agreeing(0.01))
+/// Whether two sides that meet in a vertex, and prescribe values that differ by `by` there, are refused. For component 2 the
+/// left side is a support: u . n = -u_x.
+fn disagreement(by: f64, component: usize) -> Result<bool, String> {
+    let values = |by: f64| {
+        let value = |c| Some(constant(1.0 + if c == component { by } else { 0.0 }));
+        Condition::Displacement([0, 1].map(value))
+    };
+    let left = if component == 2 {
+        Condition::Support { normal: Some(constant(-1.0 - by)), tangential: None }
+    } else {
+        values(by)
+    };
+    let problem = square(values(0.0), left)?;
+    let method = Method { degree: Degree::One, ..Method::default() };
+    match discretize::<P1, 3, 2>(&problem, &method) {
+        Ok(_) => Ok(false),
+        Err(SolveError::Data(DataError::Disagree { .. })) => Ok(true),
+        Err(other) => Err(other.to_string()),
+    }
+}
+
+fn disagreements(least: f64) -> Outcome {
+    for component in [0, 1, 2] {
+        for by in [0.0, 1e-9, 1e-6, 1e-4, 1e-3, 9e-3, 1e-2, 0.1, -1e-6] {
+            let expected = f64::abs(by) > least;
+            if disagreement(by, component)? != expected {
+                return Err(format!("component {component}, values that differ by {by}"));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The load of tractions on a side that is held in x: those along y are in it, those along x are not.
+fn load_on_a_held_side(tractions: [f64; 2]) -> Result<Vec<[f64; 2]>, String> {
+    let top = Condition::Mixed {
+        displacement: [Some(constant(0.0)), None],
+        traction: tractions.map(constant),
+    };
+    let left = Condition::Displacement([0, 1].map(|_| Some(constant(0.0))));
+    let problem = square(top, left)?;
+    Ok(discretize::<P1, 3, 2>(&problem, &Method::default()).map_err(text)?.load)
+}
+
+fn same_loads(one: [f64; 2], other: [f64; 2]) -> Outcome {
+    let (one, other) = (load_on_a_held_side(one)?, load_on_a_held_side(other)?);
+    let loaded = one.iter().flatten().filter(|&&f| f != 0.0).count();
+    if one == other && loaded > 0 { Ok(()) } else { Err(format!("{one:?} and {other:?}")) }
+}
+
+/// int_0^1 \[s - c\]+ ds = (1 - c)^2/2 by a rule on an edge, near its ends too, that is told to cut at c, or not.
+fn kinks(told: bool) -> Outcome {
+    let mut random = Random(2013);
+    for k in 0..500 {
+        let c = 0.5 + random.next() / 2.0;
+        let c = [c, 1e-7 + 1e-2 * c, 1.0 - 1e-7 - 1e-2 * c][k % 3];
+        let (mut sum, mut total) = (0.0, 0.0);
+        Rule::new(Features::default(), 4).on_edge(
+            [[0.5, 1.0], [0.5, 3.0]],
+            told.then_some(c),
+            |point| {
+                sum += point.weight * (point.s - c).max(0.0);
+                total += point.weight;
+            },
+        );
+        let near = |a: f64, b: f64| (a - b).abs() <= 32.0 * f64::EPSILON;
+        if !(near(sum, (1.0 - c) * (1.0 - c) / 2.0) && near(total, 1.0)) {
+            return Err(format!("a kink at {c}: {sum:e}"));
+        }
+    }
+    Ok(())
+}
+
+properties! {
+    structured_meshes_are_laid_out_as_they_say: structured(1.0); not structured(1.001);
+    exact_solutions_promise_their_rates: promised(0.0); not promised(0.5);
+    numbers_beyond_their_limits_are_refused: limits(1e-9); not limits(-1e-9);
+    supports_count_along_their_own_normals: agreeing(-0.01); not agreeing(0.01);
+    prescribed_displacements_that_disagree_are_refused: disagreements(0.0); not disagreements(1e-2);
+    tractions_along_what_is_held_are_no_load: same_loads([7.0, -1.0], [0.0, -1.0]);
+        not same_loads([0.0, -2.0], [0.0, -1.0]);
+    edges_are_cut_where_the_rule_is_told_to: kinks(true); not kinks(false);
 }
