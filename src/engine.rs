@@ -1,8 +1,8 @@
 //! The engine past one machine: hands a case to the reference in FEniCSx (`reference/fenicsx`), which runs under MPI.
 //!
-//! What runs is what this program was told to run, or what lies beside it. Python, PETSc and DOLFINx all read files of the
-//! folder in which they are started (modules, `.petscrc`, `dolfinx_jit_options.json`): so they are started in a fresh
-//! folder, where they also write, with paths from the root, and Python does not look for modules where it is started.
+//! The engine that runs is the one this program was told to run, or what lies beside it. Python, PETSc and DOLFINx all read
+//! files of the folder in which they are started (modules, `.petscrc`, `dolfinx_jit_options.json`): so they are started in a
+//! fresh folder, where they also write, with paths from the root, and Python does not look for modules where it is started.
 //! What they have written there is then published as this program's own files are.
 
 use std::ffi::OsString;
@@ -95,7 +95,7 @@ pub fn fenicsx(
     Ok((results, files))
 }
 
-/// What the engine said, with the case as the caller called it.
+/// The engine's message, with the case named as the caller named it.
 fn failed(ended: &Output, case: &Path, full: &Path) -> EngineError {
     const MOST: usize = 4000;
     let said = String::from_utf8_lossy(&ended.stderr);

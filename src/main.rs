@@ -155,7 +155,7 @@ mod command {
         let _ = writeln!(io::stderr(), "{}", quote::lines(text));
     }
 
-    /// What goes to standard output, and the exit code.
+    /// Text for standard output, and the exit code.
     struct Done {
         text: String,
         code: u8,
@@ -165,7 +165,7 @@ mod command {
         move |text| Done { text: if quiet { String::new() } else { quote::lines(&text) }, code: 0 }
     }
 
-    /// What a solve shall print.
+    /// The form of a solve's report.
     #[derive(Clone, Copy, PartialEq, Eq)]
     enum Wanted {
         Summary { verbose: bool },
@@ -281,7 +281,7 @@ mod command {
         let Some(Case { problem, file, .. }) = case else {
             return Ok(summary::audited(&audit, None));
         };
-        let reason = compare(problem, &audit.certificate).map_err(|difference| {
+        let reason = compare(problem, &audit.certificate, &audit.forces).map_err(|difference| {
             let [path, file] = [path, &file].map(quote::path);
             let text = format!("{path}: not a certificate of {file}: {difference}");
             failure(FAILED)(&text)
@@ -365,7 +365,7 @@ mod command {
         Ok((name.to_owned(), text.map_err(|e| no_case(&e))?))
     }
 
-    /// What `--out` says, or out/ and the name of the case.
+    /// The folder given by `--out`, or out/ and the name of the case.
     fn folder(file: &Path, out: Option<&Path>) -> PathBuf {
         match out {
             Some(folder) => folder.to_owned(),
@@ -453,7 +453,7 @@ mod command {
         Done { text: String::from_utf8_lossy(&bytes).into_owned(), code: 0 }
     }
 
-    /// What the study shall cover; empty lists stand for what the case says.
+    /// The scope of a convergence study; empty lists stand for the case's own degree and mesh.
     struct Ladders<'a> {
         levels: usize,
         degree: &'a [u8],

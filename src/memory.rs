@@ -77,7 +77,7 @@ fn available() -> Option<u64> {
     Some(group_limit().into_iter().fold(free.saturating_mul(1024), u64::min))
 }
 
-/// What the control groups (version 2) of this process still allow.
+/// Memory that the control groups (version 2) of this process still allow.
 fn group_limit() -> Option<u64> {
     let own = fs::read_to_string("/proc/self/cgroup").ok()?;
     let own = own.lines().find_map(|line| line.strip_prefix("0::/"))?;

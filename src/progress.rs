@@ -1,4 +1,4 @@
-//! What goes on, on standard error if that is a terminal, else nothing: one line, drawn again and again.
+//! Progress on standard error, if that is a terminal: one line, drawn again and again.
 
 use std::cell::Cell;
 use std::io::{IsTerminal, Write, stderr};
@@ -15,7 +15,7 @@ const PATIENCE: Duration = Duration::from_secs(1);
 /// Between two drawings.
 const TICK: Duration = Duration::from_millis(100);
 
-/// What turns while one waits.
+/// Frames of the spinner.
 const SPINNER: [char; 10] = ['⠋', '⠙', '⠹', '⠸', '⠼', '⠴', '⠦', '⠧', '⠇', '⠏'];
 
 /// To the start of the line, which is emptied.

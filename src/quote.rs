@@ -1,4 +1,4 @@
-//! What others wrote, as a message shows it: control characters escaped, long texts cut, numbers with as many digits as
+//! Text from outside, as a message shows it: control characters escaped, long texts cut, numbers with as many digits as
 //! they need and no more, lists as people say them.
 //!
 //! Names, titles and paths come from files that anybody may have written. A terminal obeys control characters, and some
@@ -12,7 +12,7 @@ const MOST: usize = 60;
 /// More characters of a title than this are cut.
 const MOST_OF_A_LINE: usize = 200;
 
-/// Of a longer path the end is shown.
+/// The longest path shown whole; of a longer one the end is shown.
 const MOST_OF_A_PATH: usize = 300;
 
 /// More names than this are counted.
@@ -70,7 +70,7 @@ pub fn fixed(x: f64, decimals: usize) -> String {
     if x.abs() < 1e16 { format!("{x:.decimals$}") } else { number(x) }
 }
 
-/// What goes to a terminal: lines of text, and no other control characters.
+/// Keeps line breaks and escapes all other control characters, for output to a terminal.
 pub fn lines(text: &str) -> String {
     text.split('\n').map(unbroken).collect::<Vec<_>>().join("\n")
 }

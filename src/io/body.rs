@@ -1,4 +1,4 @@
-//! What the body is made of and what pulls at it: `[material]` and `[load]` of a case file, for the whole body or for its
+//! Materials and loads of the body: `[material]` and `[load]` of a case file, for the whole body or for its
 //! physical surfaces one by one.
 
 use std::sync::Arc;

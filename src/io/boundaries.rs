@@ -1,4 +1,4 @@
-//! What holds on the boundary: `[boundary]`, `[obstacle]` and `[point]` of a case file.
+//! Conditions on the boundary: `[boundary]`, `[obstacle]` and `[point]` of a case file.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -24,7 +24,7 @@ pub(super) struct Boundary<'s> {
     given: Given,
 }
 
-/// What a boundary of the case file gives.
+/// The condition that a boundary of the case file gives.
 enum Given {
     Condition(Condition),
     /// A whole force, spread evenly: a traction, once the length of the boundary is known.

@@ -30,7 +30,10 @@
 //! max_iterations = 200
 //! [adapt]                                   # refine the mesh until the error is proved to be as small as this
 //! target = "1 %"                            # of the energy norm
+//! # target = { force = "bottom", within = "1 %" }   # or until the contact force lies between two numbers so near to each other
 //! max_unknowns = 500000                     # the default
+//! [certify]                                 # contact forces that are to be proved to second order
+//! quantities = ["force bottom", "force bottom x 0 0.25 ramp 0.1"]
 //! [output]
 //! probes = [[0.5, 0.5]]                     # places where result.json gives the displacement
 //! stretch = 50                              # the picture magnifies displacement and gap by this; default: a round factor
@@ -72,10 +75,10 @@
 //! displacement = [0, 0]
 //! ```
 //!
-//! Numbers serve as expressions. The grammar of expressions is in [`expression`](super::expression), the parameters of the exact solutions in `exact.rs`. A key that is not listed here is an error, and so
-//! is a list of the wrong length, a number that is NaN or infinite, and a boundary with more than one of displacement,
-//! traction and contact. Integers serve as numbers. The material is stable: mu > 0 and 3 lambda + 2 mu > 0, that is
-//! young > 0 and -1 < poisson < 1/2.
+//! Numbers serve as expressions. The grammar of expressions is in [`expression`](super::expression), the parameters of the
+//! exact solutions in `exact.rs`. A key that is not listed here is an error, and so is a list of the wrong length, a number
+//! that is NaN or infinite, and a boundary with more than one of displacement, traction and contact. Integers serve as
+//! numbers. The material is stable: mu > 0 and 3 lambda + 2 mu > 0, that is young > 0 and -1 < poisson < 1/2.
 
 use std::collections::BTreeMap;
 use std::io::Read;
@@ -89,15 +92,15 @@ use super::boundaries::{on_the_mesh, read_boundaries, read_points};
 use super::exact::read_exact;
 use super::input::{self, InputError, MOST_OF_A_CASE};
 use super::meshed::{Meshed, read_mesh};
-use super::method::{read_method, read_settings, read_target};
+use super::method::{read_method, read_quantities, read_settings, read_target};
 use super::mistake::no_toml;
 pub use super::mistake::{CaseError, CaseMistake, Place};
 use super::setting;
 use super::source::Source;
 use super::table::{Table, Value};
-use crate::certify::Target;
+use crate::certify::{Asked, Target};
 use crate::fem::exact::Kind;
-use crate::fem::{Exact, Mesh, Perturbation, Problem, Structured};
+use crate::fem::{Condition, Exact, Mesh, Perturbation, Problem, Structured};
 use crate::memory;
 use crate::quote;
 use crate::solve::{Method, Settings};
@@ -109,7 +112,7 @@ pub struct Case {
     pub file: PathBuf,
     /// A line for people.
     pub title: String,
-    /// What to solve.
+    /// The problem.
     pub problem: Problem,
     /// By which variant of method (8).
     pub method: Method,
@@ -117,6 +120,10 @@ pub struct Case {
     pub settings: Settings,
     /// How small the error is to be, if the mesh is to be adapted until that is proved.
     pub adapt: Option<Target>,
+    /// The boundary whose contact force that is about, if it is not about the energy norm.
+    pub adapt_force: Option<String>,
+    /// Quantities to be proved beside the bound.
+    pub asked: Asked,
     /// The places where the displacement is wanted.
     pub probes: Vec<[f64; 2]>,
     /// The materials as the case has them.
@@ -138,9 +145,9 @@ pub struct Case {
 /// The units of a case: words for labels. The numbers are consistent by themselves.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Units {
-    /// Of lengths.
+    /// The unit of lengths.
     pub length: String,
-    /// Of forces.
+    /// The unit of forces.
     pub force: String,
 }
 
@@ -157,7 +164,7 @@ impl Units {
         format!("{} {}{across}", self.force, self.length)
     }
 
-    /// Of stresses.
+    /// The unit of stresses.
     pub fn stress(&self) -> String {
         match (&*self.force, &*self.length) {
             ("N", "mm") => "MPa".to_owned(),
@@ -172,7 +179,7 @@ impl Units {
 pub struct ExactCase {
     /// The solution.
     pub solution: Exact,
-    /// What holds on each boundary.
+    /// The condition on each boundary.
     pub kinds: BTreeMap<String, Kind>,
     /// The mesh as a structured one, unless it came from a file.
     pub structured: Option<Structured>,
@@ -272,7 +279,7 @@ const MEMORY_PER_BYTE: u64 = 400;
 fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, CaseError> {
     root.only(&[
         "title", "mesh", "material", "load", "exact", "boundary", "obstacle", "point", "method",
-        "solver", "adapt", "output", "units", "body",
+        "solver", "adapt", "certify", "output", "units", "body",
     ])?;
     let title = match root.get("title") {
         Some(title) => title.text()?.to_owned(),
@@ -303,6 +310,10 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, CaseErro
     let method = read_method(root.section("method")?)?;
     let settings = read_settings(root.section("solver")?)?;
     let adapt = root.section("adapt")?.map(|table| read_target(&table)).transpose()?;
+    let (adapt, adapt_force) = adapt.unzip();
+    let adapt_force = adapt_force.flatten();
+    let quantities = root.section("certify")?.map(|table| read_quantities(&table)).transpose()?;
+    let quantities = quantities.unwrap_or_default();
     let output = root.section("output")?;
     let units = root.section("units")?.map(|table| read_units(&table)).transpose()?;
     let thickness = match root.section("body")? {
@@ -317,6 +328,15 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, CaseErro
     };
     let kinds = boundaries.iter().filter_map(|b| Some((b.key.to_owned(), b.kind?))).collect();
     let conditions = on_the_mesh(&mesh, boundaries, thickness)?;
+    let of_forces = quantities.iter().map(|(name, _, value)| (&**name, value));
+    for (name, value) in of_forces.chain(adapt_force.iter().map(|(name, value)| (*name, value))) {
+        if !matches!(
+            conditions.get(name),
+            Some(Condition::Contact { .. } | Condition::Obstacle(..))
+        ) {
+            return Err(value.wrong("the name of a contact boundary"));
+        }
+    }
     let (material, materials) = materials.on_the_mesh(&mesh)?;
     let (body_force, surface_forces) = loads.on_the_mesh(&mesh)?;
     let points = read_points(root, &mesh)?;
@@ -332,6 +352,10 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, CaseErro
         method,
         settings,
         adapt,
+        adapt_force: adapt_force.map(|(name, _)| name.to_owned()),
+        asked: Asked {
+            forces: quantities.into_iter().map(|(name, weight, _)| (name, weight)).collect(),
+        },
         probes,
         exact: solution.map(|solution| ExactCase { solution, kinds, structured, perturbation }),
         text: String::new(),
@@ -383,7 +407,7 @@ fn read_probes(output: Option<&Table>, mesh: &Mesh) -> Result<Vec<[f64; 2]>, Cas
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fem::Condition;
+    use crate::certify::Ramp;
     use crate::io::method::MOST_UNKNOWNS;
     use crate::kernel::{Material, Plane};
     use crate::solve::{ContactQuadrature, Degree, Gamma0};
@@ -504,6 +528,31 @@ mod tests {
         }
         let error = with("adapt.max_unknowns = 10").unwrap_err().to_string();
         assert!(error.contains("target"), "{error}");
+    }
+
+    #[test]
+    fn a_target_may_be_a_force_and_forces_are_asked_for_by_their_boundary() {
+        let with = |settings: &str| read(&format!("{SMALL}\n{settings}"));
+        let case = with("adapt.target = { force = \"bottom\", within = \"0.1 %\" }").unwrap();
+        assert_eq!(case.adapt.map(|target| target.relative), Some(0.001));
+        assert_eq!(case.adapt_force.as_deref(), Some("bottom"));
+        let case =
+            with("certify.quantities = [\"force bottom\", \"force bottom x 0 0.25 ramp 0.1\"]");
+        let ramp = Ramp { axis: 0, between: [0.0, 0.25], width: 0.1 };
+        let expected = [None, Some(ramp)].map(|weight| ("bottom".to_owned(), weight));
+        assert_eq!(case.unwrap().asked.forces, expected);
+        for (wrong, expected) in [
+            ("adapt.target = { force = \"top\", within = \"0.1 %\" }", "contact boundary"),
+            ("adapt.target = { force = \"bottom\" }", "within"),
+            ("certify.quantities = [\"force top\"]", "contact boundary"),
+            ("certify.quantities = [\"peak bottom\"]", "force NAME"),
+            ("certify.quantities = [\"force bottom x 1 0 ramp 0.1\"]", "force NAME"),
+            ("certify.quantities = [\"force bottom z 0 1 ramp 0.1\"]", "force NAME"),
+            ("certify.quantities = [\"force bottom x 0 1 ramp 0\"]", "force NAME"),
+        ] {
+            let error = with(wrong).err().unwrap().to_string();
+            assert!(error.contains(expected), "{wrong}: {error}");
+        }
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! What every file is asked before it is written: do its data fit together, are its numbers finite?
+//! Checks before a file is written: its data fit together, its numbers are finite.
 
 use thiserror::Error;
 

@@ -7,7 +7,7 @@
 //! | "corner" | omega between pi/2 and pi |
 //! | "patch" | which = "d1" (p > 0), "d2" (p, d > 0), "d3" (p > 0, w, g0), "d4" or "d5" (d > 0) |
 //!
-//! What they are: [`exact`](crate::fem::exact).
+//! The solutions themselves: [`exact`](crate::fem::exact).
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
@@ -126,7 +126,7 @@ fn coefficients(gap: Option<Value>) -> Result<Vec<f64>, CaseError> {
     expression.polynomial_in_x().ok_or_else(|| gap.wrong("a polynomial in x"))
 }
 
-/// What a boundary is asked to hold: beside \[exact\], \[boundary\] has a kind for each.
+/// Reads the condition on a boundary: beside \[exact\], \[boundary\] has a kind for each.
 pub fn read_kind(value: &Value) -> Result<Kind, CaseError> {
     value.one_of(&[
         ("displacement", Kind::Displacement),

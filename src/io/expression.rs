@@ -17,8 +17,9 @@
 //! constant exponent from -16 to 16 means repeated multiplication: x^2 is x*x to the bit, x^-2 is 1/(x*x), x^0 is 1 for every x.
 //! Any other power is [`f64::powf`]: 2^0.5 is the square root of 2, and (-8)^(1/3) is NaN. A NaN stays a NaN, in min and max too.
 //!
-//! An [`Expression`] is a list of steps in postfix order, evaluated in one loop over any [`Number`]: other than in a recursive walk
-//! over a tree, a sum of [`MOST_OPERATIONS`] terms needs no deeper call stack than a sum of two. [`MOST_LEVELS`] bounds what nests.
+//! An [`Expression`] is a list of steps in postfix order, evaluated in one loop over any [`Number`]: other than in a
+//! recursive walk over a tree, a sum of [`MOST_OPERATIONS`] terms needs no deeper call stack than a sum of two.
+//! [`MOST_LEVELS`] bounds what nests.
 
 mod enclosure;
 mod gradient;
@@ -49,9 +50,9 @@ pub struct Expression {
 pub struct ExpressionError {
     /// The place, in characters from 1.
     pub column: usize,
-    /// What stands there.
+    /// The text found there.
     pub found: String,
-    /// What could stand there.
+    /// The text expected there.
     pub expected: String,
 }
 

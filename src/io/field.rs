@@ -6,10 +6,10 @@
 //!   appended section that VTK itself prefers.
 //!
 //! Points are matched to vertices by their place. A field on quadratic triangles of VTU (with six points each, VTK's types 22 and
-//! 69) is read at the middles of the edges, too. A field with points elsewhere, or with several values at one place, is refused: a
-//! bound would be of another field.
+//! 69) is read at the middles of the edges, too. A field with points elsewhere, on other triangles, or with several values at one
+//! place, is refused: a bound would be of another field.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use miniz_oxide::inflate::decompress_to_vec_zlib_with_limit;
@@ -42,25 +42,39 @@ const NEAR: f64 = 1e-6;
 /// degree 1 or 2.
 ///
 /// # Errors
-/// A file that can't be read or understood, that lacks a node of the mesh or has points that are none, or two values at one.
+/// A file that can't be read or understood, that lacks a node of the mesh or has points that are none, or two values at one, or
+/// triangles that are not those of the mesh.
 pub fn read_field(path: &Path, mesh: &Mesh) -> Result<Vec<[f64; 2]>, FieldError> {
     let bytes = input::read(path, MOST)
         .map_err(|error| FieldError::Read { path: path.to_owned(), error })?;
     let text = String::from_utf8_lossy(&bytes);
-    let points = match path.extension().and_then(|e| e.to_str()) {
-        Some("csv") => from_csv(&text).map(|points| (points, false)),
-        Some("vtu") => from_vtu(&text).map(|points| (points, has_quadratic_triangles(&text))),
+    let field = match path.extension().and_then(|e| e.to_str()) {
+        Some("csv") => from_csv(&text).map(|points| (points, None)),
+        Some("vtu") => from_vtu(&text).and_then(|points| Ok((points, triangles_of(&text)?))),
         _ => Err("expected a file that ends in .vtu or .csv".to_owned()),
     };
-    points
-        .and_then(|(points, quadratic)| at_nodes(&points, mesh, quadratic))
+    field
+        .and_then(|(points, triangles)| at_nodes(&points, mesh, triangles.as_ref()))
         .map_err(|problem| FieldError::Format { path: path.to_owned(), problem })
+}
+
+/// The triangles of a VTU file.
+struct Triangles {
+    /// Their corners by the points of the file.
+    corners: Vec<[usize; 3]>,
+    /// Each has a point in the middle of each side, too.
+    quadratic: bool,
 }
 
 /// Places with displacements.
 type Points = Vec<([f64; 2], [f64; 2])>;
 
-fn at_nodes(points: &Points, mesh: &Mesh, quadratic: bool) -> Result<Vec<[f64; 2]>, String> {
+fn at_nodes(
+    points: &Points,
+    mesh: &Mesh,
+    triangles: Option<&Triangles>,
+) -> Result<Vec<[f64; 2]>, String> {
+    let quadratic = triangles.is_some_and(|triangles| triangles.quadratic);
     let vertices = mesh.vertices().len();
     let nodes: Vec<[f64; 2]> = if quadratic {
         Space::<P2, 6, 3>::new(mesh).nodes().to_vec()
@@ -98,7 +112,7 @@ fn at_nodes(points: &Points, mesh: &Mesh, quadratic: bool) -> Result<Vec<[f64; 2
     let size = points.iter().flat_map(|(_, u)| u).fold(0.0_f64, |max, u| max.max(u.abs()));
     // The nearest point to each node.
     let mut found: Vec<Option<usize>> = vec![None; nodes.len()];
-    let mut elsewhere = Vec::new();
+    let (mut elsewhere, mut node_of) = (Vec::new(), Vec::with_capacity(points.len()));
     for (i, &(x, u)) in points.iter().enumerate() {
         if !x.iter().chain(&u).all(|c| c.is_finite()) {
             return Err(format!(
@@ -109,6 +123,7 @@ fn at_nodes(points: &Points, mesh: &Mesh, quadratic: bool) -> Result<Vec<[f64; 2
             elsewhere.push(x);
             continue;
         };
+        node_of.push(k);
         let Some(other) = found[k].replace(i) else { continue };
         let (y, w) = points[other];
         if (0..2).any(|c| (u[c] - w[c]).abs() > NEAR * size) {
@@ -141,22 +156,91 @@ fn at_nodes(points: &Points, mesh: &Mesh, quadratic: bool) -> Result<Vec<[f64; 2
             if quadratic { "vertex and every middle of an edge" } else { "vertex" }
         )),
     };
-    found.into_iter().enumerate().map(value).collect()
+    let values = found.into_iter().enumerate().map(value).collect::<Result<_, _>>()?;
+    if let Some(triangles) = triangles {
+        check_triangles(triangles, &node_of, mesh)?;
+    }
+    Ok(values)
 }
 
-/// Whether all cells of a VTU file are triangles with six points.
-fn has_quadratic_triangles(text: &str) -> bool {
+/// The triangles of a file are those of the mesh: on others, such as those along the other diagonals of a grid, the same
+/// values are another field. `node_of` tells the node of each point.
+fn check_triangles(triangles: &Triangles, node_of: &[usize], mesh: &Mesh) -> Result<(), String> {
+    let sorted = |mut corners: [usize; 3]| {
+        corners.sort_unstable();
+        corners
+    };
+    let mut rest: BTreeSet<[usize; 3]> = mesh.triangles().iter().copied().map(sorted).collect();
+    for (k, corners) in triangles.corners.iter().enumerate() {
+        let nodes = corners.map(|point| node_of[point]);
+        if !rest.remove(&sorted(nodes)) {
+            return Err(format!(
+                "its triangle {k} is none of the case's mesh, or comes twice; expected a field on that mesh, as on other triangles the same values are another field"
+            ));
+        }
+    }
+    if rest.is_empty() {
+        return Ok(());
+    }
+    let (lacking, all) = (rest.len(), mesh.triangles().len());
+    Err(format!("it lacks {lacking} of the {all} triangles of the case's mesh; expected all"))
+}
+
+/// The most points of a cell of VTK's, of degree 2.
+const POINTS_OF_A_CELL: usize = 27;
+
+/// The triangles of a VTU file, if it has cells; points and lines may be among them.
+fn triangles_of(text: &str) -> Result<Option<Triangles>, String> {
     let head = text.find("<VTKFile").and_then(|from| text[from..].split('>').next());
     let cells = section(text, "Cells").map(arrays).unwrap_or_default();
-    let named = |name: &str| {
-        let array = cells.iter().find(|array| array.attribute("Name") == Some(name))?;
-        numbers(array, head?, count(text, "NumberOfCells")?).ok()
+    let named = |name: &str| cells.iter().find(|array| array.attribute("Name") == Some(name));
+    let (Some(head), Some(count), Some(types), Some(offsets), Some(connectivity)) = (
+        head,
+        count(text, "NumberOfCells"),
+        named("types"),
+        named("offsets"),
+        named("connectivity"),
+    ) else {
+        return Ok(None);
     };
-    let (Some(types), Some(offsets)) = (named("types"), named("offsets")) else { return false };
-    let starts = std::iter::once(0.0).chain(offsets.iter().copied());
-    !types.is_empty()
-        && types.iter().all(|&kind| kind == 22.0 || kind == 69.0)
-        && offsets.iter().zip(starts).all(|(end, start)| end - start == 6.0)
+    let points = self::count(text, "NumberOfPoints").unwrap_or(0);
+    let types = numbers(types, head, count)?;
+    let offsets = numbers(offsets, head, count)?;
+    let connectivity = numbers(connectivity, head, count.saturating_mul(POINTS_OF_A_CELL))?;
+    if types.len() != count || offsets.len() != count {
+        return Err(format!("it says NumberOfCells = {count}, and has others"));
+    }
+    let mut triangles = Triangles { corners: Vec::new(), quadratic: false };
+    let mut start = 0.0;
+    for (k, (kind, end)) in types.into_iter().zip(offsets).enumerate() {
+        let (from, size) = (start as usize, end - start);
+        start = end;
+        let quadratic = match (kind as u8, size as usize) {
+            // Points and lines.
+            (1..=4 | 21 | 68, _) => continue,
+            (5 | 69, 3) => false,
+            (22 | 69, 6) => true,
+            _ => {
+                return Err(format!(
+                    "its cell {k} is of VTK's type {kind} with {size} points; expected triangles with three points (5, 69) or six (22, 69)"
+                ));
+            }
+        };
+        if !triangles.corners.is_empty() && quadratic != triangles.quadratic {
+            return Err("it has triangles with three points and with six; expected one kind".into());
+        }
+        triangles.quadratic = quadratic;
+        let corners = connectivity.get(from..from.saturating_add(3));
+        let Some(&[a, b, c]) = corners.and_then(|corners| corners.first_chunk()) else {
+            return Err(format!("its cell {k} has points that its connectivity lacks"));
+        };
+        let corners = [a, b, c].map(|point| point as usize);
+        if corners.iter().any(|&point| point >= points) {
+            return Err(format!("its cell {k} names a point that it does not have"));
+        }
+        triangles.corners.push(corners);
+    }
+    Ok((!triangles.corners.is_empty()).then_some(triangles))
 }
 
 fn from_csv(text: &str) -> Result<Points, String> {
@@ -221,7 +305,7 @@ fn attribute<'a>(attributes: &'a str, name: &str) -> Option<&'a str> {
     }
 }
 
-/// What stands between <tag ...> and </tag>.
+/// The text between <tag ...> and </tag>.
 fn section<'a>(text: &'a str, tag: &str) -> Option<&'a str> {
     let from = text.find(&format!("<{tag}"))?;
     let inside = &text[from + text[from..].find('>')? + 1..];
@@ -441,8 +525,74 @@ mod tests {
             cell_data: &[],
         });
         let text = String::from_utf8(file.unwrap()).unwrap();
-        assert!(!has_quadratic_triangles(&text));
-        assert_eq!(at_nodes(&from_vtu(&text).unwrap(), &mesh, false).unwrap(), u);
+        let triangles = triangles_of(&text).unwrap();
+        assert!(!triangles.as_ref().unwrap().quadratic);
+        assert_eq!(at_nodes(&from_vtu(&text).unwrap(), &mesh, triangles.as_ref()).unwrap(), u);
+    }
+
+    #[test]
+    fn a_field_on_other_triangles_with_the_same_points_is_refused() {
+        let mesh = mesh();
+        let read = |connectivity: &[usize], points: &Points| {
+            let places: Vec<[f64; 2]> = points.iter().map(|&(x, _)| x).collect();
+            let values: Vec<[f64; 2]> = points.iter().map(|&(_, u)| u).collect();
+            let file = vtu(&Grid {
+                kind: CellKind::Triangle,
+                points: &places,
+                connectivity,
+                point_data: &[Field { name: "u", values: Values::Vectors(&values) }],
+                cell_data: &[],
+            });
+            let text = String::from_utf8(file.unwrap()).unwrap();
+            at_nodes(&from_vtu(&text).unwrap(), &mesh, triangles_of(&text).unwrap().as_ref())
+        };
+        let points: Points = mesh.vertices().iter().copied().zip(field(&mesh)).collect();
+        let own = mesh.triangles().as_flattened();
+        assert_eq!(read(own, &points), Ok(field(&mesh)));
+        // Turned round, and each with points of its own.
+        let turned: Vec<usize> = own.iter().rev().copied().collect();
+        assert!(read(&turned, &points).is_ok());
+        let apart: Points = own.iter().map(|&k| points[k]).collect();
+        assert!(read(&(0..own.len()).collect::<Vec<_>>(), &apart).is_ok());
+        let left = Rectangle { width: 1.0, height: 2.0, nx: 3, ny: 2, diagonal: Diagonal::Left };
+        let left = left.mesh().unwrap();
+        assert_eq!(left.vertices(), mesh.vertices());
+        let error = read(left.triangles().as_flattened(), &points).unwrap_err();
+        assert!(error.starts_with("its triangle 0 is none of the case's mesh"), "{error}");
+        let error = read(&own[3..], &points).unwrap_err();
+        assert_eq!(error, "it lacks 1 of the 12 triangles of the case's mesh; expected all");
+        let error = read(&[own, &own[..3]].concat(), &points).unwrap_err();
+        assert!(error.starts_with("its triangle 12"), "{error}");
+    }
+
+    #[test]
+    fn cells_that_are_no_triangles_are_refused_but_for_points_and_lines() {
+        let cells = |types: &str, offsets: &str| {
+            let array = |name: &str, numbers: &str| {
+                format!("<DataArray Name=\"{name}\" type=\"Int64\">{numbers}</DataArray>")
+            };
+            let count = types.split(' ').count();
+            triangles_of(&format!(
+                "<VTKFile><Piece NumberOfPoints=\"4\" NumberOfCells=\"{count}\"><Cells>{}{}{}</Cells></Piece></VTKFile>",
+                array("connectivity", "0 1 0 1 2 2 3 0 9 9 9 9"),
+                array("offsets", offsets),
+                array("types", types)
+            ))
+        };
+        let found = cells("3 5 69", "2 5 8").unwrap().unwrap();
+        assert_eq!((found.corners, found.quadratic), (vec![[0, 1, 2], [2, 3, 0]], false));
+        assert!(cells("3", "2").unwrap().is_none());
+        for (types, offsets, said) in [
+            ("9", "4", "type 9 with 4 points"),
+            ("5 22", "3 9", "with three points and with six"),
+            ("5 5", "9 12", "type 5 with 9 points"),
+            ("3 5", "8 11", "names a point"),
+            ("3 5", "10 13", "connectivity lacks"),
+            ("3 5", "2", "has others"),
+        ] {
+            let error = cells(types, offsets).err().unwrap();
+            assert!(error.contains(said), "{error}");
+        }
     }
 
     #[test]
@@ -458,15 +608,16 @@ mod tests {
             cell_data: &[],
         });
         let text = String::from_utf8(file.unwrap()).unwrap();
-        assert!(has_quadratic_triangles(&text));
+        let triangles = triangles_of(&text).unwrap();
+        assert!(triangles.as_ref().unwrap().quadratic);
         let mut points = from_vtu(&text).unwrap();
-        assert_eq!(at_nodes(&points, &mesh, true).unwrap(), u);
-        let error = at_nodes(&points, &mesh, false).unwrap_err();
+        assert_eq!(at_nodes(&points, &mesh, triangles.as_ref()).unwrap(), u);
+        let error = at_nodes(&points, &mesh, None).unwrap_err();
         let middles = mesh.edge_count();
         assert!(error.starts_with(&format!("{middles} of its {} points", u.len())), "{error}");
         // Where the middle of one edge is missing, that is said.
         points.pop();
-        let error = at_nodes(&points, &mesh, true).unwrap_err();
+        let error = at_nodes(&points, &mesh, triangles.as_ref()).unwrap_err();
         assert!(error.contains("at the middle of an edge of the mesh"), "{error}");
     }
 
@@ -476,10 +627,10 @@ mod tests {
         let u = field(&mesh);
         let mut points: Points = mesh.vertices().iter().copied().zip(u.iter().copied()).collect();
         points.extend(points.clone());
-        assert_eq!(at_nodes(&points, &mesh, false).unwrap(), u);
+        assert_eq!(at_nodes(&points, &mesh, None).unwrap(), u);
         let last = points.len() - 1;
         points[last].1[1] += 0.01;
-        let error = at_nodes(&points, &mesh, false).unwrap_err();
+        let error = at_nodes(&points, &mesh, None).unwrap_err();
         let pair = format!("points {} and {last} lie at one vertex", last / 2);
         assert!(error.starts_with(&pair), "{error}");
     }
@@ -492,7 +643,7 @@ mod tests {
         for ([x, y], [a, b]) in mesh.vertices().iter().zip(&u).rev() {
             text.push_str(&format!("{b},{x},{y},{a}\n"));
         }
-        assert_eq!(at_nodes(&from_csv(&text).unwrap(), &mesh, false).unwrap(), u);
+        assert_eq!(at_nodes(&from_csv(&text).unwrap(), &mesh, None).unwrap(), u);
     }
 
     /// In the layout that meshio writes: text, and zlib with a header of its own code.
@@ -589,7 +740,7 @@ mod tests {
         let none: [(String, Vec<[usize; 2]>); 0] = [];
         let mesh = Mesh::new(places.to_vec(), vec![[0, 1, 2], [0, 2, 3]], none).unwrap();
         let points: Points = places.iter().map(|&x| (x, [0.0, -1e-13])).collect();
-        assert_eq!(at_nodes(&points, &mesh, false), Ok(vec![[0.0, -1e-13]; 4]));
+        assert_eq!(at_nodes(&points, &mesh, None), Ok(vec![[0.0, -1e-13]; 4]));
     }
 
     #[test]
@@ -597,7 +748,7 @@ mod tests {
         let mesh = mesh();
         let mut points: Points = mesh.vertices().iter().map(|&x| (x, [0.0; 2])).collect();
         points.remove(4);
-        let error = at_nodes(&points, &mesh, false).unwrap_err();
+        let error = at_nodes(&points, &mesh, None).unwrap_err();
         assert!(error.contains("at vertex 4 of the mesh, (0, 1)"), "{error}");
         assert!(from_csv("x,y,u\n").unwrap_err().contains("no column 'ux'"));
         assert!(

@@ -20,12 +20,12 @@ pub enum FieldsError {
     /// A file or folder.
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// What was to go into a file.
+    /// Data that cannot be written.
     #[error("{file} cannot be made: {error}")]
     Data {
         /// The name of the file.
         file: &'static str,
-        /// What is wrong with its data.
+        /// The error in its data.
         error: DataError,
     },
 }

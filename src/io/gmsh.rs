@@ -78,10 +78,10 @@ pub fn from_bytes(bytes: &[u8], file: &Path) -> Result<Mesh> {
 /// Something for points, curves and surfaces each.
 type ByDimension<T> = [T; 3];
 
-/// What messages call the entities of a dimension.
+/// The name of the entities of a dimension in messages.
 const KINDS: ByDimension<&str> = ["point", "curve", "surface"];
 
-/// What the sections say, in the tags of the file.
+/// The content of the sections, in the tags of the file.
 struct Content {
     /// The names of the physical groups.
     names: ByDimension<BTreeMap<i32, String>>,
@@ -231,7 +231,7 @@ fn read_format(cursor: &mut Cursor) -> Result<Version> {
     Ok(version)
 }
 
-/// Of the format.
+/// The version of the format.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Version {
     /// 4.1
@@ -368,7 +368,7 @@ const POINT: i32 = 15;
 const LINE_OF_3: i32 = 8;
 const TRIANGLE_OF_6: i32 = 9;
 
-/// What another element type is, and what to do about it.
+/// The name of an element type that is not read, and its remedy.
 fn other_kind(number: i32) -> (&'static str, &'static str) {
     const ORDER: &str = "2-node lines and 3-node triangles: export with element order 1";
     const TRIANGLES: &str = "3-node triangles: do not recombine the mesh";

@@ -1,8 +1,8 @@
-//! The tables [method], [solver] and [adapt] of a case file: how it is solved.
+//! The tables [method], [solver], [adapt] and [certify] of a case file: how it is solved, and what is to be proved of it.
 
 use super::mistake::CaseError;
 use super::table::{Table, Value};
-use crate::certify::Target;
+use crate::certify::{Ramp, Target};
 use crate::fem::rectangle::MOST_CELLS;
 use crate::solve::{
     ContactQuadrature, Degree, Gamma0, MOST_GAUSS_POINTS, MOST_ITERATIONS, Method, Settings,
@@ -73,18 +73,59 @@ pub(super) fn read_settings(table: Option<Table>) -> Result<Settings, CaseError>
 /// Meshes are refined up to so many unknowns where the case says nothing.
 pub(super) const MOST_UNKNOWNS: usize = 500_000;
 
-pub(super) fn read_target(table: &Table) -> Result<Target, CaseError> {
+/// A boundary's name, with its place in the case.
+pub(super) type Named<'s> = (&'s str, Value<'s>);
+
+/// Reads a target, and the boundary whose contact force it is about, if it is about one.
+pub(super) fn read_target<'s>(table: &Table<'s>) -> Result<(Target, Option<Named<'s>>), CaseError> {
     table.only(&["target", "max_unknowns"])?;
-    let expected = "a share of the energy norm above 0 % and below 100 %, such as \"1 %\"";
-    let target = table.require("target", expected)?;
+    let expected = "a share above 0 % and below 100 %, such as \"1 %\", of the energy norm, or { force = \"bottom\", within = \"1 %\" }";
+    let mut target = table.require("target", expected)?;
+    let mut force = None;
+    if target.is_table() {
+        let of_force = target.table()?;
+        of_force.only(&["force", "within"])?;
+        let boundary = of_force.require("force", "the name of a contact boundary")?;
+        force = Some((boundary.text()?, boundary));
+        target = of_force.require("within", "a share of the force, such as \"1 %\"")?;
+    }
     let percent = target.as_text().and_then(|text| text.strip_suffix('%'));
     let percent = percent.and_then(|number| number.trim().parse::<f64>().ok());
     let relative = percent.map(|percent| percent / 100.0).filter(|&r| 0.0 < r && r < 1.0);
     let most = 2 * MOST_CELLS;
     let unknowns =
         table.get("max_unknowns").map(|value| value.whole_number(1..=most)).transpose()?;
-    Ok(Target {
+    let target = Target {
         relative: relative.ok_or_else(|| target.wrong(expected))?,
         max_unknowns: unknowns.unwrap_or(MOST_UNKNOWNS),
-    })
+    };
+    Ok((target, force))
+}
+
+/// The forces in the list `quantities` of [certify], each with its place: `force NAME`, or `force NAME x 0 0.25 ramp 0.1` for a weight along
+/// x or y that is 1 between two numbers and falls to 0 over a width.
+pub(super) fn read_quantities<'s>(
+    table: &Table<'s>,
+) -> Result<Vec<(String, Option<Ramp>, Value<'s>)>, CaseError> {
+    table.only(&["quantities"])?;
+    let expected = "\"force NAME\" or \"force NAME x 0 0.25 ramp 0.1\": a contact boundary, and where along x or y its pressure counts";
+    let list = table.require("quantities", &format!("a list of {expected}"))?;
+    let of = |value: Value<'s>| {
+        let words = value.text()?.strip_prefix("force ").map(str::trim);
+        let (name, weight) = words.and_then(force).ok_or_else(|| value.wrong(expected))?;
+        Ok((name.to_owned(), weight, value))
+    };
+    list.items()?.into_iter().map(of).collect()
+}
+
+/// A name, and behind it a weight if there is one.
+fn force(words: &str) -> Option<(&str, Option<Ramp>)> {
+    let Some((rest, width)) = words.rsplit_once(" ramp ") else { return Some((words, None)) };
+    let mut parts = rest.rsplitn(4, ' ');
+    let [to, from, axis, name] = [(); 4].map(|()| parts.next());
+    let number = |word: &str| word.trim().parse::<f64>().ok().filter(|x| x.is_finite());
+    let axis = ["x", "y"].iter().position(|other| Some(*other) == axis)?;
+    let (between, width) = ([number(from?)?, number(to?)?], number(width)?);
+    let is_weight = between[0] <= between[1] && width > 0.0;
+    is_weight.then_some((name?, Some(Ramp { axis, between, width })))
 }

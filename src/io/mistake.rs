@@ -1,4 +1,4 @@
-//! What is wrong with a case, and where.
+//! Errors in a case, with their places.
 
 use std::fmt::{self, Display, Formatter};
 use std::path::PathBuf;
@@ -11,7 +11,7 @@ use super::input::InputError;
 use crate::fem::MeshError;
 use crate::quote::{self, quoted};
 
-/// What is wrong with a case file, and where.
+/// An error in a case file, with its place.
 #[derive(Debug, Error)]
 #[error("{}{place}: {mistake}", quote::path(file))]
 #[non_exhaustive]
@@ -20,7 +20,7 @@ pub struct CaseError {
     pub file: PathBuf,
     /// Where in it.
     pub place: Place,
-    /// What is wrong.
+    /// The error.
     pub mistake: Box<CaseMistake>,
 }
 
@@ -46,7 +46,7 @@ impl Display for Place {
     }
 }
 
-/// What is wrong with a case file. `name` is a key as messages show it: `[mesh] rectangle.nx`.
+/// An error in a case file. `name` is a key as messages show it: `[mesh] rectangle.nx`.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
@@ -97,7 +97,7 @@ fn within(place: &str) -> String {
     if place.is_empty() { String::new() } else { format!(" in {place}") }
 }
 
-/// What the TOML reader says, and the words of the file that it speaks of.
+/// The TOML reader's message, and the words of the file that it is about.
 pub(super) fn no_toml(error: &toml::de::Error, text: &str) -> CaseMistake {
     let said = match error.message() {
         // It says so where there is no value at all, too.

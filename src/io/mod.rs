@@ -1,4 +1,4 @@
-//! What goes in and out: case files, Gmsh meshes, VTU, SVG, JSON.
+//! Input and output: case files, Gmsh meshes, VTU, SVG, JSON.
 
 #[cfg(feature = "files")]
 pub mod body;

@@ -19,23 +19,24 @@ use super::result::{
     Results, SCHEMA, Seconds, StressPeak, StressPeaks, result_json,
 };
 use super::vtu::{CellKind, Field, Grid, Values, vtu};
-use crate::certify::{CertifyError, Continuous, certify};
+use crate::certify::{CertifyError, Continuous, certify_with};
 use crate::fem::contact_line::{self, Gamma};
 use crate::fem::{self, Space};
 use crate::kernel::{P1, P2};
 use crate::memory::{self, OutOfMemory};
 use crate::quote;
-use crate::solve::solution::{ContactEdgeValues, ContactValues};
+use crate::solve::solution::ContactValues;
 use crate::solve::{Extreme, Solution, Times};
 
+const PICTURE: &str = "picture.svg";
+
 /// The names of the files of a solved case; the last one says that the set is whole.
-pub const FILES: [&str; 5] =
-    ["solution.vtu", "contact.vtu", "contact.csv", "picture.svg", "result.json"];
+pub const FILES: [&str; 5] = ["solution.vtu", "contact.vtu", "contact.csv", PICTURE, "result.json"];
 
 /// The field of a displacement from elsewhere that is certified.
 const CERTIFIED: &str = "certified.vtu";
 
-/// The same of the engine fenicsx.
+/// The files of the engine fenicsx.
 pub const FILES_OF_FENICSX: [&str; 3] = ["solution.xdmf", "solution.h5", "result.json"];
 
 /// Those of the first list that are not in the second: left from another kind of run.
@@ -50,12 +51,12 @@ pub enum OutputError {
     /// A file or folder.
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// What was to go into a file.
+    /// Data that cannot be written.
     #[error("{file} cannot be made: {error}")]
     Data {
         /// The name of the file.
         file: &'static str,
-        /// What is wrong with its data.
+        /// The error in its data.
         error: DataError,
     },
     /// The memory for what goes into the files.
@@ -66,7 +67,7 @@ pub enum OutputError {
     Problem(#[from] fem::DataError),
 }
 
-/// What is known of the distance from the true solution, and how long it took to know.
+/// The proved distance from the true solution, and how long the proof took.
 #[derive(Clone, Debug)]
 pub struct Certified {
     /// The bound, or why there is none.
@@ -81,7 +82,7 @@ impl Certified {
     /// Certifies a solution.
     pub fn new(case: &Case, solution: &Solution) -> Self {
         let start = Instant::now();
-        let result = certify(&case.problem, solution);
+        let result = certify_with(&case.problem, solution, &case.asked);
         Certified { result, time: start.elapsed(), adaptation: None }
     }
 
@@ -99,7 +100,7 @@ impl Certified {
     }
 }
 
-/// What is written beside [`FILES`].
+/// Files written beside [`FILES`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Extra {
     /// certificate.json and certificate.bin, where there is a certificate.
@@ -108,8 +109,8 @@ pub struct Extra {
     pub report: bool,
 }
 
-/// Writes the files of a case into `folder`; returns their paths and the content of result.json. Where a certificate is asked
-/// for and there is none, all else is written.
+/// Writes the files of a case into `folder`; returns their paths and the content of result.json. Where there is no
+/// certificate that was asked for, or no picture, all else is written.
 ///
 /// # Errors
 /// A folder or file that can't be written, a number that is not finite.
@@ -134,24 +135,29 @@ pub fn write(
     if !extra.report {
         output.replaces(&[report::FILE]);
     }
-    let mut stage = |file, bytes: Result<Vec<u8>, DataError>| -> Result<(), OutputError> {
-        let bytes = bytes.map_err(|error| OutputError::Data { file, error })?;
-        Ok(output.stage(file, &bytes)?)
-    };
     let indicators = continuous.map(|c| c.indicators.as_slice());
     let mut results = results(case, solution, Seconds::new(read, &times, Duration::ZERO))?;
     if let Some(certified) = certified {
         certified.add_to(&mut results, extra.certificate);
     }
+    let picture = draw(case, solution, &results).unwrap_or_else(|error| {
+        results.missing.push(format!("picture: {error}"));
+        output.replaces(&[PICTURE]);
+        String::new()
+    });
+    let mut stage = |file, bytes: Result<Vec<u8>, DataError>| -> Result<(), OutputError> {
+        let bytes = bytes.map_err(|error| OutputError::Data { file, error })?;
+        Ok(output.stage(file, &bytes)?)
+    };
     for (file, bytes) in fields(solution, &case.problem, indicators) {
         stage(file, bytes)?;
     }
-    let picture = draw(case, solution, &results)
-        .map_err(|error| OutputError::Data { file: "picture.svg", error })?;
     if extra.report {
         stage(report::FILE, Ok(report::html(case, &results, &picture).into_bytes()))?;
     }
-    stage("picture.svg", Ok(picture.into_bytes()))?;
+    if !picture.is_empty() {
+        stage(PICTURE, Ok(picture.into_bytes()))?;
+    }
     if let (Some(continuous), true) = (continuous, extra.certificate) {
         for (file, bytes) in certificate_files(&case.title, continuous) {
             stage(file, bytes)?;
@@ -220,7 +226,9 @@ fn certificate_files(
     title: &str,
     certified: &Continuous,
 ) -> [(&'static str, Result<Vec<u8>, DataError>); 2] {
-    let (header, arrays) = certificate::encode(title, &certified.certificate, &certified.proof);
+    let forces = &certified.quantities.evidence;
+    let (header, arrays) =
+        certificate::encode(title, &certified.certificate, &certified.proof, forces);
     let text = serde_json::to_vec_pretty(&header)
         .map_err(|_| DataError::NotFinite { place: certificate::FILES[0].to_owned() });
     [(certificate::FILES[0], text), (certificate::FILES[1], Ok(arrays))]
@@ -268,7 +276,7 @@ pub fn results(
     if case.exact.is_some() && errors.is_none() {
         remarks.push(NO_ERRORS.to_owned());
     }
-    Ok(Results {
+    let mut results = Results {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         case: Some(case.file.display().to_string()),
         schema: SCHEMA,
@@ -308,7 +316,12 @@ pub fn results(
         adapt: None,
         errors,
         seconds,
-    })
+    };
+    let untouched = results.contact.iter().filter(|part| !results.is_in_contact(part));
+    let remarks: Vec<String> =
+        untouched.filter_map(|part| nearest(case, solution, &part.boundary)).collect();
+    results.remarks.extend(remarks);
+    Ok(results)
 }
 
 /// Why there are no errors where there is an exact solution.
@@ -323,7 +336,7 @@ const LARGE_DISPLACEMENT: f64 = 0.1;
 /// A triangle whose limit of gamma0 is this many times below the median of the line spoils the line.
 const SLIVER: f64 = 8.0;
 
-/// What a person should know before the numbers are used.
+/// Remarks that a reader should know before the numbers are used.
 fn remarks(case: &Case, solution: &Solution) -> Vec<String> {
     let mut remarks = Vec::new();
     let coercivity = solution.gamma.coercivity;
@@ -345,7 +358,6 @@ fn remarks(case: &Case, solution: &Solution) -> Vec<String> {
         ));
     }
     remarks.extend(overlap(case));
-    remarks.extend(no_contact(case, solution));
     let vertices = case.problem.mesh.vertices();
     let extent = |c: usize| {
         let (low, high) = vertices
@@ -365,12 +377,9 @@ fn remarks(case: &Case, solution: &Solution) -> Vec<String> {
     remarks
 }
 
-/// What a contact boundary lies on, in words.
-fn obstacle_of(case: &Case, boundary: &str) -> String {
-    match case.problem.obstacle_of(boundary) {
-        Some(obstacle) => quote::quoted(obstacle, '\''),
-        None => format!("the obstacle of {}", quote::quoted(boundary, '\'')),
-    }
+/// The name of the obstacle of a contact boundary, if it has one.
+fn named_obstacle(case: &Case, boundary: &str) -> Option<String> {
+    case.problem.obstacle_of(boundary).map(|name| quote::quoted(name, '\''))
 }
 
 /// Where the body is deepest in its obstacle before it is loaded, if it is.
@@ -380,11 +389,10 @@ pub fn overlap(case: &Case) -> Option<String> {
     let points =
         line.iter().flat_map(|e| e.gap.iter().zip(&e.places).map(move |(g, x)| (*g, *x, e)));
     let (gap, [x, y], edge) = points.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|p| p.0 < 0.0)?;
-    let obstacle = obstacle_of(case, &edge.boundary);
     let length = length_unit(case);
-    let question = match case.problem.obstacle_of(&edge.boundary) {
-        Some(_) => ": does its normal point to the body?",
-        None => "",
+    let (obstacle, question) = match named_obstacle(case, &edge.boundary) {
+        Some(obstacle) => (obstacle, ": does its normal point to the body?"),
+        None => (format!("the obstacle of {}", quote::quoted(&edge.boundary, '\'')), ""),
     };
     Some(format!(
         "the body overlaps {obstacle} by {}{length} at ({}, {}) before loading{question}",
@@ -394,22 +402,19 @@ pub fn overlap(case: &Case) -> Option<String> {
     ))
 }
 
-/// Where a body that touches nothing is nearest to its obstacle.
-fn no_contact(case: &Case, solution: &Solution) -> Option<String> {
-    if solution.quantities.contact_length > 0.0 {
-        return None;
-    }
-    let distance = |edge: &ContactEdgeValues, point: &ContactValues| {
-        (point.gap - point.u_n, solution.nodes[point.node], edge.boundary.clone())
-    };
-    let points = solution.contact.iter().flat_map(|e| e.points.iter().map(|p| distance(e, p)));
-    let (gap, [x, y], boundary) = points.min_by(|a, b| a.0.total_cmp(&b.0))?;
+/// Where a contact boundary that touches nothing is nearest to its obstacle.
+fn nearest(case: &Case, solution: &Solution, boundary: &str) -> Option<String> {
+    let edges = solution.contact.iter().filter(|edge| &*edge.boundary == boundary);
+    let distance = |point: &ContactValues| (point.gap - point.u_n, solution.nodes[point.node]);
+    let points = edges.flat_map(|edge| edge.points.iter().map(distance));
+    let (gap, [x, y]) = points.min_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(format!(
-        "the body touches no obstacle: it is nearest to {} at ({}, {}), where a gap of {}{} is left",
-        obstacle_of(case, &boundary),
+        "{} touches nothing: it is nearest to {} at ({}, {}), where a gap of {}{} is left",
+        quote::quoted(boundary, '\''),
+        named_obstacle(case, boundary).unwrap_or_else(|| "its obstacle".to_owned()),
         short(x, 4),
         short(y, 4),
-        short(gap, 3),
+        short(gap.max(0.0), 3),
         length_unit(case)
     ))
 }

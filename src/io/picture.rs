@@ -21,7 +21,7 @@ mod scene;
 use svg::node::element::{Group, Rectangle, Title};
 use svg::{Document, Node};
 
-use super::data::DataError;
+use super::data::{DataError, check_finite};
 use body::{BAR, Colours, body, colour_bar, definitions, outlines};
 use contact::{ContactLine, hatch, obstacle, pressure, tags};
 use draw::{Path, Point, RED, clean, fitting, shape, stroke, text};
@@ -30,7 +30,7 @@ use scene::Frame;
 pub use body::MOST_TRIANGLES;
 pub use case::draw;
 pub(super) use draw::{DARK, FONT, GREY, rounded, width_of};
-pub use scene::{ContactSample, ContactSurface, Scene};
+pub use scene::{ContactSample, ContactSurface, ContactZone, Scene};
 
 /// The page around the drawing.
 const MARGIN: f64 = 36.0;
@@ -46,10 +46,12 @@ pub fn picture(scene: &Scene) -> Result<String, DataError> {
     scene.check()?;
     let (factor, magnification) = scene.magnification();
     let deformed = scene.deformed(factor);
+    check_finite("deformed points", deformed.iter().map(Point::as_slice))?;
     let lines = ContactLine::all(scene, factor);
     let drawn = scene.points.iter().chain(&deformed).copied();
     let around = lines.iter().flat_map(|line| line.tip.iter().chain(line.wall.iter().flatten()));
     let frame = Frame::around(drawn.chain(around.copied()), [MARGIN, HEADER]);
+    check_finite("page", [frame.page([0.0; 2]).as_slice(), &[frame.width, frame.height]])?;
     let deformed: Vec<Point> = deformed.into_iter().map(|p| frame.page(p)).collect();
     let lines: Vec<ContactLine> = lines.into_iter().map(|line| line.on(&frame)).collect();
     let colours = Colours::of(scene);
@@ -88,7 +90,18 @@ pub fn picture(scene: &Scene) -> Result<String, DataError> {
     }
     document.append(legend.group);
     document.append(panel::panels(scene, [MARGIN, panels_at], width));
+    check_numbers(&document)?;
     Ok(format!("{document}\n"))
+}
+
+/// Finite data may be drawn beyond the range of doubles, as where displacements are magnified.
+fn check_numbers(node: &dyn Node) -> Result<(), DataError> {
+    for (name, value) in node.get_attributes().into_iter().flatten() {
+        if value.contains("NaN") || value.contains("inf") {
+            return Err(DataError::NotFinite { place: format!("{name} of <{}>", node.get_name()) });
+        }
+    }
+    node.get_children().into_iter().flatten().try_for_each(|child| check_numbers(&**child))
 }
 
 fn headline(scene: &Scene, room: f64) -> Group {
@@ -101,7 +114,7 @@ fn headline(scene: &Scene, room: f64) -> Group {
         .add(text(subtitle, [MARGIN, 68.0]).set("font-size", small).set("fill", GREY))
 }
 
-/// What the lines mean, in words: entries one after the other, on as many lines as they need.
+/// The legend: entries one after the other, on as many lines as they need.
 struct Legend {
     group: Group,
     /// Where the next entry goes, and where a line begins and ends.
@@ -218,7 +231,11 @@ mod tests {
                 title: "Block".to_owned(),
                 von_mises: (0..mesh.triangles().len()).map(|t| 1.0 + (t % 7) as f64).collect(),
                 outline: mesh.outline().iter().map(|&edge| mesh.ends(edge)).collect(),
-                contact: vec![ContactSurface { name: "floor".to_owned(), parts: vec![part] }],
+                contact: vec![ContactSurface {
+                    name: "floor".to_owned(),
+                    parts: vec![part],
+                    zones: None,
+                }],
                 displacement,
                 mesh,
             }
@@ -513,6 +530,23 @@ mod tests {
     }
 
     #[test]
+    fn no_number_that_is_none_gets_into_a_picture() {
+        let line = |to: f64| {
+            let mut path = Path::default();
+            path.line([[0.0, 0.0], [to, 1.0]]);
+            Document::new().add(Group::new().add(stroke(path, RED, 1.0))).add(text("NaN", [1.0; 2]))
+        };
+        assert_eq!(check_numbers(&line(2.0)), Ok(()));
+        for to in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let place = "d of <path>".to_owned();
+            assert_eq!(check_numbers(&line(to)), Err(DataError::NotFinite { place }));
+            let place = "x of <text>".to_owned();
+            let document = Document::new().add(text("words", [to, 1.0]));
+            assert_eq!(check_numbers(&document), Err(DataError::NotFinite { place }));
+        }
+    }
+
+    #[test]
     fn data_that_do_not_fit_are_refused_by_name() {
         let refused = |spoil: fn(&mut Sample)| {
             let mut sample = Sample::block(1);
@@ -535,6 +569,15 @@ mod tests {
             format!("contact[0] {not_finite}")
         );
         let sample = Sample::block(1);
+        let far = Sample::stretched(1e3);
+        let stretched = |factor: f64| picture(&Scene { stretch: Some(factor), ..far.scene() });
+        for factor in [f64::MAX, 1e307, 1e306, 1e305, 1e304] {
+            let error = stretched(factor).unwrap_or_else(|error| error.to_string());
+            assert!(error.ends_with(not_finite) || !words(&error).is_empty(), "{factor}");
+        }
+        let error = stretched(f64::MAX).unwrap_err().to_string();
+        assert!(error.starts_with("deformed points[") && error.ends_with(not_finite), "{error}");
+        assert!(stretched(1e3).is_ok(), "control");
         let nothing = Scene { triangles: &[], von_mises: &[], ..sample.scene() };
         assert_eq!(
             picture(&nothing).unwrap_err().to_string(),

@@ -14,7 +14,7 @@ use super::picture::{DARK, FONT, GREY, rounded, width_of};
 pub struct Figure {
     /// The headline.
     pub title: String,
-    /// What the panels have in common along x.
+    /// The label of the x axis, which all panels share.
     pub x_label: String,
     /// From left to right.
     pub panels: Vec<Panel>,
@@ -25,7 +25,7 @@ pub struct Figure {
 /// A panel: a line for each style, in their order.
 #[derive(Clone, Debug)]
 pub struct Panel {
-    /// What is drawn over x.
+    /// The quantity drawn over x.
     pub title: String,
     /// The points of each line; an empty one is not drawn.
     pub lines: Vec<Vec<[f64; 2]>>,
@@ -36,7 +36,7 @@ pub struct Panel {
 /// How a line looks.
 #[derive(Clone, Debug)]
 pub struct Style {
-    /// What it is called.
+    /// The name in the legend.
     pub name: String,
     /// Its colour, as SVG has it.
     pub colour: &'static str,

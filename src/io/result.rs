@@ -48,7 +48,7 @@ pub struct Results {
     /// Why it is not proved.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// What was asked for beside the solution and could not be had, with the reason; left out if there is nothing.
+    /// Results asked for beside the solution that could not be had, with the reason; left out if there are none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub missing: Vec<String>,
     /// The units of the case; left out if it names none.
@@ -63,7 +63,7 @@ pub struct Results {
     /// The method as the case chose it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub choices: Option<Choices>,
-    /// What a person should know before the numbers are used; left out if there is nothing.
+    /// Remarks that a reader should know before the numbers are used; left out if there are none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub remarks: Vec<String>,
     /// The discretisation.
@@ -80,7 +80,7 @@ pub struct Results {
     pub play: Vec<Play>,
     /// The solution in numbers.
     pub quantities: Quantities,
-    /// What each contact boundary carries.
+    /// The force on each contact boundary.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub contact: Vec<ContactBoundary>,
     /// The largest stresses; left out by the engine fenicsx.
@@ -233,8 +233,11 @@ pub struct NewtonHistory {
 /// How the mesh was adapted to a target.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Adaptation {
-    /// The bound over the energy norm was to be at most this.
+    /// The bound over the energy norm, or half the width of what the force lies between over its middle, was to be at most this.
     pub target: f64,
+    /// The boundary whose contact force it is about, if it is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub force: Option<String>,
     /// It is.
     pub met: bool,
     /// Why it is not.
@@ -307,7 +310,7 @@ pub struct Seconds {
 }
 
 impl Seconds {
-    /// Of a solve that took `times` after `read`, its files `write`.
+    /// The timings of a solve that took `times` after `read`, its files `write`.
     pub fn new(read: Duration, times: &Times, write: Duration) -> Self {
         Seconds {
             read: read.as_secs_f64(),
@@ -334,7 +337,8 @@ pub fn result_json(results: &Results) -> Result<String, DataError> {
     Ok(text + "\n")
 }
 
-/// The path of a `null`, which is what serde_json makes of a NaN or an infinity: nothing else becomes one here.
+/// The path of a `null`, which is what serde_json makes of a NaN or an infinity: else only the upper end of a peak pressure
+/// becomes one here.
 fn null_in(value: &Value, place: &str) -> Option<String> {
     match value {
         Value::Null => Some(place.to_owned()),
@@ -343,6 +347,8 @@ fn null_in(value: &Value, place: &str) -> Option<String> {
             items.find_map(|(i, item)| null_in(item, &format!("{place}[{i}]")))
         }
         Value::Object(members) => members.iter().find_map(|(name, member)| {
+            let is_peak = members.get("name").is_some_and(|name| name == "peak pressure");
+            let member = if is_peak && name == "interval" { &member[0] } else { member };
             let dot = if place.is_empty() { "" } else { "." };
             null_in(member, &format!("{place}{dot}{name}"))
         }),

@@ -59,14 +59,16 @@ pub fn solve(
         let (solution, times) = solve_along(&case.problem, &case.method, &case.settings, course)?;
         return Ok((case, Solved { solution, times, certified: None }));
     };
-    let (problem, adapted) =
-        adapt::adapt(case.problem, &case.method, &case.settings, target, watcher)?;
+    let goal = (target, case.adapt_force.as_deref());
+    let how = (&case.method, &case.settings);
+    let (problem, adapted) = adapt::adapt_to(case.problem, how, goal, &case.asked, watcher)?;
     case.problem = problem;
     let certified = Certified {
         result: adapted.certified,
         time: adapted.certifying,
         adaptation: Some(Adaptation {
             target: target.relative,
+            force: case.adapt_force.clone(),
             met: adapted.unmet.is_none(),
             reason: adapted.unmet,
             level: adapted.level,

@@ -1,4 +1,4 @@
-//! What a case is read from: the text of its file, and the settings that lie over it.
+//! The source of a case: the text of its file, and the settings that lie over it.
 
 use std::path::Path;
 

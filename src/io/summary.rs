@@ -13,6 +13,7 @@ use super::result::{
 use super::sweep::Sweep;
 use super::{Case, numbers};
 use crate::certify::Continuous;
+use crate::certify::adapt::Level;
 use crate::fem::held::Play;
 use crate::quote;
 use crate::solve::{ContactQuadrature, MethodReport, Outline, RouteName, Status};
@@ -179,11 +180,15 @@ fn contact(r: &Results, shown: &Shown, verbose: bool, lines: &mut Lines) {
 /// Between what the true contact force of a boundary is proved to lie, rounded outwards.
 fn proved_force(r: &Results, boundary: &str, thickness: f64) -> Option<String> {
     let continuous = r.certificate.as_ref()?.continuous.as_ref()?;
-    let [low, high] = continuous.quantity("contact force", boundary)?.interval?;
-    // Half of the last of four digits, for a number that begins with 1.
-    let outward = |end: f64, sign: f64| short((end + sign * 5e-4 * end.abs()) * thickness);
+    let [low, high] = continuous.contact_force(boundary)?;
     let proved = if continuous.rigorous { "proved" } else { "with a reservation" };
-    Some(format!("{proved} between {} and {}", outward(low, -1.0), outward(high, 1.0)))
+    let [low, high] = [outwards(low, -1.0), outwards(high, 1.0)].map(|end| short(end * thickness));
+    Some(format!("{proved} between {low} and {high}"))
+}
+
+/// An end of an interval, for four digits: half of the last of them outwards, for a number that begins with 1.
+fn outwards(end: f64, sign: f64) -> f64 {
+    end + sign * 5e-4 * end.abs()
 }
 
 fn stress(r: &Results, shown: &Shown, lines: &mut Lines) {
@@ -297,24 +302,27 @@ pub fn certified(case: &Case, field: &Path, c: &Continuous, files: &[PathBuf]) -
     );
     lines.line("error", format!("at most {} of that one: {proved}", size(c.bound)));
     lines.line("", format!("at most {} as it is", size(c.of_field)));
-    if c.missed > 0.0 {
-        let of = "the energy norm does not see a field that is moved as a whole";
-        let missed = short(c.missed);
-        lines.line("prescribed", format!("the field misses it by up to {missed}; {of}"));
-    }
+    let missed = short(c.missed);
+    lines.line(
+        "prescribed",
+        format!("the field misses it by at most {missed}; the energy norm does not see a field that is moved as a whole"),
+    );
     lines.line("written", written(files));
     lines.under(&case.title)
 }
 
 /// Whether a bound is proved, and of which problem, where that is not the one that is meant.
 fn proved(rigorous: bool, reason: Option<&str>, problem: Option<&str>) -> String {
-    let with = problem.map(|problem| format!(", of the problem with {problem}"));
-    let with = with.unwrap_or_default();
+    let of = of_problem(problem);
     if rigorous {
-        format!("proved{with}")
+        format!("proved{of}")
     } else {
-        format!("with a reservation ({}){with}", reason.unwrap_or_default())
+        format!("with a reservation ({}){of}", reason.unwrap_or_default())
     }
+}
+
+fn of_problem(problem: Option<&str>) -> String {
+    problem.map_or(String::new(), |problem| format!(", of the problem with {problem}"))
 }
 
 /// The summary of a certificate that was verified.
@@ -342,18 +350,23 @@ pub fn audited(audit: &Audit, case: Option<(&Path, Option<&str>)>) -> String {
         String::new()
     };
     lines.line("bound", format!("{}{size}", short(header.bound)));
+    for (i, (name, [low, high])) in audit.forces().enumerate() {
+        let heading = if i == 0 { "forces" } else { "" };
+        let [low, high] = [outwards(low, -1.0), outwards(high, 1.0)].map(short);
+        lines.line(heading, format!("{}: between {low} and {high}", quote::line(&name)));
+    }
+    let problem = of_problem(certificate.problem(proof).as_deref());
+    let reservation = match case {
+        Some((_, reason)) => reason.map(str::to_owned),
+        None => (!reservations.is_empty()).then(|| reservations.to_string()),
+    };
     lines.line(
         "rigorous",
-        match case {
-            Some((_, Some(reason))) => format!("with a reservation: {reason}"),
-            _ if reservations.is_empty() => "yes, rounding included".to_owned(),
-            _ => format!("with a reservation: {reservations}"),
+        match reservation {
+            Some(reservation) => format!("with a reservation: {reservation}{problem}"),
+            None => format!("yes, rounding included{problem}"),
         },
     );
-    if proof.stop > 0.0 {
-        let share = short(proof.stop);
-        lines.line("support", format!("against a motion that nothing else stops; it takes {share} of the forces on the boundary or less"));
-    }
     lines.under(&header.title)
 }
 
@@ -366,8 +379,10 @@ fn enclosed(certificate: &DiscreteCertificate) -> String {
         (false, None) => "",
     };
     let Some(radius) = certificate.radius else {
-        let solutions = if solutions.is_empty() { "nothing" } else { solutions };
-        return format!("{solutions}; not how far this one is from it: {reason}");
+        return match solutions {
+            "" => format!("nothing: {reason}"),
+            _ => format!("{solutions}; how far this one is from it is not known: {reason}"),
+        };
     };
     // The power of ten above: what rounding leaves differs from processor to processor.
     let size = match certificate.relative.filter(|relative| *relative > 0.0) {
@@ -376,21 +391,30 @@ fn enclosed(certificate: &DiscreteCertificate) -> String {
         }
         None => format!("{} of it (in the energy norm)", short(radius)),
     };
-    format!(
-        "{solutions}; this is within {size}, rounding included, with the loads as their rule has them"
-    )
+    let of = certificate.problem.as_deref().map_or(String::new(), |what| format!(", with {what}"));
+    format!("{solutions}; this is within {size}, rounding included{of}")
 }
 
 /// Whether the target was met, and how the bound fell.
 fn adapted(adapt: &Adaptation) -> String {
     let percent = |relative: f64| format!("{} %", numbers::short(100.0 * relative, 2));
-    let bounds: Vec<String> = adapt.levels.iter().map(|level| percent(level.relative)).collect();
+    let reached = |level: &Level| match &adapt.force {
+        Some(_) => {
+            level.force.map_or("not bounded".to_owned(), |within| format!("±{}", percent(within)))
+        }
+        None => percent(level.relative),
+    };
+    let bounds: Vec<String> = adapt.levels.iter().map(reached).collect();
     let verdict = match &adapt.reason {
         Some(reason) => format!("not met: {reason}"),
         None => "met".to_owned(),
     };
+    let target = match &adapt.force {
+        Some(boundary) => format!("force of {} within ±", quote::cut(boundary)),
+        None => "target ".to_owned(),
+    };
     format!(
-        "target {} {verdict}; {}: {}",
+        "{target}{} {verdict}; {}: {}",
         percent(adapt.target),
         count(adapt.levels.len(), "level"),
         bounds.join(" ")
@@ -495,9 +519,12 @@ fn accuracy(method: &MethodReport) -> String {
         RouteName::Assembled => "assembled",
         RouteName::Twofold => "twofold",
     };
+    let error = method.forward_error;
+    let error =
+        if error.is_finite() { format!("{error:.0e} (energy norm)") } else { "unknown".to_owned() };
     format!(
-        "{route} route, condition number at least {:.0e}, relative error of iteration and rounding {:.0e} (energy norm)",
-        method.condition, method.forward_error
+        "{route} route, condition number at least {:.0e}, relative error of iteration and rounding {error}",
+        method.condition
     )
 }
 

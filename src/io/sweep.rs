@@ -65,7 +65,7 @@ fn items(list: &str) -> Option<Vec<String>> {
     }
 }
 
-/// What a run gives: the quantities of the solution, or why there is none.
+/// The result of a run: the quantities of the solution, or why there is none.
 pub type Outcome = Result<Results, RunError>;
 
 /// One solve of a sweep.
@@ -74,7 +74,7 @@ pub type Outcome = Result<Results, RunError>;
 pub struct Run {
     /// The value on each axis.
     pub values: Vec<String>,
-    /// What came out.
+    /// The outcome.
     pub outcome: Outcome,
 }
 
@@ -99,7 +99,7 @@ impl From<WriteError> for SweepError {
     }
 }
 
-/// What the table says of a run that is still to come: of all that a sweep was stopped before.
+/// The entry of a run that is still to come when a sweep is stopped.
 const NOT_SOLVED: &str = "not solved";
 
 /// The name of the file.
@@ -290,7 +290,7 @@ fn cells(r: &Results, shown: Shown) -> Vec<Cell> {
     }
     let certified = r.certificate.as_ref().and_then(|c| c.continuous.as_ref());
     for part in &r.contact {
-        let proved = certified.and_then(|c| c.quantity("contact force", &part.boundary)?.interval);
+        let proved = certified.and_then(|c| c.contact_force(&part.boundary));
         let Some([low, high]) = proved else { continue };
         add(format!("{}.true_force_low", part.boundary), (low * thickness).next_down());
         add(format!("{}.true_force_high", part.boundary), (high * thickness).next_up());

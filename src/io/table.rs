@@ -19,7 +19,7 @@ use crate::quote::{cut, key as shown, listed, number, quoted};
 /// A table of the file.
 pub struct Table<'s> {
     source: Source<'s>,
-    /// What messages call it, and what they put before the names of its keys; both are empty for the whole file.
+    /// Its name in messages, and the prefix of its keys there; both are empty for the whole file.
     name: String,
     prefix: String,
     start: Option<usize>,
@@ -202,7 +202,7 @@ impl<'s> Value<'s> {
         })
     }
 
-    /// What one of these words stands for.
+    /// The value that one of these words stands for.
     pub fn one_of<T: Copy>(&self, words: &[(&str, T)]) -> Result<T, CaseError> {
         let found = self.as_text().and_then(|text| words.iter().find(|word| word.0 == text));
         found.map(|word| word.1).ok_or_else(|| {
@@ -256,7 +256,7 @@ impl<'s> Value<'s> {
         }
     }
 
-    /// The same as a function.
+    /// The value as a function.
     pub fn function(&self) -> Result<SharedFunction, CaseError> {
         Ok(Arc::new(self.expression()?))
     }

@@ -1,8 +1,8 @@
 //! solution.vtu and contact.vtu: unstructured grids for ParaView and everything else that is built on VTK.
 //!
 //! The numbers stand in the file compressed by zlib, in blocks, as base64, which keeps every double as it is and costs no
-//! formatting. (Raw bytes at the end of the file would be a quarter smaller, but meshio 5.3.5 confuses their offsets.) Vectors get a third component 0
-//! and symmetric tensors all six, XX, YY, ZZ, XY, YZ, XZ, because VTK knows space only.
+//! formatting. (Raw bytes at the end of the file would be a quarter smaller, but meshio 5.3.5 confuses their offsets.)
+//! Vectors get a third component 0 and symmetric tensors all six, XX, YY, ZZ, XY, YZ, XZ, because VTK knows space only.
 
 use miniz_oxide::deflate::compress_to_vec_zlib;
 
@@ -11,7 +11,7 @@ use super::data::{DataError, check_finite, check_length, check_points};
 /// Cells of one kind, with the fields on their points and on the cells themselves.
 #[derive(Clone, Copy, Debug)]
 pub struct Grid<'a> {
-    /// What the cells are.
+    /// The kind of the cells.
     pub kind: CellKind,
     /// The points.
     pub points: &'a [[f64; 2]],
@@ -23,7 +23,7 @@ pub struct Grid<'a> {
     pub cell_data: &'a [Field<'a>],
 }
 
-/// What the cells of a grid are.
+/// The kind of the cells of a grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CellKind {
     /// A P1 triangle.

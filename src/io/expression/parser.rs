@@ -48,8 +48,8 @@ enum Token<'t> {
     End,
 }
 
-/// Recursive descent, one function for each line of the grammar, each of which appends the steps of what it reads. `level` counts the
-/// nesting, from 1.
+/// Recursive descent, one function for each line of the grammar, each of which appends the steps of what it reads. `level`
+/// counts the nesting, from 1.
 struct Parser<'t> {
     text: &'t str,
     /// The token under consideration, and the bytes it takes.
@@ -57,7 +57,7 @@ struct Parser<'t> {
     start: usize,
     end: usize,
     steps: Vec<Step>,
-    /// Of the steps, those that are no numbers and no variables.
+    /// The number of steps that are no numbers and no variables.
     operations: usize,
 }
 

@@ -25,7 +25,7 @@ impl Staging {
     /// Makes one in `home` for a run that has `made` these folders.
     ///
     /// # Errors
-    /// What the system says; `NotFound` if another run took `home` away.
+    /// The system's error; `NotFound` if another run took `home` away.
     pub fn new(home: &Path, made: &[PathBuf]) -> io::Result<Staging> {
         for _ in 0..ATTEMPTS {
             let number = RandomState::new().build_hasher().finish();
@@ -69,7 +69,7 @@ pub fn sweep(home: &Path) {
     }
 }
 
-/// What a run would leave behind if it ended now.
+/// The files that a run would leave behind if it ended now.
 #[derive(Debug)]
 pub struct Leftover {
     pub staging: PathBuf,
@@ -78,7 +78,7 @@ pub struct Leftover {
 
 static LIVE: Mutex<Vec<Leftover>> = Mutex::new(Vec::new());
 
-/// What the runs of this process have not finished; nobody else begins or finishes one as long as this is held.
+/// The unfinished files of the runs of this process; nobody else begins or finishes one as long as this is held.
 pub fn live() -> MutexGuard<'static, Vec<Leftover>> {
     LIVE.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -68,7 +68,7 @@ impl<'b> Cursor<'b> {
         }
     }
 
-    /// What is left of this line, without the white space around it, and where it starts.
+    /// The rest of this line, without the white space around it, and where it starts.
     pub(super) fn line(&mut self) -> (usize, &'b [u8]) {
         let (start, rest) = (self.at, self.rest());
         let length = rest.iter().position(|&b| b == b'\n');

@@ -1,4 +1,4 @@
-//! What is wrong with a mesh file, and where.
+//! Errors in a mesh file, with their places.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -19,7 +19,7 @@ pub struct GmshError {
     pub file: PathBuf,
     /// Where in it.
     pub place: Place,
-    /// What is wrong.
+    /// The error.
     pub mistake: Box<GmshMistake>,
 }
 
@@ -44,7 +44,7 @@ impl fmt::Display for Place {
     }
 }
 
-/// What is wrong with a mesh file. Nodes, elements, curves and physical groups go by their tags.
+/// An error in a mesh file. Nodes, elements, curves and physical groups go by their tags.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
 #[non_exhaustive]

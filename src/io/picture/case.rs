@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use super::{ContactSample, ContactSurface, Scene, picture};
+use super::{ContactSample, ContactSurface, ContactZone, Scene, picture};
 use crate::io::case::Case;
 use crate::io::data::DataError;
 use crate::io::numbers::short;
-use crate::io::result::Results;
+use crate::io::result::{CertifiedZone, Results};
 use crate::solve::{Solution, Verdict};
 
 /// The picture of a solved case.
@@ -87,13 +87,29 @@ fn interfaces(case: &Case, s: &Solution) -> Vec<[usize; 2]> {
     found
 }
 
+/// The zones that a certificate proves on a boundary.
+fn zones(results: &Results, boundary: &str) -> Option<Vec<ContactZone>> {
+    let continuous = results.certificate.as_ref()?.continuous.as_ref()?;
+    continuous.bound?;
+    let of = continuous.zones.iter().filter(|zone| zone.boundary == boundary);
+    let zone = |zone: &CertifiedZone| ContactZone {
+        arc: [zone.from, zone.to],
+        pressed: zone.opening_at_most.is_some(),
+    };
+    Some(of.map(zone).collect())
+}
+
 /// The contact boundaries by their connected parts. A pressure that is mere rounding is none.
 fn contact_surfaces(s: &Solution, results: &Results) -> Vec<ContactSurface> {
     let mut surfaces: Vec<ContactSurface> = Vec::new();
     let (mut end, mut presses) = (None, false);
     for edge in &s.contact {
         if surfaces.last().is_none_or(|surface| *surface.name != *edge.boundary) {
-            surfaces.push(ContactSurface { name: edge.boundary.to_string(), parts: Vec::new() });
+            surfaces.push(ContactSurface {
+                name: edge.boundary.to_string(),
+                parts: Vec::new(),
+                zones: zones(results, &edge.boundary),
+            });
             end = None;
             let carries = results.contact.iter().find(|part| *part.boundary == *edge.boundary);
             presses = carries.is_some_and(|part| results.is_in_contact(part));

@@ -24,7 +24,7 @@ pub(super) struct ContactLine {
 /// The largest pressure of a boundary is drawn as high as this part of the body's size.
 const HIGHEST: f64 = 0.15;
 
-/// Of a hollow line's radius, at most so much: arrows along its normals meet at the centre.
+/// The longest arrow, in parts of a hollow line's radius: arrows along its normals meet at the centre.
 const OF_THE_RADIUS: f64 = 0.6;
 
 /// An obstacle whose magnified gap is more than this part of the body's size is left out.
@@ -68,7 +68,7 @@ impl ContactLine {
         lines.into_iter().map(|(line, _)| line).collect()
     }
 
-    /// The same line with its points on the page.
+    /// Moves the points of the line onto the page.
     pub(super) fn on(self, frame: &Frame) -> ContactLine {
         let all = |points: Vec<Point>| points.into_iter().map(|p| frame.page(p)).collect();
         ContactLine {

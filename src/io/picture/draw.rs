@@ -1,4 +1,4 @@
-//! What the pictures are drawn with: colours, letters, SVG paths, and places along a line.
+//! Elements of the pictures: colours, letters, SVG paths, and places along a line.
 
 use svg::node::element::{Path as PathElement, Text};
 
@@ -84,6 +84,11 @@ impl Path {
     }
 
     fn number(&mut self, x: f64) {
+        if !x.is_finite() {
+            // For whoever checks what is drawn.
+            self.d.push_str("NaN");
+            return;
+        }
         let hundredths = (x * 100.0).round() as i64;
         let (whole, part) = (hundredths.abs() / 100, hundredths.abs() % 100);
         let sign = if hundredths < 0 { "-" } else { "" };

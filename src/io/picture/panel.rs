@@ -1,4 +1,6 @@
-//! A panel for each contact boundary: its pressure over the arc length, the peak marked.
+//! A panel for each contact boundary: its pressure over the arc length, the peak marked; below it, where there is a
+//! certificate, a strip that says what is proved: where the body surely presses, where it is surely nearly open, and where
+//! neither is known.
 //!
 //! A boundary of which only a small part is in contact is shown around that part.
 
@@ -10,7 +12,7 @@ use super::draw::{
     GREY, LIGHT, Path, Point, RED, clean, fitting, rounded, shape, short, stroke, text, thinned,
     width_of,
 };
-use super::scene::{ContactSample, ContactSurface, Scene};
+use super::scene::{ContactSample, ContactSurface, ContactZone, Scene};
 use crate::io::numbers::ticks;
 
 /// The height of a panel on the page, and the space between two in a row.
@@ -22,6 +24,10 @@ const LEFT: f64 = 58.0;
 const RIGHT: f64 = 12.0;
 const TOP: f64 = 40.0;
 const PLOT: f64 = 120.0;
+
+/// The height of the strip below the axis, and its colour where there is hardly a force.
+const STRIP: f64 = 5.0;
+const OPEN: &str = "#1f77b4";
 
 /// The room above the peak, for its number.
 const ABOVE: f64 = 24.0;
@@ -122,6 +128,9 @@ fn panel(surface: &ContactSurface, units: Option<[&str; 2]>, [x, y]: Point, widt
         .set("fill", "none")
         .set("stroke", GREY);
     let mut group = Group::new().add(title).add(caption).add(grid(&axes));
+    if let Some(zones) = &surface.zones {
+        group = group.add(strip(zones, &axes));
+    }
     match peak {
         Some(peak) => {
             group = group.add(curve(surface, &axes)).add(frame).add(mark(peak, &stress, &axes))
@@ -131,6 +140,32 @@ fn panel(surface: &ContactSurface, units: Option<[&str; 2]>, [x, y]: Point, widt
                 text("no contact", [axes.left + axes.width / 2.0, axes.bottom - PLOT / 2.0]);
             group = group.add(words.set("text-anchor", "middle").set("fill", GREY)).add(frame);
         }
+    }
+    group
+}
+
+/// Draws the proved zones as a strip, with the words for its colours.
+fn strip(zones: &[ContactZone], axes: &Axes) -> Group {
+    let bar = |[from, to]: [f64; 2], fill: &str| {
+        let [low, high] = axes.arc;
+        let [from, to] = [from, to].map(|arc| axes.x(arc.clamp(low, high)));
+        Rectangle::new()
+            .set("x", rounded(from))
+            .set("y", rounded(axes.bottom + 1.0))
+            .set("width", rounded(to - from))
+            .set("height", STRIP)
+            .set("fill", fill)
+    };
+    let mut group = Group::new().add(bar(axes.arc, LIGHT));
+    for zone in zones {
+        group.append(bar(zone.arc, if zone.pressed { RED } else { OPEN }));
+    }
+    let words = [("proved: pressed", RED), ("nearly open", OPEN), ("not known", GREY)];
+    let mut left = axes.left;
+    for (words, fill) in words {
+        let place = [left, axes.bottom + 50.0];
+        group.append(text(words, place).set("font-size", 11).set("fill", fill));
+        left += width_of(words, 11.0) + 14.0;
     }
     group
 }
@@ -181,7 +216,7 @@ fn mark(peak: &ContactSample, stress: &str, axes: &Axes) -> Group {
     let words = words.trim_end();
     let half = width_of(words, 13.0 / 0.85) / 2.0;
     let (left, right) = (axes.left + half + 3.0, axes.left + axes.width - half - 3.0);
-    let place = [x.clamp(left.min(right), right.max(left)), y - 8.0];
+    let place = [x.max(left.min(right)).min(right.max(left)), y - 8.0];
     let words = text(words, place).set("text-anchor", "middle").set("font-weight", "bold");
     let dot = Circle::new().set("cx", rounded(x)).set("cy", rounded(y)).set("r", 3);
     Group::new().set("fill", RED).add(dot).add(words)

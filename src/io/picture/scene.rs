@@ -1,10 +1,10 @@
-//! What is drawn, as data; by how much it is magnified; and where it lies on the page.
+//! The content of a picture as data; by how much it is magnified; and where it lies on the page.
 
 use super::draw::{Point, distance, moved, short};
 use crate::io::data::{DataError, check_finite, check_length, check_points};
 use crate::io::numbers::Round;
 
-/// What is drawn.
+/// The content of a picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene<'a> {
     /// The headline.
@@ -39,6 +39,17 @@ pub struct ContactSurface {
     /// Its connected parts, each from start to end, the body on its left. Where the pressure jumps there are two samples at
     /// one place.
     pub parts: Vec<Vec<ContactSample>>,
+    /// The proved zones of it; `None` without a certificate.
+    pub zones: Option<Vec<ContactZone>>,
+}
+
+/// A stretch of a contact boundary, of which something is proved.
+#[derive(Clone, Copy, Debug)]
+pub struct ContactZone {
+    /// The arc lengths at its ends.
+    pub arc: [f64; 2],
+    /// The body hardly opens there; else there is hardly a force.
+    pub pressed: bool,
 }
 
 /// A point of a contact boundary.
@@ -129,7 +140,7 @@ pub(super) fn bounds(points: impl IntoIterator<Item = Point>) -> [Point; 2] {
 pub(super) struct Frame {
     corner: Point,
     scale: f64,
-    /// What is at the centre of the drawing.
+    /// The point at the centre of the drawing.
     centre: Point,
     pub(super) width: f64,
     pub(super) height: f64,

@@ -25,12 +25,15 @@ pub struct DiscreteCertificate {
     /// |u~ - u^h|_a is at most this.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub radius: Option<f64>,
-    /// The same over |u~|_a.
+    /// The radius over |u~|_a.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub relative: Option<f64>,
     /// The norm of gamma^(1/2) (lambda~ - lambda^h) on Gamma_C is at most this.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pressure: Option<f64>,
+    /// Which equations (8) are meant: integrals of the loads are those of their quadrature.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub problem: Option<String>,
     /// (8) has exactly one solution: kappa, rounded up, is below 1.
     pub unique: bool,
     /// Every step is proved, rounding included.
@@ -38,7 +41,7 @@ pub struct DiscreteCertificate {
     /// Why not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// What u^h has.
+    /// Intervals of the discrete solution's quantities.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub intervals: Option<Intervals>,
     /// How far the displacement at each probe can be from that of u^h.
@@ -54,6 +57,7 @@ impl From<&enclosure::Certificate> for DiscreteCertificate {
                 // A body at rest has no energy to compare with.
                 relative: e.relative.filter(|r| r.is_finite()),
                 pressure: Some(e.pressure),
+                problem: Some("the loads as quadrature gives them".to_owned()),
                 unique: true,
                 rigorous: true,
                 reason: None,
@@ -76,7 +80,7 @@ pub struct ContinuousCertificate {
     /// |u - v|_a is at most this.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bound: Option<f64>,
-    /// The same over |v|_a.
+    /// The bound over |v|_a.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub relative: Option<f64>,
     /// |u - u^h|_a is at most this, u^h being the solution as it is written, which may go through the obstacle.
@@ -114,18 +118,16 @@ pub struct ContinuousCertificate {
 pub struct CertifiedQuantity {
     /// Which one: `contact force`, `contact moment`, `reaction x` and so on.
     pub name: String,
-    /// Of which boundary.
+    /// The boundary.
     pub boundary: String,
-    /// The weight of the pressure, if there is one: it is 1 where the coordinate `along` is between two numbers, and falls to 0 over a width.
+    /// The weight of the pressure, if there is one: it is 1 where the coordinate `along` is between two numbers, and falls to
+    /// 0 over a width.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub weight: Option<Weight>,
-    /// What the true solution has lies between these.
+    /// The interval that contains the value of the true solution; a peak pressure has no upper end.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub interval: Option<[f64; 2]>,
-    /// It is at least this, where it has no upper bound: a peak pressure.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub at_least: Option<f64>,
-    /// What the discrete solution has.
+    pub interval: Option<(f64, Option<f64>)>,
+    /// The value of the discrete solution.
     pub value: f64,
     /// Every step is proved, rounding included.
     pub rigorous: bool,
@@ -196,14 +198,13 @@ impl From<&Zone> for CertifiedZone {
 
 impl CertifiedQuantity {
     fn new(quantity: &Quantity, certified: &Continuous) -> Self {
-        let is_finite = |ends: &[f64; 2]| ends.iter().all(|end| end.is_finite());
+        let end = |end: f64| Some(end).filter(|end| end.is_finite());
         let proved = quantity.interval.as_ref();
         CertifiedQuantity {
             name: quantity.name.text().to_owned(),
             boundary: quantity.boundary.clone(),
             weight: quantity.weight.map(Weight::from),
-            interval: proved.ok().copied().filter(is_finite),
-            at_least: proved.ok().filter(|ends| !is_finite(ends)).map(|ends| ends[0]),
+            interval: proved.ok().and_then(|&[low, high]| Some((end(low)?, end(high)))),
             value: quantity.value,
             rigorous: certified.rigorous && proved.is_ok(),
             reason: proved.err().cloned().or_else(|| certified.reason.clone()),
@@ -217,6 +218,12 @@ impl ContinuousCertificate {
         let is =
             |q: &&CertifiedQuantity| q.name == name && q.boundary == boundary && q.weight.is_none();
         self.quantities.iter().find(is)
+    }
+
+    /// The interval of a boundary's contact force.
+    pub fn contact_force(&self, boundary: &str) -> Option<[f64; 2]> {
+        let (low, high) = self.quantity("contact force", boundary)?.interval?;
+        Some([low, high?])
     }
 }
 
