@@ -187,7 +187,7 @@ fn keys_tables_and_types() {
             ),
             (
                 ["title = \"Block\"", "titel = \"Block\""],
-                "bad.toml:1: unknown key 'titel'; expected title, mesh, material, load, exact, boundary, obstacle, point, method, solver, adapt, output, units or body",
+                "bad.toml:1: unknown key 'titel'; expected title, mesh, material, load, exact, boundary, obstacle, point, method, solver, adapt, certify, output, units or body",
             ),
             (
                 ["title = \"Block\"", "title = Block"],
@@ -200,7 +200,7 @@ fn keys_tables_and_types() {
             (["[load]", "[load"], "bad.toml:8: invalid TOML: unclosed table, expected `]`"),
             (
                 ["[load]", "[loads]"],
-                "bad.toml:8: unknown key 'loads'; expected title, mesh, material, load, exact, boundary, obstacle, point, method, solver, adapt, output, units or body",
+                "bad.toml:8: unknown key 'loads'; expected title, mesh, material, load, exact, boundary, obstacle, point, method, solver, adapt, certify, output, units or body",
             ),
             (
                 ["[load]", "[exact]"],

@@ -58,6 +58,11 @@ impl Random {
         (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
+    /// Below `n`.
+    pub fn below(&mut self, n: usize) -> usize {
+        ((self.next() + 1.0) / 2.0 * n as f64) as usize
+    }
+
     pub fn field(&mut self, nodes: usize) -> Vec<[f64; 2]> {
         (0..nodes).map(|_| [self.next(), self.next()]).collect()
     }

@@ -66,6 +66,15 @@ fn the_page_on_result_json_lists_exactly_what_is_written() {
         ("cases/singular.toml", &["adapt.target=\"1 %\"", "adapt.max_unknowns=10"]),
         (
             "cases/block.toml",
+            &[
+                "mesh.rectangle.nx=4",
+                "mesh.rectangle.ny=4",
+                "method.gamma0=auto",
+                "adapt.target={force=\"bottom\",within=\"60 %\"}",
+            ],
+        ),
+        (
+            "cases/block.toml",
             &["mesh.rectangle.nx=4", "method.gamma0=auto", "load.body=[\"0\", \"-1\"]"],
         ),
         // Held by contact alone, of which a rule with one point sees too little for an enclosure.
@@ -105,7 +114,7 @@ fn known_to(file: &str, text: &str, settings: &[&str], table: &str) -> BTreeSet<
 }
 
 /// The tables of a case, each with a case that has it and with its name on the page.
-const TABLES: [(&str, &[&str], &str, &str); 19] = [
+const TABLES: [(&str, &[&str], &str, &str); 20] = [
     ("cases/block.toml", &[], "", ""),
     ("cases/block.toml", &["body.thickness=2"], "body", "body"),
     ("cases/block.toml", &[], "mesh", "mesh"),
@@ -119,6 +128,7 @@ const TABLES: [(&str, &[&str], &str, &str); 19] = [
     ("cases/block.toml", &["method.degree=1"], "method", "method"),
     ("cases/block.toml", &["solver.tolerance=1e-9"], "solver", "solver"),
     ("cases/block.toml", &["method.degree=1", "adapt.target=\"1 %\""], "adapt", "adapt"),
+    ("cases/block.toml", &["certify.quantities=[]"], "certify", "certify"),
     ("cases/pin.toml", &[], "units", "units"),
     ("cases/pin.toml", &[], "obstacle.pin", "obstacle.NAME"),
     ("cases/pin.toml", &[], "obstacle.pin.circle", "obstacle.NAME.circle"),

@@ -309,6 +309,32 @@ fn difference_of_rules(ladder: &signorini::solve::Ladder, points: [usize; 2]) ->
 }
 
 #[test]
+fn the_second_derivatives_are_those_of_the_gradient() {
+    let mut random = Random(3);
+    for sample in samples() {
+        for x in points(&sample, &mut random, 20) {
+            let Some(second) = sample.solution.second_derivatives(x) else {
+                assert!(sample.solution.regularity() <= 2.0, "{}", sample.name);
+                continue;
+            };
+            for i in 0..2 {
+                for (j, k, value) in
+                    [(0, 0, second[i][0]), (0, 1, second[i][1]), (1, 1, second[i][2])]
+                {
+                    let slope = |t: f64| sample.solution.gradient(along(x, k, t))[(i, j)];
+                    let (expected, bound) = derivative(slope, clearance(&sample, x), 10.0);
+                    assert!(
+                        (value - expected).abs() <= bound,
+                        "{}: {value} {expected}",
+                        sample.name
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn half_as_many_points_do_not_move_the_errors_and_twice_as_many_even_less() {
     for ladder in ladders(Degree::Two) {
         let half = difference_of_rules(&ladder, [POINTS / 2, POINTS]);

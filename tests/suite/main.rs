@@ -29,8 +29,11 @@ mod method;
 mod parts;
 mod patch;
 mod peaks;
+mod properties;
 mod quantities;
 mod reference;
+#[cfg(feature = "cli")]
+mod reported;
 mod routes;
 #[cfg(feature = "cli")]
 mod set_and_sweep;

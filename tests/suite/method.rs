@@ -1,12 +1,10 @@
-//! Method (8) itself: the residual is the derivative of J_h and the tangent that of the residual, J_h is convex as long as
-//! kappa < 1, the solution is in equilibrium, Newton's method with its line search ends where plain Newton cycles, and the
-//! condensed solve is the solution of the full system.
+//! Method (8) itself: the tangent is the derivative of the residual, the solution is in equilibrium, Newton's method with its
+//! line search ends where plain Newton cycles, and the condensed solve is the solution of the full system.
 
 use crate::common::*;
 use signorini::fem::contact_line::EdgeRule;
 use signorini::fem::dense::inner;
 use signorini::fem::matrix::{self, Neighbours, Numbering};
-use signorini::fem::quadrature::gauss;
 use signorini::fem::{Condition, Diagonal, Discretization, Problem, Rectangle};
 use signorini::io::Case;
 use signorini::kernel::edge_integral::ExactEdge;
@@ -25,35 +23,6 @@ fn half_the_limit<'a, E: ExactEdge<f64, N, M>, const N: usize, const M: usize>(
 
 fn shifted(u: &[[f64; 2]], t: f64, v: &[[f64; 2]]) -> Vec<[f64; 2]> {
     u.iter().zip(v).map(|(u, v)| [u[0] + t * v[0], u[1] + t * v[1]]).collect()
-}
-
-/// The central difference of J_h has the error h^2/6 J''' + eps |J| / h; J_h is quadratic up to kinks of its second
-/// derivative, where the central difference of J is off by at most h times the jump of J'' over the kinked edges. With
-/// h = 1e-5 and values of order 10 both are below 1e-4 of the derivative; a wrong factor would be off by a good part of it.
-fn residual_is_the_derivative_of_the_energy<E, const N: usize, const M: usize>(rule: EdgeRule)
-where
-    E: ExactEdge<f64, N, M>,
-{
-    let problem = block(skewed_square(4, Diagonal::Right));
-    let d = half_the_limit::<E, N, M>(&problem, rule);
-    let mut random = Random(1);
-    for _ in 0..20 {
-        let (u, v) = (random.field(d.space.nodes().len()), random.field(d.space.nodes().len()));
-        let h = 1e-5;
-        let difference =
-            (d.energy(&shifted(&u, h, &v)) - d.energy(&shifted(&u, -h, &v))) / (2.0 * h);
-        let derivative = inner(&d.residual(&u).values, &v);
-        let scale = d.energy(&u).abs().max(derivative.abs());
-        assert!((difference - derivative).abs() <= 1e-4 * scale, "{difference} {derivative}");
-    }
-}
-
-#[test]
-fn the_residual_is_the_derivative_of_the_energy_for_p1_and_p2() {
-    residual_is_the_derivative_of_the_energy::<P1, 3, 2>(EdgeRule::Exact);
-    residual_is_the_derivative_of_the_energy::<P1, 3, 2>(EdgeRule::gauss(4));
-    residual_is_the_derivative_of_the_energy::<P2, 6, 3>(EdgeRule::Exact);
-    residual_is_the_derivative_of_the_energy::<P2, 6, 3>(EdgeRule::gauss(4));
 }
 
 /// The tangent at u applied to v: A v from the assembled matrix, plus B^T H B v edge by edge. `slip` scales H, for the
@@ -160,43 +129,6 @@ fn rigid_body_motions_cost_no_energy() {
             }
         }
     }
-}
-
-/// J_h at the middle of random segments against the mean of its ends: how many segments bend the wrong way.
-fn concave_segments(gamma0_over_limit: f64, tries: usize) -> usize {
-    let problem = block(unit_square(3).mesh().unwrap());
-    let rule = EdgeRule::Exact;
-    let d =
-        Discretization::<P1, 3, 2>::new(&problem, |c| gamma0_over_limit * c.limit(), rule).unwrap();
-    let mut random = Random(11);
-    (0..tries)
-        .filter(|_| {
-            let mut ends = [(); 2].map(|()| random.field(d.space.nodes().len()));
-            for end in &mut ends {
-                // Strains across the floor, where sigma_n is large, and the floor lifted so that P < 0: the worst case.
-                for (value, [_, y]) in end.iter_mut().zip(d.space.nodes()) {
-                    let floor = *y == 0.0;
-                    *value = [0.0, if floor { 4.0 + value[1] } else { 0.1 * value[1] }];
-                }
-            }
-            let [a, b] = ends;
-            let middle: Vec<[f64; 2]> =
-                shifted(&a, 1.0, &b).iter().map(|v| v.map(|c| c / 2.0)).collect();
-            d.energy(&middle) > (d.energy(&a) + d.energy(&b)) / 2.0
-        })
-        .count()
-}
-
-#[test]
-fn the_energy_is_convex_along_random_lines_below_the_limit() {
-    for share in [0.1, 0.5, 0.99] {
-        assert_eq!(concave_segments(share, 2000), 0);
-    }
-}
-
-#[test]
-fn control_beyond_the_limit_the_energy_is_not_convex() {
-    assert!(concave_segments(20.0, 2000) > 0);
 }
 
 fn example_problems() -> Vec<(&'static str, Problem)> {
@@ -492,36 +424,4 @@ fn the_derivative_of_the_positive_part_at_zero_does_not_change_the_solution() {
     let (s, _) = solve(&problem, &method(Degree::One, EXACT), &Settings::default()).unwrap();
     assert_eq!(s.newton.status, Status::Converged);
     assert_eq!(s.quantities.contact_length, 0.0);
-}
-
-#[test]
-fn exact_edge_integrals_agree_with_32_gauss_points_on_subdivided_edges() {
-    let pieces = 512;
-    let rule: Vec<(f64, f64)> = (0..pieces)
-        .flat_map(|k| {
-            let width = 1.0 / f64::from(pieces);
-            gauss(32).into_iter().map(move |(s, w)| ((f64::from(k) + s) * width, w * width))
-        })
-        .collect();
-    let fine = EdgeRule::Gauss(rule);
-    let mut random = Random(3);
-    for _ in 0..50 {
-        compare::<P1, 3, 2>(&fine, [(); 2].map(|()| random.next()));
-        compare::<P2, 6, 3>(&fine, [(); 3].map(|()| random.next()));
-    }
-}
-
-/// Only the two pieces with a root are not smooth; there a kink of [P]+ costs at most slope width^2 / 4, that of its
-/// square width^3, and a jump width.
-fn compare<E: ExactEdge<f64, N, M>, const N: usize, const M: usize>(fine: &EdgeRule, p: [f64; M]) {
-    let (exact, fine) = (E::exact(p), fine.integrals::<E, N, M>(p));
-    let width = 1.0 / 512.0;
-    assert!((exact.energy - fine.energy).abs() < 30.0 * width * width * width, "{p:?}");
-    assert!((exact.active - fine.active).abs() < width);
-    for a in 0..M {
-        assert!((exact.gradient[a] - fine.gradient[a]).abs() < 4.0 * width * width, "{p:?}");
-        for b in 0..M {
-            assert!((exact.hessian[a][b] - fine.hessian[a][b]).abs() < width, "{p:?}");
-        }
-    }
 }

@@ -61,7 +61,7 @@ fn a_mistake_in_a_setting_is_reported_with_the_setting_and_exit_code_2() {
     for (setting, message) in [
         (
             "metod.gamma0=1",
-            "unknown key 'metod'; expected title, mesh, material, load, exact, boundary, obstacle, point, method, solver, adapt, output, units or body",
+            "unknown key 'metod'; expected title, mesh, material, load, exact, boundary, obstacle, point, method, solver, adapt, certify, output, units or body",
         ),
         (
             "method.gama0=1",
