@@ -35,7 +35,7 @@ contact = {{ gap = "0" }}
 FILES = {"contact.csv", "contact.vtu", "picture.svg", "result.json", "solution.vtu"}
 
 # Seconds of processor time for a large input, at most; a quadratic one takes minutes.
-PATIENCE = 2
+PATIENCE = 10
 
 
 class Fault(Exception):

@@ -112,9 +112,9 @@ class Solution:
         which `adapt` makes. The upper end of a peak pressure is infinite. docs/result.md has the names."""
         continuous = self.results.get("certificate", {}).get("continuous", {})
         return {
-            (q["name"], q["boundary"]): tuple(q["interval"]) if "interval" in q else (q["at_least"], np.inf)
+            (q["name"], q["boundary"]): (q["interval"][0], np.inf if q["interval"][1] is None else q["interval"][1])
             for q in continuous.get("quantities", [])
-            if ("interval" in q or "at_least" in q) and "weight" not in q
+            if "interval" in q and "weight" not in q
         }
 
 

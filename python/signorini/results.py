@@ -48,13 +48,16 @@ class Newton(TypedDict):
     status: str
 
 
-class Method(TypedDict):
+class _Method(TypedDict):
     route: str
     predicted_operations: float
     condition: float
-    forward_error: float
     threads: int
     slides: int
+
+
+class Method(_Method, total=False):
+    forward_error: float
 
 
 class Quantities(TypedDict):
