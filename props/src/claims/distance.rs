@@ -620,6 +620,9 @@ fn places([a, b, c]: [[f64; 2]; 3], n: u32) -> Vec<[f64; 2]> {
 
 /// What the load costs on each triangle of the coarse mesh, and what the bent top does, by their definitions times `share`.
 fn costs(draw: &Draw, share: f64) -> Verdict {
+    if draw.push == [0.0; 2] {
+        return Verdict::Vacuous;
+    }
     let still = Draw { push: [0.0; 2], ..draw.clone() };
     let (Ok((_, loaded)), Ok((_, moved))) =
         (bent_body(&still, 1.0, 1.0, 1), bent_body(draw, 0.0, 1.0, 1))
