@@ -260,9 +260,7 @@ fn gamma_sweep(text: &mut String, figures: &Path, samples: &[Sample]) -> Result<
     text.push_str(
         "\n## gamma0 from 1e-4 to 0.95 of the limit\n\n\
          32 cells a side, structured. Over four orders of magnitude of gamma0 the H1 error changes by a few percent where the \
-         pressure is bounded, and by about a fifth at the corner, where it is not: there larger gamma0 is better. Newton's \
-         method takes more steps as gamma0 falls, for the contact becomes stiffer. That is why the default is half the limit: \
-         as accurate as any, few steps, and a factor of 2 away from the limit. The norms on the contact line have the weight \
+         pressure is bounded, and by about a fifth at the corner, where it is not: there a larger gamma0 is better. Newton's method takes more steps as gamma0 falls, because contact becomes stiffer. That is why the default is half the limit: it is as accurate as any other value, takes few steps, and is a factor of 2 away from the limit. The norms on the contact line have the weight \
          gamma^(1/2) and scale with it.\n\n",
     );
     text.push_str("| solution | | | ");
@@ -312,10 +310,7 @@ fn locking(text: &mut String, figures: &Path) -> Result<()> {
     text.push_str(
         "\n## lambda/mu from 0 to 1e4\n\n\
          Solution (a) with k = 4, m = 3, c = 1/3, whose displacement doesn't depend on lambda. H1 errors on 32 cells a side and the \
-         slope over 8, 16, 32, 64. **P1 locks**: at 1e4 its error is eight times that at 1 and hardly falls on these meshes. P2 is \
-         milder: its error, too, grows by about nine, but it falls with a rate above 1. It is the finite element that locks, \
-         without contact as with it. The limit of gamma0 is proportional to 1/(lambda + 2 mu): a gamma0 chosen by Young's \
-         modulus would cross it, while one that keeps kappa = 1/2, as here, becomes small beside 1/mu, and Newton's method takes \
+         slope over 8, 16, 32, 64. **P1 locks**: at 1e4 its error is eight times that at 1 and hardly falls on these meshes. P2 locks less: its error also grows about nine times, but it falls at a rate above 1. The finite element locks with and without contact. The limit of gamma0 is proportional to 1/(lambda + 2 mu): a gamma0 chosen from Young's modulus would exceed it, while one that keeps kappa = 1/2, as here, becomes small beside 1/mu, and Newton's method takes \
          more steps, as it does for small kappa above.\n\n\
          | lambda/mu | P1 H1 | P1 slope | P2 H1 | P2 slope | Newton steps P1, P2 |\n| --- | --- | --- | --- | --- | --- |\n",
     );
@@ -362,10 +357,9 @@ fn locking(text: &mut String, figures: &Path) -> Result<()> {
 fn theorem(text: &mut String, samples: &[Sample]) -> Result<()> {
     text.push_str(
         "\n## Theorem 3.4 with its constant\n\n\
-         The right side of the error estimate divided by its left side, on 8 and 32 cells a side: 1 would be equality. \
+         The right side of the error estimate divided by its left side, on 8 and 32 cells a side; 1 would mean equality. \
          [9.1], [9.5] and [9.7] are the three forms proved in [theory.md](theory.md#9-theorem-34-with-explicit-constants): the first \
-         two with v^h the Lagrange interpolant, the third with the a-orthogonal projection. In the last column Corollary 3.6 likewise, at kappa = 1/2; where contact changes smoothly, the normal stress converges faster \
-         than the corollary can know. Each entry: n = 8 / n = 32, structured meshes.\n\n\
+         two with v^h the Lagrange interpolant, the third with the a-orthogonal projection. The last column does the same for Corollary 3.6 at kappa = 1/2; where contact changes smoothly, the normal stress converges faster than the corollary says. Each entry: n = 8 / n = 32, structured meshes.\n\n\
          | solution | | [9.1], kappa = 0.1 | 0.5 | 0.9 | [9.5], 0.1 | 0.5 | 0.9 | [9.7], 0.1 | 0.5 | 0.9 | Cor. 3.6 |\n\
          | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n",
     );
@@ -482,13 +476,10 @@ fn literature(text: &mut String) -> Result<()> {
         }
     }
     text.push_str(
-        "\nHertz' theory has a half space for the body, hence the difference that stays on the finest block. The disk is a \
-         polygon: at its corners, where the normal turns, the pressure oscillates, the more so for P2, which resolves them; its \
-         force and contact length are sound, its largest pressure is one of a polygon.\n\n\
+        "\nHertz' theory takes the body for a half space, which explains the difference that remains on the finest block and on the disk. The largest pressure here is that of -lambda^h, which oscillates a little along a curved line; the recovered pressure does not ([parts.md](parts.md)).\n\n\
          ## The disk of Chouly, Hild and Renard (2015)\n\n\
          Math. Comp. 84 (2015) 1089-1112 varies gamma0 on a disk with R = 20 cm, E = 25 MPa, nu = 0.25 under a body force of \
-         20 MN/m³: gamma0 = 1/(100 E), 1/E, 100/E. The published curves were not at hand, so none is quoted; what \
-         follows is ours, on the lower half of such a disk (the mesh of `cases/disk.toml`, its flat side clamped). The limit \
+         20 MN/m³: gamma0 = 1/(100 E), 1/E, 100/E. The published curves were not available and are not quoted; the numbers below are our own, on the lower half of such a disk (the mesh of `cases/disk.toml`, its flat side clamped). The limit \
          of gamma0 depends only on the shapes of the triangles and on lambda + 2 mu = 30 MPa.\n\n\
          | | gamma0 | kappa | verdict | solved anyway |\n| --- | --- | --- | --- | --- |\n",
     );
@@ -543,8 +534,7 @@ fn literature(text: &mut String) -> Result<()> {
         }
     }
     text.push_str(
-        "\nOf the three values only the smallest is below the limit of the symmetric method (theta = 1), P1 or P2. The others are beyond \
-         the true limit, too: the factorisation finds that A(.,.) is indefinite.\n",
+        "\nOnly the smallest of the three values is below the limit of the symmetric method (theta = 1), for P1 and for P2. The others are also beyond the true limit: the factorisation finds that A(.,.) is indefinite.\n",
     );
     Ok(())
 }
@@ -591,8 +581,7 @@ fn adaptivity(text: &mut String, figures: &Path, samples: &[Sample]) -> Result<(
          `[adapt]` bisects the triangles with the largest shares in the certificate's bound ([certificates.md](certificates.md)), \
          here from 4 cells a side on, P1. N unknowns on a uniform mesh are h ~ N^(-1/2): the slope of the error over N is \
          -1/2 at best, and -alpha/2 at the corner (c), where u is only in H^s for s < 1 + alpha. On adapted meshes it is \
-         -1/2 again. (b) is in H^2, which is all that P1 asks for: it has its full rate on uniform meshes, too. *Error* is \
-         the true one in the energy norm, *bound* what is certified, knowing nothing of it. Slopes over the last four rows.\n\n\
+         -1/2 again. (b) is in H^2, which is all that P1 needs, so it has its full rate on uniform meshes, too. *Error* is the true error in the energy norm, *bound* the certified one, which is computed without knowing the solution. Slopes over the last four rows.\n\n\
          | solution | mesh | unknowns | error | bound | bound / error | slope of the error | of the bound |\n\
          | --- | --- | --- | --- | --- | --- | --- | --- |\n",
     );
@@ -668,7 +657,7 @@ fn main() -> Result<()> {
     let samples = samples()?;
     let mut text = String::from(
         "# Convergence\n\n\
-         The paper proves rates and shows no experiment. These are the experiments, on the exact solutions of \
+         The paper proves rates without numerical experiments. Here are experiments on the exact solutions of \
          [theory.md](theory.md#10-exact-solutions), lambda = mu = 1 unless it says otherwise. This page and its figures are written by\n\n\
          ```\ncargo bench --bench study\n```\n\n\
          and one case is studied by, for example,\n\n\

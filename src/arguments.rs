@@ -17,28 +17,44 @@ pub struct Arguments {
     /// Print nothing but errors
     #[arg(long, global = true)]
     pub quiet: bool,
-    /// Print how it was solved, too: mesh, coercivity, Newton's method, accuracy, balance of energies, times
+    /// Print also how the case was solved: mesh, coercivity, Newton's method, accuracy, balance of energies, times
     #[arg(long, global = true, conflicts_with = "quiet")]
     pub verbose: bool,
 }
 
-const EXIT_CODES: &str = "Exit codes: 0 solved and proved; 1 no result: could not solve, write or accept a certificate; 2 the case is wrong, and \
-                          nothing is written; 3 results that are not proved, or lack a certificate or a target that was asked for. \
-                          Signals end the command as usual (130, 143, 129 in a shell). A closed pipe (| head) is no failure; a \
-                          full standard output is: 1.";
+const EXIT_CODES: &str = "Exit codes: 0 solved and proved; 1 no result: it could not be computed or written, or a certificate was not accepted; \
+                          2 the case or the arguments are wrong, and nothing is written; 3 results are written, but they are not \
+                          proved, or lack a certificate or a target that was asked for. Signals end the command as usual (130, \
+                          143, 129 in a shell). A closed pipe (| head) is not an error; a full standard output is (1).";
 
 impl Arguments {
     /// Reads the command line; an error suggests what was probably meant.
     pub fn read() -> Result<Arguments, clap::Error> {
         Arguments::try_parse().map_err(|mut error| {
-            let is_similar = error.get(ContextKind::SuggestedArg).is_some();
-            let tip = match (error.kind(), error.get(ContextKind::InvalidSubcommand)) {
-                (ErrorKind::InvalidSubcommand, Some(ContextValue::String(task)))
-                    if task.ends_with(".toml") =>
+            let has = |kind| error.get(kind).is_some();
+            let is_similar = has(ContextKind::SuggestedArg) || has(ContextKind::SuggestedSubcommand);
+            let word = |kind| match error.get(kind) {
+                Some(ContextValue::String(word)) => word.as_str(),
+                _ => "",
+            };
+            let tip = match error.kind() {
+                ErrorKind::InvalidSubcommand
+                    if word(ContextKind::InvalidSubcommand).ends_with(".toml") =>
                 {
                     "a case is solved by 'signorini solve CASE.toml'"
                 }
-                (ErrorKind::UnknownArgument, _) if !is_similar => {
+                ErrorKind::InvalidSubcommand if !is_similar => {
+                    "the commands are solve, check, sweep, certify, audit, convergence, completions"
+                }
+                ErrorKind::UnknownArgument if word(ContextKind::InvalidArg) == "-o" => {
+                    "the folder to write to is set by '--out DIR'"
+                }
+                ErrorKind::UnknownArgument
+                    if word(ContextKind::InvalidArg).ends_with(".toml") =>
+                {
+                    "one case at a time; 'signorini sweep' solves a case for several values of its keys"
+                }
+                ErrorKind::UnknownArgument if !is_similar => {
                     "a key of the case file is set by --set, such as '--set method.degree=2'"
                 }
                 _ => return error,
@@ -64,20 +80,20 @@ pub enum Task {
         /// Print result.json instead of the summary; write no files unless --out names a folder
         #[arg(long)]
         json: bool,
-        /// Bound the distance to the true solution, too, and write the proof, certificate.json and certificate.bin, for
+        /// Also bound the distance to the true solution, and write the proof to certificate.json and certificate.bin, for
         /// `signorini audit`; takes about as long again as the solution
         #[arg(long)]
         certificate: bool,
-        /// Write report.html, too: picture, numbers, what is proved and the case, in one file to send on
+        /// Write report.html, too: picture, numbers, what is proved and the case, in one file to send to a colleague
         #[arg(long)]
         report: bool,
-        /// The solver: this program, or the reference in FEniCSx, which runs on many processes
+        /// The solver: this program, or the reference implementation in FEniCSx, which can run in several processes
         #[arg(long, value_enum, default_value_t = Engine::Signorini)]
         engine: Engine,
         /// MPI processes for --engine fenicsx [default: 1]
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
         ranks: Option<u16>,
-        /// The folder with the reference in FEniCSx, reference/ of the sources [default: beside this program]
+        /// The folder of the reference implementation, reference/ of the sources [default: beside this program]
         #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
         reference: Option<PathBuf>,
     },
@@ -86,15 +102,15 @@ pub enum Task {
         /// The file certificate.json, with certificate.bin beside it
         #[arg(value_hint = ValueHint::FilePath)]
         certificate: PathBuf,
-        /// A case file: refuse a certificate of another problem. Its mesh, or one that refines it, materials, supports, loads and
-        /// obstacles are compared
+        /// Also check that the certificate belongs to this case: mesh (or a refinement of it), materials, supports, loads and
+        /// obstacles
         #[arg(long, value_name = "CASE.toml", value_hint = ValueHint::FilePath)]
         case: Option<PathBuf>,
-        /// Set a key over the case file, as for solve
+        /// Set a key of the case file, as for solve
         #[arg(long = "set", value_name = "KEY=VALUE", requires = "case")]
         settings: Vec<String>,
     },
-    /// Bound the error of a displacement that any program computed for a case; write certified.vtu, certificate.json and
+    /// Bound the error of a displacement that another program computed for a case; write certified.vtu, certificate.json and
     /// certificate.bin
     Certify {
         #[command(flatten)]
@@ -106,12 +122,12 @@ pub enum Task {
         #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
         out: Option<PathBuf>,
     },
-    /// Read a case and report its sizes and the limit of gamma0; solve nothing, write nothing
+    /// Read a case and report the size of its mesh and the limit of gamma0, without solving or writing anything
     Check {
         #[command(flatten)]
         case: CaseArguments,
     },
-    /// Solve a case for every combination of values of some keys; print a table and write it to sweep.csv
+    /// Solve a case for each combination of values of some keys; print a table and write it to sweep.csv
     Sweep {
         /// The case file (TOML), or - for standard input
         #[arg(value_hint = ValueHint::FilePath)]
@@ -119,7 +135,7 @@ pub enum Task {
         /// A key of the case file and its values, such as method.gamma0=1e-3,1e-2; may be repeated
         #[arg(long = "set", value_name = "KEY=VALUE,VALUE,...", required = true)]
         axes: Vec<Axis>,
-        /// Write the files of each run, too, into folders 1, 2, ...
+        /// Also write the files of each run, into folders 1, 2, ..., and sweep.pvd for ParaView
         #[arg(long)]
         files: bool,
         /// The folder to write to [default: out/ and the name of the case]

@@ -1,7 +1,7 @@
 //! Unilateral (Signorini) contact in linear elasticity by Nitsche's method, after Chouly & Hild, *A Nitsche-based method
 //! for unilateral contact problems: numerical analysis*, SIAM J. Numer. Anal. 51 (2013) 1295-1307 ("the paper").
 //!
-//! A block on a rigid floor, of which its right half is lifted off; more in the folder
+//! A block on a rigid floor, whose right half the load lifts off; more in the folder
 //! `examples`.
 //!
 //! ```

@@ -7,7 +7,7 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 use signorini::solve::ContactQuadrature;
 
-use crate::problem::{self, Size};
+use crate::problem;
 
 /// The argument by which this program calls itself.
 pub const FLAG: &str = "--measure";
@@ -30,6 +30,8 @@ pub struct Report {
     pub factor: f64,
     /// Of the contact solve, to displacements.
     pub contact: f64,
+    /// Of the proof.
+    pub proof: f64,
     /// Newton's method.
     pub steps: usize,
     /// The relative residual in the full system.
@@ -42,15 +44,15 @@ pub struct Report {
     pub memory: u64,
 }
 
-/// Runs `task` in a new process.
-pub fn start(task: Task, size: Size) -> Report {
+/// Runs `task` with elements of this degree on a body of [`problem::posed`] in a new process.
+pub fn start(task: Task, degree: usize, body: &str) -> Report {
     let program = std::env::current_exe().expect("the path of this program");
     let output = Command::new(program)
-        .args([FLAG, name(task), &size.degree.to_string(), &size.n.to_string()])
+        .args([FLAG, name(task), &degree.to_string(), body])
         .output()
         .expect("this program runs");
     let error = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{task:?} {size:?}: {error}");
+    assert!(output.status.success(), "{task:?} {body} P{degree}: {error}");
     serde_json::from_slice(&output.stdout).expect("a report")
 }
 
@@ -63,18 +65,17 @@ fn name(task: Task) -> &'static str {
 
 /// Runs what [`start`] asks for and prints the report.
 pub fn run(arguments: &[String]) {
-    let [task, degree, n] = arguments else {
-        panic!("a task, a degree and n; found {arguments:?}")
+    let [task, degree, body] = arguments else {
+        panic!("a task, a degree and a body; found {arguments:?}")
     };
     let task = [Task::Contact, Task::LikePeers].into_iter().find(|&t| name(t) == task);
     let task = task.expect("a known task");
-    let [degree, n] = [degree, n].map(|text| text.parse().expect("a number"));
-    let report = solve(task, Size { degree, n });
+    let report = solve(task, degree.parse().expect("a number"), body);
     println!("{}", serde_json::to_string(&report).expect("numbers"));
 }
 
-fn solve(task: Task, Size { degree, n }: Size) -> Report {
-    let problem = problem::block(n);
+fn solve(task: Task, degree: usize, body: &str) -> Report {
+    let problem = problem::posed(body).problem;
     let (quadrature, linear) = match task {
         Task::Contact => (ContactQuadrature::Exact, None),
         Task::LikePeers => {
@@ -85,11 +86,12 @@ fn solve(task: Task, Size { degree, n }: Size) -> Report {
     };
     let start = Instant::now();
     let (solution, times) = problem::contact(&problem, &problem::method(degree, quadrature));
-    let contact = start.elapsed() - times.evaluate;
+    let contact = start.elapsed() - times.evaluate - times.certify;
     Report {
         assembly: linear.map_or(0.0, |t| t.assemble.as_secs_f64()),
         factor: linear.map_or(0.0, |t| t.solve.as_secs_f64()),
         contact: contact.as_secs_f64(),
+        proof: times.certify.as_secs_f64(),
         steps: solution.newton.iterations(),
         residual: solution.newton.residual,
         energy: solution.quantities.energy,

@@ -51,7 +51,7 @@ pub fn draw(own: &[Measured], rivals: &[Rival]) -> String {
             curve("contact solve", 2, false, &contact),
             curve("linear solve", 2, true, &linear),
         ],
-        marks: others.map(|r| (r.unknowns(), r.contact)).collect(),
+        marks: others.map(|r| (r.unknowns as f64, r.contact)).collect(),
         unit: |k| match k {
             0.. => format!("{} s", 10_i32.pow(k.unsigned_abs())),
             -3..0 => format!("{} ms", 10_i32.pow((k + 3).unsigned_abs())),

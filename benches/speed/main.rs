@@ -46,13 +46,22 @@ impl Plan {
         if self.quick { 2 } else { 5 }
     }
 
+    /// Those of other codes, which start slowly.
+    fn peer_repetitions(&self) -> usize {
+        if self.quick { 1 } else { 3 }
+    }
+
     /// The size at which details are shown.
     fn detail(&self) -> usize {
         if self.quick { 32 } else { 256 }
     }
 
-    fn peer_sizes(&self) -> &'static [usize] {
-        if self.quick { &[16] } else { &[64, 128, 256] }
+    fn peer_bodies(&self) -> &'static [&'static str] {
+        if self.quick {
+            &["square-16", "disk"]
+        } else {
+            &["square-64", "square-128", "square-256", "strip", "beam", "disk"]
+        }
     }
 }
 
@@ -74,10 +83,10 @@ fn main() {
     if has("--proof") {
         return print!("{}", own::proofs(plan.detail(), plan.repetitions()));
     }
+    let others = provenance::Others::start();
     let own: Vec<own::Measured> =
         plan.sizes().into_iter().map(|size| own::measure(size, plan.repetitions())).collect();
     let mut text = vec![
-        provenance::head(&arguments),
         own::ratio_table(&own),
         own::others(plan.repetitions()),
         own::proofs(plan.detail(), plan.repetitions()),
@@ -88,12 +97,13 @@ fn main() {
         limits::orderings(plan.detail(), plan.repetitions()),
         limits::LEFT_OUT.to_owned(),
     ];
-    let rivals = plan.peers.then(|| peers::measure(plan.peer_sizes(), plan.repetitions()));
+    let rivals = plan.peers.then(|| peers::measure(plan.peer_bodies(), plan.peer_repetitions()));
     text.push(match &rivals {
         Some(rivals) => peers::tables(rivals),
         None => "## Other codes\n\nNot measured in this run: `--peers` does.\n".to_owned(),
     });
     text.push(if plan.large { own::large(&LARGE) } else { own::NOT_LARGE.to_owned() });
+    text.insert(0, provenance::head(&arguments, others.share()));
     let text = text.join("\n");
     print!("{text}");
     if !plan.quick {

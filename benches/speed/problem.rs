@@ -26,6 +26,11 @@ pub struct Size {
 }
 
 impl Size {
+    /// The square as [`posed`] knows it.
+    pub fn body(self) -> String {
+        format!("square-{}", self.n)
+    }
+
     /// Degrees of freedom, prescribed ones included.
     pub fn unknowns(self) -> usize {
         let nodes = self.degree * self.n + 1;
@@ -66,10 +71,7 @@ pub fn others() -> [(&'static str, Problem); 3] {
     let graded = square.vertices().iter().map(|&[x, y]| [x, y.powi(3)]).collect();
     let sides = square.boundary_names().map(|name| {
         let edges = square.edges_of(name).expect("a name of its own").iter();
-        let ends = |e: &BoundaryEdge| {
-            [0, 1].map(|k| square.triangles()[e.triangle][(e.local + 1 + k) % 3])
-        };
-        (name.to_owned(), edges.map(ends).collect())
+        (name.to_owned(), edges.map(|e| ends(&square, e)).collect())
     });
     let graded = Mesh::new(graded, square.triangles().to_vec(), sides);
     [
@@ -89,6 +91,76 @@ pub fn others() -> [(&'static str, Problem); 3] {
 pub fn disk() -> (&'static str, Problem) {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/disk.toml");
     ("half disk", Case::read(&file).expect("a valid case").problem)
+}
+
+/// A problem in the words of the scripts for other codes (`reference/peers/common.py`).
+pub struct Posed {
+    /// What it is.
+    pub title: String,
+    /// The problem.
+    pub problem: Problem,
+    held: &'static str,
+    floor: &'static str,
+    prescribed: [f64; 2],
+    force: [f64; 2],
+    level: f64,
+}
+
+/// `square-N`, `strip`, `beam` or `disk`.
+pub fn posed(body: &str) -> Posed {
+    let posed = |(title, problem): (&str, Problem), held, force, level| Posed {
+        title: title.to_owned(),
+        problem,
+        held,
+        floor: "bottom",
+        prescribed: [0.0; 2],
+        force,
+        level,
+    };
+    let [strip, beam, _] = others();
+    match body.split_once('-') {
+        Some(("square", n)) => {
+            let n: usize = n.parse().expect("a number of cells");
+            let title = format!("square, {n} x {n} cells");
+            posed((&title, block(n)), "top", [-4.0, 10.0], 0.0)
+        }
+        None if body == "strip" => posed(strip, "top", [-4.0, 0.02], 0.0),
+        None if body == "beam" => posed(beam, "left", [-1e-4, 0.0], -0.01),
+        None if body == "disk" => Posed {
+            floor: "contact",
+            prescribed: [0.0, -0.015],
+            ..posed(disk(), "top", [0.0; 2], 0.0)
+        },
+        _ => panic!("expected square-N, strip, beam or disk; found {body}"),
+    }
+}
+
+impl Posed {
+    /// The file that the scripts read.
+    pub fn json(&self) -> String {
+        let mesh = &self.problem.mesh;
+        let edges = |name: &str| -> Vec<[usize; 2]> {
+            let edges = mesh.edges_of(name).expect("a boundary of the body").iter();
+            edges.map(|e| ends(mesh, e)).collect()
+        };
+        let material = self.problem.material.of(0);
+        let (lambda, mu) = (material.lambda(), material.mu());
+        serde_json::json!({
+            "vertices": mesh.vertices(), "triangles": mesh.triangles(), "held": edges(self.held),
+            "floor": edges(self.floor), "prescribed": self.prescribed, "force": self.force,
+            "level": self.level, "lambda": lambda, "mu": mu,
+        })
+        .to_string()
+    }
+
+    /// Degrees of freedom of P1, prescribed ones included.
+    pub fn unknowns(&self) -> usize {
+        2 * self.problem.mesh.vertices().len()
+    }
+}
+
+fn ends(mesh: &Mesh, e: &BoundaryEdge) -> [usize; 2] {
+    [0, 1].map(|k| mesh.triangles()[e.triangle][(e.local + 1 + k) % 3])
 }
 
 /// Method (8) with gamma0 at half the coercivity limit.

@@ -2,9 +2,44 @@
 
 use std::fs;
 use std::process::Command;
+use std::time::Instant;
 
-/// The head of docs/speed.md.
-pub fn head(arguments: &[String]) -> String {
+/// What other processes do meanwhile: processor time of the machine, and that of this process and its children, in ticks.
+pub struct Others {
+    start: [f64; 2],
+    since: Instant,
+}
+
+impl Others {
+    pub fn start() -> Self {
+        Others { start: ticks(), since: Instant::now() }
+    }
+
+    /// The processor time of other processes since the start, in parts of one core.
+    pub fn share(&self) -> f64 {
+        let [all, own] = ticks();
+        // Linux counts hundredths of a second for programs.
+        let other = ((all - self.start[0]) - (own - self.start[1])) / 100.0;
+        other.max(0.0) / self.since.elapsed().as_secs_f64()
+    }
+}
+
+fn ticks() -> [f64; 2] {
+    let number = |word: &str| word.parse::<f64>().unwrap_or(0.0);
+    // user, nice, system; idle and waiting for disks; interrupts.
+    let all: Vec<f64> = read("/proc/stat").split_whitespace().skip(1).take(7).map(number).collect();
+    let all = all.iter().sum::<f64>() - all.iter().skip(3).take(2).sum::<f64>();
+    // Behind the name in brackets; the 14th to 17th word of the line.
+    let own = read("/proc/self/stat");
+    let own = own.rsplit(')').next().unwrap_or_default().split_whitespace().skip(11).take(4);
+    [all, own.map(number).sum()]
+}
+
+/// Up to this share of one core the machine is called idle: the system itself takes some of it.
+const IDLE: f64 = 0.05;
+
+/// The head of docs/speed.md; `others` is the share of [`Others`].
+pub fn head(arguments: &[String], others: f64) -> String {
     let tail =
         if arguments.is_empty() { String::new() } else { format!(" -- {}", arguments.join(" ")) };
     let cores = std::thread::available_parallelism().map_or(0, usize::from);
@@ -13,9 +48,10 @@ pub fn head(arguments: &[String]) -> String {
 
 Written by `cargo bench --bench speed{tail}` on {date}, at commit {commit}.
 
-- Machine: {cpu}, {cores} cores, load average at the start {load}. One thread in every code.
+- Machine: {cpu}, {cores} cores. One thread in every code. Other processes took {others:.1} % of one core meanwhile:
+  the machine was {idle}.
 - signorini {version}, faer {faer}, {rustc}.
-- The case: the unit square in n x n cells cut by diagonals from the lower left to the upper right, lambda = mu = 1
+- The case, if nothing else is said: the unit square in n x n cells cut by diagonals from the lower left to the upper right, lambda = mu = 1
   (plane strain), body force (0, -4 + 10 x), the top clamped, contact below, gamma0 at half the coercivity limit.
 - Times are minima of runs that take turns. Ratios within this page are its claims; the times belong to this machine.
 - Memory is the peak resident memory of a process that does nothing else.
@@ -27,7 +63,8 @@ Written by `cargo bench --bench speed{tail}` on {date}, at commit {commit}.
         date = output("date", &["-u", "+%F"]),
         commit = output("git", &["describe", "--always", "--dirty"]),
         cpu = cpu(),
-        load = read("/proc/loadavg").split_whitespace().next().unwrap_or("unknown"),
+        others = 100.0 * others,
+        idle = if others <= IDLE { "idle" } else { "not idle" },
         version = env!("CARGO_PKG_VERSION"),
         faer = locked("faer"),
         rustc = output("rustc", &["--version"]),

@@ -1,13 +1,14 @@
 """What the scripts for the other codes share: the problem, Newton's method, the clock, the line of JSON.
 
-The problem: the unit square in n x n cells, diagonals from the lower left to the upper right, P1, lambda = mu = 1 (plane strain),
-body force (0, -4 + 10 x), the top clamped, contact with a rigid floor below. Method (8) with 4 Gauss points per contact edge:
+The problem is in a file that the bench writes: a body of P1 triangles with constant moduli (plane strain), a body force (0, a + b x), a
+displacement (0, c) prescribed on the edges `held`, and contact of the edges `floor` with a rigid floor at the height `level`. Its direction
+is d = (0, -1), and the gap is y - level. Method (8) with 4 Gauss points per contact edge:
 
-    A(u, v) + int (1/gamma) [P(u)]+ P0(v) = L(v),   A(u, v) = a(u, v) - int gamma sigma_n(u) sigma_n(v),
-    P0(v) = v_n - gamma sigma_n(v),   P = P0 (no gap),   gamma = gamma0 h_T,   and h_T = sqrt(2) / n for every triangle here.
+    A(u, v) + int (1/gamma) [P(u)]+ P0(v) = L(v),   A(u, v) = a(u, v) - int gamma sigma_n(u) sigma_n(v),   sigma_n(v) = d . sigma(v) n,
+    P0(v) = v . d - gamma sigma_n(v),   P = P0 - gap,   gamma = gamma0 h_T, h_T being the longest edge of the triangle.
 
-A script is called as `script n gamma0 solver` and prints one line of JSON. Its clock starts with mesh, space, compiled forms and (where
-the code has one) the pattern of the matrix ready; a run with n = 8 goes before, so that nothing is timed that happens once per process.
+A script is called as `script small.json body.json gamma0 solver` and prints one line of JSON. Its clock starts with mesh, space, compiled forms and (where
+the code has one) the pattern of the matrix ready; the small body goes before, so that nothing is timed that happens once per process.
 The volume terms are constant and assembled once; each Newton step assembles the contact terms, adds them and factors the sum, with the
 analysis of the pattern kept where the code can keep it.
 """
@@ -16,6 +17,8 @@ import json
 import subprocess
 import sys
 import time
+
+import numpy as np
 
 TOLERANCE = 1e-10  # of the residual, relative to the one at u = 0, which is the load
 MOST_STEPS = 50
@@ -33,6 +36,26 @@ def newton(residual, correction, norm, start):
         r = residual(u)
         steps += 1
     return u, steps
+
+
+class Body:
+    """The problem of a file: its data under their names there, edges with their triangles, h of each triangle."""
+
+    def __init__(self, path):
+        with open(path) as file:
+            self.__dict__.update(json.load(file))
+        self.vertices, self.triangles = np.array(self.vertices), np.array(self.triangles)
+        corners = self.vertices[self.triangles]
+        self.h = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+        self.held, self.floor = np.array(self.held), np.array(self.floor)
+
+    def sides(self, edges):
+        """The triangle of each of these boundary edges, and the place in it of the vertex opposite."""
+        places = {}
+        for k in range(3):
+            a, b = self.triangles[:, (k + 1) % 3], self.triangles[:, (k + 2) % 3]
+            places.update(zip(zip(np.minimum(a, b), np.maximum(a, b)), ((t, k) for t in range(len(a)))))
+        return np.array([places[min(edge), max(edge)] for edge in edges.tolist()])
 
 
 class Clock:
@@ -61,12 +84,13 @@ def debian(package):
 
 
 def main(solvers, versions, run):
-    """`run(n, gamma0, solver, clock)` times "assembly", "factor" and "contact" and returns (a(u, u), Newton steps)."""
-    if len(sys.argv) != 4 or sys.argv[3] not in solvers:
-        sys.exit(f"usage: {sys.argv[0]} n gamma0 {'|'.join(solvers)}")
-    n, gamma0, solver = int(sys.argv[1]), float(sys.argv[2]), sys.argv[3]
-    run(8, gamma0, solver, Clock())
+    """`run(body, gamma0, solver, clock)` times "assembly", "factor" and "contact" and returns (a(u, u), Newton steps)."""
+    if len(sys.argv) != 5 or sys.argv[4] not in solvers:
+        sys.exit(f"usage: {sys.argv[0]} small.json body.json gamma0 {'|'.join(solvers)}")
+    small, body, gamma0, solver = sys.argv[1:]
+    run(Body(small), float(gamma0), solver, Clock())
+    body = Body(body)
     before, clock = peak_memory(), Clock()
-    energy, steps = run(n, gamma0, solver, clock)
-    print(json.dumps({"versions": versions, "solver": solver, "n": n, "seconds": clock.seconds, "steps": steps, "energy": energy,
+    energy, steps = run(body, float(gamma0), solver, clock)
+    print(json.dumps({"versions": versions, "seconds": clock.seconds, "steps": steps, "energy": energy,
                       "memory": peak_memory(), "memory_before": before}))

@@ -11,16 +11,19 @@ from ufl import dot, grad, inner, sym, tr
 
 from common import debian, main, newton
 
-LAMBDA = MU = 1.0
 
-
-def sigma(v):
-    e = sym(grad(v))
-    return LAMBDA * tr(e) * ufl.Identity(2) + 2 * MU * e
-
-
-def square(n):
-    return mesh.create_unit_square(MPI.COMM_SELF, n, n, diagonal=mesh.DiagonalType.right)
+def meshed(body):
+    """The mesh, tags 1 on the floor and 2 on what is held, and h of each triangle as it is numbered here."""
+    cell = ufl.Mesh(ufl.VectorElement("Lagrange", ufl.triangle, 1))
+    domain = mesh.create_mesh(MPI.COMM_SELF, body.triangles, body.vertices, cell)
+    domain.topology.create_connectivity(1, 2)
+    facets = np.array(mesh.exterior_facet_indices(domain.topology), dtype=np.int32)
+    nodes = np.array(dolfinx.cpp.mesh.entities_to_geometry(domain._mesh, 1, facets, False))
+    ends = np.sort(np.array(domain.geometry.input_global_indices)[nodes], axis=1)
+    named = {tuple(sorted(edge)): tag for tag, edges in ((1, body.floor), (2, body.held)) for edge in edges.tolist()}
+    tags = np.array([named.get(tuple(pair), 0) for pair in ends.tolist()], dtype=np.int32)
+    order = np.argsort(facets)
+    return domain, mesh.meshtags(domain, 1, facets[order], tags[order]), body.h[domain.topology.original_cell_index]
 
 
 def direct(matrix, solver):
@@ -35,34 +38,42 @@ def direct(matrix, solver):
     return ksp
 
 
-def run(n, gamma0, solver, clock):
-    domain = square(n)
+def run(body, gamma0, solver, clock):
+    domain, tags, h = meshed(body)
     V = fem.VectorFunctionSpace(domain, ("Lagrange", 1))
     u, v, w = fem.Function(V), ufl.TestFunction(V), ufl.TrialFunction(V)
     x = ufl.SpatialCoordinate(domain)
-    top = fem.locate_dofs_geometrical(V, lambda x: np.isclose(x[1], 1))
-    clamped = [fem.dirichletbc(np.zeros(2), top, V)]
-    floor = np.sort(mesh.locate_entities_boundary(domain, 1, lambda x: np.isclose(x[1], 0)))
-    tags = mesh.meshtags(domain, 1, floor, np.full(len(floor), 1, dtype=np.int32))
+    top = fem.locate_dofs_topological(V, 1, tags.find(2))
+    clamped = [fem.dirichletbc(np.array(body.prescribed), top, V)]
     ds = ufl.Measure("ds", domain, subdomain_data=tags, metadata={"quadrature_degree": 7})(1)
-    gamma = fem.Constant(domain, PETSc.ScalarType(gamma0 * np.sqrt(2) / n))
-    normal = ufl.FacetNormal(domain)
+    gamma = fem.Function(fem.FunctionSpace(domain, ("DG", 0)))
+    gamma.x.array[:] = gamma0 * h
+    n, d = ufl.FacetNormal(domain), ufl.as_vector([0, -1])
+    numbers = [getattr(body, "lambda"), body.mu, *body.force, body.level]
+    lam, mu, a, b, level = (fem.Constant(domain, PETSc.ScalarType(number)) for number in numbers)
+
+    def sigma(v):
+        e = sym(grad(v))
+        return lam * tr(e) * ufl.Identity(2) + 2 * mu * e
 
     def sigma_n(v):
-        return dot(normal, dot(sigma(v), normal))
+        return dot(d, dot(sigma(v), n))
 
     def P0(v):
-        return dot(v, normal) - gamma * sigma_n(v)
+        return dot(v, d) - gamma * sigma_n(v)
 
+    P = P0(u) - (x[1] - level)
     elastic = inner(sigma(w), sym(grad(v))) * ufl.dx
-    positive = ufl.conditional(ufl.gt(P0(u), 0), P0(u), 0)
-    slope = ufl.conditional(ufl.gt(P0(u), 0), 1, 0)
+    positive = ufl.conditional(ufl.gt(P, 0), P, 0)
+    slope = ufl.conditional(ufl.gt(P, 0), 1, 0)
     linear = fem.form(elastic)
-    body = fem.form((-4 + 10 * x[0]) * v[1] * ufl.dx)
+    force = fem.form((a + b * x[0]) * v[1] * ufl.dx)
     nitsche = fem.form(-gamma * sigma_n(w) * sigma_n(v) * ds)
     contact = fem.form(positive / gamma * P0(v) * ds)
     contact_slope = fem.form(slope / gamma * P0(w) * P0(v) * ds)
     fixed = clamped[0].dof_indices()[0]
+    lift = fem.Function(V)
+    fem.petsc.set_bc(lift.vector, clamped)
 
     def vector(form):
         r = fem.petsc.assemble_vector(form)
@@ -79,7 +90,7 @@ def run(n, gamma0, solver, clock):
         add(k, linear)
         return k
 
-    k, f = clock.time("assembly", lambda: (elastic_matrix(), vector(body)))
+    k, f = clock.time("assembly", lambda: (elastic_matrix(), vector(force)))
 
     def solve_linear():
         x = f.duplicate()
@@ -92,8 +103,11 @@ def run(n, gamma0, solver, clock):
     k.destroy()
 
     def solve():
-        a, f = elastic_matrix(), vector(body)
+        a, f = elastic_matrix(), vector(force)
         add(a, nitsche)
+        if any(body.prescribed):
+            fem.petsc.apply_lifting(f, [linear, nitsche], [clamped, clamped])
+            f.array[fixed] = 0
         tangent = a.copy()
         ksp = direct(tangent, solver)
 
@@ -102,7 +116,9 @@ def run(n, gamma0, solver, clock):
             r = vector(contact)
             ax = f.duplicate()
             a.mult(u.vector, ax)
-            return r.array + ax.array - f.array
+            r = r.array + ax.array - f.array
+            r[fixed] = 0
+            return r
 
         def correction(values, r):
             u.x.array[:] = values
@@ -114,7 +130,7 @@ def run(n, gamma0, solver, clock):
             ksp.solve(right, d)
             return d.array
 
-        return newton(residual, correction, np.linalg.norm, np.zeros(f.size))
+        return newton(residual, correction, np.linalg.norm, lift.vector.array.copy())
 
     u.x.array[:], steps = clock.time("contact", solve)
     return fem.assemble_scalar(fem.form(inner(sigma(u), sym(grad(u))) * ufl.dx)), steps

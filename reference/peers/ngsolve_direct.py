@@ -3,25 +3,40 @@
 import ngsolve as ng
 import numpy as np
 from ngsolve import BilinearForm, Grad, GridFunction, InnerProduct, IntegrationRule, LinearForm, Sym, Trace, VectorH1, ds, dx
-from ngsolve.meshes import MakeStructured2DMesh
+from netgen.meshing import Element1D, Element2D, Mesh, MeshPoint, Pnt
 
 from common import main, newton
 
-LAMBDA = MU = 1.0
+
+def meshed(body):
+    mesh = Mesh()
+    mesh.dim = 2
+    points = [mesh.Add(MeshPoint(Pnt(x, y, 0))) for x, y in body.vertices.tolist()]
+    whole = mesh.AddRegion("body", dim=2)
+    for triangle in body.triangles.tolist():
+        mesh.Add(Element2D(whole, [points[i] for i in triangle]))
+    for name, edges in (("floor", body.floor), ("held", body.held)):
+        region = mesh.AddRegion(name, dim=1)
+        for edge in edges.tolist():
+            mesh.Add(Element1D([points[i] for i in edge], index=region))
+    return ng.Mesh(mesh)
 
 
-def run(n, gamma0, solver, clock):
-    mesh = MakeStructured2DMesh(quads=False, nx=n, ny=n, flip_triangles=True)
-    V = VectorH1(mesh, order=1, dirichlet="top")
+def run(body, gamma0, solver, clock):
+    mesh = meshed(body)
+    V = VectorH1(mesh, order=1, dirichlet="held")
     u, v = V.TnT()
     state = GridFunction(V)
-    gamma = gamma0 * np.sqrt(2) / n
+    gamma = GridFunction(ng.L2(mesh, order=0))
+    gamma.vec.FV().NumPy()[:] = gamma0 * body.h
+    n = ng.specialcf.normal(2)
+    lam, mu, (a, b) = getattr(body, "lambda"), body.mu, body.force
     # Volume gradients on the edge need skeleton; degree 7 is 4 Gauss points.
-    floor = ds(skeleton=True, definedon=mesh.Boundaries("bottom"), intrules={ng.SEGM: IntegrationRule(ng.SEGM, 7)})
+    floor = ds(skeleton=True, definedon=mesh.Boundaries("floor"), intrules={ng.SEGM: IntegrationRule(ng.SEGM, 7)})
 
     def sigma_n(v):
-        """n . sigma n with n = (0, -1)"""
-        return LAMBDA * Trace(Grad(v)) + 2 * MU * Grad(v)[1, 1]
+        """d . sigma n with d = (0, -1)"""
+        return -(mu * (Grad(v)[0, 1] + Grad(v)[1, 0]) * n[0] + (lam * Trace(Grad(v)) + 2 * mu * Grad(v)[1, 1]) * n[1])
 
     def P0(v):
         return -v[1] - gamma * sigma_n(v)
@@ -32,19 +47,23 @@ def run(n, gamma0, solver, clock):
         k += integral
         return k
 
-    elasticity = form((LAMBDA * Trace(Grad(u)) * Trace(Grad(v)) + 2 * MU * InnerProduct(Sym(Grad(u)), Sym(Grad(v)))) * dx)
-    p = -state[1] - gamma * (LAMBDA * Trace(Grad(state)) + 2 * MU * Grad(state)[1, 1])
+    elasticity = form((lam * Trace(Grad(u)) * Trace(Grad(v)) + 2 * mu * InnerProduct(Sym(Grad(u)), Sym(Grad(v)))) * dx)
+    p = P0(state) - (ng.y - body.level)
     nitsche = form(-gamma * sigma_n(u) * sigma_n(v) * floor)
     slope = form(ng.IfPos(p, 1, 0) / gamma * P0(u) * P0(v) * floor)
     contact = LinearForm(ng.IfPos(p, p, 0) / gamma * P0(v) * floor)
-    body = LinearForm((-4 + 10 * ng.x) * v[1] * dx)
+    force = LinearForm((a + b * ng.x) * v[1] * dx)
     free = np.flatnonzero(np.array(V.FreeDofs(), dtype=bool))
 
     def factor(matrix):
         return matrix.Inverse(V.FreeDofs(), inverse="sparsecholesky")
 
-    def full(u):
-        state.vec.FV().NumPy()[:] = 0
+    lift = GridFunction(V)
+    lift.Set(tuple(body.prescribed), definedon=mesh.Boundaries("held"))
+    lifted = lift.vec.FV().NumPy().copy()
+
+    def full(u, lift=lifted):
+        state.vec.FV().NumPy()[:] = lift
         state.vec.FV().NumPy()[free] = u
 
     def values(vector):
@@ -52,13 +71,13 @@ def run(n, gamma0, solver, clock):
 
     def volume():
         elasticity.Assemble()
-        body.Assemble()
+        force.Assemble()
 
     clock.time("assembly", volume)
     x = state.vec.CreateVector()
 
     def solve_linear():
-        x.data = factor(elasticity.mat) * body.vec
+        x.data = factor(elasticity.mat) * force.vec
 
     clock.time("factor", solve_linear)
 
@@ -75,7 +94,7 @@ def run(n, gamma0, solver, clock):
         def residual(u):
             full(u)
             contact.Assemble()
-            x.data = a * state.vec + contact.vec - body.vec
+            x.data = a * state.vec + contact.vec - force.vec
             return values(x)
 
         def correction(u, r):
@@ -86,7 +105,7 @@ def run(n, gamma0, solver, clock):
                 algebra[0].Update()
             else:
                 algebra.append(factor(tangent))
-            full(r)
+            full(r, 0)
             x.data = algebra[0] * state.vec
             return values(x)
 

@@ -10,40 +10,45 @@ from sksparse.cholmod import cholesky
 
 from common import debian, main, newton
 
-LAMBDA = MU = 1.0
+
+def sigma_n(v, w):
+    """d . sigma n with d = (0, -1)"""
+    shear = w.mu * (v.grad[0, 1] + v.grad[1, 0])
+    return -(shear * w.n[0] + (w["lambda"] * trace(v.grad) + 2 * w.mu * v.grad[1, 1]) * w.n[1])
 
 
-def sigma_n(w):
-    """n . sigma n with n = (0, -1)"""
-    return LAMBDA * trace(w.grad) + 2 * MU * w.grad[1, 1]
+def P0(v, w):
+    return -v[1] - w.gamma * sigma_n(v, w)
+
+
+def P(w):
+    return P0(w.u, w) - (w.x[1] - w.level)
 
 
 @skfem.BilinearForm
 def elasticity(u, v, w):
     e, d = sym_grad(u), sym_grad(v)
-    return LAMBDA * trace(e) * trace(d) + 2 * MU * ddot(e, d)
+    return w["lambda"] * trace(e) * trace(d) + 2 * w.mu * ddot(e, d)
 
 
 @skfem.LinearForm
 def load(v, w):
-    return (-4 + 10 * w.x[0]) * v[1]
+    return (w.a + w.b * w.x[0]) * v[1]
 
 
 @skfem.BilinearForm
 def nitsche(u, v, w):
-    return -w.gamma * sigma_n(u) * sigma_n(v)
+    return -w.gamma * sigma_n(u, w) * sigma_n(v, w)
 
 
 @skfem.LinearForm
 def contact(v, w):
-    p = -w.u[1] - w.gamma * sigma_n(w.u)
-    return np.maximum(p, 0) / w.gamma * (-v[1] - w.gamma * sigma_n(v))
+    return np.maximum(P(w), 0) / w.gamma * P0(v, w)
 
 
 @skfem.BilinearForm
 def contact_slope(u, v, w):
-    p = -w.u[1] - w.gamma * sigma_n(w.u)
-    return (p > 0) / w.gamma * (-u[1] - w.gamma * sigma_n(u)) * (-v[1] - w.gamma * sigma_n(v))
+    return (P(w) > 0) / w.gamma * P0(u, w) * P0(v, w)
 
 
 class SuperLU:
@@ -67,41 +72,55 @@ class Cholmod:
         return self.factor(right)
 
 
-def run(n, gamma0, solver, clock):
-    x = np.linspace(0, 1, n + 1)
-    points = np.stack([np.tile(x, n + 1), np.repeat(x, n + 1)])
-    a = (np.arange(n)[:, None] * (n + 1) + np.arange(n)).ravel()
-    triangles = np.hstack([np.stack([a, a + 1, a + n + 2]), np.stack([a, a + n + 1, a + n + 2])])
-    mesh = skfem.MeshTri(points, triangles)
+def facets_of(mesh, edges):
+    """The numbers of these edges in the mesh."""
+    key = lambda pairs: pairs.min(axis=0) * mesh.p.shape[1] + pairs.max(axis=0)
+    all_keys = key(mesh.facets)
+    order = np.argsort(all_keys)
+    return np.sort(order[np.searchsorted(all_keys[order], key(edges.T))])
+
+
+def run(body, gamma0, solver, clock):
+    mesh = skfem.MeshTri(body.vertices.T.copy(), body.triangles.T.copy())
     element = skfem.ElementVector(skfem.ElementTriP1())
     basis = skfem.Basis(mesh, element)
-    floor = skfem.FacetBasis(mesh, element, facets=mesh.facets_satisfying(lambda x: x[1] == 0), intorder=7)
-    free = basis.complement_dofs(basis.get_dofs(lambda x: x[1] == 1))
-    gamma = gamma0 * np.sqrt(2) / n
+    floor = skfem.FacetBasis(mesh, element, facets=facets_of(mesh, body.floor), intorder=7)
+    held = basis.get_dofs(facets_of(mesh, body.held))
+    free = basis.complement_dofs(held)
+    lift = basis.zeros()
+    for component, value in zip(("u^1", "u^2"), body.prescribed):
+        lift[held.all(component)] = value
+    gamma = np.broadcast_to(gamma0 * body.h[mesh.f2t[0, floor.find]][:, None], floor.dx.shape)
+    moduli = {"lambda": getattr(body, "lambda"), "mu": body.mu}
+    contact_data = {**moduli, "gamma": gamma, "level": body.level}
+    a, b = body.force
     make = {"superlu": SuperLU, "cholmod": Cholmod}[solver]
 
     def inner(matrix):
         return matrix[free][:, free]
 
-    k, f = clock.time("assembly", lambda: (elasticity.assemble(basis), load.assemble(basis)))
+    def assembled():
+        return elasticity.assemble(basis, **moduli), load.assemble(basis, a=a, b=b)
+
+    k, f = clock.time("assembly", assembled)
     clock.time("factor", lambda: make().solve(inner(k), f[free]))
 
     def solve():
-        k, f = elasticity.assemble(basis), load.assemble(basis)
-        a = k + nitsche.assemble(floor, gamma=gamma)
+        k, f = assembled()
+        a = k + nitsche.assemble(floor, **contact_data)
         constant, algebra = inner(a), make()
 
         def full(u):
-            field = np.zeros(basis.N)
+            field = lift.copy()
             field[free] = u
             return field
 
         def residual(u):
             u = full(u)
-            return (a @ u + contact.assemble(floor, u=floor.interpolate(u), gamma=gamma) - f)[free]
+            return (a @ u + contact.assemble(floor, u=floor.interpolate(u), **contact_data) - f)[free]
 
         def correction(u, r):
-            slope = contact_slope.assemble(floor, u=floor.interpolate(full(u)), gamma=gamma)
+            slope = contact_slope.assemble(floor, u=floor.interpolate(full(u)), **contact_data)
             return algebra.solve(constant + inner(slope), r)
 
         u, steps = newton(residual, correction, np.linalg.norm, np.zeros(len(free)))

@@ -184,7 +184,11 @@ pub fn encode(
 /// # Errors
 /// [`AuditError::Header`].
 pub fn read_header(header: &[u8]) -> Result<Header, AuditError> {
-    let none = |e| AuditError::Header(format!("no certificate: {e}"));
+    let none = |e| {
+        AuditError::Header(format!(
+            "this is no certificate: {e}; expected certificate.json, as signorini solve --certificate writes it"
+        ))
+    };
     let Version { format } = serde_json::from_slice(header).map_err(none)?;
     if format != FORMAT {
         return Err(AuditError::Header(format!(

@@ -35,7 +35,7 @@ pub enum DataError {
         values: [f64; 2],
     },
     #[error(
-        "the body is not held: nothing stops the {}{}; expected displacements that stop it, or loads that press the body against its obstacles (contact pushes, it doesn't pull)",
+        "the body is not held: nothing stops the {}{}; expected a support that stops it, such as displacement = [0, 0] or normal = 0 on a boundary, or loads that press the body against its obstacles (contact can push, not pull)",
         listed(motions), driven(motions, *drive)
     )]
     RigidMotion { motions: Vec<FreeMotion>, drive: Option<f64> },
@@ -50,7 +50,7 @@ pub enum DataError {
     )]
     NoClosestPoint { what: String, x: f64, y: f64 },
     #[error(
-        "[obstacle.{}] lies on the other side of the body: from ({}, {}) on the boundary {} its direction ({}, {}) leads into the body; expected a normal (or a distance that grows) towards the body, or a boundary without edges that face away from the obstacle",
+        "[obstacle.{}] lies on the other side of the body: from ({}, {}) on the boundary {} its direction ({}, {}) leads into the body; expected a normal towards the body (turn its sign), a circle whose side is where the body is (\"outside\" or \"inside\"), or a distance that is positive there; or a boundary without edges that face away from the obstacle",
         key(obstacle), number(*x), number(*y), quoted(boundary, '\''), number(direction[0]), number(direction[1])
     )]
     WrongSide { obstacle: String, boundary: String, x: f64, y: f64, direction: [f64; 2] },

@@ -137,7 +137,12 @@ fn components(value: &Value) -> Result<[Option<SharedFunction>; 2], CaseError> {
 
 /// A component of a displacement, `None` if it is free.
 fn component(value: &Value) -> Result<Option<SharedFunction>, CaseError> {
-    if value.as_text() == Some("free") { Ok(None) } else { value.function().map(Some) }
+    let is_word = |text: &str| text.len() > 2 && text.bytes().all(|b| b.is_ascii_alphabetic());
+    match value.as_text() {
+        Some("free") => Ok(None),
+        Some(text) if is_word(text) => Err(value.wrong("an expression, or \"free\"")),
+        _ => value.function().map(Some),
+    }
 }
 
 /// A displacement in one component, a traction in the other: what is given in the first must be 0 in the second.

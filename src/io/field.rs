@@ -250,7 +250,7 @@ fn from_csv(text: &str) -> Result<Points, String> {
     let column = |name: &str| {
         names.iter().position(|n| *n == name).ok_or_else(|| {
             format!(
-                "line 1 has no column '{name}' among {}; expected x, y, ux and uy",
+                "line 1 has no column '{name}' among {}; expected x, y, ux and uy, with commas between",
                 quote::names(names.iter().copied())
             )
         })

@@ -57,7 +57,12 @@ pub enum WriteError {
 
 /// The reason in words; the number that the system gives it helps nobody.
 pub fn reason(error: &io::Error) -> String {
-    let text = error.to_string();
+    let text = match error.kind() {
+        io::ErrorKind::AlreadyExists => {
+            "a file of this name is there; choose another folder: --out DIR".to_owned()
+        }
+        _ => error.to_string(),
+    };
     match text.split_once(" (os error ") {
         Some((words, _)) => words.to_owned(),
         None => text,
@@ -387,7 +392,10 @@ mod tests {
         let expected = format!("cannot make the folder {}: Not a directory", folder.display());
         assert_eq!(error.to_string(), expected);
         let error = Output::new(&file).unwrap_err();
-        let expected = format!("cannot make the folder {}: File exists", file.display());
+        let expected = format!(
+            "cannot make the folder {}: a file of this name is there; choose another folder: --out DIR",
+            file.display()
+        );
         assert_eq!(error.to_string(), expected);
         assert_eq!(scratch.names(), ["file"]);
     }

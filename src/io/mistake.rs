@@ -53,7 +53,7 @@ impl Display for Place {
 pub enum CaseMistake {
     #[error("{0}")]
     Input(#[from] InputError),
-    #[error("byte {byte} is not UTF-8; expected a text file")]
+    #[error("byte {byte} is not UTF-8; expected a text file, saved as UTF-8")]
     NoText { byte: usize },
     #[error("invalid TOML{at}: {said}")]
     Toml { at: String, said: String },
@@ -99,22 +99,49 @@ fn within(place: &str) -> String {
 
 /// The TOML reader's message, and the words of the file that it is about.
 pub(super) fn no_toml(error: &toml::de::Error, text: &str) -> CaseMistake {
+    let found = error.span().and_then(|span| text.get(span)).map_or("", str::trim);
+    let starts = |m: &str, starts: &[&str]| starts.iter().any(|start| m.starts_with(start));
     let said = match error.message() {
+        _ if text.starts_with("$MeshFormat") => {
+            "this is a Gmsh mesh; expected a case file, which names it: [mesh] gmsh = \"FILE.msh\"".to_owned()
+        }
+        _ if starts(text.trim_start(), &["{", "<"]) => {
+            "this is a JSON or an XML file; expected a case file in TOML".to_owned()
+        }
+        _ if found.contains(['\u{201c}', '\u{201d}', '\u{2018}', '\u{2019}']) => {
+            "expected straight quotes (\") around a text".to_owned()
+        }
+        m if m.starts_with("string values must be quoted") && found.contains("//") => {
+            "expected a value; a comment begins with #".to_owned()
+        }
+        m if m.starts_with("string values must be quoted")
+            && found.starts_with(|c: char| c.is_ascii_digit() || c == '-') =>
+        {
+            "expected a number, without a unit ([units] names the units)".to_owned()
+        }
+        m if m.starts_with("missing comma between array elements") => {
+            "expected ',' or ']'; is a list or a text above not closed?".to_owned()
+        }
+        m if m.starts_with("key with no value") => "expected KEY = VALUE".to_owned(),
+        m if m.starts_with("missing escaped value") => {
+            "a backslash in \"...\" begins an escape; expected '/' in a path, or the text in '...'".to_owned()
+        }
+        m if m.starts_with("invalid mantissa") => {
+            "expected a digit before the decimal point (0.5, not .5)".to_owned()
+        }
         // It says so where there is no value at all, too.
         m if m.starts_with("string values must be quoted") => {
             "expected a value; a text must be in quotes".to_owned()
         }
-        m if ["invalid float", "unexpected key or value", "unexpected leading zero"]
-            .iter()
-            .any(|start| m.starts_with(start)) =>
+        m if starts(m, &["invalid float", "unexpected key or value", "unexpected leading zero"]) =>
         {
             "expected a value; an expression must be in quotes (\"0.1 - x\"), a list in brackets, and decimals have a point (0.5, not 0,5)".to_owned()
         }
         m => m.replace('\n', ", "),
     };
-    let at = match error.span().and_then(|span| text.get(span)).map(str::trim) {
-        Some(found) if !found.is_empty() => format!(" at {}", quoted(found, '\'')),
-        _ => String::new(),
+    let at = match found {
+        "" => String::new(),
+        found => format!(" at {}", quoted(found, '\'')),
     };
     CaseMistake::Toml { at, said }
 }

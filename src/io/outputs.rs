@@ -391,7 +391,9 @@ pub fn overlap(case: &Case) -> Option<String> {
     let (gap, [x, y], edge) = points.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|p| p.0 < 0.0)?;
     let length = length_unit(case);
     let (obstacle, question) = match named_obstacle(case, &edge.boundary) {
-        Some(obstacle) => (obstacle, ": does its normal point to the body?"),
+        Some(obstacle) => {
+            (obstacle, ": is it in the right place, and is the body on the right side of it?")
+        }
         None => (format!("the obstacle of {}", quote::quoted(&edge.boundary, '\'')), ""),
     };
     Some(format!(

@@ -117,7 +117,7 @@ impl Shown {
             force: unit(&|units| units.force(r.thickness)),
             moment: unit(&|units| units.moment(r.thickness)),
             thickness: r.thickness.unwrap_or(1.0),
-            no_force: 1e-10 * r.all_forces(),
+            no_force: (1e-10 * r.all_forces()).max(rounding(r)),
         }
     }
 
@@ -134,6 +134,12 @@ impl Shown {
     fn stress(&self, s: f64) -> String {
         format!("{}{}", short(s), self.stress)
     }
+}
+
+/// The force, per unit of thickness, that is one rounding error of the displacement times the stiffest modulus.
+fn rounding(r: &Results) -> f64 {
+    let stiffest = r.materials.iter().fold(0.0, |most: f64, material| most.max(material.young));
+    f64::EPSILON * stiffest * r.quantities.max_displacement
 }
 
 fn contact(r: &Results, shown: &Shown, verbose: bool, lines: &mut Lines) {
@@ -167,7 +173,7 @@ fn contact(r: &Results, shown: &Shown, verbose: bool, lines: &mut Lines) {
         lines.line(name, format!("{boundary}: force {force}{components}, length {length}"));
         lines.line("", format!("peak pressure {peak}"));
         if verbose {
-            let mut words = format!("moment {}", shown.moment(part.moment));
+            let mut words = format!("{boundary}: moment {}", shown.moment(part.moment));
             if part.penetration.is_finite() {
                 let depth = format!("{}{}", short(part.penetration), shown.length);
                 words += &format!(", penetration {depth}{}", at(part.penetration_at));
@@ -251,29 +257,36 @@ fn how_it_was_solved(r: &Results, shown: &Shown, verbose: bool, lines: &mut Line
         let [energy, work] = [q.energy, q.work].map(|e| shown.moment(e));
         lines.line("energy", format!("a(u,u) = {energy}, L(u) = {work}"));
     }
-    if let Some(balance) = &r.balance
-        && (verbose || !(balance.imbalance.abs() < WORTH_SHOWING))
-    {
+    if let Some(balance) = &r.balance {
         let parts = [balance.loads, balance.supports, balance.contact];
-        let [loads, supports, contact] = parts.map(|e| shown.moment(e));
         let imbalance = balance.imbalance.abs();
-        lines.line(
-            "balance",
-            format!(
-                "a(u,u) = loads {loads} + supports {supports} + contact {contact}, relative imbalance {imbalance:.0e}"
-            ),
-        );
+        let no_energy = rounding(r) * q.max_displacement;
+        let is_balanced =
+            imbalance < WORTH_SHOWING || parts.into_iter().all(|energy| energy.abs() <= no_energy);
+        if verbose || !is_balanced {
+            let [loads, supports, contact] = parts.map(|e| shown.moment(e));
+            lines.line(
+                "balance",
+                format!(
+                    "a(u,u) = loads {loads} + supports {supports} + contact {contact}, relative imbalance {imbalance:.0e}"
+                ),
+            );
+        }
     }
     if verbose {
         lines.line(
             "time",
             format!(
-                "read {}, assemble {}, solve {}, certify {}, write {}",
+                "read {}, assemble {}, solve {}, certify {}{}",
                 time(seconds.read),
                 time(seconds.assemble),
                 time(seconds.solve),
                 time(seconds.certify),
-                time(seconds.write)
+                // A report is finished before it is written.
+                match seconds.write {
+                    0.0 => String::new(),
+                    write => format!(", write {}", time(write)),
+                }
             ),
         );
     }
@@ -542,13 +555,13 @@ fn free(play: &Play, shown: &Shown) -> String {
     };
     let end = |end: f64| format!("{}{unit}", short(end));
     let range = match (play.least, play.most) {
-        (None, None) => "without an end".to_owned(),
-        (Some(least), None) => format!("from {} on", end(least)),
+        (None, None) => "without limit".to_owned(),
+        (Some(least), None) => format!("from {} upwards", end(least)),
         (None, Some(most)) => format!("up to {}", end(most)),
         (Some(least), Some(most)) => format!("from {} to {}", end(least), end(most)),
     };
     format!(
-        "the body can still {motion}, {range}: no support and no obstacle that it presses stops it there. The displacement of least norm is given; friction would be needed to know more"
+        "the body can still {motion}, {range}: no support and no obstacle that it presses on stops it. The displacement given is the one of least norm; in reality friction would decide"
     )
 }
 

@@ -176,6 +176,9 @@ impl<'s> Value<'s> {
         let number = match self.value {
             DeValue::Integer(n) => integer(n).map(|n| n as f64),
             DeValue::Float(f) => f.as_str().parse().ok(),
+            DeValue::String(text) if has_unit(text) => {
+                return Err(self.wrong("a number, without quotes and without a unit"));
+            }
             _ => return Err(self.wrong("a number")),
         };
         number.filter(|n: &f64| n.is_finite()).ok_or_else(|| self.wrong("a finite number"))
@@ -285,6 +288,12 @@ impl<'s> Value<'s> {
     pub fn mistake(&self, mistake: CaseMistake) -> CaseError {
         self.source.wrong(Some(self.start), mistake)
     }
+}
+
+/// Whether this is a number with a word behind it.
+fn has_unit(text: &str) -> bool {
+    text.trim_start_matches('-').starts_with(|c: char| c.is_ascii_digit())
+        && text.ends_with(|c: char| c.is_alphabetic())
 }
 
 fn integer(n: &DeInteger<'_>) -> Option<i128> {

@@ -157,12 +157,20 @@ fn files_that_cannot_be_read() {
         [
             (message(&directory.join("nowhere")), "bad.toml: there is no such file"),
             (message(&directory_as_case), "bad.toml: this is a directory; expected a file"),
-            (write(b"title = \"\xff\""), "bad.toml: byte 10 is not UTF-8; expected a text file"),
+            (write(b"title = \"\xff\""), "bad.toml: byte 10 is not UTF-8; expected a text file, saved as UTF-8"),
             (
                 write(b""),
                 r#"bad.toml: [mesh] is missing; expected rectangle = { .. } or gmsh = ".." in it"#,
             ),
-            (write(&[0; 100]), "bad.toml:1: invalid TOML: key with no value, expected `=`"),
+            (write(&[0; 100]), "bad.toml:1: invalid TOML: expected KEY = VALUE"),
+            (
+                write(MESH.as_bytes()),
+                "bad.toml:1: invalid TOML: this is a Gmsh mesh; expected a case file, which names it: [mesh] gmsh = \"FILE.msh\"",
+            ),
+            (
+                write(b"{\"mesh\": {}}"),
+                "bad.toml:1: invalid TOML: this is a JSON or an XML file; expected a case file in TOML",
+            ),
             (
                 write(edited(CASE, WITH_MESH).replace("bad.msh", "nowhere.msh").as_bytes()),
                 "bad.toml:3: [mesh] gmsh: nowhere.msh: there is no such file",
@@ -219,6 +227,38 @@ fn keys_tables_and_types() {
             (
                 ["mu = 1.0", "mu = 1.0\nnu = 0.3"],
                 "bad.toml:7: unknown key 'nu' in [material]; expected lambda, mu, young, poisson or plane",
+            ),
+            (
+                ["mu = 1.0", "mu = 80 GPa"],
+                "bad.toml:6: invalid TOML at '80 GPa': expected a number, without a unit ([units] names the units)",
+            ),
+            (
+                ["mu = 1.0", "mu = \"80 GPa\""],
+                "bad.toml:6: [material] mu = \"80 GPa\"; expected a number, without quotes and without a unit",
+            ),
+            (
+                ["mu = 1.0", "mu = 1.0 // shear"],
+                "bad.toml:6: invalid TOML at '1.0 // shear': expected a value; a comment begins with #",
+            ),
+            (
+                ["mu = 1.0", "mu = .5"],
+                "bad.toml:6: invalid TOML: expected a digit before the decimal point (0.5, not .5)",
+            ),
+            (
+                ["[\"0\", \"free\"]", "[“0”, “free”]"],
+                "bad.toml:11: invalid TOML at '“0”': expected straight quotes (\") around a text",
+            ),
+            (
+                ["[\"0\", \"free\"]", "[\"0\", \"free\""],
+                "bad.toml:12: invalid TOML: expected ',' or ']'; is a list or a text above not closed?",
+            ),
+            (
+                ["[\"0\", \"free\"]", "[\"0\", \"fre\"]"],
+                "bad.toml:11: [boundary.top] displacement[1] = \"fre\"; expected an expression, or \"free\"",
+            ),
+            (
+                [WITH_MESH[0], "gmsh = \"C:\\mesh\\part.msh\""],
+                "bad.toml:3: invalid TOML: a backslash in \"...\" begins an escape; expected '/' in a path, or the text in '...'",
             ),
             (
                 ["mu = 1.0", "mu = \"1.0\""],

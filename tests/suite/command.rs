@@ -198,7 +198,7 @@ fn wrong_cases_end_with_exit_code_2_and_write_nothing() {
         (
             "free",
             &[["[boundary.top]\ndisplacement = [\"0\", \"0\"]\n", ""]],
-            "case.toml: the body is not held: nothing stops the rotation about (0, 0.5): u_x off the line y = 0.5 would stop it, or u_y off x = 0; the loads drive it with a moment of 1.333; expected displacements that stop it, or loads that press the body against its obstacles (contact pushes, it doesn't pull)",
+            "case.toml: the body is not held: nothing stops the rotation about (0, 0.5): u_x off the line y = 0.5 would stop it, or u_y off x = 0; the loads drive it with a moment of 1.333; expected a support that stops it, such as displacement = [0, 0] or normal = 0 on a boundary, or loads that press the body against its obstacles (contact can push, not pull)",
         ),
         (
             "sliding",
@@ -206,12 +206,12 @@ fn wrong_cases_end_with_exit_code_2_and_write_nothing() {
                 ["displacement = [\"0\", \"0\"]", "displacement = [\"free\", \"0\"]"],
                 ["body = [\"0\"", "body = [\"1\""],
             ],
-            "case.toml: the body is not held: nothing stops the translation along (1, 0): u_x would stop it; the loads drive it with a force of 1; expected displacements that stop it, or loads that press the body against its obstacles (contact pushes, it doesn't pull)",
+            "case.toml: the body is not held: nothing stops the translation along (1, 0): u_x would stop it; the loads drive it with a force of 1; expected a support that stops it, such as displacement = [0, 0] or normal = 0 on a boundary, or loads that press the body against its obstacles (contact can push, not pull)",
         ),
         (
             "sliding-up",
             &[["displacement = [\"0\", \"0\"]", "displacement = [\"0\", \"free\"]"]],
-            "case.toml: the body is not held: nothing stops the rotation about (0, 1): u_x off the line y = 1 would stop it, or u_y off x = 0; the loads drive it with a moment of 1.333; expected displacements that stop it, or loads that press the body against its obstacles (contact pushes, it doesn't pull)",
+            "case.toml: the body is not held: nothing stops the rotation about (0, 1): u_x off the line y = 1 would stop it, or u_y off x = 0; the loads drive it with a moment of 1.333; expected a support that stops it, such as displacement = [0, 0] or normal = 0 on a boundary, or loads that press the body against its obstacles (contact can push, not pull)",
         ),
         (
             "disagree",
@@ -348,20 +348,26 @@ fn wrong_arguments_end_with_exit_code_2() {
 #[test]
 fn a_complaint_about_arguments_says_what_was_probably_meant() {
     let folder = folder("tips", &[]);
-    let [solve, set, json] = [
+    let tips @ [solve, set, json, commands, out, one] = [
         "tip: a case is solved by 'signorini solve CASE.toml'",
         "'--set method.degree=2'",
         "'--json'",
+        "tip: the commands are solve, check, sweep",
+        "'--out DIR'",
+        "tip: one case at a time",
     ];
     for (arguments, tip) in [
         (&["case.toml"][..], solve),
         (&["solve", "case.toml", "--degree", "2"], set),
         (&["solve", "case.toml", "--jsn"], json),
+        (&["run", "case.toml"], commands),
+        (&["solve", "case.toml", "-o", "out"], out),
+        (&["solve", "case.toml", "other.toml"], one),
     ] {
         let output = signorini(&folder, arguments);
         let said = text(&output.stderr);
         assert_eq!(output.status.code(), Some(2), "{said}");
-        for other in [solve, set, json] {
+        for other in tips {
             assert_eq!(said.contains(other), other == tip, "{arguments:?}: {said}");
         }
     }

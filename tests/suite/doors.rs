@@ -257,7 +257,7 @@ fn a_mesh_file_that_is_none_is_not_shown() {
     let output = run(&mut command(&folder, &["solve", "case.toml"]));
     assert_eq!(
         text(&output.stderr),
-        "error: case.toml:3: [mesh] gmsh: secret:1: this is no Gmsh mesh: expected $MeshFormat on its first line, as gmsh -2 writes it\n"
+        "error: case.toml:3: [mesh] gmsh: secret:1: this is no Gmsh mesh: expected $MeshFormat on its first line; gmsh -2 PART.geo makes PART.msh from a geometry\n"
     );
 }
 

@@ -22,6 +22,7 @@ mod documents;
 mod doors;
 mod enclosure;
 mod exact;
+mod figure;
 mod fuzz;
 mod gmsh_live;
 mod held;
@@ -31,6 +32,7 @@ mod patch;
 mod peaks;
 mod properties;
 mod quantities;
+mod recovered;
 mod reference;
 #[cfg(feature = "cli")]
 mod reported;

@@ -12,7 +12,7 @@ use signorini::solve::{ContactBoundary, Degree, solve};
 use super::common::*;
 
 /// The sides of a grid: s = 0, s = 1, t = 0, t = 1.
-const SIDES: [&str; 4] = ["line", "far", "start", "end"];
+pub const SIDES: [&str; 4] = ["line", "far", "start", "end"];
 
 /// The image of a grid; `named(side, i)` is the name of edge i of a side.
 fn grid(
@@ -21,9 +21,17 @@ fn grid(
     t: &[f64],
     named: impl Fn(usize, usize) -> &'static str,
 ) -> Mesh {
-    let vertices: Vec<[f64; 2]> =
+    let vertices =
         s.iter().flat_map(|&s| t.iter().map(move |&t| [s, t])).map(|[s, t]| place(s, t)).collect();
-    let (rows, columns) = (s.len() - 1, t.len() - 1);
+    triangulated(vertices, [s.len() - 1, t.len() - 1], named)
+}
+
+/// The mesh of the vertices of a grid, row by row.
+pub fn triangulated(
+    vertices: Vec<[f64; 2]>,
+    [rows, columns]: [usize; 2],
+    named: impl Fn(usize, usize) -> &'static str,
+) -> Mesh {
     let id = |i: usize, j: usize| i * (columns + 1) + j;
     let mut triangles = Vec::new();
     for i in 0..rows {

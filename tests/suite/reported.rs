@@ -118,7 +118,7 @@ boundary.right.contact.gap = "0.5 - 0.1*y"
     let overlapping = "obstacle.floor.plane.point=[0, 0.02]";
     for task in ["solve", "check"] {
         let message = said(&folder, &[task, "case.toml", "--set", overlapping], 0);
-        let remark = "the body overlaps 'floor' by 0.02 mm at (0, 0) before loading: does its normal point to the body?";
+        let remark = "the body overlaps 'floor' by 0.02 mm at (0, 0) before loading: is it in the right place, and is the body on the right side of it?";
         assert!(message.contains(remark), "{message}");
         assert!(!message.contains("'bottom' touches nothing"), "{message}");
     }

@@ -15,6 +15,9 @@ impl FromStr for Expression {
         parser.expression(1)?;
         match parser.token {
             Token::End => Ok(Expression { steps: parser.steps }),
+            Token::Symbol(',') => {
+                Err(parser.wrong("an operator (+ - * / ^) or the end (decimals have a point: 0.5)"))
+            }
             _ => Err(parser.wrong("an operator (+ - * / ^) or the end")),
         }
     }
@@ -250,7 +253,9 @@ impl<'t> Parser<'t> {
     }
 
     fn no_atom(&self) -> ExpressionError {
-        self.wrong("a number, x, y, pi, a function or '('")
+        let is_power = self.token == Token::Symbol('*') && self.text[..self.start].ends_with('*');
+        let remedy = if is_power { " (a power is x^2)" } else { "" };
+        self.wrong(&format!("a number, x, y, pi, a function or '('{remedy}"))
     }
 
     fn wrong(&self, expected: &str) -> ExpressionError {

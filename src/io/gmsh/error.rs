@@ -52,7 +52,9 @@ pub enum GmshMistake {
     #[error("{0}")]
     Input(#[from] InputError),
     // Without its words: a case of somebody else may name a file that is none of his business.
-    #[error("this is no Gmsh mesh: expected $MeshFormat on its first line, as gmsh -2 writes it")]
+    #[error(
+        "this is no Gmsh mesh: expected $MeshFormat on its first line; gmsh -2 PART.geo makes PART.msh from a geometry"
+    )]
     NotGmsh,
     #[error(
         "the version of the format is {version}; expected '4.1' or '2.2': export the mesh with gmsh -format msh41"

@@ -167,13 +167,15 @@ pub(super) fn colour_bar(
         let size = fitting(&content, 13.0, BAR - 28.0);
         text(content, [left + 28.0, at + 4.5]).set("font-size", size)
     };
-    let line = if unit.is_some() { -4.0 } else { 12.0 };
-    let mut group = Group::new().add(text("von Mises stress", [left, top + line]));
-    if let Some(unit) = unit {
-        let unit = clean(unit);
-        let size = fitting(&unit, 13.0, BAR);
-        group = group.add(text(unit, [left, top + 12.0]).set("fill", GREY).set("font-size", size));
-    }
+    // The summary has the largest of nodal means, which can lie above and below these.
+    let means = match unit {
+        Some(unit) => format!("{}, triangle means", clean(unit)),
+        None => "triangle means".to_owned(),
+    };
+    let size = fitting(&means, 13.0, BAR);
+    let group = Group::new()
+        .add(text("von Mises stress", [left, top - 4.0]))
+        .add(text(means, [left, top + 12.0]).set("fill", GREY).set("font-size", size));
     let bottom = top + height - 10.0;
     let top = top + if capped { 48.0 } else { 30.0 };
     let height = bottom - top;

@@ -87,7 +87,7 @@ fn meshes_of_gmsh() {
             // The format.
             (
                 ["$MeshFormat\n4.1 0 8", "# a picture\n4.1 0 8"],
-                "bad.msh:1: this is no Gmsh mesh: expected $MeshFormat on its first line, as gmsh -2 writes it",
+                "bad.msh:1: this is no Gmsh mesh: expected $MeshFormat on its first line; gmsh -2 PART.geo makes PART.msh from a geometry",
             ),
             (
                 ["4.1 0 8", "2.1 0 8"],
@@ -289,8 +289,8 @@ fn binary_meshes_that_are_cut_or_damaged() {
     let noise: Vec<u8> = (0..5000_u32).map(|i| (i * i * 31 % 251) as u8).collect();
     compare(
         [
-            (message_of(b"\x89PNG\r\n\x1a\n"), "bad.toml:3: [mesh] gmsh: bad.msh:1: this is no Gmsh mesh: expected $MeshFormat on its first line, as gmsh -2 writes it"),
-            (message_of(&[]), "bad.toml:3: [mesh] gmsh: bad.msh:1: this is no Gmsh mesh: expected $MeshFormat on its first line, as gmsh -2 writes it"),
+            (message_of(b"\x89PNG\r\n\x1a\n"), "bad.toml:3: [mesh] gmsh: bad.msh:1: this is no Gmsh mesh: expected $MeshFormat on its first line; gmsh -2 PART.geo makes PART.msh from a geometry"),
+            (message_of(&[]), "bad.toml:3: [mesh] gmsh: bad.msh:1: this is no Gmsh mesh: expected $MeshFormat on its first line; gmsh -2 PART.geo makes PART.msh from a geometry"),
             (message_of(&BINARY[..20]), "bad.toml:3: [mesh] gmsh: bad.msh:3: the file ends, expected the number 1, which shows the order of the bytes: it is cut short"),
             (message_of(&BINARY[..26]), "bad.toml:3: [mesh] gmsh: bad.msh, byte 25: found '$', expected $EndMeshFormat"),
             (message_of(&BINARY[..200]), "bad.toml:3: [mesh] gmsh: bad.msh, byte 200: the file ends, expected the number of physical groups of an entity: it is cut short"),

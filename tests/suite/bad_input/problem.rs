@@ -194,7 +194,7 @@ fn boundaries() {
             ),
             (
                 ["displacement = [\"0\", \"free\"]", "displacement = [\"0\", \"fixed\"]"],
-                r#"bad.toml:11: [boundary.top] displacement[1] = "fixed": column 1: found 'fixed', expected a number, x, y, pi, a function or '('"#,
+                r#"bad.toml:11: [boundary.top] displacement[1] = "fixed"; expected an expression, or "free""#,
             ),
             (
                 ["displacement = [\"0\", \"free\"]", "displacement = [\"0\", \"x*\"]"],
