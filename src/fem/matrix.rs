@@ -12,10 +12,10 @@ use nalgebra::Matrix2;
 use super::constraints::{Constraints, from_frame, in_frame};
 use super::contact_line::ContactLineEdge;
 use super::discretization::Discretization;
+use crate::kernel::Scalar;
 use crate::kernel::edge_integral::ExactEdge;
 use crate::kernel::element::stiffness;
 use crate::kernel::pattern::{self, Lists, Numbers};
-use crate::kernel::{ContactEdge, Scalar, Triangle};
 
 /// The numbers of the free degrees of freedom in an order of elimination: node by node, component by component.
 #[derive(Clone, Debug)]
@@ -94,10 +94,7 @@ impl Numbering {
     }
 
     /// R_i^T block R_j with the frames R of the nodes i and j.
-    fn turned_block<S>(&self, [i, j]: [usize; 2], block: [[S; 2]; 2]) -> [[S; 2]; 2]
-    where
-        S: Scalar + From<f64>,
-    {
+    fn turned_block(&self, [i, j]: [usize; 2], block: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
         let rows = block.map(|row| self.in_frame(j, row));
         let columns = [0, 1].map(|d| self.in_frame(i, [rows[0][d], rows[1][d]]));
         [0, 1].map(|c| [0, 1].map(|d| columns[d][c]))
@@ -139,16 +136,16 @@ impl Neighbours {
 
 /// The lower triangle of a sparse symmetric matrix, column by column, rows in increasing order, the diagonal first.
 #[derive(Clone, Debug)]
-pub struct LowerTriangle<T = f64> {
+pub struct LowerTriangle {
     /// Where each column starts, and where the last one ends.
     pub starts: Vec<usize>,
     /// The row of each entry.
     pub rows: Vec<usize>,
     /// The entries.
-    pub values: Vec<T>,
+    pub values: Vec<f64>,
 }
 
-impl<S: Scalar + From<f64>> LowerTriangle<S> {
+impl LowerTriangle {
     /// All entries that a matrix over these unknowns can have, zero.
     pub fn zero(numbering: &Numbering, neighbours: &Neighbours) -> Self {
         let (numbers, neighbours) = (numbering.numbers(), neighbours.lists());
@@ -156,14 +153,7 @@ impl<S: Scalar + From<f64>> LowerTriangle<S> {
         pattern::column_ends(numbers, neighbours, &mut starts);
         let mut rows = vec![0; starts[numbering.count]];
         pattern::column_rows(numbers, neighbours, &mut starts, &mut rows);
-        let values = vec![S::from(0.0); rows.len()];
-        LowerTriangle { starts, rows, values }
-    }
-
-    /// The entries that a matrix with the pattern of `other` has, zero.
-    pub fn zero_like<T>(other: &LowerTriangle<T>) -> Self {
-        let (starts, rows) = (other.starts.clone(), other.rows.clone());
-        let values = vec![S::from(0.0); rows.len()];
+        let values = vec![0.0; rows.len()];
         LowerTriangle { starts, rows, values }
     }
 
@@ -172,11 +162,11 @@ impl<S: Scalar + From<f64>> LowerTriangle<S> {
         &mut self,
         numbering: &Numbering,
         nodes: &[usize; N],
-        block: impl Fn(usize, usize) -> Matrix2<S>,
+        block: impl Fn(usize, usize) -> Matrix2<f64>,
     ) {
         let columns = Lists { starts: &self.starts, members: &self.rows };
         // `pattern` knows no numbers but whole ones, and takes a block as the array of its rows.
-        let rows = |block: Matrix2<S>| block.transpose().into();
+        let rows = |block: Matrix2<f64>| block.transpose().into();
         if nodes.iter().any(|node| numbering.frames.contains_key(node)) {
             let block = |i, j| numbering.turned_block([nodes[i], nodes[j]], rows(block(i, j)));
             pattern::add(&numbering.of, columns, &mut self.values, nodes, block);
@@ -198,7 +188,7 @@ where
 {
     let mut matrix = assemble_stiffness(d, numbering, neighbours);
     for edge in &d.contact {
-        matrix.add_contact_stress(d, numbering, edge, &edge.functionals);
+        matrix.add_contact_stress(d, numbering, edge);
     }
     matrix
 }
@@ -217,7 +207,7 @@ where
     matrix
 }
 
-impl<S: Scalar + From<f64>> LowerTriangle<S> {
+impl LowerTriangle {
     /// Adds a(.,.).
     pub fn add_stiffness<E, const N: usize, const M: usize>(
         &mut self,
@@ -227,47 +217,43 @@ impl<S: Scalar + From<f64>> LowerTriangle<S> {
         E: ExactEdge<f64, N, M>,
     {
         for (t, (triangle, nodes)) in d.space.triangles().enumerate() {
-            let vertices = triangle.vertices.map(|x| x.map(S::from));
-            let material = d.problem.material.of(t).map(S::from);
-            let k = stiffness::<E, S, N, M>(&Triangle { vertices }, &material);
+            let k = stiffness::<E, f64, N, M>(&triangle, d.problem.material.of(t));
             self.add(numbering, nodes, |i, j| k[i][j]);
         }
     }
 
-    /// Adds -int gamma sigma_n(.) sigma_n(.) on a contact edge with these functionals.
+    /// Adds -int gamma sigma_n(.) sigma_n(.) on a contact edge.
     pub fn add_contact_stress<E, const N: usize, const M: usize>(
         &mut self,
         d: &Discretization<E, N, M>,
         numbering: &Numbering,
         edge: &ContactLineEdge<N, M>,
-        functionals: &ContactEdge<S, N, M>,
     ) where
         E: ExactEdge<f64, N, M>,
     {
-        let weight = -(S::from(edge.gamma) * S::from(edge.length));
+        let weight = -(edge.gamma * edge.length);
         let nodes = &d.space.elements()[edge.edge.triangle];
-        self.add(numbering, nodes, |i, j| functionals.stress_product(weight, i, j));
+        self.add(numbering, nodes, |i, j| edge.functionals.stress_product(weight, i, j));
     }
 
-    /// Adds P0^T h P0 of a contact edge with these functionals: what is in contact holds the body.
+    /// Adds P0^T h P0 of a contact edge: what is in contact holds the body.
     pub fn add_contact_springs<E, const N: usize, const M: usize>(
         &mut self,
         d: &Discretization<E, N, M>,
         numbering: &Numbering,
         edge: &ContactLineEdge<N, M>,
-        functionals: &ContactEdge<S, N, M>,
         h: &[[f64; M]; M],
     ) where
         E: ExactEdge<f64, N, M>,
     {
-        let p0 = &functionals.p0;
+        let p0 = &edge.functionals.p0;
         let nodes = &d.space.elements()[edge.edge.triangle];
         self.add(numbering, nodes, |i, j| {
             Matrix2::from_fn(|c, k| {
-                let mut sum = S::from(0.0);
+                let mut sum = 0.0;
                 for a in 0..M {
                     for b in 0..M {
-                        sum += p0[a][i][c] * S::from(h[a][b]) * p0[b][j][k];
+                        sum += p0[a][i][c] * h[a][b] * p0[b][j][k];
                     }
                 }
                 sum

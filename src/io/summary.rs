@@ -530,7 +530,6 @@ fn accuracy(method: &MethodReport) -> String {
     let route = match method.route {
         RouteName::Condensed => "condensed",
         RouteName::Assembled => "assembled",
-        RouteName::Twofold => "twofold",
     };
     let error = method.forward_error;
     let error =

@@ -22,11 +22,6 @@ use crate::kernel::edge_integral::ExactEdge;
 
 /// A way to better an iterate.
 pub trait Route<E, const N: usize, const M: usize> {
-    /// Whether residuals are to be evaluated in twofold numbers from the start.
-    fn precisely(&self) -> bool {
-        false
-    }
-
     /// L of A, if it is at hand.
     fn factor_of_a(&self) -> Option<Arc<Factor>> {
         None
@@ -154,7 +149,7 @@ where
     let d = system.d;
     let mut iterate = Iterate::lift(d);
     let mut residuals = Vec::new();
-    let mut at = iterate.evaluate(system, route.precisely());
+    let mut at = iterate.evaluate(system, false);
     // The first pass goes as far as it can. It comes from nowhere: what it moves is no error.
     let mut until = Until { steps: settings.max_iterations, residual: 0.0 };
     let Pass { left, mut softness, .. } =

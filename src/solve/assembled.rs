@@ -1,8 +1,6 @@
 //! The assembled route: Newton's method on the displacement itself, the tangent A + B^T Psi'' B factored in each step. It is
 //! the cheaper one where contact edges are many beside the body (strips, graded meshes), and the only one where A alone is
 //! singular, or as good as: contact then holds the body, and the tangent knows it.
-//!
-//! The tangent is added up and factored in doubles or, for bodies whose condition number is beyond these, in twofold numbers.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -15,29 +13,24 @@ use super::contact_edges::ContactEdges;
 use super::course;
 use super::factor::{Factor, Indefinite};
 use super::iterate::{Evaluation, Iterate};
-use super::ldl::TwofoldFactor;
 use super::newton::{self, Until};
 use super::relaxation::follow;
 use super::system::System;
 use crate::fem::held;
 use crate::fem::matrix::LowerTriangle;
-use crate::fem::precise;
 use crate::fem::rigid::Parts;
 use crate::fem::twofold::Twofold;
-use crate::kernel::ContactEdge;
 use crate::kernel::edge_integral::ExactEdge;
 
 /// The tangent last factored.
 pub struct Assembled<'a, 'd, 'p, E, const N: usize, const M: usize> {
     system: &'a System<'d, 'p, E, N, M>,
-    /// A and the functionals in twofold numbers, if the tangent is to be in these.
-    twofold: Option<TwofoldSystem<N, M>>,
     /// The size that residuals are relative to.
     reference: f64,
     /// The contact edges as they come.
     order: Vec<usize>,
     factored: Option<Factored<M>>,
-    /// L of A alone, once it has been made in doubles.
+    /// L of A alone, once it has been made.
     body: Option<Arc<Factor>>,
     factorizations: usize,
     precisely: bool,
@@ -53,7 +46,6 @@ where
         let order = (0..system.d.contact.len()).collect();
         Assembled {
             system,
-            twofold: None,
             reference,
             order,
             factored: None,
@@ -67,49 +59,6 @@ where
     /// How many tangents have been factored.
     pub fn factorizations(&self) -> usize {
         self.factorizations
-    }
-
-    /// The route with the tangent in twofold numbers.
-    pub fn twofold(system: &'a System<'d, 'p, E, N, M>, reference: f64) -> Self {
-        let d = system.d;
-        let mut matrix = LowerTriangle::zero_like(&system.matrix);
-        matrix.add_stiffness(d, &system.numbering);
-        let functionals: Vec<_> = d.contact.iter().map(|e| precise::functionals(d, e)).collect();
-        for (edge, functionals) in d.contact.iter().zip(&functionals) {
-            matrix.add_contact_stress(d, &system.numbering, edge, functionals);
-        }
-        let twofold = Some(TwofoldSystem { matrix, functionals });
-        Assembled { twofold, ..Assembled::new(system, reference) }
-    }
-
-    /// L of A + B^T Psi'' B, in the arithmetic of this route.
-    fn factor_tangent(
-        &self,
-        at: &Derivatives<M>,
-    ) -> Result<Result<Tangent, Indefinite>, SolveError> {
-        let System { d, numbering, structure, matrix, .. } = self.system;
-        let edges = d.contact.iter().zip(&at.hessian);
-        Ok(if let Some(TwofoldSystem { matrix, functionals }) = &self.twofold {
-            let mut tangent = matrix.clone();
-            for ((edge, h), functionals) in edges.zip(functionals) {
-                tangent.add_contact_springs(d, numbering, edge, functionals, h);
-            }
-            TwofoldFactor::new(&tangent).map(Tangent::Twofold)
-        } else {
-            let mut tangent = matrix.clone();
-            for (edge, h) in edges {
-                tangent.add_contact_springs(d, numbering, edge, &edge.functionals, h);
-            }
-            Factor::with(structure, &tangent)?.map(|factor| Tangent::Double(Arc::new(factor)))
-        })
-    }
-
-    /// L of A and these springs of the contact edges.
-    pub(super) fn factor_with(
-        &self,
-        springs: Vec<[[f64; M]; M]>,
-    ) -> Result<Result<Tangent, Indefinite>, SolveError> {
-        self.factor_tangent(&Derivatives { stiffness: 1.0, gradient: Vec::new(), hessian: springs })
     }
 
     /// Whether the edges that are in contact leave a motion free that contact stops: the tangent is singular then.
@@ -142,12 +91,12 @@ where
                 let mut hessian = at.hessian.clone();
                 let mut factored = Err(Indefinite);
                 if !(coercive && self.is_loose(at)) {
-                    factored = self.factor_tangent(at)?;
+                    factored = factor_with(self.system, &at.hessian)?;
                     self.factorizations += 1;
                 }
                 if factored.is_err() && coercive {
                     let supported = self.supported(at);
-                    factored = self.factor_tangent(&supported)?;
+                    factored = factor_with(self.system, &supported.hessian)?;
                     hessian = supported.hessian;
                     self.factorizations += 1;
                 }
@@ -158,51 +107,39 @@ where
                 (factor, hessian)
             }
         };
-        if let (Tangent::Double(factor), None) = (&factor, &self.body)
-            && hessian.iter().flatten().flatten().all(|h| *h == 0.0)
-        {
-            self.body = Some(Arc::clone(factor));
+        if self.body.is_none() && hessian.iter().flatten().flatten().all(|h| *h == 0.0) {
+            self.body = Some(Arc::clone(&factor));
         }
         Ok(self.factored.insert((factor, hessian)))
     }
 }
 
-/// The linear part of (8) in twofold numbers.
-struct TwofoldSystem<const N: usize, const M: usize> {
-    matrix: LowerTriangle<Twofold>,
-    functionals: Vec<ContactEdge<Twofold, N, M>>,
+/// L of A + B^T h B, where `springs` are the blocks of h, one for each contact edge.
+///
+/// # Errors
+/// [`SolveError::OutOfMemory`].
+pub(super) fn factor_with<E, const N: usize, const M: usize>(
+    system: &System<E, N, M>,
+    springs: &[[[f64; M]; M]],
+) -> Result<Result<Arc<Factor>, Indefinite>, SolveError>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    let System { d, numbering, structure, matrix, .. } = system;
+    let mut tangent = matrix.clone();
+    for (edge, h) in d.contact.iter().zip(springs) {
+        tangent.add_contact_springs(d, numbering, edge, h);
+    }
+    Ok(Factor::with(structure, &tangent)?.map(Arc::new))
 }
 
 /// A factor with the Psi'' of its tangent.
-type Factored<const M: usize> = (Tangent, Vec<[[f64; M]; M]>);
-
-/// The factor of a tangent.
-pub(super) enum Tangent {
-    Double(Arc<Factor>),
-    Twofold(TwofoldFactor),
-}
-
-impl Tangent {
-    /// x <- H^-1 x
-    pub(super) fn solve(&self, x: &mut [f64]) {
-        match self {
-            Tangent::Double(factor) => {
-                factor.forward(x);
-                factor.backward(x);
-            }
-            Tangent::Twofold(factor) => factor.solve(x),
-        }
-    }
-}
+type Factored<const M: usize> = (Arc<Factor>, Vec<[[f64; M]; M]>);
 
 impl<E, const N: usize, const M: usize> Route<E, N, M> for Assembled<'_, '_, '_, E, N, M>
 where
     E: ExactEdge<f64, N, M>,
 {
-    fn precisely(&self) -> bool {
-        self.twofold.is_some()
-    }
-
     fn factor_of_a(&self) -> Option<Arc<Factor>> {
         self.body.clone()
     }

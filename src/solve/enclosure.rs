@@ -17,7 +17,7 @@ use std::time::Duration;
 
 use thiserror::Error;
 
-use super::assembled::{Assembled, Tangent};
+use super::assembled::factor_with;
 use super::balls::{Lines, field, free, kappa, length, lines, root};
 use super::factor::{Factor, Indefinite};
 use super::intervals::{Evaluation, Intervals, Stresses};
@@ -96,18 +96,8 @@ const SMALL: f64 = 1e-2;
 /// Corrections of z, at most.
 const CORRECTIONS: usize = 12;
 
-/// Which factor of A nearly solves A z = r. Nothing depends on its being right.
-#[derive(Clone)]
-pub enum FactorOfA {
-    /// One that is there.
-    AtHand(Arc<Factor>),
-    /// One to be made in doubles.
-    Double,
-    /// One to be made in twofold numbers, for bodies that need them.
-    Twofold,
-}
-
-/// Encloses the solution of (8) around the displacement `u`, in balls throughout: as [`Verifier::enclose`].
+/// Encloses the solution of (8) around the displacement `u`, in balls throughout: as [`Verifier::enclose`]. A factor of A that is
+/// at hand saves making one; nothing depends on its being right.
 ///
 /// # Errors
 /// Why nothing can be proved.
@@ -115,12 +105,12 @@ pub fn enclose<E, const N: usize, const M: usize>(
     system: &System<E, N, M>,
     u: &[[f64; 2]],
     near: Option<&[[Twofold; 2]]>,
-    factor: FactorOfA,
+    of_a: Option<Arc<Factor>>,
 ) -> Result<Enclosure, Unproved>
 where
     E: ExactEdge<f64, N, M>,
 {
-    Verifier::new(system, factor).enclose(u, near, Stresses::InBalls)
+    Verifier::new(system, of_a).enclose(u, near, Stresses::InBalls)
 }
 
 /// Encloses the solution of (8) around one displacement after the other: what does not depend on them is done once.
@@ -129,7 +119,8 @@ pub struct Verifier<'s, 'd, 'p, E, const N: usize, const M: usize> {
     load: &'s [[Ball; 2]],
     lines: Lines<'d, N, M>,
     kappa: f64,
-    factor: FactorOfA,
+    /// L of A, if it is at hand.
+    of_a: Option<Arc<Factor>>,
     /// For what is pressed: the bounds at the nodes, and the factor, once it is needed.
     held: Option<Held<M>>,
     unbalanced: f64,
@@ -140,7 +131,7 @@ pub struct Verifier<'s, 'd, 'p, E, const N: usize, const M: usize> {
 struct Held<const M: usize> {
     springs: Vec<[[f64; M]; M]>,
     korn: Option<Korn>,
-    factor: Option<Tangent>,
+    factor: Option<Arc<Factor>>,
 }
 
 impl<'s, 'd, 'p, E, const N: usize, const M: usize> Verifier<'s, 'd, 'p, E, N, M>
@@ -148,28 +139,26 @@ where
     E: ExactEdge<f64, N, M>,
 {
     /// The verifier of a system, with its own loads.
-    pub fn new(system: &'s System<'d, 'p, E, N, M>, factor: FactorOfA) -> Self {
-        Verifier::with_load(system, factor, &system.d.enclosed_load)
+    pub fn new(system: &'s System<'d, 'p, E, N, M>, of_a: Option<Arc<Factor>>) -> Self {
+        Verifier::with_load(system, of_a, &system.d.enclosed_load)
     }
 
     /// The verifier of a system with a given load: L(v) for every basis function.
     pub fn with_load(
         system: &'s System<'d, 'p, E, N, M>,
-        factor: FactorOfA,
+        of_a: Option<Arc<Factor>>,
         load: &'s [[Ball; 2]],
     ) -> Self {
         let mut watch = Stopwatch::start();
         let lines = lines(system.d);
         let kappa = kappa(system.d, &lines);
         let time = watch.lap();
-        Verifier { system, load, lines, kappa, factor, held: None, unbalanced: f64::INFINITY, time }
+        Verifier { system, load, lines, kappa, of_a, held: None, unbalanced: f64::INFINITY, time }
     }
 
-    /// Takes a factor of A that is at hand for one that is to be made in doubles, where no springs are added to A.
+    /// Takes the factor of A that a route has made, if it has.
     pub fn use_factor(&mut self, of_a: Option<Arc<Factor>>) {
-        if let (Some(of_a), FactorOfA::Double, None) = (of_a, &self.factor, &self.system.d.slides) {
-            self.factor = FactorOfA::AtHand(of_a);
-        }
+        self.of_a = of_a.or(self.of_a.take());
     }
 
     /// The time that it has taken.
@@ -239,11 +228,7 @@ where
         loose.move_by(&inside, &mut u);
         let d = d.sliding(loose, &u);
         let system = System::new(&d).map_err(|_| Unproved::OutOfMemory)?;
-        let factor = match self.factor {
-            FactorOfA::Twofold => FactorOfA::Twofold,
-            _ => FactorOfA::Double,
-        };
-        let mut other = Verifier::with_load(&system, factor, self.load);
+        let mut other = Verifier::with_load(&system, None, self.load);
         let enclosure = other.around(&u, &reported, None, stresses);
         self.unbalanced = other.unbalanced;
         enclosure
@@ -287,7 +272,10 @@ where
         } else {
             let factor = match factor {
                 Some(factor) => factor,
-                None => factor.insert(self.factor.clone().of(system, springs)?),
+                None => factor.insert(match &self.of_a {
+                    Some(of_a) if d.slides.is_none() => Arc::clone(of_a),
+                    _ => factor_for(system, springs)?,
+                }),
             };
             let crude = crude_norms(system, korn, coercivity);
             let negligible = SMALL * (at.moved * coercivity.sqrt()).max(up_to);
@@ -330,24 +318,17 @@ impl Enclosure {
     }
 }
 
-impl FactorOfA {
-    fn of<E, const N: usize, const M: usize>(
-        self,
-        system: &System<E, N, M>,
-        springs: &[[[f64; M]; M]],
-    ) -> Result<Tangent, Unproved>
-    where
-        E: ExactEdge<f64, N, M>,
-    {
-        let assembled = match self {
-            FactorOfA::AtHand(factor) => return Ok(Tangent::Double(factor)),
-            FactorOfA::Double => Assembled::new(system, 1.0),
-            FactorOfA::Twofold => Assembled::twofold(system, 1.0),
-        };
-        match assembled.factor_with(springs.to_vec()) {
-            Ok(factor) => factor.map_err(|Indefinite| Unproved::NoFactor),
-            Err(_) => Err(Unproved::OutOfMemory),
-        }
+/// L of A with these springs at the contact edges.
+fn factor_for<E, const N: usize, const M: usize>(
+    system: &System<E, N, M>,
+    springs: &[[[f64; M]; M]],
+) -> Result<Arc<Factor>, Unproved>
+where
+    E: ExactEdge<f64, N, M>,
+{
+    match factor_with(system, springs) {
+        Ok(factor) => factor.map_err(|Indefinite| Unproved::NoFactor),
+        Err(_) => Err(Unproved::OutOfMemory),
     }
 }
 
@@ -447,7 +428,7 @@ where
 /// `negligible` need not be known better.
 fn dual_norm<E, const N: usize, const M: usize>(
     a: &Product<E, N, M>,
-    factor: &Tangent,
+    factor: &Factor,
     r: &[Ball],
     crude: &[f64],
     coercivity: f64,

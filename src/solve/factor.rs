@@ -165,6 +165,12 @@ impl Factor {
         self.llt().supernode(s).val()
     }
 
+    /// x <- H^-1 x
+    pub fn solve(&self, x: &mut [f64]) {
+        self.forward(x);
+        self.backward(x);
+    }
+
     /// x <- L^-1 x
     pub fn forward(&self, x: &mut [f64]) {
         self.with_scratch(x, |llt, x, stack| llt.l_solve_with_conj(Conj::No, x, Par::Seq, stack));
@@ -192,7 +198,7 @@ impl Factor {
 
 /// The upper triangle of a symmetric matrix, column by column: the transpose of the lower one. For each entry its row, and
 /// where it stands in the lower triangle.
-pub(super) fn upper_triangle<S>(lower: &LowerTriangle<S>) -> (Vec<usize>, Vec<usize>, Vec<usize>) {
+fn upper_triangle(lower: &LowerTriangle) -> (Vec<usize>, Vec<usize>, Vec<usize>) {
     let n = lower.starts.len() - 1;
     let mut starts = vec![0; n + 1];
     for &row in &lower.rows {

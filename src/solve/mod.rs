@@ -17,7 +17,6 @@ pub mod factor;
 pub mod intervals;
 pub mod iterate;
 pub mod ladder;
-pub mod ldl;
 mod memory;
 pub mod newton;
 pub mod ordering;

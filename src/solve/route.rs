@@ -5,8 +5,7 @@
 //! - assembled: one factorisation for each Newton step.
 //!
 //! Both give the same numbers. Where A alone has no factor or a bad one although the method is coercive, the assembled route
-//! is taken all the same: there contact holds the body. Where doubles are not enough to factor the tangent or to prove
-//! what came of it, it is the assembled route in twofold numbers, which takes some fifty times as long.
+//! is taken all the same: there contact holds the body.
 
 use std::sync::Arc;
 
@@ -18,13 +17,12 @@ use super::assembled::Assembled;
 use super::compliance::Reach;
 use super::condensed::Condensed;
 use super::course::Phase;
-use super::enclosure::{FactorOfA, Unproved, Verifier};
+use super::enclosure::{Unproved, Verifier};
 use super::factor::{Factor, Indefinite, Structure};
 use super::memory;
 use super::system::System;
 use super::times::{Stopwatch, Times};
 use super::{MethodReport, Settings, SolveError};
-use crate::fem::twofold::Twofold;
 use crate::kernel::edge_integral::ExactEdge;
 
 /// The routes.
@@ -35,8 +33,6 @@ pub enum RouteName {
     Condensed,
     /// Newton's method on the displacement, the tangent factored in each step.
     Assembled,
-    /// The assembled route, the tangent in twofold numbers.
-    Twofold,
 }
 
 /// The Newton steps that a prediction counts on.
@@ -94,8 +90,8 @@ impl Prediction {
     }
 }
 
-/// Solves the system by the route that is predicted to take less, and by the next ones while nothing is proved: what is nearest
-/// to the exact solution, as far as is proved.
+/// Solves the system by the route that is predicted to take less, and by the assembled one where that proves too little: gives
+/// what is nearest to the exact solution, as far as is proved.
 ///
 /// # Errors
 /// As [`solve_discrete`](super::solve_discrete).
@@ -116,38 +112,30 @@ where
     let held = system.d.slides.is_none();
     let condensed = held && outset.prediction.route() == RouteName::Condensed;
     times.judge += watch.lap();
-    let routes = [RouteName::Condensed, RouteName::Assembled, RouteName::Twofold];
-    let mut best: Result<Solved, SolveError> = Err(SolveError::Singular);
-    for name in &routes[usize::from(!condensed)..] {
-        match outset.go(*name, system, settings, times) {
-            Ok(done) if done.0.is_proved(settings) => return Ok(done),
-            // With enough steps Newton's method ends: if it did not, digits were missing.
-            Ok(done) if settings.max_iterations < ENOUGH && done.0.is_out_of_steps(settings) => {
-                return Ok(done);
-            }
-            Ok(done) => {
-                let hopeless = settings.proof.is_infinite()
-                    || match &done.0.enclosure {
-                        // The solve has ended: what is too large is the bound.
-                        Ok(_) => {
-                            *name == RouteName::Assembled && done.0.forward_error <= settings.proof
-                        }
-                        Err(why) => !why.may_be_rounding() || *why == Unproved::HeldByContact,
-                    };
-                if best.as_ref().map_or(true, |(best, ..)| done.0.is_better_than(best)) {
-                    best = Ok(done);
-                }
-                // No arithmetic proves what is not true.
-                if hopeless && best.as_ref().is_ok_and(|(b, ..)| b.residual <= settings.tolerance) {
-                    break;
-                }
-            }
+    let mut first = None;
+    if condensed {
+        match outset.go(RouteName::Condensed, system, settings, times) {
+            Ok(done) if is_final(&done.0, settings) => return Ok(done),
+            Ok(done) => first = Some(done),
             // Contact may hold what the supports hardly hold.
             Err(SolveError::Singular) => {}
-            Err(error) => return best.or(Err(error)),
+            Err(error) => return Err(error),
         }
     }
-    best
+    match (first, outset.go(RouteName::Assembled, system, settings, times)) {
+        (Some(first), Ok(second)) if second.0.is_better_than(&first.0) => Ok(second),
+        (Some(first), _) => Ok(first),
+        (None, second) => second,
+    }
+}
+
+/// Whether no other route would prove more.
+fn is_final(done: &Outcome, settings: &Settings) -> bool {
+    // With enough steps Newton's method ends: if it did not, digits were missing.
+    let stopped = settings.max_iterations < ENOUGH && done.is_out_of_steps(settings);
+    let by_nature = |why: &Unproved| !why.may_be_rounding() || *why == Unproved::HeldByContact;
+    let unprovable = settings.proof.is_infinite() || done.enclosure.as_ref().is_err_and(by_nature);
+    done.is_proved(settings) || stopped || (unprovable && done.residual <= settings.tolerance)
 }
 
 /// Whether what the matrix is made of on the contact edges neither over- nor underflows.
@@ -228,26 +216,15 @@ impl Outset {
                 system.enters(Phase::Condense);
                 let mut route = Condensed::new(system, &factor, reach, *reference);
                 times.compliance += watch.lap();
-                let mut verifier = Verifier::new(system, FactorOfA::AtHand(Arc::clone(&factor)));
+                let mut verifier = Verifier::new(system, Some(Arc::clone(&factor)));
                 let outcome =
                     accuracy::refine(system, &mut route, &mut verifier, *reference, settings)?;
                 proving = verifier.time();
                 (outcome, prediction.condensed, 1)
             }
-            RouteName::Assembled | RouteName::Twofold => {
-                let mut route = if name == RouteName::Twofold {
-                    memory::ensure(
-                        (2 * size_of::<Twofold>() * system.structure.stored_entries()) as u64,
-                    )?;
-                    Assembled::twofold(system, *reference)
-                } else {
-                    Assembled::new(system, *reference)
-                };
-                let factor = match name {
-                    RouteName::Twofold => FactorOfA::Twofold,
-                    _ => FactorOfA::Double,
-                };
-                let mut verifier = Verifier::new(system, factor);
+            RouteName::Assembled => {
+                let mut route = Assembled::new(system, *reference);
+                let mut verifier = Verifier::new(system, None);
                 let outcome =
                     accuracy::refine(system, &mut route, &mut verifier, *reference, settings)?;
                 proving = verifier.time();

@@ -6,7 +6,7 @@ use std::path::Path;
 use signorini::fem::{Condition, Diagonal, Problem, Rectangle};
 use signorini::io::Case;
 use signorini::kernel::{Material, P1, P2, Plane};
-use signorini::solve::enclosure::{self, Enclosure, FactorOfA};
+use signorini::solve::enclosure::{self, Enclosure};
 use signorini::solve::system::System;
 use signorini::solve::{
     ContactQuadrature, Degree, Gamma0, Method, Settings, Solution, Unproved, check, discretize,
@@ -51,11 +51,11 @@ fn around(problem: &Problem, degree: Degree, u: &[[f64; 2]]) -> Enclosure {
     match degree {
         Degree::One => {
             let d = discretize::<P1, 3, 2>(problem, &method).unwrap();
-            enclosure::enclose(&System::new(&d).unwrap(), u, None, FactorOfA::Double).unwrap()
+            enclosure::enclose(&System::new(&d).unwrap(), u, None, None).unwrap()
         }
         Degree::Two => {
             let d = discretize::<P2, 6, 3>(problem, &method).unwrap();
-            enclosure::enclose(&System::new(&d).unwrap(), u, None, FactorOfA::Double).unwrap()
+            enclosure::enclose(&System::new(&d).unwrap(), u, None, None).unwrap()
         }
     }
 }
@@ -257,7 +257,7 @@ fn control_where_the_perturbation_may_lift_the_body_off_nothing_is_claimed() {
         .map(|(i, x)| [by(i, x), -2.0_f64.powi(-30) * x[1]])
         .collect();
     let d = discretize::<P1, 3, 2>(&problem, &Method::default()).unwrap();
-    let enclosure = enclosure::enclose(&System::new(&d).unwrap(), &u, None, FactorOfA::Double);
+    let enclosure = enclosure::enclose(&System::new(&d).unwrap(), &u, None, None);
     assert_eq!(enclosure, Err(Unproved::HeldByContact));
 }
 

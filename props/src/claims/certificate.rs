@@ -28,7 +28,7 @@ use signorini::fem::{
 };
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::{Material, P1, P2, Plane};
-use signorini::solve::enclosure::{self, Enclosure, FactorOfA, Unproved, Verifier};
+use signorini::solve::enclosure::{self, Enclosure, Unproved, Verifier};
 use signorini::solve::factor::Factor;
 use signorini::solve::intervals::Stresses;
 use signorini::solve::system::System;
@@ -471,13 +471,13 @@ where
     let load: Vec<[Ball; 2]> =
         d.load.iter().map(|l| l.map(|l| Ball::from(l * asked.load))).collect();
     let factor = if asked.matrix == 1.0 {
-        FactorOfA::Double
+        None
     } else {
         let LowerTriangle { starts, rows, values } = &system.matrix;
         let values = values.iter().map(|a| asked.matrix * a).collect();
         let matrix = LowerTriangle { starts: starts.clone(), rows: rows.clone(), values };
         let Ok(factor) = Factor::new(&matrix) else { return Verdict::Fails("there is a factor") };
-        FactorOfA::AtHand(Arc::new(factor))
+        Some(Arc::new(factor))
     };
     let certifier = Certifier::new(&d);
     let up = draw.turned([0, 1]).map(Exact::from);
@@ -705,7 +705,7 @@ where
     let d = d.map_err(text)?;
     let (solved, ..) = solve_discrete(&d, &Settings::default()).map_err(text)?;
     let system = System::new(&d).map_err(text)?;
-    let enclosure = enclosure::enclose(&system, &solved.u, None, FactorOfA::Double);
+    let enclosure = enclosure::enclose(&system, &solved.u, None, None);
     let enclosure = enclosure.map_err(text)?;
     let korn = Korn::new(&d.space, &problem.material, &d.constraints, &[]).ok_or("not held")?;
     for (bound, factor) in enclosure.nodes.iter().zip(korn.nodes) {
@@ -840,8 +840,7 @@ fn refused_beyond_the_limit() -> Outcome {
                 }
             }
             let system = System::new(&d).map_err(text)?;
-            let enclosure =
-                enclosure::enclose(&system, &d.constraints.lift(), None, FactorOfA::Double);
+            let enclosure = enclosure::enclose(&system, &d.constraints.lift(), None, None);
             let refused = matches!(enclosure, Err(Unproved::NotCoercive { .. }));
             if refused == unique {
                 return Err(format!("gamma0 = {gamma0:?}: the enclosure is {enclosure:?}"));

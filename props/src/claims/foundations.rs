@@ -113,8 +113,8 @@ mod row {
     use signorini::kernel::edge_integral::ExactEdge;
     use signorini::kernel::{P1, positive_part_slope};
 
-    use crate::claim::{Claim, Outcome, model_checked, noticed};
-    use crate::claims::{balls, geometry};
+    use crate::claim::{Claim, Outcome, model_checked};
+    use crate::claims::balls;
     use crate::numbers::Exact;
     use crate::verdict::Verdict;
     use crate::{draws, ensure, given};
@@ -337,8 +337,6 @@ mod row {
             doubles!("operations_of_balls_of_twice_the_precision_contain_the_exact_results" => balls::fine_balls_contain_the_exact_results()),
             doubles!("moments_of_balls_contain_those_of_their_numbers" => balls::moments_of_balls_contain_those_of_their_numbers()),
             doubles!("control_moments_of_balls_within_a_twentieth_of_them" => balls::moments_of_balls_within_a_twentieth_of_them()),
-            doubles!("factors_in_twofold_numbers_solve_what_doubles_cannot" => geometry::factored(false)),
-            doubles!("control_factors_in_doubles_for_those_in_twofold_numbers" => noticed(geometry::factored(true))),
             doubles!("control_doubles_for_balls" => balls::doubles_contain_the_exact_results()),
             doubles!("control_centres_for_balls_of_twice_the_precision" => balls::centres_contain_the_exact_results()),
             doubles!("control_twofold_numbers_keep_120_bits" => balls::twofold_numbers_keep_120_bits()),
@@ -373,7 +371,6 @@ mod row {
                 "ball::Ball::upper",
                 "ball::Ball::lower",
                 "ball::Ball::sqrt",
-                "solve::ldl::TwofoldFactor::solve",
             ],
             preconditions: "The processor rounds +, -, *, / and sqrt to nearest, as IEEE 754 says.",
             limits: "The enclosure of a rounded operation is tested, not proved, over all doubles: no solver at hand decides it.",

@@ -5,16 +5,14 @@ use std::sync::Arc;
 
 use proptest::prelude::*;
 use signorini::fem::korn::Korn;
-use signorini::fem::matrix::{self, LowerTriangle, Neighbours};
+use signorini::fem::matrix::{self, Neighbours};
 use signorini::fem::obstacle::MOST_OFF;
 use signorini::fem::smooth::SmoothBoundary;
-use signorini::fem::twofold::Twofold;
 use signorini::fem::{Diagonal, Distance, Function, Mesh, Obstacle, Problem, Rectangle, Side};
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::{Material, P1, P2, Plane};
 use signorini::nalgebra::Vector2;
 use signorini::solve::factor::Factor;
-use signorini::solve::ldl::TwofoldFactor;
 use signorini::solve::system::System;
 use signorini::solve::{Degree, Method, discretize};
 
@@ -246,65 +244,4 @@ pub(super) fn korn(by: f64) -> Outcome {
         least = least.min(korn_on::<P2, 6, 3>(problem, by)?);
     }
     Ok(format!("{} bodies, P1 and P2; at least {least:.2} times what is attained", bodies.len()))
-}
-
-/// Pascal's matrix of order n plus the identity: a condition number of 10^12 for n = 24.
-fn pascal(n: usize) -> LowerTriangle<Twofold> {
-    let mut entry = vec![vec![1.0; n]; n];
-    for i in 1..n {
-        for j in 1..n {
-            entry[i][j] = entry[i - 1][j] + entry[i][j - 1];
-        }
-    }
-    for (i, row) in entry.iter_mut().enumerate() {
-        row[i] += 1.0;
-    }
-    let (mut starts, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
-    for j in 0..n {
-        for (i, row) in entry.iter().enumerate().skip(j) {
-            rows.push(i);
-            values.push(Twofold::from(row[j]));
-        }
-        starts.push(rows.len());
-    }
-    LowerTriangle { starts, rows, values }
-}
-
-/// A system of which doubles know next to nothing. The solution is one of whole numbers, to 2e-16: the condition number is
-/// below 1e14, times 24 and 2^-104. What is not definite has no factor. The planted mistake is the factor in doubles.
-pub(super) fn factored(in_doubles: bool) -> Outcome {
-    let n = 24;
-    let matrix = pascal(n);
-    let expected: Vec<f64> = (0..n).map(|i| f64::from((i * 7 % 11) as i32 - 5)).collect();
-    // Whole numbers below 2^53: the right side is exact.
-    let mut x = vec![0.0; n];
-    for j in 0..n {
-        for k in matrix.starts[j]..matrix.starts[j + 1] {
-            let (i, value) = (matrix.rows[k], matrix.values[k].head());
-            x[i] += value * expected[j];
-            if i != j {
-                x[j] += value * expected[i];
-            }
-        }
-    }
-    if in_doubles {
-        let LowerTriangle { starts, rows, values } = pascal(n);
-        let values = values.into_iter().map(Twofold::head).collect();
-        let factor = Factor::new(&LowerTriangle { starts, rows, values }).map_err(text)?;
-        factor.forward(&mut x);
-        factor.backward(&mut x);
-    } else {
-        TwofoldFactor::new(&matrix).map_err(|_| "no factor")?.solve(&mut x);
-    }
-    let far = x.iter().zip(&expected).map(|(x, e)| (x - e).abs()).fold(0.0, f64::max);
-    if !(far <= 2e-16) {
-        return Err(format!("the solution is off by {far:e}"));
-    }
-    let mut indefinite = pascal(n);
-    // The first entry, which is 2, and with it the first pivot, is -1.
-    indefinite.values[0] -= Twofold::from(3);
-    if TwofoldFactor::new(&indefinite).is_ok() {
-        return Err("a matrix with a negative eigenvalue has a factor".to_owned());
-    }
-    Ok(format!("Pascal's matrix of order {n} plus the identity, off by {far:.0e}"))
 }

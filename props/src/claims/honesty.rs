@@ -16,7 +16,7 @@ use signorini::fem::{Condition, Discretization, Problem, SharedFunction};
 use signorini::kernel::edge_integral::{ExactEdge, value_at};
 use signorini::kernel::{Material, P1, P2, Plane};
 use signorini::solve::accuracy::{self, Pass, Route};
-use signorini::solve::enclosure::{FactorOfA, Verifier};
+use signorini::solve::enclosure::Verifier;
 use signorini::solve::evaluated::Evaluated;
 use signorini::solve::factor::Factor;
 use signorini::solve::iterate::{Evaluation, Iterate};
@@ -182,7 +182,7 @@ where
     let scale = FIRST * size(&u) / size(&only);
     error.iter_mut().for_each(|e| *e *= scale);
     let mut route = Known { system: &system, target, error, shares: shares.to_vec(), passes: 0 };
-    let mut verifier = Verifier::new(&system, FactorOfA::Double);
+    let mut verifier = Verifier::new(&system, None);
     let outcome = accuracy::refine(&system, &mut route, &mut verifier, forces(d), settings);
     let outcome = outcome.map_err(text)?;
     away.copy_from_slice(&outcome.u);
