@@ -1,6 +1,6 @@
-//! Methods and settings that a case file could not ask for are refused here too, whoever put them together.
+//! The choices that method (8) leaves open, and when its solution is good enough. What a case file could not ask for is refused
+//! here too, whoever put it together.
 
-use super::{ContactQuadrature, Gamma0, Method, Settings};
 use crate::fem::DataError;
 
 /// More Gauss points than this gain nothing: the integrand has a kink where contact ends.
@@ -8,6 +8,90 @@ pub const MOST_GAUSS_POINTS: usize = 64;
 
 /// Newton's method takes a few steps, or it does not converge.
 pub const MOST_ITERATIONS: usize = 1_000_000;
+
+/// The free choices of method (8). Written as `Method { degree, ..Method::default() }`, for fields may come.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Method {
+    /// The polynomial degree of V^h, 1 or 2.
+    pub degree: Degree,
+    /// gamma0 of (7).
+    pub gamma0: Gamma0,
+    /// How the contact terms are integrated.
+    pub quadrature: ContactQuadrature,
+    /// Solve although kappa >= 1, without any promise.
+    pub allow_noncoercive: bool,
+}
+
+/// The polynomial degree of V^h.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Degree {
+    /// P1, section 2.2.
+    One,
+    /// P2, Remark 3.7.
+    Two,
+}
+
+impl Degree {
+    /// 1 or 2.
+    pub fn number(self) -> usize {
+        match self {
+            Degree::One => 1,
+            Degree::Two => 2,
+        }
+    }
+}
+
+/// gamma0 of (7), in 1 / stress.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Gamma0 {
+    /// Half of the coercivity limit.
+    Auto,
+    /// This value.
+    Value(f64),
+    /// On each contact edge its own, such that kappa is this number on each triangle with edges on Gamma_C: one sliver does
+    /// not set gamma for the whole line. The same as [`Gamma0::Auto`] for 0.5 where all these triangles are alike.
+    Local(f64),
+}
+
+/// How the contact terms are integrated along an edge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ContactQuadrature {
+    /// Cut at the roots of P: no quadrature error.
+    Exact,
+    /// That many Gauss points on each edge.
+    Gauss(usize),
+}
+
+/// When Newton's method stops, and what is to be proved. Written as `Settings { tolerance, ..Settings::default() }`, for
+/// fields may come.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// The relative residual to reach.
+    pub tolerance: f64,
+    /// The most steps.
+    pub max_iterations: usize,
+    /// The distance from the exact solution of (8), relative and in the energy norm, that is to be proved; infinite where none
+    /// is asked for.
+    pub proof: f64,
+}
+
+impl Default for Method {
+    fn default() -> Self {
+        Method {
+            degree: Degree::One,
+            gamma0: Gamma0::Auto,
+            quadrature: ContactQuadrature::Exact,
+            allow_noncoercive: false,
+        }
+    }
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Settings { tolerance: 1e-10, max_iterations: 200, proof: 1e-6 }
+    }
+}
 
 fn refused(what: &'static str, found: impl ToString, expected: &'static str) -> DataError {
     DataError::Value { what, found: found.to_string(), expected }
