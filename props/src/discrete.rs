@@ -1,14 +1,14 @@
 //! Method (8) as the solver has it on a mesh, over rationals: places of the vertices, Lamé coefficients, gamma, |E|, n, g,
-//! the loads and the points of a rule are the solver's doubles, taken for the rational numbers that they are. Everything
-//! computed from them is exact: stiffness and stress matrices, residual and tangent of (8), by the kernel's functions.
+//! the loads and the points of a rule are the solver's doubles, taken for the rational numbers that they are. The solver's own
+//! loops ([`precise`]) compute with them: forces, stresses and P are its code, and exact. The tangent is the kernel's.
 
 use signorini::fem::Discretization;
-use signorini::fem::contact_line::{ContactLineEdge, EdgeRule};
+use signorini::fem::contact_line::EdgeRule;
+use signorini::fem::precise::{self, OnEdge};
 use signorini::kernel::contact_edge::coercivity_constant;
 use signorini::kernel::edge_integral::{self, ExactEdge};
-use signorini::kernel::element::stiffness;
-use signorini::kernel::{ContactEdge, EdgeIntegrals, Material, Plane, Triangle};
-use signorini::nalgebra::{Matrix2, Vector2};
+use signorini::kernel::{EdgeIntegrals, Material, Plane};
+use signorini::nalgebra::Matrix2;
 
 use crate::bodies::{MaybeExact, sum};
 use crate::elimination::{Matrix, combined, dot};
@@ -25,24 +25,13 @@ pub fn exactly(field: &[[f64; 2]]) -> Nodal {
     field.iter().map(|v| v.map(Exact::of_double)).collect()
 }
 
-/// An edge of Gamma_C.
-struct Edge<const N: usize, const M: usize> {
-    triangle: usize,
-    length: Exact,
-    gamma: Exact,
-    gap: [Exact; M],
-    functionals: ContactEdge<Exact, N, M>,
-}
-
 /// The discrete problem.
 pub struct Discrete<'a, E, const N: usize, const M: usize> {
     d: &'a Discretization<'a, E, N, M>,
-    material: Material<Exact>,
     /// The number of each free component.
     numbers: Vec<[Option<usize>; 2]>,
     count: usize,
-    stiffness: Vec<[[Matrix2<Exact>; N]; N]>,
-    edges: Vec<Edge<N, M>>,
+    edges: Vec<OnEdge<'a, Exact, N, M>>,
     /// Points and weights; none for exact integration.
     rule: Option<Vec<[Exact; 2]>>,
 }
@@ -53,26 +42,6 @@ where
 {
     /// The solver's discrete problem.
     pub fn new(d: &'a Discretization<'a, E, N, M>) -> Self {
-        let exact = Exact::of_double;
-        // The bodies of the claims have one material.
-        let of = d.problem.material.of(0);
-        // lambda is the coefficient that acts in the plane, also in plane stress.
-        let material = Material::lame(exact(of.lambda()), exact(of.mu()), Plane::Strain);
-        let triangle = |t| -> Triangle<Exact> {
-            let vertices = d.space.mesh().triangle(t).vertices;
-            Triangle { vertices: vertices.map(|x| x.map(exact)) }
-        };
-        let edge = |e: &ContactLineEdge<N, M>| {
-            let (gamma, n) = (exact(e.gamma), e.normal.map(exact));
-            let (t, local) = (e.edge.triangle, e.edge.local);
-            Edge {
-                triangle: t,
-                length: exact(e.length),
-                gamma,
-                gap: e.gap.map(exact),
-                functionals: ContactEdge::new::<E>(&triangle(t), local, n, &material, gamma),
-            }
-        };
         let mut count = 0;
         let mut number = |prescribed: &Option<f64>| {
             prescribed.is_none().then(|| {
@@ -85,17 +54,13 @@ where
         Discrete {
             numbers,
             count,
-            stiffness: (0..d.space.elements().len())
-                .map(|t| stiffness::<E, Exact, N, M>(&triangle(t), &material))
-                .collect(),
-            edges: d.contact.iter().map(edge).collect(),
+            edges: d.contact.iter().map(|edge| precise::on_edge(d, edge)).collect(),
             rule: match &d.rule {
                 EdgeRule::Exact => None,
                 EdgeRule::Gauss(points) => {
-                    Some(points.iter().map(|&(s, w)| [exact(s), exact(w)]).collect())
+                    Some(points.iter().map(|&(s, w)| [s, w].map(Exact::of_double)).collect())
                 }
             },
-            material,
             d,
         }
     }
@@ -154,40 +119,57 @@ where
         vec![vec![Exact::from(0); self.count]; self.count]
     }
 
-    /// K, the matrix of a(.,.).
-    pub fn stiffness(&self) -> Matrix {
+    /// The matrix over the free components with these images of the basis functions.
+    fn columns(&self, image: impl Fn(&[[Exact; 2]]) -> Nodal) -> Matrix {
         let mut matrix = self.zero();
-        for (t, k) in self.stiffness.iter().enumerate() {
-            self.add(&mut matrix, t, |i, j| k[i][j]);
+        let mut bump = vec![[Exact::from(0); 2]; self.numbers.len()];
+        for (node, numbers) in self.numbers.iter().enumerate() {
+            for c in 0..2 {
+                let Some(column) = numbers[c] else { continue };
+                bump[node][c] = Exact::from(1);
+                for (row, value) in self.free(&image(&bump)).into_iter().enumerate() {
+                    matrix[row][column] = value;
+                }
+                bump[node][c] = Exact::from(0);
+            }
         }
         matrix
+    }
+
+    fn nowhere(&self) -> Nodal {
+        vec![[Exact::from(0); 2]; self.numbers.len()]
+    }
+
+    /// a(u, v) for every basis function v.
+    fn internal_forces(&self, u: &[[Exact; 2]]) -> Nodal {
+        let mut forces = self.nowhere();
+        precise::add_internal_forces(self.d, u, &mut forces);
+        forces
+    }
+
+    /// K, the matrix of a(.,.).
+    pub fn stiffness(&self) -> Matrix {
+        self.columns(|u| self.internal_forces(u))
     }
 
     /// The matrix of int gamma sigma_n(u) sigma_n(v): A is K less this one.
     pub fn stresses(&self) -> Matrix {
-        let mut matrix = self.zero();
-        for edge in &self.edges {
-            let weight = edge.gamma * edge.length;
-            let block = |i, j| edge.functionals.stress_product(weight, i, j);
-            self.add(&mut matrix, edge.triangle, block);
-        }
-        matrix
-    }
-
-    /// The nodal values on triangle t.
-    fn local(&self, t: usize, u: &[[Exact; 2]]) -> [Vector2<Exact>; N] {
-        self.d.space.elements()[t].map(|node| u[node].into())
+        self.columns(|u| {
+            let mut forces = self.nowhere();
+            self.edges.iter().for_each(|edge| edge.add_stresses(u, &mut forces));
+            forces.into_iter().map(|f| f.map(|f| -f)).collect()
+        })
     }
 
     /// P(u) at the nodes of edge e.
     pub fn p(&self, e: usize, u: &[[Exact; 2]]) -> [Exact; M] {
-        let edge = &self.edges[e];
-        let u = self.local(edge.triangle, u);
-        let mut p = edge.functionals.p0.map(|row| sum(row.iter().zip(&u), |(f, u)| f.dot(u)));
-        for (p, &gap) in p.iter_mut().zip(&edge.gap) {
-            *p -= gap;
-        }
-        p
+        self.edges[e].p(&self.d.contact[e], u)
+    }
+
+    /// |E| / gamma
+    fn weight(&self, e: usize) -> Exact {
+        let numbers = &self.edges[e].numbers;
+        numbers.length / numbers.gamma
     }
 
     fn integrals(&self, p: [Exact; M]) -> EdgeIntegrals<Exact, M> {
@@ -207,62 +189,23 @@ where
 
     /// a(u, u)
     pub fn energy(&self, u: &[[Exact; 2]]) -> Exact {
-        let mut energy = Exact::from(0);
-        for (t, k) in self.stiffness.iter().enumerate() {
-            let u = self.local(t, u);
-            for i in 0..N {
-                for j in 0..N {
-                    energy += u[i].dot(&(k[i][j] * u[j]));
-                }
-            }
-        }
-        energy
+        let forces = self.internal_forces(u);
+        sum(u.iter().zip(&forces), |(u, f)| dot(u, f))
     }
 
     /// int \[P(u)\]+/gamma: the force of contact.
     pub fn contact_force(&self, u: &[[Exact; 2]]) -> Exact {
-        self.edges.iter().enumerate().fold(Exact::from(0), |force, (e, edge)| {
-            let gradient = self.integrals(self.p(e, u)).gradient;
-            force + edge.length / edge.gamma * sum(gradient, |g| g)
+        sum(0..self.edges.len(), |e| {
+            self.weight(e) * sum(self.integrals(self.p(e, u)).gradient, |g| g)
         })
     }
 
     /// The residual of (8) at u for every basis function: at the prescribed components the reactions.
     pub fn reactions(&self, u: &[[Exact; 2]]) -> Nodal {
-        let load = |l: &[f64; 2]| l.map(|l| -Exact::of_double(l));
-        let mut residual: Nodal = self.d.load.iter().map(load).collect();
-        let mut add = |t: usize, i: usize, c: usize, value: Exact| {
-            let node = self.d.space.elements()[t][i];
-            residual[node][c] += value;
-        };
-        for (t, k) in self.stiffness.iter().enumerate() {
-            let u = self.local(t, u);
-            for i in 0..N {
-                for j in 0..N {
-                    let force = k[i][j] * u[j];
-                    for c in 0..2 {
-                        add(t, i, c, force[c]);
-                    }
-                }
-            }
-        }
+        let mut residual = precise::linear_residual(self.d, &self.edges, u);
         for (e, edge) in self.edges.iter().enumerate() {
-            let t = edge.triangle;
-            let nodal = self.local(t, u);
             let gradient = self.integrals(self.p(e, u)).gradient;
-            for i in 0..N {
-                for j in 0..N {
-                    let stress = edge.functionals.stress_product(edge.gamma * edge.length, i, j);
-                    let force = stress * nodal[j];
-                    for c in 0..2 {
-                        add(t, i, c, -force[c]);
-                    }
-                }
-                for c in 0..2 {
-                    let p0 = edge.functionals.p0.map(|row| row[i][c]);
-                    add(t, i, c, edge.length / edge.gamma * dot(&gradient, &p0));
-                }
-            }
+            edge.add_contact(&gradient.map(|g| self.weight(e) * g), &mut residual);
         }
         residual
     }
@@ -275,12 +218,12 @@ where
         for (e, edge) in self.edges.iter().enumerate() {
             let hessian = self.integrals(self.p(e, u)).hessian;
             let p0 = &edge.functionals.p0;
-            self.add(&mut matrix, edge.triangle, |i, j| {
+            self.add(&mut matrix, self.d.contact[e].edge.triangle, |i, j| {
                 Matrix2::from_fn(|c, d| {
                     let left = p0.map(|row| row[i][c]);
                     let right = p0.map(|row| row[j][d]);
                     let times = hessian.map(|row| dot(&row, &right));
-                    edge.length / edge.gamma * dot(&left, &times)
+                    self.weight(e) * dot(&left, &times)
                 })
             });
         }
@@ -291,7 +234,7 @@ where
     pub fn pressures_apart(&self, u: &[[Exact; 2]], v: &[[Exact; 2]]) -> Option<Exact> {
         let zero = Exact::from(0);
         let mut sum = zero;
-        for (e, edge) in self.edges.iter().enumerate() {
+        for e in 0..self.edges.len() {
             let (p, q) = (self.p(e, u), self.p(e, v));
             let part = |value: Exact| if value > zero { value } else { zero };
             let square = match &self.rule {
@@ -306,7 +249,7 @@ where
                 }
                 None => return None,
             };
-            sum += edge.length / edge.gamma * square;
+            sum += self.weight(e) * square;
         }
         Some(sum)
     }
@@ -331,15 +274,19 @@ where
 
     /// kappa, for unit normals.
     pub fn kappa(&self) -> Exact {
+        // The bodies of the claims have one material. lambda is the coefficient that acts in the plane, also in plane stress.
+        let of = self.d.problem.material.of(0);
+        let [lambda, mu] = [of.lambda(), of.mu()].map(Exact::of_double);
+        let material = Material::lame(lambda, mu, Plane::Strain);
         let mesh = self.d.space.mesh();
-        self.edges.iter().fold(Exact::from(0), |kappa, edge| {
-            let t = edge.triangle;
-            let vertices = mesh.triangle(t).vertices.map(|x| x.map(Exact::of_double));
-            let area = Triangle { vertices }.double_area() / Exact::from(2);
-            let owned = self.edges.iter().filter(|other| other.triangle == t);
-            let length = owned.fold(Exact::from(0), |sum, other| sum + other.length);
-            let of_t =
-                coercivity_constant::<E, Exact, N, M>(&self.material, edge.gamma, length, area);
+        let owner = |e: usize| self.d.contact[e].edge.triangle;
+        (0..self.edges.len()).fold(Exact::from(0), |kappa, e| {
+            let t = owner(e);
+            let area = precise::exactly::<Exact>(mesh.triangle(t)).double_area() / Exact::from(2);
+            let owned = (0..self.edges.len()).filter(|&other| owner(other) == t);
+            let length = sum(owned, |other| self.edges[other].numbers.length);
+            let gamma = self.edges[e].numbers.gamma;
+            let of_t = coercivity_constant::<E, Exact, N, M>(&material, gamma, length, area);
             if of_t > kappa { of_t } else { kappa }
         })
     }

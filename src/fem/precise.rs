@@ -20,16 +20,27 @@ pub fn evaluate<E, const N: usize, const M: usize>(
 where
     E: ExactEdge<f64, N, M>,
 {
-    let mut forces: Vec<[Twofold; 2]> =
-        d.load.iter().map(|l| l.map(|l| -Twofold::from(l))).collect();
-    add_internal_forces(d, u, &mut forces);
-    let mut p = Vec::with_capacity(M * d.contact.len());
-    for edge in &d.contact {
-        let line = on_edge(d, edge);
-        p.extend(line.p(edge, u));
-        line.add_stresses(u, &mut forces);
-    }
+    let edges: Vec<OnEdge<'_, Twofold, N, M>> = d.contact.iter().map(|e| on_edge(d, e)).collect();
+    let forces = linear_residual(d, &edges, u);
+    let p = d.contact.iter().zip(&edges).flat_map(|(edge, line)| line.p(edge, u)).collect();
     (forces.into_iter().map(|f| f.map(Twofold::head)).collect(), p)
+}
+
+/// A(u, v) - L(v) for every basis function v, with these contact edges.
+pub fn linear_residual<S, E, const N: usize, const M: usize>(
+    d: &Discretization<E, N, M>,
+    edges: &[OnEdge<S, N, M>],
+    u: &[[S; 2]],
+) -> Vec<[S; 2]>
+where
+    S: Scalar + From<f64>,
+    E: ExactEdge<f64, N, M>,
+{
+    let minus = |l: f64| -<S as From<f64>>::from(l);
+    let mut forces: Vec<[S; 2]> = d.load.iter().map(|l| l.map(minus)).collect();
+    add_internal_forces(d, u, &mut forces);
+    edges.iter().for_each(|edge| edge.add_stresses(u, &mut forces));
+    forces
 }
 
 /// The values of P(u) at the nodes of each contact edge.
@@ -43,29 +54,20 @@ where
     d.contact.iter().flat_map(move |edge| on_edge(d, edge).p(edge, u))
 }
 
-/// P0 and sigma_n on a contact edge.
-pub fn functionals<E, const N: usize, const M: usize>(
-    d: &Discretization<E, N, M>,
-    edge: &ContactLineEdge<N, M>,
-) -> ContactEdge<Twofold, N, M>
-where
-    E: ExactEdge<f64, N, M>,
-{
-    on_edge(d, edge).functionals
-}
-
 /// A contact edge with the doubles that it has.
-fn on_edge<'d, E, const N: usize, const M: usize>(
+pub fn on_edge<'d, S, E, const N: usize, const M: usize>(
     d: &'d Discretization<E, N, M>,
     edge: &ContactLineEdge<N, M>,
-) -> OnEdge<'d, Twofold, N, M>
+) -> OnEdge<'d, S, N, M>
 where
+    S: Scalar + From<f64>,
     E: ExactEdge<f64, N, M>,
 {
+    let exactly = <S as From<f64>>::from;
     let numbers = EdgeNumbers {
-        normal: edge.normal.map(Twofold::from),
-        gamma: Twofold::from(edge.gamma),
-        length: Twofold::from(edge.length),
+        normal: edge.normal.map(exactly),
+        gamma: exactly(edge.gamma),
+        length: exactly(edge.length),
     };
     OnEdge::new(d, edge, numbers)
 }

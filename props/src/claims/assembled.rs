@@ -28,7 +28,7 @@ mod given;
 mod roots;
 pub(super) mod solver;
 
-use compare::{Shares, compared};
+use compare::{Shares, compared, loops};
 use definition::Mistake;
 use draw::{Contact, problems};
 pub use roots::{
@@ -90,6 +90,24 @@ pub fn p1() -> Outcome {
 /// P2 likewise.
 pub fn p2() -> Outcome {
     all_of::<P2, 6, 3>(&P2_KINDS)
+}
+
+/// The loops of the solver over rationals are the definitions, to the last digit: P1 and P2.
+pub fn loops_over_rationals() -> Outcome {
+    let p1 = draws::hold(20, problems(Contact::Any, true), &[], |draw| {
+        loops::<P1, 3, 2>(draw, Mistake::None)
+    })?;
+    let p2 = draws::hold(6, problems(Contact::Any, false), &[], |draw| {
+        loops::<P2, 6, 3>(draw, Mistake::None)
+    })?;
+    Ok(format!("P1: {p1}; P2: {p2}"))
+}
+
+/// The same with gamma inverted in the definitions.
+pub fn loops_with_gamma_inverted() -> Outcome {
+    draws::reject(problems(Contact::Any, true), |draw| {
+        loops::<P1, 3, 2>(draw, Mistake::GammaInverted)
+    })
 }
 
 fn rejected(mistake: Mistake) -> Outcome {

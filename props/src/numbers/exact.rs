@@ -86,6 +86,13 @@ impl Exact {
     }
 }
 
+/// The value of a finite double, exactly.
+impl From<f64> for Exact {
+    fn from(value: f64) -> Exact {
+        Exact::of_double(value)
+    }
+}
+
 impl From<i32> for Exact {
     fn from(value: i32) -> Exact {
         Exact::new(BigRational::from_integer(BigInt::from(value)))

@@ -5,12 +5,13 @@ use std::collections::BTreeMap;
 
 use num_traits::ToPrimitive;
 use signorini::fem::matrix::Numbering;
+use signorini::fem::precise::{self, EdgeNumbers, OnEdge};
 use signorini::fem::{BoundaryEdge, Discretization};
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::solve::Solution;
 use signorini::solve::evaluated::Evaluated;
 
-use super::definition::{Mistake, Named, Setting, defined, inner};
+use super::definition::{Mistake, Named, Setting, defined, inner, unit};
 use super::draw::{Draw, owner};
 use super::given::read;
 use super::solver::{assembled, numbered, unsolved};
@@ -104,6 +105,58 @@ where
         ensure!(contact_length_is_the_measure_of_the_pressed_part(&d, &exact, &magnitude, &u));
         ensure!(residual_is_the_gradient_of_the_energy(&d, &exact, &magnitude, [&u, &step]));
         Verdict::Holds(contact_class::<N>(&exact.body, &read(&u)))
+    })
+}
+
+/// The solver's loops over rationals, with the doubles of its discretization for data: A(u, v) for every basis function v, and P0(u)
+/// at the ends of the contact edges, are their definitions. Nothing is rounded: the normal is a unit vector of rational numbers, another
+/// one than the edge has, for none of the sums depends on that.
+pub(super) fn loops<E, const N: usize, const M: usize>(draw: &Draw, mistake: Mistake) -> Verdict
+where
+    E: ExactEdge<f64, N, M>,
+{
+    // lambda of plane stress is a quotient that doubles round.
+    if draw.stress {
+        return Verdict::Vacuous;
+    }
+    let problem = draw.problem();
+    let discretized =
+        Discretization::<E, N, M>::new(&problem, |c| draw.kappa * c.limit(), draw.rule());
+    let Ok(d) = discretized else { return Verdict::Fails("the problem is refused") };
+    Exact::scope(|| {
+        let Some(mut setting) = Setting::<Exact>::new(draw, &d) else {
+            return Verdict::Fails("nodes and contact edges are those of the mesh");
+        };
+        setting.plant(mistake, draw);
+        let n = [Exact::ratio(5, 13), Exact::ratio(-12, 13)];
+        setting.body.contact.iter_mut().for_each(|side| side.n = n);
+        let edges: Vec<OnEdge<'_, Exact, N, M>> = (d.contact.iter())
+            .map(|edge| {
+                let diameter = d.problem.mesh.diameter(edge.edge.triangle);
+                let numbers = EdgeNumbers {
+                    normal: n.into(),
+                    gamma: Exact::of_double(d.gamma0) * Exact::of_double(diameter),
+                    length: Exact::of_double(edge.length),
+                };
+                OnEdge::new(&d, edge, numbers)
+            })
+            .collect();
+        let [u, _] = draw.fields(d.space.nodes().len());
+        let u: Vec<[Exact; 2]> = read(&u);
+        let found = precise::linear_residual(&d, &edges, &u);
+        let definition = Definition::<N>(&setting.body);
+        for (node, (found, load)) in found.iter().zip(&d.load).enumerate() {
+            for c in 0..2 {
+                let v = setting.body.bump(node, unit(c));
+                ensure!(found[c] + Exact::of_double(load[c]) == definition.big_a(&u, &v));
+            }
+        }
+        for (edge, side) in edges.iter().zip(&setting.body.contact) {
+            let [start, end] = [0, 1].map(|a| edge.p0(&u)[a]);
+            let p0 = definition.traces(side, &u).p0;
+            ensure!([start, end] == [0, 1].map(|s| p0.at(Exact::from(s))));
+        }
+        Verdict::Holds(contact_class::<N>(&setting.body, &u))
     })
 }
 
