@@ -676,11 +676,12 @@ class Forces:
             self.of_pairs.append(self.by_pair(force, points, bulge, roles[here], numbers[here]))
 
     def dual(self, points, bulge, roles, numbers):
-        """The pair as a body of its own: without loads, held where the body is held, and along the normal on parts of Gamma_C."""
+        """The pair as a body of its own: without loads, held where the body is held, and on parts of Gamma_C along an axis in which contact acts."""
         body, whole, real = self.body, dict(self.whole), dict(self.real)
         on = np.isin(np.arange(len(roles)), body.contact)
         along_axis = np.zeros((len(roles), 2), bool)
-        along_axis[body.contact] = (body.contact_d[:, 0] != 0) & ~body.has_direction[body.contact, None]
+        start, end = body.contact_d[:, 0], body.contact_d[:, 1]
+        along_axis[body.contact] = (np.abs(start) == 1) & (start == end).all(1)[:, None]
         pressed = on & (((roles == 1) & (along_axis == [True, False]).all(1)) | ((roles == 2) & (along_axis == [False, True]).all(1)))
         free = (roles == 4) & (on | np.isin(body.role, (4, 5)))
         demand(pressed | free | ((roles == body.role) & (roles != 4) & ~on), "a dual edge of another kind: edge")

@@ -9,7 +9,7 @@
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use super::certificate::{Certificate, Owner, Role, exactly};
+use super::certificate::{Certificate, Edge, Owner, Role, exactly, place};
 use crate::kernel::Enclosing;
 use crate::kernel::composite::Wrench;
 
@@ -71,7 +71,10 @@ pub(crate) struct Stop<S> {
 /// such a motion, do by rounding and by what Newton's method leaves.
 const STOP: f64 = 1e-10;
 
-/// The tree over the triangles of each connected part: an order from the root on, and the edge towards the root.
+/// The tree over the triangles of each part: an order from the root on, and the edge towards the root. A part is what an edge
+/// that is held in both components, long enough to take any force and moment, is the nearest such to, or a connected part of
+/// the body where there is none: the fewer triangles behind an edge, the less rounding is carried over it.
+#[derive(Clone)]
 pub(crate) struct Tree {
     pub order: Vec<usize>,
     pub towards_root: Vec<Option<usize>>,
@@ -80,57 +83,82 @@ pub(crate) struct Tree {
 }
 
 impl Tree {
-    /// Breadth first; edges inside a triangle that was cut, elsewhere than in the middle of an edge, come before all others.
+    /// Breadth first, from all held roots at once; edges inside a triangle that was cut, elsewhere than in the middle of an
+    /// edge, come before all others.
     pub fn new(certificate: &Certificate, owners: &[[Option<Owner>; 2]]) -> Tree {
-        let vertices = certificate.vertices.len();
         let count = certificate.pieces.len();
-        let mut tree = Tree {
-            order: Vec::with_capacity(count),
-            towards_root: vec![None; count],
-            parts: Vec::new(),
-        };
-        let mut seen = vec![false; count];
-        let is_cut = |e: usize| {
-            let cut = |p: &usize| p.checked_sub(vertices).map(|cut| certificate.cuts[cut].at);
-            certificate.edges[e].ends.iter().filter_map(cut).any(|at| at != 0.5)
-        };
-        let beyond = |t: usize, e: usize| {
-            let [left, right] = owners[e];
-            [left, right].into_iter().flatten().map(|owner| owner.piece).find(|&piece| piece != t)
-        };
-        let mut reached = Vec::new();
-        for root in 0..count {
-            if seen[root] {
-                continue;
+        let (mut found, mut parts) = (Vec::with_capacity(count), 0);
+        let mut part_of = vec![usize::MAX; count];
+        let mut towards_root = vec![None; count];
+        let mut next = 0;
+        let held = held_roots(certificate, owners);
+        let alone = (0..count).map(|root| vec![root]);
+        for roots in std::iter::once(held).chain(alone) {
+            for root in roots {
+                if part_of[root] == usize::MAX {
+                    part_of[root] = parts;
+                    parts += 1;
+                    found.push(root);
+                }
             }
-            tree.parts.push(tree.order.len());
-            seen[root] = true;
-            tree.order.push(root);
-            let mut next = tree.order.len() - 1;
-            while next < tree.order.len() {
-                let t = tree.order[next];
+            while next < found.len() {
+                let t = found[next];
                 next += 1;
-                reached.push(t);
+                let mut reached = vec![t];
                 while let Some(from) = reached.pop() {
                     for e in certificate.pieces[from].edges {
                         // From t everywhere; from a triangle just found only to the rest of a cut one.
-                        if from != t && !is_cut(e) {
+                        if from != t && !is_cut(certificate, e) {
                             continue;
                         }
-                        if let Some(to) = beyond(from, e)
-                            && !seen[to]
+                        let other =
+                            owners[e].into_iter().flatten().find(|owner| owner.piece != from);
+                        if let Some(Owner { piece: to, .. }) = other
+                            && part_of[to] == usize::MAX
                         {
-                            seen[to] = true;
-                            tree.towards_root[to] = Some(e);
-                            tree.order.push(to);
+                            part_of[to] = part_of[t];
+                            towards_root[to] = Some(e);
+                            found.push(to);
                             reached.push(to);
                         }
                     }
                 }
             }
         }
-        tree
+        let mut first = vec![0; parts + 1];
+        part_of.iter().for_each(|&part| first[part + 1] += 1);
+        for part in 0..parts {
+            first[part + 1] += first[part];
+        }
+        first.pop();
+        let (mut order, mut end) = (vec![0; count], first.clone());
+        for t in found {
+            order[end[part_of[t]]] = t;
+            end[part_of[t]] += 1;
+        }
+        Tree { order, towards_root, parts: first }
     }
+}
+
+/// The edge is inside a triangle that was cut, elsewhere than in the middle of an edge.
+fn is_cut(certificate: &Certificate, e: usize) -> bool {
+    let cut =
+        |p: &usize| p.checked_sub(certificate.vertices.len()).map(|cut| certificate.cuts[cut].at);
+    certificate.edges[e].ends.iter().filter_map(cut).any(|at| at != 0.5)
+}
+
+/// The triangles at the edges that are held in both components and no shorter than half of the longest: over a short one a
+/// moment would be a large force.
+fn held_roots(certificate: &Certificate, owners: &[[Option<Owner>; 2]]) -> Vec<usize> {
+    let length = |edge: &Edge| {
+        let [start, end] = edge.ends.map(|p| place(certificate, p));
+        (end - start).dot(&(end - start))
+    };
+    let is_held = |edge: &Edge| matches!(edge.role, Role::Held([true, true], _));
+    let held = certificate.edges.iter().zip(owners).filter(|(edge, _)| is_held(edge));
+    let longest = held.clone().map(|(edge, _)| length(edge)).fold(0.0, f64::max);
+    let long = held.filter(|(edge, _)| length(edge) >= longest / 4.0);
+    long.filter_map(|(_, [owner, _])| Some(owner.as_ref()?.piece)).collect()
 }
 
 /// The edges of a certificate with the forces that it has on them.

@@ -7,10 +7,11 @@ use super::balance::{Change, Closed, OnEdges, Tree, Unbalanced};
 use super::certificate::{Certificate, Edge, Owner, Piece, Role, Shape, exactly, support};
 use super::checks::{Rejection, wrong};
 use super::on_contact::{OnContact, OnEdge, along_directions, along_the_normal};
-use crate::kernel::composite::{Affine, Composite, Frame, Loads};
+use crate::kernel::composite::{Affine, Composite, Frame, Loads, Wrench};
 use crate::kernel::{Ball, Enclosing, Triangle};
 
 /// How the triangles of a certificate hang together.
+#[derive(Clone)]
 pub struct Topology {
     /// The triangles of each edge.
     pub owners: Vec<[Option<Owner>; 2]>,
@@ -26,6 +27,8 @@ pub struct Balanced<S> {
     pub topology: Topology,
     /// tau N on the edges as the certificate has it.
     pub forces: Vec<[Vector2<S>; 2]>,
+    /// The force and the moment about its centroid by which these and the body force leave each triangle out of balance.
+    pub(crate) resultants: Vec<[S; 3]>,
     /// tau N on the edges of each triangle towards its outside, in equilibrium.
     pub outward: Vec<[[Vector2<S>; 2]; 3]>,
     /// Corrections that equilibrium needs beside tractions.
@@ -45,8 +48,18 @@ impl Certificate {
     /// Checks all other conditions and puts the triangles in equilibrium.
     pub fn balanced<S: Enclosing>(&self, topology: Topology) -> Result<Balanced<S>, Rejection> {
         let points: Vec<Vector2<S>> = self.places();
-        let v = self.shape();
         let triangles = self.triangles(&points)?;
+        self.balanced_on(topology, points, triangles)
+    }
+
+    /// [`Certificate::balanced`], on triangles that are at hand.
+    pub(crate) fn balanced_on<S: Enclosing>(
+        &self,
+        topology: Topology,
+        points: Vec<Vector2<S>>,
+        triangles: Vec<Triangle<S>>,
+    ) -> Result<Balanced<S>, Rejection> {
+        let v = self.shape();
         self.check_displacement()?;
         let mut forces = Vec::with_capacity(self.edges.len());
         let mut on_contact = vec![S::from(0); self.pieces.len()];
@@ -83,9 +96,19 @@ impl Certificate {
                 }
             });
         }
-        let (outward, closed) = (Vec::new(), Closed { changes: Vec::new(), stops: Vec::new() });
-        let mut state =
-            Balanced { points, triangles, v, topology, forces, outward, closed, on_contact };
+        let (resultants, outward) = (Vec::new(), Vec::new());
+        let closed = Closed { changes: Vec::new(), stops: Vec::new() };
+        let mut state = Balanced {
+            points,
+            triangles,
+            v,
+            topology,
+            forces,
+            resultants,
+            outward,
+            closed,
+            on_contact,
+        };
         state.close(self)?;
         for &Change { edge, factors } in &state.closed.changes {
             let Role::Contact { pressure, .. } = self.edges[edge].role else { continue };
@@ -198,6 +221,8 @@ impl<S: Enclosing> Balanced<S> {
             wrenches.push(loads.resultant(&self.triangles[t]));
             self.outward.push(loads.forces);
         }
+        let numbers = |wrench: &Wrench<S>| [wrench.force[0], wrench.force[1], wrench.moment];
+        self.resultants = wrenches.iter().map(numbers).collect();
         let Balanced { points, topology: Topology { owners, tree }, forces, outward, .. } = self;
         let on_edges = OnEdges { certificate, owners, points, forces };
         self.closed = on_edges.close(tree, &mut wrenches, outward)?;
@@ -219,13 +244,21 @@ impl<S: Enclosing> Balanced<S> {
 
     /// C eps(v) and C eps(v) - tau on triangle `t`.
     pub fn stresses(&self, certificate: &Certificate, t: usize) -> (Affine<S>, Composite<S>) {
+        self.stresses_in(&Frame::new(&self.triangles[t]), certificate, t)
+    }
+
+    /// [`Balanced::stresses`], with the frame of the triangle.
+    pub(crate) fn stresses_in(
+        &self,
+        frame: &Frame<S>,
+        certificate: &Certificate,
+        t: usize,
+    ) -> (Affine<S>, Composite<S>) {
         let piece = &certificate.pieces[t];
-        if !piece.is_bent() {
-            return self.without_bending(certificate, t);
-        }
-        let (frame, loads) = self.loads(piece, t);
+        let loads = self.loads(piece, t);
         let sigma = self.v.stress(piece, &self.triangles[t]);
-        let tau = Composite::new(&frame, &loads).bent(&frame, &loads.body);
+        let tau = Composite::new(frame, &loads);
+        let tau = if piece.is_bent() { tau.bent(frame, &loads.body) } else { tau };
         (sigma, tau.distance_from(&sigma))
     }
 
@@ -236,17 +269,17 @@ impl<S: Enclosing> Balanced<S> {
         t: usize,
     ) -> (Affine<S>, Composite<S>) {
         let piece = &certificate.pieces[t];
-        let (frame, loads) = self.loads(piece, t);
+        let frame = Frame::new(&self.triangles[t]);
         let sigma = self.v.stress(piece, &self.triangles[t]);
-        (sigma, Composite::new(&frame, &loads).distance_from(&sigma))
+        (sigma, Composite::new(&frame, &self.loads(piece, t)).distance_from(&sigma))
     }
 
-    fn loads(&self, piece: &Piece, t: usize) -> (Frame<S>, Loads<S>) {
+    fn loads(&self, piece: &Piece, t: usize) -> Loads<S> {
         let mut loads = Loads { forces: self.outward[t], body: piece.body.map(exactly) };
         for stop in self.closed.stops.iter().filter(|stop| stop.root == t) {
             (0..2).for_each(|k| loads.forces[0][k] += stop.force[k]);
         }
-        (Frame::new(&self.triangles[t]), loads)
+        loads
     }
 }
 

@@ -8,15 +8,15 @@
 //! integrals over Gamma_C are bounded by B and A where r is bounded by multiples of |tau_n| and omega by multiples of g -
 //! v_n.
 //!
-//! The pair is itself a certificate on the same triangles, of the linear problem whose contact edges are held along their
-//! normal, or free.
+//! The pair is itself a certificate on the same triangles, of the linear problem whose contact edges are held along the
+//! direction of contact, an axis, or free.
 
 use super::balanced::Balanced;
 use super::certificate::{Certificate, Curved, Edge, Piece, Role, is_oblique};
 use super::checks::Rejection;
-use super::forces::{Cover, Forces, Target, WrongLifting, inner, reach};
-use crate::kernel::composite::Composite;
-use crate::kernel::{Enclosing, Interval};
+use super::forces::{Cover, Forces, Target, WrongLifting, component, per_moduli, products, reach};
+use crate::kernel::composite::{Composite, Frame};
+use crate::kernel::{Enclosing, Interval, Material};
 
 /// Why a dual pair proves nothing.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -31,18 +31,30 @@ pub enum WrongPair {
     Differs { what: &'static str, index: usize },
 }
 
-/// a + b, or a - b.
-fn combined<S: Enclosing>(a: &Composite<S>, b: &Composite<S>, sign: i32) -> Composite<S> {
-    let sign = S::from(sign);
-    let bulges = match (a.bulges, b.bulges) {
-        (Some(a), Some(b)) => Some([0, 1, 2].map(|i| [0, 1, 2].map(|k| a[i][k] + b[i][k] * sign))),
-        (a, b) => a.or(b.map(|b| b.map(|part| part.map(|s| s * sign)))),
-    };
-    Composite {
-        corners: [0, 1, 2].map(|i| [0, 1].map(|k| a.corners[i][k] + b.corners[i][k] * sign)),
-        centre: a.centre + b.centre * sign,
-        bulges,
+/// int_T a : C^-1 b for a without quadratic parts in b. On a part affine functions with the values a_i, b_i have the integral of
+/// [`Composite::energy`] with products for squares; what a is beyond, half of what its formula says for both.
+fn product<S: Enclosing>(
+    material: &Material<S>,
+    a: &Composite<S>,
+    b: &Composite<S>,
+    double_area: S,
+) -> S {
+    let (two, three, eight) = (S::from(2), S::from(3), S::from(8));
+    let centre = |tau: &Composite<S>| tau.centre * (two / three);
+    let (of_a, of_b) = (centre(a), centre(b));
+    let mut sum = products(a.centre, b.centre).map(|x| eight * x);
+    for ([p, q], [s, t]) in a.corners.into_iter().zip(b.corners) {
+        let (sums, differences) = (products(p + q + of_a, s + t + of_b), products(p - q, s - t));
+        sum = [0, 1].map(|k| sum[k] + three * sums[k] + differences[k]);
     }
+    for (h, [s, t]) in a.bulges.iter().flatten().zip(b.corners) {
+        let whole = s + t + b.centre;
+        for (h, opposite) in h.iter().zip([b.centre, t, s]) {
+            let along = products(*h, whole * two - opposite);
+            sum = [0, 1].map(|k| sum[k] + eight / S::from(5) * along[k]);
+        }
+    }
+    per_moduli(material, sum) * double_area / S::from(576)
 }
 
 /// The largest ratio of a to b, not below 0: infinite where b is 0 and a is not.
@@ -107,10 +119,35 @@ impl Certificate {
     }
 }
 
+/// A contact force by a dual pair.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ByPair {
+    /// The numbers that it lies between.
+    pub between: [f64; 2],
+    /// The shares of the triangles in eta^2.
+    pub shares: Vec<f64>,
+    /// k of either end: by so much r and omega are bounded, in units of |tau_n| and g - v_n.
+    pub factors: [f64; 2],
+}
+
+impl ByPair {
+    /// What triangle by triangle is to be small for one end: k M^2 + eta^2 / (4 k), with the k >= eta / (2 M) that gives what
+    /// that end is away from the middle; `shares` are those in M^2. For the upper end without eta, which there is large for
+    /// where w and rho end, not for the triangles.
+    pub fn limits(&self, side: usize, shares: &[f64]) -> Vec<f64> {
+        let [of_mean, of_pair] = [shares, &self.shares].map(|all| all.iter().sum::<f64>());
+        let k = self.factors[side].max((of_pair / of_mean).sqrt() / 2.0);
+        let per_pair = if side == 0 { 1.0 / (4.0 * k) } else { 0.0 };
+        let all = shares.iter().zip(&self.shares);
+        all.map(|(mean, pair)| k * mean + pair * per_pair).collect()
+    }
+}
+
 impl<S: Enclosing> Forces<'_, S> {
     /// The pair has the triangles of the certificate, no loads, and w = 0 on Gamma_D.
     fn check_pair(&self, pair: &Certificate) -> Result<(), WrongPair> {
         let certificate = self.certificate;
+        let (zero, one) = (S::from(0), S::from(1));
         let differs = |what, index| Err(WrongPair::Differs { what, index });
         let same_points = pair.vertices == certificate.vertices && pair.cuts == certificate.cuts;
         if !same_points || !pair.lifts.is_empty() {
@@ -159,11 +196,11 @@ impl<S: Enclosing> Forces<'_, S> {
                     }
                     (Role::Loaded(_) | Role::Pressed(_), Role::Loaded(t)) => t == [[0.0; 2]; 2],
                     (Role::Contact { .. }, Role::Loaded(t)) => t == [[0.0; 2]; 2],
-                    // Along the normal only, which is an axis.
-                    (Role::Contact { along: None, .. }, Role::Held(held, _)) => {
-                        let d = self.certificate.directions::<S>(e, &self.state.points)[0];
-                        let across = d.map(|d| d.lower() != 0.0 || d.upper() != 0.0);
-                        held == [across[0], across[1]] && held != [true; 2]
+                    // Along an axis, in which contact acts.
+                    (Role::Contact { .. }, Role::Held(held, _)) => {
+                        let [d, end] = self.certificate.directions::<S>(e, &self.state.points);
+                        let is = |c: usize| held[c] && !held[1 - c] && component(d, d) == one;
+                        d == end && (0..2).any(|c| is(c) && d[1 - c] == zero)
                     }
                     _ => false,
                 };
@@ -174,35 +211,60 @@ impl<S: Enclosing> Forces<'_, S> {
         Ok(())
     }
 
-    /// Encloses the contact force with the weight of `target` by a dual pair; an end may be infinite.
+    /// Encloses the contact force with the weight of its target by each of some dual pairs; an end may be infinite.
     ///
     /// # Errors
     /// A pair that is none.
-    pub fn by_pair(
+    pub fn by_pairs(
+        &self,
+        pairs: &[(Target, Certificate)],
+        cover: Option<&Cover>,
+    ) -> Result<Vec<ByPair>, WrongPair> {
+        if pairs.is_empty() {
+            return Ok(Vec::new());
+        }
+        let (certificate, state) = (self.certificate, self.state);
+        let zero = S::from(0);
+        let mut sums = Vec::with_capacity(pairs.len());
+        for (_, pair) in pairs {
+            pair.check_shape()?;
+            self.check_pair(pair)?;
+            let (points, triangles) = (state.points.clone(), state.triangles.clone());
+            let dual = pair.balanced_on(state.topology.clone(), points, triangles)?;
+            pair.check_balance(&dual)?;
+            let shares = Vec::with_capacity(pair.pieces.len());
+            sums.push(Sums { dual, middle: zero, eta: zero, norm: zero, shares });
+        }
+        for (t, piece) in certificate.pieces.iter().enumerate() {
+            let (material, double_area) = (piece.material(), state.triangles[t].double_area());
+            let frame = Frame::new(&state.triangles[t]);
+            let (_, apart) = state.stresses_in(&frame, certificate, t);
+            for ((_, pair), sums) in pairs.iter().zip(&mut sums) {
+                let (of_w, missed) = sums.dual.stresses_in(&frame, pair, t);
+                let eta = missed.energy(&material, double_area);
+                sums.middle += product(&material, &apart, &missed, double_area) / S::from(2);
+                sums.eta += eta;
+                if self.loose != 0.0 {
+                    sums.norm += of_w.energy(&material, double_area);
+                }
+                sums.shares.push(eta.upper());
+            }
+        }
+        let all = pairs.iter().zip(sums);
+        all.map(|((target, pair), sums)| self.by_sums(pair, *target, sums, cover)).collect()
+    }
+
+    fn by_sums(
         &self,
         pair: &Certificate,
         target: Target,
+        sums: Sums<S>,
         cover: Option<&Cover>,
-    ) -> Result<[f64; 2], WrongPair> {
-        self.check_pair(pair)?;
-        let dual: Balanced<S> = pair.balanced(pair.topology()?)?;
-        pair.check_balance(&dual)?;
+    ) -> Result<ByPair, WrongPair> {
         let (certificate, state) = (self.certificate, self.state);
         let zero = S::from(0);
-        let (mut middle, mut eta, mut norm) = (zero, zero, zero);
-        for (t, piece) in certificate.pieces.iter().enumerate() {
-            let (material, double_area) = (piece.material(), state.triangles[t].double_area());
-            let (of_v, apart) = state.stresses(certificate, t);
-            let (of_w, missed) = dual.stresses(pair, t);
-            let energy = |tau: &Composite<S>| tau.energy(&material, double_area);
-            let [sum, difference] = [1, -1].map(|sign| energy(&combined(&apart, &missed, sign)));
-            middle += dual.v.work(piece) * double_area / S::from(24);
-            middle -= inner(&material, &of_v, &of_w, double_area);
-            middle += (sum - difference) / S::from(8);
-            eta += energy(&missed);
-            norm += of_w.energy(&material, double_area);
-        }
-        middle += certificate.work_of_tractions(&state.forces, &dual.v);
+        let Sums { dual, mut middle, eta, norm, shares } = sums;
+        middle += self.within(&dual.v) + certificate.work_of_tractions(&state.forces, &dual.v);
         // r is at least and at most these times |tau_n|.
         let mut most = [0.0_f64; 2];
         for e in self.contact() {
@@ -234,8 +296,9 @@ impl<S: Enclosing> Forces<'_, S> {
         let (eta, norm) = (point(root(eta)), point(root(norm)));
         let force = point(cover.map_or(0.0, Cover::force));
         let loose = point(2.0 * self.loose) * (norm + eta / Interval::from(2));
+        let factors = [0, 1].map(|side| most[side].max(missed.open[side]));
         let away = |side: usize| {
-            let k = most[side].max(missed.open[side]);
+            let k = factors[side];
             if k.is_finite() {
                 (reach(eta, point(k), self.mean) + point(missed.covered[side]) * force + loose).hi()
             } else {
@@ -246,9 +309,62 @@ impl<S: Enclosing> Forces<'_, S> {
             (point(middle.lower()) - point(away(0))).lo(),
             (point(middle.upper()) + point(away(1))).hi(),
         ];
-        Ok([
+        let between = [
             if ends[0].is_nan() { f64::NEG_INFINITY } else { ends[0] },
             if ends[1].is_nan() { f64::INFINITY } else { ends[1] },
-        ])
+        ];
+        Ok(ByPair { between, shares, factors })
+    }
+}
+
+/// What is summed over the triangles for a pair.
+struct Sums<S> {
+    dual: Balanced<S>,
+    /// R0
+    middle: S,
+    /// eta^2
+    eta: S,
+    /// |w|_a^2, where the error of data is to be multiplied with it.
+    norm: S,
+    shares: Vec<f64>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::{Plane, Stress};
+
+    fn stress(k: i32) -> Stress<f64> {
+        Stress::new([1, 5, 7].map(|m| f64::from((m * k * k + 3 * k) % 11) - 5.0))
+    }
+
+    fn composite(k: i32, bulges: bool) -> Composite<f64> {
+        let at = |i: usize, j: usize| stress(k + 3 * i as i32 + j as i32);
+        Composite {
+            corners: [0, 1, 2].map(|i| [0, 1].map(|j| at(i, j))),
+            centre: stress(k + 17),
+            bulges: bulges.then(|| [0, 1, 2].map(|i| [0, 1, 2].map(|j| at(i + 4, j)))),
+        }
+    }
+
+    #[test]
+    fn the_product_of_two_stresses_is_that_of_their_energies() {
+        let material = Material::lame(1.3, 0.7, Plane::Strain);
+        for bent in [false, true] {
+            let (a, b) = (composite(2, bent), composite(5, false));
+            let sum = |sign: f64| Composite {
+                corners: [0, 1, 2]
+                    .map(|i| [0, 1].map(|j| a.corners[i][j] + b.corners[i][j] * sign)),
+                centre: a.centre + b.centre * sign,
+                bulges: a.bulges,
+            };
+            let [plus, minus] = [1.0, -1.0].map(|sign| sum(sign).energy(&material, 0.6));
+            let found = product(&material, &a, &b, 0.6);
+            let expected = (plus - minus) / 4.0;
+            assert!((found - expected).abs() <= 1e-13 * plus, "{found}, {expected}");
+            // Control: a bulge counts.
+            let flat = Composite { bulges: None, ..a };
+            assert!((product(&material, &flat, &b, 0.6) != found) == bent);
+        }
     }
 }

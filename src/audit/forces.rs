@@ -18,7 +18,6 @@ use super::certificate::{Certificate, Edge, Piece, Role, Shape, exactly, is_obli
 use super::checks::Rejection;
 use super::dual::WrongPair;
 use super::proof::Proof;
-use crate::kernel::composite::Affine;
 use crate::kernel::{Ball, Enclosing, Interval, Material, Scalar, Stress};
 
 /// M and G, from above.
@@ -67,7 +66,7 @@ pub(crate) fn along<S: Enclosing>(
 }
 
 /// w . d, without a rounding error where d is an axis.
-fn component<S: Enclosing>(w: Vector2<S>, d: Vector2<S>) -> S {
+pub(crate) fn component<S: Enclosing>(w: Vector2<S>, d: Vector2<S>) -> S {
     let (zero, one) = (S::from(0), S::from(1));
     match (0..2).find(|&c| d[1 - c] == zero && (d[c] == one || d[c] == -one)) {
         Some(c) if d[c] == one => w[c],
@@ -306,6 +305,8 @@ pub struct Forces<'a, S> {
     pub mean: Mean,
     /// The error of L(w) and a(v, w) for each unit of |w|_a, as data oscillate.
     pub loose: f64,
+    /// int f . w - a(v, w) for w with a component 1 at a point, and for such a bulge on an edge.
+    unbalanced: Shape<S>,
 }
 
 impl Certificate {
@@ -383,10 +384,8 @@ impl Certificate {
         let forces = Forces::new(self, state, &evidence.of, mean);
         let cover = evidence.cover.as_ref().and_then(|w| forces.cover(w).ok());
         let found = forces.between(&evidence.liftings, cover.as_ref());
-        let pairs = evidence.pairs.iter();
-        let pairs = pairs.map(|(target, pair)| forces.by_pair(pair, *target, cover.as_ref()));
-        let pairs = pairs.collect::<Result<_, _>>()?;
-        Ok((cover, found, pairs))
+        let pairs = forces.by_pairs(&evidence.pairs, cover.as_ref())?;
+        Ok((cover, found, pairs.into_iter().map(|pair| pair.between).collect()))
     }
 }
 
@@ -404,7 +403,18 @@ impl<'a, S: Enclosing> Forces<'a, S> {
         let square = |piece: &Piece| piece.oscillation * piece.oscillation;
         let oscillation = certificate.pieces.iter().map(square).sum::<f64>().sqrt();
         // Quadrature is not rounded outwards, either.
-        Forces { certificate, state, of, mean, loose: (oscillation + certificate.lift()) / 2.0 }
+        let loose = (oscillation + certificate.lift()) / 2.0;
+        Forces { certificate, state, of, mean, loose, unbalanced: unbalanced(certificate, state) }
+    }
+
+    /// int f . w - a(v, w)
+    pub(crate) fn within(&self, w: &Shape<S>) -> S {
+        let sum = |forces: &[Vector2<S>], w: &[Vector2<S>]| {
+            forces.iter().zip(w).fold(S::from(0), |sum, (f, w)| sum + f.dot(w))
+        };
+        let Shape { points, bulges } = &self.unbalanced;
+        let between = bulges.iter().zip(&w.bulges).map(|(forces, w)| sum(forces, w));
+        between.fold(sum(points, &w.points), |sum, more| sum + more)
     }
 
     /// The displacement of a lifting on the triangles of the certificate.
@@ -502,41 +512,26 @@ impl<'a, S: Enclosing> Forces<'a, S> {
     fn values(&self, shapes: &[Shape<S>]) -> Vec<Value<S>> {
         let (certificate, state) = (self.certificate, self.state);
         let zero = S::from(0);
-        // L(w) + a(v, w) + int tau : eps(w), the latter two negative and halved; |w|_a^2
-        let mut sums = vec![(zero, zero); shapes.len()];
-        for (t, piece) in certificate.pieces.iter().enumerate() {
-            let (triangle, material) = (&state.triangles[t], piece.material());
-            let double_area = triangle.double_area();
-            let loaded = piece.body != [[0.0; 2]; 3];
-            let of_v = state.v.stress(piece, triangle);
-            for ((middle, square), w) in sums.iter_mut().zip(shapes) {
-                let of_w = w.stress(piece, triangle);
-                *square += of_w.energy(&material, double_area);
-                let mut twice = -inner(&material, &of_v, &of_w, double_area);
-                if loaded {
-                    // int f . w is in L(w), and half of it in int tau : eps(w).
-                    twice += w.work(piece) * double_area / S::from(24);
-                }
-                *middle += twice / S::from(2);
+        let mut squares = vec![zero; shapes.len()];
+        for (piece, triangle) in certificate.pieces.iter().zip(&state.triangles) {
+            let normals = [0, 1, 2].map(|i| triangle.scaled_normal(i));
+            let per_area = S::from(1) / (triangle.double_area() * S::from(24));
+            for (square, w) in squares.iter_mut().zip(shapes) {
+                *square += strain_energy(w, piece, &normals) * per_area;
             }
         }
-        let given: Vec<S> =
-            shapes.iter().map(|w| certificate.work_of_tractions(&state.forces, w)).collect();
-        for ((middle, _), work) in sums.iter_mut().zip(given) {
-            *middle += work;
-        }
-        for (e, edge) in certificate.edges.iter().enumerate() {
-            let [Some(owner), None] = state.topology.owners[e] else { continue };
-            let force = state.outward[owner.piece][owner.local];
-            for ((middle, _), w) in sums.iter_mut().zip(shapes) {
-                *middle -= w.work_of(force, edge.ends, e) / S::from(2);
+        let value = |(w, square): (&Shape<S>, S)| {
+            // Half of int f . w is in int tau : eps(w) / 2, as is half of the work of all tractions.
+            let mut middle = self.within(w) / S::from(2);
+            middle += certificate.work_of_tractions(&state.forces, w);
+            for (e, edge) in certificate.edges.iter().enumerate() {
+                let [Some(owner), None] = state.topology.owners[e] else { continue };
+                let force = state.outward[owner.piece][owner.local];
+                middle -= w.work_of(force, edge.ends, e) / S::from(2);
             }
-        }
-        let value = |(middle, square): (S, S)| Value {
-            middle,
-            norm: square.split(|_| zero, |square| square).sqrt(),
+            Value { middle, norm: square.split(|_| zero, |square| square).sqrt() }
         };
-        sums.into_iter().map(value).collect()
+        shapes.iter().zip(squares).map(value).collect()
     }
 
     /// phi - w . d on an edge of Gamma_C: what its Bernstein coefficients are at least and at most.
@@ -710,6 +705,67 @@ impl<'a, S: Enclosing> Forces<'a, S> {
     }
 }
 
+/// int f . w - a(v, w) by the values of w at points and its bulges on edges: grad l_i is minus the scaled normal N_i over J = 2
+/// |T|, so of sigma = C eps(v), affine with the values s_i, l_i has the work -1/6 (s_0 + s_1 + s_2) N_i and 4 l_j l_k
+/// -1/6 ((S + s_j) N_k + (S + s_k) N_j), S being the sum; of f they have J/24 (F + f_i) and J/30 (2 F - f_i), F being the sum.
+fn unbalanced<S: Enclosing>(certificate: &Certificate, state: &Balanced<S>) -> Shape<S> {
+    let sixth = S::from(1) / S::from(6);
+    let mut points = vec![Vector2::zeros(); state.points.len()];
+    let mut bulges = vec![Vector2::zeros(); certificate.edges.len()];
+    for (piece, triangle) in certificate.pieces.iter().zip(&state.triangles) {
+        let sigma = state.v.stress(piece, triangle);
+        let normals = [0, 1, 2].map(|i| triangle.scaled_normal(i));
+        let all = [0, 1, 2].map(|i| sigma.at_corner(i));
+        let sum = all[0] + all[1] + all[2];
+        let body = piece.body.map(exactly::<S>);
+        let loads = body[0] + body[1] + body[2];
+        let is_loaded = piece.body != [[0.0; 2]; 3];
+        let double_area = triangle.double_area();
+        for i in 0..3 {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            let mut force = sum.traction(normals[i]) * sixth;
+            if is_loaded {
+                force += (loads + body[i]) * (double_area / S::from(24));
+            }
+            points[piece.vertices[i]] += force;
+            let mut force =
+                (sum + all[j]).traction(normals[k]) + (sum + all[k]).traction(normals[j]);
+            force = force * sixth;
+            if is_loaded {
+                force += (loads * S::from(2) - body[i]) * (double_area / S::from(30));
+            }
+            bulges[piece.edges[i]] += force;
+        }
+    }
+    Shape { points, bulges: Some(bulges) }
+}
+
+/// 24 J times int eps(w) : C eps(w) on a triangle with these scaled normals, J = 2 |T|: from -J grad w at the vertices, which is the
+/// sum of w_i (x) N_i and of 4 (b_j (x) N_k + b_k (x) N_j); eps : C eps is mu ((e_xx - e_yy)^2 + 4 e_xy^2) + (lambda + mu) (tr e)^2.
+fn strain_energy<S: Enclosing>(w: &Shape<S>, piece: &Piece, normals: &[Vector2<S>; 3]) -> S {
+    let [lambda, mu] = piece.material.map(S::exactly);
+    let [a, b, c] = piece.vertices.map(|p| w.points[p]);
+    // From differences, so that a translation has no gradient in any number type.
+    let (b, c) = (b - a, c - a);
+    let product =
+        |v: Vector2<S>, n: Vector2<S>| [v[0] * n[0], v[0] * n[1], v[1] * n[0], v[1] * n[1]];
+    let plus = |p: [S; 4], q: [S; 4]| [0, 1, 2, 3].map(|i| p[i] + q[i]);
+    let square = |[xx, xy, yx, yy]: [S; 4]| {
+        let (apart, shear, trace) = (xx - yy, xy + yx, xx + yy);
+        (apart * apart + shear * shear) * mu + trace * trace * (lambda + mu)
+    };
+    let base = plus(product(b, normals[1]), product(c, normals[2]));
+    let Some(bulges) = w.bulges_of(piece) else { return square(base) * S::from(12) };
+    let four = S::from(4);
+    let at = [0, 1, 2].map(|i| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        let of_bulges = plus(product(bulges[j], normals[k]), product(bulges[k], normals[j]));
+        plus(base, of_bulges.map(|x| x * four))
+    });
+    let sum = plus(plus(at[0], at[1]), at[2]);
+    at.into_iter().fold(square(sum), |total, gradient| total + square(gradient))
+}
+
 /// The largest value of x eta + k (M^2 - x^2) for 0 <= x <= M: k M^2 + eta^2 / (4 k) where that is taken inside, M eta at the
 /// end.
 pub(crate) fn reach(eta: Interval, k: Interval, mean: Mean) -> Interval {
@@ -721,28 +777,13 @@ pub(crate) fn reach(eta: Interval, k: Interval, mean: Mean) -> Interval {
     k * Interval::point(mean.square) + eta * eta / (two * two * k)
 }
 
-/// a : C^-1 b
-fn paired<S: Scalar>(material: &Material<S>, a: Stress<S>, b: Stress<S>) -> S {
+/// Twice the product of the deviators, and that of the spheres.
+pub(crate) fn products<S: Scalar>(a: Stress<S>, b: Stress<S>) -> [S; 2] {
     let ([x, y, s], [p, q, t]) = (a.components(), b.components());
-    let two = S::from(2);
-    // As the square is: the deviators over 2 mu, the spheres over 2 (lambda + mu).
-    let deviators = (x - y) * (p - q) / two + two * s * t;
-    let spheres = (x + y) * (p + q) / two;
-    deviators / (two * material.mu()) + spheres / (two * (material.lambda() + material.mu()))
+    [(x - y) * (p - q) + (s + s) * (t + t), (x + y) * (p + q)]
 }
 
-/// int_T a : C^-1 b. Affine functions with the values a_i, b_i have the integral |T| / 12 (sum a_i b_i + sum a_i sum b_i).
-pub(crate) fn inner<S: Scalar>(
-    material: &Material<S>,
-    a: &Affine<S>,
-    b: &Affine<S>,
-    double_area: S,
-) -> S {
-    if a.beyond.is_none() && b.beyond.is_none() {
-        return paired(material, a.base, b.base) * double_area / S::from(2);
-    }
-    let [p, q, r] = [0, 1, 2].map(|i| a.at_corner(i));
-    let [s, t, u] = [0, 1, 2].map(|i| b.at_corner(i));
-    let pair = |a, b| paired(material, a, b);
-    (pair(p, s) + pair(q, t) + pair(r, u) + pair(p + q + r, s + t + u)) * double_area / S::from(24)
+/// 4 a : C^-1 b from these, or from their sums: the deviators over 2 mu, the spheres over 2 (lambda + mu).
+pub(crate) fn per_moduli<S: Scalar>(material: &Material<S>, [deviator, sphere]: [S; 2]) -> S {
+    deviator / material.mu() + sphere / (material.lambda() + material.mu())
 }

@@ -133,13 +133,12 @@ impl Certificate {
             let forces: f64 = loads.forces.iter().flatten().flatten().copied().map(size).sum();
             let body: f64 = piece.body.iter().flatten().map(|f| f.abs()).sum();
             let allowed = IMBALANCE * (forces + area * body);
-            let resultant = loads.resultant(triangle);
+            let [x, y, moment] = &state.resultants[t];
             // Places of cuts are not doubles: what their balls leave open may be balance.
             let near = |x: &S, most: f64| x.lower() <= most && x.upper() >= -most;
             // What a support against a free motion takes is not on the edges.
             let is_stopped = state.closed.stops.iter().any(|stop| stop.root == t);
-            let balances = resultant.force.iter().all(|f| near(f, allowed))
-                && near(&resultant.moment, allowed * reach);
+            let balances = [x, y].iter().all(|f| near(f, allowed)) && near(moment, allowed * reach);
             if !(is_stopped || balances) {
                 return Err(Rejection::OutOfBalance { triangle: t });
             }

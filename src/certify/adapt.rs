@@ -2,7 +2,7 @@
 //! shares in the square of the bound, and again, until the bound is as small as it is to be.
 //!
 //! The target may be a contact force in place of the energy norm: then the force is to lie between two numbers that are that
-//! near to each other, and the shares are those of the bound times those of the dual pairs that prove the force.
+//! near to each other, and the shares are those in the distance of the two (docs/theory.md, 7.7).
 //!
 //! A mesh is refined where the fewest triangles have the share [`THETA`] of the whole (Doerfler's marking), by
 //! [`newest-vertex bisection`](crate::fem::mesh::bisection). Newton's method starts from the coarser solution.
@@ -208,7 +208,7 @@ pub fn adapt_to(
         } else if let Some(Err(reason)) = force.map(|boundary| force_of(&certified, boundary)) {
             Err(Some(reason))
         } else if relative.is_finite() {
-            let finer = problem.mesh.bisected(&newest, &marked(&shares(&certified, force)));
+            let finer = problem.mesh.bisected(&newest, &marked(shares(&certified, force)));
             finer.map_err(|error| Some(error.to_string()))
         } else {
             Err(Some("the body is at rest, its energy is 0".to_owned()))
@@ -265,16 +265,10 @@ fn within(certified: &Continuous, boundary: &str) -> f64 {
     force_of(certified, boundary).map_or(f64::INFINITY, |[low, high]| (high - low) / (low + high))
 }
 
-/// The roots of what the triangles share in the bound, or in what a force may be off: that of the bound times that of the
-/// dual pairs.
-fn shares(certified: &Continuous, force: Option<&str>) -> Vec<f64> {
+/// The roots of what the triangles share in the bound, or in the width of what a force lies between.
+fn shares<'a>(certified: &'a Continuous, force: Option<&str>) -> &'a [f64] {
     let (own, dual) = (&certified.indicators, &certified.quantities.indicators);
-    match force {
-        Some(_) if dual.len() == own.len() => {
-            own.iter().zip(dual).map(|(own, dual)| (own * dual).sqrt()).collect()
-        }
-        _ => own.clone(),
-    }
+    if force.is_some() && dual.len() == own.len() { dual } else { own }
 }
 
 /// Degrees of freedom on a mesh.

@@ -257,9 +257,9 @@ impl<'a, E: Element<N, M>, const N: usize, const M: usize> Lifter<'a, E, N, M> {
                     Boundary::Held(held, _) => Boundary::Held(held, [0.0; 2]),
                     Boundary::Supported(d, ..) => Boundary::Supported(d, 0.0, None),
                     Boundary::Contact(k) if !open[k] => {
-                        let d = parts.contact[k].directions[0];
-                        if is_oblique(d.into()) || parts.contact[k].along().is_some() {
-                            return Err("contact is not along the normal of an axis".to_owned());
+                        let [d, e] = parts.contact[k].directions;
+                        if is_oblique(d.into()) || d != e {
+                            return Err("contact does not act along an axis".to_owned());
                         }
                         let held = [d[0] != 0.0, d[1] != 0.0];
                         for vertex in mesh.ends(parts.contact[k].edge) {

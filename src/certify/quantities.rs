@@ -20,6 +20,7 @@ use super::balanced::Balanced;
 use super::build::Built;
 use super::certificate::{Certificate, Role};
 use super::contact::Profile;
+use super::dual::ByPair;
 use super::field::Field;
 use super::forces::{Cover, Evidence, Forces, Mean, Motion, Ramp, Target, WrongLifting};
 use super::lifting::Lifter;
@@ -41,7 +42,8 @@ pub struct Quantities {
     pub list: Vec<Quantity>,
     /// The evidence for them, beside the certificate.
     pub evidence: Evidence,
-    /// |C eps(w) - rho| of the dual pairs on the triangles of the mesh; empty where there are none.
+    /// The roots of what triangles of the mesh contribute to the width of the intervals by dual pairs; empty where there are
+    /// none.
     pub indicators: Vec<f64>,
 }
 
@@ -239,9 +241,13 @@ pub(super) fn prove(
     let zones = zones(&built.certificate, state, &line, mean);
     let forces = Forces::new(&built.certificate, state, &line.of, mean);
     let open = open(parts, v, mean);
-    let (list, mut evidence) = match solution.degree {
-        1 => list::<P1, 3, 2>(parts, built, (&forces, &line.names), (&open, asked)),
-        _ => list::<P2, 6, 3>(parts, built, (&forces, &line.names), (&open, asked)),
+    // Those in M^2.
+    let contact = state.on_contact.iter().map(|term| term.upper());
+    let shares = proof.shares.iter().zip(contact).map(|(share, contact)| (share + contact) / 4.0);
+    let certified = (&forces, &*shares.collect::<Vec<f64>>());
+    let (list, mut evidence, limits) = match solution.degree {
+        1 => list::<P1, 3, 2>((parts, built), &line.names, certified, (&open, asked)),
+        _ => list::<P2, 6, 3>((parts, built), &line.names, certified, (&open, asked)),
     };
     let mut list: Vec<Quantity> = list
         .into_iter()
@@ -259,19 +265,13 @@ pub(super) fn prove(
     list.extend(peaks);
     list.sort_by(|a, b| (&a.boundary, a.name).cmp(&(&b.boundary, b.name)));
     (evidence.names, evidence.of) = (line.names, line.of);
-    let indicators = indicators(&evidence, built, parts.mesh.triangles().len());
-    Quantities { mean_stress: mean.root, zones, list, evidence, indicators }
-}
-
-/// |C eps(w) - rho| of the dual pairs, all together, on the triangles of the mesh.
-fn indicators(evidence: &Evidence, built: &Built, triangles: usize) -> Vec<f64> {
-    let proofs = evidence.pairs.iter().filter_map(|(_, pair)| pair.evaluate::<f64>().ok());
-    let mut squares = Vec::new();
-    for proof in proofs {
-        squares.resize(triangles, 0.0);
-        built.origins.iter().zip(&proof.shares).for_each(|(&t, share)| squares[t] += share);
+    let mut indicators = Vec::new();
+    if !limits.is_empty() {
+        indicators.resize(parts.mesh.triangles().len(), 0.0);
+        built.origins.iter().zip(&limits).for_each(|(&t, limit)| indicators[t] += limit);
+        indicators.iter_mut().for_each(|square: &mut f64| *square = square.max(0.0).sqrt());
     }
-    squares.into_iter().map(|square: f64| square.max(0.0).sqrt()).collect()
+    Quantities { mean_stress: mean.root, zones, list, evidence, indicators }
 }
 
 /// The value of the discrete solution.
@@ -362,34 +362,74 @@ fn off_contact(parts: &Parts, beyond: i32) -> Vec<bool> {
     open
 }
 
-/// Where w is what it is to be, and where rho has a traction: so many edges beyond the last one that is pressed from end to
-/// end. The first is best for lower bounds; for upper ones rho ends where the pressure is not small, and w where the body is
-/// off the obstacle.
-const SPLITS: [[i32; 2]; 4] = [[0, 0], [1, -1], [1, -2], [1, -4]];
+/// Displacements of least energy, with the edges of Gamma_C where they are free: so many beyond the last one that is pressed
+/// from end to end, or before it.
+struct Lifters<'a, E, const N: usize, const M: usize> {
+    parts: &'a Parts<'a>,
+    names: &'a [String],
+    made: BTreeMap<i32, Option<(Vec<bool>, Lifter<'a, E, N, M>)>>,
+}
 
-/// The dual pairs that bound a contact force from below and from above, each with what it lies between: of those that are
-/// tried the best, if that is nearer than `first`.
-fn best_pairs<E: Element<N, M>, const N: usize, const M: usize>(
-    lifters: &BTreeMap<i32, (Vec<bool>, Lifter<E, N, M>)>,
-    (forces, built): (&Forces<Ball>, &Built),
-    (target, cover): (Target, Option<&Cover>),
-    first: [f64; 2],
-) -> Vec<([f64; 2], Certificate)> {
-    let tried = SPLITS.iter().filter_map(|[of_w, of_rho]| {
-        let ((_, with_w), (open, with_rho)) = (lifters.get(of_w)?, lifters.get(of_rho)?);
-        let w = with_w.field(target).ok()?;
-        let pair = with_rho.pair((target, &w), built, open).ok()?;
-        Some((forces.by_pair(&pair, target, cover).ok()?, pair))
-    });
-    let tried: Vec<([f64; 2], Certificate)> = tried.collect();
-    let lowest = (0..tried.len()).max_by(|&a, &b| tried[a].0[0].total_cmp(&tried[b].0[0]));
-    let highest = (0..tried.len()).min_by(|&a, &b| tried[a].0[1].total_cmp(&tried[b].0[1]));
-    let of_use = [
-        lowest.filter(|&k| tried[k].0[0] > first[0]),
-        highest.filter(|&k| tried[k].0[1] < first[1]),
-    ];
-    let tried = tried.into_iter().enumerate();
-    tried.filter(|(k, _)| of_use.contains(&Some(*k))).map(|(_, pair)| pair).collect()
+impl<'a, E: Element<N, M>, const N: usize, const M: usize> Lifters<'a, E, N, M> {
+    fn at(&mut self, beyond: i32) -> Option<&(Vec<bool>, Lifter<'a, E, N, M>)> {
+        let (parts, names) = (self.parts, self.names);
+        let made = self.made.entry(beyond).or_insert_with(|| {
+            let open = off_contact(parts, beyond);
+            let lifter = Lifter::new(parts, names, &open).ok()?;
+            Some((open, lifter))
+        });
+        made.as_ref()
+    }
+
+    /// A dual pair whose w is what it is to be, and whose rho has a traction, so many edges beyond the last one that is pressed
+    /// from end to end, with what it proves.
+    fn pair(
+        &mut self,
+        [of_w, of_rho]: [i32; 2],
+        target: Target,
+        built: &Built,
+        (forces, cover): (&Forces<Ball>, Option<&Cover>),
+    ) -> Option<Tried> {
+        let w = self.at(of_w)?.1.field(target).ok()?;
+        let (open, lifter) = self.at(of_rho)?;
+        let pair = [(target, lifter.pair((target, &w), built, open).ok()?)];
+        let found = forces.by_pairs(&pair, cover).ok()?.pop()?;
+        let [(_, pair)] = pair;
+        Some(Tried { found, pair })
+    }
+}
+
+/// A dual pair with what it proves.
+struct Tried {
+    found: ByPair,
+    pair: Certificate,
+}
+
+/// rho ends at most this many edges before the last one that is pressed from end to end.
+const FARTHEST: i32 = 64;
+
+/// The best dual pairs for the ends of a force, each with the ends that it is best for. For the lower end w and rho end with the
+/// last edge that is pressed from end to end. For the upper one rho ends where the pressure is not small, 1, 2, 4 ... edges
+/// before, as long as that helps, and w where the body is off the obstacle, a quarter as far beyond.
+fn best_pairs(mut pair: impl FnMut([i32; 2]) -> Option<Tried>) -> Vec<(Tried, Vec<usize>)> {
+    let Some(lowest) = pair([0, 0]) else { return Vec::new() };
+    let mut highest: Option<Tried> = None;
+    let mut before = 1;
+    while before <= FARTHEST {
+        let Some(tried) = pair([(before / 4).max(1), -before]) else { break };
+        let end = |tried: &Tried, side: usize| tried.found.between[side];
+        if highest.as_ref().is_some_and(|best| end(&tried, 1) >= end(best, 1)) {
+            break;
+        }
+        highest = Some(tried);
+        before *= 2;
+    }
+    match highest {
+        Some(highest) if highest.found.between[1] < lowest.found.between[1] => {
+            vec![(lowest, vec![0]), (highest, vec![1])]
+        }
+        _ => vec![(lowest, vec![0, 1])],
+    }
 }
 
 /// The peak is at least the mean over all of a boundary, or over what is left of it without a stretch that has little force.
@@ -422,13 +462,14 @@ fn peak(force: &Quantity, zones: &[Zone], line: &Line, solution: &Solution) -> O
 /// A number of a boundary between two others, or why not.
 type Found = (Name, usize, Option<Ramp>, Result<[f64; 2], String>);
 
-/// Forces, moments and reactions of all boundaries.
+/// Forces, moments and reactions of all boundaries, with what triangles contribute to the width of those by dual pairs; `shares`
+/// are those of the triangles in M^2.
 fn list<E: Element<N, M>, const N: usize, const M: usize>(
-    parts: &Parts,
-    built: &Built,
-    (forces, names): (&Forces<Ball>, &[String]),
+    (parts, built): (&Parts, &Built),
+    names: &[String],
+    (forces, shares): (&Forces<Ball>, &[f64]),
     (open, asked_for): (&[bool], &Asked),
-) -> (Vec<Found>, Evidence) {
+) -> (Vec<Found>, Evidence, Vec<f64>) {
     let mut asked: Vec<(Name, usize, Option<Ramp>)> = Vec::new();
     // The direction of contact of a boundary, if it is along an axis: then the force says all of its components.
     let mut axes = vec![None; names.len()];
@@ -466,7 +507,7 @@ fn list<E: Element<N, M>, const N: usize, const M: usize>(
         Ok(lifter) => lifter,
         Err(error) => {
             let why = |(name, boundary, weight)| (name, boundary, weight, Err(error.to_string()));
-            return (asked.into_iter().map(why).collect(), Evidence::default());
+            return (asked.into_iter().map(why).collect(), Evidence::default(), Vec::new());
         }
     };
     let all = Target { boundary: None, motion: Motion::Along(None) };
@@ -492,21 +533,28 @@ fn list<E: Element<N, M>, const N: usize, const M: usize>(
         };
         asked_for.forces.iter().any(is)
     };
-    if evidence.liftings.iter().any(|(target, _)| to_second_order(target)) {
-        let splits: BTreeSet<i32> = SPLITS.into_iter().flatten().collect();
-        let lifters = splits.into_iter().filter_map(|beyond| {
-            let open = off_contact(parts, beyond);
-            let lifter = Lifter::<E, N, M>::new(parts, names, &open).ok()?;
-            Some((beyond, (open, lifter)))
-        });
-        let lifters: BTreeMap<i32, _> = lifters.collect();
-        for (k, &(target, _)) in evidence.liftings.iter().enumerate() {
-            if let (true, Ok(ends)) = (to_second_order(&target), &between[k]) {
-                let goal = (target, cover.as_ref());
-                for (ends, pair) in best_pairs(&lifters, (forces, built), goal, *ends) {
-                    evidence.pairs.push((target, pair));
-                    by_pairs.push(ends);
-                }
+    let mut limits = Vec::new();
+    let mut lifters = Lifters::<E, N, M> { parts, names, made: BTreeMap::new() };
+    for (k, &(target, _)) in evidence.liftings.iter().enumerate() {
+        let Ok(first) = (if to_second_order(&target) { between[k].clone() } else { continue })
+        else {
+            continue;
+        };
+        let goal = (forces, cover.as_ref());
+        for (Tried { found, pair }, sides) in
+            best_pairs(|splits| lifters.pair(splits, target, built, goal))
+        {
+            let [low, high] = found.between;
+            let helps = |side: &usize| if *side == 0 { low > first[0] } else { high < first[1] };
+            let sides: Vec<usize> = sides.into_iter().filter(helps).collect();
+            for &side in &sides {
+                limits.resize(shares.len(), 0.0);
+                let more = found.limits(side, shares);
+                limits.iter_mut().zip(more).for_each(|(limit, more)| *limit += more);
+            }
+            if !sides.is_empty() {
+                evidence.pairs.push((target, pair));
+                by_pairs.push(found.between);
             }
         }
     }
@@ -539,5 +587,5 @@ fn list<E: Element<N, M>, const N: usize, const M: usize>(
         }
         found.push((name, boundary, weight, interval));
     }
-    (found, evidence)
+    (found, evidence, limits)
 }

@@ -188,13 +188,20 @@ fn proved_force(r: &Results, boundary: &str, thickness: f64) -> Option<String> {
     let continuous = r.certificate.as_ref()?.continuous.as_ref()?;
     let [low, high] = continuous.contact_force(boundary)?;
     let proved = if continuous.rigorous { "proved" } else { "with a reservation" };
-    let [low, high] = [outwards(low, -1.0), outwards(high, 1.0)].map(|end| short(end * thickness));
-    Some(format!("{proved} between {low} and {high}"))
+    Some(format!("{proved} {}", between([low * thickness, high * thickness])))
 }
 
-/// An end of an interval, for four digits: half of the last of them outwards, for a number that begins with 1.
-fn outwards(end: f64, sign: f64) -> f64 {
-    end + sign * 5e-4 * end.abs()
+/// Two numbers, rounded outwards to two digits of their distance, and no fewer than other numbers have: by half of the last
+/// digit, for a number that begins with 1.
+fn between([low, high]: [f64; 2]) -> String {
+    let distance = (high - low) / low.abs().max(high.abs());
+    let digits =
+        if distance > 0.0 { (2.0 - distance.log10()).ceil().clamp(4.0, 12.0) } else { 4.0 };
+    let digits = digits as i32;
+    let [low, high] = [(low, -0.5), (high, 0.5)].map(|(end, half)| {
+        numbers::short(end + half * 10_f64.powi(1 - digits) * end.abs(), digits as usize)
+    });
+    format!("between {low} and {high}")
 }
 
 fn stress(r: &Results, shown: &Shown, lines: &mut Lines) {
@@ -363,10 +370,9 @@ pub fn audited(audit: &Audit, case: Option<(&Path, Option<&str>)>) -> String {
         String::new()
     };
     lines.line("bound", format!("{}{size}", short(header.bound)));
-    for (i, (name, [low, high])) in audit.forces().enumerate() {
+    for (i, (name, ends)) in audit.forces().enumerate() {
         let heading = if i == 0 { "forces" } else { "" };
-        let [low, high] = [outwards(low, -1.0), outwards(high, 1.0)].map(short);
-        lines.line(heading, format!("{}: between {low} and {high}", quote::line(&name)));
+        lines.line(heading, format!("{}: {}", quote::line(&name), between(ends)));
     }
     let problem = of_problem(certificate.problem(proof).as_deref());
     let reservation = match case {

@@ -519,7 +519,7 @@ fn control_a_wrong_load_is_seen_by_the_bound() {
     let (problem, solution) = block(8);
     let certified = certify(&problem, &solution).unwrap();
     let mut certificate = certified.certificate;
-    certificate.pieces.iter_mut().for_each(|piece| piece.body.iter_mut().for_each(|f| f[1] *= 2.0));
+    certificate.pieces.iter_mut().for_each(|piece| piece.body.iter_mut().for_each(|f| f[1] *= 4.0));
     let bound = certificate.evaluate::<Interval>().unwrap().bound;
     assert!(bound > 3.0 * certified.bound, "{bound} {}", certified.bound);
 }

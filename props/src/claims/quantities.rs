@@ -69,6 +69,31 @@ pub fn a_dual_pair_gives_the_force<S: Ordered>(
     Verdict::Holds("always")
 }
 
+/// What contact adds to a dual pair's force from above: r (g - u_n) + |sigma_n| omega <= k (A + B) where r <= k |tau_n| and omega
+/// <= k (g - v_n).
+pub fn contact_adds_to_the_upper_end_at_most_a_and_b<S: Ordered>(
+    [u, v, g, s, t, r, omega, k]: [S; 8],
+) -> Verdict {
+    let zero = S::from(0);
+    given!(u <= g && v <= g && s <= zero && t <= zero);
+    given!(r <= -k * t && omega <= k * (g - v));
+    let (a, b) = (s * (v - g), t * (u - g));
+    ensure!(r * (g - u) - s * omega <= k * (a + b));
+    Verdict::Holds("always")
+}
+
+/// B dropped: the body may lift off where tau presses.
+pub fn control_the_upper_end_without_b<S: Ordered>(
+    [u, v, g, s, t, r, omega, k]: [S; 8],
+) -> Verdict {
+    let zero = S::from(0);
+    given!(u <= g && v <= g && s <= zero && t <= zero);
+    given!(r <= -k * t && omega <= k * (g - v));
+    let a = s * (v - g);
+    ensure!(r * (g - u) - s * omega <= k * a);
+    Verdict::Holds("always")
+}
+
 /// r of the wrong sign.
 pub fn control_the_traction_turned<S: Ordered>(
     [l, avw, s, q, t, x, r, u, v, g, so]: [S; 11],
@@ -154,6 +179,21 @@ mod row {
         x[3] = x[3].abs() + Exact::from(1);
         x[2] = -x[3] - x[2].abs();
         x[0] = x[1] - x[0].abs();
+    }
+
+    /// r and omega no larger than they may be.
+    fn onto_the_upper_end(x: &mut [Exact]) {
+        for c in [3, 4] {
+            x[c] = -x[c].abs();
+        }
+        for c in [0, 1] {
+            if x[c] > x[2] {
+                x[c] = x[2];
+            }
+        }
+        let (r, omega) = (-x[7] * x[4], x[7] * (x[2] - x[1]));
+        x[5] = r - x[5].abs();
+        x[6] = omega - x[6].abs();
     }
 
     fn onto_the_inside(x: &mut [Exact]) {
@@ -275,12 +315,18 @@ mod row {
             [l, a_v_w, s, q, t, x, r, u_n, v_n, g, s_o],
             ["always"]
         );
+        let upper = statement!(
+            contact_adds_to_the_upper_end_at_most_a_and_b,
+            [u_n, v_n, g, sigma_n, tau_n, r, omega, k],
+            ["always"]
+        )
+        .prepared(onto_the_upper_end);
         Claim {
             id: "26",
             items: &["the error bound"],
             title: "Forces of the true solution between two numbers",
             paper: "Nothing: the paper bounds the error of the displacement and of the contact pressure with an unknown constant.",
-            statement: "docs/theory.md, 7.7. At a point, |sigma(u) - m|^2 = |C eps(v) - tau|^2 / 4 + (sigma(u) - C eps(v)) (sigma(u) - tau) for m = (C eps(v) + tau) / 2, and on Gamma_C (sigma_n - tau_n) (u_n - v_n) = G - A - B with A, B >= 0: so |sigma(u) - m|^2 + A + B = M^2 = D^2 / 4 + G. Where v is off the obstacle by d the true force is at most A / d, where tau presses with p the true opening is at most B / p. x eta + k (M^2 - x^2) is at most k M^2 + eta^2 / (4 k), and M eta if eta >= 2 k M. The force by a dual pair (w, rho), [7.8], is an identity. The checker of forces `certify::forces` is generic over its numbers: with balls its intervals are around those in rationals, by no more than rounding. Forces of floor, top and load on drawn bodies add up to 0 within their intervals, and those on a coarse and on a fine mesh meet.",
+            statement: "docs/theory.md, 7.7. At a point, |sigma(u) - m|^2 = |C eps(v) - tau|^2 / 4 + (sigma(u) - C eps(v)) (sigma(u) - tau) for m = (C eps(v) + tau) / 2, and on Gamma_C (sigma_n - tau_n) (u_n - v_n) = G - A - B with A, B >= 0: so |sigma(u) - m|^2 + A + B = M^2 = D^2 / 4 + G. Where v is off the obstacle by d the true force is at most A / d, where tau presses with p the true opening is at most B / p. x eta + k (M^2 - x^2) is at most k M^2 + eta^2 / (4 k), and M eta if eta >= 2 k M. The force by a dual pair (w, rho), [7.8], is an identity; where r is at most k |tau_n| and omega at most k (g - v_n), contact adds at most k (A + B) to it. The checker of forces `certify::forces` is generic over its numbers: with balls its intervals are around those in rationals, by no more than rounding. Forces of floor, top and load on drawn bodies add up to 0 within their intervals, and those on a coarse and on a fine mesh meet.",
             numbers: "every ordered field (proof); rationals; doubles.",
             kernel: &[],
             preconditions: "Green's formula, by which the integrals of these products over the body are those over its boundary.",
@@ -294,6 +340,7 @@ mod row {
                 proved(inside),
                 proved(end),
                 proved(pair),
+                proved(upper),
                 tested(mean),
                 tested(terms),
                 tested(force),
@@ -301,6 +348,7 @@ mod row {
                 tested(inside),
                 tested(end),
                 tested(pair),
+                tested(upper),
                 refuted(statement!(
                     control_the_traction_turned,
                     [l, a_v_w, s, q, t, x, r, u_n, v_n, g, s_o],
@@ -320,6 +368,11 @@ mod row {
                     control_without_the_opening_under_tau,
                     [u_n, v_n, g, sigma_n, tau_n],
                     fails "(s - t) * (u - v) == t * (v - g) - s * (v - g)"
+                )),
+                refuted(statement!(
+                    control_the_upper_end_without_b,
+                    [u_n, v_n, g, sigma_n, tau_n, r, omega, k],
+                    fails "r * (g - u) - s * omega <= k * a"
                 )),
                 refuted(statement!(
                     control_without_the_square_of_eta,
