@@ -74,7 +74,10 @@ class Cholmod:
 
 def facets_of(mesh, edges):
     """The numbers of these edges in the mesh."""
-    key = lambda pairs: pairs.min(axis=0) * mesh.p.shape[1] + pairs.max(axis=0)
+
+    def key(pairs):
+        return pairs.min(axis=0).astype(np.int64) * mesh.p.shape[1] + pairs.max(axis=0)
+
     all_keys = key(mesh.facets)
     order = np.argsort(all_keys)
     return np.sort(order[np.searchsorted(all_keys[order], key(edges.T))])

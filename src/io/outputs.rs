@@ -333,6 +333,9 @@ const LARGE_STRAIN: f64 = 0.05;
 /// Displacements above this share of the body's size likewise.
 const LARGE_DISPLACEMENT: f64 = 0.1;
 
+/// Overlaps below this share of the body's size are rounding: mesh files have nine digits or more.
+const NO_OVERLAP: f64 = 1e-9;
+
 /// A triangle whose limit of gamma0 is this many times below the median of the line spoils the line.
 const SLIVER: f64 = 8.0;
 
@@ -358,14 +361,7 @@ fn remarks(case: &Case, solution: &Solution) -> Vec<String> {
         ));
     }
     remarks.extend(overlap(case));
-    let vertices = case.problem.mesh.vertices();
-    let extent = |c: usize| {
-        let (low, high) = vertices
-            .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x[c]), h.max(x[c])));
-        high - low
-    };
-    let size = extent(0).max(extent(1));
+    let size = size(case);
     let largest = solution.quantities.max_displacement;
     if largest > LARGE_DISPLACEMENT * size {
         remarks.push(format!(
@@ -375,6 +371,18 @@ fn remarks(case: &Case, solution: &Solution) -> Vec<String> {
         ));
     }
     remarks
+}
+
+/// The longer side of the box around the body.
+fn size(case: &Case) -> f64 {
+    let vertices = case.problem.mesh.vertices().iter();
+    let extent = |c: usize| {
+        let (low, high) = vertices
+            .clone()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x[c]), h.max(x[c])));
+        high - low
+    };
+    extent(0).max(extent(1))
 }
 
 /// The name of the obstacle of a contact boundary, if it has one.
@@ -388,7 +396,8 @@ pub fn overlap(case: &Case) -> Option<String> {
     let line = contact_line::assemble(&case.problem, &space, 1.0).ok()?;
     let points =
         line.iter().flat_map(|e| e.gap.iter().zip(&e.places).map(move |(g, x)| (*g, *x, e)));
-    let (gap, [x, y], edge) = points.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|p| p.0 < 0.0)?;
+    let least = points.min_by(|a, b| a.0.total_cmp(&b.0));
+    let (gap, [x, y], edge) = least.filter(|p| p.0 < -NO_OVERLAP * size(case))?;
     let length = length_unit(case);
     let (obstacle, question) = match named_obstacle(case, &edge.boundary) {
         Some(obstacle) => {

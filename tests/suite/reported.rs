@@ -122,6 +122,9 @@ boundary.right.contact.gap = "0.5 - 0.1*y"
         assert!(message.contains(remark), "{message}");
         assert!(!message.contains("'bottom' touches nothing"), "{message}");
     }
+    let rounded = "obstacle.floor.plane.point=[0, 1e-12]";
+    let message = said(&folder, &["check", "case.toml", "--set", rounded], 0);
+    assert!(!message.contains("overlaps"), "{message}");
 }
 
 #[test]
