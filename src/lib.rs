@@ -58,6 +58,11 @@
 //! | A_gamma as a matrix | [`fem::matrix`] |
 //! | the solution of (8) | [`solve::condensed`], [`solve::newton`] |
 //!
+//! # What is stable
+//!
+//! What these pages show. Modules that they do not show are the inside of the solver: tests, benches and the claims reach them, and
+//! they may change with any version.
+//!
 //! # Features
 //!
 //! `cli` (default) is the command; it needs `files`: case files ([`io::case`]), result.json and pictures. Without both
@@ -79,8 +84,10 @@ pub mod fem;
 #[cfg(not(kani))]
 pub mod io;
 #[cfg(not(kani))]
+#[doc(hidden)]
 pub mod memory;
 #[cfg(not(kani))]
+#[doc(hidden)]
 pub mod quote;
 #[cfg(not(kani))]
 pub mod solve;

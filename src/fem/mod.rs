@@ -1,39 +1,66 @@
 //! The discrete space V^h on a mesh and everything that is integrated over it.
 
+#[doc(hidden)]
 pub mod a_priori;
+#[doc(hidden)]
 pub mod ball;
 mod build;
 pub mod constraints;
 pub mod contact_line;
+#[doc(hidden)]
 pub mod data;
+#[doc(hidden)]
 pub mod dense;
 pub mod discretization;
+#[doc(hidden)]
 pub mod embedding;
+#[doc(hidden)]
 pub mod errors;
+#[doc(hidden)]
 pub mod exact;
+#[doc(hidden)]
 pub mod function;
+#[doc(hidden)]
 pub mod held;
+#[doc(hidden)]
 pub mod interpolation;
+#[doc(hidden)]
 pub mod korn;
 pub mod loads;
+#[doc(hidden)]
 pub mod material;
+#[doc(hidden)]
 pub mod materials;
 pub mod matrix;
+#[doc(hidden)]
 pub mod merge;
 pub mod mesh;
+#[doc(hidden)]
 pub mod moments;
+#[doc(hidden)]
 pub mod obstacle;
+#[doc(hidden)]
 pub mod pieces;
+#[doc(hidden)]
 pub mod precise;
+#[doc(hidden)]
 pub mod problem;
+#[doc(hidden)]
 pub mod quadrature;
+#[doc(hidden)]
 pub mod rectangle;
+#[doc(hidden)]
 pub mod rigid;
+#[doc(hidden)]
 pub mod smooth;
 pub mod space;
+#[doc(hidden)]
 pub mod structured;
+#[doc(hidden)]
 pub mod trapezoid;
+#[doc(hidden)]
 pub mod tree;
+#[doc(hidden)]
 pub mod twofold;
 
 pub use data::DataError;

@@ -305,7 +305,7 @@ fn attribute<'a>(attributes: &'a str, name: &str) -> Option<&'a str> {
     }
 }
 
-/// The text between <tag ...> and </tag>.
+/// The text between `<tag ...>` and `</tag>`.
 fn section<'a>(text: &'a str, tag: &str) -> Option<&'a str> {
     let from = text.find(&format!("<{tag}"))?;
     let inside = &text[from + text[from..].find('>')? + 1..];

@@ -1,25 +1,35 @@
 //! Input and output: case files, Gmsh meshes, VTU, SVG, JSON.
 
 #[cfg(feature = "files")]
+#[doc(hidden)]
 pub mod body;
 #[cfg(feature = "files")]
 mod boundaries;
 #[cfg(feature = "files")]
 pub mod case;
 #[cfg(feature = "files")]
+#[doc(hidden)]
 pub mod certificate;
 #[cfg(feature = "files")]
+#[doc(hidden)]
 pub mod convergence;
+#[doc(hidden)]
 pub mod csv;
+#[doc(hidden)]
 pub mod data;
 #[cfg(feature = "files")]
 mod exact;
 pub mod expression;
 #[cfg(feature = "files")]
+#[doc(hidden)]
 pub mod field;
+#[doc(hidden)]
 pub mod fields;
+#[doc(hidden)]
 pub mod files;
+#[doc(hidden)]
 pub mod gmsh;
+#[doc(hidden)]
 pub mod input;
 #[cfg(feature = "files")]
 mod meshed;
@@ -27,29 +37,39 @@ mod meshed;
 mod method;
 #[cfg(feature = "files")]
 mod mistake;
+#[doc(hidden)]
 pub mod numbers;
 #[cfg(feature = "files")]
+#[doc(hidden)]
 pub mod outputs;
 #[cfg(feature = "files")]
+#[doc(hidden)]
 pub mod picture;
 #[cfg(feature = "files")]
+#[doc(hidden)]
 pub mod plot;
 #[cfg(feature = "files")]
+#[doc(hidden)]
 pub mod report;
 #[cfg(feature = "files")]
+#[doc(hidden)]
 pub mod result;
 #[cfg(feature = "files")]
+#[doc(hidden)]
 pub mod run;
 #[cfg(feature = "files")]
 mod setting;
 #[cfg(feature = "files")]
 mod source;
 #[cfg(feature = "files")]
+#[doc(hidden)]
 pub mod summary;
 #[cfg(feature = "files")]
+#[doc(hidden)]
 pub mod sweep;
 #[cfg(feature = "files")]
 mod table;
+#[doc(hidden)]
 pub mod vtu;
 
 #[cfg(feature = "files")]

@@ -2,7 +2,7 @@
 //!
 //! 1. Discretize ([`discretize`]): V^h, the data on Gamma_D, L, Gamma_C with gamma; kappa < 1, or the case is refused.
 //! 2. Assemble ([`System`]): an order of elimination, the matrix A, the structure of its factor, the rows of P0.
-//! 3. Newton's method on J_h with an exact line search ([`newton`]), from soft springs to stiff ones, by the [route](route) that
+//! 3. Newton's method on J_h with an exact line search ([`newton`]), from soft springs to stiff ones, by the [`route`] that
 //!    takes less: the body condensed to its contact edges, or the tangent factored in each step.
 //! 4. Refine and verify ([`accuracy::refine`]): corrections from the true residual until the enclosure of the exact solution of
 //!    (8) is as narrow as asked for ([`enclosure`]); the other route where the first proves too little.
@@ -10,34 +10,55 @@
 //!
 //! docs/theory.md: 4 has Newton's method, 5 the routes and the refinement, 7.5 the enclosure.
 
+#[doc(hidden)]
 pub mod accuracy;
+#[doc(hidden)]
 pub mod answers;
+#[doc(hidden)]
 pub mod assembled;
+#[doc(hidden)]
 pub mod balls;
+#[doc(hidden)]
 pub mod body;
+#[doc(hidden)]
 pub mod compliance;
 pub mod condensed;
 mod contact_edges;
+#[doc(hidden)]
 pub mod course;
+#[doc(hidden)]
 pub mod enclosure;
 mod error;
+#[doc(hidden)]
 pub mod evaluated;
+#[doc(hidden)]
 pub mod factor;
+#[doc(hidden)]
 pub mod intervals;
+#[doc(hidden)]
 pub mod iterate;
+#[doc(hidden)]
 pub mod ladder;
 mod memory;
 mod method;
 pub mod newton;
+#[doc(hidden)]
 pub mod ordering;
+#[doc(hidden)]
 pub mod pressed;
 mod relaxation;
 mod report;
+#[doc(hidden)]
 pub mod route;
+#[doc(hidden)]
 pub mod solution;
+#[doc(hidden)]
 pub mod stresses;
+#[doc(hidden)]
 pub mod system;
+#[doc(hidden)]
 pub mod theorem;
+#[doc(hidden)]
 pub mod times;
 
 use self::accuracy::Outcome;

@@ -10,7 +10,7 @@ use crate::fem::held::Play;
 /// The verdict on a solution.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// The exact solution of (8) is within [`Settings::proof`] of it, rounding included.
+    /// The exact solution of (8) is within [`Settings::proof`](super::Settings::proof) of it, rounding included.
     Proved,
     /// That is not proved, for this reason.
     NotProved(String),
