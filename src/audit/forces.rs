@@ -730,7 +730,7 @@ fn unbalanced<S: Enclosing>(certificate: &Certificate, state: &Balanced<S>) -> S
             points[piece.vertices[i]] += force;
             let mut force =
                 (sum + all[j]).traction(normals[k]) + (sum + all[k]).traction(normals[j]);
-            force = force * sixth;
+            force *= sixth;
             if is_loaded {
                 force += (loads * S::from(2) - body[i]) * (double_area / S::from(30));
             }

@@ -364,7 +364,10 @@ mod tests {
         let scene = Scene { units: Some(["MPa", "mm"]), interfaces: &edge, ..sample.scene() };
         let svg = picture(&scene).unwrap();
         let words = words(&svg);
-        has(&words, &["MPa", "peak 0.5 MPa", "floor: contact pressure (MPa)", "0.2", "0.4"]);
+        has(
+            &words,
+            &["MPa, triangle means", "peak 0.5 MPa", "floor: contact pressure (MPa)", "0.2", "0.4"],
+        );
         has(&words, &["arc length along the boundary (mm)", "border of two materials"]);
         assert_eq!(svg.matches("stroke-width=\"2.4\"").count(), 1);
     }
