@@ -362,16 +362,19 @@ fn off_contact(parts: &Parts, beyond: i32) -> Vec<bool> {
     open
 }
 
+/// The edges of Gamma_C that are free, and the displacements of least energy with these.
+type Freed<'a, E, const N: usize, const M: usize> = (Vec<bool>, Lifter<'a, E, N, M>);
+
 /// Displacements of least energy, with the edges of Gamma_C where they are free: so many beyond the last one that is pressed
 /// from end to end, or before it.
 struct Lifters<'a, E, const N: usize, const M: usize> {
     parts: &'a Parts<'a>,
     names: &'a [String],
-    made: BTreeMap<i32, Option<(Vec<bool>, Lifter<'a, E, N, M>)>>,
+    made: BTreeMap<i32, Option<Freed<'a, E, N, M>>>,
 }
 
 impl<'a, E: Element<N, M>, const N: usize, const M: usize> Lifters<'a, E, N, M> {
-    fn at(&mut self, beyond: i32) -> Option<&(Vec<bool>, Lifter<'a, E, N, M>)> {
+    fn at(&mut self, beyond: i32) -> Option<&Freed<'a, E, N, M>> {
         let (parts, names) = (self.parts, self.names);
         let made = self.made.entry(beyond).or_insert_with(|| {
             let open = off_contact(parts, beyond);
