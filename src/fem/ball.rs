@@ -1,4 +1,4 @@
-//! Balls: all real numbers within a radius of a [twofold](super::twofold) number, for statements that hold whatever rounding
+//! Balls: all real numbers within a radius of a [double-double](super::double_double), for statements that hold whatever rounding
 //! does. An operation gives a ball that contains the exact results for all numbers of its operands' balls. (The balls of the
 //! kernel have a double in the middle: quicker, with half of the digits.)
 //!
@@ -9,7 +9,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::twofold::{Twofold, halves};
+use super::double_double::{DoubleDouble, halves};
 use crate::kernel::Scalar;
 
 /// The numbers from `head + tail - radius` to `head + tail + radius`; `head` is `head + tail` rounded to nearest.
@@ -134,14 +134,14 @@ impl Ball {
         }
         let first = self.head.sqrt();
         let rest = self - Ball::from(first) * Ball::from(first);
-        let root = Ball::from(Twofold::sum(first, rest.head / (2.0 * first)));
+        let root = Ball::from(DoubleDouble::sum(first, rest.head / (2.0 * first)));
         // |x^(1/2) - s| = |x - s^2| / (x^(1/2) + s)
         let off = (self - root * root).magnitude() / root.least_magnitude();
         root.widened(up(off + TINY))
     }
 }
 
-/// A twofold number that is a factor of several products, its head split once for all of them.
+/// A double-double that is a factor of several products, its head split once for all of them.
 #[derive(Clone, Copy, Debug)]
 pub struct Factor {
     head: f64,
@@ -149,9 +149,9 @@ pub struct Factor {
     halves: [f64; 2],
 }
 
-impl From<Twofold> for Factor {
+impl From<DoubleDouble> for Factor {
     #[inline]
-    fn from(a: Twofold) -> Self {
+    fn from(a: DoubleDouble) -> Self {
         Factor { head: a.head(), tail: a.tail(), halves: halves(a.head()) }
     }
 }
@@ -179,7 +179,7 @@ impl Factor {
 /// A sum of products, rounding included.
 pub trait Sum {
     /// The type of the factors of its products.
-    type Factor: Copy + From<Twofold> + Neg<Output = Self::Factor>;
+    type Factor: Copy + From<DoubleDouble> + Neg<Output = Self::Factor>;
 
     /// Adds a b + c d.
     fn add_products(&mut self, products: [(Self::Factor, Self::Factor); 2]);
@@ -192,10 +192,10 @@ impl Sum for Ball {
     #[inline]
     fn add_products(&mut self, [(a, b), (c, d)]: [(Factor, Factor); 2]) {
         let [[p, p_tail], [q, q_tail]] = [a.times(b), c.times(d)];
-        let products = Twofold::sum(p, q);
+        let products = DoubleDouble::sum(p, q);
         let tail = (p_tail + q_tail) + products.tail();
-        let heads = Twofold::sum(self.head, products.head());
-        let sum = Twofold::sum(heads.head(), heads.tail() + (self.tail + tail));
+        let heads = DoubleDouble::sum(self.head, products.head());
+        let sum = DoubleDouble::sum(heads.head(), heads.tail() + (self.tail + tail));
         let size = 2.0 * (PRODUCT * (p.abs() + q.abs()) + TINY);
         let radius = up(self.radius + (SUM * self.head.abs() + size));
         *self = Ball { head: sum.head(), tail: sum.tail(), radius };
@@ -211,9 +211,9 @@ impl Sum for crate::kernel::Ball {
     }
 }
 
-impl From<Twofold> for crate::kernel::Ball {
+impl From<DoubleDouble> for crate::kernel::Ball {
     #[inline]
-    fn from(a: Twofold) -> Self {
+    fn from(a: DoubleDouble) -> Self {
         crate::kernel::Ball::around(a.head(), a.tail().abs())
     }
 }
@@ -232,8 +232,8 @@ impl From<crate::kernel::Ball> for Ball {
     }
 }
 
-impl From<Twofold> for Ball {
-    fn from(a: Twofold) -> Self {
+impl From<DoubleDouble> for Ball {
+    fn from(a: DoubleDouble) -> Self {
         Ball { head: a.head(), tail: a.tail(), radius: 0.0 }
     }
 }
@@ -249,8 +249,8 @@ impl Add for Ball {
 
     #[inline]
     fn add(self, b: Self) -> Self {
-        let heads = Twofold::sum(self.head, b.head);
-        let sum = Twofold::sum(heads.head(), heads.tail() + (self.tail + b.tail));
+        let heads = DoubleDouble::sum(self.head, b.head);
+        let sum = DoubleDouble::sum(heads.head(), heads.tail() + (self.tail + b.tail));
         let size = self.head.abs() + b.head.abs();
         let radius = up(self.radius + b.radius + SUM * size);
         Ball { head: sum.head(), tail: sum.tail(), radius }
@@ -282,9 +282,9 @@ impl Mul for Ball {
         if self.is_zero() || b.is_zero() {
             return if self.is_nan() || b.is_nan() { Ball::EVERYTHING } else { Ball::from(0.0) };
         }
-        let heads = Twofold::product(self.head, b.head);
+        let heads = DoubleDouble::product(self.head, b.head);
         let cross = self.head * b.tail + self.tail * b.head;
-        let product = Twofold::sum(heads.head(), heads.tail() + cross);
+        let product = DoubleDouble::sum(heads.head(), heads.tail() + cross);
         let spread = self.head.abs() * b.radius + b.head.abs() * self.radius;
         let size = PRODUCT * heads.head().abs() + TINY;
         let radius = up(spread + self.radius * b.radius + size);
@@ -306,7 +306,7 @@ impl Div for Ball {
         }
         let first = self.head / b.head;
         let rest = self - b * Ball::from(first);
-        let quotient = Ball::from(Twofold::sum(first, rest.head / b.head));
+        let quotient = Ball::from(DoubleDouble::sum(first, rest.head / b.head));
         let off = (self - b * quotient).magnitude() / least;
         quotient.widened(up(off + TINY))
     }
@@ -375,11 +375,11 @@ mod tests {
     #[test]
     fn products_that_are_added_are_those_of_the_operators() {
         let parts = [3.0, -0.7, 1e-9, 12345.678];
-        let twofold = parts.map(|x| Twofold::sum(x, x * 1e-17 / 3.0));
-        let [a, b, c, d] = twofold.map(Factor::from);
+        let exact = parts.map(|x| DoubleDouble::sum(x, x * 1e-17 / 3.0));
+        let [a, b, c, d] = exact.map(Factor::from);
         let mut sum = third();
         sum.add_products([(a, b), (-c, d)]);
-        let [a, b, c, d] = twofold.map(Ball::from);
+        let [a, b, c, d] = exact.map(Ball::from);
         let off = sum - (third() + a * b - c * d);
         assert!(off.lower() <= 0.0 && off.upper() >= 0.0 && off.magnitude() < 1e-29, "{off:?}");
         assert!(off.centre().head() != 0.0, "control: the centres alone differ, {off:?}");

@@ -11,13 +11,13 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 
 use super::data::{DataError, finite};
+use super::double_double::DoubleDouble;
 use super::mesh::BoundaryEdge;
 use super::obstacle::Closest;
 use super::problem::{Condition, Problem};
 use super::quadrature;
 use super::smooth::{SmoothBoundary, SmoothPoint};
 use super::space::Space;
-use super::twofold::Twofold;
 use crate::kernel::contact_edge::{coercivity_constant, turning_factor};
 use crate::kernel::edge_integral::{self, ExactEdge};
 use crate::kernel::{ContactEdge, EdgeIntegrals, Element};
@@ -357,23 +357,24 @@ impl EdgeRule {
     }
 
     /// The integrals of (8) and J_h over an edge, for P with the nodal values `p`. At the points of a Gauss rule P is
-    /// evaluated in twofold numbers: where gamma is small it is far smaller there than at the nodes.
+    /// evaluated in double-doubles: where gamma is small it is far smaller there than at the nodes.
     pub fn integrals<E, const N: usize, const M: usize>(
         &self,
-        p: [impl Into<Twofold>; M],
+        p: [impl Into<DoubleDouble>; M],
     ) -> EdgeIntegrals<f64, M>
     where
         E: ExactEdge<f64, N, M>,
     {
-        let p: [Twofold; M] = p.map(Into::into);
+        let p: [DoubleDouble; M] = p.map(Into::into);
         match self {
-            EdgeRule::Exact => E::exact(p.map(Twofold::head)),
+            EdgeRule::Exact => E::exact(p.map(DoubleDouble::head)),
             EdgeRule::Gauss(rule) => {
-                let fine = edge_integral::gauss::<E, Twofold, N, M>(p, in_twofold(rule));
+                let fine =
+                    edge_integral::gauss::<E, DoubleDouble, N, M>(p, in_double_doubles(rule));
                 EdgeIntegrals {
                     energy: fine.energy.head(),
-                    gradient: fine.gradient.map(Twofold::head),
-                    hessian: fine.hessian.map(|row| row.map(Twofold::head)),
+                    gradient: fine.gradient.map(DoubleDouble::head),
+                    hessian: fine.hessian.map(|row| row.map(DoubleDouble::head)),
                     active: fine.active.head(),
                 }
             }
@@ -383,25 +384,27 @@ impl EdgeRule {
     /// The integral of the Bregman distance of 1/2 \[.\]+^2 from P to Q.
     pub fn bregman<E, const N: usize, const M: usize>(
         &self,
-        p: [impl Into<Twofold>; M],
-        q: [impl Into<Twofold>; M],
+        p: [impl Into<DoubleDouble>; M],
+        q: [impl Into<DoubleDouble>; M],
     ) -> f64
     where
         E: ExactEdge<f64, N, M>,
     {
-        let (p, q): ([Twofold; M], [Twofold; M]) = (p.map(Into::into), q.map(Into::into));
+        let (p, q): ([DoubleDouble; M], [DoubleDouble; M]) = (p.map(Into::into), q.map(Into::into));
         match self {
-            EdgeRule::Exact => {
-                edge_integral::exact_bregman::<E, N, M>(p.map(Twofold::head), q.map(Twofold::head))
-            }
+            EdgeRule::Exact => edge_integral::exact_bregman::<E, N, M>(
+                p.map(DoubleDouble::head),
+                q.map(DoubleDouble::head),
+            ),
             EdgeRule::Gauss(rule) => {
-                edge_integral::gauss_bregman::<E, Twofold, N, M>(p, q, in_twofold(rule)).head()
+                edge_integral::gauss_bregman::<E, DoubleDouble, N, M>(p, q, in_double_doubles(rule))
+                    .head()
             }
         }
     }
 }
 
 /// Points and weights, exactly.
-fn in_twofold(rule: &[(f64, f64)]) -> impl Iterator<Item = (Twofold, Twofold)> {
+fn in_double_doubles(rule: &[(f64, f64)]) -> impl Iterator<Item = (DoubleDouble, DoubleDouble)> {
     rule.iter().map(|&(s, weight)| (s.into(), weight.into()))
 }

@@ -13,6 +13,8 @@ pub mod data;
 pub mod dense;
 pub mod discretization;
 #[doc(hidden)]
+pub mod double_double;
+#[doc(hidden)]
 pub mod embedding;
 #[doc(hidden)]
 pub mod errors;
@@ -60,8 +62,6 @@ pub mod structured;
 pub mod trapezoid;
 #[doc(hidden)]
 pub mod tree;
-#[doc(hidden)]
-pub mod twofold;
 
 pub use data::DataError;
 pub use discretization::Discretization;

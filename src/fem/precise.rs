@@ -1,5 +1,5 @@
 //! The linear part of (8) at a displacement that is known to more than double precision, evaluated from the definitions in
-//! [twofold](crate::fem::twofold) numbers: what is left of forces that cancel is then known to the last bit of a double; and
+//! [double-doubles](crate::fem::double_double): what is left of forces that cancel is then known to the last bit of a double; and
 //! its forces from [stresses in doubles](add_forces_of_rounded_stresses), off by no more than a proved norm.
 
 use nalgebra::{Vector2, Vector3};
@@ -7,7 +7,7 @@ use nalgebra::{Vector2, Vector3};
 use super::ball::{Ball, Sum};
 use super::contact_line::ContactLineEdge;
 use super::discretization::Discretization;
-use crate::fem::twofold::Twofold;
+use crate::fem::double_double::DoubleDouble;
 use crate::kernel::edge_integral::ExactEdge;
 use crate::kernel::element::displacement_gradient;
 use crate::kernel::{ContactEdge, Material, Scalar, Stress, Triangle};
@@ -15,15 +15,16 @@ use crate::kernel::{ContactEdge, Material, Scalar, Stress, Triangle};
 /// A(u, v) - L(v) for every basis function v, and the values of P(u) at the nodes of each contact edge.
 pub fn evaluate<E, const N: usize, const M: usize>(
     d: &Discretization<E, N, M>,
-    u: &[[Twofold; 2]],
-) -> (Vec<[f64; 2]>, Vec<Twofold>)
+    u: &[[DoubleDouble; 2]],
+) -> (Vec<[f64; 2]>, Vec<DoubleDouble>)
 where
     E: ExactEdge<f64, N, M>,
 {
-    let edges: Vec<OnEdge<'_, Twofold, N, M>> = d.contact.iter().map(|e| on_edge(d, e)).collect();
+    let edges: Vec<OnEdge<'_, DoubleDouble, N, M>> =
+        d.contact.iter().map(|e| on_edge(d, e)).collect();
     let forces = linear_residual(d, &edges, u);
     let p = d.contact.iter().zip(&edges).flat_map(|(edge, line)| line.p(edge, u)).collect();
-    (forces.into_iter().map(|f| f.map(Twofold::head)).collect(), p)
+    (forces.into_iter().map(|f| f.map(DoubleDouble::head)).collect(), p)
 }
 
 /// A(u, v) - L(v) for every basis function v, with these contact edges.
@@ -46,8 +47,8 @@ where
 /// The values of P(u) at the nodes of each contact edge.
 pub fn p<E, const N: usize, const M: usize>(
     d: &Discretization<E, N, M>,
-    u: &[[Twofold; 2]],
-) -> impl Iterator<Item = Twofold>
+    u: &[[DoubleDouble; 2]],
+) -> impl Iterator<Item = DoubleDouble>
 where
     E: ExactEdge<f64, N, M>,
 {
@@ -148,7 +149,7 @@ where
         // The area times the gradient of a barycentric coordinate is half a normal.
         let normals = [0, 1, 2].map(|i| {
             let [from, to] = [1, 2].map(|k| triangle.vertices[(i + k) % 3]);
-            let half = |c: usize| S::Factor::from(Twofold::sum(0.5 * to[c], -0.5 * from[c]));
+            let half = |c: usize| S::Factor::from(DoubleDouble::sum(0.5 * to[c], -0.5 * from[c]));
             [-half(1), half(0)]
         });
         for Term { node, side, coefficients } in &terms {
@@ -158,7 +159,7 @@ where
                     *sum += coefficient * s;
                 }
             }
-            let [xx, yy, xy] = sum.map(|s| S::Factor::from(Twofold::from(s)));
+            let [xx, yy, xy] = sum.map(|s| S::Factor::from(DoubleDouble::from(s)));
             let [x, y] = normals[*side];
             let [along_x, along_y] = &mut forces[nodes[*node]];
             along_x.add_products([(xx, x), (xy, y)]);
@@ -425,7 +426,7 @@ mod tests {
         )
     }
 
-    /// The residual in twofold numbers is the one in doubles, to the rounding of the latter; a change of u far below its
+    /// The residual in double-doubles is the one in doubles, to the rounding of the latter; a change of u far below its
     /// rounding shows in P as it should.
     fn agrees_and_sees_more<E: ExactEdge<f64, N, M>, const N: usize, const M: usize>() {
         let problem = block();
@@ -435,7 +436,8 @@ mod tests {
         for (i, u) in u.iter_mut().enumerate() {
             *u = [(i as f64).sin(), (2.0 * i as f64).cos()];
         }
-        let mut fine: Vec<[Twofold; 2]> = u.iter().map(|u| u.map(Twofold::from)).collect();
+        let mut fine: Vec<[DoubleDouble; 2]> =
+            u.iter().map(|u| u.map(DoubleDouble::from)).collect();
         let (forces, p) = evaluate(&d, &fine);
         let doubles = d.linear_residual(&u);
         for ((a, b), m) in forces.iter().zip(&doubles.values).zip(&doubles.magnitudes) {
@@ -445,7 +447,7 @@ mod tests {
         }
         let shift = 2.0_f64.powi(-90);
         for u in &mut fine {
-            u[1] += Twofold::from(shift);
+            u[1] += DoubleDouble::from(shift);
         }
         let (_, moved) = evaluate(&d, &fine);
         // A translation by shift along y changes u_n by -shift and no stress.
@@ -454,12 +456,12 @@ mod tests {
         assert!(change.iter().all(|c| c.abs() <= f64::EPSILON), "{change:?}");
         let at = d.contact[0].edge.triangle;
         let node = d.space.edge_nodes(d.contact[0].edge)[0];
-        let exactly = |u: &[[Twofold; 2]]| u[node][1] - Twofold::from(u[node][1].head());
+        let exactly = |u: &[[DoubleDouble; 2]]| u[node][1] - DoubleDouble::from(u[node][1].head());
         assert_eq!(exactly(&fine).head(), shift, "{at}");
     }
 
     #[test]
-    fn twofold_residuals_agree_with_those_in_doubles_and_keep_more_of_u() {
+    fn residuals_in_double_doubles_agree_with_those_in_doubles_and_keep_more_of_u() {
         agrees_and_sees_more::<P1, 3, 2>();
         agrees_and_sees_more::<P2, 6, 3>();
     }

@@ -1,6 +1,6 @@
 //! From a first answer to one that is proved: passes of a route, each from the true residual of the one before, until a pass has
 //! nothing left to correct; then the enclosure of the exact solution says how far that is from it. Where it is not near enough,
-//! residuals are evaluated in twofold numbers, and the passes go on. docs/theory.md, 5.7.
+//! residuals are evaluated in double-doubles, and the passes go on. docs/theory.md, 5.7.
 //!
 //! The correction of a pass is the error of what it corrects, but for the error of the correction, which is smaller by the
 //! same factor again: it says when there is nothing left to correct in the numbers at hand, and nothing more. The verdict is the
@@ -17,7 +17,7 @@ use super::newton::Until;
 use super::system::System;
 use super::{Settings, SolveError, Status};
 use crate::fem::discretization::Discretization;
-use crate::fem::twofold::Twofold;
+use crate::fem::double_double::DoubleDouble;
 use crate::kernel::edge_integral::ExactEdge;
 
 /// A way to better an iterate.
@@ -60,7 +60,7 @@ pub struct Outcome {
     /// A(u, v) - L(v) for every basis function v, of the displacement before it was rounded to doubles.
     pub forces: Vec<[f64; 2]>,
     /// P(u) at the nodes of the contact edges.
-    pub p: Vec<Twofold>,
+    pub p: Vec<DoubleDouble>,
     /// The relative residual of (8) before each Newton step and after the last.
     pub residuals: Vec<f64>,
     /// The relative residual of the displacement, from the definitions.
@@ -184,8 +184,11 @@ where
             break;
         }
         verifier.use_factor(route.factor_of_a());
-        enclosure =
-            verifier.enclose(&iterate.rounded(), Some(iterate.as_twofold()), Stresses::InDoubles);
+        enclosure = verifier.enclose(
+            &iterate.rounded(),
+            Some(iterate.as_double_doubles()),
+            Stresses::InDoubles,
+        );
         let near = match &enclosure {
             Ok(e) => e.is_within(settings.proof.min(SMALL)),
             Err(why) => !why.may_be_rounding(),
@@ -200,7 +203,7 @@ where
     }
     let u = iterate.rounded();
     if !enclosure.as_ref().is_ok_and(|e| e.is_within(settings.proof)) {
-        enclosure = verifier.prove(&u, Some(iterate.as_twofold()), settings.proof);
+        enclosure = verifier.prove(&u, Some(iterate.as_double_doubles()), settings.proof);
     }
     let size = system.size(at.energy.sqrt(), &u);
     let rounding = system.energy_of_unrelated(&iterate.remainder()).sqrt();
@@ -242,7 +245,7 @@ impl Residual {
         let one = |v: &[f64]| v.iter().map(|v| v.abs()).sum::<f64>();
         let mut forces = one(d.load.as_flattened());
         for (e, edge) in d.contact.iter().enumerate() {
-            let integrals = d.rule.integrals::<E, N, M>(block::<Twofold, M>(&at.p, e));
+            let integrals = d.rule.integrals::<E, N, M>(block::<DoubleDouble, M>(&at.p, e));
             let weight = edge.length / edge.gamma;
             forces += weight * one(&integrals.gradient);
             system.functionals(e, |row, a, entry| {

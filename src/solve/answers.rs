@@ -28,8 +28,8 @@ use nalgebra::Vector2;
 use crate::fem::contact_line::{ContactLineEdge, EdgeRule};
 use crate::fem::dense::inner;
 use crate::fem::discretization::Discretization;
+use crate::fem::double_double::DoubleDouble;
 use crate::fem::mesh::length;
-use crate::fem::twofold::Twofold;
 use crate::kernel::edge_integral::{self, ExactEdge, value_at};
 use crate::kernel::element::displacement_gradient;
 use crate::kernel::positive_part;
@@ -96,7 +96,7 @@ pub struct EnergyBalance {
 pub fn energy_balance<E, const N: usize, const M: usize>(
     d: &Discretization<E, N, M>,
     u: &[[f64; 2]],
-    p: &[[Twofold; M]],
+    p: &[[DoubleDouble; M]],
     residual: &[[f64; 2]],
     strain: f64,
 ) -> EnergyBalance
@@ -153,7 +153,7 @@ where
 /// The recovered pressure at the nodes of each edge, in the order of the edge's nodes.
 pub fn recovered_pressure<E, const N: usize, const M: usize>(
     d: &Discretization<E, N, M>,
-    p: &[[Twofold; M]],
+    p: &[[DoubleDouble; M]],
 ) -> Vec<[f64; M]>
 where
     E: ExactEdge<f64, N, M>,
@@ -210,7 +210,7 @@ impl Hats {
 
 /// int_0^1 \[P\]+ phi_a by the rule of the method.
 fn hat_integrals<E, const N: usize, const M: usize>(
-    p: [impl Into<Twofold>; M],
+    p: [impl Into<DoubleDouble>; M],
     rule: &EdgeRule,
     hats: Hats,
 ) -> [f64; M]
@@ -218,12 +218,12 @@ where
     E: ExactEdge<f64, N, M>,
 {
     let mut sums = [0.0; M];
-    let fine: [Twofold; M] = p.map(Into::into);
-    let p = fine.map(Twofold::head);
+    let fine: [DoubleDouble; M] = p.map(Into::into);
+    let p = fine.map(DoubleDouble::head);
     let mut add = |s: f64, weight: f64| {
         let value = match rule {
             EdgeRule::Exact => value_at::<E, f64, N, M>(p, s),
-            EdgeRule::Gauss(_) => value_at::<E, Twofold, N, M>(fine, s.into()).head(),
+            EdgeRule::Gauss(_) => value_at::<E, DoubleDouble, N, M>(fine, s.into()).head(),
         };
         let value = positive_part(value);
         let hats: [f64; M] = hats.at(s);
@@ -287,7 +287,7 @@ fn same(a: Vector2<f64>, b: Vector2<f64>) -> bool {
 pub fn contact_boundaries<E, const N: usize, const M: usize>(
     d: &Discretization<E, N, M>,
     u: &[[f64; 2]],
-    p: &[[Twofold; M]],
+    p: &[[DoubleDouble; M]],
     recovered: &[[f64; M]],
 ) -> Vec<ContactBoundary>
 where
@@ -329,7 +329,7 @@ impl ContactBoundary {
         d: &Discretization<E, N, M>,
         u: &[[f64; 2]],
         edge: &ContactLineEdge<N, M>,
-        p: [Twofold; M],
+        p: [DoubleDouble; M],
         recovered: &[f64; M],
         open: &mut Option<usize>,
     ) where
@@ -364,11 +364,12 @@ impl ContactBoundary {
             }
         }
         let mut cuts: Vec<f64> =
-            edge_integral::roots::<E, N, M>(p.map(Twofold::head)).chain([0.0, 1.0]).collect();
+            edge_integral::roots::<E, N, M>(p.map(DoubleDouble::head)).chain([0.0, 1.0]).collect();
         cuts.sort_unstable_by(f64::total_cmp);
         let [start, end] = [nodes[0], nodes[1]];
         for pair in cuts.windows(2) {
-            let middle = value_at::<E, f64, N, M>(p.map(Twofold::head), (pair[0] + pair[1]) / 2.0);
+            let middle =
+                value_at::<E, f64, N, M>(p.map(DoubleDouble::head), (pair[0] + pair[1]) / 2.0);
             if !(middle > 0.0) {
                 continue;
             }

@@ -16,10 +16,10 @@ use super::iterate::{Evaluation, Iterate};
 use super::newton::{self, Until};
 use super::relaxation::follow;
 use super::system::System;
+use crate::fem::double_double::DoubleDouble;
 use crate::fem::held;
 use crate::fem::matrix::LowerTriangle;
 use crate::fem::rigid::Parts;
-use crate::fem::twofold::Twofold;
 use crate::kernel::edge_integral::ExactEdge;
 
 /// The tangent last factored.
@@ -229,7 +229,7 @@ impl<E, const N: usize, const M: usize> Body<M> for Full<'_, '_, '_, '_, '_, E, 
 where
     E: ExactEdge<f64, N, M>,
 {
-    fn y(&self) -> Cow<'_, [Twofold]> {
+    fn y(&self) -> Cow<'_, [DoubleDouble]> {
         Cow::Borrowed(&self.at.p)
     }
 
@@ -276,7 +276,7 @@ where
         let springs = self.springs();
         let mut pulling = all.times(1.0 / springs);
         for e in 0..self.route.order.len() {
-            let p: [f64; M] = block(&self.at.p, e).map(Twofold::head);
+            let p: [f64; M] = block(&self.at.p, e).map(DoubleDouble::head);
             for a in 0..M {
                 pulling.gradient[e * M + a] = (0..M).map(|b| pulling.hessian[e][a][b] * p[b]).sum();
             }

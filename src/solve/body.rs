@@ -4,22 +4,22 @@
 use std::borrow::Cow;
 
 use super::SolveError;
-use crate::fem::twofold::Twofold;
+use crate::fem::double_double::DoubleDouble;
 
 /// The contact edges as Newton's method needs them.
 pub trait Edges<const M: usize> {
     /// How many there are.
     fn count(&self) -> usize;
     /// The gradient and the Hessian of Psi on edge `e`, where P has the nodal values `p`.
-    fn derivatives(&self, e: usize, p: [Twofold; M]) -> ([f64; M], [[f64; M]; M]);
+    fn derivatives(&self, e: usize, p: [DoubleDouble; M]) -> ([f64; M], [[f64; M]; M]);
     /// The Bregman distance of Psi on edge `e` from `p` to `q`.
-    fn bregman(&self, e: usize, p: [Twofold; M], q: [Twofold; M]) -> f64;
+    fn bregman(&self, e: usize, p: [DoubleDouble; M], q: [DoubleDouble; M]) -> f64;
 }
 
 /// The body with its loads, at an iterate.
 pub trait Body<const M: usize> {
-    /// y, the values of P at the nodes of each edge, in twofold numbers: between the nodes P may be far smaller.
-    fn y(&self) -> Cow<'_, [Twofold]>;
+    /// y, the values of P at the nodes of each edge, in double-doubles: between the nodes P may be far smaller.
+    fn y(&self) -> Cow<'_, [DoubleDouble]>;
     /// The residual of (8) at the iterate, relative, where Psi has the derivatives `at`; and how much of it may be noise.
     fn residual(&self, at: &Derivatives<M>) -> Residual;
     /// Goes to the start.
@@ -81,7 +81,7 @@ pub struct Step {
 /// The derivatives of Psi at `y`.
 pub fn derivatives<const M: usize>(
     edges: &impl Edges<M>,
-    y: &[impl Copy + Into<Twofold>],
+    y: &[impl Copy + Into<DoubleDouble>],
 ) -> Derivatives<M> {
     let mut gradient = Vec::with_capacity(y.len());
     let mut hessian = Vec::with_capacity(edges.count());

@@ -30,7 +30,7 @@ use super::iterate::{Evaluation, Iterate};
 use super::newton::{self, Until};
 use super::relaxation::follow;
 use super::system::System;
-use crate::fem::twofold::Twofold;
+use crate::fem::double_double::DoubleDouble;
 use crate::kernel::edge_integral::ExactEdge;
 
 /// The body, factored, and the forces of contact on it.
@@ -102,7 +102,7 @@ where
         self.add_contact_forces(&self.w, &mut v);
         v.iter_mut().for_each(|v| *v = -*v);
         self.factor.forward(&mut v);
-        let mut y: Vec<Twofold> = Vec::with_capacity(at.p.len());
+        let mut y: Vec<DoubleDouble> = Vec::with_capacity(at.p.len());
         for &e in &self.reach.order {
             y.extend(block::<_, M>(&at.p, e));
         }
@@ -135,7 +135,7 @@ where
 /// where contact is stiff, those of w are too few for it.
 struct Reduced<'r, 'a, 'd, 'p, E, const N: usize, const M: usize> {
     route: &'r Condensed<'a, 'd, 'p, E, N, M>,
-    y: Vec<Twofold>,
+    y: Vec<DoubleDouble>,
     /// The magnitudes that y was computed from.
     start: Vec<f64>,
     change: Vec<f64>,
@@ -180,7 +180,7 @@ impl<E, const N: usize, const M: usize> Body<M> for Reduced<'_, '_, '_, '_, E, N
 where
     E: ExactEdge<f64, N, M>,
 {
-    fn y(&self) -> Cow<'_, [Twofold]> {
+    fn y(&self) -> Cow<'_, [DoubleDouble]> {
         Cow::Borrowed(&self.y)
     }
 

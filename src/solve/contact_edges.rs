@@ -3,7 +3,7 @@
 use super::body::Edges;
 use crate::fem::contact_line::ContactLineEdge;
 use crate::fem::discretization::Discretization;
-use crate::fem::twofold::Twofold;
+use crate::fem::double_double::DoubleDouble;
 use crate::kernel::edge_integral::ExactEdge;
 
 /// The contact edges of `d` in `order`.
@@ -33,7 +33,7 @@ where
         self.order.len()
     }
 
-    fn derivatives(&self, e: usize, p: [Twofold; M]) -> ([f64; M], [[f64; M]; M]) {
+    fn derivatives(&self, e: usize, p: [DoubleDouble; M]) -> ([f64; M], [[f64; M]; M]) {
         if self.d.is_idle(self.order[e]) {
             return ([0.0; M], [[0.0; M]; M]);
         }
@@ -45,7 +45,7 @@ where
         )
     }
 
-    fn bregman(&self, e: usize, p: [Twofold; M], q: [Twofold; M]) -> f64 {
+    fn bregman(&self, e: usize, p: [DoubleDouble; M], q: [DoubleDouble; M]) -> f64 {
         if self.d.is_idle(self.order[e]) {
             return 0.0;
         }

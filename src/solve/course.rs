@@ -12,7 +12,7 @@
 
 use super::body::{Derivatives, Edges, block, derivatives};
 use crate::fem::discretization::Discretization;
-use crate::fem::twofold::Twofold;
+use crate::fem::double_double::DoubleDouble;
 use crate::kernel::edge_integral::ExactEdge;
 
 /// A phase of a solve, as it begins.
@@ -111,11 +111,11 @@ impl<'a> Course<'a> {
 pub(super) fn frozen<const M: usize>(
     edges: &impl Edges<M>,
     p: &[f64],
-    y: &[Twofold],
+    y: &[DoubleDouble],
 ) -> Derivatives<M> {
     let Derivatives { hessian, stiffness, .. } = derivatives(edges, p);
     let gradient = hessian.iter().enumerate().flat_map(|(e, h)| {
-        let y: [f64; M] = block(y, e).map(Twofold::head);
+        let y: [f64; M] = block(y, e).map(DoubleDouble::head);
         h.map(|row| (0..M).map(|b| row[b] * y[b]).sum::<f64>())
     });
     Derivatives { stiffness, gradient: gradient.collect(), hessian }

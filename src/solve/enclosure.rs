@@ -26,10 +26,10 @@ use super::system::System;
 use super::times::Stopwatch;
 use crate::fem::Discretization;
 use crate::fem::ball::{Ball, up};
+use crate::fem::double_double::DoubleDouble;
 use crate::fem::held::Slides;
 use crate::fem::korn::Korn;
 use crate::fem::precise;
-use crate::fem::twofold::Twofold;
 use crate::kernel;
 use crate::kernel::edge_integral::ExactEdge;
 
@@ -104,7 +104,7 @@ const CORRECTIONS: usize = 12;
 pub fn enclose<E, const N: usize, const M: usize>(
     system: &System<E, N, M>,
     u: &[[f64; 2]],
-    near: Option<&[[Twofold; 2]]>,
+    near: Option<&[[DoubleDouble; 2]]>,
     of_a: Option<Arc<Factor>>,
 ) -> Result<Enclosure, Unproved>
 where
@@ -178,7 +178,7 @@ where
     pub fn prove(
         &mut self,
         u: &[[f64; 2]],
-        near: Option<&[[Twofold; 2]]>,
+        near: Option<&[[DoubleDouble; 2]]>,
         proof: f64,
     ) -> Result<Enclosure, Unproved> {
         let first = self.enclose(u, near, Stresses::InDoubles);
@@ -189,7 +189,7 @@ where
         }
     }
 
-    /// Encloses the solution around `u` by the residual there, or at a field `near` it that is known in twofold numbers:
+    /// Encloses the solution around `u` by the residual there, or at a field `near` it that is known in double-doubles:
     /// rounding a displacement to doubles moves it little, its forces more. Of a body that may slide, with these motions
     /// still stopped at one component each, one of the solutions is enclosed around the displacement of least norm.
     ///
@@ -198,7 +198,7 @@ where
     pub fn enclose(
         &mut self,
         u: &[[f64; 2]],
-        near: Option<&[[Twofold; 2]]>,
+        near: Option<&[[DoubleDouble; 2]]>,
         stresses: Stresses,
     ) -> Result<Enclosure, Unproved> {
         let mut watch = Stopwatch::start();
@@ -210,7 +210,7 @@ where
     fn enclosed(
         &mut self,
         u: &[[f64; 2]],
-        near: Option<&[[Twofold; 2]]>,
+        near: Option<&[[DoubleDouble; 2]]>,
         stresses: Stresses,
     ) -> Result<Enclosure, Unproved> {
         let d = self.system.d;
@@ -239,7 +239,7 @@ where
         &mut self,
         u: &[[f64; 2]],
         reported: &[[f64; 2]],
-        near: Option<&[[Twofold; 2]]>,
+        near: Option<&[[DoubleDouble; 2]]>,
         stresses: Stresses,
     ) -> Result<Enclosure, Unproved> {
         let (system, d, kappa) = (self.system, self.system.d, self.kappa);

@@ -4,8 +4,8 @@
 
 use super::body::block;
 use crate::fem::discretization::Discretization;
+use crate::fem::double_double::DoubleDouble;
 use crate::fem::held::{Play, Slides};
-use crate::fem::twofold::Twofold;
 use crate::kernel::edge_integral::ExactEdge;
 
 /// A displacement with its forces.
@@ -15,7 +15,7 @@ pub struct Evaluated<const M: usize> {
     /// Nodal values.
     pub u: Vec<[f64; 2]>,
     /// P(u) at the nodes of each contact edge.
-    pub p: Vec<[Twofold; M]>,
+    pub p: Vec<[DoubleDouble; M]>,
     /// R(u; v) for every basis function v.
     pub residual: Vec<[f64; 2]>,
 }
@@ -28,7 +28,7 @@ impl<const M: usize> Evaluated<M> {
     {
         let on_edge = |t: usize| d.space.on_triangle(t, &u);
         let p = d.contact.iter().flat_map(|edge| edge.p(&on_edge(edge.edge.triangle)));
-        let p: Vec<Twofold> = p.map(Twofold::from).collect();
+        let p: Vec<DoubleDouble> = p.map(DoubleDouble::from).collect();
         let forces = d.linear_residual(&u).values;
         Evaluated::with(d, u, forces, &p)
     }
@@ -39,12 +39,12 @@ impl<const M: usize> Evaluated<M> {
         d: &Discretization<E, N, M>,
         u: Vec<[f64; 2]>,
         forces: Vec<[f64; 2]>,
-        p: &[Twofold],
+        p: &[DoubleDouble],
     ) -> Self
     where
         E: ExactEdge<f64, N, M>,
     {
-        let p: Vec<[Twofold; M]> = (0..d.contact.len()).map(|e| block(p, e)).collect();
+        let p: Vec<[DoubleDouble; M]> = (0..d.contact.len()).map(|e| block(p, e)).collect();
         let mut residual = forces;
         for (edge, &p) in d.contact.iter().zip(&p) {
             let pressure = d.rule.integrals::<E, N, M>(p).gradient;

@@ -10,9 +10,9 @@ use super::balls::{field, length, product, root, strain_energy};
 use super::system::System;
 use crate::fem::Discretization;
 use crate::fem::ball::{Ball, up};
+use crate::fem::double_double::DoubleDouble;
 use crate::fem::moments::moments;
 use crate::fem::precise::{self, OnEdge};
-use crate::fem::twofold::Twofold;
 use crate::kernel::edge_integral::ExactEdge;
 
 /// An interval `[low, high]`.
@@ -124,7 +124,7 @@ impl Evaluation {
         system: &System<E, N, M>,
         lines: &[OnEdge<Ball, N, M>],
         (u, reported): (&[[f64; 2]], &[[f64; 2]]),
-        near: Option<&[[Twofold; 2]]>,
+        near: Option<&[[DoubleDouble; 2]]>,
         (load, stresses): (&[[Ball; 2]], Stresses),
     ) -> Option<Self>
     where

@@ -1,5 +1,5 @@
 //! A displacement on its way to the solution, and what the definitions say of it: in doubles as long as these tell enough,
-//! in [twofold](crate::fem::twofold) numbers where rounding would blur it. It is known to more than double precision
+//! in [double-doubles](crate::fem::double_double) where rounding would blur it. It is known to more than double precision
 //! itself: rounding the displacement of a slender body to doubles changes its forces by more than its loads. In doubles, too,
 //! stresses are those of its differences from node to node, which keep what rounding it would lose.
 
@@ -8,8 +8,8 @@ use nalgebra::Vector2;
 use super::system::System;
 use crate::fem::contact_line::{ContactLineEdge, EdgeRule, apply};
 use crate::fem::discretization::{Discretization, Functional};
+use crate::fem::double_double::DoubleDouble;
 use crate::fem::precise;
-use crate::fem::twofold::Twofold;
 use crate::kernel::edge_integral::ExactEdge;
 
 /// A residual this many unit roundoffs times its magnitudes is noise.
@@ -17,7 +17,7 @@ const NOISE: f64 = 4.0;
 
 /// A displacement.
 pub struct Iterate {
-    u: Vec<[Twofold; 2]>,
+    u: Vec<[DoubleDouble; 2]>,
 }
 
 /// The linear part of (8) at a displacement.
@@ -27,7 +27,7 @@ pub struct Evaluation {
     /// Its values for every free degree of freedom.
     pub linear: Vec<f64>,
     /// P(u) at the nodes of the contact edges; negative on those that press in no solution.
-    pub p: Vec<Twofold>,
+    pub p: Vec<DoubleDouble>,
     /// The magnitudes that these were added up from.
     pub p_magnitudes: Vec<f64>,
     /// a(u, u)
@@ -36,7 +36,7 @@ pub struct Evaluation {
     pub noise: f64,
     /// A bound of the rounding in the forces.
     pub noise_of_sums: f64,
-    /// In twofold numbers.
+    /// In double-doubles.
     pub precisely: bool,
 }
 
@@ -46,22 +46,22 @@ impl Iterate {
     where
         E: ExactEdge<f64, N, M>,
     {
-        Iterate { u: d.constraints.lift().into_iter().map(|u| u.map(Twofold::from)).collect() }
+        Iterate { u: d.constraints.lift().into_iter().map(|u| u.map(DoubleDouble::from)).collect() }
     }
 
     /// In doubles.
     pub fn rounded(&self) -> Vec<[f64; 2]> {
-        self.u.iter().map(|u| u.map(Twofold::head)).collect()
+        self.u.iter().map(|u| u.map(DoubleDouble::head)).collect()
     }
 
     /// As it is.
-    pub fn as_twofold(&self) -> &[[Twofold; 2]] {
+    pub fn as_double_doubles(&self) -> &[[DoubleDouble; 2]] {
         &self.u
     }
 
     /// The part that rounding to doubles leaves out.
     pub fn remainder(&self) -> Vec<[f64; 2]> {
-        self.u.iter().map(|u| u.map(Twofold::tail)).collect()
+        self.u.iter().map(|u| u.map(DoubleDouble::tail)).collect()
     }
 
     /// Adds `t` times a step over the free degrees of freedom.
@@ -74,11 +74,11 @@ impl Iterate {
         let mut field = vec![[0.0; 2]; self.u.len()];
         system.numbering.scatter(step, &mut field);
         for (u, step) in self.u.iter_mut().flatten().zip(field.as_flattened()) {
-            *u += Twofold::from(t * step);
+            *u += DoubleDouble::from(t * step);
         }
     }
 
-    /// The linear part of (8) here, in twofold numbers if `precisely`.
+    /// The linear part of (8) here, in double-doubles if `precisely`.
     pub fn evaluate<E, const N: usize, const M: usize>(
         &self,
         system: &System<E, N, M>,
@@ -89,12 +89,12 @@ impl Iterate {
     {
         let d = system.d;
         // Edges that press in no solution: the body is moved away from them in the end.
-        let idle = |(i, p): (usize, Twofold)| {
+        let idle = |(i, p): (usize, DoubleDouble)| {
             if d.is_idle(i / M) && p.head() > 0.0 { -p } else { p }
         };
         if precisely {
             let (forces, p) = precise::evaluate(d, &self.u);
-            let p: Vec<Twofold> = p.into_iter().enumerate().map(idle).collect();
+            let p: Vec<DoubleDouble> = p.into_iter().enumerate().map(idle).collect();
             // The forces of contact are added to these in doubles, and the loads are doubles.
             let noise = NOISE * f64::EPSILON * d.free_norm(&forces).max(d.free_norm(&d.load));
             let p_magnitudes = p.iter().map(|p| p.head().abs()).collect();
@@ -112,8 +112,8 @@ impl Iterate {
                 precisely,
             };
         }
-        let head = |node: usize| Vector2::from(self.u[node].map(Twofold::head));
-        let tail = |node: usize| Vector2::from(self.u[node].map(Twofold::tail));
+        let head = |node: usize| Vector2::from(self.u[node].map(DoubleDouble::head));
+        let tail = |node: usize| Vector2::from(self.u[node].map(DoubleDouble::tail));
         let Functional { values: forces, magnitudes, energy } = d
             .linear_residual_by(|node, from| (head(node) - head(from)) + (tail(node) - tail(from)));
         let nodes = |edge: &ContactLineEdge<N, M>| d.space.elements()[edge.edge.triangle];
@@ -123,10 +123,10 @@ impl Iterate {
             std::array::from_fn::<_, M, _>(|a| p[a] + of_tail[a])
         };
         let by_points = matches!(d.rule, EdgeRule::Gauss(_));
-        let p: Vec<Twofold> = if by_points {
+        let p: Vec<DoubleDouble> = if by_points {
             precise::p(d, &self.u).enumerate().map(idle).collect()
         } else {
-            d.contact.iter().flat_map(p).map(Twofold::from).enumerate().map(idle).collect()
+            d.contact.iter().flat_map(p).map(DoubleDouble::from).enumerate().map(idle).collect()
         };
         let magnitude = |functional: &[Vector2<f64>; N], nodal: &[Vector2<f64>; N]| {
             let pairs = functional.iter().flatten().zip(nodal.iter().flatten());

@@ -27,7 +27,7 @@
 use super::SolveError;
 use super::body::{Body, Derivatives, Edges, Step, block, derivatives};
 use super::relaxation::{follow, relaxed};
-use crate::fem::twofold::Twofold;
+use crate::fem::double_double::DoubleDouble;
 
 /// Armijo's sigma.
 const SUFFICIENT: f64 = 1e-4;
@@ -220,14 +220,14 @@ impl Springs {
 /// Where along the step J_h with the springs times `stiffness` is least; `None` if its decrease is lost in rounding.
 fn line_search<const M: usize>(
     edges: &impl Edges<M>,
-    y: &[Twofold],
+    y: &[DoubleDouble],
     stiffness: f64,
     at: &Derivatives<M>,
     step: &Step,
 ) -> Option<f64> {
-    let point = |e: usize, t: f64| -> [Twofold; M] {
-        let (p, d): ([Twofold; M], [f64; M]) = (block(y, e), block(&step.dy, e));
-        std::array::from_fn(|a| p[a] + Twofold::from(t * d[a]))
+    let point = |e: usize, t: f64| -> [DoubleDouble; M] {
+        let (p, d): ([DoubleDouble; M], [f64; M]) = (block(y, e), block(&step.dy, e));
+        std::array::from_fn(|a| p[a] + DoubleDouble::from(t * d[a]))
     };
     // The first and the second derivative of J_h along the step.
     let derivatives = |t: f64| {

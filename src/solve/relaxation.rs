@@ -15,7 +15,7 @@
 //! 4.6.
 
 use super::body::{Body, Derivatives, Edges, Step, block};
-use crate::fem::twofold::Twofold;
+use crate::fem::double_double::DoubleDouble;
 
 /// Newton's steps on an edge.
 const MOST_STEPS: usize = 30;
@@ -36,9 +36,9 @@ pub fn relaxed<const M: usize>(
     let mut gradient = Vec::with_capacity(w.len());
     let mut hessian = Vec::with_capacity(edges.count());
     for e in 0..edges.count() {
-        let (compliance, y) = (body.compliance(e), block(&body.y(), e).map(Twofold::head));
+        let (compliance, y) = (body.compliance(e), block(&body.y(), e).map(DoubleDouble::head));
         let spring = |q: [f64; M]| {
-            let (g, h) = edges.derivatives(e, q.map(Twofold::from));
+            let (g, h) = edges.derivatives(e, q.map(DoubleDouble::from));
             (g.map(|g| s * g), h.map(|row| row.map(|h| s * h)))
         };
         let q = alone(y, block(w, e), &compliance, spring);

@@ -14,8 +14,8 @@ use super::{MethodReport, NewtonReport, Report, Verdict};
 use crate::fem::contact_line::{self, Coercivity, Gamma};
 use crate::fem::dense::inner;
 use crate::fem::discretization::Discretization;
+use crate::fem::double_double::DoubleDouble;
 use crate::fem::held::Play;
-use crate::fem::twofold::Twofold;
 use crate::fem::{DataError, Errors, ExactSolution, Problem, Space};
 use crate::kernel::contact::pressure;
 use crate::kernel::edge_integral::{self, ExactEdge};
@@ -281,7 +281,7 @@ where
 fn contact_values<E, const N: usize, const M: usize>(
     d: &Discretization<E, N, M>,
     u: &[[f64; 2]],
-    p: &[[Twofold; M]],
+    p: &[[DoubleDouble; M]],
     recovered: &[[f64; M]],
 ) -> Vec<ContactEdgeValues>
 where
@@ -350,7 +350,8 @@ where
             }
         }
         q.contact_length += edge.length * integrals.active;
-        let peak = -pressure(edge_integral::maximum::<E, N, M>(p.map(Twofold::head)), edge.gamma);
+        let peak =
+            -pressure(edge_integral::maximum::<E, N, M>(p.map(DoubleDouble::head)), edge.gamma);
         q.peak_pressure = q.peak_pressure.max(peak);
     }
     for (boundary, held) in d.constraints.holders() {

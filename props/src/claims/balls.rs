@@ -5,8 +5,8 @@
 use proptest::prelude::*;
 use signorini::fem::ball::Ball as Fine;
 use signorini::fem::contact_line::EdgeRule;
+use signorini::fem::double_double::DoubleDouble;
 use signorini::fem::moments::moments;
-use signorini::fem::twofold::Twofold;
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::{Ball, Enclosing, Interval, P1, positive_part};
 
@@ -236,22 +236,23 @@ pub fn moments_of_balls_within_a_twentieth_of_them() -> Outcome {
 }
 
 /// The number that it stands for.
-fn value(a: Twofold) -> Exact {
+fn value(a: DoubleDouble) -> Exact {
     Exact::of_double(a.head()) + Exact::of_double(a.tail())
 }
 
 /// The four operations are exact to 2^`bits` of what they are made of.
-fn twofold(&[a, b, c, d]: &[f64; 4], bits: i32) -> Verdict {
+fn double_double(&[a, b, c, d]: &[f64; 4], bits: i32) -> Verdict {
     Exact::scope(|| {
         let small = 2.0_f64.powi(-54);
-        let (x, y) = (Twofold::sum(a, b * small), Twofold::sum(c, d * small));
+        let (x, y) = (DoubleDouble::sum(a, b * small), DoubleDouble::sum(c, d * small));
         let [exact_x, exact_y] = [x, y].map(value);
         ensure!(exact_x == Exact::of_double(a) + Exact::of_double(b * small));
-        let product = Twofold::product(a, c);
+        let product = DoubleDouble::product(a, c);
         ensure!(value(product) == Exact::of_double(a) * Exact::of_double(c));
         let unit = Exact::of_double(2.0_f64.powi(bits));
-        let near =
-            |found: Twofold, exact: Exact, size: Exact| (value(found) - exact).abs() <= unit * size;
+        let near = |found: DoubleDouble, exact: Exact, size: Exact| {
+            (value(found) - exact).abs() <= unit * size
+        };
         let sizes = [exact_x, exact_y].map(Exact::abs);
         ensure!(near(x + y, exact_x + exact_y, sizes[0] + sizes[1]));
         ensure!(near(x - y, exact_x - exact_y, sizes[0] + sizes[1]));
@@ -261,17 +262,17 @@ fn twofold(&[a, b, c, d]: &[f64; 4], bits: i32) -> Verdict {
     })
 }
 
-fn twofold_numbers() -> impl Strategy<Value = [f64; 4]> {
+fn double_doubles() -> impl Strategy<Value = [f64; 4]> {
     let size = || prop_oneof![1e-3_f64..1e3, -1e3_f64..-1e-3];
     [size(), size(), size(), size()]
 }
 
 /// Row 13: numbers of twice the precision keep 100 bits.
-pub fn twofold_numbers_keep_a_hundred_bits() -> Outcome {
-    draws::hold(500, twofold_numbers(), &["one sign", "two signs"], |draw| twofold(draw, -100))
+pub fn double_doubles_keep_a_hundred_bits() -> Outcome {
+    draws::hold(500, double_doubles(), &["one sign", "two signs"], |draw| double_double(draw, -100))
 }
 
 /// To 120 bits they are not exact.
-pub fn twofold_numbers_keep_120_bits() -> Outcome {
-    draws::reject(twofold_numbers(), |draw| twofold(draw, -120))
+pub fn double_doubles_keep_120_bits() -> Outcome {
+    draws::reject(double_doubles(), |draw| double_double(draw, -120))
 }

@@ -7,7 +7,7 @@
 use std::borrow::Cow;
 
 use proptest::prelude::*;
-use signorini::fem::twofold::Twofold;
+use signorini::fem::double_double::DoubleDouble;
 use signorini::solve::accuracy::Outcome as Solved;
 use signorini::solve::body::{self, Body as _, Derivatives, Edges, Residual, Start, Step};
 use signorini::solve::newton::{self, Until};
@@ -32,13 +32,13 @@ impl Edges<1> for Springs {
         3
     }
 
-    fn derivatives(&self, _: usize, [p]: [Twofold; 1]) -> ([f64; 1], [[f64; 1]; 1]) {
+    fn derivatives(&self, _: usize, [p]: [DoubleDouble; 1]) -> ([f64; 1], [[f64; 1]; 1]) {
         let p = p.head();
         if p > 0.0 { ([STIFFNESS * p], [[STIFFNESS]]) } else { ([0.0], [[0.0]]) }
     }
 
-    fn bregman(&self, _: usize, p: [Twofold; 1], q: [Twofold; 1]) -> f64 {
-        let ([p], [q]) = (p.map(Twofold::head), q.map(Twofold::head));
+    fn bregman(&self, _: usize, p: [DoubleDouble; 1], q: [DoubleDouble; 1]) -> f64 {
+        let ([p], [q]) = (p.map(DoubleDouble::head), q.map(DoubleDouble::head));
         let step = q.max(0.0) - p.max(0.0);
         STIFFNESS * (step * step / 2.0 + p.max(0.0) * (-q).max(0.0))
     }
@@ -107,7 +107,7 @@ impl Body {
 }
 
 impl body::Body<1> for Body {
-    fn y(&self) -> Cow<'_, [Twofold]> {
+    fn y(&self) -> Cow<'_, [DoubleDouble]> {
         self.x.iter().map(|&x| x.into()).collect()
     }
 
@@ -234,7 +234,7 @@ impl Watched {
 }
 
 impl body::Body<1> for Watched {
-    fn y(&self) -> Cow<'_, [Twofold]> {
+    fn y(&self) -> Cow<'_, [DoubleDouble]> {
         self.body.y()
     }
 
@@ -364,7 +364,7 @@ pub fn claim() -> Claim {
         items: &["Newton's method"],
         title: "Newton's method and the verdict",
         paper: "Nothing: the paper leaves open how (8) is solved.",
-        statement: "The solver's Newton method with its line search ends at the minimiser of J, up to 1000 times the noise of the residual: on the example of docs/theory.md, 4.4, where full steps from the same start cycle for ever (the control runs them), and on random strongly convex J with three springs, from random starts and from 1e-8 away, with an energy that is not larger than at the start. The verdict is the proof: nothing leaves as proved whose enclosure is wider than [solver] proof, or whose error is larger than its enclosure, on nine loaded bodies, P1 and P2, with passes whose error is known: where they take it down by factors of 100, 10 and 2.5, where they get no nearer, and where they stop at a distance and have nothing left to correct, which the last correction takes for the end (the control lets it decide). Without a proof a residual within the tolerance makes a result that is not proved, and anything else none; infinities and NaN are no proof. The residual is that of (8) over the free degrees of freedom, relative to |L| + |R(lift) + L|. The condensed route takes at most two steps more than the assembled one; each line search whose step was linearised where a spring is pressed ends where the derivative is a hundredth of that at its start. When a solve ends: where contact is 10,000 times as stiff as at the limit, passes go on until no more than 1e-10 of loads and contact is out of balance, though a loose tolerance was met long before. In which numbers: stresses are those of the differences of the displacement between nodes, exactly, and of what doubles can't hold of it; where doubles blur P (a body that is carried along by 2^30) and so fall short of a proof, residuals are evaluated in twofold numbers. The condition number is told from below, in any units the same.",
+        statement: "The solver's Newton method with its line search ends at the minimiser of J, up to 1000 times the noise of the residual: on the example of docs/theory.md, 4.4, where full steps from the same start cycle for ever (the control runs them), and on random strongly convex J with three springs, from random starts and from 1e-8 away, with an energy that is not larger than at the start. The verdict is the proof: nothing leaves as proved whose enclosure is wider than [solver] proof, or whose error is larger than its enclosure, on nine loaded bodies, P1 and P2, with passes whose error is known: where they take it down by factors of 100, 10 and 2.5, where they get no nearer, and where they stop at a distance and have nothing left to correct, which the last correction takes for the end (the control lets it decide). Without a proof a residual within the tolerance makes a result that is not proved, and anything else none; infinities and NaN are no proof. The residual is that of (8) over the free degrees of freedom, relative to |L| + |R(lift) + L|. The condensed route takes at most two steps more than the assembled one; each line search whose step was linearised where a spring is pressed ends where the derivative is a hundredth of that at its start. When a solve ends: where contact is 10,000 times as stiff as at the limit, passes go on until no more than 1e-10 of loads and contact is out of balance, though a loose tolerance was met long before. In which numbers: stresses are those of the differences of the displacement between nodes, exactly, and of what doubles can't hold of it; where doubles blur P (a body that is carried along by 2^30) and so fall short of a proof, residuals are evaluated in double-doubles. The condition number is told from below, in any units the same.",
         numbers: "doubles.",
         kernel: &[
             "solve::newton::minimise",
@@ -386,7 +386,7 @@ pub fn claim() -> Claim {
             doubles!("the_residual_of_the_verdict_is_that_of_8_relative_to_the_forces" => honesty::residual_is_told(1.0)),
             doubles!("nothing_is_proved_that_is_further_away_than_asked_for" => honesty::proved(false)),
             doubles!("loads_contact_and_reactions_balance" => passes::loads_contact_and_reactions_balance()),
-            doubles!("what_doubles_blur_is_evaluated_in_twofold_numbers" => passes::carried_blocks(1e-9)),
+            doubles!("what_doubles_blur_is_evaluated_in_double_doubles" => passes::carried_blocks(1e-9)),
             doubles!("control_what_doubles_blur_to_all_digits" => noticed(passes::carried_blocks(1e-18))),
             doubles!("the_routes_take_the_same_steps_or_fewer" => passes::steps(passes::MORE)),
             doubles!("the_line_search_ends_where_the_derivative_is_a_hundredth" => line_searches_end_where_it_is_flat()),

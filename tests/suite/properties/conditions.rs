@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_4;
 
-use signorini::fem::twofold::Twofold;
+use signorini::fem::double_double::DoubleDouble;
 use signorini::fem::{
     Condition, DataError, Diagonal, Discretization, Mesh, Problem, Rectangle, precise,
 };
@@ -321,7 +321,7 @@ where
     problem.body_force = [constant(0.0), constant(0.0)];
     problem.conditions.remove("right");
     let d: Discretization<E, N, M> = discretize(&problem, &Method::default()).map_err(text)?;
-    let third = Twofold::from(1) / Twofold::from(3);
+    let third = DoubleDouble::from(1) / DoubleDouble::from(3);
     let u = vec![[third, third * third]; d.space.nodes().len()];
     let (forces, p) = precise::evaluate(&d, &u);
     let largest = forces.as_flattened().iter().map(|f| f.abs()).fold(0.0, f64::max);
@@ -339,7 +339,7 @@ where
     Ok(())
 }
 
-/// A(u, .) - L and P at a field of doubles: in twofold numbers as in doubles, to `digits` of the magnitudes.
+/// A(u, .) - L and P at a field of doubles: in double-doubles as in doubles, to `digits` of the magnitudes.
 fn precise_as_in_doubles<E, const N: usize, const M: usize>(digits: f64) -> Result<(), String>
 where
     E: ExactEdge<f64, N, M>,
@@ -349,8 +349,8 @@ where
     let mut random = Random(2013);
     let mut number = || random.below(2001) as f64 / 1000.0 - 1.0;
     let u: Vec<[f64; 2]> = d.space.nodes().iter().map(|_| [number(), number()]).collect();
-    let twofold: Vec<[Twofold; 2]> = u.iter().map(|u| u.map(Twofold::from)).collect();
-    let (forces, p) = precise::evaluate(&d, &twofold);
+    let exact: Vec<[DoubleDouble; 2]> = u.iter().map(|u| u.map(DoubleDouble::from)).collect();
+    let (forces, p) = precise::evaluate(&d, &exact);
     let doubles = d.linear_residual(&u);
     for (node, force) in forces.iter().enumerate() {
         for c in 0..2 {
@@ -375,10 +375,10 @@ properties! {
     forces_moments_and_energies_balance: balances(1.0); not balances(-1.0);
     bodies_that_can_move_are_refused: bodies_are_held(false); not bodies_are_held(true);
     the_routes_end_at_the_same_displacement: routes_agree(1.0); not routes_agree(1.0 + 1e-6);
-    forces_of_a_translation_vanish_in_twofold_numbers:
+    forces_of_a_translation_vanish_in_double_doubles:
         translation::<P1, 3, 2>(2.0_f64.powi(-90)), translation::<P2, 6, 3>(2.0_f64.powi(-90));
         not translation::<P2, 6, 3>(0.0);
-    the_residual_in_twofold_numbers_is_that_in_doubles:
+    the_residual_in_double_doubles_is_that_in_doubles:
         precise_as_in_doubles::<P1, 3, 2>(1e-15), precise_as_in_doubles::<P2, 6, 3>(1e-15);
         not precise_as_in_doubles::<P2, 6, 3>(1e-18);
 }

@@ -10,30 +10,30 @@ use crate::kernel::Scalar;
 
 /// `head + tail`, where the tail is at most half a unit in the last place of the head.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Twofold {
+pub struct DoubleDouble {
     head: f64,
     tail: f64,
 }
 
-impl Twofold {
+impl DoubleDouble {
     /// The sum of two doubles, exactly.
     pub fn sum(a: f64, b: f64) -> Self {
         let head = a + b;
         let of_b = head - a;
-        Twofold { head, tail: (a - (head - of_b)) + (b - of_b) }
+        DoubleDouble { head, tail: (a - (head - of_b)) + (b - of_b) }
     }
 
     /// The product of two doubles, exactly unless it over- or underflows.
     pub fn product(a: f64, b: f64) -> Self {
         let head = a * b;
         let ([a1, a2], [b1, b2]) = (halves(a), halves(b));
-        Twofold { head, tail: ((a1 * b1 - head) + a1 * b2 + a2 * b1) + a2 * b2 }
+        DoubleDouble { head, tail: ((a1 * b1 - head) + a1 * b2 + a2 * b1) + a2 * b2 }
     }
 
     /// Splits a sum of two parts that may overlap, the larger one first, into head and tail.
     fn normal(head: f64, tail: f64) -> Self {
         let sum = head + tail;
-        Twofold { head: sum, tail: tail - (sum - head) }
+        DoubleDouble { head: sum, tail: tail - (sum - head) }
     }
 
     /// The nearest double.
@@ -54,63 +54,64 @@ pub(super) fn halves(a: f64) -> [f64; 2] {
     [high, a - high]
 }
 
-impl From<f64> for Twofold {
+impl From<f64> for DoubleDouble {
     fn from(a: f64) -> Self {
-        Twofold { head: a, tail: 0.0 }
+        DoubleDouble { head: a, tail: 0.0 }
     }
 }
 
-impl From<i32> for Twofold {
+impl From<i32> for DoubleDouble {
     fn from(a: i32) -> Self {
-        Twofold::from(f64::from(a))
+        DoubleDouble::from(f64::from(a))
     }
 }
 
-impl Add for Twofold {
+impl Add for DoubleDouble {
     type Output = Self;
     fn add(self, b: Self) -> Self {
-        let (heads, tails) = (Twofold::sum(self.head, b.head), Twofold::sum(self.tail, b.tail));
-        let first = Twofold::normal(heads.head, heads.tail + tails.head);
-        Twofold::normal(first.head, first.tail + tails.tail)
+        let (heads, tails) =
+            (DoubleDouble::sum(self.head, b.head), DoubleDouble::sum(self.tail, b.tail));
+        let first = DoubleDouble::normal(heads.head, heads.tail + tails.head);
+        DoubleDouble::normal(first.head, first.tail + tails.tail)
     }
 }
 
-impl Neg for Twofold {
+impl Neg for DoubleDouble {
     type Output = Self;
     fn neg(self) -> Self {
-        Twofold { head: -self.head, tail: -self.tail }
+        DoubleDouble { head: -self.head, tail: -self.tail }
     }
 }
 
-impl Sub for Twofold {
+impl Sub for DoubleDouble {
     type Output = Self;
     fn sub(self, b: Self) -> Self {
         self + -b
     }
 }
 
-impl Mul for Twofold {
+impl Mul for DoubleDouble {
     type Output = Self;
     fn mul(self, b: Self) -> Self {
-        let heads = Twofold::product(self.head, b.head);
-        Twofold::normal(heads.head, heads.tail + (self.head * b.tail + self.tail * b.head))
+        let heads = DoubleDouble::product(self.head, b.head);
+        DoubleDouble::normal(heads.head, heads.tail + (self.head * b.tail + self.tail * b.head))
     }
 }
 
-impl Div for Twofold {
+impl Div for DoubleDouble {
     type Output = Self;
     fn div(self, b: Self) -> Self {
         let first = self.head / b.head;
-        let rest = self - b * Twofold::from(first);
+        let rest = self - b * DoubleDouble::from(first);
         let second = rest.head / b.head;
-        let rest = rest - b * Twofold::from(second);
-        Twofold::normal(first, second) + Twofold::from(rest.head / b.head)
+        let rest = rest - b * DoubleDouble::from(second);
+        DoubleDouble::normal(first, second) + DoubleDouble::from(rest.head / b.head)
     }
 }
 
-crate::entry_of_nalgebra!(Twofold);
+crate::entry_of_nalgebra!(DoubleDouble);
 
-impl Scalar for Twofold {
+impl Scalar for DoubleDouble {
     fn split(
         self,
         nonpositive: impl FnOnce(Self) -> Self,
@@ -126,13 +127,13 @@ mod tests {
     use super::*;
 
     /// 1 + 2^-80, which no double is.
-    fn fine() -> Twofold {
-        Twofold::sum(1.0, 2.0_f64.powi(-80))
+    fn fine() -> DoubleDouble {
+        DoubleDouble::sum(1.0, 2.0_f64.powi(-80))
     }
 
     #[test]
     fn what_a_double_loses_is_kept() {
-        let one = Twofold::from(1);
+        let one = DoubleDouble::from(1);
         assert_eq!((fine() - one).head(), 2.0_f64.powi(-80));
         // (1 + e)^2 - 1 - 2e = e^2 = 2^-160 is beyond 106 bits, 2e is not.
         assert_eq!((fine() * fine() - one).head(), 2.0_f64.powi(-79));
@@ -141,8 +142,8 @@ mod tests {
 
     #[test]
     fn a_third_times_three_is_one_to_a_hundred_bits() {
-        let third = Twofold::from(1) / Twofold::from(3);
-        let error = (third * Twofold::from(3) - Twofold::from(1)).head();
+        let third = DoubleDouble::from(1) / DoubleDouble::from(3);
+        let error = (third * DoubleDouble::from(3) - DoubleDouble::from(1)).head();
         assert!(error.abs() <= 2.0_f64.powi(-102), "{error:e}");
         assert_eq!(third.head(), 1.0 / 3.0);
         assert!(third.tail() != 0.0);
@@ -151,14 +152,14 @@ mod tests {
     #[test]
     fn products_of_doubles_are_exact() {
         // (2^27 + 1)(2^27 - 1) = 2^54 - 1 needs 54 bits.
-        let p = Twofold::product(134_217_729.0, 134_217_727.0);
+        let p = DoubleDouble::product(134_217_729.0, 134_217_727.0);
         assert_eq!((p.head(), p.tail()), (2.0_f64.powi(54), -1.0));
     }
 
     #[test]
     fn a_nan_stays_nan() {
-        let nan = Twofold::from(f64::NAN);
+        let nan = DoubleDouble::from(f64::NAN);
         assert!((nan + fine()).head().is_nan() && (nan * fine()).head().is_nan());
-        assert!(nan.split(|_| Twofold::from(0), |a| a).head().is_nan());
+        assert!(nan.split(|_| DoubleDouble::from(0), |a| a).head().is_nan());
     }
 }
