@@ -170,7 +170,7 @@ pub fn turned<S: Enclosing>(d: Vector2<S>) -> Vector2<S> {
     Vector2::new(-d[1], d[0])
 }
 
-/// Whether d is not along an axis.
+/// Tells whether d is not along an axis.
 #[doc(hidden)]
 pub fn is_oblique(d: [f64; 2]) -> bool {
     d[0] != 0.0 && d[1] != 0.0

@@ -131,9 +131,9 @@ pub struct ByPair {
 }
 
 impl ByPair {
-    /// What triangle by triangle is to be small for one end: k M^2 + eta^2 / (4 k), with the k >= eta / (2 M) that gives what
-    /// that end is away from the middle; `shares` are those in M^2. For the upper end without eta, which there is large for
-    /// where w and rho end, not for the triangles.
+    /// Gives the share of each triangle in the distance of one end from the middle, k M^2 + eta^2 / (4 k) with the k >= eta / (2 M)
+    /// that makes it that distance; `shares` are those in M^2. The upper end counts k M^2 alone: its eta comes from where w and
+    /// rho end, not from the triangles.
     pub fn limits(&self, side: usize, shares: &[f64]) -> Vec<f64> {
         let [of_mean, of_pair] = [shares, &self.shares].map(|all| all.iter().sum::<f64>());
         let k = self.factors[side].max((of_pair / of_mean).sqrt() / 2.0);
@@ -317,7 +317,7 @@ impl<S: Enclosing> Forces<'_, S> {
     }
 }
 
-/// What is summed over the triangles for a pair.
+/// Sums over the triangles for a pair.
 struct Sums<S> {
     dual: Balanced<S>,
     /// R0

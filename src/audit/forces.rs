@@ -462,7 +462,7 @@ impl<'a, S: Enclosing> Forces<'a, S> {
         }
     }
 
-    /// Whether the motion is asked for on an edge.
+    /// Tells whether the motion is asked for on an edge.
     fn is_meant(&self, e: usize, target: Target) -> bool {
         target.boundary.is_none_or(|boundary| self.of[e] == Some(boundary))
     }

@@ -601,7 +601,7 @@ impl<'a> Reader<'a> {
         Ok(array.as_chunks::<N>().0.iter().map(|entry| entry.map(u64::from_le_bytes)))
     }
 
-    /// Whether an array is there and not read yet.
+    /// Tells whether an array is there and not read yet.
     fn has(&self, (name, _): Layout) -> bool {
         self.0.contains_key(name)
     }

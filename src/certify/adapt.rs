@@ -107,7 +107,7 @@ pub enum AdaptError {
 }
 
 impl AdaptError {
-    /// Whether the case is wrong. Otherwise it is right, but there is no result of it here.
+    /// Tells whether the case is wrong. Otherwise it is right, but there is no result of it here.
     pub fn is_wrong_case(&self) -> bool {
         match self {
             AdaptError::Solve { error, .. } => error.is_wrong_case(),

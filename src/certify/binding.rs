@@ -1,4 +1,4 @@
-//! Whether a certificate is one of a problem: its triangles cut up those of the problem's mesh, and what is given on them,
+//! Compares a certificate with a problem: its triangles cut up those of the problem's mesh, and what is given on them,
 //! materials, supports, loads and obstacles, is what the problem says there, to rounding; what is measured by quadrature is
 //! measured again.
 

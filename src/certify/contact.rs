@@ -192,7 +192,7 @@ impl Contact {
         (self.directions != [self.normal; 2]).then(|| self.directions.map(<[f64; 2]>::from))
     }
 
-    /// Whether the direction of contact turns along it.
+    /// Tells whether the direction of contact turns along it.
     pub fn turns(&self) -> bool {
         self.directions[0] != self.directions[1]
     }
