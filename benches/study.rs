@@ -22,7 +22,7 @@ use signorini::fem::{
 use signorini::io::Case;
 use signorini::io::convergence::{self, Meshes, NORMS, Study};
 use signorini::io::plot::{self, Figure, Panel, Style};
-use signorini::kernel::{Material, P1, Plane};
+use signorini::kernel::{Material, Plane};
 use signorini::solve::ladder::fitted_slope;
 use signorini::solve::{
     ContactQuadrature, Degree, Gamma0, Ladder, Method, Settings, Solution, SolveError, Theorem,
@@ -552,7 +552,7 @@ fn energy_error(
     v: &[[f64; 2]],
     exact: &Exact,
 ) -> Result<f64> {
-    let space = Space::<P1, 3, 2>::new(&problem.mesh);
+    let space = Space::new(&problem.mesh, Degree::One);
     let contact = contact_line::assemble(problem, &space, solution.gamma.gamma0)?;
     Ok(Errors::new(&space, &contact, v, &**exact).energy)
 }

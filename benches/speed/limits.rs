@@ -13,8 +13,6 @@ use faer::sparse::linalg::cholesky::{
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Accum, Mat, Par, Side};
 use signorini::fem::matrix::{LowerTriangle, Neighbours};
-use signorini::kernel::edge_integral::ExactEdge;
-use signorini::kernel::{P1, P2};
 use signorini::solve::factor::Factor;
 
 use crate::own::Measured;
@@ -24,19 +22,8 @@ use crate::table::{table, three, time};
 /// The matrix of the body without contact, and the time its order took.
 fn body(Size { degree, n }: Size) -> (LowerTriangle, Duration) {
     let problem = problem::block(n);
-    match degree {
-        1 => body_with(&problem::without_contact::<P1, 3, 2>(&problem)),
-        _ => body_with(&problem::without_contact::<P2, 6, 3>(&problem)),
-    }
-}
-
-fn body_with<E, const N: usize, const M: usize>(
-    d: &signorini::fem::Discretization<E, N, M>,
-) -> (LowerTriangle, Duration)
-where
-    E: ExactEdge<f64, N, M>,
-{
-    let neighbours = Neighbours::new(d.space.nodes().len(), d.space.elements());
+    let d = &problem::without_contact(&problem, degree);
+    let neighbours = Neighbours::new(&d.space);
     let start = Instant::now();
     let order = problem::dissect(d, &neighbours);
     let time = start.elapsed();

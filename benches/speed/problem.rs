@@ -10,8 +10,7 @@ use signorini::fem::{
     BoundaryEdge, Condition, Diagonal, Discretization, Mesh, Problem, Rectangle, SharedFunction,
 };
 use signorini::io::{Case, Expression};
-use signorini::kernel::edge_integral::ExactEdge;
-use signorini::kernel::{Material, P1, P2, Plane};
+use signorini::kernel::{Material, Plane};
 use signorini::solve::factor::Factor;
 use signorini::solve::ordering::nested_dissection;
 use signorini::solve::{self, ContactQuadrature, Degree, Method, Settings, Solution, Times};
@@ -187,19 +186,9 @@ pub struct LinearTimes {
 
 /// One linear elastic solve of the same body with a free floor: same mesh, data, assembly and factorisation.
 pub fn linear(problem: &Problem, degree: usize) -> LinearTimes {
-    match degree {
-        1 => linear_with::<P1, 3, 2>(problem),
-        _ => linear_with::<P2, 6, 3>(problem),
-    }
-}
-
-fn linear_with<E, const N: usize, const M: usize>(problem: &Problem) -> LinearTimes
-where
-    E: ExactEdge<f64, N, M>,
-{
     let start = Instant::now();
-    let d = without_contact::<E, N, M>(problem);
-    let neighbours = Neighbours::new(d.space.nodes().len(), d.space.elements());
+    let d = without_contact(problem, degree);
+    let neighbours = Neighbours::new(&d.space);
     let (numbering, matrix) = matrix(&d, &neighbours, &dissect(&d, &neighbours));
     let assemble = start.elapsed();
     let start = Instant::now();
@@ -216,18 +205,8 @@ where
 
 /// The same by the solver itself: corrected, with its residual and its forward error.
 pub fn linear_judged(problem: &Problem, degree: usize) -> Duration {
-    match degree {
-        1 => linear_judged_with::<P1, 3, 2>(problem),
-        _ => linear_judged_with::<P2, 6, 3>(problem),
-    }
-}
-
-fn linear_judged_with<E, const N: usize, const M: usize>(problem: &Problem) -> Duration
-where
-    E: ExactEdge<f64, N, M>,
-{
     let start = Instant::now();
-    let d = without_contact::<E, N, M>(problem);
+    let d = without_contact(problem, degree);
     let discretize = start.elapsed();
     let (u, _, times) = solve::solve_discrete(&d, &Settings::default()).expect("a clamped body");
     std::hint::black_box(&u);
@@ -235,39 +214,25 @@ where
 }
 
 /// The discretization of the body with a free floor.
-pub fn without_contact<E, const N: usize, const M: usize>(
-    problem: &Problem,
-) -> Discretization<'_, E, N, M>
-where
-    E: ExactEdge<f64, N, M>,
-{
-    let method = method(E::DEGREE, ContactQuadrature::Exact);
+pub fn without_contact(problem: &Problem, degree: usize) -> Discretization<'_> {
+    let method = method(degree, ContactQuadrature::Exact);
     let mut d = solve::discretize(problem, &method).expect("a valid problem");
     d.contact.clear();
     d
 }
 
 /// The nodes in the order of nested dissection, without a contact layer.
-pub fn dissect<E, const N: usize, const M: usize>(
-    d: &Discretization<E, N, M>,
-    neighbours: &Neighbours,
-) -> Vec<usize>
-where
-    E: ExactEdge<f64, N, M>,
-{
+pub fn dissect(d: &Discretization, neighbours: &Neighbours) -> Vec<usize> {
     let nodes = d.space.nodes();
     nested_dissection(nodes, neighbours)
 }
 
 /// The matrix with the nodes in this order.
-pub fn matrix<E, const N: usize, const M: usize>(
-    d: &Discretization<E, N, M>,
+pub fn matrix(
+    d: &Discretization,
     neighbours: &Neighbours,
     order: &[usize],
-) -> (Numbering, LowerTriangle)
-where
-    E: ExactEdge<f64, N, M>,
-{
+) -> (Numbering, LowerTriangle) {
     let numbering = Numbering::new(order, d.constraints.values());
     let matrix = matrix::assemble(d, &numbering, neighbours);
     (numbering, matrix)

@@ -2,15 +2,14 @@
 //! the loads and the points of a rule are the solver's doubles, taken for the rational numbers that they are. The solver's own
 //! loops ([`precise`]) compute with them: forces, stresses and P are its code, and exact. The tangent is the kernel's.
 
-use signorini::fem::Discretization;
-use signorini::fem::contact_line::EdgeRule;
-use signorini::fem::precise::{self, OnEdge};
-use signorini::kernel::contact_edge::coercivity_constant;
+use signorini::fem::element::value_at;
+use signorini::fem::precise;
+use signorini::fem::{ContactFace, Discretization, EdgeRule};
 use signorini::kernel::edge_integral::{self, ExactEdge};
-use signorini::kernel::{EdgeIntegrals, Material, Plane};
+use signorini::kernel::{EdgeIntegrals, Material, P1, P2, Plane};
 use signorini::nalgebra::Matrix2;
 
-use crate::bodies::{MaybeExact, sum};
+use crate::bodies::sum;
 use crate::elimination::{Matrix, combined, dot};
 use crate::numbers::Exact;
 
@@ -26,22 +25,19 @@ pub fn exactly(field: &[[f64; 2]]) -> Nodal {
 }
 
 /// The discrete problem.
-pub struct Discrete<'a, E, const N: usize, const M: usize> {
-    d: &'a Discretization<'a, E, N, M>,
+pub struct Discrete<'a> {
+    d: &'a Discretization<'a>,
     /// The number of each free component.
     numbers: Vec<[Option<usize>; 2]>,
     count: usize,
-    edges: Vec<OnEdge<'a, Exact, N, M>>,
+    edges: Vec<ContactFace<Exact>>,
     /// Points and weights; none for exact integration.
     rule: Option<Vec<[Exact; 2]>>,
 }
 
-impl<'a, E, const N: usize, const M: usize> Discrete<'a, E, N, M>
-where
-    E: MaybeExact<N, M> + ExactEdge<f64, N, M>,
-{
+impl<'a> Discrete<'a> {
     /// The solver's discrete problem.
-    pub fn new(d: &'a Discretization<'a, E, N, M>) -> Self {
+    pub fn new(d: &'a Discretization<'a>) -> Self {
         let mut count = 0;
         let mut number = |prescribed: &Option<f64>| {
             prescribed.is_none().then(|| {
@@ -99,9 +95,9 @@ where
 
     /// Adds the blocks of triangle t into a matrix over the free components.
     fn add(&self, matrix: &mut Matrix, t: usize, block: impl Fn(usize, usize) -> Matrix2<Exact>) {
-        let nodes = self.d.space.elements()[t];
-        for i in 0..N {
-            for j in 0..N {
+        let nodes = self.d.space.nodes_of(t);
+        for i in 0..nodes.len() {
+            for j in 0..nodes.len() {
                 let block = block(i, j);
                 for c in 0..2 {
                     for d in 0..2 {
@@ -143,7 +139,7 @@ where
     /// a(u, v) for every basis function v.
     fn internal_forces(&self, u: &[[Exact; 2]]) -> Nodal {
         let mut forces = self.nowhere();
-        precise::add_internal_forces(self.d, u, &mut forces);
+        precise::add_internal_forces(&self.d.space, &self.d.problem.material, u, &mut forces);
         forces
     }
 
@@ -162,22 +158,24 @@ where
     }
 
     /// P(u) at the nodes of edge e.
-    pub fn p(&self, e: usize, u: &[[Exact; 2]]) -> [Exact; M] {
-        self.edges[e].p(&self.d.contact[e], u)
+    pub fn p(&self, e: usize, u: &[[Exact; 2]]) -> Vec<Exact> {
+        self.edges[e].p(u)
     }
 
     /// |E| / gamma
     fn weight(&self, e: usize) -> Exact {
-        let numbers = &self.edges[e].numbers;
-        numbers.length / numbers.gamma
+        self.edges[e].length / self.edges[e].gamma
     }
 
-    fn integrals(&self, p: [Exact; M]) -> EdgeIntegrals<Exact, M> {
-        match &self.rule {
-            None => E::without_error(p),
-            Some(points) => {
-                let points = points.iter().map(|&[s, weight]| (s, weight));
-                edge_integral::gauss::<E, Exact, N, M>(p, points)
+    /// int \[P\]+ N_a and int_{P > 0} N_a N_b. Where there is no rule and P is quadratic they are no rational numbers.
+    fn integrals(&self, p: &[Exact]) -> (Vec<Exact>, Matrix) {
+        let points = self.rule.iter().flatten().map(|&[s, weight]| (s, weight));
+        match *p {
+            [start, end] if self.rule.is_none() => lists(P1::exact([start, end])),
+            [start, end] => lists(edge_integral::gauss::<P1, Exact, 3, 2>([start, end], points)),
+            _ => {
+                assert!(self.rule.is_some(), "the roots of a quadratic P are no rational numbers");
+                lists(edge_integral::gauss::<P2, Exact, 6, 3>([p[0], p[1], p[2]], points))
             }
         }
     }
@@ -195,17 +193,16 @@ where
 
     /// int \[P(u)\]+/gamma: the force of contact.
     pub fn contact_force(&self, u: &[[Exact; 2]]) -> Exact {
-        sum(0..self.edges.len(), |e| {
-            self.weight(e) * sum(self.integrals(self.p(e, u)).gradient, |g| g)
-        })
+        sum(0..self.edges.len(), |e| self.weight(e) * sum(self.integrals(&self.p(e, u)).0, |g| g))
     }
 
     /// The residual of (8) at u for every basis function: at the prescribed components the reactions.
     pub fn reactions(&self, u: &[[Exact; 2]]) -> Nodal {
         let mut residual = precise::linear_residual(self.d, &self.edges, u);
         for (e, edge) in self.edges.iter().enumerate() {
-            let gradient = self.integrals(self.p(e, u)).gradient;
-            edge.add_contact(&gradient.map(|g| self.weight(e) * g), &mut residual);
+            let gradient = self.integrals(&self.p(e, u)).0.into_iter();
+            let forces: Vec<Exact> = gradient.map(|g| self.weight(e) * g).collect();
+            edge.add_contact(&forces, &mut residual);
         }
         residual
     }
@@ -216,13 +213,13 @@ where
         let one = Exact::from(1);
         let mut matrix = combined(one, &self.stiffness(), -one, &stresses);
         for (e, edge) in self.edges.iter().enumerate() {
-            let hessian = self.integrals(self.p(e, u)).hessian;
-            let p0 = &edge.functionals.p0;
+            let hessian = self.integrals(&self.p(e, u)).1;
+            let p0 = edge.functionals.p0();
             self.add(&mut matrix, self.d.contact[e].edge.triangle, |i, j| {
                 Matrix2::from_fn(|c, d| {
-                    let left = p0.map(|row| row[i][c]);
-                    let right = p0.map(|row| row[j][d]);
-                    let times = hessian.map(|row| dot(&row, &right));
+                    let left: Vec<Exact> = p0.iter().map(|row| row[i][c]).collect();
+                    let right: Vec<Exact> = p0.iter().map(|row| row[j][d]).collect();
+                    let times: Vec<Exact> = hessian.iter().map(|row| dot(row, &right)).collect();
                     self.weight(e) * dot(&left, &times)
                 })
             });
@@ -239,11 +236,11 @@ where
             let part = |value: Exact| if value > zero { value } else { zero };
             let square = match &self.rule {
                 Some(points) => points.iter().fold(zero, |sum, &[s, weight]| {
-                    let [p, q] = [p, q].map(|p| edge_integral::value_at::<E, Exact, N, M>(p, s));
+                    let [p, q] = [&p, &q].map(|p| value_at(p, s));
                     let d = part(p) - part(q);
                     sum + weight * d * d
                 }),
-                None if M == 2 && !cut(&p) && !cut(&q) => {
+                None if p.len() == 2 && !cut(&p) && !cut(&q) => {
                     let [start, end] = [0, 1].map(|a| part(p[a]) - part(q[a]));
                     (start * start + start * end + end * end) / Exact::from(3)
                 }
@@ -262,12 +259,12 @@ where
     /// How the contact looks at u.
     pub fn class(&self, u: &[[Exact; 2]]) -> &'static str {
         let zero = Exact::from(0);
-        let values: Vec<[Exact; M]> = (0..self.edges.len()).map(|e| self.p(e, u)).collect();
+        let values: Vec<Vec<Exact>> = (0..self.edges.len()).map(|e| self.p(e, u)).collect();
         let pressed = values.iter().flatten().filter(|p| **p > zero).count();
         match (values.iter().any(|p| cut(p)), pressed) {
             (true, _) => CUT,
             (_, 0) => "open",
-            (_, all) if all == M * values.len() => "pressed",
+            (_, all) if all == values.iter().flatten().count() => "pressed",
             _ => "open and pressed edges",
         }
     }
@@ -284,12 +281,17 @@ where
             let t = owner(e);
             let area = precise::exactly::<Exact>(mesh.triangle(t)).double_area() / Exact::from(2);
             let owned = (0..self.edges.len()).filter(|&other| owner(other) == t);
-            let length = sum(owned, |other| self.edges[other].numbers.length);
-            let gamma = self.edges[e].numbers.gamma;
-            let of_t = coercivity_constant::<E, Exact, N, M>(&material, gamma, length, area);
+            let length = sum(owned, |other| self.edges[other].length);
+            let gamma = self.edges[e].gamma;
+            let degree = self.d.space.degree();
+            let of_t = degree.coercivity_constant(&material, gamma, length, area);
             if of_t > kappa { of_t } else { kappa }
         })
     }
+}
+
+fn lists<const M: usize>(of: EdgeIntegrals<Exact, M>) -> (Vec<Exact>, Matrix) {
+    (of.gradient.into(), of.hessian.iter().map(|row| row.to_vec()).collect())
 }
 
 /// P has both signs among these values.

@@ -18,8 +18,7 @@ use signorini::fem::{
     Structured, Trapezoid,
 };
 use signorini::io::Case;
-use signorini::kernel::edge_integral::ExactEdge;
-use signorini::kernel::{Material, P1, P2, Plane};
+use signorini::kernel::{Material, Plane};
 use signorini::solve::factor::Factor;
 use signorini::solve::ordering::nested_dissection;
 use signorini::solve::{Degree, Gamma0, Method, discretize};
@@ -181,33 +180,22 @@ struct Order {
 }
 
 impl Order {
-    fn new<E, const N: usize, const M: usize>(d: &Discretization<E, N, M>) -> Self
-    where
-        E: ExactEdge<f64, N, M>,
-    {
-        let nodes = d.space.nodes();
-        let neighbours = Neighbours::new(nodes.len(), d.space.elements());
-        let order = nested_dissection(nodes, &neighbours);
+    fn new(d: &Discretization) -> Self {
+        let neighbours = Neighbours::new(&d.space);
+        let order = nested_dissection(d.space.nodes(), &neighbours);
         Order { numbering: Numbering::new(&order, d.constraints.values()), neighbours }
     }
 
     /// The rows of S: for an affine w on an edge int w^2 = |E| (mean^2 + (difference of the end values)^2/12).
-    fn stress_rows<E, const N: usize, const M: usize>(
-        &self,
-        d: &Discretization<E, N, M>,
-        size: Size,
-    ) -> Vec<Vec<f64>>
-    where
-        E: ExactEdge<f64, N, M>,
-    {
+    fn stress_rows(&self, d: &Discretization, size: Size) -> Vec<Vec<f64>> {
         let mut rows = Vec::new();
         for edge in &d.contact {
             let h = size(d.space.mesh().diameter(edge.edge.triangle), edge.length);
             let weight = (h * edge.length).sqrt();
             for [start, end] in [[0.5, 0.5], [-1.0, 1.0].map(|c| c / 12.0_f64.sqrt())] {
                 let mut row = vec![0.0; self.numbering.count];
-                let [at_start, at_end] = &edge.functionals.sigma_n;
-                for (k, &node) in d.space.elements()[edge.edge.triangle].iter().enumerate() {
+                let [at_start, at_end] = edge.functionals.sigma_n();
+                for (k, &node) in edge.nodes.iter().enumerate() {
                     for (c, number) in self.numbering.of[node].iter().enumerate() {
                         if let Some(number) = *number {
                             row[number] = weight * (start * at_start[k][c] + end * at_end[k][c]);
@@ -268,16 +256,9 @@ pub fn at_kappa(problem: &Problem, degree: Degree, kappa: f64) -> Result<Method>
 ///
 /// # Errors
 /// A problem that is none.
-pub fn limits<E, const N: usize, const M: usize>(
-    problem: &Problem,
-    degree: Degree,
-    size: Size,
-) -> Result<Limits>
-where
-    E: ExactEdge<f64, N, M>,
-{
+pub fn limits(problem: &Problem, degree: Degree, size: Size) -> Result<Limits> {
     let method = Method { degree, ..Method::default() };
-    let d = discretize::<E, N, M>(problem, &method).map_err(text)?;
+    let d = discretize(problem, &method).map_err(text)?;
     let order = Order::new(&d);
     let k = matrix::assemble_stiffness(&d, &order.numbering, &order.neighbours);
     let mu = largest(&k, &order.stress_rows(&d, size))?;
@@ -288,15 +269,8 @@ where
 ///
 /// # Errors
 /// A problem that is none, and A that is not positive definite.
-pub fn smallest_eigenvalue<E, const N: usize, const M: usize>(
-    problem: &Problem,
-    degree: Degree,
-    kappa: f64,
-) -> Result<f64>
-where
-    E: ExactEdge<f64, N, M>,
-{
-    let d = discretize::<E, N, M>(problem, &at_kappa(problem, degree, kappa)?).map_err(text)?;
+pub fn smallest_eigenvalue(problem: &Problem, degree: Degree, kappa: f64) -> Result<f64> {
+    let d = discretize(problem, &at_kappa(problem, degree, kappa)?).map_err(text)?;
     let order = Order::new(&d);
     let a = matrix::assemble(&d, &order.numbering, &order.neighbours);
     let mu = largest(&a, &order.stress_rows(&d, DIAMETER))?;
@@ -307,15 +281,8 @@ where
 ///
 /// # Errors
 /// A problem that is none.
-pub fn smallest_eigenvalue_dense<E, const N: usize, const M: usize>(
-    problem: &Problem,
-    degree: Degree,
-    kappa: f64,
-) -> Result<f64>
-where
-    E: ExactEdge<f64, N, M>,
-{
-    let d = discretize::<E, N, M>(problem, &at_kappa(problem, degree, kappa)?).map_err(text)?;
+pub fn smallest_eigenvalue_dense(problem: &Problem, degree: Degree, kappa: f64) -> Result<f64> {
+    let d = discretize(problem, &at_kappa(problem, degree, kappa)?).map_err(text)?;
     let Order { numbering, neighbours } = Order::new(&d);
     let k = matrix::assemble_stiffness(&d, &numbering, &neighbours);
     let factor = Factor::new(&k).map_err(text)?;
@@ -362,15 +329,12 @@ pub struct Row {
 }
 
 impl Row {
-    fn new<E, const N: usize, const M: usize>(specimen: &Specimen, degree: Degree) -> Result<Row>
-    where
-        E: ExactEdge<f64, N, M>,
-    {
+    fn new(specimen: &Specimen, degree: Degree) -> Result<Row> {
         let Specimen { name, problem } = specimen;
-        let limits = limits::<E, N, M>(problem, degree, DIAMETER)?;
+        let limits = limits(problem, degree, DIAMETER)?;
         let mut eigenvalues = KAPPAS.map(|kappa| (kappa, 0.0));
         for (kappa, smallest) in &mut eigenvalues {
-            *smallest = smallest_eigenvalue::<E, N, M>(problem, degree, *kappa)?;
+            *smallest = smallest_eigenvalue(problem, degree, *kappa)?;
         }
         Ok(Row { name: name.clone(), degree, limits, eigenvalues })
     }
@@ -383,8 +347,8 @@ impl Row {
 pub fn rows() -> Result<Vec<Row>> {
     let mut rows = Vec::new();
     for specimen in specimens()? {
-        rows.push(Row::new::<P1, 3, 2>(&specimen, Degree::One)?);
-        rows.push(Row::new::<P2, 6, 3>(&specimen, Degree::Two)?);
+        rows.push(Row::new(&specimen, Degree::One)?);
+        rows.push(Row::new(&specimen, Degree::Two)?);
     }
     Ok(rows)
 }

@@ -19,7 +19,6 @@ use super::quantities::Name;
 use super::{Asked, Continuous, certify_with};
 use crate::fem::contact_line;
 use crate::fem::{Condition, Mesh, Problem, Space};
-use crate::kernel::P1;
 use crate::solve::{
     Course, Degree, Method, Phase, Settings, Solution, SolveError, Times, solve_along,
 };
@@ -282,7 +281,7 @@ fn unknowns(mesh: &Mesh, degree: Degree) -> usize {
 
 /// Where contact acts along normals, these are those of straight edges.
 fn check_straight(problem: &Problem) -> Result<(), AdaptError> {
-    let space = Space::<P1, 3, 2>::new(&problem.mesh);
+    let space = Space::new(&problem.mesh, Degree::One);
     // The direction of contact does not depend on gamma.
     let contact = contact_line::assemble(problem, &space, 1.0).map_err(CertifyError::Data)?;
     let along_its_normal = |name: &str| {

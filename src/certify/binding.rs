@@ -16,8 +16,8 @@ use super::oscillation::{self, Oscillation};
 use super::parts::{Boundary, Parts};
 use super::tractions::force_of;
 use crate::fem::mesh::bisection::Refinement;
-use crate::fem::{BoundaryEdge, Mesh, MeshError, Problem};
-use crate::kernel::{P1, P2, Triangle};
+use crate::fem::{BoundaryEdge, Degree, Mesh, MeshError, Problem};
+use crate::kernel::Triangle;
 
 /// Numbers that differ by this, in units of the largest of their kind, are the same.
 const ROUNDING: f64 = 1e-11;
@@ -60,9 +60,9 @@ pub fn compare(
     let at_rest = vec![[0.0; 2]; nodes];
     // The data don't depend on gamma0.
     let parts = if quartered {
-        Parts::new::<P2, 6, 3>(&problem, 1.0.into(), &at_rest)?
+        Parts::new(&problem, Degree::Two, 1.0.into(), &at_rest)?
     } else {
-        Parts::new::<P1, 3, 2>(&problem, 1.0.into(), &at_rest[..problem.mesh.vertices().len()])?
+        Parts::new(&problem, Degree::One, 1.0.into(), &at_rest[..problem.mesh.vertices().len()])?
     };
     let (lengths, loads) = sizes(certificate);
     let sides = sides(&problem.mesh);

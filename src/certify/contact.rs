@@ -12,10 +12,10 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 
 use super::data::bulge_of;
-use crate::fem::contact_line::ContactLineEdge;
-use crate::fem::{BoundaryEdge, Condition, Problem};
+use crate::fem::element::roots;
+use crate::fem::{BoundaryEdge, Condition, ContactFace, EdgeRule, Problem};
 use crate::kernel::contact_edge::integral_of_product;
-use crate::kernel::edge_integral::{self, ExactEdge, positive_interval};
+use crate::kernel::edge_integral::positive_interval;
 
 /// An edge of Gamma_C with what the solution says there.
 pub(super) struct Contact {
@@ -99,30 +99,22 @@ impl Profile {
 }
 
 impl Contact {
-    pub fn new<E, const N: usize, const M: usize>(
-        problem: &Problem,
-        edge: &ContactLineEdge<N, M>,
-        u: &[Vector2<f64>; N],
-    ) -> Contact
-    where
-        E: ExactEdge<f64, N, M>,
-    {
+    pub fn new(problem: &Problem, edge: &ContactFace, u: &[[f64; 2]]) -> Contact {
         let p = edge.p(u);
         // int \[P\]+ N_a; a hat function is N_a and half of that of the middle.
-        let nodal = |p: [f64; M]| E::exact(p).gradient;
-        let with_hats = |p: [f64; M]| {
+        let nodal = |p: &[f64]| EdgeRule::Exact.integrals(p).gradient;
+        let with_hats = |p: &[f64]| {
             let nodal = nodal(p);
             let middle = nodal.get(2).copied();
             [0, 1].map(|a| middle.map_or(nodal[a], |m| nodal[a] + m / 2.0))
         };
-        let positive = with_hats(p);
+        let positive = with_hats(&p);
         let directions = [edge.directions[0], edge.directions[1]];
         let mesh = &problem.mesh;
         // On a part of the edge, `share` of its length, with P and the directions at its nodes.
-        let straight = edge.directions.iter().all(|d| *d == edge.normal);
         let normal = mesh.triangle(edge.edge.triangle).scaled_normal(edge.edge.local);
-        let moments = |p: [f64; M], directions: [Vector2<f64>; M], share: f64| {
-            if straight {
+        let moments = |p: &[f64], directions: &[Vector2<f64>], share: f64| {
+            if edge.along_normal {
                 return with_hats(p).map(|p| normal * -(share * p / edge.gamma));
             }
             let nodal = nodal(p);
@@ -132,7 +124,7 @@ impl Contact {
                 nodal.get(2).map_or(own, |m| own + along(2, m / 2.0))
             })
         };
-        let sigma_n = edge.sigma_n(u);
+        let sigma_n = edge.sigma_n(|node| u[node]);
         let excess = Vector2::from([0, 1].map(|c| {
             let stress = integral_of_product(sigma_n, directions.map(|d| d[c]));
             -(positive[0] * directions[0][c] + positive[1] * directions[1][c]) - edge.gamma * stress
@@ -152,25 +144,32 @@ impl Contact {
             // The distance to a plane.
             _ => 0.0,
         };
-        let profile = |p: [f64; M]| {
+        let profile = |p: &[f64]| {
             let positive = with_hats(p);
             if turns {
                 // The mean: then tau n is affine.
                 Profile::whole([-((positive[0] + positive[1]) / edge.gamma); 2])
-            } else if E::DEGREE == 1 {
-                Profile::of_affine([p[0], p[1]], edge.gamma)
+            } else if let &[start, end] = p {
+                Profile::of_affine([start, end], edge.gamma)
             } else {
-                let mut ends = edge_integral::roots::<E, N, M>(p);
-                let end = ends.next().filter(|_| ends.next().is_none());
+                let end = match roots(p)[..] {
+                    [root] => Some(root),
+                    _ => None,
+                };
                 Profile::of_moments(positive.map(|p| -(p / edge.gamma)), p[0] > 0.0, end)
             }
         };
         let on_halves = [0.0, 0.5].map(|start| {
-            let shapes = E::edge_positions().map(|s: f64| E::edge_values(start + s / 2.0));
-            let here = shapes.map(|n| n.iter().zip(p).map(|(n, p)| n * p).sum());
-            let directions =
-                shapes.map(|n| n.iter().zip(&edge.directions).map(|(n, d)| d * *n).sum());
-            (profile(here), moments(here, directions, 0.5))
+            let degree = edge.functionals.degree();
+            let shapes: Vec<Vec<f64>> = (degree.edge_positions().into_iter())
+                .map(|s| degree.edge_values(start + s / 2.0))
+                .collect();
+            let here = |n: &Vec<f64>| n.iter().zip(&p).map(|(n, p)| n * p).sum::<f64>();
+            let here: Vec<f64> = shapes.iter().map(here).collect();
+            let direction =
+                |n: &Vec<f64>| n.iter().zip(&edge.directions).map(|(n, d)| d * *n).sum();
+            let directions: Vec<Vector2<f64>> = shapes.iter().map(direction).collect();
+            (profile(&here), moments(&here, &directions, 0.5))
         });
         Contact {
             edge: edge.edge,
@@ -180,9 +179,9 @@ impl Contact {
             directions,
             gap,
             gap_bulge,
-            moments: moments(p, edge.directions, 1.0),
+            moments: moments(&p, &edge.directions, 1.0),
             excess,
-            pressure: profile(p),
+            pressure: profile(&p),
             on_halves,
         }
     }

@@ -16,9 +16,8 @@ use super::parts::{Boundary, Parts};
 use super::sweeps::improve;
 use crate::fem::matrix::{LowerTriangle, Neighbours, Numbering};
 use crate::fem::mesh::length;
-use crate::fem::{BoundaryEdge, Problem, Space};
-use crate::kernel::Element;
-use crate::kernel::element::stiffness;
+use crate::fem::precise::add_internal_forces;
+use crate::fem::{BoundaryEdge, Degree, Problem, Space};
 use crate::solve::factor::Factor;
 use crate::solve::ordering::nested_dissection;
 
@@ -31,10 +30,10 @@ struct Demand {
 }
 
 /// Makes displacements w.
-pub(super) struct Lifter<'a, E, const N: usize, const M: usize> {
+pub(super) struct Lifter<'a> {
     parts: &'a Parts<'a>,
     names: &'a [String],
-    space: Space<'a, E, N, M>,
+    space: Space<'a>,
     /// At each node; those of Gamma_D first.
     demands: BTreeMap<usize, Vec<Demand>>,
     numbering: Numbering,
@@ -58,15 +57,16 @@ fn independent(demands: &[Demand]) -> (Option<Demand>, Option<Demand>) {
     (Some(first), demands.iter().find(across).copied())
 }
 
-impl<'a, E: Element<N, M>, const N: usize, const M: usize> Lifter<'a, E, N, M> {
+impl<'a> Lifter<'a> {
     /// For the boundaries with these `names`; `open` tells of the edges of Gamma_C, by their place in `parts.contact`, where
     /// w is free.
     pub fn new(
         parts: &'a Parts<'a>,
+        degree: Degree,
         names: &'a [String],
         open: &[bool],
     ) -> Result<Self, CertifyError> {
-        let space = Space::<E, N, M>::new(parts.mesh);
+        let space = Space::new(parts.mesh, degree);
         let mut demands: BTreeMap<usize, Vec<Demand>> = BTreeMap::new();
         let mut add = |edge: BoundaryEdge,
                        boundary: usize,
@@ -122,14 +122,11 @@ impl<'a, E: Element<N, M>, const N: usize, const M: usize> Lifter<'a, E, N, M> {
                 _ => [None; 2],
             };
         }
-        let neighbours = Neighbours::new(space.nodes().len(), space.elements());
+        let neighbours = Neighbours::new(&space);
         let order = nested_dissection(space.nodes(), &neighbours);
         let numbering = Numbering::in_frames(&order, &prescribed, frames);
         let mut matrix = LowerTriangle::zero(&numbering, &neighbours);
-        for (t, (triangle, nodes)) in space.triangles().enumerate() {
-            let k = stiffness::<E, f64, N, M>(&triangle, parts.material(t));
-            matrix.add(&numbering, nodes, |i, j| k[i][j]);
-        }
+        matrix.add_stiffness(&space, &parts.problem.material, &numbering);
         let factor = Factor::new(&matrix).map_err(|error| {
             CertifyError::Unsupported(format!(
                 "no displacement of least energy for the forces: {error}"
@@ -190,19 +187,8 @@ impl<'a, E: Element<N, M>, const N: usize, const M: usize> Lifter<'a, E, N, M> {
         }
         // -K w on the free unknowns.
         let mut right = vec![[0.0; 2]; field.len()];
-        for (t, (triangle, nodes)) in self.space.triangles().enumerate() {
-            let nodal = nodes.map(|node| Vector2::from(field[node]));
-            if nodal == [Vector2::zeros(); N] {
-                continue;
-            }
-            let k = stiffness::<E, f64, N, M>(&triangle, self.parts.material(t));
-            for (i, &node) in nodes.iter().enumerate() {
-                for (j, w) in nodal.iter().enumerate() {
-                    let force = k[i][j] * w;
-                    (0..2).for_each(|c| right[node][c] -= force[c]);
-                }
-            }
-        }
+        add_internal_forces(&self.space, &self.parts.problem.material, &field, &mut right);
+        right.as_flattened_mut().iter_mut().for_each(|r| *r = -*r);
         let prescribed = field.clone();
         let mut x = self.numbering.gather(&right);
         self.factor.forward(&mut x);

@@ -53,8 +53,8 @@ pub use signorini_audit::{dual, forces, proof};
 
 use self::proof::{Piece, Role};
 pub use self::quantities::Quantities;
-use crate::fem::{Mesh, Problem};
-use crate::kernel::{Ball, Interval, P1, P2, Scalar, Triangle};
+use crate::fem::{Degree, Mesh, Problem};
+use crate::kernel::{Ball, Interval, Scalar, Triangle};
 use crate::memory;
 use crate::solve::Solution;
 
@@ -165,13 +165,10 @@ fn certify_near(
     asked: &Asked,
 ) -> Result<Continuous, CertifyError> {
     // Beside a quadratic v each is cut in four.
-    let quadratic = solution.degree == 2 && start.len() > problem.mesh.vertices().len();
+    let quadratic = solution.degree == Degree::Two && start.len() > problem.mesh.vertices().len();
     let quarters = if quadratic { 4 } else { 1 };
     memory::check(quarters * PER_TRIANGLE * problem.mesh.triangles().len() as u64)?;
-    let parts = match solution.degree {
-        1 => Parts::new::<P1, 3, 2>(problem, solution.gamma.gamma, &solution.displacement)?,
-        _ => Parts::new::<P2, 6, 3>(problem, solution.gamma.gamma, &solution.displacement)?,
-    };
+    let parts = Parts::new(problem, solution.degree, solution.gamma.gamma, &solution.displacement)?;
     let mesh = &problem.mesh;
     let [u, start, w] = [&solution.displacement, start, field].map(|nodal| Field::new(mesh, nodal));
     let missed = parts.missed(&w?);

@@ -13,9 +13,10 @@ use super::field::Field;
 use crate::fem::constraints::Constraints;
 use crate::fem::contact_line::Gamma;
 use crate::fem::smooth::SmoothBoundary;
-use crate::fem::{BoundaryEdge, Condition, Mesh, Problem, SharedFunction, Space, contact_line};
+use crate::fem::{
+    BoundaryEdge, Condition, Degree, Mesh, Problem, SharedFunction, Space, contact_line,
+};
 use crate::kernel::Material;
-use crate::kernel::edge_integral::ExactEdge;
 
 /// The condition on a boundary edge.
 #[derive(Clone, Copy)]
@@ -52,22 +53,17 @@ pub(super) struct Parts<'a> {
 impl<'a> Parts<'a> {
     /// # Errors
     /// Conditions that no composite stress can satisfy.
-    pub fn new<E, const N: usize, const M: usize>(
+    pub fn new(
         problem: &'a Problem,
+        degree: Degree,
         gamma: Gamma,
         displacement: &[[f64; 2]],
-    ) -> Result<Self, CertifyError>
-    where
-        E: ExactEdge<f64, N, M>,
-    {
-        let space = Space::<E, N, M>::new(&problem.mesh);
+    ) -> Result<Self, CertifyError> {
+        let space = Space::new(&problem.mesh, degree);
         let constraints = Constraints::new(problem, &space)?;
         let contact = contact_line::assemble(problem, &space, gamma)?;
-        let contact = contact.iter().map(|edge| {
-            let u = space.on_triangle(edge.edge.triangle, displacement);
-            Contact::new::<E, N, M>(problem, edge, &u)
-        });
-        let contact: Vec<Contact> = contact.collect();
+        let contact: Vec<Contact> =
+            contact.iter().map(|edge| Contact::new(problem, edge, displacement)).collect();
         let unsupported = |why: String| Err(CertifyError::Unsupported(why));
         if let Some(point) = problem.points.first() {
             return unsupported(format!(

@@ -26,8 +26,9 @@ use super::forces::{Cover, Evidence, Forces, Mean, Motion, Ramp, Target, WrongLi
 use super::lifting::Lifter;
 use super::parts::{Boundary, Parts};
 use super::proof::Proof;
+use crate::fem::Degree;
 use crate::fem::mesh::length;
-use crate::kernel::{Ball, Element, Enclosing, Interval, P1, P2};
+use crate::kernel::{Ball, Enclosing, Interval};
 use crate::solve::Solution;
 
 /// The quantities that a certificate proves beside the bound.
@@ -245,10 +246,9 @@ pub(super) fn prove(
     let contact = state.on_contact.iter().map(|term| term.upper());
     let shares = proof.shares.iter().zip(contact).map(|(share, contact)| (share + contact) / 4.0);
     let certified = (&forces, &*shares.collect::<Vec<f64>>());
-    let (list, mut evidence, limits) = match solution.degree {
-        1 => list::<P1, 3, 2>((parts, built), &line.names, certified, (&open, asked)),
-        _ => list::<P2, 6, 3>((parts, built), &line.names, certified, (&open, asked)),
-    };
+    let bounds = (parts, built);
+    let (list, mut evidence, limits) =
+        list(bounds, solution.degree, &line.names, certified, (&open, asked));
     let mut list: Vec<Quantity> = list
         .into_iter()
         .map(|(name, boundary, weight, interval)| {
@@ -363,22 +363,23 @@ fn off_contact(parts: &Parts, beyond: i32) -> Vec<bool> {
 }
 
 /// The edges of Gamma_C that are free, and the displacements of least energy with these.
-type Freed<'a, E, const N: usize, const M: usize> = (Vec<bool>, Lifter<'a, E, N, M>);
+type Freed<'a> = (Vec<bool>, Lifter<'a>);
 
 /// Displacements of least energy, with the edges of Gamma_C where they are free: so many beyond the last one that is pressed
 /// from end to end, or before it.
-struct Lifters<'a, E, const N: usize, const M: usize> {
+struct Lifters<'a> {
     parts: &'a Parts<'a>,
+    degree: Degree,
     names: &'a [String],
-    made: BTreeMap<i32, Option<Freed<'a, E, N, M>>>,
+    made: BTreeMap<i32, Option<Freed<'a>>>,
 }
 
-impl<'a, E: Element<N, M>, const N: usize, const M: usize> Lifters<'a, E, N, M> {
-    fn at(&mut self, beyond: i32) -> Option<&Freed<'a, E, N, M>> {
+impl<'a> Lifters<'a> {
+    fn at(&mut self, beyond: i32) -> Option<&Freed<'a>> {
         let (parts, names) = (self.parts, self.names);
         let made = self.made.entry(beyond).or_insert_with(|| {
             let open = off_contact(parts, beyond);
-            let lifter = Lifter::new(parts, names, &open).ok()?;
+            let lifter = Lifter::new(parts, self.degree, names, &open).ok()?;
             Some((open, lifter))
         });
         made.as_ref()
@@ -467,8 +468,9 @@ type Found = (Name, usize, Option<Ramp>, Result<[f64; 2], String>);
 
 /// Forces, moments and reactions of all boundaries, with what triangles contribute to the width of those by dual pairs; `shares`
 /// are those of the triangles in M^2.
-fn list<E: Element<N, M>, const N: usize, const M: usize>(
+fn list(
     (parts, built): (&Parts, &Built),
+    degree: Degree,
     names: &[String],
     (forces, shares): (&Forces<Ball>, &[f64]),
     (open, asked_for): (&[bool], &Asked),
@@ -506,7 +508,7 @@ fn list<E: Element<N, M>, const N: usize, const M: usize>(
             asked.push((Name::ReactionMoment, boundary, None));
         }
     }
-    let lifter = match Lifter::<E, N, M>::new(parts, names, open) {
+    let lifter = match Lifter::new(parts, degree, names, open) {
         Ok(lifter) => lifter,
         Err(error) => {
             let why = |(name, boundary, weight)| (name, boundary, weight, Err(error.to_string()));
@@ -537,7 +539,7 @@ fn list<E: Element<N, M>, const N: usize, const M: usize>(
         asked_for.forces.iter().any(is)
     };
     let mut limits = Vec::new();
-    let mut lifters = Lifters::<E, N, M> { parts, names, made: BTreeMap::new() };
+    let mut lifters = Lifters { parts, degree, names, made: BTreeMap::new() };
     for (k, &(target, _)) in evidence.liftings.iter().enumerate() {
         let Ok(first) = (if to_second_order(&target) { between[k].clone() } else { continue })
         else {

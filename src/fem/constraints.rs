@@ -19,7 +19,7 @@ use super::problem::{Condition, Problem};
 use super::rigid::{self, FreeMotion, Parts};
 use super::smooth::SmoothBoundary;
 use super::space::Space;
-use crate::kernel::{Element, Scalar};
+use crate::kernel::Scalar;
 use crate::quote;
 
 /// The prescribed components of the displacement.
@@ -75,10 +75,7 @@ impl Constraints {
     ///
     /// # Errors
     /// A value that is not finite, or two that disagree.
-    pub fn new<E: Element<N, M>, const N: usize, const M: usize>(
-        problem: &Problem,
-        space: &Space<E, N, M>,
-    ) -> Result<Self, DataError> {
+    pub fn new(problem: &Problem, space: &Space) -> Result<Self, DataError> {
         let mut demands = demands(problem, space)?;
         let all = demands.values().flatten();
         let largest = all.fold(0.0, |max: f64, demand| max.max(demand.value.abs()));
@@ -100,10 +97,7 @@ impl Constraints {
     }
 
     /// The rigid motions that stay free, and the parts of the body that they are motions of.
-    pub fn free_motions<E: Element<N, M>, const N: usize, const M: usize>(
-        &self,
-        space: &Space<E, N, M>,
-    ) -> (Parts, Vec<FreeMotion>) {
+    pub fn free_motions(&self, space: &Space) -> (Parts, Vec<FreeMotion>) {
         let parts = Parts::new(space.mesh());
         let held = |node| self.directions(node);
         let motions = rigid::free_motions(&parts, space, held, self.rounding);
@@ -286,10 +280,7 @@ fn independent<'d, 'a>(
 }
 
 /// All demands of a problem, in the alphabetical order of the boundaries, those of points last.
-fn demands<'a, E: Element<N, M>, const N: usize, const M: usize>(
-    problem: &'a Problem,
-    space: &Space<E, N, M>,
-) -> Result<Demands<'a>, DataError> {
+fn demands<'a>(problem: &'a Problem, space: &Space) -> Result<Demands<'a>, DataError> {
     let mesh = space.mesh();
     let mut demands = Demands::new();
     let mut ask = |node: usize,
@@ -349,9 +340,6 @@ fn demands<'a, E: Element<N, M>, const N: usize, const M: usize>(
     Ok(demands)
 }
 
-fn nodes_of<E: Element<N, M>, const N: usize, const M: usize>(
-    space: &Space<E, N, M>,
-    edges: &[BoundaryEdge],
-) -> Vec<usize> {
+fn nodes_of(space: &Space, edges: &[BoundaryEdge]) -> Vec<usize> {
     edges.iter().flat_map(|&edge| space.edge_nodes(edge)).collect()
 }

@@ -1,5 +1,4 @@
-//! Gamma_C on the mesh: its edges with their functionals and gamma = gamma0 h_T of (7), the coercivity number kappa, and
-//! the integrals of \[P\]+ over an edge by the rule of the method.
+//! Gamma_C on the mesh: its edges with their functionals and gamma = gamma0 h_T of (7), the coercivity number kappa.
 //!
 //! The direction of contact is a field n~, given at the nodes: by the obstacle's closest point where there is an obstacle, else
 //! by the normal of the smooth boundary (`smooth`), on which the nodes are placed when the gap is measured. On a straight line
@@ -10,60 +9,15 @@ use std::sync::Arc;
 
 use nalgebra::Vector2;
 
+use super::contact_face::{ContactFace, Functionals};
 use super::data::{DataError, finite};
-use super::double_double::DoubleDouble;
+use super::element::Degree;
 use super::mesh::BoundaryEdge;
 use super::obstacle::Closest;
 use super::problem::{Condition, Problem};
-use super::quadrature;
 use super::smooth::{SmoothBoundary, SmoothPoint};
 use super::space::Space;
-use crate::kernel::contact_edge::{coercivity_constant, turning_factor};
-use crate::kernel::edge_integral::{self, ExactEdge};
-use crate::kernel::{ContactEdge, EdgeIntegrals, Element};
 use crate::quote::key;
-
-/// One edge of Gamma_C.
-#[derive(Clone, Debug)]
-pub struct ContactLineEdge<const N: usize, const M: usize> {
-    /// Where it lies in the mesh.
-    pub edge: BoundaryEdge,
-    /// |E|
-    pub length: f64,
-    /// n
-    pub normal: Vector2<f64>,
-    /// n~ at the nodes of the edge; n where it is straight and there is no obstacle that says otherwise.
-    pub directions: [Vector2<f64>; M],
-    /// Where the nodes lie on the smooth boundary, from which the gap is measured.
-    pub places: [[f64; 2]; M],
-    /// The smooth boundary is curved along it: the edge is a chord.
-    pub curved: bool,
-    /// The name of the boundary.
-    pub boundary: Arc<str>,
-    /// gamma = gamma0 h_T
-    pub gamma: f64,
-    /// g at the nodes of the edge: on it the gap is their Lagrange interpolant.
-    pub gap: [f64; M],
-    /// P0 and sigma_n as functionals of the nodal values on the triangle.
-    pub functionals: ContactEdge<f64, N, M>,
-}
-
-impl<const N: usize, const M: usize> ContactLineEdge<N, M> {
-    /// P(u) = P0(u) - g at the nodes of the edge, from the nodal values of u on its triangle.
-    pub fn p(&self, u: &[Vector2<f64>; N]) -> [f64; M] {
-        std::array::from_fn(|a| apply(&self.functionals.p0[a], u) - self.gap[a])
-    }
-
-    /// sigma_n(u) at the start and at the end of the edge.
-    pub fn sigma_n(&self, u: &[Vector2<f64>; N]) -> [f64; 2] {
-        [0, 1].map(|a| apply(&self.functionals.sigma_n[a], u))
-    }
-}
-
-/// The value of a functional at the nodal values `u` on its triangle.
-pub fn apply<const N: usize>(functional: &[Vector2<f64>; N], u: &[Vector2<f64>; N]) -> f64 {
-    functional.iter().zip(u).map(|(f, u)| f.dot(u)).sum()
-}
 
 /// gamma along Gamma_C.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,16 +47,14 @@ pub struct Coercivity {
 }
 
 impl Coercivity {
-    /// The constant of a problem for the element `E`.
+    /// The constant of a problem for a degree of V^h.
     ///
     /// # Errors
     /// [`DataError::NoContact`], and unknown boundary names.
-    pub fn new<E: Element<N, M>, const N: usize, const M: usize>(
-        problem: &Problem,
-    ) -> Result<Self, DataError> {
+    pub fn new(problem: &Problem, degree: Degree) -> Result<Self, DataError> {
         let mesh = &problem.mesh;
         let edges = contact_edges(problem)?;
-        let constants = constants::<E, N, M>(problem, &edges, &Sight::new(problem))?;
+        let constants = constants(problem, degree, &edges, &Sight::new(problem))?;
         let mut sorted: Vec<f64> = constants.values().copied().collect();
         sorted.sort_unstable_by(f64::total_cmp);
         let typical = sorted.get(sorted.len() / 2).copied().ok_or(DataError::NoContact)?;
@@ -135,8 +87,9 @@ impl Coercivity {
 }
 
 /// kappa / gamma0 on each triangle with an edge on Gamma_C.
-fn constants<E: Element<N, M>, const N: usize, const M: usize>(
+fn constants(
     problem: &Problem,
+    degree: Degree,
     edges: &[(BoundaryEdge, &str)],
     sight: &Sight,
 ) -> Result<BTreeMap<usize, f64>, DataError> {
@@ -145,17 +98,14 @@ fn constants<E: Element<N, M>, const N: usize, const M: usize>(
     for &(edge, name) in edges {
         let [start, end] = [sight.direction(edge, name, 0)?, sight.direction(edge, name, 1)?];
         let length = mesh.length_and_normal(edge).0;
-        let counted = if start == end {
-            length
-        } else {
-            turning_factor::<E, f64, N, M>(start.dot(&end)) * length
-        };
+        let counted =
+            if start == end { length } else { degree.turning_factor(start.dot(&end)) * length };
         *lengths.entry(edge.triangle).or_default() += counted;
     }
     let constant = |(t, length)| {
         let area = mesh.triangle(t).double_area() / 2.0;
         let (h, material) = (mesh.diameter(t), problem.material.of(t));
-        (t, coercivity_constant::<E, f64, N, M>(material, h, length, area))
+        (t, degree.coercivity_constant(material, h, length, area))
     };
     Ok(lengths.into_iter().map(constant).collect())
 }
@@ -201,26 +151,28 @@ fn chains(problem: &Problem, edges: &[BoundaryEdge]) -> Vec<BoundaryEdge> {
 ///
 /// # Errors
 /// [`DataError::NoContact`], a gap that is not finite, an obstacle on the other side of the body, and unknown boundary names.
-pub fn assemble<E: Element<N, M>, const N: usize, const M: usize>(
+pub fn assemble(
     problem: &Problem,
-    space: &Space<E, N, M>,
+    space: &Space,
     gamma: impl Into<Gamma>,
-) -> Result<Vec<ContactLineEdge<N, M>>, DataError> {
+) -> Result<Vec<ContactFace>, DataError> {
     let mesh = space.mesh();
     let sight = Sight::new(problem);
     let edges = contact_edges(problem)?;
     let gamma0: Box<dyn Fn(usize) -> f64> = match gamma.into() {
         Gamma::Uniform(gamma0) => Box::new(move |_| gamma0),
         Gamma::Local(kappa) => {
-            let constants = constants::<E, N, M>(problem, &edges, &sight)?;
+            let constants = constants(problem, space.degree(), &edges, &sight)?;
             Box::new(move |t| kappa / constants[&t])
         }
     };
-    let mut line: Vec<ContactLineEdge<N, M>> = Vec::new();
+    let (degree, count) = (space.degree(), space.degree().nodes_per_edge());
+    let mut line: Vec<ContactFace> = Vec::new();
     for (edge, name) in edges {
         let (length, normal) = mesh.length_and_normal(edge);
         let gamma = gamma0(edge.triangle) * mesh.diameter(edge.triangle);
-        let (mut gap, mut directions, mut places) = ([0.0; M], [normal; M], [[0.0; 2]; M]);
+        let (mut gap, mut directions) = (vec![0.0; count], vec![normal; count]);
+        let mut places = vec![[0.0; 2]; count];
         for (a, node) in space.edge_nodes(edge).into_iter().enumerate() {
             let on_facet = SmoothPoint { place: space.nodes()[node], normal };
             let point = sight.point(edge, a).unwrap_or(on_facet);
@@ -229,24 +181,25 @@ pub fn assemble<E: Element<N, M>, const N: usize, const M: usize>(
         }
         let triangle = mesh.triangle(edge.triangle);
         let material = problem.material.of(edge.triangle);
-        let functionals = if directions == [normal; M] {
-            ContactEdge::new::<E>(&triangle, edge.local, normal, material, gamma)
-        } else {
-            ContactEdge::along::<E>(&triangle, edge.local, normal, &directions, material, gamma)
-        };
+        let along_normal = directions.iter().all(|direction| *direction == normal);
+        let along = (!along_normal).then_some(&directions[..]);
+        let functionals =
+            Functionals::new(degree, (&triangle, edge.local), normal, along, material, gamma);
         let boundary = match line.last() {
             Some(last) if &*last.boundary == name => Arc::clone(&last.boundary),
             _ => Arc::from(name),
         };
-        line.push(ContactLineEdge {
+        line.push(ContactFace {
             edge,
+            boundary,
+            nodes: space.nodes_of(edge.triangle).to_vec(),
             length,
             normal,
+            gamma,
             directions,
+            along_normal,
             places,
             curved: sight.is_curved(edge),
-            boundary,
-            gamma,
             gap,
             functionals,
         });
@@ -257,17 +210,14 @@ pub fn assemble<E: Element<N, M>, const N: usize, const M: usize>(
 
 /// No edge that faces away from its obstacle lies inside it, and no boundary faces away as a whole: else the obstacle is on the
 /// other side of the body. Other edges may face away, as those of the upper half of a disk on a floor.
-fn check_sides<const N: usize, const M: usize>(
-    problem: &Problem,
-    line: &[ContactLineEdge<N, M>],
-) -> Result<(), DataError> {
-    let is_away = |edge: &&ContactLineEdge<N, M>| {
+fn check_sides(problem: &Problem, line: &[ContactFace]) -> Result<(), DataError> {
+    let is_away = |edge: &&ContactFace| {
         edge.directions.iter().all(|direction| direction.dot(&edge.normal) <= 0.0)
     };
-    let is_inside = |edge: &&ContactLineEdge<N, M>| edge.gap.iter().all(|&gap| gap <= 0.0);
-    let faces = |edge: &&ContactLineEdge<N, M>| !is_away(edge);
+    let is_inside = |edge: &&ContactFace| edge.gap.iter().all(|&gap| gap <= 0.0);
+    let faces = |edge: &&ContactFace| !is_away(edge);
     let facing: BTreeSet<&str> = line.iter().filter(faces).map(|edge| &*edge.boundary).collect();
-    let is_wrong = |edge: &&ContactLineEdge<N, M>| {
+    let is_wrong = |edge: &&ContactFace| {
         is_away(edge) && (is_inside(edge) || !facing.contains(&*edge.boundary))
     };
     match line.iter().find(is_wrong) {
@@ -339,72 +289,4 @@ impl<'a> Sight<'a> {
             _ => Ok(point.normal),
         }
     }
-}
-
-/// How \[P\]+ is integrated over an edge.
-#[derive(Clone, Debug, PartialEq)]
-pub enum EdgeRule {
-    /// Cut at the roots of P: no quadrature error.
-    Exact,
-    /// The points of a Gauss rule on \[0, 1\].
-    Gauss(Vec<(f64, f64)>),
-}
-
-impl EdgeRule {
-    /// The Gauss rule with `n` points.
-    pub fn gauss(n: usize) -> Self {
-        EdgeRule::Gauss(quadrature::gauss(n))
-    }
-
-    /// The integrals of (8) and J_h over an edge, for P with the nodal values `p`. At the points of a Gauss rule P is
-    /// evaluated in double-doubles: where gamma is small it is far smaller there than at the nodes.
-    pub fn integrals<E, const N: usize, const M: usize>(
-        &self,
-        p: [impl Into<DoubleDouble>; M],
-    ) -> EdgeIntegrals<f64, M>
-    where
-        E: ExactEdge<f64, N, M>,
-    {
-        let p: [DoubleDouble; M] = p.map(Into::into);
-        match self {
-            EdgeRule::Exact => E::exact(p.map(DoubleDouble::head)),
-            EdgeRule::Gauss(rule) => {
-                let fine =
-                    edge_integral::gauss::<E, DoubleDouble, N, M>(p, in_double_doubles(rule));
-                EdgeIntegrals {
-                    energy: fine.energy.head(),
-                    gradient: fine.gradient.map(DoubleDouble::head),
-                    hessian: fine.hessian.map(|row| row.map(DoubleDouble::head)),
-                    active: fine.active.head(),
-                }
-            }
-        }
-    }
-
-    /// The integral of the Bregman distance of 1/2 \[.\]+^2 from P to Q.
-    pub fn bregman<E, const N: usize, const M: usize>(
-        &self,
-        p: [impl Into<DoubleDouble>; M],
-        q: [impl Into<DoubleDouble>; M],
-    ) -> f64
-    where
-        E: ExactEdge<f64, N, M>,
-    {
-        let (p, q): ([DoubleDouble; M], [DoubleDouble; M]) = (p.map(Into::into), q.map(Into::into));
-        match self {
-            EdgeRule::Exact => edge_integral::exact_bregman::<E, N, M>(
-                p.map(DoubleDouble::head),
-                q.map(DoubleDouble::head),
-            ),
-            EdgeRule::Gauss(rule) => {
-                edge_integral::gauss_bregman::<E, DoubleDouble, N, M>(p, q, in_double_doubles(rule))
-                    .head()
-            }
-        }
-    }
-}
-
-/// Points and weights, exactly.
-fn in_double_doubles(rule: &[(f64, f64)]) -> impl Iterator<Item = (DoubleDouble, DoubleDouble)> {
-    rule.iter().map(|&(s, weight)| (s.into(), weight.into()))
 }

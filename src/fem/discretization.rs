@@ -9,9 +9,11 @@ use nalgebra::Vector2;
 
 use super::ball::Ball;
 use super::constraints::{Constraints, in_frame};
-use super::contact_line::{self, Coercivity, ContactLineEdge, EdgeRule, Gamma};
+use super::contact_face::{ContactFace, EdgeRule};
+use super::contact_line::{self, Coercivity, Gamma};
 use super::data::DataError;
 use super::dense::inner;
+use super::element::{Degree, with_element};
 use super::held::{self, NotHeld, Slides};
 use super::loads::{self, Loads};
 use super::material;
@@ -19,15 +21,15 @@ use super::problem::Problem;
 use super::rigid::FreeMotion;
 use super::space::Space;
 use crate::kernel::Element;
-use crate::kernel::edge_integral::ExactEdge;
+use crate::kernel::contact_edge::integral_of_product;
 use crate::kernel::element::displacement_gradient;
 
 /// Method (8) with everything that it needs.
-pub struct Discretization<'a, E, const N: usize, const M: usize> {
+pub struct Discretization<'a> {
     /// The problem.
     pub problem: &'a Problem,
     /// V^h without conditions.
-    pub space: Space<'a, E, N, M>,
+    pub space: Space<'a>,
     /// Gamma_D.
     pub constraints: Constraints,
     /// L(v) for every basis function.
@@ -41,7 +43,7 @@ pub struct Discretization<'a, E, const N: usize, const M: usize> {
     /// gamma0 of (7), or the smallest where each triangle has its own.
     pub gamma0: f64,
     /// Gamma_C.
-    pub contact: Vec<ContactLineEdge<N, M>>,
+    pub contact: Vec<ContactFace>,
     /// The rule for the contact terms.
     pub rule: EdgeRule,
     /// The rigid motions that supports leave free, part by part.
@@ -83,14 +85,25 @@ impl Functional {
             self.magnitudes[node][c] += magnitude;
         }
     }
+
+    /// Adds the functionals of an edge, each times its factor.
+    fn add_functionals(
+        &mut self,
+        edge: &ContactFace,
+        functionals: &[&[Vector2<f64>]],
+        factors: &[f64],
+    ) {
+        for (functional, factor) in functionals.iter().zip(factors) {
+            for (&node, f) in edge.nodes.iter().zip(*functional) {
+                self.add(node, *factor * f, factor.abs() * norm_1(*f));
+            }
+        }
+    }
 }
 
-impl<'a, E, const N: usize, const M: usize> Discretization<'a, E, N, M>
-where
-    E: ExactEdge<f64, N, M>,
-{
-    /// The discretization of `problem` with the given gamma or gamma0 (as a function of the coercivity constant) and edge
-    /// rule.
+impl<'a> Discretization<'a> {
+    /// The discretization of `problem` with the given degree of V^h, gamma or gamma0 (as a function of the coercivity constant)
+    /// and edge rule.
     ///
     /// # Errors
     /// Materials that are not stable, data that are not finite on the mesh, displacement boundaries that disagree, a rigid
@@ -98,13 +111,14 @@ where
     /// positive, a rule without points.
     pub fn new<G: Into<Gamma>>(
         problem: &'a Problem,
+        degree: Degree,
         gamma: impl FnOnce(&Coercivity) -> G,
         rule: EdgeRule,
     ) -> Result<Self, DataError> {
         for &material in problem.material.distinct() {
             material::stable(material)?;
         }
-        let coercivity = Coercivity::new::<E, N, M>(problem)?;
+        let coercivity = Coercivity::new(problem, degree)?;
         let gamma = gamma(&coercivity).into();
         let gamma0 = coercivity.gamma0(gamma);
         if !(gamma0 > 0.0 && gamma0.is_finite()) {
@@ -115,7 +129,7 @@ where
             let (what, expected) = ("the rule for contact edges", "one with points");
             return Err(DataError::Value { what, found: "empty".to_owned(), expected });
         }
-        let space = Space::new(&problem.mesh);
+        let space = Space::new(&problem.mesh, degree);
         let mut constraints = Constraints::new(problem, &space)?;
         let Loads { in_doubles: load, in_balls: enclosed_load } =
             loads::assemble_twice(problem, &space)?;
@@ -151,7 +165,7 @@ where
         Discretization {
             constraints: self.constraints.clone().pinned(&slides.basis, u),
             slides: Some(slides),
-            space: Space::new(self.space.mesh()),
+            space: self.space.clone(),
             load: self.load.clone(),
             enclosed_load: self.enclosed_load.clone(),
             contact: self.contact.clone(),
@@ -180,10 +194,10 @@ where
     pub fn residual(&self, u: &[[f64; 2]]) -> Functional {
         let mut r = self.linear_residual(u);
         for edge in &self.contact {
-            let nodal = self.space.on_triangle(edge.edge.triangle, u);
-            let pressure = self.rule.integrals::<E, N, M>(edge.p(&nodal)).gradient;
-            let pressure = pressure.map(|g| edge.length / edge.gamma * g);
-            self.add_functionals(edge, &edge.functionals.p0, &pressure, &mut r);
+            let pressure = self.rule.integrals(&edge.p(u)).gradient;
+            let pressure: Vec<f64> =
+                pressure.iter().map(|g| edge.length / edge.gamma * g).collect();
+            r.add_functionals(edge, &edge.functionals.p0(), &pressure);
         }
         r
     }
@@ -198,11 +212,9 @@ where
     pub fn linear_residual_by(&self, difference: impl Difference) -> Functional {
         let mut r = self.internal_forces_by(&difference);
         for edge in &self.contact {
-            let nodes = &self.space.elements()[edge.edge.triangle];
-            let [start, end] = edge.sigma_n(&nodes.map(|node| difference(node, nodes[0])));
-            let mass = -edge.gamma * edge.length / 6.0;
-            let stress = [mass * (2.0 * start + end), mass * (start + 2.0 * end)];
-            self.add_functionals(edge, &edge.functionals.sigma_n, &stress, &mut r);
+            let stress = edge.sigma_n(|node| difference(node, edge.nodes[0]).into());
+            let factors = edge.stress_factors(stress);
+            r.add_functionals(edge, &edge.functionals.sigma_n(), &factors);
         }
         for (node, load) in self.load.iter().enumerate() {
             r.add(node, -Vector2::from(*load), load[0].abs().max(load[1].abs()));
@@ -215,57 +227,13 @@ where
         self.internal_forces_by(&in_doubles(u))
     }
 
-    /// Stresses are those of the differences from a node of the triangle: what moves it as a whole would cancel.
     fn internal_forces_by(&self, difference: &impl Difference) -> Functional {
-        let mut forces = Functional::zero(self.space.nodes().len());
-        for (t, (triangle, nodes)) in self.space.triangles().enumerate() {
-            let nodal = nodes.map(|node| difference(node, nodes[0]));
-            // Most of a lift: prescribed data are zero but on the boundary.
-            if nodal == [Vector2::zeros(); N] {
-                continue;
-            }
-            let material = self.problem.material.of(t);
-            let stiffness = material.lambda().abs() + 2.0 * material.mu();
-            let barycentric = triangle.barycentric_gradients();
-            let area = triangle.double_area() / 2.0;
-            let sizes = nodal.map(norm_1);
-            E::at_stiffness_points(|l, weight| {
-                let gradients = E::gradients(l, barycentric);
-                let gradient = displacement_gradient(&nodal, &gradients);
-                let stress = material.stress(gradient);
-                let [xx, yy, xy] = stress.components();
-                let shear = xy * (gradient.m12 + gradient.m21);
-                forces.energy += weight * area * (xx * gradient.m11 + yy * gradient.m22 + shear);
-                let slopes = gradients.map(norm_1);
-                let strain: f64 = sizes.iter().zip(slopes).map(|(u, g)| u * g).sum();
-                let most = weight * area * stiffness * strain;
-                for ((&node, g), slope) in nodes.iter().zip(gradients).zip(slopes) {
-                    forces.add(node, weight * area * stress.traction(g), most * slope);
-                }
-            });
-        }
-        forces
+        with_element!(self.space.degree(), internal_forces(self, difference))
     }
 
     /// a(u, u) = int sigma(u):eps(u).
     pub fn strain_energy(&self, u: &[[f64; 2]]) -> f64 {
         self.internal_forces(u).energy
-    }
-
-    /// Adds the functionals of an edge, each times its factor.
-    fn add_functionals(
-        &self,
-        edge: &ContactLineEdge<N, M>,
-        functionals: &[[Vector2<f64>; N]],
-        factors: &[f64],
-        sum: &mut Functional,
-    ) {
-        let nodes = &self.space.elements()[edge.edge.triangle];
-        for (functional, factor) in functionals.iter().zip(factors) {
-            for (&node, f) in nodes.iter().zip(functional) {
-                sum.add(node, *factor * f, factor.abs() * norm_1(*f));
-            }
-        }
     }
 
     /// R(u; v) + L(v): what prescribed data demand of the free degrees of freedom when `u` is their lift.
@@ -289,20 +257,54 @@ where
     pub fn energy(&self, u: &[[f64; 2]]) -> f64 {
         let mut energy = self.strain_energy(u) / 2.0 - inner(&self.load, u);
         for edge in &self.contact {
-            let nodal = self.space.on_triangle(edge.edge.triangle, u);
-            let sigma_n = edge.sigma_n(&nodal);
-            let stress = crate::kernel::contact_edge::integral_of_product(sigma_n, sigma_n);
-            let positive = self.rule.integrals::<E, N, M>(edge.p(&nodal)).energy;
+            let sigma_n = edge.sigma_n(|node| u[node]);
+            let stress = integral_of_product(sigma_n, sigma_n);
+            let positive = self.rule.integrals(&edge.p(u)).energy;
             energy += edge.length * (positive / edge.gamma - edge.gamma * stress / 2.0);
         }
         energy
     }
 }
 
-fn rounding_of_directions<E: Element<N, M>, const N: usize, const M: usize>(
+/// Stresses are those of the differences from a node of the triangle: what moves it as a whole would cancel.
+fn internal_forces<E: Element<N, M>, const N: usize, const M: usize>(
+    d: &Discretization,
+    difference: &impl Difference,
+) -> Functional {
+    let mut forces = Functional::zero(d.space.nodes().len());
+    for (t, (triangle, nodes)) in d.space.triangles::<N>().enumerate() {
+        let nodal = nodes.map(|node| difference(node, nodes[0]));
+        // Most of a lift: prescribed data are zero but on the boundary.
+        if nodal == [Vector2::zeros(); N] {
+            continue;
+        }
+        let material = d.problem.material.of(t);
+        let stiffness = material.lambda().abs() + 2.0 * material.mu();
+        let barycentric = triangle.barycentric_gradients();
+        let area = triangle.double_area() / 2.0;
+        let sizes = nodal.map(norm_1);
+        E::at_stiffness_points(|l, weight| {
+            let gradients = E::gradients(l, barycentric);
+            let gradient = displacement_gradient(&nodal, &gradients);
+            let stress = material.stress(gradient);
+            let [xx, yy, xy] = stress.components();
+            let shear = xy * (gradient.m12 + gradient.m21);
+            forces.energy += weight * area * (xx * gradient.m11 + yy * gradient.m22 + shear);
+            let slopes = gradients.map(norm_1);
+            let strain: f64 = sizes.iter().zip(slopes).map(|(u, g)| u * g).sum();
+            let most = weight * area * stiffness * strain;
+            for ((&node, g), slope) in nodes.iter().zip(gradients).zip(slopes) {
+                forces.add(node, weight * area * stress.traction(g), most * slope);
+            }
+        });
+    }
+    forces
+}
+
+fn rounding_of_directions(
     constraints: &Constraints,
-    space: &Space<E, N, M>,
-    contact: &[ContactLineEdge<N, M>],
+    space: &Space,
+    contact: &[ContactFace],
 ) -> f64 {
     let edges = contact.iter().map(|edge| edge.edge);
     constraints.rounding().max(space.mesh().turned_by_rounding(edges))

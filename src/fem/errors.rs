@@ -12,13 +12,13 @@ use nalgebra::Vector2;
 #[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
 
-use super::contact_line::ContactLineEdge;
+use super::contact_face::ContactFace;
+use super::element::{roots, value_at, with_element};
 use super::exact::ExactSolution;
 use super::pieces::Rule;
 use super::space::Space;
-use crate::kernel::edge_integral::{roots, value_at};
 use crate::kernel::element::displacement_gradient;
-use crate::kernel::{ContactPoint, Element, Triangle, positive_part};
+use crate::kernel::{ContactPoint, Element, positive_part};
 
 /// Points in each direction. u is a polynomial of degree at most 7 on each piece for the smooth solutions with whole
 /// exponents (exact from 8 points on); for the singular ones the rule converges geometrically away from the singular point
@@ -47,39 +47,29 @@ pub struct Errors {
 
 impl Errors {
     /// The distances of the field with the nodal values `v` from `exact`, with [`POINTS`] points.
-    pub fn new<E, const N: usize, const M: usize>(
-        space: &Space<E, N, M>,
-        contact: &[ContactLineEdge<N, M>],
+    pub fn new(
+        space: &Space,
+        contact: &[ContactFace],
         v: &[[f64; 2]],
         exact: &dyn ExactSolution,
-    ) -> Self
-    where
-        E: Element<N, M>,
-    {
+    ) -> Self {
         Errors::with_points(space, contact, v, exact, POINTS)
     }
 
     /// [`Errors::new`] with `points` quadrature points in each direction.
-    pub fn with_points<E, const N: usize, const M: usize>(
-        space: &Space<E, N, M>,
-        contact: &[ContactLineEdge<N, M>],
+    pub fn with_points(
+        space: &Space,
+        contact: &[ContactFace],
         v: &[[f64; 2]],
         exact: &dyn ExactSolution,
         points: usize,
-    ) -> Self
-    where
-        E: Element<N, M>,
-    {
+    ) -> Self {
         let rule = Rule::new(exact.features(), points);
         let mut squares = Errors::default();
-        for (t, (triangle, _)) in space.triangles().enumerate() {
-            let nodal = space.on_triangle(t, v);
-            squares.add_triangle::<E, N, M>(&rule, &triangle, &nodal, exact);
-        }
+        with_element!(space.degree(), add_triangles(&mut squares, space, &rule, v, exact));
         for edge in contact {
             let ends = space.mesh().ends(edge.edge).map(|vertex| space.mesh().vertices()[vertex]);
-            let nodal = space.on_triangle(edge.edge.triangle, v);
-            squares.add_edge::<E, N, M>(&rule, edge, ends, &nodal, exact);
+            squares.add_edge(&rule, edge, ends, v, exact);
         }
         // The full norm of H1: so far there is only the seminorm.
         squares.h1 += squares.l2;
@@ -99,43 +89,18 @@ impl Errors {
         all.iter().all(|error| error.is_finite())
     }
 
-    fn add_triangle<E, const N: usize, const M: usize>(
+    fn add_edge(
         &mut self,
         rule: &Rule,
-        triangle: &Triangle<f64>,
-        nodal: &[Vector2<f64>; N],
-        exact: &dyn ExactSolution,
-    ) where
-        E: Element<N, M>,
-    {
-        let barycentric = triangle.barycentric_gradients();
-        rule.on_triangle(triangle, |l, x, weight| {
-            let shapes = E::values(l);
-            let value: Vector2<f64> = shapes.iter().zip(nodal).map(|(n, v)| *n * v).sum();
-            let e = Vector2::from(exact.displacement(x)) - value;
-            let d = exact.gradient(x) - displacement_gradient(nodal, &E::gradients(l, barycentric));
-            let [xx, yy, xy] = exact.material().stress(d).components();
-            self.energy += weight * (xx * d.m11 + yy * d.m22 + xy * (d.m12 + d.m21));
-            // Row by row.
-            self.h1 += weight * d.transpose().iter().map(|d| d * d).sum::<f64>();
-            self.l2 += weight * e.dot(&e);
-        });
-    }
-
-    fn add_edge<E, const N: usize, const M: usize>(
-        &mut self,
-        rule: &Rule,
-        edge: &ContactLineEdge<N, M>,
+        edge: &ContactFace,
         ends: [[f64; 2]; 2],
-        nodal: &[Vector2<f64>; N],
+        v: &[[f64; 2]],
         exact: &dyn ExactSolution,
-    ) where
-        E: Element<N, M>,
-    {
+    ) {
         let (n, gamma) = (edge.normal, edge.gamma);
-        let p = edge.p(nodal);
-        let stress = edge.sigma_n(nodal);
-        rule.on_edge(ends, roots::<E, N, M>(p), |point| {
+        let p = edge.p(v);
+        let stress = edge.sigma_n(|node| v[node]);
+        rule.on_edge(ends, roots(&p), |point| {
             let (s, x) = (point.s, point.x);
             let exact = ContactPoint {
                 u_n: Vector2::from(exact.displacement(x)).dot(&n),
@@ -143,13 +108,39 @@ impl Errors {
                 sigma_n: exact.stress(x).normal(n),
                 gamma,
             };
-            let p = value_at::<E, f64, N, M>(p, s);
+            let p = value_at(&p, s);
             let residual = exact.sigma_n + positive_part(p) / gamma;
             let stress = exact.sigma_n - ((1.0 - s) * stress[0] + s * stress[1]);
             let weight = point.weight * edge.length;
             self.contact_residual += weight * gamma * residual * residual;
             self.normal_stress += weight * gamma * stress * stress;
             self.operator += weight / gamma * (exact.p() - p) * (exact.p() - p);
+        });
+    }
+}
+
+/// Adds the squares of the errors in the body.
+fn add_triangles<E: Element<N, M>, const N: usize, const M: usize>(
+    squares: &mut Errors,
+    space: &Space,
+    rule: &Rule,
+    v: &[[f64; 2]],
+    exact: &dyn ExactSolution,
+) {
+    for (triangle, nodes) in space.triangles::<N>() {
+        let nodal = nodes.map(|node| Vector2::from(v[node]));
+        let barycentric = triangle.barycentric_gradients();
+        rule.on_triangle(&triangle, |l, x, weight| {
+            let shapes = E::values(l);
+            let value: Vector2<f64> = shapes.iter().zip(&nodal).map(|(n, v)| *n * v).sum();
+            let e = Vector2::from(exact.displacement(x)) - value;
+            let d =
+                exact.gradient(x) - displacement_gradient(&nodal, &E::gradients(l, barycentric));
+            let [xx, yy, xy] = exact.material().stress(d).components();
+            squares.energy += weight * (xx * d.m11 + yy * d.m22 + xy * (d.m12 + d.m21));
+            // Row by row.
+            squares.h1 += weight * d.transpose().iter().map(|d| d * d).sum::<f64>();
+            squares.l2 += weight * e.dot(&e);
         });
     }
 }

@@ -12,13 +12,12 @@ use nalgebra::Vector2;
 #[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
 
-use super::contact_line::ContactLineEdge;
+use super::contact_face::ContactFace;
 use super::dense::{dot, inner, least_squares, singular_vectors};
 use super::discretization::Discretization;
+use super::element::bernstein;
 use super::rigid::{FreeMotion, Parts, null_space};
 use super::space::Space;
-use crate::kernel::Element;
-use crate::kernel::edge_integral::ExactEdge;
 
 /// Work below this share of the largest work of single loads is rounding.
 const BALANCED: f64 = 1e-9;
@@ -80,17 +79,17 @@ pub struct Play {
 
 /// The rows c_i of a contact edge: r_n at its nodes for each of the motions, and not P0(r): the stress of a rigid motion is zero
 /// but for rounding.
-fn rows<E: Element<N, M>, const N: usize, const M: usize>(
-    space: &Space<E, N, M>,
-    edge: &ContactLineEdge<N, M>,
+fn rows(
+    space: &Space,
+    edge: &ContactFace,
     motion: impl Fn(usize, usize) -> [f64; 2],
     count: usize,
-) -> [Vec<f64>; M] {
-    let nodes = space.edge_nodes(edge.edge);
-    std::array::from_fn(|a| {
-        let along = |k: usize| Vector2::from(motion(k, nodes[a])).dot(&edge.directions[a]);
-        (0..count).map(along).collect()
-    })
+) -> Vec<Vec<f64>> {
+    let nodes = space.edge_nodes(edge.edge).into_iter();
+    let row = |(node, direction): (usize, &Vector2<f64>)| {
+        (0..count).map(|k| Vector2::from(motion(k, node)).dot(direction)).collect()
+    };
+    nodes.zip(&edge.directions).map(row).collect()
 }
 
 /// A value of c_i below this is zero but for rounding.
@@ -108,12 +107,12 @@ fn norm(v: &[f64]) -> f64 {
 ///
 /// # Errors
 /// The motions that contact and `load` leave free.
-pub fn slides<E: Element<N, M>, const N: usize, const M: usize>(
+pub fn slides(
     motions: &[FreeMotion],
     parts: &Parts,
-    space: &Space<E, N, M>,
+    space: &Space,
     load: &[[f64; 2]],
-    contact: &[ContactLineEdge<N, M>],
+    contact: &[ContactFace],
     rounding: f64,
 ) -> Result<Slides, NotHeld> {
     let mut sliding = Vec::new();
@@ -121,13 +120,12 @@ pub fn slides<E: Element<N, M>, const N: usize, const M: usize>(
     for of_part in motions.chunk_by(|a, b| a.part == b.part) {
         let count = of_part.len();
         let at = |k: usize, node: usize| of_part[k].at(space.nodes()[node]);
-        let touches =
-            |e: &ContactLineEdge<N, M>| parts.of_triangle()[e.edge.triangle] == of_part[0].part;
+        let touches = |e: &ContactFace| parts.of_triangle()[e.edge.triangle] == of_part[0].part;
         let edges: Vec<(usize, Vec<Vec<f64>>)> = contact
             .iter()
             .enumerate()
             .filter(|(_, e)| touches(e))
-            .map(|(i, e)| (i, rows(space, e, at, count).into()))
+            .map(|(i, e)| (i, rows(space, e, at, count)))
             .collect();
         if edges.is_empty() {
             return Err(NotHeld { motions: of_part.to_vec(), drive: None });
@@ -214,11 +212,7 @@ fn press(
 }
 
 impl Slides {
-    fn new<E: Element<N, M>, const N: usize, const M: usize>(
-        motions: Vec<FreeMotion>,
-        parts: &Parts,
-        space: &Space<E, N, M>,
-    ) -> Self {
+    fn new(motions: Vec<FreeMotion>, parts: &Parts, space: &Space) -> Self {
         let fields: Vec<_> = motions.iter().map(|motion| motion.field(parts, space)).collect();
         let basis = orthonormal(fields.iter().cloned());
         let along = fields.iter().map(|field| basis.iter().map(|b| inner(b, field)).collect());
@@ -232,24 +226,16 @@ impl Slides {
 
     /// All motions that nothing stops where `u` solves (8), within the clearance of the edges that do not press. `None` where
     /// supports hold the body.
-    pub fn around<E, const N: usize, const M: usize>(
-        d: &Discretization<E, N, M>,
-        u: &[[f64; 2]],
-    ) -> Option<Slides>
-    where
-        E: ExactEdge<f64, N, M>,
-    {
+    pub fn around(d: &Discretization, u: &[[f64; 2]]) -> Option<Slides> {
         let idle = &d.slides.as_ref()?.idle;
         let size = |v: &[f64]| v.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-        let on_edge = |e: &ContactLineEdge<N, M>| e.p(&d.space.on_triangle(e.edge.triangle, u));
-        let p: Vec<[f64; M]> = d.contact.iter().map(on_edge).collect();
-        let most = |p: &[f64; M]| bernstein(*p).into_iter().fold(0.0, f64::max);
-        let largest = p.iter().map(most).fold(0.0, f64::max);
+        let p: Vec<Vec<f64>> = d.contact.iter().map(|edge| edge.p(u)).collect();
+        let most = |p: &[f64]| bernstein(p).into_iter().fold(0.0, f64::max);
+        let largest = p.iter().map(|p| most(p)).fold(0.0, f64::max);
         let far = size(u.as_flattened());
-        let presses = |(p, edge): (&[f64; M], &ContactLineEdge<N, M>)| {
+        let presses = |(p, edge): (&Vec<f64>, &ContactFace)| {
             let rounding = 8.0 * f64::EPSILON * (far + size(&edge.gap));
-            most(p) > rounding.max(PRESSES * largest)
-                && d.rule.integrals::<E, N, M>(*p).active > 0.0
+            most(p) > rounding.max(PRESSES * largest) && d.rule.integrals(p).active > 0.0
         };
         let pressing = p.iter().zip(&d.contact).map(presses);
         let pressing: Vec<bool> = pressing.zip(idle).map(|(yes, idle)| yes && !idle).collect();
@@ -260,19 +246,19 @@ impl Slides {
         let mut bounds = Vec::new();
         for (((edge, p), pressing), idle) in d.contact.iter().zip(&p).zip(pressing).zip(idle) {
             let nodes = d.space.edge_nodes(edge.edge);
-            let lengths = basis.iter().flat_map(|b| nodes.map(|node| b[node]));
+            let lengths = basis.iter().flat_map(|b| nodes.iter().map(|&node| b[node]));
             let none = rounding * lengths.fold(0.0, |m: f64, [x, y]| m.max(x.hypot(y)));
             let row = |a: usize| {
                 let along = |b: &Vec<[f64; 2]>| dot(&b[nodes[a]], edge.directions[a].as_slice());
                 basis.iter().map(along).collect::<Vec<f64>>()
             };
-            let rows: [Vec<f64>; M] = std::array::from_fn(row);
-            let coefficients = bernstein(*p);
+            let rows: Vec<Vec<f64>> = (0..nodes.len()).map(row).collect();
+            let coefficients = bernstein(p);
             // Not a step towards an edge of which a coefficient is positive although P is not.
             let open = *idle || coefficients.iter().all(|p| *p <= 0.0);
             for (a, coefficient) in coefficients.into_iter().enumerate() {
                 let row: Vec<f64> = (0..basis.len())
-                    .map(|j| bernstein(rows.each_ref().map(|row| row[j]))[a])
+                    .map(|j| bernstein(&rows.iter().map(|row| row[j]).collect::<Vec<f64>>())[a])
                     .collect();
                 if !pressing && norm(&row) > none {
                     let bound = if open { -coefficient } else { 0.0 } + dot(&row, &at);
@@ -376,14 +362,7 @@ impl Slides {
 }
 
 /// The motions of `d` that neither supports nor the contact edges that are pressing stop.
-pub fn free_where<E, const N: usize, const M: usize>(
-    d: &Discretization<E, N, M>,
-    parts: &Parts,
-    pressing: &[bool],
-) -> Vec<FreeMotion>
-where
-    E: ExactEdge<f64, N, M>,
-{
+pub fn free_where(d: &Discretization, parts: &Parts, pressing: &[bool]) -> Vec<FreeMotion> {
     let mut free = Vec::new();
     for of_part in d.motions.chunk_by(|a, b| a.part == b.part) {
         let count = of_part.len();
@@ -399,14 +378,6 @@ where
         free.extend(weights.iter().map(|weights| parts.combined(of_part, weights)));
     }
     free
-}
-
-/// The Bernstein coefficients of a polynomial on an edge from its values at the nodes: it is between the least and the largest.
-fn bernstein<const M: usize>(mut p: [f64; M]) -> [f64; M] {
-    if M == 3 {
-        p[2] = 2.0 * p[2] - (p[0] + p[1]) / 2.0;
-    }
-    p
 }
 
 /// Fields with orthonormal nodal values that span the same.

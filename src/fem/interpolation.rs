@@ -12,12 +12,12 @@
 use std::f64::consts::PI;
 
 use super::a_priori;
-use super::contact_line::ContactLineEdge;
+use super::contact_face::ContactFace;
 use super::errors::{Errors, POINTS};
 use super::exact::ExactSolution;
 use super::pieces::{EdgePoint, Rule};
 use super::space::Space;
-use crate::kernel::{Material, P1, Scalar, Triangle};
+use crate::kernel::{Material, Scalar, Triangle};
 
 /// c_T^2 of (22).
 pub fn gradient_constant_squared<S: Scalar>(triangle: &Triangle<S>) -> S {
@@ -45,15 +45,11 @@ pub struct Interpolation {
 
 impl Interpolation {
     /// The constants for a body of this material with these edges on Gamma_C.
-    pub fn new(
-        space: &Space<P1, 3, 2>,
-        contact: &[ContactLineEdge<3, 2>],
-        material: &Material<f64>,
-    ) -> Self {
+    pub fn new(space: &Space, contact: &[ContactFace], material: &Material<f64>) -> Self {
         let both = 2.0 * (material.mu() + material.lambda().max(0.0));
         let gradient = |triangle: Triangle<f64>| gradient_constant_squared(&triangle).sqrt();
-        let c: Vec<f64> = space.triangles().map(|(triangle, _)| gradient(triangle)).collect();
-        let on_edge = |edge: &ContactLineEdge<3, 2>| {
+        let c: Vec<f64> = space.triangles::<3>().map(|(triangle, _)| gradient(triangle)).collect();
+        let on_edge = |edge: &ContactFace| {
             let t = edge.edge.triangle;
             let (mesh, root) = (space.mesh(), edge.gamma.sqrt());
             let sizes = [edge.length, mesh.triangle(t).double_area() / 2.0, mesh.diameter(t)];
@@ -99,14 +95,14 @@ impl Interpolation {
 /// Theorem 9.5 for one solution u: a bound of (|e|_a^2 + |z|_gamma^2/delta)^(1/2) for the P1 solution with exact contact
 /// integrals and loads; `None` where u is not in H^2, or unless 0 <= kappa < 1.
 pub fn bound(
-    space: &Space<P1, 3, 2>,
-    contact: &[ContactLineEdge<3, 2>],
+    space: &Space,
+    contact: &[ContactFace],
     exact: &dyn ExactSolution,
     kappa: f64,
 ) -> Option<f64> {
     let seminorms = seminorms(space, exact)?;
     let rule = Rule::new(exact.features(), POINTS);
-    let gap = |edge: &ContactLineEdge<3, 2>| {
+    let gap = |edge: &ContactFace| {
         let ends = space.mesh().ends(edge.edge).map(|vertex| space.mesh().vertices()[vertex]);
         let mut square = 0.0;
         rule.on_edge(ends, [], |EdgePoint { s, x, weight }| {
@@ -123,7 +119,7 @@ pub fn bound(
 }
 
 /// |u|_{2,T} on each triangle, |u|_{2,T}^2 = the integral of the sum of all (d_j d_k u_i)^2; `None` where u is not in H^2.
-pub fn seminorms(space: &Space<P1, 3, 2>, exact: &dyn ExactSolution) -> Option<Vec<f64>> {
+pub fn seminorms(space: &Space, exact: &dyn ExactSolution) -> Option<Vec<f64>> {
     let rule = Rule::new(exact.features(), POINTS);
     let on_triangle = |(triangle, _)| {
         let mut square = Some(0.0);
@@ -135,5 +131,5 @@ pub fn seminorms(space: &Space<P1, 3, 2>, exact: &dyn ExactSolution) -> Option<V
         });
         square.map(f64::sqrt)
     };
-    space.triangles().map(on_triangle).collect()
+    space.triangles::<3>().map(on_triangle).collect()
 }

@@ -16,8 +16,8 @@ use std::collections::BinaryHeap;
 use super::ball::larger;
 use super::constraints::Constraints;
 use super::space::Space;
-use crate::fem::{Materials, Mesh};
-use crate::kernel::{Ball, Element, Triangle};
+use crate::fem::{Degree, Materials, Mesh};
+use crate::kernel::{Ball, Triangle};
 
 /// Covers the rounding of sums and products of positive numbers.
 const SAFETY: f64 = 1.001;
@@ -48,15 +48,15 @@ pub struct Korn {
 impl Korn {
     /// The bound for the fields that vanish at the prescribed components and do what `holds` say. `None` where these hardly hold
     /// a part of the body.
-    pub fn new<E: Element<N, M>, const N: usize, const M: usize>(
-        space: &Space<E, N, M>,
+    pub fn new(
+        space: &Space,
         materials: &Materials,
         constraints: &Constraints,
         holds: &[Hold],
     ) -> Option<Self> {
         let mesh = space.mesh();
         let left: Vec<f64> = (0..mesh.triangles().len())
-            .map(|t| squared_remainder::<E, N, M>(mesh, materials, t))
+            .map(|t| squared_remainder(mesh, space.degree(), materials, t))
             .collect::<Option<_>>()?;
         let neighbours = neighbours(mesh);
         let size = extent(mesh);
@@ -87,7 +87,7 @@ impl Korn {
         };
         let root_motion: Vec<f64> = parts.iter().map(motion).collect::<Option<_>>()?;
         let mut nodes = vec![f64::INFINITY; space.nodes().len()];
-        for (t, members) in space.elements().iter().enumerate() {
+        for (t, members) in space.elements().enumerate() {
             let bound = SAFETY * (of(t) + root_motion[part[t]]);
             for &node in members {
                 nodes[node] = nodes[node].min(bound);
@@ -170,13 +170,10 @@ impl Paths<'_> {
 }
 
 /// The prescribed components, with one triangle at each node. Vertices alone: their places are exact.
-fn supports<E: Element<N, M>, const N: usize, const M: usize>(
-    space: &Space<E, N, M>,
-    constraints: &Constraints,
-) -> Vec<Hold> {
+fn supports(space: &Space, constraints: &Constraints) -> Vec<Hold> {
     let mut holds = Vec::new();
     let mut seen = vec![false; space.nodes().len()];
-    for (triangle, nodes) in space.elements().iter().enumerate() {
+    for (triangle, nodes) in space.elements().enumerate() {
         for &node in nodes {
             if !std::mem::replace(&mut seen[node], true) {
                 let at = space.nodes()[node];
@@ -194,11 +191,7 @@ fn supports<E: Element<N, M>, const N: usize, const M: usize>(
 }
 
 /// c_T^2
-fn squared_remainder<E: Element<N, M>, const N: usize, const M: usize>(
-    mesh: &Mesh,
-    materials: &Materials,
-    t: usize,
-) -> Option<f64> {
+fn squared_remainder(mesh: &Mesh, degree: Degree, materials: &Materials, t: usize) -> Option<f64> {
     let doubles = mesh.triangle(t);
     let exact = Triangle { vertices: doubles.vertices.map(|x| x.map(Ball::point)) };
     let area = (exact.double_area() / Ball::from(2)).lower();
@@ -212,7 +205,7 @@ fn squared_remainder<E: Element<N, M>, const N: usize, const M: usize>(
         return None;
     }
     let affine = square / (2.0 * stiffness * area);
-    Some(if E::DEGREE == 1 {
+    Some(if degree == Degree::One {
         affine
     } else {
         let turning = 1.0 + 3.0 * square / area;
@@ -321,10 +314,8 @@ fn inverse(mut m: Vec<Vec<f64>>) -> Option<Vec<Vec<f64>>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fem::contact_line::EdgeRule;
-    use crate::fem::{Condition, Discretization, Mesh, Problem, SharedFunction, precise};
-    use crate::kernel::edge_integral::ExactEdge;
-    use crate::kernel::{Material, P1, P2, Plane};
+    use crate::fem::{Condition, Discretization, EdgeRule, Mesh, Problem, SharedFunction, precise};
+    use crate::kernel::{Material, Plane};
     use std::collections::BTreeMap;
     use std::sync::Arc;
 
@@ -367,9 +358,7 @@ mod tests {
     }
 
     /// The largest |v_c(x_i)| over |v|_a for each node and component, from the inverse of the stiffness matrix.
-    fn true_factors<E: ExactEdge<f64, N, M>, const N: usize, const M: usize>(
-        d: &Discretization<E, N, M>,
-    ) -> BTreeMap<(usize, usize), f64> {
+    fn true_factors(d: &Discretization) -> BTreeMap<(usize, usize), f64> {
         let free: Vec<(usize, usize)> = (0..d.space.nodes().len())
             .flat_map(|node| [(node, 0), (node, 1)])
             .filter(|&(node, c)| d.constraints.values()[node][c].is_none())
@@ -378,16 +367,16 @@ mod tests {
             let mut unit = vec![[0.0; 2]; d.space.nodes().len()];
             let mut forces = unit.clone();
             unit[node][c] = 1.0;
-            precise::add_internal_forces(d, &unit, &mut forces);
+            precise::add_internal_forces(&d.space, &d.problem.material, &unit, &mut forces);
             free.iter().map(|&(node, c)| forces[node][c]).collect()
         };
         let inverse = inverse(free.iter().map(column).collect()).unwrap();
         free.iter().enumerate().map(|(i, &at)| (at, inverse[i][i].sqrt())).collect()
     }
 
-    fn bounds<E: ExactEdge<f64, N, M>, const N: usize, const M: usize>() {
+    fn bounds(degree: Degree) {
         let problem = two_parts(true);
-        let d = Discretization::<E, N, M>::new(&problem, |c| c.limit() / 2.0, EdgeRule::Exact);
+        let d = Discretization::new(&problem, degree, |c| c.limit() / 2.0, EdgeRule::Exact);
         let d = d.unwrap();
         let korn = Korn::new(&d.space, &problem.material, &d.constraints, &[]).unwrap();
         let mut tightest = f64::INFINITY;
@@ -402,15 +391,15 @@ mod tests {
 
     #[test]
     fn no_displacement_of_two_parts_is_larger_at_a_node_than_the_bound() {
-        bounds::<P1, 3, 2>();
-        bounds::<P2, 6, 3>();
+        bounds(Degree::One);
+        bounds(Degree::Two);
     }
 
     #[test]
     fn control_a_part_that_supports_leave_free_has_no_bound() {
         for held in [true, false] {
             let problem = two_parts(held);
-            let space = Space::<P1, 3, 2>::new(&problem.mesh);
+            let space = Space::new(&problem.mesh, Degree::One);
             let constraints = Constraints::new(&problem, &space).unwrap();
             let korn = Korn::new(&space, &problem.material, &constraints, &[]);
             assert_eq!(korn.is_some(), held);

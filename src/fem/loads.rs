@@ -2,11 +2,12 @@
 
 use super::ball::Ball;
 use super::data::{DataError, checked};
+use super::element::Degree;
 use super::function::{Function, SharedFunction};
 use super::pieces::{Features, Rule};
 use super::problem::{Condition, Problem, SurfaceForce};
 use super::space::Space;
-use crate::kernel::{Element, Scalar};
+use crate::kernel::{Element, P1, P2, Scalar};
 use crate::quote::key;
 
 /// The degree up to which loads that are no polynomials are integrated exactly.
@@ -36,24 +37,21 @@ fn vanishes(load: &dyn Function) -> bool {
 ///
 /// # Errors
 /// [`DataError::NotFinite`] where a load has no value, and unknown boundary names.
-pub fn assemble<E: Element<N, M>, const N: usize, const M: usize>(
-    problem: &Problem,
-    space: &Space<E, N, M>,
-) -> Result<Vec<[f64; 2]>, DataError> {
-    assemble_with(problem, space, |load| points(load, E::DEGREE))
+pub fn assemble(problem: &Problem, space: &Space) -> Result<Vec<[f64; 2]>, DataError> {
+    assemble_with(problem, space, |load| points(load, space.degree().number()))
 }
 
 /// [`assemble`] with as many points along each direction as `points` says for a load.
 ///
 /// # Errors
 /// As [`assemble`].
-pub fn assemble_with<E: Element<N, M>, const N: usize, const M: usize>(
+pub fn assemble_with(
     problem: &Problem,
-    space: &Space<E, N, M>,
+    space: &Space,
     points: impl Fn(&dyn Function) -> usize,
 ) -> Result<Vec<[f64; 2]>, DataError> {
     let mut load = vec![[0.0; 2]; space.nodes().len()];
-    each_force(problem, space, points, |force| force.add_to::<f64, E, N, M>(&mut load))?;
+    each_force(problem, space, points, |force| force.add_to(space.degree(), &mut load))?;
     Ok(load)
 }
 
@@ -70,19 +68,16 @@ pub struct Loads {
 ///
 /// # Errors
 /// As [`assemble`].
-pub fn assemble_twice<E: Element<N, M>, const N: usize, const M: usize>(
-    problem: &Problem,
-    space: &Space<E, N, M>,
-) -> Result<Loads, DataError> {
+pub fn assemble_twice(problem: &Problem, space: &Space) -> Result<Loads, DataError> {
     let mut in_doubles = vec![[0.0; 2]; space.nodes().len()];
     let mut in_balls = vec![[Ball::from(0.0); 2]; space.nodes().len()];
     each_force(
         problem,
         space,
-        |load| points(load, E::DEGREE),
+        |load| points(load, space.degree().number()),
         |force| {
-            force.add_to::<f64, E, N, M>(&mut in_doubles);
-            force.add_to::<Ball, E, N, M>(&mut in_balls);
+            force.add_to(space.degree(), &mut in_doubles);
+            force.add_to(space.degree(), &mut in_balls);
         },
     )?;
     Ok(Loads { in_doubles, in_balls })
@@ -108,7 +103,7 @@ struct Force<'a> {
 }
 
 impl Force<'_> {
-    fn add_to<S, E: Element<N, M>, const N: usize, const M: usize>(&self, load: &mut [[S; 2]])
+    fn add_to<S>(&self, degree: Degree, load: &mut [[S; 2]])
     where
         S: Scalar + From<f64>,
     {
@@ -117,17 +112,20 @@ impl Force<'_> {
                 load[node][self.c] += <S as From<f64>>::from(self.value) * shape;
             }
         };
-        match self.place {
-            Place::Inside(l) => add(&E::values(l.map(<S as From<f64>>::from))),
-            Place::OnEdge(s) => add(&E::edge_values(<S as From<f64>>::from(s))),
+        let exactly = <S as From<f64>>::from;
+        match (self.place, degree) {
+            (Place::Inside(l), Degree::One) => add(&P1::values(l.map(exactly))),
+            (Place::Inside(l), Degree::Two) => add(&P2::values(l.map(exactly))),
+            (Place::OnEdge(s), Degree::One) => add(&P1::edge_values(exactly(s))),
+            (Place::OnEdge(s), Degree::Two) => add(&P2::edge_values(exactly(s))),
         }
     }
 }
 
 /// Calls `add` with each force at each point.
-fn each_force<E: Element<N, M>, const N: usize, const M: usize>(
+fn each_force(
     problem: &Problem,
-    space: &Space<E, N, M>,
+    space: &Space,
     points: impl Fn(&dyn Function) -> usize,
     mut add: impl FnMut(Force),
 ) -> Result<(), DataError> {
@@ -179,18 +177,18 @@ fn acting(load: &[SharedFunction; 2]) -> impl Iterator<Item = (usize, &dyn Funct
     load.iter().map(|f| &**f).enumerate().filter(|(_, f)| !vanishes(*f))
 }
 
-fn each_body_force<E: Element<N, M>, const N: usize, const M: usize>(
+fn each_body_force(
     c: usize,
     f: &dyn Function,
     rule: &Rule,
-    space: &Space<E, N, M>,
+    space: &Space,
     triangles: impl Iterator<Item = usize>,
     what: impl Fn() -> String,
     mut add: impl FnMut(Force),
 ) -> Result<(), DataError> {
     let mut wrong = None;
     for t in triangles {
-        let nodes = &space.elements()[t];
+        let nodes = space.nodes_of(t);
         rule.on_triangle(&space.mesh().triangle(t), |l, x, weight| {
             match checked(f.at(x), x, &what) {
                 Ok(f) => add(Force { c, value: weight * f, nodes, place: Place::Inside(l) }),
@@ -202,12 +200,12 @@ fn each_body_force<E: Element<N, M>, const N: usize, const M: usize>(
 }
 
 /// A traction's component c, `value` of the place and the outward normal.
-fn each_force_on_boundary<E: Element<N, M>, const N: usize, const M: usize>(
+fn each_force_on_boundary(
     name: &str,
     c: usize,
     value: impl Fn([f64; 2], [f64; 2]) -> Result<f64, DataError>,
     rule: &Rule,
-    space: &Space<E, N, M>,
+    space: &Space,
     mut add: impl FnMut(Force),
 ) -> Result<(), DataError> {
     let mut wrong = None;
@@ -233,7 +231,7 @@ mod tests {
 
     use super::*;
     use crate::fem::{Diagonal, Rectangle};
-    use crate::kernel::{Material, P2, Plane};
+    use crate::kernel::{Material, Plane};
 
     /// A monomial that says, or hides, that it is one.
     struct Monomial {
@@ -263,7 +261,7 @@ mod tests {
             [load(), Arc::new(|_: [f64; 2]| 0.0)],
             BTreeMap::from([("top".to_owned(), Condition::Traction([zero(), load()]))]),
         );
-        let space = Space::<P2, 6, 3>::new(&problem.mesh);
+        let space = Space::new(&problem.mesh, Degree::Two);
         let load = assemble(&problem, &space).unwrap();
         let sum = |c: usize| load.iter().map(|l| l[c]).sum::<f64>();
         // The traction (1, x^power) on the top adds 2 to the first component.

@@ -7,15 +7,17 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::Matrix2;
+use nalgebra::{DMatrix, Matrix2};
 
 use super::constraints::{Constraints, from_frame, in_frame};
-use super::contact_line::ContactLineEdge;
+use super::contact_face::ContactFace;
 use super::discretization::Discretization;
-use crate::kernel::Scalar;
-use crate::kernel::edge_integral::ExactEdge;
+use super::element::{Degree, with_element};
+use super::materials::Materials;
+use super::space::Space;
 use crate::kernel::element::stiffness;
 use crate::kernel::pattern::{self, Lists, Numbers};
+use crate::kernel::{Element, Scalar};
 
 /// The numbers of the free degrees of freedom in an order of elimination: node by node, component by component.
 #[derive(Clone, Debug)]
@@ -109,8 +111,17 @@ pub struct Neighbours {
 }
 
 impl Neighbours {
+    /// In a space.
+    pub fn new(space: &Space) -> Self {
+        let (count, nodes) = (space.nodes().len(), space.connectivity());
+        match space.degree() {
+            Degree::One => Neighbours::of_elements(count, nodes.as_chunks::<3>().0),
+            Degree::Two => Neighbours::of_elements(count, nodes.as_chunks::<6>().0),
+        }
+    }
+
     /// In a mesh of `count` nodes with these on its triangles.
-    pub fn new<const N: usize>(count: usize, elements: &[[usize; N]]) -> Self {
+    pub fn of_elements<const N: usize>(count: usize, elements: &[[usize; N]]) -> Self {
         let mut first = vec![0; count + 1];
         let mut triangles = vec![0; elements.len() * N];
         pattern::triangles_of_nodes(elements, &mut first, &mut triangles);
@@ -178,86 +189,86 @@ impl LowerTriangle {
 }
 
 /// The matrix of A over the free degrees of freedom in the order of `numbering`.
-pub fn assemble<E, const N: usize, const M: usize>(
-    d: &Discretization<E, N, M>,
+pub fn assemble(
+    d: &Discretization,
     numbering: &Numbering,
     neighbours: &Neighbours,
-) -> LowerTriangle
-where
-    E: ExactEdge<f64, N, M>,
-{
+) -> LowerTriangle {
     let mut matrix = assemble_stiffness(d, numbering, neighbours);
     for edge in &d.contact {
-        matrix.add_contact_stress(d, numbering, edge);
+        matrix.add_contact_stress(numbering, edge);
     }
     matrix
 }
 
 /// The matrix of a(.,.) likewise.
-pub fn assemble_stiffness<E, const N: usize, const M: usize>(
-    d: &Discretization<E, N, M>,
+pub fn assemble_stiffness(
+    d: &Discretization,
     numbering: &Numbering,
     neighbours: &Neighbours,
-) -> LowerTriangle
-where
-    E: ExactEdge<f64, N, M>,
-{
+) -> LowerTriangle {
     let mut matrix = LowerTriangle::zero(numbering, neighbours);
-    matrix.add_stiffness(d, numbering);
+    matrix.add_stiffness(&d.space, &d.problem.material, numbering);
     matrix
+}
+
+fn add_stiffness<E: Element<N, M>, const N: usize, const M: usize>(
+    matrix: &mut LowerTriangle,
+    space: &Space,
+    materials: &Materials,
+    numbering: &Numbering,
+) {
+    for (t, (triangle, nodes)) in space.triangles::<N>().enumerate() {
+        let k = stiffness::<E, f64, N, M>(&triangle, materials.of(t));
+        matrix.add(numbering, nodes, |i, j| k[i][j]);
+    }
 }
 
 impl LowerTriangle {
     /// Adds a(.,.).
-    pub fn add_stiffness<E, const N: usize, const M: usize>(
-        &mut self,
-        d: &Discretization<E, N, M>,
-        numbering: &Numbering,
-    ) where
-        E: ExactEdge<f64, N, M>,
-    {
-        for (t, (triangle, nodes)) in d.space.triangles().enumerate() {
-            let k = stiffness::<E, f64, N, M>(&triangle, d.problem.material.of(t));
-            self.add(numbering, nodes, |i, j| k[i][j]);
-        }
+    pub fn add_stiffness(&mut self, space: &Space, materials: &Materials, numbering: &Numbering) {
+        with_element!(space.degree(), add_stiffness(self, space, materials, numbering));
     }
 
     /// Adds -int gamma sigma_n(.) sigma_n(.) on a contact edge.
-    pub fn add_contact_stress<E, const N: usize, const M: usize>(
-        &mut self,
-        d: &Discretization<E, N, M>,
-        numbering: &Numbering,
-        edge: &ContactLineEdge<N, M>,
-    ) where
-        E: ExactEdge<f64, N, M>,
-    {
+    pub fn add_contact_stress(&mut self, numbering: &Numbering, edge: &ContactFace) {
         let weight = -(edge.gamma * edge.length);
-        let nodes = &d.space.elements()[edge.edge.triangle];
-        self.add(numbering, nodes, |i, j| edge.functionals.stress_product(weight, i, j));
+        let block = |i, j| edge.functionals.stress_product(weight, i, j);
+        self.add_on_face(numbering, edge, block);
     }
 
     /// Adds P0^T h P0 of a contact edge: what is in contact holds the body.
-    pub fn add_contact_springs<E, const N: usize, const M: usize>(
+    pub fn add_contact_springs(
         &mut self,
-        d: &Discretization<E, N, M>,
         numbering: &Numbering,
-        edge: &ContactLineEdge<N, M>,
-        h: &[[f64; M]; M],
-    ) where
-        E: ExactEdge<f64, N, M>,
-    {
-        let p0 = &edge.functionals.p0;
-        let nodes = &d.space.elements()[edge.edge.triangle];
-        self.add(numbering, nodes, |i, j| {
+        edge: &ContactFace,
+        h: &DMatrix<f64>,
+    ) {
+        let p0 = edge.functionals.p0();
+        self.add_on_face(numbering, edge, |i, j| {
             Matrix2::from_fn(|c, k| {
                 let mut sum = 0.0;
-                for a in 0..M {
-                    for b in 0..M {
-                        sum += p0[a][i][c] * h[a][b] * p0[b][j][k];
+                for a in 0..h.nrows() {
+                    for b in 0..h.ncols() {
+                        sum += p0[a][i][c] * h[(a, b)] * p0[b][j][k];
                     }
                 }
                 sum
             })
         });
+    }
+
+    /// Adds the blocks of a matrix over the nodes of a contact edge's triangle.
+    fn add_on_face(
+        &mut self,
+        numbering: &Numbering,
+        edge: &ContactFace,
+        block: impl Fn(usize, usize) -> Matrix2<f64>,
+    ) {
+        if let Ok(nodes) = edge.nodes[..].try_into() {
+            self.add::<3>(numbering, nodes, block);
+        } else if let Ok(nodes) = edge.nodes[..].try_into() {
+            self.add::<6>(numbering, nodes, block);
+        }
     }
 }

@@ -6,6 +6,7 @@ pub mod a_priori;
 pub mod ball;
 mod build;
 pub mod constraints;
+pub mod contact_face;
 pub mod contact_line;
 #[doc(hidden)]
 pub mod data;
@@ -14,6 +15,7 @@ pub mod dense;
 pub mod discretization;
 #[doc(hidden)]
 pub mod double_double;
+pub mod element;
 #[doc(hidden)]
 pub mod embedding;
 #[doc(hidden)]
@@ -63,8 +65,10 @@ pub mod trapezoid;
 #[doc(hidden)]
 pub mod tree;
 
+pub use contact_face::{ContactFace, EdgeRule};
 pub use data::DataError;
 pub use discretization::Discretization;
+pub use element::Degree;
 pub use errors::Errors;
 pub use exact::{Exact, ExactSolution};
 pub use function::{Function, SharedFunction};

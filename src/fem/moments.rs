@@ -6,12 +6,19 @@
 //! radius. A cut that is off by e leaves |P| = O(e) there, and Newton's method in balls makes e some 2^-100.
 
 use super::ball::{Ball, larger};
-use super::contact_line::EdgeRule;
-use crate::kernel::Element;
+use super::contact_face::EdgeRule;
 use crate::kernel::edge_integral::{gauss, roots, value_at};
+use crate::kernel::{Element, P1, P2};
 
-/// int \[P\]+ N_a for P with the nodal values `p`, by the rule of the method.
-pub fn moments<E, const N: usize, const M: usize>(rule: &EdgeRule, p: [Ball; M]) -> [Ball; M]
+/// int \[P\]+ N_a for P with the nodal values `p`, two or three, by the rule of the method.
+pub fn moments(rule: &EdgeRule, p: &[Ball]) -> Vec<Ball> {
+    match *p {
+        [start, end] => moments_of::<P1, 3, 2>(rule, [start, end]).into(),
+        _ => moments_of::<P2, 6, 3>(rule, [p[0], p[1], p[2]]).into(),
+    }
+}
+
+fn moments_of<E, const N: usize, const M: usize>(rule: &EdgeRule, p: [Ball; M]) -> [Ball; M]
 where
     E: Element<N, M>,
 {
@@ -126,7 +133,6 @@ where
 mod tests {
     use super::*;
     use crate::kernel::edge_integral::ExactEdge;
-    use crate::kernel::{P1, P2};
 
     fn values() -> Vec<[f64; 3]> {
         let mut all = vec![
@@ -157,7 +163,7 @@ mod tests {
         for p in values() {
             let p: [f64; M] = std::array::from_fn(|a| p[a]);
             let exact = E::exact(p).gradient;
-            let enclosed = moments::<E, N, M>(&EdgeRule::Exact, p.map(Ball::from));
+            let enclosed = moments(&EdgeRule::Exact, &p.map(Ball::from));
             let size = p.iter().fold(0.0, |m: f64, p| m.max(p.abs()));
             for (exact, ball) in exact.into_iter().zip(enclosed) {
                 let off = (ball - Ball::from(exact)).magnitude();
@@ -180,9 +186,9 @@ mod tests {
     #[test]
     fn a_wider_p_gives_a_wider_integral_and_that_contains_the_others() {
         let wide = [1.0, -0.5].map(|p| Ball::from(p).widened(1e-3));
-        let enclosed = moments::<P1, 3, 2>(&EdgeRule::Exact, wide);
+        let enclosed = moments(&EdgeRule::Exact, &wide);
         for p in [[1.001, -0.499], [0.999, -0.501], [1.0, -0.5]] {
-            for (ball, exact) in enclosed.into_iter().zip(P1::exact(p).gradient) {
+            for (ball, exact) in enclosed.iter().zip(P1::exact(p).gradient) {
                 assert!(ball.lower() <= exact && exact <= ball.upper());
             }
         }

@@ -5,72 +5,57 @@
 use nalgebra::{Vector2, Vector3};
 
 use super::ball::{Ball, Sum};
-use super::contact_line::ContactLineEdge;
+use super::contact_face::ContactFace;
 use super::discretization::Discretization;
+use super::element::with_element;
+use super::materials::Materials;
+use super::space::Space;
 use crate::fem::double_double::DoubleDouble;
-use crate::kernel::edge_integral::ExactEdge;
 use crate::kernel::element::displacement_gradient;
-use crate::kernel::{ContactEdge, Material, Scalar, Stress, Triangle};
+use crate::kernel::{Element, Material, Scalar, Stress, Triangle};
 
 /// A(u, v) - L(v) for every basis function v, and the values of P(u) at the nodes of each contact edge.
-pub fn evaluate<E, const N: usize, const M: usize>(
-    d: &Discretization<E, N, M>,
-    u: &[[DoubleDouble; 2]],
-) -> (Vec<[f64; 2]>, Vec<DoubleDouble>)
-where
-    E: ExactEdge<f64, N, M>,
-{
-    let edges: Vec<OnEdge<'_, DoubleDouble, N, M>> =
-        d.contact.iter().map(|e| on_edge(d, e)).collect();
+pub fn evaluate(d: &Discretization, u: &[[DoubleDouble; 2]]) -> (Vec<[f64; 2]>, Vec<DoubleDouble>) {
+    let edges: Vec<ContactFace<DoubleDouble>> = d.contact.iter().map(|e| on_edge(d, e)).collect();
     let forces = linear_residual(d, &edges, u);
-    let p = d.contact.iter().zip(&edges).flat_map(|(edge, line)| line.p(edge, u)).collect();
+    let p = edges.iter().flat_map(|edge| edge.p(u)).collect();
     (forces.into_iter().map(|f| f.map(DoubleDouble::head)).collect(), p)
 }
 
 /// A(u, v) - L(v) for every basis function v, with these contact edges.
-pub fn linear_residual<S, E, const N: usize, const M: usize>(
-    d: &Discretization<E, N, M>,
-    edges: &[OnEdge<S, N, M>],
+pub fn linear_residual<S: Scalar + From<f64>>(
+    d: &Discretization,
+    edges: &[ContactFace<S>],
     u: &[[S; 2]],
-) -> Vec<[S; 2]>
-where
-    S: Scalar + From<f64>,
-    E: ExactEdge<f64, N, M>,
-{
+) -> Vec<[S; 2]> {
     let minus = |l: f64| -<S as From<f64>>::from(l);
     let mut forces: Vec<[S; 2]> = d.load.iter().map(|l| l.map(minus)).collect();
-    add_internal_forces(d, u, &mut forces);
+    add_internal_forces(&d.space, &d.problem.material, u, &mut forces);
     edges.iter().for_each(|edge| edge.add_stresses(u, &mut forces));
     forces
 }
 
 /// The values of P(u) at the nodes of each contact edge.
-pub fn p<E, const N: usize, const M: usize>(
-    d: &Discretization<E, N, M>,
-    u: &[[DoubleDouble; 2]],
-) -> impl Iterator<Item = DoubleDouble>
-where
-    E: ExactEdge<f64, N, M>,
-{
-    d.contact.iter().flat_map(move |edge| on_edge(d, edge).p(edge, u))
+pub fn p(d: &Discretization, u: &[[DoubleDouble; 2]]) -> impl Iterator<Item = DoubleDouble> {
+    d.contact.iter().flat_map(move |edge| on_edge(d, edge).p(u))
 }
 
-/// A contact edge with the doubles that it has.
-pub fn on_edge<'d, S, E, const N: usize, const M: usize>(
-    d: &'d Discretization<E, N, M>,
-    edge: &ContactLineEdge<N, M>,
-) -> OnEdge<'d, S, N, M>
-where
-    S: Scalar + From<f64>,
-    E: ExactEdge<f64, N, M>,
-{
-    let exactly = <S as From<f64>>::from;
-    let numbers = EdgeNumbers {
-        normal: edge.normal.map(exactly),
-        gamma: exactly(edge.gamma),
-        length: exactly(edge.length),
-    };
-    OnEdge::new(d, edge, numbers)
+/// A contact edge with the doubles that it has, in other numbers.
+pub fn on_edge<S: Scalar + From<f64>>(d: &Discretization, edge: &ContactFace) -> ContactFace<S> {
+    let exact = <S as From<f64>>::from;
+    with_numbers(d, edge, (exact(edge.length), edge.normal.map(exact), exact(edge.gamma)))
+}
+
+/// A contact edge with this length, normal and gamma.
+pub fn with_numbers<S: Scalar + From<f64>>(
+    d: &Discretization,
+    edge: &ContactFace,
+    numbers: (S, Vector2<S>, S),
+) -> ContactFace<S> {
+    let t = edge.edge.triangle;
+    let triangle = exactly(d.space.mesh().triangle(t));
+    let material = d.problem.material.of(t).map(<S as From<f64>>::from);
+    edge.in_numbers((&triangle, &material), numbers)
 }
 
 /// A triangle of doubles in other numbers.
@@ -79,25 +64,35 @@ pub fn exactly<S: Scalar + From<f64>>(t: Triangle<f64>) -> Triangle<S> {
 }
 
 /// Adds a(u, v) for every basis function v. Triangles on which `u` is all zero are not looked at.
-pub fn add_internal_forces<S, E, const N: usize, const M: usize>(
-    d: &Discretization<E, N, M>,
+pub fn add_internal_forces<S: Scalar + From<f64>>(
+    space: &Space,
+    materials: &Materials,
+    u: &[[S; 2]],
+    forces: &mut [[S; 2]],
+) {
+    with_element!(space.degree(), add_internal_forces_of::<S>(space, materials, u, forces));
+}
+
+fn add_internal_forces_of<E, const N: usize, const M: usize, S>(
+    space: &Space,
+    materials: &Materials,
     u: &[[S; 2]],
     forces: &mut [[S; 2]],
 ) where
+    E: Element<N, M>,
     S: Scalar + From<f64>,
-    E: ExactEdge<f64, N, M>,
 {
     let zero = <S as From<i32>>::from(0);
     let half = <S as From<f64>>::from(0.5);
     let mut points = Vec::new();
     E::at_stiffness_points(|l: [S; 3], weight| points.push((l, weight)));
-    for (t, (triangle, nodes)) in d.space.triangles().enumerate() {
+    for (t, (triangle, nodes)) in space.triangles::<N>().enumerate() {
         if nodes.iter().all(|&node| u[node] == [zero; 2]) {
             continue;
         }
         let nodal = nodes.map(|node| Vector2::from(u[node]));
         let triangle = exactly(triangle);
-        let material = d.problem.material.of(t).map(<S as From<f64>>::from);
+        let material = materials.of(t).map(<S as From<f64>>::from);
         // As `Triangle::barycentric_gradients` has them, with one division: in these numbers they are dear.
         let double_area = triangle.double_area();
         let inverse = <S as From<i32>>::from(1) / double_area;
@@ -119,21 +114,29 @@ pub fn add_internal_forces<S, E, const N: usize, const M: usize>(
 
 /// Adds int s:eps(v) for every basis function v, where s is the stress of `u` that doubles give. Returns a b with
 /// |int (s - sigma(u)):eps(v)| <= b |v|_a for all v: docs/theory.md, 7.5. Infinite or NaN where there is none.
-pub fn add_forces_of_rounded_stresses<S, E, const N: usize, const M: usize>(
-    d: &Discretization<E, N, M>,
+pub fn add_forces_of_rounded_stresses<S: Sum>(
+    d: &Discretization,
+    u: &[[Ball; 2]],
+    forces: &mut [[S; 2]],
+) -> f64 {
+    with_element!(d.space.degree(), add_rounded_forces::<S>(d, u, forces))
+}
+
+fn add_rounded_forces<E, const N: usize, const M: usize, S>(
+    d: &Discretization,
     u: &[[Ball; 2]],
     forces: &mut [[S; 2]],
 ) -> f64
 where
+    E: Element<N, M>,
     S: Sum,
-    E: ExactEdge<f64, N, M>,
 {
     let mut points = Vec::new();
     E::at_stiffness_points(|l: [f64; 3], weight: f64| points.push((l, weight)));
     let terms = Term::all::<E, M>(&points);
     let mut stresses = [[0.0; 3]; N];
     let mut square = 0.0;
-    for (t, (triangle, nodes)) in d.space.triangles().enumerate() {
+    for (t, (triangle, nodes)) in d.space.triangles::<N>().enumerate() {
         if moves_as_a_whole(nodes, u) {
             continue;
         }
@@ -180,7 +183,7 @@ struct Term<const N: usize> {
 impl<const N: usize> Term<N> {
     /// Those that are not zero. At the points of the rules the gradients of the shape functions are sums of those of the
     /// barycentric coordinates, each once or twice, with either sign.
-    fn all<E: ExactEdge<f64, N, M>, const M: usize>(points: &[([f64; 3], f64)]) -> Vec<Term<N>> {
+    fn all<E: Element<N, M>, const M: usize>(points: &[([f64; 3], f64)]) -> Vec<Term<N>> {
         let unit = [Vector3::x(), Vector3::y(), Vector3::z()];
         let at: Vec<[Vector3<f64>; N]> =
             points.iter().map(|&(l, _)| E::gradients(l, unit)).collect();
@@ -207,15 +210,16 @@ fn make_sums_exact<const N: usize>(numbers: &mut [[f64; 3]; N]) {
 }
 
 /// |v|_a at most, to a hundredth: the norm of the stress in doubles, and what that is off by.
-pub fn energy_norm_at_most<E, const N: usize, const M: usize>(
-    d: &Discretization<E, N, M>,
+pub fn energy_norm_at_most(d: &Discretization, v: &[[Ball; 2]]) -> f64 {
+    with_element!(d.space.degree(), energy_norm_of(d, v))
+}
+
+fn energy_norm_of<E: Element<N, M>, const N: usize, const M: usize>(
+    d: &Discretization,
     v: &[[Ball; 2]],
-) -> f64
-where
-    E: ExactEdge<f64, N, M>,
-{
+) -> f64 {
     let (mut squares, mut errors) = (0.0, 0.0);
-    for (t, (triangle, nodes)) in d.space.triangles().enumerate() {
+    for (t, (triangle, nodes)) in d.space.triangles::<N>().enumerate() {
         if moves_as_a_whole(nodes, v) {
             continue;
         }
@@ -258,7 +262,7 @@ struct RoundedStrain<const N: usize> {
 }
 
 impl<const N: usize> RoundedStrain<N> {
-    fn new<E: ExactEdge<f64, N, M>, const M: usize>(
+    fn new<E: Element<N, M>, const M: usize>(
         triangle: &Triangle<f64>,
         nodal: [[Ball; 2]; N],
     ) -> Self {
@@ -305,7 +309,7 @@ impl<const N: usize> RoundedStrain<N> {
     }
 
     /// The stress at the point with the barycentric coordinates `l`.
-    fn stress<E: ExactEdge<f64, N, M>, const M: usize>(
+    fn stress<E: Element<N, M>, const M: usize>(
         &self,
         material: &Material<f64>,
         l: [f64; 3],
@@ -315,98 +319,14 @@ impl<const N: usize> RoundedStrain<N> {
     }
 }
 
-/// The geometry and the parameter of a contact edge.
-#[derive(Clone, Copy, Debug)]
-pub struct EdgeNumbers<S> {
-    /// n
-    pub normal: Vector2<S>,
-    /// gamma
-    pub gamma: S,
-    /// |E|
-    pub length: S,
-}
-
-/// A contact edge with its functionals.
-#[derive(Debug)]
-pub struct OnEdge<'d, S, const N: usize, const M: usize> {
-    /// P0 and sigma_n.
-    pub functionals: ContactEdge<S, N, M>,
-    /// Its numbers.
-    pub numbers: EdgeNumbers<S>,
-    nodes: &'d [usize; N],
-}
-
-impl<'d, S: Scalar + From<f64>, const N: usize, const M: usize> OnEdge<'d, S, N, M> {
-    /// The functionals of an edge of a discretization.
-    pub fn new<E: ExactEdge<f64, N, M>>(
-        d: &'d Discretization<E, N, M>,
-        edge: &ContactLineEdge<N, M>,
-        numbers: EdgeNumbers<S>,
-    ) -> Self {
-        let EdgeNumbers { normal, gamma, .. } = numbers;
-        let (t, local) = (edge.edge.triangle, edge.edge.local);
-        let triangle = exactly(d.space.mesh().triangle(t));
-        let material = d.problem.material.of(t).map(<S as From<f64>>::from);
-        let functionals = if edge.directions == [edge.normal; M] {
-            ContactEdge::new::<E>(&triangle, local, normal, &material, gamma)
-        } else {
-            let along = edge.directions.map(|d| d.map(<S as From<f64>>::from));
-            ContactEdge::along::<E>(&triangle, local, normal, &along, &material, gamma)
-        };
-        OnEdge { functionals, numbers, nodes: &d.space.elements()[t] }
-    }
-
-    fn apply(&self, functional: &[Vector2<S>; N], u: &[[S; 2]]) -> S {
-        let zero = <S as From<i32>>::from(0);
-        let nodal = functional.iter().zip(self.nodes);
-        nodal.fold(zero, |sum, (f, &node)| sum + f[0] * u[node][0] + f[1] * u[node][1])
-    }
-
-    /// P0(u) at the nodes of the edge.
-    pub fn p0(&self, u: &[[S; 2]]) -> [S; M] {
-        std::array::from_fn(|a| self.apply(&self.functionals.p0[a], u))
-    }
-
-    /// P(u) there.
-    pub fn p(&self, edge: &ContactLineEdge<N, M>, u: &[[S; 2]]) -> [S; M] {
-        let p0 = self.p0(u);
-        std::array::from_fn(|a| p0[a] - <S as From<f64>>::from(edge.gap[a]))
-    }
-
-    /// Adds -int gamma sigma_n(u) sigma_n(v) over the edge for every basis function v.
-    pub fn add_stresses(&self, u: &[[S; 2]], forces: &mut [[S; 2]]) {
-        let [two, six] = [2, 6].map(<S as From<i32>>::from);
-        let [start, end] = [0, 1].map(|a| self.apply(&self.functionals.sigma_n[a], u));
-        let mass = -(self.numbers.gamma * self.numbers.length) / six;
-        let factors = [mass * (two * start + end), mass * (start + two * end)];
-        self.add(&self.functionals.sigma_n, &factors, forces);
-    }
-
-    /// Adds the values of P0 at the nodes, each times its factor, as forces on the body.
-    pub fn add_contact(&self, factors: &[S; M], forces: &mut [[S; 2]]) {
-        self.add(&self.functionals.p0, factors, forces);
-    }
-
-    fn add(&self, functionals: &[[Vector2<S>; N]], factors: &[S], forces: &mut [[S; 2]]) {
-        for (functional, &factor) in functionals.iter().zip(factors) {
-            for (&node, f) in self.nodes.iter().zip(functional) {
-                for c in 0..2 {
-                    forces[node][c] += factor * f[c];
-                }
-            }
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeMap;
     use std::sync::Arc;
 
     use super::*;
-    use crate::fem::contact_line::EdgeRule;
-    use crate::fem::{Condition, Diagonal, Problem, Rectangle, SharedFunction};
-    use crate::kernel::{Material, P1, P2, Plane};
+    use crate::fem::{Condition, Degree, Diagonal, EdgeRule, Problem, Rectangle, SharedFunction};
+    use crate::kernel::{Material, Plane};
 
     fn block() -> Problem {
         let zero = || -> SharedFunction { Arc::new(|_: [f64; 2]| 0.0) };
@@ -428,10 +348,10 @@ mod tests {
 
     /// The residual in double-doubles is the one in doubles, to the rounding of the latter; a change of u far below its
     /// rounding shows in P as it should.
-    fn agrees_and_sees_more<E: ExactEdge<f64, N, M>, const N: usize, const M: usize>() {
+    fn agrees_and_sees_more(degree: Degree) {
         let problem = block();
         let d =
-            Discretization::<E, N, M>::new(&problem, |c| c.limit() / 2.0, EdgeRule::Exact).unwrap();
+            Discretization::new(&problem, degree, |c| c.limit() / 2.0, EdgeRule::Exact).unwrap();
         let mut u: Vec<[f64; 2]> = vec![[0.0; 2]; d.space.nodes().len()];
         for (i, u) in u.iter_mut().enumerate() {
             *u = [(i as f64).sin(), (2.0 * i as f64).cos()];
@@ -462,7 +382,7 @@ mod tests {
 
     #[test]
     fn residuals_in_double_doubles_agree_with_those_in_doubles_and_keep_more_of_u() {
-        agrees_and_sees_more::<P1, 3, 2>();
-        agrees_and_sees_more::<P2, 6, 3>();
+        agrees_and_sees_more(Degree::One);
+        agrees_and_sees_more(Degree::Two);
     }
 }

@@ -18,7 +18,6 @@ use std::fmt;
 use super::dense::singular_vectors;
 use super::mesh::Mesh;
 use super::space::Space;
-use crate::kernel::Element;
 
 /// The parts of a body.
 #[derive(Clone, Debug)]
@@ -68,13 +67,9 @@ impl FreeMotion {
     }
 
     /// The motion as a field: its nodal values.
-    pub fn field<E: Element<N, M>, const N: usize, const M: usize>(
-        &self,
-        parts: &Parts,
-        space: &Space<E, N, M>,
-    ) -> Vec<[f64; 2]> {
+    pub fn field(&self, parts: &Parts, space: &Space) -> Vec<[f64; 2]> {
         let mut field = vec![[0.0; 2]; space.nodes().len()];
-        for (nodes, &part) in space.elements().iter().zip(&parts.of_triangle) {
+        for (nodes, &part) in space.elements().zip(&parts.of_triangle) {
             if part == self.part {
                 for &node in nodes {
                     field[node] = self.at(space.nodes()[node]);
@@ -201,19 +196,18 @@ impl Parts {
 
 /// All rigid motions that are free when each node is held in the directions `held` of it, which may be off by `rounding`: a
 /// basis, part by part, empty if the body is held.
-pub fn free_motions<E, I, const N: usize, const M: usize>(
+pub fn free_motions<I>(
     parts: &Parts,
-    space: &Space<E, N, M>,
+    space: &Space,
     held: impl Fn(usize) -> I,
     rounding: f64,
 ) -> Vec<FreeMotion>
 where
-    E: Element<N, M>,
     I: Iterator<Item = [f64; 2]>,
 {
     let mut columns = vec![[const { Vec::new() }; 3]; parts.count()];
     let mut seen = vec![false; space.nodes().len()];
-    for (nodes, &part) in space.elements().iter().zip(&parts.of_triangle) {
+    for (nodes, &part) in space.elements().zip(&parts.of_triangle) {
         for &node in nodes {
             if std::mem::replace(&mut seen[node], true) {
                 continue;
@@ -326,7 +320,7 @@ mod tests {
     use approx::abs_diff_eq;
 
     use super::*;
-    use crate::kernel::{P1, P2};
+    use crate::fem::Degree;
 
     /// The remainder of a motion of size 1 where it is stopped: components below [`STILL`] are set to zero, and slender
     /// parts have coordinates of up to 10 times their half box.
@@ -359,11 +353,8 @@ mod tests {
 
     type Held = dyn Fn([f64; 2]) -> [bool; 2];
 
-    fn free<E: Element<N, M>, const N: usize, const M: usize>(
-        mesh: &Mesh,
-        held: &Held,
-    ) -> Vec<FreeMotion> {
-        let space = Space::<E, N, M>::new(mesh);
+    fn free(mesh: &Mesh, degree: Degree, held: &Held) -> Vec<FreeMotion> {
+        let space = Space::new(mesh, degree);
         let directions = |node: usize| {
             let axes = held(space.nodes()[node]).into_iter().zip([[1.0, 0.0], [0.0, 1.0]]);
             axes.filter(|(held, _)| *held).map(|(_, axis)| axis)
@@ -385,7 +376,7 @@ mod tests {
 
     fn said(mesh: &Mesh, held: &Held) -> Vec<String> {
         let words = |m: &FreeMotion| format!("{m}: {}", m.remedy());
-        let [linear, quadratic] = [free::<P1, 3, 2>(mesh, held), free::<P2, 6, 3>(mesh, held)];
+        let [linear, quadratic] = [Degree::One, Degree::Two].map(|degree| free(mesh, degree, held));
         assert_eq!(linear.len(), quadratic.len());
         linear.iter().map(words).collect()
     }

@@ -3,28 +3,30 @@
 //! A displacement is a vector per node; degree of freedom 2 i + c is component c at node i. The nodes of P1 are the
 //! vertices of the mesh; P2 adds the midpoints of its edges.
 
-use std::marker::PhantomData;
+use std::slice::ChunksExact;
 
-use nalgebra::Vector2;
+use nalgebra::{Matrix2, Vector2};
 
+use super::element::Degree;
 use super::mesh::{BoundaryEdge, Mesh};
-use crate::kernel::{Element, Triangle};
+use crate::kernel::Triangle;
 
-/// V^h of the element `E` (with `N` nodes on a triangle and `M` on an edge) on a mesh, no condition imposed.
+/// V^h of a degree on a mesh, no condition imposed.
 #[derive(Clone, Debug)]
-pub struct Space<'a, E, const N: usize, const M: usize> {
+pub struct Space<'a> {
     mesh: &'a Mesh,
+    degree: Degree,
     nodes: Vec<[f64; 2]>,
-    elements: Vec<[usize; N]>,
-    element: PhantomData<E>,
+    /// The nodes of the triangles, one triangle after the other.
+    elements: Vec<usize>,
 }
 
-impl<'a, E: Element<N, M>, const N: usize, const M: usize> Space<'a, E, N, M> {
-    /// The space on `mesh`.
-    pub fn new(mesh: &'a Mesh) -> Self {
+impl<'a> Space<'a> {
+    /// The space of a degree on `mesh`.
+    pub fn new(mesh: &'a Mesh, degree: Degree) -> Self {
         let vertices = mesh.vertices().len();
         let mut nodes = mesh.vertices().to_vec();
-        if N > 3 {
+        if degree == Degree::Two {
             nodes.resize(vertices + mesh.edge_count(), [0.0; 2]);
             for (corners, edges) in mesh.triangles().iter().zip(mesh.triangle_edges()) {
                 for (i, edge) in edges.iter().enumerate() {
@@ -34,15 +36,14 @@ impl<'a, E: Element<N, M>, const N: usize, const M: usize> Space<'a, E, N, M> {
                 }
             }
         }
-        let mut elements = vec![[0; N]; mesh.triangles().len()];
-        for (t, element) in elements.iter_mut().enumerate() {
-            let corners = mesh.triangles()[t].into_iter();
-            let middles = mesh.triangle_edges()[t].into_iter().map(|edge| vertices + edge);
-            for (slot, node) in element.iter_mut().zip(corners.chain(middles)) {
-                *slot = node;
+        let mut elements = Vec::with_capacity(mesh.triangles().len() * degree.nodes_per_triangle());
+        for (corners, edges) in mesh.triangles().iter().zip(mesh.triangle_edges()) {
+            elements.extend(corners);
+            if degree == Degree::Two {
+                elements.extend(edges.iter().map(|edge| vertices + edge));
             }
         }
-        Space { mesh, nodes, elements, element: PhantomData }
+        Space { mesh, degree, nodes, elements }
     }
 
     /// The mesh.
@@ -50,29 +51,60 @@ impl<'a, E: Element<N, M>, const N: usize, const M: usize> Space<'a, E, N, M> {
         self.mesh
     }
 
+    /// The polynomial degree.
+    pub fn degree(&self) -> Degree {
+        self.degree
+    }
+
     /// The places of the nodes.
     pub fn nodes(&self) -> &[[f64; 2]] {
         &self.nodes
     }
 
-    /// The nodes of each triangle, in the order of [`Element`].
-    pub fn elements(&self) -> &[[usize; N]] {
+    /// The nodes of all triangles, one triangle after the other, in the order of [`Element`](crate::kernel::Element).
+    pub fn connectivity(&self) -> &[usize] {
         &self.elements
     }
 
+    /// The nodes of each triangle.
+    pub fn elements(&self) -> ChunksExact<'_, usize> {
+        self.elements.chunks_exact(self.degree.nodes_per_triangle())
+    }
+
+    /// The nodes of triangle `t`.
+    pub fn nodes_of(&self, t: usize) -> &[usize] {
+        let count = self.degree.nodes_per_triangle();
+        &self.elements[t * count..][..count]
+    }
+
     /// The nodes on a boundary edge: start, end, then the midpoint if there is one.
-    pub fn edge_nodes(&self, edge: BoundaryEdge) -> [usize; M] {
-        E::edge_nodes(edge.local).map(|k| self.elements[edge.triangle][k])
+    pub fn edge_nodes(&self, edge: BoundaryEdge) -> Vec<usize> {
+        let nodes = self.nodes_of(edge.triangle);
+        self.degree.edge_nodes(edge.local).into_iter().map(|k| nodes[k]).collect()
     }
 
     /// The nodal values of `field` on triangle `t`.
-    pub fn on_triangle(&self, t: usize, field: &[[f64; 2]]) -> [Vector2<f64>; N] {
-        self.elements[t].map(|node| field[node].into())
+    pub fn on_triangle(&self, t: usize, field: &[[f64; 2]]) -> Vec<Vector2<f64>> {
+        self.nodes_of(t).iter().map(|&node| field[node].into()).collect()
     }
 
-    /// All triangles with their coordinates and their nodes.
-    pub fn triangles(&self) -> impl Iterator<Item = (Triangle<f64>, &[usize; N])> {
-        self.elements.iter().enumerate().map(|(t, nodes)| (self.mesh.triangle(t), nodes))
+    /// All triangles with their coordinates and their nodes, of which there are `N`.
+    pub fn triangles<const N: usize>(&self) -> impl Iterator<Item = (Triangle<f64>, &[usize; N])> {
+        let (elements, _) = self.elements.as_chunks::<N>();
+        elements.iter().enumerate().map(|(t, nodes)| (self.mesh.triangle(t), nodes))
+    }
+
+    /// The mean of the gradient of `field` on triangle `t`: its average over the points of the stiffness rule, which is exact for
+    /// it.
+    pub fn mean_gradient(&self, t: usize, field: &[[f64; 2]]) -> Matrix2<f64> {
+        let barycentric = self.mesh.triangle(t).barycentric_gradients();
+        let mut mean = Matrix2::zeros();
+        let nodes = self.nodes_of(t);
+        let nodal = |j: usize| Vector2::from(field[nodes[j]]);
+        self.degree.at_stiffness_points(|l, weight: f64| {
+            mean += self.degree.displacement_gradient(l, barycentric, nodal) * weight;
+        });
+        mean
     }
 }
 
@@ -83,41 +115,50 @@ mod tests {
 
     use super::*;
     use crate::fem::{Diagonal, Rectangle};
-    use crate::kernel::{P1, P2};
+    use crate::kernel::triangle::on_edge;
 
     fn mesh() -> Mesh {
         let diagonal = Diagonal::Crossed;
         Rectangle { width: 1.0, height: 2.0, nx: 3, ny: 2, diagonal }.mesh().unwrap()
     }
 
-    /// Each triangle finds its own nodes where the element says they are.
-    fn nodes_are_where_the_element_has_them<E: Element<N, M>, const N: usize, const M: usize>() {
+    #[test]
+    fn nodes_lie_on_the_edges_of_their_triangles() {
         let mesh = mesh();
-        let space = Space::<E, N, M>::new(&mesh);
-        for t in 0..mesh.triangles().len() {
-            for local in 0..3 {
-                let edge = BoundaryEdge { triangle: t, local };
-                for (node, s) in space.edge_nodes(edge).into_iter().zip(E::edge_positions()) {
-                    let x = mesh.triangle(t).point(crate::kernel::triangle::on_edge(local, s));
-                    let node = Vector2::from(space.nodes()[node]);
-                    // Half a sum of two coordinates below 2.
-                    assert_abs_diff_eq!(x, node, epsilon = 1e-15);
+        for degree in [Degree::One, Degree::Two] {
+            let space = Space::new(&mesh, degree);
+            for t in 0..mesh.triangles().len() {
+                for local in 0..3 {
+                    let nodes = space.edge_nodes(BoundaryEdge { triangle: t, local });
+                    for (node, s) in nodes.into_iter().zip(degree.edge_positions()) {
+                        let x = mesh.triangle(t).point(on_edge(local, s));
+                        let node = Vector2::from(space.nodes()[node]);
+                        // Half a sum of two coordinates below 2.
+                        assert_abs_diff_eq!(x, node, epsilon = 1e-15);
+                    }
                 }
             }
         }
     }
 
     #[test]
-    fn nodes_lie_on_the_edges_of_their_triangles() {
-        nodes_are_where_the_element_has_them::<P1, 3, 2>();
-        nodes_are_where_the_element_has_them::<P2, 6, 3>();
-    }
-
-    #[test]
     fn euler_counts_the_nodes() {
         let mesh = mesh();
         let (v, t) = (mesh.vertices().len(), mesh.triangles().len());
-        assert_eq!(Space::<P1, 3, 2>::new(&mesh).nodes().len(), v);
-        assert_eq!(Space::<P2, 6, 3>::new(&mesh).nodes().len(), 2 * v + t - 1);
+        assert_eq!(Space::new(&mesh, Degree::One).nodes().len(), v);
+        assert_eq!(Space::new(&mesh, Degree::Two).nodes().len(), 2 * v + t - 1);
+    }
+
+    #[test]
+    fn the_mean_gradient_of_a_linear_field_is_its_gradient() {
+        let mesh = mesh();
+        for degree in [Degree::One, Degree::Two] {
+            let space = Space::new(&mesh, degree);
+            let nodes = space.nodes().iter();
+            let field: Vec<[f64; 2]> =
+                nodes.map(|[x, y]| [2.0 * x - 3.0 * y, x + 5.0 * y]).collect();
+            let mean = space.mean_gradient(7, &field);
+            assert_abs_diff_eq!(mean, Matrix2::new(2.0, -3.0, 1.0, 5.0), epsilon = 1e-13);
+        }
     }
 }

@@ -16,8 +16,7 @@ use miniz_oxide::inflate::decompress_to_vec_zlib_with_limit;
 use thiserror::Error;
 
 use super::input::{self, InputError};
-use crate::fem::{Mesh, Space};
-use crate::kernel::P2;
+use crate::fem::{Degree, Mesh, Space};
 use crate::memory;
 use crate::quote;
 
@@ -77,7 +76,7 @@ fn at_nodes(
     let quadratic = triangles.is_some_and(|triangles| triangles.quadratic);
     let vertices = mesh.vertices().len();
     let nodes: Vec<[f64; 2]> = if quadratic {
-        Space::<P2, 6, 3>::new(mesh).nodes().to_vec()
+        Space::new(mesh, Degree::Two).nodes().to_vec()
     } else {
         mesh.vertices().to_vec()
     };
@@ -598,12 +597,12 @@ mod tests {
     #[test]
     fn a_field_on_quadratic_triangles_is_read_at_the_middles_of_the_edges_too() {
         let mesh = mesh();
-        let space = Space::<P2, 6, 3>::new(&mesh);
+        let space = Space::new(&mesh, Degree::Two);
         let u: Vec<[f64; 2]> = space.nodes().iter().map(|[x, y]| [x * x, 0.3 * x * y]).collect();
         let file = vtu(&Grid {
             kind: CellKind::QuadraticTriangle,
             points: space.nodes(),
-            connectivity: space.elements().as_flattened(),
+            connectivity: space.connectivity(),
             point_data: &[Field { name: "displacement", values: Values::Vectors(&u) }],
             cell_data: &[],
         });

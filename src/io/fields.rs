@@ -8,7 +8,7 @@ use super::csv::{ContactRow, contact_csv};
 use super::data::DataError;
 use super::files::{Output, WriteError};
 use super::vtu::{CellKind, Field, Grid, Values, vtu};
-use crate::fem::{Mesh, Problem};
+use crate::fem::{Degree, Mesh, Problem};
 use crate::kernel::Stress;
 use crate::solve::solution::ContactValues;
 use crate::solve::{Solution, stresses};
@@ -95,7 +95,11 @@ fn solution_vtu(
     let (first, second): (Vec<f64>, Vec<f64>) =
         nodal.iter().map(|&stress| stresses::principal_in_plane(stress).into()).unzip();
     vtu(&Grid {
-        kind: if s.degree == 1 { CellKind::Triangle } else { CellKind::QuadraticTriangle },
+        kind: if s.degree == Degree::One {
+            CellKind::Triangle
+        } else {
+            CellKind::QuadraticTriangle
+        },
         points: &s.nodes,
         connectivity: &s.elements,
         point_data: &[
@@ -112,12 +116,13 @@ fn solution_vtu(
 /// Each edge has points of its own, for sigma_n and lambda^h jump from edge to edge.
 fn contact_vtu(s: &Solution) -> Result<Vec<u8>, DataError> {
     let points: Vec<&ContactValues> = s.contact.iter().flat_map(|edge| &edge.points).collect();
-    let per_edge = s.degree + 1;
+    let degree = s.degree.number();
+    let per_edge = degree + 1;
     let connectivity: Vec<usize> = (0..s.contact.len())
         .flat_map(|e| {
             let first = e * per_edge;
             // Ends first, then what lies between them.
-            [first, first + s.degree].into_iter().chain(first + 1..first + s.degree)
+            [first, first + degree].into_iter().chain(first + 1..first + degree)
         })
         .collect();
     let places: Vec<[f64; 2]> = points.iter().map(|p| s.nodes[p.node]).collect();
@@ -128,7 +133,7 @@ fn contact_vtu(s: &Solution) -> Result<Vec<u8>, DataError> {
     let pressure = scalars(|p| p.pressure);
     let direction: Vec<[f64; 2]> = points.iter().map(|p| p.direction).collect();
     vtu(&Grid {
-        kind: if s.degree == 1 { CellKind::Line } else { CellKind::QuadraticLine },
+        kind: if s.degree == Degree::One { CellKind::Line } else { CellKind::QuadraticLine },
         points: &places,
         connectivity: &connectivity,
         point_data: &[

@@ -21,8 +21,7 @@ use super::result::{
 use super::vtu::{CellKind, Field, Grid, Values, vtu};
 use crate::certify::{CertifyError, Continuous, certify_with};
 use crate::fem::contact_line::{self, Gamma};
-use crate::fem::{self, Space};
-use crate::kernel::{P1, P2};
+use crate::fem::{self, Degree, Space};
 use crate::memory::{self, OutOfMemory};
 use crate::quote;
 use crate::solve::solution::ContactValues;
@@ -181,7 +180,7 @@ pub fn write_certified(
 ) -> Result<Vec<PathBuf>, OutputError> {
     let mut output = Output::new(folder)?;
     let mesh = &case.problem.mesh;
-    let space = Space::<P2, 6, 3>::new(mesh);
+    let space = Space::new(mesh, Degree::Two);
     // The one of degree 1 has its values at the middles of edges, too, where the other is of degree 2.
     let nodes = field.len().max(certified.displacement.len());
     let [field, admissible] = [field, &certified.displacement].map(|values| {
@@ -202,7 +201,7 @@ pub fn write_certified(
         kind: if quadratic { CellKind::QuadraticTriangle } else { CellKind::Triangle },
         points: if quadratic { space.nodes() } else { mesh.vertices() },
         connectivity: if quadratic {
-            space.elements().as_flattened()
+            space.connectivity()
         } else {
             mesh.triangles().as_flattened()
         },
@@ -239,7 +238,7 @@ fn certificate_files(
 fn bytes_to_write(s: &Solution) -> u64 {
     const PER_NODE: u64 = 260;
     const PER_DRAWN_TRIANGLE: u64 = 400;
-    let drawn = s.von_mises.len() as u64 * if s.degree == 1 { 1 } else { 4 };
+    let drawn = s.von_mises.len() as u64 * if s.degree == Degree::One { 1 } else { 4 };
     PER_NODE * s.nodes.len() as u64 + PER_DRAWN_TRIANGLE * drawn
 }
 
@@ -392,7 +391,7 @@ fn named_obstacle(case: &Case, boundary: &str) -> Option<String> {
 
 /// Where the body is deepest in its obstacle before it is loaded, if it is.
 pub fn overlap(case: &Case) -> Option<String> {
-    let space = Space::<P1, 3, 2>::new(&case.problem.mesh);
+    let space = Space::new(&case.problem.mesh, Degree::One);
     let line = contact_line::assemble(&case.problem, &space, 1.0).ok()?;
     let points =
         line.iter().flat_map(|e| e.gap.iter().zip(&e.places).map(move |(g, x)| (*g, *x, e)));

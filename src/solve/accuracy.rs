@@ -18,10 +18,9 @@ use super::system::System;
 use super::{Settings, SolveError, Status};
 use crate::fem::discretization::Discretization;
 use crate::fem::double_double::DoubleDouble;
-use crate::kernel::edge_integral::ExactEdge;
 
 /// A way to better an iterate.
-pub trait Route<E, const N: usize, const M: usize> {
+pub trait Route {
     /// L of A, if it is at hand.
     fn factor_of_a(&self) -> Option<Arc<Factor>> {
         None
@@ -136,16 +135,13 @@ const MOST_PASSES: usize = 12;
 ///
 /// # Errors
 /// As [`super::newton::minimise`].
-pub fn refine<E, const N: usize, const M: usize>(
-    system: &System<E, N, M>,
-    route: &mut impl Route<E, N, M>,
-    verifier: &mut Verifier<E, N, M>,
+pub fn refine(
+    system: &System,
+    route: &mut impl Route,
+    verifier: &mut Verifier,
     reference: f64,
     settings: &Settings,
-) -> Result<Outcome, SolveError>
-where
-    E: ExactEdge<f64, N, M>,
-{
+) -> Result<Outcome, SolveError> {
     let d = system.d;
     let mut iterate = Iterate::lift(d);
     let mut residuals = Vec::new();
@@ -232,20 +228,13 @@ struct Residual {
 }
 
 impl Residual {
-    fn new<E, const N: usize, const M: usize>(
-        system: &System<E, N, M>,
-        at: &Evaluation,
-        reference: f64,
-    ) -> Self
-    where
-        E: ExactEdge<f64, N, M>,
-    {
+    fn new(system: &System, at: &Evaluation, reference: f64) -> Self {
         let d = system.d;
         let mut r = at.linear.clone();
         let one = |v: &[f64]| v.iter().map(|v| v.abs()).sum::<f64>();
         let mut forces = one(d.load.as_flattened());
         for (e, edge) in d.contact.iter().enumerate() {
-            let integrals = d.rule.integrals::<E, N, M>(block::<DoubleDouble, M>(&at.p, e));
+            let integrals = d.rule.integrals(block(&at.p, e, system.nodes()));
             let weight = edge.length / edge.gamma;
             forces += weight * one(&integrals.gradient);
             system.functionals(e, |row, a, entry| {
@@ -266,10 +255,7 @@ fn norm(v: &[f64]) -> f64 {
 
 /// The size that residuals are relative to: |L| + |residual of the prescribed data| over the free degrees of freedom, or,
 /// where these are nothing but rounding, the magnitudes of the forces that cancel there. 1 where there is no force at all.
-pub fn reference<E, const N: usize, const M: usize>(d: &Discretization<E, N, M>) -> f64
-where
-    E: ExactEdge<f64, N, M>,
-{
+pub fn reference(d: &Discretization) -> f64 {
     let residual = d.residual(&d.constraints.lift());
     let prescribed: Vec<[f64; 2]> =
         residual.values.iter().zip(&d.load).map(|(r, l)| [r[0] + l[0], r[1] + l[1]]).collect();

@@ -25,13 +25,12 @@ use serde::{Deserialize, Serialize};
 
 use nalgebra::Vector2;
 
-use crate::fem::contact_line::{ContactLineEdge, EdgeRule};
 use crate::fem::dense::inner;
 use crate::fem::discretization::Discretization;
 use crate::fem::double_double::DoubleDouble;
+use crate::fem::element::{roots, value_at};
 use crate::fem::mesh::length;
-use crate::kernel::edge_integral::{self, ExactEdge, value_at};
-use crate::kernel::element::displacement_gradient;
+use crate::fem::{ContactFace, EdgeRule};
 use crate::kernel::positive_part;
 
 /// The quantities of one part of Gamma_C, in the units of the case.
@@ -93,16 +92,13 @@ pub struct EnergyBalance {
 }
 
 /// The balance of the field `u` with the residual `residual` at all degrees of freedom, and the energy a(u, u).
-pub fn energy_balance<E, const N: usize, const M: usize>(
-    d: &Discretization<E, N, M>,
+pub fn energy_balance(
+    d: &Discretization,
     u: &[[f64; 2]],
-    p: &[[DoubleDouble; M]],
+    p: &[Vec<DoubleDouble>],
     residual: &[[f64; 2]],
     strain: f64,
-) -> EnergyBalance
-where
-    E: ExactEdge<f64, N, M>,
-{
+) -> EnergyBalance {
     let loads = inner(&d.load, u);
     let mut supports = 0.0;
     for held in d.constraints.holders().values().flatten() {
@@ -110,12 +106,12 @@ where
         supports += a * x + b * y;
     }
     let mut contact = 0.0;
-    for (edge, &p) in d.contact.iter().zip(p) {
-        let sigma = edge.sigma_n(&d.space.on_triangle(edge.edge.triangle, u));
+    for (edge, p) in d.contact.iter().zip(p) {
+        let sigma = edge.sigma_n(|node| u[node]);
         let product = crate::kernel::contact_edge::integral_of_product(sigma, sigma);
         contact += edge.gamma * edge.length * product;
-        let gradient = d.rule.integrals::<E, N, M>(p).gradient;
-        for a in 0..M {
+        let gradient = d.rule.integrals(p).gradient;
+        for a in 0..p.len() {
             contact -= edge.length / edge.gamma * gradient[a] * (p[a].head() + edge.gap[a]);
         }
     }
@@ -126,54 +122,34 @@ where
 }
 
 /// The largest principal strain, in magnitude, of the mean strain on a triangle.
-pub fn largest_strain<E, const N: usize, const M: usize>(
-    d: &Discretization<E, N, M>,
-    u: &[[f64; 2]],
-) -> f64
-where
-    E: ExactEdge<f64, N, M>,
-{
-    let mut largest: f64 = 0.0;
-    for (t, (triangle, _)) in d.space.triangles().enumerate() {
-        let nodal = d.space.on_triangle(t, u);
-        let barycentric = triangle.barycentric_gradients();
-        let [mut xx, mut yy, mut xy] = [0.0; 3];
-        E::at_stiffness_points(|l, weight| {
-            let g = displacement_gradient(&nodal, &E::gradients(l, barycentric));
-            xx += weight * g.m11;
-            yy += weight * g.m22;
-            xy += weight * (g.m12 + g.m21) / 2.0;
-        });
-        let radius = ((xx - yy) / 2.0).hypot(xy);
-        largest = largest.max(((xx + yy) / 2.0).abs() + radius);
-    }
-    largest
+pub fn largest_strain(d: &Discretization, u: &[[f64; 2]]) -> f64 {
+    let of = |t| {
+        let g = d.space.mean_gradient(t, u);
+        let radius = ((g.m11 - g.m22) / 2.0).hypot((g.m12 + g.m21) / 2.0);
+        ((g.m11 + g.m22) / 2.0).abs() + radius
+    };
+    (0..d.space.mesh().triangles().len()).map(of).fold(0.0, f64::max)
 }
 
 /// The recovered pressure at the nodes of each edge, in the order of the edge's nodes.
-pub fn recovered_pressure<E, const N: usize, const M: usize>(
-    d: &Discretization<E, N, M>,
-    p: &[[DoubleDouble; M]],
-) -> Vec<[f64; M]>
-where
-    E: ExactEdge<f64, N, M>,
-{
+pub fn recovered_pressure(d: &Discretization, p: &[Vec<DoubleDouble>]) -> Vec<Vec<f64>> {
     let groups = groups(d);
     let count = groups.iter().flatten().max().map_or(0, |last| last + 1);
     let (mut work, mut weight) = (vec![0.0; count], vec![0.0; count]);
-    for ((edge, &p), groups) in d.contact.iter().zip(p).zip(&groups) {
-        let hats = if M == 2 || edge.curved { Hats::Whole } else { Hats::Halves };
-        let of_edge = hat_integrals::<E, N, M>(p, &d.rule, hats);
-        let of_one: [f64; M] = hats.integrals();
+    for ((edge, p), groups) in d.contact.iter().zip(p).zip(&groups) {
+        let hats = if p.len() == 2 || edge.curved { Hats::Whole } else { Hats::Halves };
+        let of_edge = hat_integrals(p, &d.rule, hats);
+        let of_one = hats.integrals();
         for (a, &group) in groups.iter().enumerate() {
             work[group] += edge.length / edge.gamma * of_edge[a];
             weight[group] += edge.length * of_one[a];
         }
     }
     let mean = |group: usize| work[group] / weight[group];
-    let on_edge = |groups: &[usize; M]| {
+    let on_edge = |groups: &Vec<usize>| {
         let middle = (mean(groups[0]) + mean(groups[1])) / 2.0;
-        groups.map(|group| if weight[group] > 0.0 { mean(group) } else { middle })
+        let value = |&group: &usize| if weight[group] > 0.0 { mean(group) } else { middle };
+        groups.iter().map(value).collect()
     };
     groups.iter().map(on_edge).collect()
 }
@@ -189,51 +165,41 @@ enum Hats {
 
 impl Hats {
     /// Their values at `s`: start, end, middle.
-    fn at<const M: usize>(self, s: f64) -> [f64; M] {
-        let all = match (self, s <= 0.5) {
+    fn at(self, s: f64) -> [f64; 3] {
+        match (self, s <= 0.5) {
             (Hats::Whole, _) => [1.0 - s, s, 0.0],
             (Hats::Halves, true) => [1.0 - 2.0 * s, 0.0, 2.0 * s],
             (Hats::Halves, false) => [0.0, 2.0 * s - 1.0, 2.0 - 2.0 * s],
-        };
-        std::array::from_fn(|a| all[a])
+        }
     }
 
     /// Their integrals over the edge, as shares of its length.
-    fn integrals<const M: usize>(self) -> [f64; M] {
-        let all = match self {
+    fn integrals(self) -> [f64; 3] {
+        match self {
             Hats::Whole => [0.5, 0.5, 0.0],
             Hats::Halves => [0.25, 0.25, 0.5],
-        };
-        std::array::from_fn(|a| all[a])
+        }
     }
 }
 
 /// int_0^1 \[P\]+ phi_a by the rule of the method.
-fn hat_integrals<E, const N: usize, const M: usize>(
-    p: [impl Into<DoubleDouble>; M],
-    rule: &EdgeRule,
-    hats: Hats,
-) -> [f64; M]
-where
-    E: ExactEdge<f64, N, M>,
-{
-    let mut sums = [0.0; M];
-    let fine: [DoubleDouble; M] = p.map(Into::into);
-    let p = fine.map(DoubleDouble::head);
+fn hat_integrals(fine: &[DoubleDouble], rule: &EdgeRule, hats: Hats) -> [f64; 3] {
+    let mut sums = [0.0; 3];
+    let p: Vec<f64> = fine.iter().map(|p| p.head()).collect();
     let mut add = |s: f64, weight: f64| {
         let value = match rule {
-            EdgeRule::Exact => value_at::<E, f64, N, M>(p, s),
-            EdgeRule::Gauss(_) => value_at::<E, DoubleDouble, N, M>(fine, s.into()).head(),
+            EdgeRule::Exact => value_at(&p, s),
+            EdgeRule::Gauss(_) => value_at(fine, s.into()).head(),
         };
         let value = positive_part(value);
-        let hats: [f64; M] = hats.at(s);
-        (0..M).for_each(|a| sums[a] += weight * value * hats[a]);
+        let hats = hats.at(s);
+        (0..3).for_each(|a| sums[a] += weight * value * hats[a]);
     };
     match rule {
         EdgeRule::Gauss(points) => points.iter().for_each(|&(s, weight)| add(s, weight)),
         EdgeRule::Exact => {
-            let mut cuts: Vec<f64> =
-                edge_integral::roots::<E, N, M>(p).chain([0.0, 0.5, 1.0]).collect();
+            let mut cuts = roots(&p);
+            cuts.extend([0.0, 0.5, 1.0]);
             cuts.sort_unstable_by(f64::total_cmp);
             for pair in cuts.windows(2) {
                 let [low, high] = [pair[0], pair[1]];
@@ -250,16 +216,13 @@ where
 
 /// The numbers of the values at the nodes of each edge: neighbours on one boundary share that of their common node unless
 /// the direction of contact jumps there.
-fn groups<E, const N: usize, const M: usize>(d: &Discretization<E, N, M>) -> Vec<[usize; M]>
-where
-    E: ExactEdge<f64, N, M>,
-{
+fn groups(d: &Discretization) -> Vec<Vec<usize>> {
     let mut of_end: BTreeMap<(usize, &str), Vec<Group>> = BTreeMap::new();
     let mut count = 0;
     let mut groups = Vec::with_capacity(d.contact.len());
     for edge in &d.contact {
         let nodes = d.space.edge_nodes(edge.edge);
-        groups.push(std::array::from_fn(|a| {
+        let group = |a: usize| {
             let known = of_end.entry((nodes[a], &*edge.boundary)).or_default();
             let direction = edge.directions[a];
             match known.iter().find(|(other, _)| same(*other, direction)) {
@@ -270,7 +233,8 @@ where
                     count - 1
                 }
             }
-        }));
+        };
+        groups.push((0..nodes.len()).map(group).collect());
     }
     groups
 }
@@ -284,18 +248,15 @@ fn same(a: Vector2<f64>, b: Vector2<f64>) -> bool {
 }
 
 /// The quantities of each part of Gamma_C, in alphabetical order.
-pub fn contact_boundaries<E, const N: usize, const M: usize>(
-    d: &Discretization<E, N, M>,
+pub fn contact_boundaries(
+    d: &Discretization,
     u: &[[f64; 2]],
-    p: &[[DoubleDouble; M]],
-    recovered: &[[f64; M]],
-) -> Vec<ContactBoundary>
-where
-    E: ExactEdge<f64, N, M>,
-{
+    p: &[Vec<DoubleDouble>],
+    recovered: &[Vec<f64>],
+) -> Vec<ContactBoundary> {
     let mut all: Vec<ContactBoundary> = Vec::new();
     let mut end_of_last = None;
-    for ((edge, &p), recovered) in d.contact.iter().zip(p).zip(recovered) {
+    for ((edge, p), recovered) in d.contact.iter().zip(p).zip(recovered) {
         if all.last().is_none_or(|last| last.boundary != *edge.boundary) {
             end_of_last = None;
             all.push(ContactBoundary::empty(&edge.boundary));
@@ -324,22 +285,20 @@ impl ContactBoundary {
     }
 
     /// Adds an edge; `open` is the vertex up to which a stretch of contact has come.
-    fn add<E, const N: usize, const M: usize>(
+    fn add(
         &mut self,
-        d: &Discretization<E, N, M>,
+        d: &Discretization,
         u: &[[f64; 2]],
-        edge: &ContactLineEdge<N, M>,
-        p: [DoubleDouble; M],
-        recovered: &[f64; M],
+        edge: &ContactFace,
+        p: &[DoubleDouble],
+        recovered: &[f64],
         open: &mut Option<usize>,
-    ) where
-        E: ExactEdge<f64, N, M>,
-    {
+    ) {
         let nodes = d.space.edge_nodes(edge.edge);
-        let places = nodes.map(|node| d.space.nodes()[node]);
-        let integrals = d.rule.integrals::<E, N, M>(p);
-        let mut openings = [0.0; M];
-        for a in 0..M {
+        let places: Vec<[f64; 2]> = nodes.iter().map(|&node| d.space.nodes()[node]).collect();
+        let integrals = d.rule.integrals(p);
+        let mut openings = vec![0.0; p.len()];
+        for a in 0..p.len() {
             let (g, [x, y], n) = (integrals.gradient[a], places[a], edge.directions[a]);
             let size = edge.length / edge.gamma * g;
             let force = n.map(|c| -size * c);
@@ -358,19 +317,18 @@ impl ContactBoundary {
             [0, 1].map(|c| (1.0 - s) * a[c] + s * b[c])
         };
         for s in [0.0, 0.25, 0.5, 0.75, 1.0] {
-            let depth = value_at::<E, f64, N, M>(openings, s);
+            let depth = value_at(&openings, s);
             if depth > self.penetration {
                 (self.penetration, self.penetration_at) = (depth, place(s));
             }
         }
-        let mut cuts: Vec<f64> =
-            edge_integral::roots::<E, N, M>(p.map(DoubleDouble::head)).chain([0.0, 1.0]).collect();
+        let p: Vec<f64> = p.iter().map(|p| p.head()).collect();
+        let mut cuts = roots(&p);
+        cuts.extend([0.0, 1.0]);
         cuts.sort_unstable_by(f64::total_cmp);
         let [start, end] = [nodes[0], nodes[1]];
         for pair in cuts.windows(2) {
-            let middle =
-                value_at::<E, f64, N, M>(p.map(DoubleDouble::head), (pair[0] + pair[1]) / 2.0);
-            if !(middle > 0.0) {
+            if !(value_at(&p, (pair[0] + pair[1]) / 2.0) > 0.0) {
                 continue;
             }
             let [from, to] = [place(pair[0]), place(pair[1])];
@@ -387,14 +345,12 @@ impl ContactBoundary {
 mod tests {
     use super::*;
     use crate::fem::quadrature;
-    use crate::kernel::{P1, P2};
 
     #[test]
     fn hats_are_not_negative_and_add_up_to_one() {
         for i in 0..=20 {
             let s = f64::from(i) / 20.0;
-            let all = [Hats::Whole.at::<2>(s).to_vec(), Hats::Whole.at::<3>(s).to_vec()];
-            for hats in all.into_iter().chain([Hats::Halves.at::<3>(s).to_vec()]) {
+            for hats in [Hats::Whole.at(s), Hats::Halves.at(s)] {
                 assert!(hats.iter().all(|&h| h >= 0.0));
                 assert!((hats.iter().sum::<f64>() - 1.0).abs() < 1e-15);
             }
@@ -405,15 +361,15 @@ mod tests {
     fn integrals_against_hats_add_up_to_the_integral_of_the_positive_part() {
         for p in [[1.0, -2.0, 0.3], [-1.0, -1.0, 1.0], [2.0, 0.5, 1.0], [-1.0, -2.0, -3.0]] {
             for rule in [EdgeRule::Exact, EdgeRule::Gauss(quadrature::gauss(4))] {
-                let whole: f64 = rule.integrals::<P2, 6, 3>(p).gradient.iter().sum();
+                let whole: f64 = rule.integrals(&p).gradient.iter().sum();
                 for hats in [Hats::Whole, Hats::Halves] {
-                    let parts = hat_integrals::<P2, 6, 3>(p, &rule, hats);
+                    let parts = hat_integrals(&p.map(DoubleDouble::from), &rule, hats);
                     assert!((parts.iter().sum::<f64>() - whole).abs() < 1e-15, "{p:?}");
                     assert!(parts.iter().all(|&part| part >= 0.0));
                 }
                 let p = [p[0], p[1]];
-                let gradient = rule.integrals::<P1, 3, 2>(p).gradient;
-                let parts = hat_integrals::<P1, 3, 2>(p, &rule, Hats::Whole);
+                let gradient = rule.integrals(&p).gradient;
+                let parts = hat_integrals(&p.map(DoubleDouble::from), &rule, Hats::Whole);
                 assert!((parts[0] - gradient[0]).abs() + (parts[1] - gradient[1]).abs() < 1e-15);
             }
         }

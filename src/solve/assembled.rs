@@ -6,6 +6,8 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use nalgebra::{DMatrix, DVector};
+
 use super::SolveError;
 use super::accuracy::{Pass, Route};
 use super::body::{Body, Derivatives, Edges, Residual, Start, Step, block, derivatives};
@@ -20,16 +22,15 @@ use crate::fem::double_double::DoubleDouble;
 use crate::fem::held;
 use crate::fem::matrix::LowerTriangle;
 use crate::fem::rigid::Parts;
-use crate::kernel::edge_integral::ExactEdge;
 
 /// The tangent last factored.
-pub struct Assembled<'a, 'd, 'p, E, const N: usize, const M: usize> {
-    system: &'a System<'d, 'p, E, N, M>,
+pub struct Assembled<'a, 'd, 'p> {
+    system: &'a System<'d, 'p>,
     /// The size that residuals are relative to.
     reference: f64,
     /// The contact edges as they come.
     order: Vec<usize>,
-    factored: Option<Factored<M>>,
+    factored: Option<Factored>,
     /// L of A alone, once it has been made.
     body: Option<Arc<Factor>>,
     factorizations: usize,
@@ -37,12 +38,9 @@ pub struct Assembled<'a, 'd, 'p, E, const N: usize, const M: usize> {
     first: bool,
 }
 
-impl<'a, 'd, 'p, E, const N: usize, const M: usize> Assembled<'a, 'd, 'p, E, N, M>
-where
-    E: ExactEdge<f64, N, M>,
-{
+impl<'a, 'd, 'p> Assembled<'a, 'd, 'p> {
     /// Before anything is factored.
-    pub fn new(system: &'a System<'d, 'p, E, N, M>, reference: f64) -> Self {
+    pub fn new(system: &'a System<'d, 'p>, reference: f64) -> Self {
         let order = (0..system.d.contact.len()).collect();
         Assembled {
             system,
@@ -62,28 +60,25 @@ where
     }
 
     /// Whether the edges that are in contact leave a motion free that contact stops: the tangent is singular then.
-    fn is_loose(&self, at: &Derivatives<M>) -> bool {
+    fn is_loose(&self, at: &Derivatives) -> bool {
         let d = self.system.d;
         let Some(slides) = &d.slides else { return false };
         let springs = at.hessian.iter();
-        let pressing: Vec<bool> =
-            springs.map(|h| h.as_flattened().iter().any(|h| *h != 0.0)).collect();
+        let pressing: Vec<bool> = springs.map(|h| h.iter().any(|h| *h != 0.0)).collect();
         let parts = Parts::new(d.space.mesh());
         held::free_where(d, &parts, &pressing).len() > slides.count()
     }
 
     /// Adds a little of the springs of all edges.
-    fn supported(&self, at: &Derivatives<M>) -> Derivatives<M> {
+    fn supported(&self, at: &Derivatives) -> Derivatives {
         let edges = ContactEdges { d: self.system.d, order: &self.order };
         let all = derivatives(&edges, &vec![1.0; at.gradient.len()]).times(at.stiffness);
-        let sum = |(h, all): (&[[f64; M]; M], &[[f64; M]; M])| {
-            std::array::from_fn(|a| std::array::from_fn(|b| h[a][b] + SUPPORT * all[a][b]))
-        };
-        let hessian = at.hessian.iter().zip(&all.hessian).map(sum).collect();
+        let sum = at.hessian.iter().zip(&all.hessian).map(|(h, all)| h + SUPPORT * all);
+        let hessian = sum.collect();
         Derivatives { stiffness: at.stiffness, gradient: at.gradient.clone(), hessian }
     }
 
-    fn factor(&mut self, at: &Derivatives<M>) -> Result<&Factored<M>, SolveError> {
+    fn factor(&mut self, at: &Derivatives) -> Result<&Factored, SolveError> {
         let (factor, hessian) = match self.factored.take() {
             Some((factor, old)) if old == at.hessian => (factor, old),
             _ => {
@@ -107,7 +102,7 @@ where
                 (factor, hessian)
             }
         };
-        if self.body.is_none() && hessian.iter().flatten().flatten().all(|h| *h == 0.0) {
+        if self.body.is_none() && hessian.iter().flatten().all(|h| *h == 0.0) {
             self.body = Some(Arc::clone(&factor));
         }
         Ok(self.factored.insert((factor, hessian)))
@@ -118,28 +113,22 @@ where
 ///
 /// # Errors
 /// [`SolveError::OutOfMemory`].
-pub(super) fn factor_with<E, const N: usize, const M: usize>(
-    system: &System<E, N, M>,
-    springs: &[[[f64; M]; M]],
-) -> Result<Result<Arc<Factor>, Indefinite>, SolveError>
-where
-    E: ExactEdge<f64, N, M>,
-{
+pub(super) fn factor_with(
+    system: &System,
+    springs: &[DMatrix<f64>],
+) -> Result<Result<Arc<Factor>, Indefinite>, SolveError> {
     let System { d, numbering, structure, matrix, .. } = system;
     let mut tangent = matrix.clone();
     for (edge, h) in d.contact.iter().zip(springs) {
-        tangent.add_contact_springs(d, numbering, edge, h);
+        tangent.add_contact_springs(numbering, edge, h);
     }
     Ok(Factor::with(structure, &tangent)?.map(Arc::new))
 }
 
 /// A factor with the Psi'' of its tangent.
-type Factored<const M: usize> = (Arc<Factor>, Vec<[[f64; M]; M]>);
+type Factored = (Arc<Factor>, Vec<DMatrix<f64>>);
 
-impl<E, const N: usize, const M: usize> Route<E, N, M> for Assembled<'_, '_, '_, E, N, M>
-where
-    E: ExactEdge<f64, N, M>,
-{
+impl Route for Assembled<'_, '_, '_> {
     fn factor_of_a(&self) -> Option<Arc<Factor>> {
         self.body.clone()
     }
@@ -163,8 +152,8 @@ where
 }
 
 /// Newton's unknown u.
-struct Full<'r, 'i, 'a, 'd, 'p, E, const N: usize, const M: usize> {
-    route: &'r mut Assembled<'a, 'd, 'p, E, N, M>,
+struct Full<'r, 'i, 'a, 'd, 'p> {
+    route: &'r mut Assembled<'a, 'd, 'p>,
     iterate: &'i mut Iterate,
     at: &'i mut Evaluation,
     /// The step.
@@ -174,31 +163,27 @@ struct Full<'r, 'i, 'a, 'd, 'p, E, const N: usize, const M: usize> {
     softness: f64,
 }
 
-impl<E, const N: usize, const M: usize> Full<'_, '_, '_, '_, '_, E, N, M>
-where
-    E: ExactEdge<f64, N, M>,
-{
+impl Full<'_, '_, '_, '_, '_> {
     /// The residual of (8).
-    fn gradient(&self, at: &Derivatives<M>) -> Vec<f64> {
+    fn gradient(&self, at: &Derivatives) -> Vec<f64> {
         let mut r = self.at.linear.clone();
         for e in 0..self.route.order.len() {
-            let g: [f64; M] = block(&at.gradient, e);
+            let g = block(&at.gradient, e, self.route.system.nodes());
             self.route.system.functionals(e, |row, a, entry| r[row] += entry * g[a]);
         }
         r
     }
 
     /// How much stiffer contact is than the body, by the power method on A^-1 B^T Psi'' B; A is what was factored last.
-    fn stiffness(&self, at: &Derivatives<M>) -> Result<f64, SolveError> {
+    fn stiffness(&self, at: &Derivatives) -> Result<f64, SolveError> {
         let Some((factor, _)) = &self.route.factored else { return Ok(self.springs()) };
         Ok(newton::largest_eigenvalue(self.route.system.numbering.count, |x| {
             let p = self.values_of_p0(x);
             let mut force = vec![0.0; x.len()];
             for (e, h) in at.hessian.iter().enumerate() {
-                let values: [f64; M] = block(&p, e);
-                self.route.system.functionals(e, |row, a, entry| {
-                    force[row] += entry * (0..M).map(|b| h[a][b] * values[b]).sum::<f64>();
-                });
+                let values = DVector::from_column_slice(block(&p, e, h.nrows()));
+                let forces = h * values;
+                self.route.system.functionals(e, |row, a, entry| force[row] += entry * forces[a]);
             }
             factor.solve(&mut force);
             force
@@ -217,30 +202,31 @@ where
 
     /// B x
     fn values_of_p0(&self, x: &[f64]) -> Vec<f64> {
+        let nodes = self.route.system.nodes();
         let mut values = vec![0.0; self.at.p.len()];
         for e in 0..self.route.order.len() {
-            self.route.system.functionals(e, |row, a, entry| values[e * M + a] += entry * x[row]);
+            self.route
+                .system
+                .functionals(e, |row, a, entry| values[e * nodes + a] += entry * x[row]);
         }
         values
     }
 }
 
-impl<E, const N: usize, const M: usize> Body<M> for Full<'_, '_, '_, '_, '_, E, N, M>
-where
-    E: ExactEdge<f64, N, M>,
-{
+impl Body for Full<'_, '_, '_, '_, '_> {
     fn y(&self) -> Cow<'_, [DoubleDouble]> {
         Cow::Borrowed(&self.at.p)
     }
 
-    fn residual(&self, at: &Derivatives<M>) -> Residual {
+    fn residual(&self, at: &Derivatives) -> Residual {
         let norm = self.gradient(at).iter().map(|r| r * r).sum::<f64>().sqrt();
         // The rounding of P, through the springs of contact.
         let mut contact = vec![0.0; self.route.system.numbering.count];
         for (e, h) in at.hessian.iter().enumerate() {
-            let p: [f64; M] = block(&self.at.p_magnitudes, e);
+            let p = DVector::from_column_slice(block(&self.at.p_magnitudes, e, h.nrows()));
+            let forces = h.abs() * p;
             self.route.system.functionals(e, |row, a, entry| {
-                contact[row] += entry.abs() * (0..M).map(|b| h[a][b].abs() * p[b]).sum::<f64>();
+                contact[row] += entry.abs() * forces[a];
             });
         }
         let contact = contact.iter().map(|c| c * c).sum::<f64>().sqrt();
@@ -250,7 +236,7 @@ where
     }
 
     /// The body without contact, or, where it does not hold without, on springs of all edges, which pull as well as push.
-    fn start(&mut self, edges: &impl Edges<M>) -> Result<Start, SolveError> {
+    fn start(&mut self, edges: &impl Edges) -> Result<Start, SolveError> {
         let mut forces = vec![0.0; self.at.p.len()];
         if let Some(p) = self.route.system.start() {
             let frozen = course::frozen(edges, &p, &self.y());
@@ -275,19 +261,19 @@ where
         let all = derivatives(edges, &vec![1.0; self.at.p.len()]);
         let springs = self.springs();
         let mut pulling = all.times(1.0 / springs);
-        for e in 0..self.route.order.len() {
-            let p: [f64; M] = block(&self.at.p, e).map(DoubleDouble::head);
-            for a in 0..M {
-                pulling.gradient[e * M + a] = (0..M).map(|b| pulling.hessian[e][a][b] * p[b]).sum();
-            }
-        }
+        let p: Vec<f64> = self.at.p.iter().map(|p| p.head()).collect();
+        let gradient = pulling.hessian.iter().enumerate().flat_map(|(e, h)| {
+            let force = h * DVector::from_column_slice(block(&p, e, h.nrows()));
+            force.iter().copied().collect::<Vec<f64>>()
+        });
+        pulling.gradient = gradient.collect();
         let step = self.step(&pulling)?;
         self.advance(1.0, &step);
         follow(&mut forces, &pulling, &step, 1.0);
         Ok(Start { forces, contact: Some(springs) })
     }
 
-    fn step(&mut self, at: &Derivatives<M>) -> Result<Step, SolveError> {
+    fn step(&mut self, at: &Derivatives) -> Result<Step, SolveError> {
         self.route.system.enters_step();
         let gradient = self.gradient(at);
         let mut d: Vec<f64> = gradient.iter().map(|r| -r).collect();
@@ -299,11 +285,8 @@ where
         // d^T A d, where (A + B^T Psi'' B) d = -r with the Psi'' that was factored: nothing is lost where A d cancels.
         let springs: f64 = (hessian.iter().enumerate())
             .map(|(e, h)| {
-                let dy: [f64; M] = block(&dy, e);
-                h.iter()
-                    .zip(dy)
-                    .map(|(row, a)| a * row.iter().zip(dy).map(|(h, b)| h * b).sum::<f64>())
-                    .sum::<f64>()
+                let dy = DVector::from_column_slice(block(&dy, e, h.nrows()));
+                dy.dot(&(h * &dy))
             })
             .sum();
         let curvature = -slope - springs;
@@ -312,22 +295,17 @@ where
     }
 
     /// B D^-1 B^T with the diagonal D of A, which is all that is at hand.
-    fn compliance(&self, e: usize) -> [[f64; M]; M] {
+    fn compliance(&self, e: usize) -> DMatrix<f64> {
         let LowerTriangle { starts, values, .. } = &self.route.system.matrix;
-        let mut rows: BTreeMap<usize, [f64; M]> = BTreeMap::new();
+        let nodes = self.route.system.nodes();
+        let mut rows: BTreeMap<usize, DVector<f64>> = BTreeMap::new();
         self.route.system.functionals(e, |row, a, entry| {
-            rows.entry(row).or_insert([0.0; M])[a] += entry;
+            rows.entry(row).or_insert_with(|| DVector::zeros(nodes))[a] += entry;
         });
-        let mut compliance = [[0.0; M]; M];
-        for (row, entries) in rows {
-            let diagonal = values[starts[row]];
-            for a in 0..M {
-                for b in 0..M {
-                    compliance[a][b] += entries[a] * entries[b] / diagonal;
-                }
-            }
-        }
-        compliance
+        let of = |(row, entries): (usize, DVector<f64>)| {
+            &entries * entries.transpose() / values[starts[row]]
+        };
+        rows.into_iter().map(of).fold(DMatrix::zeros(nodes, nodes), |sum, of| sum + of)
     }
 
     fn advance(&mut self, t: f64, step: &Step) {

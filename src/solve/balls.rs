@@ -4,81 +4,51 @@
 use std::collections::BTreeMap;
 
 use super::system::System;
-use crate::fem::Discretization;
 use crate::fem::ball::{Ball, larger, up};
-use crate::fem::contact_line::ContactLineEdge;
-use crate::fem::precise::{self, EdgeNumbers, OnEdge};
-use crate::kernel::contact_edge::{coercivity_constant, turning_factor};
-use crate::kernel::edge_integral::ExactEdge;
+use crate::fem::precise;
+use crate::fem::{ContactFace, Discretization};
 
-/// The contact edges in balls.
-pub type Lines<'d, const N: usize, const M: usize> = Vec<OnEdge<'d, Ball, N, M>>;
-
-/// Those of a discretization.
-pub fn lines<'d, E, const N: usize, const M: usize>(
-    d: &'d Discretization<E, N, M>,
-) -> Lines<'d, N, M>
-where
-    E: ExactEdge<f64, N, M>,
-{
-    d.contact.iter().map(|edge| OnEdge::new(d, edge, numbers(d, edge))).collect()
-}
-
-/// Length and normal of a contact edge as its vertices have them, and its gamma.
-fn numbers<E, const N: usize, const M: usize>(
-    d: &Discretization<E, N, M>,
-    edge: &ContactLineEdge<N, M>,
-) -> EdgeNumbers<Ball>
-where
-    E: ExactEdge<f64, N, M>,
-{
-    let triangle = precise::exactly::<Ball>(d.space.mesh().triangle(edge.edge.triangle));
-    let normal: [Ball; 2] = triangle.scaled_normal(edge.edge.local).into();
-    let length = dot(normal, normal).sqrt();
-    let normal = normal.map(|c| c / length).into();
-    EdgeNumbers { normal, gamma: Ball::from(edge.gamma), length }
+/// The contact edges in balls: length and normal as the vertices have them.
+pub fn lines(d: &Discretization) -> Vec<ContactFace<Ball>> {
+    let in_balls = |edge: &ContactFace| {
+        let triangle = precise::exactly::<Ball>(d.space.mesh().triangle(edge.edge.triangle));
+        let normal: [Ball; 2] = triangle.scaled_normal(edge.edge.local).into();
+        let length = dot(normal, normal).sqrt();
+        let normal = normal.map(|c| c / length).into();
+        precise::with_numbers(d, edge, (length, normal, Ball::from(edge.gamma)))
+    };
+    d.contact.iter().map(in_balls).collect()
 }
 
 /// kappa of Theorem 2.3, rounded up. The directions of contact are doubles, unit vectors to a rounding error only.
-pub(super) fn kappa<E, const N: usize, const M: usize>(
-    d: &Discretization<E, N, M>,
-    lines: &[OnEdge<Ball, N, M>],
-) -> f64
-where
-    E: ExactEdge<f64, N, M>,
-{
+pub(super) fn kappa(d: &Discretization, lines: &[ContactFace<Ball>]) -> f64 {
+    let degree = d.space.degree();
     let mut lengths: BTreeMap<usize, (Ball, Ball)> = BTreeMap::new();
-    for (edge, line) in d.contact.iter().zip(lines) {
-        let factor = if edge.directions == [edge.normal; M] {
+    for line in lines {
+        let factor = if line.along_normal {
             Ball::from(1)
         } else {
-            let along: [[Ball; 2]; M] = edge.directions.map(|n| n.map(Ball::from).into());
-            let off = along.map(|n| (dot(n, n) - Ball::from(1)).magnitude());
-            let off = Ball::from(8.0 * off.into_iter().fold(0.0, larger));
-            let turning = turning_factor::<E, Ball, N, M>(dot(along[0], along[1]));
+            let along: Vec<[Ball; 2]> =
+                line.directions.iter().map(|n| n.map(Ball::from).into()).collect();
+            let off = along.iter().map(|&n| (dot(n, n) - Ball::from(1)).magnitude());
+            let off = Ball::from(8.0 * off.fold(0.0, larger));
+            let turning = degree.turning_factor(dot(along[0], along[1]));
             turning * (Ball::from(1) + off) + off
         };
-        let entry =
-            lengths.entry(edge.edge.triangle).or_insert((Ball::from(0), line.numbers.gamma));
-        entry.0 += factor * line.numbers.length;
+        let entry = lengths.entry(line.edge.triangle).or_insert((Ball::from(0), line.gamma));
+        entry.0 += factor * line.length;
     }
     let of = |(&t, &(length, gamma)): (&usize, &(Ball, Ball))| {
         let area = precise::exactly::<Ball>(d.space.mesh().triangle(t)).double_area();
         let material = d.problem.material.of(t).map(Ball::from);
         let area = area / Ball::from(2);
-        coercivity_constant::<E, Ball, N, M>(&material, gamma, length, area).upper()
+        degree.coercivity_constant(&material, gamma, length, area).upper()
     };
     lengths.iter().map(of).fold(0.0, larger)
 }
 
 /// The components of a functional at the free unknowns, in the frames of their nodes.
-pub(super) fn free<E, const N: usize, const M: usize>(
-    system: &System<E, N, M>,
-    forces: &[[Ball; 2]],
-) -> Vec<Ball>
-where
-    E: ExactEdge<f64, N, M>,
-{
+pub(super) fn free(system: &System, forces: &[[Ball; 2]]) -> Vec<Ball> {
     let frames = system.d.constraints.frames();
     let mut all = vec![Ball::from(0); system.numbering.count];
     for (node, numbers) in system.numbering.of.iter().enumerate() {
@@ -101,14 +71,11 @@ fn axes(axis: [f64; 2]) -> [[Ball; 2]; 2] {
 }
 
 /// The field with these components, `known` at the free ones and the prescribed ones as `prescribed` has them.
-pub(super) fn field<E, const N: usize, const M: usize>(
-    system: &System<E, N, M>,
+pub(super) fn field(
+    system: &System,
     known: impl Fn(usize, usize, usize) -> Ball,
     prescribed: impl Fn(usize, usize) -> f64,
-) -> Vec<[Ball; 2]>
-where
-    E: ExactEdge<f64, N, M>,
-{
+) -> Vec<[Ball; 2]> {
     let frames = system.d.constraints.frames();
     let at = |(node, numbers): (usize, &[Option<usize>; 2])| {
         let parts = [0, 1].map(|c| match numbers[c] {
@@ -132,15 +99,9 @@ pub(super) fn product(f: &[[Ball; 2]], u: &[[Ball; 2]]) -> Ball {
 }
 
 /// a(v, v)
-pub(super) fn strain_energy<E, const N: usize, const M: usize>(
-    d: &Discretization<E, N, M>,
-    v: &[[Ball; 2]],
-) -> Ball
-where
-    E: ExactEdge<f64, N, M>,
-{
+pub(super) fn strain_energy(d: &Discretization, v: &[[Ball; 2]]) -> Ball {
     let mut forces = vec![[Ball::from(0); 2]; v.len()];
-    precise::add_internal_forces(d, v, &mut forces);
+    precise::add_internal_forces(&d.space, &d.problem.material, v, &mut forces);
     product(v, &forces)
 }
 

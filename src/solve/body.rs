@@ -3,38 +3,42 @@
 
 use std::borrow::Cow;
 
+use nalgebra::DMatrix;
+
 use super::SolveError;
 use crate::fem::double_double::DoubleDouble;
 
 /// The contact edges as Newton's method needs them.
-pub trait Edges<const M: usize> {
+pub trait Edges {
     /// How many there are.
     fn count(&self) -> usize;
+    /// The nodes of each: two or three.
+    fn nodes(&self) -> usize;
     /// The gradient and the Hessian of Psi on edge `e`, where P has the nodal values `p`.
-    fn derivatives(&self, e: usize, p: [DoubleDouble; M]) -> ([f64; M], [[f64; M]; M]);
+    fn derivatives(&self, e: usize, p: &[DoubleDouble]) -> (Vec<f64>, DMatrix<f64>);
     /// The Bregman distance of Psi on edge `e` from `p` to `q`.
-    fn bregman(&self, e: usize, p: [DoubleDouble; M], q: [DoubleDouble; M]) -> f64;
+    fn bregman(&self, e: usize, p: &[DoubleDouble], q: &[DoubleDouble]) -> f64;
 }
 
 /// The body with its loads, at an iterate.
-pub trait Body<const M: usize> {
+pub trait Body {
     /// y, the values of P at the nodes of each edge, in double-doubles: between the nodes P may be far smaller.
     fn y(&self) -> Cow<'_, [DoubleDouble]>;
     /// The residual of (8) at the iterate, relative, where Psi has the derivatives `at`; and how much of it may be noise.
-    fn residual(&self, at: &Derivatives<M>) -> Residual;
+    fn residual(&self, at: &Derivatives) -> Residual;
     /// Goes to the start.
     ///
     /// # Errors
     /// As [`Body::step`].
-    fn start(&mut self, edges: &impl Edges<M>) -> Result<Start, SolveError>;
+    fn start(&mut self, edges: &impl Edges) -> Result<Start, SolveError>;
     /// The Newton step from the iterate.
     ///
     /// # Errors
     /// A tangent that is not positive definite, and lack of memory.
-    fn step(&mut self, at: &Derivatives<M>) -> Result<Step, SolveError>;
+    fn step(&mut self, at: &Derivatives) -> Result<Step, SolveError>;
     /// The effect of forces at the nodes of edge `e` on P there, or the part of it that is known: how fast Newton's method ends
     /// depends on it, not where.
-    fn compliance(&self, e: usize) -> [[f64; M]; M];
+    fn compliance(&self, e: usize) -> DMatrix<f64>;
     /// Moves the iterate by `t` times `step`, the last one.
     fn advance(&mut self, t: f64, step: &Step);
 }
@@ -59,13 +63,13 @@ pub struct Residual {
 }
 
 /// The derivatives of s Psi at y.
-pub struct Derivatives<const M: usize> {
+pub struct Derivatives {
     /// s
     pub stiffness: f64,
     /// Nodal values of the gradient.
     pub gradient: Vec<f64>,
     /// The Hessian, edge by edge.
-    pub hessian: Vec<[[f64; M]; M]>,
+    pub hessian: Vec<DMatrix<f64>>,
 }
 
 /// A step d.
@@ -79,32 +83,30 @@ pub struct Step {
 }
 
 /// The derivatives of Psi at `y`.
-pub fn derivatives<const M: usize>(
-    edges: &impl Edges<M>,
-    y: &[impl Copy + Into<DoubleDouble>],
-) -> Derivatives<M> {
+pub fn derivatives(edges: &impl Edges, y: &[impl Copy + Into<DoubleDouble>]) -> Derivatives {
     let mut gradient = Vec::with_capacity(y.len());
     let mut hessian = Vec::with_capacity(edges.count());
     for e in 0..edges.count() {
-        let (g, h) = edges.derivatives(e, std::array::from_fn(|a| y[e * M + a].into()));
+        let p: Vec<DoubleDouble> = block(y, e, edges.nodes()).iter().map(|&p| p.into()).collect();
+        let (g, h) = edges.derivatives(e, &p);
         gradient.extend(g);
         hessian.push(h);
     }
     Derivatives { stiffness: 1.0, gradient, hessian }
 }
 
-impl<const M: usize> Derivatives<M> {
+impl Derivatives {
     /// The derivatives of s times the function.
     pub fn times(&self, s: f64) -> Self {
         Derivatives {
             stiffness: s * self.stiffness,
             gradient: self.gradient.iter().map(|g| s * g).collect(),
-            hessian: self.hessian.iter().map(|h| h.map(|row| row.map(|v| s * v))).collect(),
+            hessian: self.hessian.iter().map(|h| s * h).collect(),
         }
     }
 }
 
-/// The values of edge `e`.
-pub fn block<T: Copy, const M: usize>(v: &[T], e: usize) -> [T; M] {
-    std::array::from_fn(|a| v[e * M + a])
+/// The `nodes` values of edge `e`.
+pub fn block<T>(v: &[T], e: usize, nodes: usize) -> &[T] {
+    &v[e * nodes..][..nodes]
 }

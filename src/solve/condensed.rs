@@ -18,6 +18,7 @@ use std::collections::BTreeMap;
 
 use faer::linalg::solvers::Solve;
 use faer::{Col, Mat, Side};
+use nalgebra::{DMatrix, DVector};
 
 use super::SolveError;
 use super::accuracy::{Pass, Route};
@@ -31,11 +32,10 @@ use super::newton::{self, Until};
 use super::relaxation::follow;
 use super::system::System;
 use crate::fem::double_double::DoubleDouble;
-use crate::kernel::edge_integral::ExactEdge;
 
 /// The body, factored, and the forces of contact on it.
-pub struct Condensed<'a, 'd, 'p, E, const N: usize, const M: usize> {
-    system: &'a System<'d, 'p, E, N, M>,
+pub struct Condensed<'a, 'd, 'p> {
+    system: &'a System<'d, 'p>,
     factor: &'a Factor,
     reach: &'a Reach,
     compliance: Compliance<'a>,
@@ -49,20 +49,18 @@ pub struct Condensed<'a, 'd, 'p, E, const N: usize, const M: usize> {
     first: bool,
 }
 
-impl<'a, 'd, 'p, E, const N: usize, const M: usize> Condensed<'a, 'd, 'p, E, N, M>
-where
-    E: ExactEdge<f64, N, M>,
-{
+impl<'a, 'd, 'p> Condensed<'a, 'd, 'p> {
     /// With the factor of A and without contact yet.
     pub fn new(
-        system: &'a System<'d, 'p, E, N, M>,
+        system: &'a System<'d, 'p>,
         factor: &'a Factor,
         reach: &'a Reach,
         reference: f64,
     ) -> Self {
+        let nodes = system.nodes();
         let compliance = Compliance::new(factor, reach, |add| {
             for (position, &e) in reach.order.iter().enumerate() {
-                system.functionals(e, |row, a, entry| add(row, position * M + a, entry));
+                system.functionals(e, |row, a, entry| add(row, position * nodes + a, entry));
             }
         });
         let mut place: BTreeMap<usize, usize> = BTreeMap::new();
@@ -71,7 +69,7 @@ where
             system.functionals(e, |row, a, entry| {
                 let next = place.len();
                 let row = *place.entry(row).or_insert(next);
-                forces.push((position * M + a, row, entry));
+                forces.push((position * nodes + a, row, entry));
             });
         }
         let w = vec![0.0; reach.functionals()];
@@ -81,16 +79,14 @@ where
 
     /// r <- r + B^T w
     fn add_contact_forces(&self, w: &[f64], r: &mut [f64]) {
+        let nodes = self.system.nodes();
         for (position, &e) in self.reach.order.iter().enumerate() {
-            self.system.functionals(e, |row, a, entry| r[row] += entry * w[position * M + a]);
+            self.system.functionals(e, |row, a, entry| r[row] += entry * w[position * nodes + a]);
         }
     }
 }
 
-impl<E, const N: usize, const M: usize> Route<E, N, M> for Condensed<'_, '_, '_, E, N, M>
-where
-    E: ExactEdge<f64, N, M>,
-{
+impl Route for Condensed<'_, '_, '_> {
     fn pass(
         &mut self,
         iterate: &mut Iterate,
@@ -104,7 +100,7 @@ where
         self.factor.forward(&mut v);
         let mut y: Vec<DoubleDouble> = Vec::with_capacity(at.p.len());
         for &e in &self.reach.order {
-            y.extend(block::<_, M>(&at.p, e));
+            y.extend(block(&at.p, e, self.system.nodes()));
         }
         for (y, change) in y.iter_mut().zip(self.compliance.transpose_times(&v)) {
             *y += change.into();
@@ -133,8 +129,8 @@ where
 
 /// Newton's unknown, the change of w in this pass, with the values of P that belong to it. The change has digits of its own:
 /// where contact is stiff, those of w are too few for it.
-struct Reduced<'r, 'a, 'd, 'p, E, const N: usize, const M: usize> {
-    route: &'r Condensed<'a, 'd, 'p, E, N, M>,
+struct Reduced<'r, 'a, 'd, 'p> {
+    route: &'r Condensed<'a, 'd, 'p>,
     y: Vec<DoubleDouble>,
     /// The magnitudes that y was computed from.
     start: Vec<f64>,
@@ -145,10 +141,7 @@ struct Reduced<'r, 'a, 'd, 'p, E, const N: usize, const M: usize> {
 /// A residual this many unit roundoffs times its magnitudes is noise.
 const NOISE: f64 = 4.0;
 
-impl<E, const N: usize, const M: usize> Reduced<'_, '_, '_, '_, E, N, M>
-where
-    E: ExactEdge<f64, N, M>,
-{
+impl Reduced<'_, '_, '_, '_> {
     fn times_compliance(&self, v: &[f64]) -> Vec<f64> {
         let product = &self.route.compliance.g * Col::from_fn(v.len(), |i| v[i]);
         product.iter().copied().collect()
@@ -164,37 +157,32 @@ where
     }
 
     /// The columns of R with their edges.
-    fn roots(at: &Derivatives<M>) -> Vec<(usize, [f64; M])> {
-        let of =
-            |(e, h): (usize, &[[f64; M]; M])| root(*h).into_iter().map(move |column| (e, column));
+    fn roots(at: &Derivatives) -> Vec<(usize, DVector<f64>)> {
+        let of = |(e, h): (usize, &DMatrix<f64>)| {
+            root(h.clone()).into_iter().map(move |column| (e, column))
+        };
         at.hessian.iter().enumerate().flat_map(of).collect()
     }
 
-    fn s(&self, at: &Derivatives<M>) -> Vec<f64> {
+    fn s(&self, at: &Derivatives) -> Vec<f64> {
         let w = self.route.w.iter().zip(&self.change);
         w.zip(&at.gradient).map(|((w, change), g)| (w - g) + change).collect()
     }
 }
 
-impl<E, const N: usize, const M: usize> Body<M> for Reduced<'_, '_, '_, '_, E, N, M>
-where
-    E: ExactEdge<f64, N, M>,
-{
+impl Body for Reduced<'_, '_, '_, '_> {
     fn y(&self) -> Cow<'_, [DoubleDouble]> {
         Cow::Borrowed(&self.y)
     }
 
-    fn residual(&self, at: &Derivatives<M>) -> Residual {
+    fn residual(&self, at: &Derivatives) -> Residual {
         let mut magnitudes = Vec::with_capacity(self.y.len());
         for (e, hessian) in at.hessian.iter().enumerate() {
-            for a in 0..M {
-                let i = e * M + a;
-                let spread: f64 = (0..M)
-                    .map(|b| {
-                        hessian[a][b].abs()
-                            * (self.y[e * M + b].head().abs() + self.start[e * M + b])
-                    })
-                    .sum();
+            let nodes = hessian.nrows();
+            let size = |b: usize| self.y[e * nodes + b].head().abs() + self.start[e * nodes + b];
+            for a in 0..nodes {
+                let i = e * nodes + a;
+                let spread: f64 = (0..nodes).map(|b| hessian[(a, b)].abs() * size(b)).sum();
                 magnitudes.push(self.route.w[i].abs() + at.gradient[i].abs() + spread);
             }
         }
@@ -205,18 +193,18 @@ where
     }
 
     /// The body without contact is where it is already; the stiffness is by the power method on R^T G R.
-    fn start(&mut self, edges: &impl Edges<M>) -> Result<Start, SolveError> {
+    fn start(&mut self, edges: &impl Edges) -> Result<Start, SolveError> {
         let at = derivatives(edges, &self.y);
         let roots = Self::roots(&at);
         let stiffness = newton::largest_eigenvalue(roots.len(), |x| {
             let mut rx = vec![0.0; self.y.len()];
             for ((e, column), x) in roots.iter().zip(x) {
-                for a in 0..M {
-                    rx[e * M + a] += column[a] * x;
+                for (a, entry) in column.iter().enumerate() {
+                    rx[e * column.len() + a] += entry * x;
                 }
             }
             let grx = self.times_compliance(&rx);
-            roots.iter().map(|(e, column)| dot(*column, block(&grx, *e))).collect()
+            roots.iter().map(|(e, column)| on_edge(column, &grx, *e)).collect()
         });
         // The body bends so far without contact that what contact leaves of it cannot be seen.
         if !(stiffness <= STIFFEST) {
@@ -226,8 +214,8 @@ where
         let Some(p) = self.route.system.start() else {
             return Ok(Start { forces, contact: Some(stiffness) });
         };
-        let p: Vec<f64> =
-            self.route.reach.order.iter().flat_map(|&e| block::<_, M>(&p, e)).collect();
+        let (order, nodes) = (&self.route.reach.order, edges.nodes());
+        let p: Vec<f64> = order.iter().flat_map(|&e| block(&p, e, nodes)).copied().collect();
         let frozen = course::frozen(edges, &p, &self.y);
         let step = self.step(&frozen)?;
         self.advance(1.0, &step);
@@ -235,7 +223,7 @@ where
         Ok(Start { forces, contact: None })
     }
 
-    fn step(&mut self, at: &Derivatives<M>) -> Result<Step, SolveError> {
+    fn step(&mut self, at: &Derivatives) -> Result<Step, SolveError> {
         self.route.system.enters_step();
         let columns = Self::roots(at);
         let s = self.s(at);
@@ -245,22 +233,22 @@ where
             if i < j {
                 return 0.0;
             }
-            let ((e, r), (f, q)) = (columns[i], columns[j]);
+            let ((e, r), (f, q)) = (&columns[i], &columns[j]);
             let mut sum = f64::from(u8::from(i == j));
-            for a in 0..M {
-                for b in 0..M {
-                    sum += r[a] * g[(e * M + a, f * M + b)] * q[b];
+            for a in 0..r.len() {
+                for b in 0..q.len() {
+                    sum += r[a] * g[(e * r.len() + a, f * q.len() + b)] * q[b];
                 }
             }
             sum
         });
-        let right = Col::from_fn(columns.len(), |i| dot(columns[i].1, block(&gs, columns[i].0)));
+        let right = Col::from_fn(columns.len(), |i| on_edge(&columns[i].1, &gs, columns[i].0));
         let llt = system.llt(Side::Lower).map_err(|_| SolveError::Singular)?;
         let t = llt.solve(right);
         let mut dw: Vec<f64> = s.iter().map(|s| -s).collect();
         for (i, (e, column)) in columns.iter().enumerate() {
-            for a in 0..M {
-                dw[e * M + a] += column[a] * t[i];
+            for (a, entry) in column.iter().enumerate() {
+                dw[e * column.len() + a] += entry * t[i];
             }
         }
         let dy: Vec<f64> = self.times_compliance(&dw).into_iter().map(|v| -v).collect();
@@ -270,10 +258,9 @@ where
         Ok(Step { dy, slope, curvature })
     }
 
-    fn compliance(&self, e: usize) -> [[f64; M]; M] {
-        let g = &self.route.compliance.g;
-        let entry = |a: usize, b: usize| g[(e * M + a.max(b), e * M + a.min(b))];
-        std::array::from_fn(|a| std::array::from_fn(|b| entry(a, b)))
+    fn compliance(&self, e: usize) -> DMatrix<f64> {
+        let (g, nodes) = (&self.route.compliance.g, self.route.system.nodes());
+        DMatrix::from_fn(nodes, nodes, |a, b| g[(e * nodes + a.max(b), e * nodes + a.min(b))])
     }
 
     fn advance(&mut self, t: f64, step: &Step) {
@@ -286,8 +273,9 @@ where
     }
 }
 
-fn dot<const M: usize>(a: [f64; M], b: [f64; M]) -> f64 {
-    (0..M).map(|i| a[i] * b[i]).sum()
+/// The product of a column with the values of edge `e`.
+fn on_edge(column: &DVector<f64>, values: &[f64], e: usize) -> f64 {
+    column.iter().zip(block(values, e, column.len())).map(|(a, b)| a * b).sum()
 }
 
 /// Where contact is this many times stiffer than the body, the body is held by contact, and the tangent must know it.
@@ -297,23 +285,16 @@ const STIFFEST: f64 = 1e11;
 const SINGULAR: f64 = 1e-14;
 
 /// The columns of R with H = R R^T for a positive semidefinite H, by Cholesky; those of zero pivots are left out.
-fn root<const M: usize>(mut h: [[f64; M]; M]) -> Vec<[f64; M]> {
-    let diagonal: [f64; M] = std::array::from_fn(|a| h[a][a]);
-    let mut columns = Vec::with_capacity(M);
-    for k in 0..M {
-        if h[k][k] <= SINGULAR * diagonal[k] {
+fn root(mut h: DMatrix<f64>) -> Vec<DVector<f64>> {
+    let (count, diagonal) = (h.nrows(), h.diagonal());
+    let mut columns = Vec::with_capacity(count);
+    for k in 0..count {
+        if h[(k, k)] <= SINGULAR * diagonal[k] {
             continue;
         }
-        let pivot = h[k][k].sqrt();
-        let mut column = [0.0; M];
-        for i in k..M {
-            column[i] = h[i][k] / pivot;
-        }
-        for i in k..M {
-            for j in k..M {
-                h[i][j] -= column[i] * column[j];
-            }
-        }
+        let pivot = h[(k, k)].sqrt();
+        let column = DVector::from_fn(count, |i, _| if i < k { 0.0 } else { h[(i, k)] / pivot });
+        h -= &column * column.transpose();
         columns.push(column);
     }
     columns

@@ -1,21 +1,22 @@
 //! Psi of a discretization, edge by edge in a given order, without the edges that press in no solution.
 
+use nalgebra::DMatrix;
+
 use super::body::Edges;
-use crate::fem::contact_line::ContactLineEdge;
+use crate::fem::ContactFace;
 use crate::fem::discretization::Discretization;
 use crate::fem::double_double::DoubleDouble;
-use crate::kernel::edge_integral::ExactEdge;
 
 /// The contact edges of `d` in `order`.
-pub struct ContactEdges<'a, 'p, E, const N: usize, const M: usize> {
+pub struct ContactEdges<'a, 'p> {
     /// The discretization that they belong to.
-    pub d: &'a Discretization<'p, E, N, M>,
+    pub d: &'a Discretization<'p>,
     /// Their numbers in its list.
     pub order: &'a [usize],
 }
 
-impl<E, const N: usize, const M: usize> ContactEdges<'_, '_, E, N, M> {
-    fn edge(&self, e: usize) -> &ContactLineEdge<N, M> {
+impl ContactEdges<'_, '_> {
+    fn edge(&self, e: usize) -> &ContactFace {
         &self.d.contact[self.order[e]]
     }
 
@@ -25,30 +26,28 @@ impl<E, const N: usize, const M: usize> ContactEdges<'_, '_, E, N, M> {
     }
 }
 
-impl<E, const N: usize, const M: usize> Edges<M> for ContactEdges<'_, '_, E, N, M>
-where
-    E: ExactEdge<f64, N, M>,
-{
+impl Edges for ContactEdges<'_, '_> {
     fn count(&self) -> usize {
         self.order.len()
     }
 
-    fn derivatives(&self, e: usize, p: [DoubleDouble; M]) -> ([f64; M], [[f64; M]; M]) {
-        if self.d.is_idle(self.order[e]) {
-            return ([0.0; M], [[0.0; M]; M]);
-        }
-        let integrals = self.d.rule.integrals::<E, N, M>(p);
-        let weight = self.weight(e);
-        (
-            integrals.gradient.map(|g| weight * g),
-            integrals.hessian.map(|row| row.map(|h| weight * h)),
-        )
+    fn nodes(&self) -> usize {
+        self.d.space.degree().nodes_per_edge()
     }
 
-    fn bregman(&self, e: usize, p: [DoubleDouble; M], q: [DoubleDouble; M]) -> f64 {
+    fn derivatives(&self, e: usize, p: &[DoubleDouble]) -> (Vec<f64>, DMatrix<f64>) {
+        if self.d.is_idle(self.order[e]) {
+            return (vec![0.0; p.len()], DMatrix::zeros(p.len(), p.len()));
+        }
+        let integrals = self.d.rule.integrals(p);
+        let weight = self.weight(e);
+        (integrals.gradient.iter().map(|g| weight * g).collect(), weight * integrals.hessian)
+    }
+
+    fn bregman(&self, e: usize, p: &[DoubleDouble], q: &[DoubleDouble]) -> f64 {
         if self.d.is_idle(self.order[e]) {
             return 0.0;
         }
-        self.weight(e) * self.d.rule.bregman::<E, N, M>(p, q)
+        self.weight(e) * self.d.rule.bregman(p, q)
     }
 }

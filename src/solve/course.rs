@@ -10,10 +10,11 @@
 //! which is the solution where contact stays as it was, for Psi'(y) = Psi''(y) y. Any start leads to the same solution: (8)
 //! has one, and the verdict on it is as strict.
 
+use nalgebra::DVector;
+
 use super::body::{Derivatives, Edges, block, derivatives};
 use crate::fem::discretization::Discretization;
 use crate::fem::double_double::DoubleDouble;
-use crate::kernel::edge_integral::ExactEdge;
 
 /// A phase of a solve, as it begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,37 +87,25 @@ impl<'a> Course<'a> {
     }
 
     /// P of the start at the nodes of the contact edges.
-    pub(super) fn p<E, const N: usize, const M: usize>(
-        &self,
-        d: &Discretization<E, N, M>,
-    ) -> Option<Vec<f64>>
-    where
-        E: ExactEdge<f64, N, M>,
-    {
+    pub(super) fn p(&self, d: &Discretization) -> Option<Vec<f64>> {
         let Start { displacement: u, nodes } = self.start?;
         let same = match nodes {
             Some((elements, places)) => {
-                elements == d.space.elements().as_flattened() && places == d.space.nodes()
+                elements == d.space.connectivity() && places == d.space.nodes()
             }
             None => u.len() == d.space.nodes().len(),
         };
-        let p = |edge: &crate::fem::contact_line::ContactLineEdge<N, M>| {
-            edge.p(&d.space.on_triangle(edge.edge.triangle, u))
-        };
-        same.then(|| d.contact.iter().flat_map(p).collect())
+        same.then(|| d.contact.iter().flat_map(|edge| edge.p(u)).collect())
     }
 }
 
 /// The derivatives of Psi at y with the contact of the values `p` of P.
-pub(super) fn frozen<const M: usize>(
-    edges: &impl Edges<M>,
-    p: &[f64],
-    y: &[DoubleDouble],
-) -> Derivatives<M> {
+pub(super) fn frozen(edges: &impl Edges, p: &[f64], y: &[DoubleDouble]) -> Derivatives {
     let Derivatives { hessian, stiffness, .. } = derivatives(edges, p);
     let gradient = hessian.iter().enumerate().flat_map(|(e, h)| {
-        let y: [f64; M] = block(y, e).map(DoubleDouble::head);
-        h.map(|row| (0..M).map(|b| row[b] * y[b]).sum::<f64>())
+        let y = DVector::from_iterator(h.nrows(), block(y, e, h.nrows()).iter().map(|y| y.head()));
+        let force: Vec<f64> = (h * y).iter().copied().collect();
+        force
     });
     Derivatives { stiffness, gradient: gradient.collect(), hessian }
 }

@@ -15,23 +15,23 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use nalgebra::DMatrix;
 use thiserror::Error;
 
 use super::assembled::factor_with;
-use super::balls::{Lines, field, free, kappa, length, lines, root};
+use super::balls::{field, free, kappa, length, lines, root};
 use super::factor::{Factor, Indefinite};
 use super::intervals::{Evaluation, Intervals, Stresses};
 use super::pressed::{self, Pressed};
 use super::system::System;
 use super::times::Stopwatch;
-use crate::fem::Discretization;
 use crate::fem::ball::{Ball, up};
 use crate::fem::double_double::DoubleDouble;
 use crate::fem::held::Slides;
 use crate::fem::korn::Korn;
 use crate::fem::precise;
+use crate::fem::{ContactFace, Discretization};
 use crate::kernel;
-use crate::kernel::edge_integral::ExactEdge;
 
 /// Where u^h is, and what is known of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -101,51 +101,45 @@ const CORRECTIONS: usize = 12;
 ///
 /// # Errors
 /// Why nothing can be proved.
-pub fn enclose<E, const N: usize, const M: usize>(
-    system: &System<E, N, M>,
+pub fn enclose(
+    system: &System,
     u: &[[f64; 2]],
     near: Option<&[[DoubleDouble; 2]]>,
     of_a: Option<Arc<Factor>>,
-) -> Result<Enclosure, Unproved>
-where
-    E: ExactEdge<f64, N, M>,
-{
+) -> Result<Enclosure, Unproved> {
     Verifier::new(system, of_a).enclose(u, near, Stresses::InBalls)
 }
 
 /// Encloses the solution of (8) around one displacement after the other: what does not depend on them is done once.
-pub struct Verifier<'s, 'd, 'p, E, const N: usize, const M: usize> {
-    system: &'s System<'d, 'p, E, N, M>,
+pub struct Verifier<'s, 'd, 'p> {
+    system: &'s System<'d, 'p>,
     load: &'s [[Ball; 2]],
-    lines: Lines<'d, N, M>,
+    lines: Vec<ContactFace<Ball>>,
     kappa: f64,
     /// L of A, if it is at hand.
     of_a: Option<Arc<Factor>>,
     /// For what is pressed: the bounds at the nodes, and the factor, once it is needed.
-    held: Option<Held<M>>,
+    held: Option<Held>,
     unbalanced: f64,
     time: Duration,
 }
 
 /// The data of pressed edges with these springs.
-struct Held<const M: usize> {
-    springs: Vec<[[f64; M]; M]>,
+struct Held {
+    springs: Vec<DMatrix<f64>>,
     korn: Option<Korn>,
     factor: Option<Arc<Factor>>,
 }
 
-impl<'s, 'd, 'p, E, const N: usize, const M: usize> Verifier<'s, 'd, 'p, E, N, M>
-where
-    E: ExactEdge<f64, N, M>,
-{
+impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
     /// The verifier of a system, with its own loads.
-    pub fn new(system: &'s System<'d, 'p, E, N, M>, of_a: Option<Arc<Factor>>) -> Self {
+    pub fn new(system: &'s System<'d, 'p>, of_a: Option<Arc<Factor>>) -> Self {
         Verifier::with_load(system, of_a, &system.d.enclosed_load)
     }
 
     /// The verifier of a system with a given load: L(v) for every basis function.
     pub fn with_load(
-        system: &'s System<'d, 'p, E, N, M>,
+        system: &'s System<'d, 'p>,
         of_a: Option<Arc<Factor>>,
         load: &'s [[Ball; 2]],
     ) -> Self {
@@ -319,13 +313,7 @@ impl Enclosure {
 }
 
 /// L of A with these springs at the contact edges.
-fn factor_for<E, const N: usize, const M: usize>(
-    system: &System<E, N, M>,
-    springs: &[[[f64; M]; M]],
-) -> Result<Arc<Factor>, Unproved>
-where
-    E: ExactEdge<f64, N, M>,
-{
+fn factor_for(system: &System, springs: &[DMatrix<f64>]) -> Result<Arc<Factor>, Unproved> {
     match factor_with(system, springs) {
         Ok(factor) => factor.map_err(|Indefinite| Unproved::NoFactor),
         Err(_) => Err(Unproved::OutOfMemory),
@@ -347,39 +335,33 @@ fn slid(mut u: Vec<[Ball; 2]>, reported: &[[f64; 2]], slides: Option<&Slides>) -
 
 /// Whether the edges that are not pressed and could end a motion that slides have P <= 0 for all fields that differ from u by as
 /// much as `nodes` say, and by `radius` in the norm of A_S: then the motion changes nothing.
-fn stays_off<E, const N: usize, const M: usize>(
-    d: &Discretization<E, N, M>,
-    lines: &Lines<N, M>,
-    pressed: &Pressed<M>,
+fn stays_off(
+    d: &Discretization,
+    lines: &[ContactFace<Ball>],
+    pressed: &Pressed,
     u: &[[Ball; 2]],
     (nodes, radius): (&[f64], f64),
-) -> bool
-where
-    E: ExactEdge<f64, N, M>,
-{
+) -> bool {
     if d.slides.as_ref().is_none_or(|slides| !slides.are_bounded()) {
         return true;
     }
-    let edges = d.contact.iter().zip(lines).zip(pressed.whole(&d.rule));
-    edges.filter(|(_, pressed)| !pressed).all(|((edge, line), _)| {
-        let far =
-            d.space.edge_nodes(edge.edge).map(|node| nodes[node]).into_iter().fold(0.0, f64::max);
-        pressed::greatest(line.p(edge, u)) + pressed::change(line, far, radius) <= 0.0
+    let edges = lines.iter().zip(pressed.whole(&d.rule));
+    edges.filter(|(_, pressed)| !pressed).all(|(line, _)| {
+        let on_edge = d.space.edge_nodes(line.edge);
+        let far = on_edge.into_iter().map(|node| nodes[node]).fold(0.0, f64::max);
+        pressed::greatest(&line.p(u)) + pressed::change(line, far, radius) <= 0.0
     })
 }
 
 /// A, with the springs where it is `pressed`.
-struct Product<'a, 'd, 'p, E, const N: usize, const M: usize> {
-    system: &'a System<'d, 'p, E, N, M>,
-    lines: &'a Lines<'d, N, M>,
-    pressed: &'a Pressed<M>,
+struct Product<'a, 'd, 'p> {
+    system: &'a System<'d, 'p>,
+    lines: &'a [ContactFace<Ball>],
+    pressed: &'a Pressed,
     stresses: Stresses,
 }
 
-impl<E, const N: usize, const M: usize> Product<'_, '_, '_, E, N, M>
-where
-    E: ExactEdge<f64, N, M>,
-{
+impl Product<'_, '_, '_> {
     /// A(v, .) at the free unknowns for the field v with the components `z`, off by a functional r with |r(w)| <= b |w|_a for
     /// the b that comes with it.
     fn times(&self, z: &[Ball]) -> (Vec<Ball>, f64) {
@@ -407,14 +389,7 @@ where
 }
 
 /// |t|_A* <= sum of these times |t_i|: k_i (1 - kappa)^{-1/2} with the factor k_i of the node of unknown i.
-fn crude_norms<E, const N: usize, const M: usize>(
-    system: &System<E, N, M>,
-    korn: &Korn,
-    coercivity: f64,
-) -> Vec<f64>
-where
-    E: ExactEdge<f64, N, M>,
-{
+fn crude_norms(system: &System, korn: &Korn, coercivity: f64) -> Vec<f64> {
     let mut crude = vec![0.0; system.numbering.count];
     for (numbers, factor) in system.numbering.of.iter().zip(&korn.nodes) {
         for number in numbers.iter().flatten() {
@@ -426,17 +401,14 @@ where
 
 /// |r|_A* at most, where |t|_A* <= sum of `crude`_i |t_i| for every t, and |v|_a^2 <= |v|_A^2 / `coercivity`. What is
 /// `negligible` need not be known better.
-fn dual_norm<E, const N: usize, const M: usize>(
-    a: &Product<E, N, M>,
+fn dual_norm(
+    a: &Product,
     factor: &Factor,
     r: &[Ball],
     crude: &[f64],
     coercivity: f64,
     negligible: f64,
-) -> f64
-where
-    E: ExactEdge<f64, N, M>,
-{
+) -> f64 {
     let mut z = vec![Ball::from(0); r.len()];
     let mut left = r.to_vec();
     let mut best = f64::INFINITY;

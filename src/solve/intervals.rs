@@ -8,12 +8,11 @@ use serde::{Deserialize, Serialize};
 
 use super::balls::{field, length, product, root, strain_energy};
 use super::system::System;
-use crate::fem::Discretization;
 use crate::fem::ball::{Ball, up};
 use crate::fem::double_double::DoubleDouble;
 use crate::fem::moments::moments;
-use crate::fem::precise::{self, OnEdge};
-use crate::kernel::edge_integral::ExactEdge;
+use crate::fem::precise;
+use crate::fem::{ContactFace, Discretization};
 
 /// An interval `[low, high]`.
 pub type Range = [f64; 2];
@@ -67,33 +66,23 @@ pub enum Stresses {
 
 impl Stresses {
     /// Adds a(u, v) for every basis function v, off by a functional r with |r(v)| <= b |v|_a for the b that is returned.
-    pub(super) fn add_forces<E, const N: usize, const M: usize>(
+    pub(super) fn add_forces(
         self,
-        d: &Discretization<E, N, M>,
+        d: &Discretization,
         u: &[[Ball; 2]],
         forces: &mut [[Ball; 2]],
-    ) -> f64
-    where
-        E: ExactEdge<f64, N, M>,
-    {
+    ) -> f64 {
         match self {
             Stresses::InDoubles => precise::add_forces_of_rounded_stresses(d, u, forces),
             Stresses::InBalls => {
-                precise::add_internal_forces(d, u, forces);
+                precise::add_internal_forces(&d.space, &d.problem.material, u, forces);
                 0.0
             }
         }
     }
 
     /// |v|_a at most.
-    fn energy_norm<E, const N: usize, const M: usize>(
-        self,
-        d: &Discretization<E, N, M>,
-        v: &[[Ball; 2]],
-    ) -> f64
-    where
-        E: ExactEdge<f64, N, M>,
-    {
+    fn energy_norm(self, d: &Discretization, v: &[[Ball; 2]]) -> f64 {
         match self {
             Stresses::InDoubles => precise::energy_norm_at_most(d, v),
             Stresses::InBalls => root(strain_energy(d, v)),
@@ -120,16 +109,13 @@ pub(super) struct Evaluation {
 
 impl Evaluation {
     /// None if it over- or underflows double precision.
-    pub fn new<E, const N: usize, const M: usize>(
-        system: &System<E, N, M>,
-        lines: &[OnEdge<Ball, N, M>],
+    pub fn new(
+        system: &System,
+        lines: &[ContactFace<Ball>],
         (u, reported): (&[[f64; 2]], &[[f64; 2]]),
         near: Option<&[[DoubleDouble; 2]]>,
         (load, stresses): (&[[Ball; 2]], Stresses),
-    ) -> Option<Self>
-    where
-        E: ExactEdge<f64, N, M>,
-    {
+    ) -> Option<Self> {
         let d = system.d;
         let frames = d.constraints.frames();
         let at = |node: usize| match near {
@@ -156,13 +142,13 @@ impl Evaluation {
         let energy = product(&exact, &residual);
         let energy = energy.widened(up(off * (off + root(energy))));
         let mut pressures = Vec::with_capacity(lines.len());
-        for (edge, line) in d.contact.iter().zip(lines) {
+        for line in lines {
             line.add_stresses(&exact, &mut residual);
-            let weight = line.numbers.length / line.numbers.gamma;
-            let moments = moments::<E, N, M>(&d.rule, line.p(edge, &exact));
-            let pressure = moments.map(|moment| weight * moment);
+            let weight = line.length / line.gamma;
+            let moments = moments(&d.rule, &line.p(&exact)).into_iter();
+            let pressure: Vec<Ball> = moments.map(|moment| weight * moment).collect();
             line.add_contact(&pressure, &mut residual);
-            pressures.push(pressure.to_vec());
+            pressures.push(pressure);
         }
         for (r, &l) in residual.iter_mut().zip(load) {
             *r = [r[0] - l[0], r[1] - l[1]];
@@ -178,17 +164,14 @@ impl Evaluation {
     /// Encloses the reported quantities, with |u~ - u^h|_A <= `rho`, |u~ - u^h|_a <= `radius`, the norm of gamma^{1/2}
     /// (lambda~ - lambda^h) at most
     /// `pressure`, and displacements at the nodes with their bounds.
-    pub fn intervals<E, const N: usize, const M: usize>(
+    pub fn intervals(
         &self,
-        d: &Discretization<E, N, M>,
-        lines: &[OnEdge<Ball, N, M>],
+        d: &Discretization,
+        lines: &[ContactFace<Ball>],
         (u, nodes): (&[[Ball; 2]], &[f64]),
         [rho, pressure]: [f64; 2],
         radius: f64,
-    ) -> Intervals
-    where
-        E: ExactEdge<f64, N, M>,
-    {
+    ) -> Intervals {
         // |u^h|_a is within the radius of |u~|_a.
         let low = self.energy.lower().max(0.0).sqrt() * (1.0 - 2.0 * f64::EPSILON);
         let low = ((low - radius) * (1.0 - 2.0 * f64::EPSILON)).max(0.0);
@@ -205,24 +188,19 @@ impl Evaluation {
         }
 
         let mut contact: Vec<(Arc<str>, [Ball; 3], Ball)> = Vec::new();
-        for ((edge, line), pressure) in d.contact.iter().zip(lines).zip(&self.pressures) {
-            let along: [[Ball; 2]; M] = if edge.directions == [edge.normal; M] {
-                [line.numbers.normal.into(); M]
-            } else {
-                edge.directions.map(|n| n.map(Ball::from).into())
-            };
+        for (line, pressure) in lines.iter().zip(&self.pressures) {
             let zero = Ball::from(0);
-            let of: [Ball; 3] = pressure
-                .iter()
-                .zip(along)
-                .fold([zero; 3], |sum, (&p, n)| [sum[0] + p, sum[1] - p * n[0], sum[2] - p * n[1]]);
-            let weight = line.numbers.length / line.numbers.gamma;
-            match contact.iter_mut().find(|(name, ..)| *name == edge.boundary) {
+            let of = pressure.iter().enumerate().fold([zero; 3], |sum, (a, &p)| {
+                let n = line.direction(a);
+                [sum[0] + p, sum[1] - p * n[0], sum[2] - p * n[1]]
+            });
+            let weight = line.length / line.gamma;
+            match contact.iter_mut().find(|(name, ..)| *name == line.boundary) {
                 Some((_, sum, weights)) => {
                     *sum = [0, 1, 2].map(|i| sum[i] + of[i]);
                     *weights += weight;
                 }
-                None => contact.push((Arc::clone(&edge.boundary), of, weight)),
+                None => contact.push((Arc::clone(&line.boundary), of, weight)),
             }
         }
         let contact = contact
@@ -241,15 +219,12 @@ impl Evaluation {
     }
 
     /// The residual at the held directions, and how far that of u^h can be from it.
-    fn reactions<E, const N: usize, const M: usize>(
+    fn reactions(
         &self,
-        d: &Discretization<E, N, M>,
-        lines: &[OnEdge<Ball, N, M>],
+        d: &Discretization,
+        lines: &[ContactFace<Ball>],
         [rho, pressure]: [f64; 2],
-    ) -> BTreeMap<String, [Range; 2]>
-    where
-        E: ExactEdge<f64, N, M>,
-    {
+    ) -> BTreeMap<String, [Range; 2]> {
         let of = |(boundary, held): (&String, &Vec<crate::fem::constraints::Held>)| {
             let ranges = [0, 1].map(|c| {
                 // The reaction is the residual at this field.
@@ -265,7 +240,7 @@ impl Evaluation {
                 let by_body = self.stresses.energy_norm(d, &test);
                 let by_contact = lines.iter().fold(Ball::from(0), |sum, line| {
                     let most = line.p0(&test).iter().fold(0.0, |sum, p| up(sum + p.magnitude()));
-                    let weight = line.numbers.length / line.numbers.gamma;
+                    let weight = line.length / line.gamma;
                     sum + weight * Ball::from(most) * Ball::from(most)
                 });
                 let by_contact = root(by_contact);

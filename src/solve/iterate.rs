@@ -6,11 +6,10 @@
 use nalgebra::Vector2;
 
 use super::system::System;
-use crate::fem::contact_line::{ContactLineEdge, EdgeRule, apply};
 use crate::fem::discretization::{Discretization, Functional};
 use crate::fem::double_double::DoubleDouble;
 use crate::fem::precise;
-use crate::kernel::edge_integral::ExactEdge;
+use crate::fem::{ContactFace, EdgeRule};
 
 /// A residual this many unit roundoffs times its magnitudes is noise.
 const NOISE: f64 = 4.0;
@@ -42,10 +41,7 @@ pub struct Evaluation {
 
 impl Iterate {
     /// The lift of the prescribed data.
-    pub fn lift<E, const N: usize, const M: usize>(d: &Discretization<E, N, M>) -> Self
-    where
-        E: ExactEdge<f64, N, M>,
-    {
+    pub fn lift(d: &Discretization) -> Self {
         Iterate { u: d.constraints.lift().into_iter().map(|u| u.map(DoubleDouble::from)).collect() }
     }
 
@@ -65,12 +61,7 @@ impl Iterate {
     }
 
     /// Adds `t` times a step over the free degrees of freedom.
-    pub fn add<E, const N: usize, const M: usize>(
-        &mut self,
-        system: &System<E, N, M>,
-        t: f64,
-        step: &[f64],
-    ) {
+    pub fn add(&mut self, system: &System, t: f64, step: &[f64]) {
         let mut field = vec![[0.0; 2]; self.u.len()];
         system.numbering.scatter(step, &mut field);
         for (u, step) in self.u.iter_mut().flatten().zip(field.as_flattened()) {
@@ -79,18 +70,11 @@ impl Iterate {
     }
 
     /// The linear part of (8) here, in double-doubles if `precisely`.
-    pub fn evaluate<E, const N: usize, const M: usize>(
-        &self,
-        system: &System<E, N, M>,
-        precisely: bool,
-    ) -> Evaluation
-    where
-        E: ExactEdge<f64, N, M>,
-    {
+    pub fn evaluate(&self, system: &System, precisely: bool) -> Evaluation {
         let d = system.d;
         // Edges that press in no solution: the body is moved away from them in the end.
         let idle = |(i, p): (usize, DoubleDouble)| {
-            if d.is_idle(i / M) && p.head() > 0.0 { -p } else { p }
+            if d.is_idle(i / system.nodes()) && p.head() > 0.0 { -p } else { p }
         };
         if precisely {
             let (forces, p) = precise::evaluate(d, &self.u);
@@ -116,32 +100,21 @@ impl Iterate {
         let tail = |node: usize| Vector2::from(self.u[node].map(DoubleDouble::tail));
         let Functional { values: forces, magnitudes, energy } = d
             .linear_residual_by(|node, from| (head(node) - head(from)) + (tail(node) - tail(from)));
-        let nodes = |edge: &ContactLineEdge<N, M>| d.space.elements()[edge.edge.triangle];
-        let p = |edge: &ContactLineEdge<N, M>| {
-            let p = edge.p(&nodes(edge).map(head));
-            let of_tail = edge.functionals.p0.map(|f| apply(&f, &nodes(edge).map(tail)));
-            std::array::from_fn::<_, M, _>(|a| p[a] + of_tail[a])
-        };
         let by_points = matches!(d.rule, EdgeRule::Gauss(_));
+        let (heads, tails) = (self.rounded(), self.remainder());
         let p: Vec<DoubleDouble> = if by_points {
             precise::p(d, &self.u).enumerate().map(idle).collect()
         } else {
-            d.contact.iter().flat_map(p).map(DoubleDouble::from).enumerate().map(idle).collect()
-        };
-        let magnitude = |functional: &[Vector2<f64>; N], nodal: &[Vector2<f64>; N]| {
-            let pairs = functional.iter().flatten().zip(nodal.iter().flatten());
-            pairs.map(|(f, u)| (f * u).abs()).sum::<f64>()
+            let p = |edge: &ContactFace| {
+                edge.p(&heads).into_iter().zip(edge.p0(&tails)).map(|(p, of_tail)| p + of_tail)
+            };
+            let p: Vec<f64> = d.contact.iter().flat_map(p).collect();
+            p.into_iter().map(DoubleDouble::from).enumerate().map(idle).collect()
         };
         let p_magnitudes = if by_points {
             p.iter().map(|p| p.tail().abs()).collect()
         } else {
-            d.contact
-                .iter()
-                .flat_map(|edge| {
-                    let nodal = nodes(edge).map(head);
-                    edge.functionals.p0.map(|functional| magnitude(&functional, &nodal))
-                })
-                .collect()
+            d.contact.iter().flat_map(|edge| edge.p0_magnitudes(&heads)).collect()
         };
         let noise = NOISE * f64::EPSILON * d.free_norm(&magnitudes);
         let noise_of_sums = NOISE * f64::EPSILON * magnitudes.as_flattened().iter().sum::<f64>();

@@ -130,7 +130,7 @@ impl Ladder {
         if self.method.degree != Degree::One || self.method.quadrature != ContactQuadrature::Exact {
             return Ok(None);
         }
-        let space = Space::new(&problem.mesh);
+        let space = Space::new(&problem.mesh, Degree::One);
         let contact = contact_line::assemble(problem, &space, solution.gamma.gamma)?;
         Ok(interpolation::bound(&space, &contact, &*self.solution, solution.gamma.kappa))
     }

@@ -1,7 +1,7 @@
 //! The choices that method (8) leaves open, and when its solution is good enough. What a case file could not ask for is refused
 //! here too, whoever put it together.
 
-use crate::fem::DataError;
+use crate::fem::{DataError, Degree};
 
 /// More Gauss points than this gain nothing: the integrand has a kink where contact ends.
 pub const MOST_GAUSS_POINTS: usize = 64;
@@ -20,25 +20,6 @@ pub struct Method {
     pub quadrature: ContactQuadrature,
     /// Solve although kappa >= 1, without any promise.
     pub allow_noncoercive: bool,
-}
-
-/// The polynomial degree of V^h.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Degree {
-    /// P1, section 2.2.
-    One,
-    /// P2, Remark 3.7.
-    Two,
-}
-
-impl Degree {
-    /// 1 or 2.
-    pub fn number(self) -> usize {
-        match self {
-            Degree::One => 1,
-            Degree::Two => 2,
-        }
-    }
 }
 
 /// gamma0 of (7), in 1 / stress.

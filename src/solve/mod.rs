@@ -70,7 +70,7 @@ use self::evaluated::Evaluated;
 pub use self::intervals::Intervals;
 pub use self::ladder::{Ladder, LadderError, Level};
 pub use self::method::{
-    ContactQuadrature, Degree, Gamma0, MOST_GAUSS_POINTS, MOST_ITERATIONS, Method, Settings,
+    ContactQuadrature, Gamma0, MOST_GAUSS_POINTS, MOST_ITERATIONS, Method, Settings,
 };
 pub use self::report::{MethodReport, NewtonReport, Report, Status, Verdict};
 pub use self::route::RouteName;
@@ -80,10 +80,10 @@ use self::system::System;
 pub use self::theorem::Theorem;
 use self::times::Stopwatch;
 pub use self::times::Times;
-use crate::fem::contact_line::{Coercivity, EdgeRule, Gamma};
-use crate::fem::{Discretization, Problem};
-use crate::kernel::edge_integral::ExactEdge;
-use crate::kernel::{Material, P1, P2};
+pub use crate::fem::Degree;
+use crate::fem::contact_line::{Coercivity, Gamma};
+use crate::fem::{Discretization, EdgeRule, Problem};
+use crate::kernel::Material;
 
 /// Solves `problem` by method (8).
 ///
@@ -109,27 +109,12 @@ pub fn solve_along(
     course: Course,
 ) -> Result<(Solution, Times), SolveError> {
     settings.check()?;
-    match method.degree {
-        Degree::One => solve_with::<P1, 3, 2>(problem, method, settings, course),
-        Degree::Two => solve_with::<P2, 6, 3>(problem, method, settings, course),
-    }
-}
-
-fn solve_with<E, const N: usize, const M: usize>(
-    problem: &Problem,
-    method: &Method,
-    settings: &Settings,
-    course: Course,
-) -> Result<(Solution, Times), SolveError>
-where
-    E: ExactEdge<f64, N, M>,
-{
     let mut watch = Stopwatch::start();
     course.enters(Phase::Assemble);
     // What the whole solve takes for each vertex of the mesh at least, as measured: on squares, and on strips more.
-    let per_vertex = if E::DEGREE == 1 { 2900 } else { 11_800 };
+    let per_vertex = if method.degree == Degree::One { 2900 } else { 11_800 };
     memory::ensure(per_vertex * problem.mesh.vertices().len() as u64)?;
-    let d = discretize::<E, N, M>(problem, method)?;
+    let d = discretize(problem, method)?;
     let discretize = watch.lap();
     let solved = match (solve_discrete_along(&d, settings, course), course.afresh()) {
         (Err(_), Some(afresh)) => solve_discrete_along(&d, settings, afresh),
@@ -150,24 +135,18 @@ where
 ///
 /// # Errors
 /// As [`solve`], but for the data.
-pub fn solve_discrete<E, const N: usize, const M: usize>(
-    d: &Discretization<E, N, M>,
+pub fn solve_discrete(
+    d: &Discretization,
     settings: &Settings,
-) -> Result<(Evaluated<M>, Report, Times), SolveError>
-where
-    E: ExactEdge<f64, N, M>,
-{
+) -> Result<(Evaluated, Report, Times), SolveError> {
     solve_discrete_along(d, settings, Course::default())
 }
 
-fn solve_discrete_along<'d, E, const N: usize, const M: usize>(
-    d: &'d Discretization<E, N, M>,
+fn solve_discrete_along<'d>(
+    d: &'d Discretization,
     settings: &Settings,
     course: Course<'d>,
-) -> Result<(Evaluated<M>, Report, Times), SolveError>
-where
-    E: ExactEdge<f64, N, M>,
-{
+) -> Result<(Evaluated, Report, Times), SolveError> {
     let mut times = Times::default();
     let mut watch = Stopwatch::start();
     let system = System::on(d, course)?;
@@ -188,20 +167,7 @@ where
 /// # Errors
 /// As [`solve`], as far as they show before anything is solved.
 pub fn check(problem: &Problem, method: &Method) -> Result<Outline, SolveError> {
-    match method.degree {
-        Degree::One => outline::<P1, 3, 2>(problem, method),
-        Degree::Two => outline::<P2, 6, 3>(problem, method),
-    }
-}
-
-fn outline<E, const N: usize, const M: usize>(
-    problem: &Problem,
-    method: &Method,
-) -> Result<Outline, SolveError>
-where
-    E: ExactEdge<f64, N, M>,
-{
-    Ok(Outline::new(&discretize::<E, N, M>(problem, method)?))
+    Ok(Outline::new(&discretize(problem, method)?))
 }
 
 /// The size of a discrete problem and its coercivity.
@@ -219,10 +185,7 @@ pub struct Outline {
 }
 
 impl Outline {
-    fn new<E, const N: usize, const M: usize>(d: &Discretization<E, N, M>) -> Self
-    where
-        E: ExactEdge<f64, N, M>,
-    {
+    fn new(d: &Discretization) -> Self {
         Outline {
             nodes: d.space.nodes().len(),
             prescribed: d.constraints.values().iter().flatten().flatten().count(),
@@ -236,13 +199,10 @@ impl Outline {
 ///
 /// # Errors
 /// Data that don't make a problem, and kappa >= 1 without leave.
-pub fn discretize<'a, E, const N: usize, const M: usize>(
+pub fn discretize<'a>(
     problem: &'a Problem,
     method: &Method,
-) -> Result<Discretization<'a, E, N, M>, SolveError>
-where
-    E: ExactEdge<f64, N, M>,
-{
+) -> Result<Discretization<'a>, SolveError> {
     method.check()?;
     let mut limit = 1.0;
     let gamma = |c: &Coercivity| {
@@ -257,7 +217,7 @@ where
         ContactQuadrature::Exact => EdgeRule::Exact,
         ContactQuadrature::Gauss(points) => EdgeRule::gauss(points),
     };
-    let d = Discretization::new(problem, gamma, rule);
+    let d = Discretization::new(problem, method.degree, gamma, rule);
     if !can_be_multiplied(problem) {
         return Err(SolveError::OutOfRange);
     }

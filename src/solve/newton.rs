@@ -80,9 +80,9 @@ pub struct Until {
 ///
 /// # Errors
 /// Those of [`Body::step`].
-pub fn minimise<const M: usize>(
-    edges: &impl Edges<M>,
-    body: &mut impl Body<M>,
+pub fn minimise(
+    edges: &impl Edges,
+    body: &mut impl Body,
     first: bool,
     residuals: &mut Vec<f64>,
     until: Until,
@@ -155,13 +155,13 @@ pub fn minimise<const M: usize>(
 
 /// The next step downhill from where J_h has the derivatives `at`, linearised where contact would go on each edge by itself if
 /// that leads downhill and the forces of contact are known: then with what it was linearised as.
-fn next_step<const M: usize>(
-    edges: &impl Edges<M>,
-    body: &mut impl Body<M>,
-    at: &Derivatives<M>,
+fn next_step(
+    edges: &impl Edges,
+    body: &mut impl Body,
+    at: &Derivatives,
     forces: Option<&[f64]>,
     stiffness: f64,
-) -> Result<(Option<Derivatives<M>>, Step), SolveError> {
+) -> Result<(Option<Derivatives>, Step), SolveError> {
     if let Some(forces) = forces {
         let model = relaxed(edges, body, forces, stiffness);
         // What hinders this step hinders Newton's own, which says so.
@@ -218,28 +218,29 @@ impl Springs {
 }
 
 /// Where along the step J_h with the springs times `stiffness` is least; `None` if its decrease is lost in rounding.
-fn line_search<const M: usize>(
-    edges: &impl Edges<M>,
+fn line_search(
+    edges: &impl Edges,
     y: &[DoubleDouble],
     stiffness: f64,
-    at: &Derivatives<M>,
+    at: &Derivatives,
     step: &Step,
 ) -> Option<f64> {
-    let point = |e: usize, t: f64| -> [DoubleDouble; M] {
-        let (p, d): ([DoubleDouble; M], [f64; M]) = (block(y, e), block(&step.dy, e));
-        std::array::from_fn(|a| p[a] + DoubleDouble::from(t * d[a]))
+    let nodes = edges.nodes();
+    let point = |e: usize, t: f64| -> Vec<DoubleDouble> {
+        let (p, d) = (block(y, e, nodes), block(&step.dy, e, nodes));
+        p.iter().zip(d).map(|(&p, d)| p + DoubleDouble::from(t * d)).collect()
     };
     // The first and the second derivative of J_h along the step.
     let derivatives = |t: f64| {
         let mut first = step.slope + t * step.curvature;
         let mut second = step.curvature;
         for e in 0..edges.count() {
-            let d: [f64; M] = block(&step.dy, e);
-            let (g, h) = edges.derivatives(e, point(e, t));
-            for a in 0..M {
-                first += (stiffness * g[a] - at.gradient[e * M + a]) * d[a];
-                for b in 0..M {
-                    second += stiffness * h[a][b] * d[a] * d[b];
+            let d = block(&step.dy, e, nodes);
+            let (g, h) = edges.derivatives(e, &point(e, t));
+            for a in 0..nodes {
+                first += (stiffness * g[a] - at.gradient[e * nodes + a]) * d[a];
+                for b in 0..nodes {
+                    second += stiffness * h[(a, b)] * d[a] * d[b];
                 }
             }
         }
@@ -247,7 +248,7 @@ fn line_search<const M: usize>(
     };
     let falls = |t: f64| {
         let distance: f64 =
-            (0..edges.count()).map(|e| edges.bregman(e, block(y, e), point(e, t))).sum();
+            (0..edges.count()).map(|e| edges.bregman(e, block(y, e, nodes), &point(e, t))).sum();
         t * t / 2.0 * step.curvature + stiffness * distance <= (SUFFICIENT - 1.0) * t * step.slope
     };
     let flat = FLAT * step.slope.abs();

@@ -14,6 +14,10 @@
 //! sees the contact zone as it will be and not as it was: springs can be stiffened by a factor of eight in one step. It is theory
 //! 4.6.
 
+use faer::linalg::solvers::Solve;
+use faer::{Col, Mat};
+use nalgebra::{DMatrix, DVector};
+
 use super::body::{Body, Derivatives, Edges, Step, block};
 use crate::fem::double_double::DoubleDouble;
 
@@ -27,129 +31,97 @@ const SOLVED: f64 = 1e-3;
 const SHORTEST: f64 = 1e-4;
 
 /// s Psi linearised at where contact would go on each edge by itself, as what the gradient would be at y were it linear.
-pub fn relaxed<const M: usize>(
-    edges: &impl Edges<M>,
-    body: &impl Body<M>,
-    w: &[f64],
-    s: f64,
-) -> Derivatives<M> {
+pub fn relaxed(edges: &impl Edges, body: &impl Body, w: &[f64], s: f64) -> Derivatives {
+    let nodes = edges.nodes();
     let mut gradient = Vec::with_capacity(w.len());
     let mut hessian = Vec::with_capacity(edges.count());
     for e in 0..edges.count() {
-        let (compliance, y) = (body.compliance(e), block(&body.y(), e).map(DoubleDouble::head));
-        let spring = |q: [f64; M]| {
-            let (g, h) = edges.derivatives(e, q.map(DoubleDouble::from));
-            (g.map(|g| s * g), h.map(|row| row.map(|h| s * h)))
+        let compliance = body.compliance(e);
+        let y = vector(block(&body.y(), e, nodes).iter().map(|y| y.head()));
+        let spring = |q: &DVector<f64>| {
+            let q: Vec<DoubleDouble> = q.iter().map(|&q| q.into()).collect();
+            let (g, h) = edges.derivatives(e, &q);
+            (s * vector(g), s * h)
         };
-        let q = alone(y, block(w, e), &compliance, spring);
-        let (g, h) = spring(q);
-        gradient.extend((0..M).map(|a| g[a] + row_times(&h[a], |b| y[b] - q[b])));
+        let q = alone(&y, &vector(block(w, e, nodes).iter().copied()), &compliance, spring);
+        let (g, h) = spring(&q);
+        gradient.extend((g + &h * (y - q)).iter());
         hessian.push(h);
     }
     Derivatives { stiffness: s, gradient, hessian }
 }
 
+fn vector(values: impl IntoIterator<Item = f64>) -> DVector<f64> {
+    DVector::from_vec(values.into_iter().collect())
+}
+
 /// w after `t` times a `step` that was linearised as `at`: with the loads in equilibrium if w was.
-pub fn follow<const M: usize>(w: &mut [f64], at: &Derivatives<M>, step: &Step, t: f64) {
+pub fn follow(w: &mut [f64], at: &Derivatives, step: &Step, t: f64) {
     for (e, hessian) in at.hessian.iter().enumerate() {
-        let dy: [f64; M] = block(&step.dy, e);
-        for a in 0..M {
-            let i = e * M + a;
-            let linear = at.gradient[i] + row_times(&hessian[a], |b| dy[b]);
-            w[i] += t * (linear - w[i]);
+        let nodes = hessian.nrows();
+        let change = hessian * vector(block(&step.dy, e, nodes).iter().copied());
+        for a in 0..nodes {
+            let i = e * nodes + a;
+            w[i] += t * (at.gradient[i] + change[a] - w[i]);
         }
     }
 }
 
 /// The q of an edge, by Newton's method with steps that are halved until less is left of the equation; where none leaves less it
 /// ends, for any q will do.
-fn alone<const M: usize>(
-    y: [f64; M],
-    w: [f64; M],
-    compliance: &[[f64; M]; M],
-    spring: impl Fn([f64; M]) -> ([f64; M], [[f64; M]; M]),
-) -> [f64; M] {
-    let left = |q: [f64; M]| -> [f64; M] {
-        let (force, _) = spring(q);
-        std::array::from_fn(|a| q[a] - y[a] + row_times(&compliance[a], |b| force[b] - w[b]))
-    };
-    let size = |r: [f64; M]| r.iter().map(|r| r * r).sum::<f64>();
-    let (mut q, mut r) = (y, left(y));
+fn alone(
+    y: &DVector<f64>,
+    w: &DVector<f64>,
+    compliance: &DMatrix<f64>,
+    spring: impl Fn(&DVector<f64>) -> (DVector<f64>, DMatrix<f64>),
+) -> DVector<f64> {
+    let left = |q: &DVector<f64>| q - y + compliance * (spring(q).0 - w);
+    let (mut q, mut r) = (y.clone(), left(y));
     for _ in 0..MOST_STEPS {
-        if size(r) <= SOLVED * SOLVED * size(std::array::from_fn(|a| q[a] - y[a])) {
+        if square(&r) <= SOLVED * SOLVED * square(&(&q - y)) {
             break;
         }
-        let (_, h) = spring(q);
-        let matrix = std::array::from_fn(|a| {
-            std::array::from_fn(|b| {
-                f64::from(u8::from(a == b)) + row_times(&compliance[a], |k| h[k][b])
-            })
-        });
-        let d = solution(matrix, r);
+        let matrix = DMatrix::identity(y.len(), y.len()) + compliance * spring(&q).1;
+        let d = solution(&matrix, &r);
         let shorter = std::iter::successors(Some(1.0), |t| (*t > SHORTEST).then_some(t / 2.0));
-        let trials = shorter.map(|t| std::array::from_fn(|a| q[a] - t * d[a]));
-        let Some(next) = { trials }.find(|&trial| size(left(trial)) < size(r)) else { break };
-        (q, r) = (next, left(next));
+        let mut trials = shorter.map(|t| &q - t * &d);
+        let Some(next) = trials.find(|trial| square(&left(trial)) < square(&r)) else { break };
+        (r, q) = (left(&next), next);
     }
     q
 }
 
-fn row_times<const M: usize>(row: &[f64; M], x: impl Fn(usize) -> f64) -> f64 {
-    (0..M).map(|b| row[b] * x(b)).sum()
+fn square(v: &DVector<f64>) -> f64 {
+    v.dot(v)
 }
 
-/// The x with `matrix` x = `right`, by elimination with row pivots; not finite where the matrix is singular.
-fn solution<const M: usize>(mut matrix: [[f64; M]; M], mut right: [f64; M]) -> [f64; M] {
-    for k in 0..M {
-        let larger = |&i: &usize, &j: &usize| matrix[i][k].abs().total_cmp(&matrix[j][k].abs());
-        let pivot = (k..M).max_by(larger).unwrap_or(k);
-        matrix.swap(k, pivot);
-        right.swap(k, pivot);
-        for i in k + 1..M {
-            let factor = matrix[i][k] / matrix[k][k];
-            for j in k..M {
-                matrix[i][j] -= factor * matrix[k][j];
-            }
-            right[i] -= factor * right[k];
-        }
-    }
-    for k in (0..M).rev() {
-        let known: f64 = (k + 1..M).map(|j| matrix[k][j] * right[j]).sum();
-        right[k] = (right[k] - known) / matrix[k][k];
-    }
-    right
+/// The x with `matrix` x = `right`; not finite where the matrix is singular.
+fn solution(matrix: &DMatrix<f64>, right: &DVector<f64>) -> DVector<f64> {
+    let matrix = Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| matrix[(i, j)]);
+    let x = matrix.partial_piv_lu().solve(Col::from_fn(right.len(), |i| right[i]));
+    vector(x.iter().copied())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn elimination_solves_what_needs_pivots() {
-        let x = solution([[0.0, 2.0, 1.0], [4.0, 1.0, 0.0], [1.0, 0.0, 3.0]], [7.0, 6.0, 10.0]);
-        for (found, exact) in x.into_iter().zip([1.0, 2.0, 3.0]) {
-            assert!((found - exact).abs() < 1e-14, "{x:?}");
-        }
-    }
-
     /// A stiff one-sided spring at each of two nodes: q = y - c (k [q]+ - w).
     #[test]
     fn an_edge_by_itself_ends_where_its_equation_holds() {
-        let (stiffness, compliance) = (1e8, [[2.0, 0.5], [0.5, 1.0]]);
-        let spring = |q: [f64; 2]| {
+        let stiffness = 1e8;
+        let compliance = DMatrix::from_row_slice(2, 2, &[2.0, 0.5, 0.5, 1.0]);
+        let spring = |q: &DVector<f64>| {
             let on = q.map(|q| f64::from(u8::from(q > 0.0)));
-            let h = [[stiffness * on[0], 0.0], [0.0, stiffness * on[1]]];
-            (q.map(|q| stiffness * q.max(0.0)), h)
+            (q.map(|q| stiffness * q.max(0.0)), stiffness * DMatrix::from_diagonal(&on))
         };
         for (y, w) in
             [([1.0, -1.0], [0.0, 0.0]), ([1.0, 1.0], [0.3, -0.1]), ([-1.0, 0.2], [0.1, 0.0])]
         {
-            let q = alone(y, w, &compliance, spring);
-            let (force, _) = spring(q);
-            for a in 0..2 {
-                let moved: f64 = (0..2).map(|b| compliance[a][b] * (force[b] - w[b])).sum();
-                assert!((q[a] - y[a] + moved).abs() < 1e-2, "{y:?} {w:?}: {q:?}");
-            }
+            let (y, w) = (vector(y), vector(w));
+            let q = alone(&y, &w, &compliance, spring);
+            let left = &q - &y + &compliance * (spring(&q).0 - w);
+            assert!(left.amax() < 1e-2, "{y}: {q}");
         }
     }
 }

@@ -23,7 +23,6 @@ use super::memory;
 use super::system::System;
 use super::times::{Stopwatch, Times};
 use super::{MethodReport, Settings, SolveError};
-use crate::kernel::edge_integral::ExactEdge;
 
 /// The routes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,13 +72,10 @@ impl Prediction {
     }
 
     /// The prediction for a system, with the reach of its contact functionals.
-    pub fn of<E, const N: usize, const M: usize>(system: &System<E, N, M>) -> (Reach, Prediction)
-    where
-        E: ExactEdge<f64, N, M>,
-    {
+    pub fn of(system: &System) -> (Reach, Prediction) {
         let edges = 0..system.d.contact.len();
         let unknowns: Vec<Vec<usize>> = edges.map(|e| system.unknowns(e)).collect();
-        let reach = Reach::new(&system.structure, &unknowns, M);
+        let reach = Reach::new(&system.structure, &unknowns, system.nodes());
         let prediction = Prediction::new(&system.structure, &reach);
         (reach, prediction)
     }
@@ -95,14 +91,11 @@ impl Prediction {
 ///
 /// # Errors
 /// As [`solve_discrete`](super::solve_discrete).
-pub fn solve<E, const N: usize, const M: usize>(
-    system: &System<E, N, M>,
+pub fn solve(
+    system: &System,
     settings: &Settings,
     times: &mut Times,
-) -> Result<Solved, SolveError>
-where
-    E: ExactEdge<f64, N, M>,
-{
+) -> Result<Solved, SolveError> {
     let mut watch = Stopwatch::start();
     let outset = Outset::of(system);
     let in_range = system.largest().is_normal() && outset.reference.is_normal();
@@ -139,12 +132,9 @@ fn is_final(done: &Outcome, settings: &Settings) -> bool {
 }
 
 /// Whether what the matrix is made of on the contact edges neither over- nor underflows.
-fn contact_is_in_range<E, const N: usize, const M: usize>(system: &System<E, N, M>) -> bool
-where
-    E: ExactEdge<f64, N, M>,
-{
+fn contact_is_in_range(system: &System) -> bool {
     system.d.contact.iter().all(|edge| {
-        let stresses = edge.functionals.sigma_n.iter().flatten();
+        let stresses = edge.functionals.sigma_n().into_iter().flatten();
         let stress = stresses.flat_map(|v| v.iter()).fold(0.0, |m: f64, s| m.max(s.abs()));
         let (gamma, length) = (edge.gamma, edge.length);
         let springs = [length / gamma, gamma * length].iter().all(|x| x.is_normal());
@@ -157,15 +147,12 @@ where
 ///
 /// # Errors
 /// As [`solve_discrete`](super::solve_discrete).
-pub fn by<E, const N: usize, const M: usize>(
+pub fn by(
     name: RouteName,
-    system: &System<E, N, M>,
+    system: &System,
     settings: &Settings,
     times: &mut Times,
-) -> Result<Solved, SolveError>
-where
-    E: ExactEdge<f64, N, M>,
-{
+) -> Result<Solved, SolveError> {
     Outset::of(system).go(name, system, settings, times)
 }
 
@@ -181,24 +168,18 @@ struct Outset {
 }
 
 impl Outset {
-    fn of<E, const N: usize, const M: usize>(system: &System<E, N, M>) -> Self
-    where
-        E: ExactEdge<f64, N, M>,
-    {
+    fn of(system: &System) -> Self {
         let (reach, prediction) = Prediction::of(system);
         Outset { reach, prediction, reference: accuracy::reference(system.d) }
     }
 
-    fn go<E, const N: usize, const M: usize>(
+    fn go(
         &self,
         name: RouteName,
-        system: &System<E, N, M>,
+        system: &System,
         settings: &Settings,
         times: &mut Times,
-    ) -> Result<Solved, SolveError>
-    where
-        E: ExactEdge<f64, N, M>,
-    {
+    ) -> Result<Solved, SolveError> {
         let mut watch = Stopwatch::start();
         let Outset { reach, prediction, reference } = self;
         let proving;

@@ -15,22 +15,21 @@ use crate::fem::contact_line::{self, Coercivity, Gamma};
 use crate::fem::dense::inner;
 use crate::fem::discretization::Discretization;
 use crate::fem::double_double::DoubleDouble;
+use crate::fem::element::maximum;
 use crate::fem::held::Play;
-use crate::fem::{DataError, Errors, ExactSolution, Problem, Space};
+use crate::fem::{DataError, Degree, Errors, ExactSolution, Problem, Space};
+use crate::kernel::Stress;
 use crate::kernel::contact::pressure;
-use crate::kernel::edge_integral::{self, ExactEdge};
-use crate::kernel::element::displacement_gradient;
-use crate::kernel::{Element, P1, P2, Stress};
 
 /// The solution of method (8), independent of the element that it was computed with.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Solution {
     /// The polynomial degree.
-    pub degree: usize,
+    pub degree: Degree,
     /// The places of the nodes: the vertices of the mesh first.
     pub nodes: Vec<[f64; 2]>,
-    /// The nodes of the triangles, `nodes_per_triangle` for each, in the order of [`Element`].
+    /// The nodes of the triangles, `nodes_per_triangle` for each, in the order of [`Element`](crate::kernel::Element).
     pub elements: Vec<usize>,
     /// 3 or 6.
     pub nodes_per_triangle: usize,
@@ -142,14 +141,7 @@ pub struct Quantities {
 
 impl Solution {
     /// Evaluates all reported quantities of a displacement.
-    pub fn new<E, const N: usize, const M: usize>(
-        d: &Discretization<E, N, M>,
-        evaluated: Evaluated<M>,
-        report: Report,
-    ) -> Self
-    where
-        E: ExactEdge<f64, N, M>,
-    {
+    pub fn new(d: &Discretization, evaluated: Evaluated, report: Report) -> Self {
         let stress = mean_stresses(d, &evaluated.u);
         let quantities = quantities(d, &evaluated);
         let Evaluated { u, p, residual } = evaluated;
@@ -157,10 +149,10 @@ impl Solution {
         let with_material =
             || stress.iter().enumerate().map(|(t, &s)| (d.problem.material.of(t), s));
         Solution {
-            degree: E::DEGREE,
+            degree: d.space.degree(),
             nodes: d.space.nodes().to_vec(),
-            elements: d.space.elements().as_flattened().to_vec(),
-            nodes_per_triangle: N,
+            elements: d.space.connectivity().to_vec(),
+            nodes_per_triangle: d.space.degree().nodes_per_triangle(),
             von_mises: with_material().map(|(m, s)| m.von_mises_squared(s).sqrt()).collect(),
             stress: with_material().map(|(m, s)| (s, m.stress_zz(s))).collect(),
             contact: contact_values(d, &u, &p, &recovered),
@@ -187,18 +179,7 @@ impl Solution {
         problem: &Problem,
         exact: &dyn ExactSolution,
     ) -> Result<Errors, DataError> {
-        match self.degree {
-            1 => self.errors_with::<P1, 3, 2>(problem, exact),
-            _ => self.errors_with::<P2, 6, 3>(problem, exact),
-        }
-    }
-
-    fn errors_with<E: Element<N, M>, const N: usize, const M: usize>(
-        &self,
-        problem: &Problem,
-        exact: &dyn ExactSolution,
-    ) -> Result<Errors, DataError> {
-        let space = Space::<E, N, M>::new(&problem.mesh);
+        let space = Space::new(&problem.mesh, self.degree);
         let contact = contact_line::assemble(problem, &space, self.gamma.gamma)?;
         Ok(Errors::new(&space, &contact, &self.displacement, exact))
     }
@@ -207,20 +188,14 @@ impl Solution {
     ///
     /// [`Mesh::locate`]: crate::fem::Mesh::locate
     pub fn displacement_at(&self, t: usize, l: [f64; 3]) -> [f64; 2] {
-        let shapes: &[f64] = match self.degree {
-            1 => &P1::values(l),
-            _ => &P2::values(l),
-        };
+        let shapes = self.degree.values(l);
         let nodes = &self.elements[t * self.nodes_per_triangle..][..self.nodes_per_triangle];
-        [0, 1].map(|c| nodes.iter().zip(shapes).map(|(&j, n)| n * self.displacement[j][c]).sum())
+        [0, 1].map(|c| nodes.iter().zip(&shapes).map(|(&j, n)| n * self.displacement[j][c]).sum())
     }
 
     /// How far the displacement at that point can be off where it is off by `nodes` at most at the nodes.
     pub fn displacement_error_at(&self, nodes: &[f64], t: usize, l: [f64; 3]) -> f64 {
-        let shapes: &[f64] = match self.degree {
-            1 => &P1::values(l),
-            _ => &P2::values(l),
-        };
+        let shapes = self.degree.values(l);
         let members = &self.elements[t * self.nodes_per_triangle..][..self.nodes_per_triangle];
         let sum: f64 = members.iter().zip(shapes).map(|(&j, n)| n.abs() * nodes[j]).sum();
         // The sum, the shape functions and the displacement there are rounded.
@@ -241,64 +216,35 @@ impl<'a> Course<'a> {
 
 impl GammaReport {
     /// The stresses of a discretization.
-    pub fn new<E, const N: usize, const M: usize>(d: &Discretization<E, N, M>) -> Self
-    where
-        E: ExactEdge<f64, N, M>,
-    {
+    pub fn new(d: &Discretization) -> Self {
         let (kappa, coercivity) = (d.kappa(), d.coercivity);
         GammaReport { gamma: d.gamma, gamma0: d.gamma0, kappa, coercivity }
     }
 }
 
-/// The mean of sigma(u) on each triangle: its average over the points of the stiffness rule, which is exact for it.
-fn mean_stresses<E, const N: usize, const M: usize>(
-    d: &Discretization<E, N, M>,
-    u: &[[f64; 2]],
-) -> Vec<Stress<f64>>
-where
-    E: ExactEdge<f64, N, M>,
-{
-    d.space
-        .triangles()
-        .enumerate()
-        .map(|(t, (triangle, _))| {
-            let barycentric = triangle.barycentric_gradients();
-            let nodal = d.space.on_triangle(t, u);
-            let material = d.problem.material.of(t);
-            let mut mean = [0.0; 3];
-            E::at_stiffness_points(|l, weight| {
-                let gradients = E::gradients(l, barycentric);
-                let s = material.stress(displacement_gradient(&nodal, &gradients));
-                for (mean, s) in mean.iter_mut().zip(s.components()) {
-                    *mean += weight * s;
-                }
-            });
-            Stress::new(mean)
-        })
-        .collect()
+/// The mean of sigma(u) on each triangle.
+fn mean_stresses(d: &Discretization, u: &[[f64; 2]]) -> Vec<Stress<f64>> {
+    let stress = |t| d.problem.material.of(t).stress(d.space.mean_gradient(t, u));
+    (0..d.space.mesh().triangles().len()).map(stress).collect()
 }
 
-fn contact_values<E, const N: usize, const M: usize>(
-    d: &Discretization<E, N, M>,
+fn contact_values(
+    d: &Discretization,
     u: &[[f64; 2]],
-    p: &[[DoubleDouble; M]],
-    recovered: &[[f64; M]],
-) -> Vec<ContactEdgeValues>
-where
-    E: ExactEdge<f64, N, M>,
-{
+    p: &[Vec<DoubleDouble>],
+    recovered: &[Vec<f64>],
+) -> Vec<ContactEdgeValues> {
     let mut start = 0.0;
     let mut line = Vec::with_capacity(d.contact.len());
-    for ((edge, &p), recovered) in d.contact.iter().zip(p).zip(recovered) {
+    for ((edge, p), recovered) in d.contact.iter().zip(p).zip(recovered) {
         if line.last().is_none_or(|last: &ContactEdgeValues| last.boundary != edge.boundary) {
             start = 0.0;
         }
         let triangle = edge.edge.triangle;
-        let nodal = d.space.on_triangle(triangle, u);
-        let sigma_n = edge.sigma_n(&nodal);
+        let sigma_n = edge.sigma_n(|node| u[node]);
         let nodes = d.space.edge_nodes(edge.edge);
-        let positions: [f64; M] = E::edge_positions();
-        let mut points: Vec<ContactValues> = (0..M)
+        let positions = d.space.degree().edge_positions();
+        let mut points: Vec<ContactValues> = (0..nodes.len())
             .map(|a| {
                 let [x, y] = u[nodes[a]];
                 ContactValues {
@@ -321,13 +267,7 @@ where
     line
 }
 
-fn quantities<E, const N: usize, const M: usize>(
-    d: &Discretization<E, N, M>,
-    Evaluated { u, p, residual }: &Evaluated<M>,
-) -> Quantities
-where
-    E: ExactEdge<f64, N, M>,
-{
+fn quantities(d: &Discretization, Evaluated { u, p, residual }: &Evaluated) -> Quantities {
     let mut q = Quantities {
         energy: d.strain_energy(u),
         work: inner(&d.load, u),
@@ -339,19 +279,19 @@ where
         reactions: BTreeMap::new(),
         reaction_moments: BTreeMap::new(),
     };
-    for (edge, &p) in d.contact.iter().zip(p) {
-        let integrals = d.rule.integrals::<E, N, M>(p);
+    for (edge, p) in d.contact.iter().zip(p) {
+        let integrals = d.rule.integrals(p);
         // The shape functions add up to one, so this is the integral of [P]+ / gamma.
         let force = edge.length / edge.gamma * integrals.gradient.iter().sum::<f64>();
         q.contact_force += force;
-        for (g, n) in integrals.gradient.iter().zip(edge.directions) {
+        for (g, n) in integrals.gradient.iter().zip(&edge.directions) {
             for c in 0..2 {
                 q.contact_resultant[c] -= edge.length / edge.gamma * g * n[c];
             }
         }
         q.contact_length += edge.length * integrals.active;
-        let peak =
-            -pressure(edge_integral::maximum::<E, N, M>(p.map(DoubleDouble::head)), edge.gamma);
+        let heads: Vec<f64> = p.iter().map(|p| p.head()).collect();
+        let peak = -pressure(maximum(&heads), edge.gamma);
         q.peak_pressure = q.peak_pressure.max(peak);
     }
     for (boundary, held) in d.constraints.holders() {

@@ -5,8 +5,6 @@
 
 use super::solution::Solution;
 use crate::fem::Problem;
-use crate::kernel::element::displacement_gradient;
-use crate::kernel::{Element, P1, P2};
 
 /// sigma_xx, sigma_yy, sigma_zz, sigma_xy
 pub type Components = [f64; 4];
@@ -91,41 +89,32 @@ impl Solution {
         problem: &Problem,
         members: impl Fn(usize) -> bool,
     ) -> Vec<Option<(Components, usize)>> {
-        match self.degree {
-            1 => nodal_means::<P1, 3, 2>(self, problem, members),
-            _ => nodal_means::<P2, 6, 3>(self, problem, members),
-        }
-    }
-}
-
-fn nodal_means<E: Element<N, M>, const N: usize, const M: usize>(
-    solution: &Solution,
-    problem: &Problem,
-    members: impl Fn(usize) -> bool,
-) -> Vec<Option<(Components, usize)>> {
-    let mut sums: Vec<Option<(Components, f64, usize)>> = vec![None; solution.nodes.len()];
-    let (elements, _) = solution.elements.as_chunks::<N>();
-    for (t, nodes) in elements.iter().enumerate().filter(|(t, _)| members(*t)) {
-        let (triangle, material) = (problem.mesh.triangle(t), problem.material.of(t));
-        let (barycentric, area) = (triangle.barycentric_gradients(), triangle.double_area());
-        let nodal = nodes.map(|node| solution.displacement[node].into());
-        for (j, &node) in nodes.iter().enumerate() {
-            // Corner j, or the middle of the edge opposite corner j - 3.
-            let l = [0, 1, 2].map(|k| match j {
-                0..3 => f64::from(u8::from(k == j)),
-                _ => f64::from(u8::from(k != j - 3)) / 2.0,
-            });
-            let stress =
-                material.stress(displacement_gradient(&nodal, &E::gradients(l, barycentric)));
-            let ([xx, yy, xy], zz) = (stress.components(), material.stress_zz(stress));
-            let (sum, weight, _) = sums[node].get_or_insert(([0.0; 4], 0.0, t));
-            for (sum, s) in sum.iter_mut().zip([xx, yy, zz, xy]) {
-                *sum += area * s;
+        let mut sums: Vec<Option<(Components, f64, usize)>> = vec![None; self.nodes.len()];
+        let elements = self.elements.chunks_exact(self.degree.nodes_per_triangle());
+        for (t, nodes) in elements.enumerate().filter(|(t, _)| members(*t)) {
+            let (triangle, material) = (problem.mesh.triangle(t), problem.material.of(t));
+            let (barycentric, area) = (triangle.barycentric_gradients(), triangle.double_area());
+            let nodal = |j: usize| self.displacement[nodes[j]].into();
+            for (j, &node) in nodes.iter().enumerate() {
+                // Corner j, or the middle of the edge opposite corner j - 3.
+                let l = [0, 1, 2].map(|k| match j {
+                    0..3 => f64::from(u8::from(k == j)),
+                    _ => f64::from(u8::from(k != j - 3)) / 2.0,
+                });
+                let gradient = self.degree.displacement_gradient(l, barycentric, nodal);
+                let stress = material.stress(gradient);
+                let ([xx, yy, xy], zz) = (stress.components(), material.stress_zz(stress));
+                let (sum, weight, _) = sums[node].get_or_insert(([0.0; 4], 0.0, t));
+                for (sum, s) in sum.iter_mut().zip([xx, yy, zz, xy]) {
+                    *sum += area * s;
+                }
+                *weight += area;
             }
-            *weight += area;
         }
+        sums.into_iter()
+            .map(|sum| sum.map(|(sum, weight, t)| (sum.map(|s| s / weight), t)))
+            .collect()
     }
-    sums.into_iter().map(|sum| sum.map(|(sum, weight, t)| (sum.map(|s| s / weight), t))).collect()
 }
 
 #[cfg(test)]

@@ -12,12 +12,11 @@ use super::ordering::nested_dissection;
 use crate::fem::ball::larger;
 use crate::fem::discretization::Discretization;
 use crate::fem::matrix::{self, LowerTriangle, Neighbours, Numbering};
-use crate::kernel::edge_integral::ExactEdge;
 
 /// The matrices of a discretization.
-pub struct System<'d, 'p, E, const N: usize, const M: usize> {
+pub struct System<'d, 'p> {
     /// The discretization.
-    pub d: &'d Discretization<'p, E, N, M>,
+    pub d: &'d Discretization<'p>,
     /// The free degrees of freedom in the order of elimination.
     pub numbering: Numbering,
     /// A
@@ -29,15 +28,12 @@ pub struct System<'d, 'p, E, const N: usize, const M: usize> {
     steps: Cell<usize>,
 }
 
-impl<'d, 'p, E, const N: usize, const M: usize> System<'d, 'p, E, N, M>
-where
-    E: ExactEdge<f64, N, M>,
-{
+impl<'d, 'p> System<'d, 'p> {
     /// The system of a discretization.
     ///
     /// # Errors
     /// [`SolveError::OutOfMemory`].
-    pub fn new(d: &'d Discretization<'p, E, N, M>) -> Result<Self, SolveError> {
+    pub fn new(d: &'d Discretization<'p>) -> Result<Self, SolveError> {
         System::on(d, Course::default())
     }
 
@@ -45,11 +41,10 @@ where
     ///
     /// # Errors
     /// As [`System::new`].
-    pub fn on(d: &'d Discretization<'p, E, N, M>, course: Course<'d>) -> Result<Self, SolveError> {
+    pub fn on(d: &'d Discretization<'p>, course: Course<'d>) -> Result<Self, SolveError> {
         course.enters(Phase::Order);
-        let nodes = d.space.nodes();
-        let neighbours = Neighbours::new(nodes.len(), d.space.elements());
-        let order = nested_dissection(nodes, &neighbours);
+        let neighbours = Neighbours::new(&d.space);
+        let order = nested_dissection(d.space.nodes(), &neighbours);
         let numbering = Numbering::under(&order, &d.constraints);
         let matrix = matrix::assemble(d, &numbering, &neighbours);
         let structure = Arc::new(Structure::new(&matrix)?);
@@ -72,18 +67,22 @@ where
         self.enters(Phase::Newton { step: self.steps.get() });
     }
 
+    /// The nodes of a contact edge, where P is given: two or three.
+    pub fn nodes(&self) -> usize {
+        self.d.space.degree().nodes_per_edge()
+    }
+
     /// The free degrees of freedom on the triangle of contact edge `e`.
     pub fn unknowns(&self, e: usize) -> Vec<usize> {
-        let nodes = &self.d.space.elements()[self.d.contact[e].edge.triangle];
-        nodes.iter().flat_map(|&node| self.numbering.of[node]).flatten().collect()
+        let nodes = self.d.contact[e].nodes.iter();
+        nodes.flat_map(|&node| self.numbering.of[node]).flatten().collect()
     }
 
     /// The rows of B that belong to contact edge `e`: calls `f` with the unknown, the node of the edge and the entry.
     pub fn functionals(&self, e: usize, mut f: impl FnMut(usize, usize, f64)) {
         let edge = &self.d.contact[e];
-        let nodes = &self.d.space.elements()[edge.edge.triangle];
-        for (a, functional) in edge.functionals.p0.iter().enumerate() {
-            for (&node, &entries) in nodes.iter().zip(functional) {
+        for (a, functional) in edge.functionals.p0().into_iter().enumerate() {
+            for (&node, &entries) in edge.nodes.iter().zip(functional) {
                 let entries = self.numbering.in_frame(node, entries.into());
                 for (number, entry) in self.numbering.of[node].iter().zip(entries) {
                     if let Some(number) = *number {

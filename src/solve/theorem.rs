@@ -5,13 +5,11 @@
 
 use super::factor::Factor;
 use super::ordering::nested_dissection;
-use super::{ContactQuadrature, Degree, Gamma0, Method, Solution, SolveError, discretize};
+use super::{ContactQuadrature, Gamma0, Method, Solution, SolveError, discretize};
 use crate::fem::contact_line::Gamma;
 use crate::fem::matrix::{self, Neighbours, Numbering};
 use crate::fem::pieces::Rule;
 use crate::fem::{Discretization, Errors, ExactSolution, Problem, a_priori, errors};
-use crate::kernel::edge_integral::ExactEdge;
-use crate::kernel::{P1, P2};
 
 /// The two sides and their ingredients.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,10 +35,23 @@ impl Theorem {
         solution: &Solution,
         exact: &dyn ExactSolution,
     ) -> Result<Self, SolveError> {
-        match solution.degree {
-            1 => theorem::<P1, 3, 2>(problem, solution, exact, Degree::One),
-            _ => theorem::<P2, 6, 3>(problem, solution, exact, Degree::Two),
-        }
+        let method = Method {
+            degree: solution.degree,
+            gamma0: match solution.gamma.gamma {
+                Gamma::Uniform(gamma0) => Gamma0::Value(gamma0),
+                Gamma::Local(kappa) => Gamma0::Local(kappa),
+            },
+            quadrature: ContactQuadrature::Exact,
+            allow_noncoercive: true,
+        };
+        let d = discretize(problem, &method)?;
+        let of = |v: &[[f64; 2]]| Errors::new(&d.space, &d.contact, v, exact);
+        Ok(Theorem {
+            kappa: d.kappa(),
+            discrete: of(&solution.displacement),
+            interpolant: of(&interpolant(&d, exact)),
+            projection: of(&projection(&d, exact)?),
+        })
     }
 
     /// The left side.
@@ -70,52 +81,12 @@ impl Theorem {
     }
 }
 
-fn theorem<E, const N: usize, const M: usize>(
-    problem: &Problem,
-    solution: &Solution,
-    exact: &dyn ExactSolution,
-    degree: Degree,
-) -> Result<Theorem, SolveError>
-where
-    E: ExactEdge<f64, N, M>,
-{
-    let method = Method {
-        degree,
-        gamma0: match solution.gamma.gamma {
-            Gamma::Uniform(gamma0) => Gamma0::Value(gamma0),
-            Gamma::Local(kappa) => Gamma0::Local(kappa),
-        },
-        quadrature: ContactQuadrature::Exact,
-        allow_noncoercive: true,
-    };
-    let d = discretize::<E, N, M>(problem, &method)?;
-    let of = |v: &[[f64; 2]]| Errors::new(&d.space, &d.contact, v, exact);
-    Ok(Theorem {
-        kappa: d.kappa(),
-        discrete: of(&solution.displacement),
-        interpolant: of(&interpolant(&d, exact)),
-        projection: of(&projection(&d, exact)?),
-    })
-}
-
-fn interpolant<E, const N: usize, const M: usize>(
-    d: &Discretization<E, N, M>,
-    exact: &dyn ExactSolution,
-) -> Vec<[f64; 2]>
-where
-    E: ExactEdge<f64, N, M>,
-{
+fn interpolant(d: &Discretization, exact: &dyn ExactSolution) -> Vec<[f64; 2]> {
     d.space.nodes().iter().map(|&x| exact.displacement(x)).collect()
 }
 
 /// The a-orthogonal projection: one linear solve with the matrix of a(.,.).
-fn projection<E, const N: usize, const M: usize>(
-    d: &Discretization<E, N, M>,
-    exact: &dyn ExactSolution,
-) -> Result<Vec<[f64; 2]>, SolveError>
-where
-    E: ExactEdge<f64, N, M>,
-{
+fn projection(d: &Discretization, exact: &dyn ExactSolution) -> Result<Vec<[f64; 2]>, SolveError> {
     let mut v = d.constraints.lift();
     // L(w) + int sigma_n(u) w_n - a(lift, w)
     let mut force = d.load.clone();
@@ -128,8 +99,8 @@ where
         let nodes = d.space.edge_nodes(edge.edge);
         rule.on_edge(ends, [], |point| {
             let sigma_n = exact.stress(point.x).normal(edge.normal);
-            let shapes: [f64; M] = E::edge_values(point.s);
-            for (node, shape) in nodes.into_iter().zip(shapes) {
+            let shapes = d.space.degree().edge_values(point.s);
+            for (&node, shape) in nodes.iter().zip(shapes) {
                 for c in 0..2 {
                     let weight = point.weight * edge.length * shape;
                     force[node][c] += weight * sigma_n * edge.normal[c];
@@ -137,9 +108,8 @@ where
             }
         });
     }
-    let nodes = d.space.nodes();
-    let neighbours = Neighbours::new(nodes.len(), d.space.elements());
-    let order = nested_dissection(nodes, &neighbours);
+    let neighbours = Neighbours::new(&d.space);
+    let order = nested_dissection(d.space.nodes(), &neighbours);
     let numbering = Numbering::under(&order, &d.constraints);
     let matrix = matrix::assemble_stiffness(d, &numbering, &neighbours);
     let factor = Factor::new(&matrix)?;

@@ -14,7 +14,7 @@ use signorini::fem::{
 };
 use signorini::io::run::{self, RunError};
 use signorini::io::{Case, Expression, case};
-use signorini::kernel::{Element, Material, P1, P2, Plane};
+use signorini::kernel::{Material, Plane};
 use signorini::solve::ladder::fitted_slope;
 use signorini::solve::{Degree, Ladder, Method, Settings, solve};
 
@@ -29,20 +29,9 @@ fn adapted(ladder: &Ladder, target: Target) -> (Problem, Adapted) {
 }
 
 fn error_of(problem: &Problem, ladder: &Ladder, gamma0: f64, v: &[[f64; 2]]) -> f64 {
-    fn of<E: Element<N, M>, const N: usize, const M: usize>(
-        problem: &Problem,
-        ladder: &Ladder,
-        gamma0: f64,
-        v: &[[f64; 2]],
-    ) -> f64 {
-        let space = Space::<E, N, M>::new(&problem.mesh);
-        let contact = contact_line::assemble(problem, &space, gamma0).unwrap();
-        Errors::new(&space, &contact, v, &*ladder.solution).energy
-    }
-    match ladder.method.degree {
-        Degree::One => of::<P1, 3, 2>(problem, ladder, gamma0, v),
-        Degree::Two => of::<P2, 6, 3>(problem, ladder, gamma0, v),
-    }
+    let space = Space::new(&problem.mesh, ladder.method.degree);
+    let contact = contact_line::assemble(problem, &space, gamma0).unwrap();
+    Errors::new(&space, &contact, v, &*ladder.solution).energy
 }
 
 /// Unknowns, true error and bound.

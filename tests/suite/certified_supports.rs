@@ -12,7 +12,7 @@ use signorini::certify::{Continuous, certify};
 use signorini::fem::exact::Kind;
 use signorini::fem::{Condition, Errors, Mesh, Problem, SharedFunction, Space, contact_line};
 use signorini::io::{Expression, certificate};
-use signorini::kernel::{Element, Material, P1, P2, Plane};
+use signorini::kernel::{Material, Plane};
 use signorini::solve::{Degree, Gamma0, Ladder, Method, Settings, Solution, solve};
 
 fn expression(text: &str) -> SharedFunction {
@@ -113,17 +113,6 @@ fn with(
     side: &str,
     other: impl Fn([SharedFunction; 2], [SharedFunction; 2]) -> Condition,
 ) -> (Continuous, f64) {
-    fn error<E: Element<N, M>, const N: usize, const M: usize>(
-        problem: &Problem,
-        ladder: &Ladder,
-        solution: &Solution,
-        v: &[[f64; 2]],
-    ) -> f64 {
-        let space = Space::<E, N, M>::new(&problem.mesh);
-        let gamma0 = solution.gamma.gamma0;
-        let contact = contact_line::assemble(problem, &space, gamma0).unwrap();
-        Errors::new(&space, &contact, v, &*ladder.solution).energy
-    }
     let mut problem = ladder.problem(level).unwrap();
     let Condition::Displacement([Some(x), Some(y)]) =
         Kind::Displacement.condition(&ladder.solution)
@@ -136,10 +125,9 @@ fn with(
     problem.conditions.insert(side.to_owned(), other([x, y], traction));
     let (solution, certified) = certified(&problem, ladder.method.degree);
     let v = &certified.displacement;
-    let error = match ladder.method.degree {
-        Degree::One => error::<P1, 3, 2>(&problem, ladder, &solution, v),
-        Degree::Two => error::<P2, 6, 3>(&problem, ladder, &solution, v),
-    };
+    let space = Space::new(&problem.mesh, ladder.method.degree);
+    let contact = contact_line::assemble(&problem, &space, solution.gamma.gamma0).unwrap();
+    let error = Errors::new(&space, &contact, v, &*ladder.solution).energy;
     (certified, error)
 }
 

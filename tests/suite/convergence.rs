@@ -18,11 +18,12 @@ use crate::common::exact::{
     corner, moved, on_square, on_trapezoid, singular, smooth, smooth_with_gap,
 };
 use approx::assert_relative_eq;
-use signorini::fem::contact_line::{ContactLineEdge, EdgeRule, assemble};
+use signorini::fem::EdgeRule;
+use signorini::fem::contact_face::Functionals;
+use signorini::fem::contact_line::assemble;
 use signorini::fem::interpolation::{Interpolation, seminorms};
 use signorini::fem::{Discretization, Errors, Exact, Space, a_priori, loads};
-use signorini::kernel::edge_integral::ExactEdge;
-use signorini::kernel::{P1, P2};
+use signorini::kernel::P2;
 use signorini::nalgebra::Vector2;
 use signorini::solve::evaluated::Evaluated;
 use signorini::solve::ladder::{fitted_slope, rates};
@@ -255,7 +256,7 @@ fn the_number_of_theorem_3_5_is_5_legs_of_the_triangles_and_the_seminorms_are_kn
     // lambda = mu = 1, right isosceles triangles with legs of 1/4, kappa = 1/2.
     let ladder = at_kappa(&on_square(&singular(0.5), Degree::One, 4), 0, 0.5);
     let (_, problem, solution) = ladder.solve(0).unwrap();
-    let space = Space::<P1, 3, 2>::new(&problem.mesh);
+    let space = Space::new(&problem.mesh, Degree::One);
     let contact = assemble(&problem, &space, solution.gamma.gamma).unwrap();
     let constants = Interpolation::new(&space, &contact, ladder.solution.material());
     assert_relative_eq!(4.0 * constants.constant(0.5), 5.073, epsilon = 1e-3);
@@ -295,18 +296,16 @@ fn control_the_theorem_fails_for_a_solution_that_is_not_the_discrete_one() {
 }
 
 /// What a variant of the method leaves on one level: the errors in the norms of the true method, or no solution.
-fn variant<E, const N: usize, const M: usize>(
+fn variant(
+    degree: Degree,
     ladder: &Ladder,
     level: usize,
-    modify: &impl Fn(&mut Discretization<E, N, M>),
-) -> Result<Errors, SolveError>
-where
-    E: ExactEdge<f64, N, M>,
-{
+    modify: &impl Fn(&mut Discretization),
+) -> Result<Errors, SolveError> {
     let problem = ladder.problem(level).unwrap();
     let mut d =
-        Discretization::<E, N, M>::new(&problem, |c| c.limit() / 2.0, EdgeRule::Exact).unwrap();
-    let contact: Vec<ContactLineEdge<N, M>> = d.contact.clone();
+        Discretization::new(&problem, degree, |c| c.limit() / 2.0, EdgeRule::Exact).unwrap();
+    let contact = d.contact.clone();
     modify(&mut d);
     // A variant is none of (8): a proof would be of another problem.
     let settings = Settings { proof: f64::INFINITY, ..ladder.settings };
@@ -315,14 +314,12 @@ where
 }
 
 /// The H1 errors of a variant on three levels from the coarsest one; `None` where it has no solution.
-fn errors_of_variant<E, const N: usize, const M: usize>(
+fn errors_of_variant(
+    degree: Degree,
     ladder: &Ladder,
-    modify: impl Fn(&mut Discretization<E, N, M>),
-) -> Vec<Option<f64>>
-where
-    E: ExactEdge<f64, N, M>,
-{
-    (0..LEVELS).map(|level| variant(ladder, level, &modify).ok().map(|e| e.h1)).collect()
+    modify: impl Fn(&mut Discretization),
+) -> Vec<Option<f64>> {
+    (0..LEVELS).map(|level| variant(degree, ladder, level, &modify).ok().map(|e| e.h1)).collect()
 }
 
 /// h halves from level to level.
@@ -331,23 +328,15 @@ fn last_rate(errors: &[Option<f64>]) -> f64 {
     (a / b).log2()
 }
 
-fn rebuilt<E, const N: usize, const M: usize>(
-    d: &mut Discretization<E, N, M>,
-    gamma: impl Fn(f64, f64) -> f64,
-) where
-    E: ExactEdge<f64, N, M>,
-{
+fn rebuilt(d: &mut Discretization, gamma: impl Fn(f64, f64) -> f64) {
     for edge in &mut d.contact {
         let mesh = d.space.mesh();
         let t = edge.edge.triangle;
         edge.gamma = gamma(d.gamma0, mesh.diameter(t));
-        edge.functionals = signorini::kernel::ContactEdge::new::<E>(
-            &mesh.triangle(t),
-            edge.edge.local,
-            edge.normal,
-            d.problem.material.of(0),
-            edge.gamma,
-        );
+        let triangle = (&mesh.triangle(t), edge.edge.local);
+        let (degree, material) = (edge.functionals.degree(), d.problem.material.of(0));
+        edge.functionals =
+            Functionals::new(degree, triangle, edge.normal, None, material, edge.gamma);
     }
 }
 
@@ -355,10 +344,10 @@ fn rebuilt<E, const N: usize, const M: usize>(
 fn the_variant_without_a_change_converges() {
     let p1 = on_square(&smooth(4.0, 3.0, 0.5), Degree::One, COARSEST);
     let rate =
-        last_rate(&errors_of_variant::<P1, 3, 2>(&p1, |d| rebuilt(d, |gamma0, h| gamma0 * h)));
+        last_rate(&errors_of_variant(Degree::One, &p1, |d| rebuilt(d, |gamma0, h| gamma0 * h)));
     assert!((rate - 1.0).abs() < 0.05, "{rate}");
     let p2 = on_square(&smooth(4.0, 3.0, 0.5), Degree::Two, COARSEST);
-    let rate = last_rate(&errors_of_variant::<P2, 6, 3>(&p2, |_| {}));
+    let rate = last_rate(&errors_of_variant(Degree::Two, &p2, |_| {}));
     assert!((rate - 2.0).abs() < 0.05, "{rate}");
 }
 
@@ -366,14 +355,15 @@ fn the_variant_without_a_change_converges() {
 fn control_a_fixed_penalty_without_the_consistency_terms_stalls() {
     // sigma_n is left out of P and of A: what remains is a penalty method with the fixed parameter 1/gamma.
     let p1 = on_square(&smooth(4.0, 3.0, 0.5), Degree::One, COARSEST);
-    let errors = errors_of_variant::<P1, 3, 2>(&p1, |d| {
+    let errors = errors_of_variant(Degree::One, &p1, |d| {
         for edge in &mut d.contact {
             edge.gamma = 1.0;
-            for (functional, node) in edge.functionals.p0.iter_mut().zip([1, 2]) {
+            let Functionals::One(functionals) = &mut edge.functionals else { unreachable!() };
+            for (functional, node) in functionals.p0.iter_mut().zip([1, 2]) {
                 *functional = [Vector2::zeros(); 3];
                 functional[(edge.edge.local + node) % 3] = edge.normal;
             }
-            edge.functionals.sigma_n = [[Vector2::zeros(); 3]; 2];
+            functionals.sigma_n = [[Vector2::zeros(); 3]; 2];
         }
     });
     let rate = last_rate(&errors);
@@ -385,7 +375,7 @@ fn control_gamma_without_h_loses_coercivity_on_fine_meshes() {
     let p1 = on_square(&smooth(4.0, 3.0, 0.5), Degree::One, COARSEST);
     // gamma as on the coarsest mesh: kappa is 1/2 there and doubles from mesh to mesh.
     let h0 = 2.0_f64.sqrt() / COARSEST as f64;
-    let errors = errors_of_variant::<P1, 3, 2>(&p1, |d| rebuilt(d, |gamma0, _| gamma0 * h0));
+    let errors = errors_of_variant(Degree::One, &p1, |d| rebuilt(d, |gamma0, _| gamma0 * h0));
     assert!(errors[0].is_some() && errors[2..].iter().all(Option::is_none), "{errors:?}");
 }
 
@@ -394,16 +384,16 @@ fn control_gamma0_over_h_loses_coercivity_on_fine_meshes() {
     let p1 = on_square(&smooth(4.0, 3.0, 0.5), Degree::One, COARSEST);
     let h0 = 2.0_f64.sqrt() / COARSEST as f64;
     let errors =
-        errors_of_variant::<P1, 3, 2>(&p1, |d| rebuilt(d, |gamma0, h| gamma0 * h0 * h0 / h));
+        errors_of_variant(Degree::One, &p1, |d| rebuilt(d, |gamma0, h| gamma0 * h0 * h0 / h));
     assert!(errors[0].is_some() && errors[1..].iter().all(Option::is_none), "{errors:?}");
 }
 
 #[test]
 fn control_the_contact_term_with_the_wrong_sign_gives_no_solution_or_a_wrong_one() {
     let p1 = on_square(&smooth(4.0, 3.0, 0.5), Degree::One, COARSEST);
-    let right = errors_of_variant::<P1, 3, 2>(&p1, |_| {});
+    let right = errors_of_variant(Degree::One, &p1, |_| {});
     // gamma < 0 in the weight of [P]+ P0 and in A; P keeps its gamma.
-    let wrong = errors_of_variant::<P1, 3, 2>(&p1, |d| {
+    let wrong = errors_of_variant(Degree::One, &p1, |d| {
         for edge in &mut d.contact {
             edge.gamma = -edge.gamma;
         }
@@ -417,8 +407,9 @@ fn control_the_contact_term_with_the_wrong_sign_gives_no_solution_or_a_wrong_one
 fn control_a_stress_with_the_wrong_sign_in_p_costs_p2_its_rate() {
     // P = u_n + gamma sigma_n: the exact solution no longer satisfies the discrete equation.
     let p2 = on_square(&smooth(4.0, 3.0, 0.5), Degree::Two, COARSEST);
-    let errors = errors_of_variant::<P2, 6, 3>(&p2, |d| {
+    let errors = errors_of_variant(Degree::Two, &p2, |d| {
         for edge in &mut d.contact {
+            let Functionals::Two(functionals) = &mut edge.functionals else { unreachable!() };
             let opposite = signorini::kernel::ContactEdge::new::<P2>(
                 &d.space.mesh().triangle(edge.edge.triangle),
                 edge.edge.local,
@@ -426,7 +417,7 @@ fn control_a_stress_with_the_wrong_sign_in_p_costs_p2_its_rate() {
                 d.problem.material.of(0),
                 -edge.gamma,
             );
-            edge.functionals.p0 = opposite.p0;
+            functionals.p0 = opposite.p0;
         }
     });
     assert!(last_rate(&errors) < 1.3, "{errors:?}");
@@ -435,7 +426,7 @@ fn control_a_stress_with_the_wrong_sign_in_p_costs_p2_its_rate() {
 #[test]
 fn control_a_load_by_one_point_costs_p2_its_rate() {
     let p2 = on_square(&smooth(4.0, 3.0, 0.5), Degree::Two, COARSEST);
-    let errors = errors_of_variant::<P2, 6, 3>(&p2, |d| {
+    let errors = errors_of_variant(Degree::Two, &p2, |d| {
         d.load = loads::assemble_with(d.problem, &d.space, |_| 1).unwrap();
     });
     assert!(last_rate(&errors) < 1.5, "{errors:?}");
@@ -447,13 +438,12 @@ fn control_bilateral_contact_does_not_converge_to_the_unilateral_solution() {
     // int (1/gamma) RAISED P0(v), is taken off again.
     const RAISED: f64 = 100.0;
     let p1 = on_square(&smooth(4.0, 3.0, 0.5), Degree::One, COARSEST);
-    let errors = errors_of_variant::<P1, 3, 2>(&p1, |d| {
+    let errors = errors_of_variant(Degree::One, &p1, |d| {
         for edge in &mut d.contact {
-            edge.gap = edge.gap.map(|g| g - RAISED);
+            edge.gap.iter_mut().for_each(|g| *g -= RAISED);
             let force = edge.length / edge.gamma * RAISED / 2.0;
-            let nodes = d.space.elements()[edge.edge.triangle];
-            for functional in &edge.functionals.p0 {
-                for (node, f) in nodes.into_iter().zip(functional) {
+            for functional in edge.functionals.p0() {
+                for (&node, f) in edge.nodes.iter().zip(functional) {
                     for c in 0..2 {
                         d.load[node][c] += force * f[c];
                     }

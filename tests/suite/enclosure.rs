@@ -5,7 +5,7 @@ use std::path::Path;
 
 use signorini::fem::{Condition, Diagonal, Problem, Rectangle};
 use signorini::io::Case;
-use signorini::kernel::{Material, P1, P2, Plane};
+use signorini::kernel::{Material, Plane};
 use signorini::solve::enclosure::{self, Enclosure};
 use signorini::solve::system::System;
 use signorini::solve::{
@@ -48,16 +48,8 @@ fn solved(problem: &Problem, degree: Degree) -> Solution {
 /// The enclosure around a displacement.
 fn around(problem: &Problem, degree: Degree, u: &[[f64; 2]]) -> Enclosure {
     let method = with_degree(degree);
-    match degree {
-        Degree::One => {
-            let d = discretize::<P1, 3, 2>(problem, &method).unwrap();
-            enclosure::enclose(&System::new(&d).unwrap(), u, None, None).unwrap()
-        }
-        Degree::Two => {
-            let d = discretize::<P2, 6, 3>(problem, &method).unwrap();
-            enclosure::enclose(&System::new(&d).unwrap(), u, None, None).unwrap()
-        }
-    }
+    let d = discretize(problem, &method).unwrap();
+    enclosure::enclose(&System::new(&d).unwrap(), u, None, None).unwrap()
 }
 
 /// The true error over |u|_a, by the independent solver in double-double arithmetic.
@@ -224,16 +216,8 @@ fn a_perturbed_displacement_that_contact_alone_holds_is_as_far_off_as_its_radius
         }
         let apart: Vec<[f64; 2]> =
             u.iter().zip(&solution.nodes).map(|(u, x)| [u[0], u[1] + 0.25 * x[1]]).collect();
-        let error = match degree {
-            Degree::One => {
-                let d = discretize::<P1, 3, 2>(&problem, &with_degree(degree)).unwrap();
-                d.strain_energy(&apart).sqrt()
-            }
-            Degree::Two => {
-                let d = discretize::<P2, 6, 3>(&problem, &with_degree(degree)).unwrap();
-                d.strain_energy(&apart).sqrt()
-            }
-        };
+        let d = discretize(&problem, &with_degree(degree)).unwrap();
+        let error = d.strain_energy(&apart).sqrt();
         let enclosure = around(&problem, degree, &u);
         let bound = enclosure.radius;
         println!("{degree:?}: {error:.2e} {bound:.2e}");
@@ -256,7 +240,7 @@ fn control_where_the_perturbation_may_lift_the_body_off_nothing_is_claimed() {
         .enumerate()
         .map(|(i, x)| [by(i, x), -2.0_f64.powi(-30) * x[1]])
         .collect();
-    let d = discretize::<P1, 3, 2>(&problem, &Method::default()).unwrap();
+    let d = discretize(&problem, &Method::default()).unwrap();
     let enclosure = enclosure::enclose(&System::new(&d).unwrap(), &u, None, None);
     assert_eq!(enclosure, Err(Unproved::HeldByContact));
 }

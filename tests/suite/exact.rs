@@ -16,7 +16,7 @@ use crate::common::exact::{corner, on_square, on_trapezoid, singular, smooth};
 use signorini::fem::errors::POINTS;
 use signorini::fem::exact::{Corner, Patch, Singular, Smooth};
 use signorini::fem::{Errors, Exact, Space, contact_line, loads};
-use signorini::kernel::{Material, P1, P2, Plane};
+use signorini::kernel::{Material, Plane};
 use signorini::nalgebra::{Matrix2, Vector2};
 use signorini::solve::Degree;
 
@@ -291,7 +291,7 @@ fn ladders(degree: Degree) -> Vec<signorini::solve::Ladder> {
 /// The five errors by two rules, as the largest relative difference.
 fn difference_of_rules(ladder: &signorini::solve::Ladder, points: [usize; 2]) -> f64 {
     let (_, problem, solution) = ladder.solve(0).unwrap();
-    let space = Space::<P2, 6, 3>::new(&problem.mesh);
+    let space = Space::new(&problem.mesh, Degree::Two);
     let gamma0 = solution.gamma.gamma0;
     let contact = contact_line::assemble(&problem, &space, gamma0).unwrap();
     let [a, b] = points.map(|points| {
@@ -376,7 +376,7 @@ fn control_errors_by_a_rule_that_ignores_where_the_solution_is_not_smooth_do_mov
 /// The largest relative change of L when each rule gets `points` points instead of its own.
 fn change_of_load(ladder: &signorini::solve::Ladder, points: usize) -> f64 {
     let problem = ladder.problem(0).unwrap();
-    let space = Space::<P2, 6, 3>::new(&problem.mesh);
+    let space = Space::new(&problem.mesh, Degree::Two);
     let usual = loads::assemble(&problem, &space).unwrap();
     let other = loads::assemble_with(&problem, &space, |_| points).unwrap();
     let size = usual.as_flattened().iter().fold(0.0, |max: f64, l| max.max(l.abs()));
@@ -407,8 +407,8 @@ fn loads_of_p1_sum_to_those_of_p2() {
     let ladder = on_square(&smooth(4.0, 3.0, 1.0 / 3.0), Degree::One, 8);
     let problem = ladder.problem(0).unwrap();
     let total = |load: Vec<[f64; 2]>| [0, 1].map(|c| load.iter().map(|l| l[c]).sum::<f64>());
-    let p1 = total(loads::assemble(&problem, &Space::<P1, 3, 2>::new(&problem.mesh)).unwrap());
-    let p2 = total(loads::assemble(&problem, &Space::<P2, 6, 3>::new(&problem.mesh)).unwrap());
+    let p1 = total(loads::assemble(&problem, &Space::new(&problem.mesh, Degree::One)).unwrap());
+    let p2 = total(loads::assemble(&problem, &Space::new(&problem.mesh, Degree::Two)).unwrap());
     for c in 0..2 {
         // Sums of a thousand entries of one integral.
         assert_abs_diff_eq!(p1[c], p2[c], epsilon = 1e-12);

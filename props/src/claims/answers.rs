@@ -6,9 +6,10 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use signorini::fem::Degree;
+use signorini::fem::element::value_at;
 use signorini::fem::{Condition, Diagonal, Mesh, Problem, Rectangle, SharedFunction};
-use signorini::kernel::edge_integral::{ExactEdge, value_at};
-use signorini::kernel::{Material, P1, P2, Plane};
+use signorini::kernel::{Material, Plane};
 use signorini::solve::evaluated::Evaluated;
 use signorini::solve::{Method, Solution, discretize};
 
@@ -51,12 +52,9 @@ type Key = ([u64; 2], [u64; 2]);
 
 /// The recovered pressures of a random displacement by their definition: the means of -lambda^h by the hats at each place, over
 /// the edges there with the same normal.
-fn recovered<E, const N: usize, const M: usize>(across: bool) -> Result<usize, String>
-where
-    E: ExactEdge<f64, N, M>,
-{
+fn recovered(degree: Degree, across: bool) -> Result<usize, String> {
     let problem = cornered()?;
-    let d = discretize::<E, N, M>(&problem, &Method::default()).map_err(text)?;
+    let d = discretize(&problem, &Method { degree, ..Method::default() }).map_err(text)?;
     let mut random = Random::new(draws::seed());
     let u = field(d.space.nodes().len(), &mut random);
     let solution = Solution::new(&d, Evaluated::new(&d, u.clone()), unsolved());
@@ -69,20 +67,20 @@ where
         .contact
         .iter()
         .map(|line| {
-            let nodes = d.space.edge_nodes(line.edge).into_iter().take(M);
+            let nodes = d.space.edge_nodes(line.edge).into_iter();
             nodes.map(|node| key(d.space.nodes()[node], line.normal.into())).collect()
         })
         .collect();
     for (line, keys) in d.contact.iter().zip(&keys) {
-        let p = line.p(&d.space.on_triangle(line.edge.triangle, &u));
+        let p = line.p(&u);
         for k in 0..PLACES {
             let s = (f64::from(k) + 0.5) / f64::from(PLACES);
-            let pressure = value_at::<E, f64, N, M>(p, s).max(0.0) / line.gamma;
+            let pressure = value_at(&p, s).max(0.0) / line.gamma;
             for (a, key) in keys.iter().enumerate() {
                 // Start, end, and for P2 the middle, whose hats are those of half edges.
-                let hat = match (M, a) {
-                    (2, 0) => 1.0 - s,
-                    (2, _) => s,
+                let hat = match (degree, a) {
+                    (Degree::One, 0) => 1.0 - s,
+                    (Degree::One, _) => s,
                     (_, 0) => (1.0 - 2.0 * s).max(0.0),
                     (_, 1) => (2.0 * s - 1.0).max(0.0),
                     _ => 1.0 - (2.0 * s - 1.0).abs(),
@@ -97,7 +95,7 @@ where
     let mut count = 0;
     for (edge, keys) in solution.contact.iter().zip(&keys) {
         // The points are in the order along the edge: start, middle, end.
-        let order: &[usize] = if M == 2 { &[0, 1] } else { &[0, 2, 1] };
+        let order: &[usize] = if degree == Degree::One { &[0, 1] } else { &[0, 2, 1] };
         for (point, &a) in edge.points.iter().zip(order) {
             let [work, weight] = means[&keys[a]];
             // Sums over places: 1/PLACES^2, and 1/PLACES where P is cut.
@@ -115,19 +113,17 @@ where
 }
 
 pub(super) fn around_corners(across: bool) -> Outcome {
-    let count = recovered::<P1, 3, 2>(across)? + recovered::<P2, 6, 3>(across)?;
+    let count = recovered(Degree::One, across)? + recovered(Degree::Two, across)?;
     Ok(format!("{count} places on two sides of a corner, P1 and P2"))
 }
 
 /// A random displacement of a block of unequal triangles as a solution.
-fn anything<E, const N: usize, const M: usize>(
+fn anything(
+    degree: Degree,
     problem: &Problem,
     u: impl Fn([f64; 2], [f64; 2]) -> [f64; 2],
-) -> Result<Solution, String>
-where
-    E: ExactEdge<f64, N, M>,
-{
-    let d = discretize::<E, N, M>(problem, &Method::default()).map_err(text)?;
+) -> Result<Solution, String> {
+    let d = discretize(problem, &Method { degree, ..Method::default() }).map_err(text)?;
     let mut random = Random::new(draws::seed());
     let drawn = field(d.space.nodes().len(), &mut random);
     let values = d.space.nodes().iter().zip(drawn).map(|(&x, v)| u(x, v)).collect();
@@ -151,7 +147,7 @@ fn unequal() -> Result<Problem, String> {
 /// those of a quadratic displacement, which has the same on all triangles.
 pub(super) fn nodal_stresses(plain: bool) -> Outcome {
     let problem = unequal()?;
-    let solution = anything::<P1, 3, 2>(&problem, |_, drawn| drawn)?;
+    let solution = anything(Degree::One, &problem, |_, drawn| drawn)?;
     let mut sums = vec![([0.0; 4], 0.0); solution.nodes.len()];
     for (t, (nodes, (stress, zz))) in solution.elements.chunks(3).zip(&solution.stress).enumerate()
     {
@@ -175,7 +171,7 @@ pub(super) fn nodal_stresses(plain: bool) -> Outcome {
         }
     }
     // u = (x^2 + y, x y): eps = (2 x, x, (1 + y)/2), sigma = 1.5 tr eps + 2 eps, sigma_zz = 1.5 tr eps.
-    let solution = anything::<P2, 6, 3>(&problem, |[x, y], _| [x * x + y, x * y])?;
+    let solution = anything(Degree::Two, &problem, |[x, y], _| [x * x + y, x * y])?;
     for (found, [x, y]) in solution.nodal_stresses(&problem).iter().zip(&solution.nodes) {
         let trace = 1.5 * 3.0 * x;
         let expected = [trace + 4.0 * x, trace + 2.0 * x, trace, 1.0 + y];
@@ -193,8 +189,8 @@ pub(super) fn errors_at_points(share: f64) -> Outcome {
     let mut count = 0;
     for degree in [1, 2] {
         let of = |u: &dyn Fn([f64; 2], [f64; 2]) -> [f64; 2]| match degree {
-            1 => anything::<P1, 3, 2>(&problem, u),
-            _ => anything::<P2, 6, 3>(&problem, u),
+            1 => anything(Degree::One, &problem, u),
+            _ => anything(Degree::Two, &problem, u),
         };
         let solution = of(&|_, drawn| drawn)?;
         // The nodes by their places.

@@ -15,9 +15,6 @@
 //! Square roots are given data: the solver's h_T, |E| and n are first compared with the exact squares and normals
 //! (`roots`), then both sides use them.
 
-use signorini::kernel::edge_integral::ExactEdge;
-use signorini::kernel::{P1, P2};
-
 use crate::claim::Outcome;
 use crate::draws;
 
@@ -60,17 +57,14 @@ const P2_KINDS: [Kind; 5] = [
     (Contact::Pressed, true, 1, Some("pressed")),
 ];
 
-fn all_of<E, const N: usize, const M: usize>(kinds: &[Kind]) -> Outcome
-where
-    E: ExactEdge<f64, N, M>,
-{
+fn all_of<const N: usize>(kinds: &[Kind]) -> Outcome {
     let shares = Shares::default();
     let mut found = Vec::new();
     for &(contact, two_sides, cases, class) in kinds {
         let problems = problems(contact, two_sides);
         found.push(draws::hold(cases, problems, class.as_slice(), |draw| {
             // The matrices do not know of the contact.
-            compared::<E, N, M>(draw, Mistake::None, class.is_none(), &shares)
+            compared::<N>(draw, Mistake::None, class.is_none(), &shares)
         })?);
     }
     let shares = shares.into_inner();
@@ -84,35 +78,31 @@ where
 
 /// P1: every number of the solver is near its definition.
 pub fn p1() -> Outcome {
-    all_of::<P1, 3, 2>(&P1_KINDS)
+    all_of::<3>(&P1_KINDS)
 }
 
 /// P2 likewise.
 pub fn p2() -> Outcome {
-    all_of::<P2, 6, 3>(&P2_KINDS)
+    all_of::<6>(&P2_KINDS)
 }
 
 /// The loops of the solver over rationals are the definitions, to the last digit: P1 and P2.
 pub fn loops_over_rationals() -> Outcome {
-    let p1 = draws::hold(20, problems(Contact::Any, true), &[], |draw| {
-        loops::<P1, 3, 2>(draw, Mistake::None)
-    })?;
-    let p2 = draws::hold(6, problems(Contact::Any, false), &[], |draw| {
-        loops::<P2, 6, 3>(draw, Mistake::None)
-    })?;
+    let p1 =
+        draws::hold(20, problems(Contact::Any, true), &[], |draw| loops::<3>(draw, Mistake::None))?;
+    let p2 =
+        draws::hold(6, problems(Contact::Any, false), &[], |draw| loops::<6>(draw, Mistake::None))?;
     Ok(format!("P1: {p1}; P2: {p2}"))
 }
 
 /// The same with gamma inverted in the definitions.
 pub fn loops_with_gamma_inverted() -> Outcome {
-    draws::reject(problems(Contact::Any, true), |draw| {
-        loops::<P1, 3, 2>(draw, Mistake::GammaInverted)
-    })
+    draws::reject(problems(Contact::Any, true), |draw| loops::<3>(draw, Mistake::GammaInverted))
 }
 
 fn rejected(mistake: Mistake) -> Outcome {
     draws::reject(problems(Contact::Any, true), |draw| {
-        compared::<P1, 3, 2>(draw, mistake, false, &Shares::default())
+        compared::<3>(draw, mistake, false, &Shares::default())
     })
 }
 

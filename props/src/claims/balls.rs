@@ -3,8 +3,8 @@
 //! members of the operands is one of exact rationals, and must lie in the result.
 
 use proptest::prelude::*;
+use signorini::fem::EdgeRule;
 use signorini::fem::ball::Ball as Fine;
-use signorini::fem::contact_line::EdgeRule;
 use signorini::fem::double_double::DoubleDouble;
 use signorini::fem::moments::moments;
 use signorini::kernel::edge_integral::ExactEdge;
@@ -206,13 +206,13 @@ pub fn chains_of_doubles_are_exact() -> Outcome {
 fn moments_of(draw: &Draw, share: f64) -> Verdict {
     let &([a, b, ..], [r, s]) = draw;
     let p = [Fine::from(a).widened(r * a.abs()), Fine::from(b).widened(s * b.abs())];
-    let found = moments::<P1, 3, 2>(&EdgeRule::Exact, p);
+    let found = moments(&EdgeRule::Exact, &p);
     Exact::scope(|| {
         for start in members(p[0]) {
             for end in members(p[1]) {
                 let exact = <P1 as ExactEdge<Exact, 3, 2>>::exact([start, end]).gradient;
-                for (found, exact) in found.into_iter().zip(exact) {
-                    ensure!(covers(found, exact, share));
+                for (found, exact) in found.iter().zip(exact) {
+                    ensure!(covers(*found, exact, share));
                 }
             }
         }

@@ -26,8 +26,7 @@ use signorini::fem::matrix::LowerTriangle;
 use signorini::fem::{
     Condition, Diagonal, Discretization, Mesh, Obstacle, Problem, Rectangle, SharedFunction, Side,
 };
-use signorini::kernel::edge_integral::ExactEdge;
-use signorini::kernel::{Material, P1, P2, Plane};
+use signorini::kernel::{Material, Plane};
 use signorini::solve::enclosure::{self, Enclosure, Unproved, Verifier};
 use signorini::solve::factor::Factor;
 use signorini::solve::intervals::Stresses;
@@ -37,7 +36,6 @@ use signorini::solve::{
 };
 
 use super::{answers, honesty, pressed};
-use crate::bodies::MaybeExact;
 use crate::claim::{Check, Outcome, noticed, text};
 use crate::discrete::{CUT, Discrete, Nodal, exactly};
 use crate::elimination::{Matrix, combined, dot, solve_definite, square};
@@ -69,17 +67,14 @@ impl Point {
 }
 
 /// A discrete problem with its matrices.
-struct Certifier<'a, E, const N: usize, const M: usize> {
-    problem: Discrete<'a, E, N, M>,
+struct Certifier<'a> {
+    problem: Discrete<'a>,
     k: Matrix,
     a: Matrix,
 }
 
-impl<'a, E, const N: usize, const M: usize> Certifier<'a, E, N, M>
-where
-    E: MaybeExact<N, M> + ExactEdge<f64, N, M>,
-{
-    fn new(d: &'a Discretization<'a, E, N, M>) -> Self {
+impl<'a> Certifier<'a> {
+    fn new(d: &'a Discretization<'a>) -> Self {
         let problem = Discrete::new(d);
         let k = problem.stiffness();
         let one = Exact::from(1);
@@ -319,19 +314,11 @@ fn moved(u: &[[f64; 2]], by: f64) -> Vec<[f64; 2]> {
 }
 
 /// The solver's result on a drawn problem, certified and compared with the exact u^h or a much better point.
-fn enclosed<E, const N: usize, const M: usize>(
-    draw: &Draw,
-    quadrature: ContactQuadrature,
-    demand: Demand,
-) -> Verdict
-where
-    E: MaybeExact<N, M> + ExactEdge<f64, N, M>,
-{
-    let degree = if N == 3 { Degree::One } else { Degree::Two };
+fn enclosed(degree: Degree, draw: &Draw, quadrature: ContactQuadrature, demand: Demand) -> Verdict {
     let Ok(solved) = Solved::new(draw, degree, quadrature) else {
         return Verdict::Fails("the solver has no solution");
     };
-    let Ok(d) = discretize::<E, N, M>(&solved.problem, &solved.method) else {
+    let Ok(d) = discretize(&solved.problem, &solved.method) else {
         return Verdict::Fails("there is no discrete problem");
     };
     let certifier = Certifier::new(&d);
@@ -348,10 +335,7 @@ where
     }
 }
 
-impl<E, const N: usize, const M: usize> Certifier<'_, E, N, M>
-where
-    E: MaybeExact<N, M> + ExactEdge<f64, N, M>,
-{
+impl Certifier<'_> {
     /// Certifies u~ and compares the enclosure with u^h, or with a point whose own enclosure is a thousand times smaller.
     fn compared(&self, found: Nodal, demand: Demand) -> Result<Verdict, &'static str> {
         let found = self.point(found);
@@ -448,21 +432,18 @@ const ANOTHER_FACTOR: InDoubles = InDoubles { matrix: 1e3, share: -400, ..REPORT
 
 /// The enclosure of the solver, in balls of doubles, contains the exact solution: its radius is compared with the error in
 /// exact arithmetic, or with the distance from a point whose own radius is a thousand times smaller.
-fn enclosed_in_doubles<E, const N: usize, const M: usize>(
+fn enclosed_in_doubles(
+    degree: Degree,
     draw: &Draw,
     quadrature: ContactQuadrature,
     asked: InDoubles,
-) -> Verdict
-where
-    E: MaybeExact<N, M> + ExactEdge<f64, N, M>,
-{
-    let degree = if N == 3 { Degree::One } else { Degree::Two };
+) -> Verdict {
     // On whole cells lengths and normals are doubles, so that both sides speak of the same problem.
     let draw = Draw { moved: None, ..draw.clone() };
     let Ok(solved) = Solved::new(&draw, degree, quadrature) else {
         return Verdict::Fails("the solver has no solution");
     };
-    let Ok(d) = discretize::<E, N, M>(&solved.problem, &solved.method) else {
+    let Ok(d) = discretize(&solved.problem, &solved.method) else {
         return Verdict::Fails("there is no discrete problem");
     };
     // Prescribed components too: the enclosure counts what they are off by.
@@ -504,10 +485,7 @@ where
     last
 }
 
-impl<E, const N: usize, const M: usize> Certifier<'_, E, N, M>
-where
-    E: MaybeExact<N, M> + ExactEdge<f64, N, M>,
-{
+impl Certifier<'_> {
     fn contained(
         &self,
         found: Nodal,
@@ -631,12 +609,12 @@ fn hold_in_doubles(asked: InDoubles) -> Outcome {
     let mut text = Vec::new();
     for (gap, class) in [(WIDE, "open"), (NARROW, "pressed"), (BETWEEN, IRRATIONAL)] {
         text.push(draws::hold(3, problems([2, 2], gap), &[class], |draw| {
-            Exact::scope(|| enclosed_in_doubles::<P1, 3, 2>(draw, ContactQuadrature::Exact, asked))
+            Exact::scope(|| enclosed_in_doubles(Degree::One, draw, ContactQuadrature::Exact, asked))
         })?);
     }
     let gauss = ContactQuadrature::Gauss(3);
     text.push(draws::hold(2, problems([1, 1], BETWEEN), &[], |draw| {
-        Exact::scope(|| enclosed_in_doubles::<P2, 6, 3>(draw, gauss, asked))
+        Exact::scope(|| enclosed_in_doubles(Degree::Two, draw, gauss, asked))
     })?);
     Ok(text.join("; "))
 }
@@ -649,13 +627,13 @@ fn reported_of_what_contact_holds() -> Outcome {
     let gauss = ContactQuadrature::Gauss(3);
     for asked in [REPORTED, moved] {
         text.push(draws::hold(3, problems_by_contact([2, 2], 6.0), &["pressed"], |draw| {
-            Exact::scope(|| enclosed_in_doubles::<P1, 3, 2>(draw, ContactQuadrature::Exact, asked))
+            Exact::scope(|| enclosed_in_doubles(Degree::One, draw, ContactQuadrature::Exact, asked))
         })?);
         text.push(draws::hold(3, problems_by_contact([2, 2], 12.0), &["pressed", CUT], |draw| {
-            Exact::scope(|| enclosed_in_doubles::<P1, 3, 2>(draw, gauss, asked))
+            Exact::scope(|| enclosed_in_doubles(Degree::One, draw, gauss, asked))
         })?);
         text.push(draws::hold(2, problems_by_contact([1, 1], 6.0), &["pressed"], |draw| {
-            Exact::scope(|| enclosed_in_doubles::<P2, 6, 3>(draw, gauss, asked))
+            Exact::scope(|| enclosed_in_doubles(Degree::Two, draw, gauss, asked))
         })?);
     }
     Ok(text.join("; "))
@@ -665,7 +643,7 @@ fn reported_of_what_contact_holds() -> Outcome {
 fn a_third_of_what_contact_holds() -> Outcome {
     let asked = InDoubles { factor: 1.0 / 3.0, noise: 1e-4, ..REPORTED_MOVED };
     draws::reject(problems_by_contact([2, 2], 6.0), |draw| {
-        Exact::scope(|| enclosed_in_doubles::<P1, 3, 2>(draw, ContactQuadrature::Exact, asked))
+        Exact::scope(|| enclosed_in_doubles(Degree::One, draw, ContactQuadrature::Exact, asked))
     })
 }
 
@@ -686,22 +664,20 @@ fn proved_kappa(scale: f64) -> Outcome {
             conditions.map(|(name, condition)| (name.to_owned(), condition)).into(),
         );
         for gamma0 in [Gamma0::Auto, Gamma0::Local(0.5)] {
-            turning = turning.max(proved_kappa_on::<P1, 3, 2>(&problem, gamma0, scale)?);
-            turning = turning.max(proved_kappa_on::<P2, 6, 3>(&problem, gamma0, scale)?);
+            turning = turning.max(proved_kappa_on(Degree::One, &problem, gamma0, scale)?);
+            turning = turning.max(proved_kappa_on(Degree::Two, &problem, gamma0, scale)?);
         }
     }
     Ok(format!("3 obstacles, P1 and P2; directions turn by up to {turning:.2}"))
 }
 
-fn proved_kappa_on<E, const N: usize, const M: usize>(
+fn proved_kappa_on(
+    degree: Degree,
     problem: &Problem,
     gamma0: Gamma0,
     scale: f64,
-) -> Result<f64, String>
-where
-    E: ExactEdge<f64, N, M>,
-{
-    let d = discretize::<E, N, M>(problem, &Method { gamma0, ..Method::default() });
+) -> Result<f64, String> {
+    let d = discretize(problem, &Method { degree, gamma0, ..Method::default() });
     let d = d.map_err(text)?;
     let (solved, ..) = solve_discrete(&d, &Settings::default()).map_err(text)?;
     let system = System::new(&d).map_err(text)?;
@@ -727,34 +703,32 @@ where
 
 fn reported_rejected(asked: InDoubles) -> Outcome {
     draws::reject(problems([2, 2], NARROW), |draw| {
-        Exact::scope(|| enclosed_in_doubles::<P1, 3, 2>(draw, ContactQuadrature::Exact, asked))
+        Exact::scope(|| enclosed_in_doubles(Degree::One, draw, ContactQuadrature::Exact, asked))
     })
 }
 
 /// Draws of each kind of gap, with the class that it is to hit; most of them for the one between.
-fn hold<E, const N: usize, const M: usize>(
+fn hold(
+    degree: Degree,
     cases: u32,
     most: [usize; 2],
     quadrature: ContactQuadrature,
     demand: Demand,
-) -> Outcome
-where
-    E: MaybeExact<N, M> + ExactEdge<f64, N, M>,
-{
+) -> Outcome {
     let cut = if quadrature == ContactQuadrature::Exact { IRRATIONAL } else { CUT };
     let mut text = Vec::new();
     for (cases, gap, class) in
         [(cases / 4, WIDE, "open"), (cases / 4, NARROW, "pressed"), (cases, BETWEEN, cut)]
     {
         text.push(draws::hold(cases, problems(most, gap), &[class], |draw| {
-            Exact::scope(|| enclosed::<E, N, M>(draw, quadrature, demand))
+            Exact::scope(|| enclosed(degree, draw, quadrature, demand))
         })?);
     }
     Ok(text.join("; "))
 }
 
 fn by_pieces(demand: Demand) -> Outcome {
-    hold::<P1, 3, 2>(12, [2, 2], ContactQuadrature::Exact, demand)
+    hold(Degree::One, 12, [2, 2], ContactQuadrature::Exact, demand)
 }
 
 /// A square of 4 x 4 cells that rolls off its floor: 40 unknowns.
@@ -771,7 +745,7 @@ fn on_a_finer_mesh() -> Outcome {
         kappa: 10,
         by_contact: false,
     };
-    Exact::scope(|| match enclosed::<P1, 3, 2>(&draw, ContactQuadrature::Exact, SOLVER) {
+    Exact::scope(|| match enclosed(Degree::One, &draw, ContactQuadrature::Exact, SOLVER) {
         Verdict::Holds(IRRATIONAL) => Ok(format!("40 unknowns: {IRRATIONAL}")),
         other => Err(format!("{other:?}")),
     })
@@ -779,18 +753,18 @@ fn on_a_finer_mesh() -> Outcome {
 
 fn by_points(demand: Demand) -> Outcome {
     let gauss = ContactQuadrature::Gauss(3);
-    let p1 = hold::<P1, 3, 2>(6, [2, 1], gauss, demand)?;
-    let p2 = hold::<P2, 6, 3>(4, [1, 1], gauss, demand)?;
+    let p1 = hold(Degree::One, 6, [2, 1], gauss, demand)?;
+    let p2 = hold(Degree::Two, 4, [1, 1], gauss, demand)?;
     Ok(format!("P1: {p1}; P2: {p2}"))
 }
 
 /// In full contact, where u^h is rational and each of the bounds is looked at.
 fn rejected(demand: Demand) -> Outcome {
     let p1 = draws::reject(problems([2, 1], NARROW), |draw| {
-        Exact::scope(|| enclosed::<P1, 3, 2>(draw, ContactQuadrature::Exact, demand))
+        Exact::scope(|| enclosed(Degree::One, draw, ContactQuadrature::Exact, demand))
     })?;
     let p2 = draws::reject(problems([1, 1], NARROW), |draw| {
-        Exact::scope(|| enclosed::<P2, 6, 3>(draw, ContactQuadrature::Gauss(3), demand))
+        Exact::scope(|| enclosed(Degree::Two, draw, ContactQuadrature::Gauss(3), demand))
     })?;
     Ok(format!("P1: {p1}; P2: {p2}"))
 }
@@ -825,7 +799,7 @@ fn refused_beyond_the_limit() -> Outcome {
         for (gamma0, unique) in [(1.6, false), (1.0 / 15.0, true)] {
             let gamma0 = Gamma0::Value(gamma0);
             let method = Method { gamma0, allow_noncoercive: true, ..Method::default() };
-            let d = discretize::<P1, 3, 2>(&problem, &method).map_err(text)?;
+            let d = discretize(&problem, &method).map_err(text)?;
             let certifier = Certifier::new(&d);
             // The solver's load, -1 up to rounding; with it the solutions are scaled.
             let scale = -Exact::of_double(d.load[1][0]);

@@ -7,14 +7,11 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use signorini::fem::contact_line::ContactLineEdge;
-use signorini::fem::{
-    Condition, Diagonal, Discretization, Mesh, Problem, Rectangle, SharedFunction,
-};
-use signorini::kernel::edge_integral::ExactEdge;
-use signorini::kernel::element::displacement_gradient;
+use signorini::fem::ContactFace;
+use signorini::fem::Degree;
+use signorini::fem::{Condition, Diagonal, Mesh, Problem, Rectangle, SharedFunction};
 use signorini::kernel::triangle::on_edge;
-use signorini::kernel::{Material, P1, P2, Plane};
+use signorini::kernel::{Material, Plane};
 use signorini::nalgebra::Vector2;
 use signorini::solve::{Method, discretize};
 
@@ -53,43 +50,38 @@ fn bent(plane: Plane) -> Result<Problem, String> {
 }
 
 /// n~ at the nodes of an edge; the planted mistake takes the facet's normal.
-type Directions<const N: usize, const M: usize> = fn(&ContactLineEdge<N, M>) -> [Vector2<f64>; M];
+type Directions = fn(&ContactFace) -> Vec<Vector2<f64>>;
 
-fn functionals_on<E, const N: usize, const M: usize>(
-    plane: Plane,
-    directions: Directions<N, M>,
-) -> Result<(), String>
-where
-    E: ExactEdge<f64, N, M>,
-{
+fn functionals_on(degree: Degree, plane: Plane, directions: Directions) -> Result<(), String> {
     let problem = bent(plane)?;
-    let d: Discretization<E, N, M> = discretize(&problem, &Method::default()).map_err(text)?;
-    if d.contact.iter().all(|edge| edge.directions == [edge.normal; M]) {
+    let d = discretize(&problem, &Method { degree, ..Method::default() }).map_err(text)?;
+    if d.contact.iter().all(|edge| edge.along_normal) {
         return Err("the direction of contact turns nowhere".to_owned());
     }
     let mut random = Random::new(draws::seed());
     let mut number = || random.below(2001) as f64 / 1000.0 - 1.0;
     for edge in &d.contact {
-        let nodal: [[f64; 2]; N] = std::array::from_fn(|_| [number(), number()]);
-        let vectors = nodal.map(Vector2::from);
+        let v: Vec<[f64; 2]> = d.space.nodes().iter().map(|_| [number(), number()]).collect();
+        let vectors = d.space.on_triangle(edge.edge.triangle, &v);
         let triangle = problem.mesh.triangle(edge.edge.triangle);
         let material = problem.material.of(edge.edge.triangle);
         let n = directions(edge);
         // n~ . sigma(v) n at the start and at the end: the first two nodes.
         let stress = [0, 1].map(|a| {
             let l = on_edge(edge.edge.local, a as f64);
-            let gradients = E::gradients(l, triangle.barycentric_gradients());
-            let sigma = material.stress(displacement_gradient(&vectors, &gradients));
+            let barycentric = triangle.barycentric_gradients();
+            let sigma =
+                material.stress(degree.displacement_gradient(l, barycentric, |j| vectors[j]));
             n[a].dot(&sigma.traction(edge.normal))
         });
         let near = |found: f64, expected: f64| (found - expected).abs() <= 1e-11;
-        let found = edge.sigma_n(&vectors);
+        let found = edge.sigma_n(|node| v[node]);
         if !(near(found[0], stress[0]) && near(found[1], stress[1])) {
             return Err(format!("s(v) = {found:?}, by definition {stress:?}"));
         }
-        let p = edge.p(&vectors);
-        let nodes = E::edge_nodes(edge.edge.local);
-        for (a, s) in E::edge_positions::<f64>().into_iter().enumerate() {
+        let p = edge.p(&v);
+        let nodes = degree.edge_nodes(edge.edge.local);
+        for (a, s) in degree.edge_positions().into_iter().enumerate() {
             let along = (1.0 - s) * stress[0] + s * stress[1];
             let expected = n[a].dot(&vectors[nodes[a]]) - edge.gamma * along - edge.gap[a];
             if !near(p[a], expected) {
@@ -100,50 +92,49 @@ where
     Ok(())
 }
 
-fn facets<const N: usize, const M: usize>(edge: &ContactLineEdge<N, M>) -> [Vector2<f64>; M] {
-    [edge.normal; M]
+fn facets(edge: &ContactFace) -> Vec<Vector2<f64>> {
+    vec![edge.normal; edge.directions.len()]
 }
 
-fn given<const N: usize, const M: usize>(edge: &ContactLineEdge<N, M>) -> [Vector2<f64>; M] {
-    edge.directions
+fn given(edge: &ContactFace) -> Vec<Vector2<f64>> {
+    edge.directions.clone()
 }
 
 /// Row 9: P and s along directions that turn.
 pub fn functionals_are_their_definitions() -> Outcome {
     for plane in [Plane::Strain, Plane::Stress] {
-        functionals_on::<P1, 3, 2>(plane, given)?;
-        functionals_on::<P2, 6, 3>(plane, given)?;
+        functionals_on(Degree::One, plane, given)?;
+        functionals_on(Degree::Two, plane, given)?;
     }
     Ok("a bent side of four edges, P1 and P2, plane strain and stress".to_owned())
 }
 
 /// The normals of the facets for the directions of contact.
 pub fn functionals_by_the_facets() -> Outcome {
-    match functionals_on::<P2, 6, 3>(Plane::Strain, facets) {
+    match functionals_on(Degree::Two, Plane::Strain, facets) {
         Err(why) => Ok(format!("rejected: {why}")),
         Ok(()) => Err("the normals of the facets are not noticed".to_owned()),
     }
 }
 
 /// C_h by its definition, an edge counted `factor` of the cosine times; and (11) with kappa for random fields.
-fn kappa_on<E, const N: usize, const M: usize>(factor: fn(f64) -> f64) -> Result<f64, String>
-where
-    E: ExactEdge<f64, N, M>,
-{
+fn kappa_on(degree: Degree, factor: fn(f64) -> f64) -> Result<f64, String> {
     let problem = bent(Plane::Strain)?;
-    let d: Discretization<E, N, M> = discretize(&problem, &Method::default()).map_err(text)?;
+    let d = discretize(&problem, &Method { degree, ..Method::default() }).map_err(text)?;
     let mut lengths: BTreeMap<usize, f64> = BTreeMap::new();
     for edge in &d.contact {
         let cosine = edge.directions[0].dot(&edge.directions[1]);
-        let counted = if E::DEGREE == 1 { 1.0 } else { factor(cosine) };
+        let counted = if degree.number() == 1 { 1.0 } else { factor(cosine) };
         *lengths.entry(edge.edge.triangle).or_default() += counted * edge.length;
     }
+    // p (p + 1) / 2
+    let trace = if degree == Degree::One { 1.0 } else { 3.0 };
     let mut most: f64 = 0.0;
     for (&t, length) in &lengths {
         let stiffness = problem.material.of(t).normal_stiffness();
         let area = problem.mesh.triangle(t).double_area() / 2.0;
         let size = problem.mesh.diameter(t);
-        most = most.max(f64::from(E::TRACE_CONSTANT) * stiffness * size * length / area);
+        most = most.max(trace * stiffness * size * length / area);
     }
     if !((d.coercivity.constant - most).abs() <= 1e-13 * most) {
         return Err(format!("C_h = {}, by definition {most}", d.coercivity.constant));
@@ -155,7 +146,7 @@ where
         let v: Vec<[f64; 2]> = d.space.nodes().iter().map(|_| [number(), number()]).collect();
         let mut sum = 0.0;
         for edge in &d.contact {
-            let [start, end] = edge.sigma_n(&d.space.on_triangle(edge.edge.triangle, &v));
+            let [start, end] = edge.sigma_n(|node| v[node]);
             let square = (start * start + start * end + end * end) / 3.0;
             sum += edge.gamma * edge.length * square;
         }
@@ -166,14 +157,14 @@ where
 
 /// Row 9: kappa where the direction of contact turns.
 pub fn kappa_counts_turning_edges() -> Outcome {
-    let p1 = kappa_on::<P1, 3, 2>(|cosine| 2.0 - cosine)?;
-    let p2 = kappa_on::<P2, 6, 3>(|cosine| 2.0 - cosine)?;
+    let p1 = kappa_on(Degree::One, |cosine| 2.0 - cosine)?;
+    let p2 = kappa_on(Degree::Two, |cosine| 2.0 - cosine)?;
     Ok(format!("200 fields: at most {p1:.2} (P1) and {p2:.2} (P2) of what (11) allows"))
 }
 
 /// Edges counted once for P2.
 pub fn kappa_that_counts_edges_once() -> Outcome {
-    match kappa_on::<P2, 6, 3>(|_| 1.0) {
+    match kappa_on(Degree::Two, |_| 1.0) {
         Err(why) => Ok(format!("rejected: {why}")),
         Ok(_) => Err("an edge counted once is not noticed".to_owned()),
     }

@@ -18,7 +18,7 @@ use signorini::fem::{
     Structured, Trapezoid, contact_line,
 };
 use signorini::io::Expression;
-use signorini::kernel::{Ball, Element, Enclosing, Material, P1, P2, Plane};
+use signorini::kernel::{Ball, Enclosing, Material, Plane};
 use signorini::nalgebra::Matrix2;
 use signorini::solve::{Degree, Method, Settings, solve};
 
@@ -503,8 +503,8 @@ impl Sample {
         let certified = certify(&problem, &found).ok()?;
         let (v, gamma0) = (&certified.displacement, found.gamma.gamma0);
         let error = match self.degree {
-            Degree::One => error_of::<P1, 3, 2>(&problem, gamma0, v, &solution)?,
-            Degree::Two => error_of::<P2, 6, 3>(&problem, gamma0, v, &solution)?,
+            Degree::One => error_of(Degree::One, &problem, gamma0, v, &solution)?,
+            Degree::Two => error_of(Degree::Two, &problem, gamma0, v, &solution)?,
         };
         let class = match (self.degree, class) {
             (Degree::One, class) => class,
@@ -517,13 +517,14 @@ impl Sample {
 }
 
 /// |u - v|_a
-fn error_of<E: Element<N, M>, const N: usize, const M: usize>(
+fn error_of(
+    degree: Degree,
     problem: &Problem,
     gamma0: f64,
     v: &[[f64; 2]],
     solution: &Solution,
 ) -> Option<f64> {
-    let space = Space::<E, N, M>::new(&problem.mesh);
+    let space = Space::new(&problem.mesh, degree);
     let contact = contact_line::assemble(problem, &space, gamma0).ok()?;
     Some(Errors::new(&space, &contact, v, &**solution).energy)
 }

@@ -8,13 +8,14 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use signorini::fem::ContactFace;
+use signorini::fem::Degree;
 use signorini::fem::ball::Ball;
-use signorini::fem::contact_line::ContactLineEdge;
+use signorini::fem::element::value_at;
 use signorini::fem::matrix::{self, Neighbours};
 use signorini::fem::precise;
 use signorini::fem::{Condition, Discretization, Problem, SharedFunction};
-use signorini::kernel::edge_integral::{ExactEdge, value_at};
-use signorini::kernel::{Material, P1, P2, Plane};
+use signorini::kernel::{Material, Plane};
 use signorini::solve::accuracy::{self, Pass, Route};
 use signorini::solve::enclosure::Verifier;
 use signorini::solve::evaluated::Evaluated;
@@ -64,13 +65,7 @@ pub(super) fn field(nodes: usize, random: &mut Random) -> Vec<[f64; 2]> {
 }
 
 /// The squared norm of a functional where no component is prescribed.
-fn free_square<E, const N: usize, const M: usize>(
-    d: &Discretization<E, N, M>,
-    functional: &[[f64; 2]],
-) -> f64
-where
-    E: ExactEdge<f64, N, M>,
-{
+fn free_square(d: &Discretization, functional: &[[f64; 2]]) -> f64 {
     let mut sum = 0.0;
     for (node, f) in functional.iter().enumerate() {
         for c in 0..2 {
@@ -83,10 +78,7 @@ where
 }
 
 /// What the residual is relative to, by its definition: |L| + |R(lift) + L|.
-fn forces<E, const N: usize, const M: usize>(d: &Discretization<E, N, M>) -> f64
-where
-    E: ExactEdge<f64, N, M>,
-{
+fn forces(d: &Discretization) -> f64 {
     let lift = d.residual(&d.constraints.lift()).values;
     let sum: Vec<[f64; 2]> =
         lift.iter().zip(&d.load).map(|(r, l)| [r[0] + l[0], r[1] + l[1]]).collect();
@@ -94,8 +86,8 @@ where
 }
 
 /// A route that is `shares[k]` times `error` away from `target` after pass k, and as far as after the last from then on.
-struct Known<'s, 'd, 'p, E, const N: usize, const M: usize> {
-    system: &'s System<'d, 'p, E, N, M>,
+struct Known<'s, 'd, 'p> {
+    system: &'s System<'d, 'p>,
     /// Over the free degrees of freedom, as the next two.
     target: Vec<f64>,
     error: Vec<f64>,
@@ -103,10 +95,7 @@ struct Known<'s, 'd, 'p, E, const N: usize, const M: usize> {
     passes: usize,
 }
 
-impl<E, const N: usize, const M: usize> Route<E, N, M> for Known<'_, '_, '_, E, N, M>
-where
-    E: ExactEdge<f64, N, M>,
-{
+impl Route for Known<'_, '_, '_> {
     fn pass(
         &mut self,
         iterate: &mut Iterate,
@@ -126,7 +115,7 @@ where
         // A(v, v) = a(v, v) - int gamma sigma_n(v)^2.
         let mut energy = d.strain_energy(&field);
         for edge in &d.contact {
-            let [start, end] = edge.sigma_n(&d.space.on_triangle(edge.edge.triangle, &field));
+            let [start, end] = edge.sigma_n(|node| field[node]);
             let square = (start * start + start * end + end * end) / 3.0;
             energy -= edge.gamma * edge.length * square;
         }
@@ -149,26 +138,17 @@ pub(super) struct Told {
 /// The size of the first error, relative to the displacement.
 const FIRST: f64 = 0.1;
 
-fn told<E, const N: usize, const M: usize>(
-    problem: &Problem,
-    shares: &[f64],
-) -> Result<Told, String>
-where
-    E: ExactEdge<f64, N, M>,
-{
-    let d = discretize::<E, N, M>(problem, &Method::default()).map_err(text)?;
+fn told(degree: Degree, problem: &Problem, shares: &[f64]) -> Result<Told, String> {
+    let d = discretize(problem, &Method { degree, ..Method::default() }).map_err(text)?;
     passes(&d, shares, &Settings::default())
 }
 
 /// The same on a discretization, until `settings` are met.
-pub(super) fn passes<E, const N: usize, const M: usize>(
-    d: &Discretization<E, N, M>,
+pub(super) fn passes(
+    d: &Discretization,
     shares: &[f64],
     settings: &Settings,
-) -> Result<Told, String>
-where
-    E: ExactEdge<f64, N, M>,
-{
+) -> Result<Told, String> {
     let (Evaluated { u, .. }, _, _) = solve_discrete(d, &Settings::default()).map_err(text)?;
     let system = System::new(d).map_err(text)?;
     let mut random = Random::new(draws::seed());
@@ -208,7 +188,11 @@ pub(super) fn on_bodies(
 }
 
 fn told_of(problem: &Problem, degree: usize, shares: &[f64]) -> Result<Told, String> {
-    if degree == 1 { told::<P1, 3, 2>(problem, shares) } else { told::<P2, 6, 3>(problem, shares) }
+    if degree == 1 {
+        told(Degree::One, problem, shares)
+    } else {
+        told(Degree::Two, problem, shares)
+    }
 }
 
 /// The residual that is reported, `scale` times what is reported, is that of (8) by its definition.
@@ -271,14 +255,8 @@ const STAYS: [f64; 3] = [1.0, 1e-3, 1e-9];
 
 /// a(u, v) by stresses in doubles, for a random u that is carried along by `by`, less a(u, v) in balls: its norm dual to |v|_a on
 /// the v that are free, beside the bound.
-fn rounding_of_stresses<E, const N: usize, const M: usize>(
-    problem: &Problem,
-    by: f64,
-) -> Result<f64, String>
-where
-    E: ExactEdge<f64, N, M>,
-{
-    let d = discretize::<E, N, M>(problem, &Method::default()).map_err(text)?;
+fn rounding_of_stresses(degree: Degree, problem: &Problem, by: f64) -> Result<f64, String> {
+    let d = discretize(problem, &Method { degree, ..Method::default() }).map_err(text)?;
     let system = System::new(&d).map_err(text)?;
     let mut random = Random::new(draws::seed());
     let nodes = d.space.nodes().len();
@@ -290,11 +268,11 @@ where
         .collect();
     let mut sums = [vec![[Ball::from(0); 2]; nodes], vec![[Ball::from(0); 2]; nodes]];
     let bound = precise::add_forces_of_rounded_stresses(&d, &u, &mut sums[0]);
-    precise::add_internal_forces(&d, &u, &mut sums[1]);
+    precise::add_internal_forces(&d.space, &problem.material, &u, &mut sums[1]);
     let off: Vec<[f64; 2]> =
         (0..nodes).map(|i| [0, 1].map(|c| (sums[0][i][c] - sums[1][i][c]).head())).collect();
     let off = system.numbering.gather(&off);
-    let neighbours = Neighbours::new(nodes, d.space.elements());
+    let neighbours = Neighbours::new(&d.space);
     let stiffness = matrix::assemble_stiffness(&d, &system.numbering, &neighbours);
     let factor = Factor::new(&stiffness).map_err(text)?;
     let mut half = off;
@@ -308,8 +286,8 @@ pub(super) fn stresses_are_off(scale: f64) -> Outcome {
     let bodies = on_bodies(|problem, degree| {
         for by in [0.0, 1.0, 1e6] {
             let share = match degree {
-                1 => rounding_of_stresses::<P1, 3, 2>(problem, by)?,
-                _ => rounding_of_stresses::<P2, 6, 3>(problem, by)?,
+                1 => rounding_of_stresses(Degree::One, problem, by)?,
+                _ => rounding_of_stresses(Degree::Two, problem, by)?,
             };
             most.set(most.get().max(share));
             if !(share <= scale) {
@@ -331,14 +309,8 @@ fn von_mises(material: &Material<f64>, plane: Plane, [xx, yy, xy]: [f64; 3]) -> 
     ((a * a + b * b + c * c) / 2.0).sqrt()
 }
 
-fn stresses_on<E, const N: usize, const M: usize>(
-    problem: &Problem,
-    plane: Option<Plane>,
-) -> Result<(), String>
-where
-    E: ExactEdge<f64, N, M>,
-{
-    let d = discretize::<E, N, M>(problem, &Method::default()).map_err(text)?;
+fn stresses_on(degree: Degree, problem: &Problem, plane: Option<Plane>) -> Result<(), String> {
+    let d = discretize(problem, &Method { degree, ..Method::default() }).map_err(text)?;
     let mut random = Random::new(draws::seed());
     let u = field(d.space.nodes().len(), &mut random);
     let solution = Solution::new(&d, Evaluated::new(&d, u.clone()), unsolved());
@@ -362,7 +334,7 @@ where
     let told = solution.boundaries.iter().map(|part| part.penetration);
     let told = told.fold(f64::NEG_INFINITY, f64::max);
     // Affine between the nodes, for P1.
-    if !(told >= deepest && (N == 6 || told == deepest)) {
+    if !(told >= deepest && (degree == Degree::Two || told == deepest)) {
         return Err(format!("a penetration of {told:e}, at the nodes {deepest:e}"));
     }
     for part in &solution.boundaries {
@@ -384,9 +356,9 @@ where
         // Where P > 0, counted at 1000 places of each edge: of two roots each costs one of them.
         let lines = d.contact.iter().filter(|line| *line.boundary == *part.boundary);
         let [counted, whole] = lines.fold([0.0; 2], |[counted, whole], line| {
-            let p = line.p(&d.space.on_triangle(line.edge.triangle, &u));
+            let p = line.p(&u);
             let places = (0..1000).map(|k| (f64::from(k) + 0.5) / 1000.0);
-            let pressed = places.filter(|&s| value_at::<E, f64, N, M>(p, s) > 0.0).count();
+            let pressed = places.filter(|&s| value_at(&p, s) > 0.0).count();
             [counted + line.length * pressed as f64 / 1000.0, whole + line.length]
         });
         if !((counted - part.length).abs() <= 2e-3 * whole) {
@@ -415,22 +387,18 @@ where
 
 /// The stretches of contact, by the arc lengths of their ends: P > 0 inside and not outside, none begins where another ends, and
 /// together they are as long as the contact.
-fn stretches_are_those_of_contact<E, const N: usize, const M: usize>(
-    d: &Discretization<E, N, M>,
+fn stretches_are_those_of_contact(
+    d: &Discretization,
     u: &[[f64; 2]],
     solution: &Solution,
     part: &ContactBoundary,
-) -> Result<(), String>
-where
-    E: ExactEdge<f64, N, M>,
-{
+) -> Result<(), String> {
     let edges = || {
         let all = d.contact.iter().zip(&solution.contact);
         all.filter(|(line, _)| *line.boundary == *part.boundary)
     };
-    let ends = |line: &ContactLineEdge<N, M>| {
-        d.space.mesh().ends(line.edge).map(|v| d.space.mesh().vertices()[v])
-    };
+    let ends =
+        |line: &ContactFace| d.space.mesh().ends(line.edge).map(|v| d.space.mesh().vertices()[v]);
     let far = |[a, b]: [f64; 2], [x, y]: [f64; 2]| (a - x).hypot(b - y);
     // Of a place on an edge: where its distances from the ends add up to the length.
     let arc = |x: [f64; 2]| {
@@ -452,11 +420,11 @@ where
         return Err(format!("stretches {stretches:?}, {} long", part.length));
     }
     for (line, told) in edges() {
-        let p = line.p(&d.space.on_triangle(line.edge.triangle, u));
+        let p = line.p(u);
         for s in (0..100).map(|k| (f64::from(k) + 0.5) / 100.0) {
             let place = told.points[0].arc + s * line.length;
             let inside = stretches.iter().any(|&[from, to]| from <= place && place <= to);
-            let pressed = value_at::<E, f64, N, M>(p, s);
+            let pressed = value_at(&p, s);
             let size = p.iter().map(|p| p.abs()).fold(0.0, f64::max);
             if inside != (pressed > 0.0) && pressed.abs() > 1e-9 * size {
                 return Err(format!("P = {pressed:e} at arc length {place}, of {stretches:?}"));
@@ -469,9 +437,9 @@ where
 pub(super) fn stresses(plane: Option<Plane>) -> Outcome {
     let bodies = on_bodies(|problem, degree| {
         if degree == 1 {
-            stresses_on::<P1, 3, 2>(problem, plane)
+            stresses_on(Degree::One, problem, plane)
         } else {
-            stresses_on::<P2, 6, 3>(problem, plane)
+            stresses_on(Degree::Two, problem, plane)
         }
     })?;
     Ok(format!("{bodies} bodies, P1 and P2"))
@@ -479,16 +447,9 @@ pub(super) fn stresses(plane: Option<Plane>) -> Outcome {
 
 /// The largest principal strain, in magnitude, of the mean strain on triangle t, from the boundary: the mean of grad u is
 /// the integral of u n^T over the boundary, by Simpson's rule on each edge, by the area.
-fn mean_strain<E, const N: usize, const M: usize>(
-    d: &Discretization<E, N, M>,
-    t: usize,
-    u: &[[f64; 2]],
-) -> f64
-where
-    E: ExactEdge<f64, N, M>,
-{
+fn mean_strain(d: &Discretization, t: usize, u: &[[f64; 2]]) -> f64 {
     let corners = d.problem.mesh.triangles()[t].map(|v| d.problem.mesh.vertices()[v]);
-    let nodes = d.space.elements()[t];
+    let nodes = d.space.nodes_of(t);
     let [a, b, c] = corners;
     let double_area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
     let mut gradient = [[0.0; 2]; 2];
@@ -497,7 +458,7 @@ where
         let normal = [end[1] - start[1], start[0] - end[0]];
         let [from, to] = [u[nodes[(i + 1) % 3]], u[nodes[(i + 2) % 3]]];
         for k in 0..2 {
-            let mean = if N == 6 {
+            let mean = if d.space.degree() == Degree::Two {
                 (from[k] + 4.0 * u[nodes[3 + i]][k] + to[k]) / 6.0
             } else {
                 (from[k] + to[k]) / 2.0
@@ -519,14 +480,8 @@ pub fn von_mises_without_sigma_zz() -> Outcome {
 
 /// The magnitudes that come with a functional, times `scale`: those of a(u, .) are at least sum_j |a(N_j, N_i)| |u_j|, and at
 /// most `COARSE` times that; and each part that is added, loads, stress product and contact, adds at least its size.
-fn magnitudes_on<E, const N: usize, const M: usize>(
-    problem: &Problem,
-    scale: f64,
-) -> Result<f64, String>
-where
-    E: ExactEdge<f64, N, M>,
-{
-    let d = discretize::<E, N, M>(problem, &Method::default()).map_err(text)?;
+fn magnitudes_on(degree: Degree, problem: &Problem, scale: f64) -> Result<f64, String> {
+    let d = discretize(problem, &Method { degree, ..Method::default() }).map_err(text)?;
     let nodes = d.space.nodes().len();
     let mut random = Random::new(draws::seed());
     let u = field(nodes, &mut random);
@@ -577,9 +532,9 @@ pub(super) fn magnitudes(scale: f64) -> Outcome {
     let most = std::cell::Cell::new(0.0_f64);
     let bodies = on_bodies(|problem, degree| {
         let found = if degree == 1 {
-            magnitudes_on::<P1, 3, 2>(problem, scale)
+            magnitudes_on(Degree::One, problem, scale)
         } else {
-            magnitudes_on::<P2, 6, 3>(problem, scale)
+            magnitudes_on(Degree::Two, problem, scale)
         };
         most.set(most.get().max(found?));
         Ok(())

@@ -8,12 +8,13 @@
 //! ```
 
 use proptest::prelude::*;
+use signorini::fem::Degree;
 use signorini::fem::contact_line::assemble;
 use signorini::fem::interpolation::{
     Interpolation, gradient_constant_squared, seminorms, trace_constant_squared,
 };
 use signorini::fem::{Space, a_priori};
-use signorini::kernel::{Material, P1, Plane, Triangle, positive_part};
+use signorini::kernel::{Material, Plane, Triangle, positive_part};
 use signorini::nalgebra::{Matrix2, Vector2};
 use signorini::solve::{Gamma0, Ladder};
 
@@ -161,7 +162,7 @@ const LEVELS: usize = 5;
 fn sides(ladder: &Ladder, level: usize) -> Result<[f64; 3], String> {
     let (solved, problem, solution) = ladder.solve(level).map_err(text)?;
     let left = a_priori::left(solved.kappa, &solved.errors);
-    let space = Space::<P1, 3, 2>::new(&problem.mesh);
+    let space = Space::new(&problem.mesh, Degree::One);
     let contact = assemble(&problem, &space, solution.gamma.gamma).map_err(text)?;
     let constants = Interpolation::new(&space, &contact, ladder.solution.material());
     let seminorms = seminorms(&space, &*ladder.solution).ok_or("u is not in H^2")?;

@@ -8,6 +8,7 @@ use std::borrow::Cow;
 
 use proptest::prelude::*;
 use signorini::fem::double_double::DoubleDouble;
+use signorini::nalgebra::DMatrix;
 use signorini::solve::accuracy::Outcome as Solved;
 use signorini::solve::body::{self, Body as _, Derivatives, Edges, Residual, Start, Step};
 use signorini::solve::newton::{self, Until};
@@ -27,18 +28,23 @@ const STIFFNESS: f64 = 1000.0;
 /// Three springs.
 struct Springs;
 
-impl Edges<1> for Springs {
+impl Edges for Springs {
     fn count(&self) -> usize {
         3
     }
 
-    fn derivatives(&self, _: usize, [p]: [DoubleDouble; 1]) -> ([f64; 1], [[f64; 1]; 1]) {
-        let p = p.head();
-        if p > 0.0 { ([STIFFNESS * p], [[STIFFNESS]]) } else { ([0.0], [[0.0]]) }
+    fn nodes(&self) -> usize {
+        1
     }
 
-    fn bregman(&self, _: usize, p: [DoubleDouble; 1], q: [DoubleDouble; 1]) -> f64 {
-        let ([p], [q]) = (p.map(DoubleDouble::head), q.map(DoubleDouble::head));
+    fn derivatives(&self, _: usize, p: &[DoubleDouble]) -> (Vec<f64>, DMatrix<f64>) {
+        let p = p[0].head();
+        let stiffness = if p > 0.0 { STIFFNESS } else { 0.0 };
+        (vec![stiffness * p], DMatrix::from_element(1, 1, stiffness))
+    }
+
+    fn bregman(&self, _: usize, p: &[DoubleDouble], q: &[DoubleDouble]) -> f64 {
+        let (p, q) = (p[0].head(), q[0].head());
         let step = q.max(0.0) - p.max(0.0);
         STIFFNESS * (step * step / 2.0 + p.max(0.0) * (-q).max(0.0))
     }
@@ -106,12 +112,12 @@ impl Body {
     }
 }
 
-impl body::Body<1> for Body {
+impl body::Body for Body {
     fn y(&self) -> Cow<'_, [DoubleDouble]> {
         self.x.iter().map(|&x| x.into()).collect()
     }
 
-    fn residual(&self, at: &Derivatives<1>) -> Residual {
+    fn residual(&self, at: &Derivatives) -> Residual {
         let r = self.gradient(&at.gradient);
         let terms = times(&self.b.map(|row| row.map(f64::abs)), &self.x.map(f64::abs));
         let sizes = [0, 1, 2].map(|i| terms[i] + self.f[i].abs() + at.gradient[i].abs());
@@ -120,18 +126,18 @@ impl body::Body<1> for Body {
         Residual { norm: dot(&r, &r).sqrt() / reference, noise }
     }
 
-    fn start(&mut self, _: &impl Edges<1>) -> Result<Start, SolveError> {
+    fn start(&mut self, _: &impl Edges) -> Result<Start, SolveError> {
         Ok(self.soft(1.0))
     }
 
-    fn compliance(&self, e: usize) -> [[f64; 1]; 1] {
-        [[1.0 / self.b[e][e]]]
+    fn compliance(&self, e: usize) -> DMatrix<f64> {
+        DMatrix::from_element(1, 1, 1.0 / self.b[e][e])
     }
 
-    fn step(&mut self, at: &Derivatives<1>) -> Result<Step, SolveError> {
+    fn step(&mut self, at: &Derivatives) -> Result<Step, SolveError> {
         let mut tangent = self.b;
         for (i, hessian) in at.hessian.iter().enumerate() {
-            tangent[i][i] += hessian[0][0];
+            tangent[i][i] += hessian[(0, 0)];
         }
         let gradient = self.gradient(&at.gradient);
         let d = solved(tangent, gradient).map(|c| -c);
@@ -233,27 +239,27 @@ impl Watched {
     }
 }
 
-impl body::Body<1> for Watched {
+impl body::Body for Watched {
     fn y(&self) -> Cow<'_, [DoubleDouble]> {
         self.body.y()
     }
 
-    fn residual(&self, at: &Derivatives<1>) -> Residual {
+    fn residual(&self, at: &Derivatives) -> Residual {
         body::Body::residual(&self.body, at)
     }
 
-    fn start(&mut self, _: &impl Edges<1>) -> Result<Start, SolveError> {
+    fn start(&mut self, _: &impl Edges) -> Result<Start, SolveError> {
         // The springs beside the softest that B may be.
         Ok(self.body.soft(STIFFNESS / 0.1))
     }
 
-    fn compliance(&self, e: usize) -> [[f64; 1]; 1] {
+    fn compliance(&self, e: usize) -> DMatrix<f64> {
         body::Body::compliance(&self.body, e)
     }
 
-    fn step(&mut self, at: &Derivatives<1>) -> Result<Step, SolveError> {
+    fn step(&mut self, at: &Derivatives) -> Result<Step, SolveError> {
         // Linearised here or where the springs would go by themselves: the stiffness is that of those that are pressed.
-        let pressed = at.hessian.iter().map(|h| h[0][0]).find(|&h| h > 0.0);
+        let pressed = at.hessian.iter().map(|h| h[(0, 0)]).find(|&h| h > 0.0);
         self.stiffness = pressed.map(|h| h / STIFFNESS);
         self.body.step(at)
     }

@@ -10,9 +10,9 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use faer::{Mat, Side};
-use signorini::fem::{Condition, Diagonal, Problem, Rectangle, SharedFunction};
-use signorini::kernel::edge_integral::ExactEdge;
-use signorini::kernel::{Material, P1, P2, Plane};
+use signorini::fem::Degree;
+use signorini::fem::{Condition, Diagonal, EdgeRule, Problem, Rectangle, SharedFunction};
+use signorini::kernel::{Material, Plane};
 use signorini::solve::iterate::Iterate;
 use signorini::solve::route::{self, RouteName};
 use signorini::solve::system::System;
@@ -45,17 +45,11 @@ const BALANCED: f64 = 1e-10;
 const LOOSE: f64 = 1e-2;
 
 /// The forces that are left over at the end of passes with the errors `shares`, beside loads and contact, by the definitions.
-fn left_over<E, const N: usize, const M: usize>(
-    problem: &Problem,
-    shares: &[f64],
-) -> Result<f64, String>
-where
-    E: ExactEdge<f64, N, M>,
-{
-    let plain = discretize::<E, N, M>(problem, &Method::default()).map_err(text)?;
+fn left_over(degree: Degree, problem: &Problem, shares: &[f64]) -> Result<f64, String> {
+    let plain = discretize(problem, &Method { degree, ..Method::default() }).map_err(text)?;
     let gamma0 = Gamma0::Value(SOFT * plain.coercivity.limit());
-    let method = Method { gamma0, ..Method::default() };
-    let d = discretize::<E, N, M>(problem, &method).map_err(text)?;
+    let method = Method { degree, gamma0, ..Method::default() };
+    let d = discretize(problem, &method).map_err(text)?;
     let settings = Settings { tolerance: LOOSE, ..Settings::default() };
     let outcome = honesty::passes(&d, shares, &settings)?.outcome;
     let residual = d.residual(&outcome.u).values;
@@ -66,8 +60,8 @@ where
         .flat_map(|(r, held)| [0, 1].map(|c| if held[c].is_none() { r[c].abs() } else { 0.0 }));
     let mut forces = sum_of_magnitudes(&d.load);
     for edge in &d.contact {
-        let p = edge.p(&d.space.on_triangle(edge.edge.triangle, &outcome.u));
-        let moments = E::exact(p).gradient;
+        let p = edge.p(&outcome.u);
+        let moments = EdgeRule::Exact.integrals(&p).gradient;
         forces += edge.length / edge.gamma * moments.iter().map(|g| g.abs()).sum::<f64>();
     }
     Ok(free.sum::<f64>() / forces)
@@ -79,8 +73,8 @@ pub(super) fn balanced(most: f64, scale: f64) -> Outcome {
     let largest = std::cell::Cell::new(0.0_f64);
     let bodies = honesty::on_bodies(|problem, degree| {
         let left = |shares: &[f64]| match degree {
-            1 => left_over::<P1, 3, 2>(problem, shares),
-            _ => left_over::<P2, 6, 3>(problem, shares),
+            1 => left_over(Degree::One, problem, shares),
+            _ => left_over(Degree::Two, problem, shares),
         };
         let by_definition = left(&falling)?;
         largest.set(largest.get().max(by_definition));
@@ -118,18 +112,11 @@ fn carried(by: f64) -> Result<Problem, String> {
 
 /// A(u, v) for every basis function, in doubles, of a body that is carried along by `by` and bent by 2^`bits` times a field of
 /// whole numbers, next to 2^`bits` times the forces of that field alone.
-fn forces_of_differences<E, const N: usize, const M: usize>(
-    by: f64,
-    bits: i32,
-    share: f64,
-) -> Result<(), String>
-where
-    E: ExactEdge<f64, N, M>,
-{
+fn forces_of_differences(degree: Degree, by: f64, bits: i32, share: f64) -> Result<(), String> {
     let size = 2.0_f64.powi(bits);
     let forces = |by: f64, size: f64| -> Result<Vec<[f64; 2]>, String> {
         let problem = carried(by)?;
-        let d = discretize::<E, N, M>(&problem, &Method::default()).map_err(text)?;
+        let d = discretize(&problem, &Method { degree, ..Method::default() }).map_err(text)?;
         let system = System::new(&d).map_err(text)?;
         let mut random = Random::new(draws::seed());
         let bent = field(d.space.nodes().len(), &mut random).into_iter();
@@ -158,8 +145,8 @@ const BENDS: [i32; 4] = [0, -10, -20, -60];
 pub(super) fn differences(share: f64) -> Outcome {
     for bits in BENDS {
         for by in [0.0, 1.0, 2.0_f64.powi(30)] {
-            forces_of_differences::<P1, 3, 2>(by, bits, share)?;
-            forces_of_differences::<P2, 6, 3>(by, bits, share)?;
+            forces_of_differences(Degree::One, by, bits, share)?;
+            forces_of_differences(Degree::Two, by, bits, share)?;
         }
     }
     Ok(format!("P1 and P2, bent by 2^{BENDS:?}, carried along by up to 2^30"))
@@ -186,16 +173,13 @@ fn beam(cells: usize) -> Result<Problem, String> {
 
 /// P at the nodes of the contact edges of a loaded block that is carried along by `by`, downwards onto a floor that is as far
 /// away, and pressed by 2^-7: all of them doubles, and P loses `by` / 2^-7 in sums of doubles.
-fn pressed<E, const N: usize, const M: usize>(by: f64) -> Result<Vec<Vec<f64>>, String>
-where
-    E: ExactEdge<f64, N, M>,
-{
+fn pressed(degree: Degree, by: f64) -> Result<Vec<Vec<f64>>, String> {
     let mut problem = carried(by)?;
     problem.body_force = [constant(0.0), constant(-0.01)];
     let down = [0.0, -(by + 2.0_f64.powi(-7))].map(|u| Some(constant(u)));
     problem.conditions.insert("top".to_owned(), Condition::Displacement(down));
     problem.conditions.insert("bottom".to_owned(), Condition::Contact { gap: constant(by) });
-    let d = discretize::<E, N, M>(&problem, &Method::default()).map_err(text)?;
+    let d = discretize(&problem, &Method { degree, ..Method::default() }).map_err(text)?;
     let system = System::new(&d).map_err(text)?;
     [RouteName::Condensed, RouteName::Assembled]
         .into_iter()
@@ -210,7 +194,7 @@ where
 pub(super) fn carried_blocks(most: f64) -> Outcome {
     let mut farthest = 0.0_f64;
     for degree in [1, 2] {
-        let of = |by| if degree == 1 { pressed::<P1, 3, 2>(by) } else { pressed::<P2, 6, 3>(by) };
+        let of = |by| if degree == 1 { pressed(Degree::One, by) } else { pressed(Degree::Two, by) };
         let at_rest = of(0.0)?;
         let largest = at_rest[1].iter().fold(0.0, |m: f64, p| m.max(p.abs()));
         for bits in [10, 20, 30] {
@@ -228,13 +212,7 @@ pub(super) fn carried_blocks(most: f64) -> Outcome {
 }
 
 /// The residuals of a route at each step.
-fn history<E, const N: usize, const M: usize>(
-    system: &System<E, N, M>,
-    name: RouteName,
-) -> Result<Vec<f64>, String>
-where
-    E: ExactEdge<f64, N, M>,
-{
+fn history(system: &System, name: RouteName) -> Result<Vec<f64>, String> {
     let done = route::by(name, system, &Settings::default(), &mut Times::default());
     Ok(done.map_err(text)?.0.residuals)
 }
@@ -248,14 +226,8 @@ pub(super) const MORE: isize = 2;
 
 /// The condensed route needs no more than `more` steps more than the assembled one; no pass begins far from where the one before
 /// has ended; and none goes on for more than two steps after the end. Gives the steps of both.
-fn same_steps<E, const N: usize, const M: usize>(
-    problem: &Problem,
-    more: isize,
-) -> Result<usize, String>
-where
-    E: ExactEdge<f64, N, M>,
-{
-    let d = discretize::<E, N, M>(problem, &Method::default()).map_err(text)?;
+fn same_steps(degree: Degree, problem: &Problem, more: isize) -> Result<usize, String> {
+    let d = discretize(problem, &Method { degree, ..Method::default() }).map_err(text)?;
     let system = System::new(&d).map_err(text)?;
     let assembled = history(&system, RouteName::Assembled)?;
     let condensed = history(&system, RouteName::Condensed)?;
@@ -283,8 +255,8 @@ pub(super) fn steps(more: isize) -> Outcome {
     let count = std::cell::Cell::new(0);
     let bodies = honesty::on_bodies(|problem, degree| {
         let taken = match degree {
-            1 => same_steps::<P1, 3, 2>(problem, more),
-            _ => same_steps::<P2, 6, 3>(problem, more),
+            1 => same_steps(Degree::One, problem, more),
+            _ => same_steps(Degree::Two, problem, more),
         };
         count.set(count.get() + taken?);
         Ok(())
@@ -294,17 +266,11 @@ pub(super) fn steps(more: isize) -> Outcome {
 
 /// The condition number by the eigenvalues of the dense matrix, and those that the routes report, of the body with its moduli
 /// and loads times 2^`bits`.
-fn conditions<E, const N: usize, const M: usize>(
-    mut problem: Problem,
-    bits: i32,
-) -> Result<(f64, [f64; 2]), String>
-where
-    E: ExactEdge<f64, N, M>,
-{
+fn conditions(degree: Degree, mut problem: Problem, bits: i32) -> Result<(f64, [f64; 2]), String> {
     let by = 2.0_f64.powi(bits);
     problem.material = Material::lame(by, by, Plane::Strain).into();
     problem.body_force = [constant(0.3 * by), constant(-by)];
-    let d = discretize::<E, N, M>(&problem, &Method::default()).map_err(text)?;
+    let d = discretize(&problem, &Method { degree, ..Method::default() }).map_err(text)?;
     let system = System::new(&d).map_err(text)?;
     let columns = sharpness::dense(&system.matrix);
     let matrix = Mat::from_fn(columns.len(), columns.len(), |i, j| columns[j][i]);
@@ -321,7 +287,7 @@ where
 pub(super) fn condition_is_told(scale: f64) -> Outcome {
     let mut least = f64::INFINITY;
     for cells in [2, 6, 12] {
-        let of = |bits| conditions::<P1, 3, 2>(beam(cells)?, bits);
+        let of = |bits| conditions(Degree::One, beam(cells)?, bits);
         let (truth, plain) = of(0)?;
         for bits in [-30, 30] {
             let (_, other) = of(bits)?;

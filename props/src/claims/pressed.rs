@@ -12,14 +12,15 @@ use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 
 use signorini::fem::ball::Ball;
-use signorini::fem::contact_line::{Coercivity, ContactLineEdge, EdgeRule};
+use signorini::fem::contact_line::Coercivity;
+use signorini::fem::element::value_at;
 use signorini::fem::{
-    Condition, Diagonal, Discretization, Mesh, Problem, Rectangle, SharedFunction,
+    Condition, ContactFace, Diagonal, Discretization, EdgeRule, Mesh, Problem, Rectangle,
+    SharedFunction,
 };
 use signorini::kernel::contact_edge::integral_of_product;
-use signorini::kernel::edge_integral::{ExactEdge, value_at};
-use signorini::kernel::{Material, P1, P2, Plane};
-use signorini::solve::balls::{Lines, lines};
+use signorini::kernel::{Material, Plane};
+use signorini::solve::balls::lines;
 use signorini::solve::pressed::Pressed;
 use signorini::solve::{Degree, Method, Settings, solve};
 
@@ -50,45 +51,42 @@ fn square() -> Result<Problem, String> {
 }
 
 /// A displacement, and what is known of it.
-struct At<'a, 'p, E, const N: usize, const M: usize> {
-    d: &'a Discretization<'p, E, N, M>,
-    lines: Lines<'a, N, M>,
+struct At<'a, 'p> {
+    d: &'a Discretization<'p>,
+    lines: Vec<ContactFace<Ball>>,
 }
 
 fn balls(u: &[[f64; 2]]) -> Vec<[Ball; 2]> {
     u.iter().map(|u| u.map(Ball::from)).collect()
 }
 
-impl<'a, 'p, E, const N: usize, const M: usize> At<'a, 'p, E, N, M>
-where
-    E: ExactEdge<f64, N, M>,
-{
-    fn new(d: &'a Discretization<'p, E, N, M>) -> Self {
+impl<'a, 'p> At<'a, 'p> {
+    fn new(d: &'a Discretization<'p>) -> Self {
         At { d, lines: lines(d) }
     }
 
-    fn edge(&self) -> &'a ContactLineEdge<N, M> {
+    fn edge(&self) -> &'a ContactFace {
         &self.d.contact[0]
     }
 
-    fn pressed(&self, u: &[[f64; 2]]) -> Pressed<M> {
+    fn pressed(&self, u: &[[f64; 2]]) -> Pressed {
         Pressed::at(self.d, &self.lines, &balls(u))
     }
 
     /// P at the nodes of the edge. There is no gap: it is P0.
-    fn p(&self, u: &[[f64; 2]]) -> [f64; M] {
-        self.edge().p(&self.d.space.on_triangle(self.edge().edge.triangle, u))
+    fn p(&self, u: &[[f64; 2]]) -> Vec<f64> {
+        self.edge().p(u)
     }
 
     /// Whether it is positive at fifty places of each piece that is taken for pressed.
-    fn is_positive(p: [f64; M], pressed: &Pressed<M>) -> bool {
+    fn is_positive(p: &[f64], pressed: &Pressed) -> bool {
         let places = |[a, b]: [f64; 2]| (0..=50).map(move |k| a + (b - a) * f64::from(k) / 50.0);
         let mut places = pressed.pieces(0).iter().copied().flat_map(places);
-        places.all(|s| value_at::<E, f64, N, M>(p, s) > 0.0)
+        places.all(|s| value_at(p, s) > 0.0)
     }
 
     /// The field that has these values of n . v at the nodes of the edge, and is 0 elsewhere.
-    fn field(&self, values: [f64; M]) -> Vec<[f64; 2]> {
+    fn field(&self, values: Vec<f64>) -> Vec<[f64; 2]> {
         let mut v = vec![[0.0; 2]; self.d.space.nodes().len()];
         for (node, value) in self.d.space.edge_nodes(self.edge().edge).into_iter().zip(values) {
             v[node][1] = -value;
@@ -100,19 +98,19 @@ where
     fn springs(&self, v: &[[f64; 2]]) -> f64 {
         let p = self.p(v);
         let rule = signorini::fem::quadrature::gauss(3).into_iter();
-        let square = |s| value_at::<E, f64, N, M>(p, s).powi(2);
+        let square = |s| value_at(&p, s).powi(2);
         self.edge().length / self.edge().gamma * rule.map(|(s, w)| w * square(s)).sum::<f64>()
     }
 
     /// |v|_S^2
     fn square(&self, v: &[[f64; 2]]) -> f64 {
-        let sigma = self.edge().sigma_n(&self.d.space.on_triangle(self.edge().edge.triangle, v));
+        let sigma = self.edge().sigma_n(|node| v[node]);
         let stress = self.edge().gamma * self.edge().length * integral_of_product(sigma, sigma);
         self.d.strain_energy(v) - stress + self.springs(v)
     }
 
     /// The largest radius on which the edge is said to stay pressed.
-    fn radius(pressed: &Pressed<M>) -> f64 {
+    fn radius(pressed: &Pressed) -> f64 {
         let (mut low, mut high) = (0.0, 1.0);
         while pressed.stay(high) && high < 1e300 {
             high *= 2.0;
@@ -129,26 +127,21 @@ where
 const STEEPEST: [f64; 3] = [1.0, -0.5, 0.0];
 const STEEPEST_OF_2: [f64; 3] = [1.0, 1.0 / 3.0, -1.0 / 6.0];
 
-fn stays_on<E, const N: usize, const M: usize>(
-    rule: EdgeRule,
-    times: f64,
-) -> Result<[usize; 2], String>
-where
-    E: ExactEdge<f64, N, M>,
-{
+fn stays_on(degree: Degree, rule: EdgeRule, times: f64) -> Result<[usize; 2], String> {
     let problem = square()?;
     // Springs beside which the body is soft: what moves P most is their own field.
-    let d = Discretization::<E, N, M>::new(&problem, |c| 1e-9 * c.limit(), rule).map_err(text)?;
+    let d = Discretization::new(&problem, degree, |c| 1e-9 * c.limit(), rule).map_err(text)?;
     let at = At::new(&d);
-    let steepest = if M == 2 { STEEPEST } else { STEEPEST_OF_2 };
+    let nodes = degree.nodes_per_edge();
+    let steepest = if degree == Degree::One { STEEPEST } else { STEEPEST_OF_2 };
     let mut random = Random::new(draws::seed());
     let mut seen = [0, 0];
     for draw in 0..400 {
-        let values: [f64; M] = std::array::from_fn(|_| match draw {
+        let mut value = || match draw {
             0 => 1.0,
             _ => (4.0 * number(&mut random) - 1.0).powi(3),
-        });
-        let u = at.field(values);
+        };
+        let u = at.field((0..nodes).map(|_| value()).collect());
         let p = at.p(&u);
         let pressed = at.pressed(&u);
         if !pressed.edges().any(|is| is) {
@@ -156,17 +149,16 @@ where
             continue;
         }
         seen[1] += 1;
-        let rho = times * At::<E, N, M>::radius(&pressed);
+        let rho = times * At::radius(&pressed);
         for turned in [false, true] {
-            let mut values: [f64; M] = std::array::from_fn(|a| -steepest[a]);
+            let mut values: Vec<f64> = steepest[..nodes].iter().map(|v| -v).collect();
             if turned {
                 values.swap(0, 1);
             }
             let v = at.field(values);
             let share = rho / at.square(&v).sqrt();
-            let moved = at.p(&v).map(|p| share * p);
-            let there: [f64; M] = std::array::from_fn(|a| p[a] + moved[a]);
-            if ![p, there].into_iter().all(|p| At::<E, N, M>::is_positive(p, &pressed)) {
+            let there: Vec<f64> = p.iter().zip(at.p(&v)).map(|(p, v)| p + share * v).collect();
+            if ![&p, &there].into_iter().all(|p| At::is_positive(p, &pressed)) {
                 return Err(format!("P = {p:?}, on the ball of radius {rho:e} P = {there:?}"));
             }
         }
@@ -178,10 +170,10 @@ where
 pub(super) fn stays(times: f64) -> Outcome {
     let mut sum = [0, 0];
     for seen in [
-        stays_on::<P1, 3, 2>(EdgeRule::Exact, times)?,
-        stays_on::<P1, 3, 2>(EdgeRule::gauss(2), times)?,
-        stays_on::<P2, 6, 3>(EdgeRule::Exact, times)?,
-        stays_on::<P2, 6, 3>(EdgeRule::gauss(3), times)?,
+        stays_on(Degree::One, EdgeRule::Exact, times)?,
+        stays_on(Degree::One, EdgeRule::gauss(2), times)?,
+        stays_on(Degree::Two, EdgeRule::Exact, times)?,
+        stays_on(Degree::Two, EdgeRule::gauss(3), times)?,
     ] {
         sum = [sum[0] + seen[0], sum[1] + seen[1]];
     }
@@ -191,15 +183,12 @@ pub(super) fn stays(times: f64) -> Outcome {
     Ok(format!("{} fields that press, {} that don't, P1 and P2", sum[1], sum[0]))
 }
 
-fn holds_on<E, const N: usize, const M: usize>(kappa: f64, share: f64) -> Result<f64, String>
-where
-    E: ExactEdge<f64, N, M>,
-{
+fn holds_on(degree: Degree, kappa: f64, share: f64) -> Result<f64, String> {
     let problem = square()?;
-    let d = Discretization::<E, N, M>::new(&problem, |c| kappa * c.limit(), EdgeRule::Exact);
+    let d = Discretization::new(&problem, degree, |c| kappa * c.limit(), EdgeRule::Exact);
     let d = d.map_err(text)?;
     let at = At::new(&d);
-    let pressed = at.pressed(&at.field([1.0; M]));
+    let pressed = at.pressed(&at.field(vec![1.0; degree.nodes_per_edge()]));
     // The matrix of |v|_S by the squares of unit fields and of their sums, without the first node's x, along which it slides.
     let count = 2 * d.space.nodes().len();
     let units = |columns: [usize; 2]| {
@@ -236,26 +225,24 @@ where
 pub(super) fn holds(share: f64) -> Outcome {
     let mut nearest: f64 = 0.0;
     for kappa in [1e-6, 0.1, 0.5, 0.9] {
-        nearest = nearest.max(holds_on::<P1, 3, 2>(kappa, share)?);
-        nearest = nearest.max(holds_on::<P2, 6, 3>(kappa, share)?);
+        nearest = nearest.max(holds_on(Degree::One, kappa, share)?);
+        nearest = nearest.max(holds_on(Degree::Two, kappa, share)?);
     }
     Ok(format!("four gammas, P1 and P2; up to {nearest:.2} of the bound is attained"))
 }
 
-fn springs_on<E, const N: usize, const M: usize>(scale: f64) -> Result<(), String>
-where
-    E: ExactEdge<f64, N, M>,
-{
+fn springs_on(degree: Degree, scale: f64) -> Result<(), String> {
     let problem = square()?;
-    for points in [None, Some(1), Some(M - 1), Some(M), Some(5)] {
+    let (p, nodes) = (degree.number(), degree.nodes_per_edge());
+    for points in [None, Some(1), Some(p), Some(nodes), Some(5)] {
         let rule = points.map_or(EdgeRule::Exact, EdgeRule::gauss);
-        let d = Discretization::<E, N, M>::new(&problem, |c| 0.3 * c.limit(), rule);
+        let d = Discretization::new(&problem, degree, |c| 0.3 * c.limit(), rule);
         let d = d.map_err(text)?;
         let at = At::new(&d);
-        let pressed = at.pressed(&at.field([1.0; M]));
-        let sees = points.is_none_or(|n| n >= M);
+        let pressed = at.pressed(&at.field(vec![1.0; degree.nodes_per_edge()]));
+        let sees = points.is_none_or(|n| n >= nodes);
         if pressed.edges().any(|is| is) != sees {
-            return Err(format!("{points:?} points, P{}: pressed or not", M - 1));
+            return Err(format!("{points:?} points, P{p}: pressed or not"));
         }
         let mut random = Random::new(draws::seed());
         let v = field(d.space.nodes().len(), &mut random);
@@ -272,8 +259,8 @@ where
 }
 
 pub(super) fn springs(scale: f64) -> Outcome {
-    springs_on::<P1, 3, 2>(scale)?;
-    springs_on::<P2, 6, 3>(scale)?;
+    springs_on(Degree::One, scale)?;
+    springs_on(Degree::Two, scale)?;
     Ok("five rules, P1 and P2".to_owned())
 }
 
@@ -301,21 +288,9 @@ fn between_walls(gaps: [Option<f64>; 2], angle: f64) -> Result<Problem, String> 
 
 /// A displacement solves (8) at every node, prescribed or not.
 fn solves(problem: &Problem, degree: Degree, u: &[[f64; 2]]) -> Result<bool, String> {
-    fn residual<E, const N: usize, const M: usize>(
-        problem: &Problem,
-        u: &[[f64; 2]],
-    ) -> Result<Vec<[f64; 2]>, String>
-    where
-        E: ExactEdge<f64, N, M>,
-    {
-        let half = |c: &Coercivity| c.limit() / 2.0;
-        let d = Discretization::<E, N, M>::new(problem, half, EdgeRule::Exact).map_err(text)?;
-        Ok(d.residual(u).values)
-    }
-    let r = match degree {
-        Degree::One => residual::<P1, 3, 2>(problem, u)?,
-        Degree::Two => residual::<P2, 6, 3>(problem, u)?,
-    };
+    let half = |c: &Coercivity| c.limit() / 2.0;
+    let d = Discretization::new(problem, degree, half, EdgeRule::Exact).map_err(text)?;
+    let r = d.residual(u).values;
     // The weight is 0.1.
     Ok(r.as_flattened().iter().all(|r| r.abs() <= 1e-12))
 }

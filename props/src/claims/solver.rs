@@ -10,13 +10,13 @@
 use std::collections::BTreeMap;
 
 use proptest::prelude::*;
-use signorini::fem::contact_line::EdgeRule;
+use signorini::fem::EdgeRule;
 use signorini::fem::quadrature;
 use signorini::fem::{Errors, ExactSolution, Problem};
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::element::displacement_gradient;
 use signorini::kernel::{EdgeIntegrals, Element, Material, P1, P2, positive_part};
-use signorini::nalgebra::Matrix2;
+use signorini::nalgebra::{Matrix2, Vector2};
 use signorini::solve::{ContactQuadrature, Degree, Gamma0, Method, SolveError, discretize};
 
 use crate::claim::{Claim, Outcome, noticed, text};
@@ -27,15 +27,9 @@ use crate::verdict::Verdict;
 use crate::{draws, ensure, sharpness};
 
 /// The verdict on gamma0 = `share` times the limit, and kappa where it is taken.
-fn kappa_at<E, const N: usize, const M: usize>(
-    problem: &Problem,
-    gamma0: Gamma0,
-) -> Result<Option<f64>, String>
-where
-    E: ExactEdge<f64, N, M>,
-{
-    let method = Method { gamma0, ..Method::default() };
-    match discretize::<E, N, M>(problem, &method) {
+fn kappa_at(degree: Degree, problem: &Problem, gamma0: Gamma0) -> Result<Option<f64>, String> {
+    let method = Method { degree, gamma0, ..Method::default() };
+    match discretize(problem, &method) {
         Ok(d) => Ok(Some(d.kappa())),
         Err(SolveError::NotCoercive { kappa, .. }) if kappa >= 1.0 => Ok(None),
         Err(other) => Err(other.to_string()),
@@ -43,18 +37,12 @@ where
 }
 
 /// kappa >= 1 is refused, less is not; `limit` multiplies the limit that is expected.
-fn refusal_on<E, const N: usize, const M: usize>(
-    problem: &Problem,
-    limit: f64,
-) -> Result<(), String>
-where
-    E: ExactEdge<f64, N, M>,
-{
-    let method = Method::default();
-    let d = discretize::<E, N, M>(problem, &method).map_err(text)?;
+fn refusal_on(degree: Degree, problem: &Problem, limit: f64) -> Result<(), String> {
+    let method = Method { degree, ..Method::default() };
+    let d = discretize(problem, &method).map_err(text)?;
     let most = d.coercivity.limit();
     for share in [1e-6, 0.5, 0.999, 1.0 - 1e-9, 1.0 + 1e-9, 1.001, 1.5, 1.999, 10.0] {
-        let found = kappa_at::<E, N, M>(problem, Gamma0::Value(share * most))?;
+        let found = kappa_at(degree, problem, Gamma0::Value(share * most))?;
         if found.is_some() != (share < limit) {
             return Err(format!("kappa = {share}: taken as {found:?}"));
         }
@@ -64,7 +52,7 @@ where
             return Err(format!("kappa = {share} is called {kappa}"));
         }
     }
-    match kappa_at::<E, N, M>(problem, Gamma0::Auto)? {
+    match kappa_at(degree, problem, Gamma0::Auto)? {
         Some(kappa) if (kappa - 0.5).abs() <= 1e-15 => Ok(()),
         other => Err(format!("auto: kappa = {other:?}, expected 1/2")),
     }
@@ -73,23 +61,21 @@ where
 fn refusal(limit: f64) -> Outcome {
     let bodies = sharpness::small_bodies()?;
     for body in &bodies {
-        refusal_on::<P1, 3, 2>(&body.problem, limit).map_err(|e| format!("{}: {e}", body.name))?;
-        refusal_on::<P2, 6, 3>(&body.problem, limit).map_err(|e| format!("{}: {e}", body.name))?;
+        refusal_on(Degree::One, &body.problem, limit).map_err(|e| format!("{}: {e}", body.name))?;
+        refusal_on(Degree::Two, &body.problem, limit).map_err(|e| format!("{}: {e}", body.name))?;
     }
     Ok(format!("{} bodies, P1 and P2, kappa from 1e-6 to 10, and auto", bodies.len()))
 }
 
 /// kappa of each triangle on Gamma_C by [2.3] of docs/theory.md, C gamma (lambda + 2 mu) |E| / |T|, for a `gamma0` that asks
 /// for 1/2.
-fn kappa_of_triangles<E, const N: usize, const M: usize>(
+fn kappa_of_triangles(
+    degree: Degree,
     problem: &Problem,
     gamma0: Gamma0,
     trace: f64,
-) -> Result<usize, String>
-where
-    E: ExactEdge<f64, N, M>,
-{
-    let d = discretize::<E, N, M>(problem, &Method { gamma0, ..Method::default() });
+) -> Result<usize, String> {
+    let d = discretize(problem, &Method { degree, gamma0, ..Method::default() });
     let d = d.map_err(text)?;
     let mut lengths: BTreeMap<usize, (f64, f64)> = BTreeMap::new();
     for line in &d.contact {
@@ -111,8 +97,8 @@ fn kappas(gamma0: Gamma0) -> Outcome {
     let mut count = 0;
     for body in &sharpness::small_bodies()? {
         let of = |e| format!("{}: {e}", body.name);
-        count += kappa_of_triangles::<P1, 3, 2>(&body.problem, gamma0, 1.0).map_err(of)?;
-        count += kappa_of_triangles::<P2, 6, 3>(&body.problem, gamma0, 3.0).map_err(of)?;
+        count += kappa_of_triangles(Degree::One, &body.problem, gamma0, 1.0).map_err(of)?;
+        count += kappa_of_triangles(Degree::Two, &body.problem, gamma0, 3.0).map_err(of)?;
     }
     Ok(format!("{count} triangles"))
 }
@@ -166,7 +152,7 @@ fn rule_is_the_one_asked_for() -> Outcome {
     let bodies = sharpness::small_bodies()?;
     let rule = |quadrature| {
         let method = Method { quadrature, ..Method::default() };
-        discretize::<P1, 3, 2>(&bodies[0].problem, &method).map(|d| d.rule).map_err(text)
+        discretize(&bodies[0].problem, &method).map(|d| d.rule).map_err(text)
     };
     if rule(ContactQuadrature::Exact)? != EdgeRule::Exact {
         return Err("not exact".to_owned());
@@ -267,7 +253,7 @@ impl ExactSolution for Quadratic {
 /// difference: int_0^1 of products of polynomials by their end and middle values. `inverted` takes gamma for 1/gamma.
 fn errors_on(problem: &Problem, sign: f64, inverted: bool) -> Result<(), String> {
     let method = Method { degree: Degree::Two, ..Method::default() };
-    let d = discretize::<P2, 6, 3>(problem, &method).map_err(text)?;
+    let d = discretize(problem, &method).map_err(text)?;
     let mut random = Random::new(draws::seed());
     let mut number = || random.below(2001) as f64 / 1000.0 - 1.0;
     let exact = Quadratic {
@@ -282,8 +268,8 @@ fn errors_on(problem: &Problem, sign: f64, inverted: bool) -> Result<(), String>
     let e: Vec<[f64; 2]> = u.iter().zip(&v).map(|(u, v)| [u[0] - v[0], u[1] - v[1]]).collect();
     let found = Errors::new(&d.space, &d.contact, &v, &exact);
     let mut expected = Errors { energy: d.strain_energy(&e), ..Errors::default() };
-    for (t, (triangle, _)) in d.space.triangles().enumerate() {
-        let local = d.space.on_triangle(t, &e);
+    for (triangle, nodes) in d.space.triangles::<6>() {
+        let local = nodes.map(|node| Vector2::from(e[node]));
         let area = triangle.double_area() / 2.0;
         for (l, weight) in quadrature::triangle(5) {
             let shapes: [f64; 6] = <P2 as Element<6, 3>>::values(l);
@@ -296,20 +282,19 @@ fn errors_on(problem: &Problem, sign: f64, inverted: bool) -> Result<(), String>
             expected.h1 += area * weight * (l2 + slope);
         }
     }
+    let three = |p: Vec<f64>| [p[0], p[1], p[2]];
     let squared = |[a, b, m]: [f64; 3]| {
         (4.0 * (a * a + b * b) + 16.0 * m * m + 4.0 * m * (a + b) - 2.0 * a * b) / 30.0
     };
     for line in &d.contact {
-        let [of_e, of_u, of_v] =
-            [&e, &u, &v].map(|field| d.space.on_triangle(line.edge.triangle, field));
-        let [start, end] = line.sigma_n(&of_e);
+        let [start, end] = line.sigma_n(|node| e[node]);
         let gamma = line.gamma;
         let weight = line.length * gamma;
         expected.normal_stress += weight * (start * start + start * end + end * end) / 3.0;
         let share = if inverted { weight } else { line.length / gamma };
-        expected.operator += share * squared(line.p(&of_e).map(|p| p - exact.gap));
-        let [start, end] = line.sigma_n(&of_u);
-        let p = line.p(&of_v);
+        expected.operator += share * squared(three(line.p(&e)).map(|p| p - exact.gap));
+        let [start, end] = line.sigma_n(|node| u[node]);
+        let p = three(line.p(&v));
         let pressed = p.map(|p| positive_part(p) / gamma);
         let z = [start + pressed[0], end + pressed[1], (start + end) / 2.0 + pressed[2]];
         expected.contact_residual += weight * squared(z);
@@ -367,7 +352,7 @@ pub fn claim() -> Claim {
         numbers: "doubles; the moments from the doubles of the rules over rationals.",
         kernel: &[
             "fem::quadrature::gauss",
-            "fem::contact_line::EdgeRule::gauss",
+            "fem::contact_face::EdgeRule::gauss",
             "fem::errors::with_points",
             "edge_integral::ExactEdge::exact",
         ],

@@ -196,8 +196,7 @@ impl Mesh {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fem::{Diagonal, Rectangle, Space, Trapezoid};
-    use crate::kernel::P2;
+    use crate::fem::{Degree, Diagonal, Rectangle, Space, Trapezoid};
 
     /// The cosines of a triangle's angles in order, to nine digits: the same for similar triangles.
     fn class(mesh: &Mesh, t: usize) -> [i64; 3] {
@@ -310,7 +309,7 @@ mod tests {
         let expected: Vec<[f64; 2]> = fine.mesh.vertices().iter().map(|&x| affine(x)).collect();
         assert_eq!(fine.prolonged(&coarse, &u), expected, "binary fractions, so exactly");
         let quadratic = |[x, y]: [f64; 2]| [x * x - x * y, 1.0 + y * y - 2.0 * x];
-        let nodes = |mesh: &Mesh| Space::<P2, 6, 3>::new(mesh).nodes().to_vec();
+        let nodes = |mesh: &Mesh| Space::new(mesh, Degree::Two).nodes().to_vec();
         let u: Vec<[f64; 2]> = nodes(&coarse).into_iter().map(quadratic).collect();
         let found = fine.prolonged(&coarse, &u);
         for (found, x) in found.iter().zip(nodes(&fine.mesh)) {

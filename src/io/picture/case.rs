@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{ContactSample, ContactSurface, ContactZone, Scene, picture};
+use crate::fem::Degree;
 use crate::io::case::Case;
 use crate::io::data::DataError;
 use crate::io::numbers::short;
@@ -17,7 +18,7 @@ pub fn draw(case: &Case, s: &Solution, results: &Results) -> Result<String, Data
     let mesh = &case.problem.mesh;
     let ends = mesh.outline().iter().map(|&edge| (edge, mesh.ends(edge)));
     let (triangles, von_mises, outline): (Vec<[usize; 3]>, Vec<f64>, Vec<[usize; 2]>) =
-        if s.degree == 1 {
+        if s.degree == Degree::One {
             let outline = ends.map(|(_, ends)| ends).collect();
             (mesh.triangles().to_vec(), s.von_mises.clone(), outline)
         } else {
@@ -36,7 +37,7 @@ pub fn draw(case: &Case, s: &Solution, results: &Results) -> Result<String, Data
             )
         };
     let units = case.units.as_ref().map(|units| [units.stress(), units.length.clone()]);
-    let shape = if s.degree == 1 { "linear" } else { "quadratic" };
+    let shape = if s.degree == Degree::One { "linear" } else { "quadratic" };
     let largest = short(s.quantities.max_displacement, 3);
     let length = units.as_ref().map_or(String::new(), |[_, length]| format!(" {length}"));
     let not_proved = match s.verdict {
@@ -75,7 +76,7 @@ fn interfaces(case: &Case, s: &Solution) -> Vec<[usize; 2]> {
         for i in 0..3 {
             let [a, b] = [corners[(i + 1) % 3], corners[(i + 2) % 3]];
             match material_at.insert([a.min(b), a.max(b)], material) {
-                Some(other) if other != material && s.degree == 1 => found.push([a, b]),
+                Some(other) if other != material && s.degree == Degree::One => found.push([a, b]),
                 Some(other) if other != material => {
                     let middle = s.elements[6 * t + 3 + i];
                     found.extend([[a, middle], [middle, b]]);

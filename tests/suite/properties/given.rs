@@ -10,7 +10,7 @@ use signorini::fem::{
     Condition, DataError, Diagonal, Exact, Mesh, Perturbation, Problem, Rectangle, Structured,
     Trapezoid,
 };
-use signorini::kernel::{Material, P1, Plane};
+use signorini::kernel::{Material, Plane};
 use signorini::solve::ladder::{fitted_slope, rates};
 use signorini::solve::{
     ContactQuadrature, Degree, Gamma0, Ladder, MOST_GAUSS_POINTS, MOST_ITERATIONS, Method,
@@ -261,7 +261,7 @@ fn opposite(moved: f64) -> Result<(), SolveError> {
     let conditions = conditions.map(|(name, condition)| (name.to_owned(), condition));
     let material = Material::lame(1.0, 1.0, Plane::Strain);
     let problem = Problem::new(mesh, material, [0.0, 0.0].map(constant), conditions.into());
-    discretize::<P1, 3, 2>(&problem, &Method::default()).map(|_| ())
+    discretize(&problem, &Method::default()).map(|_| ())
 }
 
 /// Where two boundaries meet, a displacement and a support against each other agree if `moved` is the support's along x.
@@ -302,7 +302,7 @@ fn disagreement(by: f64, component: usize) -> Result<bool, String> {
     };
     let problem = square(values(0.0), left)?;
     let method = Method { degree: Degree::One, ..Method::default() };
-    match discretize::<P1, 3, 2>(&problem, &method) {
+    match discretize(&problem, &method) {
         Ok(_) => Ok(false),
         Err(SolveError::Data(DataError::Disagree { .. })) => Ok(true),
         Err(other) => Err(other.to_string()),
@@ -329,7 +329,7 @@ fn load_on_a_held_side(tractions: [f64; 2]) -> Result<Vec<[f64; 2]>, String> {
     };
     let left = Condition::Displacement([0, 1].map(|_| Some(constant(0.0))));
     let problem = square(top, left)?;
-    Ok(discretize::<P1, 3, 2>(&problem, &Method::default()).map_err(text)?.load)
+    Ok(discretize(&problem, &Method::default()).map_err(text)?.load)
 }
 
 fn same_loads(one: [f64; 2], other: [f64; 2]) -> Outcome {

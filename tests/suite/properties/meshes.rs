@@ -8,7 +8,7 @@ use signorini::fem::merge::merge;
 use signorini::fem::{
     Condition, DataError, Diagonal, Materials, Mesh, MeshError, Problem, Rectangle, SurfaceForce,
 };
-use signorini::kernel::{Material, P1, Plane};
+use signorini::kernel::{Material, Plane};
 use signorini::solve::{Method, Settings, SolveError, discretize};
 
 use super::{Outcome, properties, text};
@@ -189,7 +189,7 @@ fn not_finite(value: f64) -> Outcome {
             problem.conditions.insert("left".to_owned(), held);
             problem.conditions.remove("top");
         }
-        match discretize::<P1, 3, 2>(&problem, &Method::default()) {
+        match discretize(&problem, &Method::default()) {
             Err(SolveError::Data(DataError::NotFinite { .. })) => {}
             _ => return Err(format!("datum {kind} of value {value} is not called infinite")),
         }

@@ -5,9 +5,8 @@ use std::collections::BTreeMap;
 
 use num_traits::ToPrimitive;
 use signorini::fem::matrix::Numbering;
-use signorini::fem::precise::{self, EdgeNumbers, OnEdge};
-use signorini::fem::{BoundaryEdge, Discretization};
-use signorini::kernel::edge_integral::ExactEdge;
+use signorini::fem::precise;
+use signorini::fem::{BoundaryEdge, ContactFace, Degree, Discretization};
 use signorini::solve::Solution;
 use signorini::solve::evaluated::Evaluated;
 
@@ -62,21 +61,19 @@ pub(super) fn share(double: f64, exact: Exact, bound: f64) -> f64 {
 pub(super) type Shares = RefCell<BTreeMap<&'static str, f64>>;
 
 /// The whole comparison for one problem.
-pub(super) fn compared<E, const N: usize, const M: usize>(
+pub(super) fn compared<const N: usize>(
     draw: &Draw,
     mistake: Mistake,
     matrices: bool,
     shares: &Shares,
-) -> Verdict
-where
-    E: ExactEdge<f64, N, M>,
-{
+) -> Verdict {
     let problem = draw.problem();
     let discretized =
-        Discretization::<E, N, M>::new(&problem, |c| draw.kappa * c.limit(), draw.rule());
+        Discretization::new(&problem, degree(N), |c| draw.kappa * c.limit(), draw.rule());
     let Ok(d) = discretized else { return Verdict::Fails("the problem is refused") };
     Exact::scope(|| {
-        let settings = (Setting::<Exact>::new(draw, &d), Setting::<Magnitude>::new(draw, &d));
+        let settings =
+            (Setting::<Exact>::new::<N>(draw, &d), Setting::<Magnitude>::new::<N>(draw, &d));
         let (Some(mut exact), Some(mut magnitude)) = settings else {
             return Verdict::Fails("nodes and contact edges are those of the mesh");
         };
@@ -101,9 +98,9 @@ where
             return near;
         }
         ensure!(contact_edges_follow_each_other(draw, &d));
-        ensure!(limiting_edge_attains_the_constant::<E, N, M>(&d, &exact.body));
-        ensure!(contact_length_is_the_measure_of_the_pressed_part(&d, &exact, &magnitude, &u));
-        ensure!(residual_is_the_gradient_of_the_energy(&d, &exact, &magnitude, [&u, &step]));
+        ensure!(limiting_edge_attains_the_constant::<N>(&d, &exact.body));
+        ensure!(contact_length_is_the_measure_of_the_pressed_part::<N>(&d, &exact, &magnitude, &u));
+        ensure!(residual_is_the_gradient_of_the_energy::<N>(&d, &exact, &magnitude, [&u, &step]));
         Verdict::Holds(contact_class::<N>(&exact.body, &read(&u)))
     })
 }
@@ -111,34 +108,27 @@ where
 /// The solver's loops over rationals, with the doubles of its discretization for data: A(u, v) for every basis function v, and P0(u)
 /// at the ends of the contact edges, are their definitions. Nothing is rounded: the normal is a unit vector of rational numbers, another
 /// one than the edge has, for none of the sums depends on that.
-pub(super) fn loops<E, const N: usize, const M: usize>(draw: &Draw, mistake: Mistake) -> Verdict
-where
-    E: ExactEdge<f64, N, M>,
-{
+pub(super) fn loops<const N: usize>(draw: &Draw, mistake: Mistake) -> Verdict {
     // lambda of plane stress is a quotient that doubles round.
     if draw.stress {
         return Verdict::Vacuous;
     }
     let problem = draw.problem();
     let discretized =
-        Discretization::<E, N, M>::new(&problem, |c| draw.kappa * c.limit(), draw.rule());
+        Discretization::new(&problem, degree(N), |c| draw.kappa * c.limit(), draw.rule());
     let Ok(d) = discretized else { return Verdict::Fails("the problem is refused") };
     Exact::scope(|| {
-        let Some(mut setting) = Setting::<Exact>::new(draw, &d) else {
+        let Some(mut setting) = Setting::<Exact>::new::<N>(draw, &d) else {
             return Verdict::Fails("nodes and contact edges are those of the mesh");
         };
         setting.plant(mistake, draw);
         let n = [Exact::ratio(5, 13), Exact::ratio(-12, 13)];
         setting.body.contact.iter_mut().for_each(|side| side.n = n);
-        let edges: Vec<OnEdge<'_, Exact, N, M>> = (d.contact.iter())
+        let edges: Vec<ContactFace<Exact>> = (d.contact.iter())
             .map(|edge| {
                 let diameter = d.problem.mesh.diameter(edge.edge.triangle);
-                let numbers = EdgeNumbers {
-                    normal: n.into(),
-                    gamma: Exact::of_double(d.gamma0) * Exact::of_double(diameter),
-                    length: Exact::of_double(edge.length),
-                };
-                OnEdge::new(&d, edge, numbers)
+                let gamma = Exact::of_double(d.gamma0) * Exact::of_double(diameter);
+                precise::with_numbers(&d, edge, (Exact::of_double(edge.length), n.into(), gamma))
             })
             .collect();
         let [u, _] = draw.fields(d.space.nodes().len());
@@ -158,6 +148,11 @@ where
         }
         Verdict::Holds(contact_class::<N>(&setting.body, &u))
     })
+}
+
+/// The degree of the element with so many nodes on a triangle.
+fn degree(nodes: usize) -> Degree {
+    if nodes == 3 { Degree::One } else { Degree::Two }
 }
 
 /// Every double is within its bound. All names and lengths are the same on the three sides.
@@ -186,13 +181,7 @@ pub(super) fn all_near(
 }
 
 /// On one side of the body, each contact edge starts where the one before it ends.
-pub(super) fn contact_edges_follow_each_other<E, const N: usize, const M: usize>(
-    draw: &Draw,
-    d: &Discretization<'_, E, N, M>,
-) -> bool
-where
-    E: ExactEdge<f64, N, M>,
-{
+pub(super) fn contact_edges_follow_each_other(draw: &Draw, d: &Discretization<'_>) -> bool {
     let (_, triangles, sides) = draw.parts();
     let ends = |edge: BoundaryEdge| [1, 2].map(|k| triangles[edge.triangle][(edge.local + k) % 3]);
     let side = |edge: BoundaryEdge| {
@@ -205,13 +194,10 @@ where
 }
 
 /// The edge that is said to limit gamma0 belongs to a triangle where the maximum C_h is attained, up to its bound.
-pub(super) fn limiting_edge_attains_the_constant<E, const N: usize, const M: usize>(
-    d: &Discretization<'_, E, N, M>,
+pub(super) fn limiting_edge_attains_the_constant<const N: usize>(
+    d: &Discretization<'_>,
     body: &Body,
-) -> bool
-where
-    E: ExactEdge<f64, N, M>,
-{
+) -> bool {
     let definition = Definition::<N>(body);
     let most = definition.coercivity();
     // Equal up to 1e-12, the first is named, and its ends are sorted.
@@ -227,15 +213,12 @@ where
 
 /// The contact length is monotone in P, and P is known to some delta: it lies between the measures of {P > delta} and of
 /// {P > -delta}. (It is no continuous function of P where P touches zero.)
-pub(super) fn contact_length_is_the_measure_of_the_pressed_part<E, const N: usize, const M: usize>(
-    d: &Discretization<'_, E, N, M>,
+pub(super) fn contact_length_is_the_measure_of_the_pressed_part<const N: usize>(
+    d: &Discretization<'_>,
     exact: &Setting<Exact>,
     magnitude: &Setting<Magnitude>,
     u: &[[f64; 2]],
-) -> bool
-where
-    E: ExactEdge<f64, N, M>,
-{
+) -> bool {
     let (definition, sizes) =
         (Definition::<N>(&exact.body), Definition::<N, Magnitude>(&magnitude.body));
     let measure = |sign: f64| {
@@ -270,15 +253,12 @@ where
 
 /// J_h(u + v) - J_h(u) - R(u; v) lies between 1/2 A(v, v) and 1/2 A(v, v) + 1/2 int P0(v)^2/gamma, up to the bounds of
 /// the three: the residual is the derivative of the energy.
-pub(super) fn residual_is_the_gradient_of_the_energy<E, const N: usize, const M: usize>(
-    d: &Discretization<'_, E, N, M>,
+pub(super) fn residual_is_the_gradient_of_the_energy<const N: usize>(
+    d: &Discretization<'_>,
     exact: &Setting<Exact>,
     magnitude: &Setting<Magnitude>,
     [u, step]: [&[[f64; 2]]; 2],
-) -> bool
-where
-    E: ExactEdge<f64, N, M>,
-{
+) -> bool {
     let nodes = u.len();
     let moved: Vec<[f64; 2]> =
         u.iter().zip(step).map(|(u, v)| [u[0] + v[0], u[1] + v[1]]).collect();

@@ -3,9 +3,8 @@
 
 use std::collections::BTreeMap;
 
-use signorini::fem::contact_line::EdgeRule;
+use signorini::fem::EdgeRule;
 use signorini::fem::{BoundaryEdge, Discretization};
-use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::{Material, Plane};
 
 use super::draw::{Draw, Polynomial, Traction, owner};
@@ -54,13 +53,7 @@ pub(super) struct Setting<S> {
 impl<S: Given> Setting<S> {
     /// The data of the draw, with the solver's h_T, |E|, n and gamma0; `None` if the solver has not the nodes or not the
     /// contact edges that the problem has.
-    pub(super) fn new<E, const N: usize, const M: usize>(
-        draw: &Draw,
-        d: &Discretization<'_, E, N, M>,
-    ) -> Option<Self>
-    where
-        E: ExactEdge<f64, N, M>,
-    {
+    pub(super) fn new<const N: usize>(draw: &Draw, d: &Discretization<'_>) -> Option<Self> {
         let (vertices, triangles, sides) = draw.parts();
         let mesh = &d.problem.mesh;
         let middles = if N == 3 { BTreeMap::new() } else { middles(draw, d.space.nodes())? };

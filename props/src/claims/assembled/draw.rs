@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use proptest::prelude::*;
-use signorini::fem::contact_line::EdgeRule;
+use signorini::fem::EdgeRule;
 use signorini::fem::{
     BoundaryEdge, Condition, Diagonal, Function, Mesh, Problem, Rectangle, SharedFunction,
 };

@@ -1,7 +1,7 @@
 //! Square roots: the solver's h_T, |E|, n and gamma against the exact squares and normals.
 
-use signorini::fem::{Discretization, Mesh};
-use signorini::kernel::{P1, Triangle};
+use signorini::fem::{Degree, Discretization, Mesh};
+use signorini::kernel::Triangle;
 use signorini::nalgebra::Vector2;
 
 use super::compare::UNIT;
@@ -72,7 +72,7 @@ pub fn first_edge_for_the_longest() -> Outcome {
 pub(super) fn gamma_is(draw: &Draw, square: impl Fn([Exact; 3], usize) -> Exact) -> Verdict {
     let problem = draw.problem();
     let discretized =
-        Discretization::<P1, 3, 2>::new(&problem, |c| draw.kappa * c.limit(), draw.rule());
+        Discretization::new(&problem, Degree::One, |c| draw.kappa * c.limit(), draw.rule());
     let Ok(d) = discretized else { return Verdict::Fails("the problem is refused") };
     let (vertices, triangles, _) = draw.parts();
     Exact::scope(|| {

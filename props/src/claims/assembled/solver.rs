@@ -2,7 +2,6 @@
 
 use signorini::fem::Discretization;
 use signorini::fem::matrix::{self, LowerTriangle, Neighbours, Numbering};
-use signorini::kernel::edge_integral::ExactEdge;
 use signorini::solve::evaluated::Evaluated;
 use signorini::solve::{
     MethodReport, NewtonReport, Report, RouteName, Solution, Status, Unproved, Verdict,
@@ -36,20 +35,17 @@ pub(in crate::claims) fn unsolved() -> Report {
 }
 
 /// The same numbers by the solver, in the same order.
-pub(super) fn assembled<E, const N: usize, const M: usize>(
-    d: &Discretization<'_, E, N, M>,
+pub(super) fn assembled(
+    d: &Discretization<'_>,
     u: &[[f64; 2]],
     numbering: Option<&Numbering>,
-) -> Vec<Named<f64>>
-where
-    E: ExactEdge<f64, N, M>,
-{
+) -> Vec<Named<f64>> {
     let flat = |field: &[[f64; 2]]| field.as_flattened().to_vec();
     let solution = Solution::new(d, Evaluated::new(d, u.to_vec()), unsolved());
     let q = &solution.quantities;
-    let local = |triangle: usize| d.space.on_triangle(triangle, u);
     // In order along the edge.
-    let sorted = |p: [f64; M]| [0, 2, 1].into_iter().filter(|&a| a < M).map(move |a| p[a]);
+    let sorted =
+        |p: Vec<f64>| [0, 2, 1].into_iter().filter_map(|a| p.get(a).copied()).collect::<Vec<_>>();
     let line = || d.contact.iter();
     let points = || solution.contact.iter().flat_map(|edge| &edge.points);
     let mut all = vec![
@@ -57,8 +53,8 @@ where
         ("C_h", vec![d.coercivity.constant]),
         ("kappa", vec![d.kappa()]),
         ("limit", vec![d.coercivity.limit()]),
-        ("sigma_n(u)", line().flat_map(|e| e.sigma_n(&local(e.edge.triangle))).collect()),
-        ("P(u)", line().flat_map(|e| sorted(e.p(&local(e.edge.triangle)))).collect()),
+        ("sigma_n(u)", line().flat_map(|e| e.sigma_n(|node| u[node])).collect()),
+        ("P(u)", line().flat_map(|e| sorted(e.p(u))).collect()),
         ("u_n", points().map(|point| point.u_n).collect()),
         ("gap", points().map(|point| point.gap).collect()),
         ("sigma_n(u^h)", points().map(|point| point.sigma_n).collect()),
@@ -79,7 +75,7 @@ where
         ("reactions", q.reactions.values().flatten().copied().collect()),
     ];
     let matrices = numbering.map(|numbering| {
-        let neighbours = Neighbours::new(d.space.nodes().len(), d.space.elements());
+        let neighbours = Neighbours::new(&d.space);
         [
             matrix::assemble_stiffness(d, numbering, &neighbours),
             matrix::assemble(d, numbering, &neighbours),

@@ -2,7 +2,6 @@
 
 use super::*;
 use signorini::fem::Problem;
-use signorini::kernel::edge_integral::ExactEdge;
 use signorini::solve::{Degree, discretize};
 
 use crate::bodies::{Body, Kernel, MaybeExact, Side, bodies, sum};
@@ -163,17 +162,14 @@ const TOLERANCE: f64 = 1e-11;
 /// Whether `smallest` is lambda_min of (A, K) with kappa = 1/2, up to the tolerance, by counting the eigenvalues of
 /// A - l K = (1 - l) K - S for l on either side (Sylvester); the same counts for 1/(1 - l) times gamma0 say that A ceases
 /// to be positive definite at gamma0*. And whether 1 - `share` kappa bounds it from below.
-fn is_smallest<E, const N: usize, const M: usize>(
+fn is_smallest(
     problem: &Problem,
     degree: Degree,
     smallest: f64,
     share: (i64, i64),
-) -> Result<(), String>
-where
-    E: MaybeExact<N, M> + ExactEdge<f64, N, M>,
-{
+) -> Result<(), String> {
     let method = sharpness::at_kappa(problem, degree, 0.5)?;
-    let d = discretize::<E, N, M>(problem, &method).map_err(|error| error.to_string())?;
+    let d = discretize(problem, &method).map_err(|error| error.to_string())?;
     Exact::scope(|| {
         let discrete = Discrete::new(&d);
         let (k, s) = (discrete.stiffness(), discrete.stresses());
@@ -195,18 +191,12 @@ where
     })
 }
 
-fn sharp_on<E, const N: usize, const M: usize>(
-    specimen: &Specimen,
-    degree: Degree,
-) -> Result<String, String>
-where
-    E: MaybeExact<N, M> + ExactEdge<f64, N, M>,
-{
+fn sharp_on(specimen: &Specimen, degree: Degree) -> Result<String, String> {
     let Specimen { name, problem } = specimen;
-    let smallest = sharpness::smallest_eigenvalue::<E, N, M>(problem, degree, 0.5)?;
-    is_smallest::<E, N, M>(problem, degree, smallest, (1, 1))
+    let smallest = sharpness::smallest_eigenvalue(problem, degree, 0.5)?;
+    is_smallest(problem, degree, smallest, (1, 1))
         .map_err(|why| format!("{name}, P{}: {why}", degree.number()))?;
-    let ratio = sharpness::limits::<E, N, M>(problem, degree, DIAMETER)?.ratio();
+    let ratio = sharpness::limits(problem, degree, DIAMETER)?.ratio();
     Ok(format!("{name} P{} {ratio:.3}", degree.number()))
 }
 
@@ -214,28 +204,21 @@ where
 fn smallest_eigenvalues() -> Outcome {
     let mut text = Vec::new();
     for specimen in sharpness::small_bodies()? {
-        text.push(sharp_on::<P1, 3, 2>(&specimen, Degree::One)?);
-        text.push(sharp_on::<P2, 6, 3>(&specimen, Degree::Two)?);
+        text.push(sharp_on(&specimen, Degree::One)?);
+        text.push(sharp_on(&specimen, Degree::Two)?);
     }
     Ok(format!("gamma0* C_h: {}", text.join(", ")))
 }
 
 /// By the rows of S with K, with A, and by the dense matrix: one number, affine in gamma0, also beyond the limit.
-fn one_eigenvalue<E, const N: usize, const M: usize>(
-    specimen: &Specimen,
-    degree: Degree,
-) -> Result<(), String>
-where
-    E: ExactEdge<f64, N, M>,
-{
+fn one_eigenvalue(specimen: &Specimen, degree: Degree) -> Result<(), String> {
     let Specimen { name, problem } = specimen;
-    let limits = sharpness::limits::<E, N, M>(problem, degree, DIAMETER)?;
+    let limits = sharpness::limits(problem, degree, DIAMETER)?;
     for kappa in [0.1, 0.5, 0.9, 2.0] {
         let expected = limits.smallest_eigenvalue(kappa);
-        let mut found =
-            vec![sharpness::smallest_eigenvalue_dense::<E, N, M>(problem, degree, kappa)?];
+        let mut found = vec![sharpness::smallest_eigenvalue_dense(problem, degree, kappa)?];
         if kappa < 1.0 {
-            found.push(sharpness::smallest_eigenvalue::<E, N, M>(problem, degree, kappa)?);
+            found.push(sharpness::smallest_eigenvalue(problem, degree, kappa)?);
         }
         let near = |smallest: &f64| (smallest - expected).abs() <= TOLERANCE;
         if !(expected >= 1.0 - kappa && found.iter().all(near)) {
@@ -248,8 +231,8 @@ where
 fn eigenvalues_agree() -> Outcome {
     let bodies = sharpness::small_bodies()?;
     for specimen in &bodies {
-        one_eigenvalue::<P1, 3, 2>(specimen, Degree::One)?;
-        one_eigenvalue::<P2, 6, 3>(specimen, Degree::Two)?;
+        one_eigenvalue(specimen, Degree::One)?;
+        one_eigenvalue(specimen, Degree::Two)?;
     }
     Ok(format!("{} bodies, P1 and P2, four kappa each", bodies.len()))
 }
@@ -285,19 +268,19 @@ fn refused(result: Result<(), String>) -> Outcome {
 /// 1 - 0.99 kappa for 1 - kappa, on the two triangles that nearly attain it.
 fn more_than_1_minus_kappa() -> Outcome {
     let problem = sharpness::trapezoid(0.01)?;
-    let smallest = sharpness::smallest_eigenvalue::<P1, 3, 2>(&problem, Degree::One, 0.5)?;
-    refused(is_smallest::<P1, 3, 2>(&problem, Degree::One, smallest, (99, 100)))
+    let smallest = sharpness::smallest_eigenvalue(&problem, Degree::One, 0.5)?;
+    refused(is_smallest(&problem, Degree::One, smallest, (99, 100)))
 }
 
 /// |E| for h_T in the rows of S.
 fn length_for_the_diameter() -> Outcome {
     let mut text = Vec::new();
     for Specimen { name, problem } in sharpness::small_bodies()? {
-        let limits = sharpness::limits::<P1, 3, 2>(&problem, Degree::One, |_, length| length)?;
+        let limits = sharpness::limits(&problem, Degree::One, |_, length| length)?;
         let smallest = limits.smallest_eigenvalue(0.5);
         // There the contact edge is the longest one.
         if name != "crossed cell" && !name.contains("triangles") {
-            let result = is_smallest::<P1, 3, 2>(&problem, Degree::One, smallest, (1, 1));
+            let result = is_smallest(&problem, Degree::One, smallest, (1, 1));
             text.push(format!("{name}: {}", refused(result)?));
         }
     }

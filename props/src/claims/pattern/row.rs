@@ -5,14 +5,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use proptest::prelude::*;
-use signorini::fem::contact_line::EdgeRule;
 use signorini::fem::matrix::{LowerTriangle, Neighbours, Numbering, assemble};
 use signorini::fem::{
-    Condition, Diagonal, Discretization, Problem, Rectangle, SharedFunction, Trapezoid,
+    Condition, Degree, Diagonal, Discretization, EdgeRule, Problem, Rectangle, SharedFunction,
+    Trapezoid,
 };
-use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::element::stiffness;
-use signorini::kernel::{Material, P1, P2, Plane};
+use signorini::kernel::{Element, Material, P1, P2, Plane};
 use signorini::nalgebra::Matrix2;
 
 use crate::claim::{Claim, Engine, Outcome, by, model_checked};
@@ -62,7 +61,7 @@ impl<const N: usize> Draw<N> {
     }
 
     fn neighbours(&self) -> Neighbours {
-        Neighbours::new(self.nodes(), &self.elements)
+        Neighbours::of_elements(self.nodes(), &self.elements)
     }
 
     fn numbering(&self) -> Numbering {
@@ -360,18 +359,17 @@ fn shuffled<const N: usize>(nodes: usize, elements: &[[usize; N]], seed: u64) ->
 
 /// The pattern of a mesh is as defined, and the matrix of A(.,.) is the sum of the matrices of the triangles and of
 /// the contact edges, bit for bit: both sides add in the same order.
-fn on_mesh<E, const N: usize, const M: usize>(
+fn on_mesh<E: Element<N, M>, const N: usize, const M: usize>(
     mesh: Mesh,
     made: impl Fn(&Draw<N>) -> Made,
     edges: impl Fn(f64) -> f64,
-) -> Verdict
-where
-    E: ExactEdge<f64, N, M>,
-{
+) -> Verdict {
     let problem = problem(mesh);
-    let d = Discretization::<E, N, M>::new(&problem, |c| c.limit() / 2.0, EdgeRule::Exact)
+    let degree = if N == 3 { Degree::One } else { Degree::Two };
+    let d = Discretization::new(&problem, degree, |c| c.limit() / 2.0, EdgeRule::Exact)
         .expect("a problem");
-    let draw = shuffled(d.space.nodes().len(), d.space.elements(), mesh.3);
+    let (elements, _) = d.space.connectivity().as_chunks::<N>();
+    let draw = shuffled(d.space.nodes().len(), elements, mesh.3);
     if let Verdict::Fails(why) = draw.judge(&made(&draw)) {
         return Verdict::Fails(why);
     }
@@ -379,7 +377,7 @@ where
     let assembled = assemble(&d, &numbering, &draw.neighbours());
     let n = numbering.count;
     let mut dense = vec![vec![0.0; n]; n];
-    let mut add = |nodes: &[usize; N], k: &dyn Fn(usize, usize) -> Matrix2<f64>| {
+    let mut add = |nodes: &[usize], k: &dyn Fn(usize, usize) -> Matrix2<f64>| {
         for (i, j) in (0..N).flat_map(|i| (0..N).map(move |j| (i, j))) {
             for (c, d) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                 let of = (numbering.of[nodes[i]][c], numbering.of[nodes[j]][d]);
@@ -389,14 +387,13 @@ where
             }
         }
     };
-    for (triangle, nodes) in d.space.triangles() {
+    for (triangle, nodes) in d.space.triangles::<N>() {
         let k = stiffness::<E, f64, N, M>(&triangle, problem.material.of(0));
         add(nodes, &|i, j| k[i][j]);
     }
     for edge in &d.contact {
         let weight = edges(edge.gamma * edge.length);
-        let nodes = &d.space.elements()[edge.edge.triangle];
-        add(nodes, &|i, j| edge.functionals.stress_product(weight, i, j));
+        add(&edge.nodes, &|i, j| edge.functionals.stress_product(weight, i, j));
     }
     for column in 0..n {
         let range = assembled.starts[column]..assembled.starts[column + 1];
@@ -433,7 +430,7 @@ fn third_side_forgotten() -> Outcome {
         let forget = |draw: &Draw<3>| {
             let sides: Vec<[usize; 2]> =
                 draw.elements.iter().flat_map(|&[a, b, c]| [[a, b], [b, c]]).collect();
-            let neighbours = Neighbours::new(draw.nodes(), &sides);
+            let neighbours = Neighbours::of_elements(draw.nodes(), &sides);
             draw.made_with(&neighbours, &draw.numbering(), block)
         };
         on_mesh::<P1, 3, 2>(mesh, forget, |weight| -weight)
