@@ -7,7 +7,7 @@ use signorini::fem::precise;
 use signorini::fem::{ContactFace, Discretization, EdgeRule};
 use signorini::kernel::edge_integral::{self, ExactEdge};
 use signorini::kernel::{EdgeIntegrals, Material, P1, P2, Plane};
-use signorini::nalgebra::Matrix2;
+use signorini::nalgebra::{Matrix2, Vector2};
 
 use crate::bodies::sum;
 use crate::elimination::{Matrix, combined, dot};
@@ -275,6 +275,7 @@ impl<'a> Discrete<'a> {
         let of = self.d.problem.material.of(0);
         let [lambda, mu] = [of.lambda(), of.mu()].map(Exact::of_double);
         let material = Material::lame(lambda, mu, Plane::Strain);
+        let stiffness = material.normal_stiffness(Vector2::y());
         let mesh = self.d.space.mesh();
         let owner = |e: usize| self.d.contact[e].edge.triangle;
         (0..self.edges.len()).fold(Exact::from(0), |kappa, e| {
@@ -284,7 +285,7 @@ impl<'a> Discrete<'a> {
             let length = sum(owned, |other| self.edges[other].length);
             let gamma = self.edges[e].gamma;
             let degree = self.d.space.degree();
-            let of_t = degree.coercivity_constant(&material, gamma, length, area);
+            let of_t = degree.coercivity_constant(stiffness, gamma, length, area);
             if of_t > kappa { of_t } else { kappa }
         })
     }

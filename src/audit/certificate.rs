@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 
 use crate::kernel::composite::Affine;
 use crate::kernel::contact_edge::integral_of_product;
-use crate::kernel::{Ball, Enclosing, Material, Plane, Triangle};
+use crate::kernel::{Ball, Enclosing, Material, Triangle};
 
 /// v, tau and the problem that they belong to.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -109,8 +109,8 @@ pub struct Piece {
     pub vertices: [usize; 3],
     /// Its edges: edge i lies opposite vertex i.
     pub edges: [usize; 3],
-    /// lambda (as it acts in the plane) and mu.
-    pub material: [f64; 2],
+    /// The material as it acts in the plane: [`Material::in_plane`].
+    pub material: Material<f64>,
     /// f at its vertices, affine between them.
     pub body: [[f64; 2]; 3],
     /// The cost of the loads' parts that those above leave out: to be added to |C eps(v) - tau|. Positive where that is measured
@@ -366,10 +366,9 @@ impl Piece {
         self.body.iter().any(|&f| f != self.body[0])
     }
 
-    /// The material. lambda is the one that acts in the plane, so plane strain is the formula to use.
+    /// The material in another number type.
     pub fn material<S: Enclosing>(&self) -> Material<S> {
-        let [lambda, mu] = self.material;
-        Material::lame(S::exactly(lambda), S::exactly(mu), Plane::Strain)
+        self.material.map(S::exactly)
     }
 }
 

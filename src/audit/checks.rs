@@ -7,6 +7,7 @@ use thiserror::Error;
 
 use super::balance::Unbalanced;
 use super::certificate::{Certificate, Curved, Lift, Owner, Role, is_oblique};
+use crate::kernel::Interval;
 
 /// Why a certificate proves nothing.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -142,18 +143,16 @@ impl Certificate {
             {
                 return Err(wrong("triangle", i, "a vertex or an edge does not exist"));
             }
-            let [lambda, mu] = piece.material;
+            let elliptic = || piece.material::<Interval>().squares().pivots().map(Interval::lo);
             let body = finite(piece.body.as_flattened());
             if !(body
-                && lambda.is_finite()
-                && mu.is_finite()
-                && mu > 0.0
-                && (lambda + mu).next_down() > 0.0)
+                && piece.material.stiffness().iter().all(|c| c.is_finite())
+                && elliptic().iter().all(|&pivot| pivot > 0.0))
             {
                 return Err(wrong(
                     "triangle",
                     i,
-                    "expected mu > 0, lambda + mu > 0 and a finite body force",
+                    "expected mu > 0, lambda + mu > 0 (a tensor with positive eigenvalues) and a finite body force",
                 ));
             }
             if !(piece.oscillation >= 0.0 && piece.oscillation.is_finite()) {

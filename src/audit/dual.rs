@@ -14,9 +14,9 @@
 use super::balanced::Balanced;
 use super::certificate::{Certificate, Curved, Edge, Piece, Role, is_oblique};
 use super::checks::Rejection;
-use super::forces::{Cover, Forces, Target, WrongLifting, component, per_moduli, products, reach};
+use super::forces::{Cover, Forces, Target, WrongLifting, component, reach};
 use crate::kernel::composite::{Composite, Frame};
-use crate::kernel::{Enclosing, Interval, Material};
+use crate::kernel::{Enclosing, Interval, Material, Stress};
 
 /// Why a dual pair proves nothing.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -42,6 +42,8 @@ fn product<S: Enclosing>(
     let (two, three, eight) = (S::from(2), S::from(3), S::from(8));
     let centre = |tau: &Composite<S>| tau.centre * (two / three);
     let (of_a, of_b) = (centre(a), centre(b));
+    let squares = material.squares();
+    let products = |a: Stress<S>, b: Stress<S>| squares.products(a, b);
     let mut sum = products(a.centre, b.centre).map(|x| eight * x);
     for ([p, q], [s, t]) in a.corners.into_iter().zip(b.corners) {
         let (sums, differences) = (products(p + q + of_a, s + t + of_b), products(p - q, s - t));
@@ -54,7 +56,7 @@ fn product<S: Enclosing>(
             sum = [0, 1].map(|k| sum[k] + eight / S::from(5) * along[k]);
         }
     }
-    per_moduli(material, sum) * double_area / S::from(576)
+    squares.per_moduli(sum) * double_area / S::from(576)
 }
 
 /// The largest ratio of a to b, not below 0: infinite where b is 0 and a is not.
@@ -332,7 +334,7 @@ struct Sums<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kernel::{Plane, Stress};
+    use crate::kernel::Plane;
 
     fn stress(k: i32) -> Stress<f64> {
         Stress::new([1, 5, 7].map(|m| f64::from((m * k * k + 3 * k) % 11) - 5.0))

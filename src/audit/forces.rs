@@ -11,14 +11,14 @@
 
 use std::fmt::Display;
 
-use nalgebra::Vector2;
+use nalgebra::{Matrix2, Vector2};
 
 use super::balanced::Balanced;
 use super::certificate::{Certificate, Edge, Piece, Role, Shape, exactly, is_oblique};
 use super::checks::Rejection;
 use super::dual::WrongPair;
 use super::proof::Proof;
-use crate::kernel::{Ball, Enclosing, Interval, Material, Scalar, Stress};
+use crate::kernel::{Ball, Enclosing, Interval, Scalar};
 
 /// M and G, from above.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -741,19 +741,16 @@ fn unbalanced<S: Enclosing>(certificate: &Certificate, state: &Balanced<S>) -> S
 }
 
 /// 24 J times int eps(w) : C eps(w) on a triangle with these scaled normals, J = 2 |T|: from -J grad w at the vertices, which is the
-/// sum of w_i (x) N_i and of 4 (b_j (x) N_k + b_k (x) N_j); eps : C eps is mu ((e_xx - e_yy)^2 + 4 e_xy^2) + (lambda + mu) (tr e)^2.
+/// sum of w_i (x) N_i and of 4 (b_j (x) N_k + b_k (x) N_j).
 fn strain_energy<S: Enclosing>(w: &Shape<S>, piece: &Piece, normals: &[Vector2<S>; 3]) -> S {
-    let [lambda, mu] = piece.material.map(S::exactly);
+    let squares = piece.material::<S>().squares();
     let [a, b, c] = piece.vertices.map(|p| w.points[p]);
     // From differences, so that a translation has no gradient in any number type.
     let (b, c) = (b - a, c - a);
     let product =
         |v: Vector2<S>, n: Vector2<S>| [v[0] * n[0], v[0] * n[1], v[1] * n[0], v[1] * n[1]];
     let plus = |p: [S; 4], q: [S; 4]| [0, 1, 2, 3].map(|i| p[i] + q[i]);
-    let square = |[xx, xy, yx, yy]: [S; 4]| {
-        let (apart, shear, trace) = (xx - yy, xy + yx, xx + yy);
-        (apart * apart + shear * shear) * mu + trace * trace * (lambda + mu)
-    };
+    let square = |[xx, xy, yx, yy]: [S; 4]| squares.of_gradient(Matrix2::new(xx, xy, yx, yy));
     let base = plus(product(b, normals[1]), product(c, normals[2]));
     let Some(bulges) = w.bulges_of(piece) else { return square(base) * S::from(12) };
     let four = S::from(4);
@@ -775,15 +772,4 @@ pub(crate) fn reach(eta: Interval, k: Interval, mean: Mean) -> Interval {
         return root * eta;
     }
     k * Interval::point(mean.square) + eta * eta / (two * two * k)
-}
-
-/// Twice the product of the deviators, and that of the spheres.
-pub(crate) fn products<S: Scalar>(a: Stress<S>, b: Stress<S>) -> [S; 2] {
-    let ([x, y, s], [p, q, t]) = (a.components(), b.components());
-    [(x - y) * (p - q) + (s + s) * (t + t), (x + y) * (p + q)]
-}
-
-/// 4 a : C^-1 b from these, or from their sums: the deviators over 2 mu, the spheres over 2 (lambda + mu).
-pub(crate) fn per_moduli<S: Scalar>(material: &Material<S>, [deviator, sphere]: [S; 2]) -> S {
-    deviator / material.mu() + sphere / (material.lambda() + material.mu())
 }

@@ -13,6 +13,7 @@ use super::certificate::{Certificate, Curved, Cut, Edge, Lift, Piece, Reservatio
 use super::checks::Rejection;
 use super::forces::{Between, Evidence, Lifting, Motion, Ramp, Target};
 use super::proof::{Claim, Proof};
+use crate::kernel::{Material, Plane};
 
 /// The format that is written and read.
 const FORMAT: u32 = 8;
@@ -60,6 +61,7 @@ mod layout {
     pub const PRESCRIBED: Layout = ("prescribed", "nfnf");
     pub const CUTS: Layout = ("cuts", "nnf");
     pub const TRIANGLES: Layout = ("triangles", "nnnnnnfffffffff");
+    pub const TENSORS: Layout = ("tensors", "ffffff");
     pub const EDGES: Layout = ("edges", "nnnffff");
     pub const DIRECTIONS: Layout = ("directions", "nffff");
     pub const FRAMES: Layout = ("frames", "nff");
@@ -226,6 +228,8 @@ pub fn decode(header: &Header, bytes: &[u8]) -> Result<(Certificate, Claim), Str
         return Err(format!("its hash is {found}; certificate.json says {:?}", header.hash));
     }
     let mut arrays = Reader::new(&header.arrays, bytes)?;
+    let tensors = arrays.next(layout::TENSORS)?.map(|c| Material::tensor(numbers(c), None));
+    let tensors: Vec<Material<f64>> = tensors.collect();
     let mut certificate = Certificate {
         vertices: arrays.next(layout::VERTICES)?.map(numbers).collect(),
         displacement: arrays.next(layout::DISPLACEMENT)?.map(numbers).collect(),
@@ -233,7 +237,10 @@ pub fn decode(header: &Header, bytes: &[u8]) -> Result<(Certificate, Claim), Str
         prescribed: arrays.next(layout::PRESCRIBED)?.map(given).collect::<Result<_, _>>()?,
         frames: BTreeMap::new(),
         cuts: arrays.next(layout::CUTS)?.map(cut).collect(),
-        pieces: arrays.next(layout::TRIANGLES)?.map(piece).collect(),
+        pieces: arrays
+            .next(layout::TRIANGLES)?
+            .map(|words| piece(words, &tensors))
+            .collect::<Result<_, _>>()?,
         edges: arrays.next(layout::EDGES)?.enumerate().map(edge).collect::<Result<_, _>>()?,
         lifts: arrays.next(layout::LIFTS)?.map(lift).collect(),
         polygon: arrays.next(layout::POLYGON)?.map(|[e]| index(e)).collect(),
@@ -475,16 +482,31 @@ fn arrays(certificate: &Certificate, shares: &[f64]) -> Writer {
     out.add(layout::PRESCRIBED, certificate.prescribed.iter().map(prescribed));
     let cut = |Cut { ends: [a, b], at }: &Cut| [*a as u64, *b as u64, at.to_bits()];
     out.add(layout::CUTS, certificate.cuts.iter().map(cut));
+    let mut tensors: Vec<Material<f64>> = Vec::new();
+    for material in certificate.pieces.iter().map(|piece| piece.material) {
+        if !material.is_isotropic() && !tensors.contains(&material) {
+            tensors.push(material);
+        }
+    }
     out.add(
         layout::TRIANGLES,
         certificate.pieces.iter().map(|piece| {
             let ([a, b, c], [d, e, f]) = (piece.vertices, piece.edges);
-            let ([lambda, mu], [p, q, r]) = (words(&piece.material), piece.body.map(|f| words(&f)));
+            let [lambda, mu] = if piece.material.is_isotropic() {
+                [piece.material.lambda(), piece.material.mu()].map(f64::to_bits)
+            } else {
+                {
+                    let place = tensors.iter().position(|tensor| *tensor == piece.material);
+                    [(place.unwrap_or(0) as f64).to_bits(), 0]
+                }
+            };
+            let [p, q, r] = piece.body.map(|f| words(&f));
             let [a, b, c, d, e, f] = [a, b, c, d, e, f].map(|i| i as u64);
             let oscillation = piece.oscillation.to_bits();
             [a, b, c, d, e, f, lambda, mu, p[0], p[1], q[0], q[1], r[0], r[1], oscillation]
         }),
     );
+    out.add(layout::TENSORS, tensors.iter().map(|material| material.stiffness().map(f64::to_bits)));
     out.add(layout::EDGES, certificate.edges.iter().map(edge_words));
     // Those of contact that are not the edges' normals, and those of edges that are held along one alone.
     out.add(
@@ -642,16 +664,25 @@ fn lift([a, b, c, norm]: [u64; 4]) -> Lift {
     Lift { corners: [a, b, c].map(index), norm: f64::from_bits(norm) }
 }
 
-fn piece(words: [u64; 15]) -> Piece {
+fn piece(words: [u64; 15], tensors: &[Material<f64>]) -> Result<Piece, String> {
     let [a, b, c, d, e, f, lambda, mu, body @ .., oscillation] = words;
     let [p, q, r, s, t, u] = numbers(body);
-    Piece {
+    // No material has mu = 0: then the first of the two is the number of a tensor.
+    let [lambda, mu] = numbers([lambda, mu]);
+    let material = if mu == 0.0 {
+        let place = lambda as usize;
+        let found = tensors.get(place).filter(|_| place as f64 == lambda);
+        *found.ok_or_else(|| format!("there is no tensor {lambda}"))?
+    } else {
+        Material::lame(lambda, mu, Plane::Strain)
+    };
+    Ok(Piece {
         vertices: [a, b, c].map(index),
         edges: [d, e, f].map(index),
-        material: numbers([lambda, mu]),
+        material,
         body: [[p, q], [r, s], [t, u]],
         oscillation: f64::from_bits(oscillation),
-    }
+    })
 }
 
 fn edge((e, [a, b, role, p, q, r, s]): (usize, [u64; 7])) -> Result<Edge, String> {

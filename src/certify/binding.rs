@@ -17,7 +17,7 @@ use super::parts::{Boundary, Parts};
 use super::tractions::force_of;
 use crate::fem::mesh::bisection::Refinement;
 use crate::fem::{BoundaryEdge, Degree, Mesh, MeshError, Problem};
-use crate::kernel::Triangle;
+use crate::kernel::{Material, Triangle};
 
 /// Numbers that differ by this, in units of the largest of their kind, are the same.
 const ROUNDING: f64 = 1e-11;
@@ -292,8 +292,8 @@ impl Comparison<'_> {
             ends.and_then(|ends| self.sides.get(&ends)).map_or(usize::MAX, |&(number, _)| number)
         };
         for (i, (piece, &t)) in certificate.pieces.iter().zip(origins).enumerate() {
-            let material = [parts.material(t).lambda(), parts.material(t).mu()];
-            self.same("triangle", i, ("lambda and mu", 0.0), &piece.material, &material)?;
+            let [found, expected] = [&piece.material, parts.material(t)].map(Material::stiffness);
+            self.same("triangle", i, ("stiffness", 0.0), &found, &expected)?;
             let triangle = Triangle { vertices: piece.vertices.map(|p| place(certificate, p)) };
             let body = data.body_on(t, &triangle).map(<[f64; 2]>::from);
             let [found, expected] = [&piece.body, &body].map(|body| body.as_flattened());

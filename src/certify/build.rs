@@ -319,7 +319,7 @@ fn add_part(
         let Built { certificate, divisions, .. } = &mut *built;
         found.extend(cut(part, (e, at, values), gap_bulge, stress, (certificate, divisions)));
     }
-    let material = [parts.material(t).lambda(), parts.material(t).mu()];
+    let material = parts.material(t).in_plane();
     for Part { vertices, edges, .. } in found {
         let certificate = &mut built.certificate;
         let own = || {

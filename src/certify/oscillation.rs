@@ -23,6 +23,7 @@ use super::bubbles;
 use super::certificate::{Certificate, Lift, Piece, Role, place};
 use super::data::{Data, POINTS, bulge_of, cancellation, is_within, length_and_normal, within};
 use super::parts::{Boundary, Parts};
+use crate::fem::material::least_eigenvalue;
 use crate::fem::mesh::length;
 use crate::fem::{Condition, SharedFunction, quadrature};
 use crate::kernel::{Material, Triangle};
@@ -187,11 +188,6 @@ fn korn(triangle: &Triangle<f64>) -> (f64, f64) {
     ((1.0 + 2.0 / (beta * beta)).sqrt(), lengths.into_iter().fold(0.0, f64::max))
 }
 
-/// The least eigenvalue of C on symmetric tensors.
-fn least_stiffness(material: &Material<f64>) -> f64 {
-    2.0 * material.mu().min(material.lambda() + material.mu())
-}
-
 /// The cost of f and t on one piece of triangle `t`: positive if that is measured. `whole` tells which edge of the mesh an
 /// edge of Gamma_N is, or is a part of.
 pub(super) fn loads(
@@ -266,7 +262,7 @@ pub(super) fn loads(
             .sqrt();
         sum += trace * square.sqrt();
     }
-    (of_bubbles + sum / least_stiffness(&piece.material()).sqrt()).max(least)
+    (of_bubbles + sum / least_eigenvalue(&piece.material).sqrt()).max(least)
 }
 
 /// |z|_a of what the displacement and the gap ask for beyond v, on each triangle of the mesh.

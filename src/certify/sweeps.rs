@@ -19,7 +19,7 @@ use super::balanced::{Balanced, Topology};
 use super::certificate::{Certificate, Edge, Role};
 use super::proof::Rejection;
 use crate::kernel::composite::{Composite, Frame, Loads};
-use crate::kernel::{Stress, Triangle};
+use crate::kernel::{Material, Stress, Triangle};
 
 /// The unknowns of a triangle: Phi, Phi_x, Phi_y at its vertices, then those of its edges.
 const UNKNOWNS: usize = 12;
@@ -40,7 +40,7 @@ struct Form {
 const RECENT: usize = 8;
 
 /// The key of a form: two edges and the moduli.
-type Shape = ([[f32; 2]; 2], [f64; 2]);
+type Shape = ([[f32; 2]; 2], Material<f64>);
 
 /// A form that was met, by its number, with the stresses of its unknowns.
 struct Met {
@@ -374,7 +374,7 @@ fn energies(
         let single = |edge: Vector2<f64>| [edge.x as f32, edge.y as f32];
         let shape = ([0, 1].map(|i| single(triangle.edge(i))), piece.material);
         let known = recent.iter().position(|met| met.shape == shape).unwrap_or_else(|| {
-            let units = units(triangle, roots(piece.material, triangle));
+            let units = units(triangle, &Roots::of(&piece.material, triangle));
             let form = forms.len() as u32;
             forms.push(form_of(&units));
             let met = Met { shape, form, units };
@@ -388,7 +388,7 @@ fn energies(
         });
         let Met { form, units, .. } = &recent[known];
         let distance = state.without_bending(certificate, t).1;
-        let distance = features(&distance, roots(piece.material, triangle));
+        let distance = features(&distance, &Roots::of(&piece.material, triangle));
         let mut gradient = [0.0; UNKNOWNS];
         for (row, distance) in units.iter().zip(distance) {
             gradient.iter_mut().zip(row).for_each(|(sum, unit)| *sum -= unit * distance);
@@ -398,14 +398,28 @@ fn energies(
     (forms, energies)
 }
 
-/// The roots of |T|/144 over mu and over lambda + mu.
-fn roots([lambda, mu]: [f64; 2], triangle: &Triangle<f64>) -> [f64; 2] {
-    let scale = triangle.double_area() / 288.0;
-    [(scale / mu).sqrt(), (scale / (lambda + mu)).sqrt()]
+/// The energy of a stress on a triangle as squares.
+struct Roots {
+    /// The roots of |T|/144 over the moduli of [`Squares`]: for the deviator, the shear and the sphere.
+    roots: [f64; 3],
+    /// Its L.
+    coupling: [f64; 3],
+}
+
+impl Roots {
+    fn of(material: &Material<f64>, triangle: &Triangle<f64>) -> Self {
+        let scale = triangle.double_area() / 288.0;
+        let squares = material.squares();
+        let [sphere, deviator, shear] = squares.pivots();
+        Roots {
+            roots: [deviator, shear, sphere].map(|modulus| (scale / modulus).sqrt()),
+            coupling: squares.beyond.map_or([0.0; 3], |(_, coupling)| coupling),
+        }
+    }
 }
 
 /// The [`features`] of the stresses of a triangle's unknowns, with edges that go round it.
-fn units(triangle: &Triangle<f64>, roots: [f64; 2]) -> [[f64; UNKNOWNS]; FEATURES] {
+fn units(triangle: &Triangle<f64>, roots: &Roots) -> [[f64; UNKNOWNS]; FEATURES] {
     let frame = Frame::new(triangle);
     let mut units = [[0.0; UNKNOWNS]; FEATURES];
     let (zero, body) = ([[Vector2::zeros(); 2]; 3], [Vector2::zeros(); 3]);
@@ -463,14 +477,17 @@ fn gram(rows: &[[f64; UNKNOWNS]; FEATURES]) -> [[f64; UNKNOWNS]; UNKNOWNS] {
 ///
 /// On a part with the corners a, b and the centre c, a^2 + b^2 + c^2 + (a + b + c)^2 is, with s = a + b + 2/3 c,
 /// 3/2 s^2 + 1/2 (a - b)^2 + 4/3 c^2.
-fn features(tau: &Composite<f64>, [deviator, sphere]: [f64; 2]) -> [f64; FEATURES] {
+fn features(tau: &Composite<f64>, roots: &Roots) -> [f64; FEATURES] {
+    let ([deviator, shear, sphere], [a, b, c]) = (roots.roots, roots.coupling);
     let mut all = [0.0; FEATURES];
     let mut k = 0;
     let mut put = |factor: f64, s: Stress<f64>| {
         let [xx, yy, xy] = s.components();
-        all[k] = factor * deviator * (xx - yy);
-        all[k + 1] = factor * deviator * 2.0 * xy;
-        all[k + 2] = factor * sphere * (xx + yy);
+        let mean = xx + yy;
+        let apart = xx - yy - a * mean;
+        all[k] = factor * deviator * apart;
+        all[k + 1] = factor * shear * (2.0 * xy - b * mean - c * apart);
+        all[k + 2] = factor * sphere * mean;
         k += 3;
     };
     for [a, b] in tau.corners {

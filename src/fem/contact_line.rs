@@ -17,6 +17,7 @@ use super::obstacle::Closest;
 use super::problem::{Condition, Problem};
 use super::smooth::{SmoothBoundary, SmoothPoint};
 use super::space::Space;
+use crate::kernel::contact_edge::traction_stiffness;
 use crate::quote::key;
 
 /// gamma along Gamma_C.
@@ -38,7 +39,8 @@ impl From<f64> for Gamma {
 /// C_h with kappa = gamma0 C_h, and the contact edge that sets it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coercivity {
-    /// max_T c_p (lambda + 2 mu) h_T |T's edges on Gamma_C| / |T|
+    /// max_T c_p h_T sum_E c_E |E| / |T| over the edges E of T on Gamma_C, c_E = n~ . Q(n) n~ with the acoustic tensor Q(n)
+    /// (A_nnnn where n~ = n), or its largest eigenvalue where n~ turns along E: lambda + 2 mu where A is isotropic.
     pub constant: f64,
     /// The median of the same over the triangles.
     pub typical: f64,
@@ -94,20 +96,20 @@ fn constants(
     sight: &Sight,
 ) -> Result<BTreeMap<usize, f64>, DataError> {
     let mesh = &problem.mesh;
-    let mut lengths: BTreeMap<usize, f64> = BTreeMap::new();
+    let mut constants: BTreeMap<usize, f64> = BTreeMap::new();
     for &(edge, name) in edges {
         let [start, end] = [sight.direction(edge, name, 0)?, sight.direction(edge, name, 1)?];
-        let length = mesh.length_and_normal(edge).0;
+        let (length, normal) = mesh.length_and_normal(edge);
         let counted =
             if start == end { length } else { degree.turning_factor(start.dot(&end)) * length };
-        *lengths.entry(edge.triangle).or_default() += counted;
+        let t = edge.triangle;
+        let (area, material) = (mesh.triangle(t).double_area() / 2.0, problem.material.of(t));
+        let stiffness =
+            traction_stiffness(material, normal, (start == end).then_some(start), f64::sqrt);
+        *constants.entry(t).or_default() +=
+            degree.coercivity_constant(stiffness, mesh.diameter(t), counted, area);
     }
-    let constant = |(t, length)| {
-        let area = mesh.triangle(t).double_area() / 2.0;
-        let (h, material) = (mesh.diameter(t), problem.material.of(t));
-        (t, degree.coercivity_constant(material, h, length, area))
-    };
-    Ok(lengths.into_iter().map(constant).collect())
+    Ok(constants)
 }
 
 /// Points by x, then by y.

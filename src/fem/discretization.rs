@@ -279,7 +279,7 @@ fn internal_forces<E: Element<N, M>, const N: usize, const M: usize>(
             continue;
         }
         let material = d.problem.material.of(t);
-        let stiffness = material.lambda().abs() + 2.0 * material.mu();
+        let stiffness = material::largest_entry(material);
         let barycentric = triangle.barycentric_gradients();
         let area = triangle.double_area() / 2.0;
         let sizes = nodal.map(norm_1);

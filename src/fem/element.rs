@@ -6,7 +6,7 @@ use nalgebra::{SMatrix, SVector};
 use crate::kernel::contact_edge;
 use crate::kernel::edge_integral;
 use crate::kernel::element::displacement_gradient;
-use crate::kernel::{Element, Material, P1, P2, Scalar};
+use crate::kernel::{Element, P1, P2, Scalar};
 
 /// The polynomial degree of V^h.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,23 +103,23 @@ impl Degree {
         }
     }
 
-    /// kappa_T / gamma0 of one triangle: [`contact_edge::coercivity_constant`].
+    /// What an edge adds to kappa_T / gamma0 of its triangle: [`contact_edge::coercivity_constant`].
     pub fn coercivity_constant<S: Scalar>(
         self,
-        material: &Material<S>,
+        stiffness: S,
         diameter: S,
         contact_length: S,
         area: S,
     ) -> S {
         match self {
             Degree::One => contact_edge::coercivity_constant::<P1, S, 3, 2>(
-                material,
+                stiffness,
                 diameter,
                 contact_length,
                 area,
             ),
             Degree::Two => contact_edge::coercivity_constant::<P2, S, 6, 3>(
-                material,
+                stiffness,
                 diameter,
                 contact_length,
                 area,

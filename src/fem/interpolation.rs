@@ -1,5 +1,6 @@
 //! Theorem 3.5 with a number, for P1 and u in H^2 (nu = 1/2): the interpolation estimates (22)-(24) with explicit constants
-//! (docs/theory.md, 9.6). With eta = u - I u, I u the Lagrange interpolant, K = 2 mu + 2 \[lambda\]+, M = lambda + 2 mu, on a
+//! (docs/theory.md, 9.6). With eta = u - I u, I u the Lagrange interpolant, K the largest eigenvalue of A (2 mu + 2 \[lambda\]+ where it is
+//! isotropic), M = A_nnnn (lambda + 2 mu), on a
 //! triangle T with the sides a, b, c, the diameter h and an edge E on Gamma_C:
 //!
 //! (22)  |grad eta|_T <= c_T |u|_{2,T},   c_T^2 = (abc/(4 |T|))^2 - (a^2 + b^2 + c^2)/30 - (|T|^2/5)(a^-2 + b^-2 + c^-2)
@@ -15,6 +16,7 @@ use super::a_priori;
 use super::contact_face::ContactFace;
 use super::errors::{Errors, POINTS};
 use super::exact::ExactSolution;
+use super::material::largest_eigenvalue;
 use super::pieces::{EdgePoint, Rule};
 use super::space::Space;
 use crate::kernel::{Material, Scalar, Triangle};
@@ -46,7 +48,7 @@ pub struct Interpolation {
 impl Interpolation {
     /// The constants for a body of this material with these edges on Gamma_C.
     pub fn new(space: &Space, contact: &[ContactFace], material: &Material<f64>) -> Self {
-        let both = 2.0 * (material.mu() + material.lambda().max(0.0));
+        let both = largest_eigenvalue(material);
         let gradient = |triangle: Triangle<f64>| gradient_constant_squared(&triangle).sqrt();
         let c: Vec<f64> = space.triangles::<3>().map(|(triangle, _)| gradient(triangle)).collect();
         let on_edge = |edge: &ContactFace| {
@@ -54,7 +56,7 @@ impl Interpolation {
             let (mesh, root) = (space.mesh(), edge.gamma.sqrt());
             let sizes = [edge.length, mesh.triangle(t).double_area() / 2.0, mesh.diameter(t)];
             let trace = trace_constant_squared(sizes, c[t]).sqrt();
-            let stress = (material.normal_stiffness() * both).sqrt() * trace;
+            let stress = (material.normal_stiffness(edge.normal) * both).sqrt() * trace;
             (t, [root * stress, edge.length / PI * trace / root])
         };
         Interpolation {

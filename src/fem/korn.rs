@@ -15,6 +15,7 @@ use std::collections::BinaryHeap;
 
 use super::ball::larger;
 use super::constraints::Constraints;
+use super::material::least_eigenvalue;
 use super::space::Space;
 use crate::fem::{Degree, Materials, Mesh};
 use crate::kernel::{Ball, Triangle};
@@ -198,8 +199,7 @@ fn squared_remainder(mesh: &Mesh, degree: Degree, materials: &Materials, t: usiz
     let squares = [0, 1, 2].map(|i| doubles.edge(i)).map(|edge| edge.dot(&edge));
     let square = squares.into_iter().fold(0.0, f64::max);
     let material = materials.of(t);
-    let mu = Ball::point(material.mu());
-    let stiffness = mu.lower().min((mu + Ball::point(material.lambda())).lower());
+    let stiffness = least_eigenvalue(material) / 2.0;
     // Below, squares underflow.
     if !(area > SMALLEST && stiffness > 0.0) {
         return None;

@@ -1,9 +1,13 @@
 //! Materials that are stable: mu > 0 and 3 lambda + 2 mu > 0 for the three-dimensional body, that is E > 0 and
-//! -1 < nu < 1/2. The kernel's constructors take what they are given, over any numbers; these check it.
+//! -1 < nu < 1/2; tensors in the plane with positive eigenvalues. The kernel's constructors take what they are given, over any
+//! numbers; these check it.
+//!
+//! The eigenvalues of A are those of its matrix in Mandel's form, with the root of 2 times 2 eps_xy and sigma_xy.
 
+use nalgebra::Vector3;
 use thiserror::Error;
 
-use crate::kernel::{Material, Plane};
+use crate::kernel::{Ball, Material, Plane, Stress};
 
 /// Why there is no such material.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -16,6 +20,41 @@ pub enum MaterialError {
         "in the plane lambda is {lambda} and mu is {mu}; expected finite moduli of a stable material: mu > 0 and 3 lambda + 2 mu > 0, that is Young's modulus > 0 and Poisson's ratio above -1 and below 0.5"
     )]
     Unstable { lambda: f64, mu: f64 },
+    #[error(
+        "the smallest eigenvalue of the stiffness [{}] is {eigenvalue}; expected an elliptic law: a positive one, at least 1e-10 of the largest",
+        stiffness.map(|c| c.to_string()).join(", ")
+    )]
+    NotElliptic { stiffness: [f64; 6], eigenvalue: f64 },
+    #[error("the stiffness across the plane is not finite")]
+    Across,
+}
+
+/// Moduli along and across the axis of an orthotropic material.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Orthotropic {
+    /// Young's modulus along the axis.
+    pub e1: f64,
+    /// Young's modulus across it, in the plane.
+    pub e2: f64,
+    /// -eps_2 / eps_1 under a stress along the axis.
+    pub nu12: f64,
+    /// The shear modulus in the plane.
+    pub g12: f64,
+    /// From the x axis to that of the material, in degrees, to the left.
+    pub angle: f64,
+    /// What makes it a law of plane strain; without it is one of plane stress.
+    pub across: Option<Across>,
+}
+
+/// The moduli of an orthotropic material across the plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Across {
+    /// Young's modulus across the plane.
+    pub e3: f64,
+    /// -eps_3 / eps_1 under a stress along the axis.
+    pub nu13: f64,
+    /// -eps_3 / eps_2 under a stress across it, in the plane.
+    pub nu23: f64,
 }
 
 /// Makes a stable material of Lame's coefficients, as [`Material::lame`].
@@ -54,23 +93,154 @@ pub fn stable_young_poisson(
     stable(Material::young_poisson(young, poisson, plane))
 }
 
+/// Makes a stable orthotropic material.
+///
+/// # Errors
+/// [`MaterialError`]: moduli that are not positive and finite, and ratios for which the law is not elliptic.
+pub fn stable_orthotropic(moduli: Orthotropic) -> Result<Material<f64>, MaterialError> {
+    let Orthotropic { e1, e2, nu12, g12, angle, across } = moduli;
+    let expected = "a positive number";
+    let e3 = across.map_or(1.0, |across| across.e3);
+    for (name, value) in [("e1", e1), ("e2", e2), ("g12", g12), ("e3", e3)] {
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(MaterialError::Modulus { name, value, expected });
+        }
+    }
+    // sigma_zz that keeps eps_3 = 0, and the strains in the plane of a stress there, with that.
+    let across = across.map(|Across { e3, nu13, nu23 }| [nu13 * (e3 / e1), nu23 * (e3 / e2)]);
+    let [along, aside] = across.unwrap_or_default();
+    let [xx, xy, yy] = match moduli.across {
+        None => [1.0 / e1, -nu12 / e1, 1.0 / e2],
+        Some(Across { nu13, nu23, .. }) => {
+            let [s13, s23] = [nu13 / e1, nu23 / e2];
+            [1.0 / e1 - s13 * along, -nu12 / e1 - s13 * aside, 1.0 / e2 - s23 * aside]
+        }
+    };
+    let determinant = xx * yy - xy * xy;
+    let c = [yy / determinant, -xy / determinant, 0.0, xx / determinant, 0.0, g12];
+    let material = Material::tensor(c, across.map(|[along, aside]| [along, aside, 0.0]));
+    let (sine, cosine) = sine_and_cosine(angle);
+    stable(stable(material)?.turned([cosine, sine]))
+}
+
+/// The sine and the cosine of an angle in degrees: exact for multiples of 90.
+fn sine_and_cosine(degrees: f64) -> (f64, f64) {
+    let quarters = (degrees / 90.0).round();
+    let (sine, cosine) = (degrees - 90.0 * quarters).to_radians().sin_cos();
+    match quarters.rem_euclid(4.0) {
+        0.0 => (sine, cosine),
+        1.0 => (cosine, -sine),
+        2.0 => (-sine, -cosine),
+        _ => (-cosine, sine),
+    }
+}
+
 /// The material, if it is stable.
 ///
 /// # Errors
-/// [`MaterialError::Unstable`].
+/// [`MaterialError::Unstable`], [`MaterialError::NotElliptic`], [`MaterialError::Across`].
 pub fn stable(material: Material<f64>) -> Result<Material<f64>, MaterialError> {
+    if !material.is_isotropic() {
+        let (stiffness, [eigenvalue, largest]) = (material.stiffness(), eigenvalues(&material));
+        let finite = stiffness.iter().all(|c| c.is_finite());
+        if !(finite && eigenvalue > 0.0 && eigenvalue >= 1e-10 * largest) {
+            // Rounding leaves a dozen digits of it.
+            let eigenvalue = format!("{eigenvalue:.11e}").parse().unwrap_or(eigenvalue);
+            return Err(MaterialError::NotElliptic { stiffness, eigenvalue });
+        }
+        let across = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let zz = across.map(|stress| material.stress_zz(Stress::new(stress)));
+        return if zz.iter().all(|zz| zz.is_finite()) {
+            Ok(material)
+        } else {
+            Err(MaterialError::Across)
+        };
+    }
     let (lambda, mu) = (material.lambda(), material.mu());
     let bulk = match material.plane() {
         Plane::Strain => 3.0 * lambda + 2.0 * mu,
         // lambda* = 2 lambda mu / (lambda + 2 mu) grows with lambda, and is -mu where 3 lambda = -2 mu.
         Plane::Stress => lambda + mu,
     };
-    let finite = lambda.is_finite() && material.normal_stiffness().is_finite();
+    let finite = lambda.is_finite() && (lambda + 2.0 * mu).is_finite();
     if finite && mu > 0.0 && bulk > 0.0 {
         Ok(material)
     } else {
         Err(MaterialError::Unstable { lambda, mu })
     }
+}
+
+/// eps_xx, eps_yy and 2 eps_xy under the stress sigma_xx, sigma_yy, sigma_xy in the plane, by Cramer's rule.
+pub fn strain(material: &Material<f64>, stress: [f64; 3]) -> [f64; 3] {
+    let [xx, xy, xz, yy, yz, zz] = material.stiffness();
+    let columns = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]].map(Vector3::from);
+    let [a, b, c] = columns;
+    let stress = Vector3::from(stress);
+    let volume = |a: Vector3<f64>, b: Vector3<f64>, c: Vector3<f64>| a.dot(&b.cross(&c));
+    let whole = volume(a, b, c);
+    [volume(stress, b, c), volume(a, stress, c), volume(a, b, stress)].map(|part| part / whole)
+}
+
+/// The smallest and the largest eigenvalue of A.
+pub fn eigenvalues(material: &Material<f64>) -> [f64; 2] {
+    if material.is_isotropic() {
+        let (mu, bulk) = (material.mu(), material.lambda() + material.mu());
+        return [2.0 * mu.min(bulk), 2.0 * mu.max(bulk)];
+    }
+    let [xx, xy, xz, yy, yz, zz] = material.stiffness();
+    let root = 2.0_f64.sqrt();
+    let mut matrix = [[xx, xy, root * xz], [xy, yy, root * yz], [root * xz, root * yz, 2.0 * zz]];
+    // Jacobi's rotations: five rounds are more than doubles can tell.
+    for (p, q) in [(0, 1), (0, 2), (1, 2)].into_iter().cycle().take(15) {
+        if matrix[p][q] == 0.0 {
+            continue;
+        }
+        let theta = (matrix[q][q] - matrix[p][p]) / (2.0 * matrix[p][q]);
+        let tangent = theta.signum() / (theta.abs() + theta.hypot(1.0));
+        let cosine = 1.0 / tangent.hypot(1.0);
+        let sine = tangent * cosine;
+        for row in &mut matrix {
+            let (a, b) = (row[p], row[q]);
+            (row[p], row[q]) = (cosine * a - sine * b, sine * a + cosine * b);
+        }
+        let (a, b) = (matrix[p], matrix[q]);
+        matrix[p] = std::array::from_fn(|k| cosine * a[k] - sine * b[k]);
+        matrix[q] = std::array::from_fn(|k| sine * a[k] + cosine * b[k]);
+    }
+    let diagonal = [0, 1, 2].map(|i| matrix[i][i]);
+    let [least, most] = [f64::min, f64::max].map(|f| diagonal.into_iter().fold(diagonal[0], f));
+    // A NaN is passed over by both.
+    if diagonal.iter().all(|x| x.is_finite()) { [least, most] } else { [f64::NAN; 2] }
+}
+
+/// A number that A - it is elliptic with, as near to its smallest eigenvalue as rounding allows; 0 or less if there is none.
+pub fn least_eigenvalue(material: &Material<f64>) -> f64 {
+    if material.is_isotropic() {
+        let mu = Ball::point(material.mu());
+        return 2.0 * mu.lower().min((mu + Ball::point(material.lambda())).lower());
+    }
+    let least = eigenvalues(material)[0];
+    let is_less = |least: &f64| {
+        let [xx, xy, xz, yy, yz, zz] = material.stiffness().map(Ball::point);
+        let (whole, half) = (Ball::point(*least), Ball::point(least / 2.0));
+        let rest = Material::tensor([xx - whole, xy, xz, yy - whole, yz, zz - half], None);
+        rest.squares().pivots().iter().all(|pivot| pivot.lower() > 0.0)
+    };
+    let candidates = [1e-12, 1e-8, 1e-4, 0.5].map(|less| least * (1.0 - less));
+    candidates.into_iter().find(is_less).unwrap_or(0.0)
+}
+
+/// The largest eigenvalue of A, to rounding.
+pub fn largest_eigenvalue(material: &Material<f64>) -> f64 {
+    eigenvalues(material)[1]
+}
+
+/// A number that |C_ij| is at most.
+pub fn largest_entry(material: &Material<f64>) -> f64 {
+    if material.is_isotropic() {
+        return material.lambda().abs() + 2.0 * material.mu();
+    }
+    material.stiffness().into_iter().fold(0.0, |most: f64, c| most.max(c.abs()))
 }
 
 #[cfg(test)]

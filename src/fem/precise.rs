@@ -8,6 +8,7 @@ use super::ball::{Ball, Sum};
 use super::contact_face::ContactFace;
 use super::discretization::Discretization;
 use super::element::with_element;
+use super::material::{largest_entry, least_eigenvalue};
 use super::materials::Materials;
 use super::space::Space;
 use crate::fem::double_double::DoubleDouble;
@@ -226,11 +227,11 @@ fn energy_norm_of<E: Element<N, M>, const N: usize, const M: usize>(
         let rounded = RoundedStrain::new::<E, M>(&triangle, nodes.map(|node| v[node]));
         let material = d.problem.material.of(t);
         errors += rounded.stress_error_squared(material);
-        let (lambda, mu) = (material.lambda(), material.mu());
-        let [bulk, shear] = [lambda + mu, mu].map(|m| (rounded.area / (4.0 * m)).sqrt());
+        let law = material.squares();
+        let roots = law.pivots().map(|modulus| (rounded.area / (4.0 * modulus)).sqrt());
         E::at_stiffness_points(|l, weight| {
-            let [xx, yy, xy] = rounded.stress::<E, M>(material, l).components();
-            let parts = [bulk * (xx + yy), shear * (xx - yy), 2.0 * shear * xy];
+            let [deviator, shear, sphere] = law.parts(rounded.stress::<E, M>(material, l));
+            let parts = [roots[0] * sphere, roots[1] * deviator, roots[2] * shear];
             squares += weight * parts.map(|s| s * s).iter().sum::<f64>() + f64::MIN_POSITIVE;
         });
     }
@@ -300,11 +301,16 @@ impl<const N: usize> RoundedStrain<N> {
     }
 
     /// An upper bound of the square of the stress error in the norm dual to |v|_a on the triangle: |sigma:eps| is at most
-    /// |sigma| |eps|, and 2 min(mu, lambda + mu) |eps|^2 at most sigma(v):eps(v).
+    /// |sigma| |eps|, and the least eigenvalue of C times |eps|^2 at most sigma(v):eps(v). An entry of sigma is at most the largest
+    /// of C times the sum of |grad v|'s, and the rounding of its three products no more than that of the strain.
     fn stress_error_squared(&self, material: &Material<f64>) -> f64 {
-        let (lambda, mu) = (material.lambda(), material.mu());
-        let off = 2.0 * (lambda.abs() + mu) * self.error + f64::MIN_POSITIVE;
-        let norm = off * (self.area / (2.0 * mu.min(lambda + mu))).sqrt();
+        let most = if material.is_isotropic() {
+            2.0 * (material.lambda().abs() + material.mu())
+        } else {
+            4.0 * largest_entry(material)
+        };
+        let off = most * self.error + f64::MIN_POSITIVE;
+        let norm = off * (self.area / least_eigenvalue(material)).sqrt();
         norm * norm + f64::MIN_POSITIVE
     }
 

@@ -9,6 +9,7 @@ use super::expression::Expression;
 use super::mistake::{CaseError, CaseMistake};
 use super::table::{Table, Value};
 use crate::fem::exact;
+use crate::fem::material::largest_entry;
 use crate::fem::{Exact, Materials, Mesh, SharedFunction, SurfaceForce};
 use crate::kernel::{Material, Plane};
 use crate::quote::{self, key as shown, quoted};
@@ -184,7 +185,7 @@ fn read_material(table: &Table, plane: Plane) -> Result<(Material<f64>, Material
         }
         _ => return Err(table.combination(&MODULI, "lambda and mu, or young and poisson")),
     };
-    let stiffness = material.normal_stiffness();
+    let stiffness = largest_entry(&material);
     if stiffness > 0.0 && stiffness.is_finite() {
         let plane = if plane == Plane::Strain { "strain" } else { "stress" }.to_owned();
         Ok((material, MaterialEcho { surfaces: Vec::new(), young, poisson, plane }))

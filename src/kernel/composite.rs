@@ -151,7 +151,8 @@ impl<S: Scalar> Affine<S> {
             return complementary(material, self.base) * double_area / S::from(2);
         }
         let [a, b, c] = [0, 1, 2].map(|i| self.at_corner(i));
-        let square = |s: Stress<S>| complementary(material, s);
+        let squares = material.squares();
+        let square = |s: Stress<S>| squares.of_stress(s);
         (square(a) + square(b) + square(c) + square(a + b + c)) * double_area / S::from(24)
     }
 }
@@ -236,6 +237,9 @@ impl<S: Scalar> Composite<S> {
     /// 2/15 A sum h_pq (2 a_p + 2 a_q + a_r) and 4/45 A (sum h^2 + (sum h)^2) more.
     pub fn energy(&self, material: &Material<S>, double_area: S) -> S {
         let (three, eight) = (S::from(3), S::from(8));
+        let law = material.squares();
+        let squares = |tau: Stress<S>| law.products(tau, tau);
+        let products = |a: Stress<S>, b: Stress<S>| law.products(a, b);
         let two_thirds = self.centre * (S::from(2) / three);
         let mut sum = squares(self.centre).map(|x| eight * x);
         for [a, b] in self.corners {
@@ -255,7 +259,7 @@ impl<S: Scalar> Composite<S> {
             }
             sum = [0, 1].map(|k| sum[k] + square * squared[k]);
         }
-        per_moduli(material, sum) * double_area / S::from(576)
+        law.per_moduli(sum) * double_area / S::from(576)
     }
 }
 
@@ -309,34 +313,15 @@ impl<S: Scalar> Wrench<S> {
     }
 }
 
-/// tau : C^-1 tau: what is deviatoric over 2 mu, what is spherical over 2 (lambda + mu), both squares.
+/// tau : C^-1 tau.
 pub fn complementary<S: Scalar>(material: &Material<S>, tau: Stress<S>) -> S {
-    per_moduli(material, squares(tau)) / S::from(4)
-}
-
-/// Twice the square of the deviator, and that of the sphere.
-fn squares<S: Scalar>(tau: Stress<S>) -> [S; 2] {
-    products(tau, tau)
-}
-
-/// Twice the product of the deviators, and that of the spheres.
-fn products<S: Scalar>(a: Stress<S>, b: Stress<S>) -> [S; 2] {
-    let parts = |tau: Stress<S>| {
-        let [xx, yy, xy] = tau.components();
-        [xx - yy, xy + xy, xx + yy]
-    };
-    let (a, b) = (parts(a), parts(b));
-    [a[0] * b[0] + a[1] * b[1], a[2] * b[2]]
+    material.squares().of_stress(tau)
 }
 
 /// The symmetric part of a (x) b.
 fn symmetric<S: Scalar>(a: Vector2<S>, b: Vector2<S>) -> Stress<S> {
     let xy = (a[0] * b[1] + a[1] * b[0]) / S::from(2);
     Stress::new([a[0] * b[0], a[1] * b[1], xy])
-}
-
-fn per_moduli<S: Scalar>(material: &Material<S>, [deviator, sphere]: [S; 2]) -> S {
-    deviator / material.mu() + sphere / (material.lambda() + material.mu())
 }
 
 fn centroid<S: Scalar>(triangle: &Triangle<S>) -> Vector2<S> {

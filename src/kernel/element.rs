@@ -11,6 +11,7 @@
 
 use nalgebra::{Matrix2, SMatrix, SVector};
 
+use super::material::outer;
 use super::{Material, Scalar, Triangle};
 
 /// A Lagrange element with `N` nodes on a triangle, `M` of them on each edge.
@@ -136,11 +137,6 @@ impl Element<6, 3> for P2 {
     }
 }
 
-/// a b^T
-fn outer<S: Scalar, const D: usize>(a: SVector<S, D>, b: SVector<S, D>) -> SMatrix<S, D, D> {
-    SMatrix::from_fn(|i, j| a[i] * b[j])
-}
-
 /// The displacement gradient du_i/dx_j of a discrete field, from its nodal values and the gradients of its shapes.
 pub fn displacement_gradient<S: Scalar, const N: usize, const D: usize>(
     nodal: &[SVector<S, D>; N],
@@ -151,21 +147,6 @@ pub fn displacement_gradient<S: Scalar, const N: usize, const D: usize>(
         sum += outer(*u, *g);
     }
     sum
-}
-
-/// sigma(u):eps(v) at a point, where v = N_i e_c has grad N_i = `g_i` and u = N_j e_d has grad N_j = `g_j`: entry (c, d) of
-/// lambda g_i g_j^T + mu g_j g_i^T + mu (g_i . g_j) I.
-fn energy_density<S: Scalar, const D: usize>(
-    g_i: SVector<S, D>,
-    g_j: SVector<S, D>,
-    [lambda, mu]: [S; 2],
-) -> SMatrix<S, D, D> {
-    let mut density = outer(g_i * lambda, g_j) + outer(g_j, g_i * mu);
-    let shear = mu * g_i.dot(&g_j);
-    for c in 0..D {
-        density[(c, c)] += shear;
-    }
-    density
 }
 
 /// The element matrix of a(.,.) = int_T sigma(u):eps(v) in blocks: entry (c, d) of block `[i][j]` belongs to v = N_i e_c
@@ -180,14 +161,13 @@ where
 {
     let barycentric = triangle.barycentric_gradients();
     let area = triangle.double_area() / S::from(2);
-    let (lambda, mu) = (material.lambda(), material.mu());
     let mut matrix = [[Matrix2::zeros(); N]; N];
     E::at_stiffness_points(|l: [S; 3], weight| {
         let g = E::gradients(l, barycentric);
-        let moduli = [weight * area * lambda, weight * area * mu];
+        let weighted = material.times(weight * area);
         for i in 0..N {
             for j in 0..N {
-                matrix[i][j] += energy_density(g[i], g[j], moduli);
+                matrix[i][j] += weighted.energy_of_shapes(g[i], g[j]);
             }
         }
     });

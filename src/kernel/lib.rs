@@ -17,6 +17,7 @@
 //! | [`contact`] | conditions (2), equation (5), P_gamma, lambda^h |
 //! | [`contact_edge`] | P_gamma and sigma_n as functionals on one edge of Gamma_C |
 //! | [`edge_integral`] | the integrals over one edge in (8) and in J_h |
+//! | [`squares`] | not in the paper: the energies of a strain and of a stress as sums of squares |
 //! | [`composite`] | not in the paper: stresses in equilibrium, for certificates |
 //! | [`interval`] | not in the paper: doubles with their rounding enclosed |
 //! | [`ball`] | not in the paper: the same, quicker and wider |
@@ -36,6 +37,8 @@ pub mod material;
 pub mod pattern;
 pub mod positive_part;
 pub mod scalar;
+#[cfg(not(kani))]
+pub mod squares;
 pub mod triangle;
 
 pub use ball::Ball;
@@ -48,4 +51,6 @@ pub use interval::Interval;
 pub use material::{Material, Plane, Stress};
 pub use positive_part::{positive_part, positive_part_slope};
 pub use scalar::Scalar;
+#[cfg(not(kani))]
+pub use squares::Squares;
 pub use triangle::Triangle;

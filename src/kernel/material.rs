@@ -1,14 +1,22 @@
-//! Linear isotropic elasticity in the plane: sigma = A eps of (1), sigma = lambda tr(eps) I + 2 mu eps.
+//! Linear elasticity in the plane: sigma = A eps of (1) for any tensor A with the symmetries of section 2.1,
 //!
-//! Plane stress has the same form with lambda* = 2 lambda mu / (lambda + 2 mu) in place of lambda, so a [`Material`]
-//! holds the coefficient that acts in the plane and remembers which of the two it is. The law itself, and what follows for
-//! sigma_n, is written for D dimensions; what only a plane has is not.
+//! sigma_xx = C11 eps_xx + C12 eps_yy + C16 gamma,
+//! sigma_yy = C12 eps_xx + C22 eps_yy + C26 gamma,
+//! sigma_xy = C16 eps_xx + C26 eps_yy + C66 gamma,   gamma = 2 eps_xy,
+//!
+//! and, with numbers of its own, the isotropic sigma = lambda tr(eps) I + 2 mu eps.
+//!
+//! Plane stress has the isotropic form with lambda* = 2 lambda mu / (lambda + 2 mu) in place of lambda, so a [`Material`]
+//! holds what acts in the plane and remembers which of the two it is. The isotropic law, and what follows for
+//! sigma_n, is written for D dimensions; a tensor is that of a plane, and looks at the first two coordinates only.
 
 use std::ops::{Add, Div, Mul, Sub};
 
 use nalgebra::{Matrix2, SMatrix, SVector};
 
 use super::Scalar;
+#[cfg(not(kani))]
+use super::squares::Squares;
 
 /// Plane strain (no strain across the plane) or plane stress (no stress across it).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,12 +27,26 @@ pub enum Plane {
     Stress,
 }
 
-/// An isotropic material acting in the plane. Both coefficients have the unit of a stress.
+/// A material acting in the plane. All coefficients have the unit of a stress.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material<S> {
-    lambda: S,
-    mu: S,
+    law: Law<S>,
     plane: Plane,
+}
+
+/// A
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Law<S> {
+    Isotropic {
+        lambda: S,
+        mu: S,
+    },
+    Tensor {
+        /// C11, C12, C16, C22, C26, C66
+        c: [S; 6],
+        /// What sigma_xx, sigma_yy and sigma_xy count in sigma_zz.
+        across: [S; 3],
+    },
 }
 
 /// A symmetric stress tensor in D dimensions.
@@ -39,7 +61,7 @@ impl<S: Scalar> Material<S> {
             Plane::Strain => lambda,
             Plane::Stress => two * lambda * mu / (lambda + two * mu),
         };
-        Material { lambda, mu, plane }
+        Material { law: Law::Isotropic { lambda, mu }, plane }
     }
 
     /// The material with Young's modulus `young` and Poisson's ratio `poisson` (which must be neither -1 nor 1/2).
@@ -50,20 +72,116 @@ impl<S: Scalar> Material<S> {
         Material::lame(lambda, mu, plane)
     }
 
+    /// The material with the law `[C11, C12, C16, C22, C26, C66]` in the plane, and in plane strain with
+    /// sigma_zz = `across` . (sigma_xx, sigma_yy, sigma_xy); `None` is plane stress.
+    #[cfg(not(kani))]
+    pub fn tensor(c: [S; 6], across: Option<[S; 3]>) -> Self {
+        let plane = if across.is_some() { Plane::Strain } else { Plane::Stress };
+        let across = across.unwrap_or([S::from(0); 3]);
+        Material { law: Law::Tensor { c, across }, plane }
+    }
+
     /// Converts the material to another number type.
     #[cfg(not(kani))]
     pub fn map<T>(&self, f: impl Fn(S) -> T) -> Material<T> {
-        Material { lambda: f(self.lambda), mu: f(self.mu), plane: self.plane }
+        let law = match self.law {
+            Law::Isotropic { lambda, mu } => Law::Isotropic { lambda: f(lambda), mu: f(mu) },
+            Law::Tensor { c, across } => Law::Tensor { c: c.map(&f), across: across.map(&f) },
+        };
+        Material { law, plane: self.plane }
     }
 
-    /// The first Lamé coefficient as it acts in the plane: lambda, in plane stress lambda*.
+    /// The material as it acts in the plane, without what is known across it.
+    #[cfg(not(kani))]
+    #[must_use]
+    pub fn in_plane(&self) -> Self {
+        match self.law {
+            Law::Isotropic { .. } => Material { plane: Plane::Strain, ..*self },
+            Law::Tensor { c, .. } => Material::tensor(c, None),
+        }
+    }
+
+    /// The material that is turned to the left by the angle with this cosine and sine.
+    #[cfg(not(kani))]
+    #[must_use]
+    pub fn turned(&self, [cosine, sine]: [S; 2]) -> Self {
+        let Law::Tensor { across, .. } = self.law else { return *self };
+        let axes = [[cosine, sine], [-sine, cosine]];
+        // Entry (k, l) of a matrix in the axes of the material; and back.
+        let inward = |m: Matrix2<S>, [k, l]: [usize; 2]| {
+            let row = |i: usize| m[(i, 0)] * axes[l][0] + m[(i, 1)] * axes[l][1];
+            axes[k][0] * row(0) + axes[k][1] * row(1)
+        };
+        let outward = |m: &Matrix2<S>, [i, j]: [usize; 2]| {
+            let row = |k: usize| m[(k, 0)] * axes[0][j] + m[(k, 1)] * axes[1][j];
+            axes[0][i] * row(0) + axes[1][i] * row(1)
+        };
+        let (zero, one, two) = (S::from(0), S::from(1), S::from(2));
+        let column = |[xx, yy, xy]: [S; 3]| {
+            let gradient = Matrix2::new(xx, xy, zero, yy);
+            let stress = self.stress(Matrix2::from_fn(|k, l| inward(gradient, [k, l])));
+            [[0, 0], [1, 1], [0, 1]].map(|ij| outward(stress.matrix(), ij))
+        };
+        let [[xx, yx, zx], [_, yy, zy], [_, _, zz]] =
+            [[one, zero, zero], [zero, one, zero], [zero, zero, one]].map(column);
+        let half = across[2] / two;
+        let across = Matrix2::new(across[0], half, half, across[1]);
+        let across = [[0, 0], [1, 1], [0, 1]].map(|ij| outward(&across, ij));
+        let law = Law::Tensor {
+            c: [xx, yx, zx, yy, zy, zz],
+            across: [across[0], across[1], two * across[2]],
+        };
+        Material { law, plane: self.plane }
+    }
+
+    /// The material with A times `factor`.
+    pub(crate) fn times(&self, factor: S) -> Self {
+        let law = match self.law {
+            Law::Isotropic { lambda, mu } => {
+                Law::Isotropic { lambda: factor * lambda, mu: factor * mu }
+            }
+            Law::Tensor { c, across } => Law::Tensor { c: c.map(|c| factor * c), across },
+        };
+        Material { law, plane: self.plane }
+    }
+
+    /// Whether the law is given by lambda and mu.
+    #[cfg(not(kani))]
+    pub fn is_isotropic(&self) -> bool {
+        matches!(self.law, Law::Isotropic { .. })
+    }
+
+    /// C11, C12, C16, C22, C26, C66
+    #[cfg(not(kani))]
+    pub fn stiffness(&self) -> [S; 6] {
+        match self.law {
+            Law::Isotropic { lambda, mu } => {
+                let (zero, along) = (S::from(0), lambda + S::from(2) * mu);
+                [along, lambda, zero, along, zero, mu]
+            }
+            Law::Tensor { c, .. } => c,
+        }
+    }
+
+    /// The first Lamé coefficient as it acts in the plane: lambda, in plane stress lambda*; of a tensor, that of the isotropic
+    /// law nearest to it.
     pub fn lambda(&self) -> S {
-        self.lambda
+        match self.law {
+            Law::Isotropic { lambda, .. } => lambda,
+            Law::Tensor { c: [xx, xy, _, yy, ..], .. } => {
+                (xx + yy + xy + xy) / S::from(4) - self.mu()
+            }
+        }
     }
 
-    /// The shear modulus mu.
+    /// The shear modulus mu; of a tensor, that of the isotropic law nearest to it.
     pub fn mu(&self) -> S {
-        self.mu
+        match self.law {
+            Law::Isotropic { mu, .. } => mu,
+            Law::Tensor { c: [xx, xy, _, yy, _, shear], .. } => {
+                (xx + yy - (xy + xy)) / S::from(8) + shear / S::from(2)
+            }
+        }
     }
 
     /// Plane strain or plane stress.
@@ -72,29 +190,75 @@ impl<S: Scalar> Material<S> {
         self.plane
     }
 
-    /// lambda + 2 mu in the plane: the constant of sigma_n(v)^2 <= (lambda + 2 mu) sigma(v):eps(v), attained by a strain
-    /// along the normal only. In plane stress it is 4 mu (lambda + mu) / (lambda + 2 mu) = E / (1 - nu^2).
-    pub fn normal_stiffness(&self) -> S {
-        self.lambda + S::from(2) * self.mu
+    /// A_nnnn for a unit vector n: the constant of sigma_n(v)^2 <= A_nnnn sigma(v):eps(v), attained by a strain along n only.
+    /// Where A is isotropic it is lambda + 2 mu in the plane, in plane stress 4 mu (lambda + mu) / (lambda + 2 mu) = E / (1 - nu^2).
+    pub fn normal_stiffness<const D: usize>(&self, n: SVector<S, D>) -> S {
+        match self.law {
+            Law::Isotropic { lambda, mu } => lambda + S::from(2) * mu,
+            Law::Tensor { .. } => self.stress_along(n, n).normal(n),
+        }
+    }
+
+    /// The acoustic tensor Q(n) of a vector n: d . Q(n) d is the constant of (d . sigma(v) n)^2 <= d . Q(n) d sigma(v):eps(v),
+    /// so that |sigma(v) n|^2 is at most its largest eigenvalue times sigma(v):eps(v).
+    #[cfg(not(kani))]
+    pub fn acoustic<const D: usize>(&self, n: SVector<S, D>) -> SMatrix<S, D, D> {
+        let axis = |k: usize| SVector::from_fn(|i, _| S::from(i32::from(i == k)));
+        let columns: [SVector<S, D>; D] =
+            std::array::from_fn(|k| self.stress_along(axis(k), n).traction(n));
+        SMatrix::from_fn(|i, k| columns[k][i])
+    }
+
+    /// sigma(u) for the displacement gradient d (x) n.
+    fn stress_along<const D: usize>(&self, d: SVector<S, D>, n: SVector<S, D>) -> Stress<S, D> {
+        self.stress(SMatrix::from_fn(|i, j| d[i] * n[j]))
     }
 
     /// sigma(u) for the displacement gradient `gradient[(i, j)]` = du_i/dx_j.
     pub fn stress<const D: usize>(&self, gradient: SMatrix<S, D, D>) -> Stress<S, D> {
         let g = |i, j| gradient[(i, j)];
-        let trace = self.lambda * (1..D).fold(g(0, 0), |sum, i| sum + g(i, i));
-        let two_mu = S::from(2) * self.mu;
+        let (lambda, mu) = match self.law {
+            Law::Isotropic { lambda, mu } => (lambda, mu),
+            Law::Tensor { c: [xx, xy, xz, yy, yz, zz], .. } => {
+                let strain = [g(0, 0), g(1, 1), g(0, 1) + g(1, 0)];
+                let row = |[a, b, c]: [S; 3]| a * strain[0] + b * strain[1] + c * strain[2];
+                let in_plane = [row([xx, xy, xz]), row([xy, yy, yz]), row([xz, yz, zz])];
+                return Stress(SMatrix::from_fn(|i, j| match (i, j) {
+                    (0, 0) => in_plane[0],
+                    (1, 1) => in_plane[1],
+                    (0, 1) | (1, 0) => in_plane[2],
+                    _ => S::from(0),
+                }));
+            }
+        };
+        let trace = lambda * (1..D).fold(g(0, 0), |sum, i| sum + g(i, i));
+        let two_mu = S::from(2) * mu;
         Stress(SMatrix::from_fn(|i, j| {
-            if i == j { trace + two_mu * g(i, i) } else { self.mu * (g(i, j) + g(j, i)) }
+            if i == j { trace + two_mu * g(i, i) } else { mu * (g(i, j) + g(j, i)) }
         }))
     }
 
-    /// sigma_zz that goes with a stress in the plane: lambda tr(eps) = nu (sigma_xx + sigma_yy) in plane strain, 0 in
-    /// plane stress.
+    /// sigma_zz that goes with a stress in the plane: where A is isotropic, lambda tr(eps) = nu (sigma_xx + sigma_yy) in plane
+    /// strain, and 0 in plane stress.
     pub fn stress_zz(&self, stress: Stress<S>) -> S {
-        let [xx, yy, _] = stress.components();
-        match self.plane {
-            Plane::Strain => self.lambda / (S::from(2) * (self.lambda + self.mu)) * (xx + yy),
-            Plane::Stress => S::from(0),
+        let [xx, yy, xy] = stress.components();
+        match (self.law, self.plane) {
+            (_, Plane::Stress) => S::from(0),
+            (Law::Isotropic { lambda, mu }, Plane::Strain) => {
+                lambda / (S::from(2) * (lambda + mu)) * (xx + yy)
+            }
+            (Law::Tensor { across, .. }, Plane::Strain) => {
+                across[0] * xx + across[1] * yy + across[2] * xy
+            }
+        }
+    }
+
+    /// The energies of a strain and of a stress as sums of squares.
+    #[cfg(not(kani))]
+    pub fn squares(&self) -> Squares<S> {
+        match self.law {
+            Law::Isotropic { lambda, mu } => Squares::isotropic(lambda, mu),
+            Law::Tensor { c, .. } => Squares::of_tensor(c),
         }
     }
 
@@ -107,17 +271,23 @@ impl<S: Scalar> Material<S> {
     }
 
     /// The linear functional sigma_n of one shape function: with v = N w for a vector w and `gradient` = grad N at a point,
-    /// sigma_n(v) = s . w for the returned s = lambda grad N + 2 mu (grad N . n) n.
+    /// sigma_n(v) = s . w for the returned s = (A:(n (x) n)) grad N, lambda grad N + 2 mu (grad N . n) n where A is isotropic.
     pub fn normal_stress_of_shape<const D: usize>(
         &self,
         gradient: SVector<S, D>,
         n: SVector<S, D>,
     ) -> SVector<S, D> {
-        gradient * self.lambda + n * (S::from(2) * self.mu * gradient.dot(&n))
+        match self.law {
+            Law::Isotropic { lambda, mu } => {
+                gradient * lambda + n * (S::from(2) * mu * gradient.dot(&n))
+            }
+            Law::Tensor { .. } => self.stress_along(n, n).traction(gradient),
+        }
     }
 
-    /// The functional of the traction's component along `d`: d . sigma(v) n = s . w for the returned
-    /// s = lambda (d . n) grad N + mu ((d . grad N) n + (grad N . n) d). With d = n, n a unit vector, it is that of sigma_n.
+    /// The functional of the traction's component along `d`: d . sigma(v) n = s . w for the returned s = (A:(d (x) n)) grad N,
+    /// lambda (d . n) grad N + mu ((d . grad N) n + (grad N . n) d) where A is isotropic. With d = n, n a unit vector, it is that
+    /// of sigma_n.
     #[cfg(not(kani))]
     pub fn traction_of_shape<const D: usize>(
         &self,
@@ -125,9 +295,48 @@ impl<S: Scalar> Material<S> {
         n: SVector<S, D>,
         d: SVector<S, D>,
     ) -> SVector<S, D> {
-        let (bulk, on_n, on_d) = (self.lambda * d.dot(&n), d.dot(&gradient), gradient.dot(&n));
-        gradient * bulk + (n * on_n + d * on_d) * self.mu
+        match self.law {
+            Law::Isotropic { lambda, mu } => {
+                let (bulk, on_n, on_d) = (lambda * d.dot(&n), d.dot(&gradient), gradient.dot(&n));
+                gradient * bulk + (n * on_n + d * on_d) * mu
+            }
+            Law::Tensor { .. } => self.stress_along(d, n).traction(gradient),
+        }
     }
+
+    /// sigma(u):eps(v) at a point, where v = N_i e_c has grad N_i = `g_i` and u = N_j e_d has grad N_j = `g_j`, in entry (c, d):
+    /// lambda g_i g_j^T + mu g_j g_i^T + mu (g_i . g_j) I where A is isotropic.
+    pub fn energy_of_shapes<const D: usize>(
+        &self,
+        g_i: SVector<S, D>,
+        g_j: SVector<S, D>,
+    ) -> SMatrix<S, D, D> {
+        match self.law {
+            Law::Isotropic { lambda, mu } => {
+                let mut density = outer(g_i * lambda, g_j) + outer(g_j, g_i * mu);
+                let shear = mu * g_i.dot(&g_j);
+                for c in 0..D {
+                    density[(c, c)] += shear;
+                }
+                density
+            }
+            Law::Tensor { .. } => {
+                let columns: [SVector<S, D>; D] = std::array::from_fn(|d| {
+                    let axis = SVector::from_fn(|i, _| S::from(i32::from(i == d)));
+                    self.stress_along(axis, g_j).traction(g_i)
+                });
+                SMatrix::from_fn(|c, d| columns[d][c])
+            }
+        }
+    }
+}
+
+/// a b^T
+pub(crate) fn outer<S: Scalar, const D: usize>(
+    a: SVector<S, D>,
+    b: SVector<S, D>,
+) -> SMatrix<S, D, D> {
+    SMatrix::from_fn(|i, j| a[i] * b[j])
 }
 
 impl<S: Scalar, const D: usize> Stress<S, D> {
@@ -220,7 +429,7 @@ mod tests {
         let m = Material::young_poisson(2.5_f64, 0.25, Plane::Stress);
         let s = m.stress(Matrix2::new(1.0, 0.0, 0.0, -0.25));
         assert_abs_diff_eq!(s.matrix(), &Matrix2::new(2.5, 0.0, 0.0, 0.0), epsilon = ROUNDING);
-        assert_relative_eq!(m.normal_stiffness(), 2.5 / (1.0 - 0.0625), max_relative = ROUNDING);
+        assert_relative_eq!(m.normal_stiffness(N), 2.5 / (1.0 - 0.0625), max_relative = ROUNDING);
         assert_eq!(m.stress_zz(s), 0.0);
         assert_relative_eq!(m.von_mises_squared(s).sqrt(), 2.5, max_relative = ROUNDING);
     }
@@ -275,7 +484,7 @@ mod tests {
         let s = m.stress(gradient);
         let energy = s.matrix().dot(&gradient);
         let sigma_n = s.normal(N);
-        let attained = m.normal_stiffness() * energy;
+        let attained = m.normal_stiffness(N) * energy;
         // A dozen operations on numbers of one sign each.
         assert_relative_eq!(sigma_n * sigma_n, attained, max_relative = 10.0 * ROUNDING);
     }

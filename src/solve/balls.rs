@@ -7,6 +7,7 @@ use super::system::System;
 use crate::fem::ball::{Ball, larger, up};
 use crate::fem::precise;
 use crate::fem::{ContactFace, Discretization};
+use crate::kernel::contact_edge::traction_stiffness;
 
 /// The contact edges in balls: length and normal as the vertices have them.
 pub fn lines(d: &Discretization) -> Vec<ContactFace<Ball>> {
@@ -23,8 +24,15 @@ pub fn lines(d: &Discretization) -> Vec<ContactFace<Ball>> {
 /// kappa of Theorem 2.3, rounded up. The directions of contact are doubles, unit vectors to a rounding error only.
 pub(super) fn kappa(d: &Discretization, lines: &[ContactFace<Ball>]) -> f64 {
     let degree = d.space.degree();
-    let mut lengths: BTreeMap<usize, (Ball, Ball)> = BTreeMap::new();
+    let mut kappas: BTreeMap<usize, Ball> = BTreeMap::new();
     for line in lines {
+        let t = line.edge.triangle;
+        let [start, end] = [0, 1].map(|a| line.directions[a].map(Ball::from));
+        let direction = if line.along_normal {
+            Some(line.normal)
+        } else {
+            (line.directions[0] == line.directions[1]).then_some(start)
+        };
         let factor = if line.along_normal {
             Ball::from(1)
         } else {
@@ -32,19 +40,17 @@ pub(super) fn kappa(d: &Discretization, lines: &[ContactFace<Ball>]) -> f64 {
                 line.directions.iter().map(|n| n.map(Ball::from).into()).collect();
             let off = along.iter().map(|&n| (dot(n, n) - Ball::from(1)).magnitude());
             let off = Ball::from(8.0 * off.fold(0.0, larger));
-            let turning = degree.turning_factor(dot(along[0], along[1]));
+            let turning = degree.turning_factor(start.dot(&end));
             turning * (Ball::from(1) + off) + off
         };
-        let entry = lengths.entry(line.edge.triangle).or_insert((Ball::from(0), line.gamma));
-        entry.0 += factor * line.length;
-    }
-    let of = |(&t, &(length, gamma)): (&usize, &(Ball, Ball))| {
-        let area = precise::exactly::<Ball>(d.space.mesh().triangle(t)).double_area();
         let material = d.problem.material.of(t).map(Ball::from);
-        let area = area / Ball::from(2);
-        degree.coercivity_constant(&material, gamma, length, area).upper()
-    };
-    lengths.iter().map(of).fold(0.0, larger)
+        let stiffness = traction_stiffness(&material, line.normal, direction, Ball::sqrt);
+        let area = precise::exactly::<Ball>(d.space.mesh().triangle(t)).double_area();
+        let (length, area) = (factor * line.length, area / Ball::from(2));
+        *kappas.entry(t).or_insert(Ball::from(0)) +=
+            degree.coercivity_constant(stiffness, line.gamma, length, area);
+    }
+    kappas.values().map(|kappa| kappa.upper()).fold(0.0, larger)
 }
 
 /// The components of a functional at the free unknowns, in the frames of their nodes.

@@ -82,8 +82,8 @@ use self::times::Stopwatch;
 pub use self::times::Times;
 pub use crate::fem::Degree;
 use crate::fem::contact_line::{Coercivity, Gamma};
+use crate::fem::material::largest_entry;
 use crate::fem::{Discretization, EdgeRule, Problem};
-use crate::kernel::Material;
 
 /// Solves `problem` by method (8).
 ///
@@ -242,9 +242,9 @@ fn is_out_of_range(x: f64, far: f64) -> bool {
     x > 0.0 && !(1.0 / far..=far).contains(&x)
 }
 
-/// The largest lambda + 2 mu.
+/// The largest entry of a law.
 fn stiffest(problem: &Problem) -> f64 {
-    problem.material.distinct().iter().map(Material::normal_stiffness).fold(0.0, f64::max)
+    problem.material.distinct().iter().map(largest_entry).fold(0.0, f64::max)
 }
 
 /// Whether the products of the lengths and moduli of a problem, some of each, are normal doubles, as far as the numbers are

@@ -126,7 +126,7 @@ fn a_certificate_is_not_one_of_another_case() {
             (
                 LOADED,
                 &[
-                    ("mu = 1 ", "mu = 1.0001 ", "lambda and mu"),
+                    ("mu = 1 ", "mu = 1.0001 ", "stiffness"),
                     ("-1 + 3*x", "-1 + 3.0001*x", "body force"),
                     ("0.02\"", "0.020001\"", "displacement"),
                     ("0.1*y", "0.1001*y", "traction"),

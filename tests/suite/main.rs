@@ -39,4 +39,5 @@ mod reported;
 mod routes;
 #[cfg(feature = "cli")]
 mod set_and_sweep;
+mod tensor;
 mod units;

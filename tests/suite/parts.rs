@@ -11,6 +11,7 @@ use signorini::fem::{
 };
 use signorini::io::{Case, gmsh};
 use signorini::kernel::{Material, Plane};
+use signorini::nalgebra::Vector2;
 use signorini::solve::solution::ContactValues;
 use signorini::solve::{Degree, Solution, solve};
 
@@ -226,15 +227,17 @@ fn a_bimaterial_bar_is_exact() {
         ]),
     );
     // Springs in series: lambda + 2 mu over the height of each.
-    let p = push / (0.5 / soft.normal_stiffness() + 0.5 / stiff.normal_stiffness());
+    let p = push
+        / (0.5 / soft.normal_stiffness(Vector2::<f64>::y())
+            + 0.5 / stiff.normal_stiffness(Vector2::<f64>::y()));
     for degree in BOTH {
         let s = solved(&problem, degree);
         assert_relative_eq!(s.boundaries[0].force, p, max_relative = SOLVED / 10.0);
         assert_relative_eq!(s.boundaries[0].peak_pressure, p, max_relative = SOLVED / 10.0);
         assert_relative_eq!(s.quantities.energy, p * push, max_relative = SOLVED / 10.0);
         for (x, u) in s.nodes.iter().zip(&s.displacement) {
-            let below = x[1].min(0.5) / soft.normal_stiffness();
-            let above = (x[1] - 0.5).max(0.0) / stiff.normal_stiffness();
+            let below = x[1].min(0.5) / soft.normal_stiffness(Vector2::<f64>::y());
+            let above = (x[1] - 0.5).max(0.0) / stiff.normal_stiffness(Vector2::<f64>::y());
             // What is left of the roundings of displacements of 1e-2.
             assert_abs_diff_eq!(u[..], [0.0, -p * (below + above)][..], epsilon = 1e-15);
         }

@@ -201,8 +201,8 @@ impl<'a, const N: usize, const M: usize> Kernel<'a, N, M> {
         let sides = body.contact.iter().filter(|side| side.triangle == t);
         let length = sum(sides, |side| side.length);
         let area = body.triangle(t).double_area() / Exact::from(2);
-        let (material, h) = (&body.material, body.diameters[t]);
-        body.gamma0 * coercivity_constant::<E, Exact, N, M>(material, h, length, area)
+        let (stiffness, h) = (body.material.normal_stiffness(Vector2::y()), body.diameters[t]);
+        body.gamma0 * coercivity_constant::<E, Exact, N, M>(stiffness, h, length, area)
     }
 }
 

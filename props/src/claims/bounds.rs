@@ -200,7 +200,10 @@ impl Draw {
             pieces.push(Piece {
                 vertices: piece,
                 edges: own,
-                material: self.lame.map(sixteenth),
+                material: {
+                    let [lambda, mu] = self.lame.map(sixteenth);
+                    Material::lame(lambda, mu, Plane::Strain)
+                },
                 body: [self.body(); 3],
                 oscillation: sixteenth(self.oscillation),
             });
@@ -741,12 +744,15 @@ const TAMPERINGS: [Tampering; 22] = [
     ),
     (
         "a shear modulus of zero",
-        |c| c.pieces[0].material[1] = 0.0,
+        |c| c.pieces[0].material = Material::lame(1.0, 0.0, Plane::Strain),
         |why| matches!(why, Rejection::Wrong { .. }),
     ),
     (
         "lambda + mu that is not positive",
-        |c| c.pieces[0].material[0] = -c.pieces[0].material[1],
+        |c| {
+            let mu = c.pieces[0].material.mu();
+            c.pieces[0].material = Material::lame(-mu, mu, Plane::Strain);
+        },
         |why| matches!(why, Rejection::Wrong { .. }),
     ),
     (

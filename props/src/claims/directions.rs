@@ -131,7 +131,7 @@ fn kappa_on(degree: Degree, factor: fn(f64) -> f64) -> Result<f64, String> {
     let trace = if degree == Degree::One { 1.0 } else { 3.0 };
     let mut most: f64 = 0.0;
     for (&t, length) in &lengths {
-        let stiffness = problem.material.of(t).normal_stiffness();
+        let stiffness = problem.material.of(t).normal_stiffness(Vector2::<f64>::y());
         let area = problem.mesh.triangle(t).double_area() / 2.0;
         let size = problem.mesh.diameter(t);
         most = most.max(trace * stiffness * size * length / area);

@@ -193,7 +193,7 @@ fn lost(certificate: &Certificate, t: usize, q: f64) -> f64 {
     let double_area = u[0] * v[1] - u[1] * v[0];
     let h = long([a, b]).max(long([b, c])).max(long([c, a]));
     let stress = 48.0 * h.powi(3) * CARRIED * UNIT * force / (double_area * double_area);
-    let energy = 1.75 * double_area * stress * stress / piece.material[1];
+    let energy = 1.75 * double_area * stress * stress / piece.material.mu();
     2.0 * (q * energy).sqrt() + energy
 }
 

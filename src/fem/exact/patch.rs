@@ -10,10 +10,13 @@
 //! | d5 | (0, d (1 - y)) | -d | a floor that is d too high |
 //!
 //! e1 = (lambda + 2 mu) / (4 mu (lambda + mu)) and e2 = lambda / (4 mu (lambda + mu)): the strains of the uniaxial stress 1.
+//! Where A is not isotropic the strains are those of the same stresses, with u_x growing along y by 2 eps_xy; in d5 by as much as
+//! leaves no shear stress.
 
 use nalgebra::{Matrix2, Vector2};
 
 use super::ExactSolution;
+use crate::fem::material::strain;
 use crate::kernel::Material;
 
 /// A solution u = `matrix` x + `shift` with the gap g = `gap`\[0\] + `gap`\[1\] x.
@@ -25,11 +28,16 @@ pub struct Patch {
     gap: [f64; 2],
 }
 
-/// (e1, e2)
-fn strains(material: &Material<f64>) -> (f64, f64) {
+/// The gradient of a displacement with u_y = 0 on y = 0 under the stress sigma_xx, sigma_yy alone.
+fn gradient(material: &Material<f64>, [xx, yy]: [f64; 2]) -> Matrix2<f64> {
+    if !material.is_isotropic() {
+        let [xx, yy, shear] = strain(material, [xx, yy, 0.0]);
+        return Matrix2::new(xx, shear, 0.0, yy);
+    }
     let (lambda, mu) = (material.lambda(), material.mu());
     let common = 4.0 * mu * (lambda + mu);
-    ((lambda + 2.0 * mu) / common, lambda / common)
+    let (e1, e2) = ((lambda + 2.0 * mu) / common, lambda / common);
+    Matrix2::new(xx * e1 - yy * e2, 0.0, 0.0, yy * e1 - xx * e2)
 }
 
 impl Patch {
@@ -40,15 +48,13 @@ impl Patch {
 
     /// d2, for d > 0.
     pub fn separation(material: Material<f64>, p: f64, d: f64) -> Self {
-        let (e1, e2) = strains(&material);
-        let matrix = Matrix2::new(p * e1, 0.0, 0.0, -p * e2);
+        let matrix = gradient(&material, [p, 0.0]);
         Patch { material, matrix, shift: Vector2::new(0.0, d), gap: [0.0; 2] }
     }
 
     /// d3, for p > 0.
     pub fn inclined(material: Material<f64>, p: f64, w: f64, g0: f64) -> Self {
-        let (e1, e2) = strains(&material);
-        let matrix = Matrix2::new(p * e2, -w, w, -p * e1);
+        let matrix = gradient(&material, [0.0, -p]) + Matrix2::new(0.0, -w, w, 0.0);
         Patch { material, matrix, shift: Vector2::new(0.0, -g0), gap: [g0, -w] }
     }
 
@@ -59,7 +65,9 @@ impl Patch {
 
     /// d5, for d > 0.
     pub fn interference(material: Material<f64>, d: f64) -> Self {
-        let matrix = Matrix2::new(0.0, 0.0, 0.0, -d);
+        let [.., of_normal, of_shear] = material.stiffness();
+        let shear = if of_normal == 0.0 { 0.0 } else { of_normal * d / of_shear };
+        let matrix = Matrix2::new(0.0, shear, 0.0, -d);
         Patch { material, matrix, shift: Vector2::new(0.0, d), gap: [-d, 0.0] }
     }
 }

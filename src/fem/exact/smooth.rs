@@ -3,7 +3,8 @@
 //! p = ap \[x - c\]+^k,  q = -aq \[c - x\]+^m,  pi = p - g,  B = 1 - 3 y^2 + 2 y^3,  A = -y B,
 //! u = (A pi', B pi - A q).
 //!
-//! u = 0 on y = 1; tractions on x = 0 and x = 1. On y = 0: u_n - g = -p, sigma_n = (lambda + 2 mu) q, sigma_xy = 0.
+//! u = 0 on y = 1; tractions on x = 0 and x = 1. On y = 0: u_n - g = -p, sigma_n = (lambda + 2 mu) q, sigma_xy = 0; for any
+//! tensor eps_yy = q is the only strain there, so that sigma_n = C22 q and sigma_xy = C26 q: it solves (2) if C26 = 0.
 
 use nalgebra::Matrix2;
 
@@ -14,7 +15,7 @@ use crate::kernel::Material;
 /// The solution (a).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Smooth {
-    /// The material of the body.
+    /// The material of the body: isotropic, or a tensor with C26 = 0.
     pub material: Material<f64>,
     /// Where contact ends, inside (0, 1).
     pub c: f64,
@@ -109,9 +110,15 @@ impl ExactSolution for Smooth {
         Some(self.hessians(x))
     }
 
-    /// f = -(lambda + mu) grad div u - mu Laplace u
+    /// f = -(lambda + mu) grad div u - mu Laplace u, or -div (A eps(u)).
     fn body_force(&self, x: [f64; 2]) -> Option<[f64; 2]> {
         let [[xx, xy, yy], [vxx, vxy, vyy]] = self.hessians(x);
+        if !self.material.is_isotropic() {
+            let along_x = self.material.stress(Matrix2::new(xx, xy, vxx, vxy));
+            let along_y = self.material.stress(Matrix2::new(xy, yy, vxy, vyy));
+            let divergence = along_x.matrix().column(0) + along_y.matrix().column(1);
+            return Some([-divergence[0], -divergence[1]]);
+        }
         let mu = self.material.mu();
         let both = self.material.lambda() + mu;
         Some([-both * (xx + vxy) - mu * (xx + yy), -both * (xy + vyy) - mu * (vxx + vyy)])

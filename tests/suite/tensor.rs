@@ -1,0 +1,272 @@
+//! Laws A of (1) that are not isotropic: solutions in closed form, and the same body described in two ways.
+
+use std::sync::Arc;
+
+use approx::assert_relative_eq;
+
+use crate::common::exact::on_square;
+use crate::common::*;
+use signorini::certify::{certify, format};
+use signorini::fem::exact::{self, Kind, Patch, Smooth};
+use signorini::fem::material::{
+    Across, Orthotropic, eigenvalues, least_eigenvalue, stable, stable_orthotropic,
+};
+use signorini::fem::{Condition, Diagonal, Exact, Mesh, Obstacle, Problem};
+use signorini::kernel::{Material, Plane};
+use signorini::solve::{Degree, Ladder, Settings, Solution, Verdict, solve};
+
+/// Entries of one size that couple all strains: eigenvalues 2.3, 5.2 and 13.5.
+const FULL: [f64; 6] = [12.0, 3.0, 2.0, 5.0, -1.0, 2.0];
+
+/// Spruce, in GPa, its fibres at an angle.
+fn spruce(angle: f64) -> Material<f64> {
+    let moduli = Orthotropic { e1: 12.0, e2: 0.6, nu12: 0.4, g12: 0.7, angle, across: None };
+    stable_orthotropic(moduli).unwrap()
+}
+
+fn solved(problem: &Problem, degree: Degree) -> Solution {
+    let (solution, _) = solve(problem, &method(degree, EXACT), &Settings::default()).unwrap();
+    assert_eq!(solution.verdict, Verdict::Proved);
+    solution
+}
+
+/// The largest distance of the nodal values from a field.
+fn distance(s: &Solution, u: impl Fn([f64; 2]) -> [f64; 2]) -> f64 {
+    let of = |(x, found): (&[f64; 2], &[f64; 2])| {
+        let expected = u(*x);
+        (found[0] - expected[0]).abs().max((found[1] - expected[1]).abs())
+    };
+    s.nodes.iter().zip(&s.displacement).map(of).fold(0.0, f64::max)
+}
+
+#[test]
+fn affine_solutions_are_reproduced_with_tensors_that_couple_all_strains() {
+    let kinds = [
+        ("top", Kind::Displacement),
+        ("left", Kind::Traction),
+        ("right", Kind::Traction),
+        ("bottom", Kind::Contact),
+    ];
+    let kinds = kinds.map(|(name, kind)| (name.to_owned(), kind)).into();
+    for material in [Material::tensor(FULL, None), spruce(30.0)] {
+        let p = 0.3;
+        for (patch, pressure) in [
+            (Patch::compression(material, p), p),
+            (Patch::separation(material, p, 0.1), 0.0),
+            (Patch::inclined(material, p, 0.05, 0.1), p),
+            (Patch::interference(material, 0.02), {
+                let [_, along, coupled, c22, c26, c66] = material.stiffness();
+                assert!(along != 0.0 && coupled != 0.0);
+                0.02 * (c22 - c26 * c26 / c66)
+            }),
+        ] {
+            let solution: Exact = Arc::new(patch);
+            for degree in [Degree::One, Degree::Two] {
+                let mesh = skewed_square(6, Diagonal::Crossed);
+                let problem = exact::problem(&solution, mesh, &kinds);
+                let s = solved(&problem, degree);
+                let error = distance(&s, |x| solution.displacement(x));
+                // The displacements are of size 0.1 to 1, the condition of the matrix is some hundreds.
+                assert!(error <= 1e-12, "{solution:?} {degree:?}: {error:e}");
+                for point in s.contact.iter().flat_map(|edge| &edge.points) {
+                    assert!((point.lambda + pressure).abs() <= 1e-11, "{solution:?}: {point:?}");
+                }
+            }
+            // Control: a thousandth more of the modulus that shear and strain along y have in common.
+            let mut problem =
+                exact::problem(&solution, skewed_square(6, Diagonal::Crossed), &kinds);
+            let mut c = material.stiffness();
+            c[4] *= 1.001;
+            problem.material = Material::tensor(c, None).into();
+            let s = solved(&problem, Degree::One);
+            let error = distance(&s, |x| solution.displacement(x));
+            assert!(error > 1e-7, "{solution:?}: {error:e}");
+        }
+    }
+}
+
+/// Solution (a) solves (2) for every tensor with C26 = 0.
+#[test]
+fn the_rates_of_theorem_3_5_hold_for_a_tensor() {
+    let c = [9.0, 2.0, 1.5, 4.0, 0.0, 1.3];
+    let material = Material::tensor(c, None);
+    let solution: Exact =
+        Arc::new(Smooth { material, c: 1.0 / 3.0, k: 4.0, m: 3.0, ap: 16.0, aq: 8.0, gap: vec![] });
+    for (degree, rate) in [(Degree::One, 1.0), (Degree::Two, 2.0)] {
+        let ladder: Ladder = on_square(&solution, degree, 8);
+        let errors = [0, 1, 2].map(|level| {
+            let (found, problem, s) = ladder.solve(level).unwrap();
+            let certified = certify(&problem, &s).unwrap();
+            let energy = found.errors.energy;
+            assert!(certified.bound >= energy * (1.0 - 1e-9) && certified.bound < 2.5 * energy);
+            energy
+        });
+        let found = (errors[1] / errors[2]).log2();
+        assert!((found - rate).abs() < 0.12, "{degree:?}: {found}, {errors:?}");
+    }
+}
+
+/// A block that is tilted onto a floor, its right half lifting off.
+fn tilted(mesh: Mesh, material: Material<f64>) -> Problem {
+    let mut problem = block(mesh);
+    problem.material = material.into();
+    problem
+}
+
+#[test]
+fn an_isotropic_tensor_is_the_isotropic_material() {
+    for plane in [Plane::Strain, Plane::Stress] {
+        let isotropic = Material::lame(1.3, 0.7, plane);
+        let tensor = Material::tensor(isotropic.stiffness(), None);
+        for degree in [Degree::One, Degree::Two] {
+            let [a, b] = [isotropic, tensor]
+                .map(|m| solved(&tilted(skewed_square(8, Diagonal::Right), m), degree));
+            for (a, b) in [
+                (a.gamma.kappa, b.gamma.kappa),
+                (a.gamma.coercivity.constant, b.gamma.coercivity.constant),
+                (a.quantities.energy, b.quantities.energy),
+                (a.quantities.contact_force, b.quantities.contact_force),
+                (a.quantities.contact_length, b.quantities.contact_length),
+                (a.quantities.peak_pressure, b.quantities.peak_pressure),
+            ] {
+                assert_relative_eq!(a, b, max_relative = 1e-12);
+            }
+            assert!(
+                distance(&b, |x| {
+                    let at = a.nodes.iter().position(|node| *node == x).unwrap();
+                    a.displacement[at]
+                }) <= 1e-12
+            );
+        }
+    }
+}
+
+/// The same body, turned: mesh, material, obstacle and data.
+#[test]
+fn a_body_that_is_turned_with_its_fibres_has_the_same_answers() {
+    let turn = 25.0_f64;
+    let (sine, cosine) = turn.to_radians().sin_cos();
+    let about = move |[x, y]: [f64; 2]| [cosine * x - sine * y, sine * x + cosine * y];
+    let back = move |[x, y]: [f64; 2]| [cosine * x + sine * y, cosine * y - sine * x];
+    let problem = |angle: f64, turned: bool| {
+        let mesh = unit_square(8).perturbed(0.2, 3).unwrap();
+        let force = |[x, _]: [f64; 2]| [0.2, -0.4 + 1.0 * x];
+        let mut problem = tilted(mesh, spruce(angle));
+        let mut normal = [0.0, 1.0];
+        if turned {
+            let places = problem.mesh.vertices().iter().map(|&x| about(x)).collect();
+            let mesh = &problem.mesh;
+            let ends = |name: &str| {
+                let edges = mesh.edges_of(name).unwrap().iter().map(|&edge| mesh.ends(edge));
+                (name.to_owned(), edges.collect::<Vec<_>>())
+            };
+            let named = mesh.boundary_names().map(ends);
+            problem.mesh = Mesh::new(places, mesh.triangles().to_vec(), named).unwrap();
+            normal = about(normal);
+        }
+        let of = move |c: usize| {
+            function(move |x| if turned { about(force(back(x)))[c] } else { force(x)[c] })
+        };
+        problem.body_force = [of(0), of(1)];
+        let floor = Obstacle::Plane { point: [0.0, 0.0], normal };
+        let contact = Condition::Obstacle("floor".to_owned(), floor);
+        problem.conditions.insert("bottom".to_owned(), contact);
+        problem
+    };
+    for degree in [Degree::One, Degree::Two] {
+        let straight = solved(&problem(35.0, false), degree);
+        let turned = solved(&problem(35.0 + turn, true), degree);
+        let numbers = |s: &Solution| {
+            let q = &s.quantities;
+            [s.gamma.gamma0, q.energy, q.contact_force, q.contact_length, q.peak_pressure]
+        };
+        for (a, b) in numbers(&straight).into_iter().zip(numbers(&turned)) {
+            // Data and mesh are turned with a rounding error each.
+            assert_relative_eq!(a, b, max_relative = 1e-10);
+        }
+        for (a, b) in straight.displacement.iter().zip(&turned.displacement) {
+            let a = about(*a);
+            assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 1e-11, "{a:?} {b:?}");
+        }
+        // Control: the fibres stay where they were.
+        let other = solved(&problem(35.0, true), degree);
+        assert!((other.quantities.energy / straight.quantities.energy - 1.0).abs() > 1e-3);
+    }
+}
+
+#[test]
+fn certificates_of_tensors_are_written_read_and_accepted_and_a_wrong_law_is_not() {
+    let problem = tilted(skewed_square(6, Diagonal::Left), spruce(20.0));
+    for degree in [Degree::One, Degree::Two] {
+        let s = solved(&problem, degree);
+        let certified = certify(&problem, &s).unwrap();
+        assert!(certified.relative < 1.0, "{}", certified.relative);
+        let encode = |certificate| {
+            format::encode("spruce", certificate, &certified.proof, &Default::default())
+        };
+        let (header, bytes) = encode(&certified.certificate);
+        assert!(header.arrays.iter().any(|array| array.name == "tensors" && array.entries == 1));
+        let audit = format::audit(header, &bytes).unwrap();
+        assert_eq!(audit.certificate, certified.certificate);
+        assert!(audit.proof.bound <= certified.bound * (1.0 + 1e-12));
+        // Control: half of one shear modulus is another problem, and a larger bound.
+        let mut wrong = certified.certificate.clone();
+        let mut c = wrong.pieces[0].material.stiffness();
+        c[5] *= 0.5;
+        wrong.pieces.iter_mut().for_each(|piece| piece.material = Material::tensor(c, None));
+        let (header, bytes) = encode(&wrong);
+        assert!(format::audit(header, &bytes).is_err());
+        // Control: a law that is not elliptic.
+        let mut wrong = certified.certificate.clone();
+        wrong.pieces[3].material = Material::tensor([1.0, 2.0, 0.0, 1.0, 0.0, 1.0], None);
+        let (header, bytes) = encode(&wrong);
+        assert!(format::audit(header, &bytes).unwrap_err().to_string().contains("triangle 3"));
+    }
+}
+
+#[test]
+fn kappa_has_the_normal_stiffness_of_the_tensor_and_an_oblique_obstacle_its_component() {
+    let material = Material::tensor(FULL, None);
+    let s = solved(&tilted(unit_square(4).mesh().unwrap(), material), Degree::One);
+    // C22 of a floor: h |E| / |T| = 2 sqrt 2 on right isosceles triangles.
+    assert_relative_eq!(s.gamma.coercivity.constant, 5.0 * 8.0_f64.sqrt(), max_relative = 1e-14);
+}
+
+#[test]
+fn laws_that_are_not_elliptic_are_refused_with_their_smallest_eigenvalue() {
+    // The eigenvalues are 3, -1 and 2.
+    let refused = stable(Material::tensor([1.0, 2.0, 0.0, 1.0, 0.0, 1.0], None)).unwrap_err();
+    assert_eq!(
+        refused.to_string(),
+        "the smallest eigenvalue of the stiffness [1, 2, 0, 1, 0, 1] is -1; expected an elliptic law: a positive one, at least 1e-10 of the largest"
+    );
+    for bad in [[0.0; 6], [f64::NAN; 6], [1.0, 0.0, 0.0, 1e-11, 0.0, 1.0], [f64::INFINITY; 6]] {
+        assert!(stable(Material::tensor(bad, None)).is_err(), "{bad:?}");
+    }
+    let moduli = Orthotropic { e1: 1.0, e2: 1.0, nu12: 1.01, g12: 1.0, angle: 10.0, across: None };
+    assert!(stable_orthotropic(moduli).unwrap_err().to_string().contains("eigenvalue"));
+    // The proved eigenvalue is the computed one, and not above it.
+    for material in [Material::tensor(FULL, None), spruce(77.0)] {
+        let [least, largest] = eigenvalues(&material);
+        let proved = least_eigenvalue(&material);
+        assert!(proved <= least && least <= proved * (1.0 + 1e-11) && proved < largest);
+    }
+}
+
+#[test]
+fn orthotropic_moduli_that_are_equal_in_all_directions_are_young_and_poisson() {
+    let (young, nu) = (2.5, 0.25);
+    let across = Some(Across { e3: young, nu13: nu, nu23: nu });
+    for (across, plane) in [(None, Plane::Stress), (across, Plane::Strain)] {
+        let g12 = young / (2.0 * (1.0 + nu));
+        let moduli = Orthotropic { e1: young, e2: young, nu12: nu, g12, angle: 33.0, across };
+        let (found, expected) =
+            (stable_orthotropic(moduli).unwrap(), Material::young_poisson(young, nu, plane));
+        for (a, b) in found.stiffness().iter().zip(expected.stiffness()) {
+            assert!((a - b).abs() < 1e-14, "{plane:?}: {found:?}");
+        }
+        let stress = expected.stress(signorini::nalgebra::Matrix2::new(0.3, 0.2, -0.7, 0.9));
+        let [a, b] = [found, expected].map(|m| m.stress_zz(stress));
+        assert!((a - b).abs() < 1e-15 * 20.0, "{a} {b}");
+    }
+}
