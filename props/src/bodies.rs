@@ -31,6 +31,8 @@ pub struct Draw {
     lambda: (i64, i64),
     mu: (i64, i64),
     stress: bool,
+    /// The rows of a triangular matrix L with positive diagonal: A is L L^T in place of lambda and mu.
+    tensor: Option<[(i64, i64); 6]>,
     gamma0: (i64, i64),
     diameters: Vec<(i64, i64)>,
     values: Vec<[(i64, i64); 2]>,
@@ -49,7 +51,9 @@ pub fn bodies(fields: usize) -> impl Strategy<Value = Draw> {
         0..TURNS.len(),
         any::<bool>(),
     );
-    let numbers = (ratio(), positive(), any::<bool>(), positive());
+    let tensor = (positive(), ratio(), positive(), ratio(), ratio(), positive());
+    let tensor = prop::option::of(tensor.prop_map(|(a, b, c, d, e, f)| [a, b, c, d, e, f]));
+    let numbers = (ratio(), positive(), any::<bool>(), positive(), tensor);
     let more = (
         prop::collection::vec(positive(), 8),
         prop::collection::vec([ratio(), ratio()], fields * MOST_NODES),
@@ -64,6 +68,7 @@ pub fn bodies(fields: usize) -> impl Strategy<Value = Draw> {
         lambda: numbers.0,
         mu: numbers.1,
         stress: numbers.2,
+        tensor: numbers.4,
         gamma0: numbers.3,
         diameters: more.0,
         values: more.1,
@@ -124,7 +129,7 @@ fn exact((n, d): (i64, i64)) -> Exact {
 }
 
 impl Draw {
-    /// The body with these data; its material is one: mu > 0, 3 lambda + 2 mu > 0.
+    /// The body with these data; its material is one: A is elliptic, or mu > 0 and 3 lambda + 2 mu > 0.
     pub fn body(&self) -> Body {
         let [nx, ny] = self.cells;
         let unturned: Vec<[Exact; 2]> = (0..=ny)
@@ -148,6 +153,10 @@ impl Draw {
         let two = Exact::from(2);
         let plane = if self.stress { Plane::Stress } else { Plane::Strain };
         let star = if self.stress { two * lambda * mu / (lambda + two * mu) } else { lambda };
+        let (material, hooke) = match self.tensor.map(|rows| square(rows.map(exact))) {
+            Some(c) => (Material::tensor(c, None), Hooke::Tensor(c)),
+            None => (Material::lame(lambda, mu, plane), Hooke::Isotropic { lambda: star, mu }),
+        };
         let count = triangles.len();
         let mut body = Body {
             top: (0..=nx).map(|i| ny * (nx + 1) + i).collect(),
@@ -157,8 +166,8 @@ impl Draw {
             contact: Vec::new(),
             free: Vec::new(),
             diameters: self.diameters[..count].iter().map(|&h| exact(h)).collect(),
-            material: Material::lame(lambda, mu, plane),
-            hooke: Hooke { lambda: star, mu },
+            material,
+            hooke,
             gamma0: exact(self.gamma0),
             turn,
             middles: BTreeMap::new(),
@@ -171,6 +180,19 @@ impl Draw {
     /// The same data without a turn, in contact at the bottom only.
     pub fn upright(&self) -> Draw {
         Draw { turn: 0, left_too: false, ..self.clone() }
+    }
+
+    /// The same data with lambda and mu.
+    pub fn isotropic(&self) -> Draw {
+        Draw { tensor: None, ..self.clone() }
+    }
+
+    /// lambda and mu as they act in the plane.
+    pub fn lame(&self) -> [Exact; 2] {
+        match self.isotropic().body().hooke {
+            Hooke::Isotropic { lambda, mu } => [lambda, mu],
+            Hooke::Tensor(_) => unreachable!("it is isotropic"),
+        }
     }
 
     /// lambda, lifted where 3 lambda + 2 mu would not be positive.
@@ -186,6 +208,12 @@ impl Draw {
         // Contact sides stay straight.
         [if i == 0 && self.left_too { x } else { x + dx }, if j == 0 { y } else { y + dy }]
     }
+}
+
+/// L L^T as C11, C12, C16, C22, C26, C66, from the rows of L: a symmetric matrix without negative eigenvalues, and every
+/// one of these is of this form.
+pub fn square<S: Scalar>([a, b, c, d, e, f]: [S; 6]) -> [S; 6] {
+    [a * a, a * b, a * d, b * b + c * c, b * d + c * e, d * d + e * e + f * f]
 }
 
 /// The point turned about the origin.
@@ -212,7 +240,7 @@ impl Body {
             top: top.to_vec(),
             diameters: vec![diameter; triangles.len()],
             material: Material::lame(one, one, Plane::Strain),
-            hooke: Hooke { lambda: one, mu: one },
+            hooke: Hooke::Isotropic { lambda: one, mu: one },
             gamma0,
             turn: [one, Exact::from(0)],
             middles: BTreeMap::new(),
@@ -376,7 +404,7 @@ mod tests {
             Exact::scope(|| {
                 let body = draw.body();
                 let zero = Exact::from(0);
-                let (lambda, mu) = (draw.lambda(), body.hooke.mu);
+                let (lambda, mu) = (draw.lambda(), exact(draw.mu));
                 assert!(mu > zero && Exact::from(3) * lambda + Exact::from(2) * mu > zero);
                 for t in 0..body.triangles.len() {
                     assert!(body.triangle(t).double_area() > zero);

@@ -11,31 +11,67 @@ use signorini::kernel::Scalar;
 
 use crate::Ordered;
 
-/// The material of the body, by the coefficients that act in the plane.
+/// The material of the body, by what acts in the plane.
 #[derive(Clone, Copy, Debug)]
-pub struct Hooke<S> {
-    /// lambda
-    pub lambda: S,
-    /// mu
-    pub mu: S,
+pub enum Hooke<S> {
+    /// lambda and mu.
+    Isotropic {
+        /// lambda
+        lambda: S,
+        /// mu
+        mu: S,
+    },
+    /// C11, C12, C16, C22, C26, C66.
+    Tensor([S; 6]),
 }
 
 /// A symmetric tensor: xx, yy, xy.
 pub type Tensor<S> = [S; 3];
 
 impl<S: Scalar> Hooke<S> {
-    /// sigma = lambda tr(eps) I + 2 mu eps of (1).
+    /// sigma = A eps of (1): lambda tr(eps) I + 2 mu eps where A is isotropic.
     pub fn stress(&self, [xx, yy, xy]: Tensor<S>) -> Tensor<S> {
-        let (trace, two) = (self.lambda * (xx + yy), S::from(2) * self.mu);
-        [trace + two * xx, trace + two * yy, two * xy]
+        let two = S::from(2);
+        match *self {
+            Hooke::Isotropic { lambda, mu } => {
+                let trace = lambda * (xx + yy);
+                [trace + two * mu * xx, trace + two * mu * yy, two * mu * xy]
+            }
+            Hooke::Tensor([c11, c12, c16, c22, c26, c66]) => {
+                let row = |a: S, b: S, c: S| a * xx + b * yy + c * (two * xy);
+                [row(c11, c12, c16), row(c12, c22, c26), row(c16, c26, c66)]
+            }
+        }
     }
 
-    /// eps that belongs to sigma.
+    /// eps that belongs to sigma: of a tensor by the cofactors of its matrix.
     pub fn strain(&self, [xx, yy, xy]: Tensor<S>) -> Tensor<S> {
         let two = S::from(2);
-        let mean = self.lambda * (xx + yy) / (two * (self.lambda + self.mu));
-        let by = |c: S| c / (two * self.mu);
-        [by(xx - mean), by(yy - mean), by(xy)]
+        match *self {
+            Hooke::Isotropic { lambda, mu } => {
+                let mean = lambda * (xx + yy) / (two * (lambda + mu));
+                let by = |c: S| c / (two * mu);
+                [by(xx - mean), by(yy - mean), by(xy)]
+            }
+            Hooke::Tensor([c11, c12, c16, c22, c26, c66]) => {
+                let rows = [
+                    [c22 * c66 - c26 * c26, c16 * c26 - c12 * c66, c12 * c26 - c16 * c22],
+                    [c16 * c26 - c12 * c66, c11 * c66 - c16 * c16, c12 * c16 - c11 * c26],
+                    [c12 * c26 - c16 * c22, c12 * c16 - c11 * c26, c11 * c22 - c12 * c12],
+                ];
+                let determinant = c11 * rows[0][0] + c12 * rows[0][1] + c16 * rows[0][2];
+                let of = |[a, b, c]: [S; 3]| (a * xx + b * yy + c * xy) / determinant;
+                [of(rows[0]), of(rows[1]), of(rows[2]) / two]
+            }
+        }
+    }
+
+    /// A_nnnn: sigma_n of the strain n (x) n.
+    pub fn along(&self, n: [S; 2]) -> S {
+        match *self {
+            Hooke::Isotropic { lambda, mu } => lambda + S::from(2) * mu,
+            Hooke::Tensor(_) => normal(self.stress([n[0] * n[0], n[1] * n[1], n[0] * n[1]]), n),
+        }
     }
 }
 
@@ -330,9 +366,11 @@ mod tests {
 
     #[test]
     fn strain_inverts_stress() {
-        let hooke = Hooke { lambda: q(3, 1), mu: q(7, 10) };
-        let strain = [q(1, 2), q(-2, 3), q(5, 1)];
-        assert_eq!(hooke.strain(hooke.stress(strain)), strain);
+        let tensor = [q(12, 1), q(3, 1), q(2, 1), q(5, 1), q(-1, 1), q(2, 1)];
+        for hooke in [Hooke::Isotropic { lambda: q(3, 1), mu: q(7, 10) }, Hooke::Tensor(tensor)] {
+            let strain = [q(1, 2), q(-2, 3), q(5, 1)];
+            assert_eq!(hooke.strain(hooke.stress(strain)), strain);
+        }
     }
 
     #[test]

@@ -116,15 +116,15 @@ impl<const N: usize, S: Ordered> Definition<'_, N, S> {
         all.fold(S::from(0), |most, constant| if constant > most { constant } else { most })
     }
 
-    /// p (p + 1) / 2 (lambda + 2 mu) h_T |T's edges on Gamma_C| / |T|
+    /// p (p + 1) / 2 h_T / |T| times the sum of A_nnnn |E| over T's edges on Gamma_C
     pub fn coercivity_of(&self, t: usize) -> S {
         let body = self.0;
         let trace = S::from(if N == 3 { 1 } else { 3 });
-        let stiffness = body.hooke.lambda + S::from(2) * body.hooke.mu;
-        let length = sum(body.contact.iter().filter(|side| side.triangle == t), |s| s.length);
+        let sides = body.contact.iter().filter(|side| side.triangle == t);
+        let stiffness = sum(sides, |side| body.hooke.along(side.n) * side.length);
         let vertices = body.triangles[t].map(|v| body.vertices[v]);
         let area = Field { vertices, nodal: Vec::new() }.area();
-        trace * stiffness * body.diameters[t] * length / area
+        trace * stiffness * body.diameters[t] / area
     }
 }
 

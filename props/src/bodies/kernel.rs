@@ -198,11 +198,12 @@ impl<'a, const N: usize, const M: usize> Kernel<'a, N, M> {
     /// kappa_T
     pub fn kappa_of<E: Element<N, M>>(&self, t: usize) -> Exact {
         let body = self.body;
-        let sides = body.contact.iter().filter(|side| side.triangle == t);
-        let length = sum(sides, |side| side.length);
-        let area = body.triangle(t).double_area() / Exact::from(2);
-        let (stiffness, h) = (body.material.normal_stiffness(Vector2::y()), body.diameters[t]);
-        body.gamma0 * coercivity_constant::<E, Exact, N, M>(stiffness, h, length, area)
+        let (h, area) = (body.diameters[t], body.triangle(t).double_area() / Exact::from(2));
+        let of_side = |side: &Side| {
+            let stiffness = body.material.normal_stiffness(side.n.into());
+            coercivity_constant::<E, Exact, N, M>(stiffness, h, side.length, area)
+        };
+        body.gamma0 * sum(body.contact.iter().filter(|side| side.triangle == t), of_side)
     }
 }
 

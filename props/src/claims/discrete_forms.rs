@@ -355,9 +355,9 @@ mod row {
     fn lame_exchanged() -> Outcome {
         draws::reject(bodies(2), |draw| {
             Exact::scope(|| {
+                let (draw, [lambda, mu]) = (draw.isotropic(), draw.lame());
                 let mut spoilt = draw.body();
-                let material = Material::lame(spoilt.hooke.mu, spoilt.hooke.lambda, Plane::Strain);
-                spoilt.material = material;
+                spoilt.material = Material::lame(mu, lambda, Plane::Strain);
                 forms::<P2, 6, 3>(&draw.body(), &spoilt)
             })
         })

@@ -78,6 +78,16 @@ mod row {
         field: Vec<[Exact; 2]>,
     }
 
+    /// The symmetric tensor turned by the angle with this cosine and sine.
+    fn along([c, s]: [Exact; 2], [xx, yy, xy]: [Exact; 3]) -> [Exact; 3] {
+        let twice = Exact::from(2) * c * s * xy;
+        [
+            c * c * xx + s * s * yy - twice,
+            s * s * xx + c * c * yy + twice,
+            c * s * (xx - yy) + (c * c - s * s) * xy,
+        ]
+    }
+
     /// Sets the gaps of a body so that an affine field is an exact solution. `kind`: 0 contact, 1 gap, 2 touching.
     fn solution(body: &mut Body, (values, distances, kind): &Patch) -> Solution {
         let [sxx, syy, w, dx, dy] = values.map(|(n, d)| Exact::ratio(n, d));
@@ -85,8 +95,10 @@ mod row {
         let left_too = body.contact.iter().any(|side| rotated_back(side.n, body.turn)[0] < zero);
         let pressed = |s: Exact| if *kind == 0 { -s.abs() } else { zero };
         let stress = [if left_too { pressed(sxx) } else { sxx }, pressed(syy), zero];
-        let [exx, eyy, exy] = body.hooke.strain(stress);
         let turn = body.turn;
+        // A tensor is that of the turned body.
+        let [c, s] = turn;
+        let [exx, eyy, exy] = along([c, -s], body.hooke.strain(along(turn, stress)));
         let at = move |x: [Exact; 2]| {
             let [x, y] = rotated_back(x, turn);
             rotated([exx * x + (exy - w) * y + dx, (exy + w) * x + eyy * y + dy], turn)

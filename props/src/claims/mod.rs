@@ -55,6 +55,8 @@ pub mod quantities;
 pub mod rates;
 #[cfg(not(kani))]
 pub mod solver;
+#[cfg(not(kani))]
+pub mod tensor;
 pub mod theorem_3_3;
 pub mod theorem_3_4;
 pub mod variational_inequality;

@@ -69,7 +69,7 @@ impl<S: Given> Setting<S> {
             diameters: (0..triangles.len()).map(|t| S::given(mesh.diameter(t))).collect(),
             triangles,
             material,
-            hooke: Hooke { lambda: star, mu },
+            hooke: Hooke::Isotropic { lambda: star, mu },
             gamma0: S::given(d.gamma0),
             turn: [S::from(1), S::from(0)],
             middles,
@@ -184,7 +184,10 @@ impl<S: Given> Setting<S> {
             }
             Mistake::Theta(theta) => self.theta = S::from(theta),
             Mistake::TractionOnAnotherSide => self.pulled = body.contact[..1].to_vec(),
-            Mistake::PlaneStrainForStress => body.hooke.lambda = S::given(draw.lambda),
+            Mistake::PlaneStrainForStress => {
+                let (lambda, mu) = (S::given(draw.lambda), S::given(draw.mu));
+                body.hooke = Hooke::Isotropic { lambda, mu };
+            }
             Mistake::LoadWithTheWrongSign => self.load_sign = S::from(-1),
             Mistake::ReactionWithTheWrongSign => self.reaction_sign = S::from(-1),
         }

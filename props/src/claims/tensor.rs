@@ -1,0 +1,456 @@
+//! Lemma 3.2 and (11) for any tensor A of section 2.1, at a point: its stress, its energies, and the constant of the traction.
+//!
+//! With w = e : A e for the symmetric part e of d (x) n, and z = e : A eps = d . sigma n, the strain y = w eps - z e has
+//!
+//! ```text
+//! y : A y = w (w sigma:eps - z^2)
+//! ```
+//!
+//! so that z^2 <= w sigma:eps where A is positive (the inequality of Cauchy and Schwarz in A), with equality for eps = e. w is
+//! d . Q(n) d with the acoustic tensor Q(n), and A_nnnn for d = n; over unit vectors d it is at most the largest eigenvalue of Q(n).
+
+use signorini::kernel::contact_edge::traction_stiffness;
+use signorini::kernel::{Material, Plane, Squares, Stress};
+use signorini::nalgebra::{Matrix2, Vector2};
+
+use crate::bodies::square;
+use crate::claim::{Check, proved, refuted, tested};
+use crate::numbers::Exact;
+use crate::statement;
+use crate::statement::take;
+use crate::verdict::{Ordered, Verdict};
+use crate::{ensure, given};
+
+/// eps_xx, eps_yy and 2 eps_xy
+type Strain<S> = [S; 3];
+
+/// a : A b
+fn form<S: Ordered>([c11, c12, c16, c22, c26, c66]: [S; 6], a: Strain<S>, b: Strain<S>) -> S {
+    a[0] * (c11 * b[0] + c12 * b[1] + c16 * b[2])
+        + a[1] * (c12 * b[0] + c22 * b[1] + c26 * b[2])
+        + a[2] * (c16 * b[0] + c26 * b[1] + c66 * b[2])
+}
+
+/// The symmetric part of d (x) n.
+fn strain_along<S: Ordered>(d: [S; 2], n: [S; 2]) -> Strain<S> {
+    [d[0] * n[0], d[1] * n[1], d[0] * n[1] + d[1] * n[0]]
+}
+
+/// u with this strain.
+fn gradient<S: Ordered>([xx, yy, twice]: Strain<S>) -> Matrix2<S> {
+    Matrix2::new(xx, twice, S::from(0), yy)
+}
+
+fn tensor<S: Ordered>(c: &[S]) -> Material<S> {
+    Material::tensor(take(&c[..6]), None)
+}
+
+/// (1): sigma = A eps; sigma_zz and the von Mises stress, by what the stress in the plane counts across it.
+pub fn stress_is_the_tensor_times_the_strain<S: Ordered>(v: [S; 13]) -> Verdict {
+    let (c, [xx, xy, yx, yy]): ([S; 6], [S; 4]) = (take(&v[..6]), take(&v[6..10]));
+    let [p, q, r]: [S; 3] = take(&v[10..]);
+    let material = Material::tensor(c, Some([p, q, r]));
+    ensure!(!material.is_isotropic() && material.stiffness() == c);
+    ensure!(material.in_plane().stiffness() == c);
+    let strain = [xx, yy, xy + yx];
+    let stress = material.stress(Matrix2::new(xx, xy, yx, yy));
+    let [sxx, syy, sxy] = stress.components();
+    let (zero, one) = (S::from(0), S::from(1));
+    ensure!(sxx == form(c, [one, zero, zero], strain));
+    ensure!(syy == form(c, [zero, one, zero], strain));
+    ensure!(sxy == form(c, [zero, zero, one], strain));
+    let zz = material.stress_zz(stress);
+    ensure!(zz == p * sxx + q * syy + r * sxy);
+    ensure!(material.in_plane().stress_zz(stress) == zero);
+    let (a, b, c) = (sxx - syy, syy - zz, zz - sxx);
+    let twice = a * a + b * b + c * c + S::from(6) * sxy * sxy;
+    ensure!(S::from(2) * material.von_mises_squared(stress) == twice);
+    Verdict::Holds("always")
+}
+
+/// Lamé's coefficients are a tensor, and that tensor's own.
+pub fn lambda_and_mu_are_a_tensor<S: Ordered>([lambda, mu, xx, xy, yx, yy]: [S; 6]) -> Verdict {
+    let isotropic = Material::lame(lambda, mu, Plane::Strain);
+    let tensor = tensor(&isotropic.stiffness());
+    ensure!(isotropic.is_isotropic() && isotropic.in_plane() == isotropic);
+    ensure!(tensor.lambda() == lambda && tensor.mu() == mu);
+    let gradient = Matrix2::new(xx, xy, yx, yy);
+    ensure!(tensor.stress(gradient) == isotropic.stress(gradient));
+    Verdict::Holds("always")
+}
+
+/// The element matrix and the functionals of one shape function: sigma(e_d N):eps(e_c M), and d . sigma(e_c N) n.
+pub fn shapes_of_any_tensor_are_their_definitions<S: Ordered>(v: [S; 14]) -> Verdict {
+    let (c, material): ([S; 6], _) = (take(&v[..6]), tensor(&v));
+    let [g, h, n, d]: [[S; 2]; 4] = [0, 1, 2, 3].map(|k| [v[6 + 2 * k], v[7 + 2 * k]]);
+    let axes = [[1, 0], [0, 1]].map(|e| e.map(S::from));
+    let energy = material.energy_of_shapes(g.into(), h.into());
+    let along = material.traction_of_shape(g.into(), n.into(), d.into());
+    let normal = material.normal_stress_of_shape(g.into(), n.into());
+    for (k, &e) in axes.iter().enumerate() {
+        let strain = strain_along(e, g);
+        ensure!(along[k] == form(c, strain_along(d, n), strain));
+        ensure!(normal[k] == form(c, strain_along(n, n), strain));
+        for (l, &f) in axes.iter().enumerate() {
+            ensure!(energy[(k, l)] == form(c, strain, strain_along(f, h)));
+        }
+    }
+    Verdict::Holds("always")
+}
+
+/// d . Q(n) d is the energy of the strain along d and n; A_nnnn for d = n, and what the kernel takes for one direction.
+pub fn the_acoustic_tensor_is_the_energy_of_a_strain_along_two_directions<S: Ordered>(
+    v: [S; 10],
+) -> Verdict {
+    let (c, material): ([S; 6], _) = (take(&v[..6]), tensor(&v));
+    let [n, d]: [[S; 2]; 2] = [[v[6], v[7]], [v[8], v[9]]];
+    let q = material.acoustic(Vector2::from(n));
+    let along = form(c, strain_along(d, n), strain_along(d, n));
+    ensure!(q.m12 == q.m21);
+    ensure!(d[0] * d[0] * q.m11 + S::from(2) * d[0] * d[1] * q.m12 + d[1] * d[1] * q.m22 == along);
+    ensure!(traction_stiffness(&material, n.into(), Some(d.into()), |x| x) == along);
+    let normal = form(c, strain_along(n, n), strain_along(n, n));
+    ensure!(material.normal_stiffness(Vector2::from(n)) == normal);
+    Verdict::Holds("always")
+}
+
+/// y : A y and w (w sigma:eps - z^2), w sigma:eps, z^2 for a candidate of w = e : A e with e along d and n.
+fn apart<S: Ordered>(v: &[S], [d, n]: [[S; 2]; 2], w: S) -> [S; 4] {
+    let material = tensor(v);
+    let (eps, e): (Strain<S>, _) = (take(&v[6..9]), strain_along(d, n));
+    let energy = |strain: Strain<S>| form(material.stiffness(), strain, strain);
+    let traction = material.stress(gradient(eps)).traction(n.into());
+    let z = d[0] * traction[0] + d[1] * traction[1];
+    let y = [0, 1, 2].map(|k| w * eps[k] - z * e[k]);
+    [energy(y), w * (w * energy(eps) - z * z), w * energy(eps), z * z]
+}
+
+/// y : A y = w (w sigma:eps - z^2).
+pub fn a_strain_has_this_energy_without_its_part_along_two_directions<S: Ordered>(
+    v: [S; 13],
+) -> Verdict {
+    let [n, d] = [[v[9], v[10]], [v[11], v[12]]];
+    let w = traction_stiffness(&tensor(&v), n.into(), Some(d.into()), |x| x);
+    let [energy, rest, ..] = apart(&v, [d, n], w);
+    ensure!(energy == rest);
+    Verdict::Holds("always")
+}
+
+/// z^2 <= w sigma:eps where that is not negative.
+pub fn an_energy_that_is_not_negative_bounds_the_traction<S: Ordered>(
+    [w, energy, z]: [S; 3],
+) -> Verdict {
+    given!(w > S::from(0) && w * (w * energy - z * z) >= S::from(0));
+    ensure!(z * z <= w * energy);
+    Verdict::Holds("always")
+}
+
+/// Both together, for an A that is not negative on y.
+fn bounded<S: Ordered>(v: &[S], along: [[S; 2]; 2], w: S) -> Verdict {
+    let [energy, _, bound, square] = apart(v, along, w);
+    given!(w > S::from(0) && energy >= S::from(0));
+    ensure!(square <= bound);
+    Verdict::Holds("always")
+}
+
+/// sigma_n^2 <= A_nnnn sigma:eps, for a vector n of any length.
+pub fn normal_stress_is_bounded_by_the_energy_of_any_tensor<S: Ordered>(v: [S; 11]) -> Verdict {
+    let n = [v[9], v[10]];
+    bounded(&v, [n, n], tensor(&v).normal_stiffness(Vector2::from(n)))
+}
+
+/// (d . sigma n)^2 <= d . Q(n) d sigma:eps.
+pub fn traction_along_a_direction_is_bounded_by_the_energy_of_any_tensor<S: Ordered>(
+    v: [S; 13],
+) -> Verdict {
+    let [n, d] = [[v[9], v[10]], [v[11], v[12]]];
+    bounded(&v, [d, n], traction_stiffness(&tensor(&v), n.into(), Some(d.into()), |x| x))
+}
+
+/// A strain along d and n attains it: the constant can't be smaller.
+pub fn the_constant_of_any_tensor_is_attained<S: Ordered>(v: [S; 11]) -> Verdict {
+    let material = tensor(&v);
+    let [n, d, [c, _]] = [[v[6], v[7]], [v[8], v[9]], [v[10], v[10]]];
+    let eps = strain_along(d, n).map(|e| c * e);
+    let traction = material.stress(gradient(eps)).traction(n.into());
+    let z = d[0] * traction[0] + d[1] * traction[1];
+    let w = traction_stiffness(&material, n.into(), Some(d.into()), |x| x);
+    ensure!(z * z == w * form(material.stiffness(), eps, eps));
+    Verdict::Holds("always")
+}
+
+/// n = e_x, for which Q(n) is any symmetric matrix: C11 and C66, C16.
+fn with_acoustic<S: Ordered>([c11, c16, c66]: [S; 3]) -> Material<S> {
+    let zero = S::from(0);
+    Material::tensor([c11, zero, c16, zero, zero, c66], None)
+}
+
+/// r |d|^2 - (d . Q d - tr Q/2 |d|^2) is not negative, because their squares differ by that of this number.
+fn across<S: Ordered>([c11, c16, c66, dx, dy]: [S; 5]) -> S {
+    let two = S::from(2);
+    (c11 - c66) / two * (two * dx * dy) - c16 * (dx * dx - dy * dy)
+}
+
+/// d . Q d <= c |d|^2 for what the kernel takes where the direction turns, c = tr Q/2 + r, r the root of the square of half the
+/// difference of Q's diagonal and of its shear: the largest eigenvalue of Q.
+pub fn no_direction_has_more_than_the_largest_eigenvalue<S: Ordered>(
+    [c11, c16, c66, dx, dy, r]: [S; 6],
+) -> Verdict {
+    let (two, zero) = (S::from(2), S::from(0));
+    let half = (c11 - c66) / two;
+    given!(r >= zero && r * r == half * half + c16 * c16);
+    let material = with_acoustic([c11, c16, c66]);
+    let q = material.acoustic(Vector2::<S>::x());
+    ensure!(q == Matrix2::new(c11, c16, c16, c66));
+    let largest = traction_stiffness(&material, Vector2::x(), None, |_| r);
+    ensure!(largest == (c11 + c66) / two + r);
+    let square = dx * dx + dy * dy;
+    let part = half * (dx * dx - dy * dy) + c16 * (two * dx * dy);
+    let other = across([c11, c16, c66, dx, dy]);
+    ensure!(part * part + other * other == r * r * (square * square));
+    ensure!(square >= zero);
+    ensure!(r * square >= zero);
+    ensure!(other * other >= zero);
+    ensure!(part <= r * square);
+    let of_d = c11 * dx * dx + two * c16 * dx * dy + c66 * dy * dy;
+    ensure!(of_d <= largest * square);
+    Verdict::Holds("always")
+}
+
+/// |sigma n|^2 <= c sigma:eps, from d = sigma n in the two before: t = |d|^2 has t^2 <= d . Q d sigma:eps and d . Q d <= c t.
+pub fn the_whole_traction_is_bounded_by_the_largest_eigenvalue<S: Ordered>(
+    [t, q, c, energy]: [S; 4],
+) -> Verdict {
+    let zero = S::from(0);
+    given!(t >= zero && c >= zero && energy >= zero);
+    given!(t * t <= q * energy && q <= c * t);
+    ensure!(q * energy <= c * t * energy);
+    ensure!(t <= c * energy);
+    Verdict::Holds("always")
+}
+
+/// The tensor with these K, M, G and L of [`Squares`]: C = T^T L D L^T T, T from (xx, yy, 2 xy) to (xx + yy, xx - yy, 2 xy).
+fn of_squares<S: Ordered>([k, m, g, a, b, c]: [S; 6]) -> [S; 6] {
+    let columns = [[1, 1, 0], [1, -1, 0], [0, 0, 1]];
+    // L^T T, a row each.
+    let rows =
+        [[S::from(1), a, b], [S::from(0), S::from(1), c], [S::from(0), S::from(0), S::from(1)]];
+    let rows = rows.map(|row| {
+        [0, 1, 2]
+            .map(|j: usize| (0..3).fold(S::from(0), |s, i| s + row[i] * S::from(columns[i][j])))
+    });
+    let entry = |i: usize, j: usize| {
+        k * rows[0][i] * rows[0][j] + m * rows[1][i] * rows[1][j] + g * rows[2][i] * rows[2][j]
+    };
+    [entry(0, 0), entry(0, 1), entry(0, 2), entry(1, 1), entry(1, 2), entry(2, 2)]
+}
+
+/// sigma:eps, and a : C^-1 b for stresses a and b, as sums of squares with these moduli.
+pub fn the_energies_of_any_tensor_are_sums_of_squares<S: Ordered>(v: [S; 12]) -> Verdict {
+    let ([k, m, g, ..], zero): ([S; 6], _) = (take(&v[..6]), S::from(0));
+    given!(k > zero && m > zero && g > zero);
+    let c = of_squares(take(&v[..6]));
+    let squares = Squares { bulk: k, shear: m, beyond: Some((g, [v[3], v[4], v[5]])) };
+    let [a, b]: [Strain<S>; 2] = [take(&v[6..9]), take(&v[9..])];
+    ensure!(squares.of_gradient(gradient(a)) == form(c, a, a));
+    let material = Material::tensor(c, None);
+    let [s, t] = [a, b].map(|strain| material.stress(gradient(strain)));
+    let of_a = squares.parts(s);
+    ensure!(of_a[2] == S::from(2) * k * (a[0] + a[1] + v[3] * (a[0] - a[1]) + v[4] * a[2]));
+    ensure!(squares.per_moduli(squares.products(s, t)) == S::from(4) * form(c, a, b));
+    ensure!(squares.of_stress(s) == form(c, a, a));
+    Verdict::Holds("always")
+}
+
+/// The moduli that the kernel finds are those that the tensor is made of, so that all are positive where A is elliptic.
+pub fn the_moduli_of_a_tensor_are_found<S: Ordered>(v: [S; 6]) -> Verdict {
+    let ([k, m, g, a, b, c], zero) = (v, S::from(0));
+    given!(k > zero && m > zero && g > zero);
+    let found = Material::tensor(of_squares(v), None).squares();
+    ensure!(found.pivots() == [k, m, g]);
+    ensure!(found.beyond == Some((g, [a, b, c])));
+    Verdict::Holds("always")
+}
+
+/// A symmetric tensor that is turned by the angle with this cosine and sine.
+fn turned<S: Ordered>([cos, sin]: [S; 2], [xx, yy, xy]: [S; 3]) -> [S; 3] {
+    let twice = S::from(2) * cos * sin * xy;
+    [
+        cos * cos * xx + sin * sin * yy - twice,
+        sin * sin * xx + cos * cos * yy + twice,
+        cos * sin * (xx - yy) + (cos * cos - sin * sin) * xy,
+    ]
+}
+
+/// A body that is turned: the turned strain has the turned stress.
+pub fn a_tensor_that_is_turned_has_the_stress_of_before<S: Ordered>(v: [S; 11]) -> Verdict {
+    let (c, [xx, yy, xy]): ([S; 6], [S; 3]) = (take(&v[..6]), take(&v[6..9]));
+    let (two, by): (_, [S; 2]) = (S::from(2), take(&v[9..]));
+    given!(by[0] * by[0] + by[1] * by[1] == S::from(1));
+    let material = Material::tensor(c, None);
+    let stress = material.stress(gradient([xx, yy, two * xy]));
+    let [txx, tyy, txy] = turned(by, [xx, yy, xy]);
+    let found = material.turned(by).stress(gradient([txx, tyy, two * txy]));
+    ensure!(found == Stress::new(turned(by, stress.components())));
+    Verdict::Holds("always")
+}
+
+/// And so has the stress across the plane.
+pub fn a_tensor_that_is_turned_has_the_stress_across_the_plane_of_before<S: Ordered>(
+    [p, q, r, xx, yy, xy, cos, sin]: [S; 8],
+) -> Verdict {
+    let (zero, one) = (S::from(0), S::from(1));
+    given!(cos * cos + sin * sin == one);
+    let material = Material::tensor([one, zero, zero, one, zero, one], Some([p, q, r]));
+    let after = Stress::new(turned([cos, sin], [xx, yy, xy]));
+    let found = material.turned([cos, sin]).stress_zz(after);
+    ensure!(found == material.stress_zz(Stress::new([xx, yy, xy])));
+    Verdict::Holds("always")
+}
+
+/// A positive tensor on the horizontal edge, n = e_y, with another constant than A_nnnn.
+fn bounded_by<S: Ordered>(v: [S; 9], constant: impl Fn(&Material<S>) -> S) -> Verdict {
+    let zero = S::from(0);
+    let c = square(take(&v[..6]));
+    let (material, eps): (_, Strain<S>) = (Material::tensor(c, None), take(&v[6..]));
+    given!(v[0] > zero && v[2] > zero && v[5] > zero);
+    let [_, yy, _] = material.stress(gradient(eps)).components();
+    ensure!(yy * yy <= constant(&material) * form(c, eps, eps));
+    Verdict::Holds("always")
+}
+
+/// lambda + 2 mu of the isotropic law nearest to A for A_nnnn.
+pub fn control_lambda_plus_two_mu_of_the_nearest_law<S: Ordered>(v: [S; 9]) -> Verdict {
+    bounded_by(v, |material| material.lambda() + S::from(2) * material.mu())
+}
+
+/// The smaller eigenvalue of Q(n) for the largest: half its trace.
+pub fn control_half_the_trace_of_the_acoustic_tensor<S: Ordered>(v: [S; 9]) -> Verdict {
+    bounded_by(v, |material| {
+        let q = material.acoustic(Vector2::<S>::y());
+        (q.m11 + q.m22) / S::from(2)
+    })
+}
+
+/// A that is A A^T of what is drawn.
+fn positive(v: &mut [Exact]) {
+    let c = square(take(&v[..6]));
+    v[..6].copy_from_slice(&c);
+}
+
+/// A rational root: half the difference and the shear are the legs of a right-angled triangle.
+fn with_a_root(v: &mut [Exact]) {
+    let (p, q, two) = (v[0], v[1], Exact::from(2));
+    v[0] = v[2] + two * (p * p - q * q);
+    v[1] = two * p * q;
+    v[5] = p * p + q * q;
+}
+
+/// A unit vector at the end, from the last component: (1 - t^2, 2 t)/(1 + t^2).
+fn unit_at_the_end(v: &mut [Exact]) {
+    let (one, t, count) = (Exact::from(1), v[v.len() - 1], v.len());
+    let norm = one + t * t;
+    (v[count - 2], v[count - 1]) = ((one - t * t) / norm, Exact::from(2) * t / norm);
+}
+
+/// The checks of row 9 about tensors.
+pub fn checks() -> Vec<Check> {
+    let stress = statement!(
+        stress_is_the_tensor_times_the_strain,
+        [c11, c12, c16, c22, c26, c66, xx, xy, yx, yy, p, q, r],
+        ["always"]
+    );
+    let lame = statement!(lambda_and_mu_are_a_tensor, [lambda, mu, xx, xy, yx, yy], ["always"]);
+    let shapes = statement!(
+        shapes_of_any_tensor_are_their_definitions,
+        [c11, c12, c16, c22, c26, c66, gx, gy, hx, hy, nx, ny, dx, dy],
+        ["always"]
+    );
+    let acoustic = statement!(
+        the_acoustic_tensor_is_the_energy_of_a_strain_along_two_directions,
+        [c11, c12, c16, c22, c26, c66, nx, ny, dx, dy],
+        ["always"]
+    );
+    let normal = statement!(
+        normal_stress_is_bounded_by_the_energy_of_any_tensor,
+        [c11, c12, c16, c22, c26, c66, xx, yy, xy, nx, ny],
+        ["always"]
+    )
+    .prepared(positive);
+    let along = statement!(
+        traction_along_a_direction_is_bounded_by_the_energy_of_any_tensor,
+        [c11, c12, c16, c22, c26, c66, xx, yy, xy, nx, ny, dx, dy],
+        ["always"]
+    )
+    .prepared(positive);
+    let without = statement!(
+        a_strain_has_this_energy_without_its_part_along_two_directions,
+        [c11, c12, c16, c22, c26, c66, xx, yy, xy, nx, ny, dx, dy],
+        ["always"]
+    );
+    let not_negative =
+        statement!(an_energy_that_is_not_negative_bounds_the_traction, [w, energy, z], ["always"]);
+    let attained = statement!(
+        the_constant_of_any_tensor_is_attained,
+        [c11, c12, c16, c22, c26, c66, nx, ny, dx, dy, c],
+        ["always"]
+    );
+    let largest = statement!(
+        no_direction_has_more_than_the_largest_eigenvalue,
+        [c11, c16, c66, dx, dy, r],
+        ["always"]
+    )
+    .with_hints(|v| vec![v[3], v[4], across(take(&v[..5]))])
+    .prepared(with_a_root);
+    let whole = statement!(
+        the_whole_traction_is_bounded_by_the_largest_eigenvalue,
+        [t, q, c, energy],
+        ["always"]
+    );
+    let squares = statement!(
+        the_energies_of_any_tensor_are_sums_of_squares,
+        [k, m, g, a, b, c, exx, eyy, exy, fxx, fyy, fxy],
+        ["always"]
+    );
+    let moduli = statement!(the_moduli_of_a_tensor_are_found, [k, m, g, a, b, c], ["always"]);
+    let turned = statement!(
+        a_tensor_that_is_turned_has_the_stress_of_before,
+        [c11, c12, c16, c22, c26, c66, xx, yy, xy, cos, sin],
+        ["always"]
+    )
+    .prepared(unit_at_the_end);
+    let zz = statement!(
+        a_tensor_that_is_turned_has_the_stress_across_the_plane_of_before,
+        [p, q, r, xx, yy, xy, cos, sin],
+        ["always"]
+    )
+    .prepared(unit_at_the_end);
+    let all = [
+        stress,
+        lame,
+        shapes,
+        acoustic,
+        without,
+        not_negative,
+        attained,
+        largest,
+        whole,
+        squares,
+        moduli,
+        turned,
+        zz,
+    ];
+    let mut checks: Vec<Check> = all.into_iter().map(proved).collect();
+    checks.extend(all.into_iter().chain([normal, along]).map(tested));
+    checks.push(refuted(statement!(
+        control_lambda_plus_two_mu_of_the_nearest_law,
+        [l11, l21, l22, l31, l32, l33, xx, yy, xy],
+        fails "yy * yy <= constant(&material) * form(c, eps, eps)"
+    )));
+    checks.push(refuted(statement!(
+        control_half_the_trace_of_the_acoustic_tensor,
+        [l11, l21, l22, l31, l32, l33, xx, yy, xy],
+        fails "yy * yy <= constant(&material) * form(c, eps, eps)"
+    )));
+    checks
+}
