@@ -128,18 +128,30 @@ impl<S: Scalar + From<f64>> ContactFace<S> {
         if self.along_normal { self.normal } else { self.directions[a].map(<S as From<f64>>::from) }
     }
 
-    /// The value of a functional at a field with these nodal values.
-    fn apply(&self, functional: &[Vector2<S>], u: impl Fn(usize) -> [S; 2]) -> S {
+    /// The nodes of the edge.
+    pub fn on_edge(&self) -> impl Iterator<Item = usize> + '_ {
+        let on_edge = self.functionals.degree().edge_nodes(self.edge.local);
+        on_edge.into_iter().map(|k| self.nodes[k])
+    }
+
+    /// The value of a functional at the differences of nodal values from `from`: a body that moves far and strains little loses
+    /// no digits.
+    fn apply(&self, functional: &[Vector2<S>], u: impl Fn(usize) -> [S; 2], from: [S; 2]) -> S {
         let zero = <S as From<i32>>::from(0);
         functional.iter().zip(&self.nodes).fold(zero, |sum, (f, &node)| {
             let [x, y] = u(node);
-            sum + f[0] * x + f[1] * y
+            sum + f[0] * (x - from[0]) + f[1] * (y - from[1])
         })
     }
 
-    /// P0(u) at the nodes of the edge.
+    /// P0(u) at the nodes of the edge. P0 of a translation is its component along n~.
     pub fn p0(&self, u: &[[S; 2]]) -> Vec<S> {
-        self.functionals.p0().into_iter().map(|row| self.apply(row, |node| u[node])).collect()
+        let rows = self.functionals.p0().into_iter().zip(self.on_edge()).enumerate();
+        rows.map(|(a, (row, node))| {
+            let (n, at) = (self.direction(a), u[node]);
+            n[0] * at[0] + n[1] * at[1] + self.apply(row, |node| u[node], at)
+        })
+        .collect()
     }
 
     /// P(u) = P0(u) - g there.
@@ -150,7 +162,8 @@ impl<S: Scalar + From<f64>> ContactFace<S> {
 
     /// sigma_n(u) at the start and at the end of the edge.
     pub fn sigma_n(&self, u: impl Fn(usize) -> [S; 2]) -> [S; 2] {
-        self.functionals.sigma_n().map(|row| self.apply(row, &u))
+        let first = u(self.nodes[0]);
+        self.functionals.sigma_n().map(|row| self.apply(row, &u, first))
     }
 
     /// What -int gamma sigma_n(u) sigma_n(.) over the edge is in terms of sigma_n at its two ends, for sigma_n(u) = `stress`.
@@ -213,14 +226,14 @@ impl<S: Scalar + From<f64>> ContactFace<S> {
 impl ContactFace {
     /// The sums of the magnitudes of the products that P0(u) is added up from at the nodes of the edge.
     pub fn p0_magnitudes(&self, u: &[[f64; 2]]) -> Vec<f64> {
-        let of = |row: &[Vector2<f64>]| {
-            let products = row.iter().zip(&self.nodes).map(|(f, &node)| {
-                let [x, y] = u[node];
-                (f[0] * x).abs() + (f[1] * y).abs()
-            });
-            products.sum()
-        };
-        self.functionals.p0().into_iter().map(of).collect()
+        let rows = self.functionals.p0().into_iter().zip(self.on_edge()).enumerate();
+        rows.map(|(a, (row, node))| {
+            let size = |f: Vector2<f64>, x: f64, y: f64| (f[0] * x).abs() + (f[1] * y).abs();
+            let (n, [x, y]) = (self.direction(a), u[node]);
+            let others = row.iter().zip(&self.nodes);
+            size(n, x, y) + others.map(|(&f, &k)| size(f, u[k][0] - x, u[k][1] - y)).sum::<f64>()
+        })
+        .collect()
     }
 }
 

@@ -7,6 +7,7 @@
 
 use super::ball::{Ball, larger};
 use super::contact_face::EdgeRule;
+use super::element::bernstein;
 use crate::kernel::edge_integral::{gauss, roots, value_at};
 use crate::kernel::{Element, P1, P2};
 
@@ -27,6 +28,8 @@ where
             let points = points.iter().map(|&(s, w)| (Ball::from(s), Ball::from(w)));
             gauss::<E, Ball, N, M>(p, points).gradient
         }
+        // Bernstein's coefficients bound P.
+        EdgeRule::Exact if bernstein(&p).iter().all(|c| c.upper() <= 0.0) => [Ball::from(0); M],
         EdgeRule::Exact => {
             // |N_a| <= 1, and so |int ([P]+ - [Q]+) N_a| <= max |P - Q| <= the sum of the radii.
             let spread = p.iter().map(|p| p.radius()).sum::<f64>();

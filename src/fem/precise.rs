@@ -59,9 +59,14 @@ pub fn with_numbers<S: Scalar + From<f64>>(
     edge.in_numbers((&triangle, &material), numbers)
 }
 
-/// A triangle of doubles in other numbers.
+/// A triangle of doubles in other numbers, moved so that its first vertex is the origin: far from there sides lose digits.
 pub fn exactly<S: Scalar + From<f64>>(t: Triangle<f64>) -> Triangle<S> {
-    Triangle { vertices: t.vertices.map(|x| x.map(S::from)) }
+    let first = t.vertices[0];
+    let moved = |x: f64, from: f64| {
+        let difference = DoubleDouble::sum(x, -from);
+        S::from(difference.head()) + S::from(difference.tail())
+    };
+    Triangle { vertices: t.vertices.map(|x| x.zip_map(&first, moved)) }
 }
 
 /// Adds a(u, v) for every basis function v. Triangles on which `u` is all zero are not looked at.
