@@ -26,15 +26,13 @@ const SAFETY: f64 = 1.001;
 /// The smallest area of a triangle for which there is a bound.
 const SMALLEST: f64 = 1e-200;
 
-/// A hold beside the supports: a component of v at a place of a triangle is at most `most` where |v|_a is at most 1.
-#[derive(Clone, Copy, Debug)]
+/// A hold beside the supports: a sum of components of v at nodes of a triangle is at most `most` where |v|_a is at most 1.
+#[derive(Clone, Debug)]
 pub struct Hold {
     /// The triangle.
     pub triangle: usize,
-    /// The place, one of its vertices.
-    pub at: [f64; 2],
-    /// The direction of the component.
-    pub direction: [Ball; 2],
+    /// The nodes' places, each with what v there is multiplied by.
+    pub terms: Vec<([Ball; 2], [Ball; 2])>,
     /// The bound.
     pub most: f64,
 }
@@ -70,7 +68,7 @@ impl Korn {
             part: vec![usize::MAX; left.len()],
         };
         let mut parts: Vec<Vec<Hold>> = Vec::new();
-        for hold in supports(space, constraints).into_iter().chain(holds.iter().copied()) {
+        for hold in supports(space, constraints).into_iter().chain(holds.iter().cloned()) {
             if paths.part[hold.triangle] == usize::MAX {
                 paths.explore(hold.triangle, parts.len());
                 parts.push(Vec::new());
@@ -177,12 +175,11 @@ fn supports(space: &Space, constraints: &Constraints) -> Vec<Hold> {
     for (triangle, nodes) in space.elements().enumerate() {
         for &node in nodes {
             if !std::mem::replace(&mut seen[node], true) {
-                let at = space.nodes()[node];
-                let exactly = |direction: [f64; 2]| direction.map(Ball::point);
+                let exactly = |x: [f64; 2]| x.map(Ball::point);
+                let at = exactly(space.nodes()[node]);
                 holds.extend(constraints.directions(node).map(|direction| Hold {
                     triangle,
-                    at,
-                    direction: exactly(direction),
+                    terms: vec![(at, exactly(direction))],
                     most: 0.0,
                 }));
             }
@@ -222,14 +219,24 @@ fn motion_of_root(
     of: impl Fn(usize) -> f64,
 ) -> Option<f64> {
     let row = |hold: &Hold| {
-        let [p, q] = hold.direction;
-        let from = [0, 1].map(|c| Ball::point(hold.at[c]) - Ball::point(origin[c]));
-        [p, q, (q * from[0] - p * from[1]) / Ball::point(size)]
+        hold.terms.iter().fold([Ball::from(0); 3], |[x, y, turn], &(at, [p, q])| {
+            let from = [0, 1].map(|c| at[c] - Ball::point(origin[c]));
+            [x + p, y + q, turn + (q * from[0] - p * from[1]) / Ball::point(size)]
+        })
     };
     let rows: Vec<[Ball; 3]> = holds.iter().map(row).collect();
+    let magnitude = |d: Ball| larger(d.lower().abs(), d.upper().abs());
+    // |row . (a, b, c)| at most
+    let most = |hold: &Hold| {
+        let sizes = hold.terms.iter().map(|(_, [p, q])| magnitude(*p).hypot(magnitude(*q)));
+        sizes.sum::<f64>() * of(hold.triangle) + hold.most
+    };
+    let most: Vec<f64> = holds.iter().map(most).collect();
     let middle = |row: &[Ball; 3]| row.map(|c| c.lower() / 2.0 + c.upper() / 2.0).to_vec();
     let doubles: Vec<Vec<f64>> = rows.iter().map(middle).collect();
-    let chosen = independent(&doubles, 3)?;
+    // Those that say most.
+    let weighted = |(row, most): (&Vec<f64>, &f64)| row.iter().map(|c| c / most).collect();
+    let chosen = independent(&doubles.iter().zip(&most).map(weighted).collect::<Vec<_>>(), 3)?;
     let inverse = inverse(chosen.iter().map(|&i| doubles[i].clone()).collect())?;
     // With M q = t and any R: q = R t + (1 - R M) q.
     let off = (0..3).map(|i| {
@@ -237,18 +244,12 @@ fn motion_of_root(
             let product = chosen.iter().zip(&inverse[i]);
             let unit = Ball::from(i32::from(i == j));
             let left = product.fold(unit, |sum, (&k, &r)| sum - Ball::point(r) * rows[k][j]);
-            larger(left.lower().abs(), left.upper().abs())
+            magnitude(left)
         };
         (0..3).map(entry).sum::<f64>()
     });
     let off = SAFETY * off.fold(0.0, larger);
-    let data: Vec<f64> = chosen
-        .iter()
-        .map(|&i| {
-            let [p, q] = holds[i].direction.map(|d| larger(d.lower().abs(), d.upper().abs()));
-            p.hypot(q) * of(holds[i].triangle) + holds[i].most
-        })
-        .collect();
+    let data: Vec<f64> = chosen.iter().map(|&i| most[i]).collect();
     let image: Vec<f64> = inverse
         .iter()
         .map(|row| row.iter().zip(&data).map(|(r, d)| r.abs() * d).sum::<f64>())
@@ -272,7 +273,7 @@ fn independent(rows: &[Vec<f64>], count: usize) -> Option<Vec<usize>> {
             .map(norm)
             .enumerate()
             .fold((0, 0.0), |best, (i, n)| if n > best.1 { (i, n) } else { best });
-        if !(largest > 1e-20) {
+        if !(largest > 0.0) {
             return None;
         }
         chosen.push(best);

@@ -22,7 +22,7 @@ use super::assembled::factor_with;
 use super::balls::{field, free, kappa, length, lines, root};
 use super::factor::{Factor, Indefinite};
 use super::intervals::{Evaluation, Intervals, Stresses};
-use super::pressed::{self, Pressed};
+use super::pressed::{self, Pressed, SHARES};
 use super::system::System;
 use super::times::Stopwatch;
 use crate::fem::ball::{Ball, up};
@@ -241,16 +241,39 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
             let unknown = d.kappa() < 1.0 || !kappa.is_finite();
             return Err(if unknown { Unproved::NoKappa } else { Unproved::NotCoercive { kappa } });
         }
-        let coercivity = (1.0 - kappa) * (1.0 - 4.0 * f64::EPSILON);
         let at = Evaluation::new(system, &self.lines, (u, reported), near, (self.load, stresses));
         let at = at.ok_or(Unproved::OutOfRange)?;
         let r = free(system, &at.residual);
         self.unbalanced = r.iter().map(|r| r.magnitude()).sum();
-        // What holds the body, and what is not proved if that does not.
-        let (pressed, loose) = match d.slides {
-            None => (Pressed::nowhere(self.lines.len()), Unproved::NotHeld),
-            Some(_) => (Pressed::at(d, &self.lines, &at.u), Unproved::HeldByContact),
-        };
+        let fields = (u, reported);
+        if d.slides.is_none() {
+            return self.held_by(&Pressed::nowhere(self.lines.len()), &at, fields, (&r, stresses));
+        }
+        for share in SHARES {
+            let pressed = Pressed::at(d, &self.lines, &at.u, share);
+            let found = self.held_by(&pressed, &at, fields, (&r, stresses));
+            if found != Err(Unproved::HeldByContact) {
+                return found;
+            }
+        }
+        Err(Unproved::HeldByContact)
+    }
+
+    /// |v|_A^2 is at least this times |v|_a^2.
+    fn coercivity(&self) -> f64 {
+        (1.0 - self.kappa) * (1.0 - 4.0 * f64::EPSILON)
+    }
+
+    /// Encloses a solution by its evaluation at `u` and the residual there, where contact holds the body by what is `pressed`.
+    fn held_by(
+        &mut self,
+        pressed: &Pressed,
+        at: &Evaluation,
+        (u, reported): (&[[f64; 2]], &[[f64; 2]]),
+        (r, stresses): (&[Ball], Stresses),
+    ) -> Result<Enclosure, Unproved> {
+        let (system, d, kappa) = (self.system, self.system.d, self.kappa);
+        let coercivity = self.coercivity();
         let springs = pressed.springs(&self.lines);
         if self.held.as_ref().is_none_or(|held| held.springs != springs) {
             let holds = pressed.holds(d, &self.lines);
@@ -258,7 +281,8 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
             self.held = Some(Held { springs, korn, factor: None });
         }
         let Some(Held { korn: Some(korn), factor, springs }) = &mut self.held else {
-            return Err(loose);
+            let by_contact = d.slides.is_some();
+            return Err(if by_contact { Unproved::HeldByContact } else { Unproved::NotHeld });
         };
         let up_to = up(at.off / coercivity.sqrt());
         let rho = if r.iter().all(|&r| r == Ball::from(0)) {
@@ -273,8 +297,8 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
             };
             let crude = crude_norms(system, korn, coercivity);
             let negligible = SMALL * (at.moved * coercivity.sqrt()).max(up_to);
-            let product = Product { system, lines: &self.lines, pressed: &pressed, stresses };
-            up(dual_norm(&product, factor, &r, &crude, coercivity, negligible) + up_to)
+            let product = Product { system, lines: &self.lines, pressed, stresses };
+            up(dual_norm(&product, factor, r, &crude, coercivity, negligible) + up_to)
         };
         if !pressed.stay(rho) {
             return Err(Unproved::HeldByContact);
@@ -285,7 +309,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
             return Err(Unproved::OutOfRange);
         }
         let mut nodes: Vec<f64> = korn.nodes.iter().map(|n| up(n * exact)).collect();
-        if !stays_off(d, &self.lines, &pressed, &at.u, (&nodes, exact)) {
+        if !stays_off(d, &self.lines, pressed, &at.u, (&nodes, exact)) {
             return Err(Unproved::HeldByContact);
         }
         let exactly = slid(at.u.clone(), reported, d.slides.as_ref());

@@ -14,8 +14,9 @@ use crate::fem::element::bernstein;
 use crate::fem::korn::Hold;
 use crate::fem::{ContactFace, Degree, Discretization, EdgeRule};
 
-/// A piece is taken for pressed where P is at least this share of the most that it is all along some piece.
-const SHARE: f64 = 1.0 / (1 << 20) as f64;
+/// A piece is taken for pressed where P is at least this share of the most that it is all along some piece; where that proves
+/// nothing, the next one: with all pieces that are pressed more holds the body, with fewer these stay pressed on a larger ball.
+pub const SHARES: [f64; 4] = [1.0 / (1 << 20) as f64, 0.0, 1.0 / 256.0, 1.0 / 16.0];
 
 /// And at least this share of the most that it is all along some piece of its edge: where P falls to zero hardly anything holds.
 const SHARE_OF_EDGE: f64 = 1.0 / 16.0;
@@ -37,6 +38,8 @@ struct Piece {
     coefficients: Vec<Row>,
     /// The integrals of N_a N_b over it.
     mass: Vec<Row>,
+    /// The weight of a point of a Gauss rule.
+    weight: Option<Ball>,
 }
 
 /// The pressed pieces of an edge.
@@ -46,8 +49,9 @@ struct Part {
     /// For each coefficient on each piece the least that it is of P at the displacement, and the most that it is of P0(v) beside
     /// |v|_S.
     coefficients: Vec<[f64; 2]>,
-    /// The most that P0(v) is at the ends of the edge, beside |v|_S.
-    ends: [f64; 2],
+    /// Values of the shape functions of the edge at some places, its ends or the points of a Gauss rule, and the most that P0(v)
+    /// is there, beside |v|_S.
+    places: Vec<(Row, f64)>,
     /// The integrals of N_a N_b over them.
     mass: Vec<Row>,
 }
@@ -66,8 +70,9 @@ impl Piece {
         };
         let at = |&(s, weight): &(f64, f64)| {
             let shapes = degree.edge_values(Ball::from(s));
-            let mass = products(Ball::from(weight), &shapes);
-            Piece { ends: [s, s], coefficients: vec![shapes; p.len()], mass }
+            let weight = Ball::from(weight);
+            let mass = products(weight, &shapes);
+            Piece { ends: [s, s], coefficients: vec![shapes], mass, weight: Some(weight) }
         };
         points.iter().map(at).filter(|piece| piece.least(p) > 0.0).collect()
     }
@@ -102,7 +107,7 @@ impl Piece {
             let weight = Ball::from(length) * Ball::from(weight) / Ball::from(90);
             add(&mut mass, &products(weight, &at(i)));
         }
-        Piece { ends: [start, start + length], coefficients, mass }
+        Piece { ends: [start, start + length], coefficients, mass, weight: None }
     }
 
     /// The least coefficient of P, or less.
@@ -112,20 +117,30 @@ impl Piece {
 }
 
 impl Part {
-    /// The part of the edge `line` in these pieces, where P has the values `p`. `None` where they don't see all of P0.
+    /// The part of the edge `line` in these pieces, where P has the values `p`. `None` where there are none.
     fn new(line: &ContactFace<Ball>, p: &Row, pieces: &[&Piece]) -> Option<Self> {
         let mut mass = vec![vec![Ball::from(0); p.len()]; p.len()];
         pieces.iter().for_each(|piece| add(&mut mass, &piece.mass));
-        // q . M q <= 1 implies c . q <= (c . M^-1 c)^{1/2}
-        let most = |c: &Row| {
-            Some(SAFETY * root_of(line) * by_inverse(mass.clone(), c.clone())?.upper().sqrt())
+        // q . M q <= 1 implies c . q <= (c . M^-1 c)^{1/2}, and at a point of weight w <= w^{-1/2}.
+        let most = |weight: Option<Ball>, c: &Row| {
+            let square = match weight {
+                Some(weight) => Ball::from(1) / weight,
+                None => by_inverse(mass.clone(), c.clone())?,
+            };
+            Some(SAFETY * root_of(line) * square.upper().sqrt())
         };
-        let all = pieces.iter().flat_map(|piece| &piece.coefficients);
-        let coefficients = all.map(|c| Some([dot(c, p).lower(), most(c)?]));
+        let all =
+            pieces.iter().flat_map(|piece| piece.coefficients.iter().map(|c| (piece.weight, c)));
+        let all = all.map(|(weight, c)| Some((c, most(weight, c)?))).collect::<Option<Vec<_>>>()?;
         let unit = |end| (0..p.len()).map(|a| Ball::from(i32::from(a == end))).collect();
-        let ends = [most(&unit(0))?, most(&unit(1))?];
-        let coefficients = coefficients.collect::<Option<_>>()?;
-        Some(Part { pieces: pieces.iter().map(|p| p.ends).collect(), coefficients, ends, mass })
+        let places: Vec<(Row, f64)> = if pieces.first()?.weight.is_some() {
+            all.iter().map(|&(c, most)| (c.clone(), most)).collect()
+        } else {
+            let ends: [Row; 2] = [0, 1].map(unit);
+            ends.into_iter().map(|c| Some((c.clone(), most(None, &c)?))).collect::<Option<_>>()?
+        };
+        let coefficients = all.iter().map(|(c, most)| [dot(c, p).lower(), *most]).collect();
+        Some(Part { pieces: pieces.iter().map(|p| p.ends).collect(), coefficients, places, mass })
     }
 }
 
@@ -135,8 +150,13 @@ impl Pressed {
         Pressed { edges: (0..count).map(|_| None).collect() }
     }
 
-    /// Finds the pieces that are surely pressed at the displacement `u`.
-    pub fn at(d: &Discretization, lines: &[ContactFace<Ball>], u: &[[Ball; 2]]) -> Self {
+    /// Finds the pieces that are surely pressed at the displacement `u`, those that have their `share` of the pressure.
+    pub fn at(
+        d: &Discretization,
+        lines: &[ContactFace<Ball>],
+        u: &[[Ball; 2]],
+        share: f64,
+    ) -> Self {
         let edges = lines.iter().map(|line| {
             let p = line.p(u);
             let least = |piece: Piece| (piece.least(&p), piece);
@@ -146,7 +166,7 @@ impl Pressed {
         });
         let edges: Vec<(Row, Vec<(f64, Piece)>)> = edges.collect();
         let most = |pieces: &[(f64, Piece)]| pieces.iter().fold(0.0, |m: f64, p| m.max(p.0));
-        let enough = SHARE * edges.iter().map(|(_, pieces)| most(pieces)).fold(0.0, f64::max);
+        let enough = share * edges.iter().map(|(_, pieces)| most(pieces)).fold(0.0, f64::max);
         let part = |(line, (p, pieces)): (&ContactFace<Ball>, &(Row, Vec<_>))| {
             let enough = enough.max(SHARE_OF_EDGE * most(pieces));
             let taken = pieces.iter().filter(|(least, _)| *least >= enough);
@@ -180,22 +200,26 @@ impl Pressed {
         all.all(|[least, most]| *least > SAFETY * most * rho)
     }
 
-    /// The components that S holds at the ends of its edges: n~ . v = P0(v) + gamma s(v), for |v|_S (1 - kappa)^{-1/2} <= 1. There gamma |s(v)| is
+    /// What S holds, sums of n~ . v at the nodes of its edges, each times its shape function at a place of the edge:
+    /// n~ . v = P0(v) + gamma s(v), for |v|_S (1 - kappa)^{-1/2} <= 1. There gamma |s(v)| is
     /// at most 2 (gamma / |E|)^{1/2}, as s is affine and int gamma s^2 <= 1.
     pub fn holds(&self, d: &Discretization, lines: &[ContactFace<Ball>]) -> Vec<Hold> {
         let mesh = d.space.mesh();
         let mut holds = Vec::new();
         for (line, part) in lines.iter().zip(&self.edges) {
             let Some(part) = part else { continue };
-            for (end, (vertex, most)) in mesh.ends(line.edge).into_iter().zip(part.ends).enumerate()
-            {
-                let direction: [Ball; 2] = line.direction(end).into();
-                holds.push(Hold {
-                    triangle: line.edge.triangle,
-                    at: mesh.vertices()[vertex],
-                    direction: direction.map(Ball::rounded),
-                    most: up(most + SAFETY * 2.0 * root_of(line)),
-                });
+            let [start, end] = mesh.ends(line.edge).map(|v| mesh.vertices()[v].map(Ball::from));
+            let middle = [0, 1].map(|c| (start[c] + end[c]) * Ball::from(0.5));
+            for (shapes, most) in &part.places {
+                let nodes = [start, end, middle].into_iter().zip(shapes).enumerate();
+                let terms = nodes.filter(|(_, (_, shape))| shape.magnitude() > 0.0).map(
+                    |(a, (at, &shape))| {
+                        let direction: [Ball; 2] = line.direction(a).into();
+                        (at.map(Ball::rounded), direction.map(|n| (shape * n).rounded()))
+                    },
+                );
+                let most = up(most + SAFETY * 2.0 * root_of(line));
+                holds.push(Hold { triangle: line.edge.triangle, terms: terms.collect(), most });
             }
         }
         holds
