@@ -98,14 +98,16 @@ impl Outcome {
     /// How the solve ended.
     ///
     /// # Errors
-    /// Where nothing is proved and the residual is above the tolerance: [`SolveError::NotConverged`] where the steps ran out,
-    /// else [`SolveError::IllConditioned`].
+    /// Where nothing is proved and the residual is above the tolerance: [`SolveError::Singular`] where A has no factor,
+    /// [`SolveError::NotConverged`] where the steps ran out, else [`SolveError::IllConditioned`].
     pub fn status(&self, settings: &Settings) -> Result<Status, SolveError> {
         let &Outcome { residual, forward_error, condition, .. } = self;
         if residual <= settings.tolerance {
             Ok(Status::Converged)
         } else if self.is_proved(settings) {
             Ok(Status::ConvergedToRounding)
+        } else if self.enclosure == Err(Unproved::NoFactor) {
+            Err(SolveError::Singular)
         } else if self.is_out_of_steps(settings) && condition < HOPELESS {
             let residuals = self.residuals.clone();
             Err(SolveError::NotConverged { residual, residuals, tolerance: settings.tolerance })

