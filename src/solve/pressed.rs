@@ -5,12 +5,12 @@
 //!
 //! |v|_S^2 = A(v, v) + int over S of P0(v)^2 / gamma
 //!
-//! The exact integral has halves of halves of an edge for pieces, a Gauss rule its points.
+//! The exact integral has the stretches of an edge between the roots of P for pieces, a Gauss rule its points.
 
 use nalgebra::DMatrix;
 
 use crate::fem::ball::{Ball, up};
-use crate::fem::element::bernstein;
+use crate::fem::element::{bernstein, roots};
 use crate::fem::korn::Hold;
 use crate::fem::{ContactFace, Degree, Discretization, EdgeRule};
 
@@ -21,8 +21,11 @@ pub const SHARES: [f64; 4] = [1.0 / (1 << 20) as f64, 0.0, 1.0 / 256.0, 1.0 / 16
 /// And at least this share of the most that it is all along some piece of its edge: where P falls to zero hardly anything holds.
 const SHARE_OF_EDGE: f64 = 1.0 / 16.0;
 
-/// An edge is halved so often where it is pressed in part.
-const HALVINGS: u32 = 10;
+/// A stretch is halved so often where its coefficients do not show that P is positive on it.
+const HALVINGS: u32 = 6;
+
+/// This share of a stretch is left out at a root of P.
+const INSET: f64 = 1.0 / 16.0;
 
 /// Covers the rounding of a few sums, products and roots of positive doubles.
 const SAFETY: f64 = 1.001;
@@ -34,12 +37,12 @@ type Row = Vec<Ball>;
 struct Piece {
     /// Where it starts and ends; a point does both at once.
     ends: [f64; 2],
-    /// The coefficients on it, of a polynomial with given values at the nodes, that enclose the polynomial there (Bernstein's).
-    coefficients: Vec<Row>,
+    /// The coefficients on it, of a polynomial with given values at the nodes, that enclose the polynomial there (Bernstein's): first
+    /// its values at the ends. Each with the most that its square is where the square of the polynomial has the integral 1 over the
+    /// piece.
+    coefficients: Vec<(Row, Ball)>,
     /// The integrals of N_a N_b over it.
     mass: Vec<Row>,
-    /// The weight of a point of a Gauss rule.
-    weight: Option<Ball>,
 }
 
 /// The pressed pieces of an edge.
@@ -49,8 +52,7 @@ struct Part {
     /// For each coefficient on each piece the least that it is of P at the displacement, and the most that it is of P0(v) beside
     /// |v|_S.
     coefficients: Vec<[f64; 2]>,
-    /// Values of the shape functions of the edge at some places, its ends or the points of a Gauss rule, and the most that P0(v)
-    /// is there, beside |v|_S.
+    /// The shape functions of the edge at the ends of the pieces, and the most that P0(v) is there, beside |v|_S.
     places: Vec<(Row, f64)>,
     /// The integrals of N_a N_b over them.
     mass: Vec<Row>,
@@ -66,53 +68,72 @@ impl Piece {
     /// The pieces of an edge on which P is positive.
     fn pressed(degree: Degree, rule: &EdgeRule, p: &Row) -> Vec<Self> {
         let EdgeRule::Gauss(points) = rule else {
-            return Self::within(degree, p, 0.0, HALVINGS);
+            return Self::between_roots(degree, p);
         };
         let at = |&(s, weight): &(f64, f64)| {
-            let shapes = degree.edge_values(Ball::from(s));
-            let weight = Ball::from(weight);
+            let (shapes, weight) = (degree.edge_values(Ball::from(s)), Ball::from(weight));
             let mass = products(weight, &shapes);
-            Piece { ends: [s, s], coefficients: vec![shapes], mass, weight: Some(weight) }
+            Piece { ends: [s, s], coefficients: vec![(shapes, Ball::from(1) / weight)], mass }
         };
         points.iter().map(at).filter(|piece| piece.least(p) > 0.0).collect()
     }
 
-    /// Those that begin at `start` or later in a stretch that may be halved so many times more.
-    fn within(degree: Degree, p: &Row, start: f64, halvings: u32) -> Vec<Self> {
-        let length = 0.5_f64.powi((HALVINGS - halvings) as i32);
-        let piece = Self::between(degree, start, length);
+    /// Those in the stretches between the roots of P.
+    fn between_roots(degree: Degree, p: &Row) -> Vec<Self> {
+        let mut cuts = roots(&p.iter().map(|p| p.head()).collect::<Vec<_>>());
+        cuts.extend([0.0, 1.0]);
+        cuts.sort_unstable_by(f64::total_cmp);
+        let stretch = |cut: &[f64]| {
+            let inset = INSET * (cut[1] - cut[0]);
+            let start = if cut[0] > 0.0 { cut[0] + inset } else { 0.0 };
+            let end = if cut[1] < 1.0 { cut[1] - inset } else { 1.0 };
+            Self::within(degree, p, [start, end], HALVINGS)
+        };
+        cuts.windows(2).flat_map(stretch).collect()
+    }
+
+    /// Those in a stretch that may be halved so many times.
+    fn within(degree: Degree, p: &Row, [start, end]: [f64; 2], halvings: u32) -> Vec<Self> {
+        let piece = Self::between(degree, [start, end]);
         if piece.least(p) > 0.0 {
             return vec![piece];
         }
-        if halvings == 0 || piece.coefficients.iter().all(|c| dot(c, p).upper() <= 0.0) {
+        if halvings == 0 || piece.coefficients.iter().all(|(c, _)| dot(c, p).upper() <= 0.0) {
             return Vec::new();
         }
-        let halves = [start, start + length / 2.0];
-        halves.into_iter().flat_map(|s| Self::within(degree, p, s, halvings - 1)).collect()
+        let middle = start + (end - start) / 2.0;
+        let halves = [[start, middle], [middle, end]];
+        halves.into_iter().flat_map(|half| Self::within(degree, p, half, halvings - 1)).collect()
     }
 
-    /// The piece of an edge from `start` on that is so long, both exactly doubles. Boole's rule is exact for the products.
-    fn between(degree: Degree, start: f64, length: f64) -> Self {
-        let at = |i: u32| degree.edge_values(Ball::from(start + f64::from(i) / 4.0 * length));
-        let mut coefficients = vec![at(0), at(4)];
-        if degree == Degree::Two {
-            let [two, half] = [2.0, 0.5].map(Ball::from);
-            let ends = coefficients[0].iter().zip(&coefficients[1]);
-            let bend = at(2).into_iter().zip(ends).map(|(m, (&a, &b))| two * m - half * (a + b));
-            coefficients.push(bend.collect());
-        }
+    /// The piece of an edge with these ends. Boole's rule is exact for the products. The squares are the diagonals of the inverses
+    /// of the matrices of Bernstein's polynomials, 4, and 9 and 21, over the length.
+    fn between(degree: Degree, ends: [f64; 2]) -> Self {
+        let start = Ball::from(ends[0]);
+        let length = Ball::from(ends[1]) - start;
+        let at = |i: i32| degree.edge_values(start + Ball::from(i) / Ball::from(4) * length);
+        let over = |square: i32| Ball::from(square) / length;
+        let coefficients = match degree {
+            Degree::One => vec![(at(0), over(4)), (at(4), over(4))],
+            Degree::Two => {
+                let [two, half] = [2.0, 0.5].map(Ball::from);
+                let ends = at(0).into_iter().zip(at(4));
+                let bend = at(2).into_iter().zip(ends).map(|(m, (a, b))| two * m - half * (a + b));
+                vec![(at(0), over(9)), (at(4), over(9)), (bend.collect(), over(21))]
+            }
+        };
         let count = degree.nodes_per_edge();
         let mut mass = vec![vec![Ball::from(0); count]; count];
         for (i, weight) in [(0, 7), (1, 32), (2, 12), (3, 32), (4, 7)] {
-            let weight = Ball::from(length) * Ball::from(weight) / Ball::from(90);
+            let weight = length * Ball::from(weight) / Ball::from(90);
             add(&mut mass, &products(weight, &at(i)));
         }
-        Piece { ends: [start, start + length], coefficients, mass, weight: None }
+        Piece { ends, coefficients, mass }
     }
 
     /// The least coefficient of P, or less.
     fn least(&self, p: &Row) -> f64 {
-        self.coefficients.iter().map(|c| dot(c, p).lower()).fold(f64::INFINITY, f64::min)
+        self.coefficients.iter().map(|(c, _)| dot(c, p).lower()).fold(f64::INFINITY, f64::min)
     }
 }
 
@@ -121,26 +142,13 @@ impl Part {
     fn new(line: &ContactFace<Ball>, p: &Row, pieces: &[&Piece]) -> Option<Self> {
         let mut mass = vec![vec![Ball::from(0); p.len()]; p.len()];
         pieces.iter().for_each(|piece| add(&mut mass, &piece.mass));
-        // q . M q <= 1 implies c . q <= (c . M^-1 c)^{1/2}, and at a point of weight w <= w^{-1/2}.
-        let most = |weight: Option<Ball>, c: &Row| {
-            let square = match weight {
-                Some(weight) => Ball::from(1) / weight,
-                None => by_inverse(mass.clone(), c.clone())?,
-            };
-            Some(SAFETY * root_of(line) * square.upper().sqrt())
-        };
-        let all =
-            pieces.iter().flat_map(|piece| piece.coefficients.iter().map(|c| (piece.weight, c)));
-        let all = all.map(|(weight, c)| Some((c, most(weight, c)?))).collect::<Option<Vec<_>>>()?;
-        let unit = |end| (0..p.len()).map(|a| Ball::from(i32::from(a == end))).collect();
-        let places: Vec<(Row, f64)> = if pieces.first()?.weight.is_some() {
-            all.iter().map(|&(c, most)| (c.clone(), most)).collect()
-        } else {
-            let ends: [Row; 2] = [0, 1].map(unit);
-            ends.into_iter().map(|c| Some((c.clone(), most(None, &c)?))).collect::<Option<_>>()?
-        };
-        let coefficients = all.iter().map(|(c, most)| [dot(c, p).lower(), *most]).collect();
-        Some(Part { pieces: pieces.iter().map(|p| p.ends).collect(), coefficients, places, mass })
+        let most = |square: &Ball| SAFETY * root_of(line) * square.upper().sqrt();
+        let all = pieces.iter().flat_map(|piece| &piece.coefficients);
+        let coefficients = all.map(|(c, square)| [dot(c, p).lower(), most(square)]).collect();
+        let ends = pieces.iter().flat_map(|piece| piece.coefficients.iter().take(2));
+        let places = ends.map(|(shapes, square)| (shapes.clone(), most(square))).collect();
+        let pieces: Vec<[f64; 2]> = pieces.iter().map(|piece| piece.ends).collect();
+        (!pieces.is_empty()).then_some(Part { pieces, coefficients, places, mass })
     }
 }
 
@@ -183,7 +191,10 @@ impl Pressed {
     /// For each contact edge whether all that the rule sees of it is in S.
     pub fn whole<'a>(&'a self, rule: &'a EdgeRule) -> impl Iterator<Item = bool> + 'a {
         let is_whole = |part: &Part| match rule {
-            EdgeRule::Exact => part.pieces.iter().map(|[a, b]| b - a).sum::<f64>() == 1.0,
+            EdgeRule::Exact => {
+                let onward = |at: f64, [a, b]: &[f64; 2]| if *a == at { *b } else { f64::NAN };
+                part.pieces.iter().fold(0.0, onward) == 1.0
+            }
             EdgeRule::Gauss(points) => part.pieces.len() == points.len(),
         };
         self.edges.iter().map(move |part| part.as_ref().is_some_and(is_whole))
@@ -267,26 +278,6 @@ fn add(sum: &mut [Row], other: &[Row]) {
 /// weight a b for all values a and b.
 fn products(weight: Ball, values: &[Ball]) -> Vec<Row> {
     values.iter().map(|&a| values.iter().map(|&b| weight * a * b).collect()).collect()
-}
-
-/// c . m^-1 c for a symmetric m, by elimination; `None` where it is not surely positive definite.
-fn by_inverse(mut m: Vec<Row>, mut c: Row) -> Option<Ball> {
-    let mut sum = Ball::from(0);
-    for k in 0..c.len() {
-        let (pivot, row) = (m[k][k], m[k].clone());
-        if !(pivot.lower() > 0.0) {
-            return None;
-        }
-        sum += c[k] * c[k] / pivot;
-        for i in k + 1..c.len() {
-            let factor = m[i][k] / pivot;
-            c[i] = c[i] - factor * c[k];
-            for j in k + 1..c.len() {
-                m[i][j] -= factor * row[j];
-            }
-        }
-    }
-    Some(sum)
 }
 
 /// (gamma / |E|)^{1/2}
