@@ -223,12 +223,10 @@ impl Pressed {
             let middle = [0, 1].map(|c| (start[c] + end[c]) * Ball::from(0.5));
             for (shapes, most) in &part.places {
                 let nodes = [start, end, middle].into_iter().zip(shapes).enumerate();
-                let terms = nodes.filter(|(_, (_, shape))| shape.magnitude() > 0.0).map(
-                    |(a, (at, &shape))| {
-                        let direction: [Ball; 2] = line.direction(a).into();
-                        (at.map(Ball::rounded), direction.map(|n| (shape * n).rounded()))
-                    },
-                );
+                let terms = nodes.map(|(a, (at, &shape))| {
+                    let direction: [Ball; 2] = line.direction(a).into();
+                    (at.map(Ball::rounded), direction.map(|n| (shape * n).rounded()))
+                });
                 let most = up(most + SAFETY * 2.0 * root_of(line));
                 holds.push(Hold { triangle: line.edge.triangle, terms: terms.collect(), most });
             }

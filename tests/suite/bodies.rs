@@ -520,7 +520,7 @@ fn verdict_on(body: &Body, steps: &mut Vec<usize>) -> (&'static str, bool) {
 }
 
 #[test]
-fn nineteen_of_twenty_bodies_of_all_families_are_proved_or_ill_conditioned() {
+fn forty_nine_of_fifty_bodies_of_all_families_are_proved_or_ill_conditioned() {
     let seeds = seeds(80);
     let count = (seeds.end - seeds.start) as usize;
     let mut table: BTreeMap<(&str, &str), usize> = BTreeMap::new();
@@ -540,7 +540,7 @@ fn nineteen_of_twenty_bodies_of_all_families_are_proved_or_ill_conditioned() {
     steps.sort_unstable();
     let at = |share: usize| steps[(steps.len() - 1) * share / 10];
     println!("steps: median {}, nine of ten at most {}, most {}", at(5), at(9), at(10));
-    assert!(20 * failures <= count, "{failures} of {count} bodies, shown above");
+    assert!(50 * failures <= count, "{failures} of {count} bodies, shown above");
 }
 
 /// How far the solver's answer may be off, in the energy norm.
@@ -965,24 +965,4 @@ fn ill_posed_problems_are_refused_for_their_true_reason() {
         })
         .collect();
     report(&failures, count);
-}
-
-#[test]
-fn dbg_seeds() {
-    let Ok(list) = std::env::var("DBG") else { return };
-    for seed in list.split(',').map(|s| s.parse::<u64>().unwrap()) {
-        let body = of_all_families(seed);
-        let settings = Settings { max_iterations: 200, ..Settings::default() };
-        match solve(&body.problem, &body.method, &settings) {
-            Ok((s, _)) => println!(
-                "{seed}: {:?} cond {:e} res {:e} steps {} {:?}",
-                s.verdict,
-                s.method.condition,
-                s.newton.residual,
-                s.newton.iterations(),
-                s.enclosure.as_ref().map(|e| e.relative)
-            ),
-            Err(e) => println!("{seed}: {}", e.to_string().chars().take(300).collect::<String>()),
-        }
-    }
 }
