@@ -146,7 +146,7 @@ pub enum Task {
     Convergence {
         #[command(flatten)]
         case: CaseArguments,
-        /// How many meshes, each with twice as many cells along each axis as the one before; the first is the case's
+        /// The number of meshes, each with twice as many cells along each axis as the one before; the first is the case's
         #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u8).range(1..=12))]
         levels: u8,
         /// Polynomial degrees, such as 1,2 [default: that of the case]

@@ -307,7 +307,7 @@ mod command {
             .map_err(|e| unsolvable(&case.file, &e.into()))
     }
 
-    /// How the engine fenicsx is to be run.
+    /// The settings of the engine fenicsx.
     struct Fenicsx<'a> {
         ranks: u16,
         reference: Option<&'a Path>,

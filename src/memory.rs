@@ -29,7 +29,7 @@ impl std::error::Error for OutOfMemory {}
 /// Less than this is always there, or nothing works.
 const LITTLE: u64 = 1 << 20;
 
-/// Whether so many bytes, beside those already taken, can be had now.
+/// Returns whether so many bytes, beside those already taken, can be had now.
 ///
 /// # Errors
 /// [`OutOfMemory`] if the process may not have them (`ulimit -v`), or the system, or the group of processes that this one

@@ -87,7 +87,7 @@ impl Drop for Phases {
     }
 }
 
-/// How many of `count` things, such as "meshes", are done.
+/// Progress in things, such as "meshes", of which there are `count`.
 pub struct Count {
     phases: Phases,
     done: Cell<usize>,

@@ -41,7 +41,7 @@ mod unix {
         WORKER.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// How long the processes of the engine have to end.
+    /// The time that the processes of the engine have to end.
     const PATIENCE: Duration = Duration::from_secs(5);
 
     /// Watches for signals from now on. Where that is not possible, they do what they do without.

@@ -33,7 +33,7 @@ struct Hold {
     profile: Profile,
 }
 
-/// How it varies along the edge.
+/// Its variation along the edge.
 #[derive(Clone, Copy)]
 enum Profile {
     /// On Gamma_D, this direction.

@@ -10,7 +10,7 @@ use super::on_contact::{OnContact, OnEdge, along_directions, along_the_normal};
 use crate::kernel::composite::{Affine, Composite, Frame, Loads, Wrench};
 use crate::kernel::{Ball, Enclosing, Triangle};
 
-/// How the triangles of a certificate hang together.
+/// The topology of a certificate's triangles.
 #[derive(Clone)]
 pub struct Topology {
     /// The triangles of each edge.
@@ -38,7 +38,7 @@ pub struct Balanced<S> {
 }
 
 impl Certificate {
-    /// How triangles and edges hang together.
+    /// The topology of triangles and edges.
     pub fn topology(&self) -> Result<Topology, Rejection> {
         self.check_shape()?;
         let owners = self.owners()?;

@@ -49,7 +49,7 @@ pub struct Array {
     pub name: String,
     /// The words of an entry: `f` for a double, `n` for a whole number, of eight bytes each, least significant first.
     pub words: String,
-    /// How many entries it has.
+    /// The number of entries that it has.
     pub entries: usize,
 }
 

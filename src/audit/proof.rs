@@ -69,7 +69,7 @@ const IMBALANCE: f64 = 128.0 * f64::EPSILON;
 const NEGLIGIBLE: f64 = 1e-9;
 
 impl Certificate {
-    /// How the problem that `proof` bounds differs from the one that is meant, if it does: its body, and supports that it has
+    /// The difference between the problem that `proof` bounds and the one that is meant, if there is one: its body, and supports that it has
     /// more.
     pub fn problem(&self, proof: &Proof) -> Option<String> {
         let body =

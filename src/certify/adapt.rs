@@ -47,7 +47,7 @@ pub struct Level {
     pub unknowns: usize,
     /// Triangles.
     pub triangles: usize,
-    /// How many steps Newton's method took.
+    /// The number of Newton steps.
     pub newton_steps: usize,
     /// |u - v|_a is at most this.
     pub bound: f64,
@@ -64,11 +64,11 @@ pub struct Level {
 pub struct Adapted {
     /// Its solution.
     pub solution: Solution,
-    /// How long the solves took, all levels together.
+    /// The time that the solves took, all levels together.
     pub times: Times,
     /// Its bound, or why there is none.
     pub certified: Result<Continuous, CertifyError>,
-    /// How long the certificates and the meshes took, all levels together.
+    /// The time that the certificates and the meshes took, all levels together.
     pub certifying: std::time::Duration,
     /// All levels, from the coarsest on.
     pub levels: Vec<Level>,

@@ -111,7 +111,7 @@ fn touch(n: Vector2<f64>, gap: f64, size: f64, v: &mut [f64; 2]) {
     }
 }
 
-/// How a vertex may move.
+/// The motions that a vertex may make.
 #[derive(Clone, Copy)]
 pub(super) enum Free {
     All,
@@ -124,7 +124,7 @@ pub(super) enum Free {
 struct Wall {
     n: Vector2<f64>,
     gap: f64,
-    /// By how much it is pushed out beyond what doubles ask for.
+    /// The amount by which it is pushed out beyond what doubles ask for.
     further: f64,
     most: f64,
     margin: f64,

@@ -40,7 +40,7 @@ pub(super) struct Lifter<'a> {
     factor: Factor,
 }
 
-/// How often rho is improved around every vertex: where contact ends its traction is infinite, and what it starts from is not
+/// The number of times that rho is improved around every vertex: where contact ends its traction is infinite, and what it starts from is not
 /// near.
 const DUAL_SWEEPS: usize = 24;
 

@@ -58,13 +58,13 @@ use crate::kernel::{Ball, Interval, Scalar, Triangle};
 use crate::memory;
 use crate::solve::Solution;
 
-/// How often the stress is improved around every vertex.
+/// The number of times that the stress is improved around every vertex.
 pub const SWEEPS: usize = 2;
 
 /// The number of sweeps where forces are asked for, beside whose dual pairs they cost little.
 const SWEEPS_FOR_FORCES: usize = 8;
 
-/// How often v is pushed out of the obstacle by what the check finds it to be inside.
+/// The number of times that v is pushed out of the obstacle by what the check finds it to be inside.
 const PUSHES: usize = 5;
 
 /// The bytes that a certificate takes for each triangle while it is made: the second derivatives of the sweeps, 700, and
@@ -87,7 +87,7 @@ pub struct Continuous {
     pub reason: Option<String>,
     /// The square root of each triangle's share in the square of the bound, and |v - w|_a there, by the triangles of the mesh.
     pub indicators: Vec<f64>,
-    /// How the problem that is bounded differs from the one that is meant, if it does; `rigorous` is about the former.
+    /// The difference between the problem that is bounded and the one that is meant, if there is one; `rigorous` is about the former.
     pub problem: Option<String>,
     /// J(u) lies between these; `None` where the data are outside the exact class.
     pub energy: Option<[f64; 2]>,
@@ -246,7 +246,7 @@ fn certify_near(
     })
 }
 
-/// Whether u_D = 0 and g = 0, so that with u all its multiples t u, t >= 0, are admissible: then a(u, u) = L(u) and
+/// Returns whether u_D = 0 and g = 0, so that with u all its multiples t u, t >= 0, are admissible: then a(u, u) = L(u) and
 /// J(u) = -L(u) / 2.
 fn is_loaded_only(certificate: &Certificate) -> bool {
     let is_zero = |gap: [f64; 2]| gap == [0.0; 2];

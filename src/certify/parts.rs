@@ -238,7 +238,7 @@ impl<'a> Parts<'a> {
         at_vertices.chain(self.boundary.iter().map(between)).fold(0.0, f64::max)
     }
 
-    /// How v may move at a vertex.
+    /// The motions that v may make at a vertex.
     pub fn free_at(&self, vertex: usize) -> Free {
         match (self.held_alone(vertex), self.prescribed[vertex]) {
             (Some((d, _)), _) => Free::Along(Vector2::new(-d[1], d[0])),

@@ -36,7 +36,7 @@ struct Form {
     scale: f64,
 }
 
-/// How many forms are looked through: meshes that were refined have few, others as many as triangles.
+/// The number of forms that are looked through: meshes that were refined have few, others as many as triangles.
 const RECENT: usize = 8;
 
 /// The key of a form: two edges and the moduli.
@@ -192,7 +192,7 @@ impl Sweeps {
         }
     }
 
-    /// How many unknowns a point has.
+    /// The number of unknowns that a point has.
     fn own(&self, point: usize) -> usize {
         self.free_point[point].iter().filter(|&&free| free).count()
     }
@@ -220,7 +220,7 @@ impl Sweeps {
         self.first_edge.push(self.star_edges.len());
     }
 
-    /// How many unknowns a star has.
+    /// The number of unknowns that a star has.
     fn unknowns(&self, point: usize) -> usize {
         self.own(point) + self.first_edge[point + 1] - self.first_edge[point]
     }
@@ -358,7 +358,7 @@ impl Places {
     }
 }
 
-/// How many numbers [`features`] are.
+/// The number of [`features`].
 const FEATURES: usize = 21;
 
 /// |C eps(v) - tau|^2 / 2 on the triangles, as a function of their unknowns.

@@ -63,7 +63,7 @@ impl Ball {
         self.tail
     }
 
-    /// How far the numbers of the ball are from its centre, at most.
+    /// The largest distance of the numbers of the ball from its centre.
     pub fn radius(self) -> f64 {
         self.radius
     }
@@ -103,7 +103,7 @@ impl Ball {
         self.head + (self.tail - self.radius) - self.slack()
     }
 
-    /// Whether it has a bound.
+    /// Returns whether it has a bound.
     pub fn is_finite(self) -> bool {
         self.head.is_finite() && self.tail.is_finite() && self.radius.is_finite()
     }

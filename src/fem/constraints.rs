@@ -30,7 +30,7 @@ pub struct Constraints {
     holders: BTreeMap<String, Vec<Held>>,
     /// Components that are held where they are, so that a motion that changes nothing is stopped.
     pins: Vec<(usize, usize)>,
-    /// By how much the directions of supports may be off.
+    /// The amount by which the directions of supports may be off.
     rounding: f64,
 }
 
@@ -104,7 +104,7 @@ impl Constraints {
         (parts, motions)
     }
 
-    /// By how much the directions in which nodes are held may be off because vertices are rounded.
+    /// The amount by which the directions in which nodes are held may be off because vertices are rounded.
     pub fn rounding(&self) -> f64 {
         self.rounding
     }
@@ -226,7 +226,7 @@ fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
-/// By how much the normals of all supports may be off.
+/// The amount by which the normals of all supports may be off.
 fn rounding_of_supports(problem: &Problem) -> Result<f64, DataError> {
     let mut rounding: f64 = 0.0;
     for (name, condition) in &problem.conditions {

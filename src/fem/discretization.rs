@@ -175,12 +175,12 @@ impl<'a> Discretization<'a> {
         }
     }
 
-    /// Whether contact edge `e` presses in no solution, because the loads drive the body away from it or not towards it.
+    /// Returns whether contact edge `e` presses in no solution, because the loads drive the body away from it or not towards it.
     pub fn is_idle(&self, e: usize) -> bool {
         self.slides.as_ref().is_some_and(|slides| slides.is_idle(e))
     }
 
-    /// By how much the directions of supports and of contact may be off because vertices are rounded.
+    /// The amount by which the directions of supports and of contact may be off because vertices are rounded.
     pub fn rounding_of_directions(&self) -> f64 {
         rounding_of_directions(&self.constraints, &self.space, &self.contact)
     }

@@ -83,7 +83,7 @@ impl Errors {
         }
     }
 
-    /// Whether all are finite: the square of a solution that is hardly integrable is not, in doubles.
+    /// Returns whether all are finite: the square of a solution that is hardly integrable is not, in doubles.
     pub fn is_finite(&self) -> bool {
         let all = [self.energy, self.h1, self.l2, self.contact_residual, self.normal_stress];
         all.iter().all(|error| error.is_finite())

@@ -269,12 +269,12 @@ impl Slides {
         Some(Slides { bounds, idle: idle.clone(), ..slides })
     }
 
-    /// How many motions there are.
+    /// The number of motions.
     pub fn count(&self) -> usize {
         self.basis.len()
     }
 
-    /// Whether an obstacle that the body does not touch ends one of the motions.
+    /// Returns whether an obstacle that the body does not touch ends one of the motions.
     pub fn are_bounded(&self) -> bool {
         !self.bounds.is_empty()
     }
@@ -307,7 +307,7 @@ impl Slides {
         self.move_by(&self.to_least_norm(u), u);
     }
 
-    /// Whether contact edge `e` presses in no solution.
+    /// Returns whether contact edge `e` presses in no solution.
     pub fn is_idle(&self, e: usize) -> bool {
         self.idle.get(e).is_some_and(|idle| *idle)
     }

@@ -24,7 +24,7 @@ use crate::kernel::{Element, Scalar};
 pub struct Numbering {
     /// The number of each node's components; `None` for a prescribed one.
     pub of: Vec<[Option<usize>; 2]>,
-    /// How many are free.
+    /// The number of free ones.
     pub count: usize,
     /// The node to which each number belongs.
     nodes: Vec<usize>,

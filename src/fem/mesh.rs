@@ -156,7 +156,7 @@ impl Mesh {
         &self.topology.triangle_edges
     }
 
-    /// How many edges there are.
+    /// The number of edges.
     pub fn edge_count(&self) -> usize {
         self.topology.edge_count
     }
@@ -214,7 +214,7 @@ impl Mesh {
         (length, normal / length)
     }
 
-    /// By how much the normals of these boundary edges may be off because the ends are rounded to doubles; 0 for none.
+    /// The amount by which the normals of these boundary edges may be off because the ends are rounded to doubles; 0 for none.
     pub(super) fn turned_by_rounding(&self, edges: impl IntoIterator<Item = BoundaryEdge>) -> f64 {
         let of = |edge: BoundaryEdge| {
             let ends = self.ends(edge).map(|v| self.vertices[v]);

@@ -34,7 +34,7 @@ pub struct Singularity {
 /// rho = t^GRADING on a triangle at the singular point.
 const GRADING: i32 = 4;
 
-/// How many times as many points, in each direction, a piece gets that is graded or near the singular point.
+/// The factor by which a piece that is graded or near the singular point gets more points in each direction.
 const MORE: usize = 3;
 
 /// Pieces within this distance of the singular point, in units of their size, are near it. Beyond it, n Gauss points leave

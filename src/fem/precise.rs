@@ -243,7 +243,7 @@ fn energy_norm_of<E: Element<N, M>, const N: usize, const M: usize>(
     SAFETY * (squares.sqrt() + errors.sqrt())
 }
 
-/// Whether all nodes have the same value, and that is known.
+/// Returns whether all nodes have the same value, and that is known.
 #[inline]
 fn moves_as_a_whole<const N: usize>(nodes: &[usize; N], u: &[[Ball; 2]]) -> bool {
     let first = u[nodes[0]];

@@ -11,7 +11,7 @@
 use super::mesh::{Mesh, MeshError, bytes_to_make};
 use crate::memory::{self, bytes_of};
 
-/// How the cells of a structured mesh are cut into triangles.
+/// The diagonals that cut the cells of a structured mesh into triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Diagonal {
     /// From the upper left to the lower right.
@@ -33,7 +33,7 @@ pub struct Rectangle {
     pub nx: usize,
     /// Cells along y.
     pub ny: usize,
-    /// How they are cut.
+    /// The diagonals that cut them.
     pub diagonal: Diagonal,
 }
 

@@ -153,7 +153,7 @@ impl Parts {
         Parts { frames: frames.collect(), of_triangle }
     }
 
-    /// How many there are.
+    /// The number of them.
     pub fn count(&self) -> usize {
         self.frames.len()
     }

@@ -52,7 +52,7 @@ struct Around {
     several: bool,
 }
 
-/// How the outline passes a vertex: the edge before, the edge after and the angle by which it turns left.
+/// A vertex of the outline: the edge before, the edge after and the angle by which it turns left.
 struct Passage {
     before: usize,
     after: usize,

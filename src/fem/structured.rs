@@ -14,7 +14,7 @@ pub enum Structured {
     Trapezoid(Trapezoid),
 }
 
-/// How far vertices are moved.
+/// The distance by which vertices are moved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Perturbation {
     /// At most that many cells along each axis.

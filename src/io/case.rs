@@ -116,7 +116,7 @@ pub struct Case {
     pub problem: Problem,
     /// By which variant of method (8).
     pub method: Method,
-    /// How accurately.
+    /// The accuracy.
     pub settings: Settings,
     /// How small the error is to be, if the mesh is to be adapted until that is proved.
     pub adapt: Option<Target>,
@@ -132,7 +132,7 @@ pub struct Case {
     pub units: Option<Units>,
     /// The thickness of the body across the plane, if the case gives it.
     pub thickness: Option<f64>,
-    /// By how much the picture magnifies displacement and gap, if the case says so.
+    /// The amount by which the picture magnifies displacement and gap, if the case says so.
     pub stretch: Option<f64>,
     /// The exact solution, if there is one.
     pub exact: Option<ExactCase>,
@@ -183,7 +183,7 @@ pub struct ExactCase {
     pub kinds: BTreeMap<String, Kind>,
     /// The mesh as a structured one, unless it came from a file.
     pub structured: Option<Structured>,
-    /// How its vertices are moved.
+    /// The displacement of its vertices.
     pub perturbation: Option<Perturbation>,
 }
 

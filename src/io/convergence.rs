@@ -23,7 +23,7 @@ pub enum Meshes {
     Perturbed,
 }
 
-/// How far vertices are moved where the case doesn't say.
+/// The distance by which vertices are moved where the case doesn't say.
 const PERTURBATION: Perturbation = Perturbation { amount: 0.2, seed: 1 };
 
 /// Why there is no study of a case.
@@ -55,7 +55,7 @@ pub enum StudyError {
 pub struct Study {
     /// P1 or P2.
     pub degree: Degree,
-    /// How the meshes are made.
+    /// The meshes.
     pub meshes: Meshes,
     /// The rate that the theory promises for all norms but L2.
     pub promised: f64,
@@ -127,7 +127,7 @@ pub const NORMS: [Norm; 5] = [
 const PROVED: &str = "proved: (energy^2 + contact_residual^2 / (1 - kappa))^(1/2) is at most this (Theorem 3.5 with its \
                       constant), and how many times that is\n";
 
-/// How many of the finest levels the slope is fitted to.
+/// The number of finest levels to which the slope is fitted.
 pub const FITTED: usize = 4;
 
 impl Study {

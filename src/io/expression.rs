@@ -31,7 +31,7 @@ use thiserror::Error;
 use crate::fem::Function;
 use crate::kernel::{Ball, Enclosing};
 
-/// How deep parentheses, functions, signs and powers may nest.
+/// The greatest depth to which parentheses, functions, signs and powers may nest.
 pub const MOST_LEVELS: usize = 200;
 
 /// The most operators, signs and functions of an expression.

@@ -33,7 +33,7 @@ pub enum InputError {
 }
 
 impl InputError {
-    /// Whether the file may be right, but the system has not what it takes to read it: memory, or files to open.
+    /// Returns whether the file may be right, but the system has not what it takes to read it: memory, or files to open.
     pub fn is_lack(&self) -> bool {
         matches!(self, InputError::OutOfMemory(_) | InputError::Lack(_))
     }

@@ -82,7 +82,7 @@ pub enum CaseMistake {
 }
 
 impl CaseError {
-    /// Whether the case may be right, but the system has not the memory or the files that it takes to read it.
+    /// Returns whether the case may be right, but the system has not the memory or the files that it takes to read it.
     pub fn is_lack(&self) -> bool {
         match &*self.mistake {
             CaseMistake::Input(error) => error.is_lack(),

@@ -73,7 +73,7 @@ pub struct Certified {
     pub result: Result<Continuous, CertifyError>,
     /// The time.
     pub time: Duration,
-    /// How the mesh was adapted to it, if it was.
+    /// The adaptation of the mesh to it, if it was adapted.
     pub adaptation: Option<Adaptation>,
 }
 

@@ -33,7 +33,7 @@ pub struct Panel {
     pub slopes: Vec<(usize, f64)>,
 }
 
-/// How a line looks.
+/// The style of a line.
 #[derive(Clone, Debug)]
 pub struct Style {
     /// The name in the legend.

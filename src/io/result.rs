@@ -98,7 +98,7 @@ pub struct Results {
     /// How wrong the solution can be; left out if nothing is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub certificate: Option<Certificates>,
-    /// How the mesh was adapted; left out if it was not.
+    /// The adaptation of the mesh; left out if there was none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub adapt: Option<Adaptation>,
     /// The distances from the exact solution; left out if the case has none.
@@ -226,11 +226,11 @@ pub struct NewtonHistory {
     pub residual: f64,
     /// Matrices factored.
     pub factorizations: usize,
-    /// How it ended.
+    /// The verdict.
     pub status: Status,
 }
 
-/// How the mesh was adapted to a target.
+/// The adaptation of the mesh to a target.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Adaptation {
     /// The bound over the energy norm, or half the width of what the force lies between over its middle, was to be at most this.
@@ -260,12 +260,12 @@ impl Results {
         contact.max(self.quantities.contact_force.abs()) + reactions.sum::<f64>()
     }
 
-    /// Whether a boundary carries more than rounding.
+    /// Returns whether a boundary carries more than rounding.
     pub fn is_in_contact(&self, part: &ContactBoundary) -> bool {
         part.force > NO_FORCE * self.all_forces()
     }
 
-    /// Whether the solution is not proved, or something else that was asked for could not be had.
+    /// Returns whether the solution is not proved, or something else that was asked for could not be had.
     pub fn falls_short(&self) -> bool {
         self.reason.is_some() || !self.missing.is_empty()
     }
@@ -283,7 +283,7 @@ impl Results {
 }
 
 impl NewtonHistory {
-    /// How it ended, in words.
+    /// The verdict, in words.
     pub fn verdict(&self) -> &'static str {
         match self.status {
             Status::Converged => "converged",

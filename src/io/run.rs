@@ -14,7 +14,7 @@ use crate::solve::{Course, Solution, SolveError, Times, solve_along};
 pub struct Solved {
     /// The solution, on the mesh that the case has now.
     pub solution: Solution,
-    /// How long it took.
+    /// The time that it took.
     pub times: Times,
     /// The bound of the distance to the true solution, where the mesh was adapted to it.
     pub certified: Option<Certified>,
@@ -33,7 +33,7 @@ pub enum RunError {
 }
 
 impl RunError {
-    /// Whether the case is wrong. Otherwise it is right, but there is no solution of it here.
+    /// Returns whether the case is wrong. Otherwise it is right, but there is no solution of it here.
     pub fn is_wrong_case(&self) -> bool {
         match self {
             RunError::Solve(error) => error.is_wrong_case(),

@@ -90,7 +90,7 @@ fn with_quotes(setting: &str) -> String {
     }
 }
 
-/// Whether this is a word, or the path of a file, that TOML has no other meaning for.
+/// Returns whether this is a word, or the path of a file, that TOML has no other meaning for.
 fn is_word(text: &str) -> bool {
     let is_path = ["/", "./", "../"].iter().any(|start| text.starts_with(start));
     (is_path || text.starts_with(|c: char| c.is_ascii_alphabetic()))

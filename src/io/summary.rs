@@ -95,7 +95,7 @@ pub fn lines_of(r: &Results, verbose: bool) -> Vec<(String, String)> {
     lines.0
 }
 
-/// How quantities are shown: each with its unit, those per unit of thickness times the thickness.
+/// The format of quantities: each with its unit, those per unit of thickness times the thickness.
 struct Shown {
     length: String,
     stress: String,
@@ -331,7 +331,7 @@ pub fn certified(case: &Case, field: &Path, c: &Continuous, files: &[PathBuf]) -
     lines.under(&case.title)
 }
 
-/// Whether a bound is proved, and of which problem, where that is not the one that is meant.
+/// Returns whether a bound is proved, and of which problem, where that is not the one that is meant.
 fn proved(rigorous: bool, reason: Option<&str>, problem: Option<&str>) -> String {
     let of = of_problem(problem);
     if rigorous {
@@ -414,7 +414,7 @@ fn enclosed(certificate: &DiscreteCertificate) -> String {
     format!("{solutions}; this is within {size}, rounding included{of}")
 }
 
-/// Whether the target was met, and how the bound fell.
+/// Returns whether the target was met, and how the bound fell.
 fn adapted(adapt: &Adaptation) -> String {
     let percent = |relative: f64| format!("{} %", numbers::short(100.0 * relative, 2));
     let reached = |level: &Level| match &adapt.force {

@@ -124,7 +124,7 @@ pub struct Sweep {
     pub to_come: VecDeque<Vec<String>>,
 }
 
-/// How many runs these axes make.
+/// The number of runs that these axes make.
 ///
 /// # Errors
 /// More than [`MOST_RUNS`], or a key on two axes.
@@ -250,7 +250,7 @@ struct Cell {
     value: String,
 }
 
-/// How a number is shown.
+/// Formats a number.
 type Shown<'a> = &'a dyn Fn(f64) -> String;
 
 /// The numbers of a run: forces, moments and energies times the thickness, if the case has one.

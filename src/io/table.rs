@@ -290,7 +290,7 @@ impl<'s> Value<'s> {
     }
 }
 
-/// Whether this is a number with a word behind it.
+/// Returns whether this is a number with a word behind it.
 fn has_unit(text: &str) -> bool {
     text.trim_start_matches('-').starts_with(|c: char| c.is_ascii_digit())
         && text.ends_with(|c: char| c.is_alphabetic())

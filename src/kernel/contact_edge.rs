@@ -84,7 +84,7 @@ pub fn integral_of_product<S: Scalar>(f: [S; 2], g: [S; 2]) -> S {
     (f[0] * (two * g[0] + g[1]) + f[1] * (g[0] + two * g[1])) / S::from(6)
 }
 
-/// By how much the length of an edge counts more in kappa where the direction of contact turns along it, for `cosine` =
+/// The amount by which the length of an edge counts more in kappa where the direction of contact turns along it, for `cosine` =
 /// n~ . n~' at its two ends: 1 for P1, whose stress is constant on the triangle, and 2 - cosine for P2. Then
 /// int_E s(v)^2 is at most the factor times int_E |sigma(v) n|^2 (docs/theory.md, Lemma 2.1b; the factor is attained).
 #[cfg(not(kani))]

@@ -18,13 +18,13 @@ pub trait Enclosing: Scalar {
     /// A double that it is not below.
     fn lower(self) -> f64;
 
-    /// Whether it is known to be positive.
+    /// Returns whether it is known to be positive.
     #[inline]
     fn is_positive(self) -> bool {
         self.lower() > 0.0
     }
 
-    /// Whether it is known to be no more than `most`.
+    /// Returns whether it is known to be no more than `most`.
     #[inline]
     fn is_at_most(self, most: f64) -> bool {
         self.upper() <= most

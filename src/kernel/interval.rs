@@ -50,13 +50,13 @@ impl Interval {
         self.hi
     }
 
-    /// Whether it is the result of a NaN.
+    /// Returns whether it is the result of a NaN.
     #[inline]
     pub fn is_nan(self) -> bool {
         self.lo.is_nan()
     }
 
-    /// Whether `value` lies in it.
+    /// Returns whether `value` lies in it.
     #[inline]
     pub fn contains(self, value: f64) -> bool {
         self.lo <= value && value <= self.hi

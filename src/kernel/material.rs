@@ -145,7 +145,7 @@ impl<S: Scalar> Material<S> {
         Material { law, plane: self.plane }
     }
 
-    /// Whether the law is given by lambda and mu.
+    /// Returns whether the law is given by lambda and mu.
     #[cfg(not(kani))]
     pub fn is_isotropic(&self) -> bool {
         matches!(self.law, Law::Isotropic { .. })

@@ -73,7 +73,7 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Whether the exact solution is proved to be as near as asked for.
+    /// Returns whether the exact solution is proved to be as near as asked for.
     pub fn is_proved(&self, settings: &Settings) -> bool {
         self.enclosure.as_ref().is_ok_and(|e| e.is_within(settings.proof))
     }
@@ -84,18 +84,18 @@ impl Outcome {
         known.unwrap_or(f64::INFINITY)
     }
 
-    /// Whether it is nearer to the exact solution as far as is proved, or else has the smaller residual.
+    /// Returns whether it is nearer to the exact solution as far as is proved, or else has the smaller residual.
     pub fn is_better_than(&self, other: &Outcome) -> bool {
         let [a, b] = [self, other].map(|o| (o.radius(), o.residual));
         a.0 < b.0 || (a.0 == b.0 && a.1 < b.1)
     }
 
-    /// Whether Newton's method took all the steps that it may.
+    /// Returns whether Newton's method took all the steps that it may.
     pub fn is_out_of_steps(&self, settings: &Settings) -> bool {
         self.residuals.len() > settings.max_iterations
     }
 
-    /// How the solve ended.
+    /// The status of the solve.
     ///
     /// # Errors
     /// Where nothing is proved and the residual is above the tolerance: [`SolveError::Singular`] where A has no factor,

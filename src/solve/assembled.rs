@@ -54,12 +54,12 @@ impl<'a, 'd, 'p> Assembled<'a, 'd, 'p> {
         }
     }
 
-    /// How many tangents have been factored.
+    /// The number of tangents factored.
     pub fn factorizations(&self) -> usize {
         self.factorizations
     }
 
-    /// Whether the edges that are in contact leave a motion free that contact stops: the tangent is singular then.
+    /// Returns whether the edges that are in contact leave a motion free that contact stops: the tangent is singular then.
     fn is_loose(&self, at: &Derivatives) -> bool {
         let d = self.system.d;
         let Some(slides) = &d.slides else { return false };

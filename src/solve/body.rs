@@ -10,7 +10,7 @@ use crate::fem::double_double::DoubleDouble;
 
 /// The contact edges as Newton's method needs them.
 pub trait Edges {
-    /// How many there are.
+    /// The number of them.
     fn count(&self) -> usize;
     /// The nodes of each: two or three.
     fn nodes(&self) -> usize;

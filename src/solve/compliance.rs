@@ -63,7 +63,7 @@ impl Reach {
         Reach { order, supernodes, per_edge }
     }
 
-    /// How many functionals there are.
+    /// The number of functionals.
     pub fn functionals(&self) -> usize {
         self.order.len() * self.per_edge
     }

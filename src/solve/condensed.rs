@@ -41,7 +41,7 @@ pub struct Condensed<'a, 'd, 'p> {
     compliance: Compliance<'a>,
     /// The entries of B^T: the functional, and the row among those that are not empty.
     forces: Vec<(usize, usize, f64)>,
-    /// How many rows these are.
+    /// The number of these rows.
     rows: usize,
     /// The size that residuals are relative to.
     reference: f64,

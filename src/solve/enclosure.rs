@@ -79,12 +79,12 @@ pub enum Unproved {
 }
 
 impl Unproved {
-    /// Whether a displacement that is nearer, or better arithmetic, may tell more.
+    /// Returns whether a displacement that is nearer, or better arithmetic, may tell more.
     pub fn may_be_rounding(&self) -> bool {
         !matches!(self, Unproved::NotCoercive { .. } | Unproved::NoKappa | Unproved::NotHeld)
     }
 
-    /// Whether (8) is known to have exactly one solution all the same.
+    /// Returns whether (8) is known to have exactly one solution all the same.
     pub fn is_unique(&self) -> bool {
         !matches!(self, Unproved::HeldByContact | Unproved::NotCoercive { .. } | Unproved::NoKappa)
     }
@@ -330,7 +330,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
 }
 
 impl Enclosure {
-    /// Whether the relative radius is at most `proof`.
+    /// Returns whether the relative radius is at most `proof`.
     pub fn is_within(&self, proof: f64) -> bool {
         self.radius == 0.0 || self.relative.is_some_and(|relative| relative <= proof)
     }
@@ -357,7 +357,7 @@ fn slid(mut u: Vec<[Ball; 2]>, reported: &[[f64; 2]], slides: Option<&Slides>) -
     u
 }
 
-/// Whether the edges that are not pressed and could end a motion that slides have P <= 0 for all fields that differ from u by as
+/// Returns whether the edges that are not pressed and could end a motion that slides have P <= 0 for all fields that differ from u by as
 /// much as `nodes` say, and by `radius` in the norm of A_S: then the motion changes nothing.
 fn stays_off(
     d: &Discretization,

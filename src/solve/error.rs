@@ -66,7 +66,7 @@ pub fn history(residuals: &[f64]) -> String {
 }
 
 impl SolveError {
-    /// Whether the case is wrong. Otherwise it is right, but there is no solution of it here.
+    /// Returns whether the case is wrong. Otherwise it is right, but there is no solution of it here.
     pub fn is_wrong_case(&self) -> bool {
         match self {
             SolveError::Data(DataError::Mesh(MeshError::OutOfMemory(_))) => false,

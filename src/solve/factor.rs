@@ -58,12 +58,12 @@ impl Structure {
         Ok(Structure { symbolic })
     }
 
-    /// How many unknowns there are.
+    /// The number of unknowns.
     pub fn size(&self) -> usize {
         self.symbolic.nrows()
     }
 
-    /// How many supernodes there are. They are numbered as they are eliminated.
+    /// The number of supernodes. They are numbered as they are eliminated.
     pub fn supernodes(&self) -> usize {
         self.symbolic.n_supernodes()
     }

@@ -55,7 +55,7 @@ pub struct ContactIntervals {
     pub resultant: [Range; 2],
 }
 
-/// How stresses of the body are evaluated.
+/// The arithmetic of the stresses of the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stresses {
     /// In doubles: what they are off by is bounded as a whole.

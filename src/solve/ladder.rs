@@ -22,11 +22,11 @@ pub struct Ladder {
     pub kinds: BTreeMap<String, Kind>,
     /// The coarsest mesh.
     pub body: Structured,
-    /// How vertices are moved; the seed of level l is the given one plus l.
+    /// The displacement of the vertices; the seed of level l is the given one plus l.
     pub perturbation: Option<Perturbation>,
     /// By which variant of method (8).
     pub method: Method,
-    /// How accurately.
+    /// The accuracy.
     pub settings: Settings,
 }
 
@@ -51,7 +51,7 @@ pub struct Level {
     pub unknowns: usize,
     /// The errors.
     pub errors: Errors,
-    /// How many steps Newton's method took.
+    /// The number of Newton steps.
     pub newton_steps: usize,
     /// gamma0 of (7).
     pub gamma0: f64,

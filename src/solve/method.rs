@@ -16,7 +16,7 @@ pub struct Method {
     pub degree: Degree,
     /// gamma0 of (7).
     pub gamma0: Gamma0,
-    /// How the contact terms are integrated.
+    /// The quadrature of the contact terms.
     pub quadrature: ContactQuadrature,
     /// Solve although kappa >= 1, without any promise.
     pub allow_noncoercive: bool,
@@ -35,7 +35,7 @@ pub enum Gamma0 {
     Local(f64),
 }
 
-/// How the contact terms are integrated along an edge.
+/// The quadrature of the contact terms along an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ContactQuadrature {
     /// Cut at the roots of P: no quadrature error.

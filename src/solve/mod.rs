@@ -174,7 +174,7 @@ pub fn check(problem: &Problem, method: &Method) -> Result<Outline, SolveError> 
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Outline {
-    /// How many nodes there are; each has two degrees of freedom.
+    /// The number of nodes; each has two degrees of freedom.
     pub nodes: usize,
     /// How many of the degrees of freedom are prescribed.
     pub prescribed: usize,
@@ -237,7 +237,7 @@ pub fn discretize<'a>(
     }
 }
 
-/// Whether a number is positive and not between 1/far and far.
+/// Returns whether a number is positive and not between 1/far and far.
 fn is_out_of_range(x: f64, far: f64) -> bool {
     x > 0.0 && !(1.0 / far..=far).contains(&x)
 }
@@ -247,7 +247,7 @@ fn stiffest(problem: &Problem) -> f64 {
     problem.material.distinct().iter().map(largest_entry).fold(0.0, f64::max)
 }
 
-/// Whether the products of the lengths and moduli of a problem, some of each, are normal doubles, as far as the numbers are
+/// Returns whether the products of the lengths and moduli of a problem, some of each, are normal doubles, as far as the numbers are
 /// lengths and moduli at all.
 fn can_be_multiplied(problem: &Problem) -> bool {
     let extent = |c: usize| {

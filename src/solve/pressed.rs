@@ -205,7 +205,7 @@ impl Pressed {
         self.edges[e].as_ref().map_or(&[], |part| &part.pieces)
     }
 
-    /// Whether all of S stays pressed on a ball of radius `rho` and a little more.
+    /// Returns whether all of S stays pressed on a ball of radius `rho` and a little more.
     pub fn stay(&self, rho: f64) -> bool {
         let mut all = self.edges.iter().flatten().flat_map(|part| &part.coefficients);
         all.all(|[least, most]| *least > SAFETY * most * rho)

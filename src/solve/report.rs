@@ -66,7 +66,7 @@ pub enum Status {
 /// How Newton's method went.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NewtonReport {
-    /// How it ended.
+    /// The verdict.
     pub status: Status,
     /// The residual of (8), as Newton's method saw it, before the first step and after each one: Euclidean norms over the
     /// free degrees of freedom, relative to |L| + |residual of the prescribed data|.

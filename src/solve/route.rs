@@ -122,7 +122,7 @@ pub fn solve(
     }
 }
 
-/// Whether no other route would prove more.
+/// Returns whether no other route would prove more.
 fn is_final(done: &Outcome, settings: &Settings) -> bool {
     // With enough steps Newton's method ends: if it did not, digits were missing.
     let stopped = settings.max_iterations < ENOUGH && done.is_out_of_steps(settings);
@@ -131,7 +131,7 @@ fn is_final(done: &Outcome, settings: &Settings) -> bool {
     done.is_proved(settings) || stopped || (unprovable && done.residual <= settings.tolerance)
 }
 
-/// Whether what the matrix is made of on the contact edges neither over- nor underflows.
+/// Returns whether what the matrix is made of on the contact edges neither over- nor underflows.
 fn contact_is_in_range(system: &System) -> bool {
     system.d.contact.iter().all(|edge| {
         let stresses = edge.functionals.sigma_n().into_iter().flatten();

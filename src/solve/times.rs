@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-/// How long the parts of a solve took.
+/// The time that the parts of a solve took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Times {

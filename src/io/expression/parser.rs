@@ -229,7 +229,7 @@ impl<'t> Parser<'t> {
         Ok(())
     }
 
-    /// How many bytes at the start of `rest` are a number; 1 for a lonely point.
+    /// Counts the bytes at the start of `rest` that are a number; 1 for a lonely point.
     fn number_length(&self, rest: &str) -> Result<usize, ExpressionError> {
         let mut length = digits(rest);
         if rest[length..].starts_with('.') {
@@ -272,7 +272,7 @@ impl<'t> Parser<'t> {
     }
 }
 
-/// How many digits stand at the start of `text`.
+/// Counts the digits at the start of `text`.
 fn digits(text: &str) -> usize {
     text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len())
 }

@@ -7,7 +7,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// How often a name or a folder is tried before giving up.
+/// The number of times that a name or a folder is tried before giving up.
 pub const ATTEMPTS: usize = 64;
 
 const PREFIX: &str = ".signorini-";

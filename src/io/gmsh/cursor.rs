@@ -8,7 +8,7 @@ use super::{GmshError, GmshMistake, Place, Result};
 use crate::memory;
 use crate::quote::{self, quoted};
 
-/// How numbers are written.
+/// The form in which numbers are written.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Form {
     Text,

@@ -99,7 +99,7 @@ pub enum GmshMistake {
 }
 
 impl GmshError {
-    /// Whether the file may be right, but the system has not the memory or the files that it takes to read it.
+    /// Returns whether the file may be right, but the system has not the memory or the files that it takes to read it.
     pub fn is_lack(&self) -> bool {
         match &*self.mistake {
             GmshMistake::Input(error) => error.is_lack(),

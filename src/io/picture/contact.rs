@@ -258,7 +258,7 @@ pub(super) fn tags(
     group
 }
 
-/// Whether a point lies inside closed lines: a ray from it crosses them an odd number of times.
+/// Returns whether a point lies inside closed lines: a ray from it crosses them an odd number of times.
 fn inside([x, y]: Point, outline: &[[Point; 2]]) -> bool {
     let crosses = |&&[a, b]: &&[Point; 2]| {
         (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0])

@@ -21,7 +21,7 @@ pub struct Scene<'a> {
     pub von_mises: &'a [f64],
     /// The units of stress and of length, if the case has units.
     pub units: Option<[&'a str; 2]>,
-    /// By how much displacement and gap are magnified; chosen here if it is not given.
+    /// The amount by which displacement and gap are magnified; chosen here if it is not given.
     pub stretch: Option<f64>,
     /// The edges between triangles of different materials.
     pub interfaces: &'a [[usize; 2]],
@@ -110,7 +110,7 @@ impl Scene<'_> {
         self.points.iter().zip(self.displacement).map(|(&x, &u)| moved(x, u, factor)).collect()
     }
 
-    /// By how much displacement and gap are magnified, and the words for it. True scale if the largest displacement is
+    /// The amount by which displacement and gap are magnified, and the words for it. True scale if the largest displacement is
     /// between 1% and 30% of the body, so that one sees it and the body keeps its shape, or if it is mere rounding; else the
     /// largest round factor that keeps it within 10%.
     pub(super) fn magnification(&self) -> (f64, String) {
@@ -173,7 +173,7 @@ impl Frame {
         ]
     }
 
-    /// Whether a circle lies within the frame.
+    /// Returns whether a circle lies within the frame.
     pub(super) fn holds(&self, [x, y]: Point, radius: f64) -> bool {
         let [left, top] = self.corner;
         (left + radius..=left + self.width - radius).contains(&x)

@@ -97,7 +97,7 @@ pub struct ContinuousCertificate {
     /// Why not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// How the problem that is bounded differs from the one that is meant: a polygon for a round body, a support against a motion
+    /// The difference between the problem that is bounded and the one that is meant: a polygon for a round body, a support against a motion
     /// that is free.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub problem: Option<String>,
