@@ -11,8 +11,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use signorini::fem::exact::Real;
-use signorini::kernel::{Interval, Scalar};
+use signorini::kernel::{Enclosing, Interval, Scalar};
 
 /// The order of the Taylor polynomials.
 pub const ORDER: usize = 4;
@@ -202,7 +201,19 @@ impl Scalar for Taylor {
     }
 }
 
-impl Real for Taylor {
+impl Enclosing for Taylor {
+    fn exactly(value: f64) -> Taylor {
+        Taylor::constant(Interval::point(value))
+    }
+
+    fn upper(self) -> f64 {
+        self.value().hi()
+    }
+
+    fn lower(self) -> f64 {
+        self.value().lo()
+    }
+
     /// From root * root = self: each coefficient of the root, once known, is taken away with all its products.
     fn sqrt(self) -> Taylor {
         let mut root = self.0;
@@ -217,14 +228,6 @@ impl Real for Taylor {
             }
         }
         Taylor(root)
-    }
-
-    fn by_sign<T>(
-        self,
-        nonpositive: impl FnOnce(Taylor) -> T,
-        positive: impl FnOnce(Taylor) -> T,
-    ) -> T {
-        if self.value().hi() <= 0.0 { nonpositive(self) } else { positive(self) }
     }
 }
 
@@ -408,8 +411,8 @@ mod tests {
     #[test]
     fn control_a_kink_that_counts_as_smooth_gives_a_wrong_integral() {
         let third = Taylor::from(1) / Taylor::from(3);
-        let [found] =
-            mean(segment(), 1e-10, |[x]| [(x - third).by_sign(|_| Taylor::from(0), |x| x)]);
+        let smooth = |x: Taylor| if x.is_at_most(0.0) { Taylor::from(0) } else { x };
+        let [found] = mean(segment(), 1e-10, |[x]| [smooth(x - third)]);
         assert!(!found.contains(2.0 / 9.0), "{found:?}");
     }
 

@@ -10,11 +10,15 @@ class Units(TypedDict):
     force: str
 
 
-class Material(TypedDict):
+class _Material(TypedDict):
     surfaces: List[str]
+    plane: str
+
+
+class Material(_Material, total=False):
     young: float
     poisson: float
-    plane: str
+    stiffness: List[float]
 
 
 class Choices(TypedDict):

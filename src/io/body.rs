@@ -9,12 +9,20 @@ use super::expression::Expression;
 use super::mistake::{CaseError, CaseMistake};
 use super::table::{Table, Value};
 use crate::fem::exact;
-use crate::fem::material::largest_entry;
+use crate::fem::material::{
+    Across, MaterialError, Orthotropic, largest_entry, stable, stable_orthotropic,
+};
 use crate::fem::{Exact, Materials, Mesh, SharedFunction, SurfaceForce};
 use crate::kernel::{Material, Plane};
 use crate::quote::{self, key as shown, quoted};
 
-const MODULI: [&str; 4] = ["lambda", "mu", "young", "poisson"];
+const MODULI: [&str; 6] = ["lambda", "mu", "young", "poisson", "stiffness", "orthotropic"];
+
+const KEYS: [&str; 8] =
+    ["lambda", "mu", "young", "poisson", "stiffness", "across", "orthotropic", "plane"];
+
+/// The moduli that a material may be given by.
+pub(super) const EXPECTED: &str = "lambda and mu, young and poisson, stiffness, or orthotropic";
 
 /// A material as the case has it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -22,30 +30,54 @@ const MODULI: [&str; 4] = ["lambda", "mu", "young", "poisson"];
 pub struct MaterialEcho {
     /// The physical surfaces made of it; none if the mesh has no named surface.
     pub surfaces: Vec<String>,
-    /// Young's modulus.
-    pub young: f64,
-    /// Poisson's ratio.
-    pub poisson: f64,
+    /// Young's modulus of a material that is isotropic.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub young: Option<f64>,
+    /// Its Poisson's ratio.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub poisson: Option<f64>,
+    /// `[C11, C12, C16, C22, C26, C66]` of one that is not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stiffness: Option<[f64; 6]>,
     /// "strain" or "stress".
     pub plane: String,
 }
 
+impl MaterialEcho {
+    fn new(material: &Material<f64>, moduli: Option<[f64; 2]>) -> Self {
+        let stiffness = moduli.is_none().then(|| material.stiffness());
+        let [young, poisson] = [0, 1].map(|k| moduli.map(|moduli| moduli[k]));
+        let plane = if material.plane() == Plane::Strain { "strain" } else { "stress" }.to_owned();
+        MaterialEcho { surfaces: Vec::new(), young, poisson, stiffness, plane }
+    }
+
+    /// The largest of the numbers that it is given by, but for Poisson's ratio.
+    pub(super) fn stiffest(&self) -> f64 {
+        let entries = self.stiffness.iter().flatten().chain(&self.young);
+        entries.fold(0.0, |most: f64, c| most.max(c.abs()))
+    }
+}
+
 /// The materials as read, not yet on a mesh.
 pub(super) enum MaterialTable<'s> {
-    Whole(Material<f64>, MaterialEcho),
+    Whole(Table<'s>, Material<f64>, MaterialEcho),
     BySurface {
         table: Table<'s>,
         materials: Vec<(Value<'s>, &'s str, Material<f64>, MaterialEcho)>,
     },
 }
 
+/// Returns whether the key of `[material]` is the name of a surface.
+fn is_a_surface(table: &Table, key: &str) -> bool {
+    !KEYS.contains(&key) && table.get(key).is_some_and(|value| value.is_table())
+}
+
 pub(super) fn read_materials<'s>(table: Table<'s>) -> Result<MaterialTable<'s>, CaseError> {
-    let named: Vec<&str> =
-        table.keys().filter(|key| table.get(key).is_some_and(|value| value.is_table())).collect();
+    let named: Vec<&str> = table.keys().filter(|key| is_a_surface(&table, key)).collect();
     if named.is_empty() {
-        table.only(&["lambda", "mu", "young", "poisson", "plane"])?;
+        table.only(&KEYS)?;
         let (material, echo) = read_material(&table, Plane::Strain)?;
-        return Ok(MaterialTable::Whole(material, echo));
+        return Ok(MaterialTable::Whole(table, material, echo));
     }
     if let Some(key) = table.keys().find(|key| MODULI.contains(key)) {
         return Err(table.wrong(CaseMistake::Combination {
@@ -63,7 +95,7 @@ pub(super) fn read_materials<'s>(table: Table<'s>) -> Result<MaterialTable<'s>, 
     for key in named {
         let value = table.require(key, "a table")?;
         let one = value.section(format!("[material.{}]", shown(key)))?;
-        one.only(&["lambda", "mu", "young", "poisson", "plane"])?;
+        one.only(&KEYS)?;
         let (material, echo) = read_material(&one, plane)?;
         if let Some((_, other, _, first)) = materials.first()
             && first.plane != echo.plane
@@ -87,20 +119,30 @@ pub(super) fn read_materials<'s>(table: Table<'s>) -> Result<MaterialTable<'s>, 
 impl MaterialTable<'_> {
     /// The one material of the whole body, if there is one.
     pub fn only(&self) -> Result<Material<f64>, CaseError> {
-        match self {
-            MaterialTable::Whole(material, _) => Ok(*material),
-            MaterialTable::BySurface { table, .. } => Err(table.wrong(CaseMistake::Combination {
+        let beside_exact = |table: &Table, found: &str, expected: &str| {
+            table.wrong(CaseMistake::Combination {
                 name: table.name().to_owned(),
-                found: "materials by surface beside [exact]".to_owned(),
-                expected: "one material for the whole body".to_owned(),
-            })),
+                found: format!("{found} beside [exact]"),
+                expected: expected.to_owned(),
+            })
+        };
+        match self {
+            MaterialTable::Whole(_, material, _) if material.is_isotropic() => Ok(*material),
+            MaterialTable::Whole(table, ..) => Err(beside_exact(
+                table,
+                "a material that is not isotropic",
+                "lambda and mu, or young and poisson",
+            )),
+            MaterialTable::BySurface { table, .. } => {
+                Err(beside_exact(table, "materials by surface", "one material for the whole body"))
+            }
         }
     }
 
     /// The material of each triangle: each has exactly one, each surface of the mesh its own.
     pub fn on_the_mesh(self, mesh: &Mesh) -> Result<(Materials, Vec<MaterialEcho>), CaseError> {
         let (table, materials) = match self {
-            MaterialTable::Whole(material, echo) => {
+            MaterialTable::Whole(_, material, echo) => {
                 let surfaces = mesh.surfaces().keys().cloned().collect();
                 return Ok((material.into(), vec![MaterialEcho { surfaces, ..echo }]));
             }
@@ -166,8 +208,14 @@ fn read_plane(table: &Table, default: Plane) -> Result<Plane, CaseError> {
 
 fn read_material(table: &Table, plane: Plane) -> Result<(Material<f64>, MaterialEcho), CaseError> {
     let plane = read_plane(table, plane)?;
-    let (material, [young, poisson]) = match MODULI.map(|key| table.get(key)) {
-        [Some(lambda), Some(mu), None, None] => {
+    let wrong = |found: String, expected: &str| {
+        let (name, expected) = (table.name().to_owned(), expected.to_owned());
+        table.wrong(CaseMistake::Combination { name, found, expected })
+    };
+    let isotropic = |material, moduli| (material, MaterialEcho::new(&material, Some(moduli)));
+    let tensor = |material| (material, MaterialEcho::new(&material, None));
+    let (material, echo) = match MODULI.map(|key| table.get(key)) {
+        [Some(lambda), Some(mu), None, None, None, None] => {
             let mu = mu.number_that(|mu| mu > 0.0, "a positive number")?;
             let least = quote::number(-2.0 / 3.0 * mu);
             let expected = format!("a number above {least}, for 3 lambda + 2 mu > 0");
@@ -175,27 +223,97 @@ fn read_material(table: &Table, plane: Plane) -> Result<(Material<f64>, Material
             // E = mu (3 lambda + 2 mu) / (lambda + mu) and nu = lambda / (2 (lambda + mu)), so that nothing overflows that
             // need not.
             let ratio = lambda / (lambda + mu);
-            (Material::lame(lambda, mu, plane), [mu * (2.0 + ratio), ratio / 2.0])
+            isotropic(Material::lame(lambda, mu, plane), [mu * (2.0 + ratio), ratio / 2.0])
         }
-        [None, None, Some(young), Some(poisson)] => {
+        [None, None, Some(young), Some(poisson), None, None] => {
             let young = young.number_that(|e| e > 0.0, "a positive number")?;
             let expected = "a number above -1 and below 0.5";
             let poisson = poisson.number_that(|nu| -1.0 < nu && nu < 0.5, expected)?;
-            (Material::young_poisson(young, poisson, plane), [young, poisson])
+            isotropic(Material::young_poisson(young, poisson, plane), [young, poisson])
         }
-        _ => return Err(table.combination(&MODULI, "lambda and mu, or young and poisson")),
+        [None, None, None, None, Some(stiffness), None] => {
+            let across = match (plane, table.get("across")) {
+                (Plane::Strain, Some(across)) => Some(numbers(&across, ACROSS)?),
+                (Plane::Stress, None) => None,
+                (Plane::Strain, None) => {
+                    return Err(wrong(
+                        "stiffness in plane strain without across".to_owned(),
+                        TELLS,
+                    ));
+                }
+                (Plane::Stress, Some(_)) => {
+                    return Err(wrong("across in plane stress".to_owned(), "plane strain with it"));
+                }
+            };
+            tensor(checked(
+                &stiffness,
+                stable(Material::tensor(numbers(&stiffness, SIX)?, across)),
+            )?)
+        }
+        [None, None, None, None, None, Some(moduli)] => {
+            tensor(checked(&moduli, read_orthotropic(&moduli, plane)?)?)
+        }
+        _ => return Err(table.combination(&MODULI, EXPECTED)),
     };
+    if table.get("across").is_some() && table.get("stiffness").is_none() {
+        return Err(wrong("across without stiffness".to_owned(), "both, or neither"));
+    }
     let stiffness = largest_entry(&material);
     if stiffness > 0.0 && stiffness.is_finite() {
-        let plane = if plane == Plane::Strain { "strain" } else { "stress" }.to_owned();
-        Ok((material, MaterialEcho { surfaces: Vec::new(), young, poisson, plane }))
+        Ok((material, echo))
     } else {
-        Err(table.wrong(CaseMistake::Combination {
-            name: table.name().to_owned(),
-            found: format!("moduli with lambda + 2 mu = {} in the plane", quote::number(stiffness)),
-            expected: "a positive finite sum; choose other units".to_owned(),
-        }))
+        let found =
+            format!("moduli with lambda + 2 mu = {} in the plane", quote::number(stiffness));
+        Err(wrong(found, "a positive finite sum; choose other units"))
     }
+}
+
+const SIX: &str = "a list of six numbers: C11, C12, C16, C22, C26, C66";
+
+const ACROSS: &str =
+    "a list of three numbers a, b, c: sigma_zz = a sigma_xx + b sigma_yy + c sigma_xy";
+
+const TELLS: &str = "plane = \"stress\", or across = [a, b, c] with sigma_zz = a sigma_xx + b sigma_yy + c sigma_xy";
+
+/// A list of `N` numbers.
+fn numbers<const N: usize>(list: &Value, expected: &str) -> Result<[f64; N], CaseError> {
+    let items = list.items()?;
+    let all = items.iter().map(Value::number).collect::<Result<Vec<f64>, _>>()?;
+    all.try_into().map_err(|_| list.wrong(expected))
+}
+
+/// The material, or the reason why there is none, at the place of its moduli.
+fn checked(
+    moduli: &Value,
+    material: Result<Material<f64>, MaterialError>,
+) -> Result<Material<f64>, CaseError> {
+    let name = || moduli.name().to_owned();
+    material.map_err(|error| moduli.mistake(CaseMistake::Material { name: name(), error }))
+}
+
+/// Moduli along and across an axis: in plane strain those across the plane, too.
+fn read_orthotropic(
+    moduli: &Value,
+    plane: Plane,
+) -> Result<Result<Material<f64>, MaterialError>, CaseError> {
+    let table = moduli.section(moduli.name().to_owned())?;
+    let mut keys = vec!["e1", "e2", "nu12", "g12", "angle"];
+    if plane == Plane::Strain {
+        keys.extend(["e3", "nu13", "nu23"]);
+    }
+    table.only(&keys)?;
+    let across = match plane {
+        Plane::Stress => None,
+        Plane::Strain => {
+            let expected = "a number, in plane strain";
+            let number = |key| table.require(key, expected)?.number();
+            Some(Across { e3: number("e3")?, nu13: number("nu13")?, nu23: number("nu23")? })
+        }
+    };
+    let number = |key| table.require(key, "a number")?.number();
+    let angle = table.get("angle").map_or(Ok(0.0), |angle| angle.number())?;
+    let [e1, e2, nu12, g12] = [number("e1")?, number("e2")?, number("nu12")?, number("g12")?];
+    Ok(stable_orthotropic(Orthotropic { e1, e2, nu12, g12, angle, across }))
 }
 
 /// A body force on one surface: where it stands, the surface, and f.

@@ -9,6 +9,7 @@ use super::expression::ExpressionError;
 use super::gmsh::GmshError;
 use super::input::InputError;
 use crate::fem::MeshError;
+use crate::fem::material::MaterialError;
 use crate::quote::{self, quoted};
 
 /// An error in a case file, with its place.
@@ -69,6 +70,8 @@ pub enum CaseMistake {
     Expression { name: String, text: String, error: ExpressionError },
     #[error("{name}: {error}")]
     Mesh { name: String, error: MeshError },
+    #[error("{name}: {error}")]
+    Material { name: String, error: MaterialError },
     #[error("[mesh] gmsh: {0}")]
     Gmsh(GmshError),
     #[error("found no key with a value; expected KEY=VALUE, such as method.gamma0=1e-3")]

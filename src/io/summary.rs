@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use super::body::MaterialEcho;
 use super::case::Units;
 use super::certificate::Audit;
 use super::convergence::Study;
@@ -136,9 +137,20 @@ impl Shown {
     }
 }
 
+/// Young's modulus and Poisson's ratio of a material, or its stiffness.
+fn moduli(material: &MaterialEcho) -> String {
+    match (material.young, material.poisson, material.stiffness) {
+        (Some(young), Some(poisson), _) => format!("E = {}, nu = {}", short(young), short(poisson)),
+        (_, _, stiffness) => {
+            let entries: Vec<String> = stiffness.iter().flatten().map(|&c| short(c)).collect();
+            format!("C11, C12, C16, C22, C26, C66 = {}", entries.join(", "))
+        }
+    }
+}
+
 /// The force, per unit of thickness, that is one rounding error of the displacement times the stiffest modulus.
 fn rounding(r: &Results) -> f64 {
-    let stiffest = r.materials.iter().fold(0.0, |most: f64, material| most.max(material.young));
+    let stiffest = r.materials.iter().fold(0.0, |most: f64, of| most.max(of.stiffest()));
     f64::EPSILON * stiffest * r.quantities.max_displacement
 }
 
@@ -244,9 +256,7 @@ fn how_it_was_solved(r: &Results, shown: &Shown, verbose: bool, lines: &mut Line
             } else {
                 quote::names(material.surfaces.iter().map(String::as_str))
             };
-            let (young, poisson) = (short(material.young), short(material.poisson));
-            let plane = &material.plane;
-            lines.line("material", format!("{of}: E = {young}, nu = {poisson}, plane {plane}"));
+            lines.line("material", format!("{of}: {}, plane {}", moduli(material), material.plane));
         }
     }
     if verbose || !(r.gamma.kappa < 1.0) {

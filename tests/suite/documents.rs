@@ -124,7 +124,7 @@ fn known_to(file: &str, text: &str, settings: &[&str], table: &str) -> BTreeSet<
 }
 
 /// The tables of a case, each with a case that has it and with its name on the page.
-const TABLES: [(&str, &[&str], &str, &str); 20] = [
+const TABLES: [(&str, &[&str], &str, &str); 21] = [
     ("cases/block.toml", &[], "", ""),
     ("cases/block.toml", &["body.thickness=2"], "body", "body"),
     ("cases/block.toml", &[], "mesh", "mesh"),
@@ -132,6 +132,7 @@ const TABLES: [(&str, &[&str], &str, &str); 20] = [
     ("cases/corner.toml", &[], "mesh.trapezoid", "mesh.trapezoid"),
     ("cases/block.toml", &["mesh.perturb={amount=0.1}"], "mesh.perturb", "mesh.perturb"),
     ("cases/block.toml", &[], "material", "material"),
+    ("cases/wood.toml", &[], "material.orthotropic", "material.orthotropic"),
     ("cases/block.toml", &[], "load", "load"),
     ("cases/block.toml", &[], "boundary.left", "boundary.NAME"),
     ("cases/block.toml", &[], "boundary.bottom.contact", "boundary.NAME.contact"),

@@ -1,5 +1,6 @@
 //! Laws A of (1) that are not isotropic: solutions in closed form, and the same body described in two ways.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use approx::assert_relative_eq;
@@ -12,6 +13,7 @@ use signorini::fem::material::{
     Across, Orthotropic, eigenvalues, least_eigenvalue, stable, stable_orthotropic,
 };
 use signorini::fem::{Condition, Diagonal, Exact, Mesh, Obstacle, Problem};
+use signorini::io::Case;
 use signorini::kernel::{Material, Plane};
 use signorini::solve::{Degree, Ladder, Settings, Solution, Verdict, solve};
 
@@ -269,4 +271,35 @@ fn orthotropic_moduli_that_are_equal_in_all_directions_are_young_and_poisson() {
         let [a, b] = [found, expected].map(|m| m.stress_zz(stress));
         assert!((a - b).abs() < 1e-15 * 20.0, "{a} {b}");
     }
+}
+
+const WOOD: &str = r#"
+[mesh]
+rectangle = { width = 1, height = 1, nx = 4, ny = 4 }
+[material]
+orthotropic = { e1 = 12, e2 = 0.6, nu12 = 0.4, g12 = 0.7, angle = 30 }
+plane = "stress"
+[boundary.top]
+displacement = [0, -0.01]
+[boundary.bottom]
+contact = {}
+"#;
+
+#[test]
+fn cases_have_the_materials_that_they_say() {
+    let read = |text: &str| Case::parse(Path::new("wood.toml"), text, &[]).unwrap();
+    let case = read(WOOD);
+    assert_eq!(case.problem.material, spruce(30.0).into());
+    let stiffness = spruce(30.0).stiffness();
+    assert_eq!(case.materials[0].stiffness, Some(stiffness));
+    let orthotropic = WOOD.lines().find(|line| line.starts_with("orthotropic")).unwrap();
+    let entries = read(&WOOD.replace(orthotropic, &format!("stiffness = {stiffness:?}")));
+    assert_eq!(entries.problem.material, case.problem.material);
+    let across = "stiffness = [12, 3, 2, 5, -1, 2]\nacross = [0.3, 0.2, 0.1]";
+    let strain = read(&WOOD.replace(orthotropic, across).replace("stress", "strain"));
+    let expected = Material::tensor(FULL, Some([0.3, 0.2, 0.1]));
+    assert_eq!(strain.problem.material, expected.into());
+    // Control: another angle.
+    let other = read(&WOOD.replace("angle = 30", "angle = 31"));
+    assert_ne!(other.problem.material, case.problem.material);
 }

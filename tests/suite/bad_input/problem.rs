@@ -2,6 +2,8 @@
 
 use super::*;
 
+const ISOTROPIC: &str = "lambda = 1.0\nmu = 1.0\nplane = \"strain\"";
+
 #[test]
 fn materials() {
     compare_cases(
@@ -9,23 +11,23 @@ fn materials() {
         &[
             (
                 ["[material]\nlambda = 1.0\nmu = 1.0\nplane = \"strain\"\n", ""],
-                "bad.toml: [material] is missing; expected lambda and mu, or young and poisson in it",
+                "bad.toml: [material] is missing; expected lambda and mu, young and poisson, stiffness, or orthotropic in it",
             ),
             (
                 ["lambda = 1.0\n", ""],
-                "bad.toml:4: [material]: found mu; expected lambda and mu, or young and poisson",
+                "bad.toml:4: [material]: found mu; expected lambda and mu, young and poisson, stiffness, or orthotropic",
             ),
             (
                 ["lambda = 1.0\nmu = 1.0\n", ""],
-                "bad.toml:4: [material]: found none; expected lambda and mu, or young and poisson",
+                "bad.toml:4: [material]: found none; expected lambda and mu, young and poisson, stiffness, or orthotropic",
             ),
             (
                 ["lambda = 1.0", "young = 2.5"],
-                "bad.toml:4: [material]: found mu and young; expected lambda and mu, or young and poisson",
+                "bad.toml:4: [material]: found mu and young; expected lambda and mu, young and poisson, stiffness, or orthotropic",
             ),
             (
                 ["lambda = 1.0", "lambda = 1.0\nyoung = 2.5"],
-                "bad.toml:4: [material]: found lambda, mu and young; expected lambda and mu, or young and poisson",
+                "bad.toml:4: [material]: found lambda, mu and young; expected lambda and mu, young and poisson, stiffness, or orthotropic",
             ),
             (
                 ["mu = 1.0", "mu = -1.0"],
@@ -62,6 +64,43 @@ fn materials() {
             (
                 ["plane = \"strain\"", "plane = \"stain\""],
                 r#"bad.toml:7: [material] plane = "stain"; expected "strain" or "stress""#,
+            ),
+            (
+                [ISOTROPIC, "stiffness = [1, 2, 0, 1, 0, 1]\nplane = \"stress\""],
+                "bad.toml:5: [material] stiffness: the smallest eigenvalue of the stiffness [1, 2, 0, 1, 0, 1] is -1; expected an elliptic law: a positive one, at least 1e-10 of the largest",
+            ),
+            (
+                [ISOTROPIC, "stiffness = [3, 1, 3, 1]\nplane = \"stress\""],
+                "bad.toml:5: [material] stiffness = a list of 4; expected a list of six numbers: C11, C12, C16, C22, C26, C66",
+            ),
+            (
+                [ISOTROPIC, "stiffness = [3, 1, 0, 3, 0, 1]"],
+                "bad.toml:4: [material]: found stiffness in plane strain without across; expected plane = \"stress\", or across = [a, b, c] with sigma_zz = a sigma_xx + b sigma_yy + c sigma_xy",
+            ),
+            (
+                [
+                    ISOTROPIC,
+                    "stiffness = [3, 1, 0, 3, 0, 1]\nacross = [0, 0, 0]\nplane = \"stress\"",
+                ],
+                "bad.toml:4: [material]: found across in plane stress; expected plane strain with it",
+            ),
+            (
+                ["mu = 1.0", "mu = 1.0\nacross = [0, 0, 0]"],
+                "bad.toml:4: [material]: found across without stiffness; expected both, or neither",
+            ),
+            (
+                [
+                    ISOTROPIC,
+                    "orthotropic = { e1 = 12, e2 = 0.6, nu12 = 0.4, g12 = 0.7, angle = 30 }",
+                ],
+                "bad.toml:5: [material] orthotropic.e3 is missing; expected a number, in plane strain",
+            ),
+            (
+                [
+                    ISOTROPIC,
+                    "orthotropic = { e1 = 12, e2 = 0.6, nu12 = 0.4, g12 = -0.7 }\nplane = \"stress\"",
+                ],
+                "bad.toml:5: [material] orthotropic: g12 is -0.7; expected a positive number",
             ),
         ],
     );
