@@ -132,8 +132,25 @@ def parts():
                 yield f"{name}-p{degree}-{quadrature}", text + probes(gmsh.read(FOLDER / f"{name}.msh").points)
 
 
+LAWS = {
+    "orthotropic": "orthotropic = { e1 = 12, e2 = 0.6, e3 = 0.9, nu12 = 0.4, nu13 = 0.4, nu23 = 0.3, g12 = 0.7, angle = 30 }",
+    "stiffness": 'stiffness = [12, 3, 2, 5, -1, 2]\nplane = "stress"',
+}
+
+
+def tensors():
+    shape = (2.0, 1.0, 8, 4, "crossed")
+    middle = ('[boundary.top]\ndisplacement = [0.01, "-0.05 - 0.02*x"]\n\n[obstacle.drum]\n'
+              'circle = { center = [0.8, -5.01], radius = 5, side = "outside" }\n\n[boundary.bottom]\ncontact = { obstacle = "drum" }')
+    for name, law in LAWS.items():
+        for degree in (1, 2):
+            for quadrature in QUADRATURES:
+                text = case(f"A tensor: {name}, on a drum, P{degree}, {quadrature}", rectangle_line(*shape), law, middle, degree, '"auto"', quadrature)
+                yield f"{name}-p{degree}-{quadrature}", text + probes(rectangle(*shape).points)
+
+
 def main():
-    for name, text in (*examples(), *exact_solutions(), *patches(), *parts()):
+    for name, text in (*examples(), *exact_solutions(), *patches(), *parts(), *tensors()):
         (FOLDER / f"{name}.toml").write_text(text)
 
 

@@ -14,7 +14,7 @@ from .obstacle import Circle, Distance, Plane
 MOST_CELLS = 4_000_000  # nx * ny of a rectangle, checked before anything is allocated
 KINDS = ("displacement", "traction", "contact")  # beside [exact]
 CONDITIONS = ("displacement", "traction", "pressure", "normal", "tangential", "contact", "force")
-MODULI = ("lambda", "mu", "young", "poisson")
+MODULI = ("lambda", "mu", "young", "poisson", "stiffness", "orthotropic")
 
 
 class CaseError(Exception):
@@ -56,6 +56,38 @@ class Material:
         """lambda in plane strain; lambda* = 2 lambda mu / (lambda + 2 mu) in plane stress."""
         return self.lam if self.plane == "strain" else 2 * self.lam * self.mu / (self.lam + 2 * self.mu)
 
+    @property
+    def in_plane(self):
+        """C11, C12, C16, C22, C26, C66"""
+        lam, mu = self.plane_lam, self.mu
+        return lam + 2 * mu, lam, 0.0, lam + 2 * mu, 0.0, mu
+
+    @property
+    def zz(self):
+        """What sigma_zz is of sigma_xx, sigma_yy, sigma_xy."""
+        nu = self.lam / (2 * (self.lam + self.mu)) if self.plane == "strain" else 0.0
+        return nu, nu, 0.0
+
+
+@dataclass
+class Tensor:
+    """C11, C12, C16, C22, C26, C66 of a law in the plane, and in plane strain what sigma_zz is of sigma_xx, sigma_yy, sigma_xy."""
+
+    stiffness: tuple
+    across: tuple | None
+
+    @property
+    def plane(self):
+        return "stress" if self.across is None else "strain"
+
+    @property
+    def in_plane(self):
+        return self.stiffness
+
+    @property
+    def zz(self):
+        return self.across or (0.0, 0.0, 0.0)
+
 
 @dataclass
 class Boundary:
@@ -96,6 +128,10 @@ class Case:
     def material(self):
         """The first material; all have the same `plane`."""
         return next(iter(self.materials.values()))
+
+    @property
+    def is_isotropic(self):
+        return all(isinstance(material, Material) for material in self.materials.values())
 
     def of_kind(self, kind):
         """{name: data} of the boundaries of one kind, in name order."""
@@ -167,6 +203,12 @@ class _Table:
             self.fail(key, value, "a string")
         return value
 
+    def numbers(self, key, count, expected):
+        value = self.need(key, expected)
+        if not isinstance(value, list) or len(value) != count or not all(map(_is_number, value)):
+            self.fail(key, value, expected)
+        return tuple(map(float, value))
+
     def expression(self, key, value):
         value = repr(float(value)) if _is_number(value) else value
         if not isinstance(value, str):
@@ -219,6 +261,8 @@ def read_case(path):
     materials = _materials(root.table("material"))
     if root.has("exact") and None not in materials:
         root.fail("material", ", ".join(materials), "one material for the whole body beside [exact]")
+    if root.has("exact") and isinstance(materials[None], Tensor):
+        root.refuse("material", "a material that is not isotropic", "lambda and mu, or young and poisson, beside [exact]")
     solution = _exact(root.table("exact"), materials[None]) if root.has("exact") else None
     if solution and root.has("load"):
         root.fail("load", content["load"], "no [load] beside [exact], which supplies it")
@@ -283,7 +327,7 @@ def _mesh(table, path):
 
 def _materials(table):
     """{surface: Material}, or {None: Material} for the whole body."""
-    named = [key for key, value in table.content.items() if isinstance(value, dict)]
+    named = [key for key, value in table.content.items() if isinstance(value, dict) and key != "orthotropic"]
     if not named:
         return {None: _material(table, "strain")}
     plane = table.choice("plane", ("strain", "stress"), "strain")
@@ -296,20 +340,62 @@ def _materials(table):
 
 def _material(table, plane):
     plane = table.choice("plane", ("strain", "stress"), plane)
-    lame, engineering = [table.has(key) for key in ("lambda", "mu")], [table.has(key) for key in ("young", "poisson")]
-    if any(lame) == any(engineering):
+    given = [any([table.has(key) for key in keys]) for keys in (MODULI[:2], MODULI[2:4], MODULI[4:5], MODULI[5:])]
+    if sum(given) != 1:
         table.refuse("", ", ".join(key for key in MODULI if key in table.content),
-                     "either lambda and mu, or young and poisson")
-    if any(lame):
+                     "either lambda and mu, or young and poisson, or stiffness, or orthotropic")
+    lame, engineering, stiffness, _ = given
+    if lame:
         lam, mu = table.number("lambda"), table.number("mu", "a positive number", lambda m: m > 0)
         if not 3 * lam + 2 * mu > 0:
             table.fail("lambda", lam, "3 lambda + 2 mu > 0")
-    else:
+        material = Material(lam, mu, plane)
+    elif engineering:
         young = table.number("young", "a positive number", lambda e: e > 0)
         poisson = table.number("poisson", "a number above -1 and below 0.5", lambda nu: -1 < nu < 0.5)
-        lam, mu = young * poisson / ((1 + poisson) * (1 - 2 * poisson)), young / (2 * (1 + poisson))
+        material = Material(young * poisson / ((1 + poisson) * (1 - 2 * poisson)), young / (2 * (1 + poisson)), plane)
+    elif stiffness:
+        entries = table.numbers("stiffness", 6, "C11, C12, C16, C22, C26, C66")
+        across = table.numbers("across", 3, "a list of three numbers, in plane strain") if plane == "strain" else None
+        material = _elliptic(table, "stiffness", Tensor(entries, across))
+    else:
+        material = _elliptic(table, "orthotropic", _orthotropic(table.table("orthotropic"), plane))
     table.finish()
-    return Material(lam, mu, plane)
+    return material
+
+
+def _orthotropic(table, plane):
+    """The law of the moduli along and across an axis: the inverse of the compliance, turned by the angle."""
+    positive = ("a positive number", lambda e: e > 0)
+    e1, e2, g12 = (table.number(key, *positive) for key in ("e1", "e2", "g12"))
+    nu12, angle = table.number("nu12"), math.radians(table.number("angle", default=0.0))
+    compliance = np.array([[1 / e1, -nu12 / e1], [-nu12 / e1, 1 / e2]])
+    across = None
+    if plane == "strain":
+        e3, nu13, nu23 = table.number("e3", *positive), table.number("nu13"), table.number("nu23")
+        beside = np.array([-nu13 / e1, -nu23 / e2])
+        whole = np.linalg.inv(np.block([[compliance, beside[:, None]], [beside[None, :], np.array([[1 / e3]])]]))
+        law = whole[:2, :2]
+        across = np.append(whole[2, :2] @ np.linalg.inv(law), 0)
+    else:
+        law = np.linalg.inv(compliance)
+    table.finish()
+    in_axes = np.block([[law, np.zeros((2, 1))], [np.zeros((1, 2)), np.array([[g12]])]])
+    c, s = math.cos(angle), math.sin(angle)
+    strain = np.array([[c * c, s * s, c * s], [s * s, c * c, -c * s], [-2 * c * s, 2 * c * s, c * c - s * s]])
+    stress = np.array([[c * c, s * s, 2 * c * s], [s * s, c * c, -2 * c * s], [-c * s, c * s, c * c - s * s]])
+    turned = strain.T @ in_axes @ strain
+    return Tensor(tuple(turned[np.triu_indices(3)]), None if across is None else tuple(across @ stress))
+
+
+def _elliptic(table, key, tensor):
+    """The tensor, if its smallest eigenvalue is positive."""
+    c11, c12, c16, c22, c26, c66 = tensor.stiffness
+    root = math.sqrt(2)
+    values = np.linalg.eigvalsh([[c11, c12, root * c16], [c12, c22, root * c26], [root * c16, root * c26, 2 * c66]])
+    if not values[0] >= 1e-10 * values[2] > 0:
+        table.refuse(key, f"the smallest eigenvalue {values[0]:.6g}", "an elliptic law: a positive one, at least 1e-10 of the largest")
+    return tensor
 
 
 def _bodies(load):

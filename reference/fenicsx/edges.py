@@ -24,6 +24,16 @@ def edge_basis(degree, s):
     return np.stack(((1 - s) * (1 - 2 * s), 4 * s * (1 - s), s * (2 * s - 1)), axis=-1)
 
 
+def _largest(law, n):
+    """The largest eigenvalue of the acoustic tensor."""
+    c11, c12, c16, c22, c26, c66 = law
+    x, y = n
+    xx = c11 * x * x + 2 * c16 * x * y + c66 * y * y
+    yy = c66 * x * x + 2 * c26 * x * y + c22 * y * y
+    xy = c16 * x * x + (c12 + c66) * x * y + c26 * y * y
+    return np.linalg.eigvalsh([[xx, xy], [xy, yy]])[-1]
+
+
 def coefficients(nodal):
     """(c0, c1[, c2]) of c0 + c1 s + c2 s^2 with the given values at s = 0, (1/2,) 1; one row per edge."""
     if nodal.shape[1] == 2:
@@ -82,16 +92,13 @@ class ContactEdges:
         on_line = [problem.contact[name, a, b] for name, (a, b) in zip(self.names, self.vertices)]
         self.directions = np.array([n for n, _ in on_line]).reshape(count, self.p + 1, 2)
         self.gap = np.array([g for _, g in on_line]).reshape(count, self.p + 1)
-        self.lam, self.mu = (values.reshape(count, 1, 1, 1) for values in problem.lame(self.cells))
         s = np.linspace(0, 1, self.p + 1)
         tables = [compat.basis(self.p, (1 - s)[:, None] * REFERENCE[i] + s[:, None] * REFERENCE[j]) for i, j in FACET_VERTICES]
         values = np.array([table[0] for table in tables])[local]
         ends = [0, -1]
         gradients = (np.array([table[1] for table in tables])[local] @ np.linalg.inv(self.J)[:, None])[:, ends]
         n, d = self.n[:, None, None, :], self.directions[:, ends, None, :]
-        along_n, along_d = (np.sum(gradients * v, axis=3, keepdims=True) for v in (n, d))
-        # d . sigma(phi e_k) n = lam (d . n) d_k phi + mu (d_k (n . grad phi) + n_k (d . grad phi))
-        S = self.lam * np.sum(d * n, axis=3, keepdims=True) * gradients + self.mu * (d * along_n + n * along_d)
+        S = self._stresses(problem, gradients, n, d)
         S_n = np.einsum("pa,eaik->epik", edge_basis(1, s), S)
         V_n = values[..., None] * self.directions[:, :, None, :]
         functions = values.shape[2]
@@ -99,6 +106,26 @@ class ContactEdges:
         self.B = self.V_n - self.gamma[:, None, None] * self.S_n
         nodes = np.array([problem.V.dofmap.cell_dofs(cell) for cell in self.cells], np.int32).reshape(count, functions)
         self.dofs = (2 * nodes[:, :, None] + np.arange(2, dtype=np.int32)).reshape(count, 2 * functions)
+
+    def _stresses(self, problem, gradients, n, d):
+        """d . sigma(phi e_k) n for the gradients of phi; `stiffness` has the constant of |d . sigma n|^2 <= c sigma:eps, where d turns that
+        of the whole traction."""
+        if problem.case.is_isotropic:
+            lam, mu = (values.reshape(-1, 1, 1, 1) for values in problem.lame(self.cells))
+            self.stiffness = (lam + 2 * mu).ravel()
+            along_n, along_d = (np.sum(gradients * v, axis=3, keepdims=True) for v in (n, d))
+            # lam (d . n) d_k phi + mu (d_k (n . grad phi) + n_k (d . grad phi))
+            return lam * np.sum(d * n, axis=3, keepdims=True) * gradients + mu * (d * along_n + n * along_d)
+        laws = problem.stiffness(self.cells)
+        c11, c12, c16, c22, c26, c66 = (c.reshape(-1, 1, 1) for c in laws.T)
+        # The stress of the strain along d and n has the traction grad phi . sigma.
+        a, b, c = d[..., 0] * n[..., 0], d[..., 1] * n[..., 1], d[..., 0] * n[..., 1] + d[..., 1] * n[..., 0]
+        xx, yy, xy = c11 * a + c12 * b + c16 * c, c12 * a + c22 * b + c26 * c, c16 * a + c26 * b + c66 * c
+        energy = (a * xx + b * yy + c * xy)[:, 0, 0]
+        turns = np.any(d[:, 0, 0] != d[:, -1, 0], axis=1)
+        self.stiffness = np.where(turns, [_largest(law, normal) for law, normal in zip(laws, self.n)], energy)
+        x, y = gradients[..., 0], gradients[..., 1]
+        return np.stack((xx * x + xy * y, xy * x + yy * y), axis=3)
 
     def P(self, u):
         """P(u) at the Lagrange points of each edge; u holds all dofs that this process sees."""
@@ -237,9 +264,9 @@ class ContactEdges:
 
     def coercivity(self):
         """(C_h, the edge that sets it): kappa = gamma0 C_h, C_h = max_T h_T C c_p sum_{E in T} |E| / |T|, with C = lambda + 2 mu in
-        plane strain and 4 mu (lambda + mu) / (lambda + 2 mu) in plane stress, c_1 = 1, c_2 = 3. An edge along which n~ turns by theta
+        plane strain and 4 mu (lambda + mu) / (lambda + 2 mu) in plane stress (of a tensor as in `_stresses`), c_1 = 1, c_2 = 3. An edge along which n~ turns by theta
         counts 2 - cos(theta) times for P2. Of equal edges, the first by its ends."""
-        factor = (self.lam + 2 * self.mu).ravel() * {1: 1, 2: 3}[self.p]
+        factor = self.stiffness * {1: 1, 2: 3}[self.p]
         cosine = np.sum(self.directions[:, 0] * self.directions[:, -1], axis=1)
         turning = np.where((self.p == 1) | np.all(self.directions[:, 0] == self.directions[:, -1], axis=1), 1.0, 2 - cosine)
         per_cell = {}

@@ -10,6 +10,7 @@ the roots of P, in edges.py. The integrals in A are polynomials' and exact in bo
 an obstacle, n~ and s(v) = n~ . sigma(v) n take the places of n and sigma_n: all integrals on Gamma_C are then those of edges.py.
 """
 
+import numpy as np
 import ufl
 from dolfinx import fem
 from petsc4py import PETSc
@@ -34,10 +35,12 @@ class Method:
     def __init__(self, problem, gamma0):
         self.problem, self.case = problem, problem.case
         material = self.case.material
-        self.lam, self.mu, self.gamma0 = (fem.Constant(problem.mesh, PETSc.ScalarType(value))
-                                          for value in (material.plane_lam, material.mu, gamma0))
+        self.gamma0, *self.law = (fem.Constant(problem.mesh, PETSc.ScalarType(value))
+                                  for value in (gamma0, *(self._moduli(material))))
         if len(self.case.materials) > 1:
-            self.lam, self.mu = map(problem.on_triangles, problem.lame(range(len(problem.original))))
+            cells = range(len(problem.original))
+            moduli = problem.lame(cells) if self.case.is_isotropic else np.hstack((problem.stiffness(cells), problem.across(cells))).T
+            self.law = list(map(problem.on_triangles, moduli))
         self.contact_in_ufl = bool(self.case.gauss) and problem.straight
         self.n = ufl.FacetNormal(problem.mesh)
         self.u = fem.Function(problem.V)
@@ -56,8 +59,28 @@ class Method:
     def eps(self, v):
         return sym(grad(v))
 
+    def _moduli(self, material):
+        """lambda and mu; where a material of the case is a tensor, its entries and what sigma_zz is."""
+        if self.case.is_isotropic:
+            return material.plane_lam, material.mu
+        return *material.in_plane, *material.zz
+
     def sigma(self, v):
-        return self.lam * tr(self.eps(v)) * ufl.Identity(2) + 2 * self.mu * self.eps(v)
+        eps = self.eps(v)
+        if self.case.is_isotropic:
+            lam, mu = self.law
+            return lam * tr(eps) * ufl.Identity(2) + 2 * mu * eps
+        c11, c12, c16, c22, c26, c66 = self.law[:6]
+        a, b, c = eps[0, 0], eps[1, 1], 2 * eps[0, 1]
+        xy = c16 * a + c26 * b + c66 * c
+        return ufl.as_matrix([[c11 * a + c12 * b + c16 * c, xy], [xy, c12 * a + c22 * b + c26 * c]])
+
+    def sigma_zz(self, v):
+        """lambda tr eps in plane strain, 0 in plane stress; of a tensor as the case says."""
+        if not self.case.is_isotropic:
+            sigma, (p, q, r) = self.sigma(v), self.law[6:]
+            return p * sigma[0, 0] + q * sigma[1, 1] + r * sigma[0, 1]
+        return self.law[0] * tr(self.eps(v)) if self.case.material.plane == "strain" else 0
 
     def v_n(self, v):
         return dot(v, self.n)

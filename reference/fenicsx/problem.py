@@ -111,10 +111,21 @@ class Problem:
         name_of = {tuple(sorted(self.plane.triangles[t].tolist())): name for name, members in surfaces.items() for t in members}
         return [name_of.get(tuple(sorted(vertices))) for vertices in self.original.tolist()]
 
+    def materials_of(self, cells):
+        return [self.case.materials.get(self.surface_of[cell], self.case.material) for cell in cells]
+
     def lame(self, cells):
         """lambda (as it acts in the plane) and mu of the given triangles."""
-        of = [self.case.materials.get(self.surface_of[cell], self.case.material) for cell in cells]
+        of = self.materials_of(cells)
         return np.array([m.plane_lam for m in of]), np.array([m.mu for m in of])
+
+    def stiffness(self, cells):
+        """C11, C12, C16, C22, C26, C66 of the given triangles, a row each."""
+        return np.array([material.in_plane for material in self.materials_of(cells)]).reshape(-1, 6)
+
+    def across(self, cells):
+        """sigma_zz of sigma_xx, sigma_yy, sigma_xy, a row each."""
+        return np.array([material.zz for material in self.materials_of(cells)]).reshape(-1, 3)
 
     def on_triangles(self, values):
         """The function with one value per triangle that this process sees."""

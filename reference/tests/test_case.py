@@ -24,7 +24,10 @@ REFUSED = [
     ("mu = 1.0", "", "material.mu: found nothing, expected a positive number"),
     ("lambda = 1.0", "lambda = inf", "material.lambda: found inf, expected a finite number"),
     ("lambda = 1.0", "lambda = -0.7", "material.lambda: found -0.7, expected 3 lambda + 2 mu > 0"),
-    ("mu = 1.0", "mu = 1.0\nyoung = 1.0", "material: found lambda, mu, young, expected either lambda and mu, or young and poisson"),
+    ("mu = 1.0", "mu = 1.0\nyoung = 1.0", "material: found lambda, mu, young, expected either lambda and mu, or young and poisson, or stiffness, or orthotropic"),
+    ("lambda = 1.0\nmu = 1.0", 'stiffness = [1, 2, 0, 1, 0, 1]\nplane = "stress"',
+     "material.stiffness: found the smallest eigenvalue -1, expected an elliptic law: a positive one, at least 1e-10 of the largest"),
+    ("lambda = 1.0\nmu = 1.0", "stiffness = [3, 1, 0, 3, 0, 1]", "material.across: found nothing, expected a list of three numbers, in plane strain"),
     ("lambda = 1.0\nmu = 1.0", "young = 1.0\npoisson = 0.5", "material.poisson: found 0.5, expected a number above -1 and below 0.5"),
     ("mu = 1.0", 'mu = 1.0\nplane = "bent"', 'material.plane: found "bent", expected "strain" or "stress"'),
     ("nx = 4", "nx = 0", "mesh.rectangle.nx: found 0, expected a positive integer"),
@@ -97,6 +100,14 @@ class Cases(TestCase):
         self.assertAlmostEqual(case.material.lam, 1.0, delta=1e-15)
         self.assertAlmostEqual(case.material.mu, 1.0, delta=1e-15)
         self.assertAlmostEqual(case.material.plane_lam, 2 / 3, delta=1e-15)
+
+    def test_orthotropic_moduli_that_are_isotropic_are_young_and_poisson(self):
+        for plane, beyond in (("stress", ""), ("strain", ", e3 = 2.5, nu13 = 0.25, nu23 = 0.25")):
+            moduli = f'orthotropic = {{ e1 = 2.5, e2 = 2.5, nu12 = 0.25, g12 = 1.0, angle = 20{beyond} }}\nplane = "{plane}"'
+            found = read_case(self.file(BLOCK.replace("lambda = 1.0\nmu = 1.0", moduli))).material
+            expected = read_case(self.file(BLOCK.replace("mu = 1.0", f'mu = 1.0\nplane = "{plane}"'))).material
+            for a, b in zip(found.in_plane + found.zz, expected.in_plane + expected.zz):
+                self.assertAlmostEqual(a, b, delta=1e-14)
 
     def test_refusals_name_file_place_found_and_expected(self):
         for old, new, message in REFUSED:
