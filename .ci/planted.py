@@ -20,6 +20,7 @@ import argparse
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -32,6 +33,8 @@ TREE = TARGET / "tree"
 # Of its own: cargo tells workspaces apart by what is in them, not by where they are.
 BUILD = TARGET / "build"
 PROGRAM = BUILD / "debug/props"
+# Each crate has a switch of its own.
+CRATES = ["src", "src/kernel", "src/audit"]
 SWITCH = """//! Which of the planted mistakes is on: `.ci/planted.py`.
 
 /// Whether it is mistake `k`.
@@ -54,6 +57,7 @@ def is_a_test(path):
 def mistakes(path):
     """The mistakes, numbered from 1, each with the place of its text."""
     found, wrong, names = [], [], set()
+    claims = "".join(file.read_text() for file in (ROOT / "props/src").rglob("*.rs"))
     for k, entry in enumerate(tomllib.loads(path.read_text())["mistake"], 1):
         what = f"{path.name}, mistake {k} ({entry.get('name')})"
         if missing := (KEYS | ({"test"} if "test" in entry else {"row", "check"})) - entry.keys():
@@ -61,6 +65,8 @@ def mistakes(path):
             continue
         if "test" in entry and not is_a_test(entry["test"]):
             wrong.append(f"{what}: no test {entry['test']}")
+        if "check" in entry and not re.search(rf"\b{entry['check']}\b", claims):
+            wrong.append(f"{what}: no check {entry['check']}")
         if entry["name"] in names:
             wrong.append(f"{what}: the name is there twice")
         names.add(entry["name"])
@@ -111,8 +117,9 @@ def plant(group):
             way = f"(if crate::planted::on({entry['number']}) {{ {entry['new']} }} else {{ {entry['old']} }})"
             text = text[:start] + way + text[end:]
         texts[name] = text.encode()
-    texts["src/planted.rs"] = SWITCH.encode()
-    texts["src/lib.rs"] += b"\npub mod planted;\n"
+    for crate in CRATES:
+        texts[f"{crate}/planted.rs"] = SWITCH.encode()
+        texts[f"{crate}/lib.rs"] += b"\npub mod planted;\n"
     # What differs only: cargo builds again what is newer.
     for name, text in texts.items():
         path = TREE / name

@@ -11,7 +11,8 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use signorini::kernel::{Enclosing, Interval, Scalar};
+use signorini::fem::exact::Real;
+use signorini::kernel::{Interval, Scalar};
 
 /// The order of the Taylor polynomials.
 pub const ORDER: usize = 4;
@@ -201,19 +202,7 @@ impl Scalar for Taylor {
     }
 }
 
-impl Enclosing for Taylor {
-    fn exactly(value: f64) -> Taylor {
-        Taylor::constant(Interval::point(value))
-    }
-
-    fn upper(self) -> f64 {
-        self.value().hi()
-    }
-
-    fn lower(self) -> f64 {
-        self.value().lo()
-    }
-
+impl Real for Taylor {
     /// From root * root = self: each coefficient of the root, once known, is taken away with all its products.
     fn sqrt(self) -> Taylor {
         let mut root = self.0;
@@ -228,6 +217,14 @@ impl Enclosing for Taylor {
             }
         }
         Taylor(root)
+    }
+
+    fn by_sign<T>(
+        self,
+        nonpositive: impl FnOnce(Taylor) -> T,
+        positive: impl FnOnce(Taylor) -> T,
+    ) -> T {
+        if self.value().hi() <= 0.0 { nonpositive(self) } else { positive(self) }
     }
 }
 
@@ -411,8 +408,8 @@ mod tests {
     #[test]
     fn control_a_kink_that_counts_as_smooth_gives_a_wrong_integral() {
         let third = Taylor::from(1) / Taylor::from(3);
-        let smooth = |x: Taylor| if x.is_at_most(0.0) { Taylor::from(0) } else { x };
-        let [found] = mean(segment(), 1e-10, |[x]| [smooth(x - third)]);
+        let [found] =
+            mean(segment(), 1e-10, |[x]| [(x - third).by_sign(|_| Taylor::from(0), |x| x)]);
         assert!(!found.contains(2.0 / 9.0), "{found:?}");
     }
 

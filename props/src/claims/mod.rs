@@ -8,6 +8,8 @@ pub mod answers;
 #[cfg(not(kani))]
 pub mod assembled;
 #[cfg(not(kani))]
+pub mod attained;
+#[cfg(not(kani))]
 pub mod balls;
 #[cfg(not(kani))]
 pub mod bounds;

@@ -213,7 +213,49 @@ fn ordered(times: f64) -> Outcome {
     Ok(())
 }
 
+/// The edges of a contact line on these sides of a body of twelve cells, whose vertices are numbered and whose edges are listed in
+/// any order, follow each other, but for as many `breaks`.
+fn chained(sides: &[&str], breaks: usize) -> Outcome {
+    let mut random = Random(2013);
+    for _ in 0..10 {
+        let straight = moved([12, 1], random.below(1000) as u64)?;
+        let mut shuffled = |count: usize| {
+            let mut order: Vec<usize> = (0..count).collect();
+            for k in 1..count {
+                order.swap(k, random.below(k + 1));
+            }
+            order
+        };
+        let number = shuffled(straight.vertices().len());
+        let mut vertices = vec![[0.0; 2]; number.len()];
+        for (&x, &k) in straight.vertices().iter().zip(&number) {
+            vertices[k] = x;
+        }
+        let triangles = straight.triangles().iter().map(|t| t.map(|v| number[v])).collect();
+        let mut edges = Vec::new();
+        for side in sides {
+            let of_side = straight.edges_of(side).map_err(text)?;
+            edges.extend(of_side.iter().map(|&edge| straight.ends(edge).map(|v| number[v])));
+        }
+        let edges = shuffled(edges.len()).into_iter().map(|e| edges[e]).collect();
+        let mesh = Mesh::new(vertices, triangles, [("contact".to_owned(), edges)]);
+        let mut problem = body(mesh.map_err(text)?);
+        let contact = Condition::Contact { gap: constant(0.0) };
+        problem.conditions.insert("contact".to_owned(), contact);
+        let space = Space::new(&problem.mesh, Degree::One);
+        let line = contact_line::assemble(&problem, &space, 1e-3).map_err(text)?;
+        let ends = |edge: &ContactFace| problem.mesh.ends(edge.edge);
+        let found = line.windows(2).filter(|pair| ends(&pair[0])[1] != ends(&pair[1])[0]).count();
+        if (line.len(), found) != (12 * sides.len(), breaks) {
+            return Err(format!("{} edges with {found} breaks, expected {breaks}", line.len()));
+        }
+    }
+    Ok(())
+}
+
 properties! {
+    contact_edges_follow_each_other: chained(&["bottom"], 0), chained(&["bottom", "top"], 1);
+        not chained(&["bottom", "top"], 0);
     points_are_found_in_their_triangles: located(0.0); not located(0.01);
     loads_are_integrated_exactly_to_their_degrees: integrated(Degree::One, 0), integrated(Degree::Two, 0);
         not integrated(Degree::One, 2);
