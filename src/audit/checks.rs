@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use super::balance::Unbalanced;
 use super::certificate::{Certificate, Curved, Lift, Owner, Role, is_oblique};
-use crate::kernel::Interval;
+use crate::kernel::{Interval, Material};
 
 /// Why a certificate proves nothing.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -65,6 +65,12 @@ fn along(v: [f64; 2], d: [f64; 2], w: f64) -> Option<f64> {
     let allowed =
         if is_oblique(d) { 16.0 * f64::EPSILON * (x.abs() + y.abs() + w.abs()) } else { 0.0 };
     if (x + y - w).abs() <= allowed { None } else { Some(x + y) }
+}
+
+/// The law has finite entries and positive eigenvalues.
+fn is_elliptic(material: &Material<f64>) -> bool {
+    let pivots = || material.map(Interval::point).squares().pivots();
+    material.stiffness().iter().all(|c| c.is_finite()) && pivots().iter().all(|p| p.lo() > 0.0)
 }
 
 /// d has a length between 1/2 and 2.
@@ -137,18 +143,18 @@ impl Certificate {
                 return Err(wrong("cut", i, "expected a place between two vertices"));
             }
         }
+        let mut elliptic = None;
         for (i, piece) in self.pieces.iter().enumerate() {
             if !(piece.vertices.iter().all(|&p| p < points)
                 && piece.edges.iter().all(|&e| e < self.edges.len()))
             {
                 return Err(wrong("triangle", i, "a vertex or an edge does not exist"));
             }
-            let elliptic = || piece.material::<Interval>().squares().pivots().map(Interval::lo);
-            let body = finite(piece.body.as_flattened());
-            if !(body
-                && piece.material.stiffness().iter().all(|c| c.is_finite())
-                && elliptic().iter().all(|&pivot| pivot > 0.0))
-            {
+            // Neighbours mostly have one material.
+            if elliptic != Some(piece.material) {
+                elliptic = is_elliptic(&piece.material).then_some(piece.material);
+            }
+            if !(finite(piece.body.as_flattened()) && elliptic.is_some()) {
                 return Err(wrong(
                     "triangle",
                     i,

@@ -145,29 +145,30 @@ impl ByPair {
     }
 }
 
-impl<S: Enclosing> Forces<'_, S> {
+impl Certificate {
     /// The pair has the triangles of the certificate, no loads, and w = 0 on Gamma_D.
-    fn check_pair(&self, pair: &Certificate) -> Result<(), WrongPair> {
-        let certificate = self.certificate;
+    fn check_pair<S: Enclosing>(
+        &self,
+        pair: &Certificate,
+        state: &Balanced<S>,
+    ) -> Result<(), WrongPair> {
         let (zero, one) = (S::from(0), S::from(1));
         let differs = |what, index| Err(WrongPair::Differs { what, index });
-        let same_points = pair.vertices == certificate.vertices && pair.cuts == certificate.cuts;
+        let same_points = pair.vertices == self.vertices && pair.cuts == self.cuts;
         if !same_points || !pair.lifts.is_empty() {
             return differs("a point", 0);
         }
-        if pair.pieces.len() != certificate.pieces.len()
-            || pair.edges.len() != certificate.edges.len()
-        {
+        if pair.pieces.len() != self.pieces.len() || pair.edges.len() != self.edges.len() {
             return differs("the number of triangles or edges", pair.pieces.len());
         }
-        for (t, (own, other)) in certificate.pieces.iter().zip(&pair.pieces).enumerate() {
+        for (t, (own, other)) in self.pieces.iter().zip(&pair.pieces).enumerate() {
             let same = (own.vertices, own.edges, own.material)
                 == (other.vertices, other.edges, other.material);
             if !same || other.body != [[0.0; 2]; 3] || other.oscillation != 0.0 {
                 return differs("triangle", t);
             }
         }
-        for (e, (own, other)) in certificate.edges.iter().zip(&pair.edges).enumerate() {
+        for (e, (own, other)) in self.edges.iter().zip(&pair.edges).enumerate() {
             let is_zero = |p: usize, c: usize| pair.at_own(p).is_none_or(|(w, _)| w[c] == 0.0);
             let straight =
                 |c: usize| pair.curved.as_ref().is_none_or(|curved| curved.bulges[e][c] == 0.0);
@@ -200,7 +201,7 @@ impl<S: Enclosing> Forces<'_, S> {
                     (Role::Contact { .. }, Role::Loaded(t)) => t == [[0.0; 2]; 2],
                     // Along an axis, in which contact acts.
                     (Role::Contact { .. }, Role::Held(held, _)) => {
-                        let [d, end] = self.certificate.directions::<S>(e, &self.state.points);
+                        let [d, end] = self.directions::<S>(e, &state.points);
                         let is = |c: usize| held[c] && !held[1 - c] && component(d, d) == one;
                         d == end && (0..2).any(|c| is(c) && d[1 - c] == zero)
                     }
@@ -212,7 +213,74 @@ impl<S: Enclosing> Forces<'_, S> {
         }
         Ok(())
     }
+}
 
+/// Dual pairs that are verified, with their sums over the triangles.
+pub(crate) struct Pairs<'a, S> {
+    pairs: &'a [(Target, Certificate)],
+    sums: Vec<Sums<S>>,
+    /// |w|_a is needed.
+    is_loose: bool,
+}
+
+/// The sums of a pair.
+struct Sums<S> {
+    dual: Balanced<S>,
+    /// R0
+    middle: S,
+    /// eta^2
+    eta: S,
+    /// |w|_a^2, where the error of data is to be multiplied with it.
+    norm: S,
+    /// The shares of the triangles in eta^2.
+    shares: Vec<f64>,
+}
+
+impl<'a, S: Enclosing> Pairs<'a, S> {
+    /// Verifies that these are pairs for a certificate.
+    pub fn new(
+        certificate: &Certificate,
+        state: &Balanced<S>,
+        pairs: &'a [(Target, Certificate)],
+    ) -> Result<Self, WrongPair> {
+        let zero = S::from(0);
+        let mut sums = Vec::with_capacity(pairs.len());
+        for (_, pair) in pairs {
+            pair.check_shape()?;
+            certificate.check_pair(pair, state)?;
+            let (points, triangles) = (state.points.clone(), state.triangles.clone());
+            let dual = pair.balanced_on(state.topology.clone(), points, triangles)?;
+            pair.check_balance(&dual)?;
+            let shares = Vec::with_capacity(pair.pieces.len());
+            sums.push(Sums { dual, middle: zero, eta: zero, norm: zero, shares });
+        }
+        Ok(Pairs { pairs, sums, is_loose: certificate.loose() != 0.0 })
+    }
+
+    /// Adds triangle `t` with this frame, where C eps(v) - tau is `apart`.
+    pub fn add(
+        &mut self,
+        certificate: &Certificate,
+        state: &Balanced<S>,
+        t: usize,
+        (frame, apart): (&Frame<S>, &Composite<S>),
+    ) {
+        let (piece, triangle) = (&certificate.pieces[t], &state.triangles[t]);
+        for ((_, pair), sums) in self.pairs.iter().zip(&mut self.sums) {
+            let (material, double_area) = (piece.material(), triangle.double_area());
+            let (of_w, missed) = sums.dual.stresses_in(frame, pair, t);
+            let eta = missed.energy(&material, double_area);
+            sums.middle += product(&material, apart, &missed, double_area) / S::from(2);
+            sums.eta += eta;
+            if self.is_loose {
+                sums.norm += of_w.energy(&material, double_area);
+            }
+            sums.shares.push(eta.upper());
+        }
+    }
+}
+
+impl<S: Enclosing> Forces<'_, S> {
     /// Encloses the contact force with the weight of its target by each of some dual pairs; an end may be infinite.
     ///
     /// # Errors
@@ -222,36 +290,25 @@ impl<S: Enclosing> Forces<'_, S> {
         pairs: &[(Target, Certificate)],
         cover: Option<&Cover>,
     ) -> Result<Vec<ByPair>, WrongPair> {
-        if pairs.is_empty() {
-            return Ok(Vec::new());
-        }
         let (certificate, state) = (self.certificate, self.state);
-        let zero = S::from(0);
-        let mut sums = Vec::with_capacity(pairs.len());
-        for (_, pair) in pairs {
-            pair.check_shape()?;
-            self.check_pair(pair)?;
-            let (points, triangles) = (state.points.clone(), state.triangles.clone());
-            let dual = pair.balanced_on(state.topology.clone(), points, triangles)?;
-            pair.check_balance(&dual)?;
-            let shares = Vec::with_capacity(pair.pieces.len());
-            sums.push(Sums { dual, middle: zero, eta: zero, norm: zero, shares });
-        }
-        for (t, piece) in certificate.pieces.iter().enumerate() {
-            let (material, double_area) = (piece.material(), state.triangles[t].double_area());
-            let frame = Frame::new(&state.triangles[t]);
+        let mut pairs = Pairs::new(certificate, state, pairs)?;
+        for (t, triangle) in state.triangles.iter().enumerate() {
+            let frame = Frame::new(triangle);
             let (_, apart) = state.stresses_in(&frame, certificate, t);
-            for ((_, pair), sums) in pairs.iter().zip(&mut sums) {
-                let (of_w, missed) = sums.dual.stresses_in(&frame, pair, t);
-                let eta = missed.energy(&material, double_area);
-                sums.middle += product(&material, &apart, &missed, double_area) / S::from(2);
-                sums.eta += eta;
-                if self.loose != 0.0 {
-                    sums.norm += of_w.energy(&material, double_area);
-                }
-                sums.shares.push(eta.upper());
-            }
+            pairs.add(certificate, state, t, (&frame, &apart));
         }
+        self.by_summed_pairs(pairs, cover)
+    }
+
+    /// [`Forces::by_pairs`], with the sums over the triangles at hand.
+    ///
+    /// # Errors
+    /// A pair whose w is not what it should be on Gamma_C.
+    pub(crate) fn by_summed_pairs(
+        &self,
+        Pairs { pairs, sums, .. }: Pairs<S>,
+        cover: Option<&Cover>,
+    ) -> Result<Vec<ByPair>, WrongPair> {
         let all = pairs.iter().zip(sums);
         all.map(|((target, pair), sums)| self.by_sums(pair, *target, sums, cover)).collect()
     }
@@ -317,18 +374,6 @@ impl<S: Enclosing> Forces<'_, S> {
         ];
         Ok(ByPair { between, shares, factors })
     }
-}
-
-/// Sums over the triangles for a pair.
-struct Sums<S> {
-    dual: Balanced<S>,
-    /// R0
-    middle: S,
-    /// eta^2
-    eta: S,
-    /// |w|_a^2, where the error of data is to be multiplied with it.
-    norm: S,
-    shares: Vec<f64>,
 }
 
 #[cfg(test)]

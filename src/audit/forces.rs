@@ -16,7 +16,7 @@ use nalgebra::{Matrix2, Vector2};
 use super::balanced::Balanced;
 use super::certificate::{Certificate, Edge, Piece, Role, Shape, exactly, is_oblique};
 use super::checks::Rejection;
-use super::dual::WrongPair;
+use super::dual::{Pairs, WrongPair};
 use super::proof::Proof;
 use crate::kernel::{Ball, Enclosing, Interval, Scalar};
 
@@ -83,6 +83,14 @@ pub(crate) fn elevated<S: Enclosing>([a, b]: [S; 2], bulge: S) -> [S; 4] {
 }
 
 impl Certificate {
+    /// The error of L(w) and a(v, w) for each unit of |w|_a, as data oscillate.
+    pub(crate) fn loose(&self) -> f64 {
+        let square = |piece: &Piece| piece.oscillation * piece.oscillation;
+        let oscillation = self.pieces.iter().map(square).sum::<f64>().sqrt();
+        // Quadrature is not rounded outwards, either.
+        (oscillation + self.lift()) / 2.0
+    }
+
     /// The direction of contact on an edge of Gamma_C, at both ends.
     pub fn directions<S: Enclosing>(&self, e: usize, points: &[Vector2<S>]) -> [Vector2<S>; 2] {
         if let Role::Contact { along: Some(d), .. } = self.edges[e].role {
@@ -320,7 +328,8 @@ impl Certificate {
         evidence: &Evidence,
     ) -> Result<Vec<Result<[f64; 2], WrongLifting>>, WrongPair> {
         let state = self.balanced::<S>(self.topology()?)?;
-        let (_, found, pairs) = self.forces_near(&state, &self.sum(&state)?, evidence)?;
+        let (proof, pairs) = self.sum_with_pairs(&state, &evidence.pairs)?;
+        let (_, found, pairs) = self.forces_near(&state, &proof, evidence, pairs)?;
         let targets = evidence.liftings.iter().map(|(target, _)| *target);
         let nearest = |(target, ends): (Target, Result<[f64; 2], WrongLifting>)| {
             ends.map(|ends| evidence.nearest(target, ends, &pairs))
@@ -334,12 +343,13 @@ impl Certificate {
         state: &Balanced<Ball>,
         proof: &Proof,
         evidence: &Evidence,
+        pairs: Result<Pairs<Ball>, WrongPair>,
     ) -> Result<(), Rejection> {
         let Some(claimed) = &evidence.between else { return Ok(()) };
         let wrong = |force: usize, problem: &dyn Display| {
             Err(Rejection::Force { force, problem: problem.to_string() })
         };
-        let (cover, found, pairs) = match self.forces_near(state, proof, evidence) {
+        let (cover, found, pairs) = match self.forces_near(state, proof, evidence, pairs) {
             Ok(found) => found,
             Err(WrongPair::Rejected(rejection)) => return Err(rejection),
             Err(error) => return wrong(0, &error),
@@ -375,6 +385,7 @@ impl Certificate {
         state: &Balanced<S>,
         proof: &Proof,
         evidence: &Evidence,
+        pairs: Result<Pairs<S>, WrongPair>,
     ) -> Result<Found, WrongPair> {
         let mean = Mean::new(state, proof, self.lift());
         if evidence.of.len() != self.edges.len() {
@@ -384,7 +395,7 @@ impl Certificate {
         let forces = Forces::new(self, state, &evidence.of, mean);
         let cover = evidence.cover.as_ref().and_then(|w| forces.cover(w).ok());
         let found = forces.between(&evidence.liftings, cover.as_ref());
-        let pairs = forces.by_pairs(&evidence.pairs, cover.as_ref())?;
+        let pairs = forces.by_summed_pairs(pairs?, cover.as_ref())?;
         Ok((cover, found, pairs.into_iter().map(|pair| pair.between).collect()))
     }
 }
@@ -400,10 +411,7 @@ impl<'a, S: Enclosing> Forces<'a, S> {
         of: &'a [Option<usize>],
         mean: Mean,
     ) -> Self {
-        let square = |piece: &Piece| piece.oscillation * piece.oscillation;
-        let oscillation = certificate.pieces.iter().map(square).sum::<f64>().sqrt();
-        // Quadrature is not rounded outwards, either.
-        let loose = (oscillation + certificate.lift()) / 2.0;
+        let loose = certificate.loose();
         Forces { certificate, state, of, mean, loose, unbalanced: unbalanced(certificate, state) }
     }
 

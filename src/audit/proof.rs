@@ -30,8 +30,9 @@ use nalgebra::Vector2;
 
 use super::balanced::Balanced;
 use super::certificate::{Shape, exactly};
-use super::forces::Evidence;
-use crate::kernel::composite::Composite;
+use super::dual::{Pairs, WrongPair};
+use super::forces::{Evidence, Target};
+use crate::kernel::composite::{Composite, Frame};
 use crate::kernel::{Ball, Enclosing};
 
 /// The bound that a certificate proves.
@@ -102,7 +103,7 @@ impl Certificate {
     pub fn audit(&self, claim: &Claim) -> Result<Proof, Rejection> {
         let state = self.balanced::<Ball>(self.topology()?)?;
         self.check_balance(&state)?;
-        let proof = self.sum(&state)?;
+        let (proof, pairs) = self.sum_with_pairs(&state, &claim.forces.pairs)?;
         if claim.shares.len() != proof.shares.len() {
             let (found, expected) = (claim.shares.len(), proof.shares.len());
             return Err(Rejection::Length { what: "claimed shares", found, expected });
@@ -117,20 +118,26 @@ impl Certificate {
         if !bound.is_at_most(claim.bound) {
             return Err(Rejection::Bound { claimed: claim.bound, found: bound });
         }
-        self.check_forces(&state, &proof, &claim.forces)?;
+        self.check_forces(&state, &proof, &claim.forces, pairs)?;
         Ok(proof)
     }
 
     /// The tractions balance on every triangle to the rounding of doubles.
     pub(crate) fn check_balance<S: Enclosing>(&self, state: &Balanced<S>) -> Result<(), Rejection> {
+        let size = |x: S| x.lower().abs().max(x.upper().abs());
+        // The sum of the forces' sizes, and the largest component of the edge.
+        let on_edge = |(edge, forces): (&Edge, &[Vector2<S>; 2])| {
+            let [start, end] = edge.ends.map(|p| state.points[p]);
+            let [x, y] = (end - start).into();
+            let forces: f64 = forces.iter().flatten().copied().map(size).sum();
+            (forces, size(x).max(size(y)))
+        };
+        let edges: Vec<(f64, f64)> = self.edges.iter().zip(&state.forces).map(on_edge).collect();
         for (t, piece) in self.pieces.iter().enumerate() {
-            let loads = state.loads_as_given(self, t);
-            let triangle = &state.triangles[t];
-            let size = |x: S| x.lower().abs().max(x.upper().abs());
-            let reach =
-                (0..3).flat_map(|i| <[S; 2]>::from(triangle.edge(i))).map(size).fold(0.0, f64::max);
-            let area = size(triangle.double_area());
-            let forces: f64 = loads.forces.iter().flatten().flatten().copied().map(size).sum();
+            let of_edges = piece.edges.map(|e| edges[e]);
+            let forces: f64 = of_edges.iter().map(|(forces, _)| forces).sum();
+            let reach = of_edges.iter().map(|&(_, reach)| reach).fold(0.0, f64::max);
+            let area = size(state.triangles[t].double_area());
             let body: f64 = piece.body.iter().flatten().map(|f| f.abs()).sum();
             let allowed = IMBALANCE * (forces + area * body);
             let [x, y, moment] = &state.resultants[t];
@@ -212,6 +219,30 @@ impl Certificate {
     /// The right side of the theorem.
     #[doc(hidden)]
     pub fn sum<S: Enclosing>(&self, state: &Balanced<S>) -> Result<Proof, Rejection> {
+        self.sum_beside(state, |_, _, _| ())
+    }
+
+    /// [`Certificate::sum`], and in the same pass those of some dual pairs, or why they are none.
+    pub(crate) fn sum_with_pairs<'a, S: Enclosing>(
+        &self,
+        state: &Balanced<S>,
+        pairs: &'a [(Target, Certificate)],
+    ) -> Result<(Proof, Result<Pairs<'a, S>, WrongPair>), Rejection> {
+        let mut pairs = Pairs::new(self, state, pairs);
+        let proof = self.sum_beside(state, |t, frame, apart| {
+            if let Ok(pairs) = &mut pairs {
+                pairs.add(self, state, t, (frame, apart));
+            }
+        })?;
+        Ok((proof, pairs))
+    }
+
+    /// [`Certificate::sum`]; `also` gets each triangle with its frame and C eps(v) - tau there.
+    fn sum_beside<S: Enclosing>(
+        &self,
+        state: &Balanced<S>,
+        mut also: impl FnMut(usize, &Frame<S>, &Composite<S>),
+    ) -> Result<Proof, Rejection> {
         let Balanced { triangles, v, forces, .. } = state;
         let zero = S::from(0);
         let (mut square, mut norm, mut energy) = (zero, zero, zero);
@@ -219,7 +250,9 @@ impl Certificate {
         for (t, piece) in self.pieces.iter().enumerate() {
             let material = piece.material();
             let double_area = triangles[t].double_area();
-            let (sigma, distance) = state.stresses(self, t);
+            let frame = Frame::new(&triangles[t]);
+            let (sigma, distance) = state.stresses_in(&frame, self, t);
+            also(t, &frame, &distance);
             let share = self.share(state, t, &distance);
             shares.push(share.upper());
             square += share;

@@ -244,6 +244,13 @@ struct Comparison<'a> {
 }
 
 impl Comparison<'_> {
+    /// The edge of the case's outline that an edge of the certificate is or is a part of: its number, and its ends with the body
+    /// on the left.
+    fn side(&self, edge: &Edge) -> Option<(usize, [usize; 2])> {
+        let ends = <[usize; 2]>::try_from(corners(self.certificate, &edge.ends)).ok()?;
+        self.sides.get(&ends).copied()
+    }
+
     /// Each edge whose boundary is named is on that boundary.
     fn names(&self, forces: &Evidence) -> Result<(), Difference> {
         let Comparison { certificate, parts: &Parts { mesh, .. }, .. } = *self;
@@ -253,8 +260,7 @@ impl Comparison<'_> {
         };
         let on: Vec<BTreeSet<usize>> = forces.names.iter().map(on).collect();
         for (e, (edge, of)) in certificate.edges.iter().zip(&forces.of).enumerate() {
-            let side = <[usize; 2]>::try_from(corners(certificate, &edge.ends)).ok();
-            let number = side.and_then(|side| self.sides.get(&side)).map(|&(number, _)| number);
+            let number = self.side(edge).map(|(number, _)| number);
             if of.is_some_and(|k| number.is_none_or(|number| !on[k].contains(&number))) {
                 return Err(outside("edge", e, "is not on the boundary that it is said to be on"));
             }
@@ -286,11 +292,8 @@ impl Comparison<'_> {
     fn pieces(&self, origins: &[usize]) -> Result<(), Difference> {
         let Comparison { certificate, parts, .. } = *self;
         let data = Data::new(parts.problem);
-        let whole = |e: usize| {
-            let ends = corners(certificate, &certificate.edges[e].ends);
-            let ends = <[usize; 2]>::try_from(ends).ok();
-            ends.and_then(|ends| self.sides.get(&ends)).map_or(usize::MAX, |&(number, _)| number)
-        };
+        let whole =
+            |e: usize| self.side(&certificate.edges[e]).map_or(usize::MAX, |(number, _)| number);
         for (i, (piece, &t)) in certificate.pieces.iter().zip(origins).enumerate() {
             let [found, expected] = [&piece.material, parts.material(t)].map(Material::stiffness);
             self.same("triangle", i, ("stiffness", 0.0), &found, &expected)?;
@@ -307,8 +310,7 @@ impl Comparison<'_> {
     /// Compares the role of boundary edge `e`, and its data.
     fn edge(&self, e: usize, edge: &Edge) -> Result<(), Difference> {
         let Comparison { certificate, parts, .. } = *self;
-        let side = <[usize; 2]>::try_from(corners(certificate, &edge.ends)).ok();
-        let Some(&(number, [a, b])) = side.and_then(|side| self.sides.get(&side)) else {
+        let Some((number, [a, b])) = self.side(edge) else {
             return Err(outside("edge", e, "is on no boundary of the case"));
         };
         // Where its ends lie on the side of the triangle.
