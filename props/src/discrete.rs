@@ -1,9 +1,9 @@
 //! Method (8) as the solver has it on a mesh, over rationals: places of the vertices, Lamé coefficients, gamma, |E|, n, g,
 //! the loads and the points of a rule are the solver's doubles, taken for the rational numbers that they are. The solver's own
-//! loops ([`precise`]) compute with them: forces, stresses and P are its code, and exact. The tangent is the kernel's.
+//! loops ([`residual`]) compute with them: forces, stresses and P are its code, and exact. The tangent is the kernel's.
 
 use signorini::fem::element::value_at;
-use signorini::fem::precise;
+use signorini::fem::residual;
 use signorini::fem::{ContactFace, Discretization, EdgeRule};
 use signorini::kernel::edge_integral::{self, ExactEdge};
 use signorini::kernel::{EdgeIntegrals, Material, P1, P2, Plane};
@@ -50,7 +50,7 @@ impl<'a> Discrete<'a> {
         Discrete {
             numbers,
             count,
-            edges: d.contact.iter().map(|edge| precise::on_edge(d, edge)).collect(),
+            edges: d.contact.iter().map(|edge| residual::on_edge(d, edge)).collect(),
             rule: match &d.rule {
                 EdgeRule::Exact => None,
                 EdgeRule::Gauss(points) => {
@@ -139,7 +139,7 @@ impl<'a> Discrete<'a> {
     /// a(u, v) for every basis function v.
     fn internal_forces(&self, u: &[[Exact; 2]]) -> Nodal {
         let mut forces = self.nowhere();
-        precise::add_internal_forces(&self.d.space, &self.d.problem.material, u, &mut forces);
+        residual::add_internal_forces(&self.d.space, &self.d.problem.material, u, &mut forces);
         forces
     }
 
@@ -198,7 +198,7 @@ impl<'a> Discrete<'a> {
 
     /// The residual of (8) at u for every basis function: at the prescribed components the reactions.
     pub fn reactions(&self, u: &[[Exact; 2]]) -> Nodal {
-        let mut residual = precise::linear_residual(self.d, &self.edges, u);
+        let mut residual = residual::linear_residual(self.d, &self.edges, u);
         for (e, edge) in self.edges.iter().enumerate() {
             let gradient = self.integrals(&self.p(e, u)).0.into_iter();
             let forces: Vec<Exact> = gradient.map(|g| self.weight(e) * g).collect();
@@ -280,7 +280,7 @@ impl<'a> Discrete<'a> {
         let owner = |e: usize| self.d.contact[e].edge.triangle;
         (0..self.edges.len()).fold(Exact::from(0), |kappa, e| {
             let t = owner(e);
-            let area = precise::exactly::<Exact>(mesh.triangle(t)).double_area() / Exact::from(2);
+            let area = residual::exactly::<Exact>(mesh.triangle(t)).double_area() / Exact::from(2);
             let owned = (0..self.edges.len()).filter(|&other| owner(other) == t);
             let length = sum(owned, |other| self.edges[other].length);
             let gamma = self.edges[e].gamma;

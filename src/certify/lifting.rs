@@ -16,7 +16,7 @@ use super::parts::{Boundary, Parts};
 use super::sweeps::improve;
 use crate::fem::matrix::{LowerTriangle, Neighbours, Numbering};
 use crate::fem::mesh::length;
-use crate::fem::precise::add_internal_forces;
+use crate::fem::residual::add_internal_forces;
 use crate::fem::{BoundaryEdge, Degree, Problem, Space};
 use crate::solve::factor::Factor;
 use crate::solve::ordering::nested_dissection;

@@ -342,34 +342,11 @@ mod tests {
     }
 
     #[test]
-    fn a_third_three_times_contains_one_and_is_known_to_a_hundred_bits() {
-        let off = third() + third() + third() - Ball::from(1);
-        assert!(off.lower() <= 0.0 && off.upper() >= 0.0);
-        assert!(off.radius() > 0.0 && off.magnitude() < 1e-29, "{off:?}");
-    }
-
-    #[test]
-    fn control_a_centre_alone_misses_what_its_ball_contains() {
-        // 10^16 + 1/3 - 10^16 - 1/3 is 0; the centres give some 1e-16, and only the radii say so.
-        let large = Ball::from(1e30);
-        let off = (large + third().centre()) - large - third();
-        assert!(off.lower() <= 0.0 && off.upper() >= 0.0);
-        assert!(off.centre().head() != 0.0, "the sum is rounded: {off:?}");
-    }
-
-    #[test]
-    fn roots_quotients_and_products_contain_the_exact_ones() {
-        for x in [2.0, 3.0, 0.1, 1e-30, 7e40] {
-            let root = Ball::from(x).sqrt();
-            let off = root * root - Ball::from(x);
-            assert!(off.lower() <= 0.0 && off.upper() >= 0.0 && off.magnitude() < 1e-29 * x);
-            let one = Ball::from(x) * (Ball::from(1) / Ball::from(x)) - Ball::from(1);
-            assert!(one.lower() <= 0.0 && one.upper() >= 0.0 && one.magnitude() < 1e-29);
-        }
+    fn what_overflows_has_no_bound_and_what_underflows_is_enclosed() {
         assert!(!(Ball::from(1) / Ball::from(0)).is_finite());
         assert!(!(Ball::from(1e300) * Ball::from(1e300)).is_finite());
         let tiny = Ball::from(1e-200) * Ball::from(1e-200);
-        assert!(tiny.lower() <= 0.0 && tiny.upper() >= 0.0, "an underflow is enclosed: {tiny:?}");
+        assert!(tiny.lower() <= 0.0 && tiny.upper() >= 0.0, "{tiny:?}");
     }
 
     #[test]

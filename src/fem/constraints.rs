@@ -12,10 +12,9 @@
 use std::collections::BTreeMap;
 
 use super::data::{DataError, finite};
-use super::function::SharedFunction;
 use super::held::pins;
 use super::mesh::BoundaryEdge;
-use super::problem::{Condition, Problem};
+use super::problem::{Condition, Problem, SharedFunction};
 use super::rigid::{self, FreeMotion, Parts};
 use super::smooth::SmoothBoundary;
 use super::space::Space;

@@ -12,7 +12,7 @@ use super::element::Degree;
 use super::mesh::BoundaryEdge;
 use super::quadrature;
 use crate::kernel::edge_integral::{self, ExactEdge};
-use crate::kernel::{ContactEdge, EdgeIntegrals, Material, P1, P2, Scalar, Triangle};
+use crate::kernel::{ContactEdge, EdgeIntegrals, Element, Material, P1, P2, Scalar, Triangle};
 
 /// An edge of Gamma_C.
 #[derive(Clone, Debug)]
@@ -63,29 +63,10 @@ impl<S: Scalar> Functionals<S> {
         material: &Material<S>,
         gamma: S,
     ) -> Self {
-        match (degree, directions) {
-            (Degree::One, None) => {
-                Functionals::One(ContactEdge::new::<P1>(triangle, i, n, material, gamma))
-            }
-            (Degree::Two, None) => {
-                Functionals::Two(ContactEdge::new::<P2>(triangle, i, n, material, gamma))
-            }
-            (Degree::One, Some(d)) => Functionals::One(ContactEdge::along::<P1>(
-                triangle,
-                i,
-                n,
-                &[d[0], d[1]],
-                material,
-                gamma,
-            )),
-            (Degree::Two, Some(d)) => Functionals::Two(ContactEdge::along::<P2>(
-                triangle,
-                i,
-                n,
-                &[d[0], d[1], d[2]],
-                material,
-                gamma,
-            )),
+        let given = (triangle, i, n, directions, material, gamma);
+        match degree {
+            Degree::One => Functionals::One(functionals::<P1, 3, 2, S>(given)),
+            Degree::Two => Functionals::Two(functionals::<P2, 6, 3, S>(given)),
         }
     }
 
@@ -118,6 +99,22 @@ impl<S: Scalar> Functionals<S> {
         match self {
             Functionals::One(edge) => edge.stress_product(weight, i, j),
             Functionals::Two(edge) => edge.stress_product(weight, i, j),
+        }
+    }
+}
+
+/// Triangle, number of the edge, n, n~ where it is not n, material and gamma.
+type Given<'a, S> =
+    (&'a Triangle<S>, usize, Vector2<S>, Option<&'a [Vector2<S>]>, &'a Material<S>, S);
+
+fn functionals<E: Element<N, M>, const N: usize, const M: usize, S: Scalar>(
+    (triangle, i, n, directions, material, gamma): Given<S>,
+) -> ContactEdge<S, N, M> {
+    match directions {
+        None => ContactEdge::new::<E>(triangle, i, n, material, gamma),
+        Some(along) => {
+            let along = std::array::from_fn(|a| along[a]);
+            ContactEdge::along::<E>(triangle, i, n, &along, material, gamma)
         }
     }
 }
@@ -176,20 +173,28 @@ impl<S: Scalar + From<f64>> ContactFace<S> {
     /// Adds -int gamma sigma_n(u) sigma_n(v) over the edge for every basis function v.
     pub fn add_stresses(&self, u: &[[S; 2]], forces: &mut [[S; 2]]) {
         let factors = self.stress_factors(self.sigma_n(|node| u[node]));
-        self.add(&self.functionals.sigma_n(), &factors, forces);
+        self.each_force(&self.functionals.sigma_n(), &factors, |node, f| {
+            forces[node] = [forces[node][0] + f[0], forces[node][1] + f[1]];
+        });
     }
 
     /// Adds the values of P0 at the nodes, each times its factor, as forces on the body.
     pub fn add_contact(&self, factors: &[S], forces: &mut [[S; 2]]) {
-        self.add(&self.functionals.p0(), factors, forces);
+        self.each_force(&self.functionals.p0(), factors, |node, f| {
+            forces[node] = [forces[node][0] + f[0], forces[node][1] + f[1]];
+        });
     }
 
-    fn add(&self, functionals: &[&[Vector2<S>]], factors: &[S], forces: &mut [[S; 2]]) {
+    /// Calls `add` with the forces that functionals are at the nodes of the triangle, each functional times its factor.
+    pub(super) fn each_force(
+        &self,
+        functionals: &[&[Vector2<S>]],
+        factors: &[S],
+        mut add: impl FnMut(usize, Vector2<S>),
+    ) {
         for (functional, &factor) in functionals.iter().zip(factors) {
             for (&node, f) in self.nodes.iter().zip(*functional) {
-                for c in 0..2 {
-                    forces[node][c] += factor * f[c];
-                }
+                add(node, *f * factor);
             }
         }
     }

@@ -7,6 +7,11 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
+/// The Euclidean norm of a list.
+pub fn norm(a: &[f64]) -> f64 {
+    dot(a, a).sqrt()
+}
+
 /// The sum of the products of two fields or functionals.
 pub fn inner(f: &[[f64; 2]], u: &[[f64; 2]]) -> f64 {
     f.iter().zip(u).map(|(f, u)| f[0] * u[0] + f[1] * u[1]).sum()
@@ -15,11 +20,12 @@ pub fn inner(f: &[[f64; 2]], u: &[[f64; 2]]) -> f64 {
 /// Sweeps over all pairs of columns; six to ten are what it takes.
 const MOST_SWEEPS: usize = 40;
 
-/// The singular values of the matrix with these columns, the largest first, each with its right singular vector, by Jacobi's
-/// rotations of the columns (Hestenes): a rotation makes two of them orthogonal, and where all are, their lengths are the
+/// The singular values of the matrix with these rows of `n` entries, the largest first, each with its right singular vector, by
+/// Jacobi's rotations of the columns (Hestenes): a rotation makes two of them orthogonal, and where all are, their lengths are the
 /// values. Small ones keep their digits beside large ones. There are as many as columns, zeros among them.
-pub fn singular_vectors(mut columns: Vec<Vec<f64>>) -> Vec<(f64, Vec<f64>)> {
-    let n = columns.len();
+pub fn singular_vectors(rows: &[Vec<f64>], n: usize) -> Vec<(f64, Vec<f64>)> {
+    let mut columns: Vec<Vec<f64>> =
+        (0..n).map(|j| rows.iter().map(|row| row[j]).collect()).collect();
     let unit = |j: usize| (0..n).map(|i| f64::from(u8::from(i == j))).collect::<Vec<f64>>();
     let mut vectors: Vec<Vec<f64>> = (0..n).map(unit).collect();
     for _ in 0..MOST_SWEEPS {
@@ -43,7 +49,7 @@ pub fn singular_vectors(mut columns: Vec<Vec<f64>>) -> Vec<(f64, Vec<f64>)> {
             break;
         }
     }
-    let values = columns.iter().map(|column| dot(column, column).sqrt());
+    let values = columns.iter().map(|column| norm(column));
     let mut pairs: Vec<(f64, Vec<f64>)> = values.zip(vectors).collect();
     pairs.sort_by(|a, b| b.0.total_cmp(&a.0));
     pairs
@@ -97,27 +103,26 @@ mod tests {
         };
         let (u, v) = (reflection(m), reflection(values.len()));
         let entry = |i, j| (0..values.len()).map(|k| u(i, k) * values[k] * v(j, k)).sum();
-        (0..values.len()).map(|j| (0..m).map(|i| entry(i, j)).collect()).collect()
+        (0..m).map(|i| (0..values.len()).map(|j| entry(i, j)).collect()).collect()
     }
 
     #[test]
     fn singular_values_are_found_beside_larger_ones_and_zeros_as_zeros() {
         let values = [3e3, 2.0, 2.0, 1e-6, 0.0];
-        let columns = with_singular_values(&values, 40);
-        let found = singular_vectors(columns.clone());
+        let rows = with_singular_values(&values, 40);
+        let found = singular_vectors(&rows, values.len());
         for ((value, vector), expected) in found.iter().zip(values) {
             // Rounding of the columns, which are as large as the largest value.
             assert_abs_diff_eq!(*value, expected, epsilon = 1e-11);
             assert_abs_diff_eq!(dot(vector, vector), 1.0, epsilon = 1e-14);
-            let row = |i: usize| columns.iter().map(|c| c[i]).collect::<Vec<f64>>();
-            let image: Vec<f64> = (0..40).map(|i| dot(&row(i), vector)).collect();
-            assert_abs_diff_eq!(dot(&image, &image).sqrt(), expected, epsilon = 1e-11);
+            let image: Vec<f64> = rows.iter().map(|row| dot(row, vector)).collect();
+            assert_abs_diff_eq!(norm(&image), expected, epsilon = 1e-11);
         }
     }
 
     #[test]
     fn one_row_stops_one_motion_and_leaves_the_others() {
-        let found = singular_vectors(vec![vec![3.0], vec![0.0], vec![4.0]]);
+        let found = singular_vectors(&[vec![3.0, 0.0, 4.0]], 3);
         let values: Vec<f64> = found.iter().map(|(value, _)| *value).collect();
         // Sums of two products.
         assert_abs_diff_eq!(values[..], [5.0, 0.0, 0.0], epsilon = 1e-15);

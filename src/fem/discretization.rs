@@ -1,9 +1,5 @@
-//! Method (8) on a mesh: all its parts in one place, and its residual
-//!
-//! R(u; v) = A(u, v) + int (1/gamma) \[P(u)\]+ P0(v) - L(v)
-//!
-//! for every basis function v, straight from the definitions: stresses are integrated against strains, no matrix is
-//! involved. On the free degrees of freedom the solution makes it zero; on the prescribed ones it is the reaction.
+//! Method (8) on a mesh: all its parts in one place, and its [residual](super::residual) in doubles. On the free degrees of
+//! freedom the solution makes it zero; on the prescribed ones it is the reaction.
 
 use nalgebra::Vector2;
 
@@ -13,16 +9,15 @@ use super::contact_face::{ContactFace, EdgeRule};
 use super::contact_line::{self, Coercivity, Gamma};
 use super::data::DataError;
 use super::dense::inner;
-use super::element::{Degree, with_element};
+use super::element::Degree;
 use super::held::{self, NotHeld, Slides};
 use super::loads::{self, Loads};
 use super::material;
 use super::problem::Problem;
+use super::residual::{StressPoint, each_stress};
 use super::rigid::FreeMotion;
 use super::space::Space;
-use crate::kernel::Element;
 use crate::kernel::contact_edge::integral_of_product;
-use crate::kernel::element::displacement_gradient;
 
 /// Method (8) with everything that it needs.
 pub struct Discretization<'a> {
@@ -64,12 +59,7 @@ pub struct Functional {
     pub energy: f64,
 }
 
-/// The value of a displacement at the first node less that at the second.
-pub trait Difference: Fn(usize, usize) -> Vector2<f64> {}
-
-impl<F: Fn(usize, usize) -> Vector2<f64>> Difference for F {}
-
-fn in_doubles(u: &[[f64; 2]]) -> impl Difference {
+fn in_doubles(u: &[[f64; 2]]) -> impl Fn(usize, usize) -> Vector2<f64> {
     |node, from| Vector2::from(u[node]) - Vector2::from(u[from])
 }
 
@@ -83,20 +73,6 @@ impl Functional {
         for c in 0..2 {
             self.values[node][c] += value[c];
             self.magnitudes[node][c] += magnitude;
-        }
-    }
-
-    /// Adds the functionals of an edge, each times its factor.
-    fn add_functionals(
-        &mut self,
-        edge: &ContactFace,
-        functionals: &[&[Vector2<f64>]],
-        factors: &[f64],
-    ) {
-        for (functional, factor) in functionals.iter().zip(factors) {
-            for (&node, f) in edge.nodes.iter().zip(*functional) {
-                self.add(node, *factor * f, factor.abs() * norm_1(*f));
-            }
         }
     }
 }
@@ -197,7 +173,7 @@ impl<'a> Discretization<'a> {
             let pressure = self.rule.integrals(&edge.p(u)).gradient;
             let pressure: Vec<f64> =
                 pressure.iter().map(|g| edge.length / edge.gamma * g).collect();
-            r.add_functionals(edge, &edge.functionals.p0(), &pressure);
+            edge.each_force(&edge.functionals.p0(), &pressure, |node, f| r.add(node, f, norm_1(f)));
         }
         r
     }
@@ -209,12 +185,17 @@ impl<'a> Discretization<'a> {
 
     /// [`Discretization::linear_residual`] of a displacement that is known to more than double precision, by its differences
     /// between nodes: the first node's value less the second one's.
-    pub fn linear_residual_by(&self, difference: impl Difference) -> Functional {
+    pub fn linear_residual_by(
+        &self,
+        difference: impl Fn(usize, usize) -> Vector2<f64>,
+    ) -> Functional {
         let mut r = self.internal_forces_by(&difference);
         for edge in &self.contact {
             let stress = edge.sigma_n(|node| difference(node, edge.nodes[0]).into());
             let factors = edge.stress_factors(stress);
-            r.add_functionals(edge, &edge.functionals.sigma_n(), &factors);
+            edge.each_force(&edge.functionals.sigma_n(), &factors, |node, f| {
+                r.add(node, f, norm_1(f));
+            });
         }
         for (node, load) in self.load.iter().enumerate() {
             r.add(node, -Vector2::from(*load), load[0].abs().max(load[1].abs()));
@@ -224,11 +205,22 @@ impl<'a> Discretization<'a> {
 
     /// a(u, v) = int sigma(u):eps(v) for every basis function v.
     pub fn internal_forces(&self, u: &[[f64; 2]]) -> Functional {
-        self.internal_forces_by(&in_doubles(u))
+        self.internal_forces_by(in_doubles(u))
     }
 
-    fn internal_forces_by(&self, difference: &impl Difference) -> Functional {
-        with_element!(self.space.degree(), internal_forces(self, difference))
+    fn internal_forces_by(&self, difference: impl Fn(usize, usize) -> Vector2<f64>) -> Functional {
+        let mut forces = Functional::zero(self.space.nodes().len());
+        let itself = |triangle| triangle;
+        each_stress(&self.space, &self.problem.material, itself, difference, |point| {
+            let &StressPoint { nodal, slopes, gradient, weight, .. } = point;
+            let [xx, yy, xy] = point.stress.components();
+            let shear = xy * (gradient.m12 + gradient.m21);
+            forces.energy += weight * (xx * gradient.m11 + yy * gradient.m22 + shear);
+            let strain: f64 = nodal.iter().zip(slopes).map(|(u, g)| norm_1(*u) * norm_1(*g)).sum();
+            let most = weight * material::largest_entry(point.material) * strain;
+            point.each_force(|node, force, slope| forces.add(node, force, most * norm_1(slope)));
+        });
+        forces
     }
 
     /// a(u, u) = int sigma(u):eps(u).
@@ -264,41 +256,6 @@ impl<'a> Discretization<'a> {
         }
         energy
     }
-}
-
-/// Stresses are those of the differences from a node of the triangle: what moves it as a whole would cancel.
-fn internal_forces<E: Element<N, M>, const N: usize, const M: usize>(
-    d: &Discretization,
-    difference: &impl Difference,
-) -> Functional {
-    let mut forces = Functional::zero(d.space.nodes().len());
-    for (t, (triangle, nodes)) in d.space.triangles::<N>().enumerate() {
-        let nodal = nodes.map(|node| difference(node, nodes[0]));
-        // Most of a lift: prescribed data are zero but on the boundary.
-        if nodal == [Vector2::zeros(); N] {
-            continue;
-        }
-        let material = d.problem.material.of(t);
-        let stiffness = material::largest_entry(material);
-        let barycentric = triangle.barycentric_gradients();
-        let area = triangle.double_area() / 2.0;
-        let sizes = nodal.map(norm_1);
-        E::at_stiffness_points(|l, weight| {
-            let gradients = E::gradients(l, barycentric);
-            let gradient = displacement_gradient(&nodal, &gradients);
-            let stress = material.stress(gradient);
-            let [xx, yy, xy] = stress.components();
-            let shear = xy * (gradient.m12 + gradient.m21);
-            forces.energy += weight * area * (xx * gradient.m11 + yy * gradient.m22 + shear);
-            let slopes = gradients.map(norm_1);
-            let strain: f64 = sizes.iter().zip(slopes).map(|(u, g)| u * g).sum();
-            let most = weight * area * stiffness * strain;
-            for ((&node, g), slope) in nodes.iter().zip(gradients).zip(slopes) {
-                forces.add(node, weight * area * stress.traction(g), most * slope);
-            }
-        });
-    }
-    forces
 }
 
 fn rounding_of_directions(

@@ -1,12 +1,13 @@
 //! Whether the triangles of a mesh cover no point twice, and whether its boundary is a boundary: seams that don't quite
 //! match look like cracks, and would be solved as such; parts of the body that only a vertex joins are refused.
 //!
-//! Triangles that are counter-clockwise and share whole edges cover a point as often as their outline winds around it. So
-//! it is enough to look at the outline, near linear time in its edges:
+//! Triangles that are counter-clockwise and share whole edges cover a point as often as their outline winds around it. Where
+//! that is twice, some edge of the outline has a triangle on either side. So it is enough to look at the outline, in nearly
+//! linear time:
 //!
 //! - no two edges of the outline cross;
-//! - just outside each chain of the outline the winding number is 0. It does not change along a chain that nothing
-//!   crosses; chains end where the outline meets itself in a vertex. It is counted on a ray;
+//! - no triangle but its own has the middle of an edge of the outline: what lies just outside an edge that nothing crosses is
+//!   the same all along;
 //! - no vertex of the outline lies on an edge that is not its own, or beside it across a void narrower than
 //!   `TOUCHING` times the local edge, and no two vertices are that close across a void.
 //!
@@ -61,7 +62,7 @@ fn check(mesh: &Mesh) -> Result<(), MeshError> {
     // What nearly touches often crosses too, and is better called by its name: it comes first.
     (0..outline.ends.len()).try_for_each(|e| outline.check_vertices(e))?;
     (0..outline.ends.len()).try_for_each(|e| outline.check_crossings(e))?;
-    outline.chains().into_iter().try_for_each(|e| outline.check_outside(e))?;
+    outline.check_outside()?;
     check_joints(mesh)
 }
 
@@ -205,66 +206,42 @@ impl<'m> Outline<'m> {
 
     /// `p` lies inside triangle `t`.
     fn inside(&self, t: usize, p: Vector2<f64>) -> bool {
+        self.is_in(t, p, |turn| turn > 0.0)
+    }
+
+    /// `p` lies on the side of each edge of triangle `t` that `is_within` says of its turn from that edge.
+    fn is_in(&self, t: usize, p: Vector2<f64>, is_within: impl Fn(f64) -> bool) -> bool {
         let corners = self.mesh.triangles()[t].map(|v| self.place(v));
-        (0..3).all(|i| turn(corners[i], corners[(i + 1) % 3], p) > 0.0)
+        (0..3).all(|i| is_within(turn(corners[i], corners[(i + 1) % 3], p)))
     }
 
-    /// One edge of each chain: chains end at the vertices where more than one edge of the outline starts.
-    fn chains(&self) -> Vec<usize> {
-        let mut from: Vec<Option<usize>> = vec![None; self.mesh.vertices().len()];
-        let mut meets = vec![false; self.mesh.vertices().len()];
-        for (e, ends) in self.ends.iter().enumerate() {
-            meets[ends[0]] |= from[ends[0]].replace(e).is_some();
-        }
-        let starts = (0..self.ends.len()).filter(|&e| meets[self.ends[e][0]]);
-        let closed = 0..self.ends.len();
-        let mut known = vec![false; self.ends.len()];
-        let mut chains = Vec::new();
-        for start in starts.chain(closed) {
-            let mut best: Option<(f64, usize)> = None;
-            let mut next = Some(start);
-            while let Some(e) = next.filter(|&e| !known[e]) {
-                known[e] = true;
+    /// The middle of each edge of the outline against the triangles beside it along the longer side of the body.
+    fn check_outside(&self) -> Result<(), MeshError> {
+        let vertices = self.mesh.vertices();
+        let Bounds { low, high } = Bounds::around(vertices.iter().copied());
+        let c = usize::from(high[1] - low[1] > high[0] - low[0]);
+        let edges = self.mesh.outline().iter().enumerate();
+        let mut middles: Vec<(Vector2<f64>, usize)> = edges
+            .map(|(e, edge)| {
                 let [a, b] = self.places(e);
-                let length = length(b - a);
-                if best.is_none_or(|(longest, _)| length > longest) {
-                    best = Some((length, e));
+                (a / 2.0 + b / 2.0, edge.triangle)
+            })
+            .collect();
+        middles.sort_unstable_by(|(a, _), (b, _)| a[c].total_cmp(&b[c]));
+        for (t, corners) in self.mesh.triangles().iter().enumerate() {
+            let Bounds { low, high } = Bounds::around(corners.map(|v| vertices[v]));
+            let first = middles.partition_point(|(middle, _)| middle[c] < low[c]);
+            for (middle, own) in &middles[first..] {
+                if middle[c] > high[c] {
+                    break;
                 }
-                let end = self.ends[e][1];
-                next = if meets[end] { None } else { from[end] };
+                if t != *own && self.is_in(t, *middle, |turn| turn >= 0.0) {
+                    let [x, y] = (*middle).into();
+                    return Err(MeshError::Overlapping { triangles: [*own, t], x, y });
+                }
             }
-            chains.extend(best.map(|(_, e)| e));
         }
-        chains
-    }
-
-    /// The winding number just outside the middle of edge `e`, counted on the ray downwards, or to the left if the edge is
-    /// steep.
-    fn check_outside(&self, e: usize) -> Result<(), MeshError> {
-        let [a, b] = self.places(e);
-        let middle = a / 2.0 + b / 2.0;
-        let c = usize::from((b[1] - a[1]).abs() > (b[0] - a[0]).abs());
-        // The ray enters the body where an edge runs to the right, or down.
-        let enters = |from: f64, to: f64| (from < to) == (c == 0);
-        let mut winding = if enters(a[c], b[c]) { 0 } else { -1 };
-        let mut ray = Bounds::around([middle.into()]);
-        ray.low[1 - c] = f64::NEG_INFINITY;
-        self.tree.meeting(ray, |f| {
-            let [p, q] = self.places(f);
-            let (low, high) = if p[c] < q[c] { (p, q) } else { (q, p) };
-            let side = turn(low, high, middle);
-            let beyond = if c == 0 { side > 0.0 } else { side < 0.0 };
-            if f != e && low[c] <= middle[c] && middle[c] < high[c] && beyond {
-                winding += if enters(p[c], q[c]) { 1 } else { -1 };
-            }
-        });
-        if winding == 0 {
-            return Ok(());
-        }
-        let own = self.mesh.outline()[e].triangle;
-        let other = (0..self.mesh.triangles().len()).find(|&t| t != own && self.inside(t, middle));
-        let [x, y] = middle.into();
-        Err(MeshError::Overlapping { triangles: [own, other.unwrap_or(own)], x, y })
+        Ok(())
     }
 }
 

@@ -13,7 +13,7 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
 use super::contact_face::ContactFace;
-use super::dense::{dot, inner, least_squares, singular_vectors};
+use super::dense::{dot, inner, least_squares, norm, singular_vectors};
 use super::discretization::Discretization;
 use super::element::bernstein;
 use super::rigid::{FreeMotion, Parts, null_space};
@@ -94,13 +94,8 @@ fn rows(
 
 /// A value of c_i below this is zero but for rounding.
 fn negligible(rows: &[Vec<f64>], count: usize, rounding: f64) -> f64 {
-    let columns = (0..count).map(|j| rows.iter().map(|row| row[j]).collect()).collect();
-    let largest = singular_vectors(columns).first().map_or(0.0, |(value, _)| *value);
+    let largest = singular_vectors(rows, count).first().map_or(0.0, |(value, _)| *value);
     SLIDES.max(rounding * (rows.len() as f64).sqrt()) * largest.max(1.0)
-}
-
-fn norm(v: &[f64]) -> f64 {
-    dot(v, v).sqrt()
 }
 
 /// The motions among the combinations of `motions`, which may be off by `rounding`, that slide along every obstacle.
@@ -149,14 +144,11 @@ pub fn slides(
             }
             None => NotHeld { motions: of_part.to_vec(), drive: None },
         })?;
-        let columns = |rows: &[Vec<f64>]| -> Vec<Vec<f64>> {
-            (0..count).map(|j| rows.iter().map(|row| row[j]).collect()).collect()
-        };
         for (i, rows) in &edges {
             idle[*i] = rows.iter().any(|row| norm(row) > none) && kept.iter().all(|(k, _)| k != i);
         }
         let kept: Vec<Vec<f64>> = kept.into_iter().flat_map(|(_, rows)| rows).collect();
-        let free = null_space(columns(&kept), |value, _| value > none);
+        let free = null_space(&kept, count, |value, _| value > none);
         sliding.extend(free.iter().map(|weights| parts.combined(of_part, weights)));
     }
     Ok(Slides { idle, ..Slides::new(sliding, parts, space) })
@@ -166,8 +158,7 @@ pub fn slides(
 type EdgeRows = (usize, Vec<Vec<f64>>);
 
 /// The edges that may press: `loads` are the work of a pressure on whole edges among them, given by their rows, of which
-/// those below
-/// `none` are zero, and still so if they are changed a little within the span of these rows.
+/// those below `none` are zero, and still so if they are changed a little within the span of these rows.
 ///
 /// # Errors
 /// The motion on which the body leaves, and whether the loads drive it: on the verge they do next to no work. Nothing where
@@ -189,8 +180,8 @@ fn press(
             let driven = verge.is_none();
             return Err(Some((verge.unwrap_or(motion), driven)));
         }
-        let columns = (0..loads.len()).map(|j| rows.iter().map(|row| row[j]).collect()).collect();
-        let directions = singular_vectors(columns).into_iter().filter(|(value, _)| *value > none);
+        let directions = singular_vectors(&rows, loads.len());
+        let directions = directions.into_iter().filter(|(value, _)| *value > none);
         let leaves = directions.into_iter().find_map(|(_, direction)| {
             [-MARGIN, MARGIN].into_iter().find_map(|by| {
                 let changed: Vec<f64> =
@@ -373,8 +364,7 @@ pub fn free_where(d: &Discretization, parts: &Parts, pressing: &[bool]) -> Vec<F
         let rows: Vec<Vec<f64>> =
             pressing.flat_map(|(edge, _)| rows(&d.space, edge, at, count)).collect();
         let none = negligible(&rows, count, d.rounding_of_directions());
-        let columns = (0..count).map(|j| rows.iter().map(|row| row[j]).collect()).collect();
-        let weights = null_space(columns, |value, _| value > none);
+        let weights = null_space(&rows, count, |value, _| value > none);
         free.extend(weights.iter().map(|weights| parts.combined(of_part, weights)));
     }
     free
@@ -430,10 +420,9 @@ fn leaving(rows: &[Vec<f64>], target: &[f64], tolerance: f64) -> Option<Vec<f64>
     let mut used: Vec<(usize, f64)> = Vec::new();
     let mut rest = target.to_vec();
     for _ in 0..MOST_EXCHANGES {
-        if dot(&rest, &rest).sqrt() <= tolerance {
+        if norm(&rest) <= tolerance {
             return None;
         }
-        let norm = |c: &[f64]| dot(c, c).sqrt();
         let gain = |i: &usize| dot(&rows[*i], &rest) / norm(&rows[*i]);
         let fresh =
             (0..rows.len()).filter(|i| norm(&rows[*i]) > 0.0 && used.iter().all(|(u, _)| u != i));
@@ -474,7 +463,7 @@ fn leaving(rows: &[Vec<f64>], target: &[f64], tolerance: f64) -> Option<Vec<f64>
             }
         }
     }
-    Some(rest).filter(|rest| dot(rest, rest).sqrt() > tolerance)
+    Some(rest).filter(|rest| norm(rest) > tolerance)
 }
 
 /// The method is finite; this bounds it against rounding.

@@ -3,9 +3,8 @@
 use super::ball::Ball;
 use super::data::{DataError, checked};
 use super::element::Degree;
-use super::function::{Function, SharedFunction};
 use super::pieces::{Features, Rule};
-use super::problem::{Condition, Problem, SurfaceForce};
+use super::problem::{Condition, Function, Problem, SharedFunction, SurfaceForce};
 use super::space::Space;
 use crate::kernel::{Element, P1, P2, Scalar};
 use crate::quote::key;
@@ -222,71 +221,4 @@ fn each_force_on_boundary(
         });
     }
     wrong.map_or(Ok(()), Err)
-}
-
-#[cfg(test)]
-mod tests {
-    use std::collections::BTreeMap;
-    use std::sync::Arc;
-
-    use super::*;
-    use crate::fem::{Diagonal, Rectangle};
-    use crate::kernel::{Material, Plane};
-
-    /// A monomial that says, or hides, that it is one.
-    struct Monomial {
-        power: i32,
-        known: bool,
-    }
-
-    impl Function for Monomial {
-        fn at(&self, [x, _]: [f64; 2]) -> f64 {
-            x.powi(self.power)
-        }
-
-        fn degree(&self) -> Option<u32> {
-            self.known.then_some(self.power.unsigned_abs())
-        }
-    }
-
-    /// The total force of x^power on the square of side 2: as a body force in x, as a traction in y.
-    fn totals(power: i32, known: bool) -> [f64; 2] {
-        let zero = || -> SharedFunction { Arc::new(Monomial { power: 0, known: true }) };
-        let load = || -> SharedFunction { Arc::new(Monomial { power, known }) };
-        let diagonal = Diagonal::Right;
-        let mesh = Rectangle { width: 2.0, height: 2.0, nx: 1, ny: 1, diagonal }.mesh().unwrap();
-        let problem = Problem::new(
-            mesh,
-            Material::lame(1.0, 1.0, Plane::Strain),
-            [load(), Arc::new(|_: [f64; 2]| 0.0)],
-            BTreeMap::from([("top".to_owned(), Condition::Traction([zero(), load()]))]),
-        );
-        let space = Space::new(&problem.mesh, Degree::Two);
-        let load = assemble(&problem, &space).unwrap();
-        let sum = |c: usize| load.iter().map(|l| l[c]).sum::<f64>();
-        // The traction (1, x^power) on the top adds 2 to the first component.
-        [sum(0) - 2.0, sum(1)]
-    }
-
-    #[test]
-    fn polynomial_loads_are_integrated_exactly_when_they_say_so_and_to_degree_6_anyhow() {
-        for power in 0..=20 {
-            let line = 2.0_f64.powi(power + 1) / f64::from(power + 1);
-            for (total, exact) in totals(power, true).into_iter().zip([2.0 * line, line]) {
-                assert!((total - exact).abs() <= 1e-13 * exact, "x^{power}: {total} {exact}");
-            }
-        }
-        for power in 0..=6 {
-            let line = 2.0_f64.powi(power + 1) / f64::from(power + 1);
-            for (total, exact) in totals(power, false).into_iter().zip([2.0 * line, line]) {
-                assert!((total - exact).abs() <= 1e-13 * exact, "x^{power}: {total} {exact}");
-            }
-        }
-    }
-
-    #[test]
-    fn control_a_monomial_of_degree_20_needs_its_degree_to_be_known() {
-        let exact = 2.0_f64.powi(22) / 21.0;
-        assert!((totals(20, false)[0] - exact).abs() > 1e-6 * exact);
-    }
 }

@@ -2,6 +2,8 @@
 //! -1 < nu < 1/2; tensors in the plane with positive eigenvalues. The kernel's constructors take what they are given, over any
 //! numbers; these check it.
 //!
+//! A body has one, or one for each part of it: a triangle has exactly one.
+//!
 //! The eigenvalues of A are those of its matrix in Mandel's form, with the root of 2 times 2 eps_xy and sigma_xy.
 
 use nalgebra::Vector3;
@@ -27,6 +29,78 @@ pub enum MaterialError {
     NotElliptic { stiffness: [f64; 6], eigenvalue: f64 },
     #[error("the stiffness across the plane is not finite")]
     Across,
+}
+
+/// The material of each triangle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Materials {
+    distinct: Vec<Material<f64>>,
+    /// The material of each triangle by its place in `distinct`; empty where the whole body is made of the first.
+    of_triangle: Vec<usize>,
+}
+
+impl From<Material<f64>> for Materials {
+    /// One material for the whole body.
+    fn from(material: Material<f64>) -> Self {
+        Materials { distinct: vec![material], of_triangle: Vec::new() }
+    }
+}
+
+impl Materials {
+    /// The materials of a body of `triangles` triangles: `rest`, and on the triangles of each of `parts` that part's own.
+    /// Numbers beyond the last triangle are passed over.
+    pub fn in_parts<'a>(
+        rest: Material<f64>,
+        triangles: usize,
+        parts: impl IntoIterator<Item = (Material<f64>, &'a [usize])>,
+    ) -> Self {
+        let mut materials = Materials { distinct: vec![rest], of_triangle: vec![0; triangles] };
+        for (material, members) in parts {
+            for &t in members {
+                if let Some(of) = materials.of_triangle.get_mut(t) {
+                    *of = materials.distinct.len();
+                }
+            }
+            materials.distinct.push(material);
+        }
+        materials
+    }
+
+    /// That of triangle `t`.
+    pub fn of(&self, t: usize) -> &Material<f64> {
+        &self.distinct[self.of_triangle.get(t).copied().unwrap_or(0)]
+    }
+
+    /// The place of triangle `t`'s material among the materials: two triangles with the same place share theirs.
+    pub fn place_of(&self, t: usize) -> usize {
+        self.of_triangle.get(t).copied().unwrap_or(0)
+    }
+
+    /// Replaces every material by `f` of it.
+    #[must_use]
+    pub fn map(&self, f: impl FnMut(&Material<f64>) -> Material<f64>) -> Self {
+        let distinct = self.distinct.iter().map(f).collect();
+        Materials { distinct, of_triangle: self.of_triangle.clone() }
+    }
+
+    /// The materials on parts of these triangles: part i is one of triangle `origin[i]`.
+    #[must_use]
+    pub fn on_parts(&self, origin: &[usize]) -> Self {
+        let one = self.of_triangle.is_empty();
+        let of_triangle =
+            if one { Vec::new() } else { origin.iter().map(|&t| self.place_of(t)).collect() };
+        Materials { distinct: self.distinct.clone(), of_triangle }
+    }
+
+    /// Each material once, whether a triangle is made of it or not.
+    pub fn distinct(&self) -> &[Material<f64>] {
+        &self.distinct
+    }
+
+    /// The one material, if the whole body is made of it.
+    pub fn only(&self) -> Option<&Material<f64>> {
+        if self.of_triangle.is_empty() { self.distinct.first() } else { None }
+    }
 }
 
 /// Moduli along and across the axis of an orthotropic material.
@@ -246,6 +320,16 @@ pub fn largest_entry(material: &Material<f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn each_triangle_has_the_material_of_its_part() {
+        let [a, b, c] = [1.0, 2.0, 3.0].map(|mu| Material::lame(1.0, mu, Plane::Strain));
+        let materials = Materials::in_parts(a, 5, [(b, &[0, 3][..]), (c, &[4])]);
+        assert_eq!([0, 1, 2, 3, 4].map(|t| materials.of(t).mu()), [2.0, 1.0, 1.0, 2.0, 3.0]);
+        assert_eq!(materials.only(), None);
+        assert_eq!(Materials::from(a).only(), Some(&a));
+        assert_eq!(Materials::from(a).of(17), &a);
+    }
 
     #[test]
     fn materials_that_are_stable_are_made_and_the_others_refused_with_the_reason() {

@@ -13,7 +13,7 @@ use super::constraints::{Constraints, from_frame, in_frame};
 use super::contact_face::ContactFace;
 use super::discretization::Discretization;
 use super::element::{Degree, with_element};
-use super::materials::Materials;
+use super::material::Materials;
 use super::space::Space;
 use crate::kernel::element::stiffness;
 use crate::kernel::pattern::{self, Lists, Numbers};

@@ -5,6 +5,7 @@
 //! coordinates are off by a share of that) become the one of them that comes first, chains of such vertices too.
 //! Triangles that lose an edge by it are left out.
 
+use super::groups::groups;
 use super::tree::{Bounds, Tree};
 
 /// Vertices and triangles after merging.
@@ -26,34 +27,20 @@ pub struct Merged {
 pub fn merge(vertices: &[[f64; 2]], triangles: &[[usize; 3]], share: f64) -> Merged {
     let distance = share * Bounds::around(vertices.iter().copied()).size();
     let tree = Tree::new(vertices.iter().map(|&v| Bounds::around([v])).collect());
-    // The first vertex of each group, found by way of others of the group.
-    let mut first: Vec<usize> = (0..vertices.len()).collect();
-    let root = |first: &mut Vec<usize>, mut v: usize| {
-        while first[v] != v {
-            first[v] = first[first[v]];
-            v = first[v];
-        }
-        v
-    };
+    let mut near = Vec::new();
     for (v, &[x, y]) in vertices.iter().enumerate() {
         tree.meeting(Bounds::around([[x, y]]).widened(distance), |w| {
             let [p, q] = vertices[w];
             if w > v && (x - p).hypot(y - q) <= distance {
-                let (a, b) = (root(&mut first, v), root(&mut first, w));
-                first[a.max(b)] = a.min(b);
+                near.push([v, w]);
             }
         });
     }
-    // A root is the smallest of its group, so it is numbered before the others ask for its number.
-    let mut vertex = vec![0; vertices.len()];
+    let vertex = groups(vertices.len(), near);
     let mut old_vertex = Vec::new();
-    for v in 0..vertices.len() {
-        let r = root(&mut first, v);
-        if r == v {
-            vertex[v] = old_vertex.len();
+    for (v, &group) in vertex.iter().enumerate() {
+        if group == old_vertex.len() {
             old_vertex.push(v);
-        } else {
-            vertex[v] = vertex[r];
         }
     }
     let merged = triangles.iter().map(|t| t.map(|v| vertex[v])).enumerate();

@@ -4,7 +4,6 @@
 pub mod a_priori;
 #[doc(hidden)]
 pub mod ball;
-mod build;
 pub mod constraints;
 pub mod contact_face;
 pub mod contact_line;
@@ -22,8 +21,7 @@ pub mod embedding;
 pub mod errors;
 #[doc(hidden)]
 pub mod exact;
-#[doc(hidden)]
-pub mod function;
+mod groups;
 #[doc(hidden)]
 pub mod held;
 #[doc(hidden)]
@@ -33,8 +31,6 @@ pub mod korn;
 pub mod loads;
 #[doc(hidden)]
 pub mod material;
-#[doc(hidden)]
-pub mod materials;
 pub mod matrix;
 #[doc(hidden)]
 pub mod merge;
@@ -46,22 +42,20 @@ pub mod obstacle;
 #[doc(hidden)]
 pub mod pieces;
 #[doc(hidden)]
-pub mod precise;
-#[doc(hidden)]
 pub mod problem;
 #[doc(hidden)]
 pub mod quadrature;
 #[doc(hidden)]
-pub mod rectangle;
+pub mod residual;
 #[doc(hidden)]
 pub mod rigid;
+#[doc(hidden)]
+pub mod rounded_stress;
 #[doc(hidden)]
 pub mod smooth;
 pub mod space;
 #[doc(hidden)]
 pub mod structured;
-#[doc(hidden)]
-pub mod trapezoid;
 #[doc(hidden)]
 pub mod tree;
 
@@ -71,14 +65,11 @@ pub use discretization::Discretization;
 pub use element::Degree;
 pub use errors::Errors;
 pub use exact::{Exact, ExactSolution};
-pub use function::{Function, SharedFunction};
-pub use materials::Materials;
+pub use material::Materials;
 pub use mesh::bisection::Refinement;
 pub use mesh::{BoundaryEdge, Mesh, MeshError};
 pub use obstacle::{Closest, Distance, Obstacle, Side};
-pub use problem::{Condition, PointSupport, Problem, SurfaceForce};
-pub use rectangle::{Diagonal, Rectangle};
+pub use problem::{Condition, Function, PointSupport, Problem, SharedFunction, SurfaceForce};
 pub use rigid::{FreeMotion, Parts};
 pub use space::Space;
-pub use structured::{Perturbation, Structured};
-pub use trapezoid::Trapezoid;
+pub use structured::{Diagonal, Perturbation, Rectangle, Structured, Trapezoid};

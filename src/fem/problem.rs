@@ -1,12 +1,55 @@
-//! The unilateral contact problem (1)-(2) as data: body, material, loads and what holds on each part of the boundary.
+//! The unilateral contact problem (1)-(2) as data: body, material, loads and what holds on each part of the boundary. Loads,
+//! gaps, prescribed displacements and distances are functions of the place: a closure is one; what knows more of itself says it.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
-use super::function::SharedFunction;
-use super::materials::Materials;
+use super::material::Materials;
 use super::mesh::Mesh;
 use super::mesh::bisection::Refinement;
 use super::obstacle::Obstacle;
+use crate::kernel::Ball;
+
+/// A function of the place, such as a component of the body force.
+pub trait Function: Send + Sync {
+    /// The value at `x`; NaN or infinite where the function has none, which the assembly reports as an error.
+    fn at(&self, x: [f64; 2]) -> f64;
+
+    /// The value at `x` on the boundary with the outward normal `n`: a traction may depend on the normal.
+    fn on_boundary(&self, x: [f64; 2], _n: [f64; 2]) -> f64 {
+        self.at(x)
+    }
+
+    /// The degree in x and y, if the function is known to be a polynomial, on the boundary too: it is then integrated
+    /// exactly, with no more points than that takes.
+    fn degree(&self) -> Option<u32> {
+        None
+    }
+
+    /// A ball that contains the exact value at `x`, where [`Function::at`] has what doubles make of it; `None` if that is the exact one
+    /// or there is no other.
+    fn enclosed(&self, _x: [f64; 2]) -> Option<Ball> {
+        None
+    }
+
+    /// c, if the function is smooth only on either side of the line x = c: its integrals are cut there.
+    fn kink(&self) -> Option<f64> {
+        None
+    }
+}
+
+impl<F: Fn([f64; 2]) -> f64 + Send + Sync> Function for F {
+    fn at(&self, x: [f64; 2]) -> f64 {
+        self(x)
+    }
+}
+
+/// A [`Function`] that problems own together.
+pub type SharedFunction = Arc<dyn Function>;
+
+fn zero() -> SharedFunction {
+    Arc::new(|_| 0.0)
+}
 
 /// The condition on a named part of the boundary; on the rest the traction is zero.
 #[non_exhaustive]
@@ -43,6 +86,47 @@ pub enum Condition {
 }
 
 impl Condition {
+    /// No displacement.
+    pub fn clamped() -> Self {
+        Condition::Displacement([Some(zero()), Some(zero())])
+    }
+
+    /// The displacement with these components.
+    pub fn displacement(
+        x: impl Fn([f64; 2]) -> f64 + Send + Sync + 'static,
+        y: impl Fn([f64; 2]) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        Condition::Displacement([Some(Arc::new(x)), Some(Arc::new(y))])
+    }
+
+    /// The traction (a stress) with these components.
+    pub fn traction(
+        x: impl Fn([f64; 2]) -> f64 + Send + Sync + 'static,
+        y: impl Fn([f64; 2]) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        Condition::Traction([Arc::new(x), Arc::new(y)])
+    }
+
+    /// The traction -p n with this pressure p.
+    pub fn pressure(p: impl Fn([f64; 2]) -> f64 + Send + Sync + 'static) -> Self {
+        Condition::Pressure(Arc::new(p))
+    }
+
+    /// No displacement along the normal, at any angle: a roller, or a plane of symmetry.
+    pub fn roller() -> Self {
+        Condition::Support { normal: Some(zero()), tangential: None }
+    }
+
+    /// Contact with a rigid obstacle, which messages call by this name.
+    pub fn obstacle(name: impl Into<String>, obstacle: Obstacle) -> Self {
+        Condition::Obstacle(name.into(), obstacle)
+    }
+
+    /// Contact at this initial gap (a length along the outward normal).
+    pub fn contact(gap: impl Fn([f64; 2]) -> f64 + Send + Sync + 'static) -> Self {
+        Condition::Contact { gap: Arc::new(gap) }
+    }
+
     /// This is a part of Gamma_C.
     pub fn is_contact(&self) -> bool {
         matches!(self, Condition::Contact { .. } | Condition::Obstacle(..))
@@ -104,6 +188,26 @@ impl Problem {
             conditions,
             points: Vec::new(),
         }
+    }
+
+    /// A body on which nothing acts yet.
+    pub fn of(mesh: Mesh, material: impl Into<Materials>) -> Self {
+        Problem::new(mesh, material, [zero(), zero()], BTreeMap::new())
+    }
+
+    /// Sets the force per unit of area.
+    pub fn with_body_force(
+        self,
+        x: impl Fn([f64; 2]) -> f64 + Send + Sync + 'static,
+        y: impl Fn([f64; 2]) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        Problem { body_force: [Arc::new(x), Arc::new(y)], ..self }
+    }
+
+    /// Sets the condition on a named part of the boundary, in place of an earlier one.
+    pub fn with(mut self, boundary: impl Into<String>, condition: Condition) -> Self {
+        self.conditions.insert(boundary.into(), condition);
+        self
     }
 
     /// The name of the obstacle that the boundary of this name may touch, if it has one.

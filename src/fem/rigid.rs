@@ -16,6 +16,7 @@
 use std::fmt;
 
 use super::dense::singular_vectors;
+use super::groups::groups;
 use super::mesh::Mesh;
 use super::space::Space;
 
@@ -205,7 +206,7 @@ pub fn free_motions<I>(
 where
     I: Iterator<Item = [f64; 2]>,
 {
-    let mut columns = vec![[const { Vec::new() }; 3]; parts.count()];
+    let mut rows = vec![Vec::new(); parts.count()];
     let mut seen = vec![false; space.nodes().len()];
     for (nodes, &part) in space.elements().zip(&parts.of_triangle) {
         for &node in nodes {
@@ -214,29 +215,27 @@ where
             }
             for d in held(node) {
                 let [a, b] = [0, 1].map(|c| parts.row(part, space.nodes()[node], c));
-                for (k, column) in columns[part].iter_mut().enumerate() {
-                    column.push(d[0] * a[k] + d[1] * b[k]);
-                }
+                rows[part].push((0..3).map(|k| d[0] * a[k] + d[1] * b[k]).collect());
             }
         }
     }
     let mut motions = Vec::new();
-    for (part, columns) in columns.into_iter().enumerate() {
+    for (part, rows) in rows.iter().enumerate() {
         let stops = |value: f64, largest: f64| value > rounding.max(FREE) * largest;
-        let free = null_space(columns.into(), stops);
+        let free = null_space(rows, 3, stops);
         motions.extend(free.iter().map(|v| parts.motion(part, [v[0], v[1], v[2]])));
     }
     motions
 }
 
-/// The solutions of homogeneous equations in at most three unknowns, given by their columns: a basis in which as many unknowns as
-/// can be are zero. A direction in which the equations have a singular value that `stops` is not free, beside the largest value.
+/// The solutions of homogeneous equations in `count` unknowns, at most three, given by their rows: a basis in which as many unknowns
+/// as can be are zero. A direction in which the equations have a singular value that `stops` is not free, beside the largest value.
 pub(super) fn null_space(
-    columns: Vec<Vec<f64>>,
+    rows: &[Vec<f64>],
+    count: usize,
     stops: impl Fn(f64, f64) -> bool,
 ) -> Vec<Vec<f64>> {
-    let count = columns.len();
-    let directions = singular_vectors(columns);
+    let directions = singular_vectors(rows, count);
     let largest = directions.first().map_or(0.0, |(value, _)| *value);
     let stopped: Vec<Vec<f64>> =
         directions.into_iter().filter(|d| stops(d.0, largest)).map(|d| d.1).collect();
@@ -264,36 +263,10 @@ pub(super) fn null_space(
 
 /// The number of the part of each triangle: triangles with an edge in common are in one part.
 pub(super) fn connected_by_edges(mesh: &Mesh) -> Vec<usize> {
-    fn root(parent: &mut [usize], mut t: usize) -> usize {
-        while parent[t] != t {
-            parent[t] = parent[parent[t]];
-            t = parent[t];
-        }
-        t
-    }
-    let triangles = mesh.triangles().len();
-    let mut parent: Vec<usize> = (0..triangles).collect();
-    let mut first: Vec<Option<usize>> = vec![None; mesh.edge_count()];
-    for (t, edges) in mesh.triangle_edges().iter().enumerate() {
-        for &edge in edges {
-            let other = *first[edge].get_or_insert(t);
-            let (a, b) = (root(&mut parent, other), root(&mut parent, t));
-            parent[a.max(b)] = a.min(b);
-        }
-    }
-    // A root is the first triangle of its part, so it is numbered before the others ask for its number.
-    let mut part = vec![0; triangles];
-    let mut count = 0;
-    for t in 0..triangles {
-        let r = root(&mut parent, t);
-        if r == t {
-            part[t] = count;
-            count += 1;
-        } else {
-            part[t] = part[r];
-        }
-    }
-    part
+    let mut first = vec![None; mesh.edge_count()];
+    let edges = mesh.triangle_edges().iter().enumerate();
+    let pairs = edges.flat_map(|(t, edges)| edges.map(|e| [*first[e].get_or_insert(t), t]));
+    groups(mesh.triangles().len(), pairs)
 }
 
 /// A place in a body of this size, to six digits of the size.

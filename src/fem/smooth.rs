@@ -169,14 +169,11 @@ mod tests {
     /// Some twenty operations on numbers of size 1 to 10, divided by facets of length 0.3 and more.
     const ROUNDING: f64 = 1e-14;
 
-    /// A fan of triangles around the origin with these vertices in counter-clockwise order, the last one joined to the
-    /// first if the fan is closed.
-    fn fan(rim: &[[f64; 2]], closed: bool) -> Mesh {
+    /// A fan of triangles around the origin with these vertices in counter-clockwise order.
+    fn fan(rim: &[[f64; 2]]) -> Mesh {
         let mut vertices = vec![[0.0, 0.0]];
         vertices.extend(rim);
-        let count = rim.len();
-        let last = if closed { count } else { count - 1 };
-        let triangles = (0..last).map(|i| [0, 1 + i, 1 + (i + 1) % count]).collect();
+        let triangles = (1..rim.len()).map(|i| [0, i, i + 1]).collect();
         Mesh::new(vertices, triangles, []).unwrap()
     }
 
@@ -199,16 +196,8 @@ mod tests {
     }
 
     #[test]
-    fn on_a_circle_with_unequal_facets_normals_and_middles_are_exact() {
-        let angles = [0.1, 0.3, 0.45, 0.9, 1.4, 1.6, 2.2, 2.8, 3.3, 3.9, 4.1, 4.7, 5.2, 5.6, 6.0];
-        for error in errors(&fan(&on_circle(&angles), true)) {
-            assert_abs_diff_eq!(error[..], [0.0; 2][..], epsilon = ROUNDING);
-        }
-    }
-
-    #[test]
     fn an_arc_between_corners_has_its_own_normals_at_its_ends() {
-        for error in errors(&fan(&on_circle(&[0.0, 0.3, 0.5, 0.9, 1.5]), false)) {
+        for error in errors(&fan(&on_circle(&[0.0, 0.3, 0.5, 0.9, 1.5]))) {
             assert_abs_diff_eq!(error[..], [0.0; 2][..], epsilon = ROUNDING);
         }
     }
@@ -225,7 +214,7 @@ mod tests {
     fn straight_sides_keep_the_normals_of_their_facets_and_so_do_shallow_corners_between_them() {
         // The side from (4, -1) to (4, 1) and on to (3.5, 3): a bend of 14 degrees.
         let rim = [[4.0, -1.0], [4.0, 0.0], [4.0, 1.0], [3.75, 2.0], [3.5, 3.0]];
-        let mesh = fan(&rim, false);
+        let mesh = fan(&rim);
         let smooth = SmoothBoundary::new(&mesh);
         assert!(mesh.outline().iter().all(|&e| smooth.at_ends(e).is_none()));
     }
@@ -235,7 +224,7 @@ mod tests {
         // x = 2 up to y = 0, then the circle of radius 2 around the origin.
         let mut rim = vec![[2.0, -1.0], [2.0, -0.5]];
         rim.extend(on_circle(&[0.0, 0.2, 0.4, 0.6]));
-        let mesh = fan(&rim, false);
+        let mesh = fan(&rim);
         let smooth = SmoothBoundary::new(&mesh);
         let of = |start: usize| {
             let edge = mesh.outline().iter().find(|&&e| mesh.ends(e) == [start, start + 1]);

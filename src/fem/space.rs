@@ -110,43 +110,13 @@ impl<'a> Space<'a> {
 
 #[cfg(test)]
 mod tests {
-    use approx::assert_abs_diff_eq;
-    use nalgebra::Vector2;
-
     use super::*;
     use crate::fem::{Diagonal, Rectangle};
-    use crate::kernel::triangle::on_edge;
+    use approx::assert_abs_diff_eq;
 
     fn mesh() -> Mesh {
         let diagonal = Diagonal::Crossed;
         Rectangle { width: 1.0, height: 2.0, nx: 3, ny: 2, diagonal }.mesh().unwrap()
-    }
-
-    #[test]
-    fn nodes_lie_on_the_edges_of_their_triangles() {
-        let mesh = mesh();
-        for degree in [Degree::One, Degree::Two] {
-            let space = Space::new(&mesh, degree);
-            for t in 0..mesh.triangles().len() {
-                for local in 0..3 {
-                    let nodes = space.edge_nodes(BoundaryEdge { triangle: t, local });
-                    for (node, s) in nodes.into_iter().zip(degree.edge_positions()) {
-                        let x = mesh.triangle(t).point(on_edge(local, s));
-                        let node = Vector2::from(space.nodes()[node]);
-                        // Half a sum of two coordinates below 2.
-                        assert_abs_diff_eq!(x, node, epsilon = 1e-15);
-                    }
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn euler_counts_the_nodes() {
-        let mesh = mesh();
-        let (v, t) = (mesh.vertices().len(), mesh.triangles().len());
-        assert_eq!(Space::new(&mesh, Degree::One).nodes().len(), v);
-        assert_eq!(Space::new(&mesh, Degree::Two).nodes().len(), 2 * v + t - 1);
     }
 
     #[test]

@@ -1,9 +1,206 @@
-//! Families of meshes: a structured mesh, finer ones of the same body, and what they become when their vertices are moved
-//! at random.
+//! Structured meshes of the rectangle (0, width) x (0, height), with the sides named left, right, bottom and top; of the trapezoid
+//! (0,0), (1,0), (1,1), (cot omega, 1), whose angle at the origin is omega: the unit square in n x n cells, diagonals right, under
+//! the map (s, t) -> (s + (1 - s) t cot omega, t); and families of both, refined and moved at random.
+//!
+//! ```text
+//!     3 --- 4 --- 5      3 --- 4 --- 5      4 --- 5 --- 6
+//!     |   / |   / |      | \   | \   |      | \ / | \ / |
+//!     | /   | /   |      |   \ |   \ |      |  2  |  7  |   (numbers differ)
+//!     0 --- 1 --- 2      0 --- 1 --- 2      | / \ | / \ |
+//!         right              left               crossed
+//! ```
 
-use super::mesh::{Mesh, MeshError};
-use super::rectangle::Rectangle;
-use super::trapezoid::Trapezoid;
+use super::mesh::{Mesh, MeshError, bytes_to_make};
+use crate::memory::{self, bytes_of};
+
+/// The diagonals that cut the cells of a structured mesh into triangles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Diagonal {
+    /// From the upper left to the lower right.
+    Left,
+    /// From the lower left to the upper right.
+    Right,
+    /// Both, with a vertex in the middle of each cell.
+    Crossed,
+}
+
+/// A rectangle cut into `nx` x `ny` equal cells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rectangle {
+    /// The extent along x.
+    pub width: f64,
+    /// The extent along y.
+    pub height: f64,
+    /// Cells along x.
+    pub nx: usize,
+    /// Cells along y.
+    pub ny: usize,
+    /// The diagonals that cut them.
+    pub diagonal: Diagonal,
+}
+
+/// The most cells that a rectangle may have: beyond it the factorisation would not fit into the memory of one machine.
+pub const MOST_CELLS: usize = 4_000_000;
+
+impl Rectangle {
+    /// The mesh of this rectangle.
+    ///
+    /// # Errors
+    /// Sizes that are not positive and finite, no cells, or more than [`MOST_CELLS`] of them.
+    pub fn mesh(&self) -> Result<Mesh, MeshError> {
+        self.check()?;
+        Mesh::new(self.vertices(), self.triangles(), self.sides())
+    }
+
+    /// The mesh with its vertices moved at random: by up to `amount` cells along each axis inside, along the sides on
+    /// them, not at all in the corners. The same `seed` gives the same mesh.
+    ///
+    /// # Errors
+    /// As [`Rectangle::mesh`]; moved too far, triangles turn over.
+    pub fn perturbed(&self, amount: f64, seed: u64) -> Result<Mesh, MeshError> {
+        self.check()?;
+        Mesh::new(self.moved_vertices(amount, seed), self.triangles(), self.sides())
+    }
+
+    fn moved_vertices(&self, amount: f64, seed: u64) -> Vec<[f64; 2]> {
+        let cell = [self.width / self.nx as f64, self.height / self.ny as f64];
+        let size = [self.width, self.height];
+        let mut random = Random(seed);
+        let mut vertices = self.vertices();
+        for vertex in &mut vertices {
+            for c in 0..2 {
+                let shift = amount * cell[c] * random.next();
+                if 0.0 < vertex[c] && vertex[c] < size[c] {
+                    vertex[c] += shift;
+                }
+            }
+        }
+        vertices
+    }
+
+    /// The mesh with its vertices moved as in [`Rectangle::perturbed`] by `amount`, if any, and then by `map`.
+    pub(super) fn mapped(
+        &self,
+        amount: f64,
+        seed: u64,
+        map: impl Fn([f64; 2]) -> [f64; 2],
+    ) -> Result<Mesh, MeshError> {
+        self.check()?;
+        let vertices = self.moved_vertices(amount, seed).into_iter().map(map).collect();
+        Mesh::new(vertices, self.triangles(), self.sides())
+    }
+
+    fn check(&self) -> Result<(), MeshError> {
+        self.check_numbers()?;
+        let (cells, crossed) = (self.nx * self.ny, self.diagonal == Diagonal::Crossed);
+        let middles = if crossed { cells } else { 0 };
+        let vertices = (self.nx + 1) * (self.ny + 1) + middles;
+        let triangles = if crossed { 4 * cells } else { 2 * cells };
+        // The vertices are moved or mapped in a second list.
+        let lists = bytes_of::<[[f64; 2]; 2]>(vertices) + bytes_of::<[usize; 3]>(triangles);
+        Ok(memory::check(lists + bytes_to_make(vertices, triangles))?)
+    }
+
+    fn check_numbers(&self) -> Result<(), MeshError> {
+        for (name, value) in [("width", self.width), ("height", self.height)] {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(MeshError::Size { name, value });
+            }
+        }
+        for (name, value) in [("nx", self.nx), ("ny", self.ny)] {
+            if value == 0 {
+                return Err(MeshError::NoCells { name, value });
+            }
+        }
+        match self.nx.checked_mul(self.ny) {
+            Some(cells) if cells <= MOST_CELLS => Ok(()),
+            _ => Err(MeshError::TooManyCells { nx: self.nx, ny: self.ny, most: MOST_CELLS }),
+        }
+    }
+
+    /// Row by row from below; the middles of crossed cells follow.
+    fn vertices(&self) -> Vec<[f64; 2]> {
+        let x = |i: f64| self.width * (i / self.nx as f64);
+        let y = |j: f64| self.height * (j / self.ny as f64);
+        let mut vertices: Vec<[f64; 2]> = (0..=self.ny)
+            .flat_map(|j| (0..=self.nx).map(move |i| [x(i as f64), y(j as f64)]))
+            .collect();
+        if self.diagonal == Diagonal::Crossed {
+            vertices.extend(
+                (0..self.ny).flat_map(|j| {
+                    (0..self.nx).map(move |i| [x(i as f64 + 0.5), y(j as f64 + 0.5)])
+                }),
+            );
+        }
+        vertices
+    }
+
+    fn corner(&self, i: usize, j: usize) -> usize {
+        j * (self.nx + 1) + i
+    }
+
+    fn triangles(&self) -> Vec<[usize; 3]> {
+        let middles = (self.nx + 1) * (self.ny + 1);
+        let mut triangles = Vec::with_capacity(4 * self.nx * self.ny);
+        for j in 0..self.ny {
+            for i in 0..self.nx {
+                let [a, b] = [self.corner(i, j), self.corner(i + 1, j)];
+                let [d, c] = [self.corner(i, j + 1), self.corner(i + 1, j + 1)];
+                match self.diagonal {
+                    Diagonal::Right => triangles.extend([[a, b, c], [a, c, d]]),
+                    Diagonal::Left => triangles.extend([[a, b, d], [b, c, d]]),
+                    Diagonal::Crossed => {
+                        let m = middles + j * self.nx + i;
+                        triangles.extend([[a, b, m], [b, c, m], [c, d, m], [d, a, m]]);
+                    }
+                }
+            }
+        }
+        triangles
+    }
+
+    fn sides(&self) -> [(String, Vec<[usize; 2]>); 4] {
+        let (nx, ny) = (self.nx, self.ny);
+        let along = |j| (0..nx).map(|i| [self.corner(i, j), self.corner(i + 1, j)]).collect();
+        let up = |i| (0..ny).map(|j| [self.corner(i, j), self.corner(i, j + 1)]).collect();
+        [
+            ("bottom".to_owned(), along(0)),
+            ("left".to_owned(), up(0)),
+            ("right".to_owned(), up(nx)),
+            ("top".to_owned(), along(ny)),
+        ]
+    }
+}
+
+/// A trapezoid cut into `n` x `n` cells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trapezoid {
+    /// The angle at the origin, between pi/2 and pi.
+    pub omega: f64,
+    /// Cells along each side.
+    pub n: usize,
+}
+
+impl Trapezoid {
+    /// The mesh.
+    ///
+    /// # Errors
+    /// As [`Rectangle::mesh`]; for angles outside (0, pi) triangles turn over.
+    pub fn mesh(&self) -> Result<Mesh, MeshError> {
+        self.perturbed(0.0, 0)
+    }
+
+    /// The mesh with the vertices of the square moved as in [`Rectangle::perturbed`] before they are mapped.
+    ///
+    /// # Errors
+    /// As [`Rectangle::perturbed`].
+    pub fn perturbed(&self, amount: f64, seed: u64) -> Result<Mesh, MeshError> {
+        let (nx, ny) = (self.n, self.n);
+        let square = Rectangle { width: 1.0, height: 1.0, nx, ny, diagonal: Diagonal::Right };
+        let tan = self.omega.tan();
+        square.mapped(amount, seed, |[s, t]| [s + (1.0 - s) * t / tan, t])
+    }
+}
 
 /// A body that is meshed by cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,5 +246,62 @@ impl Structured {
             (Structured::Trapezoid(t), None) => t.mesh(),
             (Structured::Trapezoid(t), Some(p)) => t.perturbed(p.amount, p.seed),
         }
+    }
+}
+
+/// Numbers in [-1, 1): the splitmix64 generator.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^= z >> 31;
+        (z >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rectangle(diagonal: Diagonal) -> Rectangle {
+        Rectangle { width: 3.0, height: 1.0, nx: 3, ny: 2, diagonal }
+    }
+
+    #[test]
+    fn right_diagonals_run_from_the_lower_left_to_the_upper_right() {
+        let mesh = rectangle(Diagonal::Right).mesh().unwrap();
+        assert_eq!(mesh.triangles()[0], [0, 1, 5]);
+        assert_eq!(mesh.vertices()[5], [1.0, 0.5]);
+    }
+
+    #[test]
+    fn equal_seeds_give_equal_meshes_and_others_do_not() {
+        let r = rectangle(Diagonal::Crossed);
+        let [a, b, c] = [1, 1, 2].map(|seed| r.perturbed(0.2, seed).unwrap());
+        assert_eq!(a.vertices(), b.vertices());
+        assert_ne!(a.vertices(), c.vertices());
+    }
+
+    #[test]
+    fn impossible_rectangles_are_refused() {
+        let message = |r: Rectangle| r.mesh().unwrap_err().to_string();
+        let r = rectangle(Diagonal::Right);
+        assert_eq!(
+            message(Rectangle { width: 0.0, ..r }),
+            "width = 0; expected a positive finite length"
+        );
+        assert_eq!(
+            message(Rectangle { height: f64::NAN, ..r }),
+            "height = NaN; expected a positive finite length"
+        );
+        assert_eq!(message(Rectangle { ny: 0, ..r }), "ny = 0; expected at least one cell");
+        assert_eq!(
+            message(Rectangle { nx: usize::MAX, ..r }),
+            "nx = 18446744073709551615 and ny = 2 make more than 4000000 cells; expected fewer"
+        );
     }
 }

@@ -6,7 +6,7 @@ use super::exact::angle;
 use super::gmsh;
 use super::mistake::{CaseError, CaseMistake};
 use super::table::{Table, Value};
-use crate::fem::rectangle::MOST_CELLS;
+use crate::fem::structured::MOST_CELLS;
 use crate::fem::{Diagonal, Mesh, Perturbation, Rectangle, Structured, Trapezoid};
 
 /// A mesh and how it was made.

@@ -3,7 +3,7 @@
 use super::mistake::CaseError;
 use super::table::{Table, Value};
 use crate::certify::{Ramp, Target};
-use crate::fem::rectangle::MOST_CELLS;
+use crate::fem::structured::MOST_CELLS;
 use crate::solve::{
     ContactQuadrature, Degree, Gamma0, MOST_GAUSS_POINTS, MOST_ITERATIONS, Method, Settings,
 };

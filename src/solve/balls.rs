@@ -5,18 +5,18 @@ use std::collections::BTreeMap;
 
 use super::system::System;
 use crate::fem::ball::{Ball, larger, up};
-use crate::fem::precise;
+use crate::fem::residual;
 use crate::fem::{ContactFace, Discretization};
 use crate::kernel::contact_edge::traction_stiffness;
 
 /// The contact edges in balls: length and normal as the vertices have them.
 pub fn lines(d: &Discretization) -> Vec<ContactFace<Ball>> {
     let in_balls = |edge: &ContactFace| {
-        let triangle = precise::exactly::<Ball>(d.space.mesh().triangle(edge.edge.triangle));
+        let triangle = residual::exactly::<Ball>(d.space.mesh().triangle(edge.edge.triangle));
         let normal: [Ball; 2] = triangle.scaled_normal(edge.edge.local).into();
         let length = dot(normal, normal).sqrt();
         let normal = normal.map(|c| c / length).into();
-        precise::with_numbers(d, edge, (length, normal, Ball::from(edge.gamma)))
+        residual::with_numbers(d, edge, (length, normal, Ball::from(edge.gamma)))
     };
     d.contact.iter().map(in_balls).collect()
 }
@@ -45,7 +45,7 @@ pub(super) fn kappa(d: &Discretization, lines: &[ContactFace<Ball>]) -> f64 {
         };
         let material = d.problem.material.of(t).map(Ball::from);
         let stiffness = traction_stiffness(&material, line.normal, direction, Ball::sqrt);
-        let area = precise::exactly::<Ball>(d.space.mesh().triangle(t)).double_area();
+        let area = residual::exactly::<Ball>(d.space.mesh().triangle(t)).double_area();
         let (length, area) = (factor * line.length, area / Ball::from(2));
         *kappas.entry(t).or_insert(Ball::from(0)) +=
             degree.coercivity_constant(stiffness, line.gamma, length, area);
@@ -107,7 +107,7 @@ pub(super) fn product(f: &[[Ball; 2]], u: &[[Ball; 2]]) -> Ball {
 /// a(v, v)
 pub(super) fn strain_energy(d: &Discretization, v: &[[Ball; 2]]) -> Ball {
     let mut forces = vec![[Ball::from(0); 2]; v.len()];
-    precise::add_internal_forces(&d.space, &d.problem.material, v, &mut forces);
+    residual::add_internal_forces(&d.space, &d.problem.material, v, &mut forces);
     product(v, &forces)
 }
 

@@ -29,7 +29,7 @@ use crate::fem::ball::{Ball, up};
 use crate::fem::double_double::DoubleDouble;
 use crate::fem::held::Slides;
 use crate::fem::korn::Korn;
-use crate::fem::precise;
+use crate::fem::rounded_stress;
 use crate::fem::{ContactFace, Discretization};
 use crate::kernel;
 
@@ -397,7 +397,7 @@ impl Product<'_, '_, '_> {
             // z is next to nothing beside u~: the balls of the kernel will do.
             Stresses::InDoubles => {
                 let mut sums = vec![[kernel::Ball::point(0.0); 2]; v.len()];
-                let off = precise::add_forces_of_rounded_stresses(d, &v, &mut sums);
+                let off = rounded_stress::add_forces(d, &v, &mut sums);
                 for (force, sum) in forces.iter_mut().zip(sums) {
                     *force = sum.map(Ball::from);
                 }

@@ -11,8 +11,8 @@ use super::system::System;
 use crate::fem::ball::{Ball, up};
 use crate::fem::double_double::DoubleDouble;
 use crate::fem::moments::moments;
-use crate::fem::precise;
 use crate::fem::{ContactFace, Discretization};
+use crate::fem::{residual, rounded_stress};
 
 /// An interval `[low, high]`.
 pub type Range = [f64; 2];
@@ -73,9 +73,9 @@ impl Stresses {
         forces: &mut [[Ball; 2]],
     ) -> f64 {
         match self {
-            Stresses::InDoubles => precise::add_forces_of_rounded_stresses(d, u, forces),
+            Stresses::InDoubles => rounded_stress::add_forces(d, u, forces),
             Stresses::InBalls => {
-                precise::add_internal_forces(&d.space, &d.problem.material, u, forces);
+                residual::add_internal_forces(&d.space, &d.problem.material, u, forces);
                 0.0
             }
         }
@@ -84,7 +84,7 @@ impl Stresses {
     /// |v|_a at most.
     fn energy_norm(self, d: &Discretization, v: &[[Ball; 2]]) -> f64 {
         match self {
-            Stresses::InDoubles => precise::energy_norm_at_most(d, v),
+            Stresses::InDoubles => rounded_stress::energy_norm_at_most(d, v),
             Stresses::InBalls => root(strain_energy(d, v)),
         }
     }

@@ -8,7 +8,7 @@ use nalgebra::Vector2;
 use super::system::System;
 use crate::fem::discretization::{Discretization, Functional};
 use crate::fem::double_double::DoubleDouble;
-use crate::fem::precise;
+use crate::fem::residual;
 use crate::fem::{ContactFace, EdgeRule};
 
 /// A residual this many unit roundoffs times its magnitudes is noise.
@@ -77,7 +77,7 @@ impl Iterate {
             if d.is_idle(i / system.nodes()) && p.head() > 0.0 { -p } else { p }
         };
         if precisely {
-            let (forces, p) = precise::evaluate(d, &self.u);
+            let (forces, p) = residual::evaluate(d, &self.u);
             let p: Vec<DoubleDouble> = p.into_iter().enumerate().map(idle).collect();
             // The forces of contact are added to these in doubles, and the loads are doubles.
             let noise = NOISE * f64::EPSILON * d.free_norm(&forces).max(d.free_norm(&d.load));
@@ -103,7 +103,7 @@ impl Iterate {
         let by_points = matches!(d.rule, EdgeRule::Gauss(_));
         let (heads, tails) = (self.rounded(), self.remainder());
         let p: Vec<DoubleDouble> = if by_points {
-            precise::p(d, &self.u).enumerate().map(idle).collect()
+            residual::p(d, &self.u).enumerate().map(idle).collect()
         } else {
             let p = |edge: &ContactFace| {
                 edge.p(&heads).into_iter().zip(edge.p0(&tails)).map(|(p, of_tail)| p + of_tail)

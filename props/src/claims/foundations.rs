@@ -363,7 +363,7 @@ mod row {
                 "interval::sorted",
                 "fem::double_double::DoubleDouble::sum",
                 "fem::double_double::DoubleDouble::product",
-                "fem::precise::evaluate",
+                "fem::residual::evaluate",
                 "fem::ball::Ball::widened",
                 "fem::ball::Ball::sqrt",
                 "ball::Ball::around",

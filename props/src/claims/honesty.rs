@@ -13,8 +13,8 @@ use signorini::fem::Degree;
 use signorini::fem::ball::Ball;
 use signorini::fem::element::value_at;
 use signorini::fem::matrix::{self, Neighbours};
-use signorini::fem::precise;
 use signorini::fem::{Condition, Discretization, Problem, SharedFunction};
+use signorini::fem::{residual, rounded_stress};
 use signorini::kernel::{Material, Plane};
 use signorini::solve::accuracy::{self, Pass, Route};
 use signorini::solve::enclosure::Verifier;
@@ -267,8 +267,8 @@ fn rounding_of_stresses(degree: Degree, problem: &Problem, by: f64) -> Result<f6
         .map(|u| u.map(Ball::centre))
         .collect();
     let mut sums = [vec![[Ball::from(0); 2]; nodes], vec![[Ball::from(0); 2]; nodes]];
-    let bound = precise::add_forces_of_rounded_stresses(&d, &u, &mut sums[0]);
-    precise::add_internal_forces(&d.space, &problem.material, &u, &mut sums[1]);
+    let bound = rounded_stress::add_forces(&d, &u, &mut sums[0]);
+    residual::add_internal_forces(&d.space, &problem.material, &u, &mut sums[1]);
     let off: Vec<[f64; 2]> =
         (0..nodes).map(|i| [0, 1].map(|c| (sums[0][i][c] - sums[1][i][c]).head())).collect();
     let off = system.numbering.gather(&off);

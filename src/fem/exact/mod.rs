@@ -28,10 +28,9 @@ pub use smooth::Smooth;
 
 use nalgebra::Matrix2;
 
-use super::function::{Function, SharedFunction};
 use super::mesh::Mesh;
 use super::pieces::Features;
-use super::problem::{Condition, Problem};
+use super::problem::{Condition, Function, Problem, SharedFunction};
 use crate::kernel::{Material, Scalar, Stress};
 
 /// A displacement field that solves (1)-(2), with its data.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use num_traits::ToPrimitive;
 use signorini::fem::matrix::Numbering;
-use signorini::fem::precise;
+use signorini::fem::residual;
 use signorini::fem::{BoundaryEdge, ContactFace, Degree, Discretization};
 use signorini::solve::Solution;
 use signorini::solve::evaluated::Evaluated;
@@ -128,12 +128,12 @@ pub(super) fn loops<const N: usize>(draw: &Draw, mistake: Mistake) -> Verdict {
             .map(|edge| {
                 let diameter = d.problem.mesh.diameter(edge.edge.triangle);
                 let gamma = Exact::of_double(d.gamma0) * Exact::of_double(diameter);
-                precise::with_numbers(&d, edge, (Exact::of_double(edge.length), n.into(), gamma))
+                residual::with_numbers(&d, edge, (Exact::of_double(edge.length), n.into(), gamma))
             })
             .collect();
         let [u, _] = draw.fields(d.space.nodes().len());
         let u: Vec<[Exact; 2]> = read(&u);
-        let found = precise::linear_residual(&d, &edges, &u);
+        let found = residual::linear_residual(&d, &edges, &u);
         let definition = Definition::<N>(&setting.body);
         for (node, (found, load)) in found.iter().zip(&d.load).enumerate() {
             for c in 0..2 {

@@ -1,134 +1,23 @@
-//! The linear part of (8) at a displacement that is known to more than double precision, evaluated from the definitions in
-//! [double-doubles](crate::fem::double_double): what is left of forces that cancel is then known to the last bit of a double; and
-//! its forces from [stresses in doubles](add_forces_of_rounded_stresses), off by no more than a proved norm.
+//! Forces of a displacement from stresses in doubles, off by no more than a proved norm: docs/theory.md, 7.5. They take a
+//! fraction of the time of [`add_internal_forces`](super::residual::add_internal_forces) in balls.
 
 use nalgebra::{Vector2, Vector3};
 
 use super::ball::{Ball, Sum};
-use super::contact_face::ContactFace;
 use super::discretization::Discretization;
+use super::double_double::DoubleDouble;
 use super::element::with_element;
 use super::material::{largest_entry, least_eigenvalue};
-use super::materials::Materials;
-use super::space::Space;
-use crate::fem::double_double::DoubleDouble;
 use crate::kernel::element::displacement_gradient;
-use crate::kernel::{Element, Material, Scalar, Stress, Triangle};
-
-/// A(u, v) - L(v) for every basis function v, and the values of P(u) at the nodes of each contact edge.
-pub fn evaluate(d: &Discretization, u: &[[DoubleDouble; 2]]) -> (Vec<[f64; 2]>, Vec<DoubleDouble>) {
-    let edges: Vec<ContactFace<DoubleDouble>> = d.contact.iter().map(|e| on_edge(d, e)).collect();
-    let forces = linear_residual(d, &edges, u);
-    let p = edges.iter().flat_map(|edge| edge.p(u)).collect();
-    (forces.into_iter().map(|f| f.map(DoubleDouble::head)).collect(), p)
-}
-
-/// A(u, v) - L(v) for every basis function v, with these contact edges.
-pub fn linear_residual<S: Scalar + From<f64>>(
-    d: &Discretization,
-    edges: &[ContactFace<S>],
-    u: &[[S; 2]],
-) -> Vec<[S; 2]> {
-    let minus = |l: f64| -<S as From<f64>>::from(l);
-    let mut forces: Vec<[S; 2]> = d.load.iter().map(|l| l.map(minus)).collect();
-    add_internal_forces(&d.space, &d.problem.material, u, &mut forces);
-    edges.iter().for_each(|edge| edge.add_stresses(u, &mut forces));
-    forces
-}
-
-/// The values of P(u) at the nodes of each contact edge.
-pub fn p(d: &Discretization, u: &[[DoubleDouble; 2]]) -> impl Iterator<Item = DoubleDouble> {
-    d.contact.iter().flat_map(move |edge| on_edge(d, edge).p(u))
-}
-
-/// A contact edge with the doubles that it has, in other numbers.
-pub fn on_edge<S: Scalar + From<f64>>(d: &Discretization, edge: &ContactFace) -> ContactFace<S> {
-    let exact = <S as From<f64>>::from;
-    with_numbers(d, edge, (exact(edge.length), edge.normal.map(exact), exact(edge.gamma)))
-}
-
-/// A contact edge with this length, normal and gamma.
-pub fn with_numbers<S: Scalar + From<f64>>(
-    d: &Discretization,
-    edge: &ContactFace,
-    numbers: (S, Vector2<S>, S),
-) -> ContactFace<S> {
-    let t = edge.edge.triangle;
-    let triangle = exactly(d.space.mesh().triangle(t));
-    let material = d.problem.material.of(t).map(<S as From<f64>>::from);
-    edge.in_numbers((&triangle, &material), numbers)
-}
-
-/// A triangle of doubles in other numbers, moved so that its first vertex is the origin: far from there sides lose digits.
-pub fn exactly<S: Scalar + From<f64>>(t: Triangle<f64>) -> Triangle<S> {
-    let first = t.vertices[0];
-    let moved = |x: f64, from: f64| {
-        let difference = DoubleDouble::sum(x, -from);
-        S::from(difference.head()) + S::from(difference.tail())
-    };
-    Triangle { vertices: t.vertices.map(|x| x.zip_map(&first, moved)) }
-}
-
-/// Adds a(u, v) for every basis function v. Triangles on which `u` is all zero are not looked at.
-pub fn add_internal_forces<S: Scalar + From<f64>>(
-    space: &Space,
-    materials: &Materials,
-    u: &[[S; 2]],
-    forces: &mut [[S; 2]],
-) {
-    with_element!(space.degree(), add_internal_forces_of::<S>(space, materials, u, forces));
-}
-
-fn add_internal_forces_of<E, const N: usize, const M: usize, S>(
-    space: &Space,
-    materials: &Materials,
-    u: &[[S; 2]],
-    forces: &mut [[S; 2]],
-) where
-    E: Element<N, M>,
-    S: Scalar + From<f64>,
-{
-    let zero = <S as From<i32>>::from(0);
-    let half = <S as From<f64>>::from(0.5);
-    let mut points = Vec::new();
-    E::at_stiffness_points(|l: [S; 3], weight| points.push((l, weight)));
-    for (t, (triangle, nodes)) in space.triangles::<N>().enumerate() {
-        if nodes.iter().all(|&node| u[node] == [zero; 2]) {
-            continue;
-        }
-        let nodal = nodes.map(|node| Vector2::from(u[node]));
-        let triangle = exactly(triangle);
-        let material = materials.of(t).map(<S as From<f64>>::from);
-        // As `Triangle::barycentric_gradients` has them, with one division: in these numbers they are dear.
-        let double_area = triangle.double_area();
-        let inverse = <S as From<i32>>::from(1) / double_area;
-        let barycentric = [0, 1, 2].map(|i| -triangle.scaled_normal(i) * inverse);
-        let area = double_area * half;
-        for &(l, weight) in &points {
-            let gradients = E::gradients(l, barycentric);
-            let stress = material.stress(displacement_gradient(&nodal, &gradients));
-            let factor = weight * area;
-            for (&node, g) in nodes.iter().zip(gradients) {
-                let force = stress.traction(g);
-                for c in 0..2 {
-                    forces[node][c] += factor * force[c];
-                }
-            }
-        }
-    }
-}
+use crate::kernel::{Element, Material, Stress, Triangle};
 
 /// Adds int s:eps(v) for every basis function v, where s is the stress of `u` that doubles give. Returns a b with
 /// |int (s - sigma(u)):eps(v)| <= b |v|_a for all v: docs/theory.md, 7.5. Infinite or NaN where there is none.
-pub fn add_forces_of_rounded_stresses<S: Sum>(
-    d: &Discretization,
-    u: &[[Ball; 2]],
-    forces: &mut [[S; 2]],
-) -> f64 {
-    with_element!(d.space.degree(), add_rounded_forces::<S>(d, u, forces))
+pub fn add_forces<S: Sum>(d: &Discretization, u: &[[Ball; 2]], forces: &mut [[S; 2]]) -> f64 {
+    with_element!(d.space.degree(), add_forces_of::<S>(d, u, forces))
 }
 
-fn add_rounded_forces<E, const N: usize, const M: usize, S>(
+fn add_forces_of<E, const N: usize, const M: usize, S>(
     d: &Discretization,
     u: &[[Ball; 2]],
     forces: &mut [[S; 2]],
@@ -327,73 +216,5 @@ impl<const N: usize> RoundedStrain<N> {
     ) -> Stress<f64> {
         let gradients = E::gradients(l, self.barycentric);
         material.stress(displacement_gradient(&self.differences, &gradients))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::collections::BTreeMap;
-    use std::sync::Arc;
-
-    use super::*;
-    use crate::fem::{Condition, Degree, Diagonal, EdgeRule, Problem, Rectangle, SharedFunction};
-    use crate::kernel::{Material, Plane};
-
-    fn block() -> Problem {
-        let zero = || -> SharedFunction { Arc::new(|_: [f64; 2]| 0.0) };
-        Problem::new(
-            Rectangle { width: 3.0, height: 1.0, nx: 3, ny: 2, diagonal: Diagonal::Left }
-                .mesh()
-                .unwrap(),
-            Material::lame(3.0, 0.7, Plane::Strain),
-            [zero(), Arc::new(|[x, _]: [f64; 2]| x - 1.0)],
-            BTreeMap::from([
-                ("top".to_owned(), Condition::Displacement([Some(zero()), Some(zero())])),
-                (
-                    "bottom".to_owned(),
-                    Condition::Contact { gap: Arc::new(|[x, _]: [f64; 2]| x / 7.0) },
-                ),
-            ]),
-        )
-    }
-
-    /// The residual in double-doubles is the one in doubles, to the rounding of the latter; a change of u far below its
-    /// rounding shows in P as it should.
-    fn agrees_and_sees_more(degree: Degree) {
-        let problem = block();
-        let d =
-            Discretization::new(&problem, degree, |c| c.limit() / 2.0, EdgeRule::Exact).unwrap();
-        let mut u: Vec<[f64; 2]> = vec![[0.0; 2]; d.space.nodes().len()];
-        for (i, u) in u.iter_mut().enumerate() {
-            *u = [(i as f64).sin(), (2.0 * i as f64).cos()];
-        }
-        let mut fine: Vec<[DoubleDouble; 2]> =
-            u.iter().map(|u| u.map(DoubleDouble::from)).collect();
-        let (forces, p) = evaluate(&d, &fine);
-        let doubles = d.linear_residual(&u);
-        for ((a, b), m) in forces.iter().zip(&doubles.values).zip(&doubles.magnitudes) {
-            for c in 0..2 {
-                assert!((a[c] - b[c]).abs() <= 8.0 * f64::EPSILON * m[c]);
-            }
-        }
-        let shift = 2.0_f64.powi(-90);
-        for u in &mut fine {
-            u[1] += DoubleDouble::from(shift);
-        }
-        let (_, moved) = evaluate(&d, &fine);
-        // A translation by shift along y changes u_n by -shift and no stress.
-        let change: Vec<f64> =
-            p.iter().zip(&moved).map(|(&p, &moved)| (moved - p).head()).collect();
-        assert!(change.iter().all(|c| c.abs() <= f64::EPSILON), "{change:?}");
-        let at = d.contact[0].edge.triangle;
-        let node = d.space.edge_nodes(d.contact[0].edge)[0];
-        let exactly = |u: &[[DoubleDouble; 2]]| u[node][1] - DoubleDouble::from(u[node][1].head());
-        assert_eq!(exactly(&fine).head(), shift, "{at}");
-    }
-
-    #[test]
-    fn residuals_in_double_doubles_agree_with_those_in_doubles_and_keep_more_of_u() {
-        agrees_and_sees_more(Degree::One);
-        agrees_and_sees_more(Degree::Two);
     }
 }
