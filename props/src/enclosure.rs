@@ -11,8 +11,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use signorini::fem::exact::Real;
-use signorini::kernel::{Interval, Scalar};
+use signorini::kernel::{Enclosing, Interval, Scalar};
 
 /// The order of the Taylor polynomials.
 pub const ORDER: usize = 4;
@@ -202,7 +201,19 @@ impl Scalar for Taylor {
     }
 }
 
-impl Real for Taylor {
+impl Enclosing for Taylor {
+    fn exactly(value: f64) -> Taylor {
+        Taylor::constant(Interval::point(value))
+    }
+
+    fn upper(self) -> f64 {
+        self.value().hi()
+    }
+
+    fn lower(self) -> f64 {
+        self.value().lo()
+    }
+
     /// From root * root = self: each coefficient of the root, once known, is taken away with all its products.
     fn sqrt(self) -> Taylor {
         let mut root = self.0;
@@ -217,14 +228,6 @@ impl Real for Taylor {
             }
         }
         Taylor(root)
-    }
-
-    fn by_sign<T>(
-        self,
-        nonpositive: impl FnOnce(Taylor) -> T,
-        positive: impl FnOnce(Taylor) -> T,
-    ) -> T {
-        if self.value().hi() <= 0.0 { nonpositive(self) } else { positive(self) }
     }
 }
 

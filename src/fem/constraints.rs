@@ -265,14 +265,11 @@ fn independent<'d, 'a>(
         };
         if !((demand.value - value).abs() <= tolerance) {
             let (first, second) = (first.to_owned(), demand.name.to_owned());
-            let values = [value, demand.value];
-            return Err(match demand.axis() {
-                Some(component) => {
-                    let values = values.map(|value| d[component] * value);
-                    DataError::Disagree { first, second, x, y, component, values }
-                }
-                None => DataError::DisagreeAlong { first, second, x, y, direction: d, values },
-            });
+            // Of the outward normal of a side along an axis it is the component that is said.
+            let sign = demand.axis().map_or(1.0, |c| d[c]);
+            let direction = d.map(|c| sign * c + 0.0);
+            let values = [value, demand.value].map(|value| sign * value);
+            return Err(DataError::Disagree { first, second, x, y, direction, values });
         }
     }
     Ok(chosen)

@@ -65,7 +65,7 @@ impl Coercivity {
         let equal =
             edges.iter().filter(|(e, _)| constants[&e.triangle] >= constant * (1.0 - 1e-12));
         let ends = |(edge, _): &(BoundaryEdge, &str)| {
-            let mut ends = mesh.ends(*edge).map(|v| mesh.vertices()[v]);
+            let mut ends = mesh.places_of_ends(*edge);
             ends.sort_by(order);
             ends
         };

@@ -18,15 +18,10 @@ pub enum DataError {
     #[error("{what} is {value} at ({}, {}); expected a finite number at every point of the mesh", number(*x), number(*y))]
     NotFinite { what: String, value: f64, x: f64, y: f64 },
     #[error(
-        "the displacement boundaries {} and {} meet at ({}, {}) and disagree there: u_{} = {} and {}; expected one value",
-        quoted(first, '\''), quoted(second, '\''), number(*x), number(*y), ["x", "y"][*component], number(values[0]), number(values[1])
+        "the displacement boundaries {} and {} meet at ({}, {}) and disagree there: {} = {} and {}; expected one value",
+        quoted(first, '\''), quoted(second, '\''), number(*x), number(*y), component(*direction), number(values[0]), number(values[1])
     )]
-    Disagree { first: String, second: String, x: f64, y: f64, component: usize, values: [f64; 2] },
-    #[error(
-        "the displacement boundaries {} and {} meet at ({}, {}) and disagree there: u . ({}, {}) = {} and {}; expected one value",
-        quoted(first, '\''), quoted(second, '\''), number(*x), number(*y), number(direction[0]), number(direction[1]), number(values[0]), number(values[1])
-    )]
-    DisagreeAlong {
+    Disagree {
         first: String,
         second: String,
         x: f64,
@@ -60,6 +55,15 @@ pub enum DataError {
     Value { what: &'static str, found: String, expected: &'static str },
     #[error("no boundary has contact; expected one with contact = {{ gap = ... }}")]
     NoContact,
+}
+
+/// The component of the displacement along a direction.
+fn component([x, y]: [f64; 2]) -> String {
+    match [x, y] {
+        [1.0, 0.0] => "u_x".to_owned(),
+        [0.0, 1.0] => "u_y".to_owned(),
+        _ => format!("u . ({}, {})", number(x), number(y)),
+    }
 }
 
 /// So many free motions are told one by one.

@@ -68,7 +68,7 @@ impl Errors {
         let mut squares = Errors::default();
         with_element!(space.degree(), add_triangles(&mut squares, space, &rule, v, exact));
         for edge in contact {
-            let ends = space.mesh().ends(edge.edge).map(|vertex| space.mesh().vertices()[vertex]);
+            let ends = space.mesh().places_of_ends(edge.edge);
             squares.add_edge(&rule, edge, ends, v, exact);
         }
         // The full norm of H1: so far there is only the seminorm.

@@ -105,7 +105,7 @@ pub fn bound(
     let seminorms = seminorms(space, exact)?;
     let rule = Rule::new(exact.features(), POINTS);
     let gap = |edge: &ContactFace| {
-        let ends = space.mesh().ends(edge.edge).map(|vertex| space.mesh().vertices()[vertex]);
+        let ends = space.mesh().places_of_ends(edge.edge);
         let mut square = 0.0;
         rule.on_edge(ends, [], |EdgePoint { s, x, weight }| {
             let difference = exact.gap(x) - ((1.0 - s) * edge.gap[0] + s * edge.gap[1]);

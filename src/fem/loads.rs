@@ -144,15 +144,12 @@ fn each_force(
     }
     for (name, condition) in &problem.conditions {
         match condition {
-            Condition::Traction(traction) => {
-                for (c, t) in acting(traction) {
-                    let what = || format!("[boundary.{}] traction[{c}]", key(name));
-                    let value = |x, n| checked(t.on_boundary(x, n), x, what);
-                    each_force_on_boundary(name, c, value, &rule(t), space, &mut add)?;
-                }
-            }
-            Condition::Mixed { displacement, traction } => {
-                for (c, t) in acting(traction).filter(|(c, _)| displacement[*c].is_none()) {
+            Condition::Traction(traction) | Condition::Mixed { traction, .. } => {
+                let is_held = |c: usize| match condition {
+                    Condition::Mixed { displacement, .. } => displacement[c].is_some(),
+                    _ => false,
+                };
+                for (c, t) in acting(traction).filter(|(c, _)| !is_held(*c)) {
                     let what = || format!("[boundary.{}] traction[{c}]", key(name));
                     let value = |x, n| checked(t.on_boundary(x, n), x, what);
                     each_force_on_boundary(name, c, value, &rule(t), space, &mut add)?;
@@ -210,7 +207,7 @@ fn each_force_on_boundary(
     let mut wrong = None;
     for &edge in space.mesh().edges_of(name)? {
         let (length, normal) = space.mesh().length_and_normal(edge);
-        let ends = space.mesh().ends(edge).map(|vertex| space.mesh().vertices()[vertex]);
+        let ends = space.mesh().places_of_ends(edge);
         let nodes = &space.edge_nodes(edge);
         rule.on_edge(ends, [], |point| match value(point.x, normal.into()) {
             Ok(t) => {

@@ -43,15 +43,6 @@ pub struct SmoothPoint {
     pub normal: Vector2<f64>,
 }
 
-/// The edges before and after a vertex of the outline, by their places in it.
-#[derive(Clone, Copy, Default)]
-struct Around {
-    before: Option<usize>,
-    after: Option<usize>,
-    /// More than one edge ends or starts here: parts of the body touch in a point.
-    several: bool,
-}
-
 /// A vertex of the outline: the edge before, the edge after and the angle by which it turns left.
 struct Passage {
     before: usize,
@@ -65,20 +56,16 @@ impl SmoothBoundary {
         let outline = mesh.outline();
         let facets: Vec<(f64, Vector2<f64>)> =
             outline.iter().map(|&edge| mesh.length_and_normal(edge)).collect();
-        let mut around: BTreeMap<usize, Around> = BTreeMap::new();
+        // The edges that end and that start at each vertex: one each, but where parts of the body touch in a point.
+        let mut around: BTreeMap<usize, [Vec<usize>; 2]> = BTreeMap::new();
         for (e, &edge) in outline.iter().enumerate() {
             let [start, end] = mesh.ends(edge);
-            let at_start = around.entry(start).or_default();
-            at_start.several |= at_start.after.replace(e).is_some();
-            let at_end = around.entry(end).or_default();
-            at_end.several |= at_end.before.replace(e).is_some();
+            around.entry(end).or_default()[0].push(e);
+            around.entry(start).or_default()[1].push(e);
         }
         let passage = |vertex: usize| -> Option<Passage> {
-            let Around { before: Some(before), after: Some(after), several: false } =
-                *around.get(&vertex)?
-            else {
-                return None;
-            };
+            let [before, after] = around.get(&vertex)?;
+            let (&[before], &[after]) = (&before[..], &after[..]) else { return None };
             let (n, m) = (facets[before].1, facets[after].1);
             let bend = n.perp(&m).atan2(n.dot(&m));
             Some(Passage { before, after, bend })
@@ -133,7 +120,7 @@ impl SmoothBoundary {
     /// Start, end and middle of the smooth boundary along an edge, if it is not straight there.
     pub fn along(&self, mesh: &Mesh, edge: BoundaryEdge) -> Option<[SmoothPoint; 3]> {
         let [n, m] = self.at_ends(edge)?;
-        let [a, b] = mesh.ends(edge).map(|v| Vector2::from(mesh.vertices()[v]));
+        let [a, b] = mesh.places_of_ends(edge).map(Vector2::from);
         let chord = b - a;
         let half = ((1.0 + n.x * m.x + n.y * m.y) / 2.0).max(0.0).sqrt();
         let speed = 2.0 * length(chord) / (1.0 + half);

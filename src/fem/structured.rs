@@ -48,8 +48,7 @@ impl Rectangle {
     /// # Errors
     /// Sizes that are not positive and finite, no cells, or more than [`MOST_CELLS`] of them.
     pub fn mesh(&self) -> Result<Mesh, MeshError> {
-        self.check()?;
-        Mesh::new(self.vertices(), self.triangles(), self.sides())
+        self.perturbed(0.0, 0)
     }
 
     /// The mesh with its vertices moved at random: by up to `amount` cells along each axis inside, along the sides on
@@ -58,8 +57,7 @@ impl Rectangle {
     /// # Errors
     /// As [`Rectangle::mesh`]; moved too far, triangles turn over.
     pub fn perturbed(&self, amount: f64, seed: u64) -> Result<Mesh, MeshError> {
-        self.check()?;
-        Mesh::new(self.moved_vertices(amount, seed), self.triangles(), self.sides())
+        self.mapped(amount, seed, |x| x)
     }
 
     fn moved_vertices(&self, amount: f64, seed: u64) -> Vec<[f64; 2]> {
@@ -79,7 +77,7 @@ impl Rectangle {
     }
 
     /// The mesh with its vertices moved as in [`Rectangle::perturbed`] by `amount`, if any, and then by `map`.
-    pub(super) fn mapped(
+    fn mapped(
         &self,
         amount: f64,
         seed: u64,
@@ -240,11 +238,11 @@ impl Structured {
     /// # Errors
     /// As [`Rectangle::mesh`] and [`Rectangle::perturbed`].
     pub fn mesh(&self, perturbation: Option<Perturbation>) -> Result<Mesh, MeshError> {
-        match (self, perturbation) {
-            (Structured::Rectangle(r), None) => r.mesh(),
-            (Structured::Rectangle(r), Some(p)) => r.perturbed(p.amount, p.seed),
-            (Structured::Trapezoid(t), None) => t.mesh(),
-            (Structured::Trapezoid(t), Some(p)) => t.perturbed(p.amount, p.seed),
+        let Perturbation { amount, seed } =
+            perturbation.unwrap_or(Perturbation { amount: 0.0, seed: 0 });
+        match self {
+            Structured::Rectangle(r) => r.perturbed(amount, seed),
+            Structured::Trapezoid(t) => t.perturbed(amount, seed),
         }
     }
 }

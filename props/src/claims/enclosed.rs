@@ -11,13 +11,14 @@
 use std::sync::Arc;
 
 use proptest::prelude::*;
-use signorini::fem::exact::{self, ExactSolution, Kind, Place, Real, Singular};
+use signorini::fem::exact::{self, ExactSolution, Kind, Place, Singular};
 use signorini::fem::{
     BoundaryEdge, Degree, Diagonal, Mesh, Problem, Rectangle, Space, contact_line, loads,
 };
 use signorini::kernel::element::Element;
 use signorini::kernel::{
-    ContactEdge, ContactPoint, Interval, Material, P1, P2, Plane, Stress, Triangle, positive_part,
+    ContactEdge, ContactPoint, Enclosing, Interval, Material, P1, P2, Plane, Stress, Triangle,
+    positive_part,
 };
 use signorini::nalgebra::{Matrix2, Vector2};
 
@@ -108,13 +109,13 @@ impl Draw {
         self.share * self.amplitude.abs()
     }
 
-    fn material<S: Real>(&self, of: fn(f64) -> S) -> Material<S> {
+    fn material<S: Enclosing>(&self, of: fn(f64) -> S) -> Material<S> {
         let [lambda, mu] = self.moduli.map(of);
         let plane = if self.plane_stress { Plane::Stress } else { Plane::Strain };
         Material::lame(lambda, mu, plane)
     }
 
-    fn solution<S: Real>(&self, of: fn(f64) -> S) -> Singular<S> {
+    fn solution<S: Enclosing>(&self, of: fn(f64) -> S) -> Singular<S> {
         Singular { material: self.material(of), c: of(self.c), amplitude: of(self.amplitude) }
     }
 

@@ -12,7 +12,6 @@
 
 mod corner;
 mod patch;
-mod real;
 mod singular;
 mod smooth;
 
@@ -22,7 +21,6 @@ use std::sync::Arc;
 
 pub use corner::Corner;
 pub use patch::Patch;
-pub use real::Real;
 pub use singular::{Place, Singular};
 pub use smooth::Smooth;
 

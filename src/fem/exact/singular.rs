@@ -6,14 +6,14 @@
 //!
 //! Contact with sigma_n = -am r^(1/2) for x < c; a gap that opens as r^(3/2) for x > c.
 //!
-//! The formulas need square roots only, so that they can be run over any [`Real`] number: over doubles here, over
-//! enclosures in `props`.
+//! The formulas need square roots only, so that they can be run over any number that is [`Enclosing`]: over doubles here,
+//! over enclosures in `props`.
 
 use nalgebra::Matrix2;
 
-use super::{ExactSolution, Real, kolosov};
+use super::{ExactSolution, kolosov};
 use crate::fem::pieces::{Features, Singularity};
-use crate::kernel::Material;
+use crate::kernel::{Enclosing, Material};
 
 /// The solution (b).
 #[derive(Clone, Debug, PartialEq)]
@@ -41,7 +41,7 @@ pub struct Place<S> {
     pub sin: S,
 }
 
-impl<S: Real> Place<S> {
+impl<S: Enclosing> Place<S> {
     /// Without the angle and without cancellation: of the two half-angle formulas the one that adds is taken, the other
     /// factor follows from their product y/2.
     pub fn new(x: S, y: S) -> Self {
@@ -49,21 +49,19 @@ impl<S: Real> Place<S> {
         let r = (x * x + y * y).sqrt();
         let larger = |x: S| ((r + x) / two).sqrt();
         let smaller = |larger: S| larger.split(|_| zero, |larger| y / (two * larger));
-        let [cos, sin] = x.by_sign(
-            |x| {
-                let sin = larger(-x);
-                [smaller(sin), sin]
-            },
-            |x| {
-                let cos = larger(x);
-                [cos, smaller(cos)]
-            },
-        );
+        // Either may stand for the other: where the sign of x is undecided, the second is taken.
+        let [cos, sin] = if x.is_at_most(0.0) {
+            let sin = larger(-x);
+            [smaller(sin), sin]
+        } else {
+            let cos = larger(x);
+            [cos, smaller(cos)]
+        };
         Place { x, y, over_r: r.split(|_| zero, |r| y / r), cos, sin }
     }
 }
 
-impl<S: Real> Singular<S> {
+impl<S: Enclosing> Singular<S> {
     /// u
     pub fn displacement_at(&self, place: &Place<S>) -> [S; 2] {
         let &Place { x, y, cos, sin, .. } = place;

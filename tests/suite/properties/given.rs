@@ -268,9 +268,7 @@ fn opposite(moved: f64) -> Result<(), SolveError> {
 fn agreeing(moved: f64) -> Outcome {
     opposite(moved).map_err(text)?;
     match opposite(-moved) {
-        Err(SolveError::Data(DataError::Disagree { .. } | DataError::DisagreeAlong { .. })) => {
-            Ok(())
-        }
+        Err(SolveError::Data(DataError::Disagree { .. })) => Ok(()),
         other => Err(format!("with the other sign: {other:?}")),
     }
 }
