@@ -18,8 +18,8 @@ use super::quantities::{Line, Station};
 use super::quarters::{add_halves, halved, quarters};
 use super::tractions::{force_of, held_only, moments, stresses, supported};
 use crate::fem::Mesh;
+use crate::fem::boundary_normals::SmoothBoundary;
 use crate::fem::mesh::length;
-use crate::fem::smooth::SmoothBoundary;
 use crate::kernel::composite::Affine;
 use crate::kernel::{Enclosing, Triangle};
 

@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use nalgebra::Vector2;
 
 use super::certificate::Role;
+use crate::fem::graded_quadrature::{Features, Rule};
 use crate::fem::mesh::length;
-use crate::fem::pieces::{Features, Rule};
 use crate::fem::{Function, Problem, SharedFunction};
 use crate::kernel::{Ball, Enclosing, Triangle};
 

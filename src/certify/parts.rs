@@ -10,9 +10,9 @@ use super::contact::Contact;
 use super::data::{Traction, bulge_of};
 use super::errors::CertifyError;
 use super::field::Field;
+use crate::fem::boundary_normals::SmoothBoundary;
 use crate::fem::constraints::Constraints;
 use crate::fem::contact_line::Gamma;
-use crate::fem::smooth::SmoothBoundary;
 use crate::fem::{
     BoundaryEdge, Condition, Degree, Mesh, Problem, SharedFunction, Space, contact_line,
 };

@@ -11,12 +11,12 @@
 
 use std::collections::BTreeMap;
 
+use super::boundary_normals::SmoothBoundary;
 use super::data::{DataError, finite};
-use super::held::pins;
 use super::mesh::BoundaryEdge;
 use super::problem::{Condition, Problem, SharedFunction};
 use super::rigid::{self, FreeMotion, Parts};
-use super::smooth::SmoothBoundary;
+use super::solvability::pins;
 use super::space::Space;
 use crate::kernel::Scalar;
 use crate::quote;

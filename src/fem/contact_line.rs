@@ -1,7 +1,7 @@
 //! Gamma_C on the mesh: its edges with their functionals and gamma = gamma0 h_T of (7), the coercivity number kappa.
 //!
 //! The direction of contact is a field n~, given at the nodes: by the obstacle's closest point where there is an obstacle, else
-//! by the normal of the smooth boundary (`smooth`), on which the nodes are placed when the gap is measured. On a straight line
+//! by the normal of the smooth boundary (`boundary_normals`), on which the nodes are placed when the gap is measured. On a straight line
 //! without an obstacle n~ = n, and all is the paper's method to the bit.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -9,13 +9,13 @@ use std::sync::Arc;
 
 use nalgebra::Vector2;
 
+use super::boundary_normals::{SmoothBoundary, SmoothPoint};
 use super::contact_face::{ContactFace, Functionals};
 use super::data::{DataError, finite};
 use super::element::Degree;
 use super::mesh::BoundaryEdge;
 use super::obstacle::Closest;
 use super::problem::{Condition, Problem};
-use super::smooth::{SmoothBoundary, SmoothPoint};
 use super::space::Space;
 use crate::kernel::contact_edge::traction_stiffness;
 use crate::quote::key;
@@ -56,7 +56,7 @@ impl Coercivity {
     pub fn new(problem: &Problem, degree: Degree) -> Result<Self, DataError> {
         let mesh = &problem.mesh;
         let edges = contact_edges(problem)?;
-        let constants = constants(problem, degree, &edges, &Sight::new(problem))?;
+        let constants = constants(problem, degree, &edges, &ContactGeometry::new(problem))?;
         let mut sorted: Vec<f64> = constants.values().copied().collect();
         sorted.sort_unstable_by(f64::total_cmp);
         let typical = sorted.get(sorted.len() / 2).copied().ok_or(DataError::NoContact)?;
@@ -93,12 +93,12 @@ fn constants(
     problem: &Problem,
     degree: Degree,
     edges: &[(BoundaryEdge, &str)],
-    sight: &Sight,
+    geometry: &ContactGeometry,
 ) -> Result<BTreeMap<usize, f64>, DataError> {
     let mesh = &problem.mesh;
     let mut constants: BTreeMap<usize, f64> = BTreeMap::new();
     for &(edge, name) in edges {
-        let [start, end] = [sight.direction(edge, name, 0)?, sight.direction(edge, name, 1)?];
+        let [start, end] = [geometry.direction(edge, name, 0)?, geometry.direction(edge, name, 1)?];
         let (length, normal) = mesh.length_and_normal(edge);
         let counted =
             if start == end { length } else { degree.turning_factor(start.dot(&end)) * length };
@@ -159,12 +159,12 @@ pub fn assemble(
     gamma: impl Into<Gamma>,
 ) -> Result<Vec<ContactFace>, DataError> {
     let mesh = space.mesh();
-    let sight = Sight::new(problem);
+    let geometry = ContactGeometry::new(problem);
     let edges = contact_edges(problem)?;
     let gamma0: Box<dyn Fn(usize) -> f64> = match gamma.into() {
         Gamma::Uniform(gamma0) => Box::new(move |_| gamma0),
         Gamma::Local(kappa) => {
-            let constants = constants(problem, space.degree(), &edges, &sight)?;
+            let constants = constants(problem, space.degree(), &edges, &geometry)?;
             Box::new(move |t| kappa / constants[&t])
         }
     };
@@ -177,9 +177,9 @@ pub fn assemble(
         let mut places = vec![[0.0; 2]; count];
         for (a, node) in space.edge_nodes(edge).into_iter().enumerate() {
             let on_facet = SmoothPoint { place: space.nodes()[node], normal };
-            let point = sight.point(edge, a).unwrap_or(on_facet);
+            let point = geometry.point(edge, a).unwrap_or(on_facet);
             places[a] = point.place;
-            Closest { gap: gap[a], direction: directions[a] } = sight.closest(name, point)?;
+            Closest { gap: gap[a], direction: directions[a] } = geometry.closest(name, point)?;
         }
         let triangle = mesh.triangle(edge.triangle);
         let material = problem.material.of(edge.triangle);
@@ -201,7 +201,7 @@ pub fn assemble(
             directions,
             along_normal,
             places,
-            curved: sight.is_curved(edge),
+            curved: geometry.is_curved(edge),
             gap,
             functionals,
         });
@@ -238,14 +238,14 @@ fn check_sides(problem: &Problem, line: &[ContactFace]) -> Result<(), DataError>
 }
 
 /// The obstacles as seen from the contact line.
-struct Sight<'a> {
+struct ContactGeometry<'a> {
     problem: &'a Problem,
     smooth: SmoothBoundary,
 }
 
-impl<'a> Sight<'a> {
+impl<'a> ContactGeometry<'a> {
     fn new(problem: &'a Problem) -> Self {
-        Sight { problem, smooth: SmoothBoundary::new(&problem.mesh) }
+        ContactGeometry { problem, smooth: SmoothBoundary::new(&problem.mesh) }
     }
 
     /// Start (0), end (1) or middle (2) of the smooth boundary along an edge, if it is not straight there.

@@ -10,12 +10,12 @@ use super::contact_line::{self, Coercivity, Gamma};
 use super::data::DataError;
 use super::dense::inner;
 use super::element::Degree;
-use super::held::{self, NotHeld, Slides};
 use super::loads::{self, Loads};
 use super::material;
 use super::problem::Problem;
 use super::residual::{StressPoint, each_stress};
 use super::rigid::FreeMotion;
+use super::solvability::{self, NotHeld, Slides};
 use super::space::Space;
 use crate::kernel::contact_edge::integral_of_product;
 
@@ -114,7 +114,7 @@ impl<'a> Discretization<'a> {
         let mut slides = None;
         if !motions.is_empty() {
             let rounding = rounding_of_directions(&constraints, &space, &contact);
-            let sliding = held::slides(&motions, &parts, &space, &load, &contact, rounding)
+            let sliding = solvability::slides(&motions, &parts, &space, &load, &contact, rounding)
                 .map_err(|NotHeld { motions, drive }| DataError::RigidMotion { motions, drive })?;
             constraints = constraints.pinned(&sliding.basis, &vec![[0.0; 2]; space.nodes().len()]);
             slides = Some(sliding);

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use super::contact_face::ContactFace;
 use super::element::{roots, value_at, with_element};
 use super::exact::ExactSolution;
-use super::pieces::Rule;
+use super::graded_quadrature::Rule;
 use super::space::Space;
 use crate::kernel::element::displacement_gradient;
 use crate::kernel::{ContactPoint, Element, positive_part};

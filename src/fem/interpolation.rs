@@ -16,8 +16,8 @@ use super::a_priori;
 use super::contact_face::ContactFace;
 use super::errors::{Errors, POINTS};
 use super::exact::ExactSolution;
+use super::graded_quadrature::{EdgePoint, Rule};
 use super::material::largest_eigenvalue;
-use super::pieces::{EdgePoint, Rule};
 use super::space::Space;
 use crate::kernel::{Material, Scalar, Triangle};
 

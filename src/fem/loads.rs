@@ -3,7 +3,7 @@
 use super::ball::Ball;
 use super::data::{DataError, checked};
 use super::element::Degree;
-use super::pieces::{Features, Rule};
+use super::graded_quadrature::{Features, Rule};
 use super::problem::{Condition, Function, Problem, SharedFunction, SurfaceForce};
 use super::space::Space;
 use crate::kernel::{Element, P1, P2, Scalar};

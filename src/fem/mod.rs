@@ -4,6 +4,8 @@
 pub mod a_priori;
 #[doc(hidden)]
 pub mod ball;
+#[doc(hidden)]
+pub mod boundary_normals;
 pub mod constraints;
 pub mod contact_face;
 pub mod contact_line;
@@ -21,9 +23,9 @@ pub mod embedding;
 pub mod errors;
 #[doc(hidden)]
 pub mod exact;
-mod groups;
 #[doc(hidden)]
-pub mod held;
+pub mod graded_quadrature;
+mod groups;
 #[doc(hidden)]
 pub mod interpolation;
 #[doc(hidden)]
@@ -40,8 +42,6 @@ pub mod moments;
 #[doc(hidden)]
 pub mod obstacle;
 #[doc(hidden)]
-pub mod pieces;
-#[doc(hidden)]
 pub mod problem;
 #[doc(hidden)]
 pub mod quadrature;
@@ -52,7 +52,7 @@ pub mod rigid;
 #[doc(hidden)]
 pub mod rounded_stress;
 #[doc(hidden)]
-pub mod smooth;
+pub mod solvability;
 pub mod space;
 #[doc(hidden)]
 pub mod structured;

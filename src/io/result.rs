@@ -18,7 +18,7 @@ use super::data::DataError;
 use crate::certify::adapt::Level;
 use crate::fem::Errors;
 use crate::fem::contact_line::Gamma;
-use crate::fem::held::Play;
+use crate::fem::solvability::Play;
 use crate::solve::{
     ContactBoundary, ContactQuadrature, EnergyBalance, Gamma0, GammaReport, Method, MethodReport,
     Quantities, Status, Times,

@@ -15,7 +15,7 @@ use super::sweep::Sweep;
 use super::{Case, numbers};
 use crate::certify::Continuous;
 use crate::certify::adapt::Level;
-use crate::fem::held::Play;
+use crate::fem::solvability::Play;
 use crate::quote;
 use crate::solve::{ContactQuadrature, MethodReport, Outline, RouteName, Status};
 

@@ -19,9 +19,9 @@ use super::newton::{self, Until};
 use super::relaxation::follow;
 use super::system::System;
 use crate::fem::double_double::DoubleDouble;
-use crate::fem::held;
 use crate::fem::matrix::LowerTriangle;
 use crate::fem::rigid::Parts;
+use crate::fem::solvability;
 
 /// The tangent last factored.
 pub struct Assembled<'a, 'd, 'p> {
@@ -66,7 +66,7 @@ impl<'a, 'd, 'p> Assembled<'a, 'd, 'p> {
         let springs = at.hessian.iter();
         let pressing: Vec<bool> = springs.map(|h| h.iter().any(|h| *h != 0.0)).collect();
         let parts = Parts::new(d.space.mesh());
-        held::free_where(d, &parts, &pressing).len() > slides.count()
+        solvability::free_where(d, &parts, &pressing).len() > slides.count()
     }
 
     /// Adds a little of the springs of all edges.

@@ -27,9 +27,9 @@ use super::system::System;
 use super::times::Stopwatch;
 use crate::fem::ball::{Ball, up};
 use crate::fem::double_double::DoubleDouble;
-use crate::fem::held::Slides;
 use crate::fem::korn::Korn;
 use crate::fem::rounded_stress;
+use crate::fem::solvability::Slides;
 use crate::fem::{ContactFace, Discretization};
 use crate::kernel;
 

@@ -4,7 +4,7 @@
 
 use crate::fem::discretization::Discretization;
 use crate::fem::double_double::DoubleDouble;
-use crate::fem::held::{Play, Slides};
+use crate::fem::solvability::{Play, Slides};
 
 /// A displacement with its forces.
 #[derive(Clone, Debug, PartialEq)]

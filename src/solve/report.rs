@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::enclosure;
 use super::route::RouteName;
-use crate::fem::held::Play;
+use crate::fem::solvability::Play;
 
 /// The verdict on a solution.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -16,7 +16,7 @@ use crate::fem::dense::inner;
 use crate::fem::discretization::Discretization;
 use crate::fem::double_double::DoubleDouble;
 use crate::fem::element::maximum;
-use crate::fem::held::Play;
+use crate::fem::solvability::Play;
 use crate::fem::{DataError, Degree, Errors, ExactSolution, Problem, Space};
 use crate::kernel::Stress;
 use crate::kernel::contact::pressure;

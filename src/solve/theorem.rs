@@ -7,8 +7,8 @@ use super::factor::Factor;
 use super::ordering::nested_dissection;
 use super::{ContactQuadrature, Gamma0, Method, Solution, SolveError, discretize};
 use crate::fem::contact_line::Gamma;
+use crate::fem::graded_quadrature::Rule;
 use crate::fem::matrix::{self, Neighbours, Numbering};
-use crate::fem::pieces::Rule;
 use crate::fem::{Discretization, Errors, ExactSolution, Problem, a_priori, errors};
 
 /// The two sides and their ingredients.

@@ -4,10 +4,10 @@
 use std::sync::Arc;
 
 use proptest::prelude::*;
+use signorini::fem::boundary_normals::SmoothBoundary;
 use signorini::fem::korn::Korn;
 use signorini::fem::matrix::{self, Neighbours};
 use signorini::fem::obstacle::MOST_OFF;
-use signorini::fem::smooth::SmoothBoundary;
 use signorini::fem::{Diagonal, Distance, Function, Mesh, Obstacle, Problem, Rectangle, Side};
 use signorini::kernel::{Material, Plane};
 use signorini::nalgebra::Vector2;

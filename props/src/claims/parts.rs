@@ -537,7 +537,7 @@ pub fn direction() -> Claim {
             "contact_edge::turning_factor",
             "material::Material::traction_of_shape",
             "fem::obstacle::Obstacle::closest",
-            "fem::smooth::SmoothBoundary::along",
+            "fem::boundary_normals::SmoothBoundary::along",
         ],
         preconditions: "mu > 0 and lambda + mu > 0 with lambda as it acts in the plane. n~ turns by no more than a right angle along an edge: by less than 40 degrees where the line is smooth, by definition.",
         limits: "Convergence is measured on one body and two meshes here, on four meshes and four bodies in tests/suite/peaks.rs. The pressure's error is not bounded by theory: the paper's estimates are for straight lines.",

@@ -12,7 +12,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use nalgebra::{Matrix2, Vector2};
 
 use super::{ExactSolution, kolosov};
-use crate::fem::pieces::{Features, Singularity};
+use crate::fem::graded_quadrature::{Features, Singularity};
 use crate::kernel::Material;
 
 /// The solution (c).

@@ -26,8 +26,8 @@ pub use smooth::Smooth;
 
 use nalgebra::Matrix2;
 
+use super::graded_quadrature::Features;
 use super::mesh::Mesh;
-use super::pieces::Features;
 use super::problem::{Condition, Function, Problem, SharedFunction};
 use crate::kernel::{Material, Scalar, Stress};
 

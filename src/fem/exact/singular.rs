@@ -12,7 +12,7 @@
 use nalgebra::Matrix2;
 
 use super::{ExactSolution, kolosov};
-use crate::fem::pieces::{Features, Singularity};
+use crate::fem::graded_quadrature::{Features, Singularity};
 use crate::kernel::{Enclosing, Material};
 
 /// The solution (b).

@@ -9,7 +9,7 @@
 use nalgebra::Matrix2;
 
 use super::ExactSolution;
-use crate::fem::pieces::Features;
+use crate::fem::graded_quadrature::Features;
 use crate::kernel::Material;
 
 /// The solution (a).

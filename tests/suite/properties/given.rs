@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use signorini::fem::exact::{Corner, Kind, Singular, Smooth};
-use signorini::fem::pieces::{Features, Rule};
+use signorini::fem::graded_quadrature::{Features, Rule};
 use signorini::fem::{
     Condition, DataError, Diagonal, Exact, Mesh, Perturbation, Problem, Rectangle, Structured,
     Trapezoid,

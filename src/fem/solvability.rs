@@ -176,7 +176,7 @@ fn press(
     let mut verge: Option<Vec<f64>> = None;
     loop {
         let rows: Vec<Vec<f64>> = edges.iter().flat_map(|(_, rows)| rows.clone()).collect();
-        if let Some(motion) = leaving(&rows, loads, BALANCED) {
+        if let Some(motion) = nnls_residual(&rows, loads, BALANCED) {
             let driven = verge.is_none();
             return Err(Some((verge.unwrap_or(motion), driven)));
         }
@@ -186,7 +186,7 @@ fn press(
             [-MARGIN, MARGIN].into_iter().find_map(|by| {
                 let changed: Vec<f64> =
                     loads.iter().zip(&direction).map(|(l, d)| l + by * d).collect();
-                leaving(&rows, &changed, BALANCED)
+                nnls_residual(&rows, &changed, BALANCED)
             })
         });
         let Some(motion) = leaves else { break };
@@ -324,7 +324,7 @@ impl Slides {
         let rows: Vec<Vec<f64>> = self.bounds.iter().map(row).collect();
         let mut target = vec![0.0; self.count() + 1];
         target[self.count()] = 1.0;
-        let mut rest = leaving(&rows, &target, INFEASIBLE)?;
+        let mut rest = nnls_residual(&rows, &target, INFEASIBLE)?;
         let last = rest.pop()?;
         (last > INFEASIBLE).then(|| rest.iter().map(|r| -scale * r / last).collect())
     }
@@ -415,7 +415,7 @@ pub fn pins(slides: &[Vec<[f64; 2]>], free: impl Fn(usize, usize) -> bool) -> Ve
 const INFEASIBLE: f64 = 1e-10;
 
 /// The part of `target` that no combination of the rows with weights >= 0 reaches, if it is larger than `tolerance`.
-fn leaving(rows: &[Vec<f64>], target: &[f64], tolerance: f64) -> Option<Vec<f64>> {
+fn nnls_residual(rows: &[Vec<f64>], target: &[f64], tolerance: f64) -> Option<Vec<f64>> {
     // The rows in use and their weights.
     let mut used: Vec<(usize, f64)> = Vec::new();
     let mut rest = target.to_vec();
@@ -476,7 +476,7 @@ mod tests {
     /// (down, turn): a plate on supports at these places, pressed by a unit force at `at`.
     fn presses(supports: &[f64], at: f64) -> bool {
         let rows: Vec<Vec<f64>> = supports.iter().map(|x| vec![1.0, *x]).collect();
-        leaving(&rows, &[1.0, at], 1e-9).is_none()
+        nnls_residual(&rows, &[1.0, at], 1e-9).is_none()
     }
 
     #[test]
@@ -489,7 +489,7 @@ mod tests {
             assert!(!presses(&supports, at), "{at}");
         }
         let rows = [vec![1.0, 0.0], vec![1.0, 1.0]];
-        let motion = leaving(&rows, &[1.0, 2.0], 1e-9).unwrap();
+        let motion = nnls_residual(&rows, &[1.0, 2.0], 1e-9).unwrap();
         assert!(rows.iter().all(|c| c[0] * motion[0] + c[1] * motion[1] <= 1e-12), "admitted");
         assert!(motion[0] + 2.0 * motion[1] > 0.0, "and the loads do work on it");
     }
