@@ -46,7 +46,7 @@ mod command {
     use signorini::io::result::{Results, Seconds, result_json};
     use signorini::io::run::{self, RunError, Solved};
     use signorini::io::sweep::{self, Axis, Sweep, SweepError};
-    use signorini::io::{Case, CaseError, certificate, report, summary};
+    use signorini::io::{Case, FileError, certificate, report, summary};
     use signorini::quote;
     use signorini::solve::{self, Course, Degree, LadderError, Solution, Times};
 
@@ -350,8 +350,8 @@ mod command {
         Case::parse(&file, &text, settings).map_err(|e| no_case(&e))
     }
 
-    fn no_case(error: &CaseError) -> Failure {
-        failure(if error.is_lack() { FAILED } else { WRONG })(error)
+    fn no_case(error: &FileError) -> Failure {
+        failure(if error.error.is_lack() { FAILED } else { WRONG })(error)
     }
 
     /// The text of a case, and what messages call its file.
@@ -404,7 +404,7 @@ mod command {
         let no_sweep = |error: SweepError| {
             let code = match error {
                 SweepError::Output(_) => FAILED,
-                SweepError::Case(ref error) if error.is_lack() => FAILED,
+                SweepError::Case(ref error) if error.error.is_lack() => FAILED,
                 _ => WRONG,
             };
             failure(code)(&error)

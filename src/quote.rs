@@ -83,10 +83,10 @@ pub fn unbroken(text: &str) -> String {
 fn escaped(text: impl Iterator<Item = char>) -> String {
     let mut shown = String::new();
     for c in text {
-        if is_hidden(c) {
-            shown.push_str(&escape(c));
-        } else {
-            shown.push(c);
+        match c {
+            '\n' | '\r' | '\t' | '\0' => shown.extend(c.escape_debug()),
+            c if is_hidden(c) => shown.extend(c.escape_unicode()),
+            c => shown.push(c),
         }
     }
     shown
@@ -98,13 +98,6 @@ fn is_hidden(c: char) -> bool {
         || matches!(c, '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}')
         || matches!(c, '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}')
         || matches!(c, '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e0fff}')
-}
-
-fn escape(c: char) -> String {
-    match c {
-        '\n' | '\r' | '\t' | '\0' => c.escape_debug().collect(),
-        _ => c.escape_unicode().collect(),
-    }
 }
 
 /// `a, b or c`, where `last` is "or".
@@ -132,17 +125,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn control_characters_are_escaped_and_long_texts_cut() {
+    fn characters_that_a_terminal_obeys_are_escaped_and_long_texts_cut() {
         assert_eq!(quoted("a 'b'\n\u{7}é", '"'), "\"a 'b'\\n\\u{7}é\"");
-        assert_eq!(quoted(&"x".repeat(61), '\''), format!("'{}...'", "x".repeat(60)));
-        assert_eq!(quoted(&"x".repeat(60), '\''), format!("'{}'", "x".repeat(60)));
-        assert_eq!(line(&"x".repeat(201)), format!("{}...", "x".repeat(200)));
-    }
-
-    #[test]
-    fn characters_that_turn_the_text_round_are_escaped_like_control_characters() {
         assert_eq!(cut("a\u{202e}b\u{1b}[2Jc\u{9b}\0"), "a\\u{202e}b\\u{1b}[2Jc\\u{9b}\\0");
         assert_eq!(lines("a\u{1b}c\nb\r\n"), "a\\u{1b}c\nb\\r\n");
+        let long = |count: usize| "x".repeat(count);
+        assert_eq!([cut(&long(60)), cut(&long(61))], [long(60), long(60) + "..."]);
+        assert_eq!(line(&long(201)), long(200) + "...");
     }
 
     #[test]
@@ -158,19 +147,8 @@ mod tests {
 
     #[test]
     fn numbers_read_back_and_have_no_row_of_zeros() {
-        for (x, expected) in [
-            (0.0, "0"),
-            (-0.25, "-0.25"),
-            (1.0, "1"),
-            (0.00001, "0.00001"),
-            (1e-6, "1e-6"),
-            (1e16, "1e16"),
-            (1.5e300, "1.5e300"),
-            (f64::NAN, "NaN"),
-            (f64::INFINITY, "inf"),
-        ] {
-            assert_eq!(number(x), expected);
-        }
+        let shown = [0.0, -0.25, 0.00001, 1e-6, 1e16, f64::NAN, f64::INFINITY].map(number);
+        assert_eq!(shown, ["0", "-0.25", "0.00001", "1e-6", "1e16", "NaN", "inf"]);
         assert_eq!([fixed(1.69706, 4), fixed(1e300, 4)], ["1.6971", "1e300"]);
         for x in [0.1 + 0.2, f64::MAX, f64::MIN_POSITIVE, 5e-324, 9.999999999999998e15] {
             assert_eq!(number(x).parse(), Ok(x));

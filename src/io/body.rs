@@ -6,8 +6,8 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::expression::Expression;
-use super::mistake::{CaseError, CaseMistake};
-use super::table::{Table, Value};
+use super::input::FileError;
+use super::table::{Spot, Table, Value};
 use crate::fem::exact;
 use crate::fem::material::{
     Across, MaterialError, Orthotropic, largest_entry, stable, stable_orthotropic,
@@ -58,106 +58,76 @@ impl MaterialEcho {
     }
 }
 
+/// A material of one surface: where it stands, and the surface.
+type OfSurface<'s> = (Spot<'s>, &'s str, Material<f64>, MaterialEcho);
+
 /// The materials as read, not yet on a mesh.
 pub(super) enum MaterialTable<'s> {
-    Whole(Table<'s>, Material<f64>, MaterialEcho),
-    BySurface {
-        table: Table<'s>,
-        materials: Vec<(Value<'s>, &'s str, Material<f64>, MaterialEcho)>,
-    },
+    Whole(Spot<'s>, Material<f64>, MaterialEcho),
+    BySurface { at: Spot<'s>, materials: Vec<OfSurface<'s>> },
 }
 
-/// Returns whether the key of `[material]` is the name of a surface.
-fn is_a_surface(table: &Table, key: &str) -> bool {
-    !KEYS.contains(&key) && table.get(key).is_some_and(|value| value.is_table())
-}
-
-pub(super) fn read_materials<'s>(table: Table<'s>) -> Result<MaterialTable<'s>, CaseError> {
-    let named: Vec<&str> = table.keys().filter(|key| is_a_surface(&table, key)).collect();
-    if named.is_empty() {
-        table.only(&KEYS)?;
+pub(super) fn read_materials<'s>(table: Table<'s>) -> Result<MaterialTable<'s>, FileError> {
+    let mut known = table.keys_of_tables();
+    known.retain(|key| !KEYS.contains(key));
+    let Some(first) = known.first().map(|key| table.under_header(key).name) else {
         let (material, echo) = read_material(&table, Plane::Strain)?;
-        return Ok(MaterialTable::Whole(table, material, echo));
-    }
+        return Ok(MaterialTable::Whole(table.at, material, echo));
+    };
     if let Some(key) = table.keys().find(|key| MODULI.contains(key)) {
-        return Err(table.wrong(CaseMistake::Combination {
-            name: table.name().to_owned(),
-            found: format!("{key} beside [material.{}]", shown(named[0])),
-            expected: "one material for the whole body, or one for each physical surface"
-                .to_owned(),
-        }));
+        let expected = "one material for the whole body, or one for each physical surface";
+        return Err(table.at.found(&format!("{key} beside {first}"), expected));
     }
-    let mut known = named.clone();
+    let surfaces = known.clone();
     known.push("plane");
     table.only(&known)?;
     let plane = read_plane(&table, Plane::Strain)?;
-    let mut materials: Vec<(Value<'s>, &'s str, Material<f64>, MaterialEcho)> = Vec::new();
-    for key in named {
-        let value = table.require(key, "a table")?;
-        let one = value.section(format!("[material.{}]", shown(key)))?;
-        one.only(&KEYS)?;
+    let mut materials: Vec<OfSurface> = Vec::new();
+    for key in surfaces {
+        let one = table.subsection(key)?;
         let (material, echo) = read_material(&one, plane)?;
-        if let Some((_, other, _, first)) = materials.first()
-            && first.plane != echo.plane
+        if let Some((.., other)) = materials.first()
+            && other.plane != echo.plane
         {
-            return Err(one.wrong(CaseMistake::Combination {
-                name: one.name().to_owned(),
-                found: format!(
-                    "plane {} beside plane {} in [material.{}]",
-                    echo.plane,
-                    first.plane,
-                    shown(other)
-                ),
-                expected: "the same for the whole body".to_owned(),
-            }));
+            let found = format!("plane {} beside plane {} in {first}", echo.plane, other.plane);
+            return Err(one.at.found(&found, "the same for the whole body"));
         }
-        materials.push((value, key, material, echo));
+        materials.push((one.at, key, material, echo));
     }
-    Ok(MaterialTable::BySurface { table, materials })
+    Ok(MaterialTable::BySurface { at: table.at, materials })
 }
 
 impl MaterialTable<'_> {
     /// The one material of the whole body, if there is one.
-    pub fn only(&self) -> Result<Material<f64>, CaseError> {
-        let beside_exact = |table: &Table, found: &str, expected: &str| {
-            table.wrong(CaseMistake::Combination {
-                name: table.name().to_owned(),
-                found: format!("{found} beside [exact]"),
-                expected: expected.to_owned(),
-            })
-        };
-        match self {
-            MaterialTable::Whole(_, material, _) if material.is_isotropic() => Ok(*material),
-            MaterialTable::Whole(table, ..) => Err(beside_exact(
-                table,
-                "a material that is not isotropic",
-                "lambda and mu, or young and poisson",
-            )),
-            MaterialTable::BySurface { table, .. } => {
-                Err(beside_exact(table, "materials by surface", "one material for the whole body"))
+    pub fn only(&self) -> Result<Material<f64>, FileError> {
+        let (at, found, expected) = match self {
+            MaterialTable::Whole(_, material, _) if material.is_isotropic() => {
+                return Ok(*material);
             }
-        }
+            MaterialTable::Whole(at, ..) => {
+                (at, "a material that is not isotropic", "lambda and mu, or young and poisson")
+            }
+            MaterialTable::BySurface { at, .. } => {
+                (at, "materials by surface", "one material for the whole body")
+            }
+        };
+        Err(at.found(&format!("{found} beside [exact]"), expected))
     }
 
     /// The material of each triangle: each has exactly one, each surface of the mesh its own.
-    pub fn on_the_mesh(self, mesh: &Mesh) -> Result<(Materials, Vec<MaterialEcho>), CaseError> {
-        let (table, materials) = match self {
+    pub fn on_the_mesh(self, mesh: &Mesh) -> Result<(Materials, Vec<MaterialEcho>), FileError> {
+        let (at, materials) = match self {
             MaterialTable::Whole(_, material, echo) => {
                 let surfaces = mesh.surfaces().keys().cloned().collect();
                 return Ok((material.into(), vec![MaterialEcho { surfaces, ..echo }]));
             }
-            MaterialTable::BySurface { table, materials } => (table, materials),
-        };
-        let wrong = |found: String, expected: &str| {
-            let (name, expected) = (table.name().to_owned(), expected.to_owned());
-            table.wrong(CaseMistake::Combination { name, found, expected })
+            MaterialTable::BySurface { at, materials } => (at, materials),
         };
         let mut covered = vec![false; mesh.triangles().len()];
         let mut parts = Vec::new();
         let mut echoes = Vec::new();
-        for (value, key, material, echo) in &materials {
-            let name = || format!("[material.{}]", shown(key));
-            let triangles = on_surface(mesh, value, key, name)?;
+        for (at, key, material, echo) in &materials {
+            let triangles = on_surface(mesh, at, key)?;
             triangles.iter().for_each(|&t| covered[t] = true);
             parts.push((*material, triangles));
             echoes.push(MaterialEcho { surfaces: vec![(*key).to_owned()], ..echo.clone() });
@@ -165,16 +135,14 @@ impl MaterialTable<'_> {
         let without = |name: &&String| materials.iter().all(|(_, key, ..)| key != name);
         if let Some(name) = mesh.surfaces().keys().find(without) {
             let found = format!("no material for the surface {}", quoted(name, '\''));
-            return Err(wrong(found, &format!("[material.{}]", shown(name))));
+            return Err(at.found(&found, &format!("[material.{}]", shown(name))));
         }
         if let Some(t) = covered.iter().position(|covered| !covered) {
-            let [x, y] = mesh.triangle(t).point([1.0 / 3.0; 3]).into();
-            let found = format!(
-                "a triangle around ({}, {}) that belongs to no physical surface",
-                quote::number(x),
-                quote::number(y)
-            );
-            return Err(wrong(found, "all of the body in physical surfaces with a material each"));
+            let place: [f64; 2] = mesh.triangle(t).point([1.0 / 3.0; 3]).into();
+            let [x, y] = place.map(quote::number);
+            let found = format!("a triangle around ({x}, {y}) that belongs to no physical surface");
+            let expected = "all of the body in physical surfaces with a material each";
+            return Err(at.found(&found, expected));
         }
         let rest = materials[0].2;
         Ok((Materials::in_parts(rest, covered.len(), parts), echoes))
@@ -182,41 +150,27 @@ impl MaterialTable<'_> {
 }
 
 /// The triangles of a surface, of which there must be some.
-fn on_surface<'m>(
-    mesh: &'m Mesh,
-    value: &Value,
-    key: &str,
-    name: impl Fn() -> String,
-) -> Result<&'m [usize], CaseError> {
+fn on_surface<'m>(mesh: &'m Mesh, at: &Spot, key: &str) -> Result<&'m [usize], FileError> {
     match mesh.surface(key) {
-        Err(error) => Err(value.mistake(CaseMistake::Mesh { name: name(), error })),
-        Ok([]) => Err(value.mistake(CaseMistake::Combination {
-            name: name(),
-            found: "no triangle in this mesh".to_owned(),
-            expected: "at least one".to_owned(),
-        })),
+        Err(error) => Err(at.mesh(error)),
+        Ok([]) => Err(at.found("no triangle in this mesh", "at least one")),
         Ok(triangles) => Ok(triangles),
     }
 }
 
-fn read_plane(table: &Table, default: Plane) -> Result<Plane, CaseError> {
-    match table.get("plane") {
-        Some(plane) => plane.one_of(&[("strain", Plane::Strain), ("stress", Plane::Stress)]),
-        None => Ok(default),
-    }
+fn read_plane(table: &Table, default: Plane) -> Result<Plane, FileError> {
+    let planes = [("strain", Plane::Strain), ("stress", Plane::Stress)];
+    Ok(table.optional("plane", |plane| plane.one_of(&planes))?.unwrap_or(default))
 }
 
-fn read_material(table: &Table, plane: Plane) -> Result<(Material<f64>, MaterialEcho), CaseError> {
+fn read_material(table: &Table, plane: Plane) -> Result<(Material<f64>, MaterialEcho), FileError> {
+    table.only(&KEYS)?;
     let plane = read_plane(table, plane)?;
-    let wrong = |found: String, expected: &str| {
-        let (name, expected) = (table.name().to_owned(), expected.to_owned());
-        table.wrong(CaseMistake::Combination { name, found, expected })
-    };
     let isotropic = |material, moduli| (material, MaterialEcho::new(&material, Some(moduli)));
     let tensor = |material| (material, MaterialEcho::new(&material, None));
     let (material, echo) = match MODULI.map(|key| table.get(key)) {
         [Some(lambda), Some(mu), None, None, None, None] => {
-            let mu = mu.number_that(|mu| mu > 0.0, "a positive number")?;
+            let mu = mu.positive()?;
             let least = quote::number(-2.0 / 3.0 * mu);
             let expected = format!("a number above {least}, for 3 lambda + 2 mu > 0");
             let lambda = lambda.number_that(|l| 3.0 * l + 2.0 * mu > 0.0, &expected)?;
@@ -226,7 +180,7 @@ fn read_material(table: &Table, plane: Plane) -> Result<(Material<f64>, Material
             isotropic(Material::lame(lambda, mu, plane), [mu * (2.0 + ratio), ratio / 2.0])
         }
         [None, None, Some(young), Some(poisson), None, None] => {
-            let young = young.number_that(|e| e > 0.0, "a positive number")?;
+            let young = young.positive()?;
             let expected = "a number above -1 and below 0.5";
             let poisson = poisson.number_that(|nu| -1.0 < nu && nu < 0.5, expected)?;
             isotropic(Material::young_poisson(young, poisson, plane), [young, poisson])
@@ -236,13 +190,10 @@ fn read_material(table: &Table, plane: Plane) -> Result<(Material<f64>, Material
                 (Plane::Strain, Some(across)) => Some(numbers(&across, ACROSS)?),
                 (Plane::Stress, None) => None,
                 (Plane::Strain, None) => {
-                    return Err(wrong(
-                        "stiffness in plane strain without across".to_owned(),
-                        TELLS,
-                    ));
+                    return Err(table.at.found("stiffness in plane strain without across", TELLS));
                 }
                 (Plane::Stress, Some(_)) => {
-                    return Err(wrong("across in plane stress".to_owned(), "plane strain with it"));
+                    return Err(table.at.found("across in plane stress", "plane strain with it"));
                 }
             };
             tensor(checked(
@@ -256,7 +207,7 @@ fn read_material(table: &Table, plane: Plane) -> Result<(Material<f64>, Material
         _ => return Err(table.combination(&MODULI, EXPECTED)),
     };
     if table.get("across").is_some() && table.get("stiffness").is_none() {
-        return Err(wrong("across without stiffness".to_owned(), "both, or neither"));
+        return Err(table.at.found("across without stiffness", "both, or neither"));
     }
     let stiffness = largest_entry(&material);
     if stiffness > 0.0 && stiffness.is_finite() {
@@ -264,7 +215,7 @@ fn read_material(table: &Table, plane: Plane) -> Result<(Material<f64>, Material
     } else {
         let found =
             format!("moduli with lambda + 2 mu = {} in the plane", quote::number(stiffness));
-        Err(wrong(found, "a positive finite sum; choose other units"))
+        Err(table.at.found(&found, "a positive finite sum; choose other units"))
     }
 }
 
@@ -276,7 +227,7 @@ const ACROSS: &str =
 const TELLS: &str = "plane = \"stress\", or across = [a, b, c] with sigma_zz = a sigma_xx + b sigma_yy + c sigma_xy";
 
 /// A list of `N` numbers.
-fn numbers<const N: usize>(list: &Value, expected: &str) -> Result<[f64; N], CaseError> {
+fn numbers<const N: usize>(list: &Value, expected: &str) -> Result<[f64; N], FileError> {
     let items = list.items()?;
     let all = items.iter().map(Value::number).collect::<Result<Vec<f64>, _>>()?;
     all.try_into().map_err(|_| list.wrong(expected))
@@ -286,17 +237,16 @@ fn numbers<const N: usize>(list: &Value, expected: &str) -> Result<[f64; N], Cas
 fn checked(
     moduli: &Value,
     material: Result<Material<f64>, MaterialError>,
-) -> Result<Material<f64>, CaseError> {
-    let name = || moduli.name().to_owned();
-    material.map_err(|error| moduli.mistake(CaseMistake::Material { name: name(), error }))
+) -> Result<Material<f64>, FileError> {
+    material.map_err(|error| moduli.at.wrong(format!("{}: {error}", moduli.at.name)))
 }
 
 /// Moduli along and across an axis: in plane strain those across the plane, too.
 fn read_orthotropic(
     moduli: &Value,
     plane: Plane,
-) -> Result<Result<Material<f64>, MaterialError>, CaseError> {
-    let table = moduli.section(moduli.name().to_owned())?;
+) -> Result<Result<Material<f64>, MaterialError>, FileError> {
+    let table = moduli.section(moduli.at.name.clone())?;
     let mut keys = vec!["e1", "e2", "nu12", "g12", "angle"];
     if plane == Plane::Strain {
         keys.extend(["e3", "nu13", "nu23"]);
@@ -311,53 +261,44 @@ fn read_orthotropic(
         }
     };
     let number = |key| table.require(key, "a number")?.number();
-    let angle = table.get("angle").map_or(Ok(0.0), |angle| angle.number())?;
+    let angle = table.optional("angle", Value::number)?.unwrap_or(0.0);
     let [e1, e2, nu12, g12] = [number("e1")?, number("e2")?, number("nu12")?, number("g12")?];
     Ok(stable_orthotropic(Orthotropic { e1, e2, nu12, g12, angle, across }))
 }
 
 /// A body force on one surface: where it stands, the surface, and f.
-type OnSurface<'s> = (Value<'s>, &'s str, [SharedFunction; 2]);
+type OnSurface<'s> = (Spot<'s>, &'s str, [SharedFunction; 2]);
 
 /// The loads as read, not yet on a mesh.
 pub(super) struct LoadTable<'s> {
-    pub body: [SharedFunction; 2],
+    body: [SharedFunction; 2],
     by_surface: Vec<OnSurface<'s>>,
 }
 
 pub(super) fn read_loads<'s>(
     root: &Table<'s>,
     solution: Option<&Exact>,
-) -> Result<LoadTable<'s>, CaseError> {
+) -> Result<LoadTable<'s>, FileError> {
     let table = root.section("load")?;
-    let mut loads = LoadTable { body: [zero(), zero()], by_surface: Vec::new() };
-    if let Some(solution) = solution {
-        return match table {
-            None => Ok(LoadTable { body: exact::body_force(solution), ..loads }),
-            Some(table) => Err(table.wrong(CaseMistake::Combination {
-                name: table.name().to_owned(),
-                found: "loads beside [exact]".to_owned(),
-                expected: "one of the two: an exact solution supplies its own".to_owned(),
-            })),
-        };
+    let mut by_surface = Vec::new();
+    if let (Some(_), Some(table)) = (solution, &table) {
+        let expected = "one of the two: an exact solution supplies its own";
+        return Err(table.at.found("loads beside [exact]", expected));
     }
-    let Some(table) = table else { return Ok(loads) };
-    let named: Vec<&str> =
-        table.keys().filter(|key| table.get(key).is_some_and(|value| value.is_table())).collect();
-    let mut known = vec!["body"];
-    known.extend(&named);
-    table.only(&known)?;
-    for key in named {
-        let value = table.require(key, "a table")?;
-        let one = value.section(format!("[load.{}]", shown(key)))?;
+    let Some(table) = table else {
+        let body = solution.map_or_else(|| [constant(0.0), constant(0.0)], exact::body_force);
+        return Ok(LoadTable { body, by_surface });
+    };
+    let surfaces = table.keys_of_tables();
+    table.only(&[&["body"], surfaces.as_slice()].concat())?;
+    for key in surfaces {
+        let one = table.subsection(key)?;
         one.only(&["body"])?;
-        let body = functions(&one.require("body", "a list of two: one for x, one for y")?)?;
-        loads.by_surface.push((value, key, body));
+        let body = one.require("body", "a list of two: one for x, one for y")?.functions()?;
+        by_surface.push((one.at, key, body));
     }
-    if let Some(body) = table.get("body") {
-        loads.body = functions(&body)?;
-    }
-    Ok(loads)
+    let body = table.optional("body", Value::functions)?;
+    Ok(LoadTable { body: body.unwrap_or_else(|| [constant(0.0), constant(0.0)]), by_surface })
 }
 
 impl LoadTable<'_> {
@@ -365,25 +306,14 @@ impl LoadTable<'_> {
     pub fn on_the_mesh(
         self,
         mesh: &Mesh,
-    ) -> Result<([SharedFunction; 2], Vec<SurfaceForce>), CaseError> {
+    ) -> Result<([SharedFunction; 2], Vec<SurfaceForce>), FileError> {
         let mut forces = Vec::new();
-        for (value, key, force) in self.by_surface {
-            let triangles = on_surface(mesh, &value, key, || format!("[load.{}]", shown(key)))?;
-            let (surface, triangles) = (key.to_owned(), triangles.to_vec());
-            forces.push(SurfaceForce { surface, triangles, force });
+        for (at, key, force) in self.by_surface {
+            let triangles = on_surface(mesh, &at, key)?.to_vec();
+            forces.push(SurfaceForce { surface: key.to_owned(), triangles, force });
         }
         Ok((self.body, forces))
     }
-}
-
-/// Two components.
-pub(super) fn functions(value: &Value) -> Result<[SharedFunction; 2], CaseError> {
-    let [x, y] = value.pair()?;
-    Ok([x.function()?, y.function()?])
-}
-
-pub(super) fn zero() -> SharedFunction {
-    constant(0.0)
 }
 
 pub(super) fn constant(value: f64) -> SharedFunction {

@@ -3,21 +3,20 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::body::{constant, functions, zero};
+use super::body::constant;
 use super::exact::read_kind;
 use super::expression::Expression;
-use super::mistake::{CaseError, CaseMistake};
-use super::table::{Table, Value};
+use super::input::FileError;
+use super::table::{Spot, Table, Value};
 use crate::fem::exact::Kind;
 use crate::fem::{
     Condition, Distance, Exact, Function, Mesh, Obstacle, PointSupport, SharedFunction, Side,
 };
-use crate::quote::{key as shown, names};
+use crate::quote::names;
 
-/// A boundary of the case file: where it stands, what messages call it, its name, and what holds there.
+/// A boundary of the case file: where it stands, its name, and what holds there.
 pub(super) struct Boundary<'s> {
-    value: Value<'s>,
-    title: String,
+    at: Spot<'s>,
     pub key: &'s str,
     /// Beside \[exact\] only.
     pub kind: Option<Kind>,
@@ -31,10 +30,13 @@ enum Given {
     Force([f64; 2]),
 }
 
+/// The obstacles by their names, with their places.
+type Obstacles<'s> = BTreeMap<&'s str, (Spot<'s>, Obstacle)>;
+
 pub(super) fn read_boundaries<'s>(
     root: &Table<'s>,
     solution: Option<&Exact>,
-) -> Result<Vec<Boundary<'s>>, CaseError> {
+) -> Result<Vec<Boundary<'s>>, FileError> {
     let expected = match solution {
         None => "one boundary with contact, such as [boundary.bottom] contact = { gap = \"0\" }",
         Some(_) => "one boundary with contact, such as bottom = \"contact\"",
@@ -43,100 +45,69 @@ pub(super) fn read_boundaries<'s>(
     let obstacles = read_obstacles(root)?;
     let mut boundaries = Vec::new();
     for key in all.keys() {
-        let title = format!("[boundary.{}]", shown(key));
-        let (value, kind, given) = match solution {
-            None => {
-                let value = all.require(key, "a table")?;
-                let given = read_given(&value.section(title.clone())?, &obstacles)?;
-                (value, None, given)
-            }
+        let (kind, given) = match solution {
+            None => (None, read_given(&all.subsection(key)?, &obstacles)?),
             Some(solution) => {
-                let value = all.require(key, "a kind")?;
-                let kind = read_kind(&value)?;
-                (value, Some(kind), Given::Condition(kind.condition(solution)))
+                let kind = read_kind(&all.require(key, "a kind")?)?;
+                (Some(kind), Given::Condition(kind.condition(solution)))
             }
         };
-        boundaries.push(Boundary { value, title, key, kind, given });
+        boundaries.push(Boundary { at: all.under_header(key), key, kind, given });
     }
-    let is_contact = |b: &Boundary| matches!(&b.given, Given::Condition(c) if c.is_contact());
-    if !boundaries.iter().any(is_contact) {
-        return Err(all.wrong(CaseMistake::Combination {
-            name: all.name().to_owned(),
-            found: "no contact".to_owned(),
-            expected: expected.to_owned(),
-        }));
-    }
-    let used = |name: &str| {
-        let with = |b: &Boundary| matches!(&b.given, Given::Condition(Condition::Obstacle(o, _)) if o == name);
-        boundaries.iter().any(with)
+    let conditions = || {
+        boundaries.iter().filter_map(|boundary| match &boundary.given {
+            Given::Condition(condition) => Some(condition),
+            Given::Force(_) => None,
+        })
     };
-    match obstacles.iter().find(|(name, _)| !used(name)) {
+    if !conditions().any(Condition::is_contact) {
+        return Err(all.at.found("no contact", expected));
+    }
+    let is_used =
+        |name: &str| conditions().any(|c| matches!(c, Condition::Obstacle(o, _) if o == name));
+    match obstacles.iter().find(|(name, _)| !is_used(name)) {
         None => Ok(boundaries),
-        Some((name, (value, _))) => Err(value.mistake(CaseMistake::Combination {
-            name: format!("[obstacle.{}]", shown(name)),
-            found: "no boundary in contact with it".to_owned(),
-            expected: format!(
-                "one, such as [boundary.bottom] contact = {{ obstacle = \"{name}\" }}"
-            ),
-        })),
+        Some((name, (at, _))) => {
+            let expected =
+                format!("one, such as [boundary.bottom] contact = {{ obstacle = \"{name}\" }}");
+            Err(at.found("no boundary in contact with it", &expected))
+        }
     }
 }
 
 const CONDITIONS: [&str; 7] =
     ["displacement", "traction", "pressure", "normal", "tangential", "contact", "force"];
 
-fn read_given(
-    table: &Table,
-    obstacles: &BTreeMap<&str, (Value, Obstacle)>,
-) -> Result<Given, CaseError> {
+fn read_given(table: &Table, obstacles: &Obstacles) -> Result<Given, FileError> {
     table.only(&CONDITIONS)?;
-    match table.get("force") {
-        Some(force) if CONDITIONS.iter().filter(|key| table.get(key).is_some()).count() == 1 => {
-            Ok(Given::Force(place(&force)?))
+    let keys: Vec<&str> = CONDITIONS.into_iter().filter(|key| table.get(key).is_some()).collect();
+    let value = |key| table.require(key, "a value");
+    Ok(Given::Condition(match keys.as_slice() {
+        ["force"] => return Ok(Given::Force(value("force")?.vector()?)),
+        ["displacement"] => Condition::Displacement(components(&value("displacement")?)?),
+        ["traction"] => Condition::Traction(value("traction")?.functions()?),
+        ["displacement", "traction"] => read_mixed(table)?,
+        ["pressure"] => Condition::Pressure(value("pressure")?.function()?),
+        ["normal"] | ["tangential"] | ["normal", "tangential"] => Condition::Support {
+            normal: table.optional("normal", Value::function)?,
+            tangential: table.optional("tangential", Value::function)?,
+        },
+        ["contact"] => read_contact(&value("contact")?, obstacles)?,
+        _ => {
+            let expected =
+                "either displacement, traction, pressure, normal, tangential, contact or force";
+            return Err(table.combination(&CONDITIONS, expected));
         }
-        _ => read_condition(table, obstacles).map(Given::Condition),
-    }
+    }))
 }
 
-fn read_condition(
-    table: &Table,
-    obstacles: &BTreeMap<&str, (Value, Obstacle)>,
-) -> Result<Condition, CaseError> {
-    match CONDITIONS.map(|key| table.get(key)) {
-        [Some(displacement), None, None, None, None, None, None] => {
-            Ok(Condition::Displacement(components(&displacement)?))
-        }
-        [Some(displacement), Some(traction), None, None, None, None, None] => {
-            read_mixed(table, &displacement, &traction)
-        }
-        [None, Some(traction), None, None, None, None, None] => {
-            Ok(Condition::Traction(functions(&traction)?))
-        }
-        [None, None, Some(pressure), None, None, None, None] => {
-            Ok(Condition::Pressure(pressure.function()?))
-        }
-        [None, None, None, normal, tangential, None, None]
-            if normal.is_some() || tangential.is_some() =>
-        {
-            let function = |value: Option<Value>| value.map(|v| v.function()).transpose();
-            let (normal, tangential) = (function(normal)?, function(tangential)?);
-            Ok(Condition::Support { normal, tangential })
-        }
-        [None, None, None, None, None, Some(contact), None] => read_contact(&contact, obstacles),
-        _ => Err(table.combination(
-            &CONDITIONS,
-            "either displacement, traction, pressure, normal, tangential, contact or force",
-        )),
-    }
-}
-
-fn components(value: &Value) -> Result<[Option<SharedFunction>; 2], CaseError> {
+fn components(value: &Value) -> Result<[Option<SharedFunction>; 2], FileError> {
     let [x, y] = value.pair()?;
     Ok([component(&x)?, component(&y)?])
 }
 
 /// A component of a displacement, `None` if it is free.
-fn component(value: &Value) -> Result<Option<SharedFunction>, CaseError> {
+fn component(value: &Value) -> Result<Option<SharedFunction>, FileError> {
     let is_word = |text: &str| text.len() > 2 && text.bytes().all(|b| b.is_ascii_alphabetic());
     match value.as_text() {
         Some("free") => Ok(None),
@@ -146,106 +117,82 @@ fn component(value: &Value) -> Result<Option<SharedFunction>, CaseError> {
 }
 
 /// A displacement in one component, a traction in the other: what is given in the first must be 0 in the second.
-fn read_mixed(
-    table: &Table,
-    displacement: &Value,
-    traction: &Value,
-) -> Result<Condition, CaseError> {
-    let displacement = components(displacement)?;
-    let of_traction = traction.pair()?;
-    let traction = functions(traction)?;
+fn read_mixed(table: &Table) -> Result<Condition, FileError> {
+    let [displacement, traction] = ["displacement", "traction"].map(|k| table.require(k, "a list"));
+    let (displacement, of_traction) = (components(&displacement?)?, traction?);
+    let traction = of_traction.functions()?;
     for c in 0..2 {
         let acts = traction[c].degree() != Some(0) || traction[c].at([0.0; 2]) != 0.0;
         if displacement[c].is_some() && acts {
-            return Err(of_traction[c].wrong(&format!(
+            return Err(of_traction.pair()?[c].wrong(&format!(
                 "0: the displacement is given in this component, so its traction is the reaction ({})",
-                table.name()
+                table.at.name
             )));
         }
     }
     Ok(Condition::Mixed { displacement, traction })
 }
 
-fn read_contact(
-    value: &Value,
-    obstacles: &BTreeMap<&str, (Value, Obstacle)>,
-) -> Result<Condition, CaseError> {
+fn read_contact(value: &Value, obstacles: &Obstacles) -> Result<Condition, FileError> {
     if !value.is_table() {
         return Err(value.wrong("a table, such as { gap = \"0\" } or { obstacle = \"floor\" }"));
     }
     let contact = value.table()?;
     contact.only(&["gap", "obstacle"])?;
-    match (contact.get("gap"), contact.get("obstacle")) {
-        (Some(_), Some(_)) => {
-            Err(contact.combination(&["gap", "obstacle"], "a gap along the normal, or an obstacle"))
-        }
-        (gap, None) => {
-            let gap = gap.map_or(Ok(zero()), |gap| gap.function())?;
-            Ok(Condition::Contact { gap })
-        }
-        (None, Some(name)) => match obstacles.get(name.text()?) {
-            Some((_, obstacle)) => {
-                Ok(Condition::Obstacle(name.text()?.to_owned(), obstacle.clone()))
-            }
-            None => {
-                let known = names(obstacles.keys().copied());
-                let known = if known.is_empty() { "none".to_owned() } else { known };
-                Err(name.wrong(&format!("the name of an [obstacle.NAME]; there are: {known}")))
-            }
-        },
+    let Some(obstacle) = contact.get("obstacle") else {
+        let gap = contact.optional("gap", Value::function)?;
+        return Ok(Condition::Contact { gap: gap.unwrap_or_else(|| constant(0.0)) });
+    };
+    if contact.get("gap").is_some() {
+        let expected = "a gap along the normal, or an obstacle";
+        return Err(contact.combination(&["gap", "obstacle"], expected));
     }
+    let name = obstacle.text()?;
+    let (_, found) = obstacles.get(name).ok_or_else(|| {
+        let known = names(obstacles.keys().copied());
+        let known = if known.is_empty() { "none" } else { &known };
+        obstacle.wrong(&format!("the name of an [obstacle.NAME]; there are: {known}"))
+    })?;
+    Ok(Condition::Obstacle(name.to_owned(), found.clone()))
 }
 
-fn read_obstacles<'s>(
-    root: &Table<'s>,
-) -> Result<BTreeMap<&'s str, (Value<'s>, Obstacle)>, CaseError> {
+fn read_obstacles<'s>(root: &Table<'s>) -> Result<Obstacles<'s>, FileError> {
     let mut obstacles = BTreeMap::new();
     let Some(all) = root.section("obstacle")? else { return Ok(obstacles) };
     for key in all.keys() {
-        let value = all.require(key, "a table")?;
-        let table = value.section(format!("[obstacle.{}]", shown(key)))?;
-        let obstacle = read_obstacle(&table)?;
-        obstacles.insert(key, (value, obstacle));
+        let obstacle = read_obstacle(&all.subsection(key)?)?;
+        obstacles.insert(key, (all.under_header(key), obstacle));
     }
     Ok(obstacles)
 }
 
-fn read_obstacle(table: &Table) -> Result<Obstacle, CaseError> {
-    const SHAPES: [&str; 3] = ["plane", "circle", "distance"];
-    let shape = table.exactly_one(&SHAPES)?;
-    if table.get("plane").is_some() {
-        let plane = shape.table()?;
-        plane.only(&["point", "normal"])?;
-        let point = place(&plane.require("point", "a point of the plane")?)?;
-        let value = plane.require("normal", "the normal towards the body")?;
-        let [x, y] = place(&value)?;
-        let length = x.hypot(y);
-        return if length > 0.0 && length.is_finite() {
-            Ok(Obstacle::Plane { point, normal: [x / length, y / length] })
-        } else {
-            Err(value.wrong_as(format!("{:?}", [x, y]), "a vector that is not zero"))
-        };
+fn read_obstacle(table: &Table) -> Result<Obstacle, FileError> {
+    let shape = table.exactly_one(&["plane", "circle", "distance"])?;
+    if table.get("distance").is_some() {
+        return Ok(Obstacle::Distance(Arc::new(FromExpression(shape.expression()?))));
     }
+    let shape = shape.table()?;
     if table.get("circle").is_some() {
-        let circle = shape.table()?;
-        circle.only(&["center", "radius", "side"])?;
+        shape.only(&["center", "radius", "side"])?;
         let side = [("outside", Side::Outside), ("inside", Side::Inside)];
         return Ok(Obstacle::Circle {
-            center: place(&circle.require("center", "a point")?)?,
-            radius: circle
-                .require("radius", "a length")?
-                .number_that(|r| r > 0.0, "a positive number")?,
-            side: circle
+            center: shape.require("center", "a point")?.vector()?,
+            radius: shape.require("radius", "a length")?.positive()?,
+            side: shape
                 .require("side", "\"outside\" or \"inside\": where the body is")?
                 .one_of(&side)?,
         });
     }
-    Ok(Obstacle::Distance(Arc::new(FromExpression(shape.expression()?))))
-}
-
-fn place(value: &Value) -> Result<[f64; 2], CaseError> {
-    let [x, y] = value.pair()?;
-    Ok([x.number()?, y.number()?])
+    shape.only(&["point", "normal"])?;
+    let point = shape.require("point", "a point of the plane")?.vector()?;
+    let normal = shape.require("normal", "the normal towards the body")?;
+    let [x, y] = normal.vector()?;
+    let length = x.hypot(y);
+    if length > 0.0 && length.is_finite() {
+        Ok(Obstacle::Plane { point, normal: [x / length, y / length] })
+    } else {
+        Err(normal.wrong_as(&format!("{:?}", [x, y]), "a vector that is not zero"))
+    }
 }
 
 /// A signed distance by its expression.
@@ -269,47 +216,36 @@ pub(super) fn on_the_mesh(
     mesh: &Mesh,
     boundaries: Vec<Boundary>,
     thickness: Option<f64>,
-) -> Result<BTreeMap<String, Condition>, CaseError> {
+) -> Result<BTreeMap<String, Condition>, FileError> {
     let mut conditions = BTreeMap::new();
-    for Boundary { value, title: name, key, given, .. } in boundaries {
-        match mesh.edges_of(key) {
-            Err(error) => return Err(value.mistake(CaseMistake::Mesh { name, error })),
-            Ok([]) => {
-                return Err(value.mistake(CaseMistake::Combination {
-                    name,
-                    found: "no edge in this mesh".to_owned(),
-                    expected: "at least one".to_owned(),
-                }));
-            }
-            Ok(edges) => {
-                let condition = match given {
-                    Given::Condition(condition) => condition,
-                    Given::Force(force) => {
-                        let length: f64 = edges.iter().map(|&e| mesh.length_and_normal(e).0).sum();
-                        let area = length * thickness.unwrap_or(1.0);
-                        Condition::Traction(force.map(|f| constant(f / area)))
-                    }
-                };
-                conditions.insert(key.to_owned(), condition);
-            }
+    for Boundary { at, key, given, .. } in boundaries {
+        let edges = mesh.edges_of(key).map_err(|error| at.mesh(error))?;
+        if edges.is_empty() {
+            return Err(at.found("no edge in this mesh", "at least one"));
         }
+        let condition = match given {
+            Given::Condition(condition) => condition,
+            Given::Force(force) => {
+                let length: f64 = edges.iter().map(|&e| mesh.length_and_normal(e).0).sum();
+                let area = length * thickness.unwrap_or(1.0);
+                Condition::Traction(force.map(|f| constant(f / area)))
+            }
+        };
+        conditions.insert(key.to_owned(), condition);
     }
     Ok(conditions)
 }
 
 /// `[point.NAME] displacement = [..]` on the mesh.
-pub(super) fn read_points(root: &Table, mesh: &Mesh) -> Result<Vec<PointSupport>, CaseError> {
+pub(super) fn read_points(root: &Table, mesh: &Mesh) -> Result<Vec<PointSupport>, FileError> {
     let Some(all) = root.section("point")? else { return Ok(Vec::new()) };
     let mut points = Vec::new();
     for key in all.keys() {
-        let value = all.require(key, "a table")?;
-        let name = format!("[point.{}]", shown(key));
-        let table = value.section(name.clone())?;
+        let table = all.subsection(key)?;
         table.only(&["displacement"])?;
         let displacement = table.require("displacement", "such as [\"0\", \"free\"]")?;
         let displacement = components(&displacement)?;
-        let vertex =
-            mesh.point(key).map_err(|error| value.mistake(CaseMistake::Mesh { name, error }))?;
+        let vertex = mesh.point(key).map_err(|error| table.at.mesh(error))?;
         points.push(PointSupport { name: key.to_owned(), vertex, displacement });
     }
     Ok(points)

@@ -1,105 +1,22 @@
-//! The case file: one contact problem and how to solve it, in TOML.
+//! The case file: one contact problem and how to solve it, in TOML. Its keys are listed in docs/case.md, and a test compares
+//! that page with what is read here.
 //!
-//! ```toml
-//! title = "Block pressed on a rigid floor"  # default: the name of the file
-//! [mesh]                                    # required: one of rectangle, gmsh
-//! rectangle = { width = 1.0, height = 1.0, nx = 32, ny = 32, diagonal = "right" }   # right (default) | left | crossed
-//! # gmsh = "bracket.msh"                    # MSH 4.1, relative to this file; boundaries are its physical curves
-//! # merge = 1e-6                            # beside gmsh: nodes within that share of the body's size become one
-//! # trapezoid = { omega = 2.0, n = 32 }     # (0,0), (1,0), (1,1), (cot omega, 1), for the exact solution "corner"
-//! # perturb = { amount = 0.2, seed = 1 }    # beside rectangle or trapezoid: vertices moved by up to so many cells
-//! [material]                                # required
-//! lambda = 1.0                              # lambda and mu, or young and poisson: those of the three-dimensional body
-//! mu = 1.0
-//! plane = "strain"                          # strain (default) | stress
-//! # stiffness = [12, 3, 2, 5, -1, 2]        # or the law in the plane, C11, C12, C16, C22, C26, C66; in plane strain with
-//! # across = [0.3, 0.3, 0]                  # sigma_zz = 0.3 sigma_xx + 0.3 sigma_yy
-//! # orthotropic = { e1 = 12, e2 = 0.6, nu12 = 0.4, g12 = 0.7, angle = 30 }   # in plane strain with e3, nu13, nu23
-//! [load]
-//! body = ["0", "-4 + 10*x"]                 # force per area; expressions in x, y; default 0
-//! [boundary.top]                            # the sides of a rectangle are left, right, bottom, top
-//! displacement = ["0", "0"]                 # "free" for a component that is not prescribed
-//! [boundary.right]
-//! traction = ["0", "0"]                     # the default for a boundary that is not named
-//! [boundary.bottom]                         # at least one boundary has contact
-//! contact = { gap = "0" }                   # along the outward normal; default 0; or { obstacle = "floor" }
-//! [method]
-//! degree = 1                                # 1 (default) | 2
-//! gamma0 = 0.1                              # a number > 0, or "auto" (default): half the coercivity limit
-//! contact_quadrature = "exact"              # "exact" (default) or { gauss = 4 }: points per edge, 1 to 64
-//! allow_noncoercive = false                 # true: solve although kappa >= 1, without any promise
-//! [solver]
-//! tolerance = 1e-10                         # relative residual; between 0 and 1
-//! max_iterations = 200
-//! [adapt]                                   # refine the mesh until the error is proved to be as small as this
-//! target = "1 %"                            # of the energy norm
-//! # target = { force = "bottom", within = "1 %" }   # or until the contact force lies between two numbers so near to each other
-//! max_unknowns = 500000                     # the default
-//! [certify]                                 # contact forces that are to be proved to second order
-//! quantities = ["force bottom", "force bottom x 0 0.25 ramp 0.1"]
-//! [output]
-//! probes = [[0.5, 0.5]]                     # places where result.json gives the displacement
-//! stretch = 50                              # the picture magnifies displacement and gap by this; default: a round factor
-//! [exact]                                   # instead of [load]: a built-in exact solution, which supplies all data;
-//! solution = "singular"                     # result.json then has the errors
-//! c = 0.5
-//! amplitude = 1.0
-//! [boundary]                                # and then each boundary has a kind only: displacement, traction or contact
-//! top = "displacement"
-//! ```
-//!
-//! For parts (see docs/parts.md):
-//!
-//! ```toml
-//! [units]                                   # words for labels, no conversion
-//! length = "mm"
-//! force = "N"
-//! [body]
-//! thickness = 10                            # across the plane: forces are then those of the whole body
-//! [obstacle.floor]                          # one of plane, circle, distance
-//! plane = { point = [0, 0], normal = [0, 1] }                        # the normal towards the body
-//! # circle = { center = [0, 0], radius = 20, side = "outside" }      # where the body is: outside | inside
-//! # distance = "sqrt(x^2 + y^2) - 20"       # signed, positive on the body's side
-//! [material.steel]                          # instead of [material]: one for each physical surface of the mesh
-//! young = 210000
-//! poisson = 0.3
-//! [load.steel]                              # a force on one physical surface, beside that of [load]
-//! body = [0, -7.7e-5]
-//! [boundary.bore]
-//! pressure = "2 + x"                        # the traction -p n
-//! [boundary.lug]
-//! force = [0, -500]                         # the whole force, spread evenly over the boundary
-//! [boundary.symmetry]
-//! normal = 0                                # u . n at any angle; and tangential = u . t, t being n turned to the left
-//! [boundary.slider]
-//! displacement = [0, "free"]                # with a traction in the component that is free
-//! traction = [0, -5]
-//! [point.pivot]                             # a physical point of the mesh
-//! displacement = [0, 0]
-//! ```
-//!
-//! Numbers serve as expressions. The grammar of expressions is in [`expression`](super::expression), the parameters of the
-//! exact solutions in `exact.rs`. A key that is not listed here is an error, and so is a list of the wrong length, a number
-//! that is NaN or infinite, and a boundary with more than one of displacement, traction and contact. Integers serve as
-//! numbers. The material is stable: mu > 0 and 3 lambda + 2 mu > 0, that is young > 0 and -1 < poisson < 1/2; the eigenvalues of a
-//! tensor are positive.
+//! Numbers serve as expressions, integers as numbers; the grammar of expressions is in [`expression`](super::expression). A key
+//! that is not known is an error, and so is a list of the wrong length, a number that is NaN or infinite, and a boundary with
+//! more than one of displacement, traction and contact.
 
 use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
-use toml::de::DeTable;
 
 use super::body::{self, MaterialEcho, read_loads, read_materials};
 use super::boundaries::{on_the_mesh, read_boundaries, read_points};
 use super::exact::read_exact;
-use super::input::{self, InputError, MOST_OF_A_CASE};
+use super::input::{self, FileError, InputError, MOST_OF_A_CASE, Place};
 use super::meshed::{Meshed, read_mesh};
 use super::method::{read_method, read_quantities, read_settings, read_target};
-use super::mistake::no_toml;
-pub use super::mistake::{CaseError, CaseMistake, Place};
-use super::setting;
 use super::source::Source;
 use super::table::{Table, Value};
 use crate::certify::{Asked, Target};
@@ -197,7 +114,7 @@ impl Case {
     /// # Errors
     /// The first mistake found, with its place. What depends on the discrete problem (rigid motions left free, kappa >= 1,
     /// expressions without a value somewhere on the mesh) is found when it is solved.
-    pub fn read(file: &Path) -> Result<Case, CaseError> {
+    pub fn read(file: &Path) -> Result<Case, FileError> {
         Case::parse(file, &Case::text(file)?, &[])
     }
 
@@ -205,26 +122,16 @@ impl Case {
     ///
     /// # Errors
     /// A file that can't be read, or is no text.
-    pub fn text(file: &Path) -> Result<String, CaseError> {
-        let bytes = input::read(file, MOST_OF_A_CASE).map_err(CaseMistake::from);
-        bytes.and_then(text).map_err(|mistake| CaseError {
-            file: file.to_owned(),
-            place: Place::File,
-            mistake: Box::new(mistake),
-        })
+    pub fn text(file: &Path) -> Result<String, FileError> {
+        text(input::read(file, MOST_OF_A_CASE), file)
     }
 
     /// The text of a stream, such as standard input, which messages call `name`.
     ///
     /// # Errors
     /// As [`Case::text`].
-    pub fn text_from(stream: impl Read, name: &Path) -> Result<String, CaseError> {
-        let bytes = input::read_from(stream, MOST_OF_A_CASE).map_err(CaseMistake::from);
-        bytes.and_then(text).map_err(|mistake| CaseError {
-            file: name.to_owned(),
-            place: Place::File,
-            mistake: Box::new(mistake),
-        })
+    pub fn text_from(stream: impl Read, name: &Path) -> Result<String, FileError> {
+        text(input::read_from(stream, MOST_OF_A_CASE), name)
     }
 
     /// The case with this text. Messages call it `file`, and a mesh file is looked for beside that. Each of the `settings`
@@ -232,7 +139,7 @@ impl Case {
     ///
     /// # Errors
     /// As [`Case::read`]; for a mistake in a setting, the place is that setting.
-    pub fn parse(file: &Path, text: &str, settings: &[String]) -> Result<Case, CaseError> {
+    pub fn parse(file: &Path, text: &str, settings: &[String]) -> Result<Case, FileError> {
         parse(Source { file, text, settings }, None)
     }
 
@@ -240,19 +147,14 @@ impl Case {
     ///
     /// # Errors
     /// As [`Case::parse`].
-    pub fn on_mesh(file: &Path, text: &str, mesh: Mesh) -> Result<Case, CaseError> {
+    pub fn on_mesh(file: &Path, text: &str, mesh: Mesh) -> Result<Case, FileError> {
         parse(Source { file, text, settings: &[] }, Some(mesh))
     }
 }
 
-fn parse(source: Source, mesh: Option<Mesh>) -> Result<Case, CaseError> {
-    let entries = DeTable::parse(source.text).map_err(|e| {
-        let start = e.span().map(|span| span.start).or_else(|| deepest(&e, source.text));
-        source.wrong(start, no_toml(&e, source.text))
-    })?;
-    let layers = setting::layers(&source);
-    let mut entries = entries.into_inner();
-    setting::lay(source, &layers, &mut entries)?;
+fn parse(source: Source, mesh: Option<Mesh>) -> Result<Case, FileError> {
+    let layers = source.layers();
+    let entries = source.entries(&layers)?;
     let mut case = case(source.file, &Table::whole(source, &entries), mesh)?;
     case.text = source.text.to_owned();
     for setting in source.settings {
@@ -261,26 +163,23 @@ fn parse(source: Source, mesh: Option<Mesh>) -> Result<Case, CaseError> {
     Ok(case)
 }
 
-/// Where the first key with more parts than the TOML reader takes stands: of that mistake it does not give the place.
-fn deepest(error: &toml::de::Error, text: &str) -> Option<usize> {
-    const MOST_PARTS: usize = 80;
-    let is_deep = |line: &&str| line.matches('.').nth(MOST_PARTS - 1).is_some();
-    let line = text.split('\n').find(is_deep).filter(|_| error.message() == "recursion limit")?;
-    Some(line.as_ptr() as usize - text.as_ptr() as usize)
-}
-
-fn text(bytes: Vec<u8>) -> Result<String, CaseMistake> {
-    // What the TOML reader and the expressions make of it.
-    memory::check(MEMORY_PER_BYTE * bytes.len() as u64).map_err(InputError::from)?;
-    String::from_utf8(bytes)
-        .map_err(|e| CaseMistake::NoText { byte: e.utf8_error().valid_up_to() + 1 })
+fn text(bytes: Result<Vec<u8>, InputError>, file: &Path) -> Result<String, FileError> {
+    let text = |bytes: Vec<u8>| -> Result<String, InputError> {
+        // What the TOML reader and the expressions make of it.
+        memory::check(MEMORY_PER_BYTE * bytes.len() as u64)?;
+        String::from_utf8(bytes).map_err(|e| {
+            let byte = e.utf8_error().valid_up_to() + 1;
+            format!("byte {byte} is not UTF-8; expected a text file, saved as UTF-8").into()
+        })
+    };
+    bytes.and_then(text).map_err(|error| error.at(file, Place::File))
 }
 
 /// The bytes of memory that a byte of a case file takes at most while it is read: 241 in a list of tables of one number.
 const MEMORY_PER_BYTE: u64 = 400;
 
 /// `given` is the mesh, if it is not the case that says which.
-fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, CaseError> {
+fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, FileError> {
     root.only(&[
         "title", "mesh", "material", "load", "exact", "boundary", "obstacle", "point", "method",
         "solver", "adapt", "certify", "output", "units", "body",
@@ -291,16 +190,12 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, CaseErro
     };
     let mesh = match (given, root.section("mesh")?) {
         (Some(_), Some(table)) => {
-            return Err(table.wrong(CaseMistake::Combination {
-                name: table.name().to_owned(),
-                found: "a mesh beside the one that is given".to_owned(),
-                expected: "one of the two".to_owned(),
-            }));
+            return Err(table.at.found("a mesh beside the one that is given", "one of the two"));
         }
-        (Some(mesh), None) => Body::Given(mesh),
-        (None, _) => {
-            Body::Told(root.required_section("mesh", "rectangle = { .. } or gmsh = \"..\" in it")?)
-        }
+        (Some(mesh), None) => MeshSource::Given(mesh),
+        (None, _) => MeshSource::Table(
+            root.required_section("mesh", "rectangle = { .. } or gmsh = \"..\" in it")?,
+        ),
     };
     let material = root.required_section("material", &format!("{} in it", body::EXPECTED))?;
     let materials = read_materials(material)?;
@@ -317,17 +212,19 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, CaseErro
     let adapt_force = adapt_force.flatten();
     let quantities = root.section("certify")?.map(|table| read_quantities(&table)).transpose()?;
     let quantities = quantities.unwrap_or_default();
-    let output = root.section("output")?;
     let units = root.section("units")?.map(|table| read_units(&table)).transpose()?;
-    let thickness = match root.section("body")? {
-        Some(table) => Some(read_thickness(&table)?),
-        None => None,
+    let thickness = root.section("body")?.map(|table| read_thickness(&table)).transpose()?;
+    let output = root.section("output")?;
+    let (probes, stretch) = match &output {
+        Some(output) => read_output(output)?,
+        None => (Vec::new(), None),
     };
-    let stretch = read_stretch(output.as_ref())?;
     // The mesh, and what needs it, comes last: it is what takes time.
     let Meshed { mesh, structured, perturbation, file: mesh_file } = match mesh {
-        Body::Given(mesh) => Meshed { mesh, structured: None, perturbation: None, file: None },
-        Body::Told(table) => read_mesh(&table, file.parent().unwrap_or(Path::new("")))?,
+        MeshSource::Given(mesh) => {
+            Meshed { mesh, structured: None, perturbation: None, file: None }
+        }
+        MeshSource::Table(table) => read_mesh(&table, file.parent().unwrap_or(Path::new("")))?,
     };
     let kinds = boundaries.iter().filter_map(|b| Some((b.key.to_owned(), b.kind?))).collect();
     let conditions = on_the_mesh(&mesh, boundaries, thickness)?;
@@ -343,7 +240,9 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, CaseErro
     let (material, materials) = materials.on_the_mesh(&mesh)?;
     let (body_force, surface_forces) = loads.on_the_mesh(&mesh)?;
     let points = read_points(root, &mesh)?;
-    let probes = read_probes(output.as_ref(), &mesh)?;
+    if let Some((probe, place)) = probes.iter().find(|(_, place)| mesh.locate(*place).is_none()) {
+        return Err(probe.wrong_as(&format!("{place:?}"), "a point of the body"));
+    }
     Ok(Case {
         file: file.to_owned(),
         title,
@@ -359,7 +258,7 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, CaseErro
         asked: Asked {
             forces: quantities.into_iter().map(|(name, weight, _)| (name, weight)).collect(),
         },
-        probes,
+        probes: probes.into_iter().map(|(_, place)| place).collect(),
         exact: solution.map(|solution| ExactCase { solution, kinds, structured, perturbation }),
         text: String::new(),
         sources: std::iter::once(file.to_owned()).chain(mesh_file).collect(),
@@ -367,44 +266,32 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, CaseErro
 }
 
 /// Where the mesh comes from.
-enum Body<'s> {
+enum MeshSource<'s> {
     Given(Mesh),
-    Told(Table<'s>),
+    Table(Table<'s>),
 }
 
-fn read_units(table: &Table) -> Result<Units, CaseError> {
+fn read_units(table: &Table) -> Result<Units, FileError> {
     table.only(&["length", "force"])?;
     // Labels of summaries, tables and pictures: one line each.
     let word = |key: &str, example: &str| table.require(key, example)?.text().map(quote::line);
     Ok(Units { length: word("length", "such as \"mm\"")?, force: word("force", "such as \"N\"")? })
 }
 
-fn read_thickness(table: &Table) -> Result<f64, CaseError> {
+fn read_thickness(table: &Table) -> Result<f64, FileError> {
     table.only(&["thickness"])?;
-    let expected = "a positive number";
-    table.require("thickness", expected)?.number_that(|t| t > 0.0 && t.is_finite(), expected)
+    table.require("thickness", "a positive number")?.positive()
 }
 
-fn read_stretch(output: Option<&Table>) -> Result<Option<f64>, CaseError> {
-    let Some(output) = output else { return Ok(None) };
-    output.only(&["probes", "stretch"])?;
-    let read = |value: Value| value.number_that(|s| s > 0.0, "a positive number");
-    output.get("stretch").map(read).transpose()
-}
+/// Probes with their places in the case, and the amount by which the picture magnifies.
+type OutputTable<'s> = (Vec<(Value<'s>, [f64; 2])>, Option<f64>);
 
-fn read_probes(output: Option<&Table>, mesh: &Mesh) -> Result<Vec<[f64; 2]>, CaseError> {
-    let Some(output) = output else { return Ok(Vec::new()) };
-    let Some(probes) = output.get("probes") else { return Ok(Vec::new()) };
-    let place = |probe: &Value| {
-        let [x, y] = probe.pair()?;
-        Ok([x.number()?, y.number()?])
-    };
-    let probes = probes.items()?;
-    let places: Vec<[f64; 2]> = probes.iter().map(place).collect::<Result<_, CaseError>>()?;
-    match places.iter().position(|&place| mesh.locate(place).is_none()) {
-        None => Ok(places),
-        Some(i) => Err(probes[i].wrong_as(format!("{:?}", places[i]), "a point of the body")),
-    }
+fn read_output<'s>(table: &Table<'s>) -> Result<OutputTable<'s>, FileError> {
+    table.only(&["probes", "stretch"])?;
+    let stretch = table.optional("stretch", Value::positive)?;
+    let probes = table.optional("probes", Value::items)?.unwrap_or_default();
+    let place = |probe: Value<'s>| probe.vector().map(|place| (probe, place));
+    Ok((probes.into_iter().map(place).collect::<Result<_, _>>()?, stretch))
 }
 
 #[cfg(test)]
@@ -415,10 +302,8 @@ mod tests {
     use crate::kernel::{Material, Plane};
     use crate::solve::{ContactQuadrature, Degree, Gamma0};
 
-    fn read(text: &str) -> Result<Case, CaseError> {
-        let file = Path::new("x.toml");
-        let entries = DeTable::parse(text).unwrap();
-        case(file, &Table::whole(Source { file, text, settings: &[] }, entries.get_ref()), None)
+    fn read(text: &str) -> Result<Case, FileError> {
+        Case::parse(Path::new("x.toml"), text, &[])
     }
 
     const SMALL: &str = "

@@ -12,7 +12,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
-use super::mistake::CaseError;
+use super::input::FileError;
 use super::table::{Table, Value};
 use crate::fem::Exact;
 use crate::fem::exact::{Corner, Kind, Patch, Singular, Smooth};
@@ -36,7 +36,7 @@ enum Test {
 }
 
 /// The solution that the section describes.
-pub fn read_exact(table: &Table, material: Material<f64>) -> Result<Exact, CaseError> {
+pub fn read_exact(table: &Table, material: Material<f64>) -> Result<Exact, FileError> {
     let solution = table.require("solution", "the name of an exact solution")?;
     let which = solution.one_of(&[
         ("smooth", Which::Smooth),
@@ -74,12 +74,12 @@ pub fn read_exact(table: &Table, material: Material<f64>) -> Result<Exact, CaseE
 const ANGLE: &str = "an angle between pi/2 and pi";
 
 /// omega, and where it stands.
-pub fn angle<'s>(table: &Table<'s>) -> Result<(f64, Value<'s>), CaseError> {
+pub fn angle<'s>(table: &Table<'s>) -> Result<(f64, Value<'s>), FileError> {
     let value = table.require("omega", ANGLE)?;
     Ok((value.number_that(|omega| FRAC_PI_2 < omega && omega < PI, ANGLE)?, value))
 }
 
-fn read_patch(table: &Table, material: Material<f64>) -> Result<Patch, CaseError> {
+fn read_patch(table: &Table, material: Material<f64>) -> Result<Patch, FileError> {
     let which = table.require("which", "d1, d2, d3, d4 or d5 in quotes")?.one_of(&[
         ("d1", Test::Compression),
         ("d2", Test::Separation),
@@ -108,26 +108,26 @@ fn read_patch(table: &Table, material: Material<f64>) -> Result<Patch, CaseError
 }
 
 /// A number above `least`.
-fn above(table: &Table, key: &str, least: f64) -> Result<f64, CaseError> {
+fn above(table: &Table, key: &str, least: f64) -> Result<f64, FileError> {
     let expected = format!("a number above {least}");
     table.require(key, &expected)?.number_that(|value| value > least, &expected)
 }
 
 /// A place on the contact line (0, 1).
-fn inside(table: &Table, key: &str) -> Result<f64, CaseError> {
+fn inside(table: &Table, key: &str) -> Result<f64, FileError> {
     let expected = "a number above 0 and below 1";
     table.require(key, expected)?.number_that(|c| 0.0 < c && c < 1.0, expected)
 }
 
 /// The gap function of a smooth solution: the solution needs its derivatives, so it is a polynomial.
-fn coefficients(gap: Option<Value>) -> Result<Vec<f64>, CaseError> {
+fn coefficients(gap: Option<Value>) -> Result<Vec<f64>, FileError> {
     let Some(gap) = gap else { return Ok(Vec::new()) };
     let expression = gap.expression()?;
     expression.polynomial_in_x().ok_or_else(|| gap.wrong("a polynomial in x"))
 }
 
 /// Reads the condition on a boundary: beside \[exact\], \[boundary\] has a kind for each.
-pub fn read_kind(value: &Value) -> Result<Kind, CaseError> {
+pub fn read_kind(value: &Value) -> Result<Kind, FileError> {
     value.one_of(&[
         ("displacement", Kind::Displacement),
         ("traction", Kind::Traction),
@@ -147,8 +147,8 @@ mod tests {
 
     fn read(text: &str) -> Result<Exact, String> {
         let entries = DeTable::parse(text).unwrap();
-        let table =
-            Table::whole(Source { file: Path::new("x"), text, settings: &[] }, entries.get_ref());
+        let source = Source { file: Path::new("x"), text, settings: &[] };
+        let table = Table::whole(source, entries.get_ref());
         let material = Material::lame(1.0, 1.0, Plane::Strain);
         read_exact(&table, material).map_err(|e| e.to_string())
     }

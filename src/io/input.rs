@@ -1,13 +1,16 @@
 //! Files that are read: regular ones only, and no more of them than can be of use. A pipe would be waited for, a device such
 //! as /dev/zero never ends.
 
+use std::fmt::{self, Display, Formatter};
 use std::fs::{self, File, Metadata};
 use std::io::{self, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
+use crate::fem::MeshError;
 use crate::memory::{self, OutOfMemory};
+use crate::quote;
 
 /// The longest case file. A case for people has some thousand bytes.
 pub const MOST_OF_A_CASE: u64 = 16 << 20;
@@ -15,34 +18,110 @@ pub const MOST_OF_A_CASE: u64 = 16 << 20;
 /// The longest mesh file: more nodes than a factorisation in the memory of one machine has room for.
 pub const MOST_OF_A_MESH: u64 = 4 << 30;
 
-/// Why a file or a stream is not read.
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[expect(missing_docs, reason = "the message of each variant says what it is")]
+/// A place in what is read. It is shown so that it may follow the name of the file.
+#[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum InputError {
-    #[error("{0}")]
-    Unreadable(String),
-    #[error("this is {0}; expected a file")]
-    NotAFile(&'static str),
-    #[error("this has more than {most} bytes; expected at most that many")]
-    TooLong { most: u64 },
-    #[error("{0}")]
-    OutOfMemory(#[from] OutOfMemory),
-    #[error("{0}")]
-    Lack(String),
+pub enum Place {
+    /// The file as a whole.
+    File,
+    /// A line of a text, from 1.
+    Line(usize),
+    /// A byte of a binary file, from 0.
+    Byte(usize),
+    /// Not the file, but this setting over it.
+    Setting(String),
+}
+
+impl Place {
+    /// The line in which a byte of a text stands.
+    pub fn line_of(byte: usize, text: &[u8]) -> Place {
+        Place::Line(text.iter().take(byte).filter(|&&b| b == b'\n').count() + 1)
+    }
+}
+
+impl Display for Place {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        match self {
+            Place::File => Ok(()),
+            Place::Line(line) => write!(f, ":{line}"),
+            Place::Byte(byte) => write!(f, ", byte {byte}"),
+            Place::Setting(setting) => write!(f, " with --set {}", quote::cut(setting)),
+        }
+    }
+}
+
+/// What is wrong with an input.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("{problem}")]
+pub struct InputError {
+    problem: String,
+    is_lack: bool,
 }
 
 impl InputError {
-    /// Returns whether the file may be right, but the system has not what it takes to read it: memory, or files to open.
-    pub fn is_lack(&self) -> bool {
-        matches!(self, InputError::OutOfMemory(_) | InputError::Lack(_))
+    /// The system has not what it takes to read the input: memory, or files to open. The input itself may be right.
+    pub fn lack(problem: String) -> InputError {
+        InputError { problem, is_lack: true }
     }
+
+    /// Returns whether the input may be right, but the system has not what it takes to read it.
+    pub fn is_lack(&self) -> bool {
+        self.is_lack
+    }
+
+    /// The same with words around it.
+    pub(super) fn map(self, words: impl FnOnce(String) -> String) -> InputError {
+        InputError { problem: words(self.problem), ..self }
+    }
+
+    /// Places the error in a file.
+    pub(super) fn at(self, file: &Path, place: Place) -> FileError {
+        FileError { file: file.to_owned(), place, error: self }
+    }
+}
+
+impl From<String> for InputError {
+    fn from(problem: String) -> InputError {
+        InputError { problem, is_lack: false }
+    }
+}
+
+impl From<&str> for InputError {
+    fn from(problem: &str) -> InputError {
+        problem.to_owned().into()
+    }
+}
+
+impl From<OutOfMemory> for InputError {
+    fn from(lack: OutOfMemory) -> InputError {
+        InputError::lack(lack.to_string())
+    }
+}
+
+impl From<MeshError> for InputError {
+    fn from(error: MeshError) -> InputError {
+        let is_lack = matches!(error, MeshError::OutOfMemory(_));
+        InputError { problem: error.to_string(), is_lack }
+    }
+}
+
+/// What is wrong with a file, and where: a case, a mesh or a field.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("{}{place}: {error}", quote::path(file))]
+#[non_exhaustive]
+pub struct FileError {
+    /// The file.
+    pub file: PathBuf,
+    /// The place in it.
+    pub place: Place,
+    /// The error.
+    pub error: InputError,
 }
 
 /// The bytes of a regular file of at most `most` bytes.
 ///
 /// # Errors
-/// As the variants of [`InputError`] say.
+/// What is no regular file, is too long, or can't be read.
 pub fn read(path: &Path, most: u64) -> Result<Vec<u8>, InputError> {
     // Before it is opened, for to open a pipe is to wait for its other end.
     regular(&fs::metadata(path).map_err(unreadable)?)?;
@@ -50,7 +129,7 @@ pub fn read(path: &Path, most: u64) -> Result<Vec<u8>, InputError> {
     let metadata = file.metadata().map_err(unreadable)?;
     regular(&metadata)?;
     if metadata.len() > most {
-        return Err(InputError::TooLong { most });
+        return Err(too_long(most));
     }
     memory::check(metadata.len())?;
     let mut bytes = Vec::new();
@@ -73,15 +152,23 @@ pub fn read_from(stream: impl Read, most: u64) -> Result<Vec<u8>, InputError> {
 
 fn read_into(mut bytes: Vec<u8>, stream: impl Read, most: u64) -> Result<Vec<u8>, InputError> {
     stream.take(most.saturating_add(1)).read_to_end(&mut bytes).map_err(unreadable)?;
-    if bytes.len() as u64 > most { Err(InputError::TooLong { most }) } else { Ok(bytes) }
+    if bytes.len() as u64 > most { Err(too_long(most)) } else { Ok(bytes) }
+}
+
+fn too_long(most: u64) -> InputError {
+    format!("this has more than {most} bytes; expected at most that many").into()
+}
+
+fn no_file(kind: &str) -> InputError {
+    format!("this is {kind}; expected a file").into()
 }
 
 /// Refuses what is no regular file.
 ///
 /// # Errors
-/// [`InputError::NotAFile`].
+/// What it is instead.
 pub fn regular(metadata: &Metadata) -> Result<(), InputError> {
-    if metadata.is_file() { Ok(()) } else { Err(InputError::NotAFile(kind(metadata))) }
+    if metadata.is_file() { Ok(()) } else { Err(no_file(kind(metadata))) }
 }
 
 fn kind(metadata: &Metadata) -> &'static str {
@@ -106,17 +193,17 @@ fn kind(metadata: &Metadata) -> &'static str {
 fn unreadable(error: io::Error) -> InputError {
     // ENFILE and EMFILE, which have no kind.
     if matches!(error.raw_os_error(), Some(23 | 24)) && cfg!(unix) {
-        return InputError::Lack(super::files::reason(&error));
+        return InputError::lack(super::files::reason(&error));
     }
-    InputError::Unreadable(match error.kind() {
-        io::ErrorKind::NotFound => "there is no such file".to_owned(),
-        io::ErrorKind::IsADirectory => return InputError::NotAFile("a directory"),
-        io::ErrorKind::PermissionDenied => "there is no permission to read this file".to_owned(),
+    match error.kind() {
+        io::ErrorKind::NotFound => "there is no such file".into(),
+        io::ErrorKind::IsADirectory => no_file("a directory"),
+        io::ErrorKind::PermissionDenied => "there is no permission to read this file".into(),
         io::ErrorKind::OutOfMemory => {
-            return InputError::Lack("there is not enough memory to read this file".to_owned());
+            InputError::lack("there is not enough memory to read this file".to_owned())
         }
-        _ => super::files::reason(&error),
-    })
+        _ => super::files::reason(&error).into(),
+    }
 }
 
 #[cfg(test)]
@@ -125,7 +212,7 @@ mod tests {
 
     #[test]
     fn a_stream_without_end_is_read_to_the_limit_and_no_further() {
-        assert_eq!(read_from(io::repeat(0), 1000), Err(InputError::TooLong { most: 1000 }));
+        assert_eq!(read_from(io::repeat(0), 1000), Err(too_long(1000)));
         assert_eq!(read_from(io::repeat(7).take(1000), 1000), Ok(vec![7; 1000]));
     }
 
@@ -135,18 +222,5 @@ mod tests {
         for (number, is_lack) in [(23, true), (24, true), (2, false), (13, false)] {
             assert_eq!(unreadable(io::Error::from_raw_os_error(number)).is_lack(), is_lack);
         }
-    }
-
-    #[test]
-    fn a_directory_is_no_file() {
-        let error = read(&std::env::temp_dir(), 1).unwrap_err();
-        assert_eq!(error.to_string(), "this is a directory; expected a file");
-    }
-
-    #[cfg(unix)]
-    #[test]
-    fn a_device_is_no_file() {
-        let error = read(Path::new("/dev/zero"), MOST_OF_A_MESH).unwrap_err();
-        assert_eq!(error.to_string(), "this is a device; expected a file");
     }
 }

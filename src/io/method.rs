@@ -1,6 +1,6 @@
 //! The tables [method], [solver], [adapt] and [certify] of a case file: how it is solved, and what is to be proved of it.
 
-use super::mistake::CaseError;
+use super::input::FileError;
 use super::table::{Table, Value};
 use crate::certify::{Ramp, Target};
 use crate::fem::structured::MOST_CELLS;
@@ -8,41 +8,36 @@ use crate::solve::{
     ContactQuadrature, Degree, Gamma0, MOST_GAUSS_POINTS, MOST_ITERATIONS, Method, Settings,
 };
 
-pub(super) fn read_method(table: Option<Table>) -> Result<Method, CaseError> {
+pub(super) fn read_method(table: Option<Table>) -> Result<Method, FileError> {
     let mut method = Method::default();
     let Some(table) = table else { return Ok(method) };
     table.only(&["degree", "gamma0", "kappa", "contact_quadrature", "allow_noncoercive"])?;
     if let Some(degree) = table.get("degree") {
-        method.degree = match degree.whole_number(1..=2).map_err(|_| degree.wrong("1 or 2"))? {
-            1 => Degree::One,
-            _ => Degree::Two,
-        };
+        let number = degree.whole_number(1..=2).map_err(|_| degree.wrong("1 or 2"))?;
+        method.degree = if number == 1 { Degree::One } else { Degree::Two };
     }
     if let Some(gamma0) = table.get("gamma0") {
+        let expected = "a positive number or \"auto\"";
         method.gamma0 = match gamma0.as_text() {
             Some("auto") => Gamma0::Auto,
-            Some(_) => return Err(gamma0.wrong("a positive number or \"auto\"")),
-            None => {
-                Gamma0::Value(gamma0.number_that(|g| g > 0.0, "a positive number or \"auto\"")?)
-            }
+            Some(_) => return Err(gamma0.wrong(expected)),
+            None => Gamma0::Value(gamma0.number_that(|g| g > 0.0, expected)?),
         };
     }
     if let Some(kappa) = table.get("kappa") {
         if table.get("gamma0").is_some() {
             return Err(kappa.wrong("gamma0 or kappa, not both"));
         }
-        method.gamma0 = Gamma0::Local(kappa.number_that(|k| k > 0.0, "a positive number")?);
+        method.gamma0 = Gamma0::Local(kappa.positive()?);
     }
-    if let Some(quadrature) = table.get("contact_quadrature") {
-        method.quadrature = read_quadrature(&quadrature)?;
-    }
-    if let Some(allow) = table.get("allow_noncoercive") {
-        method.allow_noncoercive = allow.flag()?;
-    }
+    let quadrature = table.optional("contact_quadrature", read_quadrature)?;
+    method.quadrature = quadrature.unwrap_or(method.quadrature);
+    let allow = table.optional("allow_noncoercive", Value::flag)?;
+    method.allow_noncoercive = allow.unwrap_or(method.allow_noncoercive);
     Ok(method)
 }
 
-fn read_quadrature(value: &Value) -> Result<ContactQuadrature, CaseError> {
+fn read_quadrature(value: &Value) -> Result<ContactQuadrature, FileError> {
     if value.as_text() == Some("exact") {
         return Ok(ContactQuadrature::Exact);
     }
@@ -55,7 +50,7 @@ fn read_quadrature(value: &Value) -> Result<ContactQuadrature, CaseError> {
     Ok(ContactQuadrature::Gauss(points.whole_number(1..=MOST_GAUSS_POINTS)?))
 }
 
-pub(super) fn read_settings(table: Option<Table>) -> Result<Settings, CaseError> {
+pub(super) fn read_settings(table: Option<Table>) -> Result<Settings, FileError> {
     let mut settings = Settings::default();
     let Some(table) = table else { return Ok(settings) };
     table.only(&["tolerance", "max_iterations", "proof"])?;
@@ -64,9 +59,8 @@ pub(super) fn read_settings(table: Option<Table>) -> Result<Settings, CaseError>
             *setting = value.number_that(|x| 0.0 < x && x < 1.0, "a number above 0 and below 1")?;
         }
     }
-    if let Some(most) = table.get("max_iterations") {
-        settings.max_iterations = most.whole_number(1..=MOST_ITERATIONS)?;
-    }
+    let most = table.optional("max_iterations", |most| most.whole_number(1..=MOST_ITERATIONS))?;
+    settings.max_iterations = most.unwrap_or(settings.max_iterations);
     Ok(settings)
 }
 
@@ -77,7 +71,7 @@ pub(super) const MOST_UNKNOWNS: usize = 500_000;
 pub(super) type Named<'s> = (&'s str, Value<'s>);
 
 /// Reads a target, and the boundary whose contact force it is about, if it is about one.
-pub(super) fn read_target<'s>(table: &Table<'s>) -> Result<(Target, Option<Named<'s>>), CaseError> {
+pub(super) fn read_target<'s>(table: &Table<'s>) -> Result<(Target, Option<Named<'s>>), FileError> {
     table.only(&["target", "max_unknowns"])?;
     let expected = "a share above 0 % and below 100 %, such as \"1 %\", of the energy norm, or { force = \"bottom\", within = \"1 %\" }";
     let mut target = table.require("target", expected)?;
@@ -93,8 +87,7 @@ pub(super) fn read_target<'s>(table: &Table<'s>) -> Result<(Target, Option<Named
     let percent = percent.and_then(|number| number.trim().parse::<f64>().ok());
     let relative = percent.map(|percent| percent / 100.0).filter(|&r| 0.0 < r && r < 1.0);
     let most = 2 * MOST_CELLS;
-    let unknowns =
-        table.get("max_unknowns").map(|value| value.whole_number(1..=most)).transpose()?;
+    let unknowns = table.optional("max_unknowns", |value| value.whole_number(1..=most))?;
     let target = Target {
         relative: relative.ok_or_else(|| target.wrong(expected))?,
         max_unknowns: unknowns.unwrap_or(MOST_UNKNOWNS),
@@ -106,7 +99,7 @@ pub(super) fn read_target<'s>(table: &Table<'s>) -> Result<(Target, Option<Named
 /// x or y that is 1 between two numbers and falls to 0 over a width.
 pub(super) fn read_quantities<'s>(
     table: &Table<'s>,
-) -> Result<Vec<(String, Option<Ramp>, Value<'s>)>, CaseError> {
+) -> Result<Vec<(String, Option<Ramp>, Value<'s>)>, FileError> {
     table.only(&["quantities"])?;
     let expected = "\"force NAME\" or \"force NAME x 0 0.25 ramp 0.1\": a contact boundary, and where along x or y its pressure counts";
     let list = table.require("quantities", &format!("a list of {expected}"))?;

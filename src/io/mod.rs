@@ -35,8 +35,6 @@ pub mod input;
 mod meshed;
 #[cfg(feature = "files")]
 mod method;
-#[cfg(feature = "files")]
-mod mistake;
 #[doc(hidden)]
 pub mod numbers;
 #[cfg(feature = "files")]
@@ -58,8 +56,6 @@ pub mod result;
 #[doc(hidden)]
 pub mod run;
 #[cfg(feature = "files")]
-mod setting;
-#[cfg(feature = "files")]
 mod source;
 #[cfg(feature = "files")]
 #[doc(hidden)]
@@ -73,6 +69,6 @@ mod table;
 pub mod vtu;
 
 #[cfg(feature = "files")]
-pub use case::{Case, CaseError};
+pub use case::Case;
 pub use expression::{Expression, ExpressionError};
-pub use gmsh::GmshError;
+pub use input::{FileError, InputError};

@@ -67,12 +67,9 @@ pub fn short(x: f64, digits: usize) -> String {
     let after_the_first = digits.saturating_sub(1);
     let text = format!("{x:.after_the_first$e}");
     let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
-    let trimmed = |text: &str| {
-        if text.contains('.') {
-            text.trim_end_matches('0').trim_end_matches('.').to_owned()
-        } else {
-            text.to_owned()
-        }
+    let trimmed = |text: &str| match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text.to_owned(),
     };
     match exponent.parse::<i32>() {
         Ok(exponent) if (-3..5).contains(&exponent) => {
@@ -89,27 +86,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn round_numbers_are_the_largest_that_are_not_above() {
-        for (x, expected) in [
-            (1.0, 1.0),
-            (1.99, 1.0),
-            (2.0, 2.0),
-            (4.99, 2.0),
-            (5.0, 5.0),
-            (9.99, 5.0),
-            (1000.0, 1000.0),
-            (0.001, 0.001),
-            (0.03, 0.02),
-            (7e-300, 5e-300),
+    fn round_numbers_are_the_nearest_below_and_above() {
+        for (x, below, above) in [
+            (1.0, 1.0, 1.0),
+            (1.99, 1.0, 2.0),
+            (4.99, 2.0, 5.0),
+            (9.99, 5.0, 10.0),
+            (0.001, 0.001, 0.001),
+            (0.03, 0.02, 0.05),
+            (7e-300, 5e-300, 1e-299),
         ] {
-            assert_eq!(Round::below(x).times(1), expected, "{x}");
-        }
-    }
-
-    #[test]
-    fn round_numbers_are_the_smallest_that_are_not_below() {
-        for (x, expected) in [(1.0, 1.0), (1.01, 2.0), (0.2, 0.2), (3e-7, 5e-7), (5.01, 10.0)] {
-            assert_eq!(Round::above(x).times(1), expected, "{x}");
+            assert_eq!(
+                [Round::below(x), Round::above(x)].map(|r| r.times(1)),
+                [below, above],
+                "{x}"
+            );
         }
     }
 
@@ -126,18 +117,8 @@ mod tests {
 
     #[test]
     fn labels_have_three_digits() {
-        for (x, expected) in [
-            (0.0, "0"),
-            (1.0, "1"),
-            (-0.25, "-0.25"),
-            (2.1449, "2.14"),
-            (99.96, "100"),
-            (1234.0, "1234"),
-            (0.0012345, "0.00123"),
-            (1.0e-7, "1e-7"),
-            (2.346e12, "2.35e12"),
-        ] {
-            assert_eq!(short(x, 3), expected);
-        }
+        let numbers = [0.0, -0.25, 2.1449, 99.96, 1234.0, 0.0012345, 1.0e-7, 2.346e12];
+        let labels = ["0", "-0.25", "2.14", "100", "1234", "0.00123", "1e-7", "2.35e12"];
+        assert_eq!(numbers.map(|x| short(x, 3)), labels);
     }
 }

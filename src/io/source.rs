@@ -1,8 +1,19 @@
-//! The source of a case: the text of its file, and the settings that lie over it.
+//! The source of a case: the text of its file, and keys set over it, as by the option `--set`: `method.gamma0=1e-3`,
+//! `material.young=2`, `boundary.bottom.contact.gap="0.1*x"`.
+//!
+//! A setting is a line of TOML, so its value has the type that it has in the file; only a bare word, a path or an
+//! expression needs no quotes (`method.gamma0=auto`, `boundary.bottom.contact.gap=0.1*x`). A table is laid over the one that
+//! is there, anything else takes its place, and a later setting wins over an earlier one. The reader of the case then cannot
+//! tell a setting from the file, but where a mistake is.
 
 use std::path::Path;
 
-use super::mistake::{CaseError, CaseMistake, Place};
+use toml::Spanned;
+use toml::de::{DeString, DeTable, DeValue};
+
+use super::expression::Expression;
+use super::input::{FileError, InputError, Place};
+use crate::quote::{cut, quoted};
 
 /// A file, its text, and what is set over it. Places in the settings come after those in the text.
 #[derive(Clone, Copy)]
@@ -13,16 +24,15 @@ pub struct Source<'s> {
 }
 
 impl<'s> Source<'s> {
-    /// `mistake` at the byte `start`, or in the file as a whole.
-    pub fn wrong(&self, start: Option<usize>, mistake: CaseMistake) -> CaseError {
+    /// `error` at the byte `start`, or in the file as a whole.
+    pub fn wrong(&self, start: Option<usize>, error: InputError) -> FileError {
         let setting = start.and_then(|start| self.setting_at(start));
-        let before = start.and_then(|start| self.text.get(..start));
-        let place = match (setting, before) {
+        let place = match (setting, start) {
             (Some(setting), _) => Place::Setting(setting.to_owned()),
-            (None, Some(before)) => Place::Line(before.matches('\n').count() + 1),
+            (None, Some(start)) => Place::line_of(start, self.text.as_bytes()),
             (None, None) => Place::File,
         };
-        CaseError { file: self.file.to_owned(), place, mistake: Box::new(mistake) }
+        error.at(self.file, place)
     }
 
     /// The setting in which the byte `start` lies, if it lies behind the file.
@@ -34,5 +44,169 @@ impl<'s> Source<'s> {
             // A word in quotes that it was given without reaches two bytes further; no key or value begins there.
             begin < start && start <= end
         })
+    }
+
+    /// The entries of the text, with those of the settings laid over them. `layers` are the settings as [`Source::layers`] has
+    /// them.
+    pub fn entries(self, layers: &'s [String]) -> Result<DeTable<'s>, FileError> {
+        let parsed = DeTable::parse(self.text).map_err(|e| {
+            let start = e.span().map(|span| span.start).or_else(|| deepest(&e, self.text));
+            self.wrong(start, no_toml(&e, self.text))
+        })?;
+        let mut entries = parsed.into_inner();
+        for (setting, layer) in self.settings.iter().zip(layers) {
+            let start = Some(layer.len() - layer.trim_start().len());
+            let parsed = DeTable::parse(layer);
+            let table = match parsed.map(Spanned::into_inner) {
+                Err(e) if setting.contains('=') => {
+                    return Err(self.wrong(start, no_toml(&e, layer)));
+                }
+                Ok(table) if setting.contains('=') && !table.is_empty() => table,
+                _ => {
+                    let said =
+                        "found no key with a value; expected KEY=VALUE, such as method.gamma0=1e-3";
+                    return Err(self.wrong(start, said.to_owned().into()));
+                }
+            };
+            merge(&mut entries, table, "").map_err(|list| self.wrong(start, list.into()))?;
+        }
+        Ok(entries)
+    }
+
+    /// The settings as TOML, each behind so much space that a place in it is a place in no other, nor in the file.
+    pub fn layers(&self) -> Vec<String> {
+        let mut start = self.text.len();
+        let mut layers = Vec::with_capacity(self.settings.len());
+        for setting in self.settings {
+            start += 1;
+            layers.push(" ".repeat(start) + &with_quotes(setting));
+            start += setting.len();
+        }
+        layers
+    }
+}
+
+/// Where the first key with more parts than the TOML reader takes stands: of that mistake it does not give the place.
+fn deepest(error: &toml::de::Error, text: &str) -> Option<usize> {
+    const MOST_PARTS: usize = 80;
+    let is_deep = |line: &&str| line.matches('.').nth(MOST_PARTS - 1).is_some();
+    let line = text.split('\n').find(is_deep).filter(|_| error.message() == "recursion limit")?;
+    Some(line.as_ptr() as usize - text.as_ptr() as usize)
+}
+
+/// Lays one table over another, which is that of the key `path`, if that is not empty.
+fn merge<'s>(below: &mut DeTable<'s>, above: DeTable<'s>, path: &str) -> Result<(), String> {
+    for (key, mut value) in above {
+        let name = &**key.get_ref();
+        let path = if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
+        match (below.get_mut(name).map(|old| old.get_mut()), value.get_mut()) {
+            (Some(DeValue::Table(old)), DeValue::Table(new)) => {
+                merge(old, std::mem::take(new), &path)?;
+            }
+            (Some(DeValue::Array(_)), DeValue::Table(new)) if new.keys().all(is_number) => {
+                let (list, path) = (quoted(&path, '\''), cut(&path));
+                return Err(format!(
+                    "{list} is a list, whose entries have no keys; expected all of it: {path}=[...]"
+                ));
+            }
+            _ => {
+                // With the key, so that the place is the new one.
+                below.remove(name);
+                below.insert(key, value);
+            }
+        }
+    }
+    Ok(())
+}
+
+fn is_number(key: &Spanned<DeString>) -> bool {
+    key.get_ref().bytes().all(|b| b.is_ascii_digit())
+}
+
+/// The setting, its value in quotes if that is a bare word, a path, or an expression that is no value of TOML.
+fn with_quotes(setting: &str) -> String {
+    let is_expression = |value: &str| {
+        let has_place = value.len() < 1000 && value.contains(['x', 'y']);
+        has_place && DeTable::parse(setting).is_err() && value.parse::<Expression>().is_ok()
+    };
+    match setting.split_once('=') {
+        Some((key, value)) if is_word(value) || is_expression(value) => {
+            format!("{key}=\"{value}\"")
+        }
+        _ => setting.to_owned(),
+    }
+}
+
+/// Returns whether this is a word, or the path of a file, that TOML has no other meaning for.
+fn is_word(text: &str) -> bool {
+    let is_path = ["/", "./", "../"].iter().any(|start| text.starts_with(start));
+    (is_path || text.starts_with(|c: char| c.is_ascii_alphabetic()))
+        && text.chars().all(|c| c.is_ascii_alphanumeric() || "_-./".contains(c))
+        && !["true", "false", "inf", "nan"].contains(&text)
+}
+
+/// The remedies for errors whose message from the TOML reader begins so.
+const REMEDIES: [(&str, &str); 8] = [
+    (
+        "missing comma between array elements",
+        "expected ',' or ']'; is a list or a text above not closed?",
+    ),
+    ("key with no value", "expected KEY = VALUE"),
+    (
+        "missing escaped value",
+        "a backslash in \"...\" begins an escape; expected '/' in a path, or the text in '...'",
+    ),
+    ("invalid mantissa", "expected a digit before the decimal point (0.5, not .5)"),
+    // It says so where there is no value at all, too.
+    (NO_QUOTES, "expected a value; a text must be in quotes"),
+    ("invalid float", NO_VALUE),
+    ("unexpected key or value", NO_VALUE),
+    ("unexpected leading zero", NO_VALUE),
+];
+
+const NO_QUOTES: &str = "string values must be quoted";
+
+const NO_VALUE: &str = "expected a value; an expression must be in quotes (\"0.1 - x\"), a list in brackets, and decimals have a point (0.5, not 0,5)";
+
+/// The TOML reader's message, and the words of the file that it is about.
+fn no_toml(error: &toml::de::Error, text: &str) -> InputError {
+    let found = error.span().and_then(|span| text.get(span)).map_or("", str::trim);
+    let message = error.message();
+    let is_unquoted = message.starts_with(NO_QUOTES);
+    let said = if text.starts_with("$MeshFormat") {
+        "this is a Gmsh mesh; expected a case file, which names it: [mesh] gmsh = \"FILE.msh\""
+    } else if text.trim_start().starts_with(['{', '<']) {
+        "this is a JSON or an XML file; expected a case file in TOML"
+    } else if found.contains(['\u{201c}', '\u{201d}', '\u{2018}', '\u{2019}']) {
+        "expected straight quotes (\") around a text"
+    } else if is_unquoted && found.contains("//") {
+        "expected a value; a comment begins with #"
+    } else if is_unquoted && found.starts_with(|c: char| c.is_ascii_digit() || c == '-') {
+        "expected a number, without a unit ([units] names the units)"
+    } else {
+        let remedy = REMEDIES.iter().find(|(start, _)| message.starts_with(start));
+        remedy.map_or(message, |(_, remedy)| remedy)
+    };
+    let at =
+        if found.is_empty() { found.to_owned() } else { format!(" at {}", quoted(found, '\'')) };
+    format!("invalid TOML{at}: {}", said.replace('\n', ", ")).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_and_paths_of_files_need_no_quotes() {
+        for word in ["auto", "part.msh", "meshes/part-2.msh", "./part.msh", "../part.msh", "/a/b"] {
+            assert_eq!(with_quotes(&format!("key={word}")), format!("key=\"{word}\""));
+        }
+        for expression in ["0.1-x", "x*y", "2 - sin(x)"] {
+            let quoted = format!("key=\"{expression}\"");
+            assert_eq!(with_quotes(&format!("key={expression}")), quoted);
+        }
+        for other in ["1e-3", ".5", "true", "nan", "[0, 1]", "\"a\"", "a b", "1000,5", ""] {
+            assert_eq!(with_quotes(&format!("key={other}")), format!("key={other}"));
+        }
     }
 }

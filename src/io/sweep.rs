@@ -11,9 +11,10 @@ use std::time::Duration;
 use thiserror::Error;
 use toml::de::{DeTable, DeValue};
 
-use super::case::{Case, CaseError};
+use super::case::Case;
 use super::csv::cell;
 use super::files::{Output, WriteError};
+use super::input::FileError;
 use super::numbers::short;
 use super::outputs::{self, Certified, Extra, OutputError};
 use super::result::{Results, Seconds};
@@ -88,7 +89,7 @@ pub enum SweepError {
     #[error("--set {key} is there twice; expected each key once, with all its values")]
     Twice { key: String },
     #[error(transparent)]
-    Case(#[from] CaseError),
+    Case(#[from] FileError),
     #[error(transparent)]
     Output(#[from] OutputError),
 }

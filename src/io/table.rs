@@ -11,87 +11,126 @@ use toml::Spanned;
 use toml::de::{DeInteger, DeTable, DeValue};
 
 use super::expression::Expression;
-use super::mistake::{CaseError, CaseMistake};
+use super::input::{FileError, InputError};
 use super::source::Source;
-use crate::fem::SharedFunction;
+use crate::fem::{MeshError, SharedFunction};
 use crate::quote::{cut, key as shown, listed, number, quoted};
+
+/// What a message is about: its name and where it stands. The file as a whole has neither.
+pub struct Spot<'s> {
+    source: Source<'s>,
+    pub name: String,
+    start: Option<usize>,
+}
+
+impl Spot<'_> {
+    /// A mistake here.
+    pub fn wrong(&self, error: impl Into<InputError>) -> FileError {
+        self.source.wrong(self.start, error.into())
+    }
+
+    /// What the mesh says of it.
+    pub fn mesh(&self, error: MeshError) -> FileError {
+        self.wrong(InputError::from(error).map(|problem| format!("{}: {problem}", self.name)))
+    }
+
+    /// The complaint that something else should be here.
+    pub fn found(&self, found: &str, expected: &str) -> FileError {
+        self.wrong(format!("{}: found {found}; expected {expected}", self.name))
+    }
+}
 
 /// A table of the file.
 pub struct Table<'s> {
-    source: Source<'s>,
-    /// Its name in messages, and the prefix of its keys there; both are empty for the whole file.
-    name: String,
+    pub at: Spot<'s>,
+    /// The prefix of its keys in messages.
     prefix: String,
-    start: Option<usize>,
     entries: &'s DeTable<'s>,
 }
 
 /// A value of the file.
 pub struct Value<'s> {
-    source: Source<'s>,
-    name: String,
-    start: usize,
+    pub at: Spot<'s>,
     value: &'s DeValue<'s>,
 }
 
 impl<'s> Table<'s> {
     /// The whole file.
     pub fn whole(source: Source<'s>, entries: &'s DeTable<'s>) -> Self {
-        Table { source, name: String::new(), prefix: String::new(), start: None, entries }
+        let at = Spot { source, name: String::new(), start: None };
+        Table { at, prefix: String::new(), entries }
     }
 
     pub fn keys(&self) -> impl Iterator<Item = &'s str> {
         self.entries.keys().map(|key| &**key.get_ref())
     }
 
+    /// The keys of tables.
+    pub fn keys_of_tables(&self) -> Vec<&'s str> {
+        let is_table = |key: &&str| self.get(key).is_some_and(|value| value.is_table());
+        self.keys().filter(is_table).collect()
+    }
+
     pub fn get(&self, key: &str) -> Option<Value<'s>> {
         let (key, value) = self.entries.get_key_value(key)?;
-        Some(Value {
-            source: self.source,
-            name: format!("{}{}", self.prefix, shown(key.get_ref())),
-            start: key.span().start,
-            value: value.get_ref(),
-        })
+        let name = format!("{}{}", self.prefix, shown(key.get_ref()));
+        let at = Spot { source: self.at.source, name, start: Some(key.span().start) };
+        Some(Value { at, value: value.get_ref() })
+    }
+
+    /// What `read` makes of the value of `key`, if it is there.
+    pub fn optional<T>(
+        &self,
+        key: &str,
+        read: impl FnOnce(&Value<'s>) -> Result<T, FileError>,
+    ) -> Result<Option<T>, FileError> {
+        self.get(key).map(|value| read(&value)).transpose()
     }
 
     /// The value of `key`, which must be there.
-    pub fn require(&self, key: &str, expected: &str) -> Result<Value<'s>, CaseError> {
-        self.get(key).ok_or_else(|| {
-            let name = format!("{}{key}", self.prefix);
-            self.wrong(CaseMistake::Missing { name, expected: expected.to_owned() })
-        })
+    pub fn require(&self, key: &str, expected: &str) -> Result<Value<'s>, FileError> {
+        let missing = || format!("{}{key} is missing; expected {expected}", self.prefix);
+        self.get(key).ok_or_else(|| self.at.wrong(missing()))
     }
 
     /// The table `key` of the file under its header, if there is one.
-    pub fn section(&self, key: &str) -> Result<Option<Table<'s>>, CaseError> {
-        self.get(key).map(|value| value.section(format!("[{key}]"))).transpose()
+    pub fn section(&self, key: &str) -> Result<Option<Table<'s>>, FileError> {
+        self.optional(key, |value| value.section(format!("[{key}]")))
     }
 
     /// The table `key` of the file, which must be there.
-    pub fn required_section(&self, key: &str, expected: &str) -> Result<Table<'s>, CaseError> {
-        let name = format!("[{key}]");
-        self.section(key)?
-            .ok_or_else(|| self.wrong(CaseMistake::Missing { name, expected: expected.to_owned() }))
+    pub fn required_section(&self, key: &str, expected: &str) -> Result<Table<'s>, FileError> {
+        let missing = || format!("[{key}] is missing; expected {expected}");
+        self.section(key)?.ok_or_else(|| self.at.wrong(missing()))
+    }
+
+    /// The entry `key` of this section, under a header of its own.
+    pub fn under_header(&self, key: &str) -> Spot<'s> {
+        let name = format!("{}.{}]", self.at.name.trim_end_matches(']'), shown(key));
+        let start = self.entries.get_key_value(key).map(|(key, _)| key.span().start);
+        Spot { source: self.at.source, name, start }
+    }
+
+    /// The table `key` of this section, under a header of its own.
+    pub fn subsection(&self, key: &str) -> Result<Table<'s>, FileError> {
+        self.require(key, "a table")?.section(self.under_header(key).name)
     }
 
     /// Refuses keys that are not `known`.
-    pub fn only(&self, known: &[&str]) -> Result<(), CaseError> {
+    pub fn only(&self, known: &[&str]) -> Result<(), FileError> {
         let unknown = self.entries.keys().find(|key| !known.contains(&&**key.get_ref()));
-        match unknown {
-            None => Ok(()),
-            Some(key) => {
-                let mistake = CaseMistake::Unknown {
-                    key: quoted(key.get_ref(), '\''),
-                    place: self.name.clone(),
-                    known: listed(known, "or"),
-                };
-                Err(self.source.wrong(Some(key.span().start), mistake))
-            }
-        }
+        let Some(key) = unknown else { return Ok(()) };
+        let within = match &*self.at.name {
+            "" => String::new(),
+            name => format!(" in {name}"),
+        };
+        let (shown, known) = (quoted(key.get_ref(), '\''), listed(known, "or"));
+        let said = format!("unknown key {shown}{within}; expected {known}");
+        Err(self.at.source.wrong(Some(key.span().start), said.into()))
     }
 
     /// The one of `keys` that is there.
-    pub fn exactly_one(&self, keys: &[&str]) -> Result<Value<'s>, CaseError> {
+    pub fn exactly_one(&self, keys: &[&str]) -> Result<Value<'s>, FileError> {
         self.only(keys)?;
         let mut values = keys.iter().filter_map(|key| self.get(key));
         match (values.next(), values.next()) {
@@ -101,49 +140,38 @@ impl<'s> Table<'s> {
     }
 
     /// The complaint about which of `keys` are there.
-    pub fn combination(&self, keys: &[&str], expected: &str) -> CaseError {
+    pub fn combination(&self, keys: &[&str], expected: &str) -> FileError {
         let found: Vec<&str> = keys.iter().copied().filter(|k| self.get(k).is_some()).collect();
-        let mistake = CaseMistake::Combination {
-            name: self.name.clone(),
-            found: if found.is_empty() { "none".to_owned() } else { listed(&found, "and") },
-            expected: expected.to_owned(),
-        };
         // Where one of them was set over the file, that is what went wrong.
-        let mut starts = found.iter().filter_map(|key| Some(self.get(key)?.start));
-        let set = starts.rfind(|&start| self.source.setting_at(start).is_some());
-        self.source.wrong(set.or(self.start), mistake)
-    }
-
-    /// A mistake that concerns the table as a whole.
-    pub fn wrong(&self, mistake: CaseMistake) -> CaseError {
-        self.source.wrong(self.start, mistake)
-    }
-
-    pub fn name(&self) -> &str {
-        &self.name
+        let mut starts = found.iter().filter_map(|key| self.get(key)?.at.start);
+        let set = starts.rfind(|&start| self.at.source.setting_at(start).is_some());
+        let name = self.at.name.clone();
+        let at = Spot { source: self.at.source, name, start: set.or(self.at.start) };
+        at.found(
+            &if found.is_empty() { "none".to_owned() } else { listed(&found, "and") },
+            expected,
+        )
     }
 }
 
 impl<'s> Value<'s> {
-    pub fn name(&self) -> &str {
-        &self.name
-    }
-
     /// As a table under the header `name`.
-    pub fn section(&self, name: String) -> Result<Table<'s>, CaseError> {
+    pub fn section(&self, name: String) -> Result<Table<'s>, FileError> {
         let prefix = format!("{name} ");
         self.table_named(name, prefix)
     }
 
-    /// As a table inside a line.
-    pub fn table(&self) -> Result<Table<'s>, CaseError> {
-        self.table_named(self.name.clone(), format!("{}.", self.name))
+    pub fn table(&self) -> Result<Table<'s>, FileError> {
+        let name = self.at.name.clone();
+        let prefix = format!("{name}.");
+        self.table_named(name, prefix)
     }
 
-    fn table_named(&self, name: String, prefix: String) -> Result<Table<'s>, CaseError> {
+    fn table_named(&self, name: String, prefix: String) -> Result<Table<'s>, FileError> {
         match self.value {
             DeValue::Table(entries) => {
-                Ok(Table { source: self.source, name, prefix, start: Some(self.start), entries })
+                let at = Spot { source: self.at.source, name, start: self.at.start };
+                Ok(Table { at, prefix, entries })
             }
             _ => Err(self.wrong("a table")),
         }
@@ -153,7 +181,7 @@ impl<'s> Value<'s> {
         matches!(self.value, DeValue::Table(_))
     }
 
-    pub fn text(&self) -> Result<&'s str, CaseError> {
+    pub fn text(&self) -> Result<&'s str, FileError> {
         self.as_text().ok_or_else(|| self.wrong("a text in quotes"))
     }
 
@@ -164,7 +192,7 @@ impl<'s> Value<'s> {
         }
     }
 
-    pub fn flag(&self) -> Result<bool, CaseError> {
+    pub fn flag(&self) -> Result<bool, FileError> {
         match self.value {
             DeValue::Boolean(flag) => Ok(*flag),
             _ => Err(self.wrong("true or false")),
@@ -172,7 +200,7 @@ impl<'s> Value<'s> {
     }
 
     /// A finite number; integers are numbers.
-    pub fn number(&self) -> Result<f64, CaseError> {
+    pub fn number(&self) -> Result<f64, FileError> {
         let number = match self.value {
             DeValue::Integer(n) => integer(n).map(|n| n as f64),
             DeValue::Float(f) => f.as_str().parse().ok(),
@@ -189,13 +217,17 @@ impl<'s> Value<'s> {
         &self,
         holds: impl FnOnce(f64) -> bool,
         expected: &str,
-    ) -> Result<f64, CaseError> {
+    ) -> Result<f64, FileError> {
         let number = self.number()?;
         if holds(number) { Ok(number) } else { Err(self.wrong(expected)) }
     }
 
+    pub fn positive(&self) -> Result<f64, FileError> {
+        self.number_that(|x| x > 0.0, "a positive number")
+    }
+
     /// An integer in a range.
-    pub fn whole_number(&self, range: RangeInclusive<usize>) -> Result<usize, CaseError> {
+    pub fn whole_number(&self, range: RangeInclusive<usize>) -> Result<usize, FileError> {
         let number = match self.value {
             DeValue::Integer(n) => integer(n).and_then(|n| usize::try_from(n).ok()),
             _ => None,
@@ -206,7 +238,7 @@ impl<'s> Value<'s> {
     }
 
     /// The value that one of these words stands for.
-    pub fn one_of<T: Copy>(&self, words: &[(&str, T)]) -> Result<T, CaseError> {
+    pub fn one_of<T: Copy>(&self, words: &[(&str, T)]) -> Result<T, FileError> {
         let found = self.as_text().and_then(|text| words.iter().find(|word| word.0 == text));
         found.map(|word| word.1).ok_or_else(|| {
             let words: Vec<String> = words.iter().map(|word| quoted(word.0, '"')).collect();
@@ -216,7 +248,7 @@ impl<'s> Value<'s> {
     }
 
     /// The items of a list.
-    pub fn items(&self) -> Result<Vec<Value<'s>>, CaseError> {
+    pub fn items(&self) -> Result<Vec<Value<'s>>, FileError> {
         match self.value {
             DeValue::Array(items) => Ok(items.iter().enumerate().map(|i| self.item(i)).collect()),
             _ => Err(self.wrong("a list")),
@@ -224,48 +256,56 @@ impl<'s> Value<'s> {
     }
 
     fn item(&self, (i, item): (usize, &'s Spanned<DeValue<'s>>)) -> Value<'s> {
-        Value {
-            source: self.source,
-            name: format!("{}[{i}]", self.name),
-            start: item.span().start,
-            value: item.get_ref(),
-        }
+        let name = format!("{}[{i}]", self.at.name);
+        let at = Spot { source: self.at.source, name, start: Some(item.span().start) };
+        Value { at, value: item.get_ref() }
     }
 
     /// A list of two.
-    pub fn pair(&self) -> Result<[Value<'s>; 2], CaseError> {
+    pub fn pair(&self) -> Result<[Value<'s>; 2], FileError> {
         let pair = self.items().ok().and_then(|items| items.try_into().ok());
         pair.ok_or_else(|| self.wrong("a list of two: one for x, one for y"))
     }
 
+    /// Two numbers: a point or a vector.
+    pub fn vector(&self) -> Result<[f64; 2], FileError> {
+        let [x, y] = self.pair()?;
+        Ok([x.number()?, y.number()?])
+    }
+
+    /// Two expressions, one for each component.
+    pub fn functions(&self) -> Result<[SharedFunction; 2], FileError> {
+        let [x, y] = self.pair()?;
+        Ok([x.function()?, y.function()?])
+    }
+
+    /// The value as a function.
+    pub fn function(&self) -> Result<SharedFunction, FileError> {
+        Ok(Arc::new(self.expression()?))
+    }
+
     /// An expression in x and y. One that is the same everywhere must be finite.
-    pub fn expression(&self) -> Result<Expression, CaseError> {
+    pub fn expression(&self) -> Result<Expression, FileError> {
         if let DeValue::Integer(_) | DeValue::Float(_) = self.value {
             return self.number().map(Expression::from);
         }
         let Some(text) = self.as_text() else {
             return Err(self.wrong("a number, or an expression in quotes, such as \"2*x\""));
         };
-        let expression: Expression = text.parse().map_err(|error| {
-            let (name, text) = (self.name.clone(), quoted(text, '"'));
-            self.mistake(CaseMistake::Expression { name, text, error })
-        })?;
+        let (name, shown) = (&self.at.name, quoted(text, '"'));
+        let expression: Expression =
+            text.parse().map_err(|error| self.at.wrong(format!("{name} = {shown}: {error}")))?;
         match expression.constant() {
             Some(value) if !value.is_finite() => {
-                let found = format!("{}, which is {}", quoted(text, '"'), number(value));
-                Err(self.wrong_as(found, "a finite value"))
+                let found = format!("{shown}, which is {}", number(value));
+                Err(self.wrong_as(&found, "a finite value"))
             }
             _ => Ok(expression),
         }
     }
 
-    /// The value as a function.
-    pub fn function(&self) -> Result<SharedFunction, CaseError> {
-        Ok(Arc::new(self.expression()?))
-    }
-
     /// The complaint that this should have been as `expected`.
-    pub fn wrong(&self, expected: &str) -> CaseError {
+    pub fn wrong(&self, expected: &str) -> FileError {
         let found = match self.value {
             DeValue::String(text) => quoted(text, '"'),
             DeValue::Integer(n) => cut(&n.to_string()),
@@ -275,18 +315,12 @@ impl<'s> Value<'s> {
             DeValue::Array(items) => format!("a list of {}", items.len()),
             DeValue::Table(_) => "a table".to_owned(),
         };
-        self.wrong_as(found, expected)
+        self.wrong_as(&found, expected)
     }
 
     /// The value is wrong; messages show it as `found`.
-    pub fn wrong_as(&self, found: String, expected: &str) -> CaseError {
-        let (name, expected) = (self.name.clone(), expected.to_owned());
-        self.mistake(CaseMistake::Value { name, found, expected })
-    }
-
-    /// A mistake that concerns this value.
-    pub fn mistake(&self, mistake: CaseMistake) -> CaseError {
-        self.source.wrong(Some(self.start), mistake)
+    pub fn wrong_as(&self, found: &str, expected: &str) -> FileError {
+        self.at.wrong(format!("{} = {found}; expected {expected}", self.at.name))
     }
 }
 

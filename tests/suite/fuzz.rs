@@ -303,9 +303,10 @@ mod cases {
     use signorini::io::{Case, outputs};
     use signorini::solve::solve;
 
+    use super::super::bad_input::CASE;
     use super::*;
 
-    const CASE: [&[u8]; 34] = [
+    const WORDS: [&[u8]; 34] = [
         b"[mesh]\n",
         b"[material]\n",
         b"[load]\n",
@@ -343,41 +344,19 @@ mod cases {
     ];
 
     /// Small ones: what is fuzzed are the doors, not the patience.
-    const SMALL: &str = r#"title = "Block"
-[mesh]
-rectangle = { width = 1.0, height = 1.0, nx = 4, ny = 3, diagonal = "right" }
-[material]
-lambda = 1.0
-mu = 1.0
-plane = "strain"
-[load]
-body = ["0.1*y", "-4 + 10*x"]
-[boundary.top]
-displacement = ["0", "0"]
-[boundary.right]
-traction = ["0", "0.5"]
-[boundary.bottom]
-contact = { gap = "0.01*x" }
-[method]
-degree = 1
-gamma0 = "auto"
-contact_quadrature = "exact"
-[solver]
-tolerance = 1e-10
-max_iterations = 50
-[output]
-probes = [[0, 1], [0.5, 0.5]]
-"#;
+    fn small() -> String {
+        let loads = "[boundary.right]\ntraction = [\"0\", \"0.5\"]\n[boundary.bottom]";
+        CASE.replace("gamma0 = 0.1", "gamma0 = \"auto\"")
+            .replace("[\"0\", \"free\"]", "[\"0\", \"0\"]")
+            .replace("gap = \"0\"", "gap = \"0.01*x\"")
+            .replace("[boundary.bottom]", loads)
+    }
 
     fn seeds() -> Vec<Vec<u8>> {
-        let mut seeds = vec![SMALL.as_bytes().to_vec()];
-        seeds.push(SMALL.replace("degree = 1", "degree = 2").into_bytes());
-        seeds.push(
-            SMALL
-                .replace("\"exact\"", "{ gauss = 3 }")
-                .replace("right\" }", "crossed\" }")
-                .into_bytes(),
-        );
+        let quadratic = small().replace("degree = 1", "degree = 2");
+        let gauss =
+            small().replace("\"exact\"", "{ gauss = 3 }").replace("right\" }", "crossed\" }");
+        let mut seeds = [small(), quadratic, gauss].map(String::into_bytes).to_vec();
         for seed in files("cases", "toml") {
             let text = String::from_utf8(seed).unwrap();
             seeds.push(text.replace("= 32", "= 4").replace("= 16", "= 4").into_bytes());
@@ -415,7 +394,7 @@ probes = [[0, 1], [0.5, 0.5]]
 
     #[test]
     fn read_or_refused() {
-        let words = words(&[&NUMBERS, &EXPRESSION, &CASE]);
+        let words = words(&[&NUMBERS, &EXPRESSION, &WORDS]);
         fuzz("cases", 2000, &seeds(), &words, |input| read(input).is_some());
     }
 
@@ -423,7 +402,7 @@ probes = [[0, 1], [0.5, 0.5]]
     #[test]
     fn solved_or_refused() {
         let small: Vec<Vec<u8>> = seeds().into_iter().take(3).collect();
-        let words = words(&[&NUMBERS, &CASE]);
+        let words = words(&[&NUMBERS, &WORDS]);
         fuzz("solved cases", 300, &small, &words, |input| {
             let Some(mut case) = read(input) else { return false };
             if case.problem.mesh.triangles().len() > 1000 {

@@ -87,33 +87,28 @@ impl<'t> Parser<'t> {
     }
 
     fn expression(&mut self, level: usize) -> Result<(), ExpressionError> {
-        self.term(level)?;
-        loop {
-            let operator = match self.token {
-                Token::Symbol('+') => Binary::Add,
-                Token::Symbol('-') => Binary::Subtract,
-                _ => return Ok(()),
-            };
-            self.advance()?;
-            let second = self.steps.len();
-            self.term(level)?;
-            self.binary(operator, second)?;
-        }
+        self.chain(level, Parser::term, [('+', Binary::Add), ('-', Binary::Subtract)])
     }
 
     fn term(&mut self, level: usize) -> Result<(), ExpressionError> {
-        self.factor(level)?;
-        loop {
-            let operator = match self.token {
-                Token::Symbol('*') => Binary::Multiply,
-                Token::Symbol('/') => Binary::Divide,
-                _ => return Ok(()),
-            };
+        self.chain(level, Parser::factor, [('*', Binary::Multiply), ('/', Binary::Divide)])
+    }
+
+    /// Operands with operators between them, from the left.
+    fn chain(
+        &mut self,
+        level: usize,
+        operand: fn(&mut Self, usize) -> Result<(), ExpressionError>,
+        operators: [(char, Binary); 2],
+    ) -> Result<(), ExpressionError> {
+        operand(self, level)?;
+        while let Some((_, f)) = operators.iter().find(|o| self.token == Token::Symbol(o.0)) {
             self.advance()?;
             let second = self.steps.len();
-            self.factor(level)?;
-            self.binary(operator, second)?;
+            operand(self, level)?;
+            self.binary(*f, second)?;
         }
+        Ok(())
     }
 
     fn factor(&mut self, level: usize) -> Result<(), ExpressionError> {

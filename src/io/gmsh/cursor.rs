@@ -4,7 +4,8 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 use std::str::FromStr;
 
-use super::{GmshError, GmshMistake, Place, Result};
+use super::Result;
+use crate::io::input::{FileError, InputError, Place};
 use crate::memory;
 use crate::quote::{self, quoted};
 
@@ -12,7 +13,10 @@ use crate::quote::{self, quoted};
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Form {
     Text,
-    Binary,
+    /// With so many bytes for a tag or a count: 4 or 8.
+    Binary {
+        tag_size: usize,
+    },
 }
 
 /// A place in the bytes of a file, and what can be read from there on.
@@ -33,7 +37,7 @@ impl<'b> Cursor<'b> {
         let (start, line) = self.line();
         match line.strip_prefix(b"$").map(std::str::from_utf8) {
             Some(Ok(section)) => Ok(Some((start, section))),
-            _ => Err(self.unexpected(start, shown(line), "a section such as $Nodes")),
+            _ => Err(self.unexpected(start, &shown(line), "a section such as $Nodes")),
         }
     }
 
@@ -48,7 +52,7 @@ impl<'b> Cursor<'b> {
         if line.strip_prefix(b"$End") == Some(section.as_bytes()) {
             Ok(())
         } else {
-            Err(self.unexpected(start, shown(line), &expected))
+            Err(self.unexpected(start, &shown(line), &expected))
         }
     }
 
@@ -92,7 +96,7 @@ impl<'b> Cursor<'b> {
     pub(super) fn number<T: FromStr>(&mut self, expected: &str) -> Result<T> {
         let (start, word) = self.word(expected)?;
         let number = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
-        number.ok_or_else(|| self.unexpected(start, shown(word), expected))
+        number.ok_or_else(|| self.unexpected(start, &shown(word), expected))
     }
 
     /// The next bytes.
@@ -122,20 +126,31 @@ impl<'b> Cursor<'b> {
         if range.contains(&number) {
             Ok(number)
         } else {
-            Err(self.unexpected(start, number.to_string(), expected))
+            Err(self.unexpected(start, &number.to_string(), expected))
         }
     }
 
+    /// A tag or a count.
     pub(super) fn size(&mut self, expected: &str) -> Result<usize> {
-        match self.form {
-            Form::Text => self.number(expected),
-            _ => {
-                let start = self.at;
-                let number = u64::from_le_bytes(self.take(expected)?);
-                usize::try_from(number)
-                    .map_err(|_| self.unexpected(start, number.to_string(), expected))
-            }
+        let start = self.here();
+        let number = match self.form {
+            Form::Text => return self.number(expected),
+            Form::Binary { tag_size: 4 } => self.take(expected).map(i32::from_le_bytes)?.into(),
+            Form::Binary { .. } => i128::from(self.take(expected).map(u64::from_le_bytes)?),
+        };
+        let unexpected = |_| self.unexpected(start, &number.to_string(), expected);
+        usize::try_from(number).map_err(unexpected)
+    }
+
+    /// A count on a line of its own, which is text in a binary file, too.
+    pub(super) fn count(&mut self, expected: &str) -> Result<usize> {
+        let form = std::mem::replace(&mut self.form, Form::Text);
+        let count = self.size(expected);
+        self.form = form;
+        if form != Form::Text {
+            self.line();
         }
+        count
     }
 
     pub(super) fn double(&mut self, expected: &str) -> Result<f64> {
@@ -158,7 +173,7 @@ impl<'b> Cursor<'b> {
         // A digit and the space after it.
         const LEAST: usize = 2;
         memory::reserve(list, announced.min(self.rest().len() / LEAST))
-            .map_err(|lack| self.wrong(Place::File, lack.into()))
+            .map_err(|lack| self.in_the_file(lack))
     }
 
     pub(super) fn skip_white_space(&mut self) {
@@ -170,27 +185,26 @@ impl<'b> Cursor<'b> {
         &self.bytes[self.at..]
     }
 
-    pub(super) fn unexpected(&self, start: usize, found: String, expected: &str) -> GmshError {
-        let expected = expected.to_owned();
-        self.wrong_at(start, GmshMistake::Unexpected { found, expected })
+    pub(super) fn unexpected(&self, start: usize, found: &str, expected: &str) -> FileError {
+        self.wrong_at(start, format!("found {found}, expected {expected}"))
     }
 
-    pub(super) fn cut_short(&self, expected: &str) -> GmshError {
-        self.wrong_at(self.bytes.len(), GmshMistake::CutShort { expected: expected.to_owned() })
+    pub(super) fn cut_short(&self, expected: &str) -> FileError {
+        let said = format!("the file ends, expected {expected}: it is cut short");
+        self.wrong_at(self.bytes.len(), said)
     }
 
-    pub(super) fn wrong_at(&self, start: usize, mistake: GmshMistake) -> GmshError {
+    pub(super) fn wrong_at(&self, start: usize, said: String) -> FileError {
         let place = match self.form {
-            Form::Text => {
-                Place::Line(self.bytes[..start].iter().filter(|&&b| b == b'\n').count() + 1)
-            }
-            _ => Place::Byte(start),
+            Form::Text => Place::line_of(start, self.bytes),
+            Form::Binary { .. } => Place::Byte(start),
         };
-        self.wrong(place, mistake)
+        InputError::from(said).at(self.file, place)
     }
 
-    pub(super) fn wrong(&self, place: Place, mistake: GmshMistake) -> GmshError {
-        GmshError { file: self.file.to_owned(), place, mistake: Box::new(mistake) }
+    /// An error that concerns the file as a whole.
+    pub(super) fn in_the_file(&self, error: impl Into<InputError>) -> FileError {
+        error.into().at(self.file, Place::File)
     }
 }
 

@@ -81,9 +81,8 @@ fn meshes_of_rectangles() {
 
 #[test]
 fn meshes_of_gmsh() {
-    compare_meshes(
-        "meshes",
-        &[
+    compare(
+        [
             // The format.
             (
                 ["$MeshFormat\n4.1 0 8", "# a picture\n4.1 0 8"],
@@ -214,7 +213,8 @@ fn meshes_of_gmsh() {
                 ["$EndElements\n", "$EndElements\nand more\n"],
                 "bad.msh:43: found 'and more', expected a section such as $Nodes",
             ),
-        ],
+        ]
+        .map(|(edit, expected)| (message_of_mesh("meshes", edited(MESH, edit).as_bytes()), expected)),
     );
 }
 
@@ -257,71 +257,95 @@ fn seams_that_do_not_quite_match_and_what_merges_them() {
 
 #[test]
 fn boundaries_of_gmsh_meshes() {
-    let directory = directory("empty");
-    fs::write(directory.join("bad.toml"), edited(CASE, WITH_MESH)).unwrap();
-    let message_after = |edit| {
-        fs::write(directory.join("bad.msh"), edited(MESH, edit)).unwrap();
-        message(&directory)
-    };
-    compare(
-        [
-            (message_after(["1 1 1 1\n1 1 2\n", "1 1 1 0\n"]), "bad.toml:12: [boundary.bottom]: found no edge in this mesh; expected at least one"),
-            (message_after(["1 1 \"bottom\"", "1 1 \"floor\""]), "bad.toml:12: [boundary.bottom]: no boundary named 'bottom'; this mesh has: floor, top"),
-        ]
-        .map(|(found, expected)| (found, expected.to_owned())),
-    );
+    let message_after = |edit| message_of_mesh("empty", edited(MESH, edit).as_bytes());
+    compare([
+        (
+            message_after(["1 1 1 1\n1 1 2\n", "1 1 1 0\n"]),
+            "bad.toml:12: [boundary.bottom]: found no edge in this mesh; expected at least one",
+        ),
+        (
+            message_after(["1 1 \"bottom\"", "1 1 \"floor\""]),
+            "bad.toml:12: [boundary.bottom]: no boundary named 'bottom'; this mesh has: floor, top",
+        ),
+    ]);
 }
 
 #[test]
 fn binary_meshes_that_are_cut_or_damaged() {
     const BINARY: &[u8] = include_bytes!("../../meshes/square-binary.msh");
-    let directory = directory("binary");
-    fs::write(directory.join("bad.toml"), edited(CASE, WITH_MESH)).unwrap();
-    let message_of = |bytes: &[u8]| {
-        fs::write(directory.join("bad.msh"), bytes).unwrap();
-        message(&directory)
-    };
+    let message_of = |bytes: &[u8]| message_of_mesh("binary", bytes);
     let with = |at: usize, byte: u8| {
         let mut bytes = BINARY.to_vec();
         bytes[at] = byte;
         bytes
     };
     let noise: Vec<u8> = (0..5000_u32).map(|i| (i * i * 31 % 251) as u8).collect();
-    compare(
-        [
-            (message_of(b"\x89PNG\r\n\x1a\n"), "bad.toml:3: [mesh] gmsh: bad.msh:1: this is no Gmsh mesh: expected $MeshFormat on its first line; gmsh -2 PART.geo makes PART.msh from a geometry"),
-            (message_of(&[]), "bad.toml:3: [mesh] gmsh: bad.msh:1: this is no Gmsh mesh: expected $MeshFormat on its first line; gmsh -2 PART.geo makes PART.msh from a geometry"),
-            (message_of(&BINARY[..20]), "bad.toml:3: [mesh] gmsh: bad.msh:3: the file ends, expected the number 1, which shows the order of the bytes: it is cut short"),
-            (message_of(&BINARY[..26]), "bad.toml:3: [mesh] gmsh: bad.msh, byte 25: found '$', expected $EndMeshFormat"),
-            (message_of(&BINARY[..200]), "bad.toml:3: [mesh] gmsh: bad.msh, byte 200: the file ends, expected the number of physical groups of an entity: it is cut short"),
-            (message_of(&BINARY[..BINARY.len() / 2]), "bad.toml:3: [mesh] gmsh: bad.msh, byte 1305: the file ends, expected the tag of an entity: it is cut short"),
-            (message_of(&BINARY[..BINARY.len() - 20]), "bad.toml:3: [mesh] gmsh: bad.msh, byte 2590: the file ends, expected the tag of a node: it is cut short"),
-            (message_of(&[&BINARY[..200], &noise].concat()), "bad.toml:3: [mesh] gmsh: bad.msh, byte 5200: the file ends, expected the tag of a physical group: it is cut short"),
-            (message_of(&with(25, 0)), "bad.toml:3: [mesh] gmsh: bad.msh, byte 25: found '\\0EndMeshFormat', expected $EndMeshFormat"),
-        ]
-        .map(|(found, expected)| (found, expected.to_owned())),
-    );
+    compare([
+        (
+            message_of(b"\x89PNG\r\n\x1a\n"),
+            "bad.msh:1: this is no Gmsh mesh: expected $MeshFormat on its first line; gmsh -2 PART.geo makes PART.msh from a geometry",
+        ),
+        (
+            message_of(&[]),
+            "bad.msh:1: this is no Gmsh mesh: expected $MeshFormat on its first line; gmsh -2 PART.geo makes PART.msh from a geometry",
+        ),
+        (
+            message_of(&BINARY[..20]),
+            "bad.msh:3: the file ends, expected the number 1, which shows the order of the bytes: it is cut short",
+        ),
+        (message_of(&BINARY[..26]), "bad.msh, byte 25: found '$', expected $EndMeshFormat"),
+        (
+            message_of(&BINARY[..200]),
+            "bad.msh, byte 200: the file ends, expected the number of physical groups of an entity: it is cut short",
+        ),
+        (
+            message_of(&BINARY[..BINARY.len() / 2]),
+            "bad.msh, byte 1305: the file ends, expected the tag of an entity: it is cut short",
+        ),
+        (
+            message_of(&BINARY[..BINARY.len() - 20]),
+            "bad.msh, byte 2590: the file ends, expected the tag of a node: it is cut short",
+        ),
+        (
+            message_of(&[&BINARY[..200], &noise].concat()),
+            "bad.msh, byte 5200: the file ends, expected the tag of a physical group: it is cut short",
+        ),
+        (
+            message_of(&with(25, 0)),
+            "bad.msh, byte 25: found '\\0EndMeshFormat', expected $EndMeshFormat",
+        ),
+    ]);
 }
 
 #[test]
 fn text_meshes_that_are_cut() {
-    let directory = directory("cut");
-    fs::write(directory.join("bad.toml"), edited(CASE, WITH_MESH)).unwrap();
-    let message_at = |end: &str| {
-        let length = MESH.find(end).unwrap();
-        fs::write(directory.join("bad.msh"), &MESH[..length]).unwrap();
-        message(&directory)
-    };
-    compare(
-        [
-            (message_at("$Entities"), "bad.toml:3: [mesh] gmsh: bad.msh: there is no section $Entities; expected MSH 4.1 with $Entities, $Nodes and $Elements"),
-            (message_at("$Nodes"), "bad.toml:3: [mesh] gmsh: bad.msh: there is no section $Nodes; expected MSH 4.1 with $Entities, $Nodes and $Elements"),
-            (message_at("1 1 0\n0 1 0\n"), "bad.toml:3: [mesh] gmsh: bad.msh:27: the file ends, expected a coordinate of a node: it is cut short"),
-            (message_at("$EndNodes"), "bad.toml:3: [mesh] gmsh: bad.msh:30: the file ends, expected $EndNodes: it is cut short"),
-            (message_at("$Elements"), "bad.toml:3: [mesh] gmsh: bad.msh: there is no section $Elements; expected MSH 4.1 with $Entities, $Nodes and $Elements"),
-            (message_at("3 1 1\n3 4 1"), "bad.toml:3: [mesh] gmsh: bad.msh:37: the file ends, expected the tag of an entity: it is cut short"),
-            (message_at("$EndElements"), "bad.toml:3: [mesh] gmsh: bad.msh:42: the file ends, expected $EndElements: it is cut short"),
-        ]
-        .map(|(found, expected)| (found, expected.to_owned())),
-    );
+    let message_at =
+        |end: &str| message_of_mesh("cut", &MESH.as_bytes()[..MESH.find(end).unwrap()]);
+    compare([
+        (
+            message_at("$Entities"),
+            "bad.msh: there is no section $Entities; expected MSH 4.1 with $Entities, $Nodes and $Elements",
+        ),
+        (
+            message_at("$Nodes"),
+            "bad.msh: there is no section $Nodes; expected MSH 4.1 with $Entities, $Nodes and $Elements",
+        ),
+        (
+            message_at("1 1 0\n0 1 0\n"),
+            "bad.msh:27: the file ends, expected a coordinate of a node: it is cut short",
+        ),
+        (message_at("$EndNodes"), "bad.msh:30: the file ends, expected $EndNodes: it is cut short"),
+        (
+            message_at("$Elements"),
+            "bad.msh: there is no section $Elements; expected MSH 4.1 with $Entities, $Nodes and $Elements",
+        ),
+        (
+            message_at("3 1 1\n3 4 1"),
+            "bad.msh:37: the file ends, expected the tag of an entity: it is cut short",
+        ),
+        (
+            message_at("$EndElements"),
+            "bad.msh:42: the file ends, expected $EndElements: it is cut short",
+        ),
+    ]);
 }
