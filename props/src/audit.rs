@@ -8,7 +8,8 @@ use std::time::Instant;
 use crate::claim::Claim;
 use crate::claims;
 use crate::draws;
-use crate::page::{self, Line, Provenance, Report};
+use crate::page::{self, Line, Report};
+use crate::receipt::root;
 
 /// Runs the row with this id, or all of them; of a row, the checks with this name, or all of them. True if every check
 /// passed. Writes a page with its twin in JSON; a part of the ledger goes to files of its own.
@@ -33,7 +34,8 @@ pub fn audit(id: Option<&str>, name: Option<&str>) -> io::Result<bool> {
     let lines: Vec<Line> = claims.iter().flat_map(run).collect();
     println!("\n{}{}", table(&claims, &lines), failures(&lines));
     let passed = lines.iter().all(|line| line.outcome.is_ok());
-    let report = Report { provenance: Provenance::now(), claims, complete: id.is_none(), lines };
+    let provenance = page::provenance();
+    let report = Report { provenance, claims, complete: id.is_none(), lines };
     let stem = match (id, name) {
         (None, _) => "index".to_owned(),
         (Some(id), None) => format!("row-{id}"),
@@ -42,7 +44,7 @@ pub fn audit(id: Option<&str>, name: Option<&str>) -> io::Result<bool> {
     let folder = folder();
     std::fs::create_dir_all(&folder)?;
     let at = folder.join(format!("{stem}.html"));
-    std::fs::write(&at, page::html(&report, &at))?;
+    std::fs::write(&at, page::html(&report))?;
     std::fs::write(at.with_extension("json"), page::json(&report))?;
     println!("written: {}, and the same as .json", at.display());
     Ok(passed)
@@ -51,7 +53,7 @@ pub fn audit(id: Option<&str>, name: Option<&str>) -> io::Result<bool> {
 /// Where the pages go.
 fn folder() -> PathBuf {
     let target = std::env::var_os("CARGO_TARGET_DIR");
-    target.map_or_else(|| page::root().join("target"), PathBuf::from).join("audit")
+    target.map_or_else(|| root().join("target"), PathBuf::from).join("audit")
 }
 
 fn run(claim: &Claim) -> Vec<Line> {
@@ -67,16 +69,7 @@ fn run(claim: &Claim) -> Vec<Line> {
             Ok(evidence) => println!("{} ({seconds:.2} s) {evidence}", paint("ok", "32")),
             Err(why) => println!("{} ({seconds:.2} s) {why}", paint("FAILED", "31")),
         }
-        Line {
-            row: claim.id,
-            engine,
-            name,
-            declared: check.name,
-            receipt: check.receipt(),
-            control: check.control,
-            seconds,
-            outcome,
-        }
+        Line { row: claim.id, check: *check, seconds, outcome }
     };
     claim.checks.iter().map(one).collect()
 }
@@ -89,14 +82,14 @@ fn paint(text: &str, colour: &str) -> String {
     }
 }
 
-fn table(claims: &[Claim], results: &[Line]) -> String {
+fn table(claims: &[Claim], lines: &[Line]) -> String {
     let mut text = format!(
         "{:>4} {:>6} {:>8} {:>6} {:>8}  title\n",
         "row", "checks", "controls", "failed", "seconds"
     );
     for claim in claims {
-        let of: Vec<&Line> = results.iter().filter(|r| r.row == claim.id).collect();
-        let controls = of.iter().filter(|r| r.control).count();
+        let of: Vec<&Line> = lines.iter().filter(|r| r.row == claim.id).collect();
+        let controls = of.iter().filter(|r| r.check.control).count();
         let failed = of.iter().filter(|r| r.outcome.is_err()).count();
         let seconds: f64 = of.iter().map(|r| r.seconds).sum();
         let _ = writeln!(
@@ -114,10 +107,13 @@ fn table(claims: &[Claim], results: &[Line]) -> String {
 fn failures(lines: &[Line]) -> String {
     let failed = lines.iter().filter_map(|line| Some((line, line.outcome.as_ref().err()?)));
     let one = |(line, why): (&Line, &String)| {
-        let Line { row, engine, name, declared, .. } = line;
+        let Line { row, check, .. } = line;
         format!(
-            "FAILED in row {row}: {engine} {name}: {why}\n  again: PROPS_SEED={} cargo run -p props -- audit {row} {declared}\n",
-            draws::seed()
+            "FAILED in row {row}: {} {}: {why}\n  again: PROPS_SEED={} cargo run -p props -- audit {row} {}\n",
+            check.engine_name(),
+            check.shown_name(),
+            draws::seed(),
+            check.name
         )
     };
     failed.map(one).collect()
@@ -126,26 +122,21 @@ fn failures(lines: &[Line]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::claim::{Engine, by};
 
     #[test]
     fn what_failed_is_named_last_with_its_reason_and_the_command_that_repeats_it() {
-        let line = |name, outcome| Line {
-            row: "10",
-            engine: "exact",
-            name,
-            declared: "one_solution",
-            receipt: None,
-            control: false,
-            seconds: 0.5,
-            outcome,
+        let line = |name, outcome| {
+            let check = by(Engine::Exact, name, || Err(String::new()));
+            Line { row: "10", check, seconds: 0.5, outcome }
         };
         let found = failures(&[
-            line("this_one".into(), Ok("fine".into())),
-            line("that_one".into(), Err("left >= right fails".into())),
+            line("this_one", Ok("fine".into())),
+            line("that_one", Err("left >= right fails".into())),
         ]);
         let seed = draws::seed();
         let expected = format!(
-            "FAILED in row 10: exact that_one: left >= right fails\n  again: PROPS_SEED={seed} cargo run -p props -- audit 10 one_solution\n"
+            "FAILED in row 10: exact that_one: left >= right fails\n  again: PROPS_SEED={seed} cargo run -p props -- audit 10 that_one\n"
         );
         assert_eq!(found, expected);
     }

@@ -62,11 +62,18 @@ pub struct Check {
     pub engine: Engine,
     /// A negative control: a planted mistake that must be rejected.
     pub control: bool,
+    /// The items of the paper that it is about: names of [`crate::items`].
+    pub items: &'static [&'static str],
     /// What is run.
     pub subject: Subject,
 }
 
 impl Check {
+    /// The check as evidence for these items of the paper.
+    pub fn about(self, items: &'static [&'static str]) -> Check {
+        Check { items, ..self }
+    }
+
     /// Its engine in the ledger: that of a harness is the model checker where a receipt says so; where it has few values,
     /// all of them are run; else random draws.
     pub fn engine_name(&self) -> &'static str {
@@ -170,12 +177,19 @@ pub fn refuted_in_doubles(statement: Statement) -> Check {
 }
 
 fn of_statement(statement: Statement, engine: Engine, control: bool) -> Check {
-    Check { name: statement.name, engine, control, subject: Subject::Statement(statement) }
+    Check {
+        name: statement.name,
+        engine,
+        control,
+        items: statement.items,
+        subject: Subject::Statement(statement),
+    }
 }
 
 /// A check by a function of its own; where its name begins with `control_`, a negative control.
 pub fn by(engine: Engine, name: &'static str, run: fn() -> Outcome) -> Check {
-    Check { name, engine, control: name.starts_with("control_"), subject: Subject::Function(run) }
+    let control = name.starts_with("control_");
+    Check { name, engine, control, items: &[], subject: Subject::Function(run) }
 }
 
 /// `exact!("name" => outcome)`: a check in exact numbers, on one line of a row's list.
@@ -198,6 +212,7 @@ pub fn false_statement(statement: Statement) -> Check {
         name: statement.name,
         engine: Engine::Proof,
         control: true,
+        items: &[],
         subject: Subject::Falsehood(statement),
     }
 }
@@ -208,6 +223,7 @@ pub fn model_checked(harness: Harness) -> Check {
         name: harness.name,
         engine: Engine::Harness,
         control: harness.counterexample.is_some(),
+        items: &[],
         subject: Subject::Harness(harness),
     }
 }
@@ -232,8 +248,6 @@ pub fn noticed(outcome: Outcome) -> Outcome {
 pub struct Claim {
     /// Its number in the ledger.
     pub id: &'static str,
-    /// The numbered items of the paper that it is about.
-    pub items: &'static [&'static str],
     /// A title.
     pub title: &'static str,
     /// The paper's words.

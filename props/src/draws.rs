@@ -93,7 +93,7 @@ const NOT_MET: &str = "hypothesis not met";
 /// missed by all of them once in 10^18 seeds; by the first alone, once in three.
 const ROUNDS: u32 = 40;
 
-/// Draws `cases` times, runs the predicate and counts the classes; as often again while a class was not hit.
+/// Draws `cases` times, runs the predicate, in a scope of exact numbers, and counts the classes; as often again while a class was not hit.
 ///
 /// # Errors
 /// The shrunk data for which it fails, the class that no draw hit, or that no draw met the hypothesis.
@@ -111,7 +111,7 @@ pub fn hold<D: Debug>(
         let runs = Cell::new(0);
         let result = runner(cases, round).run(&strategy, |data| {
             runs.set(runs.get() + 1);
-            let class = match predicate(&data) {
+            let class = match Exact::scope(|| predicate(&data)) {
                 Verdict::Holds(class) => class,
                 Verdict::Vacuous => NOT_MET,
                 Verdict::Fails(why) => return Err(TestCaseError::fail(why)),
@@ -158,7 +158,7 @@ pub fn reject<D: Debug>(
     for draw in 0..DRAWS_OF_DOUBLES {
         let tree = strategy.new_tree(&mut runner).map_err(|why| why.to_string())?;
         let data = tree.current();
-        if let Verdict::Fails(why) = predicate(&data) {
+        if let Verdict::Fails(why) = Exact::scope(|| predicate(&data)) {
             return Ok(format!("rejected at draw {draw}: {why}"));
         }
     }

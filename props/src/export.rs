@@ -12,10 +12,8 @@ use std::io;
 
 use crate::claim::{Engine, Subject};
 use crate::claims;
-use crate::proof::explorer::{Path, explore};
-use crate::proof::float::problems;
-use crate::proof::{Fate, analyse, smt, transcript};
-use crate::statement::Statement;
+use crate::proof::smt::{in_doubles, of_path, of_paths};
+use crate::proof::{Fate, analyse, transcript};
 
 /// Writes every proof as text into `directory`, one file `NAME.proof` each, and answers how many.
 ///
@@ -79,30 +77,4 @@ pub fn export(directory: &std::path::Path) -> io::Result<usize> {
         }
     }
     Ok(count)
-}
-
-/// One path: the name of its file, and the problem.
-fn of_path(statement: &Statement, i: usize, path: &Path, expected: &str) -> (String, String) {
-    let head = format!("; {}, path {i}\n; expected: {expected}\n", statement.name);
-    let problem = smt::problem(path, statement.variables, &head);
-    (format!("{}.{i}.smt2", statement.name), problem)
-}
-
-/// The failing paths of a statement that must hold: the names of their files, and the problems, all of which must be
-/// impossible.
-pub fn of_paths(statement: &Statement) -> Vec<(String, String)> {
-    let paths = explore(statement.variables.len(), statement.symbolic);
-    let failing = paths.iter().enumerate().filter(|(_, path)| path.verdict.fails());
-    failing.map(|(i, path)| of_path(statement, i, path, "unsat")).collect()
-}
-
-/// The failing paths of a statement in doubles: the names of their files, and the problems.
-pub fn in_doubles(statement: &Statement, control: bool) -> Vec<(String, String)> {
-    let (name, expected) = (statement.name, if control { "unknown" } else { "unsat" });
-    let problems = problems(statement.variables, statement.terms).into_iter().enumerate();
-    let with_names = |(i, problem): (usize, String)| {
-        let head = format!("; {name}, in doubles, path {i}\n; expected: {expected}\n");
-        (format!("{name}.double.{i}.smt2"), head + &problem)
-    };
-    problems.map(with_names).collect()
 }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use crate::claim::{Check, Claim, Engine, Subject};
 use crate::claims;
-use crate::items::items;
+use crate::items::ITEMS;
 use crate::paper;
 use crate::proof::explorer::explore;
 use crate::solvers::Field;
@@ -25,11 +25,10 @@ sigma_n(v) with a gap g (the paper has g = 0), P0 its linear part, gamma = gamma
 const BODY: &str = "\
 ## What a check says
 
-A statement is a Rust function, generic over the number type, that calls the kernel's own functions and compares them with the
-paper's formulas. It answers *holds*, with the class of its data, *vacuous* (the hypothesis is not met), or *fails*. Several
-engines run the same function; other checks are functions of their own, which assemble on random bodies, solve, or compare
-doubles with exact numbers. Every class that a statement names must be reached, and every row has **controls**: planted
-mistakes, which the same check must reject.
+A statement is a Rust function, generic over the number type, that compares the kernel's own functions with the paper's formulas.
+It answers *holds*, with the class of its data, *vacuous* (the hypothesis is not met), or *fails*; each class that it names must
+be reached. Several engines run it; other checks assemble on random bodies, solve, or compare doubles with exact numbers. Every
+row has **controls**: planted mistakes, which the same check must reject.
 
 | engine | numbers | what a pass means |
 | --- | --- | --- |
@@ -44,11 +43,10 @@ mistakes, which the same check must reject.
 `cargo install --locked kani-verifier && cargo kani setup` installs Kani, `cargo kani` at the root runs every harness (13 minutes on
 two busy cores, 1 GiB): a harness that passes holds for all numbers that it ranges over, and its false twin fails.
 
-Receipts are in `props/receipts`; each has a hash of what it is about, and a test fails when another thing stands there now. A
-program that shares nothing with this one but the case files, in FEniCSx (`reference/`), solves the same cases, and `cargo
-test --test suite reference` compares the whole solver with its stored results: what the rows can't see. `cargo run -p props
--- audit` runs every row and writes `target/audit/index.html`: **the page**, with the statement of each row as it is checked,
-each check with what it found, and links to the functions. How the engines are run and a row is added: CONTRIBUTING.md.
+Receipts are in `props/receipts`; each has a hash of what it is about, and a test fails when another thing stands there now. The
+whole solver is compared with FEniCSx, which shares nothing with it but the case files (`reference/`): what the rows can't see.
+`cargo run -p props -- audit` runs every row and writes `target/audit/index.html`: **the page**, with the statement of each row
+as it is checked, and each check with what it found. How engines are run and a row is added: CONTRIBUTING.md.
 
 ## What is trusted
 
@@ -63,9 +61,8 @@ checks them again with fractions and nothing else. It can't see that the polynom
 proved needs neither. For the rows that assemble on meshes, the transcription of the definitions in `props/src/naive.rs`,
 `bodies.rs` and `discrete.rs`; exact elimination (`elimination.rs`), enclosed integrals (`enclosure.rs`), the counts of
 roundings in `claims/assembled/compare.rs`, the number types in `numbers`, and the stand-in of the model checker
-(`harness.rs`). Material: A is any tensor of section 2.1 in the plane; row 9 proves
-what it is for, and random bodies are drawn with tensors as often as without. What compares the solver's own doubles with the
-definitions (rows 5, 6 and 8, curved solutions, directions that turn) is about isotropic bodies; `tests/suite/tensor.rs` solves others.
+(`harness.rs`). A is any tensor of section 2.1 in
+the plane; the solver's own doubles are compared with the definitions on isotropic bodies, and `tests/suite/tensor.rs` solves others.
 
 ## Errata of the paper
 
@@ -88,10 +85,11 @@ pub fn ledger() -> String {
          | --- | --- | --- | --- | --- |\n",
         state(&claims)
     );
-    for item in items() {
-        let rows: Vec<String> =
-            item.checks.iter().map(|(id, _)| format!("[{id}](#row-{id})")).collect();
+    for item in ITEMS {
         let found = item.found(&claims);
+        let mut rows: Vec<String> =
+            found.iter().map(|(claim, _)| format!("[{0}](#row-{0})", claim.id)).collect();
+        rows.dedup();
         let evidence = match found.len() {
             0 => "none".to_owned(),
             n => format!("{n}: {}", engines(found.iter().map(|(_, check)| *check))),
@@ -118,7 +116,7 @@ fn state(claims: &[Claim]) -> String {
     let proved = theorems.iter().filter(|theorem| theorem.is_proved()).count();
     let rocq = paper::receipt();
     format!(
-        "- {} rows (what was row 25 is a part of row 24): {}. `cargo test` runs all of them.\n\
+        "- {} rows: {}. `cargo test` runs all of them.\n\
          - Rocq: {proved} of {} theorems over the reals, by {} ({}); each false twin is refused, and the axioms are those of the \
          classical reals.\n\
          - Solvers: the failing paths of the proofs were given to {}; the statements in doubles, over all finite doubles, to {}.\n\
@@ -194,7 +192,8 @@ pub fn source(path: &str) -> &str {
 
 /// A row as a paragraph.
 fn row(claim: &Claim) -> String {
-    let Claim { id, title, items, paper, limits, .. } = claim;
+    let Claim { id, title, paper, limits, .. } = claim;
+    let items: Vec<&str> = claim.items().map(|item| item.name).collect();
     let single = claim.single.map_or(String::new(), |why| format!(" **One engine:** {why}"));
     format!(
         "\n### Row {id}\n\n**{title}** ({}). **The paper:** {paper} **Evidence:** {}. **Not established:** {limits}{single}\n",

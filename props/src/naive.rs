@@ -140,10 +140,7 @@ impl<S: Scalar> Field<S> {
     /// int_T sigma(u) : eps(v)
     pub fn energy(&self, v: &Field<S>, hooke: &Hooke<S>) -> S {
         let stress = self.strains().map(|strain| hooke.stress(strain));
-        let strain = v.strains();
-        let sum = |t: [Tensor<S>; 3]| [0, 1, 2].map(|c| t[0][c] + t[1][c] + t[2][c]);
-        let each = (0..3).fold(S::from(0), |s, k| s + contract(stress[k], strain[k]));
-        self.area() * (each + contract(sum(stress), sum(strain))) / S::from(12)
+        integral_of_affine(self.area(), stress, v.strains())
     }
 
     /// The vertices, then the middles of the edges.
@@ -182,6 +179,13 @@ impl<S: Scalar> Field<S> {
         let at = |k: usize| normal(hooke.stress(self.strain(k)), n);
         Line::affine(at((i + 1) % 3), at((i + 2) % 3))
     }
+}
+
+/// int_T a : b of two affine tensors by their values at the vertices.
+pub fn integral_of_affine<S: Scalar>(area: S, a: [Tensor<S>; 3], b: [Tensor<S>; 3]) -> S {
+    let sum = |t: [Tensor<S>; 3]| [0, 1, 2].map(|c| t[0][c] + t[1][c] + t[2][c]);
+    let each = (0..3).fold(S::from(0), |s, k| s + contract(a[k], b[k]));
+    area * (each + contract(sum(a), sum(b))) / S::from(12)
 }
 
 /// The monomials of degree 2 in the barycentric coordinates, by their exponents: the squares, then l_1 l_2, l_2 l_0, l_0 l_1.

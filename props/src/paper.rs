@@ -63,10 +63,7 @@ impl Theorem {
 /// The newest receipt.
 pub fn receipt() -> &'static Receipt {
     static RECEIPT: OnceLock<Receipt> = OnceLock::new();
-    RECEIPT.get_or_init(|| {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("receipts");
-        Receipt::newest(&folder, "rocq-").unwrap_or_default()
-    })
+    RECEIPT.get_or_init(|| Receipt::newest("rocq-"))
 }
 
 /// The files for Rocq, by their paths: `paper.v`, and of each theorem that has one, the false statement with the same proof.

@@ -14,13 +14,12 @@
 //! receipt is stale, and a test fails.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::sync::OnceLock;
 
 use sha2::{Digest, Sha256};
 
-use crate::export::{in_doubles, of_paths};
-use crate::receipt::root;
+use crate::proof::smt::{in_doubles, of_paths};
+use crate::receipt::Table;
 use crate::statement::Statement;
 
 /// Which problems a receipt is about.
@@ -56,8 +55,7 @@ impl Field {
             Field::Doubles => &DOUBLES,
             Field::Reals => &REALS,
         };
-        let folder = root().join("props/receipts");
-        receipt.get_or_init(|| Receipt::newest(&folder, self.prefix()).unwrap_or_default())
+        receipt.get_or_init(|| Receipt::newest(self.prefix()))
     }
 }
 
@@ -73,38 +71,21 @@ pub struct Receipt {
 }
 
 impl Receipt {
-    /// The newest one in a folder, of those whose names begin with `prefix`.
-    ///
-    /// # Errors
-    /// That there is none, that it can't be read, or a line that has not as many columns as it should.
-    pub fn newest(folder: &Path, prefix: &str) -> Result<Receipt, String> {
-        let failed = |why: std::io::Error| format!("{}: {why}", folder.display());
-        let mut newest: Option<(String, std::path::PathBuf)> = None;
-        for entry in std::fs::read_dir(folder).map_err(failed)? {
-            let path = entry.map_err(failed)?.path();
-            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            if let Some(date) = name.strip_prefix(prefix).and_then(|n| n.strip_suffix(".tsv")) {
-                newest = newest.max(Some((date.to_owned(), path)));
-            }
-        }
-        let (date, path) = newest.ok_or("there is none: see .ci/smt.py")?;
-        Receipt::parse(&date, &std::fs::read_to_string(path).map_err(failed)?)
+    /// The newest one of those whose names begin with `prefix`; an empty one where there is none that can be read.
+    pub fn newest(prefix: &str) -> Receipt {
+        let tables = Table::stored(prefix).unwrap_or_default();
+        tables.last().and_then(|table| Receipt::of(table).ok()).unwrap_or_default()
     }
 
-    /// Lines `# NAME VERSION`, one for each solver; a head; then problem, hash, what was expected, an answer for each solver.
-    fn parse(date: &str, text: &str) -> Result<Receipt, String> {
-        let solvers: Vec<String> =
-            text.lines().filter_map(|line| line.strip_prefix("# ")).map(str::to_owned).collect();
-        let mut answers = BTreeMap::new();
-        for line in text.lines().filter(|line| !line.starts_with('#')).skip(1) {
-            let columns: Vec<String> = line.split('\t').map(str::to_owned).collect();
-            if solvers.is_empty() || columns.len() != 3 + solvers.len() {
-                let expected = 3 + solvers.len();
-                return Err(format!("{date}: expected {expected} columns: {line}"));
-            }
-            answers.insert(columns[0].clone(), (columns[1].clone(), columns[3..].to_vec()));
+    /// In the head NAME VERSION of each solver; in a row problem, hash, what was expected, an answer of each solver.
+    fn of(table: &Table) -> Result<Receipt, String> {
+        let Table { date, head, columns, rows } = table;
+        if head.is_empty() || columns.len() != 3 + head.len() {
+            return Err(format!("{date}: expected {} columns: {columns:?}", 3 + head.len()));
         }
-        Ok(Receipt { date: date.to_owned(), solvers, answers })
+        let answer = |row: &Vec<String>| (row[0].clone(), (row[1].clone(), row[3..].to_vec()));
+        let answers = rows.iter().map(answer).collect();
+        Ok(Receipt { date: date.clone(), solvers: head.clone(), answers })
     }
 
     /// The names of the solvers, without versions.
@@ -191,6 +172,10 @@ mod tests {
     const AGAIN: &str =
         "cargo run -p props -- smt DIR, then python3 .ci/smt.py DIR --receipt props/receipts";
 
+    fn parsed(date: &str, text: &str) -> Result<Receipt, String> {
+        Receipt::of(&Table::parse(date, text)?)
+    }
+
     #[test]
     fn a_receipt_is_about_the_problems_that_were_asked_and_holds_where_all_are_impossible() {
         let problems = ["a", "b"].map(|name| (name.to_owned(), format!("problem {name}")));
@@ -201,7 +186,7 @@ mod tests {
             let text = "# z3 5.4\n# cvc5 1.4\nproblem\thash\texpected\tz3\tcvc5\n".to_owned()
                 + &line("a", "problem a", "unsat\tunsat")
                 + &line("b", text_b, of_b);
-            Receipt::parse("2026-11-21", &text).expect("a receipt").opinion(&problems)
+            parsed("2026-11-21", &text).expect("a receipt").opinion(&problems)
         };
         let holds = |by: &str| Opinion::Holds { by: by.to_owned(), date: "2026-11-21".to_owned() };
         assert_eq!(found("unsat\tunsat", "problem b"), holds("z3 and cvc5"));
@@ -209,10 +194,12 @@ mod tests {
         assert_eq!(found("unknown\tunknown", "problem b"), Opinion::Open("b".to_owned()));
         assert_eq!(found("unsat\tsat", "problem b"), Opinion::Open("b".to_owned()));
         assert_eq!(found("unsat\tunsat", "problem B"), Opinion::Stale("b".to_owned()));
-        let asked = Receipt::parse("", "# z3 5\nhead\n").expect("a receipt").opinion(&problems);
+        let asked = parsed("", "# z3 5\nproblem\thash\texpected\tz3\n")
+            .expect("a receipt")
+            .opinion(&problems);
         assert_eq!(asked, Opinion::Unasked("a".to_owned()));
-        assert!(Receipt::parse("", "# z3 5\nhead\na\tb\tunsat\n").is_err());
-        assert!(Receipt::parse("", "head\na\tb\tunsat\n").is_err());
+        assert!(parsed("", "# z3 5\nproblem\thash\texpected\tz3\na\tb\tunsat\n").is_err());
+        assert!(parsed("", "problem\thash\texpected\na\tb\tunsat\n").is_err());
     }
 
     /// The statements that must hold, under these engines.

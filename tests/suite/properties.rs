@@ -1,10 +1,16 @@
 //! Properties of the solver and of what it is given, on random or on many data: each with a mistake in the check itself that it
 //! must notice.
 
+mod bodies;
 mod conditions;
+mod directions;
 mod given;
+mod integration;
 mod meshes;
+mod newton;
 mod places;
+mod postprocess;
+mod refinement;
 
 /// What was found where a property does not hold.
 type Outcome = Result<(), String>;

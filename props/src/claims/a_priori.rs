@@ -6,6 +6,7 @@ use proptest::prelude::*;
 use signorini::fem::{Errors, a_priori};
 
 use crate::claim::{Claim, proved, refuted, tested};
+use crate::claims::rates;
 use crate::claims::theorem_3_4::scaled_sides;
 use crate::numbers::Exact;
 use crate::verdict::{Ordered, Verdict};
@@ -209,7 +210,8 @@ fn called(&[kappa, e, z, h, s, q]: &Draw, spoil: impl Fn(Exact) -> Exact) -> Ver
 
 /// The row of the bounds.
 pub fn claim() -> Claim {
-    let plain = statement!(plain_bound_is_that_of_theorem_3_4, [e, h, z, s, q, k], ["always"]);
+    let plain = statement!(plain_bound_is_that_of_theorem_3_4, [e, h, z, s, q, k], ["always"])
+        .about(&["Theorem 3.4"]);
     let terms = statement!(
         sharp_bound_is_that_of_theorem_9_3,
         [h, s, k],
@@ -218,12 +220,14 @@ pub fn claim() -> Claim {
     let projected =
         statement!(projected_bound_is_that_of_theorem_9_4, [w, z, h, s, q, k], ["always"]);
     let corollary =
-        statement!(corollary_bound_is_that_of_corollary_3_6, [x, s, r, w, e, h, k], ["always"]);
+        statement!(corollary_bound_is_that_of_corollary_3_6, [x, s, r, w, e, h, k], ["always"])
+            .about(&["Corollary 3.6"]);
     let sharp_facts = statement!(
         three_facts_give_inequality_9_6,
         [e, h, z, s, big, k, c, d, q, r, t],
         ["always"]
-    );
+    )
+    .about(&["Theorem 3.4"]);
     let projected_facts = statement!(
         three_facts_give_the_hypothesis_of_theorem_9_4,
         [w, z, s, big, k, d, q, r, t],
@@ -239,13 +243,16 @@ pub fn claim() -> Claim {
         inequality_9_6_gives_the_sharp_bound_9_5,
         [l, c, x, r, w, m],
         ["c = 0", "c > 0"]
-    );
+    )
+    .about(&["Theorem 3.4"]);
     let all = [plain, terms, sharp_facts, cauchy, sharp, projected_facts, projected, corollary];
     let mut checks: Vec<_> = all.into_iter().map(proved).collect();
     checks.extend([tested(terms)]);
     checks.extend([
         doubles!("the_bounds_that_the_solver_calls_are_roots_of_these" => draws::hold(400, numbers(), &["always"], |draw| called(draw, |kappa| kappa))),
         doubles!("control_kappa_for_its_root_in_doubles" => draws::reject(numbers(), |draw| called(draw, |kappa| kappa * kappa))),
+        doubles!("the_projection_is_nearer_than_the_discrete_solution_and_the_interpolant" => rates::projection_is_the_nearest()),
+        doubles!("control_the_interpolant_is_as_near_as_the_projection" => rates::interpolant_is_as_near()),
         refuted(statement!(
             control_kappa_for_its_root_in_corollary_3_6,
             [s, e, h, k],
@@ -259,10 +266,9 @@ pub fn claim() -> Claim {
     ]);
     Claim {
         id: "17",
-        items: &["Theorem 3.4", "Corollary 3.6"],
         title: "The bounds that the solver prints",
         paper: "The right sides of Theorem 3.4 and of Corollary 3.6, with C.",
-        statement: "The functions of `fem::a_priori`, by which the solver prints the bounds of Theorem 3.4 (plain, and for the a-orthogonal projection of u) and Corollary 3.6, are the right sides that rows 11 and docs/theory.md, 9 prove, over symbols; the terms b and c of the sharp bound are those of Theorem 9.3, whose inequality [9.6] follows from the facts of the proof of Theorem 3.4, and the bound [9.5] from [9.6]; the hypothesis of Theorem 9.4 likewise. In doubles, squared, each is within 64 roundings of the same function over rationals, the root of kappa in Corollary 3.6 is a root, and the sharp bound is a root of its quadratic equation.",
+        statement: "The functions of `fem::a_priori`, by which the solver prints the bounds of Theorem 3.4 (plain, and for the a-orthogonal projection of u) and Corollary 3.6, are the right sides that rows 11 and docs/theory.md, 9 prove, over symbols; the terms b and c of the sharp bound are those of Theorem 9.3, whose inequality [9.6] follows from the facts of the proof of Theorem 3.4, and the bound [9.5] from [9.6]; the hypothesis of Theorem 9.4 likewise, whose projection is nearer to the solution in the energy norm than u^h and than the interpolant. In doubles, squared, each is within 64 roundings of the same function over rationals, the root of kappa in Corollary 3.6 is a root, and the sharp bound is a root of its quadratic equation.",
         numbers: "every ordered field (proof), with k = kappa^(1/2) as data; doubles against rationals.",
         kernel: &[
             "fem::a_priori::left",

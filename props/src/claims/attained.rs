@@ -468,7 +468,8 @@ fn turning(check: impl Fn(&Pushed, Degree) -> Verdict) -> Outcome {
 /// The checks of row 10.
 pub(super) fn of_the_enclosure() -> [Check; 5] {
     [
-        doubles!("the_radius_and_the_constant_of_12_are_attained" => radii(1.0, 1.0)),
+        doubles!("the_radius_and_the_constant_of_12_are_attained" => radii(1.0, 1.0))
+            .about(&["(12)"]),
         doubles!("control_a_radius_a_fiftieth_too_small" => noticed(radii(0.98, 1.0))),
         doubles!("control_the_constant_of_12_a_fiftieth_too_large" => noticed(radii(1.0, 1.02))),
         doubles!("korns_factors_are_those_of_the_lemma" => korns_factors()),

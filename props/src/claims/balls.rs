@@ -48,48 +48,44 @@ fn members(ball: Fine) -> [Exact; 3] {
 
 /// Twice the precision: `share` of each radius covers what is off.
 fn fine_balls(&([a, b, c, d], [r, s]): &Draw, share: f64) -> Verdict {
-    Exact::scope(|| {
-        let zero = Exact::from(0);
-        let (x, y) = (fine(a, b), fine(c, d));
-        let (x, y) = (x.widened(r * a.abs()), y.widened(s * c.abs()));
-        for ball in [x, y, x * y, x - y] {
-            let [low, _, high] = members(ball);
-            ensure!(
-                Exact::of_double(ball.lower()) <= low && high <= Exact::of_double(ball.upper())
-            );
-            let most = Exact::of_double(ball.magnitude());
-            ensure!(low.abs() <= most && high.abs() <= most);
-            let least = Exact::of_double(ball.least_magnitude());
-            ensure!(least == zero || (low > zero) == (high > zero));
-            ensure!(least <= low.abs() && least <= high.abs());
+    let zero = Exact::from(0);
+    let (x, y) = (fine(a, b), fine(c, d));
+    let (x, y) = (x.widened(r * a.abs()), y.widened(s * c.abs()));
+    for ball in [x, y, x * y, x - y] {
+        let [low, _, high] = members(ball);
+        ensure!(Exact::of_double(ball.lower()) <= low && high <= Exact::of_double(ball.upper()));
+        let most = Exact::of_double(ball.magnitude());
+        ensure!(low.abs() <= most && high.abs() <= most);
+        let least = Exact::of_double(ball.least_magnitude());
+        ensure!(least == zero || (low > zero) == (high > zero));
+        ensure!(least <= low.abs() && least <= high.abs());
+    }
+    let divides = y.least_magnitude() > 0.0;
+    for u in members(x) {
+        ensure!(covers(positive_part(x), positive_part(u), share));
+        for v in members(y) {
+            ensure!(covers(x + y, u + v, share));
+            ensure!(covers(x - y, u - v, share));
+            ensure!(covers(x * y, u * v, share));
+            ensure!(!divides || covers(x / y, u / v, share));
         }
-        let divides = y.least_magnitude() > 0.0;
-        for u in members(x) {
-            ensure!(covers(positive_part(x), positive_part(u), share));
-            for v in members(y) {
-                ensure!(covers(x + y, u + v, share));
-                ensure!(covers(x - y, u - v, share));
-                ensure!(covers(x * y, u * v, share));
-                ensure!(!divides || covers(x / y, u / v, share));
-            }
-        }
-        if x.lower() > 0.0 {
-            let [low, _, high] = members(x.sqrt());
-            let [least, _, most] = members(x);
-            ensure!(low > zero && low * low <= least && most <= high * high);
-        }
-        if r == 0.0 && s == 0.0 {
-            // Numbers without a radius: results to a hundred bits or so.
-            let small = Exact::of_double(2.0_f64.powi(-98));
-            let [u, v] = [centre(x).abs(), centre(y).abs()];
-            let narrow = |ball: Fine, size: Exact| Exact::of_double(ball.radius()) <= small * size;
-            ensure!(narrow(x + y, u + v) && narrow(x - y, u + v));
-            ensure!(u * v == zero || narrow(x * y, u * v));
-            ensure!(!divides || u == zero || narrow(x / y, u / v));
-            return Verdict::Holds("numbers");
-        }
-        Verdict::Holds("wide")
-    })
+    }
+    if x.lower() > 0.0 {
+        let [low, _, high] = members(x.sqrt());
+        let [least, _, most] = members(x);
+        ensure!(low > zero && low * low <= least && most <= high * high);
+    }
+    if r == 0.0 && s == 0.0 {
+        // Numbers without a radius: results to a hundred bits or so.
+        let small = Exact::of_double(2.0_f64.powi(-98));
+        let [u, v] = [centre(x).abs(), centre(y).abs()];
+        let narrow = |ball: Fine, size: Exact| Exact::of_double(ball.radius()) <= small * size;
+        ensure!(narrow(x + y, u + v) && narrow(x - y, u + v));
+        ensure!(u * v == zero || narrow(x * y, u * v));
+        ensure!(!divides || u == zero || narrow(x / y, u / v));
+        return Verdict::Holds("numbers");
+    }
+    Verdict::Holds("wide")
 }
 
 /// Row 13: balls of twice the precision.
@@ -113,38 +109,36 @@ fn between<S: Enclosing>(a: f64, b: f64) -> S {
 
 /// Single precision: the results of members are in the results.
 fn balls<S: Enclosing>(&([a, b, c, d], [r, s]): &Draw) -> Verdict {
-    Exact::scope(|| {
-        let ends = |a: f64, r: f64| [a - r * a.abs(), a + r * a.abs()];
-        let ([al, ah], [cl, ch]) = (ends(a, r), ends(c, s));
-        let (x, y): (S, S) = (between(al, ah), between(cl, ch));
-        let z = S::exactly(b) * S::exactly(d);
-        let contains = |found: S, exact: Exact| {
-            Exact::of_double(found.lower()) <= exact && exact <= Exact::of_double(found.upper())
-        };
-        let [b, d] = [b, d].map(Exact::of_double);
-        let divides = y.lower() > 0.0 || y.upper() < 0.0;
-        for u in [al, ah].map(Exact::of_double) {
-            ensure!(contains(x, u) && contains(-x, -u));
-            ensure!(contains(positive_part(x), positive_part(u)));
-            for v in [cl, ch].map(Exact::of_double) {
-                ensure!(contains(x + y, u + v) && contains(x - y, u - v));
-                ensure!(contains(x * y, u * v) && contains(z, b * d));
-                ensure!(contains((x + y) * z - x * y, (u + v) * (b * d) - u * v));
-                ensure!(!divides || contains(x / y, u / v));
-                ensure!(!divides || contains((x * z) / y + x, u * (b * d) / v + u));
-            }
-            if x.lower() >= 0.0 {
-                let [low, high] = [x.sqrt().lower(), x.sqrt().upper()].map(Exact::of_double);
-                ensure!(low >= Exact::from(0) && low * low <= u && u <= high * high);
-            }
+    let ends = |a: f64, r: f64| [a - r * a.abs(), a + r * a.abs()];
+    let ([al, ah], [cl, ch]) = (ends(a, r), ends(c, s));
+    let (x, y): (S, S) = (between(al, ah), between(cl, ch));
+    let z = S::exactly(b) * S::exactly(d);
+    let contains = |found: S, exact: Exact| {
+        Exact::of_double(found.lower()) <= exact && exact <= Exact::of_double(found.upper())
+    };
+    let [b, d] = [b, d].map(Exact::of_double);
+    let divides = y.lower() > 0.0 || y.upper() < 0.0;
+    for u in [al, ah].map(Exact::of_double) {
+        ensure!(contains(x, u) && contains(-x, -u));
+        ensure!(contains(positive_part(x), positive_part(u)));
+        for v in [cl, ch].map(Exact::of_double) {
+            ensure!(contains(x + y, u + v) && contains(x - y, u - v));
+            ensure!(contains(x * y, u * v) && contains(z, b * d));
+            ensure!(contains((x + y) * z - x * y, (u + v) * (b * d) - u * v));
+            ensure!(!divides || contains(x / y, u / v));
+            ensure!(!divides || contains((x * z) / y + x, u * (b * d) / v + u));
         }
-        if r == 0.0 && s == 0.0 {
-            let narrow = |found: S, size: f64| found.upper() - found.lower() <= 1e-14 * size;
-            ensure!(narrow(x + y, a.abs() + c.abs()) && narrow(x * y, (a * c).abs()));
-            return Verdict::Holds("numbers");
+        if x.lower() >= 0.0 {
+            let [low, high] = [x.sqrt().lower(), x.sqrt().upper()].map(Exact::of_double);
+            ensure!(low >= Exact::from(0) && low * low <= u && u <= high * high);
         }
-        Verdict::Holds("wide")
-    })
+    }
+    if r == 0.0 && s == 0.0 {
+        let narrow = |found: S, size: f64| found.upper() - found.lower() <= 1e-14 * size;
+        ensure!(narrow(x + y, a.abs() + c.abs()) && narrow(x * y, (a * c).abs()));
+        return Verdict::Holds("numbers");
+    }
+    Verdict::Holds("wide")
 }
 
 /// Row 13: the balls and intervals that certificates are checked in.
@@ -171,24 +165,22 @@ fn chains() -> impl Strategy<Value = Chain> {
 /// Roundings add up: of twelve quotients in the centre, of sixteen sums in the radius. What one double outwards hides of a
 /// single operation it does not hide of a chain.
 fn chain<S: Enclosing>(&(start, divisors, radius, radii): &Chain, around: fn(f64) -> S) -> Verdict {
-    Exact::scope(|| {
-        let (mut found, mut exact) = (S::exactly(start), Exact::of_double(start));
-        for divisor in divisors.map(i32::from) {
-            found /= S::from(divisor);
-            exact /= Exact::from(divisor);
-        }
-        let inside = |found: &S, exact: Exact| {
-            Exact::of_double(found.lower()) <= exact && exact <= Exact::of_double(found.upper())
-        };
-        ensure!(inside(&found, exact));
-        let (mut sum, mut end) = (around(radius), Exact::of_double(radius));
-        for radius in radii {
-            sum += around(radius);
-            end += Exact::of_double(radius);
-        }
-        ensure!(inside(&sum, end) && inside(&sum, -end));
-        Verdict::Holds("always")
-    })
+    let (mut found, mut exact) = (S::exactly(start), Exact::of_double(start));
+    for divisor in divisors.map(i32::from) {
+        found /= S::from(divisor);
+        exact /= Exact::from(divisor);
+    }
+    let inside = |found: &S, exact: Exact| {
+        Exact::of_double(found.lower()) <= exact && exact <= Exact::of_double(found.upper())
+    };
+    ensure!(inside(&found, exact));
+    let (mut sum, mut end) = (around(radius), Exact::of_double(radius));
+    for radius in radii {
+        sum += around(radius);
+        end += Exact::of_double(radius);
+    }
+    ensure!(inside(&sum, end) && inside(&sum, -end));
+    Verdict::Holds("always")
 }
 
 /// Row 13: chains of balls.
@@ -242,24 +234,22 @@ fn value(a: DoubleDouble) -> Exact {
 
 /// The four operations are exact to 2^`bits` of what they are made of.
 fn double_double(&[a, b, c, d]: &[f64; 4], bits: i32) -> Verdict {
-    Exact::scope(|| {
-        let small = 2.0_f64.powi(-54);
-        let (x, y) = (DoubleDouble::sum(a, b * small), DoubleDouble::sum(c, d * small));
-        let [exact_x, exact_y] = [x, y].map(value);
-        ensure!(exact_x == Exact::of_double(a) + Exact::of_double(b * small));
-        let product = DoubleDouble::product(a, c);
-        ensure!(value(product) == Exact::of_double(a) * Exact::of_double(c));
-        let unit = Exact::of_double(2.0_f64.powi(bits));
-        let near = |found: DoubleDouble, exact: Exact, size: Exact| {
-            (value(found) - exact).abs() <= unit * size
-        };
-        let sizes = [exact_x, exact_y].map(Exact::abs);
-        ensure!(near(x + y, exact_x + exact_y, sizes[0] + sizes[1]));
-        ensure!(near(x - y, exact_x - exact_y, sizes[0] + sizes[1]));
-        ensure!(near(x * y, exact_x * exact_y, sizes[0] * sizes[1]));
-        ensure!(near(x / y, exact_x / exact_y, sizes[0] / sizes[1]));
-        Verdict::Holds(if (a > 0.0) == (c > 0.0) { "one sign" } else { "two signs" })
-    })
+    let small = 2.0_f64.powi(-54);
+    let (x, y) = (DoubleDouble::sum(a, b * small), DoubleDouble::sum(c, d * small));
+    let [exact_x, exact_y] = [x, y].map(value);
+    ensure!(exact_x == Exact::of_double(a) + Exact::of_double(b * small));
+    let product = DoubleDouble::product(a, c);
+    ensure!(value(product) == Exact::of_double(a) * Exact::of_double(c));
+    let unit = Exact::of_double(2.0_f64.powi(bits));
+    let near = |found: DoubleDouble, exact: Exact, size: Exact| {
+        (value(found) - exact).abs() <= unit * size
+    };
+    let sizes = [exact_x, exact_y].map(Exact::abs);
+    ensure!(near(x + y, exact_x + exact_y, sizes[0] + sizes[1]));
+    ensure!(near(x - y, exact_x - exact_y, sizes[0] + sizes[1]));
+    ensure!(near(x * y, exact_x * exact_y, sizes[0] * sizes[1]));
+    ensure!(near(x / y, exact_x / exact_y, sizes[0] / sizes[1]));
+    Verdict::Holds(if (a > 0.0) == (c > 0.0) { "one sign" } else { "two signs" })
 }
 
 fn double_doubles() -> impl Strategy<Value = [f64; 4]> {

@@ -848,7 +848,7 @@ pub fn checks() -> [Check; 29] {
         exact!("the_enclosure_that_is_reported_contains_the_solution_around_any_point" => hold_in_doubles(REPORTED_MOVED)),
         exact!("control_a_third_of_the_radius_that_is_reported" => reported_rejected(InDoubles { factor: 1.0 / 3.0, ..REPORTED_MOVED })),
         exact!("control_a_residual_from_a_wrong_load" => reported_rejected(InDoubles { load: 1.0 + 1e-6, ..REPORTED })),
-        exact!("one_solution_is_enclosed_around_the_result_of_the_solver_for_p1" => by_pieces(SOLVER)),
+        exact!("one_solution_is_enclosed_around_the_result_of_the_solver_for_p1" => by_pieces(SOLVER)).about(&["Theorem 3.3"]),
         exact!("one_solution_is_enclosed_around_the_result_of_the_solver_by_points" => by_points(SOLVER)),
         exact!("one_solution_is_enclosed_around_any_point_for_p1" => by_pieces(MOVED)),
         exact!("one_solution_is_enclosed_around_any_point_by_points" => by_points(MOVED)),

@@ -204,38 +204,45 @@ mod row {
     pub fn claim() -> Claim {
         let sides =
             statement!(two_edges_are_as_long_as_the_third, [bx, by, cx, cy, p, q, r], ["always"])
+                .about(&["(11)"])
                 .with_hints(|v| vec![v[0] * v[3] - v[1] * v[2]]);
         let shape = statement!(
             shape_regularity_bounds_edge_and_diameter_by_the_area,
             [a, b, c, rho, sigma],
             ["always"]
         )
+        .about(&["Lemma 3.2", "(11)"])
         .prepared(onto_triangles);
         let kappa = statement!(
             the_constant_of_11_depends_on_shape_and_material_alone,
             [diameter, length, area, sigma, lambda, mu],
             ["always"]
-        );
+        )
+        .about(&["Lemma 3.2", "(11)"]);
         let lemma = statement!(
             lemma_3_2_holds_with_constants_without_h,
             [n, a, s, contact, gamma0, limit, c, alpha, most],
             ["always"]
-        );
+        )
+        .about(&["Lemma 3.2", "(11)", "(12)"]);
         let thirteen = statement!(
             estimate_13_holds_with_a_constant_without_h,
             [e2, h2, z2, s, r, d, kappa, n, m, alpha, most],
             ["always"]
-        );
+        )
+        .about(&["(13)"]);
         let rate = statement!(
             rates_21_and_25_follow_from_13_and_22_to_24,
             [left, m, d, s, r, c1, c2, c3, most],
             ["always"]
-        );
+        )
+        .about(&["Theorem 3.5", "(21)"]);
         let corollary = statement!(
             rate_25_follows_from_corollary_3_6,
             [x, s, e, h, k, r, c1, c3, c4],
             ["always"]
-        );
+        )
+        .about(&["Corollary 3.6", "(25)"]);
         let all = [sides, shape, kappa, lemma, thirteen, rate, corollary];
         let mut checks: Vec<_> = all.into_iter().map(proved).collect();
         checks.extend([
@@ -249,17 +256,6 @@ mod row {
         checks.extend(interpolation::checks());
         Claim {
             id: "15",
-            items: &[
-                "Lemma 3.2",
-                "(11)",
-                "(12)",
-                "(13)",
-                "Theorem 3.5",
-                "(21)",
-                "(22)-(24)",
-                "Corollary 3.6",
-                "(25)",
-            ],
             title: "The constants do not depend on the mesh",
             paper: "There exists C, independent of the parameter gamma0 and of the mesh size h (Lemma 3.2); C h_T^(-1/2) for |E|^(1/2)/|T|^(1/2) in the proof of (11); C > 0 a constant, independent of h and u (13), (21), (25).",
             statement: "With h_T <= sigma rho_T: h_T |E|/|T| <= sigma for each edge, and 2 sigma for all edges of a triangle together; so kappa_T <= 2 sigma c_p (lambda + 2 mu) gamma0. With alpha |v|_1^2 <= a(v, v) <= M |v|_1^2 and kappa <= 1/2: |gamma^1/2 sigma_n(v)|^2 <= 2 sigma c_p (lambda + 2 mu) M gamma0 |v|_1^2, A(v, v) >= (alpha/2) |v|_1^2, the same for (12), and alpha |e|_1^2 + |z|_g^2 <= 13 (M |eta|_1^2 + |sigma_n(eta)|_g^2 + |gamma^-1/2 eta_n|^2). (21) and (25) follow with such constants from (22)-(24). For P1 and nu = 1/2 these have numbers (docs/theory.md, 9.6): c_T of (22) against quadratics, the trace and Wirtinger's inequality against polynomials, the energy density against the gradient; with them Theorem 3.5 reads (|e|_a^2 + |z|_g^2/delta)^1/2 <= C |u|_2, C a number of the mesh, and holds for the errors of the solver on 5 meshes, 3 solutions and 2 kappas.",

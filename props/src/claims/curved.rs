@@ -3,17 +3,13 @@
 //!
 //! With A(y) = -(y - 3y^3 + 2y^4), B(y) = 1 - 3y^2 + 2y^3, p = 8 \[x - c\]+^3 and q = -4 \[c - x\]+^2 the field
 //! u = (A p', B p - A q) has u_n = -p, sigma_n = (lambda + 2 mu) q and no shear on y = 0, n = (0, -1): conditions (2).
-//! Body force and tractions follow from (1). P1 and P2, whose gradients and P0(v) come from the kernel. The solver has the
-//! same solution by other formulas, `fem::exact::Smooth`: its doubles, and the L that it assembles from them, are compared.
-
-use std::sync::Arc;
+//! Body force and tractions follow from (1). P1 and P2, whose gradients and P0(v) come from the kernel.
+//! That the solver's own formulas of it, `fem::exact::Smooth`, satisfy (1) and (2) is a test (tests/suite/exact.rs).
 
 use num_rational::BigRational;
-use num_traits::{Signed, ToPrimitive, Zero};
+use num_traits::{Signed, Zero};
 use proptest::prelude::Strategy;
-use signorini::fem::exact::{self, Kind};
-use signorini::fem::{Degree, Mesh, Problem, Space, loads};
-use signorini::kernel::{Element, Material, P1, P2, Plane};
+use signorini::kernel::{Element, P1, P2};
 
 use crate::Verdict;
 use crate::bodies::{Body, Draw, Kernel, bodies};
@@ -317,21 +313,19 @@ fn consistent<E: Element<N, M>, const N: usize, const M: usize>(
     (n, d): (i64, i64),
     weight: i64,
 ) -> Verdict {
-    Exact::scope(|| {
-        let body = draw.upright().body();
-        let c = integer(n) / integer(n + d);
-        let [lambda, mu] = moduli(&body).map(|x| x.value());
-        ensure!(satisfies_2(&c, [&lambda, &mu]));
-        let cut_edge = body.contact.iter().any(|side| {
-            let [a, b] = ends(&body, side.triangle, side.local);
-            (a[0] < c) != (b[0] < c)
-        });
-        given!(cut_edge);
-        for v in body.basis::<N>() {
-            ensure!(residual::<E, N, M>(&body, &c, &v, weight).is_zero());
-        }
-        Verdict::Holds("an edge with contact and gap")
-    })
+    let body = draw.upright().body();
+    let c = integer(n) / integer(n + d);
+    let [lambda, mu] = moduli(&body).map(|x| x.value());
+    ensure!(satisfies_2(&c, [&lambda, &mu]));
+    let cut_edge = body.contact.iter().any(|side| {
+        let [a, b] = ends(&body, side.triangle, side.local);
+        (a[0] < c) != (b[0] < c)
+    });
+    given!(cut_edge);
+    for v in body.basis::<N>() {
+        ensure!(residual::<E, N, M>(&body, &c, &v, weight).is_zero());
+    }
+    Verdict::Holds("an edge with contact and gap")
 }
 
 const CLASSES: [&str; 1] = ["an edge with contact and gap"];
@@ -358,142 +352,4 @@ pub fn without_the_contact_term() -> Outcome {
 /// The same for P2.
 pub fn without_the_contact_term_for_p2() -> Outcome {
     draws::reject(data(), |(draw, c)| consistent::<P2, 6, 3>(draw, *c, 0))
-}
-
-/// How far doubles may be from the exact values, relative to the sum of the magnitudes of what is added up.
-const ROUNDING: f64 = 1e-12;
-
-/// The force jumps at x = c: places this near to it are left out, for they may lie on the other side in doubles.
-const JUMP: f64 = 1e-9;
-
-fn double(x: &BigRational) -> f64 {
-    x.to_f64().unwrap_or(f64::NAN)
-}
-
-/// Whether `found` is the value of the polynomial at a point, up to rounding.
-fn is_value(found: f64, p: &Polynomial, x: &[BigRational]) -> bool {
-    let size = p.terms().fold(0.0, |sum, (monomial, coefficient)| {
-        let factors = monomial.iter().zip(x).map(|(&n, x)| double(x).powi(n.into()));
-        sum + (double(coefficient) * factors.product::<f64>()).abs()
-    });
-    (found - double(&p.at(x))).abs() <= ROUNDING * size
-}
-
-/// The body as the solver has it: contact on its bottom, tractions on its sides.
-fn problem(body: &Body, solution: &exact::Exact) -> Option<Problem> {
-    let vertices = body.vertices.iter().map(|x| x.map(|x| double(&x.value()))).collect();
-    let pair = |t: usize, i: usize| [1, 2].map(|k| body.triangles[t][(i + k) % 3]);
-    let named = [
-        ("bottom".to_owned(), body.contact.iter().map(|s| pair(s.triangle, s.local)).collect()),
-        ("sides".to_owned(), body.free.iter().map(|&(t, i)| pair(t, i)).collect()),
-    ];
-    let mesh = Mesh::new(vertices, body.triangles.clone(), named).ok()?;
-    let kinds = [("bottom".to_owned(), Kind::Contact), ("sides".to_owned(), Kind::Traction)];
-    Some(exact::problem(solution, mesh, &kinds.into()))
-}
-
-/// The load that the solver assembles, times `factor`, is L(v) at a v.
-fn load_agrees<const N: usize>(
-    body: &Body,
-    problem: &Problem,
-    c: &BigRational,
-    factor: f64,
-) -> bool {
-    let drawn = body.drawn(0);
-    // Any function of the place will do, if both sides take it at their nodes.
-    let test =
-        |[x, y]: [Exact; 2]| [drawn[0][0] + drawn[1][0] * x, drawn[0][1] + drawn[1][1] * x * y];
-    let d = [0, 1].map(|i| drawn[i].map(|x| double(&x.value())));
-    let in_doubles = |[x, y]: [f64; 2]| [d[0][0] + d[1][0] * x, d[0][1] + d[1][1] * x * y];
-    let space = Space::new(&problem.mesh, if N == 3 { Degree::One } else { Degree::Two });
-    let Ok(load) = loads::assemble(problem, &space) else { return false };
-    let products = load.iter().zip(space.nodes()).flat_map(|(l, &x)| {
-        let v = in_doubles(x);
-        [l[0] * v[0], l[1] * v[1]]
-    });
-    let (sum, size) = products.fold((0.0, 0.0), |(sum, size), p: f64| (sum + p, size + p.abs()));
-    let exact = self::load::<N>(body, c, &body.interpolated(test));
-    (factor * sum - double(&exact)).abs() <= ROUNDING * size
-}
-
-/// The solver's form of the solution on a body, with c.
-fn in_doubles(body: &Body, c: &BigRational) -> exact::Exact {
-    let [lambda, mu] = moduli(body).map(|x| double(&x.value()));
-    let material = Material::lame(lambda, mu, Plane::Strain);
-    let (k, m, ap, aq) = (3.0, 2.0, 8.0, 4.0);
-    Arc::new(exact::Smooth { material, c: double(c), k, m, ap, aq, gap: Vec::new() })
-}
-
-/// The middle of a triangle in doubles.
-fn middle(body: &Body, corners: [usize; 3]) -> [f64; 2] {
-    [0, 1].map(|i| corners.iter().map(|&v| double(&corner(body, v)[i])).sum::<f64>() / 3.0)
-}
-
-/// Displacement, stress and force of the solver in the middle of each triangle against the polynomials; `factor` times
-/// the force.
-fn formulas_agree(draw: &Draw, (n, d): (i64, i64), factor: f64) -> Verdict {
-    Exact::scope(|| {
-        let body = draw.upright().body();
-        let c = integer(n) / integer(n + d);
-        let (solution, [left, right]) = (in_doubles(&body, &c), sides(&body, &c));
-        let (mut seen_left, mut seen_right) = (false, false);
-        for &corners in &body.triangles {
-            let x = middle(&body, corners);
-            let at = x.map(|x| BigRational::from_float(x).expect("a finite double"));
-            let from_c = double(&(&at[0] - &c));
-            if from_c.abs() < JUMP {
-                continue;
-            }
-            let exact = if from_c > 0.0 { &right.1 } else { &left.1 };
-            let (u, s) = (solution.displacement(x), solution.stress(x));
-            let f = solution.body_force(x).unwrap_or_default().map(|f| factor * f);
-            ensure!((0..2).all(|i| is_value(u[i], &exact.u[i], &at)));
-            ensure!((0..2).all(|i| is_value(f[i], &exact.force[i], &at)));
-            let stress = s.components();
-            ensure!((0..3).all(|i| is_value(stress[i], &exact.stress[i], &at)));
-            seen_left |= from_c < 0.0;
-            seen_right |= from_c > 0.0;
-        }
-        given!(seen_left || seen_right);
-        Verdict::Holds(match (seen_left, seen_right) {
-            (true, true) => "over contact and gap",
-            (true, false) => "over the contact",
-            _ => "over the gap",
-        })
-    })
-}
-
-/// The load that the solver assembles from it; `factor` times that.
-fn loads_agree(draw: &Draw, (n, d): (i64, i64), factor: f64) -> Verdict {
-    Exact::scope(|| {
-        let body = draw.upright().body();
-        let c = integer(n) / integer(n + d);
-        let Some(problem) = problem(&body, &in_doubles(&body, &c)) else {
-            return Verdict::Fails("the body is a mesh");
-        };
-        ensure!(load_agrees::<3>(&body, &problem, &c, factor));
-        ensure!(load_agrees::<6>(&body, &problem, &c, factor));
-        Verdict::Holds("P1 and P2")
-    })
-}
-
-/// The solver's formulas of this solution are the polynomials.
-pub fn solver_has_the_same_solution() -> Outcome {
-    let classes = ["over contact and gap", "over the contact", "over the gap"];
-    draws::hold(60, data(), &classes, |(draw, c)| formulas_agree(draw, *c, 1.0))
-}
-
-/// The L that the solver assembles is that of the polynomials.
-pub fn solver_has_the_same_load() -> Outcome {
-    draws::hold(8, data(), &["P1 and P2"], |(draw, c)| loads_agree(draw, *c, 1.0))
-}
-
-/// A body force that is off by a millionth is not that of the solution.
-pub fn body_force_off_by_a_millionth() -> Outcome {
-    draws::reject(data(), |(draw, c)| formulas_agree(draw, *c, 1.0 + 1e-6))
-}
-
-/// Nor is such a load.
-pub fn load_off_by_a_millionth() -> Outcome {
-    draws::reject(data(), |(draw, c)| loads_agree(draw, *c, 1.0 + 1e-6))
 }

@@ -152,32 +152,29 @@ mod row {
         &([x, y], places): &Pair,
         add: impl Fn(Interval, Interval) -> Interval,
     ) -> Verdict {
-        Exact::scope(|| {
-            for (a, b) in
-                members(x, places[0]).flat_map(|a| members(y, places[1]).map(move |b| (a, b)))
-            {
-                ensure!(x.contains(a) && y.contains(b));
-                let (a, b) = (Exact::of_double(a), Exact::of_double(b));
-                ensure!(encloses(add(x, y), a + b));
-                ensure!(encloses(x - y, a - b));
-                ensure!(encloses(x * y, a * b));
-                ensure!(encloses(-x, -a));
-                if b != Exact::from(0) {
-                    ensure!(encloses(x / y, a / b));
-                }
-                if a >= Exact::from(0) {
-                    let (low, high) = (x.sqrt().lo(), x.sqrt().hi());
-                    ensure!(low >= 0.0 && square(low) <= a);
-                    ensure!(high == f64::INFINITY || square(high) >= a);
-                }
+        for (a, b) in members(x, places[0]).flat_map(|a| members(y, places[1]).map(move |b| (a, b)))
+        {
+            ensure!(x.contains(a) && y.contains(b));
+            let (a, b) = (Exact::of_double(a), Exact::of_double(b));
+            ensure!(encloses(add(x, y), a + b));
+            ensure!(encloses(x - y, a - b));
+            ensure!(encloses(x * y, a * b));
+            ensure!(encloses(-x, -a));
+            if b != Exact::from(0) {
+                ensure!(encloses(x / y, a / b));
             }
-            let bounded = [x.lo(), x.hi(), y.lo(), y.hi()].iter().all(|end| end.is_finite());
-            Verdict::Holds(match (bounded, x.contains(0.0), y.contains(0.0)) {
-                (false, ..) => "unbounded",
-                (true, true, true) => "both across zero",
-                (true, false, false) => "neither across zero",
-                _ => "one across zero",
-            })
+            if a >= Exact::from(0) {
+                let (low, high) = (x.sqrt().lo(), x.sqrt().hi());
+                ensure!(low >= 0.0 && square(low) <= a);
+                ensure!(high == f64::INFINITY || square(high) >= a);
+            }
+        }
+        let bounded = [x.lo(), x.hi(), y.lo(), y.hi()].iter().all(|end| end.is_finite());
+        Verdict::Holds(match (bounded, x.contains(0.0), y.contains(0.0)) {
+            (false, ..) => "unbounded",
+            (true, true, true) => "both across zero",
+            (true, false, false) => "neither across zero",
+            _ => "one across zero",
         })
     }
 
@@ -325,10 +322,13 @@ mod row {
     /// The row of the floating-point foundations.
     pub fn claim() -> Claim {
         let mut checks = vec![
-            doubles!("operations_of_intervals_contain_the_exact_results" => enclosures()),
-            doubles!("results_of_intervals_are_as_narrow_as_stated" => sharpness()),
+            doubles!("operations_of_intervals_contain_the_exact_results" => enclosures())
+                .about(&["floating point"]),
+            doubles!("results_of_intervals_are_as_narrow_as_stated" => sharpness())
+                .about(&["floating point"]),
             doubles!("a_nan_makes_an_interval_nan_and_nothing_else_does" => nans()),
-            doubles!("edge_integrals_over_intervals_contain_the_exact_ones" => edges()),
+            doubles!("edge_integrals_over_intervals_contain_the_exact_ones" => edges())
+                .about(&["floating point"]),
             doubles!("slopes_of_intervals_contain_those_of_their_numbers" => slopes()),
             doubles!("double_doubles_keep_a_hundred_bits" => balls::double_doubles_keep_a_hundred_bits()),
             doubles!("operations_of_balls_contain_the_exact_results" => balls::balls_contain_the_exact_results()),
@@ -346,7 +346,6 @@ mod row {
         checks.extend(HARNESSES.iter().copied().map(model_checked));
         Claim {
             id: "13",
-            items: &["floating point"],
             title: "What the above rests on in floating point",
             paper: "Nothing: the paper computes in R.",
             statement: "For intervals X, Y of doubles and numbers x in X, y in Y: x + y, x - y, x y, x / y (y not 0) and sqrt(x) lie in X + Y, X - Y, X Y, X / Y and sqrt(X). [X]+ is [[lo]+, [hi]+], sharp across zero, and the slope of [X]+ contains that at each number, for X = [0, hi] that at 0. Of two numbers the result is at most two doubles wide, and exact where it is zero without underflow; an end may be infinite (no bound); a NaN makes both ends NaN. The integrals over a cut P1 edge, by the same source line over intervals, contain the exact ones. The same for the balls in which certificates are checked and the discrete solution is enclosed (a double, or a number of twice the precision, with a radius): the results of members of the operands, and chains of three, lie in the results, which for numbers without a radius are known to 1e-14, or to 2^-98. Sums and products of two doubles as double-doubles are exact, and +, -, *, / of these are off by at most 2^-100 of what goes in. The factor L D L^T in them solves a system with Pascal's matrix of order 24 plus the identity, whose solution doubles do not know to 1e-9, to that, and a matrix with a negative entry on its diagonal has none. The contact terms of P1 over an edge in balls contain those of each of their numbers.",

@@ -66,63 +66,57 @@ fn interpolation_error<S: Ordered>(triangle: &Triangle<S>, [xx, xy, yy]: [S; 3])
 
 /// (22) for a quadratic, with `factor` times c_T^2.
 fn estimate_22(&(vertices, form): &Draw, factor: (i64, i64)) -> Verdict {
-    Exact::scope(|| {
-        let Some(triangle) = triangle(vertices.map(Exact::from)) else { return Verdict::Vacuous };
-        let [error, seminorm] = interpolation_error(&triangle, form.map(Exact::from));
-        let constant = Exact::ratio(factor.0, factor.1) * gradient_constant_squared(&triangle);
-        ensure!(error <= constant * seminorm);
-        Verdict::Holds("always")
-    })
+    let Some(triangle) = triangle(vertices.map(Exact::from)) else { return Verdict::Vacuous };
+    let [error, seminorm] = interpolation_error(&triangle, form.map(Exact::from));
+    let constant = Exact::ratio(factor.0, factor.1) * gradient_constant_squared(&triangle);
+    ensure!(error <= constant * seminorm);
+    Verdict::Holds("always")
 }
 
 /// The trace inequality for the affine q with these values at the vertices, on the edge opposite vertex 0, squared where
 /// its mixed term has roots; `mixed` = 1, or 0 for the inequality without that term.
 fn trace(&(vertices, values): &Draw, mixed: i32) -> Verdict {
-    Exact::scope(|| {
-        let Some(triangle) = triangle(vertices.map(Exact::from)) else { return Verdict::Vacuous };
-        let q = values.map(Exact::from);
-        let (zero, one) = (Exact::from(0), Exact::from(1));
-        let gradient: Vector2<Exact> = triangle
-            .barycentric_gradients()
-            .iter()
-            .zip(q)
-            .fold(Vector2::zeros(), |sum: Vector2<Exact>, (g, q)| sum + g * q);
-        let sum = q[0] + q[1] + q[2];
-        let mean = (q.iter().fold(sum * sum, |all, &q| all + q * q)) / Exact::from(12);
-        let edge = (q[1] * q[1] + q[1] * q[2] + q[2] * q[2]) / Exact::from(3);
-        let squares = [0, 1, 2].map(|i| triangle.edge(i).dot(&triangle.edge(i)));
-        let diameter = squares.into_iter().fold(zero, |a, b| if a < b { b } else { a });
-        // With roots of 1 the function of the solver is (1 + 1) |E|/|T|: its parts are taken from it.
-        let two = trace_constant_squared([one, one, one], one);
-        ensure!(two == Exact::from(2));
-        let left = edge - mean;
-        if left <= zero {
-            return Verdict::Holds("without the gradient");
-        }
-        ensure!(left * left <= Exact::from(mixed) * diameter * mean * gradient.dot(&gradient));
-        Verdict::Holds("with it")
-    })
+    let Some(triangle) = triangle(vertices.map(Exact::from)) else { return Verdict::Vacuous };
+    let q = values.map(Exact::from);
+    let (zero, one) = (Exact::from(0), Exact::from(1));
+    let gradient: Vector2<Exact> = triangle
+        .barycentric_gradients()
+        .iter()
+        .zip(q)
+        .fold(Vector2::zeros(), |sum: Vector2<Exact>, (g, q)| sum + g * q);
+    let sum = q[0] + q[1] + q[2];
+    let mean = (q.iter().fold(sum * sum, |all, &q| all + q * q)) / Exact::from(12);
+    let edge = (q[1] * q[1] + q[1] * q[2] + q[2] * q[2]) / Exact::from(3);
+    let squares = [0, 1, 2].map(|i| triangle.edge(i).dot(&triangle.edge(i)));
+    let diameter = squares.into_iter().fold(zero, |a, b| if a < b { b } else { a });
+    // With roots of 1 the function of the solver is (1 + 1) |E|/|T|: its parts are taken from it.
+    let two = trace_constant_squared([one, one, one], one);
+    ensure!(two == Exact::from(2));
+    let left = edge - mean;
+    if left <= zero {
+        return Verdict::Holds("without the gradient");
+    }
+    ensure!(left * left <= Exact::from(mixed) * diameter * mean * gradient.dot(&gradient));
+    Verdict::Holds("with it")
 }
 
 /// (23) on the unit edge for w = s (1 - s) (a + b s + c s^2), with `pi` a rational number below pi^2.
 fn estimate_23(&(_, coefficients): &Draw, pi: (i64, i64)) -> Verdict {
-    Exact::scope(|| {
-        let [a, b, c] = coefficients.map(Exact::from);
-        // The coefficients of w = a s + (b - a) s^2 + (c - b) s^3 - c s^4.
-        let w = [Exact::from(0), a, b - a, c - b, -c];
-        let integral = |of: &[Exact]| {
-            let mut sum = Exact::from(0);
-            for (i, &x) in of.iter().enumerate() {
-                for (j, &y) in of.iter().enumerate() {
-                    sum += x * y / Exact::from((i + j + 1) as i32);
-                }
+    let [a, b, c] = coefficients.map(Exact::from);
+    // The coefficients of w = a s + (b - a) s^2 + (c - b) s^3 - c s^4.
+    let w = [Exact::from(0), a, b - a, c - b, -c];
+    let integral = |of: &[Exact]| {
+        let mut sum = Exact::from(0);
+        for (i, &x) in of.iter().enumerate() {
+            for (j, &y) in of.iter().enumerate() {
+                sum += x * y / Exact::from((i + j + 1) as i32);
             }
-            sum
-        };
-        let slope: Vec<Exact> = (1..5).map(|i| w[i] * Exact::from(i as i32)).collect();
-        ensure!(Exact::ratio(pi.0, pi.1) * integral(&w) <= integral(&slope));
-        Verdict::Holds("always")
-    })
+        }
+        sum
+    };
+    let slope: Vec<Exact> = (1..5).map(|i| w[i] * Exact::from(i as i32)).collect();
+    ensure!(Exact::ratio(pi.0, pi.1) * integral(&w) <= integral(&slope));
+    Verdict::Holds("always")
 }
 
 /// sigma(v):eps(v) <= (2 mu + 2 \[lambda\]+) |grad v|^2 at a point; `factor` multiplies the right side.
@@ -199,7 +193,8 @@ pub fn checks() -> Vec<Check> {
         energy_is_at_most_a_multiple_of_the_gradient,
         [a, b, c, d, lambda, mu],
         ["always"]
-    );
+    )
+    .about(&["(22)-(24)"]);
     let half = statement!(
         control_half_the_multiple_of_the_gradient,
         [a, b, c, d, lambda, mu],
@@ -208,21 +203,21 @@ pub fn checks() -> Vec<Check> {
     vec![
         exact!("estimate_22_holds_for_quadratics" => {
             draws::hold(1000, draws_of(), &["always"], |draw| estimate_22(draw, (1, 1)))
-        }),
+        }).about(&["(22)-(24)"]),
         // Quadratics come nearer than four fifths of the constant.
         exact!("control_four_fifths_of_the_constant_of_22" => {
             draws::reject(draws_of(), |draw| estimate_22(draw, (16, 25)))
         }),
         exact!("the_trace_inequality_holds_for_affine_functions" => {
             draws::hold(400, draws_of(), &["without the gradient", "with it"], |draw| trace(draw, 1))
-        }),
+        }).about(&["(22)-(24)"]),
         exact!("control_the_trace_without_the_gradient" => {
             draws::reject(draws_of(), |draw| trace(draw, 0))
         }),
         // pi^2 > 9.8696
         exact!("estimate_23_holds_for_polynomials" => {
             draws::hold(400, draws_of(), &["always"], |draw| estimate_23(draw, (98_696, 10_000)))
-        }),
+        }).about(&["(22)-(24)"]),
         // s (1 - s) has the quotient 10.
         exact!("control_a_larger_number_for_pi" => {
             draws::reject(draws_of(), |draw| estimate_23(draw, (101, 10)))
@@ -230,7 +225,7 @@ pub fn checks() -> Vec<Check> {
         proved(energy),
         tested(energy),
         refuted(half),
-        doubles!("theorem_3_5_bounds_the_errors_of_the_solver" => bounds(1.0)),
+        doubles!("theorem_3_5_bounds_the_errors_of_the_solver" => bounds(1.0)).about(&["Theorem 3.5", "(21)", "(22)-(24)"]),
         doubles!("control_errors_ten_times_as_large" => noticed(bounds(10.0))),
     ]
 }

@@ -4,7 +4,7 @@
 //!
 //! | what | for which data | how |
 //! | --- | --- | --- |
-//! | each step of `kernel::pattern` alone | all data on one, two or three nodes, numbers of any value among them | harnesses |
+//! | each step of `kernel::pattern` alone | numbers of any value among the data | harnesses |
 //! | all of them together, as `fem::matrix` calls them | all pairs of triangles on four nodes in any order; all lists of four of three nodes | enumeration |
 //! | the same | random triangles and orders, wrong ones included; rectangles and trapezoids, P1 and P2 | sets and dense matrices |
 //!
@@ -44,26 +44,6 @@ fn times<const B: usize>(list: &[usize], k: usize) -> usize {
         times += usize::from(i < list.len() && list[i] == k);
     }
     times
-}
-
-/// Two elements with two nodes each, on two nodes or none.
-fn two_edges() -> [[usize; 2]; 2] {
-    [[two_bits(), two_bits()], [two_bits(), two_bits()]]
-}
-
-/// The starts and the members of the elements of two nodes.
-fn elements_of_nodes(elements: &[[usize; 2]; 2]) -> ([usize; 3], [usize; 4]) {
-    let (mut starts, mut members) = ([9; 3], [9; 4]);
-    triangles_of_nodes(elements, &mut starts, &mut members);
-    (starts, members)
-}
-
-/// The neighbours of two nodes for each of which both elements are listed.
-fn neighbours_of_two(elements: &[[usize; 2]; 2]) -> ([usize; 3], [usize; 6]) {
-    let both = Lists { starts: &[0, 2, 4], members: &[0, 1, 0, 1] };
-    let (mut seen_by, mut starts, mut around) = ([9; 2], [9; 3], [9; 6]);
-    neighbours(elements, both, &mut seen_by, &mut starts, &mut around);
-    (starts, around)
 }
 
 /// The neighbours of nodes 0, 1 and 2 with one element listed for each; the elements are \[0, 1\] and \[1, 2\].
@@ -168,69 +148,6 @@ harnesses! {
         let list = Lists { starts: &starts, members: &members }.of(2);
         assert!(list.len() == members.len() - starts[2]);
     }
-    /// Starts begin at 0, and each list has a place for every time that its node stands on an element.
-    holds starts_of_lists_count_their_members_for_two_edges_on_two_nodes_or_none() {
-        let edges = two_edges();
-        let (starts, _) = elements_of_nodes(&edges);
-        let node = bit();
-        let members = times::<2>(&edges[0], node) + times::<2>(&edges[1], node);
-        assert!(starts[0] == 0 && starts[node + 1] - starts[node] == members);
-    }
-    /// The false twin: they increase.
-    fails control_starts_of_lists_increase_for_two_edges_on_two_nodes([0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0]) {
-        let (starts, _) = elements_of_nodes(&two_edges());
-        assert!(starts[0] < starts[1]);
-    }
-    /// An element is listed for a node as often as the node stands on it.
-    holds elements_are_listed_for_their_nodes_for_two_edges_on_two_nodes_or_none() {
-        let edges = two_edges();
-        let (starts, members) = elements_of_nodes(&edges);
-        let (node, t) = (bit(), bit());
-        let list = Lists { starts: &starts, members: &members }.of(node);
-        assert!(times::<4>(list, t) == times::<2>(&edges[t], node));
-    }
-    /// The false twin: at most once.
-    fails control_elements_are_listed_once_for_their_nodes_for_two_edges_on_two_nodes([0.0; 10]) {
-        let edges = two_edges();
-        let (starts, members) = elements_of_nodes(&edges);
-        let (node, t) = (bit(), bit());
-        let list = Lists { starts: &starts, members: &members }.of(node);
-        assert!(times::<4>(list, t) <= 1);
-    }
-    /// Elements come in increasing order.
-    holds lists_of_elements_do_not_decrease_for_two_edges_on_two_nodes_or_none() {
-        let (starts, members) = elements_of_nodes(&two_edges());
-        let (node, k) = (bit(), two_bits());
-        let list = Lists { starts: &starts, members: &members }.of(node);
-        assert!(k + 1 >= list.len() || list[k] <= list[k + 1]);
-    }
-    /// The false twin: each only once.
-    fails control_lists_of_elements_increase_for_two_edges_on_two_nodes([0.0; 11]) {
-        let (starts, members) = elements_of_nodes(&two_edges());
-        let (node, k) = (bit(), two_bits());
-        let list = Lists { starts: &starts, members: &members }.of(node);
-        assert!(k + 1 >= list.len() || list[k] < list[k + 1]);
-    }
-    /// The neighbours of a node are itself and the nodes of the elements that are listed for it, each once.
-    holds neighbours_are_complete_and_unique_for_any_two_edges_on_two_nodes_or_none() {
-        let edges = two_edges();
-        let (starts, around) = neighbours_of_two(&edges);
-        let (a, b) = (bit(), bit());
-        let list = Lists { starts: &starts, members: &around }.of(a);
-        let met = a == b || times::<2>(&edges[0], b) + times::<2>(&edges[1], b) > 0;
-        assert!(list.len() <= 2 && times::<2>(list, b) == usize::from(met));
-    }
-    /// The false twin: a neighbour is listed for each element that they share.
-    fails control_neighbours_are_listed_for_each_element_for_two_edges_on_two_nodes([
-        0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0,
-    ]) {
-        let edges = two_edges();
-        let (starts, around) = neighbours_of_two(&edges);
-        let (a, b) = (bit(), bit());
-        assume(a != b);
-        let list = Lists { starts: &starts, members: &around }.of(a);
-        assert!(times::<2>(list, b) == times::<2>(&edges[0], b) + times::<2>(&edges[1], b));
-    }
     /// The same on two given elements, for lists with members of any value: what is no element counts for nothing.
     holds neighbours_come_from_listed_elements_for_three_nodes_and_lists_of_any_value() {
         let listed = [any(), any(), any()];
@@ -272,40 +189,6 @@ harnesses! {
         let numbered = Numbered::new(&order, &prescribed);
         assume(order[0] < 2 && prescribed[order[0]][1].is_none());
         assert!(numbered.of[order[0]][1] == Some(1));
-    }
-    /// Each number below the count leads to the node that has it, by one component.
-    holds numbers_lead_to_their_nodes_for_two_nodes_in_any_list_of_three() {
-        let numbered = Numbered::new(&order(), &prescribed());
-        let k = two_bits();
-        assert!(numbered.count <= 4);
-        if k < numbered.count {
-            assert!(numbered.nodes[k] < 2);
-            let [x, y] = numbered.of[numbered.nodes[k]];
-            assert!((x == Some(k)) != (y == Some(k)));
-        }
-    }
-    /// The false twin: they are four.
-    fails control_all_components_are_numbered_for_two_nodes_in_any_order([
-        0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0,
-    ]) {
-        assert!(Numbered::new(&order(), &prescribed()).count == 4);
-    }
-    /// Each component with a number is that of the node to which the number leads.
-    holds nodes_lead_to_their_numbers_for_two_nodes_in_any_list_of_three() {
-        let numbered = Numbered::new(&order(), &prescribed());
-        let (node, c) = (bit(), bit());
-        if let Some(k) = numbered.of[node][c] {
-            assert!(k < numbered.count && k < 4 && numbered.nodes[k] == node);
-        }
-    }
-    /// The false twin: what is in the order has numbers.
-    fails control_nodes_in_the_order_have_numbers_for_two_nodes([
-        0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0,
-    ]) {
-        let order = order();
-        let numbered = Numbered::new(&order, &prescribed());
-        assume(order[0] < 2);
-        assert!(numbered.of[order[0]][0].is_some());
     }
     /// Gather, then scatter: the free components are back, the prescribed ones are left alone.
     holds scatter_restores_what_gather_took_for_two_nodes_and_any_i8() {

@@ -198,7 +198,8 @@ mod row {
 
     /// The row of (4).
     pub fn claim() -> Claim {
-        let facts = statement!(positive_part_satisfies_4, [a], ["positive", "negative", "zero"]);
+        let facts = statement!(positive_part_satisfies_4, [a], ["positive", "negative", "zero"])
+            .about(&["(4)"]);
         let projection = statement!(
             positive_part_is_the_projection_on_the_half_line,
             [a, m],
@@ -238,7 +239,6 @@ mod row {
         checks.extend(HARNESSES.iter().copied().map(model_checked));
         Claim {
             id: "1",
-            items: &["(4)"],
             title: "The positive part",
             paper: "a <= [a]+, a[a]+ = [a]+^2, for all a in R.",
             statement: "a <= [a]+, a[a]+ = [a]+^2, [a]+ >= 0, [[a]+]+ = [a]+, [a]+ - [-a]+ = a; [a]+ is the projection of a on [0, oo) and the only q with q >= 0, q >= a, q(q - a) = 0; the slope that Newton uses is its derivative away from 0.",

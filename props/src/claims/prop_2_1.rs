@@ -335,17 +335,20 @@ mod row {
             [u_n, g, sigma_n, gamma],
             ["contact", "gap", "touching without force", "neither holds"]
         )
+        .about(&["(2)", "Proposition 2.1", "(5)"])
         .prepared(onto_equation_5);
         let definitions = statement!(
             contact_functions_are_their_definitions,
             [u_n, g, sigma_n, gamma],
             ["pressed", "open"]
-        );
+        )
+        .about(&["(5)", "P_gamma, A_gamma"]);
         let violation = statement!(
             violation_is_zero_exactly_where_2_holds,
             [u_n, g, sigma_n, gamma],
             ["contact", "gap", "touching without force", "neither holds"]
         )
+        .about(&["(2)"])
         .prepared(onto_equation_5);
         let scaled = statement!(
             scaled_conditions_are_the_scaled_equation,
@@ -356,12 +359,14 @@ mod row {
             conditions_2_imply_the_scaled_equation,
             [u, s],
             ["contact", "gap", "touching without force"]
-        );
+        )
+        .about(&["(5)"]);
         let rounding = statement!(
             scaled_equation_implies_2_up_to_rounding,
             [u, s],
             ["gap", "contact", "contact up to rounding"]
-        );
+        )
+        .about(&["(5)"]);
         let mut checks = vec![
             proved(equivalence),
             proved(definitions),
@@ -391,7 +396,6 @@ mod row {
         checks.extend(HARNESSES.iter().copied().map(model_checked));
         Claim {
             id: "2",
-            items: &["(2)", "Proposition 2.1", "(5)", "P_gamma, A_gamma"],
             title: "Contact as one equation",
             paper: "Let gamma > 0. The contact conditions (2)(i)-(iii) on Gamma_C are equivalent to: sigma_n(u) = -(1/gamma)[u_n - gamma sigma_n(u)]+.",
             statement: "With a gap g: u_n - g <= 0, sigma_n <= 0 and sigma_n (u_n - g) = 0 hold together exactly if sigma_n = -(1/gamma)[u_n - g - gamma sigma_n]+, the kernel's lambda^h. P, P0, lambda^h and the violation of (2) are their definitions. In doubles, with s = gamma sigma_n: (2) implies s = -[u - s]+; and s = -[u - s]+ implies s <= 0, u <= 0 where s = 0, and |u| <= 2^-52 |s| where s < 0.",
@@ -417,16 +421,17 @@ mod row {
             [u_n, g, sigma_n, gamma, other],
             ["contact", "gap", "touching without force", "neither holds"]
         )
+        .about(&["Remark 2.2"])
         .prepared(onto_equation_5);
         let pointwise = statement!(
             conditions_2_are_equation_5,
             [u_n, g, sigma_n, gamma],
             ["contact", "gap", "touching without force", "neither holds"]
         )
+        .about(&["Remark 2.2"])
         .prepared(onto_equation_5);
         Claim {
             id: "3",
-            items: &["Remark 2.2"],
             title: "gamma may be a function",
             paper: "Condition (5) is still equivalent to (2)(i)-(iii) on Gamma_C when gamma is a positive function defined on Gamma_C instead of a positive constant.",
             statement: "(2) and (5) are conditions at each point, and gamma enters as a number of that point: Proposition 2.1 holds with any gamma > 0 there, and (5) with one gamma > 0 is (5) with any other.",

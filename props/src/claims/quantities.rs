@@ -149,7 +149,7 @@ mod row {
 
     use super::*;
     use crate::claim::{Claim, Outcome, proved, refuted, tested};
-    use crate::claims::distance::{Draw, bodies};
+    use crate::claims::error_bound::solved::{Draw, bodies};
     use crate::draws;
     use crate::numbers::Exact;
     use crate::statement;
@@ -294,27 +294,34 @@ mod row {
 
     /// The row.
     pub fn claim() -> Claim {
-        let mean = statement!(the_mean_of_two_stresses_splits, [s, q, t], ["always"]);
+        let mean = statement!(the_mean_of_two_stresses_splits, [s, q, t], ["always"])
+            .about(&["the error bound"]);
         let terms = statement!(
             contact_adds_two_terms_that_are_not_negative,
             [u_n, v_n, g, sigma_n, tau_n],
             ["contact", "no force"]
         )
+        .about(&["the error bound"])
         .prepared(onto_contact);
         let force = statement!(little_force_where_there_is_a_gap, [v_n, g, sigma_n, d], ["always"])
+            .about(&["the error bound"])
             .prepared(onto_the_gap);
         let opening =
             statement!(little_opening_where_there_is_pressure, [u_n, g, tau_n, p], ["always"])
+                .about(&["the error bound"])
                 .prepared(onto_the_pressure);
         let inside = statement!(what_is_missed_is_largest_inside, [x, eta, k, m], ["always"])
+            .about(&["the error bound"])
             .prepared(onto_the_inside);
         let end = statement!(what_is_missed_is_largest_at_the_end, [x, eta, k, m], ["always"])
+            .about(&["the error bound"])
             .prepared(onto_the_end);
         let pair = statement!(
             a_dual_pair_gives_the_force,
             [l, a_v_w, s, q, t, x, r, u_n, v_n, g, s_o],
             ["always"]
-        );
+        )
+        .about(&["the error bound"]);
         let upper = statement!(
             contact_adds_to_the_upper_end_at_most_a_and_b,
             [u_n, v_n, g, sigma_n, tau_n, r, omega, k],
@@ -323,7 +330,6 @@ mod row {
         .prepared(onto_the_upper_end);
         Claim {
             id: "26",
-            items: &["the error bound"],
             title: "Forces of the true solution between two numbers",
             paper: "Nothing: the paper bounds the error of the displacement and of the contact pressure with an unknown constant.",
             statement: "docs/theory.md, 7.7. At a point, |sigma(u) - m|^2 = |C eps(v) - tau|^2 / 4 + (sigma(u) - C eps(v)) (sigma(u) - tau) for m = (C eps(v) + tau) / 2, and on Gamma_C (sigma_n - tau_n) (u_n - v_n) = G - A - B with A, B >= 0: so |sigma(u) - m|^2 + A + B = M^2 = D^2 / 4 + G. Where v is off the obstacle by d the true force is at most A / d, where tau presses with p the true opening is at most B / p. x eta + k (M^2 - x^2) is at most k M^2 + eta^2 / (4 k), and M eta if eta >= 2 k M. The force by a dual pair (w, rho), [7.8], is an identity; where r is at most k |tau_n| and omega at most k (g - v_n), contact adds at most k (A + B) to it. The checker of forces `certify::forces` is generic over its numbers: with balls its intervals are around those in rationals, by no more than rounding. Forces of floor, top and load on drawn bodies add up to 0 within their intervals, and those on a coarse and on a fine mesh meet.",
@@ -379,9 +385,9 @@ mod row {
                     [x, eta, k, m],
                     fails "value <= k * m * m"
                 )),
-                exact!("forces_in_balls_are_around_those_in_rationals" => balls_are_around_the_rationals()),
+                exact!("forces_in_balls_are_around_those_in_rationals" => balls_are_around_the_rationals()).about(&["the error bound"]),
                 exact!("control_forces_far_outside" => balls_far_around_the_rationals()),
-                doubles!("forces_balance_and_meet_those_of_a_finer_mesh" => forces_agree()),
+                doubles!("forces_balance_and_meet_those_of_a_finer_mesh" => forces_agree()).about(&["the error bound"]),
                 doubles!("control_forces_beside_four_times_the_load" => forces_of_another_load()),
             ],
         }

@@ -154,7 +154,7 @@ fn nearest(other: impl Fn(&Theorem) -> f64) -> Outcome {
     Ok(format!("the others are farther by a factor of at least {least:.6}"))
 }
 
-/// No v^h with the nodal values of u^h on Gamma_D is nearer to u in the energy norm: a check of row 18.
+/// No v^h with the nodal values of u^h on Gamma_D is nearer to u in the energy norm.
 pub fn projection_is_the_nearest() -> Outcome {
     nearest(|t| t.discrete.energy.min(t.interpolant.energy))
 }
@@ -168,7 +168,6 @@ pub fn interpolant_is_as_near() -> Outcome {
 pub fn claim() -> Claim {
     Claim {
         id: "12",
-        items: &["Theorem 3.5", "(21)", "(25)", "Remark 3.7"],
         title: "Rates of convergence",
         paper: "|u - u^h|_1 + |gamma^1/2 (sigma_n(u) + (1/gamma)[P_gamma(u^h)]+)| <= C h^(1/2 + nu) |u|_(3/2 + nu), 0 < nu <= 1/2; the same rate for |gamma^1/2 sigma_n(u - u_h)|; for quadratic elements 0 < nu <= 3/2.",
         statement: "Observed, not established: on the wedge of angle 3 pi/4, u in H^(1 + alpha), the energy, contact and normal stress errors of P1 and P2 fall at the rate alpha; at the end of contact, u in H^(5/2), the energy error at the rates 1 (P1) and 3/2 (P2). The whole study, more solutions and meshes, and the variants of the method that lose the rates: `cargo test --test suite convergence`, docs/convergence.md. The step from (13) with its constant to the rate of Corollary 3.6 is proved in row 11.",
@@ -178,8 +177,13 @@ pub fn claim() -> Claim {
         limits: "An observed rate is no proof: for P1 and nu = 1/2 row 15 has the bound with its number; else the interpolation estimates (22)-(24) are taken from the literature.",
         single: Some("A rate is a limit: it can be observed in floating point only."),
         checks: vec![
-            doubles!("the_wedge_converges_at_the_rate_alpha" => wedge_rates_are(0.0)),
-            doubles!("the_end_of_contact_has_the_rates_1_and_3_2" => energy_rates()),
+            doubles!("the_wedge_converges_at_the_rate_alpha" => wedge_rates_are(0.0)).about(&[
+                "Theorem 3.5",
+                "(21)",
+                "(25)",
+            ]),
+            doubles!("the_end_of_contact_has_the_rates_1_and_3_2" => energy_rates())
+                .about(&["Theorem 3.5", "Remark 3.7"]),
             doubles!("control_the_rate_of_a_smoother_solution" => noticed(wedge_rates_are(0.2))),
         ],
     }

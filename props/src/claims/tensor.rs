@@ -359,7 +359,8 @@ pub fn checks() -> Vec<Check> {
         stress_is_the_tensor_times_the_strain,
         [c11, c12, c16, c22, c26, c66, xx, xy, yx, yy, p, q, r],
         ["always"]
-    );
+    )
+    .about(&["(1)"]);
     let lame = statement!(lambda_and_mu_are_a_tensor, [lambda, mu, xx, xy, yx, yy], ["always"]);
     let shapes = statement!(
         shapes_of_any_tensor_are_their_definitions,
@@ -376,6 +377,7 @@ pub fn checks() -> Vec<Check> {
         [c11, c12, c16, c22, c26, c66, xx, yy, xy, nx, ny],
         ["always"]
     )
+    .about(&["Lemma 3.2", "(11)"])
     .prepared(positive);
     let along = statement!(
         traction_along_a_direction_is_bounded_by_the_energy_of_any_tensor,
@@ -387,14 +389,17 @@ pub fn checks() -> Vec<Check> {
         a_strain_has_this_energy_without_its_part_along_two_directions,
         [c11, c12, c16, c22, c26, c66, xx, yy, xy, nx, ny, dx, dy],
         ["always"]
-    );
+    )
+    .about(&["Lemma 3.2", "(11)"]);
     let not_negative =
-        statement!(an_energy_that_is_not_negative_bounds_the_traction, [w, energy, z], ["always"]);
+        statement!(an_energy_that_is_not_negative_bounds_the_traction, [w, energy, z], ["always"])
+            .about(&["Lemma 3.2", "(11)"]);
     let attained = statement!(
         the_constant_of_any_tensor_is_attained,
         [c11, c12, c16, c22, c26, c66, nx, ny, dx, dy, c],
         ["always"]
-    );
+    )
+    .about(&["Lemma 3.2", "(11)"]);
     let largest = statement!(
         no_direction_has_more_than_the_largest_eigenvalue,
         [c11, c16, c66, dx, dy, r],

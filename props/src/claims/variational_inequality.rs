@@ -69,16 +69,17 @@ mod row {
             [u_n, g, sigma_n, v_n],
             ["contact", "no force"]
         )
+        .about(&["(3)"])
         .prepared(onto_contact);
         let converse = statement!(
             the_sign_of_3_gives_conditions_2,
             [u_n, g, sigma_n],
             ["contact", "no force"]
         )
+        .about(&["(3)"])
         .prepared(onto_contact);
         Claim {
             id: "16",
-            items: &["(3)"],
             title: "The variational inequality",
             paper: "Find u in K such that a(u, v - u) >= L(v - u) for all v in K, K = {v in V: v_n <= 0 on Gamma_C}.",
             statement: "At a point of Gamma_C, sigma_n (v_n - u_n) >= 0 for all v_n <= g is equivalent to (2), given u_n <= g. On random bodies with an affine exact solution, a(u, w) - L(w) >= 0 for every shape function w of P1 with w_n <= 0 on Gamma_C, in both directions of both axes: so (3) holds for u + w, and for all sums of these with factors that are not negative.",
@@ -92,7 +93,7 @@ mod row {
                 proved(converse),
                 tested(sign),
                 tested(converse),
-                exact!("inequality_3_holds_at_affine_solutions_on_random_bodies" => inequality_3_at_affine_solutions()),
+                exact!("inequality_3_holds_at_affine_solutions_on_random_bodies" => inequality_3_at_affine_solutions()).about(&["(3)"]),
                 refuted(statement!(
                     control_sign_of_3_without_complementarity,
                     [u_n, g, sigma_n, v_n],

@@ -21,17 +21,15 @@ fn with_dimensions<const N: usize>(
     dimensions: [Dimension; N],
     step: fn([Quantity; N]) -> Verdict,
 ) -> Verdict {
-    Exact::scope(|| {
-        let mut values: Vec<Exact> = values.iter().map(|&(n, d)| Exact::ratio(n, d)).collect();
-        prepare(&mut values);
-        let data = std::array::from_fn(|i| Quantity::new(values[i], dimensions[i]));
-        match Quantity::check(|| step(data)) {
-            Err(_) => Verdict::Fails("one dimension on both sides"),
-            // An inequality that does not hold is not the point here.
-            Ok(Verdict::Fails(_)) => Verdict::Vacuous,
-            Ok(verdict) => verdict,
-        }
-    })
+    let mut values: Vec<Exact> = values.iter().map(|&(n, d)| Exact::ratio(n, d)).collect();
+    prepare(&mut values);
+    let data = std::array::from_fn(|i| Quantity::new(values[i], dimensions[i]));
+    match Quantity::check(|| step(data)) {
+        Err(_) => Verdict::Fails("one dimension on both sides"),
+        // An inequality that does not hold is not the point here.
+        Ok(Verdict::Fails(_)) => Verdict::Vacuous,
+        Ok(verdict) => verdict,
+    }
 }
 
 /// All draws of a step, and that each of its classes is hit.
@@ -200,60 +198,77 @@ pub fn claim() -> Claim {
         error_identity_holds_at_a_point,
         [gamma, g, u, su, uh, sh, v, sv],
         ["pressed", "open"]
-    );
+    )
+    .about(&["Theorem 3.4"]);
     let z = statement!(
         z_times_the_difference_of_p_is_at_most_minus_gamma_z_squared,
         [gamma, g, u, su, uh, sh],
         ["pressed", "open"]
     )
+    .about(&["Theorem 3.4"])
     .prepared(onto_contact);
-    let split = statement!(p0_of_w_splits, [gamma, g, u, su, uh, sh, v, sv], ["always"]);
+    let split = statement!(p0_of_w_splits, [gamma, g, u, su, uh, sh, v, sv], ["always"])
+        .about(&["Theorem 3.4"]);
     let raw = statement!(
         raw_facts_give_the_inequality_between_norms,
         [e, h, w, c, s, r, t, k],
         ["always"]
     )
+    .about(&["Theorem 3.4"])
     .prepared(onto_raw_facts);
     let young = statement!(young_steps_hold, [e, h, z, s, r, k], ["always"]);
     let theorem = statement!(theorem_3_4_holds_with_its_constant, [e, h, z, s, r, k], ["always"])
+        .about(&["Theorem 3.4", "(13)"])
         .prepared(onto_bound);
     let corollary =
-        statement!(corollary_3_6_holds_with_its_constant, [x, s, r, w, e, h, k], ["always"]);
-    let s14 = statement!(step_14_holds, [gamma, uh, sh, v, sv], ["pressed", "open"]);
-    let s15 = statement!(step_15_holds, [gamma, u, su, uh, sh, v], ["pressed", "open"]);
+        statement!(corollary_3_6_holds_with_its_constant, [x, s, r, w, e, h, k], ["always"])
+            .about(&["Corollary 3.6"]);
+    let s14 =
+        statement!(step_14_holds, [gamma, uh, sh, v, sv], ["pressed", "open"]).about(&["(14)"]);
+    let s15 =
+        statement!(step_15_holds, [gamma, u, su, uh, sh, v], ["pressed", "open"]).about(&["(15)"]);
     let s16 = statement!(step_16_holds, [z, d, gamma, beta], ["always"])
+        .about(&["(16)"])
         .with_hints(|v| vec![v[2] * v[0] - v[3] * v[1]]);
     let s17 = statement!(
         step_17_holds_with_the_factor_gamma,
         [gamma, u, su, uh, sh, sv],
         ["pressed", "open"]
     )
+    .about(&["(17)"])
     .prepared(onto_17);
-    let s18 = statement!(step_18_holds_with_the_factor_gamma, [z, d, gamma, beta], ["always"]);
-    let s19 = statement!(step_19_holds_with_its_constants, [a, s, r, w, e, h, k], ["always"]);
+    let s18 = statement!(step_18_holds_with_the_factor_gamma, [z, d, gamma, beta], ["always"])
+        .about(&["(18)"]);
+    let s19 = statement!(step_19_holds_with_its_constants, [a, s, r, w, e, h, k], ["always"])
+        .about(&["(19)"]);
     let s20 = statement!(
         step_20_is_the_sum_of_17_18_and_19,
         [t, z, first, second, s, e, h, c, beta],
         ["always"]
-    );
+    )
+    .about(&["(20)"]);
     let facts = statement!(
         three_facts_give_the_hypothesis_of_theorem_3_4,
         [e, h, z, s, big, k, c, d, q, r, t],
         ["always"]
-    );
+    )
+    .about(&["Theorem 3.4"]);
     let fourteen =
         statement!(estimate_14_holds, [alpha, big, n, m, b, c, l, i, j, p, q, r], ["always"])
+            .about(&["(14)"])
             .with_hints(|v| vec![v[0] * v[2] - v[1] * v[3]]);
     let last = statement!(
         the_last_estimate_follows_from_15_16_and_20,
         [alpha, big, gamma0, n, m, z, s, d, i, t, b1, b2],
         ["always"]
-    );
+    )
+    .about(&["(20)"]);
     let end = statement!(
         the_last_estimate_bounds_both_errors,
         [alpha, big, gamma0, n, z, right],
         ["always"]
-    );
+    )
+    .about(&["(20)"]);
     let all = [identity, z, split, raw, young, theorem, corollary, s14, s15, s16, s17, s18];
     let mut checks: Vec<_> = all.into_iter().map(proved).collect();
     checks.extend([facts, fourteen, s19, s20, last, end].map(proved));
@@ -262,7 +277,7 @@ pub fn claim() -> Claim {
         exact!("every_step_has_one_dimension" => dimensions()),
         exact!("control_17_and_18_as_printed_have_two_dimensions" => printed_dimensions()),
         exact!("control_17_and_18_as_printed_at_exact_points" => errata_points()),
-        doubles!("the_bound_holds_for_the_errors_of_the_solver" => rates::both_sides(1.0)),
+        doubles!("the_bound_holds_for_the_errors_of_the_solver" => rates::both_sides(1.0)).about(&["Theorem 3.4"]),
         doubles!("control_errors_a_hundred_times_as_large" => noticed(rates::both_sides(100.0))),
         refuted(statement!(control_step_17_as_printed, [gamma, u, su, uh, sh, sv], fails "t + gamma * z * z <= factor * z * (su - sv) + gamma * (su - sh) * (sv - sh)")),
         refuted(statement!(control_step_18_as_printed, [z, d, gamma, beta], fails "factor * z * d <= gamma * z * z / (two * beta) + beta * gamma * d * d / two")),
@@ -278,18 +293,6 @@ pub fn claim() -> Claim {
     ]);
     Claim {
         id: "11",
-        items: &[
-            "Theorem 3.4",
-            "(13)",
-            "(14)",
-            "(15)",
-            "(16)",
-            "(17)",
-            "(18)",
-            "(19)",
-            "(20)",
-            "Corollary 3.6",
-        ],
         title: "The abstract error estimate, with its constant",
         paper: "The solution u^h satisfies |u - u^h|_1 + |gamma^1/2 (sigma_n(u) + [P(u^h)]+/gamma)| <= C inf over v^h of (|u - v^h|_1 + |gamma^-1/2 (u_n - v_n^h)| + |gamma^1/2 sigma_n(u - v^h)|), gamma0 sufficiently small.",
         statement: "With kappa < 1 and delta = 1 - kappa: |u - u^h|_a^2 + |z|_g^2 / delta <= (2/delta) [(1/delta + kappa + 1/2) |eta|_a^2 + kappa (1/delta + 1/2) |sigma_n(eta)|_g^2 + 1/2 |gamma^-1/2 P0(eta)|^2]. The identity for a(e, w), the pointwise inequality for z, Young's steps and the combination are proved one by one; so are (14) whole, (15), (16), (17) and (18) with the missing factor gamma, (19) with constants, (20), and the last estimate of the proof with what it says for beta_1 = beta_2 = 2. The steps are linked: what the raw facts leave is, by one function, the hypothesis of the three facts' combination, and what that concludes is the hypothesis of the theorem. Run on numbers with dimensions, every sum and comparison in these steps is one of equal dimensions; in (17) and (18) as printed it is not.",
