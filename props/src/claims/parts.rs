@@ -474,7 +474,7 @@ pub fn claim() -> Claim {
             "material::Material::stress",
             "material::Material::traction_of_shape",
             "fem::obstacle::Obstacle::closest",
-            "fem::smooth::SmoothBoundary::along",
+            "fem::boundary_normals::SmoothBoundary::along",
         ],
         preconditions: "mu > 0 and lambda + mu > 0 with lambda as it acts in the plane. n~ turns by no more than a right angle along an edge: by less than 40 degrees where the line is smooth, by definition.",
         limits: "Peaks and orders of recovered pressures are measured (tests/suite/peaks.rs, parts.rs, recovered.rs), not proved.",
