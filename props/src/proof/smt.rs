@@ -9,7 +9,7 @@ use crate::statement::Statement;
 
 /// The facts of `path` as a problem in nonlinear real arithmetic. `names` are those of the unknowns; inverses follow as
 /// `inverse_0`, ...
-fn problem(path: &Path, names: &[&str], head: &str) -> String {
+pub(super) fn problem(path: &Path, names: &[&str], head: &str) -> String {
     let mut all: Vec<String> = names.iter().map(|n| (*n).to_owned()).collect();
     all.extend((names.len()..path.variables).map(|i| format!("inverse_{}", i - names.len())));
     let mut text = format!("{head}(set-logic QF_NRA)\n");
