@@ -52,7 +52,7 @@ mod command {
 
     use crate::arguments::{Arguments, CaseArguments, Engine, Mesh, Task};
     use crate::progress::Phases;
-    use crate::{engine, progress, signals};
+    use crate::{engine, signals};
 
     /// The case is wrong.
     const WRONG: u8 = 2;
@@ -414,11 +414,13 @@ mod command {
         let (file, text) = read_text(file)?;
         spare(&folder, &[sweep::FILE], std::slice::from_ref(&file))
             .map_err(|e| failure(WRONG)(&e))?;
-        let count = progress::Count::start(runs, "runs", quiet);
+        let phases = Phases::start(quiet);
+        let enter = |done| phases.enter(format!("{done} of {runs} runs"));
+        enter(0);
         // A sweep that is stopped leaves the table of what it has solved.
         let mut written = Instant::now();
         let done = |sweep: &Sweep| {
-            count.one_more();
+            enter(sweep.runs.len());
             let some = sweep.runs.iter().any(|run| run.outcome.is_ok());
             if some && !sweep.to_come.is_empty() && written.elapsed() >= BETWEEN_TABLES {
                 sweep.write(&folder)?;
@@ -427,7 +429,7 @@ mod command {
             Ok(())
         };
         let sweep = sweep::run(&file, &text, axes, &folder, files, done).map_err(no_sweep)?;
-        drop(count);
+        drop(phases);
         let code = |outcome: &sweep::Outcome| match outcome {
             Ok(results) => results.falls_short().then_some(SHORT),
             Err(error) => Some(code(error)),
@@ -477,19 +479,25 @@ mod command {
         let degrees = or_none(wanted.degree.iter().map(degree).collect());
         let meshes = or_none(wanted.mesh.iter().map(mesh).collect());
         let count = degrees.len() * meshes.len() * wanted.levels;
-        let progress = progress::Count::start(count, "meshes", quiet);
+        let phases = Phases::start(quiet);
+        let mut done = 0;
+        let mut enter = |more| {
+            done += more;
+            phases.enter(format!("{done} of {count} meshes"));
+        };
+        enter(0);
         let mut studies = Vec::new();
         for degree in &degrees {
             for meshes in &meshes {
                 let study = convergence::ladder(&case, *degree, *meshes)
                     .and_then(|(ladder, meshes)| {
-                        convergence::climb(ladder, meshes, wanted.levels, || progress.one_more())
+                        convergence::climb(ladder, meshes, wanted.levels, || enter(1))
                     })
                     .map_err(|e| no_study(&case.file, &e))?;
                 studies.push(study);
             }
         }
-        drop(progress);
+        drop(phases);
         let files =
             convergence::write(&folder, &case.title, &studies).map_err(|e| failure(FAILED)(&e))?;
         Ok(summary::studied(&case, &studies, &files))

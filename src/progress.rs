@@ -1,9 +1,7 @@
 //! Progress on standard error, if that is a terminal: one line, drawn again and again.
 
-use std::cell::Cell;
 use std::io::{IsTerminal, Write, stderr};
-use std::sync::mpsc::{self, RecvTimeoutError, Sender};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
@@ -21,46 +19,28 @@ const SPINNER: [char; 10] = ['⠋', '⠙', '⠹', '⠸', '⠼', '⠴', '⠦', '�
 /// To the start of the line, which is emptied.
 const CLEAR: &str = "\r\x1b[2K";
 
-/// The phase of work that has no known length. It is shown once the work takes longer than a second, and removed when this
-/// is dropped.
-pub struct Phases {
-    phase: Arc<Mutex<String>>,
-    watch: Option<(Sender<()>, JoinHandle<()>)>,
-}
+/// The line: it is shown once the work takes longer than a second, and removed when this is dropped.
+pub struct Phases(Option<(Sender<String>, JoinHandle<()>)>);
 
 impl Phases {
     /// Shown unless `quiet`.
     pub fn start(quiet: bool) -> Phases {
-        let phase = Arc::new(Mutex::new(String::new()));
-        let start = || {
-            let (stop, stopped) = mpsc::channel();
-            let shown = Arc::clone(&phase);
-            let draw = move || {
-                let (begin, colours) = (Instant::now(), colours());
-                let mut wait = PATIENCE;
-                let mut frames = SPINNER.iter().cycle();
-                while stopped.recv_timeout(wait) == Err(RecvTimeoutError::Timeout) {
-                    let spinner = frames.next().unwrap_or(&' ');
-                    let [before, after] = if colours { ["\x1b[36m", "\x1b[0m"] } else { ["", ""] };
-                    let phase = shown.lock().unwrap_or_else(PoisonError::into_inner).clone();
-                    let seconds = begin.elapsed().as_secs();
-                    show(&format!("{CLEAR}  {before}{spinner}{after} {phase}, {seconds} s"));
-                    wait = TICK;
-                }
-                if wait == TICK {
-                    show(CLEAR);
-                }
-            };
-            // Where there is no thread to be had, nothing is shown.
-            Some((stop, thread::Builder::new().spawn(draw).ok()?))
-        };
-        let watch = if !quiet && is_shown() { start() } else { None };
-        Phases { phase, watch }
+        let term = std::env::var_os("TERM").unwrap_or_default();
+        if quiet || !stderr().is_terminal() || term.is_empty() || term == "dumb" {
+            return Phases(None);
+        }
+        let (phases, entered) = mpsc::channel();
+        // Where there is no thread to be had, nothing is shown.
+        let thread = thread::Builder::new().spawn(move || draw(&entered)).ok();
+        Phases(thread.map(|thread| (phases, thread)))
     }
 
     /// The phase that begins, such as "certifying".
     pub fn enter(&self, phase: impl Into<String>) {
-        *self.phase.lock().unwrap_or_else(PoisonError::into_inner) = phase.into();
+        if let Some((phases, _)) = &self.0 {
+            // A thread that is gone shows nothing.
+            let _ = phases.send(phase.into());
+        }
     }
 
     /// A phase inside a solve.
@@ -79,38 +59,33 @@ impl Phases {
 
 impl Drop for Phases {
     fn drop(&mut self) {
-        if let Some((stop, thread)) = self.watch.take() {
-            drop(stop);
+        if let Some((phases, thread)) = self.0.take() {
+            drop(phases);
             // It cannot have panicked; if it did, there is nothing to show, which is what is wanted here.
             let _ = thread.join();
         }
     }
 }
 
-/// Progress in things, such as "meshes", of which there are `count`.
-pub struct Count {
-    phases: Phases,
-    done: Cell<usize>,
-    count: usize,
-    things: &'static str,
-}
-
-impl Count {
-    /// Shown unless `quiet`.
-    pub fn start(count: usize, things: &'static str, quiet: bool) -> Count {
-        let counted = Count { phases: Phases::start(quiet), done: Cell::new(0), count, things };
-        counted.say();
-        counted
+/// Draws the phase that was entered last until no more can come.
+fn draw(entered: &Receiver<String>) {
+    let begin = Instant::now();
+    let mut phase = String::new();
+    let mut frames = SPINNER.iter().cycle();
+    let (mut at, mut shown) = (begin + PATIENCE, false);
+    loop {
+        match entered.recv_timeout(at.saturating_duration_since(Instant::now())) {
+            Ok(next) => phase = next,
+            Err(RecvTimeoutError::Timeout) => {
+                let spinner = frames.next().unwrap_or(&' ');
+                show(&format!("{CLEAR}  {spinner} {phase}, {} s", begin.elapsed().as_secs()));
+                (at, shown) = (Instant::now() + TICK, true);
+            }
+            Err(RecvTimeoutError::Disconnected) => break,
+        }
     }
-
-    /// One more is done.
-    pub fn one_more(&self) {
-        self.done.set(self.done.get() + 1);
-        self.say();
-    }
-
-    fn say(&self) {
-        self.phases.enter(format!("{} of {} {}", self.done.get(), self.count, self.things));
+    if shown {
+        show(CLEAR);
     }
 }
 
@@ -118,13 +93,4 @@ impl Count {
 fn show(line: &str) {
     let mut stderr = stderr().lock();
     let _ = stderr.write_all(line.as_bytes()).and_then(|()| stderr.flush());
-}
-
-fn is_shown() -> bool {
-    stderr().is_terminal()
-        && std::env::var_os("TERM").is_some_and(|term| !term.is_empty() && term != "dumb")
-}
-
-fn colours() -> bool {
-    std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
 }

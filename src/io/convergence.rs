@@ -7,8 +7,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use super::case::Case;
-use super::data::DataError;
-use super::files::{Output, WriteError};
+use super::files::{Output, OutputError};
 use super::plot::{COLOURS, Figure, Panel, Style, figure};
 use crate::fem::{Errors, Perturbation, a_priori};
 use crate::solve::ladder::{fitted_slope, rates};
@@ -21,6 +20,15 @@ pub enum Meshes {
     Structured,
     /// Moved as the case says, or by up to 0.2 cells.
     Perturbed,
+}
+
+impl Meshes {
+    fn name(self) -> &'static str {
+        match self {
+            Meshes::Structured => "structured",
+            Meshes::Perturbed => "perturbed",
+        }
+    }
 }
 
 /// The distance by which vertices are moved where the case doesn't say.
@@ -133,11 +141,7 @@ pub const FITTED: usize = 4;
 impl Study {
     /// Such as "P2, structured".
     pub fn name(&self) -> String {
-        let meshes = match self.meshes {
-            Meshes::Structured => "structured",
-            Meshes::Perturbed => "perturbed",
-        };
-        format!("P{}, {meshes}", self.degree.number())
+        format!("P{}, {}", self.degree.number(), self.meshes.name())
     }
 
     /// The mesh sizes.
@@ -227,10 +231,7 @@ pub fn csv(studies: &[Study]) -> String {
     }
     text.push_str(",newton_steps,gamma0,kappa,proved\n");
     for study in studies {
-        let meshes = match study.meshes {
-            Meshes::Structured => "structured",
-            Meshes::Perturbed => "perturbed",
-        };
+        let meshes = study.meshes.name();
         for level in &study.levels {
             let degree = study.degree.number();
             let _ = write!(text, "{degree},{meshes},{:?},{}", level.h, level.unknowns);
@@ -288,30 +289,14 @@ fn panel(title: &str, of: fn(&Errors) -> f64, studies: &[Study]) -> Panel {
     Panel { title: title.to_owned(), lines, slopes }
 }
 
-/// Why the files of a study could not be written.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum StudyFileError {
-    /// A file or folder.
-    #[error(transparent)]
-    Write(#[from] WriteError),
-    /// The data of the figure.
-    #[error("convergence.svg cannot be made: {0}")]
-    Data(#[from] DataError),
-}
-
 /// Writes convergence.csv and convergence.svg into `folder` and returns their paths.
 ///
 /// # Errors
 /// A folder or file that can't be written, a number that is not finite.
-pub fn write(
-    folder: &Path,
-    title: &str,
-    studies: &[Study],
-) -> Result<Vec<PathBuf>, StudyFileError> {
+pub fn write(folder: &Path, title: &str, studies: &[Study]) -> Result<Vec<PathBuf>, OutputError> {
     let mut output = Output::new(folder)?;
     output.stage(FILES[0], csv(studies).as_bytes())?;
-    output.stage(FILES[1], figure(&plot(title, studies))?.as_bytes())?;
+    output.stage_made(FILES[1], figure(&plot(title, studies)).map(String::into_bytes))?;
     Ok(output.publish()?)
 }
 

@@ -6,48 +6,27 @@ use std::fmt::Write;
 
 use super::data::{DataError, check_finite};
 
-/// One node of one contact edge. A node between two edges has a row for each: sigma_n jumps there.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactRow<'a> {
-    /// Arc length from the start of the boundary.
-    pub arc: f64,
-    /// The place in the undeformed body.
-    pub x: f64,
-    /// The place in the undeformed body.
-    pub y: f64,
-    /// u . n~
-    pub u_n: f64,
-    /// The gap g.
-    pub gap: f64,
-    /// n~ . sigma(u) n, negative in compression.
-    pub sigma_n: f64,
-    /// The contact pressure lambda^h, never positive.
-    pub lambda: f64,
-    /// The recovered pressure, never negative.
-    pub pressure: f64,
-    /// The name of the boundary.
-    pub boundary: &'a str,
-}
+/// The columns of numbers: arc length from the start of the boundary, place in the undeformed body, u . n~, gap g, n~ . sigma(u) n
+/// (negative in compression), contact pressure lambda^h (never positive), recovered pressure (never negative).
+const NUMBERS: [&str; 8] = ["arc", "x", "y", "u_n", "gap", "sigma_n", "lambda", "pressure"];
+
+/// One node of one contact edge: the name of its boundary and the numbers of the columns. A node between two edges
+/// has a row for each: sigma_n jumps there.
+pub type ContactRow<'a> = (&'a str, [f64; 8]);
 
 /// The text of the file: a line with the names, then a line for each row.
 ///
 /// # Errors
 /// [`DataError::NotFinite`], with the number of the row, counted from 0.
 pub fn contact_csv(rows: &[ContactRow]) -> Result<String, DataError> {
-    let mut text = String::from("arc,x,y,u_n,gap,sigma_n,lambda,pressure,boundary\n");
-    let numbers: Vec<[f64; 8]> = rows
-        .iter()
-        .map(|&ContactRow { arc, x, y, u_n, gap, sigma_n, lambda, pressure, .. }| {
-            [arc, x, y, u_n, gap, sigma_n, lambda, pressure]
-        })
-        .collect();
-    check_finite("row", numbers.iter().map(<[f64; 8]>::as_slice))?;
-    for (row, numbers) in rows.iter().zip(numbers) {
+    check_finite("row", rows.iter().map(|(_, numbers)| numbers.as_slice()))?;
+    let mut text = format!("{},boundary\n", NUMBERS.join(","));
+    for (boundary, numbers) in rows {
         for number in numbers {
             // Writing to a string cannot fail. The debug form is the one that uses exponents where they are shorter.
             let _ = write!(text, "{number:?},");
         }
-        text.push_str(&cell(row.boundary));
+        text.push_str(&cell(boundary));
         text.push('\n');
     }
     Ok(text)
@@ -70,23 +49,13 @@ pub(super) fn cell(text: &str) -> String {
 mod tests {
     use super::*;
 
-    const ROW: ContactRow<'static> = ContactRow {
-        arc: 0.1,
-        x: 1.0 / 3.0,
-        y: -0.0,
-        u_n: -1e-17,
-        gap: 0.0,
-        sigma_n: 5e-324,
-        lambda: -1.5e300,
-        pressure: 2.0,
-        boundary: "floor",
-    };
+    const ROW: [f64; 8] = [0.1, 1.0 / 3.0, -0.0, -1e-17, 0.0, 5e-324, -1.5e300, 2.0];
 
     #[test]
     fn numbers_are_the_shortest_that_read_back() {
-        let text =
-            contact_csv(&[ROW, ContactRow { arc: 2.0, boundary: "the \"floor\", left", ..ROW }])
-                .unwrap();
+        let mut second = ROW;
+        second[0] = 2.0;
+        let text = contact_csv(&[("floor", ROW), ("the \"floor\", left", second)]).unwrap();
         assert_eq!(
             text,
             "arc,x,y,u_n,gap,sigma_n,lambda,pressure,boundary\n\
@@ -112,7 +81,9 @@ mod tests {
 
     #[test]
     fn a_number_that_is_not_finite_is_refused_by_row() {
-        let error = contact_csv(&[ROW, ContactRow { gap: f64::NAN, ..ROW }]).unwrap_err();
+        let mut second = ROW;
+        second[4] = f64::NAN;
+        let error = contact_csv(&[("floor", ROW), ("floor", second)]).unwrap_err();
         assert_eq!(error.to_string(), "row[1] is NaN or infinite; expected a finite number");
     }
 }

@@ -2,33 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use thiserror::Error;
-
 use super::csv::{ContactRow, contact_csv};
 use super::data::DataError;
-use super::files::{Output, WriteError};
+use super::files::{Output, OutputError};
 use super::vtu::{CellKind, Field, Grid, Values, vtu};
 use crate::fem::{Degree, Mesh, Problem};
 use crate::kernel::Stress;
-use crate::solve::solution::ContactValues;
+use crate::solve::solution::{ContactEdgeValues, ContactValues};
 use crate::solve::{Solution, stresses};
-
-/// Why the fields of a solution could not be written.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum FieldsError {
-    /// A file or folder.
-    #[error(transparent)]
-    Write(#[from] WriteError),
-    /// Data that cannot be written.
-    #[error("{file} cannot be made: {error}")]
-    Data {
-        /// The name of the file.
-        file: &'static str,
-        /// The error in its data.
-        error: DataError,
-    },
-}
 
 impl Solution {
     /// Writes solution.vtu, contact.vtu and contact.csv into `folder`, of `problem`, which is the one that this solves;
@@ -36,11 +17,10 @@ impl Solution {
     ///
     /// # Errors
     /// A folder or file that can't be written, a number that is not finite.
-    pub fn write(&self, problem: &Problem, folder: &Path) -> Result<Vec<PathBuf>, FieldsError> {
+    pub fn write(&self, problem: &Problem, folder: &Path) -> Result<Vec<PathBuf>, OutputError> {
         let mut output = Output::new(folder)?;
         for (file, bytes) in fields(self, problem, None) {
-            let bytes = bytes.map_err(|error| FieldsError::Data { file, error })?;
-            output.stage(file, &bytes)?;
+            output.stage_made(file, bytes)?;
         }
         Ok(output.publish()?)
     }
@@ -149,15 +129,11 @@ fn contact_vtu(s: &Solution) -> Result<Vec<u8>, DataError> {
     })
 }
 
-fn contact_rows(s: &Solution) -> Vec<ContactRow<'_>> {
-    let mut rows = Vec::new();
-    for edge in &s.contact {
-        for p in &edge.points {
-            let [x, y] = s.nodes[p.node];
-            let ContactValues { arc, u_n, gap, sigma_n, lambda, pressure, .. } = *p;
-            let boundary = &*edge.boundary;
-            rows.push(ContactRow { arc, x, y, u_n, gap, sigma_n, lambda, pressure, boundary });
-        }
-    }
-    rows
+fn contact_rows<'a>(s: &'a Solution) -> Vec<ContactRow<'a>> {
+    let points = s.contact.iter().flat_map(|edge| edge.points.iter().map(move |p| (edge, p)));
+    let row = |(edge, p): (&'a ContactEdgeValues, &ContactValues)| {
+        let [x, y] = s.nodes[p.node];
+        (&*edge.boundary, [p.arc, x, y, p.u_n, p.gap, p.sigma_n, p.lambda, p.pressure])
+    };
+    points.map(row).collect()
 }

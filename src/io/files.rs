@@ -1,42 +1,34 @@
-//! The files of a run, written whole or not at all.
+//! The files of a run, written together.
 //!
-//! A set of files is first written into a folder of its own with a random name, `.signorini-XXXX.tmp`, which nobody else
-//! can have planted: it is made, never opened, and so is each file in it. Only when all files are there, and on the disk,
-//! do they get their place:
+//! They are first written into a temporary folder of their own inside the output folder, `.signorini-XXXX.tmp` with a random
+//! name, and flushed to disk. Then, under a lock of the output folder, the last file of an earlier set (result.json) is removed,
+//! each new file is renamed into its place, and the new result.json comes last. So the files beside a result.json belong to
+//! it, whenever a run is stopped and however many run at a time; where there is none, a run is under way or was stopped.
 //!
-//! - A folder that did not exist before appears by one rename.
-//! - In a folder that was there, the last file of the set (result.json) says that the set is whole. It goes first and comes
-//!   last: under a lock, that file of an earlier run is put aside, then the others, then the new ones are renamed into
-//!   place, it last. Should a rename fail, all goes back. So files that lie beside a result.json belong to it, whenever a
-//!   run is stopped and however many run at a time.
-//!
-//! A run that fails leaves behind neither files nor new folders. Not so one that is killed outright, whose temporary folder
-//! stays: each is locked by its run, and the next run sweeps away those that are not.
+//! A run that fails leaves neither files nor new folders. One that is killed outright may leave its temporary folder.
 
-mod staging;
-
+use std::collections::hash_map::RandomState;
 use std::fs::{self, File, OpenOptions};
+use std::hash::{BuildHasher, Hasher};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use thiserror::Error;
 
+use super::data::DataError;
+use crate::fem;
+use crate::memory::OutOfMemory;
 use crate::quote;
-pub use staging::abandon;
-use staging::{ATTEMPTS, Staging, live, sweep};
 
 /// The files of one run, on their way into one folder.
 #[derive(Debug)]
 pub struct Output {
     folder: PathBuf,
-    staging: Staging,
+    unfinished: Unfinished,
     names: Vec<String>,
     /// Files of other kinds of runs, which a reader could take for files of this one.
     stale: Vec<&'static str>,
-    /// The folders that did not exist before, innermost first.
-    made: Vec<PathBuf>,
-    /// Nothing but the set is in the temporary folder, which can thus become the folder itself.
-    whole: bool,
 }
 
 /// Why a file or folder could not be written.
@@ -53,6 +45,29 @@ pub enum WriteError {
         quote::path(path)
     )]
     Source { path: PathBuf },
+}
+
+/// Why the files of a run could not be written.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum OutputError {
+    /// A file or folder.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// Data that cannot be written.
+    #[error("{file} cannot be made: {error}")]
+    Data {
+        /// The name of the file.
+        file: &'static str,
+        /// The error in its data.
+        error: DataError,
+    },
+    /// The memory for what goes into the files.
+    #[error("the files cannot be made: {0}")]
+    OutOfMemory(#[from] OutOfMemory),
+    /// A solution and a case that don't belong together.
+    #[error(transparent)]
+    Problem(#[from] fem::DataError),
 }
 
 /// The reason in words; the number that the system gives it helps nobody.
@@ -91,42 +106,28 @@ pub fn spare(folder: &Path, names: &[&str], sources: &[PathBuf]) -> Result<(), W
 }
 
 impl Output {
-    /// Makes the folder, if there is none yet, and sweeps away what killed runs have left.
+    /// Makes the folder, if there is none yet, and the temporary one in it.
     ///
     /// # Errors
     /// [`WriteError::Folder`].
     pub fn new(folder: impl Into<PathBuf>) -> Result<Output, WriteError> {
         let folder = folder.into();
-        let wrong = |error| WriteError::Folder { path: folder.clone(), error };
-        let mut last = io::Error::from(io::ErrorKind::NotFound);
-        // Another run that stops may take its empty folder away just when it was found.
-        for _ in 0..ATTEMPTS {
-            let missing = |path: &&Path| !path.as_os_str().is_empty() && !path.exists();
-            let made: Vec<PathBuf> =
-                folder.ancestors().take_while(missing).map(Path::to_path_buf).collect();
-            let remove_made = || made.iter().for_each(|folder| drop(fs::remove_dir(folder)));
-            if let Err(error) = fs::create_dir_all(&folder) {
-                remove_made();
-                return Err(wrong(error));
+        let missing = |path: &&Path| !path.as_os_str().is_empty() && !path.exists();
+        let made = folder.ancestors().take_while(missing).map(Path::to_path_buf).collect();
+        let number = RandomState::new().build_hasher().finish();
+        let room = folder.join(format!(".signorini-{number:016x}.tmp"));
+        let unfinished = Unfinished { room, made };
+        let mut all = all_unfinished();
+        match fs::create_dir_all(&folder).and_then(|()| fs::create_dir(&unfinished.room)) {
+            Ok(()) => {
+                all.push(unfinished.clone());
+                Ok(Output { folder, unfinished, names: Vec::new(), stale: Vec::new() })
             }
-            let whole = made.first() == Some(&folder);
-            let home = if whole { parent(&folder) } else { folder.as_path() };
-            // A killed run may have left its own beside a folder that was yet to appear.
-            sweep(home);
-            sweep(parent(&folder));
-            match Staging::new(home, &made) {
-                Ok(staging) => {
-                    let (names, stale) = (Vec::new(), Vec::new());
-                    return Ok(Output { folder, staging, names, stale, made, whole });
-                }
-                Err(error) if error.kind() == io::ErrorKind::NotFound => last = error,
-                Err(error) => {
-                    remove_made();
-                    return Err(wrong(error));
-                }
+            Err(error) => {
+                unfinished.remove();
+                Err(WriteError::Folder { path: folder, error })
             }
         }
-        Err(wrong(last))
     }
 
     /// Writes the file `name` to the disk, but not yet to its place. The last file of a set is the one that says that the
@@ -137,7 +138,7 @@ impl Output {
     pub fn stage(&mut self, name: &str, bytes: &[u8]) -> Result<(), WriteError> {
         let write = || {
             self.place_is_free(name)?;
-            let path = self.staging.path.join(name);
+            let path = self.room().join(name);
             let mut file = OpenOptions::new().write(true).create_new(true).open(path)?;
             file.write_all(bytes)?;
             file.sync_all()
@@ -147,20 +148,32 @@ impl Output {
         Ok(())
     }
 
-    /// The temporary folder, for another program to write to.
-    pub fn room(&self) -> &Path {
-        &self.staging.path
+    /// Stages a file whose bytes may not exist.
+    ///
+    /// # Errors
+    /// [`OutputError::Data`], and those of [`Output::stage`].
+    pub fn stage_made(
+        &mut self,
+        file: &'static str,
+        bytes: Result<Vec<u8>, DataError>,
+    ) -> Result<(), OutputError> {
+        let bytes = bytes.map_err(|error| OutputError::Data { file, error })?;
+        Ok(self.stage(file, &bytes)?)
     }
 
-    /// As [`Output::stage`], of a file that another program has written into [`Output::room`].
+    /// The temporary folder, for another program to write to.
+    pub fn room(&self) -> &Path {
+        &self.unfinished.room
+    }
+
+    /// Stages a file that another program has written into [`Output::room`].
     ///
     /// # Errors
     /// [`WriteError::File`], with the place that the file was to have; also if there is no such file.
     pub fn adopt(&mut self, name: &str) -> Result<(), WriteError> {
-        self.whole = false;
         let sync = || {
             self.place_is_free(name)?;
-            let path = self.staging.path.join(name);
+            let path = self.room().join(name);
             if !fs::symlink_metadata(&path)?.is_file() {
                 return Err(io::Error::other("not a regular file"));
             }
@@ -171,7 +184,7 @@ impl Output {
         Ok(())
     }
 
-    /// Files of these names, which this run does not write, go when its own come.
+    /// Removes files of these names, which this run does not write, when its own come.
     pub fn replaces(&mut self, names: &[&'static str]) {
         self.stale.extend(names);
     }
@@ -192,97 +205,89 @@ impl Output {
     /// staging.
     ///
     /// # Errors
-    /// [`WriteError::File`], should the system refuse to rename; the folder is then as it was.
+    /// [`WriteError::File`], should the system refuse to rename; then the last file of the set is not there.
     pub fn publish(mut self) -> Result<Vec<PathBuf>, WriteError> {
-        let paths = self.names.iter().map(|name| self.folder.join(name)).collect();
-        if !(self.whole && self.appear()) {
-            // A system without locks takes its chance.
-            let lock = File::open(&self.folder).and_then(|folder| folder.lock().map(|()| folder));
-            // From here on a signal waits until the set is whole.
-            let live = live();
-            let replaced = self.replace();
-            drop((live, lock));
-            replaced?;
-        }
-        self.made.clear();
-        Ok(paths)
+        // A system without locks takes its chance.
+        let lock = File::open(&self.folder).and_then(|folder| folder.lock().map(|()| folder));
+        // From here on a signal waits until the set is whole.
+        let all = all_unfinished();
+        let renamed = self.rename_all();
+        drop((all, lock));
+        renamed?;
+        self.unfinished.made.clear();
+        Ok(self.names.iter().map(|name| self.folder.join(name)).collect())
     }
 
-    /// Renames the temporary folder to the folder, which must be empty for that.
-    fn appear(&mut self) -> bool {
-        let mut live = live();
-        let here = &self.staging.path;
-        let done = sync_folder(here).is_ok() && fs::rename(here, &self.folder).is_ok();
-        if done {
-            // There is nothing left to report it to, should the system not be able to.
-            let _ = sync_folder(parent(&self.folder));
-            live.retain(|leftover| leftover.staging != self.staging.path);
-        }
-        done
-    }
-
-    /// Puts the files of an earlier run aside and the new ones in their places, or leaves all as it was.
-    fn replace(&self) -> Result<(), WriteError> {
-        let aside = self.staging.path.join(ASIDE);
-        fs::create_dir(&aside).map_err(|error| self.wrong(ASIDE, error))?;
-        let Some((marker, others)) = self.names.split_last() else { return Ok(()) };
-        let mut moved: Vec<(PathBuf, PathBuf)> = Vec::new();
-        let mut step = |name: &str, from: PathBuf, to: PathBuf| {
-            fs::rename(&from, &to).map_err(|error| self.wrong(name, error))?;
-            moved.push((from, to));
-            Ok(())
-        };
+    fn rename_all(&self) -> Result<(), WriteError> {
+        let Some((last, others)) = self.names.split_last() else { return Ok(()) };
         let place = |name: &str| self.folder.join(name);
-        let sync = || sync_folder(&self.folder).map_err(|error| self.wrong(marker, error));
-        let mut all = || {
-            let earlier = std::iter::once(marker).chain(others).map(String::as_str);
-            for (i, name) in earlier.chain(self.stale.iter().copied()).enumerate() {
-                if fs::symlink_metadata(place(name)).is_ok_and(|found| !found.is_dir()) {
-                    step(name, place(name), aside.join(name))?;
-                }
-                if i == 0 {
-                    sync()?;
-                }
+        let sync = || sync_folder(&self.folder).map_err(|error| self.wrong(last, error));
+        let remove = |name: &str| match fs::symlink_metadata(place(name)) {
+            Ok(found) if !found.is_dir() => {
+                fs::remove_file(place(name)).map_err(|error| self.wrong(name, error))
             }
-            for name in others {
-                step(name, self.staging.path.join(name), place(name))?;
-            }
-            sync()?;
-            step(marker, self.staging.path.join(marker), place(marker))?;
-            sync()
+            _ => Ok(()),
         };
-        let result = all();
-        if result.is_err() {
-            // In reverse, so that the earlier marker comes last. What cannot go back stays aside.
-            for (from, to) in moved.iter().rev() {
-                let _ = fs::rename(to, from);
-            }
-        }
-        result
+        let rename = |name: &String| {
+            fs::rename(self.room().join(name), place(name)).map_err(|error| self.wrong(name, error))
+        };
+        remove(last)?;
+        sync()?;
+        self.stale.iter().try_for_each(|name| remove(name))?;
+        others.iter().try_for_each(rename)?;
+        sync()?;
+        rename(last)?;
+        sync()
     }
 }
 
-/// Tidies up after a run that did not come to [`Output::publish`]. What cannot be removed stays: the failure that led
-/// here is the one to report.
+/// Removes the temporary folder, and the new folders of a run that did not come to the end of [`Output::publish`].
 impl Drop for Output {
     fn drop(&mut self) {
-        let mut live = live();
-        let _ = fs::remove_dir_all(&self.staging.path);
+        let mut all = all_unfinished();
+        self.unfinished.remove();
+        all.retain(|other| other.room != self.unfinished.room);
+    }
+}
+
+/// What a run would leave behind if it ended now.
+#[derive(Clone, Debug)]
+struct Unfinished {
+    room: PathBuf,
+    /// The folders that did not exist before, innermost first.
+    made: Vec<PathBuf>,
+}
+
+/// The run may be adding a file while its folder is removed.
+const ATTEMPTS: usize = 64;
+
+impl Unfinished {
+    /// Removes it. What cannot be removed stays: the failure that led here is the one to report.
+    fn remove(&self) {
+        for _ in 0..ATTEMPTS {
+            if fs::remove_dir_all(&self.room).is_ok() || !self.room.exists() {
+                break;
+            }
+        }
         for folder in &self.made {
             let _ = fs::remove_dir(folder);
         }
-        live.retain(|leftover| leftover.staging != self.staging.path);
     }
 }
 
-/// Where, in the temporary folder, the files of an earlier run wait until the new ones are in place.
-const ASIDE: &str = "earlier";
+static UNFINISHED: Mutex<Vec<Unfinished>> = Mutex::new(Vec::new());
 
-fn parent(folder: &Path) -> &Path {
-    match folder.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    }
+/// Locks the list of what the runs of this process have not finished; none begins or finishes as long as it is held.
+fn all_unfinished() -> MutexGuard<'static, Vec<Unfinished>> {
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes what the runs of this process have not finished, for a process that is told to end: afterwards it can begin or
+/// finish no other, but waits. A set on its way to its place gets there first.
+pub fn abandon() {
+    let all = all_unfinished();
+    all.iter().for_each(Unfinished::remove);
+    std::mem::forget(all);
 }
 
 /// Brings the names in a folder to the disk, where folders can be opened for that.
@@ -412,22 +417,18 @@ mod tests {
     const SET: [&str; 3] = ["a.txt", "b.txt", "result.json"];
 
     #[test]
-    fn a_set_that_cannot_be_renamed_leaves_the_earlier_one_whole() {
-        let scratch = Scratch::new("rollback");
+    fn a_set_that_cannot_be_renamed_has_no_result_json() {
+        let scratch = Scratch::new("refused");
         run(&scratch.0, "earlier").unwrap();
         let mut output = Output::new(&scratch.0).unwrap();
-        for name in ["c.txt", "b.txt", "a.txt", "result.json"] {
+        for name in ["c.txt", "result.json"] {
             output.stage(name, b"later").unwrap();
         }
-        output.replaces(&["a.txt"]);
         // Since it was staged, somebody has put a folder in its place.
         fs::create_dir_all(scratch.0.join("c.txt/full")).unwrap();
         let error = output.publish().unwrap_err().to_string();
         assert!(error.ends_with("c.txt: Is a directory"), "{error}");
-        assert_eq!(scratch.names(), ["a.txt", "b.txt", "c.txt", "result.json"]);
-        for name in SET {
-            assert_eq!(fs::read(scratch.0.join(name)).unwrap(), b"earlier", "{name}");
-        }
+        assert_eq!(scratch.names(), ["a.txt", "b.txt", "c.txt"]);
     }
 
     #[test]
@@ -472,22 +473,6 @@ mod tests {
             (scratch.names(), fs::read_dir(&folder).unwrap().count()),
             (vec!["case".to_owned()], 3)
         );
-    }
-
-    #[test]
-    fn what_killed_runs_left_is_swept_and_what_is_in_use_is_not() {
-        let scratch = Scratch::new("sweep");
-        let left = scratch.0.join(".signorini-0123456789abcdef.tmp");
-        fs::create_dir_all(left.join("earlier")).unwrap();
-        fs::write(left.join("a.txt"), b"half").unwrap();
-        let own = scratch.0.join(".signorini-mine.txt");
-        fs::write(&own, b"of somebody else").unwrap();
-        let first = Output::new(&scratch.0).unwrap();
-        assert!(!left.exists() && own.exists());
-        let second = Output::new(&scratch.0).unwrap();
-        assert!(first.room().is_dir() && second.room().is_dir() && first.room() != second.room());
-        drop((first, second));
-        assert_eq!(scratch.names(), [".signorini-mine.txt"]);
     }
 
     #[cfg(unix)]

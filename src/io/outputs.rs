@@ -4,13 +4,11 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use thiserror::Error;
-
 use super::case::Case;
 use super::certificate;
 use super::data::DataError;
 use super::fields::fields;
-use super::files::{Output, WriteError};
+use super::files::{Output, OutputError};
 use super::numbers::short;
 use super::picture::draw;
 use super::report;
@@ -21,8 +19,8 @@ use super::result::{
 use super::vtu::{CellKind, Field, Grid, Values, vtu};
 use crate::certify::{CertifyError, Continuous, certify_with};
 use crate::fem::contact_line::{self, Gamma};
-use crate::fem::{self, Degree, Space};
-use crate::memory::{self, OutOfMemory};
+use crate::fem::{self, Degree, Mesh, Space};
+use crate::memory;
 use crate::quote;
 use crate::solve::solution::ContactValues;
 use crate::solve::{Extreme, Solution, Times};
@@ -41,29 +39,6 @@ pub const FILES_OF_FENICSX: [&str; 3] = ["solution.xdmf", "solution.h5", "result
 /// Those of the first list that are not in the second: left from another kind of run.
 pub fn only_in(names: &[&'static str], others: &[&str]) -> Vec<&'static str> {
     names.iter().copied().filter(|name| !others.contains(name)).collect()
-}
-
-/// Why the files of a run could not be written.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum OutputError {
-    /// A file or folder.
-    #[error(transparent)]
-    Write(#[from] WriteError),
-    /// Data that cannot be written.
-    #[error("{file} cannot be made: {error}")]
-    Data {
-        /// The name of the file.
-        file: &'static str,
-        /// The error in its data.
-        error: DataError,
-    },
-    /// The memory for what goes into the files.
-    #[error("the files cannot be made: {0}")]
-    OutOfMemory(#[from] OutOfMemory),
-    /// A solution and a case that don't belong together.
-    #[error(transparent)]
-    Problem(#[from] fem::DataError),
 }
 
 /// The proved distance from the true solution, and how long the proof took.
@@ -144,26 +119,22 @@ pub fn write(
         output.replaces(&[PICTURE]);
         String::new()
     });
-    let mut stage = |file, bytes: Result<Vec<u8>, DataError>| -> Result<(), OutputError> {
-        let bytes = bytes.map_err(|error| OutputError::Data { file, error })?;
-        Ok(output.stage(file, &bytes)?)
-    };
     for (file, bytes) in fields(solution, &case.problem, indicators) {
-        stage(file, bytes)?;
+        output.stage_made(file, bytes)?;
     }
     if extra.report {
-        stage(report::FILE, Ok(report::html(case, &results, &picture).into_bytes()))?;
+        output.stage(report::FILE, report::html(case, &results, &picture).as_bytes())?;
     }
     if !picture.is_empty() {
-        stage(PICTURE, Ok(picture.into_bytes()))?;
+        output.stage(PICTURE, picture.as_bytes())?;
     }
     if let (Some(continuous), true) = (continuous, extra.certificate) {
         for (file, bytes) in certificate_files(&case.title, continuous) {
-            stage(file, bytes)?;
+            output.stage_made(file, bytes)?;
         }
     }
     results.seconds.write = start.elapsed().as_secs_f64();
-    stage("result.json", result_json(&results).map(String::into_bytes))?;
+    output.stage_made("result.json", result_json(&results).map(String::into_bytes))?;
     Ok((output.publish()?, results))
 }
 
@@ -181,21 +152,9 @@ pub fn write_certified(
     let mut output = Output::new(folder)?;
     let mesh = &case.problem.mesh;
     let space = Space::new(mesh, Degree::Two);
-    // The one of degree 1 has its values at the middles of edges, too, where the other is of degree 2.
     let nodes = field.len().max(certified.displacement.len());
-    let [field, admissible] = [field, &certified.displacement].map(|values| {
-        let mut all = values.to_vec();
-        all.resize(nodes, [0.0; 2]);
-        if values.len() < nodes {
-            for element in space.elements() {
-                for i in 0..3 {
-                    let [a, b] = [1, 2].map(|k| all[element[(i + k) % 3]]);
-                    all[element[3 + i]] = [0, 1].map(|c| (a[c] + b[c]) / 2.0);
-                }
-            }
-        }
-        all
-    });
+    let [field, admissible] =
+        [field, &certified.displacement].map(|values| at_nodes(values, nodes, &space));
     let quadratic = nodes > mesh.vertices().len();
     let grid = vtu(&Grid {
         kind: if quadratic { CellKind::QuadraticTriangle } else { CellKind::Triangle },
@@ -211,13 +170,26 @@ pub fn write_certified(
         ],
         cell_data: &[Field { name: "error_bound", values: Values::Scalars(&certified.indicators) }],
     });
-    let grid = grid.map_err(|error| OutputError::Data { file: CERTIFIED, error })?;
-    output.stage(CERTIFIED, &grid)?;
+    output.stage_made(CERTIFIED, grid)?;
     for (file, bytes) in certificate_files(&case.title, certified) {
-        let bytes = bytes.map_err(|error| OutputError::Data { file, error })?;
-        output.stage(file, &bytes)?;
+        output.stage_made(file, bytes)?;
     }
     Ok(output.publish()?)
+}
+
+/// The values at `nodes` nodes: those of degree 1 take the means of the ends at the middles of edges, where there are some.
+fn at_nodes(values: &[[f64; 2]], nodes: usize, space: &Space) -> Vec<[f64; 2]> {
+    let mut all = values.to_vec();
+    all.resize(nodes, [0.0; 2]);
+    if values.len() < nodes {
+        for element in space.elements() {
+            for i in 0..3 {
+                let [a, b] = [1, 2].map(|k| all[element[(i + k) % 3]]);
+                all[element[3 + i]] = [0, 1].map(|c| (a[c] + b[c]) / 2.0);
+            }
+        }
+    }
+    all
 }
 
 /// certificate.json and certificate.bin.
@@ -252,13 +224,6 @@ pub fn results(
     seconds: Seconds,
 ) -> Result<Results, fem::DataError> {
     let mesh = &case.problem.mesh;
-    let triangles = 0..mesh.triangles().len();
-    let probes = case.probes.iter().filter_map(|&[x, y]| {
-        let (t, l) = mesh.locate([x, y])?;
-        let [u_x, u_y] = solution.displacement_at(t, l);
-        Some([x, y, u_x, u_y])
-    });
-    let probes: Vec<[f64; 4]> = probes.collect();
     let mut discrete = DiscreteCertificate::from(&solution.enclosure);
     discrete.unique &= solution.method.slides == 0;
     if let Ok(enclosure) = &solution.enclosure {
@@ -288,21 +253,9 @@ pub fn results(
         materials: case.materials.clone(),
         choices: Some(Choices::from(&case.method)),
         remarks,
-        mesh: MeshSizes {
-            vertices: mesh.vertices().len(),
-            triangles: mesh.triangles().len(),
-            dofs: 2 * solution.nodes.len(),
-            contact_edges: solution.contact.len(),
-            h_max: triangles.map(|t| mesh.diameter(t)).fold(0.0, f64::max),
-        },
+        mesh: sizes(mesh, solution),
         gamma: GammaChoice::from(&solution.gamma),
-        newton: NewtonHistory {
-            iterations: solution.newton.iterations(),
-            residuals: solution.newton.residuals.clone(),
-            residual: solution.newton.residual,
-            factorizations: solution.newton.factorizations,
-            status: solution.newton.status,
-        },
+        newton: NewtonHistory::from(&solution.newton),
         method: Some(solution.method),
         play: solution.plays.clone(),
         quantities: solution.quantities.clone(),
@@ -310,7 +263,7 @@ pub fn results(
         stress: stress_peaks(case, solution),
         reaction_moments: solution.quantities.reaction_moments.clone(),
         balance: Some(solution.balance),
-        probes,
+        probes: probes(case, solution),
         certificate: Some(Certificates { discrete: Some(discrete), continuous: None }),
         adapt: None,
         errors,
@@ -321,6 +274,27 @@ pub fn results(
         untouched.filter_map(|part| nearest(case, solution, &part.boundary)).collect();
     results.remarks.extend(remarks);
     Ok(results)
+}
+
+/// The displacement at the points that the case asks for.
+fn probes(case: &Case, solution: &Solution) -> Vec<[f64; 4]> {
+    let probe = |&[x, y]: &[f64; 2]| {
+        let (t, l) = case.problem.mesh.locate([x, y])?;
+        let [u_x, u_y] = solution.displacement_at(t, l);
+        Some([x, y, u_x, u_y])
+    };
+    case.probes.iter().filter_map(probe).collect()
+}
+
+fn sizes(mesh: &Mesh, solution: &Solution) -> MeshSizes {
+    let triangles = mesh.triangles().len();
+    MeshSizes {
+        vertices: mesh.vertices().len(),
+        triangles,
+        dofs: 2 * solution.nodes.len(),
+        contact_edges: solution.contact.len(),
+        h_max: (0..triangles).map(|t| mesh.diameter(t)).fold(0.0, f64::max),
+    }
 }
 
 /// Why there are no errors where there is an exact solution.

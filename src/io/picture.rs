@@ -24,12 +24,14 @@ use svg::{Document, Node};
 use super::data::{DataError, check_finite};
 use body::{BAR, Colours, body, colour_bar, definitions, outlines};
 use contact::{ContactLine, hatch, obstacle, pressure, tags};
-use draw::{Path, Point, RED, clean, fitting, shape, stroke, text};
+use draw::{RED, clean, fitting};
 use scene::Frame;
 
 pub use body::MOST_TRIANGLES;
 pub use case::draw;
-pub(super) use draw::{DARK, FONT, GREY, rounded, width_of};
+pub(super) use draw::{
+    Axis, DARK, FONT, GREY, LIGHT, Path, Point, frame, rounded, shape, stroke, text, width_of,
+};
 pub use scene::{ContactSample, ContactSurface, ContactZone, Scene};
 
 /// The page around the drawing.

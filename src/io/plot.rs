@@ -3,11 +3,13 @@
 //! Points with a coordinate that is not positive have no place in such a figure and are left out.
 
 use svg::node::Text as Content;
-use svg::node::element::{Circle, Group, Line, Path as PathElement, Rectangle, TSpan, Text, Title};
+use svg::node::element::{Circle, Group, Path as PathElement, Rectangle, TSpan, Text, Title};
 use svg::{Document, Node};
 
 use super::data::{DataError, check_finite};
-use super::picture::{DARK, FONT, GREY, rounded, width_of};
+use super::picture::{
+    Axis, DARK, FONT, GREY, LIGHT, Path, Point, frame, rounded, stroke, text, width_of,
+};
 
 /// A figure.
 #[derive(Clone, Debug)]
@@ -46,8 +48,6 @@ pub struct Style {
 
 /// Colours that the colour-blind tell apart, too.
 pub const COLOURS: [&str; 3] = ["#0072b2", "#d55e00", "#009e73"];
-
-const LIGHT: &str = "#dddddd";
 
 /// The drawing area of a panel, and the space around it.
 const WIDTH: f64 = 270.0;
@@ -96,7 +96,7 @@ pub fn figure(figure: &Figure) -> Result<String, DataError> {
     for (i, style) in figure.styles.iter().enumerate() {
         let x = (i % per_line) as f64 * step + 16.0;
         let y = TOP + HEIGHT + BELOW + (i / per_line) as f64 * LEGEND_LINE + 8.0;
-        let mut entry = Group::new().add(stroke([x, y], [x + 28.0, y], style));
+        let mut entry = Group::new().add(line([[x, y], [x + 28.0, y]], style));
         entry.append(mark([x + 14.0, y], style));
         entry.append(label(&style.name, x + 36.0, y + 4.0, "start"));
         document = document.add(entry);
@@ -104,18 +104,14 @@ pub fn figure(figure: &Figure) -> Result<String, DataError> {
     Ok(format!("{document}\n"))
 }
 
-fn label(text: &str, x: f64, y: f64, anchor: &str) -> Text {
-    Text::new(text).set("x", rounded(x)).set("y", rounded(y)).set("text-anchor", anchor)
+fn label(content: &str, x: f64, y: f64, anchor: &str) -> Text {
+    text(content, [x, y]).set("text-anchor", anchor)
 }
 
-fn stroke(from: [f64; 2], to: [f64; 2], style: &Style) -> Line {
-    let line = Line::new()
-        .set("x1", rounded(from[0]))
-        .set("y1", rounded(from[1]))
-        .set("x2", rounded(to[0]))
-        .set("y2", rounded(to[1]))
-        .set("stroke", style.colour)
-        .set("stroke-width", 1.6);
+fn line(points: impl IntoIterator<Item = Point>, style: &Style) -> PathElement {
+    let mut path = Path::default();
+    path.line(points);
+    let line = stroke(path, style.colour, 1.6);
     if style.dashed { line.set("stroke-dasharray", "5 3") } else { line }
 }
 
@@ -129,51 +125,31 @@ fn mark([x, y]: [f64; 2], style: &Style) -> Circle {
         .set("stroke-width", 1.2)
 }
 
-/// A range of decimal exponents along an axis, and where it lies on the page.
-struct Axis {
-    low: f64,
-    high: f64,
-    start: f64,
-    length: f64,
+/// An axis of decimal logarithms around those of `values`, with some space.
+fn logarithmic(values: impl Iterator<Item = f64>, page: [f64; 2]) -> Axis {
+    let around = |[low, high]: [f64; 2], x: f64| [low.min(x), high.max(x)];
+    let range = values.map(f64::log10).fold([f64::INFINITY, f64::NEG_INFINITY], around);
+    let [low, high] = if range[0] <= range[1] { range } else { [-1.0, 0.0] };
+    let space = (0.06 * (high - low)).max(0.05);
+    Axis { range: [low - space, high + space], page }
 }
 
-impl Axis {
-    /// Around `values`, with some space.
-    fn around(values: impl Iterator<Item = f64>, start: f64, length: f64) -> Axis {
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for value in values {
-            low = low.min(value.log10());
-            high = high.max(value.log10());
-        }
-        if !(low <= high) {
-            (low, high) = (-1.0, 0.0);
-        }
-        let space = (0.06 * (high - low)).max(0.05);
-        Axis { low: low - space, high: high + space, start, length }
+/// The powers of ten inside, as value, exponent and digit; where there are fewer than three, also twice and five times them.
+fn ticks(axis: &Axis) -> Vec<(f64, i32, u8)> {
+    let [low, high] = axis.range;
+    let of = |digits: &[u8]| -> Vec<(f64, i32, u8)> {
+        (low.floor() as i32..=high.ceil() as i32)
+            .flat_map(|k| digits.iter().map(move |&m| (f64::from(m) * 10_f64.powi(k), k, m)))
+            .filter(|tick| (low..=high).contains(&tick.0.log10()))
+            .collect()
+    };
+    let decades = of(&[1]);
+    if decades.len() < 3 {
+        return of(&[1, 2, 5]);
     }
-
-    fn page(&self, value: f64) -> f64 {
-        self.start + (value.log10() - self.low) / (self.high - self.low) * self.length
-    }
-
-    /// The powers of ten inside; where there are fewer than two, also twice and five times them.
-    fn ticks(&self) -> Vec<(f64, i32, u8)> {
-        let (first, last) = (self.low.floor() as i32, self.high.ceil() as i32);
-        let inside = |x: f64| self.low <= x.log10() && x.log10() <= self.high;
-        let of = |digits: &[u8]| -> Vec<(f64, i32, u8)> {
-            (first..=last)
-                .flat_map(|k| digits.iter().map(move |&m| (f64::from(m) * 10_f64.powi(k), k, m)))
-                .filter(|tick| inside(tick.0))
-                .collect()
-        };
-        let decades = of(&[1]);
-        if decades.len() < 3 {
-            return of(&[1, 2, 5]);
-        }
-        // Not more than about eight labels.
-        let every = decades.len().div_ceil(8) as i32;
-        decades.into_iter().filter(|(_, k, _)| k.rem_euclid(every) == 0).collect()
-    }
+    // Not more than about eight labels.
+    let every = decades.len().div_ceil(8) as i32;
+    decades.into_iter().filter(|(_, k, _)| k.rem_euclid(every) == 0).collect()
 }
 
 /// m x 10^k: plain where that is short, else with an exponent.
@@ -217,52 +193,40 @@ fn draw(panel: &Panel, figure: &Figure, left: f64) -> Group {
         .collect();
     let corners = triangles.iter().flat_map(|(_, corners)| corners);
     let all = || lines.iter().flatten().chain(corners.clone());
-    let x_axis = Axis::around(all().map(|p| p[0]), left, WIDTH);
-    let y_axis = Axis::around(all().map(|p| p[1]), TOP + HEIGHT, -HEIGHT);
-    let page = |p: [f64; 2]| [x_axis.page(p[0]), y_axis.page(p[1])];
-    let thin = |from, to, colour| {
-        let style = Style { name: String::new(), colour, dashed: false };
-        stroke(from, to, &style).set("stroke-width", 0.8)
-    };
+    let (right, bottom) = (left + WIDTH, TOP + HEIGHT);
+    let x_axis = logarithmic(all().map(|p| p[0]), [left, right]);
+    let y_axis = logarithmic(all().map(|p| p[1]), [bottom, TOP]);
+    let page = |[x, y]: Point| [x_axis.at(x.log10()), y_axis.at(y.log10())];
 
     let mut group = Group::new()
         .add(label(&panel.title, left + WIDTH / 2.0, TOP - 12.0, "middle").set("font-size", 13));
-    for (x, k, m) in x_axis.ticks() {
-        let x = x_axis.page(x);
-        group.append(thin([x, TOP], [x, TOP + HEIGHT], LIGHT));
-        group.append(tick_label(k, m, x, TOP + HEIGHT + 16.0, "middle"));
+    let mut grid = Path::default();
+    for (x, k, m) in ticks(&x_axis) {
+        let x = x_axis.at(x.log10());
+        grid.line([[x, TOP], [x, bottom]]);
+        group.append(tick_label(k, m, x, bottom + 16.0, "middle"));
     }
-    for (y, k, m) in y_axis.ticks() {
-        let y = y_axis.page(y);
-        group.append(thin([left, y], [left + WIDTH, y], LIGHT));
+    for (y, k, m) in ticks(&y_axis) {
+        let y = y_axis.at(y.log10());
+        grid.line([[left, y], [right, y]]);
         group.append(tick_label(k, m, left - 6.0, y + 4.0, "end"));
     }
-    group.append(
-        Rectangle::new()
-            .set("x", left)
-            .set("y", TOP)
-            .set("width", WIDTH)
-            .set("height", HEIGHT)
-            .set("fill", "none")
-            .set("stroke", GREY),
-    );
-    group.append(label(&figure.x_label, left + WIDTH / 2.0, TOP + HEIGHT + 34.0, "middle"));
+    group.append(stroke(grid, LIGHT, 0.8));
+    group.append(frame([left, TOP], [WIDTH, HEIGHT]));
+    group.append(label(&figure.x_label, left + WIDTH / 2.0, bottom + 34.0, "middle"));
     for (slope, corners) in triangles {
-        let [a, b, c] = corners.map(page).map(|p| p.map(rounded));
-        let d = format!("M{} {}L{} {} {} {}Z", a[0], a[1], b[0], b[1], c[0], c[1]);
-        group.append(PathElement::new().set("d", d).set("fill", "none").set("stroke", GREY));
+        let [_, b, c] = corners.map(page);
+        let mut triangle = Path::default();
+        triangle.polygon(corners.map(page));
+        group.append(stroke(triangle, GREY, 1.0));
         let text = format!("{slope:.2}");
         let text = text.trim_end_matches('0').trim_end_matches('.');
         let beside = label(text, b[0] + 4.0, (b[1] + c[1]) / 2.0 + 4.0, "start");
         group.append(beside.set("font-size", 11).set("fill", GREY));
     }
-    for (line, style) in lines.iter().zip(&figure.styles) {
-        for pair in line.windows(2) {
-            group.append(stroke(page(pair[0]), page(pair[1]), style));
-        }
-        for &point in line {
-            group.append(mark(page(point), style));
-        }
+    for (points, style) in lines.iter().zip(&figure.styles) {
+        group.append(line(points.iter().map(|&p| page(p)), style));
+        points.iter().for_each(|&p| group.append(mark(page(p), style)));
     }
     group
 }

@@ -9,7 +9,7 @@ use super::certificate::Audit;
 use super::convergence::Study;
 use super::result::{
     Adaptation, ContinuousCertificate, DiscreteCertificate, GammaChoice, NewtonHistory, Results,
-    StressPeak,
+    Seconds, StressPeak,
 };
 use super::sweep::Sweep;
 use super::{Case, numbers};
@@ -243,21 +243,8 @@ fn reactions(r: &Results, shown: &Shown, verbose: bool, lines: &mut Lines) {
 }
 
 fn how_it_was_solved(r: &Results, shown: &Shown, verbose: bool, lines: &mut Lines) {
-    let (q, seconds) = (&r.quantities, &r.seconds);
     if verbose {
-        // P1 has its nodes at the vertices alone.
-        let degree = if r.mesh.dofs == 2 * r.mesh.vertices { 1 } else { 2 };
-        let mesh = &r.mesh;
-        let sizes = sizes(mesh.triangles, degree, mesh.dofs, mesh.contact_edges, mesh.h_max);
-        lines.line("mesh", sizes);
-        for material in &r.materials {
-            let of = if material.surfaces.is_empty() {
-                "the whole body".to_owned()
-            } else {
-                quote::names(material.surfaces.iter().map(String::as_str))
-            };
-            lines.line("material", format!("{of}: {}, plane {}", moduli(material), material.plane));
-        }
+        mesh_and_materials(r, lines);
     }
     if verbose || !(r.gamma.kappa < 1.0) {
         lines.line("coercivity", coercivity(&r.gamma));
@@ -271,13 +258,13 @@ fn how_it_was_solved(r: &Results, shown: &Shown, verbose: bool, lines: &mut Line
         lines.line("accuracy", accuracy(method));
     }
     if verbose {
-        let [energy, work] = [q.energy, q.work].map(|e| shown.moment(e));
+        let [energy, work] = [r.quantities.energy, r.quantities.work].map(|e| shown.moment(e));
         lines.line("energy", format!("a(u,u) = {energy}, L(u) = {work}"));
     }
     if let Some(balance) = &r.balance {
         let parts = [balance.loads, balance.supports, balance.contact];
         let imbalance = balance.imbalance.abs();
-        let no_energy = rounding(r) * q.max_displacement;
+        let no_energy = rounding(r) * r.quantities.max_displacement;
         let is_balanced =
             imbalance < WORTH_SHOWING || parts.into_iter().all(|energy| energy.abs() <= no_energy);
         if verbose || !is_balanced {
@@ -291,22 +278,39 @@ fn how_it_was_solved(r: &Results, shown: &Shown, verbose: bool, lines: &mut Line
         }
     }
     if verbose {
-        lines.line(
-            "time",
-            format!(
-                "read {}, assemble {}, solve {}, certify {}{}",
-                time(seconds.read),
-                time(seconds.assemble),
-                time(seconds.solve),
-                time(seconds.certify),
-                // A report is finished before it is written.
-                match seconds.write {
-                    0.0 => String::new(),
-                    write => format!(", write {}", time(write)),
-                }
-            ),
-        );
+        lines.line("time", times(&r.seconds));
     }
+}
+
+fn mesh_and_materials(r: &Results, lines: &mut Lines) {
+    let mesh = &r.mesh;
+    // P1 has its nodes at the vertices alone.
+    let degree = if mesh.dofs == 2 * mesh.vertices { 1 } else { 2 };
+    let sizes = sizes(mesh.triangles, degree, mesh.dofs, mesh.contact_edges, mesh.h_max);
+    lines.line("mesh", sizes);
+    for material in &r.materials {
+        let of = if material.surfaces.is_empty() {
+            "the whole body".to_owned()
+        } else {
+            quote::names(material.surfaces.iter().map(String::as_str))
+        };
+        lines.line("material", format!("{of}: {}, plane {}", moduli(material), material.plane));
+    }
+}
+
+fn times(s: &Seconds) -> String {
+    let mut steps = vec![
+        ("read", s.read),
+        ("assemble", s.assemble),
+        ("solve", s.solve),
+        ("certify", s.certify),
+    ];
+    // A report is finished before it is written.
+    if s.write > 0.0 {
+        steps.push(("write", s.write));
+    }
+    let step = |(name, seconds): (&str, f64)| format!("{name} {}", time(seconds));
+    steps.into_iter().map(step).collect::<Vec<_>>().join(", ")
 }
 
 /// The summary of what is certified of a displacement from elsewhere.

@@ -13,10 +13,10 @@ use toml::de::{DeTable, DeValue};
 
 use super::case::Case;
 use super::csv::cell;
-use super::files::{Output, WriteError};
+use super::files::{Output, OutputError, WriteError};
 use super::input::FileError;
 use super::numbers::short;
-use super::outputs::{self, Certified, Extra, OutputError};
+use super::outputs::{self, Certified, Extra};
 use super::result::{Results, Seconds};
 use super::run::{self, RunError, Solved};
 use crate::quote;

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-const CASE: &str = r#"title = "Block"
+pub const CASE: &str = r#"title = "Block"
 [mesh]
 rectangle = { width = 1.0, height = 1.0, nx = 4, ny = 4 }
 [material]
@@ -56,7 +56,7 @@ pub fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-const FILES: [&str; 5] =
+pub const FILES: [&str; 5] =
     ["contact.csv", "contact.vtu", "picture.svg", "result.json", "solution.vtu"];
 
 #[test]

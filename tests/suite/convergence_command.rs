@@ -1,23 +1,10 @@
 //! The command `signorini convergence`: what it prints, what it writes, and what it refuses.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Output};
 
-/// A folder for one test, removed at its end.
-struct Scratch(PathBuf);
-
-impl Scratch {
-    fn new(test: &str) -> Scratch {
-        Scratch(std::env::temp_dir().join(format!("signorini-{}-{test}", std::process::id())))
-    }
-}
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
+use super::command::folder;
 
 fn run(case: &str, more: &[&str], out: &Path) -> Output {
     Command::new(env!("CARGO_BIN_EXE_signorini"))
@@ -30,45 +17,45 @@ fn run(case: &str, more: &[&str], out: &Path) -> Output {
 
 #[test]
 fn tables_csv_and_figure_come_out_for_every_degree_and_mesh() {
-    let scratch = Scratch::new("study");
+    let out = folder("convergence-study", &[]).join("out");
     let more = ["--levels", "2", "--degree", "1,2", "--mesh", "structured,perturbed"];
-    let output = run("cases/smooth.toml", &more, &scratch.0);
+    let output = run("cases/smooth.toml", &more, &out);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     let text = String::from_utf8(output.stdout).unwrap();
     for table in ["P1, structured", "P1, perturbed", "P2, structured", "P2, perturbed"] {
         assert!(text.contains(table), "{text}");
     }
     assert!(output.stderr.is_empty(), "no progress without a terminal");
-    let csv = fs::read_to_string(scratch.0.join("convergence.csv")).unwrap();
+    let csv = fs::read_to_string(out.join("convergence.csv")).unwrap();
     assert_eq!(csv.lines().count(), 1 + 4 * 2);
-    assert!(fs::read_to_string(scratch.0.join("convergence.svg")).unwrap().starts_with("<svg"));
+    assert!(fs::read_to_string(out.join("convergence.svg")).unwrap().starts_with("<svg"));
 }
 
 #[test]
 fn quiet_prints_nothing() {
-    let scratch = Scratch::new("quiet");
-    let output = run("cases/singular.toml", &["--levels", "1", "--quiet"], &scratch.0);
+    let out = folder("convergence-quiet", &[]).join("out");
+    let output = run("cases/singular.toml", &["--levels", "1", "--quiet"], &out);
     assert_eq!(output.status.code(), Some(0));
     assert!(output.stdout.is_empty() && output.stderr.is_empty(), "{output:?}");
 }
 
 #[test]
 fn a_case_without_an_exact_solution_is_refused() {
-    let scratch = Scratch::new("refused");
-    let output = run("cases/block.toml", &[], &scratch.0);
+    let out = folder("convergence-refused", &[]).join("out");
+    let output = run("cases/block.toml", &[], &out);
     assert_eq!(output.status.code(), Some(2));
     let message = String::from_utf8(output.stderr).unwrap();
     assert_eq!(
         message,
         "error: cases/block.toml: [exact] is missing; errors are measured against an exact solution\n"
     );
-    assert!(!scratch.0.exists(), "nothing is written");
+    assert!(!out.exists(), "nothing is written");
 }
 
 #[test]
 fn a_mesh_from_a_file_is_refused() {
-    let scratch = Scratch::new("mesh-file");
-    let output = run("reference/cases/patch-d1-p1-exact.toml", &[], &scratch.0);
+    let out = folder("convergence-mesh-file", &[]).join("out");
+    let output = run("reference/cases/patch-d1-p1-exact.toml", &[], &out);
     assert_eq!(output.status.code(), Some(2));
     let message = String::from_utf8(output.stderr).unwrap();
     assert!(message.contains("expected rectangle or trapezoid, which can be refined"), "{message}");
@@ -76,12 +63,12 @@ fn a_mesh_from_a_file_is_refused() {
 
 #[test]
 fn loads_beside_an_exact_solution_are_refused() {
-    let scratch = Scratch::new("loads");
-    fs::create_dir_all(&scratch.0).unwrap();
+    let out = folder("convergence-loads", &[]).join("out");
+    fs::create_dir_all(&out).unwrap();
     let text = fs::read_to_string("cases/singular.toml").unwrap();
-    let file = scratch.0.join("loads.toml");
+    let file = out.join("loads.toml");
     fs::write(&file, text + "\n[load]\nbody = [\"0\", \"1\"]\n").unwrap();
-    let output = run(file.to_str().unwrap(), &[], &scratch.0.join("out"));
+    let output = run(file.to_str().unwrap(), &[], &out.join("out"));
     assert_eq!(output.status.code(), Some(2));
     let message = String::from_utf8(output.stderr).unwrap();
     assert!(message.contains("[load]: found loads beside [exact]"), "{message}");

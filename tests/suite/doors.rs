@@ -9,27 +9,11 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-const CASE: &str = r#"title = "Block"
-[mesh]
-rectangle = { width = 1.0, height = 1.0, nx = 4, ny = 4 }
-[material]
-lambda = 1.0
-mu = 1.0
-[load]
-body = ["0", "-4 + 10*x"]
-[boundary.top]
-displacement = ["0", "0"]
-[boundary.bottom]
-contact = { gap = "0" }
-"#;
+use super::command::{CASE, FILES, names, text};
 
 /// A fresh folder with `case.toml` in it.
 fn folder(test: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("doors").join(test);
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).unwrap();
-    fs::write(folder.join("case.toml"), CASE).unwrap();
-    folder
+    super::command::folder(&format!("doors-{test}"), &[])
 }
 
 fn command(folder: &Path, arguments: &[&str]) -> Command {
@@ -54,23 +38,6 @@ fn output(mut child: Child) -> Output {
 fn run(command: &mut Command) -> Output {
     output(command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap())
 }
-
-fn text(bytes: &[u8]) -> &str {
-    std::str::from_utf8(bytes).unwrap()
-}
-
-/// The names in a folder, sorted.
-fn names(folder: &Path) -> Vec<String> {
-    let mut names: Vec<String> = fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
-    names.sort();
-    names
-}
-
-const FILES: [&str; 5] =
-    ["contact.csv", "contact.vtu", "picture.svg", "result.json", "solution.vtu"];
 
 fn full() -> Stdio {
     fs::OpenOptions::new().write(true).open("/dev/full").unwrap().into()
@@ -297,7 +264,7 @@ fn the_engine_is_started_in_a_fresh_folder_with_paths_from_the_root() {
     let root = fs::canonicalize(&folder).unwrap();
     let lines: Vec<&str> = notes.lines().collect();
     let room = lines[0];
-    assert!(room.starts_with(root.join("out/.signorini-").to_str().unwrap()), "{notes}");
+    assert!(room.starts_with(root.join("out/--nx=3/.signorini-").to_str().unwrap()), "{notes}");
     let package = root.join("here");
     let case = root.join("--nx=3");
     assert_eq!(
@@ -393,7 +360,7 @@ fn a_signal_reaches_the_processes_of_the_engine_and_nothing_half_written_stays()
             assert!(start.elapsed() < Duration::from_secs(60), "the engine does not start");
             std::thread::sleep(Duration::from_millis(5));
         }
-        assert_eq!(names(&folder.join("out")).len(), 2);
+        assert_eq!(names(&folder.join("out/case")).len(), 1);
         let kill =
             Command::new("kill").args([&format!("-{name}"), &child.id().to_string()]).status();
         assert!(kill.unwrap().success());

@@ -2,9 +2,10 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
 
 use serde_json::Value;
+
+use super::command::signorini;
 
 /// A fresh folder with these files in it.
 fn folder(test: &str, files: &[(&str, &str)]) -> PathBuf {
@@ -17,14 +18,9 @@ fn folder(test: &str, files: &[(&str, &str)]) -> PathBuf {
     folder
 }
 
-fn run(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_signorini"));
-    command.args(arguments).current_dir(folder).output().unwrap()
-}
-
 /// What the command prints, with this exit code.
 fn said(folder: &Path, arguments: &[&str], code: i32) -> String {
-    let output = run(folder, arguments);
+    let output = signorini(folder, arguments);
     let text = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
     assert_eq!(output.status.code(), Some(code), "{arguments:?}: {text:?}");
     text.concat()

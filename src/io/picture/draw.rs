@@ -1,6 +1,6 @@
 //! Elements of the pictures: colours, letters, SVG paths, and places along a line.
 
-use svg::node::element::{Path as PathElement, Text};
+use svg::node::element::{Path as PathElement, Rectangle, Text};
 
 use crate::io::numbers;
 
@@ -9,11 +9,11 @@ pub(in crate::io) const FONT: &str =
     "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
 pub(in crate::io) const DARK: &str = "#222222";
 pub(in crate::io) const GREY: &str = "#666666";
-pub(super) const LIGHT: &str = "#dddddd";
+pub(in crate::io) const LIGHT: &str = "#dddddd";
 pub(super) const RED: &str = "#d62728";
 
 /// A point on the page, y downwards.
-pub(super) type Point = [f64; 2];
+pub(in crate::io) type Point = [f64; 2];
 
 /// A number as labels have it.
 pub(super) fn short(x: f64) -> String {
@@ -27,7 +27,7 @@ pub(super) fn clean(text: &str) -> String {
 }
 
 /// A text that starts at a point.
-pub(super) fn text(content: impl Into<String>, [x, y]: Point) -> Text {
+pub(in crate::io) fn text(content: impl Into<String>, [x, y]: Point) -> Text {
     Text::new(content).set("x", rounded(x)).set("y", rounded(y))
 }
 
@@ -46,17 +46,43 @@ pub(super) fn fitting(text: &str, size: f64, width: f64) -> f64 {
     rounded((size * width / width_of(text, size)).min(size))
 }
 
-pub(super) fn shape(path: Path) -> PathElement {
+pub(in crate::io) fn shape(path: Path) -> PathElement {
     PathElement::new().set("d", path.d)
 }
 
-pub(super) fn stroke(path: Path, colour: &str, width: f64) -> PathElement {
+pub(in crate::io) fn stroke(path: Path, colour: &str, width: f64) -> PathElement {
     shape(path).set("fill", "none").set("stroke", colour).set("stroke-width", width)
+}
+
+/// An axis: the range of its values, and the ends of that on the page.
+pub(in crate::io) struct Axis {
+    pub(in crate::io) range: [f64; 2],
+    pub(in crate::io) page: [f64; 2],
+}
+
+impl Axis {
+    /// The place of a value on the page; the middle where the range is a single value.
+    pub(in crate::io) fn at(&self, value: f64) -> f64 {
+        let ([low, high], [start, end]) = (self.range, self.page);
+        let part = if high > low { (value - low) / (high - low) } else { 0.5 };
+        start + part * (end - start)
+    }
+}
+
+/// The frame of a drawing area: from the left upper corner, so wide and high.
+pub(in crate::io) fn frame([left, top]: Point, [width, height]: [f64; 2]) -> Rectangle {
+    Rectangle::new()
+        .set("x", rounded(left))
+        .set("y", rounded(top))
+        .set("width", rounded(width))
+        .set("height", rounded(height))
+        .set("fill", "none")
+        .set("stroke", GREY)
 }
 
 /// The `d` attribute of a path, in hundredths of the page's unit.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Path {
+pub(in crate::io) struct Path {
     d: String,
 }
 
@@ -66,7 +92,7 @@ impl Path {
     }
 
     /// Adds a line through these points.
-    pub(super) fn line(&mut self, points: impl IntoIterator<Item = Point>) {
+    pub(in crate::io) fn line(&mut self, points: impl IntoIterator<Item = Point>) {
         let mut command = 'M';
         for [x, y] in points {
             self.d.push(command);
@@ -78,7 +104,7 @@ impl Path {
     }
 
     /// Adds a line through these points and back to the first.
-    pub(super) fn polygon(&mut self, points: impl IntoIterator<Item = Point>) {
+    pub(in crate::io) fn polygon(&mut self, points: impl IntoIterator<Item = Point>) {
         self.line(points);
         self.d.push('Z');
     }

@@ -9,8 +9,8 @@ use svg::node::element::{Circle, Group, Rectangle};
 
 use super::contact::{RADIUS, tag};
 use super::draw::{
-    GREY, LIGHT, Path, Point, RED, clean, fitting, rounded, shape, short, stroke, text, thinned,
-    width_of,
+    Axis, GREY, LIGHT, Path, Point, RED, clean, fitting, frame, rounded, shape, short, stroke,
+    text, thinned, width_of,
 };
 use super::scene::{ContactSample, ContactSurface, ContactZone, Scene};
 use crate::io::numbers::ticks;
@@ -56,28 +56,20 @@ pub(super) fn panels(scene: &Scene, corner: Point, width: f64) -> Group {
     group
 }
 
-/// From arc length and pressure to the page.
+/// The axes of a panel: arc length, and pressure.
 struct Axes {
-    left: f64,
-    bottom: f64,
-    width: f64,
-    arc: [f64; 2],
-    top: f64,
+    arc: Axis,
+    pressure: Axis,
 }
 
 impl Axes {
-    fn x(&self, arc: f64) -> f64 {
-        let [low, high] = self.arc;
-        let part = if high > low { (arc - low) / (high - low) } else { 0.5 };
-        self.left + self.width * part
-    }
-
-    fn y(&self, pressure: f64) -> f64 {
-        self.bottom - (PLOT - ABOVE) * if self.top > 0.0 { pressure / self.top } else { 0.0 }
-    }
-
     fn shows(&self, arc: f64) -> bool {
-        (self.arc[0]..=self.arc[1]).contains(&arc)
+        (self.arc.range[0]..=self.arc.range[1]).contains(&arc)
+    }
+
+    /// The left, right and lower border.
+    fn borders(&self) -> [f64; 3] {
+        [self.arc.page[0], self.arc.page[1], self.pressure.page[0]]
     }
 }
 
@@ -101,32 +93,24 @@ fn shown(surface: &ContactSurface) -> [f64; 2] {
 
 fn panel(surface: &ContactSurface, units: Option<[&str; 2]>, [x, y]: Point, width: f64) -> Group {
     let peak = surface.peak();
+    let (left, bottom, width) = (x + LEFT, y + TOP + PLOT, width - LEFT - RIGHT);
+    let top = peak.map_or(0.0, |peak| peak.pressure);
     let axes = Axes {
-        left: x + LEFT,
-        bottom: y + TOP + PLOT,
-        width: width - LEFT - RIGHT,
-        arc: shown(surface),
-        top: peak.map_or(0.0, |peak| peak.pressure),
+        arc: Axis { range: shown(surface), page: [left, left + width] },
+        pressure: Axis { range: [0.0, top], page: [bottom, bottom - (PLOT - ABOVE)] },
     };
     let [stress, length] = [0, 1].map(|i| units.map_or(String::new(), |units| units[i].to_owned()));
     let in_brackets =
         |unit: &str| if unit.is_empty() { String::new() } else { format!(" ({unit})") };
     let title = clean(&format!("{}: contact pressure{}", surface.name, in_brackets(&stress)));
-    let room = axes.width;
-    let title = text(&title, [axes.left, y + 16.0])
-        .set("font-size", fitting(&title, 14.0 / 0.9, room) * 0.9)
+    let title = text(&title, [left, y + 16.0])
+        .set("font-size", fitting(&title, 14.0 / 0.9, width) * 0.9)
         .set("font-weight", "bold");
     let caption = format!("arc length along the boundary{}", in_brackets(&length));
-    let caption = text(caption, [axes.left + axes.width / 2.0, axes.bottom + 36.0])
+    let caption = text(caption, [left + width / 2.0, bottom + 36.0])
         .set("text-anchor", "middle")
         .set("font-size", 12);
-    let frame = Rectangle::new()
-        .set("x", rounded(axes.left))
-        .set("y", rounded(axes.bottom - PLOT))
-        .set("width", rounded(axes.width))
-        .set("height", PLOT)
-        .set("fill", "none")
-        .set("stroke", GREY);
+    let frame = frame([left, bottom - PLOT], [width, PLOT]);
     let mut group = Group::new().add(title).add(caption).add(grid(&axes));
     if let Some(zones) = &surface.zones {
         group = group.add(strip(zones, &axes));
@@ -136,8 +120,7 @@ fn panel(surface: &ContactSurface, units: Option<[&str; 2]>, [x, y]: Point, widt
             group = group.add(curve(surface, &axes)).add(frame).add(mark(peak, &stress, &axes))
         }
         None => {
-            let words =
-                text("no contact", [axes.left + axes.width / 2.0, axes.bottom - PLOT / 2.0]);
+            let words = text("no contact", [left + width / 2.0, bottom - PLOT / 2.0]);
             group = group.add(words.set("text-anchor", "middle").set("fill", GREY)).add(frame);
         }
     }
@@ -146,24 +129,25 @@ fn panel(surface: &ContactSurface, units: Option<[&str; 2]>, [x, y]: Point, widt
 
 /// Draws the proved zones as a strip, with the words for its colours.
 fn strip(zones: &[ContactZone], axes: &Axes) -> Group {
+    let [left, _, bottom] = axes.borders();
+    let [low, high] = axes.arc.range;
     let bar = |[from, to]: [f64; 2], fill: &str| {
-        let [low, high] = axes.arc;
-        let [from, to] = [from, to].map(|arc| axes.x(arc.clamp(low, high)));
+        let [from, to] = [from, to].map(|arc| axes.arc.at(arc.clamp(low, high)));
         Rectangle::new()
             .set("x", rounded(from))
-            .set("y", rounded(axes.bottom + 1.0))
+            .set("y", rounded(bottom + 1.0))
             .set("width", rounded(to - from))
             .set("height", STRIP)
             .set("fill", fill)
     };
-    let mut group = Group::new().add(bar(axes.arc, LIGHT));
+    let mut group = Group::new().add(bar(axes.arc.range, LIGHT));
     for zone in zones {
         group.append(bar(zone.arc, if zone.pressed { RED } else { OPEN }));
     }
     let words = [("proved: pressed", RED), ("nearly open", OPEN), ("not known", GREY)];
-    let mut left = axes.left;
+    let mut left = left;
     for (words, fill) in words {
-        let place = [left, axes.bottom + 50.0];
+        let place = [left, bottom + 50.0];
         group.append(text(words, place).set("font-size", 11).set("fill", fill));
         left += width_of(words, 11.0) + 14.0;
     }
@@ -174,17 +158,18 @@ fn strip(zones: &[ContactZone], axes: &Axes) -> Group {
 fn grid(axes: &Axes) -> Group {
     let mut lines = Path::default();
     let mut labels = Group::new().set("font-size", 11);
-    for (arc, content) in ticks(axes.arc[0], axes.arc[1]) {
-        let x = axes.x(arc);
-        lines.line([[x, axes.bottom], [x, axes.bottom - PLOT]]);
-        let half = width_of(&content, 11.0) / 2.0;
-        let x = x.min(axes.left + axes.width + RIGHT - half);
-        labels.append(text(content, [x, axes.bottom + 16.0]).set("text-anchor", "middle"));
+    let [left, right, bottom] = axes.borders();
+    let ([first, last], [_, top]) = (axes.arc.range, axes.pressure.range);
+    for (arc, content) in ticks(first, last) {
+        let x = axes.arc.at(arc);
+        lines.line([[x, bottom], [x, bottom - PLOT]]);
+        let x = x.min(right + RIGHT - width_of(&content, 11.0) / 2.0);
+        labels.append(text(content, [x, bottom + 16.0]).set("text-anchor", "middle"));
     }
-    for (pressure, content) in ticks(0.0, axes.top).into_iter().filter(|_| axes.top > 0.0) {
-        let y = axes.y(pressure);
-        lines.line([[axes.left, y], [axes.left + axes.width, y]]);
-        labels.append(text(content, [axes.left - 6.0, y + 4.0]).set("text-anchor", "end"));
+    for (pressure, content) in ticks(0.0, top).into_iter().filter(|_| top > 0.0) {
+        let y = axes.pressure.at(pressure);
+        lines.line([[left, y], [right, y]]);
+        labels.append(text(content, [left - 6.0, y + 4.0]).set("text-anchor", "end"));
     }
     Group::new().add(stroke(lines, LIGHT, 0.8)).add(labels)
 }
@@ -195,11 +180,11 @@ fn curve(surface: &ContactSurface, axes: &Axes) -> Group {
         let points: Vec<Point> = part
             .iter()
             .filter(|s| axes.shows(s.arc))
-            .map(|s| [axes.x(s.arc), axes.y(s.pressure)])
+            .map(|s| [axes.arc.at(s.arc), axes.pressure.at(s.pressure)])
             .collect();
         if let [first, .., last] = points[..] {
             let points = thinned(&points);
-            let ends = [[last[0], axes.bottom], [first[0], axes.bottom]];
+            let ends = [last, first].map(|p| [p[0], axes.pressure.page[0]]);
             area.polygon(points.iter().copied().chain(ends));
             line.line(points);
         }
@@ -211,11 +196,12 @@ fn curve(surface: &ContactSurface, axes: &Axes) -> Group {
 
 /// A dot at the peak, and its value above it.
 fn mark(peak: &ContactSample, stress: &str, axes: &Axes) -> Group {
-    let [x, y] = [axes.x(peak.arc), axes.y(peak.pressure)];
+    let [x, y] = [axes.arc.at(peak.arc), axes.pressure.at(peak.pressure)];
     let words = format!("peak {} {stress}", short(peak.pressure));
     let words = words.trim_end();
     let half = width_of(words, 13.0 / 0.85) / 2.0;
-    let (left, right) = (axes.left + half + 3.0, axes.left + axes.width - half - 3.0);
+    let [left, right, _] = axes.borders();
+    let (left, right) = (left + half + 3.0, right - half - 3.0);
     let place = [x.max(left.min(right)).min(right.max(left)), y - 8.0];
     let words = text(words, place).set("text-anchor", "middle").set("font-weight", "bold");
     let dot = Circle::new().set("cx", rounded(x)).set("cy", rounded(y)).set("r", 3);
