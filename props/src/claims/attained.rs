@@ -6,7 +6,8 @@
 //! - Korn's factors at nodes, by the formulas of docs/theory.md, 7.6, from distances of triangles that are found by
 //!   going over all pairs of neighbours until nothing changes;
 //! - what contact adds to a certificate where its direction turns: the square of the bound less 2 J(v) depends on tau and g alone
-//!   (Green's formula), and what g adds to it is known.
+//!   (Green's formula), and what g adds to it is known;
+//! - the force of contact by an affine w, by the integrals of docs/theory.md, 7.7.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -14,19 +15,22 @@ use std::sync::Arc;
 
 use faer::{Mat, Side as Triangle};
 use proptest::prelude::*;
+use signorini::certify::Rejection;
 use signorini::certify::certify;
-use signorini::certify::proof::{Certificate, Edge, Proof, Role};
+use signorini::certify::forces::{Evidence, Lifting, Motion, Target};
+use signorini::certify::proof::{Certificate, Edge, Lift, Proof, Role};
 use signorini::fem::constraints::Constraints;
 use signorini::fem::korn::{Hold, Korn};
 use signorini::fem::{
     Condition, Diagonal, Mesh, Obstacle, Problem, Rectangle, SharedFunction, Side, Space,
 };
 use signorini::kernel::{Ball, Material, Plane};
-use signorini::nalgebra::Vector3;
+use signorini::nalgebra::{Matrix2, Vector3};
 use signorini::solve::factor::Factor;
 use signorini::solve::system::System;
 use signorini::solve::{Degree, Method, Settings, discretize, enclosure, solve};
 
+use super::error_bound::solved::{Draw as Floor, bodies};
 use crate::claim::{Check, Outcome, noticed, text};
 use crate::proof::sampler::Random;
 use crate::verdict::Verdict;
@@ -465,6 +469,165 @@ fn turning(check: impl Fn(&Pushed, Degree) -> Verdict) -> Outcome {
     Ok(format!("P1: {first}; P2: {second}"))
 }
 
+/// The integral over \[0, 1\] of the product of two functions that are affine there.
+fn of_product([p, q]: [f64; 2], [a, b]: [f64; 2]) -> f64 {
+    (2.0 * p * a + p * b + q * a + 2.0 * q * b) / 6.0
+}
+
+/// The largest value of x eta + k (M^2 - x^2) for 0 <= x <= M.
+fn largest(eta: f64, k: f64, mean_squared: f64) -> f64 {
+    let mean = mean_squared.sqrt();
+    if eta >= 2.0 * k * mean { mean * eta } else { k * mean_squared + eta * eta / (4.0 * k) }
+}
+
+/// The integrals of docs/theory.md, 7.7, of an affine w beside an affine v.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    /// L(w) - int m : eps(w)
+    middle: f64,
+    /// a(w, w)
+    square: f64,
+    /// G
+    contact: f64,
+    /// What w . n lacks of 1 is between minus the first and the second times g - v_n.
+    missed: [f64; 2],
+}
+
+impl Sums {
+    /// All of Gamma_C has its normal for a direction.
+    fn new(certificate: &Certificate, w: &[[f64; 2]]) -> Self {
+        let at = |field: &[[f64; 2]], k: usize| {
+            field.get(k).copied().unwrap_or_else(|| {
+                let cut = certificate.cuts[k - field.len()];
+                let [a, b] = cut.ends.map(|end| field[end]);
+                [0, 1].map(|c| a[c] + cut.at * (b[c] - a[c]))
+            })
+        };
+        let mut sums = Sums::default();
+        for piece in &certificate.pieces {
+            let x = piece.vertices.map(|k| place(certificate, k));
+            let [v, w] =
+                [&certificate.displacement, w].map(|field| piece.vertices.map(|k| at(field, k)));
+            let gradients = [0, 1, 2].map(|i| {
+                let (j, k) = (x[(i + 1) % 3], x[(i + 2) % 3]);
+                [j[1] - k[1], k[0] - j[0]]
+            });
+            let double = (x[1][0] - x[0][0]) * (x[2][1] - x[0][1])
+                - (x[1][1] - x[0][1]) * (x[2][0] - x[0][0]);
+            let gradient = |field: [[f64; 2]; 3]| {
+                Matrix2::from_fn(|c, d| {
+                    (0..3).map(|i| field[i][c] * gradients[i][d]).sum::<f64>() / double
+                })
+            };
+            let stress = |field| *piece.material.stress(gradient(field)).matrix();
+            let energy = |a: Matrix2<f64>, b| double / 2.0 * a.dot(&gradient(b));
+            sums.square += energy(stress(w), w);
+            sums.middle -= energy(stress(v), w) / 2.0;
+            for i in 0..3 {
+                for j in 0..3 {
+                    let share = if i == j { 2.0 } else { 1.0 };
+                    let work = piece.body[i][0] * w[j][0] + piece.body[i][1] * w[j][1];
+                    sums.middle += share * double / 24.0 * work / 2.0;
+                }
+            }
+        }
+        for edge in &certificate.edges {
+            let [p, q] = edge.ends.map(|k| place(certificate, k));
+            let normal = [q[1] - p[1], p[0] - q[0]];
+            let length = normal[0].hypot(normal[1]);
+            let by = |p: [f64; 2], factor: f64| p.map(|p| normal.map(|n| factor * p * n));
+            let (force, share) = match edge.role {
+                Role::Inner(_) | Role::Supported { .. } => continue,
+                Role::Held(_, force) => (force, -0.5),
+                Role::Contact { pressure, .. } => (by(pressure, 1.0), -0.5),
+                // Of a load the work and less than half of it.
+                Role::Loaded(traction) => (traction.map(|t| t.map(|t| length * t)), 0.5),
+                Role::Pressed(p) => (by(p, -1.0), 0.5),
+            };
+            let [v, w] =
+                [&certificate.displacement, w].map(|field| edge.ends.map(|k| at(field, k)));
+            for c in 0..2 {
+                sums.middle += share * of_product(force.map(|f| f[c]), w.map(|w| w[c]));
+            }
+            let Role::Contact { pressure, gap, .. } = edge.role else { continue };
+            let along = |v: [f64; 2]| (v[0] * normal[0] + v[1] * normal[1]) / length;
+            let open = [0, 1].map(|k| gap[k] - along(v[k]));
+            sums.contact -= length * of_product(pressure, open);
+            for k in 0..2 {
+                let lacks = 1.0 - along(w[k]);
+                for (side, lacks) in [-lacks, lacks].into_iter().enumerate() {
+                    if lacks > 0.0 {
+                        sums.missed[side] = sums.missed[side].max(lacks / open[k]);
+                    }
+                }
+            }
+        }
+        sums
+    }
+}
+
+/// The contact force by a w that is 1 along contact, or misses that where there is a gap: between the numbers of the theorem, with
+/// `share` of the energy norm of w.
+fn forces_by_definition(draw: &Floor, seed: u64, share_of: f64) -> Verdict {
+    let Ok((_, _, certified)) = draw.certified_with(Degree::One) else {
+        return Verdict::Fails("there is a certificate");
+    };
+    let certificate = &certified.certificate;
+    let mut random = Random::new(seed);
+    let mut w: Vec<[f64; 2]> = certificate
+        .prescribed
+        .iter()
+        .map(|held| held.map(|held| if held.is_some() { 0.0 } else { share(&mut random) - 0.5 }))
+        .collect();
+    let misses = share(&mut random) < 0.5;
+    for edge in &certificate.edges {
+        let Role::Contact { gap, .. } = edge.role else { continue };
+        let count = w.len();
+        for (k, end) in edge.ends.into_iter().enumerate().filter(|(_, end)| *end < count) {
+            // The floor is y = 0: v_n = -v_y.
+            let open = gap[k] + certificate.displacement[end][1];
+            let lacks = if misses && open > 1e-3 { (share(&mut random) - 0.5) * open } else { 0.0 };
+            w[end][1] = lacks - 1.0;
+        }
+    }
+    let motion = Motion::Along(None);
+    let lifting = Lifting { vertices: w.clone(), beyond: None };
+    let evidence = Evidence {
+        of: vec![None; certificate.edges.len()],
+        liftings: vec![(Target { boundary: None, motion }, lifting)],
+        ..Evidence::default()
+    };
+    let found = certificate.forces::<Ball>(&evidence);
+    let Ok(Ok([low, high])) = found.map(|found| found[0].clone()) else {
+        return Verdict::Fails("the force has an interval");
+    };
+    let Sums { middle, square, contact, missed } = Sums::new(certificate, &w);
+    let eta = share_of * square.sqrt();
+    let bound = certified.proof.bound;
+    let mean_squared = bound * bound / 4.0 + contact.max(0.0) / 2.0;
+    let [below, above] = missed.map(|k| largest(eta, k, mean_squared));
+    // A root of rounding errors, where v is the solution.
+    let near = |a: f64, b: f64| (a - b).abs() <= 1e-6 * (1.0 + middle.abs() + below + above);
+    ensure!(near(low, middle - below));
+    ensure!(near(high, middle + above));
+    Verdict::Holds(if missed == [0.0; 2] { "exact on contact" } else { "off where there is a gap" })
+}
+
+/// A certificate with a triangle, or with a lift, `times` times is refused: neither may count for two.
+fn counted_once(draw: &Floor, times: usize) -> Verdict {
+    let Ok((_, _, certified)) = draw.certified_with(Degree::One) else {
+        return Verdict::Fails("there is a certificate");
+    };
+    let (mut triangles, mut lifts) = (certified.certificate.clone(), certified.certificate);
+    let first = triangles.pieces[0];
+    triangles.pieces.extend(vec![first; times - 1]);
+    lifts.lifts = vec![Lift { corners: [0, 1, 2], norm: 1.0 }; times];
+    for certificate in [triangles, lifts] {
+        ensure!(matches!(certificate.evaluate::<Ball>(), Err(Rejection::Wrong { .. })));
+    }
+    Verdict::Holds("always")
+}
+
 /// The checks of row 10.
 pub(super) fn of_the_enclosure() -> [Check; 5] {
     [
@@ -478,11 +641,26 @@ pub(super) fn of_the_enclosure() -> [Check; 5] {
 }
 
 /// The checks of row 24.
-pub(super) fn of_turning_contact() -> [Check; 4] {
+pub(super) fn of_certificates() -> [Check; 6] {
     [
         doubles!("less_twice_the_energy_the_bound_forgets_v_where_directions_turn" => turning(|draw, degree| independent_of_v(draw, degree, 1.0))),
         doubles!("control_less_2_2_times_the_energy" => draws::reject(pushed_bodies(), |draw| independent_of_v(draw, Degree::Two, 1.1))),
         doubles!("a_larger_gap_costs_its_work_where_directions_turn" => turning(|draw, degree| raised_by_the_gap(draw, degree, 1.0))),
         doubles!("control_a_larger_gap_costs_a_tenth_more" => draws::reject(pushed_bodies(), |draw| raised_by_the_gap(draw, Degree::Two, 1.1))),
+        doubles!("a_triangle_or_a_lift_counts_once" => draws::hold(10, bodies(2), &["always"], |draw| counted_once(draw, 2))),
+        doubles!("control_a_triangle_and_a_lift_that_are_there_once" => draws::reject(bodies(2), |draw| counted_once(draw, 1))),
+    ]
+}
+
+/// The checks of row 26.
+pub(super) fn of_forces() -> [Check; 2] {
+    [
+        doubles!("forces_are_between_the_numbers_of_their_definitions" => {
+            let classes = ["exact on contact", "off where there is a gap"];
+            draws::hold(60, (bodies(2), any::<u64>()), &classes, |(draw, seed)| forces_by_definition(draw, *seed, 1.0))
+        }),
+        doubles!("control_forces_by_nine_tenths_of_the_norm" => {
+            draws::reject((bodies(2), any::<u64>()), |(draw, seed)| forces_by_definition(draw, *seed, 0.9))
+        }),
     ]
 }

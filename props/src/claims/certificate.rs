@@ -668,7 +668,22 @@ fn proved_kappa(scale: f64) -> Outcome {
             turning = turning.max(proved_kappa_on(Degree::Two, &problem, gamma0, scale)?);
         }
     }
-    Ok(format!("3 obstacles, P1 and P2; directions turn by up to {turning:.2}"))
+    // At a corner a triangle may have two edges on Gamma_C.
+    for diagonal in [Diagonal::Left, Diagonal::Right] {
+        let cells = Rectangle { width: 2.0, height: 1.0, nx: 2, ny: 1, diagonal };
+        let held = Condition::Displacement([0.1, -0.1].map(|x| Some(constant(x))));
+        let contact = || Condition::Contact { gap: constant(0.0) };
+        let conditions = [("top", held), ("bottom", contact()), ("right", contact())];
+        let problem = Problem::new(
+            cells.mesh().map_err(text)?,
+            Material::lame(1.0, 1.0, Plane::Strain),
+            [constant(0.0), constant(0.0)],
+            conditions.map(|(name, condition)| (name.to_owned(), condition)).into(),
+        );
+        proved_kappa_on(Degree::One, &problem, Gamma0::Auto, scale)?;
+        proved_kappa_on(Degree::Two, &problem, Gamma0::Auto, scale)?;
+    }
+    Ok(format!("3 obstacles and two corners, P1 and P2; directions turn by up to {turning:.2}"))
 }
 
 fn proved_kappa_on(

@@ -190,7 +190,7 @@ pub fn claim() -> Claim {
                     fails "(v - u) * (s - t) + t * (v - g) >= zero"
                 )),
             ],
-            attained::of_turning_contact().to_vec(),
+            attained::of_certificates().to_vec(),
             checker::HARNESSES.iter().copied().map(model_checked).collect(),
         ]
         .concat(),
