@@ -22,9 +22,10 @@ use crate::fem::double_double::DoubleDouble;
 /// A way to better an iterate.
 pub trait Route {
     /// L of A, if it is at hand.
-    fn factor_of_a(&self) -> Option<Arc<Factor>> {
-        None
-    }
+    fn factor_of_a(&self) -> Option<Arc<Factor>>;
+
+    /// The number of sparse factorisations so far.
+    fn factorizations(&self) -> usize;
 
     /// Moves `iterate` to where the residual of (8) vanishes, as far as one pass can, and `at`, what the linear part of (8) is
     /// there, with it.
@@ -70,6 +71,8 @@ pub struct Outcome {
     pub forward_error: f64,
     /// The condition number of the matrix, from below: Rayleigh quotients of what was solved for.
     pub condition: f64,
+    /// The number of sparse factorisations.
+    pub factorizations: usize,
 }
 
 impl Outcome {
@@ -93,6 +96,16 @@ impl Outcome {
     /// Returns whether Newton's method took all the steps that it may.
     pub fn is_out_of_steps(&self, settings: &Settings) -> bool {
         self.residuals.len() > settings.max_iterations
+    }
+
+    /// Returns whether no other route would prove more.
+    pub fn is_final(&self, settings: &Settings) -> bool {
+        // With enough steps Newton's method ends: if it did not, digits were missing.
+        let stopped = settings.max_iterations < ENOUGH && self.is_out_of_steps(settings);
+        let by_nature = |why: &Unproved| !why.may_be_rounding() || *why == Unproved::HeldByContact;
+        let unprovable =
+            settings.proof.is_infinite() || self.enclosure.as_ref().is_err_and(by_nature);
+        self.is_proved(settings) || stopped || (unprovable && self.residual <= settings.tolerance)
     }
 
     /// The status of the solve.
@@ -129,6 +142,9 @@ const GOOD_ENOUGH: f64 = 1e-2;
 /// A condition number beyond this leaves Newton's method nothing to go by: which of two messages a refusal has.
 const HOPELESS: f64 = 1e14;
 
+/// Newton steps that are enough for any case where no digits are missing.
+const ENOUGH: usize = 30;
+
 /// No more passes than these: each takes the error down by a factor, or there is no point.
 const MOST_PASSES: usize = 12;
 
@@ -139,7 +155,7 @@ const MOST_PASSES: usize = 12;
 /// As [`super::newton::minimise`].
 pub fn refine(
     system: &System,
-    route: &mut impl Route,
+    route: &mut dyn Route,
     verifier: &mut Verifier,
     reference: f64,
     settings: &Settings,
@@ -216,6 +232,7 @@ pub fn refine(
         enclosure,
         forward_error: correction + rounding,
         condition: (system.largest() * softness).max(1.0),
+        factorizations: route.factorizations(),
     })
 }
 

@@ -11,8 +11,6 @@ use nalgebra::{DMatrix, DVector};
 use super::SolveError;
 use super::accuracy::{Pass, Route};
 use super::body::{Body, Derivatives, Edges, Residual, Start, Step, block, derivatives};
-use super::contact_edges::ContactEdges;
-use super::course;
 use super::factor::{Factor, Indefinite};
 use super::iterate::{Evaluation, Iterate};
 use super::newton::{self, Until};
@@ -28,8 +26,6 @@ pub struct Assembled<'a, 'd, 'p> {
     system: &'a System<'d, 'p>,
     /// The size that residuals are relative to.
     reference: f64,
-    /// The contact edges as they come.
-    order: Vec<usize>,
     factored: Option<Factored>,
     /// L of A alone, once it has been made.
     body: Option<Arc<Factor>>,
@@ -41,22 +37,15 @@ pub struct Assembled<'a, 'd, 'p> {
 impl<'a, 'd, 'p> Assembled<'a, 'd, 'p> {
     /// Before anything is factored.
     pub fn new(system: &'a System<'d, 'p>, reference: f64) -> Self {
-        let order = (0..system.d.contact.len()).collect();
         Assembled {
             system,
             reference,
-            order,
             factored: None,
             body: None,
             factorizations: 0,
             precisely: false,
             first: true,
         }
-    }
-
-    /// The number of tangents factored.
-    pub fn factorizations(&self) -> usize {
-        self.factorizations
     }
 
     /// Returns whether the edges that are in contact leave a motion free that contact stops: the tangent is singular then.
@@ -71,8 +60,7 @@ impl<'a, 'd, 'p> Assembled<'a, 'd, 'p> {
 
     /// Adds a little of the springs of all edges.
     fn supported(&self, at: &Derivatives) -> Derivatives {
-        let edges = ContactEdges { d: self.system.d, order: &self.order };
-        let all = derivatives(&edges, &vec![1.0; at.gradient.len()]).times(at.stiffness);
+        let all = derivatives(self.system.d, &vec![1.0; at.gradient.len()]).times(at.stiffness);
         let sum = at.hessian.iter().zip(&all.hessian).map(|(h, all)| h + SUPPORT * all);
         let hessian = sum.collect();
         Derivatives { stiffness: at.stiffness, gradient: at.gradient.clone(), hessian }
@@ -133,6 +121,10 @@ impl Route for Assembled<'_, '_, '_> {
         self.body.clone()
     }
 
+    fn factorizations(&self) -> usize {
+        self.factorizations
+    }
+
     fn pass(
         &mut self,
         iterate: &mut Iterate,
@@ -143,10 +135,9 @@ impl Route for Assembled<'_, '_, '_> {
         self.precisely = at.precisely;
         let soft = self.first;
         self.first = false;
-        let order = self.order.clone();
-        let edges = ContactEdges { d: self.system.d, order: &order };
+        let d = self.system.d;
         let mut body = Full { route: self, iterate, at, d: Vec::new(), energy: 0.0, softness: 0.0 };
-        let left = newton::minimise(&edges, &mut body, soft, residuals, until)?;
+        let left = newton::minimise(d, &mut body, soft, residuals, until)?;
         Ok(Pass { energy: body.energy, left, softness: body.softness })
     }
 }
@@ -167,7 +158,7 @@ impl Full<'_, '_, '_, '_, '_> {
     /// The residual of (8).
     fn gradient(&self, at: &Derivatives) -> Vec<f64> {
         let mut r = self.at.linear.clone();
-        for e in 0..self.route.order.len() {
+        for e in 0..self.route.system.d.contact.len() {
             let g = block(&at.gradient, e, self.route.system.nodes());
             self.route.system.functionals(e, |row, a, entry| r[row] += entry * g[a]);
         }
@@ -204,10 +195,9 @@ impl Full<'_, '_, '_, '_, '_> {
     fn values_of_p0(&self, x: &[f64]) -> Vec<f64> {
         let nodes = self.route.system.nodes();
         let mut values = vec![0.0; self.at.p.len()];
-        for e in 0..self.route.order.len() {
-            self.route
-                .system
-                .functionals(e, |row, a, entry| values[e * nodes + a] += entry * x[row]);
+        let system = self.route.system;
+        for e in 0..system.d.contact.len() {
+            system.functionals(e, |row, a, entry| values[e * nodes + a] += entry * x[row]);
         }
         values
     }
@@ -239,7 +229,7 @@ impl Body for Full<'_, '_, '_, '_, '_> {
     fn start(&mut self, edges: &impl Edges) -> Result<Start, SolveError> {
         let mut forces = vec![0.0; self.at.p.len()];
         if let Some(p) = self.route.system.start() {
-            let frozen = course::frozen(edges, &p, &self.y());
+            let frozen = derivatives(edges, &p).pulling(&self.y());
             let step = self.step(&frozen)?;
             self.advance(1.0, &step);
             follow(&mut forces, &frozen, &step, 1.0);
@@ -260,13 +250,7 @@ impl Body for Full<'_, '_, '_, '_, '_> {
         }
         let all = derivatives(edges, &vec![1.0; self.at.p.len()]);
         let springs = self.springs();
-        let mut pulling = all.times(1.0 / springs);
-        let p: Vec<f64> = self.at.p.iter().map(|p| p.head()).collect();
-        let gradient = pulling.hessian.iter().enumerate().flat_map(|(e, h)| {
-            let force = h * DVector::from_column_slice(block(&p, e, h.nrows()));
-            force.iter().copied().collect::<Vec<f64>>()
-        });
-        pulling.gradient = gradient.collect();
+        let pulling = all.times(1.0 / springs).pulling(&self.at.p);
         let step = self.step(&pulling)?;
         self.advance(1.0, &step);
         follow(&mut forces, &pulling, &step, 1.0);

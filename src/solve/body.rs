@@ -3,9 +3,10 @@
 
 use std::borrow::Cow;
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use super::SolveError;
+use crate::fem::discretization::Discretization;
 use crate::fem::double_double::DoubleDouble;
 
 /// The contact edges as Newton's method needs them.
@@ -18,6 +19,31 @@ pub trait Edges {
     fn derivatives(&self, e: usize, p: &[DoubleDouble]) -> (Vec<f64>, DMatrix<f64>);
     /// The Bregman distance of Psi on edge `e` from `p` to `q`.
     fn bregman(&self, e: usize, p: &[DoubleDouble], q: &[DoubleDouble]) -> f64;
+}
+
+/// Psi of a discretization; edges that press in no solution have none.
+impl Edges for Discretization<'_> {
+    fn count(&self) -> usize {
+        self.contact.len()
+    }
+
+    fn nodes(&self) -> usize {
+        self.space.degree().nodes_per_edge()
+    }
+
+    fn derivatives(&self, e: usize, p: &[DoubleDouble]) -> (Vec<f64>, DMatrix<f64>) {
+        if self.is_idle(e) {
+            return (vec![0.0; p.len()], DMatrix::zeros(p.len(), p.len()));
+        }
+        let integrals = self.rule.integrals(p);
+        let weight = self.contact[e].length / self.contact[e].gamma;
+        (integrals.gradient.iter().map(|g| weight * g).collect(), weight * integrals.hessian)
+    }
+
+    fn bregman(&self, e: usize, p: &[DoubleDouble], q: &[DoubleDouble]) -> f64 {
+        let weight = self.contact[e].length / self.contact[e].gamma;
+        if self.is_idle(e) { 0.0 } else { weight * self.rule.bregman(p, q) }
+    }
 }
 
 /// The body with its loads, at an iterate.
@@ -103,6 +129,17 @@ impl Derivatives {
             gradient: self.gradient.iter().map(|g| s * g).collect(),
             hessian: self.hessian.iter().map(|h| s * h).collect(),
         }
+    }
+
+    /// The derivatives at y of springs with this Hessian that pull as well as push.
+    pub fn pulling(self, y: &[DoubleDouble]) -> Self {
+        let force = |(e, h): (usize, &DMatrix<f64>)| {
+            let y = block(y, e, h.nrows()).iter().map(|y| y.head());
+            let force = h * DVector::from_iterator(h.nrows(), y);
+            force.iter().copied().collect::<Vec<f64>>()
+        };
+        let gradient = self.hessian.iter().enumerate().flat_map(force).collect();
+        Derivatives { gradient, ..self }
     }
 }
 

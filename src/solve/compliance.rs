@@ -1,8 +1,8 @@
 //! The compliance of the body as contact sees it: G = B A^-1 B^T = X^T X with X = L^-1 B^T, from the factor A = L L^T.
 //!
 //! A row of B belongs to a node of a contact edge and touches the unknowns of the triangle that owns it. These lie on one
-//! path of the elimination tree to its root, so the columns of X that belong to the edge are zero off that path. Edges are
-//! taken in the order in which a walk through the tree meets the supernodes where their paths begin; then the columns that
+//! path of the elimination tree to its root, so the columns of X that belong to the edge are zero off that path. Inside, edges
+//! are taken in the order in which a walk through the tree meets the supernodes where their paths begin; then the columns that
 //! are not zero in the rows of a supernode are neighbours, and X is one dense block a supernode.
 
 use faer::linalg::matmul::matmul;
@@ -14,17 +14,15 @@ use super::factor::{Factor, Structure};
 
 /// Which supernodes the contact functionals reach, and which of the functionals each.
 pub struct Reach {
-    /// The contact edges in the order of the walk.
-    pub order: Vec<usize>,
+    /// The place of each functional in the order of the walk.
+    places: Vec<usize>,
     /// The supernodes that are reached, in the order of elimination.
     supernodes: Vec<Reached>,
-    /// Functionals on an edge.
-    per_edge: usize,
 }
 
 struct Reached {
     supernode: usize,
-    /// The functionals whose columns of X are not zero here.
+    /// The places of the functionals whose columns of X are not zero here.
     functionals: std::ops::Range<usize>,
 }
 
@@ -60,12 +58,18 @@ impl Reach {
             .enumerate()
             .filter_map(|(supernode, range)| Some(Reached { supernode, functionals: range? }))
             .collect();
-        Reach { order, supernodes, per_edge }
+        let mut places = vec![0; order.len() * per_edge];
+        for (position, e) in order.into_iter().enumerate() {
+            for a in 0..per_edge {
+                places[e * per_edge + a] = position * per_edge + a;
+            }
+        }
+        Reach { places, supernodes }
     }
 
     /// The number of functionals.
     pub fn functionals(&self) -> usize {
-        self.order.len() * self.per_edge
+        self.places.len()
     }
 
     /// Multiplications with an addition for X and G.
@@ -119,7 +123,7 @@ fn postorder(parent: &[Option<usize>]) -> Vec<usize> {
     rank
 }
 
-/// X = L^-1 B^T, block by block, and G = X^T X. Functionals are in the order of [`Reach::order`].
+/// X = L^-1 B^T, block by block, and G = X^T X.
 pub struct Compliance<'a> {
     structure: &'a Structure,
     reach: &'a Reach,
@@ -131,11 +135,11 @@ pub struct Compliance<'a> {
 impl<'a> Compliance<'a> {
     /// From the factor, and the entries of B: `entries` calls its argument with the unknown, the functional and the entry.
     pub fn new(
-        factor: &'a Factor,
+        structure: &'a Structure,
+        factor: &Factor,
         reach: &'a Reach,
         entries: impl FnOnce(&mut dyn FnMut(usize, usize, f64)),
     ) -> Self {
-        let structure = factor.structure();
         let mut place_of_row = vec![None; structure.size()];
         for (place, r) in reach.supernodes.iter().enumerate() {
             place_of_row[structure.columns(r.supernode)].fill(Some(place));
@@ -152,11 +156,11 @@ impl<'a> Compliance<'a> {
         entries(&mut |row, functional, entry| {
             if let Some(place) = place_of_row[row] {
                 let (start, first) = start_of(place);
-                x[place][(row - start, functional - first)] += entry;
+                x[place][(row - start, reach.places[functional] - first)] += entry;
             }
         });
         let q = reach.functionals();
-        let mut g = Mat::zeros(q, q);
+        let mut walked = Mat::zeros(q, q);
         for (place, r) in reach.supernodes.iter().enumerate() {
             let block = factor.block(r.supernode);
             let (diagonal, below) = block.split_at_row(block.ncols());
@@ -175,7 +179,7 @@ impl<'a> Compliance<'a> {
             }
             let range = r.functionals.clone();
             triangular::matmul(
-                g.as_mut().submatrix_mut(range.start, range.start, c, c),
+                walked.as_mut().submatrix_mut(range.start, range.start, c, c),
                 BlockStructure::TriangularLower,
                 Accum::Add,
                 x[place].transpose(),
@@ -186,11 +190,10 @@ impl<'a> Compliance<'a> {
                 Par::Seq,
             );
         }
-        for j in 0..q {
-            for i in 0..j {
-                g[(i, j)] = g[(j, i)];
-            }
-        }
+        let g = Mat::from_fn(q, q, |i, j| {
+            let (a, b) = (reach.places[i], reach.places[j]);
+            walked[(a.max(b), a.min(b))]
+        });
         Compliance { structure, reach, x, g }
     }
 
@@ -204,13 +207,17 @@ impl<'a> Compliance<'a> {
                 *sum += p;
             }
         }
-        sum
+        self.reach.places.iter().map(|&place| sum[place]).collect()
     }
 
     /// v <- v - X w
     pub fn subtract(&self, w: &[f64], v: &mut [f64]) {
+        let mut walked = vec![0.0; w.len()];
+        for (&place, &w) in self.reach.places.iter().zip(w) {
+            walked[place] = w;
+        }
         for (x, r) in self.x.iter().zip(&self.reach.supernodes) {
-            let w = &w[r.functionals.clone()];
+            let w = &walked[r.functionals.clone()];
             let product = x * Col::from_fn(w.len(), |i| w[i]);
             for (v, p) in v[self.structure.columns(r.supernode)].iter_mut().zip(product.iter()) {
                 *v -= p;
@@ -257,17 +264,14 @@ mod tests {
         let unknowns: Vec<Vec<usize>> = (0..d.contact.len()).map(|e| system.unknowns(e)).collect();
         let reach = Reach::new(&system.structure, &unknowns, system.nodes());
         let factor = Factor::with(&system.structure, &system.matrix).unwrap().unwrap();
-        let compliance = Compliance::new(&factor, &reach, |add| {
-            for (position, &e) in reach.order.iter().enumerate() {
-                system
-                    .functionals(e, |row, a, entry| add(row, position * system.nodes() + a, entry));
+        let compliance = Compliance::new(&system.structure, &factor, &reach, |add| {
+            for e in 0..d.contact.len() {
+                system.functionals(e, |row, a, entry| add(row, e * system.nodes() + a, entry));
             }
         });
         let mut columns = vec![vec![0.0; system.numbering.count]; reach.functionals()];
-        for (position, &e) in reach.order.iter().enumerate() {
-            system.functionals(e, |row, a, entry| {
-                columns[position * system.nodes() + a][row] += entry
-            });
+        for e in 0..d.contact.len() {
+            system.functionals(e, |row, a, entry| columns[e * system.nodes() + a][row] += entry);
         }
         columns.iter_mut().for_each(|column| factor.forward(column));
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();

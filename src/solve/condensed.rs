@@ -15,6 +15,7 @@
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use faer::linalg::solvers::Solve;
 use faer::{Col, Mat, Side};
@@ -24,8 +25,6 @@ use super::SolveError;
 use super::accuracy::{Pass, Route};
 use super::body::{Body, Derivatives, Edges, Residual, Start, Step, block, derivatives};
 use super::compliance::{Compliance, Reach};
-use super::contact_edges::ContactEdges;
-use super::course;
 use super::factor::Factor;
 use super::iterate::{Evaluation, Iterate};
 use super::newton::{self, Until};
@@ -36,8 +35,7 @@ use crate::fem::double_double::DoubleDouble;
 /// The body, factored, and the forces of contact on it.
 pub struct Condensed<'a, 'd, 'p> {
     system: &'a System<'d, 'p>,
-    factor: &'a Factor,
-    reach: &'a Reach,
+    factor: Arc<Factor>,
     compliance: Compliance<'a>,
     /// The entries of B^T: the functional, and the row among those that are not empty.
     forces: Vec<(usize, usize, f64)>,
@@ -53,40 +51,48 @@ impl<'a, 'd, 'p> Condensed<'a, 'd, 'p> {
     /// With the factor of A and without contact yet.
     pub fn new(
         system: &'a System<'d, 'p>,
-        factor: &'a Factor,
+        factor: Arc<Factor>,
         reach: &'a Reach,
         reference: f64,
     ) -> Self {
         let nodes = system.nodes();
-        let compliance = Compliance::new(factor, reach, |add| {
-            for (position, &e) in reach.order.iter().enumerate() {
-                system.functionals(e, |row, a, entry| add(row, position * nodes + a, entry));
+        let compliance = Compliance::new(&system.structure, &factor, reach, |add| {
+            for e in 0..system.d.contact.len() {
+                system.functionals(e, |row, a, entry| add(row, e * nodes + a, entry));
             }
         });
         let mut place: BTreeMap<usize, usize> = BTreeMap::new();
         let mut forces = Vec::new();
-        for (position, &e) in reach.order.iter().enumerate() {
+        for e in 0..system.d.contact.len() {
             system.functionals(e, |row, a, entry| {
                 let next = place.len();
                 let row = *place.entry(row).or_insert(next);
-                forces.push((position * nodes + a, row, entry));
+                forces.push((e * nodes + a, row, entry));
             });
         }
         let w = vec![0.0; reach.functionals()];
         let rows = place.len();
-        Condensed { system, factor, reach, compliance, forces, rows, reference, w, first: true }
+        Condensed { system, factor, compliance, forces, rows, reference, w, first: true }
     }
 
     /// r <- r + B^T w
     fn add_contact_forces(&self, w: &[f64], r: &mut [f64]) {
         let nodes = self.system.nodes();
-        for (position, &e) in self.reach.order.iter().enumerate() {
-            self.system.functionals(e, |row, a, entry| r[row] += entry * w[position * nodes + a]);
+        for e in 0..self.system.d.contact.len() {
+            self.system.functionals(e, |row, a, entry| r[row] += entry * w[e * nodes + a]);
         }
     }
 }
 
 impl Route for Condensed<'_, '_, '_> {
+    fn factor_of_a(&self) -> Option<Arc<Factor>> {
+        Some(Arc::clone(&self.factor))
+    }
+
+    fn factorizations(&self) -> usize {
+        1
+    }
+
     fn pass(
         &mut self,
         iterate: &mut Iterate,
@@ -98,19 +104,15 @@ impl Route for Condensed<'_, '_, '_> {
         self.add_contact_forces(&self.w, &mut v);
         v.iter_mut().for_each(|v| *v = -*v);
         self.factor.forward(&mut v);
-        let mut y: Vec<DoubleDouble> = Vec::with_capacity(at.p.len());
-        for &e in &self.reach.order {
-            y.extend(block(&at.p, e, self.system.nodes()));
-        }
+        let mut y = at.p.clone();
         for (y, change) in y.iter_mut().zip(self.compliance.transpose_times(&v)) {
             *y += change.into();
         }
-        let edges = ContactEdges { d: self.system.d, order: &self.reach.order };
         let start = y.iter().map(|y| y.head().abs()).collect();
         let soft = self.first;
         let change = vec![0.0; y.len()];
         let mut body = Reduced { route: self, y, start, change, dw: Vec::new() };
-        let left = newton::minimise(&edges, &mut body, soft, residuals, until)?;
+        let left = newton::minimise(self.system.d, &mut body, soft, residuals, until)?;
         let change = body.change;
         self.compliance.subtract(&change, &mut v);
         let energy: f64 = v.iter().map(|v| v * v).sum();
@@ -214,9 +216,7 @@ impl Body for Reduced<'_, '_, '_, '_> {
         let Some(p) = self.route.system.start() else {
             return Ok(Start { forces, contact: Some(stiffness) });
         };
-        let (order, nodes) = (&self.route.reach.order, edges.nodes());
-        let p: Vec<f64> = order.iter().flat_map(|&e| block(&p, e, nodes)).copied().collect();
-        let frozen = course::frozen(edges, &p, &self.y);
+        let frozen = derivatives(edges, &p).pulling(&self.y);
         let step = self.step(&frozen)?;
         self.advance(1.0, &step);
         follow(&mut forces, &frozen, &step, 1.0);
@@ -260,7 +260,7 @@ impl Body for Reduced<'_, '_, '_, '_> {
 
     fn compliance(&self, e: usize) -> DMatrix<f64> {
         let (g, nodes) = (&self.route.compliance.g, self.route.system.nodes());
-        DMatrix::from_fn(nodes, nodes, |a, b| g[(e * nodes + a.max(b), e * nodes + a.min(b))])
+        DMatrix::from_fn(nodes, nodes, |a, b| g[(e * nodes + a, e * nodes + b)])
     }
 
     fn advance(&mut self, t: f64, step: &Step) {

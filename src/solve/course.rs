@@ -10,11 +10,7 @@
 //! which is the solution where contact stays as it was, for Psi'(y) = Psi''(y) y. Any start leads to the same solution: (8)
 //! has one, and the verdict on it is as strict.
 
-use nalgebra::DVector;
-
-use super::body::{Derivatives, Edges, block, derivatives};
 use crate::fem::discretization::Discretization;
-use crate::fem::double_double::DoubleDouble;
 
 /// A phase of a solve, as it begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -97,15 +93,4 @@ impl<'a> Course<'a> {
         };
         same.then(|| d.contact.iter().flat_map(|edge| edge.p(u)).collect())
     }
-}
-
-/// The derivatives of Psi at y with the contact of the values `p` of P.
-pub(super) fn frozen(edges: &impl Edges, p: &[f64], y: &[DoubleDouble]) -> Derivatives {
-    let Derivatives { hessian, stiffness, .. } = derivatives(edges, p);
-    let gradient = hessian.iter().enumerate().flat_map(|(e, h)| {
-        let y = DVector::from_iterator(h.nrows(), block(y, e, h.nrows()).iter().map(|y| y.head()));
-        let force: Vec<f64> = (h * y).iter().copied().collect();
-        force
-    });
-    Derivatives { stiffness, gradient: gradient.collect(), hessian }
 }

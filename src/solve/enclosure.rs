@@ -24,7 +24,7 @@ use super::factor::{Factor, Indefinite};
 use super::intervals::{Evaluation, Intervals, Stresses};
 use super::pressed::{self, Pressed, SHARES};
 use super::system::System;
-use super::times::Stopwatch;
+use super::report::Stopwatch;
 use crate::fem::ball::{Ball, up};
 use crate::fem::double_double::DoubleDouble;
 use crate::fem::korn::Korn;

@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use crate::fem::{DataError, MeshError};
+use crate::memory::OutOfMemory;
 use crate::quote::{fixed, number};
 
 /// Why there is no solution.
@@ -48,6 +49,12 @@ fn known(forward_error: f64) -> String {
         format!("the displacement is known to a relative error of {forward_error:.0e} only")
     } else {
         "no digit of the displacement is known".to_owned()
+    }
+}
+
+impl From<OutOfMemory> for SolveError {
+    fn from(lack: OutOfMemory) -> Self {
+        SolveError::OutOfMemory { bytes: lack.needed }
     }
 }
 

@@ -15,8 +15,8 @@ use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, MatRef, Par};
 
 use super::SolveError;
-use super::memory;
 use crate::fem::matrix::LowerTriangle;
+use crate::memory;
 
 /// The structure of L: its columns in groups with one pattern, the supernodes.
 pub struct Structure {
@@ -129,7 +129,7 @@ impl Factor {
             Default::default(),
         );
         let bytes = (8 * structure.stored_entries() + scratch.size_bytes() + BESIDE * n) as u64;
-        memory::ensure(bytes)?;
+        memory::check(bytes)?;
         let mut values = vec![0.0; structure.stored_entries()];
         let mut memory =
             MemBuffer::try_new(scratch).map_err(|_| SolveError::OutOfMemory { bytes })?;

@@ -23,14 +23,11 @@ pub mod body;
 #[doc(hidden)]
 pub mod compliance;
 pub mod condensed;
-mod contact_edges;
 #[doc(hidden)]
 pub mod course;
 #[doc(hidden)]
 pub mod enclosure;
 mod error;
-#[doc(hidden)]
-pub mod evaluated;
 #[doc(hidden)]
 pub mod factor;
 #[doc(hidden)]
@@ -39,7 +36,6 @@ pub mod intervals;
 pub mod iterate;
 #[doc(hidden)]
 pub mod ladder;
-mod memory;
 mod method;
 pub mod newton;
 #[doc(hidden)]
@@ -58,32 +54,31 @@ pub mod stresses;
 pub mod system;
 #[doc(hidden)]
 pub mod theorem;
-#[doc(hidden)]
-pub mod times;
 
 use self::accuracy::Outcome;
 pub use self::answers::{ContactBoundary, EnergyBalance};
 pub use self::course::{Course, Phase};
 pub use self::enclosure::{Enclosure, Unproved};
 pub use self::error::{SolveError, history};
-use self::evaluated::Evaluated;
 pub use self::intervals::Intervals;
+use self::iterate::Evaluated;
 pub use self::ladder::{Ladder, LadderError, Level};
 pub use self::method::{
     ContactQuadrature, Gamma0, MOST_GAUSS_POINTS, MOST_ITERATIONS, Method, Settings,
 };
-pub use self::report::{MethodReport, NewtonReport, Report, Status, Verdict};
+use self::report::Stopwatch;
+pub use self::report::{MethodReport, NewtonReport, Report, Status, Times, Verdict};
 pub use self::route::RouteName;
+use self::route::Strategy;
 pub use self::solution::{GammaReport, Quantities, Solution};
 pub use self::stresses::{Extreme, LargestStresses};
 use self::system::System;
 pub use self::theorem::Theorem;
-use self::times::Stopwatch;
-pub use self::times::Times;
 pub use crate::fem::Degree;
 use crate::fem::contact_line::{Coercivity, Gamma};
 use crate::fem::material::largest_entry;
 use crate::fem::{Discretization, EdgeRule, Problem};
+use crate::memory;
 
 /// Solves `problem` by method (8).
 ///
@@ -113,14 +108,14 @@ pub fn solve_along(
     course.enters(Phase::Assemble);
     // What the whole solve takes for each vertex of the mesh at least, as measured: on squares, and on strips more.
     let per_vertex = if method.degree == Degree::One { 2900 } else { 11_800 };
-    memory::ensure(per_vertex * problem.mesh.vertices().len() as u64)?;
+    memory::check(per_vertex * problem.mesh.vertices().len() as u64)?;
     let d = discretize(problem, method)?;
     let discretize = watch.lap();
-    let solved = match (solve_discrete_along(&d, settings, course), course.afresh()) {
-        (Err(_), Some(afresh)) => solve_discrete_along(&d, settings, afresh),
-        (solved, _) => solved,
+    let solved = solve_discrete_along(&d, settings, course);
+    let (evaluated, report, times) = match course.afresh() {
+        Some(afresh) => solved.or_else(|_| solve_discrete_along(&d, settings, afresh))?,
+        None => solved?,
     };
-    let (evaluated, report, times) = solved?;
     course.enters(Phase::Evaluate);
     watch.lap();
     let solution = Solution::new(&d, evaluated, report);
@@ -151,14 +146,39 @@ fn solve_discrete_along<'d>(
     let mut watch = Stopwatch::start();
     let system = System::on(d, course)?;
     times.matrix = watch.lap();
-    let (outcome, method, factorizations) = route::solve(&system, settings, &mut times)?;
-    let status = outcome.status(settings)?;
-    let Outcome { u, forces, p, residuals, residual, enclosure, .. } = outcome;
-    let verdict = Verdict::new(&enclosure, settings.proof);
-    let mut evaluated = Evaluated::with(d, u, forces, &p);
+    let strategy = Strategy::new(&system)?;
+    times.judge = watch.lap();
+    let mut best: Result<(RouteName, Outcome), _> = Err(SolveError::Singular);
+    for &name in strategy.routes() {
+        let found = strategy.solve(name, settings, &mut times).map(|outcome| (name, outcome));
+        best = match (best, found) {
+            (Ok(first), Ok(second)) if second.1.is_better_than(&first.1) => Ok(second),
+            (Ok(first), _) => Ok(first),
+            (Err(_), second) => second,
+        };
+        let is_final = match &best {
+            Ok((_, outcome)) => outcome.is_final(settings),
+            // Contact may hold what the supports hardly hold: the next route knows it.
+            Err(error) => *error != SolveError::Singular,
+        };
+        if is_final {
+            break;
+        }
+    }
+    let (route, outcome) = best?;
+    let verdict = Verdict::new(&outcome.enclosure, settings.proof);
+    let newton = NewtonReport::new(&outcome, settings)?;
+    let mut evaluated = Evaluated::with(d, outcome.u, outcome.forces, &outcome.p);
     let plays = evaluated.settle(d);
-    let newton = NewtonReport { status, residuals, residual, factorizations };
-    let method = MethodReport { slides: plays.len(), ..method };
+    let method = MethodReport {
+        route,
+        predicted_operations: strategy.predicted(route),
+        condition: outcome.condition,
+        forward_error: outcome.forward_error,
+        threads: 1,
+        slides: plays.len(),
+    };
+    let enclosure = outcome.enclosure;
     Ok((evaluated, Report { newton, method, enclosure, verdict, plays }, times))
 }
 

@@ -12,17 +12,17 @@ use std::sync::Arc;
 #[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
 
-use super::accuracy::{self, Outcome};
+use super::accuracy::{self, Outcome, Route};
 use super::assembled::Assembled;
 use super::compliance::Reach;
 use super::condensed::Condensed;
 use super::course::Phase;
-use super::enclosure::{Unproved, Verifier};
+use super::enclosure::Verifier;
 use super::factor::{Factor, Indefinite, Structure};
-use super::memory;
+use super::report::{Stopwatch, Times};
 use super::system::System;
-use super::times::{Stopwatch, Times};
-use super::{MethodReport, Settings, SolveError};
+use super::{Settings, SolveError};
+use crate::memory;
 
 /// The routes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,9 +36,6 @@ pub enum RouteName {
 
 /// The Newton steps that a prediction counts on.
 const STEPS: f64 = 12.0;
-
-/// Newton steps that are enough for any case where no digits are missing.
-const ENOUGH: usize = 30;
 
 /// Multiplications that the assembled route makes beside those of the factorisation, for each stored entry of the factor:
 /// assembly, substitutions, small blocks.
@@ -86,49 +83,102 @@ impl Prediction {
     }
 }
 
-/// Solves the system by the route that is predicted to take less, and by the assembled one where that proves too little: gives
-/// what is nearest to the exact solution, as far as is proved.
+/// Solves the system by a given route.
 ///
 /// # Errors
 /// As [`solve_discrete`](super::solve_discrete).
-pub fn solve(
+pub fn by(
+    name: RouteName,
     system: &System,
     settings: &Settings,
     times: &mut Times,
-) -> Result<Solved, SolveError> {
-    let mut watch = Stopwatch::start();
-    let outset = Outset::of(system);
-    let in_range = system.largest().is_normal() && outset.reference.is_normal();
-    if !(in_range && contact_is_in_range(system)) {
-        return Err(SolveError::OutOfRange);
-    }
-    let held = system.d.slides.is_none();
-    let condensed = held && outset.prediction.route() == RouteName::Condensed;
-    times.judge += watch.lap();
-    let mut first = None;
-    if condensed {
-        match outset.go(RouteName::Condensed, system, settings, times) {
-            Ok(done) if is_final(&done.0, settings) => return Ok(done),
-            Ok(done) => first = Some(done),
-            // Contact may hold what the supports hardly hold.
-            Err(SolveError::Singular) => {}
-            Err(error) => return Err(error),
-        }
-    }
-    match (first, outset.go(RouteName::Assembled, system, settings, times)) {
-        (Some(first), Ok(second)) if second.0.is_better_than(&first.0) => Ok(second),
-        (Some(first), _) => Ok(first),
-        (None, second) => second,
-    }
+) -> Result<Outcome, SolveError> {
+    Strategy::new(system)?.solve(name, settings, times)
 }
 
-/// Returns whether no other route would prove more.
-fn is_final(done: &Outcome, settings: &Settings) -> bool {
-    // With enough steps Newton's method ends: if it did not, digits were missing.
-    let stopped = settings.max_iterations < ENOUGH && done.is_out_of_steps(settings);
-    let by_nature = |why: &Unproved| !why.may_be_rounding() || *why == Unproved::HeldByContact;
-    let unprovable = settings.proof.is_infinite() || done.enclosure.as_ref().is_err_and(by_nature);
-    done.is_proved(settings) || stopped || (unprovable && done.residual <= settings.tolerance)
+/// What both routes share, and which of them to take.
+pub struct Strategy<'a, 'd, 'p> {
+    system: &'a System<'d, 'p>,
+    reach: Reach,
+    prediction: Prediction,
+    /// The size that residuals are relative to.
+    reference: f64,
+}
+
+impl<'a, 'd, 'p> Strategy<'a, 'd, 'p> {
+    /// The strategy for a system.
+    ///
+    /// # Errors
+    /// [`SolveError::OutOfRange`].
+    pub fn new(system: &'a System<'d, 'p>) -> Result<Self, SolveError> {
+        let (reach, prediction) = Prediction::of(system);
+        let reference = accuracy::reference(system.d);
+        let in_range = system.largest().is_normal() && reference.is_normal();
+        if !(in_range && contact_is_in_range(system)) {
+            return Err(SolveError::OutOfRange);
+        }
+        Ok(Strategy { system, reach, prediction, reference })
+    }
+
+    /// The routes to take, one after the other as long as too little is proved.
+    pub fn routes(&self) -> &'static [RouteName] {
+        let held = self.system.d.slides.is_none();
+        if held && self.prediction.route() == RouteName::Condensed {
+            &[RouteName::Condensed, RouteName::Assembled]
+        } else {
+            &[RouteName::Assembled]
+        }
+    }
+
+    /// The operations that are predicted for a route.
+    pub fn predicted(&self, name: RouteName) -> f64 {
+        match name {
+            RouteName::Condensed => self.prediction.condensed,
+            RouteName::Assembled => self.prediction.assembled,
+        }
+    }
+
+    /// Newton's method by a route, refined and verified.
+    ///
+    /// # Errors
+    /// As [`solve_discrete`](super::solve_discrete).
+    pub fn solve(
+        &self,
+        name: RouteName,
+        settings: &Settings,
+        times: &mut Times,
+    ) -> Result<Outcome, SolveError> {
+        let mut watch = Stopwatch::start();
+        let mut route: Box<dyn Route + '_> = match name {
+            RouteName::Condensed => Box::new(self.condensed(times)?),
+            RouteName::Assembled => Box::new(Assembled::new(self.system, self.reference)),
+        };
+        watch.lap();
+        let mut verifier = Verifier::new(self.system, route.factor_of_a());
+        let outcome =
+            accuracy::refine(self.system, &mut *route, &mut verifier, self.reference, settings)?;
+        times.newton += watch.lap().saturating_sub(verifier.time());
+        times.certify += verifier.time();
+        Ok(outcome)
+    }
+
+    fn condensed(&self, times: &mut Times) -> Result<Condensed<'_, 'd, 'p>, SolveError> {
+        let (system, q) = (self.system, self.reach.functionals());
+        let entries = self.reach.stored_entries(&system.structure) + 3 * q * q;
+        memory::check(8 * entries as u64)?;
+        let mut watch = Stopwatch::start();
+        system.enters(Phase::Factor);
+        let factor = match Factor::with(&system.structure, &system.matrix)? {
+            Ok(factor) => Arc::new(factor),
+            Err(Indefinite) if system.d.kappa() < 1.0 => return Err(SolveError::Singular),
+            Err(Indefinite) => return Err(SolveError::NotPositiveDefinite),
+        };
+        times.factor += watch.lap();
+        system.enters(Phase::Condense);
+        let route = Condensed::new(system, factor, &self.reach, self.reference);
+        times.compliance += watch.lap();
+        Ok(route)
+    }
 }
 
 /// Returns whether what the matrix is made of on the contact edges neither over- nor underflows.
@@ -141,88 +191,4 @@ fn contact_is_in_range(system: &System) -> bool {
         springs
             && (stress == 0.0 || [stress * stress, gamma * stress].iter().all(|x| x.is_normal()))
     })
-}
-
-/// Solves the system by a given route.
-///
-/// # Errors
-/// As [`solve_discrete`](super::solve_discrete).
-pub fn by(
-    name: RouteName,
-    system: &System,
-    settings: &Settings,
-    times: &mut Times,
-) -> Result<Solved, SolveError> {
-    Outset::of(system).go(name, system, settings, times)
-}
-
-/// The result of a route: the outcome, how it was found, and the factorisations.
-pub type Solved = (Outcome, MethodReport, usize);
-
-/// The data of a system before a route is taken.
-struct Outset {
-    reach: Reach,
-    prediction: Prediction,
-    /// The size that residuals are relative to.
-    reference: f64,
-}
-
-impl Outset {
-    fn of(system: &System) -> Self {
-        let (reach, prediction) = Prediction::of(system);
-        Outset { reach, prediction, reference: accuracy::reference(system.d) }
-    }
-
-    fn go(
-        &self,
-        name: RouteName,
-        system: &System,
-        settings: &Settings,
-        times: &mut Times,
-    ) -> Result<Solved, SolveError> {
-        let mut watch = Stopwatch::start();
-        let Outset { reach, prediction, reference } = self;
-        let proving;
-        let (outcome, predicted_operations, factorizations) = match name {
-            RouteName::Condensed => {
-                let q = reach.functionals();
-                memory::ensure(8 * (reach.stored_entries(&system.structure) + 3 * q * q) as u64)?;
-                system.enters(Phase::Factor);
-                let factor = match Factor::with(&system.structure, &system.matrix)? {
-                    Ok(factor) => Arc::new(factor),
-                    Err(Indefinite) if system.d.kappa() < 1.0 => return Err(SolveError::Singular),
-                    Err(Indefinite) => return Err(SolveError::NotPositiveDefinite),
-                };
-                times.factor += watch.lap();
-                system.enters(Phase::Condense);
-                let mut route = Condensed::new(system, &factor, reach, *reference);
-                times.compliance += watch.lap();
-                let mut verifier = Verifier::new(system, Some(Arc::clone(&factor)));
-                let outcome =
-                    accuracy::refine(system, &mut route, &mut verifier, *reference, settings)?;
-                proving = verifier.time();
-                (outcome, prediction.condensed, 1)
-            }
-            RouteName::Assembled => {
-                let mut route = Assembled::new(system, *reference);
-                let mut verifier = Verifier::new(system, None);
-                let outcome =
-                    accuracy::refine(system, &mut route, &mut verifier, *reference, settings)?;
-                proving = verifier.time();
-                (outcome, prediction.assembled, route.factorizations())
-            }
-        };
-        times.newton += watch.lap().saturating_sub(proving);
-        times.certify += proving;
-        let Outcome { condition, forward_error, .. } = outcome;
-        let report = MethodReport {
-            route: name,
-            predicted_operations,
-            condition,
-            forward_error,
-            threads: 1,
-            slides: 0,
-        };
-        Ok((outcome, report, factorizations))
-    }
 }

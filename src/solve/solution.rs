@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::answers::{self, ContactBoundary, EnergyBalance};
 use super::course::Course;
 use super::enclosure::Certificate;
-use super::evaluated::Evaluated;
+use super::iterate::Evaluated;
 use super::{MethodReport, NewtonReport, Report, Verdict};
 use crate::fem::contact_line::{self, Coercivity, Gamma};
 use crate::fem::dense::inner;

@@ -25,7 +25,7 @@ use signorini::fem::interpolation::{Interpolation, seminorms};
 use signorini::fem::{Discretization, Errors, Exact, Space, a_priori, loads};
 use signorini::kernel::P2;
 use signorini::nalgebra::Vector2;
-use signorini::solve::evaluated::Evaluated;
+use signorini::solve::iterate::Evaluated;
 use signorini::solve::ladder::{fitted_slope, rates};
 use signorini::solve::{Degree, Gamma0, Ladder, Settings, SolveError, Theorem, solve_discrete};
 

@@ -9,7 +9,7 @@ use signorini::fem::matrix::{self, Neighbours, Numbering};
 use signorini::fem::{Condition, Diagonal, Discretization, Problem, Rectangle};
 use signorini::io::Case;
 use signorini::kernel::{Material, Plane};
-use signorini::solve::evaluated::Evaluated;
+use signorini::solve::iterate::Evaluated;
 use signorini::solve::{
     ContactQuadrature, Degree, Gamma0, Method, Settings, SolveError, Status, solve, solve_discrete,
 };

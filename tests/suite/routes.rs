@@ -15,7 +15,7 @@ fn by(name: RouteName, problem: &Problem, method: &Method) -> Result<Outcome, So
     let d = discretize(problem, method)?;
     let system = System::new(&d)?;
     let settings = Settings::default();
-    Ok(route::by(name, &system, &settings, &mut Times::default())?.0)
+    route::by(name, &system, &settings, &mut Times::default())
 }
 
 /// The largest difference of two displacements beside the largest displacement.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use signorini::fem::{Condition, Degree, Problem, SharedFunction};
 use signorini::kernel::{Material, Plane};
-use signorini::solve::evaluated::Evaluated;
+use signorini::solve::iterate::Evaluated;
 use signorini::solve::{Method, Solution, discretize};
 
 use super::assembled::solver::unsolved;

@@ -11,7 +11,7 @@ use signorini::fem::double_double::DoubleDouble;
 use signorini::fem::{Condition, DataError, Diagonal, Mesh, Problem, Rectangle, residual};
 use signorini::kernel::{Material, Plane};
 use signorini::solve::system::System;
-use signorini::solve::times::Times;
+use signorini::solve::Times;
 use signorini::solve::{
     ContactQuadrature, Degree, Method, RouteName, Settings, Solution, SolveError, discretize,
     route, solve,
@@ -278,10 +278,7 @@ fn routes(
     let method = Method { degree, quadrature, ..Method::default() };
     let d = discretize(&problem, &method).map_err(text)?;
     let system = System::new(&d).map_err(text)?;
-    let by = |name| {
-        let (outcome, ..) = route::by(name, &system, &Settings::default(), &mut Times::default())?;
-        Ok::<_, SolveError>(outcome)
-    };
+    let by = |name| route::by(name, &system, &Settings::default(), &mut Times::default());
     let a = by(RouteName::Condensed).map_err(text)?.u;
     let size = a.as_flattened().iter().map(|u| u.abs()).fold(0.0, f64::max);
     let b = by(RouteName::Assembled).map_err(text)?.u;

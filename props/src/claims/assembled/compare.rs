@@ -8,7 +8,7 @@ use signorini::fem::matrix::Numbering;
 use signorini::fem::residual;
 use signorini::fem::{BoundaryEdge, ContactFace, Degree, Discretization};
 use signorini::solve::Solution;
-use signorini::solve::evaluated::Evaluated;
+use signorini::solve::iterate::Evaluated;
 
 use super::definition::{Mistake, Named, Setting, defined, inner, unit};
 use super::draw::{Draw, owner};

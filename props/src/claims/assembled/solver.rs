@@ -2,7 +2,7 @@
 
 use signorini::fem::Discretization;
 use signorini::fem::matrix::{self, LowerTriangle, Neighbours, Numbering};
-use signorini::solve::evaluated::Evaluated;
+use signorini::solve::iterate::Evaluated;
 use signorini::solve::{
     MethodReport, NewtonReport, Report, RouteName, Solution, Status, Unproved, Verdict,
 };
