@@ -10,8 +10,7 @@
 //! Everything but the areas and the matrix of those equations, which are balls, is a sum or product of positive
 //! doubles of some million terms at most: rounding changes it by far less than the factor `SAFETY`.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+use std::collections::BTreeMap;
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -69,6 +68,7 @@ impl Korn {
             size,
             along: vec![f64::INFINITY; left.len()],
             part: vec![NONE; left.len()],
+            passed: vec![f64::NAN; left.len()],
         };
         let mut parts: Vec<Vec<Hold>> = Vec::new();
         for hold in supports(space, constraints).into_iter().chain(holds.iter().cloned()) {
@@ -131,29 +131,40 @@ struct Paths<'a> {
     along: Vec<f64>,
     /// The part of the body in which each triangle is, as far as it has been reached.
     part: Vec<usize>,
+    /// S_T with which each triangle last passed it on to its neighbours.
+    passed: Vec<f64>,
 }
 
+/// Positive doubles are in the order of their bits: without the last ones they are in eight classes an octave.
+const CLASS: u32 = 49;
+
 impl Paths<'_> {
-    /// To all triangles of the part of the body that `root` is in.
+    /// To all triangles of the part of the body that `root` is in. Triangles wait in classes of S_T, the smallest first; one that is
+    /// reached again by a shorter path waits again, so the paths that are left are shortest ones.
     fn explore(&mut self, root: usize, part: usize) {
         (self.along[root], self.part[root]) = (0.0, part);
-        // Positive doubles are in the order of their bits.
-        let mut queue = BinaryHeap::from([Reverse((0, root))]);
-        while let Some(Reverse((reached, t))) = queue.pop() {
-            if reached > self.along[t].to_bits() {
+        let mut waiting = BTreeMap::from([(0, vec![root])]);
+        while let Some((_, next)) = waiting.pop_first() {
+            next.into_iter().for_each(|t| self.pass_on(t, part, &mut waiting));
+        }
+    }
+
+    /// S_T of triangle `t` to its neighbours.
+    fn pass_on(&mut self, t: usize, part: usize, waiting: &mut BTreeMap<u64, Vec<usize>>) {
+        if self.passed[t] == self.along[t] {
+            return;
+        }
+        self.passed[t] = self.along[t];
+        for (i, &edge) in self.mesh.triangle_edges()[t].iter().enumerate() {
+            let Some(&other) = self.sides[edge].iter().find(|&&o| o != t && o != NONE) else {
                 continue;
-            }
-            for (i, &edge) in self.mesh.triangle_edges()[t].iter().enumerate() {
-                let Some(&other) = self.sides[edge].iter().find(|&&o| o != t && o != NONE) else {
-                    continue;
-                };
-                let edge = self.mesh.triangle(t).edge(i);
-                let w = 1.0 + 2.0 * self.size / edge.dot(&edge).sqrt();
-                let there = self.along[t] + 2.0 * w * w * (self.left[t] + self.left[other]);
-                if there < self.along[other] {
-                    (self.along[other], self.part[other]) = (there, part);
-                    queue.push(Reverse((there.to_bits(), other)));
-                }
+            };
+            let edge = self.mesh.triangle(t).edge(i);
+            let w = 1.0 + 2.0 * self.size / edge.dot(&edge).sqrt();
+            let there = self.along[t] + 2.0 * w * w * (self.left[t] + self.left[other]);
+            if there < self.along[other] {
+                (self.along[other], self.part[other]) = (there, part);
+                waiting.entry(there.to_bits() >> CLASS).or_default().push(other);
             }
         }
     }

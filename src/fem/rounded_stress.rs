@@ -14,14 +14,31 @@ use crate::kernel::{Element, Material, Stress, Triangle};
 /// Adds int s:eps(v) for every basis function v, where s is the stress of `u` that doubles give. Returns a b with
 /// |int (s - sigma(u)):eps(v)| <= b |v|_a for all v: docs/theory.md, 7.5. Infinite or NaN where there is none.
 pub fn add_forces<S: Sum>(d: &Discretization, u: &[[Ball; 2]], forces: &mut [[S; 2]]) -> f64 {
-    with_element!(d.space.degree(), add_forces_of::<S>(d, u, forces))
+    add_forces_beside(d, (u, None), forces)[0]
+}
+
+/// The same, and |v|_a at most for another field, to a hundredth: each triangle is looked at once.
+pub fn add_forces_with_norm<S: Sum>(
+    d: &Discretization,
+    (u, v): (&[[Ball; 2]], &[[Ball; 2]]),
+    forces: &mut [[S; 2]],
+) -> [f64; 2] {
+    add_forces_beside(d, (u, Some(v)), forces)
+}
+
+fn add_forces_beside<S: Sum>(
+    d: &Discretization,
+    fields: (&[[Ball; 2]], Option<&[[Ball; 2]]>),
+    forces: &mut [[S; 2]],
+) -> [f64; 2] {
+    with_element!(d.space.degree(), add_forces_of::<S>(d, fields, forces))
 }
 
 fn add_forces_of<E, const N: usize, const M: usize, S>(
     d: &Discretization,
-    u: &[[Ball; 2]],
+    (u, v): (&[[Ball; 2]], Option<&[[Ball; 2]]>),
     forces: &mut [[S; 2]],
-) -> f64
+) -> [f64; 2]
 where
     E: Element<N, M>,
     S: Sum,
@@ -31,12 +48,18 @@ where
     let terms = Term::all::<E, M>(&points);
     let mut stresses = [[0.0; 3]; N];
     let mut square = 0.0;
+    let mut norm = Norm::default();
     for (t, (triangle, nodes)) in d.space.triangles::<N>().enumerate() {
+        let material = d.problem.material.of(t);
+        let gradients = Gradients::new(&triangle);
+        if let Some(v) = v.filter(|v| !moves_as_a_whole(nodes, v)) {
+            let rounded = RoundedStrain::new::<E, M>(gradients, nodes.map(|node| v[node]));
+            norm.add::<E, N, M>(&rounded, material);
+        }
         if moves_as_a_whole(nodes, u) {
             continue;
         }
-        let rounded = RoundedStrain::new::<E, M>(&triangle, nodes.map(|node| u[node]));
-        let material = d.problem.material.of(t);
+        let rounded = RoundedStrain::new::<E, M>(gradients, nodes.map(|node| u[node]));
         square += rounded.stress_error_squared(material);
         for (&(l, weight), at) in points.iter().zip(&mut stresses) {
             *at = rounded.stress::<E, M>(material, l).components().map(|s| weight * s);
@@ -64,7 +87,7 @@ where
             along_y.add_products([(xy, x), (yy, y)]);
         }
     }
-    SAFETY * square.sqrt()
+    [SAFETY * square.sqrt(), norm.at_most()]
 }
 
 /// The part of the force at a node of a triangle that has the direction of one of its sides: the stresses at the points of the
@@ -113,23 +136,44 @@ fn energy_norm_of<E: Element<N, M>, const N: usize, const M: usize>(
     d: &Discretization,
     v: &[[Ball; 2]],
 ) -> f64 {
-    let (mut squares, mut errors) = (0.0, 0.0);
+    let mut norm = Norm::default();
     for (t, (triangle, nodes)) in d.space.triangles::<N>().enumerate() {
-        if moves_as_a_whole(nodes, v) {
-            continue;
+        if !moves_as_a_whole(nodes, v) {
+            let nodal = nodes.map(|node| v[node]);
+            let rounded = RoundedStrain::new::<E, M>(Gradients::new(&triangle), nodal);
+            norm.add::<E, N, M>(&rounded, d.problem.material.of(t));
         }
-        let rounded = RoundedStrain::new::<E, M>(&triangle, nodes.map(|node| v[node]));
-        let material = d.problem.material.of(t);
-        errors += rounded.stress_error_squared(material);
+    }
+    norm.at_most()
+}
+
+/// The squares of the energy norm of a stress in doubles, and of what it is off by.
+#[derive(Default)]
+struct Norm {
+    squares: f64,
+    errors: f64,
+}
+
+impl Norm {
+    fn add<E: Element<N, M>, const N: usize, const M: usize>(
+        &mut self,
+        rounded: &RoundedStrain<N>,
+        material: &Material<f64>,
+    ) {
+        self.errors += rounded.stress_error_squared(material);
         let law = material.squares();
-        let roots = law.pivots().map(|modulus| (rounded.area / (4.0 * modulus)).sqrt());
+        let area = rounded.gradients.area;
+        let roots = law.pivots().map(|modulus| (area / (4.0 * modulus)).sqrt());
         E::at_stiffness_points(|l, weight| {
             let [deviator, shear, sphere] = law.parts(rounded.stress::<E, M>(material, l));
             let parts = [roots[0] * sphere, roots[1] * deviator, roots[2] * shear];
-            squares += weight * parts.map(|s| s * s).iter().sum::<f64>() + f64::MIN_POSITIVE;
+            self.squares += weight * parts.map(|s| s * s).iter().sum::<f64>() + f64::MIN_POSITIVE;
         });
     }
-    SAFETY * (squares.sqrt() + errors.sqrt())
+
+    fn at_most(&self) -> f64 {
+        SAFETY * (self.squares.sqrt() + self.errors.sqrt())
+    }
 }
 
 /// Returns whether all nodes have the same value, and that is known.
@@ -145,22 +189,43 @@ const SAFETY: f64 = 1.01;
 /// A triangle is too flat for doubles where the products that its area is the difference of are larger beside it.
 const FLAT: f64 = (1_u64 << 40) as f64;
 
-/// The differences of nodal values on a triangle and the gradients of its barycentric coordinates, in doubles, with what
-/// bounds their rounding.
+/// The gradients of the barycentric coordinates of a triangle, in doubles.
+#[derive(Clone, Copy)]
+struct Gradients {
+    barycentric: [Vector2<f64>; 3],
+    area: f64,
+    /// The products that the area is the difference of, beside it; infinite for a triangle that is too flat for doubles.
+    skew: f64,
+    /// The sum of the magnitudes of the gradients.
+    slope: f64,
+}
+
+impl Gradients {
+    fn new(triangle: &Triangle<f64>) -> Self {
+        let [a, b] = [1, 2].map(|i| triangle.edge(i));
+        let double_area = triangle.double_area();
+        let products = (a[0] * b[1]).abs() + (a[1] * b[0]).abs();
+        let inverse = 1.0 / double_area;
+        let skew = products * inverse;
+        let barycentric = [0, 1, 2].map(|i| triangle.scaled_normal(i) * -inverse);
+        let slope = barycentric.iter().flatten().map(|g| g.abs()).sum::<f64>();
+        let sound = double_area > 1e-200 && skew <= FLAT;
+        let skew = if sound { skew } else { f64::INFINITY };
+        Gradients { barycentric, area: double_area / 2.0, skew, slope }
+    }
+}
+
+/// The differences of nodal values on a triangle in doubles, with what bounds their rounding.
 struct RoundedStrain<const N: usize> {
     /// Nodal values less the first one.
     differences: [Vector2<f64>; N],
-    barycentric: [Vector2<f64>; 3],
-    area: f64,
+    gradients: Gradients,
     /// A bound of the error of the strain, the rounding of the stress beside it included; infinite for a flat triangle.
     error: f64,
 }
 
 impl<const N: usize> RoundedStrain<N> {
-    fn new<E: Element<N, M>, const M: usize>(
-        triangle: &Triangle<f64>,
-        nodal: [[Ball; 2]; N],
-    ) -> Self {
+    fn new<E: Element<N, M>, const M: usize>(gradients: Gradients, nodal: [[Ball; 2]; N]) -> Self {
         let first = nodal[0];
         let difference = |u: [Ball; 2], c: usize| {
             (u[c].head() - first[c].head()) + (u[c].tail() - first[c].tail())
@@ -175,23 +240,12 @@ impl<const N: usize> RoundedStrain<N> {
                 2.0 * f64::EPSILON * tails + u.radius() + first.radius()
             })
             .sum();
-        let [a, b] = [1, 2].map(|i| triangle.edge(i));
-        let double_area = triangle.double_area();
-        let products = (a[0] * b[1]).abs() + (a[1] * b[0]).abs();
-        let inverse = 1.0 / double_area;
-        let skew = products * inverse;
-        let barycentric = [0, 1, 2].map(|i| triangle.scaled_normal(i) * -inverse);
-        let slope = E::DEGREE as f64 * barycentric.iter().flatten().map(|g| g.abs()).sum::<f64>();
+        let slope = E::DEGREE as f64 * gradients.slope;
         let sizes: f64 = differences.iter().flatten().map(|d| d.abs()).sum();
-        let roundings = (N + 7 * E::DEGREE - 3) as f64 + 4.0 * skew;
-        let sound = double_area > 1e-200 && skew <= FLAT;
+        let roundings = (N + 7 * E::DEGREE - 3) as f64 + 4.0 * gradients.skew;
         let error = slope * (f64::EPSILON * roundings * sizes + off + f64::MIN_POSITIVE);
-        RoundedStrain {
-            differences,
-            barycentric,
-            area: double_area / 2.0,
-            error: if sound { error } else { f64::INFINITY },
-        }
+        let error = if gradients.skew.is_finite() { error } else { f64::INFINITY };
+        RoundedStrain { differences, gradients, error }
     }
 
     /// An upper bound of the square of the stress error in the norm dual to |v|_a on the triangle: |sigma:eps| is at most
@@ -204,7 +258,7 @@ impl<const N: usize> RoundedStrain<N> {
             4.0 * largest_entry(material)
         };
         let off = most * self.error + f64::MIN_POSITIVE;
-        let norm = off * (self.area / least_eigenvalue(material)).sqrt();
+        let norm = off * (self.gradients.area / least_eigenvalue(material)).sqrt();
         norm * norm + f64::MIN_POSITIVE
     }
 
@@ -214,7 +268,7 @@ impl<const N: usize> RoundedStrain<N> {
         material: &Material<f64>,
         l: [f64; 3],
     ) -> Stress<f64> {
-        let gradients = E::gradients(l, self.barycentric);
+        let gradients = E::gradients(l, self.gradients.barycentric);
         material.stress(displacement_gradient(&self.differences, &gradients))
     }
 }

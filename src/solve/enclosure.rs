@@ -12,6 +12,7 @@
 //!    dual norm by [Korn's inequality](crate::fem::korn) at each node, crudely.
 //! 3. (C2): with rho = |r|_A*, |u~ - u^h|_a <= rho (1 - kappa)^{-1/2}, |gamma^{1/2}(lambda~ - lambda^h)| <= rho / 2.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -23,8 +24,8 @@ use super::balls::{field, free, kappa, length, lines, root};
 use super::factor::{Factor, Indefinite};
 use super::intervals::{Evaluation, Intervals, Stresses};
 use super::pressed::{self, Pressed, SHARES};
-use super::system::System;
 use super::report::Stopwatch;
+use super::system::System;
 use crate::fem::ball::{Ball, up};
 use crate::fem::double_double::DoubleDouble;
 use crate::fem::korn::Korn;
@@ -208,14 +209,13 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         stresses: Stresses,
     ) -> Result<Enclosure, Unproved> {
         let d = self.system.d;
-        let slides = Slides::around(d, u);
+        let Some(loose) = Slides::around(d, u) else { return self.around(u, u, near, stresses) };
         let mut reported = u.to_vec();
-        slides.iter().for_each(|slides| slides.least_norm(&mut reported));
+        loose.least_norm(&mut reported);
         let stopped = d.slides.as_ref().map_or(0, Slides::count);
-        let ends = |slides: &Slides| slides.count() > stopped || slides.are_bounded();
-        let Some(loose) = slides.filter(ends) else {
+        if !(loose.count() > stopped || loose.are_bounded()) {
             return self.around(u, &reported, near, stresses);
-        };
+        }
         // Motions that only edges stop which do not press: of all solutions one that is away from these.
         let Some(inside) = loose.to_inside(u) else { return Err(Unproved::HeldByContact) };
         let mut u = u.to_vec();
@@ -312,7 +312,10 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         if !stays_off(d, &self.lines, pressed, &at.u, (&nodes, exact)) {
             return Err(Unproved::HeldByContact);
         }
-        let exactly = slid(at.u.clone(), reported, d.slides.as_ref());
+        let exactly = match &d.slides {
+            Some(slides) => Cow::Owned(slid(at.u.clone(), reported, slides)),
+            None => Cow::Borrowed(&at.u),
+        };
         for (node, (exactly, reported)) in nodes.iter_mut().zip(exactly.iter().zip(reported)) {
             let off = [0, 1].map(|c| exactly[c] - Ball::from(reported[c]));
             *node = up(*node + length(off));
@@ -345,8 +348,8 @@ fn factor_for(system: &System, springs: &[DMatrix<f64>]) -> Result<Arc<Factor>, 
 }
 
 /// u moved along the motions that slide, to where `reported` is.
-fn slid(mut u: Vec<[Ball; 2]>, reported: &[[f64; 2]], slides: Option<&Slides>) -> Vec<[Ball; 2]> {
-    for slide in slides.map_or(&[][..], |slides| &slides.basis) {
+fn slid(mut u: Vec<[Ball; 2]>, reported: &[[f64; 2]], slides: &Slides) -> Vec<[Ball; 2]> {
+    for slide in &slides.basis {
         let off = u.iter().zip(reported).zip(slide);
         let weight: f64 =
             off.map(|((u, r), s)| (0..2).map(|c| (r[c] - u[c].head()) * s[c]).sum::<f64>()).sum();
@@ -391,17 +394,17 @@ impl Product<'_, '_, '_> {
     fn times(&self, z: &[Ball]) -> (Vec<Ball>, f64) {
         let v = field(self.system, |number, _, _| z[number], |_, _| 0.0);
         let d = self.system.d;
-        let mut forces = vec![[Ball::from(0); 2]; v.len()];
-        let off = match self.stresses {
-            Stresses::InBalls => self.stresses.add_forces(d, &v, &mut forces),
+        let (mut forces, off) = match self.stresses {
+            Stresses::InBalls => {
+                let mut forces = vec![[Ball::from(0); 2]; v.len()];
+                let off = self.stresses.add_forces(d, &v, &mut forces);
+                (forces, off)
+            }
             // z is next to nothing beside u~: the balls of the kernel will do.
             Stresses::InDoubles => {
                 let mut sums = vec![[kernel::Ball::point(0.0); 2]; v.len()];
                 let off = rounded_stress::add_forces(d, &v, &mut sums);
-                for (force, sum) in forces.iter_mut().zip(sums) {
-                    *force = sum.map(Ball::from);
-                }
-                off
+                (sums.into_iter().map(|sum| sum.map(Ball::from)).collect(), off)
             }
         };
         for line in self.lines {
@@ -434,7 +437,7 @@ fn dual_norm(
     negligible: f64,
 ) -> f64 {
     let mut z = vec![Ball::from(0); r.len()];
-    let mut left = r.to_vec();
+    let mut left = Cow::Borrowed(r);
     let mut best = f64::INFINITY;
     for _ in 0..CORRECTIONS {
         let mut correction: Vec<f64> = left.iter().map(|t| t.head()).collect();
@@ -442,12 +445,16 @@ fn dual_norm(
         for (z, c) in z.iter_mut().zip(&correction) {
             *z = (*z + Ball::from(*c)).centre();
         }
-        let (az, off) = a.times(&z);
+        let (mut az, off) = a.times(&z);
         let off = up(off / coercivity.sqrt());
-        let square = z.iter().zip(&az).fold(Ball::from(0), |sum, (&z, &az)| sum + z * az);
+        let mut square = Ball::from(0);
+        for (az, (&z, &r)) in az.iter_mut().zip(z.iter().zip(r)) {
+            square += z * *az;
+            *az = r - *az;
+        }
         // x^2 = z . A z is off q = z . az by off x at most, so x <= off + q^(1/2).
         let energy = up(off + root(square));
-        left = r.iter().zip(&az).map(|(&r, &az)| r - az).collect();
+        left = Cow::Owned(az);
         let rest = up(weighted(&left, crude) + off);
         let bound = up(energy + rest);
         if !(rest > (SMALL * energy).max(negligible)) {

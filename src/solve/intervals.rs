@@ -134,10 +134,16 @@ impl Evaluation {
             .zip(reported)
             .map(|(exact, u)| [0, 1].map(|c| exact[c] - Ball::from(u[c])))
             .collect();
-        let moved = stresses.energy_norm(d, &off);
-
         let mut residual = vec![[Ball::from(0); 2]; u.len()];
-        let off = stresses.add_forces(d, &exact, &mut residual);
+        let [off, moved] = match stresses {
+            Stresses::InDoubles => {
+                rounded_stress::add_forces_with_norm(d, (&exact, &off), &mut residual)
+            }
+            Stresses::InBalls => {
+                let moved = stresses.energy_norm(d, &off);
+                [stresses.add_forces(d, &exact, &mut residual), moved]
+            }
+        };
         // x^2 = a(u~, u~) is off q = u~ . forces by off x at most, so x <= off + q^(1/2).
         let energy = product(&exact, &residual);
         let energy = energy.widened(up(off * (off + root(energy))));
@@ -228,15 +234,16 @@ impl Evaluation {
         let of = |(boundary, held): (&String, &Vec<crate::fem::constraints::Held>)| {
             let ranges = [0, 1].map(|c| {
                 // The reaction is the residual at this field.
-                let mut test = vec![[Ball::from(0); 2]; self.u.len()];
+                let zero = Ball::from(0);
+                let (mut test, mut reaction) = (vec![[zero; 2]; self.u.len()], zero);
                 for held in held {
                     let direction = Ball::from(held.direction[c]);
                     for k in 0..2 {
-                        let dual = Ball::from(held.dual[k]);
-                        test[held.node][k] += direction * dual;
+                        let part = direction * Ball::from(held.dual[k]);
+                        test[held.node][k] += part;
+                        reaction += part * self.residual[held.node][k];
                     }
                 }
-                let reaction = product(&test, &self.residual);
                 let by_body = self.stresses.energy_norm(d, &test);
                 let by_contact = lines.iter().fold(Ball::from(0), |sum, line| {
                     let most = line.p0(&test).iter().fold(0.0, |sum, p| up(sum + p.magnitude()));

@@ -10,8 +10,8 @@ use std::f64::consts::FRAC_PI_4;
 use signorini::fem::double_double::DoubleDouble;
 use signorini::fem::{Condition, DataError, Diagonal, Mesh, Problem, Rectangle, residual};
 use signorini::kernel::{Material, Plane};
-use signorini::solve::system::System;
 use signorini::solve::Times;
+use signorini::solve::system::System;
 use signorini::solve::{
     ContactQuadrature, Degree, Method, RouteName, Settings, Solution, SolveError, discretize,
     route, solve,
