@@ -12,7 +12,7 @@ use super::body::block;
 use super::enclosure::{Certificate, Unproved, Verifier};
 use super::factor::Factor;
 use super::intervals::Stresses;
-use super::iterate::{Evaluation, Iterate};
+use super::iterate::{Evaluation, Iterate, NOISE};
 use super::newton::Until;
 use super::system::System;
 use super::{Settings, SolveError, Status};
@@ -130,11 +130,9 @@ impl Outcome {
     }
 }
 
-/// A correction this small, relative, leaves nothing to correct; where the proved radius is larger, better arithmetic is tried.
+/// A correction this small, relative, leaves nothing to correct; where the proved radius is larger, or the imbalance of the forces
+/// on the body, in parts of them, better arithmetic is tried.
 const SMALL: f64 = 1e-10;
-
-/// The largest imbalance of the forces on the body, in parts of them; beyond it better arithmetic is tried.
-const BALANCED: f64 = 1e-10;
 
 /// A correction ends where the residual is this share of the tolerance.
 const GOOD_ENOUGH: f64 = 1e-2;
@@ -160,80 +158,133 @@ pub fn refine(
     reference: f64,
     settings: &Settings,
 ) -> Result<Outcome, SolveError> {
-    let d = system.d;
-    let mut iterate = Iterate::lift(d);
-    let mut residuals = Vec::new();
-    let mut at = iterate.evaluate(system, false);
-    // The first pass goes as far as it can. It comes from nowhere: what it moves is no error.
-    let mut until = Until { steps: settings.max_iterations, residual: 0.0 };
-    let Pass { left, mut softness, .. } =
-        route.pass(&mut iterate, &mut at, &mut residuals, until)?;
-    let mut correction = f64::INFINITY;
-    let mut cut = left > 0.0;
-    let mut residual = Residual::new(system, &at, reference);
-    let mut enclosure = Err(Unproved::NotReached);
+    let mut refinement = Refinement::new(system, reference, settings);
+    refinement.pass(route)?;
+    // It came from nowhere: what it moved is no error.
+    refinement.correction = f64::INFINITY;
     for _ in 1..MOST_PASSES {
-        if residuals.len() > settings.max_iterations && !(residual.norm <= settings.tolerance) {
+        if refinement.is_out_of_steps() {
             break;
         }
-        let size = system.size(at.energy.sqrt(), &iterate.rounded());
-        // A correction need not better what is good enough.
-        until.residual = if cut { 0.0 } else { GOOD_ENOUGH * settings.tolerance };
-        let change = route.pass(&mut iterate, &mut at, &mut residuals, until)?;
-        // What was proved is proved of another displacement.
-        enclosure = Err(Unproved::NotReached);
-        softness = softness.max(change.softness);
-        cut = change.left > 0.0;
-        let before = correction;
-        let moved = change.energy.max(change.left).sqrt();
-        correction = if moved == 0.0 { 0.0 } else { moved / size };
-        residual = Residual::new(system, &at, reference);
-        let done = residual.norm <= settings.tolerance
-            && residual.unbalanced <= BALANCED
-            && correction <= SMALL;
-        if !done && (cut || correction < before / 2.0) {
+        let before = refinement.correction;
+        refinement.pass(route)?;
+        let is_done = refinement.is_done();
+        if !is_done && (refinement.cut || refinement.correction < before / 2.0) {
             continue;
         }
-        if done && settings.proof.is_infinite() {
+        if is_done && settings.proof.is_infinite() {
             break;
         }
         verifier.use_factor(route.factor_of_a());
-        enclosure = verifier.enclose(
-            &iterate.rounded(),
-            Some(iterate.as_double_doubles()),
-            Stresses::InDoubles,
-        );
-        let near = match &enclosure {
-            Ok(e) => e.is_within(settings.proof.min(SMALL)),
-            Err(why) => !why.may_be_rounding(),
-        };
-        let balanced = verifier.unbalanced() <= BALANCED * residual.forces;
-        if at.precisely || (done && near && balanced) {
+        let is_near = refinement.verify(verifier);
+        if refinement.at.precisely || (is_done && is_near) {
             break;
         }
         // Doubles are not enough.
-        at = iterate.evaluate(system, true);
-        correction = f64::INFINITY;
+        refinement.at = refinement.iterate.evaluate(system, true);
+        refinement.correction = f64::INFINITY;
     }
-    let u = iterate.rounded();
-    if !enclosure.as_ref().is_ok_and(|e| e.is_within(settings.proof)) {
-        enclosure = verifier.prove(&u, Some(iterate.as_double_doubles()), settings.proof);
+    Ok(refinement.outcome(verifier, route.factorizations()))
+}
+
+/// An iterate between two passes.
+struct Refinement<'a, 'd, 'p> {
+    system: &'a System<'d, 'p>,
+    settings: &'a Settings,
+    reference: f64,
+    iterate: Iterate,
+    at: Evaluation,
+    residual: Residual,
+    /// The relative residual before each Newton step and after the last.
+    residuals: Vec<f64>,
+    /// The size of the last correction beside the displacement.
+    correction: f64,
+    /// Whether the line search cut the last step short.
+    cut: bool,
+    softness: f64,
+    enclosure: Certificate,
+}
+
+impl<'a, 'd, 'p> Refinement<'a, 'd, 'p> {
+    fn new(system: &'a System<'d, 'p>, reference: f64, settings: &'a Settings) -> Self {
+        let iterate = Iterate::lift(system.d);
+        let at = iterate.evaluate(system, false);
+        Refinement {
+            system,
+            settings,
+            reference,
+            residual: Residual::new(system, &at, reference),
+            iterate,
+            at,
+            residuals: Vec::new(),
+            correction: f64::INFINITY,
+            // The first pass goes as far as it can.
+            cut: true,
+            softness: 0.0,
+            enclosure: Err(Unproved::NotReached),
+        }
     }
-    let size = system.size(at.energy.sqrt(), &u);
-    let rounding = system.energy_of_unrelated(&iterate.remainder()).sqrt();
-    let rounding = if rounding > 0.0 { rounding / size } else { 0.0 };
-    let Evaluation { forces, p, .. } = at;
-    Ok(Outcome {
-        u,
-        forces,
-        p,
-        residuals,
-        residual: residual.norm,
-        enclosure,
-        forward_error: correction + rounding,
-        condition: (system.largest() * softness).max(1.0),
-        factorizations: route.factorizations(),
-    })
+
+    fn is_out_of_steps(&self) -> bool {
+        self.residuals.len() > self.settings.max_iterations
+            && !(self.residual.norm <= self.settings.tolerance)
+    }
+
+    /// Returns whether nothing is left to correct in the numbers at hand.
+    fn is_done(&self) -> bool {
+        self.residual.norm <= self.settings.tolerance
+            && self.residual.unbalanced <= SMALL
+            && self.correction <= SMALL
+    }
+
+    fn pass(&mut self, route: &mut dyn Route) -> Result<(), SolveError> {
+        let size = self.system.size(self.at.energy.sqrt(), &self.iterate.rounded());
+        // A correction need not better what is good enough.
+        let residual = if self.cut { 0.0 } else { GOOD_ENOUGH * self.settings.tolerance };
+        let until = Until { steps: self.settings.max_iterations, residual };
+        let pass = route.pass(&mut self.iterate, &mut self.at, &mut self.residuals, until)?;
+        // What was proved is proved of another displacement.
+        self.enclosure = Err(Unproved::NotReached);
+        self.softness = self.softness.max(pass.softness);
+        self.cut = pass.left > 0.0;
+        let moved = pass.energy.max(pass.left).sqrt();
+        self.correction = if moved == 0.0 { 0.0 } else { moved / size };
+        self.residual = Residual::new(self.system, &self.at, self.reference);
+        Ok(())
+    }
+
+    /// Encloses the exact solution, and returns whether better arithmetic would tell no more.
+    fn verify(&mut self, verifier: &mut Verifier) -> bool {
+        let (u, near) = (self.iterate.rounded(), self.iterate.as_double_doubles());
+        self.enclosure = verifier.enclose(&u, Some(near), Stresses::InDoubles);
+        let is_near = match &self.enclosure {
+            Ok(e) => e.is_within(self.settings.proof.min(SMALL)),
+            Err(why) => !why.may_be_rounding(),
+        };
+        is_near && verifier.unbalanced() <= SMALL * self.residual.forces
+    }
+
+    fn outcome(self, verifier: &mut Verifier, factorizations: usize) -> Outcome {
+        let Refinement { system, settings, iterate, mut enclosure, .. } = self;
+        let u = iterate.rounded();
+        if !enclosure.as_ref().is_ok_and(|e| e.is_within(settings.proof)) {
+            enclosure = verifier.prove(&u, Some(iterate.as_double_doubles()), settings.proof);
+        }
+        let size = system.size(self.at.energy.sqrt(), &u);
+        let rounding = system.energy_of_unrelated(&iterate.remainder()).sqrt();
+        let rounding = if rounding > 0.0 { rounding / size } else { 0.0 };
+        Outcome {
+            u,
+            forces: self.at.forces,
+            p: self.at.p,
+            residuals: self.residuals,
+            residual: self.residual.norm,
+            enclosure,
+            forward_error: self.correction + rounding,
+            condition: (system.largest() * self.softness).max(1.0),
+            factorizations,
+        }
+    }
 }
 
 /// The residual of (8) at an iterate.
@@ -288,6 +339,3 @@ pub fn reference(d: &Discretization) -> f64 {
         1.0
     }
 }
-
-/// Forces this many unit roundoffs times their magnitudes are noise.
-const NOISE: f64 = 4.0;

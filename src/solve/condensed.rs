@@ -26,7 +26,7 @@ use super::accuracy::{Pass, Route};
 use super::body::{Body, Derivatives, Edges, Residual, Start, Step, block, derivatives};
 use super::compliance::{Compliance, Reach};
 use super::factor::Factor;
-use super::iterate::{Evaluation, Iterate};
+use super::iterate::{Evaluation, Iterate, NOISE};
 use super::newton::{self, Until};
 use super::relaxation::follow;
 use super::system::System;
@@ -139,9 +139,6 @@ struct Reduced<'r, 'a, 'd, 'p> {
     change: Vec<f64>,
     dw: Vec<f64>,
 }
-
-/// A residual this many unit roundoffs times its magnitudes is noise.
-const NOISE: f64 = 4.0;
 
 impl Reduced<'_, '_, '_, '_> {
     fn times_compliance(&self, v: &[f64]) -> Vec<f64> {

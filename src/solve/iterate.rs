@@ -14,7 +14,7 @@ use crate::fem::solvability::{Play, Slides};
 use crate::fem::{ContactFace, EdgeRule};
 
 /// A residual this many unit roundoffs times its magnitudes is noise.
-const NOISE: f64 = 4.0;
+pub(super) const NOISE: f64 = 4.0;
 
 /// A displacement.
 pub struct Iterate {

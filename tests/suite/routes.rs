@@ -6,7 +6,8 @@ use signorini::io::Case;
 use signorini::solve::accuracy::Outcome;
 use signorini::solve::system::System;
 use signorini::solve::{
-    Degree, Gamma0, Method, RouteName, Settings, SolveError, Times, discretize, route, solve,
+    Degree, Gamma0, Method, RouteName, Settings, SolveError, Times, Verdict, discretize, route,
+    solve,
 };
 
 use crate::common::*;
@@ -44,9 +45,9 @@ fn both_routes_give_the_same_numbers_on_every_example_case() {
 
 /// A beam of this length and height 1, clamped on the left, its tip coming down on the floor.
 fn beam(length: f64, degree: Degree) -> (Problem, Method) {
-    let nx = (4.0 * length.min(300.0)) as usize;
+    let (nx, ny) = if length > 100.0 { (400, 1) } else { (4 * length as usize, 4) };
     let diagonal = signorini::fem::Diagonal::Crossed;
-    let mesh = Rectangle { width: length, height: 1.0, nx, ny: 4, diagonal }.mesh().unwrap();
+    let mesh = Rectangle { width: length, height: 1.0, nx, ny, diagonal }.mesh().unwrap();
     let conditions = conditions([
         ("left", clamped()),
         ("bottom", signorini::fem::Condition::Contact { gap: constant(0.02) }),
@@ -92,6 +93,30 @@ fn stiff_contact_reaches_the_tolerance_in_few_steps() {
                 assert!(residual <= 1e-10 && steps <= 25, "{here}");
             }
         }
+    }
+}
+
+/// Condition numbers beyond this leave doubles nothing.
+const BEYOND_DOUBLES: f64 = 1e15;
+
+#[test]
+fn slender_beams_are_proved_unless_their_condition_is_beyond_doubles() {
+    for degree in [Degree::One, Degree::Two] {
+        let mut proved = 0;
+        for length in [1e2, 1e3, 1e4] {
+            let (problem, method) = beam(length, degree);
+            let condition = match solve(&problem, &method, &Settings::default()) {
+                Ok((solution, _)) if solution.verdict == Verdict::Proved => {
+                    proved += 1;
+                    continue;
+                }
+                Ok((solution, _)) => solution.method.condition,
+                Err(SolveError::IllConditioned { condition, .. }) => condition,
+                Err(error) => panic!("{length} {degree:?}: {error}"),
+            };
+            assert!(condition > BEYOND_DOUBLES, "{length} {degree:?}: {condition:e}");
+        }
+        assert!(proved >= 2, "{degree:?}: {proved} proved");
     }
 }
 
