@@ -310,6 +310,7 @@ fn verdict_is_honest(proof: f64) -> Outcome {
                     enclosure: Ok(enclosure),
                     forward_error: 0.0,
                     condition: 1.0,
+                    factorizations: 0,
                 };
                 let expected = match (residual <= 1e-10, relative <= proof) {
                     (true, true) => "converged, proved",
