@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use signorini::fem::element::value_at;
 use signorini::fem::{Condition, ContactFace, Diagonal, Discretization, Mesh, Problem, Rectangle};
 use signorini::kernel::{Material, Plane};
-use signorini::solve::evaluated::Evaluated;
+use signorini::solve::iterate::Evaluated;
 use signorini::solve::{ContactBoundary, Degree, EnergyBalance, Method, Solution, discretize};
 
 use super::bodies::{on_bodies, unsolved};

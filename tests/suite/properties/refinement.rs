@@ -5,18 +5,20 @@
 //! the solution, and from pass to pass takes that down by a given factor, or not at all. So what is reported can be compared with
 //! what is true.
 
+use std::sync::Arc;
+
 use faer::{Mat, Side};
 use signorini::fem::matrix::LowerTriangle;
 use signorini::fem::{Condition, Diagonal, Discretization, EdgeRule, Problem, Rectangle};
 use signorini::kernel::{Material, Plane};
+use signorini::solve::Times;
 use signorini::solve::accuracy::{self, Pass, Route};
 use signorini::solve::enclosure::Verifier;
-use signorini::solve::evaluated::Evaluated;
-use signorini::solve::iterate::{Evaluation, Iterate};
+use signorini::solve::factor::Factor;
+use signorini::solve::iterate::{Evaluated, Evaluation, Iterate};
 use signorini::solve::newton::Until;
 use signorini::solve::route::{self, RouteName};
 use signorini::solve::system::System;
-use signorini::solve::times::Times;
 use signorini::solve::{
     Degree, Gamma0, Method, Settings, SolveError, Verdict, discretize, solve_discrete,
 };
@@ -57,6 +59,14 @@ struct Known<'s, 'd, 'p> {
 }
 
 impl Route for Known<'_, '_, '_> {
+    fn factor_of_a(&self) -> Option<Arc<Factor>> {
+        None
+    }
+
+    fn factorizations(&self) -> usize {
+        0
+    }
+
     fn pass(
         &mut self,
         iterate: &mut Iterate,
@@ -304,7 +314,7 @@ fn pressed(degree: Degree, by: f64) -> Result<Vec<Vec<f64>>, String> {
         .into_iter()
         .map(|name| {
             let done = route::by(name, &system, &Settings::default(), &mut Times::default());
-            done.map(|done| done.0.p.iter().map(|p| p.head()).collect()).map_err(text)
+            done.map(|done| done.p.iter().map(|p| p.head()).collect()).map_err(text)
         })
         .collect()
 }
@@ -330,7 +340,7 @@ fn carried_blocks(most: f64) -> Outcome {
 /// The residuals of a route at each step.
 fn history(system: &System, name: RouteName) -> Result<Vec<f64>, String> {
     let done = route::by(name, system, &Settings::default(), &mut Times::default());
-    Ok(done.map_err(text)?.0.residuals)
+    Ok(done.map_err(text)?.residuals)
 }
 
 /// A residual this small is near the end, where rounding takes part.
@@ -412,7 +422,7 @@ fn conditions_of(mut problem: Problem, bits: i32) -> Result<(f64, [f64; 2]), Str
     let all = matrix.self_adjoint_eigenvalues(Side::Lower).map_err(|e| format!("{e:?}"))?;
     let reported = |name| {
         let done = route::by(name, &system, &Settings::default(), &mut Times::default());
-        done.map(|done| done.0.condition).map_err(text)
+        done.map(|done| done.condition).map_err(text)
     };
     let routes = [reported(RouteName::Condensed)?, reported(RouteName::Assembled)?];
     Ok((all[all.len() - 1] / all[0], routes))
