@@ -246,7 +246,7 @@ fn read_orthotropic(
     moduli: &Value,
     plane: Plane,
 ) -> Result<Result<Material<f64>, MaterialError>, FileError> {
-    let table = moduli.section(moduli.at.name.clone())?;
+    let table = moduli.table()?;
     let mut keys = vec!["e1", "e2", "nu12", "g12", "angle"];
     if plane == Plane::Strain {
         keys.extend(["e3", "nu13", "nu23"]);

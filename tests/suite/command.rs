@@ -183,7 +183,7 @@ fn wrong_cases_end_with_exit_code_2_and_write_nothing() {
         (
             "missing",
             &[["mu = 1.0", ""]],
-            "case.toml:4: [material]: found lambda; expected lambda and mu, or young and poisson",
+            "case.toml:4: [material]: found lambda; expected lambda and mu, young and poisson, stiffness, or orthotropic",
         ),
         (
             "limit",

@@ -70,7 +70,7 @@ fn a_mistake_in_a_setting_is_reported_with_the_setting_and_exit_code_2() {
         ("material.mu=-1", "[material] mu = -1; expected a positive number"),
         (
             "material.young=1",
-            "[material]: found lambda, mu and young; expected lambda and mu, or young and poisson",
+            "[material]: found lambda, mu and young; expected lambda and mu, young and poisson, stiffness, or orthotropic",
         ),
         (
             "boundary.bottom.contact.gap=\"z\"",
