@@ -5,6 +5,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use signorini::fem::Problem;
+use signorini::io::run::Solved;
 use signorini::io::{Case, outputs};
 use signorini::solve::{self, ContactQuadrature, Times};
 
@@ -323,12 +324,12 @@ impl Command {
         let start = Instant::now();
         let case = Case::read(file).expect("a valid case");
         let read = start.elapsed();
-        let (solution, times) =
-            solve::solve(&case.problem, &case.method, &case.settings).expect("a solution");
+        let solved: Solved =
+            solve::solve(&case.problem, &case.method, &case.settings).expect("a solution").into();
         let start = Instant::now();
-        outputs::write(folder, &case, &solution, read, times, None, Default::default())
+        outputs::write(folder, &case, &solved, read, Default::default())
             .expect("a writable folder");
-        Command { read, times, write: start.elapsed() }
+        Command { read, times: solved.times, write: start.elapsed() }
     }
 
     fn parts(&self) -> [(&'static str, Duration); 10] {

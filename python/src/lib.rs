@@ -10,13 +10,13 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use signorini::fem::Mesh;
 use signorini::io::Case;
-use signorini::io::outputs::{self, Certified, Extra};
+use signorini::io::outputs::{self, Extra};
 use signorini::io::picture::draw;
-use signorini::io::result::{Results, Seconds, result_json};
+use signorini::io::result::{Results, result_json};
 use signorini::io::run::{self, RunError};
 use signorini::io::summary;
 use signorini::kernel::Stress;
-use signorini::solve::{Solution, Times};
+use signorini::solve::Solution;
 
 create_exception!(signorini, CaseError, PyValueError, "The case is wrong.");
 create_exception!(
@@ -105,18 +105,16 @@ fn indices<const K: usize>(bytes: &[u8]) -> PyResult<Vec<[usize; K]>> {
 #[pyclass(frozen, module = "signorini._signorini")]
 struct Solved {
     case: Case,
-    solution: Solution,
+    solved: run::Solved,
     results: Results,
     read: Duration,
-    times: Times,
-    certified: Option<Certified>,
 }
 
 #[pymethods]
 impl Solved {
     /// The arrays of the solution, and the text of result.json.
     fn arrays<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        raw(py, &self.solution, &result_json(&self.results).map_err(no_results)?)
+        raw(py, &self.solved.solution, &result_json(&self.results).map_err(no_results)?)
     }
 
     /// What the command prints.
@@ -126,16 +124,14 @@ impl Solved {
 
     /// The text of picture.svg.
     fn picture(&self, py: Python<'_>) -> PyResult<String> {
-        py.detach(|| draw(&self.case, &self.solution, &self.results)).map_err(no_results)
+        py.detach(|| draw(&self.case, &self.solved.solution, &self.results)).map_err(no_results)
     }
 
     /// Writes the files that the command writes, and returns their paths.
     fn write(&self, py: Python<'_>, folder: PathBuf, report: bool) -> PyResult<Vec<PathBuf>> {
-        let (read, times, certified) = (self.read, self.times, self.certified.as_ref());
         let extra = Extra { report, ..Extra::default() };
-        let written = py.detach(|| {
-            outputs::write(&folder, &self.case, &self.solution, read, times, certified, extra)
-        });
+        let written =
+            py.detach(|| outputs::write(&folder, &self.case, &self.solved, self.read, extra));
         Ok(written.map_err(|error| PyOSError::new_err(error.to_string()))?.0)
     }
 }
@@ -146,12 +142,9 @@ fn no_results(error: impl ToString) -> PyErr {
 
 fn solved(case: Case, start: Instant) -> PyResult<Solved> {
     let read = start.elapsed();
-    let (case, run::Solved { solution, times, certified, .. }) =
-        run::solve(case, None, &|_| {}).map_err(|error| unsolved(&error))?;
-    let seconds = Seconds::new(read, &times, Duration::ZERO);
-    let mut results = outputs::results(&case, &solution, seconds).map_err(no_results)?;
-    certified.iter().for_each(|certified| certified.add_to(&mut results, false));
-    Ok(Solved { case, solution, results, read, times, certified })
+    let (case, solved) = run::solve(case, None, &|_| {}).map_err(|error| unsolved(&error))?;
+    let results = outputs::results(&case, &solved, read, Extra::default()).map_err(no_results)?;
+    Ok(Solved { case, solved, results, read })
 }
 
 fn unsolved(error: &RunError) -> PyErr {

@@ -5,23 +5,34 @@
 //! that is not known is an error, and so is a list of the wrong length, a number that is NaN or infinite, and a boundary with
 //! more than one of displacement, traction and contact.
 
+mod boundary;
+mod exact;
+mod load;
+mod material;
+mod mesh;
+mod method;
+mod source;
+mod table;
+
 use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::body::{self, MaterialEcho, read_loads, read_materials};
-use super::boundaries::{on_the_mesh, read_boundaries, read_points};
-use super::exact::read_exact;
+use self::boundary::{read_boundaries, read_points};
+use self::exact::read_exact;
+use self::load::read_loads;
+pub use self::material::MaterialEcho;
+use self::material::{only_isotropic, read_materials};
+use self::mesh::{Meshed, read_mesh};
+use self::method::{read_method, read_quantities, read_settings, read_target};
+use self::source::Source;
+use self::table::{Table, Value};
 use super::input::{self, FileError, InputError, MOST_OF_A_CASE, Place};
-use super::meshed::{Meshed, read_mesh};
-use super::method::{read_method, read_quantities, read_settings, read_target};
-use super::source::Source;
-use super::table::{Table, Value};
 use crate::certify::{Asked, Target};
 use crate::fem::exact::Kind;
-use crate::fem::{Condition, Exact, Mesh, Perturbation, Problem, Structured};
+use crate::fem::{Exact, Mesh, Perturbation, Problem, Structured};
 use crate::memory;
 use crate::quote;
 use crate::solve::{Method, Settings};
@@ -188,61 +199,25 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, FileErro
         Some(title) => title.text()?.to_owned(),
         None => file.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
     };
-    let mesh = match (given, root.section("mesh")?) {
-        (Some(_), Some(table)) => {
-            return Err(table.at.found("a mesh beside the one that is given", "one of the two"));
-        }
-        (Some(mesh), None) => MeshSource::Given(mesh),
-        (None, _) => MeshSource::Table(
-            root.required_section("mesh", "rectangle = { .. } or gmsh = \"..\" in it")?,
-        ),
-    };
-    let material = root.required_section("material", &format!("{} in it", body::EXPECTED))?;
-    let materials = read_materials(material)?;
-    let solution = match root.section("exact")? {
-        Some(table) => Some(read_exact(&table, materials.only()?)?),
-        None => None,
-    };
-    let loads = read_loads(root, solution.as_ref())?;
-    let boundaries = read_boundaries(root, solution.as_ref())?;
-    let method = read_method(root.section("method")?)?;
-    let settings = read_settings(root.section("solver")?)?;
-    let adapt = root.section("adapt")?.map(|table| read_target(&table)).transpose()?;
-    let (adapt, adapt_force) = adapt.unzip();
-    let adapt_force = adapt_force.flatten();
-    let quantities = root.section("certify")?.map(|table| read_quantities(&table)).transpose()?;
-    let quantities = quantities.unwrap_or_default();
-    let units = root.section("units")?.map(|table| read_units(&table)).transpose()?;
-    let thickness = root.section("body")?.map(|table| read_thickness(&table)).transpose()?;
-    let output = root.section("output")?;
-    let (probes, stretch) = match &output {
-        Some(output) => read_output(output)?,
-        None => (Vec::new(), None),
-    };
-    // The mesh, and what needs it, comes last: it is what takes time.
-    let Meshed { mesh, structured, perturbation, file: mesh_file } = match mesh {
-        MeshSource::Given(mesh) => {
-            Meshed { mesh, structured: None, perturbation: None, file: None }
-        }
-        MeshSource::Table(table) => read_mesh(&table, file.parent().unwrap_or(Path::new("")))?,
-    };
-    let kinds = boundaries.iter().filter_map(|b| Some((b.key.to_owned(), b.kind?))).collect();
-    let conditions = on_the_mesh(&mesh, boundaries, thickness)?;
-    let of_forces = quantities.iter().map(|(name, _, value)| (&**name, value));
-    for (name, value) in of_forces.chain(adapt_force.iter().map(|(name, value)| (*name, value))) {
-        if !matches!(
-            conditions.get(name),
-            Some(Condition::Contact { .. } | Condition::Obstacle(..))
-        ) {
-            return Err(value.wrong("the name of a contact boundary"));
-        }
-    }
-    let (material, materials) = materials.on_the_mesh(&mesh)?;
-    let (body_force, surface_forces) = loads.on_the_mesh(&mesh)?;
+    let method = root.optional_section("method", read_method)?.unwrap_or_default();
+    let settings = root.optional_section("solver", read_settings)?.unwrap_or_default();
+    let units = root.optional_section("units", read_units)?;
+    let thickness = root.optional_section("body", read_thickness)?;
+    let folder = file.parent().unwrap_or(Path::new(""));
+    let Meshed { mesh, structured, perturbation, file: mesh_file } =
+        read_mesh(root, given, folder)?;
+    let table = root.required_section("material", &format!("{} in it", material::EXPECTED))?;
+    let (material, materials) = read_materials(&table, &mesh)?;
+    let solution = root
+        .optional_section("exact", |exact| read_exact(exact, only_isotropic(&material, &table)?))?;
+    let (body_force, surface_forces) = read_loads(root, solution.as_ref(), &mesh)?;
+    let (conditions, kinds) = read_boundaries(root, solution.as_ref(), &mesh, thickness)?;
     let points = read_points(root, &mesh)?;
-    if let Some((probe, place)) = probes.iter().find(|(_, place)| mesh.locate(*place).is_none()) {
-        return Err(probe.wrong_as(&format!("{place:?}"), "a point of the body"));
-    }
+    let adapt = root.optional_section("adapt", |table| read_target(table, &conditions))?;
+    let (adapt, adapt_force) = adapt.unzip();
+    let asked = root.optional_section("certify", |table| read_quantities(table, &conditions))?;
+    let output = root.optional_section("output", |table| read_output(table, &mesh))?;
+    let (probes, stretch) = output.unwrap_or_default();
     Ok(Case {
         file: file.to_owned(),
         title,
@@ -254,21 +229,13 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, FileErro
         method,
         settings,
         adapt,
-        adapt_force: adapt_force.map(|(name, _)| name.to_owned()),
-        asked: Asked {
-            forces: quantities.into_iter().map(|(name, weight, _)| (name, weight)).collect(),
-        },
-        probes: probes.into_iter().map(|(_, place)| place).collect(),
+        adapt_force: adapt_force.flatten(),
+        asked: asked.unwrap_or_default(),
+        probes,
         exact: solution.map(|solution| ExactCase { solution, kinds, structured, perturbation }),
         text: String::new(),
         sources: std::iter::once(file.to_owned()).chain(mesh_file).collect(),
     })
-}
-
-/// Where the mesh comes from.
-enum MeshSource<'s> {
-    Given(Mesh),
-    Table(Table<'s>),
 }
 
 fn read_units(table: &Table) -> Result<Units, FileError> {
@@ -283,22 +250,26 @@ fn read_thickness(table: &Table) -> Result<f64, FileError> {
     table.require("thickness", "a positive number")?.positive()
 }
 
-/// Probes with their places in the case, and the amount by which the picture magnifies.
-type OutputTable<'s> = (Vec<(Value<'s>, [f64; 2])>, Option<f64>);
-
-fn read_output<'s>(table: &Table<'s>) -> Result<OutputTable<'s>, FileError> {
+/// The probes, and the amount by which the picture magnifies.
+fn read_output(table: &Table, mesh: &Mesh) -> Result<(Vec<[f64; 2]>, Option<f64>), FileError> {
     table.only(&["probes", "stretch"])?;
     let stretch = table.optional("stretch", Value::positive)?;
     let probes = table.optional("probes", Value::items)?.unwrap_or_default();
-    let place = |probe: Value<'s>| probe.vector().map(|place| (probe, place));
-    Ok((probes.into_iter().map(place).collect::<Result<_, _>>()?, stretch))
+    let place = |probe: &Value| {
+        let place = probe.vector()?;
+        match mesh.locate(place) {
+            Some(_) => Ok(place),
+            None => Err(probe.wrong_as(&format!("{place:?}"), "a point of the body")),
+        }
+    };
+    Ok((probes.iter().map(place).collect::<Result<_, _>>()?, stretch))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::certify::Ramp;
-    use crate::io::method::MOST_UNKNOWNS;
+    use crate::fem::Condition;
     use crate::kernel::{Material, Plane};
     use crate::solve::{ContactQuadrature, Degree, Gamma0};
 
@@ -417,7 +388,7 @@ mod tests {
     fn a_target_is_a_share_in_percent() {
         let with = |adapt: &str| read(&format!("{SMALL}\n{adapt}")).map(|case| case.adapt);
         let target = with("adapt.target = \"0.5 %\"").unwrap_or_else(|e| panic!("{e}"));
-        assert_eq!(target, Some(Target { relative: 0.005, max_unknowns: MOST_UNKNOWNS }));
+        assert_eq!(target, Some(Target { relative: 0.005, max_unknowns: method::MOST_UNKNOWNS }));
         for wrong in ["\"0 %\"", "\"100 %\"", "\"1\"", "0.01", "\"%\"", "\"nan %\""] {
             let error = with(&format!("adapt.target = {wrong}")).unwrap_err().to_string();
             assert!(error.contains("such as \"1 %\""), "{error}");

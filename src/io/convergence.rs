@@ -9,7 +9,7 @@ use thiserror::Error;
 use super::case::Case;
 use super::files::{Output, OutputError};
 use super::plot::{COLOURS, Figure, Panel, Style, figure};
-use crate::fem::{Errors, Perturbation, a_priori};
+use crate::fem::{Errors, MeshError, Perturbation, a_priori};
 use crate::solve::ladder::{fitted_slope, rates};
 use crate::solve::{Degree, Ladder, LadderError, Level, Method};
 
@@ -55,6 +55,19 @@ pub enum StudyError {
         /// Why.
         error: LadderError,
     },
+}
+
+impl StudyError {
+    /// Returns whether the case is wrong. Otherwise it is right, but there is no study of it here.
+    pub fn is_wrong_case(&self) -> bool {
+        match self {
+            StudyError::NoSolution | StudyError::MeshFile => true,
+            StudyError::Level { error: LadderError::Mesh(error), .. } => {
+                !matches!(error, MeshError::OutOfMemory(_))
+            }
+            StudyError::Level { error: LadderError::Solve(error), .. } => error.is_wrong_case(),
+        }
+    }
 }
 
 /// One ladder and what came out on it.

@@ -4,7 +4,7 @@
 
 use std::fmt::Write;
 
-use super::data::{DataError, check_finite};
+use super::finite::{NotFinite, check_finite};
 
 /// The columns of numbers: arc length from the start of the boundary, place in the undeformed body, u . n~, gap g, n~ . sigma(u) n
 /// (negative in compression), contact pressure lambda^h (never positive), recovered pressure (never negative).
@@ -17,8 +17,8 @@ pub type ContactRow<'a> = (&'a str, [f64; 8]);
 /// The text of the file: a line with the names, then a line for each row.
 ///
 /// # Errors
-/// [`DataError::NotFinite`], with the number of the row, counted from 0.
-pub fn contact_csv(rows: &[ContactRow]) -> Result<String, DataError> {
+/// [`NotFinite`], with the number of the row, counted from 0.
+pub fn contact_csv(rows: &[ContactRow]) -> Result<String, NotFinite> {
     check_finite("row", rows.iter().map(|(_, numbers)| numbers.as_slice()))?;
     let mut text = format!("{},boundary\n", NUMBERS.join(","));
     for (boundary, numbers) in rows {

@@ -9,16 +9,14 @@
 //! 69) is read at the middles of the edges, too. A field with points elsewhere, on other triangles, or with several values at one
 //! place, is refused: a bound would be of another field.
 
-mod vtu;
-
 use std::collections::BTreeSet;
 use std::path::Path;
 
 use super::input::{self, FileError, InputError, Place};
+use super::vtu::reader::from_vtu;
 use crate::fem::tree::{Bounds, Tree};
 use crate::fem::{Degree, Mesh, Space};
 use crate::quote;
-use vtu::from_vtu;
 
 /// The most bytes of a file: the text of some ten million points.
 const MOST: u64 = 2 << 30;
@@ -48,15 +46,15 @@ pub fn read_field(path: &Path, mesh: &Mesh) -> Result<Vec<[f64; 2]>, FileError> 
 
 /// The triangles of a VTU file.
 #[derive(Debug, PartialEq)]
-struct Triangles {
+pub(super) struct Triangles {
     /// Their corners by the points of the file.
-    corners: Vec<[usize; 3]>,
+    pub corners: Vec<[usize; 3]>,
     /// Each has a point in the middle of each side, too.
-    quadratic: bool,
+    pub quadratic: bool,
 }
 
 /// Places with displacements.
-type Points = Vec<([f64; 2], [f64; 2])>;
+pub(super) type Points = Vec<([f64; 2], [f64; 2])>;
 
 fn at_nodes(
     points: &Points,
@@ -190,7 +188,7 @@ fn from_csv(text: &str) -> Result<Points, String> {
 mod tests {
     use super::*;
     use crate::fem::{Diagonal, Rectangle};
-    use crate::io::vtu::{CellKind, Field, Grid, Values, vtu};
+    use crate::io::vtu::{CellKind, DataArray, Grid, vtu};
 
     fn mesh(diagonal: Diagonal) -> Mesh {
         Rectangle { width: 1.0, height: 2.0, nx: 3, ny: 2, diagonal }.mesh().unwrap()
@@ -215,7 +213,7 @@ mod tests {
             kind,
             points: &places,
             connectivity,
-            point_data: &[Field { name: "displacement", values: Values::Vectors(&values(points)) }],
+            point_data: &[DataArray::vectors("displacement", &values(points))],
             cell_data: &[],
         });
         from_vtu(std::str::from_utf8(&file.unwrap()).unwrap()).unwrap()

@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use super::csv::{ContactRow, contact_csv};
-use super::data::DataError;
 use super::files::{Output, OutputError};
-use super::vtu::{CellKind, Field, Grid, Values, vtu};
+use super::finite::NotFinite;
+use super::vtu::{CellKind, DataArray, Grid, vtu};
 use crate::fem::{Degree, Mesh, Problem};
 use crate::kernel::Stress;
 use crate::solve::solution::{ContactEdgeValues, ContactValues};
@@ -31,7 +31,7 @@ pub(super) fn fields<'a>(
     solution: &'a Solution,
     problem: &'a Problem,
     indicators: Option<&'a [f64]>,
-) -> impl Iterator<Item = (&'static str, Result<Vec<u8>, DataError>)> + 'a {
+) -> impl Iterator<Item = (&'static str, Result<Vec<u8>, NotFinite>)> + 'a {
     // One after the other: each takes its memory.
     (0..3).map(move |i| match i {
         0 => ("solution.vtu", solution_vtu(solution, problem, indicators)),
@@ -53,22 +53,22 @@ fn solution_vtu(
     s: &Solution,
     problem: &Problem,
     indicators: Option<&[f64]>,
-) -> Result<Vec<u8>, DataError> {
+) -> Result<Vec<u8>, NotFinite> {
     let all = |(stress, zz): &(Stress<f64>, f64)| {
         let [xx, yy, xy] = stress.components();
         [xx, yy, *zz, xy]
     };
     let stress: Vec<[f64; 4]> = s.stress.iter().map(all).collect();
     let mut cell_data = vec![
-        Field { name: "stress", values: Values::SymmetricTensors(&stress) },
-        Field { name: "von_mises", values: Values::Scalars(&s.von_mises) },
+        DataArray::symmetric_tensors("stress", &stress),
+        DataArray::scalars("von_mises", &s.von_mises),
     ];
     let surfaces = surface_numbers(&problem.mesh);
     if !problem.mesh.surfaces().is_empty() {
-        cell_data.push(Field { name: "surface", values: Values::Scalars(&surfaces) });
+        cell_data.push(DataArray::scalars("surface", &surfaces));
     }
     if let Some(indicators) = indicators {
-        cell_data.push(Field { name: "error_bound", values: Values::Scalars(indicators) });
+        cell_data.push(DataArray::scalars("error_bound", indicators));
     }
     let nodal = s.nodal_stresses(problem);
     let von_mises: Vec<f64> = nodal.iter().map(|&stress| stresses::von_mises(stress)).collect();
@@ -83,18 +83,18 @@ fn solution_vtu(
         points: &s.nodes,
         connectivity: &s.elements,
         point_data: &[
-            Field { name: "displacement", values: Values::Vectors(&s.displacement) },
-            Field { name: "nodal_stress", values: Values::SymmetricTensors(&nodal) },
-            Field { name: "nodal_von_mises", values: Values::Scalars(&von_mises) },
-            Field { name: "principal_1", values: Values::Scalars(&first) },
-            Field { name: "principal_2", values: Values::Scalars(&second) },
+            DataArray::vectors("displacement", &s.displacement),
+            DataArray::symmetric_tensors("nodal_stress", &nodal),
+            DataArray::scalars("nodal_von_mises", &von_mises),
+            DataArray::scalars("principal_1", &first),
+            DataArray::scalars("principal_2", &second),
         ],
         cell_data: &cell_data,
     })
 }
 
 /// Each edge has points of its own, for sigma_n and lambda^h jump from edge to edge.
-fn contact_vtu(s: &Solution) -> Result<Vec<u8>, DataError> {
+fn contact_vtu(s: &Solution) -> Result<Vec<u8>, NotFinite> {
     let points: Vec<&ContactValues> = s.contact.iter().flat_map(|edge| &edge.points).collect();
     let degree = s.degree.number();
     let per_edge = degree + 1;
@@ -117,13 +117,13 @@ fn contact_vtu(s: &Solution) -> Result<Vec<u8>, DataError> {
         points: &places,
         connectivity: &connectivity,
         point_data: &[
-            Field { name: "displacement", values: Values::Vectors(&displacement) },
-            Field { name: "u_n", values: Values::Scalars(&u_n) },
-            Field { name: "gap", values: Values::Scalars(&gap) },
-            Field { name: "sigma_n", values: Values::Scalars(&sigma_n) },
-            Field { name: "lambda", values: Values::Scalars(&lambda) },
-            Field { name: "pressure", values: Values::Scalars(&pressure) },
-            Field { name: "direction", values: Values::Vectors(&direction) },
+            DataArray::vectors("displacement", &displacement),
+            DataArray::scalars("u_n", &u_n),
+            DataArray::scalars("gap", &gap),
+            DataArray::scalars("sigma_n", &sigma_n),
+            DataArray::scalars("lambda", &lambda),
+            DataArray::scalars("pressure", &pressure),
+            DataArray::vectors("direction", &direction),
         ],
         cell_data: &[],
     })

@@ -16,7 +16,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use thiserror::Error;
 
-use super::data::DataError;
+use super::finite::NotFinite;
 use crate::fem;
 use crate::memory::OutOfMemory;
 use crate::quote;
@@ -60,7 +60,7 @@ pub enum OutputError {
         /// The name of the file.
         file: &'static str,
         /// The error in its data.
-        error: DataError,
+        error: NotFinite,
     },
     /// The memory for what goes into the files.
     #[error("the files cannot be made: {0}")]
@@ -155,7 +155,7 @@ impl Output {
     pub fn stage_made(
         &mut self,
         file: &'static str,
-        bytes: Result<Vec<u8>, DataError>,
+        bytes: Result<Vec<u8>, NotFinite>,
     ) -> Result<(), OutputError> {
         let bytes = bytes.map_err(|error| OutputError::Data { file, error })?;
         Ok(self.stage(file, &bytes)?)

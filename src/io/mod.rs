@@ -1,11 +1,6 @@
 //! Input and output: case files, Gmsh meshes, VTU, SVG, JSON.
 
 #[cfg(feature = "files")]
-#[doc(hidden)]
-pub mod body;
-#[cfg(feature = "files")]
-mod boundaries;
-#[cfg(feature = "files")]
 pub mod case;
 #[cfg(feature = "files")]
 #[doc(hidden)]
@@ -15,26 +10,18 @@ pub mod certificate;
 pub mod convergence;
 #[doc(hidden)]
 pub mod csv;
-#[doc(hidden)]
-pub mod data;
-#[cfg(feature = "files")]
-mod exact;
 pub mod expression;
-#[cfg(feature = "files")]
 #[doc(hidden)]
 pub mod field;
 #[doc(hidden)]
 pub mod fields;
 #[doc(hidden)]
 pub mod files;
+mod finite;
 #[doc(hidden)]
 pub mod gmsh;
 #[doc(hidden)]
 pub mod input;
-#[cfg(feature = "files")]
-mod meshed;
-#[cfg(feature = "files")]
-mod method;
 #[doc(hidden)]
 pub mod numbers;
 #[cfg(feature = "files")]
@@ -56,15 +43,11 @@ pub mod result;
 #[doc(hidden)]
 pub mod run;
 #[cfg(feature = "files")]
-mod source;
-#[cfg(feature = "files")]
 #[doc(hidden)]
 pub mod summary;
 #[cfg(feature = "files")]
 #[doc(hidden)]
 pub mod sweep;
-#[cfg(feature = "files")]
-mod table;
 #[doc(hidden)]
 pub mod vtu;
 

@@ -6,24 +6,25 @@ use std::time::{Duration, Instant};
 
 use super::case::Case;
 use super::certificate;
-use super::data::DataError;
 use super::fields::fields;
 use super::files::{Output, OutputError};
+use super::finite::NotFinite;
 use super::numbers::short;
 use super::picture::draw;
 use super::report;
 use super::result::{
-    Adaptation, Certificates, Choices, DiscreteCertificate, GammaChoice, MeshSizes, NewtonHistory,
-    Results, SCHEMA, Seconds, StressPeak, StressPeaks, result_json,
+    Certificates, Choices, DiscreteCertificate, GammaChoice, MeshSizes, NewtonHistory, Results,
+    SCHEMA, Seconds, StressPeak, StressPeaks, result_json,
 };
-use super::vtu::{CellKind, Field, Grid, Values, vtu};
-use crate::certify::{CertifyError, Continuous, certify_with};
+use super::run::Solved;
+use super::vtu::{CellKind, DataArray, Grid, vtu};
+use crate::certify::Continuous;
 use crate::fem::contact_line::{self, Gamma};
 use crate::fem::{self, Degree, Mesh, Space};
 use crate::memory;
 use crate::quote;
 use crate::solve::solution::ContactValues;
-use crate::solve::{Extreme, Solution, Times};
+use crate::solve::{Extreme, Solution};
 
 const PICTURE: &str = "picture.svg";
 
@@ -39,39 +40,6 @@ pub const FILES_OF_FENICSX: [&str; 3] = ["solution.xdmf", "solution.h5", "result
 /// Those of the first list that are not in the second: left from another kind of run.
 pub fn only_in(names: &[&'static str], others: &[&str]) -> Vec<&'static str> {
     names.iter().copied().filter(|name| !others.contains(name)).collect()
-}
-
-/// The proved distance from the true solution, and how long the proof took.
-#[derive(Clone, Debug)]
-pub struct Certified {
-    /// The bound, or why there is none.
-    pub result: Result<Continuous, CertifyError>,
-    /// The time.
-    pub time: Duration,
-    /// The adaptation of the mesh to it, if it was adapted.
-    pub adaptation: Option<Adaptation>,
-}
-
-impl Certified {
-    /// Certifies a solution.
-    pub fn new(case: &Case, solution: &Solution) -> Self {
-        let start = Instant::now();
-        let result = certify_with(&case.problem, solution, &case.asked);
-        Certified { result, time: start.elapsed(), adaptation: None }
-    }
-
-    /// Adds what is known to the content of result.json; `asked` says whether a certificate was asked for.
-    pub fn add_to(&self, results: &mut Results, asked: bool) {
-        if let (Err(error), true) = (&self.result, asked) {
-            results.missing.push(format!("certificate: {error}"));
-        }
-        if let Some(Adaptation { reason: Some(reason), .. }) = &self.adaptation {
-            results.missing.push(format!("mesh that meets the target of [adapt]: {reason}"));
-        }
-        results.seconds.certify += self.time.as_secs_f64();
-        results.certificate.get_or_insert_default().continuous = Some((&self.result).into());
-        results.adapt.clone_from(&self.adaptation);
-    }
 }
 
 /// Files written beside [`FILES`].
@@ -91,34 +59,30 @@ pub struct Extra {
 pub fn write(
     folder: &Path,
     case: &Case,
-    solution: &Solution,
+    solved: &Solved,
     read: Duration,
-    times: Times,
-    certified: Option<&Certified>,
     extra: Extra,
 ) -> Result<(Vec<PathBuf>, Results), OutputError> {
     let start = Instant::now();
+    let solution = &solved.solution;
     memory::check(bytes_to_write(solution))?;
     let mut output = Output::new(folder)?;
     output.replaces(&only_in(&FILES_OF_FENICSX, &FILES));
     output.replaces(&[CERTIFIED]);
-    let continuous = certified.and_then(|c| c.result.as_ref().ok());
+    let continuous = solved.certified.as_ref().and_then(|c| c.result.as_ref().ok());
     if !(extra.certificate && continuous.is_some()) {
         output.replaces(&certificate::FILES);
     }
     if !extra.report {
         output.replaces(&[report::FILE]);
     }
-    let indicators = continuous.map(|c| c.indicators.as_slice());
-    let mut results = results(case, solution, Seconds::new(read, &times, Duration::ZERO))?;
-    if let Some(certified) = certified {
-        certified.add_to(&mut results, extra.certificate);
-    }
+    let mut results = results(case, solved, read, extra)?;
     let picture = draw(case, solution, &results).unwrap_or_else(|error| {
         results.missing.push(format!("picture: {error}"));
         output.replaces(&[PICTURE]);
         String::new()
     });
+    let indicators = continuous.map(|c| c.indicators.as_slice());
     for (file, bytes) in fields(solution, &case.problem, indicators) {
         output.stage_made(file, bytes)?;
     }
@@ -165,10 +129,10 @@ pub fn write_certified(
             mesh.triangles().as_flattened()
         },
         point_data: &[
-            Field { name: "displacement", values: Values::Vectors(&field) },
-            Field { name: "admissible", values: Values::Vectors(&admissible) },
+            DataArray::vectors("displacement", &field),
+            DataArray::vectors("admissible", &admissible),
         ],
-        cell_data: &[Field { name: "error_bound", values: Values::Scalars(&certified.indicators) }],
+        cell_data: &[DataArray::scalars("error_bound", &certified.indicators)],
     });
     output.stage_made(CERTIFIED, grid)?;
     for (file, bytes) in certificate_files(&case.title, certified) {
@@ -196,12 +160,12 @@ fn at_nodes(values: &[[f64; 2]], nodes: usize, space: &Space) -> Vec<[f64; 2]> {
 fn certificate_files(
     title: &str,
     certified: &Continuous,
-) -> [(&'static str, Result<Vec<u8>, DataError>); 2] {
+) -> [(&'static str, Result<Vec<u8>, NotFinite>); 2] {
     let forces = &certified.quantities.evidence;
     let (header, arrays) =
         certificate::encode(title, &certified.certificate, &certified.proof, forces);
     let text = serde_json::to_vec_pretty(&header)
-        .map_err(|_| DataError::NotFinite { place: certificate::FILES[0].to_owned() });
+        .map_err(|_| NotFinite { place: certificate::FILES[0].to_owned() });
     [(certificate::FILES[0], text), (certificate::FILES[1], Ok(arrays))]
 }
 
@@ -214,15 +178,17 @@ fn bytes_to_write(s: &Solution) -> u64 {
     PER_NODE * s.nodes.len() as u64 + PER_DRAWN_TRIANGLE * drawn
 }
 
-/// The content of result.json.
+/// The content of result.json of a solved case that was read in the time `read`, and of which `extra` was asked for.
 ///
 /// # Errors
-/// Those of [`Solution::errors`], should `solution` not be one of this case.
+/// Those of [`Solution::errors`], should the solution not be one of this case.
 pub fn results(
     case: &Case,
-    solution: &Solution,
-    seconds: Seconds,
+    solved: &Solved,
+    read: Duration,
+    extra: Extra,
 ) -> Result<Results, fem::DataError> {
+    let solution = &solved.solution;
     let mesh = &case.problem.mesh;
     let mut discrete = DiscreteCertificate::from(&solution.enclosure);
     discrete.unique &= solution.method.slides == 0;
@@ -267,12 +233,15 @@ pub fn results(
         certificate: Some(Certificates { discrete: Some(discrete), continuous: None }),
         adapt: None,
         errors,
-        seconds,
+        seconds: Seconds::new(read, &solved.times),
     };
     let untouched = results.contact.iter().filter(|part| !results.is_in_contact(part));
     let remarks: Vec<String> =
         untouched.filter_map(|part| nearest(case, solution, &part.boundary)).collect();
     results.remarks.extend(remarks);
+    if let Some(certified) = &solved.certified {
+        certified.add_to(&mut results, extra.certificate);
+    }
     Ok(results)
 }
 

@@ -21,7 +21,7 @@ mod scene;
 use svg::node::element::{Group, Rectangle, Title};
 use svg::{Document, Node};
 
-use super::data::{DataError, check_finite};
+use super::finite::{NotFinite, check_finite};
 use body::{BAR, Colours, body, colour_bar, definitions, outlines};
 use contact::{ContactLine, hatch, obstacle, pressure, tags};
 use draw::{RED, clean, fitting};
@@ -32,7 +32,7 @@ pub use case::draw;
 pub(super) use draw::{
     Axis, DARK, FONT, GREY, LIGHT, Path, Point, frame, rounded, shape, stroke, text, width_of,
 };
-pub use scene::{ContactSample, ContactSurface, ContactZone, Scene};
+pub use scene::{ContactSample, ContactSurface, Scene};
 
 /// The page around the drawing.
 const MARGIN: f64 = 36.0;
@@ -43,9 +43,8 @@ const LEGEND_LINE: f64 = 24.0;
 /// The text of the file.
 ///
 /// # Errors
-/// Lists of different lengths, vertices that don't exist, numbers that are not finite, no triangle.
-pub fn picture(scene: &Scene) -> Result<String, DataError> {
-    scene.check()?;
+/// Numbers that are not finite, or not on a page.
+pub fn picture(scene: &Scene) -> Result<String, NotFinite> {
     let (factor, magnification) = scene.magnification();
     let deformed = scene.deformed(factor);
     check_finite("deformed points", deformed.iter().map(Point::as_slice))?;
@@ -97,10 +96,10 @@ pub fn picture(scene: &Scene) -> Result<String, DataError> {
 }
 
 /// Finite data may be drawn beyond the range of doubles, as where displacements are magnified.
-fn check_numbers(node: &dyn Node) -> Result<(), DataError> {
+fn check_numbers(node: &dyn Node) -> Result<(), NotFinite> {
     for (name, value) in node.get_attributes().into_iter().flatten() {
         if value.contains("NaN") || value.contains("inf") {
-            return Err(DataError::NotFinite { place: format!("{name} of <{}>", node.get_name()) });
+            return Err(NotFinite { place: format!("{name} of <{}>", node.get_name()) });
         }
     }
     node.get_children().into_iter().flatten().try_for_each(|child| check_numbers(&**child))
@@ -544,36 +543,24 @@ mod tests {
         assert_eq!(check_numbers(&line(2.0)), Ok(()));
         for to in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             let place = "d of <path>".to_owned();
-            assert_eq!(check_numbers(&line(to)), Err(DataError::NotFinite { place }));
+            assert_eq!(check_numbers(&line(to)), Err(NotFinite { place }));
             let place = "x of <text>".to_owned();
             let document = Document::new().add(text("words", [to, 1.0]));
-            assert_eq!(check_numbers(&document), Err(DataError::NotFinite { place }));
+            assert_eq!(check_numbers(&document), Err(NotFinite { place }));
         }
     }
 
     #[test]
-    fn data_that_do_not_fit_are_refused_by_name() {
-        let refused = |spoil: fn(&mut Sample)| {
-            let mut sample = Sample::block(1);
-            spoil(&mut sample);
-            picture(&sample.scene()).unwrap_err().to_string()
-        };
+    fn numbers_that_are_not_finite_are_refused_by_name() {
         let not_finite = "is NaN or infinite; expected a finite number";
-        assert_eq!(
-            refused(|s| s.displacement.truncate(3)),
-            "displacement has 3 entries; expected 4"
-        );
-        assert_eq!(refused(|s| s.von_mises.push(1.0)), "von_mises has 3 entries; expected 2");
-        assert_eq!(
-            refused(|s| s.outline[0][1] = 9),
-            "outline names point 9; expected one of the 4 points"
-        );
-        assert_eq!(refused(|s| s.von_mises[1] = f64::NAN), format!("von_mises[1] {not_finite}"));
-        assert_eq!(
-            refused(|s| s.samples().for_each(|s| s.pressure = f64::INFINITY)),
-            format!("contact[0] {not_finite}")
-        );
-        let sample = Sample::block(1);
+        let mut sample = Sample::block(1);
+        sample.displacement[2][1] = f64::NAN;
+        let error = picture(&sample.scene()).unwrap_err().to_string();
+        assert_eq!(error, format!("deformed points[2] {not_finite}"));
+        let mut sample = Sample::block(1);
+        sample.samples().for_each(|s| s.pressure = f64::INFINITY);
+        let error = picture(&sample.scene()).unwrap_err().to_string();
+        assert!(error.ends_with(not_finite), "{error}");
         let far = Sample::stretched(1e3);
         let stretched = |factor: f64| picture(&Scene { stretch: Some(factor), ..far.scene() });
         for factor in [f64::MAX, 1e307, 1e306, 1e305, 1e304] {
@@ -583,10 +570,5 @@ mod tests {
         let error = stretched(f64::MAX).unwrap_err().to_string();
         assert!(error.starts_with("deformed points[") && error.ends_with(not_finite), "{error}");
         assert!(stretched(1e3).is_ok(), "control");
-        let nothing = Scene { triangles: &[], von_mises: &[], ..sample.scene() };
-        assert_eq!(
-            picture(&nothing).unwrap_err().to_string(),
-            "triangles has no entry; expected at least one"
-        );
     }
 }

@@ -6,7 +6,7 @@ use svg::node::Text as Content;
 use svg::node::element::{Circle, Group, Path as PathElement, Rectangle, TSpan, Text, Title};
 use svg::{Document, Node};
 
-use super::data::{DataError, check_finite};
+use super::finite::{NotFinite, check_finite};
 use super::picture::{
     Axis, DARK, FONT, GREY, LIGHT, Path, Point, frame, rounded, stroke, text, width_of,
 };
@@ -65,7 +65,7 @@ const LEGEND_MARK: f64 = 68.0;
 ///
 /// # Errors
 /// A coordinate that is NaN or infinite.
-pub fn figure(figure: &Figure) -> Result<String, DataError> {
+pub fn figure(figure: &Figure) -> Result<String, NotFinite> {
     for panel in &figure.panels {
         for (line, style) in panel.lines.iter().zip(&figure.styles) {
             let name = format!("{}: {}", panel.title, style.name);

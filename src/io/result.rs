@@ -12,9 +12,8 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::body::MaterialEcho;
-use super::case::Units;
-use super::data::DataError;
+use super::case::{MaterialEcho, Units};
+use super::finite::NotFinite;
 use crate::certify::adapt::Level;
 use crate::fem::Errors;
 use crate::fem::contact_line::Gamma;
@@ -322,14 +321,14 @@ pub struct Seconds {
 }
 
 impl Seconds {
-    /// The timings of a solve that took `times` after `read`, its files `write`.
-    pub fn new(read: Duration, times: &Times, write: Duration) -> Self {
+    /// The timings of a solve that took `times` after `read`, before files are written.
+    pub fn new(read: Duration, times: &Times) -> Self {
         Seconds {
             read: read.as_secs_f64(),
             assemble: times.assemble().as_secs_f64(),
             solve: times.solve().as_secs_f64(),
             certify: times.certify.as_secs_f64(),
-            write: write.as_secs_f64(),
+            write: 0.0,
         }
     }
 }
@@ -337,14 +336,13 @@ impl Seconds {
 /// The text of the file.
 ///
 /// # Errors
-/// [`DataError::NotFinite`], with the path of the number.
-pub fn result_json(results: &Results) -> Result<String, DataError> {
+/// [`NotFinite`], with the path of the number.
+pub fn result_json(results: &Results) -> Result<String, NotFinite> {
     let value_and_text = serde_json::to_value(results)
         .and_then(|value| Ok((value, serde_json::to_string_pretty(results)?)));
-    let (value, text) =
-        value_and_text.map_err(|error| DataError::NotFinite { place: error.to_string() })?;
+    let (value, text) = value_and_text.map_err(|error| NotFinite { place: error.to_string() })?;
     if let Some(place) = null_in(&value, "") {
-        return Err(DataError::NotFinite { place });
+        return Err(NotFinite { place });
     }
     Ok(text + "\n")
 }

@@ -1,11 +1,13 @@
 //! A case solved as it asks to be: on its own mesh, or on meshes that are adapted to a target.
 
+use std::time::{Duration, Instant};
+
 use thiserror::Error;
 
 use super::case::Case;
-use super::outputs::Certified;
-use super::result::Adaptation;
+use super::result::{Adaptation, Results};
 use crate::certify::adapt::{self, AdaptError, Stage};
+use crate::certify::{CertifyError, Continuous, certify_with};
 use crate::solve::{Course, Solution, SolveError, Times, solve_along};
 
 /// A solved case.
@@ -16,8 +18,51 @@ pub struct Solved {
     pub solution: Solution,
     /// The time that it took.
     pub times: Times,
-    /// The bound of the distance to the true solution, where the mesh was adapted to it.
+    /// The bound of the distance to the true solution, where the mesh was adapted to it or it was asked for.
     pub certified: Option<Certified>,
+}
+
+impl From<(Solution, Times)> for Solved {
+    fn from((solution, times): (Solution, Times)) -> Self {
+        Solved { solution, times, certified: None }
+    }
+}
+
+impl Solved {
+    /// Certifies the solution, unless that has been done.
+    pub fn certify(&mut self, case: &Case) {
+        self.certified.get_or_insert_with(|| {
+            let start = Instant::now();
+            let result = certify_with(&case.problem, &self.solution, &case.asked);
+            Certified { result, time: start.elapsed(), adaptation: None }
+        });
+    }
+}
+
+/// The proved distance from the true solution, and how long the proof took.
+#[derive(Clone, Debug)]
+pub struct Certified {
+    /// The bound, or why there is none.
+    pub result: Result<Continuous, CertifyError>,
+    /// The time.
+    pub time: Duration,
+    /// The adaptation of the mesh to it, if it was adapted.
+    pub adaptation: Option<Adaptation>,
+}
+
+impl Certified {
+    /// Adds what is known to the content of result.json; `asked` says whether a certificate was asked for.
+    pub(super) fn add_to(&self, results: &mut Results, asked: bool) {
+        if let (Err(error), true) = (&self.result, asked) {
+            results.missing.push(format!("certificate: {error}"));
+        }
+        if let Some(Adaptation { reason: Some(reason), .. }) = &self.adaptation {
+            results.missing.push(format!("mesh that meets the target of [adapt]: {reason}"));
+        }
+        results.seconds.certify += self.time.as_secs_f64();
+        results.certificate.get_or_insert_default().continuous = Some((&self.result).into());
+        results.adapt.clone_from(&self.adaptation);
+    }
 }
 
 /// Why a case is not solved.
@@ -56,8 +101,8 @@ pub fn solve(
         let of_solve = |phase| watcher(Stage::Solve(phase));
         let course = Course::default().watched_by(&of_solve);
         let course = start.map_or(course, |start| course.from(start));
-        let (solution, times) = solve_along(&case.problem, &case.method, &case.settings, course)?;
-        return Ok((case, Solved { solution, times, certified: None }));
+        let solved = solve_along(&case.problem, &case.method, &case.settings, course)?;
+        return Ok((case, solved.into()));
     };
     let goal = (target, case.adapt_force.as_deref());
     let how = (&case.method, &case.settings);

@@ -3,8 +3,7 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use super::body::MaterialEcho;
-use super::case::Units;
+use super::case::{MaterialEcho, Units};
 use super::certificate::Audit;
 use super::convergence::Study;
 use super::result::{

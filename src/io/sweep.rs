@@ -16,9 +16,9 @@ use super::csv::cell;
 use super::files::{Output, OutputError, WriteError};
 use super::input::FileError;
 use super::numbers::short;
-use super::outputs::{self, Certified, Extra};
-use super::result::{Results, Seconds};
-use super::run::{self, RunError, Solved};
+use super::outputs::{self, Extra};
+use super::result::Results;
+use super::run::{self, RunError};
 use crate::quote;
 use crate::solve::Solution;
 
@@ -92,6 +92,17 @@ pub enum SweepError {
     Case(#[from] FileError),
     #[error(transparent)]
     Output(#[from] OutputError),
+}
+
+impl SweepError {
+    /// Returns whether the case or the values of its keys are wrong. Otherwise they may be right, but there is no sweep here.
+    pub fn is_wrong_case(&self) -> bool {
+        match self {
+            SweepError::TooMany { .. } | SweepError::Twice { .. } => true,
+            SweepError::Case(error) => !error.error.is_lack(),
+            SweepError::Output(_) => false,
+        }
+    }
 }
 
 impl From<WriteError> for SweepError {
@@ -213,34 +224,18 @@ fn solve(
     folder: Option<&Path>,
     last: &mut Option<Solution>,
 ) -> Result<Outcome, OutputError> {
-    let (case, Solved { solution, times, certified }) =
-        match run::solve(case, last.as_ref(), &|_| {}) {
-            Ok(solved) => solved,
-            Err(error) => return Ok(Err(error)),
-        };
-    let read = Duration::ZERO;
+    let (case, mut solved) = match run::solve(case, last.as_ref(), &|_| {}) {
+        Ok(solved) => solved,
+        Err(error) => return Ok(Err(error)),
+    };
     let results = match folder {
         Some(folder) => {
-            let certified = certified.unwrap_or_else(|| Certified::new(&case, &solution));
-            outputs::write(
-                folder,
-                &case,
-                &solution,
-                read,
-                times,
-                Some(&certified),
-                Extra::default(),
-            )?
-            .1
+            solved.certify(&case);
+            outputs::write(folder, &case, &solved, Duration::ZERO, Extra::default())?.1
         }
-        None => {
-            let seconds = Seconds::new(read, &times, Duration::ZERO);
-            let mut results = outputs::results(&case, &solution, seconds)?;
-            certified.iter().for_each(|certified| certified.add_to(&mut results, false));
-            results
-        }
+        None => outputs::results(&case, &solved, Duration::ZERO, Extra::default())?,
     };
-    *last = Some(solution);
+    *last = Some(solved.solution);
     Ok(Ok(results))
 }
 

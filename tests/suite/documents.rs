@@ -4,12 +4,12 @@
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
+use std::time::Duration;
 
 use serde_json::Value;
 use signorini::io::Case;
-use signorini::io::outputs::{self, Certified};
-use signorini::io::result::Seconds;
-use signorini::io::run::{self, Solved};
+use signorini::io::outputs::{self, Extra};
+use signorini::io::run;
 
 use super::command::{signorini, text};
 
@@ -92,13 +92,10 @@ fn the_page_on_result_json_lists_exactly_what_is_written() {
     ] {
         let settings: Vec<String> = settings.iter().map(|&s| s.to_owned()).collect();
         let case = Case::parse(Path::new(file), &page(file), &settings).unwrap();
-        let (case, Solved { solution, times, certified, .. }) =
-            run::solve(case, None, &|_| {}).unwrap();
-        let zero = std::time::Duration::ZERO;
-        let seconds = Seconds::new(zero, &times, zero);
-        let mut results = outputs::results(&case, &solution, seconds).unwrap();
-        let certified = certified.unwrap_or_else(|| Certified::new(&case, &solution));
-        certified.add_to(&mut results, true);
+        let (case, mut solved) = run::solve(case, None, &|_| {}).unwrap();
+        solved.certify(&case);
+        let extra = Extra { certificate: true, report: false };
+        let results = outputs::results(&case, &solved, Duration::ZERO, extra).unwrap();
         paths("", &serde_json::to_value(results).unwrap(), &mut written);
     }
     assert_eq!(written, first_cells(&page("docs/result.md")));

@@ -299,8 +299,9 @@ fn meshes() {
 
 #[cfg(feature = "files")]
 mod cases {
-    use signorini::io::result::{Seconds, result_json};
-    use signorini::io::{Case, outputs};
+    use signorini::io::Case;
+    use signorini::io::outputs::{self, Extra};
+    use signorini::io::result::result_json;
     use signorini::solve::solve;
 
     use super::super::bad_input::CASE;
@@ -409,16 +410,15 @@ mod cases {
                 return false;
             }
             case.settings.max_iterations = case.settings.max_iterations.min(100);
-            let (solution, times) = match solve(&case.problem, &case.method, &case.settings) {
-                Ok(solved) => solved,
+            let solved = match solve(&case.problem, &case.method, &case.settings) {
+                Ok(solved) => solved.into(),
                 Err(error) => {
                     // The history of the residuals stands on a line of its own.
                     check_message(&error.to_string().replace("\nresiduals: ", " residuals: "));
                     return false;
                 }
             };
-            let seconds = Seconds::new(Duration::ZERO, &times, Duration::ZERO);
-            match outputs::results(&case, &solution, seconds) {
+            match outputs::results(&case, &solved, Duration::ZERO, Extra::default()) {
                 Ok(results) => {
                     assert!(results.quantities.contact_force >= 0.0);
                     match result_json(&results) {

@@ -16,7 +16,9 @@ use std::time::Duration;
 
 use serde_json::Value;
 use sha2::{Digest, Sha256};
-use signorini::io::{Case, outputs, result};
+use signorini::io::Case;
+use signorini::io::outputs::{self, Extra};
+use signorini::io::result::result_json;
 use signorini::solve::solve;
 
 const TOLERANCE: f64 = 1e-10;
@@ -109,10 +111,9 @@ fn compared(results: &Value) -> Vec<(String, f64, f64)> {
 
 fn ours(case: &Path) -> Value {
     let case = Case::read(case).unwrap();
-    let (solution, times) = solve(&case.problem, &case.method, &case.settings).unwrap();
-    let seconds = result::Seconds::new(Duration::ZERO, &times, Duration::ZERO);
-    let text = result::result_json(&outputs::results(&case, &solution, seconds).unwrap()).unwrap();
-    serde_json::from_str(&text).unwrap()
+    let solved = solve(&case.problem, &case.method, &case.settings).unwrap().into();
+    let results = outputs::results(&case, &solved, Duration::ZERO, Extra::default()).unwrap();
+    serde_json::from_str(&result_json(&results).unwrap()).unwrap()
 }
 
 #[test]

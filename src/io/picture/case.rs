@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use super::{ContactSample, ContactSurface, ContactZone, Scene, picture};
+use super::{ContactSample, ContactSurface, Scene, picture};
 use crate::fem::Degree;
 use crate::io::case::Case;
-use crate::io::data::DataError;
+use crate::io::finite::NotFinite;
 use crate::io::numbers::short;
 use crate::io::result::{CertifiedZone, Results};
 use crate::solve::{Solution, Verdict};
@@ -14,7 +14,7 @@ use crate::solve::{Solution, Verdict};
 ///
 /// # Errors
 /// Numbers that are not finite.
-pub fn draw(case: &Case, s: &Solution, results: &Results) -> Result<String, DataError> {
+pub fn draw(case: &Case, s: &Solution, results: &Results) -> Result<String, NotFinite> {
     let mesh = &case.problem.mesh;
     let ends = mesh.outline().iter().map(|&edge| (edge, mesh.ends(edge)));
     let (triangles, von_mises, outline): (Vec<[usize; 3]>, Vec<f64>, Vec<[usize; 2]>) =
@@ -89,15 +89,11 @@ fn interfaces(case: &Case, s: &Solution) -> Vec<[usize; 2]> {
 }
 
 /// The zones that a certificate proves on a boundary.
-fn zones(results: &Results, boundary: &str) -> Option<Vec<ContactZone>> {
+fn zones(results: &Results, boundary: &str) -> Option<Vec<CertifiedZone>> {
     let continuous = results.certificate.as_ref()?.continuous.as_ref()?;
     continuous.bound?;
     let of = continuous.zones.iter().filter(|zone| zone.boundary == boundary);
-    let zone = |zone: &CertifiedZone| ContactZone {
-        arc: [zone.from, zone.to],
-        pressed: zone.opening_at_most.is_some(),
-    };
-    Some(of.map(zone).collect())
+    Some(of.cloned().collect())
 }
 
 /// The contact boundaries by their connected parts. A pressure that is mere rounding is none.

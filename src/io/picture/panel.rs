@@ -12,8 +12,9 @@ use super::draw::{
     Axis, GREY, LIGHT, Path, Point, RED, clean, fitting, frame, rounded, shape, short, stroke,
     text, thinned, width_of,
 };
-use super::scene::{ContactSample, ContactSurface, ContactZone, Scene};
+use super::scene::{ContactSample, ContactSurface, Scene};
 use crate::io::numbers::ticks;
+use crate::io::result::CertifiedZone;
 
 /// The height of a panel on the page, and the space between two in a row.
 const HEIGHT: f64 = 214.0;
@@ -128,7 +129,7 @@ fn panel(surface: &ContactSurface, units: Option<[&str; 2]>, [x, y]: Point, widt
 }
 
 /// Draws the proved zones as a strip, with the words for its colours.
-fn strip(zones: &[ContactZone], axes: &Axes) -> Group {
+fn strip(zones: &[CertifiedZone], axes: &Axes) -> Group {
     let [left, _, bottom] = axes.borders();
     let [low, high] = axes.arc.range;
     let bar = |[from, to]: [f64; 2], fill: &str| {
@@ -142,7 +143,8 @@ fn strip(zones: &[ContactZone], axes: &Axes) -> Group {
     };
     let mut group = Group::new().add(bar(axes.arc.range, LIGHT));
     for zone in zones {
-        group.append(bar(zone.arc, if zone.pressed { RED } else { OPEN }));
+        let pressed = zone.opening_at_most.is_some();
+        group.append(bar([zone.from, zone.to], if pressed { RED } else { OPEN }));
     }
     let words = [("proved: pressed", RED), ("nearly open", OPEN), ("not known", GREY)];
     let mut left = left;

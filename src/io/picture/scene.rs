@@ -1,8 +1,8 @@
 //! The content of a picture as data; by how much it is magnified; and where it lies on the page.
 
 use super::draw::{Point, distance, moved, short};
-use crate::io::data::{DataError, check_finite, check_length, check_points};
 use crate::io::numbers::Round;
+use crate::io::result::CertifiedZone;
 
 /// The content of a picture.
 #[derive(Clone, Copy, Debug)]
@@ -40,16 +40,7 @@ pub struct ContactSurface {
     /// one place.
     pub parts: Vec<Vec<ContactSample>>,
     /// The proved zones of it; `None` without a certificate.
-    pub zones: Option<Vec<ContactZone>>,
-}
-
-/// A stretch of a contact boundary, of which something is proved.
-#[derive(Clone, Copy, Debug)]
-pub struct ContactZone {
-    /// The arc lengths at its ends.
-    pub arc: [f64; 2],
-    /// The body hardly opens there; else there is hardly a force.
-    pub pressed: bool,
+    pub zones: Option<Vec<CertifiedZone>>,
 }
 
 /// A point of a contact boundary.
@@ -78,28 +69,6 @@ impl ContactSurface {
 }
 
 impl Scene<'_> {
-    pub(super) fn check(&self) -> Result<(), DataError> {
-        if self.triangles.is_empty() {
-            return Err(DataError::Empty { name: "triangles".to_owned() });
-        }
-        let count = self.points.len();
-        check_length("displacement", self.displacement.len(), count)?;
-        check_length("von_mises", self.von_mises.len(), self.triangles.len())?;
-        check_points("triangles", self.triangles.iter().flatten(), count)?;
-        check_points("outline", self.outline.iter().flatten(), count)?;
-        check_points("interfaces", self.interfaces.iter().flatten(), count)?;
-        check_finite("points", self.points.iter().map(<[f64; 2]>::as_slice))?;
-        check_finite("displacement", self.displacement.iter().map(<[f64; 2]>::as_slice))?;
-        check_finite("von_mises", self.von_mises.chunks(1))?;
-        let numbers = |s: &ContactSample| {
-            let ([x, y], [n, m], [u, v]) = (s.position, s.normal, s.displacement);
-            [s.arc, x, y, n, m, u, v, s.gap, s.pressure]
-        };
-        let samples = self.contact.iter().flat_map(|surface| surface.parts.iter().flatten());
-        let samples: Vec<[f64; 9]> = samples.map(numbers).collect();
-        check_finite("contact", samples.iter().map(<[f64; 9]>::as_slice))
-    }
-
     /// The larger of the body's extents along x and y.
     pub(super) fn size(&self) -> f64 {
         let [low, high] = bounds(self.points.iter().copied());

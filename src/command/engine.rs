@@ -17,7 +17,7 @@ use signorini::io::result::Results;
 use signorini::quote;
 use thiserror::Error;
 
-use crate::signals;
+use super::signals;
 
 /// Why the other engine gave no result.
 #[derive(Debug, Error)]

@@ -3,70 +3,66 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::body::constant;
 use super::exact::read_kind;
-use super::expression::Expression;
-use super::input::FileError;
+use super::load::constant;
 use super::table::{Spot, Table, Value};
 use crate::fem::exact::Kind;
 use crate::fem::{
     Condition, Distance, Exact, Function, Mesh, Obstacle, PointSupport, SharedFunction, Side,
 };
+use crate::io::expression::Expression;
+use crate::io::input::FileError;
 use crate::quote::names;
-
-/// A boundary of the case file: where it stands, its name, and what holds there.
-pub(super) struct Boundary<'s> {
-    at: Spot<'s>,
-    pub key: &'s str,
-    /// Beside \[exact\] only.
-    pub kind: Option<Kind>,
-    given: Given,
-}
-
-/// The condition that a boundary of the case file gives.
-enum Given {
-    Condition(Condition),
-    /// A whole force, spread evenly: a traction, once the length of the boundary is known.
-    Force([f64; 2]),
-}
 
 /// The obstacles by their names, with their places.
 type Obstacles<'s> = BTreeMap<&'s str, (Spot<'s>, Obstacle)>;
 
-pub(super) fn read_boundaries<'s>(
-    root: &Table<'s>,
+/// The conditions on the boundaries of the mesh and, beside \[exact\], the kind of each.
+type Boundaries = (BTreeMap<String, Condition>, BTreeMap<String, Kind>);
+
+/// Reads the conditions on the boundaries. A whole force acts on the length of its boundary times the thickness, which is 1 if
+/// it is not given.
+pub(super) fn read_boundaries(
+    root: &Table,
     solution: Option<&Exact>,
-) -> Result<Vec<Boundary<'s>>, FileError> {
+    mesh: &Mesh,
+    thickness: Option<f64>,
+) -> Result<Boundaries, FileError> {
     let expected = match solution {
         None => "one boundary with contact, such as [boundary.bottom] contact = { gap = \"0\" }",
         Some(_) => "one boundary with contact, such as bottom = \"contact\"",
     };
     let all = root.required_section("boundary", expected)?;
     let obstacles = read_obstacles(root)?;
-    let mut boundaries = Vec::new();
+    let (mut conditions, mut kinds) = (BTreeMap::new(), BTreeMap::new());
     for key in all.keys() {
-        let (kind, given) = match solution {
-            None => (None, read_given(&all.subsection(key)?, &obstacles)?),
+        let at = all.under_header(key);
+        let edges = mesh.edges_of(key).map_err(|error| at.mesh(error))?;
+        if edges.is_empty() {
+            return Err(at.found("no edge in this mesh", "at least one"));
+        }
+        let condition = match solution {
+            None => {
+                let length: f64 = edges.iter().map(|&e| mesh.length_and_normal(e).0).sum();
+                let area = length * thickness.unwrap_or(1.0);
+                read_condition(&all.subsection(key)?, &obstacles, area)?
+            }
             Some(solution) => {
                 let kind = read_kind(&all.require(key, "a kind")?)?;
-                (Some(kind), Given::Condition(kind.condition(solution)))
+                kinds.insert(key.to_owned(), kind);
+                kind.condition(solution)
             }
         };
-        boundaries.push(Boundary { at: all.under_header(key), key, kind, given });
+        conditions.insert(key.to_owned(), condition);
     }
-    let conditions = || {
-        boundaries.iter().filter_map(|boundary| match &boundary.given {
-            Given::Condition(condition) => Some(condition),
-            Given::Force(_) => None,
-        })
-    };
-    if !conditions().any(Condition::is_contact) {
+    if !conditions.values().any(Condition::is_contact) {
         return Err(all.at.found("no contact", expected));
     }
-    let is_used =
-        |name: &str| conditions().any(|c| matches!(c, Condition::Obstacle(o, _) if o == name));
+    let is_used = |name: &str| {
+        conditions.values().any(|c| matches!(c, Condition::Obstacle(o, _) if o == name))
+    };
     match obstacles.iter().find(|(name, _)| !is_used(name)) {
-        None => Ok(boundaries),
+        None => Ok((conditions, kinds)),
         Some((name, (at, _))) => {
             let expected =
                 format!("one, such as [boundary.bottom] contact = {{ obstacle = \"{name}\" }}");
@@ -78,12 +74,15 @@ pub(super) fn read_boundaries<'s>(
 const CONDITIONS: [&str; 7] =
     ["displacement", "traction", "pressure", "normal", "tangential", "contact", "force"];
 
-fn read_given(table: &Table, obstacles: &Obstacles) -> Result<Given, FileError> {
+/// The condition on a boundary that has this area.
+fn read_condition(table: &Table, obstacles: &Obstacles, area: f64) -> Result<Condition, FileError> {
     table.only(&CONDITIONS)?;
     let keys: Vec<&str> = CONDITIONS.into_iter().filter(|key| table.get(key).is_some()).collect();
     let value = |key| table.require(key, "a value");
-    Ok(Given::Condition(match keys.as_slice() {
-        ["force"] => return Ok(Given::Force(value("force")?.vector()?)),
+    Ok(match keys.as_slice() {
+        ["force"] => {
+            Condition::Traction(value("force")?.vector()?.map(|force| constant(force / area)))
+        }
         ["displacement"] => Condition::Displacement(components(&value("displacement")?)?),
         ["traction"] => Condition::Traction(value("traction")?.functions()?),
         ["displacement", "traction"] => read_mixed(table)?,
@@ -98,7 +97,7 @@ fn read_given(table: &Table, obstacles: &Obstacles) -> Result<Given, FileError> 
                 "either displacement, traction, pressure, normal, tangential, contact or force";
             return Err(table.combination(&CONDITIONS, expected));
         }
-    }))
+    })
 }
 
 fn components(value: &Value) -> Result<[Option<SharedFunction>; 2], FileError> {
@@ -208,32 +207,6 @@ impl Distance for FromExpression {
     fn gradient(&self, x: [f64; 2]) -> [f64; 2] {
         self.0.gradient(x)
     }
-}
-
-/// The conditions on the boundaries of the mesh. A whole force is divided by the area that it acts on: the length of its
-/// boundary times the thickness, which is 1 if it is not given.
-pub(super) fn on_the_mesh(
-    mesh: &Mesh,
-    boundaries: Vec<Boundary>,
-    thickness: Option<f64>,
-) -> Result<BTreeMap<String, Condition>, FileError> {
-    let mut conditions = BTreeMap::new();
-    for Boundary { at, key, given, .. } in boundaries {
-        let edges = mesh.edges_of(key).map_err(|error| at.mesh(error))?;
-        if edges.is_empty() {
-            return Err(at.found("no edge in this mesh", "at least one"));
-        }
-        let condition = match given {
-            Given::Condition(condition) => condition,
-            Given::Force(force) => {
-                let length: f64 = edges.iter().map(|&e| mesh.length_and_normal(e).0).sum();
-                let area = length * thickness.unwrap_or(1.0);
-                Condition::Traction(force.map(|f| constant(f / area)))
-            }
-        };
-        conditions.insert(key.to_owned(), condition);
-    }
-    Ok(conditions)
 }
 
 /// `[point.NAME] displacement = [..]` on the mesh.

@@ -1,16 +1,18 @@
 //! The tables [method], [solver], [adapt] and [certify] of a case file: how it is solved, and what is to be proved of it.
 
-use super::input::FileError;
+use std::collections::BTreeMap;
+
 use super::table::{Table, Value};
-use crate::certify::{Ramp, Target};
+use crate::certify::{Asked, Ramp, Target};
+use crate::fem::Condition;
 use crate::fem::structured::MOST_CELLS;
+use crate::io::input::FileError;
 use crate::solve::{
     ContactQuadrature, Degree, Gamma0, MOST_GAUSS_POINTS, MOST_ITERATIONS, Method, Settings,
 };
 
-pub(super) fn read_method(table: Option<Table>) -> Result<Method, FileError> {
+pub(super) fn read_method(table: &Table) -> Result<Method, FileError> {
     let mut method = Method::default();
-    let Some(table) = table else { return Ok(method) };
     table.only(&["degree", "gamma0", "kappa", "contact_quadrature", "allow_noncoercive"])?;
     if let Some(degree) = table.get("degree") {
         let number = degree.whole_number(1..=2).map_err(|_| degree.wrong("1 or 2"))?;
@@ -50,9 +52,8 @@ fn read_quadrature(value: &Value) -> Result<ContactQuadrature, FileError> {
     Ok(ContactQuadrature::Gauss(points.whole_number(1..=MOST_GAUSS_POINTS)?))
 }
 
-pub(super) fn read_settings(table: Option<Table>) -> Result<Settings, FileError> {
+pub(super) fn read_settings(table: &Table) -> Result<Settings, FileError> {
     let mut settings = Settings::default();
-    let Some(table) = table else { return Ok(settings) };
     table.only(&["tolerance", "max_iterations", "proof"])?;
     for (key, setting) in [("tolerance", &mut settings.tolerance), ("proof", &mut settings.proof)] {
         if let Some(value) = table.get(key) {
@@ -67,11 +68,26 @@ pub(super) fn read_settings(table: Option<Table>) -> Result<Settings, FileError>
 /// Meshes are refined up to so many unknowns where the case says nothing.
 pub(super) const MOST_UNKNOWNS: usize = 500_000;
 
-/// A boundary's name, with its place in the case.
-pub(super) type Named<'s> = (&'s str, Value<'s>);
+/// The conditions by the names of their boundaries.
+type Conditions = BTreeMap<String, Condition>;
+
+/// Refuses a name that is not one of a contact boundary; `value` is where it stands.
+fn contact_boundary(
+    name: &str,
+    value: &Value,
+    conditions: &Conditions,
+) -> Result<String, FileError> {
+    match conditions.get(name) {
+        Some(condition) if condition.is_contact() => Ok(name.to_owned()),
+        _ => Err(value.wrong("the name of a contact boundary")),
+    }
+}
 
 /// Reads a target, and the boundary whose contact force it is about, if it is about one.
-pub(super) fn read_target<'s>(table: &Table<'s>) -> Result<(Target, Option<Named<'s>>), FileError> {
+pub(super) fn read_target(
+    table: &Table,
+    conditions: &Conditions,
+) -> Result<(Target, Option<String>), FileError> {
     table.only(&["target", "max_unknowns"])?;
     let expected = "a share above 0 % and below 100 %, such as \"1 %\", of the energy norm, or { force = \"bottom\", within = \"1 %\" }";
     let mut target = table.require("target", expected)?;
@@ -80,7 +96,7 @@ pub(super) fn read_target<'s>(table: &Table<'s>) -> Result<(Target, Option<Named
         let of_force = target.table()?;
         of_force.only(&["force", "within"])?;
         let boundary = of_force.require("force", "the name of a contact boundary")?;
-        force = Some((boundary.text()?, boundary));
+        force = Some(contact_boundary(boundary.text()?, &boundary, conditions)?);
         target = of_force.require("within", "a share of the force, such as \"1 %\"")?;
     }
     let percent = target.as_text().and_then(|text| text.strip_suffix('%'));
@@ -95,20 +111,18 @@ pub(super) fn read_target<'s>(table: &Table<'s>) -> Result<(Target, Option<Named
     Ok((target, force))
 }
 
-/// The forces in the list `quantities` of [certify], each with its place: `force NAME`, or `force NAME x 0 0.25 ramp 0.1` for a weight along
-/// x or y that is 1 between two numbers and falls to 0 over a width.
-pub(super) fn read_quantities<'s>(
-    table: &Table<'s>,
-) -> Result<Vec<(String, Option<Ramp>, Value<'s>)>, FileError> {
+/// The forces in the list `quantities` of \[certify\]: `force NAME`, or `force NAME x 0 0.25 ramp 0.1` for a weight along x or
+/// y that is 1 between two numbers and falls to 0 over a width.
+pub(super) fn read_quantities(table: &Table, conditions: &Conditions) -> Result<Asked, FileError> {
     table.only(&["quantities"])?;
     let expected = "\"force NAME\" or \"force NAME x 0 0.25 ramp 0.1\": a contact boundary, and where along x or y its pressure counts";
     let list = table.require("quantities", &format!("a list of {expected}"))?;
-    let of = |value: Value<'s>| {
+    let of = |value: &Value| {
         let words = value.text()?.strip_prefix("force ").map(str::trim);
         let (name, weight) = words.and_then(force).ok_or_else(|| value.wrong(expected))?;
-        Ok((name.to_owned(), weight, value))
+        Ok((contact_boundary(name, value, conditions)?, weight))
     };
-    list.items()?.into_iter().map(of).collect()
+    Ok(Asked { forces: list.items()?.iter().map(of).collect::<Result<_, _>>()? })
 }
 
 /// A name, and behind it a weight if there is one.

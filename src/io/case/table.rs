@@ -10,10 +10,10 @@ use std::sync::Arc;
 use toml::Spanned;
 use toml::de::{DeInteger, DeTable, DeValue};
 
-use super::expression::Expression;
-use super::input::{FileError, InputError};
 use super::source::Source;
 use crate::fem::{MeshError, SharedFunction};
+use crate::io::expression::Expression;
+use crate::io::input::{FileError, InputError};
 use crate::quote::{cut, key as shown, listed, number, quoted};
 
 /// What a message is about: its name and where it stands. The file as a whole has neither.
@@ -96,6 +96,15 @@ impl<'s> Table<'s> {
     /// The table `key` of the file under its header, if there is one.
     pub fn section(&self, key: &str) -> Result<Option<Table<'s>>, FileError> {
         self.optional(key, |value| value.section(format!("[{key}]")))
+    }
+
+    /// What `read` makes of the table `key` of the file, if it is there.
+    pub fn optional_section<T>(
+        &self,
+        key: &str,
+        read: impl FnOnce(&Table<'s>) -> Result<T, FileError>,
+    ) -> Result<Option<T>, FileError> {
+        self.section(key)?.map(|table| read(&table)).transpose()
     }
 
     /// The table `key` of the file, which must be there.

@@ -12,10 +12,10 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
-use super::input::FileError;
 use super::table::{Table, Value};
 use crate::fem::Exact;
 use crate::fem::exact::{Corner, Kind, Patch, Singular, Smooth};
+use crate::io::input::FileError;
 use crate::kernel::Material;
 
 #[derive(Clone, Copy)]
@@ -142,7 +142,7 @@ mod tests {
     use toml::de::DeTable;
 
     use super::*;
-    use crate::io::source::Source;
+    use crate::io::case::source::Source;
     use crate::kernel::Plane;
 
     fn read(text: &str) -> Result<Exact, String> {

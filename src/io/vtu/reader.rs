@@ -2,7 +2,7 @@
 
 use miniz_oxide::inflate::decompress_to_vec_zlib_with_limit;
 
-use super::{Points, Triangles};
+use crate::io::field::{Points, Triangles};
 use crate::memory;
 use crate::quote;
 
@@ -10,33 +10,35 @@ use crate::quote;
 const POINTS_OF_A_CELL: usize = 27;
 
 /// The displacement at the points, and the triangles if the file has cells.
-pub(super) fn from_vtu(text: &str) -> Result<(Points, Option<Triangles>), String> {
-    let file = File {
-        text,
-        head: tag(text, "VTKFile").ok_or("it has no element <VTKFile>; expected a VTU file")?,
-        piece: tag(text, "Piece").unwrap_or_default(),
-    };
-    if text.matches("<Piece").count() > 1 {
-        return Err("it has several pieces; expected one".to_owned());
-    }
+pub(in crate::io) fn from_vtu(text: &str) -> Result<(Points, Option<Triangles>), String> {
+    let file = Reader::new(text)?;
     Ok((file.points()?, file.triangles()?))
 }
 
 /// The text of a file, and the tags of two of its elements.
-struct File<'a> {
+pub(super) struct Reader<'a> {
     text: &'a str,
     head: &'a str,
     piece: &'a str,
 }
 
-impl<'a> File<'a> {
+impl<'a> Reader<'a> {
+    pub(super) fn new(text: &'a str) -> Result<Self, String> {
+        let head =
+            tag(text, "VTKFile").ok_or("it has no element <VTKFile>; expected a VTU file")?;
+        if text.matches("<Piece").count() > 1 {
+            return Err("it has several pieces; expected one".to_owned());
+        }
+        Ok(Reader { text, head, piece: tag(text, "Piece").unwrap_or_default() })
+    }
+
     /// The attribute `name` of the piece, `NumberOfPoints` or `NumberOfCells`.
     fn count(&self, name: &str) -> Option<usize> {
         attribute(self.piece, name)?.trim().parse().ok()
     }
 
     /// The arrays of the element `name`.
-    fn arrays(&self, name: &str) -> Vec<Array<'a>> {
+    pub(super) fn arrays(&self, name: &str) -> Vec<Array<'a>> {
         let Some(from) = self.text.find(&format!("<{name}")) else { return Vec::new() };
         let Some((section, _)) = self.text[from..].split_once(&format!("</{name}>")) else {
             return Vec::new();
@@ -130,7 +132,7 @@ impl<'a> File<'a> {
     }
 
     /// The numbers of an array, the components of `count` points or cells.
-    fn numbers(&self, array: &Array, count: usize) -> Result<Vec<f64>, String> {
+    pub(super) fn numbers(&self, array: &Array, count: usize) -> Result<Vec<f64>, String> {
         let name = quote::cut(array.name().unwrap_or("Points"));
         match attribute(array.attributes, "format") {
             Some("ascii") | None => {
@@ -229,7 +231,7 @@ fn attribute<'a>(tag: &'a str, name: &str) -> Option<&'a str> {
 }
 
 /// One array of a file: its attributes and its text.
-struct Array<'a> {
+pub(super) struct Array<'a> {
     attributes: &'a str,
     text: &'a str,
 }
@@ -264,7 +266,7 @@ fn doubles(bytes: &[u8], kind: &str) -> Option<Vec<f64>> {
 }
 
 /// The bytes of a base64 code (RFC 4648, section 4).
-fn decode(code: &[u8]) -> Result<Vec<u8>, String> {
+pub(super) fn decode(code: &[u8]) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::with_capacity(code.len() / 4 * 3);
     let (mut bits, mut held) = (0_u32, 0);
     for &letter in code.iter().take_while(|&&letter| letter != b'=') {
@@ -382,7 +384,7 @@ mod tests {
             let count = types.split(' ').count();
             let piece = format!("Piece NumberOfPoints=\"4\" NumberOfCells=\"{count}\"");
             let text = format!("<Cells>{arrays}</Cells>");
-            File { text: &text, head: "", piece: &piece }.triangles()
+            Reader { text: &text, head: "", piece: &piece }.triangles()
         };
         let corners = vec![[0, 1, 2], [2, 3, 0]];
         assert_eq!(cells("3 5 69", "2 5 8"), Ok(Some(Triangles { corners, quadratic: false })));

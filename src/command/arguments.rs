@@ -74,28 +74,8 @@ pub enum Task {
     Solve {
         #[command(flatten)]
         case: CaseArguments,
-        /// The folder to write to [default: out/ and the name of the case]
-        #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
-        out: Option<PathBuf>,
-        /// Print result.json instead of the summary; write no files unless --out names a folder
-        #[arg(long)]
-        json: bool,
-        /// Also bound the distance to the true solution, and write the proof to certificate.json and certificate.bin, for
-        /// `signorini audit`; takes about as long again as the solution
-        #[arg(long)]
-        certificate: bool,
-        /// Write report.html, too: picture, numbers, what is proved and the case, in one file to send to a colleague
-        #[arg(long)]
-        report: bool,
-        /// The solver: this program, or the reference implementation in FEniCSx, which can run in several processes
-        #[arg(long, value_enum, default_value_t = Engine::Signorini)]
-        engine: Engine,
-        /// MPI processes for --engine fenicsx [default: 1]
-        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-        ranks: Option<u16>,
-        /// The folder of the reference implementation, reference/ of the sources [default: beside this program]
-        #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
-        reference: Option<PathBuf>,
+        #[command(flatten)]
+        options: SolveOptions,
     },
     /// Verify a certificate from scratch, without the solver
     Audit {
@@ -146,15 +126,8 @@ pub enum Task {
     Convergence {
         #[command(flatten)]
         case: CaseArguments,
-        /// The number of meshes, each with twice as many cells along each axis as the one before; the first is the case's
-        #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u8).range(1..=12))]
-        levels: u8,
-        /// Polynomial degrees, such as 1,2 [default: that of the case]
-        #[arg(long, value_delimiter = ',', value_parser = clap::value_parser!(u8).range(1..=2))]
-        degree: Vec<u8>,
-        /// Structured or perturbed meshes, or both: structured,perturbed [default: those of the case]
-        #[arg(long, value_enum, value_delimiter = ',')]
-        mesh: Vec<Mesh>,
+        #[command(flatten)]
+        study: StudyOptions,
         /// The folder to write to [default: out/ and the name of the case]
         #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
         out: Option<PathBuf>,
@@ -177,8 +150,49 @@ pub struct CaseArguments {
     pub settings: Vec<String>,
 }
 
+/// How a case is solved, and what is written.
+#[derive(Args)]
+pub struct SolveOptions {
+    /// The folder to write to [default: out/ and the name of the case]
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
+    /// Print result.json instead of the summary; write no files unless --out names a folder
+    #[arg(long)]
+    pub json: bool,
+    /// Also bound the distance to the true solution, and write the proof to certificate.json and certificate.bin, for
+    /// `signorini audit`; takes about as long again as the solution
+    #[arg(long)]
+    pub certificate: bool,
+    /// Write report.html, too: picture, numbers, what is proved and the case, in one file to send to a colleague
+    #[arg(long)]
+    pub report: bool,
+    /// The solver: this program, or the reference implementation in FEniCSx, which can run in several processes
+    #[arg(long, value_enum, default_value_t = Engine::Signorini)]
+    pub engine: Engine,
+    /// MPI processes for --engine fenicsx [default: 1]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub ranks: Option<u16>,
+    /// The folder of the reference implementation, reference/ of the sources [default: beside this program]
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub reference: Option<PathBuf>,
+}
+
+/// The scope of a convergence study; empty lists stand for the case's own degree and mesh.
+#[derive(Args)]
+pub struct StudyOptions {
+    /// The number of meshes, each with twice as many cells along each axis as the one before; the first is the case's
+    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u8).range(1..=12))]
+    pub levels: u8,
+    /// Polynomial degrees, such as 1,2 [default: that of the case]
+    #[arg(long, value_delimiter = ',', value_parser = clap::value_parser!(u8).range(1..=2))]
+    pub degree: Vec<u8>,
+    /// Structured or perturbed meshes, or both: structured,perturbed [default: those of the case]
+    #[arg(long, value_enum, value_delimiter = ',')]
+    pub mesh: Vec<MeshKind>,
+}
+
 #[derive(Clone, Copy, ValueEnum)]
-pub enum Mesh {
+pub enum MeshKind {
     Structured,
     Perturbed,
 }

@@ -1,18 +1,13 @@
-//! Materials and loads of the body: `[material]` and `[load]` of a case file, for the whole body or for its
-//! physical surfaces one by one.
-
-use std::sync::Arc;
+//! The table \[material\] of a case file, for the whole body or for its physical surfaces one by one.
 
 use serde::{Deserialize, Serialize};
 
-use super::expression::Expression;
-use super::input::FileError;
 use super::table::{Spot, Table, Value};
-use crate::fem::exact;
 use crate::fem::material::{
     Across, MaterialError, Orthotropic, largest_entry, stable, stable_orthotropic,
 };
-use crate::fem::{Exact, Materials, Mesh, SharedFunction, SurfaceForce};
+use crate::fem::{Materials, Mesh};
+use crate::io::input::FileError;
 use crate::kernel::{Material, Plane};
 use crate::quote::{self, key as shown, quoted};
 
@@ -52,105 +47,80 @@ impl MaterialEcho {
     }
 
     /// The largest of the numbers that it is given by, but for Poisson's ratio.
-    pub(super) fn stiffest(&self) -> f64 {
+    pub(in crate::io) fn stiffest(&self) -> f64 {
         let entries = self.stiffness.iter().flatten().chain(&self.young);
         entries.fold(0.0, |most: f64, c| most.max(c.abs()))
     }
 }
 
-/// A material of one surface: where it stands, and the surface.
-type OfSurface<'s> = (Spot<'s>, &'s str, Material<f64>, MaterialEcho);
-
-/// The materials as read, not yet on a mesh.
-pub(super) enum MaterialTable<'s> {
-    Whole(Spot<'s>, Material<f64>, MaterialEcho),
-    BySurface { at: Spot<'s>, materials: Vec<OfSurface<'s>> },
-}
-
-pub(super) fn read_materials<'s>(table: Table<'s>) -> Result<MaterialTable<'s>, FileError> {
-    let mut known = table.keys_of_tables();
-    known.retain(|key| !KEYS.contains(key));
-    let Some(first) = known.first().map(|key| table.under_header(key).name) else {
-        let (material, echo) = read_material(&table, Plane::Strain)?;
-        return Ok(MaterialTable::Whole(table.at, material, echo));
+/// The material of each triangle, and the materials as the case has them: one for the whole body, or one for each physical
+/// surface of the mesh.
+pub(super) fn read_materials(
+    table: &Table,
+    mesh: &Mesh,
+) -> Result<(Materials, Vec<MaterialEcho>), FileError> {
+    let mut surfaces = table.keys_of_tables();
+    surfaces.retain(|key| !KEYS.contains(key));
+    let Some(first) = surfaces.first().map(|key| table.under_header(key).name) else {
+        let (material, echo) = read_material(table, Plane::Strain)?;
+        let surfaces = mesh.surfaces().keys().cloned().collect();
+        return Ok((material.into(), vec![MaterialEcho { surfaces, ..echo }]));
     };
     if let Some(key) = table.keys().find(|key| MODULI.contains(key)) {
         let expected = "one material for the whole body, or one for each physical surface";
         return Err(table.at.found(&format!("{key} beside {first}"), expected));
     }
-    let surfaces = known.clone();
-    known.push("plane");
-    table.only(&known)?;
-    let plane = read_plane(&table, Plane::Strain)?;
-    let mut materials: Vec<OfSurface> = Vec::new();
-    for key in surfaces {
+    table.only(&[&surfaces[..], &["plane"]].concat())?;
+    let plane = read_plane(table, Plane::Strain)?;
+    let mut parts: Vec<(Material<f64>, &[usize])> = Vec::new();
+    let mut echoes: Vec<MaterialEcho> = Vec::new();
+    for &key in &surfaces {
         let one = table.subsection(key)?;
         let (material, echo) = read_material(&one, plane)?;
-        if let Some((.., other)) = materials.first()
+        if let Some(other) = echoes.first()
             && other.plane != echo.plane
         {
             let found = format!("plane {} beside plane {} in {first}", echo.plane, other.plane);
             return Err(one.at.found(&found, "the same for the whole body"));
         }
-        materials.push((one.at, key, material, echo));
+        parts.push((material, on_surface(mesh, &one.at, key)?));
+        echoes.push(MaterialEcho { surfaces: vec![key.to_owned()], ..echo });
     }
-    Ok(MaterialTable::BySurface { at: table.at, materials })
+    if let Some(name) = mesh.surfaces().keys().find(|name| !surfaces.contains(&&***name)) {
+        let found = format!("no material for the surface {}", quoted(name, '\''));
+        return Err(table.at.found(&found, &format!("[material.{}]", shown(name))));
+    }
+    let mut covered = vec![false; mesh.triangles().len()];
+    parts.iter().flat_map(|(_, triangles)| *triangles).for_each(|&t| covered[t] = true);
+    if let Some(t) = covered.iter().position(|covered| !covered) {
+        let place: [f64; 2] = mesh.triangle(t).point([1.0 / 3.0; 3]).into();
+        let [x, y] = place.map(quote::number);
+        let found = format!("a triangle around ({x}, {y}) that belongs to no physical surface");
+        let expected = "all of the body in physical surfaces with a material each";
+        return Err(table.at.found(&found, expected));
+    }
+    Ok((Materials::in_parts(parts[0].0, covered.len(), parts), echoes))
 }
 
-impl MaterialTable<'_> {
-    /// The one material of the whole body, if there is one.
-    pub fn only(&self) -> Result<Material<f64>, FileError> {
-        let (at, found, expected) = match self {
-            MaterialTable::Whole(_, material, _) if material.is_isotropic() => {
-                return Ok(*material);
-            }
-            MaterialTable::Whole(at, ..) => {
-                (at, "a material that is not isotropic", "lambda and mu, or young and poisson")
-            }
-            MaterialTable::BySurface { at, .. } => {
-                (at, "materials by surface", "one material for the whole body")
-            }
-        };
-        Err(at.found(&format!("{found} beside [exact]"), expected))
-    }
-
-    /// The material of each triangle: each has exactly one, each surface of the mesh its own.
-    pub fn on_the_mesh(self, mesh: &Mesh) -> Result<(Materials, Vec<MaterialEcho>), FileError> {
-        let (at, materials) = match self {
-            MaterialTable::Whole(_, material, echo) => {
-                let surfaces = mesh.surfaces().keys().cloned().collect();
-                return Ok((material.into(), vec![MaterialEcho { surfaces, ..echo }]));
-            }
-            MaterialTable::BySurface { at, materials } => (at, materials),
-        };
-        let mut covered = vec![false; mesh.triangles().len()];
-        let mut parts = Vec::new();
-        let mut echoes = Vec::new();
-        for (at, key, material, echo) in &materials {
-            let triangles = on_surface(mesh, at, key)?;
-            triangles.iter().for_each(|&t| covered[t] = true);
-            parts.push((*material, triangles));
-            echoes.push(MaterialEcho { surfaces: vec![(*key).to_owned()], ..echo.clone() });
-        }
-        let without = |name: &&String| materials.iter().all(|(_, key, ..)| key != name);
-        if let Some(name) = mesh.surfaces().keys().find(without) {
-            let found = format!("no material for the surface {}", quoted(name, '\''));
-            return Err(at.found(&found, &format!("[material.{}]", shown(name))));
-        }
-        if let Some(t) = covered.iter().position(|covered| !covered) {
-            let place: [f64; 2] = mesh.triangle(t).point([1.0 / 3.0; 3]).into();
-            let [x, y] = place.map(quote::number);
-            let found = format!("a triangle around ({x}, {y}) that belongs to no physical surface");
-            let expected = "all of the body in physical surfaces with a material each";
-            return Err(at.found(&found, expected));
-        }
-        let rest = materials[0].2;
-        Ok((Materials::in_parts(rest, covered.len(), parts), echoes))
-    }
+/// The one isotropic material of the body, which an exact solution needs; `table` is \[material\].
+pub(super) fn only_isotropic(
+    materials: &Materials,
+    table: &Table,
+) -> Result<Material<f64>, FileError> {
+    let (found, expected) = match materials.only() {
+        Some(material) if material.is_isotropic() => return Ok(*material),
+        Some(_) => ("a material that is not isotropic", "lambda and mu, or young and poisson"),
+        None => ("materials by surface", "one material for the whole body"),
+    };
+    Err(table.at.found(&format!("{found} beside [exact]"), expected))
 }
 
 /// The triangles of a surface, of which there must be some.
-fn on_surface<'m>(mesh: &'m Mesh, at: &Spot, key: &str) -> Result<&'m [usize], FileError> {
+pub(super) fn on_surface<'m>(
+    mesh: &'m Mesh,
+    at: &Spot,
+    key: &str,
+) -> Result<&'m [usize], FileError> {
     match mesh.surface(key) {
         Err(error) => Err(at.mesh(error)),
         Ok([]) => Err(at.found("no triangle in this mesh", "at least one")),
@@ -264,58 +234,4 @@ fn read_orthotropic(
     let angle = table.optional("angle", Value::number)?.unwrap_or(0.0);
     let [e1, e2, nu12, g12] = [number("e1")?, number("e2")?, number("nu12")?, number("g12")?];
     Ok(stable_orthotropic(Orthotropic { e1, e2, nu12, g12, angle, across }))
-}
-
-/// A body force on one surface: where it stands, the surface, and f.
-type OnSurface<'s> = (Spot<'s>, &'s str, [SharedFunction; 2]);
-
-/// The loads as read, not yet on a mesh.
-pub(super) struct LoadTable<'s> {
-    body: [SharedFunction; 2],
-    by_surface: Vec<OnSurface<'s>>,
-}
-
-pub(super) fn read_loads<'s>(
-    root: &Table<'s>,
-    solution: Option<&Exact>,
-) -> Result<LoadTable<'s>, FileError> {
-    let table = root.section("load")?;
-    let mut by_surface = Vec::new();
-    if let (Some(_), Some(table)) = (solution, &table) {
-        let expected = "one of the two: an exact solution supplies its own";
-        return Err(table.at.found("loads beside [exact]", expected));
-    }
-    let Some(table) = table else {
-        let body = solution.map_or_else(|| [constant(0.0), constant(0.0)], exact::body_force);
-        return Ok(LoadTable { body, by_surface });
-    };
-    let surfaces = table.keys_of_tables();
-    table.only(&[&["body"], surfaces.as_slice()].concat())?;
-    for key in surfaces {
-        let one = table.subsection(key)?;
-        one.only(&["body"])?;
-        let body = one.require("body", "a list of two: one for x, one for y")?.functions()?;
-        by_surface.push((one.at, key, body));
-    }
-    let body = table.optional("body", Value::functions)?;
-    Ok(LoadTable { body: body.unwrap_or_else(|| [constant(0.0), constant(0.0)]), by_surface })
-}
-
-impl LoadTable<'_> {
-    /// The forces on single surfaces, on their triangles.
-    pub fn on_the_mesh(
-        self,
-        mesh: &Mesh,
-    ) -> Result<([SharedFunction; 2], Vec<SurfaceForce>), FileError> {
-        let mut forces = Vec::new();
-        for (at, key, force) in self.by_surface {
-            let triangles = on_surface(mesh, &at, key)?.to_vec();
-            forces.push(SurfaceForce { surface: key.to_owned(), triangles, force });
-        }
-        Ok((self.body, forces))
-    }
-}
-
-pub(super) fn constant(value: f64) -> SharedFunction {
-    Arc::new(Expression::from(value))
 }

@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use super::exact::angle;
-use super::gmsh;
-use super::input::FileError;
 use super::table::{Table, Value};
 use crate::fem::structured::MOST_CELLS;
 use crate::fem::{Diagonal, Mesh, Perturbation, Rectangle, Structured, Trapezoid};
+use crate::io::gmsh;
+use crate::io::input::FileError;
 
 /// A mesh and how it was made.
 pub(super) struct Meshed {
@@ -17,8 +17,31 @@ pub(super) struct Meshed {
     pub file: Option<PathBuf>,
 }
 
-/// `directory` is the one of the case file.
-pub(super) fn read_mesh(table: &Table, directory: &Path) -> Result<Meshed, FileError> {
+impl From<Mesh> for Meshed {
+    fn from(mesh: Mesh) -> Meshed {
+        Meshed { mesh, structured: None, perturbation: None, file: None }
+    }
+}
+
+/// The mesh that is `given`, or else that of the table; `directory` is the one of the case file.
+pub(super) fn read_mesh(
+    root: &Table,
+    given: Option<Mesh>,
+    directory: &Path,
+) -> Result<Meshed, FileError> {
+    match (given, root.section("mesh")?) {
+        (Some(_), Some(table)) => {
+            Err(table.at.found("a mesh beside the one that is given", "one of the two"))
+        }
+        (Some(mesh), None) => Ok(mesh.into()),
+        (None, _) => {
+            let expected = "rectangle = { .. } or gmsh = \"..\" in it";
+            make_mesh(&root.required_section("mesh", expected)?, directory)
+        }
+    }
+}
+
+fn make_mesh(table: &Table, directory: &Path) -> Result<Meshed, FileError> {
     const SHAPES: [&str; 3] = ["rectangle", "trapezoid", "gmsh"];
     table.only(&["rectangle", "trapezoid", "gmsh", "perturb", "merge"])?;
     let perturbation = table.optional("perturb", read_perturbation)?;
@@ -53,7 +76,7 @@ pub(super) fn read_mesh(table: &Table, directory: &Path) -> Result<Meshed, FileE
             let mesh = gmsh::read_merged(&file, merge).map_err(|error| {
                 value.at.wrong(error.error.clone().map(|_| format!("[mesh] gmsh: {error}")))
             })?;
-            return Ok(Meshed { mesh, structured: None, perturbation: None, file: Some(file) });
+            return Ok(Meshed { file: Some(file), ..mesh.into() });
         }
         _ => {
             let expected = format!("exactly one of {}", SHAPES.join(", "));
@@ -61,7 +84,7 @@ pub(super) fn read_mesh(table: &Table, directory: &Path) -> Result<Meshed, FileE
         }
     };
     let mesh = structured.mesh(perturbation).map_err(|error| at.mesh(error))?;
-    Ok(Meshed { mesh, structured: Some(structured), perturbation, file: None })
+    Ok(Meshed { structured: Some(structured), perturbation, ..mesh.into() })
 }
 
 fn read_trapezoid(table: &Table) -> Result<Trapezoid, FileError> {

@@ -11,8 +11,8 @@ use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
-use super::expression::Expression;
-use super::input::{FileError, InputError, Place};
+use crate::io::expression::Expression;
+use crate::io::input::{FileError, InputError, Place};
 use crate::quote::{cut, quoted};
 
 /// A file, its text, and what is set over it. Places in the settings come after those in the text.

@@ -1,0 +1,178 @@
+//! The tasks of the command line, what they share, and how each ends.
+
+mod arguments;
+mod certify;
+mod engine;
+mod progress;
+mod signals;
+mod solve;
+mod study;
+mod sweep;
+
+use std::fmt::Display;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::CommandFactory;
+use signorini::io::files::reason;
+use signorini::io::run::RunError;
+use signorini::io::{Case, FileError, summary};
+use signorini::{quote, solve as library};
+
+use self::arguments::{Arguments, CaseArguments, Task};
+
+/// The case is wrong.
+const WRONG: u8 = 2;
+/// The case is right, but there is no result.
+const FAILED: u8 = 1;
+/// There are results, but they are not proved, or something else that was asked for is missing.
+const SHORT: u8 = 3;
+
+/// A message for people and an exit code.
+struct Failure {
+    message: String,
+    code: u8,
+}
+
+/// The failure of a case or of arguments that are wrong.
+fn wrong(error: impl Display) -> Failure {
+    Failure { message: error.to_string(), code: WRONG }
+}
+
+/// The failure of a right case that has no result.
+fn failed(error: impl Display) -> Failure {
+    Failure { message: error.to_string(), code: FAILED }
+}
+
+/// One of the two.
+fn wrong_or_failed(is_wrong: bool, error: impl Display) -> Failure {
+    if is_wrong { wrong(error) } else { failed(error) }
+}
+
+/// Text for standard output, and the exit code.
+struct Done {
+    text: String,
+    code: u8,
+}
+
+/// A summary, unless nothing is to be printed.
+fn summarised(text: &str, quiet: bool) -> Done {
+    Done { text: if quiet { String::new() } else { quote::lines(text) }, code: 0 }
+}
+
+pub fn run() -> ExitCode {
+    let Arguments { task, quiet, verbose } = match Arguments::read() {
+        Ok(arguments) => arguments,
+        Err(error) if error.use_stderr() => error.exit(),
+        // What was asked for: help, or the version.
+        Err(text) => return ended(heard(text.print()).map(|()| 0)),
+    };
+    signals::watch();
+    let done = match &task {
+        Task::Solve { case, options } => solve::run(case, options, quiet, verbose),
+        Task::Audit { certificate, case, settings } => {
+            certify::audit(certificate, case.as_deref(), settings, quiet)
+        }
+        Task::Certify { case, displacement, out } => {
+            certify::certify(case, displacement, out.as_deref(), quiet)
+        }
+        Task::Check { case } => check(case, quiet),
+        Task::Sweep { case, axes, files, out } => {
+            sweep::run(case, axes, *files, out.as_deref(), quiet)
+        }
+        Task::Convergence { case, study, out } => study::run(case, study, out.as_deref(), quiet),
+        Task::Completions { shell } => Ok(completions(*shell)),
+    };
+    ended(done.and_then(|Done { text, code }| say(&text).map(|()| code)))
+}
+
+/// The exit code, after a word about a failure.
+fn ended(said: Result<u8, Failure>) -> ExitCode {
+    match said {
+        Ok(code) => ExitCode::from(code),
+        Err(Failure { message, code }) => {
+            signals::give_way();
+            complain(&format!("error: {message}"));
+            ExitCode::from(code)
+        }
+    }
+}
+
+/// Says it on standard output.
+fn say(text: &str) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    heard(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
+}
+
+/// A reader who has left has heard enough; the files are written in any case.
+fn heard(written: io::Result<()>) -> Result<(), Failure> {
+    match written {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(failed(format!("cannot write to standard output: {}", reason(&error))))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Says it on standard error. Where there is none, the exit code says it alone.
+fn complain(text: &str) {
+    let _ = writeln!(io::stderr(), "{}", quote::lines(text));
+}
+
+const STANDARD_INPUT: &str = "standard input";
+
+fn is_standard_input(file: &Path) -> bool {
+    file == Path::new("-")
+}
+
+fn read(CaseArguments { file, settings }: &CaseArguments) -> Result<Case, Failure> {
+    let (file, text) = read_text(file)?;
+    Case::parse(&file, &text, settings).map_err(no_case)
+}
+
+fn no_case(error: FileError) -> Failure {
+    wrong_or_failed(!error.error.is_lack(), error)
+}
+
+/// The text of a case, and what messages call its file.
+fn read_text(file: &Path) -> Result<(PathBuf, String), Failure> {
+    let (name, text) = if is_standard_input(file) {
+        let name = Path::new(STANDARD_INPUT);
+        (name, Case::text_from(io::stdin(), name))
+    } else {
+        (file, Case::text(file))
+    };
+    Ok((name.to_owned(), text.map_err(no_case)?))
+}
+
+/// The folder given by `--out`, or out/ and the name of the case.
+fn folder(file: &Path, out: Option<&Path>) -> PathBuf {
+    match out {
+        Some(folder) => folder.to_owned(),
+        None if is_standard_input(file) => PathBuf::from("out/stdin"),
+        None => {
+            // "...toml" without its ending would be "..", the folder above.
+            let stem = file.file_stem().filter(|s| !matches!(s.to_str(), Some("." | "..")));
+            Path::new("out").join(stem.or(file.file_name()).unwrap_or_default())
+        }
+    }
+}
+
+/// The failure of a case that cannot be solved.
+fn unsolvable(file: &Path, error: &RunError) -> Failure {
+    wrong_or_failed(error.is_wrong_case(), format!("{}: {error}", quote::path(file)))
+}
+
+fn check(arguments: &CaseArguments, quiet: bool) -> Result<Done, Failure> {
+    let case = read(arguments)?;
+    let outline = library::check(&case.problem, &case.method)
+        .map_err(|e| unsolvable(&case.file, &e.into()))?;
+    Ok(summarised(&summary::checked(&case, &outline), quiet))
+}
+
+fn completions(shell: clap_complete::Shell) -> Done {
+    let mut bytes = Vec::new();
+    clap_complete::generate(shell, &mut Arguments::command(), "signorini", &mut bytes);
+    Done { text: String::from_utf8_lossy(&bytes).into_owned(), code: 0 }
+}

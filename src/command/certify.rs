@@ -1,0 +1,67 @@
+//! `signorini certify`: how wrong a displacement is that any program computed; `signorini audit`: whether a certificate holds.
+
+use std::path::Path;
+
+use signorini::certify::binding::compare;
+use signorini::certify::certify_field;
+use signorini::io::field::read_field;
+use signorini::io::{Case, certificate, outputs, summary};
+use signorini::quote;
+use signorini::solve::{Course, solve_along};
+
+use super::arguments::CaseArguments;
+use super::progress::Phases;
+use super::{Done, Failure, failed, folder, read, summarised, unsolvable, wrong};
+
+pub fn certify(
+    arguments: &CaseArguments,
+    displacement: &Path,
+    out: Option<&Path>,
+    quiet: bool,
+) -> Result<Done, Failure> {
+    let phases = Phases::start(quiet);
+    phases.enter("reading the case and its mesh");
+    let case = read(arguments)?;
+    let folder =
+        out.map_or_else(|| folder(&arguments.file, None).join("certified"), Path::to_owned);
+    if folder.join("result.json").exists() {
+        return Err(wrong(format!(
+            "{} has the result.json of a solve, to which this certificate would seem to belong; expected another folder: --out DIR",
+            quote::path(&folder)
+        )));
+    }
+    let field = read_field(displacement, &case.problem.mesh).map_err(wrong)?;
+    let watcher = |phase| phases.enter_solve(phase);
+    let course = Course::default().watched_by(&watcher);
+    let (solution, _) = solve_along(&case.problem, &case.method, &case.settings, course)
+        .map_err(|e| unsolvable(&case.file, &e.into()))?;
+    phases.enter("certifying");
+    let certified = certify_field(&case.problem, &solution, &field)
+        .map_err(|e| failed(format!("{}: {e}", displacement.display())))?;
+    let files = outputs::write_certified(&folder, &case, &field, &certified).map_err(failed)?;
+    drop(phases);
+    Ok(summarised(&summary::certified(&case, displacement, &certified, &files), quiet))
+}
+
+/// Verifies a certificate from scratch, and that it is of a case if one is named.
+pub fn audit(
+    path: &Path,
+    case: Option<&Path>,
+    settings: &[String],
+    quiet: bool,
+) -> Result<Done, Failure> {
+    let case = case.map(|file| {
+        let settings = settings.to_vec();
+        read(&CaseArguments { file: file.to_owned(), settings })
+    });
+    let case = case.transpose()?;
+    let audit = certificate::audit(path).map_err(failed)?;
+    let Some(Case { problem, file, .. }) = case else {
+        return Ok(summarised(&summary::audited(&audit, None), quiet));
+    };
+    let reason = compare(problem, &audit.certificate, &audit.forces).map_err(|difference| {
+        let [path, file] = [path, &file].map(quote::path);
+        failed(format!("{path}: not a certificate of {file}: {difference}"))
+    })?;
+    Ok(summarised(&summary::audited(&audit, Some((&file, reason.as_deref()))), quiet))
+}

@@ -1,0 +1,149 @@
+//! `signorini solve`: by this program, or by the reference implementation in FEniCSx.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use signorini::certify::adapt::Stage;
+use signorini::io::files::spare;
+use signorini::io::outputs::{self, Extra};
+use signorini::io::result::{Results, result_json};
+use signorini::io::run::{self, Solved};
+use signorini::io::{Case, certificate, input, report, summary};
+use signorini::quote;
+
+use super::arguments::{CaseArguments, Engine, SolveOptions};
+use super::progress::Phases;
+use super::{
+    Done, Failure, SHORT, complain, engine, failed, folder, is_standard_input, read, summarised,
+    unsolvable, wrong, wrong_or_failed,
+};
+
+pub fn run(
+    case: &CaseArguments,
+    options: &SolveOptions,
+    quiet: bool,
+    verbose: bool,
+) -> Result<Done, Failure> {
+    let wanted = if options.json { Wanted::Json } else { Wanted::Summary { verbose } };
+    match (options.engine, options.ranks) {
+        (Engine::Fenicsx, _) => solve_by_fenicsx(case, options, wanted, quiet),
+        (Engine::Signorini, None) => solve(case, options, wanted, quiet),
+        (Engine::Signorini, Some(ranks)) => Err(wrong(format!(
+            "--ranks {ranks}: this program solves in one process; expected --engine fenicsx beside it"
+        ))),
+    }
+}
+
+/// The form of a solve's report.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Wanted {
+    Summary { verbose: bool },
+    Json,
+}
+
+impl Wanted {
+    fn text(self, results: &Results, files: &[PathBuf], quiet: bool) -> Result<Done, Failure> {
+        match self {
+            Wanted::Summary { verbose } => {
+                Ok(summarised(&summary::solved(results, files, verbose), quiet))
+            }
+            Wanted::Json => match result_json(results) {
+                Ok(text) => Ok(Done { text, code: 0 }),
+                Err(error) => Err(failed(format!("result.json cannot be made: {error}"))),
+            },
+        }
+    }
+}
+
+fn solve(
+    arguments: &CaseArguments,
+    options: &SolveOptions,
+    wanted: Wanted,
+    quiet: bool,
+) -> Result<Done, Failure> {
+    let extra = Extra { certificate: options.certificate, report: options.report };
+    let phases = Phases::start(quiet);
+    phases.enter("reading the case and its mesh");
+    let start = Instant::now();
+    let case = read(arguments)?;
+    let read = start.elapsed();
+    let out = options.out.as_deref();
+    let folder = folder(&arguments.file, out);
+    let with_files = wanted != Wanted::Json || out.is_some();
+    if with_files {
+        let names = [&outputs::FILES[..], &certificate::FILES, &[report::FILE]].concat();
+        spare(&folder, &names, &case.sources).map_err(wrong)?;
+    }
+    let (case, mut solved) = as_asked(case, &phases)?;
+    if extra.certificate && solved.certified.is_none() {
+        phases.enter("certifying");
+        solved.certify(&case);
+    }
+    let (files, results) = if with_files {
+        phases.enter("writing the files");
+        let remark = remark_of_another_case(&folder, &case.file);
+        let written = outputs::write(&folder, &case, &solved, read, extra).map_err(failed)?;
+        drop(phases);
+        if let (Some(remark), false) = (remark, quiet) {
+            complain(&remark);
+        }
+        written
+    } else {
+        (Vec::new(), outputs::results(&case, &solved, read, extra).map_err(failed)?)
+    };
+    let done = wanted.text(&results, &files, quiet)?;
+    let code = if results.falls_short() { SHORT } else { done.code };
+    Ok(Done { code, ..done })
+}
+
+/// Solves a case on its own mesh, or on adapted ones.
+fn as_asked(case: Case, phases: &Phases) -> Result<(Case, Solved), Failure> {
+    let file = case.file.clone();
+    let watcher = |stage| match stage {
+        Stage::Solve(phase) => phases.enter_solve(phase),
+        Stage::Certify(level) => phases.enter(format!("certifying level {level}")),
+        _ => phases.enter("refining the mesh"),
+    };
+    run::solve(case, None, &watcher).map_err(|e| unsolvable(&file, &e))
+}
+
+/// Two cases of one name write into one folder: said when the results in `folder` are those of another case than `file`.
+fn remark_of_another_case(folder: &Path, file: &Path) -> Option<String> {
+    let bytes = input::read(&folder.join("result.json"), input::MOST_OF_A_CASE).ok()?;
+    let earlier: Results = serde_json::from_slice(&bytes).ok()?;
+    let earlier = PathBuf::from(earlier.case?);
+    let whole = |path: &Path| fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    (whole(&earlier) != whole(file)).then(|| {
+        format!(
+            "remark: the results of {} in {} are replaced by those of {}; --out DIR keeps them apart",
+            quote::path(&earlier),
+            quote::path(folder),
+            quote::path(file)
+        )
+    })
+}
+
+fn solve_by_fenicsx(
+    CaseArguments { file, settings }: &CaseArguments,
+    options: &SolveOptions,
+    wanted: Wanted,
+    quiet: bool,
+) -> Result<Done, Failure> {
+    if let Some(setting) = settings.first() {
+        return Err(wrong(format!(
+            "--set {setting}: the engine fenicsx reads the case file itself; write the key into a case file"
+        )));
+    }
+    if is_standard_input(file) {
+        return Err(wrong("-: the engine fenicsx reads the case file itself; expected its name"));
+    }
+    let phases = Phases::start(quiet);
+    phases.enter("solving by the engine fenicsx");
+    let folder = folder(file, options.out.as_deref());
+    let (ranks, reference) = (options.ranks.unwrap_or(1), options.reference.as_deref());
+    let (results, files) = engine::fenicsx(file, &folder, ranks, reference)
+        .map_err(|e| wrong_or_failed(e.is_wrong_case(), e))?;
+    drop(phases);
+    wanted.text(&results, &files, quiet)
+}

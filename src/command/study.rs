@@ -1,0 +1,62 @@
+//! `signorini convergence`: a case with an exact solution on finer and finer meshes.
+
+use std::path::Path;
+
+use signorini::io::convergence::{self, Meshes};
+use signorini::io::files::spare;
+use signorini::io::summary;
+use signorini::quote;
+use signorini::solve::Degree;
+
+use super::arguments::{CaseArguments, MeshKind, StudyOptions};
+use super::progress::Phases;
+use super::{Done, Failure, failed, folder, read, summarised, wrong, wrong_or_failed};
+
+pub fn run(
+    arguments: &CaseArguments,
+    options: &StudyOptions,
+    out: Option<&Path>,
+    quiet: bool,
+) -> Result<Done, Failure> {
+    let case = read(arguments)?;
+    let folder = folder(&arguments.file, out);
+    spare(&folder, &convergence::FILES, &case.sources).map_err(wrong)?;
+    let degree = |d: &u8| if *d == 1 { Degree::One } else { Degree::Two };
+    let mesh = |m: &MeshKind| match m {
+        MeshKind::Structured => Meshes::Structured,
+        MeshKind::Perturbed => Meshes::Perturbed,
+    };
+    let degrees = or_none(options.degree.iter().map(degree).collect());
+    let meshes = or_none(options.mesh.iter().map(mesh).collect());
+    let levels = usize::from(options.levels);
+    let count = degrees.len() * meshes.len() * levels;
+    let phases = Phases::start(quiet);
+    let mut done = 0;
+    let mut enter = |more| {
+        done += more;
+        phases.enter(format!("{done} of {count} meshes"));
+    };
+    enter(0);
+    let mut studies = Vec::new();
+    for degree in &degrees {
+        for meshes in &meshes {
+            let study = convergence::ladder(&case, *degree, *meshes)
+                .and_then(|(ladder, meshes)| {
+                    convergence::climb(ladder, meshes, levels, || enter(1))
+                })
+                .map_err(|error| {
+                    let message = format!("{}: {error}", quote::path(&case.file));
+                    wrong_or_failed(error.is_wrong_case(), message)
+                })?;
+            studies.push(study);
+        }
+    }
+    drop(phases);
+    let files = convergence::write(&folder, &case.title, &studies).map_err(failed)?;
+    Ok(summarised(&summary::studied(&case, &studies, &files), quiet))
+}
+
+/// The wanted ones, or one that the case decides.
+fn or_none<T>(wanted: Vec<T>) -> Vec<Option<T>> {
+    if wanted.is_empty() { vec![None] } else { wanted.into_iter().map(Some).collect() }
+}

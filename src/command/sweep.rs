@@ -1,0 +1,73 @@
+//! `signorini sweep`: a case for each combination of values of some of its keys.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use signorini::io::files::spare;
+use signorini::io::summary;
+use signorini::io::sweep::{self, Axis, Outcome, Sweep, SweepError};
+
+use super::progress::Phases;
+use super::{
+    Done, FAILED, Failure, SHORT, WRONG, failed, folder, read_text, summarised, unsolvable, wrong,
+    wrong_or_failed,
+};
+
+/// A sweep writes the table of what it has solved so often.
+const BETWEEN_TABLES: Duration = Duration::from_secs(1);
+
+pub fn run(
+    file: &Path,
+    axes: &[Axis],
+    files: bool,
+    out: Option<&Path>,
+    quiet: bool,
+) -> Result<Done, Failure> {
+    let no_sweep = |error: SweepError| wrong_or_failed(error.is_wrong_case(), error);
+    let runs = sweep::count(axes).map_err(no_sweep)?;
+    let folder = folder(file, out);
+    let (file, text) = read_text(file)?;
+    spare(&folder, &[sweep::FILE], std::slice::from_ref(&file)).map_err(wrong)?;
+    let phases = Phases::start(quiet);
+    let enter = |done| phases.enter(format!("{done} of {runs} runs"));
+    enter(0);
+    // A sweep that is stopped leaves the table of what it has solved.
+    let mut written = Instant::now();
+    let done = |sweep: &Sweep| {
+        enter(sweep.runs.len());
+        let some = sweep.runs.iter().any(|run| run.outcome.is_ok());
+        if some && !sweep.to_come.is_empty() && written.elapsed() >= BETWEEN_TABLES {
+            sweep.write(&folder)?;
+            written = Instant::now();
+        }
+        Ok(())
+    };
+    let sweep = sweep::run(&file, &text, axes, &folder, files, done).map_err(no_sweep)?;
+    drop(phases);
+    let codes: Vec<u8> = sweep.runs.iter().map(|run| code(&run.outcome)).collect();
+    if codes.iter().all(|code| *code == WRONG)
+        && let Some(Err(error)) = sweep.runs.first().map(|run| &run.outcome)
+    {
+        return Err(unsolvable(&file, error));
+    }
+    let written = sweep.write(&folder).map_err(failed)?;
+    let all_in = |allowed: &[u8]| codes.iter().all(|code| allowed.contains(code));
+    let code = if all_in(&[0]) {
+        0
+    } else if all_in(&[0, SHORT]) {
+        SHORT
+    } else {
+        FAILED
+    };
+    Ok(Done { code, ..summarised(&summary::swept(&sweep, &written), quiet) })
+}
+
+/// The exit code of a solve with this outcome.
+fn code(outcome: &Outcome) -> u8 {
+    match outcome {
+        Ok(results) if results.falls_short() => SHORT,
+        Ok(_) => 0,
+        Err(error) if error.is_wrong_case() => WRONG,
+        Err(_) => FAILED,
+    }
+}
