@@ -1,4 +1,4 @@
-//! How much memory there is, asked before it is taken. An allocation that fails ends a Rust program, and a system that has
+//! Memory, asked for before it is taken. An allocation that fails ends a Rust program, and a system that has
 //! promised too much ends it without a word: so what grows with the input is predicted and refused in time.
 
 use std::fmt;

@@ -65,7 +65,7 @@ pub fn number(x: f64) -> String {
     }
 }
 
-/// With so many decimals, unless that were a row of zeros.
+/// A number with so many decimals, unless that were a row of zeros.
 pub fn fixed(x: f64, decimals: usize) -> String {
     if x.abs() < 1e16 { format!("{x:.decimals$}") } else { number(x) }
 }

@@ -6,7 +6,7 @@ use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use clap_complete::Shell;
-use signorini::io::sweep::Axis;
+use signorini::io::sweep::ParameterAxis;
 
 /// Unilateral (Signorini) contact in linear elasticity by Nitsche's method.
 #[derive(Parser)]
@@ -114,7 +114,7 @@ pub enum Task {
         case: PathBuf,
         /// A key of the case file and its values, such as method.gamma0=1e-3,1e-2; may be repeated
         #[arg(long = "set", value_name = "KEY=VALUE,VALUE,...", required = true)]
-        axes: Vec<Axis>,
+        axes: Vec<ParameterAxis>,
         /// Also write the files of each run, into folders 1, 2, ..., and sweep.pvd for ParaView
         #[arg(long)]
         files: bool,
@@ -150,7 +150,7 @@ pub struct CaseArguments {
     pub settings: Vec<String>,
 }
 
-/// How a case is solved, and what is written.
+/// Options of a solve.
 #[derive(Args)]
 pub struct SolveOptions {
     /// The folder to write to [default: out/ and the name of the case]

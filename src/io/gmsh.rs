@@ -21,7 +21,7 @@ mod mesh;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::input::{self, FileError, MOST_OF_A_MESH, Place};
+use super::input::{self, FileError, MOST_OF_A_MESH, Position};
 use crate::fem::Mesh;
 use crate::memory;
 use crate::quote;
@@ -43,7 +43,8 @@ pub fn read(file: &Path) -> Result<Mesh> {
 /// # Errors
 /// As [`read`].
 pub fn read_merged(file: &Path, share: Option<f64>) -> Result<Mesh> {
-    let bytes = input::read(file, MOST_OF_A_MESH).map_err(|error| error.at(file, Place::File))?;
+    let bytes =
+        input::read(file, MOST_OF_A_MESH).map_err(|error| error.at(file, Position::File))?;
     mesh_of(&bytes, file, share)
 }
 
@@ -90,13 +91,13 @@ struct Node {
 #[derive(Default)]
 struct Elements {
     /// Points, lines and triangles.
-    pieces: ByDimension<Vec<Piece>>,
+    by_dimension: ByDimension<Vec<GmshElement>>,
     /// The middle nodes of edges of second order.
     middles: Vec<Middle>,
 }
 
 /// An element on an entity of its dimension, by its corners: one, two or all three of `nodes`.
-struct Piece {
+struct GmshElement {
     tag: usize,
     nodes: [usize; 3],
     entity: i32,
@@ -129,7 +130,7 @@ impl Elements {
         for node in &mut nodes[..=dimension] {
             *node = cursor.size(NODE)?;
         }
-        self.pieces[dimension].push(Piece { tag, nodes, entity });
+        self.by_dimension[dimension].push(GmshElement { tag, nodes, entity });
         let edges = if order == 2 { [0, 1, 3][dimension] } else { 0 };
         for edge in 0..edges {
             let ends = [nodes[edge], nodes[(edge + 1) % 3]];
@@ -140,9 +141,10 @@ impl Elements {
 
     /// The groups of a file in which each is an entity of its own; 0 is no group.
     fn groups(&self) -> Groups {
-        let of =
-            |piece: &Piece| (piece.entity, Vec::from_iter(Some(piece.entity).filter(|&e| e != 0)));
-        self.pieces.each_ref().map(|pieces| pieces.iter().map(of).collect())
+        let of = |element: &GmshElement| {
+            (element.entity, Vec::from_iter(Some(element.entity).filter(|&e| e != 0)))
+        };
+        self.by_dimension.each_ref().map(|elements| elements.iter().map(of).collect())
     }
 }
 
@@ -381,7 +383,7 @@ fn read_elements(cursor: &mut Cursor) -> Result<Elements> {
         let number = cursor.int("the type of the elements")?;
         let count = cursor.size("a number of elements")?;
         if let Some((dimension, 1)) = dimension_and_order(number) {
-            cursor.make_room(&mut elements.pieces[dimension], count)?;
+            cursor.make_room(&mut elements.by_dimension[dimension], count)?;
         }
         for _ in 0..count {
             let start = cursor.here();

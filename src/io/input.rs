@@ -18,10 +18,10 @@ pub const MOST_OF_A_CASE: u64 = 16 << 20;
 /// The longest mesh file: more nodes than a factorisation in the memory of one machine has room for.
 pub const MOST_OF_A_MESH: u64 = 4 << 30;
 
-/// A place in what is read. It is shown so that it may follow the name of the file.
+/// A position in what is read. It is shown so that it may follow the name of the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Place {
+pub enum Position {
     /// The file as a whole.
     File,
     /// A line of a text, from 1.
@@ -32,25 +32,25 @@ pub enum Place {
     Setting(String),
 }
 
-impl Place {
+impl Position {
     /// The line in which a byte of a text stands.
-    pub fn line_of(byte: usize, text: &[u8]) -> Place {
-        Place::Line(text.iter().take(byte).filter(|&&b| b == b'\n').count() + 1)
+    pub fn line_of(byte: usize, text: &[u8]) -> Position {
+        Position::Line(text.iter().take(byte).filter(|&&b| b == b'\n').count() + 1)
     }
 }
 
-impl Display for Place {
+impl Display for Position {
     fn fmt(&self, f: &mut Formatter) -> fmt::Result {
         match self {
-            Place::File => Ok(()),
-            Place::Line(line) => write!(f, ":{line}"),
-            Place::Byte(byte) => write!(f, ", byte {byte}"),
-            Place::Setting(setting) => write!(f, " with --set {}", quote::cut(setting)),
+            Position::File => Ok(()),
+            Position::Line(line) => write!(f, ":{line}"),
+            Position::Byte(byte) => write!(f, ", byte {byte}"),
+            Position::Setting(setting) => write!(f, " with --set {}", quote::cut(setting)),
         }
     }
 }
 
-/// What is wrong with an input.
+/// A mistake in an input.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("{problem}")]
 pub struct InputError {
@@ -69,14 +69,14 @@ impl InputError {
         self.is_lack
     }
 
-    /// The same with words around it.
+    /// Puts words around the problem.
     pub(super) fn map(self, words: impl FnOnce(String) -> String) -> InputError {
         InputError { problem: words(self.problem), ..self }
     }
 
     /// Places the error in a file.
-    pub(super) fn at(self, file: &Path, place: Place) -> FileError {
-        FileError { file: file.to_owned(), place, error: self }
+    pub(super) fn at(self, file: &Path, position: Position) -> FileError {
+        FileError { file: file.to_owned(), position, error: self }
     }
 }
 
@@ -105,15 +105,15 @@ impl From<MeshError> for InputError {
     }
 }
 
-/// What is wrong with a file, and where: a case, a mesh or a field.
+/// A mistake in a file (a case, a mesh or a field), with its position.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[error("{}{place}: {error}", quote::path(file))]
+#[error("{}{position}: {error}", quote::path(file))]
 #[non_exhaustive]
 pub struct FileError {
     /// The file.
     pub file: PathBuf,
-    /// The place in it.
-    pub place: Place,
+    /// The position in it.
+    pub position: Position,
     /// The error.
     pub error: InputError,
 }
@@ -121,7 +121,7 @@ pub struct FileError {
 /// The bytes of a regular file of at most `most` bytes.
 ///
 /// # Errors
-/// What is no regular file, is too long, or can't be read.
+/// A file that is not regular, is too long, or can't be read.
 pub fn read(path: &Path, most: u64) -> Result<Vec<u8>, InputError> {
     // Before it is opened, for to open a pipe is to wait for its other end.
     regular(&fs::metadata(path).map_err(unreadable)?)?;
@@ -163,10 +163,10 @@ fn no_file(kind: &str) -> InputError {
     format!("this is {kind}; expected a file").into()
 }
 
-/// Refuses what is no regular file.
+/// Refuses a file that is not regular.
 ///
 /// # Errors
-/// What it is instead.
+/// The kind that it is instead.
 pub fn regular(metadata: &Metadata) -> Result<(), InputError> {
     if metadata.is_file() { Ok(()) } else { Err(no_file(kind(metadata))) }
 }
@@ -189,7 +189,7 @@ fn kind(metadata: &Metadata) -> &'static str {
     if metadata.is_dir() { "a directory" } else { "no regular file" }
 }
 
-/// Why a file can't be read, in words that don't depend on the system where that is possible.
+/// Says why a file can't be read, in words that don't depend on the system where that is possible.
 fn unreadable(error: io::Error) -> InputError {
     // ENFILE and EMFILE, which have no kind.
     if matches!(error.raw_os_error(), Some(23 | 24)) && cfg!(unix) {

@@ -37,7 +37,7 @@ const CERTIFIED: &str = "certified.vtu";
 /// The files of the engine fenicsx.
 pub const FILES_OF_FENICSX: [&str; 3] = ["solution.xdmf", "solution.h5", "result.json"];
 
-/// Those of the first list that are not in the second: left from another kind of run.
+/// The names of the first list that are not in the second: left from another kind of run.
 pub fn only_in(names: &[&'static str], others: &[&str]) -> Vec<&'static str> {
     names.iter().copied().filter(|name| !others.contains(name)).collect()
 }
@@ -266,7 +266,7 @@ fn sizes(mesh: &Mesh, solution: &Solution) -> MeshSizes {
     }
 }
 
-/// Why there are no errors where there is an exact solution.
+/// The reason why there are no errors where there is an exact solution.
 const NO_ERRORS: &str = "the errors are not given: near its singular point the exact solution is beyond the range of doubles";
 
 /// Strains above this are more than small-strain theory is for.
@@ -332,7 +332,7 @@ fn named_obstacle(case: &Case, boundary: &str) -> Option<String> {
     case.problem.obstacle_of(boundary).map(|name| quote::quoted(name, '\''))
 }
 
-/// Where the body is deepest in its obstacle before it is loaded, if it is.
+/// Says where the body is deepest in its obstacle before it is loaded, if it is.
 pub fn overlap(case: &Case) -> Option<String> {
     let space = Space::new(&case.problem.mesh, Degree::One);
     let line = contact_line::assemble(&case.problem, &space, 1.0).ok()?;
@@ -355,7 +355,7 @@ pub fn overlap(case: &Case) -> Option<String> {
     ))
 }
 
-/// Where a contact boundary that touches nothing is nearest to its obstacle.
+/// Says where a contact boundary that touches nothing is nearest to its obstacle.
 fn nearest(case: &Case, solution: &Solution, boundary: &str) -> Option<String> {
     let edges = solution.contact.iter().filter(|edge| &*edge.boundary == boundary);
     let distance = |point: &ContactValues| (point.gap - point.u_n, solution.nodes[point.node]);

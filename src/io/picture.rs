@@ -25,12 +25,13 @@ use super::finite::{NotFinite, check_finite};
 use body::{BAR, Colours, body, colour_bar, definitions, outlines};
 use contact::{ContactLine, hatch, obstacle, pressure, tags};
 use draw::{RED, clean, fitting};
-use scene::Frame;
+use scene::PageMap;
 
 pub use body::MOST_TRIANGLES;
 pub use case::draw;
 pub(super) use draw::{
-    Axis, DARK, FONT, GREY, LIGHT, Path, Point, frame, rounded, shape, stroke, text, width_of,
+    DARK, FONT, GREY, LIGHT, PageAxis, PathData, Point, frame, rounded, shape, stroke, text,
+    width_of,
 };
 pub use scene::{ContactSample, ContactSurface, Scene};
 
@@ -51,7 +52,7 @@ pub fn picture(scene: &Scene) -> Result<String, NotFinite> {
     let lines = ContactLine::all(scene, factor);
     let drawn = scene.points.iter().chain(&deformed).copied();
     let around = lines.iter().flat_map(|line| line.tip.iter().chain(line.wall.iter().flatten()));
-    let frame = Frame::around(drawn.chain(around.copied()), [MARGIN, HEADER]);
+    let frame = PageMap::around(drawn.chain(around.copied()), [MARGIN, HEADER]);
     check_finite("page", [frame.page([0.0; 2]).as_slice(), &[frame.width, frame.height]])?;
     let deformed: Vec<Point> = deformed.into_iter().map(|p| frame.page(p)).collect();
     let lines: Vec<ContactLine> = lines.into_iter().map(|line| line.on(&frame)).collect();
@@ -118,7 +119,7 @@ fn headline(scene: &Scene, room: f64) -> Group {
 /// The legend: entries one after the other, on as many lines as they need.
 struct Legend {
     group: Group,
-    /// Where the next entry goes, and where a line begins and ends.
+    /// The place of the next entry, and the start and the end of a line.
     place: Point,
     line: [f64; 2],
 }
@@ -139,7 +140,7 @@ impl Legend {
         }
         if obstacle {
             self.entry("rigid obstacle", |line, ends| {
-                let mut hatching = Path::default();
+                let mut hatching = PathData::default();
                 hatch(&ends.map(|[x, y]| [x, y - 3.0]), &mut hatching);
                 Group::new()
                     .set("transform", "translate(0 -3)")
@@ -149,7 +150,7 @@ impl Legend {
         }
         if pressure {
             self.entry("contact pressure", |line, [[x0, y0], [x1, y1]]| {
-                let mut area = Path::default();
+                let mut area = PathData::default();
                 area.polygon([[x0, y0 - 5.0], [x1, y1 - 5.0], [x1, y1 + 5.0], [x0, y0 + 5.0]]);
                 Group::new()
                     .add(shape(area).set("fill", RED).set("fill-opacity", 0.25))
@@ -161,11 +162,11 @@ impl Legend {
     }
 
     /// Words, and before them their mark: drawn with a short line, of which the ends are given too.
-    fn entry(&mut self, words: &str, mark: impl FnOnce(Path, [Point; 2]) -> Group) {
+    fn entry(&mut self, words: &str, mark: impl FnOnce(PathData, [Point; 2]) -> Group) {
         self.make_room(38.0 + width_of(words, 13.0));
         let [x, y] = self.place;
         let ends = [[x, y - 4.5], [x + 30.0, y - 4.5]];
-        let mut line = Path::default();
+        let mut line = PathData::default();
         line.line(ends);
         self.group.append(mark(line, ends));
         self.place[0] += 38.0;
@@ -536,7 +537,7 @@ mod tests {
     #[test]
     fn no_number_that_is_none_gets_into_a_picture() {
         let line = |to: f64| {
-            let mut path = Path::default();
+            let mut path = PathData::default();
             path.line([[0.0, 0.0], [to, 1.0]]);
             Document::new().add(Group::new().add(stroke(path, RED, 1.0))).add(text("NaN", [1.0; 2]))
         };

@@ -8,7 +8,7 @@ use svg::{Document, Node};
 
 use super::finite::{NotFinite, check_finite};
 use super::picture::{
-    Axis, DARK, FONT, GREY, LIGHT, Path, Point, frame, rounded, stroke, text, width_of,
+    DARK, FONT, GREY, LIGHT, PageAxis, PathData, Point, frame, rounded, stroke, text, width_of,
 };
 
 /// A figure.
@@ -109,7 +109,7 @@ fn label(content: &str, x: f64, y: f64, anchor: &str) -> Text {
 }
 
 fn line(points: impl IntoIterator<Item = Point>, style: &Style) -> PathElement {
-    let mut path = Path::default();
+    let mut path = PathData::default();
     path.line(points);
     let line = stroke(path, style.colour, 1.6);
     if style.dashed { line.set("stroke-dasharray", "5 3") } else { line }
@@ -126,16 +126,16 @@ fn mark([x, y]: [f64; 2], style: &Style) -> Circle {
 }
 
 /// An axis of decimal logarithms around those of `values`, with some space.
-fn logarithmic(values: impl Iterator<Item = f64>, page: [f64; 2]) -> Axis {
+fn logarithmic(values: impl Iterator<Item = f64>, page: [f64; 2]) -> PageAxis {
     let around = |[low, high]: [f64; 2], x: f64| [low.min(x), high.max(x)];
     let range = values.map(f64::log10).fold([f64::INFINITY, f64::NEG_INFINITY], around);
     let [low, high] = if range[0] <= range[1] { range } else { [-1.0, 0.0] };
     let space = (0.06 * (high - low)).max(0.05);
-    Axis { range: [low - space, high + space], page }
+    PageAxis { range: [low - space, high + space], page }
 }
 
 /// The powers of ten inside, as value, exponent and digit; where there are fewer than three, also twice and five times them.
-fn ticks(axis: &Axis) -> Vec<(f64, i32, u8)> {
+fn ticks(axis: &PageAxis) -> Vec<(f64, i32, u8)> {
     let [low, high] = axis.range;
     let of = |digits: &[u8]| -> Vec<(f64, i32, u8)> {
         (low.floor() as i32..=high.ceil() as i32)
@@ -200,7 +200,7 @@ fn draw(panel: &Panel, figure: &Figure, left: f64) -> Group {
 
     let mut group = Group::new()
         .add(label(&panel.title, left + WIDTH / 2.0, TOP - 12.0, "middle").set("font-size", 13));
-    let mut grid = Path::default();
+    let mut grid = PathData::default();
     for (x, k, m) in ticks(&x_axis) {
         let x = x_axis.at(x.log10());
         grid.line([[x, TOP], [x, bottom]]);
@@ -216,7 +216,7 @@ fn draw(panel: &Panel, figure: &Figure, left: f64) -> Group {
     group.append(label(&figure.x_label, left + WIDTH / 2.0, bottom + 34.0, "middle"));
     for (slope, corners) in triangles {
         let [_, b, c] = corners.map(page);
-        let mut triangle = Path::default();
+        let mut triangle = PathData::default();
         triangle.polygon(corners.map(page));
         group.append(stroke(triangle, GREY, 1.0));
         let text = format!("{slope:.2}");

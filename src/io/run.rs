@@ -65,14 +65,14 @@ impl Certified {
     }
 }
 
-/// Why a case is not solved.
+/// The reason why a case is not solved.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum RunError {
-    /// On its own mesh.
+    /// A failure on its own mesh.
     #[error(transparent)]
     Solve(#[from] SolveError),
-    /// On adapted meshes.
+    /// A failure on adapted meshes.
     #[error("[adapt]: {0}")]
     Adapt(#[from] AdaptError),
 }
@@ -88,7 +88,7 @@ impl RunError {
 }
 
 /// Solves `case`, from the `start` if there is one and the mesh stays as it is; an adapted mesh takes the place of its own. `watcher`
-/// is told what goes on.
+/// is told of each stage.
 ///
 /// # Errors
 /// Those of [`solve_along`], and of [`adapt::adapt`].

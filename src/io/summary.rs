@@ -194,7 +194,7 @@ fn contact(r: &Results, shown: &Shown, verbose: bool, lines: &mut Lines) {
     }
 }
 
-/// Between what the true contact force of a boundary is proved to lie, rounded outwards.
+/// The interval in which the true contact force of a boundary is proved to lie, rounded outwards.
 fn proved_force(r: &Results, boundary: &str, thickness: f64) -> Option<String> {
     let continuous = r.certificate.as_ref()?.continuous.as_ref()?;
     let [low, high] = continuous.contact_force(boundary)?;
@@ -344,7 +344,7 @@ pub fn certified(case: &Case, field: &Path, c: &Continuous, files: &[PathBuf]) -
     lines.under(&case.title)
 }
 
-/// Returns whether a bound is proved, and of which problem, where that is not the one that is meant.
+/// Says whether a bound is proved, and of which problem, where that is not the one that is meant.
 fn proved(rigorous: bool, reason: Option<&str>, problem: Option<&str>) -> String {
     let of = of_problem(problem);
     if rigorous {
@@ -402,7 +402,7 @@ pub fn audited(audit: &Audit, case: Option<(&Path, Option<&str>)>) -> String {
     lines.under(&header.title)
 }
 
-/// How far the solution can be from the exact solution of the discrete equations (8), and whether there is one.
+/// Says how far the solution can be from the exact solution of the discrete equations (8), and whether there is one.
 fn enclosed(certificate: &DiscreteCertificate) -> String {
     let reason = certificate.reason.as_deref().unwrap_or_default();
     let solutions = match (certificate.unique, certificate.radius) {
@@ -427,7 +427,7 @@ fn enclosed(certificate: &DiscreteCertificate) -> String {
     format!("{solutions}; this is within {size}, rounding included{of}")
 }
 
-/// Returns whether the target was met, and how the bound fell.
+/// Says whether the target was met, and how the bound fell.
 fn adapted(adapt: &Adaptation) -> String {
     let percent = |relative: f64| format!("{} %", numbers::short(100.0 * relative, 2));
     let reached = |level: &Level| match &adapt.force {
@@ -453,7 +453,7 @@ fn adapted(adapt: &Adaptation) -> String {
     )
 }
 
-/// How far the solution can be from the true one: as it is, and pushed out of the obstacle, where that is another number.
+/// Says how far the solution can be from the true one: as it is, and pushed out of the obstacle, where that is another number.
 fn distance(certificate: &ContinuousCertificate, lines: &mut Lines) {
     let reason = certificate.reason.as_deref().unwrap_or_default();
     let (Some(bound), Some(of_solution)) = (certificate.bound, certificate.of_solution) else {

@@ -1,7 +1,6 @@
 //! The command `signorini sweep`: one case, solved for every combination of the values that some of its keys are given, as
 //! a table for people and as CSV.
 
-use std::collections::VecDeque;
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -27,22 +26,22 @@ pub const MOST_RUNS: usize = 10_000;
 
 /// A key of the case file and the values that it takes, such as `method.gamma0=1e-3,1e-2`.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Axis {
+pub struct ParameterAxis {
     /// The key with its dots.
     pub key: String,
     /// The values as TOML has them; at least one.
     pub values: Vec<String>,
 }
 
-/// Why a text is no [`Axis`].
+/// The error of a text that is no [`ParameterAxis`].
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("expected KEY=VALUE,VALUE,..., such as method.gamma0=1e-3,1e-2")]
 pub struct NoAxis;
 
-impl FromStr for Axis {
+impl FromStr for ParameterAxis {
     type Err = NoAxis;
 
-    fn from_str(text: &str) -> Result<Axis, NoAxis> {
+    fn from_str(text: &str) -> Result<ParameterAxis, NoAxis> {
         let (key, values) = text.split_once('=').ok_or(NoAxis)?;
         // Commas inside texts, lists and tables separate nothing; bare words are no TOML, and have no commas.
         let values = items(values)
@@ -50,7 +49,7 @@ impl FromStr for Axis {
         if key.trim().is_empty() || values.is_empty() || values.iter().any(String::is_empty) {
             return Err(NoAxis);
         }
-        Ok(Axis { key: key.trim().to_owned(), values })
+        Ok(ParameterAxis { key: key.trim().to_owned(), values })
     }
 }
 
@@ -66,20 +65,7 @@ fn items(list: &str) -> Option<Vec<String>> {
     }
 }
 
-/// The result of a run: the quantities of the solution, or why there is none.
-pub type Outcome = Result<Results, RunError>;
-
-/// One solve of a sweep.
-#[derive(Clone, Debug)]
-#[non_exhaustive]
-pub struct Run {
-    /// The value on each axis.
-    pub values: Vec<String>,
-    /// The outcome.
-    pub outcome: Outcome,
-}
-
-/// Why there is no sweep.
+/// The reason why there is no sweep.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
@@ -120,7 +106,7 @@ pub const FILE: &str = "sweep.csv";
 /// The name of the file that ParaView opens, where the runs have files.
 pub const COLLECTION: &str = "sweep.pvd";
 
-/// A case and what became of it along some axes.
+/// A case and its results for the combinations of the values of some keys.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Sweep {
@@ -128,20 +114,20 @@ pub struct Sweep {
     pub title: String,
     /// The keys that were set.
     pub keys: Vec<String>,
-    /// The runs; the last key changes first.
-    pub runs: Vec<Run>,
+    /// The values of the keys in each run; those of the last key change first.
+    pub values: Vec<Vec<String>>,
+    /// The results of the runs so far, or why there are none.
+    pub results: Vec<Result<Results, RunError>>,
     /// The files of each run are written, too.
     pub with_files: bool,
-    /// The values of the runs that are still to come.
-    pub to_come: VecDeque<Vec<String>>,
 }
 
 /// The number of runs that these axes make.
 ///
 /// # Errors
 /// More than [`MOST_RUNS`], or a key on two axes.
-pub fn count(axes: &[Axis]) -> Result<usize, SweepError> {
-    let twice = |(i, axis): (usize, &Axis)| axes[..i].iter().any(|a| a.key == axis.key);
+pub fn count(axes: &[ParameterAxis]) -> Result<usize, SweepError> {
+    let twice = |(i, axis): (usize, &ParameterAxis)| axes[..i].iter().any(|a| a.key == axis.key);
     if let Some(axis) = axes.iter().enumerate().find(|&axis| twice(axis)).map(|(_, axis)| axis) {
         return Err(SweepError::Twice { key: axis.key.clone() });
     }
@@ -150,42 +136,38 @@ pub fn count(axes: &[Axis]) -> Result<usize, SweepError> {
 }
 
 /// Solves the case with this text (see [`Case::parse`]) for each combination of the axes' values, each from the solution of
-/// the one before where the nodes are the same, and calls `done` with what there is after each. With `files`, those of run i
+/// the one before where the nodes are the same, and calls `done` with the sweep so far after each. With `files`, those of run i
 /// (from 1) are written into the folder i of `folder`; those that an earlier sweep wrote there go before the first run.
 ///
 /// # Errors
 /// A mistake in the case or in one of the values, found before anything is solved; files that can't be written; what `done`
-/// gives. A run that has no solution is no error but a [`Run`].
+/// gives. A run that has no solution is none: its entry in [`Sweep::results`] says why.
 pub fn run(
     file: &Path,
     text: &str,
-    axes: &[Axis],
+    axes: &[ParameterAxis],
     folder: &Path,
     files: bool,
     mut done: impl FnMut(&Sweep) -> Result<(), SweepError>,
 ) -> Result<Sweep, SweepError> {
-    let count = count(axes)?;
-    let read = |i| {
-        let values = combination(axes, i);
-        let settings: Vec<String> =
-            axes.iter().zip(&values).map(|(axis, value)| format!("{}={value}", axis.key)).collect();
-        Case::parse(file, text, &settings).map(|case| (case, values))
+    let values: Vec<Vec<String>> = (0..count(axes)?).map(|i| combination(axes, i)).collect();
+    let read = |values: &[String]| {
+        let setting = |(axis, value): (&ParameterAxis, &String)| format!("{}={value}", axis.key);
+        let settings: Vec<String> = axes.iter().zip(values).map(setting).collect();
+        Case::parse(file, text, &settings)
     };
     let mut title = String::new();
-    for i in 0..count {
-        title = read(i)?.0.title;
+    for values in &values {
+        title = read(values)?.title;
     }
     clear(folder);
     let keys = axes.iter().map(|axis| axis.key.clone()).collect();
-    let to_come = (0..count).map(|i| combination(axes, i)).collect();
-    let runs = Vec::with_capacity(count);
-    let mut sweep = Sweep { title, keys, runs, with_files: files, to_come };
+    let mut sweep = Sweep { title, keys, values, results: Vec::new(), with_files: files };
     let mut last = None;
-    for i in 0..count {
-        let (case, values) = read(i)?;
+    for i in 0..sweep.values.len() {
+        let case = read(&sweep.values[i])?;
         let folder = files.then(|| of_run(folder, i));
-        sweep.runs.push(Run { values, outcome: solve(case, folder.as_deref(), &mut last)? });
-        sweep.to_come.pop_front();
+        sweep.results.push(solve(case, folder.as_deref(), &mut last)?);
         done(&sweep)?;
     }
     Ok(sweep)
@@ -208,7 +190,7 @@ fn clear(folder: &Path) {
 }
 
 /// The values of run `i`: its digits, the last axis first.
-fn combination(axes: &[Axis], mut i: usize) -> Vec<String> {
+fn combination(axes: &[ParameterAxis], mut i: usize) -> Vec<String> {
     let mut values: Vec<String> = Vec::with_capacity(axes.len());
     for axis in axes.iter().rev() {
         values.push(axis.values[i % axis.values.len()].clone());
@@ -223,7 +205,7 @@ fn solve(
     case: Case,
     folder: Option<&Path>,
     last: &mut Option<Solution>,
-) -> Result<Outcome, OutputError> {
+) -> Result<Result<Results, RunError>, OutputError> {
     let (case, mut solved) = match run::solve(case, last.as_ref(), &|_| {}) {
         Ok(solved) => solved,
         Err(error) => return Ok(Err(error)),
@@ -304,13 +286,14 @@ fn cells(r: &Results, shown: Shown) -> Vec<Cell> {
 }
 
 impl Sweep {
-    /// The columns between the values and the status: what any run has, in the order of [`cells`].
+    /// The columns between the values and the status: those of any run, in the order of [`cells`].
     fn columns(&self, brief: bool) -> Vec<String> {
         let mut columns: Vec<String> = Vec::new();
         // gamma0 as a key stands there already.
         let new = |name: &str| !self.keys.iter().any(|key| key == &format!("method.{name}"));
-        let solved = self.runs.iter().filter_map(|run| run.outcome.as_ref().ok());
-        for cell in solved.flat_map(|results| cells(results, &|_| String::new())) {
+        for cell in
+            self.results.iter().flatten().flat_map(|results| cells(results, &|_| String::new()))
+        {
             if new(&cell.name) && (cell.brief || !brief) && !columns.contains(&cell.name) {
                 columns.push(cell.name);
             }
@@ -322,22 +305,20 @@ impl Sweep {
     fn lines(&self, brief: bool, shown: Shown) -> Vec<Vec<String>> {
         let columns = self.columns(brief);
         let heading = self.keys.iter().chain(&columns).cloned().chain(["status".to_owned()]);
-        let row = |values: &[String], cells: Vec<Cell>, status: String| -> Vec<String> {
+        let row = |(i, values): (usize, &Vec<String>)| {
+            let (cells, status) = match self.results.get(i) {
+                Some(Ok(results)) => (cells(results, shown), results.newton.verdict().to_owned()),
+                Some(Err(error)) => (Vec::new(), error.to_string()),
+                None => (Vec::new(), NOT_SOLVED.to_owned()),
+            };
             let cell = |name: &String| {
                 let cell = cells.iter().find(|cell| cell.name == *name);
                 cell.map_or(String::new(), |cell| cell.value.clone())
             };
             values.iter().cloned().chain(columns.iter().map(cell)).chain([status]).collect()
         };
-        let solved = self.runs.iter().map(|run| match &run.outcome {
-            Ok(results) => {
-                row(&run.values, cells(results, shown), results.newton.verdict().to_owned())
-            }
-            Err(error) => row(&run.values, Vec::new(), error.to_string()),
-        });
-        let to_come =
-            self.to_come.iter().map(|values| row(values, Vec::new(), NOT_SOLVED.to_owned()));
-        [heading.collect()].into_iter().chain(solved).chain(to_come).collect()
+        let rows = self.values.iter().enumerate().map(row);
+        [heading.collect()].into_iter().chain(rows).collect()
     }
 
     /// The table for people: columns with four digits, aligned.
@@ -376,7 +357,7 @@ impl Sweep {
         let mut text = String::from(
             "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n",
         );
-        for (i, _) in (1..).zip(&self.runs).filter(|(_, run)| run.outcome.is_ok()) {
+        for (i, _) in (1..).zip(&self.results).filter(|(_, results)| results.is_ok()) {
             // Writing to a string cannot fail.
             let _ = writeln!(text, "<DataSet timestep=\"{i}\" file=\"{i}/solution.vtu\"/>");
         }
@@ -403,7 +384,7 @@ impl Sweep {
 mod tests {
     use super::*;
 
-    fn axis(text: &str) -> Axis {
+    fn axis(text: &str) -> ParameterAxis {
         text.parse().unwrap()
     }
 
@@ -422,14 +403,14 @@ mod tests {
         ] {
             assert_eq!(
                 axis(text),
-                Axis {
+                ParameterAxis {
                     key: key.to_owned(),
                     values: values.iter().map(|v| (*v).to_owned()).collect()
                 }
             );
         }
         for text in ["method.gamma0", "=1", "a=", "a=x,,y"] {
-            assert_eq!(text.parse::<Axis>(), Err(NoAxis), "{text}");
+            assert_eq!(text.parse::<ParameterAxis>(), Err(NoAxis), "{text}");
         }
     }
 
@@ -445,7 +426,7 @@ mod tests {
     #[test]
     fn too_many_runs_and_a_key_on_two_axes_are_refused() {
         let many = axis(&format!("a={}", ["1"; 101].join(",")));
-        let axes = [many.clone(), Axis { key: "b".to_owned(), ..many }];
+        let axes = [many.clone(), ParameterAxis { key: "b".to_owned(), ..many }];
         let said = count(&axes).unwrap_err().to_string();
         assert_eq!(said, "--set makes 10201 runs; expected at most 10000");
         let said = count(&[axis("a=1"), axis("a=2")]).unwrap_err().to_string();
@@ -454,13 +435,12 @@ mod tests {
 
     #[test]
     fn what_is_still_to_come_stands_in_the_table_as_not_solved() {
-        let to_come = [vec!["1e-3".to_owned()], vec!["1e-2".to_owned()]].into();
         let sweep = Sweep {
             title: String::new(),
             keys: vec!["method.gamma0".to_owned()],
-            runs: Vec::new(),
+            values: vec![vec!["1e-3".to_owned()], vec!["1e-2".to_owned()]],
+            results: Vec::new(),
             with_files: false,
-            to_come,
         };
         let csv = sweep.csv();
         let lines: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();

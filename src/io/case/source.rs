@@ -12,10 +12,10 @@ use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
 use crate::io::expression::Expression;
-use crate::io::input::{FileError, InputError, Place};
+use crate::io::input::{FileError, InputError, Position};
 use crate::quote::{cut, quoted};
 
-/// A file, its text, and what is set over it. Places in the settings come after those in the text.
+/// A file, its text, and the settings over it. Places in the settings come after those in the text.
 #[derive(Clone, Copy)]
 pub struct Source<'s> {
     pub file: &'s Path,
@@ -27,12 +27,12 @@ impl<'s> Source<'s> {
     /// `error` at the byte `start`, or in the file as a whole.
     pub fn wrong(&self, start: Option<usize>, error: InputError) -> FileError {
         let setting = start.and_then(|start| self.setting_at(start));
-        let place = match (setting, start) {
-            (Some(setting), _) => Place::Setting(setting.to_owned()),
-            (None, Some(start)) => Place::line_of(start, self.text.as_bytes()),
-            (None, None) => Place::File,
+        let position = match (setting, start) {
+            (Some(setting), _) => Position::Setting(setting.to_owned()),
+            (None, Some(start)) => Position::line_of(start, self.text.as_bytes()),
+            (None, None) => Position::File,
         };
-        error.at(self.file, place)
+        error.at(self.file, position)
     }
 
     /// The setting in which the byte `start` lies, if it lies behind the file.
@@ -86,7 +86,7 @@ impl<'s> Source<'s> {
     }
 }
 
-/// Where the first key with more parts than the TOML reader takes stands: of that mistake it does not give the place.
+/// Finds the first key with more parts than the TOML reader takes: of that mistake it does not give the place.
 fn deepest(error: &toml::de::Error, text: &str) -> Option<usize> {
     const MOST_PARTS: usize = 80;
     let is_deep = |line: &&str| line.matches('.').nth(MOST_PARTS - 1).is_some();

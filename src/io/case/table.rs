@@ -16,7 +16,7 @@ use crate::io::expression::Expression;
 use crate::io::input::{FileError, InputError};
 use crate::quote::{cut, key as shown, listed, number, quoted};
 
-/// What a message is about: its name and where it stands. The file as a whole has neither.
+/// The subject of a message: its name and its place. The file as a whole has neither.
 pub struct Spot<'s> {
     source: Source<'s>,
     pub name: String,
@@ -29,7 +29,7 @@ impl Spot<'_> {
         self.source.wrong(self.start, error.into())
     }
 
-    /// What the mesh says of it.
+    /// An error of the mesh here.
     pub fn mesh(&self, error: MeshError) -> FileError {
         self.wrong(InputError::from(error).map(|problem| format!("{}: {problem}", self.name)))
     }
@@ -78,7 +78,7 @@ impl<'s> Table<'s> {
         Some(Value { at, value: value.get_ref() })
     }
 
-    /// What `read` makes of the value of `key`, if it is there.
+    /// Reads the value of `key`, if it is there.
     pub fn optional<T>(
         &self,
         key: &str,
@@ -98,7 +98,7 @@ impl<'s> Table<'s> {
         self.optional(key, |value| value.section(format!("[{key}]")))
     }
 
-    /// What `read` makes of the table `key` of the file, if it is there.
+    /// Reads the table `key` of the file, if it is there.
     pub fn optional_section<T>(
         &self,
         key: &str,

@@ -1,9 +1,9 @@
-//! From a text to its steps: recursive descent, one function for each line of the grammar.
+//! From a text to its instructions: recursive descent, one function for each line of the grammar.
 
 use std::str::FromStr;
 
 use super::{
-    Binary, Expression, ExpressionError, MOST_LEVELS, MOST_OPERATIONS, Step, Unary, constant,
+    Binary, Expression, ExpressionError, Instruction, MOST_LEVELS, MOST_OPERATIONS, Unary, constant,
 };
 use crate::quote::quoted;
 
@@ -14,7 +14,7 @@ impl FromStr for Expression {
         let mut parser = Parser::new(text)?;
         parser.expression(1)?;
         match parser.token {
-            Token::End => Ok(Expression { steps: parser.steps }),
+            Token::End => Ok(Expression { instructions: parser.instructions }),
             Token::Symbol(',') => {
                 Err(parser.wrong("an operator (+ - * / ^) or the end (decimals have a point: 0.5)"))
             }
@@ -24,18 +24,18 @@ impl FromStr for Expression {
 }
 
 /// The functions, in the order in which messages list them.
-const FUNCTIONS: [(&str, Function); 7] = [
-    ("sqrt", Function::Unary(Unary::Sqrt)),
-    ("sin", Function::Unary(Unary::Sin)),
-    ("cos", Function::Unary(Unary::Cos)),
-    ("exp", Function::Unary(Unary::Exp)),
-    ("abs", Function::Unary(Unary::Abs)),
-    ("min", Function::Binary(Binary::Min)),
-    ("max", Function::Binary(Binary::Max)),
+const FUNCTIONS: [(&str, NamedFunction); 7] = [
+    ("sqrt", NamedFunction::Unary(Unary::Sqrt)),
+    ("sin", NamedFunction::Unary(Unary::Sin)),
+    ("cos", NamedFunction::Unary(Unary::Cos)),
+    ("exp", NamedFunction::Unary(Unary::Exp)),
+    ("abs", NamedFunction::Unary(Unary::Abs)),
+    ("min", NamedFunction::Binary(Binary::Min)),
+    ("max", NamedFunction::Binary(Binary::Max)),
 ];
 
 #[derive(Clone, Copy)]
-enum Function {
+enum NamedFunction {
     Unary(Unary),
     Binary(Binary),
 }
@@ -51,7 +51,7 @@ enum Token<'t> {
     End,
 }
 
-/// Recursive descent, one function for each line of the grammar, each of which appends the steps of what it reads. `level`
+/// Recursive descent, one function for each line of the grammar, each of which appends the instructions of what it reads. `level`
 /// counts the nesting, from 1.
 struct Parser<'t> {
     text: &'t str,
@@ -59,31 +59,32 @@ struct Parser<'t> {
     token: Token<'t>,
     start: usize,
     end: usize,
-    steps: Vec<Step>,
-    /// The number of steps that are no numbers and no variables.
+    instructions: Vec<Instruction>,
+    /// The number of instructions that are no numbers and no variables.
     operations: usize,
 }
 
 impl<'t> Parser<'t> {
     fn new(text: &'t str) -> Result<Self, ExpressionError> {
-        let (steps, operations) = (Vec::new(), 0);
-        let mut parser = Parser { text, token: Token::End, start: 0, end: 0, steps, operations };
+        let (instructions, operations) = (Vec::new(), 0);
+        let mut parser =
+            Parser { text, token: Token::End, start: 0, end: 0, instructions, operations };
         parser.advance()?;
         Ok(parser)
     }
 
-    fn operation(&mut self, step: Step) -> Result<(), ExpressionError> {
+    fn operation(&mut self, step: Instruction) -> Result<(), ExpressionError> {
         self.operations += 1;
         if self.operations > MOST_OPERATIONS {
             return Err(self.wrong(&format!("at most {MOST_OPERATIONS} operations")));
         }
-        self.steps.push(step);
+        self.instructions.push(step);
         Ok(())
     }
 
     /// The operation whose second operand begins at step `second`.
     fn binary(&mut self, f: Binary, second: usize) -> Result<(), ExpressionError> {
-        self.operation(Step::Binary(f, (self.steps.len() + 1 - second) as u32))
+        self.operation(Instruction::Binary(f, (self.instructions.len() + 1 - second) as u32))
     }
 
     fn expression(&mut self, level: usize) -> Result<(), ExpressionError> {
@@ -104,7 +105,7 @@ impl<'t> Parser<'t> {
         operand(self, level)?;
         while let Some((_, f)) = operators.iter().find(|o| self.token == Token::Symbol(o.0)) {
             self.advance()?;
-            let second = self.steps.len();
+            let second = self.instructions.len();
             operand(self, level)?;
             self.binary(*f, second)?;
         }
@@ -123,7 +124,7 @@ impl<'t> Parser<'t> {
             Token::Symbol('-') => {
                 self.advance()?;
                 self.factor(level + 1)?;
-                self.operation(Step::Unary(Unary::Negate))
+                self.operation(Instruction::Unary(Unary::Negate))
             }
             _ => self.power(level),
         }
@@ -135,12 +136,12 @@ impl<'t> Parser<'t> {
             return Ok(());
         }
         self.advance()?;
-        let second = self.steps.len();
+        let second = self.instructions.len();
         self.factor(level + 1)?;
-        match constant(&self.steps[second..]) {
+        match constant(&self.instructions[second..]) {
             Some(n) if n.trunc() == n && n.abs() <= MOST_FACTORS => {
-                self.steps.truncate(second);
-                self.operation(Step::Unary(Unary::WholePower(n as i32)))
+                self.instructions.truncate(second);
+                self.operation(Instruction::Unary(Unary::WholePower(n as i32)))
             }
             _ => self.binary(Binary::Power, second),
         }
@@ -148,10 +149,10 @@ impl<'t> Parser<'t> {
 
     fn atom(&mut self, level: usize) -> Result<(), ExpressionError> {
         let step = match self.token {
-            Token::Number(value) => Step::Number(value),
-            Token::Name("x") => Step::X,
-            Token::Name("y") => Step::Y,
-            Token::Name("pi") => Step::Number(std::f64::consts::PI),
+            Token::Number(value) => Instruction::Number(value),
+            Token::Name("x") => Instruction::X,
+            Token::Name("y") => Instruction::Y,
+            Token::Name("pi") => Instruction::Number(std::f64::consts::PI),
             Token::Name(name) => return self.function(name, level),
             Token::Symbol('(') => {
                 self.advance()?;
@@ -160,7 +161,7 @@ impl<'t> Parser<'t> {
             }
             Token::Symbol(_) | Token::End => return Err(self.no_atom()),
         };
-        self.steps.push(step);
+        self.instructions.push(step);
         self.advance()
     }
 
@@ -178,14 +179,14 @@ impl<'t> Parser<'t> {
         self.expression(level + 1)?;
         let end = |count| format!("an operator (+ - * / ^) or ')': {name} takes {count}");
         match *function {
-            Function::Unary(f) => {
+            NamedFunction::Unary(f) => {
                 self.skip(')', &end("one argument"))?;
-                self.operation(Step::Unary(f))
+                self.operation(Instruction::Unary(f))
             }
-            Function::Binary(f) => {
+            NamedFunction::Binary(f) => {
                 let comma = format!("an operator (+ - * / ^) or ',': {name} takes two arguments");
                 self.skip(',', &comma)?;
-                let second = self.steps.len();
+                let second = self.instructions.len();
                 self.expression(level + 1)?;
                 self.skip(')', &end("two arguments"))?;
                 self.binary(f, second)

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::str::FromStr;
 
 use super::Result;
-use crate::io::input::{FileError, InputError, Place};
+use crate::io::input::{FileError, InputError, Position};
 use crate::memory;
 use crate::quote::{self, quoted};
 
@@ -13,7 +13,7 @@ use crate::quote::{self, quoted};
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Form {
     Text,
-    /// With so many bytes for a tag or a count: 4 or 8.
+    /// Bytes, of which a tag or a count has 4 or 8.
     Binary {
         tag_size: usize,
     },
@@ -160,7 +160,7 @@ impl<'b> Cursor<'b> {
         }
     }
 
-    /// Where the next number starts.
+    /// Finds the start of the next number.
     pub(super) fn here(&mut self) -> usize {
         if self.form == Form::Text {
             self.skip_white_space();
@@ -196,15 +196,15 @@ impl<'b> Cursor<'b> {
 
     pub(super) fn wrong_at(&self, start: usize, said: String) -> FileError {
         let place = match self.form {
-            Form::Text => Place::line_of(start, self.bytes),
-            Form::Binary { .. } => Place::Byte(start),
+            Form::Text => Position::line_of(start, self.bytes),
+            Form::Binary { .. } => Position::Byte(start),
         };
         InputError::from(said).at(self.file, place)
     }
 
     /// An error that concerns the file as a whole.
     pub(super) fn in_the_file(&self, error: impl Into<InputError>) -> FileError {
-        error.into().at(self.file, Place::File)
+        error.into().at(self.file, Position::File)
     }
 }
 

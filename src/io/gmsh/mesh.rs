@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use nalgebra::Vector2;
 
-use super::{ByDimension, Content, Elements, Groups, Middle, Node, Piece};
+use super::{ByDimension, Content, Elements, GmshElement, Groups, Middle, Node};
 use crate::fem::merge::merge;
 use crate::fem::mesh::length;
 use crate::fem::{Mesh, MeshError};
@@ -26,8 +26,8 @@ const NO_TRIANGLE: &str =
 /// Gives the elements on nodes that lie together the first of these nodes, and leaves out what loses an edge by it. Nodes that
 /// no triangle uses, and elements on nodes that are not there, stay as they are.
 pub(super) fn merge_nodes(content: &mut Content, share: f64) {
-    let pieces = &mut content.elements.pieces;
-    let used: HashSet<usize> = pieces[2].iter().flat_map(|t| t.nodes).collect();
+    let by_dimension = &mut content.elements.by_dimension;
+    let used: HashSet<usize> = by_dimension[2].iter().flat_map(|t| t.nodes).collect();
     let kept: Vec<&Node> = content.nodes.iter().filter(|node| used.contains(&node.tag)).collect();
     let places: Vec<[f64; 2]> = kept.iter().map(|node| node.place).collect();
     let merged = merge(&places, &[], share);
@@ -36,17 +36,17 @@ pub(super) fn merge_nodes(content: &mut Content, share: f64) {
         .zip(&merged.vertex)
         .map(|(node, &vertex)| (node.tag, kept[merged.old_vertex[vertex]].tag))
         .collect();
-    let nodes = pieces.iter_mut().flatten().flat_map(|piece| &mut piece.nodes);
+    let nodes = by_dimension.iter_mut().flatten().flat_map(|element| &mut element.nodes);
     nodes.for_each(|tag| *tag = first.get(tag).copied().unwrap_or(*tag));
-    let [_, lines, triangles] = pieces;
+    let [_, lines, triangles] = by_dimension;
     lines.retain(|line| line.nodes[0] != line.nodes[1]);
-    triangles.retain(|&Piece { nodes: [a, b, c], .. }| a != b && b != c && c != a);
+    triangles.retain(|&GmshElement { nodes: [a, b, c], .. }| a != b && b != c && c != a);
 }
 
 /// The mesh of the corners of triangles, in the order of the file.
 pub(super) fn make_mesh(content: Content) -> Result<Mesh> {
-    let Content { names, groups, nodes, elements: Elements { pieces, middles } } = content;
-    let [points, lines, triangles] = pieces;
+    let Content { names, groups, nodes, elements: Elements { by_dimension, middles } } = content;
+    let [points, lines, triangles] = by_dimension;
     // Two maps from tags, which are at most half empty and twice as large for a moment while they grow; the lists.
     let maps = 3 * bytes_of::<[usize; 4]>(nodes.len()).saturating_mul(2);
     memory::check(maps.saturating_add(bytes_of::<[usize; 3]>(triangles.len())))?;
@@ -153,8 +153,8 @@ struct Entities(ByDimension<BTreeMap<i32, Option<String>>>);
 
 impl Entities {
     /// The name of the entity of this dimension on which an element lies.
-    fn name_under(&self, dimension: usize, piece: &Piece) -> Result<Option<&String>> {
-        let &Piece { tag, entity, .. } = piece;
+    fn name_under(&self, dimension: usize, element: &GmshElement) -> Result<Option<&String>> {
+        let &GmshElement { tag, entity, .. } = element;
         let name = self.0[dimension].get(&entity).ok_or_else(|| {
             let kind = KINDS[dimension];
             format!("element {tag} lies on {kind} {entity}, which is not in $Entities")

@@ -5,10 +5,10 @@ use svg::node::element::{ClipPath, Definitions, Group, LinearGradient, Rectangle
 
 use super::cells::{Cells, area};
 use super::draw::{
-    DARK, GREY, Path, Point, VIRIDIS, clean, fitting, loops, rounded, shape, short, stroke, text,
-    thinned, viridis,
+    DARK, GREY, PathData, Point, VIRIDIS, clean, fitting, loops, rounded, shape, short, stroke,
+    text, thinned, viridis,
 };
-use super::scene::{Frame, Scene};
+use super::scene::{PageMap, Scene};
 use crate::io::numbers::ticks;
 
 /// A body of more triangles than this is drawn by cells: one by one they would make the file too large.
@@ -20,8 +20,8 @@ const CELL: f64 = 2.5;
 /// Up to here the mesh itself is worth seeing.
 const MOST_VISIBLE_TRIANGLES: usize = 3000;
 
-fn outline_path(scene: &Scene, points: &[Point]) -> Path {
-    let mut path = Path::default();
+fn outline_path(scene: &Scene, points: &[Point]) -> PathData {
+    let mut path = PathData::default();
     for vertices in loops(scene.outline, points.len()) {
         let line: Vec<Point> = vertices.into_iter().map(|v| points[v]).collect();
         path.polygon(thinned(&line));
@@ -54,7 +54,7 @@ pub(super) fn definitions(scene: &Scene, deformed: &[Point]) -> Definitions {
 pub(super) fn body(scene: &Scene, deformed: &[Point], colours: &Colours) -> Group {
     let triangles: Vec<[Point; 3]> =
         scene.triangles.iter().map(|vertices| vertices.map(|v| deformed[v])).collect();
-    let mut levels = vec![Path::default(); LEVELS];
+    let mut levels = vec![PathData::default(); LEVELS];
     let by_cells = triangles.len() > MOST_TRIANGLES;
     if by_cells {
         let cells = Cells::new(CELL, &triangles, scene.von_mises);
@@ -75,16 +75,16 @@ pub(super) fn body(scene: &Scene, deformed: &[Point], colours: &Colours) -> Grou
         group = group.add(shape(path).set("fill", colour.clone()).set("stroke", colour));
     }
     if triangles.len() <= MOST_VISIBLE_TRIANGLES {
-        let mut mesh = Path::default();
+        let mut mesh = PathData::default();
         triangles.into_iter().for_each(|corners| mesh.polygon(corners));
         group = group.add(stroke(mesh, "white", 0.5).set("stroke-opacity", 0.35));
     }
     group
 }
 
-pub(super) fn outlines(scene: &Scene, deformed: &[Point], frame: &Frame) -> Group {
+pub(super) fn outlines(scene: &Scene, deformed: &[Point], frame: &PageMap) -> Group {
     let before: Vec<Point> = scene.points.iter().map(|&p| frame.page(p)).collect();
-    let mut interfaces = Path::default();
+    let mut interfaces = PathData::default();
     for &[a, b] in scene.interfaces {
         interfaces.line([deformed[a], deformed[b]]);
     }
@@ -189,7 +189,7 @@ pub(super) fn colour_bar(
         return group.add(bar.set("fill", fill)).add(label(top + height / 2.0, short(colours.max)));
     }
     let at = |value: f64| top + height * (1.0 - colours.position(value));
-    let mut marks = Path::default();
+    let mut marks = PathData::default();
     let mut labels = Group::new();
     for value in [colours.min, colours.top] {
         marks.line([[left + 18.0, at(value)], [left + 25.0, at(value)]]);
@@ -203,7 +203,7 @@ pub(super) fn colour_bar(
         }
     }
     if capped {
-        let mut peak = Path::default();
+        let mut peak = PathData::default();
         peak.polygon([[left, top + 0.5], [left + 9.0, top - 16.0], [left + 18.0, top + 0.5]]);
         labels = labels
             .add(shape(peak).set("fill", Colours::colour(LEVELS - 1)))

@@ -4,10 +4,10 @@
 use svg::node::element::{Circle, Group};
 
 use super::draw::{
-    DARK, GREY, Path, Point, RED, between, direction, distance, distance_from_segment, moved,
+    DARK, GREY, PathData, Point, RED, between, direction, distance, distance_from_segment, moved,
     places, shape, stroke, text, thinned,
 };
-use super::scene::{ContactSample, Frame, Scene};
+use super::scene::{ContactSample, PageMap, Scene};
 
 /// A connected part of a contact boundary as it is drawn: for each sample the deformed point, the end of its pressure, and
 /// the point of the obstacle.
@@ -69,7 +69,7 @@ impl ContactLine {
     }
 
     /// Moves the points of the line onto the page.
-    pub(super) fn on(self, frame: &Frame) -> ContactLine {
+    pub(super) fn on(self, frame: &PageMap) -> ContactLine {
         let all = |points: Vec<Point>| points.into_iter().map(|p| frame.page(p)).collect();
         ContactLine {
             base: all(self.base),
@@ -79,7 +79,7 @@ impl ContactLine {
         }
     }
 
-    /// Where the pressure is positive, with the sample before and the one after.
+    /// The ranges of samples where the pressure is positive, with the sample before and the one after.
     fn pressed(&self) -> Vec<std::ops::RangeInclusive<usize>> {
         let mut ranges = Vec::new();
         let mut start = 0;
@@ -140,7 +140,8 @@ fn smooth_normals(samples: &[ContactSample]) -> Vec<Point> {
 
 /// The pressure as a filled curve, with arrows that push against the body.
 pub(super) fn pressure(contact: &[ContactLine]) -> Option<Group> {
-    let (mut area, mut curve, mut arrows) = (Path::default(), Path::default(), Path::default());
+    let (mut area, mut curve, mut arrows) =
+        (PathData::default(), PathData::default(), PathData::default());
     for line in contact {
         for range in line.pressed() {
             let (base, tip) = (&line.base[range.clone()], &line.tip[range]);
@@ -165,7 +166,7 @@ pub(super) fn pressure(contact: &[ContactLine]) -> Option<Group> {
 }
 
 /// An arrow, unless it would be all head.
-fn arrow(from: Point, to: Point, arrows: &mut Path) {
+fn arrow(from: Point, to: Point, arrows: &mut PathData) {
     if let (true, Some([x, y])) = (distance(from, to) > 8.0, direction(from, to)) {
         let wing = |side: f64| moved(to, [-x - side * 0.5 * y, -y + side * 0.5 * x], 6.0);
         arrows.line([from, to]);
@@ -175,7 +176,7 @@ fn arrow(from: Point, to: Point, arrows: &mut Path) {
 
 /// The obstacle's border, hatched on its side.
 pub(super) fn obstacle(contact: &[ContactLine]) -> Option<Group> {
-    let (mut border, mut hatching) = (Path::default(), Path::default());
+    let (mut border, mut hatching) = (PathData::default(), PathData::default());
     for line in contact {
         for run in line.wall.chunk_by(|a, b| a.is_some() == b.is_some()) {
             let run: Vec<Point> = run.iter().flatten().copied().collect();
@@ -190,7 +191,7 @@ pub(super) fn obstacle(contact: &[ContactLine]) -> Option<Group> {
         .then(|| Group::new().add(stroke(hatching, GREY, 0.9)).add(stroke(border, DARK, 1.6)))
 }
 
-pub(super) fn hatch(border: &[Point], hatching: &mut Path) {
+pub(super) fn hatch(border: &[Point], hatching: &mut PathData) {
     for (i, fraction) in places(border, 8.0) {
         let (a, b) = (border[i], border[i + 1]);
         if let Some([x, y]) = direction(a, b) {
@@ -227,7 +228,7 @@ pub(super) fn tags(
     contact: &[ContactLine],
     count: usize,
     outline: &[[Point; 2]],
-    frame: &Frame,
+    frame: &PageMap,
 ) -> Group {
     let mut group = Group::new();
     for surface in 0..count {

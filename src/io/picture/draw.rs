@@ -46,21 +46,21 @@ pub(super) fn fitting(text: &str, size: f64, width: f64) -> f64 {
     rounded((size * width / width_of(text, size)).min(size))
 }
 
-pub(in crate::io) fn shape(path: Path) -> PathElement {
+pub(in crate::io) fn shape(path: PathData) -> PathElement {
     PathElement::new().set("d", path.d)
 }
 
-pub(in crate::io) fn stroke(path: Path, colour: &str, width: f64) -> PathElement {
+pub(in crate::io) fn stroke(path: PathData, colour: &str, width: f64) -> PathElement {
     shape(path).set("fill", "none").set("stroke", colour).set("stroke-width", width)
 }
 
 /// An axis: the range of its values, and the ends of that on the page.
-pub(in crate::io) struct Axis {
+pub(in crate::io) struct PageAxis {
     pub(in crate::io) range: [f64; 2],
     pub(in crate::io) page: [f64; 2],
 }
 
-impl Axis {
+impl PageAxis {
     /// The place of a value on the page; the middle where the range is a single value.
     pub(in crate::io) fn at(&self, value: f64) -> f64 {
         let ([low, high], [start, end]) = (self.range, self.page);
@@ -82,11 +82,11 @@ pub(in crate::io) fn frame([left, top]: Point, [width, height]: [f64; 2]) -> Rec
 
 /// The `d` attribute of a path, in hundredths of the page's unit.
 #[derive(Clone, Debug, Default)]
-pub(in crate::io) struct Path {
+pub(in crate::io) struct PathData {
     d: String,
 }
 
-impl Path {
+impl PathData {
     pub(super) fn is_empty(&self) -> bool {
         self.d.is_empty()
     }
@@ -244,7 +244,7 @@ mod tests {
 
     #[test]
     fn coordinates_have_two_decimals_at_most() {
-        let mut path = Path::default();
+        let mut path = PathData::default();
         path.polygon([[1.0, -2.5], [0.004, -0.006], [123.456, -0.001], [0.1, 100.99]]);
         path.line([[0.0, 0.0], [1.0, 1.0]]);
         assert_eq!(path.d, "M1 -2.5L0 -0.01 123.46 0 0.1 100.99ZM0 0L1 1");

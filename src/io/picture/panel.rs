@@ -9,8 +9,8 @@ use svg::node::element::{Circle, Group, Rectangle};
 
 use super::contact::{RADIUS, tag};
 use super::draw::{
-    Axis, GREY, LIGHT, Path, Point, RED, clean, fitting, frame, rounded, shape, short, stroke,
-    text, thinned, width_of,
+    GREY, LIGHT, PageAxis, PathData, Point, RED, clean, fitting, frame, rounded, shape, short,
+    stroke, text, thinned, width_of,
 };
 use super::scene::{ContactSample, ContactSurface, Scene};
 use crate::io::numbers::ticks;
@@ -59,8 +59,8 @@ pub(super) fn panels(scene: &Scene, corner: Point, width: f64) -> Group {
 
 /// The axes of a panel: arc length, and pressure.
 struct Axes {
-    arc: Axis,
-    pressure: Axis,
+    arc: PageAxis,
+    pressure: PageAxis,
 }
 
 impl Axes {
@@ -97,8 +97,8 @@ fn panel(surface: &ContactSurface, units: Option<[&str; 2]>, [x, y]: Point, widt
     let (left, bottom, width) = (x + LEFT, y + TOP + PLOT, width - LEFT - RIGHT);
     let top = peak.map_or(0.0, |peak| peak.pressure);
     let axes = Axes {
-        arc: Axis { range: shown(surface), page: [left, left + width] },
-        pressure: Axis { range: [0.0, top], page: [bottom, bottom - (PLOT - ABOVE)] },
+        arc: PageAxis { range: shown(surface), page: [left, left + width] },
+        pressure: PageAxis { range: [0.0, top], page: [bottom, bottom - (PLOT - ABOVE)] },
     };
     let [stress, length] = [0, 1].map(|i| units.map_or(String::new(), |units| units[i].to_owned()));
     let in_brackets =
@@ -158,7 +158,7 @@ fn strip(zones: &[CertifiedZone], axes: &Axes) -> Group {
 
 /// Lines at round numbers, and these.
 fn grid(axes: &Axes) -> Group {
-    let mut lines = Path::default();
+    let mut lines = PathData::default();
     let mut labels = Group::new().set("font-size", 11);
     let [left, right, bottom] = axes.borders();
     let ([first, last], [_, top]) = (axes.arc.range, axes.pressure.range);
@@ -177,7 +177,7 @@ fn grid(axes: &Axes) -> Group {
 }
 
 fn curve(surface: &ContactSurface, axes: &Axes) -> Group {
-    let (mut area, mut line) = (Path::default(), Path::default());
+    let (mut area, mut line) = (PathData::default(), PathData::default());
     for part in &surface.parts {
         let points: Vec<Point> = part
             .iter()

@@ -106,7 +106,7 @@ pub(super) fn bounds(points: impl IntoIterator<Item = Point>) -> [Point; 2] {
 }
 
 /// The drawing of the body on the page: the map from the plane, and the room that it takes.
-pub(super) struct Frame {
+pub(super) struct PageMap {
     corner: Point,
     scale: f64,
     /// The point at the centre of the drawing.
@@ -118,15 +118,15 @@ pub(super) struct Frame {
 /// The room around the drawing, for the letters of the contact boundaries.
 const AROUND: f64 = 34.0;
 
-impl Frame {
+impl PageMap {
     /// Around some points of the plane, its upper left corner on the page at `corner`.
-    pub(super) fn around(points: impl IntoIterator<Item = Point>, corner: Point) -> Frame {
+    pub(super) fn around(points: impl IntoIterator<Item = Point>, corner: Point) -> PageMap {
         let [low, high] = bounds(points);
         let extent = [0, 1].map(|c| high[c] - low[c]);
         let room = [800.0, 520.0].map(|most| most - 2.0 * AROUND);
         let scale = (room[0] / extent[0]).min(room[1] / extent[1]);
         let scale = if scale.is_finite() { scale } else { 1.0 };
-        Frame {
+        PageMap {
             corner,
             scale,
             centre: [0, 1].map(|c| low[c] + extent[c] / 2.0),

@@ -1,4 +1,4 @@
-//! How wrong the solution can be, in result.json: of each bound its numbers, or why there is none.
+//! Bounds of the error in result.json: the numbers of each, or why there is none.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,7 +6,7 @@ use crate::certify::quantities::{Limit, Quantity, Zone};
 use crate::certify::{CertifyError, Continuous, Ramp};
 use crate::solve::{Intervals, enclosure};
 
-/// How wrong the solution can be.
+/// The bounds of the error.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Certificates {
@@ -31,20 +31,20 @@ pub struct DiscreteCertificate {
     /// The norm of gamma^(1/2) (lambda~ - lambda^h) on Gamma_C is at most this.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pressure: Option<f64>,
-    /// Which equations (8) are meant: integrals of the loads are those of their quadrature.
+    /// The equations (8) that are meant: integrals of the loads are those of their quadrature.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub problem: Option<String>,
     /// (8) has exactly one solution: kappa, rounded up, is below 1.
     pub unique: bool,
     /// Every step is proved, rounding included.
     pub rigorous: bool,
-    /// Why not.
+    /// The reason why not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
     /// Intervals of the discrete solution's quantities.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub intervals: Option<Intervals>,
-    /// How far the displacement at each probe can be from that of u^h.
+    /// A bound of the distance of the displacement at each probe from that of u^h.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub probes: Vec<f64>,
 }
@@ -94,7 +94,7 @@ pub struct ContinuousCertificate {
     pub compliance: Option<[f64; 2]>,
     /// Every step is proved, rounding included.
     pub rigorous: bool,
-    /// Why not.
+    /// The reason why not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
     /// The difference between the problem that is bounded and the one that is meant: a polygon for a round body, a support against a motion
@@ -107,7 +107,7 @@ pub struct ContinuousCertificate {
     /// Forces, moments, reactions and peaks of the true solution.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub quantities: Vec<CertifiedQuantity>,
-    /// Where contact can hardly act, and where the body can hardly be off the obstacle.
+    /// Stretches where contact can hardly act, or where the body can hardly be off the obstacle.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub zones: Vec<CertifiedZone>,
 }
@@ -116,7 +116,7 @@ pub struct ContinuousCertificate {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct CertifiedQuantity {
-    /// Which one: `contact force`, `contact moment`, `reaction x` and so on.
+    /// The quantity: `contact force`, `contact moment`, `reaction x` and so on.
     pub name: String,
     /// The boundary.
     pub boundary: String,
@@ -131,7 +131,7 @@ pub struct CertifiedQuantity {
     pub value: f64,
     /// Every step is proved, rounding included.
     pub rigorous: bool,
-    /// Why not, or why there is no interval.
+    /// The reason why not, or why there is no interval.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
 }
@@ -141,17 +141,17 @@ pub struct CertifiedQuantity {
 #[serde(deny_unknown_fields)]
 pub struct Weight {
     /// `x` or `y`.
-    pub along: Axis,
-    /// Where it is 1.
+    pub along: Coordinate,
+    /// The range of the coordinate where it is 1.
     pub between: [f64; 2],
-    /// Over which it falls to 0 beyond.
+    /// The width over which it falls to 0 beyond.
     pub ramp: f64,
 }
 
 /// A coordinate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Axis {
+pub enum Coordinate {
     /// x
     X,
     /// y
@@ -160,7 +160,7 @@ pub enum Axis {
 
 impl From<Ramp> for Weight {
     fn from(ramp: Ramp) -> Self {
-        let along = if ramp.axis == 0 { Axis::X } else { Axis::Y };
+        let along = if ramp.axis == 0 { Coordinate::X } else { Coordinate::Y };
         Weight { along, between: ramp.between, ramp: ramp.width }
     }
 }
@@ -171,9 +171,9 @@ impl From<Ramp> for Weight {
 pub struct CertifiedZone {
     /// The boundary.
     pub boundary: String,
-    /// Where it begins: arc length from the start of the boundary's first edge.
+    /// Its start: arc length from the start of the boundary's first edge.
     pub from: f64,
-    /// Where it ends.
+    /// Its end.
     pub to: f64,
     /// The places of both, in the undeformed body.
     pub ends: [[f64; 2]; 2],
