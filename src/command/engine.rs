@@ -12,7 +12,7 @@ use std::{env, fs, io};
 
 use signorini::io::files::{self, WriteError, reason};
 use signorini::io::input::{self, InputError, MOST_OF_A_CASE};
-use signorini::io::outputs::{FILES, FILES_OF_FENICSX, only_in};
+use signorini::io::outputs::{FILES, FILES_OF_FENICSX};
 use signorini::io::result::Results;
 use signorini::quote;
 use thiserror::Error;
@@ -65,12 +65,11 @@ pub fn fenicsx(
 ) -> Result<(Results, Vec<PathBuf>), EngineError> {
     let read = input::read(case, MOST_OF_A_CASE);
     read.map_err(|error| EngineError::Case { path: case.to_owned(), error })?;
-    files::spare(folder, &FILES_OF_FENICSX, &[case.to_owned()])?;
+    files::spare(folder, &FILES, &[case.to_owned()])?;
     let path = python_path(reference)?;
     let python = python()?;
     let not_started = |error| EngineError::NotStarted { program: quote::path(&python), error };
-    let mut output = files::Output::new(folder)?;
-    output.replaces(&only_in(&FILES, &FILES_OF_FENICSX));
+    let mut output = files::Output::new(folder)?.replacing(&FILES);
     let room = std::path::absolute(output.room()).map_err(not_started)?;
     let full = std::path::absolute(case).map_err(not_started)?;
     let ended = run(safe(&python)

@@ -9,7 +9,7 @@ use signorini::io::files::spare;
 use signorini::io::outputs::{self, Extra};
 use signorini::io::result::{Results, result_json};
 use signorini::io::run::{self, Solved};
-use signorini::io::{Case, certificate, input, report, summary};
+use signorini::io::{Case, input, summary};
 use signorini::quote;
 
 use super::arguments::{CaseArguments, Engine, SolveOptions};
@@ -72,8 +72,7 @@ fn solve(
     let folder = folder(&arguments.file, out);
     let with_files = wanted != Wanted::Json || out.is_some();
     if with_files {
-        let names = [&outputs::FILES[..], &certificate::FILES, &[report::FILE]].concat();
-        spare(&folder, &names, &case.sources).map_err(wrong)?;
+        spare(&folder, &outputs::FILES, &case.sources).map_err(wrong)?;
     }
     let (case, mut solved) = as_asked(case, &phases)?;
     if extra.certificate && solved.certified.is_none() {

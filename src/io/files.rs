@@ -27,8 +27,8 @@ pub struct Output {
     folder: PathBuf,
     unfinished: Unfinished,
     names: Vec<String>,
-    /// Files of other kinds of runs, which a reader could take for files of this one.
-    stale: Vec<&'static str>,
+    /// Files of earlier runs, which a reader could take for files of this one where it does not write them itself.
+    replaced: &'static [&'static str],
 }
 
 /// The reason why a file or folder could not be written.
@@ -121,7 +121,7 @@ impl Output {
         match fs::create_dir_all(&folder).and_then(|()| fs::create_dir(&unfinished.room)) {
             Ok(()) => {
                 all.push(unfinished.clone());
-                Ok(Output { folder, unfinished, names: Vec::new(), stale: Vec::new() })
+                Ok(Output { folder, unfinished, names: Vec::new(), replaced: &[] })
             }
             Err(error) => {
                 unfinished.remove();
@@ -184,9 +184,11 @@ impl Output {
         Ok(())
     }
 
-    /// Removes files of these names, which this run does not write, when its own come.
-    pub fn replaces(&mut self, names: &[&'static str]) {
-        self.stale.extend(names);
+    /// Removes those of the files of these names that this run does not write when its own come.
+    #[must_use]
+    pub fn replacing(mut self, names: &'static [&'static str]) -> Output {
+        self.replaced = names;
+        self
     }
 
     fn place_is_free(&self, name: &str) -> io::Result<()> {
@@ -233,7 +235,8 @@ impl Output {
         };
         remove(last)?;
         sync()?;
-        self.stale.iter().try_for_each(|name| remove(name))?;
+        let is_stale = |name: &&&str| !self.names.iter().any(|staged| staged == **name);
+        self.replaced.iter().filter(is_stale).try_for_each(|name| remove(name))?;
         others.iter().try_for_each(rename)?;
         sync()?;
         rename(last)?;

@@ -30,19 +30,11 @@ use mesh::{make_mesh, merge_nodes};
 
 type Result<T> = std::result::Result<T, FileError>;
 
-/// The mesh in this file.
-///
-/// # Errors
-/// The first mistake found, with its place and the numbers that the file uses.
-pub fn read(file: &Path) -> Result<Mesh> {
-    read_merged(file, None)
-}
-
 /// The mesh in this file, its nodes merged that are no further apart than a share of the body's size, if one is given.
 ///
 /// # Errors
-/// As [`read`].
-pub fn read_merged(file: &Path, share: Option<f64>) -> Result<Mesh> {
+/// The first mistake found, with its place and the numbers that the file uses.
+pub fn read(file: &Path, share: Option<f64>) -> Result<Mesh> {
     let bytes =
         input::read(file, MOST_OF_A_MESH).map_err(|error| error.at(file, Position::File))?;
     mesh_of(&bytes, file, share)

@@ -28,8 +28,21 @@ use crate::solve::{Extreme, Solution};
 
 const PICTURE: &str = "picture.svg";
 
-/// The names of the files of a solved case; the last one says that the set is whole.
-pub const FILES: [&str; 5] = ["solution.vtu", "contact.vtu", "contact.csv", PICTURE, "result.json"];
+/// The names of all files that a solve may write into its folder, by this program or by the engine fenicsx. Those of an earlier
+/// run that a run does not write itself are removed. The last one says that a set is whole.
+pub const FILES: [&str; 11] = [
+    "solution.vtu",
+    "contact.vtu",
+    "contact.csv",
+    PICTURE,
+    report::FILE,
+    CERTIFIED,
+    certificate::FILES[0],
+    certificate::FILES[1],
+    "solution.xdmf",
+    "solution.h5",
+    "result.json",
+];
 
 /// The field of a displacement from elsewhere that is certified.
 const CERTIFIED: &str = "certified.vtu";
@@ -37,12 +50,7 @@ const CERTIFIED: &str = "certified.vtu";
 /// The files of the engine fenicsx.
 pub const FILES_OF_FENICSX: [&str; 3] = ["solution.xdmf", "solution.h5", "result.json"];
 
-/// The names of the first list that are not in the second: left from another kind of run.
-pub fn only_in(names: &[&'static str], others: &[&str]) -> Vec<&'static str> {
-    names.iter().copied().filter(|name| !others.contains(name)).collect()
-}
-
-/// Files written beside [`FILES`].
+/// Files that are written on demand.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Extra {
     /// certificate.json and certificate.bin, where there is a certificate.
@@ -66,20 +74,11 @@ pub fn write(
     let start = Instant::now();
     let solution = &solved.solution;
     memory::check(bytes_to_write(solution))?;
-    let mut output = Output::new(folder)?;
-    output.replaces(&only_in(&FILES_OF_FENICSX, &FILES));
-    output.replaces(&[CERTIFIED]);
+    let mut output = Output::new(folder)?.replacing(&FILES);
     let continuous = solved.certified.as_ref().and_then(|c| c.result.as_ref().ok());
-    if !(extra.certificate && continuous.is_some()) {
-        output.replaces(&certificate::FILES);
-    }
-    if !extra.report {
-        output.replaces(&[report::FILE]);
-    }
     let mut results = results(case, solved, read, extra)?;
     let picture = draw(case, solution, &results).unwrap_or_else(|error| {
         results.missing.push(format!("picture: {error}"));
-        output.replaces(&[PICTURE]);
         String::new()
     });
     let indicators = continuous.map(|c| c.indicators.as_slice());

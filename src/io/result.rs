@@ -379,7 +379,10 @@ mod tests {
             "iterations": 2, "residuals": [1.0, 0.001, 2.5e-17], "residual": 3e-17,
             "factorizations": 1, "status": "converged to rounding"
         },
-        "quantities": {},
+        "quantities": {
+            "energy": 1.0, "work": 0.0, "max_displacement": 0.5, "contact_force": 2.0, "contact_resultant": [0.0, 2.0],
+            "contact_length": 1.0, "peak_pressure": 2.0, "reactions": { "top": [0.0, 2.0] }
+        },
         "seconds": { "read": 0.25, "assemble": 0.5, "solve": 1.0, "certify": 1.5, "write": 2.0 }
     }"#;
 

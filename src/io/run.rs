@@ -87,8 +87,8 @@ impl RunError {
     }
 }
 
-/// Solves `case`, from the `start` if there is one and the mesh stays as it is; an adapted mesh takes the place of its own. `watcher`
-/// is told of each stage.
+/// Solves `case`, from the `start` if there is one and the mesh stays as it is; an adapted mesh takes the place of its own.
+/// `watcher` is told of each stage.
 ///
 /// # Errors
 /// Those of [`solve_along`], and of [`adapt::adapt`].

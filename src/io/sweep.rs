@@ -369,11 +369,9 @@ impl Sweep {
     /// # Errors
     /// A folder or file that can't be written.
     pub fn write(&self, folder: &Path) -> Result<Vec<PathBuf>, WriteError> {
-        let mut output = Output::new(folder)?;
+        let mut output = Output::new(folder)?.replacing(&[COLLECTION]);
         if self.with_files {
             output.stage(COLLECTION, self.pvd().as_bytes())?;
-        } else {
-            output.replaces(&[COLLECTION]);
         }
         output.stage(FILE, self.csv().as_bytes())?;
         output.publish()

@@ -18,57 +18,44 @@ use crate::fem::exact::{Corner, Kind, Patch, Singular, Smooth};
 use crate::io::input::FileError;
 use crate::kernel::Material;
 
-#[derive(Clone, Copy)]
-enum Which {
-    Smooth,
-    Singular,
-    Corner,
-    Patch,
-}
-
-#[derive(Clone, Copy)]
-enum Test {
-    Compression,
-    Separation,
-    Inclined,
-    Grazing,
-    Interference,
-}
+/// Reads the parameters of a solution, beside the key that names it.
+type Read<T> = fn(&Table, Material<f64>) -> Result<T, FileError>;
 
 /// The solution that the section describes.
 pub fn read_exact(table: &Table, material: Material<f64>) -> Result<Exact, FileError> {
+    let solutions: [(&str, Read<Exact>); 4] = [
+        ("smooth", read_smooth),
+        ("singular", read_singular),
+        ("corner", read_corner),
+        ("patch", |table, material| Ok(Arc::new(read_patch(table, material)?))),
+    ];
     let solution = table.require("solution", "the name of an exact solution")?;
-    let which = solution.one_of(&[
-        ("smooth", Which::Smooth),
-        ("singular", Which::Singular),
-        ("corner", Which::Corner),
-        ("patch", Which::Patch),
-    ])?;
-    Ok(match which {
-        Which::Smooth => {
-            table.only(&["solution", "c", "k", "m", "ap", "aq", "gap"])?;
-            Arc::new(Smooth {
-                material,
-                c: inside(table, "c")?,
-                k: above(table, "k", 2.5)?,
-                m: above(table, "m", 1.5)?,
-                ap: above(table, "ap", 0.0)?,
-                aq: above(table, "aq", 0.0)?,
-                gap: coefficients(table.get("gap"))?,
-            })
-        }
-        Which::Singular => {
-            table.only(&["solution", "c", "amplitude"])?;
-            let amplitude = above(table, "amplitude", 0.0)?;
-            Arc::new(Singular { material, c: inside(table, "c")?, amplitude })
-        }
-        Which::Corner => {
-            table.only(&["solution", "omega"])?;
-            let (omega, value) = angle(table)?;
-            Arc::new(Corner::new(material, omega).ok_or_else(|| value.wrong(ANGLE))?)
-        }
-        Which::Patch => Arc::new(read_patch(table, material)?),
-    })
+    solution.one_of(&solutions)?(table, material)
+}
+
+fn read_smooth(table: &Table, material: Material<f64>) -> Result<Exact, FileError> {
+    table.only(&["solution", "c", "k", "m", "ap", "aq", "gap"])?;
+    Ok(Arc::new(Smooth {
+        material,
+        c: inside(table, "c")?,
+        k: above(table, "k", 2.5)?,
+        m: above(table, "m", 1.5)?,
+        ap: above(table, "ap", 0.0)?,
+        aq: above(table, "aq", 0.0)?,
+        gap: coefficients(table.get("gap"))?,
+    }))
+}
+
+fn read_singular(table: &Table, material: Material<f64>) -> Result<Exact, FileError> {
+    table.only(&["solution", "c", "amplitude"])?;
+    let amplitude = above(table, "amplitude", 0.0)?;
+    Ok(Arc::new(Singular { material, c: inside(table, "c")?, amplitude }))
+}
+
+fn read_corner(table: &Table, material: Material<f64>) -> Result<Exact, FileError> {
+    table.only(&["solution", "omega"])?;
+    let (omega, value) = angle(table)?;
+    Ok(Arc::new(Corner::new(material, omega).ok_or_else(|| value.wrong(ANGLE))?))
 }
 
 const ANGLE: &str = "an angle between pi/2 and pi";
@@ -80,31 +67,35 @@ pub fn angle<'s>(table: &Table<'s>) -> Result<(f64, Value<'s>), FileError> {
 }
 
 fn read_patch(table: &Table, material: Material<f64>) -> Result<Patch, FileError> {
-    let which = table.require("which", "d1, d2, d3, d4 or d5 in quotes")?.one_of(&[
-        ("d1", Test::Compression),
-        ("d2", Test::Separation),
-        ("d3", Test::Inclined),
-        ("d4", Test::Grazing),
-        ("d5", Test::Interference),
-    ])?;
-    let keys: &[&str] = match which {
-        Test::Compression => &["solution", "which", "p"],
-        Test::Separation => &["solution", "which", "p", "d"],
-        Test::Inclined => &["solution", "which", "p", "w", "g0"],
-        Test::Grazing => &["solution", "which"],
-        Test::Interference => &["solution", "which", "d"],
-    };
-    table.only(keys)?;
-    let number = |key| table.require(key, "a number")?.number();
-    Ok(match which {
-        Test::Compression => Patch::compression(material, above(table, "p", 0.0)?),
-        Test::Separation => Patch::separation(material, number("p")?, above(table, "d", 0.0)?),
-        Test::Inclined => {
-            Patch::inclined(material, above(table, "p", 0.0)?, number("w")?, number("g0")?)
-        }
-        Test::Grazing => Patch::grazing(material),
-        Test::Interference => Patch::interference(material, above(table, "d", 0.0)?),
-    })
+    let tests: [(&str, Read<Patch>); 5] = [
+        ("d1", |table, material| {
+            table.only(&["solution", "which", "p"])?;
+            Ok(Patch::compression(material, above(table, "p", 0.0)?))
+        }),
+        ("d2", |table, material| {
+            table.only(&["solution", "which", "p", "d"])?;
+            Ok(Patch::separation(material, number(table, "p")?, above(table, "d", 0.0)?))
+        }),
+        ("d3", |table, material| {
+            table.only(&["solution", "which", "p", "w", "g0"])?;
+            let (p, w, g0) = (above(table, "p", 0.0)?, number(table, "w")?, number(table, "g0")?);
+            Ok(Patch::inclined(material, p, w, g0))
+        }),
+        ("d4", |table, material| {
+            table.only(&["solution", "which"])?;
+            Ok(Patch::grazing(material))
+        }),
+        ("d5", |table, material| {
+            table.only(&["solution", "which", "d"])?;
+            Ok(Patch::interference(material, above(table, "d", 0.0)?))
+        }),
+    ];
+    let which = table.require("which", "d1, d2, d3, d4 or d5 in quotes")?;
+    which.one_of(&tests)?(table, material)
+}
+
+fn number(table: &Table, key: &str) -> Result<f64, FileError> {
+    table.require(key, "a number")?.number()
 }
 
 /// A number above `least`.

@@ -73,7 +73,7 @@ fn make_mesh(table: &Table, directory: &Path) -> Result<Meshed, FileError> {
                 return Err(value.wrong("the name of a mesh file"));
             }
             let file = directory.join(name);
-            let mesh = gmsh::read_merged(&file, merge).map_err(|error| {
+            let mesh = gmsh::read(&file, merge).map_err(|error| {
                 value.at.wrong(error.error.clone().map(|_| format!("[mesh] gmsh: {error}")))
             })?;
             return Ok(Meshed { file: Some(file), ..mesh.into() });

@@ -97,8 +97,8 @@ pub struct ContinuousCertificate {
     /// The reason why not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// The difference between the problem that is bounded and the one that is meant: a polygon for a round body, a support against a motion
-    /// that is free.
+    /// The difference between the problem that is bounded and the one that is meant: a polygon for a round body, a support
+    /// against a motion that is free.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub problem: Option<String>,
     /// The distance of the true stress from (C eps(v) + tau) / 2 is at most this, in the norm of energy.
