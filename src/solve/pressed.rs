@@ -38,9 +38,10 @@ struct Piece {
     /// Where it starts and ends; a point does both at once.
     ends: [f64; 2],
     /// The coefficients on it, of a polynomial with given values at the nodes, that enclose the polynomial there (Bernstein's): first
-    /// its values at the ends. Each with the most that its square is where the square of the polynomial has the integral 1 over the
-    /// piece.
-    coefficients: Vec<(Row, Ball)>,
+    /// its values at the ends.
+    coefficients: Vec<Row>,
+    /// The most that the square of a polynomial is on it whose square has the integral 1 over it; attained at the ends.
+    square: Ball,
     /// The integrals of N_a N_b over it.
     mass: Vec<Row>,
 }
@@ -49,9 +50,8 @@ struct Piece {
 struct Part {
     /// Where they start and end.
     pieces: Vec<[f64; 2]>,
-    /// For each coefficient on each piece the least that it is of P at the displacement, and the most that it is of P0(v) beside
-    /// |v|_S.
-    coefficients: Vec<[f64; 2]>,
+    /// For each piece the least that P is on it at the displacement, and the most that P0(v) is beside |v|_S.
+    bounds: Vec<[f64; 2]>,
     /// The shape functions of the edge at the ends of the pieces, and the most that P0(v) is there, beside |v|_S.
     places: Vec<(Row, f64)>,
     /// The integrals of N_a N_b over them.
@@ -73,7 +73,7 @@ impl Piece {
         let at = |&(s, weight): &(f64, f64)| {
             let (shapes, weight) = (degree.edge_values(Ball::from(s)), Ball::from(weight));
             let mass = products(weight, &shapes);
-            Piece { ends: [s, s], coefficients: vec![(shapes, Ball::from(1) / weight)], mass }
+            Piece { ends: [s, s], coefficients: vec![shapes], square: Ball::from(1) / weight, mass }
         };
         points.iter().map(at).filter(|piece| piece.least(p) > 0.0).collect()
     }
@@ -98,7 +98,7 @@ impl Piece {
         if piece.least(p) > 0.0 {
             return vec![piece];
         }
-        if halvings == 0 || piece.coefficients.iter().all(|(c, _)| dot(c, p).upper() <= 0.0) {
+        if halvings == 0 || piece.coefficients.iter().all(|c| dot(c, p).upper() <= 0.0) {
             return Vec::new();
         }
         let middle = start + (end - start) / 2.0;
@@ -106,34 +106,34 @@ impl Piece {
         halves.into_iter().flat_map(|half| Self::within(degree, p, half, halvings - 1)).collect()
     }
 
-    /// The piece of an edge with these ends. Boole's rule is exact for the products. The squares are the diagonals of the inverses
-    /// of the matrices of Bernstein's polynomials, 4, and 9 and 21, over the length.
+    /// The piece of an edge with these ends. Boole's rule is exact for the products. The square is at most the sum of 2 k + 1 over
+    /// the length, for k up to the degree p: that is (p + 1)^2, as Legendre's polynomials are at most 1.
     fn between(degree: Degree, ends: [f64; 2]) -> Self {
         let start = Ball::from(ends[0]);
         let length = Ball::from(ends[1]) - start;
         let at = |i: i32| degree.edge_values(start + Ball::from(i) / Ball::from(4) * length);
-        let over = |square: i32| Ball::from(square) / length;
         let coefficients = match degree {
-            Degree::One => vec![(at(0), over(4)), (at(4), over(4))],
+            Degree::One => vec![at(0), at(4)],
             Degree::Two => {
                 let [two, half] = [2.0, 0.5].map(Ball::from);
                 let ends = at(0).into_iter().zip(at(4));
                 let bend = at(2).into_iter().zip(ends).map(|(m, (a, b))| two * m - half * (a + b));
-                vec![(at(0), over(9)), (at(4), over(9)), (bend.collect(), over(21))]
+                vec![at(0), at(4), bend.collect()]
             }
         };
         let count = degree.nodes_per_edge();
+        let square = Ball::from((count * count) as i32) / length;
         let mut mass = vec![vec![Ball::from(0); count]; count];
         for (i, weight) in [(0, 7), (1, 32), (2, 12), (3, 32), (4, 7)] {
             let weight = length * Ball::from(weight) / Ball::from(90);
             add(&mut mass, &products(weight, &at(i)));
         }
-        Piece { ends, coefficients, mass }
+        Piece { ends, coefficients, square, mass }
     }
 
     /// The least coefficient of P, or less.
     fn least(&self, p: &Row) -> f64 {
-        self.coefficients.iter().map(|(c, _)| dot(c, p).lower()).fold(f64::INFINITY, f64::min)
+        self.coefficients.iter().map(|c| dot(c, p).lower()).fold(f64::INFINITY, f64::min)
     }
 }
 
@@ -142,13 +142,15 @@ impl Part {
     fn new(line: &ContactFace<Ball>, p: &Row, pieces: &[&Piece]) -> Option<Self> {
         let mut mass = vec![vec![Ball::from(0); p.len()]; p.len()];
         pieces.iter().for_each(|piece| add(&mut mass, &piece.mass));
-        let most = |square: &Ball| SAFETY * root_of(line) * square.upper().sqrt();
-        let all = pieces.iter().flat_map(|piece| &piece.coefficients);
-        let coefficients = all.map(|(c, square)| [dot(c, p).lower(), most(square)]).collect();
-        let ends = pieces.iter().flat_map(|piece| piece.coefficients.iter().take(2));
-        let places = ends.map(|(shapes, square)| (shapes.clone(), most(square))).collect();
+        let most = |piece: &Piece| SAFETY * root_of(line) * piece.square.upper().sqrt();
+        let bounds = pieces.iter().map(|piece| [piece.least(p), most(piece)]).collect();
+        let at_ends = |piece: &&Piece| {
+            let (ends, most) = (piece.coefficients.iter().take(2), most(piece));
+            ends.map(|shapes| (shapes.clone(), most)).collect::<Vec<_>>()
+        };
+        let places = pieces.iter().flat_map(at_ends).collect();
         let pieces: Vec<[f64; 2]> = pieces.iter().map(|piece| piece.ends).collect();
-        (!pieces.is_empty()).then_some(Part { pieces, coefficients, places, mass })
+        (!pieces.is_empty()).then_some(Part { pieces, bounds, places, mass })
     }
 }
 
@@ -207,7 +209,7 @@ impl Pressed {
 
     /// Returns whether all of S stays pressed on a ball of radius `rho` and a little more.
     pub fn stay(&self, rho: f64) -> bool {
-        let mut all = self.edges.iter().flatten().flat_map(|part| &part.coefficients);
+        let mut all = self.edges.iter().flatten().flat_map(|part| &part.bounds);
         all.all(|[least, most]| *least > SAFETY * most * rho)
     }
 
