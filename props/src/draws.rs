@@ -19,6 +19,13 @@ use crate::Verdict;
 use crate::numbers::Exact;
 use crate::statement::Statement;
 
+/// Elliptic laws A that couple all strains, C11, C12, C16, C22, C26, C66: positive by their rows.
+pub fn tensors() -> impl Strategy<Value = [f64; 6]> {
+    let diagonal = [1.0_f64..2.0, 1.0_f64..2.0, 0.7_f64..1.5];
+    (diagonal, prop::array::uniform3(-0.3_f64..0.3))
+        .prop_map(|([a, b, c], [p, q, r])| [a, p, q, b, r, c])
+}
+
 /// The seed of this process.
 pub fn seed() -> u64 {
     static SEED: OnceLock<u64> = OnceLock::new();

@@ -32,7 +32,8 @@ use signorini::solve::factor::Factor;
 use signorini::solve::intervals::Stresses;
 use signorini::solve::system::System;
 use signorini::solve::{
-    ContactQuadrature, Degree, Gamma0, Method, Settings, discretize, solve, solve_discrete,
+    ContactQuadrature, Degree, Gamma0, Method, Settings, SolveError, discretize, solve,
+    solve_discrete,
 };
 
 use super::{answers, honesty, pressed};
@@ -430,6 +431,13 @@ const REPORTED_MOVED: InDoubles = InDoubles { noise: 1e-3, share: -40, ..REPORTE
 /// With the factor of another matrix: the bound is a large one.
 const ANOTHER_FACTOR: InDoubles = InDoubles { matrix: 1e3, share: -400, ..REPORTED_MOVED };
 
+/// The factor of A times a number.
+pub(super) fn factor_of(system: &System, times: f64) -> Result<Factor, SolveError> {
+    let LowerTriangle { starts, rows, values } = &system.matrix;
+    let values = values.iter().map(|a| times * a).collect();
+    Factor::new(&LowerTriangle { starts: starts.clone(), rows: rows.clone(), values })
+}
+
 /// The enclosure of the solver, in balls of doubles, contains the exact solution: its radius is compared with the error in
 /// exact arithmetic, or with the distance from a point whose own radius is a thousand times smaller.
 fn enclosed_in_doubles(
@@ -451,14 +459,12 @@ fn enclosed_in_doubles(
     let Ok(system) = System::new(&d) else { return Verdict::Fails("there is no system") };
     let load: Vec<[Ball; 2]> =
         d.load.iter().map(|l| l.map(|l| Ball::from(l * asked.load))).collect();
-    let factor = if asked.matrix == 1.0 {
-        None
-    } else {
-        let LowerTriangle { starts, rows, values } = &system.matrix;
-        let values = values.iter().map(|a| asked.matrix * a).collect();
-        let matrix = LowerTriangle { starts: starts.clone(), rows: rows.clone(), values };
-        let Ok(factor) = Factor::new(&matrix) else { return Verdict::Fails("there is a factor") };
-        Some(Arc::new(factor))
+    let factor = match asked.matrix {
+        1.0 => None,
+        times => match factor_of(&system, times) {
+            Ok(factor) => Some(Arc::new(factor)),
+            Err(_) => return Verdict::Fails("there is a factor"),
+        },
     };
     let certifier = Certifier::new(&d);
     let up = draw.turned([0, 1]).map(Exact::from);

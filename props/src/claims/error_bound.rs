@@ -26,6 +26,7 @@ use crate::verdict::{Ordered, Verdict};
 use crate::{draws, ensure, given, statement};
 
 mod by_hand;
+pub(super) mod forces;
 mod refusals;
 pub(super) mod solved;
 

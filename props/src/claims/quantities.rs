@@ -149,7 +149,7 @@ mod row {
 
     use super::*;
     use crate::claim::{Claim, Outcome, proved, refuted, tested};
-    use crate::claims::attained;
+    use crate::claims::error_bound::forces;
     use crate::claims::error_bound::solved::{Draw, bodies};
     use crate::draws;
     use crate::numbers::Exact;
@@ -333,7 +333,7 @@ mod row {
             id: "26",
             title: "Forces of the true solution between two numbers",
             paper: "Nothing: the paper bounds the error of the displacement and of the contact pressure with an unknown constant.",
-            statement: "docs/theory.md, 7.7. At a point, |sigma(u) - m|^2 = |C eps(v) - tau|^2 / 4 + (sigma(u) - C eps(v)) (sigma(u) - tau) for m = (C eps(v) + tau) / 2, and on Gamma_C (sigma_n - tau_n) (u_n - v_n) = G - A - B with A, B >= 0: so |sigma(u) - m|^2 + A + B = M^2 = D^2 / 4 + G. Where v is off the obstacle by d the true force is at most A / d, where tau presses with p the true opening is at most B / p. x eta + k (M^2 - x^2) is at most k M^2 + eta^2 / (4 k), and M eta if eta >= 2 k M. The force by a dual pair (w, rho), [7.8], is an identity; where r is at most k |tau_n| and omega at most k (g - v_n), contact adds at most k (A + B) to it. The checker of forces `certify::forces` is generic over its numbers: with balls its intervals are around those in rationals, by no more than rounding. Those of an affine w are between the numbers of their definitions, to rounding. Forces of floor, top and load on drawn bodies add up to 0 within their intervals, and those on a coarse and on a fine mesh meet.",
+            statement: "docs/theory.md, 7.7. At a point, |sigma(u) - m|^2 = |C eps(v) - tau|^2 / 4 + (sigma(u) - C eps(v)) (sigma(u) - tau) for m = (C eps(v) + tau) / 2, and on Gamma_C (sigma_n - tau_n) (u_n - v_n) = G - A - B with A, B >= 0: so |sigma(u) - m|^2 + A + B = M^2 = D^2 / 4 + G. Where v is off the obstacle by d the true force is at most A / d, where tau presses with p the true opening is at most B / p. x eta + k (M^2 - x^2) is at most k M^2 + eta^2 / (4 k), and M eta if eta >= 2 k M. The force by a dual pair (w, rho), [7.8], is an identity; where r is at most k |tau_n| and omega at most k (g - v_n), contact adds at most k (A + B) to it. The checker of forces `certify::forces` is generic over its numbers: with balls its intervals are around those in rationals, by no more than rounding. On certificates of random v and affine tau that are made by hand of dyadic numbers (row 24), the ends of each interval are those of [7.6] and [7.7], for a random w, affine or quadratic, that misses its value on Gamma_C by what a gap or a random w0 covers or by nothing, and those of [7.8] for random dual pairs, with integrals over rationals, with data that oscillate and lifts; where neither covers it, and by a w0 that is negative somewhere, nothing is given. Forces of floor, top and load on drawn bodies add up to 0 within their intervals, and those on a coarse and on a fine mesh meet.",
             numbers: "every ordered field (proof); rationals; doubles.",
             kernel: &[],
             preconditions: "Green's formula, by which the integrals of these products over the body are those over its boundary.",
@@ -390,7 +390,7 @@ mod row {
                 exact!("control_forces_far_outside" => balls_far_around_the_rationals()),
                 doubles!("forces_balance_and_meet_those_of_a_finer_mesh" => forces_agree()).about(&["the error bound"]),
                 doubles!("control_forces_beside_four_times_the_load" => forces_of_another_load()),
-            ], attained::of_forces().to_vec()].concat(),
+            ], forces::checks().to_vec()].concat(),
         }
     }
 }

@@ -36,7 +36,7 @@ pub(super) struct Draw {
     pub(super) curve: Vec<[i32; 2]>,
 }
 
-fn sixteenth(k: i32) -> f64 {
+pub(super) fn sixteenth(k: i32) -> f64 {
     f64::from(k) / 16.0
 }
 
@@ -64,7 +64,7 @@ pub(super) fn draws_of(strip: bool) -> impl Strategy<Value = Draw> {
 
 impl Draw {
     /// tau at a place, xx, yy, xy.
-    fn tau<S>(&self, [x, y]: [S; 2], unit: S) -> [S; 3]
+    pub(super) fn tau<S>(&self, [x, y]: [S; 2], unit: S) -> [S; 3]
     where
         S: From<i32> + Copy + std::ops::Add<Output = S> + std::ops::Mul<Output = S>,
     {
@@ -73,7 +73,7 @@ impl Draw {
     }
 
     /// The body force.
-    fn body(&self) -> [f64; 2] {
+    pub(super) fn body(&self) -> [f64; 2] {
         let [_, b, _, _, _, f, h] = self.tau.map(sixteenth);
         [-b - h, -f]
     }
@@ -200,23 +200,8 @@ impl Draw {
         certificate
     }
 
-    /// v on a triangle.
-    fn field(certificate: &Certificate, piece: &Piece) -> Field<Exact> {
-        let vertices = piece.vertices.map(|k| certificate.vertices[k].map(Exact::of_double));
-        let v = piece.vertices.map(|k| certificate.displacement[k].map(Exact::of_double));
-        let mut nodal = v.to_vec();
-        if let Some(curved) = &certificate.curved {
-            nodal.extend((0..3).map(|i| {
-                let bulge = curved.bulges[piece.edges[i]].map(Exact::of_double);
-                let ends = [v[(i + 1) % 3], v[(i + 2) % 3]];
-                [0, 1].map(|c| (ends[0][c] + ends[1][c]) / Exact::from(2) + bulge[c])
-            }));
-        }
-        Field { vertices, nodal }
-    }
-
     /// By the definitions, over rationals.
-    fn by_definition(&self, certificate: &Certificate) -> Definition {
+    pub(super) fn by_definition(&self, certificate: &Certificate) -> Definition {
         let exact = Exact::of_double;
         let [zero, one, two] = [0, 1, 2].map(Exact::from);
         let [lambda, mu] = self.lame.map(|k| exact(sixteenth(k)));
@@ -229,7 +214,8 @@ impl Draw {
         let mut squares = Vec::new();
         let (mut norm, mut energy) = (zero, zero);
         for piece in &certificate.pieces {
-            let v = Self::field(certificate, piece);
+            let bulges = curved.map(|curved| &curved.bulges[..]);
+            let v = field(certificate, piece, &certificate.displacement, bulges);
             let off = [0, 1, 2].map(|k| {
                 let (sigma, tau) = (hooke.stress(v.strain(k)), tau(v.vertices[k]));
                 [0, 1, 2].map(|c| sigma[c] - tau[c])
@@ -280,11 +266,31 @@ impl Draw {
     }
 }
 
+/// The displacement with these values at the vertices and these bulges on the edges, on a triangle.
+pub(super) fn field(
+    certificate: &Certificate,
+    piece: &Piece,
+    at: &[[f64; 2]],
+    bulges: Option<&[[f64; 2]]>,
+) -> Field<Exact> {
+    let vertices = piece.vertices.map(|k| certificate.vertices[k].map(Exact::of_double));
+    let v = piece.vertices.map(|k| at[k].map(Exact::of_double));
+    let mut nodal = v.to_vec();
+    if let Some(bulges) = bulges {
+        nodal.extend((0..3).map(|i| {
+            let bulge = bulges[piece.edges[i]].map(Exact::of_double);
+            let ends = [v[(i + 1) % 3], v[(i + 2) % 3]];
+            [0, 1].map(|c| (ends[0][c] + ends[1][c]) / Exact::from(2) + bulge[c])
+        }));
+    }
+    Field { vertices, nodal }
+}
+
 /// |C eps(v) - tau|^2 on each triangle, 2 int tau_n (v_n - g), |v|_a^2 and J(v), of which minus the work of what is given beside supports
 /// is apart.
-struct Definition {
-    squares: Vec<Exact>,
-    contact: Exact,
+pub(super) struct Definition {
+    pub(super) squares: Vec<Exact>,
+    pub(super) contact: Exact,
     norm: Exact,
     energy: Exact,
     supports: Exact,
