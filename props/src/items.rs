@@ -21,7 +21,7 @@ const fn item(name: &'static str, says: &'static str, missing: &'static str) -> 
 /// All of them.
 #[rustfmt::skip]
 pub const ITEMS: &[Item] = &[
-    item("(1)", "equilibrium, Hooke's law, boundary conditions",
+    item("(1)", "equilibrium, Hooke's law with a tensor A, boundary conditions",
         "Green's formula for fields that are not piecewise polynomial; the boundary conditions away from Gamma_C, but on bodies with affine fields"),
     item("(2)", "the contact conditions",
         "(iv), no shear, but for the solutions of row 8: it is natural in (8)"),
@@ -45,7 +45,7 @@ pub const ITEMS: &[Item] = &[
     item("(10)", "(9) with the weight gamma", ""),
     item("the mixed problem", "(8) as a mixed method, after (10); sigma_n(u^h) is not lambda^h", ""),
     item("Lemma 3.1", "consistency",
-        "solutions other than the affine ones, a curved one and one with an end of contact: for these it is (6)"),
+        "solutions other than the affine ones and, for isotropic A, a curved one and one with an end of contact: for these it is (6)"),
     item("Lemma 3.2", "A_gamma is elliptic, C independent of gamma0 and h",
         "Korn's inequality on a body of any shape; along turning directions the checks of row 20 are of this code, not of the paper"),
     item("(11)", "|gamma^1/2 sigma_n(v^h)|^2 <= C gamma0 |v^h|_1^2",

@@ -371,11 +371,11 @@ mod row {
     /// the largest entry (2^-53 times about 30 operations and h_T^2 / |T| <= 80, twice over).
     fn doubles_are_near<E: Element<N, M>, const N: usize, const M: usize>(
         v: &[[f64; 2]; 3],
+        material: Material<f64>,
     ) -> Verdict {
-        let (lambda, mu, gamma, n) = (3.0, 0.75, 0.125, Vector2::new(0.6, -0.8));
-        let material = Material::lame(lambda, mu, Plane::Strain);
+        let (gamma, n) = (0.125, Vector2::new(0.6, -0.8));
         let exactly = Exact::of_double;
-        let exact_material = Material::lame(exactly(lambda), exactly(mu), Plane::Strain);
+        let exact_material = material.map(exactly);
         let vertices = v.map(Vector2::from);
         let (t, exact_t) =
             (Triangle { vertices }, Triangle { vertices: vertices.map(|p| p.map(exactly)) });
@@ -409,10 +409,15 @@ mod row {
     }
 
     fn matrices_in_doubles() -> Outcome {
-        draws::hold(60, triangles(), &["always"], |v| {
-            let p1 = doubles_are_near::<P1, 3, 2>(v);
+        let isotropic = Just(Material::lame(3.0, 0.75, Plane::Strain));
+        let tensor = draws::tensors().prop_map(|c| Material::tensor(c, None));
+        let laws = prop_oneof![isotropic, tensor];
+        draws::hold(60, (triangles(), laws), &["isotropic", "tensor"], |(v, material)| {
+            let p1 = doubles_are_near::<P1, 3, 2>(v, *material);
             ensure!(!p1.fails());
-            doubles_are_near::<P2, 6, 3>(v)
+            let p2 = doubles_are_near::<P2, 6, 3>(v, *material);
+            ensure!(!p2.fails());
+            Verdict::Holds(if material.is_isotropic() { "isotropic" } else { "tensor" })
         })
     }
 
@@ -468,7 +473,7 @@ mod row {
             id: "5",
             title: "gamma, P_gamma and A_gamma",
             paper: "gamma(x) = gamma0 h_T for x in T; P_gamma(v^h) = v_n - gamma sigma_n(v^h); A_gamma(u^h, v^h) = a(u^h, v^h) - int gamma sigma_n(u^h) sigma_n(v^h).",
-            statement: "P1 and P2 reproduce every polynomial of their degree, values, gradients and traces; areas, normals and barycentric gradients are their definitions. On random bodies (two to four triangles, turned, plane strain and stress, one or two contact edges per triangle, random gaps) a_T(u, v), P0(v), P(v), sigma_n(v) and A_gamma(u, v) by the kernel equal a transcription of the definitions. The solver itself, on random meshes in doubles: h_T is the longest edge of the triangle that owns the contact edge, |E| and n are those of the edge; with these as given data, gamma = gamma0 h_T, P(u), sigma_n(u), C_h and its limiting edge, kappa, and every entry of the matrices of a and A on the free degrees of freedom, are near the same transcription over rationals (the checks are listed in row 6, which runs all of it at once).",
+            statement: "P1 and P2 reproduce every polynomial of their degree, values, gradients and traces; areas, normals and barycentric gradients are their definitions. On random bodies (two to four triangles, turned, plane strain and stress or random tensors, one or two contact edges per triangle, random gaps) a_T(u, v), P0(v), P(v), sigma_n(v) and A_gamma(u, v) by the kernel equal a transcription of the definitions. The solver itself, on random meshes in doubles, isotropic or with random tensors: h_T is the longest edge of the triangle that owns the contact edge, |E| and n are those of the edge; with these as given data, gamma = gamma0 h_T, P(u), sigma_n(u), C_h and its limiting edge, kappa, and every entry of the matrices of a and A on the free degrees of freedom, are near the same transcription over rationals (the checks are listed in row 6, which runs all of it at once).",
             numbers: "every ordered field for the elements (proof); rationals for the assembled quantities; doubles: element matrices within 2^-44 of their largest entry for triangles in [-1, 1]^2 of area > 1/20; h_T^2 and |E|^2 within 2^-50 of the exact squares, n_i |E| within 3 2^-53 of the exact component; the solver's numbers within c 2^-53 times the sum of the magnitudes of the terms, c = 36 to 64 roundings.",
             kernel: &[
                 "triangle::Triangle::edge",

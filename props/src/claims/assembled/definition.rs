@@ -59,7 +59,13 @@ impl<S: Given> Setting<S> {
         let middles = if N == 3 { BTreeMap::new() } else { middles(draw, d.space.nodes())? };
         let (lambda, mu, two) = (S::given(draw.lambda), S::given(draw.mu), S::from(2));
         let star = if draw.stress { two * lambda * mu / (lambda + two * mu) } else { lambda };
-        let material = Material::lame(lambda, mu, Plane::Strain);
+        let (material, hooke) = match draw.tensor.map(|c| c.map(S::given)) {
+            Some(c) => (Material::tensor(c, None), Hooke::Tensor(c)),
+            None => {
+                let material = Material::lame(lambda, mu, Plane::Strain);
+                (material, Hooke::Isotropic { lambda: star, mu })
+            }
+        };
         let mut body = Body {
             vertices: vertices.iter().map(|x| x.map(S::coordinate)).collect(),
             unturned: Vec::new(),
@@ -69,7 +75,7 @@ impl<S: Given> Setting<S> {
             diameters: (0..triangles.len()).map(|t| S::given(mesh.diameter(t))).collect(),
             triangles,
             material,
-            hooke: Hooke::Isotropic { lambda: star, mu },
+            hooke,
             gamma0: S::given(d.gamma0),
             turn: [S::from(1), S::from(0)],
             middles,
@@ -184,6 +190,7 @@ impl<S: Given> Setting<S> {
             }
             Mistake::Theta(theta) => self.theta = S::from(theta),
             Mistake::TractionOnAnotherSide => self.pulled = body.contact[..1].to_vec(),
+            Mistake::PlaneStrainForStress if draw.tensor.is_some() => {}
             Mistake::PlaneStrainForStress => {
                 let (lambda, mu) = (S::given(draw.lambda), S::given(draw.mu));
                 body.hooke = Hooke::Isotropic { lambda, mu };

@@ -11,6 +11,7 @@ use signorini::fem::{
 use signorini::kernel::{Material, Plane};
 
 use super::given::Given;
+use crate::draws;
 
 /// A polynomial of degree <= 2 in x and y: coefficients of 1, x, y, x^2, xy, y^2.
 #[derive(Clone, Copy, Debug)]
@@ -90,6 +91,8 @@ pub(super) struct Draw {
     pub(super) stress: bool,
     pub(super) lambda: f64,
     pub(super) mu: f64,
+    /// A in place of lambda and mu.
+    pub(super) tensor: Option<[f64; 6]>,
     pub(super) kappa: f64,
     pub(super) gauss: bool,
     /// Body force, traction, displacement, gap.
@@ -135,6 +138,7 @@ pub(super) fn problems(contact: Contact, two_sides: bool) -> impl Strategy<Value
         prop::collection::vec(polynomial(), 7),
         prop_oneof![Just(0.0), -1.0_f64..1.0],
         prop::collection::vec([-1.0_f64..1.0, -1.0_f64..1.0], 2 * MOST_NODES),
+        prop::option::of(draws::tensors()),
     );
     // Each kind of problem begins elsewhere in the same stream of random numbers.
     let skipped =
@@ -142,7 +146,7 @@ pub(super) fn problems(contact: Contact, two_sides: bool) -> impl Strategy<Value
     (skipped, mesh, physics, fields).prop_map(move |(_, mesh, physics, fields)| {
         let (cells, diagonal, moves, map, kind, keys, first) = mesh;
         let (sliding, stress, share, mu, kappa, gauss) = physics;
-        let (mut data, along_normal, fields) = fields;
+        let (mut data, along_normal, fields, tensor) = fields;
         data[6].coefficients[0] += match contact {
             Contact::Open => 32.0,
             Contact::Pressed => -32.0,
@@ -171,6 +175,7 @@ pub(super) fn problems(contact: Contact, two_sides: bool) -> impl Strategy<Value
             stress,
             lambda: share * mu,
             mu,
+            tensor,
             kappa,
             gauss,
             data,
@@ -287,7 +292,10 @@ impl Draw {
             let traction = self.tractions().map(|t| -> SharedFunction { Arc::new(t) });
             conditions.insert(name.to_owned(), Condition::Traction(traction));
         }
-        let material = Material::lame(self.lambda, self.mu, plane);
+        let material = match self.tensor {
+            Some(c) => Material::tensor(c, None),
+            None => Material::lame(self.lambda, self.mu, plane),
+        };
         Problem::new(mesh, material, [shared(self.data[0]), shared(self.data[1])], conditions)
     }
 
