@@ -86,14 +86,16 @@ pub struct Units {
 impl Units {
     /// The unit of forces: of the whole body if its thickness is known, else per length across the plane.
     pub fn force(&self, thickness: Option<f64>) -> String {
-        let across = if thickness.is_some() { String::new() } else { format!("/{}", self.length) };
-        format!("{}{across}", self.force)
+        format!("{}{}", self.force, self.per_thickness(thickness))
     }
 
     /// The unit of moments and energies, likewise.
     pub fn moment(&self, thickness: Option<f64>) -> String {
-        let across = if thickness.is_some() { String::new() } else { format!("/{}", self.length) };
-        format!("{} {}{across}", self.force, self.length)
+        format!("{} {}{}", self.force, self.length, self.per_thickness(thickness))
+    }
+
+    fn per_thickness(&self, thickness: Option<f64>) -> String {
+        if thickness.is_some() { String::new() } else { format!("/{}", self.length) }
     }
 
     /// The unit of stresses.

@@ -34,6 +34,8 @@ pub mod picture;
 #[doc(hidden)]
 pub mod plot;
 #[cfg(feature = "files")]
+mod remarks;
+#[cfg(feature = "files")]
 #[doc(hidden)]
 pub mod report;
 #[cfg(feature = "files")]

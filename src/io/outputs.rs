@@ -9,8 +9,8 @@ use super::certificate;
 use super::fields::fields;
 use super::files::{Output, OutputError};
 use super::finite::NotFinite;
-use super::numbers::short;
 use super::picture::draw;
+use super::remarks::{nearest, remarks};
 use super::report;
 use super::result::{
     Certificates, Choices, DiscreteCertificate, GammaChoice, MeshSizes, NewtonHistory, Results,
@@ -19,11 +19,8 @@ use super::result::{
 use super::run::Solved;
 use super::vtu::{CellKind, DataArray, Grid, vtu};
 use crate::certify::Continuous;
-use crate::fem::contact_line::{self, Gamma};
-use crate::fem::{self, Degree, Mesh, Space};
+use crate::fem::{self, Degree, Space};
 use crate::memory;
-use crate::quote;
-use crate::solve::solution::ContactValues;
 use crate::solve::{Extreme, Solution};
 
 const PICTURE: &str = "picture.svg";
@@ -218,7 +215,7 @@ pub fn results(
         materials: case.materials.clone(),
         choices: Some(Choices::from(&case.method)),
         remarks,
-        mesh: sizes(mesh, solution),
+        mesh: MeshSizes::new(mesh, solution.nodes.len(), solution.contact.len()),
         gamma: GammaChoice::from(&solution.gamma),
         newton: NewtonHistory::from(&solution.newton),
         method: Some(solution.method),
@@ -254,126 +251,8 @@ fn probes(case: &Case, solution: &Solution) -> Vec<[f64; 4]> {
     case.probes.iter().filter_map(probe).collect()
 }
 
-fn sizes(mesh: &Mesh, solution: &Solution) -> MeshSizes {
-    let triangles = mesh.triangles().len();
-    MeshSizes {
-        vertices: mesh.vertices().len(),
-        triangles,
-        dofs: 2 * solution.nodes.len(),
-        contact_edges: solution.contact.len(),
-        h_max: (0..triangles).map(|t| mesh.diameter(t)).fold(0.0, f64::max),
-    }
-}
-
 /// The reason why there are no errors where there is an exact solution.
 const NO_ERRORS: &str = "the errors are not given: near its singular point the exact solution is beyond the range of doubles";
-
-/// Strains above this are more than small-strain theory is for.
-const LARGE_STRAIN: f64 = 0.05;
-
-/// Displacements above this share of the body's size likewise.
-const LARGE_DISPLACEMENT: f64 = 0.1;
-
-/// Overlaps below this share of the body's size are rounding: mesh files have nine digits or more.
-const NO_OVERLAP: f64 = 1e-9;
-
-/// A triangle whose limit of gamma0 is this many times below the median of the line spoils the line.
-const SLIVER: f64 = 8.0;
-
-/// Remarks that a reader should know before the numbers are used.
-fn remarks(case: &Case, solution: &Solution) -> Vec<String> {
-    let mut remarks = Vec::new();
-    let coercivity = solution.gamma.coercivity;
-    let uniform = matches!(solution.gamma.gamma, Gamma::Uniform(_));
-    if uniform && coercivity.constant > SLIVER * coercivity.typical {
-        let [[a, b], [c, d]] = coercivity.limiting_edge;
-        remarks.push(format!(
-            "the triangle at the contact edge from ({}, {}) to ({}, {}) sets gamma0 for the whole line, {:.0} times below what half of its triangles allow; method.kappa = 0.5 lets each edge have its own",
-            short(a, 3), short(b, 3), short(c, 3), short(d, 3), coercivity.constant / coercivity.typical
-        ));
-    }
-    let length = length_unit(case);
-    let strain = solution.largest_strain;
-    if strain > LARGE_STRAIN {
-        remarks.push(format!(
-            "the largest strain is {} %: strains are taken to be small (below {} %); check load, modulus and units",
-            short(100.0 * strain, 3),
-            short(100.0 * LARGE_STRAIN, 3)
-        ));
-    }
-    remarks.extend(overlap(case));
-    let size = size(case);
-    let largest = solution.quantities.max_displacement;
-    if largest > LARGE_DISPLACEMENT * size {
-        remarks.push(format!(
-            "the largest displacement is {}{length}, the body is {}{length} long: displacements are taken to be small; check load, modulus and units",
-            short(largest, 3),
-            short(size, 3)
-        ));
-    }
-    remarks
-}
-
-/// The longer side of the box around the body.
-fn size(case: &Case) -> f64 {
-    let vertices = case.problem.mesh.vertices().iter();
-    let extent = |c: usize| {
-        let (low, high) = vertices
-            .clone()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x[c]), h.max(x[c])));
-        high - low
-    };
-    extent(0).max(extent(1))
-}
-
-/// The name of the obstacle of a contact boundary, if it has one.
-fn named_obstacle(case: &Case, boundary: &str) -> Option<String> {
-    case.problem.obstacle_of(boundary).map(|name| quote::quoted(name, '\''))
-}
-
-/// Says where the body is deepest in its obstacle before it is loaded, if it is.
-pub fn overlap(case: &Case) -> Option<String> {
-    let space = Space::new(&case.problem.mesh, Degree::One);
-    let line = contact_line::assemble(&case.problem, &space, 1.0).ok()?;
-    let points =
-        line.iter().flat_map(|e| e.gap.iter().zip(&e.places).map(move |(g, x)| (*g, *x, e)));
-    let least = points.min_by(|a, b| a.0.total_cmp(&b.0));
-    let (gap, [x, y], edge) = least.filter(|p| p.0 < -NO_OVERLAP * size(case))?;
-    let length = length_unit(case);
-    let (obstacle, question) = match named_obstacle(case, &edge.boundary) {
-        Some(obstacle) => {
-            (obstacle, ": is it in the right place, and is the body on the right side of it?")
-        }
-        None => (format!("the obstacle of {}", quote::quoted(&edge.boundary, '\'')), ""),
-    };
-    Some(format!(
-        "the body overlaps {obstacle} by {}{length} at ({}, {}) before loading{question}",
-        short(-gap, 3),
-        short(x, 4),
-        short(y, 4)
-    ))
-}
-
-/// Says where a contact boundary that touches nothing is nearest to its obstacle.
-fn nearest(case: &Case, solution: &Solution, boundary: &str) -> Option<String> {
-    let edges = solution.contact.iter().filter(|edge| &*edge.boundary == boundary);
-    let distance = |point: &ContactValues| (point.gap - point.u_n, solution.nodes[point.node]);
-    let points = edges.flat_map(|edge| edge.points.iter().map(distance));
-    let (gap, [x, y]) = points.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    Some(format!(
-        "{} touches nothing: it is nearest to {} at ({}, {}), where a gap of {}{} is left",
-        quote::quoted(boundary, '\''),
-        named_obstacle(case, boundary).unwrap_or_else(|| "its obstacle".to_owned()),
-        short(x, 4),
-        short(y, 4),
-        short(gap.max(0.0), 3),
-        length_unit(case)
-    ))
-}
-
-fn length_unit(case: &Case) -> String {
-    case.units.as_ref().map_or(String::new(), |units| format!(" {}", units.length))
-}
 
 /// The largest stresses with the names of the physical surfaces that they are in.
 fn stress_peaks(case: &Case, solution: &Solution) -> Option<StressPeaks> {

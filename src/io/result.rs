@@ -15,9 +15,9 @@ use serde_json::Value;
 use super::case::{MaterialEcho, Units};
 use super::finite::NotFinite;
 use crate::certify::adapt::Level;
-use crate::fem::Errors;
 use crate::fem::contact_line::Gamma;
 use crate::fem::solvability::Play;
+use crate::fem::{Errors, Mesh};
 use crate::solve::{
     ContactBoundary, ContactQuadrature, EnergyBalance, Gamma0, GammaReport, Method, MethodReport,
     NewtonReport, Quantities, Status, Times,
@@ -157,6 +157,14 @@ pub struct MeshSizes {
     pub contact_edges: usize,
     /// The largest h_T.
     pub h_max: f64,
+}
+
+impl MeshSizes {
+    pub(super) fn new(mesh: &Mesh, nodes: usize, contact_edges: usize) -> Self {
+        let (vertices, triangles) = (mesh.vertices().len(), mesh.triangles().len());
+        let h_max = (0..triangles).map(|t| mesh.diameter(t)).fold(0.0, f64::max);
+        MeshSizes { vertices, triangles, dofs: 2 * nodes, contact_edges, h_max }
+    }
 }
 
 /// Nitsche's parameter and how far it is from the limit of coercivity.

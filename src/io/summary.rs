@@ -7,8 +7,8 @@ use super::case::{MaterialEcho, Units};
 use super::certificate::Audit;
 use super::convergence::Study;
 use super::result::{
-    Adaptation, ContinuousCertificate, DiscreteCertificate, GammaChoice, NewtonHistory, Results,
-    Seconds, StressPeak,
+    Adaptation, ContinuousCertificate, DiscreteCertificate, GammaChoice, MeshSizes, NewtonHistory,
+    Results, Seconds, StressPeak,
 };
 use super::sweep::Sweep;
 use super::{Case, numbers};
@@ -282,11 +282,7 @@ fn how_it_was_solved(r: &Results, shown: &Shown, verbose: bool, lines: &mut Line
 }
 
 fn mesh_and_materials(r: &Results, lines: &mut Lines) {
-    let mesh = &r.mesh;
-    // P1 has its nodes at the vertices alone.
-    let degree = if mesh.dofs == 2 * mesh.vertices { 1 } else { 2 };
-    let sizes = sizes(mesh.triangles, degree, mesh.dofs, mesh.contact_edges, mesh.h_max);
-    lines.line("mesh", sizes);
+    lines.line("mesh", sizes(&r.mesh));
     for material in &r.materials {
         let of = if material.surfaces.is_empty() {
             "the whole body".to_owned()
@@ -478,12 +474,9 @@ fn distance(certificate: &ContinuousCertificate, lines: &mut Lines) {
 
 /// The summary of a case that was only checked.
 pub fn checked(case: &Case, outline: &Outline) -> String {
-    let mesh = &case.problem.mesh;
-    let triangles = mesh.triangles().len();
-    let h_max = (0..triangles).map(|t| mesh.diameter(t)).fold(0.0, f64::max);
-    let degree = case.method.degree.number();
     let mut lines = Lines::default();
-    lines.line("mesh", sizes(triangles, degree, 2 * outline.nodes, outline.contact_edges, h_max));
+    let mesh = MeshSizes::new(&case.problem.mesh, outline.nodes, outline.contact_edges);
+    lines.line("mesh", sizes(&mesh));
     lines.line("prescribed", format!("{} of the unknowns", outline.prescribed));
     lines.line("coercivity", coercivity(&GammaChoice::from(&outline.gamma)));
     lines.line(
@@ -494,7 +487,7 @@ pub fn checked(case: &Case, outline: &Outline) -> String {
             ContactQuadrature::Gauss(n) => format!("{n} Gauss points on each contact edge"),
         },
     );
-    if let Some(overlap) = super::outputs::overlap(case) {
+    if let Some(overlap) = super::remarks::overlap(case) {
         lines.line("remark", overlap);
     }
     lines.under(&case.title)
@@ -511,9 +504,12 @@ pub fn swept(sweep: &Sweep, files: &[PathBuf]) -> String {
     format!("{}\n\n{}\nwritten: {}\n", quote::line(&sweep.title), sweep.table(), written(files))
 }
 
-fn sizes(triangles: usize, degree: usize, dofs: usize, contact_edges: usize, h: f64) -> String {
+fn sizes(mesh: &MeshSizes) -> String {
+    let MeshSizes { vertices, triangles, dofs, contact_edges, h_max } = *mesh;
+    // P1 has its nodes at the vertices alone.
+    let degree = if dofs == 2 * vertices { 1 } else { 2 };
     let contact = count(contact_edges, "contact edge");
-    format!("{triangles} P{degree} triangles, {dofs} unknowns, {contact}, h = {}", short(h))
+    format!("{triangles} P{degree} triangles, {dofs} unknowns, {contact}, h = {}", short(h_max))
 }
 
 fn coercivity(gamma: &GammaChoice) -> String {

@@ -43,8 +43,6 @@ impl Spot<'_> {
 /// A table of the file.
 pub struct Table<'s> {
     pub at: Spot<'s>,
-    /// The prefix of its keys in messages.
-    prefix: String,
     entries: &'s DeTable<'s>,
 }
 
@@ -58,7 +56,16 @@ impl<'s> Table<'s> {
     /// The whole file.
     pub fn whole(source: Source<'s>, entries: &'s DeTable<'s>) -> Self {
         let at = Spot { source, name: String::new(), start: None };
-        Table { at, prefix: String::new(), entries }
+        Table { at, entries }
+    }
+
+    /// The name of an entry in messages: behind a header a space, behind a key a point.
+    fn name_of(&self, key: &str) -> String {
+        match &*self.at.name {
+            "" => key.to_owned(),
+            header if header.ends_with(']') => format!("{header} {key}"),
+            table => format!("{table}.{key}"),
+        }
     }
 
     pub fn keys(&self) -> impl Iterator<Item = &'s str> {
@@ -73,7 +80,7 @@ impl<'s> Table<'s> {
 
     pub fn get(&self, key: &str) -> Option<Value<'s>> {
         let (key, value) = self.entries.get_key_value(key)?;
-        let name = format!("{}{}", self.prefix, shown(key.get_ref()));
+        let name = self.name_of(&shown(key.get_ref()));
         let at = Spot { source: self.at.source, name, start: Some(key.span().start) };
         Some(Value { at, value: value.get_ref() })
     }
@@ -89,7 +96,7 @@ impl<'s> Table<'s> {
 
     /// The value of `key`, which must be there.
     pub fn require(&self, key: &str, expected: &str) -> Result<Value<'s>, FileError> {
-        let missing = || format!("{}{key} is missing; expected {expected}", self.prefix);
+        let missing = || format!("{} is missing; expected {expected}", self.name_of(key));
         self.get(key).ok_or_else(|| self.at.wrong(missing()))
     }
 
@@ -164,26 +171,20 @@ impl<'s> Table<'s> {
 }
 
 impl<'s> Value<'s> {
-    /// As a table under the header `name`.
+    /// The value as a table under the header `name`.
     pub fn section(&self, name: String) -> Result<Table<'s>, FileError> {
-        let prefix = format!("{name} ");
-        self.table_named(name, prefix)
-    }
-
-    pub fn table(&self) -> Result<Table<'s>, FileError> {
-        let name = self.at.name.clone();
-        let prefix = format!("{name}.");
-        self.table_named(name, prefix)
-    }
-
-    fn table_named(&self, name: String, prefix: String) -> Result<Table<'s>, FileError> {
         match self.value {
             DeValue::Table(entries) => {
                 let at = Spot { source: self.at.source, name, start: self.at.start };
-                Ok(Table { at, prefix, entries })
+                Ok(Table { at, entries })
             }
             _ => Err(self.wrong("a table")),
         }
+    }
+
+    /// The value as a table under its key.
+    pub fn table(&self) -> Result<Table<'s>, FileError> {
+        self.section(self.at.name.clone())
     }
 
     pub fn is_table(&self) -> bool {

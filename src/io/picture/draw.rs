@@ -1,5 +1,7 @@
 //! Elements of the pictures: colours, letters, SVG paths, and places along a line.
 
+use std::fmt::Write;
+
 use svg::node::element::{Path as PathElement, Rectangle, Text};
 
 use crate::io::numbers;
@@ -95,10 +97,8 @@ impl PathData {
     pub(in crate::io) fn line(&mut self, points: impl IntoIterator<Item = Point>) {
         let mut command = 'M';
         for [x, y] in points {
-            self.d.push(command);
-            self.number(x);
-            self.d.push(' ');
-            self.number(y);
+            // Writing to a string cannot fail.
+            let _ = write!(self.d, "{command}{} {}", rounded(x), rounded(y));
             command = if command == 'M' { 'L' } else { ' ' };
         }
     }
@@ -107,22 +107,6 @@ impl PathData {
     pub(in crate::io) fn polygon(&mut self, points: impl IntoIterator<Item = Point>) {
         self.line(points);
         self.d.push('Z');
-    }
-
-    fn number(&mut self, x: f64) {
-        if !x.is_finite() {
-            // For whoever checks what is drawn.
-            self.d.push_str("NaN");
-            return;
-        }
-        let hundredths = (x * 100.0).round() as i64;
-        let (whole, part) = (hundredths.abs() / 100, hundredths.abs() % 100);
-        let sign = if hundredths < 0 { "-" } else { "" };
-        self.d.push_str(&match (part / 10, part % 10) {
-            (0, 0) => format!("{sign}{whole}"),
-            (tenths, 0) => format!("{sign}{whole}.{tenths}"),
-            _ => format!("{sign}{whole}.{part:02}"),
-        });
     }
 }
 

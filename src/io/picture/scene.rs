@@ -1,6 +1,7 @@
 //! The content of a picture as data; by how much it is magnified; and where it lies on the page.
 
 use super::draw::{Point, distance, moved, short};
+use crate::fem::tree::Bounds;
 use crate::io::numbers::Round;
 use crate::io::result::CertifiedZone;
 
@@ -71,8 +72,7 @@ impl ContactSurface {
 impl Scene<'_> {
     /// The larger of the body's extents along x and y.
     pub(super) fn size(&self) -> f64 {
-        let [low, high] = bounds(self.points.iter().copied());
-        (high[0] - low[0]).max(high[1] - low[1])
+        Bounds::around(self.points.iter().copied()).size()
     }
 
     pub(super) fn deformed(&self, factor: f64) -> Vec<Point> {
@@ -97,14 +97,6 @@ impl Scene<'_> {
     }
 }
 
-/// The lower left and the upper right corner of the box around some points.
-pub(super) fn bounds(points: impl IntoIterator<Item = Point>) -> [Point; 2] {
-    let empty = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-    points.into_iter().fold(empty, |[low, high], p| {
-        [[low[0].min(p[0]), low[1].min(p[1])], [high[0].max(p[0]), high[1].max(p[1])]]
-    })
-}
-
 /// The drawing of the body on the page: the map from the plane, and the room that it takes.
 pub(super) struct PageMap {
     corner: Point,
@@ -121,7 +113,7 @@ const AROUND: f64 = 34.0;
 impl PageMap {
     /// Around some points of the plane, its upper left corner on the page at `corner`.
     pub(super) fn around(points: impl IntoIterator<Item = Point>, corner: Point) -> PageMap {
-        let [low, high] = bounds(points);
+        let Bounds { low, high } = Bounds::around(points);
         let extent = [0, 1].map(|c| high[c] - low[c]);
         let room = [800.0, 520.0].map(|most| most - 2.0 * AROUND);
         let scale = (room[0] / extent[0]).min(room[1] / extent[1]);
