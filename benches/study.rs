@@ -21,7 +21,7 @@ use signorini::fem::{
 };
 use signorini::io::Case;
 use signorini::io::convergence::{self, Meshes, NORMS, Study};
-use signorini::io::plot::{self, Figure, Panel, Style};
+use signorini::io::picture::plot::{self, Figure, Panel, Style};
 use signorini::kernel::{Material, Plane};
 use signorini::solve::ladder::fitted_slope;
 use signorini::solve::{

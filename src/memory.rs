@@ -5,7 +5,7 @@ use std::fmt;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// More memory is needed than there is.
+/// The error that more memory is needed than there is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OutOfMemory {
     /// The bytes needed.
@@ -26,10 +26,10 @@ impl fmt::Display for OutOfMemory {
 
 impl std::error::Error for OutOfMemory {}
 
-/// Less than this is always there, or nothing works.
+/// The bytes that are always there, or nothing works.
 const LITTLE: u64 = 1 << 20;
 
-/// Returns whether so many bytes, beside those already taken, can be had now.
+/// Checks that so many bytes, beside those already taken, can be had now.
 ///
 /// # Errors
 /// [`OutOfMemory`] if the process may not have them (`ulimit -v`), or the system, or the group of processes that this one

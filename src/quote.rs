@@ -6,16 +6,16 @@
 
 use std::path::Path;
 
-/// More characters of a word than this are cut.
+/// The most characters of a word; more are cut.
 const MOST: usize = 60;
 
-/// More characters of a title than this are cut.
+/// The most characters of a title; more are cut.
 const MOST_OF_A_LINE: usize = 200;
 
 /// The longest path shown whole; of a longer one the end is shown.
 const MOST_OF_A_PATH: usize = 300;
 
-/// More names than this are counted.
+/// The most names that are shown; more are counted.
 const MOST_NAMES: usize = 20;
 
 /// `text` between two `mark`s.

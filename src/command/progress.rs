@@ -10,7 +10,7 @@ use signorini::solve::Phase;
 /// Shorter work is not worth a word.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// Between two drawings.
+/// The time between two drawings.
 const TICK: Duration = Duration::from_millis(100);
 
 /// Frames of the spinner.

@@ -107,7 +107,8 @@ fn as_asked(case: Case, phases: &Phases) -> Result<(Case, Solved), Failure> {
     run::solve(case, None, &watcher).map_err(|e| unsolvable(&file, &e))
 }
 
-/// Two cases of one name write into one folder: said when the results in `folder` are those of another case than `file`.
+/// Says that the results in `folder` are those of another case than `file`, if they are: two cases of one name write into one
+/// folder.
 fn remark_of_another_case(folder: &Path, file: &Path) -> Option<String> {
     let bytes = input::read(&folder.join("result.json"), input::MOST_OF_A_CASE).ok()?;
     let earlier: Results = serde_json::from_slice(&bytes).ok()?;

@@ -8,12 +8,12 @@ use thiserror::Error;
 
 use super::case::Case;
 use super::files::{Output, OutputError};
-use super::plot::{COLOURS, Figure, Panel, Style, figure};
+use super::picture::plot::{COLOURS, Figure, Panel, Style, figure};
 use crate::fem::{Errors, MeshError, Perturbation, a_priori};
 use crate::solve::ladder::{fitted_slope, rates};
 use crate::solve::{Degree, Ladder, LadderError, Level, Method};
 
-/// Structured meshes, or meshes with vertices moved at random.
+/// The kind of the meshes of a study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Meshes {
     /// As the generator makes them.
@@ -80,7 +80,7 @@ pub struct Study {
     pub meshes: Meshes,
     /// The rate that the theory promises for all norms but L2.
     pub promised: f64,
-    /// From the coarsest mesh on.
+    /// The results on each mesh, from the coarsest on.
     pub levels: Vec<Level>,
 }
 

@@ -49,7 +49,7 @@ pub fn read_field(path: &Path, mesh: &Mesh) -> Result<Vec<[f64; 2]>, FileError> 
 pub(super) struct Triangles {
     /// Their corners by the points of the file.
     pub corners: Vec<[usize; 3]>,
-    /// Each has a point in the middle of each side, too.
+    /// The triangles have a point in the middle of each side, too.
     pub quadratic: bool,
 }
 

@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use super::csv::{ContactRow, contact_csv};
+use super::csv;
 use super::files::{Output, OutputError};
 use super::finite::NotFinite;
 use super::vtu::{CellKind, DataArray, Grid, vtu};
 use crate::fem::{Degree, Mesh, Problem};
 use crate::kernel::Stress;
-use crate::solve::solution::{ContactEdgeValues, ContactValues};
+use crate::solve::solution::ContactValues;
 use crate::solve::{Solution, stresses};
 
 impl Solution {
@@ -36,11 +36,11 @@ pub(super) fn fields<'a>(
     (0..3).map(move |i| match i {
         0 => ("solution.vtu", solution_vtu(solution, problem, indicators)),
         1 => ("contact.vtu", contact_vtu(solution)),
-        _ => ("contact.csv", contact_csv(&contact_rows(solution)).map(String::into_bytes)),
+        _ => ("contact.csv", contact_csv(solution).map(String::into_bytes)),
     })
 }
 
-/// For each triangle the number of its physical surface, from 1 on in alphabetical order; 0 in none.
+/// The number of the physical surface of each triangle, from 1 on in alphabetical order; 0 in none.
 fn surface_numbers(mesh: &Mesh) -> Vec<f64> {
     let mut numbers = vec![0.0; mesh.triangles().len()];
     for (number, triangles) in (1_u32..).zip(mesh.surfaces().values()) {
@@ -93,7 +93,20 @@ fn solution_vtu(
     })
 }
 
-/// Each edge has points of its own, for sigma_n and lambda^h jump from edge to edge.
+/// A number at a point of a contact edge, by its name in contact.vtu and contact.csv.
+type ContactNumber = (&'static str, fn(&ContactValues) -> f64);
+
+/// u . n~, the gap g, n~ . sigma(u) n (negative in compression), the contact pressure lambda^h (never positive), and the
+/// recovered pressure (never negative).
+const CONTACT_NUMBERS: [ContactNumber; 5] = [
+    ("u_n", |p| p.u_n),
+    ("gap", |p| p.gap),
+    ("sigma_n", |p| p.sigma_n),
+    ("lambda", |p| p.lambda),
+    ("pressure", |p| p.pressure),
+];
+
+/// The file contact.vtu. Each edge has points of its own, for sigma_n and lambda^h jump from edge to edge.
 fn contact_vtu(s: &Solution) -> Result<Vec<u8>, NotFinite> {
     let points: Vec<&ContactValues> = s.contact.iter().flat_map(|edge| &edge.points).collect();
     let degree = s.degree.number();
@@ -107,33 +120,32 @@ fn contact_vtu(s: &Solution) -> Result<Vec<u8>, NotFinite> {
         .collect();
     let places: Vec<[f64; 2]> = points.iter().map(|p| s.nodes[p.node]).collect();
     let displacement: Vec<[f64; 2]> = points.iter().map(|p| s.displacement[p.node]).collect();
-    let scalars = |of: fn(&ContactValues) -> f64| points.iter().map(|p| of(p)).collect::<Vec<_>>();
-    let (u_n, gap) = (scalars(|p| p.u_n), scalars(|p| p.gap));
-    let (sigma_n, lambda) = (scalars(|p| p.sigma_n), scalars(|p| p.lambda));
-    let pressure = scalars(|p| p.pressure);
+    let numbers = CONTACT_NUMBERS
+        .map(|(name, of)| (name, points.iter().map(|p| of(p)).collect::<Vec<f64>>()));
     let direction: Vec<[f64; 2]> = points.iter().map(|p| p.direction).collect();
+    let mut point_data = vec![DataArray::vectors("displacement", &displacement)];
+    point_data.extend(numbers.iter().map(|(name, numbers)| DataArray::scalars(name, numbers)));
+    point_data.push(DataArray::vectors("direction", &direction));
     vtu(&Grid {
         kind: if s.degree == Degree::One { CellKind::Line } else { CellKind::QuadraticLine },
         points: &places,
         connectivity: &connectivity,
-        point_data: &[
-            DataArray::vectors("displacement", &displacement),
-            DataArray::scalars("u_n", &u_n),
-            DataArray::scalars("gap", &gap),
-            DataArray::scalars("sigma_n", &sigma_n),
-            DataArray::scalars("lambda", &lambda),
-            DataArray::scalars("pressure", &pressure),
-            DataArray::vectors("direction", &direction),
-        ],
+        point_data: &point_data,
         cell_data: &[],
     })
 }
 
-fn contact_rows<'a>(s: &'a Solution) -> Vec<ContactRow<'a>> {
+/// A row for each node of each contact edge: arc length from the start of the boundary, place in the undeformed body, the
+/// numbers there. A node between two edges has a row for each, for sigma_n and lambda^h jump there.
+fn contact_csv(s: &Solution) -> Result<String, NotFinite> {
     let points = s.contact.iter().flat_map(|edge| edge.points.iter().map(move |p| (edge, p)));
-    let row = |(edge, p): (&'a ContactEdgeValues, &ContactValues)| {
-        let [x, y] = s.nodes[p.node];
-        (&*edge.boundary, [p.arc, x, y, p.u_n, p.gap, p.sigma_n, p.lambda, p.pressure])
-    };
-    points.map(row).collect()
+    let rows: Vec<(Vec<f64>, &str)> = points
+        .map(|(edge, p)| {
+            let [x, y] = s.nodes[p.node];
+            let numbers = CONTACT_NUMBERS.iter().map(|(_, of)| of(p));
+            ([p.arc, x, y].into_iter().chain(numbers).collect(), &*edge.boundary)
+        })
+        .collect();
+    let names = CONTACT_NUMBERS.map(|(name, _)| name);
+    csv::table(&[&["arc", "x", "y"], &names[..], &["boundary"]].concat(), &rows)
 }

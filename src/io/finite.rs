@@ -10,7 +10,7 @@ pub struct NotFinite {
     pub place: String,
 }
 
-/// Each entry of `values` may hold several numbers.
+/// Refuses `values` with a number that is not finite; each entry may hold several numbers.
 pub(super) fn check_finite<'a>(
     name: &str,
     values: impl IntoIterator<Item = &'a [f64]>,

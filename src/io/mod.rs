@@ -31,9 +31,6 @@ pub mod outputs;
 #[doc(hidden)]
 pub mod picture;
 #[cfg(feature = "files")]
-#[doc(hidden)]
-pub mod plot;
-#[cfg(feature = "files")]
 mod remarks;
 #[cfg(feature = "files")]
 #[doc(hidden)]

@@ -177,7 +177,7 @@ fn bytes_to_write(s: &Solution) -> u64 {
 /// The content of result.json of a solved case that was read in the time `read`, and of which `extra` was asked for.
 ///
 /// # Errors
-/// Those of [`Solution::errors`], should the solution not be one of this case.
+/// The errors of [`Solution::errors`], should the solution not be one of this case.
 pub fn results(
     case: &Case,
     solved: &Solved,

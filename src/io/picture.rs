@@ -16,6 +16,7 @@ mod cells;
 mod contact;
 mod draw;
 mod panel;
+pub mod plot;
 mod scene;
 
 use svg::node::element::{Group, Rectangle, Title};
@@ -24,15 +25,11 @@ use svg::{Document, Node};
 use super::finite::{NotFinite, check_finite};
 use body::{BAR, Colours, body, colour_bar, definitions, outlines};
 use contact::{ContactLine, hatch, obstacle, pressure, tags};
-use draw::{RED, clean, fitting};
+use draw::{DARK, FONT, GREY, PathData, Point, RED, clean, fitting, shape, stroke, text, width_of};
 use scene::PageMap;
 
 pub use body::MOST_TRIANGLES;
 pub use case::draw;
-pub(super) use draw::{
-    DARK, FONT, GREY, LIGHT, PageAxis, PathData, Point, frame, rounded, shape, stroke, text,
-    width_of,
-};
 pub use scene::{ContactSample, ContactSurface, Scene};
 
 /// The page around the drawing.

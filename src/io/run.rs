@@ -91,7 +91,7 @@ impl RunError {
 /// `watcher` is told of each stage.
 ///
 /// # Errors
-/// Those of [`solve_along`], and of [`adapt::adapt`].
+/// The errors of [`solve_along`], and of [`adapt::adapt`].
 pub fn solve(
     mut case: Case,
     start: Option<&Solution>,

@@ -21,7 +21,7 @@ use super::run::{self, RunError};
 use crate::quote;
 use crate::solve::Solution;
 
-/// More runs than this are a mistake of the person who asks for them.
+/// The most runs of a sweep: more are a mistake of the person who asks for them.
 pub const MOST_RUNS: usize = 10_000;
 
 /// A key of the case file and the values that it takes, such as `method.gamma0=1e-3,1e-2`.

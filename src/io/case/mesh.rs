@@ -94,7 +94,7 @@ fn read_trapezoid(table: &Table) -> Result<Trapezoid, FileError> {
     Ok(Trapezoid { omega, n: table.require("n", "a number of cells")?.whole_number(1..=most)? })
 }
 
-/// Vertices further apart than this share of the body are not one by mistake.
+/// The largest share of the body within which vertices are merged: those further apart are not one by mistake.
 const MOST_MERGED: f64 = 0.01;
 
 fn read_merge(value: &Value) -> Result<f64, FileError> {
@@ -102,7 +102,7 @@ fn read_merge(value: &Value) -> Result<f64, FileError> {
     value.number_that(|share| 0.0 < share && share <= MOST_MERGED, &expected)
 }
 
-/// Beyond this share of a cell, triangles may turn over.
+/// The most that a vertex is moved, in cells: beyond it triangles may turn over.
 const MOST_MOVED: f64 = 0.25;
 
 fn read_perturbation(value: &Value) -> Result<Perturbation, FileError> {

@@ -40,7 +40,8 @@ enum NamedFunction {
     Binary(Binary),
 }
 
-/// Beyond this exponent repeated multiplication gains no time and loses digits: its error grows like the exponent.
+/// The largest exponent of repeated multiplication. Beyond it that gains no time and loses digits: its error grows like the
+/// exponent.
 const MOST_FACTORS: f64 = 16.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -11,13 +11,13 @@ use super::draw::{
 use super::scene::{PageMap, Scene};
 use crate::io::numbers::ticks;
 
-/// A body of more triangles than this is drawn by cells: one by one they would make the file too large.
+/// The most triangles that are drawn one by one: more would make the file too large, and are drawn by cells.
 pub const MOST_TRIANGLES: usize = 20_000;
 
 /// The side of such a cell.
 const CELL: f64 = 2.5;
 
-/// Up to here the mesh itself is worth seeing.
+/// The most triangles of which the mesh itself is worth seeing.
 const MOST_VISIBLE_TRIANGLES: usize = 3000;
 
 fn outline_path(scene: &Scene, points: &[Point]) -> PathData {

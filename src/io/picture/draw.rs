@@ -7,15 +7,14 @@ use svg::node::element::{Path as PathElement, Rectangle, Text};
 use crate::io::numbers;
 
 /// The letters of all pictures.
-pub(in crate::io) const FONT: &str =
-    "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
-pub(in crate::io) const DARK: &str = "#222222";
-pub(in crate::io) const GREY: &str = "#666666";
-pub(in crate::io) const LIGHT: &str = "#dddddd";
+pub(super) const FONT: &str = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
+pub(super) const DARK: &str = "#222222";
+pub(super) const GREY: &str = "#666666";
+pub(super) const LIGHT: &str = "#dddddd";
 pub(super) const RED: &str = "#d62728";
 
 /// A point on the page, y downwards.
-pub(in crate::io) type Point = [f64; 2];
+pub(super) type Point = [f64; 2];
 
 /// A number as labels have it.
 pub(super) fn short(x: f64) -> String {
@@ -29,17 +28,17 @@ pub(super) fn clean(text: &str) -> String {
 }
 
 /// A text that starts at a point.
-pub(in crate::io) fn text(content: impl Into<String>, [x, y]: Point) -> Text {
+pub(super) fn text(content: impl Into<String>, [x, y]: Point) -> Text {
     Text::new(content).set("x", rounded(x)).set("y", rounded(y))
 }
 
 /// Coordinates in hundredths, which keeps the file small and the same everywhere.
-pub(in crate::io) fn rounded(x: f64) -> f64 {
+pub(super) fn rounded(x: f64) -> f64 {
     (x * 100.0).round() / 100.0 + 0.0
 }
 
 /// The width of a text, roughly: no font is at hand, and the reader's may be another.
-pub(in crate::io) fn width_of(text: &str, size: f64) -> f64 {
+pub(super) fn width_of(text: &str, size: f64) -> f64 {
     0.56 * size * text.chars().count() as f64
 }
 
@@ -48,23 +47,23 @@ pub(super) fn fitting(text: &str, size: f64, width: f64) -> f64 {
     rounded((size * width / width_of(text, size)).min(size))
 }
 
-pub(in crate::io) fn shape(path: PathData) -> PathElement {
+pub(super) fn shape(path: PathData) -> PathElement {
     PathElement::new().set("d", path.d)
 }
 
-pub(in crate::io) fn stroke(path: PathData, colour: &str, width: f64) -> PathElement {
+pub(super) fn stroke(path: PathData, colour: &str, width: f64) -> PathElement {
     shape(path).set("fill", "none").set("stroke", colour).set("stroke-width", width)
 }
 
 /// An axis: the range of its values, and the ends of that on the page.
-pub(in crate::io) struct PageAxis {
-    pub(in crate::io) range: [f64; 2],
-    pub(in crate::io) page: [f64; 2],
+pub(super) struct PageAxis {
+    pub(super) range: [f64; 2],
+    pub(super) page: [f64; 2],
 }
 
 impl PageAxis {
     /// The place of a value on the page; the middle where the range is a single value.
-    pub(in crate::io) fn at(&self, value: f64) -> f64 {
+    pub(super) fn at(&self, value: f64) -> f64 {
         let ([low, high], [start, end]) = (self.range, self.page);
         let part = if high > low { (value - low) / (high - low) } else { 0.5 };
         start + part * (end - start)
@@ -72,7 +71,7 @@ impl PageAxis {
 }
 
 /// The frame of a drawing area: from the left upper corner, so wide and high.
-pub(in crate::io) fn frame([left, top]: Point, [width, height]: [f64; 2]) -> Rectangle {
+pub(super) fn frame([left, top]: Point, [width, height]: [f64; 2]) -> Rectangle {
     Rectangle::new()
         .set("x", rounded(left))
         .set("y", rounded(top))
@@ -84,7 +83,7 @@ pub(in crate::io) fn frame([left, top]: Point, [width, height]: [f64; 2]) -> Rec
 
 /// The `d` attribute of a path, in hundredths of the page's unit.
 #[derive(Clone, Debug, Default)]
-pub(in crate::io) struct PathData {
+pub(super) struct PathData {
     d: String,
 }
 
@@ -94,7 +93,7 @@ impl PathData {
     }
 
     /// Adds a line through these points.
-    pub(in crate::io) fn line(&mut self, points: impl IntoIterator<Item = Point>) {
+    pub(super) fn line(&mut self, points: impl IntoIterator<Item = Point>) {
         let mut command = 'M';
         for [x, y] in points {
             // Writing to a string cannot fail.
@@ -104,7 +103,7 @@ impl PathData {
     }
 
     /// Adds a line through these points and back to the first.
-    pub(in crate::io) fn polygon(&mut self, points: impl IntoIterator<Item = Point>) {
+    pub(super) fn polygon(&mut self, points: impl IntoIterator<Item = Point>) {
         self.line(points);
         self.d.push('Z');
     }

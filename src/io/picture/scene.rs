@@ -111,7 +111,7 @@ pub(super) struct PageMap {
 const AROUND: f64 = 34.0;
 
 impl PageMap {
-    /// Around some points of the plane, its upper left corner on the page at `corner`.
+    /// Makes the map of a drawing around some points of the plane, its upper left corner on the page at `corner`.
     pub(super) fn around(points: impl IntoIterator<Item = Point>, corner: Point) -> PageMap {
         let Bounds { low, high } = Bounds::around(points);
         let extent = [0, 1].map(|c| high[c] - low[c]);

@@ -6,10 +6,10 @@ use svg::node::Text as Content;
 use svg::node::element::{Circle, Group, Path as PathElement, Rectangle, TSpan, Text, Title};
 use svg::{Document, Node};
 
-use super::finite::{NotFinite, check_finite};
-use super::picture::{
+use super::draw::{
     DARK, FONT, GREY, LIGHT, PageAxis, PathData, Point, frame, rounded, stroke, text, width_of,
 };
+use crate::io::finite::{NotFinite, check_finite};
 
 /// A figure.
 #[derive(Clone, Debug)]
@@ -18,7 +18,7 @@ pub struct Figure {
     pub title: String,
     /// The label of the x axis, which all panels share.
     pub x_label: String,
-    /// From left to right.
+    /// The panels from left to right.
     pub panels: Vec<Panel>,
     /// The lines by name, for the legend and their looks.
     pub styles: Vec<Style>,
@@ -42,7 +42,7 @@ pub struct Style {
     pub name: String,
     /// Its colour, as SVG has it.
     pub colour: &'static str,
-    /// Dashed, its points hollow.
+    /// The line is dashed, its points are hollow.
     pub dashed: bool,
 }
 
