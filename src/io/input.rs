@@ -164,10 +164,7 @@ fn no_file(kind: &str) -> InputError {
 }
 
 /// Refuses a file that is not regular.
-///
-/// # Errors
-/// The kind that it is instead.
-pub fn regular(metadata: &Metadata) -> Result<(), InputError> {
+fn regular(metadata: &Metadata) -> Result<(), InputError> {
     if metadata.is_file() { Ok(()) } else { Err(no_file(kind(metadata))) }
 }
 

@@ -415,6 +415,18 @@ mod tests {
     }
 
     #[test]
+    fn numbers_are_the_shortest_that_read_back() {
+        let numbers = [-0.0, f64::from_bits(1), f64::MAX, 0.1 + 0.2, 1e23];
+        let mut results = sample();
+        results.newton.residuals = numbers.to_vec();
+        let text = result_json(&results).unwrap();
+        let (_, rest) = text.split_once("\"residuals\": [").unwrap();
+        let (list, _) = rest.split_once(']').unwrap();
+        let written: Vec<String> = list.split(',').map(|n| n.trim().replace("e+", "e")).collect();
+        assert_eq!(written, numbers.map(|number| format!("{number:?}")));
+    }
+
+    #[test]
     fn a_nan_or_an_infinity_is_refused_by_its_path() {
         let refused = |spoil: fn(&mut Results)| {
             let mut results = sample();
