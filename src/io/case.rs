@@ -50,10 +50,9 @@ pub struct Case {
     pub method: Method,
     /// The accuracy.
     pub settings: Settings,
-    /// The target of the error, if the mesh is to be adapted until it is proved.
-    pub adapt: Option<Target>,
-    /// The boundary whose contact force the target is about, if it is not about the energy norm.
-    pub adapt_force: Option<String>,
+    /// The target of the error, if the mesh is to be adapted until it is proved; and the boundary whose contact force it is
+    /// about, if it is not about the energy norm.
+    pub adapt: Option<(Target, Option<String>)>,
     /// Quantities to be proved beside the bound.
     pub asked: Asked,
     /// The places where the displacement is wanted.
@@ -216,7 +215,6 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, FileErro
     let (conditions, kinds) = read_boundaries(root, solution.as_ref(), &mesh, thickness)?;
     let points = read_points(root, &mesh)?;
     let adapt = root.optional_section("adapt", |table| read_target(table, &conditions))?;
-    let (adapt, adapt_force) = adapt.unzip();
     let asked = root.optional_section("certify", |table| read_quantities(table, &conditions))?;
     let output = root.optional_section("output", |table| read_output(table, &mesh))?;
     let (probes, stretch) = output.unwrap_or_default();
@@ -231,7 +229,6 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, FileErro
         method,
         settings,
         adapt,
-        adapt_force: adapt_force.flatten(),
         asked: asked.unwrap_or_default(),
         probes,
         exact: solution.map(|solution| ExactCase { solution, kinds, structured, perturbation }),
@@ -390,7 +387,8 @@ mod tests {
     fn a_target_is_a_share_in_percent() {
         let with = |adapt: &str| read(&format!("{SMALL}\n{adapt}")).map(|case| case.adapt);
         let target = with("adapt.target = \"0.5 %\"").unwrap_or_else(|e| panic!("{e}"));
-        assert_eq!(target, Some(Target { relative: 0.005, max_unknowns: method::MOST_UNKNOWNS }));
+        let expected = Target { relative: 0.005, max_unknowns: method::MOST_UNKNOWNS };
+        assert_eq!(target, Some((expected, None)));
         for wrong in ["\"0 %\"", "\"100 %\"", "\"1\"", "0.01", "\"%\"", "\"nan %\""] {
             let error = with(&format!("adapt.target = {wrong}")).unwrap_err().to_string();
             assert!(error.contains("such as \"1 %\""), "{error}");
@@ -403,8 +401,8 @@ mod tests {
     fn a_target_may_be_a_force_and_forces_are_asked_for_by_their_boundary() {
         let with = |settings: &str| read(&format!("{SMALL}\n{settings}"));
         let case = with("adapt.target = { force = \"bottom\", within = \"0.1 %\" }").unwrap();
-        assert_eq!(case.adapt.map(|target| target.relative), Some(0.001));
-        assert_eq!(case.adapt_force.as_deref(), Some("bottom"));
+        let found = case.adapt.map(|(target, force)| (target.relative, force));
+        assert_eq!(found, Some((0.001, Some("bottom".to_owned()))));
         let case =
             with("certify.quantities = [\"force bottom\", \"force bottom x 0 0.25 ramp 0.1\"]");
         let ramp = Ramp { axis: 0, between: [0.0, 0.25], width: 0.1 };

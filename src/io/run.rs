@@ -97,14 +97,14 @@ pub fn solve(
     start: Option<&Solution>,
     watcher: &dyn Fn(Stage),
 ) -> Result<(Case, Solved), RunError> {
-    let Some(target) = case.adapt else {
+    let Some((target, force)) = case.adapt.clone() else {
         let of_solve = |phase| watcher(Stage::Solve(phase));
         let course = Course::default().watched_by(&of_solve);
         let course = start.map_or(course, |start| course.from(start));
         let solved = solve_along(&case.problem, &case.method, &case.settings, course)?;
         return Ok((case, solved.into()));
     };
-    let goal = (target, case.adapt_force.as_deref());
+    let goal = (target, force.as_deref());
     let how = (&case.method, &case.settings);
     let (problem, adapted) = adapt::adapt_to(case.problem, how, goal, &case.asked, watcher)?;
     case.problem = problem;
@@ -113,7 +113,7 @@ pub fn solve(
         time: adapted.certifying,
         adaptation: Some(Adaptation {
             target: target.relative,
-            force: case.adapt_force.clone(),
+            force,
             met: adapted.unmet.is_none(),
             reason: adapted.unmet,
             level: adapted.level,
