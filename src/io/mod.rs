@@ -17,7 +17,8 @@ pub mod field;
 pub mod fields;
 #[doc(hidden)]
 pub mod files;
-mod finite;
+#[doc(hidden)]
+pub mod finite;
 #[doc(hidden)]
 pub mod gmsh;
 #[doc(hidden)]
