@@ -49,15 +49,17 @@ impl Certificate {
     pub fn balanced<S: Enclosing>(&self, topology: Topology) -> Result<Balanced<S>, Rejection> {
         let points: Vec<Vector2<S>> = self.places();
         let triangles = self.triangles(&points)?;
-        self.balanced_on(topology, points, triangles)
+        let resultant = |t: usize, loads: &Loads<S>| loads.resultant(&triangles[t]);
+        self.balanced_on(topology, points, &triangles, resultant)
     }
 
-    /// [`Certificate::balanced`], on triangles that are at hand.
+    /// [`Certificate::balanced`], on triangles that are at hand; `resultant` is that of loads on a triangle.
     pub(crate) fn balanced_on<S: Enclosing>(
         &self,
         topology: Topology,
         points: Vec<Vector2<S>>,
-        triangles: Vec<Triangle<S>>,
+        triangles: &[Triangle<S>],
+        resultant: impl Fn(usize, &Loads<S>) -> Wrench<S>,
     ) -> Result<Balanced<S>, Rejection> {
         let v = self.shape();
         self.check_displacement()?;
@@ -100,7 +102,7 @@ impl Certificate {
         let closed = Closed { changes: Vec::new(), stops: Vec::new() };
         let mut state = Balanced {
             points,
-            triangles,
+            triangles: triangles.to_vec(),
             v,
             topology,
             forces,
@@ -109,7 +111,7 @@ impl Certificate {
             closed,
             on_contact,
         };
-        state.close(self)?;
+        state.close(self, resultant)?;
         for &Change { edge, factors } in &state.closed.changes {
             let Role::Contact { pressure, .. } = self.edges[edge].role else { continue };
             // p (1 + factor) is no tension.
@@ -212,13 +214,17 @@ impl Certificate {
 
 impl<S: Enclosing> Balanced<S> {
     /// The forces on the triangles from those on the edges, put in equilibrium.
-    fn close(&mut self, certificate: &Certificate) -> Result<(), Unbalanced> {
+    fn close(
+        &mut self,
+        certificate: &Certificate,
+        resultant: impl Fn(usize, &Loads<S>) -> Wrench<S>,
+    ) -> Result<(), Unbalanced> {
         let count = certificate.pieces.len();
         self.outward.clear();
         let mut wrenches = Vec::with_capacity(count);
         for t in 0..count {
             let loads = self.loads_as_given(certificate, t);
-            wrenches.push(loads.resultant(&self.triangles[t]));
+            wrenches.push(resultant(t, &loads));
             self.outward.push(loads.forces);
         }
         let numbers = |wrench: &Wrench<S>| [wrench.force[0], wrench.force[1], wrench.moment];
@@ -244,22 +250,10 @@ impl<S: Enclosing> Balanced<S> {
 
     /// C eps(v) and C eps(v) - tau on triangle `t`.
     pub fn stresses(&self, certificate: &Certificate, t: usize) -> (Affine<S>, Composite<S>) {
-        self.stresses_in(&Frame::new(&self.triangles[t]), certificate, t)
-    }
-
-    /// [`Balanced::stresses`], with the frame of the triangle.
-    pub(crate) fn stresses_in(
-        &self,
-        frame: &Frame<S>,
-        certificate: &Certificate,
-        t: usize,
-    ) -> (Affine<S>, Composite<S>) {
-        let piece = &certificate.pieces[t];
-        let loads = self.loads(piece, t);
-        let sigma = self.v.stress(piece, &self.triangles[t]);
-        let tau = Composite::new(frame, &loads);
-        let tau = if piece.is_bent() { tau.bent(frame, &loads.body) } else { tau };
-        (sigma, tau.distance_from(&sigma))
+        let (piece, triangle) = (&certificate.pieces[t], &self.triangles[t]);
+        let sigma = self.v.stress(piece, triangle);
+        let apart = distance(piece, &Frame::new(triangle), &sigma, &self.loads(piece, t));
+        (sigma, apart)
     }
 
     /// Leaves out the part by which a load that is not constant bends tau.
@@ -274,13 +268,26 @@ impl<S: Enclosing> Balanced<S> {
         (sigma, Composite::new(&frame, &self.loads(piece, t)).distance_from(&sigma))
     }
 
-    fn loads(&self, piece: &Piece, t: usize) -> Loads<S> {
+    /// The forces on triangle `t` towards its outside, in equilibrium, and its body force.
+    pub(crate) fn loads(&self, piece: &Piece, t: usize) -> Loads<S> {
         let mut loads = Loads { forces: self.outward[t], body: piece.body.map(exactly) };
         for stop in self.closed.stops.iter().filter(|stop| stop.root == t) {
             (0..2).for_each(|k| loads.forces[0][k] += stop.force[k]);
         }
         loads
     }
+}
+
+/// sigma - tau on a triangle with this frame, for tau with these loads.
+pub(crate) fn distance<S: Enclosing>(
+    piece: &Piece,
+    frame: &Frame<S>,
+    sigma: &Affine<S>,
+    loads: &Loads<S>,
+) -> Composite<S> {
+    let tau = Composite::new(frame, loads);
+    let tau = if piece.is_bent() { tau.bent(frame, &loads.body) } else { tau };
+    tau.distance_from(sigma)
 }
 
 impl Balanced<f64> {
@@ -321,6 +328,9 @@ impl Balanced<f64> {
         for &Change { edge, factors } in &self.closed.changes {
             (0..2).for_each(|k| self.forces[edge][k] *= 1.0 + factors[k]);
         }
-        self.close(certificate)
+        let triangles = std::mem::take(&mut self.triangles);
+        let closed = self.close(certificate, |t, loads| loads.resultant(&triangles[t]));
+        self.triangles = triangles;
+        closed
     }
 }

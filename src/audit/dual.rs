@@ -15,8 +15,9 @@ use super::balanced::Balanced;
 use super::certificate::{Certificate, Curved, Edge, Piece, Role, is_oblique};
 use super::checks::Rejection;
 use super::forces::{Cover, Forces, Target, WrongLifting, component, reach};
-use crate::kernel::composite::{Composite, Frame};
-use crate::kernel::{Enclosing, Interval, Material, Stress};
+use super::stresses::{Lengths, Place, Staged};
+use crate::kernel::composite::Loads;
+use crate::kernel::{Ball, Enclosing, Interval};
 
 /// Why a dual pair proves nothing.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -29,34 +30,6 @@ pub enum WrongPair {
     Lifting(#[from] WrongLifting),
     #[error("{what} {index} of the dual pair is not that of the certificate, without its data")]
     Differs { what: &'static str, index: usize },
-}
-
-/// int_T a : C^-1 b for a without quadratic parts in b. On a part affine functions with the values a_i, b_i have the integral of
-/// [`Composite::energy`] with products for squares; what a is beyond, half of what its formula says for both.
-fn product<S: Enclosing>(
-    material: &Material<S>,
-    a: &Composite<S>,
-    b: &Composite<S>,
-    double_area: S,
-) -> S {
-    let (two, three, eight) = (S::from(2), S::from(3), S::from(8));
-    let centre = |tau: &Composite<S>| tau.centre * (two / three);
-    let (of_a, of_b) = (centre(a), centre(b));
-    let squares = material.squares();
-    let products = |a: Stress<S>, b: Stress<S>| squares.products(a, b);
-    let mut sum = products(a.centre, b.centre).map(|x| eight * x);
-    for ([p, q], [s, t]) in a.corners.into_iter().zip(b.corners) {
-        let (sums, differences) = (products(p + q + of_a, s + t + of_b), products(p - q, s - t));
-        sum = [0, 1].map(|k| sum[k] + three * sums[k] + differences[k]);
-    }
-    for (h, [s, t]) in a.bulges.iter().flatten().zip(b.corners) {
-        let whole = s + t + b.centre;
-        for (h, opposite) in h.iter().zip([b.centre, t, s]) {
-            let along = products(*h, whole * two - opposite);
-            sum = [0, 1].map(|k| sum[k] + eight / S::from(5) * along[k]);
-        }
-    }
-    squares.per_moduli(sum) * double_area / S::from(576)
 }
 
 /// The largest ratio of a to b, not below 0: infinite where b is 0 and a is not.
@@ -215,115 +188,90 @@ impl Certificate {
     }
 }
 
-/// Dual pairs that are verified, with their sums over the triangles.
-pub(crate) struct Pairs<'a, S> {
-    pairs: &'a [(Target, Certificate)],
-    sums: Vec<Sums<S>>,
-    /// |w|_a is needed.
-    is_loose: bool,
-}
-
-/// The sums of a pair.
-struct Sums<S> {
+/// A dual pair with its sums over the triangles.
+struct Summed<S> {
     dual: Balanced<S>,
-    /// R0
-    middle: S,
-    /// eta^2
-    eta: S,
-    /// |w|_a^2, where the error of data is to be multiplied with it.
-    norm: S,
+    /// int C^-1 (C eps(v) - tau) : (C eps(w) - rho)
+    product: Interval,
+    /// An upper bound of eta.
+    eta: f64,
+    /// An upper bound of |w|_a^2, where the error of data is to be multiplied with it.
+    norm: Ball,
     /// The shares of the triangles in eta^2.
     shares: Vec<f64>,
 }
 
-impl<'a, S: Enclosing> Pairs<'a, S> {
-    /// Verifies that these are pairs for a certificate.
-    pub fn new(
-        certificate: &Certificate,
-        state: &Balanced<S>,
-        pairs: &'a [(Target, Certificate)],
-    ) -> Result<Self, WrongPair> {
-        let zero = S::from(0);
-        let mut sums = Vec::with_capacity(pairs.len());
-        for (_, pair) in pairs {
-            pair.check_shape()?;
-            certificate.check_pair(pair, state)?;
-            let (points, triangles) = (state.points.clone(), state.triangles.clone());
-            let dual = pair.balanced_on(state.topology.clone(), points, triangles)?;
-            pair.check_balance(&dual)?;
-            let shares = Vec::with_capacity(pair.pieces.len());
-            sums.push(Sums { dual, middle: zero, eta: zero, norm: zero, shares });
-        }
-        Ok(Pairs { pairs, sums, is_loose: certificate.loose() != 0.0 })
-    }
-
-    /// Adds triangle `t` with this frame, where C eps(v) - tau is `apart`.
-    pub fn add(
-        &mut self,
-        certificate: &Certificate,
-        state: &Balanced<S>,
-        t: usize,
-        (frame, apart): (&Frame<S>, &Composite<S>),
-    ) {
-        let (piece, triangle) = (&certificate.pieces[t], &state.triangles[t]);
-        for ((_, pair), sums) in self.pairs.iter().zip(&mut self.sums) {
-            let (material, double_area) = (piece.material(), triangle.double_area());
-            let (of_w, missed) = sums.dual.stresses_in(frame, pair, t);
-            let eta = missed.energy(&material, double_area);
-            sums.middle += product(&material, apart, &missed, double_area) / S::from(2);
-            sums.eta += eta;
-            if self.is_loose {
-                sums.norm += of_w.energy(&material, double_area);
-            }
-            sums.shares.push(eta.upper());
-        }
-    }
-}
-
-impl<S: Enclosing> Forces<'_, S> {
+impl<S: Staged> Forces<'_, S> {
     /// Encloses the contact force with the weight of its target by each of some dual pairs; an end may be infinite.
     ///
     /// # Errors
-    /// A pair that is none.
+    /// A pair that is none; one whose w is not what it should be on Gamma_C.
     pub fn by_pairs(
         &self,
         pairs: &[(Target, Certificate)],
         cover: Option<&Cover>,
     ) -> Result<Vec<ByPair>, WrongPair> {
-        let (certificate, state) = (self.certificate, self.state);
-        let mut pairs = Pairs::new(certificate, state, pairs)?;
-        for (t, triangle) in state.triangles.iter().enumerate() {
-            let frame = Frame::new(triangle);
-            let (_, apart) = state.stresses_in(&frame, certificate, t);
-            pairs.add(certificate, state, t, (&frame, &apart));
-        }
-        self.by_summed_pairs(pairs, cover)
-    }
-
-    /// [`Forces::by_pairs`], with the sums over the triangles at hand.
-    ///
-    /// # Errors
-    /// A pair whose w is not what it should be on Gamma_C.
-    pub(crate) fn by_summed_pairs(
-        &self,
-        Pairs { pairs, sums, .. }: Pairs<S>,
-        cover: Option<&Cover>,
-    ) -> Result<Vec<ByPair>, WrongPair> {
+        let sums = self.sums(pairs)?;
         let all = pairs.iter().zip(sums);
         all.map(|((target, pair), sums)| self.by_sums(pair, *target, sums, cover)).collect()
+    }
+
+    /// Verifies that these are pairs and sums over the triangles.
+    fn sums(&self, pairs: &[(Target, Certificate)]) -> Result<Vec<Summed<S>>, WrongPair> {
+        if pairs.is_empty() {
+            return Ok(Vec::new());
+        }
+        let (certificate, state) = (self.certificate, self.state);
+        let balanced = |(_, pair): &(Target, Certificate)| -> Result<Balanced<S>, WrongPair> {
+            pair.check_shape()?;
+            certificate.check_pair(pair, state)?;
+            let (points, topology) = (state.points.clone(), state.topology.clone());
+            let resultant = |t: usize, loads: &Loads<S>| S::resultant(loads, &state.triangles[t]);
+            let dual = pair.balanced_on(topology, points, &state.triangles, resultant)?;
+            pair.check_balance(&dual)?;
+            Ok(dual)
+        };
+        let duals = pairs.iter().map(balanced).collect::<Result<Vec<_>, _>>()?;
+        let both: Vec<(&Certificate, &Balanced<S>)> =
+            pairs.iter().map(|(_, pair)| pair).zip(&duals).collect();
+        let own = self.own();
+        let mut length = Lengths::new();
+        let zero = Ball::from(0);
+        let start = || (zero, Lengths::new(), zero, Vec::with_capacity(certificate.pieces.len()));
+        let mut sums: Vec<(Ball, Lengths, Ball, Vec<f64>)> =
+            pairs.iter().map(|_| start()).collect();
+        for (t, piece) in certificate.pieces.iter().enumerate() {
+            let place = Place::new(piece, t, &state.triangles[t]);
+            let apart = &own[t];
+            length.add(apart);
+            for ((pair, dual), (product, eta, norm, shares)) in both.iter().zip(&mut sums) {
+                let (missed, of_w) = place.stresses(pair, dual, self.loose != 0.0);
+                *product += Ball::point(apart.dot(&missed));
+                *norm += Ball::point(of_w);
+                shares.push(eta.add(&missed));
+            }
+        }
+        let summed =
+            |(dual, (product, eta, norm, shares)): (Balanced<S>, (Ball, Lengths, Ball, _))| {
+                let error = length.error_of_product(eta);
+                let product =
+                    Interval::new(product.lower(), product.upper()) + Interval::new(-error, error);
+                Summed { dual, product, eta: eta.length(), norm, shares }
+            };
+        Ok(duals.into_iter().zip(sums).map(summed).collect())
     }
 
     fn by_sums(
         &self,
         pair: &Certificate,
         target: Target,
-        sums: Sums<S>,
+        sums: Summed<S>,
         cover: Option<&Cover>,
     ) -> Result<ByPair, WrongPair> {
         let (certificate, state) = (self.certificate, self.state);
-        let zero = S::from(0);
-        let Sums { dual, mut middle, eta, norm, shares } = sums;
-        middle += self.within(&dual.v) + certificate.work_of_tractions(&state.forces, &dual.v);
+        let Summed { dual, product, eta, norm, shares } = sums;
+        let mut middle =
+            self.within(&dual.v) + certificate.work_of_tractions(&state.forces, &dual.v);
         // r is at least and at most these times |tau_n|.
         let mut most = [0.0_f64; 2];
         for e in self.contact() {
@@ -350,9 +298,9 @@ impl<S: Enclosing> Forces<'_, S> {
             }
         }
         let missed = self.all_missed(&dual.v, target, cover)?;
-        let root = |square: S| square.split(|_| zero, |s| s).sqrt().upper();
         let point = Interval::point;
-        let (eta, norm) = (point(root(eta)), point(root(norm)));
+        let middle = Interval::new(middle.lower(), middle.upper()) + product / Interval::from(2);
+        let (eta, norm) = (point(eta), point(norm.sqrt().upper()));
         let force = point(cover.map_or(0.0, Cover::force));
         let loose = point(2.0 * self.loose) * (norm + eta / Interval::from(2));
         let factors = [0, 1].map(|side| most[side].max(missed.open[side]));
@@ -364,54 +312,11 @@ impl<S: Enclosing> Forces<'_, S> {
                 f64::INFINITY
             }
         };
-        let ends = [
-            (point(middle.lower()) - point(away(0))).lo(),
-            (point(middle.upper()) + point(away(1))).hi(),
-        ];
+        let ends = [(middle - point(away(0))).lo(), (middle + point(away(1))).hi()];
         let between = [
             if ends[0].is_nan() { f64::NEG_INFINITY } else { ends[0] },
             if ends[1].is_nan() { f64::INFINITY } else { ends[1] },
         ];
         Ok(ByPair { between, shares, factors })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::kernel::Plane;
-
-    fn stress(k: i32) -> Stress<f64> {
-        Stress::new([1, 5, 7].map(|m| f64::from((m * k * k + 3 * k) % 11) - 5.0))
-    }
-
-    fn composite(k: i32, bulges: bool) -> Composite<f64> {
-        let at = |i: usize, j: usize| stress(k + 3 * i as i32 + j as i32);
-        Composite {
-            corners: [0, 1, 2].map(|i| [0, 1].map(|j| at(i, j))),
-            centre: stress(k + 17),
-            bulges: bulges.then(|| [0, 1, 2].map(|i| [0, 1, 2].map(|j| at(i + 4, j)))),
-        }
-    }
-
-    #[test]
-    fn the_product_of_two_stresses_is_that_of_their_energies() {
-        let material = Material::lame(1.3, 0.7, Plane::Strain);
-        for bent in [false, true] {
-            let (a, b) = (composite(2, bent), composite(5, false));
-            let sum = |sign: f64| Composite {
-                corners: [0, 1, 2]
-                    .map(|i| [0, 1].map(|j| a.corners[i][j] + b.corners[i][j] * sign)),
-                centre: a.centre + b.centre * sign,
-                bulges: a.bulges,
-            };
-            let [plus, minus] = [1.0, -1.0].map(|sign| sum(sign).energy(&material, 0.6));
-            let found = product(&material, &a, &b, 0.6);
-            let expected = (plus - minus) / 4.0;
-            assert!((found - expected).abs() <= 1e-13 * plus, "{found}, {expected}");
-            // Control: a bulge counts.
-            let flat = Composite { bulges: None, ..a };
-            assert!((product(&material, &flat, &b, 0.6) != found) == bent);
-        }
     }
 }

@@ -9,6 +9,7 @@
 //! integral is at most beta A + e R(w0), by \[Q2\] with A <= M^2 - |sigma - m|^2. So w may leave its target where the body is
 //! off the obstacle; w0 is 1 on Gamma_C and covers rounding.
 
+use std::cell::OnceCell;
 use std::fmt::Display;
 
 use nalgebra::{Matrix2, Vector2};
@@ -16,9 +17,10 @@ use nalgebra::{Matrix2, Vector2};
 use super::balanced::Balanced;
 use super::certificate::{Certificate, Edge, Piece, Role, Shape, exactly, is_oblique};
 use super::checks::Rejection;
-use super::dual::{Pairs, WrongPair};
+use super::dual::WrongPair;
 use super::proof::Proof;
-use crate::kernel::{Ball, Enclosing, Interval, Scalar};
+use super::stresses::{Numbers, SHARP, Staged, TINY, bulges, local, numbers};
+use crate::kernel::{Ball, Enclosing, Interval, Scalar, Triangle};
 
 /// M and G, from above.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -277,8 +279,8 @@ pub enum WrongLifting {
 struct Value<S> {
     /// L(w) - int m : eps(w)
     pub middle: S,
-    /// |w|_a
-    pub norm: S,
+    /// An upper bound of |w|_a.
+    pub norm: f64,
 }
 
 /// w0 of the module's head: its Bernstein coefficients on the edges of Gamma_C, and what R(w0) lies between.
@@ -313,8 +315,12 @@ pub struct Forces<'a, S> {
     pub mean: Mean,
     /// The error of L(w) and a(v, w) for each unit of |w|_a, as data oscillate.
     pub loose: f64,
-    /// int f . w - a(v, w) for w with a component 1 at a point, and for such a bulge on an edge.
-    unbalanced: Shape<S>,
+    /// int f . w - a(v, w) for w with a component 1 at a point.
+    at_points: Vec<Vector2<S>>,
+    /// For such a bulge on an edge; empty until it is needed.
+    between: OnceCell<Vec<Vector2<S>>>,
+    /// The numbers of C eps(v) - tau on each triangle; empty until they are needed.
+    own: OnceCell<Vec<Numbers>>,
 }
 
 impl Certificate {
@@ -323,18 +329,33 @@ impl Certificate {
     ///
     /// # Errors
     /// As [`Certificate::evaluate`]; a dual pair that is none; inside, a lifting that is not what it should be on the boundary.
-    pub fn forces<S: Enclosing>(
+    pub fn forces<S: Staged>(
         &self,
         evidence: &Evidence,
     ) -> Result<Vec<Result<[f64; 2], WrongLifting>>, WrongPair> {
         let state = self.balanced::<S>(self.topology()?)?;
-        let (proof, pairs) = self.sum_with_pairs(&state, &evidence.pairs)?;
-        let (_, found, pairs) = self.forces_near(&state, &proof, evidence, pairs)?;
+        let (proof, own) = self.sum_for(&state, evidence)?;
+        let (_, found, pairs) = self.forces_near(&state, &proof, evidence, own)?;
         let targets = evidence.liftings.iter().map(|(target, _)| *target);
         let nearest = |(target, ends): (Target, Result<[f64; 2], WrongLifting>)| {
             ends.map(|ends| evidence.nearest(target, ends, &pairs))
         };
         Ok(targets.zip(found).map(nearest).collect())
+    }
+
+    /// [`Certificate::sum`], with what dual pairs in the evidence need of it: the numbers of C eps(v) - tau on each triangle.
+    pub(crate) fn sum_for<S: Staged>(
+        &self,
+        state: &Balanced<S>,
+        evidence: &Evidence,
+    ) -> Result<(Proof, Vec<Numbers>), Rejection> {
+        let mut own = Vec::new();
+        let proof = self.sum_beside(state, |t, apart| {
+            if !evidence.pairs.is_empty() {
+                own.push(numbers(&self.pieces[t], &state.triangles[t], apart));
+            }
+        })?;
+        Ok((proof, own))
     }
 
     /// Verifies that what is said of forces is what their data give.
@@ -343,13 +364,13 @@ impl Certificate {
         state: &Balanced<Ball>,
         proof: &Proof,
         evidence: &Evidence,
-        pairs: Result<Pairs<Ball>, WrongPair>,
+        own: Vec<Numbers>,
     ) -> Result<(), Rejection> {
         let Some(claimed) = &evidence.between else { return Ok(()) };
         let wrong = |force: usize, problem: &dyn Display| {
             Err(Rejection::Force { force, problem: problem.to_string() })
         };
-        let (cover, found, pairs) = match self.forces_near(state, proof, evidence, pairs) {
+        let (cover, found, pairs) = match self.forces_near(state, proof, evidence, own) {
             Ok(found) => found,
             Err(WrongPair::Rejected(rejection)) => return Err(rejection),
             Err(error) => return wrong(0, &error),
@@ -380,22 +401,23 @@ impl Certificate {
     }
 
     /// [`forces`] of a certificate in equilibrium, with its proof.
-    fn forces_near<S: Enclosing>(
+    fn forces_near<S: Staged>(
         &self,
         state: &Balanced<S>,
         proof: &Proof,
         evidence: &Evidence,
-        pairs: Result<Pairs<S>, WrongPair>,
+        own: Vec<Numbers>,
     ) -> Result<Found, WrongPair> {
         let mean = Mean::new(state, proof, self.lift());
         if evidence.of.len() != self.edges.len() {
             let (what, found) = ("boundaries of edges", evidence.of.len());
             return Err(Rejection::Length { what, found, expected: self.edges.len() }.into());
         }
-        let forces = Forces::new(self, state, &evidence.of, mean);
+        let own = OnceCell::from(own);
+        let forces = Forces { own, ..Forces::new(self, state, &evidence.of, mean) };
         let cover = evidence.cover.as_ref().and_then(|w| forces.cover(w).ok());
         let found = forces.between(&evidence.liftings, cover.as_ref());
-        let pairs = forces.by_summed_pairs(pairs?, cover.as_ref())?;
+        let pairs = forces.by_pairs(&evidence.pairs, cover.as_ref())?;
         Ok((cover, found, pairs.into_iter().map(|pair| pair.between).collect()))
     }
 }
@@ -403,7 +425,7 @@ impl Certificate {
 /// w0, and what forces lie between by liftings and by dual pairs.
 type Found = (Option<Cover>, Vec<Result<[f64; 2], WrongLifting>>, Vec<[f64; 2]>);
 
-impl<'a, S: Enclosing> Forces<'a, S> {
+impl<'a, S: Staged> Forces<'a, S> {
     /// With M.
     pub fn new(
         certificate: &'a Certificate,
@@ -412,7 +434,21 @@ impl<'a, S: Enclosing> Forces<'a, S> {
         mean: Mean,
     ) -> Self {
         let loose = certificate.loose();
-        Forces { certificate, state, of, mean, loose, unbalanced: unbalanced(certificate, state) }
+        let at_points = unbalanced_at_points(certificate, state);
+        let (between, own) = (OnceCell::new(), OnceCell::new());
+        Forces { certificate, state, of, mean, loose, at_points, between, own }
+    }
+
+    /// The numbers of C eps(v) - tau on each triangle.
+    pub(crate) fn own(&self) -> &[Numbers] {
+        let (pieces, state) = (&self.certificate.pieces, self.state);
+        self.own.get_or_init(|| {
+            let of = |(t, piece): (usize, &Piece)| {
+                let (_, apart) = state.stresses(self.certificate, t);
+                numbers(piece, &state.triangles[t], &apart)
+            };
+            pieces.iter().enumerate().map(of).collect()
+        })
     }
 
     /// int f . w - a(v, w)
@@ -420,9 +456,11 @@ impl<'a, S: Enclosing> Forces<'a, S> {
         let sum = |forces: &[Vector2<S>], w: &[Vector2<S>]| {
             forces.iter().zip(w).fold(S::from(0), |sum, (f, w)| sum + f.dot(w))
         };
-        let Shape { points, bulges } = &self.unbalanced;
-        let between = bulges.iter().zip(&w.bulges).map(|(forces, w)| sum(forces, w));
-        between.fold(sum(points, &w.points), |sum, more| sum + more)
+        let at_points = sum(&self.at_points, &w.points);
+        let Some(bulges) = &w.bulges else { return at_points };
+        let (certificate, state) = (self.certificate, self.state);
+        let between = self.between.get_or_init(|| unbalanced_between(certificate, state));
+        at_points + sum(between, bulges)
     }
 
     /// The displacement of a lifting on the triangles of the certificate.
@@ -519,16 +557,24 @@ impl<'a, S: Enclosing> Forces<'a, S> {
     /// L(w) - int m : eps(w) and |w|_a of some displacements, in one pass over the triangles.
     fn values(&self, shapes: &[Shape<S>]) -> Vec<Value<S>> {
         let (certificate, state) = (self.certificate, self.state);
-        let zero = S::from(0);
-        let mut squares = vec![zero; shapes.len()];
-        for (piece, triangle) in certificate.pieces.iter().zip(&state.triangles) {
+        let mut squares = vec![Ball::from(0); shapes.len()];
+        for (piece, original) in certificate.pieces.iter().zip(&state.triangles) {
+            let triangle = Triangle { vertices: local(original.vertices) };
             let normals = [0, 1, 2].map(|i| triangle.scaled_normal(i));
-            let per_area = S::from(1) / (triangle.double_area() * S::from(24));
+            let per_area = S::Quick::from(1) / (triangle.double_area() * S::Quick::from(24));
             for (square, w) in squares.iter_mut().zip(shapes) {
-                *square += strain_energy(w, piece, &normals) * per_area;
+                let nodal = local(piece.vertices.map(|p| w.points[p]));
+                let bulges = w.bulges_of(piece).map(bulges);
+                let energy = strain_energy(piece, (&nodal, bulges), &normals) * per_area;
+                let (value, error) = S::centred_quick(energy);
+                *square += if error <= SHARP * value + TINY {
+                    Ball::around(value, error)
+                } else {
+                    Ball::point(energy_of(w, piece, original).upper())
+                };
             }
         }
-        let value = |(w, square): (&Shape<S>, S)| {
+        let value = |(w, square): (&Shape<S>, Ball)| {
             // Half of int f . w is in int tau : eps(w) / 2, as is half of the work of all tractions.
             let mut middle = self.within(w) / S::from(2);
             middle += certificate.work_of_tractions(&state.forces, w);
@@ -537,7 +583,7 @@ impl<'a, S: Enclosing> Forces<'a, S> {
                 let force = state.outward[owner.piece][owner.local];
                 middle -= w.work_of(force, edge.ends, e) / S::from(2);
             }
-            Value { middle, norm: square.split(|_| zero, |square| square).sqrt() }
+            Value { middle, norm: square.sqrt().upper() }
         };
         shapes.iter().zip(squares).map(value).collect()
     }
@@ -671,7 +717,7 @@ impl<'a, S: Enclosing> Forces<'a, S> {
     /// Encloses R(w) + int |sigma_n| omega.
     fn enclose(&self, value: Value<S>, missed: Missed, cover: Option<&Cover>) -> [f64; 2] {
         let point = Interval::point;
-        let norm = point(value.norm.upper());
+        let norm = point(value.norm);
         let force = point(cover.map_or(0.0, Cover::force));
         let away = |side: usize| {
             let covered = point(missed.covered[side]) * force;
@@ -713,12 +759,37 @@ impl<'a, S: Enclosing> Forces<'a, S> {
     }
 }
 
-/// int f . w - a(v, w) by the values of w at points and its bulges on edges: grad l_i is minus the scaled normal N_i over J = 2
-/// |T|, so of sigma = C eps(v), affine with the values s_i, l_i has the work -1/6 (s_0 + s_1 + s_2) N_i and 4 l_j l_k
-/// -1/6 ((S + s_j) N_k + (S + s_k) N_j), S being the sum; of f they have J/24 (F + f_i) and J/30 (2 F - f_i), F being the sum.
-fn unbalanced<S: Enclosing>(certificate: &Certificate, state: &Balanced<S>) -> Shape<S> {
+/// int f . w - a(v, w) by the values of w at points: grad l_i is minus the scaled normal N_i over J = 2 |T|, so of sigma = C eps(v), affine
+/// with the values s_i, l_i has the work -1/6 (s_0 + s_1 + s_2) N_i, and of f J/24 (F + f_i), F being the sum.
+fn unbalanced_at_points<S: Enclosing>(
+    certificate: &Certificate,
+    state: &Balanced<S>,
+) -> Vec<Vector2<S>> {
     let sixth = S::from(1) / S::from(6);
     let mut points = vec![Vector2::zeros(); state.points.len()];
+    for (piece, triangle) in certificate.pieces.iter().zip(&state.triangles) {
+        let sigma = state.v.stress(piece, triangle);
+        let sum = sigma.at_corner(0) + sigma.at_corner(1) + sigma.at_corner(2);
+        let body = piece.body.map(exactly::<S>);
+        let loads = body[0] + body[1] + body[2];
+        for i in 0..3 {
+            let mut force = sum.traction(triangle.scaled_normal(i)) * sixth;
+            if piece.body != [[0.0; 2]; 3] {
+                force += (loads + body[i]) * (triangle.double_area() / S::from(24));
+            }
+            points[piece.vertices[i]] += force;
+        }
+    }
+    points
+}
+
+/// The same by the bulges of w: of sigma 4 l_j l_k has the work -1/6 ((S + s_j) N_k + (S + s_k) N_j), S being the sum of the s_i, and of f
+/// J/30 (2 F - f_i).
+fn unbalanced_between<S: Enclosing>(
+    certificate: &Certificate,
+    state: &Balanced<S>,
+) -> Vec<Vector2<S>> {
+    let sixth = S::from(1) / S::from(6);
     let mut bulges = vec![Vector2::zeros(); certificate.edges.len()];
     for (piece, triangle) in certificate.pieces.iter().zip(&state.triangles) {
         let sigma = state.v.stress(piece, triangle);
@@ -727,32 +798,36 @@ fn unbalanced<S: Enclosing>(certificate: &Certificate, state: &Balanced<S>) -> S
         let sum = all[0] + all[1] + all[2];
         let body = piece.body.map(exactly::<S>);
         let loads = body[0] + body[1] + body[2];
-        let is_loaded = piece.body != [[0.0; 2]; 3];
-        let double_area = triangle.double_area();
         for i in 0..3 {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-            let mut force = sum.traction(normals[i]) * sixth;
-            if is_loaded {
-                force += (loads + body[i]) * (double_area / S::from(24));
-            }
-            points[piece.vertices[i]] += force;
             let mut force =
                 (sum + all[j]).traction(normals[k]) + (sum + all[k]).traction(normals[j]);
             force *= sixth;
-            if is_loaded {
-                force += (loads * S::from(2) - body[i]) * (double_area / S::from(30));
+            if piece.body != [[0.0; 2]; 3] {
+                force += (loads * S::from(2) - body[i]) * (triangle.double_area() / S::from(30));
             }
             bulges[piece.edges[i]] += force;
         }
     }
-    Shape { points, bulges: Some(bulges) }
+    bulges
+}
+
+/// int eps(w) : C eps(w) on a triangle.
+fn energy_of<S: Enclosing>(w: &Shape<S>, piece: &Piece, triangle: &Triangle<S>) -> S {
+    let nodal = piece.vertices.map(|p| w.points[p]);
+    let normals = [0, 1, 2].map(|i| triangle.scaled_normal(i));
+    strain_energy(piece, (&nodal, w.bulges_of(piece)), &normals)
+        / (triangle.double_area() * S::from(24))
 }
 
 /// 24 J times int eps(w) : C eps(w) on a triangle with these scaled normals, J = 2 |T|: from -J grad w at the vertices, which is the
 /// sum of w_i (x) N_i and of 4 (b_j (x) N_k + b_k (x) N_j).
-fn strain_energy<S: Enclosing>(w: &Shape<S>, piece: &Piece, normals: &[Vector2<S>; 3]) -> S {
+pub(crate) fn strain_energy<S: Enclosing>(
+    piece: &Piece,
+    ([a, b, c], bulges): (&[Vector2<S>; 3], Option<[Vector2<S>; 3]>),
+    normals: &[Vector2<S>; 3],
+) -> S {
     let squares = piece.material::<S>().squares();
-    let [a, b, c] = piece.vertices.map(|p| w.points[p]);
     // From differences, so that a translation has no gradient in any number type.
     let (b, c) = (b - a, c - a);
     let product =
@@ -760,7 +835,7 @@ fn strain_energy<S: Enclosing>(w: &Shape<S>, piece: &Piece, normals: &[Vector2<S
     let plus = |p: [S; 4], q: [S; 4]| [0, 1, 2, 3].map(|i| p[i] + q[i]);
     let square = |[xx, xy, yx, yy]: [S; 4]| squares.of_gradient(Matrix2::new(xx, xy, yx, yy));
     let base = plus(product(b, normals[1]), product(c, normals[2]));
-    let Some(bulges) = w.bulges_of(piece) else { return square(base) * S::from(12) };
+    let Some(bulges) = bulges else { return square(base) * S::from(12) };
     let four = S::from(4);
     let at = [0, 1, 2].map(|i| {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);

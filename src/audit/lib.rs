@@ -25,5 +25,7 @@ pub mod forces;
 pub mod format;
 mod on_contact;
 pub mod proof;
+mod rounded;
+pub mod stresses;
 
 pub(crate) use signorini_kernel as kernel;

@@ -30,9 +30,8 @@ use nalgebra::Vector2;
 
 use super::balanced::Balanced;
 use super::certificate::{Shape, exactly};
-use super::dual::{Pairs, WrongPair};
-use super::forces::{Evidence, Target};
-use crate::kernel::composite::{Composite, Frame};
+use super::forces::Evidence;
+use crate::kernel::composite::Composite;
 use crate::kernel::{Ball, Enclosing};
 
 /// The bound that a certificate proves.
@@ -103,7 +102,7 @@ impl Certificate {
     pub fn audit(&self, claim: &Claim) -> Result<Proof, Rejection> {
         let state = self.balanced::<Ball>(self.topology()?)?;
         self.check_balance(&state)?;
-        let (proof, pairs) = self.sum_with_pairs(&state, &claim.forces.pairs)?;
+        let (proof, own) = self.sum_for(&state, &claim.forces)?;
         if claim.shares.len() != proof.shares.len() {
             let (found, expected) = (claim.shares.len(), proof.shares.len());
             return Err(Rejection::Length { what: "claimed shares", found, expected });
@@ -118,13 +117,13 @@ impl Certificate {
         if !bound.is_at_most(claim.bound) {
             return Err(Rejection::Bound { claimed: claim.bound, found: bound });
         }
-        self.check_forces(&state, &proof, &claim.forces, pairs)?;
+        self.check_forces(&state, &proof, &claim.forces, own)?;
         Ok(proof)
     }
 
     /// The tractions balance on every triangle to the rounding of doubles.
     pub(crate) fn check_balance<S: Enclosing>(&self, state: &Balanced<S>) -> Result<(), Rejection> {
-        let size = |x: S| x.lower().abs().max(x.upper().abs());
+        let size = |x: S| x.upper().max(-x.lower());
         // The sum of the forces' sizes, and the largest component of the edge.
         let on_edge = |(edge, forces): (&Edge, &[Vector2<S>; 2])| {
             let [start, end] = edge.ends.map(|p| state.points[p]);
@@ -219,29 +218,14 @@ impl Certificate {
     /// The right side of the theorem.
     #[doc(hidden)]
     pub fn sum<S: Enclosing>(&self, state: &Balanced<S>) -> Result<Proof, Rejection> {
-        self.sum_beside(state, |_, _, _| ())
+        self.sum_beside(state, |_, _| ())
     }
 
-    /// [`Certificate::sum`], and in the same pass those of some dual pairs, or why they are none.
-    pub(crate) fn sum_with_pairs<'a, S: Enclosing>(
+    /// [`Certificate::sum`]; `also` gets each triangle with C eps(v) - tau there.
+    pub(crate) fn sum_beside<S: Enclosing>(
         &self,
         state: &Balanced<S>,
-        pairs: &'a [(Target, Certificate)],
-    ) -> Result<(Proof, Result<Pairs<'a, S>, WrongPair>), Rejection> {
-        let mut pairs = Pairs::new(self, state, pairs);
-        let proof = self.sum_beside(state, |t, frame, apart| {
-            if let Ok(pairs) = &mut pairs {
-                pairs.add(self, state, t, (frame, apart));
-            }
-        })?;
-        Ok((proof, pairs))
-    }
-
-    /// [`Certificate::sum`]; `also` gets each triangle with its frame and C eps(v) - tau there.
-    fn sum_beside<S: Enclosing>(
-        &self,
-        state: &Balanced<S>,
-        mut also: impl FnMut(usize, &Frame<S>, &Composite<S>),
+        mut also: impl FnMut(usize, &Composite<S>),
     ) -> Result<Proof, Rejection> {
         let Balanced { triangles, v, forces, .. } = state;
         let zero = S::from(0);
@@ -250,9 +234,8 @@ impl Certificate {
         for (t, piece) in self.pieces.iter().enumerate() {
             let material = piece.material();
             let double_area = triangles[t].double_area();
-            let frame = Frame::new(&triangles[t]);
-            let (sigma, distance) = state.stresses_in(&frame, self, t);
-            also(t, &frame, &distance);
+            let (sigma, distance) = state.stresses(self, t);
+            also(t, &distance);
             let share = self.share(state, t, &distance);
             shares.push(share.upper());
             square += share;

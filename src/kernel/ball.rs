@@ -85,6 +85,12 @@ impl Ball {
     }
 }
 
+/// The double in the middle of a ball, and how far its numbers may be from that.
+#[inline]
+pub fn centre_and_radius(ball: Ball) -> (f64, f64) {
+    (ball.centre, ball.radius)
+}
+
 impl From<i32> for Ball {
     #[inline]
     fn from(value: i32) -> Ball {

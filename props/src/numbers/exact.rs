@@ -11,6 +11,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive, Zero};
+use signorini::certify::stresses::Staged;
 use signorini::kernel::{Enclosing, Scalar};
 
 struct Arena {
@@ -182,6 +183,29 @@ impl Enclosing for Exact {
 
     fn lower(self) -> f64 {
         -(-self).upper()
+    }
+}
+
+/// Exact as they are, they need no quicker ones beside them.
+impl Staged for Exact {
+    type Quick = Exact;
+
+    fn quick(self) -> Exact {
+        self
+    }
+
+    fn difference(self, other: Exact) -> Exact {
+        self - other
+    }
+
+    /// The next double below, and a step of doubles.
+    fn centred(self) -> (f64, f64) {
+        let below = self.lower();
+        (below, below.next_up() - below)
+    }
+
+    fn centred_quick(quick: Exact) -> (f64, f64) {
+        quick.centred()
     }
 }
 
