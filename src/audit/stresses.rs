@@ -610,7 +610,7 @@ mod tests {
                 assert!(apart <= quick.errors[k] + balls.errors[k]);
                 wider = f64::max(wider, quick.errors[k] / balls.errors[k]);
             }
-            assert!(quick.are_sharp() && (1.0..32.0).contains(&wider), "{wider}");
+            assert!(quick.are_sharp() && (1.0..64.0).contains(&wider), "{wider}");
         }
     }
 
