@@ -20,6 +20,7 @@ use super::checks::Rejection;
 use super::dual::WrongPair;
 use super::proof::Proof;
 use super::stresses::{Numbers, SHARP, Staged, TINY, bulges, local, numbers};
+use crate::kernel::composite::Affine;
 use crate::kernel::{Ball, Enclosing, Interval, Scalar, Triangle};
 
 /// M and G, from above.
@@ -315,12 +316,41 @@ pub struct Forces<'a, S> {
     pub mean: Mean,
     /// The error of L(w) and a(v, w) for each unit of |w|_a, as data oscillate.
     pub loose: f64,
-    /// int f . w - a(v, w) for w with a component 1 at a point.
-    at_points: Vec<Vector2<S>>,
-    /// For such a bulge on an edge; empty until it is needed.
+    sums: Beside<S>,
+    /// As [`Unbalanced`], for such a bulge on an edge; empty until it is needed.
     between: OnceCell<Vec<Vector2<S>>>,
+}
+
+/// What comes by the pass over the triangles that the bound is a sum of.
+pub(crate) struct Beside<S> {
+    unbalanced: Unbalanced<S>,
     /// The numbers of C eps(v) - tau on each triangle; empty until they are needed.
     own: OnceCell<Vec<Numbers>>,
+}
+
+/// int f . w - a(v, w) for w with a component 1 at a point: grad l_i is minus the scaled normal N_i over J = 2 |T|, so of sigma = C eps(v),
+/// affine with the values s_i, l_i has the work -1/6 (s_0 + s_1 + s_2) N_i, and of f J/24 (F + f_i), F being the sum.
+struct Unbalanced<S>(Vec<Vector2<S>>);
+
+impl<S: Enclosing> Unbalanced<S> {
+    fn new(points: usize) -> Self {
+        Unbalanced(vec![Vector2::zeros(); points])
+    }
+
+    /// Adds a triangle, with C eps(v) there.
+    fn add(&mut self, piece: &Piece, triangle: &Triangle<S>, sigma: &Affine<S>) {
+        let sixth = S::from(1) / S::from(6);
+        let sum = sigma.at_corner(0) + sigma.at_corner(1) + sigma.at_corner(2);
+        let body = piece.body.map(exactly::<S>);
+        let loads = body[0] + body[1] + body[2];
+        for i in 0..3 {
+            let mut force = sum.traction(triangle.scaled_normal(i)) * sixth;
+            if piece.body != [[0.0; 2]; 3] {
+                force += (loads + body[i]) * (triangle.double_area() / S::from(24));
+            }
+            self.0[piece.vertices[i]] += force;
+        }
+    }
 }
 
 impl Certificate {
@@ -334,8 +364,8 @@ impl Certificate {
         evidence: &Evidence,
     ) -> Result<Vec<Result<[f64; 2], WrongLifting>>, WrongPair> {
         let state = self.balanced::<S>(self.topology()?)?;
-        let (proof, own) = self.sum_for(&state, evidence)?;
-        let (_, found, pairs) = self.forces_near(&state, &proof, evidence, own)?;
+        let (proof, sums) = self.sum_for(&state, evidence)?;
+        let (_, found, pairs) = self.forces_near(&state, &proof, evidence, sums)?;
         let targets = evidence.liftings.iter().map(|(target, _)| *target);
         let nearest = |(target, ends): (Target, Result<[f64; 2], WrongLifting>)| {
             ends.map(|ends| evidence.nearest(target, ends, &pairs))
@@ -343,19 +373,27 @@ impl Certificate {
         Ok(targets.zip(found).map(nearest).collect())
     }
 
-    /// [`Certificate::sum`], with what dual pairs in the evidence need of it: the numbers of C eps(v) - tau on each triangle.
+    /// [`Certificate::sum`], with what the evidence needs of it.
     pub(crate) fn sum_for<S: Staged>(
         &self,
         state: &Balanced<S>,
         evidence: &Evidence,
-    ) -> Result<(Proof, Vec<Numbers>), Rejection> {
+    ) -> Result<(Proof, Beside<S>), Rejection> {
+        let has_pairs = !evidence.pairs.is_empty();
+        let has_forces = has_pairs || evidence.cover.is_some() || !evidence.liftings.is_empty();
+        let mut unbalanced = Unbalanced::new(if has_forces { state.points.len() } else { 0 });
         let mut own = Vec::new();
-        let proof = self.sum_beside(state, |t, apart| {
-            if !evidence.pairs.is_empty() {
-                own.push(numbers(&self.pieces[t], &state.triangles[t], apart));
+        let proof = self.sum_beside(state, |t, sigma, apart| {
+            let (piece, triangle) = (&self.pieces[t], &state.triangles[t]);
+            if has_forces {
+                unbalanced.add(piece, triangle, sigma);
+            }
+            if has_pairs {
+                own.push(numbers(piece, triangle, apart));
             }
         })?;
-        Ok((proof, own))
+        let own = if has_pairs { OnceCell::from(own) } else { OnceCell::new() };
+        Ok((proof, Beside { unbalanced, own }))
     }
 
     /// Verifies that what is said of forces is what their data give.
@@ -364,13 +402,13 @@ impl Certificate {
         state: &Balanced<Ball>,
         proof: &Proof,
         evidence: &Evidence,
-        own: Vec<Numbers>,
+        sums: Beside<Ball>,
     ) -> Result<(), Rejection> {
         let Some(claimed) = &evidence.between else { return Ok(()) };
         let wrong = |force: usize, problem: &dyn Display| {
             Err(Rejection::Force { force, problem: problem.to_string() })
         };
-        let (cover, found, pairs) = match self.forces_near(state, proof, evidence, own) {
+        let (cover, found, pairs) = match self.forces_near(state, proof, evidence, sums) {
             Ok(found) => found,
             Err(WrongPair::Rejected(rejection)) => return Err(rejection),
             Err(error) => return wrong(0, &error),
@@ -406,15 +444,14 @@ impl Certificate {
         state: &Balanced<S>,
         proof: &Proof,
         evidence: &Evidence,
-        own: Vec<Numbers>,
+        sums: Beside<S>,
     ) -> Result<Found, WrongPair> {
         let mean = Mean::new(state, proof, self.lift());
         if evidence.of.len() != self.edges.len() {
             let (what, found) = ("boundaries of edges", evidence.of.len());
             return Err(Rejection::Length { what, found, expected: self.edges.len() }.into());
         }
-        let own = OnceCell::from(own);
-        let forces = Forces { own, ..Forces::new(self, state, &evidence.of, mean) };
+        let forces = Forces::with(sums, self, state, &evidence.of, mean);
         let cover = evidence.cover.as_ref().and_then(|w| forces.cover(w).ok());
         let found = forces.between(&evidence.liftings, cover.as_ref());
         let pairs = forces.by_pairs(&evidence.pairs, cover.as_ref())?;
@@ -433,16 +470,30 @@ impl<'a, S: Staged> Forces<'a, S> {
         of: &'a [Option<usize>],
         mean: Mean,
     ) -> Self {
+        let mut unbalanced = Unbalanced::new(state.points.len());
+        for (piece, triangle) in certificate.pieces.iter().zip(&state.triangles) {
+            unbalanced.add(piece, triangle, &state.v.stress(piece, triangle));
+        }
+        let sums = Beside { unbalanced, own: OnceCell::new() };
+        Forces::with(sums, certificate, state, of, mean)
+    }
+
+    /// With the sums over the triangles at hand.
+    fn with(
+        sums: Beside<S>,
+        certificate: &'a Certificate,
+        state: &'a Balanced<S>,
+        of: &'a [Option<usize>],
+        mean: Mean,
+    ) -> Self {
         let loose = certificate.loose();
-        let at_points = unbalanced_at_points(certificate, state);
-        let (between, own) = (OnceCell::new(), OnceCell::new());
-        Forces { certificate, state, of, mean, loose, at_points, between, own }
+        Forces { certificate, state, of, mean, loose, sums, between: OnceCell::new() }
     }
 
     /// The numbers of C eps(v) - tau on each triangle.
     pub(crate) fn own(&self) -> &[Numbers] {
         let (pieces, state) = (&self.certificate.pieces, self.state);
-        self.own.get_or_init(|| {
+        self.sums.own.get_or_init(|| {
             let of = |(t, piece): (usize, &Piece)| {
                 let (_, apart) = state.stresses(self.certificate, t);
                 numbers(piece, &state.triangles[t], &apart)
@@ -456,7 +507,7 @@ impl<'a, S: Staged> Forces<'a, S> {
         let sum = |forces: &[Vector2<S>], w: &[Vector2<S>]| {
             forces.iter().zip(w).fold(S::from(0), |sum, (f, w)| sum + f.dot(w))
         };
-        let at_points = sum(&self.at_points, &w.points);
+        let at_points = sum(&self.sums.unbalanced.0, &w.points);
         let Some(bulges) = &w.bulges else { return at_points };
         let (certificate, state) = (self.certificate, self.state);
         let between = self.between.get_or_init(|| unbalanced_between(certificate, state));
@@ -759,31 +810,7 @@ impl<'a, S: Staged> Forces<'a, S> {
     }
 }
 
-/// int f . w - a(v, w) by the values of w at points: grad l_i is minus the scaled normal N_i over J = 2 |T|, so of sigma = C eps(v), affine
-/// with the values s_i, l_i has the work -1/6 (s_0 + s_1 + s_2) N_i, and of f J/24 (F + f_i), F being the sum.
-fn unbalanced_at_points<S: Enclosing>(
-    certificate: &Certificate,
-    state: &Balanced<S>,
-) -> Vec<Vector2<S>> {
-    let sixth = S::from(1) / S::from(6);
-    let mut points = vec![Vector2::zeros(); state.points.len()];
-    for (piece, triangle) in certificate.pieces.iter().zip(&state.triangles) {
-        let sigma = state.v.stress(piece, triangle);
-        let sum = sigma.at_corner(0) + sigma.at_corner(1) + sigma.at_corner(2);
-        let body = piece.body.map(exactly::<S>);
-        let loads = body[0] + body[1] + body[2];
-        for i in 0..3 {
-            let mut force = sum.traction(triangle.scaled_normal(i)) * sixth;
-            if piece.body != [[0.0; 2]; 3] {
-                force += (loads + body[i]) * (triangle.double_area() / S::from(24));
-            }
-            points[piece.vertices[i]] += force;
-        }
-    }
-    points
-}
-
-/// The same by the bulges of w: of sigma 4 l_j l_k has the work -1/6 ((S + s_j) N_k + (S + s_k) N_j), S being the sum of the s_i, and of f
+/// int f . w - a(v, w) by the bulges of w: of sigma 4 l_j l_k has the work -1/6 ((S + s_j) N_k + (S + s_k) N_j), S being the sum of the s_i, and of f
 /// J/30 (2 F - f_i).
 fn unbalanced_between<S: Enclosing>(
     certificate: &Certificate,

@@ -12,6 +12,7 @@
 //! | `balance`, `balanced` | tractions in exact equilibrium |
 //! | [`proof`] | the bound |
 //! | [`forces`], [`dual`] | forces of the true solution between two numbers; to second order |
+//! | [`stresses`], `rounded` | their stresses in doubles; a double with the size of the terms that it was computed from |
 #![cfg(not(kani))]
 
 mod balance;

@@ -29,9 +29,9 @@ pub use super::checks::Rejection;
 use nalgebra::Vector2;
 
 use super::balanced::Balanced;
-use super::certificate::{Shape, exactly};
+use super::certificate::{Shape, exactly, place};
 use super::forces::Evidence;
-use crate::kernel::composite::Composite;
+use crate::kernel::composite::{Affine, Composite};
 use crate::kernel::{Ball, Enclosing};
 
 /// The bound that a certificate proves.
@@ -102,7 +102,7 @@ impl Certificate {
     pub fn audit(&self, claim: &Claim) -> Result<Proof, Rejection> {
         let state = self.balanced::<Ball>(self.topology()?)?;
         self.check_balance(&state)?;
-        let (proof, own) = self.sum_for(&state, &claim.forces)?;
+        let (proof, sums) = self.sum_for(&state, &claim.forces)?;
         if claim.shares.len() != proof.shares.len() {
             let (found, expected) = (claim.shares.len(), proof.shares.len());
             return Err(Rejection::Length { what: "claimed shares", found, expected });
@@ -117,7 +117,7 @@ impl Certificate {
         if !bound.is_at_most(claim.bound) {
             return Err(Rejection::Bound { claimed: claim.bound, found: bound });
         }
-        self.check_forces(&state, &proof, &claim.forces, own)?;
+        self.check_forces(&state, &proof, &claim.forces, sums)?;
         Ok(proof)
     }
 
@@ -126,19 +126,19 @@ impl Certificate {
         let size = |x: S| x.upper().max(-x.lower());
         // The sum of the forces' sizes, and the largest component of the edge.
         let on_edge = |(edge, forces): (&Edge, &[Vector2<S>; 2])| {
-            let [start, end] = edge.ends.map(|p| state.points[p]);
-            let [x, y] = (end - start).into();
+            let [start, end] = edge.ends.map(|p| place(self, p));
             let forces: f64 = forces.iter().flatten().copied().map(size).sum();
-            (forces, size(x).max(size(y)))
+            (forces, (end - start).amax())
         };
         let edges: Vec<(f64, f64)> = self.edges.iter().zip(&state.forces).map(on_edge).collect();
         for (t, piece) in self.pieces.iter().enumerate() {
             let of_edges = piece.edges.map(|e| edges[e]);
             let forces: f64 = of_edges.iter().map(|(forces, _)| forces).sum();
             let reach = of_edges.iter().map(|&(_, reach)| reach).fold(0.0, f64::max);
-            let area = size(state.triangles[t].double_area());
             let body: f64 = piece.body.iter().flatten().map(|f| f.abs()).sum();
-            let allowed = IMBALANCE * (forces + area * body);
+            let loads =
+                if body == 0.0 { 0.0 } else { body * size(state.triangles[t].double_area()) };
+            let allowed = IMBALANCE * (forces + loads);
             let [x, y, moment] = &state.resultants[t];
             // Places of cuts are not doubles: what their balls leave open may be balance.
             let near = |x: &S, most: f64| x.lower() <= most && x.upper() >= -most;
@@ -218,14 +218,14 @@ impl Certificate {
     /// The right side of the theorem.
     #[doc(hidden)]
     pub fn sum<S: Enclosing>(&self, state: &Balanced<S>) -> Result<Proof, Rejection> {
-        self.sum_beside(state, |_, _| ())
+        self.sum_beside(state, |_, _, _| ())
     }
 
-    /// [`Certificate::sum`]; `also` gets each triangle with C eps(v) - tau there.
+    /// [`Certificate::sum`]; `also` gets each triangle with C eps(v) and C eps(v) - tau there.
     pub(crate) fn sum_beside<S: Enclosing>(
         &self,
         state: &Balanced<S>,
-        mut also: impl FnMut(usize, &Composite<S>),
+        mut also: impl FnMut(usize, &Affine<S>, &Composite<S>),
     ) -> Result<Proof, Rejection> {
         let Balanced { triangles, v, forces, .. } = state;
         let zero = S::from(0);
@@ -235,7 +235,7 @@ impl Certificate {
             let material = piece.material();
             let double_area = triangles[t].double_area();
             let (sigma, distance) = state.stresses(self, t);
-            also(t, &distance);
+            also(t, &sigma, &distance);
             let share = self.share(state, t, &distance);
             shares.push(share.upper());
             square += share;

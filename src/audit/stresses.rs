@@ -148,7 +148,7 @@ impl Sum {
     fn add_multiple(&mut self, factor: f64, other: Sum) {
         let product = factor * other.value;
         self.add(product);
-        self.add_rest(factor.mul_add(other.value, -product));
+        self.add_rest(off_product(factor, other.value, product));
         self.rest += factor * other.rest;
         self.size += factor.abs() * other.size;
     }
@@ -158,6 +158,18 @@ impl Sum {
         let error = 100.0 * f64::EPSILON * self.size + f64::MIN_POSITIVE;
         Ball::point(self.value) + Ball::around(self.rest, error)
     }
+}
+
+/// x y less the rounded product, by Dekker's transformation: each factor is cut into two doubles of 26 bits, whose products are exact.
+#[inline]
+fn off_product(x: f64, y: f64, product: f64) -> f64 {
+    let cut = |x: f64| {
+        let much = 134_217_729.0 * x;
+        let high = much - (much - x);
+        (high, x - high)
+    };
+    let ((a, b), (c, d)) = (cut(x), cut(y));
+    ((a * c - product) + a * d + b * c) + b * d
 }
 
 /// Roundings that stand for the radius of a force, which formulas are linear in: what the radius adds to the error is counted [`MOST`]
@@ -245,16 +257,6 @@ impl<N: Enclosing> Law<N> {
         }
         all
     }
-}
-
-/// The roots of a [`Law`], by the quicker numbers or, where these know nothing, by the others.
-fn roots<S: Staged>(piece: &Piece, triangle: &Triangle<S>) -> [(f64, f64); 3] {
-    let local = Triangle::<S::Quick> { vertices: local(triangle.vertices) };
-    let quick = Law::new(&piece.material(), local.double_area(), S::centred_quick).roots;
-    if quick.iter().all(|(root, error)| *error <= SHARP * root) {
-        return quick;
-    }
-    Law::new(&piece.material(), triangle.double_area(), S::centred).roots
 }
 
 /// A triangle with what does not depend on displacements and loads.
@@ -405,9 +407,21 @@ pub(crate) fn numbers<S: Staged>(
     triangle: &Triangle<S>,
     tau: &Composite<S>,
 ) -> Numbers {
-    let squares = piece.material::<S>().squares();
-    let roots = roots(piece, triangle);
-    Numbers::new(&Law { squares, roots }.of_stress(tau), &roots, S::centred)
+    let quick = |s: Stress<S>| Stress::new(s.components().map(S::quick));
+    let [[a, b], [c, d], [e, f]] = tau.corners;
+    let near = Composite {
+        corners: [[quick(a), quick(b)], [quick(c), quick(d)], [quick(e), quick(f)]],
+        centre: quick(tau.centre),
+        bulges: tau.bulges.map(|all| all.map(|part| part.map(quick))),
+    };
+    let local = Triangle::<S::Quick> { vertices: local(triangle.vertices) };
+    let law = Law::new(&piece.material(), local.double_area(), S::centred_quick);
+    let numbers = Numbers::new(&law.of_stress(&near), &law.roots, S::centred_quick);
+    if numbers.are_sharp() {
+        return numbers;
+    }
+    let law = Law::new(&piece.material(), triangle.double_area(), S::centred);
+    Numbers::new(&law.of_stress(tau), &law.roots, S::centred)
 }
 
 /// A triangle in the quicker numbers and, where it is asked for, in the others.
