@@ -17,8 +17,8 @@
 //! ```
 //!
 //! are A + B, A B, A r / |b| and A / sqrt(a), and each result is rounded once more: by u |m| at most, and by eta/2 for a product or
-//! a quotient, where e_(k+1) >= e_k + 2 u (1 + e_k). Half of these 2 u pays for the rounding of the double, half for those of the size,
-//! which loses a factor 1 - u by a sum, (1 - u)^2 by a product; 2^-1022 is added to the latter, of which e_1 is 2 eta. The size of a
+//! a quotient. The size of a sum loses a factor 1 - u, that of a product (1 - u)^2: (e_k + u) / (1 - u)^2 <= e_k + 2 u (1 + e_k) = e_(k+1).
+//! To the size of a product 2^-1022 is added, of which e_1 is 2 eta. The size of a
 //! quotient and of a root has the factor 1 + 2^-20 more, which covers its roundings and, as long as r <= 2^22 and k, l <= [`MOST`], 1 / (1 -
 //! e_l r); beyond, its size is infinite. The size of a sum or product of doubles is rounded to no less than the double: |a| <= A.
 //!
@@ -84,8 +84,8 @@ impl Rounded {
     /// An upper bound of its error, after so many roundings.
     #[inline]
     pub(crate) fn error(self, roundings: u32) -> f64 {
-        // A product is rounded to nearest: from below by less than what `relative` has to spare.
-        relative(roundings) * self.size
+        // Rounded down by less than what `relative` has to spare, but where it underflows.
+        relative(roundings) * self.size + f64::MIN_POSITIVE
     }
 
     /// All that it stands for, after so many roundings.

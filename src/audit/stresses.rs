@@ -313,8 +313,8 @@ const FACTORS: [f64; 7] = [2.0 * std::f64::consts::SQRT_2, SQRT_3, SQRT_3, SQRT_
 const GROWTH: f64 = 1.0 + 16.0 * f64::EPSILON;
 
 impl Numbers {
-    /// Those of [`Law::of_stress`] times the roots of what their squares are to be multiplied with: the error of a product of x (1 + d) and
-    /// r (1 + e) is that of both and of its rounding.
+    /// Those of [`Law::of_stress`], x to e, times the roots of what their squares are to be multiplied with, r to d: x r to e (r + d) + |x| d
+    /// and its rounding, where d is that of the root and two roundings, of its factor and by it. What underflows is in [`TINY`].
     #[inline]
     fn new<N: Copy>(
         all: &[N; COUNT],
@@ -358,7 +358,7 @@ fn dot(a: &[f64; COUNT], b: &[f64; COUNT]) -> f64 {
 /// 24 u, and more.
 const OF_DOT: f64 = 16.0 * f64::EPSILON;
 
-/// In a sum of squares no more than this underflows; in one of products no more than `OF_DOT` times this, so that what the lengths have
+/// In the squares of numbers, of their errors and in the sums of these no more than this underflows; in one of products no more than `OF_DOT` times this, so that what the lengths have
 /// more by it covers both.
 pub(crate) const TINY: f64 = 1e-300;
 
