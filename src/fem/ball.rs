@@ -156,15 +156,6 @@ impl From<DoubleDouble> for Factor {
     }
 }
 
-impl Neg for Factor {
-    type Output = Self;
-
-    #[inline]
-    fn neg(self) -> Self {
-        Factor { head: -self.head, tail: -self.tail, halves: self.halves.map(|half| -half) }
-    }
-}
-
 impl Factor {
     /// The product of the heads, and what rounding and the tails add to it.
     #[inline]
@@ -176,21 +167,10 @@ impl Factor {
     }
 }
 
-/// A sum of products, rounding included.
-pub trait Sum {
-    /// The type of the factors of its products.
-    type Factor: Copy + From<DoubleDouble> + Neg<Output = Self::Factor>;
-
-    /// Adds a b + c d.
-    fn add_products(&mut self, products: [(Self::Factor, Self::Factor); 2]);
-}
-
-/// Quicker than the operators, which find the halves of each factor anew.
-impl Sum for Ball {
-    type Factor = Factor;
-
+impl Ball {
+    /// Adds a b + c d. Quicker than the operators, which find the halves of each factor anew.
     #[inline]
-    fn add_products(&mut self, [(a, b), (c, d)]: [(Factor, Factor); 2]) {
+    pub fn add_products(&mut self, [(a, b), (c, d)]: [(Factor, Factor); 2]) {
         let [[p, p_tail], [q, q_tail]] = [a.times(b), c.times(d)];
         let products = DoubleDouble::sum(p, q);
         let tail = (p_tail + q_tail) + products.tail();
@@ -199,22 +179,6 @@ impl Sum for Ball {
         let size = 2.0 * (PRODUCT * (p.abs() + q.abs()) + TINY);
         let radius = up(self.radius + (SUM * self.head.abs() + size));
         *self = Ball { head: sum.head(), tail: sum.tail(), radius };
-    }
-}
-
-impl Sum for crate::kernel::Ball {
-    type Factor = crate::kernel::Ball;
-
-    #[inline]
-    fn add_products(&mut self, [(a, b), (c, d)]: [(Self::Factor, Self::Factor); 2]) {
-        *self += a * b + c * d;
-    }
-}
-
-impl From<DoubleDouble> for crate::kernel::Ball {
-    #[inline]
-    fn from(a: DoubleDouble) -> Self {
-        crate::kernel::Ball::around(a.head(), a.tail().abs())
     }
 }
 
@@ -355,9 +319,9 @@ mod tests {
         let exact = parts.map(|x| DoubleDouble::sum(x, x * 1e-17 / 3.0));
         let [a, b, c, d] = exact.map(Factor::from);
         let mut sum = third();
-        sum.add_products([(a, b), (-c, d)]);
+        sum.add_products([(a, b), (c, d)]);
         let [a, b, c, d] = exact.map(Ball::from);
-        let off = sum - (third() + a * b - c * d);
+        let off = sum - (third() + a * b + c * d);
         assert!(off.lower() <= 0.0 && off.upper() >= 0.0 && off.magnitude() < 1e-29, "{off:?}");
         assert!(off.centre().head() != 0.0, "control: the centres alone differ, {off:?}");
     }

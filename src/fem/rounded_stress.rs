@@ -3,64 +3,94 @@
 
 use nalgebra::{Vector2, Vector3};
 
-use super::ball::{Ball, Sum};
+use super::ball::{Ball, Factor};
 use super::discretization::Discretization;
 use super::double_double::DoubleDouble;
 use super::element::with_element;
-use super::material::{largest_entry, least_eigenvalue};
+use super::material::{Materials, largest_entry, least_eigenvalue};
 use crate::kernel::element::displacement_gradient;
 use crate::kernel::{Element, Material, Stress, Triangle};
 
 /// Adds int s:eps(v) for every basis function v, where s is the stress of `u` that doubles give. Returns a b with
 /// |int (s - sigma(u)):eps(v)| <= b |v|_a for all v: docs/theory.md, 7.5. Infinite or NaN where there is none.
-pub fn add_forces<S: Sum>(d: &Discretization, u: &[[Ball; 2]], forces: &mut [[S; 2]]) -> f64 {
-    add_forces_beside(d, (u, None), forces)[0]
+pub fn add_forces(d: &Discretization, u: &[[Ball; 2]], forces: &mut [[Ball; 2]]) -> f64 {
+    each_force(d, u, |node, stress, normal| {
+        let [xx, yy, xy] = stress.map(|s| Factor::from(DoubleDouble::from(s)));
+        let [x, y] = normal.map(Factor::from);
+        let [along_x, along_y] = &mut forces[node];
+        along_x.add_products([(xx, x), (xy, y)]);
+        along_y.add_products([(xy, x), (yy, y)]);
+    })
 }
 
-/// The same, and |v|_a at most for another field, to a hundredth: each triangle is looked at once.
-pub fn add_forces_with_norm<S: Sum>(
-    d: &Discretization,
-    (u, v): (&[[Ball; 2]], &[[Ball; 2]]),
-    forces: &mut [[S; 2]],
-) -> [f64; 2] {
-    add_forces_beside(d, (u, Some(v)), forces)
+/// [`add_forces`] with sums in doubles, their rounding in the radii: for displacements that are next to nothing.
+pub fn add_small_forces(d: &Discretization, u: &[[Ball; 2]], forces: &mut [[Ball; 2]]) -> f64 {
+    let mut sums = vec![[Sum::default(); 2]; forces.len()];
+    let bound = each_force(d, u, |node, [xx, yy, xy], normal| {
+        let [x, y] = normal.map(DoubleDouble::head);
+        sums[node][0].add([xx * x, xy * y]);
+        sums[node][1].add([xy * x, yy * y]);
+    });
+    for (force, sum) in forces.iter_mut().zip(&sums) {
+        *force = [0, 1].map(|c| force[c] + sum[c].enclosed());
+    }
+    bound
 }
 
-fn add_forces_beside<S: Sum>(
-    d: &Discretization,
-    fields: (&[[Ball; 2]], Option<&[[Ball; 2]]>),
-    forces: &mut [[S; 2]],
-) -> [f64; 2] {
-    with_element!(d.space.degree(), add_forces_of::<S>(d, fields, forces))
+/// A sum of products of doubles, and what it is off by at most in units of roundoff.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sum {
+    value: f64,
+    error: f64,
 }
 
-fn add_forces_of<E, const N: usize, const M: usize, S>(
+impl Sum {
+    /// Adds two products, of which one factor was rounded. Each is off by two units of itself, their sum by one of its own.
+    #[inline]
+    fn add(&mut self, products: [f64; 2]) {
+        self.value += products[0] + products[1];
+        self.error += self.value.abs() + 3.0 * (products[0].abs() + products[1].abs());
+    }
+
+    fn enclosed(self) -> Ball {
+        let off = if self.error == 0.0 { 0.0 } else { UNIT * self.error + f64::MIN_POSITIVE };
+        Ball::from(self.value).widened(SAFETY * off)
+    }
+}
+
+/// Half of the distance from 1 to the next double.
+const UNIT: f64 = f64::EPSILON / 2.0;
+
+/// Calls `add` with the parts of the forces of the stress s that doubles give for `u`: a node, the components xx, yy, xy of a
+/// combination of the stresses on a triangle, exactly, and half of a normal of it, on which they act. Returns the bound of
+/// [`add_forces`].
+fn each_force(
     d: &Discretization,
-    (u, v): (&[[Ball; 2]], Option<&[[Ball; 2]]>),
-    forces: &mut [[S; 2]],
-) -> [f64; 2]
-where
-    E: Element<N, M>,
-    S: Sum,
-{
+    u: &[[Ball; 2]],
+    add: impl FnMut(usize, [f64; 3], [DoubleDouble; 2]),
+) -> f64 {
+    with_element!(d.space.degree(), each_force_of(d, u, add))
+}
+
+fn each_force_of<E: Element<N, M>, const N: usize, const M: usize>(
+    d: &Discretization,
+    u: &[[Ball; 2]],
+    mut add: impl FnMut(usize, [f64; 3], [DoubleDouble; 2]),
+) -> f64 {
     let mut points = Vec::new();
     E::at_stiffness_points(|l: [f64; 3], weight: f64| points.push((l, weight)));
     let terms = Term::all::<E, M>(&points);
+    let moduli = Moduli::of_each(&d.problem.material);
     let mut stresses = [[0.0; 3]; N];
     let mut square = 0.0;
-    let mut norm = Norm::default();
     for (t, (triangle, nodes)) in d.space.triangles::<N>().enumerate() {
-        let material = d.problem.material.of(t);
-        let gradients = Gradients::new(&triangle);
-        if let Some(v) = v.filter(|v| !moves_as_a_whole(nodes, v)) {
-            let rounded = RoundedStrain::new::<E, M>(gradients, nodes.map(|node| v[node]));
-            norm.add::<E, N, M>(&rounded, material);
-        }
         if moves_as_a_whole(nodes, u) {
             continue;
         }
-        let rounded = RoundedStrain::new::<E, M>(gradients, nodes.map(|node| u[node]));
-        square += rounded.stress_error_squared(material);
+        let material = d.problem.material.of(t);
+        let nodal = nodes.map(|node| u[node]);
+        let rounded = RoundedStrain::new::<E, M>(Gradients::new(&triangle), nodal);
+        square += rounded.stress_error_squared(&moduli[d.problem.material.place_of(t)]);
         for (&(l, weight), at) in points.iter().zip(&mut stresses) {
             *at = rounded.stress::<E, M>(material, l).components().map(|s| weight * s);
         }
@@ -69,9 +99,8 @@ where
         }
         // The area times the gradient of a barycentric coordinate is half a normal.
         let normals = [0, 1, 2].map(|i| {
-            let [from, to] = [1, 2].map(|k| triangle.vertices[(i + k) % 3]);
-            let half = |c: usize| S::Factor::from(DoubleDouble::sum(0.5 * to[c], -0.5 * from[c]));
-            [-half(1), half(0)]
+            let [from, to] = [1, 2].map(|k| triangle.vertices[(i + k) % 3] * 0.5);
+            [DoubleDouble::sum(from[1], -to[1]), DoubleDouble::sum(to[0], -from[0])]
         });
         for Term { node, side, coefficients } in &terms {
             let mut sum = [0.0; 3];
@@ -80,14 +109,10 @@ where
                     *sum += coefficient * s;
                 }
             }
-            let [xx, yy, xy] = sum.map(|s| S::Factor::from(DoubleDouble::from(s)));
-            let [x, y] = normals[*side];
-            let [along_x, along_y] = &mut forces[nodes[*node]];
-            along_x.add_products([(xx, x), (xy, y)]);
-            along_y.add_products([(xy, x), (yy, y)]);
+            add(nodes[*node], sum, normals[*side]);
         }
     }
-    [SAFETY * square.sqrt(), norm.at_most()]
+    SAFETY * square.sqrt()
 }
 
 /// The part of the force at a node of a triangle that has the direction of one of its sides: the stresses at the points of the
@@ -127,7 +152,8 @@ fn make_sums_exact<const N: usize>(numbers: &mut [[f64; 3]; N]) {
     numbers.iter_mut().flatten().for_each(|s| *s = (*s + shift) - shift);
 }
 
-/// |v|_a at most, to a hundredth: the norm of the stress in doubles, and what that is off by.
+/// |v|_a at most, from the magnitudes of the nodal values: sigma:eps is at most |sigma| |eps|. For fields that are next to nothing, or
+/// vanish but near a boundary.
 pub fn energy_norm_at_most(d: &Discretization, v: &[[Ball; 2]]) -> f64 {
     with_element!(d.space.degree(), energy_norm_of(d, v))
 }
@@ -136,44 +162,19 @@ fn energy_norm_of<E: Element<N, M>, const N: usize, const M: usize>(
     d: &Discretization,
     v: &[[Ball; 2]],
 ) -> f64 {
-    let mut norm = Norm::default();
+    let moduli = Moduli::of_each(&d.problem.material);
+    let mut square = 0.0;
     for (t, (triangle, nodes)) in d.space.triangles::<N>().enumerate() {
-        if !moves_as_a_whole(nodes, v) {
-            let nodal = nodes.map(|node| v[node]);
-            let rounded = RoundedStrain::new::<E, M>(Gradients::new(&triangle), nodal);
-            norm.add::<E, N, M>(&rounded, d.problem.material.of(t));
+        let size: f64 = nodes.iter().flat_map(|&node| v[node]).map(Ball::magnitude).sum();
+        if size != 0.0 {
+            let gradients = Gradients::new(&triangle);
+            let strain = E::DEGREE as f64 * gradients.slope * size;
+            let most = moduli[d.problem.material.place_of(t)].most;
+            square += most * strain * strain * gradients.area + f64::MIN_POSITIVE;
+            square += if gradients.skew.is_finite() { 0.0 } else { f64::INFINITY };
         }
     }
-    norm.at_most()
-}
-
-/// The squares of the energy norm of a stress in doubles, and of what it is off by.
-#[derive(Default)]
-struct Norm {
-    squares: f64,
-    errors: f64,
-}
-
-impl Norm {
-    fn add<E: Element<N, M>, const N: usize, const M: usize>(
-        &mut self,
-        rounded: &RoundedStrain<N>,
-        material: &Material<f64>,
-    ) {
-        self.errors += rounded.stress_error_squared(material);
-        let law = material.squares();
-        let area = rounded.gradients.area;
-        let roots = law.pivots().map(|modulus| (area / (4.0 * modulus)).sqrt());
-        E::at_stiffness_points(|l, weight| {
-            let [deviator, shear, sphere] = law.parts(rounded.stress::<E, M>(material, l));
-            let parts = [roots[0] * sphere, roots[1] * deviator, roots[2] * shear];
-            self.squares += weight * parts.map(|s| s * s).iter().sum::<f64>() + f64::MIN_POSITIVE;
-        });
-    }
-
-    fn at_most(&self) -> f64 {
-        SAFETY * (self.squares.sqrt() + self.errors.sqrt())
-    }
+    SAFETY * square.sqrt()
 }
 
 /// Returns whether all nodes have the same value, and that is known.
@@ -188,6 +189,29 @@ const SAFETY: f64 = 1.01;
 
 /// A triangle is too flat for doubles where the products that its area is the difference of are larger beside it.
 const FLAT: f64 = (1_u64 << 40) as f64;
+
+/// Bounds of the law of a material.
+struct Moduli {
+    /// |A m|_F is at most this times the sum of the magnitudes of the entries of m.
+    most: f64,
+    /// A - this is elliptic.
+    least: f64,
+}
+
+impl Moduli {
+    fn of_each(materials: &Materials) -> Vec<Self> {
+        materials.distinct().iter().map(Moduli::new).collect()
+    }
+
+    fn new(material: &Material<f64>) -> Self {
+        let most = if material.is_isotropic() {
+            2.0 * (material.lambda().abs() + material.mu())
+        } else {
+            4.0 * largest_entry(material)
+        };
+        Moduli { most, least: least_eigenvalue(material) }
+    }
+}
 
 /// The gradients of the barycentric coordinates of a triangle, in doubles.
 #[derive(Clone, Copy)]
@@ -249,17 +273,11 @@ impl<const N: usize> RoundedStrain<N> {
     }
 
     /// An upper bound of the square of the stress error in the norm dual to |v|_a on the triangle: |sigma:eps| is at most
-    /// |sigma| |eps|, and the least eigenvalue of C times |eps|^2 at most sigma(v):eps(v). An entry of sigma is at most the largest
-    /// of C times the sum of |grad v|'s, and the rounding of its three products no more than that of the strain.
-    fn stress_error_squared(&self, material: &Material<f64>) -> f64 {
-        let most = if material.is_isotropic() {
-            2.0 * (material.lambda().abs() + material.mu())
-        } else {
-            4.0 * largest_entry(material)
-        };
-        let off = most * self.error + f64::MIN_POSITIVE;
-        let norm = off * (self.gradients.area / least_eigenvalue(material)).sqrt();
-        norm * norm + f64::MIN_POSITIVE
+    /// |sigma| |eps|, and the least eigenvalue of A times |eps|^2 at most sigma(v):eps(v). The rounding of the three products of an entry of
+    /// sigma is no more than that of the strain.
+    fn stress_error_squared(&self, moduli: &Moduli) -> f64 {
+        let off = moduli.most * self.error + f64::MIN_POSITIVE;
+        off * off * (self.gradients.area / moduli.least) + f64::MIN_POSITIVE
     }
 
     /// The stress at the point with the barycentric coordinates `l`.

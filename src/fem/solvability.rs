@@ -53,6 +53,8 @@ pub struct Slides {
     motions: Vec<(FreeMotion, Vec<f64>)>,
     /// Where edges that do not press stop them.
     bounds: Vec<(Vec<f64>, f64)>,
+    /// The contact edges that do, in their order.
+    stopping: Vec<usize>,
     /// For each contact edge whether it presses in no solution; empty if all may.
     pub idle: Vec<bool>,
 }
@@ -211,6 +213,7 @@ impl Slides {
             motions: motions.into_iter().zip(along).collect(),
             basis,
             bounds: Vec::new(),
+            stopping: Vec::new(),
             idle: Vec::new(),
         }
     }
@@ -234,8 +237,9 @@ impl Slides {
         let slides = Slides::new(free_where(d, &parts, &pressing), &parts, &d.space);
         let (at, basis) = (slides.at(u), &slides.basis);
         let rounding = SLIDES.max(d.rounding_of_directions());
-        let mut bounds = Vec::new();
-        for (((edge, p), pressing), idle) in d.contact.iter().zip(&p).zip(pressing).zip(idle) {
+        let (mut bounds, mut stopping) = (Vec::new(), Vec::new());
+        let edges = d.contact.iter().zip(&p).zip(pressing).zip(idle);
+        for (e, (((edge, p), pressing), idle)) in edges.enumerate() {
             let nodes = d.space.edge_nodes(edge.edge);
             let lengths = basis.iter().flat_map(|b| nodes.iter().map(|&node| b[node]));
             let none = rounding * lengths.fold(0.0, |m: f64, [x, y]| m.max(x.hypot(y)));
@@ -254,10 +258,12 @@ impl Slides {
                 if !pressing && norm(&row) > none {
                     let bound = if open { -coefficient } else { 0.0 } + dot(&row, &at);
                     bounds.push((row, bound));
+                    stopping.push(e);
                 }
             }
         }
-        Some(Slides { bounds, idle: idle.clone(), ..slides })
+        stopping.dedup();
+        Some(Slides { bounds, stopping, idle: idle.clone(), ..slides })
     }
 
     /// The number of motions.
@@ -265,9 +271,9 @@ impl Slides {
         self.basis.len()
     }
 
-    /// Returns whether an obstacle that the body does not touch ends one of the motions.
-    pub fn are_bounded(&self) -> bool {
-        !self.bounds.is_empty()
+    /// The contact edges that do not press and stop one of the motions somewhere.
+    pub fn stopping_edges(&self) -> &[usize] {
+        &self.stopping
     }
 
     /// The motion that leads from u to the solution of least norm, as weights of the basis.

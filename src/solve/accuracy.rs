@@ -11,7 +11,7 @@ use std::sync::Arc;
 use super::body::block;
 use super::enclosure::{Certificate, Unproved, Verifier};
 use super::factor::Factor;
-use super::intervals::Stresses;
+use super::intervals::Arithmetic;
 use super::iterate::{Evaluation, Iterate, NOISE};
 use super::newton::Until;
 use super::system::System;
@@ -130,9 +130,11 @@ impl Outcome {
     }
 }
 
-/// A correction this small, relative, leaves nothing to correct; where the proved radius is larger, or the imbalance of the forces
-/// on the body, in parts of them, better arithmetic is tried.
+/// A correction this small, relative, leaves nothing to correct; likewise an imbalance of the forces on the body, in parts of them.
 const SMALL: f64 = 1e-10;
+
+/// Where the imbalance of the forces, rounding included, is larger in parts of them, better arithmetic is tried.
+const BALANCED: f64 = 1e-9;
 
 /// A correction ends where the residual is this share of the tolerance.
 const GOOD_ENOUGH: f64 = 1e-2;
@@ -253,23 +255,33 @@ impl<'a, 'd, 'p> Refinement<'a, 'd, 'p> {
         Ok(())
     }
 
-    /// Encloses the exact solution, and returns whether better arithmetic would tell no more.
+    /// Encloses the exact solution, in balls where doubles prove too little, and returns whether a better iterate would tell no
+    /// more.
     fn verify(&mut self, verifier: &mut Verifier) -> bool {
         let (u, near) = (self.iterate.rounded(), self.iterate.as_double_doubles());
-        self.enclosure = verifier.enclose(&u, Some(near), Stresses::InDoubles);
-        let is_near = match &self.enclosure {
-            Ok(e) => e.is_within(self.settings.proof.min(SMALL)),
-            Err(why) => !why.may_be_rounding(),
-        };
-        is_near && verifier.unbalanced() <= SMALL * self.residual.forces
+        self.enclosure = Err(Unproved::NotReached);
+        for arithmetic in [Arithmetic::Doubles, Arithmetic::Balls] {
+            let found = verifier.enclose(&u, Some(near), arithmetic);
+            let is_near = match &found {
+                Ok(e) => e.is_within(self.settings.proof),
+                Err(why) => !why.may_be_rounding(),
+            };
+            if found.is_ok() || self.enclosure.is_err() {
+                self.enclosure = found;
+            }
+            if is_near && verifier.unbalanced() <= BALANCED * self.residual.forces {
+                return true;
+            }
+        }
+        false
     }
 
-    fn outcome(self, verifier: &mut Verifier, factorizations: usize) -> Outcome {
-        let Refinement { system, settings, iterate, mut enclosure, .. } = self;
-        let u = iterate.rounded();
-        if !enclosure.as_ref().is_ok_and(|e| e.is_within(settings.proof)) {
-            enclosure = verifier.prove(&u, Some(iterate.as_double_doubles()), settings.proof);
+    fn outcome(mut self, verifier: &mut Verifier, factorizations: usize) -> Outcome {
+        if self.enclosure == Err(Unproved::NotReached) {
+            self.verify(verifier);
         }
+        let Refinement { system, iterate, enclosure, .. } = self;
+        let u = iterate.rounded();
         let size = system.size(self.at.energy.sqrt(), &u);
         let rounding = system.energy_of_unrelated(&iterate.remainder()).sqrt();
         let rounding = if rounding > 0.0 { rounding / size } else { 0.0 };

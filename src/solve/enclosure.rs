@@ -7,9 +7,11 @@
 //! doubles, taken for the real numbers that they are. Lengths, normals, areas, stresses and integrals are the exact ones.
 //!
 //! 1. kappa < 1, rounded up: (8) has exactly one solution, and A(v, v) >= (1 - kappa) a(v, v).
-//! 2. The residual r of (8) at u~ in [balls](crate::fem::ball), and any z that nearly solves A z = r, as the factor at hand
-//!    gives it: |r|_A* <= (z.A z)^{1/2} + |r - A z|_A*, where the last residual is again one in balls, and is turned into a
-//!    dual norm by [Korn's inequality](crate::fem::korn) at each node, crudely.
+//! 2. The residual r of (8) at u~, and any z that nearly solves A z = r, as the factor at hand gives it:
+//!    |r|_A* <= (z.A z)^{1/2} + |r - A z|_A*, where the last residual is turned into a dual norm by
+//!    [Korn's inequality](crate::fem::korn) at each node, crudely. Both residuals are evaluated in
+//!    [doubles](crate::fem::rounded_stress) with a bound of their rounding, and where that proves too little in
+//!    [balls](crate::fem::ball).
 //! 3. (C2): with rho = |r|_A*, |u~ - u^h|_a <= rho (1 - kappa)^{-1/2}, |gamma^{1/2}(lambda~ - lambda^h)| <= rho / 2.
 
 use std::borrow::Cow;
@@ -22,17 +24,15 @@ use thiserror::Error;
 use super::assembled::factor_with;
 use super::balls::{field, free, kappa, length, lines, root};
 use super::factor::{Factor, Indefinite};
-use super::intervals::{Evaluation, Intervals, Stresses};
+use super::intervals::{Arithmetic, Evaluation, Intervals};
 use super::pressed::{self, Pressed, SHARES};
 use super::report::Stopwatch;
 use super::system::System;
 use crate::fem::ball::{Ball, up};
 use crate::fem::double_double::DoubleDouble;
 use crate::fem::korn::Korn;
-use crate::fem::rounded_stress;
 use crate::fem::solvability::Slides;
 use crate::fem::{ContactFace, Discretization};
-use crate::kernel;
 
 /// Where u^h is, and what is known of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -108,7 +108,7 @@ pub fn enclose(
     near: Option<&[[DoubleDouble; 2]]>,
     of_a: Option<Arc<Factor>>,
 ) -> Result<Enclosure, Unproved> {
-    Verifier::new(system, of_a).enclose(u, near, Stresses::InBalls)
+    Verifier::new(system, of_a).enclose(u, near, Arithmetic::Balls)
 }
 
 /// Encloses the solution of (8) around one displacement after the other: what does not depend on them is done once.
@@ -117,6 +117,8 @@ pub struct Verifier<'s, 'd, 'p> {
     load: &'s [[Ball; 2]],
     lines: Vec<ContactFace<Ball>>,
     kappa: f64,
+    /// The relative radius that is asked for: a bound that is far below is not sharpened.
+    proof: f64,
     /// L of A, if it is at hand.
     of_a: Option<Arc<Factor>>,
     /// For what is pressed: the bounds at the nodes, and the factor, once it is needed.
@@ -148,7 +150,24 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         let lines = lines(system.d);
         let kappa = kappa(system.d, &lines);
         let time = watch.lap();
-        Verifier { system, load, lines, kappa, of_a, held: None, unbalanced: f64::INFINITY, time }
+        let proof = 0.0;
+        Verifier {
+            system,
+            load,
+            lines,
+            kappa,
+            proof,
+            of_a,
+            held: None,
+            unbalanced: f64::INFINITY,
+            time,
+        }
+    }
+
+    /// A radius of a hundredth of `proof`, relative, need not be smaller.
+    #[must_use]
+    pub fn for_proof(self, proof: f64) -> Self {
+        Verifier { proof, ..self }
     }
 
     /// Takes the factor of A that a route has made, if it has.
@@ -166,24 +185,6 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         self.unbalanced
     }
 
-    /// Proves a relative radius of `proof` if it can: with stresses in doubles, and where that falls short in balls.
-    ///
-    /// # Errors
-    /// Why nothing can be proved.
-    pub fn prove(
-        &mut self,
-        u: &[[f64; 2]],
-        near: Option<&[[DoubleDouble; 2]]>,
-        proof: f64,
-    ) -> Result<Enclosure, Unproved> {
-        let first = self.enclose(u, near, Stresses::InDoubles);
-        match first {
-            Ok(first) if first.is_within(proof) => Ok(first),
-            Err(ref why) if !why.may_be_rounding() => first,
-            first => self.enclose(u, near, Stresses::InBalls).or(first),
-        }
-    }
-
     /// Encloses the solution around `u` by the residual there, or at a field `near` it that is known in double-doubles:
     /// rounding a displacement to doubles moves it little, its forces more. Of a body that may slide, with these motions
     /// still stopped at one component each, one of the solutions is enclosed around the displacement of least norm.
@@ -194,10 +195,10 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         &mut self,
         u: &[[f64; 2]],
         near: Option<&[[DoubleDouble; 2]]>,
-        stresses: Stresses,
+        arithmetic: Arithmetic,
     ) -> Result<Enclosure, Unproved> {
         let mut watch = Stopwatch::start();
-        let enclosure = self.enclosed(u, near, stresses);
+        let enclosure = self.enclosed(u, near, arithmetic);
         self.time += watch.lap();
         enclosure
     }
@@ -206,15 +207,15 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         &mut self,
         u: &[[f64; 2]],
         near: Option<&[[DoubleDouble; 2]]>,
-        stresses: Stresses,
+        arithmetic: Arithmetic,
     ) -> Result<Enclosure, Unproved> {
         let d = self.system.d;
-        let Some(loose) = Slides::around(d, u) else { return self.around(u, u, near, stresses) };
+        let Some(loose) = Slides::around(d, u) else { return self.around(u, u, near, arithmetic) };
         let mut reported = u.to_vec();
         loose.least_norm(&mut reported);
         let stopped = d.slides.as_ref().map_or(0, Slides::count);
-        if !(loose.count() > stopped || loose.are_bounded()) {
-            return self.around(u, &reported, near, stresses);
+        if loose.count() <= stopped && loose.stopping_edges().is_empty() {
+            return self.around(u, &reported, near, arithmetic);
         }
         // Motions that only edges stop which do not press: of all solutions one that is away from these.
         let Some(inside) = loose.to_inside(u) else { return Err(Unproved::HeldByContact) };
@@ -222,8 +223,8 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         loose.move_by(&inside, &mut u);
         let d = d.sliding(loose, &u);
         let system = System::new(&d).map_err(|_| Unproved::OutOfMemory)?;
-        let mut other = Verifier::with_load(&system, None, self.load);
-        let enclosure = other.around(&u, &reported, None, stresses);
+        let mut other = Verifier::with_load(&system, None, self.load).for_proof(self.proof);
+        let enclosure = other.around(&u, &reported, None, arithmetic);
         self.unbalanced = other.unbalanced;
         enclosure
     }
@@ -234,24 +235,29 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         u: &[[f64; 2]],
         reported: &[[f64; 2]],
         near: Option<&[[DoubleDouble; 2]]>,
-        stresses: Stresses,
+        arithmetic: Arithmetic,
     ) -> Result<Enclosure, Unproved> {
         let (system, d, kappa) = (self.system, self.system.d, self.kappa);
         if !(kappa < 1.0) {
             let unknown = d.kappa() < 1.0 || !kappa.is_finite();
             return Err(if unknown { Unproved::NoKappa } else { Unproved::NotCoercive { kappa } });
         }
-        let at = Evaluation::new(system, &self.lines, (u, reported), near, (self.load, stresses));
+        let at = Evaluation::new(system, &self.lines, (u, reported), near, (self.load, arithmetic));
         let at = at.ok_or(Unproved::OutOfRange)?;
         let r = free(system, &at.residual);
         self.unbalanced = r.iter().map(|r| r.magnitude()).sum();
         let fields = (u, reported);
         if d.slides.is_none() {
-            return self.held_by(&Pressed::nowhere(self.lines.len()), &at, fields, (&r, stresses));
+            return self.held_by(
+                &Pressed::nowhere(self.lines.len()),
+                &at,
+                fields,
+                (&r, arithmetic),
+            );
         }
         for share in SHARES {
             let pressed = Pressed::at(d, &self.lines, &at.u, share);
-            let found = self.held_by(&pressed, &at, fields, (&r, stresses));
+            let found = self.held_by(&pressed, &at, fields, (&r, arithmetic));
             if found != Err(Unproved::HeldByContact) {
                 return found;
             }
@@ -270,7 +276,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         pressed: &Pressed,
         at: &Evaluation,
         (u, reported): (&[[f64; 2]], &[[f64; 2]]),
-        (r, stresses): (&[Ball], Stresses),
+        (r, arithmetic): (&[Ball], Arithmetic),
     ) -> Result<Enclosure, Unproved> {
         let (system, d, kappa) = (self.system, self.system.d, self.kappa);
         let coercivity = self.coercivity();
@@ -284,9 +290,14 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
             let by_contact = d.slides.is_some();
             return Err(if by_contact { Unproved::HeldByContact } else { Unproved::NotHeld });
         };
+        let crude = crude_norms(system, korn, coercivity);
         let up_to = up(at.off / coercivity.sqrt());
-        let rho = if r.iter().all(|&r| r == Ball::from(0)) {
-            up_to
+        let size = system.size(at.energy.lower().max(0.0).sqrt() * (1.0 - 2.0 * f64::EPSILON), u);
+        let known = (at.moved.max(self.proof * size) * coercivity.sqrt()).max(up_to);
+        let negligible = SMALL * known;
+        let first = weighted(r, &crude);
+        let rho = if first <= negligible {
+            up(first + up_to)
         } else {
             let factor = match factor {
                 Some(factor) => factor,
@@ -295,9 +306,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
                     _ => factor_for(system, springs)?,
                 }),
             };
-            let crude = crude_norms(system, korn, coercivity);
-            let negligible = SMALL * (at.moved * coercivity.sqrt()).max(up_to);
-            let product = Product { system, lines: &self.lines, pressed, stresses };
+            let product = Product { system, lines: &self.lines, pressed, arithmetic };
             up(dual_norm(&product, factor, r, &crude, coercivity, negligible) + up_to)
         };
         if !pressed.stay(rho) {
@@ -309,7 +318,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
             return Err(Unproved::OutOfRange);
         }
         let mut nodes: Vec<f64> = korn.nodes.iter().map(|n| up(n * exact)).collect();
-        if !stays_off(d, &self.lines, pressed, &at.u, (&nodes, exact)) {
+        if !stays_off(d, &self.lines, &at.u, (&nodes, exact)) {
             return Err(Unproved::HeldByContact);
         }
         let exactly = match &d.slides {
@@ -325,8 +334,6 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         if !intervals.are_finite() {
             return Err(Unproved::OutOfRange);
         }
-        let size = at.energy.lower().max(0.0).sqrt() * (1.0 - 2.0 * f64::EPSILON);
-        let size = system.size(size, u);
         let relative = (size > 0.0).then(|| up(radius / size));
         Ok(Enclosure { kappa, radius, relative, pressure, nodes, intervals })
     }
@@ -360,20 +367,16 @@ fn slid(mut u: Vec<[Ball; 2]>, reported: &[[f64; 2]], slides: &Slides) -> Vec<[B
     u
 }
 
-/// Returns whether the edges that are not pressed and could end a motion that slides have P <= 0 for all fields that differ from u by as
-/// much as `nodes` say, and by `radius` in the norm of A_S: then the motion changes nothing.
+/// Returns whether the edges that could stop a motion that slides have P <= 0 for all fields that differ from u by as much as `nodes`
+/// say, and by `radius` in the norm of A_S: then the motion changes nothing.
 fn stays_off(
     d: &Discretization,
     lines: &[ContactFace<Ball>],
-    pressed: &Pressed,
     u: &[[Ball; 2]],
     (nodes, radius): (&[f64], f64),
 ) -> bool {
-    if d.slides.as_ref().is_none_or(|slides| !slides.are_bounded()) {
-        return true;
-    }
-    let edges = lines.iter().zip(pressed.whole(&d.rule));
-    edges.filter(|(_, pressed)| !pressed).all(|(line, _)| {
+    let stopping = d.slides.as_ref().map_or(&[][..], Slides::stopping_edges);
+    stopping.iter().map(|&e| &lines[e]).all(|line| {
         let on_edge = d.space.edge_nodes(line.edge);
         let far = on_edge.into_iter().map(|node| nodes[node]).fold(0.0, f64::max);
         pressed::greatest(&line.p(u)) + pressed::change(line, far, radius) <= 0.0
@@ -385,7 +388,7 @@ struct Product<'a, 'd, 'p> {
     system: &'a System<'d, 'p>,
     lines: &'a [ContactFace<Ball>],
     pressed: &'a Pressed,
-    stresses: Stresses,
+    arithmetic: Arithmetic,
 }
 
 impl Product<'_, '_, '_> {
@@ -393,20 +396,8 @@ impl Product<'_, '_, '_> {
     /// the b that comes with it.
     fn times(&self, z: &[Ball]) -> (Vec<Ball>, f64) {
         let v = field(self.system, |number, _, _| z[number], |_, _| 0.0);
-        let d = self.system.d;
-        let (mut forces, off) = match self.stresses {
-            Stresses::InBalls => {
-                let mut forces = vec![[Ball::from(0); 2]; v.len()];
-                let off = self.stresses.add_forces(d, &v, &mut forces);
-                (forces, off)
-            }
-            // z is next to nothing beside u~: the balls of the kernel will do.
-            Stresses::InDoubles => {
-                let mut sums = vec![[kernel::Ball::point(0.0); 2]; v.len()];
-                let off = rounded_stress::add_forces(d, &v, &mut sums);
-                (sums.into_iter().map(|sum| sum.map(Ball::from)).collect(), off)
-            }
-        };
+        let mut forces = vec![[Ball::from(0); 2]; v.len()];
+        let off = self.arithmetic.add_small_forces(self.system.d, &v, &mut forces);
         for line in self.lines {
             line.add_stresses(&v, &mut forces);
         }

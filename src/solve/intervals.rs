@@ -57,35 +57,43 @@ pub struct ContactIntervals {
 
 /// The arithmetic of the stresses of the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stresses {
-    /// In doubles: what they are off by is bounded as a whole.
-    InDoubles,
-    /// In balls, each of some 106 bits.
-    InBalls,
+pub enum Arithmetic {
+    /// Doubles: what they are off by is bounded as a whole.
+    Doubles,
+    /// Balls, of some 106 bits each.
+    Balls,
 }
 
-impl Stresses {
+impl Arithmetic {
     /// Adds a(u, v) for every basis function v, off by a functional r with |r(v)| <= b |v|_a for the b that is returned.
-    pub(super) fn add_forces(
-        self,
-        d: &Discretization,
-        u: &[[Ball; 2]],
-        forces: &mut [[Ball; 2]],
-    ) -> f64 {
+    fn add_forces(self, d: &Discretization, u: &[[Ball; 2]], forces: &mut [[Ball; 2]]) -> f64 {
         match self {
-            Stresses::InDoubles => rounded_stress::add_forces(d, u, forces),
-            Stresses::InBalls => {
+            Arithmetic::Doubles => rounded_stress::add_forces(d, u, forces),
+            Arithmetic::Balls => {
                 residual::add_internal_forces(&d.space, &d.problem.material, u, forces);
                 0.0
             }
         }
     }
 
+    /// The same for a displacement that is next to nothing.
+    pub(super) fn add_small_forces(
+        self,
+        d: &Discretization,
+        u: &[[Ball; 2]],
+        forces: &mut [[Ball; 2]],
+    ) -> f64 {
+        match self {
+            Arithmetic::Doubles => rounded_stress::add_small_forces(d, u, forces),
+            Arithmetic::Balls => self.add_forces(d, u, forces),
+        }
+    }
+
     /// |v|_a at most.
     fn energy_norm(self, d: &Discretization, v: &[[Ball; 2]]) -> f64 {
         match self {
-            Stresses::InDoubles => rounded_stress::energy_norm_at_most(d, v),
-            Stresses::InBalls => root(strain_energy(d, v)),
+            Arithmetic::Doubles => rounded_stress::energy_norm_at_most(d, v),
+            Arithmetic::Balls => root(strain_energy(d, v)),
         }
     }
 }
@@ -104,7 +112,7 @@ pub(super) struct Evaluation {
     pub off: f64,
     /// int \[P\]+ N_a / gamma on each contact edge.
     pressures: Vec<Vec<Ball>>,
-    stresses: Stresses,
+    arithmetic: Arithmetic,
 }
 
 impl Evaluation {
@@ -114,7 +122,7 @@ impl Evaluation {
         lines: &[ContactFace<Ball>],
         (u, reported): (&[[f64; 2]], &[[f64; 2]]),
         near: Option<&[[DoubleDouble; 2]]>,
-        (load, stresses): (&[[Ball; 2]], Stresses),
+        (load, arithmetic): (&[[Ball; 2]], Arithmetic),
     ) -> Option<Self> {
         let d = system.d;
         let frames = d.constraints.frames();
@@ -135,15 +143,8 @@ impl Evaluation {
             .map(|(exact, u)| [0, 1].map(|c| exact[c] - Ball::from(u[c])))
             .collect();
         let mut residual = vec![[Ball::from(0); 2]; u.len()];
-        let [off, moved] = match stresses {
-            Stresses::InDoubles => {
-                rounded_stress::add_forces_with_norm(d, (&exact, &off), &mut residual)
-            }
-            Stresses::InBalls => {
-                let moved = stresses.energy_norm(d, &off);
-                [stresses.add_forces(d, &exact, &mut residual), moved]
-            }
-        };
+        let moved = arithmetic.energy_norm(d, &off);
+        let off = arithmetic.add_forces(d, &exact, &mut residual);
         // x^2 = a(u~, u~) is off q = u~ . forces by off x at most, so x <= off + q^(1/2).
         let energy = product(&exact, &residual);
         let energy = energy.widened(up(off * (off + root(energy))));
@@ -164,7 +165,7 @@ impl Evaluation {
         if !(lengths_are_finite && all.chain([&energy]).all(|b| b.is_finite())) {
             return None;
         }
-        Some(Evaluation { residual, u: exact, moved, energy, off, pressures, stresses })
+        Some(Evaluation { residual, u: exact, moved, energy, off, pressures, arithmetic })
     }
 
     /// Encloses the reported quantities, with |u~ - u^h|_A <= `rho`, |u~ - u^h|_a <= `radius`, the norm of gamma^{1/2}
@@ -244,7 +245,7 @@ impl Evaluation {
                         reaction += part * self.residual[held.node][k];
                     }
                 }
-                let by_body = self.stresses.energy_norm(d, &test);
+                let by_body = self.arithmetic.energy_norm(d, &test);
                 let by_contact = lines.iter().fold(Ball::from(0), |sum, line| {
                     let most = line.p0(&test).iter().fold(0.0, |sum, p| up(sum + p.magnitude()));
                     let weight = line.length / line.gamma;

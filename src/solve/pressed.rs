@@ -190,18 +190,6 @@ impl Pressed {
         self.edges.iter().map(Option::is_some)
     }
 
-    /// For each contact edge whether all that the rule sees of it is in S.
-    pub fn whole<'a>(&'a self, rule: &'a EdgeRule) -> impl Iterator<Item = bool> + 'a {
-        let is_whole = |part: &Part| match rule {
-            EdgeRule::Exact => {
-                let onward = |at: f64, [a, b]: &[f64; 2]| if *a == at { *b } else { f64::NAN };
-                part.pieces.iter().fold(0.0, onward) == 1.0
-            }
-            EdgeRule::Gauss(points) => part.pieces.len() == points.len(),
-        };
-        self.edges.iter().map(move |part| part.as_ref().is_some_and(is_whole))
-    }
-
     /// The pieces of contact edge `e` that are in S, where they start and end on \[0, 1\].
     pub fn pieces(&self, e: usize) -> &[[f64; 2]] {
         self.edges[e].as_ref().map_or(&[], |part| &part.pieces)

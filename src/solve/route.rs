@@ -154,7 +154,8 @@ impl<'a, 'd, 'p> Strategy<'a, 'd, 'p> {
             RouteName::Assembled => Box::new(Assembled::new(self.system, self.reference)),
         };
         watch.lap();
-        let mut verifier = Verifier::new(self.system, route.factor_of_a());
+        let mut verifier =
+            Verifier::new(self.system, route.factor_of_a()).for_proof(settings.proof);
         let outcome =
             accuracy::refine(self.system, &mut *route, &mut verifier, self.reference, settings)?;
         times.newton += watch.lap().saturating_sub(verifier.time());

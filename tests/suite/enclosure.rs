@@ -9,8 +9,8 @@ use signorini::kernel::{Material, Plane};
 use signorini::solve::enclosure::{self, Enclosure};
 use signorini::solve::system::System;
 use signorini::solve::{
-    ContactQuadrature, Degree, Gamma0, Method, Settings, Solution, Unproved, check, discretize,
-    solve,
+    ContactQuadrature, Degree, Gamma0, Method, Settings, Solution, Unproved, Verdict, check,
+    discretize, solve,
 };
 
 use crate::assembled::Assembled;
@@ -272,4 +272,24 @@ fn case(name: &str, settings: &[&str]) -> Case {
     let text = std::fs::read_to_string(&file).unwrap();
     let settings: Vec<String> = settings.iter().map(|&s| s.to_owned()).collect();
     Case::parse(Path::new(&file), &text, &settings).unwrap()
+}
+
+#[test]
+fn a_body_that_lifts_off_its_floor_beside_a_wall_that_it_may_slide_to_is_enclosed() {
+    let mesh = Rectangle { width: 4.0, height: 1.0, nx: 16, ny: 4, diagonal: Diagonal::Crossed };
+    let force = function(|[x, _]| if x < 3.0 { -2.0 } else { 1.0 });
+    let problem = Problem {
+        body_force: [constant(0.0), force],
+        ..Problem::of(mesh.mesh().unwrap(), Material::lame(100.0, 100.0, Plane::Strain))
+            .with("bottom", Condition::Contact { gap: constant(0.0) })
+            .with("right", Condition::Contact { gap: constant(0.1) })
+    };
+    for degree in [Degree::One, Degree::Two] {
+        let method = Method { degree, ..Method::default() };
+        let (solution, _) = solve(&problem, &method, &Settings::default()).unwrap();
+        let [floor, wall] = &solution.boundaries[..] else { panic!("two boundaries") };
+        assert!(floor.length > 0.0 && floor.length < 4.0, "it lifts off: {}", floor.length);
+        assert!(wall.force == 0.0 && solution.plays.len() == 1, "{:?}", solution.plays);
+        assert_eq!(solution.verdict, Verdict::Proved);
+    }
 }

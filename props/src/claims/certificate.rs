@@ -29,7 +29,7 @@ use signorini::fem::{
 use signorini::kernel::{Material, Plane};
 use signorini::solve::enclosure::{self, Enclosure, Unproved, Verifier};
 use signorini::solve::factor::Factor;
-use signorini::solve::intervals::Stresses;
+use signorini::solve::intervals::Arithmetic;
 use signorini::solve::system::System;
 use signorini::solve::{
     ContactQuadrature, Degree, Gamma0, Method, Settings, SolveError, discretize, solve,
@@ -470,12 +470,12 @@ fn enclosed_in_doubles(
     let up = draw.turned([0, 1]).map(Exact::from);
     let mut verifier = Verifier::with_load(&system, factor, &load);
     let mut last = Verdict::Vacuous;
-    // Stresses in doubles are off by some 1e-13, more where lambda is large.
-    for (stresses, share) in
-        [(Stresses::InBalls, asked.share), (Stresses::InDoubles, asked.share - 10)]
+    // Arithmetic in doubles are off by some 1e-13, more where lambda is large.
+    for (arithmetic, share) in
+        [(Arithmetic::Balls, asked.share), (Arithmetic::Doubles, asked.share - 10)]
     {
         let asked = InDoubles { share, ..asked };
-        let enclosure = match verifier.enclose(&u, None, stresses) {
+        let enclosure = match verifier.enclose(&u, None, arithmetic) {
             Ok(enclosure) => enclosure,
             // No edge may be pressed from end to end.
             Err(Unproved::HeldByContact) if draw.by_contact => return Verdict::Vacuous,

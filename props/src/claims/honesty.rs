@@ -48,7 +48,7 @@ pub(super) fn field(nodes: usize, random: &mut Random) -> Vec<[f64; 2]> {
 }
 
 /// a(u, v) by stresses in doubles, for a random u that is carried along by `by`, less a(u, v) in balls: its norm dual to |v|_a on
-/// the v that are free, beside the bound.
+/// the v that are free, beside the bound; or what sums in doubles are off by, beside their radius, if that is a larger share.
 fn rounding_of_stresses(degree: Degree, problem: &Problem, by: f64) -> Result<f64, String> {
     let d = discretize(problem, &Method { degree, ..Method::default() }).map_err(text)?;
     let system = System::new(&d).map_err(text)?;
@@ -62,6 +62,11 @@ fn rounding_of_stresses(degree: Degree, problem: &Problem, by: f64) -> Result<f6
         .collect();
     let mut sums = [vec![[Ball::from(0); 2]; nodes], vec![[Ball::from(0); 2]; nodes]];
     let bound = rounded_stress::add_forces(&d, &u, &mut sums[0]);
+    let mut in_doubles = vec![[Ball::from(0); 2]; nodes];
+    rounded_stress::add_small_forces(&d, &u, &mut in_doubles);
+    let pairs = in_doubles.as_flattened().iter().zip(sums[0].as_flattened());
+    let of_sums = pairs.map(|(&sum, &exact)| (sum.centre() - exact).magnitude() / sum.radius());
+    let of_sums = of_sums.fold(0.0, f64::max);
     residual::add_internal_forces(&d.space, &problem.material, &u, &mut sums[1]);
     let off: Vec<[f64; 2]> =
         (0..nodes).map(|i| [0, 1].map(|c| (sums[0][i][c] - sums[1][i][c]).head())).collect();
@@ -71,7 +76,7 @@ fn rounding_of_stresses(degree: Degree, problem: &Problem, by: f64) -> Result<f6
     let factor = Factor::new(&stiffness).map_err(text)?;
     let mut half = off;
     factor.forward(&mut half);
-    Ok(half.iter().map(|x| x * x).sum::<f64>().sqrt() / bound)
+    Ok((half.iter().map(|x| x * x).sum::<f64>().sqrt() / bound).max(of_sums))
 }
 
 /// The rounding of stresses is at most `scale` times its bound.

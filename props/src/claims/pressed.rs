@@ -332,7 +332,8 @@ pub(super) fn room(share: f64) -> Outcome {
             let problem = between_walls(gaps, angle)?;
             for degree in [Degree::One, Degree::Two] {
                 let method = Method { degree, ..Method::default() };
-                let (solution, _) = solve(&problem, &method, &Settings::default()).map_err(text)?;
+                let settings = Settings { proof: 1e-11, ..Settings::default() };
+                let (solution, _) = solve(&problem, &method, &settings).map_err(text)?;
                 let said = || format!("gaps {gaps:?}, turned by {angle}, {degree:?}");
                 let radius = solution.enclosure.as_ref().map_err(|e| format!("{}: {e}", said()))?;
                 if !radius.relative.is_some_and(|relative| relative <= 1e-10) {
