@@ -67,6 +67,8 @@ def mistakes(path):
             wrong.append(f"{what}: no test {entry['test']}")
         if "check" in entry and not re.search(rf"\b{entry['check']}\b", claims):
             wrong.append(f"{what}: no check {entry['check']}")
+        if any(re.search(r"^let |[;=]$", entry[key]) for key in ("old", "new")):
+            wrong.append(f"{what}: expected expressions")
         if entry["name"] in names:
             wrong.append(f"{what}: the name is there twice")
         names.add(entry["name"])
