@@ -202,8 +202,7 @@ impl Pressed {
     }
 
     /// What S holds, sums of n~ . v at the nodes of its edges, each times its shape function at a place of the edge:
-    /// n~ . v = P0(v) + gamma s(v), for |v|_S (1 - kappa)^{-1/2} <= 1. There gamma |s(v)| is
-    /// at most 2 (gamma / |E|)^{1/2}, as s is affine and int gamma s^2 <= 1.
+    /// n~ . v = P0(v) + gamma s(v), for |v|_S (1 - kappa)^{-1/2} <= 1: at most what P0(v) is beside |v|_S.
     pub fn holds(&self, d: &Discretization, lines: &[ContactFace<Ball>]) -> Vec<Hold> {
         let mesh = d.space.mesh();
         let mut holds = Vec::new();
@@ -217,8 +216,8 @@ impl Pressed {
                     let direction: [Ball; 2] = line.direction(a).into();
                     (at.map(Ball::rounded), direction.map(|n| (shape * n).rounded()))
                 });
-                let most = up(most + SAFETY * 2.0 * root_of(line));
-                holds.push(Hold { triangle: line.edge.triangle, terms: terms.collect(), most });
+                let (triangle, terms) = (line.edge.triangle, terms.collect());
+                holds.push(Hold { triangle, terms, most: *most });
             }
         }
         holds
