@@ -81,7 +81,7 @@ pub struct Continuous {
     pub relative: f64,
     /// v, at the vertices, and at the middles of the edges if it is quadratic.
     pub displacement: Vec<[f64; 2]>,
-    /// Whether every step is proved, rounding included.
+    /// True if every step is proved, rounding included.
     pub rigorous: bool,
     /// Why it is not rigorous.
     pub reason: Option<String>,

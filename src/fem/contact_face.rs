@@ -46,9 +46,9 @@ pub struct ContactFace<S = f64> {
 /// P0 and sigma_n on a contact edge, of the element that V^h has.
 #[derive(Clone, Copy, Debug)]
 pub enum Functionals<S> {
-    /// Of P1.
+    /// Those of P1.
     One(ContactEdge<S, 3, 2>),
-    /// Of P2.
+    /// Those of P2.
     Two(ContactEdge<S, 6, 3>),
 }
 
@@ -163,7 +163,7 @@ impl<S: Scalar + From<f64>> ContactFace<S> {
         self.functionals.sigma_n().map(|row| self.apply(row, &u, first))
     }
 
-    /// What -int gamma sigma_n(u) sigma_n(.) over the edge is in terms of sigma_n at its two ends, for sigma_n(u) = `stress`.
+    /// Returns -int gamma sigma_n(u) sigma_n(.) over the edge in terms of sigma_n at its two ends, for sigma_n(u) = `stress`.
     pub fn stress_factors(&self, [start, end]: [S; 2]) -> [S; 2] {
         let [two, six] = [2, 6].map(<S as From<i32>>::from);
         let mass = -(self.gamma * self.length) / six;

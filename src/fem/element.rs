@@ -103,7 +103,7 @@ impl Degree {
         }
     }
 
-    /// What an edge adds to kappa_T / gamma0 of its triangle: [`contact_edge::coercivity_constant`].
+    /// The share of an edge in kappa_T / gamma0 of its triangle: [`contact_edge::coercivity_constant`].
     pub fn coercivity_constant<S: Scalar>(
         self,
         stiffness: S,

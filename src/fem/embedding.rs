@@ -41,7 +41,7 @@ impl Mesh {
     /// of vertices, in any direction). An edge of the boundary needs no name.
     ///
     /// # Errors
-    /// Whatever makes it no conforming mesh, with the numbers of the vertices and triangles concerned.
+    /// The first fault that makes it no conforming mesh, with the numbers of the vertices and triangles concerned.
     pub fn new(
         vertices: Vec<[f64; 2]>,
         triangles: Vec<[usize; 3]>,

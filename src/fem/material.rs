@@ -116,7 +116,7 @@ pub struct Orthotropic {
     pub g12: f64,
     /// From the x axis to that of the material, in degrees, to the left.
     pub angle: f64,
-    /// What makes it a law of plane strain; without it is one of plane stress.
+    /// The moduli across the plane, for a law of plane strain; `None` in plane stress.
     pub across: Option<Across>,
 }
 

@@ -201,7 +201,7 @@ struct Refinement<'a, 'd, 'p> {
     residuals: Vec<f64>,
     /// The size of the last correction beside the displacement.
     correction: f64,
-    /// Whether the line search cut the last step short.
+    /// True if the line search cut the last step short.
     cut: bool,
     softness: f64,
     enclosure: Certificate,

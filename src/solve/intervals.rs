@@ -76,7 +76,7 @@ impl Arithmetic {
         }
     }
 
-    /// The same for a displacement that is next to nothing.
+    /// Adds them for a displacement that is next to nothing, where sums in doubles do.
     pub(super) fn add_small_forces(
         self,
         d: &Discretization,

@@ -201,7 +201,7 @@ impl Pressed {
         all.all(|[least, most]| *least > SAFETY * most * rho)
     }
 
-    /// What S holds, sums of n~ . v at the nodes of its edges, each times its shape function at a place of the edge:
+    /// The holds of S: sums of n~ . v at the nodes of its edges, each times its shape function at a place of the edge:
     /// n~ . v = P0(v) + gamma s(v), for |v|_S (1 - kappa)^{-1/2} <= 1: at most what P0(v) is beside |v|_S.
     pub fn holds(&self, d: &Discretization, lines: &[ContactFace<Ball>]) -> Vec<Hold> {
         let mesh = d.space.mesh();

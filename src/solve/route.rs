@@ -52,7 +52,7 @@ const DENSE: f64 = 16.0;
 pub struct Prediction {
     /// Multiplications with an addition; those of dense factorisations count less.
     pub condensed: f64,
-    /// The same.
+    /// The same of the assembled route.
     pub assembled: f64,
 }
 
@@ -96,7 +96,7 @@ pub fn by(
     Strategy::new(system)?.solve(name, settings, times)
 }
 
-/// What both routes share, and which of them to take.
+/// The data that both routes share, and the order in which to take them.
 pub struct Strategy<'a, 'd, 'p> {
     system: &'a System<'d, 'p>,
     reach: Reach,

@@ -51,7 +51,7 @@ pub struct Solution {
     pub plays: Vec<Play>,
     /// Where the exact solution of (8) is, or why nothing is proved of it.
     pub enclosure: Certificate,
-    /// Whether the distance from it is proved to be as small as asked for.
+    /// *Proved* if the distance from it is proved to be as small as asked for.
     pub verdict: Verdict,
     /// Energies, forces, lengths.
     pub quantities: Quantities,
