@@ -100,7 +100,8 @@ const NOT_MET: &str = "hypothesis not met";
 /// missed by all of them once in 10^18 seeds; by the first alone, once in three.
 const ROUNDS: u32 = 40;
 
-/// Draws `cases` times, runs the predicate, in a scope of exact numbers, and counts the classes; as often again while a class was not hit.
+/// Draws `cases` times, runs the predicate, in a scope of exact numbers, and counts the classes; as often again while a class was
+/// not hit.
 ///
 /// # Errors
 /// The shrunk data for which it fails, the class that no draw hit, or that no draw met the hypothesis.

@@ -3,9 +3,9 @@
 //! A fingerprint covers the harness itself, the items of the kernel and of this crate that it reaches, and what the model
 //! checker compiles them with: edition, Kani's flags, and the packages that the kernel depends on. An item reaches the items
 //! whose names it mentions, wherever they stand; an `impl` belongs to its type, or to its trait where the type is foreign, and
-//! a trait is reached by the names of its methods, too. Items count by their tokens without comments, hints to inline, visibility and the
-//! modules in front of a name, so that a fingerprint outlives moves between files and crates, renamed modules and formatting.
-//! Names are taken for what they say: two items of one name are both reached.
+//! a trait is reached by the names of its methods, too. Items count by their tokens without comments, hints to inline, visibility
+//! and the modules in front of a name, so that a fingerprint outlives moves between files and crates, renamed modules and
+//! formatting. Names are taken for what they say: two items of one name are both reached.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;
@@ -277,8 +277,8 @@ fn holds(condition: &Meta) -> Option<bool> {
     }
 }
 
-/// The tokens of a source without documentation, hints to inline, visibility, the modules in front of a name, and commas before a bracket
-/// that closes.
+/// The tokens of a source without documentation, hints to inline, visibility, the modules in front of a name, and commas before a
+/// bracket that closes.
 fn normal(stream: TokenStream) -> Vec<String> {
     let mut tokens = Vec::new();
     add_normal(stream, &mut tokens);

@@ -3,8 +3,9 @@
 //! Under Kani [`any`] is every value at once and [`assume`] restricts them. Elsewhere a harness is run many times: on all
 //! values, where it asks for some bits or bytes only; else [`any`] draws (edge values often). [`assume`] ends the run when it
 //! does not hold. What counts are the draws that
-//! meet the assumptions; a harness that hardly any does has shown nothing, and is an error. A control is the false twin of a harness: under Kani it must fail
-//! (`should_panic`); elsewhere it is run once, on the counterexample that is stored with it, and must panic there.
+//! meet the assumptions; a harness that hardly any does has shown nothing, and is an error. A control is the false twin of a
+//! harness: under Kani it must fail (`should_panic`); elsewhere it is run once, on the counterexample that is stored with it, and
+//! must panic there.
 //!
 //! Loops take at most seven rounds, or one less than a harness says (`within 4`: three rounds): the unwinding bound. So
 //! harnesses compare no whole arrays or slices of integers: such a comparison is a loop over bytes. A loop over a slice whose

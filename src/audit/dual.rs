@@ -106,9 +106,9 @@ pub struct ByPair {
 }
 
 impl ByPair {
-    /// Gives the share of each triangle in the distance of one end from the middle, k M^2 + eta^2 / (4 k) with the k >= eta / (2 M)
-    /// that makes it that distance; `shares` are those in M^2. The upper end counts k M^2 alone: its eta comes from where w and
-    /// rho end, not from the triangles.
+    /// Gives the share of each triangle in the distance of one end from the middle, k M^2 + eta^2 / (4 k) with the k >= eta / (2
+    /// M) that makes it that distance; `shares` are those in M^2. The upper end counts k M^2 alone: its eta comes from where w
+    /// and rho end, not from the triangles.
     pub fn limits(&self, side: usize, shares: &[f64]) -> Vec<f64> {
         let [of_mean, of_pair] = [shares, &self.shares].map(|all| all.iter().sum::<f64>());
         let k = self.factors[side].max((of_pair / of_mean).sqrt() / 2.0);

@@ -328,8 +328,8 @@ pub(crate) struct Beside<S> {
     own: OnceCell<Vec<Numbers>>,
 }
 
-/// int f . w - a(v, w) for w with a component 1 at a point: grad l_i is minus the scaled normal N_i over J = 2 |T|, so of sigma = C eps(v),
-/// affine with the values s_i, l_i has the work -1/6 (s_0 + s_1 + s_2) N_i, and of f J/24 (F + f_i), F being the sum.
+/// int f . w - a(v, w) for w with a component 1 at a point: grad l_i is minus the scaled normal N_i over J = 2 |T|, so of sigma =
+/// C eps(v), affine with the values s_i, l_i has the work -1/6 (s_0 + s_1 + s_2) N_i, and of f J/24 (F + f_i), F being the sum.
 struct Unbalanced<S>(Vec<Vector2<S>>);
 
 impl<S: Enclosing> Unbalanced<S> {
@@ -810,8 +810,8 @@ impl<'a, S: Staged> Forces<'a, S> {
     }
 }
 
-/// int f . w - a(v, w) by the bulges of w: of sigma 4 l_j l_k has the work -1/6 ((S + s_j) N_k + (S + s_k) N_j), S being the sum of the s_i, and of f
-/// J/30 (2 F - f_i).
+/// int f . w - a(v, w) by the bulges of w: of sigma 4 l_j l_k has the work -1/6 ((S + s_j) N_k + (S + s_k) N_j), S being the sum
+/// of the s_i, and of f J/30 (2 F - f_i).
 fn unbalanced_between<S: Enclosing>(
     certificate: &Certificate,
     state: &Balanced<S>,
@@ -847,8 +847,8 @@ fn energy_of<S: Enclosing>(w: &Shape<S>, piece: &Piece, triangle: &Triangle<S>) 
         / (triangle.double_area() * S::from(24))
 }
 
-/// 24 J times int eps(w) : C eps(w) on a triangle with these scaled normals, J = 2 |T|: from -J grad w at the vertices, which is the
-/// sum of w_i (x) N_i and of 4 (b_j (x) N_k + b_k (x) N_j).
+/// 24 J times int eps(w) : C eps(w) on a triangle with these scaled normals, J = 2 |T|: from -J grad w at the vertices, which is
+/// the sum of w_i (x) N_i and of 4 (b_j (x) N_k + b_k (x) N_j).
 pub(crate) fn strain_energy<S: Enclosing>(
     piece: &Piece,
     ([a, b, c], bulges): (&[Vector2<S>; 3], Option<[Vector2<S>; 3]>),

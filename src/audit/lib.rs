@@ -1,6 +1,6 @@
 //! The checker of certificates: it evaluates a bound of the distance |u - v|_a to the true solution of a contact problem from the
-//! numbers of a certificate, and trusts nothing else: no solver, no mesh, no linear algebra. With the kernel it is the trusted core;
-//! `cargo tree -p signorini-audit` lists all that it depends on.
+//! numbers of a certificate, and trusts nothing else: no solver, no mesh, no linear algebra. With the kernel it is the trusted
+//! core; `cargo tree -p signorini-audit` lists all that it depends on.
 //!
 //! Docs: docs/theory.md, sections 7.2 to 7.4; docs/certificates.md.
 //!

@@ -69,8 +69,8 @@ const IMBALANCE: f64 = 128.0 * f64::EPSILON;
 const NEGLIGIBLE: f64 = 1e-9;
 
 impl Certificate {
-    /// The difference between the problem that `proof` bounds and the one that is meant, if there is one: its body, and supports that it has
-    /// more.
+    /// The difference between the problem that `proof` bounds and the one that is meant, if there is one: its body, and supports
+    /// that it has more.
     pub fn problem(&self, proof: &Proof) -> Option<String> {
         let body =
             (!self.polygon.is_empty()).then(|| "the polygon of the mesh as its body".to_owned());

@@ -1,13 +1,15 @@
 //! A double with the size of the terms that it was computed from: the number type of long linear formulas, some times quicker
 //! than [`Ball`], which bounds each rounding when it happens. Here they are counted, and bounded at the end.
 //!
-//! With u = 2^-53, eta = 2^-1074 and e_k = (1 + 2 u)^k - 1, a number (a, A) that has gone through k roundings stands for all x with
+//! With u = 2^-53, eta = 2^-1074 and e_k = (1 + 2 u)^k - 1, a number (a, A) that has gone through k roundings stands for all x
+//! with
 //!
 //! ```text
 //! |x - a| <= e_k A,   |a| <= A.
 //! ```
 //!
-//! A double x is (x, |x|), with k = 0. Let (b, B) stand for y, with l roundings. 1 + e_k times 1 + e_l is 1 + e_(k+l), so the sizes
+//! A double x is (x, |x|), with k = 0. Let (b, B) stand for y, with l roundings. 1 + e_k times 1 + e_l is 1 + e_(k+l), so the
+//! sizes
 //!
 //! ```text
 //! |x + y - (a + b)| <= e_max(k, l) (A + B)
@@ -16,11 +18,11 @@
 //! |sqrt(x) - sqrt(a)| <= |x - a| / sqrt(a) <= e_k A / sqrt(a)                                   for x >= 0, a > 0
 //! ```
 //!
-//! are A + B, A B, A r / |b| and A / sqrt(a), and each result is rounded once more: by u |m| at most, and by eta/2 for a product or
-//! a quotient. The size of a sum loses a factor 1 - u, that of a product (1 - u)^2: (e_k + u) / (1 - u)^2 <= e_k + 2 u (1 + e_k) = e_(k+1).
-//! To the size of a product 2^-1022 is added, of which e_1 is 2 eta. The size of a
-//! quotient and of a root has the factor 1 + 2^-20 more, which covers its roundings and, as long as r <= 2^22 and k, l <= [`MOST`], 1 / (1 -
-//! e_l r); beyond, its size is infinite. The size of a sum or product of doubles is rounded to no less than the double: |a| <= A.
+//! are A + B, A B, A r / |b| and A / sqrt(a), and each result is rounded once more: by u |m| at most, and by eta/2 for a product
+//! or a quotient. The size of a sum loses a factor 1 - u, that of a product (1 - u)^2: (e_k + u) / (1 - u)^2 <= e_k + 2 u (1 +
+//! e_k) = e_(k+1). To the size of a product 2^-1022 is added, of which e_1 is 2 eta. The size of a quotient and of a root has the
+//! factor 1 + 2^-20 more, which covers its roundings and, as long as r <= 2^22 and k, l <= [`MOST`], 1 / (1 - e_l r); beyond, its
+//! size is infinite. The size of a sum or product of doubles is rounded to no less than the double: |a| <= A.
 //!
 //! What no bound is known of has an infinite size, or one that is NaN.
 

@@ -1,8 +1,8 @@
-//! The stresses of a certificate and of its dual pairs in doubles: C eps(v) - tau on a triangle as numbers whose squares and products
-//! add up to the integrals, each a double and how far off it may be.
+//! The stresses of a certificate and of its dual pairs in doubles: C eps(v) - tau on a triangle as numbers whose squares and
+//! products add up to the integrals, each a double and how far off it may be.
 //!
-//! All that leads to these numbers is linear in displacements and forces. So what the doubles leave out is itself a vector, of which only
-//! the length is needed: with a' and b' for the doubles, a'' and b'' for the rest, over the whole body at once,
+//! All that leads to these numbers is linear in displacements and forces. So what the doubles leave out is itself a vector, of
+//! which only the length is needed: with a' and b' for the doubles, a'' and b'' for the rest, over the whole body at once,
 //!
 //! |a| <= |a'| + |a''|,   |a . b - a' . b'| = |a'' . b + a' . b''| <= |a''| |b| + |a'| |b''|.
 
@@ -63,8 +63,8 @@ impl Staged for Ball {
         (quick.value(), quick.error(MOST))
     }
 
-    /// Where all numbers are doubles and there is no body force, to twice the precision of doubles: what forces that balance to rounding
-    /// leave is then known by far better than rounding.
+    /// Where all numbers are doubles and there is no body force, to twice the precision of doubles: what forces that balance to
+    /// rounding leave is then known by far better than rounding.
     fn resultant(loads: &Loads<Ball>, triangle: &Triangle<Ball>) -> Wrench<Ball> {
         let mut places = [[0.0; 2]; 3];
         let mut forces = [[[0.0; 2]; 2]; 3];
@@ -89,9 +89,9 @@ impl Staged for Ball {
     }
 }
 
-/// The resultant of forces on the edges of a triangle, about the origin. Of a force that is p at the start a of an edge and q at its end b
-/// it is 1/2 (p + q), with the moment 1/6 (a x (2 p + q) + b x (p + 2 q)): so with the sums g of what stands beside the vertices x
-/// it is 1/6 of the sums of g and of x x g.
+/// The resultant of forces on the edges of a triangle, about the origin. Of a force that is p at the start a of an edge and q at
+/// its end b it is 1/2 (p + q), with the moment 1/6 (a x (2 p + q) + b x (p + 2 q)): so with the sums g of what stands beside the
+/// vertices x it is 1/6 of the sums of g and of x x g.
 fn resultant(places: &[[f64; 2]; 3], forces: &[[[f64; 2]; 2]; 3]) -> Wrench<Ball> {
     let (mut total, mut moment) = ([Sum::default(); 2], Sum::default());
     for j in 0..3 {
@@ -111,7 +111,8 @@ fn resultant(places: &[[f64; 2]; 3], forces: &[[[f64; 2]; 2]; 3]) -> Wrench<Ball
     Wrench { force: Vector2::new(x, y), moment: sixth(moment), about: Vector2::zeros() }
 }
 
-/// A sum of doubles and of products of them: its rounded value, the sum of all that was rounded off, and that of the sizes of this.
+/// A sum of doubles and of products of them: its rounded value, the sum of all that was rounded off, and that of the sizes of
+/// this.
 #[derive(Clone, Copy, Default)]
 struct Sum {
     value: f64,
@@ -160,7 +161,8 @@ impl Sum {
     }
 }
 
-/// x y less the rounded product, by Dekker's transformation: each factor is cut into two doubles of 26 bits, whose products are exact.
+/// x y less the rounded product, by Dekker's transformation: each factor is cut into two doubles of 26 bits, whose products are
+/// exact.
 #[inline]
 fn off_product(x: f64, y: f64, product: f64) -> f64 {
     let cut = |x: f64| {
@@ -172,8 +174,8 @@ fn off_product(x: f64, y: f64, product: f64) -> f64 {
     ((a * c - product) + a * d + b * c) + b * d
 }
 
-/// Roundings that stand for the radius of a force, which formulas are linear in: what the radius adds to the error is counted [`MOST`]
-/// over this times.
+/// Roundings that stand for the radius of a force, which formulas are linear in: what the radius adds to the error is counted
+/// [`MOST`] over this times.
 const OF_RADIUS: u32 = 64;
 
 /// Roundings that stand for the radius of a difference of two places or displacements.
@@ -211,8 +213,8 @@ fn quickly<S: Staged>(loads: &Loads<S>) -> Loads<S::Quick> {
 /// int_T a : C^-1 b is the sum of so many products.
 const COUNT: usize = 21;
 
-/// What does not depend on the stress of a triangle in int_T a : C^-1 b: the law of the material, and for its moduli m the roots of 2 |T| /
-/// (576 m), each a double and its error.
+/// What does not depend on the stress of a triangle in int_T a : C^-1 b: the law of the material, and for its moduli m the roots
+/// of 2 |T| / (576 m), each a double and its error.
 struct Law<N> {
     squares: Squares<N>,
     roots: [(f64, f64); 3],
@@ -228,10 +230,10 @@ impl<N: Enclosing> Law<N> {
         Law { squares, roots }
     }
 
-    /// Numbers whose products with those of another stress, times 8, 3 and 1 and the squares of the roots, add up to int_T a : C^-1 b: for affine functions with the values a, b, c on
-    /// a part, c at the centroid, those of [`Composite::energy`], c, s = a + b + 2/3 c and a - b. The products of a stress with bulges
-    /// h, 4 mu_p mu_q h_pq, and one without are those of its projection on affine functions on each part, which has 3/5 (h_pq +
-    /// h_pr) - 1/5 h_qr more at p.
+    /// Numbers whose products with those of another stress, times 8, 3 and 1 and the squares of the roots, add up to int_T a :
+    /// C^-1 b: for affine functions with the values a, b, c on a part, c at the centroid, those of [`Composite::energy`], c, s =
+    /// a + b + 2/3 c and a - b. The products of a stress with bulges h, 4 mu_p mu_q h_pq, and one without are those of its
+    /// projection on affine functions on each part, which has 3/5 (h_pq + h_pr) - 1/5 h_qr more at p.
     fn of_stress(&self, tau: &Composite<N>) -> [N; COUNT] {
         let two_thirds = N::from(2) / N::from(3);
         let (mut corners, mut centres, mut mean) = (tau.corners, [tau.centre; 3], tau.centre);
@@ -302,8 +304,8 @@ pub(crate) struct Numbers {
 /// The root of 3.
 const SQRT_3: f64 = 1.732_050_807_568_877_2;
 
-/// Errors are small if they are no more than this part of the doubles, in the norm of a triangle: they add no more than that to the width
-/// of an interval.
+/// Errors are small if they are no more than this part of the doubles, in the norm of a triangle: they add no more than that to
+/// the width of an interval.
 pub(crate) const SHARP: f64 = 1e-4;
 
 /// Roots of 8, 3 and 1, rounded.
@@ -313,8 +315,9 @@ const FACTORS: [f64; 7] = [2.0 * std::f64::consts::SQRT_2, SQRT_3, SQRT_3, SQRT_
 const GROWTH: f64 = 1.0 + 16.0 * f64::EPSILON;
 
 impl Numbers {
-    /// Those of [`Law::of_stress`], x to e, times the roots of what their squares are to be multiplied with, r to d: x r to e (r + d) + |x| d
-    /// and its rounding, where d is that of the root and two roundings, of its factor and by it. What underflows is in [`TINY`].
+    /// Those of [`Law::of_stress`], x to e, times the roots of what their squares are to be multiplied with, r to d: x r to
+    /// e (r + d) + |x| d and its rounding, where d is that of the root and two roundings, of its factor and by it. What
+    /// underflows is in [`TINY`].
     #[inline]
     fn new<N: Copy>(
         all: &[N; COUNT],
@@ -358,8 +361,8 @@ fn dot(a: &[f64; COUNT], b: &[f64; COUNT]) -> f64 {
 /// 24 u, and more.
 const OF_DOT: f64 = 16.0 * f64::EPSILON;
 
-/// In the squares of numbers, of their errors and in the sums of these no more than this underflows; in one of products no more than `OF_DOT` times this, so that what the lengths have
-/// more by it covers both.
+/// In the squares of numbers, of their errors and in the sums of these no more than this underflows; in one of products no more
+/// than `OF_DOT` times this, so that what the lengths have more by it covers both.
 pub(crate) const TINY: f64 = 1e-300;
 
 /// The squares of the lengths of doubles and of their errors, over the triangles: upper bounds.
@@ -439,8 +442,8 @@ impl<'a, S: Staged> Place<'a, S> {
         Place { t, quick, triangle, slow: OnceCell::new() }
     }
 
-    /// Of a certificate in equilibrium, the numbers of C eps(v) - tau and, if it is asked for, an upper bound of |v|_a^2: in the quicker
-    /// numbers or, where these are not sharp, in the others.
+    /// Of a certificate in equilibrium, the numbers of C eps(v) - tau and, if it is asked for, an upper bound of |v|_a^2: in the
+    /// quicker numbers or, where these are not sharp, in the others.
     pub fn stresses(
         &self,
         certificate: &Certificate,

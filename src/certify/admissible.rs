@@ -101,7 +101,8 @@ fn is_tilted(n: Vector2<f64>) -> bool {
     n[0] != 0.0 && n[1] != 0.0
 }
 
-/// Puts v, which may be `size` large, on the obstacle to the last bit, where it is there but for rounding, and n is along an axis.
+/// Puts v, which may be `size` large, on the obstacle to the last bit, where it is there but for rounding, and n is along an
+/// axis.
 fn touch(n: Vector2<f64>, gap: f64, size: f64, v: &mut [f64; 2]) {
     let near = 512.0 * f64::EPSILON * (gap.abs() + size);
     for c in 0..2 {
@@ -167,8 +168,8 @@ fn out_of(walls: &[Wall], v: Vector2<f64>, free: Free) -> Vector2<f64> {
     nearest.or_else(farthest).unwrap_or(v)
 }
 
-/// Makes the Bernstein coefficients of v . d - g between the ends of an edge of Gamma_C negative, by the bulge of v, which is at most
-/// `size`, and `further` than that.
+/// Makes the Bernstein coefficients of v . d - g between the ends of an edge of Gamma_C negative, by the bulge of v, which is at
+/// most `size`, and `further` than that.
 fn push_between(
     edge: &Contact,
     v: [Vector2<f64>; 2],

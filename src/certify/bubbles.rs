@@ -1,20 +1,21 @@
 //! Stresses for what affine body forces and tractions lack (docs/theory.md, section 7.4).
 //!
-//! On a triangle let B = sum c_ia l_j l_k l_a E_i (x) E_i over the edges i and the vertices a (i, j, k in turn). It has no traction on
-//! the boundary: on edge i, E_i . N_i = 0, on the others l_j l_k = 0. Its divergence is
+//! On a triangle let B = sum c_ia l_j l_k l_a E_i (x) E_i over the edges i and the vertices a (i, j, k in turn). It has no
+//! traction on the boundary: on edge i, E_i . N_i = 0, on the others l_j l_k = 0. Its divergence is
 //!
 //! div B = sum c_ia E_i d_ia,   d_ia = l_a (l_j - l_k) + l_j l_k (grad_k - grad_j) l_a,
 //!
 //! for along E_i l_k grows by 1 and l_j falls by 1. These nine fields are independent, and the quadratic fields that are
 //! orthogonal to rigid motions have nine dimensions: for a force f' of that kind there is a B with div B = -f', and
-//! int f' . w = int B : eps(w) <= |B|_{C^-1} |w|_a with no constant. Of any other f' the B that leaves least is taken; the rest is orthogonal to
-//! rigid motions as f' is.
+//! int f' . w = int B : eps(w) <= |B|_{C^-1} |w|_a with no constant. Of any other f' the B that leaves least is taken; the rest
+//! is orthogonal to rigid motions as f' is.
 //!
-//! A traction t' on edge i that is the second Legendre polynomial 1 - 6 s (1 - s) times c is that of -6 l_j l_k S + tau, S symmetric with
-//! S n = c and tau the composite stress with the traction c on the edge and minus the divergence of the first for a load.
+//! A traction t' on edge i that is the second Legendre polynomial 1 - 6 s (1 - s) times c is that of -6 l_j l_k S + tau, S
+//! symmetric with S n = c and tau the composite stress with the traction c on the edge and minus the divergence of the first for
+//! a load.
 //!
-//! Without them the bound of P2 is 1.40 times as large for the smooth solution of `signorini convergence` on 8 x 8 cells, and at most 1.16
-//! times for loads given as expressions in cases.
+//! Without them the bound of P2 is 1.40 times as large for the smooth solution of `signorini convergence` on 8 x 8 cells, and at
+//! most 1.16 times for loads given as expressions in cases.
 
 use nalgebra::Vector2;
 

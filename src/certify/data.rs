@@ -179,8 +179,8 @@ pub(super) fn rule(function: &dyn Function) -> Rule {
 /// Data that doubles know to this part of their size are taken for known.
 const KNOWN: f64 = 1e-10;
 
-/// The amount by which `f` may be off at some of these places, where its terms cancel in doubles and that is not negligible beside its
-/// values.
+/// The amount by which `f` may be off at some of these places, where its terms cancel in doubles and that is not negligible
+/// beside its values.
 pub(super) fn cancellation(
     f: &SharedFunction,
     places: impl Iterator<Item = [f64; 2]>,

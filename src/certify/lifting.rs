@@ -40,8 +40,8 @@ pub(super) struct Lifter<'a> {
     factor: Factor,
 }
 
-/// The number of times that rho is improved around every vertex: where contact ends its traction is infinite, and what it starts from is not
-/// near.
+/// The number of times that rho is improved around every vertex: where contact ends its traction is infinite, and what it starts
+/// from is not near.
 const DUAL_SWEEPS: usize = 24;
 
 /// Two directions with a sine below this are parallel.

@@ -87,7 +87,8 @@ pub struct Continuous {
     pub reason: Option<String>,
     /// The square root of each triangle's share in the square of the bound, and |v - w|_a there, by the triangles of the mesh.
     pub indicators: Vec<f64>,
-    /// The difference between the problem that is bounded and the one that is meant, if there is one; `rigorous` is about the former.
+    /// The difference between the problem that is bounded and the one that is meant, if there is one; `rigorous` is about the
+    /// former.
     pub problem: Option<String>,
     /// J(u) lies between these; `None` where the data are outside the exact class.
     pub energy: Option<[f64; 2]>,

@@ -1,8 +1,8 @@
 //! Gamma_C on the mesh: its edges with their functionals and gamma = gamma0 h_T of (7), the coercivity number kappa.
 //!
 //! The direction of contact is a field n~, given at the nodes: by the obstacle's closest point where there is an obstacle, else
-//! by the normal of the smooth boundary (`boundary_normals`), on which the nodes are placed when the gap is measured. On a straight line
-//! without an obstacle n~ = n, and all is the paper's method to the bit.
+//! by the normal of the smooth boundary (`boundary_normals`), on which the nodes are placed when the gap is measured. On a
+//! straight line without an obstacle n~ = n, and all is the paper's method to the bit.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;

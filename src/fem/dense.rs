@@ -21,8 +21,8 @@ pub fn inner(f: &[[f64; 2]], u: &[[f64; 2]]) -> f64 {
 const MOST_SWEEPS: usize = 40;
 
 /// The singular values of the matrix with these rows of `n` entries, the largest first, each with its right singular vector, by
-/// Jacobi's rotations of the columns (Hestenes): a rotation makes two of them orthogonal, and where all are, their lengths are the
-/// values. Small ones keep their digits beside large ones. There are as many as columns, zeros among them.
+/// Jacobi's rotations of the columns (Hestenes): a rotation makes two of them orthogonal, and where all are, their lengths are
+/// the values. Small ones keep their digits beside large ones. There are as many as columns, zeros among them.
 pub fn singular_vectors(rows: &[Vec<f64>], n: usize) -> Vec<(f64, Vec<f64>)> {
     let mut columns: Vec<Vec<f64>> =
         (0..n).map(|j| rows.iter().map(|row| row[j]).collect()).collect();

@@ -127,7 +127,8 @@ impl Degree {
         }
     }
 
-    /// The amount by which the length of an edge counts more where the direction of contact turns: [`contact_edge::turning_factor`].
+    /// The amount by which the length of an edge counts more where the direction of contact turns:
+    /// [`contact_edge::turning_factor`].
     pub fn turning_factor<S: Scalar>(self, cosine: S) -> S {
         match self {
             Degree::One => contact_edge::turning_factor::<P1, S, 3, 2>(cosine),

@@ -1,7 +1,7 @@
 //! Theorem 3.5 with a number, for P1 and u in H^2 (nu = 1/2): the interpolation estimates (22)-(24) with explicit constants
-//! (docs/theory.md, 9.6). With eta = u - I u, I u the Lagrange interpolant, K the largest eigenvalue of A (2 mu + 2 \[lambda\]+ where it is
-//! isotropic), M = A_nnnn (lambda + 2 mu), on a
-//! triangle T with the sides a, b, c, the diameter h and an edge E on Gamma_C:
+//! (docs/theory.md, 9.6). With eta = u - I u, I u the Lagrange interpolant, K the largest eigenvalue of A (2 mu + 2 \[lambda\]+
+//! where it is isotropic), M = A_nnnn (lambda + 2 mu), on a triangle T with the sides a, b, c, the diameter h and an edge E on
+//! Gamma_C:
 //!
 //! (22)  |grad eta|_T <= c_T |u|_{2,T},   c_T^2 = (abc/(4 |T|))^2 - (a^2 + b^2 + c^2)/30 - (|T|^2/5)(a^-2 + b^-2 + c^-2)
 //!       |grad eta|_E <= t_T |u|_{2,T},   t_T^2 = (|E|/|T|) (c_T^2 + h c_T)

@@ -139,8 +139,8 @@ struct Paths<'a> {
 const CLASS: u32 = 49;
 
 impl Paths<'_> {
-    /// To all triangles of the part of the body that `root` is in. Triangles wait in classes of S_T, the smallest first; one that is
-    /// reached again by a shorter path waits again, so the paths that are left are shortest ones.
+    /// To all triangles of the part of the body that `root` is in. Triangles wait in classes of S_T, the smallest first; one that
+    /// is reached again by a shorter path waits again, so the paths that are left are shortest ones.
     fn explore(&mut self, root: usize, part: usize) {
         (self.along[root], self.part[root]) = (0.0, part);
         let mut waiting = BTreeMap::from([(0, vec![root])]);

@@ -19,8 +19,8 @@ const PLENTY: u32 = 24;
 /// quadrature error must not show beside the error of the method.
 const ENOUGH_AT_KINKS: u32 = 13;
 
-/// The number of points along each direction that the rule for a load times a shape function of degree `shape` has: n are exact for
-/// degree 2n - 2 on a triangle, 2n - 1 on an edge.
+/// The number of points along each direction that the rule for a load times a shape function of degree `shape` has: n are exact
+/// for degree 2n - 2 on a triangle, 2n - 1 on an edge.
 fn points(load: &dyn Function, shape: usize) -> usize {
     let enough = if load.kink().is_some() { ENOUGH_AT_KINKS } else { ENOUGH };
     let degree = load.degree().unwrap_or(enough).min(PLENTY) as usize + shape;

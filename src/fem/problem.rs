@@ -26,8 +26,8 @@ pub trait Function: Send + Sync {
         None
     }
 
-    /// A ball that contains the exact value at `x`, where [`Function::at`] has what doubles make of it; `None` if that is the exact one
-    /// or there is no other.
+    /// A ball that contains the exact value at `x`, where [`Function::at`] has what doubles make of it; `None` if that is the
+    /// exact one or there is no other.
     fn enclosed(&self, _x: [f64; 2]) -> Option<Ball> {
         None
     }

@@ -228,8 +228,9 @@ where
     motions
 }
 
-/// The solutions of homogeneous equations in `count` unknowns, at most three, given by their rows: a basis in which as many unknowns
-/// as can be are zero. A direction in which the equations have a singular value that `stops` is not free, beside the largest value.
+/// The solutions of homogeneous equations in `count` unknowns, at most three, given by their rows: a basis in which as many
+/// unknowns as can be are zero. A direction in which the equations have a singular value that `stops` is not free, beside the
+/// largest value.
 pub(super) fn null_space(
     rows: &[Vec<f64>],
     count: usize,

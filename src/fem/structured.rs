@@ -1,6 +1,6 @@
-//! Structured meshes of the rectangle (0, width) x (0, height), with the sides named left, right, bottom and top; of the trapezoid
-//! (0,0), (1,0), (1,1), (cot omega, 1), whose angle at the origin is omega: the unit square in n x n cells, diagonals right, under
-//! the map (s, t) -> (s + (1 - s) t cot omega, t); and families of both, refined and moved at random.
+//! Structured meshes of the rectangle (0, width) x (0, height), with the sides named left, right, bottom and top; of the
+//! trapezoid (0,0), (1,0), (1,1), (cot omega, 1), whose angle at the origin is omega: the unit square in n x n cells, diagonals
+//! right, under the map (s, t) -> (s + (1 - s) t cot omega, t); and families of both, refined and moved at random.
 //!
 //! ```text
 //!     3 --- 4 --- 5      3 --- 4 --- 5      4 --- 5 --- 6

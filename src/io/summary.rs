@@ -202,8 +202,8 @@ fn proved_force(r: &Results, boundary: &str, thickness: f64) -> Option<String> {
     Some(format!("{proved} {}", between([low * thickness, high * thickness])))
 }
 
-/// Writes two numbers, rounded outwards to two digits of their distance, and no fewer than other numbers have: by half of the last
-/// digit, for a number that begins with 1.
+/// Writes two numbers, rounded outwards to two digits of their distance, and no fewer than other numbers have: by half of the
+/// last digit, for a number that begins with 1.
 fn between([low, high]: [f64; 2]) -> String {
     let distance = (high - low) / low.abs().max(high.abs());
     let digits =

@@ -130,7 +130,8 @@ impl Outcome {
     }
 }
 
-/// A correction this small, relative, leaves nothing to correct; likewise an imbalance of the forces on the body, in parts of them.
+/// A correction this small, relative, leaves nothing to correct; likewise an imbalance of the forces on the body, in parts of
+/// them.
 const SMALL: f64 = 1e-10;
 
 /// Where the imbalance of the forces, rounding included, is larger in parts of them, better arithmetic is tried.

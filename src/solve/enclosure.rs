@@ -367,8 +367,8 @@ fn slid(mut u: Vec<[Ball; 2]>, reported: &[[f64; 2]], slides: &Slides) -> Vec<[B
     u
 }
 
-/// Returns whether the edges that could stop a motion that slides have P <= 0 for all fields that differ from u by as much as `nodes`
-/// say, and by `radius` in the norm of A_S: then the motion changes nothing.
+/// Returns whether the edges that could stop a motion that slides have P <= 0 for all fields that differ from u by as much as
+/// `nodes` say, and by `radius` in the norm of A_S: then the motion changes nothing.
 fn stays_off(
     d: &Discretization,
     lines: &[ContactFace<Ball>],

@@ -125,8 +125,8 @@ impl Iterate {
     }
 }
 
-/// The displacement that a solve ends with, and what the definitions say of it: P on Gamma_C and the residual of (8) at all degrees
-/// of freedom, prescribed ones included, where it is the reaction.
+/// The displacement that a solve ends with, and what the definitions say of it: P on Gamma_C and the residual of (8) at all
+/// degrees of freedom, prescribed ones included, where it is the reaction.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Evaluated {

@@ -267,8 +267,8 @@ fn stiffest(problem: &Problem) -> f64 {
     problem.material.distinct().iter().map(largest_entry).fold(0.0, f64::max)
 }
 
-/// Returns whether the products of the lengths and moduli of a problem, some of each, are normal doubles, as far as the numbers are
-/// lengths and moduli at all.
+/// Returns whether the products of the lengths and moduli of a problem, some of each, are normal doubles, as far as the numbers
+/// are lengths and moduli at all.
 fn can_be_multiplied(problem: &Problem) -> bool {
     let extent = |c: usize| {
         let coordinates = || problem.mesh.vertices().iter().map(|x| x[c]);

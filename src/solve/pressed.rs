@@ -37,8 +37,8 @@ type Row = Vec<Ball>;
 struct Piece {
     /// Where it starts and ends; a point does both at once.
     ends: [f64; 2],
-    /// The coefficients on it, of a polynomial with given values at the nodes, that enclose the polynomial there (Bernstein's): first
-    /// its values at the ends.
+    /// The coefficients on it, of a polynomial with given values at the nodes, that enclose the polynomial there (Bernstein's):
+    /// first its values at the ends.
     coefficients: Vec<Row>,
     /// The most that the square of a polynomial is on it whose square has the integral 1 over it; attained at the ends.
     square: Ball,
@@ -106,8 +106,8 @@ impl Piece {
         halves.into_iter().flat_map(|half| Self::within(degree, p, half, halvings - 1)).collect()
     }
 
-    /// The piece of an edge with these ends. Boole's rule is exact for the products. The square is at most the sum of 2 k + 1 over
-    /// the length, for k up to the degree p: that is (p + 1)^2, as Legendre's polynomials are at most 1.
+    /// The piece of an edge with these ends. Boole's rule is exact for the products. The square is at most the sum of 2 k + 1
+    /// over the length, for k up to the degree p: that is (p + 1)^2, as Legendre's polynomials are at most 1.
     fn between(degree: Degree, ends: [f64; 2]) -> Self {
         let start = Ball::from(ends[0]);
         let length = Ball::from(ends[1]) - start;

@@ -107,8 +107,8 @@ fn error_and_bound_fall_as_for_smooth_solutions_on_adapted_meshes_where_uniform_
     assert!(error < RECOVERED && bound < RECOVERED, "(b): {error:.3} {bound:.3}");
 }
 
-/// Of degree 2 the rate is 1 where meshes are graded towards what is singular: the corner of (c), and the end of contact of (b), where uniform
-/// ones have alpha/2 and 3/4.
+/// Of degree 2 the rate is 1 where meshes are graded towards what is singular: the corner of (c), and the end of contact of (b),
+/// where uniform ones have alpha/2 and 3/4.
 #[test]
 fn error_and_bound_of_p2_fall_as_for_smooth_solutions_on_adapted_meshes() {
     let of_corner = |omega: f64| {
@@ -293,8 +293,8 @@ fn a_level_without_a_solution_says_which() {
     assert!(error.to_string().starts_with("[adapt]: level 0: no convergence"), "{error}");
 }
 
-/// Edges of some thousandths of the body, by which a margin that is known to the rounding of coordinates only is divided: the bound
-/// stopped falling, rose, or was no number.
+/// Edges of some thousandths of the body, by which a margin that is known to the rounding of coordinates only is divided: the
+/// bound stopped falling, rose, or was no number.
 #[test]
 fn the_best_level_is_kept_and_no_level_is_lost() {
     let circle = "[mesh]\nrectangle = { width = 1.0, height = 1.0, nx = 8, ny = 8 }\n[material]\nlambda = 1.0\nmu = 1.0\n[boundary.top]\ndisplacement = [\"0\", \"-0.03\"]\n[obstacle.c]\ncircle = { center = [0.4, -1.0], radius = 1.0, side = \"outside\" }\n[boundary.bottom]\ncontact = { obstacle = \"c\" }\n";

@@ -1,5 +1,5 @@
-//! What `audit` concludes from the files of a certificate and from nothing else: the bound, the reservations, whose problem it is;
-//! and what it shows of their text.
+//! What `audit` concludes from the files of a certificate and from nothing else: the bound, the reservations, whose problem it
+//! is; and what it shows of their text.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -185,8 +185,8 @@ impl Choice {
         [(x + self.offset) * self.length, (y - self.offset) * self.length]
     }
 
-    /// A grid of cells, of which corner (i, j) lies where `shape` moves the point (i / nx, j / ny) of the unit square, if its triangles
-    /// are any.
+    /// A grid of cells, of which corner (i, j) lies where `shape` moves the point (i / nx, j / ny) of the unit square, if its
+    /// triangles are any.
     fn grid(
         &self,
         cells: [usize; 2],
@@ -552,8 +552,8 @@ const SAME_LOAD: f64 = 1e-15;
 /// On a circle, also by the normals: vertices that are rounded to doubles know them to 1e-16 over the length of a facet.
 const SAME_CIRCLE: f64 = 1e-12;
 
-/// What is wrong with the solver's answer to this body, if anything is; `radii` gets the relative radius of its enclosure, if there
-/// is one.
+/// What is wrong with the solver's answer to this body, if anything is; `radii` gets the relative radius of its enclosure, if
+/// there is one.
 fn wrong(body: &Body, radii: &mut Vec<f64>) -> Option<String> {
     let again = body.again();
     let (solution, _) = match solve(

@@ -1,5 +1,5 @@
-//! Certificates of bodies that contact alone holds, and of v pushed out of obstacles of every kind: what balances the loads is the
-//! pressure on Gamma_C, and v is as far outside as balls can see.
+//! Certificates of bodies that contact alone holds, and of v pushed out of obstacles of every kind: what balances the loads is
+//! the pressure on Gamma_C, and v is as far outside as balls can see.
 
 use std::path::{Path, PathBuf};
 

@@ -1,6 +1,6 @@
-//! Certificates of bodies that are held along a direction alone, at any angle, and of tractions beside what is prescribed: a body that is
-//! turned has the bound of the body as it stands, an exact solution stays below its bound whichever of its data are prescribed,
-//! and what is changed is rejected.
+//! Certificates of bodies that are held along a direction alone, at any angle, and of tractions beside what is prescribed: a body
+//! that is turned has the bound of the body as it stands, an exact solution stays below its bound whichever of its data are
+//! prescribed, and what is changed is rejected.
 
 use std::sync::Arc;
 
@@ -23,8 +23,9 @@ fn method(degree: Degree) -> Method {
     Method { degree, gamma0: Gamma0::Auto, ..Method::default() }
 }
 
-/// A block on a roller at its left side, fixed at its top by its normal and its tangent, pressed on a floor that slopes; turned by an angle. The
-/// displacement along the normal of the roller is `on_roller` of X and Y, the coordinates of the block as it stands.
+/// A block on a roller at its left side, fixed at its top by its normal and its tangent, pressed on a floor that slopes; turned
+/// by an angle. The displacement along the normal of the roller is `on_roller` of X and Y, the coordinates of the block as it
+/// stands.
 fn turned(n: usize, angle: f64, on_roller: &str) -> Problem {
     let (sin, cos) = f64::sin_cos(angle);
     let there = |[x, y]: [f64; 2]| [cos * x - sin * y, sin * x + cos * y];
@@ -155,8 +156,8 @@ fn a_traction_beside_a_prescribed_component_is_certified() {
     }
 }
 
-/// Control: the bound is one of the problem with that traction. Without it the true solution is another, and the bound of its distance from
-/// the old v, by the old stress, is none: the checker finds the stress out of balance.
+/// Control: the bound is one of the problem with that traction. Without it the true solution is another, and the bound of its
+/// distance from the old v, by the old stress, is none: the checker finds the stress out of balance.
 #[test]
 fn control_another_traction_beside_a_support_is_rejected() {
     let problem = with_shear();

@@ -65,7 +65,8 @@ fn the_bound_is_above_the_error_and_below_thrice_the_error_of_singular_solutions
     bounds("(c)", &on_trapezoid(&solution, 0.75, Degree::One, 8), 4, |_| 3.0);
 }
 
-/// The stress is affine on three parts of each quarter of a triangle: a little farther from that of a smooth u than C eps(u^h) is.
+/// The stress is affine on three parts of each quarter of a triangle: a little farther from that of a smooth u than C eps(u^h)
+/// is.
 #[test]
 fn the_bound_of_p2_falls_with_h_squared_and_is_below_twice_the_error_of_smooth_solutions() {
     for (what, solution) in
@@ -554,8 +555,8 @@ fn a_certificate_is_accepted_as_it_was_written() {
     }
 }
 
-/// Where contact ends, and the middles of edges, are no doubles: in balls they are as uncertain as their coordinates are large, and
-/// the triangles are small beside these.
+/// Where contact ends, and the middles of edges, are no doubles: in balls they are as uncertain as their coordinates are large,
+/// and the triangles are small beside these.
 #[test]
 fn certificates_of_bodies_far_from_the_origin_are_accepted() {
     let [far, small] = [3000.1, 0.1];
@@ -630,8 +631,8 @@ enum Word {
     Gap,
     /// A displacement or a stress that proves a force, which is near the best: an interval feels the square of a change only.
     Best,
-    /// A bulge of v: the work of C eps(u^h) - tau with a bulge is 0, so that a bound feels the square of a change only, which is to be
-    /// more than a rounding error of the bound.
+    /// A bulge of v: the work of C eps(u^h) - tau with a bulge is 0, so that a bound feels the square of a change only, which is
+    /// to be more than a rounding error of the bound.
     Bulge,
 }
 
@@ -673,7 +674,8 @@ fn tamper(bytes: &mut [u8], word: usize, is: Word, random: &mut Random) -> bool 
         Word::Whole if how < 0.0 => old.wrapping_add(1),
         Word::Whole => old.wrapping_add(2 + (100.0 * (1.0 + random.next())) as u64),
         Word::Number | Word::Bulge | Word::Best => {
-            // A triangle may be out of balance by 128 units of rounding of the dozen forces on it, of which this may be one of the smaller.
+            // A triangle may be out of balance by 128 units of rounding of the dozen forces on it, of which this may be one of
+            // the smaller.
             let least = match is {
                 Word::Best => 1e-4,
                 Word::Bulge => 1e-5,

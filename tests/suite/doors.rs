@@ -1,6 +1,6 @@
-//! The command where its surroundings give out: pipes that close, disks that are full, signals, files that are none, names that attack the
-//! terminal, and the other engine, which runs nothing of the folder in which it is started. Each case is one that once went
-//! wrong. The random ones (kills, races, a small disk) are in `.ci/faults.py`.
+//! The command where its surroundings give out: pipes that close, disks that are full, signals, files that are none, names that
+//! attack the terminal, and the other engine, which runs nothing of the folder in which it is started. Each case is one that once
+//! went wrong. The random ones (kills, races, a small disk) are in `.ci/faults.py`.
 
 use std::fs;
 use std::os::unix::fs::{PermissionsExt, symlink};

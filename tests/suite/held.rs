@@ -117,8 +117,8 @@ fn bodies_without_loads_are_held_by_what_squeezes_them() {
         let tight = |sides: [&'static str; 4]| sides.map(|side| (side, contact(|_| -0.005)));
         let squeezed = unloaded(cell(), tight(["left", "right", "bottom", "top"]).into());
         let s = solved(&squeezed, degree);
-        // Strains of -0.01 both ways: a pressure of 0.01 E / ((1 + nu) (1 - 2 nu)) on four sides of length 1, but for what Nitsche's
-        // method lets through, which is nothing here.
+        // Strains of -0.01 both ways: a pressure of 0.01 E / ((1 + nu) (1 - 2 nu)) on four sides of length 1, but for what
+        // Nitsche's method lets through, which is nothing here.
         let pressure = 0.01 / (1.3 * 0.4);
         assert_abs_diff_eq!(s.quantities.contact_force, 4.0 * pressure, epsilon = SOLVED);
         assert_eq!(s.method.slides, 0);

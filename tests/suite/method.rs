@@ -324,7 +324,8 @@ fn gauss_elimination(mut a: Vec<Vec<f64>>) -> Vec<f64> {
     x
 }
 
-/// That it is the line search which ends it is a property of `properties::newton`: the solver does not start here, but from soft springs.
+/// That it is the line search which ends it is a property of `properties::newton`: the solver does not start here, but from soft
+/// springs.
 #[test]
 fn plain_newton_cycles_where_the_solver_ends() {
     let (problem, method) = cycling();

@@ -1,7 +1,7 @@
 //! Peak pressures on curved lines of contact over four refinements, against values of other origin: a plate on a pin and a
 //! shaft in a bearing against `reference/peaks.py` (mapped biquadratic elements, conditions at the nodes, an active set), a
-//! disk on a plane against Hertz. What the normals of the facets give instead is in `parts`. The two coarser levels are run by `cargo test`; all four, with the table of docs/parts.md:
-//! `cargo test --test suite peaks:: -- --ignored --nocapture`.
+//! disk on a plane against Hertz. What the normals of the facets give instead is in `parts`. The two coarser levels are run by
+//! `cargo test`; all four, with the table of docs/parts.md: `cargo test --test suite peaks:: -- --ignored --nocapture`.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 

@@ -2,7 +2,8 @@
 //! structured meshes and on the same with all vertices moved at random, those of the contact line along it.
 //!
 //! Three bodies are the rectangle (-2, 2) x (0, 2) of a half plane that a punch presses on at y = 0, with the exact
-//! displacement on the other sides. A punch that is flat for |x| < s and presses with the force F has, with Westergaard's function
+//! displacement on the other sides. A punch that is flat for |x| < s and presses with the force F has, with Westergaard's
+//! function
 //!
 //! ```text
 //! Z(z) = -i F / (pi sqrt(z^2 - s^2)),   sigma_y = Re Z + y Im Z',   sigma_xy = -y Re Z',
@@ -12,8 +13,8 @@
 //! and one with the gap (|x| - b)^2 / 2R for |x| > b is the sum of such for b < s < a with the forces
 //! F'(s) ds = (E* / R) s arccos(b / s) ds: b = 0 is Hertz. The fourth is a ring that a pin stretches (Lame).
 //!
-//! `cargo test` runs the two coarser meshes; `cargo test --test suite recovered:: -- --ignored --nocapture` all, with the table of
-//! docs/parts.md.
+//! `cargo test` runs the two coarser meshes; `cargo test --test suite recovered:: -- --ignored --nocapture` all, with the table
+//! of docs/parts.md.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::Range;
@@ -107,7 +108,8 @@ fn places(
     vertices
 }
 
-/// The half plane on a floor of this gap: 2n x n cells, which shrink smoothly towards the origin; contact within `width` cells from it.
+/// The half plane on a floor of this gap: 2n x n cells, which shrink smoothly towards the origin; contact within `width` cells
+/// from it.
 fn half_plane(
     n: usize,
     width: usize,
@@ -269,8 +271,8 @@ fn order(errors: &[f64]) -> f64 {
     (errors[0] / errors[steps]).log2() / steps as f64
 }
 
-/// On structured meshes the order is nearer to 2 than to 1 where the pressure is smooth, and that of a pressure off by 1/n is not;
-/// everywhere else the last of four errors is smaller than the first.
+/// On structured meshes the order is nearer to 2 than to 1 where the pressure is smooth, and that of a pressure off by 1/n is
+/// not; everywhere else the last of four errors is smaller than the first.
 fn orders_hold_on(levels: Range<usize>, families: &[Family], meshes: &[(bool, &str)]) {
     let mut missed = Vec::new();
     for family in families {

@@ -7,8 +7,8 @@
 //!
 //! Cases with an exact solution also store the errors. There both sides integrate functions that are singular, each by its
 //! own rule (16 points in each direction and 24 graded ones there, 10 and 20 here): 1e-8 relative. Where the discrete
-//! solution is the exact one (the patch tests), the errors are rounding: up to a thousand roundoffs of the solution's size, the bound of the
-//! patch tests.
+//! solution is the exact one (the patch tests), the errors are rounding: up to a thousand roundoffs of the solution's size, the
+//! bound of the patch tests.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -53,7 +53,8 @@ fn an_obstacle_on_the_other_side_of_the_body_is_refused_with_the_place() {
     }
 }
 
-/// Half a disk in 16 triangles, flat side down, `contact` being all of the round one: its lowest edges face away from what is above.
+/// Half a disk in 16 triangles, flat side down, `contact` being all of the round one: its lowest edges face away from what is
+/// above.
 fn dome() -> String {
     let at = |k: usize| (std::f64::consts::PI * k as f64 / 16.0).sin_cos();
     let mut nodes = "1 0 0 0\n".to_owned();
@@ -143,7 +144,8 @@ boundary = { bottom = "contact", left = "traction", right = "displacement", top 
     }
 }
 
-/// A field on a finer mesh, with noise at the nodes that the mesh of the case lacks, and one on the triangles along the other diagonals.
+/// A field on a finer mesh, with noise at the nodes that the mesh of the case lacks, and one on the triangles along the other
+/// diagonals.
 #[test]
 fn a_field_on_another_mesh_is_not_certified() {
     let of = |n: usize, diagonal: &str| {

@@ -192,8 +192,8 @@ fn a_body_that_is_moved_as_a_whole_to_where_it_touches_is_solved() {
 fn control_where_the_floor_is_reached_earlier_it_is_not_moved_as_a_whole() {
     let problem = moved_down(4, constant(0.0625 - 1e-9));
     let (s, _) = solve(&problem, &method(Degree::One, EXACT), &Settings::default()).unwrap();
-    // Pressed together by 1e-9: sigma_n = -(lambda + 2 mu) 1e-9 where the sides do not bulge, 4 mu (lambda + mu) / (lambda + 2 mu)
-    // times 1e-9 where they are free to.
+    // Pressed together by 1e-9: sigma_n = -(lambda + 2 mu) 1e-9 where the sides do not bulge, 4 mu (lambda + mu) / (lambda + 2
+    // mu) times 1e-9 where they are free to.
     assert!((3e-9..6e-9).contains(&s.quantities.contact_force), "{:e}", s.quantities.contact_force);
     assert!(s.enclosure.unwrap().relative.unwrap() < 1e-5);
 }

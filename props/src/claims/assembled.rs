@@ -4,13 +4,12 @@
 //! Random small problems in doubles: two to eight triangles, turned, stretched and sheared, vertices moved and numbered at
 //! random, contact on one or two sides (one triangle may own two contact edges), displacements that slide or not, loads and
 //! gaps of degree <= 2, tractions with a share of the normal. Every double of the data is a rational number; the definitions
-//! (`naive`, `Definition`) are evaluated on these numbers without error, and each number of the solver must be as near to its definition as its
-//! own roundings allow: |double - exact| <= c 2^-53 m. Here m is the sum of the magnitudes of the terms of the definition
-//! (`Magnitude`: the definition once more, with differences that add), and c is the number of roundings on the longest
-//! way from the data to the number, counted by hand for P2 and listed in `roundings`. This is the usual bound to first
-//! order, with the terms of the definition in the place of the solver's, which are about as large. A bound that no draw
-//! comes near to is no test: the largest ratios of error and bound are reported, and those of `BOUNDS` must exceed
-//! `SHARP`.
+//! (`naive`, `Definition`) are evaluated on these numbers without error, and each number of the solver must be as near to its
+//! definition as its own roundings allow: |double - exact| <= c 2^-53 m. Here m is the sum of the magnitudes of the terms of the
+//! definition (`Magnitude`: the definition once more, with differences that add), and c is the number of roundings on the longest
+//! way from the data to the number, counted by hand for P2 and listed in `roundings`. This is the usual bound to first order,
+//! with the terms of the definition in the place of the solver's, which are about as large. A bound that no draw comes near to is
+//! no test: the largest ratios of error and bound are reported, and those of `BOUNDS` must exceed `SHARP`.
 //!
 //! Square roots are given data: the solver's h_T, |E| and n are first compared with the exact squares and normals
 //! (`roots`), then both sides use them.

@@ -1,5 +1,5 @@
-//! Bounds beside what attains them, or beside their formulas: those of the enclosure and of a certificate are compared with numbers
-//! that are as large as they, so that a bound too small by a tenth is noticed.
+//! Bounds beside what attains them, or beside their formulas: those of the enclosure and of a certificate are compared with
+//! numbers that are as large as they, so that a bound too small by a tenth is noticed.
 //!
 //! - the radius of the enclosure and the constant of (12), by the eigenvector of A on a body where they are attained up to a
 //!   thousandth: without loads and with the obstacle far away, u^h = 0, and the field itself is the error; likewise where kappa is
@@ -55,8 +55,8 @@ const KAPPAS: [f64; 3] = [0.1, 0.5, 0.9];
 /// Steps of the inverse iteration: each multiplies what is not the eigenvector by 1 - kappa or less.
 const STEPS: usize = 400;
 
-/// The radius of the enclosure over the error in the energy norm, with the factor of A times `matrix` at hand; and the square of the
-/// error in the norm of A over what (12) says that it is at least.
+/// The radius of the enclosure over the error in the energy norm, with the factor of A times `matrix` at hand; and the square of
+/// the error in the norm of A over what (12) says that it is at least.
 fn attained(
     mut problem: Problem,
     degree: Degree,
@@ -99,8 +99,8 @@ fn soft_neighbour() -> Result<Problem, String> {
     Ok(problem)
 }
 
-/// With the factor of another matrix the radius is by the bounds at the nodes. Their factor (1 - kappa)^(-1/2) is needed: where kappa
-/// is nearly 1 and attained, `by` times the radius is not below the error.
+/// With the factor of another matrix the radius is by the bounds at the nodes. Their factor (1 - kappa)^(-1/2) is needed: where
+/// kappa is nearly 1 and attained, `by` times the radius is not below the error.
 fn crude_radius(by: f64) -> Outcome {
     let [radius, of_12] = attained(soft_neighbour()?, Degree::One, 1.0 - 1e-8, 1e6)?;
     if !(by * radius >= 1.0 && of_12 <= 1.01) {
@@ -138,8 +138,8 @@ fn radii(by: f64, constant: f64) -> Outcome {
 /// The unit of moduli in which reactions are compared.
 const MODULUS: f64 = 1e6;
 
-/// Two cells, of which one end of a contact edge is held; the other belongs to the only triangle that is not soft, which is clamped. With
-/// gamma of this size contact is as stiff as that.
+/// Two cells, of which one end of a contact edge is held; the other belongs to the only triangle that is not soft, which is
+/// clamped. With gamma of this size contact is as stiff as that.
 fn held_beside_contact() -> Result<Problem, String> {
     let vertices = [[0, 0], [1, 0], [2, 0], [0, 1], [1, 1], [2, 1]].map(|x| x.map(f64::from));
     let sides = [("floor", [0, 1]), ("left", [3, 0]), ("right", [2, 5])];
@@ -157,8 +157,8 @@ fn held_beside_contact() -> Result<Problem, String> {
     Ok(problem)
 }
 
-/// Where the end of a contact edge that is not held is moved, the reaction at the other one is moved by at most half the width of its
-/// interval, and by a fifth of that at least: what contact adds to it is most of both. Widths are counted `by` times.
+/// Where the end of a contact edge that is not held is moved, the reaction at the other one is moved by at most half the width of
+/// its interval, and by a fifth of that at least: what contact adds to it is most of both. Widths are counted `by` times.
 fn reactions(by: f64) -> Outcome {
     let problem = held_beside_contact()?;
     let method = Method { gamma0: Gamma0::Value(0.5 / MODULUS), ..Method::default() };

@@ -1,11 +1,11 @@
 //! The bound of the distance from the true solution, and the checker of its certificates (docs/theory.md, 7.2 and 7.3).
 //!
-//! At a point, with e, t, s for the strains of v, of C^-1 tau and of u, the theorem is |e - t|^2 = |e - s|^2 + |s - t|^2 + 2 (e - s) :
-//! C (s - t), and what contact adds to the integral of the last product is not negative.
+//! At a point, with e, t, s for the strains of v, of C^-1 tau and of u, the theorem is |e - t|^2 = |e - s|^2 + |s - t|^2 + 2 (e -
+//! s) : C (s - t), and what contact adds to the integral of the last product is not negative.
 //!
 //! The checker is given certificates that are made by hand (`by_hand`), which it must evaluate as the definitions say, and wrong
-//! ones (`refusals`), which it must refuse; and certificates of solutions (`solved`), which are compared with the same checker over
-//! rationals, and with the true errors of solutions that are known.
+//! ones (`refusals`), which it must refuse; and certificates of solutions (`solved`), which are compared with the same checker
+//! over rationals, and with the true errors of solutions that are known.
 
 use signorini::kernel::{Ball, Interval, Material, Plane};
 use signorini::nalgebra::Matrix2;

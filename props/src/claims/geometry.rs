@@ -100,8 +100,8 @@ pub fn directions_away_from_the_obstacle() -> Outcome {
     draws::reject(places(), |draw| obstacle(draw, -1.0))
 }
 
-/// On a circle with unequal facets of up to 35 degrees, or on an arc of it between two corners, the normals at the vertices and the
-/// middles of the curves are those of the circle; `facets`: with the facet's middle in place of the curve's.
+/// On a circle with unequal facets of up to 35 degrees, or on an arc of it between two corners, the normals at the vertices and
+/// the middles of the curves are those of the circle; `facets`: with the facet's middle in place of the curve's.
 fn circle(angles: &[f64], facets: bool) -> Verdict {
     on_circle(angles, None, facets)
         .and_then(|()| on_circle(angles, Some(1.5), facets))
@@ -158,8 +158,8 @@ pub fn middles_of_facets_for_those_of_the_curves() -> Outcome {
     draws::reject(facets(), |angles| circle(angles, true))
 }
 
-/// On an ellipse, where an edge has another bend at each end: the cubic with the tangents at the ends, as fast as to go through the
-/// middle that is given, has the normal that is given there; `facets`: with the facet's normal in place of it.
+/// On an ellipse, where an edge has another bend at each end: the cubic with the tangents at the ends, as fast as to go through
+/// the middle that is given, has the normal that is given there; `facets`: with the facet's normal in place of it.
 fn ellipse(angles: &[f64], facets: bool) -> Verdict {
     let n = angles.len();
     let total: f64 = angles.iter().sum();

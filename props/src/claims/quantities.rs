@@ -251,8 +251,8 @@ mod row {
         certified.quantities.list.iter().find(is)?.interval.clone().ok()
     }
 
-    /// What floor, top and load do to the body adds up to 0, and a finer mesh does not contradict a coarse one. With `factor` times the
-    /// load.
+    /// What floor, top and load do to the body adds up to 0, and a finer mesh does not contradict a coarse one. With `factor`
+    /// times the load.
     fn balanced(draw: &Draw, factor: f64) -> Verdict {
         let (Ok((_, _, coarse)), Ok((_, _, fine))) = (draw.certified_on(1), draw.certified_on(2))
         else {

@@ -1,6 +1,6 @@
 //! Theorem 3.5, Corollary 3.6 and Remark 3.7: rates of convergence. They are statements about h -> 0, with constants that
-//! depend on the unknown solution: they can be observed on exact solutions, not established by running code (the bound of P1 with its number is in
-//! `interpolation`).
+//! depend on the unknown solution: they can be observed on exact solutions, not established by running code (the bound of P1 with
+//! its number is in `interpolation`).
 //!
 //! Observed here: the wedge in full contact, whose regularity H^(1 + alpha) makes every norm fall at the rate alpha and no
 //! faster (0 < nu < 1/2), and the end of contact, in H^(5/2), where P1 has the rate 1 and P2 the rate 3/2 of Remark 3.7.

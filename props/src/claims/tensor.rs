@@ -7,7 +7,8 @@
 //! ```
 //!
 //! so that z^2 <= w sigma:eps where A is positive (the inequality of Cauchy and Schwarz in A), with equality for eps = e. w is
-//! d . Q(n) d with the acoustic tensor Q(n), and A_nnnn for d = n; over unit vectors d it is at most the largest eigenvalue of Q(n).
+//! d . Q(n) d with the acoustic tensor Q(n), and A_nnnn for d = n; over unit vectors d it is at most the largest eigenvalue of
+//! Q(n).
 
 use signorini::kernel::contact_edge::traction_stiffness;
 use signorini::kernel::{Material, Plane, Squares, Stress};

@@ -1,4 +1,5 @@
-//! The limit of gamma0, the functionals of a contact edge, and the rules by which the integrals of (8) and of errors are computed.
+//! The limit of gamma0, the functionals of a contact edge, and the rules by which the integrals of (8) and of errors are
+//! computed.
 
 use std::collections::BTreeMap;
 
@@ -146,8 +147,8 @@ fn functionals_of_straight_lines(turned: f64) -> Outcome {
     Ok(())
 }
 
-/// The first 2n moments of a rule on \[0, 1\] with the Legendre polynomials in 2 s - 1 are those of the integral, and the next one
-/// is not: the rule is that of Gauss with n points.
+/// The first 2n moments of a rule on \[0, 1\] with the Legendre polynomials in 2 s - 1 are those of the integral, and the next
+/// one is not: the rule is that of Gauss with n points.
 fn is_gauss(n: usize, rule: &[(f64, f64)]) -> Outcome {
     let of = |x: f64| DoubleDouble::from(x);
     let mut moments = vec![of(0.0); 2 * n + 1];

@@ -213,8 +213,8 @@ fn ordered(times: f64) -> Outcome {
     Ok(())
 }
 
-/// The edges of a contact line on these sides of a body of twelve cells, whose vertices are numbered and whose edges are listed in
-/// any order, follow each other, but for as many `breaks`.
+/// The edges of a contact line on these sides of a body of twelve cells, whose vertices are numbered and whose edges are listed
+/// in any order, follow each other, but for as many `breaks`.
 fn chained(sides: &[&str], breaks: usize) -> Outcome {
     let mut random = Random(2013);
     for _ in 0..10 {

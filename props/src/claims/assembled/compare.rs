@@ -105,9 +105,9 @@ pub(super) fn compared<const N: usize>(
     })
 }
 
-/// The solver's loops over rationals, with the doubles of its discretization for data: A(u, v) for every basis function v, and P0(u)
-/// at the ends of the contact edges, are their definitions. Nothing is rounded: the normal is a unit vector of rational numbers, another
-/// one than the edge has, for none of the sums depends on that.
+/// The solver's loops over rationals, with the doubles of its discretization for data: A(u, v) for every basis function v, and
+/// P0(u) at the ends of the contact edges, are their definitions. Nothing is rounded: the normal is a unit vector of rational
+/// numbers, another one than the edge has, for none of the sums depends on that.
 pub(super) fn loops<const N: usize>(draw: &Draw, mistake: Mistake) -> Verdict {
     // lambda of plane stress is a quotient that doubles round.
     if draw.stress && draw.tensor.is_none() {

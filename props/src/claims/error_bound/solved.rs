@@ -149,11 +149,11 @@ const UNIT: f64 = f64::EPSILON / 2.0;
 /// of terms up to 4 F, and the hold that takes what is left has the lever |E|/6: 64 * 100 * 4 * 6, rounded up.
 const CARRIED: f64 = 262_144.0;
 
-/// By how much balls may exceed the share q of triangle `t`: what rounding does to its forces, times what its shape makes of that.
-/// With the longest edge h and J = 2 |T|, forces that are unknown by r leave N_k . G_i - N_i . G_k unknown by 4 h r, the jump c
-/// by 36 h r / J^2 and the stress at corners and centre by D = 48 h^3 r / J^2 (`kernel::composite`): a triangle that was cut off as a
-/// sliver loses the square of its slenderness. The square form of the energy of (D, D, D) is at most e = 7/4 J D^2 / mu, as
-/// lambda >= 0, and |q(s + d) - q(s)| <= 2 (q e)^(1/2) + e.
+/// By how much balls may exceed the share q of triangle `t`: what rounding does to its forces, times what its shape makes of
+/// that. With the longest edge h and J = 2 |T|, forces that are unknown by r leave N_k . G_i - N_i . G_k unknown by 4 h r, the
+/// jump c by 36 h r / J^2 and the stress at corners and centre by D = 48 h^3 r / J^2 (`kernel::composite`): a triangle that was
+/// cut off as a sliver loses the square of its slenderness. The square form of the energy of (D, D, D) is at most e = 7/4 J D^2 /
+/// mu, as lambda >= 0, and |q(s + d) - q(s)| <= 2 (q e)^(1/2) + e.
 fn lost(certificate: &Certificate, t: usize, q: f64) -> f64 {
     let at = |p: usize| {
         let known = certificate.vertices.get(p).copied();
@@ -293,8 +293,8 @@ pub(super) fn raised_by_a_perturbation(draw: &Draw, size: f64, factor: f64) -> V
     Verdict::Holds(if other > 2.0 * own { "far" } else { "near" })
 }
 
-/// A displacement of degree 2 that is a solution: it touches the floor everywhere, without friction, the top is held as it is, and on
-/// the other sides its tractions act. Coefficients of 1, x, y, x^2, x y, y^2 in sixteenths.
+/// A displacement of degree 2 that is a solution: it touches the floor everywhere, without friction, the top is held as it is,
+/// and on the other sides its tractions act. Coefficients of 1, x, y, x^2, x y, y^2 in sixteenths.
 #[derive(Clone, Debug)]
 pub(super) struct Patch {
     cells: [usize; 2],
