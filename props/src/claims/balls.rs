@@ -7,6 +7,7 @@ use signorini::fem::EdgeRule;
 use signorini::fem::ball::Ball as Fine;
 use signorini::fem::double_double::DoubleDouble;
 use signorini::fem::moments::moments;
+use signorini::kernel::ball::centre_and_radius;
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::{Ball, Enclosing, Interval, P1, positive_part};
 
@@ -141,10 +142,24 @@ fn balls<S: Enclosing>(&([a, b, c, d], [r, s]): &Draw) -> Verdict {
     Verdict::Holds("wide")
 }
 
+/// The products of members are within the radius of the centre, as far as both are asked for.
+fn centres(&([a, _, c, _], [r, s]): &Draw) -> Verdict {
+    let [r, s] = [r * a.abs(), s * c.abs()];
+    let (centre, radius) = centre_and_radius(Ball::around(a, r) * Ball::around(c, s));
+    let [a, c, r, s, centre, radius] = [a, c, r, s, centre, radius].map(Exact::of_double);
+    for u in [a - r, a, a + r] {
+        for v in [c - s, c, c + s] {
+            ensure!(centre - radius <= u * v && u * v <= centre + radius);
+        }
+    }
+    Verdict::Holds("within")
+}
+
 /// Row 13: the balls and intervals that certificates are checked in.
 pub fn balls_contain_the_exact_results() -> Outcome {
     let classes = ["numbers", "wide"];
     let single = draws::hold(1500, data(), &classes, balls::<Ball>)?;
+    draws::hold(200, data(), &["within"], centres)?;
     let intervals = draws::hold(500, data(), &classes, balls::<Interval>)?;
     Ok(format!("balls: {single}; intervals: {intervals}"))
 }

@@ -370,6 +370,7 @@ mod row {
                 "ball::Ball::upper",
                 "ball::Ball::lower",
                 "ball::Ball::sqrt",
+                "ball::centre_and_radius",
             ],
             preconditions: "The processor rounds +, -, *, / and sqrt to nearest, as IEEE 754 says.",
             limits: "The enclosure of a rounded operation is tested, not proved, over all doubles: no solver at hand decides it.",
