@@ -22,10 +22,10 @@ pub trait Staged: Enclosing {
     /// The quicker ones.
     type Quick: Enclosing;
 
-    /// This number among them, as after [`OF_RADIUS`] roundings.
+    /// This number among them, as after `OF_RADIUS` roundings.
     fn quick(self) -> Self::Quick;
 
-    /// The difference of two, as after [`OF_DIFFERENCE`] roundings.
+    /// The difference of two, as after `OF_DIFFERENCE` roundings.
     fn difference(self, other: Self) -> Self::Quick;
 
     /// A double, and how far from it this number may be.
