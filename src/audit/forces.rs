@@ -321,7 +321,7 @@ pub struct Forces<'a, S> {
     between: OnceCell<Vec<Vector2<S>>>,
 }
 
-/// What comes by the pass over the triangles that the bound is a sum of.
+/// By-products of the pass over the triangles that sums up the bound.
 pub(crate) struct Beside<S> {
     unbalanced: Unbalanced<S>,
     /// The numbers of C eps(v) - tau on each triangle; empty until they are needed.

@@ -24,7 +24,7 @@
 //! factor 1 + 2^-20 more, which covers its roundings and, as long as r <= 2^22 and k, l <= [`MOST`], 1 / (1 - e_l r); beyond, its
 //! size is infinite. The size of a sum or product of doubles is rounded to no less than the double: |a| <= A.
 //!
-//! What no bound is known of has an infinite size, or one that is NaN.
+//! A number without a known bound has an infinite size, or one that is NaN.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -34,7 +34,7 @@ use signorini_kernel::{Ball, Enclosing, Scalar};
 /// A number may go through so many roundings.
 pub(crate) const MOST: u32 = 224;
 
-/// What covers the roundings in the size of a quotient or a root.
+/// Covers the roundings in the size of a quotient or a root.
 const GROWTH: f64 = 1.0 + 1.0 / (1 << 20) as f64;
 
 /// A divisor may be so many times smaller than the terms that it was computed from.

@@ -31,7 +31,7 @@ pub trait Staged: Enclosing {
     /// A double, and how far from it this number may be.
     fn centred(self) -> (f64, f64);
 
-    /// The same of a quicker number.
+    /// Returns a double, and how far from it this quicker number may be.
     fn centred_quick(quick: Self::Quick) -> (f64, f64);
 
     /// The resultant of loads on a triangle.
@@ -144,7 +144,7 @@ impl Sum {
         self.size += other.size;
     }
 
-    /// Of a product, too, it is known, but for an underflow.
+    /// Adds a multiple of a sum. The rounding of a product is a double and known, too, but for an underflow.
     #[inline]
     fn add_multiple(&mut self, factor: f64, other: Sum) {
         let product = factor * other.value;
@@ -213,8 +213,8 @@ fn quickly<S: Staged>(loads: &Loads<S>) -> Loads<S::Quick> {
 /// int_T a : C^-1 b is the sum of so many products.
 const COUNT: usize = 21;
 
-/// What does not depend on the stress of a triangle in int_T a : C^-1 b: the law of the material, and for its moduli m the roots
-/// of 2 |T| / (576 m), each a double and its error.
+/// The factors in int_T a : C^-1 b that do not depend on stresses: the law of the material, and for its moduli m the roots of
+/// 2 |T| / (576 m), each a double and its error.
 struct Law<N> {
     squares: Squares<N>,
     roots: [(f64, f64); 3],
@@ -315,7 +315,7 @@ const FACTORS: [f64; 7] = [2.0 * std::f64::consts::SQRT_2, SQRT_3, SQRT_3, SQRT_
 const GROWTH: f64 = 1.0 + 16.0 * f64::EPSILON;
 
 impl Numbers {
-    /// Those of [`Law::of_stress`], x to e, times the roots of what their squares are to be multiplied with, r to d: x r to
+    /// Scales the numbers of [`Law::of_stress`], x to e, times the roots of what their squares are to be multiplied with, r to d: x r to
     /// e (r + d) + |x| d and its rounding, where d is that of the root and two roundings, of its factor and by it. What
     /// underflows is in [`TINY`].
     #[inline]
@@ -442,8 +442,8 @@ impl<'a, S: Staged> Place<'a, S> {
         Place { t, quick, triangle, slow: OnceCell::new() }
     }
 
-    /// Of a certificate in equilibrium, the numbers of C eps(v) - tau and, if it is asked for, an upper bound of |v|_a^2: in the
-    /// quicker numbers or, where these are not sharp, in the others.
+    /// Returns the numbers of C eps(v) - tau of a certificate in equilibrium and, if it is asked for, an upper bound of |v|_a^2:
+    /// in the quicker numbers or, where these are not sharp, in the others.
     pub fn stresses(
         &self,
         certificate: &Certificate,
