@@ -209,10 +209,10 @@ fn theorem(ladder: &Ladder, level: usize) -> Theorem {
 }
 
 #[test]
-fn theorem_3_4_bounds_the_error_on_every_mesh_at_every_kappa() {
+fn theorem_3_4_and_corollary_3_6_bound_the_errors_on_every_mesh_at_every_kappa() {
     for (what, ladder) in theorem_ladders() {
-        for level in 0..3 {
-            for kappa in [1e-3, 0.1, 0.5, 0.9, 0.99] {
+        for level in 0..2 {
+            for kappa in [1e-3, 0.5, 0.99] {
                 let t = theorem(&at_kappa(&ladder, level, kappa), level);
                 let (left, all) = (t.left(), [t.plain(), t.sharp(), t.projected()]);
                 // Both sides are computed to 1e-10.
@@ -222,6 +222,8 @@ fn theorem_3_4_bounds_the_error_on_every_mesh_at_every_kappa() {
                     "{what}, level {level}, kappa {kappa}: {left:e} against {all:?}"
                 );
                 assert!(t.sharp() <= t.plain(), "{what}, level {level}, kappa {kappa}");
+                let (left, right) = (t.discrete.normal_stress, t.corollary());
+                assert!(left <= right * (1.0 + 1e-9), "{what}, kappa {kappa}: {left:e} {right:e}");
                 // The projection is the best approximation in the energy norm.
                 let best = t.projection.energy * (1.0 - 1e-9);
                 assert!(best <= t.interpolant.energy && best <= t.discrete.energy, "{what}");
@@ -235,8 +237,10 @@ fn theorem_3_5_bounds_the_error_by_a_number_and_the_second_derivatives() {
     // The bound grows as 1 / (1 - kappa).
     for (what, ladder) in theorem_ladders() {
         let in_h2 = ladder.method.degree == Degree::One && !what.starts_with("(c)");
-        for level in 0..3 {
-            for kappa in [0.1, 0.5, 0.9] {
+        // No number is claimed elsewhere.
+        let (levels, kappas) = if in_h2 { (3, vec![0.1, 0.5, 0.9]) } else { (1, vec![0.5]) };
+        for level in 0..levels {
+            for &kappa in &kappas {
                 let (level, _, _) = at_kappa(&ladder, level, kappa).solve(level).unwrap();
                 let left = a_priori::left(level.kappa, &level.errors);
                 let ratio = level.proved.map(|proved| proved / left);
@@ -267,17 +271,6 @@ fn the_number_of_theorem_3_5_is_5_legs_of_the_triangles_and_the_seminorms_are_kn
     // Found by another program.
     assert_relative_eq!(seminorm(&smooth(4.0, 3.0, 1.0 / 3.0)), 42.479, epsilon = 1e-3);
     assert_relative_eq!(seminorm(&singular(0.5)), 0.98103, epsilon = 1e-5);
-}
-
-#[test]
-fn corollary_3_6_bounds_the_normal_stress_on_every_mesh_at_every_kappa() {
-    for (what, ladder) in theorem_ladders() {
-        for kappa in [0.1, 0.5, 0.9] {
-            let t = theorem(&at_kappa(&ladder, 1, kappa), 1);
-            let (left, right) = (t.discrete.normal_stress, t.corollary());
-            assert!(left <= right * (1.0 + 1e-9), "{what}, kappa {kappa}: {left:e} {right:e}");
-        }
-    }
 }
 
 #[test]
