@@ -63,7 +63,9 @@ proved needs neither. For the rows that assemble on meshes, the transcription of
 roundings in `claims/assembled/compare.rs`, the number types in `numbers`, and the stand-in of the model checker
 (`harness.rs`). A is any tensor of section 2.1 in
 the plane: random bodies have lambda and mu or a tensor that couples all strains, those on which the solver's own doubles are compared
-with the definitions, too. Exact solutions that are not affine (rows 8, 12) are of isotropic bodies; `tests/suite/tensor.rs` has others.
+with the definitions, too. Exact solutions that are not affine
+(rows 8, 11, 12, 15, 17), the enclosures of row 10 and the certificates of rows 24 and 26 are of isotropic bodies;
+`tests/suite/tensor.rs` has others.
 
 ## Errata of the paper
 

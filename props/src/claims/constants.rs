@@ -262,7 +262,7 @@ mod row {
             numbers: "every ordered field (proof); rationals; doubles for the errors of the solver. Lengths enter by their squares.",
             kernel: &["contact_edge::coercivity_constant", "triangle::Triangle::edge"],
             preconditions: "h_T/rho_T <= sigma (the paper's, rho_T the radius of the inscribed circle), |T| = rho_T times half the perimeter; Korn's inequality and continuity as alpha and M; for (21) and (25) the estimates (22)-(24).",
-            limits: "Korn's inequality, (22)-(24) but for P1 with nu = 1/2, and there c_T for functions other than quadratics (Kobayashi) and Wirtinger's inequality for functions other than polynomials, are taken from the literature. alpha and M are not computed, nor are the constants as small as possible.",
+            limits: "Korn's inequality, and (22)-(24) for P2, are taken from the literature; for P1 and 0 < nu < 1/2 they are proved on the page (docs/theory.md, 9.7) and not run. For P1 and nu = 1/2, c_T for functions other than quadratics (Kobayashi) and Wirtinger's inequality for functions other than polynomials are taken from the literature, and the trace inequality for functions that are not affine is proved on the page (9.6). alpha is not computed, M for isotropic A only, and the constants are not as small as possible.",
             single: None,
             checks,
         }

@@ -446,8 +446,8 @@ mod row {
         let mut checks: Vec<_> = all.into_iter().map(proved).collect();
         checks.extend(all.map(tested));
         checks.extend([
-            exact!("forms_on_random_bodies_are_their_definitions_for_p1" => forms_p1()),
-            exact!("forms_on_random_bodies_are_their_definitions_for_p2" => forms_p2()),
+            exact!("forms_on_random_bodies_are_their_definitions_for_p1" => forms_p1()).about(&["P_gamma, A_gamma"]),
+            exact!("forms_on_random_bodies_are_their_definitions_for_p2" => forms_p2()).about(&["P_gamma, A_gamma"]),
             doubles!("element_matrices_in_doubles_are_near_the_exact_ones" => matrices_in_doubles()),
             doubles!("diameters_lengths_and_normals_of_the_solver_are_those_of_the_edges" => assembled::square_roots()).about(&["(7)"]),
             doubles!("gamma_of_the_solver_is_gamma0_times_the_diameter" => assembled::gamma_by_the_diameter()).about(&["(7)"]),

@@ -263,7 +263,7 @@ mod row {
             numbers: "every ordered field at a point (proof); rationals on bodies.",
             kernel: &["contact::ContactPoint::pressure"],
             preconditions: "gamma > 0 and (2) at the exact solution. The paper has g = 0.",
-            limits: "Green's formula for fields that are not piecewise polynomial is taken from analysis. Remark 2.3 is the same formula, for u sufficiently regular.",
+            limits: "Green's formula is checked at affine fields; row 8 has it inside the residual, for a piecewise polynomial one; for others it is taken from analysis. Remark 2.3 is the same formula, for u sufficiently regular.",
             single: None,
             checks: vec![
                 proved(six),

@@ -430,7 +430,7 @@ mod row {
             numbers: "every ordered field at a point (proof); rationals on bodies; doubles at a point, up to 16 roundings, and at the nodes of computed solutions, up to 64.",
             kernel: &["contact::ContactPoint::pressure", "contact::ContactPoint::p0"],
             preconditions: "gamma > 0, constant on each edge (7).",
-            limits: "That the discrete solution satisfies (8), hence the first mixed equation, is certified on the small meshes of row 10, not on these three cases; (9) for it is checked at nodes, not integrated.",
+            limits: "That the discrete solution satisfies (8), hence the first mixed equation, is certified on the small meshes of row 10, not on these three cases; (10) for it is checked at nodes, not integrated. That the integrals (9) and (10) for all mu are equivalent, and that the mixed problem gives (8) back, is proved at a point; the step to integrals is on the page (docs/theory.md, 8).",
             single: None,
             checks,
         }

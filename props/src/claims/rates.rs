@@ -174,7 +174,7 @@ pub fn claim() -> Claim {
         numbers: "doubles: slopes fitted over four meshes of the solver, 4 to 32 cells a side.",
         kernel: &[],
         preconditions: "The regularity of the solution.",
-        limits: "An observed rate is no proof: for P1 and nu = 1/2 row 15 has the bound with its number; else the interpolation estimates (22)-(24) are taken from the literature.",
+        limits: "An observed rate is no proof: for P1 and nu = 1/2 row 15 has the bound with its number; (22)-(24) for other nu are proved on the page (P1: docs/theory.md, 9.7) or taken from the literature (P2). The rates are those for lambda = mu = 1; at the end of contact, of the energy error only.",
         single: Some("A rate is a limit: it can be observed in floating point only."),
         checks: vec![
             doubles!("the_wedge_converges_at_the_rate_alpha" => wedge_rates_are(0.0)).about(&[

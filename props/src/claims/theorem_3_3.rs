@@ -361,7 +361,7 @@ mod row {
                 "fem::korn::Korn::new",
             ],
             preconditions: "None at a point; kappa < 1 on bodies, in place of 'gamma0 sufficiently small'.",
-            limits: "The corollary of Brezis that the paper cites is not checked. On a given mesh it is not needed: that a strictly convex, coercive C^1 function on a space of finite dimension has exactly one stationary point is a textbook fact, and where u^h is rational it is there to be seen. The enclosures are of small meshes (up to 10 free nodes, and one with 20), over the solver's data as they are rounded: gamma, the loads and, in plane stress, lambda*. P2 without quadrature error is left out, for its roots are irrational. Residual and matrices are made by the kernel's functions, which rows 5 and 6 compare with the definitions; the elimination (`props/src/elimination.rs`) is trusted.",
+            limits: "The corollary of Brezis that the paper cites is not checked. On a given mesh it is not needed: that a strictly convex, coercive C^1 function on a space of finite dimension has exactly one stationary point is a textbook fact, and where u^h is rational it is there to be seen. The enclosures are of small meshes (up to 10 free nodes, and one with 20), over the solver's data as they are rounded: gamma, the loads and, in plane stress, lambda*. P2 without quadrature error is left out, for its roots are irrational. Residual and matrices are made by the kernel's functions, which rows 5 and 6 compare with the definitions; the bodies are isotropic, but for Korn's factors; the elimination (`props/src/elimination.rs`) is trusted.",
             single: None,
             checks,
         }

@@ -86,7 +86,7 @@ mod row {
             numbers: "every ordered field (proof); rationals.",
             kernel: &["material::Material::stress"],
             preconditions: "Green's formula, which row 4 checks on bodies.",
-            limits: "That (3) has one solution (Stampacchia) is taken from analysis.",
+            limits: "That (3) has one solution (Stampacchia) is taken from analysis; so is Green's formula, by which (3) for all v in K is the inequality at each point.",
             single: None,
             checks: vec![
                 proved(sign),
