@@ -46,9 +46,9 @@ pub struct ContactFace<S = f64> {
 /// P0 and sigma_n on a contact edge, of the element that V^h has.
 #[derive(Clone, Copy, Debug)]
 pub enum Functionals<S> {
-    /// Those of P1.
+    /// P0 and sigma_n of P1.
     One(ContactEdge<S, 3, 2>),
-    /// Those of P2.
+    /// P0 and sigma_n of P2.
     Two(ContactEdge<S, 6, 3>),
 }
 

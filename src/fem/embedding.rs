@@ -1,4 +1,4 @@
-//! Whether the triangles of a mesh cover no point twice, and whether its boundary is a boundary: seams that don't quite
+//! Checks that the triangles of a mesh cover no point twice, and that its boundary is a boundary: seams that don't quite
 //! match look like cracks, and would be solved as such; parts of the body that only a vertex joins are refused.
 //!
 //! Triangles that are counter-clockwise and share whole edges cover a point as often as their outline winds around it. Where

@@ -39,9 +39,9 @@ pub fn trace_constant_squared<S: Scalar>([length, area, diameter]: [S; 3], c: S)
 
 /// The constants of (22)-(24) on a mesh, as factors of |u|_{2,T}.
 pub struct Interpolation {
-    /// Those of |eta|_a on each triangle.
+    /// The constant of |eta|_a on each triangle.
     energy: Vec<f64>,
-    /// On each contact edge: its triangle, and those of |sigma_n(eta)|_gamma and of |gamma^(-1/2) eta_n|.
+    /// On each contact edge: its triangle, and the constants of |sigma_n(eta)|_gamma and of |gamma^(-1/2) eta_n|.
     contact: Vec<(usize, [f64; 2])>,
 }
 

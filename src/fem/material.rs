@@ -66,7 +66,7 @@ impl Materials {
         materials
     }
 
-    /// That of triangle `t`.
+    /// Returns the material of triangle `t`.
     pub fn of(&self, t: usize) -> &Material<f64> {
         &self.distinct[self.of_triangle.get(t).copied().unwrap_or(0)]
     }
