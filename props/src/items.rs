@@ -25,6 +25,8 @@ pub const ITEMS: &[Item] = &[
         "Green's formula for fields that are not affine (row 8 has it inside the residual, for a piecewise polynomial one); the boundary conditions away from Gamma_C, but on bodies with affine fields"),
     item("(2)", "the contact conditions",
         "(iv), no shear, but for the solutions of row 8: it is natural in (8)"),
+    item("V, K, V^h, L", "the spaces, and the loads",
+        "that V is complete and L continuous: taken from analysis"),
     item("(3)", "the variational inequality",
         "that it has one solution (Stampacchia); that it is (1)-(2) for all v in K: at a point, and for the shape functions of P1 at affine solutions"),
     item("(4)", "a <= [a]+, a [a]+ = [a]+^2", ""),

@@ -19,7 +19,8 @@ says holds of the commit that it is in.
 
 The paper is F. Chouly, P. Hild, *A Nitsche-based method for unilateral contact problems: numerical analysis*, SIAM J.
 Numer. Anal. 51 (2013) 1295-1307. n is the outward normal, sigma_n is negative in compression, P(v) = v_n - g - gamma
-sigma_n(v) with a gap g (the paper has g = 0), P0 its linear part, gamma = gamma0 h_T, lambda^h = -(1/gamma)[P(u^h)]+.
+sigma_n(v) with a gap g (the paper has g = 0), P0 its linear part, gamma = gamma0 h_T, lambda^h = -(1/gamma)[P(u^h)]+;
+|.|_1 is the norm of H^1(Omega), |v|_a^2 = a(v, v).
 ";
 
 const BODY: &str = "\
@@ -77,6 +78,7 @@ the dimension stress^2 length, beside terms of dimension gamma stress^2 length, 
 
 With the factor gamma both are proved, and the rest of the proof uses them in that form: the theorem stands (row 11). In
 section 2.3 the set of the multipliers is printed as L^2(Gamma_C); it is the cone of the nonpositive functions in it.
+In the line before (23) the last equality is an inequality: h_T <= h.
 ";
 
 /// The text of `VERIFY.md`.
