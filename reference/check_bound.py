@@ -46,7 +46,7 @@ def hash_of(data):
 def read(path):
     """The header, and whole numbers and doubles of each array: an entry a row."""
     header = json.loads(path.read_text())
-    demand(header["format"] == 9, f"format {header['format']}; expected 9")
+    demand(header["format"] == 10, f"format {header['format']}; expected 10")
     keys = {"format", "title", "statement", "degree", "bound", "arrays", "hash"}
     demand(keys <= set(header) <= keys | {"boundaries"}, "an unknown key")
     demand(header["degree"] in (1, 2), "a degree other than 1 and 2")

@@ -10,8 +10,8 @@ use nalgebra::Vector2;
 use thiserror::Error;
 
 use super::certificate::{Certificate, Edge, Owner, Role, exactly, place};
-use crate::kernel::Enclosing;
 use crate::kernel::composite::Wrench;
+use crate::kernel::{Ball, Enclosing};
 
 /// Why there is no equilibrium to be had.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -76,10 +76,10 @@ const STOP: f64 = 1e-10;
 /// the body where there is none: the fewer triangles behind an edge, the less rounding is carried over it.
 #[derive(Clone)]
 pub(crate) struct Tree {
-    pub order: Vec<usize>,
-    pub towards_root: Vec<Option<usize>>,
+    order: Vec<usize>,
+    towards_root: Vec<Option<usize>>,
     /// Where in `order` each part begins.
-    pub parts: Vec<usize>,
+    parts: Vec<usize>,
 }
 
 impl Tree {
@@ -138,6 +138,12 @@ impl Tree {
         }
         Tree { order, towards_root, parts: first }
     }
+
+    /// The triangles of each part, from the root on.
+    fn parts(&self) -> impl Iterator<Item = &[usize]> {
+        let ends = self.parts.iter().skip(1).copied().chain([self.order.len()]);
+        self.parts.iter().zip(ends).map(|(&first, end)| &self.order[first..end])
+    }
 }
 
 /// The edge is inside a triangle that was cut, elsewhere than in the middle of an edge.
@@ -167,7 +173,7 @@ pub(crate) struct OnEdges<'a, S> {
     pub owners: &'a [[Option<Owner>; 2]],
     pub points: &'a [Vector2<S>],
     /// tau N at both ends.
-    pub forces: &'a [[Vector2<S>; 2]],
+    pub forces: &'a dyn Fn(usize) -> [Vector2<S>; 2],
 }
 
 impl<S: Enclosing> OnEdges<'_, S> {
@@ -183,28 +189,14 @@ impl<S: Enclosing> OnEdges<'_, S> {
         outward: &mut [[[Vector2<S>; 2]; 3]],
     ) -> Result<Closed<S>, Unbalanced> {
         let mut closed = Closed { changes: Vec::new(), stops: Vec::new() };
-        for (k, &first) in tree.parts.iter().enumerate() {
-            let end = tree.parts.get(k + 1).copied().unwrap_or(tree.order.len());
-            let part = &tree.order[first..end];
+        for part in tree.parts() {
             let root = part[0];
             let mut total = wrenches[root];
             for &t in &part[1..] {
                 total = total.plus(wrenches[t]);
             }
-            let free = Unbalanced::Free { triangle: root };
-            let Some((holds, size)) = self.choose(part) else { return Err(free) };
-            let pull = self.pull(part);
-            let unit = holds.map(|hold| match hold.profile {
-                Profile::Stop(c) => stop(c, total.about),
-                _ => self.wrench(hold).about(total.about),
-            });
-            for (hold, factor) in holds.into_iter().zip(solve(unit, total)) {
+            for (hold, factor, share) in self.holds(part, total)? {
                 if let Profile::Stop(c) = hold.profile {
-                    let most = factor.upper().max(-factor.lower());
-                    let share = most / if c == 2 { pull * size } else { pull };
-                    if !(most == 0.0 || share <= STOP) {
-                        return Err(free);
-                    }
                     let wrench = times(stop(c, total.about), factor);
                     let [start, end] =
                         [1, 2].map(|k| self.points[self.certificate.pieces[root].vertices[k]]);
@@ -246,12 +238,32 @@ impl<S: Enclosing> OnEdges<'_, S> {
         Ok(closed)
     }
 
+    /// Three holds of a part with the factors that balance `total`, and what a support takes of the forces on the boundary.
+    fn holds(&self, part: &[usize], total: Wrench<S>) -> Result<[(Hold, S, f64); 3], Unbalanced> {
+        let free = Unbalanced::Free { triangle: part[0] };
+        let Some((holds, size)) = self.choose(part) else { return Err(free) };
+        let pull = self.pull(part);
+        let unit = holds.map(|hold| match hold.profile {
+            Profile::Stop(c) => stop(c, total.about),
+            _ => self.wrench(hold).about(total.about),
+        });
+        let factors = solve(unit, total);
+        let found = [0, 1, 2].map(|k| {
+            let share = match holds[k].profile {
+                Profile::Stop(2) => most(factors[k]) / (pull * size),
+                Profile::Stop(_) => most(factors[k]) / pull,
+                _ => 0.0,
+            };
+            (holds[k], factors[k], if most(factors[k]) == 0.0 { 0.0 } else { share })
+        });
+        if found.iter().all(|(_, _, share)| *share <= STOP) { Ok(found) } else { Err(free) }
+    }
+
     /// The sum of the forces on the boundary of a part.
     fn pull(&self, part: &[usize]) -> f64 {
         let edges = part.iter().flat_map(|&t| self.certificate.pieces[t].edges);
         let outer = edges.filter(|&e| self.owners[e][1].is_none());
-        let size = |x: &S| x.upper().max(-x.lower());
-        outer.flat_map(|e| &self.forces[e]).flatten().map(size).sum()
+        outer.flat_map(|e| (self.forces)(e)).map(length).sum()
     }
 
     /// The force of a hold at both ends of its edge.
@@ -261,7 +273,7 @@ impl<S: Enclosing> OnEdges<'_, S> {
             Profile::Linear(d) => [-exactly::<S>(d), exactly(d)],
             Profile::Stop(_) => [Vector2::zeros(); 2],
             Profile::Pressure(ends) => {
-                let force = self.forces[hold.edge];
+                let force = (self.forces)(hold.edge);
                 [0, 1].map(|k| if ends[k] { force[k] } else { Vector2::zeros() })
             }
         }
@@ -360,6 +372,102 @@ impl<S: Enclosing> OnEdges<'_, S> {
             _ => None,
         }
     }
+}
+
+/// How far triangles may be out of balance: a force, and a moment about the centroid.
+pub(crate) type Size = [f64; 2];
+
+/// Covers the rounding of sums and products of positive numbers, as many as there are triangles.
+const SAFETY: f64 = 1.01;
+
+impl OnEdges<'_, Ball> {
+    /// Bounds, at the ends of each edge, of the forces that [`OnEdges::close`] adds for triangles which are out of balance by no
+    /// more than `sizes`; no edge of theirs is longer than `longest`. Also the triangles that a support against a free motion
+    /// holds. A wrench of the force f and the moment m is moved by a distance h to one of the moment m + h f at most, and takes
+    /// f + 6 m / |E| at an end of E, as [`Wrench::on_edge`] says.
+    pub fn close_within(
+        &self,
+        tree: &Tree,
+        sizes: &mut [Size],
+        longest: &[f64],
+    ) -> Result<(Vec<f64>, Vec<usize>), Unbalanced> {
+        let (mut off, mut stopped) = (vec![0.0; self.certificate.edges.len()], Vec::new());
+        let extent = self.extent();
+        for part in tree.parts() {
+            let root = part[0];
+            let force = SAFETY * part.iter().map(|&t| sizes[t][0]).sum::<f64>();
+            let moments = SAFETY * part.iter().map(|&t| sizes[t][1]).sum::<f64>();
+            let any = |most: f64| Ball::around(0.0, most);
+            let total = Wrench {
+                force: Vector2::repeat(any(force)),
+                moment: any(moments + SAFETY * extent * force),
+                about: self.points[self.certificate.pieces[root].vertices[0]],
+            };
+            for (hold, factor, _) in self.holds(part, total)? {
+                let factor = most(factor);
+                if let Profile::Stop(c) = hold.profile {
+                    let size = if c == 2 { [0.0, factor] } else { [factor, extent * factor] };
+                    let edge = self.certificate.pieces[root].edges[0];
+                    off[edge] += self.at_ends(edge, size);
+                    stopped.push(root);
+                    continue;
+                }
+                let Some(owner) = self.owners[hold.edge][0] else { continue };
+                let wrench = self.wrench(hold);
+                let at_ends = self.unit(hold).map(length);
+                off[hold.edge] += factor * at_ends[0].max(at_ends[1]);
+                let force = factor * length(wrench.force);
+                sizes[owner.piece][0] += force;
+                sizes[owner.piece][1] +=
+                    factor * most(wrench.moment) + longest[owner.piece] * force;
+            }
+            for &t in part[1..].iter().rev() {
+                let Some(e) = tree.towards_root[t] else { continue };
+                let other = self.owners[e].iter().flatten().find(|owner| owner.piece != t);
+                let Some(&Owner { piece: before, .. }) = other else { continue };
+                let [force, moment] = sizes[t];
+                let in_the_middle = moment + longest[t] * force;
+                off[e] += self.at_ends(e, [force, in_the_middle]);
+                sizes[before][0] += force;
+                sizes[before][1] += in_the_middle + longest[before] * force;
+            }
+        }
+        off.iter_mut().for_each(|off| *off *= SAFETY);
+        match off.iter().position(|off| !off.is_finite()).and_then(|e| self.owners[e][0]) {
+            Some(Owner { piece: triangle, .. }) => Err(Unbalanced::Free { triangle }),
+            None => Ok((off, stopped)),
+        }
+    }
+
+    /// A bound of the force at an end of edge `e` that takes this force, and this moment about its middle.
+    fn at_ends(&self, e: usize, [force, moment]: Size) -> f64 {
+        let [start, end] = self.certificate.edges[e].ends.map(|p| self.points[p]);
+        let edge = end - start;
+        let least = edge.map(|x| x.lower().max(-x.upper()).max(0.0)).max();
+        if moment == 0.0 { force } else { force + 6.0 * moment / least }
+    }
+
+    /// No two points are farther apart.
+    fn extent(&self) -> f64 {
+        let along = |c: usize| {
+            let ends = |[low, high]: [f64; 2], x: &Vector2<Ball>| {
+                [low.min(x[c].lower()), high.max(x[c].upper())]
+            };
+            let [low, high] = self.points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], ends);
+            high - low
+        };
+        along(0) + along(1)
+    }
+}
+
+/// An upper bound of the length of a vector.
+fn length<S: Enclosing>(v: Vector2<S>) -> f64 {
+    most(v[0]) + most(v[1])
+}
+
+/// An upper bound of the size of a number.
+fn most<S: Enclosing>(x: S) -> f64 {
+    x.upper().max(-x.lower())
 }
 
 /// A unit force along x, along y, or a unit moment.

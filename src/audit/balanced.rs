@@ -15,7 +15,7 @@ use crate::kernel::{Ball, Enclosing, Triangle};
 pub struct Topology {
     /// The triangles of each edge.
     pub owners: Vec<[Option<Owner>; 2]>,
-    tree: Tree,
+    pub(crate) tree: Tree,
 }
 
 /// A certificate whose triangles are in equilibrium, in the numbers `S`.
@@ -49,18 +49,6 @@ impl Certificate {
     pub fn balanced<S: Enclosing>(&self, topology: Topology) -> Result<Balanced<S>, Rejection> {
         let points: Vec<Vector2<S>> = self.places();
         let triangles = self.triangles(&points)?;
-        let resultant = |t: usize, loads: &Loads<S>| loads.resultant(&triangles[t]);
-        self.balanced_on(topology, points, &triangles, resultant)
-    }
-
-    /// [`Certificate::balanced`], on triangles that are at hand; `resultant` is that of loads on a triangle.
-    pub(crate) fn balanced_on<S: Enclosing>(
-        &self,
-        topology: Topology,
-        points: Vec<Vector2<S>>,
-        triangles: &[Triangle<S>],
-        resultant: impl Fn(usize, &Loads<S>) -> Wrench<S>,
-    ) -> Result<Balanced<S>, Rejection> {
         let v = self.shape();
         self.check_displacement()?;
         let mut forces = Vec::with_capacity(self.edges.len());
@@ -102,7 +90,7 @@ impl Certificate {
         let closed = Closed { changes: Vec::new(), stops: Vec::new() };
         let mut state = Balanced {
             points,
-            triangles: triangles.to_vec(),
+            triangles,
             v,
             topology,
             forces,
@@ -111,7 +99,7 @@ impl Certificate {
             closed,
             on_contact,
         };
-        state.close(self, resultant)?;
+        state.close(self)?;
         for &Change { edge, factors } in &state.closed.changes {
             let Role::Contact { pressure, .. } = self.edges[edge].role else { continue };
             // p (1 + factor) is no tension.
@@ -214,23 +202,19 @@ impl Certificate {
 
 impl<S: Enclosing> Balanced<S> {
     /// The forces on the triangles from those on the edges, put in equilibrium.
-    fn close(
-        &mut self,
-        certificate: &Certificate,
-        resultant: impl Fn(usize, &Loads<S>) -> Wrench<S>,
-    ) -> Result<(), Unbalanced> {
+    fn close(&mut self, certificate: &Certificate) -> Result<(), Unbalanced> {
         let count = certificate.pieces.len();
         self.outward.clear();
         let mut wrenches = Vec::with_capacity(count);
         for t in 0..count {
             let loads = self.loads_as_given(certificate, t);
-            wrenches.push(resultant(t, &loads));
+            wrenches.push(loads.resultant(&self.triangles[t]));
             self.outward.push(loads.forces);
         }
         let numbers = |wrench: &Wrench<S>| [wrench.force[0], wrench.force[1], wrench.moment];
         self.resultants = wrenches.iter().map(numbers).collect();
         let Balanced { points, topology: Topology { owners, tree }, forces, outward, .. } = self;
-        let on_edges = OnEdges { certificate, owners, points, forces };
+        let on_edges = OnEdges { certificate, owners, points, forces: &|e| forces[e] };
         self.closed = on_edges.close(tree, &mut wrenches, outward)?;
         Ok(())
     }
@@ -238,21 +222,18 @@ impl<S: Enclosing> Balanced<S> {
     /// The forces on triangle `t` towards its outside, and its body force.
     pub fn loads_as_given(&self, certificate: &Certificate, t: usize) -> Loads<S> {
         let piece = &certificate.pieces[t];
-        let outward = piece.edges.map(|e| {
-            let [a, b] = self.forces[e];
-            match self.topology.owners[e][0] {
-                Some(owner) if owner.piece == t => [a, b],
-                _ => [-b, -a],
-            }
-        });
-        Loads { forces: outward, body: piece.body.map(exactly) }
+        let forces = outward(piece.edges, t, &self.topology, &self.forces);
+        Loads { forces, body: piece.body.map(exactly) }
     }
 
     /// C eps(v) and C eps(v) - tau on triangle `t`.
     pub fn stresses(&self, certificate: &Certificate, t: usize) -> (Affine<S>, Composite<S>) {
         let (piece, triangle) = (&certificate.pieces[t], &self.triangles[t]);
         let sigma = self.v.stress(piece, triangle);
-        let apart = distance(piece, &Frame::new(triangle), &sigma, &self.loads(piece, t));
+        let (frame, loads) = (Frame::new(triangle), self.loads(piece, t));
+        let tau = Composite::new(&frame, &loads);
+        let tau = if piece.is_bent() { tau.bent(&frame, &loads.body) } else { tau };
+        let apart = tau.distance_from(&sigma);
         (sigma, apart)
     }
 
@@ -278,16 +259,20 @@ impl<S: Enclosing> Balanced<S> {
     }
 }
 
-/// sigma - tau on a triangle with this frame, for tau with these loads.
-pub(crate) fn distance<S: Enclosing>(
-    piece: &Piece,
-    frame: &Frame<S>,
-    sigma: &Affine<S>,
-    loads: &Loads<S>,
-) -> Composite<S> {
-    let tau = Composite::new(frame, loads);
-    let tau = if piece.is_bent() { tau.bent(frame, &loads.body) } else { tau };
-    tau.distance_from(sigma)
+/// The forces on the edges of triangle `t` towards its outside.
+pub(crate) fn outward<S: Enclosing>(
+    edges: [usize; 3],
+    t: usize,
+    topology: &Topology,
+    forces: &[[Vector2<S>; 2]],
+) -> [[Vector2<S>; 2]; 3] {
+    edges.map(|e| {
+        let [a, b] = forces[e];
+        match topology.owners[e][0] {
+            Some(owner) if owner.piece == t => [a, b],
+            _ => [-b, -a],
+        }
+    })
 }
 
 impl Balanced<f64> {
@@ -328,9 +313,6 @@ impl Balanced<f64> {
         for &Change { edge, factors } in &self.closed.changes {
             (0..2).for_each(|k| self.forces[edge][k] *= 1.0 + factors[k]);
         }
-        let triangles = std::mem::take(&mut self.triangles);
-        let closed = self.close(certificate, |t, loads| loads.resultant(&triangles[t]));
-        self.triangles = triangles;
-        closed
+        self.close(certificate)
     }
 }

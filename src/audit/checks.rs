@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use super::balance::Unbalanced;
 use super::certificate::{Certificate, Curved, Lift, Owner, Role, is_oblique};
-use crate::kernel::{Interval, Material};
+use crate::kernel::{Ball, Material};
 
 /// Why a certificate proves nothing.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -69,8 +69,8 @@ fn along(v: [f64; 2], d: [f64; 2], w: f64) -> Option<f64> {
 
 /// The law has finite entries and positive eigenvalues.
 fn is_elliptic(material: &Material<f64>) -> bool {
-    let pivots = || material.map(Interval::point).squares().pivots();
-    material.stiffness().iter().all(|c| c.is_finite()) && pivots().iter().all(|p| p.lo() > 0.0)
+    let pivots = || material.map(Ball::point).squares().pivots();
+    material.stiffness().iter().all(|c| c.is_finite()) && pivots().iter().all(|p| p.lower() > 0.0)
 }
 
 /// d has a length between 1/2 and 2.
@@ -101,9 +101,9 @@ pub(super) fn wrong(what: &'static str, index: usize, problem: &'static str) -> 
 }
 
 impl Certificate {
-    /// The indices name things that exist, and the numbers are finite.
-    pub(super) fn check_shape(&self) -> Result<(), Rejection> {
-        let (vertices, points) = (self.vertices.len(), self.vertices.len() + self.cuts.len());
+    /// The fields have the lengths that they should, and their numbers are finite.
+    pub(super) fn check_fields(&self) -> Result<(), Rejection> {
+        let vertices = self.vertices.len();
         for (what, found) in
             [("displacement", self.displacement.len()), ("prescribed", self.prescribed.len())]
         {
@@ -111,14 +111,9 @@ impl Certificate {
                 return Err(Rejection::Length { what, found, expected: vertices });
             }
         }
-        if self.pieces.is_empty() {
-            return Err(Rejection::Length { what: "triangles", found: 0, expected: 1 });
-        }
         let finite = |values: &[f64]| values.iter().all(|x| x.is_finite());
-        for (i, (x, v)) in self.vertices.iter().zip(&self.displacement).enumerate() {
-            if !(finite(x) && finite(v)) {
-                return Err(wrong("vertex", i, "a number is not finite"));
-            }
+        if let Some(i) = self.displacement.iter().position(|v| !finite(v)) {
+            return Err(wrong("displacement", i, "a number is not finite"));
         }
         if let Some(Curved { at_cuts, prescribed, bulges, data }) = &self.curved {
             if prescribed.len() != self.cuts.len() {
@@ -137,6 +132,37 @@ impl Certificate {
                     return Err(wrong(what, i, "a number is not finite"));
                 }
             }
+        }
+        for (i, edge) in self.edges.iter().enumerate() {
+            let numbers = match edge.role {
+                Role::Inner(f) | Role::Held(_, f) | Role::Loaded(f) => finite(f.as_flattened()),
+                Role::Pressed(p) => finite(&p),
+                Role::Supported { along, force, traction } => {
+                    finite(&force) && finite(&traction) && has_length(along)
+                }
+                Role::Contact { pressure, gap, along } => {
+                    finite(&pressure)
+                        && finite(&gap)
+                        && along.is_none_or(|d| finite(d.as_flattened()))
+                }
+            };
+            if !numbers {
+                return Err(wrong("edge", i, "expected finite numbers"));
+            }
+        }
+        Ok(())
+    }
+
+    /// The indices name things that exist, and the numbers are finite.
+    pub(super) fn check_shape(&self) -> Result<(), Rejection> {
+        self.check_fields()?;
+        let (vertices, points) = (self.vertices.len(), self.vertices.len() + self.cuts.len());
+        if self.pieces.is_empty() {
+            return Err(Rejection::Length { what: "triangles", found: 0, expected: 1 });
+        }
+        let finite = |values: &[f64]| values.iter().all(|x| x.is_finite());
+        if let Some(i) = self.vertices.iter().position(|x| !finite(x)) {
+            return Err(wrong("vertex", i, "a number is not finite"));
         }
         for (i, cut) in self.cuts.iter().enumerate() {
             if !(0.0 < cut.at && cut.at < 1.0 && cut.ends.iter().all(|&end| end < vertices)) {
@@ -171,22 +197,9 @@ impl Certificate {
                 return Err(wrong("point", point, "expected a value along an oblique direction"));
             }
         }
-        for (i, edge) in self.edges.iter().enumerate() {
-            let numbers = match edge.role {
-                Role::Inner(f) | Role::Held(_, f) | Role::Loaded(f) => finite(f.as_flattened()),
-                Role::Pressed(p) => finite(&p),
-                Role::Supported { along, force, traction } => {
-                    finite(&force) && finite(&traction) && has_length(along)
-                }
-                Role::Contact { pressure, gap, along } => {
-                    finite(&pressure)
-                        && finite(&gap)
-                        && along.is_none_or(|d| finite(d.as_flattened()))
-                }
-            };
-            if !(numbers && edge.ends.iter().all(|&p| p < points) && edge.ends[0] != edge.ends[1]) {
-                return Err(wrong("edge", i, "expected two different vertices and finite numbers"));
-            }
+        let is_edge = |[a, b]: [usize; 2]| a < points && b < points && a != b;
+        if let Some(i) = self.edges.iter().position(|edge| !is_edge(edge.ends)) {
+            return Err(wrong("edge", i, "expected two different vertices"));
         }
         let mut lifted = BTreeSet::new();
         for (i, &Lift { mut corners, norm }) in self.lifts.iter().enumerate() {

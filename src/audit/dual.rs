@@ -11,13 +11,17 @@
 //! The pair is itself a certificate on the same triangles, of the linear problem whose contact edges are held along the
 //! direction of contact, an axis, or free.
 
-use super::balanced::Balanced;
-use super::certificate::{Certificate, Curved, Edge, Piece, Role, is_oblique};
+use nalgebra::Vector2;
+
+use super::balance::OnEdges;
+use super::balanced::{Balanced, outward};
+use super::certificate::{Certificate, Curved, Edge, Piece, Role, Shape, exactly, is_oblique};
 use super::checks::Rejection;
-use super::forces::{Cover, Forces, Target, WrongLifting, component, reach};
-use super::stresses::{Lengths, Place, Staged};
-use crate::kernel::composite::Loads;
-use crate::kernel::{Ball, Enclosing, Interval};
+use super::forces::{Cover, Forces, Target, WrongLifting, component, energy, ratio, reach};
+use super::proof::IMBALANCE;
+use super::stresses::{Ground, Law, Laws, Lengths, Numbers, Resultant, Staged, resultant};
+use crate::kernel::composite::{Composite, Frame, Loads};
+use crate::kernel::{Ball, Enclosing};
 
 /// Why a dual pair proves nothing.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -30,15 +34,6 @@ pub enum WrongPair {
     Lifting(#[from] WrongLifting),
     #[error("{what} {index} of the dual pair is not that of the certificate, without its data")]
     Differs { what: &'static str, index: usize },
-}
-
-/// The largest ratio of a to b, not below 0: infinite where b is 0 and a is not.
-fn ratio(a: f64, b: f64) -> f64 {
-    if a <= 0.0 {
-        return 0.0;
-    }
-    let ratio = (Interval::point(a) / Interval::point(b)).hi();
-    if b > 0.0 && ratio.is_finite() { ratio } else { f64::INFINITY }
 }
 
 impl Certificate {
@@ -188,11 +183,20 @@ impl Certificate {
     }
 }
 
+/// A dual pair whose triangles are in equilibrium with the tractions of rho, which are known up to rounding.
+struct Pair<S> {
+    w: Shape<S>,
+    /// rho N at both ends of each edge.
+    forces: Vec<[Vector2<f64>; 2]>,
+    /// How far a component of it may be off on each edge.
+    off: Vec<f64>,
+}
+
 /// A dual pair with its sums over the triangles.
 struct Summed<S> {
-    dual: Balanced<S>,
+    pair: Pair<S>,
     /// int C^-1 (C eps(v) - tau) : (C eps(w) - rho)
-    product: Interval,
+    product: Ball,
     /// An upper bound of eta.
     eta: f64,
     /// An upper bound of |w|_a^2, where the error of data is to be multiplied with it.
@@ -216,107 +220,175 @@ impl<S: Staged> Forces<'_, S> {
         all.map(|((target, pair), sums)| self.by_sums(pair, *target, sums, cover)).collect()
     }
 
+    /// Verifies that this is a pair, whose tractions balance on every triangle to the rounding of doubles, and bounds those that
+    /// make up for the rest.
+    fn pair(&self, pair: &Certificate) -> Result<Pair<S>, WrongPair> {
+        let (certificate, state) = (self.certificate, self.state);
+        pair.check_fields()?;
+        certificate.check_pair(pair, state)?;
+        pair.check_displacement()?;
+        let on_edge = |edge: &Edge| match edge.role {
+            Role::Inner(force) | Role::Held(_, force) => force.map(Vector2::from),
+            Role::Supported { along, force, .. } => force.map(|p| Vector2::from(along) * p),
+            Role::Loaded(_) | Role::Pressed(_) | Role::Contact { .. } => [Vector2::zeros(); 2],
+        };
+        let forces: Vec<[Vector2<f64>; 2]> = pair.edges.iter().map(on_edge).collect();
+        let count = pair.pieces.len();
+        let (mut sizes, mut longest) = (Vec::with_capacity(count), Vec::with_capacity(count));
+        let mut unbalanced = Vec::new();
+        for (t, (piece, triangle)) in pair.pieces.iter().zip(&state.triangles).enumerate() {
+            let of_edges = outward(piece.edges, t, &state.topology, &forces);
+            let found = resultant(triangle, of_edges);
+            let Resultant { force, moment, loads, largest, error, .. } = found;
+            let most = IMBALANCE * loads + error;
+            if !(force.amax() <= most && moment.abs() <= most * largest) {
+                unbalanced.push(t);
+            }
+            sizes.push([force.abs().sum() + 2.0 * error, moment.abs() + error * largest]);
+            longest.push(found.longest);
+        }
+        let points = pair.places::<Ball>();
+        let exact = |e: usize| forces[e].map(|force| exactly(force.into()));
+        let owners = &state.topology.owners;
+        let on_edges = OnEdges { certificate: pair, owners, points: &points, forces: &exact };
+        let (mut off, stopped) = on_edges
+            .close_within(&state.topology.tree, &mut sizes, &longest)
+            .map_err(Rejection::from)?;
+        // What a support against a free motion takes is not on the edges.
+        if let Some(&triangle) = unbalanced.iter().find(|t| !stopped.contains(t)) {
+            return Err(Rejection::OutOfBalance { triangle }.into());
+        }
+        for ((off, edge), force) in off.iter_mut().zip(&pair.edges).zip(&forces) {
+            if matches!(edge.role, Role::Supported { .. }) {
+                *off += f64::EPSILON * force[0].amax().max(force[1].amax());
+            }
+        }
+        Ok(Pair { w: pair.shape(), forces, off })
+    }
+
+    /// The numbers of C eps(w) - rho on triangle `t`, in doubles if these are sharp.
+    fn numbers(
+        &self,
+        (t, law): (usize, &Law),
+        pair: &Pair<S>,
+        ground: Option<&(Ground, Frame<f64>)>,
+    ) -> Numbers {
+        let (state, piece) = (self.state, &self.certificate.pieces[t]);
+        let forces = outward(piece.edges, t, &state.topology, &pair.forces);
+        let off = piece.edges.iter().map(|&e| pair.off[e]).fold(0.0, f64::max);
+        let in_doubles = ground.and_then(|(ground, frame)| {
+            let w = (piece.vertices.map(|p| pair.w.points[p]), pair.w.bulges_of(piece));
+            ground.numbers(frame, &piece.material, w, (forces, off))
+        });
+        in_doubles.unwrap_or_else(|| {
+            let triangle = &state.triangles[t];
+            let forces = forces.map(|ends| ends.map(|force| exactly(force.into())));
+            let loads = Loads { forces, body: [Vector2::zeros(); 3] };
+            let sigma = pair.w.stress(piece, triangle);
+            let apart = Composite::new(&Frame::new(triangle), &loads).distance_from(&sigma);
+            Numbers::slowly(law, piece, triangle, &apart, off)
+        })
+    }
+
     /// Verifies that these are pairs and sums over the triangles.
     fn sums(&self, pairs: &[(Target, Certificate)]) -> Result<Vec<Summed<S>>, WrongPair> {
         if pairs.is_empty() {
             return Ok(Vec::new());
         }
-        let (certificate, state) = (self.certificate, self.state);
-        let balanced = |(_, pair): &(Target, Certificate)| -> Result<Balanced<S>, WrongPair> {
-            pair.check_shape()?;
-            certificate.check_pair(pair, state)?;
-            let (points, topology) = (state.points.clone(), state.topology.clone());
-            let resultant = |t: usize, loads: &Loads<S>| S::resultant(loads, &state.triangles[t]);
-            let dual = pair.balanced_on(topology, points, &state.triangles, resultant)?;
-            pair.check_balance(&dual)?;
-            Ok(dual)
+        let pieces = &self.certificate.pieces;
+        let start = |(_, pair): &(Target, Certificate)| {
+            let (zero, shares) = (Ball::from(0), Vec::with_capacity(pieces.len()));
+            Ok((self.pair(pair)?, zero, Lengths::new(), zero, shares))
         };
-        let duals = pairs.iter().map(balanced).collect::<Result<Vec<_>, _>>()?;
-        let both: Vec<(&Certificate, &Balanced<S>)> =
-            pairs.iter().map(|(_, pair)| pair).zip(&duals).collect();
-        let own = self.own();
-        let mut length = Lengths::new();
-        let zero = Ball::from(0);
-        let start = || (zero, Lengths::new(), zero, Vec::with_capacity(certificate.pieces.len()));
-        let mut sums: Vec<(Ball, Lengths, Ball, Vec<f64>)> =
-            pairs.iter().map(|_| start()).collect();
-        for (t, piece) in certificate.pieces.iter().enumerate() {
-            let place = Place::new(piece, t, &state.triangles[t]);
-            let apart = &own[t];
-            length.add(apart);
-            for ((pair, dual), (product, eta, norm, shares)) in both.iter().zip(&mut sums) {
-                let (missed, of_w) = place.stresses(pair, dual, self.loose != 0.0);
-                *product += Ball::point(apart.dot(&missed));
-                *norm += Ball::point(of_w);
-                shares.push(eta.add(&missed));
+        let mut sums = pairs.iter().map(start).collect::<Result<Vec<_>, WrongPair>>()?;
+        let (own, mut length, mut laws) = (self.own(), Lengths::new(), Laws::default());
+        for (t, piece) in pieces.iter().enumerate() {
+            let (law, triangle) = (laws.of(&piece.material), &self.state.triangles[t]);
+            let ground = Ground::new(law, triangle).map(|ground| {
+                let frame = Frame::new(&ground.triangle);
+                (ground, frame)
+            });
+            length.add(&own[t]);
+            for (pair, product, eta, norm, shares) in &mut sums {
+                let apart = self.numbers((t, law), pair, ground.as_ref());
+                *product += Ball::point(own[t].dot(&apart));
+                shares.push(eta.add(&apart));
+                if self.loose != 0.0 {
+                    let ground = ground.as_ref().map(|(ground, _)| ground);
+                    *norm += energy(&pair.w, piece, triangle, ground);
+                }
             }
         }
-        let summed =
-            |(dual, (product, eta, norm, shares)): (Balanced<S>, (Ball, Lengths, Ball, _))| {
-                let error = length.error_of_product(eta);
-                let product =
-                    Interval::new(product.lower(), product.upper()) + Interval::new(-error, error);
-                Summed { dual, product, eta: eta.length(), norm, shares }
-            };
-        Ok(duals.into_iter().zip(sums).map(summed).collect())
+        let summed = |(pair, product, eta, norm, shares): (_, _, Lengths, _, _)| {
+            let product = product + Ball::around(0.0, length.error_of_product(eta));
+            Summed { pair, product, eta: eta.length(), norm, shares }
+        };
+        Ok(sums.into_iter().map(summed).collect())
     }
 
     fn by_sums(
         &self,
-        pair: &Certificate,
+        roles: &Certificate,
         target: Target,
         sums: Summed<S>,
         cover: Option<&Cover>,
     ) -> Result<ByPair, WrongPair> {
         let (certificate, state) = (self.certificate, self.state);
-        let Summed { dual, product, eta, norm, shares } = sums;
+        let Summed { pair, product, eta, norm, shares } = sums;
         let mut middle =
-            self.within(&dual.v) + certificate.work_of_tractions(&state.forces, &dual.v);
-        // r is at least and at most these times |tau_n|.
-        let mut most = [0.0_f64; 2];
+            self.within(&pair.w) + certificate.work_of_tractions(&state.forces, &pair.w);
+        // What the corrections of r may add, and r at least and at most in units of |tau_n|.
+        let (mut beside, mut most) = (Ball::from(0), [0.0_f64; 2]);
         for e in self.contact() {
             let Role::Contact { pressure, .. } = certificate.edges[e].role else { continue };
-            if matches!(pair.edges[e].role, Role::Loaded(_)) {
+            if matches!(roles.edges[e].role, Role::Loaded(_)) {
                 continue;
             }
-            let Some(owner) = dual.topology.owners[e][0] else { continue };
             let d = certificate.directions(e, &state.points);
             let [start, end] = certificate.edges[e].ends.map(|p| state.points[p]);
-            let length = (end - start).dot(&(end - start)).sqrt();
+            let length = ball((end - start).dot(&(end - start)).sqrt());
             // |E| r at both ends.
-            let force = dual.outward[owner.piece][owner.local];
-            let r: [S; 2] = [force[0].dot(&d[0]), force[1].dot(&d[1])];
+            let r = [0, 1].map(|k| component(exactly(pair.forces[e][k].into()), d[k]));
             let g = certificate.gap(e, state);
             let (four, three, two) = (S::from(4), S::from(3), S::from(2));
             let at_start = g[0] * four + g[1] * three + g[2] * two + g[3];
             let at_end = g[0] + g[1] * two + g[2] * three + g[3] * four;
             middle -= (r[0] * at_start + r[1] * at_end) / S::from(20);
+            let off = Ball::around(0.0, pair.off[e]);
+            beside += (off * ball(at_start) + off * ball(at_end)) / Ball::from(20);
             for k in 0..2 {
-                let r = r[k] / length;
+                let r = (ball(r[k]) + off) / length;
                 most[0] = most[0].max(ratio(-r.lower(), -pressure[k]));
                 most[1] = most[1].max(ratio(r.upper(), -pressure[k]));
             }
         }
-        let missed = self.all_missed(&dual.v, target, cover)?;
-        let point = Interval::point;
-        let middle = Interval::new(middle.lower(), middle.upper()) + product / Interval::from(2);
+        let missed = self.all_missed(&pair.w, target, cover)?;
+        let point = Ball::point;
+        let middle = ball(middle) + beside + product / Ball::from(2);
         let (eta, norm) = (point(eta), point(norm.sqrt().upper()));
         let force = point(cover.map_or(0.0, Cover::force));
-        let loose = point(2.0 * self.loose) * (norm + eta / Interval::from(2));
+        let loose = point(2.0 * self.loose) * (norm + eta / Ball::from(2));
         let factors = [0, 1].map(|side| most[side].max(missed.open[side]));
         let away = |side: usize| {
             let k = factors[side];
+            let covered = point(missed.covered[side]) * force;
             if k.is_finite() {
-                (reach(eta, point(k), self.mean) + point(missed.covered[side]) * force + loose).hi()
+                (reach(eta, point(k), self.mean) + covered + loose).upper()
             } else {
                 f64::INFINITY
             }
         };
-        let ends = [(middle - point(away(0))).lo(), (middle + point(away(1))).hi()];
+        let ends = [(middle - point(away(0))).lower(), (middle + point(away(1))).upper()];
         let between = [
             if ends[0].is_nan() { f64::NEG_INFINITY } else { ends[0] },
             if ends[1].is_nan() { f64::INFINITY } else { ends[1] },
         ];
         Ok(ByPair { between, shares, factors })
     }
+}
+
+/// A ball around a number.
+fn ball<S: Staged>(x: S) -> Ball {
+    let (centre, radius) = x.centred();
+    Ball::around(centre, radius)
 }

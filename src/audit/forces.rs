@@ -12,16 +12,16 @@
 use std::cell::OnceCell;
 use std::fmt::Display;
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::Vector2;
 
 use super::balanced::Balanced;
 use super::certificate::{Certificate, Edge, Piece, Role, Shape, exactly, is_oblique};
 use super::checks::Rejection;
 use super::dual::WrongPair;
 use super::proof::Proof;
-use super::stresses::{Numbers, SHARP, Staged, TINY, bulges, local, numbers};
+use super::stresses::{Ground, Laws, Numbers, Staged, strain_energy};
 use crate::kernel::composite::Affine;
-use crate::kernel::{Ball, Enclosing, Interval, Scalar, Triangle};
+use crate::kernel::{Ball, Enclosing, Scalar, Triangle};
 
 /// M and G, from above.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -382,14 +382,14 @@ impl Certificate {
         let has_pairs = !evidence.pairs.is_empty();
         let has_forces = has_pairs || evidence.cover.is_some() || !evidence.liftings.is_empty();
         let mut unbalanced = Unbalanced::new(if has_forces { state.points.len() } else { 0 });
-        let mut own = Vec::new();
+        let (mut own, mut laws) = (Vec::new(), Laws::default());
         let proof = self.sum_beside(state, |t, sigma, apart| {
             let (piece, triangle) = (&self.pieces[t], &state.triangles[t]);
             if has_forces {
                 unbalanced.add(piece, triangle, sigma);
             }
             if has_pairs {
-                own.push(numbers(piece, triangle, apart));
+                own.push(Numbers::new(laws.of(&piece.material), piece, triangle, apart));
             }
         })?;
         let own = if has_pairs { OnceCell::from(own) } else { OnceCell::new() };
@@ -494,9 +494,10 @@ impl<'a, S: Staged> Forces<'a, S> {
     pub(crate) fn own(&self) -> &[Numbers] {
         let (pieces, state) = (&self.certificate.pieces, self.state);
         self.sums.own.get_or_init(|| {
+            let mut laws = Laws::default();
             let of = |(t, piece): (usize, &Piece)| {
                 let (_, apart) = state.stresses(self.certificate, t);
-                numbers(piece, &state.triangles[t], &apart)
+                Numbers::new(laws.of(&piece.material), piece, &state.triangles[t], &apart)
             };
             pieces.iter().enumerate().map(of).collect()
         })
@@ -608,21 +609,11 @@ impl<'a, S: Staged> Forces<'a, S> {
     /// L(w) - int m : eps(w) and |w|_a of some displacements, in one pass over the triangles.
     fn values(&self, shapes: &[Shape<S>]) -> Vec<Value<S>> {
         let (certificate, state) = (self.certificate, self.state);
-        let mut squares = vec![Ball::from(0); shapes.len()];
-        for (piece, original) in certificate.pieces.iter().zip(&state.triangles) {
-            let triangle = Triangle { vertices: local(original.vertices) };
-            let normals = [0, 1, 2].map(|i| triangle.scaled_normal(i));
-            let per_area = S::Quick::from(1) / (triangle.double_area() * S::Quick::from(24));
+        let (mut squares, mut laws) = (vec![Ball::from(0); shapes.len()], Laws::default());
+        for (piece, triangle) in certificate.pieces.iter().zip(&state.triangles) {
+            let ground = Ground::new(laws.of(&piece.material), triangle);
             for (square, w) in squares.iter_mut().zip(shapes) {
-                let nodal = local(piece.vertices.map(|p| w.points[p]));
-                let bulges = w.bulges_of(piece).map(bulges);
-                let energy = strain_energy(piece, (&nodal, bulges), &normals) * per_area;
-                let (value, error) = S::centred_quick(energy);
-                *square += if error <= SHARP * value + TINY {
-                    Ball::around(value, error)
-                } else {
-                    Ball::point(energy_of(w, piece, original).upper())
-                };
+                *square += energy(w, piece, triangle, ground.as_ref());
             }
         }
         let value = |(w, square): (&Shape<S>, Ball)| {
@@ -689,10 +680,9 @@ impl<'a, S: Staged> Forces<'a, S> {
         if beyond == [0.0; 2] {
             return missed(phi).map(off);
         }
-        let add = |a: f64, b: f64| Interval::point(a) + Interval::point(b);
         missed(phi).map(|omega| {
-            let [low, high] = off(omega);
-            [add(low, beyond[0]).lo(), add(high, beyond[1]).hi()]
+            let [low, high] = off(omega).map(Ball::point);
+            [(low + Ball::point(beyond[0])).lower(), (high + Ball::point(beyond[1])).upper()]
         })
     }
 
@@ -712,17 +702,10 @@ impl<'a, S: Staged> Forces<'a, S> {
             let gap = self.certificate.gap(edge, self.state).map(|g| g.lower());
             let covered = cover.and_then(|cover| cover.along[edge]);
             let largest = |sizes: [f64; 4], side: usize| {
-                let sizes = sizes.into_iter().zip(off).map(|(size, off)| {
-                    let off = if side == 0 { -off[0] } else { off[1] };
-                    let ratio = (Interval::point(off) / Interval::point(size)).hi();
-                    if off <= 0.0 {
-                        0.0
-                    } else if size > 0.0 && ratio.is_finite() {
-                        ratio
-                    } else {
-                        f64::INFINITY
-                    }
-                });
+                let sizes = sizes
+                    .into_iter()
+                    .zip(off)
+                    .map(|(size, off)| ratio(if side == 0 { -off[0] } else { off[1] }, size));
                 sizes.fold(0.0, f64::max)
             };
             for side in 0..2 {
@@ -767,17 +750,17 @@ impl<'a, S: Staged> Forces<'a, S> {
 
     /// Encloses R(w) + int |sigma_n| omega.
     fn enclose(&self, value: Value<S>, missed: Missed, cover: Option<&Cover>) -> [f64; 2] {
-        let point = Interval::point;
+        let point = Ball::point;
         let norm = point(value.norm);
         let force = point(cover.map_or(0.0, Cover::force));
         let away = |side: usize| {
             let covered = point(missed.covered[side]) * force;
             let loose = point(self.loose) * norm;
-            (reach(norm, point(missed.open[side]), self.mean) + covered + loose).hi()
+            (reach(norm, point(missed.open[side]), self.mean) + covered + loose).upper()
         };
         let below = point(value.middle.lower()) - point(away(0));
         let above = point(value.middle.upper()) + point(away(1));
-        [below.lo(), above.hi()]
+        [below.lower(), above.upper()]
     }
 
     /// The forces of some liftings, each between two numbers.
@@ -839,47 +822,39 @@ fn unbalanced_between<S: Enclosing>(
     bulges
 }
 
-/// int eps(w) : C eps(w) on a triangle.
-fn energy_of<S: Enclosing>(w: &Shape<S>, piece: &Piece, triangle: &Triangle<S>) -> S {
-    let nodal = piece.vertices.map(|p| w.points[p]);
-    let normals = [0, 1, 2].map(|i| triangle.scaled_normal(i));
-    strain_energy(piece, (&nodal, w.bulges_of(piece)), &normals)
-        / (triangle.double_area() * S::from(24))
+/// int eps(w) : C eps(w) on a triangle: in doubles, if these are sharp.
+pub(crate) fn energy<S: Staged>(
+    w: &Shape<S>,
+    piece: &Piece,
+    triangle: &Triangle<S>,
+    ground: Option<&Ground>,
+) -> Ball {
+    let (nodal, bulges) = (piece.vertices.map(|p| w.points[p]), w.bulges_of(piece));
+    let in_doubles = ground.and_then(|ground| ground.energy((nodal, bulges)));
+    in_doubles.unwrap_or_else(|| {
+        let normals = [0, 1, 2].map(|i| triangle.scaled_normal(i));
+        let energy = strain_energy(&piece.material().squares(), (&nodal, bulges), &normals);
+        Ball::point((energy / (triangle.double_area() * S::from(24))).upper())
+    })
 }
 
-/// 24 J times int eps(w) : C eps(w) on a triangle with these scaled normals, J = 2 |T|: from -J grad w at the vertices, which is
-/// the sum of w_i (x) N_i and of 4 (b_j (x) N_k + b_k (x) N_j).
-pub(crate) fn strain_energy<S: Enclosing>(
-    piece: &Piece,
-    ([a, b, c], bulges): (&[Vector2<S>; 3], Option<[Vector2<S>; 3]>),
-    normals: &[Vector2<S>; 3],
-) -> S {
-    let squares = piece.material::<S>().squares();
-    // From differences, so that a translation has no gradient in any number type.
-    let (b, c) = (b - a, c - a);
-    let product =
-        |v: Vector2<S>, n: Vector2<S>| [v[0] * n[0], v[0] * n[1], v[1] * n[0], v[1] * n[1]];
-    let plus = |p: [S; 4], q: [S; 4]| [0, 1, 2, 3].map(|i| p[i] + q[i]);
-    let square = |[xx, xy, yx, yy]: [S; 4]| squares.of_gradient(Matrix2::new(xx, xy, yx, yy));
-    let base = plus(product(b, normals[1]), product(c, normals[2]));
-    let Some(bulges) = bulges else { return square(base) * S::from(12) };
-    let four = S::from(4);
-    let at = [0, 1, 2].map(|i| {
-        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-        let of_bulges = plus(product(bulges[j], normals[k]), product(bulges[k], normals[j]));
-        plus(base, of_bulges.map(|x| x * four))
-    });
-    let sum = plus(plus(at[0], at[1]), at[2]);
-    at.into_iter().fold(square(sum), |total, gradient| total + square(gradient))
+/// The largest ratio of a to b, not below 0: infinite where b is 0 and a is not.
+pub(crate) fn ratio(a: f64, b: f64) -> f64 {
+    let ratio = (Ball::point(a) / Ball::point(b)).upper();
+    match a {
+        a if a <= 0.0 => 0.0,
+        _ if b > 0.0 && ratio.is_finite() => ratio,
+        _ => f64::INFINITY,
+    }
 }
 
 /// The largest value of x eta + k (M^2 - x^2) for 0 <= x <= M: k M^2 + eta^2 / (4 k) where that is taken inside, M eta at the
 /// end.
-pub(crate) fn reach(eta: Interval, k: Interval, mean: Mean) -> Interval {
-    let root = Interval::point(mean.root);
-    let two = Interval::from(2);
-    if eta.lo() >= (two * k * root).hi() {
+pub(crate) fn reach(eta: Ball, k: Ball, mean: Mean) -> Ball {
+    let root = Ball::point(mean.root);
+    let two = Ball::from(2);
+    if eta.lower() >= (two * k * root).upper() {
         return root * eta;
     }
-    k * Interval::point(mean.square) + eta * eta / (two * two * k)
+    k * Ball::point(mean.square) + eta * eta / (two * two * k)
 }

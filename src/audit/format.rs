@@ -16,7 +16,7 @@ use super::proof::{Claim, Proof};
 use crate::kernel::{Material, Plane};
 
 /// The format that is written and read.
-const FORMAT: u32 = 9;
+const FORMAT: u32 = 10;
 
 /// certificate.json.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -12,7 +12,7 @@
 //! | `balance`, `balanced` | tractions in exact equilibrium |
 //! | [`proof`] | the bound |
 //! | [`forces`], [`dual`] | forces of the true solution between two numbers; to second order |
-//! | [`stresses`], `rounded` | their stresses in doubles; a double with the size of the terms that it was computed from |
+//! | [`stresses`] | their stresses in doubles, with what these are off by |
 #![cfg(not(kani))]
 
 mod balance;
@@ -26,7 +26,6 @@ pub mod forces;
 pub mod format;
 mod on_contact;
 pub mod proof;
-mod rounded;
 pub mod stresses;
 
 pub(crate) use signorini_kernel as kernel;

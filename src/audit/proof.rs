@@ -63,7 +63,7 @@ pub struct Claim {
 
 /// A triangle may be out of balance by this, in units of the forces on it: the tractions and the sums of a dozen terms,
 /// rounded.
-const IMBALANCE: f64 = 128.0 * f64::EPSILON;
+pub(crate) const IMBALANCE: f64 = 128.0 * f64::EPSILON;
 
 /// Fields whose distance on a triangle is below this part of the bound, shared out equally, differ by rounding.
 const NEGLIGIBLE: f64 = 1e-9;

@@ -186,26 +186,14 @@ impl Enclosing for Exact {
     }
 }
 
-/// Exact as they are, they need no quicker ones beside them.
+/// No doubles stand for them.
 impl Staged for Exact {
-    type Quick = Exact;
-
-    fn quick(self) -> Exact {
-        self
-    }
-
-    fn difference(self, other: Exact) -> Exact {
-        self - other
-    }
+    const IN_DOUBLES: bool = false;
 
     /// The next double below, and a step of doubles.
     fn centred(self) -> (f64, f64) {
         let below = self.lower();
         (below, below.next_up() - below)
-    }
-
-    fn centred_quick(quick: Exact) -> (f64, f64) {
-        quick.centred()
     }
 }
 
