@@ -238,14 +238,14 @@ impl<S: Staged> Forces<'_, S> {
         let mut unbalanced = Vec::new();
         for (t, (piece, triangle)) in pair.pieces.iter().zip(&state.triangles).enumerate() {
             let of_edges = outward(piece.edges, t, &state.topology, &forces);
-            let found = resultant(triangle, of_edges);
-            let Resultant { force, moment, loads, largest, error, .. } = found;
-            let most = IMBALANCE * loads + error;
-            if !(force.amax() <= most && moment.abs() <= most * largest) {
+            let Resultant { force, moment, loads, longest: reach, error, of_moment } =
+                resultant(triangle, of_edges);
+            let most = IMBALANCE * loads;
+            if !(force.amax() <= most + error && moment.abs() <= most * reach + of_moment) {
                 unbalanced.push(t);
             }
-            sizes.push([force.abs().sum() + 2.0 * error, moment.abs() + error * largest]);
-            longest.push(found.longest);
+            sizes.push([force.abs().sum() + 2.0 * error, moment.abs() + of_moment]);
+            longest.push(reach);
         }
         let points = pair.places::<Ball>();
         let exact = |e: usize| forces[e].map(|force| exactly(force.into()));
