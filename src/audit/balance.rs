@@ -10,8 +10,8 @@ use nalgebra::Vector2;
 use thiserror::Error;
 
 use super::certificate::{Certificate, Edge, Owner, Role, exactly, place};
+use crate::kernel::Enclosing;
 use crate::kernel::composite::Wrench;
-use crate::kernel::{Ball, Enclosing};
 
 /// Why there is no equilibrium to be had.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -53,8 +53,10 @@ pub(crate) struct Change<S> {
     pub factors: [S; 2],
 }
 
-/// Corrections that equilibrium needs beside tractions.
+/// What equilibrium needs beside the tractions of the certificate.
 pub(crate) struct Closed<S> {
+    /// The forces that are added at both ends of each edge.
+    pub added: Vec<[Vector2<S>; 2]>,
     pub changes: Vec<Change<S>>,
     pub stops: Vec<Stop<S>>,
 }
@@ -177,18 +179,13 @@ pub(crate) struct OnEdges<'a, S> {
 }
 
 impl<S: Enclosing> OnEdges<'_, S> {
-    /// Adds to the forces on the edges of the triangles, `outward`, those that put every one in equilibrium; `wrenches` are their
-    /// resultants, with the loads. Returns what changes on Gamma_C.
+    /// What puts every triangle in equilibrium; `wrenches` are the resultants of the forces on them, with the loads.
     ///
     /// # Errors
     /// A connected part that neither Gamma_D nor pressures on Gamma_C balance.
-    pub fn close(
-        &self,
-        tree: &Tree,
-        wrenches: &mut [Wrench<S>],
-        outward: &mut [[[Vector2<S>; 2]; 3]],
-    ) -> Result<Closed<S>, Unbalanced> {
-        let mut closed = Closed { changes: Vec::new(), stops: Vec::new() };
+    pub fn close(&self, tree: &Tree, wrenches: &mut [Wrench<S>]) -> Result<Closed<S>, Unbalanced> {
+        let added = vec![[Vector2::zeros(); 2]; self.certificate.edges.len()];
+        let mut closed = Closed { added, changes: Vec::new(), stops: Vec::new() };
         for part in tree.parts() {
             let root = part[0];
             let mut total = wrenches[root];
@@ -207,7 +204,7 @@ impl<S: Enclosing> OnEdges<'_, S> {
                 }
                 let Some(owner) = self.owners[hold.edge][0] else { continue };
                 let force = self.unit(hold).map(|f| f * factor);
-                add(&mut outward[owner.piece][owner.local], force);
+                add(&mut closed.added[hold.edge], force);
                 let wrench = times(self.wrench(hold), factor);
                 wrenches[owner.piece] = wrenches[owner.piece].plus(wrench);
                 if let Profile::Pressure(ends) = hold.profile {
@@ -221,17 +218,10 @@ impl<S: Enclosing> OnEdges<'_, S> {
                 let [start, end] = self.certificate.edges[e].ends.map(|p| self.points[p]);
                 let wrench = wrenches[t];
                 let force = wrench.on_edge(start, end);
-                let minus = force.map(|f| -f);
-                // The triangle behind the edge gets minus its resultant, the one before it the resultant; its edge runs the
-                // other way round.
-                let (behind, before) = if left.piece == t { (left, right) } else { (right, left) };
-                let (here, there) = if left.piece == t {
-                    (minus, [force[1], force[0]])
-                } else {
-                    ([minus[1], minus[0]], force)
-                };
-                add(&mut outward[behind.piece][behind.local], here);
-                add(&mut outward[before.piece][before.local], there);
+                // The triangle behind the edge gets minus its resultant, the one before it the resultant.
+                let (before, force) =
+                    if left.piece == t { (right, force.map(|f| -f)) } else { (left, force) };
+                add(&mut closed.added[e], force);
                 wrenches[before.piece] = wrenches[before.piece].plus(wrench);
             }
         }
@@ -371,92 +361,6 @@ impl<S: Enclosing> OnEdges<'_, S> {
             [(a, _), (b, _), (c, _)] => Some(([a, b, c], size)),
             _ => None,
         }
-    }
-}
-
-/// How far triangles may be out of balance: a force, and a moment about the centroid.
-pub(crate) type Size = [f64; 2];
-
-/// Covers the rounding of sums and products of positive numbers, as many as there are triangles.
-const SAFETY: f64 = 1.01;
-
-impl OnEdges<'_, Ball> {
-    /// Bounds, at the ends of each edge, of the forces that [`OnEdges::close`] adds for triangles which are out of balance by no
-    /// more than `sizes`; no edge of theirs is longer than `longest`. Also the triangles that a support against a free motion
-    /// holds. A wrench of the force f and the moment m is moved by a distance h to one of the moment m + h f at most, and takes
-    /// f + 6 m / |E| at an end of E, as [`Wrench::on_edge`] says.
-    pub fn close_within(
-        &self,
-        tree: &Tree,
-        sizes: &mut [Size],
-        longest: &[f64],
-    ) -> Result<(Vec<f64>, Vec<usize>), Unbalanced> {
-        let (mut off, mut stopped) = (vec![0.0; self.certificate.edges.len()], Vec::new());
-        let extent = self.extent();
-        for part in tree.parts() {
-            let root = part[0];
-            let force = SAFETY * part.iter().map(|&t| sizes[t][0]).sum::<f64>();
-            let moments = SAFETY * part.iter().map(|&t| sizes[t][1]).sum::<f64>();
-            let any = |most: f64| Ball::around(0.0, most);
-            let total = Wrench {
-                force: Vector2::repeat(any(force)),
-                moment: any(moments + SAFETY * extent * force),
-                about: self.points[self.certificate.pieces[root].vertices[0]],
-            };
-            for (hold, factor, _) in self.holds(part, total)? {
-                let factor = most(factor);
-                if let Profile::Stop(c) = hold.profile {
-                    let size = if c == 2 { [0.0, factor] } else { [factor, extent * factor] };
-                    let edge = self.certificate.pieces[root].edges[0];
-                    off[edge] += self.at_ends(edge, size);
-                    stopped.push(root);
-                    continue;
-                }
-                let Some(owner) = self.owners[hold.edge][0] else { continue };
-                let wrench = self.wrench(hold);
-                let at_ends = self.unit(hold).map(length);
-                off[hold.edge] += factor * at_ends[0].max(at_ends[1]);
-                let force = factor * length(wrench.force);
-                sizes[owner.piece][0] += force;
-                sizes[owner.piece][1] +=
-                    factor * most(wrench.moment) + longest[owner.piece] * force;
-            }
-            for &t in part[1..].iter().rev() {
-                let Some(e) = tree.towards_root[t] else { continue };
-                let other = self.owners[e].iter().flatten().find(|owner| owner.piece != t);
-                let Some(&Owner { piece: before, .. }) = other else { continue };
-                let [force, moment] = sizes[t];
-                let in_the_middle = moment + longest[t] * force;
-                off[e] += self.at_ends(e, [force, in_the_middle]);
-                sizes[before][0] += force;
-                sizes[before][1] += in_the_middle + longest[before] * force;
-            }
-        }
-        off.iter_mut().for_each(|off| *off *= SAFETY);
-        match off.iter().position(|off| !off.is_finite()).and_then(|e| self.owners[e][0]) {
-            Some(Owner { piece: triangle, .. }) => Err(Unbalanced::Free { triangle }),
-            None => Ok((off, stopped)),
-        }
-    }
-
-    /// A bound of the force at an end of edge `e` that takes this force, and this moment about its middle.
-    fn at_ends(&self, e: usize, [force, moment]: Size) -> f64 {
-        let [start, end] = self.certificate.edges[e].ends.map(|p| self.points[p]);
-        let edge = end - start;
-        let least = edge.map(|x| x.lower().max(-x.upper()).max(0.0)).max();
-        if moment == 0.0 { force } else { force + 6.0 * moment / least }
-    }
-
-    /// No two points are farther apart.
-    fn extent(&self) -> f64 {
-        let along = |c: usize| {
-            let ends = |[low, high]: [f64; 2], x: &Vector2<Ball>| {
-                [low.min(x[c].lower()), high.max(x[c].upper())]
-            };
-            let [low, high] = self.points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], ends);
-            high - low
-        };
-        along(0) + along(1)
     }
 }
 

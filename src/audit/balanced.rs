@@ -28,9 +28,9 @@ pub struct Balanced<S> {
     /// tau N on the edges as the certificate has it.
     pub forces: Vec<[Vector2<S>; 2]>,
     /// The force and the moment about its centroid by which these and the body force leave each triangle out of balance.
-    pub(crate) resultants: Vec<[S; 3]>,
-    /// tau N on the edges of each triangle towards its outside, in equilibrium.
-    pub outward: Vec<[[Vector2<S>; 2]; 3]>,
+    pub(crate) resultants: Vec<Wrench<S>>,
+    /// tau N on the edges in equilibrium.
+    pub in_balance: Vec<[Vector2<S>; 2]>,
     /// Corrections that equilibrium needs beside tractions.
     pub(crate) closed: Closed<S>,
     /// 2 int tau_n (v_n - g) over the edges of each triangle.
@@ -86,8 +86,8 @@ impl Certificate {
                 }
             });
         }
-        let (resultants, outward) = (Vec::new(), Vec::new());
-        let closed = Closed { changes: Vec::new(), stops: Vec::new() };
+        let (resultants, in_balance) = (Vec::new(), Vec::new());
+        let closed = Closed { added: Vec::new(), changes: Vec::new(), stops: Vec::new() };
         let mut state = Balanced {
             points,
             triangles,
@@ -95,7 +95,7 @@ impl Certificate {
             topology,
             forces,
             resultants,
-            outward,
+            in_balance,
             closed,
             on_contact,
         };
@@ -204,18 +204,19 @@ impl<S: Enclosing> Balanced<S> {
     /// The forces on the triangles from those on the edges, put in equilibrium.
     fn close(&mut self, certificate: &Certificate) -> Result<(), Unbalanced> {
         let count = certificate.pieces.len();
-        self.outward.clear();
         let mut wrenches = Vec::with_capacity(count);
         for t in 0..count {
             let loads = self.loads_as_given(certificate, t);
             wrenches.push(loads.resultant(&self.triangles[t]));
-            self.outward.push(loads.forces);
         }
-        let numbers = |wrench: &Wrench<S>| [wrench.force[0], wrench.force[1], wrench.moment];
-        self.resultants = wrenches.iter().map(numbers).collect();
-        let Balanced { points, topology: Topology { owners, tree }, forces, outward, .. } = self;
+        self.resultants = wrenches.clone();
+        let Balanced { points, topology: Topology { owners, tree }, forces, .. } = self;
         let on_edges = OnEdges { certificate, owners, points, forces: &|e| forces[e] };
-        self.closed = on_edges.close(tree, &mut wrenches, outward)?;
+        self.closed = on_edges.close(tree, &mut wrenches)?;
+        let sum = |(given, added): (&[Vector2<S>; 2], &[Vector2<S>; 2])| {
+            [given[0] + added[0], given[1] + added[1]]
+        };
+        self.in_balance = self.forces.iter().zip(&self.closed.added).map(sum).collect();
         Ok(())
     }
 
@@ -251,7 +252,8 @@ impl<S: Enclosing> Balanced<S> {
 
     /// The forces on triangle `t` towards its outside, in equilibrium, and its body force.
     pub(crate) fn loads(&self, piece: &Piece, t: usize) -> Loads<S> {
-        let mut loads = Loads { forces: self.outward[t], body: piece.body.map(exactly) };
+        let forces = outward(piece.edges, t, &self.topology, &self.in_balance);
+        let mut loads = Loads { forces, body: piece.body.map(exactly) };
         for stop in self.closed.stops.iter().filter(|stop| stop.root == t) {
             (0..2).for_each(|k| loads.forces[0][k] += stop.force[k]);
         }
@@ -278,14 +280,12 @@ pub(crate) fn outward<S: Enclosing>(
 impl Balanced<f64> {
     /// Gives the edges of the certificate the tractions that balance.
     pub fn give(&self, certificate: &mut Certificate) {
-        for (edge, owner) in certificate.edges.iter_mut().zip(&self.topology.owners) {
-            let Some(Owner { piece, local }) = owner[0] else { continue };
-            let outward = self.outward[piece][local];
+        for (edge, now) in certificate.edges.iter_mut().zip(&self.in_balance) {
             match &mut edge.role {
-                Role::Inner(force) | Role::Held(_, force) => *force = outward.map(Into::into),
+                Role::Inner(force) | Role::Held(_, force) => *force = now.map(Into::into),
                 Role::Supported { along, force, .. } => {
                     let d = Vector2::from(*along);
-                    *force = outward.map(|f| f.dot(&d) / d.dot(&d));
+                    *force = now.map(|f| f.dot(&d) / d.dot(&d));
                 }
                 Role::Loaded(_) | Role::Pressed(_) | Role::Contact { .. } => {}
             }

@@ -13,15 +13,15 @@
 
 use nalgebra::Vector2;
 
-use super::balance::OnEdges;
-use super::balanced::{Balanced, outward};
+use super::balance::{OnEdges, Stop};
+use super::balanced::{Balanced, Topology, outward};
 use super::certificate::{Certificate, Curved, Edge, Piece, Role, Shape, exactly, is_oblique};
 use super::checks::Rejection;
 use super::forces::{Cover, Forces, Target, WrongLifting, component, energy, ratio, reach};
-use super::proof::IMBALANCE;
-use super::stresses::{Ground, Law, Laws, Lengths, Numbers, Resultant, Staged, resultant};
-use crate::kernel::composite::{Composite, Frame, Loads};
-use crate::kernel::{Ball, Enclosing};
+use super::stresses::{Ground, Law, Laws, Lengths, Numbers, Staged, resultant};
+use crate::kernel::ball::centre_and_radius;
+use crate::kernel::composite::{Composite, Frame, Loads, Wrench};
+use crate::kernel::{Ball, Enclosing, Triangle};
 
 /// Why a dual pair proves nothing.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -190,6 +190,20 @@ struct Pair<S> {
     forces: Vec<[Vector2<f64>; 2]>,
     /// How far a component of it may be off on each edge.
     off: Vec<f64>,
+    stops: Vec<Stop<Ball>>,
+}
+
+/// Vectors in doubles, and how far a component may be from them.
+fn in_doubles(vectors: [Vector2<Ball>; 2]) -> ([Vector2<f64>; 2], f64) {
+    let mut off = 0.0_f64;
+    let values = vectors.map(|v| {
+        v.map(|x| {
+            let (value, radius) = centre_and_radius(x);
+            off = off.max(radius);
+            value
+        })
+    });
+    (values, off)
 }
 
 /// A dual pair with its sums over the triangles.
@@ -228,42 +242,30 @@ impl<S: Staged> Forces<'_, S> {
         certificate.check_pair(pair, state)?;
         pair.check_displacement()?;
         let on_edge = |edge: &Edge| match edge.role {
-            Role::Inner(force) | Role::Held(_, force) => force.map(Vector2::from),
-            Role::Supported { along, force, .. } => force.map(|p| Vector2::from(along) * p),
+            Role::Inner(force) | Role::Held(_, force) => force.map(exactly),
+            Role::Supported { along, force, .. } => {
+                force.map(|p| exactly::<Ball>(along) * Ball::point(p))
+            }
             Role::Loaded(_) | Role::Pressed(_) | Role::Contact { .. } => [Vector2::zeros(); 2],
         };
-        let forces: Vec<[Vector2<f64>; 2]> = pair.edges.iter().map(on_edge).collect();
-        let count = pair.pieces.len();
-        let (mut sizes, mut longest) = (Vec::with_capacity(count), Vec::with_capacity(count));
-        let mut unbalanced = Vec::new();
-        for (t, (piece, triangle)) in pair.pieces.iter().zip(&state.triangles).enumerate() {
-            let of_edges = outward(piece.edges, t, &state.topology, &forces);
-            let Resultant { force, moment, loads, longest: reach, error, of_moment } =
-                resultant(triangle, of_edges);
-            let most = IMBALANCE * loads;
-            if !(force.amax() <= most + error && moment.abs() <= most * reach + of_moment) {
-                unbalanced.push(t);
-            }
-            sizes.push([force.abs().sum() + 2.0 * error, moment.abs() + of_moment]);
-            longest.push(reach);
-        }
+        let forces: Vec<[Vector2<Ball>; 2]> = pair.edges.iter().map(on_edge).collect();
         let points = pair.places::<Ball>();
-        let exact = |e: usize| forces[e].map(|force| exactly(force.into()));
-        let owners = &state.topology.owners;
-        let on_edges = OnEdges { certificate: pair, owners, points: &points, forces: &exact };
-        let (mut off, stopped) = on_edges
-            .close_within(&state.topology.tree, &mut sizes, &longest)
-            .map_err(Rejection::from)?;
-        // What a support against a free motion takes is not on the edges.
-        if let Some(&triangle) = unbalanced.iter().find(|t| !stopped.contains(t)) {
-            return Err(Rejection::OutOfBalance { triangle }.into());
-        }
-        for ((off, edge), force) in off.iter_mut().zip(&pair.edges).zip(&forces) {
-            if matches!(edge.role, Role::Supported { .. }) {
-                *off += f64::EPSILON * force[0].amax().max(force[1].amax());
-            }
-        }
-        Ok(Pair { w: pair.shape(), forces, off })
+        let Topology { owners, tree } = &state.topology;
+        let of_piece = |(t, piece): (usize, &Piece)| {
+            let triangle = Triangle { vertices: piece.vertices.map(|p| points[p]) };
+            resultant(&triangle, outward(piece.edges, t, &state.topology, &forces))
+        };
+        let resultants: Vec<Wrench<Ball>> = pair.pieces.iter().enumerate().map(of_piece).collect();
+        let given = |e: usize| forces[e];
+        let on_edges = OnEdges { certificate: pair, owners, points: &points, forces: &given };
+        let closed = on_edges.close(tree, &mut resultants.clone()).map_err(Rejection::from)?;
+        pair.check_balance((&forces, &resultants), |_| Ball::from(0), &closed)?;
+        let in_balance = forces
+            .iter()
+            .zip(&closed.added)
+            .map(|(given, added)| in_doubles([given[0] + added[0], given[1] + added[1]]));
+        let (forces, off) = in_balance.unzip();
+        Ok(Pair { w: pair.shape(), forces, off, stops: closed.stops })
     }
 
     /// The numbers of C eps(w) - rho on triangle `t`, in doubles if these are sharp.
@@ -274,8 +276,13 @@ impl<S: Staged> Forces<'_, S> {
         ground: Option<&(Ground, Frame<f64>)>,
     ) -> Numbers {
         let (state, piece) = (self.state, &self.certificate.pieces[t]);
-        let forces = outward(piece.edges, t, &state.topology, &pair.forces);
-        let off = piece.edges.iter().map(|&e| pair.off[e]).fold(0.0, f64::max);
+        let mut forces = outward(piece.edges, t, &state.topology, &pair.forces);
+        let mut off = piece.edges.iter().map(|&e| pair.off[e]).fold(0.0, f64::max);
+        for stop in pair.stops.iter().filter(|stop| stop.root == t) {
+            let (more, beside) = in_doubles(stop.force);
+            (0..2).for_each(|k| forces[0][k] += more[k]);
+            off += beside + f64::EPSILON * forces[0].iter().map(Vector2::amax).sum::<f64>();
+        }
         let in_doubles = ground.and_then(|(ground, frame)| {
             let w = (piece.vertices.map(|p| pair.w.points[p]), pair.w.bulges_of(piece));
             ground.numbers(frame, &piece.material, w, (forces, off))

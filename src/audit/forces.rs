@@ -621,9 +621,9 @@ impl<'a, S: Staged> Forces<'a, S> {
             let mut middle = self.within(w) / S::from(2);
             middle += certificate.work_of_tractions(&state.forces, w);
             for (e, edge) in certificate.edges.iter().enumerate() {
-                let [Some(owner), None] = state.topology.owners[e] else { continue };
-                let force = state.outward[owner.piece][owner.local];
-                middle -= w.work_of(force, edge.ends, e) / S::from(2);
+                if state.topology.owners[e][1].is_none() {
+                    middle -= w.work_of(state.in_balance[e], edge.ends, e) / S::from(2);
+                }
             }
             Value { middle, norm: square.sqrt().upper() }
         };

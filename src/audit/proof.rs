@@ -28,10 +28,11 @@ pub use super::checks::Rejection;
 
 use nalgebra::Vector2;
 
+use super::balance::Closed;
 use super::balanced::Balanced;
 use super::certificate::{Shape, exactly, place};
 use super::forces::Evidence;
-use crate::kernel::composite::{Affine, Composite};
+use crate::kernel::composite::{Affine, Composite, Wrench};
 use crate::kernel::{Ball, Enclosing};
 
 /// The bound that a certificate proves.
@@ -63,7 +64,7 @@ pub struct Claim {
 
 /// A triangle may be out of balance by this, in units of the forces on it: the tractions and the sums of a dozen terms,
 /// rounded.
-pub(crate) const IMBALANCE: f64 = 128.0 * f64::EPSILON;
+const IMBALANCE: f64 = 128.0 * f64::EPSILON;
 
 /// Fields whose distance on a triangle is below this part of the bound, shared out equally, differ by rounding.
 const NEGLIGIBLE: f64 = 1e-9;
@@ -101,7 +102,8 @@ impl Certificate {
     /// As [`Certificate::evaluate`]; a triangle that is out of balance; a claim that does not follow.
     pub fn audit(&self, claim: &Claim) -> Result<Proof, Rejection> {
         let state = self.balanced::<Ball>(self.topology()?)?;
-        self.check_balance(&state)?;
+        let double_area = |t: usize| state.triangles[t].double_area();
+        self.check_balance((&state.forces, &state.resultants), double_area, &state.closed)?;
         let (proof, sums) = self.sum_for(&state, &claim.forces)?;
         if claim.shares.len() != proof.shares.len() {
             let (found, expected) = (claim.shares.len(), proof.shares.len());
@@ -121,8 +123,14 @@ impl Certificate {
         Ok(proof)
     }
 
-    /// The tractions balance on every triangle to the rounding of doubles.
-    pub(crate) fn check_balance<S: Enclosing>(&self, state: &Balanced<S>) -> Result<(), Rejection> {
+    /// The tractions balance on every triangle to the rounding of doubles: the forces on the edges, with what they and the body
+    /// force amount to.
+    pub(crate) fn check_balance<S: Enclosing>(
+        &self,
+        (forces, resultants): (&[[Vector2<S>; 2]], &[Wrench<S>]),
+        double_area: impl Fn(usize) -> S,
+        closed: &Closed<S>,
+    ) -> Result<(), Rejection> {
         let size = |x: S| x.upper().max(-x.lower());
         // The sum of the forces' sizes, and the largest component of the edge.
         let on_edge = |(edge, forces): (&Edge, &[Vector2<S>; 2])| {
@@ -130,21 +138,20 @@ impl Certificate {
             let forces: f64 = forces.iter().flatten().copied().map(size).sum();
             (forces, (end - start).amax())
         };
-        let edges: Vec<(f64, f64)> = self.edges.iter().zip(&state.forces).map(on_edge).collect();
+        let edges: Vec<(f64, f64)> = self.edges.iter().zip(forces).map(on_edge).collect();
         for (t, piece) in self.pieces.iter().enumerate() {
             let of_edges = piece.edges.map(|e| edges[e]);
             let forces: f64 = of_edges.iter().map(|(forces, _)| forces).sum();
             let reach = of_edges.iter().map(|&(_, reach)| reach).fold(0.0, f64::max);
             let body: f64 = piece.body.iter().flatten().map(|f| f.abs()).sum();
-            let loads =
-                if body == 0.0 { 0.0 } else { body * size(state.triangles[t].double_area()) };
+            let loads = if body == 0.0 { 0.0 } else { body * size(double_area(t)) };
             let allowed = IMBALANCE * (forces + loads);
-            let [x, y, moment] = &state.resultants[t];
+            let Wrench { force, moment, .. } = &resultants[t];
             // Places of cuts are not doubles: what their balls leave open may be balance.
             let near = |x: &S, most: f64| x.lower() <= most && x.upper() >= -most;
             // What a support against a free motion takes is not on the edges.
-            let is_stopped = state.closed.stops.iter().any(|stop| stop.root == t);
-            let balances = [x, y].iter().all(|f| near(f, allowed)) && near(moment, allowed * reach);
+            let is_stopped = closed.stops.iter().any(|stop| stop.root == t);
+            let balances = force.iter().all(|f| near(f, allowed)) && near(moment, allowed * reach);
             if !(is_stopped || balances) {
                 return Err(Rejection::OutOfBalance { triangle: t });
             }

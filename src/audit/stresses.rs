@@ -47,13 +47,13 @@
 //! e_k 24 P S kappa sqrt(J) X,   S^2 = sum s^2,   sqrt(J) l/J = sqrt(rho)                                          \[S\]
 //!
 //! (16/3 sqrt(20) < 23.86; the rest covers that constants and divisors are rounded). For what is off by d beside its roundings
-//! it is as long as for kappa = 1 and, without e_k, X = d, or F = d and D = 0.
+//! it is as long as for kappa = 1 and l itself, without e_k, for X = d, or F = d and D = 0.
 
 use nalgebra::{Matrix2, Vector2};
 
 use super::certificate::Piece;
 use crate::kernel::ball::centre_and_radius;
-use crate::kernel::composite::{Affine, Composite, Frame, Loads};
+use crate::kernel::composite::{Affine, Composite, Frame, Loads, Wrench};
 use crate::kernel::{Ball, Enclosing, Material, Squares, Stress, Triangle};
 
 /// Numbers of a checker that doubles may stand for.
@@ -228,6 +228,8 @@ pub(crate) struct Ground<'a> {
     skew: f64,
     /// rho
     ratio: f64,
+    /// rho without roundings.
+    sharp_ratio: f64,
 }
 
 impl<'a> Ground<'a> {
@@ -241,10 +243,13 @@ impl<'a> Ground<'a> {
         let double_area = triangle.double_area();
         let [p, q] = [b, c].map(|edge| edge.map(|x| x.abs() + more));
         let skew = (p[0] * q[1] + p[1] * q[0]) / double_area;
-        let largest = (p + q).max();
-        let ratio = largest * largest / double_area;
+        let ratio = (p + q).max() * (p + q).max() / double_area;
+        let edges = [b, c, c - b].map(|edge| edge.amax());
+        let largest = edges.into_iter().fold(0.0, f64::max);
+        let largest = largest + 2.0 * f64::EPSILON * f64::from(OF_RADIUS) * more;
+        let sharp_ratio = largest * largest / double_area;
         let is_known = law.is_scaled && SCALES.contains(&double_area) && skew <= FLAT;
-        is_known.then_some(Ground { law, triangle, double_area, skew, ratio })
+        is_known.then_some(Ground { law, triangle, double_area, skew, ratio, sharp_ratio })
     }
 
     /// The length \[S\] for e_k X = 1 and kappa = 1.
@@ -275,7 +280,7 @@ impl<'a> Ground<'a> {
         let force = forces.as_flattened().iter().map(Vector2::amax).fold(0.0, f64::max);
         let [per_force, per_stress] = self.sizes();
         let size = per_force * (force + LEAST) + per_stress * (self.law.stress * largest + LEAST);
-        let off = of_forces(self.law, self.ratio, off + LEAST);
+        let off = of_forces(self.law, self.sharp_ratio, off + LEAST);
         self.scaled(&tau.distance_from(&sigma), size, off)
     }
 
@@ -359,46 +364,116 @@ pub(crate) fn strain_energy<S: Enclosing>(
     at.into_iter().fold(square(sum), |total, gradient| total + square(gradient))
 }
 
-/// No less than e_k times the sizes of a force and of a moment where places are doubles: half of the sum of the sizes of all
-/// components after 10 roundings, and l/3 times that sum after 24.
-const OF_RESULTANT: f64 = 8.01 * f64::EPSILON;
-
-/// The force and the moment of forces on the edges of a triangle. Where vertices are off by a radius, no arm of a force in the
-/// formula of the moment, (2 a + b) / 6, is off by more.
-pub(crate) fn resultant<S: Staged>(
-    triangle: &Triangle<S>,
-    forces: [[Vector2<f64>; 2]; 3],
-) -> Resultant {
-    let ([b, c], more) = apart(triangle.vertices);
-    let triangle = Triangle { vertices: [Vector2::zeros(), b, c] };
-    let radius = f64::EPSILON * f64::from(OF_RADIUS) * more;
-    let largest = (b.abs() + c.abs()).max();
-    let longest = 1.5 * (b.amax().max(c.amax()).max((c - b).amax()) + 2.0 * radius);
-    let loads = forces.as_flattened().iter().flatten().map(|f| f.abs()).sum::<f64>();
-    let wrench = Loads { forces, body: [Vector2::zeros(); 3] }.resultant(&triangle);
-    Resultant {
-        force: wrench.force,
-        moment: wrench.moment,
-        loads,
-        longest,
-        error: OF_RESULTANT * loads + f64::MIN_POSITIVE,
-        of_moment: (OF_RESULTANT * largest + radius) * loads + f64::MIN_POSITIVE,
+/// The resultant of loads on a triangle. Where all numbers are doubles and there is no body force, to twice the precision of
+/// doubles: what forces that balance to rounding leave is then known by far better than rounding.
+pub(crate) fn resultant(
+    triangle: &Triangle<Ball>,
+    forces: [[Vector2<Ball>; 2]; 3],
+) -> Wrench<Ball> {
+    let (mut places, mut known) = ([[0.0; 2]; 3], [[[0.0; 2]; 2]; 3]);
+    let mut are_doubles = true;
+    let mut double = |x: Ball| {
+        let (value, radius) = centre_and_radius(x);
+        are_doubles &= radius == 0.0;
+        value
+    };
+    for i in 0..3 {
+        for c in 0..2 {
+            places[i][c] = double(triangle.vertices[i][c]);
+            known[i][0][c] = double(forces[i][0][c]);
+            known[i][1][c] = double(forces[i][1][c]);
+        }
+    }
+    if are_doubles {
+        of_doubles(&places, &known).about(triangle.vertices[0])
+    } else {
+        Loads { forces, body: [Vector2::zeros(); 3] }.resultant(triangle)
     }
 }
 
-/// What forces on the edges of a triangle amount to.
-pub(crate) struct Resultant {
-    pub force: Vector2<f64>,
-    /// About the centroid.
-    pub moment: f64,
-    /// The sum of the sizes of the forces' components.
-    pub loads: f64,
-    /// No edge is longer: root of 2 times a component, and more.
-    pub longest: f64,
-    /// Of a component of the force.
-    pub error: f64,
-    /// Of the moment.
-    pub of_moment: f64,
+/// The resultant of forces on the edges of a triangle, about the origin. Of a force that is p at the start a of an edge and q at
+/// its end b it is 1/2 (p + q), with the moment 1/6 (a x (2 p + q) + b x (p + 2 q)): so with the sums g of what stands beside the
+/// vertices x it is 1/6 of the sums of g and of x x g.
+fn of_doubles(places: &[[f64; 2]; 3], forces: &[[[f64; 2]; 2]; 3]) -> Wrench<Ball> {
+    let (mut total, mut moment) = ([Sum::default(); 2], Sum::default());
+    for j in 0..3 {
+        let ([p, q], [r, s]) = (forces[(j + 2) % 3], forces[(j + 1) % 3]);
+        let mut beside = [Sum::default(); 2];
+        for c in 0..2 {
+            for x in [2.0 * p[c], q[c], r[c], 2.0 * s[c]] {
+                beside[c].add(x);
+            }
+            total[c].add_sum(beside[c]);
+        }
+        moment.add_multiple(places[j][0], beside[1]);
+        moment.add_multiple(-places[j][1], beside[0]);
+    }
+    let sixth = |sum: Sum| sum.all() / Ball::from(6);
+    let [x, y] = total.map(sixth);
+    Wrench { force: Vector2::new(x, y), moment: sixth(moment), about: Vector2::zeros() }
+}
+
+/// A sum of doubles and of products of them: its rounded value, the sum of all that was rounded off, and that of the sizes of
+/// this.
+#[derive(Clone, Copy, Default)]
+struct Sum {
+    value: f64,
+    rest: f64,
+    size: f64,
+}
+
+impl Sum {
+    /// By Knuth's transformation what a sum of doubles is rounded by is a double and known.
+    #[inline]
+    fn add(&mut self, x: f64) {
+        let value = self.value + x;
+        let part = value - self.value;
+        let off = (self.value - (value - part)) + (x - part);
+        self.value = value;
+        self.add_rest(off);
+    }
+
+    #[inline]
+    fn add_rest(&mut self, off: f64) {
+        self.rest += off;
+        self.size += off.abs();
+    }
+
+    #[inline]
+    fn add_sum(&mut self, other: Sum) {
+        self.add(other.value);
+        self.rest += other.rest;
+        self.size += other.size;
+    }
+
+    /// Adds a multiple of a sum. The rounding of a product is a double and known, too, but for an underflow.
+    #[inline]
+    fn add_multiple(&mut self, factor: f64, other: Sum) {
+        let product = factor * other.value;
+        self.add(product);
+        self.add_rest(off_product(factor, other.value, product));
+        self.rest += factor * other.rest;
+        self.size += factor.abs() * other.size;
+    }
+
+    /// All of it. The rest of less than 100 numbers went through less than 100 roundings; less than 100 underflow.
+    fn all(self) -> Ball {
+        let error = 100.0 * f64::EPSILON * self.size + f64::MIN_POSITIVE;
+        Ball::point(self.value) + Ball::around(self.rest, error)
+    }
+}
+
+/// x y less the rounded product, by Dekker's transformation: each factor is cut into two doubles of 26 bits, whose products are
+/// exact.
+#[inline]
+fn off_product(x: f64, y: f64, product: f64) -> f64 {
+    let cut = |x: f64| {
+        let much = 134_217_729.0 * x;
+        let high = much - (much - x);
+        (high, x - high)
+    };
+    let ((a, b), (c, d)) = (cut(x), cut(y));
+    ((a * c - product) + a * d + b * c) + b * d
 }
 
 /// The numbers of a stress on a triangle.
@@ -879,24 +954,35 @@ mod tests {
     }
 
     #[test]
-    fn resultants_are_as_near_to_the_truth_as_their_error_says() {
-        for k in 0..300 {
-            let (t, forces) = (balls(&triangle(k)), forces(k));
-            let found = resultant(&t, forces);
-            let given = |x: f64| Term { count: 1, ..Term::exactly(x) };
-            let ([b, c], _) = apart(t.vertices);
-            let near = Triangle { vertices: [Vector2::zeros(), b.map(given), c.map(given)] };
-            let forces =
-                forces.map(|ends| ends.map(|f| f.map(|x| Term { count: 1, ..Term::exactly(x) })));
-            let wrench = Loads { forces, body: [Vector2::zeros(); 3] }.resultant(&near);
-            assert_eq!(wrench.moment.value, found.moment);
-            let error = |x: Term| f64::EPSILON * f64::from(x.count) * x.size;
-            assert!(wrench.force.iter().all(|&x| error(x) <= found.error), "{k}");
-            assert!(error(wrench.moment) <= found.of_moment, "{k}");
-            let edges = [0, 1, 2].map(|i| near.edge(i).map(|x| x.value));
-            let edges = edges.map(|edge| edge[0].hypot(edge[1]));
-            let longest = edges.into_iter().fold(0.0, f64::max);
-            assert!(longest <= found.longest && found.longest <= 1.5 * longest, "{k}");
+    fn the_resultant_to_twice_the_precision_is_that_of_balls_and_sharper() {
+        let ball = |x: f64| Ball::point(x);
+        let (t, triangle) = (triangle(1), balls(&triangle(1)));
+        let mut loads = Loads {
+            forces: [[[0.3, -1.0], [0.7, 0.2]], [[-0.4, 0.9], [1.1, -0.6]], [[0.0; 2]; 2]]
+                .map(|ends| ends.map(Vector2::from)),
+            body: [Vector2::zeros(); 3],
+        };
+        // On the third edge what balances, but for rounding.
+        loads.forces[2] =
+            loads.resultant(&t).on_edge(t.vertices[0], t.vertices[1]).map(|force| -force);
+        let given = Loads {
+            forces: loads.forces.map(|ends| ends.map(|f| f.map(ball))),
+            body: [Vector2::zeros(); 3],
+        };
+        let sharp = resultant(&triangle, given.forces);
+        let wide = given.resultant(&triangle).about(sharp.about);
+        let pairs = [
+            (sharp.force[0], wide.force[0]),
+            (sharp.force[1], wide.force[1]),
+            (sharp.moment, wide.moment),
+        ];
+        for (sharp, wide) in pairs {
+            let ((a, r), (b, s)) = (centre_and_radius(sharp), centre_and_radius(wide));
+            assert!((a - b).abs() <= r + s && r <= 1e-28 && s >= 1e-17, "{sharp:?}, {wide:?}");
         }
+        // A force that is not a double is left to balls.
+        let mut wide = given;
+        wide.forces[1][0][1] = Ball::around(0.9, 1e-3);
+        assert_eq!(resultant(&triangle, wide.forces), wide.resultant(&triangle));
     }
 }

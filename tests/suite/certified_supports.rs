@@ -275,6 +275,6 @@ fn a_certificate_of_an_older_format_is_refused_by_its_number() {
     let json = folder.join(certificate::FILES[0]);
     std::fs::write(&json, "{\"format\": 6, \"counts\": {\"vertices\": 9}}").unwrap();
     let error = certificate::audit(&json).unwrap_err().to_string();
-    assert!(error.contains("of format 6; expected 9"), "{error}");
+    assert!(error.contains("of format 6; expected 10"), "{error}");
     std::fs::remove_dir_all(&folder).unwrap();
 }
