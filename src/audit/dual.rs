@@ -17,7 +17,7 @@ use super::balance::{OnEdges, Stop};
 use super::balanced::{Balanced, Topology, outward};
 use super::certificate::{Certificate, Curved, Edge, Piece, Role, Shape, exactly, is_oblique};
 use super::checks::Rejection;
-use super::forces::{Cover, Forces, Target, WrongLifting, component, energy, ratio, reach};
+use super::forces::{Cover, Forces, Target, WrongLifting, component, energy, mean, ratio, reach};
 use super::stresses::{Ground, Law, Laws, Lengths, Numbers, Staged, resultant};
 use crate::kernel::ball::centre_and_radius;
 use crate::kernel::composite::{Composite, Frame, Loads, Wrench};
@@ -268,12 +268,13 @@ impl<S: Staged> Forces<'_, S> {
         Ok(Pair { w: pair.shape(), forces, off, stops: closed.stops })
     }
 
-    /// The numbers of C eps(w) - rho on triangle `t`, in doubles if these are sharp.
+    /// The numbers of C eps(w) - rho on triangle `t`, in doubles if these are sharp beside them or a `typical` length.
     fn numbers(
         &self,
         (t, law): (usize, &Law),
         pair: &Pair<S>,
         ground: Option<&(Ground, Frame<f64>)>,
+        typical: f64,
     ) -> Numbers {
         let (state, piece) = (self.state, &self.certificate.pieces[t]);
         let mut forces = outward(piece.edges, t, &state.topology, &pair.forces);
@@ -285,7 +286,7 @@ impl<S: Staged> Forces<'_, S> {
         }
         let in_doubles = ground.and_then(|(ground, frame)| {
             let w = (piece.vertices.map(|p| pair.w.points[p]), pair.w.bulges_of(piece));
-            ground.numbers(frame, &piece.material, w, (forces, off))
+            ground.numbers(frame, &piece.material, w, (forces, off), typical)
         });
         in_doubles.unwrap_or_else(|| {
             let triangle = &state.triangles[t];
@@ -317,12 +318,12 @@ impl<S: Staged> Forces<'_, S> {
             });
             length.add(&own[t]);
             for (pair, product, eta, norm, shares) in &mut sums {
-                let apart = self.numbers((t, law), pair, ground.as_ref());
+                let apart = self.numbers((t, law), pair, ground.as_ref(), eta.typical(t));
                 *product += Ball::point(own[t].dot(&apart));
                 shares.push(eta.add(&apart));
                 if self.loose != 0.0 {
                     let ground = ground.as_ref().map(|(ground, _)| ground);
-                    *norm += energy(&pair.w, piece, triangle, ground);
+                    *norm += energy(&pair.w, (piece, triangle), ground, mean(*norm, t));
                 }
             }
         }

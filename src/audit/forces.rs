@@ -234,6 +234,18 @@ pub struct Between {
 }
 
 impl Evidence {
+    /// Tells whether there is a displacement.
+    fn has_forces(&self) -> bool {
+        self.cover.is_some() || !self.liftings.is_empty() || !self.pairs.is_empty()
+    }
+
+    /// Tells whether a displacement has bulges on edges.
+    fn has_bulges(&self) -> bool {
+        let mut liftings = self.cover.iter().chain(self.liftings.iter().map(|(_, w)| w));
+        liftings.any(|w| w.beyond.is_some())
+            || self.pairs.iter().any(|(_, pair)| pair.curved.is_some())
+    }
+
     /// Without what proves nothing, and with what is `found` of the rest.
     #[must_use]
     pub fn proving<E>(
@@ -317,8 +329,6 @@ pub struct Forces<'a, S> {
     /// The error of L(w) and a(v, w) for each unit of |w|_a, as data oscillate.
     pub loose: f64,
     sums: Beside<S>,
-    /// As [`Unbalanced`], for such a bulge on an edge; empty until it is needed.
-    between: OnceCell<Vec<Vector2<S>>>,
 }
 
 /// By-products of the pass over the triangles that sums up the bound.
@@ -328,27 +338,47 @@ pub(crate) struct Beside<S> {
     own: OnceCell<Vec<Numbers>>,
 }
 
-/// int f . w - a(v, w) for w with a component 1 at a point: grad l_i is minus the scaled normal N_i over J = 2 |T|, so of sigma =
-/// C eps(v), affine with the values s_i, l_i has the work -1/6 (s_0 + s_1 + s_2) N_i, and of f J/24 (F + f_i), F being the sum.
-struct Unbalanced<S>(Vec<Vector2<S>>);
+/// int f . w - a(v, w) for w with a component 1 at a point, and for such a bulge on an edge: grad l_i is minus the scaled normal
+/// N_i over J = 2 |T|, so of sigma = C eps(v), affine with the values s_i and the sum S, l_i has the work -1/6 S N_i and 4 l_j l_k
+/// -1/6 ((S + s_j) N_k + (S + s_k) N_j); of f, with the sum F, J/24 (F + f_i) and J/30 (2 F - f_i).
+struct Unbalanced<S> {
+    points: Vec<Vector2<S>>,
+    /// Empty where no w has bulges.
+    bulges: Vec<Vector2<S>>,
+}
 
 impl<S: Enclosing> Unbalanced<S> {
-    fn new(points: usize) -> Self {
-        Unbalanced(vec![Vector2::zeros(); points])
+    fn new(points: usize, bulges: usize) -> Self {
+        let zeros = |count| vec![Vector2::zeros(); count];
+        Unbalanced { points: zeros(points), bulges: zeros(bulges) }
     }
 
     /// Adds a triangle, with C eps(v) there.
     fn add(&mut self, piece: &Piece, triangle: &Triangle<S>, sigma: &Affine<S>) {
         let sixth = S::from(1) / S::from(6);
-        let sum = sigma.at_corner(0) + sigma.at_corner(1) + sigma.at_corner(2);
+        let (has_bulges, is_loaded) = (!self.bulges.is_empty(), piece.body != [[0.0; 2]; 3]);
+        let normals = [0, 1, 2].map(|i| triangle.scaled_normal(i));
+        let stresses = [0, 1, 2].map(|i| sigma.at_corner(i));
+        let sum = stresses[0] + stresses[1] + stresses[2];
         let body = piece.body.map(exactly::<S>);
         let loads = body[0] + body[1] + body[2];
         for i in 0..3 {
-            let mut force = sum.traction(triangle.scaled_normal(i)) * sixth;
-            if piece.body != [[0.0; 2]; 3] {
+            let mut force = sum.traction(normals[i]) * sixth;
+            if is_loaded {
                 force += (loads + body[i]) * (triangle.double_area() / S::from(24));
             }
-            self.0[piece.vertices[i]] += force;
+            self.points[piece.vertices[i]] += force;
+            if !has_bulges {
+                continue;
+            }
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            let [of_j, of_k] =
+                [(j, k), (k, j)].map(|(j, k)| (sum + stresses[j]).traction(normals[k]));
+            let mut force = (of_j + of_k) * sixth;
+            if is_loaded {
+                force += (loads * S::from(2) - body[i]) * (triangle.double_area() / S::from(30));
+            }
+            self.bulges[piece.edges[i]] += force;
         }
     }
 }
@@ -379,9 +409,10 @@ impl Certificate {
         state: &Balanced<S>,
         evidence: &Evidence,
     ) -> Result<(Proof, Beside<S>), Rejection> {
-        let has_pairs = !evidence.pairs.is_empty();
-        let has_forces = has_pairs || evidence.cover.is_some() || !evidence.liftings.is_empty();
-        let mut unbalanced = Unbalanced::new(if has_forces { state.points.len() } else { 0 });
+        let (has_forces, has_pairs) = (evidence.has_forces(), !evidence.pairs.is_empty());
+        let points = if has_forces { state.points.len() } else { 0 };
+        let bulges = if evidence.has_bulges() { self.edges.len() } else { 0 };
+        let mut unbalanced = Unbalanced::new(points, bulges);
         let (mut own, mut laws) = (Vec::new(), Laws::default());
         let proof = self.sum_beside(state, |t, sigma, apart| {
             let (piece, triangle) = (&self.pieces[t], &state.triangles[t]);
@@ -470,7 +501,7 @@ impl<'a, S: Staged> Forces<'a, S> {
         of: &'a [Option<usize>],
         mean: Mean,
     ) -> Self {
-        let mut unbalanced = Unbalanced::new(state.points.len());
+        let mut unbalanced = Unbalanced::new(state.points.len(), certificate.edges.len());
         for (piece, triangle) in certificate.pieces.iter().zip(&state.triangles) {
             unbalanced.add(piece, triangle, &state.v.stress(piece, triangle));
         }
@@ -487,7 +518,7 @@ impl<'a, S: Staged> Forces<'a, S> {
         mean: Mean,
     ) -> Self {
         let loose = certificate.loose();
-        Forces { certificate, state, of, mean, loose, sums, between: OnceCell::new() }
+        Forces { certificate, state, of, mean, loose, sums }
     }
 
     /// The numbers of C eps(v) - tau on each triangle.
@@ -508,11 +539,9 @@ impl<'a, S: Staged> Forces<'a, S> {
         let sum = |forces: &[Vector2<S>], w: &[Vector2<S>]| {
             forces.iter().zip(w).fold(S::from(0), |sum, (f, w)| sum + f.dot(w))
         };
-        let at_points = sum(&self.sums.unbalanced.0, &w.points);
-        let Some(bulges) = &w.bulges else { return at_points };
-        let (certificate, state) = (self.certificate, self.state);
-        let between = self.between.get_or_init(|| unbalanced_between(certificate, state));
-        at_points + sum(between, bulges)
+        let Unbalanced { points, bulges } = &self.sums.unbalanced;
+        let at_points = sum(points, &w.points);
+        w.bulges.as_ref().map_or(at_points, |of_w| at_points + sum(bulges, of_w))
     }
 
     /// The displacement of a lifting on the triangles of the certificate.
@@ -610,10 +639,10 @@ impl<'a, S: Staged> Forces<'a, S> {
     fn values(&self, shapes: &[Shape<S>]) -> Vec<Value<S>> {
         let (certificate, state) = (self.certificate, self.state);
         let (mut squares, mut laws) = (vec![Ball::from(0); shapes.len()], Laws::default());
-        for (piece, triangle) in certificate.pieces.iter().zip(&state.triangles) {
+        for (t, (piece, triangle)) in certificate.pieces.iter().zip(&state.triangles).enumerate() {
             let ground = Ground::new(laws.of(&piece.material), triangle);
             for (square, w) in squares.iter_mut().zip(shapes) {
-                *square += energy(w, piece, triangle, ground.as_ref());
+                *square += energy(w, (piece, triangle), ground.as_ref(), mean(*square, t));
             }
         }
         let value = |(w, square): (&Shape<S>, Ball)| {
@@ -793,44 +822,20 @@ impl<'a, S: Staged> Forces<'a, S> {
     }
 }
 
-/// int f . w - a(v, w) by the bulges of w: of sigma 4 l_j l_k has the work -1/6 ((S + s_j) N_k + (S + s_k) N_j), S being the sum
-/// of the s_i, and of f J/30 (2 F - f_i).
-fn unbalanced_between<S: Enclosing>(
-    certificate: &Certificate,
-    state: &Balanced<S>,
-) -> Vec<Vector2<S>> {
-    let sixth = S::from(1) / S::from(6);
-    let mut bulges = vec![Vector2::zeros(); certificate.edges.len()];
-    for (piece, triangle) in certificate.pieces.iter().zip(&state.triangles) {
-        let sigma = state.v.stress(piece, triangle);
-        let normals = [0, 1, 2].map(|i| triangle.scaled_normal(i));
-        let all = [0, 1, 2].map(|i| sigma.at_corner(i));
-        let sum = all[0] + all[1] + all[2];
-        let body = piece.body.map(exactly::<S>);
-        let loads = body[0] + body[1] + body[2];
-        for i in 0..3 {
-            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-            let mut force =
-                (sum + all[j]).traction(normals[k]) + (sum + all[k]).traction(normals[j]);
-            force *= sixth;
-            if piece.body != [[0.0; 2]; 3] {
-                force += (loads * S::from(2) - body[i]) * (triangle.double_area() / S::from(30));
-            }
-            bulges[piece.edges[i]] += force;
-        }
-    }
-    bulges
+/// The mean of a sum of so many; 0 of none.
+pub(crate) fn mean(sum: Ball, count: usize) -> f64 {
+    if count == 0 { 0.0 } else { sum.upper() / count as f64 }
 }
 
-/// int eps(w) : C eps(w) on a triangle: in doubles, if these are sharp.
+/// int eps(w) : C eps(w) on a triangle: in doubles, if these are sharp beside it or a `typical` one.
 pub(crate) fn energy<S: Staged>(
     w: &Shape<S>,
-    piece: &Piece,
-    triangle: &Triangle<S>,
+    (piece, triangle): (&Piece, &Triangle<S>),
     ground: Option<&Ground>,
+    typical: f64,
 ) -> Ball {
     let (nodal, bulges) = (piece.vertices.map(|p| w.points[p]), w.bulges_of(piece));
-    let in_doubles = ground.and_then(|ground| ground.energy((nodal, bulges)));
+    let in_doubles = ground.and_then(|ground| ground.energy((nodal, bulges), typical));
     in_doubles.unwrap_or_else(|| {
         let normals = [0, 1, 2].map(|i| triangle.scaled_normal(i));
         let energy = strain_energy(&piece.material().squares(), (&nodal, bulges), &normals);

@@ -75,14 +75,14 @@ impl Staged for Ball {
 }
 
 /// No number goes through more roundings.
-const MOST: u32 = 832;
+const MOST: u32 = 6208;
 
 /// No less than e_k for k = [`MOST`]: (1 + 2 u)^k - 1 <= 2 u k (1 + 2 u k).
 const ROUNDING: f64 = f64::EPSILON * (MOST as f64 + 1.0 / 1024.0);
 
 /// Roundings that stand for the radius of a ball: 2 u of these is less than e_k. Fewer would make triangles look flat whose
 /// vertices are balls, as the middles of edges are.
-const OF_RADIUS: u32 = 64;
+const OF_RADIUS: u32 = 512;
 
 /// Beside forces and displacements as large as this nothing underflows, where lengths and moduli are within [`SCALES`]. They are
 /// taken to be as large, which adds less to a length than is ever seen.
@@ -266,13 +266,15 @@ impl<'a> Ground<'a> {
     }
 
     /// The numbers of C eps(v) - tau for v with these values at the vertices and these bulges, and tau with these forces, which
-    /// may be off by `off`; `None` where balls are sharper.
+    /// may be off by `off`; `None` where their error is large beside them and beside a `typical` length of numbers, so that balls
+    /// are worth their time.
     pub fn numbers<S: Staged>(
         &self,
         frame: &Frame<f64>,
         material: &Material<f64>,
         (nodal, bulges): ([Vector2<S>; 3], Option<[Vector2<S>; 3]>),
         (forces, off): ([[Vector2<f64>; 2]; 3], f64),
+        typical: f64,
     ) -> Option<Numbers> {
         let (nodal, bulges, largest) = displacements((nodal, bulges));
         let sigma = Affine::of_displacement(&self.triangle, &nodal, bulges.as_ref(), material);
@@ -281,11 +283,11 @@ impl<'a> Ground<'a> {
         let [per_force, per_stress] = self.sizes();
         let size = per_force * (force + LEAST) + per_stress * (self.law.stress * largest + LEAST);
         let off = of_forces(self.law, self.sharp_ratio, off + LEAST);
-        self.scaled(&tau.distance_from(&sigma), size, off)
+        self.scaled(&tau.distance_from(&sigma), size, off, typical)
     }
 
     /// The numbers of a stress of which no component has more than this size, with what they are off by beside its roundings.
-    fn scaled(&self, tau: &Composite<f64>, size: f64, off: f64) -> Option<Numbers> {
+    fn scaled(&self, tau: &Composite<f64>, size: f64, off: f64, typical: f64) -> Option<Numbers> {
         let mut values = parts(&self.law.squares, tau);
         let root = self.double_area.sqrt();
         for (part, factor) in values.as_chunks_mut::<3>().0.iter_mut().zip(FACTORS) {
@@ -295,13 +297,18 @@ impl<'a> Ground<'a> {
         }
         let rounding = self.length(tau) * (self.skew * ROUNDING * size);
         let numbers = Numbers { square: dot(&values, &values), values, error: rounding + off };
-        let is_sharp = rounding <= SHARP * numbers.square.sqrt() || rounding <= off;
+        let is_sharp = rounding <= off.max(SHARP * numbers.square.sqrt().max(typical));
         is_sharp.then_some(numbers)
     }
 
-    /// int_T eps(w) : C eps(w); `None` where balls are sharper. -J grad w has components of the size 2 D l, with bulges 10 D l, three of these 30 D
-    /// l; a square of such a g is at most 4 P^2 g^2 times the sum of the moduli, and the division by 24 J has kappa.
-    pub fn energy<S: Staged>(&self, w: ([Vector2<S>; 3], Option<[Vector2<S>; 3]>)) -> Option<Ball> {
+    /// int_T eps(w) : C eps(w); `None` where its error is large beside it and beside a `typical` one. -J grad w has components of
+    /// the size 2 D l, with bulges 10 D l, three of these 30 D l; a square of such a g is at most 4 P^2 g^2 times the sum of the
+    /// moduli, and the division by 24 J has kappa.
+    pub fn energy<S: Staged>(
+        &self,
+        w: ([Vector2<S>; 3], Option<[Vector2<S>; 3]>),
+        typical: f64,
+    ) -> Option<Ball> {
         let (nodal, bulges, largest) = displacements(w);
         let normals = [0, 1, 2].map(|i| self.triangle.scaled_normal(i));
         let energy = strain_energy(&self.law.squares, (&nodal, bulges), &normals)
@@ -311,7 +318,7 @@ impl<'a> Ground<'a> {
         let largest = largest + LEAST;
         let size = squares * self.law.energy * self.skew * self.ratio * largest * largest;
         let error = ROUNDING * size;
-        (error <= SHARP * energy + TINY).then_some(Ball::around(energy, error))
+        (error <= SHARP * energy.max(typical) + TINY).then_some(Ball::around(energy, error))
     }
 }
 
@@ -364,38 +371,28 @@ pub(crate) fn strain_energy<S: Enclosing>(
     at.into_iter().fold(square(sum), |total, gradient| total + square(gradient))
 }
 
-/// The resultant of loads on a triangle. Where all numbers are doubles and there is no body force, to twice the precision of
-/// doubles: what forces that balance to rounding leave is then known by far better than rounding.
+/// The resultant of forces on the edges of a triangle. Where these are doubles, to twice the precision of doubles, but for what
+/// is not known of the vertices: what forces that balance to rounding leave is then known by far better than rounding.
 pub(crate) fn resultant(
     triangle: &Triangle<Ball>,
     forces: [[Vector2<Ball>; 2]; 3],
 ) -> Wrench<Ball> {
-    let (mut places, mut known) = ([[0.0; 2]; 3], [[[0.0; 2]; 2]; 3]);
-    let mut are_doubles = true;
-    let mut double = |x: Ball| {
-        let (value, radius) = centre_and_radius(x);
-        are_doubles &= radius == 0.0;
-        value
-    };
-    for i in 0..3 {
-        for c in 0..2 {
-            places[i][c] = double(triangle.vertices[i][c]);
-            known[i][0][c] = double(forces[i][0][c]);
-            known[i][1][c] = double(forces[i][1][c]);
-        }
-    }
-    if are_doubles {
+    let places = triangle.vertices.map(|v| [0, 1].map(|c| centre_and_radius(v[c])));
+    let known = forces.map(|ends| ends.map(|f| [0, 1].map(|c| centre_and_radius(f[c]))));
+    if known.as_flattened().as_flattened().iter().all(|&(_, radius)| radius == 0.0) {
+        let known = known.map(|ends| ends.map(|f| f.map(|(value, _)| value)));
         of_doubles(&places, &known).about(triangle.vertices[0])
     } else {
         Loads { forces, body: [Vector2::zeros(); 3] }.resultant(triangle)
     }
 }
 
-/// The resultant of forces on the edges of a triangle, about the origin. Of a force that is p at the start a of an edge and q at
-/// its end b it is 1/2 (p + q), with the moment 1/6 (a x (2 p + q) + b x (p + 2 q)): so with the sums g of what stands beside the
-/// vertices x it is 1/6 of the sums of g and of x x g.
-fn of_doubles(places: &[[f64; 2]; 3], forces: &[[[f64; 2]; 2]; 3]) -> Wrench<Ball> {
+/// The resultant of forces on the edges of a triangle whose vertices are as far from doubles as these say, about the origin. Of a
+/// force that is p at the start a of an edge and q at its end b it is 1/2 (p + q), with the moment 1/6 (a x (2 p + q) + b x (p + 2
+/// q)): so with the sums g of what stands beside the vertices x it is 1/6 of the sums of g and of x x g.
+fn of_doubles(places: &[[(f64, f64); 2]; 3], forces: &[[[f64; 2]; 2]; 3]) -> Wrench<Ball> {
     let (mut total, mut moment) = ([Sum::default(); 2], Sum::default());
+    let mut off = 0.0;
     for j in 0..3 {
         let ([p, q], [r, s]) = (forces[(j + 2) % 3], forces[(j + 1) % 3]);
         let mut beside = [Sum::default(); 2];
@@ -405,12 +402,16 @@ fn of_doubles(places: &[[f64; 2]; 3], forces: &[[[f64; 2]; 2]; 3]) -> Wrench<Bal
             }
             total[c].add_sum(beside[c]);
         }
-        moment.add_multiple(places[j][0], beside[1]);
-        moment.add_multiple(-places[j][1], beside[0]);
+        let [(x, of_x), (y, of_y)] = places[j];
+        moment.add_multiple(x, beside[1]);
+        moment.add_multiple(-y, beside[0]);
+        off += of_x * beside[1].most() + of_y * beside[0].most();
     }
-    let sixth = |sum: Sum| sum.all() / Ball::from(6);
-    let [x, y] = total.map(sixth);
-    Wrench { force: Vector2::new(x, y), moment: sixth(moment), about: Vector2::zeros() }
+    let six = Ball::from(6);
+    let force = Vector2::from(total.map(|sum| sum.all() / six));
+    // Covers the roundings in what is off.
+    let off = Ball::around(0.0, 2.0 * off);
+    Wrench { force, moment: (moment.all() + off) / six, about: Vector2::zeros() }
 }
 
 /// A sum of doubles and of products of them: its rounded value, the sum of all that was rounded off, and that of the sizes of
@@ -456,6 +457,11 @@ impl Sum {
         self.size += factor.abs() * other.size;
     }
 
+    /// No less than its size, but for a rounding.
+    fn most(self) -> f64 {
+        self.value.abs() + self.size
+    }
+
     /// All of it. The rest of less than 100 numbers went through less than 100 roundings; less than 100 underflow.
     fn all(self) -> Ball {
         let error = 100.0 * f64::EPSILON * self.size + f64::MIN_POSITIVE;
@@ -487,8 +493,8 @@ pub(crate) struct Numbers {
     error: f64,
 }
 
-/// Errors are small if they are no more than this part of the doubles, in the norm of a triangle: they add no more than that to
-/// the width of an interval.
+/// Errors are small if they are no more than this part of the doubles, in the norm of a triangle, or of what is typical of the
+/// triangles before it: they add no more than that to the width of an interval.
 const SHARP: f64 = 1e-4;
 
 impl Numbers {
@@ -514,7 +520,7 @@ impl Numbers {
                 centre: stress(tau.centre),
                 bulges: tau.bulges.map(|all| all.map(|part| part.map(&mut stress))),
             };
-            ground.scaled(&near, size + LEAST, ground.length(&near) * (off + LEAST))
+            ground.scaled(&near, size + LEAST, ground.length(&near) * (off + LEAST), 0.0)
         };
         in_doubles().unwrap_or_else(|| Numbers::slowly(law, piece, triangle, tau, 0.0))
     }
@@ -598,6 +604,11 @@ impl Lengths {
         [self.values, self.errors].map(|square| Ball::point(square.sqrt().upper()))
     }
 
+    /// The length that the doubles of one of so many triangles would have if all had the same; 0 of none.
+    pub fn typical(self, count: usize) -> f64 {
+        if count == 0 { 0.0 } else { (self.values.upper() / count as f64).sqrt() }
+    }
+
     /// An upper bound of the length of the numbers.
     pub fn length(self) -> f64 {
         let [values, errors] = self.roots();
@@ -678,7 +689,7 @@ mod tests {
         for material in laws() {
             let law = Law::new(&material);
             let ground = Ground::new(&law, &balls(&t)).unwrap();
-            let of = |tau: &Composite<f64>| ground.scaled(tau, 1.0, 1.0).unwrap();
+            let of = |tau: &Composite<f64>| ground.scaled(tau, 1.0, 1.0, 0.0).unwrap();
             for bent in [false, true] {
                 let (a, b) = (composite(2, bent), composite(5, false));
                 let sum = |sign: f64| Composite {
@@ -762,7 +773,7 @@ mod tests {
             let frame = Frame::new(&ground.triangle);
             let in_balls_of_w = (w.0.map(exact::<Ball>), w.1.map(|bulges| bulges.map(exact)));
             let find =
-                |forces, off| ground.numbers(&frame, &material, in_balls_of_w, (forces, off));
+                |forces, off| ground.numbers(&frame, &material, in_balls_of_w, (forces, off), 0.0);
             let Some(found) = find(forces(k), 0.0) else { continue };
             let known = in_balls(&law, material, &t, w, forces(k));
             assert!(distance(&found, &known) <= found.error + known.error, "{k}");
@@ -789,7 +800,7 @@ mod tests {
             let squares = piece(material).material().squares();
             let known =
                 strain_energy(&squares, (&w.0, w.1), &normals) / (t.double_area() * Ball::from(24));
-            let Some(found) = Ground::new(&law, &t).and_then(|ground| ground.energy(w)) else {
+            let Some(found) = Ground::new(&law, &t).and_then(|ground| ground.energy(w, 0.0)) else {
                 continue;
             };
             assert!(found.lower() <= known.lower() && known.upper() <= found.upper(), "{k}");
@@ -980,6 +991,16 @@ mod tests {
             let ((a, r), (b, s)) = (centre_and_radius(sharp), centre_and_radius(wide));
             assert!((a - b).abs() <= r + s && r <= 1e-28 && s >= 1e-17, "{sharp:?}, {wide:?}");
         }
+        // Vertices that are anywhere near: the moments about the same point are as near.
+        let near = Triangle { vertices: t.vertices.map(|v| v.map(|x| Ball::around(x, 1e-13))) };
+        let beside = resultant(&near, given.forces).about(sharp.about);
+        let ((a, r), (b, s)) = (centre_and_radius(sharp.moment), centre_and_radius(beside.moment));
+        assert!((a - b).abs() <= r + s && s > 1e-13, "{sharp:?}, {beside:?}");
+        let moved = t.vertices.map(|v| Vector2::new(ball(v[0] + 9e-14), ball(v[1] - 9e-14)));
+        let moved = [moved[0], balls(&t).vertices[1], moved[2]];
+        let moved = resultant(&Triangle { vertices: moved }, given.forces).about(sharp.about);
+        let (c, q) = centre_and_radius(moved.moment);
+        assert!((c - a).abs() > 1e-14 && (c - b).abs() + q <= s, "{moved:?}, {beside:?}");
         // A force that is not a double is left to balls.
         let mut wide = given;
         wide.forces[1][0][1] = Ball::around(0.9, 1e-3);
