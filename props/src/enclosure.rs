@@ -11,7 +11,8 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use signorini::kernel::{Enclosing, Interval, Scalar};
+use crate::numbers::Interval;
+use signorini::kernel::{Enclosing, Scalar};
 
 /// The order of the Taylor polynomials.
 pub const ORDER: usize = 4;

@@ -54,7 +54,7 @@ pub use signorini_audit::{dual, forces, proof, stresses};
 use self::proof::{Piece, Role};
 pub use self::quantities::Quantities;
 use crate::fem::{Degree, Mesh, Problem};
-use crate::kernel::{Ball, Interval, Scalar, Triangle};
+use crate::kernel::{Ball, Scalar, Triangle};
 use crate::memory;
 use crate::solve::Solution;
 
@@ -197,11 +197,14 @@ fn certify_near(
     let proof = certificate.sum(&state)?;
     let quantities = quantities::prove(&parts, (solution, &v), &built, (&state, &proof), asked);
     let bound = certificate.with_lifts(proof.bound);
-    let relative = (Interval::point(bound) / Interval::point(proof.norm)).hi();
+    let relative = match proof.norm {
+        norm if norm > 0.0 => (Ball::point(bound) / Ball::point(norm)).upper(),
+        _ => f64::INFINITY,
+    };
     let energy = oscillation.reason.is_none().then(|| {
-        let b = Interval::point(proof.bound);
-        let below = Interval::point(proof.energy[0]) - b * b / Interval::from(2);
-        [below.lo(), proof.energy[1]]
+        let b = Ball::point(proof.bound);
+        let below = Ball::point(proof.energy[0]) - b * b / Ball::from(2);
+        [below.lower(), proof.energy[1]]
     });
     // Doubling is exact.
     let compliance =
@@ -216,8 +219,8 @@ fn certify_near(
         let shape = built.shape(mesh, field);
         let as_it_is = certificate.bound_at(state, &proof, (shape, &distances));
         let beside = (clipping + certificate.lift()).next_up();
-        let [as_it_is, beside] = [as_it_is, beside].map(Interval::point);
-        let together = (as_it_is * as_it_is + beside * beside).sqrt().hi();
+        let [as_it_is, beside] = [as_it_is, beside].map(Ball::point);
+        let together = (as_it_is * as_it_is + beside * beside).sqrt().upper();
         together.min((bound + clipping).next_up())
     };
     let mut shares = vec![0.0; problem.mesh.triangles().len()];

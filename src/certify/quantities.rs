@@ -28,7 +28,7 @@ use super::parts::{Boundary, Parts};
 use super::proof::Proof;
 use crate::fem::Degree;
 use crate::fem::mesh::length;
-use crate::kernel::{Ball, Enclosing, Interval};
+use crate::kernel::{Ball, Enclosing};
 use crate::solve::Solution;
 
 /// The quantities that a certificate proves beside the bound.
@@ -200,7 +200,7 @@ pub(super) fn zones<S: Enclosing>(
                 let runs = runs(&stations, |i| sizes[i] > 0.0 && sizes[i] >= level * largest);
                 for &(first, end) in runs.iter().filter(|run| !last.contains(*run)) {
                     let least = sizes[first..end].iter().copied().fold(f64::INFINITY, f64::min);
-                    let most = (Interval::point(mean.square) / Interval::point(least)).hi();
+                    let most = (Ball::point(mean.square) / Ball::point(least)).upper();
                     let (from, to) = (stations[first], stations[end - 1]);
                     if most <= TELLING * telling(to.to - from.from) {
                         let ends = [from.ends[0], to.ends[1]];
@@ -443,17 +443,17 @@ fn peak(force: &Quantity, zones: &[Zone], line: &Line, solution: &Solution) -> O
         return None;
     };
     let boundary = force.boundary.clone();
-    let point = Interval::point;
+    let point = Ball::point;
     let stations =
         line.stations.iter().filter(|s| line.of[s.edge].is_some_and(|b| line.names[b] == boundary));
     // Arc lengths are doubles near the true ones.
     let length = stations.fold(0.0, |sum, s| sum + (s.to - s.from)) * (1.0 + 1e-12);
-    let mut least = (point(*low) / point(length)).lo();
+    let mut least = (point(*low) / point(length)).lower();
     for zone in zones.iter().filter(|zone| zone.boundary == boundary) {
         if let Limit::Force(most) = zone.limit {
             let left = length - (zone.to - zone.from) * (1.0 - 1e-12);
             if left > 0.0 {
-                least = least.max(((point(*low) - point(most)) / point(left)).lo());
+                least = least.max(((point(*low) - point(most)) / point(left)).lower());
             }
         }
     }

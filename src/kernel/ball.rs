@@ -1,5 +1,5 @@
 //! Balls: a double and how far from it the number may be. The number type of long sums, some times quicker than
-//! [`Interval`](super::Interval), which goes through four products and a sort.
+//! intervals, whose products take four multiplications and a sort.
 //!
 //! With u = 2^-53 and eta = 2^-1074, a rounded sum m is within u |m| of the exact one, and a rounded product or quotient within
 //! u |m| + eta/2. Let |x - a| <= r and |y - b| <= s. Then

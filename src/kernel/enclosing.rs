@@ -1,7 +1,7 @@
 //! Numbers that enclose a real one, and what may be concluded from them: the comparisons of the checker of certificates. A
 //! conclusion holds for every number that is enclosed; where nothing is known, and of a NaN, nothing is concluded.
 
-use super::{Ball, Interval, Scalar};
+use super::{Ball, Scalar};
 
 /// A number that stands for a real one: a double for a quick look, a ball or an interval for a proof, a rational for the
 /// truth.
@@ -72,27 +72,5 @@ impl Enclosing for Ball {
     #[inline]
     fn lower(self) -> f64 {
         Ball::lower(self)
-    }
-}
-
-impl Enclosing for Interval {
-    #[inline]
-    fn exactly(value: f64) -> Interval {
-        Interval::point(value)
-    }
-
-    #[inline]
-    fn sqrt(self) -> Interval {
-        Interval::sqrt(self)
-    }
-
-    #[inline]
-    fn upper(self) -> f64 {
-        self.hi()
-    }
-
-    #[inline]
-    fn lower(self) -> f64 {
-        self.lo()
     }
 }

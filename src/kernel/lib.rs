@@ -1,7 +1,7 @@
 //! The verified core: what method (8) computes at one point, on one triangle and on one contact edge.
 //!
 //! Pure functions of plain data, generic over the number type ([`Scalar`]), so that the very code that solves a
-//! user's problem in doubles can be run over exact rationals, over symbols and over intervals. Sign tests are its only
+//! user's problem in doubles can be run over exact rationals, over symbols and with its rounding enclosed. Sign tests are its only
 //! branches, but for [`pattern`], which is about whole numbers; it allocates nothing, reads nothing and has no panic.
 //! Vectors and matrices are nalgebra's, with the dimension as a parameter where the formula is that of any dimension.
 //! What is numbered and not a vector stays an array: barycentric coordinates, the values of all shape functions, the nodes
@@ -19,8 +19,7 @@
 //! | [`edge_integral`] | the integrals over one edge in (8) and in J_h |
 //! | [`squares`] | not in the paper: the energies of a strain and of a stress as sums of squares |
 //! | [`composite`] | not in the paper: stresses in equilibrium, for certificates |
-//! | [`interval`] | not in the paper: doubles with their rounding enclosed |
-//! | [`ball`] | not in the paper: the same, quicker and wider |
+//! | [`ball`] | not in the paper: doubles with their rounding enclosed |
 //! | [`enclosing`] | not in the paper: what may be concluded from these |
 //! | [`pattern`] | not in the paper: the numbers of the unknowns, and where the entries of the matrix stand |
 
@@ -32,7 +31,6 @@ pub mod contact_edge;
 pub mod edge_integral;
 pub mod element;
 pub mod enclosing;
-pub mod interval;
 pub mod material;
 pub mod pattern;
 pub mod positive_part;
@@ -47,7 +45,6 @@ pub use contact_edge::ContactEdge;
 pub use edge_integral::EdgeIntegrals;
 pub use element::{Element, P1, P2};
 pub use enclosing::Enclosing;
-pub use interval::Interval;
 pub use material::{Material, Plane, Stress};
 pub use positive_part::{positive_part, positive_part_slope};
 pub use scalar::Scalar;

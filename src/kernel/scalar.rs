@@ -5,7 +5,7 @@
 //!
 //! Vectors and matrices are nalgebra's. Of these the kernel uses what is the same formula in every number type: entries,
 //! sums, differences, multiples, and dot products of two or three components. nalgebra's matrix products, traces and longer
-//! dot products start from 0 or multiply by 1, which costs an [interval](super::Interval) its sharpness; the product of a
+//! dot products start from 0 or multiply by 1, which costs an interval its sharpness; the product of a
 //! transposed matrix is made of dot products and does not.
 
 use std::ops::Neg;

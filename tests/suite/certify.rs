@@ -18,7 +18,7 @@ use signorini::fem::{
 use signorini::io::certificate::{self, Header};
 use signorini::io::result::ContinuousCertificate;
 use signorini::io::{Case, Expression};
-use signorini::kernel::{Ball, Interval, Material, Plane};
+use signorini::kernel::{Ball, Material, Plane};
 use signorini::solve::{Degree, Gamma0, Ladder, Method, Settings, Solution, solve};
 
 /// The bounds on three levels of a ladder, each of which is above the true error of the same field, by less than a factor.
@@ -339,7 +339,7 @@ fn the_cases_have_certificates_and_say_what_they_prove() {
 fn the_normal_as_a_direction_is_the_normal() {
     let (problem, solution) = block(8);
     let mut certificate = certify(&problem, &solution).unwrap().certificate;
-    let along_the_normal = certificate.evaluate::<Interval>().unwrap().bound;
+    let along_the_normal = certificate.evaluate::<Ball>().unwrap().bound;
     for edge in &mut certificate.edges {
         if let Role::Contact { along, .. } = &mut edge.role {
             *along = Some([[0.0, -1.0]; 2]);
@@ -351,7 +351,7 @@ fn the_normal_as_a_direction_is_the_normal() {
             }
         }
     }
-    let along_a_direction = certificate.evaluate::<Interval>().unwrap().bound;
+    let along_a_direction = certificate.evaluate::<Ball>().unwrap().bound;
     assert!((along_a_direction / along_the_normal - 1.0).abs() < 1e-11);
     // Control: in another direction the same tractions have no friction to balance them, or v goes through.
     for edge in &mut certificate.edges {
@@ -359,7 +359,7 @@ fn the_normal_as_a_direction_is_the_normal() {
             *along = Some([[0.6, -0.8]; 2]);
         }
     }
-    let other = certificate.evaluate::<Interval>().map(|proof| proof.bound);
+    let other = certificate.evaluate::<Ball>().map(|proof| proof.bound);
     assert!(other.as_ref().map_or(true, |&bound| bound > 1.5 * along_the_normal), "{other:?}");
 }
 
@@ -446,7 +446,7 @@ fn on_a_round_obstacle_bounds_on_two_meshes_are_above_the_distance_of_their_solu
 fn balls_intervals_and_doubles_agree_to_rounding() {
     let (problem, solution) = block(8);
     let certificate = certify(&problem, &solution).unwrap().certificate;
-    let proved = certificate.evaluate::<Interval>().unwrap().bound;
+    let proved = certificate.evaluate::<Ball>().unwrap().bound;
     let quick = certificate.evaluate::<f64>().unwrap().bound;
     assert!(quick <= proved && proved <= (1.0 + 1e-9) * quick, "{quick} {proved}");
     let ball = certificate.evaluate::<Ball>().unwrap().bound;
@@ -472,7 +472,7 @@ fn control_without_the_contact_term_there_would_be_no_bound() {
     let certified = raised_floor(d);
     let error = 2.0_f64.sqrt() * d;
     let mut certificate = certified.certificate;
-    let with_the_floor = certificate.evaluate::<Interval>().unwrap();
+    let with_the_floor = certificate.evaluate::<Ball>().unwrap();
     // What is left when the contact term is dropped: nothing, though u is far away.
     // (but for the root of the margin by which v is kept off the floor, 1e-11).
     assert!(with_the_floor.bound < 1e-4, "{}", with_the_floor.bound);
@@ -481,7 +481,7 @@ fn control_without_the_contact_term_there_would_be_no_bound() {
             *gap = [0.0; 2];
         }
     }
-    let without = certificate.evaluate::<Interval>().unwrap();
+    let without = certificate.evaluate::<Ball>().unwrap();
     let effectivity = without.bound / error;
     assert!((1.0..1.5).contains(&effectivity), "{effectivity}");
 }
@@ -495,7 +495,7 @@ fn control_a_tension_on_the_contact_line_is_refused() {
         _ => None,
     });
     edge.unwrap()[0] *= -1.0;
-    let refused = certificate.evaluate::<Interval>();
+    let refused = certificate.evaluate::<Ball>();
     assert!(matches!(refused, Err(Rejection::Tension { .. })), "{refused:?}");
 }
 
@@ -505,7 +505,7 @@ fn control_a_wrong_load_is_seen_by_the_bound() {
     let certified = certify(&problem, &solution).unwrap();
     let mut certificate = certified.certificate;
     certificate.pieces.iter_mut().for_each(|piece| piece.body.iter_mut().for_each(|f| f[1] *= 4.0));
-    let bound = certificate.evaluate::<Interval>().unwrap().bound;
+    let bound = certificate.evaluate::<Ball>().unwrap().bound;
     assert!(bound > 3.0 * certified.bound, "{bound} {}", certified.bound);
 }
 
@@ -760,7 +760,7 @@ fn control_the_signs_are_what_rejects_a_tension_with_a_consistent_claim() {
             *pressure = pressure.map(|p| p + 0.5);
         }
     }
-    let refused = certificate.evaluate::<Interval>();
+    let refused = certificate.evaluate::<Ball>();
     assert!(matches!(refused, Err(Rejection::Tension { .. })), "{refused:?}");
     // Without the line Gamma_C the same stress passes: as a given pressure.
     for edge in &mut certificate.edges {
@@ -768,5 +768,5 @@ fn control_the_signs_are_what_rejects_a_tension_with_a_consistent_claim() {
             edge.role = Role::Pressed(pressure.map(|p| -p));
         }
     }
-    assert!(certificate.evaluate::<Interval>().is_ok());
+    assert!(certificate.evaluate::<Ball>().is_ok());
 }

@@ -9,10 +9,10 @@ use signorini::fem::double_double::DoubleDouble;
 use signorini::fem::moments::moments;
 use signorini::kernel::ball::centre_and_radius;
 use signorini::kernel::edge_integral::ExactEdge;
-use signorini::kernel::{Ball, Enclosing, Interval, P1, positive_part};
+use signorini::kernel::{Ball, Enclosing, P1, positive_part};
 
 use crate::claim::Outcome;
-use crate::numbers::Exact;
+use crate::numbers::{Exact, Interval};
 use crate::verdict::Verdict;
 use crate::{draws, ensure};
 

@@ -10,6 +10,7 @@
 
 use std::sync::Arc;
 
+use crate::numbers::Interval;
 use proptest::prelude::*;
 use signorini::fem::exact::{self, ExactSolution, Kind, Place, Singular};
 use signorini::fem::{
@@ -17,8 +18,7 @@ use signorini::fem::{
 };
 use signorini::kernel::element::Element;
 use signorini::kernel::{
-    ContactEdge, ContactPoint, Enclosing, Interval, Material, P1, P2, Plane, Stress, Triangle,
-    positive_part,
+    ContactEdge, ContactPoint, Enclosing, Material, P1, P2, Plane, Stress, Triangle, positive_part,
 };
 use signorini::nalgebra::{Matrix2, Vector2};
 

@@ -7,7 +7,8 @@
 //! ones (`refusals`), which it must refuse; and certificates of solutions (`solved`), which are compared with the same checker
 //! over rationals, and with the true errors of solutions that are known.
 
-use signorini::kernel::{Ball, Interval, Material, Plane};
+use crate::numbers::Interval;
+use signorini::kernel::{Ball, Material, Plane};
 use signorini::nalgebra::Matrix2;
 use signorini::solve::Degree;
 

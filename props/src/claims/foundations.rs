@@ -1,8 +1,9 @@
 //! What the other rows rest on in floating point: intervals contain the exact result, and the kernel's functions, run
 //! over intervals, contain their values.
 
-use signorini::kernel::interval::sorted;
-use signorini::kernel::{Ball, Enclosing, Interval, positive_part};
+use crate::numbers::Interval;
+use crate::numbers::interval::sorted;
+use signorini::kernel::{Ball, Enclosing, positive_part};
 
 use crate::harness::{any, assume};
 use crate::harnesses;

@@ -10,13 +10,13 @@ use std::collections::BTreeMap;
 
 use proptest::prelude::*;
 use signorini::certify::proof::{Certificate, Curved, Edge, Piece, Role};
-use signorini::kernel::{Ball, Enclosing, Interval, Material, Plane};
+use signorini::kernel::{Ball, Enclosing, Material, Plane};
 
 use super::refusals::{IS_INNER, supported};
 use crate::bodies::whole;
 use crate::ensure;
 use crate::naive::{Field, Hooke, Line, integral_of_affine};
-use crate::numbers::Exact;
+use crate::numbers::{Exact, Interval};
 use crate::verdict::Verdict;
 
 /// A certificate by hand, in sixteenths: cells of a rectangle, v, tau and the gap.

@@ -1,11 +1,12 @@
 //! Certificates that are wrong in one thing, which the checker must refuse for its own reason.
 
+use crate::numbers::Interval;
 use signorini::certify::Rejection::{
     self, Length, NotPrescribed, NotPrescribedAlong, NotPrescribedAlongBetween,
     NotPrescribedBetween, Orientation, OutOfBalance, Penetration, Tension, Unbalanced, Wrong,
 };
 use signorini::certify::proof::{Certificate, Claim as Said, Edge, Role};
-use signorini::kernel::{Ball, Interval, Material, Plane};
+use signorini::kernel::{Ball, Material, Plane};
 
 use super::by_hand::Draw;
 use crate::claim::{Outcome, text};

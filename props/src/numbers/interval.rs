@@ -7,7 +7,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::Scalar;
+use signorini::kernel::{Enclosing, Scalar};
 
 /// All real numbers between two doubles, ends included; an infinite end is no number but no bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -199,7 +199,7 @@ impl Div for Interval {
     }
 }
 
-crate::entry_of_nalgebra!(Interval);
+signorini::kernel::entry_of_nalgebra!(Interval);
 
 impl Scalar for Interval {
     #[inline]
@@ -219,10 +219,32 @@ impl Scalar for Interval {
     }
 }
 
+impl Enclosing for Interval {
+    #[inline]
+    fn exactly(value: f64) -> Interval {
+        Interval::point(value)
+    }
+
+    #[inline]
+    fn sqrt(self) -> Interval {
+        Interval::sqrt(self)
+    }
+
+    #[inline]
+    fn upper(self) -> f64 {
+        self.hi()
+    }
+
+    #[inline]
+    fn lower(self) -> f64 {
+        self.lo()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{positive_part, positive_part_slope};
+    use signorini::kernel::{positive_part, positive_part_slope};
 
     fn interval(lo: f64, hi: f64) -> Interval {
         Interval::new(lo, hi)
