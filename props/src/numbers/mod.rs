@@ -1,9 +1,8 @@
-//! The number types of the engines: exact rationals, the same with dimensions, intervals of doubles, magnitudes for the bounds of rounding errors,
-//! and integers for the model checker.
+//! The number types of the engines: exact rationals, the same with dimensions, intervals of doubles, magnitudes for the bounds of
+//! rounding errors, and integers for the model checker.
 
 #[cfg(not(kani))]
 pub mod exact;
-#[cfg(not(kani))]
 pub mod interval;
 #[cfg(not(kani))]
 pub mod magnitude;
@@ -13,7 +12,6 @@ pub mod whole;
 
 #[cfg(not(kani))]
 pub use exact::Exact;
-#[cfg(not(kani))]
 pub use interval::Interval;
 #[cfg(not(kani))]
 pub use magnitude::Magnitude;
