@@ -95,7 +95,6 @@ pub const ITEMS: &[Item] = &[
     item("Remark 3.7", "quadratic elements",
         "(22)-(24) for quadratic elements; the rate 3/2 is observed for one solution, in the energy norm; (25) for nu > 1/2"),
     item("floating point", "not in the paper: what the computer's numbers keep of it", ""),
-    item("sparse pattern", "not in the paper: where the entries of the matrix stand", ""),
     item("the error bound", "not in the paper: |u - v|_a without an unknown constant, by certificate",
         "Green's formula"),
     item("the proof engine", "not in the paper: what is false is refused",

@@ -21,7 +21,6 @@ use nalgebra::Vector2;
 use super::mesh::{BoundaryEdge, Mesh, MeshError, TOUCHING, length};
 use super::rigid::connected_by_edges;
 use super::tree::{Bounds, Tree};
-use crate::kernel::pattern::{self, Lists};
 
 /// The outline of a mesh, with what it takes to look at what is near.
 struct Outline<'m> {
@@ -32,8 +31,7 @@ struct Outline<'m> {
     /// The shortest edge of the outline at each vertex.
     shortest: Vec<f64>,
     /// The triangles around each vertex.
-    first: Vec<usize>,
-    around: Vec<usize>,
+    around: Vec<Vec<usize>>,
 }
 
 impl Mesh {
@@ -91,10 +89,13 @@ impl<'m> Outline<'m> {
         }
         let boxes = ends.iter().map(|ends| Bounds::around(ends.map(|v| mesh.vertices()[v])));
         let tree = Tree::new(boxes.collect());
-        let mut first = vec![0; mesh.vertices().len() + 1];
-        let mut around = vec![0; 3 * mesh.triangles().len()];
-        pattern::triangles_of_nodes(mesh.triangles(), &mut first, &mut around);
-        Outline { mesh, ends, tree, shortest, first, around }
+        let mut around = vec![Vec::new(); mesh.vertices().len()];
+        for (t, corners) in mesh.triangles().iter().enumerate() {
+            for &vertex in corners {
+                around[vertex].push(t);
+            }
+        }
+        Outline { mesh, ends, tree, shortest, around }
     }
 
     fn place(&self, vertex: usize) -> Vector2<f64> {
@@ -185,10 +186,9 @@ impl<'m> Outline<'m> {
         distance: f64,
         local: f64,
     ) -> Result<(), MeshError> {
-        let triangles = Lists { starts: &self.first, members: &self.around }.of(from);
         let place = |v: usize| self.place(v);
         let p = place(to);
-        for &t in triangles {
+        for &t in &self.around[from] {
             let corners = self.mesh.triangles()[t];
             let joined = corners.contains(&to);
             let own = corners.iter().position(|&v| v == from).unwrap_or(0);

@@ -1,9 +1,9 @@
 //! The matrix of A(u, v) = a(u, v) - int gamma sigma_n(u) sigma_n(v) on the free degrees of freedom, in a given order of
 //! elimination.
 //!
-//! The pattern is read off the mesh, node by node, and the element matrices are added into it in one pass. Here is where
-//! that is stored; how it is done is `kernel::pattern`. A list of all element entries, sorted by faer
-//! (`SymbolicSparseColMat::try_new_from_indices`), takes 2.1 to 4.3 times as long, P1 with 64 to 256 cells a side.
+//! Two numbers have an entry if their nodes share a triangle. The places of all entries are read off the mesh first, node by
+//! node; then the element matrices are added into them, so that all matrices over the same numbers have one pattern. A list of
+//! all element entries, sorted by faer (`SymbolicSparseColMat::try_new_from_indices`), took two to four times as long.
 
 use std::collections::BTreeMap;
 
@@ -12,11 +12,10 @@ use nalgebra::{DMatrix, Matrix2};
 use super::constraints::{Constraints, from_frame, in_frame};
 use super::contact_face::ContactFace;
 use super::discretization::Discretization;
-use super::element::{Degree, with_element};
+use super::element::with_element;
 use super::material::Materials;
 use super::space::Space;
 use crate::kernel::element::stiffness;
-use crate::kernel::pattern::{self, Lists, Numbers};
 use crate::kernel::{Element, Scalar};
 
 /// The numbers of the free degrees of freedom in an order of elimination: node by node, component by component.
@@ -33,12 +32,19 @@ pub struct Numbering {
 }
 
 impl Numbering {
-    /// Numbers the components that are not `prescribed`, the nodes taken in `order`.
+    /// Numbers the components that are not `prescribed`, the nodes taken in `order`, where each comes once.
     pub fn new(order: &[usize], prescribed: &[[Option<f64>; 2]]) -> Self {
         let mut of = vec![[None; 2]; prescribed.len()];
-        let mut nodes = vec![0; 2 * prescribed.len()];
-        let count = pattern::number(order, prescribed, &mut of, &mut nodes);
-        nodes.truncate(count);
+        let mut nodes = Vec::new();
+        for &node in order {
+            for c in 0..2 {
+                if prescribed[node][c].is_none() {
+                    of[node][c] = Some(nodes.len());
+                    nodes.push(node);
+                }
+            }
+        }
+        let count = nodes.len();
         Numbering { of, count, nodes, frames: BTreeMap::new() }
     }
 
@@ -56,17 +62,21 @@ impl Numbering {
         Numbering { frames, ..Numbering::new(order, prescribed) }
     }
 
-    fn numbers(&self) -> Numbers<'_> {
-        Numbers { of: &self.of, nodes: &self.nodes }
-    }
-
     /// A vector over the free degrees of freedom, from a field.
     pub fn gather(&self, field: &[[f64; 2]]) -> Vec<f64> {
         let mut vector = vec![0.0; self.count];
-        if self.frames.is_empty() {
-            pattern::gather(&self.of, field, &mut vector);
-        } else {
-            pattern::gather(&self.of, &self.turned(field), &mut vector);
+        let mut put = |node: usize, value: [f64; 2]| {
+            for c in 0..2 {
+                if let Some(number) = self.of[node][c] {
+                    vector[number] = value[c];
+                }
+            }
+        };
+        for (node, &value) in field.iter().enumerate() {
+            put(node, value);
+        }
+        for (&node, &axis) in &self.frames {
+            put(node, in_frame(axis, field[node]));
         }
         vector
     }
@@ -76,7 +86,13 @@ impl Numbering {
         for (&node, &axis) in &self.frames {
             field[node] = in_frame(axis, field[node]);
         }
-        pattern::scatter(&self.of, vector, field);
+        for (numbers, value) in self.of.iter().zip(field.iter_mut()) {
+            for c in 0..2 {
+                if let Some(number) = numbers[c] {
+                    value[c] = vector[number];
+                }
+            }
+        }
         for (&node, &axis) in &self.frames {
             field[node] = from_frame(axis, field[node]);
         }
@@ -87,61 +103,44 @@ impl Numbering {
         self.frames.get(&node).map_or(vector, |&axis| in_frame(axis, vector))
     }
 
-    fn turned(&self, field: &[[f64; 2]]) -> Vec<[f64; 2]> {
-        let mut turned = field.to_vec();
-        for (&node, &axis) in &self.frames {
-            turned[node] = in_frame(axis, turned[node]);
-        }
-        turned
+    /// The number of the first free component of a node.
+    fn first(&self, node: usize) -> Option<usize> {
+        self.of[node][0].or(self.of[node][1])
     }
 
     /// R_i^T block R_j with the frames R of the nodes i and j.
-    fn turned_block(&self, [i, j]: [usize; 2], block: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
-        let rows = block.map(|row| self.in_frame(j, row));
+    fn turned_block(&self, [i, j]: [usize; 2], block: Matrix2<f64>) -> Matrix2<f64> {
+        let rows = [0, 1].map(|c| self.in_frame(j, [block[(c, 0)], block[(c, 1)]]));
         let columns = [0, 1].map(|d| self.in_frame(i, [rows[0][d], rows[1][d]]));
-        [0, 1].map(|c| [0, 1].map(|d| columns[d][c]))
+        Matrix2::from(columns)
     }
 }
 
 /// The nodes around each node: those that share a triangle with it, itself included.
 #[derive(Clone, Debug)]
 pub struct Neighbours {
-    starts: Vec<usize>,
-    nodes: Vec<usize>,
+    of: Vec<Vec<usize>>,
 }
 
 impl Neighbours {
-    /// In a space.
+    /// The neighbours in a space.
     pub fn new(space: &Space) -> Self {
-        let (count, nodes) = (space.nodes().len(), space.connectivity());
-        match space.degree() {
-            Degree::One => Neighbours::of_elements(count, nodes.as_chunks::<3>().0),
-            Degree::Two => Neighbours::of_elements(count, nodes.as_chunks::<6>().0),
+        let mut of: Vec<Vec<usize>> = (0..space.nodes().len()).map(|node| vec![node]).collect();
+        for nodes in space.elements() {
+            for &node in nodes {
+                for other in nodes {
+                    if !of[node].contains(other) {
+                        of[node].push(*other);
+                    }
+                }
+            }
         }
+        Neighbours { of }
     }
 
-    /// In a mesh of `count` nodes with these on its triangles.
-    pub fn of_elements<const N: usize>(count: usize, elements: &[[usize; N]]) -> Self {
-        let mut first = vec![0; count + 1];
-        let mut triangles = vec![0; elements.len() * N];
-        pattern::triangles_of_nodes(elements, &mut first, &mut triangles);
-        let triangles = Lists { starts: &first, members: &triangles };
-
-        let mut seen_by = vec![0; count];
-        let mut starts = vec![0; count + 1];
-        let mut nodes = vec![0; count + elements.len() * N * N.saturating_sub(1)];
-        pattern::neighbours(elements, triangles, &mut seen_by, &mut starts, &mut nodes);
-        nodes.truncate(starts[count]);
-        Neighbours { starts, nodes }
-    }
-
-    fn lists(&self) -> Lists<'_> {
-        Lists { starts: &self.starts, members: &self.nodes }
-    }
-
-    /// Around `node`.
+    /// The nodes around `node`, each once.
     pub fn of(&self, node: usize) -> &[usize] {
-        self.lists().of(node)
+        &self.of[node]
     }
 }
 
@@ -159,31 +158,57 @@ pub struct LowerTriangle {
 impl LowerTriangle {
     /// All entries that a matrix over these unknowns can have, zero.
     pub fn zero(numbering: &Numbering, neighbours: &Neighbours) -> Self {
-        let (numbers, neighbours) = (numbering.numbers(), neighbours.lists());
-        let mut starts = vec![0; numbering.count + 1];
-        pattern::column_ends(numbers, neighbours, &mut starts);
-        let mut rows = vec![0; starts[numbering.count]];
-        pattern::column_rows(numbers, neighbours, &mut starts, &mut rows);
+        let (mut starts, mut rows) = (vec![0], Vec::new());
+        for (column, &node) in numbering.nodes.iter().enumerate() {
+            let numbers = neighbours.of(node).iter().flat_map(|&other| numbering.of[other]);
+            let start = rows.len();
+            rows.extend(numbers.flatten().filter(|&row| row >= column));
+            rows[start..].sort_unstable();
+            starts.push(rows.len());
+        }
         let values = vec![0.0; rows.len()];
         LowerTriangle { starts, rows, values }
     }
 
     /// Adds the blocks of an element matrix: `block(i, j)` has the rows of `nodes[i]` and the columns of `nodes[j]`.
-    pub fn add<const N: usize>(
+    pub fn add(
         &mut self,
         numbering: &Numbering,
-        nodes: &[usize; N],
+        nodes: &[usize],
         block: impl Fn(usize, usize) -> Matrix2<f64>,
     ) {
-        let columns = Lists { starts: &self.starts, members: &self.rows };
-        // `pattern` knows no numbers but whole ones, and takes a block as the array of its rows.
-        let rows = |block: Matrix2<f64>| block.transpose().into();
-        if nodes.iter().any(|node| numbering.frames.contains_key(node)) {
-            let block = |i, j| numbering.turned_block([nodes[i], nodes[j]], rows(block(i, j)));
-            pattern::add(&numbering.of, columns, &mut self.values, nodes, block);
-        } else {
-            let block = |i, j| rows(block(i, j));
-            pattern::add(&numbering.of, columns, &mut self.values, nodes, block);
+        let turned = nodes.iter().any(|node| numbering.frames.contains_key(node));
+        for (j, &column_node) in nodes.iter().enumerate() {
+            for (i, &row_node) in nodes.iter().enumerate() {
+                // The numbers of a node follow each other: the whole block is above the diagonal.
+                if numbering.first(row_node) < numbering.first(column_node) {
+                    continue;
+                }
+                let mut block = block(i, j);
+                if turned {
+                    block = numbering.turned_block([row_node, column_node], block);
+                }
+                for (d, column) in numbering.of[column_node].into_iter().enumerate() {
+                    if let Some(column) = column {
+                        self.add_to_column(column, numbering.of[row_node], block.column(d).into());
+                    }
+                }
+            }
+        }
+    }
+
+    /// Adds to the entries of a column in increasing rows; what is above the diagonal is left out.
+    fn add_to_column(&mut self, column: usize, rows: [Option<usize>; 2], entries: [f64; 2]) {
+        let (mut place, end) = (self.starts[column], self.starts[column + 1]);
+        for (row, entry) in rows.into_iter().zip(entries) {
+            // A column has few rows: to look at one after the other is quicker than a binary search.
+            if let Some(row) = row
+                && row >= column
+                && let Some(step) = self.rows[place..end].iter().position(|&other| other == row)
+            {
+                place += step;
+                self.values[place] += entry;
+            }
         }
     }
 }
@@ -234,7 +259,7 @@ impl LowerTriangle {
     pub fn add_contact_stress(&mut self, numbering: &Numbering, edge: &ContactFace) {
         let weight = -(edge.gamma * edge.length);
         let block = |i, j| edge.functionals.stress_product(weight, i, j);
-        self.add_on_face(numbering, edge, block);
+        self.add(numbering, &edge.nodes, block);
     }
 
     /// Adds P0^T h P0 of a contact edge: what is in contact holds the body.
@@ -245,7 +270,7 @@ impl LowerTriangle {
         h: &DMatrix<f64>,
     ) {
         let p0 = edge.functionals.p0();
-        self.add_on_face(numbering, edge, |i, j| {
+        self.add(numbering, &edge.nodes, |i, j| {
             Matrix2::from_fn(|c, k| {
                 let mut sum = 0.0;
                 for a in 0..h.nrows() {
@@ -256,19 +281,5 @@ impl LowerTriangle {
                 sum
             })
         });
-    }
-
-    /// Adds the blocks of a matrix over the nodes of a contact edge's triangle.
-    fn add_on_face(
-        &mut self,
-        numbering: &Numbering,
-        edge: &ContactFace,
-        block: impl Fn(usize, usize) -> Matrix2<f64>,
-    ) {
-        if let Ok(nodes) = edge.nodes[..].try_into() {
-            self.add::<3>(numbering, nodes, block);
-        } else if let Ok(nodes) = edge.nodes[..].try_into() {
-            self.add::<6>(numbering, nodes, block);
-        }
     }
 }

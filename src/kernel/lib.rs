@@ -2,7 +2,7 @@
 //!
 //! Pure functions of plain data, generic over the number type ([`Scalar`]), so that the very code that solves a
 //! user's problem in doubles can be run over exact rationals, over symbols and with its rounding enclosed. Sign tests are its only
-//! branches, but for [`pattern`], which is about whole numbers; it allocates nothing, reads nothing and has no panic.
+//! branches; it allocates nothing, reads nothing and has no panic.
 //! Vectors and matrices are nalgebra's, with the dimension as a parameter where the formula is that of any dimension.
 //! What is numbered and not a vector stays an array: barycentric coordinates, the values of all shape functions, the nodes
 //! of an element.
@@ -21,7 +21,6 @@
 //! | [`composite`] | not in the paper: stresses in equilibrium, for certificates |
 //! | [`ball`] | not in the paper: doubles with their rounding enclosed |
 //! | [`enclosing`] | not in the paper: what may be concluded from these |
-//! | [`pattern`] | not in the paper: the numbers of the unknowns, and where the entries of the matrix stand |
 
 pub mod ball;
 #[cfg(not(kani))]
@@ -32,7 +31,6 @@ pub mod edge_integral;
 pub mod element;
 pub mod enclosing;
 pub mod material;
-pub mod pattern;
 pub mod positive_part;
 pub mod scalar;
 #[cfg(not(kani))]

@@ -6,6 +6,7 @@ mod conditions;
 mod directions;
 mod given;
 mod integration;
+mod matrix;
 mod meshes;
 mod newton;
 mod places;
