@@ -131,14 +131,8 @@ impl Outcome {
 }
 
 /// A correction this small, relative, leaves nothing to correct; likewise an imbalance of the forces on the body, in parts of
-/// them.
+/// them, or with its rounding ten times that.
 const SMALL: f64 = 1e-10;
-
-/// Where the imbalance of the forces, rounding included, is larger in parts of them, better arithmetic is tried.
-const BALANCED: f64 = 1e-9;
-
-/// A correction ends where the residual is this share of the tolerance.
-const GOOD_ENOUGH: f64 = 1e-2;
 
 /// A condition number beyond this leaves Newton's method nothing to go by: which of two messages a refusal has.
 const HOPELESS: f64 = 1e14;
@@ -172,7 +166,7 @@ pub fn refine(
         let before = refinement.correction;
         refinement.pass(route)?;
         let is_done = refinement.is_done();
-        if !is_done && (refinement.cut || refinement.correction < before / 2.0) {
+        if !is_done && refinement.correction < before / 2.0 {
             continue;
         }
         if is_done && settings.proof.is_infinite() {
@@ -202,8 +196,6 @@ struct Refinement<'a, 'd, 'p> {
     residuals: Vec<f64>,
     /// The size of the last correction beside the displacement.
     correction: f64,
-    /// True if the line search cut the last step short.
-    cut: bool,
     softness: f64,
     enclosure: Certificate,
 }
@@ -221,8 +213,6 @@ impl<'a, 'd, 'p> Refinement<'a, 'd, 'p> {
             at,
             residuals: Vec::new(),
             correction: f64::INFINITY,
-            // The first pass goes as far as it can.
-            cut: true,
             softness: 0.0,
             enclosure: Err(Unproved::NotReached),
         }
@@ -242,14 +232,13 @@ impl<'a, 'd, 'p> Refinement<'a, 'd, 'p> {
 
     fn pass(&mut self, route: &mut dyn Route) -> Result<(), SolveError> {
         let size = self.system.size(self.at.energy.sqrt(), &self.iterate.rounded());
-        // A correction need not better what is good enough.
-        let residual = if self.cut { 0.0 } else { GOOD_ENOUGH * self.settings.tolerance };
+        // The first pass goes as far as it can; a correction need not better what is good enough.
+        let residual = if self.residuals.is_empty() { 0.0 } else { self.settings.tolerance };
         let until = Until { steps: self.settings.max_iterations, residual };
         let pass = route.pass(&mut self.iterate, &mut self.at, &mut self.residuals, until)?;
         // What was proved is proved of another displacement.
         self.enclosure = Err(Unproved::NotReached);
         self.softness = self.softness.max(pass.softness);
-        self.cut = pass.left > 0.0;
         let moved = pass.energy.max(pass.left).sqrt();
         self.correction = if moved == 0.0 { 0.0 } else { moved / size };
         self.residual = Residual::new(self.system, &self.at, self.reference);
@@ -270,7 +259,7 @@ impl<'a, 'd, 'p> Refinement<'a, 'd, 'p> {
             if found.is_ok() || self.enclosure.is_err() {
                 self.enclosure = found;
             }
-            if is_near && verifier.unbalanced() <= BALANCED * self.residual.forces {
+            if is_near && verifier.unbalanced() <= 10.0 * SMALL * self.residual.forces {
                 return true;
             }
         }

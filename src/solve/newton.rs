@@ -14,15 +14,17 @@
 //! search finds where it vanishes, to a hundredth of its value at 0, and Armijo's rule is asked of what it finds.
 //!
 //! **The linearisation.** From a start without contact, a step is linearised where contact would go on each edge by itself
-//! (`relaxation`), if that is a way downhill. After a step like this that was cut short, or that left more than half of
-//! the residual, the next one is Newton's own: so Newton's method ends as if all of them were, or ends sooner.
+//! (`relaxation`), if that is a way downhill. After a step like this that left more than half of the residual, the next one is
+//! Newton's own: so Newton's method ends as if all of them were, or ends sooner (docs/theory.md, 4.6).
 //!
 //! **The start.** A body that bends, started as if without contact, lets go of about one edge a step. So the springs are soft
 //! at first: s Psi in place of Psi, with s so small that contact is not much stiffer than the body. When the residual at s is
-//! small beside the one that stiffer springs bring, the springs get stiffer, by a factor that grows while single steps will do
-//! and falls where they don't: the contact zone of stiff springs is narrow, and a minimiser is found from near only.
-//! At s = 1 it is Newton's method on J_h, from a start that knows something. Going to the body without contact counts as a
-//! step where it takes one. A start that is given ([`super::course`]) needs no soft springs.
+//! small beside the one that stiffer springs bring, the springs get stiffer, by a factor that grows while single steps will do and
+//! falls where they don't: the contact zone of stiff springs is narrow, and a minimiser is found from near only. At s = 1 it is
+//! Newton's method on J_h, from a start that knows something. Going to the body without contact counts as a step where it takes
+//! one. A start that is given ([`super::course`]) needs no soft springs.
+//!
+//! **The end** is the rounding level of the residual, or of the decrease along a step.
 
 use super::SolveError;
 use super::body::{Body, Derivatives, Edges, Step, block, derivatives};
@@ -35,34 +37,18 @@ const SUFFICIENT: f64 = 1e-4;
 /// The line search ends where the derivative along the step is this small beside the one at its start.
 const FLAT: f64 = 1e-2;
 
-/// How many times stiffer than the body the springs of contact are at first,
+/// How many times stiffer than the body the springs of contact are at first.
 const SOFT: f64 = 20.0;
 
-/// and how much stiffer they get from one stiffness to the next, at least and at most.
+/// How much stiffer they get from one stiffness to the next, at least and at most.
 const STIFFENING: [f64; 2] = [2.0, 8.0];
 
-/// The springs get stiffer when the residual is this share of what that will make of it.
+/// They get stiffer when the residual is this share of what that will make of it.
 const DONE: f64 = 0.1;
 
 /// They get stiffer, too, when the energy of a step is this share of that of the first one at this stiffness: what is left of the
 /// residual then is in springs that hold next to no energy, and stiffer ones will decide about them.
 const SPENT: f64 = 1e-3;
-
-/// A step goes downhill if its slope is this much of its curvature.
-const DOWNHILL: f64 = 1e-3;
-
-/// A step of which this much is made is not cut short.
-const WHOLE: f64 = 0.5;
-
-/// A step whose energy is this small beside that of the largest (the square root of this as a length) is the last one:
-/// Newton's method converges superlinearly, so what remains is far smaller.
-const LAST: f64 = 1e-14;
-
-/// A step whose energy is this small beside that of the largest may be noise.
-const NEGLIGIBLE: f64 = 1e-10;
-
-/// That many such steps without a smaller residual are noise.
-const IDLE_STEPS: usize = 4;
 
 /// When to stop, short of the rounding level.
 #[derive(Clone, Copy, Debug)]
@@ -74,9 +60,8 @@ pub struct Until {
 }
 
 /// Newton's method from where `body` is, with soft springs if this is the `first` time. Appends the residual at each
-/// iterate to `residuals`, and stops as `until` says, at the rounding level, or after a step that leaves nothing to do. Gives
-/// the decrement of the last step if the line search cut it short or found no decrease: then it has not been made, and the
-/// iterate is as far off as before.
+/// iterate to `residuals`, and stops as `until` says or at the rounding level. Gives the decrement of the last step if the line
+/// search cut it short or found no decrease: then it has not been made, and the iterate is as far off as before.
 ///
 /// # Errors
 /// Those of [`Body::step`].
@@ -100,80 +85,35 @@ pub fn minimise(
         forces = Some(start.forces);
     }
     let mut at = derivatives(edges, &body.y());
-    let mut largest: f64 = 0.0;
-    let mut left = 0.0;
-    let (mut best, mut idle) = (f64::INFINITY, 0);
     let mut residual = body.residual(&at);
-    let mut relaxing = true;
     // A later call makes a step in any case: its size is what tells how good the end of the first was.
-    while (residual.norm > residual.noise / 4.0 || (!first && largest == 0.0))
-        && residuals.len() <= until.steps
-    {
+    let mut may_end = first;
+    let (mut relaxing, mut left) = (true, 0.0);
+    while residuals.len() <= until.steps {
         let stiffness = springs.stiffness;
+        let enough = if stiffness < 1.0 { 0.0 } else { until.residual };
+        if may_end && residual.norm <= residual.noise.max(enough) {
+            break;
+        }
         let scaled = at.times(stiffness);
-        let size = body.residual(&scaled).norm;
+        let before = body.residual(&scaled).norm;
         let known = forces.as_deref().filter(|_| relaxing);
-        let (model, step) = next_step(edges, body, &scaled, known, stiffness)?;
-        let Some(t) = line_search(edges, &body.y(), stiffness, &scaled, &step) else {
-            if model.is_some() {
-                relaxing = false;
-                continue;
-            }
-            return Ok(-step.slope);
-        };
+        let Next { model, step, t } = next_step(edges, body, &scaled, known)?;
+        let Some(t) = t else { return Ok(-step.slope) };
         if let Some(forces) = &mut forces {
             follow(forces, model.as_ref().unwrap_or(&scaled), &step, t);
         }
         body.advance(t, &step);
         at = derivatives(edges, &body.y());
-        let halved = body.residual(&at.times(stiffness)).norm <= size / 2.0;
-        relaxing = model.is_none() || (t >= WHOLE && halved);
-        let before = std::mem::replace(&mut residual, body.residual(&at));
+        residual = body.residual(&at);
         residuals.push(residual.norm);
-        let decrement = -step.slope;
-        // What softer springs took tells nothing of what is large here.
-        let moved = decrement * t.min(1.0).powi(2);
-        left = if t < 1.0 { decrement } else { 0.0 };
-        largest = if springs.are_soft() { moved } else { largest.max(moved) };
-        let last = !springs.are_soft()
-            && (residual.norm <= until.residual || (t == 1.0 && decrement <= LAST * largest));
-        let stalled = residual.norm <= residual.noise && residual.norm >= before.norm / 2.0;
-        // What rounding leaves may be more than what is counted as noise: then the energies of the steps are next to nothing,
-        // and the residual falls no more.
-        if !springs.are_soft() && residual.norm >= best / 2.0 {
-            idle += usize::from(decrement <= NEGLIGIBLE * largest);
-        } else {
-            (best, idle) = (residual.norm, 0);
-        }
-        if last || stalled || idle >= IDLE_STEPS {
-            break;
-        }
-        springs.after_step(decrement, |stiffness| body.residual(&at.times(stiffness)).norm);
+        let after = body.residual(&at.times(stiffness)).norm;
+        relaxing = model.is_none() || after <= before / 2.0;
+        left = if t < 1.0 { -step.slope } else { 0.0 };
+        may_end = true;
+        springs.after_step(-step.slope, |stiffness| body.residual(&at.times(stiffness)).norm);
     }
     Ok(left)
-}
-
-/// The next step downhill from where J_h has the derivatives `at`, linearised where contact would go on each edge by itself if
-/// that leads downhill and the forces of contact are known: then with what it was linearised as.
-fn next_step(
-    edges: &impl Edges,
-    body: &mut impl Body,
-    at: &Derivatives,
-    forces: Option<&[f64]>,
-    stiffness: f64,
-) -> Result<(Option<Derivatives>, Step), SolveError> {
-    if let Some(forces) = forces {
-        let model = relaxed(edges, body, forces, stiffness);
-        // What hinders this step hinders Newton's own, which says so.
-        if let Ok(mut step) = body.step(&model) {
-            let off = at.gradient.iter().zip(&model.gradient).map(|(g, m)| g - m);
-            step.slope += off.zip(&step.dy).map(|(off, dy)| off * dy).sum::<f64>();
-            if step.slope < -DOWNHILL * step.curvature {
-                return Ok((Some(model), step));
-            }
-        }
-    }
-    Ok((None, body.step(at)?))
 }
 
 /// s of s Psi, on its way to 1.
@@ -181,35 +121,26 @@ struct Springs {
     stiffness: f64,
     /// The factor by which it grows next.
     stiffening: f64,
-    /// The steps at this stiffness.
-    steps: usize,
-    /// The decrement of the first of them.
-    first: f64,
+    /// The decrement of the first step at this stiffness.
+    first: Option<f64>,
 }
 
 impl Springs {
     fn new(stiffness: f64) -> Self {
-        Springs { stiffness, stiffening: STIFFENING[1], steps: 0, first: 0.0 }
-    }
-
-    fn are_soft(&self) -> bool {
-        self.stiffness < 1.0
+        Springs { stiffness, stiffening: STIFFENING[1], first: None }
     }
 
     /// After a step with this decrement, with the residual as a function of the stiffness.
     fn after_step(&mut self, decrement: f64, residual: impl Fn(f64) -> f64) {
-        if !self.are_soft() {
+        if self.stiffness == 1.0 {
             return;
         }
-        self.steps += 1;
-        if self.steps == 1 {
-            self.first = decrement;
-        }
-        let spent = decrement <= SPENT * self.first;
+        let single = self.first.is_none();
+        let spent = decrement <= SPENT * *self.first.get_or_insert(decrement);
         let stiffer = (self.stiffness * self.stiffening).min(1.0);
         if spent || residual(self.stiffness) <= DONE * residual(stiffer) {
             let grown = (2.0 * self.stiffening).min(STIFFENING[1]);
-            let stiffening = if self.steps == 1 { grown } else { self.stiffening };
+            let stiffening = if single { grown } else { self.stiffening };
             *self = Springs { stiffening, ..Springs::new(stiffer) };
         } else {
             self.stiffening = (self.stiffening / 4.0).max(STIFFENING[0]);
@@ -217,15 +148,48 @@ impl Springs {
     }
 }
 
-/// Where along the step J_h with the springs times `stiffness` is least; `None` if its decrease is lost in rounding.
+/// A step, how much of it to make, and what it was linearised as if that is not J_h at the iterate.
+struct Next {
+    model: Option<Derivatives>,
+    step: Step,
+    /// `None` if the decrease along the step is lost in rounding.
+    t: Option<f64>,
+}
+
+/// The next step downhill from where s Psi has the derivatives `at`, linearised where contact would go on each edge by itself if
+/// that leads downhill and the forces of contact are known.
+fn next_step(
+    edges: &impl Edges,
+    body: &mut impl Body,
+    at: &Derivatives,
+    forces: Option<&[f64]>,
+) -> Result<Next, SolveError> {
+    if let Some(forces) = forces {
+        let model = relaxed(edges, body, forces, at.stiffness);
+        // What hinders this step hinders Newton's own, which says so.
+        if let Ok(mut step) = body.step(&model) {
+            let off = at.gradient.iter().zip(&model.gradient).map(|(g, m)| g - m);
+            step.slope += off.zip(&step.dy).map(|(off, dy)| off * dy).sum::<f64>();
+            if step.slope < 0.0
+                && let Some(t) = line_search(edges, &body.y(), at, &step)
+            {
+                return Ok(Next { model: Some(model), step, t: Some(t) });
+            }
+        }
+    }
+    let step = body.step(at)?;
+    let t = line_search(edges, &body.y(), at, &step);
+    Ok(Next { model: None, step, t })
+}
+
+/// Where along the step J_h with s Psi, which has the derivatives `at`, is least; `None` if its decrease is lost in rounding.
 fn line_search(
     edges: &impl Edges,
     y: &[DoubleDouble],
-    stiffness: f64,
     at: &Derivatives,
     step: &Step,
 ) -> Option<f64> {
-    let nodes = edges.nodes();
+    let (nodes, stiffness) = (edges.nodes(), at.stiffness);
     let point = |e: usize, t: f64| -> Vec<DoubleDouble> {
         let (p, d) = (block(y, e, nodes), block(&step.dy, e, nodes));
         p.iter().zip(d).map(|(&p, d)| p + DoubleDouble::from(t * d)).collect()

@@ -18,9 +18,6 @@ use crate::fem::{ContactFace, Degree, Discretization, EdgeRule};
 /// nothing, the next one: with all pieces that are pressed more holds the body, with fewer these stay pressed on a larger ball.
 pub const SHARES: [f64; 4] = [1.0 / (1 << 20) as f64, 0.0, 1.0 / 256.0, 1.0 / 16.0];
 
-/// And at least this share of the most that it is all along some piece of its edge: where P falls to zero hardly anything holds.
-const SHARE_OF_EDGE: f64 = 1.0 / 16.0;
-
 /// A stretch is halved so often where its coefficients do not show that P is positive on it.
 const HALVINGS: u32 = 6;
 
@@ -175,10 +172,9 @@ impl Pressed {
             (p, pieces)
         });
         let edges: Vec<(Row, Vec<(f64, Piece)>)> = edges.collect();
-        let most = |pieces: &[(f64, Piece)]| pieces.iter().fold(0.0, |m: f64, p| m.max(p.0));
-        let enough = share * edges.iter().map(|(_, pieces)| most(pieces)).fold(0.0, f64::max);
+        let all = edges.iter().flat_map(|(_, pieces)| pieces);
+        let enough = share * all.fold(0.0, |most: f64, (least, _)| most.max(*least));
         let part = |(line, (p, pieces)): (&ContactFace<Ball>, &(Row, Vec<_>))| {
-            let enough = enough.max(SHARE_OF_EDGE * most(pieces));
             let taken = pieces.iter().filter(|(least, _)| *least >= enough);
             Part::new(line, p, &taken.map(|(_, piece)| piece).collect::<Vec<_>>())
         };

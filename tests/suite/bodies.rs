@@ -536,7 +536,8 @@ fn forty_nine_of_fifty_bodies_of_all_families_are_proved_or_ill_conditioned() {
     }
     steps.sort_unstable();
     let at = |share: usize| steps[(steps.len() - 1) * share / 10];
-    println!("steps: median {}, nine of ten at most {}, most {}", at(5), at(9), at(10));
+    let all: usize = steps.iter().sum();
+    println!("{all} steps: median {}, nine of ten at most {}, most {}", at(5), at(9), at(10));
     assert!(50 * failures <= count, "{failures} of {count} bodies, shown above");
 }
 
