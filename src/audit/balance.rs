@@ -28,14 +28,14 @@ pub enum Unbalanced {
 
 /// A force on an edge that may have any multiple.
 #[derive(Clone, Copy)]
-struct Hold {
+struct FreeForce {
     edge: usize,
-    profile: Profile,
+    profile: Variation,
 }
 
 /// Its variation along the edge.
 #[derive(Clone, Copy)]
-enum Profile {
+enum Variation {
     /// On Gamma_D, this direction.
     Constant([f64; 2]),
     /// On Gamma_D, this direction times 2 s - 1.
@@ -77,17 +77,17 @@ const STOP: f64 = 1e-10;
 /// that is held in both components, long enough to take any force and moment, is the nearest such to, or a connected part of
 /// the body where there is none: the fewer triangles behind an edge, the less rounding is carried over it.
 #[derive(Clone)]
-pub(crate) struct Tree {
+pub(crate) struct SpanningTree {
     order: Vec<usize>,
     towards_root: Vec<Option<usize>>,
     /// Where in `order` each part begins.
     parts: Vec<usize>,
 }
 
-impl Tree {
+impl SpanningTree {
     /// Breadth first, from all held roots at once; edges inside a triangle that was cut, elsewhere than in the middle of an
     /// edge, come before all others.
-    pub fn new(certificate: &Certificate, owners: &[[Option<Owner>; 2]]) -> Tree {
+    pub fn new(certificate: &Certificate, owners: &[[Option<Owner>; 2]]) -> SpanningTree {
         let count = certificate.pieces.len();
         let (mut found, mut parts) = (Vec::with_capacity(count), 0);
         let mut part_of = vec![usize::MAX; count];
@@ -138,7 +138,7 @@ impl Tree {
             order[end[part_of[t]]] = t;
             end[part_of[t]] += 1;
         }
-        Tree { order, towards_root, parts: first }
+        SpanningTree { order, towards_root, parts: first }
     }
 
     /// The triangles of each part, from the root on.
@@ -183,7 +183,11 @@ impl<S: Enclosing> OnEdges<'_, S> {
     ///
     /// # Errors
     /// A connected part that neither Gamma_D nor pressures on Gamma_C balance.
-    pub fn close(&self, tree: &Tree, wrenches: &mut [Wrench<S>]) -> Result<Closed<S>, Unbalanced> {
+    pub fn close(
+        &self,
+        tree: &SpanningTree,
+        wrenches: &mut [Wrench<S>],
+    ) -> Result<Closed<S>, Unbalanced> {
         let added = vec![[Vector2::zeros(); 2]; self.certificate.edges.len()];
         let mut closed = Closed { added, changes: Vec::new(), stops: Vec::new() };
         for part in tree.parts() {
@@ -193,7 +197,7 @@ impl<S: Enclosing> OnEdges<'_, S> {
                 total = total.plus(wrenches[t]);
             }
             for (hold, factor, share) in self.holds(part, total)? {
-                if let Profile::Stop(c) = hold.profile {
+                if let Variation::Stop(c) = hold.profile {
                     let wrench = times(stop(c, total.about), factor);
                     let [start, end] =
                         [1, 2].map(|k| self.points[self.certificate.pieces[root].vertices[k]]);
@@ -207,7 +211,7 @@ impl<S: Enclosing> OnEdges<'_, S> {
                 add(&mut closed.added[hold.edge], force);
                 let wrench = times(self.wrench(hold), factor);
                 wrenches[owner.piece] = wrenches[owner.piece].plus(wrench);
-                if let Profile::Pressure(ends) = hold.profile {
+                if let Variation::Pressure(ends) = hold.profile {
                     let factors = ends.map(|end| if end { factor } else { S::from(0) });
                     closed.changes.push(Change { edge: hold.edge, factors });
                 }
@@ -229,19 +233,23 @@ impl<S: Enclosing> OnEdges<'_, S> {
     }
 
     /// Three holds of a part with the factors that balance `total`, and what a support takes of the forces on the boundary.
-    fn holds(&self, part: &[usize], total: Wrench<S>) -> Result<[(Hold, S, f64); 3], Unbalanced> {
+    fn holds(
+        &self,
+        part: &[usize],
+        total: Wrench<S>,
+    ) -> Result<[(FreeForce, S, f64); 3], Unbalanced> {
         let free = Unbalanced::Free { triangle: part[0] };
         let Some((holds, size)) = self.choose(part) else { return Err(free) };
         let pull = self.pull(part);
         let unit = holds.map(|hold| match hold.profile {
-            Profile::Stop(c) => stop(c, total.about),
+            Variation::Stop(c) => stop(c, total.about),
             _ => self.wrench(hold).about(total.about),
         });
         let factors = solve(unit, total);
         let found = [0, 1, 2].map(|k| {
             let share = match holds[k].profile {
-                Profile::Stop(2) => most(factors[k]) / (pull * size),
-                Profile::Stop(_) => most(factors[k]) / pull,
+                Variation::Stop(2) => most(factors[k]) / (pull * size),
+                Variation::Stop(_) => most(factors[k]) / pull,
                 _ => 0.0,
             };
             (holds[k], factors[k], if most(factors[k]) == 0.0 { 0.0 } else { share })
@@ -257,12 +265,12 @@ impl<S: Enclosing> OnEdges<'_, S> {
     }
 
     /// The force of a hold at both ends of its edge.
-    fn unit(&self, hold: Hold) -> [Vector2<S>; 2] {
+    fn unit(&self, hold: FreeForce) -> [Vector2<S>; 2] {
         match hold.profile {
-            Profile::Constant(d) => [exactly(d); 2],
-            Profile::Linear(d) => [-exactly::<S>(d), exactly(d)],
-            Profile::Stop(_) => [Vector2::zeros(); 2],
-            Profile::Pressure(ends) => {
+            Variation::Constant(d) => [exactly(d); 2],
+            Variation::Linear(d) => [-exactly::<S>(d), exactly(d)],
+            Variation::Stop(_) => [Vector2::zeros(); 2],
+            Variation::Pressure(ends) => {
                 let force = (self.forces)(hold.edge);
                 [0, 1].map(|k| if ends[k] { force[k] } else { Vector2::zeros() })
             }
@@ -270,7 +278,7 @@ impl<S: Enclosing> OnEdges<'_, S> {
     }
 
     /// Its wrench, about the middle of the edge: int (s - 1/2) E x (f + s (g - f)) = E x (g - f) / 12.
-    fn wrench(&self, hold: Hold) -> Wrench<S> {
+    fn wrench(&self, hold: FreeForce) -> Wrench<S> {
         let [start, end] = self.certificate.edges[hold.edge].ends.map(|p| self.points[p]);
         let [f, g] = self.unit(hold);
         Wrench {
@@ -282,32 +290,32 @@ impl<S: Enclosing> OnEdges<'_, S> {
 
     /// Quantities that may change on edge `e`: tractions on Gamma_D, and each pressure on Gamma_C by a part of itself. Where
     /// the direction of contact turns it is the same at both ends, and stays so.
-    fn candidates(&self, e: usize) -> impl Iterator<Item = Hold> {
+    fn candidates(&self, e: usize) -> impl Iterator<Item = FreeForce> {
         let profiles = match self.certificate.edges[e].role {
             Role::Held(held, _) => {
                 let axes = [[1.0, 0.0], [0.0, 1.0]];
-                let of = |c: usize| [Profile::Constant(axes[c]), Profile::Linear(axes[c])];
+                let of = |c: usize| [Variation::Constant(axes[c]), Variation::Linear(axes[c])];
                 (0..2).filter(|&c| held[c]).flat_map(of).collect()
             }
             Role::Supported { along, .. } => {
-                vec![Profile::Constant(along), Profile::Linear(along)]
+                vec![Variation::Constant(along), Variation::Linear(along)]
             }
             Role::Contact { pressure, along, .. } if pressure != [0.0; 2] => {
                 if along.is_some_and(|[a, b]| a != b) {
-                    vec![Profile::Pressure([true; 2])]
+                    vec![Variation::Pressure([true; 2])]
                 } else {
-                    vec![Profile::Pressure([true, false]), Profile::Pressure([false, true])]
+                    vec![Variation::Pressure([true, false]), Variation::Pressure([false, true])]
                 }
             }
             _ => Vec::new(),
         };
-        profiles.into_iter().map(move |profile| Hold { edge: e, profile })
+        profiles.into_iter().map(move |profile| FreeForce { edge: e, profile })
     }
 
     /// Three holds of a part whose wrenches are as independent as any: greedily, by what is left after those before. Those of
     /// Gamma_D come first, where any traction is admissible; a motion that neither stops gets a support. Also how far the
     /// part reaches.
-    fn choose(&self, part: &[usize]) -> Option<([Hold; 3], f64)> {
+    fn choose(&self, part: &[usize]) -> Option<([FreeForce; 3], f64)> {
         let double = |x: Vector2<S>| x.map(|c| (c.lower() + c.upper()) / 2.0);
         let origin = double(self.points[self.certificate.pieces[part[0]].vertices[0]]);
         let mut candidates = Vec::new();
@@ -327,11 +335,14 @@ impl<S: Enclosing> OnEdges<'_, S> {
             }
         }
         let norm = |row: &[f64; 3]| row.iter().map(|x| x * x).sum::<f64>();
-        let mut chosen: Vec<(Hold, [f64; 3])> = Vec::with_capacity(3);
+        let mut chosen: Vec<(FreeForce, [f64; 3])> = Vec::with_capacity(3);
         let stops = [0, 1, 2].map(|c| {
             let row = [0, 1, 2].map(|d| if c == d { 1.0 } else { 0.0 });
             (
-                Hold { edge: self.certificate.pieces[part[0]].edges[0], profile: Profile::Stop(c) },
+                FreeForce {
+                    edge: self.certificate.pieces[part[0]].edges[0],
+                    profile: Variation::Stop(c),
+                },
                 row,
             )
         });
@@ -340,9 +351,9 @@ impl<S: Enclosing> OnEdges<'_, S> {
         }
         let (of_contact, of_supports) = candidates
             .into_iter()
-            .partition(|(hold, _)| matches!(hold.profile, Profile::Pressure(_)));
+            .partition(|(hold, _)| matches!(hold.profile, Variation::Pressure(_)));
         for candidates in [of_supports, of_contact, Vec::from(stops)] {
-            let left = |row: &[f64; 3], chosen: &[(Hold, [f64; 3])]| {
+            let left = |row: &[f64; 3], chosen: &[(FreeForce, [f64; 3])]| {
                 chosen.iter().fold(*row, |row, (_, other)| {
                     let along = (0..3).map(|c| row[c] * other[c]).sum::<f64>() / norm(other);
                     [0, 1, 2].map(|c| row[c] - along * other[c])

@@ -3,7 +3,7 @@
 
 use nalgebra::Vector2;
 
-use super::balance::{Change, Closed, OnEdges, Tree, Unbalanced};
+use super::balance::{Change, Closed, OnEdges, SpanningTree, Unbalanced};
 use super::certificate::{Certificate, Edge, Owner, Piece, Role, Shape, exactly, support};
 use super::checks::{Rejection, wrong};
 use super::on_contact::{OnContact, OnEdge, along_directions, along_the_normal};
@@ -15,7 +15,7 @@ use crate::kernel::{Ball, Enclosing, Triangle};
 pub struct Topology {
     /// The triangles of each edge.
     pub owners: Vec<[Option<Owner>; 2]>,
-    pub(crate) tree: Tree,
+    pub(crate) tree: SpanningTree,
 }
 
 /// A certificate whose triangles are in equilibrium, in the numbers `S`.
@@ -42,7 +42,7 @@ impl Certificate {
     pub fn topology(&self) -> Result<Topology, Rejection> {
         self.check_shape()?;
         let owners = self.owners()?;
-        Ok(Topology { tree: Tree::new(self, &owners), owners })
+        Ok(Topology { tree: SpanningTree::new(self, &owners), owners })
     }
 
     /// Checks all other conditions and puts the triangles in equilibrium.

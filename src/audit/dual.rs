@@ -17,8 +17,10 @@ use super::balance::{OnEdges, Stop};
 use super::balanced::{Balanced, Topology, outward};
 use super::certificate::{Certificate, Curved, Edge, Piece, Role, Shape, exactly, is_oblique};
 use super::checks::Rejection;
-use super::forces::{Cover, Forces, Target, WrongLifting, component, energy, mean, ratio, reach};
-use super::stresses::{Ground, Law, Laws, Lengths, Numbers, Staged, resultant};
+use super::forces::{
+    Cover, ForceTarget, Forces, WrongLifting, component, energy, mean, ratio, reach,
+};
+use super::stresses::{Ground, Lengths, Numbers, RoundedLaw, RoundedLaws, Staged, resultant};
 use crate::kernel::ball::centre_and_radius;
 use crate::kernel::composite::{Composite, Frame, Loads, Wrench};
 use crate::kernel::{Ball, Enclosing, Triangle};
@@ -226,7 +228,7 @@ impl<S: Staged> Forces<'_, S> {
     /// A pair that is none; one whose w is not what it should be on Gamma_C.
     pub fn by_pairs(
         &self,
-        pairs: &[(Target, Certificate)],
+        pairs: &[(ForceTarget, Certificate)],
         cover: Option<&Cover>,
     ) -> Result<Vec<ByPair>, WrongPair> {
         let sums = self.sums(pairs)?;
@@ -271,7 +273,7 @@ impl<S: Staged> Forces<'_, S> {
     /// The numbers of C eps(w) - rho on triangle `t`, in doubles if these are sharp beside them or a `typical` length.
     fn numbers(
         &self,
-        (t, law): (usize, &Law),
+        (t, law): (usize, &RoundedLaw),
         pair: &Pair<S>,
         ground: Option<&(Ground, Frame<f64>)>,
         typical: f64,
@@ -299,17 +301,17 @@ impl<S: Staged> Forces<'_, S> {
     }
 
     /// Verifies that these are pairs and sums over the triangles.
-    fn sums(&self, pairs: &[(Target, Certificate)]) -> Result<Vec<Summed<S>>, WrongPair> {
+    fn sums(&self, pairs: &[(ForceTarget, Certificate)]) -> Result<Vec<Summed<S>>, WrongPair> {
         if pairs.is_empty() {
             return Ok(Vec::new());
         }
         let pieces = &self.certificate.pieces;
-        let start = |(_, pair): &(Target, Certificate)| {
+        let start = |(_, pair): &(ForceTarget, Certificate)| {
             let (zero, shares) = (Ball::from(0), Vec::with_capacity(pieces.len()));
             Ok((self.pair(pair)?, zero, Lengths::new(), zero, shares))
         };
         let mut sums = pairs.iter().map(start).collect::<Result<Vec<_>, WrongPair>>()?;
-        let (own, mut length, mut laws) = (self.own(), Lengths::new(), Laws::default());
+        let (own, mut length, mut laws) = (self.own(), Lengths::new(), RoundedLaws::default());
         for (t, piece) in pieces.iter().enumerate() {
             let (law, triangle) = (laws.of(&piece.material), &self.state.triangles[t]);
             let ground = Ground::new(law, triangle).map(|ground| {
@@ -337,7 +339,7 @@ impl<S: Staged> Forces<'_, S> {
     fn by_sums(
         &self,
         roles: &Certificate,
-        target: Target,
+        target: ForceTarget,
         sums: Summed<S>,
         cover: Option<&Cover>,
     ) -> Result<ByPair, WrongPair> {

@@ -19,7 +19,7 @@ use super::certificate::{Certificate, Edge, Piece, Role, Shape, exactly, is_obli
 use super::checks::Rejection;
 use super::dual::WrongPair;
 use super::proof::Proof;
-use super::stresses::{Ground, Laws, Numbers, Staged, strain_energy};
+use super::stresses::{Ground, Numbers, RoundedLaws, Staged, strain_energy};
 use crate::kernel::composite::Affine;
 use crate::kernel::{Ball, Enclosing, Scalar, Triangle};
 
@@ -183,7 +183,7 @@ impl Ramp {
 
 /// A motion of one boundary; of all contact boundaries where there is none.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Target {
+pub struct ForceTarget {
     /// The boundary's number.
     pub boundary: Option<usize>,
     /// The values of w there.
@@ -215,9 +215,9 @@ pub struct Evidence {
     /// w0 of the module's head.
     pub cover: Option<Lifting>,
     /// The displacements with what they are to do.
-    pub liftings: Vec<(Target, Lifting)>,
+    pub liftings: Vec<(ForceTarget, Lifting)>,
     /// Dual pairs for contact forces (`certify::dual`).
-    pub pairs: Vec<(Target, Certificate)>,
+    pub pairs: Vec<(ForceTarget, Certificate)>,
     /// The intervals that they are said to prove.
     pub between: Option<Between>,
 }
@@ -264,7 +264,12 @@ impl Evidence {
     }
 
     /// Intersects the intervals of a force by its lifting and by its dual pairs.
-    pub fn nearest(&self, target: Target, by_lifting: [f64; 2], pairs: &[[f64; 2]]) -> [f64; 2] {
+    pub fn nearest(
+        &self,
+        target: ForceTarget,
+        by_lifting: [f64; 2],
+        pairs: &[[f64; 2]],
+    ) -> [f64; 2] {
         let own = self.pairs.iter().zip(pairs).filter(|((other, _), _)| *other == target);
         own.fold(by_lifting, |[low, high], (_, [l, h])| [low.max(*l), high.min(*h)])
     }
@@ -289,7 +294,7 @@ pub enum WrongLifting {
 
 /// R(w) without what w misses on Gamma_C.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Value<S> {
+struct LiftingValue<S> {
     /// L(w) - int m : eps(w)
     pub middle: S,
     /// An upper bound of |w|_a.
@@ -333,7 +338,7 @@ pub struct Forces<'a, S> {
 
 /// By-products of the pass over the triangles that sums up the bound.
 pub(crate) struct Beside<S> {
-    unbalanced: Unbalanced<S>,
+    unbalanced: Imbalance<S>,
     /// The numbers of C eps(v) - tau on each triangle; empty until they are needed.
     own: OnceCell<Vec<Numbers>>,
 }
@@ -341,16 +346,16 @@ pub(crate) struct Beside<S> {
 /// int f . w - a(v, w) for w with a component 1 at a point, and for such a bulge on an edge: grad l_i is minus the scaled normal
 /// N_i over J = 2 |T|, so of sigma = C eps(v), affine with the values s_i and the sum S, l_i has the work -1/6 S N_i and 4 l_j l_k
 /// -1/6 ((S + s_j) N_k + (S + s_k) N_j); of f, with the sum F, J/24 (F + f_i) and J/30 (2 F - f_i).
-struct Unbalanced<S> {
+struct Imbalance<S> {
     points: Vec<Vector2<S>>,
     /// Empty where no w has bulges.
     bulges: Vec<Vector2<S>>,
 }
 
-impl<S: Enclosing> Unbalanced<S> {
+impl<S: Enclosing> Imbalance<S> {
     fn new(points: usize, bulges: usize) -> Self {
         let zeros = |count| vec![Vector2::zeros(); count];
-        Unbalanced { points: zeros(points), bulges: zeros(bulges) }
+        Imbalance { points: zeros(points), bulges: zeros(bulges) }
     }
 
     /// Adds a triangle, with C eps(v) there.
@@ -397,7 +402,7 @@ impl Certificate {
         let (proof, sums) = self.sum_for(&state, evidence)?;
         let (_, found, pairs) = self.forces_near(&state, &proof, evidence, sums)?;
         let targets = evidence.liftings.iter().map(|(target, _)| *target);
-        let nearest = |(target, ends): (Target, Result<[f64; 2], WrongLifting>)| {
+        let nearest = |(target, ends): (ForceTarget, Result<[f64; 2], WrongLifting>)| {
             ends.map(|ends| evidence.nearest(target, ends, &pairs))
         };
         Ok(targets.zip(found).map(nearest).collect())
@@ -412,8 +417,8 @@ impl Certificate {
         let (has_forces, has_pairs) = (evidence.has_forces(), !evidence.pairs.is_empty());
         let points = if has_forces { state.points.len() } else { 0 };
         let bulges = if evidence.has_bulges() { self.edges.len() } else { 0 };
-        let mut unbalanced = Unbalanced::new(points, bulges);
-        let (mut own, mut laws) = (Vec::new(), Laws::default());
+        let mut unbalanced = Imbalance::new(points, bulges);
+        let (mut own, mut laws) = (Vec::new(), RoundedLaws::default());
         let proof = self.sum_beside(state, |t, sigma, apart| {
             let (piece, triangle) = (&self.pieces[t], &state.triangles[t]);
             if has_forces {
@@ -476,7 +481,7 @@ impl Certificate {
         proof: &Proof,
         evidence: &Evidence,
         sums: Beside<S>,
-    ) -> Result<Found, WrongPair> {
+    ) -> Result<Intervals, WrongPair> {
         let mean = Mean::new(state, proof, self.lift());
         if evidence.of.len() != self.edges.len() {
             let (what, found) = ("boundaries of edges", evidence.of.len());
@@ -491,7 +496,7 @@ impl Certificate {
 }
 
 /// w0, and what forces lie between by liftings and by dual pairs.
-type Found = (Option<Cover>, Vec<Result<[f64; 2], WrongLifting>>, Vec<[f64; 2]>);
+type Intervals = (Option<Cover>, Vec<Result<[f64; 2], WrongLifting>>, Vec<[f64; 2]>);
 
 impl<'a, S: Staged> Forces<'a, S> {
     /// With M.
@@ -501,7 +506,7 @@ impl<'a, S: Staged> Forces<'a, S> {
         of: &'a [Option<usize>],
         mean: Mean,
     ) -> Self {
-        let mut unbalanced = Unbalanced::new(state.points.len(), certificate.edges.len());
+        let mut unbalanced = Imbalance::new(state.points.len(), certificate.edges.len());
         for (piece, triangle) in certificate.pieces.iter().zip(&state.triangles) {
             unbalanced.add(piece, triangle, &state.v.stress(piece, triangle));
         }
@@ -525,7 +530,7 @@ impl<'a, S: Staged> Forces<'a, S> {
     pub(crate) fn own(&self) -> &[Numbers] {
         let (pieces, state) = (&self.certificate.pieces, self.state);
         self.sums.own.get_or_init(|| {
-            let mut laws = Laws::default();
+            let mut laws = RoundedLaws::default();
             let of = |(t, piece): (usize, &Piece)| {
                 let (_, apart) = state.stresses(self.certificate, t);
                 Numbers::new(laws.of(&piece.material), piece, &state.triangles[t], &apart)
@@ -539,13 +544,13 @@ impl<'a, S: Staged> Forces<'a, S> {
         let sum = |forces: &[Vector2<S>], w: &[Vector2<S>]| {
             forces.iter().zip(w).fold(S::from(0), |sum, (f, w)| sum + f.dot(w))
         };
-        let Unbalanced { points, bulges } = &self.sums.unbalanced;
+        let Imbalance { points, bulges } = &self.sums.unbalanced;
         let at_points = sum(points, &w.points);
         w.bulges.as_ref().map_or(at_points, |of_w| at_points + sum(bulges, of_w))
     }
 
     /// The displacement of a lifting on the triangles of the certificate.
-    pub fn shape(&self, w: &Lifting, target: Target) -> Result<Shape<S>, WrongLifting> {
+    pub fn shape(&self, w: &Lifting, target: ForceTarget) -> Result<Shape<S>, WrongLifting> {
         let certificate = self.certificate;
         let (vertices, cuts) = (certificate.vertices.len(), certificate.cuts.len());
         let length = |found: usize, expected: usize| {
@@ -590,19 +595,19 @@ impl<'a, S: Staged> Forces<'a, S> {
     }
 
     /// Tells whether the motion is asked for on an edge.
-    fn is_meant(&self, e: usize, target: Target) -> bool {
+    fn is_meant(&self, e: usize, target: ForceTarget) -> bool {
         target.boundary.is_none_or(|boundary| self.of[e] == Some(boundary))
     }
 
     /// The value prescribed for w at vertex `p` of edge `e` of Gamma_D.
-    fn on_support(&self, e: usize, p: usize, target: Target) -> Vector2<S> {
+    fn on_support(&self, e: usize, p: usize, target: ForceTarget) -> Vector2<S> {
         let motion = || target.motion.at(exactly(self.certificate.vertices[p]));
         let motion = self.is_meant(e, target).then(motion).flatten();
         motion.unwrap_or_else(Vector2::zeros)
     }
 
     /// Verifies w on Gamma_D.
-    fn check_supports(&self, w: &Lifting, target: Target) -> Result<(), WrongLifting> {
+    fn check_supports(&self, w: &Lifting, target: ForceTarget) -> Result<(), WrongLifting> {
         let certificate = self.certificate;
         for (edge, Edge { ends, role }) in certificate.edges.iter().enumerate() {
             let (held, oblique) = match *role {
@@ -636,9 +641,9 @@ impl<'a, S: Staged> Forces<'a, S> {
     }
 
     /// L(w) - int m : eps(w) and |w|_a of some displacements, in one pass over the triangles.
-    fn values(&self, shapes: &[Shape<S>]) -> Vec<Value<S>> {
+    fn values(&self, shapes: &[Shape<S>]) -> Vec<LiftingValue<S>> {
         let (certificate, state) = (self.certificate, self.state);
-        let (mut squares, mut laws) = (vec![Ball::from(0); shapes.len()], Laws::default());
+        let (mut squares, mut laws) = (vec![Ball::from(0); shapes.len()], RoundedLaws::default());
         for (t, (piece, triangle)) in certificate.pieces.iter().zip(&state.triangles).enumerate() {
             let ground = Ground::new(laws.of(&piece.material), triangle);
             for (square, w) in squares.iter_mut().zip(shapes) {
@@ -654,13 +659,13 @@ impl<'a, S: Staged> Forces<'a, S> {
                     middle -= w.work_of(state.in_balance[e], edge.ends, e) / S::from(2);
                 }
             }
-            Value { middle, norm: square.sqrt().upper() }
+            LiftingValue { middle, norm: square.sqrt().upper() }
         };
         shapes.iter().zip(squares).map(value).collect()
     }
 
     /// phi - w . d on an edge of Gamma_C: what its Bernstein coefficients are at least and at most.
-    fn missed(&self, e: usize, w: &Shape<S>, target: Target) -> [[f64; 2]; 4] {
+    fn missed(&self, e: usize, w: &Shape<S>, target: ForceTarget) -> [[f64; 2]; 4] {
         let certificate = self.certificate;
         let ends = certificate.edges[e].ends;
         let d = certificate.directions(e, &self.state.points);
@@ -719,7 +724,7 @@ impl<'a, S: Staged> Forces<'a, S> {
     pub(crate) fn all_missed(
         &self,
         w: &Shape<S>,
-        target: Target,
+        target: ForceTarget,
         cover: Option<&Cover>,
     ) -> Result<Missed, WrongLifting> {
         let mut missed = Missed::default();
@@ -757,7 +762,7 @@ impl<'a, S: Staged> Forces<'a, S> {
 
     /// w0 of the module's head, from a lifting that is 1 along contact where it can be.
     pub fn cover(&self, w: &Lifting) -> Result<Cover, WrongLifting> {
-        let target = Target { boundary: None, motion: Motion::Along(None) };
+        let target = ForceTarget { boundary: None, motion: Motion::Along(None) };
         // On Gamma_D a motion along contact is 0.
         self.check_supports(w, target)?;
         let shape = self.shape(w, target)?;
@@ -778,7 +783,7 @@ impl<'a, S: Staged> Forces<'a, S> {
     }
 
     /// Encloses R(w) + int |sigma_n| omega.
-    fn enclose(&self, value: Value<S>, missed: Missed, cover: Option<&Cover>) -> [f64; 2] {
+    fn enclose(&self, value: LiftingValue<S>, missed: Missed, cover: Option<&Cover>) -> [f64; 2] {
         let point = Ball::point;
         let norm = point(value.norm);
         let force = point(cover.map_or(0.0, Cover::force));
@@ -795,7 +800,7 @@ impl<'a, S: Staged> Forces<'a, S> {
     /// The forces of some liftings, each between two numbers.
     pub fn between(
         &self,
-        liftings: &[(Target, Lifting)],
+        liftings: &[(ForceTarget, Lifting)],
         cover: Option<&Cover>,
     ) -> Vec<Result<[f64; 2], WrongLifting>> {
         let checked = liftings.iter().map(|(target, w)| {

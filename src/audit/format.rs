@@ -11,7 +11,7 @@ use thiserror::Error;
 
 use super::certificate::{Certificate, Curved, Cut, Edge, Lift, Piece, Reservations, Role};
 use super::checks::Rejection;
-use super::forces::{Between, Evidence, Lifting, Motion, Ramp, Target};
+use super::forces::{Between, Evidence, ForceTarget, Lifting, Motion, Ramp};
 use super::proof::{Claim, Proof};
 use crate::kernel::{Material, Plane};
 
@@ -86,7 +86,7 @@ use layout::Layout;
 
 /// The part that all versions of the format share.
 #[derive(Deserialize)]
-struct Version {
+struct FormatVersion {
     format: u32,
 }
 
@@ -94,7 +94,7 @@ struct Version {
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
 #[non_exhaustive]
-pub enum AuditError {
+pub enum Refused {
     #[error("{0}")]
     Header(String),
     #[error("{0}")]
@@ -166,7 +166,7 @@ pub fn encode(
         }
         None => Vec::new(),
     };
-    let Writer { arrays, bytes } = out;
+    let ArrayWriter { arrays, bytes } = out;
     let header = Header {
         format: FORMAT,
         title: title.to_owned(),
@@ -184,16 +184,16 @@ pub fn encode(
 /// The header in the bytes of certificate.json.
 ///
 /// # Errors
-/// [`AuditError::Header`].
-pub fn read_header(header: &[u8]) -> Result<Header, AuditError> {
+/// [`Refused::Header`].
+pub fn read_header(header: &[u8]) -> Result<Header, Refused> {
     let none = |e| {
-        AuditError::Header(format!(
+        Refused::Header(format!(
             "this is no certificate: {e}; expected certificate.json, as signorini solve --certificate writes it"
         ))
     };
-    let Version { format } = serde_json::from_slice(header).map_err(none)?;
+    let FormatVersion { format } = serde_json::from_slice(header).map_err(none)?;
     if format != FORMAT {
-        return Err(AuditError::Header(format!(
+        return Err(Refused::Header(format!(
             "the certificate is of format {format}; expected {FORMAT}, the one that this program writes and verifies"
         )));
     }
@@ -204,8 +204,8 @@ pub fn read_header(header: &[u8]) -> Result<Header, AuditError> {
 ///
 /// # Errors
 /// Bytes that are no certificate; whatever [`Certificate::audit`] rejects.
-pub fn audit(header: Header, arrays: &[u8]) -> Result<Audit, AuditError> {
-    let (certificate, claim) = decode(&header, arrays).map_err(AuditError::Arrays)?;
+pub fn audit(header: Header, arrays: &[u8]) -> Result<Audit, Refused> {
+    let (certificate, claim) = decode(&header, arrays).map_err(Refused::Arrays)?;
     let proof = certificate.audit(&claim)?;
     let reservations = certificate.reservations();
     let forces = claim.forces;
@@ -227,7 +227,7 @@ pub fn decode(header: &Header, bytes: &[u8]) -> Result<(Certificate, Claim), Str
     if found != header.hash {
         return Err(format!("its hash is {found}; certificate.json says {:?}", header.hash));
     }
-    let mut arrays = Reader::new(&header.arrays, bytes)?;
+    let mut arrays = ArrayReader::new(&header.arrays, bytes)?;
     let tensors = arrays.next(layout::TENSORS)?.map(|c| Material::tensor(numbers(c), None));
     let tensors: Vec<Material<f64>> = tensors.collect();
     let mut certificate = Certificate {
@@ -301,7 +301,7 @@ fn lists<T>(
 fn forces(
     header: &Header,
     certificate: &Certificate,
-    arrays: &mut Reader,
+    arrays: &mut ArrayReader,
 ) -> Result<Evidence, String> {
     let (vertices, cuts) = (certificate.vertices.len(), certificate.cuts.len());
     let edges = certificate.edges.len();
@@ -340,7 +340,7 @@ fn forces(
         if boundary.is_none() != targets.is_empty() {
             return Err("a force is that of no boundary".to_owned());
         }
-        targets.push(Target { boundary, motion });
+        targets.push(ForceTarget { boundary, motion });
         between.push([low, high]);
     }
     let Some((&of_cover, between)) = between.split_first() else {
@@ -351,10 +351,10 @@ fn forces(
         return Err("a force or an edge is that of no boundary".to_owned());
     }
     let (count, targets) = (targets.len(), targets.split_off(1));
-    let list = |arrays: &mut Reader, layout: Layout, count: usize, each: usize| {
+    let list = |arrays: &mut ArrayReader, layout: Layout, count: usize, each: usize| {
         lists(layout.0, arrays.next(layout)?.map(numbers), count, each)
     };
-    let displacements = |arrays: &mut Reader, layouts: [Layout; 3], count: usize| {
+    let displacements = |arrays: &mut ArrayReader, layouts: [Layout; 3], count: usize| {
         let at_vertices = list(arrays, layouts[0], count, vertices)?;
         let beyond = if arrays.has(layouts[2]) {
             let at_cuts = list(arrays, layouts[1], count, cuts)?;
@@ -410,14 +410,19 @@ fn is_named(edge: &Edge) -> bool {
 }
 
 /// Adds forces, with what proves them.
-fn add_forces(certificate: &Certificate, forces: &Evidence, between: &Between, out: &mut Writer) {
+fn add_forces(
+    certificate: &Certificate,
+    forces: &Evidence,
+    between: &Between,
+    out: &mut ArrayWriter,
+) {
     let Evidence { of, cover, liftings, pairs, .. } = forces;
     let words = |xs: &[f64; 2]| xs.map(f64::to_bits);
     let number = |boundary: &Option<usize>| boundary.map_or(0, |k| k as u64 + 1);
     let named =
         certificate.edges.iter().zip(of).enumerate().filter(|(_, (edge, _))| is_named(edge));
     out.add(layout::BOUNDARIES, named.map(|(e, (_, of))| [e as u64, number(of)]));
-    let of_w0 = Target { boundary: None, motion: Motion::Along(None) };
+    let of_w0 = ForceTarget { boundary: None, motion: Motion::Along(None) };
     let targets = std::iter::once(&of_w0).chain(liftings.iter().map(|(target, _)| target));
     let ends = std::iter::once(&between.cover).chain(&between.liftings);
     out.add(
@@ -446,7 +451,7 @@ fn add_forces(certificate: &Certificate, forces: &Evidence, between: &Between, o
     for (k, layout) in [layout::W_AT_CUTS, layout::W_BULGES].into_iter().enumerate() {
         out.add(layout, all().flat_map(|w| &w.beyond).flat_map(|both| &both[k]).map(words));
     }
-    let place = |target: &Target| liftings.iter().position(|(other, _)| other == target);
+    let place = |target: &ForceTarget| liftings.iter().position(|(other, _)| other == target);
     let served = pairs.iter().zip(&between.pairs);
     let served = served.filter_map(|((target, pair), ends)| Some((place(target)?, pair, ends)));
     let served: Vec<(usize, &Certificate, &[f64; 2])> = served.collect();
@@ -469,8 +474,8 @@ fn add_forces(certificate: &Certificate, forces: &Evidence, between: &Between, o
     );
 }
 
-fn arrays(certificate: &Certificate, shares: &[f64]) -> Writer {
-    let mut out = Writer::default();
+fn arrays(certificate: &Certificate, shares: &[f64]) -> ArrayWriter {
+    let mut out = ArrayWriter::default();
     let double = |x: &f64| x.to_bits();
     let words = |xs: &[f64; 2]| xs.map(f64::to_bits);
     let prescribed = |data: &[Option<f64>; 2]| {
@@ -567,12 +572,12 @@ fn edge_words(edge: &Edge) -> [u64; 7] {
 
 /// Arrays one after the other.
 #[derive(Default)]
-struct Writer {
+struct ArrayWriter {
     arrays: Vec<Array>,
     bytes: Vec<u8>,
 }
 
-impl Writer {
+impl ArrayWriter {
     fn add<const N: usize>(&mut self, layout: Layout, entries: impl Iterator<Item = [u64; N]>) {
         let (name, words) = layout;
         debug_assert_eq!(words.len(), N);
@@ -587,9 +592,9 @@ impl Writer {
 }
 
 /// The arrays that have not been read yet.
-struct Reader<'a>(BTreeMap<&'a str, (&'a str, &'a [[u8; 8]])>);
+struct ArrayReader<'a>(BTreeMap<&'a str, (&'a str, &'a [[u8; 8]])>);
 
-impl<'a> Reader<'a> {
+impl<'a> ArrayReader<'a> {
     fn new(arrays: &'a [Array], bytes: &'a [u8]) -> Result<Self, String> {
         let (mut rest, none) = bytes.as_chunks::<8>();
         let mut found = BTreeMap::new();
@@ -605,7 +610,7 @@ impl<'a> Reader<'a> {
             }
         }
         if rest.is_empty() && none.is_empty() {
-            Ok(Reader(found))
+            Ok(ArrayReader(found))
         } else {
             Err("it has more bytes than the arrays".to_owned())
         }

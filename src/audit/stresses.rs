@@ -126,7 +126,7 @@ fn apart<S: Staged>([a, b, c]: [Vector2<S>; 3]) -> ([Vector2<f64>; 2], f64) {
 }
 
 /// A law in doubles, with what the errors of numbers depend on.
-pub(crate) struct Law {
+pub(crate) struct RoundedLaw {
     squares: Squares<f64>,
     /// s of the module's head for the moduli of the parts of a stress.
     roots: [f64; 3],
@@ -140,8 +140,8 @@ pub(crate) struct Law {
     is_scaled: bool,
 }
 
-impl Law {
-    fn new(material: &Material<f64>) -> Law {
+impl RoundedLaw {
+    fn new(material: &Material<f64>) -> RoundedLaw {
         let known = material.map(Ball::point).squares();
         let [bulk, shear, other] = known.pivots();
         let moduli = [shear, other, bulk];
@@ -155,7 +155,7 @@ impl Law {
         } else {
             4.0 * material.stiffness().into_iter().fold(0.0, |most: f64, c| most.max(c.abs()))
         };
-        Law {
+        RoundedLaw {
             squares: Squares { bulk: double(bulk), shear: double(shear), beyond },
             roots: roots.map(|(root, _)| root),
             size: parts * roots.iter().map(|(_, size)| size * size).sum::<f64>().sqrt(),
@@ -168,12 +168,12 @@ impl Law {
 
 /// The laws of materials, of which the last is kept: neighbours mostly have one.
 #[derive(Default)]
-pub(crate) struct Laws(Option<(Material<f64>, Law)>);
+pub(crate) struct RoundedLaws(Option<(Material<f64>, RoundedLaw)>);
 
-impl Laws {
-    pub fn of(&mut self, material: &Material<f64>) -> &Law {
+impl RoundedLaws {
+    pub fn of(&mut self, material: &Material<f64>) -> &RoundedLaw {
         let last = self.0.take().filter(|(other, _)| other == material);
-        &self.0.insert(last.unwrap_or_else(|| (*material, Law::new(material)))).1
+        &self.0.insert(last.unwrap_or_else(|| (*material, RoundedLaw::new(material)))).1
     }
 }
 
@@ -221,7 +221,7 @@ const FACTORS: [f64; 7] = [2.0 * std::f64::consts::SQRT_2, SQRT_3, SQRT_3, SQRT_
 
 /// A triangle in doubles, from differences of its vertices.
 pub(crate) struct Ground<'a> {
-    law: &'a Law,
+    law: &'a RoundedLaw,
     pub triangle: Triangle<f64>,
     double_area: f64,
     /// kappa
@@ -234,7 +234,7 @@ pub(crate) struct Ground<'a> {
 
 impl<'a> Ground<'a> {
     /// `None` where the triangle is too flat for doubles, or too large or small.
-    pub fn new<S: Staged>(law: &'a Law, triangle: &Triangle<S>) -> Option<Self> {
+    pub fn new<S: Staged>(law: &'a RoundedLaw, triangle: &Triangle<S>) -> Option<Self> {
         if !S::IN_DOUBLES {
             return None;
         }
@@ -323,7 +323,7 @@ impl<'a> Ground<'a> {
 }
 
 /// The length of what numbers have more by forces that are off.
-fn of_forces(law: &Law, ratio: f64, off: f64) -> f64 {
+fn of_forces(law: &RoundedLaw, ratio: f64, off: f64) -> f64 {
     24.0 * law.size * 16.0 * (1.0 + 2.0 * ratio) * ratio.sqrt() * off
 }
 
@@ -391,11 +391,11 @@ pub(crate) fn resultant(
 /// force that is p at the start a of an edge and q at its end b it is 1/2 (p + q), with the moment 1/6 (a x (2 p + q) + b x (p + 2
 /// q)): so with the sums g of what stands beside the vertices x it is 1/6 of the sums of g and of x x g.
 fn of_doubles(places: &[[(f64, f64); 2]; 3], forces: &[[[f64; 2]; 2]; 3]) -> Wrench<Ball> {
-    let (mut total, mut moment) = ([Sum::default(); 2], Sum::default());
+    let (mut total, mut moment) = ([CompensatedSum::default(); 2], CompensatedSum::default());
     let mut off = 0.0;
     for j in 0..3 {
         let ([p, q], [r, s]) = (forces[(j + 2) % 3], forces[(j + 1) % 3]);
-        let mut beside = [Sum::default(); 2];
+        let mut beside = [CompensatedSum::default(); 2];
         for c in 0..2 {
             for x in [2.0 * p[c], q[c], r[c], 2.0 * s[c]] {
                 beside[c].add(x);
@@ -417,13 +417,13 @@ fn of_doubles(places: &[[(f64, f64); 2]; 3], forces: &[[[f64; 2]; 2]; 3]) -> Wre
 /// A sum of doubles and of products of them: its rounded value, the sum of all that was rounded off, and that of the sizes of
 /// this.
 #[derive(Clone, Copy, Default)]
-struct Sum {
+struct CompensatedSum {
     value: f64,
     rest: f64,
     size: f64,
 }
 
-impl Sum {
+impl CompensatedSum {
     /// By Knuth's transformation what a sum of doubles is rounded by is a double and known.
     #[inline]
     fn add(&mut self, x: f64) {
@@ -441,7 +441,7 @@ impl Sum {
     }
 
     #[inline]
-    fn add_sum(&mut self, other: Sum) {
+    fn add_sum(&mut self, other: CompensatedSum) {
         self.add(other.value);
         self.rest += other.rest;
         self.size += other.size;
@@ -449,7 +449,7 @@ impl Sum {
 
     /// Adds a multiple of a sum. The rounding of a product is a double and known, too, but for an underflow.
     #[inline]
-    fn add_multiple(&mut self, factor: f64, other: Sum) {
+    fn add_multiple(&mut self, factor: f64, other: CompensatedSum) {
         let product = factor * other.value;
         self.add(product);
         self.add_rest(off_product(factor, other.value, product));
@@ -500,7 +500,7 @@ const SHARP: f64 = 1e-4;
 impl Numbers {
     /// Those of a stress in the numbers of the checker.
     pub fn new<S: Staged>(
-        law: &Law,
+        law: &RoundedLaw,
         piece: &Piece,
         triangle: &Triangle<S>,
         tau: &Composite<S>,
@@ -528,7 +528,7 @@ impl Numbers {
     /// From the numbers of the checker, for tau with forces that may be off: exactly, kappa is 1, and rounded it is l that
     /// the areas of balls leave.
     pub fn slowly<S: Staged>(
-        law: &Law,
+        law: &RoundedLaw,
         piece: &Piece,
         triangle: &Triangle<S>,
         tau: &Composite<S>,
@@ -687,7 +687,7 @@ mod tests {
     fn products_of_numbers_are_those_of_the_stresses() {
         let t = triangle(1);
         for material in laws() {
-            let law = Law::new(&material);
+            let law = RoundedLaw::new(&material);
             let ground = Ground::new(&law, &balls(&t)).unwrap();
             let of = |tau: &Composite<f64>| ground.scaled(tau, 1.0, 1.0, 0.0).unwrap();
             for bent in [false, true] {
@@ -741,7 +741,7 @@ mod tests {
 
     /// The numbers of C eps(w) - rho from balls, with forces that are off.
     fn in_balls(
-        law: &Law,
+        law: &RoundedLaw,
         material: Material<f64>,
         t: &Triangle<Ball>,
         w: ([Vector2<f64>; 3], Option<[Vector2<f64>; 3]>),
@@ -766,7 +766,7 @@ mod tests {
         let (mut sharp, mut closest) = (0, 0.0_f64);
         for k in 0..300 {
             let material = laws()[k as usize % 3];
-            let law = Law::new(&material);
+            let law = RoundedLaw::new(&material);
             let t = balls(&triangle(k));
             let w = (vectors(k), (k % 2 == 0).then(|| vectors(k + 5)));
             let Some(ground) = Ground::new(&law, &t) else { continue };
@@ -793,7 +793,7 @@ mod tests {
     fn energies_in_doubles_are_those_of_balls() {
         for k in 0..100 {
             let material = laws()[k as usize % 3];
-            let (law, t) = (Law::new(&material), balls(&triangle(k)));
+            let (law, t) = (RoundedLaw::new(&material), balls(&triangle(k)));
             let w: (_, Option<[Vector2<Ball>; 3]>) =
                 (vectors(k).map(exact), (k % 2 == 0).then(|| vectors(k + 5).map(exact)));
             let normals = [0, 1, 2].map(|i| t.scaled_normal(i));
@@ -810,7 +810,7 @@ mod tests {
     #[test]
     fn a_radius_is_a_part_of_the_size() {
         let around = |v: Vector2<f64>| v.map(|x| Ball::around(x, 1e-13));
-        let (law, t) = (Law::new(&laws()[0]), triangle(3));
+        let (law, t) = (RoundedLaw::new(&laws()[0]), triangle(3));
         let near = Triangle { vertices: t.vertices.map(around) };
         let [wide, known] = [near, balls(&t)].map(|t| Ground::new(&law, &t).unwrap());
         assert!(wide.skew > 10.0 * known.skew && wide.ratio > 10.0 * known.ratio);
@@ -827,12 +827,12 @@ mod tests {
             let vertices = [[0.0, 0.0], [1.0, 1.0], [0.5, 0.5 + height]];
             balls(&Triangle { vertices: vertices.map(Vector2::from) })
         };
-        let law = Law::new(&laws()[0]);
+        let law = RoundedLaw::new(&laws()[0]);
         assert!(Ground::new(&law, &flat(1e-4)).is_some());
         assert!(Ground::new(&law, &flat(1e-9)).is_none());
         let large = Triangle { vertices: triangle(1).vertices.map(|v| exact(v * 1e20)) };
         assert!(Ground::<'_>::new::<Ball>(&law, &large).is_none());
-        let soft = Law::new(&Material::lame(1e-30, 1e-30, Plane::Strain));
+        let soft = RoundedLaw::new(&Material::lame(1e-30, 1e-30, Plane::Strain));
         assert!(Ground::new(&soft, &balls(&triangle(1))).is_none());
     }
 
@@ -905,7 +905,7 @@ mod tests {
 
     /// The sizes, and the most roundings, of all numbers of C eps(w) - rho and of the energy of w, over what is said of them.
     fn sizes(k: i32, material: Material<f64>, bulges: bool) -> ([f64; 2], u32) {
-        let law = Law::new(&material);
+        let law = RoundedLaw::new(&material);
         let ground = Ground::new(&law, &balls(&triangle(k))).unwrap();
         let given = |x: f64| Term { count: OF_RADIUS, ..Term::exactly(x) };
         let t = Triangle { vertices: ground.triangle.vertices.map(|v| v.map(given)) };

@@ -42,7 +42,7 @@ pub struct Target {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 #[non_exhaustive]
-pub struct Level {
+pub struct AdaptedLevel {
     /// Degrees of freedom: twice the nodes.
     pub unknowns: usize,
     /// Triangles.
@@ -71,7 +71,7 @@ pub struct Adapted {
     /// The time that the certificates and the meshes took, all levels together.
     pub certifying: std::time::Duration,
     /// All levels, from the coarsest on.
-    pub levels: Vec<Level>,
+    pub levels: Vec<AdaptedLevel>,
     /// The number of the one that is given, from 0.
     pub level: usize,
     /// Why the bound does not meet the target.
@@ -190,7 +190,7 @@ pub fn adapt_to(
         let within = force.map(|boundary| within(&certified, boundary));
         // What is to be small, and what the target compares.
         let (off, reached) = within.map_or((bound, relative), |within| (within, within));
-        levels.push(Level {
+        levels.push(AdaptedLevel {
             unknowns: unknowns(&problem.mesh, method.degree),
             triangles: problem.mesh.triangles().len(),
             newton_steps: solution.newton.iterations(),

@@ -6,12 +6,12 @@ use nalgebra::Vector2;
 
 use super::contact::Contact;
 use super::field::Field;
-use super::parts::{Parts, held_along};
+use super::parts::{ProblemParts, held_along};
 use crate::fem::BoundaryEdge;
 
 /// v: u with the prescribed values, and pushed out of the obstacle at the vertices of Gamma_C and, if it is quadratic, between
 /// them; on the edge k of Gamma_C by `further[k]` more than doubles ask for.
-pub(super) fn admissible(parts: &Parts, u: &Field, further: &[f64]) -> Field {
+pub(super) fn admissible(parts: &ProblemParts, u: &Field, further: &[f64]) -> Field {
     let mut field = u.clone();
     let v = &mut field.vertices;
     for (vertex, v) in v.iter_mut().enumerate() {

@@ -13,7 +13,7 @@ use super::data::{Data, length_and_normal};
 use super::errors::CertifyError;
 use super::forces::Evidence;
 use super::oscillation::{self, Oscillation};
-use super::parts::{Boundary, Parts};
+use super::parts::{Boundary, ProblemParts};
 use super::tractions::force_of;
 use crate::fem::mesh::bisection::Refinement;
 use crate::fem::{BoundaryEdge, Degree, Mesh, MeshError, Problem};
@@ -60,9 +60,14 @@ pub fn compare(
     let at_rest = vec![[0.0; 2]; nodes];
     // The data don't depend on gamma0.
     let parts = if quartered {
-        Parts::new(&problem, Degree::Two, 1.0.into(), &at_rest)?
+        ProblemParts::new(&problem, Degree::Two, 1.0.into(), &at_rest)?
     } else {
-        Parts::new(&problem, Degree::One, 1.0.into(), &at_rest[..problem.mesh.vertices().len()])?
+        ProblemParts::new(
+            &problem,
+            Degree::One,
+            1.0.into(),
+            &at_rest[..problem.mesh.vertices().len()],
+        )?
     };
     let (lengths, loads) = sizes(certificate);
     let sides = sides(&problem.mesh);
@@ -236,7 +241,7 @@ fn sizes(certificate: &Certificate) -> (f64, f64) {
 
 struct Comparison<'a> {
     certificate: &'a Certificate,
-    parts: &'a Parts<'a>,
+    parts: &'a ProblemParts<'a>,
     sides: BTreeMap<[usize; 2], (usize, [usize; 2])>,
     /// As [`sizes`].
     lengths: f64,
@@ -253,7 +258,7 @@ impl Comparison<'_> {
 
     /// Each edge whose boundary is named is on that boundary.
     fn names(&self, forces: &Evidence) -> Result<(), Difference> {
-        let Comparison { certificate, parts: &Parts { mesh, .. }, .. } = *self;
+        let Comparison { certificate, parts: &ProblemParts { mesh, .. }, .. } = *self;
         let on = |name: &String| -> BTreeSet<usize> {
             let edges = mesh.edges_of(name).unwrap_or_default().iter();
             edges.map(|edge| mesh.triangle_edges()[edge.triangle][edge.local]).collect()

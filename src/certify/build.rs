@@ -10,10 +10,10 @@ use super::certificate::{
 };
 use super::contact::Profile;
 use super::data::Data;
-use super::divide::{Division, Part, cut, divided};
+use super::divide::{Division, SubTriangle, cut, divided};
 use super::field::Field;
 use super::oscillation::Oscillation;
-use super::parts::{Boundary, Parts};
+use super::parts::{Boundary, ProblemParts};
 use super::quantities::{Line, Station};
 use super::quarters::{add_halves, halved, quarters};
 use super::tractions::{force_of, held_only, moments, stresses, supported};
@@ -57,7 +57,7 @@ impl Built {
 
     /// The edges of Gamma_C, by their numbers in `parts`, of the triangles where v can't be shown to be outside the obstacle,
     /// and how far it may be inside.
-    pub fn penetrations(&self, parts: &Parts) -> Vec<(usize, f64)> {
+    pub fn penetrations(&self, parts: &ProblemParts) -> Vec<(usize, f64)> {
         let found = self.certificate.penetrations();
         if found.is_empty() {
             return Vec::new();
@@ -77,7 +77,7 @@ impl Built {
 
 impl Built {
     /// Where the boundaries of the problem are on the edges of the certificate.
-    pub fn line(&self, parts: &Parts) -> Line {
+    pub fn line(&self, parts: &ProblemParts) -> Line {
         let (mesh, edges) = (parts.mesh, &self.certificate.edges);
         let count = mesh.edge_count();
         // A division keeps its edge for the first part and adds the second one and the cut.
@@ -137,7 +137,7 @@ fn mesh_edges(mesh: &Mesh) -> Vec<[usize; 2]> {
 }
 
 /// The certificate of the stress of `u` and of the displacement `v`.
-pub(super) fn build(parts: &Parts, u: &Field, v: &Field) -> Built {
+pub(super) fn build(parts: &ProblemParts, u: &Field, v: &Field) -> Built {
     let mesh = parts.mesh;
     let data = Data::new(parts.problem);
     let whole: Vec<Triangle<f64>> = (0..mesh.triangles().len()).map(|t| mesh.triangle(t)).collect();
@@ -175,9 +175,9 @@ pub(super) fn build(parts: &Parts, u: &Field, v: &Field) -> Built {
     let cut_up = |t: usize| {
         let unit = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let (vertices, edges) = (mesh.triangles()[t], mesh.triangle_edges()[t]);
-        vec![(Part { vertices, edges, places: unit }, bodies[t])]
+        vec![(SubTriangle { vertices, edges, places: unit }, bodies[t])]
     };
-    let all: Vec<Vec<(Part, [Vector2<f64>; 3])>> = if quartered {
+    let all: Vec<Vec<(SubTriangle, [Vector2<f64>; 3])>> = if quartered {
         (0..whole.len())
             .map(|t| quarters(parts, &data, t, &stress[t], &mut built.certificate))
             .collect()
@@ -248,7 +248,12 @@ pub(super) fn polygon(mesh: &Mesh, certificate: &Certificate) -> Vec<usize> {
 }
 
 /// The edges of the mesh.
-fn add_edges(parts: &Parts, all: &[[usize; 2]], moments: &[[Vector2<f64>; 2]], built: &mut Built) {
+fn add_edges(
+    parts: &ProblemParts,
+    all: &[[usize; 2]],
+    moments: &[[Vector2<f64>; 2]],
+    built: &mut Built,
+) {
     for (e, (&ends, m)) in all.iter().zip(moments).enumerate() {
         let force = force_of(m);
         let places = ends.map(|vertex| parts.mesh.vertices()[vertex]);
@@ -280,7 +285,7 @@ fn add_edges(parts: &Parts, all: &[[usize; 2]], moments: &[[Vector2<f64>; 2]], b
 }
 
 /// The pressure on edge `e` and the bulge of the gap, where it is one of Gamma_C or the half of one.
-fn on_contact(parts: &Parts, quartered: bool, e: usize) -> Option<(Profile, f64)> {
+fn on_contact(parts: &ProblemParts, quartered: bool, e: usize) -> Option<(Profile, f64)> {
     let count = parts.mesh.edge_count();
     let half = e / count;
     if half > usize::from(quartered) {
@@ -297,10 +302,10 @@ fn on_contact(parts: &Parts, quartered: bool, e: usize) -> Option<(Profile, f64)
 
 /// A part of triangle `t`, cut where contact ends on one of its edges.
 fn add_part(
-    parts: &Parts,
+    parts: &ProblemParts,
     data: &Data,
     (t, stress): (usize, &Affine<f64>),
-    (part, body): (Part, [Vector2<f64>; 3]),
+    (part, body): (SubTriangle, [Vector2<f64>; 3]),
     built: &mut Built,
 ) {
     let (corners, edges) = (part.vertices, part.edges);
@@ -320,7 +325,7 @@ fn add_part(
         found.extend(cut(part, (e, at, values), gap_bulge, stress, (certificate, divisions)));
     }
     let material = parts.material(t).in_plane();
-    for Part { vertices, edges, .. } in found {
+    for SubTriangle { vertices, edges, .. } in found {
         let certificate = &mut built.certificate;
         let own = || {
             let triangle = Triangle { vertices: vertices.map(|p| place(certificate, p)) };

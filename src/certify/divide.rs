@@ -7,7 +7,7 @@ use crate::kernel::Enclosing;
 use crate::kernel::composite::Affine;
 
 /// A triangle of the mesh or a part of it.
-pub(super) struct Part {
+pub(super) struct SubTriangle {
     pub vertices: [usize; 3],
     pub edges: [usize; 3],
     /// The barycentric coordinates of its vertices in the triangle of the mesh.
@@ -28,12 +28,12 @@ pub(super) struct Division {
 
 /// Both halves of a part whose edge `base` is cut at a place, with the pressures before and after it.
 pub(super) fn cut(
-    part: Part,
+    part: SubTriangle,
     (base, at, pressures): (usize, f64, [[f64; 2]; 2]),
     gap_bulge: f64,
     stress: &Affine<f64>,
     (certificate, divisions): (&mut Certificate, &mut Vec<Division>),
-) -> Vec<Part> {
+) -> Vec<SubTriangle> {
     let local = part.edges.iter().position(|&e| e == base).unwrap_or_default();
     let [a, b, c] = [0, 1, 2].map(|k| part.vertices[(local + k) % 3]);
     let [at_a, at_b, at_c] = [0, 1, 2].map(|k| part.places[(local + k) % 3]);
@@ -68,12 +68,12 @@ pub(super) fn cut(
     }
     divisions.push(Division { ends: [b, c], at, base, sides: [last, next] });
     vec![
-        Part {
+        SubTriangle {
             vertices: [a, b, middle],
             edges: [base, other + 1, last],
             places: [at_a, at_b, at_middle],
         },
-        Part {
+        SubTriangle {
             vertices: [a, middle, c],
             edges: [other, next, other + 1],
             places: [at_a, at_middle, at_c],

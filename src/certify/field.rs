@@ -1,7 +1,7 @@
 //! A displacement on the triangles of a mesh, affine or quadratic.
 
 use super::errors::CertifyError;
-use super::parts::Parts;
+use super::parts::ProblemParts;
 use crate::fem::Mesh;
 use crate::kernel::Triangle;
 use crate::kernel::composite::Affine;
@@ -54,7 +54,7 @@ impl Field {
     }
 
     /// C eps of it on triangle `t`.
-    pub fn stress(&self, parts: &Parts, t: usize, triangle: &Triangle<f64>) -> Affine<f64> {
+    pub fn stress(&self, parts: &ProblemParts, t: usize, triangle: &Triangle<f64>) -> Affine<f64> {
         let mesh = parts.mesh;
         let nodal = mesh.triangles()[t].map(|vertex| self.vertices[vertex].into());
         let bulges = self.bulges.as_ref();

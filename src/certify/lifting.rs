@@ -11,8 +11,8 @@ use super::build::{Built, build};
 use super::certificate::{Certificate, Cut, Role, is_oblique};
 use super::errors::CertifyError;
 use super::field::Field;
-use super::forces::{Lifting, Motion, Target};
-use super::parts::{Boundary, Parts};
+use super::forces::{ForceTarget, Lifting, Motion};
+use super::parts::{Boundary, ProblemParts};
 use super::sweeps::improve;
 use crate::fem::matrix::{LowerTriangle, Neighbours, Numbering};
 use crate::fem::mesh::length;
@@ -23,7 +23,7 @@ use crate::solve::ordering::nested_dissection;
 
 /// w . direction is prescribed at a node, because of an edge of this boundary.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Demand {
+struct Prescription {
     direction: Vector2<f64>,
     boundary: usize,
     contact: bool,
@@ -31,11 +31,11 @@ struct Demand {
 
 /// Makes displacements w.
 pub(super) struct Lifter<'a> {
-    parts: &'a Parts<'a>,
+    parts: &'a ProblemParts<'a>,
     names: &'a [String],
     space: Space<'a>,
     /// At each node; those of Gamma_D first.
-    demands: BTreeMap<usize, Vec<Demand>>,
+    demands: BTreeMap<usize, Vec<Prescription>>,
     numbering: Numbering,
     factor: Factor,
 }
@@ -51,9 +51,9 @@ const PARALLEL: f64 = 1e-8;
 const AGREEMENT: f64 = 1e-9;
 
 /// The first of the demands that are independent.
-fn independent(demands: &[Demand]) -> (Option<Demand>, Option<Demand>) {
+fn independent(demands: &[Prescription]) -> (Option<Prescription>, Option<Prescription>) {
     let Some(&first) = demands.first() else { return (None, None) };
-    let across = |d: &&Demand| first.direction.perp(&d.direction).abs() > PARALLEL;
+    let across = |d: &&Prescription| first.direction.perp(&d.direction).abs() > PARALLEL;
     (Some(first), demands.iter().find(across).copied())
 }
 
@@ -61,13 +61,13 @@ impl<'a> Lifter<'a> {
     /// For the boundaries with these `names`; `open` tells of the edges of Gamma_C, by their place in `parts.contact`, where
     /// w is free.
     pub fn new(
-        parts: &'a Parts<'a>,
+        parts: &'a ProblemParts<'a>,
         degree: Degree,
         names: &'a [String],
         open: &[bool],
     ) -> Result<Self, CertifyError> {
         let space = Space::new(parts.mesh, degree);
-        let mut demands: BTreeMap<usize, Vec<Demand>> = BTreeMap::new();
+        let mut demands: BTreeMap<usize, Vec<Prescription>> = BTreeMap::new();
         let mut add = |edge: BoundaryEdge,
                        boundary: usize,
                        contact,
@@ -75,7 +75,7 @@ impl<'a> Lifter<'a> {
             for (a, node) in space.edge_nodes(edge).into_iter().enumerate() {
                 let at_node = demands.entry(node).or_default();
                 for direction in of(a) {
-                    let demand = Demand { direction, boundary, contact };
+                    let demand = Prescription { direction, boundary, contact };
                     if !at_node.contains(&demand) {
                         at_node.push(demand);
                     }
@@ -137,7 +137,7 @@ impl<'a> Lifter<'a> {
 
     /// The value that a demand asks for at a node; at a place where the boundaries contradict one another, with `strict` an
     /// error.
-    fn value(&self, node: usize, demand: &Demand, target: Target) -> f64 {
+    fn value(&self, node: usize, demand: &Prescription, target: ForceTarget) -> f64 {
         let x = self.space.nodes()[node];
         if target.boundary.is_some_and(|boundary| boundary != demand.boundary) {
             return 0.0;
@@ -152,10 +152,10 @@ impl<'a> Lifter<'a> {
     ///
     /// # Errors
     /// A place where two boundaries ask for what is not to be had together.
-    pub fn field(&self, target: Target) -> Result<Vec<[f64; 2]>, String> {
+    pub fn field(&self, target: ForceTarget) -> Result<Vec<[f64; 2]>, String> {
         let mut field = vec![[0.0; 2]; self.space.nodes().len()];
         for (&node, demands) in &self.demands {
-            let value = |demand: &Demand| self.value(node, demand, target);
+            let value = |demand: &Prescription| self.value(node, demand, target);
             let w =
                 match independent(demands) {
                     (Some(a), Some(b)) => {
@@ -176,7 +176,7 @@ impl<'a> Lifter<'a> {
                 };
             // All contact boundaries together yield to what holds.
             if target.boundary.is_some() {
-                let off = |demand: &&Demand| {
+                let off = |demand: &&Prescription| {
                     (w.dot(&demand.direction) - value(demand)).abs() > AGREEMENT * (1.0 + length(w))
                 };
                 if let Some(other) = demands.iter().find(off) {
@@ -226,7 +226,7 @@ impl<'a> Lifter<'a> {
     /// A place where boundaries contradict one another; contact along a direction that is not an axis.
     pub fn pair(
         &self,
-        (target, w): (Target, &[[f64; 2]]),
+        (target, w): (ForceTarget, &[[f64; 2]]),
         built: &Built,
         open: &[bool],
     ) -> Result<Certificate, String> {
@@ -262,7 +262,7 @@ impl<'a> Lifter<'a> {
         let problem = Problem::of(mesh.clone(), parts.problem.material.clone());
         let cuts = built.divisions.iter().map(|division| (division.base, division.at)).collect();
         let frames = parts.frames.clone();
-        let dual = Parts {
+        let dual = ProblemParts {
             problem: &problem,
             mesh,
             contact: Vec::new(),
@@ -281,9 +281,9 @@ impl<'a> Lifter<'a> {
         Ok(pair)
     }
 
-    fn contradiction(&self, node: usize, demands: &[Demand], other: &Demand) -> String {
+    fn contradiction(&self, node: usize, demands: &[Prescription], other: &Prescription) -> String {
         let [x, y] = self.space.nodes()[node];
-        let names = |demand: &Demand| format!("'{}'", self.names[demand.boundary]);
+        let names = |demand: &Prescription| format!("'{}'", self.names[demand.boundary]);
         let with = demands.iter().find(|demand| demand.boundary != other.boundary);
         let with = with.map_or_else(String::new, |with| format!(" and {}", names(with)));
         format!(
@@ -293,7 +293,7 @@ impl<'a> Lifter<'a> {
     }
 
     /// w on the triangles of a certificate, what is exact on the boundary made so.
-    pub fn lifting(&self, target: Target, built: &Built) -> Result<Lifting, String> {
+    pub fn lifting(&self, target: ForceTarget, built: &Built) -> Result<Lifting, String> {
         let field = self.field(target)?;
         let certificate = &built.certificate;
         let mesh = self.parts.mesh;

@@ -43,7 +43,7 @@ use self::build::Built;
 use self::certificate::Shape;
 pub use self::errors::CertifyError;
 use self::field::Field;
-use self::parts::Parts;
+use self::parts::ProblemParts;
 pub use self::proof::{Certificate, Proof, Rejection};
 pub use signorini_audit::forces::Ramp;
 #[cfg(feature = "files")]
@@ -52,7 +52,7 @@ use signorini_audit::{balanced, certificate};
 pub use signorini_audit::{dual, forces, proof, stresses};
 
 use self::proof::{Piece, Role};
-pub use self::quantities::Quantities;
+pub use self::quantities::ProvedQuantities;
 use crate::fem::{Degree, Mesh, Problem};
 use crate::kernel::{Ball, Scalar, Triangle};
 use crate::memory;
@@ -107,7 +107,7 @@ pub struct Continuous {
     /// the energy norm don't see a w that is moved as a whole.
     pub missed: f64,
     /// Proved forces and zones of contact.
-    pub quantities: Quantities,
+    pub quantities: ProvedQuantities,
 }
 
 /// Certifies the `solution` of `problem`.
@@ -169,7 +169,8 @@ fn certify_near(
     let quadratic = solution.degree == Degree::Two && start.len() > problem.mesh.vertices().len();
     let quarters = if quadratic { 4 } else { 1 };
     memory::check(quarters * PER_TRIANGLE * problem.mesh.triangles().len() as u64)?;
-    let parts = Parts::new(problem, solution.degree, solution.gamma.gamma, &solution.displacement)?;
+    let parts =
+        ProblemParts::new(problem, solution.degree, solution.gamma.gamma, &solution.displacement)?;
     let mesh = &problem.mesh;
     let [u, start, w] = [&solution.displacement, start, field].map(|nodal| Field::new(mesh, nodal));
     let missed = parts.missed(&w?);

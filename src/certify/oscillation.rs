@@ -22,7 +22,7 @@ use nalgebra::{Matrix2, Vector2};
 use super::bubbles;
 use super::certificate::{Certificate, Lift, Piece, Role, place};
 use super::data::{Data, POINTS, bulge_of, cancellation, is_within, length_and_normal, within};
-use super::parts::{Boundary, Parts};
+use super::parts::{Boundary, ProblemParts};
 use crate::fem::material::least_eigenvalue;
 use crate::fem::mesh::length;
 use crate::fem::{Condition, SharedFunction, quadrature};
@@ -39,7 +39,7 @@ pub(super) struct Oscillation {
 
 impl Oscillation {
     /// `quadratic` tells whether v is, so that it follows data of degree 2.
-    pub fn new(parts: &Parts, quadratic: bool) -> Self {
+    pub fn new(parts: &ProblemParts, quadratic: bool) -> Self {
         let (problem, turning) = (parts.problem, parts.turning());
         let mut inexact = Vec::new();
         if !within(&problem.body_force, 1) {
@@ -101,7 +101,7 @@ impl Oscillation {
     /// they may be quarters.
     pub fn measure(
         &mut self,
-        parts: &Parts,
+        parts: &ProblemParts,
         data: &Data,
         certificate: &mut Certificate,
         (origins, quartered): (&[usize], bool),
@@ -128,7 +128,7 @@ impl Oscillation {
 }
 
 /// The data whose terms cancel in doubles: the problem that is bounded has what is left of them.
-fn cancellations(parts: &Parts) -> Option<String> {
+fn cancellations(parts: &ProblemParts) -> Option<String> {
     let (problem, mesh) = (parts.problem, parts.mesh);
     let mut found = Vec::new();
     let mut look = |what: String,
@@ -191,7 +191,7 @@ fn korn(triangle: &Triangle<f64>) -> (f64, f64) {
 /// The cost of f and t on one piece of triangle `t`: positive if that is measured. `whole` tells which edge of the mesh an
 /// edge of Gamma_N is, or is a part of.
 pub(super) fn loads(
-    parts: &Parts,
+    parts: &ProblemParts,
     data: &Data,
     certificate: &Certificate,
     (piece, whole): (&Piece, &dyn Fn(usize) -> usize),
@@ -266,7 +266,7 @@ pub(super) fn loads(
 }
 
 /// |z|_a of what the displacement and the gap ask for beyond v, on each triangle of the mesh.
-pub(super) fn lifts(parts: &Parts, quadratic: bool) -> BTreeMap<usize, f64> {
+pub(super) fn lifts(parts: &ProblemParts, quadratic: bool) -> BTreeMap<usize, f64> {
     let mesh = parts.mesh;
     let mut lifts = BTreeMap::new();
     let turning = parts.turning();

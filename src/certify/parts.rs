@@ -35,7 +35,7 @@ pub(super) enum Boundary<'a> {
 }
 
 /// The parts of a problem that certificates are made from.
-pub(super) struct Parts<'a> {
+pub(super) struct ProblemParts<'a> {
     pub problem: &'a Problem,
     pub mesh: &'a Mesh,
     /// Gamma_C.
@@ -50,7 +50,7 @@ pub(super) struct Parts<'a> {
     pub cuts: BTreeMap<usize, f64>,
 }
 
-impl<'a> Parts<'a> {
+impl<'a> ProblemParts<'a> {
     /// # Errors
     /// Conditions that no composite stress can satisfy.
     pub fn new(
@@ -74,7 +74,8 @@ impl<'a> Parts<'a> {
         let mesh = &problem.mesh;
         let number = |edge: BoundaryEdge| mesh.triangle_edges()[edge.triangle][edge.local];
         let mut smooth: Option<SmoothBoundary> = None;
-        let mut directions = Directions { known: Vec::new(), rounding: constraints.rounding() };
+        let mut directions =
+            SupportDirections { known: Vec::new(), rounding: constraints.rounding() };
         let mut boundary: BTreeMap<usize, Boundary> =
             mesh.outline().iter().map(|&edge| (number(edge), Boundary::Free)).collect();
         for (name, condition) in &problem.conditions {
@@ -161,7 +162,7 @@ impl<'a> Parts<'a> {
             }
         }
         let cuts = BTreeMap::new();
-        let parts = Parts { problem, mesh, contact, prescribed, frames, boundary, cuts };
+        let parts = ProblemParts { problem, mesh, contact, prescribed, frames, boundary, cuts };
         parts.check_directions()?;
         Ok(parts)
     }
@@ -259,13 +260,13 @@ impl<'a> Parts<'a> {
     }
 }
 
-/// Directions of supports, of which those that differ by the rounding of vertices are one: an axis, if one of them is.
-struct Directions {
+/// SupportDirections of supports, of which those that differ by the rounding of vertices are one: an axis, if one of them is.
+struct SupportDirections {
     known: Vec<[f64; 2]>,
     rounding: f64,
 }
 
-impl Directions {
+impl SupportDirections {
     fn one_like(&mut self, d: [f64; 2]) -> [f64; 2] {
         let rounding = self.rounding.max(4.0 * f64::EPSILON);
         if let Some(c) = d.iter().position(|x| x.abs() <= rounding) {

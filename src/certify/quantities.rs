@@ -22,9 +22,9 @@ use super::certificate::{Certificate, Role};
 use super::contact::Profile;
 use super::dual::ByPair;
 use super::field::Field;
-use super::forces::{Cover, Evidence, Forces, Mean, Motion, Ramp, Target, WrongLifting};
+use super::forces::{Cover, Evidence, ForceTarget, Forces, Mean, Motion, Ramp, WrongLifting};
 use super::lifting::Lifter;
-use super::parts::{Boundary, Parts};
+use super::parts::{Boundary, ProblemParts};
 use super::proof::Proof;
 use crate::fem::Degree;
 use crate::fem::mesh::length;
@@ -34,7 +34,7 @@ use crate::solve::Solution;
 /// The quantities that a certificate proves beside the bound.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
-pub struct Quantities {
+pub struct ProvedQuantities {
     /// M: the distance of the true stress sigma(u) from m is at most this, in the norm of energy.
     pub mean_stress: f64,
     /// Where contact can hardly act, and where the body can hardly be off the obstacle.
@@ -159,7 +159,7 @@ pub(super) struct Station {
     pub joined: bool,
 }
 
-/// Parts of the largest gap, and of the largest pressure, from which stretches are made.
+/// ProblemParts of the largest gap, and of the largest pressure, from which stretches are made.
 const LEVELS: [f64; 3] = [0.5, 0.125, 0.03125];
 
 /// A stretch says something if it has less than this part of the boundary's force, or of the opening that its displacement
@@ -231,12 +231,12 @@ fn runs(stations: &[Station], has: impl Fn(usize) -> bool) -> Vec<(usize, usize)
 
 /// Everything that `built` proves of the true solution near `solution`, v being the displacement that is proved with.
 pub(super) fn prove(
-    parts: &Parts,
+    parts: &ProblemParts,
     (solution, v): (&Solution, &Field),
     built: &Built,
     (state, proof): (&Balanced<Ball>, &Proof),
     asked: &Asked,
-) -> Quantities {
+) -> ProvedQuantities {
     let line = built.line(parts);
     let mean = Mean::new(state, proof, built.certificate.lift());
     let zones = zones(&built.certificate, state, &line, mean);
@@ -271,7 +271,7 @@ pub(super) fn prove(
         built.origins.iter().zip(&limits).for_each(|(&t, limit)| indicators[t] += limit);
         indicators.iter_mut().for_each(|square: &mut f64| *square = square.max(0.0).sqrt());
     }
-    Quantities { mean_stress: mean.root, zones, list, evidence, indicators }
+    ProvedQuantities { mean_stress: mean.root, zones, list, evidence, indicators }
 }
 
 /// The value of the discrete solution.
@@ -304,7 +304,7 @@ const PRICE: f64 = 0.1;
 
 /// The edges of Gamma_C where v is off the obstacle by half of what it is at most on that boundary, and by so much that
 /// little force is possible there: w may be free.
-fn open(parts: &Parts, v: &Field, mean: Mean) -> Vec<bool> {
+fn open(parts: &ProblemParts, v: &Field, mean: Mean) -> Vec<bool> {
     let gaps: Vec<f64> = parts
         .contact
         .iter()
@@ -337,7 +337,7 @@ fn open(parts: &Parts, v: &Field, mean: Mean) -> Vec<bool> {
 
 /// The edges of Gamma_C that are not pressed from end to end, but for so many next to those that are; where `beyond` is
 /// negative, so many of these, too.
-fn off_contact(parts: &Parts, beyond: i32) -> Vec<bool> {
+fn off_contact(parts: &ProblemParts, beyond: i32) -> Vec<bool> {
     let is_full =
         |profile: &Profile| profile.cut.is_none() && profile.values[0].iter().all(|&p| p < 0.0);
     let mut open: Vec<bool> = parts
@@ -368,7 +368,7 @@ type Freed<'a> = (Vec<bool>, Lifter<'a>);
 /// Displacements of least energy, with the edges of Gamma_C where they are free: so many beyond the last one that is pressed
 /// from end to end, or before it.
 struct Lifters<'a> {
-    parts: &'a Parts<'a>,
+    parts: &'a ProblemParts<'a>,
     degree: Degree,
     names: &'a [String],
     made: BTreeMap<i32, Option<Freed<'a>>>,
@@ -390,7 +390,7 @@ impl<'a> Lifters<'a> {
     fn pair(
         &mut self,
         [of_w, of_rho]: [i32; 2],
-        target: Target,
+        target: ForceTarget,
         built: &Built,
         (forces, cover): (&Forces<Ball>, Option<&Cover>),
     ) -> Option<Tried> {
@@ -469,7 +469,7 @@ type Found = (Name, usize, Option<Ramp>, Result<[f64; 2], String>);
 /// Forces, moments and reactions of all boundaries, with what triangles contribute to the width of those by dual pairs; `shares`
 /// are those of the triangles in M^2.
 fn list(
-    (parts, built): (&Parts, &Built),
+    (parts, built): (&ProblemParts, &Built),
     degree: Degree,
     names: &[String],
     (forces, shares): (&Forces<Ball>, &[f64]),
@@ -515,12 +515,12 @@ fn list(
             return (asked.into_iter().map(why).collect(), Evidence::default(), Vec::new());
         }
     };
-    let all = Target { boundary: None, motion: Motion::Along(None) };
+    let all = ForceTarget { boundary: None, motion: Motion::Along(None) };
     let mut evidence = Evidence { cover: lifter.lifting(all, built).ok(), ..Evidence::default() };
     let cover = evidence.cover.as_ref().and_then(|w| forces.cover(w).ok());
     let mut refused = Vec::with_capacity(asked.len());
     for &(name, boundary, weight) in &asked {
-        let target = Target { boundary: Some(boundary), motion: name.motion(weight) };
+        let target = ForceTarget { boundary: Some(boundary), motion: name.motion(weight) };
         refused.push(match lifter.lifting(target, built) {
             Ok(w) => {
                 evidence.liftings.push((target, w));
@@ -531,7 +531,7 @@ fn list(
     }
     let mut by_pairs = Vec::new();
     let between = forces.between(&evidence.liftings, cover.as_ref());
-    let to_second_order = |target: &Target| {
+    let to_second_order = |target: &ForceTarget| {
         let Motion::Along(weight) = target.motion else { return false };
         let is = |(of, ramp): &(String, Option<Ramp>)| {
             *ramp == weight && target.boundary.is_some_and(|boundary| names[boundary] == *of)
@@ -564,7 +564,7 @@ fn list(
         }
     }
     let targets = evidence.liftings.iter().map(|(target, _)| *target);
-    let nearest = |(target, ends): (Target, &Result<[f64; 2], WrongLifting>)| {
+    let nearest = |(target, ends): (ForceTarget, &Result<[f64; 2], WrongLifting>)| {
         ends.clone().map(|ends| evidence.nearest(target, ends, &by_pairs))
     };
     let nearest: Vec<Result<[f64; 2], WrongLifting>> = targets.zip(&between).map(nearest).collect();

@@ -4,8 +4,8 @@ use nalgebra::Vector2;
 
 use super::certificate::{Certificate, Cut, Edge, Role, Shape, place, support};
 use super::data::Data;
-use super::divide::Part;
-use super::parts::{Boundary, Parts};
+use super::divide::SubTriangle;
+use super::parts::{Boundary, ProblemParts};
 use super::tractions::{force_of, held_only, supported};
 use crate::fem::Mesh;
 use crate::fem::mesh::length;
@@ -14,7 +14,7 @@ use crate::kernel::{Enclosing, Triangle};
 
 /// The halves of the edges of the mesh, first all first ones, then all second ones; the middles of the edges are the first cuts.
 pub(super) fn add_halves(
-    parts: &Parts,
+    parts: &ProblemParts,
     all: &[[usize; 2]],
     moments: &[[Vector2<f64>; 2]],
     certificate: &mut Certificate,
@@ -79,12 +79,12 @@ pub(super) fn add_halves(
 /// between middles tau N is that of sigma(u) and what balances the corner that it cuts off; the triangle in the middle is in
 /// equilibrium with the whole.
 pub(super) fn quarters(
-    parts: &Parts,
+    parts: &ProblemParts,
     data: &Data,
     t: usize,
     stress: &Affine<f64>,
     certificate: &mut Certificate,
-) -> Vec<(Part, [Vector2<f64>; 3])> {
+) -> Vec<(SubTriangle, [Vector2<f64>; 3])> {
     let (corners, edges) = (parts.mesh.triangles()[t], parts.mesh.triangle_edges()[t]);
     let (vertices, count) = (parts.mesh.vertices().len(), parts.mesh.edge_count());
     let middles = edges.map(|e| vertices + e);
@@ -118,17 +118,20 @@ pub(super) fn quarters(
         if let Some(curved) = &mut certificate.curved {
             curved.data.push([0.0; 2]);
         }
-        found.push((Part { vertices: part, edges: own, places }, body));
+        found.push((SubTriangle { vertices: part, edges: own, places }, body));
     }
     let triangle = Triangle { vertices: middles.map(|p| place(certificate, p)) };
     let places = [0, 1, 2].map(at_middle);
-    found.push((Part { vertices: middles, edges: inside, places }, data.body_on(t, &triangle)));
+    found.push((
+        SubTriangle { vertices: middles, edges: inside, places },
+        data.body_on(t, &triangle),
+    ));
     found
 }
 
 /// The force on half `e` of an edge towards the outside of a triangle that goes along it between these ends.
 fn outward(
-    parts: &Parts,
+    parts: &ProblemParts,
     certificate: &Certificate,
     e: usize,
     ends: [usize; 2],

@@ -30,7 +30,7 @@ const BLOCK: usize = 4;
 /// The second derivative of |C eps(v) - tau|^2 / 2 on a triangle by its unknowns, over its largest entry: it is what the sweeps
 /// read again and again, and need not be known to more digits than the best step. So triangles of one material whose edges are
 /// the same to single precision share it.
-struct Form {
+struct ScaledHessian {
     hessian: [[f32; UNKNOWNS]; UNKNOWNS],
     /// Its largest entry.
     scale: f64,
@@ -40,11 +40,11 @@ struct Form {
 const RECENT: usize = 8;
 
 /// The key of a form: two edges and the moduli.
-type Shape = ([[f32; 2]; 2], Material<f64>);
+type ElementKey = ([[f32; 2]; 2], Material<f64>);
 
 /// A form that was met, by its number, with the stresses of its unknowns.
 struct Met {
-    shape: Shape,
+    shape: ElementKey,
     form: u32,
     units: [[f64; UNKNOWNS]; FEATURES],
 }
@@ -106,7 +106,7 @@ impl Stars {
 struct Sweeps {
     /// The edges of each triangle.
     edges: Vec<[usize; 3]>,
-    forms: Vec<Form>,
+    forms: Vec<ScaledHessian>,
     /// The form of each triangle, and the derivative at the present stress.
     energies: Vec<(u32, [f64; UNKNOWNS])>,
     /// The sign of each edge's own unknown in a triangle: -1 where the edge runs the other way round.
@@ -252,7 +252,7 @@ impl Sweeps {
         matrix.clear();
         matrix.resize(n * n, 0.0);
         for (triangle, places) in self.star(point) {
-            let Form { hessian, scale } = &self.forms[self.energies[triangle].0 as usize];
+            let ScaledHessian { hessian, scale } = &self.forms[self.energies[triangle].0 as usize];
             for &(a, i, sign) in places.all() {
                 for &(b, j, other) in places.all() {
                     matrix[i * n + j] += scale * sign * other * f64::from(hessian[a][b]);
@@ -283,7 +283,7 @@ impl Sweeps {
         let mut energies = std::mem::take(&mut self.energies);
         for (triangle, places) in self.star(point) {
             let (form, gradient) = &mut energies[triangle];
-            let Form { hessian, scale } = &self.forms[*form as usize];
+            let ScaledHessian { hessian, scale } = &self.forms[*form as usize];
             let mut sum = *gradient;
             for &(a, i, sign) in places.all() {
                 let value = x[i] * sign * scale;
@@ -365,8 +365,9 @@ const FEATURES: usize = 21;
 fn energies(
     certificate: &Certificate,
     state: &Balanced<f64>,
-) -> (Vec<Form>, Vec<(u32, [f64; UNKNOWNS])>) {
-    let (mut forms, mut recent): (Vec<Form>, Vec<Met>) = (Vec::new(), Vec::with_capacity(RECENT));
+) -> (Vec<ScaledHessian>, Vec<(u32, [f64; UNKNOWNS])>) {
+    let (mut forms, mut recent): (Vec<ScaledHessian>, Vec<Met>) =
+        (Vec::new(), Vec::with_capacity(RECENT));
     let mut energies = Vec::with_capacity(certificate.pieces.len());
     let mut oldest = 0;
     for (t, piece) in certificate.pieces.iter().enumerate() {
@@ -447,10 +448,10 @@ fn units(triangle: &Triangle<f64>, roots: &Roots) -> [[f64; UNKNOWNS]; FEATURES]
     units
 }
 
-fn form_of(units: &[[f64; UNKNOWNS]; FEATURES]) -> Form {
+fn form_of(units: &[[f64; UNKNOWNS]; FEATURES]) -> ScaledHessian {
     let exact = gram(units);
     let scale = exact.as_flattened().iter().fold(0.0, |most: f64, h| most.max(h.abs()));
-    Form { hessian: exact.map(|row| row.map(|h| (h / scale) as f32)), scale }
+    ScaledHessian { hessian: exact.map(|row| row.map(|h| (h / scale) as f32)), scale }
 }
 
 /// The products of the columns, by blocks that stay in registers; the upper half is the lower one.

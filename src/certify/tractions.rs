@@ -19,13 +19,17 @@ use nalgebra::{Matrix2, Vector2};
 use super::certificate::{Role, turned};
 use super::data::Traction;
 use super::field::Field;
-use super::parts::{Boundary, Parts};
+use super::parts::{Boundary, ProblemParts};
 use crate::fem::mesh::length;
 use crate::kernel::Triangle;
 use crate::kernel::composite::Affine;
 
 /// s_T on each triangle, and beside it what sigma(u) has beyond its mean.
-pub(super) fn stresses(parts: &Parts, u: &Field, triangles: &[Triangle<f64>]) -> Vec<Affine<f64>> {
+pub(super) fn stresses(
+    parts: &ProblemParts,
+    u: &Field,
+    triangles: &[Triangle<f64>],
+) -> Vec<Affine<f64>> {
     let of_u = |(t, triangle): (usize, &Triangle<f64>)| {
         let sigma = u.stress(parts, t, triangle);
         let mean = sigma.mean();
@@ -45,7 +49,7 @@ pub(super) fn stresses(parts: &Parts, u: &Field, triangles: &[Triangle<f64>]) ->
 /// The moments of the traction on each edge with the hat functions of its ends, towards the outside of the first triangle
 /// that has the edge.
 pub(super) fn moments(
-    parts: &Parts,
+    parts: &ProblemParts,
     bodies: &[[Vector2<f64>; 3]],
     triangles: &[Triangle<f64>],
     stress: &[Affine<f64>],

@@ -14,7 +14,7 @@ use crate::kernel::Scalar;
 
 /// The numbers from `head + tail - radius` to `head + tail + radius`; `head` is `head + tail` rounded to nearest.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ball {
+pub struct PreciseBall {
     head: f64,
     tail: f64,
     radius: f64,
@@ -45,12 +45,12 @@ pub(crate) fn larger(a: f64, b: f64) -> f64 {
     }
 }
 
-impl Ball {
-    const EVERYTHING: Ball = Ball { head: 0.0, tail: 0.0, radius: f64::INFINITY };
+impl PreciseBall {
+    const EVERYTHING: PreciseBall = PreciseBall { head: 0.0, tail: 0.0, radius: f64::INFINITY };
 
     /// The centre alone.
     pub fn centre(self) -> Self {
-        Ball { radius: 0.0, ..self }
+        PreciseBall { radius: 0.0, ..self }
     }
 
     /// The double nearest to the centre.
@@ -70,7 +70,7 @@ impl Ball {
 
     /// Adds `by` to the radius.
     pub fn widened(self, by: f64) -> Self {
-        Ball { radius: up(self.radius + by), ..self }
+        PreciseBall { radius: up(self.radius + by), ..self }
     }
 
     /// No number of the ball is larger in magnitude.
@@ -117,24 +117,28 @@ impl Ball {
     }
 
     /// A ball that contains both.
-    fn hull(self, other: Ball) -> Ball {
+    fn hull(self, other: PreciseBall) -> PreciseBall {
         if self.is_nan() || other.is_nan() {
-            return Ball { head: f64::NAN, ..self };
+            return PreciseBall { head: f64::NAN, ..self };
         }
         let (low, high) = (self.lower().min(other.lower()), self.upper().max(other.upper()));
         let middle = low / 2.0 + high / 2.0;
         let radius = (high - middle).max(middle - low);
-        Ball { head: middle, tail: 0.0, radius: up(radius + f64::EPSILON * middle.abs() + TINY) }
+        PreciseBall {
+            head: middle,
+            tail: 0.0,
+            radius: up(radius + f64::EPSILON * middle.abs() + TINY),
+        }
     }
 
     /// The square roots of positive numbers.
-    pub fn sqrt(self) -> Ball {
+    pub fn sqrt(self) -> PreciseBall {
         if !(self.least_magnitude() > 0.0 && self.head > 0.0) {
-            return if self.is_zero() { self } else { Ball::EVERYTHING };
+            return if self.is_zero() { self } else { PreciseBall::EVERYTHING };
         }
         let first = self.head.sqrt();
-        let rest = self - Ball::from(first) * Ball::from(first);
-        let root = Ball::from(DoubleDouble::sum(first, rest.head / (2.0 * first)));
+        let rest = self - PreciseBall::from(first) * PreciseBall::from(first);
+        let root = PreciseBall::from(DoubleDouble::sum(first, rest.head / (2.0 * first)));
         // |x^(1/2) - s| = |x - s^2| / (x^(1/2) + s)
         let off = (self - root * root).magnitude() / root.least_magnitude();
         root.widened(up(off + TINY))
@@ -143,20 +147,20 @@ impl Ball {
 
 /// A double-double that is a factor of several products, its head split once for all of them.
 #[derive(Clone, Copy, Debug)]
-pub struct Factor {
+pub struct Multiplier {
     head: f64,
     tail: f64,
     halves: [f64; 2],
 }
 
-impl From<DoubleDouble> for Factor {
+impl From<DoubleDouble> for Multiplier {
     #[inline]
     fn from(a: DoubleDouble) -> Self {
-        Factor { head: a.head(), tail: a.tail(), halves: halves(a.head()) }
+        Multiplier { head: a.head(), tail: a.tail(), halves: halves(a.head()) }
     }
 }
 
-impl Factor {
+impl Multiplier {
     /// The product of the heads, and what rounding and the tails add to it.
     #[inline]
     fn times(self, b: Self) -> [f64; 2] {
@@ -167,10 +171,10 @@ impl Factor {
     }
 }
 
-impl Ball {
+impl PreciseBall {
     /// Adds a b + c d. Quicker than the operators, which find the halves of each factor anew.
     #[inline]
-    pub fn add_products(&mut self, [(a, b), (c, d)]: [(Factor, Factor); 2]) {
+    pub fn add_products(&mut self, [(a, b), (c, d)]: [(Multiplier, Multiplier); 2]) {
         let [[p, p_tail], [q, q_tail]] = [a.times(b), c.times(d)];
         let products = DoubleDouble::sum(p, q);
         let tail = (p_tail + q_tail) + products.tail();
@@ -178,37 +182,37 @@ impl Ball {
         let sum = DoubleDouble::sum(heads.head(), heads.tail() + (self.tail + tail));
         let size = 2.0 * (PRODUCT * (p.abs() + q.abs()) + TINY);
         let radius = up(self.radius + (SUM * self.head.abs() + size));
-        *self = Ball { head: sum.head(), tail: sum.tail(), radius };
+        *self = PreciseBall { head: sum.head(), tail: sum.tail(), radius };
     }
 }
 
-impl From<f64> for Ball {
+impl From<f64> for PreciseBall {
     fn from(a: f64) -> Self {
-        Ball { head: a, tail: 0.0, radius: 0.0 }
+        PreciseBall { head: a, tail: 0.0, radius: 0.0 }
     }
 }
 
-impl From<crate::kernel::Ball> for Ball {
+impl From<crate::kernel::Ball> for PreciseBall {
     fn from(a: crate::kernel::Ball) -> Self {
         let (low, high) = (a.lower(), a.upper());
         let middle = low / 2.0 + high / 2.0;
-        Ball { head: middle, tail: 0.0, radius: up((high - middle).max(middle - low)) }
+        PreciseBall { head: middle, tail: 0.0, radius: up((high - middle).max(middle - low)) }
     }
 }
 
-impl From<DoubleDouble> for Ball {
+impl From<DoubleDouble> for PreciseBall {
     fn from(a: DoubleDouble) -> Self {
-        Ball { head: a.head(), tail: a.tail(), radius: 0.0 }
+        PreciseBall { head: a.head(), tail: a.tail(), radius: 0.0 }
     }
 }
 
-impl From<i32> for Ball {
+impl From<i32> for PreciseBall {
     fn from(a: i32) -> Self {
-        Ball::from(f64::from(a))
+        PreciseBall::from(f64::from(a))
     }
 }
 
-impl Add for Ball {
+impl Add for PreciseBall {
     type Output = Self;
 
     #[inline]
@@ -217,19 +221,19 @@ impl Add for Ball {
         let sum = DoubleDouble::sum(heads.head(), heads.tail() + (self.tail + b.tail));
         let size = self.head.abs() + b.head.abs();
         let radius = up(self.radius + b.radius + SUM * size);
-        Ball { head: sum.head(), tail: sum.tail(), radius }
+        PreciseBall { head: sum.head(), tail: sum.tail(), radius }
     }
 }
 
-impl Neg for Ball {
+impl Neg for PreciseBall {
     type Output = Self;
 
     fn neg(self) -> Self {
-        Ball { head: -self.head, tail: -self.tail, radius: self.radius }
+        PreciseBall { head: -self.head, tail: -self.tail, radius: self.radius }
     }
 }
 
-impl Sub for Ball {
+impl Sub for PreciseBall {
     type Output = Self;
 
     #[inline]
@@ -238,13 +242,17 @@ impl Sub for Ball {
     }
 }
 
-impl Mul for Ball {
+impl Mul for PreciseBall {
     type Output = Self;
 
     #[inline]
     fn mul(self, b: Self) -> Self {
         if self.is_zero() || b.is_zero() {
-            return if self.is_nan() || b.is_nan() { Ball::EVERYTHING } else { Ball::from(0.0) };
+            return if self.is_nan() || b.is_nan() {
+                PreciseBall::EVERYTHING
+            } else {
+                PreciseBall::from(0.0)
+            };
         }
         let heads = DoubleDouble::product(self.head, b.head);
         let cross = self.head * b.tail + self.tail * b.head;
@@ -252,33 +260,33 @@ impl Mul for Ball {
         let spread = self.head.abs() * b.radius + b.head.abs() * self.radius;
         let size = PRODUCT * heads.head().abs() + TINY;
         let radius = up(spread + self.radius * b.radius + size);
-        Ball { head: product.head(), tail: product.tail(), radius }
+        PreciseBall { head: product.head(), tail: product.tail(), radius }
     }
 }
 
-impl Div for Ball {
+impl Div for PreciseBall {
     type Output = Self;
 
     /// Any quotient of the centres will do: what it is off by is found by multiplying back.
     fn div(self, b: Self) -> Self {
         let least = b.least_magnitude();
         if !(least > 0.0) {
-            return Ball::EVERYTHING;
+            return PreciseBall::EVERYTHING;
         }
         if self.is_zero() {
             return self;
         }
         let first = self.head / b.head;
-        let rest = self - b * Ball::from(first);
-        let quotient = Ball::from(DoubleDouble::sum(first, rest.head / b.head));
+        let rest = self - b * PreciseBall::from(first);
+        let quotient = PreciseBall::from(DoubleDouble::sum(first, rest.head / b.head));
         let off = (self - b * quotient).magnitude() / least;
         quotient.widened(up(off + TINY))
     }
 }
 
-crate::entry_of_nalgebra!(Ball);
+crate::entry_of_nalgebra!(PreciseBall);
 
-impl Scalar for Ball {
+impl Scalar for PreciseBall {
     fn split(
         self,
         nonpositive: impl FnOnce(Self) -> Self,
@@ -301,15 +309,15 @@ mod tests {
     use super::*;
     use crate::kernel::positive_part;
 
-    fn third() -> Ball {
-        Ball::from(1) / Ball::from(3)
+    fn third() -> PreciseBall {
+        PreciseBall::from(1) / PreciseBall::from(3)
     }
 
     #[test]
     fn what_overflows_has_no_bound_and_what_underflows_is_enclosed() {
-        assert!(!(Ball::from(1) / Ball::from(0)).is_finite());
-        assert!(!(Ball::from(1e300) * Ball::from(1e300)).is_finite());
-        let tiny = Ball::from(1e-200) * Ball::from(1e-200);
+        assert!(!(PreciseBall::from(1) / PreciseBall::from(0)).is_finite());
+        assert!(!(PreciseBall::from(1e300) * PreciseBall::from(1e300)).is_finite());
+        let tiny = PreciseBall::from(1e-200) * PreciseBall::from(1e-200);
         assert!(tiny.lower() <= 0.0 && tiny.upper() >= 0.0, "{tiny:?}");
     }
 
@@ -317,10 +325,10 @@ mod tests {
     fn products_that_are_added_are_those_of_the_operators() {
         let parts = [3.0, -0.7, 1e-9, 12345.678];
         let exact = parts.map(|x| DoubleDouble::sum(x, x * 1e-17 / 3.0));
-        let [a, b, c, d] = exact.map(Factor::from);
+        let [a, b, c, d] = exact.map(Multiplier::from);
         let mut sum = third();
         sum.add_products([(a, b), (c, d)]);
-        let [a, b, c, d] = exact.map(Ball::from);
+        let [a, b, c, d] = exact.map(PreciseBall::from);
         let off = sum - (third() + a * b + c * d);
         assert!(off.lower() <= 0.0 && off.upper() >= 0.0 && off.magnitude() < 1e-29, "{off:?}");
         assert!(off.centre().head() != 0.0, "control: the centres alone differ, {off:?}");
@@ -328,11 +336,11 @@ mod tests {
 
     #[test]
     fn zero_stays_sharp_and_an_undecided_sign_gets_both_answers() {
-        assert!((Ball::from(0) * third()).is_zero());
-        let undecided = Ball::from(0).widened(1e-3);
+        assert!((PreciseBall::from(0) * third()).is_zero());
+        let undecided = PreciseBall::from(0).widened(1e-3);
         let positive = positive_part(undecided);
         assert!(positive.lower() <= 0.0 && positive.upper() >= 1e-3);
-        assert_eq!(positive_part(-third()), Ball::from(0));
+        assert_eq!(positive_part(-third()), PreciseBall::from(0));
         assert_eq!(positive_part(third()), third());
     }
 }

@@ -3,14 +3,14 @@
 
 use nalgebra::Vector2;
 
-use super::ball::Ball;
+use super::ball::PreciseBall;
 use super::constraints::{Constraints, in_frame};
 use super::contact_face::{ContactFace, EdgeRule};
 use super::contact_line::{self, Coercivity, Gamma};
 use super::data::DataError;
 use super::dense::inner;
 use super::element::Degree;
-use super::loads::{self, Loads};
+use super::loads::{self, LoadVector};
 use super::material;
 use super::problem::Problem;
 use super::residual::{StressPoint, each_stress};
@@ -30,7 +30,7 @@ pub struct Discretization<'a> {
     /// L(v) for every basis function.
     pub load: Vec<[f64; 2]>,
     /// The load with bounds of its rounding.
-    pub enclosed_load: Vec<[Ball; 2]>,
+    pub enclosed_load: Vec<[PreciseBall; 2]>,
     /// C_h of kappa = gamma0 C_h.
     pub coercivity: Coercivity,
     /// gamma along Gamma_C.
@@ -107,7 +107,7 @@ impl<'a> Discretization<'a> {
         }
         let space = Space::new(&problem.mesh, degree);
         let mut constraints = Constraints::new(problem, &space)?;
-        let Loads { in_doubles: load, in_balls: enclosed_load } =
+        let LoadVector { in_doubles: load, in_balls: enclosed_load } =
             loads::assemble_twice(problem, &space)?;
         let contact = contact_line::assemble(problem, &space, gamma)?;
         let (parts, motions) = constraints.free_motions(&space);

@@ -23,7 +23,7 @@ use super::rigid::connected_by_edges;
 use super::tree::{Bounds, Tree};
 
 /// The outline of a mesh, with what it takes to look at what is near.
-struct Outline<'m> {
+struct SearchableOutline<'m> {
     mesh: &'m Mesh,
     /// Start and end of each edge of the outline.
     ends: Vec<[usize; 2]>,
@@ -56,7 +56,7 @@ impl Mesh {
 /// # Errors
 /// [`MeshError::Hanging`], [`MeshError::Near`], [`MeshError::Overlapping`], [`MeshError::JoinedAtVertex`].
 fn check(mesh: &Mesh) -> Result<(), MeshError> {
-    let outline = Outline::new(mesh);
+    let outline = SearchableOutline::new(mesh);
     // What nearly touches often crosses too, and is better called by its name: it comes first.
     (0..outline.ends.len()).try_for_each(|e| outline.check_vertices(e))?;
     (0..outline.ends.len()).try_for_each(|e| outline.check_crossings(e))?;
@@ -79,7 +79,7 @@ fn check_joints(mesh: &Mesh) -> Result<(), MeshError> {
     Ok(())
 }
 
-impl<'m> Outline<'m> {
+impl<'m> SearchableOutline<'m> {
     fn new(mesh: &'m Mesh) -> Self {
         let ends: Vec<[usize; 2]> = mesh.outline().iter().map(|&e| mesh.ends(e)).collect();
         let mut shortest = vec![f64::INFINITY; mesh.vertices().len()];
@@ -95,7 +95,7 @@ impl<'m> Outline<'m> {
                 around[vertex].push(t);
             }
         }
-        Outline { mesh, ends, tree, shortest, around }
+        SearchableOutline { mesh, ends, tree, shortest, around }
     }
 
     fn place(&self, vertex: usize) -> Vector2<f64> {

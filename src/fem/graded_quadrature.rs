@@ -58,7 +58,7 @@ pub struct Rule {
 }
 
 /// A part of a triangle: its corners as places and as barycentric coordinates in the whole.
-type Piece = [(Vector2<f64>, [f64; 3]); 3];
+type Corners = [(Vector2<f64>, [f64; 3]); 3];
 
 /// A point of a rule on an edge.
 #[derive(Clone, Copy, Debug)]
@@ -91,7 +91,7 @@ impl Rule {
         mut f: impl FnMut([f64; 3], [f64; 2], f64),
     ) {
         let unit = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-        let whole: Piece = [0, 1, 2].map(|i| (triangle.vertices[i], unit[i]));
+        let whole: Corners = [0, 1, 2].map(|i| (triangle.vertices[i], unit[i]));
         for piece in cut(whole, self.features.kink) {
             match self.features.singular.and_then(|singular| around(&piece, singular.point)) {
                 Some(parts) => parts.iter().for_each(|part| apply(part, &self.graded, &mut f)),
@@ -171,7 +171,7 @@ fn double_area(vertices: [Vector2<f64>; 3]) -> f64 {
     Triangle { vertices }.double_area()
 }
 
-fn apply(piece: &Piece, rule: &[([f64; 3], f64)], f: &mut impl FnMut([f64; 3], [f64; 2], f64)) {
+fn apply(piece: &Corners, rule: &[([f64; 3], f64)], f: &mut impl FnMut([f64; 3], [f64; 2], f64)) {
     let places = Triangle { vertices: piece.map(|(x, _)| x) };
     let area = places.double_area().abs() / 2.0;
     for &(own, weight) in rule {
@@ -181,7 +181,7 @@ fn apply(piece: &Piece, rule: &[([f64; 3], f64)], f: &mut impl FnMut([f64; 3], [
 }
 
 /// The parts of a triangle on the two sides of the line x = c.
-fn cut(piece: Piece, kink: Option<f64>) -> Vec<Piece> {
+fn cut(piece: Corners, kink: Option<f64>) -> Vec<Corners> {
     let side = |c: f64, k: usize| piece[k].0[0] - c;
     match kink {
         Some(c) if (0..3).any(|k| side(c, k) < 0.0) && (0..3).any(|k| side(c, k) > 0.0) => {
@@ -192,7 +192,7 @@ fn cut(piece: Piece, kink: Option<f64>) -> Vec<Piece> {
 }
 
 /// The part of a triangle where sign (x - c) >= 0: one triangle, or two that make a quadrilateral.
-fn half(piece: &Piece, c: f64, sign: f64) -> Vec<Piece> {
+fn half(piece: &Corners, c: f64, sign: f64) -> Vec<Corners> {
     let mut polygon = Vec::with_capacity(4);
     for k in 0..3 {
         let (a, b) = (piece[k], piece[(k + 1) % 3]);
@@ -210,7 +210,7 @@ fn half(piece: &Piece, c: f64, sign: f64) -> Vec<Piece> {
 }
 
 /// The triangle cut into triangles with `point` as their first vertex; `None` if it doesn't hold the point.
-fn around(piece: &Piece, point: [f64; 2]) -> Option<Vec<Piece>> {
+fn around(piece: &Corners, point: [f64; 2]) -> Option<Vec<Corners>> {
     let point = Vector2::from(point);
     let [a, b, c] = *piece;
     let whole = double_area(piece.map(|(x, _)| x));

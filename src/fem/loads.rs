@@ -1,6 +1,6 @@
 //! L(v) = int_Omega f . v + int_{Gamma_N} t . v for every basis function v.
 
-use super::ball::Ball;
+use super::ball::PreciseBall;
 use super::data::{DataError, checked};
 use super::element::Degree;
 use super::graded_quadrature::{Features, Rule};
@@ -55,11 +55,11 @@ pub fn assemble_with(
 }
 
 /// L at every node and component.
-pub struct Loads {
+pub struct LoadVector {
     /// In doubles.
     pub in_doubles: Vec<[f64; 2]>,
     /// The loads with bounds of their rounding.
-    pub in_balls: Vec<[Ball; 2]>,
+    pub in_balls: Vec<[PreciseBall; 2]>,
 }
 
 /// [`assemble`] in doubles and in balls: the forces at the points of the rules, weight times value, are doubles, and
@@ -67,9 +67,9 @@ pub struct Loads {
 ///
 /// # Errors
 /// As [`assemble`].
-pub fn assemble_twice(problem: &Problem, space: &Space) -> Result<Loads, DataError> {
+pub fn assemble_twice(problem: &Problem, space: &Space) -> Result<LoadVector, DataError> {
     let mut in_doubles = vec![[0.0; 2]; space.nodes().len()];
-    let mut in_balls = vec![[Ball::from(0.0); 2]; space.nodes().len()];
+    let mut in_balls = vec![[PreciseBall::from(0.0); 2]; space.nodes().len()];
     each_force(
         problem,
         space,
@@ -79,12 +79,12 @@ pub fn assemble_twice(problem: &Problem, space: &Space) -> Result<Loads, DataErr
             force.add_to(space.degree(), &mut in_balls);
         },
     )?;
-    Ok(Loads { in_doubles, in_balls })
+    Ok(LoadVector { in_doubles, in_balls })
 }
 
 /// Where on an element.
 #[derive(Clone, Copy)]
-enum Place {
+enum ElementPoint {
     /// Barycentric coordinates.
     Inside([f64; 3]),
     /// Between the ends of an edge, from 0 to 1.
@@ -98,7 +98,7 @@ struct Force<'a> {
     value: f64,
     /// The nodes of the triangle or the edge.
     nodes: &'a [usize],
-    place: Place,
+    place: ElementPoint,
 }
 
 impl Force<'_> {
@@ -113,10 +113,10 @@ impl Force<'_> {
         };
         let exactly = <S as From<f64>>::from;
         match (self.place, degree) {
-            (Place::Inside(l), Degree::One) => add(&P1::values(l.map(exactly))),
-            (Place::Inside(l), Degree::Two) => add(&P2::values(l.map(exactly))),
-            (Place::OnEdge(s), Degree::One) => add(&P1::edge_values(exactly(s))),
-            (Place::OnEdge(s), Degree::Two) => add(&P2::edge_values(exactly(s))),
+            (ElementPoint::Inside(l), Degree::One) => add(&P1::values(l.map(exactly))),
+            (ElementPoint::Inside(l), Degree::Two) => add(&P2::values(l.map(exactly))),
+            (ElementPoint::OnEdge(s), Degree::One) => add(&P1::edge_values(exactly(s))),
+            (ElementPoint::OnEdge(s), Degree::Two) => add(&P2::edge_values(exactly(s))),
         }
     }
 }
@@ -187,7 +187,7 @@ fn each_body_force(
         let nodes = space.nodes_of(t);
         rule.on_triangle(&space.mesh().triangle(t), |l, x, weight| {
             match checked(f.at(x), x, &what) {
-                Ok(f) => add(Force { c, value: weight * f, nodes, place: Place::Inside(l) }),
+                Ok(f) => add(Force { c, value: weight * f, nodes, place: ElementPoint::Inside(l) }),
                 Err(error) => wrong = wrong.take().or(Some(error)),
             }
         });
@@ -212,7 +212,7 @@ fn each_force_on_boundary(
         rule.on_edge(ends, [], |point| match value(point.x, normal.into()) {
             Ok(t) => {
                 let value = point.weight * length * t;
-                add(Force { c, value, nodes, place: Place::OnEdge(point.s) });
+                add(Force { c, value, nodes, place: ElementPoint::OnEdge(point.s) });
             }
             Err(error) => wrong = wrong.take().or(Some(error)),
         });

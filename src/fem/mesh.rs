@@ -23,7 +23,7 @@ use super::tree::{Bounds, Tree};
 use crate::kernel::Triangle;
 use crate::memory::{self, bytes_of};
 use crate::quote;
-use edges::{Edge, match_edges, name_boundaries};
+use edges::{MeshEdge, match_edges, name_boundaries};
 pub use error::MeshError;
 pub(super) use error::TOUCHING;
 use nalgebra::Vector2;
@@ -32,14 +32,14 @@ use nalgebra::Vector2;
 #[derive(Clone, Debug)]
 pub struct Mesh {
     vertices: Vec<[f64; 2]>,
-    topology: Arc<Topology>,
+    topology: Arc<MeshTopology>,
     /// The boxes of the triangles, made when a point is first looked for.
     boxes: OnceLock<Tree>,
 }
 
 /// Which triangles have which vertices and edges, and what they are called.
 #[derive(Clone, Debug)]
-struct Topology {
+struct MeshTopology {
     triangles: Vec<[usize; 3]>,
     triangle_edges: Vec<[usize; 3]>,
     edge_count: usize,
@@ -77,7 +77,7 @@ impl Mesh {
         let outline: Vec<BoundaryEdge> =
             edges.edges.iter().filter(|e| !e.inner).map(|e| e.owner).collect();
         let (boundaries, inner) = name_boundaries(&edges, &vertices, named)?;
-        let topology = Topology {
+        let topology = MeshTopology {
             triangles,
             triangle_edges,
             edge_count: edges.edges.len(),
@@ -273,7 +273,7 @@ fn diameter(triangle: &Triangle<f64>) -> f64 {
 pub(super) fn bytes_to_make(vertices: usize, triangles: usize) -> u64 {
     let per_vertex = bytes_of::<[usize; 4]>(vertices);
     let edges = (triangles.saturating_mul(3) / 2).saturating_add(vertices);
-    [per_vertex, bytes_of::<[usize; 3]>(triangles), bytes_of::<Edge>(edges)]
+    [per_vertex, bytes_of::<[usize; 3]>(triangles), bytes_of::<MeshEdge>(edges)]
         .into_iter()
         .fold(0, u64::saturating_add)
 }

@@ -5,45 +5,51 @@
 //! the sign on a piece is not the one that was taken, |P| is bounded, and the piece's length times that bound is added to the
 //! radius. A cut that is off by e leaves |P| = O(e) there, and Newton's method in balls makes e some 2^-100.
 
-use super::ball::{Ball, larger};
+use super::ball::{PreciseBall, larger};
 use super::contact_face::EdgeRule;
 use super::element::bernstein;
 use crate::kernel::edge_integral::{gauss, roots, value_at};
 use crate::kernel::{Element, P1, P2};
 
 /// int \[P\]+ N_a for P with the nodal values `p`, two or three, by the rule of the method.
-pub fn moments(rule: &EdgeRule, p: &[Ball]) -> Vec<Ball> {
+pub fn moments(rule: &EdgeRule, p: &[PreciseBall]) -> Vec<PreciseBall> {
     match *p {
         [start, end] => moments_of::<P1, 3, 2>(rule, [start, end]).into(),
         _ => moments_of::<P2, 6, 3>(rule, [p[0], p[1], p[2]]).into(),
     }
 }
 
-fn moments_of<E, const N: usize, const M: usize>(rule: &EdgeRule, p: [Ball; M]) -> [Ball; M]
+fn moments_of<E, const N: usize, const M: usize>(
+    rule: &EdgeRule,
+    p: [PreciseBall; M],
+) -> [PreciseBall; M]
 where
     E: Element<N, M>,
 {
     match rule {
         EdgeRule::Gauss(points) => {
-            let points = points.iter().map(|&(s, w)| (Ball::from(s), Ball::from(w)));
-            gauss::<E, Ball, N, M>(p, points).gradient
+            let points = points.iter().map(|&(s, w)| (PreciseBall::from(s), PreciseBall::from(w)));
+            gauss::<E, PreciseBall, N, M>(p, points).gradient
         }
         // Bernstein's coefficients bound P.
-        EdgeRule::Exact if bernstein(&p).iter().all(|c| c.upper() <= 0.0) => [Ball::from(0); M],
+        EdgeRule::Exact if bernstein(&p).iter().all(|c| c.upper() <= 0.0) => {
+            [PreciseBall::from(0); M]
+        }
         EdgeRule::Exact => {
             // |N_a| <= 1, and so |int ([P]+ - [Q]+) N_a| <= max |P - Q| <= the sum of the radii.
             let spread = p.iter().map(|p| p.radius()).sum::<f64>();
-            by_pieces::<E, N, M>(p.map(Ball::centre)).map(|moment| moment.widened(2.0 * spread))
+            by_pieces::<E, N, M>(p.map(PreciseBall::centre))
+                .map(|moment| moment.widened(2.0 * spread))
         }
     }
 }
 
 /// P = c_0 + c_1 s + c_2 s^2
-struct Parabola([Ball; 3]);
+struct Parabola([PreciseBall; 3]);
 
 impl Parabola {
-    fn new<E: Element<N, M>, const N: usize, const M: usize>(p: [Ball; M]) -> Self {
-        let [zero, two, three, four] = [0, 2, 3, 4].map(Ball::from);
+    fn new<E: Element<N, M>, const N: usize, const M: usize>(p: [PreciseBall; M]) -> Self {
+        let [zero, two, three, four] = [0, 2, 3, 4].map(PreciseBall::from);
         let (start, end) = (p[0], p[1]);
         Parabola(if E::DEGREE == 1 {
             [start, end - start, zero]
@@ -54,17 +60,17 @@ impl Parabola {
         })
     }
 
-    fn at(&self, s: Ball) -> Ball {
+    fn at(&self, s: PreciseBall) -> PreciseBall {
         self.0[0] + s * (self.0[1] + s * self.0[2])
     }
 
-    fn slope(&self, s: Ball) -> Ball {
-        self.0[1] + Ball::from(2) * s * self.0[2]
+    fn slope(&self, s: PreciseBall) -> PreciseBall {
+        self.0[1] + PreciseBall::from(2) * s * self.0[2]
     }
 
     /// One step of Newton's method from a root, if that is a step to somewhere.
-    fn refined(&self, root: f64) -> Ball {
-        let at = Ball::from(root);
+    fn refined(&self, root: f64) -> PreciseBall {
+        let at = PreciseBall::from(root);
         let step = (self.at(at) / self.slope(at)).centre();
         let better = (at - step).centre();
         let inside = better.is_finite() && better.lower() > 0.0 && better.upper() < 1.0;
@@ -73,8 +79,8 @@ impl Parabola {
 
     /// The largest value of `sign` P on \[a, b\], or more: at an end; or below the tangent at a point near the vertex, and, where
     /// the parabola may open upwards, what its curvature adds to that.
-    fn largest(&self, sign: i32, a: Ball, b: Ball) -> f64 {
-        let sign = Ball::from(sign);
+    fn largest(&self, sign: i32, a: PreciseBall, b: PreciseBall) -> f64 {
+        let sign = PreciseBall::from(sign);
         let ends = larger((sign * self.at(a)).upper(), (sign * self.at(b)).upper());
         let slopes = [a, b].map(|s| sign * self.slope(s));
         let monotone =
@@ -86,9 +92,9 @@ impl Parabola {
         // A parabola whose curvature is zero to rounding has no vertex to be near to: any point will do.
         let vertex = -self.0[1].head() / (2.0 * self.0[2].head());
         let vertex = if vertex.is_nan() { a.head() } else { vertex };
-        let near = Ball::from(vertex.clamp(a.head(), b.head()));
-        let (slope, length) = (Ball::from((sign * self.slope(near)).magnitude()), b - a);
-        let bend = Ball::from(larger(curvature.upper(), 0.0)) * length * length;
+        let near = PreciseBall::from(vertex.clamp(a.head(), b.head()));
+        let (slope, length) = (PreciseBall::from((sign * self.slope(near)).magnitude()), b - a);
+        let bend = PreciseBall::from(larger(curvature.upper(), 0.0)) * length * length;
         let tangent = sign * self.at(near) + slope * length + bend;
         // A point a rounding error outside [a, b] would be at most |b - a| away, too, but for that error.
         let slack = slope.magnitude() * 4.0 * f64::EPSILON;
@@ -96,31 +102,31 @@ impl Parabola {
     }
 }
 
-fn by_pieces<E, const N: usize, const M: usize>(p: [Ball; M]) -> [Ball; M]
+fn by_pieces<E, const N: usize, const M: usize>(p: [PreciseBall; M]) -> [PreciseBall; M]
 where
     E: Element<N, M>,
 {
     let parabola = Parabola::new::<E, N, M>(p);
-    let mut cuts = vec![Ball::from(0), Ball::from(1)];
-    let heads = p.map(Ball::head);
+    let mut cuts = vec![PreciseBall::from(0), PreciseBall::from(1)];
+    let heads = p.map(PreciseBall::head);
     cuts.extend(roots::<E, N, M>(heads).map(|root| parabola.refined(root)));
     cuts.sort_unstable_by(|a, b| a.head().total_cmp(&b.head()));
-    let mut sum = [Ball::from(0); M];
+    let mut sum = [PreciseBall::from(0); M];
     let mut wrong = 0.0;
     for piece in cuts.windows(2) {
         let (a, b) = (piece[0], piece[1]);
         let length = b - a;
         // The points and weights of Boole's rule, exact to degree 5.
         let points = [(0, 7), (1, 32), (2, 12), (3, 32), (4, 7)].map(|(i, weight)| {
-            let s = a + length * Ball::from(i) / Ball::from(4);
-            (s, Ball::from(weight) / Ball::from(90), parabola.at(s))
+            let s = a + length * PreciseBall::from(i) / PreciseBall::from(4);
+            (s, PreciseBall::from(weight) / PreciseBall::from(90), parabola.at(s))
         });
         let mean: f64 = points.iter().map(|(_, weight, p)| weight.head() * p.head()).sum();
         let positive = !(mean <= 0.0);
         if positive {
             for (s, weight, _) in points {
-                let value = value_at::<E, Ball, N, M>(p, s);
-                let shapes: [Ball; M] = E::edge_values(s);
+                let value = value_at::<E, PreciseBall, N, M>(p, s);
+                let shapes: [PreciseBall; M] = E::edge_values(s);
                 for (sum, shape) in sum.iter_mut().zip(shapes) {
                     *sum += length * weight * value * shape;
                 }
@@ -166,10 +172,10 @@ mod tests {
         for p in values() {
             let p: [f64; M] = std::array::from_fn(|a| p[a]);
             let exact = E::exact(p).gradient;
-            let enclosed = moments(&EdgeRule::Exact, &p.map(Ball::from));
+            let enclosed = moments(&EdgeRule::Exact, &p.map(PreciseBall::from));
             let size = p.iter().fold(0.0, |m: f64, p| m.max(p.abs()));
             for (exact, ball) in exact.into_iter().zip(enclosed) {
-                let off = (ball - Ball::from(exact)).magnitude();
+                let off = (ball - PreciseBall::from(exact)).magnitude();
                 // Next to a double root the formula for the roots has half the digits, in doubles.
                 assert!(off <= 1e-14 * size + 1e-260, "{p:?}: {exact:e} {ball:?}");
                 // There it may miss both roots, and P between them, which is rounding.
@@ -189,9 +195,9 @@ mod tests {
     #[test]
     fn control_a_wrong_cut_costs_width() {
         // Positive on the left of 1/2, cut at 0.6: the part between is integrated with the wrong sign, and counted.
-        let parabola = Parabola::new::<P1, 3, 2>([0.5, -0.5].map(Ball::from));
-        let cut = Ball::from(0.6);
-        assert!(parabola.largest(-1, Ball::from(0), cut) >= 0.1);
-        assert!(parabola.largest(1, cut, Ball::from(1)) <= 0.0);
+        let parabola = Parabola::new::<P1, 3, 2>([0.5, -0.5].map(PreciseBall::from));
+        let cut = PreciseBall::from(0.6);
+        assert!(parabola.largest(-1, PreciseBall::from(0), cut) >= 0.1);
+        assert!(parabola.largest(1, cut, PreciseBall::from(1)) <= 0.0);
     }
 }

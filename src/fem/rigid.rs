@@ -24,12 +24,12 @@ use super::space::Space;
 #[derive(Clone, Debug)]
 pub struct Parts {
     of_triangle: Vec<usize>,
-    frames: Vec<Frame>,
+    frames: Vec<PartFrame>,
 }
 
 /// A part's own coordinates, and a place to name it by.
 #[derive(Clone, Copy, Debug)]
-struct Frame {
+struct PartFrame {
     centre: [f64; 2],
     half: f64,
     place: [f64; 2],
@@ -149,7 +149,7 @@ impl Parts {
         let frames = boxes.iter().zip(places).map(|([low, high], place)| {
             let halves = [0, 1].map(|c| high[c] / 2.0 - low[c] / 2.0);
             let centre = [0, 1].map(|c| low[c] + halves[c]);
-            Frame { centre, half: halves[0].max(halves[1]), place: place.unwrap_or(centre) }
+            PartFrame { centre, half: halves[0].max(halves[1]), place: place.unwrap_or(centre) }
         });
         Parts { frames: frames.collect(), of_triangle }
     }
@@ -166,7 +166,7 @@ impl Parts {
 
     /// The coefficients of the motion of `part` (t_x, t_y, w) in component `c` of the displacement at `x`.
     fn row(&self, part: usize, x: [f64; 2], c: usize) -> [f64; 3] {
-        let Frame { centre, half, .. } = self.frames[part];
+        let PartFrame { centre, half, .. } = self.frames[part];
         match c {
             0 => [1.0, 0.0, -(x[1] - centre[1]) / half],
             _ => [0.0, 1.0, (x[0] - centre[0]) / half],
@@ -177,7 +177,7 @@ impl Parts {
     fn motion(&self, part: usize, values: [f64; 3]) -> FreeMotion {
         let largest = values.iter().fold(0.0, |max: f64, v| max.max(v.abs()));
         let [x, y, w] = values.map(|v| if v.abs() <= STILL * largest { 0.0 } else { v / largest });
-        let Frame { centre, half, place } = self.frames[part];
+        let PartFrame { centre, half, place } = self.frames[part];
         let place = (self.count() > 1).then_some(place);
         FreeMotion { part, centre, shift: [x, y], turn: w / half, half, place }
     }

@@ -3,7 +3,7 @@
 
 use nalgebra::{Vector2, Vector3};
 
-use super::ball::{Ball, Factor};
+use super::ball::{Multiplier, PreciseBall};
 use super::discretization::Discretization;
 use super::double_double::DoubleDouble;
 use super::element::with_element;
@@ -13,10 +13,14 @@ use crate::kernel::{Element, Material, Stress, Triangle};
 
 /// Adds int s:eps(v) for every basis function v, where s is the stress of `u` that doubles give. Returns a b with
 /// |int (s - sigma(u)):eps(v)| <= b |v|_a for all v: docs/theory.md, 7.5. Infinite or NaN where there is none.
-pub fn add_forces(d: &Discretization, u: &[[Ball; 2]], forces: &mut [[Ball; 2]]) -> f64 {
+pub fn add_forces(
+    d: &Discretization,
+    u: &[[PreciseBall; 2]],
+    forces: &mut [[PreciseBall; 2]],
+) -> f64 {
     each_force(d, u, |node, stress, normal| {
-        let [xx, yy, xy] = stress.map(|s| Factor::from(DoubleDouble::from(s)));
-        let [x, y] = normal.map(Factor::from);
+        let [xx, yy, xy] = stress.map(|s| Multiplier::from(DoubleDouble::from(s)));
+        let [x, y] = normal.map(Multiplier::from);
         let [along_x, along_y] = &mut forces[node];
         along_x.add_products([(xx, x), (xy, y)]);
         along_y.add_products([(xy, x), (yy, y)]);
@@ -24,8 +28,12 @@ pub fn add_forces(d: &Discretization, u: &[[Ball; 2]], forces: &mut [[Ball; 2]])
 }
 
 /// [`add_forces`] with sums in doubles, their rounding in the radii: for displacements that are next to nothing.
-pub fn add_small_forces(d: &Discretization, u: &[[Ball; 2]], forces: &mut [[Ball; 2]]) -> f64 {
-    let mut sums = vec![[Sum::default(); 2]; forces.len()];
+pub fn add_small_forces(
+    d: &Discretization,
+    u: &[[PreciseBall; 2]],
+    forces: &mut [[PreciseBall; 2]],
+) -> f64 {
+    let mut sums = vec![[RoundedSum::default(); 2]; forces.len()];
     let bound = each_force(d, u, |node, [xx, yy, xy], normal| {
         let [x, y] = normal.map(DoubleDouble::head);
         sums[node][0].add([xx * x, xy * y]);
@@ -39,12 +47,12 @@ pub fn add_small_forces(d: &Discretization, u: &[[Ball; 2]], forces: &mut [[Ball
 
 /// A sum of products of doubles, and what it is off by at most in units of roundoff.
 #[derive(Clone, Copy, Debug, Default)]
-struct Sum {
+struct RoundedSum {
     value: f64,
     error: f64,
 }
 
-impl Sum {
+impl RoundedSum {
     /// Adds two products, of which one factor was rounded. Each is off by two units of itself, their sum by one of its own.
     #[inline]
     fn add(&mut self, products: [f64; 2]) {
@@ -52,9 +60,9 @@ impl Sum {
         self.error += self.value.abs() + 3.0 * (products[0].abs() + products[1].abs());
     }
 
-    fn enclosed(self) -> Ball {
+    fn enclosed(self) -> PreciseBall {
         let off = if self.error == 0.0 { 0.0 } else { UNIT * self.error + f64::MIN_POSITIVE };
-        Ball::from(self.value).widened(SAFETY * off)
+        PreciseBall::from(self.value).widened(SAFETY * off)
     }
 }
 
@@ -66,7 +74,7 @@ const UNIT: f64 = f64::EPSILON / 2.0;
 /// [`add_forces`].
 fn each_force(
     d: &Discretization,
-    u: &[[Ball; 2]],
+    u: &[[PreciseBall; 2]],
     add: impl FnMut(usize, [f64; 3], [DoubleDouble; 2]),
 ) -> f64 {
     with_element!(d.space.degree(), each_force_of(d, u, add))
@@ -74,7 +82,7 @@ fn each_force(
 
 fn each_force_of<E: Element<N, M>, const N: usize, const M: usize>(
     d: &Discretization,
-    u: &[[Ball; 2]],
+    u: &[[PreciseBall; 2]],
     mut add: impl FnMut(usize, [f64; 3], [DoubleDouble; 2]),
 ) -> f64 {
     let mut points = Vec::new();
@@ -154,18 +162,18 @@ fn make_sums_exact<const N: usize>(numbers: &mut [[f64; 3]; N]) {
 
 /// |v|_a at most, from the magnitudes of the nodal values: sigma:eps is at most |sigma| |eps|. For fields that are next to nothing, or
 /// vanish but near a boundary.
-pub fn energy_norm_at_most(d: &Discretization, v: &[[Ball; 2]]) -> f64 {
+pub fn energy_norm_at_most(d: &Discretization, v: &[[PreciseBall; 2]]) -> f64 {
     with_element!(d.space.degree(), energy_norm_of(d, v))
 }
 
 fn energy_norm_of<E: Element<N, M>, const N: usize, const M: usize>(
     d: &Discretization,
-    v: &[[Ball; 2]],
+    v: &[[PreciseBall; 2]],
 ) -> f64 {
     let moduli = Moduli::of_each(&d.problem.material);
     let mut square = 0.0;
     for (t, (triangle, nodes)) in d.space.triangles::<N>().enumerate() {
-        let size: f64 = nodes.iter().flat_map(|&node| v[node]).map(Ball::magnitude).sum();
+        let size: f64 = nodes.iter().flat_map(|&node| v[node]).map(PreciseBall::magnitude).sum();
         if size != 0.0 {
             let gradients = Gradients::new(&triangle);
             let strain = E::DEGREE as f64 * gradients.slope * size;
@@ -179,7 +187,7 @@ fn energy_norm_of<E: Element<N, M>, const N: usize, const M: usize>(
 
 /// Returns whether all nodes have the same value, and that is known.
 #[inline]
-fn moves_as_a_whole<const N: usize>(nodes: &[usize; N], u: &[[Ball; 2]]) -> bool {
+fn moves_as_a_whole<const N: usize>(nodes: &[usize; N], u: &[[PreciseBall; 2]]) -> bool {
     let first = u[nodes[0]];
     first.iter().all(|c| c.radius() == 0.0) && nodes[1..].iter().all(|&node| u[node] == first)
 }
@@ -249,9 +257,12 @@ struct RoundedStrain<const N: usize> {
 }
 
 impl<const N: usize> RoundedStrain<N> {
-    fn new<E: Element<N, M>, const M: usize>(gradients: Gradients, nodal: [[Ball; 2]; N]) -> Self {
+    fn new<E: Element<N, M>, const M: usize>(
+        gradients: Gradients,
+        nodal: [[PreciseBall; 2]; N],
+    ) -> Self {
         let first = nodal[0];
-        let difference = |u: [Ball; 2], c: usize| {
+        let difference = |u: [PreciseBall; 2], c: usize| {
             (u[c].head() - first[c].head()) + (u[c].tail() - first[c].tail())
         };
         let differences = nodal.map(|u| Vector2::new(difference(u, 0), difference(u, 1)));

@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use super::input::{self, InputError};
 use crate::certify::Rejection;
-use crate::certify::format::{self, AuditError as Refused};
+use crate::certify::format::{self, Refused};
 pub use crate::certify::format::{Audit, Header, decode, encode, hash};
 use crate::quote;
 

@@ -14,7 +14,7 @@ use serde_json::Value;
 
 use super::case::{MaterialEcho, Units};
 use super::finite::NotFinite;
-use crate::certify::adapt::Level;
+use crate::certify::adapt::AdaptedLevel;
 use crate::fem::contact_line::Gamma;
 use crate::fem::solvability::Play;
 use crate::fem::{Errors, Mesh};
@@ -265,7 +265,7 @@ pub struct Adaptation {
     /// The mesh of these results, by its number in `levels`, from 0.
     pub level: usize,
     /// All meshes, from the coarsest on.
-    pub levels: Vec<Level>,
+    pub levels: Vec<AdaptedLevel>,
 }
 
 /// A contact force below this share of all forces is rounding.

@@ -13,7 +13,7 @@ use super::result::{
 use super::sweep::Sweep;
 use super::{Case, numbers};
 use crate::certify::Continuous;
-use crate::certify::adapt::Level;
+use crate::certify::adapt::AdaptedLevel;
 use crate::fem::solvability::Play;
 use crate::quote;
 use crate::solve::{ContactQuadrature, MethodReport, Outline, RouteName, Status};
@@ -56,7 +56,7 @@ pub fn solved(r: &Results, files: &[PathBuf], verbose: bool) -> String {
 /// it is asked for, and each of its lines where something about it is not as it should be.
 pub fn lines_of(r: &Results, verbose: bool) -> Vec<(String, String)> {
     let mut lines = Lines::default();
-    let shown = Shown::of(r);
+    let shown = QuantityFormat::of(r);
     contact(r, &shown, verbose, &mut lines);
     stress(r, &shown, &mut lines);
     reactions(r, &shown, verbose, &mut lines);
@@ -96,7 +96,7 @@ pub fn lines_of(r: &Results, verbose: bool) -> Vec<(String, String)> {
 }
 
 /// The format of quantities: each with its unit, those per unit of thickness times the thickness.
-struct Shown {
+struct QuantityFormat {
     length: String,
     stress: String,
     force: String,
@@ -106,12 +106,12 @@ struct Shown {
     no_force: f64,
 }
 
-impl Shown {
-    fn of(r: &Results) -> Shown {
+impl QuantityFormat {
+    fn of(r: &Results) -> QuantityFormat {
         let unit = |of: &dyn Fn(&Units) -> String| {
             r.units.as_ref().map_or(String::new(), |units| format!(" {}", of(units)))
         };
-        Shown {
+        QuantityFormat {
             length: unit(&|units| units.length.clone()),
             stress: unit(&Units::stress),
             force: unit(&|units| units.force(r.thickness)),
@@ -153,7 +153,7 @@ fn rounding(r: &Results) -> f64 {
     f64::EPSILON * stiffest * r.quantities.max_displacement
 }
 
-fn contact(r: &Results, shown: &Shown, verbose: bool, lines: &mut Lines) {
+fn contact(r: &Results, shown: &QuantityFormat, verbose: bool, lines: &mut Lines) {
     let size = |force: f64| format!("{}{}", short(force * shown.thickness), shown.force);
     if r.contact.is_empty() {
         let q = &r.quantities;
@@ -215,7 +215,7 @@ fn between([low, high]: [f64; 2]) -> String {
     format!("between {low} and {high}")
 }
 
-fn stress(r: &Results, shown: &Shown, lines: &mut Lines) {
+fn stress(r: &Results, shown: &QuantityFormat, lines: &mut Lines) {
     let Some(stress) = &r.stress else { return };
     let value = |peak: &StressPeak| {
         let surface = match &peak.surface {
@@ -229,7 +229,7 @@ fn stress(r: &Results, shown: &Shown, lines: &mut Lines) {
     lines.line("", format!("principal from {low} to {high}"));
 }
 
-fn reactions(r: &Results, shown: &Shown, verbose: bool, lines: &mut Lines) {
+fn reactions(r: &Results, shown: &QuantityFormat, verbose: bool, lines: &mut Lines) {
     for (i, (boundary, reaction)) in r.quantities.reactions.iter().enumerate() {
         let name = if i == 0 { "reactions" } else { "" };
         let moment = match r.reaction_moments.get(boundary).filter(|_| verbose) {
@@ -241,7 +241,7 @@ fn reactions(r: &Results, shown: &Shown, verbose: bool, lines: &mut Lines) {
     }
 }
 
-fn how_it_was_solved(r: &Results, shown: &Shown, verbose: bool, lines: &mut Lines) {
+fn how_it_was_solved(r: &Results, shown: &QuantityFormat, verbose: bool, lines: &mut Lines) {
     if verbose {
         mesh_and_materials(r, lines);
     }
@@ -426,7 +426,7 @@ fn enclosed(certificate: &DiscreteCertificate) -> String {
 /// Says whether the target was met, and how the bound fell.
 fn adapted(adapt: &Adaptation) -> String {
     let percent = |relative: f64| format!("{} %", numbers::short(100.0 * relative, 2));
-    let reached = |level: &Level| match &adapt.force {
+    let reached = |level: &AdaptedLevel| match &adapt.force {
         Some(_) => {
             level.force.map_or("not bounded".to_owned(), |within| format!("±{}", percent(within)))
         }
@@ -561,7 +561,7 @@ pub(super) fn vector([x, y]: [f64; 2]) -> String {
 }
 
 /// A motion that nothing stops, and how far it may go.
-fn free(play: &Play, shown: &Shown) -> String {
+fn free(play: &Play, shown: &QuantityFormat) -> String {
     let (motion, unit) = match (play.about, play.along) {
         (Some(about), _) => (format!("turn about {}", vector(about)), " rad"),
         (_, Some(along)) => (format!("move along {}", vector(along)), &*shown.length),

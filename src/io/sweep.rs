@@ -229,10 +229,10 @@ struct Cell {
 }
 
 /// Formats a number.
-type Shown<'a> = &'a dyn Fn(f64) -> String;
+type NumberFormat<'a> = &'a dyn Fn(f64) -> String;
 
 /// The numbers of a run: forces, moments and energies times the thickness, if the case has one.
-fn cells(r: &Results, shown: Shown) -> Vec<Cell> {
+fn cells(r: &Results, shown: NumberFormat) -> Vec<Cell> {
     let (q, thickness) = (&r.quantities, r.thickness.unwrap_or(1.0));
     // That of the summary: the recovered one.
     let peak = r.contact.iter().map(|part| part.peak_pressure).reduce(f64::max);
@@ -302,7 +302,7 @@ impl Sweep {
     }
 
     /// The heading and a line for each run: the values, the numbers, and how it ended.
-    fn lines(&self, brief: bool, shown: Shown) -> Vec<Vec<String>> {
+    fn lines(&self, brief: bool, shown: NumberFormat) -> Vec<Vec<String>> {
         let columns = self.columns(brief);
         let heading = self.keys.iter().chain(&columns).cloned().chain(["status".to_owned()]);
         let row = |(i, values): (usize, &Vec<String>)| {

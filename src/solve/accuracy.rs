@@ -9,7 +9,7 @@
 use std::sync::Arc;
 
 use super::body::block;
-use super::enclosure::{Certificate, Unproved, Verifier};
+use super::enclosure::{Enclosure, Unproved, Verifier};
 use super::factor::Factor;
 use super::intervals::Arithmetic;
 use super::iterate::{Evaluation, Iterate, NOISE};
@@ -66,7 +66,7 @@ pub struct Outcome {
     /// The relative residual of the displacement, from the definitions.
     pub residual: f64,
     /// Where the exact solution is, or why nothing is proved of it.
-    pub enclosure: Certificate,
+    pub enclosure: Result<Enclosure, Unproved>,
     /// |du|_A / |u|_a of the last correction, and that of what rounding the displacement to doubles takes away: an estimate.
     pub forward_error: f64,
     /// The condition number of the matrix, from below: Rayleigh quotients of what was solved for.
@@ -155,7 +155,7 @@ pub fn refine(
     reference: f64,
     settings: &Settings,
 ) -> Result<Outcome, SolveError> {
-    let mut refinement = Refinement::new(system, reference, settings);
+    let mut refinement = IterativeRefinement::new(system, reference, settings);
     refinement.pass(route)?;
     // It came from nowhere: what it moved is no error.
     refinement.correction = f64::INFINITY;
@@ -185,30 +185,30 @@ pub fn refine(
 }
 
 /// An iterate between two passes.
-struct Refinement<'a, 'd, 'p> {
+struct IterativeRefinement<'a, 'd, 'p> {
     system: &'a System<'d, 'p>,
     settings: &'a Settings,
     reference: f64,
     iterate: Iterate,
     at: Evaluation,
-    residual: Residual,
+    residual: TrueResidual,
     /// The relative residual before each Newton step and after the last.
     residuals: Vec<f64>,
     /// The size of the last correction beside the displacement.
     correction: f64,
     softness: f64,
-    enclosure: Certificate,
+    enclosure: Result<Enclosure, Unproved>,
 }
 
-impl<'a, 'd, 'p> Refinement<'a, 'd, 'p> {
+impl<'a, 'd, 'p> IterativeRefinement<'a, 'd, 'p> {
     fn new(system: &'a System<'d, 'p>, reference: f64, settings: &'a Settings) -> Self {
         let iterate = Iterate::lift(system.d);
         let at = iterate.evaluate(system, false);
-        Refinement {
+        IterativeRefinement {
             system,
             settings,
             reference,
-            residual: Residual::new(system, &at, reference),
+            residual: TrueResidual::new(system, &at, reference),
             iterate,
             at,
             residuals: Vec::new(),
@@ -241,7 +241,7 @@ impl<'a, 'd, 'p> Refinement<'a, 'd, 'p> {
         self.softness = self.softness.max(pass.softness);
         let moved = pass.energy.max(pass.left).sqrt();
         self.correction = if moved == 0.0 { 0.0 } else { moved / size };
-        self.residual = Residual::new(self.system, &self.at, self.reference);
+        self.residual = TrueResidual::new(self.system, &self.at, self.reference);
         Ok(())
     }
 
@@ -270,7 +270,7 @@ impl<'a, 'd, 'p> Refinement<'a, 'd, 'p> {
         if self.enclosure == Err(Unproved::NotReached) {
             self.verify(verifier);
         }
-        let Refinement { system, iterate, enclosure, .. } = self;
+        let IterativeRefinement { system, iterate, enclosure, .. } = self;
         let u = iterate.rounded();
         let size = system.size(self.at.energy.sqrt(), &u);
         let rounding = system.energy_of_unrelated(&iterate.remainder()).sqrt();
@@ -290,7 +290,7 @@ impl<'a, 'd, 'p> Refinement<'a, 'd, 'p> {
 }
 
 /// The residual of (8) at an iterate.
-struct Residual {
+struct TrueResidual {
     /// Its norm, relative to the reference.
     norm: f64,
     /// The sum of its magnitudes beside the forces on the body: what loads, contact and reactions may be out of balance.
@@ -299,7 +299,7 @@ struct Residual {
     forces: f64,
 }
 
-impl Residual {
+impl TrueResidual {
     fn new(system: &System, at: &Evaluation, reference: f64) -> Self {
         let d = system.d;
         let mut r = at.linear.clone();
@@ -317,7 +317,7 @@ impl Residual {
             forces = one(at.forces.as_flattened());
         }
         let unbalanced = if forces > 0.0 { one(&r) / forces } else { 0.0 };
-        Residual { norm: norm(&r) / reference, unbalanced, forces }
+        TrueResidual { norm: norm(&r) / reference, unbalanced, forces }
     }
 }
 

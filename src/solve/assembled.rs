@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::SolveError;
 use super::accuracy::{Pass, Route};
-use super::body::{Body, Derivatives, Edges, Residual, Start, Step, block, derivatives};
+use super::body::{Body, ContactEnergy, Derivatives, Residual, Start, Step, block, derivatives};
 use super::factor::{Factor, Indefinite};
 use super::iterate::{Evaluation, Iterate};
 use super::newton::{self, Until};
@@ -226,7 +226,7 @@ impl Body for Full<'_, '_, '_, '_, '_> {
     }
 
     /// The body without contact, or, where it does not hold without, on springs of all edges, which pull as well as push.
-    fn start(&mut self, edges: &impl Edges) -> Result<Start, SolveError> {
+    fn start(&mut self, edges: &impl ContactEnergy) -> Result<Start, SolveError> {
         let mut forces = vec![0.0; self.at.p.len()];
         if let Some(p) = self.route.system.start() {
             let frozen = derivatives(edges, &p).pulling(&self.y());

@@ -10,7 +10,7 @@ use crate::fem::discretization::Discretization;
 use crate::fem::double_double::DoubleDouble;
 
 /// The contact edges as Newton's method needs them.
-pub trait Edges {
+pub trait ContactEnergy {
     /// The number of them.
     fn count(&self) -> usize;
     /// The nodes of each: two or three.
@@ -22,7 +22,7 @@ pub trait Edges {
 }
 
 /// Psi of a discretization; edges that press in no solution have none.
-impl Edges for Discretization<'_> {
+impl ContactEnergy for Discretization<'_> {
     fn count(&self) -> usize {
         self.contact.len()
     }
@@ -56,7 +56,7 @@ pub trait Body {
     ///
     /// # Errors
     /// As [`Body::step`].
-    fn start(&mut self, edges: &impl Edges) -> Result<Start, SolveError>;
+    fn start(&mut self, edges: &impl ContactEnergy) -> Result<Start, SolveError>;
     /// The Newton step from the iterate.
     ///
     /// # Errors
@@ -109,7 +109,10 @@ pub struct Step {
 }
 
 /// The derivatives of Psi at `y`.
-pub fn derivatives(edges: &impl Edges, y: &[impl Copy + Into<DoubleDouble>]) -> Derivatives {
+pub fn derivatives(
+    edges: &impl ContactEnergy,
+    y: &[impl Copy + Into<DoubleDouble>],
+) -> Derivatives {
     let mut gradient = Vec::with_capacity(y.len());
     let mut hessian = Vec::with_capacity(edges.count());
     for e in 0..edges.count() {

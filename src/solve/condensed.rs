@@ -23,7 +23,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::SolveError;
 use super::accuracy::{Pass, Route};
-use super::body::{Body, Derivatives, Edges, Residual, Start, Step, block, derivatives};
+use super::body::{Body, ContactEnergy, Derivatives, Residual, Start, Step, block, derivatives};
 use super::compliance::{Compliance, Reach};
 use super::factor::Factor;
 use super::iterate::{Evaluation, Iterate, NOISE};
@@ -192,7 +192,7 @@ impl Body for Reduced<'_, '_, '_, '_> {
     }
 
     /// The body without contact is where it is already; the stiffness is by the power method on R^T G R.
-    fn start(&mut self, edges: &impl Edges) -> Result<Start, SolveError> {
+    fn start(&mut self, edges: &impl ContactEnergy) -> Result<Start, SolveError> {
         let at = derivatives(edges, &self.y);
         let roots = Self::roots(&at);
         let stiffness = newton::largest_eigenvalue(roots.len(), |x| {

@@ -36,12 +36,12 @@ pub enum Phase {
 /// Where a solve starts, and who watches.
 #[derive(Clone, Copy, Default)]
 pub struct Course<'a> {
-    start: Option<Start<'a>>,
+    start: Option<GivenStart<'a>>,
     watcher: Option<&'a dyn Fn(Phase)>,
 }
 
 #[derive(Clone, Copy)]
-struct Start<'a> {
+struct GivenStart<'a> {
     displacement: &'a [[f64; 2]],
     /// The nodes of the elements, one element after the other, and the places of the nodes, where they are known.
     nodes: Option<(&'a [usize], &'a [[f64; 2]])>,
@@ -52,7 +52,7 @@ impl<'a> Course<'a> {
     /// as without.
     #[must_use]
     pub fn from_displacement(self, start: &'a [[f64; 2]]) -> Self {
-        Course { start: Some(Start { displacement: start, nodes: None }), ..self }
+        Course { start: Some(GivenStart { displacement: start, nodes: None }), ..self }
     }
 
     /// Starts from a displacement at `places`, the nodes of `elements`; one at others is no start.
@@ -62,7 +62,7 @@ impl<'a> Course<'a> {
         places: &'a [[f64; 2]],
         displacement: &'a [[f64; 2]],
     ) -> Self {
-        Course { start: Some(Start { displacement, nodes: Some((elements, places)) }), ..self }
+        Course { start: Some(GivenStart { displacement, nodes: Some((elements, places)) }), ..self }
     }
 
     /// Calls `watcher` as each phase begins.
@@ -84,7 +84,7 @@ impl<'a> Course<'a> {
 
     /// P of the start at the nodes of the contact edges.
     pub(super) fn p(&self, d: &Discretization) -> Option<Vec<f64>> {
-        let Start { displacement: u, nodes } = self.start?;
+        let GivenStart { displacement: u, nodes } = self.start?;
         let same = match nodes {
             Some((elements, places)) => {
                 elements == d.space.connectivity() && places == d.space.nodes()

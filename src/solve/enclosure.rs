@@ -24,11 +24,11 @@ use thiserror::Error;
 use super::assembled::factor_with;
 use super::balls::{field, free, kappa, length, lines, root};
 use super::factor::{Factor, Indefinite};
-use super::intervals::{Arithmetic, Evaluation, Intervals};
+use super::intervals::{Arithmetic, EnclosedResidual, Intervals};
 use super::pressed::{self, Pressed, SHARES};
 use super::report::Stopwatch;
 use super::system::System;
-use crate::fem::ball::{Ball, up};
+use crate::fem::ball::{PreciseBall, up};
 use crate::fem::double_double::DoubleDouble;
 use crate::fem::korn::Korn;
 use crate::fem::solvability::Slides;
@@ -114,21 +114,21 @@ pub fn enclose(
 /// Encloses the solution of (8) around one displacement after the other: what does not depend on them is done once.
 pub struct Verifier<'s, 'd, 'p> {
     system: &'s System<'d, 'p>,
-    load: &'s [[Ball; 2]],
-    lines: Vec<ContactFace<Ball>>,
+    load: &'s [[PreciseBall; 2]],
+    lines: Vec<ContactFace<PreciseBall>>,
     kappa: f64,
     /// The relative radius that is asked for: a bound that is far below is not sharpened.
     proof: f64,
     /// L of A, if it is at hand.
     of_a: Option<Arc<Factor>>,
     /// For what is pressed: the bounds at the nodes, and the factor, once it is needed.
-    held: Option<Held>,
+    held: Option<HeldByContact>,
     unbalanced: f64,
     time: Duration,
 }
 
 /// The data of pressed edges with these springs.
-struct Held {
+struct HeldByContact {
     springs: Vec<DMatrix<f64>>,
     korn: Option<Korn>,
     factor: Option<Arc<Factor>>,
@@ -144,7 +144,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
     pub fn with_load(
         system: &'s System<'d, 'p>,
         of_a: Option<Arc<Factor>>,
-        load: &'s [[Ball; 2]],
+        load: &'s [[PreciseBall; 2]],
     ) -> Self {
         let mut watch = Stopwatch::start();
         let lines = lines(system.d);
@@ -242,7 +242,13 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
             let unknown = d.kappa() < 1.0 || !kappa.is_finite();
             return Err(if unknown { Unproved::NoKappa } else { Unproved::NotCoercive { kappa } });
         }
-        let at = Evaluation::new(system, &self.lines, (u, reported), near, (self.load, arithmetic));
+        let at = EnclosedResidual::new(
+            system,
+            &self.lines,
+            (u, reported),
+            near,
+            (self.load, arithmetic),
+        );
         let at = at.ok_or(Unproved::OutOfRange)?;
         let r = free(system, &at.residual);
         self.unbalanced = r.iter().map(|r| r.magnitude()).sum();
@@ -274,9 +280,9 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
     fn held_by(
         &mut self,
         pressed: &Pressed,
-        at: &Evaluation,
+        at: &EnclosedResidual,
         (u, reported): (&[[f64; 2]], &[[f64; 2]]),
-        (r, arithmetic): (&[Ball], Arithmetic),
+        (r, arithmetic): (&[PreciseBall], Arithmetic),
     ) -> Result<Enclosure, Unproved> {
         let (system, d, kappa) = (self.system, self.system.d, self.kappa);
         let coercivity = self.coercivity();
@@ -284,9 +290,9 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         if self.held.as_ref().is_none_or(|held| held.springs != springs) {
             let holds = pressed.holds(d, &self.lines);
             let korn = Korn::new(&d.space, &d.problem.material, &d.constraints, &holds);
-            self.held = Some(Held { springs, korn, factor: None });
+            self.held = Some(HeldByContact { springs, korn, factor: None });
         }
-        let Some(Held { korn: Some(korn), factor, springs }) = &mut self.held else {
+        let Some(HeldByContact { korn: Some(korn), factor, springs }) = &mut self.held else {
             let by_contact = d.slides.is_some();
             return Err(if by_contact { Unproved::HeldByContact } else { Unproved::NotHeld });
         };
@@ -326,7 +332,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
             None => Cow::Borrowed(&at.u),
         };
         for (node, (exactly, reported)) in nodes.iter_mut().zip(exactly.iter().zip(reported)) {
-            let off = [0, 1].map(|c| exactly[c] - Ball::from(reported[c]));
+            let off = [0, 1].map(|c| exactly[c] - PreciseBall::from(reported[c]));
             *node = up(*node + length(off));
         }
         let pressure = if pressed.edges().any(|is| is) { rho } else { rho / 2.0 };
@@ -355,13 +361,17 @@ fn factor_for(system: &System, springs: &[DMatrix<f64>]) -> Result<Arc<Factor>, 
 }
 
 /// u moved along the motions that slide, to where `reported` is.
-fn slid(mut u: Vec<[Ball; 2]>, reported: &[[f64; 2]], slides: &Slides) -> Vec<[Ball; 2]> {
+fn slid(
+    mut u: Vec<[PreciseBall; 2]>,
+    reported: &[[f64; 2]],
+    slides: &Slides,
+) -> Vec<[PreciseBall; 2]> {
     for slide in &slides.basis {
         let off = u.iter().zip(reported).zip(slide);
         let weight: f64 =
             off.map(|((u, r), s)| (0..2).map(|c| (r[c] - u[c].head()) * s[c]).sum::<f64>()).sum();
         for (u, s) in u.iter_mut().zip(slide) {
-            *u = [0, 1].map(|c| u[c] + Ball::from(weight) * Ball::from(s[c]));
+            *u = [0, 1].map(|c| u[c] + PreciseBall::from(weight) * PreciseBall::from(s[c]));
         }
     }
     u
@@ -371,8 +381,8 @@ fn slid(mut u: Vec<[Ball; 2]>, reported: &[[f64; 2]], slides: &Slides) -> Vec<[B
 /// `nodes` say, and by `radius` in the norm of A_S: then the motion changes nothing.
 fn stays_off(
     d: &Discretization,
-    lines: &[ContactFace<Ball>],
-    u: &[[Ball; 2]],
+    lines: &[ContactFace<PreciseBall>],
+    u: &[[PreciseBall; 2]],
     (nodes, radius): (&[f64], f64),
 ) -> bool {
     let stopping = d.slides.as_ref().map_or(&[][..], Slides::stopping_edges);
@@ -386,7 +396,7 @@ fn stays_off(
 /// A, with the springs where it is `pressed`.
 struct Product<'a, 'd, 'p> {
     system: &'a System<'d, 'p>,
-    lines: &'a [ContactFace<Ball>],
+    lines: &'a [ContactFace<PreciseBall>],
     pressed: &'a Pressed,
     arithmetic: Arithmetic,
 }
@@ -394,9 +404,9 @@ struct Product<'a, 'd, 'p> {
 impl Product<'_, '_, '_> {
     /// A(v, .) at the free unknowns for the field v with the components `z`, off by a functional r with |r(w)| <= b |w|_a for
     /// the b that comes with it.
-    fn times(&self, z: &[Ball]) -> (Vec<Ball>, f64) {
+    fn times(&self, z: &[PreciseBall]) -> (Vec<PreciseBall>, f64) {
         let v = field(self.system, |number, _, _| z[number], |_, _| 0.0);
-        let mut forces = vec![[Ball::from(0); 2]; v.len()];
+        let mut forces = vec![[PreciseBall::from(0); 2]; v.len()];
         let off = self.arithmetic.add_small_forces(self.system.d, &v, &mut forces);
         for line in self.lines {
             line.add_stresses(&v, &mut forces);
@@ -422,23 +432,23 @@ fn crude_norms(system: &System, korn: &Korn, coercivity: f64) -> Vec<f64> {
 fn dual_norm(
     a: &Product,
     factor: &Factor,
-    r: &[Ball],
+    r: &[PreciseBall],
     crude: &[f64],
     coercivity: f64,
     negligible: f64,
 ) -> f64 {
-    let mut z = vec![Ball::from(0); r.len()];
+    let mut z = vec![PreciseBall::from(0); r.len()];
     let mut left = Cow::Borrowed(r);
     let mut best = f64::INFINITY;
     for _ in 0..CORRECTIONS {
         let mut correction: Vec<f64> = left.iter().map(|t| t.head()).collect();
         factor.solve(&mut correction);
         for (z, c) in z.iter_mut().zip(&correction) {
-            *z = (*z + Ball::from(*c)).centre();
+            *z = (*z + PreciseBall::from(*c)).centre();
         }
         let (mut az, off) = a.times(&z);
         let off = up(off / coercivity.sqrt());
-        let mut square = Ball::from(0);
+        let mut square = PreciseBall::from(0);
         for (az, (&z, &r)) in az.iter_mut().zip(z.iter().zip(r)) {
             square += z * *az;
             *az = r - *az;
@@ -461,12 +471,9 @@ fn dual_norm(
 }
 
 /// The sum of the magnitudes, each times its weight, at most.
-fn weighted(v: &[Ball], weights: &[f64]) -> f64 {
+fn weighted(v: &[PreciseBall], weights: &[f64]) -> f64 {
     let sum: f64 = v.iter().zip(weights).map(|(v, weight)| v.magnitude() * weight).sum();
     // As many roundings as terms; a product may underflow.
     let underflown = f64::MIN_POSITIVE * v.len() as f64;
     sum * (1.0 + f64::EPSILON * (v.len() + 16) as f64) + underflown
 }
-
-/// An enclosure, or why there is none.
-pub type Certificate = Result<Enclosure, Unproved>;

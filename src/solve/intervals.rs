@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::balls::{field, length, product, root, strain_energy};
 use super::system::System;
-use crate::fem::ball::{Ball, up};
+use crate::fem::ball::{PreciseBall, up};
 use crate::fem::double_double::DoubleDouble;
 use crate::fem::moments::moments;
 use crate::fem::{ContactFace, Discretization};
@@ -66,7 +66,12 @@ pub enum Arithmetic {
 
 impl Arithmetic {
     /// Adds a(u, v) for every basis function v, off by a functional r with |r(v)| <= b |v|_a for the b that is returned.
-    fn add_forces(self, d: &Discretization, u: &[[Ball; 2]], forces: &mut [[Ball; 2]]) -> f64 {
+    fn add_forces(
+        self,
+        d: &Discretization,
+        u: &[[PreciseBall; 2]],
+        forces: &mut [[PreciseBall; 2]],
+    ) -> f64 {
         match self {
             Arithmetic::Doubles => rounded_stress::add_forces(d, u, forces),
             Arithmetic::Balls => {
@@ -80,8 +85,8 @@ impl Arithmetic {
     pub(super) fn add_small_forces(
         self,
         d: &Discretization,
-        u: &[[Ball; 2]],
-        forces: &mut [[Ball; 2]],
+        u: &[[PreciseBall; 2]],
+        forces: &mut [[PreciseBall; 2]],
     ) -> f64 {
         match self {
             Arithmetic::Doubles => rounded_stress::add_small_forces(d, u, forces),
@@ -90,7 +95,7 @@ impl Arithmetic {
     }
 
     /// |v|_a at most.
-    fn energy_norm(self, d: &Discretization, v: &[[Ball; 2]]) -> f64 {
+    fn energy_norm(self, d: &Discretization, v: &[[PreciseBall; 2]]) -> f64 {
         match self {
             Arithmetic::Doubles => rounded_stress::energy_norm_at_most(d, v),
             Arithmetic::Balls => root(strain_energy(d, v)),
@@ -99,36 +104,36 @@ impl Arithmetic {
 }
 
 /// (8) at u~, or near it.
-pub(super) struct Evaluation {
+pub(super) struct EnclosedResidual {
     /// The residual at every basis function.
-    pub residual: Vec<[Ball; 2]>,
+    pub residual: Vec<[PreciseBall; 2]>,
     /// u~, or the field near it, with its prescribed components where they should be.
-    pub u: Vec<[Ball; 2]>,
+    pub u: Vec<[PreciseBall; 2]>,
     /// The energy norm of what that is off the displacement that is reported, at most.
     pub moved: f64,
     /// a(u~, u~)
-    pub energy: Ball,
+    pub energy: PreciseBall,
     /// The residual is off by no more than a functional r with |r(v)| <= this times |v|_a.
     pub off: f64,
     /// int \[P\]+ N_a / gamma on each contact edge.
-    pressures: Vec<Vec<Ball>>,
+    pressures: Vec<Vec<PreciseBall>>,
     arithmetic: Arithmetic,
 }
 
-impl Evaluation {
+impl EnclosedResidual {
     /// None if it over- or underflows double precision.
     pub fn new(
         system: &System,
-        lines: &[ContactFace<Ball>],
+        lines: &[ContactFace<PreciseBall>],
         (u, reported): (&[[f64; 2]], &[[f64; 2]]),
         near: Option<&[[DoubleDouble; 2]]>,
-        (load, arithmetic): (&[[Ball; 2]], Arithmetic),
+        (load, arithmetic): (&[[PreciseBall; 2]], Arithmetic),
     ) -> Option<Self> {
         let d = system.d;
         let frames = d.constraints.frames();
         let at = |node: usize| match near {
-            Some(near) => near[node].map(Ball::from),
-            None => u[node].map(Ball::from),
+            Some(near) => near[node].map(PreciseBall::from),
+            None => u[node].map(PreciseBall::from),
         };
         let component = |_, node: usize, c: usize| match frames.get(&node) {
             Some(&axis) => crate::fem::constraints::in_frame(axis, at(node))[c].centre(),
@@ -137,12 +142,12 @@ impl Evaluation {
         let prescribed =
             |node: usize, c: usize| d.constraints.values()[node][c].unwrap_or_default();
         let exact = field(system, component, prescribed);
-        let off: Vec<[Ball; 2]> = exact
+        let off: Vec<[PreciseBall; 2]> = exact
             .iter()
             .zip(reported)
-            .map(|(exact, u)| [0, 1].map(|c| exact[c] - Ball::from(u[c])))
+            .map(|(exact, u)| [0, 1].map(|c| exact[c] - PreciseBall::from(u[c])))
             .collect();
-        let mut residual = vec![[Ball::from(0); 2]; u.len()];
+        let mut residual = vec![[PreciseBall::from(0); 2]; u.len()];
         let moved = arithmetic.energy_norm(d, &off);
         let off = arithmetic.add_forces(d, &exact, &mut residual);
         // x^2 = a(u~, u~) is off q = u~ . forces by off x at most, so x <= off + q^(1/2).
@@ -153,7 +158,7 @@ impl Evaluation {
             line.add_stresses(&exact, &mut residual);
             let weight = line.length / line.gamma;
             let moments = moments(&d.rule, &line.p(&exact)).into_iter();
-            let pressure: Vec<Ball> = moments.map(|moment| weight * moment).collect();
+            let pressure: Vec<PreciseBall> = moments.map(|moment| weight * moment).collect();
             line.add_contact(&pressure, &mut residual);
             pressures.push(pressure);
         }
@@ -165,7 +170,7 @@ impl Evaluation {
         if !(lengths_are_finite && all.chain([&energy]).all(|b| b.is_finite())) {
             return None;
         }
-        Some(Evaluation { residual, u: exact, moved, energy, off, pressures, arithmetic })
+        Some(EnclosedResidual { residual, u: exact, moved, energy, off, pressures, arithmetic })
     }
 
     /// Encloses the reported quantities, with |u~ - u^h|_A <= `rho`, |u~ - u^h|_a <= `radius`, the norm of gamma^{1/2}
@@ -174,8 +179,8 @@ impl Evaluation {
     pub fn intervals(
         &self,
         d: &Discretization,
-        lines: &[ContactFace<Ball>],
-        (u, nodes): (&[[Ball; 2]], &[f64]),
+        lines: &[ContactFace<PreciseBall>],
+        (u, nodes): (&[[PreciseBall; 2]], &[f64]),
         [rho, pressure]: [f64; 2],
         radius: f64,
     ) -> Intervals {
@@ -187,16 +192,16 @@ impl Evaluation {
 
         let mut max_displacement = [0.0_f64; 2];
         for (u, by) in u.iter().zip(nodes) {
-            let [a, b] = u.map(Ball::least_magnitude);
+            let [a, b] = u.map(PreciseBall::least_magnitude);
             let low = (a * a + b * b).sqrt() * (1.0 - 16.0 * f64::EPSILON);
             let low = (low - by) * (1.0 - 2.0 * f64::EPSILON);
             let high = up(length(*u) + by);
             max_displacement = [max_displacement[0].max(low), max_displacement[1].max(high)];
         }
 
-        let mut contact: Vec<(Arc<str>, [Ball; 3], Ball)> = Vec::new();
+        let mut contact: Vec<(Arc<str>, [PreciseBall; 3], PreciseBall)> = Vec::new();
         for (line, pressure) in lines.iter().zip(&self.pressures) {
-            let zero = Ball::from(0);
+            let zero = PreciseBall::from(0);
             let of = pressure.iter().enumerate().fold([zero; 3], |sum, (a, &p)| {
                 let n = line.direction(a);
                 [sum[0] + p, sum[1] - p * n[0], sum[2] - p * n[1]]
@@ -229,27 +234,27 @@ impl Evaluation {
     fn reactions(
         &self,
         d: &Discretization,
-        lines: &[ContactFace<Ball>],
+        lines: &[ContactFace<PreciseBall>],
         [rho, pressure]: [f64; 2],
     ) -> BTreeMap<String, [Range; 2]> {
         let of = |(boundary, held): (&String, &Vec<crate::fem::constraints::Held>)| {
             let ranges = [0, 1].map(|c| {
                 // The reaction is the residual at this field.
-                let zero = Ball::from(0);
+                let zero = PreciseBall::from(0);
                 let (mut test, mut reaction) = (vec![[zero; 2]; self.u.len()], zero);
                 for held in held {
-                    let direction = Ball::from(held.direction[c]);
+                    let direction = PreciseBall::from(held.direction[c]);
                     for k in 0..2 {
-                        let part = direction * Ball::from(held.dual[k]);
+                        let part = direction * PreciseBall::from(held.dual[k]);
                         test[held.node][k] += part;
                         reaction += part * self.residual[held.node][k];
                     }
                 }
                 let by_body = self.arithmetic.energy_norm(d, &test);
-                let by_contact = lines.iter().fold(Ball::from(0), |sum, line| {
+                let by_contact = lines.iter().fold(PreciseBall::from(0), |sum, line| {
                     let most = line.p0(&test).iter().fold(0.0, |sum, p| up(sum + p.magnitude()));
                     let weight = line.length / line.gamma;
-                    sum + weight * Ball::from(most) * Ball::from(most)
+                    sum + weight * PreciseBall::from(most) * PreciseBall::from(most)
                 });
                 let by_contact = root(by_contact);
                 range(reaction.widened(up((rho + self.off) * by_body + pressure * by_contact)))
@@ -267,6 +272,6 @@ impl Evaluation {
 /// Each reaction takes a pass over the body: with more displacement boundaries than these none is enclosed.
 const MOST_REACTIONS: usize = 64;
 
-fn range(ball: Ball) -> Range {
+fn range(ball: PreciseBall) -> Range {
     [ball.lower(), ball.upper()]
 }

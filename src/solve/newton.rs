@@ -27,7 +27,7 @@
 //! **The end** is the rounding level of the residual, or of the decrease along a step.
 
 use super::SolveError;
-use super::body::{Body, Derivatives, Edges, Step, block, derivatives};
+use super::body::{Body, ContactEnergy, Derivatives, Step, block, derivatives};
 use super::relaxation::{follow, relaxed};
 use crate::fem::double_double::DoubleDouble;
 
@@ -66,7 +66,7 @@ pub struct Until {
 /// # Errors
 /// Those of [`Body::step`].
 pub fn minimise(
-    edges: &impl Edges,
+    edges: &impl ContactEnergy,
     body: &mut impl Body,
     first: bool,
     residuals: &mut Vec<f64>,
@@ -159,7 +159,7 @@ struct Next {
 /// The next step downhill from where s Psi has the derivatives `at`, linearised where contact would go on each edge by itself if
 /// that leads downhill and the forces of contact are known.
 fn next_step(
-    edges: &impl Edges,
+    edges: &impl ContactEnergy,
     body: &mut impl Body,
     at: &Derivatives,
     forces: Option<&[f64]>,
@@ -184,7 +184,7 @@ fn next_step(
 
 /// Where along the step J_h with s Psi, which has the derivatives `at`, is least; `None` if its decrease is lost in rounding.
 fn line_search(
-    edges: &impl Edges,
+    edges: &impl ContactEnergy,
     y: &[DoubleDouble],
     at: &Derivatives,
     step: &Step,

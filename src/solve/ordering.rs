@@ -11,7 +11,7 @@ const LEAF: usize = 8;
 /// The order of elimination of nodes at the given places with the given neighbours.
 pub fn nested_dissection(places: &[[f64; 2]], neighbours: &Neighbours) -> Vec<usize> {
     let mut order = Vec::with_capacity(places.len());
-    let mut dissection = Dissection { places, neighbours, side: vec![Side::Outside; places.len()] };
+    let mut dissection = Dissection { places, neighbours, side: vec![Half::Outside; places.len()] };
     let mut all: Vec<usize> = (0..places.len()).collect();
     dissection.cut(&mut all, &mut order);
     order
@@ -21,11 +21,11 @@ struct Dissection<'a> {
     places: &'a [[f64; 2]],
     neighbours: &'a Neighbours,
     /// Scratch: where each node lies with regard to the set at hand.
-    side: Vec<Side>,
+    side: Vec<Half>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Side {
+enum Half {
     Outside,
     Lower,
     Upper,
@@ -39,15 +39,15 @@ impl Dissection<'_> {
             return;
         };
         let lower = partition(set, |node| self.places[node][axis] < line);
-        self.mark(&set[..lower], Side::Lower);
-        self.mark(&set[lower..], Side::Upper);
-        let touches = |node: usize, side: Side| {
+        self.mark(&set[..lower], Half::Lower);
+        self.mark(&set[lower..], Half::Upper);
+        let touches = |node: usize, side: Half| {
             self.neighbours.of(node).iter().any(|&other| self.side[other] == side)
         };
         // The lower half without its border, then the border; the border of the upper half, then the rest of it.
-        let low = partition(&mut set[..lower], |node| !touches(node, Side::Upper));
-        let high = lower + partition(&mut set[lower..], |node| touches(node, Side::Lower));
-        self.mark(set, Side::Outside);
+        let low = partition(&mut set[..lower], |node| !touches(node, Half::Upper));
+        let high = lower + partition(&mut set[lower..], |node| touches(node, Half::Lower));
+        self.mark(set, Half::Outside);
         let separator = if lower - low <= high - lower { low..lower } else { lower..high };
         let (rest, upper) = set.split_at_mut(separator.end);
         let (lower, separator) = rest.split_at_mut(separator.start);
@@ -56,7 +56,7 @@ impl Dissection<'_> {
         order.extend_from_slice(separator);
     }
 
-    fn mark(&mut self, nodes: &[usize], side: Side) {
+    fn mark(&mut self, nodes: &[usize], side: Half) {
         for &node in nodes {
             self.side[node] = side;
         }

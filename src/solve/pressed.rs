@@ -9,7 +9,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::fem::ball::{Ball, up};
+use crate::fem::ball::{PreciseBall, up};
 use crate::fem::element::{bernstein, roots};
 use crate::fem::korn::Hold;
 use crate::fem::{ContactFace, Degree, Discretization, EdgeRule};
@@ -28,23 +28,23 @@ const INSET: f64 = 1.0 / 16.0;
 const SAFETY: f64 = 1.001;
 
 /// Values at the nodes of an edge, or what is multiplied by them.
-type Row = Vec<Ball>;
+type Row = Vec<PreciseBall>;
 
 /// A piece of an edge.
-struct Piece {
+struct EdgePiece {
     /// Where it starts and ends; a point does both at once.
     ends: [f64; 2],
     /// The coefficients on it, of a polynomial with given values at the nodes, that enclose the polynomial there (Bernstein's):
     /// first its values at the ends.
     coefficients: Vec<Row>,
     /// The most that the square of a polynomial is on it whose square has the integral 1 over it; attained at the ends.
-    square: Ball,
+    square: PreciseBall,
     /// The integrals of N_a N_b over it.
     mass: Vec<Row>,
 }
 
 /// The pressed pieces of an edge.
-struct Part {
+struct PressedEdge {
     /// Where they start and end.
     pieces: Vec<[f64; 2]>,
     /// For each piece the least that P is on it at the displacement, and the most that P0(v) is beside |v|_S.
@@ -58,19 +58,25 @@ struct Part {
 /// S
 pub struct Pressed {
     /// For each contact edge what of it is in S.
-    edges: Vec<Option<Part>>,
+    edges: Vec<Option<PressedEdge>>,
 }
 
-impl Piece {
+impl EdgePiece {
     /// The pieces of an edge on which P is positive.
     fn pressed(degree: Degree, rule: &EdgeRule, p: &Row) -> Vec<Self> {
         let EdgeRule::Gauss(points) = rule else {
             return Self::between_roots(degree, p);
         };
         let at = |&(s, weight): &(f64, f64)| {
-            let (shapes, weight) = (degree.edge_values(Ball::from(s)), Ball::from(weight));
+            let (shapes, weight) =
+                (degree.edge_values(PreciseBall::from(s)), PreciseBall::from(weight));
             let mass = products(weight, &shapes);
-            Piece { ends: [s, s], coefficients: vec![shapes], square: Ball::from(1) / weight, mass }
+            EdgePiece {
+                ends: [s, s],
+                coefficients: vec![shapes],
+                square: PreciseBall::from(1) / weight,
+                mass,
+            }
         };
         points.iter().map(at).filter(|piece| piece.least(p) > 0.0).collect()
     }
@@ -106,26 +112,28 @@ impl Piece {
     /// The piece of an edge with these ends. Boole's rule is exact for the products. The square is at most the sum of 2 k + 1
     /// over the length, for k up to the degree p: that is (p + 1)^2, as Legendre's polynomials are at most 1.
     fn between(degree: Degree, ends: [f64; 2]) -> Self {
-        let start = Ball::from(ends[0]);
-        let length = Ball::from(ends[1]) - start;
-        let at = |i: i32| degree.edge_values(start + Ball::from(i) / Ball::from(4) * length);
+        let start = PreciseBall::from(ends[0]);
+        let length = PreciseBall::from(ends[1]) - start;
+        let at = |i: i32| {
+            degree.edge_values(start + PreciseBall::from(i) / PreciseBall::from(4) * length)
+        };
         let coefficients = match degree {
             Degree::One => vec![at(0), at(4)],
             Degree::Two => {
-                let [two, half] = [2.0, 0.5].map(Ball::from);
+                let [two, half] = [2.0, 0.5].map(PreciseBall::from);
                 let ends = at(0).into_iter().zip(at(4));
                 let bend = at(2).into_iter().zip(ends).map(|(m, (a, b))| two * m - half * (a + b));
                 vec![at(0), at(4), bend.collect()]
             }
         };
         let count = degree.nodes_per_edge();
-        let square = Ball::from((count * count) as i32) / length;
-        let mut mass = vec![vec![Ball::from(0); count]; count];
+        let square = PreciseBall::from((count * count) as i32) / length;
+        let mut mass = vec![vec![PreciseBall::from(0); count]; count];
         for (i, weight) in [(0, 7), (1, 32), (2, 12), (3, 32), (4, 7)] {
-            let weight = length * Ball::from(weight) / Ball::from(90);
+            let weight = length * PreciseBall::from(weight) / PreciseBall::from(90);
             add(&mut mass, &products(weight, &at(i)));
         }
-        Piece { ends, coefficients, square, mass }
+        EdgePiece { ends, coefficients, square, mass }
     }
 
     /// The least coefficient of P, or less.
@@ -134,20 +142,20 @@ impl Piece {
     }
 }
 
-impl Part {
+impl PressedEdge {
     /// The part of the edge `line` in these pieces, where P has the values `p`. `None` where there are none.
-    fn new(line: &ContactFace<Ball>, p: &Row, pieces: &[&Piece]) -> Option<Self> {
-        let mut mass = vec![vec![Ball::from(0); p.len()]; p.len()];
+    fn new(line: &ContactFace<PreciseBall>, p: &Row, pieces: &[&EdgePiece]) -> Option<Self> {
+        let mut mass = vec![vec![PreciseBall::from(0); p.len()]; p.len()];
         pieces.iter().for_each(|piece| add(&mut mass, &piece.mass));
-        let most = |piece: &Piece| SAFETY * root_of(line) * piece.square.upper().sqrt();
+        let most = |piece: &EdgePiece| SAFETY * root_of(line) * piece.square.upper().sqrt();
         let bounds = pieces.iter().map(|piece| [piece.least(p), most(piece)]).collect();
-        let at_ends = |piece: &&Piece| {
+        let at_ends = |piece: &&EdgePiece| {
             let (ends, most) = (piece.coefficients.iter().take(2), most(piece));
             ends.map(|shapes| (shapes.clone(), most)).collect::<Vec<_>>()
         };
         let places = pieces.iter().flat_map(at_ends).collect();
         let pieces: Vec<[f64; 2]> = pieces.iter().map(|piece| piece.ends).collect();
-        (!pieces.is_empty()).then_some(Part { pieces, bounds, places, mass })
+        (!pieces.is_empty()).then_some(PressedEdge { pieces, bounds, places, mass })
     }
 }
 
@@ -160,23 +168,23 @@ impl Pressed {
     /// Finds the pieces that are surely pressed at the displacement `u`, those that have their `share` of the pressure.
     pub fn at(
         d: &Discretization,
-        lines: &[ContactFace<Ball>],
-        u: &[[Ball; 2]],
+        lines: &[ContactFace<PreciseBall>],
+        u: &[[PreciseBall; 2]],
         share: f64,
     ) -> Self {
         let edges = lines.iter().map(|line| {
             let p = line.p(u);
-            let least = |piece: Piece| (piece.least(&p), piece);
-            let pieces = Piece::pressed(d.space.degree(), &d.rule, &p).into_iter().map(least);
-            let pieces: Vec<(f64, Piece)> = pieces.collect();
+            let least = |piece: EdgePiece| (piece.least(&p), piece);
+            let pieces = EdgePiece::pressed(d.space.degree(), &d.rule, &p).into_iter().map(least);
+            let pieces: Vec<(f64, EdgePiece)> = pieces.collect();
             (p, pieces)
         });
-        let edges: Vec<(Row, Vec<(f64, Piece)>)> = edges.collect();
+        let edges: Vec<(Row, Vec<(f64, EdgePiece)>)> = edges.collect();
         let all = edges.iter().flat_map(|(_, pieces)| pieces);
         let enough = share * all.fold(0.0, |most: f64, (least, _)| most.max(*least));
-        let part = |(line, (p, pieces)): (&ContactFace<Ball>, &(Row, Vec<_>))| {
+        let part = |(line, (p, pieces)): (&ContactFace<PreciseBall>, &(Row, Vec<_>))| {
             let taken = pieces.iter().filter(|(least, _)| *least >= enough);
-            Part::new(line, p, &taken.map(|(_, piece)| piece).collect::<Vec<_>>())
+            PressedEdge::new(line, p, &taken.map(|(_, piece)| piece).collect::<Vec<_>>())
         };
         Pressed { edges: lines.iter().zip(&edges).map(part).collect() }
     }
@@ -199,18 +207,19 @@ impl Pressed {
 
     /// The holds of S: sums of n~ . v at the nodes of its edges, each times its shape function at a place of the edge:
     /// n~ . v = P0(v) + gamma s(v), for |v|_S (1 - kappa)^{-1/2} <= 1: at most what P0(v) is beside |v|_S.
-    pub fn holds(&self, d: &Discretization, lines: &[ContactFace<Ball>]) -> Vec<Hold> {
+    pub fn holds(&self, d: &Discretization, lines: &[ContactFace<PreciseBall>]) -> Vec<Hold> {
         let mesh = d.space.mesh();
         let mut holds = Vec::new();
         for (line, part) in lines.iter().zip(&self.edges) {
             let Some(part) = part else { continue };
-            let [start, end] = mesh.ends(line.edge).map(|v| mesh.vertices()[v].map(Ball::from));
-            let middle = [0, 1].map(|c| (start[c] + end[c]) * Ball::from(0.5));
+            let [start, end] =
+                mesh.ends(line.edge).map(|v| mesh.vertices()[v].map(PreciseBall::from));
+            let middle = [0, 1].map(|c| (start[c] + end[c]) * PreciseBall::from(0.5));
             for (shapes, most) in &part.places {
                 let nodes = [start, end, middle].into_iter().zip(shapes).enumerate();
                 let terms = nodes.map(|(a, (at, &shape))| {
-                    let direction: [Ball; 2] = line.direction(a).into();
-                    (at.map(Ball::rounded), direction.map(|n| (shape * n).rounded()))
+                    let direction: [PreciseBall; 2] = line.direction(a).into();
+                    (at.map(PreciseBall::rounded), direction.map(|n| (shape * n).rounded()))
                 });
                 let (triangle, terms) = (line.edge.triangle, terms.collect());
                 holds.push(Hold { triangle, terms, most: *most });
@@ -220,8 +229,8 @@ impl Pressed {
     }
 
     /// For each contact edge the matrix of its springs, in doubles.
-    pub fn springs(&self, lines: &[ContactFace<Ball>]) -> Vec<DMatrix<f64>> {
-        let of = |(line, part): (&ContactFace<Ball>, &Option<Part>)| {
+    pub fn springs(&self, lines: &[ContactFace<PreciseBall>]) -> Vec<DMatrix<f64>> {
+        let of = |(line, part): (&ContactFace<PreciseBall>, &Option<PressedEdge>)| {
             let weight = (line.length / line.gamma).head();
             let nodes = line.gap.len();
             let mass =
@@ -234,9 +243,9 @@ impl Pressed {
     /// Adds what the springs of S do against v, the integral over S of P0(v) P0(w) / gamma for every basis function w.
     pub fn add_springs(
         &self,
-        lines: &[ContactFace<Ball>],
-        v: &[[Ball; 2]],
-        forces: &mut [[Ball; 2]],
+        lines: &[ContactFace<PreciseBall>],
+        v: &[[PreciseBall; 2]],
+        forces: &mut [[PreciseBall; 2]],
     ) {
         for (line, part) in lines.iter().zip(&self.edges) {
             let Some(part) = part else { continue };
@@ -248,8 +257,8 @@ impl Pressed {
     }
 }
 
-fn dot(a: &Row, b: &Row) -> Ball {
-    a.iter().zip(b).fold(Ball::from(0), |sum, (&a, &b)| sum + a * b)
+fn dot(a: &Row, b: &Row) -> PreciseBall {
+    a.iter().zip(b).fold(PreciseBall::from(0), |sum, (&a, &b)| sum + a * b)
 }
 
 fn add(sum: &mut [Row], other: &[Row]) {
@@ -259,22 +268,22 @@ fn add(sum: &mut [Row], other: &[Row]) {
 }
 
 /// weight a b for all values a and b.
-fn products(weight: Ball, values: &[Ball]) -> Vec<Row> {
+fn products(weight: PreciseBall, values: &[PreciseBall]) -> Vec<Row> {
     values.iter().map(|&a| values.iter().map(|&b| weight * a * b).collect()).collect()
 }
 
 /// (gamma / |E|)^{1/2}
-fn root_of(line: &ContactFace<Ball>) -> f64 {
+fn root_of(line: &ContactFace<PreciseBall>) -> f64 {
     up((line.gamma / line.length).upper().sqrt())
 }
 
 /// An upper bound of a polynomial on an edge by its Bernstein coefficients, from its values at the nodes.
-pub fn greatest(p: &[Ball]) -> f64 {
+pub fn greatest(p: &[PreciseBall]) -> f64 {
     bernstein(p).iter().map(|p| p.upper()).fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// How much P0(v) is along an edge at most where |v| is at most `far` at its nodes and `radius` in the energy norm a: n~ . v
 /// is at most 5/4 of the largest nodal value, gamma |s(v)| at most 2 (gamma / |E|)^{1/2} |v|_a.
-pub fn change(line: &ContactFace<Ball>, far: f64, radius: f64) -> f64 {
+pub fn change(line: &ContactFace<PreciseBall>, far: f64, radius: f64) -> f64 {
     up(SAFETY * (1.25 * far + 2.0 * root_of(line) * radius))
 }

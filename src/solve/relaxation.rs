@@ -18,7 +18,7 @@ use faer::linalg::solvers::Solve;
 use faer::{Col, Mat};
 use nalgebra::{DMatrix, DVector};
 
-use super::body::{Body, Derivatives, Edges, Step, block};
+use super::body::{Body, ContactEnergy, Derivatives, Step, block};
 use crate::fem::double_double::DoubleDouble;
 
 /// Newton's steps on an edge.
@@ -31,7 +31,7 @@ const SOLVED: f64 = 1e-3;
 const SHORTEST: f64 = 1e-4;
 
 /// s Psi linearised at where contact would go on each edge by itself, as what the gradient would be at y were it linear.
-pub fn relaxed(edges: &impl Edges, body: &impl Body, w: &[f64], s: f64) -> Derivatives {
+pub fn relaxed(edges: &impl ContactEnergy, body: &impl Body, w: &[f64], s: f64) -> Derivatives {
     let nodes = edges.nodes();
     let mut gradient = Vec::with_capacity(w.len());
     let mut hessian = Vec::with_capacity(edges.count());

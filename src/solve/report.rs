@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use serde::{Deserialize, Serialize};
 
 use super::accuracy::Outcome;
-use super::enclosure;
+use super::enclosure::{Enclosure, Unproved};
 use super::route::RouteName;
 use super::{Settings, SolveError};
 use crate::fem::solvability::Play;
@@ -22,7 +22,7 @@ pub enum Verdict {
 
 impl Verdict {
     /// The verdict on a solution with this enclosure, of which a relative radius of `proof` is asked.
-    pub fn new(enclosure: &enclosure::Certificate, proof: f64) -> Self {
+    pub fn new(enclosure: &Result<Enclosure, Unproved>, proof: f64) -> Self {
         match enclosure {
             Ok(e) if e.is_within(proof) => Verdict::Proved,
             Ok(e) => {
@@ -143,7 +143,7 @@ pub struct Report {
     /// The route and the accuracy.
     pub method: MethodReport,
     /// Where the exact solution of (8) is, or why nothing is proved of it.
-    pub enclosure: enclosure::Certificate,
+    pub enclosure: Result<Enclosure, Unproved>,
     /// The verdict.
     pub verdict: Verdict,
     /// How far a body that contact holds may still move.

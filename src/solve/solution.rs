@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::answers::{self, ContactBoundary, EnergyBalance};
 use super::course::Course;
-use super::enclosure::Certificate;
+use super::enclosure::{Enclosure, Unproved};
 use super::iterate::Evaluated;
 use super::{MethodReport, NewtonReport, Report, Verdict};
 use crate::fem::contact_line::{self, Coercivity, Gamma};
@@ -50,7 +50,7 @@ pub struct Solution {
     /// How far the body may still move where contact holds it: the motions that neither supports nor what presses stops.
     pub plays: Vec<Play>,
     /// Where the exact solution of (8) is, or why nothing is proved of it.
-    pub enclosure: Certificate,
+    pub enclosure: Result<Enclosure, Unproved>,
     /// *Proved* if the distance from it is proved to be as small as asked for.
     pub verdict: Verdict,
     /// Energies, forces, lengths.

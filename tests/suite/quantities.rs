@@ -152,7 +152,8 @@ fn forces_that_are_not_what_their_data_give_are_refused() {
     let problem = tilted_punch(8);
     let c = certify_with(&problem, &solved(&problem, Degree::One), &asked).unwrap();
     let place = |evidence: &Evidence| {
-        let of = |(target, _): &(forces::Target, _)| target.motion == Motion::Along(Some(weight));
+        let of =
+            |(target, _): &(forces::ForceTarget, _)| target.motion == Motion::Along(Some(weight));
         evidence.liftings.iter().position(of).unwrap()
     };
     type Change<'a> = (&'a str, &'a dyn Fn(&mut Evidence));
@@ -299,13 +300,13 @@ fn adapted_to_the_force_it_is_known_to_a_fiftieth_of_a_per_cent_with_ten_thousan
     assert!(adapted.unmet.is_none() && half_width(force) <= 0.02, "{} %", half_width(force));
     assert!(adapted.levels.iter().all(|level| level.unknowns <= 10_000));
     // The level that is given is the one with the nearest numbers.
-    let within = |level: &adapt::Level| level.force.unwrap();
+    let within = |level: &adapt::AdaptedLevel| level.force.unwrap();
     let best = adapted.levels.iter().map(within).fold(f64::INFINITY, f64::min);
     assert_eq!(within(&adapted.levels[adapted.level]), best);
     // Control: to first order it is not.
     let evidence = Evidence { pairs: Vec::new(), ..c.quantities.evidence };
     let first = c.certificate.forces::<Ball>(&evidence).unwrap();
-    let whole = |(target, _): &(forces::Target, _)| target.motion == Motion::Along(None);
+    let whole = |(target, _): &(forces::ForceTarget, _)| target.motion == Motion::Along(None);
     let k = evidence.liftings.iter().position(whole).unwrap();
     assert!(half_width(first[k].clone().unwrap()) > 0.05);
 }

@@ -4,7 +4,7 @@
 
 use proptest::prelude::*;
 use signorini::fem::EdgeRule;
-use signorini::fem::ball::Ball as Fine;
+use signorini::fem::ball::PreciseBall;
 use signorini::fem::double_double::DoubleDouble;
 use signorini::fem::moments::moments;
 use signorini::kernel::ball::centre_and_radius;
@@ -26,23 +26,23 @@ fn data() -> impl Strategy<Value = Draw> {
 }
 
 /// The centre of a ball of twice the precision: its head is a double, and so is what is left.
-fn centre(ball: Fine) -> Exact {
-    let tail = (ball.centre() - Fine::from(ball.head())).head();
+fn centre(ball: PreciseBall) -> Exact {
+    let tail = (ball.centre() - PreciseBall::from(ball.head())).head();
     Exact::of_double(ball.head()) + Exact::of_double(tail)
 }
 
 /// |x - centre| <= `share` times the radius.
-fn covers(ball: Fine, x: Exact, share: f64) -> bool {
+fn covers(ball: PreciseBall, x: Exact, share: f64) -> bool {
     (x - centre(ball)).abs() <= Exact::of_double(ball.radius()) * Exact::of_double(share)
 }
 
 /// A number of twice the precision, without a radius.
-fn fine(a: f64, b: f64) -> Fine {
-    (Fine::from(a) + Fine::from(b * 2.0_f64.powi(-54))).centre()
+fn fine(a: f64, b: f64) -> PreciseBall {
+    (PreciseBall::from(a) + PreciseBall::from(b * 2.0_f64.powi(-54))).centre()
 }
 
 /// Both ends of a ball, and its centre.
-fn members(ball: Fine) -> [Exact; 3] {
+fn members(ball: PreciseBall) -> [Exact; 3] {
     let (centre, radius) = (centre(ball), Exact::of_double(ball.radius()));
     [centre - radius, centre, centre + radius]
 }
@@ -80,7 +80,8 @@ fn fine_balls(&([a, b, c, d], [r, s]): &Draw, share: f64) -> Verdict {
         // Numbers without a radius: results to a hundred bits or so.
         let small = Exact::of_double(2.0_f64.powi(-98));
         let [u, v] = [centre(x).abs(), centre(y).abs()];
-        let narrow = |ball: Fine, size: Exact| Exact::of_double(ball.radius()) <= small * size;
+        let narrow =
+            |ball: PreciseBall, size: Exact| Exact::of_double(ball.radius()) <= small * size;
         ensure!(narrow(x + y, u + v) && narrow(x - y, u + v));
         ensure!(u * v == zero || narrow(x * y, u * v));
         ensure!(!divides || u == zero || narrow(x / y, u / v));
@@ -212,7 +213,7 @@ pub fn chains_of_doubles_are_exact() -> Outcome {
 /// covers what is off.
 fn moments_of(draw: &Draw, share: f64) -> Verdict {
     let &([a, b, ..], [r, s]) = draw;
-    let p = [Fine::from(a).widened(r * a.abs()), Fine::from(b).widened(s * b.abs())];
+    let p = [PreciseBall::from(a).widened(r * a.abs()), PreciseBall::from(b).widened(s * b.abs())];
     let found = moments(&EdgeRule::Exact, &p);
     Exact::scope(|| {
         for start in members(p[0]) {

@@ -20,7 +20,7 @@ use std::sync::Arc;
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use proptest::prelude::*;
-use signorini::fem::ball::Ball;
+use signorini::fem::ball::PreciseBall;
 use signorini::fem::korn::Korn;
 use signorini::fem::matrix::LowerTriangle;
 use signorini::fem::{
@@ -457,8 +457,8 @@ fn enclosed_in_doubles(
     // Prescribed components too: the enclosure counts what they are off by.
     let u = moved(&solved.u, asked.noise);
     let Ok(system) = System::new(&d) else { return Verdict::Fails("there is no system") };
-    let load: Vec<[Ball; 2]> =
-        d.load.iter().map(|l| l.map(|l| Ball::from(l * asked.load))).collect();
+    let load: Vec<[PreciseBall; 2]> =
+        d.load.iter().map(|l| l.map(|l| PreciseBall::from(l * asked.load))).collect();
     let factor = match asked.matrix {
         1.0 => None,
         times => match factor_of(&system, times) {

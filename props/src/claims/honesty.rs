@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use signorini::fem::Degree;
-use signorini::fem::ball::Ball;
+use signorini::fem::ball::PreciseBall;
 use signorini::fem::matrix::{self, Neighbours};
 use signorini::fem::{Condition, Problem, SharedFunction};
 use signorini::fem::{residual, rounded_stress};
@@ -56,13 +56,17 @@ fn rounding_of_stresses(degree: Degree, problem: &Problem, by: f64) -> Result<f6
     let nodes = d.space.nodes().len();
     let [heads, tails] = [0, 1].map(|_| field(nodes, &mut random));
     let small = 2.0_f64.powi(-54);
-    let u: Vec<[Ball; 2]> = (0..nodes)
-        .map(|i| [0, 1].map(|c| Ball::from(by + heads[i][c]) + Ball::from(small * tails[i][c])))
-        .map(|u| u.map(Ball::centre))
+    let u: Vec<[PreciseBall; 2]> = (0..nodes)
+        .map(|i| {
+            [0, 1].map(|c| {
+                PreciseBall::from(by + heads[i][c]) + PreciseBall::from(small * tails[i][c])
+            })
+        })
+        .map(|u| u.map(PreciseBall::centre))
         .collect();
-    let mut sums = [vec![[Ball::from(0); 2]; nodes], vec![[Ball::from(0); 2]; nodes]];
+    let mut sums = [vec![[PreciseBall::from(0); 2]; nodes], vec![[PreciseBall::from(0); 2]; nodes]];
     let bound = rounded_stress::add_forces(&d, &u, &mut sums[0]);
-    let mut in_doubles = vec![[Ball::from(0); 2]; nodes];
+    let mut in_doubles = vec![[PreciseBall::from(0); 2]; nodes];
     rounded_stress::add_small_forces(&d, &u, &mut in_doubles);
     let pairs = in_doubles.as_flattened().iter().zip(sums[0].as_flattened());
     let of_sums = pairs.map(|(&sum, &exact)| (sum.centre() - exact).magnitude() / sum.radius());

@@ -12,7 +12,7 @@ use std::sync::Arc;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 
-use signorini::fem::ball::Ball;
+use signorini::fem::ball::PreciseBall;
 use signorini::fem::contact_line::Coercivity;
 use signorini::fem::element::value_at;
 use signorini::fem::quadrature::gauss;
@@ -55,11 +55,11 @@ fn square() -> Result<Problem, String> {
 /// A displacement, and what is known of it.
 struct At<'a, 'p> {
     d: &'a Discretization<'p>,
-    lines: Vec<ContactFace<Ball>>,
+    lines: Vec<ContactFace<PreciseBall>>,
 }
 
-fn balls(u: &[[f64; 2]]) -> Vec<[Ball; 2]> {
-    u.iter().map(|u| u.map(Ball::from)).collect()
+fn balls(u: &[[f64; 2]]) -> Vec<[PreciseBall; 2]> {
+    u.iter().map(|u| u.map(PreciseBall::from)).collect()
 }
 
 impl<'a, 'p> At<'a, 'p> {
@@ -268,7 +268,7 @@ fn springs_on(degree: Degree, scale: f64) -> Result<(), String> {
         }
         let mut random = Random::new(draws::seed());
         let v = field(d.space.nodes().len(), &mut random);
-        let mut forces = vec![[Ball::from(0); 2]; v.len()];
+        let mut forces = vec![[PreciseBall::from(0); 2]; v.len()];
         pressed.add_springs(&at.lines, &balls(&v), &mut forces);
         let pairs = forces.iter().flatten().zip(v.as_flattened());
         let found: f64 = pairs.map(|(f, v)| f.head() * v).sum();

@@ -88,18 +88,18 @@ pub enum Kind {
 impl Kind {
     /// The condition, its data taken from the solution.
     pub fn condition(self, solution: &Exact) -> Condition {
-        let parts = |part: fn(usize) -> Part| [0, 1].map(|c| field(solution, part(c)));
+        let parts = |part: fn(usize) -> Datum| [0, 1].map(|c| field(solution, part(c)));
         match self {
-            Kind::Displacement => Condition::Displacement(parts(Part::Displacement).map(Some)),
-            Kind::Traction => Condition::Traction(parts(Part::Traction)),
-            Kind::Contact => Condition::Contact { gap: field(solution, Part::Gap) },
+            Kind::Displacement => Condition::Displacement(parts(Datum::Displacement).map(Some)),
+            Kind::Traction => Condition::Traction(parts(Datum::Traction)),
+            Kind::Contact => Condition::Contact { gap: field(solution, Datum::Gap) },
         }
     }
 }
 
 /// The body force of a solution.
 pub fn body_force(solution: &Exact) -> [SharedFunction; 2] {
-    [0, 1].map(|c| field(solution, Part::BodyForce(c)))
+    [0, 1].map(|c| field(solution, Datum::BodyForce(c)))
 }
 
 /// The problem that `solution` solves on a mesh of its body.
@@ -109,44 +109,44 @@ pub fn problem(solution: &Exact, mesh: Mesh, kinds: &BTreeMap<String, Kind>) -> 
 }
 
 /// One number of an exact solution as a function of the place.
-struct Field {
+struct Component {
     solution: Exact,
-    part: Part,
+    part: Datum,
 }
 
 #[derive(Clone, Copy)]
-enum Part {
+enum Datum {
     Displacement(usize),
     BodyForce(usize),
     Traction(usize),
     Gap,
 }
 
-fn field(solution: &Exact, part: Part) -> SharedFunction {
-    Arc::new(Field { solution: Arc::clone(solution), part })
+fn field(solution: &Exact, part: Datum) -> SharedFunction {
+    Arc::new(Component { solution: Arc::clone(solution), part })
 }
 
-impl Function for Field {
+impl Function for Component {
     /// A traction has no value without a normal.
     fn at(&self, x: [f64; 2]) -> f64 {
         match self.part {
-            Part::Displacement(c) => self.solution.displacement(x)[c],
-            Part::BodyForce(c) => self.solution.body_force(x).unwrap_or_default()[c],
-            Part::Traction(_) => f64::NAN,
-            Part::Gap => self.solution.gap(x),
+            Datum::Displacement(c) => self.solution.displacement(x)[c],
+            Datum::BodyForce(c) => self.solution.body_force(x).unwrap_or_default()[c],
+            Datum::Traction(_) => f64::NAN,
+            Datum::Gap => self.solution.gap(x),
         }
     }
 
     fn on_boundary(&self, x: [f64; 2], n: [f64; 2]) -> f64 {
         match self.part {
-            Part::Traction(c) => self.solution.stress(x).traction(n.into())[c],
+            Datum::Traction(c) => self.solution.stress(x).traction(n.into())[c],
             _ => self.at(x),
         }
     }
 
     fn degree(&self) -> Option<u32> {
         match self.part {
-            Part::BodyForce(_) if self.solution.body_force([0.0; 2]).is_none() => Some(0),
+            Datum::BodyForce(_) if self.solution.body_force([0.0; 2]).is_none() => Some(0),
             _ => None,
         }
     }

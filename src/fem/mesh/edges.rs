@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::{BoundaryEdge, MeshError};
 
 /// Half of an edge: an edge as one of its triangles sees it, and the next edge that starts its list at the same vertex.
-pub(super) struct Edge {
+pub(super) struct MeshEdge {
     pub(super) vertices: [usize; 2],
     pub(super) owner: BoundaryEdge,
     pub(super) inner: bool,
@@ -13,13 +13,13 @@ pub(super) struct Edge {
 }
 
 /// All edges. Each is in the list of the end where fewer triangles meet: the hub of a fan would have a long list.
-pub(super) struct Edges {
-    pub(super) edges: Vec<Edge>,
+pub(super) struct MeshEdges {
+    pub(super) edges: Vec<MeshEdge>,
     pub(super) first: Vec<Option<usize>>,
     pub(super) triangles_at: Vec<u32>,
 }
 
-impl Edges {
+impl MeshEdges {
     /// The end whose list has the edge, if it is in one.
     pub(super) fn lister(&self, a: usize, b: usize) -> Option<usize> {
         let at = |v: usize| self.triangles_at.get(v).map(|&count| (count, v));
@@ -42,8 +42,8 @@ impl Edges {
 pub(super) fn match_edges(
     vertex_count: usize,
     triangles: &[[usize; 3]],
-) -> Result<(Edges, Vec<[usize; 3]>), MeshError> {
-    let mut all = Edges {
+) -> Result<(MeshEdges, Vec<[usize; 3]>), MeshError> {
+    let mut all = MeshEdges {
         edges: Vec::with_capacity(triangles.len() * 3 / 2 + vertex_count),
         first: vec![None; vertex_count],
         triangles_at: vec![0; vertex_count],
@@ -68,7 +68,7 @@ pub(super) fn match_edges(
                 None => {
                     let lister = all.lister(a, b).unwrap_or(a);
                     let first = &mut all.first[lister];
-                    all.edges.push(Edge {
+                    all.edges.push(MeshEdge {
                         vertices: [a, b],
                         owner: BoundaryEdge { triangle, local },
                         inner: false,
@@ -87,7 +87,7 @@ pub(super) fn match_edges(
 pub(super) type Named = (BTreeMap<String, Vec<BoundaryEdge>>, BTreeMap<String, [[f64; 2]; 2]>);
 
 pub(super) fn name_boundaries(
-    edges: &Edges,
+    edges: &MeshEdges,
     places: &[[f64; 2]],
     named: impl IntoIterator<Item = (String, Vec<[usize; 2]>)>,
 ) -> Result<Named, MeshError> {

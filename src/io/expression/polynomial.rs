@@ -4,7 +4,7 @@ use super::{Binary, Expression, Number, Unary};
 
 /// The degree of a polynomial in x and y; `None` of what is none by its form.
 #[derive(Clone, Copy)]
-struct Degree(Option<u32>);
+struct PolynomialDegree(Option<u32>);
 
 /// The coefficients of 1, x, x^2, ..; `None` of what is no polynomial in x by its form, or has too many.
 #[derive(Clone)]
@@ -13,7 +13,7 @@ struct Coefficients(Option<Vec<f64>>);
 impl Expression {
     /// The degree in x and y, if the expression is a polynomial by its form.
     pub(super) fn polynomial_degree(&self) -> Option<u32> {
-        self.evaluate([Degree(Some(1)); 2]).0
+        self.evaluate([PolynomialDegree(Some(1)); 2]).0
     }
 
     /// The coefficients of 1, x, x^2, .., if the expression is a polynomial in x alone.
@@ -22,13 +22,13 @@ impl Expression {
     }
 }
 
-impl Number for Degree {
-    fn from_double(_: f64) -> Degree {
-        Degree(Some(0))
+impl Number for PolynomialDegree {
+    fn from_double(_: f64) -> PolynomialDegree {
+        PolynomialDegree(Some(0))
     }
 
-    fn unary(f: Unary, Degree(a): Degree) -> Degree {
-        Degree(a.and_then(|a| match f {
+    fn unary(f: Unary, PolynomialDegree(a): PolynomialDegree) -> PolynomialDegree {
+        PolynomialDegree(a.and_then(|a| match f {
             Unary::Negate => Some(a),
             Unary::WholePower(n) if n >= 0 => a.checked_mul(n.unsigned_abs()),
             _ if a == 0 => Some(0),
@@ -36,8 +36,12 @@ impl Number for Degree {
         }))
     }
 
-    fn binary(f: Binary, Degree(a): Degree, Degree(b): Degree) -> Degree {
-        Degree(a.zip(b).and_then(|(a, b)| match f {
+    fn binary(
+        f: Binary,
+        PolynomialDegree(a): PolynomialDegree,
+        PolynomialDegree(b): PolynomialDegree,
+    ) -> PolynomialDegree {
+        PolynomialDegree(a.zip(b).and_then(|(a, b)| match f {
             Binary::Add | Binary::Subtract => Some(a.max(b)),
             Binary::Multiply => a.checked_add(b),
             Binary::Divide if b == 0 => Some(a),

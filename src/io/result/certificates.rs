@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::certify::quantities::{Limit, Quantity, Zone};
 use crate::certify::{CertifyError, Continuous, Ramp};
-use crate::solve::{Intervals, enclosure};
+use crate::solve::Intervals;
+use crate::solve::enclosure::{Enclosure, Unproved};
 
 /// The bounds of the error.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -49,8 +50,8 @@ pub struct DiscreteCertificate {
     pub probes: Vec<f64>,
 }
 
-impl From<&enclosure::Certificate> for DiscreteCertificate {
-    fn from(certificate: &enclosure::Certificate) -> Self {
+impl From<&Result<Enclosure, Unproved>> for DiscreteCertificate {
+    fn from(certificate: &Result<Enclosure, Unproved>) -> Self {
         match certificate {
             Ok(e) => DiscreteCertificate {
                 radius: Some(e.radius),

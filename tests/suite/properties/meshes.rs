@@ -169,7 +169,7 @@ fn adapted(theta: f64) -> Outcome {
     let relative = first / 2.0;
     let found = go(relative)?;
     let (last, before) = found.levels.split_last().ok_or("no level")?;
-    let is_met = |level: &signorini::certify::adapt::Level| level.relative <= relative;
+    let is_met = |level: &signorini::certify::adapt::AdaptedLevel| level.relative <= relative;
     let only_last = is_met(last) && !before.iter().any(is_met);
     if before.is_empty() || !(found.unmet.is_none() && only_last) {
         return Err(format!("a target of {relative}: {:?}", found.levels));

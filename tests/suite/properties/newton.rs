@@ -9,7 +9,7 @@ use std::borrow::Cow;
 use signorini::fem::double_double::DoubleDouble;
 use signorini::nalgebra::DMatrix;
 use signorini::solve::accuracy::Outcome as Solved;
-use signorini::solve::body::{self, Body as _, Derivatives, Edges, Residual, Start, Step};
+use signorini::solve::body::{self, Body as _, ContactEnergy, Derivatives, Residual, Start, Step};
 use signorini::solve::newton::{self, Until};
 use signorini::solve::{Method, Settings, SolveError, Status, Verdict, solve};
 
@@ -26,7 +26,7 @@ const STIFFNESS: f64 = 1000.0;
 /// Three springs.
 struct Springs;
 
-impl Edges for Springs {
+impl ContactEnergy for Springs {
     fn count(&self) -> usize {
         3
     }
@@ -124,7 +124,7 @@ impl body::Body for Body {
         Residual { norm: dot(&r, &r).sqrt() / reference, noise }
     }
 
-    fn start(&mut self, _: &impl Edges) -> Result<Start, SolveError> {
+    fn start(&mut self, _: &impl ContactEnergy) -> Result<Start, SolveError> {
         Ok(self.soft(1.0))
     }
 
@@ -239,7 +239,7 @@ impl body::Body for Watched {
         body::Body::residual(&self.body, at)
     }
 
-    fn start(&mut self, _: &impl Edges) -> Result<Start, SolveError> {
+    fn start(&mut self, _: &impl ContactEnergy) -> Result<Start, SolveError> {
         // The springs beside the softest that B may be.
         Ok(self.body.soft(STIFFNESS / 0.1))
     }

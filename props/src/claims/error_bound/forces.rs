@@ -4,7 +4,7 @@
 //! x, without a traction on Gamma_N. Loads may oscillate, and prescribed values may need a lift.
 
 use proptest::prelude::*;
-use signorini::certify::forces::{Forces, Lifting, Mean, Motion, Target};
+use signorini::certify::forces::{ForceTarget, Forces, Lifting, Mean, Motion};
 use signorini::certify::proof::{Certificate, Lift, Role};
 use signorini::kernel::Ball;
 use signorini::nalgebra::Vector2;
@@ -108,10 +108,10 @@ impl Draw {
         certificate
     }
 
-    fn target(&self) -> Target {
+    fn target(&self) -> ForceTarget {
         let (boundary, motion) = MOTIONS[self.motion];
         let all = motion == Motion::Along(None);
-        Target { boundary: (!all).then_some(boundary), motion }
+        ForceTarget { boundary: (!all).then_some(boundary), motion }
     }
 
     /// A displacement that is `on_top` there, with these numbers elsewhere; on Gamma_C they come to `on_bottom` along y.
