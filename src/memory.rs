@@ -55,14 +55,14 @@ pub fn check(bytes: u64) -> Result<(), OutOfMemory> {
 ///
 /// # Errors
 /// As [`check`].
-pub fn reserve<T>(list: &mut Vec<T>, count: usize) -> Result<(), OutOfMemory> {
+pub(crate) fn reserve<T>(list: &mut Vec<T>, count: usize) -> Result<(), OutOfMemory> {
     let needed = bytes_of::<T>(list.len().saturating_add(count));
     check(needed)?;
     list.try_reserve(count).map_err(|_| OutOfMemory { needed, available: None })
 }
 
 /// The bytes that `count` items of type `T` take in a list; no less than the largest number if that is larger.
-pub fn bytes_of<T>(count: usize) -> u64 {
+pub(crate) fn bytes_of<T>(count: usize) -> u64 {
     (count as u64).saturating_mul(size_of::<T>() as u64)
 }
 

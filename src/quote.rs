@@ -76,7 +76,7 @@ pub fn lines(text: &str) -> String {
 }
 
 /// One line of any length, with control characters escaped.
-pub fn unbroken(text: &str) -> String {
+pub(crate) fn unbroken(text: &str) -> String {
     escaped(text.chars())
 }
 

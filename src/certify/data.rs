@@ -54,7 +54,7 @@ impl<'a> Data<'a> {
 
     /// f on a part of triangle `t` at the part's vertices, affine between them: f itself where it is affine, else with the same
     /// moments. f_a = (12 F_a - 3 sum F) / |T| for F_a = int f l_a.
-    pub fn body_on(&self, t: usize, part: &Triangle<f64>) -> [Vector2<f64>; 3] {
+    pub(crate) fn body_on(&self, t: usize, part: &Triangle<f64>) -> [Vector2<f64>; 3] {
         let mut body = [Vector2::zeros(); 3];
         for (c, f, rule) in self.acting(t) {
             let mut add = |values: [f64; 3]| (0..3).for_each(|a| body[a][c] += values[a]);
@@ -89,7 +89,7 @@ pub(super) enum Traction<'a> {
 
 impl Traction<'_> {
     /// It is affine along a straight edge.
-    pub fn is_affine(&self) -> bool {
+    pub(crate) fn is_affine(&self) -> bool {
         match self {
             Traction::Vector(t) => within(t, 1),
             Traction::Pressure(f) | Traction::Component(_, f) => is_within(f, 1),

@@ -59,7 +59,7 @@ use crate::memory;
 use crate::solve::Solution;
 
 /// The number of times that the stress is improved around every vertex.
-pub const SWEEPS: usize = 2;
+pub(crate) const SWEEPS: usize = 2;
 
 /// The number of sweeps where forces are asked for, beside whose dual pairs they cost little.
 const SWEEPS_FOR_FORCES: usize = 8;

@@ -190,7 +190,7 @@ impl<'a> ProblemParts<'a> {
     }
 
     /// Gives v the bulges of u_D on Gamma_D.
-    pub fn hold_between(&self, bulges: &mut [[f64; 2]]) {
+    pub(crate) fn hold_between(&self, bulges: &mut [[f64; 2]]) {
         for (&e, what) in &self.boundary {
             match *what {
                 Boundary::Held(held, data) => {
@@ -203,7 +203,7 @@ impl<'a> ProblemParts<'a> {
     }
 
     /// The direction that is held at a vertex, if one is alone, and the displacement along it.
-    pub fn held_alone(&self, vertex: usize) -> Option<([f64; 2], f64)> {
+    pub(crate) fn held_alone(&self, vertex: usize) -> Option<([f64; 2], f64)> {
         match (self.frames.get(&vertex), self.prescribed[vertex]) {
             (Some(&d), [Some(w), _]) => Some((d, w)),
             (None, [Some(w), None]) => Some(([1.0, 0.0], w)),
@@ -240,7 +240,7 @@ impl<'a> ProblemParts<'a> {
     }
 
     /// The motions that v may make at a vertex.
-    pub fn free_at(&self, vertex: usize) -> Free {
+    pub(crate) fn free_at(&self, vertex: usize) -> Free {
         match (self.held_alone(vertex), self.prescribed[vertex]) {
             (Some((d, _)), _) => Free::Along(Vector2::new(-d[1], d[0])),
             (None, [None, None]) => Free::All,

@@ -174,7 +174,7 @@ impl Multiplier {
 impl PreciseBall {
     /// Adds a b + c d. Quicker than the operators, which find the halves of each factor anew.
     #[inline]
-    pub fn add_products(&mut self, [(a, b), (c, d)]: [(Multiplier, Multiplier); 2]) {
+    pub(crate) fn add_products(&mut self, [(a, b), (c, d)]: [(Multiplier, Multiplier); 2]) {
         let [[p, p_tail], [q, q_tail]] = [a.times(b), c.times(d)];
         let products = DoubleDouble::sum(p, q);
         let tail = (p_tail + q_tail) + products.tail();

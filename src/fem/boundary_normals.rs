@@ -113,7 +113,7 @@ impl SmoothBoundary {
     }
 
     /// The normals at the start and at the end of an edge, if they are not both its facet's.
-    pub fn at_ends(&self, edge: BoundaryEdge) -> Option<[Vector2<f64>; 2]> {
+    pub(crate) fn at_ends(&self, edge: BoundaryEdge) -> Option<[Vector2<f64>; 2]> {
         self.normals.get(&(edge.triangle, edge.local)).copied()
     }
 

@@ -217,7 +217,7 @@ pub fn in_frame<S: Scalar + From<f64>>(axis: [f64; 2], [x, y]: [S; 2]) -> [S; 2]
 }
 
 /// The vector with these components.
-pub fn from_frame(axis: [f64; 2], [along, across]: [f64; 2]) -> [f64; 2] {
+pub(crate) fn from_frame(axis: [f64; 2], [along, across]: [f64; 2]) -> [f64; 2] {
     [axis[0] * along - axis[1] * across, axis[1] * along + axis[0] * across]
 }
 

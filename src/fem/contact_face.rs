@@ -164,7 +164,7 @@ impl<S: Scalar + From<f64>> ContactFace<S> {
     }
 
     /// Returns -int gamma sigma_n(u) sigma_n(.) over the edge in terms of sigma_n at its two ends, for sigma_n(u) = `stress`.
-    pub fn stress_factors(&self, [start, end]: [S; 2]) -> [S; 2] {
+    pub(crate) fn stress_factors(&self, [start, end]: [S; 2]) -> [S; 2] {
         let [two, six] = [2, 6].map(<S as From<i32>>::from);
         let mass = -(self.gamma * self.length) / six;
         [mass * (two * start + end), mass * (start + two * end)]
@@ -200,7 +200,7 @@ impl<S: Scalar + From<f64>> ContactFace<S> {
     }
 
     /// The edge in other numbers, with these length, normal and gamma.
-    pub fn in_numbers<T: Scalar + From<f64>>(
+    pub(crate) fn in_numbers<T: Scalar + From<f64>>(
         &self,
         (triangle, material): (&Triangle<T>, &Material<T>),
         (length, normal, gamma): (T, Vector2<T>, T),
@@ -230,7 +230,7 @@ impl<S: Scalar + From<f64>> ContactFace<S> {
 
 impl ContactFace {
     /// The sums of the magnitudes of the products that P0(u) is added up from at the nodes of the edge.
-    pub fn p0_magnitudes(&self, u: &[[f64; 2]]) -> Vec<f64> {
+    pub(crate) fn p0_magnitudes(&self, u: &[[f64; 2]]) -> Vec<f64> {
         let rows = self.functionals.p0().into_iter().zip(self.on_edge()).enumerate();
         rows.map(|(a, (row, node))| {
             let size = |f: Vector2<f64>, x: f64, y: f64| (f[0] * x).abs() + (f[1] * y).abs();

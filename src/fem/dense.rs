@@ -23,7 +23,7 @@ const MOST_SWEEPS: usize = 40;
 /// The singular values of the matrix with these rows of `n` entries, the largest first, each with its right singular vector, by
 /// Jacobi's rotations of the columns (Hestenes): a rotation makes two of them orthogonal, and where all are, their lengths are
 /// the values. Small ones keep their digits beside large ones. There are as many as columns, zeros among them.
-pub fn singular_vectors(rows: &[Vec<f64>], n: usize) -> Vec<(f64, Vec<f64>)> {
+pub(crate) fn singular_vectors(rows: &[Vec<f64>], n: usize) -> Vec<(f64, Vec<f64>)> {
     let mut columns: Vec<Vec<f64>> =
         (0..n).map(|j| rows.iter().map(|row| row[j]).collect()).collect();
     let unit = |j: usize| (0..n).map(|i| f64::from(u8::from(i == j))).collect::<Vec<f64>>();
@@ -64,7 +64,7 @@ fn rotate(p: &mut [f64], q: &mut [f64], c: f64, s: f64) {
 
 /// The weights of independent columns whose combination is nearest to `target`, by the modified method of Gram and Schmidt
 /// with the target as one more column (Bjorck 1967: as stable as Householder's reflections). Not finite if a column is zero.
-pub fn least_squares(mut columns: Vec<Vec<f64>>, target: &[f64]) -> Vec<f64> {
+pub(crate) fn least_squares(mut columns: Vec<Vec<f64>>, target: &[f64]) -> Vec<f64> {
     let n = columns.len();
     columns.push(target.to_vec());
     // r[k][j]: what column j has of the k-th direction, in units of its length; in the end that of the target.

@@ -152,12 +152,12 @@ impl<'a> Discretization<'a> {
     }
 
     /// Returns whether contact edge `e` presses in no solution, because the loads drive the body away from it or not towards it.
-    pub fn is_idle(&self, e: usize) -> bool {
+    pub(crate) fn is_idle(&self, e: usize) -> bool {
         self.slides.as_ref().is_some_and(|slides| slides.is_idle(e))
     }
 
     /// The amount by which the directions of supports and of contact may be off because vertices are rounded.
-    pub fn rounding_of_directions(&self) -> f64 {
+    pub(crate) fn rounding_of_directions(&self) -> f64 {
         rounding_of_directions(&self.constraints, &self.space, &self.contact)
     }
 
@@ -185,7 +185,7 @@ impl<'a> Discretization<'a> {
 
     /// [`Discretization::linear_residual`] of a displacement that is known to more than double precision, by its differences
     /// between nodes: the first node's value less the second one's.
-    pub fn linear_residual_by(
+    pub(crate) fn linear_residual_by(
         &self,
         difference: impl Fn(usize, usize) -> Vector2<f64>,
     ) -> Functional {

@@ -67,7 +67,7 @@ pub struct LoadVector {
 ///
 /// # Errors
 /// As [`assemble`].
-pub fn assemble_twice(problem: &Problem, space: &Space) -> Result<LoadVector, DataError> {
+pub(crate) fn assemble_twice(problem: &Problem, space: &Space) -> Result<LoadVector, DataError> {
     let mut in_doubles = vec![[0.0; 2]; space.nodes().len()];
     let mut in_balls = vec![[PreciseBall::from(0.0); 2]; space.nodes().len()];
     each_force(

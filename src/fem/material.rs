@@ -85,7 +85,7 @@ impl Materials {
 
     /// The materials on parts of these triangles: part i is one of triangle `origin[i]`.
     #[must_use]
-    pub fn on_parts(&self, origin: &[usize]) -> Self {
+    pub(crate) fn on_parts(&self, origin: &[usize]) -> Self {
         let one = self.of_triangle.is_empty();
         let of_triangle =
             if one { Vec::new() } else { origin.iter().map(|&t| self.place_of(t)).collect() };
@@ -93,7 +93,7 @@ impl Materials {
     }
 
     /// Each material once, whether a triangle is made of it or not.
-    pub fn distinct(&self) -> &[Material<f64>] {
+    pub(crate) fn distinct(&self) -> &[Material<f64>] {
         &self.distinct
     }
 
@@ -305,12 +305,12 @@ pub fn least_eigenvalue(material: &Material<f64>) -> f64 {
 }
 
 /// The largest eigenvalue of A, to rounding.
-pub fn largest_eigenvalue(material: &Material<f64>) -> f64 {
+pub(crate) fn largest_eigenvalue(material: &Material<f64>) -> f64 {
     eigenvalues(material)[1]
 }
 
 /// A number that |C_ij| is at most.
-pub fn largest_entry(material: &Material<f64>) -> f64 {
+pub(crate) fn largest_entry(material: &Material<f64>) -> f64 {
     if material.is_isotropic() {
         return material.lambda().abs() + 2.0 * material.mu();
     }

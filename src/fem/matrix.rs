@@ -251,7 +251,12 @@ fn add_stiffness<E: Element<N, M>, const N: usize, const M: usize>(
 
 impl LowerTriangle {
     /// Adds a(.,.).
-    pub fn add_stiffness(&mut self, space: &Space, materials: &Materials, numbering: &Numbering) {
+    pub(crate) fn add_stiffness(
+        &mut self,
+        space: &Space,
+        materials: &Materials,
+        numbering: &Numbering,
+    ) {
         with_element!(space.degree(), add_stiffness(self, space, materials, numbering));
     }
 

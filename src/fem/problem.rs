@@ -128,7 +128,7 @@ impl Condition {
     }
 
     /// This is a part of Gamma_C.
-    pub fn is_contact(&self) -> bool {
+    pub(crate) fn is_contact(&self) -> bool {
         matches!(self, Condition::Contact { .. } | Condition::Obstacle(..))
     }
 }
@@ -211,7 +211,7 @@ impl Problem {
     }
 
     /// The name of the obstacle that the boundary of this name may touch, if it has one.
-    pub fn obstacle_of(&self, boundary: &str) -> Option<&str> {
+    pub(crate) fn obstacle_of(&self, boundary: &str) -> Option<&str> {
         match self.conditions.get(boundary) {
             Some(Condition::Obstacle(name, _)) => Some(name),
             _ => None,

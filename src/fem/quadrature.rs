@@ -39,7 +39,7 @@ pub fn triangle(n: usize) -> Vec<([f64; 3], f64)> {
 
 /// The rule with its points drawn towards the first vertex: the distance from it is rho = s^grading with the Gauss points s.
 /// A power of rho there becomes a higher power of s.
-pub fn collapsed(n: usize, grading: i32) -> Vec<([f64; 3], f64)> {
+pub(crate) fn collapsed(n: usize, grading: i32) -> Vec<([f64; 3], f64)> {
     let rule = gauss(n);
     let mut points = Vec::with_capacity(n * n);
     for &(s, ws) in &rule {

@@ -39,7 +39,7 @@ pub(super) struct StressPoint<'a, S> {
 impl<S: Scalar> StressPoint<'_, S> {
     /// Calls `add` with each node, the force of the stress on it and the gradient of its shape function.
     #[inline]
-    pub fn each_force(&self, mut add: impl FnMut(usize, Vector2<S>, Vector2<S>)) {
+    pub(crate) fn each_force(&self, mut add: impl FnMut(usize, Vector2<S>, Vector2<S>)) {
         for (&node, &slope) in self.nodes.iter().zip(self.slopes) {
             add(node, self.stress.traction(slope) * self.weight, slope);
         }

@@ -162,7 +162,7 @@ fn make_sums_exact<const N: usize>(numbers: &mut [[f64; 3]; N]) {
 
 /// |v|_a at most, from the magnitudes of the nodal values: sigma:eps is at most |sigma| |eps|. For fields that are next to nothing, or
 /// vanish but near a boundary.
-pub fn energy_norm_at_most(d: &Discretization, v: &[[PreciseBall; 2]]) -> f64 {
+pub(crate) fn energy_norm_at_most(d: &Discretization, v: &[[PreciseBall; 2]]) -> f64 {
     with_element!(d.space.degree(), energy_norm_of(d, v))
 }
 

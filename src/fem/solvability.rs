@@ -272,19 +272,19 @@ impl Slides {
     }
 
     /// The contact edges that do not press and stop one of the motions somewhere.
-    pub fn stopping_edges(&self) -> &[usize] {
+    pub(crate) fn stopping_edges(&self) -> &[usize] {
         &self.stopping
     }
 
     /// The motion that leads from u to the solution of least norm, as weights of the basis.
-    pub fn to_least_norm(&self, u: &[[f64; 2]]) -> Vec<f64> {
+    pub(crate) fn to_least_norm(&self, u: &[[f64; 2]]) -> Vec<f64> {
         let at = self.at(u);
         let to = self.nearest(0.0).unwrap_or_else(|| at.clone());
         to.iter().zip(at).map(|(to, at)| to - at).collect()
     }
 
     /// A motion that leads from u to a solution away from all obstacles that do not press it, if there is one.
-    pub fn to_inside(&self, u: &[[f64; 2]]) -> Option<Vec<f64>> {
+    pub(crate) fn to_inside(&self, u: &[[f64; 2]]) -> Option<Vec<f64>> {
         let at = self.at(u);
         let size = self.bounds.iter().map(|(row, bound)| bound.abs() / norm(row));
         let size = size.fold(norm(&at), f64::max).max(f64::MIN_POSITIVE);
@@ -293,19 +293,19 @@ impl Slides {
     }
 
     /// Moves u by the basis with these weights.
-    pub fn move_by(&self, weights: &[f64], u: &mut [[f64; 2]]) {
+    pub(crate) fn move_by(&self, weights: &[f64], u: &mut [[f64; 2]]) {
         for (b, weight) in self.basis.iter().zip(weights) {
             subtract(u, b, -weight);
         }
     }
 
     /// u as the solution of least norm.
-    pub fn least_norm(&self, u: &mut [[f64; 2]]) {
+    pub(crate) fn least_norm(&self, u: &mut [[f64; 2]]) {
         self.move_by(&self.to_least_norm(u), u);
     }
 
     /// Returns whether contact edge `e` presses in no solution.
-    pub fn is_idle(&self, e: usize) -> bool {
+    pub(crate) fn is_idle(&self, e: usize) -> bool {
         self.idle.get(e).is_some_and(|idle| *idle)
     }
 
@@ -359,7 +359,7 @@ impl Slides {
 }
 
 /// The motions of `d` that neither supports nor the contact edges that are pressing stop.
-pub fn free_where(d: &Discretization, parts: &Parts, pressing: &[bool]) -> Vec<FreeMotion> {
+pub(crate) fn free_where(d: &Discretization, parts: &Parts, pressing: &[bool]) -> Vec<FreeMotion> {
     let mut free = Vec::new();
     for of_part in d.motions.chunk_by(|a, b| a.part == b.part) {
         let count = of_part.len();
@@ -399,7 +399,10 @@ fn subtract(field: &mut [[f64; 2]], other: &[[f64; 2]], weight: f64) {
 
 /// One component of a node for each slide, so that no slide is left free when these components are held: those among
 /// `free` that move most.
-pub fn pins(slides: &[Vec<[f64; 2]>], free: impl Fn(usize, usize) -> bool) -> Vec<(usize, usize)> {
+pub(crate) fn pins(
+    slides: &[Vec<[f64; 2]>],
+    free: impl Fn(usize, usize) -> bool,
+) -> Vec<(usize, usize)> {
     let mut left = slides.to_vec();
     let mut pins = Vec::with_capacity(left.len());
     while let Some(slide) = left.pop() {

@@ -62,7 +62,7 @@ impl<'a> Space<'a> {
     }
 
     /// The nodes of all triangles, one triangle after the other, in the order of [`Element`](crate::kernel::Element).
-    pub fn connectivity(&self) -> &[usize] {
+    pub(crate) fn connectivity(&self) -> &[usize] {
         &self.elements
     }
 
@@ -96,7 +96,7 @@ impl<'a> Space<'a> {
 
     /// The mean of the gradient of `field` on triangle `t`: its average over the points of the stiffness rule, which is exact for
     /// it.
-    pub fn mean_gradient(&self, t: usize, field: &[[f64; 2]]) -> Matrix2<f64> {
+    pub(crate) fn mean_gradient(&self, t: usize, field: &[[f64; 2]]) -> Matrix2<f64> {
         let barycentric = self.mesh.triangle(t).barycentric_gradients();
         let mut mean = Matrix2::zeros();
         let nodes = self.nodes_of(t);

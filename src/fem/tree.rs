@@ -62,7 +62,7 @@ impl Tree {
     }
 
     /// Calls `f` with the number of each box that meets `bounds`.
-    pub fn meeting(&self, bounds: Bounds, mut f: impl FnMut(usize)) {
+    pub(crate) fn meeting(&self, bounds: Bounds, mut f: impl FnMut(usize)) {
         let mut waiting = vec![(0, 0, self.items.len())];
         while let Some((node, start, end)) = waiting.pop() {
             if start == end || !self.nodes[node].meets(bounds) {

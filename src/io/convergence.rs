@@ -149,7 +149,7 @@ const PROVED: &str = "proved: (energy^2 + contact_residual^2 / (1 - kappa))^(1/2
                       constant), and how many times that is\n";
 
 /// The number of finest levels to which the slope is fitted.
-pub const FITTED: usize = 4;
+pub(crate) const FITTED: usize = 4;
 
 impl Study {
     /// The name, such as "P2, structured".

@@ -152,7 +152,7 @@ impl Output {
     ///
     /// # Errors
     /// [`OutputError::Data`], and those of [`Output::stage`].
-    pub fn stage_made(
+    pub(crate) fn stage_made(
         &mut self,
         file: &'static str,
         bytes: Result<Vec<u8>, NotFinite>,

@@ -16,7 +16,7 @@ use crate::quote;
 pub const MOST_OF_A_CASE: u64 = 16 << 20;
 
 /// The longest mesh file: more nodes than a factorisation in the memory of one machine has room for.
-pub const MOST_OF_A_MESH: u64 = 4 << 30;
+pub(crate) const MOST_OF_A_MESH: u64 = 4 << 30;
 
 /// A position in what is read. It is shown so that it may follow the name of the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -34,7 +34,7 @@ pub enum Position {
 
 impl Position {
     /// The line in which a byte of a text stands.
-    pub fn line_of(byte: usize, text: &[u8]) -> Position {
+    pub(crate) fn line_of(byte: usize, text: &[u8]) -> Position {
         Position::Line(text.iter().take(byte).filter(|&&b| b == b'\n').count() + 1)
     }
 }
@@ -146,7 +146,7 @@ pub fn read(path: &Path, most: u64) -> Result<Vec<u8>, InputError> {
 ///
 /// # Errors
 /// As [`read`].
-pub fn read_from(stream: impl Read, most: u64) -> Result<Vec<u8>, InputError> {
+pub(crate) fn read_from(stream: impl Read, most: u64) -> Result<Vec<u8>, InputError> {
     read_into(Vec::new(), stream, most)
 }
 

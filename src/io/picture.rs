@@ -7,7 +7,7 @@
 //! The recovered contact pressure stands on the deformed contact boundary, on the obstacle's side; its numbers are in the
 //! panels, so that no word covers the body. Where two materials meet there is a line.
 //!
-//! Two runs draw the same picture to the bit, and it stays under 2 MB: a body of more than [`MOST_TRIANGLES`] is drawn by
+//! Two runs draw the same picture to the bit, and it stays under 2 MB: a body of more than 20,000 triangles is drawn by
 //! small cells, and lines leave out what nobody can see.
 
 mod body;
@@ -28,7 +28,6 @@ use contact::{ContactLine, hatch, obstacle, pressure, tags};
 use draw::{DARK, FONT, GREY, PathData, Point, RED, clean, fitting, shape, stroke, text, width_of};
 use scene::PageMap;
 
-pub use body::MOST_TRIANGLES;
 pub use case::draw;
 pub use scene::{ContactSample, ContactSurface, Scene};
 

@@ -108,7 +108,7 @@ pub struct Results {
 }
 
 /// The version of the layout of result.json. 2: an entry for each contact boundary, balance, units, materials, choices.
-pub const SCHEMA: u32 = 2;
+pub(crate) const SCHEMA: u32 = 2;
 
 /// The one without a number.
 fn first() -> u32 {
@@ -273,14 +273,14 @@ const NO_FORCE: f64 = 1e-10;
 
 impl Results {
     /// The sum of the magnitudes of contact forces and reactions.
-    pub fn all_forces(&self) -> f64 {
+    pub(crate) fn all_forces(&self) -> f64 {
         let contact: f64 = self.contact.iter().map(|part| part.force.abs()).sum();
         let reactions = self.quantities.reactions.values().map(|[x, y]| x.hypot(*y));
         contact.max(self.quantities.contact_force.abs()) + reactions.sum::<f64>()
     }
 
     /// Returns whether a boundary carries more than rounding.
-    pub fn is_in_contact(&self, part: &ContactBoundary) -> bool {
+    pub(crate) fn is_in_contact(&self, part: &ContactBoundary) -> bool {
         part.force > NO_FORCE * self.all_forces()
     }
 

@@ -54,7 +54,7 @@ pub fn solved(r: &Results, files: &[PathBuf], verbose: bool) -> String {
 
 /// The lines of the summary: what the case carries, then what is proved, then how it was solved. The last part is there if
 /// it is asked for, and each of its lines where something about it is not as it should be.
-pub fn lines_of(r: &Results, verbose: bool) -> Vec<(String, String)> {
+pub(crate) fn lines_of(r: &Results, verbose: bool) -> Vec<(String, String)> {
     let mut lines = Lines::default();
     let shown = QuantityFormat::of(r);
     contact(r, &shown, verbose, &mut lines);

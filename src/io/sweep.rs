@@ -22,7 +22,7 @@ use crate::quote;
 use crate::solve::Solution;
 
 /// The most runs of a sweep: more are a mistake of the person who asks for them.
-pub const MOST_RUNS: usize = 10_000;
+pub(crate) const MOST_RUNS: usize = 10_000;
 
 /// A key of the case file and the values that it takes, such as `method.gamma0=1e-3,1e-2`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -104,7 +104,7 @@ const NOT_SOLVED: &str = "not solved";
 pub const FILE: &str = "sweep.csv";
 
 /// The name of the file that ParaView opens, where the runs have files.
-pub const COLLECTION: &str = "sweep.pvd";
+pub(crate) const COLLECTION: &str = "sweep.pvd";
 
 /// A case and its results for the combinations of the values of some keys.
 #[derive(Clone, Debug)]

@@ -70,7 +70,7 @@ pub struct DataArray<'a> {
 
 impl<'a> DataArray<'a> {
     /// Numbers.
-    pub fn scalars(name: &'static str, numbers: &'a [f64]) -> Self {
+    pub(crate) fn scalars(name: &'static str, numbers: &'a [f64]) -> Self {
         DataArray { name, numbers, given: 1, components: &[] }
     }
 
@@ -81,7 +81,7 @@ impl<'a> DataArray<'a> {
     }
 
     /// Symmetric tensors as `[xx, yy, zz, xy]`.
-    pub fn symmetric_tensors(name: &'static str, tensors: &'a [[f64; 4]]) -> Self {
+    pub(crate) fn symmetric_tensors(name: &'static str, tensors: &'a [[f64; 4]]) -> Self {
         let components = &["XX", "YY", "ZZ", "XY", "YZ", "XZ"];
         DataArray { name, numbers: tensors.as_flattened(), given: 4, components }
     }

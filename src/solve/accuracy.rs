@@ -88,18 +88,18 @@ impl Outcome {
     }
 
     /// Returns whether it is nearer to the exact solution as far as is proved, or else has the smaller residual.
-    pub fn is_better_than(&self, other: &Outcome) -> bool {
+    pub(crate) fn is_better_than(&self, other: &Outcome) -> bool {
         let [a, b] = [self, other].map(|o| (o.radius(), o.residual));
         a.0 < b.0 || (a.0 == b.0 && a.1 < b.1)
     }
 
     /// Returns whether Newton's method took all the steps that it may.
-    pub fn is_out_of_steps(&self, settings: &Settings) -> bool {
+    pub(crate) fn is_out_of_steps(&self, settings: &Settings) -> bool {
         self.residuals.len() > settings.max_iterations
     }
 
     /// Returns whether no other route would prove more.
-    pub fn is_final(&self, settings: &Settings) -> bool {
+    pub(crate) fn is_final(&self, settings: &Settings) -> bool {
         // With enough steps Newton's method ends: if it did not, digits were missing.
         let stopped = settings.max_iterations < ENOUGH && self.is_out_of_steps(settings);
         let by_nature = |why: &Unproved| !why.may_be_rounding() || *why == Unproved::HeldByContact;

@@ -92,7 +92,7 @@ pub struct EnergyBalance {
 }
 
 /// The balance of the field `u` with the residual `residual` at all degrees of freedom, and the energy a(u, u).
-pub fn energy_balance(
+pub(crate) fn energy_balance(
     d: &Discretization,
     u: &[[f64; 2]],
     p: &[Vec<DoubleDouble>],
@@ -132,7 +132,7 @@ pub fn largest_strain(d: &Discretization, u: &[[f64; 2]]) -> f64 {
 }
 
 /// The recovered pressure at the nodes of each edge, in the order of the edge's nodes.
-pub fn recovered_pressure(d: &Discretization, p: &[Vec<DoubleDouble>]) -> Vec<Vec<f64>> {
+pub(crate) fn recovered_pressure(d: &Discretization, p: &[Vec<DoubleDouble>]) -> Vec<Vec<f64>> {
     let groups = groups(d);
     let count = groups.iter().flatten().max().map_or(0, |last| last + 1);
     let (mut work, mut weight) = (vec![0.0; count], vec![0.0; count]);
@@ -248,7 +248,7 @@ fn same(a: Vector2<f64>, b: Vector2<f64>) -> bool {
 }
 
 /// The quantities of each part of Gamma_C, in alphabetical order.
-pub fn contact_boundaries(
+pub(crate) fn contact_boundaries(
     d: &Discretization,
     u: &[[f64; 2]],
     p: &[Vec<DoubleDouble>],

@@ -135,7 +135,7 @@ impl Derivatives {
     }
 
     /// The derivatives at y of springs with this Hessian that pull as well as push.
-    pub fn pulling(self, y: &[DoubleDouble]) -> Self {
+    pub(crate) fn pulling(self, y: &[DoubleDouble]) -> Self {
         let force = |(e, h): (usize, &DMatrix<f64>)| {
             let y = block(y, e, h.nrows()).iter().map(|y| y.head());
             let force = h * DVector::from_iterator(h.nrows(), y);

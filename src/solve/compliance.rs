@@ -198,7 +198,7 @@ impl<'a> Compliance<'a> {
     }
 
     /// X^T v
-    pub fn transpose_times(&self, v: &[f64]) -> Vec<f64> {
+    pub(crate) fn transpose_times(&self, v: &[f64]) -> Vec<f64> {
         let mut sum = vec![0.0; self.reach.functionals()];
         for (x, r) in self.x.iter().zip(&self.reach.supernodes) {
             let rows = &v[self.structure.columns(r.supernode)];
@@ -211,7 +211,7 @@ impl<'a> Compliance<'a> {
     }
 
     /// v <- v - X w
-    pub fn subtract(&self, w: &[f64], v: &mut [f64]) {
+    pub(crate) fn subtract(&self, w: &[f64], v: &mut [f64]) {
         let mut walked = vec![0.0; w.len()];
         for (&place, &w) in self.reach.places.iter().zip(w) {
             walked[place] = w;

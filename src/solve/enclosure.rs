@@ -81,12 +81,12 @@ pub enum Unproved {
 
 impl Unproved {
     /// Returns whether a displacement that is nearer, or better arithmetic, may tell more.
-    pub fn may_be_rounding(&self) -> bool {
+    pub(crate) fn may_be_rounding(&self) -> bool {
         !matches!(self, Unproved::NotCoercive { .. } | Unproved::NoKappa | Unproved::NotHeld)
     }
 
     /// Returns whether (8) is known to have exactly one solution all the same.
-    pub fn is_unique(&self) -> bool {
+    pub(crate) fn is_unique(&self) -> bool {
         !matches!(self, Unproved::HeldByContact | Unproved::NotCoercive { .. } | Unproved::NoKappa)
     }
 }
@@ -166,12 +166,12 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
 
     /// A radius of a hundredth of `proof`, relative, need not be smaller.
     #[must_use]
-    pub fn for_proof(self, proof: f64) -> Self {
+    pub(crate) fn for_proof(self, proof: f64) -> Self {
         Verifier { proof, ..self }
     }
 
     /// Takes the factor of A that a route has made, if it has.
-    pub fn use_factor(&mut self, of_a: Option<Arc<Factor>>) {
+    pub(crate) fn use_factor(&mut self, of_a: Option<Arc<Factor>>) {
         self.of_a = of_a.or(self.of_a.take());
     }
 
@@ -347,7 +347,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
 
 impl Enclosure {
     /// Returns whether the relative radius is at most `proof`.
-    pub fn is_within(&self, proof: f64) -> bool {
+    pub(crate) fn is_within(&self, proof: f64) -> bool {
         self.radius == 0.0 || self.relative.is_some_and(|relative| relative <= proof)
     }
 }

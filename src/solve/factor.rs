@@ -74,7 +74,7 @@ impl Structure {
     }
 
     /// The rows of L below the block of supernode `s` on the diagonal, in increasing order.
-    pub fn rows_below(&self, s: usize) -> &[usize] {
+    pub(crate) fn rows_below(&self, s: usize) -> &[usize] {
         self.symbolic.supernode(s).pattern()
     }
 

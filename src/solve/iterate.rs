@@ -53,7 +53,7 @@ impl Iterate {
     }
 
     /// As it is.
-    pub fn as_double_doubles(&self) -> &[[DoubleDouble; 2]] {
+    pub(crate) fn as_double_doubles(&self) -> &[[DoubleDouble; 2]] {
         &self.u
     }
 

@@ -246,7 +246,7 @@ fn line_search(
 }
 
 /// The largest eigenvalue of the positive semidefinite matrix of order `n` that `times` multiplies by, to within a factor.
-pub fn largest_eigenvalue(n: usize, times: impl Fn(&[f64]) -> Vec<f64>) -> f64 {
+pub(crate) fn largest_eigenvalue(n: usize, times: impl Fn(&[f64]) -> Vec<f64>) -> f64 {
     let mut x = vec![1.0; n];
     let mut largest = 0.0;
     for _ in 0..POWER_STEPS {

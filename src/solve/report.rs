@@ -207,7 +207,7 @@ impl Stopwatch {
         Stopwatch(Instant::now())
     }
 
-    pub fn lap(&mut self) -> Duration {
+    pub(crate) fn lap(&mut self) -> Duration {
         let now = Instant::now();
         let lap = now - self.0;
         self.0 = now;

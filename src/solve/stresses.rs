@@ -16,7 +16,7 @@ pub fn von_mises([xx, yy, zz, xy]: Components) -> f64 {
 }
 
 /// The principal stresses in the plane, the larger first.
-pub fn principal_in_plane([xx, yy, _, xy]: Components) -> [f64; 2] {
+pub(crate) fn principal_in_plane([xx, yy, _, xy]: Components) -> [f64; 2] {
     let (mean, radius) = ((xx + yy) / 2.0, ((xx - yy) / 2.0).hypot(xy));
     [mean + radius, mean - radius]
 }

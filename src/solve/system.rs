@@ -99,7 +99,7 @@ impl<'d, 'p> System<'d, 'p> {
     }
 
     /// The expected A(v, v) of a `v` with these magnitudes and independent components.
-    pub fn energy_of_unrelated(&self, v: &[[f64; 2]]) -> f64 {
+    pub(crate) fn energy_of_unrelated(&self, v: &[[f64; 2]]) -> f64 {
         let v = self.numbering.gather(v);
         self.diagonal().zip(v).map(|(a, v)| a * v * v).sum()
     }

@@ -35,7 +35,7 @@ pub struct Refinement {
 impl Refinement {
     /// The nodal values on this mesh of a field that has the values `u` at the vertices of the `old` one, and at the middles of
     /// its edges if it is quadratic on its triangles.
-    pub fn prolonged(&self, old: &Mesh, u: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    pub(crate) fn prolonged(&self, old: &Mesh, u: &[[f64; 2]]) -> Vec<[f64; 2]> {
         let (ends, middles) = u.split_at(old.vertices.len());
         if middles.is_empty() {
             let between = |&[a, b]: &[usize; 2]| middle(u[a], u[b]);

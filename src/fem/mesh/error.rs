@@ -73,7 +73,7 @@ fn short(length: f64) -> f64 {
 impl MeshError {
     /// Restates the error in the numbers of the file that the mesh came from.
     #[must_use]
-    pub fn renumbered(
+    pub(crate) fn renumbered(
         mut self,
         of_vertex: impl Fn(usize) -> usize,
         of_triangle: impl Fn(usize) -> usize,

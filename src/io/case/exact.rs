@@ -22,7 +22,7 @@ use crate::kernel::Material;
 type Read<T> = fn(&Table, Material<f64>) -> Result<T, FileError>;
 
 /// The solution that the section describes.
-pub fn read_exact(table: &Table, material: Material<f64>) -> Result<Exact, FileError> {
+pub(crate) fn read_exact(table: &Table, material: Material<f64>) -> Result<Exact, FileError> {
     let solutions: [(&str, Read<Exact>); 4] = [
         ("smooth", read_smooth),
         ("singular", read_singular),
@@ -118,7 +118,7 @@ fn coefficients(gap: Option<Value>) -> Result<Vec<f64>, FileError> {
 }
 
 /// Reads the condition on a boundary: beside \[exact\], \[boundary\] has a kind for each.
-pub fn read_kind(value: &Value) -> Result<Kind, FileError> {
+pub(crate) fn read_kind(value: &Value) -> Result<Kind, FileError> {
     value.one_of(&[
         ("displacement", Kind::Displacement),
         ("traction", Kind::Traction),

@@ -36,7 +36,7 @@ impl<'s> Source<'s> {
     }
 
     /// The setting in which the byte `start` lies, if it lies behind the file.
-    pub fn setting_at(&self, start: usize) -> Option<&'s str> {
+    pub(crate) fn setting_at(&self, start: usize) -> Option<&'s str> {
         let mut end = self.text.len();
         self.settings.iter().map(String::as_str).find(|setting| {
             let begin = end;

@@ -73,7 +73,7 @@ impl<'s> Table<'s> {
     }
 
     /// The keys of tables.
-    pub fn keys_of_tables(&self) -> Vec<&'s str> {
+    pub(crate) fn keys_of_tables(&self) -> Vec<&'s str> {
         let is_table = |key: &&str| self.get(key).is_some_and(|value| value.is_table());
         self.keys().filter(is_table).collect()
     }
@@ -95,7 +95,7 @@ impl<'s> Table<'s> {
     }
 
     /// The value of `key`, which must be there.
-    pub fn require(&self, key: &str, expected: &str) -> Result<Value<'s>, FileError> {
+    pub(crate) fn require(&self, key: &str, expected: &str) -> Result<Value<'s>, FileError> {
         let missing = || format!("{} is missing; expected {expected}", self.name_of(key));
         self.get(key).ok_or_else(|| self.at.wrong(missing()))
     }
@@ -106,7 +106,7 @@ impl<'s> Table<'s> {
     }
 
     /// Reads the table `key` of the file, if it is there.
-    pub fn optional_section<T>(
+    pub(crate) fn optional_section<T>(
         &self,
         key: &str,
         read: impl FnOnce(&Table<'s>) -> Result<T, FileError>,
@@ -115,20 +115,24 @@ impl<'s> Table<'s> {
     }
 
     /// The table `key` of the file, which must be there.
-    pub fn required_section(&self, key: &str, expected: &str) -> Result<Table<'s>, FileError> {
+    pub(crate) fn required_section(
+        &self,
+        key: &str,
+        expected: &str,
+    ) -> Result<Table<'s>, FileError> {
         let missing = || format!("[{key}] is missing; expected {expected}");
         self.section(key)?.ok_or_else(|| self.at.wrong(missing()))
     }
 
     /// The entry `key` of this section, under a header of its own.
-    pub fn under_header(&self, key: &str) -> Spot<'s> {
+    pub(crate) fn under_header(&self, key: &str) -> Spot<'s> {
         let name = format!("{}.{}]", self.at.name.trim_end_matches(']'), shown(key));
         let start = self.entries.get_key_value(key).map(|(key, _)| key.span().start);
         Spot { source: self.at.source, name, start }
     }
 
     /// The table `key` of this section, under a header of its own.
-    pub fn subsection(&self, key: &str) -> Result<Table<'s>, FileError> {
+    pub(crate) fn subsection(&self, key: &str) -> Result<Table<'s>, FileError> {
         self.require(key, "a table")?.section(self.under_header(key).name)
     }
 
@@ -146,7 +150,7 @@ impl<'s> Table<'s> {
     }
 
     /// The one of `keys` that is there.
-    pub fn exactly_one(&self, keys: &[&str]) -> Result<Value<'s>, FileError> {
+    pub(crate) fn exactly_one(&self, keys: &[&str]) -> Result<Value<'s>, FileError> {
         self.only(keys)?;
         let mut values = keys.iter().filter_map(|key| self.get(key));
         match (values.next(), values.next()) {
@@ -195,7 +199,7 @@ impl<'s> Value<'s> {
         self.as_text().ok_or_else(|| self.wrong("a text in quotes"))
     }
 
-    pub fn as_text(&self) -> Option<&'s str> {
+    pub(crate) fn as_text(&self) -> Option<&'s str> {
         match self.value {
             DeValue::String(text) => Some(text),
             _ => None,
@@ -223,7 +227,7 @@ impl<'s> Value<'s> {
     }
 
     /// A number with a property, which `expected` puts in words.
-    pub fn number_that(
+    pub(crate) fn number_that(
         &self,
         holds: impl FnOnce(f64) -> bool,
         expected: &str,
@@ -237,7 +241,7 @@ impl<'s> Value<'s> {
     }
 
     /// An integer in a range.
-    pub fn whole_number(&self, range: RangeInclusive<usize>) -> Result<usize, FileError> {
+    pub(crate) fn whole_number(&self, range: RangeInclusive<usize>) -> Result<usize, FileError> {
         let number = match self.value {
             DeValue::Integer(n) => integer(n).and_then(|n| usize::try_from(n).ok()),
             _ => None,
@@ -329,7 +333,7 @@ impl<'s> Value<'s> {
     }
 
     /// The value is wrong; messages show it as `found`.
-    pub fn wrong_as(&self, found: &str, expected: &str) -> FileError {
+    pub(crate) fn wrong_as(&self, found: &str, expected: &str) -> FileError {
         self.at.wrong(format!("{} = {found}; expected {expected}", self.at.name))
     }
 }
