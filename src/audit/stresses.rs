@@ -40,7 +40,7 @@
 //! ```
 //!
 //! and those of C eps(v) - tau at corners and m no more than X = 16 kappa (1 + 2 kappa rho) l F/J + 10 kappa Lambda l D/J. With P
-//! = (1 + |a|) (1 + |c|) + |b|, a, b and c as in [`squares`](crate::kernel::squares), the [`COUNT`] numbers have the size 16/3 P X
+//! = (1 + |a|) (1 + |c|) + |b|, a, b and c as in [`squares`](crate::kernel::squares), the `COUNT` numbers have the size 16/3 P X
 //! at most, and times the roots 16/3 P X kappa sqrt(J) f s, f^2 being 8, 3 or 1, and s = 1 / sqrt(576 m) for the moduli m. As the
 //! f^2 add up to 20 for each modulus, the vector of all errors is no longer than
 //!
