@@ -108,7 +108,7 @@ pub struct Results {
 }
 
 /// The version of the layout of result.json. 2: an entry for each contact boundary, balance, units, materials, choices.
-pub(crate) const SCHEMA: u32 = 2;
+pub const SCHEMA: u32 = 2;
 
 /// The one without a number.
 fn first() -> u32 {

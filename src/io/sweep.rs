@@ -22,7 +22,7 @@ use crate::quote;
 use crate::solve::Solution;
 
 /// The most runs of a sweep: more are a mistake of the person who asks for them.
-pub(crate) const MOST_RUNS: usize = 10_000;
+pub const MOST_RUNS: usize = 10_000;
 
 /// A key of the case file and the values that it takes, such as `method.gamma0=1e-3,1e-2`.
 #[derive(Clone, Debug, PartialEq, Eq)]
