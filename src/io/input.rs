@@ -146,7 +146,7 @@ pub fn read(path: &Path, most: u64) -> Result<Vec<u8>, InputError> {
 ///
 /// # Errors
 /// As [`read`].
-pub(crate) fn read_from(stream: impl Read, most: u64) -> Result<Vec<u8>, InputError> {
+pub fn read_from(stream: impl Read, most: u64) -> Result<Vec<u8>, InputError> {
     read_into(Vec::new(), stream, most)
 }
 

@@ -86,7 +86,7 @@ impl Unproved {
     }
 
     /// Returns whether (8) is known to have exactly one solution all the same.
-    pub(crate) fn is_unique(&self) -> bool {
+    pub fn is_unique(&self) -> bool {
         !matches!(self, Unproved::HeldByContact | Unproved::NotCoercive { .. } | Unproved::NoKappa)
     }
 }
