@@ -53,7 +53,7 @@ pub(crate) struct Change<S> {
     pub factors: [S; 2],
 }
 
-/// What equilibrium needs beside the tractions of the certificate.
+/// The additions to the tractions of the certificate that equilibrium needs.
 pub(crate) struct Closed<S> {
     /// The forces that are added at both ends of each edge.
     pub added: Vec<[Vector2<S>; 2]>,
@@ -179,7 +179,8 @@ pub(crate) struct OnEdges<'a, S> {
 }
 
 impl<S: Enclosing> OnEdges<'_, S> {
-    /// What puts every triangle in equilibrium; `wrenches` are the resultants of the forces on them, with the loads.
+    /// Puts every triangle in equilibrium: finds what is to be added. `wrenches` are the resultants of the forces on the triangles,
+    /// with the loads.
     ///
     /// # Errors
     /// A connected part that neither Gamma_D nor pressures on Gamma_C balance.

@@ -124,7 +124,8 @@ impl Certificate {
     ) -> Result<(), WrongPair> {
         let (zero, one) = (S::from(0), S::from(1));
         let differs = |what, index| Err(WrongPair::Differs { what, index });
-        let same_points = pair.vertices == self.vertices && pair.cuts == self.cuts;
+        let same_points = (&pair.vertices, &pair.cuts, &pair.frames)
+            == (&self.vertices, &self.cuts, &self.frames);
         if !same_points || !pair.lifts.is_empty() {
             return differs("a point", 0);
         }

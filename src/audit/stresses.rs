@@ -498,7 +498,7 @@ pub(crate) struct Numbers {
 const SHARP: f64 = 1e-4;
 
 impl Numbers {
-    /// Those of a stress in the numbers of the checker.
+    /// Computes the numbers of a stress that is given in the numbers of the checker.
     pub fn new<S: Staged>(
         law: &RoundedLaw,
         piece: &Piece,
@@ -615,7 +615,7 @@ impl Lengths {
         (values + errors).upper()
     }
 
-    /// How far the product of the numbers may be from the sum of those of the doubles, triangle by triangle.
+    /// Bounds the distance of the product of the numbers from the sum of those of the doubles, triangle by triangle.
     pub fn error_of_product(self, other: Lengths) -> f64 {
         let ([a, a_rest], [b, b_rest]) = (self.roots(), other.roots());
         let of_doubles = a * b * Ball::point(OF_DOT);

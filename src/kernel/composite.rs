@@ -57,7 +57,7 @@ pub struct Composite<S> {
 /// C eps(v) of a displacement v of degree 1 or 2: a stress that is constant on the triangle or affine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Affine<S> {
-    /// That of the affine function with the values of v at the vertices.
+    /// The stress of the affine function with the values of v at the vertices.
     pub base: Stress<S>,
     /// The stress added at each vertex; `None` where v is affine.
     pub beyond: Option<[Stress<S>; 3]>,

@@ -266,6 +266,10 @@ fn a_dual_stress_that_is_not_one_is_refused() {
     let mut evidence = c.quantities.evidence.clone();
     evidence.pairs[0].1.pieces[0].body = [[0.0, 1e-9]; 3];
     assert!(matches!(c.certificate.forces::<Ball>(&evidence), Err(WrongPair::Differs { .. })));
+    // A frame.
+    let mut evidence = c.quantities.evidence.clone();
+    evidence.pairs[0].1.frames.insert(40, [0.6, 0.8]);
+    assert!(matches!(c.certificate.forces::<Ball>(&evidence), Err(WrongPair::Differs { .. })));
 }
 
 #[test]

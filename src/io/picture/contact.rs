@@ -30,7 +30,7 @@ const OF_THE_RADIUS: f64 = 0.6;
 /// An obstacle whose magnified gap is more than this part of the body's size is left out.
 const FURTHEST: f64 = 0.2;
 
-/// The same limit where the gap is magnified along a line that is not straight: there the obstacle is drawn bent.
+/// An obstacle along a line that is not straight, which magnifying the gap bends, is left out beyond this part.
 const FURTHEST_WHERE_BENT: f64 = 0.06;
 
 impl ContactLine {
