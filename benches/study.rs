@@ -14,20 +14,21 @@ use std::path::Path;
 use std::sync::Arc;
 
 use signorini::certify::{Target, adapt, certify};
-use signorini::fem::exact::{Corner, Kind, Singular, Smooth};
 use signorini::fem::{
-    Condition, Diagonal, Errors, Exact, Function, Mesh, Perturbation, Problem, Rectangle,
-    SharedFunction, Space, Structured, Trapezoid, contact_line,
+    Condition, Diagonal, Function, Mesh, Perturbation, Problem, Rectangle, SharedFunction, Space,
+    Structured, Trapezoid, contact_line,
 };
 use signorini::io::Case;
 use signorini::io::convergence::{self, Meshes, NORMS, Study};
 use signorini::io::picture::plot::{self, Figure, Panel, Style};
 use signorini::kernel::{Material, Plane};
-use signorini::solve::ladder::fitted_slope;
 use signorini::solve::{
-    ContactQuadrature, Degree, Gamma0, Ladder, Method, Settings, Solution, SolveError, Theorem,
-    solve,
+    ContactQuadrature, Degree, Gamma0, Method, Settings, Solution, SolveError, solve,
 };
+use signorini::study::exact::{Corner, Kind, Singular, Smooth};
+use signorini::study::ladder::fitted_slope;
+use signorini::study::{Errors, Exact};
+use signorini::study::{Ladder, Theorem};
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
 

@@ -91,6 +91,9 @@ pub mod memory;
 pub mod quote;
 #[cfg(not(kani))]
 pub mod solve;
+#[cfg(not(kani))]
+#[doc(hidden)]
+pub mod study;
 
 // For a program with its problem in code.
 #[cfg(not(kani))]

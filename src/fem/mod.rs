@@ -1,8 +1,6 @@
 //! The discrete space V^h on a mesh and everything that is integrated over it.
 
 #[doc(hidden)]
-pub mod a_priori;
-#[doc(hidden)]
 pub mod ball;
 #[doc(hidden)]
 pub mod boundary_normals;
@@ -20,14 +18,8 @@ pub mod element;
 #[doc(hidden)]
 pub mod embedding;
 #[doc(hidden)]
-pub mod errors;
-#[doc(hidden)]
-pub mod exact;
-#[doc(hidden)]
 pub mod graded_quadrature;
 mod groups;
-#[doc(hidden)]
-pub mod interpolation;
 #[doc(hidden)]
 pub mod korn;
 pub mod loads;
@@ -63,8 +55,6 @@ pub use contact_face::{ContactFace, EdgeRule};
 pub use data::DataError;
 pub use discretization::Discretization;
 pub use element::Degree;
-pub use errors::Errors;
-pub use exact::{Exact, ExactSolution};
 pub use material::Materials;
 pub use mesh::bisection::Refinement;
 pub use mesh::{BoundaryEdge, Mesh, MeshError};

@@ -31,11 +31,12 @@ use self::source::Source;
 use self::table::{Table, Value};
 use super::input::{self, FileError, InputError, MOST_OF_A_CASE, Position};
 use crate::certify::{Asked, Target};
-use crate::fem::exact::Kind;
-use crate::fem::{Exact, Mesh, Perturbation, Problem, Structured};
+use crate::fem::{Mesh, Perturbation, Problem, Structured};
 use crate::memory;
 use crate::quote;
 use crate::solve::{Method, Settings};
+use crate::study::Exact;
+use crate::study::exact::Kind;
 
 /// A contact problem and how to solve it.
 #[non_exhaustive]

@@ -9,9 +9,11 @@ use thiserror::Error;
 use super::case::Case;
 use super::files::{Output, OutputError};
 use super::picture::plot::{COLOURS, Figure, Panel, Style, figure};
-use crate::fem::{Errors, MeshError, Perturbation, a_priori};
-use crate::solve::ladder::{fitted_slope, rates};
-use crate::solve::{Degree, Ladder, LadderError, Level, Method};
+use crate::fem::{MeshError, Perturbation};
+use crate::solve::{Degree, Method};
+use crate::study::ladder::{fitted_slope, rates};
+use crate::study::{Errors, a_priori};
+use crate::study::{Ladder, LadderError, Level};
 
 /// The kind of the meshes of a study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -19,9 +19,10 @@ use super::result::{
 use super::run::Solved;
 use super::vtu::{CellKind, DataArray, Grid, vtu};
 use crate::certify::Continuous;
-use crate::fem::{self, Degree, Space};
+use crate::fem::{DataError, Degree, Space};
 use crate::memory;
 use crate::solve::{Extreme, Solution};
+use crate::study::Errors;
 
 const PICTURE: &str = "picture.svg";
 
@@ -177,13 +178,13 @@ fn bytes_to_write(s: &Solution) -> u64 {
 /// The content of result.json of a solved case that was read in the time `read`, and of which `extra` was asked for.
 ///
 /// # Errors
-/// The errors of [`Solution::errors`], should the solution not be one of this case.
+/// The errors of [`Errors::of`], should the solution not be one of this case.
 pub fn results(
     case: &Case,
     solved: &Solved,
     read: Duration,
     extra: Extra,
-) -> Result<Results, fem::DataError> {
+) -> Result<Results, DataError> {
     let solution = &solved.solution;
     let mesh = &case.problem.mesh;
     let mut discrete = DiscreteCertificate::from(&solution.enclosure);
@@ -194,11 +195,11 @@ pub fn results(
         discrete.probes = off.collect();
     }
     let errors = match &case.exact {
-        Some(exact) => Some(solution.errors(&case.problem, &*exact.solution)?),
+        Some(exact) => Some(Errors::of(solution, &case.problem, &*exact.solution)?),
         None => None,
     };
     let mut remarks = remarks(case, solution);
-    let errors = errors.filter(fem::Errors::is_finite);
+    let errors = errors.filter(Errors::is_finite);
     if case.exact.is_some() && errors.is_none() {
         remarks.push(NO_ERRORS.to_owned());
     }

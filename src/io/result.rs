@@ -15,13 +15,14 @@ use serde_json::Value;
 use super::case::{MaterialEcho, Units};
 use super::finite::NotFinite;
 use crate::certify::adapt::AdaptedLevel;
+use crate::fem::Mesh;
 use crate::fem::contact_line::Gamma;
 use crate::fem::solvability::Play;
-use crate::fem::{Errors, Mesh};
 use crate::solve::{
     ContactBoundary, ContactQuadrature, EnergyBalance, Gamma0, GammaReport, Method, MethodReport,
     NewtonReport, Quantities, Status, Times,
 };
+use crate::study::Errors;
 pub use certificates::{
     Certificates, CertifiedQuantity, CertifiedZone, ContinuousCertificate, DiscreteCertificate,
 };

@@ -34,8 +34,6 @@ pub mod factor;
 pub mod intervals;
 #[doc(hidden)]
 pub mod iterate;
-#[doc(hidden)]
-pub mod ladder;
 mod method;
 pub mod newton;
 #[doc(hidden)]
@@ -52,8 +50,6 @@ pub mod solution;
 pub mod stresses;
 #[doc(hidden)]
 pub mod system;
-#[doc(hidden)]
-pub mod theorem;
 
 use self::accuracy::Outcome;
 pub use self::answers::{ContactBoundary, EnergyBalance};
@@ -62,7 +58,6 @@ pub use self::enclosure::{Enclosure, Unproved};
 pub use self::error::{SolveError, history};
 pub use self::intervals::Intervals;
 use self::iterate::Evaluated;
-pub use self::ladder::{Ladder, LadderError, Level};
 pub use self::method::{
     ContactQuadrature, Gamma0, MOST_GAUSS_POINTS, MOST_ITERATIONS, Method, Settings,
 };
@@ -73,7 +68,6 @@ use self::route::Strategy;
 pub use self::solution::{GammaReport, Quantities, Solution};
 pub use self::stresses::{Extreme, LargestStresses};
 use self::system::System;
-pub use self::theorem::Theorem;
 pub use crate::fem::Degree;
 use crate::fem::contact_line::{Coercivity, Gamma};
 use crate::fem::material::largest_entry;

@@ -11,13 +11,13 @@ use super::course::Course;
 use super::enclosure::{Enclosure, Unproved};
 use super::iterate::Evaluated;
 use super::{MethodReport, NewtonReport, Report, Verdict};
-use crate::fem::contact_line::{self, Coercivity, Gamma};
+use crate::fem::Degree;
+use crate::fem::contact_line::{Coercivity, Gamma};
 use crate::fem::dense::inner;
 use crate::fem::discretization::Discretization;
 use crate::fem::double_double::DoubleDouble;
 use crate::fem::element::maximum;
 use crate::fem::solvability::Play;
-use crate::fem::{DataError, Degree, Errors, ExactSolution, Problem, Space};
 use crate::kernel::Stress;
 use crate::kernel::contact::pressure;
 
@@ -168,20 +168,6 @@ impl Solution {
             quantities,
             displacement: u,
         }
-    }
-
-    /// The distances from an exact solution of `problem`, which is the one that this solves.
-    ///
-    /// # Errors
-    /// A problem with no contact boundary, or with a gap that is not finite.
-    pub fn errors(
-        &self,
-        problem: &Problem,
-        exact: &dyn ExactSolution,
-    ) -> Result<Errors, DataError> {
-        let space = Space::new(&problem.mesh, self.degree);
-        let contact = contact_line::assemble(problem, &space, self.gamma.gamma)?;
-        Ok(Errors::new(&space, &contact, &self.displacement, exact))
     }
 
     /// u^h at the point with the barycentric coordinates `l` of triangle `t`, as [`Mesh::locate`] finds them.

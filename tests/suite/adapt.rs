@@ -10,13 +10,15 @@ use crate::common::{clamped, conditions, constant, function, unit_square};
 use signorini::certify::adapt::AdaptError;
 use signorini::certify::{Adapted, Target, adapt, certify};
 use signorini::fem::{
-    Condition, Errors, Materials, PointSupport, Problem, SharedFunction, Space, contact_line,
+    Condition, Materials, PointSupport, Problem, SharedFunction, Space, contact_line,
 };
 use signorini::io::run::{self, RunError};
 use signorini::io::{Case, Expression, case};
 use signorini::kernel::{Material, Plane};
-use signorini::solve::ladder::fitted_slope;
-use signorini::solve::{Degree, Ladder, Method, Settings, solve};
+use signorini::solve::{Degree, Method, Settings, solve};
+use signorini::study::Errors;
+use signorini::study::Ladder;
+use signorini::study::ladder::fitted_slope;
 
 /// To a mesh of at most so many unknowns, whatever the bound is there.
 fn as_fine_as(max_unknowns: usize) -> Target {

@@ -9,11 +9,13 @@ use crate::common::exact::{on_square, singular, smooth};
 use crate::common::{conditions, unit_square};
 use signorini::certify::proof::Role;
 use signorini::certify::{Continuous, certify};
-use signorini::fem::exact::Kind;
-use signorini::fem::{Condition, Errors, Mesh, Problem, SharedFunction, Space, contact_line};
+use signorini::fem::{Condition, Mesh, Problem, SharedFunction, Space, contact_line};
 use signorini::io::{Expression, certificate};
 use signorini::kernel::{Material, Plane};
-use signorini::solve::{Degree, Gamma0, Ladder, Method, Settings, Solution, solve};
+use signorini::solve::{Degree, Gamma0, Method, Settings, Solution, solve};
+use signorini::study::Errors;
+use signorini::study::Ladder;
+use signorini::study::exact::Kind;
 
 fn expression(text: &str) -> SharedFunction {
     Arc::new(text.parse::<Expression>().unwrap())

@@ -13,13 +13,15 @@ use crate::common::{Random, clamped, conditions, constant, unit_square};
 use signorini::certify::proof::Role;
 use signorini::certify::{Continuous, Rejection, certify, certify_field};
 use signorini::fem::{
-    Condition, Errors, Mesh, Obstacle, Problem, SharedFunction, Side, Space, contact_line,
+    Condition, Mesh, Obstacle, Problem, SharedFunction, Side, Space, contact_line,
 };
 use signorini::io::certificate::{self, Header};
 use signorini::io::result::ContinuousCertificate;
 use signorini::io::{Case, Expression};
 use signorini::kernel::{Ball, Material, Plane};
-use signorini::solve::{Degree, Gamma0, Ladder, Method, Settings, Solution, solve};
+use signorini::solve::{Degree, Gamma0, Method, Settings, Solution, solve};
+use signorini::study::Errors;
+use signorini::study::Ladder;
 
 /// The bounds on three levels of a ladder, each of which is above the true error of the same field, by less than a factor.
 fn bounds(what: &str, ladder: &Ladder, limit: f64) -> [f64; 3] {

@@ -74,10 +74,12 @@ pub mod exact {
     use std::f64::consts::PI;
     use std::sync::Arc;
 
-    use signorini::fem::exact::{Corner, Kind, Singular, Smooth};
-    use signorini::fem::{Diagonal, Exact, Perturbation, Rectangle, Structured, Trapezoid};
+    use signorini::fem::{Diagonal, Perturbation, Rectangle, Structured, Trapezoid};
     use signorini::kernel::{Material, Plane};
-    use signorini::solve::{ContactQuadrature, Degree, Gamma0, Ladder, Method, Settings};
+    use signorini::solve::{ContactQuadrature, Degree, Gamma0, Method, Settings};
+    use signorini::study::Exact;
+    use signorini::study::Ladder;
+    use signorini::study::exact::{Corner, Kind, Singular, Smooth};
 
     pub fn material() -> Material<f64> {
         Material::lame(1.0, 1.0, Plane::Strain)

@@ -13,12 +13,13 @@ use approx::{abs_diff_eq, assert_abs_diff_eq, assert_relative_eq};
 
 use crate::common::Random;
 use crate::common::exact::{corner, on_square, on_trapezoid, singular, smooth};
-use signorini::fem::errors::POINTS;
-use signorini::fem::exact::{Corner, Patch, Singular, Smooth};
-use signorini::fem::{Errors, Exact, Space, contact_line, loads};
+use signorini::fem::{Space, contact_line, loads};
 use signorini::kernel::{Material, Plane};
 use signorini::nalgebra::{Matrix2, Vector2};
 use signorini::solve::Degree;
+use signorini::study::errors::POINTS;
+use signorini::study::exact::{Corner, Patch, Singular, Smooth};
+use signorini::study::{Errors, Exact};
 
 /// A solution, its name, and its body: the unit square, or the wedge 0 < theta < omega.
 struct Sample {
@@ -277,7 +278,7 @@ fn values_agree_with_those_computed_elsewhere() {
 }
 
 /// The ladders whose integrals are tested, with the level that has 8 x 8 cells.
-fn ladders(degree: Degree) -> Vec<signorini::solve::Ladder> {
+fn ladders(degree: Degree) -> Vec<signorini::study::Ladder> {
     vec![
         on_square(&smooth(3.0, 2.0, 1.0 / 3.0), degree, 8),
         on_square(&smooth(4.0, 3.0, 0.5), degree, 8),
@@ -289,7 +290,7 @@ fn ladders(degree: Degree) -> Vec<signorini::solve::Ladder> {
 }
 
 /// The five errors by two rules, as the largest relative difference.
-fn difference_of_rules(ladder: &signorini::solve::Ladder, points: [usize; 2]) -> f64 {
+fn difference_of_rules(ladder: &signorini::study::Ladder, points: [usize; 2]) -> f64 {
     let (_, problem, solution) = ladder.solve(0).unwrap();
     let space = Space::new(&problem.mesh, Degree::Two);
     let gamma0 = solution.gamma.gamma0;
@@ -349,7 +350,7 @@ fn control_errors_by_a_rule_that_ignores_where_the_solution_is_not_smooth_do_mov
     /// A solution that hides its features.
     #[derive(Debug)]
     struct Hidden(Exact);
-    impl signorini::fem::ExactSolution for Hidden {
+    impl signorini::study::ExactSolution for Hidden {
         fn material(&self) -> &Material<f64> {
             self.0.material()
         }
@@ -374,7 +375,7 @@ fn control_errors_by_a_rule_that_ignores_where_the_solution_is_not_smooth_do_mov
 }
 
 /// The largest relative change of L when each rule gets `points` points instead of its own.
-fn change_of_load(ladder: &signorini::solve::Ladder, points: usize) -> f64 {
+fn change_of_load(ladder: &signorini::study::Ladder, points: usize) -> f64 {
     let problem = ladder.problem(0).unwrap();
     let space = Space::new(&problem.mesh, Degree::Two);
     let usual = loads::assemble(&problem, &space).unwrap();

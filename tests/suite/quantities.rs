@@ -8,14 +8,15 @@ use signorini::certify::forces::{self, Evidence, Motion, WrongLifting};
 use signorini::certify::proof::Role;
 use signorini::certify::quantities::{Limit, Name};
 use signorini::certify::{Asked, Continuous, Ramp, Target, adapt, adapt_to, certify, certify_with};
-use signorini::fem::exact::{self, Kind, Patch};
 use signorini::fem::{
-    Condition, Diagonal, Exact, Perturbation, Problem, Rectangle, SharedFunction, Structured,
+    Condition, Diagonal, Perturbation, Problem, Rectangle, SharedFunction, Structured,
 };
 use signorini::io::certificate::{self, Header};
 use signorini::io::{Case, Expression};
 use signorini::kernel::{Ball, Material, Plane};
 use signorini::solve::{Degree, Method, Settings, Solution, solve};
+use signorini::study::Exact;
+use signorini::study::exact::{self, Kind, Patch};
 
 use super::certify::{accepts, rejects_what_is_tampered};
 use super::common::exact::singular;

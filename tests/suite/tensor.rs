@@ -8,14 +8,16 @@ use approx::assert_relative_eq;
 use crate::common::exact::on_square;
 use crate::common::*;
 use signorini::certify::{certify, format};
-use signorini::fem::exact::{self, Kind, Patch, Smooth};
 use signorini::fem::material::{
     Across, Orthotropic, eigenvalues, least_eigenvalue, stable, stable_orthotropic,
 };
-use signorini::fem::{Condition, Diagonal, Exact, Mesh, Obstacle, Problem};
+use signorini::fem::{Condition, Diagonal, Mesh, Obstacle, Problem};
 use signorini::io::Case;
 use signorini::kernel::{Material, Plane};
-use signorini::solve::{Degree, Ladder, Settings, Solution, Verdict, solve};
+use signorini::solve::{Degree, Settings, Solution, Verdict, solve};
+use signorini::study::Exact;
+use signorini::study::Ladder;
+use signorini::study::exact::{self, Kind, Patch, Smooth};
 
 /// Entries of one size that couple all strains: eigenvalues 2.3, 5.2 and 13.5.
 const FULL: [f64; 6] = [12.0, 3.0, 2.0, 5.0, -1.0, 2.0];

@@ -1,9 +1,9 @@
-//! The bounds of `fem::a_priori`, which the solver prints beside its errors on exact solutions: the very functions, over
+//! The bounds of `study::a_priori`, which the solver prints beside its errors on exact solutions: the very functions, over
 //! symbols, follow from Theorem 3.4, Corollary 3.6, and Theorems 9.3 and 9.4 of docs/theory.md; and what the solver calls
 //! is their square root, with the root of kappa where one belongs.
 
 use proptest::prelude::*;
-use signorini::fem::{Errors, a_priori};
+use signorini::study::{Errors, a_priori};
 
 use crate::claim::{Claim, proved, refuted, tested};
 use crate::claims::rates;
@@ -268,18 +268,18 @@ pub fn claim() -> Claim {
         id: "17",
         title: "The bounds that the solver prints",
         paper: "The right sides of Theorem 3.4 and of Corollary 3.6, with C.",
-        statement: "The functions of `fem::a_priori`, by which the solver prints the bounds of Theorem 3.4 (plain, and for the a-orthogonal projection of u) and Corollary 3.6, are the right sides that rows 11 and docs/theory.md, 9 prove, over symbols; the terms b and c of the sharp bound are those of Theorem 9.3, whose inequality [9.6] follows from the facts of the proof of Theorem 3.4, and the bound [9.5] from [9.6]; the hypothesis of Theorem 9.4 likewise, whose projection is nearer to the solution in the energy norm than u^h and than the interpolant. In doubles, squared, each is within 64 roundings of the same function over rationals, the root of kappa in Corollary 3.6 is a root, and the sharp bound is a root of its quadratic equation.",
+        statement: "The functions of `study::a_priori`, by which the solver prints the bounds of Theorem 3.4 (plain, and for the a-orthogonal projection of u) and Corollary 3.6, are the right sides that rows 11 and docs/theory.md, 9 prove, over symbols; the terms b and c of the sharp bound are those of Theorem 9.3, whose inequality [9.6] follows from the facts of the proof of Theorem 3.4, and the bound [9.5] from [9.6]; the hypothesis of Theorem 9.4 likewise, whose projection is nearer to the solution in the energy norm than u^h and than the interpolant. In doubles, squared, each is within 64 roundings of the same function over rationals, the root of kappa in Corollary 3.6 is a root, and the sharp bound is a root of its quadratic equation.",
         numbers: "every ordered field (proof), with k = kappa^(1/2) as data; doubles against rationals.",
         kernel: &[
-            "fem::a_priori::left",
-            "fem::a_priori::plain_squared",
-            "fem::a_priori::plain",
-            "fem::a_priori::sharp_terms",
-            "fem::a_priori::sharp",
-            "fem::a_priori::projected_squared",
-            "fem::a_priori::projected",
-            "fem::a_priori::corollary_bound",
-            "fem::a_priori::corollary",
+            "study::a_priori::left",
+            "study::a_priori::plain_squared",
+            "study::a_priori::plain",
+            "study::a_priori::sharp_terms",
+            "study::a_priori::sharp",
+            "study::a_priori::projected_squared",
+            "study::a_priori::projected",
+            "study::a_priori::corollary_bound",
+            "study::a_priori::corollary",
         ],
         preconditions: "0 <= kappa < 1; the hypotheses of row 11.",
         limits: "The norms that are put in are those of row 12's quadrature.",

@@ -4,7 +4,7 @@
 //! With A(y) = -(y - 3y^3 + 2y^4), B(y) = 1 - 3y^2 + 2y^3, p = 8 \[x - c\]+^3 and q = -4 \[c - x\]+^2 the field
 //! u = (A p', B p - A q) has u_n = -p, sigma_n = (lambda + 2 mu) q and no shear on y = 0, n = (0, -1): conditions (2).
 //! Body force and tractions follow from (1). P1 and P2, whose gradients and P0(v) come from the kernel.
-//! That the solver's own formulas of it, `fem::exact::Smooth`, satisfy (1) and (2) is a test (tests/suite/exact.rs).
+//! That the solver's own formulas of it, `study::exact::Smooth`, satisfy (1) and (2) is a test (tests/suite/exact.rs).
 
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};

@@ -4,7 +4,7 @@
 //!
 //! int sigma(u):eps(v) - int_N t . v - int_C gamma sigma_n(u) sigma_n(v) + int_C (1/gamma) \[P(u)\]+ P0(v),
 //!
-//! is enclosed for every basis function v of P1 and of P2 (f = 0): the formulas of `fem::exact::Singular`, the same source
+//! is enclosed for every basis function v of P1 and of P2 (f = 0): the formulas of `study::exact::Singular`, the same source
 //! lines that the solver runs in doubles, are run over Taylor coefficients with intervals, so are the kernel's P and \[.\]+,
 //! and the kernel's shape functions and functionals over intervals. The singular point lies inside a contact edge.
 
@@ -12,7 +12,6 @@ use std::sync::Arc;
 
 use crate::numbers::Interval;
 use proptest::prelude::*;
-use signorini::fem::exact::{self, ExactSolution, Kind, Place, Singular};
 use signorini::fem::{
     BoundaryEdge, Degree, Diagonal, Mesh, Problem, Rectangle, Space, contact_line, loads,
 };
@@ -21,6 +20,7 @@ use signorini::kernel::{
     ContactEdge, ContactPoint, Enclosing, Material, P1, P2, Plane, Stress, Triangle, positive_part,
 };
 use signorini::nalgebra::{Matrix2, Vector2};
+use signorini::study::exact::{self, ExactSolution, Kind, Place, Singular};
 
 use crate::claim::Outcome;
 use crate::draws;

@@ -1,5 +1,5 @@
 //! Theorem 3.5 with a number, for P1 and nu = 1/2 (docs/theory.md, 9.6): the interpolation estimates (22)-(24) with the
-//! constants of `signorini::fem::interpolation`, on quadratics over rationals, and the bound that follows from them against
+//! constants of `signorini::study::interpolation`, on quadratics over rationals, and the bound that follows from them against
 //! the errors of the solver.
 //!
 //! ```text
@@ -9,14 +9,16 @@
 
 use proptest::prelude::*;
 use signorini::fem::Degree;
+use signorini::fem::Space;
 use signorini::fem::contact_line::assemble;
-use signorini::fem::interpolation::{
-    Interpolation, gradient_constant_squared, seminorms, trace_constant_squared,
-};
-use signorini::fem::{Space, a_priori};
 use signorini::kernel::{Material, Plane, Triangle, positive_part};
 use signorini::nalgebra::{Matrix2, Vector2};
-use signorini::solve::{Gamma0, Ladder};
+use signorini::solve::Gamma0;
+use signorini::study::Ladder;
+use signorini::study::a_priori;
+use signorini::study::interpolation::{
+    Interpolation, gradient_constant_squared, seminorms, trace_constant_squared,
+};
 
 use crate::claim::{Check, Outcome, noticed, proved, refuted, tested, text};
 use crate::claims::rates;

@@ -10,11 +10,13 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use signorini::fem::exact::{Corner, Kind, Singular, Smooth};
-use signorini::fem::{Diagonal, Errors, Exact, Rectangle, Structured, Trapezoid};
+use signorini::fem::{Diagonal, Rectangle, Structured, Trapezoid};
 use signorini::kernel::{Material, Plane};
-use signorini::solve::ladder::fitted_slope;
-use signorini::solve::{Degree, Ladder, Method, Settings, Theorem};
+use signorini::solve::{Degree, Method, Settings};
+use signorini::study::exact::{Corner, Kind, Singular, Smooth};
+use signorini::study::ladder::fitted_slope;
+use signorini::study::{Errors, Exact};
+use signorini::study::{Ladder, Theorem};
 
 use crate::claim::{Claim, Outcome, noticed, text};
 

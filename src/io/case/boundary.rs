@@ -6,13 +6,14 @@ use std::sync::Arc;
 use super::exact::read_kind;
 use super::load::constant;
 use super::table::{Spot, Table, Value};
-use crate::fem::exact::Kind;
 use crate::fem::{
-    Condition, Distance, Exact, Function, Mesh, Obstacle, PointSupport, SharedFunction, Side,
+    Condition, Distance, Function, Mesh, Obstacle, PointSupport, SharedFunction, Side,
 };
 use crate::io::expression::Expression;
 use crate::io::input::FileError;
 use crate::quote::names;
+use crate::study::Exact;
+use crate::study::exact::Kind;
 
 /// The obstacles by their names, with their places.
 type Obstacles<'s> = BTreeMap<&'s str, (Spot<'s>, Obstacle)>;

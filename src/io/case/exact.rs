@@ -7,16 +7,16 @@
 //! | "corner" | omega between pi/2 and pi |
 //! | "patch" | which = "d1" (p > 0), "d2" (p, d > 0), "d3" (p > 0, w, g0), "d4" or "d5" (d > 0) |
 //!
-//! The solutions themselves: [`exact`](crate::fem::exact).
+//! The solutions themselves: [`exact`](crate::study::exact).
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
 use super::table::{Table, Value};
-use crate::fem::Exact;
-use crate::fem::exact::{Corner, Kind, Patch, Singular, Smooth};
 use crate::io::input::FileError;
 use crate::kernel::Material;
+use crate::study::Exact;
+use crate::study::exact::{Corner, Kind, Patch, Singular, Smooth};
 
 /// Reads the parameters of a solution, beside the key that names it.
 type Read<T> = fn(&Table, Material<f64>) -> Result<T, FileError>;

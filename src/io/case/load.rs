@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use super::material::on_surface;
 use super::table::{Table, Value};
-use crate::fem::{Exact, Mesh, SharedFunction, SurfaceForce, exact};
+use crate::fem::{Mesh, SharedFunction, SurfaceForce};
 use crate::io::expression::Expression;
 use crate::io::input::FileError;
+use crate::study::{Exact, exact};
 
 /// The force on the whole body, and those on its surfaces; an exact solution has its own.
 pub(super) fn read_loads(

@@ -4,18 +4,19 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use signorini::fem::exact::{Corner, Kind, Singular, Smooth};
 use signorini::fem::graded_quadrature::{Features, Rule};
 use signorini::fem::{
-    Condition, DataError, Diagonal, Exact, Mesh, Perturbation, Problem, Rectangle, Structured,
-    Trapezoid,
+    Condition, DataError, Diagonal, Mesh, Perturbation, Problem, Rectangle, Structured, Trapezoid,
 };
 use signorini::kernel::{Material, Plane};
-use signorini::solve::ladder::{fitted_slope, rates};
 use signorini::solve::{
-    ContactQuadrature, Degree, Gamma0, Ladder, MOST_GAUSS_POINTS, MOST_ITERATIONS, Method,
-    Settings, SolveError, discretize,
+    ContactQuadrature, Degree, Gamma0, MOST_GAUSS_POINTS, MOST_ITERATIONS, Method, Settings,
+    SolveError, discretize,
 };
+use signorini::study::Exact;
+use signorini::study::Ladder;
+use signorini::study::exact::{Corner, Kind, Singular, Smooth};
+use signorini::study::ladder::{fitted_slope, rates};
 
 use super::{Outcome, properties, text};
 use crate::common::{Random, constant};

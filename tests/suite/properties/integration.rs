@@ -5,9 +5,7 @@ use std::collections::BTreeMap;
 
 use signorini::fem::contact_line::Coercivity;
 use signorini::fem::double_double::DoubleDouble;
-use signorini::fem::{
-    Condition, Diagonal, EdgeRule, Errors, ExactSolution, Materials, Problem, Rectangle, quadrature,
-};
+use signorini::fem::{Condition, Diagonal, EdgeRule, Materials, Problem, Rectangle, quadrature};
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::element::displacement_gradient;
 use signorini::kernel::{
@@ -15,6 +13,7 @@ use signorini::kernel::{
 };
 use signorini::nalgebra::{Matrix2, Vector2};
 use signorini::solve::{ContactQuadrature, Degree, Gamma0, Method, SolveError, discretize};
+use signorini::study::{Errors, ExactSolution};
 
 use super::bodies::small_bodies;
 use super::{Outcome, properties, text};

@@ -9,15 +9,16 @@ use std::sync::Arc;
 use proptest::prelude::*;
 use signorini::certify::proof::{Piece, Role};
 use signorini::certify::{Certificate, Continuous, certify, certify_field};
-use signorini::fem::exact::{self, Corner, Kind, Singular, Smooth};
 use signorini::fem::{
-    Condition, Diagonal, Errors, Exact as Solution, Problem, Rectangle, SharedFunction, Space,
-    Structured, Trapezoid, contact_line, quadrature,
+    Condition, Diagonal, Problem, Rectangle, SharedFunction, Space, Structured, Trapezoid,
+    contact_line, quadrature,
 };
 use signorini::io::Expression;
 use signorini::kernel::{Ball, Enclosing, Material, Plane};
 use signorini::nalgebra::Matrix2;
 use signorini::solve::{Degree, Method, Settings, solve};
+use signorini::study::exact::{self, Corner, Kind, Singular, Smooth};
+use signorini::study::{Errors, Exact as Solution};
 
 use crate::claim::text;
 use crate::ensure;

@@ -3,13 +3,14 @@
 //!
 //! a(v^h, w) = a(u, w) = L(w) + int_{Gamma_C} sigma_n(u) w_n for all w in V^h.
 
-use super::factor::Factor;
-use super::ordering::nested_dissection;
-use super::{ContactQuadrature, Gamma0, Method, Solution, SolveError, discretize};
 use crate::fem::contact_line::Gamma;
 use crate::fem::graded_quadrature::Rule;
 use crate::fem::matrix::{self, Neighbours, Numbering};
-use crate::fem::{Discretization, Errors, ExactSolution, Problem, a_priori, errors};
+use crate::fem::{Discretization, Problem};
+use crate::solve::factor::Factor;
+use crate::solve::ordering::nested_dissection;
+use crate::solve::{ContactQuadrature, Gamma0, Method, Solution, SolveError, discretize};
+use crate::study::{Errors, ExactSolution, a_priori, errors};
 
 /// The two sides and their ingredients.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,7 +30,7 @@ impl Theorem {
     /// Evaluates both sides for `solution`, the solution of `problem`, whose exact solution is `exact`.
     ///
     /// # Errors
-    /// As [`solve`](super::solve).
+    /// As [`solve`](crate::solve::solve).
     pub fn new(
         problem: &Problem,
         solution: &Solution,

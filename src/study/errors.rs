@@ -12,13 +12,15 @@ use nalgebra::Vector2;
 #[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
 
-use super::contact_face::ContactFace;
-use super::element::{roots, value_at, with_element};
 use super::exact::ExactSolution;
-use super::graded_quadrature::Rule;
-use super::space::Space;
+use crate::fem::contact_face::ContactFace;
+use crate::fem::element::{roots, value_at, with_element};
+use crate::fem::graded_quadrature::Rule;
+use crate::fem::space::Space;
+use crate::fem::{DataError, Problem, contact_line};
 use crate::kernel::element::displacement_gradient;
 use crate::kernel::{ContactPoint, Element, positive_part};
+use crate::solve::Solution;
 
 /// Points in each direction. u is a polynomial of degree at most 7 on each piece for the smooth solutions with whole
 /// exponents (exact from 8 points on); for the singular ones the rule converges geometrically away from the singular point
@@ -54,6 +56,20 @@ impl Errors {
         exact: &dyn ExactSolution,
     ) -> Self {
         Errors::with_points(space, contact, v, exact, POINTS)
+    }
+
+    /// The distances of a solution from an exact solution of `problem`, which is the one that it solves.
+    ///
+    /// # Errors
+    /// A problem with no contact boundary, or with a gap that is not finite.
+    pub fn of(
+        solution: &Solution,
+        problem: &Problem,
+        exact: &dyn ExactSolution,
+    ) -> Result<Self, DataError> {
+        let space = Space::new(&problem.mesh, solution.degree);
+        let contact = contact_line::assemble(problem, &space, solution.gamma.gamma)?;
+        Ok(Errors::new(&space, &contact, &solution.displacement, exact))
     }
 
     /// [`Errors::new`] with `points` quadrature points in each direction.

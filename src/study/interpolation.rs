@@ -13,12 +13,12 @@
 use std::f64::consts::PI;
 
 use super::a_priori;
-use super::contact_face::ContactFace;
 use super::errors::{Errors, POINTS};
 use super::exact::ExactSolution;
-use super::graded_quadrature::{EdgePoint, Rule};
-use super::material::largest_eigenvalue;
-use super::space::Space;
+use crate::fem::contact_face::ContactFace;
+use crate::fem::graded_quadrature::{EdgePoint, Rule};
+use crate::fem::material::largest_eigenvalue;
+use crate::fem::space::Space;
 use crate::kernel::{Material, Scalar, Triangle};
 
 /// c_T^2 of (22).

@@ -4,14 +4,13 @@ use std::collections::BTreeMap;
 
 use thiserror::Error;
 
-use super::{
+use crate::fem::{MeshError, Perturbation, Problem, Space, Structured, contact_line};
+use crate::solve::{
     ContactQuadrature, Degree, Gamma0, Method, Outline, Settings, Solution, SolveError, check,
     solve,
 };
-use crate::fem::exact::{self, Kind};
-use crate::fem::{
-    Errors, Exact, MeshError, Perturbation, Problem, Space, Structured, contact_line, interpolation,
-};
+use crate::study::exact::{self, Kind};
+use crate::study::{Errors, Exact, interpolation};
 
 /// A family of meshes with all that is solved on them: level l has 2^l times as many cells along each axis as `body`.
 #[derive(Clone, Debug)]
@@ -57,7 +56,7 @@ pub struct Level {
     pub gamma0: f64,
     /// kappa = gamma0 C_h.
     pub kappa: f64,
-    /// The bound of [`a_priori::left`](crate::fem::a_priori::left) by Theorem 3.5 with its number; for P1 with exact
+    /// The bound of [`a_priori::left`](crate::study::a_priori::left) by Theorem 3.5 with its number; for P1 with exact
     /// contact integrals, u in H^2 and kappa < 1.
     pub proved: Option<f64>,
 }
@@ -109,7 +108,7 @@ impl Ladder {
         let problem = self.problem(level)?;
         let (solution, _) = solve(&problem, &self.method, &self.settings)?;
         let newton = &solution.newton;
-        let errors = solution.errors(&problem, &*self.solution).map_err(SolveError::from)?;
+        let errors = Errors::of(&solution, &problem, &*self.solution).map_err(SolveError::from)?;
         let mesh = &problem.mesh;
         let level = Level {
             h: (0..mesh.triangles().len()).map(|t| mesh.diameter(t)).fold(0.0, f64::max),

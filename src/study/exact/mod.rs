@@ -26,9 +26,9 @@ pub use smooth::Smooth;
 
 use nalgebra::Matrix2;
 
-use super::graded_quadrature::Features;
-use super::mesh::Mesh;
-use super::problem::{Condition, Function, Problem, SharedFunction};
+use crate::fem::graded_quadrature::Features;
+use crate::fem::mesh::Mesh;
+use crate::fem::problem::{Condition, Function, Problem, SharedFunction};
 use crate::kernel::{Material, Scalar, Stress};
 
 /// A displacement field that solves (1)-(2), with its data.
