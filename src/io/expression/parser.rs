@@ -24,21 +24,15 @@ impl FromStr for Expression {
 }
 
 /// The functions, in the order in which messages list them.
-const FUNCTIONS: [(&str, NamedFunction); 7] = [
-    ("sqrt", NamedFunction::Unary(Unary::Sqrt)),
-    ("sin", NamedFunction::Unary(Unary::Sin)),
-    ("cos", NamedFunction::Unary(Unary::Cos)),
-    ("exp", NamedFunction::Unary(Unary::Exp)),
-    ("abs", NamedFunction::Unary(Unary::Abs)),
-    ("min", NamedFunction::Binary(Binary::Min)),
-    ("max", NamedFunction::Binary(Binary::Max)),
+const FUNCTIONS: [(&str, Instruction); 7] = [
+    ("sqrt", Instruction::Unary(Unary::Sqrt)),
+    ("sin", Instruction::Unary(Unary::Sin)),
+    ("cos", Instruction::Unary(Unary::Cos)),
+    ("exp", Instruction::Unary(Unary::Exp)),
+    ("abs", Instruction::Unary(Unary::Abs)),
+    ("min", Instruction::Binary(Binary::Min, 1)),
+    ("max", Instruction::Binary(Binary::Max, 1)),
 ];
-
-#[derive(Clone, Copy)]
-enum NamedFunction {
-    Unary(Unary),
-    Binary(Binary),
-}
 
 /// The largest exponent of repeated multiplication. Beyond it that gains no time and loses digits: its error grows like the
 /// exponent.
@@ -179,20 +173,15 @@ impl<'t> Parser<'t> {
         self.skip('(', &format!("'(' after {name}"))?;
         self.expression(level + 1)?;
         let end = |count| format!("an operator (+ - * / ^) or ')': {name} takes {count}");
-        match *function {
-            NamedFunction::Unary(f) => {
-                self.skip(')', &end("one argument"))?;
-                self.operation(Instruction::Unary(f))
-            }
-            NamedFunction::Binary(f) => {
-                let comma = format!("an operator (+ - * / ^) or ',': {name} takes two arguments");
-                self.skip(',', &comma)?;
-                let second = self.instructions.len();
-                self.expression(level + 1)?;
-                self.skip(')', &end("two arguments"))?;
-                self.binary(f, second)
-            }
-        }
+        let Instruction::Binary(f, _) = *function else {
+            self.skip(')', &end("one argument"))?;
+            return self.operation(*function);
+        };
+        self.skip(',', &format!("an operator (+ - * / ^) or ',': {name} takes two arguments"))?;
+        let second = self.instructions.len();
+        self.expression(level + 1)?;
+        self.skip(')', &end("two arguments"))?;
+        self.binary(f, second)
     }
 
     fn skip(&mut self, symbol: char, expected: &str) -> Result<(), ExpressionError> {
