@@ -37,18 +37,11 @@ type Result<T> = std::result::Result<T, FileError>;
 pub fn read(file: &Path, share: Option<f64>) -> Result<Mesh> {
     let bytes =
         input::read(file, MOST_OF_A_MESH).map_err(|error| error.at(file, Position::File))?;
-    mesh_of(&bytes, file, share)
+    from_bytes(&bytes, file, share)
 }
 
-/// The mesh in `bytes`, which messages call `file`.
-///
-/// # Errors
-/// As [`read`].
-pub fn from_bytes(bytes: &[u8], file: &Path) -> Result<Mesh> {
-    mesh_of(bytes, file, None)
-}
-
-fn mesh_of(bytes: &[u8], file: &Path, share: Option<f64>) -> Result<Mesh> {
+/// The mesh in `bytes`, which messages call `file`; otherwise as [`read`].
+pub fn from_bytes(bytes: &[u8], file: &Path, share: Option<f64>) -> Result<Mesh> {
     // Names and entities: what is kept of one is no more than this many times what the file says of it.
     const MOST_TIMES: u64 = 4;
     let mut cursor = Cursor { bytes, file, at: 0, form: Form::Text };
@@ -113,11 +106,10 @@ impl Elements {
         entity: i32,
     ) -> Result<()> {
         const NODE: &str = "the tag of a node";
-        let Some((dimension, order)) = dimension_and_order(number) else {
-            let (kind, expected) = other_kind(number);
+        let (dimension, order) = dimension_and_order(number).map_err(|[kind, expected]| {
             let said = format!("element {tag} is a {kind} (type {number}); expected {expected}");
-            return Err(cursor.wrong_at(start, said));
-        };
+            cursor.wrong_at(start, said)
+        })?;
         let mut nodes = [0; 3];
         for node in &mut nodes[..=dimension] {
             *node = cursor.size(NODE)?;
@@ -140,35 +132,28 @@ impl Elements {
     }
 }
 
-/// The dimension and the order of the element types in use.
-fn dimension_and_order(number: i32) -> Option<(usize, usize)> {
-    match number {
-        15 => Some((0, 1)),
-        1 => Some((1, 1)),
-        2 => Some((2, 1)),
-        8 => Some((1, 2)),
-        9 => Some((2, 2)),
-        _ => None,
-    }
-}
-
-/// The name of an element type that is not read, and its remedy.
-fn other_kind(number: i32) -> (&'static str, &'static str) {
+/// The dimension and the order of an element type in use; of another its name, and the remedy.
+fn dimension_and_order(number: i32) -> std::result::Result<(usize, usize), [&'static str; 2]> {
     const ORDER: &str = "2-node lines and 3-node triangles: export with element order 1";
     const TRIANGLES: &str = "3-node triangles: do not recombine the mesh";
     const PLANE: &str = "a plane mesh of 3-node triangles: mesh in two dimensions, gmsh -2";
-    match number {
-        3 => ("4-node quadrangle", TRIANGLES),
-        4 => ("4-node tetrahedron", PLANE),
-        5 => ("8-node hexahedron", PLANE),
-        6 => ("6-node prism", PLANE),
-        7 => ("5-node pyramid", PLANE),
-        10 => ("9-node quadrangle", TRIANGLES),
-        16 => ("8-node quadrangle", TRIANGLES),
-        21 => ("10-node triangle", ORDER),
-        26 => ("4-node line", ORDER),
-        _ => ("kind of element that has no use here", "2-node lines and 3-node triangles"),
-    }
+    Err(match number {
+        15 => return Ok((0, 1)),
+        1 => return Ok((1, 1)),
+        2 => return Ok((2, 1)),
+        8 => return Ok((1, 2)),
+        9 => return Ok((2, 2)),
+        3 => ["4-node quadrangle", TRIANGLES],
+        4 => ["4-node tetrahedron", PLANE],
+        5 => ["8-node hexahedron", PLANE],
+        6 => ["6-node prism", PLANE],
+        7 => ["5-node pyramid", PLANE],
+        10 => ["9-node quadrangle", TRIANGLES],
+        16 => ["8-node quadrangle", TRIANGLES],
+        21 => ["10-node triangle", ORDER],
+        26 => ["4-node line", ORDER],
+        _ => ["kind of element that has no use here", "2-node lines and 3-node triangles"],
+    })
 }
 
 /// The version of the format.
@@ -243,19 +228,15 @@ fn read_format(cursor: &mut Cursor) -> Result<Version> {
         let start = cursor.at;
         let one: [u8; 4] = cursor.take("the number 1, which shows the order of the bytes")?;
         cursor.form = Form::Binary { tag_size };
-        match one {
-            [1, 0, 0, 0] => {}
-            [0, 0, 0, 1] => {
-                return Err(cursor.unexpected(
-                    start,
-                    "the bytes of a big-endian machine",
-                    "little-endian numbers: export the mesh as text (Mesh.Binary = 0)",
-                ));
-            }
-            other => {
-                let found = format!("the bytes {other:?}");
-                return Err(cursor.unexpected(start, &found, "the number 1 in 4 bytes"));
-            }
+        let (found, expected) = match one {
+            [0, 0, 0, 1] => (
+                "the bytes of a big-endian machine".to_owned(),
+                "little-endian numbers: export the mesh as text (Mesh.Binary = 0)",
+            ),
+            other => (format!("the bytes {other:?}"), "the number 1 in 4 bytes"),
+        };
+        if one != [1, 0, 0, 0] {
+            return Err(cursor.unexpected(start, &found, expected));
         }
     }
     cursor.end_of("MeshFormat")?;
@@ -374,7 +355,7 @@ fn read_elements(cursor: &mut Cursor) -> Result<Elements> {
         let entity = cursor.int("the tag of an entity")?;
         let number = cursor.int("the type of the elements")?;
         let count = cursor.size("a number of elements")?;
-        if let Some((dimension, 1)) = dimension_and_order(number) {
+        if let Ok((dimension, 1)) = dimension_and_order(number) {
             cursor.make_room(&mut elements.by_dimension[dimension], count)?;
         }
         for _ in 0..count {
@@ -450,7 +431,7 @@ mod tests {
     const ALL: &[u8] = include_bytes!("../../tests/meshes/square-all.msh");
 
     fn parse(bytes: &[u8]) -> Result<Mesh> {
-        from_bytes(bytes, Path::new("x.msh"))
+        from_bytes(bytes, Path::new("x.msh"), None)
     }
 
     fn message(bytes: &[u8]) -> String {
@@ -490,21 +471,13 @@ mod tests {
     }
 
     #[test]
-    fn unused_nodes_points_unnamed_curves_and_parameters_are_passed_over() {
-        check(&parse(ALL).unwrap());
-    }
-
-    #[test]
-    fn line_ends_of_other_systems_are_read() {
-        let text = String::from_utf8(TEXT.to_vec()).unwrap();
-        check(&parse(text.replace('\n', "\r\n").as_bytes()).unwrap());
-    }
-
-    #[test]
-    fn sections_that_do_not_matter_are_skipped() {
-        let mut bytes = BINARY.to_vec();
-        bytes.extend(b"$Comments\n$Nodes is\n\xff not a section here\n$EndComments\n");
-        check(&parse(&bytes).unwrap());
+    fn what_does_not_matter_is_passed_over() {
+        // Unused nodes, points, unnamed curves and parameters; line ends of other systems; sections.
+        let text = String::from_utf8(TEXT.to_vec()).unwrap().replace('\n', "\r\n");
+        let more = b"$Comments\n$Nodes is\n\xff not a section here\n$EndComments\n";
+        for bytes in [ALL, text.as_bytes(), &[BINARY, more].concat()] {
+            check(&parse(bytes).unwrap());
+        }
     }
 
     #[test]

@@ -78,9 +78,8 @@ const CONDITIONS: [&str; 7] =
 /// The condition on a boundary that has this area.
 fn read_condition(table: &Table, obstacles: &Obstacles, area: f64) -> Result<Condition, FileError> {
     table.only(&CONDITIONS)?;
-    let keys: Vec<&str> = CONDITIONS.into_iter().filter(|key| table.get(key).is_some()).collect();
     let value = |key| table.require(key, "a value");
-    Ok(match keys.as_slice() {
+    Ok(match table.given(&CONDITIONS)[..] {
         ["force"] => {
             Condition::Traction(value("force")?.vector()?.map(|force| constant(force / area)))
         }
@@ -174,14 +173,11 @@ fn read_obstacle(table: &Table) -> Result<Obstacle, FileError> {
     let shape = shape.table()?;
     if table.get("circle").is_some() {
         shape.only(&["center", "radius", "side"])?;
-        let side = [("outside", Side::Outside), ("inside", Side::Inside)];
-        return Ok(Obstacle::Circle {
-            center: shape.require("center", "a point")?.vector()?,
-            radius: shape.require("radius", "a length")?.positive()?,
-            side: shape
-                .require("side", "\"outside\" or \"inside\": where the body is")?
-                .one_of(&side)?,
-        });
+        let center = shape.require("center", "a point")?.vector()?;
+        let radius = shape.require("radius", "a length")?.positive()?;
+        let side = shape.require("side", "\"outside\" or \"inside\": where the body is")?;
+        let side = side.one_of(&[("outside", Side::Outside), ("inside", Side::Inside)])?;
+        return Ok(Obstacle::Circle { center, radius, side });
     }
     shape.only(&["point", "normal"])?;
     let point = shape.require("point", "a point of the plane")?.vector()?;

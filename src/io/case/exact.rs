@@ -19,11 +19,11 @@ use crate::study::Exact;
 use crate::study::exact::{Corner, Kind, Patch, Singular, Smooth};
 
 /// Reads the parameters of a solution, beside the key that names it.
-type Read<T> = fn(&Table, Material<f64>) -> Result<T, FileError>;
+type Read = fn(&Table, Material<f64>) -> Result<Exact, FileError>;
 
 /// The solution that the section describes.
 pub(crate) fn read_exact(table: &Table, material: Material<f64>) -> Result<Exact, FileError> {
-    let solutions: [(&str, Read<Exact>); 4] = [
+    let solutions: [(&str, Read); 4] = [
         ("smooth", read_smooth),
         ("singular", read_singular),
         ("corner", read_corner),
@@ -67,47 +67,34 @@ pub fn angle<'s>(table: &Table<'s>) -> Result<(f64, Value<'s>), FileError> {
 }
 
 fn read_patch(table: &Table, material: Material<f64>) -> Result<Patch, FileError> {
-    let tests: [(&str, Read<Patch>); 5] = [
-        ("d1", |table, material| {
-            table.only(&["solution", "which", "p"])?;
-            Ok(Patch::compression(material, above(table, "p", 0.0)?))
-        }),
-        ("d2", |table, material| {
-            table.only(&["solution", "which", "p", "d"])?;
-            Ok(Patch::separation(material, number(table, "p")?, above(table, "d", 0.0)?))
-        }),
-        ("d3", |table, material| {
-            table.only(&["solution", "which", "p", "w", "g0"])?;
-            let (p, w, g0) = (above(table, "p", 0.0)?, number(table, "w")?, number(table, "g0")?);
-            Ok(Patch::inclined(material, p, w, g0))
-        }),
-        ("d4", |table, material| {
-            table.only(&["solution", "which"])?;
-            Ok(Patch::grazing(material))
-        }),
-        ("d5", |table, material| {
-            table.only(&["solution", "which", "d"])?;
-            Ok(Patch::interference(material, above(table, "d", 0.0)?))
-        }),
+    let tests = [
+        ("d1", &["p"][..]),
+        ("d2", &["p", "d"]),
+        ("d3", &["p", "w", "g0"]),
+        ("d4", &[]),
+        ("d5", &["d"]),
     ];
     let which = table.require("which", "d1, d2, d3, d4 or d5 in quotes")?;
-    which.one_of(&tests)?(table, material)
-}
-
-fn number(table: &Table, key: &str) -> Result<f64, FileError> {
-    table.require(key, "a number")?.number()
+    let keys = which.one_of(&tests)?;
+    table.only(&[&["solution", "which"], keys].concat())?;
+    let number = |key| table.require(key, "a number")?.number();
+    Ok(match which.text()? {
+        "d1" => Patch::compression(material, above(table, "p", 0.0)?),
+        "d2" => Patch::separation(material, number("p")?, above(table, "d", 0.0)?),
+        "d3" => Patch::inclined(material, above(table, "p", 0.0)?, number("w")?, number("g0")?),
+        "d4" => Patch::grazing(material),
+        _ => Patch::interference(material, above(table, "d", 0.0)?),
+    })
 }
 
 /// A number above `least`.
 fn above(table: &Table, key: &str, least: f64) -> Result<f64, FileError> {
-    let expected = format!("a number above {least}");
-    table.require(key, &expected)?.number_that(|value| value > least, &expected)
+    table.number_that(key, |value| value > least, &format!("a number above {least}"))
 }
 
 /// A place on the contact line (0, 1).
 fn inside(table: &Table, key: &str) -> Result<f64, FileError> {
-    let expected = "a number above 0 and below 1";
-    table.require(key, expected)?.number_that(|c| 0.0 < c && c < 1.0, expected)
+    table.number_that(key, |c| 0.0 < c && c < 1.0, "a number above 0 and below 1")
 }
 
 /// The gap function of a smooth solution: the solution needs its derivatives, so it is a polynomial.
@@ -147,7 +134,6 @@ mod tests {
     #[test]
     fn every_solution_is_read_with_its_parameters() {
         for text in [
-            "solution = 'smooth'\nc = 0.5\nk = 3\nm = 2\nap = 8\naq = 4\ngap = '0.2 - 0.3*x + 0.5*x^2'",
             "solution = 'singular'\nc = 0.5\namplitude = 1",
             "solution = 'corner'\nomega = 2.0",
             "solution = 'patch'\nwhich = 'd1'\np = 0.3",
@@ -158,43 +144,34 @@ mod tests {
         ] {
             assert!(read(text).is_ok(), "{text}: {:?}", read(text));
         }
-        let gap =
-            read("solution='smooth'\nc=0.5\nk=3\nm=2\nap=8\naq=4\ngap='1 + 2*x + 3*x^2'").unwrap();
+        let gap = read(&format!("{SMOOTH}k = 3\ngap = '1 + 2*x + 3*x^2'")).unwrap();
         assert_eq!(gap.gap([2.0, 0.0]), 17.0);
     }
 
+    const SMOOTH: &str = "solution = 'smooth'\nc = 0.5\nm = 2\nap = 8\naq = 4\n";
+
     #[test]
     fn wrong_parameters_are_refused_with_what_was_expected() {
+        let smooth = |rest: &str| format!("{SMOOTH}{rest}");
+        let other = |text: &str| format!("solution = {text}");
         for (text, message) in [
-            ("", "solution is missing; expected the name of an exact solution"),
+            (String::new(), "solution is missing; expected the name of an exact solution"),
             (
-                "solution = 'smoth'",
+                other("'smoth'"),
                 "solution = \"smoth\"; expected \"smooth\", \"singular\", \"corner\" or \"patch\"",
             ),
-            ("solution = 'corner'\nomega = 1", "omega = 1; expected an angle between pi/2 and pi"),
+            (other("'corner'\nomega = 1"), "omega = 1; expected an angle between pi/2 and pi"),
+            (other("'corner'\nomega = 2\nc = 1"), "unknown key 'c'; expected solution or omega"),
             (
-                "solution = 'corner'\nomega = 2\nc = 1",
-                "unknown key 'c'; expected solution or omega",
-            ),
-            (
-                "solution = 'singular'\nc = 1\namplitude = 1",
+                other("'singular'\nc = 1\namplitude = 1"),
                 "c = 1; expected a number above 0 and below 1",
             ),
-            ("solution = 'singular'\nc = 0.5", "amplitude is missing; expected a number above 0"),
-            (
-                "solution = 'smooth'\nc = 0.5\nk = 2.5\nm = 2\nap = 8\naq = 4",
-                "k = 2.5; expected a number above 2.5",
-            ),
-            (
-                "solution = 'smooth'\nc = 0.5\nk = 3\nm = 2\nap = 8\naq = 4\ngap = 'sin(x)'",
-                "gap = \"sin(x)\"; expected a polynomial in x",
-            ),
-            (
-                "solution = 'patch'\nwhich = 'd4'\np = 1",
-                "unknown key 'p'; expected solution or which",
-            ),
+            (other("'singular'\nc = 0.5"), "amplitude is missing; expected a number above 0"),
+            (smooth("k = 2.5"), "k = 2.5; expected a number above 2.5"),
+            (smooth("k = 3\ngap = 'sin(x)'"), "gap = \"sin(x)\"; expected a polynomial in x"),
+            (other("'patch'\nwhich = 'd4'\np = 1"), "unknown key 'p'; expected solution or which"),
         ] {
-            let found = read(text).unwrap_err();
+            let found = read(&text).unwrap_err();
             assert!(found.ends_with(message), "{found}");
         }
     }

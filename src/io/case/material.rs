@@ -128,9 +128,10 @@ pub(super) fn on_surface<'m>(
     }
 }
 
-fn read_plane(table: &Table, default: Plane) -> Result<Plane, FileError> {
+fn read_plane(table: &Table, mut plane: Plane) -> Result<Plane, FileError> {
     let planes = [("strain", Plane::Strain), ("stress", Plane::Stress)];
-    Ok(table.optional("plane", |plane| plane.one_of(&planes))?.unwrap_or(default))
+    table.set("plane", &mut plane, |plane| plane.one_of(&planes))?;
+    Ok(plane)
 }
 
 fn read_material(table: &Table, plane: Plane) -> Result<(Material<f64>, MaterialEcho), FileError> {
@@ -138,24 +139,25 @@ fn read_material(table: &Table, plane: Plane) -> Result<(Material<f64>, Material
     let plane = read_plane(table, plane)?;
     let isotropic = |material, moduli| (material, MaterialEcho::new(&material, Some(moduli)));
     let tensor = |material| (material, MaterialEcho::new(&material, None));
-    let (material, echo) = match MODULI.map(|key| table.get(key)) {
-        [Some(lambda), Some(mu), None, None, None, None] => {
-            let mu = mu.positive()?;
+    let value = |key| table.require(key, EXPECTED);
+    let (material, echo) = match table.given(&MODULI)[..] {
+        ["lambda", "mu"] => {
+            let mu = value("mu")?.positive()?;
             let least = quote::number(-2.0 / 3.0 * mu);
             let expected = format!("a number above {least}, for 3 lambda + 2 mu > 0");
-            let lambda = lambda.number_that(|l| 3.0 * l + 2.0 * mu > 0.0, &expected)?;
+            let lambda = value("lambda")?.number_that(|l| 3.0 * l + 2.0 * mu > 0.0, &expected)?;
             // E = mu (3 lambda + 2 mu) / (lambda + mu) and nu = lambda / (2 (lambda + mu)), so that nothing overflows that
             // need not.
             let ratio = lambda / (lambda + mu);
             isotropic(Material::lame(lambda, mu, plane), [mu * (2.0 + ratio), ratio / 2.0])
         }
-        [None, None, Some(young), Some(poisson), None, None] => {
-            let young = young.positive()?;
+        ["young", "poisson"] => {
+            let young = value("young")?.positive()?;
             let expected = "a number above -1 and below 0.5";
-            let poisson = poisson.number_that(|nu| -1.0 < nu && nu < 0.5, expected)?;
+            let poisson = value("poisson")?.number_that(|nu| -1.0 < nu && nu < 0.5, expected)?;
             isotropic(Material::young_poisson(young, poisson, plane), [young, poisson])
         }
-        [None, None, None, None, Some(stiffness), None] => {
+        ["stiffness"] => {
             let across = match (plane, table.get("across")) {
                 (Plane::Strain, Some(across)) => Some(numbers(&across, ACROSS)?),
                 (Plane::Stress, None) => None,
@@ -166,12 +168,12 @@ fn read_material(table: &Table, plane: Plane) -> Result<(Material<f64>, Material
                     return Err(table.at.found("across in plane stress", "plane strain with it"));
                 }
             };
-            tensor(checked(
-                &stiffness,
-                stable(Material::tensor(numbers(&stiffness, SIX)?, across)),
-            )?)
+            let stiffness = value("stiffness")?;
+            let entries = numbers(&stiffness, SIX)?;
+            tensor(checked(&stiffness, stable(Material::tensor(entries, across)))?)
         }
-        [None, None, None, None, None, Some(moduli)] => {
+        ["orthotropic"] => {
+            let moduli = value("orthotropic")?;
             tensor(checked(&moduli, read_orthotropic(&moduli, plane)?)?)
         }
         _ => return Err(table.combination(&MODULI, EXPECTED)),
@@ -222,16 +224,15 @@ fn read_orthotropic(
         keys.extend(["e3", "nu13", "nu23"]);
     }
     table.only(&keys)?;
+    let number = |key, expected| table.require(key, expected)?.number();
+    let out = |key| number(key, "a number, in plane strain");
     let across = match plane {
         Plane::Stress => None,
-        Plane::Strain => {
-            let expected = "a number, in plane strain";
-            let number = |key| table.require(key, expected)?.number();
-            Some(Across { e3: number("e3")?, nu13: number("nu13")?, nu23: number("nu23")? })
-        }
+        Plane::Strain => Some(Across { e3: out("e3")?, nu13: out("nu13")?, nu23: out("nu23")? }),
     };
-    let number = |key| table.require(key, "a number")?.number();
-    let angle = table.optional("angle", Value::number)?.unwrap_or(0.0);
-    let [e1, e2, nu12, g12] = [number("e1")?, number("e2")?, number("nu12")?, number("g12")?];
+    let mut angle = 0.0;
+    table.set("angle", &mut angle, Value::number)?;
+    let [e1, e2, nu12, g12] = ["e1", "e2", "nu12", "g12"].map(|key| number(key, "a number"));
+    let (e1, e2, nu12, g12) = (e1?, e2?, nu12?, g12?);
     Ok(stable_orthotropic(Orthotropic { e1, e2, nu12, g12, angle, across }))
 }

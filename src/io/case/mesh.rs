@@ -46,52 +46,41 @@ fn make_mesh(table: &Table, directory: &Path) -> Result<Meshed, FileError> {
     table.only(&["rectangle", "trapezoid", "gmsh", "perturb", "merge"])?;
     let perturbation = table.optional("perturb", read_perturbation)?;
     let merge = table.optional("merge", read_merge)?;
-    let shapes = SHAPES.map(|key| table.get(key));
-    if merge.is_some() && shapes[2].is_none() {
+    let shapes = table.given(&SHAPES);
+    if merge.is_some() && !shapes.contains(&"gmsh") {
         return Err(table.combination(&[SHAPES[0], SHAPES[1], "merge"], "merge beside gmsh only"));
     }
-    let (at, structured) = match shapes {
-        [Some(value), None, None] => {
-            let table = value.table()?;
-            let rectangle = read_rectangle(&table)?;
-            (table.at, Structured::Rectangle(rectangle))
-        }
-        [None, Some(value), None] => {
-            let table = value.table()?;
-            let trapezoid = read_trapezoid(&table)?;
-            (table.at, Structured::Trapezoid(trapezoid))
-        }
-        [None, None, Some(value)] => {
-            if perturbation.is_some() {
-                return Err(table.combination(
-                    &["gmsh", "perturb"],
-                    "perturb beside rectangle or trapezoid only",
-                ));
-            }
-            let name = value.text()?;
-            if name.is_empty() {
-                return Err(value.wrong("the name of a mesh file"));
-            }
-            let file = directory.join(name);
-            let mesh = gmsh::read(&file, merge).map_err(|error| {
-                value.at.wrong(error.error.clone().map(|_| format!("[mesh] gmsh: {error}")))
-            })?;
-            return Ok(Meshed { file: Some(file), ..mesh.into() });
-        }
-        _ => {
-            let expected = format!("exactly one of {}", SHAPES.join(", "));
-            return Err(table.combination(&SHAPES, &expected));
-        }
+    let &[shape] = shapes.as_slice() else {
+        let expected = format!("exactly one of {}", SHAPES.join(", "));
+        return Err(table.combination(&SHAPES, &expected));
     };
-    let mesh = structured.mesh(perturbation).map_err(|error| at.mesh(error))?;
+    let value = table.require(shape, "a mesh")?;
+    if shape == "gmsh" {
+        if perturbation.is_some() {
+            let expected = "perturb beside rectangle or trapezoid only";
+            return Err(table.combination(&["gmsh", "perturb"], expected));
+        }
+        let name = value.text()?;
+        if name.is_empty() {
+            return Err(value.wrong("the name of a mesh file"));
+        }
+        let file = directory.join(name);
+        let mesh = gmsh::read(&file, merge).map_err(|error| {
+            value.at.wrong(error.error.clone().map(|_| format!("[mesh] gmsh: {error}")))
+        })?;
+        return Ok(Meshed { file: Some(file), ..mesh.into() });
+    }
+    let of = value.table()?;
+    let structured = if shape == "rectangle" { read_rectangle(&of)? } else { read_trapezoid(&of)? };
+    let mesh = structured.mesh(perturbation).map_err(|error| of.at.mesh(error))?;
     Ok(Meshed { structured: Some(structured), perturbation, ..mesh.into() })
 }
 
-fn read_trapezoid(table: &Table) -> Result<Trapezoid, FileError> {
+fn read_trapezoid(table: &Table) -> Result<Structured, FileError> {
     table.only(&["omega", "n"])?;
     let (omega, _) = angle(table)?;
-    let most = MOST_CELLS.isqrt();
-    Ok(Trapezoid { omega, n: table.require("n", "a number of cells")?.whole_number(1..=most)? })
+    let n = table.require("n", "a number of cells")?.whole_number(1..=MOST_CELLS.isqrt())?;
+    Ok(Structured::Trapezoid(Trapezoid { omega, n }))
 }
 
 /// The largest share of the body within which vertices are merged: those further apart are not one by mistake.
@@ -109,8 +98,7 @@ fn read_perturbation(value: &Value) -> Result<Perturbation, FileError> {
     let table = value.table()?;
     table.only(&["amount", "seed"])?;
     let expected = format!("a number of cells from 0 to {MOST_MOVED}");
-    let amount = table.require("amount", &expected)?;
-    let amount = amount.number_that(|a| (0.0..=MOST_MOVED).contains(&a), &expected)?;
+    let amount = table.number_that("amount", |a| (0.0..=MOST_MOVED).contains(&a), &expected)?;
     let seed = table.optional("seed", |seed| seed.whole_number(0..=MOST_SEEDS))?;
     Ok(Perturbation { amount, seed: seed.unwrap_or(0) as u64 })
 }
@@ -118,17 +106,15 @@ fn read_perturbation(value: &Value) -> Result<Perturbation, FileError> {
 /// Seeds that every reader of TOML can hold.
 const MOST_SEEDS: usize = 1 << 31;
 
-fn read_rectangle(table: &Table) -> Result<Rectangle, FileError> {
+fn read_rectangle(table: &Table) -> Result<Structured, FileError> {
     table.only(&["width", "height", "nx", "ny", "diagonal"])?;
     let length = |key| table.require(key, "a length")?.positive();
+    let cells = |key| table.require(key, "a number of cells")?.whole_number(1..=MOST_CELLS);
+    let [width, height] = [length("width")?, length("height")?];
+    let [nx, ny] = [cells("nx")?, cells("ny")?];
+    let mut diagonal = Diagonal::Right;
     let diagonals =
         [("right", Diagonal::Right), ("left", Diagonal::Left), ("crossed", Diagonal::Crossed)];
-    let cells = |key| table.require(key, "a number of cells")?.whole_number(1..=MOST_CELLS);
-    Ok(Rectangle {
-        width: length("width")?,
-        height: length("height")?,
-        nx: cells("nx")?,
-        ny: cells("ny")?,
-        diagonal: table.optional("diagonal", |d| d.one_of(&diagonals))?.unwrap_or(Diagonal::Right),
-    })
+    table.set("diagonal", &mut diagonal, |value| value.one_of(&diagonals))?;
+    Ok(Structured::Rectangle(Rectangle { width, height, nx, ny, diagonal }))
 }

@@ -14,28 +14,26 @@ use crate::solve::{
 pub(super) fn read_method(table: &Table) -> Result<Method, FileError> {
     let mut method = Method::default();
     table.only(&["degree", "gamma0", "kappa", "contact_quadrature", "allow_noncoercive"])?;
-    if let Some(degree) = table.get("degree") {
-        let number = degree.whole_number(1..=2).map_err(|_| degree.wrong("1 or 2"))?;
-        method.degree = if number == 1 { Degree::One } else { Degree::Two };
-    }
-    if let Some(gamma0) = table.get("gamma0") {
-        let expected = "a positive number or \"auto\"";
-        method.gamma0 = match gamma0.as_text() {
-            Some("auto") => Gamma0::Auto,
-            Some(_) => return Err(gamma0.wrong(expected)),
-            None => Gamma0::Value(gamma0.number_that(|g| g > 0.0, expected)?),
-        };
-    }
-    if let Some(kappa) = table.get("kappa") {
-        if table.get("gamma0").is_some() {
-            return Err(kappa.wrong("gamma0 or kappa, not both"));
+    table.set("degree", &mut method.degree, |degree| {
+        match degree.whole_number(1..=2).map_err(|_| degree.wrong("1 or 2"))? {
+            1 => Ok(Degree::One),
+            _ => Ok(Degree::Two),
         }
-        method.gamma0 = Gamma0::Local(kappa.positive()?);
-    }
-    let quadrature = table.optional("contact_quadrature", read_quadrature)?;
-    method.quadrature = quadrature.unwrap_or(method.quadrature);
-    let allow = table.optional("allow_noncoercive", Value::flag)?;
-    method.allow_noncoercive = allow.unwrap_or(method.allow_noncoercive);
+    })?;
+    table.set("gamma0", &mut method.gamma0, |gamma0| {
+        let expected = "a positive number or \"auto\"";
+        match gamma0.as_text() {
+            Some("auto") => Ok(Gamma0::Auto),
+            Some(_) => Err(gamma0.wrong(expected)),
+            None => Ok(Gamma0::Value(gamma0.number_that(|g| g > 0.0, expected)?)),
+        }
+    })?;
+    table.set("kappa", &mut method.gamma0, |kappa| match table.get("gamma0") {
+        Some(_) => Err(kappa.wrong("gamma0 or kappa, not both")),
+        None => Ok(Gamma0::Local(kappa.positive()?)),
+    })?;
+    table.set("contact_quadrature", &mut method.quadrature, read_quadrature)?;
+    table.set("allow_noncoercive", &mut method.allow_noncoercive, Value::flag)?;
     Ok(method)
 }
 
@@ -55,13 +53,11 @@ fn read_quadrature(value: &Value) -> Result<ContactQuadrature, FileError> {
 pub(super) fn read_settings(table: &Table) -> Result<Settings, FileError> {
     let mut settings = Settings::default();
     table.only(&["tolerance", "max_iterations", "proof"])?;
-    for (key, setting) in [("tolerance", &mut settings.tolerance), ("proof", &mut settings.proof)] {
-        if let Some(value) = table.get(key) {
-            *setting = value.number_that(|x| 0.0 < x && x < 1.0, "a number above 0 and below 1")?;
-        }
-    }
-    let most = table.optional("max_iterations", |most| most.whole_number(1..=MOST_ITERATIONS))?;
-    settings.max_iterations = most.unwrap_or(settings.max_iterations);
+    let share = |x: &Value| x.number_that(|x| 0.0 < x && x < 1.0, "a number above 0 and below 1");
+    table.set("tolerance", &mut settings.tolerance, share)?;
+    table.set("proof", &mut settings.proof, share)?;
+    let most = |most: &Value| most.whole_number(1..=MOST_ITERATIONS);
+    table.set("max_iterations", &mut settings.max_iterations, most)?;
     Ok(settings)
 }
 
@@ -102,13 +98,10 @@ pub(super) fn read_target(
     let percent = target.as_text().and_then(|text| text.strip_suffix('%'));
     let percent = percent.and_then(|number| number.trim().parse::<f64>().ok());
     let relative = percent.map(|percent| percent / 100.0).filter(|&r| 0.0 < r && r < 1.0);
-    let most = 2 * MOST_CELLS;
-    let unknowns = table.optional("max_unknowns", |value| value.whole_number(1..=most))?;
-    let target = Target {
-        relative: relative.ok_or_else(|| target.wrong(expected))?,
-        max_unknowns: unknowns.unwrap_or(MOST_UNKNOWNS),
-    };
-    Ok((target, force))
+    let mut max_unknowns = MOST_UNKNOWNS;
+    table.set("max_unknowns", &mut max_unknowns, |most| most.whole_number(1..=2 * MOST_CELLS))?;
+    let relative = relative.ok_or_else(|| target.wrong(expected))?;
+    Ok((Target { relative, max_unknowns }, force))
 }
 
 /// The forces in the list `quantities` of \[certify\]: `force NAME`, or `force NAME x 0 0.25 ramp 0.1` for a weight along x or

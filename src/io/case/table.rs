@@ -73,7 +73,7 @@ impl<'s> Table<'s> {
     }
 
     /// The keys of tables.
-    pub(crate) fn keys_of_tables(&self) -> Vec<&'s str> {
+    pub fn keys_of_tables(&self) -> Vec<&'s str> {
         let is_table = |key: &&str| self.get(key).is_some_and(|value| value.is_table());
         self.keys().filter(is_table).collect()
     }
@@ -94,8 +94,36 @@ impl<'s> Table<'s> {
         self.get(key).map(|value| read(&value)).transpose()
     }
 
+    /// Reads the value of `key` into `setting`, if it is there.
+    pub fn set<T>(
+        &self,
+        key: &str,
+        setting: &mut T,
+        read: impl FnOnce(&Value<'s>) -> Result<T, FileError>,
+    ) -> Result<(), FileError> {
+        if let Some(value) = self.optional(key, read)? {
+            *setting = value;
+        }
+        Ok(())
+    }
+
+    /// Those of `keys` that are there.
+    pub fn given<'k>(&self, keys: &[&'k str]) -> Vec<&'k str> {
+        keys.iter().copied().filter(|key| self.entries.contains_key(*key)).collect()
+    }
+
+    /// A number that must be there and have a property, which `expected` puts in words.
+    pub fn number_that(
+        &self,
+        key: &str,
+        holds: impl FnOnce(f64) -> bool,
+        expected: &str,
+    ) -> Result<f64, FileError> {
+        self.require(key, expected)?.number_that(holds, expected)
+    }
+
     /// The value of `key`, which must be there.
-    pub(crate) fn require(&self, key: &str, expected: &str) -> Result<Value<'s>, FileError> {
+    pub fn require(&self, key: &str, expected: &str) -> Result<Value<'s>, FileError> {
         let missing = || format!("{} is missing; expected {expected}", self.name_of(key));
         self.get(key).ok_or_else(|| self.at.wrong(missing()))
     }
@@ -106,7 +134,7 @@ impl<'s> Table<'s> {
     }
 
     /// Reads the table `key` of the file, if it is there.
-    pub(crate) fn optional_section<T>(
+    pub fn optional_section<T>(
         &self,
         key: &str,
         read: impl FnOnce(&Table<'s>) -> Result<T, FileError>,
@@ -115,24 +143,20 @@ impl<'s> Table<'s> {
     }
 
     /// The table `key` of the file, which must be there.
-    pub(crate) fn required_section(
-        &self,
-        key: &str,
-        expected: &str,
-    ) -> Result<Table<'s>, FileError> {
+    pub fn required_section(&self, key: &str, expected: &str) -> Result<Table<'s>, FileError> {
         let missing = || format!("[{key}] is missing; expected {expected}");
         self.section(key)?.ok_or_else(|| self.at.wrong(missing()))
     }
 
     /// The entry `key` of this section, under a header of its own.
-    pub(crate) fn under_header(&self, key: &str) -> Spot<'s> {
+    pub fn under_header(&self, key: &str) -> Spot<'s> {
         let name = format!("{}.{}]", self.at.name.trim_end_matches(']'), shown(key));
         let start = self.entries.get_key_value(key).map(|(key, _)| key.span().start);
         Spot { source: self.at.source, name, start }
     }
 
     /// The table `key` of this section, under a header of its own.
-    pub(crate) fn subsection(&self, key: &str) -> Result<Table<'s>, FileError> {
+    pub fn subsection(&self, key: &str) -> Result<Table<'s>, FileError> {
         self.require(key, "a table")?.section(self.under_header(key).name)
     }
 
@@ -150,18 +174,18 @@ impl<'s> Table<'s> {
     }
 
     /// The one of `keys` that is there.
-    pub(crate) fn exactly_one(&self, keys: &[&str]) -> Result<Value<'s>, FileError> {
+    pub fn exactly_one(&self, keys: &[&str]) -> Result<Value<'s>, FileError> {
         self.only(keys)?;
-        let mut values = keys.iter().filter_map(|key| self.get(key));
-        match (values.next(), values.next()) {
-            (Some(value), None) => Ok(value),
-            _ => Err(self.combination(keys, &format!("either {}", listed(keys, "or")))),
+        let expected = format!("either {}", listed(keys, "or"));
+        match self.given(keys)[..] {
+            [key] => self.require(key, &expected),
+            _ => Err(self.combination(keys, &expected)),
         }
     }
 
     /// The complaint about which of `keys` are there.
     pub fn combination(&self, keys: &[&str], expected: &str) -> FileError {
-        let found: Vec<&str> = keys.iter().copied().filter(|k| self.get(k).is_some()).collect();
+        let found = self.given(keys);
         // Where one of them was set over the file, that is what went wrong.
         let mut starts = found.iter().filter_map(|key| self.get(key)?.at.start);
         let set = starts.rfind(|&start| self.at.source.setting_at(start).is_some());
@@ -199,7 +223,7 @@ impl<'s> Value<'s> {
         self.as_text().ok_or_else(|| self.wrong("a text in quotes"))
     }
 
-    pub(crate) fn as_text(&self) -> Option<&'s str> {
+    pub fn as_text(&self) -> Option<&'s str> {
         match self.value {
             DeValue::String(text) => Some(text),
             _ => None,
@@ -227,7 +251,7 @@ impl<'s> Value<'s> {
     }
 
     /// A number with a property, which `expected` puts in words.
-    pub(crate) fn number_that(
+    pub fn number_that(
         &self,
         holds: impl FnOnce(f64) -> bool,
         expected: &str,
@@ -241,7 +265,7 @@ impl<'s> Value<'s> {
     }
 
     /// An integer in a range.
-    pub(crate) fn whole_number(&self, range: RangeInclusive<usize>) -> Result<usize, FileError> {
+    pub fn whole_number(&self, range: RangeInclusive<usize>) -> Result<usize, FileError> {
         let number = match self.value {
             DeValue::Integer(n) => integer(n).and_then(|n| usize::try_from(n).ok()),
             _ => None,
@@ -333,7 +357,7 @@ impl<'s> Value<'s> {
     }
 
     /// The value is wrong; messages show it as `found`.
-    pub(crate) fn wrong_as(&self, found: &str, expected: &str) -> FileError {
+    pub fn wrong_as(&self, found: &str, expected: &str) -> FileError {
         self.at.wrong(format!("{} = {found}; expected {expected}", self.at.name))
     }
 }

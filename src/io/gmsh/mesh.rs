@@ -85,7 +85,7 @@ pub(super) fn make_mesh(content: Content) -> Result<Mesh> {
         let [a, b, _] = line.nodes;
         find(line.tag, a)?;
         find(line.tag, b)?;
-        let Some(name) = entities.name_under(1, &line)? else { continue };
+        let Some(name) = name_under(&entities, 1, &line)? else { continue };
         let (Some(&first), Some(&second)) = (vertex_of.get(&a), vertex_of.get(&b)) else {
             let error = MeshError::NoSuchEdge { boundary: name.clone(), vertices: [a, b] };
             return Err(noted(error, TAGS));
@@ -94,13 +94,13 @@ pub(super) fn make_mesh(content: Content) -> Result<Mesh> {
     }
     let mut surfaces: BTreeMap<String, Vec<usize>> = empty(&names[2]);
     for (t, triangle) in triangles.iter().enumerate() {
-        if let Some(name) = entities.name_under(2, triangle)? {
+        if let Some(name) = name_under(&entities, 2, triangle)? {
             surfaces.entry(name.clone()).or_default().push(t);
         }
     }
     let mut named_points = BTreeMap::new();
     for point in points.iter().filter(|_| !names[0].is_empty()) {
-        let name = entities.name_under(0, point)?;
+        let name = name_under(&entities, 0, point)?;
         if let (Some(name), Some(&vertex)) = (name, vertex_of.get(&point.nodes[0])) {
             named_points.insert(name.clone(), vertex);
         }
@@ -148,19 +148,19 @@ fn check_straight(element: usize, node: usize, places: [[f64; 2]; 3]) -> Result<
 const KINDS: ByDimension<&str> = ["point", "curve", "surface"];
 
 /// The name of each entity, if it is in a physical group.
-#[derive(Default)]
-struct Entities(ByDimension<BTreeMap<i32, Option<String>>>);
+type Entities = ByDimension<BTreeMap<i32, Option<String>>>;
 
-impl Entities {
-    /// The name of the entity of this dimension on which an element lies.
-    fn name_under(&self, dimension: usize, element: &GmshElement) -> Result<Option<&String>> {
-        let &GmshElement { tag, entity, .. } = element;
-        let name = self.0[dimension].get(&entity).ok_or_else(|| {
-            let kind = KINDS[dimension];
-            format!("element {tag} lies on {kind} {entity}, which is not in $Entities")
-        })?;
-        Ok(name.as_ref())
-    }
+/// The name of the entity of this dimension on which an element lies.
+fn name_under<'e>(
+    entities: &'e Entities,
+    dimension: usize,
+    &GmshElement { tag, entity, .. }: &GmshElement,
+) -> Result<Option<&'e String>> {
+    let name = entities[dimension].get(&entity).ok_or_else(|| {
+        let kind = KINDS[dimension];
+        format!("element {tag} lies on {kind} {entity}, which is not in $Entities")
+    })?;
+    Ok(name.as_ref())
 }
 
 /// The names of all entities. A group without a name is an error for curves, which are meant as boundaries, and no name for
@@ -186,7 +186,7 @@ fn name_entities(names: &ByDimension<BTreeMap<i32, String>>, groups: Groups) -> 
                 );
                 return Err(said.into());
             }
-            all.0[dimension].insert(entity, found.first().map(|&name| name.clone()));
+            all[dimension].insert(entity, found.first().map(|&name| name.clone()));
         }
     }
     Ok(all)
