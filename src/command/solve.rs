@@ -25,43 +25,32 @@ pub fn run(
     quiet: bool,
     verbose: bool,
 ) -> Result<Done, Failure> {
-    let wanted = if options.json { Wanted::Json } else { Wanted::Summary { verbose } };
-    match (options.engine, options.ranks) {
-        (Engine::Fenicsx, _) => solve_by_fenicsx(case, options, wanted, quiet),
-        (Engine::Signorini, None) => solve(case, options, wanted, quiet),
-        (Engine::Signorini, Some(ranks)) => Err(wrong(format!(
-            "--ranks {ranks}: this program solves in one process; expected --engine fenicsx beside it"
-        ))),
-    }
-}
-
-/// The form of a solve's report.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Wanted {
-    Summary { verbose: bool },
-    Json,
-}
-
-impl Wanted {
-    fn text(self, results: &Results, files: &[PathBuf], quiet: bool) -> Result<Done, Failure> {
-        match self {
-            Wanted::Summary { verbose } => {
-                Ok(summarised(&summary::solved(results, files, verbose), quiet))
-            }
-            Wanted::Json => match result_json(results) {
-                Ok(text) => Ok(Done { text, code: 0 }),
-                Err(error) => Err(failed(format!("result.json cannot be made: {error}"))),
-            },
+    let (results, files) = match (options.engine, options.ranks) {
+        (Engine::Fenicsx, _) => solve_by_fenicsx(case, options, quiet)?,
+        (Engine::Signorini, None) => solve(case, options, quiet)?,
+        (Engine::Signorini, Some(ranks)) => {
+            return Err(wrong(format!(
+                "--ranks {ranks}: this program solves in one process; expected --engine fenicsx beside it"
+            )));
         }
-    }
+    };
+    let done = if options.json {
+        let text = result_json(&results)
+            .map_err(|error| failed(format!("result.json cannot be made: {error}")))?;
+        Done { text, code: 0 }
+    } else {
+        summarised(&summary::solved(&results, &files, verbose), quiet)
+    };
+    Ok(if results.falls_short() { Done { code: SHORT, ..done } } else { done })
 }
+
+type Solution = (Results, Vec<PathBuf>);
 
 fn solve(
     arguments: &CaseArguments,
     options: &SolveOptions,
-    wanted: Wanted,
     quiet: bool,
-) -> Result<Done, Failure> {
+) -> Result<Solution, Failure> {
     let extra = Extra { certificate: options.certificate, report: options.report };
     let phases = Phases::start(quiet);
     phases.enter("reading the case and its mesh");
@@ -70,7 +59,7 @@ fn solve(
     let read = start.elapsed();
     let out = options.out.as_deref();
     let folder = folder(&arguments.file, out);
-    let with_files = wanted != Wanted::Json || out.is_some();
+    let with_files = !options.json || out.is_some();
     if with_files {
         spare(&folder, &outputs::FILES, &case.sources).map_err(wrong)?;
     }
@@ -79,21 +68,18 @@ fn solve(
         phases.enter("certifying");
         solved.certify(&case);
     }
-    let (files, results) = if with_files {
-        phases.enter("writing the files");
-        let remark = remark_of_another_case(&folder, &case.file);
-        let written = outputs::write(&folder, &case, &solved, read, extra).map_err(failed)?;
-        drop(phases);
-        if let (Some(remark), false) = (remark, quiet) {
-            complain(&remark);
-        }
-        written
-    } else {
-        (Vec::new(), outputs::results(&case, &solved, read, extra).map_err(failed)?)
-    };
-    let done = wanted.text(&results, &files, quiet)?;
-    let code = if results.falls_short() { SHORT } else { done.code };
-    Ok(Done { code, ..done })
+    if !with_files {
+        let results = outputs::results(&case, &solved, read, extra).map_err(failed)?;
+        return Ok((results, Vec::new()));
+    }
+    phases.enter("writing the files");
+    let remark = remark_of_another_case(&folder, &case.file);
+    let (files, results) = outputs::write(&folder, &case, &solved, read, extra).map_err(failed)?;
+    drop(phases);
+    if let (Some(remark), false) = (remark, quiet) {
+        complain(&remark);
+    }
+    Ok((results, files))
 }
 
 /// Solves a case on its own mesh, or on adapted ones.
@@ -127,9 +113,8 @@ fn remark_of_another_case(folder: &Path, file: &Path) -> Option<String> {
 fn solve_by_fenicsx(
     CaseArguments { file, settings }: &CaseArguments,
     options: &SolveOptions,
-    wanted: Wanted,
     quiet: bool,
-) -> Result<Done, Failure> {
+) -> Result<Solution, Failure> {
     if let Some(setting) = settings.first() {
         return Err(wrong(format!(
             "--set {setting}: the engine fenicsx reads the case file itself; write the key into a case file"
@@ -142,8 +127,6 @@ fn solve_by_fenicsx(
     phases.enter("solving by the engine fenicsx");
     let folder = folder(file, options.out.as_deref());
     let (ranks, reference) = (options.ranks.unwrap_or(1), options.reference.as_deref());
-    let (results, files) = engine::fenicsx(file, &folder, ranks, reference)
-        .map_err(|e| wrong_or_failed(e.is_wrong_case(), e))?;
-    drop(phases);
-    wanted.text(&results, &files, quiet)
+    engine::fenicsx(file, &folder, ranks, reference)
+        .map_err(|e| wrong_or_failed(e.is_wrong_case(), e))
 }

@@ -1,12 +1,12 @@
 //! The command `signorini convergence`: a case with an exact solution on finer and finer meshes, as a table for people, as
 //! CSV and as a figure.
 
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
 use super::case::Case;
+use super::csv;
 use super::files::{Output, OutputError};
 use super::picture::plot::{COLOURS, Figure, Panel, Style, figure};
 use crate::fem::{MeshError, Perturbation};
@@ -39,22 +39,17 @@ const PERTURBATION: Perturbation = Perturbation { amount: 0.2, seed: 1 };
 /// The reason why there is no study of a case.
 #[derive(Debug, Error)]
 pub enum StudyError {
-    /// The case has no exact solution.
     #[error("[exact] is missing; errors are measured against an exact solution")]
     NoSolution,
-    /// The mesh can't be refined.
     #[error(
         "[mesh] gmsh: found a mesh file; expected rectangle or trapezoid, which can be refined"
     )]
     MeshFile,
-    /// A level failed.
     #[error("P{degree}, level {level}: {error}")]
     Level {
-        /// The polynomial degree.
         degree: usize,
-        /// The level, from 0.
+        /// From 0.
         level: usize,
-        /// The reason.
         error: LadderError,
     },
 }
@@ -74,7 +69,6 @@ impl StudyError {
 
 /// The results on the meshes of one ladder.
 #[derive(Clone, Debug)]
-#[non_exhaustive]
 pub struct Study {
     /// P1 or P2.
     pub degree: Degree,
@@ -87,9 +81,6 @@ pub struct Study {
 }
 
 /// The ladder of a case, with its own degree and mesh unless told otherwise.
-///
-/// # Errors
-/// No exact solution, or a mesh from a file.
 pub fn ladder(
     case: &Case,
     degree: Option<Degree>,
@@ -114,9 +105,6 @@ pub fn ladder(
 }
 
 /// Solves the first `levels` levels of a ladder at one gamma0, and calls `done` after each.
-///
-/// # Errors
-/// The first level that fails.
 pub fn climb(
     ladder: Ladder,
     meshes: Meshes,
@@ -178,52 +166,38 @@ impl Study {
 
     /// The table for people.
     pub fn table(&self) -> String {
-        let mut text = String::new();
         let gamma0 = self.levels.first().map_or(f64::NAN, |level| level.gamma0);
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "{}: gamma0 = {gamma0:.4e}", self.name());
-        let _ = write!(text, "{:>10}{:>10}", "h", "unknowns");
-        for (name, _, _) in NORMS {
-            let _ = write!(text, "{:>18}", name);
-        }
+        let row = |first: String, cell: &dyn Fn(usize) -> String, rest: String| {
+            let cells: String = (0..NORMS.len()).map(|k| format!("{:>18}", cell(k))).collect();
+            format!("{first:>20}{cells}{rest}\n")
+        };
         let bounded = self.levels.iter().any(|level| level.proved.is_some());
-        let _ = writeln!(
-            text,
-            "{:>8}{:>7}{}",
-            "newton",
-            "kappa",
-            if bounded { "            proved" } else { "" }
+        let proved = if bounded { "            proved" } else { "" };
+        let mut text = format!("{}: gamma0 = {gamma0:.4e}\n", self.name());
+        let heading = format!("{:>10}{:>10}", "h", "unknowns");
+        text += &row(
+            heading,
+            &|k| NORMS[k].0.to_owned(),
+            format!("{:>8}{:>7}{proved}", "newton", "kappa"),
         );
-        let rates: Vec<Vec<f64>> =
-            NORMS.iter().map(|(_, of, _)| rates(&self.sizes(), &self.error(*of))).collect();
+        let rates = NORMS.map(|(_, of, _)| rates(&self.sizes(), &self.error(of)));
         for (i, level) in self.levels.iter().enumerate() {
-            let _ = write!(text, "{:>10.3e}{:>10}", level.h, level.unknowns);
-            for ((_, of, _), rates) in NORMS.iter().zip(&rates) {
-                let rate = i.checked_sub(1).and_then(|before| rates.get(before));
-                let _ = write!(text, "{:>12.3e}{:>6}", of(&level.errors), shown(rate.copied()));
-            }
-            let _ = write!(text, "{:>8}{:>7.3}", level.newton_steps, level.kappa);
+            let mut rest = format!("{:>8}{:>7.3}", level.newton_steps, level.kappa);
             if let Some(bound) = level.proved {
                 let error = a_priori::left(level.kappa, &level.errors);
-                let _ = write!(text, "{bound:>12.3e}{:>6}", shown(Some(bound / error)));
+                rest += &format!("{bound:>12.3e}{:>6}", shown(Some(bound / error)));
             }
-            text.push('\n');
+            let cell = |k: usize| {
+                let rate = i.checked_sub(1).and_then(|before| rates[k].get(before));
+                format!("{:.3e}{:>6}", NORMS[k].1(&level.errors), shown(rate.copied()))
+            };
+            text += &row(format!("{:>10.3e}{:>10}", level.h, level.unknowns), &cell, rest);
         }
-        let finest = self.levels.len().min(FITTED);
-        let _ = write!(text, "{:>20}", format!("slope, last {finest}"));
-        for (_, of, _) in NORMS {
-            let _ = write!(text, "{:>18}", shown(self.slope(of)));
-        }
-        let _ = write!(text, "\n{:>20}", "promised");
-        for (_, _, promised) in NORMS {
-            let rate = promised.then_some(self.promised).filter(|rate| rate.is_finite());
-            let _ = write!(text, "{:>18}", shown(rate));
-        }
-        text.push('\n');
-        if bounded {
-            text.push_str(PROVED);
-        }
-        text
+        let fitted = format!("slope, last {}", self.levels.len().min(FITTED));
+        text += &row(fitted, &|k| shown(self.slope(NORMS[k].1)), String::new());
+        let promised = |k: usize| shown(NORMS[k].2.then_some(self.promised));
+        text += &row("promised".to_owned(), &promised, String::new());
+        text + if bounded { PROVED } else { "" }
     }
 }
 
@@ -240,22 +214,17 @@ pub const FILES: [&str; 2] = ["convergence.csv", "convergence.svg"];
 
 /// The text of convergence.csv.
 pub fn csv(studies: &[Study]) -> String {
-    let mut text = String::from("degree,mesh,h,unknowns");
-    for (name, _, _) in NORMS {
-        let _ = write!(text, ",{name}");
-    }
-    text.push_str(",newton_steps,gamma0,kappa,proved\n");
+    let names = NORMS.map(|(name, _, _)| name).join(",");
+    let mut text = format!("degree,mesh,h,unknowns,{names},newton_steps,gamma0,kappa,proved\n");
     for study in studies {
-        let meshes = study.meshes.name();
         for level in &study.levels {
-            let degree = study.degree.number();
-            let _ = write!(text, "{degree},{meshes},{:?},{}", level.h, level.unknowns);
-            for (_, of, _) in NORMS {
-                let _ = write!(text, ",{:?}", of(&level.errors));
-            }
-            let Level { newton_steps, gamma0, kappa, proved, .. } = level;
-            let proved = proved.map_or_else(String::new, |bound| format!("{bound:?}"));
-            let _ = writeln!(text, ",{newton_steps},{gamma0:?},{kappa:?},{proved}");
+            let mut cells = vec![study.degree.number().to_string(), study.meshes.name().to_owned()];
+            cells.extend([csv::number(level.h), level.unknowns.to_string()]);
+            cells.extend(NORMS.map(|(_, of, _)| csv::number(of(&level.errors))));
+            cells.push(level.newton_steps.to_string());
+            cells.extend([level.gamma0, level.kappa].map(csv::number));
+            cells.push(level.proved.map_or_else(String::new, csv::number));
+            text += &csv::line(cells);
         }
     }
     text
@@ -305,9 +274,6 @@ fn panel(title: &str, of: fn(&Errors) -> f64, studies: &[Study]) -> Panel {
 }
 
 /// Writes convergence.csv and convergence.svg into `folder` and returns their paths.
-///
-/// # Errors
-/// A folder or file that can't be written, a number that is not finite.
 pub fn write(folder: &Path, title: &str, studies: &[Study]) -> Result<Vec<PathBuf>, OutputError> {
     let mut output = Output::new(folder)?;
     output.stage(FILES[0], csv(studies).as_bytes())?;
@@ -327,19 +293,10 @@ mod tests {
                 h1: h,
                 l2: h * h,
                 contact_residual: h.powf(1.5),
-                normal_stress: 0.0,
-                operator: 0.0,
+                ..Errors::default()
             };
-            let proved = Some(5.0 * h);
-            Level {
-                h,
-                unknowns: 8 << (2 * i),
-                errors,
-                newton_steps: 3,
-                gamma0: 0.1,
-                kappa: 0.5,
-                proved,
-            }
+            let (unknowns, proved) = (8 << (2 * i), Some(5.0 * h));
+            Level { h, unknowns, errors, newton_steps: 3, gamma0: 0.1, kappa: 0.5, proved }
         };
         Study {
             degree: Degree::One,

@@ -2,31 +2,32 @@
 //!
 //! Each number is the shortest decimal that reads back to the same double.
 
-use std::fmt::Write;
-
 use super::finite::{NotFinite, check_finite};
 
 /// The text of a file: a line with the names of the columns, then a line for each row of numbers and a text behind them.
-///
-/// # Errors
-/// [`NotFinite`], with the number of the row, counted from 0.
-pub fn table(names: &[&str], rows: &[(Vec<f64>, &str)]) -> Result<String, NotFinite> {
+/// An error names the row, counted from 0.
+pub(super) fn table(names: &[&str], rows: &[(Vec<f64>, &str)]) -> Result<String, NotFinite> {
     check_finite("row", rows.iter().map(|(numbers, _)| numbers.as_slice()))?;
     let mut text = names.join(",") + "\n";
     for (numbers, last) in rows {
-        for number in numbers {
-            // Writing to a string cannot fail. The debug form is the one that uses exponents where they are shorter.
-            let _ = write!(text, "{number:?},");
-        }
-        text.push_str(&cell(last));
-        text.push('\n');
+        text += &line(numbers.iter().map(|&x| number(x)).chain([(*last).to_owned()]));
     }
     Ok(text)
 }
 
+/// The debug form is the one that uses exponents where they are shorter.
+pub(super) fn number(x: f64) -> String {
+    format!("{x:?}")
+}
+
+/// A line of the file.
+pub(super) fn line(cells: impl IntoIterator<Item = String>) -> String {
+    cells.into_iter().map(|text| cell(&text)).collect::<Vec<_>>().join(",") + "\n"
+}
+
 /// A cell as RFC 4180 has it: in quotes if it needs them. A text that a spreadsheet would take for a formula and obey gets an
 /// apostrophe before it; a number stays one.
-pub(super) fn cell(text: &str) -> String {
+fn cell(text: &str) -> String {
     let is_formula =
         text.starts_with(['=', '+', '-', '@', '\t', '\r']) && text.parse::<f64>().is_err();
     let mark = if is_formula { "'" } else { "" };

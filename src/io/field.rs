@@ -204,13 +204,13 @@ mod tests {
 
     /// Reads what this program writes.
     fn written(
-        kind: CellKind,
+        degree: Degree,
         points: &Points,
         connectivity: &[usize],
     ) -> (Points, Option<Triangles>) {
         let places: Vec<[f64; 2]> = points.iter().map(|&(x, _)| x).collect();
         let file = vtu(&Grid {
-            kind,
+            kind: CellKind::Triangle(degree),
             points: &places,
             connectivity,
             point_data: &[DataArray::vectors("displacement", &values(points))],
@@ -223,7 +223,7 @@ mod tests {
     fn a_field_is_read_back_to_the_bit_and_refused_on_other_triangles_with_the_same_points() {
         let mesh = mesh(Diagonal::Right);
         let read = |connectivity: &[usize], points: &Points| {
-            let (points, triangles) = written(CellKind::Triangle, points, connectivity);
+            let (points, triangles) = written(Degree::One, points, connectivity);
             at_nodes(&points, &mesh, triangles.as_ref())
         };
         let points = field(&mesh);
@@ -250,8 +250,7 @@ mod tests {
         let space = Space::new(&mesh, Degree::Two);
         let u: Points =
             space.nodes().iter().map(|&[x, y]| ([x, y], [x * x, 0.3 * x * y])).collect();
-        let (mut points, triangles) =
-            written(CellKind::QuadraticTriangle, &u, space.connectivity());
+        let (mut points, triangles) = written(Degree::Two, &u, space.connectivity());
         assert!(triangles.as_ref().unwrap().quadratic);
         assert_eq!(at_nodes(&points, &mesh, triangles.as_ref()), Ok(values(&u)));
         let error = at_nodes(&points, &mesh, None).unwrap_err();

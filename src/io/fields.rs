@@ -6,7 +6,7 @@ use super::csv;
 use super::files::{Output, OutputError};
 use super::finite::NotFinite;
 use super::vtu::{CellKind, DataArray, Grid, vtu};
-use crate::fem::{Degree, Mesh, Problem};
+use crate::fem::{Mesh, Problem};
 use crate::kernel::Stress;
 use crate::solve::solution::ContactValues;
 use crate::solve::{Solution, stresses};
@@ -75,11 +75,7 @@ fn solution_vtu(
     let (first, second): (Vec<f64>, Vec<f64>) =
         nodal.iter().map(|&stress| stresses::principal_in_plane(stress).into()).unzip();
     vtu(&Grid {
-        kind: if s.degree == Degree::One {
-            CellKind::Triangle
-        } else {
-            CellKind::QuadraticTriangle
-        },
+        kind: CellKind::Triangle(s.degree),
         points: &s.nodes,
         connectivity: &s.elements,
         point_data: &[
@@ -127,7 +123,7 @@ fn contact_vtu(s: &Solution) -> Result<Vec<u8>, NotFinite> {
     point_data.extend(numbers.iter().map(|(name, numbers)| DataArray::scalars(name, numbers)));
     point_data.push(DataArray::vectors("direction", &direction));
     vtu(&Grid {
-        kind: if s.degree == Degree::One { CellKind::Line } else { CellKind::QuadraticLine },
+        kind: CellKind::Line(s.degree),
         points: &places,
         connectivity: &connectivity,
         point_data: &point_data,

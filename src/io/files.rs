@@ -33,8 +33,6 @@ pub struct Output {
 
 /// The reason why a file or folder could not be written.
 #[derive(Debug, Error)]
-#[expect(missing_docs, reason = "the message of each variant says what it is")]
-#[non_exhaustive]
 pub enum WriteError {
     #[error("cannot make the folder {}: {}", quote::path(path), reason(error))]
     Folder { path: PathBuf, error: io::Error },
@@ -49,20 +47,11 @@ pub enum WriteError {
 
 /// The reason why the files of a run could not be written.
 #[derive(Debug, Error)]
-#[non_exhaustive]
 pub enum OutputError {
-    /// A file or folder.
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// Data that cannot be written.
     #[error("{file} cannot be made: {error}")]
-    Data {
-        /// The name of the file.
-        file: &'static str,
-        /// The error in its data.
-        error: NotFinite,
-    },
-    /// The memory for what goes into the files.
+    Data { file: &'static str, error: NotFinite },
     #[error("the files cannot be made: {0}")]
     OutOfMemory(#[from] OutOfMemory),
     /// A solution and a case that don't belong together.
@@ -72,22 +61,14 @@ pub enum OutputError {
 
 /// The reason in words; the number that the system gives it helps nobody.
 pub fn reason(error: &io::Error) -> String {
-    let text = match error.kind() {
-        io::ErrorKind::AlreadyExists => {
-            "a file of this name is there; choose another folder: --out DIR".to_owned()
-        }
-        _ => error.to_string(),
-    };
-    match text.split_once(" (os error ") {
-        Some((words, _)) => words.to_owned(),
-        None => text,
+    if error.kind() == io::ErrorKind::AlreadyExists {
+        return "a file of this name is there; choose another folder: --out DIR".to_owned();
     }
+    let text = error.to_string();
+    text.split(" (os error ").next().unwrap_or_default().to_owned()
 }
 
 /// Refuses to write files called `names` into `folder` if one of them is one of the `sources` of the case.
-///
-/// # Errors
-/// [`WriteError::Source`].
 pub fn spare(folder: &Path, names: &[&str], sources: &[PathBuf]) -> Result<(), WriteError> {
     // The place of a name in its folder: a link of that name would be replaced, not what it leads to.
     let place = |path: &Path| {
@@ -95,11 +76,8 @@ pub fn spare(folder: &Path, names: &[&str], sources: &[PathBuf]) -> Result<(), W
         Some(fs::canonicalize(parent.unwrap_or(Path::new("."))).ok()?.join(path.file_name()?))
     };
     let sources: Vec<PathBuf> = sources.iter().filter_map(|source| place(source)).collect();
-    match names
-        .iter()
-        .map(|name| folder.join(name))
-        .find(|path| place(path).is_some_and(|place| sources.contains(&place)))
-    {
+    let is_source = |path: &PathBuf| place(path).is_some_and(|place| sources.contains(&place));
+    match names.iter().map(|name| folder.join(name)).find(is_source) {
         Some(path) => Err(WriteError::Source { path }),
         None => Ok(()),
     }
@@ -107,9 +85,6 @@ pub fn spare(folder: &Path, names: &[&str], sources: &[PathBuf]) -> Result<(), W
 
 impl Output {
     /// Makes the folder, if there is none yet, and the temporary one in it.
-    ///
-    /// # Errors
-    /// [`WriteError::Folder`].
     pub fn new(folder: impl Into<PathBuf>) -> Result<Output, WriteError> {
         let folder = folder.into();
         let missing = |path: &&Path| !path.as_os_str().is_empty() && !path.exists();
@@ -132,26 +107,15 @@ impl Output {
 
     /// Writes the file `name` to the disk, but not yet to its place. The last file of a set is the one that says that the
     /// set is whole.
-    ///
-    /// # Errors
-    /// [`WriteError::File`], with the place that the file was to have.
     pub fn stage(&mut self, name: &str, bytes: &[u8]) -> Result<(), WriteError> {
-        let write = || {
-            self.place_is_free(name)?;
-            let path = self.room().join(name);
+        self.add(name, |path| {
             let mut file = OpenOptions::new().write(true).create_new(true).open(path)?;
             file.write_all(bytes)?;
             file.sync_all()
-        };
-        write().map_err(|error| self.wrong(name, error))?;
-        self.names.push(name.to_owned());
-        Ok(())
+        })
     }
 
     /// Stages a file whose bytes may not exist.
-    ///
-    /// # Errors
-    /// [`OutputError::Data`], and those of [`Output::stage`].
     pub(crate) fn stage_made(
         &mut self,
         file: &'static str,
@@ -171,15 +135,23 @@ impl Output {
     /// # Errors
     /// [`WriteError::File`], with the place that the file was to have; also if there is no such file.
     pub fn adopt(&mut self, name: &str) -> Result<(), WriteError> {
-        let sync = || {
-            self.place_is_free(name)?;
-            let path = self.room().join(name);
-            if !fs::symlink_metadata(&path)?.is_file() {
-                return Err(io::Error::other("not a regular file"));
-            }
-            File::open(path)?.sync_all()
+        self.add(name, |path| match fs::symlink_metadata(path)?.is_file() {
+            true => File::open(path)?.sync_all(),
+            false => Err(io::Error::other("not a regular file")),
+        })
+    }
+
+    /// Adds a file to the set once it is `made` at its path in the temporary folder.
+    fn add(
+        &mut self,
+        name: &str,
+        made: impl FnOnce(&Path) -> io::Result<()>,
+    ) -> Result<(), WriteError> {
+        let made = match self.folder.join(name).is_dir() {
+            true => Err(io::ErrorKind::IsADirectory.into()),
+            false => made(&self.room().join(name)),
         };
-        sync().map_err(|error| self.wrong(name, error))?;
+        made.map_err(|error| self.wrong(name, error))?;
         self.names.push(name.to_owned());
         Ok(())
     }
@@ -189,14 +161,6 @@ impl Output {
     pub fn replacing(mut self, names: &'static [&'static str]) -> Output {
         self.replaced = names;
         self
-    }
-
-    fn place_is_free(&self, name: &str) -> io::Result<()> {
-        if self.folder.join(name).is_dir() {
-            Err(io::ErrorKind::IsADirectory.into())
-        } else {
-            Ok(())
-        }
     }
 
     fn wrong(&self, name: &str, error: io::Error) -> WriteError {
@@ -323,15 +287,15 @@ mod tests {
             fs::create_dir_all(&path).unwrap();
             Scratch(path)
         }
+    }
 
-        /// The names of all that is in the folder.
-        fn names(&self) -> Vec<String> {
-            let entry = |entry: io::Result<fs::DirEntry>| entry.unwrap().file_name();
-            let mut names: Vec<String> =
-                fs::read_dir(&self.0).unwrap().map(|e| entry(e).into_string().unwrap()).collect();
-            names.sort();
-            names
-        }
+    /// The names of all that is in a folder.
+    fn names(folder: &Path) -> Vec<String> {
+        let entries = fs::read_dir(folder).unwrap();
+        let mut names: Vec<String> =
+            entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
     }
 
     impl Drop for Scratch {
@@ -340,19 +304,27 @@ mod tests {
         }
     }
 
+    /// A set of three files that say which run they are of.
+    fn run(folder: &Path, stamp: &str) -> Result<Vec<PathBuf>, WriteError> {
+        let mut output = Output::new(folder)?;
+        for name in SET {
+            output.stage(name, stamp.as_bytes())?;
+        }
+        output.publish()
+    }
+
+    const SET: [&str; 3] = ["a.txt", "b.txt", "result.json"];
+
     #[test]
     fn files_appear_together_when_published() {
         let scratch = Scratch::new("together");
         let folder = scratch.0.join("new/case");
         let mut output = Output::new(&folder).unwrap();
         output.stage("a.txt", b"first").unwrap();
-        output.stage("b.txt", b"second").unwrap();
         assert!(!folder.join("a.txt").exists());
-        let paths = output.publish().unwrap();
-        assert_eq!(paths, [folder.join("a.txt"), folder.join("b.txt")]);
-        assert_eq!(fs::read(&paths[0]).unwrap(), b"first");
-        assert_eq!(fs::read(&paths[1]).unwrap(), b"second");
-        assert_eq!(fs::read_dir(&folder).unwrap().count(), 2);
+        assert_eq!(output.publish().unwrap(), [folder.join("a.txt")]);
+        assert_eq!(fs::read(folder.join("a.txt")).unwrap(), b"first");
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
     }
 
     #[test]
@@ -366,7 +338,7 @@ mod tests {
         let place = scratch.0.join("b.txt");
         assert_eq!(error.to_string(), format!("cannot write {}: is a directory", place.display()));
         drop(output);
-        assert_eq!(scratch.names(), ["a.txt", "b.txt"]);
+        assert_eq!(names(&scratch.0), ["a.txt", "b.txt"]);
         assert_eq!(fs::read(scratch.0.join("a.txt")).unwrap(), b"earlier");
     }
 
@@ -385,19 +357,8 @@ mod tests {
             file.display()
         );
         assert_eq!(error.to_string(), expected);
-        assert_eq!(scratch.names(), ["file"]);
+        assert_eq!(names(&scratch.0), ["file"]);
     }
-
-    /// A set of three files that say which run they are of.
-    fn run(folder: &Path, stamp: &str) -> Result<Vec<PathBuf>, WriteError> {
-        let mut output = Output::new(folder)?;
-        for name in SET {
-            output.stage(name, stamp.as_bytes())?;
-        }
-        output.publish()
-    }
-
-    const SET: [&str; 3] = ["a.txt", "b.txt", "result.json"];
 
     #[test]
     fn a_set_that_cannot_be_renamed_has_no_result_json() {
@@ -411,7 +372,7 @@ mod tests {
         fs::create_dir_all(scratch.0.join("c.txt/full")).unwrap();
         let error = output.publish().unwrap_err().to_string();
         assert!(error.ends_with("c.txt: Is a directory"), "{error}");
-        assert_eq!(scratch.names(), ["a.txt", "b.txt", "c.txt"]);
+        assert_eq!(names(&scratch.0), ["a.txt", "b.txt", "c.txt"]);
     }
 
     #[test]
@@ -440,8 +401,8 @@ mod tests {
         assert!(marker.is_some() && a == marker && b == marker, "{a:?} {b:?} {marker:?}");
         assert!(whole > 0);
         assert_eq!(
-            (scratch.names(), fs::read_dir(&folder).unwrap().count()),
-            (vec!["case".to_owned()], 3)
+            (names(&scratch.0), names(&folder)),
+            (vec!["case".to_owned()], SET.map(str::to_owned).to_vec())
         );
     }
 
@@ -456,9 +417,6 @@ mod tests {
         assert!(error.ends_with("result.json: No such file or directory"), "{error}");
         output.stage("result.json", b"{}").unwrap();
         output.publish().unwrap();
-        let mut names: Vec<_> =
-            fs::read_dir(scratch.0.join("case")).unwrap().map(|e| e.unwrap().file_name()).collect();
-        names.sort();
-        assert_eq!(names, ["a.txt", "result.json"]);
+        assert_eq!(names(&scratch.0.join("case")), ["a.txt", "result.json"]);
     }
 }

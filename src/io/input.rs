@@ -119,9 +119,6 @@ pub struct FileError {
 }
 
 /// The bytes of a regular file of at most `most` bytes.
-///
-/// # Errors
-/// A file that is not regular, is too long, or can't be read.
 pub fn read(path: &Path, most: u64) -> Result<Vec<u8>, InputError> {
     // Before it is opened, for to open a pipe is to wait for its other end.
     regular(&fs::metadata(path).map_err(unreadable)?)?;
@@ -143,9 +140,6 @@ pub fn read(path: &Path, most: u64) -> Result<Vec<u8>, InputError> {
 }
 
 /// All bytes of a stream (standard input, say), at most `most`.
-///
-/// # Errors
-/// As [`read`].
 pub fn read_from(stream: impl Read, most: u64) -> Result<Vec<u8>, InputError> {
     read_into(Vec::new(), stream, most)
 }

@@ -8,23 +8,19 @@ pub mod certificate;
 #[cfg(feature = "files")]
 #[doc(hidden)]
 pub mod convergence;
-#[doc(hidden)]
-pub mod csv;
+mod csv;
 pub mod expression;
 #[doc(hidden)]
 pub mod field;
-#[doc(hidden)]
-pub mod fields;
+mod fields;
 #[doc(hidden)]
 pub mod files;
-#[doc(hidden)]
-pub mod finite;
+mod finite;
 #[doc(hidden)]
 pub mod gmsh;
 #[doc(hidden)]
 pub mod input;
-#[doc(hidden)]
-pub mod numbers;
+mod numbers;
 #[cfg(feature = "files")]
 #[doc(hidden)]
 pub mod outputs;
@@ -34,8 +30,7 @@ pub mod picture;
 #[cfg(feature = "files")]
 mod remarks;
 #[cfg(feature = "files")]
-#[doc(hidden)]
-pub mod report;
+mod report;
 #[cfg(feature = "files")]
 #[doc(hidden)]
 pub mod result;
@@ -48,8 +43,7 @@ pub mod summary;
 #[cfg(feature = "files")]
 #[doc(hidden)]
 pub mod sweep;
-#[doc(hidden)]
-pub mod vtu;
+mod vtu;
 
 #[cfg(feature = "files")]
 pub use case::Case;

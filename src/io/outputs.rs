@@ -21,7 +21,7 @@ use super::vtu::{CellKind, DataArray, Grid, vtu};
 use crate::certify::Continuous;
 use crate::fem::{DataError, Degree, Space};
 use crate::memory;
-use crate::solve::{Extreme, Solution};
+use crate::solve::{ContactQuadrature, Extreme, Gamma0, Solution};
 use crate::study::Errors;
 
 const PICTURE: &str = "picture.svg";
@@ -59,9 +59,6 @@ pub struct Extra {
 
 /// Writes the files of a case into `folder`; returns their paths and the content of result.json. Where there is no
 /// certificate that was asked for, or no picture, all else is written.
-///
-/// # Errors
-/// A folder or file that can't be written, a number that is not finite.
 pub fn write(
     folder: &Path,
     case: &Case,
@@ -101,9 +98,6 @@ pub fn write(
 
 /// Writes what is certified of a displacement from elsewhere: certified.vtu with the `field`, its admissible part and the
 /// bound of its error by triangles, certificate.json and certificate.bin.
-///
-/// # Errors
-/// A folder or file that can't be written.
 pub fn write_certified(
     folder: &Path,
     case: &Case,
@@ -116,15 +110,15 @@ pub fn write_certified(
     let nodes = field.len().max(certified.displacement.len());
     let [field, admissible] =
         [field, &certified.displacement].map(|values| at_nodes(values, nodes, &space));
-    let quadratic = nodes > mesh.vertices().len();
+    let (degree, points, connectivity) = if nodes > mesh.vertices().len() {
+        (Degree::Two, space.nodes(), space.connectivity())
+    } else {
+        (Degree::One, mesh.vertices(), mesh.triangles().as_flattened())
+    };
     let grid = vtu(&Grid {
-        kind: if quadratic { CellKind::QuadraticTriangle } else { CellKind::Triangle },
-        points: if quadratic { space.nodes() } else { mesh.vertices() },
-        connectivity: if quadratic {
-            space.connectivity()
-        } else {
-            mesh.triangles().as_flattened()
-        },
+        kind: CellKind::Triangle(degree),
+        points,
+        connectivity,
         point_data: &[
             DataArray::vectors("displacement", &field),
             DataArray::vectors("admissible", &admissible),
@@ -176,9 +170,6 @@ fn bytes_to_write(s: &Solution) -> u64 {
 }
 
 /// The content of result.json of a solved case that was read in the time `read`, and of which `extra` was asked for.
-///
-/// # Errors
-/// The errors of [`Errors::of`], should the solution not be one of this case.
 pub fn results(
     case: &Case,
     solved: &Solved,
@@ -214,11 +205,25 @@ pub fn results(
         units: case.units.clone(),
         thickness: case.thickness,
         materials: case.materials.clone(),
-        choices: Some(Choices::from(&case.method)),
+        choices: Some(Choices {
+            degree: case.method.degree.number(),
+            gamma0_auto: case.method.gamma0 == Gamma0::Auto,
+            contact_quadrature: match case.method.quadrature {
+                ContactQuadrature::Exact => "exact".to_owned(),
+                ContactQuadrature::Gauss(points) => points.to_string(),
+            },
+            allow_noncoercive: case.method.allow_noncoercive,
+        }),
         remarks,
         mesh: MeshSizes::new(mesh, solution.nodes.len(), solution.contact.len()),
         gamma: GammaChoice::from(&solution.gamma),
-        newton: NewtonHistory::from(&solution.newton),
+        newton: NewtonHistory {
+            iterations: solution.newton.iterations(),
+            residuals: solution.newton.residuals.clone(),
+            residual: solution.newton.residual,
+            factorizations: solution.newton.factorizations,
+            status: solution.newton.status,
+        },
         method: Some(solution.method),
         play: solution.plays.clone(),
         quantities: solution.quantities.clone(),
@@ -230,7 +235,13 @@ pub fn results(
         certificate: Some(Certificates { discrete: Some(discrete), continuous: None }),
         adapt: None,
         errors,
-        seconds: Seconds::new(read, &solved.times),
+        seconds: Seconds {
+            read: read.as_secs_f64(),
+            assemble: solved.times.assemble().as_secs_f64(),
+            solve: solved.times.solve().as_secs_f64(),
+            certify: solved.times.certify.as_secs_f64(),
+            write: 0.0,
+        },
     };
     let untouched = results.contact.iter().filter(|part| !results.is_in_contact(part));
     let remarks: Vec<String> =

@@ -3,11 +3,10 @@
 //! Each number is the shortest decimal that reads back to the same double. A number that does not exist is left out
 //! together with its name: `null` never stands in the file, and a NaN or an infinity is an error that names it, where
 //! JSON alone would turn it into `null` without a word. Everything but [`Seconds`] is the same from run to run.
-
-mod certificates;
+//!
+//! The meaning of each key is in docs/result.md, which a test compares with what is written.
 
 use std::collections::BTreeMap;
-use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -15,96 +14,66 @@ use serde_json::Value;
 use super::case::{MaterialEcho, Units};
 use super::finite::NotFinite;
 use crate::certify::adapt::AdaptedLevel;
+use crate::certify::quantities::{Quantity, Zone};
+use crate::certify::{CertifyError, Continuous, Ramp};
 use crate::fem::Mesh;
 use crate::fem::contact_line::Gamma;
 use crate::fem::solvability::Play;
+use crate::solve::enclosure::{Enclosure, Unproved};
 use crate::solve::{
-    ContactBoundary, ContactQuadrature, EnergyBalance, Gamma0, GammaReport, Method, MethodReport,
-    NewtonReport, Quantities, Status, Times,
+    ContactBoundary, EnergyBalance, GammaReport, Intervals, MethodReport, Quantities, Status,
 };
 use crate::study::Errors;
-pub use certificates::{
-    Certificates, CertifiedQuantity, CertifiedZone, ContinuousCertificate, DiscreteCertificate,
-};
 
 /// The content of result.json, in its order.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-#[non_exhaustive]
 pub struct Results {
-    /// The version of this program.
     pub version: String,
-    /// The case file, as the command was given it; left out by the engine fenicsx.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub case: Option<String>,
-    /// The version of this layout: [`SCHEMA`].
     #[serde(default = "first")]
     pub schema: u32,
-    /// The title of the case.
     pub title: String,
-    /// "proved" or "not proved": whether the exact solution of (8) is within `solver.proof` of the one here; left out by the
-    /// engine fenicsx.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub verdict: Option<String>,
-    /// The reason why it is not proved.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// Results asked for beside the solution that could not be had, with the reason; left out if there are none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub missing: Vec<String>,
-    /// The units of the case; left out if it names none.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub units: Option<Units>,
-    /// The thickness of the body across the plane, if the case gives it: forces, moments and energies are per unit of it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub thickness: Option<f64>,
-    /// The materials and the physical surfaces made of them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub materials: Vec<MaterialEcho>,
-    /// The method as the case chose it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub choices: Option<Choices>,
-    /// Remarks that a reader should know before the numbers are used; left out if there are none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub remarks: Vec<String>,
-    /// The discretisation.
     pub mesh: MeshSizes,
-    /// Nitsche's parameter.
     pub gamma: GammaChoice,
-    /// The iteration.
     pub newton: NewtonHistory,
-    /// The route and the accuracy; left out by the engine fenicsx.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub method: Option<MethodReport>,
-    /// The motions that are still free; left out where supports or what presses hold it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub play: Vec<Play>,
-    /// The solution in numbers.
     pub quantities: Quantities,
-    /// The force on each contact boundary.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub contact: Vec<ContactBoundary>,
-    /// The largest stresses; left out by the engine fenicsx.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub stress: Option<StressPeaks>,
-    /// The moment about the origin of the force of each displacement boundary, counter-clockwise.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub reaction_moments: BTreeMap<String, f64>,
-    /// The sources of the energy.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub balance: Option<EnergyBalance>,
-    /// `[x, y, u_x, u_y]` at the points that the case asks for; left out if it asks for none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub probes: Vec<[f64; 4]>,
-    /// Bounds of the error; left out if nothing is known.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub certificate: Option<Certificates>,
-    /// The adaptation of the mesh; left out if there was none.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub adapt: Option<Adaptation>,
-    /// The distances from the exact solution; left out if the case has none.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub errors: Option<Errors>,
-    /// The time of each step.
     pub seconds: Seconds,
 }
 
@@ -118,45 +87,20 @@ fn first() -> u32 {
 
 /// The method as the case chose it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[non_exhaustive]
 pub struct Choices {
-    /// The polynomial degree.
     pub degree: usize,
-    /// gamma0 was chosen by the program.
     pub gamma0_auto: bool,
-    /// "exact", or the number of Gauss points on each contact edge.
     pub contact_quadrature: String,
-    /// kappa >= 1 was allowed.
     pub allow_noncoercive: bool,
-}
-
-impl From<&Method> for Choices {
-    fn from(method: &Method) -> Self {
-        Choices {
-            degree: method.degree.number(),
-            gamma0_auto: method.gamma0 == Gamma0::Auto,
-            contact_quadrature: match method.quadrature {
-                ContactQuadrature::Exact => "exact".to_owned(),
-                ContactQuadrature::Gauss(points) => points.to_string(),
-            },
-            allow_noncoercive: method.allow_noncoercive,
-        }
-    }
 }
 
 /// The discretisation.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-#[non_exhaustive]
 pub struct MeshSizes {
-    /// Vertices.
     pub vertices: usize,
-    /// Triangles.
     pub triangles: usize,
-    /// Degrees of freedom: twice the nodes.
     pub dofs: usize,
-    /// Edges on Gamma_C.
     pub contact_edges: usize,
-    /// The largest h_T.
     pub h_max: f64,
 }
 
@@ -170,18 +114,12 @@ impl MeshSizes {
 
 /// Nitsche's parameter and how far it is from the limit of coercivity.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-#[non_exhaustive]
 pub struct GammaChoice {
-    /// gamma0 of (7), or the smallest where each contact edge has its own.
     pub gamma0: f64,
-    /// Each contact edge has its own gamma0, for one kappa.
     #[serde(default)]
     pub local: bool,
-    /// The gamma0 for which kappa is 1.
     pub limit: f64,
-    /// kappa of (11).
     pub kappa: f64,
-    /// The ends of the contact edge that sets the limit.
     pub limiting_edge: [[f64; 2]; 2],
 }
 
@@ -199,73 +137,41 @@ impl From<&GammaReport> for GammaChoice {
 
 /// The largest stresses, each node taken once for each material around it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[non_exhaustive]
 pub struct StressPeaks {
-    /// The largest von Mises stress.
     pub von_mises: StressPeak,
-    /// The largest principal stress.
     pub principal_max: StressPeak,
-    /// The smallest principal stress.
     pub principal_min: StressPeak,
 }
 
 /// A largest or smallest stress.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[non_exhaustive]
 pub struct StressPeak {
-    /// Its value in the unit of stress of the case.
     pub value: f64,
-    /// The place in the undeformed body.
     pub at: [f64; 2],
-    /// The physical surface that it is in; left out if the mesh names none.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub surface: Option<String>,
 }
 
 /// Newton's iteration.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-#[non_exhaustive]
 pub struct NewtonHistory {
-    /// Steps taken.
     pub iterations: usize,
-    /// The relative residual before the first step and after each, as the iteration saw it.
     pub residuals: Vec<f64>,
-    /// The relative residual of the solution, evaluated from the definitions.
     pub residual: f64,
-    /// Matrices factored.
     pub factorizations: usize,
-    /// The verdict.
     pub status: Status,
-}
-
-impl From<&NewtonReport> for NewtonHistory {
-    fn from(newton: &NewtonReport) -> Self {
-        NewtonHistory {
-            iterations: newton.iterations(),
-            residuals: newton.residuals.clone(),
-            residual: newton.residual,
-            factorizations: newton.factorizations,
-            status: newton.status,
-        }
-    }
 }
 
 /// The adaptation of the mesh to a target.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Adaptation {
-    /// The bound over the energy norm, or half the width of what the force lies between over its middle, was to be at most this.
     pub target: f64,
-    /// The boundary whose contact force it is about, if it is.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub force: Option<String>,
-    /// It was met.
     pub met: bool,
-    /// The reason why it is not.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// The mesh of these results, by its number in `levels`, from 0.
     pub level: usize,
-    /// All meshes, from the coarsest on.
     pub levels: Vec<AdaptedLevel>,
 }
 
@@ -314,38 +220,16 @@ impl NewtonHistory {
 
 /// The time of each step.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-#[non_exhaustive]
 pub struct Seconds {
-    /// Reading and meshing.
     pub read: f64,
-    /// Assembling.
     pub assemble: f64,
-    /// Factoring and iterating.
     pub solve: f64,
-    /// Proving how wrong the result can be.
     #[serde(default)]
     pub certify: f64,
-    /// Writing the other files; 0 where none was written.
     pub write: f64,
 }
 
-impl Seconds {
-    /// The timings of a solve that took `times` after `read`, before files are written.
-    pub fn new(read: Duration, times: &Times) -> Self {
-        Seconds {
-            read: read.as_secs_f64(),
-            assemble: times.assemble().as_secs_f64(),
-            solve: times.solve().as_secs_f64(),
-            certify: times.certify.as_secs_f64(),
-            write: 0.0,
-        }
-    }
-}
-
-/// The text of the file.
-///
-/// # Errors
-/// [`NotFinite`], with the path of the number.
+/// The text of the file; an error has the path of the number.
 pub fn result_json(results: &Results) -> Result<String, NotFinite> {
     let value_and_text = serde_json::to_value(results)
         .and_then(|value| Ok((value, serde_json::to_string_pretty(results)?)));
@@ -372,6 +256,175 @@ fn null_in(value: &Value, place: &str) -> Option<String> {
             null_in(member, &format!("{place}{dot}{name}"))
         }),
         _ => None,
+    }
+}
+
+/// The bounds of the error.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Certificates {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub discrete: Option<DiscreteCertificate>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub continuous: Option<ContinuousCertificate>,
+}
+
+/// The distance of the solution u~ that was computed from the exact solution u^h of (8).
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct DiscreteCertificate {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub radius: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub relative: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pressure: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub problem: Option<String>,
+    pub unique: bool,
+    pub rigorous: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub intervals: Option<Intervals>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub probes: Vec<f64>,
+}
+
+impl From<&Result<Enclosure, Unproved>> for DiscreteCertificate {
+    fn from(certificate: &Result<Enclosure, Unproved>) -> Self {
+        match certificate {
+            Ok(e) => DiscreteCertificate {
+                radius: Some(e.radius),
+                // A body at rest has no energy to compare with.
+                relative: e.relative.filter(|r| r.is_finite()),
+                pressure: Some(e.pressure),
+                problem: Some("the loads as quadrature gives them".to_owned()),
+                unique: true,
+                rigorous: true,
+                intervals: Some(e.intervals.clone()),
+                ..Default::default()
+            },
+            Err(why) => DiscreteCertificate {
+                unique: why.is_unique(),
+                reason: Some(why.to_string()),
+                ..Default::default()
+            },
+        }
+    }
+}
+
+/// The distance of the admissible part v of the solution from the true solution u of (1)-(2).
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ContinuousCertificate {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bound: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub relative: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub of_solution: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub potential_energy: Option<[f64; 2]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub compliance: Option<[f64; 2]>,
+    pub rigorous: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub problem: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mean_stress: Option<f64>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub quantities: Vec<CertifiedQuantity>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub zones: Vec<Zone>,
+}
+
+/// A number of the true solution between two others.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CertifiedQuantity {
+    pub name: String,
+    pub boundary: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub weight: Option<Weight>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub interval: Option<(f64, Option<f64>)>,
+    pub value: f64,
+    pub rigorous: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+}
+
+/// A weight along a contact boundary.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Weight {
+    pub along: String,
+    pub between: [f64; 2],
+    pub ramp: f64,
+}
+
+impl From<Ramp> for Weight {
+    fn from(ramp: Ramp) -> Self {
+        let along = ["x", "y"][ramp.axis].to_owned();
+        Weight { along, between: ramp.between, ramp: ramp.width }
+    }
+}
+
+impl CertifiedQuantity {
+    fn new(quantity: &Quantity, certified: &Continuous) -> Self {
+        let end = |end: f64| Some(end).filter(|end| end.is_finite());
+        let proved = quantity.interval.as_ref();
+        CertifiedQuantity {
+            name: quantity.name.text().to_owned(),
+            boundary: quantity.boundary.clone(),
+            weight: quantity.weight.map(Weight::from),
+            interval: proved.ok().and_then(|&[low, high]| Some((end(low)?, end(high)))),
+            value: quantity.value,
+            rigorous: certified.rigorous && proved.is_ok(),
+            reason: proved.err().cloned().or_else(|| certified.reason.clone()),
+        }
+    }
+}
+
+impl ContinuousCertificate {
+    /// The number of a boundary with this name, of the pressure as it is.
+    pub fn quantity(&self, name: &str, boundary: &str) -> Option<&CertifiedQuantity> {
+        let is =
+            |q: &&CertifiedQuantity| q.name == name && q.boundary == boundary && q.weight.is_none();
+        self.quantities.iter().find(is)
+    }
+
+    /// The interval of a boundary's contact force.
+    pub fn contact_force(&self, boundary: &str) -> Option<[f64; 2]> {
+        let (low, high) = self.quantity("contact force", boundary)?.interval?;
+        Some([low, high?])
+    }
+}
+
+impl From<&Result<Continuous, CertifyError>> for ContinuousCertificate {
+    fn from(result: &Result<Continuous, CertifyError>) -> Self {
+        match result {
+            Ok(c) => ContinuousCertificate {
+                bound: Some(c.bound),
+                // A body at rest has no energy to compare with.
+                relative: Some(c.relative).filter(|r| r.is_finite()),
+                of_solution: Some(c.of_field),
+                potential_energy: c.energy,
+                compliance: c.compliance,
+                rigorous: c.rigorous,
+                reason: c.reason.clone(),
+                problem: c.problem.clone(),
+                mean_stress: Some(c.quantities.mean_stress),
+                quantities: c
+                    .quantities
+                    .list
+                    .iter()
+                    .map(|q| CertifiedQuantity::new(q, c))
+                    .collect(),
+                zones: c.quantities.zones.clone(),
+            },
+            Err(error) => {
+                ContinuousCertificate { reason: Some(error.to_string()), ..Default::default() }
+            }
+        }
     }
 }
 
@@ -429,25 +482,23 @@ mod tests {
 
     #[test]
     fn a_nan_or_an_infinity_is_refused_by_its_path() {
-        let refused = |spoil: fn(&mut Results)| {
+        let spoils: [(fn(&mut Results), &str); 5] = [
+            (|r| r.gamma.kappa = f64::NAN, "gamma.kappa"),
+            (|r| r.gamma.limiting_edge[1][0] = f64::INFINITY, "gamma.limiting_edge[1][0]"),
+            (|r| r.newton.residuals[2] = f64::NAN, "newton.residuals[2]"),
+            (
+                |r| {
+                    r.quantities.reactions.insert("left".to_owned(), [0.0, f64::NEG_INFINITY]);
+                },
+                "quantities.reactions.left[1]",
+            ),
+            (|r| r.seconds.write = f64::NAN, "seconds.write"),
+        ];
+        for (spoil, place) in spoils {
             let mut results = sample();
             spoil(&mut results);
-            result_json(&results).unwrap_err().to_string()
-        };
-        let expected =
-            |place: &str| format!("{place} is NaN or infinite; expected a finite number");
-        assert_eq!(refused(|r| r.gamma.kappa = f64::NAN), expected("gamma.kappa"));
-        assert_eq!(
-            refused(|r| r.gamma.limiting_edge[1][0] = f64::INFINITY),
-            expected("gamma.limiting_edge[1][0]")
-        );
-        assert_eq!(refused(|r| r.newton.residuals[2] = f64::NAN), expected("newton.residuals[2]"));
-        assert_eq!(
-            refused(|r| {
-                r.quantities.reactions.insert("left".to_owned(), [0.0, f64::NEG_INFINITY]);
-            }),
-            expected("quantities.reactions.left[1]")
-        );
-        assert_eq!(refused(|r| r.seconds.write = f64::NAN), expected("seconds.write"));
+            let place = place.to_owned();
+            assert_eq!(result_json(&results), Err(NotFinite { place }));
+        }
     }
 }

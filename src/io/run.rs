@@ -12,7 +12,6 @@ use crate::solve::{Course, Solution, SolveError, Times, solve_along};
 
 /// A solved case.
 #[derive(Debug)]
-#[non_exhaustive]
 pub struct Solved {
     /// The solution, on the mesh that the case has now.
     pub solution: Solution,
@@ -42,9 +41,7 @@ impl Solved {
 /// The proved distance from the true solution, and how long the proof took.
 #[derive(Clone, Debug)]
 pub struct Certified {
-    /// The bound, or why there is none.
     pub result: Result<Continuous, CertifyError>,
-    /// The time.
     pub time: Duration,
     /// The adaptation of the mesh to it, if it was adapted.
     pub adaptation: Option<Adaptation>,
@@ -67,12 +64,9 @@ impl Certified {
 
 /// The reason why a case is not solved.
 #[derive(Clone, Debug, Error, PartialEq)]
-#[non_exhaustive]
 pub enum RunError {
-    /// A failure on its own mesh.
     #[error(transparent)]
     Solve(#[from] SolveError),
-    /// A failure on adapted meshes.
     #[error("[adapt]: {0}")]
     Adapt(#[from] AdaptError),
 }
@@ -89,9 +83,6 @@ impl RunError {
 
 /// Solves `case`, from the `start` if there is one and the mesh stays as it is; an adapted mesh takes the place of its own.
 /// `watcher` is told of each stage.
-///
-/// # Errors
-/// The errors of [`solve_along`], and of [`adapt::adapt`].
 pub fn solve(
     mut case: Case,
     start: Option<&Solution>,

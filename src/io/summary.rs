@@ -60,13 +60,10 @@ pub(crate) fn lines_of(r: &Results, verbose: bool) -> Vec<(String, String)> {
     contact(r, &shown, verbose, &mut lines);
     stress(r, &shown, &mut lines);
     reactions(r, &shown, verbose, &mut lines);
-    let largest = r.quantities.max_displacement;
-    lines.line("displacement", format!("up to {}{}", short(largest), shown.length));
-    for remark in &r.remarks {
+    let largest = shown.length(r.quantities.max_displacement);
+    lines.line("displacement", format!("up to {largest}"));
+    for remark in r.remarks.iter().cloned().chain(r.play.iter().map(|play| free(play, &shown))) {
         lines.line("remark", remark);
-    }
-    for play in &r.play {
-        lines.line("remark", free(play, &shown));
     }
     let certificates = r.certificate.as_ref();
     if let Some(discrete) = certificates.and_then(|c| c.discrete.as_ref()) {
@@ -78,16 +75,13 @@ pub(crate) fn lines_of(r: &Results, verbose: bool) -> Vec<(String, String)> {
     if let Some(adapt) = &r.adapt {
         lines.line("adapted", adapted(adapt));
     }
-    if let Some(errors) = &r.errors {
+    if let Some(e) = &r.errors {
+        let [energy, h1, l2] = [e.energy, e.h1, e.l2].map(short);
+        let [pressure, normal] = [e.contact_residual, e.normal_stress].map(short);
         lines.line(
             "errors",
             format!(
-                "energy {}, H1 {}, L2 {}, contact pressure {}, normal stress {}",
-                short(errors.energy),
-                short(errors.h1),
-                short(errors.l2),
-                short(errors.contact_residual),
-                short(errors.normal_stress)
+                "energy {energy}, H1 {h1}, L2 {l2}, contact pressure {pressure}, normal stress {normal}"
             ),
         );
     }
@@ -97,42 +91,51 @@ pub(crate) fn lines_of(r: &Results, verbose: bool) -> Vec<(String, String)> {
 
 /// The format of quantities: each with its unit, those per unit of thickness times the thickness.
 struct QuantityFormat {
-    length: String,
-    stress: String,
-    force: String,
-    moment: String,
-    thickness: f64,
+    units: Option<Units>,
+    thickness: Option<f64>,
     /// Components of forces below this are rounding.
     no_force: f64,
 }
 
 impl QuantityFormat {
     fn of(r: &Results) -> QuantityFormat {
-        let unit = |of: &dyn Fn(&Units) -> String| {
-            r.units.as_ref().map_or(String::new(), |units| format!(" {}", of(units)))
-        };
-        QuantityFormat {
-            length: unit(&|units| units.length.clone()),
-            stress: unit(&Units::stress),
-            force: unit(&|units| units.force(r.thickness)),
-            moment: unit(&|units| units.moment(r.thickness)),
-            thickness: r.thickness.unwrap_or(1.0),
-            no_force: (1e-10 * r.all_forces()).max(rounding(r)),
-        }
+        let no_force = (1e-10 * r.all_forces()).max(rounding(r));
+        QuantityFormat { units: r.units.clone(), thickness: r.thickness, no_force }
+    }
+
+    fn with_unit(&self, shown: String, unit: impl FnOnce(&Units) -> String) -> String {
+        self.units.as_ref().map_or(shown.clone(), |units| format!("{shown} {}", unit(units)))
+    }
+
+    fn whole(&self, per_thickness: f64) -> f64 {
+        per_thickness * self.thickness.unwrap_or(1.0)
+    }
+
+    fn length(&self, x: f64) -> String {
+        self.with_unit(short(x), |units| units.length.clone())
+    }
+
+    fn stress(&self, x: f64) -> String {
+        self.with_unit(short(x), Units::stress)
+    }
+
+    fn force(&self, x: f64) -> String {
+        self.with_unit(short(self.whole(x)), |units| units.force(self.thickness))
+    }
+
+    /// A moment or an energy.
+    fn moment(&self, x: f64) -> String {
+        self.with_unit(short(self.whole(x)), |units| units.moment(self.thickness))
     }
 
     /// The components of a force, without the unit.
     fn components(&self, f: [f64; 2]) -> String {
-        let [x, y] = f.map(|c| if c.abs() > self.no_force { c * self.thickness } else { 0.0 });
-        vector([x, y])
+        vector(f.map(|c| if c.abs() > self.no_force { self.whole(c) } else { 0.0 }))
     }
 
-    fn moment(&self, m: f64) -> String {
-        format!("{}{}", short(m * self.thickness), self.moment)
-    }
-
-    fn stress(&self, s: f64) -> String {
-        format!("{}{}", short(s), self.stress)
+    /// The components of a force.
+    fn vector(&self, f: [f64; 2]) -> String {
+        self.with_unit(self.components(f), |units| units.force(self.thickness))
     }
 }
 
@@ -154,12 +157,10 @@ fn rounding(r: &Results) -> f64 {
 }
 
 fn contact(r: &Results, shown: &QuantityFormat, verbose: bool, lines: &mut Lines) {
-    let size = |force: f64| format!("{}{}", short(force * shown.thickness), shown.force);
     if r.contact.is_empty() {
         let q = &r.quantities;
-        let length = format!("{}{}", short(q.contact_length), shown.length);
+        let [force, length] = [shown.force(q.contact_force), shown.length(q.contact_length)];
         let peak = shown.stress(q.peak_pressure);
-        let force = size(q.contact_force);
         lines.line("contact", format!("force {force}, length {length}, peak pressure {peak}"));
     }
     for (i, part) in r.contact.iter().enumerate() {
@@ -174,32 +175,31 @@ fn contact(r: &Results, shown: &QuantityFormat, verbose: bool, lines: &mut Lines
             // The reference in FEniCSx does not say.
             _ => String::new(),
         };
-        let length = format!("{}{}", short(part.length), shown.length);
-        let [force, components] = [size(part.force), shown.components(part.resultant)];
-        let peak = format!("{}{}", shown.stress(part.peak_pressure), at(part.peak_at));
-        let components = match proved_force(r, &part.boundary, shown.thickness) {
-            Some(proved) => format!(", {proved}; components {components}"),
+        let [force, length] = [shown.force(part.force), shown.length(part.length)];
+        let components = shown.components(part.resultant);
+        // The interval in which the true contact force is proved to lie.
+        let continuous = r.certificate.as_ref().and_then(|c| c.continuous.as_ref());
+        let proved = continuous.and_then(|c| Some((c.contact_force(&part.boundary)?, c.rigorous)));
+        let components = match proved {
+            Some((ends, rigorous)) => format!(
+                ", {} {}; components {components}",
+                if rigorous { "proved" } else { "with a reservation" },
+                between(ends.map(|end| shown.whole(end)))
+            ),
             None => format!(" {components}"),
         };
         lines.line(name, format!("{boundary}: force {force}{components}, length {length}"));
-        lines.line("", format!("peak pressure {peak}"));
+        let peak = shown.stress(part.peak_pressure);
+        lines.line("", format!("peak pressure {peak}{}", at(part.peak_at)));
         if verbose {
             let mut words = format!("{boundary}: moment {}", shown.moment(part.moment));
             if part.penetration.is_finite() {
-                let depth = format!("{}{}", short(part.penetration), shown.length);
+                let depth = shown.length(part.penetration);
                 words += &format!(", penetration {depth}{}", at(part.penetration_at));
             }
             lines.line("", words);
         }
     }
-}
-
-/// The interval in which the true contact force of a boundary is proved to lie, rounded outwards.
-fn proved_force(r: &Results, boundary: &str, thickness: f64) -> Option<String> {
-    let continuous = r.certificate.as_ref()?.continuous.as_ref()?;
-    let [low, high] = continuous.contact_force(boundary)?;
-    let proved = if continuous.rigorous { "proved" } else { "with a reservation" };
-    Some(format!("{proved} {}", between([low * thickness, high * thickness])))
 }
 
 /// Writes two numbers, rounded outwards to two digits of their distance, and no fewer than other numbers have: by half of the
@@ -232,18 +232,23 @@ fn stress(r: &Results, shown: &QuantityFormat, lines: &mut Lines) {
 fn reactions(r: &Results, shown: &QuantityFormat, verbose: bool, lines: &mut Lines) {
     for (i, (boundary, reaction)) in r.quantities.reactions.iter().enumerate() {
         let name = if i == 0 { "reactions" } else { "" };
-        let moment = match r.reaction_moments.get(boundary).filter(|_| verbose) {
-            Some(moment) => format!(", moment {}", shown.moment(*moment)),
-            None => String::new(),
-        };
-        let force = format!("{}{}", shown.components(*reaction), shown.force);
+        let moment = r.reaction_moments.get(boundary).filter(|_| verbose);
+        let moment = moment.map_or(String::new(), |m| format!(", moment {}", shown.moment(*m)));
+        let force = shown.vector(*reaction);
         lines.line(name, format!("{}: {force}{moment}", quote::cut(boundary)));
     }
 }
 
 fn how_it_was_solved(r: &Results, shown: &QuantityFormat, verbose: bool, lines: &mut Lines) {
     if verbose {
-        mesh_and_materials(r, lines);
+        lines.line("mesh", sizes(&r.mesh));
+        for material in &r.materials {
+            let of = match material.surfaces.as_slice() {
+                [] => "the whole body".to_owned(),
+                surfaces => quote::names(surfaces.iter().map(String::as_str)),
+            };
+            lines.line("material", format!("{of}: {}, plane {}", moduli(material), material.plane));
+        }
     }
     if verbose || !(r.gamma.kappa < 1.0) {
         lines.line("coercivity", coercivity(&r.gamma));
@@ -281,31 +286,16 @@ fn how_it_was_solved(r: &Results, shown: &QuantityFormat, verbose: bool, lines: 
     }
 }
 
-fn mesh_and_materials(r: &Results, lines: &mut Lines) {
-    lines.line("mesh", sizes(&r.mesh));
-    for material in &r.materials {
-        let of = if material.surfaces.is_empty() {
-            "the whole body".to_owned()
-        } else {
-            quote::names(material.surfaces.iter().map(String::as_str))
-        };
-        lines.line("material", format!("{of}: {}, plane {}", moduli(material), material.plane));
-    }
-}
-
 fn times(s: &Seconds) -> String {
-    let mut steps = vec![
-        ("read", s.read),
-        ("assemble", s.assemble),
-        ("solve", s.solve),
-        ("certify", s.certify),
-    ];
     // A report is finished before it is written.
-    if s.write > 0.0 {
-        steps.push(("write", s.write));
-    }
-    let step = |(name, seconds): (&str, f64)| format!("{name} {}", time(seconds));
-    steps.into_iter().map(step).collect::<Vec<_>>().join(", ")
+    let write = Some(("write", s.write)).filter(|_| s.write > 0.0);
+    let steps =
+        [("read", s.read), ("assemble", s.assemble), ("solve", s.solve), ("certify", s.certify)];
+    let step = |(name, seconds): (&str, f64)| match seconds < 1.0 {
+        true => format!("{name} {:.1} ms", 1e3 * seconds),
+        false => format!("{name} {seconds:.2} s"),
+    };
+    steps.into_iter().chain(write).map(step).collect::<Vec<_>>().join(", ")
 }
 
 /// The summary of what is certified of a displacement from elsewhere.
@@ -361,23 +351,20 @@ pub fn audited(audit: &Audit, case: Option<(&Path, Option<&str>)>) -> String {
     let (triangles, edges) = (certificate.pieces.len(), certificate.edges.len());
     lines.line("certificate", format!("accepted: {triangles} triangles, {edges} edges"));
     lines.line("statement", &header.statement);
-    lines.line(
-        "problem",
-        match case {
-            Some((case, _)) => format!(
+    let problem = match case {
+        Some((case, _)) => {
+            format!(
                 "that of {}: its mesh, materials, supports, loads and obstacles",
                 quote::path(case)
-            ),
-            None => "that of the numbers in this file; --case CASE.toml compares them with a case"
-                .to_owned(),
-        },
-    );
-    let relative = 100.0 * header.bound / proof.norm;
-    let size = if relative.is_finite() {
-        format!(", {} % of |v|_a", numbers::short(relative, 2))
-    } else {
-        String::new()
+            )
+        }
+        None => "that of the numbers in this file; --case CASE.toml compares them with a case"
+            .to_owned(),
     };
+    lines.line("problem", problem);
+    let relative = 100.0 * header.bound / proof.norm;
+    let size = Some(relative).filter(|r| r.is_finite());
+    let size = size.map_or(String::new(), |r| format!(", {} % of |v|_a", numbers::short(r, 2)));
     lines.line("bound", format!("{}{size}", short(header.bound)));
     for (i, (name, ends)) in audit.forces().enumerate() {
         let heading = if i == 0 { "forces" } else { "" };
@@ -388,13 +375,11 @@ pub fn audited(audit: &Audit, case: Option<(&Path, Option<&str>)>) -> String {
         Some((_, reason)) => reason.map(str::to_owned),
         None => (!reservations.is_empty()).then(|| reservations.to_string()),
     };
-    lines.line(
-        "rigorous",
-        match reservation {
-            Some(reservation) => format!("with a reservation: {reservation}{problem}"),
-            None => format!("yes, rounding included{problem}"),
-        },
-    );
+    let rigorous = match reservation {
+        Some(reservation) => format!("with a reservation: {reservation}{problem}"),
+        None => format!("yes, rounding included{problem}"),
+    };
+    lines.line("rigorous", rigorous);
     lines.under(&header.title)
 }
 
@@ -546,9 +531,10 @@ fn accuracy(method: &MethodReport) -> String {
         RouteName::Condensed => "condensed",
         RouteName::Assembled => "assembled",
     };
-    let error = method.forward_error;
-    let error =
-        if error.is_finite() { format!("{error:.0e} (energy norm)") } else { "unknown".to_owned() };
+    let error = match method.forward_error {
+        error if error.is_finite() => format!("{error:.0e} (energy norm)"),
+        _ => "unknown".to_owned(),
+    };
     format!(
         "{route} route, condition number at least {:.0e}, relative error of iteration and rounding {error}",
         method.condition
@@ -562,12 +548,14 @@ pub(super) fn vector([x, y]: [f64; 2]) -> String {
 
 /// A motion that nothing stops, and how far it may go.
 fn free(play: &Play, shown: &QuantityFormat) -> String {
-    let (motion, unit) = match (play.about, play.along) {
-        (Some(about), _) => (format!("turn about {}", vector(about)), " rad"),
-        (_, Some(along)) => (format!("move along {}", vector(along)), &*shown.length),
-        _ => return String::new(),
+    let motion = match (play.about, play.along) {
+        (Some(about), _) => format!("turn about {}", vector(about)),
+        (_, along) => format!("move along {}", vector(along.unwrap_or_default())),
     };
-    let end = |end: f64| format!("{}{unit}", short(end));
+    let end = |end: f64| match play.about {
+        Some(_) => format!("{} rad", short(end)),
+        None => shown.length(end),
+    };
     let range = match (play.least, play.most) {
         (None, None) => "without limit".to_owned(),
         (Some(least), None) => format!("from {} upwards", end(least)),
@@ -582,10 +570,6 @@ fn free(play: &Play, shown: &QuantityFormat) -> String {
 /// Four significant digits.
 fn short(x: f64) -> String {
     numbers::short(x, 4)
-}
-
-fn time(seconds: f64) -> String {
-    if seconds < 1.0 { format!("{:.1} ms", 1e3 * seconds) } else { format!("{seconds:.2} s") }
 }
 
 /// folder/{a, b, c}

@@ -1,7 +1,6 @@
 //! The command `signorini sweep`: one case, solved for every combination of the values that some of its keys are given, as
 //! a table for people and as CSV.
 
-use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -11,7 +10,7 @@ use thiserror::Error;
 use toml::de::{DeTable, DeValue};
 
 use super::case::Case;
-use super::csv::cell;
+use super::csv;
 use super::files::{Output, OutputError, WriteError};
 use super::input::FileError;
 use super::numbers::short;
@@ -67,8 +66,6 @@ fn items(list: &str) -> Option<Vec<String>> {
 
 /// The reason why there is no sweep.
 #[derive(Debug, Error)]
-#[non_exhaustive]
-#[expect(missing_docs, reason = "the message of each variant says what it is")]
 pub enum SweepError {
     #[error("--set makes {runs} runs; expected at most {MOST_RUNS}")]
     TooMany { runs: usize },
@@ -108,7 +105,6 @@ pub(crate) const COLLECTION: &str = "sweep.pvd";
 
 /// A case and its results for the combinations of the values of some keys.
 #[derive(Clone, Debug)]
-#[non_exhaustive]
 pub struct Sweep {
     /// The title of the case.
     pub title: String,
@@ -123,9 +119,6 @@ pub struct Sweep {
 }
 
 /// The number of runs that these axes make.
-///
-/// # Errors
-/// More than [`MOST_RUNS`], or a key on two axes.
 pub fn count(axes: &[ParameterAxis]) -> Result<usize, SweepError> {
     let twice = |(i, axis): (usize, &ParameterAxis)| axes[..i].iter().any(|a| a.key == axis.key);
     if let Some(axis) = axes.iter().enumerate().find(|&axis| twice(axis)).map(|(_, axis)| axis) {
@@ -286,39 +279,33 @@ fn cells(r: &Results, shown: NumberFormat) -> Vec<Cell> {
 }
 
 impl Sweep {
-    /// The columns between the values and the status: those of any run, in the order of [`cells`].
-    fn columns(&self, brief: bool) -> Vec<String> {
-        let mut columns: Vec<String> = Vec::new();
+    /// The heading and a line for each run: the values, the numbers of any run in the order of [`cells`], and how it ended.
+    fn lines(&self, brief: bool, shown: NumberFormat) -> Vec<Vec<String>> {
+        let of_run = |result: &Result<Results, RunError>| match result {
+            Ok(results) => (cells(results, shown), results.newton.verdict().to_owned()),
+            Err(error) => (Vec::new(), error.to_string()),
+        };
+        let mut runs: Vec<(Vec<Cell>, String)> = self.results.iter().map(of_run).collect();
+        runs.resize_with(self.values.len(), || (Vec::new(), NOT_SOLVED.to_owned()));
         // gamma0 as a key stands there already.
-        let new = |name: &str| !self.keys.iter().any(|key| key == &format!("method.{name}"));
-        for cell in
-            self.results.iter().flatten().flat_map(|results| cells(results, &|_| String::new()))
-        {
-            if new(&cell.name) && (cell.brief || !brief) && !columns.contains(&cell.name) {
-                columns.push(cell.name);
+        let is_new = |name: &str| !self.keys.iter().any(|key| key == &format!("method.{name}"));
+        let mut columns: Vec<&str> = Vec::new();
+        for Cell { name, brief: is_brief, .. } in runs.iter().flat_map(|(cells, _)| cells) {
+            if is_new(name) && (*is_brief || !brief) && !columns.contains(&&**name) {
+                columns.push(name);
             }
         }
-        columns
-    }
-
-    /// The heading and a line for each run: the values, the numbers, and how it ended.
-    fn lines(&self, brief: bool, shown: NumberFormat) -> Vec<Vec<String>> {
-        let columns = self.columns(brief);
-        let heading = self.keys.iter().chain(&columns).cloned().chain(["status".to_owned()]);
-        let row = |(i, values): (usize, &Vec<String>)| {
-            let (cells, status) = match self.results.get(i) {
-                Some(Ok(results)) => (cells(results, shown), results.newton.verdict().to_owned()),
-                Some(Err(error)) => (Vec::new(), error.to_string()),
-                None => (Vec::new(), NOT_SOLVED.to_owned()),
-            };
-            let cell = |name: &String| {
-                let cell = cells.iter().find(|cell| cell.name == *name);
+        let heading = self.keys.iter().map(String::as_str).chain(columns.iter().copied());
+        let mut lines = vec![heading.chain(["status"]).map(str::to_owned).collect()];
+        for (values, (cells, status)) in self.values.iter().zip(&runs) {
+            let value = |name: &&str| {
+                let cell = cells.iter().find(|cell| cell.name == **name);
                 cell.map_or(String::new(), |cell| cell.value.clone())
             };
-            values.iter().cloned().chain(columns.iter().map(cell)).chain([status]).collect()
-        };
-        let rows = self.values.iter().enumerate().map(row);
-        [heading.collect()].into_iter().chain(rows).collect()
+            let numbers = columns.iter().map(value);
+            lines.push(values.iter().cloned().chain(numbers).chain([status.clone()]).collect());
+        }
+        lines
     }
 
     /// The table for people: columns with four digits, aligned.
@@ -328,46 +315,36 @@ impl Sweep {
             let status = line.len() - 1;
             line[..status].iter_mut().for_each(|value| *value = quote::line(value));
         }
+        let columns = lines[0].len() - 1;
         let width = |c: usize| lines.iter().map(|line| line[c].chars().count()).max().unwrap_or(0);
-        let columns = lines[0].len();
         let widths: Vec<usize> = (0..columns).map(width).collect();
-        let mut text = String::new();
-        for line in &lines {
-            // Writing to a string cannot fail.
-            for (cell, width) in line.iter().zip(&widths).take(columns - 1) {
-                let _ = write!(text, "{cell:>width$}  ");
-            }
+        let line = |line: &Vec<String>| {
+            let cells = line.iter().zip(&widths).map(|(cell, width)| format!("{cell:>width$}  "));
             // What was expected instead is in the CSV; here it would make the line too long.
-            let status = line[columns - 1].split(": expected").next().unwrap_or_default();
-            let _ = writeln!(text, "{status}");
-        }
-        text
+            let status = line[columns].split(": expected").next().unwrap_or_default();
+            cells.collect::<String>() + status + "\n"
+        };
+        lines.iter().map(line).collect()
     }
 
     /// The text of sweep.csv: each number the shortest decimal that reads back to the same double.
     pub fn csv(&self) -> String {
-        let line = |cells: &[String]| {
-            cells.iter().map(|text| cell(text)).collect::<Vec<_>>().join(",") + "\n"
-        };
-        self.lines(false, &|x| format!("{x:?}")).iter().map(|cells| line(cells)).collect()
+        self.lines(false, &csv::number).into_iter().map(csv::line).collect()
     }
 
     /// The text of sweep.pvd: the solutions of the runs as the steps of one animation, for ParaView.
     fn pvd(&self) -> String {
-        let mut text = String::from(
-            "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n",
-        );
-        for (i, _) in (1..).zip(&self.results).filter(|(_, results)| results.is_ok()) {
-            // Writing to a string cannot fail.
-            let _ = writeln!(text, "<DataSet timestep=\"{i}\" file=\"{i}/solution.vtu\"/>");
-        }
-        text + "</Collection>\n</VTKFile>\n"
+        let step = |(i, results): (i32, &Result<Results, RunError>)| match results {
+            Ok(_) => format!("<DataSet timestep=\"{i}\" file=\"{i}/solution.vtu\"/>\n"),
+            Err(_) => String::new(),
+        };
+        let steps: String = (1..).zip(&self.results).map(step).collect();
+        format!(
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n{steps}</Collection>\n</VTKFile>\n"
+        )
     }
 
     /// Writes sweep.csv into `folder`, and sweep.pvd where the runs have files; returns their paths.
-    ///
-    /// # Errors
-    /// A folder or file that can't be written.
     pub fn write(&self, folder: &Path) -> Result<Vec<PathBuf>, WriteError> {
         let mut output = Output::new(folder)?.replacing(&[COLLECTION]);
         if self.with_files {
@@ -399,13 +376,8 @@ mod tests {
             ("title=\"a,b\"", "title", &["\"a,b\""]),
             ("a={gauss = 4},\"exact\"", "a", &["{gauss = 4}", "\"exact\""]),
         ] {
-            assert_eq!(
-                axis(text),
-                ParameterAxis {
-                    key: key.to_owned(),
-                    values: values.iter().map(|v| (*v).to_owned()).collect()
-                }
-            );
+            let ParameterAxis { key: found, values: list } = axis(text);
+            assert_eq!((&*found, list), (key, values.iter().map(|v| (*v).to_owned()).collect()));
         }
         for text in ["method.gamma0", "=1", "a=", "a=x,,y"] {
             assert_eq!(text.parse::<ParameterAxis>(), Err(NoAxis), "{text}");
@@ -429,23 +401,5 @@ mod tests {
         assert_eq!(said, "--set makes 10201 runs; expected at most 10000");
         let said = count(&[axis("a=1"), axis("a=2")]).unwrap_err().to_string();
         assert_eq!(said, "--set a is there twice; expected each key once, with all its values");
-    }
-
-    #[test]
-    fn what_is_still_to_come_stands_in_the_table_as_not_solved() {
-        let sweep = Sweep {
-            title: String::new(),
-            keys: vec!["method.gamma0".to_owned()],
-            values: vec![vec!["1e-3".to_owned()], vec!["1e-2".to_owned()]],
-            results: Vec::new(),
-            with_files: false,
-        };
-        let csv = sweep.csv();
-        let lines: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
-        assert_eq!(lines.len(), 3);
-        for (line, gamma0) in lines[1..].iter().zip(["1e-3", "1e-2"]) {
-            assert_eq!(line.len(), lines[0].len());
-            assert_eq!((line[0], line[line.len() - 1]), (gamma0, "not solved"));
-        }
     }
 }

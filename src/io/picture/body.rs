@@ -1,14 +1,14 @@
 //! The body: its triangles in the colours of their von Mises stress with the bar of these, its outline before and after, the
 //! lines between materials.
 
-use svg::node::element::{ClipPath, Definitions, Group, LinearGradient, Rectangle, Stop};
+use svg::node::element::{ClipPath, Definitions, Group, LinearGradient, Stop};
 
-use super::cells::{Cells, area};
+use super::cells::{area, rectangles};
 use super::draw::{
-    DARK, GREY, PathData, Point, VIRIDIS, clean, fitting, loops, rounded, shape, short, stroke,
-    text, thinned, viridis,
+    DARK, GREY, PageMap, PathData, Point, VIRIDIS, clean, fitting, loops, rectangle, shape, short,
+    stroke, text, thinned, viridis,
 };
-use super::scene::{PageMap, Scene};
+use super::scene::Scene;
 use crate::io::numbers::ticks;
 
 /// The most triangles that are drawn one by one: more would make the file too large, and are drawn by cells.
@@ -22,7 +22,7 @@ const MOST_VISIBLE_TRIANGLES: usize = 3000;
 
 fn outline_path(scene: &Scene, points: &[Point]) -> PathData {
     let mut path = PathData::default();
-    for vertices in loops(scene.outline, points.len()) {
+    for vertices in loops(&scene.outline, points.len()) {
         let line: Vec<Point> = vertices.into_iter().map(|v| points[v]).collect();
         path.polygon(thinned(&line));
     }
@@ -57,12 +57,12 @@ pub(super) fn body(scene: &Scene, deformed: &[Point], colours: &Colours) -> Grou
     let mut levels = vec![PathData::default(); LEVELS];
     let by_cells = triangles.len() > MOST_TRIANGLES;
     if by_cells {
-        let cells = Cells::new(CELL, &triangles, scene.von_mises);
-        for (level, corners) in cells.rectangles(|value| colours.level(value)) {
+        let level = |value| colours.level(value);
+        for (level, corners) in rectangles(CELL, &triangles, &scene.von_mises, level) {
             levels[level].polygon(corners);
         }
     } else {
-        for (&corners, &value) in triangles.iter().zip(scene.von_mises) {
+        for (&corners, &value) in triangles.iter().zip(&scene.von_mises) {
             levels[colours.level(value)].polygon(corners);
         }
     }
@@ -85,7 +85,7 @@ pub(super) fn body(scene: &Scene, deformed: &[Point], colours: &Colours) -> Grou
 pub(super) fn outlines(scene: &Scene, deformed: &[Point], frame: &PageMap) -> Group {
     let before: Vec<Point> = scene.points.iter().map(|&p| frame.page(p)).collect();
     let mut interfaces = PathData::default();
-    for &[a, b] in scene.interfaces {
+    for &[a, b] in &scene.interfaces {
         interfaces.line([deformed[a], deformed[b]]);
     }
     Group::new()
@@ -118,7 +118,7 @@ impl Colours {
         let mut parts: Vec<(f64, f64)> = scene
             .triangles
             .iter()
-            .zip(scene.von_mises)
+            .zip(&scene.von_mises)
             .map(|(vertices, &value)| (value, area(&vertices.map(|v| scene.points[v])).abs()))
             .collect();
         parts.sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
@@ -179,11 +179,7 @@ pub(super) fn colour_bar(
     let bottom = top + height - 10.0;
     let top = top + if capped { 48.0 } else { 30.0 };
     let height = bottom - top;
-    let bar = Rectangle::new()
-        .set("x", rounded(left))
-        .set("y", rounded(top))
-        .set("width", 18)
-        .set("height", rounded(height));
+    let bar = rectangle([left, top], [18.0, height]);
     if colours.top <= colours.min {
         let fill = Colours::colour(colours.level(colours.max));
         return group.add(bar.set("fill", fill)).add(label(top + height / 2.0, short(colours.max)));

@@ -4,10 +4,10 @@
 use svg::node::element::{Circle, Group};
 
 use super::draw::{
-    DARK, GREY, PathData, Point, RED, between, direction, distance, distance_from_segment, moved,
-    places, shape, stroke, text, thinned,
+    DARK, GREY, PageMap, PathData, Point, RED, anchored, between, direction, distance,
+    distance_from_segment, moved, places, shape, stroke, thinned,
 };
-use super::scene::{ContactSample, PageMap, Scene};
+use super::scene::{ContactSample, Scene};
 
 /// A connected part of a contact boundary as it is drawn: for each sample the deformed point, the end of its pressure, and
 /// the point of the obstacle.
@@ -18,6 +18,7 @@ pub(super) struct ContactLine {
     pub(super) base: Vec<Point>,
     pub(super) tip: Vec<Point>,
     pub(super) wall: Vec<Option<Point>>,
+    normals: Vec<Point>,
     pressure: Vec<f64>,
 }
 
@@ -37,7 +38,7 @@ impl ContactLine {
     /// All parts of the contact boundaries, in the plane.
     pub(super) fn all(scene: &Scene, factor: f64) -> Vec<ContactLine> {
         let size = scene.size();
-        let mut lines: Vec<(ContactLine, Vec<Point>)> = Vec::new();
+        let mut lines = Vec::new();
         for (surface, boundary) in scene.contact.iter().enumerate() {
             for samples in &boundary.parts {
                 let normals = smooth_normals(samples);
@@ -49,23 +50,23 @@ impl ContactLine {
                     let gap = factor * s.gap;
                     (gap.abs() <= furthest).then(|| moved(s.position, n, gap))
                 };
-                let line = ContactLine {
+                lines.push(ContactLine {
                     surface,
                     tip: base.clone(),
                     wall: samples.iter().zip(&normals).map(wall).collect(),
                     pressure: samples.iter().map(|s| s.pressure).collect(),
                     base,
-                };
-                lines.push((line, normals));
+                    normals,
+                });
             }
         }
-        let heights: Vec<f64> = lines.iter().map(|(line, _)| height(&lines, line, size)).collect();
-        for ((line, normals), height) in lines.iter_mut().zip(heights) {
+        let heights: Vec<f64> = lines.iter().map(|line| height(&lines, line, size)).collect();
+        for (line, height) in lines.iter_mut().zip(heights) {
             for (i, tip) in line.tip.iter_mut().enumerate() {
-                *tip = moved(line.base[i], normals[i], height * line.pressure[i]);
+                *tip = moved(line.base[i], line.normals[i], height * line.pressure[i]);
             }
         }
-        lines.into_iter().map(|(line, _)| line).collect()
+        lines
     }
 
     /// Moves the points of the line onto the page.
@@ -106,13 +107,13 @@ fn turns(samples: &[ContactSample]) -> bool {
 }
 
 /// The height of a unit of pressure on the boundary of a line.
-fn height(lines: &[(ContactLine, Vec<Point>)], line: &ContactLine, size: f64) -> f64 {
+fn height(lines: &[ContactLine], line: &ContactLine, size: f64) -> f64 {
     let (mut peak, mut highest) = (0.0_f64, HIGHEST * size);
-    for (other, normals) in lines.iter().filter(|(other, _)| other.surface == line.surface) {
+    for other in lines.iter().filter(|other| other.surface == line.surface) {
         peak = other.pressure.iter().copied().fold(peak, f64::max);
-        for (base, n) in other.base.windows(2).zip(normals.windows(2)) {
-            let step = [base[1][0] - base[0][0], base[1][1] - base[0][1]];
-            let turn = [n[1][0] - n[0][0], n[1][1] - n[0][1]];
+        for (base, n) in other.base.windows(2).zip(other.normals.windows(2)) {
+            let step = moved(base[1], base[0], -1.0);
+            let turn = moved(n[1], n[0], -1.0);
             let closing = -(step[0] * turn[0] + step[1] * turn[1]);
             if closing > 0.0 {
                 let radius = (step[0] * step[0] + step[1] * step[1]) / closing;
@@ -216,10 +217,10 @@ pub(super) const RADIUS: f64 = 9.0;
 /// A letter in a circle.
 pub(super) fn tag(surface: usize, [x, y]: Point) -> Group {
     let circle = Circle::new().set("cx", x.round()).set("cy", y.round()).set("r", RADIUS);
-    let letter = text(letter(surface), [x.round(), y.round() + 4.0]);
+    let letter = anchored("middle", letter(surface), [x.round(), y.round() + 4.0]);
     Group::new()
         .add(circle.set("fill", "white").set("stroke", RED))
-        .add(letter.set("text-anchor", "middle").set("font-size", 12).set("fill", RED))
+        .add(letter.set("font-size", 12).set("fill", RED))
 }
 
 /// A letter at each contact boundary, off the highest pressure (or the middle) of its longest part and away from the body:
@@ -273,14 +274,8 @@ mod tests {
 
     #[test]
     fn facets_share_their_normal_and_corners_do_not() {
-        let sample = |position, normal| ContactSample {
-            arc: 0.0,
-            position,
-            normal,
-            displacement: [0.0; 2],
-            gap: 0.0,
-            pressure: 0.0,
-        };
+        let sample =
+            |position, normal| ContactSample { position, normal, ..ContactSample::default() };
         let line = [
             sample([0.0, 0.0], [0.6, -0.8]),
             sample([0.0, 0.0], [0.8, -0.6]),

@@ -2,8 +2,10 @@
 
 use std::fmt::Write;
 
-use svg::node::element::{Path as PathElement, Rectangle, Text};
+use svg::Document;
+use svg::node::element::{Circle, Path as PathElement, Rectangle, Text, Title};
 
+use crate::fem::tree::Bounds;
 use crate::io::numbers;
 
 /// The letters of all pictures.
@@ -27,9 +29,46 @@ pub(super) fn clean(text: &str) -> String {
     text.chars().map(|c| if allowed(c) { c } else { ' ' }).collect()
 }
 
+/// A white page with a title.
+pub(super) fn page([width, height]: [f64; 2], font_size: u8, title: &str) -> Document {
+    Document::new()
+        .set("viewBox", (0, 0, width, height))
+        .set("width", width)
+        .set("height", height)
+        .set("font-family", FONT)
+        .set("font-size", font_size)
+        .set("fill", DARK)
+        .add(Title::new(clean(title)))
+        .add(Rectangle::new().set("width", "100%").set("height", "100%").set("fill", "white"))
+}
+
 /// A text that starts at a point.
 pub(super) fn text(content: impl Into<String>, [x, y]: Point) -> Text {
     Text::new(content).set("x", rounded(x)).set("y", rounded(y))
+}
+
+/// A text around a point, or before it: its `anchor` is "middle" or "end".
+pub(super) fn anchored(anchor: &str, content: impl Into<String>, at: Point) -> Text {
+    text(content, at).set("text-anchor", anchor)
+}
+
+/// A dot.
+pub(super) fn dot([x, y]: Point) -> Circle {
+    Circle::new().set("cx", rounded(x)).set("cy", rounded(y)).set("r", 3)
+}
+
+/// A rectangle from its left upper corner on.
+pub(super) fn rectangle([left, top]: Point, [width, height]: [f64; 2]) -> Rectangle {
+    Rectangle::new()
+        .set("x", rounded(left))
+        .set("y", rounded(top))
+        .set("width", rounded(width))
+        .set("height", rounded(height))
+}
+
+/// The frame of a drawing area.
+pub(super) fn frame(corner: Point, size: [f64; 2]) -> Rectangle {
+    rectangle(corner, size).set("fill", "none").set("stroke", GREY)
 }
 
 /// Coordinates in hundredths, which keeps the file small and the same everywhere.
@@ -70,15 +109,49 @@ impl PageAxis {
     }
 }
 
-/// The frame of a drawing area: from the left upper corner, so wide and high.
-pub(super) fn frame([left, top]: Point, [width, height]: [f64; 2]) -> Rectangle {
-    Rectangle::new()
-        .set("x", rounded(left))
-        .set("y", rounded(top))
-        .set("width", rounded(width))
-        .set("height", rounded(height))
-        .set("fill", "none")
-        .set("stroke", GREY)
+/// The drawing of the body on the page: the map from the plane, and the room that it takes.
+pub(super) struct PageMap {
+    corner: Point,
+    scale: f64,
+    /// The point at the centre of the drawing.
+    centre: Point,
+    pub(super) width: f64,
+    pub(super) height: f64,
+}
+
+/// The room around the drawing, for the letters of the contact boundaries.
+const AROUND: f64 = 34.0;
+
+impl PageMap {
+    /// Makes the map of a drawing around some points of the plane, its upper left corner on the page at `corner`.
+    pub(super) fn around(points: impl IntoIterator<Item = Point>, corner: Point) -> PageMap {
+        let Bounds { low, high } = Bounds::around(points);
+        let extent = [0, 1].map(|c| high[c] - low[c]);
+        let room = [800.0, 520.0].map(|most| most - 2.0 * AROUND);
+        let scale = (room[0] / extent[0]).min(room[1] / extent[1]);
+        let scale = if scale.is_finite() { scale } else { 1.0 };
+        PageMap {
+            corner,
+            scale,
+            centre: [0, 1].map(|c| low[c] + extent[c] / 2.0),
+            width: (scale * extent[0] + 2.0 * AROUND).clamp(600.0, 800.0),
+            height: (scale * extent[1] + 2.0 * AROUND).clamp(260.0, 520.0),
+        }
+    }
+
+    pub(super) fn page(&self, [x, y]: Point) -> Point {
+        [
+            self.corner[0] + self.width / 2.0 + self.scale * (x - self.centre[0]),
+            self.corner[1] + self.height / 2.0 - self.scale * (y - self.centre[1]),
+        ]
+    }
+
+    /// Returns whether a circle lies within the frame.
+    pub(super) fn holds(&self, [x, y]: Point, radius: f64) -> bool {
+        let [left, top] = self.corner;
+        (left + radius..=left + self.width - radius).contains(&x)
+            && (top + radius..=top + self.height - radius).contains(&y)
+    }
 }
 
 /// The `d` attribute of a path, in hundredths of the page's unit.

@@ -5,16 +5,16 @@
 //! A boundary of which only a small part is in contact is shown around that part.
 
 use svg::Node;
-use svg::node::element::{Circle, Group, Rectangle};
+use svg::node::element::Group;
 
 use super::contact::{RADIUS, tag};
 use super::draw::{
-    GREY, LIGHT, PageAxis, PathData, Point, RED, clean, fitting, frame, rounded, shape, short,
-    stroke, text, thinned, width_of,
+    GREY, LIGHT, PageAxis, PathData, Point, RED, anchored, clean, dot, fitting, frame, rectangle,
+    shape, short, stroke, text, thinned, width_of,
 };
 use super::scene::{ContactSample, ContactSurface, Scene};
+use crate::certify::quantities::{Limit, Zone};
 use crate::io::numbers::ticks;
-use crate::io::result::CertifiedZone;
 
 /// The height of a panel on the page, and the space between two in a row.
 const HEIGHT: f64 = 214.0;
@@ -49,7 +49,7 @@ pub(super) fn panels(scene: &Scene, corner: Point, width: f64) -> Group {
     for (i, surface) in scene.contact.iter().enumerate() {
         let [column, row] = [i % columns, i / columns].map(|place| place as f64);
         let corner = [corner[0] + column * step, corner[1] + row * HEIGHT];
-        group.append(panel(surface, scene.units, corner, step - BETWEEN));
+        group.append(panel(surface, &scene.units, corner, step - BETWEEN));
         if scene.contact.len() > 1 {
             group.append(tag(i, [corner[0] + LEFT - 2.0 * RADIUS, corner[1] + 12.0]));
         }
@@ -92,7 +92,12 @@ fn shown(surface: &ContactSurface) -> [f64; 2] {
     }
 }
 
-fn panel(surface: &ContactSurface, units: Option<[&str; 2]>, [x, y]: Point, width: f64) -> Group {
+fn panel(
+    surface: &ContactSurface,
+    units: &Option<[String; 2]>,
+    [x, y]: Point,
+    width: f64,
+) -> Group {
     let peak = surface.peak();
     let (left, bottom, width) = (x + LEFT, y + TOP + PLOT, width - LEFT - RIGHT);
     let top = peak.map_or(0.0, |peak| peak.pressure);
@@ -100,50 +105,42 @@ fn panel(surface: &ContactSurface, units: Option<[&str; 2]>, [x, y]: Point, widt
         arc: PageAxis { range: shown(surface), page: [left, left + width] },
         pressure: PageAxis { range: [0.0, top], page: [bottom, bottom - (PLOT - ABOVE)] },
     };
-    let [stress, length] = [0, 1].map(|i| units.map_or(String::new(), |units| units[i].to_owned()));
-    let in_brackets =
-        |unit: &str| if unit.is_empty() { String::new() } else { format!(" ({unit})") };
-    let title = clean(&format!("{}: contact pressure{}", surface.name, in_brackets(&stress)));
+    let in_brackets = |i: usize| units.as_ref().map_or(String::new(), |u| format!(" ({})", u[i]));
+    let title = clean(&format!("{}: contact pressure{}", surface.name, in_brackets(0)));
     let title = text(&title, [left, y + 16.0])
         .set("font-size", fitting(&title, 14.0 / 0.9, width) * 0.9)
         .set("font-weight", "bold");
-    let caption = format!("arc length along the boundary{}", in_brackets(&length));
-    let caption = text(caption, [left + width / 2.0, bottom + 36.0])
-        .set("text-anchor", "middle")
-        .set("font-size", 12);
+    let caption = format!("arc length along the boundary{}", in_brackets(1));
+    let caption = anchored("middle", caption, [left + width / 2.0, bottom + 36.0]);
     let frame = frame([left, bottom - PLOT], [width, PLOT]);
-    let mut group = Group::new().add(title).add(caption).add(grid(&axes));
+    let mut group = Group::new().add(title).add(caption.set("font-size", 12)).add(grid(&axes));
     if let Some(zones) = &surface.zones {
         group = group.add(strip(zones, &axes));
     }
     match peak {
         Some(peak) => {
-            group = group.add(curve(surface, &axes)).add(frame).add(mark(peak, &stress, &axes))
+            let stress = units.as_ref().map_or("", |[stress, _]| stress);
+            group = group.add(curve(surface, &axes)).add(frame).add(mark(peak, stress, &axes));
         }
         None => {
-            let words = text("no contact", [left + width / 2.0, bottom - PLOT / 2.0]);
-            group = group.add(words.set("text-anchor", "middle").set("fill", GREY)).add(frame);
+            let at = [left + width / 2.0, bottom - PLOT / 2.0];
+            group = group.add(anchored("middle", "no contact", at).set("fill", GREY)).add(frame);
         }
     }
     group
 }
 
 /// Draws the proved zones as a strip, with the words for its colours.
-fn strip(zones: &[CertifiedZone], axes: &Axes) -> Group {
+fn strip(zones: &[Zone], axes: &Axes) -> Group {
     let [left, _, bottom] = axes.borders();
     let [low, high] = axes.arc.range;
     let bar = |[from, to]: [f64; 2], fill: &str| {
         let [from, to] = [from, to].map(|arc| axes.arc.at(arc.clamp(low, high)));
-        Rectangle::new()
-            .set("x", rounded(from))
-            .set("y", rounded(bottom + 1.0))
-            .set("width", rounded(to - from))
-            .set("height", STRIP)
-            .set("fill", fill)
+        rectangle([from, bottom + 1.0], [to - from, STRIP]).set("fill", fill)
     };
     let mut group = Group::new().add(bar(axes.arc.range, LIGHT));
     for zone in zones {
-        let pressed = zone.opening_at_most.is_some();
+        let pressed = matches!(zone.limit, Limit::Opening(_));
         group.append(bar([zone.from, zone.to], if pressed { RED } else { OPEN }));
     }
     let words = [("proved: pressed", RED), ("nearly open", OPEN), ("not known", GREY)];
@@ -166,12 +163,12 @@ fn grid(axes: &Axes) -> Group {
         let x = axes.arc.at(arc);
         lines.line([[x, bottom], [x, bottom - PLOT]]);
         let x = x.min(right + RIGHT - width_of(&content, 11.0) / 2.0);
-        labels.append(text(content, [x, bottom + 16.0]).set("text-anchor", "middle"));
+        labels.append(anchored("middle", content, [x, bottom + 16.0]));
     }
     for (pressure, content) in ticks(0.0, top).into_iter().filter(|_| top > 0.0) {
         let y = axes.pressure.at(pressure);
         lines.line([[left, y], [right, y]]);
-        labels.append(text(content, [left - 6.0, y + 4.0]).set("text-anchor", "end"));
+        labels.append(anchored("end", content, [left - 6.0, y + 4.0]));
     }
     Group::new().add(stroke(lines, LIGHT, 0.8)).add(labels)
 }
@@ -205,7 +202,6 @@ fn mark(peak: &ContactSample, stress: &str, axes: &Axes) -> Group {
     let [left, right, _] = axes.borders();
     let (left, right) = (left + half + 3.0, right - half - 3.0);
     let place = [x.max(left.min(right)).min(right.max(left)), y - 8.0];
-    let words = text(words, place).set("text-anchor", "middle").set("font-weight", "bold");
-    let dot = Circle::new().set("cx", rounded(x)).set("cy", rounded(y)).set("r", 3);
-    Group::new().set("fill", RED).add(dot).add(words)
+    let words = anchored("middle", words, place).set("font-weight", "bold");
+    Group::new().set("fill", RED).add(dot([x, y])).add(words)
 }

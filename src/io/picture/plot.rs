@@ -2,23 +2,20 @@
 //!
 //! Points with a coordinate that is not positive have no place in such a figure and are left out.
 
+use svg::Node;
 use svg::node::Text as Content;
-use svg::node::element::{Circle, Group, Path as PathElement, Rectangle, TSpan, Text, Title};
-use svg::{Document, Node};
+use svg::node::element::{Circle, Group, Path as PathElement, TSpan, Text};
 
 use super::draw::{
-    DARK, FONT, GREY, LIGHT, PageAxis, PathData, Point, frame, rounded, stroke, text, width_of,
+    GREY, LIGHT, PageAxis, PathData, Point, anchored, dot, frame, page, stroke, text, width_of,
 };
 use crate::io::finite::{NotFinite, check_finite};
 
-/// A figure.
 #[derive(Clone, Debug)]
 pub struct Figure {
-    /// The headline.
     pub title: String,
     /// The label of the x axis, which all panels share.
     pub x_label: String,
-    /// The panels from left to right.
     pub panels: Vec<Panel>,
     /// The lines by name, for the legend and their looks.
     pub styles: Vec<Style>,
@@ -35,12 +32,9 @@ pub struct Panel {
     pub slopes: Vec<(usize, f64)>,
 }
 
-/// The style of a line.
 #[derive(Clone, Debug)]
 pub struct Style {
-    /// The name in the legend.
     pub name: String,
-    /// Its colour, as SVG has it.
     pub colour: &'static str,
     /// The line is dashed, its points are hollow.
     pub dashed: bool,
@@ -62,9 +56,6 @@ const LEGEND_LINE: f64 = 20.0;
 const LEGEND_MARK: f64 = 68.0;
 
 /// The text of the SVG file.
-///
-/// # Errors
-/// A coordinate that is NaN or infinite.
 pub fn figure(figure: &Figure) -> Result<String, NotFinite> {
     for panel in &figure.panels {
         for (line, style) in panel.lines.iter().zip(&figure.styles) {
@@ -78,16 +69,8 @@ pub fn figure(figure: &Figure) -> Result<String, NotFinite> {
     let per_line = ((width / widths.fold(1.0, f64::max)) as usize).clamp(1, 2 * columns);
     let legend_lines = figure.styles.len().div_ceil(per_line) as f64;
     let height = TOP + HEIGHT + BELOW + legend_lines * LEGEND_LINE + 8.0;
-    let mut document = Document::new()
-        .set("viewBox", (0, 0, width.round(), height.round()))
-        .set("width", width.round())
-        .set("height", height.round())
-        .set("font-family", FONT)
-        .set("font-size", 12)
-        .set("fill", DARK)
-        .add(Title::new(figure.title.as_str()))
-        .add(Rectangle::new().set("width", "100%").set("height", "100%").set("fill", "white"))
-        .add(label(&figure.title, width / 2.0, 26.0, "middle").set("font-size", 15));
+    let mut document = page([width, height].map(f64::round), 12, &figure.title)
+        .add(anchored("middle", &*figure.title, [width / 2.0, 26.0]).set("font-size", 15));
     for (i, panel) in figure.panels.iter().enumerate() {
         let left = i as f64 * (LEFT + WIDTH + RIGHT) + LEFT;
         document = document.add(draw(panel, figure, left));
@@ -98,14 +81,10 @@ pub fn figure(figure: &Figure) -> Result<String, NotFinite> {
         let y = TOP + HEIGHT + BELOW + (i / per_line) as f64 * LEGEND_LINE + 8.0;
         let mut entry = Group::new().add(line([[x, y], [x + 28.0, y]], style));
         entry.append(mark([x + 14.0, y], style));
-        entry.append(label(&style.name, x + 36.0, y + 4.0, "start"));
+        entry.append(text(&*style.name, [x + 36.0, y + 4.0]));
         document = document.add(entry);
     }
     Ok(format!("{document}\n"))
-}
-
-fn label(content: &str, x: f64, y: f64, anchor: &str) -> Text {
-    text(content, [x, y]).set("text-anchor", anchor)
 }
 
 fn line(points: impl IntoIterator<Item = Point>, style: &Style) -> PathElement {
@@ -115,11 +94,8 @@ fn line(points: impl IntoIterator<Item = Point>, style: &Style) -> PathElement {
     if style.dashed { line.set("stroke-dasharray", "5 3") } else { line }
 }
 
-fn mark([x, y]: [f64; 2], style: &Style) -> Circle {
-    Circle::new()
-        .set("cx", rounded(x))
-        .set("cy", rounded(y))
-        .set("r", 3)
+fn mark(at: Point, style: &Style) -> Circle {
+    dot(at)
         .set("fill", if style.dashed { "white" } else { style.colour })
         .set("stroke", style.colour)
         .set("stroke-width", 1.2)
@@ -153,21 +129,17 @@ fn ticks(axis: &PageAxis) -> Vec<(f64, i32, u8)> {
 }
 
 /// m x 10^k: plain where that is short, else with an exponent.
-fn tick_label(k: i32, m: u8, x: f64, y: f64, anchor: &str) -> Text {
-    let text = match k {
-        0 => m.to_string(),
-        1..=2 => format!("{m}{}", "0".repeat(k as usize)),
+fn tick_label(k: i32, m: u8, at: Point, anchor: &str) -> Text {
+    let plain = match k {
+        0..=2 => format!("{m}{}", "0".repeat(k as usize)),
         -2..=-1 => format!("0.{}{m}", "0".repeat((-k - 1) as usize)),
         _ => {
             let base = if m == 1 { "10".to_owned() } else { format!("{m}·10") };
             let exponent = TSpan::new(k.to_string()).set("dy", -5).set("font-size", 9);
-            let mut label = label("", x, y, anchor);
-            label.append(Content::new(base));
-            label.append(exponent);
-            return label;
+            return anchored(anchor, "", at).add(Content::new(base)).add(exponent);
         }
     };
-    label(&text, x, y, anchor)
+    anchored(anchor, plain, at)
 }
 
 fn positive(line: &[[f64; 2]]) -> Vec<[f64; 2]> {
@@ -198,22 +170,23 @@ fn draw(panel: &Panel, figure: &Figure, left: f64) -> Group {
     let y_axis = logarithmic(all().map(|p| p[1]), [bottom, TOP]);
     let page = |[x, y]: Point| [x_axis.at(x.log10()), y_axis.at(y.log10())];
 
-    let mut group = Group::new()
-        .add(label(&panel.title, left + WIDTH / 2.0, TOP - 12.0, "middle").set("font-size", 13));
+    let mut group = Group::new().add(
+        anchored("middle", &*panel.title, [left + WIDTH / 2.0, TOP - 12.0]).set("font-size", 13),
+    );
     let mut grid = PathData::default();
     for (x, k, m) in ticks(&x_axis) {
         let x = x_axis.at(x.log10());
         grid.line([[x, TOP], [x, bottom]]);
-        group.append(tick_label(k, m, x, bottom + 16.0, "middle"));
+        group.append(tick_label(k, m, [x, bottom + 16.0], "middle"));
     }
     for (y, k, m) in ticks(&y_axis) {
         let y = y_axis.at(y.log10());
         grid.line([[left, y], [right, y]]);
-        group.append(tick_label(k, m, left - 6.0, y + 4.0, "end"));
+        group.append(tick_label(k, m, [left - 6.0, y + 4.0], "end"));
     }
     group.append(stroke(grid, LIGHT, 0.8));
     group.append(frame([left, TOP], [WIDTH, HEIGHT]));
-    group.append(label(&figure.x_label, left + WIDTH / 2.0, bottom + 34.0, "middle"));
+    group.append(anchored("middle", &*figure.x_label, [left + WIDTH / 2.0, bottom + 34.0]));
     for (slope, corners) in triangles {
         let [_, b, c] = corners.map(page);
         let mut triangle = PathData::default();
@@ -221,7 +194,7 @@ fn draw(panel: &Panel, figure: &Figure, left: f64) -> Group {
         group.append(stroke(triangle, GREY, 1.0));
         let text = format!("{slope:.2}");
         let text = text.trim_end_matches('0').trim_end_matches('.');
-        let beside = label(text, b[0] + 4.0, (b[1] + c[1]) / 2.0 + 4.0, "start");
+        let beside = self::text(text, [b[0] + 4.0, (b[1] + c[1]) / 2.0 + 4.0]);
         group.append(beside.set("font-size", 11).set("fill", GREY));
     }
     for (points, style) in lines.iter().zip(&figure.styles) {

@@ -1,64 +1,63 @@
-//! The content of a picture as data; by how much it is magnified; and where it lies on the page.
+//! The content of a picture as data: that of a solved case, and by how much it is magnified.
+
+use std::collections::BTreeMap;
 
 use super::draw::{Point, distance, moved, short};
+use crate::certify::quantities::Zone;
 use crate::fem::tree::Bounds;
+use crate::fem::{BoundaryEdge, Degree};
+use crate::io::case::Case;
 use crate::io::numbers::Round;
-use crate::io::result::CertifiedZone;
+use crate::io::result::{ContinuousCertificate, Results};
+use crate::solve::solution::{ContactEdgeValues, ContactValues};
+use crate::solve::{Solution, Verdict};
 
 /// The content of a picture.
-#[derive(Clone, Copy, Debug)]
-pub struct Scene<'a> {
-    /// The headline.
-    pub title: &'a str,
-    /// A line below it.
-    pub subtitle: &'a str,
-    /// The vertices of the undeformed body.
-    pub points: &'a [[f64; 2]],
-    /// The displacement of each.
-    pub displacement: &'a [[f64; 2]],
-    /// The triangles by their vertices. A P2 triangle is drawn as four, cut at the midpoints of its edges.
-    pub triangles: &'a [[usize; 3]],
-    /// The von Mises stress in each.
-    pub von_mises: &'a [f64],
+#[derive(Clone, Debug)]
+pub(super) struct Scene {
+    /// The headline, and a line below it.
+    pub(super) title: String,
+    pub(super) subtitle: String,
+    /// The vertices of the undeformed body, and their displacements.
+    pub(super) points: Vec<Point>,
+    pub(super) displacement: Vec<Point>,
+    /// The triangles by their vertices, and the von Mises stress in each.
+    pub(super) triangles: Vec<[usize; 3]>,
+    pub(super) von_mises: Vec<f64>,
     /// The units of stress and of length, if the case has units.
-    pub units: Option<[&'a str; 2]>,
+    pub(super) units: Option<[String; 2]>,
     /// The amount by which displacement and gap are magnified; chosen here if it is not given.
-    pub stretch: Option<f64>,
+    pub(super) stretch: Option<f64>,
     /// The edges between triangles of different materials.
-    pub interfaces: &'a [[usize; 2]],
+    pub(super) interfaces: Vec<[usize; 2]>,
     /// The edges of the whole boundary, from start to end, the body on their left.
-    pub outline: &'a [[usize; 2]],
-    /// The contact boundaries.
-    pub contact: &'a [ContactSurface],
+    pub(super) outline: Vec<[usize; 2]>,
+    pub(super) contact: Vec<ContactSurface>,
 }
 
 /// A contact boundary.
 #[derive(Clone, Debug)]
-pub struct ContactSurface {
-    /// Its name.
-    pub name: String,
+pub(super) struct ContactSurface {
+    pub(super) name: String,
     /// Its connected parts, each from start to end, the body on its left. Where the pressure jumps there are two samples at
     /// one place.
-    pub parts: Vec<Vec<ContactSample>>,
+    pub(super) parts: Vec<Vec<ContactSample>>,
     /// The proved zones of it; `None` without a certificate.
-    pub zones: Option<Vec<CertifiedZone>>,
+    pub(super) zones: Option<Vec<Zone>>,
 }
 
 /// A point of a contact boundary.
-#[derive(Clone, Copy, Debug)]
-pub struct ContactSample {
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct ContactSample {
     /// Arc length along the boundary.
-    pub arc: f64,
-    /// The place in the undeformed body.
-    pub position: [f64; 2],
-    /// The unit outward normal there.
-    pub normal: [f64; 2],
-    /// u
-    pub displacement: [f64; 2],
-    /// The gap g.
-    pub gap: f64,
+    pub(super) arc: f64,
+    /// The place in the undeformed body, and the unit outward normal there.
+    pub(super) position: Point,
+    pub(super) normal: Point,
+    pub(super) displacement: Point,
+    pub(super) gap: f64,
     /// The recovered pressure, >= 0.
-    pub pressure: f64,
+    pub(super) pressure: f64,
 }
 
 impl ContactSurface {
@@ -69,14 +68,64 @@ impl ContactSurface {
     }
 }
 
-impl Scene<'_> {
+impl Scene {
+    /// The content of the picture of a solved case. A quadratic triangle is drawn as four, its edges as two.
+    pub(super) fn of(case: &Case, s: &Solution, results: &Results) -> Scene {
+        let mesh = &case.problem.mesh;
+        let linear = s.degree == Degree::One;
+        let parts = |edge: BoundaryEdge| {
+            let [a, b] = mesh.ends(edge);
+            if linear {
+                return vec![[a, b]];
+            }
+            let middle = s.elements[6 * edge.triangle + 3 + edge.local];
+            vec![[a, middle], [middle, b]]
+        };
+        let quarters =
+            |&[a, b, c, d, e, f]: &[usize; 6]| [[a, f, e], [f, b, d], [e, d, c], [d, e, f]];
+        let (triangles, von_mises) = if linear {
+            (mesh.triangles().to_vec(), s.von_mises.clone())
+        } else {
+            let elements = s.elements.as_chunks().0.iter();
+            (
+                elements.flat_map(quarters).collect(),
+                s.von_mises.iter().flat_map(|&v| [v; 4]).collect(),
+            )
+        };
+        let length =
+            case.units.as_ref().map_or(String::new(), |units| format!(" {}", units.length));
+        let not_proved = match s.verdict {
+            Verdict::Proved => "",
+            Verdict::NotProved(_) => "NOT PROVED (result.json says why): ",
+        };
+        Scene {
+            title: case.title.clone(),
+            subtitle: format!(
+                "{not_proved}displacement up to {}{length}; {} {} triangles, {} unknowns",
+                short(s.quantities.max_displacement),
+                mesh.triangles().len(),
+                if linear { "linear" } else { "quadratic" },
+                2 * s.nodes.len(),
+            ),
+            points: s.nodes.clone(),
+            displacement: s.displacement.clone(),
+            triangles,
+            von_mises,
+            units: case.units.as_ref().map(|units| [units.stress(), units.length.clone()]),
+            stretch: case.stretch,
+            interfaces: interfaces(case).into_iter().flat_map(parts).collect(),
+            outline: mesh.outline().iter().copied().flat_map(parts).collect(),
+            contact: contact_surfaces(s, results),
+        }
+    }
+
     /// The larger of the body's extents along x and y.
     pub(super) fn size(&self) -> f64 {
         Bounds::around(self.points.iter().copied()).size()
     }
 
     pub(super) fn deformed(&self, factor: f64) -> Vec<Point> {
-        self.points.iter().zip(self.displacement).map(|(&x, &u)| moved(x, u, factor)).collect()
+        self.points.iter().zip(&self.displacement).map(|(&x, &u)| moved(x, u, factor)).collect()
     }
 
     /// The amount by which displacement and gap are magnified, and the words for it. True scale if the largest displacement is
@@ -97,47 +146,59 @@ impl Scene<'_> {
     }
 }
 
-/// The drawing of the body on the page: the map from the plane, and the room that it takes.
-pub(super) struct PageMap {
-    corner: Point,
-    scale: f64,
-    /// The point at the centre of the drawing.
-    centre: Point,
-    pub(super) width: f64,
-    pub(super) height: f64,
-}
-
-/// The room around the drawing, for the letters of the contact boundaries.
-const AROUND: f64 = 34.0;
-
-impl PageMap {
-    /// Makes the map of a drawing around some points of the plane, its upper left corner on the page at `corner`.
-    pub(super) fn around(points: impl IntoIterator<Item = Point>, corner: Point) -> PageMap {
-        let Bounds { low, high } = Bounds::around(points);
-        let extent = [0, 1].map(|c| high[c] - low[c]);
-        let room = [800.0, 520.0].map(|most| most - 2.0 * AROUND);
-        let scale = (room[0] / extent[0]).min(room[1] / extent[1]);
-        let scale = if scale.is_finite() { scale } else { 1.0 };
-        PageMap {
-            corner,
-            scale,
-            centre: [0, 1].map(|c| low[c] + extent[c] / 2.0),
-            width: (scale * extent[0] + 2.0 * AROUND).clamp(600.0, 800.0),
-            height: (scale * extent[1] + 2.0 * AROUND).clamp(260.0, 520.0),
+/// The edges between triangles of different materials.
+fn interfaces(case: &Case) -> Vec<BoundaryEdge> {
+    let (mesh, materials) = (&case.problem.mesh, &case.problem.material);
+    let mut found = Vec::new();
+    if materials.only().is_some() {
+        return found;
+    }
+    let mut material_at = BTreeMap::new();
+    for triangle in 0..mesh.triangles().len() {
+        let material = materials.place_of(triangle);
+        for local in 0..3 {
+            let edge = BoundaryEdge { triangle, local };
+            let [a, b] = mesh.ends(edge);
+            let other = material_at.insert([a.min(b), a.max(b)], material);
+            if other.is_some_and(|other| other != material) {
+                found.push(edge);
+            }
         }
     }
+    found
+}
 
-    pub(super) fn page(&self, [x, y]: Point) -> Point {
-        [
-            self.corner[0] + self.width / 2.0 + self.scale * (x - self.centre[0]),
-            self.corner[1] + self.height / 2.0 - self.scale * (y - self.centre[1]),
-        ]
+/// The contact boundaries by their connected parts. A pressure that is mere rounding is none.
+fn contact_surfaces(s: &Solution, results: &Results) -> Vec<ContactSurface> {
+    let certificate = results.certificate.as_ref().and_then(|c| c.continuous.as_ref());
+    let proved = certificate.filter(|certificate| certificate.bound.is_some());
+    let mut surfaces: Vec<ContactSurface> = Vec::new();
+    for edges in s.contact.chunk_by(|a, b| a.boundary == b.boundary) {
+        let name = edges[0].boundary.to_string();
+        let carries = results.contact.iter().find(|part| part.boundary == name);
+        let presses = carries.is_some_and(|part| results.is_in_contact(part));
+        let connected = |a: &ContactEdgeValues, b: &ContactEdgeValues| {
+            a.points.last().map(|p| p.node) == b.points.first().map(|p| p.node)
+        };
+        let sample = |p: &ContactValues| ContactSample {
+            arc: p.arc,
+            position: s.nodes[p.node],
+            normal: p.direction,
+            displacement: s.displacement[p.node],
+            gap: p.gap,
+            pressure: if presses { p.pressure } else { 0.0 },
+        };
+        let parts = edges.chunk_by(connected);
+        let zones = |c: &ContinuousCertificate| {
+            c.zones.iter().filter(|zone| zone.boundary == name).cloned().collect()
+        };
+        surfaces.push(ContactSurface {
+            parts: parts
+                .map(|part| part.iter().flat_map(|e| &e.points).map(sample).collect())
+                .collect(),
+            zones: proved.map(zones),
+            name,
+        });
     }
-
-    /// Returns whether a circle lies within the frame.
-    pub(super) fn holds(&self, [x, y]: Point, radius: f64) -> bool {
-        let [left, top] = self.corner;
-        (left + radius..=left + self.width - radius).contains(&x)
-            && (top + radius..=top + self.height - radius).contains(&y)
-    }
+    surfaces
 }

@@ -2,6 +2,7 @@
 
 use miniz_oxide::inflate::decompress_to_vec_zlib_with_limit;
 
+use super::ALPHABET;
 use crate::io::field::{Points, Triangles};
 use crate::memory;
 use crate::quote;
@@ -265,20 +266,16 @@ fn doubles(bytes: &[u8], kind: &str) -> Option<Vec<f64>> {
     })
 }
 
-/// The bytes of a base64 code (RFC 4648, section 4).
+/// The bytes of a base64 code.
 pub(super) fn decode(code: &[u8]) -> Result<Vec<u8>, String> {
+    let mut values = [None; 256];
+    (0..).zip(ALPHABET).for_each(|(value, &letter)| values[usize::from(letter)] = Some(value));
     let mut bytes = Vec::with_capacity(code.len() / 4 * 3);
     let (mut bits, mut held) = (0_u32, 0);
     for &letter in code.iter().take_while(|&&letter| letter != b'=') {
-        let value = match letter {
-            b'A'..=b'Z' => letter - b'A',
-            b'a'..=b'z' => letter - b'a' + 26,
-            b'0'..=b'9' => letter - b'0' + 52,
-            b'+' => 62,
-            b'/' => 63,
-            _ => return Err(format!("'{}' is no letter of base64", char::from(letter))),
-        };
-        bits = bits << 6 | u32::from(value);
+        let value: u32 = values[usize::from(letter)]
+            .ok_or_else(|| format!("'{}' is no letter of base64", char::from(letter)))?;
+        bits = bits << 6 | value;
         held += 6;
         if held >= 8 {
             held -= 8;
