@@ -10,8 +10,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::{env, fs, io};
 
+use signorini::io::FileError;
 use signorini::io::files::{self, WriteError, reason};
-use signorini::io::input::{self, InputError, MOST_OF_A_CASE};
+use signorini::io::input::{self, MOST_OF_A_CASE};
 use signorini::io::outputs::{FILES, FILES_OF_FENICSX};
 use signorini::io::result::Results;
 use signorini::quote;
@@ -31,8 +32,8 @@ pub enum EngineError {
         "the engine fenicsx needs DOLFINx and Python 3.11 or later, and neither python3 nor /usr/bin/python3 can import it: install it (Debian, Ubuntu: apt-get install python3-dolfinx)"
     )]
     NoDolfinx,
-    #[error("{}: {error}", quote::path(path))]
-    Case { path: PathBuf, error: InputError },
+    #[error(transparent)]
+    Case(#[from] FileError),
     #[error("cannot start {program}: {}", reason(error))]
     NotStarted { program: String, error: io::Error },
     #[error("{message}")]
@@ -49,7 +50,7 @@ impl EngineError {
         matches!(
             self,
             EngineError::Failed { code: Some(2), .. }
-                | EngineError::Case { .. }
+                | EngineError::Case(_)
                 | EngineError::Write(WriteError::Source { .. })
         )
     }
@@ -63,8 +64,7 @@ pub fn fenicsx(
     ranks: u16,
     reference: Option<&Path>,
 ) -> Result<(Results, Vec<PathBuf>), EngineError> {
-    let read = input::read(case, MOST_OF_A_CASE);
-    read.map_err(|error| EngineError::Case { path: case.to_owned(), error })?;
+    input::read(case, MOST_OF_A_CASE)?;
     files::spare(folder, &FILES, &[case.to_owned()])?;
     let path = python_path(reference)?;
     let python = python()?;

@@ -93,7 +93,6 @@ mod unix {
     /// A program that runs for this one, in a process group of its own.
     pub struct Running(Child);
 
-    /// Starts a program.
     pub fn start(command: &mut Command) -> io::Result<Running> {
         // Under the lock, so that no signal comes between the start and the note of it.
         let mut worker = worker();
@@ -103,7 +102,6 @@ mod unix {
     }
 
     impl Running {
-        /// Waits for its end.
         pub fn output(self) -> io::Result<Output> {
             let output = self.0.wait_with_output();
             *worker() = None;

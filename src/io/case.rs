@@ -136,7 +136,7 @@ impl Case {
     /// # Errors
     /// A file that can't be read, or is no text.
     pub fn text(file: &Path) -> Result<String, FileError> {
-        text(input::read(file, MOST_OF_A_CASE), file)
+        text(input::read(file, MOST_OF_A_CASE)?, file)
     }
 
     /// The text of a stream, such as standard input, which messages call `name`.
@@ -144,7 +144,8 @@ impl Case {
     /// # Errors
     /// As [`Case::text`].
     pub fn text_from(stream: impl Read, name: &Path) -> Result<String, FileError> {
-        text(input::read_from(stream, MOST_OF_A_CASE), name)
+        let bytes = input::read_from(stream, MOST_OF_A_CASE);
+        text(bytes.map_err(|error| error.at(name, Position::File))?, name)
     }
 
     /// The case with this text. Messages call it `file`, and a mesh file is looked for beside that. Each of the `settings`
@@ -176,16 +177,16 @@ fn parse(source: Source, mesh: Option<Mesh>) -> Result<Case, FileError> {
     Ok(case)
 }
 
-fn text(bytes: Result<Vec<u8>, InputError>, file: &Path) -> Result<String, FileError> {
-    let text = |bytes: Vec<u8>| -> Result<String, InputError> {
-        // What the TOML reader and the expressions make of it.
-        memory::check(MEMORY_PER_BYTE * bytes.len() as u64)?;
+fn text(bytes: Vec<u8>, file: &Path) -> Result<String, FileError> {
+    // What the TOML reader and the expressions make of it.
+    let room = memory::check(MEMORY_PER_BYTE * bytes.len() as u64).map_err(InputError::from);
+    let text = room.and_then(|()| {
         String::from_utf8(bytes).map_err(|e| {
             let byte = e.utf8_error().valid_up_to() + 1;
             format!("byte {byte} is not UTF-8; expected a text file, saved as UTF-8").into()
         })
-    };
-    bytes.and_then(text).map_err(|error| error.at(file, Position::File))
+    });
+    text.map_err(|error| error.at(file, Position::File))
 }
 
 /// The bytes of memory that a byte of a case file takes at most while it is read: 241 in a list of tables of one number.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::input::{self, InputError};
+use super::input::{self, FileError, InputError, Position};
 use crate::certify::Rejection;
 use crate::certify::format::{self, Refused};
 pub use crate::certify::format::{Audit, Header, decode, encode, hash};
@@ -16,28 +16,25 @@ pub const FILES: [&str; 2] = ["certificate.json", "certificate.bin"];
 /// The most bytes of a file: some ten million triangles.
 const MOST: u64 = 4 << 30;
 
-/// The reason why a certificate is not accepted.
 #[derive(Debug, Error)]
 pub enum AuditError {
-    #[error("{}: {error}", quote::path(path))]
-    Read { path: PathBuf, error: InputError },
-    #[error("{}: {}", quote::path(path), quote::line(problem))]
-    Format { path: PathBuf, problem: String },
+    #[error(transparent)]
+    File(#[from] FileError),
     #[error("{}: rejected: {rejection}", quote::path(path))]
     Rejected { path: PathBuf, rejection: Rejection },
 }
 
 /// Reads certificate.json and the arrays beside it, and verifies everything anew.
 pub fn audit(path: &Path) -> Result<Audit, AuditError> {
-    let read = |path: &Path| {
-        input::read(path, MOST).map_err(|error| AuditError::Read { path: path.to_owned(), error })
-    };
     let arrays = path.with_file_name(FILES[1]);
-    let refused = |error| match error {
-        Refused::Arrays(problem) => AuditError::Format { path: arrays.clone(), problem },
-        Refused::Rejected(rejection) => AuditError::Rejected { path: path.to_owned(), rejection },
-        error => AuditError::Format { path: path.to_owned(), problem: error.to_string() },
+    let wrong = |path: &Path, problem: &str| {
+        AuditError::File(InputError::from(quote::line(problem)).at(path, Position::File))
     };
-    let header = format::read_header(&read(path)?).map_err(refused)?;
-    format::audit(header, &read(&arrays)?).map_err(refused)
+    let refused = |error| match error {
+        Refused::Arrays(problem) => wrong(&arrays, &problem),
+        Refused::Rejected(rejection) => AuditError::Rejected { path: path.to_owned(), rejection },
+        error => wrong(path, &error.to_string()),
+    };
+    let header = format::read_header(&input::read(path, MOST)?).map_err(refused)?;
+    format::audit(header, &input::read(&arrays, MOST)?).map_err(refused)
 }

@@ -15,7 +15,6 @@ use crate::study::ladder::{fitted_slope, rates};
 use crate::study::{Errors, a_priori};
 use crate::study::{Ladder, LadderError, Level};
 
-/// The kind of the meshes of a study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Meshes {
     /// As the generator makes them.
@@ -36,7 +35,6 @@ impl Meshes {
 /// The distance by which vertices are moved where the case doesn't say.
 const PERTURBATION: Perturbation = Perturbation { amount: 0.2, seed: 1 };
 
-/// The reason why there is no study of a case.
 #[derive(Debug, Error)]
 pub enum StudyError {
     #[error("[exact] is missing; errors are measured against an exact solution")]
@@ -70,9 +68,7 @@ impl StudyError {
 /// The results on the meshes of one ladder.
 #[derive(Clone, Debug)]
 pub struct Study {
-    /// P1 or P2.
     pub degree: Degree,
-    /// The meshes.
     pub meshes: Meshes,
     /// The rate that the theory promises for all norms but L2.
     pub promised: f64,
@@ -147,7 +143,6 @@ impl Study {
         format!("P{}, {}", self.degree.number(), self.meshes.name())
     }
 
-    /// The mesh sizes.
     pub fn sizes(&self) -> Vec<f64> {
         self.levels.iter().map(|level| level.h).collect()
     }
@@ -201,7 +196,6 @@ impl Study {
     }
 }
 
-/// A rate, if there is one.
 fn shown(rate: Option<f64>) -> String {
     match rate {
         Some(rate) if rate.is_finite() => format!("{rate:.2}"),
@@ -209,10 +203,8 @@ fn shown(rate: Option<f64>) -> String {
     }
 }
 
-/// The names of the files.
 pub const FILES: [&str; 2] = ["convergence.csv", "convergence.svg"];
 
-/// The text of convergence.csv.
 pub fn csv(studies: &[Study]) -> String {
     let names = NORMS.map(|(name, _, _)| name).join(",");
     let mut text = format!("degree,mesh,h,unknowns,{names},newton_steps,gamma0,kappa,proved\n");

@@ -172,6 +172,7 @@ impl From<f64> for Expression {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fem::Distance;
 
     fn parse(text: &str) -> Expression {
         text.parse().unwrap_or_else(|e| panic!("{text}: {e}"))

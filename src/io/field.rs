@@ -40,8 +40,8 @@ pub fn read_field(path: &Path, mesh: &Mesh) -> Result<Vec<[f64; 2]>, FileError> 
         };
         at_nodes(&points, mesh, triangles.as_ref())
     };
-    let bytes = input::read(path, MOST).map_err(|error| error.at(path, Position::File))?;
-    read(bytes).map_err(|problem| InputError::from(problem).at(path, Position::File))
+    read(input::read(path, MOST)?)
+        .map_err(|problem| InputError::from(problem).at(path, Position::File))
 }
 
 /// The triangles of a VTU file.
@@ -53,7 +53,6 @@ pub(super) struct Triangles {
     pub quadratic: bool,
 }
 
-/// Places with displacements.
 pub(super) type Points = Vec<([f64; 2], [f64; 2])>;
 
 fn at_nodes(

@@ -21,7 +21,7 @@ mod mesh;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::input::{self, FileError, MOST_OF_A_MESH, Position};
+use super::input::{self, FileError, MOST_OF_A_MESH};
 use crate::fem::Mesh;
 use crate::memory;
 use crate::quote;
@@ -35,9 +35,7 @@ type Result<T> = std::result::Result<T, FileError>;
 /// # Errors
 /// The first mistake found, with its place and the numbers that the file uses.
 pub fn read(file: &Path, share: Option<f64>) -> Result<Mesh> {
-    let bytes =
-        input::read(file, MOST_OF_A_MESH).map_err(|error| error.at(file, Position::File))?;
-    from_bytes(&bytes, file, share)
+    from_bytes(&input::read(file, MOST_OF_A_MESH)?, file, share)
 }
 
 /// The mesh in `bytes`, which messages call `file`; otherwise as [`read`].

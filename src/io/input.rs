@@ -119,7 +119,11 @@ pub struct FileError {
 }
 
 /// The bytes of a regular file of at most `most` bytes.
-pub fn read(path: &Path, most: u64) -> Result<Vec<u8>, InputError> {
+pub fn read(path: &Path, most: u64) -> Result<Vec<u8>, FileError> {
+    bytes_of(path, most).map_err(|error| error.at(path, Position::File))
+}
+
+fn bytes_of(path: &Path, most: u64) -> Result<Vec<u8>, InputError> {
     // Before it is opened, for to open a pipe is to wait for its other end.
     regular(&fs::metadata(path).map_err(unreadable)?)?;
     let file = File::open(path).map_err(unreadable)?;
@@ -140,7 +144,7 @@ pub fn read(path: &Path, most: u64) -> Result<Vec<u8>, InputError> {
 }
 
 /// All bytes of a stream (standard input, say), at most `most`.
-pub fn read_from(stream: impl Read, most: u64) -> Result<Vec<u8>, InputError> {
+pub(super) fn read_from(stream: impl Read, most: u64) -> Result<Vec<u8>, InputError> {
     read_into(Vec::new(), stream, most)
 }
 

@@ -45,7 +45,6 @@ pub const FILES: [&str; 11] = [
 /// The field of a displacement from elsewhere that is certified.
 const CERTIFIED: &str = "certified.vtu";
 
-/// The files of the engine fenicsx.
 pub const FILES_OF_FENICSX: [&str; 3] = ["solution.xdmf", "solution.h5", "result.json"];
 
 /// Files that are written on demand.
@@ -53,7 +52,6 @@ pub const FILES_OF_FENICSX: [&str; 3] = ["solution.xdmf", "solution.h5", "result
 pub struct Extra {
     /// certificate.json and certificate.bin, where there is a certificate.
     pub certificate: bool,
-    /// report.html
     pub report: bool,
 }
 
@@ -147,7 +145,6 @@ fn at_nodes(values: &[[f64; 2]], nodes: usize, space: &Space) -> Vec<[f64; 2]> {
     all
 }
 
-/// certificate.json and certificate.bin.
 fn certificate_files(
     title: &str,
     certified: &Continuous,
@@ -253,7 +250,6 @@ pub fn results(
     Ok(results)
 }
 
-/// The displacement at the points that the case asks for.
 fn probes(case: &Case, solution: &Solution) -> Vec<[f64; 4]> {
     let probe = |&[x, y]: &[f64; 2]| {
         let (t, l) = case.problem.mesh.locate([x, y])?;

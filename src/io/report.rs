@@ -7,7 +7,6 @@ use super::case::Case;
 use super::result::Results;
 use super::summary;
 
-/// The name of the file.
 pub const FILE: &str = "report.html";
 
 const STYLE: &str = "\

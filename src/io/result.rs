@@ -85,7 +85,6 @@ fn first() -> u32 {
     1
 }
 
-/// The method as the case chose it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Choices {
     pub degree: usize,
@@ -94,7 +93,6 @@ pub struct Choices {
     pub allow_noncoercive: bool,
 }
 
-/// The discretisation.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct MeshSizes {
     pub vertices: usize,
@@ -143,7 +141,6 @@ pub struct StressPeaks {
     pub principal_min: StressPeak,
 }
 
-/// A largest or smallest stress.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StressPeak {
     pub value: f64,
@@ -152,7 +149,6 @@ pub struct StressPeak {
     pub surface: Option<String>,
 }
 
-/// Newton's iteration.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct NewtonHistory {
     pub iterations: usize,
@@ -162,7 +158,6 @@ pub struct NewtonHistory {
     pub status: Status,
 }
 
-/// The adaptation of the mesh to a target.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Adaptation {
     pub target: f64,
@@ -209,7 +204,6 @@ impl Results {
 }
 
 impl NewtonHistory {
-    /// The verdict, in words.
     pub fn verdict(&self) -> &'static str {
         match self.status {
             Status::Converged => "converged",
@@ -218,7 +212,6 @@ impl NewtonHistory {
     }
 }
 
-/// The time of each step.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Seconds {
     pub read: f64,
@@ -259,7 +252,6 @@ fn null_in(value: &Value, place: &str) -> Option<String> {
     }
 }
 
-/// The bounds of the error.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Certificates {
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -353,7 +345,6 @@ pub struct CertifiedQuantity {
     pub reason: Option<String>,
 }
 
-/// A weight along a contact boundary.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Weight {
     pub along: String,
@@ -392,7 +383,6 @@ impl ContinuousCertificate {
         self.quantities.iter().find(is)
     }
 
-    /// The interval of a boundary's contact force.
     pub fn contact_force(&self, boundary: &str) -> Option<[f64; 2]> {
         let (low, high) = self.quantity("contact force", boundary)?.interval?;
         Some([low, high?])

@@ -10,7 +10,6 @@ use crate::certify::adapt::{self, AdaptError, Stage};
 use crate::certify::{CertifyError, Continuous, certify_with};
 use crate::solve::{Course, Solution, SolveError, Times, solve_along};
 
-/// A solved case.
 #[derive(Debug)]
 pub struct Solved {
     /// The solution, on the mesh that the case has now.
@@ -62,7 +61,6 @@ impl Certified {
     }
 }
 
-/// The reason why a case is not solved.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum RunError {
     #[error(transparent)]

@@ -40,7 +40,6 @@ impl Lines {
 /// A contact residual, a relative error or an imbalance above this is shown without being asked for.
 const WORTH_SHOWING: f64 = 1e-8;
 
-/// The summary of a solved case.
 pub fn solved(r: &Results, files: &[PathBuf], verbose: bool) -> String {
     let mut lines = Lines(lines_of(r, verbose));
     if !files.is_empty() {
@@ -123,7 +122,6 @@ impl QuantityFormat {
         self.with_unit(short(self.whole(x)), |units| units.force(self.thickness))
     }
 
-    /// A moment or an energy.
     fn moment(&self, x: f64) -> String {
         self.with_unit(short(self.whole(x)), |units| units.moment(self.thickness))
     }
@@ -133,7 +131,6 @@ impl QuantityFormat {
         vector(f.map(|c| if c.abs() > self.no_force { self.whole(c) } else { 0.0 }))
     }
 
-    /// The components of a force.
     fn vector(&self, f: [f64; 2]) -> String {
         self.with_unit(self.components(f), |units| units.force(self.thickness))
     }
@@ -457,7 +454,6 @@ fn distance(certificate: &ContinuousCertificate, lines: &mut Lines) {
     }
 }
 
-/// The summary of a case that was only checked.
 pub fn checked(case: &Case, outline: &Outline) -> String {
     let mut lines = Lines::default();
     let mesh = MeshSizes::new(&case.problem.mesh, outline.nodes, outline.contact_edges);
@@ -478,13 +474,11 @@ pub fn checked(case: &Case, outline: &Outline) -> String {
     lines.under(&case.title)
 }
 
-/// The table of a case on finer and finer meshes.
 pub fn studied(case: &Case, studies: &[Study], files: &[PathBuf]) -> String {
     let tables: Vec<String> = studies.iter().map(Study::table).collect();
     format!("{}\n\n{}\nwritten: {}\n", quote::line(&case.title), tables.join("\n"), written(files))
 }
 
-/// The table of a sweep.
 pub fn swept(sweep: &Sweep, files: &[PathBuf]) -> String {
     format!("{}\n\n{}\nwritten: {}\n", quote::line(&sweep.title), sweep.table(), written(files))
 }
@@ -567,7 +561,6 @@ fn free(play: &Play, shown: &QuantityFormat) -> String {
     )
 }
 
-/// Four significant digits.
 fn short(x: f64) -> String {
     numbers::short(x, 4)
 }

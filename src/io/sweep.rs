@@ -64,7 +64,6 @@ fn items(list: &str) -> Option<Vec<String>> {
     }
 }
 
-/// The reason why there is no sweep.
 #[derive(Debug, Error)]
 pub enum SweepError {
     #[error("--set makes {runs} runs; expected at most {MOST_RUNS}")]
@@ -97,7 +96,6 @@ impl From<WriteError> for SweepError {
 /// The entry of a run that is still to come when a sweep is stopped.
 const NOT_SOLVED: &str = "not solved";
 
-/// The name of the file.
 pub const FILE: &str = "sweep.csv";
 
 /// The name of the file that ParaView opens, where the runs have files.
@@ -106,9 +104,7 @@ pub(crate) const COLLECTION: &str = "sweep.pvd";
 /// A case and its results for the combinations of the values of some keys.
 #[derive(Clone, Debug)]
 pub struct Sweep {
-    /// The title of the case.
     pub title: String,
-    /// The keys that were set.
     pub keys: Vec<String>,
     /// The values of the keys in each run; those of the last key change first.
     pub values: Vec<Vec<String>>,
@@ -166,7 +162,6 @@ pub fn run(
     Ok(sweep)
 }
 
-/// The folder of run `i` in that of its sweep.
 fn of_run(folder: &Path, i: usize) -> PathBuf {
     folder.join((i + 1).to_string())
 }
@@ -221,7 +216,6 @@ struct Cell {
     value: String,
 }
 
-/// Formats a number.
 type NumberFormat<'a> = &'a dyn Fn(f64) -> String;
 
 /// The numbers of a run: forces, moments and energies times the thickness, if the case has one.

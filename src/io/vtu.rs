@@ -84,7 +84,6 @@ impl<'a> DataArray<'a> {
     }
 }
 
-/// The bytes of the file.
 pub(super) fn vtu(grid: &Grid) -> Result<Vec<u8>, NotFinite> {
     let places = DataArray::vectors("Points", grid.points);
     for array in grid.point_data.iter().chain(grid.cell_data).chain([&places]) {

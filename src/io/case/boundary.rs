@@ -6,16 +6,12 @@ use std::sync::Arc;
 use super::exact::read_kind;
 use super::load::constant;
 use super::table::{Spot, Table, Value};
-use crate::fem::{
-    Condition, Distance, Function, Mesh, Obstacle, PointSupport, SharedFunction, Side,
-};
-use crate::io::expression::Expression;
+use crate::fem::{Condition, Mesh, Obstacle, PointSupport, SharedFunction, Side};
 use crate::io::input::FileError;
 use crate::quote::names;
 use crate::study::Exact;
 use crate::study::exact::Kind;
 
-/// The obstacles by their names, with their places.
 type Obstacles<'s> = BTreeMap<&'s str, (Spot<'s>, Obstacle)>;
 
 /// The conditions on the boundaries of the mesh and, beside \[exact\], the kind of each.
@@ -168,7 +164,7 @@ fn read_obstacles<'s>(root: &Table<'s>) -> Result<Obstacles<'s>, FileError> {
 fn read_obstacle(table: &Table) -> Result<Obstacle, FileError> {
     let shape = table.exactly_one(&["plane", "circle", "distance"])?;
     if table.get("distance").is_some() {
-        return Ok(Obstacle::Distance(Arc::new(FromExpression(shape.expression()?))));
+        return Ok(Obstacle::Distance(Arc::new(shape.expression()?)));
     }
     let shape = shape.table()?;
     if table.get("circle").is_some() {
@@ -188,21 +184,6 @@ fn read_obstacle(table: &Table) -> Result<Obstacle, FileError> {
         Ok(Obstacle::Plane { point, normal: [x / length, y / length] })
     } else {
         Err(normal.wrong_as(&format!("{:?}", [x, y]), "a vector that is not zero"))
-    }
-}
-
-/// A signed distance by its expression.
-struct FromExpression(Expression);
-
-impl Function for FromExpression {
-    fn at(&self, x: [f64; 2]) -> f64 {
-        self.0.at(x)
-    }
-}
-
-impl Distance for FromExpression {
-    fn gradient(&self, x: [f64; 2]) -> [f64; 2] {
-        self.0.gradient(x)
     }
 }
 

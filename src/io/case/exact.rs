@@ -1,11 +1,5 @@
 //! The section \[exact\] of a case file: a built-in exact solution, which supplies loads, boundary data and gap.
-//!
-//! | solution | parameters |
-//! | --- | --- |
-//! | "smooth" | c in (0, 1), k > 5/2, m > 3/2, ap > 0, aq > 0, gap = "a polynomial in x" (default "0") |
-//! | "singular" | c in (0, 1), amplitude > 0 |
-//! | "corner" | omega between pi/2 and pi |
-//! | "patch" | which = "d1" (p > 0), "d2" (p, d > 0), "d3" (p > 0, w, g0), "d4" or "d5" (d > 0) |
+//! Their parameters: docs/case.md, which a test compares with what is read here.
 //!
 //! The solutions themselves: [`exact`](crate::study::exact).
 

@@ -198,7 +198,6 @@ const ACROSS: &str =
 
 const TELLS: &str = "plane = \"stress\", or across = [a, b, c] with sigma_zz = a sigma_xx + b sigma_yy + c sigma_xy";
 
-/// A list of `N` numbers.
 fn numbers<const N: usize>(list: &Value, expected: &str) -> Result<[f64; N], FileError> {
     let items = list.items()?;
     let all = items.iter().map(Value::number).collect::<Result<Vec<f64>, _>>()?;

@@ -64,7 +64,6 @@ pub(super) fn read_settings(table: &Table) -> Result<Settings, FileError> {
 /// Meshes are refined up to so many unknowns where the case says nothing.
 pub(super) const MOST_UNKNOWNS: usize = 500_000;
 
-/// The conditions by the names of their boundaries.
 type Conditions = BTreeMap<String, Condition>;
 
 /// Refuses a name that is not one of a contact boundary; `value` is where it stands.

@@ -40,20 +40,17 @@ impl Spot<'_> {
     }
 }
 
-/// A table of the file.
 pub struct Table<'s> {
     pub at: Spot<'s>,
     entries: &'s DeTable<'s>,
 }
 
-/// A value of the file.
 pub struct Value<'s> {
     pub at: Spot<'s>,
     value: &'s DeValue<'s>,
 }
 
 impl<'s> Table<'s> {
-    /// The whole file.
     pub fn whole(source: Source<'s>, entries: &'s DeTable<'s>) -> Self {
         let at = Spot { source, name: String::new(), start: None };
         Table { at, entries }
@@ -285,7 +282,6 @@ impl<'s> Value<'s> {
         })
     }
 
-    /// The items of a list.
     pub fn items(&self) -> Result<Vec<Value<'s>>, FileError> {
         match self.value {
             DeValue::Array(items) => Ok(items.iter().enumerate().map(|i| self.item(i)).collect()),
@@ -299,7 +295,6 @@ impl<'s> Value<'s> {
         Value { at, value: item.get_ref() }
     }
 
-    /// A list of two.
     pub fn pair(&self) -> Result<[Value<'s>; 2], FileError> {
         let pair = self.items().ok().and_then(|items| items.try_into().ok());
         pair.ok_or_else(|| self.wrong("a list of two: one for x, one for y"))
@@ -311,13 +306,11 @@ impl<'s> Value<'s> {
         Ok([x.number()?, y.number()?])
     }
 
-    /// Two expressions, one for each component.
     pub fn functions(&self) -> Result<[SharedFunction; 2], FileError> {
         let [x, y] = self.pair()?;
         Ok([x.function()?, y.function()?])
     }
 
-    /// The value as a function.
     pub fn function(&self) -> Result<SharedFunction, FileError> {
         Ok(Arc::new(self.expression()?))
     }

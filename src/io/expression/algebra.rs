@@ -1,6 +1,7 @@
 //! The number types over which expressions are evaluated: doubles, doubles with their derivatives, balls, polynomials.
 
 use super::{Binary, Expression, Number, Unary};
+use crate::fem::Distance;
 use crate::kernel::{Ball, Enclosing, Scalar};
 
 impl Number for f64 {
@@ -35,7 +36,6 @@ impl Number for f64 {
     }
 }
 
-/// a^n by repeated multiplication.
 fn whole_power(a: f64, n: i32) -> f64 {
     let product = (0..n.unsigned_abs()).fold(1.0, |product, _| product * a);
     if n < 0 { 1.0 / product } else { product }
@@ -48,14 +48,15 @@ struct Dual {
     slope: [f64; 2],
 }
 
-impl Expression {
-    /// The derivatives along x and y at this place; NaN where there is none. At the kink of abs, min or max, that of one
-    /// side.
-    pub fn gradient(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+impl Distance for Expression {
+    /// NaN where there is none. At the kink of abs, min or max, that of one side.
+    fn gradient(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let [x, y] = [(x, [1.0, 0.0]), (y, [0.0, 1.0])].map(|(value, slope)| Dual { value, slope });
         self.evaluate([x, y]).slope
     }
+}
 
+impl Expression {
     /// The degree in x and y, if the expression is a polynomial by its form.
     pub(super) fn polynomial_degree(&self) -> Option<u32> {
         self.form().degree
@@ -198,7 +199,6 @@ fn product(a: &[f64], b: &[f64]) -> Option<Vec<f64>> {
     Some(product)
 }
 
-/// a + sign b
 fn sum(a: &[f64], sign: f64, b: &[f64]) -> Vec<f64> {
     let at = |p: &[f64], i: usize| p.get(i).copied().unwrap_or(0.0);
     (0..a.len().max(b.len())).map(|i| at(a, i) + sign * at(b, i)).collect()

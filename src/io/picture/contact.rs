@@ -211,10 +211,8 @@ pub(super) fn letter(surface: usize) -> String {
     }
 }
 
-/// The radius of the circle around a letter.
 pub(super) const RADIUS: f64 = 9.0;
 
-/// A letter in a circle.
 pub(super) fn tag(surface: usize, [x, y]: Point) -> Group {
     let circle = Circle::new().set("cx", x.round()).set("cy", y.round()).set("r", RADIUS);
     let letter = anchored("middle", letter(surface), [x.round(), y.round() + 4.0]);

@@ -8,7 +8,6 @@ use svg::node::element::{Circle, Path as PathElement, Rectangle, Text, Title};
 use crate::fem::tree::Bounds;
 use crate::io::numbers;
 
-/// The letters of all pictures.
 pub(super) const FONT: &str = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
 pub(super) const DARK: &str = "#222222";
 pub(super) const GREY: &str = "#666666";
@@ -52,7 +51,6 @@ pub(super) fn anchored(anchor: &str, content: impl Into<String>, at: Point) -> T
     text(content, at).set("text-anchor", anchor)
 }
 
-/// A dot.
 pub(super) fn dot([x, y]: Point) -> Circle {
     Circle::new().set("cx", rounded(x)).set("cy", rounded(y)).set("r", 3)
 }
@@ -66,7 +64,6 @@ pub(super) fn rectangle([left, top]: Point, [width, height]: [f64; 2]) -> Rectan
         .set("height", rounded(height))
 }
 
-/// The frame of a drawing area.
 pub(super) fn frame(corner: Point, size: [f64; 2]) -> Rectangle {
     rectangle(corner, size).set("fill", "none").set("stroke", GREY)
 }
@@ -238,7 +235,6 @@ pub(super) fn direction(a: Point, b: Point) -> Option<Point> {
     (length > 0.0).then(|| [(b[0] - a[0]) / length, (b[1] - a[1]) / length])
 }
 
-/// The distance of `p` from the segment from `a` to `b`.
 pub(super) fn distance_from_segment(p: Point, a: Point, b: Point) -> f64 {
     let [dx, dy] = [b[0] - a[0], b[1] - a[1]];
     let square = dx * dx + dy * dy;

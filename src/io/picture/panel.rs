@@ -36,12 +36,10 @@ const ABOVE: f64 = 24.0;
 /// Panels side by side.
 const COLUMNS: usize = 2;
 
-/// The height of all panels.
 pub(super) fn height(scene: &Scene) -> f64 {
     HEIGHT * scene.contact.len().div_ceil(COLUMNS) as f64
 }
 
-/// The panels, from the point `corner` on and so wide.
 pub(super) fn panels(scene: &Scene, corner: Point, width: f64) -> Group {
     let columns = scene.contact.len().clamp(1, COLUMNS);
     let step = (width + BETWEEN) / columns as f64;

@@ -55,7 +55,6 @@ const LEGEND_LINE: f64 = 20.0;
 /// The room of a legend entry beside its name.
 const LEGEND_MARK: f64 = 68.0;
 
-/// The text of the SVG file.
 pub fn figure(figure: &Figure) -> Result<String, NotFinite> {
     for panel in &figure.panels {
         for (line, style) in panel.lines.iter().zip(&figure.styles) {

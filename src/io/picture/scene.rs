@@ -12,7 +12,6 @@ use crate::io::result::{ContinuousCertificate, Results};
 use crate::solve::solution::{ContactEdgeValues, ContactValues};
 use crate::solve::{Solution, Verdict};
 
-/// The content of a picture.
 #[derive(Clone, Debug)]
 pub(super) struct Scene {
     /// The headline, and a line below it.
@@ -35,7 +34,6 @@ pub(super) struct Scene {
     pub(super) contact: Vec<ContactSurface>,
 }
 
-/// A contact boundary.
 #[derive(Clone, Debug)]
 pub(super) struct ContactSurface {
     pub(super) name: String,
@@ -46,7 +44,6 @@ pub(super) struct ContactSurface {
     pub(super) zones: Option<Vec<Zone>>,
 }
 
-/// A point of a contact boundary.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ContactSample {
     /// Arc length along the boundary.
