@@ -472,7 +472,8 @@ mod tests {
 
     #[test]
     fn a_nan_or_an_infinity_is_refused_by_its_path() {
-        let spoils: [(fn(&mut Results), &str); 5] = [
+        type Spoil = fn(&mut Results);
+        let spoils: [(Spoil, &str); 5] = [
             (|r| r.gamma.kappa = f64::NAN, "gamma.kappa"),
             (|r| r.gamma.limiting_edge[1][0] = f64::INFINITY, "gamma.limiting_edge[1][0]"),
             (|r| r.newton.residuals[2] = f64::NAN, "newton.residuals[2]"),
