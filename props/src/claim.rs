@@ -256,8 +256,6 @@ pub struct Claim {
     pub statement: &'static str,
     /// Over which numbers.
     pub numbers: &'static str,
-    /// The items of the code that it is about: `module::item` of the kernel, `fem::module::item` of the solver.
-    pub kernel: &'static [&'static str],
     /// What is assumed, and by whom.
     pub preconditions: &'static str,
     /// What this does not establish.

@@ -189,12 +189,6 @@ pub fn engines<'a>(checks: impl Iterator<Item = &'a Check>) -> String {
     engines.into_iter().map(|(_, name)| name).collect::<Vec<_>>().join(", ")
 }
 
-/// The directory under `src` where an item of a claim is: that of the kernel unless its path begins with another one.
-pub fn source(path: &str) -> &str {
-    let first = path.split("::").next().unwrap_or(path);
-    if ["audit", "certify", "fem", "solve"].contains(&first) { first } else { "kernel" }
-}
-
 /// A row as a paragraph.
 fn row(claim: &Claim) -> String {
     let Claim { id, title, paper, limits, .. } = claim;
@@ -295,69 +289,5 @@ mod tests {
         };
         assert!(harnesses(false) >= 25, "{}", harnesses(false));
         assert_eq!(harnesses(false), harnesses(true));
-    }
-
-    /// The type of an `impl` header without the word `impl`: what follows its generics, and the trait if there is one.
-    fn subject(header: &str) -> String {
-        let mut depth = 0;
-        let generics = header.find(|c| {
-            depth += i32::from(c == '<') - i32::from(c == '>');
-            depth == 0
-        });
-        let rest = header[generics.map_or(0, |i| i + 1)..].rsplit(" for ").next().unwrap();
-        rest.trim_start().chars().take_while(char::is_ascii_alphanumeric).collect()
-    }
-
-    #[test]
-    fn every_item_of_a_row_exists() {
-        for path in claims::all().iter().flat_map(|c| c.kernel) {
-            let directory = source(path);
-            let inside = path.strip_prefix(&format!("{directory}::")).unwrap_or(path);
-            let (module, name) =
-                (inside.split("::").next().unwrap(), inside.rsplit("::").next().unwrap());
-            let source =
-                std::fs::read_to_string(root().join(format!("src/{directory}/{module}.rs")));
-            let source = source.unwrap_or_else(|why| panic!("{path}: {why}"));
-            let declared = [format!("fn {name}("), format!("fn {name}<")];
-            assert!(declared.iter().any(|d| source.contains(d)), "{path}");
-        }
-    }
-
-    /// The public functions of the kernel, as `module::Type::function` or `module::function`, read off its source.
-    fn kernel_functions() -> Vec<String> {
-        let mut found = Vec::new();
-        for entry in std::fs::read_dir(root().join("src/kernel")).unwrap() {
-            let path = entry.unwrap().path();
-            let module = path.file_stem().unwrap().to_str().unwrap().to_owned();
-            let source = std::fs::read_to_string(&path).unwrap();
-            let code = source.split("#[cfg(test)]").next().unwrap();
-            let mut of = String::new();
-            for line in code.lines() {
-                if let Some(header) = line.strip_prefix("impl") {
-                    of = subject(header) + "::";
-                } else if line == "}" {
-                    of.clear();
-                }
-                if let Some(rest) = line.trim_start().strip_prefix("pub fn ") {
-                    let name: String = rest
-                        .chars()
-                        .take_while(|c| c.is_ascii_alphanumeric() || *c == '_')
-                        .collect();
-                    found.push(format!("{module}::{of}{name}"));
-                }
-            }
-        }
-        found
-    }
-
-    #[test]
-    fn every_public_function_of_the_kernel_meets_a_claim() {
-        let claims = claims::all();
-        let functions = kernel_functions();
-        assert!(functions.len() > 30, "{functions:?}");
-        for function in functions {
-            let met = claims.iter().any(|c| c.kernel.contains(&function.as_str()));
-            assert!(met, "{function} is in no row");
-        }
     }
 }

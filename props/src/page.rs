@@ -222,7 +222,6 @@ fn row_view(claim: &Claim, report: &Report) -> String {
         ("Assumed", claim.preconditions),
         ("Not established", claim.limits),
         ("Why one engine", claim.single.unwrap_or_default()),
-        ("Code", &claim.kernel.join(", ")),
     ] {
         if !content.is_empty() {
             let _ = write!(text, "<p><b>{name}:</b> {}</p>", escape(content));

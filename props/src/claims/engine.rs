@@ -21,7 +21,6 @@ pub fn claim() -> Claim {
         paper: "Nothing: the paper is proved by hand.",
         statement: "Each of 60 false statements is refused, not for its form: true neighbours of them are proved. Where a rational point refutes it, one is found at which the very conclusion fails that is wrong; the others have no rational counterexample (a root of two), or a hypothesis or a class that nothing meets. They are wrong by a sign, a case without a tie, a branch exchanged; an inequality multiplied or divided by what may be negative, a factor cancelled that may be zero, a division by what is zero at a single point or on one side of a case; the larger taken for the smaller, the chord for the tangent; a lemma that is wrong before a conclusion that is right; by a millionth; or they are true of integers and rationals only. Powers of degree 4095 keep their exponents, and of larger ones than 2^16 nothing is proved.",
         numbers: "every ordered field (proof).",
-        kernel: &["positive_part::positive_part", "positive_part::positive_part_slope"],
         preconditions: "None.",
         limits: "That the engine refuses these does not say that it refuses all that is false: for this there is the checker of certificates, in this crate and in `reference/check_certificates.py`.",
         single: Some("The row is about this engine."),

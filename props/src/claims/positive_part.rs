@@ -243,11 +243,6 @@ mod row {
             paper: "a <= [a]+, a[a]+ = [a]+^2, for all a in R.",
             statement: "a <= [a]+, a[a]+ = [a]+^2, [a]+ >= 0, [[a]+]+ = [a]+, [a]+ - [-a]+ = a; [a]+ is the projection of a on [0, oo) and the only q with q >= 0, q >= a, q(q - a) = 0; the slope that Newton uses is its derivative away from 0.",
             numbers: "every ordered field (proof); rationals; all finite doubles, without rounding: where a product overflows, both sides are +oo. A NaN stays a NaN, -0 gives +0.",
-            kernel: &[
-                "positive_part::positive_part",
-                "positive_part::positive_part_slope",
-                "scalar::Scalar::split",
-            ],
             preconditions: "None for the first line. In doubles the infinities are left out: -oo * 0 is a NaN.",
             limits: "The slope at 0 is a choice (0), not a fact about [.]+.",
             single: None,
