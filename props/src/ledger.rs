@@ -60,7 +60,7 @@ arithmetic of polynomials, the forking of paths and the checker of certificates 
 `certificate.rs` in `props/src/proof`); the search for certificates is not trusted, and `reference/check_certificates.py`
 checks them again with fractions and nothing else. It can't see that the polynomials are those of the predicate; what Rocq has
 proved needs neither. For the rows that assemble on meshes, the transcription of the definitions in `props/src/naive.rs`,
-`bodies.rs` and `discrete.rs`; exact elimination (`elimination.rs`), enclosed integrals (`enclosure.rs`), the counts of
+`bodies.rs` and `discrete.rs`; exact elimination (`elimination.rs`), the counts of
 roundings in `claims/assembled/compare.rs`, the number types in `numbers`, and the stand-in of the model checker
 (`harness.rs`). A is any tensor of section 2.1 in
 the plane: random bodies have lambda and mu or a tensor that couples all strains, those on which the solver's own doubles are compared

@@ -19,8 +19,6 @@ pub mod draws;
 #[cfg(not(kani))]
 pub mod elimination;
 #[cfg(not(kani))]
-pub mod enclosure;
-#[cfg(not(kani))]
 pub mod export;
 #[cfg(not(kani))]
 pub mod fingerprint;

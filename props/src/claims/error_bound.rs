@@ -19,8 +19,9 @@ use self::by_hand::{
 use self::refusals::{refusals, refusals_of_supports, three_nodes_tell};
 use self::solved::{
     above_the_rationals, above_the_true_error, between_the_vertices, costs, energies_agree,
-    known_to_rounding, patches, raised_by_a_perturbation, samples, scaled,
+    known_to_rounding, patches, raised_by_a_perturbation, scaled,
 };
+use super::known::{self, samples};
 use super::{attained, checker};
 use crate::claim::{Claim, Outcome, model_checked, noticed, proved, refuted, tested};
 use crate::verdict::{Ordered, Verdict};
@@ -161,7 +162,7 @@ pub fn claim() -> Claim {
                 doubles!("control_the_bound_of_twice_the_load_scaled" => draws::reject(solved::bodies(1), |draw| scaled(draw, 2.0))),
                 doubles!("a_solution_in_the_space_is_bounded_by_rounding" => draws::hold(40, patches(), &["quadratic"], |patch| known_to_rounding(patch, Degree::Two))),
                 doubles!("control_quadratic_solutions_beside_an_affine_v" => draws::reject(patches(), |patch| known_to_rounding(patch, Degree::One))),
-                doubles!("the_bound_is_above_the_true_error_of_drawn_solutions" => draws::hold(60, samples(), &["smooth", "singular", "corner", "smooth, P2", "singular, P2", "corner, P2"], |sample| above_the_true_error(sample, 1.0))).about(&["the error bound"]),
+                doubles!("the_bound_is_above_the_true_error_of_drawn_solutions" => draws::hold(60, samples(), &known::CLASSES, |sample| above_the_true_error(sample, 1.0))).about(&["the error bound"]),
                 doubles!("control_half_the_bound" => draws::reject(samples(), |sample| above_the_true_error(sample, 0.5))),
                 refuted(statement!(
                     control_contact_adds_under_tension,

@@ -14,12 +14,12 @@ pub mod balls;
 #[cfg(not(kani))]
 pub mod certificate;
 pub mod checker;
+#[cfg(not(kani))]
+pub mod consistent;
 pub mod constants;
 #[cfg(not(kani))]
 pub mod curved;
 pub mod discrete_forms;
-#[cfg(not(kani))]
-pub mod enclosed;
 #[cfg(not(kani))]
 pub mod engine;
 #[cfg(not(kani))]
@@ -33,6 +33,8 @@ pub mod geometry;
 pub mod honesty;
 #[cfg(not(kani))]
 pub mod interpolation;
+#[cfg(not(kani))]
+mod known;
 pub mod lemma_3_1;
 pub mod lemma_3_2;
 pub mod method;

@@ -2,7 +2,6 @@
 //! says in balls of doubles is compared with that. Its tests of signs are looked at by certificates that are wrong in a sign only
 //! (`refusals`); the theorem itself by solutions that are known.
 
-use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -10,17 +9,16 @@ use proptest::prelude::*;
 use signorini::certify::proof::{Piece, Role};
 use signorini::certify::{Certificate, Continuous, certify, certify_field};
 use signorini::fem::{
-    Condition, Diagonal, Problem, Rectangle, SharedFunction, Space, Structured, Trapezoid,
-    contact_line, quadrature,
+    Condition, Diagonal, Problem, Rectangle, SharedFunction, Space, contact_line, quadrature,
 };
 use signorini::io::Expression;
 use signorini::kernel::{Ball, Enclosing, Material, Plane};
 use signorini::nalgebra::Matrix2;
 use signorini::solve::{Degree, Method, Settings, solve};
-use signorini::study::exact::{self, Corner, Kind, Singular, Smooth};
-use signorini::study::{Errors, Exact as Solution};
+use signorini::study::Errors;
 
 use crate::claim::text;
+use crate::claims::known::Sample;
 use crate::ensure;
 use crate::naive::{Field, Hooke, integral_of_quadratics};
 use crate::numbers::Exact;
@@ -386,100 +384,21 @@ pub(super) fn known_to_rounding(patch: &Patch, degree: Degree) -> Verdict {
     Verdict::Holds(if curved { "quadratic" } else { "affine" })
 }
 
-/// An exact solution with its parameters, and the mesh.
-#[derive(Clone, Debug)]
-enum Known {
-    /// (a): exponents, c, amplitudes.
-    Smooth([f64; 5]),
-    /// (b): c, amplitude.
-    Singular([f64; 2]),
-    /// (c): omega over pi.
-    Corner(f64),
-}
-
-#[derive(Clone, Debug)]
-pub(super) struct Sample {
-    known: Known,
-    lambda: f64,
-    n: usize,
-    moved: Option<u64>,
-    degree: Degree,
-}
-
-pub(super) fn samples() -> impl Strategy<Value = Sample> {
-    let between = |low: f64, high: f64| {
-        (0_u32..=1000).prop_map(move |k| low + (high - low) * f64::from(k) / 1000.0)
-    };
-    let smooth = (
-        between(3.0, 5.0),
-        between(2.0, 4.0),
-        between(0.05, 0.95),
-        between(0.5, 20.0),
-        between(0.5, 20.0),
-    );
-    let known = prop_oneof![
-        smooth.prop_map(|(k, m, c, p, q)| Known::Smooth([k, m, c, p, q])),
-        (between(0.02, 0.98), between(0.1, 10.0)).prop_map(|(c, a)| Known::Singular([c, a])),
-        between(0.52, 0.95).prop_map(Known::Corner),
-    ];
-    let degree = prop::sample::select(&[Degree::One, Degree::Two]);
-    (known, between(0.0, 5.0), 2_usize..=10, prop::option::of(0_u64..1000), degree)
-        .prop_map(|(known, lambda, n, moved, degree)| Sample { known, lambda, n, moved, degree })
-}
-
-impl Sample {
-    fn solution(&self) -> Option<Solution> {
-        let material = Material::lame(self.lambda, 1.0, Plane::Strain);
-        Some(match self.known {
-            Known::Smooth([k, m, c, ap, aq]) => {
-                Arc::new(Smooth { material, c, k, m, ap, aq, gap: Vec::new() })
-            }
-            Known::Singular([c, amplitude]) => Arc::new(Singular { material, c, amplitude }),
-            Known::Corner(omega) => Arc::new(Corner::new(material, omega * PI)?),
-        })
-    }
-
-    /// |u - v|_a over the bound.
-    fn ratio(&self) -> Option<(f64, &'static str)> {
-        let (n, diagonal) = (self.n, Diagonal::Right);
-        let square =
-            Structured::Rectangle(Rectangle { width: 1.0, height: 1.0, nx: n, ny: n, diagonal });
-        let (d, t) = (Kind::Displacement, Kind::Traction);
-        let (body, [left, right, top], class) = match self.known {
-            Known::Smooth(_) => (square, [t, t, d], "smooth"),
-            Known::Singular(_) => (square, [d; 3], "singular"),
-            Known::Corner(omega) => {
-                (Structured::Trapezoid(Trapezoid { omega: omega * PI, n }), [t, d, d], "corner")
-            }
-        };
-        let moved = self.moved.map(|seed| signorini::fem::Perturbation { amount: 0.2, seed });
-        let solution = self.solution()?;
-        let kinds = [("left", left), ("right", right), ("top", top), ("bottom", Kind::Contact)];
-        let kinds = BTreeMap::from(kinds.map(|(name, kind)| (name.to_owned(), kind)));
-        let problem = exact::problem(&solution, body.mesh(moved).ok()?, &kinds);
-        let method = Method { degree: self.degree, ..Method::default() };
-        let (found, _) = solve(&problem, &method, &Settings::default()).ok()?;
-        let certified = certify(&problem, &found).ok()?;
-        let (v, gamma0) = (&certified.displacement, found.gamma.gamma0);
-        let space = Space::new(&problem.mesh, self.degree);
-        let contact = contact_line::assemble(&problem, &space, gamma0).ok()?;
-        let error = Errors::new(&space, &contact, v, &*solution).energy;
-        let class = match (self.degree, class) {
-            (Degree::One, class) => class,
-            (Degree::Two, "smooth") => "smooth, P2",
-            (Degree::Two, "singular") => "singular, P2",
-            (Degree::Two, _) => "corner, P2",
-        };
-        Some((error / certified.bound, class))
-    }
-}
-
-/// The true error is at most `factor` times the bound.
+/// The true error |u - v|_a is at most `factor` times the bound.
 pub(super) fn above_the_true_error(sample: &Sample, factor: f64) -> Verdict {
-    let Some((ratio, class)) = sample.ratio() else { return Verdict::Fails("there is a bound") };
+    let ratio = || {
+        let (solution, problem) = sample.problem()?;
+        let (found, _) = solve(&problem, &sample.method(), &Settings::default()).ok()?;
+        let certified = certify(&problem, &found).ok()?;
+        let space = Space::new(&problem.mesh, sample.degree);
+        let contact = contact_line::assemble(&problem, &space, found.gamma.gamma0).ok()?;
+        let error = Errors::new(&space, &contact, &certified.displacement, &*solution).energy;
+        Some(error / certified.bound)
+    };
+    let Some(ratio) = ratio() else { return Verdict::Fails("there is a bound") };
     // The true error is an integral known to 1e-9.
     ensure!(ratio * (1.0 - 1e-9) <= factor);
-    Verdict::Holds(class)
+    Verdict::Holds(sample.class())
 }
 
 /// c x (1 - x): 0 at both ends of a side of length 1.
