@@ -277,43 +277,6 @@ pub fn smallest_eigenvalue(problem: &Problem, degree: Degree, kappa: f64) -> Res
     Ok(1.0 / (1.0 + d.gamma0 * mu))
 }
 
-/// lambda_min as the smallest eigenvalue of the dense matrix L^-1 A L^-T, K = L L^T.
-///
-/// # Errors
-/// A problem that is none.
-pub fn smallest_eigenvalue_dense(problem: &Problem, degree: Degree, kappa: f64) -> Result<f64> {
-    let d = discretize(problem, &at_kappa(problem, degree, kappa)?).map_err(text)?;
-    let Order { numbering, neighbours } = Order::new(&d);
-    let k = matrix::assemble_stiffness(&d, &numbering, &neighbours);
-    let factor = Factor::new(&k).map_err(text)?;
-    let mut columns = dense(&matrix::assemble(&d, &numbering, &neighbours));
-    for _ in 0..2 {
-        columns.iter_mut().for_each(|column| factor.forward(column));
-        columns = transposed(&columns);
-    }
-    let reduced = Mat::from_fn(columns.len(), columns.len(), |i, j| columns[j][i]);
-    let eigenvalues = reduced.self_adjoint_eigenvalues(Side::Lower);
-    eigenvalues.map_err(|e| format!("{e:?}"))?.first().copied().ok_or_else(|| "no free node".into())
-}
-
-/// The columns of a symmetric matrix.
-pub(crate) fn dense(lower: &LowerTriangle) -> Vec<Vec<f64>> {
-    let n = lower.starts.len() - 1;
-    let mut columns = vec![vec![0.0; n]; n];
-    for column in 0..n {
-        for at in lower.starts[column]..lower.starts[column + 1] {
-            let row = lower.rows[at];
-            columns[column][row] = lower.values[at];
-            columns[row][column] = lower.values[at];
-        }
-    }
-    columns
-}
-
-fn transposed(columns: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    (0..columns.len()).map(|i| columns.iter().map(|column| column[i]).collect()).collect()
-}
-
 /// The values of kappa in the table.
 const KAPPAS: [f64; 2] = [0.5, 0.9];
 

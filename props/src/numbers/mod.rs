@@ -1,4 +1,4 @@
-//! The number types of the engines: exact rationals, the same with dimensions, intervals of doubles, magnitudes for the bounds of
+//! The number types of the engines: exact rationals, intervals of doubles, magnitudes for the bounds of
 //! rounding errors, and integers for the model checker.
 
 #[cfg(not(kani))]
@@ -6,8 +6,6 @@ pub mod exact;
 pub mod interval;
 #[cfg(not(kani))]
 pub mod magnitude;
-#[cfg(not(kani))]
-pub mod quantity;
 pub mod whole;
 
 #[cfg(not(kani))]
@@ -15,6 +13,4 @@ pub use exact::Exact;
 pub use interval::Interval;
 #[cfg(not(kani))]
 pub use magnitude::Magnitude;
-#[cfg(not(kani))]
-pub use quantity::{Dimension, Quantity};
 pub use whole::Whole;

@@ -12,7 +12,7 @@ use proptest::prelude::*;
 use signorini::certify::proof::{Certificate, Curved, Edge, Piece, Role};
 use signorini::kernel::{Ball, Enclosing, Material, Plane};
 
-use super::refusals::{IS_INNER, supported};
+use super::refusals::supported;
 use crate::bodies::whole;
 use crate::ensure;
 use crate::naive::{Field, Hooke, Line, integral_of_affine};
@@ -353,45 +353,6 @@ fn evaluated_of<S: Enclosing>(
     })
 }
 
-/// The load at each vertex of a triangle is counted in J(v): int l_a v = |T|/12 (v_0 + v_1 + v_2 + v_a); or that of the first
-/// vertex for all.
-pub(super) fn loads_at_vertices(draw: &Draw, own: bool) -> Verdict {
-    // What bulges do is seen by the square of the bound less twice the energy.
-    let plain = Draw { curve: Vec::new(), ..draw.clone() }.certificate();
-    let more = |t: usize, i: usize| draw.v[(3 * t + i) % draw.v.len()].map(sixteenth);
-    let mut loaded = plain.clone();
-    for (t, piece) in loaded.pieces.iter_mut().enumerate() {
-        for i in 0..3 {
-            (0..2).for_each(|c| piece.body[i][c] += more(t, i)[c]);
-        }
-    }
-    let Ok(proof) = loaded.evaluate::<Ball>() else {
-        return Verdict::Fails("the certificate is accepted");
-    };
-    Exact::scope(|| {
-        let definition = draw.by_definition(&plain);
-        let (mut energy, mut size) = (definition.energy, Exact::from(1) + definition.norm);
-        for (t, piece) in plain.pieces.iter().enumerate() {
-            let [a, b, c] = piece.vertices.map(|k| plain.vertices[k].map(Exact::of_double));
-            let cross = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-            let v = piece.vertices.map(|k| plain.displacement[k].map(Exact::of_double));
-            for i in 0..3 {
-                for c in 0..2 {
-                    let nodal = v[0][c] + v[1][c] + v[2][c] + v[i][c];
-                    let force = Exact::of_double(more(t, if own { i } else { 0 })[c]);
-                    let work = force * nodal * cross / Exact::from(24);
-                    energy -= work;
-                    size += work.abs();
-                }
-            }
-        }
-        ensure!(Exact::of_double(proof.energy[0]) <= energy);
-        ensure!(energy <= Exact::of_double(proof.energy[1]));
-        ensure!(proof.energy.iter().all(|&e| near(e, energy, size + energy.abs())));
-        Verdict::Holds("always")
-    })
-}
-
 /// The square of the bound less 2 J(v) is -2 J*(tau), the same for every v: for tau in equilibrium with a load that is affine on
 /// each triangle, int tau : eps(w) is the work of the loads. With `exchanged` the vertices of the other certificate are.
 pub(super) fn duality_gap(draw: &Draw, exchanged: bool) -> Verdict {
@@ -485,36 +446,5 @@ pub(super) fn balanced(draw: &Draw, gross: bool) -> Verdict {
     // A bound is a root: near zero it is known to half the digits.
     let [before, after] = [before.bound, after.bound].map(|b| b * b);
     ensure!((after - before).abs() <= 1e-9 * (1.0 + before));
-    Verdict::Holds("always")
-}
-
-/// Nothing acts on a body at rest, u = 0; v has bulges inside, so |v|_a is its error. With or without these in C eps(v).
-pub(super) fn of_a_body_at_rest(draw: &Draw, with_bulges: bool) -> Verdict {
-    let curve = if draw.curve.is_empty() { vec![[5, -3], [2, 7]] } else { draw.curve.clone() };
-    let rest = Draw {
-        v: vec![[0; 2]; draw.v.len()],
-        tau: [0; 7],
-        gap: [0; 2],
-        oscillation: 0,
-        curve,
-        ..draw.clone()
-    };
-    let mut certificate = rest.certificate();
-    if let Some(curved) = &mut certificate.curved {
-        for (e, edge) in certificate.edges.iter().enumerate() {
-            curved.data[e] = [0.0; 2];
-            if !IS_INNER(&edge.role) {
-                curved.bulges[e] = [0.0; 2];
-            }
-        }
-    }
-    let error = Exact::scope(|| to_double(rest.by_definition(&certificate).norm).sqrt());
-    if !with_bulges {
-        certificate.curved = None;
-    }
-    let Ok(proof) = certificate.evaluate::<Ball>() else {
-        return Verdict::Fails("the certificate is accepted");
-    };
-    ensure!(proof.bound >= error * (1.0 - 1e-12));
     Verdict::Holds("always")
 }

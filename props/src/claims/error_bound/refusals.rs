@@ -21,9 +21,9 @@ macro_rules! tamperings {
     };
 }
 
-pub(super) const IS_HELD: fn(&Role) -> bool = |role| matches!(role, Role::Held(..));
-pub(super) const IS_INNER: fn(&Role) -> bool = |role| matches!(role, Role::Inner(_));
-pub(super) const IS_CONTACT: fn(&Role) -> bool = |role| matches!(role, Role::Contact { .. });
+const IS_HELD: fn(&Role) -> bool = |role| matches!(role, Role::Held(..));
+const IS_INNER: fn(&Role) -> bool = |role| matches!(role, Role::Inner(_));
+const IS_CONTACT: fn(&Role) -> bool = |role| matches!(role, Role::Contact { .. });
 
 /// Changes the pressure and the gap of the first edge of Gamma_C.
 fn of_contact(c: &mut Certificate, change: impl Fn(&mut [f64; 2], &mut [f64; 2])) {
@@ -194,24 +194,6 @@ const QUADRATIC_TAMPERINGS: &[Tampering] = tamperings! {
     "a value at a cut that is not there" => Length { .. },
         |c| c.curved.iter_mut().for_each(|curved| curved.at_cuts.push([0.0; 2]));
 };
-
-/// A test of v_n - g at start, middle and end of an edge takes a v that goes through the obstacle.
-pub(super) fn three_nodes_tell() -> Outcome {
-    let mut certificate = quadratic_example().certificate();
-    through_between_the_nodes(&mut certificate);
-    let first = certificate.edges.iter().position(|edge| IS_CONTACT(&edge.role));
-    let (Some(e), Some(curved)) = (first, &certificate.curved) else {
-        return Err("no contact, or v is affine".to_owned());
-    };
-    let ends = certificate.edges[e].ends.map(|k| -certificate.displacement[k][1]);
-    let at = |s: f64| (1.0 - s) * ends[0] + s * ends[1] - 4.0 * s * (1.0 - s) * curved.bulges[e][1];
-    let accepted = [0.0, 0.5, 1.0].into_iter().all(|s| at(s) <= 0.0);
-    let most = (0..=64).map(|k| at(f64::from(k) / 64.0)).fold(f64::NEG_INFINITY, f64::max);
-    if accepted && most > 0.0 {
-        return Err(format!("accepted, and v is {most} through the obstacle"));
-    }
-    Ok("refused".to_owned())
-}
 
 /// What is claimed of a certificate that is as it was made.
 fn claimed(certificate: &Certificate) -> Result<Said, String> {
