@@ -203,28 +203,19 @@ impl Certificate {
 impl<S: Enclosing> Balanced<S> {
     /// The forces on the triangles from those on the edges, put in equilibrium.
     fn close(&mut self, certificate: &Certificate) -> Result<(), Unbalanced> {
-        let count = certificate.pieces.len();
-        let mut wrenches = Vec::with_capacity(count);
-        for t in 0..count {
-            let loads = self.loads_as_given(certificate, t);
-            wrenches.push(loads.resultant(&self.triangles[t]));
-        }
-        self.resultants = wrenches.clone();
+        let resultant = |(t, piece): (usize, &Piece)| {
+            let forces = outward(piece.edges, t, &self.topology, &self.forces);
+            Loads { forces, body: piece.body.map(exactly) }.resultant(&self.triangles[t])
+        };
+        self.resultants = certificate.pieces.iter().enumerate().map(resultant).collect();
         let Balanced { points, topology: Topology { owners, tree }, forces, .. } = self;
-        let on_edges = OnEdges { certificate, owners, points, forces: &|e| forces[e] };
-        self.closed = on_edges.close(tree, &mut wrenches)?;
+        let on_edges = OnEdges { certificate, owners, points, forces };
+        self.closed = on_edges.close(tree, self.resultants.clone())?;
         let sum = |(given, added): (&[Vector2<S>; 2], &[Vector2<S>; 2])| {
             [given[0] + added[0], given[1] + added[1]]
         };
         self.in_balance = self.forces.iter().zip(&self.closed.added).map(sum).collect();
         Ok(())
-    }
-
-    /// The forces on triangle `t` towards its outside, and its body force.
-    pub fn loads_as_given(&self, certificate: &Certificate, t: usize) -> Loads<S> {
-        let piece = &certificate.pieces[t];
-        let forces = outward(piece.edges, t, &self.topology, &self.forces);
-        Loads { forces, body: piece.body.map(exactly) }
     }
 
     /// C eps(v) and C eps(v) - tau on triangle `t`.
@@ -238,20 +229,8 @@ impl<S: Enclosing> Balanced<S> {
         (sigma, apart)
     }
 
-    /// Leaves out the part by which a load that is not constant bends tau.
-    pub fn without_bending(
-        &self,
-        certificate: &Certificate,
-        t: usize,
-    ) -> (Affine<S>, Composite<S>) {
-        let piece = &certificate.pieces[t];
-        let frame = Frame::new(&self.triangles[t]);
-        let sigma = self.v.stress(piece, &self.triangles[t]);
-        (sigma, Composite::new(&frame, &self.loads(piece, t)).distance_from(&sigma))
-    }
-
     /// The forces on triangle `t` towards its outside, in equilibrium, and its body force.
-    pub(crate) fn loads(&self, piece: &Piece, t: usize) -> Loads<S> {
+    pub fn loads(&self, piece: &Piece, t: usize) -> Loads<S> {
         let forces = outward(piece.edges, t, &self.topology, &self.in_balance);
         let mut loads = Loads { forces, body: piece.body.map(exactly) };
         for stop in self.closed.stops.iter().filter(|stop| stop.root == t) {
@@ -262,7 +241,7 @@ impl<S: Enclosing> Balanced<S> {
 }
 
 /// The forces on the edges of triangle `t` towards its outside.
-pub(crate) fn outward<S: Enclosing>(
+fn outward<S: Enclosing>(
     edges: [usize; 3],
     t: usize,
     topology: &Topology,

@@ -9,7 +9,6 @@
 //! integral is at most beta A + e R(w0), by \[Q2\] with A <= M^2 - |sigma - m|^2. So w may leave its target where the body is
 //! off the obstacle; w0 is 1 on Gamma_C and covers rounding.
 
-use std::cell::OnceCell;
 use std::fmt::Display;
 
 use nalgebra::Vector2;
@@ -19,7 +18,6 @@ use super::certificate::{Certificate, Edge, Piece, Role, Shape, exactly, is_obli
 use super::checks::Rejection;
 use super::dual::WrongPair;
 use super::proof::Proof;
-use super::stresses::{Ground, Numbers, RoundedLaws, Staged, strain_energy};
 use crate::kernel::composite::Affine;
 use crate::kernel::{Ball, Enclosing, Scalar, Triangle};
 
@@ -234,18 +232,6 @@ pub struct Between {
 }
 
 impl Evidence {
-    /// Tells whether there is a displacement.
-    fn has_forces(&self) -> bool {
-        self.cover.is_some() || !self.liftings.is_empty() || !self.pairs.is_empty()
-    }
-
-    /// Tells whether a displacement has bulges on edges.
-    fn has_bulges(&self) -> bool {
-        let mut liftings = self.cover.iter().chain(self.liftings.iter().map(|(_, w)| w));
-        liftings.any(|w| w.beyond.is_some())
-            || self.pairs.iter().any(|(_, pair)| pair.curved.is_some())
-    }
-
     /// Without what proves nothing, and with what is `found` of the rest.
     #[must_use]
     pub fn proving<E>(
@@ -333,14 +319,7 @@ pub struct Forces<'a, S> {
     pub mean: Mean,
     /// The error of L(w) and a(v, w) for each unit of |w|_a, as data oscillate.
     pub loose: f64,
-    sums: Beside<S>,
-}
-
-/// By-products of the pass over the triangles that sums up the bound.
-pub(crate) struct Beside<S> {
     unbalanced: Imbalance<S>,
-    /// The numbers of C eps(v) - tau on each triangle; empty until they are needed.
-    own: OnceCell<Vec<Numbers>>,
 }
 
 /// int f . w - a(v, w) for w with a component 1 at a point, and for such a bulge on an edge: grad l_i is minus the scaled normal
@@ -348,7 +327,6 @@ pub(crate) struct Beside<S> {
 /// -1/6 ((S + s_j) N_k + (S + s_k) N_j); of f, with the sum F, J/24 (F + f_i) and J/30 (2 F - f_i).
 struct Imbalance<S> {
     points: Vec<Vector2<S>>,
-    /// Empty where no w has bulges.
     bulges: Vec<Vector2<S>>,
 }
 
@@ -361,7 +339,7 @@ impl<S: Enclosing> Imbalance<S> {
     /// Adds a triangle, with C eps(v) there.
     fn add(&mut self, piece: &Piece, triangle: &Triangle<S>, sigma: &Affine<S>) {
         let sixth = S::from(1) / S::from(6);
-        let (has_bulges, is_loaded) = (!self.bulges.is_empty(), piece.body != [[0.0; 2]; 3]);
+        let is_loaded = piece.body != [[0.0; 2]; 3];
         let normals = [0, 1, 2].map(|i| triangle.scaled_normal(i));
         let stresses = [0, 1, 2].map(|i| sigma.at_corner(i));
         let sum = stresses[0] + stresses[1] + stresses[2];
@@ -373,9 +351,6 @@ impl<S: Enclosing> Imbalance<S> {
                 force += (loads + body[i]) * (triangle.double_area() / S::from(24));
             }
             self.points[piece.vertices[i]] += force;
-            if !has_bulges {
-                continue;
-            }
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
             let [of_j, of_k] =
                 [(j, k), (k, j)].map(|(j, k)| (sum + stresses[j]).traction(normals[k]));
@@ -394,42 +369,18 @@ impl Certificate {
     ///
     /// # Errors
     /// As [`Certificate::evaluate`]; a dual pair that is none; inside, a lifting that is not what it should be on the boundary.
-    pub fn forces<S: Staged>(
+    pub fn forces<S: Enclosing>(
         &self,
         evidence: &Evidence,
     ) -> Result<Vec<Result<[f64; 2], WrongLifting>>, WrongPair> {
         let state = self.balanced::<S>(self.topology()?)?;
-        let (proof, sums) = self.sum_for(&state, evidence)?;
-        let (_, found, pairs) = self.forces_near(&state, &proof, evidence, sums)?;
+        let proof = self.sum(&state)?;
+        let (_, found, pairs) = self.forces_near(&state, &proof, evidence)?;
         let targets = evidence.liftings.iter().map(|(target, _)| *target);
         let nearest = |(target, ends): (ForceTarget, Result<[f64; 2], WrongLifting>)| {
             ends.map(|ends| evidence.nearest(target, ends, &pairs))
         };
         Ok(targets.zip(found).map(nearest).collect())
-    }
-
-    /// [`Certificate::sum`], with what the evidence needs of it.
-    pub(crate) fn sum_for<S: Staged>(
-        &self,
-        state: &Balanced<S>,
-        evidence: &Evidence,
-    ) -> Result<(Proof, Beside<S>), Rejection> {
-        let (has_forces, has_pairs) = (evidence.has_forces(), !evidence.pairs.is_empty());
-        let points = if has_forces { state.points.len() } else { 0 };
-        let bulges = if evidence.has_bulges() { self.edges.len() } else { 0 };
-        let mut unbalanced = Imbalance::new(points, bulges);
-        let (mut own, mut laws) = (Vec::new(), RoundedLaws::default());
-        let proof = self.sum_beside(state, |t, sigma, apart| {
-            let (piece, triangle) = (&self.pieces[t], &state.triangles[t]);
-            if has_forces {
-                unbalanced.add(piece, triangle, sigma);
-            }
-            if has_pairs {
-                own.push(Numbers::new(laws.of(&piece.material), piece, triangle, apart));
-            }
-        })?;
-        let own = if has_pairs { OnceCell::from(own) } else { OnceCell::new() };
-        Ok((proof, Beside { unbalanced, own }))
     }
 
     /// Verifies that what is said of forces is what their data give.
@@ -438,13 +389,12 @@ impl Certificate {
         state: &Balanced<Ball>,
         proof: &Proof,
         evidence: &Evidence,
-        sums: Beside<Ball>,
     ) -> Result<(), Rejection> {
         let Some(claimed) = &evidence.between else { return Ok(()) };
         let wrong = |force: usize, problem: &dyn Display| {
             Err(Rejection::Force { force, problem: problem.to_string() })
         };
-        let (cover, found, pairs) = match self.forces_near(state, proof, evidence, sums) {
+        let (cover, found, pairs) = match self.forces_near(state, proof, evidence) {
             Ok(found) => found,
             Err(WrongPair::Rejected(rejection)) => return Err(rejection),
             Err(error) => return wrong(0, &error),
@@ -475,19 +425,18 @@ impl Certificate {
     }
 
     /// [`forces`] of a certificate in equilibrium, with its proof.
-    fn forces_near<S: Staged>(
+    fn forces_near<S: Enclosing>(
         &self,
         state: &Balanced<S>,
         proof: &Proof,
         evidence: &Evidence,
-        sums: Beside<S>,
     ) -> Result<Intervals, WrongPair> {
         let mean = Mean::new(state, proof, self.lift());
         if evidence.of.len() != self.edges.len() {
             let (what, found) = ("boundaries of edges", evidence.of.len());
             return Err(Rejection::Length { what, found, expected: self.edges.len() }.into());
         }
-        let forces = Forces::with(sums, self, state, &evidence.of, mean);
+        let forces = Forces::new(self, state, &evidence.of, mean);
         let cover = evidence.cover.as_ref().and_then(|w| forces.cover(w).ok());
         let found = forces.between(&evidence.liftings, cover.as_ref());
         let pairs = forces.by_pairs(&evidence.pairs, cover.as_ref())?;
@@ -498,7 +447,7 @@ impl Certificate {
 /// w0, and what forces lie between by liftings and by dual pairs.
 type Intervals = (Option<Cover>, Vec<Result<[f64; 2], WrongLifting>>, Vec<[f64; 2]>);
 
-impl<'a, S: Staged> Forces<'a, S> {
+impl<'a, S: Enclosing> Forces<'a, S> {
     /// With M.
     pub fn new(
         certificate: &'a Certificate,
@@ -510,33 +459,8 @@ impl<'a, S: Staged> Forces<'a, S> {
         for (piece, triangle) in certificate.pieces.iter().zip(&state.triangles) {
             unbalanced.add(piece, triangle, &state.v.stress(piece, triangle));
         }
-        let sums = Beside { unbalanced, own: OnceCell::new() };
-        Forces::with(sums, certificate, state, of, mean)
-    }
-
-    /// With the sums over the triangles at hand.
-    fn with(
-        sums: Beside<S>,
-        certificate: &'a Certificate,
-        state: &'a Balanced<S>,
-        of: &'a [Option<usize>],
-        mean: Mean,
-    ) -> Self {
         let loose = certificate.loose();
-        Forces { certificate, state, of, mean, loose, sums }
-    }
-
-    /// The numbers of C eps(v) - tau on each triangle.
-    pub(crate) fn own(&self) -> &[Numbers] {
-        let (pieces, state) = (&self.certificate.pieces, self.state);
-        self.sums.own.get_or_init(|| {
-            let mut laws = RoundedLaws::default();
-            let of = |(t, piece): (usize, &Piece)| {
-                let (_, apart) = state.stresses(self.certificate, t);
-                Numbers::new(laws.of(&piece.material), piece, &state.triangles[t], &apart)
-            };
-            pieces.iter().enumerate().map(of).collect()
-        })
+        Forces { certificate, state, of, mean, loose, unbalanced }
     }
 
     /// int f . w - a(v, w)
@@ -544,7 +468,7 @@ impl<'a, S: Staged> Forces<'a, S> {
         let sum = |forces: &[Vector2<S>], w: &[Vector2<S>]| {
             forces.iter().zip(w).fold(S::from(0), |sum, (f, w)| sum + f.dot(w))
         };
-        let Imbalance { points, bulges } = &self.sums.unbalanced;
+        let Imbalance { points, bulges } = &self.unbalanced;
         let at_points = sum(points, &w.points);
         w.bulges.as_ref().map_or(at_points, |of_w| at_points + sum(bulges, of_w))
     }
@@ -643,14 +567,14 @@ impl<'a, S: Staged> Forces<'a, S> {
     /// L(w) - int m : eps(w) and |w|_a of some displacements, in one pass over the triangles.
     fn values(&self, shapes: &[Shape<S>]) -> Vec<LiftingValue<S>> {
         let (certificate, state) = (self.certificate, self.state);
-        let (mut squares, mut laws) = (vec![Ball::from(0); shapes.len()], RoundedLaws::default());
-        for (t, (piece, triangle)) in certificate.pieces.iter().zip(&state.triangles).enumerate() {
-            let ground = Ground::new(laws.of(&piece.material), triangle);
-            for (square, w) in squares.iter_mut().zip(shapes) {
-                *square += energy(w, (piece, triangle), ground.as_ref(), mean(*square, t));
-            }
-        }
-        let value = |(w, square): (&Shape<S>, Ball)| {
+        let energy = |w: &Shape<S>| {
+            let pieces = certificate.pieces.iter().zip(&state.triangles);
+            let energy = |(piece, triangle): (&Piece, &Triangle<S>)| {
+                w.stress(piece, triangle).energy(&piece.material(), triangle.double_area())
+            };
+            pieces.map(energy).fold(S::from(0), |sum, energy| sum + energy)
+        };
+        let value = |w: &Shape<S>| {
             // Half of int f . w is in int tau : eps(w) / 2, as is half of the work of all tractions.
             let mut middle = self.within(w) / S::from(2);
             middle += certificate.work_of_tractions(&state.forces, w);
@@ -659,9 +583,10 @@ impl<'a, S: Staged> Forces<'a, S> {
                     middle -= w.work_of(state.in_balance[e], edge.ends, e) / S::from(2);
                 }
             }
+            let square = energy(w).split(|_| S::from(0), |square| square);
             LiftingValue { middle, norm: square.sqrt().upper() }
         };
-        shapes.iter().zip(squares).map(value).collect()
+        shapes.iter().map(value).collect()
     }
 
     /// phi - w . d on an edge of Gamma_C: what its Bernstein coefficients are at least and at most.
@@ -825,27 +750,6 @@ impl<'a, S: Staged> Forces<'a, S> {
         });
         found.collect()
     }
-}
-
-/// The mean of a sum of so many; 0 of none.
-pub(crate) fn mean(sum: Ball, count: usize) -> f64 {
-    if count == 0 { 0.0 } else { sum.upper() / count as f64 }
-}
-
-/// int eps(w) : C eps(w) on a triangle: in doubles, if these are sharp beside it or a `typical` one.
-pub(crate) fn energy<S: Staged>(
-    w: &Shape<S>,
-    (piece, triangle): (&Piece, &Triangle<S>),
-    ground: Option<&Ground>,
-    typical: f64,
-) -> Ball {
-    let (nodal, bulges) = (piece.vertices.map(|p| w.points[p]), w.bulges_of(piece));
-    let in_doubles = ground.and_then(|ground| ground.energy((nodal, bulges), typical));
-    in_doubles.unwrap_or_else(|| {
-        let normals = [0, 1, 2].map(|i| triangle.scaled_normal(i));
-        let energy = strain_energy(&piece.material().squares(), (&nodal, bulges), &normals);
-        Ball::point((energy / (triangle.double_area() * S::from(24))).upper())
-    })
 }
 
 /// The largest ratio of a to b, not below 0: infinite where b is 0 and a is not.

@@ -13,6 +13,8 @@
 //! each shape of triangle that is met, and the small systems of the vertices are factorised once. What a body force that is
 //! not constant bends tau by is not seen here: it falls with h^2, and where v is quadratic to see it gains nothing.
 
+use std::collections::VecDeque;
+
 use nalgebra::Vector2;
 
 use super::balanced::{Balanced, Topology};
@@ -24,9 +26,6 @@ use crate::kernel::{Material, Stress, Triangle};
 /// The unknowns of a triangle: Phi, Phi_x, Phi_y at its vertices, then those of its edges.
 const UNKNOWNS: usize = 12;
 
-/// Columns of a block of products.
-const BLOCK: usize = 4;
-
 /// The second derivative of |C eps(v) - tau|^2 / 2 on a triangle by its unknowns, over its largest entry: it is what the sweeps
 /// read again and again, and need not be known to more digits than the best step. So triangles of one material whose edges are
 /// the same to single precision share it.
@@ -36,16 +35,13 @@ struct ScaledHessian {
     scale: f64,
 }
 
-/// The number of forms that are looked through: meshes that were refined have few, others as many as triangles.
+/// The number of Hessians that are looked through: meshes that were refined have few, others as many as triangles.
 const RECENT: usize = 8;
 
-/// The key of a form: two edges and the moduli.
-type ElementKey = ([[f32; 2]; 2], Material<f64>);
-
-/// A form that was met, by its number, with the stresses of its unknowns.
+/// A Hessian that was met, by its number, with what it depends on, two edges and the moduli, and the stresses of the unknowns.
 struct Met {
-    shape: ElementKey,
-    form: u32,
+    shape: ([[f32; 2]; 2], Material<f64>),
+    number: usize,
     units: [[f64; UNKNOWNS]; FEATURES],
 }
 
@@ -72,234 +68,123 @@ pub(super) fn improve(
     Ok(state.topology)
 }
 
-/// The triangles around each point, one list after the other: the list of point p is `of[first[p]..first[p + 1]]`.
-struct Stars {
-    first: Vec<usize>,
-    of: Vec<(usize, usize)>,
+/// An unknown of a triangle as an unknown of a star.
+#[derive(Clone, Copy)]
+struct Place {
+    triangle: usize,
+    unknown: usize,
+    in_star: usize,
+    /// -1 where an edge runs the other way round in the triangle.
+    sign: f64,
 }
 
-impl Stars {
-    fn new(certificate: &Certificate, points: usize) -> Stars {
-        let mut first = vec![0; points + 1];
-        for piece in &certificate.pieces {
-            piece.vertices.iter().for_each(|&p| first[p + 1] += 1);
-        }
-        for p in 0..points {
-            first[p + 1] += first[p];
-        }
-        let mut next = first.clone();
-        let mut of = vec![(0, 0); 3 * certificate.pieces.len()];
-        for (t, piece) in certificate.pieces.iter().enumerate() {
-            for (local, &p) in piece.vertices.iter().enumerate() {
-                of[next[p]] = (t, local);
-                next[p] += 1;
-            }
-        }
-        Stars { first, of }
-    }
-
-    fn around(&self, point: usize) -> &[(usize, usize)] {
-        &self.of[self.first[point]..self.first[point + 1]]
-    }
+/// The triangles around a point, whose unknowns there change together: those of the point that are free, then one for each free
+/// edge at it.
+struct Star {
+    /// Triangle by triangle.
+    places: Vec<Place>,
+    own: Vec<usize>,
+    edges: Vec<usize>,
+    /// Of the system of the star, the rows of its lower half; none where the unknowns are not independent.
+    factor: Vec<f64>,
 }
 
 struct Sweeps {
-    /// The edges of each triangle.
-    edges: Vec<[usize; 3]>,
-    forms: Vec<ScaledHessian>,
-    /// The form of each triangle, and the derivative at the present stress.
-    energies: Vec<(u32, [f64; UNKNOWNS])>,
-    /// The sign of each edge's own unknown in a triangle: -1 where the edge runs the other way round.
-    signs: Vec<[f64; 3]>,
-    stars: Stars,
-    /// Whose traction is free.
-    free_edge: Vec<bool>,
-    /// Which of Phi, Phi_x and Phi_y.
-    free_point: Vec<[bool; 3]>,
+    hessians: Vec<ScaledHessian>,
+    /// The Hessian of each triangle, and the derivative at the present stress.
+    energies: Vec<(usize, [f64; UNKNOWNS])>,
+    stars: Vec<Star>,
     /// The unknowns: of the points, and of the edges.
     at_points: Vec<[f64; 3]>,
     on_edges: Vec<f64>,
-    /// The systems of the stars: of each triangle in the order of `stars.of` the numbers of the edges beside its vertex; the
-    /// free edges at the points, and the factors, each with the place where a point's begin. A point has no factor before
-    /// the first sweep.
-    sides: Vec<[Option<u32>; 2]>,
-    star_edges: Vec<usize>,
-    first_edge: Vec<usize>,
-    factors: Vec<f64>,
-    first_factor: Vec<usize>,
 }
 
 impl Sweeps {
     fn new(certificate: &Certificate, state: &Balanced<f64>, on_rollers: bool) -> Sweeps {
         let points = state.points.len();
-        let free_edge: Vec<bool> = certificate
-            .edges
-            .iter()
-            .map(|edge| matches!(edge.role, Role::Inner(_) | Role::Held([true, true], _)))
-            .collect();
-        let mut free_point = vec![[true; 3]; points];
-        for (edge, free) in certificate.edges.iter().zip(&free_edge) {
-            if !free {
-                let may = if on_rollers { along_the_normal(edge, state) } else { [false; 3] };
-                for p in edge.ends {
-                    (0..3).for_each(|k| free_point[p][k] &= may[k]);
+        // The edges whose traction is free, and which of Phi, Phi_x and Phi_y are at the points.
+        let is_free =
+            |edge: &Edge| matches!(edge.role, Role::Inner(_) | Role::Held([true, true], _));
+        let mut free = vec![[true; 3]; points];
+        for edge in certificate.edges.iter().filter(|edge| !is_free(edge)) {
+            let may = if on_rollers { along_the_normal(edge, state) } else { [false; 3] };
+            for p in edge.ends {
+                (0..3).for_each(|k| free[p][k] &= may[k]);
+            }
+        }
+        let own = |free: [bool; 3]| (0..3).filter(|&k| free[k]).collect();
+        let star = |free| Star {
+            places: Vec::new(),
+            own: own(free),
+            edges: Vec::new(),
+            factor: Vec::new(),
+        };
+        let mut stars: Vec<Star> = free.into_iter().map(star).collect();
+        for (triangle, piece) in certificate.pieces.iter().enumerate() {
+            for (local, &point) in piece.vertices.iter().enumerate() {
+                let Star { places, own, edges, .. } = &mut stars[point];
+                let at_point = own.iter().enumerate();
+                places.extend(at_point.map(|(in_star, &k)| Place {
+                    triangle,
+                    unknown: 3 * local + k,
+                    in_star,
+                    sign: 1.0,
+                }));
+                for side in [(local + 1) % 3, (local + 2) % 3] {
+                    let e = piece.edges[side];
+                    if !is_free(&certificate.edges[e]) {
+                        continue;
+                    }
+                    let seen = edges.iter().position(|&other| other == e);
+                    let in_star = own.len() + seen.unwrap_or(edges.len());
+                    if seen.is_none() {
+                        edges.push(e);
+                    }
+                    let is_left = state.topology.owners[e][0].is_some_and(|o| o.piece == triangle);
+                    let sign = if is_left { 1.0 } else { -1.0 };
+                    places.push(Place { triangle, unknown: 9 + side, in_star, sign });
                 }
             }
         }
-        let stars = Stars::new(certificate, points);
-        let (forms, energies) = energies(certificate, state);
-        let sign = |t: usize| {
-            let piece = &certificate.pieces[t];
-            piece.edges.map(|e| match state.topology.owners[e][0] {
-                Some(owner) if owner.piece == t => 1.0,
-                _ => -1.0,
-            })
-        };
-        let mut sweeps = Sweeps {
-            forms,
-            energies,
-            signs: (0..certificate.pieces.len()).map(sign).collect(),
-            sides: Vec::with_capacity(stars.of.len()),
-            stars,
-            star_edges: Vec::with_capacity(2 * free_edge.len()),
-            first_edge: Vec::with_capacity(points + 1),
-            factors: Vec::new(),
-            first_factor: Vec::with_capacity(points + 1),
-            edges: certificate.pieces.iter().map(|piece| piece.edges).collect(),
-            free_point,
-            at_points: vec![[0.0; 3]; points],
-            on_edges: vec![0.0; free_edge.len()],
-            free_edge,
-        };
-        sweeps.number();
-        let size = |n: usize| n * (n + 1) / 2;
-        sweeps.factors.reserve_exact((0..points).map(|point| size(sweeps.unknowns(point))).sum());
-        sweeps.first_factor.push(0);
-        sweeps
+        let (hessians, energies) = energies(certificate, state);
+        for star in &mut stars {
+            star.factorise(&hessians, &energies);
+        }
+        let on_edges = vec![0.0; certificate.edges.len()];
+        Sweeps { hessians, energies, stars, at_points: vec![[0.0; 3]; points], on_edges }
     }
 
     /// To every point and its star, forwards or backwards.
     fn go(&mut self, backwards: bool) {
         let points = self.at_points.len();
-        let (mut values, mut matrix) = (Vec::new(), Vec::new());
+        let mut values = Vec::new();
         for k in 0..points {
-            let point = if backwards { points - 1 - k } else { k };
-            // The first sweep goes forwards, and finds a star in the cache.
-            if self.first_factor.len() == point + 1 {
-                self.factorise(point, &mut matrix);
-            }
-            self.minimise(point, &mut values);
+            self.minimise(if backwards { points - 1 - k } else { k }, &mut values);
         }
-    }
-
-    /// The number of unknowns that a point has.
-    fn own(&self, point: usize) -> usize {
-        self.free_point[point].iter().filter(|&&free| free).count()
-    }
-
-    /// Numbers the unknowns of every star: those of the point, if it is free, then one for each free edge at it.
-    fn number(&mut self) {
-        for point in 0..self.at_points.len() {
-            let first = self.star_edges.len();
-            self.first_edge.push(first);
-            for &(triangle, local) in self.stars.around(point) {
-                self.sides.push([1, 2].map(|k| {
-                    let e = self.edges[triangle][(local + k) % 3];
-                    if !self.free_edge[e] {
-                        return None;
-                    }
-                    let seen = &self.star_edges[first..];
-                    let place = seen.iter().position(|&other| other == e).unwrap_or(seen.len());
-                    if place == seen.len() {
-                        self.star_edges.push(e);
-                    }
-                    u32::try_from(place).ok()
-                }));
-            }
-        }
-        self.first_edge.push(self.star_edges.len());
-    }
-
-    /// The number of unknowns that a star has.
-    fn unknowns(&self, point: usize) -> usize {
-        self.own(point) + self.first_edge[point + 1] - self.first_edge[point]
-    }
-
-    /// The triangles of a star, each with its unknowns there and their numbers in the star.
-    fn star(&self, point: usize) -> impl Iterator<Item = (usize, Places)> {
-        let own = self.own(point);
-        let free = self.free_point[point];
-        let of = self.stars.first[point]..self.stars.first[point + 1];
-        self.stars.of[of.clone()].iter().zip(&self.sides[of]).map(
-            move |(&(triangle, local), sides)| {
-                let mut places = Places { count: 0, of: [(0, 0, 0.0); 5] };
-                let unknowns = (0..3).filter(|&k| free[k]).enumerate();
-                unknowns.for_each(|(place, k)| places.push((3 * local + k, place, 1.0)));
-                for (k, place) in sides.iter().enumerate() {
-                    let side = (local + 1 + k) % 3;
-                    let sign = self.signs[triangle][side];
-                    place.iter().for_each(|&p| places.push((9 + side, own + p as usize, sign)));
-                }
-                (triangle, places)
-            },
-        )
-    }
-
-    /// The factor of the system of the next star, the rows of its lower half; none where there are no unknowns, or where these
-    /// are not independent.
-    fn factorise(&mut self, point: usize, matrix: &mut Vec<f64>) {
-        let n = self.unknowns(point);
-        matrix.clear();
-        matrix.resize(n * n, 0.0);
-        for (triangle, places) in self.star(point) {
-            let ScaledHessian { hessian, scale } = &self.forms[self.energies[triangle].0 as usize];
-            for &(a, i, sign) in places.all() {
-                for &(b, j, other) in places.all() {
-                    matrix[i * n + j] += scale * sign * other * f64::from(hessian[a][b]);
-                }
-            }
-        }
-        if n > 0 && factor_positive(matrix, n) {
-            for (i, row) in matrix.chunks_exact(n).enumerate() {
-                self.factors.extend_from_slice(&row[..=i]);
-            }
-        }
-        self.first_factor.push(self.factors.len());
     }
 
     fn minimise(&mut self, point: usize, x: &mut Vec<f64>) {
-        let factor = &self.factors[self.first_factor[point]..self.first_factor[point + 1]];
-        if factor.is_empty() {
+        let Sweeps { hessians, energies, stars, at_points, on_edges } = self;
+        let star = &stars[point];
+        if star.factor.is_empty() {
             return;
         }
-        let own = self.own(point);
         x.clear();
-        x.resize(self.unknowns(point), 0.0);
-        for (triangle, places) in self.star(point) {
-            let gradient = &self.energies[triangle].1;
-            places.all().iter().for_each(|&(a, i, sign)| x[i] -= sign * gradient[a]);
+        x.resize(star.unknowns(), 0.0);
+        for &Place { triangle, unknown, in_star, sign } in &star.places {
+            x[in_star] -= sign * energies[triangle].1[unknown];
         }
-        substitute(factor, x);
-        let mut energies = std::mem::take(&mut self.energies);
-        for (triangle, places) in self.star(point) {
-            let (form, gradient) = &mut energies[triangle];
-            let ScaledHessian { hessian, scale } = &self.forms[*form as usize];
-            let mut sum = *gradient;
-            for &(a, i, sign) in places.all() {
-                let value = x[i] * sign * scale;
-                sum.iter_mut().zip(&hessian[a]).for_each(|(sum, &h)| *sum += value * f64::from(h));
-            }
-            *gradient = sum;
+        substitute(&star.factor, x);
+        for &Place { triangle, unknown, in_star, sign } in &star.places {
+            let (number, gradient) = &mut energies[triangle];
+            let ScaledHessian { hessian, scale } = &hessians[*number];
+            let value = x[in_star] * sign * scale;
+            let row = &hessian[unknown];
+            gradient.iter_mut().zip(row).for_each(|(sum, &h)| *sum += value * f64::from(h));
         }
-        self.energies = energies;
-        let values = self.at_points[point].iter_mut().zip(self.free_point[point]);
-        for ((value, _), x) in values.filter(|(_, free)| *free).zip(&x[..own]) {
-            *value += x;
-        }
-        let free = self.first_edge[point]..self.first_edge[point + 1];
-        for (&e, x) in self.star_edges[free].iter().zip(&x[own..]) {
-            self.on_edges[e] += x;
-        }
+        let (own, of_edges) = x.split_at(star.own.len());
+        star.own.iter().zip(own).for_each(|(&k, x)| at_points[point][k] += x);
+        star.edges.iter().zip(of_edges).for_each(|(&e, x)| on_edges[e] += x);
     }
 
     /// Adds the stress of the unknowns to the tractions of the certificate.
@@ -324,6 +209,30 @@ impl Sweeps {
     }
 }
 
+impl Star {
+    fn unknowns(&self) -> usize {
+        self.own.len() + self.edges.len()
+    }
+
+    fn factorise(&mut self, hessians: &[ScaledHessian], energies: &[(usize, [f64; UNKNOWNS])]) {
+        let n = self.unknowns();
+        let mut matrix = vec![0.0; n * n];
+        for places in self.places.chunk_by(|a, b| a.triangle == b.triangle) {
+            let ScaledHessian { hessian, scale } = &hessians[energies[places[0].triangle].0];
+            for a in places {
+                for b in places {
+                    let h = f64::from(hessian[a.unknown][b.unknown]);
+                    matrix[a.in_star * n + b.in_star] += scale * a.sign * b.sign * h;
+                }
+            }
+        }
+        if n > 0 && factor_positive(&mut matrix, n) {
+            let rows = matrix.chunks_exact(n).enumerate();
+            self.factor = rows.flat_map(|(i, row)| &row[..=i]).copied().collect();
+        }
+    }
+}
+
 fn add(force: &mut [[f64; 2]; 2], held: [bool; 2], factor: f64, mode: &[Vector2<f64>; 2]) {
     for (force, mode) in force.iter_mut().zip(mode) {
         (0..2).filter(|&c| held[c]).for_each(|c| force[c] += factor * mode[c]);
@@ -341,23 +250,6 @@ fn along_the_normal(edge: &Edge, state: &Balanced<f64>) -> [bool; 3] {
     }
 }
 
-/// The unknowns of a triangle in a star, each with its number in the star and its sign in the triangle.
-struct Places {
-    count: usize,
-    of: [(usize, usize, f64); 5],
-}
-
-impl Places {
-    fn push(&mut self, place: (usize, usize, f64)) {
-        self.of[self.count] = place;
-        self.count += 1;
-    }
-
-    fn all(&self) -> &[(usize, usize, f64)] {
-        &self.of[..self.count]
-    }
-}
-
 /// The number of [`features`].
 const FEATURES: usize = 21;
 
@@ -365,67 +257,41 @@ const FEATURES: usize = 21;
 fn energies(
     certificate: &Certificate,
     state: &Balanced<f64>,
-) -> (Vec<ScaledHessian>, Vec<(u32, [f64; UNKNOWNS])>) {
-    let (mut forms, mut recent): (Vec<ScaledHessian>, Vec<Met>) =
-        (Vec::new(), Vec::with_capacity(RECENT));
+) -> (Vec<ScaledHessian>, Vec<(usize, [f64; UNKNOWNS])>) {
+    let (mut hessians, mut recent) = (Vec::new(), VecDeque::with_capacity(RECENT));
     let mut energies = Vec::with_capacity(certificate.pieces.len());
-    let mut oldest = 0;
     for (t, piece) in certificate.pieces.iter().enumerate() {
         let triangle = &state.triangles[t];
         let single = |edge: Vector2<f64>| [edge.x as f32, edge.y as f32];
         let shape = ([0, 1].map(|i| single(triangle.edge(i))), piece.material);
-        let known = recent.iter().position(|met| met.shape == shape).unwrap_or_else(|| {
-            let units = units(triangle, &Roots::of(&piece.material, triangle));
-            let form = forms.len() as u32;
-            forms.push(form_of(&units));
-            let met = Met { shape, form, units };
-            if recent.len() < RECENT {
-                recent.push(met);
-                return recent.len() - 1;
-            }
-            oldest = (oldest + 1) % RECENT;
-            recent[oldest] = met;
-            oldest
+        let known = recent.iter().position(|met: &Met| met.shape == shape);
+        let known = known.unwrap_or_else(|| {
+            let units = units(triangle, &piece.material);
+            recent.truncate(RECENT - 1);
+            recent.push_front(Met { shape, number: hessians.len(), units });
+            hessians.push(hessian_of(&units));
+            0
         });
-        let Met { form, units, .. } = &recent[known];
-        let distance = state.without_bending(certificate, t).1;
-        let distance = features(&distance, &Roots::of(&piece.material, triangle));
+        let Met { number, units, .. } = &recent[known];
+        let tau = Composite::new(&Frame::new(triangle), &state.loads(piece, t));
+        let distance = tau.distance_from(&state.v.stress(piece, triangle));
+        let distance = features(&distance, triangle, &piece.material);
         let mut gradient = [0.0; UNKNOWNS];
         for (row, distance) in units.iter().zip(distance) {
             gradient.iter_mut().zip(row).for_each(|(sum, unit)| *sum -= unit * distance);
         }
-        energies.push((*form, gradient));
+        energies.push((*number, gradient));
     }
-    (forms, energies)
-}
-
-/// The energy of a stress on a triangle as squares.
-struct Roots {
-    /// The roots of |T|/144 over the moduli of [`Squares`]: for the deviator, the shear and the sphere.
-    roots: [f64; 3],
-    /// Its L.
-    coupling: [f64; 3],
-}
-
-impl Roots {
-    fn of(material: &Material<f64>, triangle: &Triangle<f64>) -> Self {
-        let scale = triangle.double_area() / 288.0;
-        let squares = material.squares();
-        let [sphere, deviator, shear] = squares.pivots();
-        Roots {
-            roots: [deviator, shear, sphere].map(|modulus| (scale / modulus).sqrt()),
-            coupling: squares.beyond.map_or([0.0; 3], |(_, coupling)| coupling),
-        }
-    }
+    (hessians, energies)
 }
 
 /// The [`features`] of the stresses of a triangle's unknowns, with edges that go round it.
-fn units(triangle: &Triangle<f64>, roots: &Roots) -> [[f64; UNKNOWNS]; FEATURES] {
+fn units(triangle: &Triangle<f64>, material: &Material<f64>) -> [[f64; UNKNOWNS]; FEATURES] {
     let frame = Frame::new(triangle);
     let mut units = [[0.0; UNKNOWNS]; FEATURES];
     let (zero, body) = ([[Vector2::zeros(); 2]; 3], [Vector2::zeros(); 3]);
     let mut put = |k: usize, forces: [[Vector2<f64>; 2]; 3]| {
-        let tau = features(&Composite::new(&frame, &Loads { forces, body }), roots);
+        let tau = features(&Composite::new(&frame, &Loads { forces, body }), triangle, material);
         units.iter_mut().zip(tau).for_each(|(row, value)| row[k] = value);
     };
     let mut at_vertices = [zero; 9];
@@ -448,48 +314,38 @@ fn units(triangle: &Triangle<f64>, roots: &Roots) -> [[f64; UNKNOWNS]; FEATURES]
     units
 }
 
-fn form_of(units: &[[f64; UNKNOWNS]; FEATURES]) -> ScaledHessian {
-    let exact = gram(units);
-    let scale = exact.as_flattened().iter().fold(0.0, |most: f64, h| most.max(h.abs()));
-    ScaledHessian { hessian: exact.map(|row| row.map(|h| (h / scale) as f32)), scale }
-}
-
-/// The products of the columns, by blocks that stay in registers; the upper half is the lower one.
-fn gram(rows: &[[f64; UNKNOWNS]; FEATURES]) -> [[f64; UNKNOWNS]; UNKNOWNS] {
-    let mut products = [[0.0; UNKNOWNS]; UNKNOWNS];
-    for i in (0..UNKNOWNS).step_by(BLOCK) {
-        for j in (0..=i).step_by(BLOCK) {
-            let mut block = [[0.0; BLOCK]; BLOCK];
-            for row in rows {
-                for (sums, a) in block.iter_mut().zip(&row[i..i + BLOCK]) {
-                    sums.iter_mut().zip(&row[j..j + BLOCK]).for_each(|(sum, b)| *sum += a * b);
-                }
-            }
-            for (k, sums) in block.iter().enumerate() {
-                products[i + k][j..j + BLOCK].copy_from_slice(sums);
-                (0..BLOCK).for_each(|l| products[j + l][i + k] = sums[l]);
-            }
+/// The products of the columns.
+fn hessian_of(units: &[[f64; UNKNOWNS]; FEATURES]) -> ScaledHessian {
+    let mut exact = [[0.0; UNKNOWNS]; UNKNOWNS];
+    for unit in units {
+        for (row, a) in exact.iter_mut().zip(unit) {
+            row.iter_mut().zip(unit).for_each(|(sum, b)| *sum += a * b);
         }
     }
-    products
+    let scale = exact.as_flattened().iter().fold(0.0, |most: f64, h| most.max(h.abs()));
+    ScaledHessian { hessian: exact.map(|row| row.map(|h| (h / scale) as f32)), scale }
 }
 
 /// Numbers whose sum of squares is [`Composite::energy`] of a stress that is not bent.
 ///
 /// On a part with the corners a, b and the centre c, a^2 + b^2 + c^2 + (a + b + c)^2 is, with s = a + b + 2/3 c,
 /// 3/2 s^2 + 1/2 (a - b)^2 + 4/3 c^2.
-fn features(tau: &Composite<f64>, roots: &Roots) -> [f64; FEATURES] {
-    let ([deviator, shear, sphere], [a, b, c]) = (roots.roots, roots.coupling);
+fn features(
+    tau: &Composite<f64>,
+    triangle: &Triangle<f64>,
+    material: &Material<f64>,
+) -> [f64; FEATURES] {
+    let squares = material.squares();
+    let [bulk, shear, other] = squares.pivots();
+    // |T|/144 over the moduli
+    let roots = [shear, other, bulk].map(|m| (triangle.double_area() / (288.0 * m)).sqrt());
     let mut all = [0.0; FEATURES];
-    let mut k = 0;
+    let mut rest = all.as_chunks_mut::<3>().0.iter_mut();
     let mut put = |factor: f64, s: Stress<f64>| {
-        let [xx, yy, xy] = s.components();
-        let mean = xx + yy;
-        let apart = xx - yy - a * mean;
-        all[k] = factor * deviator * apart;
-        all[k + 1] = factor * shear * (2.0 * xy - b * mean - c * apart);
-        all[k + 2] = factor * sphere * mean;
-        k += 3;
+        let parts = squares.parts(s);
+        rest.by_ref()
+            .take(1)
+            .for_each(|three| *three = [0, 1, 2].map(|k| factor * roots[k] * parts[k]));
     };
     for [a, b] in tau.corners {
         put(1.5_f64.sqrt(), a + b + tau.centre / 1.5);
