@@ -2,7 +2,7 @@
 //! which holds them. docs/certificates.md, "The files", says what each of their words is.
 //!
 //! An array that a reader does not know is refused: what it says may change what the others prove. So a new one is added by its
-//! name, here in `layout`, [`encode`] and [`decode`], without another version of the format; files without it stay what they are.
+//! name, in [`encode`] and [`decode`], without another version of the format; files without it stay what they are.
 
 use std::collections::BTreeMap;
 
@@ -52,37 +52,6 @@ pub struct Array {
     /// The number of entries that it has.
     pub entries: usize,
 }
-
-/// Name and words of the arrays.
-mod layout {
-    pub type Layout = (&'static str, &'static str);
-    pub const VERTICES: Layout = ("vertices", "ff");
-    pub const DISPLACEMENT: Layout = ("displacement", "ff");
-    pub const PRESCRIBED: Layout = ("prescribed", "nfnf");
-    pub const CUTS: Layout = ("cuts", "nnf");
-    pub const TRIANGLES: Layout = ("triangles", "nnnnnnfffffffff");
-    pub const TENSORS: Layout = ("tensors", "ffffff");
-    pub const EDGES: Layout = ("edges", "nnnffff");
-    pub const DIRECTIONS: Layout = ("directions", "nffff");
-    pub const FRAMES: Layout = ("frames", "nff");
-    pub const AT_CUTS: Layout = ("displacement at cuts", "ff");
-    pub const PRESCRIBED_AT_CUTS: Layout = ("prescribed at cuts", "nfnf");
-    pub const BULGES: Layout = ("bulges", "ffff");
-    pub const LIFTS: Layout = ("lifts", "nnnf");
-    pub const POLYGON: Layout = ("polygon", "n");
-    pub const SHARES: Layout = ("shares", "f");
-    pub const BOUNDARIES: Layout = ("boundaries", "nn");
-    pub const FORCES: Layout = ("forces", "nnnfffff");
-    pub const W: Layout = ("w", "ff");
-    pub const W_AT_CUTS: Layout = ("w at cuts", "ff");
-    pub const W_BULGES: Layout = ("w bulges", "ff");
-    pub const DUAL_FORCES: Layout = ("dual forces", "nff");
-    pub const DUAL_W: Layout = ("dual w", "ff");
-    pub const DUAL_W_AT_CUTS: Layout = ("dual w at cuts", "ff");
-    pub const DUAL_W_BULGES: Layout = ("dual w bulges", "ff");
-    pub const DUAL_EDGES: Layout = ("dual edges", "nffff");
-}
-use layout::Layout;
 
 /// The part that all versions of the format share.
 #[derive(Deserialize)]
@@ -228,25 +197,22 @@ pub fn decode(header: &Header, bytes: &[u8]) -> Result<(Certificate, Claim), Str
         return Err(format!("its hash is {found}; certificate.json says {:?}", header.hash));
     }
     let mut arrays = ArrayReader::new(&header.arrays, bytes)?;
-    let tensors = arrays.next(layout::TENSORS)?.map(|c| Material::tensor(numbers(c), None));
+    let tensors = arrays.next("tensors")?.map(|c| Material::tensor(c, None));
     let tensors: Vec<Material<f64>> = tensors.collect();
+    let lift = |(corners, norm)| Lift { corners, norm };
     let mut certificate = Certificate {
-        vertices: arrays.next(layout::VERTICES)?.map(numbers).collect(),
-        displacement: arrays.next(layout::DISPLACEMENT)?.map(numbers).collect(),
+        vertices: arrays.next("vertices")?.collect(),
+        displacement: arrays.next("displacement")?.collect(),
         curved: None,
-        prescribed: arrays.next(layout::PRESCRIBED)?.map(given).collect::<Result<_, _>>()?,
+        prescribed: arrays.next("prescribed")?.map(given).collect::<Result<_, _>>()?,
         frames: BTreeMap::new(),
-        cuts: arrays.next(layout::CUTS)?.map(cut).collect(),
-        pieces: arrays
-            .next(layout::TRIANGLES)?
-            .map(|words| piece(words, &tensors))
-            .collect::<Result<_, _>>()?,
-        edges: arrays.next(layout::EDGES)?.enumerate().map(edge).collect::<Result<_, _>>()?,
-        lifts: arrays.next(layout::LIFTS)?.map(lift).collect(),
-        polygon: arrays.next(layout::POLYGON)?.map(|[e]| index(e)).collect(),
+        cuts: arrays.next("cuts")?.map(|(ends, at)| Cut { ends, at }).collect(),
+        pieces: arrays.next("triangles")?.map(|t| piece(t, &tensors)).collect::<Result<_, _>>()?,
+        edges: arrays.next("edges")?.enumerate().map(edge).collect::<Result<_, _>>()?,
+        lifts: arrays.next("lifts")?.map(lift).collect(),
+        polygon: arrays.next("polygon")?.collect(),
     };
-    for [e, a, b, c, d] in arrays.next(layout::DIRECTIONS)? {
-        let (e, d) = (index(e), [numbers([a, b]), numbers([c, d])]);
+    for (e, d) in arrays.next::<(usize, [[f64; 2]; 2])>("directions")? {
         match certificate.edges.get_mut(e).map(|edge| &mut edge.role) {
             Some(Role::Contact { along: along @ None, .. }) => *along = Some(d),
             Some(Role::Supported { along: along @ [0.0, 0.0], .. }) if d[0] == d[1] => {
@@ -255,20 +221,18 @@ pub fn decode(header: &Header, bytes: &[u8]) -> Result<(Certificate, Claim), Str
             _ => return Err(format!("a direction for edge {e}, which has none, or has one")),
         }
     }
-    for [point, x, y] in arrays.next(layout::FRAMES)? {
-        let point = index(point);
-        if certificate.frames.insert(point, numbers([x, y])).is_some() {
+    for (point, d) in arrays.next("frames")? {
+        if certificate.frames.insert(point, d).is_some() {
             return Err(format!("two frames at point {point}"));
         }
     }
     match header.degree {
         1 => {}
         2 => {
-            let of_both = |[a, b, c, d]: [u64; 4]| (numbers([a, b]), numbers([c, d]));
-            let (bulges, data) = arrays.next(layout::BULGES)?.map(of_both).unzip();
-            let prescribed = arrays.next(layout::PRESCRIBED_AT_CUTS)?.map(given);
+            let (bulges, data) = arrays.next::<([f64; 2], [f64; 2])>("bulges")?.unzip();
+            let prescribed = arrays.next("prescribed at cuts")?.map(given);
             certificate.curved = Some(Curved {
-                at_cuts: arrays.next(layout::AT_CUTS)?.map(numbers).collect(),
+                at_cuts: arrays.next("displacement at cuts")?.collect(),
                 prescribed: prescribed.collect::<Result<_, _>>()?,
                 bulges,
                 data,
@@ -276,26 +240,18 @@ pub fn decode(header: &Header, bytes: &[u8]) -> Result<(Certificate, Claim), Str
         }
         other => return Err(format!("the degree of v is {other}; expected 1 or 2")),
     }
-    let shares = arrays.next(layout::SHARES)?.map(|[share]| f64::from_bits(share)).collect();
+    let shares = arrays.next("shares")?.collect();
     let forces = forces(header, &certificate, &mut arrays)?;
     arrays.end()?;
     Ok((certificate, Claim { shares, bound: header.bound, forces }))
 }
 
-/// Lists of so many entries each, one after the other.
-fn lists<T>(
-    name: &str,
-    entries: impl ExactSizeIterator<Item = T>,
-    count: usize,
-    each: usize,
-) -> Result<Vec<Vec<T>>, String> {
-    if Some(entries.len()) != count.checked_mul(each) {
-        let found = entries.len();
-        return Err(format!("{name:?} has {found} entries; expected {count} times {each}"));
-    }
-    let mut entries = entries;
-    Ok((0..count).map(|_| entries.by_ref().take(each).collect()).collect())
-}
+/// Motion, boundary and the axis of its weight; where the weight is 1, and the width over which it falls; what the force lies
+/// between.
+type ForceEntry = ([usize; 3], [f64; 3], [f64; 2]);
+
+/// The role of an edge, with its four numbers.
+type RoleEntry = (usize, [[f64; 2]; 2]);
 
 /// The forces, with what proves them.
 fn forces(
@@ -306,32 +262,32 @@ fn forces(
     let (vertices, cuts) = (certificate.vertices.len(), certificate.cuts.len());
     let edges = certificate.edges.len();
     let names = header.boundaries.clone();
-    let boundary = |word: u64| match index(word).checked_sub(1) {
-        Some(k) if k >= names.len() => Err(format!("there is no boundary {word}")),
+    let boundary = |number: usize| match number.checked_sub(1) {
+        Some(k) if k >= names.len() => Err(format!("there is no boundary {number}")),
         found => Ok(found),
     };
     let mut of = vec![None; edges];
-    for [e, word] in arrays.next(layout::BOUNDARIES)? {
-        let edge = certificate.edges.get(index(e)).filter(|edge| is_named(edge));
-        let place = edge.and_then(|_| of.get_mut(index(e)).filter(|of| of.is_none()));
-        *place.ok_or_else(|| format!("edge {e} has a boundary twice, or holds nothing"))? =
-            boundary(word)?;
+    for (e, number) in arrays.next::<(usize, usize)>("boundaries")? {
+        if !certificate.edges.get(e).is_some_and(|edge| is_named(edge) && of[e].is_none()) {
+            return Err(format!("edge {e} has a boundary twice, or holds nothing"));
+        }
+        of[e] = boundary(number)?;
     }
     let mut between = Vec::new();
     let mut targets = Vec::new();
-    for [motion, of, axis, numbers @ ..] in arrays.next::<8>(layout::FORCES)? {
-        let [from, to, width, low, high]: [f64; 5] = numbers.map(f64::from_bits);
+    for entry in arrays.next::<ForceEntry>("forces")? {
+        let ([motion, of, axis], [from, to, width], ends) = entry;
         let weight = match axis {
             0 if [from, to, width] == [0.0; 3] => None,
             // Its kinks lie one after the other.
             1 | 2 if from <= to && 0.0 < width && (to - from + width).is_finite() => {
-                Some(Ramp { axis: index(axis) - 1, between: [from, to], width })
+                Some(Ramp { axis: axis - 1, between: [from, to], width })
             }
             _ => return Err("a weight is none".to_owned()),
         };
         let motion = match (motion, weight) {
             (0, weight) => Motion::Along(weight),
-            (1 | 2, None) => Motion::Axis(index(motion) - 1),
+            (1 | 2, None) => Motion::Axis(motion - 1),
             (3, None) => Motion::Turn,
             _ => return Err(format!("there is no motion {motion} with this weight")),
         };
@@ -341,7 +297,7 @@ fn forces(
             return Err("a force is that of no boundary".to_owned());
         }
         targets.push(ForceTarget { boundary, motion });
-        between.push([low, high]);
+        between.push(ends);
     }
     let Some((&of_cover, between)) = between.split_first() else {
         return Ok(Evidence::default());
@@ -351,42 +307,34 @@ fn forces(
         return Err("a force or an edge is that of no boundary".to_owned());
     }
     let (count, targets) = (targets.len(), targets.split_off(1));
-    let list = |arrays: &mut ArrayReader, layout: Layout, count: usize, each: usize| {
-        lists(layout.0, arrays.next(layout)?.map(numbers), count, each)
-    };
-    let displacements = |arrays: &mut ArrayReader, layouts: [Layout; 3], count: usize| {
-        let at_vertices = list(arrays, layouts[0], count, vertices)?;
-        let beyond = if arrays.has(layouts[2]) {
-            let at_cuts = list(arrays, layouts[1], count, cuts)?;
-            let bulges = list(arrays, layouts[2], count, edges)?;
+    let displacements = |arrays: &mut ArrayReader, prefix: &str, count: usize| {
+        let [of_cuts, of_bulges] = ["at cuts", "bulges"].map(|what| format!("{prefix} {what}"));
+        let at_vertices = arrays.lists(prefix, count, vertices)?;
+        let beyond = if arrays.has(&of_bulges) {
+            let at_cuts = arrays.lists(&of_cuts, count, cuts)?;
+            let bulges = arrays.lists(&of_bulges, count, edges)?;
             at_cuts.into_iter().zip(bulges).map(|(a, b)| Some([a, b])).collect()
         } else {
             vec![None; count]
         };
         Ok::<_, String>(at_vertices.into_iter().zip(beyond))
     };
-    let layouts = [layout::W, layout::W_AT_CUTS, layout::W_BULGES];
-    let mut all = displacements(arrays, layouts, count)?
-        .map(|(vertices, beyond)| Lifting { vertices, beyond });
+    let mut all =
+        displacements(arrays, "w", count)?.map(|(vertices, beyond)| Lifting { vertices, beyond });
     let is_zero = |w: &Lifting| {
         let beyond = w.beyond.iter().flatten().flatten();
         w.vertices.iter().chain(beyond).all(|&w| w == [0.0; 2])
     };
     let cover = all.next().filter(|w| of_cover != [0.0; 2] || !is_zero(w));
     let liftings = targets.iter().copied().zip(all).collect();
-    let of_pairs = arrays.next(layout::DUAL_FORCES)?;
-    let of_pairs: Vec<(u64, [f64; 2])> =
-        of_pairs.map(|[force, low, high]| (force, numbers([low, high]))).collect();
-    let layouts = [layout::DUAL_W, layout::DUAL_W_AT_CUTS, layout::DUAL_W_BULGES];
-    let duals = displacements(arrays, layouts, of_pairs.len())?;
-    let (name, words) = (layout::DUAL_EDGES.0, arrays.next(layout::DUAL_EDGES)?);
-    let roles = lists(name, words, of_pairs.len(), edges)?;
+    let of_pairs: Vec<(usize, [f64; 2])> = arrays.next("dual forces")?.collect();
+    let duals = displacements(arrays, "dual w", of_pairs.len())?;
+    let roles = arrays.lists("dual edges", of_pairs.len(), edges)?;
     let mut pairs = Vec::with_capacity(of_pairs.len());
     for ((&(force, _), (w, beyond)), roles) in of_pairs.iter().zip(duals).zip(roles) {
-        let target = targets.get(index(force)).ok_or("a dual pair is for no force")?;
-        let along = |(e, [role, a, b, c, d]): (usize, [u64; 5])| {
-            let edge = edge((e, [0, 0, role, a, b, c, d]))?;
-            Ok(match (edge.role, certificate.edges[e].role) {
+        let target = targets.get(force).ok_or("a dual pair is for no force")?;
+        let along = |(e, (number, numbers)): (usize, RoleEntry)| {
+            Ok(match (role(e, number, numbers)?, certificate.edges[e].role) {
                 (Role::Supported { force, traction, .. }, Role::Supported { along, .. }) => {
                     Role::Supported { along, force, traction }
                 }
@@ -417,28 +365,24 @@ fn add_forces(
     out: &mut ArrayWriter,
 ) {
     let Evidence { of, cover, liftings, pairs, .. } = forces;
-    let words = |xs: &[f64; 2]| xs.map(f64::to_bits);
-    let number = |boundary: &Option<usize>| boundary.map_or(0, |k| k as u64 + 1);
+    let number = |boundary: &Option<usize>| boundary.map_or(0, |k| k + 1);
     let named =
         certificate.edges.iter().zip(of).enumerate().filter(|(_, (edge, _))| is_named(edge));
-    out.add(layout::BOUNDARIES, named.map(|(e, (_, of))| [e as u64, number(of)]));
+    out.add("boundaries", named.map(|(e, (_, of))| (e, number(of))));
     let of_w0 = ForceTarget { boundary: None, motion: Motion::Along(None) };
     let targets = std::iter::once(&of_w0).chain(liftings.iter().map(|(target, _)| target));
     let ends = std::iter::once(&between.cover).chain(&between.liftings);
-    out.add(
-        layout::FORCES,
-        targets.zip(ends).map(|(target, [low, high])| {
-            let (motion, weight) = match target.motion {
-                Motion::Along(weight) => (0, weight),
-                Motion::Axis(c) => (c as u64 + 1, None),
-                Motion::Turn => (3, None),
-            };
-            let (axis, [from, to], width) =
-                weight.map_or((0, [0.0; 2], 0.0), |r| (r.axis as u64 + 1, r.between, r.width));
-            let [a, b, c, d, e] = [from, to, width, *low, *high].map(f64::to_bits);
-            [motion, number(&target.boundary), axis, a, b, c, d, e]
-        }),
-    );
+    let entry = |(target, &ends): (&ForceTarget, &[f64; 2])| -> ForceEntry {
+        let (motion, weight) = match target.motion {
+            Motion::Along(weight) => (0, weight),
+            Motion::Axis(c) => (c + 1, None),
+            Motion::Turn => (3, None),
+        };
+        let (axis, [from, to], width) =
+            weight.map_or((0, [0.0; 2], 0.0), |r| (r.axis + 1, r.between, r.width));
+        ([motion, number(&target.boundary), axis], [from, to, width], ends)
+    };
+    out.add("forces", targets.zip(ends).map(entry));
     let none = || Lifting {
         vertices: vec![[0.0; 2]; certificate.vertices.len()],
         beyond: liftings.iter().any(|(_, w)| w.beyond.is_some()).then(|| {
@@ -447,127 +391,146 @@ fn add_forces(
     };
     let cover = cover.clone().unwrap_or_else(none);
     let all = || std::iter::once(&cover).chain(liftings.iter().map(|(_, w)| w));
-    out.add(layout::W, all().flat_map(|w| &w.vertices).map(words));
-    for (k, layout) in [layout::W_AT_CUTS, layout::W_BULGES].into_iter().enumerate() {
-        out.add(layout, all().flat_map(|w| &w.beyond).flat_map(|both| &both[k]).map(words));
+    out.add("w", all().flat_map(|w| &w.vertices).copied());
+    for (k, name) in ["w at cuts", "w bulges"].into_iter().enumerate() {
+        out.add(name, all().flat_map(|w| &w.beyond).flat_map(|both| &both[k]).copied());
     }
     let place = |target: &ForceTarget| liftings.iter().position(|(other, _)| other == target);
     let served = pairs.iter().zip(&between.pairs);
-    let served = served.filter_map(|((target, pair), ends)| Some((place(target)?, pair, ends)));
-    let served: Vec<(usize, &Certificate, &[f64; 2])> = served.collect();
-    let ends = |&(force, _, ends): &(usize, &Certificate, &[f64; 2])| {
-        let [low, high] = words(ends);
-        [force as u64, low, high]
-    };
-    out.add(layout::DUAL_FORCES, served.iter().map(ends));
+    let served = served.filter_map(|((target, pair), &ends)| Some((place(target)?, pair, ends)));
+    let served: Vec<(usize, &Certificate, [f64; 2])> = served.collect();
+    out.add("dual forces", served.iter().map(|&(force, _, ends)| (force, ends)));
     let pairs = || served.iter().map(|&(_, pair, _)| pair);
-    out.add(layout::DUAL_W, pairs().flat_map(|pair| &pair.displacement).map(words));
+    out.add("dual w", pairs().flat_map(|pair| &pair.displacement).copied());
     let curved = || pairs().flat_map(|pair| &pair.curved);
-    out.add(layout::DUAL_W_AT_CUTS, curved().flat_map(|curved| &curved.at_cuts).map(words));
-    out.add(layout::DUAL_W_BULGES, curved().flat_map(|curved| &curved.bulges).map(words));
-    out.add(
-        layout::DUAL_EDGES,
-        pairs().flat_map(|pair| &pair.edges).map(|edge| {
-            let [_, _, role, a, b, c, d] = edge_words(edge);
-            [role, a, b, c, d]
-        }),
-    );
+    out.add("dual w at cuts", curved().flat_map(|curved| &curved.at_cuts).copied());
+    out.add("dual w bulges", curved().flat_map(|curved| &curved.bulges).copied());
+    out.add("dual edges", pairs().flat_map(|pair| &pair.edges).map(|edge| role_entry(&edge.role)));
 }
 
 fn arrays(certificate: &Certificate, shares: &[f64]) -> ArrayWriter {
     let mut out = ArrayWriter::default();
-    let double = |x: &f64| x.to_bits();
-    let words = |xs: &[f64; 2]| xs.map(f64::to_bits);
-    let prescribed = |data: &[Option<f64>; 2]| {
-        let [x, y] = data.map(|u| (u64::from(u.is_some()), u.unwrap_or(0.0).to_bits()));
-        [x.0, x.1, y.0, y.1]
-    };
-    out.add(layout::VERTICES, certificate.vertices.iter().map(words));
-    out.add(layout::DISPLACEMENT, certificate.displacement.iter().map(words));
-    out.add(layout::PRESCRIBED, certificate.prescribed.iter().map(prescribed));
-    let cut = |Cut { ends: [a, b], at }: &Cut| [*a as u64, *b as u64, at.to_bits()];
-    out.add(layout::CUTS, certificate.cuts.iter().map(cut));
+    let prescribed =
+        |data: &[Option<f64>; 2]| data.map(|u| (usize::from(u.is_some()), u.unwrap_or(0.0)));
+    out.add("vertices", certificate.vertices.iter().copied());
+    out.add("displacement", certificate.displacement.iter().copied());
+    out.add("prescribed", certificate.prescribed.iter().map(prescribed));
+    out.add("cuts", certificate.cuts.iter().map(|cut| (cut.ends, cut.at)));
     let mut tensors: Vec<Material<f64>> = Vec::new();
     for material in certificate.pieces.iter().map(|piece| piece.material) {
         if !material.is_isotropic() && !tensors.contains(&material) {
             tensors.push(material);
         }
     }
-    out.add(
-        layout::TRIANGLES,
-        certificate.pieces.iter().map(|piece| {
-            let ([a, b, c], [d, e, f]) = (piece.vertices, piece.edges);
-            let [lambda, mu] = if piece.material.is_isotropic() {
-                [piece.material.lambda(), piece.material.mu()].map(f64::to_bits)
-            } else {
-                {
-                    let place = tensors.iter().position(|tensor| *tensor == piece.material);
-                    [(place.unwrap_or(0) as f64).to_bits(), 0]
-                }
-            };
-            let [p, q, r] = piece.body.map(|f| words(&f));
-            let [a, b, c, d, e, f] = [a, b, c, d, e, f].map(|i| i as u64);
-            let oscillation = piece.oscillation.to_bits();
-            [a, b, c, d, e, f, lambda, mu, p[0], p[1], q[0], q[1], r[0], r[1], oscillation]
-        }),
-    );
-    out.add(layout::TENSORS, tensors.iter().map(|material| material.stiffness().map(f64::to_bits)));
-    out.add(layout::EDGES, certificate.edges.iter().map(edge_words));
+    let moduli = |material: &Material<f64>| match tensors.iter().position(|t| t == material) {
+        Some(place) => [place as f64, 0.0],
+        None => [material.lambda(), material.mu()],
+    };
+    let piece = |piece: &Piece| -> PieceEntry {
+        let Piece { vertices, edges, body, oscillation, ref material } = *piece;
+        ([vertices, edges], moduli(material), body, oscillation)
+    };
+    out.add("triangles", certificate.pieces.iter().map(piece));
+    out.add("tensors", tensors.iter().map(Material::stiffness));
+    let edges = certificate.edges.iter();
+    out.add("edges", edges.map(|edge| -> EdgeEntry { (edge.ends, role_entry(&edge.role)) }));
     // Those of contact that are not the edges' normals, and those of edges that are held along one alone.
-    out.add(
-        layout::DIRECTIONS,
-        certificate.edges.iter().enumerate().filter_map(|(e, edge)| {
-            let [d, f] = match edge.role {
-                Role::Contact { along, .. } => along?,
-                Role::Supported { along, .. } => [along; 2],
-                _ => return None,
-            };
-            let ([a, b], [c, d]) = (words(&d), words(&f));
-            Some([e as u64, a, b, c, d])
-        }),
-    );
-    out.add(
-        layout::FRAMES,
-        certificate.frames.iter().map(|(&point, d)| {
-            let [x, y] = words(d);
-            [point as u64, x, y]
-        }),
-    );
+    let direction = |(e, edge): (usize, &Edge)| match edge.role {
+        Role::Contact { along, .. } => Some((e, along?)),
+        Role::Supported { along, .. } => Some((e, [along; 2])),
+        _ => None,
+    };
+    out.add("directions", certificate.edges.iter().enumerate().filter_map(direction));
+    out.add("frames", certificate.frames.iter().map(|(&point, &d)| (point, d)));
     if let Some(Curved { at_cuts, prescribed: data_at_cuts, bulges, data }) = &certificate.curved {
-        out.add(layout::AT_CUTS, at_cuts.iter().map(words));
-        out.add(layout::PRESCRIBED_AT_CUTS, data_at_cuts.iter().map(prescribed));
-        out.add(
-            layout::BULGES,
-            bulges.iter().zip(data).map(|(bulge, data)| {
-                let ([a, b], [c, d]) = (words(bulge), words(data));
-                [a, b, c, d]
-            }),
-        );
+        out.add("displacement at cuts", at_cuts.iter().copied());
+        out.add("prescribed at cuts", data_at_cuts.iter().map(prescribed));
+        out.add("bulges", bulges.iter().zip(data).map(|(&bulge, &data)| (bulge, data)));
     }
-    out.add(
-        layout::LIFTS,
-        certificate.lifts.iter().map(|lift| {
-            let [a, b, c] = lift.corners.map(|p| p as u64);
-            [a, b, c, lift.norm.to_bits()]
-        }),
-    );
-    out.add(layout::POLYGON, certificate.polygon.iter().map(|&e| [e as u64]));
-    out.add(layout::SHARES, shares.iter().map(|x| [double(x)]));
+    out.add("lifts", certificate.lifts.iter().map(|lift| (lift.corners, lift.norm)));
+    out.add("polygon", certificate.polygon.iter().copied());
+    out.add("shares", shares.iter().copied());
     out
 }
 
-fn edge_words(edge: &Edge) -> [u64; 7] {
-    let words = |xs: &[f64; 2]| xs.map(f64::to_bits);
-    let (role, [start, end]) = match edge.role {
-        Role::Inner(force) => (0, force),
-        Role::Held(held, force) => (u64::from(held[0]) + 2 * u64::from(held[1]), force),
-        Role::Loaded(traction) => (4, traction),
-        Role::Pressed(pressure) => (5, [pressure, [0.0; 2]]),
-        Role::Contact { pressure, gap, .. } => (6, [pressure, gap]),
-        Role::Supported { force, traction, .. } => (7, [force, traction]),
+/// A number or numbers in words of eight bytes each, least significant first.
+trait Words: Sized {
+    /// Adds `f` for each double, `n` for each whole number.
+    fn name(name: &mut String);
+
+    fn write(&self, bytes: &mut Vec<u8>);
+
+    fn read(words: &mut impl Iterator<Item = u64>) -> Self;
+}
+
+impl Words for f64 {
+    fn name(name: &mut String) {
+        name.push('f');
+    }
+
+    fn write(&self, bytes: &mut Vec<u8>) {
+        bytes.extend_from_slice(&self.to_bits().to_le_bytes());
+    }
+
+    fn read(words: &mut impl Iterator<Item = u64>) -> f64 {
+        f64::from_bits(words.next().unwrap_or_default())
+    }
+}
+
+impl Words for usize {
+    fn name(name: &mut String) {
+        name.push('n');
+    }
+
+    fn write(&self, bytes: &mut Vec<u8>) {
+        bytes.extend_from_slice(&(*self as u64).to_le_bytes());
+    }
+
+    /// A number that names nothing is as good as the largest.
+    fn read(words: &mut impl Iterator<Item = u64>) -> usize {
+        usize::try_from(words.next().unwrap_or_default()).unwrap_or(usize::MAX)
+    }
+}
+
+impl<T: Words, const N: usize> Words for [T; N] {
+    fn name(name: &mut String) {
+        (0..N).for_each(|_| T::name(name));
+    }
+
+    fn write(&self, bytes: &mut Vec<u8>) {
+        self.iter().for_each(|x| x.write(bytes));
+    }
+
+    fn read(words: &mut impl Iterator<Item = u64>) -> [T; N] {
+        std::array::from_fn(|_| T::read(words))
+    }
+}
+
+macro_rules! words_of_tuple {
+    ($($kind:ident $place:tt),+) => {
+        impl<$($kind: Words),+> Words for ($($kind,)+) {
+            fn name(name: &mut String) {
+                $($kind::name(name);)+
+            }
+
+            fn write(&self, bytes: &mut Vec<u8>) {
+                $(self.$place.write(bytes);)+
+            }
+
+            fn read(words: &mut impl Iterator<Item = u64>) -> Self {
+                ($($kind::read(words),)+)
+            }
+        }
     };
-    let ([a, b], [c, d], [e, f]) = (edge.ends.map(|p| p as u64), words(&start), words(&end));
-    [a, b, role, c, d, e, f]
+}
+words_of_tuple!(A 0, B 1);
+words_of_tuple!(A 0, B 1, C 2);
+words_of_tuple!(A 0, B 1, C 2, D 3);
+
+fn name_of<T: Words>() -> String {
+    let mut name = String::new();
+    T::name(&mut name);
+    name
 }
 
 /// Arrays one after the other.
@@ -578,20 +541,19 @@ struct ArrayWriter {
 }
 
 impl ArrayWriter {
-    fn add<const N: usize>(&mut self, layout: Layout, entries: impl Iterator<Item = [u64; N]>) {
-        let (name, words) = layout;
-        debug_assert_eq!(words.len(), N);
+    fn add<T: Words>(&mut self, name: &str, entries: impl Iterator<Item = T>) {
+        let words = name_of::<T>();
         let before = self.bytes.len();
-        self.bytes.reserve(8 * N * entries.size_hint().0);
-        entries.flatten().for_each(|word| self.bytes.extend_from_slice(&word.to_le_bytes()));
-        let entries = (self.bytes.len() - before) / (8 * N);
+        self.bytes.reserve(8 * words.len() * entries.size_hint().0);
+        entries.for_each(|entry| entry.write(&mut self.bytes));
+        let entries = (self.bytes.len() - before) / (8 * words.len());
         if entries > 0 {
-            self.arrays.push(Array { name: name.to_owned(), words: words.to_owned(), entries });
+            self.arrays.push(Array { name: name.to_owned(), words, entries });
         }
     }
 }
 
-/// The arrays that have not been read yet.
+/// The arrays that have not been read yet: their words, in letters and in bytes.
 struct ArrayReader<'a>(BTreeMap<&'a str, (&'a str, &'a [[u8; 8]])>);
 
 impl<'a> ArrayReader<'a> {
@@ -617,19 +579,36 @@ impl<'a> ArrayReader<'a> {
     }
 
     /// The entries of an array; none if it is left out.
-    fn next<const N: usize>(
+    fn next<T: Words>(
         &mut self,
-        (name, words): Layout,
-    ) -> Result<impl ExactSizeIterator<Item = [u64; N]> + use<'a, N>, String> {
-        let (said, array) = self.0.remove(name).unwrap_or((words, &[]));
-        if said != words || words.len() != N {
+        name: &str,
+    ) -> Result<impl ExactSizeIterator<Item = T> + use<'a, T>, String> {
+        let words = name_of::<T>();
+        let (said, array) = self.0.remove(name).unwrap_or((&words, &[]));
+        if said != words {
             return Err(format!("{name:?} has entries of the words {said:?}; expected {words:?}"));
         }
-        Ok(array.as_chunks::<N>().0.iter().map(|entry| entry.map(u64::from_le_bytes)))
+        let entries = array.chunks_exact(words.len());
+        Ok(entries.map(|entry| T::read(&mut entry.iter().map(|word| u64::from_le_bytes(*word)))))
+    }
+
+    /// The entries of an array in lists of so many each.
+    fn lists<T: Words>(
+        &mut self,
+        name: &str,
+        count: usize,
+        each: usize,
+    ) -> Result<Vec<Vec<T>>, String> {
+        let mut entries = self.next(name)?;
+        if Some(entries.len()) != count.checked_mul(each) {
+            let found = entries.len();
+            return Err(format!("{name:?} has {found} entries; expected {count} times {each}"));
+        }
+        Ok((0..count).map(|_| entries.by_ref().take(each).collect()).collect())
     }
 
     /// Tells whether an array is there and not read yet.
-    fn has(&self, (name, _): Layout) -> bool {
+    fn has(&self, name: &str) -> bool {
         self.0.contains_key(name)
     }
 
@@ -643,37 +622,23 @@ impl<'a> ArrayReader<'a> {
     }
 }
 
-/// A number that names nothing is as good as the largest.
-fn index(word: u64) -> usize {
-    usize::try_from(word).unwrap_or(usize::MAX)
-}
-
-fn numbers<const N: usize>(words: [u64; N]) -> [f64; N] {
-    words.map(f64::from_bits)
-}
-
-fn given([a, u, b, v]: [u64; 4]) -> Result<[Option<f64>; 2], String> {
-    let component = |there: u64, value: f64| match (there, value) {
+/// Each component: 1 and its value, or 0 and 0.
+fn given(data: [(usize, f64); 2]) -> Result<[Option<f64>; 2], String> {
+    let component = |data: (usize, f64)| match data {
         (0, 0.0) => Ok(None),
         (1, value) => Ok(Some(value)),
         _ => Err("a prescribed value is neither there nor not".to_owned()),
     };
-    Ok([component(a, f64::from_bits(u))?, component(b, f64::from_bits(v))?])
+    Ok([component(data[0])?, component(data[1])?])
 }
 
-fn cut([a, b, at]: [u64; 3]) -> Cut {
-    Cut { ends: [a, b].map(index), at: f64::from_bits(at) }
-}
+/// Vertices and edges; lambda and mu, or the number of a tensor and 0, as no material has mu = 0; body force; oscillation.
+type PieceEntry = ([[usize; 3]; 2], [f64; 2], [[f64; 2]; 3], f64);
 
-fn lift([a, b, c, norm]: [u64; 4]) -> Lift {
-    Lift { corners: [a, b, c].map(index), norm: f64::from_bits(norm) }
-}
-
-fn piece(words: [u64; 15], tensors: &[Material<f64>]) -> Result<Piece, String> {
-    let [a, b, c, d, e, f, lambda, mu, body @ .., oscillation] = words;
-    let [p, q, r, s, t, u] = numbers(body);
-    // No material has mu = 0: then the first of the two is the number of a tensor.
-    let [lambda, mu] = numbers([lambda, mu]);
+fn piece(
+    ([vertices, edges], [lambda, mu], body, oscillation): PieceEntry,
+    tensors: &[Material<f64>],
+) -> Result<Piece, String> {
     let material = if mu == 0.0 {
         let place = lambda as usize;
         let found = tensors.get(place).filter(|_| place as f64 == lambda);
@@ -681,18 +646,26 @@ fn piece(words: [u64; 15], tensors: &[Material<f64>]) -> Result<Piece, String> {
     } else {
         Material::lame(lambda, mu, Plane::Strain)
     };
-    Ok(Piece {
-        vertices: [a, b, c].map(index),
-        edges: [d, e, f].map(index),
-        material,
-        body: [[p, q], [r, s], [t, u]],
-        oscillation: f64::from_bits(oscillation),
-    })
+    Ok(Piece { vertices, edges, material, body, oscillation })
 }
 
-fn edge((e, [a, b, role, p, q, r, s]): (usize, [u64; 7])) -> Result<Edge, String> {
-    let (start, end) = (numbers([p, q]), numbers([r, s]));
-    let role = match role {
+/// The ends of an edge, and its role.
+type EdgeEntry = ([usize; 2], RoleEntry);
+
+fn role_entry(role: &Role) -> RoleEntry {
+    match *role {
+        Role::Inner(force) => (0, force),
+        Role::Held(held, force) => (usize::from(held[0]) + 2 * usize::from(held[1]), force),
+        Role::Loaded(traction) => (4, traction),
+        Role::Pressed(pressure) => (5, [pressure, [0.0; 2]]),
+        Role::Contact { pressure, gap, .. } => (6, [pressure, gap]),
+        Role::Supported { force, traction, .. } => (7, [force, traction]),
+    }
+}
+
+/// The role of edge `e`, but for its directions.
+fn role(e: usize, number: usize, [start, end]: [[f64; 2]; 2]) -> Result<Role, String> {
+    Ok(match number {
         0 => Role::Inner([start, end]),
         held @ 1..=3 => Role::Held([held & 1 != 0, held & 2 != 0], [start, end]),
         4 => Role::Loaded([start, end]),
@@ -700,8 +673,11 @@ fn edge((e, [a, b, role, p, q, r, s]): (usize, [u64; 7])) -> Result<Edge, String
         6 => Role::Contact { pressure: start, gap: end, along: None },
         7 => Role::Supported { along: [0.0; 2], force: start, traction: end },
         _ => return Err(format!("edge {e} has an unknown role")),
-    };
-    Ok(Edge { ends: [a, b].map(index), role })
+    })
+}
+
+fn edge((e, (ends, (number, numbers))): (usize, EdgeEntry)) -> Result<Edge, String> {
+    Ok(Edge { ends, role: role(e, number, numbers)? })
 }
 
 /// The steps of the 64-bit FNV-1a hash, word by word.
