@@ -14,7 +14,6 @@ use super::errors::CertifyError;
 use super::forces::Evidence;
 use super::oscillation::{self, Oscillation};
 use super::parts::{Boundary, ProblemParts};
-use super::tractions::force_of;
 use crate::fem::mesh::bisection::Refinement;
 use crate::fem::{BoundaryEdge, Degree, Mesh, MeshError, Problem};
 use crate::kernel::{Material, Triangle};
@@ -326,103 +325,68 @@ impl Comparison<'_> {
                 if cut.ends[1] == b { cut.at } else { 1.0 - cut.at }
             }
         });
-        let between = |[p, q]: [f64; 2], bulge: f64, s: f64| {
-            (1.0 - s) * p + s * q + 4.0 * s * (1.0 - s) * bulge
+        let same = |of: (&str, f64), found: &[f64], expected: &[f64]| {
+            self.same("edge", e, of, found, expected)
         };
-        let share = (s[1] - s[0]) * (s[1] - s[0]);
-        let data = certificate.curved.as_ref().map(|curved| curved.data[e]);
-        let bulge = |c: usize, bulge: f64| match data {
-            Some(data) => {
-                self.same("edge", e, ("bulge of data", self.lengths), &[data[c]], &[share * bulge])
+        let places = edge.ends.map(|p| <[f64; 2]>::from(place(certificate, p)));
+        let quadratic = certificate.curved.is_some();
+        let (expected, bulge) = parts.role_on(number, (s, places), quadratic);
+        match (edge.role, expected) {
+            (Role::Held(found, _), Role::Held(held, _)) if found == held => {}
+            (
+                Role::Supported { along: d, traction: t, .. },
+                Role::Supported { along, traction, .. },
+            ) => {
+                same(("direction that is held", 1.0), &d, &along)?;
+                same(("traction across its support", self.loads), &t, &traction)?;
             }
-            None => Ok(()),
-        };
-        // What is prescribed at ends that are no vertices, of a v that is quadratic.
-        let at_cuts = |c: usize, ends: [Option<f64>; 2], bulge: f64| -> Result<(), Difference> {
+            (Role::Loaded(t), Role::Loaded(traction)) => {
+                let [t, traction] = [&t, &traction].map(|t| t.as_flattened());
+                same(("traction", self.loads), t, traction)?;
+            }
+            (Role::Pressed(p), Role::Pressed(pressure)) => {
+                same(("pressure", self.loads), &p, &pressure)?;
+            }
+            (Role::Contact { gap: g, along: d, .. }, Role::Contact { gap, along, .. }) => {
+                same(("gap", self.lengths), &g, &gap)?;
+                let [d, along] =
+                    [&d, &along].map(|d| d.as_ref().map_or(&[][..], |d| d.as_flattened()));
+                same(("direction of contact", 1.0), d, along)?;
+            }
+            (found, expected) => {
+                let found = format!("the role of {}", kind(&found));
+                let expected = kind(&expected).to_owned();
+                return Err(Difference::Data { what: "edge", index: e, found, expected });
+            }
+        }
+        let Some(curved) = &certificate.curved else { return Ok(()) };
+        same(("bulge of data", self.lengths), &curved.data[e], &bulge)?;
+        // What is prescribed at ends that are no vertices.
+        let at_cuts = |c: usize, ends: [Option<f64>; 2], bulge: f64| {
             let [Some(p), Some(q)] = ends else { return Ok(()) };
             for (point, s) in edge.ends.into_iter().zip(s) {
-                let cut = point.checked_sub(certificate.vertices.len());
-                if let (Some(cut), Some(curved)) = (cut, &certificate.curved) {
-                    let (found, expected) = (curved.prescribed[cut][c], between([p, q], bulge, s));
-                    self.same(
-                        "edge",
-                        e,
-                        ("displacement", self.lengths),
-                        found.as_slice(),
-                        &[expected],
-                    )?;
+                if let Some(cut) = point.checked_sub(certificate.vertices.len()) {
+                    let expected = (1.0 - s) * p + s * q + 4.0 * s * (1.0 - s) * bulge;
+                    let found = curved.prescribed[cut][c];
+                    same(("displacement", self.lengths), found.as_slice(), &[expected])?;
                 }
             }
             Ok(())
         };
-        let places = edge.ends.map(|p| <[f64; 2]>::from(place(certificate, p)));
-        let (length, unit) = length_and_normal(places);
-        let normal = Vector2::from(unit) * length;
-        let another = |expected: &str| {
-            let found = format!("the role of {}", kind(&edge.role));
-            Err(Difference::Data { what: "edge", index: e, found, expected: expected.to_owned() })
-        };
-        match (parts.boundary.get(&number).unwrap_or(&Boundary::Free), edge.role) {
-            (Boundary::Held(held, bulges), Role::Held(found, _)) if *held == found => {
-                for c in (0..2).filter(|&c| held[c]) {
-                    bulge(c, bulges[c])?;
-                    at_cuts(c, [a, b].map(|k| parts.prescribed[k][c]), bulges[c])?;
-                }
-                Ok(())
-            }
-            (Boundary::Held(..), _) => another("that components are held"),
-            (Boundary::Supported(d, of_data, given), Role::Supported { along, traction, .. }) => {
-                self.same("edge", e, ("direction that is held", 1.0), &along, d)?;
-                bulge(0, *of_data)?;
+        match parts.boundary.get(&number) {
+            Some(Boundary::Held(held, bulges)) => (0..2)
+                .filter(|&c| held[c])
+                .try_for_each(|c| at_cuts(c, [a, b].map(|k| parts.prescribed[k][c]), bulges[c])),
+            Some(Boundary::Supported(d, bulge, _)) => {
                 let value = |k: usize| match (parts.frames.get(&k), parts.prescribed[k]) {
                     (Some(_), [w, _]) => w,
                     (None, u) => (0..2).filter(|&c| d[c] != 0.0).map(|c| Some(d[c] * u[c]?)).sum(),
                 };
                 let axis = if is_oblique(*d) { 0 } else { usize::from(d[0] == 0.0) };
                 let sign = if is_oblique(*d) { 1.0 } else { d[axis] };
-                at_cuts(axis, [a, b].map(|k| Some(sign * value(k)?)), sign * of_data)?;
-                let expected = given.map_or([0.0; 2], |t| {
-                    t.across(*d, places, force_of(&t.moments(places, normal)))
-                });
-                self.same(
-                    "edge",
-                    e,
-                    ("traction across its support", self.loads),
-                    &traction,
-                    &expected,
-                )
+                at_cuts(axis, [a, b].map(|k| Some(sign * value(k)?)), sign * bulge)
             }
-            (Boundary::Supported(..), _) => another("that one direction is held"),
-            (Boundary::Free, Role::Loaded(t)) => {
-                self.same("edge", e, ("traction", self.loads), t.as_flattened(), &[0.0; 4])
-            }
-            (Boundary::Free, _) => another("that nothing acts"),
-            (Boundary::Loaded(t), found) => {
-                match (t.affine(places, force_of(&t.moments(places, normal))), found) {
-                    (Role::Loaded(expected), Role::Loaded(found)) => {
-                        let [found, expected] = [&found, &expected].map(|t| t.as_flattened());
-                        self.same("edge", e, ("traction", self.loads), found, expected)
-                    }
-                    (Role::Pressed(expected), Role::Pressed(found)) => {
-                        self.same("edge", e, ("pressure", self.loads), &found, &expected)
-                    }
-                    _ => another("that a traction or a pressure acts"),
-                }
-            }
-            (Boundary::Contact(k), Role::Contact { gap, along, .. }) => {
-                let edge = &parts.contact[*k];
-                bulge(0, edge.gap_bulge)?;
-                let there = if data.is_some() { edge.gap_bulge } else { 0.0 };
-                let expected = s.map(|s| between(edge.gap, there, s));
-                self.same("edge", e, ("gap", self.lengths), &gap, &expected)?;
-                let own = edge
-                    .along()
-                    .map(|[d, f]| s.map(|s| [0, 1].map(|c| between([d[c], f[c]], 0.0, s))));
-                let [found, expected] =
-                    [&along, &own].map(|d| d.as_ref().map_or(&[][..], |d| d.as_flattened()));
-                self.same("edge", e, ("direction of contact", 1.0), found, expected)
-            }
-            (Boundary::Contact(_), _) => another("that it may touch an obstacle"),
+            _ => Ok(()),
         }
     }
 
@@ -486,6 +450,7 @@ fn kind(role: &Role) -> &'static str {
         Role::Inner(_) => "an inner edge",
         Role::Held(..) => "one where components are held",
         Role::Supported { .. } => "one where a direction is held",
+        Role::Loaded(t) if *t == [[0.0; 2]; 2] => "one where nothing acts",
         Role::Loaded(_) => "one with a traction",
         Role::Pressed(_) => "one with a pressure",
         Role::Contact { .. } => "one of contact",

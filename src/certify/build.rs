@@ -6,17 +6,17 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::Vector2;
 
 use super::certificate::{
-    Certificate, Curved, Edge, Piece, Role, Shape, exactly, is_oblique, place,
+    Certificate, Curved, Cut, Edge, Piece, Role, Shape, exactly, is_oblique, place,
 };
 use super::contact::Profile;
-use super::data::Data;
+use super::data::{Data, force_of};
 use super::divide::{Division, SubTriangle, cut, divided};
-use super::field::Field;
+use super::field::{Field, edge_ends};
 use super::oscillation::Oscillation;
 use super::parts::{Boundary, ProblemParts};
 use super::quantities::{Line, Station};
-use super::quarters::{add_halves, halved, quarters};
-use super::tractions::{force_of, held_only, moments, stresses, supported};
+use super::quarters::{halved, quarters};
+use super::tractions::{moments, stresses, with_force};
 use crate::fem::Mesh;
 use crate::fem::boundary_normals::SmoothBoundary;
 use crate::fem::mesh::length;
@@ -38,20 +38,15 @@ pub(super) struct Built {
 impl Built {
     /// A displacement of the mesh on the pieces: given at the vertices, and at the middles of the edges if it is quadratic.
     pub fn shape<S: Enclosing>(&self, mesh: &Mesh, nodal: &[[f64; 2]]) -> Shape<S> {
-        let (ends, middles) = nodal.split_at(mesh.vertices().len());
-        let points: Vec<Vector2<S>> = ends.iter().map(|&v| exactly(v)).collect();
-        let bulges = (!middles.is_empty()).then(|| {
-            let mut bulges = vec![Vector2::zeros(); middles.len()];
-            for (corners, edges) in mesh.triangles().iter().zip(mesh.triangle_edges()) {
-                for (local, &e) in edges.iter().enumerate() {
-                    let [a, b] = [1, 2].map(|k| points[corners[(local + k) % 3]]);
-                    bulges[e] = exactly::<S>(middles[e]) - (a + b) / S::from(2);
-                }
-            }
-            bulges
-        });
+        let (nodal, middles) = nodal.split_at(mesh.vertices().len());
+        let points: Vec<Vector2<S>> = nodal.iter().map(|&v| exactly(v)).collect();
+        let ends = edge_ends(mesh);
+        let beyond = |([a, b], middle): (&[usize; 2], &[f64; 2])| {
+            exactly::<S>(*middle) - (points[*a] + points[*b]) / S::from(2)
+        };
+        let bulges = (!middles.is_empty()).then(|| ends.iter().zip(middles).map(beyond).collect());
         let shape = Shape { points, bulges };
-        let shape = if self.quartered { halved(shape, mesh, &mesh_edges(mesh)) } else { shape };
+        let shape = if self.quartered { halved(shape, mesh, &ends) } else { shape };
         divided(shape, &self.divisions)
     }
 
@@ -125,17 +120,6 @@ impl Built {
     }
 }
 
-/// The ends of the mesh's edges, each as the first triangle that has it sees it.
-fn mesh_edges(mesh: &Mesh) -> Vec<[usize; 2]> {
-    let mut ends = vec![None; mesh.edge_count()];
-    for (corners, edges) in mesh.triangles().iter().zip(mesh.triangle_edges()) {
-        for local in 0..3 {
-            ends[edges[local]].get_or_insert([corners[(local + 1) % 3], corners[(local + 2) % 3]]);
-        }
-    }
-    ends.into_iter().map(Option::unwrap_or_default).collect()
-}
-
 /// The certificate of the stress of `u` and of the displacement `v`.
 pub(super) fn build(parts: &ProblemParts, u: &Field, v: &Field) -> Built {
     let mesh = parts.mesh;
@@ -166,12 +150,8 @@ pub(super) fn build(parts: &ProblemParts, u: &Field, v: &Field) -> Built {
         quartered,
         divisions: Vec::new(),
     };
-    let ends = mesh_edges(mesh);
-    if quartered {
-        add_halves(parts, &ends, &moments, &mut built.certificate);
-    } else {
-        add_edges(parts, &ends, &moments, &mut built);
-    }
+    let ends = edge_ends(mesh);
+    add_edges(parts, &ends, &moments, &mut built);
     let cut_up = |t: usize| {
         let unit = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let (vertices, edges) = (mesh.triangles()[t], mesh.triangle_edges()[t]);
@@ -247,39 +227,41 @@ pub(super) fn polygon(mesh: &Mesh, certificate: &Certificate) -> Vec<usize> {
         .collect()
 }
 
-/// The edges of the mesh.
+/// The edges of the mesh, or their halves, first all first ones, then all second ones; then the middles of the edges are the first
+/// cuts.
 fn add_edges(
     parts: &ProblemParts,
     all: &[[usize; 2]],
     moments: &[[Vector2<f64>; 2]],
-    built: &mut Built,
+    Built { certificate, quartered, .. }: &mut Built,
 ) {
-    for (e, (&ends, m)) in all.iter().zip(moments).enumerate() {
-        let force = force_of(m);
-        let places = ends.map(|vertex| parts.mesh.vertices()[vertex]);
-        let mut bulge = [0.0; 2];
-        let role = match parts.boundary.get(&e) {
-            None => Role::Inner(force),
-            Some(&Boundary::Held(held, data)) => {
-                bulge = data;
-                held_only(held, force)
+    let vertices = certificate.vertices.len();
+    let quadratic = certificate.curved.is_some();
+    let halves = if *quartered { &[[0.0, 0.5], [0.5, 1.0]][..] } else { &[[0.0, 1.0]] };
+    if *quartered {
+        certificate.cuts = all.iter().map(|&ends| Cut { ends, at: 0.5 }).collect();
+    }
+    for (half, &[s, t]) in halves.iter().enumerate() {
+        for (e, (&[a, b], m)) in all.iter().zip(moments).enumerate() {
+            let ends =
+                [if s == 0.0 { a } else { vertices + e }, if t == 1.0 { b } else { vertices + e }];
+            let places = ends.map(|p| place(certificate, p).into());
+            let (role, bulge) = parts.role_on(e, ([s, t], places), quadratic);
+            // Per unit of the part's parameter.
+            let [p, q] = force_of(m);
+            let at = |x: f64| [0, 1].map(|c| ((1.0 - x) * p[c] + x * q[c]) * (t - s));
+            let mut role = with_force(role, [s, t].map(at));
+            if let (Role::Contact { pressure, .. }, Some(&Boundary::Contact(k))) =
+                (&mut role, parts.boundary.get(&e))
+            {
+                let edge = &parts.contact[k];
+                *pressure =
+                    if *quartered { edge.on_halves[half].0 } else { edge.pressure }.values[0];
             }
-            Some(&Boundary::Supported(d, data, traction)) => {
-                bulge[0] = data;
-                supported(d, places, force, traction.map(|t| (t, force)))
+            certificate.edges.push(Edge { ends, role });
+            if let Some(curved) = &mut certificate.curved {
+                curved.data.push(bulge);
             }
-            Some(Boundary::Free) => Role::Loaded([[0.0; 2]; 2]),
-            Some(Boundary::Loaded(traction)) => traction.affine(places, force),
-            Some(Boundary::Contact(k)) => {
-                let edge = &parts.contact[*k];
-                bulge[0] = edge.gap_bulge;
-                let (pressure, along) = (edge.pressure.values[0], edge.along());
-                Role::Contact { pressure, gap: edge.gap, along }
-            }
-        };
-        built.certificate.edges.push(Edge { ends, role });
-        if let Some(curved) = &mut built.certificate.curved {
-            curved.data.push(bulge);
         }
     }
 }

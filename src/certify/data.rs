@@ -22,11 +22,6 @@ pub(super) struct Data<'a> {
     local: BTreeMap<usize, Vec<usize>>,
 }
 
-/// Both components are polynomials of at most this degree.
-pub(super) fn within(functions: &[SharedFunction; 2], degree: u32) -> bool {
-    functions.iter().all(|f| is_within(f, degree))
-}
-
 /// The function is a polynomial of at most this degree.
 pub(super) fn is_within(function: &SharedFunction, degree: u32) -> bool {
     function.degree().is_some_and(|d| d <= degree)
@@ -91,7 +86,7 @@ impl Traction<'_> {
     /// It is affine along a straight edge.
     pub(crate) fn is_affine(&self) -> bool {
         match self {
-            Traction::Vector(t) => within(t, 1),
+            Traction::Vector(t) => t.iter().all(|f| is_within(f, 1)),
             Traction::Pressure(f) | Traction::Component(_, f) => is_within(f, 1),
         }
     }
@@ -131,35 +126,41 @@ impl Traction<'_> {
         moments
     }
 
-    /// t_h at both ends: t itself where it is affine, else the affine function whose `force` has the moments of t.
-    pub fn affine(&self, ends: [[f64; 2]; 2], force: [[f64; 2]; 2]) -> Role {
+    /// t_h at both ends of an edge: t itself where it is affine, else the affine function that has its moments.
+    fn affine_values(&self, ends: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
         let (length, unit) = length_and_normal(ends);
+        if self.is_affine() {
+            return ends.map(|x| self.at(x, unit));
+        }
+        let normal = Vector2::new(ends[1][1] - ends[0][1], ends[0][0] - ends[1][0]);
+        force_of(&self.moments(ends, normal)).map(|f| f.map(|f| f / length))
+    }
+
+    /// t_h as the role of an edge.
+    pub fn affine(&self, ends: [[f64; 2]; 2]) -> Role {
+        let (_, unit) = length_and_normal(ends);
         let role = match self {
-            Traction::Vector(_) if self.is_affine() => Role::Loaded(ends.map(|x| self.at(x, unit))),
-            Traction::Vector(_) | Traction::Component(..) => {
-                Role::Loaded(force.map(|f| f.map(|f| f / length)))
-            }
             Traction::Pressure(p) if self.is_affine() => {
                 Role::Pressed(ends.map(|x| p.on_boundary(x, unit)))
             }
             Traction::Pressure(_) => {
-                Role::Pressed(force.map(|f| -(f[0] * unit[0] + f[1] * unit[1]) / length))
+                Role::Pressed(self.affine_values(ends).map(|t| -(t[0] * unit[0] + t[1] * unit[1])))
             }
+            _ => Role::Loaded(self.affine_values(ends)),
         };
         // No load has one role only.
         if role == Role::Pressed([0.0; 2]) { Role::Loaded([[0.0; 2]; 2]) } else { role }
     }
 
-    /// The component across the direction `d`, along d turned to the left, of t_h at both ends.
-    pub fn across(&self, d: [f64; 2], ends: [[f64; 2]; 2], force: [[f64; 2]; 2]) -> [f64; 2] {
-        let (length, unit) = length_and_normal(ends);
-        let t = if self.is_affine() {
-            ends.map(|x| self.at(x, unit))
-        } else {
-            force.map(|f| f.map(|f| f / length))
-        };
-        t.map(|t| d[0] * t[1] - d[1] * t[0])
+    /// The component of t_h across the direction `d`, along d turned to the left, at both ends.
+    pub fn across(&self, d: [f64; 2], ends: [[f64; 2]; 2]) -> [f64; 2] {
+        self.affine_values(ends).map(|t| d[0] * t[1] - d[1] * t[0])
     }
+}
+
+/// The affine force, per unit of an edge's parameter, that has the moments `m` with the hat functions of the ends.
+pub(super) fn force_of(m: &[Vector2<f64>; 2]) -> [[f64; 2]; 2] {
+    [0, 1].map(|k| [0, 1].map(|c| 4.0 * m[k][c] - 2.0 * m[1 - k][c]))
 }
 
 pub(super) fn length_and_normal(ends: [[f64; 2]; 2]) -> (f64, [f64; 2]) {

@@ -24,32 +24,21 @@ impl Field {
             return Err(CertifyError::Field { found, vertices, nodes });
         }
         let (ends, middles) = nodal.split_at(vertices);
-        let bulges = (!middles.is_empty()).then(|| {
-            let mut bulges = vec![[0.0; 2]; middles.len()];
-            for (corners, edges) in mesh.triangles().iter().zip(mesh.triangle_edges()) {
-                for (local, &e) in edges.iter().enumerate() {
-                    let [a, b] = [1, 2].map(|k| ends[corners[(local + k) % 3]]);
-                    bulges[e] = [0, 1].map(|c| middles[e][c] - (a[c] + b[c]) / 2.0);
-                }
-            }
-            bulges
-        });
+        let beyond = |([a, b], middle): ([usize; 2], &[f64; 2])| {
+            [0, 1].map(|c| middle[c] - (ends[a][c] + ends[b][c]) / 2.0)
+        };
+        let bulges = (!middles.is_empty())
+            .then(|| edge_ends(mesh).into_iter().zip(middles).map(beyond).collect());
         Ok(Field { vertices: ends.to_vec(), bulges })
     }
 
     /// The values at the vertices, and at the middles of the edges if it is quadratic.
     pub fn nodal(&self, mesh: &Mesh) -> Vec<[f64; 2]> {
+        let middle = |([a, b], bulge): ([usize; 2], &[f64; 2])| {
+            [0, 1].map(|c| (self.vertices[a][c] + self.vertices[b][c]) / 2.0 + bulge[c])
+        };
         let mut nodal = self.vertices.clone();
-        if let Some(bulges) = &self.bulges {
-            nodal.resize(nodal.len() + bulges.len(), [0.0; 2]);
-            for (corners, edges) in mesh.triangles().iter().zip(mesh.triangle_edges()) {
-                for (local, &e) in edges.iter().enumerate() {
-                    let [a, b] = [1, 2].map(|k| self.vertices[corners[(local + k) % 3]]);
-                    let middle = [0, 1].map(|c| (a[c] + b[c]) / 2.0 + bulges[e][c]);
-                    nodal[self.vertices.len() + e] = middle;
-                }
-            }
-        }
+        nodal.extend(edge_ends(mesh).into_iter().zip(self.bulges.iter().flatten()).map(middle));
         nodal
     }
 
@@ -61,4 +50,15 @@ impl Field {
         let bulges = bulges.map(|all| mesh.triangle_edges()[t].map(|e| all[e].into()));
         Affine::of_displacement(triangle, &nodal, bulges.as_ref(), parts.material(t))
     }
+}
+
+/// The ends of the mesh's edges, each as the first triangle that has it sees it.
+pub(super) fn edge_ends(mesh: &Mesh) -> Vec<[usize; 2]> {
+    let mut ends = vec![None; mesh.edge_count()];
+    for (corners, edges) in mesh.triangles().iter().zip(mesh.triangle_edges()) {
+        for local in 0..3 {
+            ends[edges[local]].get_or_insert([corners[(local + 1) % 3], corners[(local + 2) % 3]]);
+        }
+    }
+    ends.into_iter().map(Option::unwrap_or_default).collect()
 }

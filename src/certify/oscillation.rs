@@ -21,7 +21,7 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::bubbles;
 use super::certificate::{Certificate, Lift, Piece, Role, place};
-use super::data::{Data, POINTS, bulge_of, cancellation, is_within, length_and_normal, within};
+use super::data::{Data, POINTS, bulge_of, cancellation, is_within, length_and_normal};
 use super::parts::{Boundary, ProblemParts};
 use crate::fem::material::least_eigenvalue;
 use crate::fem::mesh::length;
@@ -40,48 +40,14 @@ pub(super) struct Oscillation {
 impl Oscillation {
     /// `quadratic` tells whether v is, so that it follows data of degree 2.
     pub fn new(parts: &ProblemParts, quadratic: bool) -> Self {
-        let (problem, turning) = (parts.problem, parts.turning());
-        let mut inexact = Vec::new();
-        if !within(&problem.body_force, 1) {
-            inexact.push("the body force is not known to be affine".to_owned());
-        }
-        for part in problem.surface_forces.iter().filter(|part| !within(&part.force, 1)) {
-            inexact.push(format!("the body force on '{}' is not known to be affine", part.surface));
-        }
-        for (name, condition) in &problem.conditions {
-            let affine = |f: &SharedFunction| is_within(f, 1);
-            let followed = |f: &SharedFunction| is_within(f, if quadratic { 2 } else { 1 });
-            let mut exact_traction = true;
-            let (what, exact) = match condition {
-                Condition::Displacement(u) => ("displacement", u.iter().flatten().all(followed)),
-                Condition::Mixed { displacement, traction } => {
-                    let acts = |c: usize| displacement[c].is_none();
-                    exact_traction = (0..2).all(|c| !acts(c) || affine(&traction[c]));
-                    ("displacement", displacement.iter().flatten().all(followed))
-                }
-                Condition::Support { normal, tangential } => {
-                    ("displacement", [normal, tangential].into_iter().flatten().all(followed))
-                }
-                Condition::Traction(traction) => ("traction", within(traction, 1)),
-                Condition::Pressure(p) => ("pressure", affine(p)),
-                Condition::Contact { gap } => {
-                    ("gap", followed(gap) || turning.contains(name.as_str()))
-                }
-                // A plane's distance is affine; other distances turn.
-                Condition::Obstacle(..) => continue,
-            };
-            if !exact_traction {
-                inexact.push(format!("the traction of '{name}' is not known to be affine"));
-            }
-            if !exact {
-                let class = match what {
-                    "displacement" | "gap" if quadratic => "quadratic",
-                    _ => "affine",
-                };
-                inexact.push(format!("the {what} of '{name}' is not known to be {class}"));
-            }
-        }
-        let cancelled = cancellations(parts);
+        let (given, turning) = (given(parts, quadratic), parts.turning());
+        let inexact = given.iter().filter_map(|given| {
+            let degree = given.degree?;
+            let exact = given.functions.iter().all(|f| is_within(f, degree));
+            let class = if degree == 2 { "quadratic" } else { "affine" };
+            (!exact).then(|| format!("{} is not known to be {class}", given.name))
+        });
+        let inexact: Vec<String> = inexact.collect();
         let measured = (!inexact.is_empty())
             .then(|| format!("{}: its oscillation is measured by quadrature", inexact.join("; ")));
         let named = (!turning.is_empty()).then(|| {
@@ -91,6 +57,17 @@ impl Oscillation {
                 names.join(", "),
                 if quadratic { "affine and quadratic" } else { "affine" }
             )
+        });
+        let cancelled = given.iter().flat_map(|Given { name, functions, vertices, .. }| {
+            let places = || vertices.iter().map(|&vertex| parts.mesh.vertices()[vertex]);
+            let off = functions.iter().filter_map(move |f| cancellation(f, places()));
+            off.map(move |off| {
+                format!("{name} is known to within {off:.0e} only, as its terms cancel")
+            })
+        });
+        let cancelled: Vec<String> = cancelled.collect();
+        let cancelled = (!cancelled.is_empty()).then(|| {
+            format!("{}: the problem that is bounded has what doubles leave", cancelled.join("; "))
         });
         let reasons: Vec<String> = measured.into_iter().chain(named).chain(cancelled).collect();
         let reason = (!reasons.is_empty()).then(|| reasons.join("; "));
@@ -127,53 +104,63 @@ impl Oscillation {
     }
 }
 
-/// The data whose terms cancel in doubles: the problem that is bounded has what is left of them.
-fn cancellations(parts: &ProblemParts) -> Option<String> {
-    let (problem, mesh) = (parts.problem, parts.mesh);
-    let mut found = Vec::new();
-    let mut look = |what: String,
-                    f: &SharedFunction,
-                    places: &mut dyn Iterator<Item = [f64; 2]>| {
-        if let Some(off) = cancellation(f, places) {
-            found.push(format!("{what} is known to within {off:.0e} only, as its terms cancel"));
-        }
+/// Functions that a problem gives.
+struct Given<'a> {
+    name: String,
+    functions: Vec<&'a SharedFunction>,
+    /// Those of this degree are in the exact class; `None` where the certificate has values at vertices only.
+    degree: Option<u32>,
+    /// Where they act.
+    vertices: Vec<usize>,
+}
+
+/// All that a problem gives, for a v that may be `quadratic`.
+fn given<'a>(parts: &ProblemParts<'a>, quadratic: bool) -> Vec<Given<'a>> {
+    let (problem, mesh, turning) = (parts.problem, parts.mesh, parts.turning());
+    let force = |name: String, force: &'a [SharedFunction; 2], vertices: Vec<usize>| {
+        let functions = force.iter().collect();
+        Given { name, functions, degree: Some(1), vertices }
     };
-    for f in &problem.body_force {
-        look("the body force".to_owned(), f, &mut mesh.vertices().iter().copied());
-    }
+    let all = (0..mesh.vertices().len()).collect();
+    let mut given = vec![force("the body force".to_owned(), &problem.body_force, all)];
     for part in &problem.surface_forces {
-        let corners = || part.triangles.iter().flat_map(|&t| mesh.triangles()[t]);
-        for f in &part.force {
-            let what = format!("the body force on '{}'", part.surface);
-            look(what, f, &mut corners().map(|vertex| mesh.vertices()[vertex]));
-        }
+        let corners = part.triangles.iter().flat_map(|&t| mesh.triangles()[t]);
+        let name = format!("the body force on '{}'", part.surface);
+        given.push(force(name, &part.force, corners.collect()));
     }
+    let of_v = Some(if quadratic { 2 } else { 1 });
     for (name, condition) in &problem.conditions {
-        let functions: Vec<(&str, &SharedFunction)> = match condition {
-            Condition::Displacement(u) => u.iter().flatten().map(|f| ("displacement", f)).collect(),
-            Condition::Mixed { displacement, traction } => displacement
-                .iter()
-                .flatten()
-                .map(|f| ("displacement", f))
-                .chain(traction.iter().map(|f| ("traction", f)))
-                .collect(),
-            Condition::Support { normal, tangential } => {
-                [normal, tangential].into_iter().flatten().map(|f| ("displacement", f)).collect()
-            }
-            Condition::Traction(t) => t.iter().map(|f| ("traction", f)).collect(),
-            Condition::Pressure(p) => vec![("pressure", p)],
-            Condition::Contact { gap } => vec![("gap", gap)],
-            Condition::Obstacle(..) => Vec::new(),
+        let mut add = |what: &str, functions: Vec<&'a SharedFunction>, degree| {
+            let edges = mesh.edges_of(name).unwrap_or_default().iter();
+            let vertices = edges.flat_map(|&edge| mesh.ends(edge)).collect();
+            given.push(Given {
+                name: format!("the {what} of '{name}'"),
+                functions,
+                degree,
+                vertices,
+            });
         };
-        let edges = || mesh.edges_of(name).unwrap_or_default().iter();
-        for (what, f) in functions {
-            let mut places = edges().flat_map(|&e| mesh.ends(e)).map(|v| mesh.vertices()[v]);
-            look(format!("the {what} of '{name}'"), f, &mut places);
+        match condition {
+            Condition::Displacement(u) => add("displacement", u.iter().flatten().collect(), of_v),
+            Condition::Mixed { displacement, traction } => {
+                let acts = |c: &usize| displacement[*c].is_none();
+                let acting = (0..2).filter(acts).map(|c| &traction[c]).collect();
+                add("traction", acting, Some(1));
+                add("displacement", displacement.iter().flatten().collect(), of_v);
+            }
+            Condition::Support { normal, tangential } => {
+                add("displacement", [normal, tangential].into_iter().flatten().collect(), of_v);
+            }
+            Condition::Traction(traction) => add("traction", traction.iter().collect(), Some(1)),
+            Condition::Pressure(p) => add("pressure", vec![p], Some(1)),
+            Condition::Contact { gap } => {
+                add("gap", vec![gap], of_v.filter(|_| !turning.contains(name.as_str())));
+            }
+            // A plane's distance is affine; other distances turn.
+            Condition::Obstacle(..) => {}
         }
     }
-    (!found.is_empty()).then(|| {
-        format!("{}: the problem that is bounded has what doubles leave", found.join("; "))
-    })
+    given
 }
 
 /// K and h_T of a triangle: |grad (w - r)| <= K |eps(w)|, |w - r| <= K (h_T / pi) |eps(w)|.
@@ -278,41 +265,33 @@ pub(super) fn lifts(parts: &ProblemParts, quadratic: bool) -> BTreeMap<usize, f6
             let between = |s: f64, value: [f64; 2]| (1.0 - s) * value[0] + s * value[1];
             let at = |s: f64| [0, 1].map(|c| between(s, [ends[0][c], ends[1][c]]));
             // What v follows: f at the ends and, if it is quadratic, in the middle.
-            let lacks = move |f: &SharedFunction, s: f64| {
+            let lacks = |f: &SharedFunction, s: f64| {
                 let bulge = if quadratic { bulge_of(f, ends) } else { 0.0 };
                 f.at(at(s)) - between(s, ends.map(|x| f.at(x))) - 4.0 * s * (1.0 - s) * bulge
             };
-            let is_followed = |f: &SharedFunction| is_within(f, if quadratic { 2 } else { 1 });
-            let lacking: Box<dyn Fn(f64) -> [f64; 2]> = match condition {
-                Condition::Displacement(functions)
-                | Condition::Mixed { displacement: functions, .. }
-                    if !functions.iter().flatten().all(is_followed) =>
-                {
-                    Box::new(move |s| {
-                        [0, 1].map(|c| match &functions[c] {
-                            Some(f) if !is_followed(f) => lacks(f, s),
-                            _ => 0.0,
-                        })
-                    })
+            let [x, y, left] = [Vector2::x(), Vector2::y(), Vector2::new(-normal.y, normal.x)];
+            let given: Vec<(Vector2<f64>, &SharedFunction)> = match condition {
+                Condition::Displacement(u) | Condition::Mixed { displacement: u, .. } => {
+                    [x, y].into_iter().zip(u).filter_map(|(d, f)| Some((d, f.as_ref()?))).collect()
                 }
-                Condition::Support { normal: along, tangential: across }
-                    if ![along, across].into_iter().flatten().all(is_followed) =>
-                {
-                    let left = Vector2::new(-normal.y, normal.x);
-                    Box::new(move |s| {
-                        let lacking = [along, across].map(|f| match f {
-                            Some(f) if !is_followed(f) => lacks(f, s),
-                            _ => 0.0,
-                        });
-                        (normal * lacking[0] + left * lacking[1]).into()
-                    })
-                }
-                Condition::Contact { gap }
-                    if !is_followed(gap) && !turning.contains(name.as_str()) =>
-                {
-                    Box::new(move |s| (normal * lacks(gap, s)).into())
+                Condition::Support { normal: along, tangential: across } => [normal, left]
+                    .into_iter()
+                    .zip([along, across])
+                    .filter_map(|(d, f)| Some((d, f.as_ref()?)))
+                    .collect(),
+                Condition::Contact { gap } if !turning.contains(name.as_str()) => {
+                    vec![(normal, gap)]
                 }
                 _ => continue,
+            };
+            let is_followed = |f: &SharedFunction| is_within(f, if quadratic { 2 } else { 1 });
+            let lacking: Vec<_> = given.into_iter().filter(|(_, f)| !is_followed(f)).collect();
+            if lacking.is_empty() {
+                continue;
+            }
+            let lacking = |s: f64| {
+                let all = lacking.iter().map(|&(d, f)| d * lacks(f, s));
+                all.sum::<Vector2<f64>>().into()
             };
             let t = edge.triangle;
             *lifts.entry(t).or_insert(0.0) +=

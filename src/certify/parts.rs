@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::Vector2;
 
 use super::admissible::Free;
-use super::certificate::is_oblique;
+use super::certificate::{Role, is_oblique};
 use super::contact::Contact;
 use super::data::{Traction, bulge_of};
 use super::errors::CertifyError;
@@ -165,6 +165,41 @@ impl<'a> ProblemParts<'a> {
         let parts = ProblemParts { problem, mesh, contact, prescribed, frames, boundary, cuts };
         parts.check_directions()?;
         Ok(parts)
+    }
+
+    /// The role of the part of edge `e` of the mesh from s to t, in units of it, between these places, as the data say: without
+    /// the tractions of tau. Beside it the bulge of the data there, which a v that is `quadratic` follows.
+    pub fn role_on(
+        &self,
+        e: usize,
+        ([s, t], places): ([f64; 2], [[f64; 2]; 2]),
+        quadratic: bool,
+    ) -> (Role, [f64; 2]) {
+        let none = [[0.0; 2]; 2];
+        let of_part = |bulge: f64| (t - s) * (t - s) * bulge;
+        let between = |[p, q]: [f64; 2], bulge: f64| {
+            [s, t].map(|s| (1.0 - s) * p + s * q + 4.0 * s * (1.0 - s) * bulge)
+        };
+        match self.boundary.get(&e) {
+            None => (Role::Inner(none), [0.0; 2]),
+            Some(Boundary::Free) => (Role::Loaded(none), [0.0; 2]),
+            Some(Boundary::Loaded(traction)) => (traction.affine(places), [0.0; 2]),
+            Some(&Boundary::Held(held, bulge)) => (Role::Held(held, none), bulge.map(of_part)),
+            Some(&Boundary::Supported(along, bulge, traction)) => {
+                let traction = traction.map_or([0.0; 2], |traction| traction.across(along, places));
+                (Role::Supported { along, force: [0.0; 2], traction }, [of_part(bulge), 0.0])
+            }
+            Some(&Boundary::Contact(k)) => {
+                let edge = &self.contact[k];
+                let gap = between(edge.gap, if quadratic { edge.gap_bulge } else { 0.0 });
+                let along = edge.along().map(|[d, e]| {
+                    let [x, y] = [0, 1].map(|c| between([d[c], e[c]], 0.0));
+                    [0, 1].map(|k| [x[k], y[k]])
+                });
+                let role = Role::Contact { pressure: [0.0; 2], gap, along };
+                (role, [of_part(edge.gap_bulge), 0.0])
+            }
+        }
     }
 
     /// At the ends of an edge that is held along a direction the same one is, or all of the displacement.

@@ -2,78 +2,14 @@
 
 use nalgebra::Vector2;
 
-use super::certificate::{Certificate, Cut, Edge, Role, Shape, place, support};
-use super::data::Data;
+use super::certificate::{Certificate, Edge, Role, Shape, place, support};
+use super::data::{Data, force_of};
 use super::divide::SubTriangle;
 use super::parts::{Boundary, ProblemParts};
-use super::tractions::{force_of, held_only, supported};
 use crate::fem::Mesh;
 use crate::fem::mesh::length;
 use crate::kernel::composite::{Affine, Loads};
 use crate::kernel::{Enclosing, Triangle};
-
-/// The halves of the edges of the mesh, first all first ones, then all second ones; the middles of the edges are the first cuts.
-pub(super) fn add_halves(
-    parts: &ProblemParts,
-    all: &[[usize; 2]],
-    moments: &[[Vector2<f64>; 2]],
-    certificate: &mut Certificate,
-) {
-    certificate.cuts = all.iter().map(|&ends| Cut { ends, at: 0.5 }).collect();
-    let vertices = certificate.vertices.len();
-    let mut data = Vec::with_capacity(2 * all.len());
-    for half in 0..2 {
-        for (e, (&[a, b], m)) in all.iter().zip(moments).enumerate() {
-            let ends = if half == 0 { [a, vertices + e] } else { [vertices + e, b] };
-            let places = || ends.map(|p| place(certificate, p));
-            // Per unit of the half's parameter it is half of that per unit of the edge's.
-            let whole = force_of(m).map(|f| Vector2::from(f) / 2.0);
-            let middle = (whole[0] + whole[1]) / 2.0;
-            let force = if half == 0 { [whole[0], middle] } else { [middle, whole[1]] };
-            let force = force.map(<[f64; 2]>::from);
-            let mut bulge = [0.0; 2];
-            let role = match parts.boundary.get(&e) {
-                None => Role::Inner(force),
-                Some(&Boundary::Held(held, data)) => {
-                    bulge = data.map(|bulge| bulge / 4.0);
-                    held_only(held, force)
-                }
-                Some(&Boundary::Supported(d, data, traction)) => {
-                    bulge[0] = data / 4.0;
-                    let [start, end] = places();
-                    let ends = [start, end].map(<[f64; 2]>::from);
-                    let normal = Vector2::new(end.y - start.y, start.x - end.x);
-                    let given = traction.map(|t| (t, force_of(&t.moments(ends, normal))));
-                    supported(d, ends, force, given)
-                }
-                Some(Boundary::Free) => Role::Loaded([[0.0; 2]; 2]),
-                Some(Boundary::Loaded(traction)) => {
-                    let [start, end] = places();
-                    let ends = [start, end].map(<[f64; 2]>::from);
-                    let normal = Vector2::new(end.y - start.y, start.x - end.x);
-                    traction.affine(ends, force_of(&traction.moments(ends, normal)))
-                }
-                Some(Boundary::Contact(k)) => {
-                    let edge = &parts.contact[*k];
-                    bulge[0] = edge.gap_bulge / 4.0;
-                    let [g, h] = edge.gap;
-                    let middle = (g + h) / 2.0 + edge.gap_bulge;
-                    let gap = if half == 0 { [g, middle] } else { [middle, h] };
-                    let along = edge.along().map(|[d, e]| {
-                        let middle = [0, 1].map(|c| (d[c] + e[c]) / 2.0);
-                        if half == 0 { [d, middle] } else { [middle, e] }
-                    });
-                    Role::Contact { pressure: edge.on_halves[half].0.values[0], gap, along }
-                }
-            };
-            certificate.edges.push(Edge { ends, role });
-            data.push(bulge);
-        }
-    }
-    if let Some(curved) = &mut certificate.curved {
-        curved.data = data;
-    }
-}
 
 /// The four triangles of triangle `t` between its corners and the middles of its edges, each with its body force. On an edge
 /// between middles tau N is that of sigma(u) and what balances the corner that it cuts off; the triangle in the middle is in

@@ -17,7 +17,6 @@
 use nalgebra::{Matrix2, Vector2};
 
 use super::certificate::{Role, turned};
-use super::data::Traction;
 use super::field::Field;
 use super::parts::{Boundary, ProblemParts};
 use crate::fem::mesh::length;
@@ -301,26 +300,18 @@ fn go_round(a: usize, fan: &[(usize, usize)], around: &Around, moments: &mut [[V
     }
 }
 
-/// The affine force, per unit of an edge's parameter, that has the moments `m` with the hat functions of the ends.
-pub(super) fn force_of(m: &[Vector2<f64>; 2]) -> [[f64; 2]; 2] {
-    [0, 1].map(|k| [0, 1].map(|c| 4.0 * m[k][c] - 2.0 * m[1 - k][c]))
-}
-
-/// The part of a force along the direction `d` that is held, and what is given across it between the places `ends`: a
-/// traction, with the affine force that has its moments.
-pub(super) fn supported(
-    d: [f64; 2],
-    ends: [[f64; 2]; 2],
-    force: [[f64; 2]; 2],
-    given: Option<(Traction, [[f64; 2]; 2])>,
-) -> Role {
-    let squared = d[0] * d[0] + d[1] * d[1];
-    let along = |f: [f64; 2]| (f[0] * d[0] + f[1] * d[1]) / squared;
-    let traction = given.map_or([0.0; 2], |(traction, force)| traction.across(d, ends, force));
-    Role::Supported { along: d, force: force.map(along), traction }
-}
-
-/// The force on the held components.
-pub(super) fn held_only(held: [bool; 2], force: [[f64; 2]; 2]) -> Role {
-    Role::Held(held, force.map(|f| [0, 1].map(|c| if held[c] { f[c] } else { 0.0 })))
+/// The role with what it holds of a force.
+pub(super) fn with_force(role: Role, force: [[f64; 2]; 2]) -> Role {
+    match role {
+        Role::Inner(_) => Role::Inner(force),
+        Role::Held(held, _) => {
+            Role::Held(held, force.map(|f| [0, 1].map(|c| if held[c] { f[c] } else { 0.0 })))
+        }
+        Role::Supported { along: d, traction, .. } => {
+            let squared = d[0] * d[0] + d[1] * d[1];
+            let force = force.map(|f| (f[0] * d[0] + f[1] * d[1]) / squared);
+            Role::Supported { along: d, force, traction }
+        }
+        Role::Loaded(_) | Role::Pressed(_) | Role::Contact { .. } => role,
+    }
 }
