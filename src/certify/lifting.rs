@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector2;
 
+use super::SWEEPS_FOR_FORCES;
 use super::build::{Built, build};
 use super::certificate::{Certificate, Cut, Role, is_oblique};
 use super::errors::CertifyError;
@@ -39,10 +40,6 @@ pub(super) struct Lifter<'a> {
     numbering: Numbering,
     factor: Factor,
 }
-
-/// The number of times that rho is improved around every vertex: where contact ends its traction is infinite, and what it starts
-/// from is not near.
-const DUAL_SWEEPS: usize = 24;
 
 /// Two directions with a sine below this are parallel.
 const PARALLEL: f64 = 1e-8;
@@ -277,7 +274,7 @@ impl<'a> Lifter<'a> {
         let mut pair = build(&dual, &near, &w).certificate;
         // There is no load that could oscillate.
         pair.pieces.iter_mut().for_each(|piece| piece.oscillation = 0.0);
-        improve(&mut pair, DUAL_SWEEPS, true).map_err(|error| error.to_string())?;
+        improve(&mut pair, SWEEPS_FOR_FORCES, true).map_err(|error| error.to_string())?;
         Ok(pair)
     }
 

@@ -10,7 +10,6 @@
 //! | `tractions`, `quarters`, `divide`, `build` | tau: moments of tractions; the triangles in four; those that are cut; all together |
 //! | `sweeps` | a better tau |
 //! | `oscillation` | data outside the exact class |
-//! | `bubbles` | stresses for what affine loads lack |
 //! | `binding` | whether a certificate is one of a problem |
 //! | `quantities`, `lifting` | forces between two numbers, and where contact can act, by `signorini_audit::forces`; the displacements that prove them |
 //! | `adapt` | meshes that are refined until the bound meets a target |
@@ -20,7 +19,6 @@ pub mod adapt;
 mod admissible;
 #[doc(hidden)]
 pub mod binding;
-mod bubbles;
 mod build;
 mod contact;
 mod data;
@@ -61,8 +59,8 @@ use crate::solve::Solution;
 /// The number of times that the stress is improved around every vertex.
 pub(crate) const SWEEPS: usize = 2;
 
-/// The number of sweeps where forces are asked for, beside whose dual pairs they cost little.
-const SWEEPS_FOR_FORCES: usize = 8;
+/// The number of sweeps where forces are asked for, of tau and of the rho of dual pairs.
+const SWEEPS_FOR_FORCES: usize = 12;
 
 /// The number of times that v is pushed out of the obstacle by what the check finds it to be inside.
 const PUSHES: usize = 5;
