@@ -375,18 +375,8 @@ impl Piece {
 /// Where point `p` of a certificate lies.
 #[doc(hidden)]
 pub fn place(certificate: &Certificate, p: usize) -> Vector2<f64> {
-    at_point(&certificate.vertices, &certificate.cuts, p)
-}
-
-/// The value at point `p` of what has these values at the vertices and is affine between them.
-#[doc(hidden)]
-pub fn at_point(values: &[[f64; 2]], cuts: &[Cut], p: usize) -> Vector2<f64> {
-    match values.get(p) {
-        Some(&value) => value.into(),
-        None => {
-            let cut = cuts[p - values.len()];
-            let [a, b] = cut.ends.map(|end| Vector2::from(values[end]));
-            a + (b - a) * cut.at
-        }
-    }
+    let Certificate { vertices, cuts, .. } = certificate;
+    let Some(cut) = p.checked_sub(vertices.len()) else { return vertices[p].into() };
+    let [a, b] = cuts[cut].ends.map(|end| Vector2::from(vertices[end]));
+    a + (b - a) * cuts[cut].at
 }

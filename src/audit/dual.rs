@@ -179,49 +179,29 @@ impl Certificate {
     }
 }
 
-/// A dual pair whose triangles are in equilibrium, with its sums over the triangles.
-struct Summed<S> {
-    pair: Balanced<S>,
-    /// int C^-1 (C eps(v) - tau) : (C eps(w) - rho)
-    product: S,
-    /// eta^2
-    eta: S,
-    /// |w|_a^2, where the error of data is to be multiplied with it.
-    norm: S,
-    /// The shares of the triangles in eta^2.
-    shares: Vec<f64>,
-}
-
 impl<S: Enclosing> Forces<'_, S> {
-    /// Encloses the contact force with the weight of its target by each of some dual pairs; an end may be infinite.
+    /// Encloses the contact force with the weight of its target by a dual pair, whose tractions balance on every triangle to the
+    /// rounding of doubles; an end may be infinite.
     ///
     /// # Errors
     /// A pair that is none; one whose w is not what it should be on Gamma_C.
-    pub fn by_pairs(
+    pub fn by_pair(
         &self,
-        pairs: &[(ForceTarget, Certificate)],
+        target: ForceTarget,
+        pair: &Certificate,
         cover: Option<&Cover>,
-    ) -> Result<Vec<ByPair>, WrongPair> {
-        let by_pair = |(target, pair): &(ForceTarget, Certificate)| {
-            let sums = self.sum(pair)?;
-            self.by_sums(pair, *target, sums, cover)
-        };
-        pairs.iter().map(by_pair).collect()
-    }
-
-    /// Verifies that this is a pair, whose tractions balance on every triangle to the rounding of doubles, and sums over the
-    /// triangles.
-    fn sum(&self, pair: &Certificate) -> Result<Summed<S>, WrongPair> {
-        let certificate = self.certificate;
+    ) -> Result<ByPair, WrongPair> {
+        let (certificate, state) = (self.certificate, self.state);
         pair.check_fields()?;
-        certificate.check_pair(pair, self.state)?;
-        let dual = pair.balanced::<S>(self.state.topology.clone())?;
+        certificate.check_pair(pair, state)?;
+        let dual = pair.balanced::<S>(state.topology.clone())?;
         pair.check_balance(&dual)?;
+        // int C^-1 (C eps(v) - tau) : (C eps(w) - rho), eta^2 and, where the error of data is to be multiplied with it, |w|_a^2.
         let (mut product, mut eta, mut norm) = (S::from(0), S::from(0), S::from(0));
         let mut shares = Vec::with_capacity(pair.pieces.len());
         for (t, piece) in pair.pieces.iter().enumerate() {
             let (material, double_area) = (piece.material(), dual.triangles[t].double_area());
-            let (_, own) = self.state.stresses(certificate, t);
+            let (_, own) = state.stresses(certificate, t);
             let (sigma, apart) = dual.stresses(pair, t);
             product += product_of(&material, &own, &apart, double_area);
             let share = apart.energy(&material, double_area);
@@ -231,45 +211,12 @@ impl<S: Enclosing> Forces<'_, S> {
                 norm += sigma.energy(&material, double_area);
             }
         }
-        Ok(Summed { pair: dual, product, eta, norm, shares })
-    }
-
-    fn by_sums(
-        &self,
-        roles: &Certificate,
-        target: ForceTarget,
-        sums: Summed<S>,
-        cover: Option<&Cover>,
-    ) -> Result<ByPair, WrongPair> {
-        let (certificate, state) = (self.certificate, self.state);
-        let Summed { pair, product, eta, norm, shares } = sums;
-        let mut middle = self.within(&pair.v)
-            + certificate.work_of_tractions(&state.forces, &pair.v)
-            + product / S::from(2);
-        // r at least and at most in units of |tau_n|.
-        let mut most = [0.0_f64; 2];
-        for e in self.contact() {
-            let Role::Contact { pressure, .. } = certificate.edges[e].role else { continue };
-            if matches!(roles.edges[e].role, Role::Loaded(_)) {
-                continue;
-            }
-            let d = certificate.directions(e, &state.points);
-            let [start, end] = certificate.edges[e].ends.map(|p| state.points[p]);
-            let length = (end - start).dot(&(end - start)).sqrt();
-            // |E| r at both ends.
-            let r = [0, 1].map(|k| component(pair.in_balance[e][k], d[k]));
-            let g = certificate.gap(e, state);
-            let (four, three, two) = (S::from(4), S::from(3), S::from(2));
-            let at_start = g[0] * four + g[1] * three + g[2] * two + g[3];
-            let at_end = g[0] + g[1] * two + g[2] * three + g[3] * four;
-            middle -= (r[0] * at_start + r[1] * at_end) / S::from(20);
-            for k in 0..2 {
-                let r = r[k] / length;
-                most[0] = most[0].max(ratio(-r.lower(), -pressure[k]));
-                most[1] = most[1].max(ratio(r.upper(), -pressure[k]));
-            }
-        }
-        let missed = self.all_missed(&pair.v, target, cover)?;
+        let (on_contact, most) = self.on_contact(pair, &dual);
+        let middle = self.within(&dual.v)
+            + certificate.work_of_tractions(&state.forces, &dual.v)
+            + product / S::from(2)
+            + on_contact;
+        let missed = self.all_missed(&dual.v, target, cover)?;
         let point = Ball::point;
         let root = |square: S| point(square.split(|_| S::from(0), |s| s).sqrt().upper());
         let (eta, norm) = (root(eta), root(norm));
@@ -294,6 +241,34 @@ impl<S: Enclosing> Forces<'_, S> {
             if ends[1].is_nan() { f64::INFINITY } else { ends[1] },
         ];
         Ok(ByPair { between, shares, factors })
+    }
+
+    /// int r (v_n - g), and r at least and at most in units of |tau_n|.
+    fn on_contact(&self, pair: &Certificate, dual: &Balanced<S>) -> (S, [f64; 2]) {
+        let (certificate, state) = (self.certificate, self.state);
+        let (mut work, mut most) = (S::from(0), [0.0_f64; 2]);
+        for e in self.contact() {
+            let Role::Contact { pressure, .. } = certificate.edges[e].role else { continue };
+            if matches!(pair.edges[e].role, Role::Loaded(_)) {
+                continue;
+            }
+            let d = certificate.directions(e, &state.points);
+            let [start, end] = certificate.edges[e].ends.map(|p| state.points[p]);
+            let length = (end - start).dot(&(end - start)).sqrt();
+            // |E| r at both ends.
+            let r = [0, 1].map(|k| component(dual.in_balance[e][k], d[k]));
+            let g = certificate.gap(e, state);
+            let (four, three, two) = (S::from(4), S::from(3), S::from(2));
+            let at_start = g[0] * four + g[1] * three + g[2] * two + g[3];
+            let at_end = g[0] + g[1] * two + g[2] * three + g[3] * four;
+            work -= (r[0] * at_start + r[1] * at_end) / S::from(20);
+            for k in 0..2 {
+                let r = r[k] / length;
+                most[0] = most[0].max(ratio(-r.lower(), -pressure[k]));
+                most[1] = most[1].max(ratio(r.upper(), -pressure[k]));
+            }
+        }
+        (work, most)
     }
 }
 

@@ -232,23 +232,6 @@ pub struct Between {
 }
 
 impl Evidence {
-    /// Without what proves nothing, and with what is `found` of the rest.
-    #[must_use]
-    pub fn proving<E>(
-        mut self,
-        cover: Option<&Cover>,
-        found: &[Result<[f64; 2], E>],
-        pairs: Vec<[f64; 2]>,
-    ) -> Evidence {
-        let mut proved = found.iter().map(Result::is_ok);
-        self.liftings.retain(|_| proved.next() == Some(true));
-        self.cover = self.cover.filter(|_| cover.is_some());
-        let cover = cover.map_or([0.0; 2], |cover| cover.between);
-        let liftings = found.iter().flatten().copied().collect();
-        self.between = Some(Between { cover, liftings, pairs });
-        self
-    }
-
     /// Intersects the intervals of a force by its lifting and by its dual pairs.
     pub fn nearest(
         &self,
@@ -278,19 +261,11 @@ pub enum WrongLifting {
     NotFinite,
 }
 
-/// R(w) without what w misses on Gamma_C.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct LiftingValue<S> {
-    /// L(w) - int m : eps(w)
-    pub middle: S,
-    /// An upper bound of |w|_a.
-    pub norm: f64,
-}
-
 /// w0 of the module's head: its Bernstein coefficients on the edges of Gamma_C, and what R(w0) lies between.
 pub struct Cover {
     along: Vec<Option<[f64; 4]>>,
-    between: [f64; 2],
+    /// The numbers that R(w0) lies between.
+    pub between: [f64; 2],
 }
 
 impl Cover {
@@ -438,9 +413,13 @@ impl Certificate {
         }
         let forces = Forces::new(self, state, &evidence.of, mean);
         let cover = evidence.cover.as_ref().and_then(|w| forces.cover(w).ok());
-        let found = forces.between(&evidence.liftings, cover.as_ref());
-        let pairs = forces.by_pairs(&evidence.pairs, cover.as_ref())?;
-        Ok((cover, found, pairs.into_iter().map(|pair| pair.between).collect()))
+        let between = |lifting| forces.between(lifting, cover.as_ref());
+        let found = evidence.liftings.iter().map(between).collect();
+        let by_pair = |(target, pair): &(ForceTarget, Certificate)| {
+            Ok(forces.by_pair(*target, pair, cover.as_ref())?.between)
+        };
+        let pairs = evidence.pairs.iter().map(by_pair).collect::<Result<_, WrongPair>>()?;
+        Ok((cover, found, pairs))
     }
 }
 
@@ -564,29 +543,23 @@ impl<'a, S: Enclosing> Forces<'a, S> {
         Ok(())
     }
 
-    /// L(w) - int m : eps(w) and |w|_a of some displacements, in one pass over the triangles.
-    fn values(&self, shapes: &[Shape<S>]) -> Vec<LiftingValue<S>> {
+    /// L(w) - int m : eps(w), and an upper bound of |w|_a.
+    fn value(&self, w: &Shape<S>) -> (S, f64) {
         let (certificate, state) = (self.certificate, self.state);
-        let energy = |w: &Shape<S>| {
-            let pieces = certificate.pieces.iter().zip(&state.triangles);
-            let energy = |(piece, triangle): (&Piece, &Triangle<S>)| {
-                w.stress(piece, triangle).energy(&piece.material(), triangle.double_area())
-            };
-            pieces.map(energy).fold(S::from(0), |sum, energy| sum + energy)
-        };
-        let value = |w: &Shape<S>| {
-            // Half of int f . w is in int tau : eps(w) / 2, as is half of the work of all tractions.
-            let mut middle = self.within(w) / S::from(2);
-            middle += certificate.work_of_tractions(&state.forces, w);
-            for (e, edge) in certificate.edges.iter().enumerate() {
-                if state.topology.owners[e][1].is_none() {
-                    middle -= w.work_of(state.in_balance[e], edge.ends, e) / S::from(2);
-                }
+        // Half of int f . w is in int tau : eps(w) / 2, as is half of the work of all tractions.
+        let mut middle = self.within(w) / S::from(2);
+        middle += certificate.work_of_tractions(&state.forces, w);
+        for (e, edge) in certificate.edges.iter().enumerate() {
+            if state.topology.owners[e][1].is_none() {
+                middle -= w.work_of(state.in_balance[e], edge.ends, e) / S::from(2);
             }
-            let square = energy(w).split(|_| S::from(0), |square| square);
-            LiftingValue { middle, norm: square.sqrt().upper() }
+        }
+        let energy = |(piece, triangle): (&Piece, &Triangle<S>)| {
+            w.stress(piece, triangle).energy(&piece.material(), triangle.double_area())
         };
-        shapes.iter().map(value).collect()
+        let energies = certificate.pieces.iter().zip(&state.triangles).map(energy);
+        let energy = energies.fold(S::from(0), |sum, energy| sum + energy);
+        (middle, energy.split(|_| S::from(0), |energy| energy).sqrt().upper())
     }
 
     /// phi - w . d on an edge of Gamma_C: what its Bernstein coefficients are at least and at most.
@@ -702,53 +675,35 @@ impl<'a, S: Enclosing> Forces<'a, S> {
                 return Err(WrongLifting::OnContact { edge: e, off: 1.0 });
             }
         }
-        let values = self.values(std::slice::from_ref(&shape));
-        let between = self.enclose(values[0], Missed::default(), None);
+        let between = self.enclose(&shape, Missed::default(), None);
         Ok(Cover { along: along_all, between })
     }
 
     /// Encloses R(w) + int |sigma_n| omega.
-    fn enclose(&self, value: LiftingValue<S>, missed: Missed, cover: Option<&Cover>) -> [f64; 2] {
+    fn enclose(&self, w: &Shape<S>, missed: Missed, cover: Option<&Cover>) -> [f64; 2] {
+        let (middle, norm) = self.value(w);
         let point = Ball::point;
-        let norm = point(value.norm);
+        let norm = point(norm);
         let force = point(cover.map_or(0.0, Cover::force));
         let away = |side: usize| {
             let covered = point(missed.covered[side]) * force;
             let loose = point(self.loose) * norm;
-            (reach(norm, point(missed.open[side]), self.mean) + covered + loose).upper()
+            point((reach(norm, point(missed.open[side]), self.mean) + covered + loose).upper())
         };
-        let below = point(value.middle.lower()) - point(away(0));
-        let above = point(value.middle.upper()) + point(away(1));
-        [below.lower(), above.upper()]
+        [(point(middle.lower()) - away(0)).lower(), (point(middle.upper()) + away(1)).upper()]
     }
 
-    /// The forces of some liftings, each between two numbers.
+    /// The force of a lifting, between two numbers.
     pub fn between(
         &self,
-        liftings: &[(ForceTarget, Lifting)],
+        (target, w): &(ForceTarget, Lifting),
         cover: Option<&Cover>,
-    ) -> Vec<Result<[f64; 2], WrongLifting>> {
-        let checked = liftings.iter().map(|(target, w)| {
-            let target = *target;
-            self.check_supports(w, target)?;
-            let shape = self.shape(w, target)?;
-            let missed = self.all_missed(&shape, target, cover)?;
-            Ok((shape, missed))
-        });
-        let checked: Vec<Result<_, WrongLifting>> = checked.collect();
-        let shapes: Vec<Shape<S>> = checked.iter().flatten().map(|(w, _)| w.clone()).collect();
-        let mut values = self.values(&shapes).into_iter();
-        let found = checked.into_iter().map(|checked| {
-            let (_, missed) = checked?;
-            let value = values.next().ok_or(WrongLifting::NotFinite)?;
-            let ends = self.enclose(value, missed, cover);
-            if ends.iter().all(|end| end.is_finite()) {
-                Ok(ends)
-            } else {
-                Err(WrongLifting::NotFinite)
-            }
-        });
-        found.collect()
+    ) -> Result<[f64; 2], WrongLifting> {
+        self.check_supports(w, *target)?;
+        let shape = self.shape(w, *target)?;
+        let missed = self.all_missed(&shape, *target, cover)?;
+        let ends = self.enclose(&shape, missed, cover);
+        if ends.iter().all(|end| end.is_finite()) { Ok(ends) } else { Err(WrongLifting::NotFinite) }
     }
 }
 

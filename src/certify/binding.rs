@@ -55,19 +55,14 @@ pub fn compare(
     // Between the middles of a triangle's edges lies the fourth of its quarters.
     let vertices = certificate.vertices.len();
     let quartered = certificate.pieces.iter().any(|t| t.vertices.iter().all(|&p| p >= vertices));
-    let nodes = problem.mesh.vertices().len() + problem.mesh.edge_count();
-    let at_rest = vec![[0.0; 2]; nodes];
-    // The data don't depend on gamma0.
-    let parts = if quartered {
-        ProblemParts::new(&problem, Degree::Two, 1.0.into(), &at_rest)?
+    let vertices = problem.mesh.vertices().len();
+    let (degree, nodes) = if quartered {
+        (Degree::Two, vertices + problem.mesh.edge_count())
     } else {
-        ProblemParts::new(
-            &problem,
-            Degree::One,
-            1.0.into(),
-            &at_rest[..problem.mesh.vertices().len()],
-        )?
+        (Degree::One, vertices)
     };
+    // The data don't depend on gamma0.
+    let parts = ProblemParts::new(&problem, degree, 1.0.into(), &vec![[0.0; 2]; nodes])?;
     let (lengths, loads) = sizes(certificate);
     let sides = sides(&problem.mesh);
     let comparison = Comparison { certificate, parts: &parts, sides, lengths, loads };
@@ -451,8 +446,8 @@ fn kind(role: &Role) -> &'static str {
         Role::Held(..) => "one where components are held",
         Role::Supported { .. } => "one where a direction is held",
         Role::Loaded(t) if *t == [[0.0; 2]; 2] => "one where nothing acts",
-        Role::Loaded(_) => "one with a traction",
-        Role::Pressed(_) => "one with a pressure",
+        Role::Loaded(_) => "one where a traction acts",
+        Role::Pressed(_) => "one where a pressure acts",
         Role::Contact { .. } => "one of contact",
     }
 }

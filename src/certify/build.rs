@@ -45,8 +45,17 @@ impl Built {
             exactly::<S>(*middle) - (points[*a] + points[*b]) / S::from(2)
         };
         let bulges = (!middles.is_empty()).then(|| ends.iter().zip(middles).map(beyond).collect());
-        let shape = Shape { points, bulges };
-        let shape = if self.quartered { halved(shape, mesh, &ends) } else { shape };
+        self.on_pieces(Shape { points, bulges }, mesh, &ends)
+    }
+
+    /// A displacement of the mesh, whose edges have these ends, on the pieces.
+    fn on_pieces<S: Enclosing>(
+        &self,
+        shape: Shape<S>,
+        mesh: &Mesh,
+        ends: &[[usize; 2]],
+    ) -> Shape<S> {
+        let shape = if self.quartered { halved(shape, mesh, ends) } else { shape };
         divided(shape, &self.divisions)
     }
 
@@ -170,40 +179,45 @@ pub(super) fn build(parts: &ProblemParts, u: &Field, v: &Field) -> Built {
         }
         built.origins.resize(built.certificate.pieces.len(), t);
     }
-    let Built { certificate, origins, oscillation, divisions, .. } = &mut built;
-    if let (Some(curved), Some(bulges)) = (&mut certificate.curved, &v.bulges) {
+    if let Some(bulges) = &v.bulges {
         let vectors = |values: &[[f64; 2]]| values.iter().copied().map(Vector2::from).collect();
         let shape = Shape { points: vectors(&v.vertices), bulges: Some(vectors(bulges)) };
-        let shape = if quartered { halved(shape, mesh, &ends) } else { shape };
-        let shape = divided::<f64>(shape, divisions);
-        curved.at_cuts = shape.points[v.vertices.len()..].iter().map(|&v| v.into()).collect();
-        curved.bulges = shape.bulges.iter().flatten().map(|&v| v.into()).collect();
-        // v is what is prescribed, in the middles too.
-        curved.prescribed = vec![[None; 2]; curved.at_cuts.len()];
-        for edge in &certificate.edges {
-            for point in edge.ends {
-                let Some(cut) = point.checked_sub(v.vertices.len()) else { continue };
-                let there = curved.at_cuts[cut];
-                let held = match edge.role {
-                    Role::Held(held, _) => held,
-                    Role::Supported { along: d, .. } if is_oblique(d) => {
-                        let w = there[0] * d[0] + there[1] * d[1];
-                        curved.prescribed[cut] = [Some(w), None];
-                        certificate.frames.insert(point, d);
-                        continue;
-                    }
-                    Role::Supported { along, .. } => along.map(|d| d != 0.0),
-                    _ => continue,
-                };
-                for c in (0..2).filter(|&c| held[c]) {
-                    curved.prescribed[cut][c] = Some(there[c]);
-                }
-            }
-        }
+        let shape = built.on_pieces(shape, mesh, &ends);
+        add_curved(&shape, &mut built.certificate);
     }
+    let Built { certificate, origins, oscillation, .. } = &mut built;
     certificate.polygon = polygon(mesh, certificate);
     oscillation.measure(parts, &data, certificate, (origins, quartered));
     built
+}
+
+/// Gives a certificate its v, which is quadratic; it is what is prescribed, at the cuts too.
+fn add_curved(v: &Shape<f64>, certificate: &mut Certificate) {
+    let Certificate { vertices, curved: Some(curved), edges, frames, .. } = certificate else {
+        return;
+    };
+    curved.at_cuts = v.points[vertices.len()..].iter().map(|&v| v.into()).collect();
+    curved.bulges = v.bulges.iter().flatten().map(|&v| v.into()).collect();
+    curved.prescribed = vec![[None; 2]; curved.at_cuts.len()];
+    for edge in edges {
+        for point in edge.ends {
+            let Some(cut) = point.checked_sub(vertices.len()) else { continue };
+            let there = curved.at_cuts[cut];
+            let held = match edge.role {
+                Role::Held(held, _) => held,
+                Role::Supported { along: d, .. } if is_oblique(d) => {
+                    curved.prescribed[cut] = [Some(there[0] * d[0] + there[1] * d[1]), None];
+                    frames.insert(point, d);
+                    continue;
+                }
+                Role::Supported { along, .. } => along.map(|d| d != 0.0),
+                _ => continue,
+            };
+            for c in (0..2).filter(|&c| held[c]) {
+                curved.prescribed[cut][c] = Some(there[c]);
+            }
+        }
+    }
 }
 
 /// The edges that stand for a part of a curved boundary.

@@ -60,7 +60,7 @@ use crate::solve::Solution;
 pub(crate) const SWEEPS: usize = 2;
 
 /// The number of sweeps where forces are asked for, of tau and of the rho of dual pairs.
-const SWEEPS_FOR_FORCES: usize = 12;
+const SWEEPS_FOR_FORCES: usize = 16;
 
 /// The number of times that v is pushed out of the obstacle by what the check finds it to be inside.
 const PUSHES: usize = 5;
