@@ -126,22 +126,10 @@ pub(super) fn moments(
         }
     }
     let averaged = moments.clone();
+    let (owners, averaged, known) = (&owners, &averaged, &known);
+    let around = Around { corners, edges, owners, averaged, known, triangles, stress, bodies };
     for (a, fan) in fans.iter().enumerate() {
-        go_round(
-            a,
-            fan,
-            &Around {
-                corners,
-                edges,
-                owners: &owners,
-                averaged: &averaged,
-                known: &known,
-                triangles,
-                stress,
-                bodies,
-            },
-            &mut moments,
-        );
+        go_round(a, fan, &around, &mut moments);
     }
     moments
 }
