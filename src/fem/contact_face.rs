@@ -65,8 +65,8 @@ impl<S: Scalar> Functionals<S> {
     ) -> Self {
         let given = (triangle, i, n, directions, material, gamma);
         match degree {
-            Degree::One => Functionals::One(functionals::<P1, 3, 2, S>(given)),
-            Degree::Two => Functionals::Two(functionals::<P2, 6, 3, S>(given)),
+            Degree::One => Functionals::One(functionals::<P1, _, _, _>(given)),
+            Degree::Two => Functionals::Two(functionals::<P2, _, _, _>(given)),
         }
     }
 
@@ -281,8 +281,8 @@ impl EdgeRule {
     /// is evaluated in double-doubles: where gamma is small it is far smaller there than at the nodes.
     pub fn integrals<T: Copy + Into<DoubleDouble>>(&self, p: &[T]) -> Integrals {
         match *p {
-            [start, end] => self.integrals_of::<P1, 3, 2>([start, end].map(Into::into)).into(),
-            _ => self.integrals_of::<P2, 6, 3>([p[0], p[1], p[2]].map(Into::into)).into(),
+            [start, end] => self.integrals_of::<P1, _, _>([start, end].map(Into::into)).into(),
+            _ => self.integrals_of::<P2, _, _>([p[0], p[1], p[2]].map(Into::into)).into(),
         }
     }
 
@@ -296,8 +296,7 @@ impl EdgeRule {
         match self {
             EdgeRule::Exact => E::exact(p.map(DoubleDouble::head)),
             EdgeRule::Gauss(rule) => {
-                let fine =
-                    edge_integral::gauss::<E, DoubleDouble, N, M>(p, in_double_doubles(rule));
+                let fine = edge_integral::gauss::<E, _, _, _>(p, in_double_doubles(rule));
                 EdgeIntegrals {
                     energy: fine.energy.head(),
                     gradient: fine.gradient.map(DoubleDouble::head),
@@ -311,8 +310,8 @@ impl EdgeRule {
     /// The integral of the Bregman distance of 1/2 \[.\]+^2 from P to Q, given by their nodal values.
     pub fn bregman<T: Copy + Into<DoubleDouble>>(&self, p: &[T], q: &[T]) -> f64 {
         match (p, q) {
-            (&[p, r], &[q, s]) => self.bregman_of::<P1, 3, 2>([p, r], [q, s]),
-            _ => self.bregman_of::<P2, 6, 3>([p[0], p[1], p[2]], [q[0], q[1], q[2]]),
+            (&[p, r], &[q, s]) => self.bregman_of::<P1, _, _>([p, r], [q, s]),
+            _ => self.bregman_of::<P2, _, _>([p[0], p[1], p[2]], [q[0], q[1], q[2]]),
         }
     }
 
@@ -326,13 +325,12 @@ impl EdgeRule {
     {
         let (p, q): ([DoubleDouble; M], [DoubleDouble; M]) = (p.map(Into::into), q.map(Into::into));
         match self {
-            EdgeRule::Exact => edge_integral::exact_bregman::<E, N, M>(
-                p.map(DoubleDouble::head),
-                q.map(DoubleDouble::head),
-            ),
+            EdgeRule::Exact => {
+                let [p, q] = [p, q].map(|values| values.map(DoubleDouble::head));
+                edge_integral::exact_bregman::<E, _, _>(p, q)
+            }
             EdgeRule::Gauss(rule) => {
-                edge_integral::gauss_bregman::<E, DoubleDouble, N, M>(p, q, in_double_doubles(rule))
-                    .head()
+                edge_integral::gauss_bregman::<E, _, _, _>(p, q, in_double_doubles(rule)).head()
             }
         }
     }

@@ -2,11 +2,11 @@
 
 use super::ball::PreciseBall;
 use super::data::{DataError, checked};
-use super::element::Degree;
+use super::element::{Degree, with_element};
 use super::graded_quadrature::{Features, Rule};
 use super::problem::{Condition, Function, Problem, SharedFunction, SurfaceForce};
 use super::space::Space;
-use crate::kernel::{Element, P1, P2, Scalar};
+use crate::kernel::{Element, Scalar};
 use crate::quote::key;
 
 /// The degree up to which loads that are no polynomials are integrated exactly.
@@ -112,12 +112,10 @@ impl Force<'_> {
             }
         };
         let exactly = <S as From<f64>>::from;
-        match (self.place, degree) {
-            (ElementPoint::Inside(l), Degree::One) => add(&P1::values(l.map(exactly))),
-            (ElementPoint::Inside(l), Degree::Two) => add(&P2::values(l.map(exactly))),
-            (ElementPoint::OnEdge(s), Degree::One) => add(&P1::edge_values(exactly(s))),
-            (ElementPoint::OnEdge(s), Degree::Two) => add(&P2::edge_values(exactly(s))),
-        }
+        with_element!(degree, E => match self.place {
+            ElementPoint::Inside(l) => add(&E::values(l.map(exactly))),
+            ElementPoint::OnEdge(s) => add(&E::edge_values(exactly(s))),
+        });
     }
 }
 

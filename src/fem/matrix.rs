@@ -244,7 +244,7 @@ fn add_stiffness<E: Element<N, M>, const N: usize, const M: usize>(
     numbering: &Numbering,
 ) {
     for (t, (triangle, nodes)) in space.triangles::<N>().enumerate() {
-        let k = stiffness::<E, f64, N, M>(&triangle, materials.of(t));
+        let k = stiffness::<E, _, _, _>(&triangle, materials.of(t));
         matrix.add(numbering, nodes, |i, j| k[i][j]);
     }
 }
@@ -257,7 +257,7 @@ impl LowerTriangle {
         materials: &Materials,
         numbering: &Numbering,
     ) {
-        with_element!(space.degree(), add_stiffness(self, space, materials, numbering));
+        with_element!(space.degree(), E => add_stiffness::<E, _, _>(self, space, materials, numbering));
     }
 
     /// Adds -int gamma sigma_n(.) sigma_n(.) on a contact edge.

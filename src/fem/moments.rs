@@ -14,22 +14,19 @@ use crate::kernel::{Element, P1, P2};
 /// int \[P\]+ N_a for P with the nodal values `p`, two or three, by the rule of the method.
 pub fn moments(rule: &EdgeRule, p: &[PreciseBall]) -> Vec<PreciseBall> {
     match *p {
-        [start, end] => moments_of::<P1, 3, 2>(rule, [start, end]).into(),
-        _ => moments_of::<P2, 6, 3>(rule, [p[0], p[1], p[2]]).into(),
+        [start, end] => moments_of::<P1, _, _>(rule, [start, end]).into(),
+        _ => moments_of::<P2, _, _>(rule, [p[0], p[1], p[2]]).into(),
     }
 }
 
-fn moments_of<E, const N: usize, const M: usize>(
+fn moments_of<E: Element<N, M>, const N: usize, const M: usize>(
     rule: &EdgeRule,
     p: [PreciseBall; M],
-) -> [PreciseBall; M]
-where
-    E: Element<N, M>,
-{
+) -> [PreciseBall; M] {
     match rule {
         EdgeRule::Gauss(points) => {
             let points = points.iter().map(|&(s, w)| (PreciseBall::from(s), PreciseBall::from(w)));
-            gauss::<E, PreciseBall, N, M>(p, points).gradient
+            gauss::<E, _, _, _>(p, points).gradient
         }
         // Bernstein's coefficients bound P.
         EdgeRule::Exact if bernstein(&p).iter().all(|c| c.upper() <= 0.0) => {
@@ -38,7 +35,7 @@ where
         EdgeRule::Exact => {
             // |N_a| <= 1, and so |int ([P]+ - [Q]+) N_a| <= max |P - Q| <= the sum of the radii.
             let spread = p.iter().map(|p| p.radius()).sum::<f64>();
-            by_pieces::<E, N, M>(p.map(PreciseBall::centre))
+            by_pieces::<E, _, _>(p.map(PreciseBall::centre))
                 .map(|moment| moment.widened(2.0 * spread))
         }
     }
@@ -48,15 +45,15 @@ where
 struct Parabola([PreciseBall; 3]);
 
 impl Parabola {
-    fn new<E: Element<N, M>, const N: usize, const M: usize>(p: [PreciseBall; M]) -> Self {
+    fn new(p: &[PreciseBall]) -> Self {
         let [zero, two, three, four] = [0, 2, 3, 4].map(PreciseBall::from);
-        let (start, end) = (p[0], p[1]);
-        Parabola(if E::DEGREE == 1 {
-            [start, end - start, zero]
-        } else {
-            let middle = p[M - 1];
-            let slope = four * middle - three * start - end;
-            [start, slope, two * (start + end) - four * middle]
+        Parabola(match *p {
+            [start, end] => [start, end - start, zero],
+            _ => {
+                let (start, end, middle) = (p[0], p[1], p[2]);
+                let slope = four * middle - three * start - end;
+                [start, slope, two * (start + end) - four * middle]
+            }
         })
     }
 
@@ -102,14 +99,13 @@ impl Parabola {
     }
 }
 
-fn by_pieces<E, const N: usize, const M: usize>(p: [PreciseBall; M]) -> [PreciseBall; M]
-where
-    E: Element<N, M>,
-{
-    let parabola = Parabola::new::<E, N, M>(p);
+fn by_pieces<E: Element<N, M>, const N: usize, const M: usize>(
+    p: [PreciseBall; M],
+) -> [PreciseBall; M] {
+    let parabola = Parabola::new(&p);
     let mut cuts = vec![PreciseBall::from(0), PreciseBall::from(1)];
     let heads = p.map(PreciseBall::head);
-    cuts.extend(roots::<E, N, M>(heads).map(|root| parabola.refined(root)));
+    cuts.extend(roots::<E, _, _>(heads).map(|root| parabola.refined(root)));
     cuts.sort_unstable_by(|a, b| a.head().total_cmp(&b.head()));
     let mut sum = [PreciseBall::from(0); M];
     let mut wrong = 0.0;
@@ -125,7 +121,7 @@ where
         let positive = !(mean <= 0.0);
         if positive {
             for (s, weight, _) in points {
-                let value = value_at::<E, PreciseBall, N, M>(p, s);
+                let value = value_at::<E, _, _, _>(p, s);
                 let shapes: [PreciseBall; M] = E::edge_values(s);
                 for (sum, shape) in sum.iter_mut().zip(shapes) {
                     *sum += length * weight * value * shape;
@@ -188,14 +184,14 @@ mod tests {
 
     #[test]
     fn what_the_kernel_integrates_is_enclosed_to_a_hundred_bits() {
-        encloses::<P1, 3, 2>();
-        encloses::<P2, 6, 3>();
+        encloses::<P1, _, _>();
+        encloses::<P2, _, _>();
     }
 
     #[test]
     fn control_a_wrong_cut_costs_width() {
         // Positive on the left of 1/2, cut at 0.6: the part between is integrated with the wrong sign, and counted.
-        let parabola = Parabola::new::<P1, 3, 2>([0.5, -0.5].map(PreciseBall::from));
+        let parabola = Parabola::new(&[0.5, -0.5].map(PreciseBall::from));
         let cut = PreciseBall::from(0.6);
         assert!(parabola.largest(-1, PreciseBall::from(0), cut) >= 0.1);
         assert!(parabola.largest(1, cut, PreciseBall::from(1)) <= 0.0);

@@ -56,7 +56,9 @@ pub(super) fn each_stress<S: Scalar + From<f64>>(
     difference: impl Fn(usize, usize) -> Vector2<S>,
     f: impl FnMut(&StressPoint<S>),
 ) {
-    with_element!(space.degree(), each_stress_of::<S>(space, materials, in_numbers, difference, f));
+    with_element!(space.degree(), E => {
+        each_stress_of::<E, _, _, _>(space, materials, in_numbers, difference, f);
+    });
 }
 
 fn each_stress_of<E, const N: usize, const M: usize, S>(

@@ -77,7 +77,7 @@ fn each_force(
     u: &[[PreciseBall; 2]],
     add: impl FnMut(usize, [f64; 3], [DoubleDouble; 2]),
 ) -> f64 {
-    with_element!(d.space.degree(), each_force_of(d, u, add))
+    with_element!(d.space.degree(), E => each_force_of::<E, _, _>(d, u, add))
 }
 
 fn each_force_of<E: Element<N, M>, const N: usize, const M: usize>(
@@ -163,7 +163,7 @@ fn make_sums_exact<const N: usize>(numbers: &mut [[f64; 3]; N]) {
 /// |v|_a at most, from the magnitudes of the nodal values: sigma:eps is at most |sigma| |eps|. For fields that are next to nothing, or
 /// vanish but near a boundary.
 pub(crate) fn energy_norm_at_most(d: &Discretization, v: &[[PreciseBall; 2]]) -> f64 {
-    with_element!(d.space.degree(), energy_norm_of(d, v))
+    with_element!(d.space.degree(), E => energy_norm_of::<E, _, _>(d, v))
 }
 
 fn energy_norm_of<E: Element<N, M>, const N: usize, const M: usize>(

@@ -82,7 +82,9 @@ impl Errors {
     ) -> Self {
         let rule = Rule::new(exact.features(), points);
         let mut squares = Errors::default();
-        with_element!(space.degree(), add_triangles(&mut squares, space, &rule, v, exact));
+        with_element!(space.degree(), E => {
+            add_triangles::<E, _, _>(&mut squares, space, &rule, v, exact);
+        });
         for edge in contact {
             let ends = space.mesh().places_of_ends(edge.edge);
             squares.add_edge(&rule, edge, ends, v, exact);
