@@ -89,7 +89,7 @@ pub fn solve(
     let Some((target, force)) = case.adapt.clone() else {
         let of_solve = |phase| watcher(Stage::Solve(phase));
         let course = Course::default().watched_by(&of_solve);
-        let course = start.map_or(course, |start| course.from(start));
+        let course = start.map_or(course, |start| course.from_displacement(&start.displacement));
         let solved = solve_along(&case.problem, &case.method, &case.settings, course)?;
         return Ok((case, solved.into()));
     };

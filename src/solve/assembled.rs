@@ -3,21 +3,18 @@
 //! singular, or as good as: contact then holds the body, and the tangent knows it.
 
 use std::borrow::Cow;
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
 use super::SolveError;
 use super::accuracy::{Pass, Route};
-use super::body::{Body, ContactEnergy, Derivatives, Residual, Start, Step, block, derivatives};
-use super::factor::{Factor, Indefinite};
+use super::body::{Body, ContactEnergy, Derivatives, Residual, Step, block, derivatives};
+use super::factor::Factor;
 use super::iterate::{Evaluation, Iterate};
 use super::newton::{self, Until};
-use super::relaxation::follow;
 use super::system::System;
 use crate::fem::double_double::DoubleDouble;
-use crate::fem::matrix::LowerTriangle;
 use crate::fem::rigid::Parts;
 use crate::fem::solvability;
 
@@ -58,12 +55,10 @@ impl<'a, 'd, 'p> Assembled<'a, 'd, 'p> {
         solvability::free_where(d, &parts, &pressing).len() > slides.count()
     }
 
-    /// Adds a little of the springs of all edges.
-    fn supported(&self, at: &Derivatives) -> Derivatives {
+    /// The Hessian with a little of the springs of all edges.
+    fn supported(&self, at: &Derivatives) -> Vec<DMatrix<f64>> {
         let all = derivatives(self.system.d, &vec![1.0; at.gradient.len()]).times(at.stiffness);
-        let sum = at.hessian.iter().zip(&all.hessian).map(|(h, all)| h + SUPPORT * all);
-        let hessian = sum.collect();
-        Derivatives { stiffness: at.stiffness, gradient: at.gradient.clone(), hessian }
+        at.hessian.iter().zip(&all.hessian).map(|(h, all)| h + SUPPORT * all).collect()
     }
 
     fn factor(&mut self, at: &Derivatives) -> Result<&Factored, SolveError> {
@@ -72,22 +67,20 @@ impl<'a, 'd, 'p> Assembled<'a, 'd, 'p> {
             _ => {
                 let coercive = self.system.d.kappa() < 1.0;
                 let mut hessian = at.hessian.clone();
-                let mut factored = Err(Indefinite);
+                let mut factored = Err(SolveError::NotPositiveDefinite);
                 if !(coercive && self.is_loose(at)) {
-                    factored = factor_with(self.system, &at.hessian)?;
+                    factored = factor_with(self.system, &at.hessian);
                     self.factorizations += 1;
                 }
-                if factored.is_err() && coercive {
-                    let supported = self.supported(at);
-                    factored = factor_with(self.system, &supported.hessian)?;
-                    hessian = supported.hessian;
+                if coercive && matches!(factored, Err(SolveError::NotPositiveDefinite)) {
+                    hessian = self.supported(at);
+                    factored = factor_with(self.system, &hessian);
                     self.factorizations += 1;
+                    if matches!(factored, Err(SolveError::NotPositiveDefinite)) {
+                        return Err(SolveError::Singular);
+                    }
                 }
-                let factor = factored.map_err(|Indefinite| match coercive {
-                    true => SolveError::Singular,
-                    false => SolveError::NotPositiveDefinite,
-                })?;
-                (factor, hessian)
+                (factored?, hessian)
             }
         };
         if self.body.is_none() && hessian.iter().flatten().all(|h| *h == 0.0) {
@@ -100,17 +93,17 @@ impl<'a, 'd, 'p> Assembled<'a, 'd, 'p> {
 /// L of A + B^T h B, where `springs` are the blocks of h, one for each contact edge.
 ///
 /// # Errors
-/// [`SolveError::OutOfMemory`].
+/// As [`Factor::with`].
 pub(super) fn factor_with(
     system: &System,
     springs: &[DMatrix<f64>],
-) -> Result<Result<Arc<Factor>, Indefinite>, SolveError> {
+) -> Result<Arc<Factor>, SolveError> {
     let System { d, numbering, structure, matrix, .. } = system;
     let mut tangent = matrix.clone();
     for (edge, h) in d.contact.iter().zip(springs) {
         tangent.add_contact_springs(numbering, edge, h);
     }
-    Ok(Factor::with(structure, &tangent)?.map(Arc::new))
+    Factor::with(structure, &tangent).map(Arc::new)
 }
 
 /// A factor with the Psi'' of its tangent.
@@ -226,14 +219,12 @@ impl Body for Full<'_, '_, '_, '_, '_> {
     }
 
     /// The body without contact, or, where it does not hold without, on springs of all edges, which pull as well as push.
-    fn start(&mut self, edges: &impl ContactEnergy) -> Result<Start, SolveError> {
-        let mut forces = vec![0.0; self.at.p.len()];
+    fn start(&mut self, edges: &impl ContactEnergy) -> Result<Option<f64>, SolveError> {
         if let Some(p) = self.route.system.start() {
             let frozen = derivatives(edges, &p).pulling(&self.y());
             let step = self.step(&frozen)?;
             self.advance(1.0, &step);
-            follow(&mut forces, &frozen, &step, 1.0);
-            return Ok(Start { forces, contact: None });
+            return Ok(None);
         }
         let none = derivatives(edges, &vec![-1.0; self.at.p.len()]);
         if self.route.system.d.slides.is_none() {
@@ -241,8 +232,7 @@ impl Body for Full<'_, '_, '_, '_, '_> {
                 Ok(step) => {
                     self.advance(1.0, &step);
                     let at = derivatives(edges, &self.y());
-                    let contact = self.stiffness(&at)?;
-                    return Ok(Start { forces, contact: Some(contact) });
+                    return Ok(Some(self.stiffness(&at)?));
                 }
                 Err(SolveError::Singular) => {}
                 Err(error) => return Err(error),
@@ -253,8 +243,7 @@ impl Body for Full<'_, '_, '_, '_, '_> {
         let pulling = all.times(1.0 / springs).pulling(&self.at.p);
         let step = self.step(&pulling)?;
         self.advance(1.0, &step);
-        follow(&mut forces, &pulling, &step, 1.0);
-        Ok(Start { forces, contact: Some(springs) })
+        Ok(Some(springs))
     }
 
     fn step(&mut self, at: &Derivatives) -> Result<Step, SolveError> {
@@ -276,20 +265,6 @@ impl Body for Full<'_, '_, '_, '_, '_> {
         let curvature = -slope - springs;
         self.d = d;
         Ok(Step { dy, slope, curvature })
-    }
-
-    /// B D^-1 B^T with the diagonal D of A, which is all that is at hand.
-    fn compliance(&self, e: usize) -> DMatrix<f64> {
-        let LowerTriangle { starts, values, .. } = &self.route.system.matrix;
-        let nodes = self.route.system.nodes();
-        let mut rows: BTreeMap<usize, DVector<f64>> = BTreeMap::new();
-        self.route.system.functionals(e, |row, a, entry| {
-            rows.entry(row).or_insert_with(|| DVector::zeros(nodes))[a] += entry;
-        });
-        let of = |(row, entries): (usize, DVector<f64>)| {
-            &entries * entries.transpose() / values[starts[row]]
-        };
-        rows.into_iter().map(of).fold(DMatrix::zeros(nodes, nodes), |sum, of| sum + of)
     }
 
     fn advance(&mut self, t: f64, step: &Step) {

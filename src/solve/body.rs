@@ -52,31 +52,19 @@ pub trait Body {
     fn y(&self) -> Cow<'_, [DoubleDouble]>;
     /// The residual of (8) at the iterate, relative, where Psi has the derivatives `at`; and how much of it may be noise.
     fn residual(&self, at: &Derivatives) -> Residual;
-    /// Goes to the start.
+    /// Goes to the start. Contact is that much stiffer than the body there: the largest eigenvalue of B^T Psi'' B with regard to
+    /// A, roughly. `None` if it is one step from a start that was given.
     ///
     /// # Errors
     /// As [`Body::step`].
-    fn start(&mut self, edges: &impl ContactEnergy) -> Result<Start, SolveError>;
+    fn start(&mut self, edges: &impl ContactEnergy) -> Result<Option<f64>, SolveError>;
     /// The Newton step from the iterate.
     ///
     /// # Errors
     /// A tangent that is not positive definite, and lack of memory.
     fn step(&mut self, at: &Derivatives) -> Result<Step, SolveError>;
-    /// The effect of forces at the nodes of edge `e` on P there, or the part of it that is known: how fast Newton's method ends
-    /// depends on it, not where.
-    fn compliance(&self, e: usize) -> DMatrix<f64>;
     /// Moves the iterate by `t` times `step`, the last one.
     fn advance(&mut self, t: f64, step: &Step);
-}
-
-/// Where Newton's method starts.
-#[derive(Clone, Debug)]
-pub struct Start {
-    /// The forces of contact at the nodes of the edges that the body is in equilibrium with.
-    pub forces: Vec<f64>,
-    /// Contact is that much stiffer than the body: the largest eigenvalue of B^T Psi'' B with regard to A, roughly. `None` if
-    /// it is one step from a start that was given.
-    pub contact: Option<f64>,
 }
 
 /// The size of a residual.

@@ -263,7 +263,7 @@ mod tests {
         let system = System::new(&d).unwrap();
         let unknowns: Vec<Vec<usize>> = (0..d.contact.len()).map(|e| system.unknowns(e)).collect();
         let reach = Reach::new(&system.structure, &unknowns, system.nodes());
-        let factor = Factor::with(&system.structure, &system.matrix).unwrap().unwrap();
+        let factor = Factor::with(&system.structure, &system.matrix).unwrap();
         let compliance = Compliance::new(&system.structure, &factor, &reach, |add| {
             for e in 0..d.contact.len() {
                 system.functionals(e, |row, a, entry| add(row, e * system.nodes() + a, entry));

@@ -23,12 +23,11 @@ use nalgebra::{DMatrix, DVector};
 
 use super::SolveError;
 use super::accuracy::{Pass, Route};
-use super::body::{Body, ContactEnergy, Derivatives, Residual, Start, Step, block, derivatives};
+use super::body::{Body, ContactEnergy, Derivatives, Residual, Step, block, derivatives};
 use super::compliance::{Compliance, Reach};
 use super::factor::Factor;
 use super::iterate::{Evaluation, Iterate, NOISE};
 use super::newton::{self, Until};
-use super::relaxation::follow;
 use super::system::System;
 use crate::fem::double_double::DoubleDouble;
 
@@ -192,7 +191,7 @@ impl Body for Reduced<'_, '_, '_, '_> {
     }
 
     /// The body without contact is where it is already; the stiffness is by the power method on R^T G R.
-    fn start(&mut self, edges: &impl ContactEnergy) -> Result<Start, SolveError> {
+    fn start(&mut self, edges: &impl ContactEnergy) -> Result<Option<f64>, SolveError> {
         let at = derivatives(edges, &self.y);
         let roots = Self::roots(&at);
         let stiffness = newton::largest_eigenvalue(roots.len(), |x| {
@@ -209,15 +208,11 @@ impl Body for Reduced<'_, '_, '_, '_> {
         if !(stiffness <= STIFFEST) {
             return Err(SolveError::Singular);
         }
-        let mut forces = vec![0.0; self.y.len()];
-        let Some(p) = self.route.system.start() else {
-            return Ok(Start { forces, contact: Some(stiffness) });
-        };
+        let Some(p) = self.route.system.start() else { return Ok(Some(stiffness)) };
         let frozen = derivatives(edges, &p).pulling(&self.y);
         let step = self.step(&frozen)?;
         self.advance(1.0, &step);
-        follow(&mut forces, &frozen, &step, 1.0);
-        Ok(Start { forces, contact: None })
+        Ok(None)
     }
 
     fn step(&mut self, at: &Derivatives) -> Result<Step, SolveError> {
@@ -253,11 +248,6 @@ impl Body for Reduced<'_, '_, '_, '_> {
         let curvature = -dw.iter().zip(&dy).map(|(dw, dy)| dw * dy).sum::<f64>();
         self.dw = dw;
         Ok(Step { dy, slope, curvature })
-    }
-
-    fn compliance(&self, e: usize) -> DMatrix<f64> {
-        let (g, nodes) = (&self.route.compliance.g, self.route.system.nodes());
-        DMatrix::from_fn(nodes, nodes, |a, b| g[(e * nodes + a, e * nodes + b)])
     }
 
     fn advance(&mut self, t: f64, step: &Step) {

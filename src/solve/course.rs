@@ -1,8 +1,7 @@
 //! The course of a solve: where Newton's method starts, and who is told how far it is.
 //!
-//! A start is the solution of another problem on the same nodes, such as the load step before, or a displacement, such as
-//! that of a coarser mesh between its vertices. What is taken of it is on which
-//! parts of the contact edges P is positive. With H = Psi'' there, the first step solves the problem whose springs
+//! A start is a displacement: that of the load step before, or that of a coarser mesh between its vertices. What is taken of it
+//! is on which parts of the contact edges P is positive. With H = Psi'' there, the first step solves the problem whose springs
 //! of contact are these and no others,
 //!
 //! A u + B^T H y = l, y = B u + d,
@@ -36,33 +35,15 @@ pub enum Phase {
 /// Where a solve starts, and who watches.
 #[derive(Clone, Copy, Default)]
 pub struct Course<'a> {
-    start: Option<GivenStart<'a>>,
+    start: Option<&'a [[f64; 2]]>,
     watcher: Option<&'a dyn Fn(Phase)>,
 }
 
-#[derive(Clone, Copy)]
-struct GivenStart<'a> {
-    displacement: &'a [[f64; 2]],
-    /// The nodes of the elements, one element after the other, and the places of the nodes, where they are known.
-    nodes: Option<(&'a [usize], &'a [[f64; 2]])>,
-}
-
 impl<'a> Course<'a> {
-    /// Starts from a displacement at the nodes of the problem; another number of values is no start, and Newton's method starts
-    /// as without.
+    /// Starts from a displacement at the nodes of the problem; another number of values is no start.
     #[must_use]
     pub fn from_displacement(self, start: &'a [[f64; 2]]) -> Self {
-        Course { start: Some(GivenStart { displacement: start, nodes: None }), ..self }
-    }
-
-    /// Starts from a displacement at `places`, the nodes of `elements`; one at others is no start.
-    pub(super) fn starting_at(
-        self,
-        elements: &'a [usize],
-        places: &'a [[f64; 2]],
-        displacement: &'a [[f64; 2]],
-    ) -> Self {
-        Course { start: Some(GivenStart { displacement, nodes: Some((elements, places)) }), ..self }
+        Course { start: Some(start), ..self }
     }
 
     /// Calls `watcher` as each phase begins.
@@ -84,13 +65,7 @@ impl<'a> Course<'a> {
 
     /// P of the start at the nodes of the contact edges.
     pub(super) fn p(&self, d: &Discretization) -> Option<Vec<f64>> {
-        let GivenStart { displacement: u, nodes } = self.start?;
-        let same = match nodes {
-            Some((elements, places)) => {
-                elements == d.space.connectivity() && places == d.space.nodes()
-            }
-            None => u.len() == d.space.nodes().len(),
-        };
-        same.then(|| d.contact.iter().flat_map(|edge| edge.p(u)).collect())
+        let u = self.start.filter(|u| u.len() == d.space.nodes().len())?;
+        Some(d.contact.iter().flat_map(|edge| edge.p(u)).collect())
     }
 }

@@ -21,9 +21,10 @@ use std::time::Duration;
 use nalgebra::DMatrix;
 use thiserror::Error;
 
+use super::SolveError;
 use super::assembled::factor_with;
 use super::balls::{field, free, kappa, length, lines, root};
-use super::factor::{Factor, Indefinite};
+use super::factor::Factor;
 use super::intervals::{Arithmetic, EnclosedResidual, Intervals};
 use super::pressed::{self, Pressed, SHARES};
 use super::report::Stopwatch;
@@ -354,10 +355,10 @@ impl Enclosure {
 
 /// L of A with these springs at the contact edges.
 fn factor_for(system: &System, springs: &[DMatrix<f64>]) -> Result<Arc<Factor>, Unproved> {
-    match factor_with(system, springs) {
-        Ok(factor) => factor.map_err(|Indefinite| Unproved::NoFactor),
-        Err(_) => Err(Unproved::OutOfMemory),
-    }
+    factor_with(system, springs).map_err(|error| match error {
+        SolveError::NotPositiveDefinite => Unproved::NoFactor,
+        _ => Unproved::OutOfMemory,
+    })
 }
 
 /// u moved along the motions that slide, to where `reported` is.

@@ -23,10 +23,6 @@ pub struct Structure {
     symbolic: SymbolicSupernodalCholesky<usize>,
 }
 
-/// A pivot was not positive: the matrix is not positive definite, as far as doubles tell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Indefinite;
-
 impl Structure {
     /// The structure of the factor of a matrix with this pattern.
     ///
@@ -34,7 +30,7 @@ impl Structure {
     /// [`SolveError::OutOfMemory`].
     pub fn new(matrix: &LowerTriangle) -> Result<Self, SolveError> {
         let n = matrix.starts.len() - 1;
-        let (starts, rows, _) = upper_triangle(matrix);
+        let (starts, rows) = upper_triangle(matrix);
         let upper = SymbolicSparseColMatRef::new_checked(n, n, &starts, None, &rows);
         let scratch = factorize_supernodal_symbolic_cholesky_scratch::<usize>(n);
         let out_of_memory = || SolveError::OutOfMemory { bytes: scratch.size_bytes() as u64 };
@@ -110,17 +106,17 @@ impl Factor {
     /// [`SolveError::Singular`] if it is not positive definite, as far as doubles tell, and [`SolveError::OutOfMemory`].
     pub fn new(matrix: &LowerTriangle) -> Result<Self, SolveError> {
         let structure = Arc::new(Structure::new(matrix)?);
-        Factor::with(&structure, matrix)?.map_err(|Indefinite| SolveError::Singular)
+        Factor::with(&structure, matrix).map_err(|error| match error {
+            SolveError::NotPositiveDefinite => SolveError::Singular,
+            other => other,
+        })
     }
 
     /// The factor of a matrix with the pattern that `structure` is the structure of.
     ///
     /// # Errors
-    /// [`SolveError::OutOfMemory`]; inside, [`Indefinite`].
-    pub fn with(
-        structure: &Arc<Structure>,
-        matrix: &LowerTriangle,
-    ) -> Result<Result<Self, Indefinite>, SolveError> {
+    /// [`SolveError::NotPositiveDefinite`], as far as doubles tell, and [`SolveError::OutOfMemory`].
+    pub fn with(structure: &Arc<Structure>, matrix: &LowerTriangle) -> Result<Self, SolveError> {
         let n = structure.size();
         let parallel = Par::Seq;
         let scratch = factorize_supernodal_numeric_llt_scratch::<usize, f64>(
@@ -144,10 +140,10 @@ impl Factor {
             MemStack::new(&mut memory),
             Default::default(),
         );
-        Ok(match factored {
+        match factored {
             Ok(_) => Ok(Factor { structure: Arc::clone(structure), values }),
-            Err(LltError::NonPositivePivot { .. }) => Err(Indefinite),
-        })
+            Err(LltError::NonPositivePivot { .. }) => Err(SolveError::NotPositiveDefinite),
+        }
     }
 
     fn llt(&self) -> SupernodalLltRef<'_, usize, f64> {
@@ -196,9 +192,8 @@ impl Factor {
     }
 }
 
-/// The upper triangle of a symmetric matrix, column by column: the transpose of the lower one. For each entry its row, and
-/// where it stands in the lower triangle.
-fn upper_triangle(lower: &LowerTriangle) -> (Vec<usize>, Vec<usize>, Vec<usize>) {
+/// The pattern of the upper triangle of a symmetric matrix, column by column: the transpose of the lower one.
+fn upper_triangle(lower: &LowerTriangle) -> (Vec<usize>, Vec<usize>) {
     let n = lower.starts.len() - 1;
     let mut starts = vec![0; n + 1];
     for &row in &lower.rows {
@@ -208,14 +203,12 @@ fn upper_triangle(lower: &LowerTriangle) -> (Vec<usize>, Vec<usize>, Vec<usize>)
         starts[i + 1] += starts[i];
     }
     let mut rows = vec![0; lower.rows.len()];
-    let mut places = vec![0; lower.rows.len()];
     let mut next = starts.clone();
     for column in 0..n {
-        for place in lower.starts[column]..lower.starts[column + 1] {
-            let to = &mut next[lower.rows[place]];
-            (rows[*to], places[*to]) = (column, place);
-            *to += 1;
+        for &row in &lower.rows[lower.starts[column]..lower.starts[column + 1]] {
+            rows[next[row]] = column;
+            next[row] += 1;
         }
     }
-    (starts, rows, places)
+    (starts, rows)
 }

@@ -40,7 +40,6 @@ pub mod newton;
 pub mod ordering;
 #[doc(hidden)]
 pub mod pressed;
-mod relaxation;
 mod report;
 #[doc(hidden)]
 pub mod route;

@@ -13,10 +13,6 @@
 //! positive. Nothing cancels, so the search works down to the rounding level. Its derivative in t does not decrease; the
 //! search finds where it vanishes, to a hundredth of its value at 0, and Armijo's rule is asked of what it finds.
 //!
-//! **The linearisation.** From a start without contact, a step is linearised where contact would go on each edge by itself
-//! (`relaxation`), if that is a way downhill. After a step like this that left more than half of the residual, the next one is
-//! Newton's own: so Newton's method ends as if all of them were, or ends sooner (docs/theory.md, 4.6).
-//!
 //! **The start.** A body that bends, started as if without contact, lets go of about one edge a step. So the springs are soft
 //! at first: s Psi in place of Psi, with s so small that contact is not much stiffer than the body. When the residual at s is
 //! small beside the one that stiffer springs bring, the springs get stiffer, by a factor that grows while single steps will do and
@@ -28,7 +24,6 @@
 
 use super::SolveError;
 use super::body::{Body, ContactEnergy, Derivatives, Step, block, derivatives};
-use super::relaxation::{follow, relaxed};
 use crate::fem::double_double::DoubleDouble;
 
 /// Armijo's sigma.
@@ -73,22 +68,18 @@ pub fn minimise(
     until: Until,
 ) -> Result<f64, SolveError> {
     let mut springs = Springs::new(1.0);
-    // The forces of contact that the body is in equilibrium with, if they are known.
-    let mut forces: Option<Vec<f64>> = None;
     if first {
         residuals.push(body.residual(&derivatives(edges, &body.y())).norm);
-        let start = body.start(edges)?;
-        match start.contact {
+        match body.start(edges)? {
             Some(contact) => springs = Springs::new((SOFT / contact).min(1.0)),
             None => residuals.push(body.residual(&derivatives(edges, &body.y())).norm),
         }
-        forces = Some(start.forces);
     }
     let mut at = derivatives(edges, &body.y());
     let mut residual = body.residual(&at);
     // A later call makes a step in any case: its size is what tells how good the end of the first was.
     let mut may_end = first;
-    let (mut relaxing, mut left) = (true, 0.0);
+    let mut left = 0.0;
     while residuals.len() <= until.steps {
         let stiffness = springs.stiffness;
         let enough = if stiffness < 1.0 { 0.0 } else { until.residual };
@@ -96,19 +87,12 @@ pub fn minimise(
             break;
         }
         let scaled = at.times(stiffness);
-        let before = body.residual(&scaled).norm;
-        let known = forces.as_deref().filter(|_| relaxing);
-        let Next { model, step, t } = next_step(edges, body, &scaled, known)?;
-        let Some(t) = t else { return Ok(-step.slope) };
-        if let Some(forces) = &mut forces {
-            follow(forces, model.as_ref().unwrap_or(&scaled), &step, t);
-        }
+        let step = body.step(&scaled)?;
+        let Some(t) = line_search(edges, &body.y(), &scaled, &step) else { return Ok(-step.slope) };
         body.advance(t, &step);
         at = derivatives(edges, &body.y());
         residual = body.residual(&at);
         residuals.push(residual.norm);
-        let after = body.residual(&at.times(stiffness)).norm;
-        relaxing = model.is_none() || after <= before / 2.0;
         left = if t < 1.0 { -step.slope } else { 0.0 };
         may_end = true;
         springs.after_step(-step.slope, |stiffness| body.residual(&at.times(stiffness)).norm);
@@ -146,40 +130,6 @@ impl Springs {
             self.stiffening = (self.stiffening / 4.0).max(STIFFENING[0]);
         }
     }
-}
-
-/// A step, how much of it to make, and what it was linearised as if that is not J_h at the iterate.
-struct Next {
-    model: Option<Derivatives>,
-    step: Step,
-    /// `None` if the decrease along the step is lost in rounding.
-    t: Option<f64>,
-}
-
-/// The next step downhill from where s Psi has the derivatives `at`, linearised where contact would go on each edge by itself if
-/// that leads downhill and the forces of contact are known.
-fn next_step(
-    edges: &impl ContactEnergy,
-    body: &mut impl Body,
-    at: &Derivatives,
-    forces: Option<&[f64]>,
-) -> Result<Next, SolveError> {
-    if let Some(forces) = forces {
-        let model = relaxed(edges, body, forces, at.stiffness);
-        // What hinders this step hinders Newton's own, which says so.
-        if let Ok(mut step) = body.step(&model) {
-            let off = at.gradient.iter().zip(&model.gradient).map(|(g, m)| g - m);
-            step.slope += off.zip(&step.dy).map(|(off, dy)| off * dy).sum::<f64>();
-            if step.slope < 0.0
-                && let Some(t) = line_search(edges, &body.y(), at, &step)
-            {
-                return Ok(Next { model: Some(model), step, t: Some(t) });
-            }
-        }
-    }
-    let step = body.step(at)?;
-    let t = line_search(edges, &body.y(), at, &step);
-    Ok(Next { model: None, step, t })
 }
 
 /// Where along the step J_h with s Psi, which has the derivatives `at`, is least; `None` if its decrease is lost in rounding.

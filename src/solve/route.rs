@@ -18,7 +18,7 @@ use super::compliance::Reach;
 use super::condensed::Condensed;
 use super::course::Phase;
 use super::enclosure::Verifier;
-use super::factor::{Factor, Indefinite, Structure};
+use super::factor::{Factor, Structure};
 use super::report::{Stopwatch, Times};
 use super::system::System;
 use super::{Settings, SolveError};
@@ -169,10 +169,11 @@ impl<'a, 'd, 'p> Strategy<'a, 'd, 'p> {
         memory::check(8 * entries as u64)?;
         let mut watch = Stopwatch::start();
         system.enters(Phase::Factor);
-        let factor = match Factor::with(&system.structure, &system.matrix)? {
-            Ok(factor) => Arc::new(factor),
-            Err(Indefinite) if system.d.kappa() < 1.0 => return Err(SolveError::Singular),
-            Err(Indefinite) => return Err(SolveError::NotPositiveDefinite),
+        let factor = match Factor::with(&system.structure, &system.matrix) {
+            Err(SolveError::NotPositiveDefinite) if system.d.kappa() < 1.0 => {
+                return Err(SolveError::Singular);
+            }
+            factored => Arc::new(factored?),
         };
         times.factor += watch.lap();
         system.enters(Phase::Condense);

@@ -7,7 +7,6 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::answers::{self, ContactBoundary, EnergyBalance};
-use super::course::Course;
 use super::enclosure::{Enclosure, Unproved};
 use super::iterate::Evaluated;
 use super::{MethodReport, NewtonReport, Report, Verdict};
@@ -189,14 +188,6 @@ impl Solution {
             size.max(self.displacement[j][0].abs()).max(self.displacement[j][1].abs())
         });
         sum * (1.0 + 1e-14) + 1e-14 * size
-    }
-}
-
-impl<'a> Course<'a> {
-    /// Starts from a solution on the same nodes; one on others is no start, and Newton's method starts as without.
-    #[must_use]
-    pub fn from(self, start: &'a Solution) -> Self {
-        self.starting_at(&start.elements, &start.nodes, &start.displacement)
     }
 }
 

@@ -20,7 +20,9 @@ fn solved(case: &Case, start: Option<&Solution>) -> (Solution, usize) {
             steps.set(steps.get() + 1);
         }
     };
-    let course = start.map_or(Course::default(), |start| Course::default().from(start));
+    let course = start.map_or(Course::default(), |start| {
+        Course::default().from_displacement(&start.displacement)
+    });
     let course = course.watched_by(&watcher);
     let solved = solve::solve_along(&case.problem, &case.method, &case.settings, course);
     (solved.unwrap().0, steps.get())

@@ -130,14 +130,10 @@ fn a_solve_from_a_solution_takes_fewer_steps_in_any_units() {
     let scale = Scale { length: 1e-20, modulus: 1e20, data: 1.0 };
     let method = Method { degree: Degree::Two, ..Method::default() };
     let solution = solved(scale, &method).unwrap();
-    for start in [
-        Course::default().from(&solution),
-        Course::default().from_displacement(&solution.displacement),
-    ] {
-        let (again, _) = solve_along(&block(scale), &method, &Settings::default(), start).unwrap();
-        let [steps, from_start] = [&solution, &again].map(|s| s.newton.iterations());
-        assert!(from_start < steps, "{from_start} steps from the solution, {steps} without");
-    }
+    let start = Course::default().from_displacement(&solution.displacement);
+    let (again, _) = solve_along(&block(scale), &method, &Settings::default(), start).unwrap();
+    let [steps, from_start] = [&solution, &again].map(|s| s.newton.iterations());
+    assert!(from_start < steps, "{from_start} steps from the solution, {steps} without");
 }
 
 #[test]

@@ -208,7 +208,6 @@ fn korn_on(degree: Degree, problem: &Problem, by: f64) -> Result<f64, String> {
     let neighbours = Neighbours::new(&d.space);
     let stiffness = matrix::assemble_stiffness(&d, &system.numbering, &neighbours);
     let factor = Factor::with(&system.structure, &stiffness).map_err(text)?;
-    let factor = factor.map_err(|_| "no factor")?;
     let korn = Korn::new(&d.space, &problem.material, &d.constraints, &[]).ok_or("not held")?;
     let mut least = f64::INFINITY;
     for (numbers, constant) in system.numbering.of.iter().zip(&korn.nodes) {

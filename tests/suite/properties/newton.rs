@@ -9,7 +9,7 @@ use std::borrow::Cow;
 use signorini::fem::double_double::DoubleDouble;
 use signorini::nalgebra::DMatrix;
 use signorini::solve::accuracy::Outcome as Solved;
-use signorini::solve::body::{self, Body as _, ContactEnergy, Derivatives, Residual, Start, Step};
+use signorini::solve::body::{self, Body as _, ContactEnergy, Derivatives, Residual, Step};
 use signorini::solve::newton::{self, Until};
 use signorini::solve::{Method, Settings, SolveError, Status, Verdict, solve};
 
@@ -97,12 +97,6 @@ impl Body {
         [0, 1, 2].map(|i| linear[i] - self.f[i] + springs[i])
     }
 
-    /// A start where it is, by springs that are softer by `contact`: they would have to press with f - B x.
-    fn soft(&self, contact: f64) -> Start {
-        let forces = self.gradient(&[0.0; 3]).map(|g| -g).to_vec();
-        Start { forces, contact: Some(contact) }
-    }
-
     fn energy(&self) -> f64 {
         let springs: f64 = self.x.iter().map(|x| x.max(0.0).powi(2)).sum();
         dot(&times(&self.b, &self.x), &self.x) / 2.0 - dot(&self.f, &self.x)
@@ -124,12 +118,8 @@ impl body::Body for Body {
         Residual { norm: dot(&r, &r).sqrt() / reference, noise }
     }
 
-    fn start(&mut self, _: &impl ContactEnergy) -> Result<Start, SolveError> {
-        Ok(self.soft(1.0))
-    }
-
-    fn compliance(&self, e: usize) -> DMatrix<f64> {
-        DMatrix::from_element(1, 1, 1.0 / self.b[e][e])
+    fn start(&mut self, _: &impl ContactEnergy) -> Result<Option<f64>, SolveError> {
+        Ok(Some(1.0))
     }
 
     fn step(&mut self, at: &Derivatives) -> Result<Step, SolveError> {
@@ -197,9 +187,9 @@ fn from_any_start(near: f64) -> Outcome {
     let mut in_contact = 0;
     for k in 0..1000 {
         let mut body = drawn(&mut random);
-        let (start, mut relaxed) = (body.energy(), body.clone());
+        let (start, mut softened) = (body.energy(), body.clone());
         let plain = ends(&mut body, false)?;
-        let soft = ends(&mut relaxed, true)?;
+        let soft = ends(&mut softened, true)?;
         let x = [0, 1, 2].map(|i| body.x[i] + 1e-8 * body.f[i]);
         let again = ends(&mut Body { x, ..body.clone() }, true)?;
         let ended = |(residual, steps): (f64, usize)| residual <= near && steps < MOST;
@@ -239,17 +229,12 @@ impl body::Body for Watched {
         body::Body::residual(&self.body, at)
     }
 
-    fn start(&mut self, _: &impl ContactEnergy) -> Result<Start, SolveError> {
+    fn start(&mut self, _: &impl ContactEnergy) -> Result<Option<f64>, SolveError> {
         // The springs beside the softest that B may be.
-        Ok(self.body.soft(STIFFNESS / 0.1))
-    }
-
-    fn compliance(&self, e: usize) -> DMatrix<f64> {
-        body::Body::compliance(&self.body, e)
+        Ok(Some(STIFFNESS / 0.1))
     }
 
     fn step(&mut self, at: &Derivatives) -> Result<Step, SolveError> {
-        // Linearised here or where the springs would go by themselves: the stiffness is that of those that are pressed.
         let pressed = at.hessian.iter().map(|h| h[(0, 0)]).find(|&h| h > 0.0);
         self.stiffness = pressed.map(|h| h / STIFFNESS);
         self.body.step(at)
@@ -270,7 +255,7 @@ impl body::Body for Watched {
     }
 }
 
-/// Each line search whose step was linearised where a spring is pressed leaves a hundredth of the derivative, and what rounding
+/// Each line search from where a spring is pressed leaves a hundredth of the derivative, and what rounding
 /// adds; with `full` steps it is not so.
 fn line_searches(full: bool) -> Outcome {
     let mut random = Random(5);
