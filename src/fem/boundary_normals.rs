@@ -19,13 +19,10 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector2;
 
-use super::mesh::{BoundaryEdge, Mesh, length};
+use super::mesh::{BoundaryEdge, Mesh, NO_ANGLE, length};
 
 /// A bend of more degrees is a corner.
 pub const SMOOTH: f64 = 40.0;
-
-/// A bend of less, in radians, is none: a hundred thousand rounding errors of a facet a thousandth of the body long.
-const STRAIGHT: f64 = 1e-8;
 
 /// The normals at the ends of the boundary's edges.
 #[derive(Clone, Debug)]
@@ -76,7 +73,7 @@ impl SmoothBoundary {
         let mut shared: BTreeMap<usize, Vector2<f64>> = BTreeMap::new();
         for &vertex in around.keys() {
             let Some(Passage { before, after, bend }) = passage(vertex) else { continue };
-            if bend.abs() <= STRAIGHT || bend.abs() > SMOOTH.to_radians() {
+            if bend.abs() <= NO_ANGLE || bend.abs() > SMOOTH.to_radians() {
                 continue;
             }
             let [previous, _] = mesh.ends(outline[before]);
@@ -84,7 +81,7 @@ impl SmoothBoundary {
             let (behind, ahead) = (bend_at(previous), bend_at(next));
             let arc_starts = |beyond: f64| beyond * bend > 0.0 && bend.abs() <= beyond.abs();
             let ((a, n), (b, m)) = (facets[before], facets[after]);
-            let normal = match (behind.abs() <= STRAIGHT, ahead.abs() <= STRAIGHT) {
+            let normal = match (behind.abs() <= NO_ANGLE, ahead.abs() <= NO_ANGLE) {
                 (true, true) => None,
                 (true, false) => arc_starts(ahead).then_some(n),
                 (false, true) => arc_starts(behind).then_some(m),
@@ -98,7 +95,7 @@ impl SmoothBoundary {
             let facet = facets[e].1;
             let ends = mesh.ends(edge);
             let own = ends.map(|vertex| shared.get(&vertex).copied());
-            let straight = |vertex: usize| bend_at(vertex).abs() <= STRAIGHT;
+            let straight = |vertex: usize| bend_at(vertex).abs() <= NO_ANGLE;
             let both = match own {
                 [Some(start), Some(end)] => [start, end],
                 [Some(start), None] if straight(ends[1]) => [start, facet],
@@ -187,14 +184,6 @@ mod tests {
         for error in errors(&fan(&on_circle(&[0.0, 0.3, 0.5, 0.9, 1.5]))) {
             assert_abs_diff_eq!(error[..], [0.0; 2][..], epsilon = ROUNDING);
         }
-    }
-
-    #[test]
-    fn control_weights_by_length_are_not_exact_on_unequal_facets() {
-        let [a, b, c] = [0.0_f64, 0.3, 0.5].map(|t| [2.0 * t.cos(), 2.0 * t.sin()]);
-        // Turned facets weighted by their lengths add up to the chord from a to c.
-        let n = unit(Vector2::new(c[1] - a[1], a[0] - c[0]));
-        assert!(length(n - Vector2::from(b) / 2.0) > 0.04);
     }
 
     #[test]

@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 
 use super::boundary_normals::SmoothBoundary;
 use super::data::{DataError, finite};
-use super::mesh::BoundaryEdge;
+use super::mesh::{BoundaryEdge, NO_ANGLE};
 use super::problem::{Condition, Problem, SharedFunction};
 use super::rigid::{self, FreeMotion, Parts};
 use super::solvability::pins;
@@ -63,9 +63,6 @@ struct Demand<'a> {
 /// may differ by their rounding errors.
 const AGREEMENT: f64 = 1e-12;
 
-/// Two directions with a sine below this, or below what rounding may turn them by, are parallel.
-const PARALLEL: f64 = 1e-8;
-
 /// The demands at each node.
 type Demands<'a> = BTreeMap<usize, Vec<Demand<'a>>>;
 
@@ -88,7 +85,7 @@ impl Constraints {
         for (&node, at_node) in &mut demands {
             // Coordinate directions first: a value that is given for a component is taken as it is.
             at_node.sort_by_key(|demand| demand.axis().is_none());
-            let tolerances = [PARALLEL.max(constraints.rounding), AGREEMENT * largest];
+            let tolerances = [NO_ANGLE.max(constraints.rounding), AGREEMENT * largest];
             let holding = independent(at_node, space.nodes()[node], tolerances)?;
             constraints.prescribe(node, &holding);
         }

@@ -256,6 +256,9 @@ impl Mesh {
 /// A triangle whose area is less than this times h_T^2 is flat: its gradients would have lost all but a few digits.
 const FLAT: f64 = 1e-12;
 
+/// An angle below this, in radians, is none: a hundred thousand rounding errors of a facet a thousandth of the body long.
+pub(super) const NO_ANGLE: f64 = 1e-8;
+
 /// A point this far outside a triangle, in units of its heights, still belongs to it: some thousand rounding errors.
 const OUTSIDE: f64 = 1e-12;
 

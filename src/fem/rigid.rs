@@ -56,9 +56,9 @@ pub struct FreeMotion {
 /// Components of a motion below this share of the largest one are rounding errors.
 const STILL: f64 = 1e-9;
 
-/// A singular value below this share of the largest stops nothing. Rounding leaves some 1e-15; a part of slenderness s held at
-/// its end alone makes 1/s.
-const FREE: f64 = 1e-10;
+/// A singular value below this share of the largest stops nothing; likewise what is this small beside motions of size 1. Rounding
+/// leaves some 1e-15; a part of slenderness s held at its end alone makes 1/s.
+pub(super) const FREE: f64 = 1e-10;
 
 impl FreeMotion {
     /// The displacement at `x`.

@@ -16,7 +16,8 @@ use super::contact_face::ContactFace;
 use super::dense::{dot, inner, least_squares, norm, singular_vectors};
 use super::discretization::Discretization;
 use super::element::bernstein;
-use super::rigid::{FreeMotion, Parts, null_space};
+use super::mesh::NO_ANGLE;
+use super::rigid::{FREE, FreeMotion, Parts, null_space};
 use super::space::Space;
 
 /// Work below this share of the largest work of single loads is rounding.
@@ -24,13 +25,6 @@ const BALANCED: f64 = 1e-9;
 
 /// Loads must go on pressing when they are changed by this share: a body on the verge of tipping is not held.
 const MARGIN: f64 = 1e-6;
-
-/// Singular values of the c_i below this share of the largest, or of motions of size 1, belong to motions that slide; a c_i below
-/// it is zero but for rounding. Where the body is far from the origin, rounding its vertices makes more than this.
-const SLIDES: f64 = 1e-10;
-
-/// The cosine of a motion that leaves a node with the direction of contact there is below minus this.
-const LEAVES: f64 = 1e-8;
 
 /// An edge presses where P is above this share of the largest; below it P is what the tolerance of Newton's method leaves.
 const PRESSES: f64 = 1e-8;
@@ -79,25 +73,38 @@ pub struct Play {
     pub most: Option<f64>,
 }
 
-/// The rows c_i of a contact edge: r_n at its nodes for each of the motions, and not P0(r): the stress of a rigid motion is zero
-/// but for rounding.
+/// The numbers of the contact edges of the part that has these `motions`, of those that are `taken`, with their rows c_i: r_n at
+/// their nodes for each of the motions, and not P0(r): the stress of a rigid motion is zero but for rounding.
 fn rows(
+    motions: &[FreeMotion],
+    parts: &Parts,
     space: &Space,
-    edge: &ContactFace,
-    motion: impl Fn(usize, usize) -> [f64; 2],
-    count: usize,
-) -> Vec<Vec<f64>> {
-    let nodes = space.edge_nodes(edge.edge).into_iter();
-    let row = |(node, direction): (usize, &Vector2<f64>)| {
-        (0..count).map(|k| Vector2::from(motion(k, node)).dot(direction)).collect()
+    contact: &[ContactFace],
+    taken: impl Fn(usize) -> bool,
+) -> Vec<EdgeRows> {
+    let of_part = |(e, edge): &(usize, &ContactFace)| {
+        taken(*e) && parts.of_triangle()[edge.edge.triangle] == motions[0].part
     };
-    nodes.zip(&edge.directions).map(row).collect()
+    let of_edge = |(e, edge): (usize, &ContactFace)| {
+        let row = |(node, direction): (usize, &Vector2<f64>)| {
+            let at = |motion: &FreeMotion| Vector2::from(motion.at(space.nodes()[node]));
+            motions.iter().map(|motion| at(motion).dot(direction)).collect()
+        };
+        (e, space.edge_nodes(edge.edge).into_iter().zip(&edge.directions).map(row).collect())
+    };
+    contact.iter().enumerate().filter(of_part).map(of_edge).collect()
 }
 
-/// A value of c_i below this is zero but for rounding.
+/// The rows of all these edges.
+fn all(edges: &[EdgeRows]) -> Vec<Vec<f64>> {
+    edges.iter().flat_map(|(_, rows)| rows.clone()).collect()
+}
+
+/// A value of c_i below this is zero but for rounding. Where the body is far from the origin, rounding its vertices makes more
+/// than [`FREE`].
 fn negligible(rows: &[Vec<f64>], count: usize, rounding: f64) -> f64 {
     let largest = singular_vectors(rows, count).first().map_or(0.0, |(value, _)| *value);
-    SLIDES.max(rounding * (rows.len() as f64).sqrt()) * largest.max(1.0)
+    FREE.max(rounding * (rows.len() as f64).sqrt()) * largest.max(1.0)
 }
 
 /// The motions among the combinations of `motions`, which may be off by `rounding`, that slide along every obstacle.
@@ -116,14 +123,7 @@ pub fn slides(
     let mut idle = vec![false; contact.len()];
     for of_part in motions.chunk_by(|a, b| a.part == b.part) {
         let count = of_part.len();
-        let at = |k: usize, node: usize| of_part[k].at(space.nodes()[node]);
-        let touches = |e: &ContactFace| parts.of_triangle()[e.edge.triangle] == of_part[0].part;
-        let edges: Vec<(usize, Vec<Vec<f64>>)> = contact
-            .iter()
-            .enumerate()
-            .filter(|(_, e)| touches(e))
-            .map(|(i, e)| (i, rows(space, e, at, count)))
-            .collect();
+        let edges = rows(of_part, parts, space, contact, |_| true);
         if edges.is_empty() {
             return Err(NotHeld { motions: of_part.to_vec(), drive: None });
         }
@@ -136,8 +136,7 @@ pub fn slides(
         // In units of the largest work of single loads.
         let unit = if scale > 0.0 { scale } else { 1.0 };
         let loads: Vec<f64> = fields.iter().map(|r| work(|w| w, r) / unit).collect();
-        let all: Vec<Vec<f64>> = edges.iter().flat_map(|(_, rows)| rows.clone()).collect();
-        let none = negligible(&all, count, rounding);
+        let none = negligible(&all(&edges), count, rounding);
         let kept = press(edges.clone(), &loads, none).map_err(|left| match left {
             Some((weights, driven)) => {
                 let motion = parts.combined(of_part, &weights);
@@ -149,8 +148,7 @@ pub fn slides(
         for (i, rows) in &edges {
             idle[*i] = rows.iter().any(|row| norm(row) > none) && kept.iter().all(|(k, _)| k != i);
         }
-        let kept: Vec<Vec<f64>> = kept.into_iter().flat_map(|(_, rows)| rows).collect();
-        let free = null_space(&kept, count, |value, _| value > none);
+        let free = null_space(&all(&kept), count, |value, _| value > none);
         sliding.extend(free.iter().map(|weights| parts.combined(of_part, weights)));
     }
     Ok(Slides { idle, ..Slides::new(sliding, parts, space) })
@@ -177,7 +175,7 @@ fn press(
     let stopped_at_first = !edges.is_empty();
     let mut verge: Option<Vec<f64>> = None;
     loop {
-        let rows: Vec<Vec<f64>> = edges.iter().flat_map(|(_, rows)| rows.clone()).collect();
+        let rows = all(&edges);
         if let Some(motion) = nnls_residual(&rows, loads, BALANCED) {
             let driven = verge.is_none();
             return Err(Some((verge.unwrap_or(motion), driven)));
@@ -194,7 +192,7 @@ fn press(
         let Some(motion) = leaves else { break };
         // No pressure that does the work of the loads acts where this motion leaves the obstacle.
         let before = edges.len();
-        let stays = |row: &Vec<f64>| dot(row, &motion) >= -LEAVES * norm(row) * norm(&motion);
+        let stays = |row: &Vec<f64>| dot(row, &motion) >= -NO_ANGLE * norm(row) * norm(&motion);
         edges.retain(|(_, edge)| edge.iter().all(stays));
         if edges.len() == before {
             return Err(Some((motion, false)));
@@ -236,7 +234,7 @@ impl Slides {
         let parts = Parts::new(d.space.mesh());
         let slides = Slides::new(free_where(d, &parts, &pressing), &parts, &d.space);
         let (at, basis) = (slides.at(u), &slides.basis);
-        let rounding = SLIDES.max(d.rounding_of_directions());
+        let rounding = FREE.max(d.rounding_of_directions());
         let (mut bounds, mut stopping) = (Vec::new(), Vec::new());
         let edges = d.contact.iter().zip(&p).zip(pressing).zip(idle);
         for (e, (((edge, p), pressing), idle)) in edges.enumerate() {
@@ -276,13 +274,6 @@ impl Slides {
         &self.stopping
     }
 
-    /// The motion that leads from u to the solution of least norm, as weights of the basis.
-    pub(crate) fn to_least_norm(&self, u: &[[f64; 2]]) -> Vec<f64> {
-        let at = self.at(u);
-        let to = self.nearest(0.0).unwrap_or_else(|| at.clone());
-        to.iter().zip(at).map(|(to, at)| to - at).collect()
-    }
-
     /// A motion that leads from u to a solution away from all obstacles that do not press it, if there is one.
     pub(crate) fn to_inside(&self, u: &[[f64; 2]]) -> Option<Vec<f64>> {
         let at = self.at(u);
@@ -301,7 +292,9 @@ impl Slides {
 
     /// u as the solution of least norm.
     pub(crate) fn least_norm(&self, u: &mut [[f64; 2]]) {
-        self.move_by(&self.to_least_norm(u), u);
+        let Some(to) = self.nearest(0.0) else { return };
+        let way: Vec<f64> = to.iter().zip(self.at(u)).map(|(to, at)| to - at).collect();
+        self.move_by(&way, u);
     }
 
     /// Returns whether contact edge `e` presses in no solution.
@@ -330,9 +323,9 @@ impl Slides {
         let rows: Vec<Vec<f64>> = self.bounds.iter().map(row).collect();
         let mut target = vec![0.0; self.count() + 1];
         target[self.count()] = 1.0;
-        let mut rest = nnls_residual(&rows, &target, INFEASIBLE)?;
+        let mut rest = nnls_residual(&rows, &target, FREE)?;
         let last = rest.pop()?;
-        (last > INFEASIBLE).then(|| rest.iter().map(|r| -scale * r / last).collect())
+        (last > FREE).then(|| rest.iter().map(|r| -scale * r / last).collect())
     }
 
     /// How far each motion may go from u.
@@ -342,7 +335,7 @@ impl Slides {
             let mut range = [None::<f64>; 2];
             for (row, bound) in &self.bounds {
                 let speed = dot(row, along);
-                if speed.abs() > SLIDES * norm(row) * norm(along) {
+                if speed.abs() > FREE * norm(row) * norm(along) {
                     let way = ((bound - dot(row, &at)).max(0.0) / speed) * motion.size();
                     let end = &mut range[usize::from(way > 0.0 || (way == 0.0 && speed > 0.0))];
                     let nearer = end.is_none_or(|end| way.abs() < end.abs());
@@ -363,12 +356,7 @@ pub(crate) fn free_where(d: &Discretization, parts: &Parts, pressing: &[bool]) -
     let mut free = Vec::new();
     for of_part in d.motions.chunk_by(|a, b| a.part == b.part) {
         let count = of_part.len();
-        let at = |k: usize, node: usize| of_part[k].at(d.space.nodes()[node]);
-        let pressing = d.contact.iter().zip(pressing).filter(|(edge, pressing)| {
-            **pressing && parts.of_triangle()[edge.edge.triangle] == of_part[0].part
-        });
-        let rows: Vec<Vec<f64>> =
-            pressing.flat_map(|(edge, _)| rows(&d.space, edge, at, count)).collect();
+        let rows = all(&rows(of_part, parts, &d.space, &d.contact, |e| pressing[e]));
         let none = negligible(&rows, count, d.rounding_of_directions());
         let weights = null_space(&rows, count, |value, _| value > none);
         free.extend(weights.iter().map(|weights| parts.combined(of_part, weights)));
@@ -419,9 +407,6 @@ pub(crate) fn pins(
     }
     pins
 }
-
-/// A problem of least distance has no solution where what is left of its target is below this.
-const INFEASIBLE: f64 = 1e-10;
 
 /// The part of `target` that no combination of the rows with weights >= 0 reaches, if it is larger than `tolerance`.
 fn nnls_residual(rows: &[Vec<f64>], target: &[f64], tolerance: f64) -> Option<Vec<f64>> {

@@ -35,8 +35,6 @@ pub struct Evaluation {
     pub energy: f64,
     /// A norm that rounding alone may give the residual.
     pub noise: f64,
-    /// A bound of the rounding in the forces.
-    pub noise_of_sums: f64,
     /// In double-doubles.
     pub precisely: bool,
 }
@@ -78,32 +76,24 @@ impl Iterate {
         let idle = |(i, p): (usize, DoubleDouble)| {
             if d.is_idle(i / system.nodes()) && p.head() > 0.0 { -p } else { p }
         };
+        let (heads, tails) = (self.rounded(), self.remainder());
         if precisely {
             let (forces, p) = residual::evaluate(d, &self.u);
             let p: Vec<DoubleDouble> = p.into_iter().enumerate().map(idle).collect();
             // The forces of contact are added to these in doubles, and the loads are doubles.
             let noise = NOISE * f64::EPSILON * d.free_norm(&forces).max(d.free_norm(&d.load));
             let p_magnitudes = p.iter().map(|p| p.head().abs()).collect();
-            let linear = system.numbering.gather(&forces);
-            let energy = d.strain_energy(&self.rounded());
-            let noise_of_sums = 0.0;
-            return Evaluation {
-                forces,
-                linear,
-                p,
-                p_magnitudes,
-                energy,
-                noise,
-                noise_of_sums,
-                precisely,
-            };
+            let (linear, energy) = (system.numbering.gather(&forces), d.strain_energy(&heads));
+            return Evaluation { forces, linear, p, p_magnitudes, energy, noise, precisely };
         }
-        let head = |node: usize| Vector2::from(self.u[node].map(DoubleDouble::head));
-        let tail = |node: usize| Vector2::from(self.u[node].map(DoubleDouble::tail));
-        let Functional { values: forces, magnitudes, energy } = d
-            .linear_residual_by(|node, from| (head(node) - head(from)) + (tail(node) - tail(from)));
+        let difference = |of: &[[f64; 2]], node: usize, from: usize| {
+            Vector2::from(of[node]) - Vector2::from(of[from])
+        };
+        let Functional { values: forces, magnitudes, energy } =
+            d.linear_residual_by(|node, from| {
+                difference(&heads, node, from) + difference(&tails, node, from)
+            });
         let by_points = matches!(d.rule, EdgeRule::Gauss(_));
-        let (heads, tails) = (self.rounded(), self.remainder());
         let p: Vec<DoubleDouble> = if by_points {
             residual::p(d, &self.u).enumerate().map(idle).collect()
         } else {
@@ -119,9 +109,8 @@ impl Iterate {
             d.contact.iter().flat_map(|edge| edge.p0_magnitudes(&heads)).collect()
         };
         let noise = NOISE * f64::EPSILON * d.free_norm(&magnitudes);
-        let noise_of_sums = NOISE * f64::EPSILON * magnitudes.as_flattened().iter().sum::<f64>();
         let linear = system.numbering.gather(&forces);
-        Evaluation { forces, linear, p, p_magnitudes, energy, noise, noise_of_sums, precisely }
+        Evaluation { forces, linear, p, p_magnitudes, energy, noise, precisely }
     }
 }
 

@@ -132,10 +132,8 @@ impl<'a, 'd, 'p> Strategy<'a, 'd, 'p> {
 
     /// The operations that are predicted for a route.
     pub fn predicted(&self, name: RouteName) -> f64 {
-        match name {
-            RouteName::Condensed => self.prediction.condensed,
-            RouteName::Assembled => self.prediction.assembled,
-        }
+        let Prediction { condensed, assembled } = self.prediction;
+        if name == RouteName::Condensed { condensed } else { assembled }
     }
 
     /// Newton's method by a route, refined and verified.

@@ -90,7 +90,7 @@ fn stiff_contact_reaches_the_tolerance_in_few_steps() {
                 let (s, _) = solve(&problem, &method, &Settings::default()).unwrap();
                 let (steps, residual) = (s.newton.iterations(), s.newton.residual);
                 let here = format!("{degree:?}, {n} cells, {kappa}: {steps} steps, {residual:e}");
-                assert!(residual <= 1e-10 && steps <= 25, "{here}");
+                assert!(residual <= 1e-10 && steps <= 40, "{here}");
             }
         }
     }
