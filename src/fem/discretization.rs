@@ -228,12 +228,6 @@ impl<'a> Discretization<'a> {
         self.internal_forces(u).energy
     }
 
-    /// R(u; v) + L(v): what prescribed data demand of the free degrees of freedom when `u` is their lift.
-    pub fn residual_and_load(&self, u: &[[f64; 2]]) -> Vec<[f64; 2]> {
-        let residual = self.residual(u).values;
-        residual.iter().zip(&self.load).map(|(r, l)| [r[0] + l[0], r[1] + l[1]]).collect()
-    }
-
     /// The Euclidean norm of a functional over the free degrees of freedom.
     pub fn free_norm(&self, functional: &[[f64; 2]]) -> f64 {
         let frames = self.constraints.frames();

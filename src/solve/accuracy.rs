@@ -16,6 +16,7 @@ use super::iterate::{Evaluation, Iterate, NOISE};
 use super::newton::Until;
 use super::system::System;
 use super::{Settings, SolveError, Status};
+use crate::fem::dense::norm;
 use crate::fem::discretization::Discretization;
 use crate::fem::double_double::DoubleDouble;
 
@@ -248,7 +249,7 @@ impl<'a, 'd, 'p> IterativeRefinement<'a, 'd, 'p> {
     /// Encloses the exact solution, in balls where doubles prove too little, and returns whether a better iterate would tell no
     /// more.
     fn verify(&mut self, verifier: &mut Verifier) -> bool {
-        let (u, near) = (self.iterate.rounded(), self.iterate.as_double_doubles());
+        let (u, near) = (self.iterate.rounded(), &self.iterate.u);
         self.enclosure = Err(Unproved::NotReached);
         for arithmetic in [Arithmetic::Doubles, Arithmetic::Balls] {
             let found = verifier.enclose(&u, Some(near), arithmetic);
@@ -259,7 +260,7 @@ impl<'a, 'd, 'p> IterativeRefinement<'a, 'd, 'p> {
             if found.is_ok() || self.enclosure.is_err() {
                 self.enclosure = found;
             }
-            if is_near && verifier.unbalanced() <= 10.0 * SMALL * self.residual.forces {
+            if is_near && verifier.unbalanced <= 10.0 * SMALL * self.residual.forces {
                 return true;
             }
         }
@@ -319,10 +320,6 @@ impl TrueResidual {
         let unbalanced = if forces > 0.0 { one(&r) / forces } else { 0.0 };
         TrueResidual { norm: norm(&r) / reference, unbalanced, forces }
     }
-}
-
-fn norm(v: &[f64]) -> f64 {
-    v.iter().map(|v| v * v).sum::<f64>().sqrt()
 }
 
 /// The size that residuals are relative to: |L| + |residual of the prescribed data| over the free degrees of freedom, or,

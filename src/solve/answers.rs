@@ -340,38 +340,3 @@ impl ContactBoundary {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::fem::quadrature;
-
-    #[test]
-    fn hats_are_not_negative_and_add_up_to_one() {
-        for i in 0..=20 {
-            let s = f64::from(i) / 20.0;
-            for hats in [Hats::Whole.at(s), Hats::Halves.at(s)] {
-                assert!(hats.iter().all(|&h| h >= 0.0));
-                assert!((hats.iter().sum::<f64>() - 1.0).abs() < 1e-15);
-            }
-        }
-    }
-
-    #[test]
-    fn integrals_against_hats_add_up_to_the_integral_of_the_positive_part() {
-        for p in [[1.0, -2.0, 0.3], [-1.0, -1.0, 1.0], [2.0, 0.5, 1.0], [-1.0, -2.0, -3.0]] {
-            for rule in [EdgeRule::Exact, EdgeRule::Gauss(quadrature::gauss(4))] {
-                let whole: f64 = rule.integrals(&p).gradient.iter().sum();
-                for hats in [Hats::Whole, Hats::Halves] {
-                    let parts = hat_integrals(&p.map(DoubleDouble::from), &rule, hats);
-                    assert!((parts.iter().sum::<f64>() - whole).abs() < 1e-15, "{p:?}");
-                    assert!(parts.iter().all(|&part| part >= 0.0));
-                }
-                let p = [p[0], p[1]];
-                let gradient = rule.integrals(&p).gradient;
-                let parts = hat_integrals(&p.map(DoubleDouble::from), &rule, Hats::Whole);
-                assert!((parts[0] - gradient[0]).abs() + (parts[1] - gradient[1]).abs() < 1e-15);
-            }
-        }
-    }
-}

@@ -14,6 +14,7 @@ use super::factor::Factor;
 use super::iterate::{Evaluation, Iterate};
 use super::newton::{self, Until};
 use super::system::System;
+use crate::fem::dense::norm;
 use crate::fem::double_double::DoubleDouble;
 use crate::fem::rigid::Parts;
 use crate::fem::solvability;
@@ -151,10 +152,7 @@ impl Full<'_, '_, '_, '_, '_> {
     /// The residual of (8).
     fn gradient(&self, at: &Derivatives) -> Vec<f64> {
         let mut r = self.at.linear.clone();
-        for e in 0..self.route.system.d.contact.len() {
-            let g = block(&at.gradient, e, self.route.system.nodes());
-            self.route.system.functionals(e, |row, a, entry| r[row] += entry * g[a]);
-        }
+        self.route.system.add_forces(&at.gradient, &mut r);
         r
     }
 
@@ -162,13 +160,8 @@ impl Full<'_, '_, '_, '_, '_> {
     fn stiffness(&self, at: &Derivatives) -> Result<f64, SolveError> {
         let Some((factor, _)) = &self.route.factored else { return Ok(self.springs()) };
         Ok(newton::largest_eigenvalue(self.route.system.numbering.count, |x| {
-            let p = self.values_of_p0(x);
             let mut force = vec![0.0; x.len()];
-            for (e, h) in at.hessian.iter().enumerate() {
-                let values = DVector::from_column_slice(block(&p, e, h.nrows()));
-                let forces = h * values;
-                self.route.system.functionals(e, |row, a, entry| force[row] += entry * forces[a]);
-            }
+            self.route.system.add_forces(&at.hessian_times(&self.values_of_p0(x)), &mut force);
             factor.solve(&mut force);
             force
         }))
@@ -186,12 +179,8 @@ impl Full<'_, '_, '_, '_, '_> {
 
     /// B x
     fn values_of_p0(&self, x: &[f64]) -> Vec<f64> {
-        let nodes = self.route.system.nodes();
         let mut values = vec![0.0; self.at.p.len()];
-        let system = self.route.system;
-        for e in 0..system.d.contact.len() {
-            system.functionals(e, |row, a, entry| values[e * nodes + a] += entry * x[row]);
-        }
+        self.route.system.each_functional(|row, i, entry| values[i] += entry * x[row]);
         values
     }
 }
@@ -202,25 +191,20 @@ impl Body for Full<'_, '_, '_, '_, '_> {
     }
 
     fn residual(&self, at: &Derivatives) -> Residual {
-        let norm = self.gradient(at).iter().map(|r| r * r).sum::<f64>().sqrt();
         // The rounding of P, through the springs of contact.
         let mut contact = vec![0.0; self.route.system.numbering.count];
-        for (e, h) in at.hessian.iter().enumerate() {
-            let p = DVector::from_column_slice(block(&self.at.p_magnitudes, e, h.nrows()));
-            let forces = h.abs() * p;
-            self.route.system.functionals(e, |row, a, entry| {
-                contact[row] += entry.abs() * forces[a];
-            });
-        }
-        let contact = contact.iter().map(|c| c * c).sum::<f64>().sqrt();
+        let hessian = at.hessian.iter().map(DMatrix::abs).collect();
+        let magnitudes = Derivatives { stiffness: at.stiffness, gradient: Vec::new(), hessian };
+        let forces = magnitudes.hessian_times(&self.at.p_magnitudes);
+        self.route.system.each_functional(|row, i, entry| contact[row] += entry.abs() * forces[i]);
         let reference = self.route.reference;
-        let noise = self.at.noise + f64::EPSILON * contact;
-        Residual { norm: norm / reference, noise: noise / reference }
+        let noise = self.at.noise + f64::EPSILON * norm(&contact);
+        Residual { norm: norm(&self.gradient(at)) / reference, noise: noise / reference }
     }
 
     /// The body without contact, or, where it does not hold without, on springs of all edges, which pull as well as push.
     fn start(&mut self, edges: &impl ContactEnergy) -> Result<Option<f64>, SolveError> {
-        if let Some(p) = self.route.system.start() {
+        if let Some(p) = self.route.system.course.p(self.route.system.d) {
             let frozen = derivatives(edges, &p).pulling(&self.y());
             let step = self.step(&frozen)?;
             self.advance(1.0, &step);

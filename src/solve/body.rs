@@ -122,15 +122,19 @@ impl Derivatives {
         }
     }
 
+    /// The product of the Hessian with nodal values.
+    pub(super) fn hessian_times(&self, v: &[f64]) -> Vec<f64> {
+        let product = |(e, h): (usize, &DMatrix<f64>)| {
+            let product = h * DVector::from_column_slice(block(v, e, h.nrows()));
+            product.iter().copied().collect::<Vec<f64>>()
+        };
+        self.hessian.iter().enumerate().flat_map(product).collect()
+    }
+
     /// The derivatives at y of springs with this Hessian that pull as well as push.
     pub(crate) fn pulling(self, y: &[DoubleDouble]) -> Self {
-        let force = |(e, h): (usize, &DMatrix<f64>)| {
-            let y = block(y, e, h.nrows()).iter().map(|y| y.head());
-            let force = h * DVector::from_iterator(h.nrows(), y);
-            force.iter().copied().collect::<Vec<f64>>()
-        };
-        let gradient = self.hessian.iter().enumerate().flat_map(force).collect();
-        Derivatives { gradient, ..self }
+        let heads: Vec<f64> = y.iter().map(|y| y.head()).collect();
+        Derivatives { gradient: self.hessian_times(&heads), ..self }
     }
 }
 

@@ -29,6 +29,7 @@ use super::factor::Factor;
 use super::iterate::{Evaluation, Iterate, NOISE};
 use super::newton::{self, Until};
 use super::system::System;
+use crate::fem::dense::norm;
 use crate::fem::double_double::DoubleDouble;
 
 /// The body, factored, and the forces of contact on it.
@@ -54,32 +55,17 @@ impl<'a, 'd, 'p> Condensed<'a, 'd, 'p> {
         reach: &'a Reach,
         reference: f64,
     ) -> Self {
-        let nodes = system.nodes();
-        let compliance = Compliance::new(&system.structure, &factor, reach, |add| {
-            for e in 0..system.d.contact.len() {
-                system.functionals(e, |row, a, entry| add(row, e * nodes + a, entry));
-            }
-        });
+        let compliance =
+            Compliance::new(&system.structure, &factor, reach, |add| system.each_functional(add));
         let mut place: BTreeMap<usize, usize> = BTreeMap::new();
         let mut forces = Vec::new();
-        for e in 0..system.d.contact.len() {
-            system.functionals(e, |row, a, entry| {
-                let next = place.len();
-                let row = *place.entry(row).or_insert(next);
-                forces.push((e * nodes + a, row, entry));
-            });
-        }
+        system.each_functional(|row, functional, entry| {
+            let next = place.len();
+            forces.push((functional, *place.entry(row).or_insert(next), entry));
+        });
         let w = vec![0.0; reach.functionals()];
         let rows = place.len();
         Condensed { system, factor, compliance, forces, rows, reference, w, first: true }
-    }
-
-    /// r <- r + B^T w
-    fn add_contact_forces(&self, w: &[f64], r: &mut [f64]) {
-        let nodes = self.system.nodes();
-        for e in 0..self.system.d.contact.len() {
-            self.system.functionals(e, |row, a, entry| r[row] += entry * w[e * nodes + a]);
-        }
     }
 }
 
@@ -100,7 +86,7 @@ impl Route for Condensed<'_, '_, '_> {
         until: Until,
     ) -> Result<Pass, SolveError> {
         let mut v = at.linear.clone();
-        self.add_contact_forces(&self.w, &mut v);
+        self.system.add_forces(&self.w, &mut v);
         v.iter_mut().for_each(|v| *v = -*v);
         self.factor.forward(&mut v);
         let mut y = at.p.clone();
@@ -151,7 +137,7 @@ impl Reduced<'_, '_, '_, '_> {
         for &(functional, row, entry) in &self.route.forces {
             sum[row] += of(entry) * s[functional];
         }
-        sum.iter().map(|r| r * r).sum::<f64>().sqrt() / self.route.reference
+        norm(&sum) / self.route.reference
     }
 
     /// The columns of R with their edges.
@@ -208,7 +194,9 @@ impl Body for Reduced<'_, '_, '_, '_> {
         if !(stiffness <= STIFFEST) {
             return Err(SolveError::Singular);
         }
-        let Some(p) = self.route.system.start() else { return Ok(Some(stiffness)) };
+        let Some(p) = self.route.system.course.p(self.route.system.d) else {
+            return Ok(Some(stiffness));
+        };
         let frozen = derivatives(edges, &p).pulling(&self.y);
         let step = self.step(&frozen)?;
         self.advance(1.0, &step);

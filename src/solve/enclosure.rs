@@ -124,8 +124,10 @@ pub struct Verifier<'s, 'd, 'p> {
     of_a: Option<Arc<Factor>>,
     /// For what is pressed: the bounds at the nodes, and the factor, once it is needed.
     held: Option<HeldByContact>,
-    unbalanced: f64,
-    time: Duration,
+    /// The sum of the magnitudes of the residual where it was last evaluated.
+    pub unbalanced: f64,
+    /// The time that it has taken.
+    pub time: Duration,
 }
 
 /// The data of pressed edges with these springs.
@@ -174,16 +176,6 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
     /// Takes the factor of A that a route has made, if it has.
     pub(crate) fn use_factor(&mut self, of_a: Option<Arc<Factor>>) {
         self.of_a = of_a.or(self.of_a.take());
-    }
-
-    /// The time that it has taken.
-    pub fn time(&self) -> Duration {
-        self.time
-    }
-
-    /// The sum of the magnitudes of the residual where it was last evaluated.
-    pub fn unbalanced(&self) -> f64 {
-        self.unbalanced
     }
 
     /// Encloses the solution around `u` by the residual there, or at a field `near` it that is known in double-doubles:

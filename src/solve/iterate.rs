@@ -18,7 +18,7 @@ pub(super) const NOISE: f64 = 4.0;
 
 /// A displacement.
 pub struct Iterate {
-    u: Vec<[DoubleDouble; 2]>,
+    pub(super) u: Vec<[DoubleDouble; 2]>,
 }
 
 /// The linear part of (8) at a displacement.
@@ -48,11 +48,6 @@ impl Iterate {
     /// In doubles.
     pub fn rounded(&self) -> Vec<[f64; 2]> {
         self.u.iter().map(|u| u.map(DoubleDouble::head)).collect()
-    }
-
-    /// As it is.
-    pub(crate) fn as_double_doubles(&self) -> &[[DoubleDouble; 2]] {
-        &self.u
     }
 
     /// The part that rounding to doubles leaves out.

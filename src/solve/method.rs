@@ -84,11 +84,7 @@ impl Gamma0 {
     /// # Errors
     /// [`DataError::Value`].
     pub fn value(gamma0: f64) -> Result<Self, DataError> {
-        if gamma0 > 0.0 && gamma0.is_finite() {
-            Ok(Gamma0::Value(gamma0))
-        } else {
-            Err(refused("gamma0", gamma0, "a positive number"))
-        }
+        Gamma0::Value(gamma0).checked()
     }
 
     /// On each contact edge the gamma0 for which kappa is this positive number on its own triangle.
@@ -96,10 +92,15 @@ impl Gamma0 {
     /// # Errors
     /// [`DataError::Value`].
     pub fn local(kappa: f64) -> Result<Self, DataError> {
-        if kappa > 0.0 && kappa.is_finite() {
-            Ok(Gamma0::Local(kappa))
-        } else {
-            Err(refused("kappa", kappa, "a positive number"))
+        Gamma0::Local(kappa).checked()
+    }
+
+    fn checked(self) -> Result<Self, DataError> {
+        match self {
+            Gamma0::Value(x) | Gamma0::Local(x) if x > 0.0 && x.is_finite() => Ok(self),
+            Gamma0::Value(gamma0) => Err(refused("gamma0", gamma0, "a positive number")),
+            Gamma0::Local(kappa) => Err(refused("kappa", kappa, "a positive number")),
+            Gamma0::Auto => Ok(self),
         }
     }
 }
@@ -110,10 +111,15 @@ impl ContactQuadrature {
     /// # Errors
     /// [`DataError::Value`].
     pub fn gauss(points: usize) -> Result<Self, DataError> {
-        if (1..=MOST_GAUSS_POINTS).contains(&points) {
-            Ok(ContactQuadrature::Gauss(points))
-        } else {
-            Err(refused("the number of Gauss points on an edge", points, "one from 1 to 64"))
+        ContactQuadrature::Gauss(points).checked()
+    }
+
+    fn checked(self) -> Result<Self, DataError> {
+        match self {
+            ContactQuadrature::Gauss(points) if !(1..=MOST_GAUSS_POINTS).contains(&points) => {
+                Err(refused("the number of Gauss points on an edge", points, "one from 1 to 64"))
+            }
+            _ => Ok(self),
         }
     }
 }
@@ -121,19 +127,8 @@ impl ContactQuadrature {
 impl Method {
     /// Nothing, if a case file could ask for this method.
     pub(super) fn check(&self) -> Result<(), DataError> {
-        match self.gamma0 {
-            Gamma0::Auto => {}
-            Gamma0::Value(gamma0) => {
-                Gamma0::value(gamma0)?;
-            }
-            Gamma0::Local(kappa) => {
-                Gamma0::local(kappa)?;
-            }
-        }
-        if let ContactQuadrature::Gauss(points) = self.quadrature {
-            ContactQuadrature::gauss(points)?;
-        }
-        Ok(())
+        self.gamma0.checked()?;
+        self.quadrature.checked().map(|_| ())
     }
 }
 
@@ -143,21 +138,21 @@ impl Settings {
     /// # Errors
     /// [`DataError::Value`].
     pub fn new(tolerance: f64, max_iterations: usize) -> Result<Self, DataError> {
-        if !(tolerance > 0.0 && tolerance < 1.0) {
-            return Err(refused("the tolerance", tolerance, "a number above 0 and below 1"));
-        }
-        if !(1..=MOST_ITERATIONS).contains(&max_iterations) {
-            let expected = "one from 1 to 1000000";
-            return Err(refused("the most steps (max_iterations)", max_iterations, expected));
-        }
-        Ok(Settings { tolerance, max_iterations, ..Settings::default() })
+        let settings = Settings { tolerance, max_iterations, ..Settings::default() };
+        settings.check().map(|()| settings)
     }
 
     /// Nothing, if a case file could ask for these settings.
     pub(super) fn check(&self) -> Result<(), DataError> {
-        if !(self.proof > 0.0 && self.proof < 1.0) {
-            return Err(refused("proof", self.proof, "a number above 0 and below 1"));
+        for (what, share) in [("proof", self.proof), ("the tolerance", self.tolerance)] {
+            if !(share > 0.0 && share < 1.0) {
+                return Err(refused(what, share, "a number above 0 and below 1"));
+            }
         }
-        Settings::new(self.tolerance, self.max_iterations).map(|_| ())
+        if !(1..=MOST_ITERATIONS).contains(&self.max_iterations) {
+            let what = "the most steps (max_iterations)";
+            return Err(refused(what, self.max_iterations, "one from 1 to 1000000"));
+        }
+        Ok(())
     }
 }

@@ -160,7 +160,12 @@ fn solve_discrete_along<'d>(
     }
     let (route, outcome) = best?;
     let verdict = Verdict::new(&outcome.enclosure, settings.proof);
-    let newton = NewtonReport::new(&outcome, settings)?;
+    let newton = NewtonReport {
+        status: outcome.status(settings)?,
+        residuals: outcome.residuals,
+        residual: outcome.residual,
+        factorizations: outcome.factorizations,
+    };
     let mut evaluated = Evaluated::with(d, outcome.u, outcome.forces, &outcome.p);
     let plays = evaluated.settle(d);
     let method = MethodReport {

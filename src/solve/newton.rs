@@ -24,6 +24,7 @@
 
 use super::SolveError;
 use super::body::{Body, ContactEnergy, Derivatives, Step, block, derivatives};
+use crate::fem::dense::norm;
 use crate::fem::double_double::DoubleDouble;
 
 /// Armijo's sigma.
@@ -200,13 +201,13 @@ pub(crate) fn largest_eigenvalue(n: usize, times: impl Fn(&[f64]) -> Vec<f64>) -
     let mut x = vec![1.0; n];
     let mut largest = 0.0;
     for _ in 0..POWER_STEPS {
-        let norm = x.iter().map(|x| x * x).sum::<f64>().sqrt();
-        if !(norm > 0.0) {
+        let size = norm(&x);
+        if !(size > 0.0) {
             return largest;
         }
-        x.iter_mut().for_each(|x| *x /= norm);
+        x.iter_mut().for_each(|x| *x /= size);
         x = times(&x);
-        largest = x.iter().map(|x| x * x).sum::<f64>().sqrt();
+        largest = norm(&x);
     }
     largest
 }

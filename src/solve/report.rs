@@ -5,10 +5,8 @@ use std::time::{Duration, Instant};
 #[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
 
-use super::accuracy::Outcome;
 use super::enclosure::{Enclosure, Unproved};
 use super::route::RouteName;
-use super::{Settings, SolveError};
 use crate::fem::solvability::Play;
 
 /// The verdict on a solution.
@@ -82,19 +80,6 @@ pub struct NewtonReport {
 }
 
 impl NewtonReport {
-    /// The report on an outcome.
-    ///
-    /// # Errors
-    /// Those of [`Outcome::status`].
-    pub(super) fn new(outcome: &Outcome, settings: &Settings) -> Result<Self, SolveError> {
-        Ok(NewtonReport {
-            status: outcome.status(settings)?,
-            residuals: outcome.residuals.clone(),
-            residual: outcome.residual,
-            factorizations: outcome.factorizations,
-        })
-    }
-
     /// How many steps were taken.
     pub fn iterations(&self) -> usize {
         self.residuals.len().saturating_sub(1)

@@ -18,7 +18,7 @@ use super::compliance::Reach;
 use super::condensed::Condensed;
 use super::course::Phase;
 use super::enclosure::Verifier;
-use super::factor::{Factor, Structure};
+use super::factor::Factor;
 use super::report::{Stopwatch, Times};
 use super::system::System;
 use super::{Settings, SolveError};
@@ -47,42 +47,6 @@ const PER_ENTRY: f64 = 12.0;
 /// long.
 const DENSE: f64 = 16.0;
 
-/// The predicted operations of each route.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Prediction {
-    /// Multiplications with an addition; those of dense factorisations count less.
-    pub condensed: f64,
-    /// The same of the assembled route.
-    pub assembled: f64,
-}
-
-impl Prediction {
-    /// For a system of this structure whose contact functionals have this reach.
-    pub fn new(structure: &Structure, reach: &Reach) -> Self {
-        let factor = structure.operations() + PER_ENTRY * structure.stored_entries() as f64;
-        let q = reach.functionals() as f64;
-        let dense = q * q * q / 6.0 / DENSE + 4.0 * q * q;
-        Prediction {
-            condensed: factor + reach.operations(structure) + STEPS * dense,
-            assembled: STEPS * factor,
-        }
-    }
-
-    /// The prediction for a system, with the reach of its contact functionals.
-    pub fn of(system: &System) -> (Reach, Prediction) {
-        let edges = 0..system.d.contact.len();
-        let unknowns: Vec<Vec<usize>> = edges.map(|e| system.unknowns(e)).collect();
-        let reach = Reach::new(&system.structure, &unknowns, system.nodes());
-        let prediction = Prediction::new(&system.structure, &reach);
-        (reach, prediction)
-    }
-
-    /// The route that takes less.
-    pub fn route(&self) -> RouteName {
-        if self.condensed <= self.assembled { RouteName::Condensed } else { RouteName::Assembled }
-    }
-}
-
 /// Solves the system by a given route.
 ///
 /// # Errors
@@ -100,7 +64,9 @@ pub fn by(
 pub struct Strategy<'a, 'd, 'p> {
     system: &'a System<'d, 'p>,
     reach: Reach,
-    prediction: Prediction,
+    /// The multiplications with an addition that each route is predicted to take, condensed and assembled; those of dense
+    /// factorisations count less.
+    predicted: [f64; 2],
     /// The size that residuals are relative to.
     reference: f64,
 }
@@ -111,19 +77,27 @@ impl<'a, 'd, 'p> Strategy<'a, 'd, 'p> {
     /// # Errors
     /// [`SolveError::OutOfRange`].
     pub fn new(system: &'a System<'d, 'p>) -> Result<Self, SolveError> {
-        let (reach, prediction) = Prediction::of(system);
+        let structure = &system.structure;
+        let unknowns: Vec<Vec<usize>> =
+            (0..system.d.contact.len()).map(|e| system.unknowns(e)).collect();
+        let reach = Reach::new(structure, &unknowns, system.nodes());
+        let factor = structure.operations() + PER_ENTRY * structure.stored_entries() as f64;
+        let q = reach.functionals() as f64;
+        let dense = q * q * q / 6.0 / DENSE + 4.0 * q * q;
+        let condensed = factor + reach.operations(structure) + STEPS * dense;
+        let predicted = [condensed, STEPS * factor];
         let reference = accuracy::reference(system.d);
         let in_range = system.largest().is_normal() && reference.is_normal();
         if !(in_range && contact_is_in_range(system)) {
             return Err(SolveError::OutOfRange);
         }
-        Ok(Strategy { system, reach, prediction, reference })
+        Ok(Strategy { system, reach, predicted, reference })
     }
 
     /// The routes to take, one after the other as long as too little is proved.
     pub fn routes(&self) -> &'static [RouteName] {
-        let held = self.system.d.slides.is_none();
-        if held && self.prediction.route() == RouteName::Condensed {
+        let [condensed, assembled] = self.predicted;
+        if self.system.d.slides.is_none() && condensed <= assembled {
             &[RouteName::Condensed, RouteName::Assembled]
         } else {
             &[RouteName::Assembled]
@@ -132,8 +106,7 @@ impl<'a, 'd, 'p> Strategy<'a, 'd, 'p> {
 
     /// The operations that are predicted for a route.
     pub fn predicted(&self, name: RouteName) -> f64 {
-        let Prediction { condensed, assembled } = self.prediction;
-        if name == RouteName::Condensed { condensed } else { assembled }
+        self.predicted[name as usize]
     }
 
     /// Newton's method by a route, refined and verified.
@@ -156,8 +129,8 @@ impl<'a, 'd, 'p> Strategy<'a, 'd, 'p> {
             Verifier::new(self.system, route.factor_of_a()).for_proof(settings.proof);
         let outcome =
             accuracy::refine(self.system, &mut *route, &mut verifier, self.reference, settings)?;
-        times.newton += watch.lap().saturating_sub(verifier.time());
-        times.certify += verifier.time();
+        times.newton += watch.lap().saturating_sub(verifier.time);
+        times.certify += verifier.time;
         Ok(outcome)
     }
 
@@ -166,7 +139,7 @@ impl<'a, 'd, 'p> Strategy<'a, 'd, 'p> {
         let entries = self.reach.stored_entries(&system.structure) + 3 * q * q;
         memory::check(8 * entries as u64)?;
         let mut watch = Stopwatch::start();
-        system.enters(Phase::Factor);
+        system.course.enters(Phase::Factor);
         let factor = match Factor::with(&system.structure, &system.matrix) {
             Err(SolveError::NotPositiveDefinite) if system.d.kappa() < 1.0 => {
                 return Err(SolveError::Singular);
@@ -174,7 +147,7 @@ impl<'a, 'd, 'p> Strategy<'a, 'd, 'p> {
             factored => Arc::new(factored?),
         };
         times.factor += watch.lap();
-        system.enters(Phase::Condense);
+        system.course.enters(Phase::Condense);
         let route = Condensed::new(system, factor, &self.reach, self.reference);
         times.compliance += watch.lap();
         Ok(route)

@@ -23,7 +23,7 @@ pub struct System<'d, 'p> {
     pub matrix: LowerTriangle,
     /// The structure of the factor of A and of every tangent.
     pub structure: Arc<Structure>,
-    course: Course<'d>,
+    pub(super) course: Course<'d>,
     /// The Newton steps so far.
     steps: Cell<usize>,
 }
@@ -51,20 +51,10 @@ impl<'d, 'p> System<'d, 'p> {
         Ok(System { d, numbering, matrix, structure, course, steps: Cell::new(0) })
     }
 
-    /// P of the given start, if there is one, at the nodes of the contact edges.
-    pub(super) fn start(&self) -> Option<Vec<f64>> {
-        self.course.p(self.d)
-    }
-
-    /// Tells who watches that a phase begins.
-    pub(super) fn enters(&self, phase: Phase) {
-        self.course.enters(phase);
-    }
-
     /// Reports that a Newton step begins.
     pub(super) fn enters_step(&self) {
         self.steps.set(self.steps.get() + 1);
-        self.enters(Phase::Newton { step: self.steps.get() });
+        self.course.enters(Phase::Newton { step: self.steps.get() });
     }
 
     /// The nodes of a contact edge, where P is given: two or three.
@@ -91,6 +81,18 @@ impl<'d, 'p> System<'d, 'p> {
                 }
             }
         }
+    }
+
+    /// B: calls `f` with the unknown, the number of the functional and the entry.
+    pub fn each_functional(&self, mut f: impl FnMut(usize, usize, f64)) {
+        for e in 0..self.d.contact.len() {
+            self.functionals(e, |row, a, entry| f(row, e * self.nodes() + a, entry));
+        }
+    }
+
+    /// r <- r + B^T w
+    pub(super) fn add_forces(&self, w: &[f64], r: &mut [f64]) {
+        self.each_functional(|row, i, entry| r[row] += entry * w[i]);
     }
 
     /// The largest diagonal entry of A, infinite if one is no number. The largest eigenvalue is no smaller.

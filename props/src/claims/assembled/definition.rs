@@ -299,7 +299,6 @@ pub(super) fn defined<S: Given, const N: usize>(
     let linear: Vec<S> = big.iter().zip(&load).map(|(&a, &l)| a - l).collect();
     let residual: Vec<S> = linear.iter().zip(&contact).map(|(&a, &p)| a + p).collect();
     let work = inner(&load, u);
-    let without: Vec<S> = big.iter().zip(&contact).map(|(&a, &p)| a + p).collect();
     let half = S::from(1) / S::from(2);
     let traces: Vec<_> = body.contact.iter().map(|side| definition.traces(side, u)).collect();
     let (zero, one) = (S::from(0), S::from(1));
@@ -367,7 +366,6 @@ pub(super) fn defined<S: Given, const N: usize>(
         ("L(u)", vec![work]),
         ("A(u, v) - L(v)", linear),
         ("residual", residual),
-        ("residual without load", without),
         ("J_h", vec![setting.energy::<N>(u, work)]),
         ("reactions", reactions.into_values().flatten().collect()),
     ];

@@ -70,7 +70,6 @@ pub(super) fn assembled(
         ("L(u)", vec![q.work]),
         ("A(u, v) - L(v)", flat(&d.linear_residual(u).values)),
         ("residual", flat(&d.residual(u).values)),
-        ("residual without load", flat(&d.residual_and_load(u))),
         ("J_h", vec![d.energy(u)]),
         ("reactions", q.reactions.values().flatten().copied().collect()),
     ];
