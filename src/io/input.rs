@@ -144,6 +144,7 @@ fn bytes_of(path: &Path, most: u64) -> Result<Vec<u8>, InputError> {
 }
 
 /// All bytes of a stream (standard input, say), at most `most`.
+#[cfg(feature = "files")]
 pub(super) fn read_from(stream: impl Read, most: u64) -> Result<Vec<u8>, InputError> {
     read_into(Vec::new(), stream, most)
 }

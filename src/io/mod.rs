@@ -20,6 +20,7 @@ mod finite;
 pub mod gmsh;
 #[doc(hidden)]
 pub mod input;
+#[cfg(feature = "files")]
 mod numbers;
 #[cfg(feature = "files")]
 #[doc(hidden)]

@@ -11,7 +11,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::case::Case;
 use super::csv;
-use super::files::{Output, OutputError, WriteError};
+use super::files::{Output, OutputError};
 use super::input::FileError;
 use super::numbers::short;
 use super::outputs::{self, Extra};
@@ -87,12 +87,6 @@ impl SweepError {
     }
 }
 
-impl From<WriteError> for SweepError {
-    fn from(error: WriteError) -> Self {
-        SweepError::Output(error.into())
-    }
-}
-
 /// The entry of a run that is still to come when a sweep is stopped.
 const NOT_SOLVED: &str = "not solved";
 
@@ -139,7 +133,8 @@ pub fn run(
     files: bool,
     mut done: impl FnMut(&Sweep) -> Result<(), SweepError>,
 ) -> Result<Sweep, SweepError> {
-    let values: Vec<Vec<String>> = (0..count(axes)?).map(|i| combination(axes, i)).collect();
+    count(axes)?;
+    let values = combinations(axes);
     let read = |values: &[String]| {
         let setting = |(axis, value): (&ParameterAxis, &String)| format!("{}={value}", axis.key);
         let settings: Vec<String> = axes.iter().zip(values).map(setting).collect();
@@ -177,15 +172,15 @@ fn clear(folder: &Path) {
     }
 }
 
-/// The values of run `i`: its digits, the last axis first.
-fn combination(axes: &[ParameterAxis], mut i: usize) -> Vec<String> {
-    let mut values: Vec<String> = Vec::with_capacity(axes.len());
-    for axis in axes.iter().rev() {
-        values.push(axis.values[i % axis.values.len()].clone());
-        i /= axis.values.len();
-    }
-    values.reverse();
-    values
+/// The values of each run; those of the last axis change first.
+fn combinations(axes: &[ParameterAxis]) -> Vec<Vec<String>> {
+    axes.iter().fold(vec![Vec::new()], |runs, axis| {
+        let with = |run: &Vec<String>| {
+            let run = run.clone();
+            axis.values.iter().map(move |value| [run.as_slice(), &[value.clone()]].concat())
+        };
+        runs.iter().flat_map(with).collect()
+    })
 }
 
 /// Solves from the `last` solution, and leaves its own there.
@@ -339,13 +334,13 @@ impl Sweep {
     }
 
     /// Writes sweep.csv into `folder`, and sweep.pvd where the runs have files; returns their paths.
-    pub fn write(&self, folder: &Path) -> Result<Vec<PathBuf>, WriteError> {
+    pub fn write(&self, folder: &Path) -> Result<Vec<PathBuf>, OutputError> {
         let mut output = Output::new(folder)?.replacing(&[COLLECTION]);
         if self.with_files {
             output.stage(COLLECTION, self.pvd().as_bytes())?;
         }
         output.stage(FILE, self.csv().as_bytes())?;
-        output.publish()
+        Ok(output.publish()?)
     }
 }
 
@@ -382,9 +377,9 @@ mod tests {
     fn the_last_axis_changes_first() {
         let axes = [axis("a=1,2"), axis("b=3,4,5")];
         assert_eq!(count(&axes).unwrap(), 6);
-        let runs: Vec<String> = (0..6).map(|i| combination(&axes, i).join("")).collect();
+        let runs: Vec<String> = combinations(&axes).iter().map(|values| values.join("")).collect();
         assert_eq!(runs, ["13", "14", "15", "23", "24", "25"]);
-        assert_eq!(combination(&[], 0), Vec::<String>::new());
+        assert_eq!(combinations(&[]), [Vec::<String>::new()]);
     }
 
     #[test]
