@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::csv;
-use super::files::{Output, OutputError};
+use super::files::{MadeFile, Output, OutputError};
 use super::finite::NotFinite;
 use super::vtu::{CellKind, DataArray, Grid, vtu};
 use crate::fem::{Mesh, Problem};
@@ -19,9 +19,7 @@ impl Solution {
     /// A folder or file that can't be written, a number that is not finite.
     pub fn write(&self, problem: &Problem, folder: &Path) -> Result<Vec<PathBuf>, OutputError> {
         let mut output = Output::new(folder)?;
-        for (file, bytes) in fields(self, problem, None) {
-            output.stage_made(file, bytes)?;
-        }
+        output.stage_made(fields(self, problem, None))?;
         Ok(output.publish()?)
     }
 }
@@ -31,7 +29,7 @@ pub(super) fn fields<'a>(
     solution: &'a Solution,
     problem: &'a Problem,
     indicators: Option<&'a [f64]>,
-) -> impl Iterator<Item = (&'static str, Result<Vec<u8>, NotFinite>)> + 'a {
+) -> impl Iterator<Item = MadeFile> + 'a {
     // One after the other: each takes its memory.
     (0..3).map(move |i| match i {
         0 => ("solution.vtu", solution_vtu(solution, problem, indicators)),

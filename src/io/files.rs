@@ -59,6 +59,9 @@ pub enum OutputError {
     Problem(#[from] fem::DataError),
 }
 
+/// The name of a file and its bytes, unless it has a number that cannot be written.
+pub(crate) type MadeFile = (&'static str, Result<Vec<u8>, NotFinite>);
+
 /// The reason in words; the number that the system gives it helps nobody.
 pub fn reason(error: &io::Error) -> String {
     if error.kind() == io::ErrorKind::AlreadyExists {
@@ -115,14 +118,16 @@ impl Output {
         })
     }
 
-    /// Stages a file whose bytes may not exist.
+    /// Stages files whose bytes may not exist, one after the other.
     pub(crate) fn stage_made(
         &mut self,
-        file: &'static str,
-        bytes: Result<Vec<u8>, NotFinite>,
+        files: impl IntoIterator<Item = MadeFile>,
     ) -> Result<(), OutputError> {
-        let bytes = bytes.map_err(|error| OutputError::Data { file, error })?;
-        Ok(self.stage(file, &bytes)?)
+        for (file, bytes) in files {
+            let bytes = bytes.map_err(|error| OutputError::Data { file, error })?;
+            self.stage(file, &bytes)?;
+        }
+        Ok(())
     }
 
     /// The temporary folder, for another program to write to.

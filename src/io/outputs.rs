@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use super::case::Case;
 use super::certificate;
 use super::fields::fields;
-use super::files::{Output, OutputError};
+use super::files::{MadeFile, Output, OutputError};
 use super::finite::NotFinite;
 use super::picture::draw;
 use super::remarks::{nearest, remarks};
@@ -75,9 +75,7 @@ pub fn write(
         String::new()
     });
     let indicators = continuous.map(|c| c.indicators.as_slice());
-    for (file, bytes) in fields(solution, &case.problem, indicators) {
-        output.stage_made(file, bytes)?;
-    }
+    output.stage_made(fields(solution, &case.problem, indicators))?;
     if extra.report {
         output.stage(report::FILE, report::html(case, &results, &picture).as_bytes())?;
     }
@@ -85,12 +83,10 @@ pub fn write(
         output.stage(PICTURE, picture.as_bytes())?;
     }
     if let (Some(continuous), true) = (continuous, extra.certificate) {
-        for (file, bytes) in certificate_files(&case.title, continuous) {
-            output.stage_made(file, bytes)?;
-        }
+        output.stage_made(certificate_files(&case.title, continuous))?;
     }
     results.seconds.write = start.elapsed().as_secs_f64();
-    output.stage_made("result.json", result_json(&results).map(String::into_bytes))?;
+    output.stage_made([("result.json", result_json(&results).map(String::into_bytes))])?;
     Ok((output.publish()?, results))
 }
 
@@ -123,10 +119,8 @@ pub fn write_certified(
         ],
         cell_data: &[DataArray::scalars("error_bound", &certified.indicators)],
     });
-    output.stage_made(CERTIFIED, grid)?;
-    for (file, bytes) in certificate_files(&case.title, certified) {
-        output.stage_made(file, bytes)?;
-    }
+    output.stage_made([(CERTIFIED, grid)])?;
+    output.stage_made(certificate_files(&case.title, certified))?;
     Ok(output.publish()?)
 }
 
@@ -145,10 +139,7 @@ fn at_nodes(values: &[[f64; 2]], nodes: usize, space: &Space) -> Vec<[f64; 2]> {
     all
 }
 
-fn certificate_files(
-    title: &str,
-    certified: &Continuous,
-) -> [(&'static str, Result<Vec<u8>, NotFinite>); 2] {
+fn certificate_files(title: &str, certified: &Continuous) -> [MadeFile; 2] {
     let forces = &certified.quantities.evidence;
     let (header, arrays) =
         certificate::encode(title, &certified.certificate, &certified.proof, forces);
