@@ -8,8 +8,7 @@ use signorini::certify::adapt::Stage;
 use signorini::io::files::spare;
 use signorini::io::outputs::{self, Extra};
 use signorini::io::result::{Results, result_json};
-use signorini::io::run::{self, Solved};
-use signorini::io::{Case, input, summary};
+use signorini::io::{input, run, summary};
 use signorini::quote;
 
 use super::arguments::{CaseArguments, Engine, SolveOptions};
@@ -63,7 +62,13 @@ fn solve(
     if with_files {
         spare(&folder, &outputs::FILES, &case.sources).map_err(wrong)?;
     }
-    let (case, mut solved) = as_asked(case, &phases)?;
+    let file = case.file.clone();
+    let watcher = |stage| match stage {
+        Stage::Solve(phase) => phases.enter_solve(phase),
+        Stage::Certify(level) => phases.enter(format!("certifying level {level}")),
+        _ => phases.enter("refining the mesh"),
+    };
+    let (case, mut solved) = run::solve(case, None, &watcher).map_err(|e| unsolvable(&file, &e))?;
     if extra.certificate && solved.certified.is_none() {
         phases.enter("certifying");
         solved.certify(&case);
@@ -80,17 +85,6 @@ fn solve(
         complain(&remark);
     }
     Ok((results, files))
-}
-
-/// Solves a case on its own mesh, or on adapted ones.
-fn as_asked(case: Case, phases: &Phases) -> Result<(Case, Solved), Failure> {
-    let file = case.file.clone();
-    let watcher = |stage| match stage {
-        Stage::Solve(phase) => phases.enter_solve(phase),
-        Stage::Certify(level) => phases.enter(format!("certifying level {level}")),
-        _ => phases.enter("refining the mesh"),
-    };
-    run::solve(case, None, &watcher).map_err(|e| unsolvable(&file, &e))
 }
 
 /// Says that the results in `folder` are those of another case than `file`, if they are: two cases of one name write into one

@@ -221,11 +221,19 @@ mod tests {
     }
 
     #[test]
-    fn every_point_has_its_mark_and_neighbours_their_line() {
-        let text = figure(&sample(vec![[0.1, 1e-3], [0.2, 3e-3], [0.4, 8e-3]])).unwrap();
+    fn every_point_that_is_positive_has_its_mark_and_a_nan_is_refused() {
         // One mark more in the legend.
-        assert_eq!(text.matches("<circle").count(), 4);
-        assert!(text.contains("A &lt; B") && text.contains("\n1.5\n"));
+        for (first, marks) in [(1e-3, 4), (0.0, 3)] {
+            let text = figure(&sample(vec![[0.1, first], [0.2, 3e-3], [0.4, 8e-3]])).unwrap();
+            assert_eq!(text.matches("<circle").count(), marks);
+            assert_eq!(text.contains("\n1.5\n"), marks == 4);
+            assert!(text.contains("A &lt; B"));
+        }
+        for points in [vec![[0.1, 0.0]], vec![]] {
+            assert!(figure(&sample(points)).is_ok());
+        }
+        let error = figure(&sample(vec![[0.1, f64::NAN]])).unwrap_err().to_string();
+        assert_eq!(error, "energy: P1[0] is NaN or infinite; expected a finite number");
     }
 
     #[test]
@@ -239,20 +247,6 @@ mod tests {
         });
         let (first, second) = (places.next().flatten().unwrap(), places.next().flatten().unwrap());
         assert_eq!(second - first, LEGEND_LINE);
-    }
-
-    #[test]
-    fn points_that_are_not_positive_are_left_out() {
-        let text = figure(&sample(vec![[0.1, 0.0], [0.2, 3e-3], [0.4, 8e-3]])).unwrap();
-        assert_eq!(text.matches("<circle").count(), 3);
-        assert!(figure(&sample(vec![[0.1, 0.0]])).is_ok());
-        assert!(figure(&sample(vec![])).is_ok());
-    }
-
-    #[test]
-    fn a_nan_is_refused() {
-        let error = figure(&sample(vec![[0.1, f64::NAN]])).unwrap_err().to_string();
-        assert_eq!(error, "energy: P1[0] is NaN or infinite; expected a finite number");
     }
 
     #[test]
