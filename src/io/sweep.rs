@@ -177,7 +177,7 @@ fn combinations(axes: &[ParameterAxis]) -> Vec<Vec<String>> {
     axes.iter().fold(vec![Vec::new()], |runs, axis| {
         let with = |run: &Vec<String>| {
             let run = run.clone();
-            axis.values.iter().map(move |value| [run.as_slice(), &[value.clone()]].concat())
+            axis.values.iter().map(move |value| [&run[..], std::slice::from_ref(value)].concat())
         };
         runs.iter().flat_map(with).collect()
     })
