@@ -119,14 +119,10 @@ impl Mesh {
     /// # Errors
     /// [`MeshError::NoSuchSurface`], with the names that there are.
     pub fn surface(&self, name: &str) -> Result<&[usize], MeshError> {
-        self.topology.surfaces.get(name).map(Vec::as_slice).ok_or_else(|| {
-            MeshError::NoSuchSurface {
-                name: name.to_owned(),
-                known: listed(
-                    self.topology.surfaces.keys(),
-                    "none (in Gmsh a Physical Surface is one)",
-                ),
-            }
+        let surfaces = &self.topology.surfaces;
+        surfaces.get(name).map(Vec::as_slice).ok_or_else(|| {
+            let known = listed(surfaces.keys(), "none (in Gmsh a Physical Surface is one)");
+            MeshError::NoSuchSurface { name: name.to_owned(), known }
         })
     }
 
@@ -180,14 +176,10 @@ impl Mesh {
         if let Some(&ends) = self.topology.inner.get(boundary) {
             return Err(MeshError::InnerEdge { boundary: boundary.to_owned(), ends });
         }
-        self.topology.boundaries.get(boundary).map(Vec::as_slice).ok_or_else(|| {
-            MeshError::NoSuchBoundary {
-                name: boundary.to_owned(),
-                known: listed(
-                    self.topology.boundaries.keys(),
-                    "none (in Gmsh a Physical Curve is one)",
-                ),
-            }
+        let boundaries = &self.topology.boundaries;
+        boundaries.get(boundary).map(Vec::as_slice).ok_or_else(|| {
+            let known = listed(boundaries.keys(), "none (in Gmsh a Physical Curve is one)");
+            MeshError::NoSuchBoundary { name: boundary.to_owned(), known }
         })
     }
 

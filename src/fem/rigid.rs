@@ -53,8 +53,9 @@ pub struct FreeMotion {
     place: Option<[f64; 2]>,
 }
 
-/// Components of a motion below this share of the largest one are rounding errors.
-const STILL: f64 = 1e-9;
+/// Components of a motion below this share of the largest one are rounding errors; so is the work of loads on a motion below this
+/// share of the largest work of single loads.
+pub(super) const STILL: f64 = 1e-9;
 
 /// A singular value below this share of the largest stops nothing; likewise what is this small beside motions of size 1. Rounding
 /// leaves some 1e-15; a part of slenderness s held at its end alone makes 1/s.

@@ -17,11 +17,8 @@ use super::dense::{dot, inner, least_squares, norm, singular_vectors};
 use super::discretization::Discretization;
 use super::element::bernstein;
 use super::mesh::NO_ANGLE;
-use super::rigid::{FREE, FreeMotion, Parts, null_space};
+use super::rigid::{FREE, FreeMotion, Parts, STILL, null_space};
 use super::space::Space;
-
-/// Work below this share of the largest work of single loads is rounding.
-const BALANCED: f64 = 1e-9;
 
 /// Loads must go on pressing when they are changed by this share: a body on the verge of tipping is not held.
 const MARGIN: f64 = 1e-6;
@@ -47,8 +44,8 @@ pub struct Slides {
     motions: Vec<(FreeMotion, Vec<f64>)>,
     /// Where edges that do not press stop them.
     bounds: Vec<(Vec<f64>, f64)>,
-    /// The contact edges that do, in their order.
-    stopping: Vec<usize>,
+    /// The contact edges that do not press and stop one of the motions somewhere, in their order.
+    pub(crate) stopping: Vec<usize>,
     /// For each contact edge whether it presses in no solution; empty if all may.
     pub idle: Vec<bool>,
 }
@@ -176,7 +173,7 @@ fn press(
     let mut verge: Option<Vec<f64>> = None;
     loop {
         let rows = all(&edges);
-        if let Some(motion) = nnls_residual(&rows, loads, BALANCED) {
+        if let Some(motion) = nnls_residual(&rows, loads, STILL) {
             let driven = verge.is_none();
             return Err(Some((verge.unwrap_or(motion), driven)));
         }
@@ -186,7 +183,7 @@ fn press(
             [-MARGIN, MARGIN].into_iter().find_map(|by| {
                 let changed: Vec<f64> =
                     loads.iter().zip(&direction).map(|(l, d)| l + by * d).collect();
-                nnls_residual(&rows, &changed, BALANCED)
+                nnls_residual(&rows, &changed, STILL)
             })
         });
         let Some(motion) = leaves else { break };
@@ -264,16 +261,6 @@ impl Slides {
         Some(Slides { bounds, stopping, idle: idle.clone(), ..slides })
     }
 
-    /// The number of motions.
-    pub fn count(&self) -> usize {
-        self.basis.len()
-    }
-
-    /// The contact edges that do not press and stop one of the motions somewhere.
-    pub(crate) fn stopping_edges(&self) -> &[usize] {
-        &self.stopping
-    }
-
     /// A motion that leads from u to a solution away from all obstacles that do not press it, if there is one.
     pub(crate) fn to_inside(&self, u: &[[f64; 2]]) -> Option<Vec<f64>> {
         let at = self.at(u);
@@ -313,7 +300,7 @@ impl Slides {
         let violated = |b: &(Vec<f64>, f64)| -bound(b) / norm(&b.0);
         let scale = self.bounds.iter().map(violated).fold(0.0, f64::max);
         if scale == 0.0 {
-            return Some(vec![0.0; self.count()]);
+            return Some(vec![0.0; self.basis.len()]);
         }
         let row = |b: &(Vec<f64>, f64)| {
             let length = norm(&b.0);
@@ -321,8 +308,8 @@ impl Slides {
             negative.chain([-bound(b) / length / scale]).collect()
         };
         let rows: Vec<Vec<f64>> = self.bounds.iter().map(row).collect();
-        let mut target = vec![0.0; self.count() + 1];
-        target[self.count()] = 1.0;
+        let mut target = vec![0.0; self.basis.len() + 1];
+        target[self.basis.len()] = 1.0;
         let mut rest = nnls_residual(&rows, &target, FREE)?;
         let last = rest.pop()?;
         (last > FREE).then(|| rest.iter().map(|r| -scale * r / last).collect())

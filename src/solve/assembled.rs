@@ -53,7 +53,7 @@ impl<'a, 'd, 'p> Assembled<'a, 'd, 'p> {
         let springs = at.hessian.iter();
         let pressing: Vec<bool> = springs.map(|h| h.iter().any(|h| *h != 0.0)).collect();
         let parts = Parts::new(d.space.mesh());
-        solvability::free_where(d, &parts, &pressing).len() > slides.count()
+        solvability::free_where(d, &parts, &pressing).len() > slides.basis.len()
     }
 
     /// The Hessian with a little of the springs of all edges.
@@ -70,12 +70,12 @@ impl<'a, 'd, 'p> Assembled<'a, 'd, 'p> {
                 let mut hessian = at.hessian.clone();
                 let mut factored = Err(SolveError::NotPositiveDefinite);
                 if !(coercive && self.is_loose(at)) {
-                    factored = factor_with(self.system, &at.hessian);
+                    factored = self.system.factor(&at.hessian);
                     self.factorizations += 1;
                 }
                 if coercive && matches!(factored, Err(SolveError::NotPositiveDefinite)) {
                     hessian = self.supported(at);
-                    factored = factor_with(self.system, &hessian);
+                    factored = self.system.factor(&hessian);
                     self.factorizations += 1;
                     if matches!(factored, Err(SolveError::NotPositiveDefinite)) {
                         return Err(SolveError::Singular);
@@ -89,22 +89,6 @@ impl<'a, 'd, 'p> Assembled<'a, 'd, 'p> {
         }
         Ok(self.factored.insert((factor, hessian)))
     }
-}
-
-/// L of A + B^T h B, where `springs` are the blocks of h, one for each contact edge.
-///
-/// # Errors
-/// As [`Factor::with`].
-pub(super) fn factor_with(
-    system: &System,
-    springs: &[DMatrix<f64>],
-) -> Result<Arc<Factor>, SolveError> {
-    let System { d, numbering, structure, matrix, .. } = system;
-    let mut tangent = matrix.clone();
-    for (edge, h) in d.contact.iter().zip(springs) {
-        tangent.add_contact_springs(numbering, edge, h);
-    }
-    Factor::with(structure, &tangent).map(Arc::new)
 }
 
 /// A factor with the Psi'' of its tangent.

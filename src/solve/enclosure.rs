@@ -22,7 +22,6 @@ use nalgebra::DMatrix;
 use thiserror::Error;
 
 use super::SolveError;
-use super::assembled::factor_with;
 use super::balls::{field, free, kappa, length, lines, root};
 use super::factor::Factor;
 use super::intervals::{Arithmetic, EnclosedResidual, Intervals};
@@ -206,8 +205,8 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         let Some(loose) = Slides::around(d, u) else { return self.around(u, u, near, arithmetic) };
         let mut reported = u.to_vec();
         loose.least_norm(&mut reported);
-        let stopped = d.slides.as_ref().map_or(0, Slides::count);
-        if loose.count() <= stopped && loose.stopping_edges().is_empty() {
+        let stopped = d.slides.as_ref().map_or(0, |slides| slides.basis.len());
+        if loose.basis.len() <= stopped && loose.stopping.is_empty() {
             return self.around(u, &reported, near, arithmetic);
         }
         // Motions that only edges stop which do not press: of all solutions one that is away from these.
@@ -302,7 +301,10 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
                 Some(factor) => factor,
                 None => factor.insert(match &self.of_a {
                     Some(of_a) if d.slides.is_none() => Arc::clone(of_a),
-                    _ => factor_for(system, springs)?,
+                    _ => system.factor(springs).map_err(|error| match error {
+                        SolveError::NotPositiveDefinite => Unproved::NoFactor,
+                        _ => Unproved::OutOfMemory,
+                    })?,
                 }),
             };
             let product = Product { system, lines: &self.lines, pressed, arithmetic };
@@ -345,14 +347,6 @@ impl Enclosure {
     }
 }
 
-/// L of A with these springs at the contact edges.
-fn factor_for(system: &System, springs: &[DMatrix<f64>]) -> Result<Arc<Factor>, Unproved> {
-    factor_with(system, springs).map_err(|error| match error {
-        SolveError::NotPositiveDefinite => Unproved::NoFactor,
-        _ => Unproved::OutOfMemory,
-    })
-}
-
 /// u moved along the motions that slide, to where `reported` is.
 fn slid(
     mut u: Vec<[PreciseBall; 2]>,
@@ -378,7 +372,7 @@ fn stays_off(
     u: &[[PreciseBall; 2]],
     (nodes, radius): (&[f64], f64),
 ) -> bool {
-    let stopping = d.slides.as_ref().map_or(&[][..], Slides::stopping_edges);
+    let stopping = d.slides.as_ref().map_or(&[][..], |slides| &slides.stopping);
     stopping.iter().map(|&e| &lines[e]).all(|line| {
         let on_edge = d.space.edge_nodes(line.edge);
         let far = on_edge.into_iter().map(|node| nodes[node]).fold(0.0, f64::max);

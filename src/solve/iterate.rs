@@ -154,7 +154,7 @@ impl Evaluated {
     /// presses change by it. Gives how far the body may move from there.
     pub fn settle(&mut self, d: &Discretization) -> Vec<Play> {
         let Some(slides) = Slides::around(d, &self.u) else { return Vec::new() };
-        if slides.count() == 0 {
+        if slides.basis.is_empty() {
             return Vec::new();
         }
         slides.least_norm(&mut self.u);

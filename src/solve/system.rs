@@ -5,9 +5,11 @@
 use std::cell::Cell;
 use std::sync::Arc;
 
+use nalgebra::DMatrix;
+
 use super::SolveError;
 use super::course::{Course, Phase};
-use super::factor::Structure;
+use super::factor::{Factor, Structure};
 use super::ordering::nested_dissection;
 use crate::fem::ball::larger;
 use crate::fem::discretization::Discretization;
@@ -81,6 +83,18 @@ impl<'d, 'p> System<'d, 'p> {
                 }
             }
         }
+    }
+
+    /// L of A + B^T h B, where `springs` are the blocks of h, one for each contact edge.
+    ///
+    /// # Errors
+    /// As [`Factor::with`].
+    pub(super) fn factor(&self, springs: &[DMatrix<f64>]) -> Result<Arc<Factor>, SolveError> {
+        let mut tangent = self.matrix.clone();
+        for (edge, h) in self.d.contact.iter().zip(springs) {
+            tangent.add_contact_springs(&self.numbering, edge, h);
+        }
+        Factor::with(&self.structure, &tangent).map(Arc::new)
     }
 
     /// B: calls `f` with the unknown, the number of the functional and the entry.

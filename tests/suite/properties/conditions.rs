@@ -197,7 +197,7 @@ fn held(prescribed: [bool; 2], force: [f64; 2]) -> Result<Option<usize>, String>
     let material = Material::lame(1.0, 1.0, Plane::Strain);
     let problem = Problem::new(block(0.0)?, material, force.map(constant), conditions);
     match discretize(&problem, &Method::default()) {
-        Ok(d) => Ok(Some(d.slides.map_or(0, |slides| slides.count()))),
+        Ok(d) => Ok(Some(d.slides.map_or(0, |slides| slides.basis.len()))),
         Err(SolveError::Data(DataError::RigidMotion { .. })) => Ok(None),
         Err(other) => Err(other.to_string()),
     }
