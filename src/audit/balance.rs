@@ -175,7 +175,7 @@ pub(crate) struct OnEdges<'a, S> {
     pub owners: &'a [[Option<Owner>; 2]],
     pub points: &'a [Vector2<S>],
     /// tau N at both ends.
-    pub forces: &'a [[Vector2<S>; 2]],
+    pub forces: &'a dyn Fn(usize) -> [Vector2<S>; 2],
 }
 
 impl<S: Enclosing> OnEdges<'_, S> {
@@ -187,7 +187,7 @@ impl<S: Enclosing> OnEdges<'_, S> {
     pub fn close(
         &self,
         tree: &SpanningTree,
-        mut wrenches: Vec<Wrench<S>>,
+        wrenches: &mut [Wrench<S>],
     ) -> Result<Closed<S>, Unbalanced> {
         let added = vec![[Vector2::zeros(); 2]; self.certificate.edges.len()];
         let mut closed = Closed { added, changes: Vec::new(), stops: Vec::new() };
@@ -262,7 +262,7 @@ impl<S: Enclosing> OnEdges<'_, S> {
     fn pull(&self, part: &[usize]) -> f64 {
         let edges = part.iter().flat_map(|&t| self.certificate.pieces[t].edges);
         let outer = edges.filter(|&e| self.owners[e][1].is_none());
-        outer.flat_map(|e| self.forces[e]).map(length).sum()
+        outer.flat_map(|e| (self.forces)(e)).map(length).sum()
     }
 
     /// The force of a hold at both ends of its edge.
@@ -272,7 +272,7 @@ impl<S: Enclosing> OnEdges<'_, S> {
             Variation::Linear(d) => [-exactly::<S>(d), exactly(d)],
             Variation::Stop(_) => [Vector2::zeros(); 2],
             Variation::Pressure(ends) => {
-                let force = self.forces[hold.edge];
+                let force = (self.forces)(hold.edge);
                 [0, 1].map(|k| if ends[k] { force[k] } else { Vector2::zeros() })
             }
         }

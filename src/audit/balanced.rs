@@ -203,19 +203,28 @@ impl Certificate {
 impl<S: Enclosing> Balanced<S> {
     /// The forces on the triangles from those on the edges, put in equilibrium.
     fn close(&mut self, certificate: &Certificate) -> Result<(), Unbalanced> {
-        let resultant = |(t, piece): (usize, &Piece)| {
-            let forces = outward(piece.edges, t, &self.topology, &self.forces);
-            Loads { forces, body: piece.body.map(exactly) }.resultant(&self.triangles[t])
-        };
-        self.resultants = certificate.pieces.iter().enumerate().map(resultant).collect();
+        let count = certificate.pieces.len();
+        let mut wrenches = Vec::with_capacity(count);
+        for t in 0..count {
+            let loads = self.loads_as_given(certificate, t);
+            wrenches.push(loads.resultant(&self.triangles[t]));
+        }
+        self.resultants = wrenches.clone();
         let Balanced { points, topology: Topology { owners, tree }, forces, .. } = self;
-        let on_edges = OnEdges { certificate, owners, points, forces };
-        self.closed = on_edges.close(tree, self.resultants.clone())?;
+        let on_edges = OnEdges { certificate, owners, points, forces: &|e| forces[e] };
+        self.closed = on_edges.close(tree, &mut wrenches)?;
         let sum = |(given, added): (&[Vector2<S>; 2], &[Vector2<S>; 2])| {
             [given[0] + added[0], given[1] + added[1]]
         };
         self.in_balance = self.forces.iter().zip(&self.closed.added).map(sum).collect();
         Ok(())
+    }
+
+    /// The forces on triangle `t` towards its outside, and its body force.
+    pub fn loads_as_given(&self, certificate: &Certificate, t: usize) -> Loads<S> {
+        let piece = &certificate.pieces[t];
+        let forces = outward(piece.edges, t, &self.topology, &self.forces);
+        Loads { forces, body: piece.body.map(exactly) }
     }
 
     /// C eps(v) and C eps(v) - tau on triangle `t`.
@@ -227,6 +236,18 @@ impl<S: Enclosing> Balanced<S> {
         let tau = if piece.is_bent() { tau.bent(&frame, &loads.body) } else { tau };
         let apart = tau.distance_from(&sigma);
         (sigma, apart)
+    }
+
+    /// Leaves out the part by which a load that is not constant bends tau.
+    pub fn without_bending(
+        &self,
+        certificate: &Certificate,
+        t: usize,
+    ) -> (Affine<S>, Composite<S>) {
+        let piece = &certificate.pieces[t];
+        let frame = Frame::new(&self.triangles[t]);
+        let sigma = self.v.stress(piece, &self.triangles[t]);
+        (sigma, Composite::new(&frame, &self.loads(piece, t)).distance_from(&sigma))
     }
 
     /// The forces on triangle `t` towards its outside, in equilibrium, and its body force.
@@ -241,7 +262,7 @@ impl<S: Enclosing> Balanced<S> {
 }
 
 /// The forces on the edges of triangle `t` towards its outside.
-fn outward<S: Enclosing>(
+pub(crate) fn outward<S: Enclosing>(
     edges: [usize; 3],
     t: usize,
     topology: &Topology,

@@ -11,12 +11,19 @@
 //! The pair is itself a certificate on the same triangles, of the linear problem whose contact edges are held along the
 //! direction of contact, an axis, or free.
 
-use super::balanced::Balanced;
-use super::certificate::{Certificate, Curved, Edge, Piece, Role, is_oblique};
+use nalgebra::Vector2;
+
+use super::balance::{OnEdges, Stop};
+use super::balanced::{Balanced, Topology, outward};
+use super::certificate::{Certificate, Curved, Edge, Piece, Role, Shape, exactly, is_oblique};
 use super::checks::Rejection;
-use super::forces::{Cover, ForceTarget, Forces, WrongLifting, component, ratio, reach};
-use crate::kernel::composite::Composite;
-use crate::kernel::{Ball, Enclosing, Material, Stress};
+use super::forces::{
+    Cover, ForceTarget, Forces, WrongLifting, component, energy, mean, ratio, reach,
+};
+use super::stresses::{Ground, Lengths, Numbers, RoundedLaw, RoundedLaws, Staged, resultant};
+use crate::kernel::ball::centre_and_radius;
+use crate::kernel::composite::{Composite, Frame, Loads, Wrench};
+use crate::kernel::{Ball, Enclosing, Triangle};
 
 /// Why a dual pair proves nothing.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -179,47 +186,197 @@ impl Certificate {
     }
 }
 
-impl<S: Enclosing> Forces<'_, S> {
-    /// Encloses the contact force with the weight of its target by a dual pair, whose tractions balance on every triangle to the
-    /// rounding of doubles; an end may be infinite.
+/// A dual pair whose triangles are in equilibrium with the tractions of rho, which are known up to rounding.
+struct Pair<S> {
+    w: Shape<S>,
+    /// rho N at both ends of each edge.
+    forces: Vec<[Vector2<f64>; 2]>,
+    /// How far a component of it may be off on each edge.
+    off: Vec<f64>,
+    stops: Vec<Stop<Ball>>,
+}
+
+/// Vectors in doubles, and how far a component may be from them.
+fn in_doubles(vectors: [Vector2<Ball>; 2]) -> ([Vector2<f64>; 2], f64) {
+    let mut off = 0.0_f64;
+    let values = vectors.map(|v| {
+        v.map(|x| {
+            let (value, radius) = centre_and_radius(x);
+            off = off.max(radius);
+            value
+        })
+    });
+    (values, off)
+}
+
+/// A dual pair with its sums over the triangles.
+struct Summed<S> {
+    pair: Pair<S>,
+    /// int C^-1 (C eps(v) - tau) : (C eps(w) - rho)
+    product: Ball,
+    /// An upper bound of eta.
+    eta: f64,
+    /// An upper bound of |w|_a^2, where the error of data is to be multiplied with it.
+    norm: Ball,
+    /// The shares of the triangles in eta^2.
+    shares: Vec<f64>,
+}
+
+impl<S: Staged> Forces<'_, S> {
+    /// Encloses the contact force with the weight of its target by each of some dual pairs; an end may be infinite.
     ///
     /// # Errors
     /// A pair that is none; one whose w is not what it should be on Gamma_C.
-    pub fn by_pair(
+    pub fn by_pairs(
         &self,
-        target: ForceTarget,
-        pair: &Certificate,
+        pairs: &[(ForceTarget, Certificate)],
         cover: Option<&Cover>,
-    ) -> Result<ByPair, WrongPair> {
+    ) -> Result<Vec<ByPair>, WrongPair> {
+        let sums = self.sums(pairs)?;
+        let all = pairs.iter().zip(sums);
+        all.map(|((target, pair), sums)| self.by_sums(pair, *target, sums, cover)).collect()
+    }
+
+    /// Verifies that this is a pair, whose tractions balance on every triangle to the rounding of doubles, and bounds those that
+    /// make up for the rest.
+    fn pair(&self, pair: &Certificate) -> Result<Pair<S>, WrongPair> {
         let (certificate, state) = (self.certificate, self.state);
         pair.check_fields()?;
         certificate.check_pair(pair, state)?;
-        let dual = pair.balanced::<S>(state.topology.clone())?;
-        pair.check_balance(&dual)?;
-        // int C^-1 (C eps(v) - tau) : (C eps(w) - rho), eta^2 and, where the error of data is to be multiplied with it, |w|_a^2.
-        let (mut product, mut eta, mut norm) = (S::from(0), S::from(0), S::from(0));
-        let mut shares = Vec::with_capacity(pair.pieces.len());
-        for (t, piece) in pair.pieces.iter().enumerate() {
-            let (material, double_area) = (piece.material(), dual.triangles[t].double_area());
-            let (_, own) = state.stresses(certificate, t);
-            let (sigma, apart) = dual.stresses(pair, t);
-            product += product_of(&material, &own, &apart, double_area);
-            let share = apart.energy(&material, double_area);
-            shares.push(share.upper());
-            eta += share;
-            if self.loose != 0.0 {
-                norm += sigma.energy(&material, double_area);
+        pair.check_displacement()?;
+        let on_edge = |edge: &Edge| match edge.role {
+            Role::Inner(force) | Role::Held(_, force) => force.map(exactly),
+            Role::Supported { along, force, .. } => {
+                force.map(|p| exactly::<Ball>(along) * Ball::point(p))
+            }
+            Role::Loaded(_) | Role::Pressed(_) | Role::Contact { .. } => [Vector2::zeros(); 2],
+        };
+        let forces: Vec<[Vector2<Ball>; 2]> = pair.edges.iter().map(on_edge).collect();
+        let points = pair.places::<Ball>();
+        let Topology { owners, tree } = &state.topology;
+        let of_piece = |(t, piece): (usize, &Piece)| {
+            let triangle = Triangle { vertices: piece.vertices.map(|p| points[p]) };
+            resultant(&triangle, outward(piece.edges, t, &state.topology, &forces))
+        };
+        let resultants: Vec<Wrench<Ball>> = pair.pieces.iter().enumerate().map(of_piece).collect();
+        let given = |e: usize| forces[e];
+        let on_edges = OnEdges { certificate: pair, owners, points: &points, forces: &given };
+        let closed = on_edges.close(tree, &mut resultants.clone()).map_err(Rejection::from)?;
+        pair.check_balance((&forces, &resultants), |_| Ball::from(0), &closed)?;
+        let in_balance = forces
+            .iter()
+            .zip(&closed.added)
+            .map(|(given, added)| in_doubles([given[0] + added[0], given[1] + added[1]]));
+        let (forces, off) = in_balance.unzip();
+        Ok(Pair { w: pair.shape(), forces, off, stops: closed.stops })
+    }
+
+    /// The numbers of C eps(w) - rho on triangle `t`, in doubles if these are sharp beside them or a `typical` length.
+    fn numbers(
+        &self,
+        (t, law): (usize, &RoundedLaw),
+        pair: &Pair<S>,
+        ground: Option<&(Ground, Frame<f64>)>,
+        typical: f64,
+    ) -> Numbers {
+        let (state, piece) = (self.state, &self.certificate.pieces[t]);
+        let mut forces = outward(piece.edges, t, &state.topology, &pair.forces);
+        let mut off = piece.edges.iter().map(|&e| pair.off[e]).fold(0.0, f64::max);
+        for stop in pair.stops.iter().filter(|stop| stop.root == t) {
+            let (more, beside) = in_doubles(stop.force);
+            (0..2).for_each(|k| forces[0][k] += more[k]);
+            off += beside + f64::EPSILON * forces[0].iter().map(Vector2::amax).sum::<f64>();
+        }
+        let in_doubles = ground.and_then(|(ground, frame)| {
+            let w = (piece.vertices.map(|p| pair.w.points[p]), pair.w.bulges_of(piece));
+            ground.numbers(frame, &piece.material, w, (forces, off), typical)
+        });
+        in_doubles.unwrap_or_else(|| {
+            let triangle = &state.triangles[t];
+            let forces = forces.map(|ends| ends.map(|force| exactly(force.into())));
+            let loads = Loads { forces, body: [Vector2::zeros(); 3] };
+            let sigma = pair.w.stress(piece, triangle);
+            let apart = Composite::new(&Frame::new(triangle), &loads).distance_from(&sigma);
+            Numbers::slowly(law, piece, triangle, &apart, off)
+        })
+    }
+
+    /// Verifies that these are pairs and sums over the triangles.
+    fn sums(&self, pairs: &[(ForceTarget, Certificate)]) -> Result<Vec<Summed<S>>, WrongPair> {
+        if pairs.is_empty() {
+            return Ok(Vec::new());
+        }
+        let pieces = &self.certificate.pieces;
+        let start = |(_, pair): &(ForceTarget, Certificate)| {
+            let (zero, shares) = (Ball::from(0), Vec::with_capacity(pieces.len()));
+            Ok((self.pair(pair)?, zero, Lengths::new(), zero, shares))
+        };
+        let mut sums = pairs.iter().map(start).collect::<Result<Vec<_>, WrongPair>>()?;
+        let (own, mut length, mut laws) = (self.own(), Lengths::new(), RoundedLaws::default());
+        for (t, piece) in pieces.iter().enumerate() {
+            let (law, triangle) = (laws.of(&piece.material), &self.state.triangles[t]);
+            let ground = Ground::new(law, triangle).map(|ground| {
+                let frame = Frame::new(&ground.triangle);
+                (ground, frame)
+            });
+            length.add(&own[t]);
+            for (pair, product, eta, norm, shares) in &mut sums {
+                let apart = self.numbers((t, law), pair, ground.as_ref(), eta.typical(t));
+                *product += Ball::point(own[t].dot(&apart));
+                shares.push(eta.add(&apart));
+                if self.loose != 0.0 {
+                    let ground = ground.as_ref().map(|(ground, _)| ground);
+                    *norm += energy(&pair.w, (piece, triangle), ground, mean(*norm, t));
+                }
             }
         }
-        let (on_contact, most) = self.on_contact(pair, &dual);
-        let middle = self.within(&dual.v)
-            + certificate.work_of_tractions(&state.forces, &dual.v)
-            + product / S::from(2)
-            + on_contact;
-        let missed = self.all_missed(&dual.v, target, cover)?;
+        let summed = |(pair, product, eta, norm, shares): (_, _, Lengths, _, _)| {
+            let product = product + Ball::around(0.0, length.error_of_product(eta));
+            Summed { pair, product, eta: eta.length(), norm, shares }
+        };
+        Ok(sums.into_iter().map(summed).collect())
+    }
+
+    fn by_sums(
+        &self,
+        roles: &Certificate,
+        target: ForceTarget,
+        sums: Summed<S>,
+        cover: Option<&Cover>,
+    ) -> Result<ByPair, WrongPair> {
+        let (certificate, state) = (self.certificate, self.state);
+        let Summed { pair, product, eta, norm, shares } = sums;
+        let mut middle =
+            self.within(&pair.w) + certificate.work_of_tractions(&state.forces, &pair.w);
+        // What the corrections of r may add, and r at least and at most in units of |tau_n|.
+        let (mut beside, mut most) = (Ball::from(0), [0.0_f64; 2]);
+        for e in self.contact() {
+            let Role::Contact { pressure, .. } = certificate.edges[e].role else { continue };
+            if matches!(roles.edges[e].role, Role::Loaded(_)) {
+                continue;
+            }
+            let d = certificate.directions(e, &state.points);
+            let [start, end] = certificate.edges[e].ends.map(|p| state.points[p]);
+            let length = ball((end - start).dot(&(end - start)).sqrt());
+            // |E| r at both ends.
+            let r = [0, 1].map(|k| component(exactly(pair.forces[e][k].into()), d[k]));
+            let g = certificate.gap(e, state);
+            let (four, three, two) = (S::from(4), S::from(3), S::from(2));
+            let at_start = g[0] * four + g[1] * three + g[2] * two + g[3];
+            let at_end = g[0] + g[1] * two + g[2] * three + g[3] * four;
+            middle -= (r[0] * at_start + r[1] * at_end) / S::from(20);
+            let off = Ball::around(0.0, pair.off[e]);
+            beside += (off * ball(at_start) + off * ball(at_end)) / Ball::from(20);
+            for k in 0..2 {
+                let r = (ball(r[k]) + off) / length;
+                most[0] = most[0].max(ratio(-r.lower(), -pressure[k]));
+                most[1] = most[1].max(ratio(r.upper(), -pressure[k]));
+            }
+        }
+        let missed = self.all_missed(&pair.w, target, cover)?;
         let point = Ball::point;
-        let root = |square: S| point(square.split(|_| S::from(0), |s| s).sqrt().upper());
-        let (eta, norm) = (root(eta), root(norm));
+        let middle = ball(middle) + beside + product / Ball::from(2);
+        let (eta, norm) = (point(eta), point(norm.sqrt().upper()));
         let force = point(cover.map_or(0.0, Cover::force));
         let loose = point(2.0 * self.loose) * (norm + eta / Ball::from(2));
         let factors = [0, 1].map(|side| most[side].max(missed.open[side]));
@@ -232,110 +389,17 @@ impl<S: Enclosing> Forces<'_, S> {
                 f64::INFINITY
             }
         };
-        let ends = [
-            (point(middle.lower()) - point(away(0))).lower(),
-            (point(middle.upper()) + point(away(1))).upper(),
-        ];
+        let ends = [(middle - point(away(0))).lower(), (middle + point(away(1))).upper()];
         let between = [
             if ends[0].is_nan() { f64::NEG_INFINITY } else { ends[0] },
             if ends[1].is_nan() { f64::INFINITY } else { ends[1] },
         ];
         Ok(ByPair { between, shares, factors })
     }
-
-    /// int r (v_n - g), and r at least and at most in units of |tau_n|.
-    fn on_contact(&self, pair: &Certificate, dual: &Balanced<S>) -> (S, [f64; 2]) {
-        let (certificate, state) = (self.certificate, self.state);
-        let (mut work, mut most) = (S::from(0), [0.0_f64; 2]);
-        for e in self.contact() {
-            let Role::Contact { pressure, .. } = certificate.edges[e].role else { continue };
-            if matches!(pair.edges[e].role, Role::Loaded(_)) {
-                continue;
-            }
-            let d = certificate.directions(e, &state.points);
-            let [start, end] = certificate.edges[e].ends.map(|p| state.points[p]);
-            let length = (end - start).dot(&(end - start)).sqrt();
-            // |E| r at both ends.
-            let r = [0, 1].map(|k| component(dual.in_balance[e][k], d[k]));
-            let g = certificate.gap(e, state);
-            let (four, three, two) = (S::from(4), S::from(3), S::from(2));
-            let at_start = g[0] * four + g[1] * three + g[2] * two + g[3];
-            let at_end = g[0] + g[1] * two + g[2] * three + g[3] * four;
-            work -= (r[0] * at_start + r[1] * at_end) / S::from(20);
-            for k in 0..2 {
-                let r = r[k] / length;
-                most[0] = most[0].max(ratio(-r.lower(), -pressure[k]));
-                most[1] = most[1].max(ratio(r.upper(), -pressure[k]));
-            }
-        }
-        (work, most)
-    }
 }
 
-/// int_T a : C^-1 b, b without bulges: as [`Composite::energy`] is that of squares.
-fn product_of<S: Enclosing>(
-    material: &Material<S>,
-    a: &Composite<S>,
-    b: &Composite<S>,
-    double_area: S,
-) -> S {
-    let (two, three, eight) = (S::from(2), S::from(3), S::from(8));
-    let [of_a, of_b] = [a, b].map(|tau| tau.centre * (two / three));
-    let squares = material.squares();
-    let mut sum = squares.products(a.centre, b.centre).map(|x| eight * x);
-    let mut add = |factor: S, a: Stress<S>, b: Stress<S>| {
-        let products = squares.products(a, b);
-        (0..2).for_each(|k| sum[k] += factor * products[k]);
-    };
-    for ([p, q], [s, t]) in a.corners.into_iter().zip(b.corners) {
-        add(three, p + q + of_a, s + t + of_b);
-        add(S::from(1), p - q, s - t);
-    }
-    for (bulges, [s, t]) in a.bulges.iter().flatten().zip(b.corners) {
-        for (&bulge, opposite) in bulges.iter().zip([b.centre, t, s]) {
-            add(eight / S::from(5), bulge, (s + t + b.centre) * two - opposite);
-        }
-    }
-    squares.per_moduli(sum) * double_area / S::from(576)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::kernel::Plane;
-
-    fn composite(k: i32, bulges: bool) -> Composite<f64> {
-        let number = |k: i32| f64::from((7919 * k + 11) % 10007) / 5003.5 - 1.0;
-        let stress = |i: i32| Stress::new([0, 1, 2].map(|m| number(k + 13 * i + 5 * m)));
-        let at = |i: usize, j: usize| stress((3 * i + j) as i32);
-        Composite {
-            corners: [0, 1, 2].map(|i| [0, 1].map(|j| at(i, j))),
-            centre: stress(17),
-            bulges: bulges.then(|| [0, 1, 2].map(|i| [0, 1, 2].map(|j| at(i + 4, j)))),
-        }
-    }
-
-    #[test]
-    fn the_product_of_two_stresses_is_that_of_their_energies() {
-        let sheared = Material::tensor([9.0, 2.0, -1.0, 4.0, 1.5, 2.0], None);
-        for material in [Material::lame(1.3, 0.7, Plane::Strain), sheared] {
-            for bent in [false, true] {
-                let (a, b) = (composite(2, bent), composite(5, false));
-                let energy = |sign: f64| {
-                    let both = |a: Stress<f64>, b: Stress<f64>| a + b * sign;
-                    let corner = |i: usize| [0, 1].map(|j| both(a.corners[i][j], b.corners[i][j]));
-                    let corners = [0, 1, 2].map(corner);
-                    let sum = Composite { corners, centre: both(a.centre, b.centre), ..a };
-                    sum.energy(&material, 0.6)
-                };
-                let [plus, minus] = [energy(1.0), energy(-1.0)];
-                let found = product_of(&material, &a, &b, 0.6);
-                let expected = (plus - minus) / 4.0;
-                assert!((found - expected).abs() <= 1e-13 * plus, "{found}, {expected}");
-                // Control: a bulge counts.
-                let flat = Composite { bulges: None, ..a };
-                assert!((product_of(&material, &flat, &b, 0.6) != found) == bent);
-            }
-        }
-    }
+/// A ball around a number.
+fn ball<S: Staged>(x: S) -> Ball {
+    let (centre, radius) = x.centred();
+    Ball::around(centre, radius)
 }

@@ -9,6 +9,7 @@
 //! integral is at most beta A + e R(w0), by \[Q2\] with A <= M^2 - |sigma - m|^2. So w may leave its target where the body is
 //! off the obstacle; w0 is 1 on Gamma_C and covers rounding.
 
+use std::cell::OnceCell;
 use std::fmt::Display;
 
 use nalgebra::Vector2;
@@ -18,6 +19,7 @@ use super::certificate::{Certificate, Edge, Piece, Role, Shape, exactly, is_obli
 use super::checks::Rejection;
 use super::dual::WrongPair;
 use super::proof::Proof;
+use super::stresses::{Ground, Numbers, RoundedLaws, Staged, strain_energy};
 use crate::kernel::composite::Affine;
 use crate::kernel::{Ball, Enclosing, Scalar, Triangle};
 
@@ -232,6 +234,35 @@ pub struct Between {
 }
 
 impl Evidence {
+    /// Tells whether there is a displacement.
+    fn has_forces(&self) -> bool {
+        self.cover.is_some() || !self.liftings.is_empty() || !self.pairs.is_empty()
+    }
+
+    /// Tells whether a displacement has bulges on edges.
+    fn has_bulges(&self) -> bool {
+        let mut liftings = self.cover.iter().chain(self.liftings.iter().map(|(_, w)| w));
+        liftings.any(|w| w.beyond.is_some())
+            || self.pairs.iter().any(|(_, pair)| pair.curved.is_some())
+    }
+
+    /// Without what proves nothing, and with what is `found` of the rest.
+    #[must_use]
+    pub fn proving<E>(
+        mut self,
+        cover: Option<&Cover>,
+        found: &[Result<[f64; 2], E>],
+        pairs: Vec<[f64; 2]>,
+    ) -> Evidence {
+        let mut proved = found.iter().map(Result::is_ok);
+        self.liftings.retain(|_| proved.next() == Some(true));
+        self.cover = self.cover.filter(|_| cover.is_some());
+        let cover = cover.map_or([0.0; 2], |cover| cover.between);
+        let liftings = found.iter().flatten().copied().collect();
+        self.between = Some(Between { cover, liftings, pairs });
+        self
+    }
+
     /// Intersects the intervals of a force by its lifting and by its dual pairs.
     pub fn nearest(
         &self,
@@ -261,11 +292,19 @@ pub enum WrongLifting {
     NotFinite,
 }
 
+/// R(w) without what w misses on Gamma_C.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct LiftingValue<S> {
+    /// L(w) - int m : eps(w)
+    pub middle: S,
+    /// An upper bound of |w|_a.
+    pub norm: f64,
+}
+
 /// w0 of the module's head: its Bernstein coefficients on the edges of Gamma_C, and what R(w0) lies between.
 pub struct Cover {
     along: Vec<Option<[f64; 4]>>,
-    /// The numbers that R(w0) lies between.
-    pub between: [f64; 2],
+    between: [f64; 2],
 }
 
 impl Cover {
@@ -294,7 +333,14 @@ pub struct Forces<'a, S> {
     pub mean: Mean,
     /// The error of L(w) and a(v, w) for each unit of |w|_a, as data oscillate.
     pub loose: f64,
+    sums: Beside<S>,
+}
+
+/// By-products of the pass over the triangles that sums up the bound.
+pub(crate) struct Beside<S> {
     unbalanced: Imbalance<S>,
+    /// The numbers of C eps(v) - tau on each triangle; empty until they are needed.
+    own: OnceCell<Vec<Numbers>>,
 }
 
 /// int f . w - a(v, w) for w with a component 1 at a point, and for such a bulge on an edge: grad l_i is minus the scaled normal
@@ -302,6 +348,7 @@ pub struct Forces<'a, S> {
 /// -1/6 ((S + s_j) N_k + (S + s_k) N_j); of f, with the sum F, J/24 (F + f_i) and J/30 (2 F - f_i).
 struct Imbalance<S> {
     points: Vec<Vector2<S>>,
+    /// Empty where no w has bulges.
     bulges: Vec<Vector2<S>>,
 }
 
@@ -314,7 +361,7 @@ impl<S: Enclosing> Imbalance<S> {
     /// Adds a triangle, with C eps(v) there.
     fn add(&mut self, piece: &Piece, triangle: &Triangle<S>, sigma: &Affine<S>) {
         let sixth = S::from(1) / S::from(6);
-        let is_loaded = piece.body != [[0.0; 2]; 3];
+        let (has_bulges, is_loaded) = (!self.bulges.is_empty(), piece.body != [[0.0; 2]; 3]);
         let normals = [0, 1, 2].map(|i| triangle.scaled_normal(i));
         let stresses = [0, 1, 2].map(|i| sigma.at_corner(i));
         let sum = stresses[0] + stresses[1] + stresses[2];
@@ -326,6 +373,9 @@ impl<S: Enclosing> Imbalance<S> {
                 force += (loads + body[i]) * (triangle.double_area() / S::from(24));
             }
             self.points[piece.vertices[i]] += force;
+            if !has_bulges {
+                continue;
+            }
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
             let [of_j, of_k] =
                 [(j, k), (k, j)].map(|(j, k)| (sum + stresses[j]).traction(normals[k]));
@@ -344,18 +394,42 @@ impl Certificate {
     ///
     /// # Errors
     /// As [`Certificate::evaluate`]; a dual pair that is none; inside, a lifting that is not what it should be on the boundary.
-    pub fn forces<S: Enclosing>(
+    pub fn forces<S: Staged>(
         &self,
         evidence: &Evidence,
     ) -> Result<Vec<Result<[f64; 2], WrongLifting>>, WrongPair> {
         let state = self.balanced::<S>(self.topology()?)?;
-        let proof = self.sum(&state)?;
-        let (_, found, pairs) = self.forces_near(&state, &proof, evidence)?;
+        let (proof, sums) = self.sum_for(&state, evidence)?;
+        let (_, found, pairs) = self.forces_near(&state, &proof, evidence, sums)?;
         let targets = evidence.liftings.iter().map(|(target, _)| *target);
         let nearest = |(target, ends): (ForceTarget, Result<[f64; 2], WrongLifting>)| {
             ends.map(|ends| evidence.nearest(target, ends, &pairs))
         };
         Ok(targets.zip(found).map(nearest).collect())
+    }
+
+    /// [`Certificate::sum`], with what the evidence needs of it.
+    pub(crate) fn sum_for<S: Staged>(
+        &self,
+        state: &Balanced<S>,
+        evidence: &Evidence,
+    ) -> Result<(Proof, Beside<S>), Rejection> {
+        let (has_forces, has_pairs) = (evidence.has_forces(), !evidence.pairs.is_empty());
+        let points = if has_forces { state.points.len() } else { 0 };
+        let bulges = if evidence.has_bulges() { self.edges.len() } else { 0 };
+        let mut unbalanced = Imbalance::new(points, bulges);
+        let (mut own, mut laws) = (Vec::new(), RoundedLaws::default());
+        let proof = self.sum_beside(state, |t, sigma, apart| {
+            let (piece, triangle) = (&self.pieces[t], &state.triangles[t]);
+            if has_forces {
+                unbalanced.add(piece, triangle, sigma);
+            }
+            if has_pairs {
+                own.push(Numbers::new(laws.of(&piece.material), piece, triangle, apart));
+            }
+        })?;
+        let own = if has_pairs { OnceCell::from(own) } else { OnceCell::new() };
+        Ok((proof, Beside { unbalanced, own }))
     }
 
     /// Verifies that what is said of forces is what their data give.
@@ -364,12 +438,13 @@ impl Certificate {
         state: &Balanced<Ball>,
         proof: &Proof,
         evidence: &Evidence,
+        sums: Beside<Ball>,
     ) -> Result<(), Rejection> {
         let Some(claimed) = &evidence.between else { return Ok(()) };
         let wrong = |force: usize, problem: &dyn Display| {
             Err(Rejection::Force { force, problem: problem.to_string() })
         };
-        let (cover, found, pairs) = match self.forces_near(state, proof, evidence) {
+        let (cover, found, pairs) = match self.forces_near(state, proof, evidence, sums) {
             Ok(found) => found,
             Err(WrongPair::Rejected(rejection)) => return Err(rejection),
             Err(error) => return wrong(0, &error),
@@ -400,33 +475,30 @@ impl Certificate {
     }
 
     /// [`forces`] of a certificate in equilibrium, with its proof.
-    fn forces_near<S: Enclosing>(
+    fn forces_near<S: Staged>(
         &self,
         state: &Balanced<S>,
         proof: &Proof,
         evidence: &Evidence,
+        sums: Beside<S>,
     ) -> Result<Intervals, WrongPair> {
         let mean = Mean::new(state, proof, self.lift());
         if evidence.of.len() != self.edges.len() {
             let (what, found) = ("boundaries of edges", evidence.of.len());
             return Err(Rejection::Length { what, found, expected: self.edges.len() }.into());
         }
-        let forces = Forces::new(self, state, &evidence.of, mean);
+        let forces = Forces::with(sums, self, state, &evidence.of, mean);
         let cover = evidence.cover.as_ref().and_then(|w| forces.cover(w).ok());
-        let between = |lifting| forces.between(lifting, cover.as_ref());
-        let found = evidence.liftings.iter().map(between).collect();
-        let by_pair = |(target, pair): &(ForceTarget, Certificate)| {
-            Ok(forces.by_pair(*target, pair, cover.as_ref())?.between)
-        };
-        let pairs = evidence.pairs.iter().map(by_pair).collect::<Result<_, WrongPair>>()?;
-        Ok((cover, found, pairs))
+        let found = forces.between(&evidence.liftings, cover.as_ref());
+        let pairs = forces.by_pairs(&evidence.pairs, cover.as_ref())?;
+        Ok((cover, found, pairs.into_iter().map(|pair| pair.between).collect()))
     }
 }
 
 /// w0, and what forces lie between by liftings and by dual pairs.
 type Intervals = (Option<Cover>, Vec<Result<[f64; 2], WrongLifting>>, Vec<[f64; 2]>);
 
-impl<'a, S: Enclosing> Forces<'a, S> {
+impl<'a, S: Staged> Forces<'a, S> {
     /// With M.
     pub fn new(
         certificate: &'a Certificate,
@@ -438,8 +510,33 @@ impl<'a, S: Enclosing> Forces<'a, S> {
         for (piece, triangle) in certificate.pieces.iter().zip(&state.triangles) {
             unbalanced.add(piece, triangle, &state.v.stress(piece, triangle));
         }
+        let sums = Beside { unbalanced, own: OnceCell::new() };
+        Forces::with(sums, certificate, state, of, mean)
+    }
+
+    /// With the sums over the triangles at hand.
+    fn with(
+        sums: Beside<S>,
+        certificate: &'a Certificate,
+        state: &'a Balanced<S>,
+        of: &'a [Option<usize>],
+        mean: Mean,
+    ) -> Self {
         let loose = certificate.loose();
-        Forces { certificate, state, of, mean, loose, unbalanced }
+        Forces { certificate, state, of, mean, loose, sums }
+    }
+
+    /// The numbers of C eps(v) - tau on each triangle.
+    pub(crate) fn own(&self) -> &[Numbers] {
+        let (pieces, state) = (&self.certificate.pieces, self.state);
+        self.sums.own.get_or_init(|| {
+            let mut laws = RoundedLaws::default();
+            let of = |(t, piece): (usize, &Piece)| {
+                let (_, apart) = state.stresses(self.certificate, t);
+                Numbers::new(laws.of(&piece.material), piece, &state.triangles[t], &apart)
+            };
+            pieces.iter().enumerate().map(of).collect()
+        })
     }
 
     /// int f . w - a(v, w)
@@ -447,7 +544,7 @@ impl<'a, S: Enclosing> Forces<'a, S> {
         let sum = |forces: &[Vector2<S>], w: &[Vector2<S>]| {
             forces.iter().zip(w).fold(S::from(0), |sum, (f, w)| sum + f.dot(w))
         };
-        let Imbalance { points, bulges } = &self.unbalanced;
+        let Imbalance { points, bulges } = &self.sums.unbalanced;
         let at_points = sum(points, &w.points);
         w.bulges.as_ref().map_or(at_points, |of_w| at_points + sum(bulges, of_w))
     }
@@ -543,23 +640,28 @@ impl<'a, S: Enclosing> Forces<'a, S> {
         Ok(())
     }
 
-    /// L(w) - int m : eps(w), and an upper bound of |w|_a.
-    fn value(&self, w: &Shape<S>) -> (S, f64) {
+    /// L(w) - int m : eps(w) and |w|_a of some displacements, in one pass over the triangles.
+    fn values(&self, shapes: &[Shape<S>]) -> Vec<LiftingValue<S>> {
         let (certificate, state) = (self.certificate, self.state);
-        // Half of int f . w is in int tau : eps(w) / 2, as is half of the work of all tractions.
-        let mut middle = self.within(w) / S::from(2);
-        middle += certificate.work_of_tractions(&state.forces, w);
-        for (e, edge) in certificate.edges.iter().enumerate() {
-            if state.topology.owners[e][1].is_none() {
-                middle -= w.work_of(state.in_balance[e], edge.ends, e) / S::from(2);
+        let (mut squares, mut laws) = (vec![Ball::from(0); shapes.len()], RoundedLaws::default());
+        for (t, (piece, triangle)) in certificate.pieces.iter().zip(&state.triangles).enumerate() {
+            let ground = Ground::new(laws.of(&piece.material), triangle);
+            for (square, w) in squares.iter_mut().zip(shapes) {
+                *square += energy(w, (piece, triangle), ground.as_ref(), mean(*square, t));
             }
         }
-        let energy = |(piece, triangle): (&Piece, &Triangle<S>)| {
-            w.stress(piece, triangle).energy(&piece.material(), triangle.double_area())
+        let value = |(w, square): (&Shape<S>, Ball)| {
+            // Half of int f . w is in int tau : eps(w) / 2, as is half of the work of all tractions.
+            let mut middle = self.within(w) / S::from(2);
+            middle += certificate.work_of_tractions(&state.forces, w);
+            for (e, edge) in certificate.edges.iter().enumerate() {
+                if state.topology.owners[e][1].is_none() {
+                    middle -= w.work_of(state.in_balance[e], edge.ends, e) / S::from(2);
+                }
+            }
+            LiftingValue { middle, norm: square.sqrt().upper() }
         };
-        let energies = certificate.pieces.iter().zip(&state.triangles).map(energy);
-        let energy = energies.fold(S::from(0), |sum, energy| sum + energy);
-        (middle, energy.split(|_| S::from(0), |energy| energy).sqrt().upper())
+        shapes.iter().zip(squares).map(value).collect()
     }
 
     /// phi - w . d on an edge of Gamma_C: what its Bernstein coefficients are at least and at most.
@@ -675,36 +777,75 @@ impl<'a, S: Enclosing> Forces<'a, S> {
                 return Err(WrongLifting::OnContact { edge: e, off: 1.0 });
             }
         }
-        let between = self.enclose(&shape, Missed::default(), None);
+        let values = self.values(std::slice::from_ref(&shape));
+        let between = self.enclose(values[0], Missed::default(), None);
         Ok(Cover { along: along_all, between })
     }
 
     /// Encloses R(w) + int |sigma_n| omega.
-    fn enclose(&self, w: &Shape<S>, missed: Missed, cover: Option<&Cover>) -> [f64; 2] {
-        let (middle, norm) = self.value(w);
+    fn enclose(&self, value: LiftingValue<S>, missed: Missed, cover: Option<&Cover>) -> [f64; 2] {
         let point = Ball::point;
-        let norm = point(norm);
+        let norm = point(value.norm);
         let force = point(cover.map_or(0.0, Cover::force));
         let away = |side: usize| {
             let covered = point(missed.covered[side]) * force;
             let loose = point(self.loose) * norm;
-            point((reach(norm, point(missed.open[side]), self.mean) + covered + loose).upper())
+            (reach(norm, point(missed.open[side]), self.mean) + covered + loose).upper()
         };
-        [(point(middle.lower()) - away(0)).lower(), (point(middle.upper()) + away(1)).upper()]
+        let below = point(value.middle.lower()) - point(away(0));
+        let above = point(value.middle.upper()) + point(away(1));
+        [below.lower(), above.upper()]
     }
 
-    /// The force of a lifting, between two numbers.
+    /// The forces of some liftings, each between two numbers.
     pub fn between(
         &self,
-        (target, w): &(ForceTarget, Lifting),
+        liftings: &[(ForceTarget, Lifting)],
         cover: Option<&Cover>,
-    ) -> Result<[f64; 2], WrongLifting> {
-        self.check_supports(w, *target)?;
-        let shape = self.shape(w, *target)?;
-        let missed = self.all_missed(&shape, *target, cover)?;
-        let ends = self.enclose(&shape, missed, cover);
-        if ends.iter().all(|end| end.is_finite()) { Ok(ends) } else { Err(WrongLifting::NotFinite) }
+    ) -> Vec<Result<[f64; 2], WrongLifting>> {
+        let checked = liftings.iter().map(|(target, w)| {
+            let target = *target;
+            self.check_supports(w, target)?;
+            let shape = self.shape(w, target)?;
+            let missed = self.all_missed(&shape, target, cover)?;
+            Ok((shape, missed))
+        });
+        let checked: Vec<Result<_, WrongLifting>> = checked.collect();
+        let shapes: Vec<Shape<S>> = checked.iter().flatten().map(|(w, _)| w.clone()).collect();
+        let mut values = self.values(&shapes).into_iter();
+        let found = checked.into_iter().map(|checked| {
+            let (_, missed) = checked?;
+            let value = values.next().ok_or(WrongLifting::NotFinite)?;
+            let ends = self.enclose(value, missed, cover);
+            if ends.iter().all(|end| end.is_finite()) {
+                Ok(ends)
+            } else {
+                Err(WrongLifting::NotFinite)
+            }
+        });
+        found.collect()
     }
+}
+
+/// The mean of a sum of so many; 0 of none.
+pub(crate) fn mean(sum: Ball, count: usize) -> f64 {
+    if count == 0 { 0.0 } else { sum.upper() / count as f64 }
+}
+
+/// int eps(w) : C eps(w) on a triangle: in doubles, if these are sharp beside it or a `typical` one.
+pub(crate) fn energy<S: Staged>(
+    w: &Shape<S>,
+    (piece, triangle): (&Piece, &Triangle<S>),
+    ground: Option<&Ground>,
+    typical: f64,
+) -> Ball {
+    let (nodal, bulges) = (piece.vertices.map(|p| w.points[p]), w.bulges_of(piece));
+    let in_doubles = ground.and_then(|ground| ground.energy((nodal, bulges), typical));
+    in_doubles.unwrap_or_else(|| {
+        let normals = [0, 1, 2].map(|i| triangle.scaled_normal(i));
+        let energy = strain_energy(&piece.material().squares(), (&nodal, bulges), &normals);
+        Ball::point((energy / (triangle.double_area() * S::from(24))).upper())
+    })
 }
 
 /// The largest ratio of a to b, not below 0: infinite where b is 0 and a is not.

@@ -28,10 +28,11 @@ pub use super::checks::Rejection;
 
 use nalgebra::Vector2;
 
+use super::balance::Closed;
 use super::balanced::Balanced;
 use super::certificate::{Shape, exactly, place};
 use super::forces::Evidence;
-use crate::kernel::composite::{Composite, Wrench};
+use crate::kernel::composite::{Affine, Composite, Wrench};
 use crate::kernel::{Ball, Enclosing};
 
 /// The bound that a certificate proves.
@@ -101,8 +102,9 @@ impl Certificate {
     /// As [`Certificate::evaluate`]; a triangle that is out of balance; a claim that does not follow.
     pub fn audit(&self, claim: &Claim) -> Result<Proof, Rejection> {
         let state = self.balanced::<Ball>(self.topology()?)?;
-        self.check_balance(&state)?;
-        let proof = self.sum(&state)?;
+        let double_area = |t: usize| state.triangles[t].double_area();
+        self.check_balance((&state.forces, &state.resultants), double_area, &state.closed)?;
+        let (proof, sums) = self.sum_for(&state, &claim.forces)?;
         if claim.shares.len() != proof.shares.len() {
             let (found, expected) = (claim.shares.len(), proof.shares.len());
             return Err(Rejection::Length { what: "claimed shares", found, expected });
@@ -117,13 +119,18 @@ impl Certificate {
         if !bound.is_at_most(claim.bound) {
             return Err(Rejection::Bound { claimed: claim.bound, found: bound });
         }
-        self.check_forces(&state, &proof, &claim.forces)?;
+        self.check_forces(&state, &proof, &claim.forces, sums)?;
         Ok(proof)
     }
 
-    /// The tractions balance on every triangle to the rounding of doubles.
-    pub(crate) fn check_balance<S: Enclosing>(&self, state: &Balanced<S>) -> Result<(), Rejection> {
-        let Balanced { forces, resultants, closed, .. } = state;
+    /// The tractions balance on every triangle to the rounding of doubles: the forces on the edges, with what they and the body
+    /// force amount to.
+    pub(crate) fn check_balance<S: Enclosing>(
+        &self,
+        (forces, resultants): (&[[Vector2<S>; 2]], &[Wrench<S>]),
+        double_area: impl Fn(usize) -> S,
+        closed: &Closed<S>,
+    ) -> Result<(), Rejection> {
         let size = |x: S| x.upper().max(-x.lower());
         // The sum of the forces' sizes, and the largest component of the edge.
         let on_edge = |(edge, forces): (&Edge, &[Vector2<S>; 2])| {
@@ -137,8 +144,7 @@ impl Certificate {
             let forces: f64 = of_edges.iter().map(|(forces, _)| forces).sum();
             let reach = of_edges.iter().map(|&(_, reach)| reach).fold(0.0, f64::max);
             let body: f64 = piece.body.iter().flatten().map(|f| f.abs()).sum();
-            let loads =
-                if body == 0.0 { 0.0 } else { body * size(state.triangles[t].double_area()) };
+            let loads = if body == 0.0 { 0.0 } else { body * size(double_area(t)) };
             let allowed = IMBALANCE * (forces + loads);
             let Wrench { force, moment, .. } = &resultants[t];
             // Places of cuts are not doubles: what their balls leave open may be balance.
@@ -219,6 +225,15 @@ impl Certificate {
     /// The right side of the theorem.
     #[doc(hidden)]
     pub fn sum<S: Enclosing>(&self, state: &Balanced<S>) -> Result<Proof, Rejection> {
+        self.sum_beside(state, |_, _, _| ())
+    }
+
+    /// [`Certificate::sum`]; `also` gets each triangle with C eps(v) and C eps(v) - tau there.
+    pub(crate) fn sum_beside<S: Enclosing>(
+        &self,
+        state: &Balanced<S>,
+        mut also: impl FnMut(usize, &Affine<S>, &Composite<S>),
+    ) -> Result<Proof, Rejection> {
         let Balanced { triangles, v, forces, .. } = state;
         let zero = S::from(0);
         let (mut square, mut norm, mut energy) = (zero, zero, zero);
@@ -227,6 +242,7 @@ impl Certificate {
             let material = piece.material();
             let double_area = triangles[t].double_area();
             let (sigma, distance) = state.stresses(self, t);
+            also(t, &sigma, &distance);
             let share = self.share(state, t, &distance);
             shares.push(share.upper());
             square += share;

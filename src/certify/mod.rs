@@ -19,6 +19,7 @@ pub mod adapt;
 mod admissible;
 #[doc(hidden)]
 pub mod binding;
+mod bubbles;
 mod build;
 mod contact;
 mod data;
@@ -47,7 +48,7 @@ pub use signorini_audit::forces::Ramp;
 #[cfg(feature = "files")]
 pub use signorini_audit::format;
 use signorini_audit::{balanced, certificate};
-pub use signorini_audit::{dual, forces, proof};
+pub use signorini_audit::{dual, forces, proof, stresses};
 
 use self::proof::{Piece, Role};
 pub use self::quantities::ProvedQuantities;

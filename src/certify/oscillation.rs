@@ -19,6 +19,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Matrix2, Vector2};
 
+use super::bubbles;
 use super::certificate::{Certificate, Lift, Piece, Role, place};
 use super::data::{Data, POINTS, bulge_of, cancellation, is_within, length_and_normal};
 use super::parts::{Boundary, ProblemParts};
@@ -189,18 +190,26 @@ pub(super) fn loads(
     // All by the rule of the force that asks for most.
     let curved = data.acting(t).filter(|(_, f, _)| !is_within(f, 1));
     let demand = |f: &SharedFunction| (f.kink().is_some(), f.degree().unwrap_or(u32::MAX));
-    let (mut square, mut least) = (0.0, 0.0);
+    let mut lacking = Vec::new();
+    let mut least = 0.0;
     if let Some((_, _, rule)) = curved.max_by_key(|(_, f, _)| demand(f)) {
         least = f64::MIN_POSITIVE;
         let affine = piece.body.map(Vector2::from);
         rule.on_triangle(&triangle, |l, x, weight| {
-            let mut lacking = -(affine[0] * l[0] + affine[1] * l[1] + affine[2] * l[2]);
-            data.acting(t).for_each(|(c, f, _)| lacking[c] += f.at(x));
-            square += weight * lacking.dot(&lacking);
+            let mut difference = -(affine[0] * l[0] + affine[1] * l[1] + affine[2] * l[2]);
+            data.acting(t).for_each(|(c, f, _)| difference[c] += f.at(x));
+            lacking.push((l, weight, difference));
         });
     }
-    let mut sum = poincare * f64::sqrt(square);
-    for e in piece.edges {
+    // Beside a v that is affine all this hardly counts.
+    let mut of_bubbles = if certificate.curved.is_some() {
+        bubbles::take_off(&triangle, &piece.material(), &mut lacking)
+    } else {
+        0.0
+    };
+    let square: f64 = lacking.iter().map(|(_, weight, f)| weight * f.dot(f)).sum();
+    let mut sum = poincare * square.sqrt();
+    for (local, e) in piece.edges.into_iter().enumerate() {
         let edge = certificate.edges[e];
         let (Boundary::Loaded(traction) | Boundary::Supported(_, _, Some(traction))) =
             parts.boundary.get(&whole(e)).unwrap_or(&Boundary::Free)
@@ -219,21 +228,28 @@ pub(super) fn loads(
             Role::Supported { along: d, traction, .. } => traction.map(|q| [-d[1] * q, d[0] * q]),
             _ => continue,
         };
-        let mut square = 0.0;
+        let (mut square, mut legendre) = (0.0, Vector2::zeros());
         traction.rule().on_edge(ends, [], |point| {
             let t = traction.at(point.x, unit);
+            let p = shifted_legendre(2, point.s)[0];
             for c in 0..2 {
                 let there = (1.0 - point.s) * affine[0][c] + point.s * affine[1][c];
                 let lacking = t[c] - there;
                 square += point.weight * length * lacking * lacking;
+                legendre[c] += 5.0 * point.weight * lacking * p;
             }
         });
+        if certificate.curved.is_some() {
+            of_bubbles += bubbles::of_traction(&triangle, &piece.material(), local, legendre);
+            // int P_2^2 = 1/5
+            square = (square - length / 5.0 * legendre.dot(&legendre)).max(0.0);
+        }
         let trace = (length / (triangle.double_area() / 2.0)
             * (poincare * poincare + h * poincare * k))
             .sqrt();
-        sum += trace * f64::sqrt(square);
+        sum += trace * square.sqrt();
     }
-    (sum / least_eigenvalue(&piece.material).sqrt()).max(least)
+    (of_bubbles + sum / least_eigenvalue(&piece.material).sqrt()).max(least)
 }
 
 /// |z|_a of what the displacement and the gap ask for beyond v, on each triangle of the mesh.

@@ -24,12 +24,12 @@ use super::certificate::{Certificate, Role};
 use super::contact::Profile;
 use super::dual::ByPair;
 use super::field::Field;
-use super::forces::{Between, Cover, Evidence, ForceTarget, Forces, Mean, Motion, Ramp};
+use super::forces::{Cover, Evidence, ForceTarget, Forces, Mean, Motion, Ramp, WrongLifting};
 use super::lifting::Lifter;
 use super::parts::{Boundary, ProblemParts};
 use super::proof::Proof;
+use crate::fem::Degree;
 use crate::fem::mesh::length;
-use crate::fem::{BoundaryEdge, Degree};
 use crate::kernel::{Ball, Enclosing};
 use crate::solve::Solution;
 
@@ -403,8 +403,9 @@ impl<'a> Lifters<'a> {
     ) -> Option<Tried> {
         let w = self.at(of_w)?.1.field(target).ok()?;
         let (open, lifter) = self.at(of_rho)?;
-        let pair = lifter.pair((target, &w), built, open).ok()?;
-        let found = forces.by_pair(target, &pair, cover).ok()?;
+        let pair = [(target, lifter.pair((target, &w), built, open).ok()?)];
+        let found = forces.by_pairs(&pair, cover).ok()?.pop()?;
+        let [(_, pair)] = pair;
         Some(Tried { found, pair })
     }
 }
@@ -472,46 +473,6 @@ fn peak(force: &Quantity, zones: &[Zone], line: &Line, solution: &Solution) -> O
 /// A number of a boundary between two others, or why not.
 type Found = (Name, usize, Option<Ramp>, Result<[f64; 2], String>);
 
-/// A number of a boundary, with a weight of its pressure.
-type Wanted = (Name, usize, Option<Ramp>);
-
-/// What is asked of boundaries with these names: all forces, moments and reactions, and those with weights. Beside it the
-/// direction of contact of each, if it is along an axis: then the force says all of its components.
-fn wanted(
-    parts: &ProblemParts,
-    names: &[String],
-    asked_for: &Asked,
-) -> (Vec<Wanted>, Vec<Option<(usize, f64)>>) {
-    let (mut wanted, mut axes) = (Vec::new(), vec![None; names.len()]);
-    for (boundary, name) in names.iter().enumerate() {
-        let edges = parts.mesh.edges_of(name).unwrap_or_default().iter();
-        let number = |edge: &BoundaryEdge| parts.mesh.triangle_edges()[edge.triangle][edge.local];
-        let what: Vec<&Boundary> =
-            edges.filter_map(|edge| parts.boundary.get(&number(edge))).collect();
-        let mut along = what.iter().filter_map(|what| match what {
-            Boundary::Contact(k) => Some(parts.contact[*k].directions),
-            _ => None,
-        });
-        let is_held =
-            |what: &&Boundary| matches!(what, Boundary::Held(..) | Boundary::Supported(..));
-        if let Some([d, _]) = along.next() {
-            let constant = along.all(|other| other == [d, d]);
-            axes[boundary] = (0..2).find(|&c| constant && d[1 - c] == 0.0).map(|c| (c, d[c]));
-            wanted.push((Name::ContactForce, boundary, None));
-            let own = asked_for.forces.iter().filter(|(of, ramp)| of == name && ramp.is_some());
-            wanted.extend(own.map(|&(_, ramp)| (Name::ContactForce, boundary, ramp)));
-            if axes[boundary].is_none() {
-                wanted.extend([0, 1].map(|c| (Name::ContactComponent(c), boundary, None)));
-            }
-            wanted.push((Name::ContactMoment, boundary, None));
-        } else if what.iter().any(is_held) {
-            wanted.extend([0, 1].map(|c| (Name::Reaction(c), boundary, None)));
-            wanted.push((Name::ReactionMoment, boundary, None));
-        }
-    }
-    (wanted, axes)
-}
-
 /// Forces, moments and reactions of all boundaries, with what triangles contribute to the width of those by dual pairs; `shares`
 /// are those of the triangles in M^2.
 fn list(
@@ -521,43 +482,80 @@ fn list(
     (forces, shares): (&Forces<Ball>, &[f64]),
     (open, asked_for): (&[bool], &Asked),
 ) -> (Vec<Found>, Evidence, Vec<f64>) {
-    let (wanted, axes) = wanted(parts, names, asked_for);
+    let mut asked: Vec<(Name, usize, Option<Ramp>)> = Vec::new();
+    // The direction of contact of a boundary, if it is along an axis: then the force says all of its components.
+    let mut axes = vec![None; names.len()];
+    for (boundary, name) in names.iter().enumerate() {
+        let edges = parts.mesh.edges_of(name).unwrap_or_default();
+        let what: Vec<&Boundary> = edges
+            .iter()
+            .filter_map(|edge| {
+                parts.boundary.get(&parts.mesh.triangle_edges()[edge.triangle][edge.local])
+            })
+            .collect();
+        let mut along = what.iter().filter_map(|what| match what {
+            Boundary::Contact(k) => Some(parts.contact[*k].directions),
+            _ => None,
+        });
+        if let Some([d, _]) = along.next() {
+            let constant = along.all(|other| other == [d, d]);
+            axes[boundary] = (0..2).find(|&c| constant && d[1 - c] == 0.0).map(|c| (c, d[c]));
+            asked.push((Name::ContactForce, boundary, None));
+            let own = asked_for.forces.iter().filter(|(of, ramp)| of == name && ramp.is_some());
+            asked.extend(own.map(|&(_, ramp)| (Name::ContactForce, boundary, ramp)));
+            if axes[boundary].is_none() {
+                asked.extend([0, 1].map(|c| (Name::ContactComponent(c), boundary, None)));
+            }
+            asked.push((Name::ContactMoment, boundary, None));
+        } else if what
+            .iter()
+            .any(|what| matches!(what, Boundary::Held(..) | Boundary::Supported(..)))
+        {
+            asked.extend([0, 1].map(|c| (Name::Reaction(c), boundary, None)));
+            asked.push((Name::ReactionMoment, boundary, None));
+        }
+    }
     let lifter = match Lifter::new(parts, degree, names, open) {
         Ok(lifter) => lifter,
         Err(error) => {
             let why = |(name, boundary, weight)| (name, boundary, weight, Err(error.to_string()));
-            return (wanted.into_iter().map(why).collect(), Evidence::default(), Vec::new());
+            return (asked.into_iter().map(why).collect(), Evidence::default(), Vec::new());
         }
     };
     let all = ForceTarget { boundary: None, motion: Motion::Along(None) };
-    let w0 = lifter.lifting(all, built).ok();
-    let cover = w0.as_ref().and_then(|w| forces.cover(w).ok());
-    let cover = cover.as_ref();
-    let mut evidence = Evidence { cover: w0.filter(|_| cover.is_some()), ..Evidence::default() };
-    let mut between =
-        Between { cover: cover.map_or([0.0; 2], |w0| w0.between), ..Between::default() };
-    let (mut found, mut limits) = (Vec::with_capacity(wanted.len()), Vec::new());
-    let mut lifters = Lifters { parts, degree, names, made: BTreeMap::new() };
-    for (name, boundary, weight) in wanted {
+    let mut evidence = Evidence { cover: lifter.lifting(all, built).ok(), ..Evidence::default() };
+    let cover = evidence.cover.as_ref().and_then(|w| forces.cover(w).ok());
+    let mut refused = Vec::with_capacity(asked.len());
+    for &(name, boundary, weight) in &asked {
         let target = ForceTarget { boundary: Some(boundary), motion: name.motion(weight) };
-        let lifting = lifter.lifting(target, built).map(|w| (target, w));
-        let first = lifting.and_then(|lifting| {
-            let ends = forces.between(&lifting, cover).map_err(|error| error.to_string())?;
-            evidence.liftings.push(lifting);
-            between.liftings.push(ends);
-            Ok(ends)
-        });
-        let to_second_order = name == Name::ContactForce
-            && asked_for.forces.iter().any(|(of, ramp)| *of == names[boundary] && *ramp == weight);
-        let pairs = match first {
-            Ok(_) if to_second_order => {
-                best_pairs(|splits| lifters.pair(splits, target, built, (forces, cover)))
+        refused.push(match lifter.lifting(target, built) {
+            Ok(w) => {
+                evidence.liftings.push((target, w));
+                None
             }
-            _ => Vec::new(),
+            Err(why) => Some(why),
+        });
+    }
+    let mut by_pairs = Vec::new();
+    let between = forces.between(&evidence.liftings, cover.as_ref());
+    let to_second_order = |target: &ForceTarget| {
+        let Motion::Along(weight) = target.motion else { return false };
+        let is = |(of, ramp): &(String, Option<Ramp>)| {
+            *ramp == weight && target.boundary.is_some_and(|boundary| names[boundary] == *of)
         };
-        let mut nearest = first.clone();
-        for (Tried { found, pair }, sides) in pairs {
-            let (Ok(first), Ok(nearest)) = (&first, &mut nearest) else { continue };
+        asked_for.forces.iter().any(is)
+    };
+    let mut limits = Vec::new();
+    let mut lifters = Lifters { parts, degree, names, made: BTreeMap::new() };
+    for (k, &(target, _)) in evidence.liftings.iter().enumerate() {
+        let Ok(first) = (if to_second_order(&target) { between[k].clone() } else { continue })
+        else {
+            continue;
+        };
+        let goal = (forces, cover.as_ref());
+        for (Tried { found, pair }, sides) in
+            best_pairs(|splits| lifters.pair(splits, target, built, goal))
+        {
             let [low, high] = found.between;
             let helps = |side: &usize| if *side == 0 { low > first[0] } else { high < first[1] };
             let sides: Vec<usize> = sides.into_iter().filter(helps).collect();
@@ -567,12 +565,27 @@ fn list(
                 limits.iter_mut().zip(more).for_each(|(limit, more)| *limit += more);
             }
             if !sides.is_empty() {
-                *nearest = [nearest[0].max(low), nearest[1].min(high)];
                 evidence.pairs.push((target, pair));
-                between.pairs.push(found.between);
+                by_pairs.push(found.between);
             }
         }
-        let interval = nearest.map(|ends| name.of_functional(ends));
+    }
+    let targets = evidence.liftings.iter().map(|(target, _)| *target);
+    let nearest = |(target, ends): (ForceTarget, &Result<[f64; 2], WrongLifting>)| {
+        ends.clone().map(|ends| evidence.nearest(target, ends, &by_pairs))
+    };
+    let nearest: Vec<Result<[f64; 2], WrongLifting>> = targets.zip(&between).map(nearest).collect();
+    let evidence = evidence.proving(cover.as_ref(), &between, by_pairs);
+    let mut between = nearest.into_iter();
+    let mut found: Vec<Found> = Vec::with_capacity(asked.len());
+    for ((name, boundary, weight), refused) in asked.into_iter().zip(refused) {
+        let interval = match refused {
+            Some(why) => Err(why),
+            None => {
+                between.next().map_or(Err(String::new()), |ends| ends.map_err(|e| e.to_string()))
+            }
+        };
+        let interval = interval.map(|ends| name.of_functional(ends));
         if let (Name::ContactForce, None, Some((axis, sign))) = (name, weight, axes[boundary]) {
             for c in 0..2 {
                 let along = |[low, high]: [f64; 2]| match (c == axis, sign > 0.0) {
@@ -586,6 +599,5 @@ fn list(
         }
         found.push((name, boundary, weight, interval));
     }
-    evidence.between = Some(between);
     (found, evidence, limits)
 }

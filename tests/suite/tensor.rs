@@ -102,7 +102,11 @@ fn the_rates_of_theorem_3_5_hold_for_a_tensor() {
             let (found, problem, s) = ladder.solve(level).unwrap();
             let certified = certify(&problem, &s).unwrap();
             let energy = found.errors.energy;
-            assert!(certified.bound >= energy * (1.0 - 1e-9) && certified.bound < 2.5 * energy);
+            assert!(
+                certified.bound >= energy * (1.0 - 1e-9) && certified.bound < 2.5 * energy,
+                "{}",
+                certified.bound / energy
+            );
             energy
         });
         let found = (errors[1] / errors[2]).log2();
