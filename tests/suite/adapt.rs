@@ -65,7 +65,7 @@ fn on_adapted_meshes(ladder: &Ladder) -> Vec<Point> {
         );
         Point { unknowns: last.unknowns as f64, error, bound: last.bound }
     };
-    [500, 1000, 2000, 4000, 8000].map(on).into()
+    [500, 2000, 8000].map(on).into()
 }
 
 /// How far bounds may be above errors.
