@@ -160,7 +160,7 @@ def certified(line):
 
 def listed(ledger):
     """The proofs of VERIFY.md: by name, paths, paths refuted and classes."""
-    lines = re.findall(r"^- `(\w+)`: (\d+) paths?, (\d+) refuted; (.*)$", Path(ledger).read_text(), re.M)
+    lines = re.findall(r"^- `(\w+)`: (\d+)/(\d+); (.*)$", Path(ledger).read_text(), re.M)
     return {name: (int(paths), int(refuted), set(re.sub(r"\. Rocq: .*", "", classes).split(" | "))) for name, paths, refuted, classes in lines}
 
 

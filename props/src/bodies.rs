@@ -2,8 +2,8 @@
 //! contact at the bottom, sometimes on the left side too (so that one triangle owns two contact edges). Lengths of
 //! contact edges, normals and h_T are rational, so that nothing is rounded.
 //!
-//! On such a body each quantity of method (8) is computed twice: by looping the kernel's element functions ([`Kernel`]), and
-//! by `naive` ([`Definition`]). h_T enters as given data, for it is a square root: any positive number serves both sides alike.
+//! On such a body the quantities of method (8) are those of their definitions ([`Definition`], by `naive`). h_T enters as given
+//! data, for it is a square root: any positive number serves.
 
 use std::collections::BTreeMap;
 
@@ -15,10 +15,8 @@ use crate::naive::{Field, Hooke};
 use crate::numbers::Exact;
 
 mod definition;
-mod kernel;
 
 pub use definition::{Definition, Traces, contact_class, whole};
-pub use kernel::{Kernel, MaybeExact};
 
 /// The plain data of a body, as drawn.
 #[derive(Clone, Debug)]

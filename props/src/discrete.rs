@@ -38,6 +38,11 @@ pub struct Discrete<'a> {
 impl<'a> Discrete<'a> {
     /// The solver's discrete problem.
     pub fn new(d: &'a Discretization<'a>) -> Self {
+        Discrete::on(d, d.contact.iter().map(|edge| residual::on_edge(d, edge)).collect())
+    }
+
+    /// The same with these contact edges.
+    pub fn on(d: &'a Discretization<'a>, edges: Vec<ContactFace<Exact>>) -> Self {
         let mut count = 0;
         let mut number = |prescribed: &Option<f64>| {
             prescribed.is_none().then(|| {
@@ -50,7 +55,7 @@ impl<'a> Discrete<'a> {
         Discrete {
             numbers,
             count,
-            edges: d.contact.iter().map(|edge| residual::on_edge(d, edge)).collect(),
+            edges,
             rule: match &d.rule {
                 EdgeRule::Exact => None,
                 EdgeRule::Gauss(points) => {

@@ -167,16 +167,13 @@ fn proofs(claims: &[Claim]) -> String {
         let refuted = paths.iter().filter(|path| path.verdict.fails()).count();
         let by = theorems.iter().filter(|t| t.is_proved() && t.predicate == Some(*name));
         let rocq: String = by.map(|theorem| format!(". Rocq: `{}`", theorem.name)).collect();
-        let paths = match paths.len() {
-            1 => "1 path".to_owned(),
-            n => format!("{n} paths"),
-        };
-        format!("- `{name}`: {paths}, {refuted} refuted; {}{rocq}\n", statement.classes.join(" | "))
+        let classes = statement.classes.join(" | ");
+        format!("- `{name}`: {}/{refuted}; {classes}{rocq}\n", paths.len())
     };
     let lines: String = found.iter().map(line).collect();
     format!(
-        "\n## The proofs\n\nEach statement with its paths, those that a certificate refutes, and the classes that it reaches; \
-         with the theorem that Rocq proved from the same certificates.\n\n{lines}"
+        "\n## The proofs\n\nEach statement with its paths, those of them that a certificate refutes (11/6), and the classes that it reaches; with the \
+         theorem that Rocq proved from the same certificates.\n\n{lines}"
     )
 }
 

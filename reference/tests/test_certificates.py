@@ -91,7 +91,7 @@ multiple 1 a | 0"""
         end = PROOF.index("path\n", start)
         with tempfile.TemporaryDirectory() as folder:
             ledger = Path(folder, "VERIFY.md")
-            ledger.write_text(f"- `{name}`: 3 paths, 1 refuted; always\n")
+            ledger.write_text(f"- `{name}`: 3/1; always\n")
 
             def accepted(text):
                 Path(folder, f"{name}.proof").write_text(text)
@@ -102,5 +102,5 @@ multiple 1 a | 0"""
             for label in ("holds always", "vacuous"):
                 self.assertFalse(accepted(PROOF[:start] + label + "\n" + PROOF[end:]), label)
             self.assertFalse(accepted(PROOF.replace("holds always", "holds sometimes")))
-            ledger.write_text(ledger.read_text() + "- `another_theorem`: 1 path, 0 refuted; always\n")
+            ledger.write_text(ledger.read_text() + "- `another_theorem`: 1/0; always\n")
             self.assertFalse(accepted(PROOF))

@@ -7,6 +7,9 @@ use crate::Ordered;
 use crate::naive::{Field, Line};
 use crate::numbers::Exact;
 
+/// A bilinear form of fields given by their values at the nodes.
+type Form<'f, S> = dyn Fn(&[[S; 2]], &[[S; 2]]) -> S + 'f;
+
 /// Method (8) on a body by its definitions.
 pub struct Definition<'a, const N: usize, S = Exact>(pub &'a Body<S>);
 
@@ -44,6 +47,22 @@ impl<const N: usize, S: Ordered> Definition<'_, N, S> {
         self.0.field::<N>(t, u).energy(&self.0.field::<N>(t, v), &self.0.hooke)
     }
 
+    /// On one triangle the matrices of a and of int gamma sigma_n(u) sigma_n(v), over the components of its nodes.
+    pub fn matrices_on(&self, t: usize) -> [Vec<Vec<S>>; 2] {
+        let body = self.0;
+        let unit = |c| [0, 1].map(|d| S::from(i32::from(c == d)));
+        let fields = body.nodes::<N>(t).map(|node| [0, 1].map(|c| body.bump(node, unit(c))));
+        let fields = fields.as_flattened();
+        let matrix = |f: &Form<S>| -> Vec<Vec<S>> {
+            fields.iter().map(|u| fields.iter().map(|v| f(u, v)).collect()).collect()
+        };
+        let sides = || body.contact.iter().filter(|side| side.triangle == t);
+        [
+            matrix(&|u, v| self.a_on(t, u, v)),
+            matrix(&|u, v| sum(sides(), |side| self.stresses_on(side, u, v))),
+        ]
+    }
+
     /// v_n, sigma_n(v), P0(v) and P(v) on a contact edge.
     pub fn traces(&self, side: &Side<S>, v: &[[S; 2]]) -> Traces<S> {
         let field = self.0.field::<N>(side.triangle, v);
@@ -67,9 +86,37 @@ impl<const N: usize, S: Ordered> Definition<'_, N, S> {
     /// int gamma sigma_n(u) sigma_n(v)
     pub fn stress_product(&self, u: &[[S; 2]], v: &[[S; 2]]) -> S {
         let both = self.sides(u).filter(|side| self.acts(side.triangle, v));
-        sum(both, |side| {
-            let (u, v) = (self.traces(side, u).sigma_n, self.traces(side, v).sigma_n);
-            self.0.gamma(side) * side.length * whole(&u.by(&v))
+        sum(both, |side| self.stresses_on(side, u, v))
+    }
+
+    /// int gamma sigma_n(u) sigma_n(v) over one side.
+    fn stresses_on(&self, side: &Side<S>, u: &[[S; 2]], v: &[[S; 2]]) -> S {
+        let (u, v) = (self.traces(side, u).sigma_n, self.traces(side, v).sigma_n);
+        self.0.gamma(side) * side.length * whole(&u.by(&v))
+    }
+
+    /// int over {P(u) > 0} of P0(v) P0(w) / gamma: what contact adds to the second derivative of J_h that Newton uses.
+    pub fn slope(&self, rule: Rule<'_, S>, u: &[[S; 2]], v: &[[S; 2]], w: &[[S; 2]]) -> S {
+        sum(&self.0.contact, |side| {
+            let p = self.traces(side, u).p;
+            let product = self.traces(side, v).p0.by(&self.traces(side, w).p0);
+            let zero = S::from(0);
+            let integral = match rule {
+                Rule::Exact => {
+                    sum(p.pieces().into_iter().filter(|(_, positive)| *positive), |(piece, _)| {
+                        product.integral(piece)
+                    })
+                }
+                Rule::Points(points) => {
+                    sum(
+                        points,
+                        |&[s, weight]| {
+                            if p.at(s) > zero { weight * product.at(s) } else { zero }
+                        },
+                    )
+                }
+            };
+            side.length / self.0.gamma(side) * integral
         })
     }
 

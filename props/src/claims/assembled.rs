@@ -87,16 +87,42 @@ pub fn p2() -> Outcome {
 
 /// The loops of the solver over rationals are the definitions, to the last digit: P1 and P2.
 pub fn loops_over_rationals() -> Outcome {
-    let p1 =
-        draws::hold(20, problems(Contact::Any, true), &[], |draw| loops::<3>(draw, Mistake::None))?;
-    let p2 =
-        draws::hold(6, problems(Contact::Any, false), &[], |draw| loops::<6>(draw, Mistake::None))?;
-    Ok(format!("P1: {p1}; P2: {p2}"))
+    let mut found = Vec::new();
+    for (contact, two_sides, cases, class) in P1_KINDS {
+        found.push(draws::hold(
+            5 * cases,
+            problems(contact, two_sides),
+            class.as_slice(),
+            |draw| loops::<3>(draw, Mistake::None),
+        )?);
+    }
+    for (contact, two_sides, cases, class) in P2_KINDS {
+        found.push(draws::hold(
+            2 * cases,
+            problems(contact, two_sides),
+            class.as_slice(),
+            |draw| loops::<6>(draw, Mistake::None),
+        )?);
+    }
+    Ok(found.join("; "))
 }
 
-/// The same with gamma inverted in the definitions.
-pub fn loops_with_gamma_inverted() -> Outcome {
-    draws::reject(problems(Contact::Any, true), |draw| loops::<3>(draw, Mistake::GammaInverted))
+/// The same with a mistake in the definitions.
+pub fn loops_beside_other_definitions() -> Outcome {
+    let mistakes = [
+        Mistake::GammaInverted,
+        Mistake::EdgeLengthForDiameter,
+        Mistake::LameExchanged,
+        Mistake::Theta(-1),
+        Mistake::Theta(0),
+        Mistake::GapWithTheWrongSign,
+    ];
+    let rejected = |mistake| {
+        let problems = problems(Contact::Any, true);
+        let said = draws::reject(problems, |draw| loops::<3>(draw, mistake))?;
+        Ok(format!("{mistake:?} {said}"))
+    };
+    mistakes.map(rejected).into_iter().collect::<Result<Vec<_>, String>>().map(|all| all.join("; "))
 }
 
 fn rejected(mistake: Mistake) -> Outcome {

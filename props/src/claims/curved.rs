@@ -3,16 +3,15 @@
 //!
 //! With A(y) = -(y - 3y^3 + 2y^4), B(y) = 1 - 3y^2 + 2y^3, p = 8 \[x - c\]+^3 and q = -4 \[c - x\]+^2 the field
 //! u = (A p', B p - A q) has u_n = -p, sigma_n = (lambda + 2 mu) q and no shear on y = 0, n = (0, -1): conditions (2).
-//! Body force and tractions follow from (1). P1 and P2, whose gradients and P0(v) come from the kernel.
+//! Body force and tractions follow from (1). P1 and P2.
 //! That the solver's own formulas of it, `study::exact::Smooth`, satisfy (1) and (2) is a test (tests/suite/exact.rs).
 
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 use proptest::prelude::Strategy;
-use signorini::kernel::{Element, P1, P2};
 
 use crate::Verdict;
-use crate::bodies::{Body, Draw, Kernel, bodies};
+use crate::bodies::{Body, Definition, Draw, bodies};
 use crate::claim::Outcome;
 use crate::draws;
 use crate::naive::Line;
@@ -243,13 +242,8 @@ fn load<const N: usize>(body: &Body, c: &BigRational, v: &[[Exact; 2]]) -> BigRa
     total
 }
 
-/// The polynomial in s with these values at 0 and 1, and at 1/2 if there are three.
-fn line(values: &[Exact]) -> Polynomial {
-    let line = match *values {
-        [start, end] => Line::affine(start, end),
-        [start, end, middle] => Line::quadratic(start, middle, end),
-        _ => Line(Vec::new()),
-    };
+/// A line as a polynomial in s.
+fn polynomial(line: &Line<Exact>) -> Polynomial {
     let terms = line.0.iter().zip(0 as Exponent..);
     terms.fold(Polynomial::default(), |sum, (c, n)| {
         &sum + &power(&Polynomial::variable(0), n).scaled(&c.value())
@@ -257,21 +251,22 @@ fn line(values: &[Exact]) -> Polynomial {
 }
 
 /// The contact terms of (8) at the exact u; `weight` times int (1/gamma) \[P(u)\]+ P0(v) in them.
-fn contact<E: Element<N, M>, const N: usize, const M: usize>(
+fn contact<const N: usize>(
     body: &Body,
     c: &BigRational,
     v: &[[Exact; 2]],
     weight: i64,
 ) -> BigRational {
-    let kernel = Kernel::<N, M>::new::<E>(body);
+    let definition = Definition::<N>(body);
     let mut total = BigRational::zero();
     for (right, exact) in &sides(body, c) {
-        for (e, side) in body.contact.iter().enumerate() {
+        for side in &body.contact {
             let [a, b] = ends(body, side.triangle, side.local);
             let Some([start, end]) = cut(&a[0], &b[0], c, *right) else { continue };
             let (gamma, length) = (body.gamma(side).value(), side.length.value());
             let (u_n, sigma_n) = (along(&-&exact.u[1], &a, &b), along(&exact.stress[1], &a, &b));
-            let (p0, stress) = (line(&kernel.p0(e, v)), line(&kernel.sigma_n(e, v)));
+            let traces = definition.traces(side, v);
+            let (p0, stress) = (polynomial(&traces.p0), polynomial(&traces.sigma_n));
             let p = &u_n - &sigma_n.scaled(&gamma);
             let middle = (&start + &end) / integer(2);
             let mut density = -&(&sigma_n * &stress).scaled(&gamma);
@@ -285,14 +280,13 @@ fn contact<E: Element<N, M>, const N: usize, const M: usize>(
 }
 
 /// The left side of the discrete equations at the exact u minus L(v), for a v that is zero at the top.
-fn residual<E: Element<N, M>, const N: usize, const M: usize>(
+fn residual<const N: usize>(
     body: &Body,
     c: &BigRational,
     v: &[[Exact; 2]],
     weight: i64,
 ) -> BigRational {
-    over_body::<N>(body, c, v, energy) - load::<N>(body, c, v)
-        + contact::<E, N, M>(body, c, v, weight)
+    over_body::<N>(body, c, v, energy) - load::<N>(body, c, v) + contact::<N>(body, c, v, weight)
 }
 
 /// The field is a solution: (2) holds on y = 0 on either side of c, as polynomials or at the ends.
@@ -308,11 +302,7 @@ fn satisfies_2(c: &BigRational, moduli: [&BigRational; 2]) -> bool {
     })
 }
 
-fn consistent<E: Element<N, M>, const N: usize, const M: usize>(
-    draw: &Draw,
-    (n, d): (i64, i64),
-    weight: i64,
-) -> Verdict {
+fn consistent<const N: usize>(draw: &Draw, (n, d): (i64, i64), weight: i64) -> Verdict {
     let body = draw.upright().body();
     let c = integer(n) / integer(n + d);
     let [lambda, mu] = moduli(&body).map(|x| x.value());
@@ -323,7 +313,7 @@ fn consistent<E: Element<N, M>, const N: usize, const M: usize>(
     });
     given!(cut_edge);
     for v in body.basis::<N>() {
-        ensure!(residual::<E, N, M>(&body, &c, &v, weight).is_zero());
+        ensure!(residual::<N>(&body, &c, &v, weight).is_zero());
     }
     Verdict::Holds("an edge with contact and gap")
 }
@@ -336,20 +326,20 @@ fn data() -> impl Strategy<Value = (Draw, (i64, i64))> {
 
 /// The residual vanishes at the curved solution.
 pub fn residual_vanishes() -> Outcome {
-    draws::hold(8, data(), &CLASSES, |(draw, c)| consistent::<P1, 3, 2>(draw, *c, 1))
+    draws::hold(8, data(), &CLASSES, |(draw, c)| consistent::<3>(draw, *c, 1))
 }
 
 /// The same for P2.
 pub fn residual_vanishes_for_p2() -> Outcome {
-    draws::hold(3, data(), &CLASSES, |(draw, c)| consistent::<P2, 6, 3>(draw, *c, 1))
+    draws::hold(3, data(), &CLASSES, |(draw, c)| consistent::<6>(draw, *c, 1))
 }
 
 /// Without the contact term: the penalty-free method is not consistent.
 pub fn without_the_contact_term() -> Outcome {
-    draws::reject(data(), |(draw, c)| consistent::<P1, 3, 2>(draw, *c, 0))
+    draws::reject(data(), |(draw, c)| consistent::<3>(draw, *c, 0))
 }
 
 /// The same for P2.
 pub fn without_the_contact_term_for_p2() -> Outcome {
-    draws::reject(data(), |(draw, c)| consistent::<P2, 6, 3>(draw, *c, 0))
+    draws::reject(data(), |(draw, c)| consistent::<6>(draw, *c, 0))
 }

@@ -49,10 +49,9 @@ pub use row::{consistency, green, inequality_3_at_affine_solutions};
 #[cfg(not(kani))]
 mod row {
     use proptest::prelude::*;
-    use signorini::kernel::{P1, P2};
 
     use super::*;
-    use crate::bodies::{Body, Definition, Draw, Kernel, MaybeExact, Rule, bodies, rotated, sum};
+    use crate::bodies::{Body, Definition, Draw, Rule, bodies, rotated, sum};
     use crate::claim::{Claim, Outcome, proved, refuted, tested};
     use crate::claims::{consistent, curved};
     use crate::draws;
@@ -176,14 +175,7 @@ mod row {
     }
 
     /// Green's formula and (8) at an exact affine solution, for every v that is zero at the top.
-    fn consistent<E, const N: usize, const M: usize>(
-        draw: &Draw,
-        patch: &Patch,
-        spoil: bool,
-    ) -> Verdict
-    where
-        E: MaybeExact<N, M>,
-    {
+    fn consistent<const N: usize>(draw: &Draw, patch: &Patch, spoil: bool) -> Verdict {
         let mut body = draw.body();
         let Solution { stress, field: u } = solution(&mut body, patch);
         if spoil {
@@ -191,7 +183,7 @@ mod row {
                 side.gap = side.gap.map(|g| g - Exact::ratio(1, 3));
             }
         }
-        let (kernel, definition) = (Kernel::<N, M>::new::<E>(&body), Definition::<N>(&body));
+        let definition = Definition::<N>(&body);
         // The weights of a rule that is exact for the affine integrand here, so that P2 can take part.
         let half = Exact::ratio(1, 2);
         let gauss = [
@@ -208,7 +200,7 @@ mod row {
                 side.length * crate::bodies::whole(&here.sigma_n.by(&test.v_n))
             });
             ensure!(definition.a(&u, &v) - green == work);
-            ensure!(kernel.b::<E>(rule, &u, &v) == work);
+            ensure!(definition.b(rule, &u, &v) == work);
         }
         Verdict::Holds(["contact", "gap", "touching without force"][patch.2])
     }
@@ -217,21 +209,19 @@ mod row {
 
     fn patch_p1() -> Outcome {
         draws::hold(90, (bodies(1), patches()), &CLASSES, |(draw, patch)| {
-            consistent::<P1, 3, 2>(draw, patch, false)
+            consistent::<3>(draw, patch, false)
         })
     }
 
     fn patch_p2() -> Outcome {
         draws::hold(30, (bodies(1), patches()), &CLASSES, |(draw, patch)| {
-            consistent::<P2, 6, 3>(draw, patch, false)
+            consistent::<6>(draw, patch, false)
         })
     }
 
     /// An obstacle that is nearer than the solution allows.
     fn wrong_gap() -> Outcome {
-        draws::reject((bodies(1), patches()), |(draw, patch)| {
-            consistent::<P1, 3, 2>(draw, patch, true)
-        })
+        draws::reject((bodies(1), patches()), |(draw, patch)| consistent::<3>(draw, patch, true))
     }
 
     fn onto_contact(v: &mut [Exact]) {

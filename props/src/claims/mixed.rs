@@ -113,13 +113,10 @@ mod row {
     use std::path::Path;
 
     use signorini::io::case::Case;
-    use signorini::kernel::{P1, P2};
     use signorini::solve::solve;
 
     use super::*;
-    use crate::bodies::{
-        Body, Definition, Kernel, MaybeExact, Rule, Side, bodies, contact_class, sum,
-    };
+    use crate::bodies::{Body, Definition, Rule, Side, bodies, contact_class, sum};
     use crate::claim::{Claim, Outcome, noticed, proved, refuted, tested};
     use crate::claims::theorem_3_3::one_triangle;
     use crate::draws;
@@ -149,7 +146,7 @@ mod row {
     /// The mixed form of (8) and (9), (10) integrated over Gamma_C, at any u: P1 without quadrature error.
     fn mixed(body: &Body, sign: Exact) -> Verdict {
         let (u, v) = (body.drawn(0), body.drawn(1));
-        let (kernel, definition) = (Kernel::<3, 2>::new::<P1>(body), Definition::<3>(body));
+        let definition = Definition::<3>(body);
         let over = |f: Integrand<'_>| {
             let (mut total, mut e) = (Exact::from(0), 0);
             for side in &body.contact {
@@ -166,7 +163,7 @@ mod row {
             let stabilised = l.minus(&here.sigma_n).by(&test.sigma_n).times(body.gamma(side));
             stabilised.plus(&l.by(&test.v_n).times(-sign))
         });
-        ensure!(kernel.b::<P1>(Rule::Exact, &u, &v) == definition.a(&u, &v) + contact);
+        ensure!(definition.b(Rule::Exact, &u, &v) == definition.a(&u, &v) + contact);
         let nine = over(&|side, e, l| {
             let projected =
                 definition.traces(side, &u).p.times(-(Exact::from(1) / body.gamma(side)));
@@ -191,12 +188,9 @@ mod row {
     }
 
     /// The same equality by points, for P1 and P2: lambda^h at each point.
-    fn mixed_by_points<E, const N: usize, const M: usize>(body: &Body) -> Verdict
-    where
-        E: MaybeExact<N, M>,
-    {
+    fn mixed_by_points<const N: usize>(body: &Body) -> Verdict {
         let (u, v) = (body.drawn(0), body.drawn(1));
-        let (kernel, definition) = (Kernel::<N, M>::new::<E>(body), Definition::<N>(body));
+        let definition = Definition::<N>(body);
         let rule = [[(1, 4), (1, 3)], [(3, 5), (1, 2)], [(1, 1), (1, 6)]]
             .map(|p| p.map(|(n, d)| Exact::ratio(n, d)));
         let contact = sum(&body.contact, |side| {
@@ -210,7 +204,7 @@ mod row {
                     w * (gamma * l * test.sigma_n.at(s) - l * test.v_n.at(s))
                 })
         });
-        ensure!(kernel.b::<E>(Rule::Points(&rule), &u, &v) == definition.big_a(&u, &v) + contact);
+        ensure!(definition.b(Rule::Points(&rule), &u, &v) == definition.big_a(&u, &v) + contact);
         Verdict::Holds(contact_class::<N>(body, &u))
     }
 
@@ -220,9 +214,7 @@ mod row {
     }
 
     fn mixed_p2() -> Outcome {
-        draws::hold(20, bodies(2), &["an edge is cut"], |draw| {
-            mixed_by_points::<P2, 6, 3>(&draw.body())
-        })
+        draws::hold(20, bodies(2), &["an edge is cut"], |draw| mixed_by_points::<6>(&draw.body()))
     }
 
     fn sign_of_the_multiplier() -> Outcome {

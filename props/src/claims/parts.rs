@@ -17,7 +17,7 @@ use signorini::kernel::triangle::on_edge;
 use signorini::kernel::{ContactEdge, Element, Material, P1, P2, Plane, Stress};
 use signorini::nalgebra::{Matrix2, Vector2};
 
-use crate::bodies::{Body, Draw, Kernel, bodies, sum};
+use crate::bodies::{Body, Definition, Draw, bodies, sum};
 use crate::claim::{Claim, Outcome, proved, refuted};
 use crate::claims::geometry;
 use crate::draws;
@@ -279,7 +279,7 @@ fn functionals_agree<E: Element<N, M>, const N: usize, const M: usize>(body: &Bo
 /// (11) with the turned directions: gamma |s(v)|^2 on the contact edges of a triangle against kappa_T a_T(v, v), each edge
 /// counted `factor(cosine)` times. Where A is not isotropic, the largest eigenvalue of Q(n) need not be rational.
 fn coercive_along<E: Element<N, M>, const N: usize, const M: usize>(body: &Body) -> Verdict {
-    let kernel = Kernel::<N, M>::new::<E>(body);
+    let definition = Definition::<N>(body);
     let v = body.drawn(0);
     for t in 0..body.triangles.len() {
         let (mut left, mut length) = (Exact::from(0), Exact::from(0));
@@ -297,7 +297,7 @@ fn coercive_along<E: Element<N, M>, const N: usize, const M: usize>(body: &Body)
         let h = body.diameters[t];
         let stiffness = body.material.normal_stiffness(Vector2::y());
         let constant = coercivity_constant::<E, Exact, N, M>(stiffness, h, length, area);
-        ensure!(left <= body.gamma0 * constant * kernel.a_on(t, &v, &v));
+        ensure!(left <= body.gamma0 * constant * definition.a_on(t, &v, &v));
     }
     Verdict::Holds("always")
 }

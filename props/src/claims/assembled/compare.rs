@@ -15,6 +15,8 @@ use super::draw::{Draw, owner};
 use super::given::read;
 use super::solver::{assembled, numbered, unsolved};
 use crate::bodies::{Body, Definition, Rule, combined, contact_class, sum};
+use crate::discrete::Discrete;
+use crate::elimination::dot;
 use crate::ensure;
 use crate::naive::Line;
 use crate::numbers::{Exact, Magnitude};
@@ -105,9 +107,9 @@ pub(super) fn compared<const N: usize>(
     })
 }
 
-/// The solver's loops over rationals, with the doubles of its discretization for data: A(u, v) for every basis function v, and
-/// P0(u) at the ends of the contact edges, are their definitions. Nothing is rounded: the normal is a unit vector of rational
-/// numbers, another one than the edge has, for none of the sums depends on that.
+/// The solver's loops over rationals, with the doubles of its discretization for data, are their definitions: A(u, v) - L(v), P(u) at
+/// the ends of the contact edges, and where they need no root the left side of (8) and its derivative along a field. Nothing is
+/// rounded: the normal is a unit vector of rational numbers, another one than the edge has, for none of the sums depends on that.
 pub(super) fn loops<const N: usize>(draw: &Draw, mistake: Mistake) -> Verdict {
     // lambda of plane stress is a quotient that doubles round.
     if draw.stress && draw.tensor.is_none() {
@@ -117,37 +119,61 @@ pub(super) fn loops<const N: usize>(draw: &Draw, mistake: Mistake) -> Verdict {
     let discretized =
         Discretization::new(&problem, degree(N), |c| draw.kappa * c.limit(), draw.rule());
     let Ok(d) = discretized else { return Verdict::Fails("the problem is refused") };
-    Exact::scope(|| {
-        let Some(mut setting) = Setting::<Exact>::new::<N>(draw, &d) else {
-            return Verdict::Fails("nodes and contact edges are those of the mesh");
-        };
-        setting.plant(mistake, draw);
-        let n = [Exact::ratio(5, 13), Exact::ratio(-12, 13)];
-        setting.body.contact.iter_mut().for_each(|side| side.n = n);
-        let edges: Vec<ContactFace<Exact>> = (d.contact.iter())
-            .map(|edge| {
-                let diameter = d.problem.mesh.diameter(edge.edge.triangle);
-                let gamma = Exact::of_double(d.gamma0) * Exact::of_double(diameter);
-                residual::with_numbers(&d, edge, (Exact::of_double(edge.length), n.into(), gamma))
-            })
-            .collect();
-        let [u, _] = draw.fields(d.space.nodes().len());
-        let u: Vec<[Exact; 2]> = read(&u);
-        let found = residual::linear_residual(&d, &edges, &u);
-        let definition = Definition::<N>(&setting.body);
-        for (node, (found, load)) in found.iter().zip(&d.load).enumerate() {
-            for c in 0..2 {
-                let v = setting.body.bump(node, unit(c));
-                ensure!(found[c] + Exact::of_double(load[c]) == definition.big_a(&u, &v));
-            }
+    let Some(mut setting) = Setting::<Exact>::new::<N>(draw, &d) else {
+        return Verdict::Fails("nodes and contact edges are those of the mesh");
+    };
+    setting.plant(mistake, draw);
+    let n = [Exact::ratio(5, 13), Exact::ratio(-12, 13)];
+    setting.body.contact.iter_mut().for_each(|side| side.n = n);
+    let edge = |edge: &ContactFace| {
+        let diameter = d.problem.mesh.diameter(edge.edge.triangle);
+        let gamma = Exact::of_double(d.gamma0) * Exact::of_double(diameter);
+        residual::with_numbers(&d, edge, (Exact::of_double(edge.length), n.into(), gamma))
+    };
+    let edges: Vec<ContactFace<Exact>> = d.contact.iter().map(edge).collect();
+    let nodes = d.space.nodes().len();
+    let [u, v] = draw.fields(nodes).map(|field| read::<Exact>(&field));
+    let definition = Definition::<N>(&setting.body);
+    // The gap of the solver is the double next to that of the definitions.
+    for (edge, side) in edges.iter().zip(&setting.body.contact) {
+        let p0 = definition.traces(side, &u).p0;
+        let found = edge.p0(&u);
+        ensure!([0, 1].iter().all(|&s| found[s as usize] == p0.at(Exact::from(s))));
+    }
+    for (edge, side) in edges.iter().zip(&mut setting.body.contact) {
+        let solvers =
+            [0, 1, 2].map(|a| edge.gap.get(a).map_or(side.gap[a], |&g| Exact::of_double(g)));
+        ensure!((0..3).all(|a| (solvers[a] - side.gap[a]).abs() <= Exact::of_double(1e-9)));
+        side.gap = solvers;
+    }
+    let definition = Definition::<N>(&setting.body);
+    let needs_roots = N == 6 && setting.points.is_none();
+    let forces = residual::linear_residual(&d, &edges, &u);
+    let discrete = Discrete::on(&d, edges);
+    let forces = if needs_roots { forces } else { discrete.reactions(&u) };
+    for (node, (found, load)) in forces.iter().zip(&d.load).enumerate() {
+        for c in 0..2 {
+            let bump = setting.body.bump(node, unit(c));
+            let zero = Exact::from(0);
+            let contact = if needs_roots { zero } else { setting.contact::<N>(&u, &bump) };
+            let expected = definition.big_a(&u, &bump) + contact;
+            ensure!(found[c] + Exact::of_double(load[c]) == expected);
         }
-        for (edge, side) in edges.iter().zip(&setting.body.contact) {
-            let [start, end] = [0, 1].map(|a| edge.p0(&u)[a]);
-            let p0 = definition.traces(side, &u).p0;
-            ensure!([start, end] == [0, 1].map(|s| p0.at(Exact::from(s))));
+    }
+    if !needs_roots {
+        let tangent = discrete.tangent(&u);
+        let free: Vec<Exact> = discrete.free(&v);
+        let v = discrete.less(&vec![[Exact::from(0); 2]; nodes], &free);
+        let rows = (0..nodes).flat_map(|node| [0, 1].map(|c| (node, c)));
+        let rows = rows.filter(|key| !setting.prescribed.contains_key(key));
+        for (i, (node, c)) in rows.enumerate() {
+            let bump = setting.body.bump(node, unit(c));
+            let slope = definition.slope(setting.rule(), &u, &v, &bump);
+            ensure!(dot(&tangent[i], &free) == -(definition.big_a(&v, &bump) + slope));
+            ensure!((0..i).all(|j| tangent[i][j] == tangent[j][i]));
         }
-        Verdict::Holds(contact_class::<N>(&setting.body, &u))
-    })
+    }
+    Verdict::Holds(contact_class::<N>(&setting.body, &u))
 }
 
 /// The degree of the element with so many nodes on a triangle.

@@ -22,6 +22,7 @@ pub(super) enum Mistake {
     DiameterOfAnotherTriangle,
     GapWithTheWrongSign,
     GammaInverted,
+    LameExchanged,
     ContactEdgeForgotten,
     Theta(i32),
     TractionOnAnotherSide,
@@ -181,6 +182,11 @@ impl<S: Given> Setting<S> {
                 }
             }
             Mistake::GammaInverted => body.gamma0 = S::from(1) / body.gamma0,
+            Mistake::LameExchanged => {
+                if let Hooke::Isotropic { lambda, mu } = &mut body.hooke {
+                    std::mem::swap(lambda, mu);
+                }
+            }
             Mistake::ContactEdgeForgotten => {
                 let owners: Vec<usize> = body.contact.iter().map(|side| side.triangle).collect();
                 let twice = |t: usize| owners.iter().filter(|&&o| o == t).count() == 2;
