@@ -108,7 +108,7 @@ impl Oscillation {
 struct Given<'a> {
     name: String,
     functions: Vec<&'a SharedFunction>,
-    /// Those of this degree are in the exact class; `None` where the certificate has values at vertices only.
+    /// The degree up to which they are in the exact class; `None` where the certificate has values at vertices only.
     degree: Option<u32>,
     /// Where they act.
     vertices: Vec<usize>,

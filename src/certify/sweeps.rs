@@ -85,7 +85,7 @@ struct Star {
     places: Vec<Place>,
     own: Vec<usize>,
     edges: Vec<usize>,
-    /// Of the system of the star, the rows of its lower half; none where the unknowns are not independent.
+    /// The lower half of the factor of the star's system, row by row; none where the unknowns are not independent.
     factor: Vec<f64>,
 }
 

@@ -87,27 +87,21 @@ pub fn p2() -> Outcome {
 
 /// The loops of the solver over rationals are the definitions, to the last digit: P1 and P2.
 pub fn loops_over_rationals() -> Outcome {
-    let mut found = Vec::new();
-    for (contact, two_sides, cases, class) in P1_KINDS {
-        found.push(draws::hold(
-            5 * cases,
-            problems(contact, two_sides),
-            class.as_slice(),
-            |draw| loops::<3>(draw, Mistake::None),
-        )?);
-    }
-    for (contact, two_sides, cases, class) in P2_KINDS {
-        found.push(draws::hold(
-            2 * cases,
-            problems(contact, two_sides),
-            class.as_slice(),
-            |draw| loops::<6>(draw, Mistake::None),
-        )?);
-    }
-    Ok(found.join("; "))
+    Ok(format!("{}; {}", loops_of::<3>(&P1_KINDS, 5)?, loops_of::<6>(&P2_KINDS, 2)?))
 }
 
-/// The same with a mistake in the definitions.
+/// Compares the loops with the definitions on `share` times as many draws of each kind as it has.
+fn loops_of<const N: usize>(kinds: &[Kind], share: u32) -> Outcome {
+    let one = |&(contact, two_sides, cases, ref class): &Kind| {
+        let problems = problems(contact, two_sides);
+        draws::hold(share * cases, problems, class.as_slice(), |draw| {
+            loops::<N>(draw, Mistake::None)
+        })
+    };
+    Ok(kinds.iter().map(one).collect::<Result<Vec<_>, String>>()?.join("; "))
+}
+
+/// Compares the loops with definitions that have a mistake.
 pub fn loops_beside_other_definitions() -> Outcome {
     let mistakes = [
         Mistake::GammaInverted,

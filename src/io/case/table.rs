@@ -104,7 +104,7 @@ impl<'s> Table<'s> {
         Ok(())
     }
 
-    /// Those of `keys` that are there.
+    /// Lists those of `keys` that are there.
     pub fn given<'k>(&self, keys: &[&'k str]) -> Vec<&'k str> {
         keys.iter().copied().filter(|key| self.entries.contains_key(*key)).collect()
     }
