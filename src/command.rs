@@ -9,15 +9,14 @@ mod solve;
 mod study;
 mod sweep;
 
-use std::fmt::Display;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::CommandFactory;
 use signorini::io::files::reason;
-use signorini::io::run::RunError;
-use signorini::io::{Case, FileError, summary};
+use signorini::io::run::Failure;
+use signorini::io::{Case, summary};
 use signorini::{quote, solve as library};
 
 use self::arguments::{Arguments, CaseArguments, Task};
@@ -28,27 +27,6 @@ const WRONG: u8 = 2;
 const FAILED: u8 = 1;
 /// There are results, but they are not proved, or something else that was asked for is missing.
 const SHORT: u8 = 3;
-
-/// A message for people and an exit code.
-struct Failure {
-    message: String,
-    code: u8,
-}
-
-/// The failure of a case or of arguments that are wrong.
-fn wrong(error: impl Display) -> Failure {
-    Failure { message: error.to_string(), code: WRONG }
-}
-
-/// The failure of a right case that has no result.
-fn failed(error: impl Display) -> Failure {
-    Failure { message: error.to_string(), code: FAILED }
-}
-
-/// One of the two.
-fn wrong_or_failed(is_wrong: bool, error: impl Display) -> Failure {
-    if is_wrong { wrong(error) } else { failed(error) }
-}
 
 /// Text for standard output, and the exit code.
 struct Done {
@@ -91,12 +69,16 @@ pub fn run() -> ExitCode {
 fn ended(said: Result<u8, Failure>) -> ExitCode {
     match said {
         Ok(code) => ExitCode::from(code),
-        Err(Failure { message, code }) => {
+        Err(failure) => {
             signals::give_way();
-            complain(&format!("error: {message}"));
-            ExitCode::from(code)
+            complain(&format!("error: {failure}"));
+            ExitCode::from(code(&failure))
         }
     }
+}
+
+fn code(failure: &Failure) -> u8 {
+    if failure.is_wrong { WRONG } else { FAILED }
 }
 
 /// Says it on standard output.
@@ -109,7 +91,7 @@ fn say(text: &str) -> Result<(), Failure> {
 fn heard(written: io::Result<()>) -> Result<(), Failure> {
     match written {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            Err(failed(format!("cannot write to standard output: {}", reason(&error))))
+            Err(Failure::failed(format!("cannot write to standard output: {}", reason(&error))))
         }
         _ => Ok(()),
     }
@@ -128,11 +110,7 @@ fn is_standard_input(file: &Path) -> bool {
 
 fn read(CaseArguments { file, settings }: &CaseArguments) -> Result<Case, Failure> {
     let (file, text) = read_text(file)?;
-    Case::parse(&file, &text, settings).map_err(no_case)
-}
-
-fn no_case(error: FileError) -> Failure {
-    wrong_or_failed(!error.error.is_lack(), error)
+    Ok(Case::parse(&file, &text, settings)?)
 }
 
 /// The text of a case, and what messages call its file.
@@ -143,7 +121,7 @@ fn read_text(file: &Path) -> Result<(PathBuf, String), Failure> {
     } else {
         (file, Case::text(file))
     };
-    Ok((name.to_owned(), text.map_err(no_case)?))
+    Ok((name.to_owned(), text?))
 }
 
 /// The folder given by `--out`, or out/ and the name of the case.
@@ -159,15 +137,10 @@ fn folder(file: &Path, out: Option<&Path>) -> PathBuf {
     }
 }
 
-/// The failure of a case that cannot be solved.
-fn unsolvable(file: &Path, error: &RunError) -> Failure {
-    wrong_or_failed(error.is_wrong_case(), format!("{}: {error}", quote::path(file)))
-}
-
 fn check(arguments: &CaseArguments, quiet: bool) -> Result<Done, Failure> {
     let case = read(arguments)?;
     let outline = library::check(&case.problem, &case.method)
-        .map_err(|e| unsolvable(&case.file, &e.into()))?;
+        .map_err(|error| Failure::from(error).of(&case.file))?;
     Ok(summarised(&summary::checked(&case, &outline), quiet))
 }
 

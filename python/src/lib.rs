@@ -13,7 +13,7 @@ use signorini::io::Case;
 use signorini::io::outputs::{self, Extra};
 use signorini::io::picture::draw;
 use signorini::io::result::{Results, result_json};
-use signorini::io::run::{self, RunError};
+use signorini::io::run::{self, Failure};
 use signorini::io::summary;
 use signorini::kernel::Stress;
 use signorini::solve::Solution;
@@ -147,8 +147,8 @@ fn solved(case: Case, start: Instant) -> PyResult<Solved> {
     Ok(Solved { case, solved, results, read })
 }
 
-fn unsolved(error: &RunError) -> PyErr {
-    if error.is_wrong_case() { wrong(error) } else { SolveError::new_err(error.to_string()) }
+fn unsolved(error: &Failure) -> PyErr {
+    if error.is_wrong { wrong(error) } else { SolveError::new_err(error.to_string()) }
 }
 
 fn raw<'py>(py: Python<'py>, s: &Solution, results: &str) -> PyResult<Bound<'py, PyDict>> {

@@ -5,13 +5,14 @@ use std::path::Path;
 use signorini::certify::binding::compare;
 use signorini::certify::certify_field;
 use signorini::io::field::read_field;
+use signorini::io::run::Failure;
 use signorini::io::{Case, certificate, outputs, summary};
 use signorini::quote;
 use signorini::solve::{Course, solve_along};
 
 use super::arguments::CaseArguments;
 use super::progress::Phases;
-use super::{Done, Failure, failed, folder, read, summarised, unsolvable, wrong};
+use super::{Done, folder, read, summarised};
 
 pub fn certify(
     arguments: &CaseArguments,
@@ -25,20 +26,20 @@ pub fn certify(
     let folder =
         out.map_or_else(|| folder(&arguments.file, None).join("certified"), Path::to_owned);
     if folder.join("result.json").exists() {
-        return Err(wrong(format!(
+        return Err(Failure::wrong(format!(
             "{} has the result.json of a solve, to which this certificate would seem to belong; expected another folder: --out DIR",
             quote::path(&folder)
         )));
     }
-    let field = read_field(displacement, &case.problem.mesh).map_err(wrong)?;
+    let field = read_field(displacement, &case.problem.mesh)?;
     let watcher = |phase| phases.enter_solve(phase);
     let course = Course::default().watched_by(&watcher);
     let (solution, _) = solve_along(&case.problem, &case.method, &case.settings, course)
-        .map_err(|e| unsolvable(&case.file, &e.into()))?;
+        .map_err(|error| Failure::from(error).of(&case.file))?;
     phases.enter("certifying");
     let certified = certify_field(&case.problem, &solution, &field)
-        .map_err(|e| failed(format!("{}: {e}", displacement.display())))?;
-    let files = outputs::write_certified(&folder, &case, &field, &certified).map_err(failed)?;
+        .map_err(|e| Failure::failed(format!("{}: {e}", displacement.display())))?;
+    let files = outputs::write_certified(&folder, &case, &field, &certified)?;
     drop(phases);
     Ok(summarised(&summary::certified(&case, displacement, &certified, &files), quiet))
 }
@@ -55,13 +56,13 @@ pub fn audit(
         read(&CaseArguments { file: file.to_owned(), settings })
     });
     let case = case.transpose()?;
-    let audit = certificate::audit(path).map_err(failed)?;
+    let audit = certificate::audit(path).map_err(Failure::failed)?;
     let Some(Case { problem, file, .. }) = case else {
         return Ok(summarised(&summary::audited(&audit, None), quiet));
     };
     let reason = compare(problem, &audit.certificate, &audit.forces).map_err(|difference| {
         let [path, file] = [path, &file].map(quote::path);
-        failed(format!("{path}: not a certificate of {file}: {difference}"))
+        Failure::failed(format!("{path}: not a certificate of {file}: {difference}"))
     })?;
     Ok(summarised(&summary::audited(&audit, Some((&file, reason.as_deref()))), quiet))
 }

@@ -10,50 +10,19 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::{env, fs, io};
 
-use signorini::io::FileError;
-use signorini::io::files::{self, WriteError, reason};
+use signorini::io::files::{self, reason};
 use signorini::io::input::{self, MOST_OF_A_CASE};
 use signorini::io::outputs::{FILES, FILES_OF_FENICSX};
 use signorini::io::result::Results;
+use signorini::io::run::Failure;
 use signorini::quote;
-use thiserror::Error;
 
 use super::signals;
 
-/// The reason why the other engine gave no result.
-#[derive(Debug, Error)]
-pub enum EngineError {
-    #[error(
-        "the engine fenicsx is not here: no folder fenicsx in {}; take the folder reference/ of the sources and name it: --reference DIR",
-        looked_in.iter().map(|p| quote::path(p)).collect::<Vec<_>>().join(", ")
-    )]
-    NoPackage { looked_in: Vec<PathBuf> },
-    #[error(
-        "the engine fenicsx needs DOLFINx and Python 3.11 or later, and neither python3 nor /usr/bin/python3 can import it: install it (Debian, Ubuntu: apt-get install python3-dolfinx)"
-    )]
-    NoDolfinx,
-    #[error(transparent)]
-    Case(#[from] FileError),
-    #[error("cannot start {program}: {}", reason(error))]
-    NotStarted { program: String, error: io::Error },
-    #[error("{message}")]
-    Failed { code: Option<i32>, message: String },
-    #[error("the engine fenicsx wrote no result.json that can be read: {error}")]
-    NoResult { error: io::Error },
-    #[error(transparent)]
-    Write(#[from] WriteError),
-}
+const NO_DOLFINX: &str = "the engine fenicsx needs DOLFINx and Python 3.11 or later, and neither python3 nor /usr/bin/python3 can import it: install it (Debian, Ubuntu: apt-get install python3-dolfinx)";
 
-impl EngineError {
-    /// The engine refused the case, as this program would have.
-    pub fn is_wrong_case(&self) -> bool {
-        matches!(
-            self,
-            EngineError::Failed { code: Some(2), .. }
-                | EngineError::Case(_)
-                | EngineError::Write(WriteError::Source { .. })
-        )
-    }
+fn not_started(program: &Path, error: &io::Error) -> Failure {
+    Failure::failed(format!("cannot start {}: {}", quote::path(program), reason(error)))
 }
 
 /// Solves `case` on `ranks` processes, with the package in `reference` if that is given; result.json and a file for
@@ -63,13 +32,13 @@ pub fn fenicsx(
     folder: &Path,
     ranks: u16,
     reference: Option<&Path>,
-) -> Result<(Results, Vec<PathBuf>), EngineError> {
+) -> Result<(Results, Vec<PathBuf>), Failure> {
     input::read(case, MOST_OF_A_CASE)?;
-    files::spare(folder, &FILES, &[case.to_owned()])?;
+    files::spare(folder, &FILES, &[case.to_owned()]).map_err(Failure::wrong)?;
     let path = python_path(reference)?;
     let python = python()?;
-    let not_started = |error| EngineError::NotStarted { program: quote::path(&python), error };
-    let mut output = files::Output::new(folder)?.replacing(&FILES);
+    let not_started = |error| not_started(&python, &error);
+    let mut output = files::Output::new(folder).map_err(Failure::failed)?.replacing(&FILES);
     let room = std::path::absolute(output.room()).map_err(not_started)?;
     let full = std::path::absolute(case).map_err(not_started)?;
     let ended = run(safe(&python)
@@ -85,17 +54,21 @@ pub fn fenicsx(
         let file = room.join("result.json");
         serde_json::from_slice(&fs::read(file)?).map_err(io::Error::from)
     };
-    let results = read().map_err(|error| EngineError::NoResult { error })?;
+    let results = read().map_err(|error| {
+        Failure::failed(format!(
+            "the engine fenicsx wrote no result.json that can be read: {error}"
+        ))
+    })?;
     for name in FILES_OF_FENICSX {
-        output.adopt(name)?;
+        output.adopt(name).map_err(Failure::failed)?;
     }
-    let mut files = output.publish()?;
+    let mut files = output.publish().map_err(Failure::failed)?;
     files.retain(|file| !file.ends_with("solution.h5"));
     Ok((results, files))
 }
 
 /// The engine's message, with the case named as the caller named it.
-fn failed(ended: &Output, case: &Path, full: &Path) -> EngineError {
+fn failed(ended: &Output, case: &Path, full: &Path) -> Failure {
     const MOST: usize = 4000;
     let said = String::from_utf8_lossy(&ended.stderr);
     let said = said.trim().replace(&*full.to_string_lossy(), &case.to_string_lossy());
@@ -106,7 +79,8 @@ fn failed(ended: &Output, case: &Path, full: &Path) -> EngineError {
         "" => format!("the engine fenicsx ended with {}", ended.status),
         said => said.to_owned(),
     };
-    EngineError::Failed { code: ended.status.code(), message }
+    // It refused the case, as this program would have.
+    Failure { message, is_wrong: ended.status.code() == Some(2) }
 }
 
 /// A Python that does not look for modules in the folder where it is started.
@@ -123,16 +97,20 @@ fn run(command: &mut Command) -> io::Result<Output> {
 
 /// PYTHONPATH with the package in front. Entries that are not paths from the root are left out: they would be folders of
 /// wherever Python is started.
-fn python_path(reference: Option<&Path>) -> Result<OsString, EngineError> {
+fn python_path(reference: Option<&Path>) -> Result<OsString, Failure> {
     let looked_in = match reference {
         Some(folder) => vec![folder.to_owned()],
         None => beside_this_program(),
     };
     let has_package = |folder: &&PathBuf| folder.join("fenicsx/__main__.py").is_file();
     let Some(found) = looked_in.iter().find(has_package) else {
-        return Err(EngineError::NoPackage { looked_in });
+        let looked_in: Vec<String> = looked_in.iter().map(|folder| quote::path(folder)).collect();
+        return Err(Failure::failed(format!(
+            "the engine fenicsx is not here: no folder fenicsx in {}; take the folder reference/ of the sources and name it: --reference DIR",
+            looked_in.join(", ")
+        )));
     };
-    let not_started = |error| EngineError::NotStarted { program: "python3".to_owned(), error };
+    let not_started = |error| not_started(Path::new("python3"), &error);
     let found = std::path::absolute(found).map_err(not_started)?;
     let given = absolute_paths("PYTHONPATH");
     env::join_paths(std::iter::once(found).chain(given))
@@ -155,7 +133,7 @@ fn absolute_paths(variable: &str) -> Vec<PathBuf> {
 }
 
 /// A Python that has DOLFINx: the one on PATH, or the system's.
-fn python() -> Result<PathBuf, EngineError> {
+fn python() -> Result<PathBuf, Failure> {
     let on_path = absolute_paths("PATH").into_iter().map(|folder| folder.join("python3"));
     on_path
         .filter(|python| python.is_file())
@@ -171,5 +149,5 @@ fn python() -> Result<PathBuf, EngineError> {
                 .current_dir(home));
             import.is_ok_and(|output| output.status.success())
         })
-        .ok_or(EngineError::NoDolfinx)
+        .ok_or_else(|| Failure::failed(NO_DOLFINX))
 }

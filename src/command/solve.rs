@@ -8,15 +8,13 @@ use signorini::certify::adapt::Stage;
 use signorini::io::files::spare;
 use signorini::io::outputs::{self, Extra};
 use signorini::io::result::{Results, result_json};
-use signorini::io::{input, run, summary};
+use signorini::io::run::{self, Failure};
+use signorini::io::{input, summary};
 use signorini::quote;
 
 use super::arguments::{CaseArguments, Engine, SolveOptions};
 use super::progress::Phases;
-use super::{
-    Done, Failure, SHORT, complain, engine, failed, folder, is_standard_input, read, summarised,
-    unsolvable, wrong, wrong_or_failed,
-};
+use super::{Done, SHORT, complain, engine, folder, is_standard_input, read, summarised};
 
 pub fn run(
     case: &CaseArguments,
@@ -28,14 +26,14 @@ pub fn run(
         (Engine::Fenicsx, _) => solve_by_fenicsx(case, options, quiet)?,
         (Engine::Signorini, None) => solve(case, options, quiet)?,
         (Engine::Signorini, Some(ranks)) => {
-            return Err(wrong(format!(
+            return Err(Failure::wrong(format!(
                 "--ranks {ranks}: this program solves in one process; expected --engine fenicsx beside it"
             )));
         }
     };
     let done = if options.json {
         let text = result_json(&results)
-            .map_err(|error| failed(format!("result.json cannot be made: {error}")))?;
+            .map_err(|error| Failure::failed(format!("result.json cannot be made: {error}")))?;
         Done { text, code: 0 }
     } else {
         summarised(&summary::solved(&results, &files, verbose), quiet)
@@ -60,7 +58,7 @@ fn solve(
     let folder = folder(&arguments.file, out);
     let with_files = !options.json || out.is_some();
     if with_files {
-        spare(&folder, &outputs::FILES, &case.sources).map_err(wrong)?;
+        spare(&folder, &outputs::FILES, &case.sources).map_err(Failure::wrong)?;
     }
     let file = case.file.clone();
     let watcher = |stage| match stage {
@@ -68,18 +66,19 @@ fn solve(
         Stage::Certify(level) => phases.enter(format!("certifying level {level}")),
         _ => phases.enter("refining the mesh"),
     };
-    let (case, mut solved) = run::solve(case, None, &watcher).map_err(|e| unsolvable(&file, &e))?;
+    let (case, mut solved) =
+        run::solve(case, None, &watcher).map_err(|failure| failure.of(&file))?;
     if extra.certificate && solved.certified.is_none() {
         phases.enter("certifying");
         solved.certify(&case);
     }
     if !with_files {
-        let results = outputs::results(&case, &solved, read, extra).map_err(failed)?;
+        let results = outputs::results(&case, &solved, read, extra).map_err(Failure::failed)?;
         return Ok((results, Vec::new()));
     }
     phases.enter("writing the files");
     let remark = remark_of_another_case(&folder, &case.file);
-    let (files, results) = outputs::write(&folder, &case, &solved, read, extra).map_err(failed)?;
+    let (files, results) = outputs::write(&folder, &case, &solved, read, extra)?;
     drop(phases);
     if let (Some(remark), false) = (remark, quiet) {
         complain(&remark);
@@ -110,17 +109,18 @@ fn solve_by_fenicsx(
     quiet: bool,
 ) -> Result<Solution, Failure> {
     if let Some(setting) = settings.first() {
-        return Err(wrong(format!(
+        return Err(Failure::wrong(format!(
             "--set {setting}: the engine fenicsx reads the case file itself; write the key into a case file"
         )));
     }
     if is_standard_input(file) {
-        return Err(wrong("-: the engine fenicsx reads the case file itself; expected its name"));
+        return Err(Failure::wrong(
+            "-: the engine fenicsx reads the case file itself; expected its name",
+        ));
     }
     let phases = Phases::start(quiet);
     phases.enter("solving by the engine fenicsx");
     let folder = folder(file, options.out.as_deref());
     let (ranks, reference) = (options.ranks.unwrap_or(1), options.reference.as_deref());
     engine::fenicsx(file, &folder, ranks, reference)
-        .map_err(|e| wrong_or_failed(e.is_wrong_case(), e))
 }

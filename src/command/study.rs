@@ -4,13 +4,13 @@ use std::path::Path;
 
 use signorini::io::convergence::{self, Meshes};
 use signorini::io::files::spare;
+use signorini::io::run::Failure;
 use signorini::io::summary;
-use signorini::quote;
 use signorini::solve::Degree;
 
 use super::arguments::{CaseArguments, MeshKind, StudyOptions};
 use super::progress::Phases;
-use super::{Done, Failure, failed, folder, read, summarised, wrong, wrong_or_failed};
+use super::{Done, folder, read, summarised};
 
 pub fn run(
     arguments: &CaseArguments,
@@ -20,7 +20,7 @@ pub fn run(
 ) -> Result<Done, Failure> {
     let case = read(arguments)?;
     let folder = folder(&arguments.file, out);
-    spare(&folder, &convergence::FILES, &case.sources).map_err(wrong)?;
+    spare(&folder, &convergence::FILES, &case.sources).map_err(Failure::wrong)?;
     let degree = |d: &u8| if *d == 1 { Degree::One } else { Degree::Two };
     let mesh = |m: &MeshKind| match m {
         MeshKind::Structured => Meshes::Structured,
@@ -44,15 +44,12 @@ pub fn run(
                 .and_then(|(ladder, meshes)| {
                     convergence::climb(ladder, meshes, levels, || enter(1))
                 })
-                .map_err(|error| {
-                    let message = format!("{}: {error}", quote::path(&case.file));
-                    wrong_or_failed(error.is_wrong_case(), message)
-                })?;
+                .map_err(|failure| failure.of(&case.file))?;
             studies.push(study);
         }
     }
     drop(phases);
-    let files = convergence::write(&folder, &case.title, &studies).map_err(failed)?;
+    let files = convergence::write(&folder, &case.title, &studies)?;
     Ok(summarised(&summary::studied(&case, &studies, &files), quiet))
 }
 

@@ -5,15 +5,12 @@ use std::time::{Duration, Instant};
 
 use signorini::io::files::spare;
 use signorini::io::result::Results;
-use signorini::io::run::RunError;
+use signorini::io::run::Failure;
 use signorini::io::summary;
-use signorini::io::sweep::{self, ParameterAxis, Sweep, SweepError};
+use signorini::io::sweep::{self, ParameterAxis, Sweep};
 
 use super::progress::Phases;
-use super::{
-    Done, FAILED, Failure, SHORT, WRONG, failed, folder, read_text, summarised, unsolvable, wrong,
-    wrong_or_failed,
-};
+use super::{Done, FAILED, SHORT, WRONG, folder, read_text, summarised};
 
 /// A sweep writes the table of what it has solved so often.
 const BETWEEN_TABLES: Duration = Duration::from_secs(1);
@@ -25,11 +22,10 @@ pub fn run(
     out: Option<&Path>,
     quiet: bool,
 ) -> Result<Done, Failure> {
-    let no_sweep = |error: SweepError| wrong_or_failed(error.is_wrong_case(), error);
-    let runs = sweep::count(axes).map_err(no_sweep)?;
+    let runs = sweep::count(axes)?;
     let folder = folder(file, out);
     let (file, text) = read_text(file)?;
-    spare(&folder, &[sweep::FILE], std::slice::from_ref(&file)).map_err(wrong)?;
+    spare(&folder, &[sweep::FILE], std::slice::from_ref(&file)).map_err(Failure::wrong)?;
     let phases = Phases::start(quiet);
     let enter = |done| phases.enter(format!("{done} of {runs} runs"));
     enter(0);
@@ -44,15 +40,15 @@ pub fn run(
         }
         Ok(())
     };
-    let sweep = sweep::run(&file, &text, axes, &folder, files, done).map_err(no_sweep)?;
+    let sweep = sweep::run(&file, &text, axes, &folder, files, done)?;
     drop(phases);
     let codes: Vec<u8> = sweep.results.iter().map(code).collect();
     if codes.iter().all(|code| *code == WRONG)
-        && let Some(Err(error)) = sweep.results.first()
+        && let Some(Err(failure)) = sweep.results.first()
     {
-        return Err(unsolvable(&file, error));
+        return Err(failure.clone().of(&file));
     }
-    let written = sweep.write(&folder).map_err(failed)?;
+    let written = sweep.write(&folder)?;
     let all_in = |allowed: &[u8]| codes.iter().all(|code| allowed.contains(code));
     let code = if all_in(&[0]) {
         0
@@ -65,11 +61,10 @@ pub fn run(
 }
 
 /// The exit code of a run with these results.
-fn code(results: &Result<Results, RunError>) -> u8 {
+fn code(results: &Result<Results, Failure>) -> u8 {
     match results {
         Ok(results) if results.falls_short() => SHORT,
         Ok(_) => 0,
-        Err(error) if error.is_wrong_case() => WRONG,
-        Err(_) => FAILED,
+        Err(failure) => super::code(failure),
     }
 }

@@ -3,12 +3,11 @@
 
 use std::path::{Path, PathBuf};
 
-use thiserror::Error;
-
 use super::case::Case;
 use super::csv;
 use super::files::{Output, OutputError};
 use super::picture::plot::{COLOURS, Figure, Panel, Style, figure};
+use super::run::Failure;
 use crate::fem::{MeshError, Perturbation};
 use crate::solve::{Degree, Method};
 use crate::study::ladder::{fitted_slope, rates};
@@ -35,36 +34,6 @@ impl Meshes {
 /// The distance by which vertices are moved where the case doesn't say.
 const PERTURBATION: Perturbation = Perturbation { amount: 0.2, seed: 1 };
 
-#[derive(Debug, Error)]
-pub enum StudyError {
-    #[error("[exact] is missing; errors are measured against an exact solution")]
-    NoSolution,
-    #[error(
-        "[mesh] gmsh: found a mesh file; expected rectangle or trapezoid, which can be refined"
-    )]
-    MeshFile,
-    #[error("P{degree}, level {level}: {error}")]
-    Level {
-        degree: usize,
-        /// From 0.
-        level: usize,
-        error: LadderError,
-    },
-}
-
-impl StudyError {
-    /// Returns whether the case is wrong. Otherwise it is right, but there is no study of it here.
-    pub fn is_wrong_case(&self) -> bool {
-        match self {
-            StudyError::NoSolution | StudyError::MeshFile => true,
-            StudyError::Level { error: LadderError::Mesh(error), .. } => {
-                !matches!(error, MeshError::OutOfMemory(_))
-            }
-            StudyError::Level { error: LadderError::Solve(error), .. } => error.is_wrong_case(),
-        }
-    }
-}
-
 /// The results on the meshes of one ladder.
 #[derive(Clone, Debug)]
 pub struct Study {
@@ -81,9 +50,12 @@ pub fn ladder(
     case: &Case,
     degree: Option<Degree>,
     meshes: Option<Meshes>,
-) -> Result<(Ladder, Meshes), StudyError> {
-    let exact = case.exact.as_ref().ok_or(StudyError::NoSolution)?;
-    let body = exact.structured.ok_or(StudyError::MeshFile)?;
+) -> Result<(Ladder, Meshes), Failure> {
+    const NO_SOLUTION: &str = "[exact] is missing; errors are measured against an exact solution";
+    const MESH_FILE: &str =
+        "[mesh] gmsh: found a mesh file; expected rectangle or trapezoid, which can be refined";
+    let exact = case.exact.as_ref().ok_or_else(|| Failure::wrong(NO_SOLUTION))?;
+    let body = exact.structured.ok_or_else(|| Failure::wrong(MESH_FILE))?;
     let own = if exact.perturbation.is_some() { Meshes::Perturbed } else { Meshes::Structured };
     let meshes = meshes.unwrap_or(own);
     let ladder = Ladder {
@@ -106,9 +78,17 @@ pub fn climb(
     meshes: Meshes,
     levels: usize,
     mut done: impl FnMut(),
-) -> Result<Study, StudyError> {
+) -> Result<Study, Failure> {
     let degree = ladder.method.degree;
-    let failed = |level| move |error| StudyError::Level { degree: degree.number(), level, error };
+    let failed = |level: usize| {
+        move |error: LadderError| Failure {
+            message: format!("P{}, level {level}: {error}", degree.number()),
+            is_wrong: match error {
+                LadderError::Mesh(error) => !matches!(error, MeshError::OutOfMemory(_)),
+                LadderError::Solve(error) => error.is_wrong_case(),
+            },
+        }
+    };
     let ladder = ladder.with_one_gamma0(levels).map_err(failed(0))?;
     let mut climbed = Vec::with_capacity(levels);
     for level in 0..levels {

@@ -1,13 +1,18 @@
 //! A case solved as it asks to be: on its own mesh, or on meshes that are adapted to a target.
 
+use std::fmt::Display;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use thiserror::Error;
 
 use super::case::Case;
+use super::files::OutputError;
+use super::input::FileError;
 use super::result::{Adaptation, Results};
 use crate::certify::adapt::{self, AdaptError, Stage};
 use crate::certify::{CertifyError, Continuous, certify_with};
+use crate::quote;
 use crate::solve::{Course, Solution, SolveError, Times, solve_along};
 
 #[derive(Debug)]
@@ -61,21 +66,52 @@ impl Certified {
     }
 }
 
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum RunError {
-    #[error(transparent)]
-    Solve(#[from] SolveError),
-    #[error("[adapt]: {0}")]
-    Adapt(#[from] AdaptError),
+/// The reason why there is no result.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("{message}")]
+pub struct Failure {
+    pub message: String,
+    /// The case or an argument is wrong. Otherwise they are right, but there is no result of them here.
+    pub is_wrong: bool,
 }
 
-impl RunError {
-    /// Returns whether the case is wrong. Otherwise it is right, but there is no solution of it here.
-    pub fn is_wrong_case(&self) -> bool {
-        match self {
-            RunError::Solve(error) => error.is_wrong_case(),
-            RunError::Adapt(error) => error.is_wrong_case(),
-        }
+impl Failure {
+    pub fn wrong(error: impl Display) -> Failure {
+        Failure { message: error.to_string(), is_wrong: true }
+    }
+
+    pub fn failed(error: impl Display) -> Failure {
+        Failure { message: error.to_string(), is_wrong: false }
+    }
+
+    /// Names the file that it is about.
+    #[must_use]
+    pub fn of(self, file: &Path) -> Failure {
+        Failure { message: format!("{}: {}", quote::path(file), self.message), ..self }
+    }
+}
+
+impl From<FileError> for Failure {
+    fn from(error: FileError) -> Failure {
+        Failure { message: error.to_string(), is_wrong: !error.error.is_lack() }
+    }
+}
+
+impl From<OutputError> for Failure {
+    fn from(error: OutputError) -> Failure {
+        Failure::failed(error)
+    }
+}
+
+impl From<SolveError> for Failure {
+    fn from(error: SolveError) -> Failure {
+        Failure { message: error.to_string(), is_wrong: error.is_wrong_case() }
+    }
+}
+
+impl From<AdaptError> for Failure {
+    fn from(error: AdaptError) -> Failure {
+        Failure { message: format!("[adapt]: {error}"), is_wrong: error.is_wrong_case() }
     }
 }
 
@@ -85,7 +121,7 @@ pub fn solve(
     mut case: Case,
     start: Option<&Solution>,
     watcher: &dyn Fn(Stage),
-) -> Result<(Case, Solved), RunError> {
+) -> Result<(Case, Solved), Failure> {
     let Some((target, force)) = case.adapt.clone() else {
         let of_solve = |phase| watcher(Stage::Solve(phase));
         let course = Course::default().watched_by(&of_solve);

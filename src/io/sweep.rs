@@ -12,11 +12,10 @@ use toml::de::{DeTable, DeValue};
 use super::case::Case;
 use super::csv;
 use super::files::{Output, OutputError};
-use super::input::FileError;
 use super::numbers::short;
 use super::outputs::{self, Extra};
 use super::result::Results;
-use super::run::{self, RunError};
+use super::run::{self, Failure};
 use crate::quote;
 use crate::solve::Solution;
 
@@ -64,29 +63,6 @@ fn items(list: &str) -> Option<Vec<String>> {
     }
 }
 
-#[derive(Debug, Error)]
-pub enum SweepError {
-    #[error("--set makes {runs} runs; expected at most {MOST_RUNS}")]
-    TooMany { runs: usize },
-    #[error("--set {key} is there twice; expected each key once, with all its values")]
-    Twice { key: String },
-    #[error(transparent)]
-    Case(#[from] FileError),
-    #[error(transparent)]
-    Output(#[from] OutputError),
-}
-
-impl SweepError {
-    /// Returns whether the case or the values of its keys are wrong. Otherwise they may be right, but there is no sweep here.
-    pub fn is_wrong_case(&self) -> bool {
-        match self {
-            SweepError::TooMany { .. } | SweepError::Twice { .. } => true,
-            SweepError::Case(error) => !error.error.is_lack(),
-            SweepError::Output(_) => false,
-        }
-    }
-}
-
 /// The entry of a run that is still to come when a sweep is stopped.
 const NOT_SOLVED: &str = "not solved";
 
@@ -103,19 +79,26 @@ pub struct Sweep {
     /// The values of the keys in each run; those of the last key change first.
     pub values: Vec<Vec<String>>,
     /// The results of the runs so far, or why there are none.
-    pub results: Vec<Result<Results, RunError>>,
+    pub results: Vec<Result<Results, Failure>>,
     /// The files of each run are written, too.
     pub with_files: bool,
 }
 
 /// The number of runs that these axes make.
-pub fn count(axes: &[ParameterAxis]) -> Result<usize, SweepError> {
+pub fn count(axes: &[ParameterAxis]) -> Result<usize, Failure> {
     let twice = |(i, axis): (usize, &ParameterAxis)| axes[..i].iter().any(|a| a.key == axis.key);
     if let Some(axis) = axes.iter().enumerate().find(|&axis| twice(axis)).map(|(_, axis)| axis) {
-        return Err(SweepError::Twice { key: axis.key.clone() });
+        let key = &axis.key;
+        return Err(Failure::wrong(format!(
+            "--set {key} is there twice; expected each key once, with all its values"
+        )));
     }
     let runs = axes.iter().fold(1_usize, |runs, axis| runs.saturating_mul(axis.values.len()));
-    if runs <= MOST_RUNS { Ok(runs) } else { Err(SweepError::TooMany { runs }) }
+    if runs > MOST_RUNS {
+        let said = format!("--set makes {runs} runs; expected at most {MOST_RUNS}");
+        return Err(Failure::wrong(said));
+    }
+    Ok(runs)
 }
 
 /// Solves the case with this text (see [`Case::parse`]) for each combination of the axes' values, each from the solution of
@@ -131,8 +114,8 @@ pub fn run(
     axes: &[ParameterAxis],
     folder: &Path,
     files: bool,
-    mut done: impl FnMut(&Sweep) -> Result<(), SweepError>,
-) -> Result<Sweep, SweepError> {
+    mut done: impl FnMut(&Sweep) -> Result<(), Failure>,
+) -> Result<Sweep, Failure> {
     count(axes)?;
     let values = combinations(axes);
     let read = |values: &[String]| {
@@ -188,7 +171,7 @@ fn solve(
     case: Case,
     folder: Option<&Path>,
     last: &mut Option<Solution>,
-) -> Result<Result<Results, RunError>, OutputError> {
+) -> Result<Result<Results, Failure>, OutputError> {
     let (case, mut solved) = match run::solve(case, last.as_ref(), &|_| {}) {
         Ok(solved) => solved,
         Err(error) => return Ok(Err(error)),
@@ -270,7 +253,7 @@ fn cells(r: &Results, shown: NumberFormat) -> Vec<Cell> {
 impl Sweep {
     /// The heading and a line for each run: the values, the numbers of any run in the order of [`cells`], and how it ended.
     fn lines(&self, brief: bool, shown: NumberFormat) -> Vec<Vec<String>> {
-        let of_run = |result: &Result<Results, RunError>| match result {
+        let of_run = |result: &Result<Results, Failure>| match result {
             Ok(results) => (cells(results, shown), results.newton.verdict().to_owned()),
             Err(error) => (Vec::new(), error.to_string()),
         };
@@ -323,7 +306,7 @@ impl Sweep {
 
     /// The text of sweep.pvd: the solutions of the runs as the steps of one animation, for ParaView.
     fn pvd(&self) -> String {
-        let step = |(i, results): (i32, &Result<Results, RunError>)| match results {
+        let step = |(i, results): (i32, &Result<Results, Failure>)| match results {
             Ok(_) => format!("<DataSet timestep=\"{i}\" file=\"{i}/solution.vtu\"/>\n"),
             Err(_) => String::new(),
         };

@@ -12,7 +12,7 @@ use signorini::certify::{Adapted, Target, adapt, certify};
 use signorini::fem::{
     Condition, Materials, PointSupport, Problem, SharedFunction, Space, contact_line,
 };
-use signorini::io::run::{self, RunError};
+use signorini::io::run;
 use signorini::io::{Case, Expression, case};
 use signorini::kernel::{Material, Plane};
 use signorini::solve::{Degree, Method, Settings, solve};
@@ -291,7 +291,6 @@ fn a_case_with_a_target_is_solved_on_the_adapted_mesh() {
 fn a_level_without_a_solution_says_which() {
     let few = ["method.degree=1", "solver.max_iterations=1", "adapt.target=\"1 %\""];
     let error = run::solve(of_the_file(&few), None, &|_| {}).err().unwrap();
-    assert!(matches!(error, RunError::Adapt(AdaptError::Solve { level: 0, .. })), "{error}");
     assert!(error.to_string().starts_with("[adapt]: level 0: no convergence"), "{error}");
 }
 
