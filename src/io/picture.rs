@@ -28,7 +28,8 @@ use crate::solve::Solution;
 use body::{BAR, Colours, body, colour_bar, definitions, outlines};
 use contact::{ContactLine, hatch, obstacle, pressure, tags};
 use draw::{
-    DARK, GREY, PageMap, PathData, Point, RED, clean, fitting, page, shape, stroke, text, width_of,
+    DARK, GREY, LEGEND_LINE, PageMap, PathData, Point, RED, SAMPLE, clean, fitting, legend, page,
+    shape, stroke, text,
 };
 use scene::Scene;
 
@@ -36,7 +37,6 @@ use scene::Scene;
 const MARGIN: f64 = 36.0;
 const HEADER: f64 = 88.0;
 const GAP: f64 = 20.0;
-const LEGEND_LINE: f64 = 24.0;
 
 /// The picture of a solved case.
 pub fn draw(case: &Case, solution: &Solution, results: &Results) -> Result<String, NotFinite> {
@@ -58,28 +58,25 @@ fn picture(scene: &Scene) -> Result<String, NotFinite> {
     let (pressure, obstacle) = (pressure(&lines), obstacle(&lines));
 
     let width = frame.width + GAP + BAR;
-    let mut legend: Vec<(Option<Mark>, &str)> = vec![(Some(undeformed), "undeformed")];
+    let mut entries: Vec<(Option<Group>, &str)> = vec![(Some(undeformed()), "undeformed")];
     if !scene.interfaces.is_empty() {
-        legend.push((
-            Some(|line, _| Group::new().add(stroke(line, DARK, 1.0))),
-            "border of two materials",
-        ));
+        entries.push((Some(interface()), "border of two materials"));
     }
     if obstacle.is_some() {
-        legend.push((Some(wall), "rigid obstacle"));
+        entries.push((Some(wall()), "rigid obstacle"));
     }
-    legend.push(match pressure {
-        Some(_) => (Some(pressed), "contact pressure"),
+    entries.push(match pressure {
+        Some(_) => (Some(pressed()), "contact pressure"),
         None => (None, "no contact pressure"),
     });
-    legend.push((None, &magnification));
+    entries.push((None, &magnification));
     let legend_at = [MARGIN, HEADER + frame.height + 30.0];
-    let (legend, bottom) = draw_legend(&legend, legend_at, MARGIN + width);
+    let (legend, bottom) = legend(entries, legend_at, MARGIN + width);
     let panels_at = bottom + LEGEND_LINE;
     let size = [width + 2.0 * MARGIN, panels_at + panel::height(scene)];
 
     let unit = scene.units.as_ref().map(|[stress, _]| &**stress);
-    let mut document = page(size.map(f64::round), 13, &scene.title)
+    let mut document = page(size.map(f64::round), &scene.title)
         .add(definitions(scene, &deformed))
         .add(headline(scene, width))
         .add(body(scene, &deformed, &colours))
@@ -117,50 +114,36 @@ fn headline(scene: &Scene, room: f64) -> Group {
         .add(text(subtitle, [MARGIN, 68.0]).set("font-size", small).set("fill", GREY))
 }
 
-/// Draws the mark before the words of an entry of the legend, of a short line and its ends.
-type Mark = fn(PathData, [Point; 2]) -> Group;
-
-fn undeformed(line: PathData, _: [Point; 2]) -> Group {
-    Group::new().add(stroke(line, GREY, 1.2).set("stroke-dasharray", "6 4"))
+fn sample() -> PathData {
+    let mut line = PathData::default();
+    line.line(SAMPLE);
+    line
 }
 
-fn wall(line: PathData, ends: [Point; 2]) -> Group {
-    let mut hatching = PathData::default();
-    hatch(&ends.map(|[x, y]| [x, y - 3.0]), &mut hatching);
-    Group::new()
-        .set("transform", "translate(0 -3)")
-        .add(stroke(hatching, GREY, 0.9))
-        .add(stroke(line, DARK, 1.6))
+fn undeformed() -> Group {
+    Group::new().add(stroke(sample(), GREY, 1.2).set("stroke-dasharray", "6 4"))
 }
 
-fn pressed(line: PathData, [[x0, y0], [x1, y1]]: [Point; 2]) -> Group {
-    let mut area = PathData::default();
-    area.polygon([[x0, y0 - 5.0], [x1, y1 - 5.0], [x1, y1 + 5.0], [x0, y0 + 5.0]]);
+fn interface() -> Group {
+    Group::new().add(stroke(sample(), DARK, 1.0))
+}
+
+fn wall() -> Group {
+    let line = SAMPLE.map(|[x, y]| [x, y - 3.0]);
+    let (mut border, mut hatching) = (PathData::default(), PathData::default());
+    hatch(&line, &mut hatching);
+    border.line(line);
+    Group::new().add(stroke(hatching, GREY, 0.9)).add(stroke(border, DARK, 1.6))
+}
+
+fn pressed() -> Group {
+    let [below, above] = [5.0, -5.0].map(|off| SAMPLE.map(|[x, y]| [x, y + off]));
+    let (mut area, mut curve) = (PathData::default(), PathData::default());
+    area.polygon([above[0], above[1], below[1], below[0]]);
+    curve.line(below);
     Group::new()
         .add(shape(area).set("fill", RED).set("fill-opacity", 0.25))
-        .add(stroke(line, RED, 1.5).set("transform", "translate(0 5)"))
-}
-
-/// The entries of the legend one after the other, on as many lines as they need; and where the last of these is.
-fn draw_legend(entries: &[(Option<Mark>, &str)], [start, top]: Point, end: f64) -> (Group, f64) {
-    let mut group = Group::new();
-    let [mut x, mut y] = [start, top];
-    for (mark, words) in entries {
-        let of_mark = if mark.is_some() { 38.0 } else { 0.0 };
-        let width = width_of(words, 13.0);
-        if x + of_mark + width > end && x > start {
-            (x, y) = (start, y + LEGEND_LINE);
-        }
-        if let Some(mark) = mark {
-            let ends = [[x, y - 4.5], [x + 30.0, y - 4.5]];
-            let mut line = PathData::default();
-            line.line(ends);
-            group.append(mark(line, ends));
-        }
-        group.append(text(*words, [x + of_mark, y]));
-        x += of_mark + width + 28.0;
-    }
-    (group, y)
+        .add(stroke(curve, RED, 1.5))
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! From a text to its instructions: recursive descent, one function for each line of the grammar.
+//! From a text to its instructions: recursive descent, with the operators of sums and products in one table.
 
 use std::str::FromStr;
 
@@ -46,8 +46,7 @@ enum Token<'t> {
     End,
 }
 
-/// Recursive descent, one function for each line of the grammar, each of which appends the instructions of what it reads. `level`
-/// counts the nesting, from 1.
+/// The state of the descent: each function appends the instructions of what it reads. `level` counts the nesting, from 1.
 struct Parser<'t> {
     text: &'t str,
     /// The token under consideration, and the bytes it takes.
@@ -83,49 +82,40 @@ impl<'t> Parser<'t> {
     }
 
     fn expression(&mut self, level: usize) -> Result<(), ExpressionError> {
-        self.chain(level, Parser::term, [('+', Binary::Add), ('-', Binary::Subtract)])
+        self.operands(level, 1)
     }
 
-    fn term(&mut self, level: usize) -> Result<(), ExpressionError> {
-        self.chain(level, Parser::factor, [('*', Binary::Multiply), ('/', Binary::Divide)])
-    }
-
-    /// Operands with operators between them, from the left.
-    fn chain(
-        &mut self,
-        level: usize,
-        operand: fn(&mut Self, usize) -> Result<(), ExpressionError>,
-        operators: [(char, Binary); 2],
-    ) -> Result<(), ExpressionError> {
-        operand(self, level)?;
-        while let Some((_, f)) = operators.iter().find(|o| self.token == Token::Symbol(o.0)) {
+    /// Operands with operators between them that bind at least so tightly, from the left.
+    fn operands(&mut self, level: usize, least: u8) -> Result<(), ExpressionError> {
+        const OPERATORS: [(char, Binary, u8); 4] = [
+            ('+', Binary::Add, 1),
+            ('-', Binary::Subtract, 1),
+            ('*', Binary::Multiply, 2),
+            ('/', Binary::Divide, 2),
+        ];
+        self.factor(level)?;
+        let binds = |token, o: &&(char, Binary, u8)| token == Token::Symbol(o.0) && o.2 >= least;
+        while let Some((_, f, tightness)) = OPERATORS.iter().find(|o| binds(self.token, o)) {
             self.advance()?;
             let second = self.instructions.len();
-            operand(self, level)?;
+            self.operands(level, tightness + 1)?;
             self.binary(*f, second)?;
         }
         Ok(())
     }
 
+    /// A power behind its signs.
     fn factor(&mut self, level: usize) -> Result<(), ExpressionError> {
         if level > MOST_LEVELS {
             return Err(self.wrong(&format!("at most {MOST_LEVELS} levels of nesting")));
         }
-        match self.token {
-            Token::Symbol('+') => {
-                self.advance()?;
-                self.factor(level + 1)
-            }
-            Token::Symbol('-') => {
-                self.advance()?;
-                self.factor(level + 1)?;
-                self.operation(Instruction::Unary(Unary::Negate))
-            }
-            _ => self.power(level),
+        let sign = self.token;
+        if let Token::Symbol('+' | '-') = sign {
+            self.advance()?;
+            self.factor(level + 1)?;
+            let negate = Instruction::Unary(Unary::Negate);
+            return if sign == Token::Symbol('-') { self.operation(negate) } else { Ok(()) };
         }
-    }
-
-    fn power(&mut self, level: usize) -> Result<(), ExpressionError> {
         self.atom(level)?;
         if self.token != Token::Symbol('^') {
             return Ok(());

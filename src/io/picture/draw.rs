@@ -2,13 +2,15 @@
 
 use std::fmt::Write;
 
-use svg::Document;
-use svg::node::element::{Circle, Path as PathElement, Rectangle, Text, Title};
+use svg::node::element::{Circle, Group, Path as PathElement, Rectangle, Text, Title};
+use svg::{Document, Node};
 
 use crate::fem::tree::Bounds;
 use crate::io::numbers;
 
 pub(super) const FONT: &str = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
+/// The size of letters that are neither a heading nor a note.
+const LETTERS: f64 = 13.0;
 pub(super) const DARK: &str = "#222222";
 pub(super) const GREY: &str = "#666666";
 pub(super) const LIGHT: &str = "#dddddd";
@@ -29,13 +31,13 @@ pub(super) fn clean(text: &str) -> String {
 }
 
 /// A white page with a title.
-pub(super) fn page([width, height]: [f64; 2], font_size: u8, title: &str) -> Document {
+pub(super) fn page([width, height]: [f64; 2], title: &str) -> Document {
     Document::new()
         .set("viewBox", (0, 0, width, height))
         .set("width", width)
         .set("height", height)
         .set("font-family", FONT)
-        .set("font-size", font_size)
+        .set("font-size", LETTERS)
         .set("fill", DARK)
         .add(Title::new(clean(title)))
         .add(Rectangle::new().set("width", "100%").set("height", "100%").set("fill", "white"))
@@ -62,10 +64,6 @@ pub(super) fn rectangle([left, top]: Point, [width, height]: [f64; 2]) -> Rectan
         .set("y", rounded(top))
         .set("width", rounded(width))
         .set("height", rounded(height))
-}
-
-pub(super) fn frame(corner: Point, size: [f64; 2]) -> Rectangle {
-    rectangle(corner, size).set("fill", "none").set("stroke", GREY)
 }
 
 /// Coordinates in hundredths, which keeps the file small and the same everywhere.
@@ -104,6 +102,74 @@ impl PageAxis {
         let part = if high > low { (value - low) / (high - low) } else { 0.5 };
         start + part * (end - start)
     }
+}
+
+/// The axes of a drawing area.
+pub(super) struct Axes {
+    pub(super) x: PageAxis,
+    pub(super) y: PageAxis,
+}
+
+impl Axes {
+    pub(super) fn at(&self, [x, y]: Point) -> Point {
+        [self.x.at(x), self.y.at(y)]
+    }
+
+    /// Lines across the area at the ticks of both axes, with their labels.
+    pub(super) fn grid(&self, [x_ticks, y_ticks]: [Vec<(f64, String)>; 2]) -> Group {
+        // The room to the right of the area.
+        const RIGHT: f64 = 12.0;
+        let mut lines = PathData::default();
+        let mut labels = Group::new().set("font-size", 11);
+        let ([left, right], [bottom, top]) = (self.x.page, self.y.page);
+        for (x, content) in x_ticks {
+            let x = self.x.at(x);
+            lines.line([[x, bottom], [x, top]]);
+            let x = x.min(right + RIGHT - width_of(&content, 11.0) / 2.0);
+            labels.append(anchored("middle", content, [x, bottom + 16.0]));
+        }
+        for (y, content) in y_ticks {
+            let y = self.y.at(y);
+            lines.line([[left, y], [right, y]]);
+            labels.append(anchored("end", content, [left - 6.0, y + 4.0]));
+        }
+        Group::new().add(stroke(lines, LIGHT, 0.8)).add(labels)
+    }
+
+    pub(super) fn frame(&self) -> Rectangle {
+        let ([left, right], [bottom, top]) = (self.x.page, self.y.page);
+        let frame = rectangle([left, top], [right - left, bottom - top]);
+        frame.set("fill", "none").set("stroke", GREY)
+    }
+}
+
+/// The line that a legend shows before the words of an entry, from the start of these words' line on.
+pub(super) const SAMPLE: [Point; 2] = [[0.0, -4.5], [30.0, -4.5]];
+pub(super) const LEGEND_LINE: f64 = 24.0;
+
+/// The entries of a legend, drawing along [`SAMPLE`] and words, one after the other on as many lines as they need; and where
+/// the last of these is.
+pub(super) fn legend(
+    entries: Vec<(Option<Group>, &str)>,
+    [start, top]: Point,
+    end: f64,
+) -> (Group, f64) {
+    let mut group = Group::new();
+    let [mut x, mut y] = [start, top];
+    for (sample, words) in entries {
+        let of_sample = if sample.is_some() { 38.0 } else { 0.0 };
+        let width = of_sample + width_of(words, LETTERS);
+        if x + width > end && x > start {
+            (x, y) = (start, y + LEGEND_LINE);
+        }
+        if let Some(sample) = sample {
+            let place = format!("translate({} {})", rounded(x), rounded(y));
+            group.append(sample.set("transform", place));
+        }
+        group.append(text(words, [x + of_sample, y]));
+        x += width + 28.0;
+    }
+    (group, y)
 }
 
 /// The drawing of the body on the page: the map from the plane, and the room that it takes.

@@ -9,7 +9,7 @@ use svg::node::element::Group;
 
 use super::contact::{RADIUS, tag};
 use super::draw::{
-    GREY, LIGHT, PageAxis, PathData, Point, RED, anchored, clean, dot, fitting, frame, rectangle,
+    Axes, GREY, LIGHT, PageAxis, PathData, Point, RED, anchored, clean, dot, fitting, rectangle,
     shape, short, stroke, text, thinned, width_of,
 };
 use super::scene::{ContactSample, ContactSurface, Scene};
@@ -55,23 +55,6 @@ pub(super) fn panels(scene: &Scene, corner: Point, width: f64) -> Group {
     group
 }
 
-/// The axes of a panel: arc length, and pressure.
-struct Axes {
-    arc: PageAxis,
-    pressure: PageAxis,
-}
-
-impl Axes {
-    fn shows(&self, arc: f64) -> bool {
-        (self.arc.range[0]..=self.arc.range[1]).contains(&arc)
-    }
-
-    /// The left, right and lower border.
-    fn borders(&self) -> [f64; 3] {
-        [self.arc.page[0], self.arc.page[1], self.pressure.page[0]]
-    }
-}
-
 /// The smallest and the largest arc length.
 fn range(samples: impl Iterator<Item = f64>) -> [f64; 2] {
     samples.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], s| [l.min(s), h.max(s)])
@@ -100,9 +83,12 @@ fn panel(
     let (left, bottom, width) = (x + LEFT, y + TOP + PLOT, width - LEFT - RIGHT);
     let top = peak.map_or(0.0, |peak| peak.pressure);
     let axes = Axes {
-        arc: PageAxis { range: shown(surface), page: [left, left + width] },
-        pressure: PageAxis { range: [0.0, top], page: [bottom, bottom - (PLOT - ABOVE)] },
+        x: PageAxis { range: shown(surface), page: [left, left + width] },
+        y: PageAxis { range: [0.0, top * (PLOT / (PLOT - ABOVE))], page: [bottom, bottom - PLOT] },
     };
+    let [first, last] = axes.x.range;
+    let pressures = if top > 0.0 { ticks(0.0, top) } else { Vec::new() };
+    let grid = axes.grid([ticks(first, last), pressures]);
     let in_brackets = |i: usize| units.as_ref().map_or(String::new(), |u| format!(" ({})", u[i]));
     let title = clean(&format!("{}: contact pressure{}", surface.name, in_brackets(0)));
     let title = text(&title, [left, y + 16.0])
@@ -110,19 +96,20 @@ fn panel(
         .set("font-weight", "bold");
     let caption = format!("arc length along the boundary{}", in_brackets(1));
     let caption = anchored("middle", caption, [left + width / 2.0, bottom + 36.0]);
-    let frame = frame([left, bottom - PLOT], [width, PLOT]);
-    let mut group = Group::new().add(title).add(caption.set("font-size", 12)).add(grid(&axes));
+    let mut group = Group::new().add(title).add(caption.set("font-size", 12)).add(grid);
     if let Some(zones) = &surface.zones {
         group = group.add(strip(zones, &axes));
     }
     match peak {
         Some(peak) => {
             let stress = units.as_ref().map_or("", |[stress, _]| stress);
-            group = group.add(curve(surface, &axes)).add(frame).add(mark(peak, stress, &axes));
+            group =
+                group.add(curve(surface, &axes)).add(axes.frame()).add(mark(peak, stress, &axes));
         }
         None => {
             let at = [left + width / 2.0, bottom - PLOT / 2.0];
-            group = group.add(anchored("middle", "no contact", at).set("fill", GREY)).add(frame);
+            group =
+                group.add(anchored("middle", "no contact", at).set("fill", GREY)).add(axes.frame());
         }
     }
     group
@@ -130,13 +117,13 @@ fn panel(
 
 /// Draws the proved zones as a strip, with the words for its colours.
 fn strip(zones: &[Zone], axes: &Axes) -> Group {
-    let [left, _, bottom] = axes.borders();
-    let [low, high] = axes.arc.range;
+    let ([left, _], [bottom, _]) = (axes.x.page, axes.y.page);
+    let [low, high] = axes.x.range;
     let bar = |[from, to]: [f64; 2], fill: &str| {
-        let [from, to] = [from, to].map(|arc| axes.arc.at(arc.clamp(low, high)));
+        let [from, to] = [from, to].map(|arc| axes.x.at(arc.clamp(low, high)));
         rectangle([from, bottom + 1.0], [to - from, STRIP]).set("fill", fill)
     };
-    let mut group = Group::new().add(bar(axes.arc.range, LIGHT));
+    let mut group = Group::new().add(bar(axes.x.range, LIGHT));
     for zone in zones {
         let pressed = matches!(zone.limit, Limit::Opening(_));
         group.append(bar([zone.from, zone.to], if pressed { RED } else { OPEN }));
@@ -151,37 +138,15 @@ fn strip(zones: &[Zone], axes: &Axes) -> Group {
     group
 }
 
-/// Lines at round numbers, and these.
-fn grid(axes: &Axes) -> Group {
-    let mut lines = PathData::default();
-    let mut labels = Group::new().set("font-size", 11);
-    let [left, right, bottom] = axes.borders();
-    let ([first, last], [_, top]) = (axes.arc.range, axes.pressure.range);
-    for (arc, content) in ticks(first, last) {
-        let x = axes.arc.at(arc);
-        lines.line([[x, bottom], [x, bottom - PLOT]]);
-        let x = x.min(right + RIGHT - width_of(&content, 11.0) / 2.0);
-        labels.append(anchored("middle", content, [x, bottom + 16.0]));
-    }
-    for (pressure, content) in ticks(0.0, top).into_iter().filter(|_| top > 0.0) {
-        let y = axes.pressure.at(pressure);
-        lines.line([[left, y], [right, y]]);
-        labels.append(anchored("end", content, [left - 6.0, y + 4.0]));
-    }
-    Group::new().add(stroke(lines, LIGHT, 0.8)).add(labels)
-}
-
 fn curve(surface: &ContactSurface, axes: &Axes) -> Group {
+    let [first, last] = axes.x.range;
     let (mut area, mut line) = (PathData::default(), PathData::default());
     for part in &surface.parts {
-        let points: Vec<Point> = part
-            .iter()
-            .filter(|s| axes.shows(s.arc))
-            .map(|s| [axes.arc.at(s.arc), axes.pressure.at(s.pressure)])
-            .collect();
+        let shown = part.iter().filter(|s| (first..=last).contains(&s.arc));
+        let points: Vec<Point> = shown.map(|s| axes.at([s.arc, s.pressure])).collect();
         if let [first, .., last] = points[..] {
             let points = thinned(&points);
-            let ends = [last, first].map(|p| [p[0], axes.pressure.page[0]]);
+            let ends = [last, first].map(|p| [p[0], axes.y.page[0]]);
             area.polygon(points.iter().copied().chain(ends));
             line.line(points);
         }
@@ -193,11 +158,11 @@ fn curve(surface: &ContactSurface, axes: &Axes) -> Group {
 
 /// A dot at the peak, and its value above it.
 fn mark(peak: &ContactSample, stress: &str, axes: &Axes) -> Group {
-    let [x, y] = [axes.arc.at(peak.arc), axes.pressure.at(peak.pressure)];
+    let [x, y] = axes.at([peak.arc, peak.pressure]);
     let words = format!("peak {} {stress}", short(peak.pressure));
     let words = words.trim_end();
     let half = width_of(words, 13.0 / 0.85) / 2.0;
-    let [left, right, _] = axes.borders();
+    let [left, right] = axes.x.page;
     let (left, right) = (left + half + 3.0, right - half - 3.0);
     let place = [x.max(left.min(right)).min(right.max(left)), y - 8.0];
     let words = anchored("middle", words, place).set("font-weight", "bold");

@@ -3,13 +3,14 @@
 //! Points with a coordinate that is not positive have no place in such a figure and are left out.
 
 use svg::Node;
-use svg::node::Text as Content;
-use svg::node::element::{Circle, Group, Path as PathElement, TSpan, Text};
+use svg::node::element::{Circle, Group, Path as PathElement};
 
 use super::draw::{
-    GREY, LIGHT, PageAxis, PathData, Point, anchored, dot, frame, page, stroke, text, width_of,
+    Axes, GREY, LEGEND_LINE, PageAxis, PathData, Point, SAMPLE, anchored, dot, legend, page,
+    stroke, text,
 };
 use crate::io::finite::{NotFinite, check_finite};
+use crate::io::numbers::short;
 
 #[derive(Clone, Debug)]
 pub struct Figure {
@@ -50,10 +51,6 @@ const LEFT: f64 = 62.0;
 const RIGHT: f64 = 18.0;
 const TOP: f64 = 74.0;
 const BELOW: f64 = 48.0;
-const LEGEND_LINE: f64 = 20.0;
-
-/// The room of a legend entry beside its name.
-const LEGEND_MARK: f64 = 68.0;
 
 pub fn figure(figure: &Figure) -> Result<String, NotFinite> {
     for panel in &figure.panels {
@@ -62,28 +59,21 @@ pub fn figure(figure: &Figure) -> Result<String, NotFinite> {
             check_finite(&name, line.iter().map(<[f64; 2]>::as_slice))?;
         }
     }
-    let columns = figure.panels.len().max(1);
-    let width = columns as f64 * (LEFT + WIDTH + RIGHT);
-    let widths = figure.styles.iter().map(|style| width_of(&style.name, 12.0) + LEGEND_MARK);
-    let per_line = ((width / widths.fold(1.0, f64::max)) as usize).clamp(1, 2 * columns);
-    let legend_lines = figure.styles.len().div_ceil(per_line) as f64;
-    let height = TOP + HEIGHT + BELOW + legend_lines * LEGEND_LINE + 8.0;
-    let mut document = page([width, height].map(f64::round), 12, &figure.title)
+    let width = figure.panels.len().max(1) as f64 * (LEFT + WIDTH + RIGHT);
+    let sample = |style: &Style| {
+        let [[x0, y], [x1, _]] = SAMPLE;
+        Group::new().add(line(SAMPLE, style)).add(mark([(x0 + x1) / 2.0, y], style))
+    };
+    let entries = figure.styles.iter().map(|style| (Some(sample(style)), &*style.name)).collect();
+    let (legend, bottom) = legend(entries, [16.0, TOP + HEIGHT + BELOW + 12.0], width);
+    let size = [width, bottom + LEGEND_LINE - 4.0].map(f64::round);
+    let mut document = page(size, &figure.title)
         .add(anchored("middle", &*figure.title, [width / 2.0, 26.0]).set("font-size", 15));
     for (i, panel) in figure.panels.iter().enumerate() {
         let left = i as f64 * (LEFT + WIDTH + RIGHT) + LEFT;
         document = document.add(draw(panel, figure, left));
     }
-    let step = width / per_line as f64;
-    for (i, style) in figure.styles.iter().enumerate() {
-        let x = (i % per_line) as f64 * step + 16.0;
-        let y = TOP + HEIGHT + BELOW + (i / per_line) as f64 * LEGEND_LINE + 8.0;
-        let mut entry = Group::new().add(line([[x, y], [x + 28.0, y]], style));
-        entry.append(mark([x + 14.0, y], style));
-        entry.append(text(&*style.name, [x + 36.0, y + 4.0]));
-        document = document.add(entry);
-    }
-    Ok(format!("{document}\n"))
+    Ok(format!("{}\n", document.add(legend)))
 }
 
 fn line(points: impl IntoIterator<Item = Point>, style: &Style) -> PathElement {
@@ -100,45 +90,29 @@ fn mark(at: Point, style: &Style) -> Circle {
         .set("stroke-width", 1.2)
 }
 
-/// An axis of decimal logarithms around those of `values`, with some space.
-fn logarithmic(values: impl Iterator<Item = f64>, page: [f64; 2]) -> PageAxis {
+/// An axis around these logarithms, with some space.
+fn logarithmic(logarithms: impl Iterator<Item = f64>, page: [f64; 2]) -> PageAxis {
     let around = |[low, high]: [f64; 2], x: f64| [low.min(x), high.max(x)];
-    let range = values.map(f64::log10).fold([f64::INFINITY, f64::NEG_INFINITY], around);
+    let range = logarithms.fold([f64::INFINITY, f64::NEG_INFINITY], around);
     let [low, high] = if range[0] <= range[1] { range } else { [-1.0, 0.0] };
     let space = (0.06 * (high - low)).max(0.05);
     PageAxis { range: [low - space, high + space], page }
 }
 
-/// The powers of ten inside, as value, exponent and digit; where there are fewer than three, also twice and five times them.
-fn ticks(axis: &PageAxis) -> Vec<(f64, i32, u8)> {
+/// The logarithms and labels of the powers of ten inside; where there are fewer than three, also of twice and five times them.
+fn ticks(axis: &PageAxis) -> Vec<(f64, String)> {
     let [low, high] = axis.range;
-    let of = |digits: &[u8]| -> Vec<(f64, i32, u8)> {
-        (low.floor() as i32..=high.ceil() as i32)
-            .flat_map(|k| digits.iter().map(move |&m| (f64::from(m) * 10_f64.powi(k), k, m)))
-            .filter(|tick| (low..=high).contains(&tick.0.log10()))
-            .collect()
+    let inside = |m: i32, every: i32| -> Vec<(f64, String)> {
+        let exponents = (low.floor() as i32..=high.ceil() as i32).filter(|k| k % every == 0);
+        let ticks = exponents.map(|k| f64::from(m) * 10_f64.powi(k));
+        let inside = ticks.filter(|tick| (low..=high).contains(&tick.log10()));
+        inside.map(|tick| (tick.log10(), short(tick, 1))).collect()
     };
-    let decades = of(&[1]);
-    if decades.len() < 3 {
-        return of(&[1, 2, 5]);
+    match inside(1, 1).len() {
+        0..3 => [1, 2, 5].into_iter().flat_map(|m| inside(m, 1)).collect(),
+        // Not more than about eight labels.
+        decades => inside(1, decades.div_ceil(8) as i32),
     }
-    // Not more than about eight labels.
-    let every = decades.len().div_ceil(8) as i32;
-    decades.into_iter().filter(|(_, k, _)| k.rem_euclid(every) == 0).collect()
-}
-
-/// m x 10^k: plain where that is short, else with an exponent.
-fn tick_label(k: i32, m: u8, at: Point, anchor: &str) -> Text {
-    let plain = match k {
-        0..=2 => format!("{m}{}", "0".repeat(k as usize)),
-        -2..=-1 => format!("0.{}{m}", "0".repeat((-k - 1) as usize)),
-        _ => {
-            let base = if m == 1 { "10".to_owned() } else { format!("{m}·10") };
-            let exponent = TSpan::new(k.to_string()).set("dy", -5).set("font-size", 9);
-            return anchored(anchor, "", at).add(Content::new(base)).add(exponent);
-        }
-    };
-    anchored(anchor, plain, at)
 }
 
 fn positive(line: &[[f64; 2]]) -> Vec<[f64; 2]> {
@@ -164,36 +138,22 @@ fn draw(panel: &Panel, figure: &Figure, left: f64) -> Group {
         .collect();
     let corners = triangles.iter().flat_map(|(_, corners)| corners);
     let all = || lines.iter().flatten().chain(corners.clone());
-    let (right, bottom) = (left + WIDTH, TOP + HEIGHT);
-    let x_axis = logarithmic(all().map(|p| p[0]), [left, right]);
-    let y_axis = logarithmic(all().map(|p| p[1]), [bottom, TOP]);
-    let page = |[x, y]: Point| [x_axis.at(x.log10()), y_axis.at(y.log10())];
-
-    let mut group = Group::new().add(
-        anchored("middle", &*panel.title, [left + WIDTH / 2.0, TOP - 12.0]).set("font-size", 13),
-    );
-    let mut grid = PathData::default();
-    for (x, k, m) in ticks(&x_axis) {
-        let x = x_axis.at(x.log10());
-        grid.line([[x, TOP], [x, bottom]]);
-        group.append(tick_label(k, m, [x, bottom + 16.0], "middle"));
-    }
-    for (y, k, m) in ticks(&y_axis) {
-        let y = y_axis.at(y.log10());
-        grid.line([[left, y], [right, y]]);
-        group.append(tick_label(k, m, [left - 6.0, y + 4.0], "end"));
-    }
-    group.append(stroke(grid, LIGHT, 0.8));
-    group.append(frame([left, TOP], [WIDTH, HEIGHT]));
-    group.append(anchored("middle", &*figure.x_label, [left + WIDTH / 2.0, bottom + 34.0]));
+    let logarithms = |[x, y]: Point| [x.log10(), y.log10()];
+    let range = |c: usize, page| logarithmic(all().map(|&p| logarithms(p)[c]), page);
+    let axes = Axes { x: range(0, [left, left + WIDTH]), y: range(1, [TOP + HEIGHT, TOP]) };
+    let page = |p: Point| axes.at(logarithms(p));
+    let middle = left + WIDTH / 2.0;
+    let mut group = Group::new()
+        .add(anchored("middle", &*panel.title, [middle, TOP - 12.0]))
+        .add(axes.grid([ticks(&axes.x), ticks(&axes.y)]))
+        .add(axes.frame())
+        .add(anchored("middle", &*figure.x_label, [middle, TOP + HEIGHT + 34.0]));
     for (slope, corners) in triangles {
         let [_, b, c] = corners.map(page);
         let mut triangle = PathData::default();
         triangle.polygon(corners.map(page));
         group.append(stroke(triangle, GREY, 1.0));
-        let text = format!("{slope:.2}");
-        let text = text.trim_end_matches('0').trim_end_matches('.');
-        let beside = self::text(text, [b[0] + 4.0, (b[1] + c[1]) / 2.0 + 4.0]);
+        let beside = text(short(slope, 3), [b[0] + 4.0, (b[1] + c[1]) / 2.0 + 4.0]);
         group.append(beside.set("font-size", 11).set("fill", GREY));
     }
     for (points, style) in lines.iter().zip(&figure.styles) {
