@@ -56,7 +56,7 @@ pub fn audit(
         read(&CaseArguments { file: file.to_owned(), settings })
     });
     let case = case.transpose()?;
-    let audit = certificate::audit(path).map_err(Failure::failed)?;
+    let audit = certificate::audit(path)?;
     let Some(Case { problem, file, .. }) = case else {
         return Ok(summarised(&summary::audited(&audit, None), quiet));
     };

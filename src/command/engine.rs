@@ -34,11 +34,11 @@ pub fn fenicsx(
     reference: Option<&Path>,
 ) -> Result<(Results, Vec<PathBuf>), Failure> {
     input::read(case, MOST_OF_A_CASE)?;
-    files::spare(folder, &FILES, &[case.to_owned()]).map_err(Failure::wrong)?;
+    files::spare(folder, &FILES, &[case.to_owned()])?;
     let path = python_path(reference)?;
     let python = python()?;
     let not_started = |error| not_started(&python, &error);
-    let mut output = files::Output::new(folder).map_err(Failure::failed)?.replacing(&FILES);
+    let mut output = files::Output::new(folder)?.replacing(&FILES);
     let room = std::path::absolute(output.room()).map_err(not_started)?;
     let full = std::path::absolute(case).map_err(not_started)?;
     let ended = run(safe(&python)
@@ -60,9 +60,9 @@ pub fn fenicsx(
         ))
     })?;
     for name in FILES_OF_FENICSX {
-        output.adopt(name).map_err(Failure::failed)?;
+        output.adopt(name)?;
     }
-    let mut files = output.publish().map_err(Failure::failed)?;
+    let mut files = output.publish()?;
     files.retain(|file| !file.ends_with("solution.h5"));
     Ok((results, files))
 }
@@ -92,7 +92,7 @@ fn safe(python: &Path) -> Command {
 }
 
 fn run(command: &mut Command) -> io::Result<Output> {
-    signals::start(command.stdout(Stdio::piped()).stderr(Stdio::piped()))?.output()
+    signals::run(command.stdout(Stdio::piped()).stderr(Stdio::piped()))
 }
 
 /// PYTHONPATH with the package in front. Entries that are not paths from the root are left out: they would be folders of

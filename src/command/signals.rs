@@ -2,16 +2,16 @@
 //! what it does to every program. A signal that this process was started to ignore (`nohup`) stays ignored.
 
 #[cfg(unix)]
-pub use unix::{give_way, start, watch};
+pub use unix::{give_way, run, watch};
 
 #[cfg(not(unix))]
-pub use elsewhere::{give_way, start, watch};
+pub use elsewhere::{give_way, run, watch};
 
 #[cfg(unix)]
 mod unix {
     use std::io;
     use std::os::unix::process::CommandExt;
-    use std::process::{Child, Command, Output};
+    use std::process::{Command, Output};
     use std::sync::atomic::{AtomicBool, Ordering};
     use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
     use std::thread;
@@ -90,44 +90,29 @@ mod unix {
         }
     }
 
-    /// A program that runs for this one, in a process group of its own.
-    pub struct Running(Child);
-
-    pub fn start(command: &mut Command) -> io::Result<Running> {
+    /// Runs a program for this one, in a process group of its own.
+    pub fn run(command: &mut Command) -> io::Result<Output> {
         // Under the lock, so that no signal comes between the start and the note of it.
-        let mut worker = worker();
+        let mut leader = worker();
         let child = command.process_group(0).spawn()?;
-        *worker = Some(Pid::from_child(&child));
-        Ok(Running(child))
-    }
-
-    impl Running {
-        pub fn output(self) -> io::Result<Output> {
-            let output = self.0.wait_with_output();
-            *worker() = None;
-            output
-        }
+        *leader = Some(Pid::from_child(&child));
+        drop(leader);
+        let output = child.wait_with_output();
+        *worker() = None;
+        output
     }
 }
 
 #[cfg(not(unix))]
 mod elsewhere {
     use std::io;
-    use std::process::{Child, Command, Output};
+    use std::process::{Command, Output};
 
     pub fn watch() {}
 
     pub fn give_way() {}
 
-    pub struct Running(Child);
-
-    pub fn start(command: &mut Command) -> io::Result<Running> {
-        command.spawn().map(Running)
-    }
-
-    impl Running {
-        pub fn output(self) -> io::Result<Output> {
-            self.0.wait_with_output()
-        }
+    pub fn run(command: &mut Command) -> io::Result<Output> {
+        command.spawn()?.wait_with_output()
     }
 }

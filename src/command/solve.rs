@@ -58,7 +58,7 @@ fn solve(
     let folder = folder(&arguments.file, out);
     let with_files = !options.json || out.is_some();
     if with_files {
-        spare(&folder, &outputs::FILES, &case.sources).map_err(Failure::wrong)?;
+        spare(&folder, &outputs::FILES, &case.sources)?;
     }
     let file = case.file.clone();
     let watcher = |stage| match stage {

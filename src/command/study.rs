@@ -20,7 +20,7 @@ pub fn run(
 ) -> Result<Done, Failure> {
     let case = read(arguments)?;
     let folder = folder(&arguments.file, out);
-    spare(&folder, &convergence::FILES, &case.sources).map_err(Failure::wrong)?;
+    spare(&folder, &convergence::FILES, &case.sources)?;
     let degree = |d: &u8| if *d == 1 { Degree::One } else { Degree::Two };
     let mesh = |m: &MeshKind| match m {
         MeshKind::Structured => Meshes::Structured,

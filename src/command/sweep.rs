@@ -25,7 +25,7 @@ pub fn run(
     let runs = sweep::count(axes)?;
     let folder = folder(file, out);
     let (file, text) = read_text(file)?;
-    spare(&folder, &[sweep::FILE], std::slice::from_ref(&file)).map_err(Failure::wrong)?;
+    spare(&folder, &[sweep::FILE], std::slice::from_ref(&file))?;
     let phases = Phases::start(quiet);
     let enter = |done| phases.enter(format!("{done} of {runs} runs"));
     enter(0);

@@ -20,7 +20,7 @@ impl Solution {
     pub fn write(&self, problem: &Problem, folder: &Path) -> Result<Vec<PathBuf>, OutputError> {
         let mut output = Output::new(folder)?;
         output.stage_made(fields(self, problem, None))?;
-        Ok(output.publish()?)
+        output.publish()
     }
 }
 

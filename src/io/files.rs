@@ -31,9 +31,9 @@ pub struct Output {
     replaced: &'static [&'static str],
 }
 
-/// The reason why a file or folder could not be written.
+/// The reason why the files of a run could not be written.
 #[derive(Debug, Error)]
-pub enum WriteError {
+pub enum OutputError {
     #[error("cannot make the folder {}: {}", quote::path(path), reason(error))]
     Folder { path: PathBuf, error: io::Error },
     #[error("cannot write {}: {}", quote::path(path), reason(error))]
@@ -43,13 +43,6 @@ pub enum WriteError {
         quote::path(path)
     )]
     Source { path: PathBuf },
-}
-
-/// The reason why the files of a run could not be written.
-#[derive(Debug, Error)]
-pub enum OutputError {
-    #[error(transparent)]
-    Write(#[from] WriteError),
     #[error("{file} cannot be made: {error}")]
     Data { file: &'static str, error: NotFinite },
     #[error("the files cannot be made: {0}")]
@@ -72,7 +65,7 @@ pub fn reason(error: &io::Error) -> String {
 }
 
 /// Refuses to write files called `names` into `folder` if one of them is one of the `sources` of the case.
-pub fn spare(folder: &Path, names: &[&str], sources: &[PathBuf]) -> Result<(), WriteError> {
+pub fn spare(folder: &Path, names: &[&str], sources: &[PathBuf]) -> Result<(), OutputError> {
     // The place of a name in its folder: a link of that name would be replaced, not what it leads to.
     let place = |path: &Path| {
         let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
@@ -81,14 +74,14 @@ pub fn spare(folder: &Path, names: &[&str], sources: &[PathBuf]) -> Result<(), W
     let sources: Vec<PathBuf> = sources.iter().filter_map(|source| place(source)).collect();
     let is_source = |path: &PathBuf| place(path).is_some_and(|place| sources.contains(&place));
     match names.iter().map(|name| folder.join(name)).find(is_source) {
-        Some(path) => Err(WriteError::Source { path }),
+        Some(path) => Err(OutputError::Source { path }),
         None => Ok(()),
     }
 }
 
 impl Output {
     /// Makes the folder, if there is none yet, and the temporary one in it.
-    pub fn new(folder: impl Into<PathBuf>) -> Result<Output, WriteError> {
+    pub fn new(folder: impl Into<PathBuf>) -> Result<Output, OutputError> {
         let folder = folder.into();
         let missing = |path: &&Path| !path.as_os_str().is_empty() && !path.exists();
         let made = folder.ancestors().take_while(missing).map(Path::to_path_buf).collect();
@@ -103,14 +96,14 @@ impl Output {
             }
             Err(error) => {
                 unfinished.remove();
-                Err(WriteError::Folder { path: folder, error })
+                Err(OutputError::Folder { path: folder, error })
             }
         }
     }
 
     /// Writes the file `name` to the disk, but not yet to its place. The last file of a set is the one that says that the
     /// set is whole.
-    pub fn stage(&mut self, name: &str, bytes: &[u8]) -> Result<(), WriteError> {
+    pub fn stage(&mut self, name: &str, bytes: &[u8]) -> Result<(), OutputError> {
         self.add(name, |path| {
             let mut file = OpenOptions::new().write(true).create_new(true).open(path)?;
             file.write_all(bytes)?;
@@ -138,8 +131,8 @@ impl Output {
     /// Stages a file that another program has written into [`Output::room`].
     ///
     /// # Errors
-    /// [`WriteError::File`], with the place that the file was to have; also if there is no such file.
-    pub fn adopt(&mut self, name: &str) -> Result<(), WriteError> {
+    /// [`OutputError::File`], with the place that the file was to have; also if there is no such file.
+    pub fn adopt(&mut self, name: &str) -> Result<(), OutputError> {
         self.add(name, |path| match fs::symlink_metadata(path)?.is_file() {
             true => File::open(path)?.sync_all(),
             false => Err(io::Error::other("not a regular file")),
@@ -151,7 +144,7 @@ impl Output {
         &mut self,
         name: &str,
         made: impl FnOnce(&Path) -> io::Result<()>,
-    ) -> Result<(), WriteError> {
+    ) -> Result<(), OutputError> {
         let made = match self.folder.join(name).is_dir() {
             true => Err(io::ErrorKind::IsADirectory.into()),
             false => made(&self.room().join(name)),
@@ -168,16 +161,16 @@ impl Output {
         self
     }
 
-    fn wrong(&self, name: &str, error: io::Error) -> WriteError {
-        WriteError::File { path: self.folder.join(name), error }
+    fn wrong(&self, name: &str, error: io::Error) -> OutputError {
+        OutputError::File { path: self.folder.join(name), error }
     }
 
     /// Gives all staged files their places, replacing the files of an earlier run, and returns the paths in the order of
     /// staging.
     ///
     /// # Errors
-    /// [`WriteError::File`], should the system refuse to rename; then the last file of the set is not there.
-    pub fn publish(mut self) -> Result<Vec<PathBuf>, WriteError> {
+    /// [`OutputError::File`], should the system refuse to rename; then the last file of the set is not there.
+    pub fn publish(mut self) -> Result<Vec<PathBuf>, OutputError> {
         // A system without locks takes its chance.
         let lock = File::open(&self.folder).and_then(|folder| folder.lock().map(|()| folder));
         // From here on a signal waits until the set is whole.
@@ -189,7 +182,7 @@ impl Output {
         Ok(self.names.iter().map(|name| self.folder.join(name)).collect())
     }
 
-    fn rename_all(&self) -> Result<(), WriteError> {
+    fn rename_all(&self) -> Result<(), OutputError> {
         let Some((last, others)) = self.names.split_last() else { return Ok(()) };
         let place = |name: &str| self.folder.join(name);
         let sync = || sync_folder(&self.folder).map_err(|error| self.wrong(last, error));
@@ -310,7 +303,7 @@ mod tests {
     }
 
     /// A set of three files that say which run they are of.
-    fn run(folder: &Path, stamp: &str) -> Result<Vec<PathBuf>, WriteError> {
+    fn run(folder: &Path, stamp: &str) -> Result<Vec<PathBuf>, OutputError> {
         let mut output = Output::new(folder)?;
         for name in SET {
             output.stage(name, stamp.as_bytes())?;

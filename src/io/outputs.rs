@@ -121,7 +121,7 @@ pub fn write_certified(
     });
     output.stage_made([(CERTIFIED, grid)])?;
     output.stage_made(certificate_files(&case.title, certified))?;
-    Ok(output.publish()?)
+    output.publish()
 }
 
 /// The values at `nodes` nodes: those of degree 1 take the means of the ends at the middles of edges, where there are some.

@@ -99,7 +99,8 @@ impl From<FileError> for Failure {
 
 impl From<OutputError> for Failure {
     fn from(error: OutputError) -> Failure {
-        Failure::failed(error)
+        let is_wrong = matches!(error, OutputError::Source { .. });
+        Failure { message: error.to_string(), is_wrong }
     }
 }
 

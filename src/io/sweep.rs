@@ -323,7 +323,7 @@ impl Sweep {
             output.stage(COLLECTION, self.pvd().as_bytes())?;
         }
         output.stage(FILE, self.csv().as_bytes())?;
-        Ok(output.publish()?)
+        output.publish()
     }
 }
 

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 
 use signorini::certify::binding::compare;
 use signorini::certify::forces::Evidence;
-use signorini::certify::{Continuous, Rejection, certify};
-use signorini::io::certificate::{self, AuditError, Header};
+use signorini::certify::{Continuous, certify};
+use signorini::io::certificate::{self, Header};
 use signorini::io::{Case, run};
 
 const LOADED: &str = r#"
@@ -90,10 +90,7 @@ fn reservations_and_the_whole_bound_come_from_the_arrays() {
     let smaller = Header { bound: certified.proof.bound * (1.0 + 1e-9), ..header.clone() };
     assert!(smaller.bound < header.bound);
     let error = certificate::audit(&written("smaller", &json(&smaller), &arrays)).unwrap_err();
-    let bound = |error: &AuditError| {
-        matches!(error, AuditError::Rejected { rejection: Rejection::Bound { .. }, .. })
-    };
-    assert!(bound(&error), "{error}");
+    assert!(error.to_string().contains("rejected: the claimed bound is"), "{error}");
 
     let rigorous = json(&header).replacen('{', "{\"rigorous\":true,", 1);
     let error = certificate::audit(&written("rigorous", &rigorous, &arrays)).unwrap_err();
