@@ -84,9 +84,7 @@ fn picture(scene: &Scene) -> Result<String, NotFinite> {
         .add(colour_bar(&colours, unit, [MARGIN + frame.width + GAP, HEADER], frame.height));
     [obstacle, pressure].into_iter().flatten().for_each(|group| document.append(group));
     if scene.contact.len() > 1 {
-        let outline: Vec<[Point; 2]> =
-            scene.outline.iter().map(|edge| edge.map(|vertex| deformed[vertex])).collect();
-        document.append(tags(&lines, scene.contact.len(), &outline, &frame));
+        document.append(tags(&lines, scene.contact.len()));
     }
     document.append(legend);
     document.append(panel::panels(scene, [MARGIN, panels_at], width));

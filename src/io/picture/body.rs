@@ -56,15 +56,13 @@ pub(super) fn body(scene: &Scene, deformed: &[Point], colours: &Colours) -> Grou
         scene.triangles.iter().map(|vertices| vertices.map(|v| deformed[v])).collect();
     let mut levels = vec![PathData::default(); LEVELS];
     let by_cells = triangles.len() > MOST_TRIANGLES;
+    let of: Vec<usize> = scene.von_mises.iter().map(|&value| colours.level(value)).collect();
     if by_cells {
-        let level = |value| colours.level(value);
-        for (level, corners) in rectangles(CELL, &triangles, &scene.von_mises, level) {
+        for (level, corners) in rectangles(CELL, &triangles, &of) {
             levels[level].polygon(corners);
         }
     } else {
-        for (&corners, &value) in triangles.iter().zip(&scene.von_mises) {
-            levels[colours.level(value)].polygon(corners);
-        }
+        triangles.iter().zip(of).for_each(|(&corners, level)| levels[level].polygon(corners));
     }
     let mut group = Group::new().set("stroke-width", 0.7).set("stroke-linejoin", "round");
     if by_cells {

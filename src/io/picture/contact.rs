@@ -1,11 +1,12 @@
 //! The contact boundaries on the body: the pressure as a curve with arrows, the obstacle with its hatching, and a letter for
 //! each where there are several.
 
+use svg::Node;
 use svg::node::element::{Circle, Group};
 
 use super::draw::{
-    DARK, GREY, PageMap, PathData, Point, RED, anchored, between, direction, distance,
-    distance_from_segment, moved, places, shape, stroke, thinned,
+    DARK, GREY, PageMap, PathData, Point, RED, anchored, between, direction, distance, moved,
+    places, shape, stroke, thinned,
 };
 use super::scene::{ContactSample, Scene};
 
@@ -221,18 +222,12 @@ pub(super) fn tag(surface: usize, [x, y]: Point) -> Group {
         .add(letter.set("font-size", 12).set("fill", RED))
 }
 
-/// A letter at each contact boundary, off the highest pressure (or the middle) of its longest part and away from the body:
-/// the first place outward where it covers neither body nor pressure. `outline` are the lines around the deformed body.
-pub(super) fn tags(
-    contact: &[ContactLine],
-    count: usize,
-    outline: &[[Point; 2]],
-    frame: &PageMap,
-) -> Group {
+/// A letter at each contact boundary, off the highest pressure (or the middle) of its longest part and away from the body.
+pub(super) fn tags(contact: &[ContactLine], count: usize) -> Group {
     let mut group = Group::new();
     for surface in 0..count {
-        let lines = || contact.iter().filter(|line| line.surface == surface);
-        let Some(line) = lines().max_by_key(|line| line.base.len()) else { continue };
+        let lines = contact.iter().filter(|line| line.surface == surface);
+        let Some(line) = lines.max_by_key(|line| line.base.len()) else { continue };
         let highest =
             (0..line.pressure.len()).max_by(|&i, &j| line.pressure[i].total_cmp(&line.pressure[j]));
         let pressed = highest.filter(|&i| line.pressure[i] > 0.0);
@@ -242,28 +237,9 @@ pub(super) fn tags(
         let ends = [line.base[i.saturating_sub(1)], line.base[(i + 1).min(line.base.len() - 1)]];
         let [x, y] = direction(ends[0], ends[1]).unwrap_or([1.0, 0.0]);
         let out = direction(base, line.tip[i]).unwrap_or([-y, x]);
-        let place = |off: f64| moved(line.tip[i], out, RADIUS + 6.0 + off);
-        let tips = contact.iter().flat_map(|line| line.tip.windows(2).map(|w| [w[0], w[1]]));
-        let near: Vec<[Point; 2]> = outline.iter().copied().chain(tips).collect();
-        let free = |off: &f64| {
-            let p = place(*off);
-            frame.holds(p, RADIUS)
-                && !inside(p, outline)
-                && near.iter().all(|&[a, b]| distance_from_segment(p, a, b) > RADIUS + 2.0)
-        };
-        let mut offs = (0..20).map(|i| 5.0 * f64::from(i));
-        let tag = tag(surface, place(offs.find(free).unwrap_or(0.0)));
-        group = group.add(tag);
+        group.append(tag(surface, moved(line.tip[i], out, RADIUS + 6.0)));
     }
     group
-}
-
-/// Returns whether a point lies inside closed lines: a ray from it crosses them an odd number of times.
-fn inside([x, y]: Point, outline: &[[Point; 2]]) -> bool {
-    let crosses = |&&[a, b]: &&[Point; 2]| {
-        (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
-    };
-    outline.iter().filter(crosses).count() % 2 == 1
 }
 
 #[cfg(test)]
@@ -284,13 +260,5 @@ mod tests {
         assert_eq!(a, b);
         assert!((a[0] + a[1]).abs() < 1e-15 && (a[0].hypot(a[1]) - 1.0).abs() < 1e-15);
         assert_eq!([c, d], [[0.8, -0.6], [0.6, 0.8]]);
-    }
-
-    #[test]
-    fn a_point_is_inside_a_square_or_outside_it() {
-        let corners = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
-        let square: Vec<[Point; 2]> = (0..4).map(|i| [corners[i], corners[(i + 1) % 4]]).collect();
-        assert!(inside([1.0, 3.0], &square));
-        assert!(!inside([5.0, 3.0], &square) && !inside([-1.0, 3.0], &square));
     }
 }

@@ -208,13 +208,6 @@ impl PageMap {
             self.corner[1] + self.height / 2.0 - self.scale * (y - self.centre[1]),
         ]
     }
-
-    /// Returns whether a circle lies within the frame.
-    pub(super) fn holds(&self, [x, y]: Point, radius: f64) -> bool {
-        let [left, top] = self.corner;
-        (left + radius..=left + self.width - radius).contains(&x)
-            && (top + radius..=top + self.height - radius).contains(&y)
-    }
 }
 
 /// The `d` attribute of a path, in hundredths of the page's unit.
@@ -301,14 +294,6 @@ pub(super) fn direction(a: Point, b: Point) -> Option<Point> {
     (length > 0.0).then(|| [(b[0] - a[0]) / length, (b[1] - a[1]) / length])
 }
 
-pub(super) fn distance_from_segment(p: Point, a: Point, b: Point) -> f64 {
-    let [dx, dy] = [b[0] - a[0], b[1] - a[1]];
-    let square = dx * dx + dy * dy;
-    let along = (p[0] - a[0]) * dx + (p[1] - a[1]) * dy;
-    let fraction = if square > 0.0 { (along / square).clamp(0.0, 1.0) } else { 0.0 };
-    distance(p, between(a, b, fraction))
-}
-
 /// The closed lines that the edges make up, each by its points. An edge goes on where another starts.
 pub(super) fn loops(edges: &[[usize; 2]], points: usize) -> Vec<Vec<usize>> {
     let mut from: Vec<Vec<usize>> = vec![Vec::new(); points];
@@ -383,15 +368,6 @@ mod tests {
         assert_eq!(kept.len(), 21);
         assert_eq!((kept[0], kept[20]), (line[0], line[100]));
         assert_eq!(thinned(&[]), Vec::<Point>::new());
-    }
-
-    #[test]
-    fn a_segment_is_nearest_at_its_ends_or_between_them() {
-        let [a, b] = [[0.0, 0.0], [4.0, 0.0]];
-        for (p, expected) in [([1.0, 3.0], 3.0), ([-3.0, 4.0], 5.0), ([7.0, -4.0], 5.0)] {
-            assert_eq!(distance_from_segment(p, a, b), expected);
-        }
-        assert_eq!(distance_from_segment([3.0, 4.0], a, a), 5.0);
     }
 
     #[test]
