@@ -13,8 +13,8 @@ use super::picture::draw;
 use super::remarks::{nearest, remarks};
 use super::report;
 use super::result::{
-    Certificates, Choices, DiscreteCertificate, GammaChoice, MeshSizes, NewtonHistory, Results,
-    SCHEMA, Seconds, StressPeak, StressPeaks, result_json,
+    Adaptation, Certificates, Choices, ContinuousCertificate, DiscreteCertificate, GammaChoice,
+    MeshSizes, NewtonHistory, Results, SCHEMA, Seconds, StressPeak, StressPeaks, result_json,
 };
 use super::run::Solved;
 use super::vtu::{CellKind, DataArray, Grid, vtu};
@@ -68,7 +68,7 @@ pub fn write(
     let solution = &solved.solution;
     memory::check(bytes_to_write(solution))?;
     let mut output = Output::new(folder)?.replacing(&FILES);
-    let continuous = solved.certified.as_ref().and_then(|c| c.result.as_ref().ok());
+    let continuous = solved.certified.as_ref().and_then(|c| c.as_ref().ok());
     let mut results = results(case, solved, read, extra)?;
     let picture = draw(case, solution, &results).unwrap_or_else(|error| {
         results.missing.push(format!("picture: {error}"));
@@ -220,8 +220,11 @@ pub fn results(
         reaction_moments: solution.quantities.reaction_moments.clone(),
         balance: Some(solution.balance),
         probes: probes(case, solution),
-        certificate: Some(Certificates { discrete: Some(discrete), continuous: None }),
-        adapt: None,
+        certificate: Some(Certificates {
+            discrete: Some(discrete),
+            continuous: solved.certified.as_ref().map(ContinuousCertificate::from),
+        }),
+        adapt: solved.adaptation.clone(),
         errors,
         seconds: Seconds {
             read: read.as_secs_f64(),
@@ -235,8 +238,11 @@ pub fn results(
     let remarks: Vec<String> =
         untouched.filter_map(|part| nearest(case, solution, &part.boundary)).collect();
     results.remarks.extend(remarks);
-    if let Some(certified) = &solved.certified {
-        certified.add_to(&mut results, extra.certificate);
+    if let (Some(Err(error)), true) = (&solved.certified, extra.certificate) {
+        results.missing.push(format!("certificate: {error}"));
+    }
+    if let Some(Adaptation { reason: Some(reason), .. }) = &solved.adaptation {
+        results.missing.push(format!("mesh that meets the target of [adapt]: {reason}"));
     }
     Ok(results)
 }

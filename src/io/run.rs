@@ -2,14 +2,14 @@
 
 use std::fmt::Display;
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use thiserror::Error;
 
 use super::case::Case;
 use super::files::OutputError;
 use super::input::FileError;
-use super::result::{Adaptation, Results};
+use super::result::Adaptation;
 use crate::certify::adapt::{self, AdaptError, Stage};
 use crate::certify::{CertifyError, Continuous, certify_with};
 use crate::quote;
@@ -22,47 +22,25 @@ pub struct Solved {
     /// The time that it took.
     pub times: Times,
     /// The bound of the distance to the true solution, where the mesh was adapted to it or it was asked for.
-    pub certified: Option<Certified>,
+    pub certified: Option<Result<Continuous, CertifyError>>,
+    /// The adaptation of the mesh to it, if it was adapted.
+    pub adaptation: Option<Adaptation>,
 }
 
 impl From<(Solution, Times)> for Solved {
     fn from((solution, times): (Solution, Times)) -> Self {
-        Solved { solution, times, certified: None }
+        Solved { solution, times, certified: None, adaptation: None }
     }
 }
 
 impl Solved {
     /// Certifies the solution, unless that has been done.
     pub fn certify(&mut self, case: &Case) {
-        self.certified.get_or_insert_with(|| {
+        if self.certified.is_none() {
             let start = Instant::now();
-            let result = certify_with(&case.problem, &self.solution, &case.asked);
-            Certified { result, time: start.elapsed(), adaptation: None }
-        });
-    }
-}
-
-/// The proved distance from the true solution, and how long the proof took.
-#[derive(Clone, Debug)]
-pub struct Certified {
-    pub result: Result<Continuous, CertifyError>,
-    pub time: Duration,
-    /// The adaptation of the mesh to it, if it was adapted.
-    pub adaptation: Option<Adaptation>,
-}
-
-impl Certified {
-    /// Adds what is known to the content of result.json; `asked` says whether a certificate was asked for.
-    pub(super) fn add_to(&self, results: &mut Results, asked: bool) {
-        if let (Err(error), true) = (&self.result, asked) {
-            results.missing.push(format!("certificate: {error}"));
+            self.certified = Some(certify_with(&case.problem, &self.solution, &case.asked));
+            self.times.certify += start.elapsed();
         }
-        if let Some(Adaptation { reason: Some(reason), .. }) = &self.adaptation {
-            results.missing.push(format!("mesh that meets the target of [adapt]: {reason}"));
-        }
-        results.seconds.certify += self.time.as_secs_f64();
-        results.certificate.get_or_insert_default().continuous = Some((&self.result).into());
-        results.adapt.clone_from(&self.adaptation);
     }
 }
 
@@ -134,18 +112,16 @@ pub fn solve(
     let how = (&case.method, &case.settings);
     let (problem, adapted) = adapt::adapt_to(case.problem, how, goal, &case.asked, watcher)?;
     case.problem = problem;
-    let certified = Certified {
-        result: adapted.certified,
-        time: adapted.certifying,
-        adaptation: Some(Adaptation {
-            target: target.relative,
-            force,
-            met: adapted.unmet.is_none(),
-            reason: adapted.unmet,
-            level: adapted.level,
-            levels: adapted.levels,
-        }),
+    let adaptation = Adaptation {
+        target: target.relative,
+        force,
+        met: adapted.unmet.is_none(),
+        reason: adapted.unmet,
+        level: adapted.level,
+        levels: adapted.levels,
     };
-    let (solution, times) = (adapted.solution, adapted.times);
-    Ok((case, Solved { solution, times, certified: Some(certified) }))
+    let (solution, mut times) = (adapted.solution, adapted.times);
+    times.certify += adapted.certifying;
+    let certified = Some(adapted.certified);
+    Ok((case, Solved { solution, times, certified, adaptation: Some(adaptation) }))
 }

@@ -187,17 +187,11 @@ fn solve(
     Ok(Ok(results))
 }
 
-/// A number of a run by its name; those that are `brief` stand in the table for people, too.
-struct Cell {
-    name: String,
-    brief: bool,
-    value: String,
-}
-
 type NumberFormat<'a> = &'a dyn Fn(f64) -> String;
 
-/// The numbers of a run: forces, moments and energies times the thickness, if the case has one.
-fn cells(r: &Results, shown: NumberFormat) -> Vec<Cell> {
+/// The numbers of a run by their names: forces, moments and energies times the thickness, if the case has one. Those whose
+/// name has no point stand in the table for people, too.
+fn cells(r: &Results, shown: NumberFormat) -> Vec<(String, String)> {
     let (q, thickness) = (&r.quantities, r.thickness.unwrap_or(1.0));
     // That of the summary: the recovered one.
     let peak = r.contact.iter().map(|part| part.peak_pressure).reduce(f64::max);
@@ -214,38 +208,37 @@ fn cells(r: &Results, shown: NumberFormat) -> Vec<Cell> {
         ("energy", Some(shown(q.energy * thickness))),
         ("energy_error", r.errors.as_ref().map(|errors| shown(errors.energy))),
     ];
-    let mut cells: Vec<Cell> = Vec::new();
-    for (name, value) in brief {
-        cells.extend(value.map(|value| Cell { name: name.to_owned(), brief: true, value }));
-    }
-    let mut add = |name: String, x: f64| cells.push(Cell { name, brief: false, value: shown(x) });
+    let brief = brief.into_iter().filter_map(|(name, value)| Some((name.to_owned(), value?)));
+    let mut cells: Vec<(String, String)> = brief.collect();
+    let mut add = |of: &str, what: &str, x: f64| cells.push((format!("{of}.{what}"), shown(x)));
     for part in &r.contact {
-        let name = |what: &str| format!("{}.{what}", part.boundary);
-        add(name("force"), part.force * thickness);
-        add(name("length"), part.length);
-        add(name("peak_pressure"), part.peak_pressure);
+        add(&part.boundary, "force", part.force * thickness);
+        add(&part.boundary, "length", part.length);
+        add(&part.boundary, "peak_pressure", part.peak_pressure);
     }
+    // Outwards, should the product be rounded.
+    let outwards =
+        |[low, high]: [f64; 2]| [(low * thickness).next_down(), (high * thickness).next_up()];
     let proved = r.certificate.as_ref().and_then(|c| c.discrete.as_ref()?.intervals.as_ref());
     for part in proved.iter().flat_map(|intervals| &intervals.contact) {
-        // Outwards, should the product be rounded.
-        add(format!("{}.force_low", part.boundary), (part.force[0] * thickness).next_down());
-        add(format!("{}.force_high", part.boundary), (part.force[1] * thickness).next_up());
+        let [low, high] = outwards(part.force);
+        add(&part.boundary, "force_low", low);
+        add(&part.boundary, "force_high", high);
     }
     let certified = r.certificate.as_ref().and_then(|c| c.continuous.as_ref());
     for part in &r.contact {
         let proved = certified.and_then(|c| c.contact_force(&part.boundary));
-        let Some([low, high]) = proved else { continue };
-        add(format!("{}.true_force_low", part.boundary), (low * thickness).next_down());
-        add(format!("{}.true_force_high", part.boundary), (high * thickness).next_up());
+        let Some([low, high]) = proved.map(outwards) else { continue };
+        add(&part.boundary, "true_force_low", low);
+        add(&part.boundary, "true_force_high", high);
     }
-    for (boundary, force) in &q.reactions {
-        for (axis, value) in ["x", "y"].into_iter().zip(force) {
-            add(format!("{boundary}.reaction_{axis}"), value * thickness);
-        }
+    for (boundary, [x, y]) in &q.reactions {
+        add(boundary, "reaction_x", x * thickness);
+        add(boundary, "reaction_y", y * thickness);
     }
     for (i, [_, _, u_x, u_y]) in (1..).zip(&r.probes) {
-        add(format!("probe_{i}.u_x"), *u_x);
-        add(format!("probe_{i}.u_y"), *u_y);
+        add(&format!("probe_{i}"), "u_x", *u_x);
+        add(&format!("probe_{i}"), "u_y", *u_y);
     }
     cells
 }
@@ -257,13 +250,15 @@ impl Sweep {
             Ok(results) => (cells(results, shown), results.newton.verdict().to_owned()),
             Err(error) => (Vec::new(), error.to_string()),
         };
-        let mut runs: Vec<(Vec<Cell>, String)> = self.results.iter().map(of_run).collect();
+        let mut runs: Vec<(Vec<(String, String)>, String)> =
+            self.results.iter().map(of_run).collect();
         runs.resize_with(self.values.len(), || (Vec::new(), NOT_SOLVED.to_owned()));
         // gamma0 as a key stands there already.
         let is_new = |name: &str| !self.keys.iter().any(|key| key == &format!("method.{name}"));
         let mut columns: Vec<&str> = Vec::new();
-        for Cell { name, brief: is_brief, .. } in runs.iter().flat_map(|(cells, _)| cells) {
-            if is_new(name) && (*is_brief || !brief) && !columns.contains(&&**name) {
+        for (name, _) in runs.iter().flat_map(|(cells, _)| cells) {
+            let is_shown = !brief || !name.contains('.');
+            if is_new(name) && is_shown && !columns.contains(&&**name) {
                 columns.push(name);
             }
         }
@@ -271,8 +266,8 @@ impl Sweep {
         let mut lines = vec![heading.chain(["status"]).map(str::to_owned).collect()];
         for (values, (cells, status)) in self.values.iter().zip(&runs) {
             let value = |name: &&str| {
-                let cell = cells.iter().find(|cell| cell.name == **name);
-                cell.map_or(String::new(), |cell| cell.value.clone())
+                let cell = cells.iter().find(|(other, _)| other == *name);
+                cell.map_or(String::new(), |(_, value)| value.clone())
             };
             let numbers = columns.iter().map(value);
             lines.push(values.iter().cloned().chain(numbers).chain([status.clone()]).collect());

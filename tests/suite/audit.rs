@@ -50,7 +50,7 @@ fn case(text: &str, settings: &[&str]) -> Case {
 fn certified(text: &str, settings: &[&str]) -> Continuous {
     let (case, solved) = run::solve(case(text, settings), None, &|_| {}).unwrap();
     match solved.certified {
-        Some(certified) => certified.result.unwrap(),
+        Some(certified) => certified.unwrap(),
         None => certify(&case.problem, &solved.solution).unwrap(),
     }
 }
