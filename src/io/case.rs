@@ -5,10 +5,9 @@
 //! that is not known is an error, and so is a list of the wrong length, a number that is NaN or infinite, and a boundary with
 //! more than one of displacement, traction and contact.
 
+mod body;
 mod boundary;
 mod exact;
-mod load;
-mod material;
 mod mesh;
 mod method;
 mod source;
@@ -20,11 +19,10 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+pub use self::body::MaterialEcho;
+use self::body::{only_isotropic, read_loads, read_materials};
 use self::boundary::{read_boundaries, read_points};
 use self::exact::read_exact;
-use self::load::read_loads;
-pub use self::material::MaterialEcho;
-use self::material::{only_isotropic, read_materials};
 use self::mesh::{Meshed, read_mesh};
 use self::method::{read_method, read_quantities, read_settings, read_target};
 use self::source::Source;
@@ -83,27 +81,32 @@ pub struct Units {
     pub force: String,
 }
 
+/// What a number measures. Forces, and moments as energies, are those of the whole body if its thickness is known, else
+/// per length across the plane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measure {
+    /// A length.
+    Length,
+    /// A stress or a pressure.
+    Stress,
+    /// A force.
+    Force,
+    /// A moment or an energy.
+    Moment,
+}
+
 impl Units {
-    /// The unit of forces: of the whole body if its thickness is known, else per length across the plane.
-    pub fn force(&self, thickness: Option<f64>) -> String {
-        format!("{}{}", self.force, self.per_thickness(thickness))
-    }
-
-    /// The unit of moments and energies, likewise.
-    pub fn moment(&self, thickness: Option<f64>) -> String {
-        format!("{} {}{}", self.force, self.length, self.per_thickness(thickness))
-    }
-
-    fn per_thickness(&self, thickness: Option<f64>) -> String {
-        if thickness.is_some() { String::new() } else { format!("/{}", self.length) }
-    }
-
-    /// The unit of stresses.
-    pub fn stress(&self) -> String {
-        match (&*self.force, &*self.length) {
-            ("N", "mm") => "MPa".to_owned(),
-            ("N", "m") => "Pa".to_owned(),
-            (force, length) => format!("{force}/{length}^2"),
+    /// The unit of a measure on a body whose thickness is known or not.
+    pub fn of(&self, measure: Measure, thickness: Option<f64>) -> String {
+        let Units { length, force } = self;
+        let per = if thickness.is_some() { String::new() } else { format!("/{length}") };
+        match (measure, &**force, &**length) {
+            (Measure::Length, ..) => length.clone(),
+            (Measure::Stress, "N", "mm") => "MPa".to_owned(),
+            (Measure::Stress, "N", "m") => "Pa".to_owned(),
+            (Measure::Stress, ..) => format!("{force}/{length}^2"),
+            (Measure::Force, ..) => format!("{force}{per}"),
+            (Measure::Moment, ..) => format!("{force} {length}{per}"),
         }
     }
 }
@@ -209,7 +212,7 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, FileErro
     let folder = file.parent().unwrap_or(Path::new(""));
     let Meshed { mesh, structured, perturbation, file: mesh_file } =
         read_mesh(root, given, folder)?;
-    let table = root.required_section("material", &format!("{} in it", material::EXPECTED))?;
+    let table = root.required_section("material", &format!("{} in it", body::EXPECTED))?;
     let (material, materials) = read_materials(&table, &mesh)?;
     let solution = root
         .optional_section("exact", |exact| read_exact(exact, only_isotropic(&material, &table)?))?;

@@ -2,7 +2,7 @@
 //!
 //! Each number is the shortest decimal that reads back to the same double.
 
-use super::finite::{NotFinite, check_finite};
+use super::files::{NotFinite, check_finite};
 
 /// The text of a file: a line with the names of the columns, then a line for each row of numbers and a text behind them.
 /// An error names the row, counted from 0.

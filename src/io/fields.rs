@@ -3,8 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::csv;
-use super::files::{MadeFile, Output, OutputError};
-use super::finite::NotFinite;
+use super::files::{MadeFile, NotFinite, Output, OutputError};
 use super::vtu::{CellKind, DataArray, Grid, vtu};
 use crate::fem::{Mesh, Problem};
 use crate::kernel::Stress;

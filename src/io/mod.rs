@@ -15,7 +15,6 @@ pub mod field;
 mod fields;
 #[doc(hidden)]
 pub mod files;
-mod finite;
 #[doc(hidden)]
 pub mod gmsh;
 #[doc(hidden)]

@@ -22,7 +22,7 @@ use svg::Node;
 use svg::node::element::Group;
 
 use super::case::Case;
-use super::finite::{NotFinite, check_finite};
+use super::files::{NotFinite, check_finite};
 use super::result::Results;
 use crate::solve::Solution;
 use body::{BAR, Colours, body, colour_bar, definitions, outlines};

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::case::{MaterialEcho, Units};
-use super::finite::NotFinite;
+use super::files::NotFinite;
 use crate::certify::adapt::AdaptedLevel;
 use crate::certify::quantities::{Quantity, Zone};
 use crate::certify::{CertifyError, Continuous, Ramp};

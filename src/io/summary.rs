@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use super::case::{MaterialEcho, Units};
+use super::case::{MaterialEcho, Measure, Units};
 use super::certificate::Audit;
 use super::convergence::Study;
 use super::result::{
@@ -59,7 +59,7 @@ pub(crate) fn lines_of(r: &Results, verbose: bool) -> Vec<(String, String)> {
     contact(r, &shown, verbose, &mut lines);
     stress(r, &shown, &mut lines);
     reactions(r, &shown, verbose, &mut lines);
-    let largest = shown.length(r.quantities.max_displacement);
+    let largest = shown.number(r.quantities.max_displacement, Measure::Length);
     lines.line("displacement", format!("up to {largest}"));
     for remark in r.remarks.iter().cloned().chain(r.play.iter().map(|play| free(play, &shown))) {
         lines.line("remark", remark);
@@ -102,37 +102,25 @@ impl QuantityFormat {
         QuantityFormat { units: r.units.clone(), thickness: r.thickness, no_force }
     }
 
-    fn with_unit(&self, shown: String, unit: impl FnOnce(&Units) -> String) -> String {
-        self.units.as_ref().map_or(shown.clone(), |units| format!("{shown} {}", unit(units)))
-    }
-
     fn whole(&self, per_thickness: f64) -> f64 {
         per_thickness * self.thickness.unwrap_or(1.0)
     }
 
-    fn length(&self, x: f64) -> String {
-        self.with_unit(short(x), |units| units.length.clone())
+    fn with_unit(&self, shown: String, measure: Measure) -> String {
+        match &self.units {
+            Some(units) => format!("{shown} {}", units.of(measure, self.thickness)),
+            None => shown,
+        }
     }
 
-    fn stress(&self, x: f64) -> String {
-        self.with_unit(short(x), Units::stress)
-    }
-
-    fn force(&self, x: f64) -> String {
-        self.with_unit(short(self.whole(x)), |units| units.force(self.thickness))
-    }
-
-    fn moment(&self, x: f64) -> String {
-        self.with_unit(short(self.whole(x)), |units| units.moment(self.thickness))
+    fn number(&self, x: f64, measure: Measure) -> String {
+        let per_thickness = matches!(measure, Measure::Force | Measure::Moment);
+        self.with_unit(short(if per_thickness { self.whole(x) } else { x }), measure)
     }
 
     /// The components of a force, without the unit.
     fn components(&self, f: [f64; 2]) -> String {
         vector(f.map(|c| if c.abs() > self.no_force { self.whole(c) } else { 0.0 }))
-    }
-
-    fn vector(&self, f: [f64; 2]) -> String {
-        self.with_unit(self.components(f), |units| units.force(self.thickness))
     }
 }
 
@@ -156,8 +144,11 @@ fn rounding(r: &Results) -> f64 {
 fn contact(r: &Results, shown: &QuantityFormat, verbose: bool, lines: &mut Lines) {
     if r.contact.is_empty() {
         let q = &r.quantities;
-        let [force, length] = [shown.force(q.contact_force), shown.length(q.contact_length)];
-        let peak = shown.stress(q.peak_pressure);
+        let [force, length] = [
+            shown.number(q.contact_force, Measure::Force),
+            shown.number(q.contact_length, Measure::Length),
+        ];
+        let peak = shown.number(q.peak_pressure, Measure::Stress);
         lines.line("contact", format!("force {force}, length {length}, peak pressure {peak}"));
     }
     for (i, part) in r.contact.iter().enumerate() {
@@ -172,7 +163,8 @@ fn contact(r: &Results, shown: &QuantityFormat, verbose: bool, lines: &mut Lines
             // The reference in FEniCSx does not say.
             _ => String::new(),
         };
-        let [force, length] = [shown.force(part.force), shown.length(part.length)];
+        let [force, length] =
+            [shown.number(part.force, Measure::Force), shown.number(part.length, Measure::Length)];
         let components = shown.components(part.resultant);
         // The interval in which the true contact force is proved to lie.
         let continuous = r.certificate.as_ref().and_then(|c| c.continuous.as_ref());
@@ -186,12 +178,13 @@ fn contact(r: &Results, shown: &QuantityFormat, verbose: bool, lines: &mut Lines
             None => format!(" {components}"),
         };
         lines.line(name, format!("{boundary}: force {force}{components}, length {length}"));
-        let peak = shown.stress(part.peak_pressure);
+        let peak = shown.number(part.peak_pressure, Measure::Stress);
         lines.line("", format!("peak pressure {peak}{}", at(part.peak_at)));
         if verbose {
-            let mut words = format!("{boundary}: moment {}", shown.moment(part.moment));
+            let mut words =
+                format!("{boundary}: moment {}", shown.number(part.moment, Measure::Moment));
             if part.penetration.is_finite() {
-                let depth = shown.length(part.penetration);
+                let depth = shown.number(part.penetration, Measure::Length);
                 words += &format!(", penetration {depth}{}", at(part.penetration_at));
             }
             lines.line("", words);
@@ -219,7 +212,7 @@ fn stress(r: &Results, shown: &QuantityFormat, lines: &mut Lines) {
             Some(surface) if r.materials.len() > 1 => format!(" in {}", quote::cut(surface)),
             _ => String::new(),
         };
-        format!("{} at {}{surface}", shown.stress(peak.value), vector(peak.at))
+        format!("{} at {}{surface}", shown.number(peak.value, Measure::Stress), vector(peak.at))
     };
     lines.line("stress", format!("von Mises up to {}", value(&stress.von_mises)));
     let [low, high] = [&stress.principal_min, &stress.principal_max].map(value);
@@ -230,8 +223,9 @@ fn reactions(r: &Results, shown: &QuantityFormat, verbose: bool, lines: &mut Lin
     for (i, (boundary, reaction)) in r.quantities.reactions.iter().enumerate() {
         let name = if i == 0 { "reactions" } else { "" };
         let moment = r.reaction_moments.get(boundary).filter(|_| verbose);
-        let moment = moment.map_or(String::new(), |m| format!(", moment {}", shown.moment(*m)));
-        let force = shown.vector(*reaction);
+        let moment = moment
+            .map_or(String::new(), |m| format!(", moment {}", shown.number(*m, Measure::Moment)));
+        let force = shown.with_unit(shown.components(*reaction), Measure::Force);
         lines.line(name, format!("{}: {force}{moment}", quote::cut(boundary)));
     }
 }
@@ -259,7 +253,8 @@ fn how_it_was_solved(r: &Results, shown: &QuantityFormat, verbose: bool, lines: 
         lines.line("accuracy", accuracy(method));
     }
     if verbose {
-        let [energy, work] = [r.quantities.energy, r.quantities.work].map(|e| shown.moment(e));
+        let [energy, work] =
+            [r.quantities.energy, r.quantities.work].map(|e| shown.number(e, Measure::Moment));
         lines.line("energy", format!("a(u,u) = {energy}, L(u) = {work}"));
     }
     if let Some(balance) = &r.balance {
@@ -269,7 +264,7 @@ fn how_it_was_solved(r: &Results, shown: &QuantityFormat, verbose: bool, lines: 
         let is_balanced =
             imbalance < WORTH_SHOWING || parts.into_iter().all(|energy| energy.abs() <= no_energy);
         if verbose || !is_balanced {
-            let [loads, supports, contact] = parts.map(|e| shown.moment(e));
+            let [loads, supports, contact] = parts.map(|e| shown.number(e, Measure::Moment));
             lines.line(
                 "balance",
                 format!(
@@ -548,7 +543,7 @@ fn free(play: &Play, shown: &QuantityFormat) -> String {
     };
     let end = |end: f64| match play.about {
         Some(_) => format!("{} rad", short(end)),
-        None => shown.length(end),
+        None => shown.number(end, Measure::Length),
     };
     let range = match (play.least, play.most) {
         (None, None) => "without limit".to_owned(),

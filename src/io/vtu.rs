@@ -10,7 +10,7 @@ use std::iter::repeat_n;
 
 use miniz_oxide::deflate::compress_to_vec_zlib;
 
-use super::finite::{NotFinite, check_finite};
+use super::files::{NotFinite, check_finite};
 use crate::fem::Degree;
 
 /// Cells of one kind, with data on their points and on the cells themselves.

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use super::body::constant;
 use super::exact::read_kind;
-use super::load::constant;
 use super::table::{Spot, Table, Value};
 use crate::fem::{Condition, Mesh, Obstacle, PointSupport, SharedFunction, Side};
 use crate::io::input::FileError;

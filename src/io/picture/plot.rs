@@ -9,7 +9,7 @@ use super::draw::{
     Axes, GREY, LEGEND_LINE, PageAxis, PathData, Point, SAMPLE, anchored, dot, legend, page,
     stroke, text,
 };
-use crate::io::finite::{NotFinite, check_finite};
+use crate::io::files::{NotFinite, check_finite};
 use crate::io::numbers::short;
 
 #[derive(Clone, Debug)]

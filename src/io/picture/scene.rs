@@ -6,7 +6,7 @@ use super::draw::{Point, distance, moved, short};
 use crate::certify::quantities::Zone;
 use crate::fem::tree::Bounds;
 use crate::fem::{BoundaryEdge, Degree};
-use crate::io::case::Case;
+use crate::io::case::{Case, Measure};
 use crate::io::numbers::Round;
 use crate::io::result::{ContinuousCertificate, Results};
 use crate::solve::solution::{ContactEdgeValues, ContactValues};
@@ -108,7 +108,9 @@ impl Scene {
             displacement: s.displacement.clone(),
             triangles,
             von_mises,
-            units: case.units.as_ref().map(|units| [units.stress(), units.length.clone()]),
+            units: case.units.as_ref().map(|units| {
+                [Measure::Stress, Measure::Length].map(|measure| units.of(measure, case.thickness))
+            }),
             stretch: case.stretch,
             interfaces: interfaces(case).into_iter().flat_map(parts).collect(),
             outline: mesh.outline().iter().copied().flat_map(parts).collect(),

@@ -1,4 +1,6 @@
-//! The table \[material\] of a case file, for the whole body or for its physical surfaces one by one.
+//! The tables \[material\] and \[load\] of a case file, for the whole body or for its physical surfaces one by one.
+
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
@@ -6,10 +8,12 @@ use super::table::{Spot, Table, Value};
 use crate::fem::material::{
     Across, MaterialError, Orthotropic, largest_entry, stable, stable_orthotropic,
 };
-use crate::fem::{Materials, Mesh};
+use crate::fem::{Materials, Mesh, SharedFunction, SurfaceForce};
+use crate::io::expression::Expression;
 use crate::io::input::FileError;
 use crate::kernel::{Material, Plane};
 use crate::quote::{self, key as shown, quoted};
+use crate::study::{Exact, exact};
 
 const MODULI: [&str; 6] = ["lambda", "mu", "young", "poisson", "stiffness", "orthotropic"];
 
@@ -116,11 +120,7 @@ pub(super) fn only_isotropic(
 }
 
 /// The triangles of a surface, of which there must be some.
-pub(super) fn on_surface<'m>(
-    mesh: &'m Mesh,
-    at: &Spot,
-    key: &str,
-) -> Result<&'m [usize], FileError> {
+fn on_surface<'m>(mesh: &'m Mesh, at: &Spot, key: &str) -> Result<&'m [usize], FileError> {
     match mesh.surface(key) {
         Err(error) => Err(at.mesh(error)),
         Ok([]) => Err(at.found("no triangle in this mesh", "at least one")),
@@ -234,4 +234,36 @@ fn read_orthotropic(
     let [e1, e2, nu12, g12] = ["e1", "e2", "nu12", "g12"].map(|key| number(key, "a number"));
     let (e1, e2, nu12, g12) = (e1?, e2?, nu12?, g12?);
     Ok(stable_orthotropic(Orthotropic { e1, e2, nu12, g12, angle, across }))
+}
+
+/// The force on the whole body, and those on its surfaces; an exact solution has its own.
+pub(super) fn read_loads(
+    root: &Table,
+    solution: Option<&Exact>,
+    mesh: &Mesh,
+) -> Result<([SharedFunction; 2], Vec<SurfaceForce>), FileError> {
+    let none = || [constant(0.0), constant(0.0)];
+    let Some(table) = root.section("load")? else {
+        return Ok((solution.map_or_else(none, exact::body_force), Vec::new()));
+    };
+    if solution.is_some() {
+        let expected = "one of the two: an exact solution supplies its own";
+        return Err(table.at.found("loads beside [exact]", expected));
+    }
+    let surfaces = table.keys_of_tables();
+    table.only(&[&["body"], surfaces.as_slice()].concat())?;
+    let mut forces = Vec::new();
+    for key in surfaces {
+        let one = table.subsection(key)?;
+        one.only(&["body"])?;
+        let force = one.require("body", "a list of two: one for x, one for y")?.functions()?;
+        let triangles = on_surface(mesh, &one.at, key)?.to_vec();
+        forces.push(SurfaceForce { surface: key.to_owned(), triangles, force });
+    }
+    Ok((table.optional("body", Value::functions)?.unwrap_or_else(none), forces))
+}
+
+/// A function that is the same everywhere.
+pub(super) fn constant(value: f64) -> SharedFunction {
+    Arc::new(Expression::from(value))
 }
