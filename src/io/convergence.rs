@@ -249,7 +249,7 @@ fn panel(title: &str, of: fn(&Errors) -> f64, studies: &[Study]) -> Panel {
 pub fn write(folder: &Path, title: &str, studies: &[Study]) -> Result<Vec<PathBuf>, OutputError> {
     let mut output = Output::new(folder)?;
     output.stage(FILES[0], csv(studies).as_bytes())?;
-    output.stage_made([(FILES[1], figure(&plot(title, studies)).map(String::into_bytes))])?;
+    output.stage_made(FILES[1], figure(&plot(title, studies)))?;
     output.publish()
 }
 

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::csv;
-use super::files::{MadeFile, NotFinite, Output, OutputError};
+use super::files::{NotFinite, Output, OutputError};
 use super::vtu::{CellKind, DataArray, Grid, vtu};
 use crate::fem::{Mesh, Problem};
 use crate::kernel::Stress;
@@ -18,23 +18,21 @@ impl Solution {
     /// A folder or file that can't be written, a number that is not finite.
     pub fn write(&self, problem: &Problem, folder: &Path) -> Result<Vec<PathBuf>, OutputError> {
         let mut output = Output::new(folder)?;
-        output.stage_made(fields(self, problem, None))?;
+        stage_fields(&mut output, self, problem, None)?;
         output.publish()
     }
 }
 
-/// The files by their names. `indicators` are the shares of the triangles in the bound of the error, if it is known.
-pub(super) fn fields<'a>(
-    solution: &'a Solution,
-    problem: &'a Problem,
-    indicators: Option<&'a [f64]>,
-) -> impl Iterator<Item = MadeFile> + 'a {
-    // One after the other: each takes its memory.
-    (0..3).map(move |i| match i {
-        0 => ("solution.vtu", solution_vtu(solution, problem, indicators)),
-        1 => ("contact.vtu", contact_vtu(solution)),
-        _ => ("contact.csv", contact_csv(solution).map(String::into_bytes)),
-    })
+/// Makes and stages the files. `indicators` are the shares of the triangles in the bound of the error, if it is known.
+pub(super) fn stage_fields(
+    output: &mut Output,
+    solution: &Solution,
+    problem: &Problem,
+    indicators: Option<&[f64]>,
+) -> Result<(), OutputError> {
+    output.stage_made("solution.vtu", solution_vtu(solution, problem, indicators))?;
+    output.stage_made("contact.vtu", contact_vtu(solution))?;
+    output.stage_made("contact.csv", contact_csv(solution))
 }
 
 /// The number of the physical surface of each triangle, from 1 on in alphabetical order; 0 in none.

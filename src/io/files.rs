@@ -70,9 +70,6 @@ pub enum OutputError {
     Problem(#[from] fem::DataError),
 }
 
-/// The name of a file and its bytes, unless it has a number that cannot be written.
-pub(crate) type MadeFile = (&'static str, Result<Vec<u8>, NotFinite>);
-
 /// The reason in words; the number that the system gives it helps nobody.
 pub fn reason(error: &io::Error) -> String {
     if error.kind() == io::ErrorKind::AlreadyExists {
@@ -129,16 +126,14 @@ impl Output {
         })
     }
 
-    /// Stages files whose bytes may not exist, one after the other.
+    /// Stages a file, unless it has a number that cannot be written.
     pub(crate) fn stage_made(
         &mut self,
-        files: impl IntoIterator<Item = MadeFile>,
+        file: &'static str,
+        content: Result<impl AsRef<[u8]>, NotFinite>,
     ) -> Result<(), OutputError> {
-        for (file, bytes) in files {
-            let bytes = bytes.map_err(|error| OutputError::Data { file, error })?;
-            self.stage(file, &bytes)?;
-        }
-        Ok(())
+        let content = content.map_err(|error| OutputError::Data { file, error })?;
+        self.stage(file, content.as_ref())
     }
 
     /// The temporary folder, for another program to write to.

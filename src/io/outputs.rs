@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 
 use super::case::Case;
 use super::certificate;
-use super::fields::fields;
-use super::files::{MadeFile, NotFinite, Output, OutputError};
+use super::fields::stage_fields;
+use super::files::{NotFinite, Output, OutputError};
 use super::picture::draw;
 use super::remarks::{nearest, remarks};
 use super::report;
@@ -74,7 +74,7 @@ pub fn write(
         String::new()
     });
     let indicators = continuous.map(|c| c.indicators.as_slice());
-    output.stage_made(fields(solution, &case.problem, indicators))?;
+    stage_fields(&mut output, solution, &case.problem, indicators)?;
     if extra.report {
         output.stage(report::FILE, report::html(case, &results, &picture).as_bytes())?;
     }
@@ -82,10 +82,10 @@ pub fn write(
         output.stage(PICTURE, picture.as_bytes())?;
     }
     if let (Some(continuous), true) = (continuous, extra.certificate) {
-        output.stage_made(certificate_files(&case.title, continuous))?;
+        stage_certificate(&mut output, &case.title, continuous)?;
     }
     results.seconds.write = start.elapsed().as_secs_f64();
-    output.stage_made([("result.json", result_json(&results).map(String::into_bytes))])?;
+    output.stage_made("result.json", result_json(&results))?;
     Ok((output.publish()?, results))
 }
 
@@ -118,8 +118,8 @@ pub fn write_certified(
         ],
         cell_data: &[DataArray::scalars("error_bound", &certified.indicators)],
     });
-    output.stage_made([(CERTIFIED, grid)])?;
-    output.stage_made(certificate_files(&case.title, certified))?;
+    output.stage_made(CERTIFIED, grid)?;
+    stage_certificate(&mut output, &case.title, certified)?;
     output.publish()
 }
 
@@ -138,13 +138,18 @@ fn at_nodes(values: &[[f64; 2]], nodes: usize, space: &Space) -> Vec<[f64; 2]> {
     all
 }
 
-fn certificate_files(title: &str, certified: &Continuous) -> [MadeFile; 2] {
+fn stage_certificate(
+    output: &mut Output,
+    title: &str,
+    certified: &Continuous,
+) -> Result<(), OutputError> {
     let forces = &certified.quantities.evidence;
     let (header, arrays) =
         certificate::encode(title, &certified.certificate, &certified.proof, forces);
     let text = serde_json::to_vec_pretty(&header)
         .map_err(|_| NotFinite { place: certificate::FILES[0].to_owned() });
-    [(certificate::FILES[0], text), (certificate::FILES[1], Ok(arrays))]
+    output.stage_made(certificate::FILES[0], text)?;
+    output.stage(certificate::FILES[1], &arrays)
 }
 
 /// The bytes that making one file after the other takes at most: the numbers of solution.vtu once as they are and once as
@@ -167,10 +172,14 @@ pub fn results(
     let mesh = &case.problem.mesh;
     let mut discrete = DiscreteCertificate::from(&solution.enclosure);
     discrete.unique &= solution.method.slides == 0;
-    if let Ok(enclosure) = &solution.enclosure {
-        let places = case.probes.iter().filter_map(|&x| mesh.locate(x));
-        let off = places.map(|(t, l)| solution.displacement_error_at(&enclosure.nodes, t, l));
-        discrete.probes = off.collect();
+    let mut probes = Vec::new();
+    for &[x, y] in &case.probes {
+        let Some((t, l)) = mesh.locate([x, y]) else { continue };
+        let [u_x, u_y] = solution.displacement_at(t, l);
+        probes.push([x, y, u_x, u_y]);
+        if let Ok(enclosure) = &solution.enclosure {
+            discrete.probes.push(solution.displacement_error_at(&enclosure.nodes, t, l));
+        }
     }
     let errors = match &case.exact {
         Some(exact) => Some(Errors::of(solution, &case.problem, &*exact.solution)?),
@@ -218,7 +227,7 @@ pub fn results(
         stress: stress_peaks(case, solution),
         reaction_moments: solution.quantities.reaction_moments.clone(),
         balance: Some(solution.balance),
-        probes: probes(case, solution),
+        probes,
         certificate: Some(Certificates {
             discrete: Some(discrete),
             continuous: solved.certified.as_ref().map(ContinuousCertificate::from),
@@ -244,15 +253,6 @@ pub fn results(
         results.missing.push(format!("mesh that meets the target of [adapt]: {reason}"));
     }
     Ok(results)
-}
-
-fn probes(case: &Case, solution: &Solution) -> Vec<[f64; 4]> {
-    let probe = |&[x, y]: &[f64; 2]| {
-        let (t, l) = case.problem.mesh.locate([x, y])?;
-        let [u_x, u_y] = solution.displacement_at(t, l);
-        Some([x, y, u_x, u_y])
-    };
-    case.probes.iter().filter_map(probe).collect()
 }
 
 /// The reason why there are no errors where there is an exact solution.
