@@ -54,15 +54,14 @@ pub struct ExpressionError {
     pub expected: String,
 }
 
-/// A value. Its last operand is the step before it.
+/// A value, or an operation on the last one or two.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Instruction {
     Number(f64),
     X,
     Y,
     Unary(Unary),
-    /// The first operand is so many instructions before.
-    Binary(Binary, u32),
+    Binary(Binary),
 }
 
 /// A function of one argument.
@@ -104,25 +103,24 @@ pub trait Number: Clone {
     fn binary(f: Binary, a: Self, b: Self) -> Self;
 }
 
-/// The value of the last step at (x, y).
-fn evaluate<T: Number>(instructions: &[Instruction], at: [T; 2]) -> T {
-    run(instructions, &at, &mut vec![at[0].clone(); instructions.len()])
-}
-
-/// Fills `values` with those of the instructions; returns the last.
-fn run<T: Number>(instructions: &[Instruction], [x, y]: &[T; 2], values: &mut [T]) -> T {
-    for (i, step) in instructions.iter().enumerate() {
-        values[i] = match *step {
+/// The value of the instructions at (x, y).
+fn evaluate<T: Number>(instructions: &[Instruction], [x, y]: [T; 2]) -> T {
+    let mut values: Vec<T> = Vec::with_capacity(8);
+    let pop = |values: &mut Vec<T>| values.remove(values.len() - 1);
+    for instruction in instructions {
+        let value = match *instruction {
             Instruction::Number(value) => T::from_double(value),
             Instruction::X => x.clone(),
             Instruction::Y => y.clone(),
-            Instruction::Unary(f) => T::unary(f, values[i - 1].clone()),
-            Instruction::Binary(f, back) => {
-                T::binary(f, values[i - back as usize].clone(), values[i - 1].clone())
+            Instruction::Unary(f) => T::unary(f, pop(&mut values)),
+            Instruction::Binary(f) => {
+                let b = pop(&mut values);
+                T::binary(f, pop(&mut values), b)
             }
         };
+        values.push(value);
     }
-    values[instructions.len() - 1].clone()
+    pop(&mut values)
 }
 
 /// The value of the instructions, if neither x nor y is among them.
@@ -145,13 +143,7 @@ impl Expression {
 
 impl Function for Expression {
     fn at(&self, x: [f64; 2]) -> f64 {
-        // Room for the values of an ordinary expression, without an allocation.
-        const FEW: usize = 16;
-        if self.instructions.len() <= FEW {
-            run(&self.instructions, &x, &mut [0.0; FEW])
-        } else {
-            self.evaluate(x)
-        }
+        self.evaluate(x)
     }
 
     fn degree(&self) -> Option<u32> {

@@ -30,8 +30,8 @@ const FUNCTIONS: [(&str, Instruction); 7] = [
     ("cos", Instruction::Unary(Unary::Cos)),
     ("exp", Instruction::Unary(Unary::Exp)),
     ("abs", Instruction::Unary(Unary::Abs)),
-    ("min", Instruction::Binary(Binary::Min, 1)),
-    ("max", Instruction::Binary(Binary::Max, 1)),
+    ("min", Instruction::Binary(Binary::Min)),
+    ("max", Instruction::Binary(Binary::Max)),
 ];
 
 /// The largest exponent of repeated multiplication. Beyond it that gains no time and loses digits: its error grows like the
@@ -76,11 +76,6 @@ impl<'t> Parser<'t> {
         Ok(())
     }
 
-    /// The operation whose second operand begins at step `second`.
-    fn binary(&mut self, f: Binary, second: usize) -> Result<(), ExpressionError> {
-        self.operation(Instruction::Binary(f, (self.instructions.len() + 1 - second) as u32))
-    }
-
     fn expression(&mut self, level: usize) -> Result<(), ExpressionError> {
         self.operands(level, 1)
     }
@@ -97,9 +92,8 @@ impl<'t> Parser<'t> {
         let binds = |token, o: &&(char, Binary, u8)| token == Token::Symbol(o.0) && o.2 >= least;
         while let Some((_, f, tightness)) = OPERATORS.iter().find(|o| binds(self.token, o)) {
             self.advance()?;
-            let second = self.instructions.len();
             self.operands(level, tightness + 1)?;
-            self.binary(*f, second)?;
+            self.operation(Instruction::Binary(*f))?;
         }
         Ok(())
     }
@@ -128,7 +122,7 @@ impl<'t> Parser<'t> {
                 self.instructions.truncate(second);
                 self.operation(Instruction::Unary(Unary::WholePower(n as i32)))
             }
-            _ => self.binary(Binary::Power, second),
+            _ => self.operation(Instruction::Binary(Binary::Power)),
         }
     }
 
@@ -162,16 +156,16 @@ impl<'t> Parser<'t> {
         self.advance()?;
         self.skip('(', &format!("'(' after {name}"))?;
         self.expression(level + 1)?;
-        let end = |count| format!("an operator (+ - * / ^) or ')': {name} takes {count}");
-        let Instruction::Binary(f, _) = *function else {
-            self.skip(')', &end("one argument"))?;
-            return self.operation(*function);
+        let (count, is_binary) = match function {
+            Instruction::Binary(_) => ("two arguments", true),
+            _ => ("one argument", false),
         };
-        self.skip(',', &format!("an operator (+ - * / ^) or ',': {name} takes two arguments"))?;
-        let second = self.instructions.len();
-        self.expression(level + 1)?;
-        self.skip(')', &end("two arguments"))?;
-        self.binary(f, second)
+        if is_binary {
+            self.skip(',', &format!("an operator (+ - * / ^) or ',': {name} takes {count}"))?;
+            self.expression(level + 1)?;
+        }
+        self.skip(')', &format!("an operator (+ - * / ^) or ')': {name} takes {count}"))?;
+        self.operation(*function)
     }
 
     fn skip(&mut self, symbol: char, expected: &str) -> Result<(), ExpressionError> {
