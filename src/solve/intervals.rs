@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-#[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
 
 use super::balls::{field, length, product, root, strain_energy};
@@ -18,8 +17,7 @@ use crate::fem::{residual, rounded_stress};
 pub type Range = [f64; 2];
 
 /// Intervals that contain what the exact solution of (8) has.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Intervals {
     /// a(u, u)
@@ -43,8 +41,7 @@ impl Intervals {
 }
 
 /// Intervals of a contact boundary's quantities.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct ContactIntervals {
     /// Its name.

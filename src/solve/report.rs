@@ -2,7 +2,6 @@
 
 use std::time::{Duration, Instant};
 
-#[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
 
 use super::enclosure::{Enclosure, Unproved};
@@ -54,14 +53,13 @@ impl Verdict {
 }
 
 /// How a solve ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Status {
     /// The residual is within the tolerance.
-    #[cfg_attr(feature = "files", serde(rename = "converged"))]
+    #[serde(rename = "converged")]
     Converged,
     /// The tolerance asks for more than rounding allows.
-    #[cfg_attr(feature = "files", serde(rename = "converged to rounding"))]
+    #[serde(rename = "converged to rounding")]
     ConvergedToRounding,
 }
 
@@ -87,8 +85,7 @@ impl NewtonReport {
 }
 
 /// By which route the solution was found, and how far it can be trusted.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MethodReport {
     /// The route.
     pub route: RouteName,
@@ -98,10 +95,7 @@ pub struct MethodReport {
     pub condition: f64,
     /// The last correction of the displacement in the energy norm, relative to the displacement: an estimate of the error
     /// that rounding and iteration leave; infinite, and left out of result.json, where the steps ended before there was one.
-    #[cfg_attr(
-        feature = "files",
-        serde(default = "no_estimate", skip_serializing_if = "is_no_estimate")
-    )]
+    #[serde(default = "no_estimate", skip_serializing_if = "is_no_estimate")]
     pub forward_error: f64,
     /// How many threads worked.
     pub threads: usize,
@@ -110,12 +104,10 @@ pub struct MethodReport {
     pub slides: usize,
 }
 
-#[cfg(feature = "files")]
 fn no_estimate() -> f64 {
     f64::INFINITY
 }
 
-#[cfg(feature = "files")]
 fn is_no_estimate(error: &f64) -> bool {
     *error == no_estimate()
 }

@@ -9,7 +9,6 @@
 
 use std::sync::Arc;
 
-#[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
 
 use super::accuracy::{self, Outcome, Route};
@@ -25,8 +24,8 @@ use super::{Settings, SolveError};
 use crate::memory;
 
 /// The routes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "files", derive(Serialize, Deserialize), serde(rename_all = "lowercase"))]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum RouteName {
     /// The body factored once, Newton's method on the contact functionals.
     Condensed,
