@@ -1,65 +1,35 @@
 //! Numbers for people: round ones for scales and ticks, a few digits for labels and summaries.
 
-/// m x 10^k with m = 1, 2 or 5.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Round {
-    m: u8,
-    k: i32,
+/// The largest of the numbers 1, 2, 5 times powers of ten that is not above `x`, for finite `x > 0`.
+pub fn round_below(x: f64) -> f64 {
+    // The decimal exponent as the formatter sees it: exact, where log10 may be off by one.
+    let text = format!("{x:e}");
+    let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+    let digit = match mantissa.as_bytes().first() {
+        Some(b'1') => 1,
+        Some(b'2'..=b'4') => 2,
+        _ => 5,
+    };
+    format!("{digit}e{exponent}").parse().unwrap_or(x)
 }
 
-impl Round {
-    /// The largest round number that is not above `x`, for finite `x > 0`.
-    pub fn below(x: f64) -> Round {
-        // The decimal exponent as the formatter sees it: exact, where log10 may be off by one.
-        let text = format!("{x:e}");
-        let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
-        let m = match mantissa.as_bytes().first() {
-            Some(b'1') => 1,
-            Some(b'2'..=b'4') => 2,
-            _ => 5,
-        };
-        Round { m, k: exponent.parse().unwrap_or(0) }
-    }
-
-    /// The smallest round number that is not below `x`, for finite `x > 0`.
-    pub fn above(x: f64) -> Round {
-        let below = Round::below(x);
-        match below {
-            round if round.times(1) == x => round,
-            Round { m: 1, k } => Round { m: 2, k },
-            Round { m: 2, k } => Round { m: 5, k },
-            Round { k, .. } => Round { m: 1, k: k + 1 },
-        }
-    }
-
-    /// `i` times this number: the double nearest to the decimal.
-    pub fn times(self, i: i64) -> f64 {
-        format!("{}e{}", i * i64::from(self.m), self.k).parse().unwrap_or(f64::INFINITY)
-    }
-
-    /// `i` times this number with all its digits and no more.
-    pub fn text(self, i: i64) -> String {
-        let value = self.times(i);
-        if value == 0.0 {
-            "0".to_owned()
-        } else if self.k >= -4 && value.abs() < 1e5 {
-            format!("{value:.decimals$}", decimals = usize::try_from(-self.k).unwrap_or(0))
-        } else {
-            format!("{value:e}")
-        }
-    }
+/// The smallest of them that is not below `x`.
+fn round_above(x: f64) -> f64 {
+    let below = round_below(x);
+    // The next one is 2 or 2.5 times as large.
+    if below == x { x } else { round_below(2.6 * below) }
 }
 
 /// Round numbers in \[min, max\], evenly spaced, some three to six of them, with their text. For `min < max`.
 pub fn ticks(min: f64, max: f64) -> Vec<(f64, String)> {
-    let step = Round::above((max - min) / 5.0);
-    let unit = step.times(1);
-    let (first, last) = ((min / unit).ceil(), (max / unit).floor());
+    let step = round_above((max - min) / 5.0);
+    let (first, last) = ((min / step).ceil(), (max / step).floor());
     // Where the interval is narrow beside its distance from 0, doubles have no room for ticks.
     if !(first.abs() < 1e9 && last.abs() < 1e9) {
         return Vec::new();
     }
-    (first as i64..=last as i64).map(|i| (step.times(i), step.text(i))).collect()
+    let tick = |i| step * i as f64;
+    (first as i64..=last as i64).map(|i| (tick(i), short(tick(i), 12))).collect()
 }
 
 /// `x` with this many significant digits, without the zeros at their end; with an exponent where the size asks for it.
@@ -96,11 +66,7 @@ mod tests {
             (0.03, 0.02, 0.05),
             (7e-300, 5e-300, 1e-299),
         ] {
-            assert_eq!(
-                [Round::below(x), Round::above(x)].map(|r| r.times(1)),
-                [below, above],
-                "{x}"
-            );
+            assert_eq!([round_below(x), round_above(x)], [below, above], "{x}");
         }
     }
 
@@ -108,7 +74,7 @@ mod tests {
     fn ticks_are_round_and_inside() {
         let texts =
             |min, max| ticks(min, max).into_iter().map(|(_, text)| text).collect::<Vec<_>>();
-        assert_eq!(texts(0.0, 1.0), ["0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
+        assert_eq!(texts(0.0, 1.0), ["0", "0.2", "0.4", "0.6", "0.8", "1"]);
         assert_eq!(texts(0.013, 0.29), ["0.1", "0.2"]);
         assert_eq!(texts(-3.0, 17.0), ["0", "5", "10", "15"]);
         assert_eq!(texts(0.0, 3e7), ["0", "1e7", "2e7", "3e7"]);

@@ -5,8 +5,8 @@ use svg::node::element::{ClipPath, Definitions, Group, LinearGradient, Stop};
 
 use super::cells::{area, rectangles};
 use super::draw::{
-    DARK, GREY, PageMap, PathData, Point, VIRIDIS, clean, fitting, loops, rectangle, shape, short,
-    stroke, text, thinned, viridis,
+    DARK, GREY, PageAxis, PageMap, PathData, Point, VIRIDIS, clean, fitting, loops, rectangle,
+    shape, short, stroke, text, thinned, viridis,
 };
 use super::scene::Scene;
 use crate::io::numbers::ticks;
@@ -137,12 +137,9 @@ impl Colours {
         }
     }
 
-    fn position(&self, value: f64) -> f64 {
-        if self.top > self.min { (value - self.min) / (self.top - self.min) } else { 0.5 }
-    }
-
     pub(super) fn level(&self, value: f64) -> usize {
-        (self.position(value) * LEVELS as f64).min((LEVELS - 1) as f64) as usize
+        let levels = PageAxis { range: [self.min, self.top], page: [0.0, LEVELS as f64] };
+        levels.at(value).min((LEVELS - 1) as f64) as usize
     }
 
     pub(super) fn colour(level: usize) -> String {
@@ -182,7 +179,8 @@ pub(super) fn colour_bar(
         let fill = Colours::colour(colours.level(colours.max));
         return group.add(bar.set("fill", fill)).add(label(top + height / 2.0, short(colours.max)));
     }
-    let at = |value: f64| top + height * (1.0 - colours.position(value));
+    let axis = PageAxis { range: [colours.min, colours.top], page: [bottom, top] };
+    let at = |value| axis.at(value);
     let mut marks = PathData::default();
     let mut labels = Group::new();
     for value in [colours.min, colours.top] {

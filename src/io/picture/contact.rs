@@ -19,7 +19,6 @@ pub(super) struct ContactLine {
     pub(super) base: Vec<Point>,
     pub(super) tip: Vec<Point>,
     pub(super) wall: Vec<Option<Point>>,
-    normals: Vec<Point>,
     pressure: Vec<f64>,
 }
 
@@ -39,32 +38,45 @@ impl ContactLine {
     /// All parts of the contact boundaries, in the plane.
     pub(super) fn all(scene: &Scene, factor: f64) -> Vec<ContactLine> {
         let size = scene.size();
+        let base = |s: &ContactSample| moved(s.position, s.displacement, factor);
         let mut lines = Vec::new();
         for (surface, boundary) in scene.contact.iter().enumerate() {
-            for samples in &boundary.parts {
-                let normals = smooth_normals(samples);
-                let base: Vec<Point> =
-                    samples.iter().map(|s| moved(s.position, s.displacement, factor)).collect();
+            let parts: Vec<(&[ContactSample], Vec<Point>)> = boundary
+                .parts
+                .iter()
+                .map(|samples| (&samples[..], smooth_normals(samples)))
+                .collect();
+            let mut highest = HIGHEST * size;
+            for (samples, normals) in &parts {
+                for (pair, n) in samples.windows(2).zip(normals.windows(2)) {
+                    let step = moved(base(&pair[1]), base(&pair[0]), -1.0);
+                    let turn = moved(n[1], n[0], -1.0);
+                    let closing = -(step[0] * turn[0] + step[1] * turn[1]);
+                    if closing > 0.0 {
+                        let radius = (step[0] * step[0] + step[1] * step[1]) / closing;
+                        highest = highest.min(OF_THE_RADIUS * radius);
+                    }
+                }
+            }
+            // The height of a unit of pressure.
+            let height = boundary.peak().map_or(0.0, |peak| highest / peak.pressure);
+            for (samples, normals) in parts {
                 let bent = factor != 1.0 && turns(samples);
                 let furthest = size * if bent { FURTHEST_WHERE_BENT } else { FURTHEST };
                 let wall = |(s, &n): (&ContactSample, &Point)| {
                     let gap = factor * s.gap;
                     (gap.abs() <= furthest).then(|| moved(s.position, n, gap))
                 };
+                let tip =
+                    |(s, &n): (&ContactSample, &Point)| moved(base(s), n, height * s.pressure);
+                let with_normals = || samples.iter().zip(&normals);
                 lines.push(ContactLine {
                     surface,
-                    tip: base.clone(),
-                    wall: samples.iter().zip(&normals).map(wall).collect(),
+                    base: samples.iter().map(base).collect(),
+                    tip: with_normals().map(tip).collect(),
+                    wall: with_normals().map(wall).collect(),
                     pressure: samples.iter().map(|s| s.pressure).collect(),
-                    base,
-                    normals,
                 });
-            }
-        }
-        let heights: Vec<f64> = lines.iter().map(|line| height(&lines, line, size)).collect();
-        for (line, height) in lines.iter_mut().zip(heights) {
-            for (i, tip) in line.tip.iter_mut().enumerate() {
-                *tip = moved(line.base[i], line.normals[i], height * line.pressure[i]);
             }
         }
         lines
@@ -105,24 +117,6 @@ fn turns(samples: &[ContactSample]) -> bool {
         let along = step(pair).zip(first).is_some_and(|(a, b)| differs(a, b));
         along || differs(pair[0].normal, pair[1].normal)
     })
-}
-
-/// The height of a unit of pressure on the boundary of a line.
-fn height(lines: &[ContactLine], line: &ContactLine, size: f64) -> f64 {
-    let (mut peak, mut highest) = (0.0_f64, HIGHEST * size);
-    for other in lines.iter().filter(|other| other.surface == line.surface) {
-        peak = other.pressure.iter().copied().fold(peak, f64::max);
-        for (base, n) in other.base.windows(2).zip(other.normals.windows(2)) {
-            let step = moved(base[1], base[0], -1.0);
-            let turn = moved(n[1], n[0], -1.0);
-            let closing = -(step[0] * turn[0] + step[1] * turn[1]);
-            if closing > 0.0 {
-                let radius = (step[0] * step[0] + step[1] * step[1]) / closing;
-                highest = highest.min(OF_THE_RADIUS * radius);
-            }
-        }
-    }
-    if peak > 0.0 { highest / peak } else { 0.0 }
 }
 
 /// The normals, except that two samples at one place share the mean of theirs: the facets of a curved line would otherwise

@@ -7,7 +7,7 @@ use crate::certify::quantities::Zone;
 use crate::fem::tree::Bounds;
 use crate::fem::{BoundaryEdge, Degree};
 use crate::io::case::{Case, Measure};
-use crate::io::numbers::Round;
+use crate::io::numbers::round_below;
 use crate::io::result::{ContinuousCertificate, Results};
 use crate::solve::solution::{ContactEdgeValues, ContactValues};
 use crate::solve::{Solution, Verdict};
@@ -137,8 +137,8 @@ impl Scene {
         match self.stretch {
             Some(factor) if factor != 1.0 => (factor, words(&short(factor))),
             None if !(0.01..=0.3).contains(&part) && part > 1e-12 => {
-                let round = Round::below(0.1 / part);
-                (round.times(1), words(&round.text(1)))
+                let factor = round_below(0.1 / part);
+                (factor, words(&short(factor)))
             }
             _ => (1.0, "deformation at true scale".to_owned()),
         }
