@@ -1,7 +1,5 @@
 //! The content of a picture as data: that of a solved case, and by how much it is magnified.
 
-use std::collections::BTreeMap;
-
 use super::draw::{Point, distance, moved, short};
 use crate::certify::quantities::Zone;
 use crate::fem::tree::Bounds;
@@ -148,19 +146,13 @@ impl Scene {
 /// The edges between triangles of different materials.
 fn interfaces(case: &Case) -> Vec<BoundaryEdge> {
     let (mesh, materials) = (&case.problem.mesh, &case.problem.material);
+    let mut material_at = vec![None; mesh.edge_count()];
     let mut found = Vec::new();
-    if materials.only().is_some() {
-        return found;
-    }
-    let mut material_at = BTreeMap::new();
-    for triangle in 0..mesh.triangles().len() {
+    for (triangle, edges) in mesh.triangle_edges().iter().enumerate() {
         let material = materials.place_of(triangle);
-        for local in 0..3 {
-            let edge = BoundaryEdge { triangle, local };
-            let [a, b] = mesh.ends(edge);
-            let other = material_at.insert([a.min(b), a.max(b)], material);
-            if other.is_some_and(|other| other != material) {
-                found.push(edge);
+        for (local, &edge) in edges.iter().enumerate() {
+            if material_at[edge].replace(material).is_some_and(|other| other != material) {
+                found.push(BoundaryEdge { triangle, local });
             }
         }
     }
