@@ -1,13 +1,10 @@
-//! Broken case files and meshes, each with the message that a person gets. Every row is one edit of a good file: what is
-//! replaced, by what, and the message. Where the message begins with a place, so does the row.
-
-mod mesh;
-mod problem;
+//! Broken case files and meshes, each with the message that a person gets. `bad_input/cases.txt` and `bad_input/meshes.txt` have
+//! edits of good files, `OLD => NEW` with `\n` for the end of a line, and under each the message.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use signorini::io::case::Case;
+use signorini::io::Case;
 
 pub const CASE: &str = r#"title = "Block"
 [mesh]
@@ -117,31 +114,50 @@ fn compare<E: AsRef<str>>(rows: impl IntoIterator<Item = (String, E)>) {
     assert_eq!(count, 0, "messages that are not as expected, shown above");
 }
 
-fn compare_cases(test: &str, rows: &[([&str; 2], &str)]) {
+/// Compares the message about each edit of `good` with the one in the table.
+fn compare_edits(table: &str, good: &str, message_about: impl Fn(&str) -> String) {
+    let mut lines = table.lines().filter(|line| !line.is_empty() && !line.starts_with("# "));
+    let mut rows = Vec::new();
+    while let (Some(edit), Some(expected)) = (lines.next(), lines.next()) {
+        let (old, new) = edit.split_once(" =>").unwrap();
+        let [old, new] = [old, new.trim_start()].map(|text| text.replace("\\n", "\n"));
+        rows.push((message_about(&edited(good, [&old, &new])), expected.trim_start()));
+    }
+    assert!(rows.len() >= 30);
+    compare(rows);
+}
+
+/// The message about the case `text` beside the mesh file `mesh`.
+fn message_of(test: &str, text: &str, mesh: &[u8]) -> String {
     let directory = directory(test);
-    compare(rows.iter().map(|&(edit, expected)| {
-        fs::write(directory.join("bad.toml"), edited(CASE, edit)).unwrap();
-        (message(&directory), expected)
-    }));
+    fs::write(directory.join("bad.toml"), text).unwrap();
+    fs::write(directory.join("bad.msh"), mesh).unwrap();
+    message(&directory)
 }
 
 /// The message about a case on the mesh file `bytes`, without what is always before it.
 fn message_of_mesh(test: &str, bytes: &[u8]) -> String {
-    let directory = directory(test);
-    fs::write(directory.join("bad.toml"), edited(CASE, WITH_MESH)).unwrap();
-    fs::write(directory.join("bad.msh"), bytes).unwrap();
-    let message = message(&directory);
+    let message = message_of(test, &edited(CASE, WITH_MESH), bytes);
     message.strip_prefix("bad.toml:3: [mesh] gmsh: ").unwrap_or(&message).to_owned()
 }
 
 #[test]
+fn mistakes_in_cases() {
+    let table = include_str!("bad_input/cases.txt");
+    compare_edits(table, CASE, |text| message_of("cases", text, b""));
+}
+
+#[test]
+fn mistakes_in_meshes() {
+    let table = include_str!("bad_input/meshes.txt");
+    compare_edits(table, MESH, |text| message_of_mesh("meshes", text.as_bytes()));
+}
+
+#[test]
 fn the_files_are_good_before_the_edits() {
-    let directory = directory("good");
-    fs::write(directory.join("bad.toml"), CASE).unwrap();
-    assert_eq!(message(&directory), "nothing: the case was read");
-    fs::write(directory.join("bad.toml"), edited(CASE, WITH_MESH)).unwrap();
-    fs::write(directory.join("bad.msh"), MESH).unwrap();
-    assert_eq!(message(&directory), "nothing: the case was read");
+    for case in [CASE.to_owned(), edited(CASE, WITH_MESH)] {
+        assert_eq!(message_of("good", &case, MESH.as_bytes()), "nothing: the case was read");
+    }
 }
 
 #[test]
@@ -186,127 +202,8 @@ fn files_that_cannot_be_read() {
 }
 
 #[test]
-fn keys_tables_and_types() {
-    compare_cases(
-        "keys",
-        &[
-            (
-                ["title = \"Block\"", "title = 3"],
-                "bad.toml:1: title = 3; expected a text in quotes",
-            ),
-            (
-                ["title = \"Block\"", "titel = \"Block\""],
-                "bad.toml:1: unknown key 'titel'; expected title, mesh, material, load, exact, boundary, obstacle, point, method, solver, adapt, certify, output, units or body",
-            ),
-            (
-                ["title = \"Block\"", "title = Block"],
-                "bad.toml:1: invalid TOML at 'Block': expected a value; a text must be in quotes",
-            ),
-            (
-                ["title = \"Block\"", "title = \"Block"],
-                r#"bad.toml:1: invalid TOML: invalid basic string, expected `"`"#,
-            ),
-            (["[load]", "[load"], "bad.toml:8: invalid TOML: unclosed table, expected `]`"),
-            (
-                ["[load]", "[loads]"],
-                "bad.toml:8: unknown key 'loads'; expected title, mesh, material, load, exact, boundary, obstacle, point, method, solver, adapt, certify, output, units or body",
-            ),
-            (
-                ["[load]", "[exact]"],
-                "bad.toml:8: [exact] solution is missing; expected the name of an exact solution",
-            ),
-            (["[load]", "[material]"], "bad.toml:8: invalid TOML at 'material': duplicate key"),
-            (
-                ["title = \"Block\"", "method = \"P1\""],
-                "bad.toml:14: invalid TOML at 'method': duplicate key",
-            ),
-            (
-                ["title = \"Block\"", "title = \"Block\"\ntitle = \"Block\""],
-                "bad.toml:2: invalid TOML at 'title': duplicate key",
-            ),
-            (["mu = 1.0", "mu = 1.0\nmu = 2.0"], "bad.toml:7: invalid TOML at 'mu': duplicate key"),
-            (
-                ["mu = 1.0", "mu = 1.0\nnu = 0.3"],
-                "bad.toml:7: unknown key 'nu' in [material]; expected lambda, mu, young, poisson, stiffness, across, orthotropic or plane",
-            ),
-            (
-                ["mu = 1.0", "mu = 80 GPa"],
-                "bad.toml:6: invalid TOML at '80 GPa': expected a number, without a unit ([units] names the units)",
-            ),
-            (
-                ["mu = 1.0", "mu = \"80 GPa\""],
-                "bad.toml:6: [material] mu = \"80 GPa\"; expected a number, without quotes and without a unit",
-            ),
-            (
-                ["mu = 1.0", "mu = 1.0 // shear"],
-                "bad.toml:6: invalid TOML at '1.0 // shear': expected a value; a comment begins with #",
-            ),
-            (
-                ["mu = 1.0", "mu = .5"],
-                "bad.toml:6: invalid TOML: expected a digit before the decimal point (0.5, not .5)",
-            ),
-            (
-                ["[\"0\", \"free\"]", "[“0”, “free”]"],
-                "bad.toml:11: invalid TOML at '“0”': expected straight quotes (\") around a text",
-            ),
-            (
-                ["[\"0\", \"free\"]", "[\"0\", \"free\""],
-                "bad.toml:12: invalid TOML: expected ',' or ']'; is a list or a text above not closed?",
-            ),
-            (
-                ["[\"0\", \"free\"]", "[\"0\", \"fre\"]"],
-                "bad.toml:11: [boundary.top] displacement[1] = \"fre\"; expected an expression, or \"free\"",
-            ),
-            (
-                [WITH_MESH[0], "gmsh = \"C:\\mesh\\part.msh\""],
-                "bad.toml:3: invalid TOML: a backslash in \"...\" begins an escape; expected '/' in a path, or the text in '...'",
-            ),
-            (
-                ["mu = 1.0", "mu = \"1.0\""],
-                r#"bad.toml:6: [material] mu = "1.0"; expected a number"#,
-            ),
-            (["mu = 1.0", "mu = true"], "bad.toml:6: [material] mu = true; expected a number"),
-            (
-                ["mu = 1.0", "mu = 1,0"],
-                "bad.toml:6: invalid TOML: expected a value; an expression must be in quotes (\"0.1 - x\"), a list in brackets, and decimals have a point (0.5, not 0,5)",
-            ),
-            (
-                ["mu = 1.0", "mu = "],
-                "bad.toml:6: invalid TOML: expected a value; a text must be in quotes",
-            ),
-            (["mu = 1.0", "mu = nan"], "bad.toml:6: [material] mu = nan; expected a finite number"),
-            (["mu = 1.0", "mu = inf"], "bad.toml:6: [material] mu = inf; expected a finite number"),
-            (
-                ["mu = 1.0", "mu = -inf"],
-                "bad.toml:6: [material] mu = -inf; expected a finite number",
-            ),
-            (
-                ["mu = 1.0", "mu = 1e999"],
-                "bad.toml:6: [material] mu = 1e999; expected a finite number",
-            ),
-            (
-                ["mu = 1.0", "mu = [1.0]"],
-                "bad.toml:6: [material] mu = a list of 1; expected a number",
-            ),
-            (
-                ["mu = 1.0", "mu = 2024-01-01"],
-                "bad.toml:6: [material] mu = 2024-01-01; expected a number",
-            ),
-            (
-                ["allow_noncoercive = false", "allow_noncoercive = \"no\""],
-                r#"bad.toml:18: [method] allow_noncoercive = "no"; expected true or false"#,
-            ),
-        ],
-    );
-}
-
-#[test]
 fn absurd_files() {
-    let directory = directory("absurd");
-    let message_of = |edit: [&str; 2]| {
-        fs::write(directory.join("bad.toml"), edited(CASE, edit)).unwrap();
-        message(&directory)
-    };
+    let message_of = |edit: [&str; 2]| message_of("absurd", &edited(CASE, edit), b"");
     let mib = 1 << 20;
     compare([
         (
@@ -337,5 +234,102 @@ fn absurd_files() {
             message_of(["[[0, 1], [0.5, 0.5]]", &format!("[{}]", "0,".repeat(mib))]),
             "bad.toml:23: [output] probes[0] = 0; expected a list of two: one for x, one for y",
         ),
+    ]);
+}
+
+#[test]
+fn seams_that_do_not_quite_match_and_what_merges_them() {
+    // The upper triangle on a node of its own beside node 3.
+    let torn = [
+        ["1 5 1 9\n2 1 0 5\n1\n2\n3\n4\n9\n", "1 6 1 9\n2 1 0 6\n1\n2\n3\n4\n5\n9\n"],
+        ["0.5 0.5 0", "1.000001 1 0\n0.5 0.5 0"],
+        ["2 3 4\n", "2 5 4\n"],
+        ["5 1 3 4", "5 1 5 4"],
+    ]
+    .into_iter()
+    .fold(MESH.to_owned(), |text, edit| edited(&text, edit));
+    let gmsh = edited(CASE, WITH_MESH);
+    let message_with = |merge: &str| {
+        let text = edited(&gmsh, ["\"bad.msh\"\n", &format!("\"bad.msh\"\n{merge}\n")]);
+        message_of("seams", &text, torn.as_bytes())
+    };
+    let near = "bad.toml:3: [mesh] gmsh: bad.msh: vertices 3 at (1, 1) and 5 at (1.000001, 1) are 1e-6 apart with no triangle between them, beside edges of length 1: the body would be torn there; expected one vertex, or a gap of more than 0.001 times the edge (mesh.merge = 1e-6 makes them one) (the numbers are tags of the file)";
+    let share = "expected a share of the body's size, above 0 and at most 0.01";
+    compare([
+        (message_with(""), near.to_owned()),
+        (message_with("merge = 1e-7"), near.to_owned()),
+        (message_with("merge = 1e-6"), "nothing: the case was read".to_owned()),
+        (message_with("merge = 0"), format!("bad.toml:4: [mesh] merge = 0; {share}")),
+        (message_with("merge = 0.1"), format!("bad.toml:4: [mesh] merge = 0.1; {share}")),
+    ]);
+}
+
+#[test]
+fn boundaries_of_gmsh_meshes() {
+    let message_after = |edit| message_of_mesh("empty", edited(MESH, edit).as_bytes());
+    compare([
+        (
+            message_after(["1 1 1 1\n1 1 2\n", "1 1 1 0\n"]),
+            "bad.toml:12: [boundary.bottom]: found no edge in this mesh; expected at least one",
+        ),
+        (
+            message_after(["1 1 \"bottom\"", "1 1 \"floor\""]),
+            "bad.toml:12: [boundary.bottom]: no boundary named 'bottom'; this mesh has: floor, top",
+        ),
+    ]);
+}
+
+#[test]
+fn binary_meshes_that_are_cut_or_damaged() {
+    const BINARY: &[u8] = include_bytes!("../meshes/square-binary.msh");
+    let with = |at: usize, byte: u8| {
+        let mut bytes = BINARY.to_vec();
+        bytes[at] = byte;
+        bytes
+    };
+    let noise: Vec<u8> = (0..5000_u32).map(|i| (i * i * 31 % 251) as u8).collect();
+    compare([
+        (
+            message_of_mesh("binary", b"\x89PNG\r\n\x1a\n"),
+            "bad.msh:1: this is no Gmsh mesh: expected $MeshFormat on its first line; gmsh -2 PART.geo makes PART.msh from a geometry",
+        ),
+        (
+            message_of_mesh("binary", &BINARY[..20]),
+            "bad.msh:3: the file ends, expected the number 1, which shows the order of the bytes: it is cut short",
+        ),
+        (
+            message_of_mesh("binary", &BINARY[..26]),
+            "bad.msh, byte 25: found '$', expected $EndMeshFormat",
+        ),
+        (
+            message_of_mesh("binary", &BINARY[..BINARY.len() - 20]),
+            "bad.msh, byte 2590: the file ends, expected the tag of a node: it is cut short",
+        ),
+        (
+            message_of_mesh("binary", &[&BINARY[..200], &noise].concat()),
+            "bad.msh, byte 5200: the file ends, expected the tag of a physical group: it is cut short",
+        ),
+        (
+            message_of_mesh("binary", &with(25, 0)),
+            "bad.msh, byte 25: found '\\0EndMeshFormat', expected $EndMeshFormat",
+        ),
+    ]);
+}
+
+/// Every cut of a file is an error, as the reader's own test says; here what a person reads of some.
+#[test]
+fn text_meshes_that_are_cut() {
+    let message_at =
+        |end: &str| message_of_mesh("cut", &MESH.as_bytes()[..MESH.find(end).unwrap()]);
+    compare([
+        (
+            message_at("$Nodes"),
+            "bad.msh: there is no section $Nodes; expected MSH 4.1 with $Entities, $Nodes and $Elements",
+        ),
+        (
+            message_at("1 1 0\n0 1 0\n"),
+            "bad.msh:27: the file ends, expected a coordinate of a node: it is cut short",
+        ),
+        (message_at("$EndNodes"), "bad.msh:30: the file ends, expected $EndNodes: it is cut short"),
     ]);
 }
