@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use super::command::folder;
+use super::command::{ended, folder};
 
 fn run(case: &str, more: &[&str], out: &Path) -> Output {
     Command::new(env!("CARGO_BIN_EXE_signorini"))
@@ -40,36 +40,26 @@ fn quiet_prints_nothing() {
 }
 
 #[test]
-fn a_case_without_an_exact_solution_is_refused() {
+fn cases_that_cannot_be_studied_are_refused_and_nothing_is_written() {
     let out = folder("convergence-refused", &[]).join("out");
-    let output = run("cases/block.toml", &[], &out);
-    assert_eq!(output.status.code(), Some(2));
-    let message = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(
-        message,
-        "error: cases/block.toml: [exact] is missing; errors are measured against an exact solution\n"
-    );
-    assert!(!out.exists(), "nothing is written");
-}
-
-#[test]
-fn a_mesh_from_a_file_is_refused() {
-    let out = folder("convergence-mesh-file", &[]).join("out");
-    let output = run("reference/cases/patch-d1-p1-exact.toml", &[], &out);
-    assert_eq!(output.status.code(), Some(2));
-    let message = String::from_utf8(output.stderr).unwrap();
-    assert!(message.contains("expected rectangle or trapezoid, which can be refined"), "{message}");
-}
-
-#[test]
-fn loads_beside_an_exact_solution_are_refused() {
-    let out = folder("convergence-loads", &[]).join("out");
-    fs::create_dir_all(&out).unwrap();
+    let loads = out.with_file_name("loads.toml");
     let text = fs::read_to_string("cases/singular.toml").unwrap();
-    let file = out.join("loads.toml");
-    fs::write(&file, text + "\n[load]\nbody = [\"0\", \"1\"]\n").unwrap();
-    let output = run(file.to_str().unwrap(), &[], &out.join("out"));
-    assert_eq!(output.status.code(), Some(2));
-    let message = String::from_utf8(output.stderr).unwrap();
-    assert!(message.contains("[load]: found loads beside [exact]"), "{message}");
+    fs::write(&loads, text + "\n[load]\nbody = [\"0\", \"1\"]\n").unwrap();
+    for (case, expected) in [
+        (
+            "cases/block.toml",
+            "error: cases/block.toml: [exact] is missing; errors are measured against an exact solution\n",
+        ),
+        (
+            "reference/cases/patch-d1-p1-exact.toml",
+            "expected rectangle or trapezoid, which can be refined",
+        ),
+        (loads.to_str().unwrap(), "[load]: found loads beside [exact]"),
+    ] {
+        let output = run(case, &[], &out);
+        let (code, said) = ended(&output);
+        assert_eq!(code, Some(2), "{said}");
+        assert!(said.contains(expected), "{said}");
+        assert!(!out.exists(), "nothing is written");
+    }
 }

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use super::command::{CASE, FILES, names, text};
+use super::command::{CASE, FILES, RECTANGLE, edited, ended, names, text, with_files};
 
 /// A fresh folder with `case.toml` in it.
 fn folder(test: &str) -> PathBuf {
@@ -22,17 +22,30 @@ fn command(folder: &Path, arguments: &[&str]) -> Command {
     command
 }
 
-/// Waits no longer than a minute: a command that waits for the other end of a pipe never ends.
-fn output(mut child: Child) -> Output {
+/// Waits no longer than a minute, and returns whether it has happened.
+fn wait_for(mut happened: impl FnMut() -> bool) -> bool {
     let start = Instant::now();
-    while child.try_wait().unwrap().is_none() {
+    while !happened() {
         if start.elapsed() > Duration::from_secs(60) {
-            let _ = child.kill();
-            panic!("the command hangs");
+            return false;
         }
         std::thread::sleep(Duration::from_millis(5));
     }
+    true
+}
+
+/// A command that waits for the other end of a pipe never ends.
+fn output(mut child: Child) -> Output {
+    if !wait_for(|| child.try_wait().unwrap().is_some()) {
+        let _ = child.kill();
+        panic!("the command hangs");
+    }
     child.wait_with_output().unwrap()
+}
+
+fn send(signal: &str, child: &Child) {
+    let kill = Command::new("kill").args([signal, &child.id().to_string()]).status();
+    assert!(kill.unwrap().success());
 }
 
 fn run(command: &mut Command) -> Output {
@@ -53,7 +66,7 @@ fn a_reader_who_leaves_is_no_failure_and_the_files_are_there() {
         .unwrap();
     drop(child.stdout.take());
     let output = output(child);
-    assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), ""));
+    assert_eq!(ended(&output), (Some(0), ""));
     assert_eq!(names(&folder.join("out/case")), FILES);
 }
 
@@ -63,7 +76,7 @@ fn a_full_standard_output_ends_with_exit_code_1_and_the_files_are_there() {
     let mut solve = command(&folder, &["solve", "case.toml"]);
     let output = output(solve.stdout(full()).stderr(Stdio::piped()).spawn().unwrap());
     let said = "error: cannot write to standard output: No space left on device\n";
-    assert_eq!((output.status.code(), text(&output.stderr)), (Some(1), said));
+    assert_eq!(ended(&output), (Some(1), said));
     assert_eq!(names(&folder.join("out/case")), FILES);
 }
 
@@ -74,7 +87,7 @@ fn help_that_nobody_can_be_given_is_a_failure_and_a_reader_of_it_who_leaves_is_n
         let child = command(&folder, arguments).stdout(full()).stderr(Stdio::piped()).spawn();
         let output = output(child.unwrap());
         let said = "error: cannot write to standard output: No space left on device\n";
-        assert_eq!((output.status.code(), text(&output.stderr)), (Some(1), said), "{arguments:?}");
+        assert_eq!(ended(&output), (Some(1), said), "{arguments:?}");
         let (reader, writer) = std::io::pipe().unwrap();
         drop(reader);
         let status = command(&folder, arguments).stdout(writer).status().unwrap();
@@ -104,14 +117,8 @@ fn pipes_devices_and_directories_are_no_files_to_read() {
     let folder = folder("no-files");
     let pipe = Command::new("mkfifo").arg(folder.join("pipe")).status().unwrap();
     assert!(pipe.success());
-    fs::write(
-        folder.join("mesh.toml"),
-        CASE.replace(
-            "rectangle = { width = 1.0, height = 1.0, nx = 4, ny = 4 }",
-            "gmsh = \"/dev/zero\"",
-        ),
-    )
-    .unwrap();
+    let on_a_device = edited(&[[RECTANGLE, "gmsh = \"/dev/zero\""]]);
+    fs::write(folder.join("mesh.toml"), on_a_device).unwrap();
     for (case, expected) in [
         ("pipe", "pipe: this is a pipe; expected a file"),
         ("/dev/zero", "/dev/zero: this is a device; expected a file"),
@@ -136,7 +143,7 @@ fn pipes_and_links_under_the_names_of_the_results_are_replaced() {
     symlink(folder.join("precious"), out.join("solution.vtu")).unwrap();
     assert!(Command::new("mkfifo").arg(out.join("contact.csv")).status().unwrap().success());
     let output = run(&mut command(&folder, &["solve", "case.toml"]));
-    assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), ""));
+    assert_eq!(ended(&output), (Some(0), ""));
     assert_eq!(fs::read_to_string(folder.join("precious")).unwrap(), "precious");
     assert_eq!(names(&out), FILES);
     assert!(names(&out).iter().all(|name| fs::symlink_metadata(out.join(name)).unwrap().is_file()));
@@ -178,10 +185,7 @@ fn names_titles_and_paths_are_shown_without_control_characters() {
         CASE.replace("nx = 4", &format!("nx = {quoted}")),
         CASE.replace("[load]", &format!("[{quoted}]")),
         CASE.replace("lambda", quoted),
-        CASE.replace(
-            "rectangle = { width = 1.0, height = 1.0, nx = 4, ny = 4 }",
-            &format!("gmsh = {quoted}"),
-        ),
+        CASE.replace(RECTANGLE, &format!("gmsh = {quoted}")),
         CASE.replace("[load]", nasty),
         CASE.replace("1.0", &"1".repeat(100_000)),
         CASE.replace("width = 1.0", "width = 1e300"),
@@ -211,16 +215,9 @@ fn names_titles_and_paths_are_shown_without_control_characters() {
 
 #[test]
 fn a_mesh_file_that_is_none_is_not_shown() {
-    let folder = folder("secret");
-    fs::write(folder.join("secret"), "root:$6$salt$hash:19000:0:99999:7:::\n").unwrap();
-    fs::write(
-        folder.join("case.toml"),
-        CASE.replace(
-            "rectangle = { width = 1.0, height = 1.0, nx = 4, ny = 4 }",
-            "gmsh = \"secret\"",
-        ),
-    )
-    .unwrap();
+    let secret = "root:$6$salt$hash:19000:0:99999:7:::\n";
+    let case = edited(&[[RECTANGLE, "gmsh = \"secret\""]]);
+    let folder = with_files("doors-secret", &[("secret", secret), ("case.toml", &case)]);
     let output = run(&mut command(&folder, &["solve", "case.toml"]));
     assert_eq!(
         text(&output.stderr),
@@ -355,21 +352,12 @@ fn a_signal_reaches_the_processes_of_the_engine_and_nothing_half_written_stays()
         fs::create_dir(&notes).unwrap();
         let mut solve = with_default_signals(&engine(&folder, &["case.toml"]));
         let child = solve.env("NOTES", &notes).stderr(Stdio::piped()).spawn().unwrap();
-        let start = Instant::now();
-        while !notes.join("ready").exists() {
-            assert!(start.elapsed() < Duration::from_secs(60), "the engine does not start");
-            std::thread::sleep(Duration::from_millis(5));
-        }
+        assert!(wait_for(|| notes.join("ready").exists()), "the engine does not start");
         assert_eq!(names(&folder.join("out/case")).len(), 1);
-        let kill =
-            Command::new("kill").args([&format!("-{name}"), &child.id().to_string()]).status();
-        assert!(kill.unwrap().success());
+        send(&format!("-{name}"), &child);
         let output = output(child);
         assert_eq!(output.status.signal(), Some(number), "{}", text(&output.stderr));
-        while !notes.join("told").exists() {
-            assert!(start.elapsed() < Duration::from_secs(60), "the engine was not told");
-            std::thread::sleep(Duration::from_millis(5));
-        }
+        assert!(wait_for(|| notes.join("told").exists()), "the engine was not told");
         assert_eq!(names(&folder), ["bin", "case.toml", "here", "notes"]);
     }
 }
@@ -388,13 +376,8 @@ fn a_sweep_that_is_stopped_leaves_the_table_of_what_it_has_solved() {
     let sweep = command(&folder, &arguments);
     let child = with_default_signals(&sweep).stderr(Stdio::piped()).spawn().unwrap();
     let table = folder.join("out/case/sweep.csv");
-    let start = Instant::now();
-    while !table.exists() {
-        assert!(start.elapsed() < Duration::from_secs(60), "there is no table");
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
-    assert!(kill.unwrap().success());
+    assert!(wait_for(|| table.exists()), "there is no table");
+    send("-INT", &child);
     let output = output(child);
     assert_eq!(output.status.signal(), Some(2), "{}", text(&output.stderr));
     assert_eq!(names(&folder.join("out/case")), ["sweep.csv"]);
@@ -429,11 +412,7 @@ fn what_does_not_fit_into_memory_ends_with_exit_code_1_and_the_number_of_bytes()
         assert_eq!(output.status.code(), Some(1), "{said}");
     }
     let output = within(300 << 20, &folder, "check case.toml");
-    assert_eq!(
-        (output.status.code(), text(&output.stderr)),
-        (Some(0), ""),
-        "control: a small case fits"
-    );
+    assert_eq!(ended(&output), (Some(0), ""), "control: a small case fits");
 }
 
 #[test]
@@ -452,7 +431,7 @@ fn where_no_thread_can_be_started_the_command_works_without() {
     words.extend(["prlimit", "--nproc=1", "./signorini", "check", "case.toml"]);
     let output = run(Command::new(words[0]).args(&words[1..]).current_dir(&place));
     fs::remove_dir_all(&place).unwrap();
-    assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), ""));
+    assert_eq!(ended(&output), (Some(0), ""));
 }
 
 /// With a limit of the shell, such as `-f 1`.
@@ -467,10 +446,10 @@ fn a_limit_on_the_size_of_files_is_a_failure_to_write_and_leaves_nothing() {
     let folder = folder("file-size");
     let output = limited("-f 1", &folder, "solve case.toml");
     let said = "error: cannot write out/case/solution.vtu: File too large\n";
-    assert_eq!((output.status.code(), text(&output.stderr)), (Some(1), said));
+    assert_eq!(ended(&output), (Some(1), said));
     assert_eq!(names(&folder), ["case.toml"]);
     let control = limited("-f 10000", &folder, "solve case.toml");
-    assert_eq!((control.status.code(), text(&control.stderr)), (Some(0), ""));
+    assert_eq!(ended(&control), (Some(0), ""));
 }
 
 #[test]
@@ -494,7 +473,7 @@ fn a_shorter_sweep_leaves_no_folders_of_a_longer_one() {
         let values = format!("material.mu={values}");
         let arguments = [&["sweep", "case.toml", "--set", &values, "--quiet"], more].concat();
         let output = run(&mut command(&folder, &arguments));
-        assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), ""));
+        assert_eq!(ended(&output), (Some(0), ""));
         names(&folder.join("out/case"))
     };
     let all = ["1", "2", "3", "4", "sweep.csv", "sweep.pvd"];
@@ -516,7 +495,7 @@ fn a_certificate_does_not_come_beside_a_result_that_is_not_its_own() {
     fs::write(folder.join("field.csv"), field).unwrap();
     let succeeds = |arguments: &[&str]| {
         let output = run(&mut command(&folder, arguments));
-        assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), ""), "{arguments:?}");
+        assert_eq!(ended(&output), (Some(0), ""), "{arguments:?}");
     };
     let certify = ["certify", "case.toml", "--displacement", "field.csv"];
     succeeds(&["solve", "case.toml", "--certificate"]);
@@ -527,14 +506,13 @@ fn a_certificate_does_not_come_beside_a_result_that_is_not_its_own() {
     assert_eq!(names(&folder.join("out/case/certified")), certified);
     let output = run(&mut command(&folder, &[&certify[..], &["--out", "out/case"]].concat()));
     let said = "error: out/case has the result.json of a solve, to which this certificate would seem to belong; expected another folder: --out DIR\n";
-    assert_eq!((output.status.code(), text(&output.stderr)), (Some(2), said));
+    assert_eq!(ended(&output), (Some(2), said));
     succeeds(&["solve", "case.toml", "--out", "out/case/certified"]);
     assert_eq!(names(&folder.join("out/case/certified")), FILES);
 }
 
 #[test]
 fn a_curve_in_5000_physical_groups_makes_a_short_message() {
-    let folder = folder("many-names");
     let count = 5000;
     let name = |i: usize| format!("1 {i} \"{}{i}\"\n", "n".repeat(50));
     let all: String = (1..=count).map(name).collect();
@@ -545,9 +523,8 @@ fn a_curve_in_5000_physical_groups_makes_a_short_message() {
          $Nodes\n1 3 1 3\n2 1 0 3\n1\n2\n3\n0 0 0\n1 0 0\n0 1 0\n$EndNodes\n\
          $Elements\n2 2 1 2\n1 1 1 1\n1 1 2\n2 1 2 1\n2 1 2 3\n$EndElements\n"
     );
-    fs::write(folder.join("many.msh"), mesh).unwrap();
-    let rectangle = "rectangle = { width = 1.0, height = 1.0, nx = 4, ny = 4 }";
-    fs::write(folder.join("case.toml"), CASE.replace(rectangle, "gmsh = \"many.msh\"")).unwrap();
+    let case = edited(&[[RECTANGLE, "gmsh = \"many.msh\""]]);
+    let folder = with_files("doors-many-names", &[("many.msh", &mesh), ("case.toml", &case)]);
     let output = run(&mut command(&folder, &["check", "case.toml"]));
     let said = text(&output.stderr);
     assert!(said.contains("and 4980 more; expected it in one of them only"), "{said}");
@@ -557,9 +534,11 @@ fn a_curve_in_5000_physical_groups_makes_a_short_message() {
 
 #[test]
 fn pressures_too_small_for_a_picture_are_refused() {
-    let folder = folder("small-numbers");
-    let case = CASE.replace("lambda = 1.0", "lambda = 1e-300").replace("mu = 1.0", "mu = 1e-300");
-    fs::write(folder.join("case.toml"), case.replace("-4 + 10*x", "-1e-308")).unwrap();
+    let small = [["lambda = 1.0", "lambda = 1e-300"], ["mu = 1.0", "mu = 1e-300"]];
+    let folder = super::command::folder(
+        "doors-small-numbers",
+        &[&small[..], &[["-4 + 10*x", "-1e-308"]]].concat(),
+    );
     let output = run(&mut command(&folder, &["solve", "case.toml"]));
     let said = text(&output.stderr);
     assert!(said.contains("over- or underflow double precision"), "{said}");
@@ -569,15 +548,10 @@ fn pressures_too_small_for_a_picture_are_refused() {
 #[test]
 fn a_solve_that_does_not_fit_into_memory_says_how_many_bytes_it_needs() {
     let folder = folder("solve-memory");
-    let of_degree = |degree: usize| {
-        let case = CASE.replace("nx = 4, ny = 4", "nx = 300, ny = 300");
+    for (degree, megabytes) in [(1, [60, 120, 290]), (2, [90, 300, 1000])] {
+        let case = edited(&[["nx = 4, ny = 4", "nx = 300, ny = 300"]]);
         fs::write(folder.join("case.toml"), format!("{case}[method]\ndegree = {degree}\n"))
             .unwrap();
-    };
-    let megabytes =
-        [(1, &[60, 80, 100, 120, 140, 200, 250, 290][..]), (2, &[90, 180, 300, 500, 700, 1000])];
-    for (degree, megabytes) in megabytes {
-        of_degree(degree);
         for limit in megabytes {
             let output = within(limit << 20, &folder, "solve case.toml --quiet");
             let said = text(&output.stderr);

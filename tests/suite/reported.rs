@@ -1,22 +1,11 @@
 //! Cases as people reported them when they went wrong, each with what the command says and writes of it now.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde_json::Value;
 
-use super::command::signorini;
-
-/// A fresh folder with these files in it.
-fn folder(test: &str, files: &[(&str, &str)]) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("reported").join(test);
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).unwrap();
-    for (name, text) in files {
-        fs::write(folder.join(name), text).unwrap();
-    }
-    folder
-}
+use super::command::{signorini, with_files};
 
 /// What the command prints, with this exit code.
 fn said(folder: &Path, arguments: &[&str], code: i32) -> String {
@@ -44,7 +33,7 @@ obstacle.floor.plane = { point = [0, -0.001], normal = [0, -1] }
 #[test]
 fn an_obstacle_on_the_other_side_of_the_body_is_refused_with_the_place() {
     let right = WRONG_SIDE.replace("[0, -1]", "[0, 1]");
-    let folder = folder("wrong-side", &[("wrong.toml", WRONG_SIDE), ("right.toml", &right)]);
+    let folder = with_files("wrong-side", &[("wrong.toml", WRONG_SIDE), ("right.toml", &right)]);
     for task in ["solve", "check"] {
         let message = said(&folder, &[task, "wrong.toml"], 2);
         let place = "[obstacle.floor] lies on the other side of the body: from (0, 0) on the boundary 'bottom' its direction (0, 1) leads into the body";
@@ -84,7 +73,7 @@ boundary.dome.contact.obstacle = "lid"
 obstacle.lid.distance = "(0.9 + 0.3*x - y)/sqrt(1.09)"
 "#;
     // The lid leans: its direction and the normals of the lowest edges on the right are more than a right angle apart.
-    let folder = folder("dome", &[("dome.msh", &dome()), ("case.toml", case)]);
+    let folder = with_files("dome", &[("dome.msh", &dome()), ("case.toml", case)]);
     said(&folder, &["check", "case.toml"], 0);
     let turned =
         ["check", "case.toml", "--set", "obstacle.lid.distance=(y - 0.9 - 0.3*x)/sqrt(1.09)"];
@@ -103,7 +92,7 @@ boundary.bottom.contact.obstacle = "floor"
 obstacle.floor.plane = { point = [0, -0.1], normal = [0, 1] }
 boundary.right.contact.gap = "0.5 - 0.1*y"
 "#;
-    let folder = folder("remarks", &[("case.toml", case)]);
+    let folder = with_files("remarks", &[("case.toml", case)]);
     let message = said(&folder, &["solve", "case.toml"], 0);
     for remark in [
         "'bottom' touches nothing: it is nearest to 'floor' at (1, 0), where a gap of 0.09",
@@ -132,7 +121,7 @@ material = { lambda = 1, mu = 1 }
 exact = { solution = "corner", omega = 3.0 }
 boundary = { bottom = "contact", left = "traction", right = "displacement", top = "displacement" }
 "#;
-    let folder = folder("corner", &[("case.toml", case)]);
+    let folder = with_files("corner", &[("case.toml", case)]);
     for degree in ["1", "2"] {
         let degree = format!("method.degree={degree}");
         said(&folder, &["solve", "case.toml", "--set", &degree], 0);
@@ -153,7 +142,7 @@ fn a_field_on_another_mesh_is_not_certified() {
             "mesh.rectangle = {{ width = 1, height = 1, nx = {n}, ny = {n}, diagonal = \"{diagonal}\" }}\nmaterial = {{ lambda = 1, mu = 1 }}\nload.body = [\"0\", \"-4 + 10*x\"]\nboundary.top.displacement = [\"0\", \"0\"]\nboundary.bottom.contact.gap = 0\n"
         )
     };
-    let folder = folder(
+    let folder = with_files(
         "fields",
         &[
             ("case.toml", &of(8, "right")),
@@ -192,7 +181,7 @@ load.body = ["0", "-0.1*(1 + sin(3*x)*cos(2*y))"]
 boundary.top.displacement = ["0", "0"]
 boundary.bottom.contact.gap = 0.001
 "#;
-    let folder = folder("quadrature", &[("case.toml", case)]);
+    let folder = with_files("quadrature", &[("case.toml", case)]);
     let message = said(&folder, &["solve", "case.toml", "--report"], 0);
     let words = "rounding included, with the loads as quadrature gives them";
     assert!(message.contains(words), "{message}");
@@ -214,7 +203,7 @@ obstacle.cylinder.circle = { center = [0, -150], radius = 150, side = "outside" 
 boundary.bottom.contact.obstacle = "cylinder"
 method.degree = 2
 "#;
-    let folder = folder("leaf", &[("leaf.toml", leaf)]);
+    let folder = with_files("leaf", &[("leaf.toml", leaf)]);
     said(&folder, &["solve", "leaf.toml"], 0);
     let result = result(&folder, "out/leaf");
     assert_eq!((&result["verdict"], &result["method"]["slides"]), (&"proved".into(), &0.into()));
@@ -237,7 +226,7 @@ boundary.right.contact.obstacle = "east"
     let one: String =
         both.lines().filter(|line| !line.contains("east")).map(|l| format!("{l}\n")).collect();
     let one = one.replace("boundary.right", "# boundary.right");
-    let folder = folder("slide", &[("both.toml", both), ("one.toml", &one)]);
+    let folder = with_files("slide", &[("both.toml", both), ("one.toml", &one)]);
     let loads = "boundary.top.traction=[0,\"-10-x\"],[0,\"-20-x\"]";
     for (name, ends) in [("both", true), ("one", false)] {
         let file = format!("{name}.toml");
@@ -265,7 +254,7 @@ point.pivot.displacement = ["0", "-0.01"]
 boundary.foot.contact.gap = "0.002*x"
 "#;
     let mesh = include_str!("../meshes/pivot.msh");
-    let folder = folder("pivot", &[("pivot.msh", mesh), ("case.toml", case)]);
+    let folder = with_files("pivot", &[("pivot.msh", mesh), ("case.toml", case)]);
     said(&folder, &["solve", "case.toml", "--quiet"], 0);
     let result = result(&folder, "out/case");
     assert_eq!((&result["verdict"], &result["method"]["slides"]), (&"proved".into(), &0.into()));
@@ -282,7 +271,7 @@ boundary.bottom.contact = {}
 #[test]
 fn units_with_control_characters_forge_no_lines_and_leave_the_picture_whole() {
     let forged = "units = { length = \"mm\\u001b\\nerror: this line is of the case file\\n  proved       all\", force = \"N\" }";
-    let folder = folder("units", &[("case.toml", &format!("{forged}\n{SMALL}"))]);
+    let folder = with_files("units", &[("case.toml", &format!("{forged}\n{SMALL}"))]);
     let message = said(&folder, &["solve", "case.toml"], 0);
     let forges = |line: &str| line.starts_with("error") || line.starts_with("  proved       all");
     assert!(!message.lines().any(forges) && !message.contains('\u{1b}'), "{message}");
@@ -294,7 +283,7 @@ fn units_with_control_characters_forge_no_lines_and_leave_the_picture_whole() {
 fn a_picture_that_doubles_cannot_hold_costs_nothing_else() {
     let large = SMALL.replace("height = 1,", "height = 100,").replace("-0.1", "-10");
     let stretched = format!("{large}output.stretch = 1.5e308\n");
-    let folder = folder("picture", &[("case.toml", &large), ("stretched.toml", &stretched)]);
+    let folder = with_files("picture", &[("case.toml", &large), ("stretched.toml", &stretched)]);
     said(&folder, &["solve", "case.toml", "--out", "out", "--quiet"], 0);
     assert!(folder.join("out/picture.svg").exists(), "control");
     let message = said(&folder, &["solve", "stretched.toml", "--out", "out", "--report"], 3);
@@ -311,7 +300,7 @@ fn steps_that_run_out_on_a_finer_level_of_adapt_lose_nothing() {
     let target = ["adapt.target=\"0.01 %\"", "adapt.max_unknowns=2500"];
     let coarse = ["method.degree=1", "method.gamma0=auto"];
     let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
-    let folder = folder("steps", &[]);
+    let folder = with_files("steps", &[]);
     let adapted = |cells: usize, steps: usize| {
         let steps = format!("solver.max_iterations={steps}");
         let cells = ["nx", "ny"].map(|n| format!("mesh.rectangle.{n}={cells}"));

@@ -5,7 +5,7 @@ use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-use super::command::{folder, names, signorini, text};
+use super::command::{ended, folder, names, signorini, text};
 
 fn with_standard_input(folder: &Path, arguments: &[&str], input: &[u8]) -> Output {
     let mut child = Command::new(env!("CARGO_BIN_EXE_signorini"))
@@ -93,7 +93,7 @@ fn a_mistake_in_a_setting_is_reported_with_the_setting_and_exit_code_2() {
     ] {
         let output = checked(&folder, &["title=\"a\"", setting, "mesh.rectangle.ny=5"]);
         let expected = format!("error: case.toml with --set {setting}: {message}\n");
-        assert_eq!((output.status.code(), text(&output.stderr)), (Some(2), expected.as_str()));
+        assert_eq!(ended(&output), (Some(2), expected.as_str()));
     }
     // A mistake of the file stays one of the file.
     fs::write(folder.join("case.toml"), "titel = 1\n").unwrap();
@@ -105,7 +105,7 @@ fn a_mistake_in_a_setting_is_reported_with_the_setting_and_exit_code_2() {
 fn json_prints_the_results_and_nothing_else_and_writes_no_files() {
     let folder = folder("json", &[]);
     let output = signorini(&folder, &["solve", "case.toml", "--json"]);
-    assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), ""));
+    assert_eq!(ended(&output), (Some(0), ""));
     assert_eq!(names(&folder), ["case.toml"]);
     let without_seconds = |text: &str| text[..text.find("\"seconds\"").unwrap()].to_owned();
     let printed = text(&output.stdout);
@@ -138,7 +138,7 @@ fn a_sweep_prints_and_writes_one_line_for_each_combination() {
     let folder = folder("sweep", &[]);
     let arguments = ["--set", "method.gamma0=1e-3,auto", "--set", "method.degree=1,2"];
     let output = signorini(&folder, &[&["sweep", "case.toml"], &arguments[..]].concat());
-    assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), ""));
+    assert_eq!(ended(&output), (Some(0), ""));
     assert_eq!(names(&folder.join("out/case")), ["sweep.csv"]);
     let csv = fs::read_to_string(folder.join("out/case/sweep.csv")).unwrap();
     let lines: Vec<&str> = csv.lines().collect();
@@ -179,7 +179,7 @@ fn settings_lie_over_a_long_case_and_may_be_long_themselves() {
         ("sweep", "case.toml", &force),
     ] {
         let output = signorini(&folder, &[task, file, "--set", setting]);
-        assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), ""), "{task} {file}");
+        assert_eq!(ended(&output), (Some(0), ""), "{task} {file}");
         let longest = text(&output.stdout).lines().map(str::len).max();
         assert!(longest.is_some_and(|length| length < 500), "{task} {file}: {longest:?}");
     }
@@ -191,7 +191,7 @@ fn a_sweep_over_lists_writes_the_files_of_each_run_where_asked() {
     let loads = "load.body=[\"0\", \"-1\"],[\"0\", \"-2\"]";
     let output =
         signorini(&folder, &["sweep", "case.toml", "--set", loads, "--files", "--out", "o"]);
-    assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), ""));
+    assert_eq!(ended(&output), (Some(0), ""));
     assert_eq!(names(&folder.join("o")), ["1", "2", "sweep.csv", "sweep.pvd"]);
     let collection = fs::read_to_string(folder.join("o/sweep.pvd")).unwrap();
     assert!(
@@ -254,7 +254,7 @@ fn what_only_the_other_engine_or_only_this_one_can_do_is_refused() {
         ),
     ] {
         let output = signorini(&folder, &[&["solve", "case.toml"], arguments].concat());
-        assert_eq!((output.status.code(), text(&output.stderr)), (Some(2), message));
+        assert_eq!(ended(&output), (Some(2), message));
     }
 }
 
