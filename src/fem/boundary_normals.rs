@@ -165,27 +165,6 @@ mod tests {
         angles.iter().map(|a| [2.0 * a.cos(), 2.0 * a.sin()]).collect()
     }
 
-    /// Distances of normals and middles from those of the circle of radius 2.
-    fn errors(mesh: &Mesh) -> Vec<[f64; 2]> {
-        let smooth = SmoothBoundary::new(mesh);
-        let rim = |e: &&BoundaryEdge| !mesh.ends(**e).contains(&0);
-        let points =
-            mesh.outline().iter().filter(rim).flat_map(|&e| smooth.along(mesh, e).unwrap());
-        points
-            .map(|p| {
-                let place = Vector2::from(p.place);
-                [length(p.normal - unit(place)), (length(place) - 2.0).abs()]
-            })
-            .collect()
-    }
-
-    #[test]
-    fn an_arc_between_corners_has_its_own_normals_at_its_ends() {
-        for error in errors(&fan(&on_circle(&[0.0, 0.3, 0.5, 0.9, 1.5]))) {
-            assert_abs_diff_eq!(error[..], [0.0; 2][..], epsilon = ROUNDING);
-        }
-    }
-
     #[test]
     fn straight_sides_keep_the_normals_of_their_facets_and_so_do_shallow_corners_between_them() {
         // The side from (4, -1) to (4, 1) and on to (3.5, 3): a bend of 14 degrees.

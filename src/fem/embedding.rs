@@ -270,6 +270,7 @@ fn crossing([a, b]: [Vector2<f64>; 2], [c, d]: [Vector2<f64>; 2]) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fem::{Diagonal, Rectangle};
 
     /// A rectangle of nx x ny cells from `low` to `high`, its corners moved by `map`.
     fn grid(
@@ -278,16 +279,10 @@ mod tests {
         high: [f64; 2],
         map: impl Fn([f64; 2]) -> [f64; 2],
     ) -> (Vec<[f64; 2]>, Vec<[usize; 3]>) {
-        let at = |i: usize, n: usize, c: usize| low[c] + (high[c] - low[c]) * i as f64 / n as f64;
-        let places = (0..=ny).flat_map(|j| (0..=nx).map(move |i| [i, j]));
-        let vertices = places.map(|[i, j]| map([at(i, nx, 0), at(j, ny, 1)])).collect();
-        let mut triangles = Vec::new();
-        for (i, j) in (0..ny).flat_map(|j| (0..nx).map(move |i| (i, j))) {
-            let a = j * (nx + 1) + i;
-            let (b, c, d) = (a + 1, a + nx + 2, a + nx + 1);
-            triangles.extend([[a, b, c], [a, c, d]]);
-        }
-        (vertices, triangles)
+        let cells = Rectangle { width: 1.0, height: 1.0, nx, ny, diagonal: Diagonal::Right };
+        let mesh = cells.mesh().unwrap();
+        let place = |x: &[f64; 2]| map([0, 1].map(|c| low[c] + (high[c] - low[c]) * x[c]));
+        (mesh.vertices().iter().map(place).collect(), mesh.triangles().to_vec())
     }
 
     type Pieces<'a> = &'a [(Vec<[f64; 2]>, Vec<[usize; 3]>)];

@@ -332,40 +332,30 @@ mod tests {
     }
 
     #[test]
-    fn materials_that_are_stable_are_made_and_the_others_refused_with_the_reason() {
-        for plane in [Plane::Strain, Plane::Stress] {
-            assert!(stable_lame(-0.6, 1.0, plane).is_ok());
-            assert!(stable_young_poisson(1e-150, 0.4999999, plane).is_ok());
-            let said = |m: Result<Material<f64>, MaterialError>| m.unwrap_err().to_string();
-            for (found, expected) in [
-                (
-                    said(stable_lame(1.0, 0.0, plane)),
-                    "the shear modulus mu is 0; expected a positive number",
-                ),
-                (
-                    said(stable_lame(-0.7, 1.0, plane)),
-                    "the first Lame coefficient lambda is -0.7; expected a number above -2/3 mu",
-                ),
-                (
-                    said(stable_young_poisson(f64::NAN, 0.3, plane)),
-                    "Young's modulus is NaN; expected a positive number",
-                ),
-                (
-                    said(stable_young_poisson(1.0, 0.5, plane)),
-                    "Poisson's ratio is 0.5; expected a number above -1 and below 0.5",
-                ),
-            ] {
-                assert_eq!(found, expected);
-            }
-            for material in [
-                Material::lame(-0.7, 1.0, plane),
-                Material::lame(1.0, -1.0, plane),
-                Material::lame(f64::NAN, 1.0, plane),
-            ] {
-                assert!(stable(material).is_err(), "{material:?}");
-            }
+    fn materials_that_are_not_stable_are_refused_with_the_reason() {
+        for (found, expected) in [
+            (
+                stable_lame(1.0, 0.0, Plane::Strain),
+                "the shear modulus mu is 0; expected a positive number",
+            ),
+            (
+                stable_lame(-0.7, 1.0, Plane::Stress),
+                "the first Lame coefficient lambda is -0.7; expected a number above -2/3 mu",
+            ),
+            (
+                stable_young_poisson(f64::NAN, 0.3, Plane::Strain),
+                "Young's modulus is NaN; expected a positive number",
+            ),
+            (
+                stable_young_poisson(1.0, 0.5, Plane::Stress),
+                "Poisson's ratio is 0.5; expected a number above -1 and below 0.5",
+            ),
+        ] {
+            assert_eq!(found.unwrap_err().to_string(), expected);
         }
-        let incompressible = Material::young_poisson(1.0, 0.5, Plane::Strain);
-        assert!(stable(incompressible).is_err());
+        for (lambda, mu) in [(-0.7, 1.0), (1.0, -1.0), (f64::NAN, 1.0)] {
+            assert!(stable(Material::lame(lambda, mu, Plane::Strain)).is_err(), "{lambda} {mu}");
+        }
+        assert!(stable(Material::young_poisson(1.0, 0.5, Plane::Strain)).is_err());
     }
 }

@@ -361,28 +361,6 @@ mod tests {
     }
 
     #[test]
-    fn each_free_motion_of_one_part_is_named_with_what_would_stop_it() {
-        let square = sheet([2, 2], |x| x, solid);
-        assert_eq!(
-            said(&square, &|_| [false; 2]),
-            [
-                "translation along (1, 0): u_x would stop it",
-                "translation along (0, 1): u_y would stop it",
-                "rotation about (1, 1): u_x off the line y = 1 would stop it, or u_y off x = 1",
-            ]
-        );
-        assert_eq!(
-            said(&square, &|[_, y]| [false, y == 0.0]),
-            ["translation along (1, 0): u_x would stop it"]
-        );
-        assert_eq!(
-            said(&square, &|[x, y]| [x == 2.0 && y == 0.0; 2]),
-            ["rotation about (2, 0): u_x off the line y = 0 would stop it, or u_y off x = 2"]
-        );
-        assert!(said(&square, &|[x, y]| [x == 0.0, x == 0.0 && y == 0.0]).is_empty());
-    }
-
-    #[test]
     fn each_part_of_a_body_is_free_or_held_by_itself() {
         let mesh = sheet([5, 2], |x| x, |i, _| i != 2);
         assert_eq!(
