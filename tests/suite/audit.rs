@@ -8,7 +8,9 @@ use signorini::certify::binding::compare;
 use signorini::certify::forces::Evidence;
 use signorini::certify::{Continuous, certify};
 use signorini::io::certificate::{self, Header};
-use signorini::io::{Case, run};
+use signorini::io::run;
+
+use crate::common::{case, case_of, encoded};
 
 const LOADED: &str = r#"
 mesh.rectangle = { width = 1, height = 1, nx = 4, ny = 4 }
@@ -42,26 +44,12 @@ const QUADRATIC: &[&str] = &["method.degree=2", "method.gamma0=auto"];
 const ADAPTED: &[&str] =
     &["method.degree=2", "method.gamma0=auto", "adapt.target=\"0.1 %\"", "adapt.max_unknowns=900"];
 
-fn case(text: &str, settings: &[&str]) -> Case {
-    let settings: Vec<String> = settings.iter().map(|&setting| setting.to_owned()).collect();
-    Case::parse(Path::new("case.toml"), text, &settings).unwrap()
-}
-
 fn certified(text: &str, settings: &[&str]) -> Continuous {
-    let (case, solved) = run::solve(case(text, settings), None, &|_| {}).unwrap();
+    let (case, solved) = run::solve(case_of(text, settings), None, &|_| {}).unwrap();
     match solved.certified {
         Some(certified) => certified.unwrap(),
         None => certify(&case.problem, &solved.solution).unwrap(),
     }
-}
-
-fn encoded(certified: &Continuous) -> (Header, Vec<u8>) {
-    certificate::encode(
-        "Block",
-        &certified.certificate,
-        &certified.proof,
-        &certified.quantities.evidence,
-    )
 }
 
 /// Writes a certificate into a folder of its own.
@@ -103,10 +91,10 @@ fn a_certificate_is_one_of_its_case() {
         for settings in [&[][..], QUADRATIC, ADAPTED] {
             let certified = certified(text, settings);
             let adapted = certified.certificate.vertices.len()
-                > case(text, &[]).problem.mesh.vertices().len();
+                > case_of(text, &[]).problem.mesh.vertices().len();
             assert_eq!(adapted, settings == ADAPTED);
             let reason = compare(
-                case(text, &[]).problem,
+                case_of(text, &[]).problem,
                 &certified.certificate,
                 &certified.quantities.evidence,
             )
@@ -156,8 +144,9 @@ fn a_certificate_is_not_one_of_another_case() {
             for (from, to, difference) in changes {
                 let other = text.replacen(from, to, 1);
                 assert_ne!(other, text, "{from}");
-                let found = compare(case(&other, &[]).problem, &certificate, &Evidence::default())
-                    .unwrap_err();
+                let found =
+                    compare(case_of(&other, &[]).problem, &certificate, &Evidence::default())
+                        .unwrap_err();
                 assert!(found.to_string().contains(difference), "{from} -> {to}: {found}");
             }
         }
@@ -170,7 +159,7 @@ fn forces_have_the_names_of_their_boundaries() {
     let mut forces = certified.quantities.evidence;
     assert!(forces.names.len() > 1);
     forces.names.reverse();
-    let found = compare(case(LOADED, &[]).problem, &certified.certificate, &forces);
+    let found = compare(case_of(LOADED, &[]).problem, &certified.certificate, &forces);
     assert!(found.unwrap_err().to_string().contains("boundary that it is said to be on"));
 }
 
@@ -187,8 +176,9 @@ fn what_is_measured_by_quadrature_is_measured_again_for_a_case() {
         for (certificate, difference) in
             [(halved, "the oscillation"), (without, "lacks its lift"), (smaller, "the lift")]
         {
-            let found = compare(case(CURVED_DATA, &[]).problem, &certificate, &Evidence::default())
-                .unwrap_err();
+            let found =
+                compare(case_of(CURVED_DATA, &[]).problem, &certificate, &Evidence::default())
+                    .unwrap_err();
             assert!(found.to_string().contains(difference), "{found}");
         }
     }
@@ -208,7 +198,7 @@ fn the_text_of_a_file_is_shown_on_one_short_line() {
         assert!(error.len() < 1000 && !error.contains(char::is_control), "{error}");
     }
     let units = r#"units = { length = "mm\u001b\nerror: forged", force = "N" }"#;
-    let units = case(&format!("{units}\n{LOADED}"), &[]).units.unwrap();
+    let units = case_of(&format!("{units}\n{LOADED}"), &[]).units.unwrap();
     assert_eq!(units.length, "mm\\u{1b}\\nerror: forged");
 }
 
@@ -216,23 +206,25 @@ fn the_text_of_a_file_is_shown_on_one_short_line() {
 fn data_that_cancel_are_a_reservation_of_the_case() {
     let text = LOADED.replacen("-1 + 3*x", "((10*x + 1e18) - 1e18) - 4", 1);
     let certified = certified(&text, &[]);
-    let reason =
-        compare(case(&text, &[]).problem, &certified.certificate, &certified.quantities.evidence)
-            .unwrap();
+    let reason = compare(
+        case_of(&text, &[]).problem,
+        &certified.certificate,
+        &certified.quantities.evidence,
+    )
+    .unwrap();
     assert_eq!(reason, certified.reason);
     assert!(reason.unwrap().contains("cancel"));
 }
 
 #[test]
 fn a_polygon_in_place_of_a_round_body_says_so() {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/disk.toml");
-    let case = || Case::read(&file).unwrap();
-    let (_, solved) = run::solve(case(), None, &|_| {}).unwrap();
-    let mut certificate = certify(&case().problem, &solved.solution).unwrap().certificate;
+    let of_disk = || case("disk.toml", &[]);
+    let (_, solved) = run::solve(of_disk(), None, &|_| {}).unwrap();
+    let mut certificate = certify(&of_disk().problem, &solved.solution).unwrap().certificate;
     assert!(!certificate.polygon.is_empty() && certificate.reservations().is_empty());
-    assert_eq!(compare(case().problem, &certificate, &Evidence::default()), Ok(None));
+    assert_eq!(compare(of_disk().problem, &certificate, &Evidence::default()), Ok(None));
     certificate.polygon.pop();
     let found =
-        compare(case().problem, &certificate, &Evidence::default()).unwrap_err().to_string();
+        compare(of_disk().problem, &certificate, &Evidence::default()).unwrap_err().to_string();
     assert!(found.contains("part of a curved boundary"), "{found}");
 }

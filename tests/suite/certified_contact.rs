@@ -1,29 +1,29 @@
 //! Certificates of bodies that contact alone holds, and of v pushed out of obstacles of every kind: what balances the loads is
 //! the pressure on Gamma_C, and v is as far outside as balls can see.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::certify::accepts;
+use crate::common::{case_of, encoded};
 use signorini::certify::proof::{Certificate, Role};
 use signorini::certify::{Continuous, Rejection, certify, certify_field};
-use signorini::io::{Case, certificate};
+use signorini::io::Case;
 use signorini::kernel::Ball;
 use signorini::solve::solve;
 
 fn certified(text: &str, settings: &[&str]) -> Continuous {
-    let settings: Vec<String> = settings.iter().map(|&s| s.to_owned()).collect();
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/in_a_test.toml");
-    let case = Case::parse(&file, text, &settings).unwrap();
+    let case = case_of(text, settings);
     let (solution, _) = solve(&case.problem, &case.method, &case.settings).unwrap();
     let certified = certify(&case.problem, &solution).unwrap_or_else(|e| panic!("{e}: {text}"));
-    let (header, bytes) = certificate::encode(
-        "in a test",
-        &certified.certificate,
-        &certified.proof,
-        &certified.quantities.evidence,
-    );
+    let (header, bytes) = encoded(&certified);
     assert_eq!(accepts(&header, &bytes), Ok(()), "{text}");
     certified
+}
+
+/// The certificate of a case of the folder `cases`.
+fn of_the_cases(name: &str, settings: &[&str]) -> Continuous {
+    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
+    certified(&Case::text(&cases.join(name)).unwrap(), settings)
 }
 
 const SQUARE: &str = "[mesh]\nrectangle = { width = 1.0, height = 1.0, nx = 8, ny = 8 }\n[material]\nlambda = 1.0\nmu = 1.0\n";
@@ -63,16 +63,14 @@ fn bodies_that_contact_alone_holds_have_certificates_that_enclose_the_potential_
     }
 }
 
-fn disk(settings: &[&str]) -> Continuous {
-    let cases = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("cases");
-    certified(&Case::text(&cases.join("disk_force.toml")).unwrap(), settings)
-}
-
 /// It may turn about its centre, and it is the polygon of the mesh.
 #[test]
 fn the_disk_under_a_force_has_a_certificate_that_names_its_polygon_and_its_support() {
     for degree in ["1", "2"] {
-        let found = disk(&[&format!("method.degree={degree}"), "method.gamma0=auto"]);
+        let found = of_the_cases(
+            "disk_force.toml",
+            &[&format!("method.degree={degree}"), "method.gamma0=auto"],
+        );
         assert!(found.relative < 0.1, "{}", found.relative);
         let problem = found.problem.unwrap();
         assert!(problem.starts_with("the polygon of the mesh as its body"), "{problem}");
@@ -177,18 +175,16 @@ fn a_load_whose_terms_cancel_in_doubles_makes_the_bound_say_so() {
 /// On a plane the bound is rigorous, and of another body than the disk.
 #[test]
 fn a_polygon_is_named_where_the_boundary_is_taken_for_round() {
-    let cases = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("cases");
-    let of = |case: &str| certified(&Case::text(&cases.join(case)).unwrap(), &[]);
-    let disk = of("disk.toml");
+    let disk = of_the_cases("disk.toml", &[]);
     assert!(disk.rigorous);
     assert_eq!(disk.problem.as_deref(), Some("the polygon of the mesh as its body"));
-    assert_eq!(of("block.toml").problem, None);
+    assert_eq!(of_the_cases("block.toml", &[]).problem, None);
 }
 
 #[test]
 fn a_field_that_misses_what_is_prescribed_is_measured() {
     let text = format!("{SQUARE}{SLIDING}[boundary.left]\ndisplacement = [\"0.01*y\", \"free\"]\n");
-    let case = Case::parse(Path::new("in_a_test.toml"), &text, &[]).unwrap();
+    let case = case_of(&text, &[]);
     let (solution, _) = solve(&case.problem, &case.method, &case.settings).unwrap();
     let missed = |by: f64| {
         let moved: Vec<[f64; 2]> =

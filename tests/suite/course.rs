@@ -1,16 +1,11 @@
 //! A solve that starts from the solution of another: fewer Newton steps, the same result.
 
 use std::cell::Cell;
-use std::path::Path;
 
 use signorini::io::Case;
 use signorini::solve::{self, Course, Phase, RouteName, Solution};
 
-fn case(file: &str, settings: &[&str]) -> Case {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
-    let settings: Vec<String> = settings.iter().map(|&s| s.to_owned()).collect();
-    Case::parse(&path, &Case::text(&path).unwrap(), &settings).unwrap()
-}
+use crate::common::case;
 
 /// The solution, and how many Newton steps somebody who watches has counted.
 fn solved(case: &Case, start: Option<&Solution>) -> (Solution, usize) {
@@ -40,20 +35,20 @@ fn load_steps_from_the_last_one_take_fewer_newton_steps_to_the_same_solution() {
     let strip = ["mesh.rectangle.ny=1", "mesh.rectangle.height=0.05", "mesh.rectangle.nx=64", gap];
     let mut routes = Vec::new();
     for (file, settings, key, values) in [
-        ("cases/block.toml", &[][..], "load.body", ["[\"0\",\"-4+10*x\"]", "[\"0\",\"-4+9*x\"]"]),
+        ("block.toml", &[][..], "load.body", ["[\"0\",\"-4+10*x\"]", "[\"0\",\"-4+9*x\"]"]),
         (
-            "cases/block.toml",
+            "block.toml",
             &["method.degree=2", "method.gamma0=auto"],
             "load.body",
             ["[\"0\",\"-4+10*x\"]", "[\"0\",\"-4.5+10*x\"]"],
         ),
         (
-            "cases/disk.toml",
+            "disk.toml",
             &[],
             "boundary.top.displacement",
             ["[\"0\",\"-0.015\"]", "[\"0\",\"-0.020\"]"],
         ),
-        ("cases/block.toml", &strip, "load.body", ["[\"0\",\"-1\"]", "[\"0\",\"-1.01\"]"]),
+        ("block.toml", &strip, "load.body", ["[\"0\",\"-1\"]", "[\"0\",\"-1.01\"]"]),
     ] {
         let with = |value: &str| {
             let set = format!("{key}={value}");
@@ -72,14 +67,14 @@ fn load_steps_from_the_last_one_take_fewer_newton_steps_to_the_same_solution() {
 
 #[test]
 fn a_start_on_other_nodes_is_none_and_a_bad_one_does_no_harm() {
-    let block = case("cases/block.toml", &[]);
+    let block = case("block.toml", &[]);
     let (afresh, steps) = solved(&block, None);
     let coarse = ["mesh.rectangle.nx=8", "method.gamma0=auto"];
-    let (coarse, _) = solved(&case("cases/block.toml", &coarse), None);
+    let (coarse, _) = solved(&case("block.toml", &coarse), None);
     let (same, as_many) = solved(&block, Some(&coarse));
     assert_eq!((same.displacement, as_many), (afresh.displacement.clone(), steps));
     // The load the other way round: nothing that touched then touches now.
-    let (other, _) = solved(&case("cases/block.toml", &["load.body=[\"0\",\"6-10*x\"]"]), None);
+    let (other, _) = solved(&case("block.toml", &["load.body=[\"0\",\"6-10*x\"]"]), None);
     let (from, _) = solved(&block, Some(&other));
     assert!(distance(&afresh, &from) < 1e-9);
 }

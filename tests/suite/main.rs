@@ -4,7 +4,6 @@
 mod common;
 
 mod adapt;
-mod assembled;
 mod audit;
 mod bad_input;
 mod bodies;

@@ -120,7 +120,7 @@ fn plate(n: usize) -> Problem {
         Material::young_poisson(210_000.0, 0.3, Plane::Stress),
         [
             ("start", displacement(None, Some(-0.02))),
-            ("end", Condition::Support { normal: Some(constant(0.0)), tangential: None }),
+            ("end", Condition::roller()),
             ("line", circle([0.0; 2], 20.0, Side::Outside)),
         ],
     )
@@ -176,7 +176,7 @@ fn moved() -> Condition {
 
 /// 8.5 on a chord of length 2: no support holds the body, contact does.
 fn pressed() -> Condition {
-    Condition::Traction([constant(0.0), constant(-4.25)])
+    Condition::traction(|_| 0.0, |_| -4.25)
 }
 
 /// p0 = (F E* / (pi R))^(1/2) for the force of the same run.

@@ -132,7 +132,7 @@ fn half_plane(
         let punches = punches.clone();
         Some(function(move |x| displacement(&punches, x)[c]))
     });
-    let contact = Condition::Contact { gap: function(move |[x, _]| gap(x)) };
+    let contact = Condition::contact(move |[x, _]| gap(x));
     body(mesh, [("cut", Condition::Displacement(held)), ("line", contact)])
 }
 
@@ -166,7 +166,7 @@ fn ring(n: usize, moved: bool) -> Problem {
         [r * cos, r * sin]
     });
     let mesh = triangulated(vertices, [n, n], |side, _| SIDES[side]);
-    let roller = || Condition::Support { normal: Some(constant(0.0)), tangential: None };
+    let roller = || Condition::roller();
     let pin = Obstacle::Circle { center: [0.0; 2], radius: 1.0 + FIT, side: Side::Outside };
     let pin = Condition::Obstacle("pin".to_owned(), pin);
     body(mesh, [("start", roller()), ("end", roller()), ("line", pin)])

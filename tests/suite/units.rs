@@ -9,7 +9,7 @@ use signorini::solve::{
     Course, Degree, Gamma0, Method, Settings, Solution, SolveError, check, solve, solve_along,
 };
 
-use crate::common::constant;
+use crate::common::{DEGREES, constant};
 
 /// Factors of lengths and moduli, and of displacements and gaps beside lengths.
 #[derive(Clone, Copy, Debug)]
@@ -27,12 +27,12 @@ fn block(scale: Scale) -> Problem {
     let Scale { length: l, modulus: e, data } = scale;
     let (u, s) = (l * data, e * data);
     let mesh = Rectangle { width: l, height: l, nx: 8, ny: 8, diagonal: Diagonal::Right };
-    let moved = Condition::Displacement([Some(constant(0.0)), Some(constant(-0.05 * u))]);
-    let shear = Condition::Traction([constant(0.0), constant(0.01 * s)]);
+    let moved = Condition::displacement(|_| 0.0, move |_| -0.05 * u);
+    let shear = Condition::traction(|_| 0.0, move |_| 0.01 * s);
     let mut conditions = BTreeMap::from([
         ("top".to_owned(), moved),
         ("right".to_owned(), shear),
-        ("bottom".to_owned(), Condition::Contact { gap: constant(u / 32.0) }),
+        ("bottom".to_owned(), Condition::contact(move |_| u / 32.0)),
     ]);
     if data == 1.0 {
         let (center, radius) = ([-2.0 * l, 0.5 * l], 2.0 * l);
@@ -71,8 +71,6 @@ fn off(scale: Scale, degree: Degree) -> Option<f64> {
     let found = without_units(&solution, scale);
     Some(found.iter().zip(&expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max))
 }
-
-const DEGREES: [Degree; 2] = [Degree::One, Degree::Two];
 
 #[test]
 fn lengths_and_moduli_from_1e_minus_30_to_1e30_have_the_same_solution() {

@@ -9,12 +9,12 @@ use signorini::solve::{
 };
 
 use super::{Outcome, text};
-use crate::common::{clamped, conditions, constant, function};
+use crate::common::{conditions, constant, function};
 
 /// A body that is held on the named sides and in contact below.
 fn held(mesh: Mesh, lambda: f64, plane: Plane, sides: &[&str]) -> Problem {
-    let mut all = conditions([("bottom", Condition::Contact { gap: constant(0.0) })]);
-    all.extend(sides.iter().map(|&side| (side.to_owned(), clamped())));
+    let mut all = conditions([("bottom", Condition::contact(|_| 0.0))]);
+    all.extend(sides.iter().map(|&side| (side.to_owned(), Condition::clamped())));
     let nothing = [constant(0.0), constant(0.0)];
     Problem::new(mesh, Material::lame(lambda, 1.0, plane), nothing, all)
 }

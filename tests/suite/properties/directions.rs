@@ -6,35 +6,23 @@
 
 use std::collections::BTreeMap;
 
-use signorini::fem::{Condition, ContactFace, Diagonal, Mesh, Problem, Rectangle};
+use signorini::fem::{Condition, ContactFace, Diagonal, Problem, Rectangle};
 use signorini::kernel::triangle::on_edge;
 use signorini::kernel::{Material, Plane};
 use signorini::nalgebra::Vector2;
 use signorini::solve::{Degree, Method, discretize};
 
 use super::{Outcome, properties, text};
-use crate::common::{Random, clamped, conditions, constant, function};
+use crate::common::{Random, moved_to};
 
 /// A block of 2 x 1 whose lower side is bent upwards: 4 edges with a bend of some 10 degrees at each vertex.
 fn bent(plane: Plane) -> Result<Problem, String> {
     let cells = Rectangle { width: 2.0, height: 1.0, nx: 4, ny: 2, diagonal: Diagonal::Left };
     let grid = cells.mesh().map_err(text)?;
-    let place = |&[x, y]: &[f64; 2]| [x, y + 0.3 * (1.0 - y) * (x - 1.0) * (x - 1.0)];
-    let vertices = grid.vertices().iter().map(place).collect();
-    let mut named = Vec::new();
-    for name in grid.boundary_names() {
-        let edges = grid.edges_of(name).map_err(text)?.iter().map(|&edge| grid.ends(edge));
-        named.push((name.to_owned(), edges.collect::<Vec<_>>()));
-    }
-    let mesh = Mesh::new(vertices, grid.triangles().to_vec(), named).map_err(text)?;
-    let gap = function(|[x, y]| 0.1 * x - 0.2 * y);
-    let all = [("top", clamped()), ("bottom", Condition::Contact { gap })];
-    Ok(Problem::new(
-        mesh,
-        Material::lame(1.5, 1.0, plane),
-        [0, 1].map(|_| constant(0.0)),
-        conditions(all),
-    ))
+    let place = |[x, y]: [f64; 2]| [x, y + 0.3 * (1.0 - y) * (x - 1.0) * (x - 1.0)];
+    Ok(Problem::of(moved_to(&grid, place), Material::lame(1.5, 1.0, plane))
+        .with("top", Condition::clamped())
+        .with("bottom", Condition::contact(|[x, y]| 0.1 * x - 0.2 * y)))
 }
 
 /// n~ at the nodes of an edge; the planted mistake takes the facet's normal.

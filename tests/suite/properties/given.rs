@@ -257,7 +257,7 @@ fn opposite(moved: f64) -> Result<(), SolveError> {
         ("lower", Condition::Displacement([Some(constant(moved)), None])),
         ("upper", Condition::Support { normal: Some(constant(0.01)), tangential: None }),
         ("top", Condition::Displacement([None, Some(constant(0.0))])),
-        ("right", Condition::Contact { gap: constant(0.0) }),
+        ("right", Condition::contact(|_| 0.0)),
     ];
     let conditions = conditions.map(|(name, condition)| (name.to_owned(), condition));
     let material = Material::lame(1.0, 1.0, Plane::Strain);
@@ -277,7 +277,7 @@ fn agreeing(moved: f64) -> Outcome {
 /// A unit square on a floor, with conditions on top and to the left.
 fn square(top: Condition, left: Condition) -> Result<Problem, String> {
     let cells = Rectangle { width: 1.0, height: 1.0, nx: 2, ny: 2, diagonal: Diagonal::Right };
-    let floor = Condition::Contact { gap: constant(0.0) };
+    let floor = Condition::contact(|_| 0.0);
     let conditions = [("top", top), ("left", left), ("bottom", floor)];
     Ok(Problem::new(
         cells.mesh().map_err(text)?,

@@ -102,7 +102,7 @@ fn block(load: f64) -> Result<Problem, String> {
     let cells = Rectangle { width: 2.0, height: 1.0, nx: 4, ny: 2, diagonal: Diagonal::Left };
     let mesh = cells.mesh().map_err(text)?;
     let held = Condition::Displacement([0.0, -0.02].map(|u| Some(constant(u))));
-    let floor = Condition::Contact { gap: constant(0.01) };
+    let floor = Condition::contact(|_| 0.01);
     let conditions = BTreeMap::from([("top".to_owned(), held), ("bottom".to_owned(), floor)]);
     let soft = Material::lame(1.0, 1.0, Plane::Strain);
     let parts = [2.0, 3.0].map(|s| Material::lame(s, s, Plane::Strain));
@@ -182,7 +182,7 @@ fn not_finite(value: f64) -> Outcome {
     for kind in 0..3 {
         let mut problem = block(if kind == 0 { value } else { -0.1 })?;
         if kind == 1 {
-            let floor = Condition::Contact { gap: constant(value) };
+            let floor = Condition::contact(move |_| value);
             problem.conditions.insert("bottom".to_owned(), floor);
         } else if kind == 2 {
             let held = Condition::Displacement([Some(constant(value)), None]);

@@ -1,7 +1,6 @@
 //! What a mesh and its data say of places: which triangle a point is in, which rigid motions supports leave free and how these
 //! are called, where a boundary is curved, and that loads are integrated exactly as far as they are said to be.
 
-use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use signorini::fem::constraints::Constraints;
@@ -9,14 +8,12 @@ use signorini::fem::{
     Condition, ContactFace, Degree, Diagonal, Function, Mesh, PointSupport, Problem, Rectangle,
     SharedFunction, Space, contact_line, loads,
 };
-use signorini::kernel::{Material, Plane};
 
 use super::{Outcome, properties, text};
-use crate::common::{Random, constant};
+use crate::common::{Random, constant, polygon, unit_material};
 
 fn body(mesh: Mesh) -> Problem {
-    let material = Material::lame(1.0, 1.0, Plane::Strain);
-    Problem::new(mesh, material, [0.0, 0.0].map(constant), [].into())
+    Problem::of(mesh, unit_material())
 }
 
 /// A rectangle with its vertices moved at random, in cells of side 1 before.
@@ -160,17 +157,8 @@ fn named(off: f64) -> Outcome {
 
 /// The edges of a polygon of `corners` corners are those of a curve where these are many, and are straight where they are few.
 fn curved(corners: usize, expected: bool) -> Outcome {
-    let rim = |k: usize| {
-        let (sine, cosine) = (TAU * k as f64 / corners as f64).sin_cos();
-        [cosine, sine]
-    };
-    let vertices = [[0.0, 0.0]].into_iter().chain((0..corners).map(rim)).collect();
-    let next = |k: usize| 1 + (k + 1) % corners;
-    let triangles = (0..corners).map(|k| [0, 1 + k, next(k)]).collect();
-    let edges = (0..corners).map(|k| [1 + k, next(k)]).collect();
-    let mesh = Mesh::new(vertices, triangles, [("rim".to_owned(), edges)]).map_err(text)?;
-    let mut problem = body(mesh);
-    let contact = Condition::Contact { gap: constant(0.0) };
+    let mut problem = body(polygon(corners, 1));
+    let contact = Condition::contact(|_| 0.0);
     problem.conditions.insert("rim".to_owned(), contact);
     let space = Space::new(&problem.mesh, Degree::One);
     let line = contact_line::assemble(&problem, &space, 1e-3).map_err(text)?;
@@ -187,7 +175,7 @@ fn ordered(times: f64) -> Outcome {
     for nx in [1, 4, 9] {
         let mesh = moved([nx, 1], random.below(1000) as u64)?;
         let mut problem = body(mesh);
-        let contact = Condition::Contact { gap: constant(0.0) };
+        let contact = Condition::contact(|_| 0.0);
         problem.conditions.insert("bottom".to_owned(), contact);
         let space = Space::new(&problem.mesh, Degree::One);
         // Each edge by itself: gamma of kappa = 1 is h_T over the constant of its triangle.
@@ -240,7 +228,7 @@ fn chained(sides: &[&str], breaks: usize) -> Outcome {
         let edges = shuffled(edges.len()).into_iter().map(|e| edges[e]).collect();
         let mesh = Mesh::new(vertices, triangles, [("contact".to_owned(), edges)]);
         let mut problem = body(mesh.map_err(text)?);
-        let contact = Condition::Contact { gap: constant(0.0) };
+        let contact = Condition::contact(|_| 0.0);
         problem.conditions.insert("contact".to_owned(), contact);
         let space = Space::new(&problem.mesh, Degree::One);
         let line = contact_line::assemble(&problem, &space, 1e-3).map_err(text)?;

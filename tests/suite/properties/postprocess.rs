@@ -11,7 +11,7 @@ use signorini::solve::{ContactBoundary, Degree, EnergyBalance, Method, Solution,
 
 use super::bodies::{on_bodies, unsolved};
 use super::{Outcome, properties, text};
-use crate::common::{Random, clamped, conditions, constant};
+use crate::common::{Random, unit_material};
 
 /// The von Mises stress of a mean stress by its principal stresses, sigma_zz from Hooke's law; `plane` may be a mistake.
 fn von_mises(material: &Material<f64>, plane: Plane, [xx, yy, xy]: [f64; 3]) -> f64 {
@@ -243,13 +243,10 @@ fn cornered() -> Result<Problem, String> {
     let around = [ends("bottom")?, ends("right")?].concat();
     let named = [("around".to_owned(), around), ("top".to_owned(), ends("top")?)];
     let mesh = Mesh::new(mesh.vertices().to_vec(), mesh.triangles().to_vec(), named);
-    let touching = Condition::Contact { gap: constant(0.0) };
-    Ok(Problem::new(
-        mesh.map_err(text)?,
-        Material::lame(1.0, 1.0, Plane::Strain),
-        [constant(0.0), constant(0.0)],
-        conditions([("around", touching), ("top", clamped())]),
-    ))
+    let touching = Condition::contact(|_| 0.0);
+    Ok(Problem::of(mesh.map_err(text)?, unit_material())
+        .with("around", touching)
+        .with("top", Condition::clamped()))
 }
 
 /// Places on an edge, for sums in place of integrals.
@@ -333,13 +330,10 @@ fn anything(
 
 fn unequal() -> Result<Problem, String> {
     let cells = Rectangle { width: 3.0, height: 2.0, nx: 3, ny: 2, diagonal: Diagonal::Right };
-    let floor = Condition::Contact { gap: constant(0.0) };
-    Ok(Problem::new(
-        cells.perturbed(0.2, 5).map_err(text)?,
-        Material::lame(1.5, 1.0, Plane::Strain),
-        [constant(0.0), constant(0.0)],
-        conditions([("top", clamped()), ("bottom", floor)]),
-    ))
+    let floor = Condition::contact(|_| 0.0);
+    Ok(Problem::of(cells.perturbed(0.2, 5).map_err(text)?, Material::lame(1.5, 1.0, Plane::Strain))
+        .with("top", Condition::clamped())
+        .with("bottom", floor))
 }
 
 /// The stresses at the nodes: for P1 the means of those of the triangles around a node by their areas, or `plain` ones; for P2

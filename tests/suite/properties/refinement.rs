@@ -25,7 +25,7 @@ use signorini::solve::{
 
 use super::bodies::on_bodies;
 use super::{Outcome, properties, text};
-use crate::common::{Random, clamped, conditions, constant};
+use crate::common::{Random, constant, unit_material};
 
 /// The squared norm of a functional where no component is prescribed.
 fn free_square(d: &Discretization, functional: &[[f64; 2]]) -> f64 {
@@ -249,13 +249,10 @@ fn balanced(most: f64, scale: f64) -> Outcome {
 fn carried(by: f64) -> Result<Problem, String> {
     let cells = Rectangle { width: 2.0, height: 1.0, nx: 4, ny: 2, diagonal: Diagonal::Right };
     let top = Condition::Displacement([0, 1].map(|_| Some(constant(by))));
-    let floor = Condition::Contact { gap: constant(0.0) };
-    Ok(Problem::new(
-        cells.mesh().map_err(text)?,
-        Material::lame(1.5, 1.0, Plane::Strain),
-        [constant(0.0), constant(0.0)],
-        conditions([("top", top), ("bottom", floor)]),
-    ))
+    let floor = Condition::contact(|_| 0.0);
+    Ok(Problem::of(cells.mesh().map_err(text)?, Material::lame(1.5, 1.0, Plane::Strain))
+        .with("top", top)
+        .with("bottom", floor))
 }
 
 /// A(u, v) for every basis function, in doubles, of a body that is carried along by `by` and bent by 2^`bits` times a field of
@@ -307,7 +304,7 @@ fn pressed(degree: Degree, by: f64) -> Result<Vec<Vec<f64>>, String> {
     problem.body_force = [constant(0.0), constant(-0.01)];
     let down = [0.0, -(by + 2.0_f64.powi(-7))].map(|u| Some(constant(u)));
     problem.conditions.insert("top".to_owned(), Condition::Displacement(down));
-    problem.conditions.insert("bottom".to_owned(), Condition::Contact { gap: constant(by) });
+    problem.conditions.insert("bottom".to_owned(), Condition::contact(move |_| by));
     let d = discretize(&problem, &Method { degree, ..Method::default() }).map_err(text)?;
     let system = System::new(&d).map_err(text)?;
     [RouteName::Condensed, RouteName::Assembled]
@@ -386,13 +383,11 @@ fn beam(cells: usize) -> Result<Problem, String> {
     // Under its own weight f it would bend by f L^4 / (8 E/12), E/(1 - nu^2) = 8/3: a hundredth of that is free, for one row of
     // P1 triangles is far stiffer than a beam.
     let weight = 1e-3 / length.powi(3);
-    let floor = Condition::Contact { gap: constant(weight * length.powi(4) * 4.5 / 8.0 / 100.0) };
-    Ok(Problem::new(
-        shape.mesh().map_err(text)?,
-        Material::lame(1.0, 1.0, Plane::Strain),
-        [constant(0.0), constant(-weight)],
-        conditions([("left", clamped()), ("bottom", floor)]),
-    ))
+    let floor = Condition::contact(move |_| weight * length.powi(4) * 4.5 / 8.0 / 100.0);
+    Ok(Problem::of(shape.mesh().map_err(text)?, unit_material())
+        .with_body_force(|_| 0.0, move |_| -weight)
+        .with("left", Condition::clamped())
+        .with("bottom", floor))
 }
 
 /// All entries of a symmetric matrix.
