@@ -9,11 +9,11 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use approx::{abs_diff_eq, assert_abs_diff_eq, assert_relative_eq};
+use approx::{abs_diff_eq, assert_relative_eq};
 
 use crate::common::Random;
 use crate::common::exact::{corner, on_square, on_trapezoid, singular, smooth};
-use signorini::fem::{Space, contact_line, loads};
+use signorini::fem::{Space, contact_line};
 use signorini::kernel::{Material, Plane};
 use signorini::nalgebra::{Matrix2, Vector2};
 use signorini::solve::Degree;
@@ -371,47 +371,5 @@ fn control_errors_by_a_rule_that_ignores_where_the_solution_is_not_smooth_do_mov
         ladder.solution = Arc::new(Hidden(Arc::clone(&ladder.solution)));
         let half = difference_of_rules(&ladder, [POINTS / 2, POINTS]);
         assert!(half > 1e-4, "{:?}: {half:e}", ladder.solution);
-    }
-}
-
-/// The largest relative change of L when each rule gets `points` points instead of its own.
-fn change_of_load(ladder: &signorini::study::Ladder, points: usize) -> f64 {
-    let problem = ladder.problem(0).unwrap();
-    let space = Space::new(&problem.mesh, Degree::Two);
-    let usual = loads::assemble(&problem, &space).unwrap();
-    let other = loads::assemble_with(&problem, &space, |_| points).unwrap();
-    let size = usual.as_flattened().iter().fold(0.0, |max: f64, l| max.max(l.abs()));
-    let pairs = usual.as_flattened().iter().zip(other.as_flattened());
-    pairs.map(|(a, b)| (a - b).abs() / size).fold(0.0, f64::max)
-}
-
-#[test]
-fn half_as_many_points_do_not_move_the_load() {
-    // f is a polynomial of degree 4 or 5 on each side of x = c, so with the quadratic shape functions 5 points (exact to
-    // degree 8) are enough, and 4 (degree 6) for the exponents (3, 2).
-    for (k, m, points) in [(3.0, 2.0, 4), (4.0, 3.0, 5)] {
-        for c in [1.0 / 3.0, 0.5] {
-            let change = change_of_load(&on_square(&smooth(k, m, c), Degree::Two, 8), points);
-            assert!(change < 1e-13, "{k} {m} {c}: {change:e}");
-        }
-    }
-}
-
-#[test]
-fn control_a_load_by_one_point_moves() {
-    assert!(change_of_load(&on_square(&smooth(3.0, 2.0, 0.5), Degree::Two, 8), 1) > 1e-2);
-}
-
-#[test]
-fn loads_of_p1_sum_to_those_of_p2() {
-    // The shape functions of both add up to one: the total force doesn't depend on the degree.
-    let ladder = on_square(&smooth(4.0, 3.0, 1.0 / 3.0), Degree::One, 8);
-    let problem = ladder.problem(0).unwrap();
-    let total = |load: Vec<[f64; 2]>| [0, 1].map(|c| load.iter().map(|l| l[c]).sum::<f64>());
-    let p1 = total(loads::assemble(&problem, &Space::new(&problem.mesh, Degree::One)).unwrap());
-    let p2 = total(loads::assemble(&problem, &Space::new(&problem.mesh, Degree::Two)).unwrap());
-    for c in 0..2 {
-        // Sums of a thousand entries of one integral.
-        assert_abs_diff_eq!(p1[c], p2[c], epsilon = 1e-12);
     }
 }

@@ -15,34 +15,15 @@ use signorini::fem::Function;
 use signorini::io::Expression;
 use signorini::io::gmsh;
 
-/// A generator of numbers (splitmix64).
-struct Dice(u64);
-
-impl Dice {
-    fn roll(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// Below `n`; 0 for 0.
-    fn below(&mut self, n: usize) -> usize {
-        (self.roll() % n.max(1) as u64) as usize
-    }
-
-    fn one_of<'t, T>(&mut self, things: &'t [T]) -> &'t T {
-        &things[self.below(things.len())]
-    }
-}
+use crate::common::Random;
 
 /// One of the seeds with a few changes: bytes, words of the format, parts of it or of another seed, an end too soon.
-fn mutated(dice: &mut Dice, seeds: &[Vec<u8>], words: &[&[u8]]) -> Vec<u8> {
+fn mutated(dice: &mut Random, seeds: &[Vec<u8>], words: &[&[u8]]) -> Vec<u8> {
     const LONGEST: usize = 1 << 16;
-    let mut input = dice.one_of(seeds).clone();
+    let mut input = dice.pick(seeds);
     // Half of the inputs differ in a number alone: they get further.
     if dice.below(2) == 0 {
-        replace_a_number(dice, &mut input, &NUMBERS);
+        replace_a_number(dice, &mut input, &in_lists(&[NUMBERS]));
         return input;
     }
     for _ in 0..=dice.below(4) {
@@ -52,20 +33,20 @@ fn mutated(dice: &mut Dice, seeds: &[Vec<u8>], words: &[&[u8]]) -> Vec<u8> {
             0 => input.truncate(at),
             1 => drop(input.drain(at..end)),
             2 if at < input.len() => input[at] ^= 1 << dice.below(8),
-            3 if at < input.len() => input[at] = dice.roll() as u8,
+            3 if at < input.len() => input[at] = dice.below(256) as u8,
             4 => {
                 let part = input[at..end].to_vec();
                 let times = dice.below(40);
                 input.splice(at..at, part.repeat(times));
             }
             5 => {
-                let other = dice.one_of(seeds);
+                let other = dice.pick(seeds);
                 let from = dice.below(other.len() + 1);
                 let to = (from + dice.below(200)).min(other.len());
                 input.splice(at..end, other[from..to].iter().copied());
             }
             6 => replace_a_number(dice, &mut input, words),
-            _ => drop(input.splice(at..end, dice.one_of(words).iter().copied())),
+            _ => drop(input.splice(at..end, dice.pick(words).iter().copied())),
         }
     }
     input.truncate(LONGEST);
@@ -73,14 +54,14 @@ fn mutated(dice: &mut Dice, seeds: &[Vec<u8>], words: &[&[u8]]) -> Vec<u8> {
 }
 
 /// Another word where a number stands: what is read is then most often a case or a mesh, if a strange one.
-fn replace_a_number(dice: &mut Dice, input: &mut Vec<u8>, words: &[&[u8]]) {
+fn replace_a_number(dice: &mut Random, input: &mut Vec<u8>, words: &[&[u8]]) {
     let is_part = |b: &u8| b.is_ascii_digit() || *b == b'.';
     let starts: Vec<usize> = (0..input.len())
         .filter(|&i| is_part(&input[i]) && (i == 0 || !is_part(&input[i - 1])))
         .collect();
     let Some(&start) = starts.get(dice.below(starts.len())) else { return };
     let length = input[start..].iter().take_while(|b| is_part(b)).count();
-    input.splice(start..start + length, dice.one_of(words).iter().copied());
+    input.splice(start..start + length, dice.pick(words).iter().copied());
 }
 
 /// Runs a target on mutated seeds: `runs` times, or as long as FUZZ_SECONDS says.
@@ -99,7 +80,7 @@ fn fuzz(
         None => 0,
         Some(_) => SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_nanos() as u64,
     };
-    let mut dice = Dice(seed);
+    let mut dice = Random(seed);
     let (mut done, mut accepted) = (0, 0);
     let more = |done: usize| match seconds {
         None => done < runs,
@@ -147,63 +128,11 @@ fn files(folder: &str, ending: &str) -> Vec<Vec<u8>> {
     paths.iter().map(|path| fs::read(path).unwrap()).collect()
 }
 
-const NUMBERS: [&[u8]; 22] = [
-    b"0",
-    b"1",
-    b"-1",
-    b"2",
-    b"0.5",
-    b"-0.0",
-    b"1e-3",
-    b"1e300",
-    b"-1e300",
-    b"1e-300",
-    b"1e308",
-    b"5e-324",
-    b"1e999",
-    b"nan",
-    b"inf",
-    b"-inf",
-    b"3.0000000000000004",
-    b"1e16",
-    b"1_000",
-    b"0x7f",
-    b"99999999999999999999",
-    b"-9223372036854775808",
-];
+const NUMBERS: &[u8] = b"0|1|-1|2|0.5|-0.0|1e-3|1e300|-1e300|1e-300|1e308|5e-324|1e999|nan|inf|-inf|3.0000000000000004|\
+    1e16|1_000|0x7f|99999999999999999999|-9223372036854775808";
 
-const EXPRESSION: [&[u8]; 30] = [
-    b"x",
-    b"y",
-    b"pi",
-    b"+",
-    b"-",
-    b"*",
-    b"/",
-    b"^",
-    b"(",
-    b")",
-    b",",
-    b" ",
-    b"sqrt(",
-    b"sin(",
-    b"cos(",
-    b"exp(",
-    b"abs(",
-    b"min(",
-    b"max(",
-    b"x^2",
-    b"y^-3",
-    b"1/x",
-    b"(x",
-    b"2^",
-    b"-x^-y",
-    b"1e",
-    b".5",
-    b"e9",
-    b"\xc3\xa9",
-    b"\0",
-];
+const EXPRESSION: &[u8] = b"x|y|pi|+|-|*|/|^|(|)|,| |sqrt(|sin(|cos(|exp(|abs(|min(|max(|x^2|y^-3|1/x|(x|2^|-x^-y|1e|.5|e9|\
+    \xc3\xa9|\0";
 
 const EXPRESSIONS: [&str; 10] = [
     "-4 + 10*x",
@@ -218,15 +147,16 @@ const EXPRESSIONS: [&str; 10] = [
     "+-+x^0.5",
 ];
 
-fn words(lists: &[&[&'static [u8]]]) -> Vec<&'static [u8]> {
-    lists.concat()
+/// The words of lists, in which `|` separates them.
+fn in_lists(lists: &[&'static [u8]]) -> Vec<&'static [u8]> {
+    lists.iter().flat_map(|list| list.split(|&b| b == b'|')).collect()
 }
 
 /// An expression that is read has a value everywhere; parentheses around it and two signs before it change no bit of it.
 #[test]
 fn expressions() {
     let seeds: Vec<Vec<u8>> = EXPRESSIONS.iter().map(|e| e.as_bytes().to_vec()).collect();
-    fuzz("expressions", 20_000, &seeds, &words(&[&NUMBERS, &EXPRESSION]), |input| {
+    fuzz("expressions", 20_000, &seeds, &in_lists(&[NUMBERS, EXPRESSION]), |input| {
         let text = String::from_utf8_lossy(input);
         let expression = match text.parse::<Expression>() {
             Ok(expression) => expression,
@@ -252,31 +182,17 @@ fn expressions() {
     });
 }
 
-const MESH: [&[u8]; 16] = [
-    b"$Nodes\n",
-    b"$EndNodes\n",
-    b"$Elements\n",
-    b"$EndElements\n",
-    b"$Entities\n",
-    b"$EndEntities\n",
-    b"$PhysicalNames\n",
-    b"$EndPhysicalNames\n",
-    b"$MeshFormat\n4.1 0 8\n$EndMeshFormat\n",
-    b"\n",
-    b" ",
-    b"\"floor\"",
-    b"18446744073709551615",
-    b"\xff\xff\xff\xff\xff\xff\xff\xff",
-    b"\0\0\0\0\0\0\xf0\x7f",
-    b"1 1 2\n",
-];
+const MESH: &[u8] =
+    b"$Nodes\n|$EndNodes\n|$Elements\n|$EndElements\n|$Entities\n|$EndEntities\n|$PhysicalNames\n|\
+    $EndPhysicalNames\n|$MeshFormat\n4.1 0 8\n$EndMeshFormat\n|\n| |\"floor\"|18446744073709551615|\
+    \xff\xff\xff\xff\xff\xff\xff\xff|\0\0\0\0\0\0\xf0\x7f|1 1 2\n";
 
 /// A mesh that is read is one: its triangles have areas, and its boundary is closed.
 #[test]
 fn meshes() {
     let seeds = files("tests/meshes", "msh");
     let small: Vec<Vec<u8>> = seeds.into_iter().filter(|seed| seed.len() < 1 << 15).collect();
-    fuzz("meshes", 4000, &small, &words(&[&NUMBERS, &MESH]), |input| {
+    fuzz("meshes", 4000, &small, &in_lists(&[NUMBERS, MESH]), |input| {
         match gmsh::from_bytes(input, Path::new("fuzzed.msh"), None) {
             Ok(mesh) => {
                 assert!((0..mesh.triangles().len()).all(|t| mesh.triangle(t).double_area() > 0.0));
@@ -307,42 +223,11 @@ mod cases {
     use super::super::bad_input::CASE;
     use super::*;
 
-    const WORDS: [&[u8]; 34] = [
-        b"[mesh]\n",
-        b"[material]\n",
-        b"[load]\n",
-        b"[boundary.left]\n",
-        b"[boundary.top]\n",
-        b"[method]\n",
-        b"[solver]\n",
-        b"[output]\n",
-        b"[exact]\n",
-        b"displacement = ",
-        b"traction = ",
-        b"contact = {}\n",
-        b"[\"0\", \"free\"]",
-        b"[\"x\", \"-y\"]",
-        b"\"0\"",
-        b"\"1/x\"",
-        b"degree = 2\n",
-        b"gamma0 = \"auto\"\n",
-        b"gamma0 = ",
-        b"allow_noncoercive = true\n",
-        b"contact_quadrature = { gauss = 4 }\n",
-        b"diagonal = \"crossed\"",
-        b"plane = \"stress\"\n",
-        b"perturb = { amount = 0.2, seed = 1 }\n",
-        b"probes = [[0.5, 0.5]]\n",
-        b"\"",
-        b"\"\"\"",
-        b"{",
-        b"}",
-        b"[",
-        b"]",
-        b"=",
-        b"#",
-        b"\n",
-    ];
+    const WORDS: &[u8] = b"[mesh]\n|[material]\n|[load]\n|[boundary.left]\n|[boundary.top]\n|[method]\n|[solver]\n|[output]\n|\
+        [exact]\n|displacement = |traction = |contact = {}\n|[\"0\", \"free\"]|[\"x\", \"-y\"]|\"0\"|\"1/x\"|degree = 2\n|\
+        gamma0 = \"auto\"\n|gamma0 = |allow_noncoercive = true\n|contact_quadrature = { gauss = 4 }\n|\
+        diagonal = \"crossed\"|plane = \"stress\"\n|perturb = { amount = 0.2, seed = 1 }\n|probes = [[0.5, 0.5]]\n|\
+        \"|\"\"\"|{|}|[|]|=|#|\n";
 
     /// Small ones: what is fuzzed are the doors, not the patience.
     fn small() -> String {
@@ -395,7 +280,7 @@ mod cases {
 
     #[test]
     fn read_or_refused() {
-        let words = words(&[&NUMBERS, &EXPRESSION, &WORDS]);
+        let words = in_lists(&[NUMBERS, EXPRESSION, WORDS]);
         fuzz("cases", 2000, &seeds(), &words, |input| read(input).is_some());
     }
 
@@ -403,7 +288,7 @@ mod cases {
     #[test]
     fn solved_or_refused() {
         let small: Vec<Vec<u8>> = seeds().into_iter().take(3).collect();
-        let words = words(&[&NUMBERS, &WORDS]);
+        let words = in_lists(&[NUMBERS, WORDS]);
         fuzz("solved cases", 300, &small, &words, |input| {
             let Some(mut case) = read(input) else { return false };
             if case.problem.mesh.triangles().len() > 1000 {

@@ -23,8 +23,6 @@ const PEAK: f64 = 0.02;
 /// The solver's tolerance leaves rounding errors, some thousand of them in a sum over the body.
 const SOLVED: f64 = 1e-11;
 
-const BOTH: [Degree; 2] = [Degree::One, Degree::Two];
-
 fn solved(problem: &Problem, degree: Degree) -> Solution {
     solve(problem, &method(degree, EXACT), &Default::default()).unwrap().0
 }
@@ -55,17 +53,12 @@ fn ring(n: usize, skew: f64) -> Mesh {
 }
 
 fn moved_by(x: f64, y: f64) -> Condition {
-    Condition::Displacement([Some(constant(x)), Some(constant(y))])
+    Condition::displacement(move |_| x, move |_| y)
 }
 
 /// The ring on a rigid pin, its rim moved to the right by 0.01; lambda = mu = 1.
 fn ring_on_a_pin(mesh: Mesh, contact: Condition) -> Problem {
-    Problem::new(
-        mesh,
-        Material::lame(1.0, 1.0, Plane::Strain),
-        [constant(0.0), constant(0.0)],
-        conditions([("rim", moved_by(0.01, 0.0)), ("pin", contact)]),
-    )
+    Problem::of(mesh, unit_material()).with("rim", moved_by(0.01, 0.0)).with("pin", contact)
 }
 
 fn circle(radius: f64, side: Side) -> Condition {
@@ -75,9 +68,9 @@ fn circle(radius: f64, side: Side) -> Condition {
 /// What an independent program with nodal normals found with 192 edges: the peak 0.0302, the force 0.0613.
 #[test]
 fn the_pressure_of_a_pin_converges_on_even_and_uneven_edges_with_an_obstacle_and_without() {
-    for degree in BOTH {
+    for degree in DEGREES {
         for skew in [0.0, 2.0] {
-            for contact in [circle(1.0, Side::Outside), Condition::Contact { gap: constant(0.0) }] {
+            for contact in [circle(1.0, Side::Outside), Condition::contact(|_| 0.0)] {
                 let s = solved(&ring_on_a_pin(ring(96, skew), contact), degree);
                 let pin = &s.boundaries[0];
                 assert!(
@@ -98,10 +91,11 @@ fn control_with_the_normals_of_the_facets_the_pressure_of_a_pin_does_not_converg
     for n in [48, 96] {
         let mesh = ring(n, 0.0);
         // One boundary for each facet: no smooth line goes through them.
-        let mut named = vec![("rim".to_owned(), edges(&mesh, "rim"))];
+        let edges = named_edges(&mesh);
+        let mut named = vec![("rim".to_owned(), edges["rim"].clone())];
         let mut conditions: BTreeMap<String, Condition> =
             BTreeMap::from([("rim".to_owned(), moved_by(0.01, 0.0))]);
-        for (i, [a, b]) in edges(&mesh, "pin").into_iter().enumerate() {
+        for (i, &[a, b]) in edges["pin"].iter().enumerate() {
             let [p, q] = [mesh.vertices()[a], mesh.vertices()[b]];
             let length = (q[0] - p[0]).hypot(q[1] - p[1]);
             // The body on the left of the edge.
@@ -119,68 +113,22 @@ fn control_with_the_normals_of_the_facets_the_pressure_of_a_pin_does_not_converg
     }
 }
 
-/// The ends of a boundary's edges, the body on the left.
-fn edges(mesh: &Mesh, name: &str) -> Vec<[usize; 2]> {
-    mesh.edges_of(name).unwrap().iter().map(|&edge| mesh.ends(edge)).collect()
-}
-
-/// A disk of radius 1 pressed on a plane: Hertz, p0 = (F E* / (pi R))^(1/2).
-#[test]
-fn the_peak_under_a_disk_is_that_of_hertz() {
-    let case = Case::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/disk.toml")).unwrap();
-    for degree in BOTH {
-        let s = solved(&case.problem, degree);
-        let floor = &s.boundaries[0];
-        let hertz = (floor.force * 1000.0 / (1.0 - 0.09) / PI).sqrt();
-        assert_relative_eq!(floor.peak_pressure, hertz, max_relative = PEAK);
-        // On a plane floor all forces have one direction.
-        assert_relative_eq!(floor.resultant[1], floor.force, max_relative = 1e-9);
-    }
-}
-
 /// A shaft that fits its bearing with interference d all round: u = -d r / R inside, p = 2 (lambda + mu) d / R.
 #[test]
 fn a_shaft_pressed_into_a_bearing_has_the_constant_pressure_of_its_closed_form() {
-    let n = 64;
-    let mut vertices = vec![[0.0, 0.0]];
-    let mut triangles = Vec::new();
-    let rings = 10;
-    for i in 1..=rings {
-        let r = i as f64 / f64::from(rings);
-        vertices.extend((0..n).map(|j| {
-            let a = 2.0 * PI * f64::from(j) / f64::from(n);
-            [r * a.cos(), r * a.sin()]
-        }));
-    }
-    let id = |i: i32, j: i32| (1 + (i - 1) * n + j % n) as usize;
-    for j in 0..n {
-        triangles.push([0, id(1, j), id(1, j + 1)]);
-        for i in 1..rings {
-            triangles.push([id(i, j), id(i + 1, j), id(i + 1, j + 1)]);
-            triangles.push([id(i, j), id(i + 1, j + 1), id(i, j + 1)]);
-        }
-    }
-    let rim = (0..n).map(|j| [id(rings, j), id(rings, j + 1)]).collect();
-    let mesh = Mesh::new(vertices, triangles, [("rim".to_owned(), rim)]).unwrap();
+    let mesh = polygon(64, 10);
     let (d, lambda, mu) = (1e-3, 1.5, 1.0);
     let held =
         |vertex, displacement| PointSupport { name: format!("{vertex}"), vertex, displacement };
-    for degree in BOTH {
+    for degree in DEGREES {
         for gap in [false, true] {
-            let contact = if gap {
-                Condition::Contact { gap: constant(-d) }
-            } else {
-                circle(1.0 - d, Side::Inside)
-            };
-            let mut problem = Problem::new(
-                mesh.clone(),
-                Material::lame(lambda, mu, Plane::Strain),
-                [constant(0.0), constant(0.0)],
-                conditions([("rim", contact)]),
-            );
+            let contact =
+                if gap { Condition::contact(move |_| -d) } else { circle(1.0 - d, Side::Inside) };
+            let mut problem = Problem::of(mesh.clone(), Material::lame(lambda, mu, Plane::Strain))
+                .with("rim", contact);
             // The centre stays where it is, and the shaft does not turn.
             problem.points.push(held(0, [Some(constant(0.0)), Some(constant(0.0))]));
-            problem.points.push(held(id(1, 0), [None, Some(constant(0.0))]));
+            problem.points.push(held(1, [None, Some(constant(0.0))]));
             let s = solved(&problem, degree);
             let p = 2.0 * (lambda + mu) * d;
             let rim = &s.boundaries[0];
@@ -214,23 +162,17 @@ fn a_bimaterial_bar_is_exact() {
     let count = mesh.triangles().len();
     let materials = Materials::in_parts(soft, count, [(stiff, &upper[..])]);
     let push = 0.01;
-    let roller = || Condition::Support { normal: Some(constant(0.0)), tangential: None };
-    let problem = Problem::new(
-        mesh,
-        materials,
-        [constant(0.0), constant(0.0)],
-        conditions([
-            ("left", roller()),
-            ("right", roller()),
-            ("top", Condition::Displacement([None, Some(constant(-push))])),
-            ("bottom", Condition::Contact { gap: constant(0.0) }),
-        ]),
-    );
+    let roller = || Condition::roller();
+    let problem = Problem::of(mesh, materials)
+        .with("left", roller())
+        .with("right", roller())
+        .with("top", Condition::Displacement([None, Some(constant(-push))]))
+        .with("bottom", Condition::contact(|_| 0.0));
     // Springs in series: lambda + 2 mu over the height of each.
     let p = push
         / (0.5 / soft.normal_stiffness(Vector2::<f64>::y())
             + 0.5 / stiff.normal_stiffness(Vector2::<f64>::y()));
-    for degree in BOTH {
+    for degree in DEGREES {
         let s = solved(&problem, degree);
         assert_relative_eq!(s.boundaries[0].force, p, max_relative = SOLVED / 10.0);
         assert_relative_eq!(s.boundaries[0].peak_pressure, p, max_relative = SOLVED / 10.0);
@@ -241,124 +183,6 @@ fn a_bimaterial_bar_is_exact() {
             // What is left of the roundings of displacements of 1e-2.
             assert_abs_diff_eq!(u[..], [0.0, -p * (below + above)][..], epsilon = 1e-15);
         }
-    }
-}
-
-/// The block on its floor, all turned by an angle: rollers, pressure, obstacle and answers turn with it.
-#[test]
-fn a_turned_block_on_rollers_gives_the_turned_answer() {
-    let solve_at = |angle: f64, degree| {
-        let (sin, cos) = angle.sin_cos();
-        let turn = move |[x, y]: [f64; 2]| [cos * x - sin * y, sin * x + cos * y];
-        let flat = skewed_square(6, Diagonal::Right);
-        let sides = ["left", "top", "bottom"].map(|name| (name.to_owned(), edges(&flat, name)));
-        let vertices = flat.vertices().iter().map(|&x| turn(x)).collect();
-        let mesh = Mesh::new(vertices, flat.triangles().to_vec(), sides).unwrap();
-        let floor = Obstacle::Plane { point: turn([0.3, -0.01]), normal: turn([0.0, 1.0]) };
-        let back = move |x: [f64; 2]| cos * x[0] + sin * x[1];
-        let problem = Problem::new(
-            mesh,
-            Material::lame(1.0, 1.0, Plane::Strain),
-            [constant(0.0), constant(0.0)],
-            conditions([
-                ("left", Condition::Support { normal: Some(constant(0.0)), tangential: None }),
-                (
-                    "top",
-                    Condition::Support {
-                        normal: Some(function(move |x| -0.04 - 0.02 * back(x))),
-                        tangential: None,
-                    },
-                ),
-                ("bottom", Condition::Obstacle("floor".to_owned(), floor)),
-            ]),
-        );
-        (solved(&problem, degree), turn)
-    };
-    for degree in BOTH {
-        let (flat, _) = solve_at(0.0, degree);
-        let (turned, turn) = solve_at(0.7, degree);
-        let energies = [&flat, &turned].map(|s| s.quantities.energy);
-        assert_relative_eq!(energies[0], energies[1], max_relative = SOLVED);
-        for (u, v) in flat.displacement.iter().zip(&turned.displacement) {
-            let u = turn(*u);
-            // Displacements are below 0.1.
-            assert_abs_diff_eq!(u[..], v[..], epsilon = SOLVED / 10.0);
-        }
-        let (a, b) = (&flat.boundaries[0], &turned.boundaries[0]);
-        let force = turn(a.resultant);
-        assert_abs_diff_eq!(force[..], b.resultant[..], epsilon = SOLVED * a.force);
-        // Places are up to 2 from the origin, edges of both signs cancel.
-        assert_abs_diff_eq!(a.moment, b.moment, epsilon = 10.0 * SOLVED * a.force);
-        for name in ["left", "top"] {
-            let (r, q) = (turn(flat.quantities.reactions[name]), turned.quantities.reactions[name]);
-            assert_abs_diff_eq!(r[..], q[..], epsilon = SOLVED);
-        }
-    }
-}
-
-/// Loads, contact and reactions balance per boundary, in force and moment, on a floor and a wall at once.
-#[test]
-fn floor_and_wall_balance_with_the_reactions_in_force_and_moment() {
-    let plane =
-        |point, normal| Condition::Obstacle("o".to_owned(), Obstacle::Plane { point, normal });
-    for degree in BOTH {
-        let problem = Problem::new(
-            skewed_square(7, Diagonal::Left),
-            Material::lame(1.0, 1.0, Plane::Strain),
-            [constant(0.0), constant(0.0)],
-            conditions([
-                ("top", moved_by(0.0, -0.05)),
-                ("bottom", plane([0.0, 0.0], [0.0, 1.0])),
-                ("right", plane([1.002, 0.0], [-1.0, 0.0])),
-                ("left", Condition::Pressure(function(|[_, y]| 0.02 * (1.0 + y)))),
-            ]),
-        );
-        let s = solved(&problem, degree);
-        let names: Vec<&str> = s.boundaries.iter().map(|b| &*b.boundary).collect();
-        assert_eq!(names, ["bottom", "right"]);
-        let reaction = s.quantities.reactions["top"];
-        // The pressure pushes to the right: int 0.02 (1 + y) = 0.03, about the origin -int 0.02 (1 + y) y.
-        let mut force = [reaction[0] + 0.03, reaction[1]];
-        let mut moment = s.quantities.reaction_moments["top"] - 0.02 * (0.5 + 1.0 / 3.0);
-        for b in &s.boundaries {
-            assert!(b.force > 1e-3 && b.penetration < 0.1 * 0.05, "{b:?}");
-            force = [force[0] + b.resultant[0], force[1] + b.resultant[1]];
-            moment += b.moment;
-        }
-        // Forces of 0.03: the balance of a discrete solution is exact but for rounding.
-        assert_abs_diff_eq!(force[..], [0.0; 2][..], epsilon = SOLVED / 100.0);
-        assert_abs_diff_eq!(moment, 0.0, epsilon = SOLVED / 100.0);
-        assert_eq!(
-            s.contact.iter().filter(|e| e.points[0].arc == 0.0).count(),
-            2,
-            "arc from 0 on each"
-        );
-    }
-}
-
-/// -lambda^h and the recovered pressure have the same integral on each boundary; the peak is not above that of -lambda^h.
-#[test]
-fn the_recovered_pressure_has_the_force_of_lambda() {
-    for degree in BOTH {
-        let s = solved(&ring_on_a_pin(ring(40, 2.0), circle(1.0, Side::Outside)), degree);
-        let mut total = 0.0;
-        for edge in &s.contact {
-            for pair in edge.points.windows(2) {
-                total += (pair[1].arc - pair[0].arc) * (pair[0].pressure + pair[1].pressure) / 2.0;
-            }
-        }
-        let force = s.boundaries[0].force;
-        // Two sums of some hundred terms.
-        assert_relative_eq!(total, force, max_relative = 1e-13);
-        assert!(s.boundaries[0].peak_pressure <= s.quantities.peak_pressure);
-        // The control: nodal values of lambda^h by the same rule have another one.
-        let mut of_lambda = 0.0;
-        for edge in &s.contact {
-            for pair in edge.points.windows(2) {
-                of_lambda -= (pair[1].arc - pair[0].arc) * (pair[0].lambda + pair[1].lambda) / 2.0;
-            }
-        }
-        assert!((of_lambda / force - 1.0).abs() > 1e-6, "{of_lambda} {force}");
     }
 }
 

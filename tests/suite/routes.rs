@@ -1,13 +1,14 @@
 //! The two routes of the solver give the same numbers, and what they promise: the residual of (8) at the tolerance, few steps,
 //! and a forward error that is one. Bodies on which A alone, or doubles alone, would not do.
 
-use signorini::fem::{Mesh, Problem, Rectangle};
+use signorini::fem::{Condition, Diagonal, Mesh, Problem, Rectangle, SharedFunction};
 use signorini::io::Case;
+use signorini::kernel::{Material, Plane};
 use signorini::solve::accuracy::Outcome;
 use signorini::solve::system::System;
 use signorini::solve::{
-    Degree, Gamma0, Method, RouteName, Settings, SolveError, Times, Verdict, discretize, route,
-    solve,
+    Degree, Gamma0, Method, RouteName, Settings, SolveError, Times, Verdict, check, discretize,
+    route, solve,
 };
 
 use crate::common::*;
@@ -26,42 +27,22 @@ fn difference(a: &Outcome, b: &Outcome) -> f64 {
     pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / largest
 }
 
-#[test]
-fn both_routes_give_the_same_numbers_on_every_example_case() {
-    for name in ["block", "gap", "cantilever", "disk", "smooth", "singular", "corner"] {
-        let case = Case::read(format!("cases/{name}.toml").as_ref()).unwrap();
-        for degree in [Degree::One, Degree::Two] {
-            let method = Method { degree, gamma0: Gamma0::Auto, ..case.method.clone() };
-            let run = |route| by(route, &case.problem, &method).unwrap();
-            let (condensed, assembled) = (run(RouteName::Condensed), run(RouteName::Assembled));
-            let apart = difference(&condensed, &assembled);
-            assert!(apart <= 1e-10, "{name}, P{}: {apart:e}", degree.number());
-            for outcome in [condensed, assembled] {
-                assert!(outcome.residual <= 1e-10 && outcome.forward_error <= 1e-10, "{name}");
-            }
-        }
-    }
-}
-
 /// A beam of this length and height 1, clamped on the left, its tip coming down on the floor.
 fn beam(length: f64, degree: Degree) -> (Problem, Method) {
-    let (nx, ny) = if length > 100.0 { (400, 1) } else { (4 * length as usize, 4) };
-    let diagonal = signorini::fem::Diagonal::Crossed;
-    let mesh = Rectangle { width: length, height: 1.0, nx, ny, diagonal }.mesh().unwrap();
-    let conditions = conditions([
-        ("left", clamped()),
-        ("bottom", signorini::fem::Condition::Contact { gap: constant(0.02) }),
-    ]);
-    let material =
-        signorini::kernel::Material::young_poisson(1.0, 0.3, signorini::kernel::Plane::Strain);
-    let problem = Problem::new(mesh, material, [constant(0.0), constant(-1e-4)], conditions);
+    let (nx, ny) = if length > 100.0 { (400, 1) } else { (length as usize, 2) };
+    let mesh = Rectangle { width: length, height: 1.0, nx, ny, diagonal: Diagonal::Crossed };
+    let material = Material::young_poisson(1.0, 0.3, Plane::Strain);
+    let problem = Problem::of(mesh.mesh().unwrap(), material)
+        .with_body_force(|_| 0.0, |_| -1e-4)
+        .with("left", Condition::clamped())
+        .with("bottom", Condition::contact(|_| 0.02));
     (problem, method(degree, EXACT))
 }
 
 #[test]
 fn slender_beams_are_solved_by_both_routes_in_few_steps() {
     for length in [10.0, 30.0, 100.0] {
-        for degree in [Degree::One, Degree::Two] {
+        for degree in DEGREES {
             let (problem, method) = beam(length, degree);
             let run = |route| by(route, &problem, &method).unwrap();
             let (condensed, assembled) = (run(RouteName::Condensed), run(RouteName::Assembled));
@@ -80,11 +61,11 @@ fn slender_beams_are_solved_by_both_routes_in_few_steps() {
 /// Springs of contact up to 1e8 times stiffer than the body.
 #[test]
 fn stiff_contact_reaches_the_tolerance_in_few_steps() {
-    for degree in [Degree::One, Degree::Two] {
+    for degree in DEGREES {
         for n in [8, 16, 32] {
             let problem = block(unit_square(n).mesh().unwrap());
             let auto = method(degree, EXACT);
-            let limit = signorini::solve::check(&problem, &auto).unwrap().gamma.coercivity.limit();
+            let limit = check(&problem, &auto).unwrap().gamma.coercivity.limit();
             for kappa in [1e-2, 1e-4, 1e-6, 1e-8] {
                 let method = Method { gamma0: Gamma0::Value(kappa * limit), ..auto.clone() };
                 let (s, _) = solve(&problem, &method, &Settings::default()).unwrap();
@@ -101,7 +82,7 @@ const BEYOND_DOUBLES: f64 = 1e15;
 
 #[test]
 fn slender_beams_are_proved_unless_their_condition_is_beyond_doubles() {
-    for degree in [Degree::One, Degree::Two] {
+    for degree in DEGREES {
         let mut proved = 0;
         for length in [1e2, 1e3, 1e4] {
             let (problem, method) = beam(length, degree);
@@ -122,32 +103,19 @@ fn slender_beams_are_proved_unless_their_condition_is_beyond_doubles() {
 
 #[test]
 fn a_beam_beyond_double_precision_is_refused_with_the_reason() {
-    let diagonal = signorini::fem::Diagonal::Crossed;
-    let mesh = Rectangle { width: 1e6, height: 1.0, nx: 1000, ny: 1, diagonal }.mesh().unwrap();
-    let conditions = conditions([
-        ("left", clamped()),
-        ("bottom", signorini::fem::Condition::Contact { gap: constant(1e30) }),
-    ]);
-    let material =
-        signorini::kernel::Material::young_poisson(1.0, 0.0, signorini::kernel::Plane::Strain);
-    let problem = Problem::new(mesh, material, [constant(0.0), constant(-1e-12)], conditions);
-    let error = solve(&problem, &method(Degree::Two, EXACT), &Settings::default()).unwrap_err();
+    let (mut problem, method) = beam(1e6, Degree::Two);
+    problem.conditions.insert("bottom".to_owned(), Condition::contact(|_| 1e30));
+    let error = solve(&problem, &method, &Settings::default()).unwrap_err();
     assert!(matches!(error, SolveError::Singular | SolveError::IllConditioned { .. }), "{error}");
 }
 
 #[test]
 fn a_lift_that_is_the_solution_has_converged() {
     // One cell whose lower side follows the upper one: nothing is left for the free unknowns to do but to move along.
-    let mesh = Rectangle { nx: 1, ny: 1, ..unit_square(1) }.mesh().unwrap();
-    let material =
-        signorini::kernel::Material::young_poisson(1.0, 0.0, signorini::kernel::Plane::Strain);
-    let moved =
-        signorini::fem::Condition::Displacement([Some(constant(0.0)), Some(constant(-0.5))]);
-    let conditions = conditions([
-        ("top", moved),
-        ("bottom", signorini::fem::Condition::Contact { gap: constant(0.0) }),
-    ]);
-    let problem = Problem::new(mesh, material, [constant(0.0), constant(0.0)], conditions);
+    let material = Material::young_poisson(1.0, 0.0, Plane::Strain);
+    let problem = Problem::of(unit_square(1).mesh().unwrap(), material)
+        .with("top", Condition::displacement(|_| 0.0, |_| -0.5))
+        .with("bottom", Condition::contact(|_| 0.0));
     let (s, _) = solve(&problem, &method(Degree::One, EXACT), &Settings::default()).unwrap();
     // Data of one digit, four unknowns: some hundred roundings.
     approx::assert_abs_diff_eq!(s.quantities.contact_force, 0.5, epsilon = 1e-13);
@@ -155,23 +123,15 @@ fn a_lift_that_is_the_solution_has_converged() {
 }
 
 /// A block without loads whose upper side is moved down by 1/16; the floor is at `gap`.
-fn moved_down(n: usize, gap: signorini::fem::SharedFunction) -> Problem {
-    let material = signorini::kernel::Material::lame(4.0, 1.0, signorini::kernel::Plane::Strain);
-    let moved =
-        signorini::fem::Condition::Displacement([Some(constant(0.0)), Some(constant(-0.0625))]);
-    let conditions =
-        conditions([("top", moved), ("bottom", signorini::fem::Condition::Contact { gap })]);
-    Problem::new(
-        unit_square(n).mesh().unwrap(),
-        material,
-        [constant(0.0), constant(0.0)],
-        conditions,
-    )
+fn moved_down(n: usize, gap: SharedFunction) -> Problem {
+    Problem::of(unit_square(n).mesh().unwrap(), Material::lame(4.0, 1.0, Plane::Strain))
+        .with("top", Condition::displacement(|_| 0.0, |_| -0.0625))
+        .with("bottom", Condition::Contact { gap })
 }
 
 #[test]
 fn a_body_that_is_moved_as_a_whole_to_where_it_touches_is_solved() {
-    for degree in [Degree::One, Degree::Two] {
+    for degree in DEGREES {
         for n in [1, 2, 3, 5, 8] {
             // The floor is touched along all of the side, in a corner, or not at all.
             for slope in [0.0, 0.0625, -0.03125, 0.5] {
@@ -211,16 +171,12 @@ fn with_a_sliver(height: f64) -> Problem {
     assert!(![a, b].contains(&c));
     triangles[at.triangle] = [a, b, inside];
     triangles.extend([[b, c, inside], [c, a, inside]]);
-    let boundaries = mesh.boundary_names().map(|name| {
-        let edges = mesh.edges_of(name).unwrap();
-        (name.to_owned(), edges.iter().map(|&edge| mesh.ends(edge)).collect::<Vec<_>>())
-    });
-    block(Mesh::new(vertices, triangles, boundaries).unwrap())
+    block(Mesh::new(vertices, triangles, named_edges(&mesh)).unwrap())
 }
 
 #[test]
 fn a_sliver_spoils_itself_only_where_gamma_is_local() {
-    for degree in [Degree::One, Degree::Two] {
+    for degree in DEGREES {
         let peak = |problem: &Problem, gamma0| {
             let method = Method { gamma0, ..method(degree, EXACT) };
             solve(problem, &method, &Settings::default()).unwrap().0.quantities.peak_pressure
