@@ -1,122 +1,57 @@
-//! Patch tests: exact solutions that lie in P1, so method (8) must reproduce them to rounding on any mesh, with P1 and P2,
-//! by exact and by Gauss quadrature. Consistency (Lemma 3.1) at its plainest.
-//!
-//! With lambda, mu and E1 = (lambda + 2 mu) / (4 mu (lambda + mu)), E2 = lambda / (4 mu (lambda + mu)), all on the unit
-//! square with the exact displacement prescribed on top, tractions on the sides, contact below:
-//! d1 full contact under uniform compression, d2 separation, d3 full contact on a sloping gap, d4 grazing (nothing
-//! happens, P = 0 everywhere), d5 an interference fit.
+//! Patch tests: exact solutions that lie in P1 (docs/theory.md, 10.5), so method (8) must reproduce them to rounding on any mesh,
+//! with P1 and P2, by exact and by Gauss quadrature, for every law. Consistency (Lemma 3.1) at its plainest.
 
-use crate::common::*;
-use signorini::fem::{Condition, Diagonal, Problem, SharedFunction};
+use std::sync::Arc;
+
+use signorini::fem::{Diagonal, Problem};
 use signorini::kernel::{Material, Plane};
-use signorini::solve::{Degree, Solution, solve};
+use signorini::nalgebra::Vector2;
+use signorini::solve::{Degree, Settings, Solution, solve};
+use signorini::study::Exact;
+use signorini::study::exact::{self, Kind, Patch};
 
-const MATERIALS: [(f64, f64); 2] = [(1.0, 1.0), (3.0, 0.7)];
+use super::tensor::{FULL, spruce};
+use crate::common::*;
 
-struct Patch {
-    name: &'static str,
-    /// u and its exact values
-    u: fn(Constants, [f64; 2]) -> [f64; 2],
-    /// the traction on the right side; on the left it is the opposite
-    right: fn(Constants) -> [f64; 2],
-    gap: fn([f64; 2]) -> f64,
-    /// sigma_n on the floor
-    sigma_n: fn(Constants) -> f64,
-    contact: bool,
+/// The solutions d1 to d5, and whether there is contact.
+fn patches(material: Material<f64>) -> [(Exact, bool); 5] {
+    let p = 0.3;
+    [
+        (Arc::new(Patch::compression(material, p)), true),
+        (Arc::new(Patch::separation(material, p, 0.02)), false),
+        (Arc::new(Patch::inclined(material, p, 0.05, 0.1)), true),
+        (Arc::new(Patch::grazing(material)), false),
+        (Arc::new(Patch::interference(material, 0.02)), true),
+    ]
 }
 
-#[derive(Clone, Copy)]
-struct Constants {
-    lambda: f64,
-    mu: f64,
-    e1: f64,
-    e2: f64,
+fn problem(solution: &Exact, diagonal: Diagonal) -> Problem {
+    let kinds = [
+        ("top", Kind::Displacement),
+        ("left", Kind::Traction),
+        ("right", Kind::Traction),
+        ("bottom", Kind::Contact),
+    ];
+    let kinds = kinds.map(|(name, kind)| (name.to_owned(), kind)).into();
+    exact::problem(solution, skewed_square(6, diagonal), &kinds)
 }
 
-const P: f64 = 0.3;
-const W: f64 = 0.05;
-const G0: f64 = 0.1;
-const D: f64 = 0.02;
-
-const PATCHES: [Patch; 5] = [
-    Patch {
-        name: "d1",
-        u: |c, [x, y]| [P * c.e2 * x, -P * c.e1 * y],
-        right: |_| [0.0, 0.0],
-        gap: |_| 0.0,
-        sigma_n: |_| -P,
-        contact: true,
-    },
-    Patch {
-        name: "d2",
-        u: |c, [x, y]| [P * c.e1 * x, -P * c.e2 * y + D],
-        right: |_| [P, 0.0],
-        gap: |_| 0.0,
-        sigma_n: |_| 0.0,
-        contact: false,
-    },
-    Patch {
-        name: "d3",
-        u: |c, [x, y]| [P * c.e2 * x - W * y, -P * c.e1 * y + W * x - G0],
-        right: |_| [0.0, 0.0],
-        gap: |[x, _]| G0 - W * x,
-        sigma_n: |_| -P,
-        contact: true,
-    },
-    Patch {
-        name: "d4",
-        u: |_, _| [0.0, 0.0],
-        right: |_| [0.0, 0.0],
-        gap: |_| 0.0,
-        sigma_n: |_| 0.0,
-        contact: false,
-    },
-    Patch {
-        name: "d5",
-        u: |_, [_, y]| [0.0, D * (1.0 - y)],
-        right: |c| [-c.lambda * D, 0.0],
-        gap: |_| -D,
-        sigma_n: |c| -(c.lambda + 2.0 * c.mu) * D,
-        contact: true,
-    },
-];
-
-fn constants((lambda, mu): (f64, f64)) -> Constants {
-    let d = 4.0 * mu * (lambda + mu);
-    Constants { lambda, mu, e1: (lambda + 2.0 * mu) / d, e2: lambda / d }
-}
-
-fn problem(patch: &Patch, c: Constants, diagonal: Diagonal) -> Problem {
-    let u = patch.u;
-    let component =
-        move |i: usize| -> Option<SharedFunction> { Some(function(move |x| u(c, x)[i])) };
-    let side = |sign: f64| Condition::Traction((patch.right)(c).map(|t| constant(sign * t)));
-    let gap = patch.gap;
-    Problem::new(
-        skewed_square(6, diagonal),
-        Material::lame(c.lambda, c.mu, Plane::Strain),
-        [constant(0.0), constant(0.0)],
-        conditions([
-            ("top", Condition::Displacement([component(0), component(1)])),
-            ("left", side(-1.0)),
-            ("right", side(1.0)),
-            ("bottom", Condition::Contact { gap: function(gap) }),
-        ]),
-    )
+fn solved(problem: &Problem, degree: Degree) -> Solution {
+    solve(problem, &method(degree, EXACT), &Settings::default()).unwrap().0
 }
 
 /// The bound of the patch tests: displacements of size 0.1 and stresses of size 1 through some 100 unknowns, each a sum of
-/// about ten products; a thousand rounding errors cover it with room for the condition of the matrix.
+/// about ten products; a thousand rounding errors cover it with room for the condition of the matrix, times the moduli.
 const BOUND: f64 = 1000.0 * f64::EPSILON;
 
-fn largest_error(patch: &Patch, c: Constants, s: &Solution) -> f64 {
+fn largest_error(solution: &Exact, s: &Solution) -> f64 {
     let mut error: f64 = 0.0;
-    for (node, u) in s.nodes.iter().zip(&s.displacement) {
-        let exact = (patch.u)(c, *node);
+    for (&node, u) in s.nodes.iter().zip(&s.displacement) {
+        let exact = solution.displacement(node);
         error = error.max((u[0] - exact[0]).abs()).max((u[1] - exact[1]).abs());
     }
+    let sigma_n = solution.stress([0.5, 0.0]).normal(Vector2::new(0.0, -1.0));
     for point in s.contact.iter().flat_map(|e| &e.points) {
-        let sigma_n = (patch.sigma_n)(c);
         error = error.max((point.sigma_n - sigma_n).abs()).max((point.lambda - sigma_n).abs());
     }
     error
@@ -124,41 +59,52 @@ fn largest_error(patch: &Patch, c: Constants, s: &Solution) -> f64 {
 
 #[test]
 fn patches_are_reproduced_to_rounding_on_skewed_meshes() {
-    for patch in &PATCHES {
-        for material in MATERIALS {
-            let c = constants(material);
+    for material in [
+        unit_material(),
+        Material::lame(3.0, 0.7, Plane::Strain),
+        Material::tensor(FULL, None),
+        spruce(30.0),
+    ] {
+        let bound = BOUND * material.stiffness().into_iter().fold(1.0, f64::max);
+        for (k, (solution, has_contact)) in patches(material).into_iter().enumerate() {
             for diagonal in [Diagonal::Left, Diagonal::Right, Diagonal::Crossed] {
-                for degree in [Degree::One, Degree::Two] {
-                    for quadrature in [EXACT, GAUSS] {
-                        let problem = problem(patch, c, diagonal);
-                        let method = method(degree, quadrature);
-                        let (s, _) = solve(&problem, &method, &Default::default()).unwrap();
-                        let here = format!("{} {diagonal:?} {degree:?} {quadrature:?}", patch.name);
-                        let error = largest_error(patch, c, &s);
-                        assert!(error <= BOUND, "{here}: {error:e}");
-                        let length = if patch.contact { 1.0 } else { 0.0 };
-                        let covered = s.quantities.contact_length;
-                        assert!((covered - length).abs() <= BOUND, "{here}: {covered}");
-                    }
+                for (degree, quadrature) in
+                    DEGREES.into_iter().flat_map(|d| [(d, EXACT), (d, GAUSS)])
+                {
+                    let problem = problem(&solution, diagonal);
+                    let method = method(degree, quadrature);
+                    let (s, _) = solve(&problem, &method, &Settings::default()).unwrap();
+                    let here = format!("d{} {material:?} {diagonal:?} {method:?}", k + 1);
+                    let error = largest_error(&solution, &s);
+                    assert!(error <= bound, "{here}: {error:e}");
+                    let covered = s.quantities.contact_length;
+                    let length = f64::from(u8::from(has_contact));
+                    assert!((covered - length).abs() <= BOUND, "{here}: {covered}");
                 }
             }
         }
     }
 }
 
+/// A thousandth more of the modulus along y, or of the one that shear and strain along y have in common.
 #[test]
-fn control_a_patch_with_the_wrong_modulus_is_not_reproduced() {
-    let c = constants(MATERIALS[1]);
-    let mut problem = problem(&PATCHES[0], c, Diagonal::Right);
-    problem.material = Material::lame(c.lambda, c.mu * 1.001, Plane::Strain).into();
-    let (s, _) = solve(&problem, &method(Degree::One, EXACT), &Default::default()).unwrap();
-    assert!(largest_error(&PATCHES[0], c, &s) > 1e6 * BOUND);
+fn control_a_patch_with_a_wrong_modulus_is_not_reproduced() {
+    for (material, modulus) in [(unit_material(), 3), (Material::tensor(FULL, None), 4)] {
+        for (solution, _) in patches(material).into_iter().filter(|(_, has_contact)| *has_contact) {
+            let mut problem = problem(&solution, Diagonal::Crossed);
+            let mut c = material.stiffness();
+            c[modulus] *= 1.001;
+            problem.material = Material::tensor(c, None).into();
+            let error = largest_error(&solution, &solved(&problem, Degree::One));
+            assert!(error > 1e6 * BOUND, "{solution:?}: {error:e}");
+        }
+    }
 }
 
 #[test]
 fn grazing_without_load_stays_exactly_at_rest() {
-    let problem = problem(&PATCHES[3], constants(MATERIALS[0]), Diagonal::Right);
-    let (s, _) = solve(&problem, &method(Degree::Two, EXACT), &Default::default()).unwrap();
+    let [.., (grazing, _), _] = patches(unit_material());
+    let s = solved(&problem(&grazing, Diagonal::Right), Degree::Two);
     assert!(s.displacement.iter().all(|u| *u == [0.0, 0.0]));
     assert_eq!(s.newton.residual, 0.0);
     assert_eq!(s.quantities.contact_force, 0.0);

@@ -1,6 +1,5 @@
 //! Laws A of (1) that are not isotropic: solutions in closed form, and the same body described in two ways.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use approx::assert_relative_eq;
@@ -12,18 +11,16 @@ use signorini::fem::material::{
     Across, Orthotropic, eigenvalues, least_eigenvalue, stable, stable_orthotropic,
 };
 use signorini::fem::{Condition, Diagonal, Mesh, Obstacle, Problem};
-use signorini::io::Case;
 use signorini::kernel::{Material, Plane};
 use signorini::solve::{Degree, Settings, Solution, Verdict, solve};
-use signorini::study::Exact;
-use signorini::study::Ladder;
-use signorini::study::exact::{self, Kind, Patch, Smooth};
+use signorini::study::exact::Smooth;
+use signorini::study::{Exact, Ladder};
 
 /// Entries of one size that couple all strains: eigenvalues 2.3, 5.2 and 13.5.
-const FULL: [f64; 6] = [12.0, 3.0, 2.0, 5.0, -1.0, 2.0];
+pub const FULL: [f64; 6] = [12.0, 3.0, 2.0, 5.0, -1.0, 2.0];
 
 /// Spruce, in GPa, its fibres at an angle.
-fn spruce(angle: f64) -> Material<f64> {
+pub fn spruce(angle: f64) -> Material<f64> {
     let moduli = Orthotropic { e1: 12.0, e2: 0.6, nu12: 0.4, g12: 0.7, angle, across: None };
     stable_orthotropic(moduli).unwrap()
 }
@@ -41,52 +38,6 @@ fn distance(s: &Solution, u: impl Fn([f64; 2]) -> [f64; 2]) -> f64 {
         (found[0] - expected[0]).abs().max((found[1] - expected[1]).abs())
     };
     s.nodes.iter().zip(&s.displacement).map(of).fold(0.0, f64::max)
-}
-
-#[test]
-fn affine_solutions_are_reproduced_with_tensors_that_couple_all_strains() {
-    let kinds = [
-        ("top", Kind::Displacement),
-        ("left", Kind::Traction),
-        ("right", Kind::Traction),
-        ("bottom", Kind::Contact),
-    ];
-    let kinds = kinds.map(|(name, kind)| (name.to_owned(), kind)).into();
-    for material in [Material::tensor(FULL, None), spruce(30.0)] {
-        let p = 0.3;
-        for (patch, pressure) in [
-            (Patch::compression(material, p), p),
-            (Patch::separation(material, p, 0.1), 0.0),
-            (Patch::inclined(material, p, 0.05, 0.1), p),
-            (Patch::interference(material, 0.02), {
-                let [_, along, coupled, c22, c26, c66] = material.stiffness();
-                assert!(along != 0.0 && coupled != 0.0);
-                0.02 * (c22 - c26 * c26 / c66)
-            }),
-        ] {
-            let solution: Exact = Arc::new(patch);
-            for degree in [Degree::One, Degree::Two] {
-                let mesh = skewed_square(6, Diagonal::Crossed);
-                let problem = exact::problem(&solution, mesh, &kinds);
-                let s = solved(&problem, degree);
-                let error = distance(&s, |x| solution.displacement(x));
-                // The displacements are of size 0.1 to 1, the condition of the matrix is some hundreds.
-                assert!(error <= 1e-12, "{solution:?} {degree:?}: {error:e}");
-                for point in s.contact.iter().flat_map(|edge| &edge.points) {
-                    assert!((point.lambda + pressure).abs() <= 1e-11, "{solution:?}: {point:?}");
-                }
-            }
-            // Control: a thousandth more of the modulus that shear and strain along y have in common.
-            let mut problem =
-                exact::problem(&solution, skewed_square(6, Diagonal::Crossed), &kinds);
-            let mut c = material.stiffness();
-            c[4] *= 1.001;
-            problem.material = Material::tensor(c, None).into();
-            let s = solved(&problem, Degree::One);
-            let error = distance(&s, |x| solution.displacement(x));
-            assert!(error > 1e-7, "{solution:?}: {error:e}");
-        }
-    }
 }
 
 /// Solution (a) solves (2) for every tensor with C26 = 0.
@@ -126,7 +77,7 @@ fn an_isotropic_tensor_is_the_isotropic_material() {
     for plane in [Plane::Strain, Plane::Stress] {
         let isotropic = Material::lame(1.3, 0.7, plane);
         let tensor = Material::tensor(isotropic.stiffness(), None);
-        for degree in [Degree::One, Degree::Two] {
+        for degree in DEGREES {
             let [a, b] = [isotropic, tensor]
                 .map(|m| solved(&tilted(skewed_square(8, Diagonal::Right), m), degree));
             for (a, b) in [
@@ -153,27 +104,19 @@ fn an_isotropic_tensor_is_the_isotropic_material() {
 #[test]
 fn a_body_that_is_turned_with_its_fibres_has_the_same_answers() {
     let turn = 25.0_f64;
-    let (sine, cosine) = turn.to_radians().sin_cos();
-    let about = move |[x, y]: [f64; 2]| [cosine * x - sine * y, sine * x + cosine * y];
-    let back = move |[x, y]: [f64; 2]| [cosine * x + sine * y, cosine * y - sine * x];
-    let problem = |angle: f64, turned: bool| {
+    let about = move |x: [f64; 2]| turned(turn.to_radians(), x);
+    let back = move |x: [f64; 2]| turned(-turn.to_radians(), x);
+    let problem = |angle: f64, is_turned: bool| {
         let mesh = unit_square(8).perturbed(0.2, 3).unwrap();
         let force = |[x, _]: [f64; 2]| [0.2, -0.4 + 1.0 * x];
         let mut problem = tilted(mesh, spruce(angle));
         let mut normal = [0.0, 1.0];
-        if turned {
-            let places = problem.mesh.vertices().iter().map(|&x| about(x)).collect();
-            let mesh = &problem.mesh;
-            let ends = |name: &str| {
-                let edges = mesh.edges_of(name).unwrap().iter().map(|&edge| mesh.ends(edge));
-                (name.to_owned(), edges.collect::<Vec<_>>())
-            };
-            let named = mesh.boundary_names().map(ends);
-            problem.mesh = Mesh::new(places, mesh.triangles().to_vec(), named).unwrap();
+        if is_turned {
+            problem.mesh = moved_to(&problem.mesh, about);
             normal = about(normal);
         }
         let of = move |c: usize| {
-            function(move |x| if turned { about(force(back(x)))[c] } else { force(x)[c] })
+            function(move |x| if is_turned { about(force(back(x)))[c] } else { force(x)[c] })
         };
         problem.body_force = [of(0), of(1)];
         let floor = Obstacle::Plane { point: [0.0, 0.0], normal };
@@ -181,7 +124,7 @@ fn a_body_that_is_turned_with_its_fibres_has_the_same_answers() {
         problem.conditions.insert("bottom".to_owned(), contact);
         problem
     };
-    for degree in [Degree::One, Degree::Two] {
+    for degree in DEGREES {
         let straight = solved(&problem(35.0, false), degree);
         let turned = solved(&problem(35.0 + turn, true), degree);
         let numbers = |s: &Solution| {
@@ -205,7 +148,7 @@ fn a_body_that_is_turned_with_its_fibres_has_the_same_answers() {
 #[test]
 fn certificates_of_tensors_are_written_read_and_accepted_and_a_wrong_law_is_not() {
     let problem = tilted(skewed_square(6, Diagonal::Left), spruce(20.0));
-    for degree in [Degree::One, Degree::Two] {
+    for degree in DEGREES {
         let s = solved(&problem, degree);
         let certified = certify(&problem, &s).unwrap();
         assert!(certified.relative < 1.0, "{}", certified.relative);
@@ -293,7 +236,7 @@ contact = {}
 
 #[test]
 fn cases_have_the_materials_that_they_say() {
-    let read = |text: &str| Case::parse(Path::new("wood.toml"), text, &[]).unwrap();
+    let read = |text: &str| case_of(text, &[]);
     let case = read(WOOD);
     assert_eq!(case.problem.material, spruce(30.0).into());
     let stiffness = spruce(30.0).stiffness();
