@@ -6,7 +6,7 @@
 
 use signorini::kernel::Scalar;
 
-/// Numbers with an order: doubles, exact rationals, integers and symbols. Intervals are not among them, on purpose.
+/// Numbers with an order: doubles, exact rationals, integers and symbols. Balls are not among them, on purpose.
 pub trait Ordered: Scalar + PartialOrd {}
 
 impl<S: Scalar + PartialOrd> Ordered for S {}

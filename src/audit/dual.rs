@@ -21,7 +21,6 @@ use super::forces::{
     Cover, ForceTarget, Forces, WrongLifting, component, energy, mean, ratio, reach,
 };
 use super::stresses::{Ground, Lengths, Numbers, RoundedLaw, RoundedLaws, Staged, resultant};
-use crate::kernel::ball::centre_and_radius;
 use crate::kernel::composite::{Composite, Frame, Loads, Wrench};
 use crate::kernel::{Ball, Enclosing, Triangle};
 
@@ -201,7 +200,7 @@ fn in_doubles(vectors: [Vector2<Ball>; 2]) -> ([Vector2<f64>; 2], f64) {
     let mut off = 0.0_f64;
     let values = vectors.map(|v| {
         v.map(|x| {
-            let (value, radius) = centre_and_radius(x);
+            let (value, radius) = (x.centre(), x.radius());
             off = off.max(radius);
             value
         })

@@ -52,7 +52,6 @@
 use nalgebra::{Matrix2, Vector2};
 
 use super::certificate::Piece;
-use crate::kernel::ball::centre_and_radius;
 use crate::kernel::composite::{Affine, Composite, Frame, Loads, Wrench};
 use crate::kernel::{Ball, Enclosing, Material, Squares, Stress, Triangle};
 
@@ -70,7 +69,7 @@ impl Staged for Ball {
 
     #[inline]
     fn centred(self) -> (f64, f64) {
-        centre_and_radius(self)
+        (self.centre(), self.radius())
     }
 }
 
@@ -377,8 +376,8 @@ pub(crate) fn resultant(
     triangle: &Triangle<Ball>,
     forces: [[Vector2<Ball>; 2]; 3],
 ) -> Wrench<Ball> {
-    let places = triangle.vertices.map(|v| [0, 1].map(|c| centre_and_radius(v[c])));
-    let known = forces.map(|ends| ends.map(|f| [0, 1].map(|c| centre_and_radius(f[c]))));
+    let places = triangle.vertices.map(|v| [0, 1].map(|c| v[c].centred()));
+    let known = forces.map(|ends| ends.map(|f| [0, 1].map(|c| f[c].centred())));
     if known.as_flattened().as_flattened().iter().all(|&(_, radius)| radius == 0.0) {
         let known = known.map(|ends| ends.map(|f| f.map(|(value, _)| value)));
         of_doubles(&places, &known).about(triangle.vertices[0])
@@ -988,18 +987,18 @@ mod tests {
             (sharp.moment, wide.moment),
         ];
         for (sharp, wide) in pairs {
-            let ((a, r), (b, s)) = (centre_and_radius(sharp), centre_and_radius(wide));
+            let ((a, r), (b, s)) = (sharp.centred(), wide.centred());
             assert!((a - b).abs() <= r + s && r <= 1e-28 && s >= 1e-17, "{sharp:?}, {wide:?}");
         }
         // Vertices that are anywhere near: the moments about the same point are as near.
         let near = Triangle { vertices: t.vertices.map(|v| v.map(|x| Ball::around(x, 1e-13))) };
         let beside = resultant(&near, given.forces).about(sharp.about);
-        let ((a, r), (b, s)) = (centre_and_radius(sharp.moment), centre_and_radius(beside.moment));
+        let ((a, r), (b, s)) = (sharp.moment.centred(), beside.moment.centred());
         assert!((a - b).abs() <= r + s && s > 1e-13, "{sharp:?}, {beside:?}");
         let moved = t.vertices.map(|v| Vector2::new(ball(v[0] + 9e-14), ball(v[1] - 9e-14)));
         let moved = [moved[0], balls(&t).vertices[1], moved[2]];
         let moved = resultant(&Triangle { vertices: moved }, given.forces).about(sharp.about);
-        let (c, q) = centre_and_radius(moved.moment);
+        let (c, q) = moved.moment.centred();
         assert!((c - a).abs() > 1e-14 && (c - b).abs() + q <= s, "{moved:?}, {beside:?}");
         // A force that is not a double is left to balls.
         let mut wide = given;

@@ -7,10 +7,10 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, Matrix2, Vector2};
 
-use super::double_double::DoubleDouble;
 use super::element::Degree;
 use super::mesh::BoundaryEdge;
 use super::quadrature;
+use crate::kernel::DoubleDouble;
 use crate::kernel::edge_integral::{self, ExactEdge};
 use crate::kernel::{ContactEdge, EdgeIntegrals, Element, Material, P1, P2, Scalar, Triangle};
 

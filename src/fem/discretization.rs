@@ -3,7 +3,6 @@
 
 use nalgebra::Vector2;
 
-use super::ball::PreciseBall;
 use super::constraints::{Constraints, in_frame};
 use super::contact_face::{ContactFace, EdgeRule};
 use super::contact_line::{self, Coercivity, Gamma};
@@ -17,6 +16,7 @@ use super::residual::{StressPoint, each_stress};
 use super::rigid::FreeMotion;
 use super::solvability::{self, NotHeld, Slides};
 use super::space::Space;
+use crate::kernel::PreciseBall;
 use crate::kernel::contact_edge::integral_of_product;
 
 /// Method (8) with everything that it needs.

@@ -14,12 +14,12 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::ball::larger;
 use super::constraints::Constraints;
 use super::material::least_eigenvalue;
 use super::space::Space;
 use super::tree::Bounds;
 use crate::fem::{Degree, Materials, Mesh};
+use crate::kernel::ball::larger;
 use crate::kernel::{Ball, Triangle};
 
 /// Covers the rounding of sums and products of positive numbers.

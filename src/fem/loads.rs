@@ -1,11 +1,11 @@
 //! L(v) = int_Omega f . v + int_{Gamma_N} t . v for every basis function v.
 
-use super::ball::PreciseBall;
 use super::data::{DataError, checked};
 use super::element::{Degree, with_element};
 use super::graded_quadrature::{Features, Rule};
 use super::problem::{Condition, Function, Problem, SharedFunction, SurfaceForce};
 use super::space::Space;
+use crate::kernel::PreciseBall;
 use crate::kernel::{Element, Scalar};
 use crate::quote::key;
 

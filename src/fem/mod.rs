@@ -1,8 +1,6 @@
 //! The discrete space V^h on a mesh and everything that is integrated over it.
 
 #[doc(hidden)]
-pub mod ball;
-#[doc(hidden)]
 pub mod boundary_normals;
 pub mod constraints;
 pub mod contact_face;
@@ -12,8 +10,6 @@ pub mod data;
 #[doc(hidden)]
 pub mod dense;
 pub mod discretization;
-#[doc(hidden)]
-pub mod double_double;
 pub mod element;
 #[doc(hidden)]
 pub mod embedding;

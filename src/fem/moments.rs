@@ -1,13 +1,13 @@
-//! The contact terms of (8) on one edge, int \[P\]+ N_a over s in \[0, 1\], enclosed in [balls](super::ball).
+//! The contact terms of (8) on one edge, int \[P\]+ N_a over s in \[0, 1\], enclosed in [balls](crate::kernel::ball).
 //!
 //! The integral is Lipschitz in P: where P is known to within a radius, so is it. For the centre of P, a polynomial of degree
 //! 1 or 2, the edge is cut near its roots, and on each piece either P or nothing is integrated. No cut need be right: where
 //! the sign on a piece is not the one that was taken, |P| is bounded, and the piece's length times that bound is added to the
 //! radius. A cut that is off by e leaves |P| = O(e) there, and Newton's method in balls makes e some 2^-100.
 
-use super::ball::{PreciseBall, larger};
 use super::contact_face::EdgeRule;
 use super::element::bernstein;
+use crate::kernel::ball::{PreciseBall, larger};
 use crate::kernel::edge_integral::{gauss, roots, value_at};
 use crate::kernel::{Element, P1, P2};
 
@@ -35,7 +35,7 @@ fn moments_of<E: Element<N, M>, const N: usize, const M: usize>(
         EdgeRule::Exact => {
             // |N_a| <= 1, and so |int ([P]+ - [Q]+) N_a| <= max |P - Q| <= the sum of the radii.
             let spread = p.iter().map(|p| p.radius()).sum::<f64>();
-            by_pieces::<E, _, _>(p.map(PreciseBall::centre))
+            by_pieces::<E, _, _>(p.map(|p| PreciseBall::point(p.centre())))
                 .map(|moment| moment.widened(2.0 * spread))
         }
     }
@@ -68,8 +68,8 @@ impl Parabola {
     /// One step of Newton's method from a root, if that is a step to somewhere.
     fn refined(&self, root: f64) -> PreciseBall {
         let at = PreciseBall::from(root);
-        let step = (self.at(at) / self.slope(at)).centre();
-        let better = (at - step).centre();
+        let step = PreciseBall::point((self.at(at) / self.slope(at)).centre());
+        let better = PreciseBall::point((at - step).centre());
         let inside = better.is_finite() && better.lower() > 0.0 && better.upper() < 1.0;
         if inside && step.magnitude() < 1e-6 { better } else { at }
     }

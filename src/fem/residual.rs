@@ -4,17 +4,17 @@
 //!
 //! over any numbers, for every basis function v and straight from the definitions: stresses are integrated against strains,
 //! no matrix is involved. In doubles they are the solver's ([`Discretization::residual`]); in
-//! [double-doubles](super::double_double) what is left of forces that cancel is known to the last bit of a double; balls
+//! [double-doubles](crate::kernel::double_double) what is left of forces that cancel is known to the last bit of a double; balls
 //! bound the rounding; over rationals `props` compares them with the definitions.
 
 use nalgebra::{Matrix2, Vector2};
 
 use super::contact_face::ContactFace;
 use super::discretization::Discretization;
-use super::double_double::DoubleDouble;
 use super::element::with_element;
 use super::material::Materials;
 use super::space::Space;
+use crate::kernel::DoubleDouble;
 use crate::kernel::element::displacement_gradient;
 use crate::kernel::{Element, Material, Scalar, Stress, Triangle};
 

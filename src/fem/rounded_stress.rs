@@ -3,13 +3,13 @@
 
 use nalgebra::{Vector2, Vector3};
 
-use super::ball::{Multiplier, PreciseBall};
 use super::discretization::Discretization;
-use super::double_double::DoubleDouble;
 use super::element::with_element;
 use super::material::{Materials, largest_entry, least_eigenvalue};
+use crate::kernel::ball::up;
+use crate::kernel::double_double::{DoubleDouble, Multiplier};
 use crate::kernel::element::displacement_gradient;
-use crate::kernel::{Element, Material, Stress, Triangle};
+use crate::kernel::{Element, Material, PreciseBall, Stress, Triangle};
 
 /// Adds int s:eps(v) for every basis function v, where s is the stress of `u` that doubles give. Returns a b with
 /// |int (s - sigma(u)):eps(v)| <= b |v|_a for all v: docs/theory.md, 7.5. Infinite or NaN where there is none.
@@ -21,9 +21,12 @@ pub fn add_forces(
     each_force(d, u, |node, stress, normal| {
         let [xx, yy, xy] = stress.map(|s| Multiplier::from(DoubleDouble::from(s)));
         let [x, y] = normal.map(Multiplier::from);
-        let [along_x, along_y] = &mut forces[node];
-        along_x.add_products([(xx, x), (xy, y)]);
-        along_y.add_products([(xy, x), (yy, y)]);
+        for (force, products) in
+            forces[node].iter_mut().zip([[(xx, x), (xy, y)], [(xy, x), (yy, y)]])
+        {
+            let (sum, error) = force.centre().rounded_sum_with_products(products);
+            *force = PreciseBall::around(sum, up(force.radius() + error));
+        }
     })
 }
 
@@ -263,7 +266,7 @@ impl<const N: usize> RoundedStrain<N> {
     ) -> Self {
         let first = nodal[0];
         let difference = |u: [PreciseBall; 2], c: usize| {
-            (u[c].head() - first[c].head()) + (u[c].tail() - first[c].tail())
+            (u[c].head() - first[c].head()) + (u[c].centre().tail() - first[c].centre().tail())
         };
         let differences = nodal.map(|u| Vector2::new(difference(u, 0), difference(u, 1)));
         // What the differences are off by, beside what is relative to them.
@@ -271,7 +274,7 @@ impl<const N: usize> RoundedStrain<N> {
             .iter()
             .flat_map(|u| u.iter().zip(&first))
             .map(|(u, first)| {
-                let tails = u.tail().abs() + first.tail().abs();
+                let tails = u.centre().tail().abs() + first.centre().tail().abs();
                 2.0 * f64::EPSILON * tails + u.radius() + first.radius()
             })
             .sum();

@@ -1,7 +1,7 @@
 //! Numbers that enclose a real one, and what may be concluded from them: the comparisons of the checker of certificates. A
 //! conclusion holds for every number that is enclosed; where nothing is known, and of a NaN, nothing is concluded.
 
-use super::{Ball, Scalar};
+use super::Scalar;
 
 /// A number that stands for a real one: a double for a quick look, a ball or an interval for a proof, a rational for the
 /// truth.
@@ -50,27 +50,5 @@ impl Enclosing for f64 {
     #[inline]
     fn lower(self) -> f64 {
         self
-    }
-}
-
-impl Enclosing for Ball {
-    #[inline]
-    fn exactly(value: f64) -> Ball {
-        Ball::point(value)
-    }
-
-    #[inline]
-    fn sqrt(self) -> Ball {
-        Ball::sqrt(self)
-    }
-
-    #[inline]
-    fn upper(self) -> f64 {
-        Ball::upper(self)
-    }
-
-    #[inline]
-    fn lower(self) -> f64 {
-        Ball::lower(self)
     }
 }

@@ -19,7 +19,8 @@
 //! | [`edge_integral`] | the integrals over one edge in (8) and in J_h |
 //! | [`squares`] | not in the paper: the energies of a strain and of a stress as sums of squares |
 //! | [`composite`] | not in the paper: stresses in equilibrium, for certificates |
-//! | [`ball`] | not in the paper: doubles with their rounding enclosed |
+//! | [`ball`] | not in the paper: numbers with their rounding enclosed |
+//! | [`double_double`] | not in the paper: numbers of twice the precision |
 //! | [`enclosing`] | not in the paper: what may be concluded from these |
 
 pub mod ball;
@@ -27,6 +28,7 @@ pub mod ball;
 pub mod composite;
 pub mod contact;
 pub mod contact_edge;
+pub mod double_double;
 pub mod edge_integral;
 pub mod element;
 pub mod enclosing;
@@ -37,9 +39,10 @@ pub mod scalar;
 pub mod squares;
 pub mod triangle;
 
-pub use ball::Ball;
+pub use ball::{Ball, PreciseBall};
 pub use contact::ContactPoint;
 pub use contact_edge::ContactEdge;
+pub use double_double::DoubleDouble;
 pub use edge_integral::EdgeIntegrals;
 pub use element::{Element, P1, P2};
 pub use enclosing::Enclosing;

@@ -18,7 +18,7 @@ use super::system::System;
 use super::{Settings, SolveError, Status};
 use crate::fem::dense::norm;
 use crate::fem::discretization::Discretization;
-use crate::fem::double_double::DoubleDouble;
+use crate::kernel::DoubleDouble;
 
 /// A way to better an iterate.
 pub trait Route {

@@ -26,10 +26,10 @@ use nalgebra::Vector2;
 
 use crate::fem::dense::inner;
 use crate::fem::discretization::Discretization;
-use crate::fem::double_double::DoubleDouble;
 use crate::fem::element::{roots, value_at};
 use crate::fem::mesh::length;
 use crate::fem::{ContactFace, EdgeRule};
+use crate::kernel::DoubleDouble;
 use crate::kernel::positive_part;
 
 /// The quantities of one part of Gamma_C, in the units of the case.

@@ -15,9 +15,9 @@ use super::iterate::{Evaluation, Iterate};
 use super::newton::{self, Until};
 use super::system::System;
 use crate::fem::dense::norm;
-use crate::fem::double_double::DoubleDouble;
 use crate::fem::rigid::Parts;
 use crate::fem::solvability;
+use crate::kernel::DoubleDouble;
 
 /// The tangent last factored.
 pub struct Assembled<'a, 'd, 'p> {

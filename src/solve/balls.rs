@@ -4,9 +4,9 @@
 use std::collections::BTreeMap;
 
 use super::system::System;
-use crate::fem::ball::{PreciseBall, larger, up};
 use crate::fem::residual;
 use crate::fem::{ContactFace, Discretization};
+use crate::kernel::ball::{PreciseBall, larger, up};
 use crate::kernel::contact_edge::traction_stiffness;
 
 /// The contact edges in balls: length and normal as the vertices have them.

@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::SolveError;
 use crate::fem::discretization::Discretization;
-use crate::fem::double_double::DoubleDouble;
+use crate::kernel::DoubleDouble;
 
 /// The contact edges as Newton's method needs them.
 pub trait ContactEnergy {

@@ -30,7 +30,7 @@ use super::iterate::{Evaluation, Iterate, NOISE};
 use super::newton::{self, Until};
 use super::system::System;
 use crate::fem::dense::norm;
-use crate::fem::double_double::DoubleDouble;
+use crate::kernel::DoubleDouble;
 
 /// The body, factored, and the forces of contact on it.
 pub struct Condensed<'a, 'd, 'p> {

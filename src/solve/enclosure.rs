@@ -11,7 +11,7 @@
 //!    |r|_A* <= (z.A z)^{1/2} + |r - A z|_A*, where the last residual is turned into a dual norm by
 //!    [Korn's inequality](crate::fem::korn) at each node, crudely. Both residuals are evaluated in
 //!    [doubles](crate::fem::rounded_stress) with a bound of their rounding, and where that proves too little in
-//!    [balls](crate::fem::ball).
+//!    [balls](crate::kernel::ball).
 //! 3. (C2): with rho = |r|_A*, |u~ - u^h|_a <= rho (1 - kappa)^{-1/2}, |gamma^{1/2}(lambda~ - lambda^h)| <= rho / 2.
 
 use std::borrow::Cow;
@@ -28,11 +28,11 @@ use super::intervals::{Arithmetic, EnclosedResidual, Intervals};
 use super::pressed::{self, Pressed, SHARES};
 use super::report::Stopwatch;
 use super::system::System;
-use crate::fem::ball::{PreciseBall, up};
-use crate::fem::double_double::DoubleDouble;
 use crate::fem::korn::Korn;
 use crate::fem::solvability::Slides;
 use crate::fem::{ContactFace, Discretization};
+use crate::kernel::DoubleDouble;
+use crate::kernel::ball::{PreciseBall, up};
 
 /// Where u^h is, and what is known of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -431,7 +431,7 @@ fn dual_norm(
         let mut correction: Vec<f64> = left.iter().map(|t| t.head()).collect();
         factor.solve(&mut correction);
         for (z, c) in z.iter_mut().zip(&correction) {
-            *z = (*z + PreciseBall::from(*c)).centre();
+            *z = PreciseBall::point((*z + PreciseBall::from(*c)).centre());
         }
         let (mut az, off) = a.times(&z);
         let off = up(off / coercivity.sqrt());

@@ -7,11 +7,11 @@ use serde::{Deserialize, Serialize};
 
 use super::balls::{field, length, product, root, strain_energy};
 use super::system::System;
-use crate::fem::ball::{PreciseBall, up};
-use crate::fem::double_double::DoubleDouble;
 use crate::fem::moments::moments;
 use crate::fem::{ContactFace, Discretization};
 use crate::fem::{residual, rounded_stress};
+use crate::kernel::DoubleDouble;
+use crate::kernel::ball::{PreciseBall, up};
 
 /// An interval `[low, high]`.
 pub type Range = [f64; 2];
@@ -133,7 +133,9 @@ impl EnclosedResidual {
             None => u[node].map(PreciseBall::from),
         };
         let component = |_, node: usize, c: usize| match frames.get(&node) {
-            Some(&axis) => crate::fem::constraints::in_frame(axis, at(node))[c].centre(),
+            Some(&axis) => {
+                PreciseBall::point(crate::fem::constraints::in_frame(axis, at(node))[c].centre())
+            }
             None => at(node)[c],
         };
         let prescribed =

@@ -1,5 +1,5 @@
 //! A displacement on its way to the solution, and what the definitions say of it: in doubles as long as these tell enough,
-//! in [double-doubles](crate::fem::double_double) where rounding would blur it. It is known to more than double precision
+//! in [double-doubles](crate::kernel::double_double) where rounding would blur it. It is known to more than double precision
 //! itself: rounding the displacement of a slender body to doubles changes its forces by more than its loads. In doubles, too,
 //! stresses are those of its differences from node to node, which keep what rounding it would lose. In the end it is rounded, and
 //! its forces, differences of stiffnesses times nodal values, are those before rounding where that would blur them.
@@ -8,10 +8,10 @@ use nalgebra::Vector2;
 
 use super::system::System;
 use crate::fem::discretization::{Discretization, Functional};
-use crate::fem::double_double::DoubleDouble;
 use crate::fem::residual;
 use crate::fem::solvability::{Play, Slides};
 use crate::fem::{ContactFace, EdgeRule};
+use crate::kernel::DoubleDouble;
 
 /// A residual this many unit roundoffs times its magnitudes is noise.
 pub(super) const NOISE: f64 = 4.0;

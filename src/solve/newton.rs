@@ -25,7 +25,7 @@
 use super::SolveError;
 use super::body::{Body, ContactEnergy, Derivatives, Step, block, derivatives};
 use crate::fem::dense::norm;
-use crate::fem::double_double::DoubleDouble;
+use crate::kernel::DoubleDouble;
 
 /// Armijo's sigma.
 const SUFFICIENT: f64 = 1e-4;

@@ -9,10 +9,10 @@
 
 use nalgebra::DMatrix;
 
-use crate::fem::ball::{PreciseBall, up};
 use crate::fem::element::{bernstein, roots};
 use crate::fem::korn::Hold;
 use crate::fem::{ContactFace, Degree, Discretization, EdgeRule};
+use crate::kernel::ball::{PreciseBall, up};
 
 /// A piece is taken for pressed where P is at least this share of the most that it is all along some piece; where that proves
 /// nothing, the next one: with all pieces that are pressed more holds the body, with fewer these stay pressed on a larger ball.

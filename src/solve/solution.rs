@@ -13,9 +13,9 @@ use crate::fem::Degree;
 use crate::fem::contact_line::{Coercivity, Gamma};
 use crate::fem::dense::inner;
 use crate::fem::discretization::Discretization;
-use crate::fem::double_double::DoubleDouble;
 use crate::fem::element::maximum;
 use crate::fem::solvability::Play;
+use crate::kernel::DoubleDouble;
 use crate::kernel::Stress;
 use crate::kernel::contact::pressure;
 

@@ -11,9 +11,9 @@ use super::SolveError;
 use super::course::{Course, Phase};
 use super::factor::{Factor, Structure};
 use super::ordering::nested_dissection;
-use crate::fem::ball::larger;
 use crate::fem::discretization::Discretization;
 use crate::fem::matrix::{self, LowerTriangle, Neighbours, Numbering};
+use crate::kernel::ball::larger;
 
 /// The matrices of a discretization.
 pub struct System<'d, 'p> {

@@ -20,12 +20,12 @@ use std::sync::Arc;
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use proptest::prelude::*;
-use signorini::fem::ball::PreciseBall;
 use signorini::fem::korn::Korn;
 use signorini::fem::matrix::LowerTriangle;
 use signorini::fem::{
     Condition, Diagonal, Discretization, Mesh, Obstacle, Problem, Rectangle, SharedFunction, Side,
 };
+use signorini::kernel::PreciseBall;
 use signorini::kernel::{Material, Plane};
 use signorini::solve::enclosure::{self, Enclosure, Unproved, Verifier};
 use signorini::solve::factor::Factor;

@@ -7,8 +7,7 @@
 //! ones (`refusals`), which it must refuse; and certificates of solutions (`solved`), which are compared with the same checker
 //! over rationals, and with the true errors of solutions that are known.
 
-use crate::numbers::Interval;
-use signorini::kernel::{Ball, Material, Plane};
+use signorini::kernel::{Ball, Material, Plane, PreciseBall};
 use signorini::nalgebra::Matrix2;
 use signorini::solve::Degree;
 
@@ -72,9 +71,9 @@ pub fn control_contact_adds_under_tension<S: Ordered>([u, s, v, t, g]: [S; 5]) -
 
 fn the_definitions_are_found() -> Outcome {
     let balls = draws::hold(60, draws_of(false), &CLASSES, |draw| evaluated::<Ball>(draw, 1.0))?;
-    let intervals =
-        draws::hold(40, draws_of(false), &CLASSES, |draw| evaluated::<Interval>(draw, 1.0))?;
-    Ok(format!("in balls: {balls}; in intervals: {intervals}"))
+    let precise =
+        draws::hold(40, draws_of(false), &CLASSES, |draw| evaluated::<PreciseBall>(draw, 1.0))?;
+    Ok(format!("in balls: {balls}; around double-doubles: {precise}"))
 }
 
 fn balls_are_above_the_rationals() -> Outcome {
@@ -119,7 +118,7 @@ pub fn claim() -> Claim {
         title: "The bound of the distance from the true solution, and its checker",
         paper: "Nothing: the estimates of the paper have unknown constants.",
         statement: "|u - v|_a^2 + |sigma(u) - tau|^2 <= |C eps(v) - tau|^2 + 2 int tau_n (v_n - g), in the norm of C^-1, for v that is admissible and tau in equilibrium with the loads, without shear and tension on Gamma_C (docs/theory.md, 7.2): at a point the squares split, and what contact adds to the integral of their product is not negative. The checker of certificates, on certificates of random v, affine or quadratic on the triangles, and affine tau that are made by hand of dyadic numbers: the square of its bound, |v|_a and J(v) are the integrals of their definitions, never below, to 1e-10; with data that oscillate, each triangle's share has its term; the square of the bound less 2 J(v) is the same for every v, where loads are affine on each triangle, too; tractions that are out of balance by what the checker may add are balanced again; where the direction of contact turns, the same for certificates of the solver's, and what a larger gap adds is its work. It refuses what the theorem does not allow, for its own reason, in 22 ways for a v that is affine and 31 for one that is quadratic, among them a tension, a penetration of 1e-6 or between the ends of an edge or its three nodes, where a test at the nodes sees none, a prescribed value or bulge missed by a rounding error, a body that nothing holds; of bodies that are held along oblique directions alone, with tractions across, the same integrals, and 17 more ways, among them a support that is turned at one end and a value along it that v misses by 1e-12; and the audit refuses a claim that is smaller by one double, another share, and a traction that is off by 1e-9. What it concludes from balls, a sign, an order, an end, and nothing from a NaN, are harnesses of the model checker, on the functions that it calls. The checker over balls of doubles is never below the same source over exact rationals, P1 and P2, with body forces that are constant or affine, and the potential energy encloses it; what balls lose on a triangle is bounded by its shape: forces known to r make stresses known to 48 h^3 r / (2 |T|)^2. The intervals of J(u) on a coarse and on a fine mesh meet, and so do those of the compliance, which is given where loads alone act. What loads and bent displacements cost on a triangle is its definition, with Korn's constant; what displacements lack between the vertices is in the bound, and data outside the exact class, scaled, scale it. A field that is moved raises the bound at least by what moves it. A quadratic displacement that is the solution, with its affine stress, is certified with a bound of rounding errors by P2. On 60 exact solutions with drawn parameters, (a), (b) and (c) of docs/theory.md, 10, P1 and P2, the true error is never above the bound. That 1,000 tampered certificates are rejected: tests/suite/certify.rs.",
-        numbers: "every ordered field at a point (proof); balls and intervals against rationals, in which a root is rounded to 2^-200; doubles for the true errors.",
+        numbers: "every ordered field at a point (proof); balls against rationals, in which a root is rounded to 2^-200; doubles for the true errors.",
         preconditions: "The data are those of the certificate: the checker does not see the problem that it was made for; `signorini audit --case` compares them with it (tests/suite/audit.rs). Green's formula.",
         limits: "Pieces that are cut, and how a certificate is made of a problem (`certify::build`, `sweeps`, `oscillation`), are looked at through their results only: a mistake there makes the bound of another problem, or a larger one. 60 solutions are samples; true errors are by quadrature. Trusted: the checker, balls, IEEE 754.",
         single: None,

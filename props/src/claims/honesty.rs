@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use signorini::fem::Degree;
-use signorini::fem::ball::PreciseBall;
 use signorini::fem::matrix::{self, Neighbours};
 use signorini::fem::{Condition, Problem, SharedFunction};
 use signorini::fem::{residual, rounded_stress};
+use signorini::kernel::PreciseBall;
 use signorini::solve::factor::Factor;
 use signorini::solve::system::System;
 use signorini::solve::{Method, discretize};
@@ -62,14 +62,16 @@ fn rounding_of_stresses(degree: Degree, problem: &Problem, by: f64) -> Result<f6
                 PreciseBall::from(by + heads[i][c]) + PreciseBall::from(small * tails[i][c])
             })
         })
-        .map(|u| u.map(PreciseBall::centre))
+        .map(|u| u.map(|u| PreciseBall::point(u.centre())))
         .collect();
     let mut sums = [vec![[PreciseBall::from(0); 2]; nodes], vec![[PreciseBall::from(0); 2]; nodes]];
     let bound = rounded_stress::add_forces(&d, &u, &mut sums[0]);
     let mut in_doubles = vec![[PreciseBall::from(0); 2]; nodes];
     rounded_stress::add_small_forces(&d, &u, &mut in_doubles);
     let pairs = in_doubles.as_flattened().iter().zip(sums[0].as_flattened());
-    let of_sums = pairs.map(|(&sum, &exact)| (sum.centre() - exact).magnitude() / sum.radius());
+    let of_sums = pairs.map(|(&sum, &exact)| {
+        (PreciseBall::point(sum.centre()) - exact).magnitude() / sum.radius()
+    });
     let of_sums = of_sums.fold(0.0, f64::max);
     residual::add_internal_forces(&d.space, &problem.material, &u, &mut sums[1]);
     let off: Vec<[f64; 2]> =

@@ -12,7 +12,6 @@ use std::sync::Arc;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 
-use signorini::fem::ball::PreciseBall;
 use signorini::fem::contact_line::Coercivity;
 use signorini::fem::element::value_at;
 use signorini::fem::quadrature::gauss;
@@ -20,6 +19,7 @@ use signorini::fem::{
     Condition, ContactFace, Diagonal, Discretization, EdgeRule, Mesh, Problem, Rectangle,
     SharedFunction,
 };
+use signorini::kernel::PreciseBall;
 use signorini::kernel::contact_edge::integral_of_product;
 use signorini::kernel::{self, Material, Plane};
 use signorini::solve::balls::lines;

@@ -7,8 +7,8 @@
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_4;
 
-use signorini::fem::double_double::DoubleDouble;
 use signorini::fem::{Condition, DataError, Diagonal, Mesh, Problem, Rectangle, residual};
+use signorini::kernel::DoubleDouble;
 use signorini::kernel::{Material, Plane};
 use signorini::solve::Times;
 use signorini::solve::system::System;

@@ -4,8 +4,8 @@
 use std::collections::BTreeMap;
 
 use signorini::fem::contact_line::Coercivity;
-use signorini::fem::double_double::DoubleDouble;
 use signorini::fem::{Condition, EdgeRule, Materials, Problem, quadrature};
+use signorini::kernel::DoubleDouble;
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::element::displacement_gradient;
 use signorini::kernel::{EdgeIntegrals, Element, Material, P1, P2, Plane, positive_part};

@@ -6,7 +6,7 @@
 
 use std::borrow::Cow;
 
-use signorini::fem::double_double::DoubleDouble;
+use signorini::kernel::DoubleDouble;
 use signorini::nalgebra::DMatrix;
 use signorini::solve::accuracy::Outcome as Solved;
 use signorini::solve::body::{self, Body as _, ContactEnergy, Derivatives, Residual, Step};

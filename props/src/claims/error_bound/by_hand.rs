@@ -10,13 +10,13 @@ use std::collections::BTreeMap;
 
 use proptest::prelude::*;
 use signorini::certify::proof::{Certificate, Curved, Edge, Piece, Role};
-use signorini::kernel::{Ball, Enclosing, Material, Plane};
+use signorini::kernel::{Ball, Enclosing, Material, Plane, PreciseBall};
 
 use super::refusals::supported;
 use crate::bodies::whole;
 use crate::ensure;
 use crate::naive::{Field, Hooke, Line, integral_of_affine};
-use crate::numbers::{Exact, Interval};
+use crate::numbers::Exact;
 use crate::verdict::Verdict;
 
 /// A certificate by hand, in sixteenths: cells of a rectangle, v, tau and the gap.
@@ -383,7 +383,7 @@ pub(super) fn duality_gap(draw: &Draw, exchanged: bool) -> Verdict {
         other.pieces.iter_mut().for_each(|piece| piece.body.rotate_left(1));
     }
     let of = |certificate: &Certificate| {
-        let proof = certificate.evaluate::<Interval>().ok()?;
+        let proof = certificate.evaluate::<PreciseBall>().ok()?;
         let (square, twice) = (proof.bound * proof.bound, proof.energy[0] + proof.energy[1]);
         Some((square - twice, 1.0 + square + twice.abs()))
     };
@@ -412,7 +412,7 @@ pub(super) fn evaluated_with_supports(draw: &Draw, work: f64) -> Verdict {
 /// again, for the triangles form a chain. With `gross` something else is added too.
 pub(super) fn balanced(draw: &Draw, gross: bool) -> Verdict {
     let certificate = draw.turned();
-    let Ok(before) = certificate.evaluate::<Interval>() else {
+    let Ok(before) = certificate.evaluate::<PreciseBall>() else {
         return Verdict::Fails("the certificate is accepted");
     };
     let mut moved = certificate.clone();
@@ -440,7 +440,7 @@ pub(super) fn balanced(draw: &Draw, gross: bool) -> Verdict {
             _ => {}
         }
     }
-    let Ok(after) = moved.evaluate::<Interval>() else {
+    let Ok(after) = moved.evaluate::<PreciseBall>() else {
         return Verdict::Fails("what is out of balance is balanced");
     };
     // A bound is a root: near zero it is known to half the digits.

@@ -1,12 +1,11 @@
 //! Certificates that are wrong in one thing, which the checker must refuse for its own reason.
 
-use crate::numbers::Interval;
 use signorini::certify::Rejection::{
     self, Length, NotPrescribed, NotPrescribedAlong, NotPrescribedAlongBetween,
     NotPrescribedBetween, Orientation, OutOfBalance, Penetration, Tension, Unbalanced, Wrong,
 };
 use signorini::certify::proof::{Certificate, Claim as Said, Edge, Role};
-use signorini::kernel::{Ball, Material, Plane};
+use signorini::kernel::{Ball, Material, Plane, PreciseBall};
 
 use super::by_hand::Draw;
 use crate::claim::{Outcome, text};
@@ -221,7 +220,7 @@ fn refused(good: &Certificate, tamperings: &[Tampering], tamper: bool) -> Result
         if tamper {
             change(&mut certificate);
         }
-        for found in [certificate.evaluate::<Ball>(), certificate.evaluate::<Interval>()] {
+        for found in [certificate.evaluate::<Ball>(), certificate.evaluate::<PreciseBall>()] {
             match found {
                 Ok(proof) => return Err(format!("{what}: accepted with {}", proof.bound)),
                 Err(why) if !reason(&why) => return Err(format!("{what}: refused, but: {why}")),
