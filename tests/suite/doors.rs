@@ -213,18 +213,6 @@ fn names_titles_and_paths_are_shown_without_control_characters() {
     }
 }
 
-#[test]
-fn a_mesh_file_that_is_none_is_not_shown() {
-    let secret = "root:$6$salt$hash:19000:0:99999:7:::\n";
-    let case = edited(&[[RECTANGLE, "gmsh = \"secret\""]]);
-    let folder = with_files("doors-secret", &[("secret", secret), ("case.toml", &case)]);
-    let output = run(&mut command(&folder, &["solve", "case.toml"]));
-    assert_eq!(
-        text(&output.stderr),
-        "error: case.toml:3: [mesh] gmsh: secret:1: this is no Gmsh mesh: expected $MeshFormat on its first line; gmsh -2 PART.geo makes PART.msh from a geometry\n"
-    );
-}
-
 /// An engine in the folder `bin` that does what the script says, and a package for it to run.
 fn with_engine(folder: &Path, script: &str) {
     fs::create_dir_all(folder.join("bin")).unwrap();

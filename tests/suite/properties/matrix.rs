@@ -1,10 +1,10 @@
-//! The assembled matrices, their numbering and their pattern: with the unknowns in any order, components prescribed at random
+//! The assembled matrices and their numbering: with the unknowns in any order, components prescribed at random
 //! and nodes in frames of their own, the product of a matrix with a vector is its bilinear form of the field.
 
 use std::collections::BTreeMap;
 
 use signorini::fem::matrix::{self, LowerTriangle, Neighbours, Numbering};
-use signorini::fem::{Degree, Diagonal, Discretization, EdgeRule, Rectangle, Space};
+use signorini::fem::{Discretization, EdgeRule};
 
 use super::bodies::on_bodies;
 use super::{Outcome, properties, text};
@@ -36,97 +36,6 @@ impl Unknowns {
     fn numbering(&self) -> Numbering {
         Numbering::in_frames(&self.order, &self.prescribed, self.frames.clone())
     }
-
-    /// The free components, each with its node, in the order of elimination.
-    fn free(&self) -> Vec<(usize, usize)> {
-        let all = self.order.iter().flat_map(|&node| [(node, 0), (node, 1)]);
-        all.filter(|&(node, c)| self.prescribed[node][c].is_none()).collect()
-    }
-}
-
-/// A numbering, and a matrix with all its entries.
-type Pattern = fn(&Space, &Unknowns) -> (Numbering, LowerTriangle);
-
-fn pattern(space: &Space, unknowns: &Unknowns) -> (Numbering, LowerTriangle) {
-    let numbering = unknowns.numbering();
-    let zero = LowerTriangle::zero(&numbering, &Neighbours::new(space));
-    (numbering, zero)
-}
-
-/// Planted: the nodes are numbered as they stand in the mesh.
-fn order_forgotten(space: &Space, unknowns: &Unknowns) -> (Numbering, LowerTriangle) {
-    let order = (0..unknowns.order.len()).collect();
-    let (prescribed, frames) = (unknowns.prescribed.clone(), unknowns.frames.clone());
-    pattern(space, &Unknowns { order, prescribed, frames })
-}
-
-/// Planted: the last row of the first column is missing.
-fn an_entry_missing(space: &Space, unknowns: &Unknowns) -> (Numbering, LowerTriangle) {
-    let (numbering, mut matrix) = pattern(space, unknowns);
-    matrix.rows.remove(matrix.starts[1] - 1);
-    matrix.starts[1..].iter_mut().for_each(|start| *start -= 1);
-    (numbering, matrix)
-}
-
-/// Planted: all entries of the lower triangle.
-fn all_entries(space: &Space, unknowns: &Unknowns) -> (Numbering, LowerTriangle) {
-    let (numbering, _) = pattern(space, unknowns);
-    let mut matrix = LowerTriangle { starts: vec![0], rows: Vec::new(), values: Vec::new() };
-    for column in 0..numbering.count {
-        matrix.rows.extend(column..numbering.count);
-        matrix.starts.push(matrix.rows.len());
-    }
-    matrix.values = vec![0.0; matrix.rows.len()];
-    (numbering, matrix)
-}
-
-/// On rectangles of a few cells.
-fn entries_are_pairs_that_share_a_triangle(made: Pattern) -> Outcome {
-    let mut random = Random(13);
-    for diagonal in [Diagonal::Left, Diagonal::Right, Diagonal::Crossed] {
-        for (nx, ny) in [(1, 1), (2, 1), (3, 2), (4, 3)] {
-            let rectangle = Rectangle { width: 1.0, height: 1.0, nx, ny, diagonal };
-            let mesh = rectangle.mesh().map_err(text)?;
-            for degree in [Degree::One, Degree::Two] {
-                let space = Space::new(&mesh, degree);
-                let unknowns = Unknowns::any(space.nodes().len(), &mut random);
-                is_numbering_with_pattern(made(&space, &unknowns), &space, &unknowns)
-                    .map_err(|why| format!("{rectangle:?}, {degree:?}: {why}"))?;
-            }
-        }
-    }
-    Ok(())
-}
-
-/// Free components are numbered node by node, and the rows of a column are all that do not come before it and whose node is that
-/// of the column or shares a triangle with it, in increasing order.
-fn is_numbering_with_pattern(
-    (numbering, matrix): (Numbering, LowerTriangle),
-    space: &Space,
-    unknowns: &Unknowns,
-) -> Outcome {
-    let free = unknowns.free();
-    if numbering.count != free.len() {
-        return Err(format!("{} numbers for {} components", numbering.count, free.len()));
-    }
-    for (node, numbers) in numbering.of.iter().enumerate() {
-        let expected = [0, 1].map(|c| free.iter().position(|&other| other == (node, c)));
-        if *numbers != expected {
-            return Err(format!("node {node}: {numbers:?}, expected {expected:?}"));
-        }
-    }
-    let adjacent = |a: usize, b: usize| {
-        a == b || space.elements().any(|nodes| nodes.contains(&a) && nodes.contains(&b))
-    };
-    for (column, &(node, _)) in free.iter().enumerate() {
-        let expected: Vec<usize> =
-            (column..free.len()).filter(|&row| adjacent(free[row].0, node)).collect();
-        let found = &matrix.rows[matrix.starts[column]..matrix.starts[column + 1]];
-        if found != expected {
-            return Err(format!("column {column}: {found:?}, expected {expected:?}"));
-        }
-    }
-    Ok(())
 }
 
 /// The product with the whole symmetric matrix.
@@ -235,11 +144,6 @@ fn overwriting(numbering: &Numbering, x: &[f64], field: &mut [[f64; 2]]) {
 }
 
 properties! {
-    two_unknowns_have_an_entry_if_their_nodes_share_a_triangle:
-        entries_are_pairs_that_share_a_triangle(pattern);
-        not entries_are_pairs_that_share_a_triangle(order_forgotten),
-            entries_are_pairs_that_share_a_triangle(an_entry_missing),
-            entries_are_pairs_that_share_a_triangle(all_entries);
     assembled_matrices_are_the_bilinear_forms_in_any_order_and_any_frames:
         matrices_are_forms(assembled);
         not matrices_are_forms(an_edge_forgotten), matrices_are_forms(frames_forgotten);
