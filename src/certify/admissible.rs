@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 
 use super::contact::Contact;
 use super::field::Field;
-use super::parts::{ProblemParts, held_along};
+use super::parts::{Free, ProblemParts, held_along};
 use crate::fem::BoundaryEdge;
 
 /// v: u with the prescribed values, and pushed out of the obstacle at the vertices of Gamma_C and, if it is quadratic, between
@@ -110,15 +110,6 @@ fn touch(n: Vector2<f64>, gap: f64, size: f64, v: &mut [f64; 2]) {
             v[c] = n[c] * gap;
         }
     }
-}
-
-/// The motions that a vertex may make.
-#[derive(Clone, Copy)]
-pub(super) enum Free {
-    All,
-    /// Along a vector near a unit one.
-    Along(Vector2<f64>),
-    Nothing,
 }
 
 /// v . n is to be at most `most`, which is `margin` less than what is allowed.

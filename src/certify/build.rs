@@ -14,7 +14,6 @@ use super::divide::{Division, SubTriangle, cut, divided};
 use super::field::{Field, edge_ends};
 use super::oscillation::Oscillation;
 use super::parts::{Boundary, ProblemParts};
-use super::quantities::{Line, Station};
 use super::quarters::{halved, quarters};
 use super::tractions::{moments, stresses, with_force};
 use crate::fem::Mesh;
@@ -77,6 +76,27 @@ impl Built {
         let contact = parts.contact.iter().enumerate();
         contact.filter_map(|(k, edge)| Some((k, *of.get(&edge.edge.triangle)?))).collect()
     }
+}
+
+/// The boundaries of the problem on the edges of a certificate.
+pub(super) struct Line {
+    pub names: Vec<String>,
+    /// The boundary of each edge, by its place among the names.
+    pub of: Vec<Option<usize>>,
+    /// The edges of Gamma_C, along it.
+    pub stations: Vec<Station>,
+}
+
+/// An edge of Gamma_C along its boundary.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Station {
+    pub edge: usize,
+    /// Arc length at its ends.
+    pub from: f64,
+    pub to: f64,
+    pub ends: [[f64; 2]; 2],
+    /// It starts where the one before it ends.
+    pub joined: bool,
 }
 
 impl Built {

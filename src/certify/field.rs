@@ -1,10 +1,9 @@
 //! A displacement on the triangles of a mesh, affine or quadratic.
 
 use super::errors::CertifyError;
-use super::parts::ProblemParts;
 use crate::fem::Mesh;
-use crate::kernel::Triangle;
 use crate::kernel::composite::Affine;
+use crate::kernel::{Material, Triangle};
 
 /// A displacement on the mesh: affine on its triangles, or quadratic.
 #[derive(Clone)]
@@ -42,13 +41,18 @@ impl Field {
         nodal
     }
 
-    /// C eps of it on triangle `t`.
-    pub fn stress(&self, parts: &ProblemParts, t: usize, triangle: &Triangle<f64>) -> Affine<f64> {
-        let mesh = parts.mesh;
+    /// C eps of it on triangle `t`, which has this material.
+    pub fn stress(
+        &self,
+        mesh: &Mesh,
+        material: &Material<f64>,
+        t: usize,
+        triangle: &Triangle<f64>,
+    ) -> Affine<f64> {
         let nodal = mesh.triangles()[t].map(|vertex| self.vertices[vertex].into());
         let bulges = self.bulges.as_ref();
         let bulges = bulges.map(|all| mesh.triangle_edges()[t].map(|e| all[e].into()));
-        Affine::of_displacement(triangle, &nodal, bulges.as_ref(), parts.material(t))
+        Affine::of_displacement(triangle, &nodal, bulges.as_ref(), material)
     }
 }
 

@@ -4,7 +4,6 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::Vector2;
 
-use super::admissible::Free;
 use super::certificate::{Role, is_oblique};
 use super::contact::Contact;
 use super::data::{Traction, bulge_of};
@@ -295,7 +294,16 @@ impl<'a> ProblemParts<'a> {
     }
 }
 
-/// SupportDirections of supports, of which those that differ by the rounding of vertices are one: an axis, if one of them is.
+/// The motions that a vertex may make.
+#[derive(Clone, Copy)]
+pub(super) enum Free {
+    All,
+    /// Along a vector near a unit one.
+    Along(Vector2<f64>),
+    Nothing,
+}
+
+/// The directions of supports, of which those that differ by the rounding of vertices are one: an axis, if one of them is.
 struct SupportDirections {
     known: Vec<[f64; 2]>,
     rounding: f64,

@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Asked;
 use super::balanced::Balanced;
-use super::build::Built;
+use super::build::{Built, Line, Station};
 use super::certificate::{Certificate, Role};
 use super::contact::Profile;
 use super::dual::ByPair;
@@ -142,28 +142,7 @@ pub enum Limit {
     Opening(f64),
 }
 
-/// The boundaries of the problem on the edges of a certificate.
-pub(super) struct Line {
-    pub names: Vec<String>,
-    /// The boundary of each edge, by its place among the names.
-    pub of: Vec<Option<usize>>,
-    /// The edges of Gamma_C, along it.
-    pub stations: Vec<Station>,
-}
-
-/// An edge of Gamma_C along its boundary.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Station {
-    pub edge: usize,
-    /// Arc length at its ends.
-    pub from: f64,
-    pub to: f64,
-    pub ends: [[f64; 2]; 2],
-    /// It starts where the one before it ends.
-    pub joined: bool,
-}
-
-/// ProblemParts of the largest gap, and of the largest pressure, from which stretches are made.
+/// Parts of the largest gap, and of the largest pressure, from which stretches are made.
 const LEVELS: [f64; 3] = [0.5, 0.125, 0.03125];
 
 /// A stretch says something if it has less than this part of the boundary's force, or of the opening that its displacement

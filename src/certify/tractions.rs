@@ -30,7 +30,7 @@ pub(super) fn stresses(
     triangles: &[Triangle<f64>],
 ) -> Vec<Affine<f64>> {
     let of_u = |(t, triangle): (usize, &Triangle<f64>)| {
-        let sigma = u.stress(parts, t, triangle);
+        let sigma = u.stress(parts.mesh, parts.material(t), t, triangle);
         let mean = sigma.mean();
         let beyond = sigma.beyond.map(|_| [0, 1, 2].map(|i| sigma.at_corner(i) - mean));
         Affine { base: mean, beyond }

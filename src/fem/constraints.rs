@@ -13,10 +13,10 @@ use std::collections::BTreeMap;
 
 use super::boundary_normals::SmoothBoundary;
 use super::data::{DataError, finite};
+use super::function::SharedFunction;
 use super::mesh::{BoundaryEdge, NO_ANGLE};
-use super::problem::{Condition, Problem, SharedFunction};
-use super::rigid::{self, FreeMotion, Parts};
-use super::solvability::pins;
+use super::problem::{Condition, Problem};
+use super::rigid::{self, FreeMotion, Parts, pins};
 use super::space::Space;
 use crate::kernel::Scalar;
 use crate::quote;

@@ -2,9 +2,9 @@
 
 use thiserror::Error;
 
+use super::function::Function;
 use super::material::MaterialError;
 use super::mesh::MeshError;
-use super::problem::Function;
 use super::rigid::FreeMotion;
 use crate::quote::{key, number, quoted};
 

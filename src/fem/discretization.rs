@@ -12,10 +12,10 @@ use super::element::Degree;
 use super::loads::{self, LoadVector};
 use super::material;
 use super::problem::Problem;
-use super::residual::{StressPoint, each_stress};
 use super::rigid::FreeMotion;
 use super::solvability::{self, NotHeld, Slides};
 use super::space::Space;
+use super::stress_points::{StressPoint, each_stress};
 use crate::kernel::PreciseBall;
 use crate::kernel::contact_edge::integral_of_product;
 

@@ -2,8 +2,9 @@
 
 use super::data::{DataError, checked};
 use super::element::{Degree, with_element};
+use super::function::{Function, SharedFunction};
 use super::graded_quadrature::{Features, Rule};
-use super::problem::{Condition, Function, Problem, SharedFunction, SurfaceForce};
+use super::problem::{Condition, Problem, SurfaceForce};
 use super::space::Space;
 use crate::kernel::PreciseBall;
 use crate::kernel::{Element, Scalar};

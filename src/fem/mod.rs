@@ -2,6 +2,7 @@
 
 #[doc(hidden)]
 pub mod boundary_normals;
+pub(crate) mod clearance;
 pub mod constraints;
 pub mod contact_face;
 pub mod contact_line;
@@ -13,6 +14,7 @@ pub mod discretization;
 pub mod element;
 #[doc(hidden)]
 pub mod embedding;
+mod function;
 #[doc(hidden)]
 pub mod graded_quadrature;
 mod groups;
@@ -42,6 +44,7 @@ pub mod rounded_stress;
 #[doc(hidden)]
 pub mod solvability;
 pub mod space;
+mod stress_points;
 #[doc(hidden)]
 pub mod structured;
 #[doc(hidden)]
@@ -51,11 +54,12 @@ pub use contact_face::{ContactFace, EdgeRule};
 pub use data::DataError;
 pub use discretization::Discretization;
 pub use element::Degree;
+pub use function::{Function, SharedFunction};
 pub use material::Materials;
 pub use mesh::bisection::Refinement;
 pub use mesh::{BoundaryEdge, Mesh, MeshError};
 pub use obstacle::{Closest, Distance, Obstacle, Side};
-pub use problem::{Condition, Function, PointSupport, Problem, SharedFunction, SurfaceForce};
+pub use problem::{Condition, PointSupport, Problem, SurfaceForce};
 pub use rigid::{FreeMotion, Parts};
 pub use space::Space;
 pub use structured::{Diagonal, Perturbation, Rectangle, Structured, Trapezoid};

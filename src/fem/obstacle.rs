@@ -18,8 +18,8 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 
 use super::data::{DataError, finite};
+use super::function::Function;
 use super::mesh::length;
-use super::problem::Function;
 
 /// The length of grad phi may be off 1 by this much.
 pub const MOST_OFF: f64 = 0.1;

@@ -288,6 +288,36 @@ fn rounded(c: f64, size: f64) -> String {
     }
 }
 
+/// field <- field - weight * other
+pub(super) fn subtract(field: &mut [[f64; 2]], other: &[[f64; 2]], weight: f64) {
+    for (f, o) in field.as_flattened_mut().iter_mut().zip(other.as_flattened()) {
+        *f -= weight * o;
+    }
+}
+
+/// One component of a node for each slide, so that no slide is left free when these components are held: those among
+/// `free` that move most.
+pub(crate) fn pins(
+    slides: &[Vec<[f64; 2]>],
+    free: impl Fn(usize, usize) -> bool,
+) -> Vec<(usize, usize)> {
+    let mut left = slides.to_vec();
+    let mut pins = Vec::with_capacity(left.len());
+    while let Some(slide) = left.pop() {
+        let components = (0..slide.len()).flat_map(|node| [(node, 0), (node, 1)]);
+        let size = |&(node, c): &(usize, usize)| slide[node][c].abs();
+        let most =
+            components.filter(|&(n, c)| free(n, c)).max_by(|a, b| size(a).total_cmp(&size(b)));
+        let Some((node, c)) = most else { continue };
+        for other in &mut left {
+            let weight = other[node][c] / slide[node][c];
+            subtract(other, &slide, weight);
+        }
+        pins.push((node, c));
+    }
+    pins
+}
+
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeMap;

@@ -13,17 +13,12 @@ use serde::{Deserialize, Serialize};
 
 use super::contact_face::ContactFace;
 use super::dense::{dot, inner, least_squares, norm, singular_vectors};
-use super::discretization::Discretization;
-use super::element::bernstein;
 use super::mesh::NO_ANGLE;
-use super::rigid::{FREE, FreeMotion, Parts, STILL, null_space};
+use super::rigid::{FREE, FreeMotion, Parts, STILL, null_space, subtract};
 use super::space::Space;
 
 /// Loads must go on pressing when they are changed by this share: a body on the verge of tipping is not held.
 const MARGIN: f64 = 1e-6;
-
-/// An edge presses where P is above this share of the largest; below it P is what the tolerance of Newton's method leaves.
-const PRESSES: f64 = 1e-8;
 
 /// The motions that contact and loads do not hold.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,9 +35,9 @@ pub struct Slides {
     /// b_j, fields with orthonormal nodal values: the motions that contact does not stop.
     pub basis: Vec<Vec<[f64; 2]>>,
     /// Motions that span the same, each with its components along the basis.
-    motions: Vec<(FreeMotion, Vec<f64>)>,
+    pub(super) motions: Vec<(FreeMotion, Vec<f64>)>,
     /// Where edges that do not press stop them.
-    bounds: Vec<(Vec<f64>, f64)>,
+    pub(super) bounds: Vec<(Vec<f64>, f64)>,
     /// The contact edges that do not press and stop one of the motions somewhere, in their order.
     pub(crate) stopping: Vec<usize>,
     /// For each contact edge whether it presses in no solution; empty if all may.
@@ -70,7 +65,7 @@ pub struct Play {
 
 /// The numbers of the contact edges of the part that has these `motions`, of those that are `taken`, with their rows c_i: r_n at
 /// their nodes for each of the motions, and not P0(r): the stress of a rigid motion is zero but for rounding.
-fn rows(
+pub(super) fn rows(
     motions: &[FreeMotion],
     parts: &Parts,
     space: &Space,
@@ -91,13 +86,13 @@ fn rows(
 }
 
 /// The rows of all these edges.
-fn all(edges: &[EdgeRows]) -> Vec<Vec<f64>> {
+pub(super) fn all(edges: &[EdgeRows]) -> Vec<Vec<f64>> {
     edges.iter().flat_map(|(_, rows)| rows.clone()).collect()
 }
 
 /// A value of c_i below this is zero but for rounding. Where the body is far from the origin, rounding its vertices makes more
 /// than [`FREE`].
-fn negligible(rows: &[Vec<f64>], count: usize, rounding: f64) -> f64 {
+pub(super) fn negligible(rows: &[Vec<f64>], count: usize, rounding: f64) -> f64 {
     let largest = singular_vectors(rows, count).first().map_or(0.0, |(value, _)| *value);
     FREE.max(rounding * (rows.len() as f64).sqrt()) * largest.max(1.0)
 }
@@ -150,7 +145,7 @@ pub fn slides(
 }
 
 /// The number of a contact edge and its rows c_i.
-type EdgeRows = (usize, Vec<Vec<f64>>);
+pub(super) type EdgeRows = (usize, Vec<Vec<f64>>);
 
 /// The edges that may press: `loads` are the work of a pressure on whole edges among them, given by their rows, of which
 /// those below `none` are zero, and still so if they are changed a little within the span of these rows.
@@ -198,7 +193,7 @@ fn press(
 }
 
 impl Slides {
-    fn new(motions: Vec<FreeMotion>, parts: &Parts, space: &Space) -> Self {
+    pub(super) fn new(motions: Vec<FreeMotion>, parts: &Parts, space: &Space) -> Self {
         let fields: Vec<_> = motions.iter().map(|motion| motion.field(parts, space)).collect();
         let basis = orthonormal(fields.iter().cloned());
         let along = fields.iter().map(|field| basis.iter().map(|b| inner(b, field)).collect());
@@ -209,54 +204,6 @@ impl Slides {
             stopping: Vec::new(),
             idle: Vec::new(),
         }
-    }
-
-    /// All motions that nothing stops where `u` solves (8), within the clearance of the edges that do not press. `None` where
-    /// supports hold the body.
-    pub fn around(d: &Discretization, u: &[[f64; 2]]) -> Option<Slides> {
-        let idle = &d.slides.as_ref()?.idle;
-        let size = |v: &[f64]| v.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-        let p: Vec<Vec<f64>> = d.contact.iter().map(|edge| edge.p(u)).collect();
-        let most = |p: &[f64]| bernstein(p).into_iter().fold(0.0, f64::max);
-        let largest = p.iter().map(|p| most(p)).fold(0.0, f64::max);
-        let far = size(u.as_flattened());
-        let presses = |(p, edge): (&Vec<f64>, &ContactFace)| {
-            let rounding = 8.0 * f64::EPSILON * (far + size(&edge.gap));
-            most(p) > rounding.max(PRESSES * largest) && d.rule.integrals(p).active > 0.0
-        };
-        let pressing = p.iter().zip(&d.contact).map(presses);
-        let pressing: Vec<bool> = pressing.zip(idle).map(|(yes, idle)| yes && !idle).collect();
-        let parts = Parts::new(d.space.mesh());
-        let slides = Slides::new(free_where(d, &parts, &pressing), &parts, &d.space);
-        let (at, basis) = (slides.at(u), &slides.basis);
-        let rounding = FREE.max(d.rounding_of_directions());
-        let (mut bounds, mut stopping) = (Vec::new(), Vec::new());
-        let edges = d.contact.iter().zip(&p).zip(pressing).zip(idle);
-        for (e, (((edge, p), pressing), idle)) in edges.enumerate() {
-            let nodes = d.space.edge_nodes(edge.edge);
-            let lengths = basis.iter().flat_map(|b| nodes.iter().map(|&node| b[node]));
-            let none = rounding * lengths.fold(0.0, |m: f64, [x, y]| m.max(x.hypot(y)));
-            let row = |a: usize| {
-                let along = |b: &Vec<[f64; 2]>| dot(&b[nodes[a]], edge.directions[a].as_slice());
-                basis.iter().map(along).collect::<Vec<f64>>()
-            };
-            let rows: Vec<Vec<f64>> = (0..nodes.len()).map(row).collect();
-            let coefficients = bernstein(p);
-            // Not a step towards an edge of which a coefficient is positive although P is not.
-            let open = *idle || coefficients.iter().all(|p| *p <= 0.0);
-            for (a, coefficient) in coefficients.into_iter().enumerate() {
-                let row: Vec<f64> = (0..basis.len())
-                    .map(|j| bernstein(&rows.iter().map(|row| row[j]).collect::<Vec<f64>>())[a])
-                    .collect();
-                if !pressing && norm(&row) > none {
-                    let bound = if open { -coefficient } else { 0.0 } + dot(&row, &at);
-                    bounds.push((row, bound));
-                    stopping.push(e);
-                }
-            }
-        }
-        stopping.dedup();
-        Some(Slides { bounds, stopping, idle: idle.clone(), ..slides })
     }
 
     /// A motion that leads from u to a solution away from all obstacles that do not press it, if there is one.
@@ -287,7 +234,7 @@ impl Slides {
         self.idle.get(e).is_some_and(|idle| *idle)
     }
 
-    fn at(&self, u: &[[f64; 2]]) -> Vec<f64> {
+    pub(super) fn at(&self, u: &[[f64; 2]]) -> Vec<f64> {
         self.basis.iter().map(|b| inner(b, u)).collect()
     }
 
@@ -336,19 +283,6 @@ impl Slides {
     }
 }
 
-/// The motions of `d` that neither supports nor the contact edges that are pressing stop.
-pub(crate) fn free_where(d: &Discretization, parts: &Parts, pressing: &[bool]) -> Vec<FreeMotion> {
-    let mut free = Vec::new();
-    for of_part in d.motions.chunk_by(|a, b| a.part == b.part) {
-        let count = of_part.len();
-        let rows = all(&rows(of_part, parts, &d.space, &d.contact, |e| pressing[e]));
-        let none = negligible(&rows, count, d.rounding_of_directions());
-        let weights = null_space(&rows, count, |value, _| value > none);
-        free.extend(weights.iter().map(|weights| parts.combined(of_part, weights)));
-    }
-    free
-}
-
 /// Fields with orthonormal nodal values that span the same.
 fn orthonormal(fields: impl Iterator<Item = Vec<[f64; 2]>>) -> Vec<Vec<[f64; 2]>> {
     let mut basis: Vec<Vec<[f64; 2]>> = Vec::new();
@@ -361,36 +295,6 @@ fn orthonormal(fields: impl Iterator<Item = Vec<[f64; 2]>>) -> Vec<Vec<[f64; 2]>
         basis.push(field.iter().map(|f| f.map(|f| f / norm)).collect());
     }
     basis
-}
-
-/// field <- field - weight * other
-fn subtract(field: &mut [[f64; 2]], other: &[[f64; 2]], weight: f64) {
-    for (f, o) in field.as_flattened_mut().iter_mut().zip(other.as_flattened()) {
-        *f -= weight * o;
-    }
-}
-
-/// One component of a node for each slide, so that no slide is left free when these components are held: those among
-/// `free` that move most.
-pub(crate) fn pins(
-    slides: &[Vec<[f64; 2]>],
-    free: impl Fn(usize, usize) -> bool,
-) -> Vec<(usize, usize)> {
-    let mut left = slides.to_vec();
-    let mut pins = Vec::with_capacity(left.len());
-    while let Some(slide) = left.pop() {
-        let components = (0..slide.len()).flat_map(|node| [(node, 0), (node, 1)]);
-        let size = |&(node, c): &(usize, usize)| slide[node][c].abs();
-        let most =
-            components.filter(|&(n, c)| free(n, c)).max_by(|a, b| size(a).total_cmp(&size(b)));
-        let Some((node, c)) = most else { continue };
-        for other in &mut left {
-            let weight = other[node][c] / slide[node][c];
-            subtract(other, &slide, weight);
-        }
-        pins.push((node, c));
-    }
-    pins
 }
 
 /// The part of `target` that no combination of the rows with weights >= 0 reaches, if it is larger than `tolerance`.
@@ -450,6 +354,7 @@ const MOST_EXCHANGES: usize = 200;
 
 #[cfg(test)]
 mod tests {
+    use super::super::rigid::pins;
     use super::*;
 
     /// (down, turn): a plate on supports at these places, pressed by a unit force at `at`.

@@ -13,7 +13,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use super::input::{self, FileError, InputError, Position};
-use super::vtu::reader::from_vtu;
+use super::vtu::reader::{Points, Triangles, from_vtu};
 use crate::fem::tree::{Bounds, Tree};
 use crate::fem::{Degree, Mesh, Space};
 use crate::quote;
@@ -43,17 +43,6 @@ pub fn read_field(path: &Path, mesh: &Mesh) -> Result<Vec<[f64; 2]>, FileError> 
     read(input::read(path, MOST)?)
         .map_err(|problem| InputError::from(problem).at(path, Position::File))
 }
-
-/// The triangles of a VTU file.
-#[derive(Debug, PartialEq)]
-pub(super) struct Triangles {
-    /// Their corners by the points of the file.
-    pub corners: Vec<[usize; 3]>,
-    /// The triangles have a point in the middle of each side, too.
-    pub quadratic: bool,
-}
-
-pub(super) type Points = Vec<([f64; 2], [f64; 2])>;
 
 fn at_nodes(
     points: &Points,

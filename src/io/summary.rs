@@ -10,7 +10,6 @@ use super::result::{
     Adaptation, ContinuousCertificate, DiscreteCertificate, GammaChoice, MeshSizes, NewtonHistory,
     Results, Seconds, StressPeak,
 };
-use super::sweep::Sweep;
 use super::{Case, numbers};
 use crate::certify::Continuous;
 use crate::certify::adapt::AdaptedLevel;
@@ -474,8 +473,8 @@ pub fn studied(case: &Case, studies: &[Study], files: &[PathBuf]) -> String {
     format!("{}\n\n{}\nwritten: {}\n", quote::line(&case.title), tables.join("\n"), written(files))
 }
 
-pub fn swept(sweep: &Sweep, files: &[PathBuf]) -> String {
-    format!("{}\n\n{}\nwritten: {}\n", quote::line(&sweep.title), sweep.table(), written(files))
+pub fn swept(title: &str, table: &str, files: &[PathBuf]) -> String {
+    format!("{}\n\n{table}\nwritten: {}\n", quote::line(title), written(files))
 }
 
 fn sizes(mesh: &MeshSizes) -> String {

@@ -14,9 +14,9 @@ use super::factor::Factor;
 use super::iterate::{Evaluation, Iterate};
 use super::newton::{self, Until};
 use super::system::System;
+use crate::fem::clearance;
 use crate::fem::dense::norm;
 use crate::fem::rigid::Parts;
-use crate::fem::solvability;
 use crate::kernel::DoubleDouble;
 
 /// The tangent last factored.
@@ -53,7 +53,7 @@ impl<'a, 'd, 'p> Assembled<'a, 'd, 'p> {
         let springs = at.hessian.iter();
         let pressing: Vec<bool> = springs.map(|h| h.iter().any(|h| *h != 0.0)).collect();
         let parts = Parts::new(d.space.mesh());
-        solvability::free_where(d, &parts, &pressing).len() > slides.basis.len()
+        clearance::free_where(d, &parts, &pressing).len() > slides.basis.len()
     }
 
     /// The Hessian with a little of the springs of all edges.

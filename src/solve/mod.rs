@@ -49,6 +49,7 @@ pub mod solution;
 pub mod stresses;
 #[doc(hidden)]
 pub mod system;
+mod times;
 
 use self::accuracy::Outcome;
 pub use self::answers::{ContactBoundary, EnergyBalance};
@@ -60,13 +61,13 @@ use self::iterate::Evaluated;
 pub use self::method::{
     ContactQuadrature, Gamma0, MOST_GAUSS_POINTS, MOST_ITERATIONS, Method, Settings,
 };
-use self::report::Stopwatch;
-pub use self::report::{MethodReport, NewtonReport, Report, Status, Times, Verdict};
-pub use self::route::RouteName;
+pub use self::report::{MethodReport, NewtonReport, Report, RouteName, Status, Verdict};
 use self::route::Strategy;
 pub use self::solution::{GammaReport, Quantities, Solution};
 pub use self::stresses::{Extreme, LargestStresses};
 use self::system::System;
+use self::times::Stopwatch;
+pub use self::times::Times;
 pub use crate::fem::Degree;
 use crate::fem::contact_line::{Coercivity, Gamma};
 use crate::fem::material::largest_entry;

@@ -1,11 +1,8 @@
-//! How a solution was found, what is proved of it, and where the time went.
-
-use std::time::{Duration, Instant};
+//! How a solution was found, and what is proved of it.
 
 use serde::{Deserialize, Serialize};
 
 use super::enclosure::{Enclosure, Unproved};
-use super::route::RouteName;
 use crate::fem::solvability::Play;
 
 /// The verdict on a solution.
@@ -50,6 +47,16 @@ impl Verdict {
             Verdict::NotProved(reason) => Some(reason),
         }
     }
+}
+
+/// The routes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum RouteName {
+    /// The body factored once, Newton's method on the contact functionals.
+    Condensed,
+    /// Newton's method on the displacement, the tangent factored in each step.
+    Assembled,
 }
 
 /// How a solve ended.
@@ -125,69 +132,4 @@ pub struct Report {
     pub verdict: Verdict,
     /// How far a body that contact holds may still move.
     pub plays: Vec<Play>,
-}
-
-/// The time that the parts of a solve took.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct Times {
-    /// Nodes, constraints, loads, contact edges.
-    pub discretize: Duration,
-    /// Order of elimination and matrix.
-    pub matrix: Duration,
-    /// Sparse Cholesky factorisation.
-    pub factor: Duration,
-    /// The contact functionals: X, G, y0.
-    pub compliance: Duration,
-    /// Newton's method, with the substitutions and residuals of all passes.
-    pub newton: Duration,
-    /// The residual of the solution in the full system, and its reference.
-    pub judge: Duration,
-    /// Enclosing the exact solution of (8).
-    pub certify: Duration,
-    /// Stresses, contact pressure, resultants.
-    pub evaluate: Duration,
-}
-
-impl Times {
-    /// Adds the times of two solves.
-    #[must_use]
-    pub fn plus(&self, other: &Times) -> Times {
-        Times {
-            discretize: self.discretize + other.discretize,
-            matrix: self.matrix + other.matrix,
-            factor: self.factor + other.factor,
-            compliance: self.compliance + other.compliance,
-            newton: self.newton + other.newton,
-            judge: self.judge + other.judge,
-            certify: self.certify + other.certify,
-            evaluate: self.evaluate + other.evaluate,
-        }
-    }
-
-    /// All that comes before the factorisation.
-    pub fn assemble(&self) -> Duration {
-        self.discretize + self.matrix
-    }
-
-    /// From the factorisation to a solution that has been judged.
-    pub fn solve(&self) -> Duration {
-        self.factor + self.compliance + self.newton + self.judge
-    }
-}
-
-/// Tells the time since it was last asked.
-pub(super) struct Stopwatch(Instant);
-
-impl Stopwatch {
-    pub fn start() -> Self {
-        Stopwatch(Instant::now())
-    }
-
-    pub(crate) fn lap(&mut self) -> Duration {
-        let now = Instant::now();
-        let lap = now - self.0;
-        self.0 = now;
-        lap
-    }
 }

@@ -9,8 +9,6 @@
 
 use std::sync::Arc;
 
-use serde::{Deserialize, Serialize};
-
 use super::accuracy::{self, Outcome, Route};
 use super::assembled::Assembled;
 use super::compliance::Reach;
@@ -18,20 +16,11 @@ use super::condensed::Condensed;
 use super::course::Phase;
 use super::enclosure::Verifier;
 use super::factor::Factor;
-use super::report::{Stopwatch, Times};
+use super::report::RouteName;
 use super::system::System;
+use super::times::{Stopwatch, Times};
 use super::{Settings, SolveError};
 use crate::memory;
-
-/// The routes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum RouteName {
-    /// The body factored once, Newton's method on the contact functionals.
-    Condensed,
-    /// Newton's method on the displacement, the tangent factored in each step.
-    Assembled,
-}
 
 /// The Newton steps that a prediction counts on.
 const STEPS: f64 = 12.0;

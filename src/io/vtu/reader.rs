@@ -3,12 +3,23 @@
 use miniz_oxide::inflate::decompress_to_vec_zlib_with_limit;
 
 use super::ALPHABET;
-use crate::io::field::{Points, Triangles};
 use crate::memory;
 use crate::quote;
 
 /// The most points of a cell of VTK's, of degree 2.
 const POINTS_OF_A_CELL: usize = 27;
+
+/// The triangles of a VTU file.
+#[derive(Debug, PartialEq)]
+pub(in crate::io) struct Triangles {
+    /// Their corners by the points of the file.
+    pub corners: Vec<[usize; 3]>,
+    /// The triangles have a point in the middle of each side, too.
+    pub quadratic: bool,
+}
+
+/// Places with the displacement there.
+pub(in crate::io) type Points = Vec<([f64; 2], [f64; 2])>;
 
 /// The displacement at the points, and the triangles if the file has cells.
 pub(in crate::io) fn from_vtu(text: &str) -> Result<(Points, Option<Triangles>), String> {

@@ -28,7 +28,8 @@ use nalgebra::Matrix2;
 
 use crate::fem::graded_quadrature::Features;
 use crate::fem::mesh::Mesh;
-use crate::fem::problem::{Condition, Function, Problem, SharedFunction};
+use crate::fem::problem::{Condition, Problem};
+use crate::fem::{Function, SharedFunction};
 use crate::kernel::{Material, Scalar, Stress};
 
 /// A displacement field that solves (1)-(2), with its data.

@@ -17,10 +17,10 @@ use signorini::solve::enclosure::Verifier;
 use signorini::solve::factor::Factor;
 use signorini::solve::iterate::{Evaluated, Evaluation, Iterate};
 use signorini::solve::newton::Until;
-use signorini::solve::route::{self, RouteName};
+use signorini::solve::route;
 use signorini::solve::system::System;
 use signorini::solve::{
-    Degree, Gamma0, Method, Settings, SolveError, Verdict, discretize, solve_discrete,
+    Degree, Gamma0, Method, RouteName, Settings, SolveError, Verdict, discretize, solve_discrete,
 };
 
 use super::bodies::on_bodies;

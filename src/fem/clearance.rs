@@ -1,0 +1,74 @@
+//! The motions that nothing stops at a solution of (8), within the clearance of the contact edges that do not press.
+
+use super::contact_face::ContactFace;
+use super::dense::{dot, norm};
+use super::discretization::Discretization;
+use super::element::bernstein;
+use super::rigid::{FREE, FreeMotion, Parts, null_space};
+use super::solvability::{Slides, all, negligible, rows};
+
+/// An edge presses where P is above this share of the largest; below it P is what the tolerance of Newton's method leaves.
+const PRESSES: f64 = 1e-8;
+
+impl Slides {
+    /// All motions that nothing stops where `u` solves (8), within the clearance of the edges that do not press. `None` where
+    /// supports hold the body.
+    pub fn around(d: &Discretization, u: &[[f64; 2]]) -> Option<Slides> {
+        let idle = &d.slides.as_ref()?.idle;
+        let size = |v: &[f64]| v.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+        let p: Vec<Vec<f64>> = d.contact.iter().map(|edge| edge.p(u)).collect();
+        let most = |p: &[f64]| bernstein(p).into_iter().fold(0.0, f64::max);
+        let largest = p.iter().map(|p| most(p)).fold(0.0, f64::max);
+        let far = size(u.as_flattened());
+        let presses = |(p, edge): (&Vec<f64>, &ContactFace)| {
+            let rounding = 8.0 * f64::EPSILON * (far + size(&edge.gap));
+            most(p) > rounding.max(PRESSES * largest) && d.rule.integrals(p).active > 0.0
+        };
+        let pressing = p.iter().zip(&d.contact).map(presses);
+        let pressing: Vec<bool> = pressing.zip(idle).map(|(yes, idle)| yes && !idle).collect();
+        let parts = Parts::new(d.space.mesh());
+        let slides = Slides::new(free_where(d, &parts, &pressing), &parts, &d.space);
+        let (at, basis) = (slides.at(u), &slides.basis);
+        let rounding = FREE.max(d.rounding_of_directions());
+        let (mut bounds, mut stopping) = (Vec::new(), Vec::new());
+        let edges = d.contact.iter().zip(&p).zip(pressing).zip(idle);
+        for (e, (((edge, p), pressing), idle)) in edges.enumerate() {
+            let nodes = d.space.edge_nodes(edge.edge);
+            let lengths = basis.iter().flat_map(|b| nodes.iter().map(|&node| b[node]));
+            let none = rounding * lengths.fold(0.0, |m: f64, [x, y]| m.max(x.hypot(y)));
+            let row = |a: usize| {
+                let along = |b: &Vec<[f64; 2]>| dot(&b[nodes[a]], edge.directions[a].as_slice());
+                basis.iter().map(along).collect::<Vec<f64>>()
+            };
+            let rows: Vec<Vec<f64>> = (0..nodes.len()).map(row).collect();
+            let coefficients = bernstein(p);
+            // Not a step towards an edge of which a coefficient is positive although P is not.
+            let open = *idle || coefficients.iter().all(|p| *p <= 0.0);
+            for (a, coefficient) in coefficients.into_iter().enumerate() {
+                let row: Vec<f64> = (0..basis.len())
+                    .map(|j| bernstein(&rows.iter().map(|row| row[j]).collect::<Vec<f64>>())[a])
+                    .collect();
+                if !pressing && norm(&row) > none {
+                    let bound = if open { -coefficient } else { 0.0 } + dot(&row, &at);
+                    bounds.push((row, bound));
+                    stopping.push(e);
+                }
+            }
+        }
+        stopping.dedup();
+        Some(Slides { bounds, stopping, idle: idle.clone(), ..slides })
+    }
+}
+
+/// The motions of `d` that neither supports nor the contact edges that are pressing stop.
+pub(crate) fn free_where(d: &Discretization, parts: &Parts, pressing: &[bool]) -> Vec<FreeMotion> {
+    let mut free = Vec::new();
+    for of_part in d.motions.chunk_by(|a, b| a.part == b.part) {
+        let count = of_part.len();
+        let rows = all(&rows(of_part, parts, &d.space, &d.contact, |e| pressing[e]));
+        let none = negligible(&rows, count, d.rounding_of_directions());
+        let weights = null_space(&rows, count, |value, _| value > none);
+        free.extend(weights.iter().map(|weights| parts.combined(of_part, weights)));
+    }
+    free
+}
