@@ -26,10 +26,10 @@ use super::files::{NotFinite, check_finite};
 use super::result::Results;
 use crate::solve::Solution;
 use body::{BAR, Colours, body, colour_bar, definitions, outlines};
-use contact::{ContactLine, hatch, obstacle, pressure, tags};
+use contact::{ContactLine, hatched, obstacle, pressure, tags};
 use draw::{
-    DARK, GREY, LEGEND_LINE, PageMap, PathData, Point, RED, SAMPLE, clean, fitting, legend, page,
-    shape, stroke, text,
+    DARK, GREY, LEGEND_LINE, PageMap, PathData, Point, SAMPLE, clean, fitting, legend, page,
+    red_area, stroke, text,
 };
 use scene::Scene;
 
@@ -58,12 +58,13 @@ fn picture(scene: &Scene) -> Result<String, NotFinite> {
     let (pressure, obstacle) = (pressure(&lines), obstacle(&lines));
 
     let width = frame.width + GAP + BAR;
-    let mut entries: Vec<(Option<Group>, &str)> = vec![(Some(undeformed()), "undeformed")];
+    let mut entries: Vec<(Option<Group>, &str)> =
+        vec![(Some(sample(GREY, 1.2).set("stroke-dasharray", "6 4")), "undeformed")];
     if !scene.interfaces.is_empty() {
-        entries.push((Some(interface()), "border of two materials"));
+        entries.push((Some(sample(DARK, 1.0)), "border of two materials"));
     }
     if obstacle.is_some() {
-        entries.push((Some(wall()), "rigid obstacle"));
+        entries.push((hatched([SAMPLE.map(|[x, y]| [x, y - 3.0]).to_vec()]), "rigid obstacle"));
     }
     entries.push(match pressure {
         Some(_) => (Some(pressed()), "contact pressure"),
@@ -112,41 +113,25 @@ fn headline(scene: &Scene, room: f64) -> Group {
         .add(text(subtitle, [MARGIN, 68.0]).set("font-size", small).set("fill", GREY))
 }
 
-fn sample() -> PathData {
+/// The sample of a line.
+fn sample(colour: &str, width: f64) -> Group {
     let mut line = PathData::default();
     line.line(SAMPLE);
-    line
+    Group::new().add(stroke(line, colour, width))
 }
 
-fn undeformed() -> Group {
-    Group::new().add(stroke(sample(), GREY, 1.2).set("stroke-dasharray", "6 4"))
-}
-
-fn interface() -> Group {
-    Group::new().add(stroke(sample(), DARK, 1.0))
-}
-
-fn wall() -> Group {
-    let line = SAMPLE.map(|[x, y]| [x, y - 3.0]);
-    let (mut border, mut hatching) = (PathData::default(), PathData::default());
-    hatch(&line, &mut hatching);
-    border.line(line);
-    Group::new().add(stroke(hatching, GREY, 0.9)).add(stroke(border, DARK, 1.6))
-}
-
+/// The sample of the pressure.
 fn pressed() -> Group {
     let [below, above] = [5.0, -5.0].map(|off| SAMPLE.map(|[x, y]| [x, y + off]));
     let (mut area, mut curve) = (PathData::default(), PathData::default());
     area.polygon([above[0], above[1], below[1], below[0]]);
     curve.line(below);
-    Group::new()
-        .add(shape(area).set("fill", RED).set("fill-opacity", 0.25))
-        .add(stroke(curve, RED, 1.5))
+    red_area(area, curve)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::draw::{distance, short, viridis};
+    use super::draw::{RED, distance, short, viridis};
     use super::scene::{ContactSample, ContactSurface};
     use super::*;
     use crate::fem::{Diagonal, Rectangle};

@@ -6,7 +6,7 @@ use svg::node::element::{Circle, Group};
 
 use super::draw::{
     DARK, GREY, PageMap, PathData, Point, RED, anchored, between, direction, distance, moved,
-    places, shape, stroke, thinned,
+    places, red_area, stroke, thinned,
 };
 use super::scene::{ContactSample, Scene};
 
@@ -153,11 +153,7 @@ pub(super) fn pressure(contact: &[ContactLine]) -> Option<Group> {
         }
     }
     (!curve.is_empty()).then(|| {
-        Group::new()
-            .set("stroke-linejoin", "round")
-            .add(shape(area).set("fill", RED).set("fill-opacity", 0.25))
-            .add(stroke(curve, RED, 1.5))
-            .add(stroke(arrows, RED, 1.3))
+        red_area(area, curve).set("stroke-linejoin", "round").add(stroke(arrows, RED, 1.3))
     })
 }
 
@@ -172,22 +168,23 @@ fn arrow(from: Point, to: Point, arrows: &mut PathData) {
 
 /// The obstacle's border, hatched on its side.
 pub(super) fn obstacle(contact: &[ContactLine]) -> Option<Group> {
+    let runs =
+        contact.iter().flat_map(|line| line.wall.chunk_by(|a, b| a.is_some() == b.is_some()));
+    hatched(runs.map(|run| run.iter().flatten().copied().collect()))
+}
+
+/// Lines hatched on their right, unless there is none.
+pub(super) fn hatched(lines: impl IntoIterator<Item = Vec<Point>>) -> Option<Group> {
     let (mut border, mut hatching) = (PathData::default(), PathData::default());
-    for line in contact {
-        for run in line.wall.chunk_by(|a, b| a.is_some() == b.is_some()) {
-            let run: Vec<Point> = run.iter().flatten().copied().collect();
-            let run = thinned(&run);
-            if run.len() > 1 {
-                hatch(&run, &mut hatching);
-                border.line(run);
-            }
-        }
+    for line in lines.into_iter().map(|line| thinned(&line)).filter(|line| line.len() > 1) {
+        hatch(&line, &mut hatching);
+        border.line(line);
     }
     (!border.is_empty())
         .then(|| Group::new().add(stroke(hatching, GREY, 0.9)).add(stroke(border, DARK, 1.6)))
 }
 
-pub(super) fn hatch(border: &[Point], hatching: &mut PathData) {
+fn hatch(border: &[Point], hatching: &mut PathData) {
     for (i, fraction) in places(border, 8.0) {
         let (a, b) = (border[i], border[i + 1]);
         if let Some([x, y]) = direction(a, b) {

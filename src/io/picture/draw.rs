@@ -89,6 +89,13 @@ pub(super) fn stroke(path: PathData, colour: &str, width: f64) -> PathElement {
     shape(path).set("fill", "none").set("stroke", colour).set("stroke-width", width)
 }
 
+/// The pressure: an area, and the curve over it.
+pub(super) fn red_area(area: PathData, curve: PathData) -> Group {
+    Group::new()
+        .add(shape(area).set("fill", RED).set("fill-opacity", 0.25))
+        .add(stroke(curve, RED, 1.5))
+}
+
 /// An axis: the range of its values, and the ends of that on the page.
 pub(super) struct PageAxis {
     pub(super) range: [f64; 2],

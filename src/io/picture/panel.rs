@@ -10,7 +10,7 @@ use svg::node::element::Group;
 use super::contact::{RADIUS, tag};
 use super::draw::{
     Axes, GREY, LIGHT, PageAxis, PathData, Point, RED, anchored, clean, dot, fitting, rectangle,
-    shape, short, stroke, text, thinned, width_of,
+    red_area, short, text, thinned, width_of,
 };
 use super::scene::{ContactSample, ContactSurface, Scene};
 use crate::certify::quantities::{Limit, Zone};
@@ -151,9 +151,7 @@ fn curve(surface: &ContactSurface, axes: &Axes) -> Group {
             line.line(points);
         }
     }
-    Group::new()
-        .add(shape(area).set("fill", RED).set("fill-opacity", 0.25))
-        .add(stroke(line, RED, 1.5).set("stroke-linejoin", "round"))
+    red_area(area, line).set("stroke-linejoin", "round")
 }
 
 /// A dot at the peak, and its value above it.
