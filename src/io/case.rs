@@ -181,15 +181,13 @@ fn parse(source: Source, mesh: Option<Mesh>) -> Result<Case, FileError> {
 }
 
 fn text(bytes: Vec<u8>, file: &Path) -> Result<String, FileError> {
+    let wrong = |error: InputError| error.at(file, Position::File);
     // What the TOML reader and the expressions make of it.
-    let room = memory::check(MEMORY_PER_BYTE * bytes.len() as u64).map_err(InputError::from);
-    let text = room.and_then(|()| {
-        String::from_utf8(bytes).map_err(|e| {
-            let byte = e.utf8_error().valid_up_to() + 1;
-            format!("byte {byte} is not UTF-8; expected a text file, saved as UTF-8").into()
-        })
-    });
-    text.map_err(|error| error.at(file, Position::File))
+    memory::check(MEMORY_PER_BYTE * bytes.len() as u64).map_err(|lack| wrong(lack.into()))?;
+    String::from_utf8(bytes).map_err(|error| {
+        let byte = error.utf8_error().valid_up_to() + 1;
+        wrong(format!("byte {byte} is not UTF-8; expected a text file, saved as UTF-8").into())
+    })
 }
 
 /// The bytes of memory that a byte of a case file takes at most while it is read: 241 in a list of tables of one number.

@@ -84,32 +84,29 @@ fn at_nodes(
         let Some(other) = found[k].replace(i) else { continue };
         let (y, w) = points[other];
         if (0..2).any(|c| (u[c] - w[c]).abs() > NEAR * size) {
+            let [x, w, u] = [x, w, u].map(pair);
             return Err(format!(
-                "points {other} and {i} lie at one {what}, ({}, {}), and have the displacements ({}, {}) and ({}, {}); expected one",
-                x[0], x[1], w[0], w[1], u[0], u[1]
+                "points {other} and {i} lie at one {what}, {x}, and have the displacements {w} and {u}; expected one"
             ));
         }
         if distance(k, y) < distance(k, x) {
             found[k] = Some(other);
         }
     }
-    if let Some(x) = elsewhere.first() {
+    let count = points.len();
+    if let Some(&x) = elsewhere.first() {
         return Err(format!(
-            "{} of its {} points lie at no {what} of the case's mesh, the first at ({}, {}); expected a field on that mesh, as what it does elsewhere would not be seen",
+            "{} of its {count} points lie at no {what} of the case's mesh, the first at {}; expected a field on that mesh, as what it does elsewhere would not be seen",
             elsewhere.len(),
-            points.len(),
-            x[0],
-            x[1]
+            pair(x)
         ));
     }
     let value = |(k, found): (usize, Option<usize>)| match found {
         Some(i) => Ok(points[i].1),
         None => Err(format!(
-            "none of its {} points lies at {} of the mesh, ({}, {}); expected the displacement at every {}",
-            points.len(),
+            "none of its {count} points lies at {} of the mesh, {}; expected the displacement at every {}",
             if k < vertices { format!("vertex {k}") } else { "the middle of an edge".to_owned() },
-            nodes[k][0],
-            nodes[k][1],
+            pair(nodes[k]),
             if quadratic { "vertex and every middle of an edge" } else { "vertex" }
         )),
     };
@@ -118,6 +115,10 @@ fn at_nodes(
         check_triangles(triangles, &node_of, mesh)?;
     }
     Ok(values)
+}
+
+fn pair([x, y]: [f64; 2]) -> String {
+    format!("({x}, {y})")
 }
 
 /// The triangles of a file are those of the mesh: on others, such as those along the other diagonals of a grid, the same

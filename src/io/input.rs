@@ -132,14 +132,9 @@ fn bytes_of(path: &Path, most: u64) -> Result<Vec<u8>, InputError> {
     if metadata.len() > most {
         return Err(too_long(most));
     }
-    memory::check(metadata.len())?;
+    // At once, where growing would take up to twice as much.
     let mut bytes = Vec::new();
-    // Exactly, where growing would take up to twice as much; what the file announces is not more than it has now.
-    if let Ok(length) = usize::try_from(metadata.len())
-        && bytes.try_reserve_exact(length + 1).is_err()
-    {
-        return Err(OutOfMemory { needed: metadata.len(), available: None }.into());
-    }
+    memory::reserve(&mut bytes, usize::try_from(metadata.len()).unwrap_or(usize::MAX))?;
     read_into(bytes, file, most)
 }
 

@@ -128,10 +128,9 @@ fn on_surface<'m>(mesh: &'m Mesh, at: &Spot, key: &str) -> Result<&'m [usize], F
     }
 }
 
-fn read_plane(table: &Table, mut plane: Plane) -> Result<Plane, FileError> {
+fn read_plane(table: &Table, default: Plane) -> Result<Plane, FileError> {
     let planes = [("strain", Plane::Strain), ("stress", Plane::Stress)];
-    table.set("plane", &mut plane, |plane| plane.one_of(&planes))?;
-    Ok(plane)
+    Ok(table.optional("plane", |plane| plane.one_of(&planes))?.unwrap_or(default))
 }
 
 fn read_material(table: &Table, plane: Plane) -> Result<(Material<f64>, MaterialEcho), FileError> {
@@ -229,8 +228,7 @@ fn read_orthotropic(
         Plane::Stress => None,
         Plane::Strain => Some(Across { e3: out("e3")?, nu13: out("nu13")?, nu23: out("nu23")? }),
     };
-    let mut angle = 0.0;
-    table.set("angle", &mut angle, Value::number)?;
+    let angle = table.optional("angle", Value::number)?.unwrap_or(0.0);
     let [e1, e2, nu12, g12] = ["e1", "e2", "nu12", "g12"].map(|key| number(key, "a number"));
     let (e1, e2, nu12, g12) = (e1?, e2?, nu12?, g12?);
     Ok(stable_orthotropic(Orthotropic { e1, e2, nu12, g12, angle, across }))

@@ -112,9 +112,9 @@ fn read_rectangle(table: &Table) -> Result<Structured, FileError> {
     let cells = |key| table.require(key, "a number of cells")?.whole_number(1..=MOST_CELLS);
     let [width, height] = [length("width")?, length("height")?];
     let [nx, ny] = [cells("nx")?, cells("ny")?];
-    let mut diagonal = Diagonal::Right;
     let diagonals =
         [("right", Diagonal::Right), ("left", Diagonal::Left), ("crossed", Diagonal::Crossed)];
-    table.set("diagonal", &mut diagonal, |value| value.one_of(&diagonals))?;
+    let diagonal = table.optional("diagonal", |value| value.one_of(&diagonals))?;
+    let diagonal = diagonal.unwrap_or(Diagonal::Right);
     Ok(Structured::Rectangle(Rectangle { width, height, nx, ny, diagonal }))
 }

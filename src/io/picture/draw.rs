@@ -96,6 +96,11 @@ pub(super) fn red_area(area: PathData, curve: PathData) -> Group {
         .add(stroke(curve, RED, 1.5))
 }
 
+/// The smallest and the largest of some numbers.
+pub(super) fn range(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
+    numbers.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+}
+
 /// An axis: the range of its values, and the ends of that on the page.
 pub(super) struct PageAxis {
     pub(super) range: [f64; 2],

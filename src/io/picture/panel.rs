@@ -9,8 +9,8 @@ use svg::node::element::Group;
 
 use super::contact::{RADIUS, tag};
 use super::draw::{
-    Axes, GREY, LIGHT, PageAxis, PathData, Point, RED, anchored, clean, dot, fitting, rectangle,
-    red_area, short, text, thinned, width_of,
+    Axes, GREY, LIGHT, PageAxis, PathData, Point, RED, anchored, clean, dot, fitting, range,
+    rectangle, red_area, short, text, thinned, width_of,
 };
 use super::scene::{ContactSample, ContactSurface, Scene};
 use crate::certify::quantities::{Limit, Zone};
@@ -53,11 +53,6 @@ pub(super) fn panels(scene: &Scene, corner: Point, width: f64) -> Group {
         }
     }
     group
-}
-
-/// The smallest and the largest arc length.
-fn range(samples: impl Iterator<Item = f64>) -> [f64; 2] {
-    samples.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], s| [l.min(s), h.max(s)])
 }
 
 /// The range of the boundary that is shown: all of it, or three times the part in contact where that is shorter.

@@ -6,7 +6,7 @@ use svg::Node;
 use svg::node::element::{Circle, Group, Path as PathElement};
 
 use super::draw::{
-    Axes, GREY, LEGEND_LINE, PageAxis, PathData, Point, SAMPLE, anchored, dot, legend, page,
+    Axes, GREY, LEGEND_LINE, PageAxis, PathData, Point, SAMPLE, anchored, dot, legend, page, range,
     stroke, text,
 };
 use crate::io::files::{NotFinite, check_finite};
@@ -92,8 +92,7 @@ fn mark(at: Point, style: &Style) -> Circle {
 
 /// An axis around these logarithms, with some space.
 fn logarithmic(logarithms: impl Iterator<Item = f64>, page: [f64; 2]) -> PageAxis {
-    let around = |[low, high]: [f64; 2], x: f64| [low.min(x), high.max(x)];
-    let range = logarithms.fold([f64::INFINITY, f64::NEG_INFINITY], around);
+    let range = range(logarithms);
     let [low, high] = if range[0] <= range[1] { range } else { [-1.0, 0.0] };
     let space = (0.06 * (high - low)).max(0.05);
     PageAxis { range: [low - space, high + space], page }
