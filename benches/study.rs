@@ -19,7 +19,7 @@ use signorini::fem::{
     Structured, Trapezoid, contact_line,
 };
 use signorini::io::Case;
-use signorini::io::convergence::{self, Meshes, NORMS, Study};
+use signorini::io::convergence::{self, NORMS, Study};
 use signorini::io::picture::plot::{self, Figure, Panel, Style};
 use signorini::kernel::{Material, Plane};
 use signorini::solve::{
@@ -124,7 +124,7 @@ fn samples() -> Result<Vec<Sample>> {
 }
 
 impl Sample {
-    fn ladder(&self, degree: Degree, meshes: Meshes, n: usize) -> Ladder {
+    fn ladder(&self, degree: Degree, perturbed: bool, n: usize) -> Ladder {
         let (body, sides) = match self.omega {
             Some(omega) => (
                 Structured::Trapezoid(Trapezoid { omega, n }),
@@ -150,7 +150,7 @@ impl Sample {
             solution: Arc::clone(&self.solution),
             kinds: BTreeMap::from_iter(names.into_iter().zip(kinds)),
             body,
-            perturbation: (meshes == Meshes::Perturbed).then_some(PERTURBATION),
+            perturbation: perturbed.then_some(PERTURBATION),
             method: Method { degree, ..Method::default() },
             // Small gamma0 takes many Newton steps.
             settings: Settings { max_iterations: 500, ..Settings::default() },
@@ -181,10 +181,10 @@ fn rates(text: &mut String, figures: &Path, samples: &[Sample]) -> Result<()> {
     for sample in samples {
         let mut studies: Vec<Study> = Vec::new();
         for degree in DEGREES {
-            for meshes in [Meshes::Structured, Meshes::Perturbed] {
-                eprintln!("{}, P{}, {meshes:?}", sample.name, degree.number());
-                let ladder = sample.ladder(degree, meshes, COARSEST);
-                studies.push(convergence::climb(ladder, meshes, LEVELS, || {})?);
+            for perturbed in [false, true] {
+                eprintln!("{}, P{}, perturbed: {perturbed}", sample.name, degree.number());
+                let ladder = sample.ladder(degree, perturbed, COARSEST);
+                studies.push(convergence::climb(ladder, LEVELS, || {})?);
             }
         }
         for study in &studies {
@@ -197,7 +197,7 @@ fn rates(text: &mut String, figures: &Path, samples: &[Sample]) -> Result<()> {
                 "| {} | P{} | {} | {:.2} | {} | {} | {} | {} | {} | {} |",
                 sample.name,
                 study.degree.number(),
-                if study.meshes == Meshes::Structured { "structured" } else { "perturbed" },
+                if study.perturbed { "perturbed" } else { "structured" },
                 study.promised,
                 slope(0),
                 slope(1),
@@ -275,7 +275,7 @@ fn gamma_sweep(text: &mut String, figures: &Path, samples: &[Sample]) -> Result<
         for degree in DEGREES {
             let mut points = Vec::new();
             for kappa in KAPPAS {
-                let ladder = at_kappa(sample.ladder(degree, Meshes::Structured, 32), kappa)?;
+                let ladder = at_kappa(sample.ladder(degree, false, 32), kappa)?;
                 let level = ladder.solve(0)?.0;
                 points.push((kappa, level.errors, level.newton_steps));
             }
@@ -334,8 +334,8 @@ fn locking(text: &mut String, figures: &Path) -> Result<()> {
                 solution: smooth(lambda, 4.0, 3.0, 1.0 / 3.0, &[]),
                 omega: None,
             };
-            let ladder = sample.ladder(sweep.degree, Meshes::Structured, 8);
-            let study = convergence::climb(ladder, Meshes::Structured, 4, || {})?;
+            let ladder = sample.ladder(sweep.degree, false, 8);
+            let study = convergence::climb(ladder, 4, || {})?;
             let level = &study.levels[2];
             cells.push(format!(
                 "{:.3e} | {:.2}",
@@ -371,8 +371,8 @@ fn theorem(text: &mut String, samples: &[Sample]) -> Result<()> {
             let mut rows = [[0.0; 2]; 10];
             for (k, kappa) in [0.1, 0.5, 0.9].into_iter().enumerate() {
                 for (i, n) in [8, 32].into_iter().enumerate() {
-                    for meshes in [Meshes::Structured, Meshes::Perturbed] {
-                        let ladder = at_kappa(sample.ladder(degree, meshes, n), kappa)?;
+                    for perturbed in [false, true] {
+                        let ladder = at_kappa(sample.ladder(degree, perturbed, n), kappa)?;
                         let (_, problem, solution) = ladder.solve(0)?;
                         let t = Theorem::new(&problem, &solution, &*ladder.solution)?;
                         let all =
@@ -381,11 +381,11 @@ fn theorem(text: &mut String, samples: &[Sample]) -> Result<()> {
                         for (form, ratio) in all.into_iter().enumerate() {
                             extremes[form][0] = extremes[form][0].min(ratio);
                             extremes[form][1] = extremes[form][1].max(ratio);
-                            if meshes == Meshes::Structured {
+                            if !perturbed {
                                 rows[3 * form + k][i] = ratio;
                             }
                         }
-                        if meshes == Meshes::Structured && k == 1 {
+                        if !perturbed && k == 1 {
                             rows[9][i] = t.corollary() / t.discrete.normal_stress;
                         }
                     }
@@ -590,7 +590,7 @@ fn adaptivity(text: &mut String, figures: &Path, samples: &[Sample]) -> Result<(
     let mut styles = Vec::new();
     for sample in samples.iter().filter(|s| ["singular-third", "corner-135"].contains(&s.file)) {
         eprintln!("{}, adapted", sample.name);
-        let ladder = sample.ladder(Degree::One, Meshes::Structured, 4);
+        let ladder = sample.ladder(Degree::One, false, 4);
         let uniform: Vec<Measured> =
             (0..UNIFORM).map(|level| uniform(&ladder, level)).collect::<Result<_>>()?;
         let runs: Vec<(Measured, usize)> =

@@ -191,7 +191,7 @@ pub struct StudyOptions {
     pub mesh: Vec<MeshKind>,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum MeshKind {
     Structured,
     Perturbed,

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use signorini::io::convergence::{self, Meshes};
+use signorini::io::convergence;
 use signorini::io::files::spare;
 use signorini::io::run::Failure;
 use signorini::io::summary;
@@ -22,14 +22,10 @@ pub fn run(
     let folder = folder(&arguments.file, out);
     spare(&folder, &convergence::FILES, &case.sources)?;
     let degree = |d: &u8| if *d == 1 { Degree::One } else { Degree::Two };
-    let mesh = |m: &MeshKind| match m {
-        MeshKind::Structured => Meshes::Structured,
-        MeshKind::Perturbed => Meshes::Perturbed,
-    };
     let degrees = or_none(options.degree.iter().map(degree).collect());
-    let meshes = or_none(options.mesh.iter().map(mesh).collect());
+    let perturbed = or_none(options.mesh.iter().map(|mesh| *mesh == MeshKind::Perturbed).collect());
     let levels = usize::from(options.levels);
-    let count = degrees.len() * meshes.len() * levels;
+    let count = degrees.len() * perturbed.len() * levels;
     let phases = Phases::start(quiet);
     let mut done = 0;
     let mut enter = |more| {
@@ -39,11 +35,9 @@ pub fn run(
     enter(0);
     let mut studies = Vec::new();
     for degree in &degrees {
-        for meshes in &meshes {
-            let study = convergence::ladder(&case, *degree, *meshes)
-                .and_then(|(ladder, meshes)| {
-                    convergence::climb(ladder, meshes, levels, || enter(1))
-                })
+        for perturbed in &perturbed {
+            let study = convergence::ladder(&case, *degree, *perturbed)
+                .and_then(|ladder| convergence::climb(ladder, levels, || enter(1)))
                 .map_err(|failure| failure.of(&case.file))?;
             studies.push(study);
         }

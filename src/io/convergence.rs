@@ -14,23 +14,6 @@ use crate::study::ladder::{fitted_slope, rates};
 use crate::study::{Errors, a_priori};
 use crate::study::{Ladder, LadderError, Level};
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Meshes {
-    /// As the generator makes them.
-    Structured,
-    /// Moved as the case says, or by up to 0.2 cells.
-    Perturbed,
-}
-
-impl Meshes {
-    fn name(self) -> &'static str {
-        match self {
-            Meshes::Structured => "structured",
-            Meshes::Perturbed => "perturbed",
-        }
-    }
-}
-
 /// The distance by which vertices are moved where the case doesn't say.
 const PERTURBATION: Perturbation = Perturbation { amount: 0.2, seed: 1 };
 
@@ -38,48 +21,39 @@ const PERTURBATION: Perturbation = Perturbation { amount: 0.2, seed: 1 };
 #[derive(Clone, Debug)]
 pub struct Study {
     pub degree: Degree,
-    pub meshes: Meshes,
+    /// The vertices of the meshes are moved, as the case says or by up to 0.2 cells.
+    pub perturbed: bool,
     /// The rate that the theory promises for all norms but L2.
     pub promised: f64,
     /// The results on each mesh, from the coarsest on.
     pub levels: Vec<Level>,
 }
 
-/// The ladder of a case, with its own degree and mesh unless told otherwise.
+/// The ladder of a case, with its own degree and mesh, perturbed or not, unless told otherwise.
 pub fn ladder(
     case: &Case,
     degree: Option<Degree>,
-    meshes: Option<Meshes>,
-) -> Result<(Ladder, Meshes), Failure> {
+    perturbed: Option<bool>,
+) -> Result<Ladder, Failure> {
     const NO_SOLUTION: &str = "[exact] is missing; errors are measured against an exact solution";
     const MESH_FILE: &str =
         "[mesh] gmsh: found a mesh file; expected rectangle or trapezoid, which can be refined";
     let exact = case.exact.as_ref().ok_or_else(|| Failure::wrong(NO_SOLUTION))?;
     let body = exact.structured.ok_or_else(|| Failure::wrong(MESH_FILE))?;
-    let own = if exact.perturbation.is_some() { Meshes::Perturbed } else { Meshes::Structured };
-    let meshes = meshes.unwrap_or(own);
-    let ladder = Ladder {
+    let perturbed = perturbed.unwrap_or(exact.perturbation.is_some());
+    Ok(Ladder {
         solution: exact.solution.clone(),
         kinds: exact.kinds.clone(),
         body,
-        perturbation: match meshes {
-            Meshes::Structured => None,
-            Meshes::Perturbed => Some(exact.perturbation.unwrap_or(PERTURBATION)),
-        },
+        perturbation: perturbed.then(|| exact.perturbation.unwrap_or(PERTURBATION)),
         method: Method { degree: degree.unwrap_or(case.method.degree), ..case.method.clone() },
         settings: case.settings,
-    };
-    Ok((ladder, meshes))
+    })
 }
 
 /// Solves the first `levels` levels of a ladder at one gamma0, and calls `done` after each.
-pub fn climb(
-    ladder: Ladder,
-    meshes: Meshes,
-    levels: usize,
-    mut done: impl FnMut(),
-) -> Result<Study, Failure> {
-    let degree = ladder.method.degree;
+pub fn climb(ladder: Ladder, levels: usize, mut done: impl FnMut()) -> Result<Study, Failure> {
+    let (degree, perturbed) = (ladder.method.degree, ladder.perturbation.is_some());
     let failed = |level: usize| {
         move |error: LadderError| Failure {
             message: format!("P{}, level {level}: {error}", degree.number()),
@@ -95,7 +69,7 @@ pub fn climb(
         climbed.push(ladder.solve(level).map_err(failed(level))?.0);
         done();
     }
-    Ok(Study { degree, meshes, promised: ladder.promised_rate(), levels: climbed })
+    Ok(Study { degree, perturbed, promised: ladder.promised_rate(), levels: climbed })
 }
 
 /// A norm: its name, its value, and whether the theory promises a rate.
@@ -120,7 +94,11 @@ pub(crate) const FITTED: usize = 4;
 impl Study {
     /// The name, such as "P2, structured".
     pub fn name(&self) -> String {
-        format!("P{}, {}", self.degree.number(), self.meshes.name())
+        format!("P{}, {}", self.degree.number(), self.meshes())
+    }
+
+    fn meshes(&self) -> &'static str {
+        if self.perturbed { "perturbed" } else { "structured" }
     }
 
     pub fn sizes(&self) -> Vec<f64> {
@@ -190,7 +168,7 @@ pub fn csv(studies: &[Study]) -> String {
     let mut text = format!("degree,mesh,h,unknowns,{names},newton_steps,gamma0,kappa,proved\n");
     for study in studies {
         for level in &study.levels {
-            let mut cells = vec![study.degree.number().to_string(), study.meshes.name().to_owned()];
+            let mut cells = vec![study.degree.number().to_string(), study.meshes().to_owned()];
             cells.extend([csv::number(level.h), level.unknowns.to_string()]);
             cells.extend(NORMS.map(|(_, of, _)| csv::number(of(&level.errors))));
             cells.push(level.newton_steps.to_string());
@@ -218,7 +196,7 @@ pub fn plot(title: &str, studies: &[Study]) -> Figure {
             .map(|study| Style {
                 name: study.name(),
                 colour: COLOURS[usize::from(study.degree != Degree::One)],
-                dashed: study.meshes == Meshes::Perturbed,
+                dashed: study.perturbed,
             })
             .collect(),
     }
@@ -272,7 +250,7 @@ mod tests {
         };
         Study {
             degree: Degree::One,
-            meshes: Meshes::Structured,
+            perturbed: false,
             promised: 1.0,
             levels: (0..levels).map(level).collect(),
         }
