@@ -14,8 +14,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::CommandFactory;
+use signorini::io::Failure;
 use signorini::io::files::reason;
-use signorini::io::run::Failure;
 use signorini::io::{Case, summary};
 use signorini::{quote, solve as library};
 
@@ -78,7 +78,7 @@ fn ended(said: Result<u8, Failure>) -> ExitCode {
 }
 
 fn code(failure: &Failure) -> u8 {
-    if failure.is_wrong { WRONG } else { FAILED }
+    if failure.is_wrong() { WRONG } else { FAILED }
 }
 
 /// Says it on standard output.

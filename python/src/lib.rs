@@ -13,8 +13,8 @@ use signorini::io::Case;
 use signorini::io::outputs::{self, Extra};
 use signorini::io::picture::draw;
 use signorini::io::result::{Results, result_json};
-use signorini::io::run::{self, Failure};
 use signorini::io::summary;
+use signorini::io::{Failure, run};
 use signorini::kernel::Stress;
 use signorini::solve::Solution;
 
@@ -148,7 +148,7 @@ fn solved(case: Case, start: Instant) -> PyResult<Solved> {
 }
 
 fn unsolved(error: &Failure) -> PyErr {
-    if error.is_wrong { wrong(error) } else { SolveError::new_err(error.to_string()) }
+    if error.is_wrong() { wrong(error) } else { SolveError::new_err(error.to_string()) }
 }
 
 fn raw<'py>(py: Python<'py>, s: &Solution, results: &str) -> PyResult<Bound<'py, PyDict>> {

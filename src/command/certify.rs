@@ -4,8 +4,8 @@ use std::path::Path;
 
 use signorini::certify::binding::compare;
 use signorini::certify::certify_field;
+use signorini::io::Failure;
 use signorini::io::field::read_field;
-use signorini::io::run::Failure;
 use signorini::io::{Case, certificate, outputs, summary};
 use signorini::quote;
 use signorini::solve::{Course, solve_along};

@@ -10,11 +10,11 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::{env, fs, io};
 
+use signorini::io::Failure;
 use signorini::io::files::{self, reason};
 use signorini::io::input::{self, MOST_OF_A_CASE};
 use signorini::io::outputs::{FILES, FILES_OF_FENICSX};
 use signorini::io::result::Results;
-use signorini::io::run::Failure;
 use signorini::quote;
 
 use super::signals;
@@ -80,7 +80,7 @@ fn failed(ended: &Output, case: &Path, full: &Path) -> Failure {
         said => said.to_owned(),
     };
     // It refused the case, as this program would have.
-    Failure { message, is_wrong: ended.status.code() == Some(2) }
+    Failure::new(ended.status.code() == Some(2), message)
 }
 
 /// A Python that does not look for modules in the folder where it is started.

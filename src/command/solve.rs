@@ -8,7 +8,7 @@ use signorini::certify::adapt::Stage;
 use signorini::io::files::spare;
 use signorini::io::outputs::{self, Extra};
 use signorini::io::result::{Results, result_json};
-use signorini::io::run::{self, Failure};
+use signorini::io::{Failure, run};
 use signorini::io::{input, summary};
 use signorini::quote;
 

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
+use signorini::io::Failure;
 use signorini::io::convergence;
 use signorini::io::files::spare;
-use signorini::io::run::Failure;
 use signorini::io::summary;
 use signorini::solve::Degree;
 

@@ -3,9 +3,9 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use signorini::io::Failure;
 use signorini::io::files::spare;
 use signorini::io::result::Results;
-use signorini::io::run::Failure;
 use signorini::io::summary;
 use signorini::io::sweep::{self, ParameterAxis, Sweep};
 

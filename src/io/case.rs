@@ -27,7 +27,7 @@ use self::mesh::{Meshed, read_mesh};
 use self::method::{read_method, read_quantities, read_settings, read_target};
 use self::source::Source;
 use self::table::{Table, Value};
-use super::input::{self, FileError, InputError, MOST_OF_A_CASE, Position};
+use super::input::{self, Failure, FileError, MOST_OF_A_CASE, Position};
 use crate::certify::{Asked, Target};
 use crate::fem::{Mesh, Perturbation, Problem, Structured};
 use crate::memory;
@@ -181,7 +181,7 @@ fn parse(source: Source, mesh: Option<Mesh>) -> Result<Case, FileError> {
 }
 
 fn text(bytes: Vec<u8>, file: &Path) -> Result<String, FileError> {
-    let wrong = |error: InputError| error.at(file, Position::File);
+    let wrong = |error: Failure| error.at(file, Position::File);
     // What the TOML reader and the expressions make of it.
     memory::check(MEMORY_PER_BYTE * bytes.len() as u64).map_err(|lack| wrong(lack.into()))?;
     String::from_utf8(bytes).map_err(|error| {

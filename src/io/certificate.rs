@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::input;
-use super::run::Failure;
+use super::input::Failure;
 use crate::certify::format::{self, Refused};
 pub use crate::certify::format::{Audit, Header, decode, encode, hash};
 use crate::quote;

@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use super::case::Case;
 use super::csv;
 use super::files::{Output, OutputError};
+use super::input::Failure;
 use super::picture::plot::{COLOURS, Figure, Panel, Style, figure};
-use super::run::Failure;
-use crate::fem::{MeshError, Perturbation};
+use crate::fem::Perturbation;
 use crate::solve::{Degree, Method};
 use crate::study::ladder::{fitted_slope, rates};
 use crate::study::{Errors, a_priori};
@@ -55,12 +55,12 @@ pub fn ladder(
 pub fn climb(ladder: Ladder, levels: usize, mut done: impl FnMut()) -> Result<Study, Failure> {
     let (degree, perturbed) = (ladder.method.degree, ladder.perturbation.is_some());
     let failed = |level: usize| {
-        move |error: LadderError| Failure {
-            message: format!("P{}, level {level}: {error}", degree.number()),
-            is_wrong: match error {
-                LadderError::Mesh(error) => !matches!(error, MeshError::OutOfMemory(_)),
-                LadderError::Solve(error) => error.is_wrong_case(),
-            },
+        move |error: LadderError| {
+            let failure = match error {
+                LadderError::Mesh(error) => Failure::from(error),
+                LadderError::Solve(error) => Failure::from(error),
+            };
+            failure.map(|problem| format!("P{}, level {level}: {problem}", degree.number()))
         }
     };
     let ladder = ladder.with_one_gamma0(levels).map_err(failed(0))?;

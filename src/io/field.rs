@@ -12,7 +12,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use super::input::{self, FileError, InputError, Position};
+use super::input::{self, Failure, FileError, Position};
 use super::vtu::reader::{Points, Triangles, from_vtu};
 use crate::fem::tree::{Bounds, Tree};
 use crate::fem::{Degree, Mesh, Space};
@@ -41,7 +41,7 @@ pub fn read_field(path: &Path, mesh: &Mesh) -> Result<Vec<[f64; 2]>, FileError> 
         at_nodes(&points, mesh, triangles.as_ref())
     };
     read(input::read(path, MOST)?)
-        .map_err(|problem| InputError::from(problem).at(path, Position::File))
+        .map_err(|problem| Failure::from(problem).at(path, Position::File))
 }
 
 fn at_nodes(

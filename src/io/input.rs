@@ -50,28 +50,44 @@ impl Display for Position {
     }
 }
 
-/// A mistake in an input.
+/// The reason why there is no result of an input.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[error("{problem}")]
-pub struct InputError {
-    problem: String,
-    is_lack: bool,
+#[error("{message}")]
+pub struct Failure {
+    message: String,
+    is_wrong: bool,
 }
 
-impl InputError {
-    /// The system has not what it takes to read the input: memory, or files to open. The input itself may be right.
-    pub fn lack(problem: String) -> InputError {
-        InputError { problem, is_lack: true }
+impl Failure {
+    /// The input is wrong.
+    pub fn wrong(error: impl Display) -> Failure {
+        Failure { message: error.to_string(), is_wrong: true }
     }
 
-    /// Returns whether the input may be right, but the system has not what it takes to read it.
-    pub fn is_lack(&self) -> bool {
-        self.is_lack
+    /// The input may be right, but there is no result of it here: memory or files to open are lacking, or a method fails.
+    pub fn failed(error: impl Display) -> Failure {
+        Failure { message: error.to_string(), is_wrong: false }
     }
 
-    /// Puts words around the problem.
-    pub(super) fn map(self, words: impl FnOnce(String) -> String) -> InputError {
-        InputError { problem: words(self.problem), ..self }
+    /// The one or the other.
+    pub fn new(is_wrong: bool, error: impl Display) -> Failure {
+        Failure { message: error.to_string(), is_wrong }
+    }
+
+    /// Returns whether the input is wrong.
+    pub fn is_wrong(&self) -> bool {
+        self.is_wrong
+    }
+
+    /// Puts words around the message.
+    pub(super) fn map(self, words: impl FnOnce(String) -> String) -> Failure {
+        Failure { message: words(self.message), ..self }
+    }
+
+    /// Names the file that it is about.
+    #[must_use]
+    pub fn of(self, file: &Path) -> Failure {
+        self.map(|message| format!("{}: {message}", quote::path(file)))
     }
 
     /// Places the error in a file.
@@ -80,28 +96,33 @@ impl InputError {
     }
 }
 
-impl From<String> for InputError {
-    fn from(problem: String) -> InputError {
-        InputError { problem, is_lack: false }
+impl From<String> for Failure {
+    fn from(message: String) -> Failure {
+        Failure::wrong(message)
     }
 }
 
-impl From<&str> for InputError {
-    fn from(problem: &str) -> InputError {
-        problem.to_owned().into()
+impl From<&str> for Failure {
+    fn from(message: &str) -> Failure {
+        Failure::wrong(message)
     }
 }
 
-impl From<OutOfMemory> for InputError {
-    fn from(lack: OutOfMemory) -> InputError {
-        InputError::lack(lack.to_string())
+impl From<OutOfMemory> for Failure {
+    fn from(lack: OutOfMemory) -> Failure {
+        Failure::failed(lack)
     }
 }
 
-impl From<MeshError> for InputError {
-    fn from(error: MeshError) -> InputError {
-        let is_lack = matches!(error, MeshError::OutOfMemory(_));
-        InputError { problem: error.to_string(), is_lack }
+impl From<MeshError> for Failure {
+    fn from(error: MeshError) -> Failure {
+        Failure::new(!matches!(error, MeshError::OutOfMemory(_)), error)
+    }
+}
+
+impl From<FileError> for Failure {
+    fn from(error: FileError) -> Failure {
+        Failure::new(error.error.is_wrong, error)
     }
 }
 
@@ -115,7 +136,7 @@ pub struct FileError {
     /// The position in it.
     pub position: Position,
     /// The error.
-    pub error: InputError,
+    pub error: Failure,
 }
 
 /// The bytes of a regular file of at most `most` bytes.
@@ -123,7 +144,7 @@ pub fn read(path: &Path, most: u64) -> Result<Vec<u8>, FileError> {
     bytes_of(path, most).map_err(|error| error.at(path, Position::File))
 }
 
-fn bytes_of(path: &Path, most: u64) -> Result<Vec<u8>, InputError> {
+fn bytes_of(path: &Path, most: u64) -> Result<Vec<u8>, Failure> {
     // Before it is opened, for to open a pipe is to wait for its other end.
     regular(&fs::metadata(path).map_err(unreadable)?)?;
     let file = File::open(path).map_err(unreadable)?;
@@ -140,25 +161,25 @@ fn bytes_of(path: &Path, most: u64) -> Result<Vec<u8>, InputError> {
 
 /// All bytes of a stream (standard input, say), at most `most`.
 #[cfg(feature = "files")]
-pub(super) fn read_from(stream: impl Read, most: u64) -> Result<Vec<u8>, InputError> {
+pub(super) fn read_from(stream: impl Read, most: u64) -> Result<Vec<u8>, Failure> {
     read_into(Vec::new(), stream, most)
 }
 
-fn read_into(mut bytes: Vec<u8>, stream: impl Read, most: u64) -> Result<Vec<u8>, InputError> {
+fn read_into(mut bytes: Vec<u8>, stream: impl Read, most: u64) -> Result<Vec<u8>, Failure> {
     stream.take(most.saturating_add(1)).read_to_end(&mut bytes).map_err(unreadable)?;
     if bytes.len() as u64 > most { Err(too_long(most)) } else { Ok(bytes) }
 }
 
-fn too_long(most: u64) -> InputError {
+fn too_long(most: u64) -> Failure {
     format!("this has more than {most} bytes; expected at most that many").into()
 }
 
-fn no_file(kind: &str) -> InputError {
+fn no_file(kind: &str) -> Failure {
     format!("this is {kind}; expected a file").into()
 }
 
 /// Refuses a file that is not regular.
-fn regular(metadata: &Metadata) -> Result<(), InputError> {
+fn regular(metadata: &Metadata) -> Result<(), Failure> {
     if metadata.is_file() { Ok(()) } else { Err(no_file(kind(metadata))) }
 }
 
@@ -181,17 +202,17 @@ fn kind(metadata: &Metadata) -> &'static str {
 }
 
 /// Says why a file can't be read, in words that don't depend on the system where that is possible.
-fn unreadable(error: io::Error) -> InputError {
+fn unreadable(error: io::Error) -> Failure {
     // ENFILE and EMFILE, which have no kind.
     if matches!(error.raw_os_error(), Some(23 | 24)) && cfg!(unix) {
-        return InputError::lack(super::files::reason(&error));
+        return Failure::failed(super::files::reason(&error));
     }
     match error.kind() {
         io::ErrorKind::NotFound => "there is no such file".into(),
         io::ErrorKind::IsADirectory => no_file("a directory"),
         io::ErrorKind::PermissionDenied => "there is no permission to read this file".into(),
         io::ErrorKind::OutOfMemory => {
-            InputError::lack("there is not enough memory to read this file".to_owned())
+            Failure::failed("there is not enough memory to read this file".to_owned())
         }
         _ => super::files::reason(&error).into(),
     }
@@ -210,8 +231,8 @@ mod tests {
     #[cfg(unix)]
     #[test]
     fn too_many_open_files_are_a_lack_and_a_missing_file_is_none() {
-        for (number, is_lack) in [(23, true), (24, true), (2, false), (13, false)] {
-            assert_eq!(unreadable(io::Error::from_raw_os_error(number)).is_lack(), is_lack);
+        for (number, is_wrong) in [(23, false), (24, false), (2, true), (13, true)] {
+            assert_eq!(unreadable(io::Error::from_raw_os_error(number)).is_wrong(), is_wrong);
         }
     }
 }

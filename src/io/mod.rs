@@ -48,4 +48,4 @@ mod vtu;
 #[cfg(feature = "files")]
 pub use case::Case;
 pub use expression::{Expression, ExpressionError};
-pub use input::{FileError, InputError};
+pub use input::{Failure, FileError};

@@ -1,18 +1,13 @@
 //! A case solved as it asks to be: on its own mesh, or on meshes that are adapted to a target.
 
-use std::fmt::Display;
-use std::path::Path;
 use std::time::Instant;
-
-use thiserror::Error;
 
 use super::case::Case;
 use super::files::OutputError;
-use super::input::FileError;
+use super::input::Failure;
 use super::result::Adaptation;
 use crate::certify::adapt::{self, AdaptError, Stage};
 use crate::certify::{CertifyError, Continuous, certify_with};
-use crate::quote;
 use crate::solve::{Course, Solution, SolveError, Times, solve_along};
 
 #[derive(Debug)]
@@ -44,53 +39,21 @@ impl Solved {
     }
 }
 
-/// The reason why there is no result.
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[error("{message}")]
-pub struct Failure {
-    pub message: String,
-    /// The case or an argument is wrong. Otherwise they are right, but there is no result of them here.
-    pub is_wrong: bool,
-}
-
-impl Failure {
-    pub fn wrong(error: impl Display) -> Failure {
-        Failure { message: error.to_string(), is_wrong: true }
-    }
-
-    pub fn failed(error: impl Display) -> Failure {
-        Failure { message: error.to_string(), is_wrong: false }
-    }
-
-    /// Names the file that it is about.
-    #[must_use]
-    pub fn of(self, file: &Path) -> Failure {
-        Failure { message: format!("{}: {}", quote::path(file), self.message), ..self }
-    }
-}
-
-impl From<FileError> for Failure {
-    fn from(error: FileError) -> Failure {
-        Failure { message: error.to_string(), is_wrong: !error.error.is_lack() }
-    }
-}
-
 impl From<OutputError> for Failure {
     fn from(error: OutputError) -> Failure {
-        let is_wrong = matches!(error, OutputError::Source { .. });
-        Failure { message: error.to_string(), is_wrong }
+        Failure::new(matches!(error, OutputError::Source { .. }), error)
     }
 }
 
 impl From<SolveError> for Failure {
     fn from(error: SolveError) -> Failure {
-        Failure { message: error.to_string(), is_wrong: error.is_wrong_case() }
+        Failure::new(error.is_wrong_case(), error)
     }
 }
 
 impl From<AdaptError> for Failure {
     fn from(error: AdaptError) -> Failure {
-        Failure { message: format!("[adapt]: {error}"), is_wrong: error.is_wrong_case() }
+        Failure::new(error.is_wrong_case(), format!("[adapt]: {error}"))
     }
 }
 

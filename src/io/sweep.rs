@@ -12,10 +12,11 @@ use toml::de::{DeTable, DeValue};
 use super::case::Case;
 use super::csv;
 use super::files::{Output, OutputError};
+use super::input::Failure;
 use super::numbers::short;
 use super::outputs::{self, Extra};
 use super::result::Results;
-use super::run::{self, Failure};
+use super::run;
 use crate::quote;
 use crate::solve::Solution;
 

@@ -12,7 +12,7 @@ use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
 use crate::io::expression::Expression;
-use crate::io::input::{FileError, InputError, Position};
+use crate::io::input::{Failure, FileError, Position};
 use crate::quote::{cut, quoted};
 
 /// A file, its text, and the settings over it. Places in the settings come after those in the text.
@@ -25,7 +25,7 @@ pub struct Source<'s> {
 
 impl<'s> Source<'s> {
     /// `error` at the byte `start`, or in the file as a whole.
-    pub fn wrong(&self, start: Option<usize>, error: InputError) -> FileError {
+    pub fn wrong(&self, start: Option<usize>, error: Failure) -> FileError {
         let setting = start.and_then(|start| self.setting_at(start));
         let position = match (setting, start) {
             (Some(setting), _) => Position::Setting(setting.to_owned()),
@@ -169,7 +169,7 @@ const NO_QUOTES: &str = "string values must be quoted";
 const NO_VALUE: &str = "expected a value; an expression must be in quotes (\"0.1 - x\"), a list in brackets, and decimals have a point (0.5, not 0,5)";
 
 /// The TOML reader's message, and the words of the file that it is about.
-fn no_toml(error: &toml::de::Error, text: &str) -> InputError {
+fn no_toml(error: &toml::de::Error, text: &str) -> Failure {
     let found = error.span().and_then(|span| text.get(span)).map_or("", str::trim);
     let message = error.message();
     let is_unquoted = message.starts_with(NO_QUOTES);

@@ -13,7 +13,7 @@ use toml::de::{DeInteger, DeTable, DeValue};
 use super::source::Source;
 use crate::fem::{MeshError, SharedFunction};
 use crate::io::expression::Expression;
-use crate::io::input::{FileError, InputError};
+use crate::io::input::{Failure, FileError};
 use crate::quote::{cut, key as shown, listed, number, quoted};
 
 /// The subject of a message: its name and its place. The file as a whole has neither.
@@ -25,13 +25,13 @@ pub struct Spot<'s> {
 
 impl Spot<'_> {
     /// A mistake here.
-    pub fn wrong(&self, error: impl Into<InputError>) -> FileError {
+    pub fn wrong(&self, error: impl Into<Failure>) -> FileError {
         self.source.wrong(self.start, error.into())
     }
 
     /// An error of the mesh here.
     pub fn mesh(&self, error: MeshError) -> FileError {
-        self.wrong(InputError::from(error).map(|problem| format!("{}: {problem}", self.name)))
+        self.wrong(Failure::from(error).map(|problem| format!("{}: {problem}", self.name)))
     }
 
     /// The complaint that something else should be here.

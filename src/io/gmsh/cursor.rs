@@ -5,7 +5,7 @@ use std::path::Path;
 use std::str::FromStr;
 
 use super::Result;
-use crate::io::input::{FileError, InputError, Position};
+use crate::io::input::{Failure, FileError, Position};
 use crate::memory;
 use crate::quote::{self, quoted};
 
@@ -199,11 +199,11 @@ impl<'b> Cursor<'b> {
             Form::Text => Position::line_of(start, self.bytes),
             Form::Binary { .. } => Position::Byte(start),
         };
-        InputError::from(said).at(self.file, place)
+        Failure::from(said).at(self.file, place)
     }
 
     /// An error that concerns the file as a whole.
-    pub(super) fn in_the_file(&self, error: impl Into<InputError>) -> FileError {
+    pub(super) fn in_the_file(&self, error: impl Into<Failure>) -> FileError {
         error.into().at(self.file, Position::File)
     }
 }

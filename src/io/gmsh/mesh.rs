@@ -8,11 +8,11 @@ use super::{ByDimension, Content, Elements, GmshElement, Groups, Middle, Node};
 use crate::fem::merge::merge;
 use crate::fem::mesh::length;
 use crate::fem::{Mesh, MeshError};
-use crate::io::input::InputError;
+use crate::io::input::Failure;
 use crate::memory::{self, bytes_of};
 use crate::quote;
 
-type Result<T> = std::result::Result<T, InputError>;
+type Result<T> = std::result::Result<T, Failure>;
 
 // Notes on errors of the mesh.
 const TAGS: &str = "the numbers are tags of the file";
@@ -118,8 +118,8 @@ pub(super) fn make_mesh(content: Content) -> Result<Mesh> {
     }
 }
 
-fn noted(error: MeshError, note: &str) -> InputError {
-    InputError::from(error).map(|problem| format!("{problem} ({note})"))
+fn noted(error: MeshError, note: &str) -> Failure {
+    Failure::from(error).map(|problem| format!("{problem} ({note})"))
 }
 
 /// An empty list for each name.
