@@ -187,14 +187,8 @@ pub struct StudyOptions {
     #[arg(long, value_delimiter = ',', value_parser = clap::value_parser!(u8).range(1..=2))]
     pub degree: Vec<u8>,
     /// Structured or perturbed meshes, or both: structured,perturbed [default: those of the case]
-    #[arg(long, value_enum, value_delimiter = ',')]
-    pub mesh: Vec<MeshKind>,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum MeshKind {
-    Structured,
-    Perturbed,
+    #[arg(long, value_delimiter = ',', value_parser = ["structured", "perturbed"])]
+    pub mesh: Vec<String>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -8,7 +8,7 @@ use signorini::io::files::spare;
 use signorini::io::summary;
 use signorini::solve::Degree;
 
-use super::arguments::{CaseArguments, MeshKind, StudyOptions};
+use super::arguments::{CaseArguments, StudyOptions};
 use super::progress::Phases;
 use super::{Done, folder, read, summarised};
 
@@ -23,7 +23,7 @@ pub fn run(
     spare(&folder, &convergence::FILES, &case.sources)?;
     let degree = |d: &u8| if *d == 1 { Degree::One } else { Degree::Two };
     let degrees = or_none(options.degree.iter().map(degree).collect());
-    let perturbed = or_none(options.mesh.iter().map(|mesh| *mesh == MeshKind::Perturbed).collect());
+    let perturbed = or_none(options.mesh.iter().map(|mesh| mesh == "perturbed").collect());
     let levels = usize::from(options.levels);
     let count = degrees.len() * perturbed.len() * levels;
     let phases = Phases::start(quiet);

@@ -25,7 +25,7 @@ use super::input::{self, FileError, MOST_OF_A_MESH};
 use crate::fem::Mesh;
 use crate::memory;
 use crate::quote;
-use cursor::{Cursor, Form, shown};
+use cursor::{Cursor, Version, shown};
 use mesh::{make_mesh, merge_nodes};
 
 type Result<T> = std::result::Result<T, FileError>;
@@ -42,7 +42,7 @@ pub fn read(file: &Path, share: Option<f64>) -> Result<Mesh> {
 pub fn from_bytes(bytes: &[u8], file: &Path, share: Option<f64>) -> Result<Mesh> {
     // Names and entities: what is kept of one is no more than this many times what the file says of it.
     const MOST_TIMES: u64 = 4;
-    let mut cursor = Cursor { bytes, file, at: 0, form: Form::Text };
+    let mut cursor = Cursor { bytes, file, at: 0, version: Version::Four, binary: false };
     memory::check(MOST_TIMES * bytes.len() as u64).map_err(|lack| cursor.in_the_file(lack))?;
     let mut content = read_sections(&mut cursor)?;
     if let Some(share) = share {
@@ -154,17 +154,9 @@ fn dimension_and_order(number: i32) -> std::result::Result<(usize, usize), [&'st
     })
 }
 
-/// The version of the format.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Version {
-    /// 4.1
-    Four,
-    /// 2.2
-    Two,
-}
-
 fn read_sections(cursor: &mut Cursor) -> Result<Content> {
-    let version = read_format(cursor)?;
+    read_format(cursor)?;
+    let version = cursor.version;
     let (mut names, mut groups, mut nodes, mut elements) = (None, None, None, None);
     while let Some((start, section)) = cursor.section()? {
         let is_second = match (section, version) {
@@ -200,7 +192,7 @@ fn read_sections(cursor: &mut Cursor) -> Result<Content> {
 }
 
 /// `$MeshFormat`: version, text or binary, size of a `size_t`; in a binary file then the number 1.
-fn read_format(cursor: &mut Cursor) -> Result<Version> {
+fn read_format(cursor: &mut Cursor) -> Result<()> {
     let (start, heading) = cursor.line();
     if heading != b"$MeshFormat" {
         // Without its words: a case of somebody else may name a file that is none of his business.
@@ -208,9 +200,9 @@ fn read_format(cursor: &mut Cursor) -> Result<Version> {
         return Err(cursor.wrong_at(start, said.to_owned()));
     }
     let (start, version) = cursor.word("the version of the format")?;
-    let (version, tag_size) = match version {
-        b"4.1" => (Version::Four, 8),
-        b"2.2" => (Version::Two, 4),
+    cursor.version = match version {
+        b"4.1" => Version::Four,
+        b"2.2" => Version::Two,
         _ => {
             let version = shown(version);
             let said = format!(
@@ -225,7 +217,7 @@ fn read_format(cursor: &mut Cursor) -> Result<Version> {
         cursor.line();
         let start = cursor.at;
         let one: [u8; 4] = cursor.take("the number 1, which shows the order of the bytes")?;
-        cursor.form = Form::Binary { tag_size };
+        cursor.binary = true;
         let (found, expected) = match one {
             [0, 0, 0, 1] => (
                 "the bytes of a big-endian machine".to_owned(),
@@ -237,13 +229,12 @@ fn read_format(cursor: &mut Cursor) -> Result<Version> {
             return Err(cursor.unexpected(start, &found, expected));
         }
     }
-    cursor.end_of("MeshFormat")?;
-    Ok(version)
+    cursor.end_of("MeshFormat")
 }
 
 /// `$PhysicalNames`, always text: a count; then dimension, tag and "name" on a line each.
 fn read_names(cursor: &mut Cursor) -> Result<ByDimension<BTreeMap<i32, String>>> {
-    let mut text = Cursor { form: Form::Text, ..*cursor };
+    let mut text = Cursor { binary: false, ..*cursor };
     let count = text.size("the number of physical names")?;
     let mut names = <ByDimension<BTreeMap<i32, String>>>::default();
     for _ in 0..count {
@@ -384,7 +375,7 @@ fn read_elements_of_2(cursor: &mut Cursor) -> Result<Elements> {
     let mut elements = Elements::default();
     let mut left = cursor.count("the number of elements")?;
     while left > 0 {
-        let (together, shared) = if cursor.form == Form::Text {
+        let (together, shared) = if !cursor.binary {
             (1, None)
         } else {
             let number = cursor.int("the type of the elements")?;

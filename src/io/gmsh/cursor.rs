@@ -9,14 +9,13 @@ use crate::io::input::{Failure, FileError, Position};
 use crate::memory;
 use crate::quote::{self, quoted};
 
-/// The form in which numbers are written.
+/// The version of the format.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Form {
-    Text,
-    /// Bytes, of which a tag or a count has 4 or 8.
-    Binary {
-        tag_size: usize,
-    },
+pub(super) enum Version {
+    /// 4.1
+    Four,
+    /// 2.2
+    Two,
 }
 
 /// A place in the bytes of a file, and what can be read from there on.
@@ -24,7 +23,9 @@ pub(super) struct Cursor<'b> {
     pub(super) bytes: &'b [u8],
     pub(super) file: &'b Path,
     pub(super) at: usize,
-    pub(super) form: Form,
+    pub(super) version: Version,
+    /// Numbers are written as bytes.
+    pub(super) binary: bool,
 }
 
 impl<'b> Cursor<'b> {
@@ -114,9 +115,10 @@ impl<'b> Cursor<'b> {
     }
 
     pub(super) fn int(&mut self, expected: &str) -> Result<i32> {
-        match self.form {
-            Form::Text => self.number(expected),
-            _ => self.take(expected).map(i32::from_le_bytes),
+        if self.binary {
+            self.take(expected).map(i32::from_le_bytes)
+        } else {
+            self.number(expected)
         }
     }
 
@@ -130,13 +132,13 @@ impl<'b> Cursor<'b> {
         }
     }
 
-    /// A tag or a count.
+    /// A tag or a count: as bytes 4 or 8.
     pub(super) fn size(&mut self, expected: &str) -> Result<usize> {
         let start = self.here();
-        let number = match self.form {
-            Form::Text => return self.number(expected),
-            Form::Binary { tag_size: 4 } => self.take(expected).map(i32::from_le_bytes)?.into(),
-            Form::Binary { .. } => i128::from(self.take(expected).map(u64::from_le_bytes)?),
+        let number = match (self.binary, self.version) {
+            (false, _) => return self.number(expected),
+            (true, Version::Two) => self.take(expected).map(i32::from_le_bytes)?.into(),
+            (true, Version::Four) => i128::from(self.take(expected).map(u64::from_le_bytes)?),
         };
         let unexpected = |_| self.unexpected(start, &number.to_string(), expected);
         usize::try_from(number).map_err(unexpected)
@@ -144,25 +146,26 @@ impl<'b> Cursor<'b> {
 
     /// A count on a line of its own, which is text in a binary file, too.
     pub(super) fn count(&mut self, expected: &str) -> Result<usize> {
-        let form = std::mem::replace(&mut self.form, Form::Text);
+        let binary = std::mem::replace(&mut self.binary, false);
         let count = self.size(expected);
-        self.form = form;
-        if form != Form::Text {
+        self.binary = binary;
+        if binary {
             self.line();
         }
         count
     }
 
     pub(super) fn double(&mut self, expected: &str) -> Result<f64> {
-        match self.form {
-            Form::Text => self.number(expected),
-            _ => self.take(expected).map(f64::from_le_bytes),
+        if self.binary {
+            self.take(expected).map(f64::from_le_bytes)
+        } else {
+            self.number(expected)
         }
     }
 
     /// Finds the start of the next number.
     pub(super) fn here(&mut self) -> usize {
-        if self.form == Form::Text {
+        if !self.binary {
             self.skip_white_space();
         }
         self.at
@@ -195,9 +198,9 @@ impl<'b> Cursor<'b> {
     }
 
     pub(super) fn wrong_at(&self, start: usize, said: String) -> FileError {
-        let place = match self.form {
-            Form::Text => Position::line_of(start, self.bytes),
-            Form::Binary { .. } => Position::Byte(start),
+        let place = match self.binary {
+            false => Position::line_of(start, self.bytes),
+            true => Position::Byte(start),
         };
         Failure::from(said).at(self.file, place)
     }
