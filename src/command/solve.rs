@@ -73,7 +73,7 @@ fn solve(
         solved.certify(&case);
     }
     if !with_files {
-        let results = outputs::results(&case, &solved, read, extra).map_err(Failure::failed)?;
+        let results = outputs::results(&case, &solved, read, extra)?;
         return Ok((results, Vec::new()));
     }
     phases.enter("writing the files");

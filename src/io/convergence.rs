@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::case::Case;
 use super::csv;
-use super::files::{Output, OutputError};
+use super::files::Output;
 use super::input::Failure;
 use super::picture::plot::{COLOURS, Figure, Panel, Style, figure};
 use crate::fem::Perturbation;
@@ -224,7 +224,7 @@ fn panel(title: &str, of: fn(&Errors) -> f64, studies: &[Study]) -> Panel {
 }
 
 /// Writes convergence.csv and convergence.svg into `folder` and returns their paths.
-pub fn write(folder: &Path, title: &str, studies: &[Study]) -> Result<Vec<PathBuf>, OutputError> {
+pub fn write(folder: &Path, title: &str, studies: &[Study]) -> Result<Vec<PathBuf>, Failure> {
     let mut output = Output::new(folder)?;
     output.stage(FILES[0], csv(studies).as_bytes())?;
     output.stage_made(FILES[1], figure(&plot(title, studies)))?;

@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use super::csv;
-use super::files::{NotFinite, Output, OutputError};
+use super::files::{NotFinite, Output};
+use super::input::Failure;
 use super::vtu::{CellKind, DataArray, Grid, vtu};
 use crate::fem::{Mesh, Problem};
 use crate::kernel::Stress;
@@ -16,7 +17,7 @@ impl Solution {
     ///
     /// # Errors
     /// A folder or file that can't be written, a number that is not finite.
-    pub fn write(&self, problem: &Problem, folder: &Path) -> Result<Vec<PathBuf>, OutputError> {
+    pub fn write(&self, problem: &Problem, folder: &Path) -> Result<Vec<PathBuf>, Failure> {
         let mut output = Output::new(folder)?;
         stage_fields(&mut output, self, problem, None)?;
         output.publish()
@@ -29,7 +30,7 @@ pub(super) fn stage_fields(
     solution: &Solution,
     problem: &Problem,
     indicators: Option<&[f64]>,
-) -> Result<(), OutputError> {
+) -> Result<(), Failure> {
     output.stage_made("solution.vtu", solution_vtu(solution, problem, indicators))?;
     output.stage_made("contact.vtu", contact_vtu(solution))?;
     output.stage_made("contact.csv", contact_csv(solution))

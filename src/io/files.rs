@@ -16,8 +16,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use thiserror::Error;
 
-use crate::fem;
-use crate::memory::OutOfMemory;
+use super::input::Failure;
 use crate::quote;
 
 /// The files of one run, on their way into one folder.
@@ -49,27 +48,6 @@ pub(super) fn check_finite<'a>(
     }
 }
 
-/// The reason why the files of a run could not be written.
-#[derive(Debug, Error)]
-pub enum OutputError {
-    #[error("cannot make the folder {}: {}", quote::path(path), reason(error))]
-    Folder { path: PathBuf, error: io::Error },
-    #[error("cannot write {}: {}", quote::path(path), reason(error))]
-    File { path: PathBuf, error: io::Error },
-    #[error(
-        "{} is a file of the case, and the results would replace it; expected another folder: --out DIR",
-        quote::path(path)
-    )]
-    Source { path: PathBuf },
-    #[error("{file} cannot be made: {error}")]
-    Data { file: &'static str, error: NotFinite },
-    #[error("the files cannot be made: {0}")]
-    OutOfMemory(#[from] OutOfMemory),
-    /// A solution and a case that don't belong together.
-    #[error(transparent)]
-    Problem(#[from] fem::DataError),
-}
-
 /// The reason in words; the number that the system gives it helps nobody.
 pub fn reason(error: &io::Error) -> String {
     if error.kind() == io::ErrorKind::AlreadyExists {
@@ -80,7 +58,7 @@ pub fn reason(error: &io::Error) -> String {
 }
 
 /// Refuses to write files called `names` into `folder` if one of them is one of the `sources` of the case.
-pub fn spare(folder: &Path, names: &[&str], sources: &[PathBuf]) -> Result<(), OutputError> {
+pub fn spare(folder: &Path, names: &[&str], sources: &[PathBuf]) -> Result<(), Failure> {
     // The place of a name in its folder: a link of that name would be replaced, not what it leads to.
     let place = |path: &Path| {
         let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
@@ -89,14 +67,17 @@ pub fn spare(folder: &Path, names: &[&str], sources: &[PathBuf]) -> Result<(), O
     let sources: Vec<PathBuf> = sources.iter().filter_map(|source| place(source)).collect();
     let is_source = |path: &PathBuf| place(path).is_some_and(|place| sources.contains(&place));
     match names.iter().map(|name| folder.join(name)).find(is_source) {
-        Some(path) => Err(OutputError::Source { path }),
+        Some(path) => Err(Failure::wrong(format!(
+            "{} is a file of the case, and the results would replace it; expected another folder: --out DIR",
+            quote::path(&path)
+        ))),
         None => Ok(()),
     }
 }
 
 impl Output {
     /// Makes the folder, if there is none yet, and the temporary one in it.
-    pub fn new(folder: impl Into<PathBuf>) -> Result<Output, OutputError> {
+    pub fn new(folder: impl Into<PathBuf>) -> Result<Output, Failure> {
         let folder = folder.into();
         let missing = |path: &&Path| !path.as_os_str().is_empty() && !path.exists();
         let made = folder.ancestors().take_while(missing).map(Path::to_path_buf).collect();
@@ -111,14 +92,15 @@ impl Output {
             }
             Err(error) => {
                 unfinished.remove();
-                Err(OutputError::Folder { path: folder, error })
+                let (folder, why) = (quote::path(&folder), reason(&error));
+                Err(Failure::failed(format!("cannot make the folder {folder}: {why}")))
             }
         }
     }
 
     /// Writes the file `name` to the disk, but not yet to its place. The last file of a set is the one that says that the
     /// set is whole.
-    pub fn stage(&mut self, name: &str, bytes: &[u8]) -> Result<(), OutputError> {
+    pub fn stage(&mut self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
         self.add(name, |path| {
             let mut file = OpenOptions::new().write(true).create_new(true).open(path)?;
             file.write_all(bytes)?;
@@ -131,9 +113,11 @@ impl Output {
         &mut self,
         file: &'static str,
         content: Result<impl AsRef<[u8]>, NotFinite>,
-    ) -> Result<(), OutputError> {
-        let content = content.map_err(|error| OutputError::Data { file, error })?;
-        self.stage(file, content.as_ref())
+    ) -> Result<(), Failure> {
+        match content {
+            Ok(content) => self.stage(file, content.as_ref()),
+            Err(error) => Err(Failure::failed(format!("{file} cannot be made: {error}"))),
+        }
     }
 
     /// The temporary folder, for another program to write to.
@@ -144,8 +128,8 @@ impl Output {
     /// Stages a file that another program has written into [`Output::room`].
     ///
     /// # Errors
-    /// [`OutputError::File`], with the place that the file was to have; also if there is no such file.
-    pub fn adopt(&mut self, name: &str) -> Result<(), OutputError> {
+    /// A failure with the place that the file was to have; also if there is no such file.
+    pub fn adopt(&mut self, name: &str) -> Result<(), Failure> {
         self.add(name, |path| match fs::symlink_metadata(path)?.is_file() {
             true => File::open(path)?.sync_all(),
             false => Err(io::Error::other("not a regular file")),
@@ -157,7 +141,7 @@ impl Output {
         &mut self,
         name: &str,
         made: impl FnOnce(&Path) -> io::Result<()>,
-    ) -> Result<(), OutputError> {
+    ) -> Result<(), Failure> {
         let made = match self.folder.join(name).is_dir() {
             true => Err(io::ErrorKind::IsADirectory.into()),
             false => made(&self.room().join(name)),
@@ -174,16 +158,17 @@ impl Output {
         self
     }
 
-    fn wrong(&self, name: &str, error: io::Error) -> OutputError {
-        OutputError::File { path: self.folder.join(name), error }
+    fn wrong(&self, name: &str, error: io::Error) -> Failure {
+        let (path, why) = (quote::path(&self.folder.join(name)), reason(&error));
+        Failure::failed(format!("cannot write {path}: {why}"))
     }
 
     /// Gives all staged files their places, replacing the files of an earlier run, and returns the paths in the order of
     /// staging.
     ///
     /// # Errors
-    /// [`OutputError::File`], should the system refuse to rename; then the last file of the set is not there.
-    pub fn publish(mut self) -> Result<Vec<PathBuf>, OutputError> {
+    /// A failure, should the system refuse to rename; then the last file of the set is not there.
+    pub fn publish(mut self) -> Result<Vec<PathBuf>, Failure> {
         // A system without locks takes its chance.
         let lock = File::open(&self.folder).and_then(|folder| folder.lock().map(|()| folder));
         // From here on a signal waits until the set is whole.
@@ -195,7 +180,7 @@ impl Output {
         Ok(self.names.iter().map(|name| self.folder.join(name)).collect())
     }
 
-    fn rename_all(&self) -> Result<(), OutputError> {
+    fn rename_all(&self) -> Result<(), Failure> {
         let Some((last, others)) = self.names.split_last() else { return Ok(()) };
         let place = |name: &str| self.folder.join(name);
         let sync = || sync_folder(&self.folder).map_err(|error| self.wrong(last, error));
@@ -316,7 +301,7 @@ mod tests {
     }
 
     /// A set of three files that say which run they are of.
-    fn run(folder: &Path, stamp: &str) -> Result<Vec<PathBuf>, OutputError> {
+    fn run(folder: &Path, stamp: &str) -> Result<Vec<PathBuf>, Failure> {
         let mut output = Output::new(folder)?;
         for name in SET {
             output.stage(name, stamp.as_bytes())?;

@@ -7,7 +7,8 @@ use std::time::{Duration, Instant};
 use super::case::Case;
 use super::certificate;
 use super::fields::stage_fields;
-use super::files::{NotFinite, Output, OutputError};
+use super::files::{NotFinite, Output};
+use super::input::Failure;
 use super::picture::draw;
 use super::remarks::{nearest, remarks};
 use super::report;
@@ -18,7 +19,7 @@ use super::result::{
 use super::run::Solved;
 use super::vtu::{CellKind, DataArray, Grid, vtu};
 use crate::certify::Continuous;
-use crate::fem::{DataError, Degree, Space};
+use crate::fem::{Degree, Space};
 use crate::memory;
 use crate::solve::{ContactQuadrature, Extreme, Gamma0, Solution};
 use crate::study::Errors;
@@ -62,10 +63,11 @@ pub fn write(
     solved: &Solved,
     read: Duration,
     extra: Extra,
-) -> Result<(Vec<PathBuf>, Results), OutputError> {
+) -> Result<(Vec<PathBuf>, Results), Failure> {
     let start = Instant::now();
     let solution = &solved.solution;
-    memory::check(bytes_to_write(solution))?;
+    memory::check(bytes_to_write(solution))
+        .map_err(|lack| Failure::failed(format!("the files cannot be made: {lack}")))?;
     let mut output = Output::new(folder)?.replacing(&FILES);
     let continuous = solved.certified.as_ref().and_then(|c| c.as_ref().ok());
     let mut results = results(case, solved, read, extra)?;
@@ -96,7 +98,7 @@ pub fn write_certified(
     case: &Case,
     field: &[[f64; 2]],
     certified: &Continuous,
-) -> Result<Vec<PathBuf>, OutputError> {
+) -> Result<Vec<PathBuf>, Failure> {
     let mut output = Output::new(folder)?;
     let mesh = &case.problem.mesh;
     let space = Space::new(mesh, Degree::Two);
@@ -142,7 +144,7 @@ fn stage_certificate(
     output: &mut Output,
     title: &str,
     certified: &Continuous,
-) -> Result<(), OutputError> {
+) -> Result<(), Failure> {
     let forces = &certified.quantities.evidence;
     let (header, arrays) =
         certificate::encode(title, &certified.certificate, &certified.proof, forces);
@@ -167,7 +169,7 @@ pub fn results(
     solved: &Solved,
     read: Duration,
     extra: Extra,
-) -> Result<Results, DataError> {
+) -> Result<Results, Failure> {
     let solution = &solved.solution;
     let mesh = &case.problem.mesh;
     let mut discrete = DiscreteCertificate::from(&solution.enclosure);
@@ -182,7 +184,9 @@ pub fn results(
         }
     }
     let errors = match &case.exact {
-        Some(exact) => Some(Errors::of(solution, &case.problem, &*exact.solution)?),
+        Some(exact) => {
+            Some(Errors::of(solution, &case.problem, &*exact.solution).map_err(Failure::failed)?)
+        }
         None => None,
     };
     let mut remarks = remarks(case, solution);

@@ -3,7 +3,6 @@
 use std::time::Instant;
 
 use super::case::Case;
-use super::files::OutputError;
 use super::input::Failure;
 use super::result::Adaptation;
 use crate::certify::adapt::{self, AdaptError, Stage};
@@ -36,12 +35,6 @@ impl Solved {
             self.certified = Some(certify_with(&case.problem, &self.solution, &case.asked));
             self.times.certify += start.elapsed();
         }
-    }
-}
-
-impl From<OutputError> for Failure {
-    fn from(error: OutputError) -> Failure {
-        Failure::new(matches!(error, OutputError::Source { .. }), error)
     }
 }
 
