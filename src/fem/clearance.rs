@@ -4,10 +4,11 @@ use super::contact_face::ContactFace;
 use super::dense::{dot, norm};
 use super::discretization::Discretization;
 use super::element::bernstein;
-use super::rigid::{FREE, FreeMotion, Parts, null_space};
+use super::rigid::{FreeMotion, NEGLIGIBLE, Parts, null_space};
 use super::solvability::{Slides, all, negligible, rows};
 
-/// An edge presses where P is above this share of the largest; below it P is what the tolerance of Newton's method leaves.
+/// An edge presses where P is above this share of the largest; below it P is what the tolerance of Newton's method leaves. With a
+/// hundredth of it, edges that touch without a force are taken to hold the body.
 const PRESSES: f64 = 1e-8;
 
 impl Slides {
@@ -29,7 +30,7 @@ impl Slides {
         let parts = Parts::new(d.space.mesh());
         let slides = Slides::new(free_where(d, &parts, &pressing), &parts, &d.space);
         let (at, basis) = (slides.at(u), &slides.basis);
-        let rounding = FREE.max(d.rounding_of_directions());
+        let rounding = NEGLIGIBLE.max(d.rounding_of_directions());
         let (mut bounds, mut stopping) = (Vec::new(), Vec::new());
         let edges = d.contact.iter().zip(&p).zip(pressing).zip(idle);
         for (e, (((edge, p), pressing), idle)) in edges.enumerate() {

@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 use super::boundary_normals::SmoothBoundary;
 use super::data::{DataError, finite};
 use super::function::SharedFunction;
-use super::mesh::{BoundaryEdge, NO_ANGLE};
+use super::mesh::{BoundaryEdge, NO_ANGLE, ROUNDED};
 use super::problem::{Condition, Problem};
 use super::rigid::{self, FreeMotion, Parts, pins};
 use super::space::Space;
@@ -59,10 +59,6 @@ struct Demand<'a> {
     value: f64,
 }
 
-/// Two prescribed values that differ by no more than this share of the largest one agree: expressions that mean the same
-/// may differ by their rounding errors.
-const AGREEMENT: f64 = 1e-12;
-
 /// The demands at each node.
 type Demands<'a> = BTreeMap<usize, Vec<Demand<'a>>>;
 
@@ -85,7 +81,7 @@ impl Constraints {
         for (&node, at_node) in &mut demands {
             // Coordinate directions first: a value that is given for a component is taken as it is.
             at_node.sort_by_key(|demand| demand.axis().is_none());
-            let tolerances = [NO_ANGLE.max(constraints.rounding), AGREEMENT * largest];
+            let tolerances = [NO_ANGLE.max(constraints.rounding), ROUNDED * largest];
             let holding = independent(at_node, space.nodes()[node], tolerances)?;
             constraints.prescribe(node, &holding);
         }

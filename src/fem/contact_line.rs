@@ -13,7 +13,7 @@ use super::boundary_normals::{SmoothBoundary, SmoothPoint};
 use super::contact_face::{ContactFace, Functionals};
 use super::data::{DataError, finite};
 use super::element::Degree;
-use super::mesh::BoundaryEdge;
+use super::mesh::{BoundaryEdge, ROUNDED};
 use super::obstacle::Closest;
 use super::problem::{Condition, Problem};
 use super::space::Space;
@@ -63,7 +63,7 @@ impl Coercivity {
         let constant = sorted.last().copied().ok_or(DataError::NoContact)?;
         // Equal edges differ by rounding: the choice must not.
         let equal =
-            edges.iter().filter(|(e, _)| constants[&e.triangle] >= constant * (1.0 - 1e-12));
+            edges.iter().filter(|(e, _)| constants[&e.triangle] >= constant * (1.0 - ROUNDED));
         let ends = |(edge, _): &(BoundaryEdge, &str)| {
             let mut ends = mesh.places_of_ends(*edge);
             ends.sort_by(order);

@@ -9,7 +9,7 @@
 
 use nalgebra::Vector2;
 
-use super::mesh::length;
+use super::mesh::{ROUNDED, length};
 use super::quadrature;
 use crate::kernel::Triangle;
 
@@ -36,15 +36,6 @@ const GRADING: i32 = 4;
 
 /// The factor by which a piece that is graded or near the singular point gets more points in each direction.
 const MORE: usize = 3;
-
-/// Pieces within this distance of the singular point, in units of their size, are near it. Beyond it, n Gauss points leave
-/// at most some 10^(-2 n) (the singularity lies on an ellipse around the piece with semi-axes that add up to 10 times its
-/// half); at a third of the piece's size from it, which is what a point inside an edge may leave to the neighbours, it would
-/// be 3^(-2 n) only.
-const NEAR: f64 = 2.0;
-
-/// A vertex or the end of an edge this close to the singular point, in units of the piece's size, is the singular point.
-const AT_THE_POINT: f64 = 1e-12;
 
 /// A rule for functions with some [`Features`].
 #[derive(Clone, Debug)]
@@ -101,13 +92,15 @@ impl Rule {
         }
     }
 
-    /// A piece with these corners is near the singular point.
+    /// A piece with these corners is near the singular point: no further from it than its own size. Beyond that n Gauss points
+    /// leave some 6^(-2 n) (the singularity lies on an ellipse around the piece with semi-axes that add up to 3 + 8^(1/2) times
+    /// its half); at a third of the size, which is what a point inside an edge may leave to the neighbours, it would be 3^(-2 n).
     fn is_near(&self, corners: &[Vector2<f64>]) -> bool {
         let distance = |a: Vector2<f64>, b: Vector2<f64>| length(a - b);
         self.features.singular.is_some_and(|singular| {
             let first = corners[0];
             let size = corners.iter().map(|&x| distance(x, first)).fold(0.0, f64::max);
-            corners.iter().any(|&x| distance(x, singular.point.into()) <= NEAR * size)
+            corners.iter().any(|&x| distance(x, singular.point.into()) <= size)
         })
     }
 
@@ -128,19 +121,18 @@ impl Rule {
             let along = from_start.dot(&direction) / squared;
             let across = from_start.perp(&direction) / squared;
             // Off the line of the edge it is nowhere on the edge.
-            (if across.abs() <= AT_THE_POINT { along } else { f64::NAN }, singular)
+            (if across.abs() <= ROUNDED { along } else { f64::NAN }, singular)
         });
         let mut all = vec![0.0, 1.0];
         let at_point = singular.map(|(s, _)| s);
-        let inside = |s: &f64| AT_THE_POINT < *s && *s < 1.0 - AT_THE_POINT;
+        let inside = |s: &f64| ROUNDED < *s && *s < 1.0 - ROUNDED;
         all.extend(cuts.into_iter().chain(at_kink).chain(at_point).filter(inside));
         all.sort_unstable_by(f64::total_cmp);
         for piece in all.windows(2) {
             let (low, high) = (piece[0], piece[1]);
             let place = |s: f64| a + s * direction;
-            let near = |s: f64| {
-                singular.filter(|(at, _)| (s - at).abs() <= AT_THE_POINT).map(|(_, p)| (s, p))
-            };
+            let near =
+                |s: f64| singular.filter(|(at, _)| (s - at).abs() <= ROUNDED).map(|(_, p)| (s, p));
             let Some((from, Singularity { point, edge_grading })) =
                 near(low).or_else(|| near(high))
             else {
@@ -216,11 +208,11 @@ fn around(piece: &Corners, point: [f64; 2]) -> Option<Vec<Corners>> {
     let whole = double_area(piece.map(|(x, _)| x));
     let sides = [[b, c], [c, a], [a, b]];
     let shares = sides.map(|[q, r]| double_area([point, q.0, r.0]) / whole);
-    if shares.iter().any(|&share| share < -AT_THE_POINT) {
+    if shares.iter().any(|&share| share < -ROUNDED) {
         return None;
     }
     let l = [0, 1, 2].map(|i| (0..3).map(|k| shares[k] * piece[k].1[i]).sum());
-    let parts = sides.into_iter().zip(shares).filter(|(_, share)| *share > AT_THE_POINT);
+    let parts = sides.into_iter().zip(shares).filter(|(_, share)| *share > ROUNDED);
     Some(parts.map(|([q, r], _)| [(point, l), q, r]).collect())
 }
 

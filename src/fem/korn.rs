@@ -25,7 +25,7 @@ use crate::kernel::{Ball, Triangle};
 /// Covers the rounding of sums and products of positive numbers.
 const SAFETY: f64 = 1.001;
 
-/// The smallest area of a triangle for which there is a bound.
+/// The smallest area of a triangle for which there is a bound: below, squares underflow.
 const SMALLEST: f64 = 1e-200;
 
 /// A hold beside the supports: a sum of components of v at nodes of a triangle is at most `most` where |v|_a is at most 1.

@@ -9,6 +9,7 @@
 use nalgebra::Vector3;
 use thiserror::Error;
 
+use super::rigid::NEGLIGIBLE;
 use crate::kernel::{Ball, Material, Plane, Stress};
 
 /// Why there is no such material.
@@ -217,7 +218,7 @@ pub fn stable(material: Material<f64>) -> Result<Material<f64>, MaterialError> {
     if !material.is_isotropic() {
         let (stiffness, [eigenvalue, largest]) = (material.stiffness(), eigenvalues(&material));
         let finite = stiffness.iter().all(|c| c.is_finite());
-        if !(finite && eigenvalue > 0.0 && eigenvalue >= 1e-10 * largest) {
+        if !(finite && eigenvalue > 0.0 && eigenvalue >= NEGLIGIBLE * largest) {
             // Rounding leaves a dozen digits of it.
             let eigenvalue = format!("{eigenvalue:.11e}").parse().unwrap_or(eigenvalue);
             return Err(MaterialError::NotElliptic { stiffness, eigenvalue });

@@ -227,7 +227,7 @@ impl Mesh {
         let boxes = self.boxes.get_or_init(|| {
             let corners = |t: &[usize; 3]| t.map(|v| self.vertices[v]);
             let boxed = |t: [[f64; 2]; 3]| {
-                Bounds::around(t).widened(4.0 * OUTSIDE * Bounds::around(t).size())
+                Bounds::around(t).widened(4.0 * ROUNDED * Bounds::around(t).size())
             };
             Tree::new(self.topology.triangles.iter().map(corners).map(boxed).collect())
         });
@@ -240,19 +240,21 @@ impl Mesh {
             let gradients = triangle.barycentric_gradients();
             // Each coordinate is measured from a vertex where it is zero: a vertex of the mesh finds itself exactly.
             let l = [0, 1, 2].map(|i| gradients[i].dot(&(x - triangle.vertices[(i + 1) % 3])));
-            l.iter().all(|&l| l >= -OUTSIDE).then_some((t, l))
+            l.iter().all(|&l| l >= -ROUNDED).then_some((t, l))
         })
     }
 }
 
-/// A triangle whose area is less than this times h_T^2 is flat: its gradients would have lost all but a few digits.
-const FLAT: f64 = 1e-12;
+/// A share below this may be rounding, some thousand roundings of doubles: a triangle with less area beside h_T^2 is flat, as its
+/// gradients would have lost all but a few digits; a point this far outside a triangle, in units of its heights, still belongs to
+/// it; prescribed values that differ by less, beside the largest, agree, as expressions that mean the same may differ; so do
+/// the constants of equal edges; a place this near to the end of a piece of quadrature is its end;
+/// and contact that leaves less of the displacement without it leaves nothing that can be seen.
+pub(crate) const ROUNDED: f64 = 1e-12;
 
 /// An angle below this, in radians, is none: a hundred thousand rounding errors of a facet a thousandth of the body long.
-pub(super) const NO_ANGLE: f64 = 1e-8;
-
-/// A point this far outside a triangle, in units of its heights, still belongs to it: some thousand rounding errors.
-const OUTSIDE: f64 = 1e-12;
+/// Two directions that are held are independent, a boundary bends and a motion leaves an obstacle by more only.
+pub(crate) const NO_ANGLE: f64 = 1e-8;
 
 /// |v|, without the overflow and underflow of a sum of squares.
 pub(crate) fn length(v: Vector2<f64>) -> f64 {
@@ -317,7 +319,7 @@ fn check_triangles(vertices: &[[f64; 2]], triangles: &[[usize; 3]]) -> Result<()
     for (triangle, &corners) in triangles.iter().enumerate() {
         let t = Triangle { vertices: corners.map(|v| vertices[v].into()) };
         let (area, diameter) = (t.double_area() / 2.0, diameter(&t));
-        let flat = FLAT * diameter * diameter;
+        let flat = ROUNDED * diameter * diameter;
         if area < -flat {
             return Err(MeshError::Clockwise { triangle, vertices: corners, area });
         }

@@ -65,13 +65,13 @@ impl Parabola {
         self.0[1] + PreciseBall::from(2) * s * self.0[2]
     }
 
-    /// One step of Newton's method from a root, if that is a step to somewhere.
+    /// One step of Newton's method from a root, if it ends on the edge.
     fn refined(&self, root: f64) -> PreciseBall {
         let at = PreciseBall::from(root);
         let step = PreciseBall::point((self.at(at) / self.slope(at)).centre());
         let better = PreciseBall::point((at - step).centre());
         let inside = better.is_finite() && better.lower() > 0.0 && better.upper() < 1.0;
-        if inside && step.magnitude() < 1e-6 { better } else { at }
+        if inside { better } else { at }
     }
 
     /// The largest value of `sign` P on \[a, b\], or more: at an end; or below the tangent at a point near the vertex, and, where

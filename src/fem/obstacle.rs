@@ -21,7 +21,8 @@ use super::data::{DataError, finite};
 use super::function::Function;
 use super::mesh::length;
 
-/// The length of grad phi may be off 1 by this much.
+/// The length of grad phi may be off 1 by this much. An expression that is no distance (x^2 - 1, 2 x) is off by far more nearly
+/// everywhere; one that is a distance on the obstacle is off by its curvature times the gap, which is small where contact is.
 pub const MOST_OFF: f64 = 0.1;
 
 /// A rigid obstacle.

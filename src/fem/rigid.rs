@@ -53,13 +53,12 @@ pub struct FreeMotion {
     place: Option<[f64; 2]>,
 }
 
-/// Components of a motion below this share of the largest one are rounding errors; so is the work of loads on a motion below this
-/// share of the largest work of single loads.
-pub(super) const STILL: f64 = 1e-9;
-
-/// A singular value below this share of the largest stops nothing; likewise what is this small beside motions of size 1. Rounding
-/// leaves some 1e-15; a part of slenderness s held at its end alone makes 1/s.
-pub(super) const FREE: f64 = 1e-10;
+/// A singular value below this share of the largest stops no motion; likewise a component of a motion beside its largest, and the
+/// work of the loads on a motion beside the largest work of single loads, are zero. Rounding leaves some 1e-15; a part of
+/// slenderness s held at its end alone makes 1/s, so that one of 1e9 is held. And the smallest eigenvalue of a material below this
+/// share of the largest leaves no digits of what it does to the strains that belong to it. A
+/// solve is done when its last correction is as small beside the displacement, and what its forces are out of balance beside them.
+pub(crate) const NEGLIGIBLE: f64 = 1e-10;
 
 impl FreeMotion {
     /// The displacement at `x`.
@@ -101,7 +100,7 @@ impl FreeMotion {
             }
             None => {
                 let norm = self.shift[0].hypot(self.shift[1]);
-                let stopping = match self.shift.map(|c| c.abs() > STILL * norm) {
+                let stopping = match self.shift.map(|c| c.abs() > NEGLIGIBLE * norm) {
                     [true, true] => "u_x or u_y",
                     [true, false] => "u_x",
                     _ => "u_y",
@@ -177,7 +176,8 @@ impl Parts {
     /// The motion (t_x, t_y, w) of a part, the largest of its coefficients made 1.
     fn motion(&self, part: usize, values: [f64; 3]) -> FreeMotion {
         let largest = values.iter().fold(0.0, |max: f64, v| max.max(v.abs()));
-        let [x, y, w] = values.map(|v| if v.abs() <= STILL * largest { 0.0 } else { v / largest });
+        let [x, y, w] =
+            values.map(|v| if v.abs() <= NEGLIGIBLE * largest { 0.0 } else { v / largest });
         let PartFrame { centre, half, place } = self.frames[part];
         let place = (self.count() > 1).then_some(place);
         FreeMotion { part, centre, shift: [x, y], turn: w / half, half, place }
@@ -222,7 +222,7 @@ where
     }
     let mut motions = Vec::new();
     for (part, rows) in rows.iter().enumerate() {
-        let stops = |value: f64, largest: f64| value > rounding.max(FREE) * largest;
+        let stops = |value: f64, largest: f64| value > rounding.max(NEGLIGIBLE) * largest;
         let free = null_space(rows, 3, stops);
         motions.extend(free.iter().map(|v| parts.motion(part, [v[0], v[1], v[2]])));
     }
@@ -245,7 +245,7 @@ pub(super) fn null_space(
     match &stopped[..] {
         [] => (0..count).map(unit).collect(),
         [v] => {
-            let pivot = (0..count).find(|&k| v[k].abs() > STILL).unwrap_or(0);
+            let pivot = (0..count).find(|&k| v[k].abs() > NEGLIGIBLE).unwrap_or(0);
             let motion = |k: usize| {
                 let mut motion = unit(k);
                 motion[pivot] = -v[k] / v[pivot];
@@ -256,7 +256,7 @@ pub(super) fn null_space(
         [a, b] if count == 3 => {
             let minor = |i: usize, j: usize| a[i] * b[j] - a[j] * b[i];
             let [x, y, w] = [minor(1, 2), minor(2, 0), minor(0, 1)];
-            let last = [w, y, x].into_iter().find(|c| c.abs() > STILL).unwrap_or(1.0);
+            let last = [w, y, x].into_iter().find(|c| c.abs() > NEGLIGIBLE).unwrap_or(1.0);
             vec![[x, y, w].map(|c| c / last).to_vec()]
         }
         _ => Vec::new(),
@@ -327,7 +327,7 @@ mod tests {
     use super::*;
     use crate::fem::Degree;
 
-    /// The remainder of a motion of size 1 where it is stopped: components below [`STILL`] are set to zero, and slender
+    /// The remainder of a motion of size 1 where it is stopped: components below [`NEGLIGIBLE`] are set to zero, and slender
     /// parts have coordinates of up to 10 times their half box.
     const STOPPED: f64 = 1e-8;
 

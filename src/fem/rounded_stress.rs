@@ -198,7 +198,8 @@ fn moves_as_a_whole<const N: usize>(nodes: &[usize; N], u: &[[PreciseBall; 2]]) 
 /// Covers the rounding of sums and products of positive numbers, some million of them, and areas that are off by a thousandth.
 const SAFETY: f64 = 1.01;
 
-/// A triangle is too flat for doubles where the products that its area is the difference of are larger beside it.
+/// A triangle is too flat for doubles where the products that its area is the difference of are larger beside it: a hypothesis of the
+/// analysis, which leaves such triangles to balls.
 const FLAT: f64 = (1_u64 << 40) as f64;
 
 /// Bounds of the law of a material.

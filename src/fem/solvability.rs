@@ -14,10 +14,11 @@ use serde::{Deserialize, Serialize};
 use super::contact_face::ContactFace;
 use super::dense::{dot, inner, least_squares, norm, singular_vectors};
 use super::mesh::NO_ANGLE;
-use super::rigid::{FREE, FreeMotion, Parts, STILL, null_space, subtract};
+use super::rigid::{FreeMotion, NEGLIGIBLE, Parts, null_space, subtract};
 use super::space::Space;
 
-/// Loads must go on pressing when they are changed by this share: a body on the verge of tipping is not held.
+/// Loads must go on pressing when they are changed by this share of the largest work of single loads: a body on the verge of tipping
+/// is not held. Nobody knows loads better, and it is ten thousand times what is taken for rounding.
 const MARGIN: f64 = 1e-6;
 
 /// The motions that contact and loads do not hold.
@@ -91,10 +92,10 @@ pub(super) fn all(edges: &[EdgeRows]) -> Vec<Vec<f64>> {
 }
 
 /// A value of c_i below this is zero but for rounding. Where the body is far from the origin, rounding its vertices makes more
-/// than [`FREE`].
+/// than [`NEGLIGIBLE`].
 pub(super) fn negligible(rows: &[Vec<f64>], count: usize, rounding: f64) -> f64 {
     let largest = singular_vectors(rows, count).first().map_or(0.0, |(value, _)| *value);
-    FREE.max(rounding * (rows.len() as f64).sqrt()) * largest.max(1.0)
+    NEGLIGIBLE.max(rounding * (rows.len() as f64).sqrt()) * largest.max(1.0)
 }
 
 /// The motions among the combinations of `motions`, which may be off by `rounding`, that slide along every obstacle.
@@ -166,7 +167,7 @@ fn press(
     let mut verge: Option<Vec<f64>> = None;
     loop {
         let rows = all(&edges);
-        if let Some(motion) = nnls_residual(&rows, loads, STILL) {
+        if let Some(motion) = nnls_residual(&rows, loads, NEGLIGIBLE) {
             let driven = verge.is_none();
             return Err(Some((verge.unwrap_or(motion), driven)));
         }
@@ -176,7 +177,7 @@ fn press(
             [-MARGIN, MARGIN].into_iter().find_map(|by| {
                 let changed: Vec<f64> =
                     loads.iter().zip(&direction).map(|(l, d)| l + by * d).collect();
-                nnls_residual(&rows, &changed, STILL)
+                nnls_residual(&rows, &changed, NEGLIGIBLE)
             })
         });
         let Some(motion) = leaves else { break };
@@ -255,9 +256,9 @@ impl Slides {
         let rows: Vec<Vec<f64>> = self.bounds.iter().map(row).collect();
         let mut target = vec![0.0; self.basis.len() + 1];
         target[self.basis.len()] = 1.0;
-        let mut rest = nnls_residual(&rows, &target, FREE)?;
+        let mut rest = nnls_residual(&rows, &target, NEGLIGIBLE)?;
         let last = rest.pop()?;
-        (last > FREE).then(|| rest.iter().map(|r| -scale * r / last).collect())
+        (last > NEGLIGIBLE).then(|| rest.iter().map(|r| -scale * r / last).collect())
     }
 
     /// How far each motion may go from u.
@@ -267,7 +268,7 @@ impl Slides {
             let mut range = [None::<f64>; 2];
             for (row, bound) in &self.bounds {
                 let speed = dot(row, along);
-                if speed.abs() > FREE * norm(row) * norm(along) {
+                if speed.abs() > NEGLIGIBLE * norm(row) * norm(along) {
                     let way = ((bound - dot(row, &at)).max(0.0) / speed) * motion.size();
                     let end = &mut range[usize::from(way > 0.0 || (way == 0.0 && speed > 0.0))];
                     let nearer = end.is_none_or(|end| way.abs() < end.abs());
@@ -310,7 +311,7 @@ fn nnls_residual(rows: &[Vec<f64>], target: &[f64], tolerance: f64) -> Option<Ve
         let fresh =
             (0..rows.len()).filter(|i| norm(&rows[*i]) > 0.0 && used.iter().all(|(u, _)| u != i));
         let best = fresh.max_by(|i, j| gain(i).total_cmp(&gain(j)));
-        let Some(best) = best.filter(|i| gain(i) > tolerance * 1e-3) else { break };
+        let Some(best) = best.filter(|i| gain(i) > 0.0) else { break };
         used.push((best, 0.0));
         loop {
             // Rows that depend on each other have no unique weights: the last one adds nothing.
@@ -349,7 +350,8 @@ fn nnls_residual(rows: &[Vec<f64>], target: &[f64], tolerance: f64) -> Option<Ve
     Some(rest).filter(|rest| norm(rest) > tolerance)
 }
 
-/// The method is finite; this bounds it against rounding.
+/// The method is finite, and with three unknowns takes a few; this bounds its time should rounding make it go around, and decides
+/// nothing else.
 const MOST_EXCHANGES: usize = 200;
 
 #[cfg(test)]

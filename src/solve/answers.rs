@@ -27,7 +27,7 @@ use nalgebra::Vector2;
 use crate::fem::dense::inner;
 use crate::fem::discretization::Discretization;
 use crate::fem::element::{roots, value_at};
-use crate::fem::mesh::length;
+use crate::fem::mesh::{NO_ANGLE, length};
 use crate::fem::{ContactFace, EdgeRule};
 use crate::kernel::DoubleDouble;
 use crate::kernel::positive_part;
@@ -238,9 +238,9 @@ fn groups(d: &Discretization) -> Vec<Vec<usize>> {
 /// A direction of contact at a node, and the number of the value there.
 type Group = (Vector2<f64>, usize);
 
-/// Directions that differ by rounding only, or by what a facet's normal may be off where the boundary is straight.
+/// Directions that differ by rounding only.
 fn same(a: Vector2<f64>, b: Vector2<f64>) -> bool {
-    length(a - b) <= 1e-6
+    length(a - b) <= NO_ANGLE
 }
 
 /// The quantities of each part of Gamma_C, in alphabetical order.
