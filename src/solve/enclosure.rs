@@ -25,6 +25,7 @@ use super::SolveError;
 use super::balls::{field, free, kappa, length, lines, root};
 use super::factor::Factor;
 use super::intervals::{Arithmetic, EnclosedResidual, Intervals};
+use super::newton::SLIGHT;
 use super::pressed::{self, Pressed, SHARES};
 use super::system::System;
 use super::times::Stopwatch;
@@ -90,12 +91,6 @@ impl Unproved {
         !matches!(self, Unproved::HeldByContact | Unproved::NotCoercive { .. } | Unproved::NoKappa)
     }
 }
-
-/// The residual of a correction that is this small a part of the bound needs no further one.
-const SMALL: f64 = 1e-2;
-
-/// Corrections of z, at most.
-const CORRECTIONS: usize = 12;
 
 /// Encloses the solution of (8) around the displacement `u`, in balls throughout: as [`Verifier::enclose`]. A factor of A that is
 /// at hand saves making one; nothing depends on its being right.
@@ -292,7 +287,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         let up_to = up(at.off / coercivity.sqrt());
         let size = system.size(at.energy.lower().max(0.0).sqrt() * (1.0 - 2.0 * f64::EPSILON), u);
         let known = (at.moved.max(self.proof * size) * coercivity.sqrt()).max(up_to);
-        let negligible = SMALL * known;
+        let negligible = SLIGHT * known;
         let first = weighted(r, &crude);
         let rho = if first <= negligible {
             up(first + up_to)
@@ -427,7 +422,7 @@ fn dual_norm(
     let mut z = vec![PreciseBall::from(0); r.len()];
     let mut left = Cow::Borrowed(r);
     let mut best = f64::INFINITY;
-    for _ in 0..CORRECTIONS {
+    loop {
         let mut correction: Vec<f64> = left.iter().map(|t| t.head()).collect();
         factor.solve(&mut correction);
         for (z, c) in z.iter_mut().zip(&correction) {
@@ -445,16 +440,14 @@ fn dual_norm(
         left = Cow::Owned(az);
         let rest = up(weighted(&left, crude) + off);
         let bound = up(energy + rest);
-        if !(rest > (SMALL * energy).max(negligible)) {
+        if !(rest > (SLIGHT * energy).max(negligible)) {
             return bound.min(best);
         }
-        let stuck = !(bound < best / 2.0);
-        best = bound.min(best);
-        if stuck {
-            break;
+        if !(bound < best / 2.0) {
+            return bound.min(best);
         }
+        best = bound;
     }
-    best
 }
 
 /// The sum of the magnitudes, each times its weight, at most.

@@ -11,14 +11,15 @@
 //!
 //! where DJ d <= 0 and D is the Bregman distance of Psi: two terms that are never negative against one that is never
 //! positive. Nothing cancels, so the search works down to the rounding level. Its derivative in t does not decrease; the
-//! search finds where it vanishes, to a hundredth of its value at 0, and Armijo's rule is asked of what it finds.
+//! search finds where it vanishes, to a hundredth of its value at 0, and Armijo's rule, with a hundredth for its sigma, is asked of
+//! what it finds.
 //!
 //! **The start.** A body that bends, started as if without contact, lets go of about one edge a step. So the springs are soft
 //! at first: s Psi in place of Psi, with s so small that contact is not much stiffer than the body. When the residual at s is
-//! small beside the one that stiffer springs bring, the springs get stiffer, by a factor that grows while single steps will do and
-//! falls where they don't: the contact zone of stiff springs is narrow, and a minimiser is found from near only. At s = 1 it is
-//! Newton's method on J_h, from a start that knows something. Going to the body without contact counts as a step where it takes
-//! one. A start that is given ([`super::course`]) needs no soft springs.
+//! small beside the one that stiffer springs bring, the springs get stiffer by a factor: the contact zone of stiff springs is
+//! narrow, and a minimiser is found from near only. At s = 1 it is Newton's method on J_h, from a start that knows something.
+//! Going to the body without contact counts as a step where it takes one. A start that is given ([`super::course`]) needs no soft
+//! springs.
 //!
 //! **The end** is the rounding level of the residual, or of the decrease along a step.
 
@@ -27,24 +28,23 @@ use super::body::{Body, ContactEnergy, Derivatives, Step, block, derivatives};
 use crate::fem::dense::norm;
 use crate::kernel::DoubleDouble;
 
-/// Armijo's sigma.
-const SUFFICIENT: f64 = 1e-4;
+/// A share that need not be known better. The line search ends where the derivative along the step is this small beside the one
+/// at its start, and asks for a decrease of this share of what that derivative promises (Armijo's sigma: any below 1/2 will do); the
+/// [enclosure](super::enclosure) corrects a bound no further when what is left to correct is this small a part of it.
+pub(super) const SLIGHT: f64 = 1e-2;
 
-/// The line search ends where the derivative along the step is this small beside the one at its start.
-const FLAT: f64 = 1e-2;
-
-/// How many times stiffer than the body the springs of contact are at first.
+/// How many times stiffer than the body the springs of contact are at first. From 8 to 100 it matters little; as stiff from the start as
+/// they are in the end, seven of 504 bodies at random are not solved in 200 steps.
 const SOFT: f64 = 20.0;
 
-/// How much stiffer they get from one stiffness to the next, at least and at most.
-const STIFFENING: [f64; 2] = [2.0, 8.0];
+/// How many times stiffer they get from one stiffness to the next. With 4 bodies take 6 % more steps than with 5; from 6 on a
+/// body that slides off an obstacle takes more than 70, and with 16 some are not solved in 200. A factor that adapts itself between
+/// 2 and 8 takes 3 % fewer steps, and 48 where this one takes 42.
+const STIFFENING: f64 = 5.0;
 
-/// They get stiffer when the residual is this share of what that will make of it.
+/// They get stiffer when the residual is this share of what that will make of it. If they may at any residual, one of 2,000 bodies is
+/// not solved in 200 steps and that which slides off takes 77.
 const DONE: f64 = 0.1;
-
-/// They get stiffer, too, when the energy of a step is this share of that of the first one at this stiffness: what is left of the
-/// residual then is in springs that hold next to no energy, and stiffer ones will decide about them.
-const SPENT: f64 = 1e-3;
 
 /// When to stop, short of the rounding level.
 #[derive(Clone, Copy, Debug)]
@@ -68,11 +68,11 @@ pub fn minimise(
     residuals: &mut Vec<f64>,
     until: Until,
 ) -> Result<f64, SolveError> {
-    let mut springs = Springs::new(1.0);
+    let mut stiffness = 1.0;
     if first {
         residuals.push(body.residual(&derivatives(edges, &body.y())).norm);
         match body.start(edges)? {
-            Some(contact) => springs = Springs::new((SOFT / contact).min(1.0)),
+            Some(contact) => stiffness = f64::min(SOFT / contact, 1.0),
             None => residuals.push(body.residual(&derivatives(edges, &body.y())).norm),
         }
     }
@@ -82,7 +82,6 @@ pub fn minimise(
     let mut may_end = first;
     let mut left = 0.0;
     while residuals.len() <= until.steps {
-        let stiffness = springs.stiffness;
         let enough = if stiffness < 1.0 { 0.0 } else { until.residual };
         if may_end && residual.norm <= residual.noise.max(enough) {
             break;
@@ -96,41 +95,13 @@ pub fn minimise(
         residuals.push(residual.norm);
         left = if t < 1.0 { -step.slope } else { 0.0 };
         may_end = true;
-        springs.after_step(-step.slope, |stiffness| body.residual(&at.times(stiffness)).norm);
+        let stiffer = f64::min(STIFFENING * stiffness, 1.0);
+        let residual_at = |stiffness: f64| body.residual(&at.times(stiffness)).norm;
+        if stiffness < 1.0 && residual_at(stiffness) <= DONE * residual_at(stiffer) {
+            stiffness = stiffer;
+        }
     }
     Ok(left)
-}
-
-/// s of s Psi, on its way to 1.
-struct Springs {
-    stiffness: f64,
-    /// The factor by which it grows next.
-    stiffening: f64,
-    /// The decrement of the first step at this stiffness.
-    first: Option<f64>,
-}
-
-impl Springs {
-    fn new(stiffness: f64) -> Self {
-        Springs { stiffness, stiffening: STIFFENING[1], first: None }
-    }
-
-    /// After a step with this decrement, with the residual as a function of the stiffness.
-    fn after_step(&mut self, decrement: f64, residual: impl Fn(f64) -> f64) {
-        if self.stiffness == 1.0 {
-            return;
-        }
-        let single = self.first.is_none();
-        let spent = decrement <= SPENT * *self.first.get_or_insert(decrement);
-        let stiffer = (self.stiffness * self.stiffening).min(1.0);
-        if spent || residual(self.stiffness) <= DONE * residual(stiffer) {
-            let grown = (2.0 * self.stiffening).min(STIFFENING[1]);
-            let stiffening = if single { grown } else { self.stiffening };
-            *self = Springs { stiffening, ..Springs::new(stiffer) };
-        } else {
-            self.stiffening = (self.stiffening / 4.0).max(STIFFENING[0]);
-        }
-    }
 }
 
 /// Where along the step J_h with s Psi, which has the derivatives `at`, is least; `None` if its decrease is lost in rounding.
@@ -164,9 +135,9 @@ fn line_search(
     let falls = |t: f64| {
         let distance: f64 =
             (0..edges.count()).map(|e| edges.bregman(e, block(y, e, nodes), &point(e, t))).sum();
-        t * t / 2.0 * step.curvature + stiffness * distance <= (SUFFICIENT - 1.0) * t * step.slope
+        t * t / 2.0 * step.curvature + stiffness * distance <= (SLIGHT - 1.0) * t * step.slope
     };
-    let flat = FLAT * step.slope.abs();
+    let flat = SLIGHT * step.slope.abs();
     let (mut low, mut high, mut t) = (0.0, f64::INFINITY, 1.0);
     for _ in 0..60 {
         let (first, second) = derivatives(t);
