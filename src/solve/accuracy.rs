@@ -18,6 +18,7 @@ use super::system::System;
 use super::{Settings, SolveError, Status};
 use crate::fem::dense::norm;
 use crate::fem::discretization::Discretization;
+use crate::fem::rigid::NEGLIGIBLE;
 use crate::kernel::DoubleDouble;
 
 /// A way to better an iterate.
@@ -101,19 +102,17 @@ impl Outcome {
 
     /// Returns whether no other route would prove more.
     pub(crate) fn is_final(&self, settings: &Settings) -> bool {
-        // With enough steps Newton's method ends: if it did not, digits were missing.
-        let stopped = settings.max_iterations < ENOUGH && self.is_out_of_steps(settings);
         let by_nature = |why: &Unproved| !why.may_be_rounding() || *why == Unproved::HeldByContact;
         let unprovable =
             settings.proof.is_infinite() || self.enclosure.as_ref().is_err_and(by_nature);
-        self.is_proved(settings) || stopped || (unprovable && self.residual <= settings.tolerance)
+        self.is_proved(settings) || (unprovable && self.residual <= settings.tolerance)
     }
 
     /// The status of the solve.
     ///
     /// # Errors
     /// Where nothing is proved and the residual is above the tolerance: [`SolveError::Singular`] where A has no factor,
-    /// [`SolveError::NotConverged`] where the steps ran out, else [`SolveError::IllConditioned`].
+    /// [`SolveError::NotConverged`] where the steps ran out though doubles can tell a step, else [`SolveError::IllConditioned`].
     pub fn status(&self, settings: &Settings) -> Result<Status, SolveError> {
         let &Outcome { residual, forward_error, condition, .. } = self;
         if residual <= settings.tolerance {
@@ -122,7 +121,7 @@ impl Outcome {
             Ok(Status::ConvergedToRounding)
         } else if self.enclosure == Err(Unproved::NoFactor) {
             Err(SolveError::Singular)
-        } else if self.is_out_of_steps(settings) && condition < HOPELESS {
+        } else if self.is_out_of_steps(settings) && condition * f64::EPSILON < 1.0 {
             let residuals = self.residuals.clone();
             Err(SolveError::NotConverged { residual, residuals, tolerance: settings.tolerance })
         } else {
@@ -131,17 +130,7 @@ impl Outcome {
     }
 }
 
-/// A correction this small, relative, leaves nothing to correct; likewise an imbalance of the forces on the body, in parts of
-/// them, or with its rounding ten times that.
-const SMALL: f64 = 1e-10;
-
-/// A condition number beyond this leaves Newton's method nothing to go by: which of two messages a refusal has.
-const HOPELESS: f64 = 1e14;
-
-/// Newton steps that are enough for any case where no digits are missing.
-const ENOUGH: usize = 30;
-
-/// No more passes than these: each takes the error down by a factor, or there is no point.
+/// No more passes than these. It bounds the time, and decides nothing: each pass takes the error down by a factor, or the passes end.
 const MOST_PASSES: usize = 12;
 
 /// Passes of `route` from the lift of the prescribed data on, until the enclosure of the exact solution is as small as asked
@@ -224,11 +213,12 @@ impl<'a, 'd, 'p> IterativeRefinement<'a, 'd, 'p> {
             && !(self.residual.norm <= self.settings.tolerance)
     }
 
-    /// Returns whether nothing is left to correct in the numbers at hand.
+    /// Returns whether nothing is left to correct in the numbers at hand: of the residual, of the imbalance of the forces on the
+    /// body, in parts of them, and of the last correction, relative.
     fn is_done(&self) -> bool {
         self.residual.norm <= self.settings.tolerance
-            && self.residual.unbalanced <= SMALL
-            && self.correction <= SMALL
+            && self.residual.unbalanced <= NEGLIGIBLE
+            && self.correction <= NEGLIGIBLE
     }
 
     fn pass(&mut self, route: &mut dyn Route) -> Result<(), SolveError> {
@@ -260,7 +250,7 @@ impl<'a, 'd, 'p> IterativeRefinement<'a, 'd, 'p> {
             if found.is_ok() || self.enclosure.is_err() {
                 self.enclosure = found;
             }
-            if is_near && verifier.unbalanced <= 10.0 * SMALL * self.residual.forces {
+            if is_near && verifier.unbalanced <= 10.0 * NEGLIGIBLE * self.residual.forces {
                 return true;
             }
         }

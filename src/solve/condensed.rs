@@ -30,6 +30,7 @@ use super::iterate::{Evaluation, Iterate, NOISE};
 use super::newton::{self, Until};
 use super::system::System;
 use crate::fem::dense::norm;
+use crate::fem::mesh::ROUNDED;
 use crate::kernel::DoubleDouble;
 
 /// The body, factored, and the forces of contact on it.
@@ -190,8 +191,9 @@ impl Body for Reduced<'_, '_, '_, '_> {
             let grx = self.times_compliance(&rx);
             roots.iter().map(|(e, column)| on_edge(column, &grx, *e)).collect()
         });
-        // The body bends so far without contact that what contact leaves of it cannot be seen.
-        if !(stiffness <= STIFFEST) {
+        // The body bends so far without contact that what contact leaves of it is rounding: it is held by contact, and the tangent
+        // must know it.
+        if !(stiffness * ROUNDED <= 1.0) {
             return Err(SolveError::Singular);
         }
         let Some(p) = self.route.system.course.p(self.route.system.d) else {
@@ -253,18 +255,13 @@ fn on_edge(column: &DVector<f64>, values: &[f64], e: usize) -> f64 {
     column.iter().zip(block(values, e, column.len())).map(|(a, b)| a * b).sum()
 }
 
-/// Where contact is this many times stiffer than the body, the body is held by contact, and the tangent must know it.
-const STIFFEST: f64 = 1e11;
-
-/// A pivot this small beside its diagonal entry belongs to a singular matrix.
-const SINGULAR: f64 = 1e-14;
-
-/// The columns of R with H = R R^T for a positive semidefinite H, by Cholesky; those of zero pivots are left out.
+/// The columns of R with H = R R^T for a positive semidefinite H, by Cholesky; those of pivots that are zero to rounding are left
+/// out.
 fn root(mut h: DMatrix<f64>) -> Vec<DVector<f64>> {
     let (count, diagonal) = (h.nrows(), h.diagonal());
     let mut columns = Vec::with_capacity(count);
     for k in 0..count {
-        if h[(k, k)] <= SINGULAR * diagonal[k] {
+        if h[(k, k)] <= f64::EPSILON * diagonal[k] {
             continue;
         }
         let pivot = h[(k, k)].sqrt();

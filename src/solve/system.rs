@@ -127,7 +127,8 @@ impl<'d, 'p> System<'d, 'p> {
             return norm;
         }
         let most = self.energy_of_unrelated(u).sqrt();
-        if norm > STRAIN_OF_ROUNDING * most { norm } else { most }
+        // A strain of this size is that of rounding u.
+        if norm > f64::EPSILON * most { norm } else { most }
     }
 
     fn diagonal(&self) -> impl Iterator<Item = f64> {
@@ -135,6 +136,3 @@ impl<'d, 'p> System<'d, 'p> {
         starts[..self.numbering.count].iter().map(|&k| values[k])
     }
 }
-
-/// A strain this small beside the displacement is that of rounding.
-const STRAIN_OF_ROUNDING: f64 = 64.0 * f64::EPSILON;
