@@ -457,11 +457,11 @@ fn forty_nine_of_fifty_bodies_of_all_families_are_proved_or_ill_conditioned() {
     assert!(4 * of(&[PROVED]) >= 3 * count, "{} of {count} are proved", of(&[PROVED]));
 }
 
-/// The first are held by stretches that end where P does, the others where some pressed edges are left out: they press too little to
+/// The first four are held by stretches that end where P does, the others where some pressed edges are left out: they press too little to
 /// stay so.
 #[test]
 fn bodies_that_hardly_more_than_a_point_of_contact_holds_are_proved() {
-    for seed in [31, 47] {
+    for seed in [46, 94, 95, 141, 150, 173] {
         let body = of_all_families(seed);
         assert_eq!(outcome(&body, &mut Vec::new()), Ok(PROVED), "seed {seed}: {}", body.said);
     }
