@@ -15,7 +15,7 @@ use std::process::ExitCode;
 
 use clap::CommandFactory;
 use signorini::io::Failure;
-use signorini::io::files::reason;
+use signorini::io::input::reason;
 use signorini::io::{Case, summary};
 use signorini::{quote, solve as library};
 

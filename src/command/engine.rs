@@ -11,8 +11,8 @@ use std::process::{Command, Output, Stdio};
 use std::{env, fs, io};
 
 use signorini::io::Failure;
-use signorini::io::files::{self, reason};
-use signorini::io::input::{self, MOST_OF_A_CASE};
+use signorini::io::files;
+use signorini::io::input::{self, MOST_OF_A_CASE, reason};
 use signorini::io::outputs::{FILES, FILES_OF_FENICSX};
 use signorini::io::result::Results;
 use signorini::quote;

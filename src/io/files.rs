@@ -16,7 +16,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use thiserror::Error;
 
-use super::input::Failure;
+use super::input::{Failure, reason};
 use crate::quote;
 
 /// The files of one run, on their way into one folder.
@@ -46,15 +46,6 @@ pub(super) fn check_finite<'a>(
         None => Ok(()),
         Some(i) => Err(NotFinite { place: format!("{name}[{i}]") }),
     }
-}
-
-/// The reason in words; the number that the system gives it helps nobody.
-pub fn reason(error: &io::Error) -> String {
-    if error.kind() == io::ErrorKind::AlreadyExists {
-        return "a file of this name is there; choose another folder: --out DIR".to_owned();
-    }
-    let text = error.to_string();
-    text.split(" (os error ").next().unwrap_or_default().to_owned()
 }
 
 /// Refuses to write files called `names` into `folder` if one of them is one of the `sources` of the case.

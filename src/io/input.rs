@@ -201,11 +201,20 @@ fn kind(metadata: &Metadata) -> &'static str {
     if metadata.is_dir() { "a directory" } else { "no regular file" }
 }
 
+/// The reason in words; the number that the system gives it helps nobody.
+pub fn reason(error: &io::Error) -> String {
+    if error.kind() == io::ErrorKind::AlreadyExists {
+        return "a file of this name is there; choose another folder: --out DIR".to_owned();
+    }
+    let text = error.to_string();
+    text.split(" (os error ").next().unwrap_or_default().to_owned()
+}
+
 /// Says why a file can't be read, in words that don't depend on the system where that is possible.
 fn unreadable(error: io::Error) -> Failure {
     // ENFILE and EMFILE, which have no kind.
     if matches!(error.raw_os_error(), Some(23 | 24)) && cfg!(unix) {
-        return Failure::failed(super::files::reason(&error));
+        return Failure::failed(reason(&error));
     }
     match error.kind() {
         io::ErrorKind::NotFound => "there is no such file".into(),
@@ -214,7 +223,7 @@ fn unreadable(error: io::Error) -> Failure {
         io::ErrorKind::OutOfMemory => {
             Failure::failed("there is not enough memory to read this file".to_owned())
         }
-        _ => super::files::reason(&error).into(),
+        _ => reason(&error).into(),
     }
 }
 
