@@ -181,7 +181,7 @@ fn of_statement(statement: Statement, engine: Engine, control: bool) -> Check {
         name: statement.name,
         engine,
         control,
-        items: statement.items,
+        items: &[],
         subject: Subject::Statement(statement),
     }
 }
@@ -217,15 +217,44 @@ pub fn false_statement(statement: Statement) -> Check {
     }
 }
 
-/// A harness, as evidence or, if it is the false twin of one, as a control.
-pub fn model_checked(harness: Harness) -> Check {
-    Check {
+/// `statements! { WAYS NAME[UNKNOWNS]: CLASSES fails CONCLUSION about ITEMS hints(HINTS) prepared(PREPARE); .. }`: statements with
+/// the checks that each of them is, such as `proved + tested`, as a table. One without classes and without a conclusion that
+/// must fail holds always.
+macro_rules! statements {
+    (@of $name:ident $unknowns:tt) => {
+        $crate::statement!($name, $unknowns, ["always"])
+    };
+    (@of $name:ident $unknowns:tt $(: $($class:literal),+)? fails $conclusion:literal) => {
+        $crate::statement!($name, $unknowns, fails $conclusion)
+    };
+    (@of $name:ident $unknowns:tt : $($class:literal),+) => {
+        $crate::statement!($name, $unknowns, [$($class),+])
+    };
+    ($($way:ident $(+ $other:ident)* $name:ident $unknowns:tt $(: $($class:literal),+)? $(fails $conclusion:literal)?
+        $(about $($item:literal),+)? $(hints($hints:expr))? $(prepared($prepare:expr))?;)+) => {{
+        let mut checks: Vec<$crate::claim::Check> = Vec::new();
+        $(
+            let statement = statements!(@of $name $unknowns $(: $($class),+)? $(fails $conclusion)?)
+                $(.with_hints($hints))?
+                $(.prepared($prepare))?;
+            let items = &[$($($item),+)?];
+            checks.push($crate::claim::$way(statement).about(items));
+            $(checks.push($crate::claim::$other(statement).about(items));)*
+        )+
+        checks
+    }};
+}
+
+/// Harnesses, as evidence or, if they are the false twins of some, as controls.
+pub fn model_checked(harnesses: &[Harness]) -> Vec<Check> {
+    let one = |&harness: &Harness| Check {
         name: harness.name,
         engine: Engine::Harness,
         control: harness.counterexample.is_some(),
         items: &[],
         subject: Subject::Harness(harness),
-    }
+    };
+    harnesses.iter().map(one).collect()
 }
 
 /// The words of an error that a check did not expect.

@@ -16,8 +16,6 @@ pub struct Statement {
     pub classes: &'static [&'static str],
     /// Of a control: the conclusion, as it stands in the predicate, that must fail.
     pub conclusion: Option<&'static str>,
-    /// The items of the paper that it is about.
-    pub items: &'static [&'static str],
     /// Over symbols.
     pub symbolic: fn(&[Sym]) -> Verdict,
     /// Over exact rationals.
@@ -33,11 +31,6 @@ pub struct Statement {
 }
 
 impl Statement {
-    /// The statement as evidence for these items of the paper.
-    pub fn about(self, items: &'static [&'static str]) -> Statement {
-        Statement { items, ..self }
-    }
-
     /// The statement with hints for the search.
     pub fn with_hints(self, hints: fn(&[Sym]) -> Vec<Sym>) -> Statement {
         Statement { hints, ..self }
@@ -72,7 +65,6 @@ macro_rules! statement {
             variables: &[$(stringify!($variable)),*],
             classes: &[$($class),*],
             conclusion: None,
-            items: &[],
             symbolic: |v| $predicate($crate::statement::take(v)),
             exact: |v| $predicate($crate::statement::take(v)),
             doubles: |v| $predicate($crate::statement::take(v)),

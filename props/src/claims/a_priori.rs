@@ -5,12 +5,12 @@
 use proptest::prelude::*;
 use signorini::study::{Errors, a_priori};
 
-use crate::claim::{Claim, proved, refuted, tested};
+use crate::claim::Claim;
 use crate::claims::rates;
 use crate::claims::theorem_3_4::scaled_sides;
 use crate::numbers::Exact;
 use crate::verdict::{Ordered, Verdict};
-use crate::{draws, ensure, given, statement};
+use crate::{draws, ensure, given};
 
 /// Theorem 3.4, divided by delta^2, has the right side that the solver prints.
 pub fn plain_bound_is_that_of_theorem_3_4<S: Ordered>([e, h, z, s, q, k]: [S; 6]) -> Verdict {
@@ -210,60 +210,6 @@ fn called(&[kappa, e, z, h, s, q]: &Draw, spoil: impl Fn(Exact) -> Exact) -> Ver
 
 /// The row of the bounds.
 pub fn claim() -> Claim {
-    let plain = statement!(plain_bound_is_that_of_theorem_3_4, [e, h, z, s, q, k], ["always"])
-        .about(&["Theorem 3.4"]);
-    let terms = statement!(
-        sharp_bound_is_that_of_theorem_9_3,
-        [h, s, k],
-        ["kappa above 1/2", "kappa at most 1/2"]
-    );
-    let projected =
-        statement!(projected_bound_is_that_of_theorem_9_4, [w, z, h, s, q, k], ["always"]);
-    let corollary =
-        statement!(corollary_bound_is_that_of_corollary_3_6, [x, s, r, w, e, h, k], ["always"])
-            .about(&["Corollary 3.6"]);
-    let sharp_facts = statement!(
-        three_facts_give_inequality_9_6,
-        [e, h, z, s, big, k, c, d, q, r, t],
-        ["always"]
-    )
-    .about(&["Theorem 3.4"]);
-    let projected_facts = statement!(
-        three_facts_give_the_hypothesis_of_theorem_9_4,
-        [w, z, s, big, k, d, q, r, t],
-        ["always"]
-    );
-    let cauchy = statement!(
-        the_right_side_of_9_6_is_bounded_by_the_left_one,
-        [e, z, b, q, delta],
-        ["always"]
-    )
-    .with_hints(|v| vec![v[2] * v[1] - v[3] * v[4] * v[0]]);
-    let sharp = statement!(
-        inequality_9_6_gives_the_sharp_bound_9_5,
-        [l, c, x, r, w, m],
-        ["c = 0", "c > 0"]
-    )
-    .about(&["Theorem 3.4"]);
-    let all = [plain, terms, sharp_facts, cauchy, sharp, projected_facts, projected, corollary];
-    let mut checks: Vec<_> = all.into_iter().map(proved).collect();
-    checks.extend([tested(terms)]);
-    checks.extend([
-        doubles!("the_bounds_that_the_solver_calls_are_roots_of_these" => draws::hold(400, numbers(), &["always"], |draw| called(draw, |kappa| kappa))),
-        doubles!("control_kappa_for_its_root_in_doubles" => draws::reject(numbers(), |draw| called(draw, |kappa| kappa * kappa))),
-        doubles!("the_projection_is_nearer_than_the_discrete_solution_and_the_interpolant" => rates::projection_is_the_nearest()),
-        doubles!("control_the_interpolant_is_as_near_as_the_projection" => rates::interpolant_is_as_near()),
-        refuted(statement!(
-            control_kappa_for_its_root_in_corollary_3_6,
-            [s, e, h, k],
-            fails "s + k * (e + h) <= a_priori::corollary_bound(k * k, e, [h, s])"
-        )),
-        refuted(statement!(
-            control_9_5_with_half_the_constant,
-            [c, x, r, w],
-            fails "x <= (r + w) / S::from(2)"
-        )),
-    ]);
     Claim {
         id: "17",
         title: "The bounds that the solver prints",
@@ -273,6 +219,29 @@ pub fn claim() -> Claim {
         preconditions: "0 <= kappa < 1; the hypotheses of row 11.",
         limits: "The norms that are put in are those of row 12's quadrature.",
         single: None,
-        checks,
+        checks: [
+            statements! {
+                proved plain_bound_is_that_of_theorem_3_4[e, h, z, s, q, k] about "Theorem 3.4";
+                proved + tested sharp_bound_is_that_of_theorem_9_3[h, s, k]: "kappa above 1/2", "kappa at most 1/2";
+                proved projected_bound_is_that_of_theorem_9_4[w, z, h, s, q, k];
+                proved corollary_bound_is_that_of_corollary_3_6[x, s, r, w, e, h, k] about "Corollary 3.6";
+                proved three_facts_give_inequality_9_6[e, h, z, s, big, k, c, d, q, r, t] about "Theorem 3.4";
+                proved three_facts_give_the_hypothesis_of_theorem_9_4[w, z, s, big, k, d, q, r, t];
+                proved the_right_side_of_9_6_is_bounded_by_the_left_one[e, z, b, q, delta]
+                    hints(|v| vec![v[2] * v[1] - v[3] * v[4] * v[0]]);
+                proved inequality_9_6_gives_the_sharp_bound_9_5[l, c, x, r, w, m]: "c = 0", "c > 0"
+                    about "Theorem 3.4";
+                refuted control_kappa_for_its_root_in_corollary_3_6[s, e, h, k]
+                    fails "s + k * (e + h) <= a_priori::corollary_bound(k * k, e, [h, s])";
+                refuted control_9_5_with_half_the_constant[c, x, r, w] fails "x <= (r + w) / S::from(2)";
+            },
+            vec![
+                doubles!("the_bounds_that_the_solver_calls_are_roots_of_these" => draws::hold(400, numbers(), &["always"], |draw| called(draw, |kappa| kappa))),
+                doubles!("control_kappa_for_its_root_in_doubles" => draws::reject(numbers(), |draw| called(draw, |kappa| kappa * kappa))),
+                doubles!("the_projection_is_nearer_than_the_discrete_solution_and_the_interpolant" => rates::projection_is_the_nearest()),
+                doubles!("control_the_interpolant_is_as_near_as_the_projection" => rates::interpolant_is_as_near()),
+            ],
+        ]
+        .concat(),
     }
 }

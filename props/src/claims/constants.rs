@@ -183,10 +183,9 @@ pub use row::claim;
 #[cfg(not(kani))]
 mod row {
     use super::*;
-    use crate::claim::{Claim, proved, refuted, tested};
+    use crate::claim::Claim;
     use crate::claims::interpolation;
     use crate::numbers::Exact;
-    use crate::statement;
 
     /// Lengths of edges that belong to a triangle, and sigma rho_T not below the longest.
     fn onto_triangles(v: &mut [Exact]) {
@@ -202,58 +201,6 @@ mod row {
 
     /// The row of the constants.
     pub fn claim() -> Claim {
-        let sides =
-            statement!(two_edges_are_as_long_as_the_third, [bx, by, cx, cy, p, q, r], ["always"])
-                .about(&["(11)"])
-                .with_hints(|v| vec![v[0] * v[3] - v[1] * v[2]]);
-        let shape = statement!(
-            shape_regularity_bounds_edge_and_diameter_by_the_area,
-            [a, b, c, rho, sigma],
-            ["always"]
-        )
-        .about(&["Lemma 3.2", "(11)"])
-        .prepared(onto_triangles);
-        let kappa = statement!(
-            the_constant_of_11_depends_on_shape_and_material_alone,
-            [diameter, length, area, sigma, lambda, mu],
-            ["always"]
-        )
-        .about(&["Lemma 3.2", "(11)"]);
-        let lemma = statement!(
-            lemma_3_2_holds_with_constants_without_h,
-            [n, a, s, contact, gamma0, limit, c, alpha, most],
-            ["always"]
-        )
-        .about(&["Lemma 3.2", "(11)", "(12)"]);
-        let thirteen = statement!(
-            estimate_13_holds_with_a_constant_without_h,
-            [e2, h2, z2, s, r, d, kappa, n, m, alpha, most],
-            ["always"]
-        )
-        .about(&["(13)"]);
-        let rate = statement!(
-            rates_21_and_25_follow_from_13_and_22_to_24,
-            [left, m, d, s, r, c1, c2, c3, most],
-            ["always"]
-        )
-        .about(&["Theorem 3.5", "(21)"]);
-        let corollary = statement!(
-            rate_25_follows_from_corollary_3_6,
-            [x, s, e, h, k, r, c1, c3, c4],
-            ["always"]
-        )
-        .about(&["Corollary 3.6", "(25)"]);
-        let all = [sides, shape, kappa, lemma, thirteen, rate, corollary];
-        let mut checks: Vec<_> = all.into_iter().map(proved).collect();
-        checks.extend([
-            tested(shape),
-            refuted(statement!(
-                control_half_the_shape_constant,
-                [a, b, c, rho, sigma],
-                fails "diameter * diameter <= factor * sigma * area"
-            )),
-        ]);
-        checks.extend(interpolation::checks());
         Claim {
             id: "15",
             title: "The constants do not depend on the mesh",
@@ -263,7 +210,28 @@ mod row {
             preconditions: "h_T/rho_T <= sigma (the paper's, rho_T the radius of the inscribed circle), |T| = rho_T times half the perimeter; Korn's inequality and continuity as alpha and M; for (21) and (25) the estimates (22)-(24).",
             limits: "Korn's inequality, and (22)-(24) for P2, are taken from the literature; for P1 and 0 < nu < 1/2 they are proved on the page (docs/theory.md, 9.7) and not run. For P1 and nu = 1/2, c_T for functions other than quadratics (Kobayashi) and Wirtinger's inequality for functions other than polynomials are taken from the literature, and the trace inequality for functions that are not affine is proved on the page (9.6). alpha is not computed, M for isotropic A only, and the constants are not as small as possible.",
             single: None,
-            checks,
+            checks: [
+                statements! {
+                    proved two_edges_are_as_long_as_the_third[bx, by, cx, cy, p, q, r] about "(11)"
+                        hints(|v| vec![v[0] * v[3] - v[1] * v[2]]);
+                    proved + tested shape_regularity_bounds_edge_and_diameter_by_the_area[a, b, c, rho, sigma]
+                        about "Lemma 3.2", "(11)" prepared(onto_triangles);
+                    proved the_constant_of_11_depends_on_shape_and_material_alone[diameter, length, area, sigma, lambda, mu]
+                        about "Lemma 3.2", "(11)";
+                    proved lemma_3_2_holds_with_constants_without_h[n, a, s, contact, gamma0, limit, c, alpha, most]
+                        about "Lemma 3.2", "(11)", "(12)";
+                    proved estimate_13_holds_with_a_constant_without_h[e2, h2, z2, s, r, d, kappa, n, m, alpha, most]
+                        about "(13)";
+                    proved rates_21_and_25_follow_from_13_and_22_to_24[left, m, d, s, r, c1, c2, c3, most]
+                        about "Theorem 3.5", "(21)";
+                    proved rate_25_follows_from_corollary_3_6[x, s, e, h, k, r, c1, c3, c4]
+                        about "Corollary 3.6", "(25)";
+                    refuted control_half_the_shape_constant[a, b, c, rho, sigma]
+                        fails "diameter * diameter <= factor * sigma * area";
+                },
+                interpolation::checks(),
+            ]
+            .concat(),
         }
     }
 }

@@ -19,9 +19,9 @@ use self::solved::{
 };
 use super::known::{self, samples};
 use super::{attained, checker};
-use crate::claim::{Claim, Outcome, model_checked, noticed, proved, refuted, tested};
+use crate::claim::{Claim, Outcome, model_checked, noticed};
 use crate::verdict::{Ordered, Verdict};
-use crate::{draws, ensure, given, statement};
+use crate::{draws, ensure, given};
 
 mod by_hand;
 pub(super) mod forces;
@@ -103,16 +103,6 @@ fn perturbations_raise_the_bound() -> Outcome {
 
 /// The row.
 pub fn claim() -> Claim {
-    let squares = statement!(
-        the_square_of_the_bound_splits_at_a_point,
-        [exx, eyy, exy, txx, tyy, txy, lambda, mu],
-        ["always"]
-    )
-    .about(&["the error bound"])
-    .with_hints(|v| vec![v[0] + v[1], v[0] - v[1], v[2]]);
-    let contact =
-        statement!(what_contact_adds_is_not_negative, [u, s, v, t, g], ["pressed", "not pressed"])
-            .about(&["the error bound"]);
     Claim {
         id: "24",
         title: "The bound of the distance from the true solution, and its checker",
@@ -123,10 +113,15 @@ pub fn claim() -> Claim {
         limits: "Pieces that are cut, and how a certificate is made of a problem (`certify::build`, `sweeps`, `oscillation`), are looked at through their results only: a mistake there makes the bound of another problem, or a larger one. 60 solutions are samples; true errors are by quadrature. Trusted: the checker, balls, IEEE 754.",
         single: None,
         checks: [
+            statements! {
+                proved the_square_of_the_bound_splits_at_a_point[exx, eyy, exy, txx, tyy, txy, lambda, mu]
+                    about "the error bound" hints(|v| vec![v[0] + v[1], v[0] - v[1], v[2]]);
+                proved + tested what_contact_adds_is_not_negative[u, s, v, t, g]: "pressed", "not pressed"
+                    about "the error bound";
+                refuted control_contact_adds_under_tension[u, s, v, t, g]
+                    fails "(v - u) * (s - t) + t * (v - g) >= zero";
+            },
             vec![
-                proved(squares),
-                proved(contact),
-                tested(contact),
                 exact!("the_checker_finds_what_the_definitions_say" => the_definitions_are_found()).about(&["the error bound"]),
                 exact!("control_a_bound_a_millionth_too_small" => draws::reject(draws_of(false), |draw| evaluated::<Ball>(draw, 1.0 - 1e-6))),
                 exact!("the_checker_finds_what_the_definitions_say_of_supports" => draws::hold(60, draws_of(false), &CLASSES, |draw| evaluated_with_supports(draw, 1.0))),
@@ -155,14 +150,9 @@ pub fn claim() -> Claim {
                 doubles!("control_quadratic_solutions_beside_an_affine_v" => draws::reject(patches(), |patch| known_to_rounding(patch, Degree::One))),
                 doubles!("the_bound_is_above_the_true_error_of_drawn_solutions" => draws::hold(60, samples(), &known::CLASSES, |sample| above_the_true_error(sample, 1.0))).about(&["the error bound"]),
                 doubles!("control_half_the_bound" => draws::reject(samples(), |sample| above_the_true_error(sample, 0.5))),
-                refuted(statement!(
-                    control_contact_adds_under_tension,
-                    [u, s, v, t, g],
-                    fails "(v - u) * (s - t) + t * (v - g) >= zero"
-                )),
             ],
             attained::of_certificates().to_vec(),
-            checker::HARNESSES.iter().copied().map(model_checked).collect(),
+            model_checked(checker::HARNESSES),
         ]
         .concat(),
     }

@@ -53,7 +53,7 @@ mod row {
             doubles!("control_centres_for_balls_of_twice_the_precision" => balls::centres_contain_the_exact_results()),
             doubles!("control_double_doubles_keep_120_bits" => balls::double_doubles_keep_120_bits()),
         ];
-        checks.extend(HARNESSES.iter().copied().map(model_checked));
+        checks.extend(model_checked(HARNESSES));
         Claim {
             id: "13",
             title: "What the above rests on in floating point",

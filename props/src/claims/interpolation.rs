@@ -20,11 +20,10 @@ use signorini::study::interpolation::{
     Interpolation, gradient_constant_squared, seminorms, trace_constant_squared,
 };
 
-use crate::claim::{Check, Outcome, noticed, proved, refuted, tested, text};
+use crate::claim::{Check, Outcome, noticed, text};
 use crate::claims::rates;
 use crate::draws;
 use crate::numbers::Exact;
-use crate::statement;
 use crate::verdict::{Ordered, Verdict};
 use crate::{ensure, given};
 
@@ -191,43 +190,37 @@ fn bounds(scale: f64) -> Outcome {
 
 /// The checks of Theorem 3.5 with its number.
 pub fn checks() -> Vec<Check> {
-    let energy = statement!(
-        energy_is_at_most_a_multiple_of_the_gradient,
-        [a, b, c, d, lambda, mu],
-        ["always"]
-    )
-    .about(&["(22)-(24)"]);
-    let half = statement!(
-        control_half_the_multiple_of_the_gradient,
-        [a, b, c, d, lambda, mu],
-        fails "energy <= factor * (two * mu + two * part) * gradient"
-    );
-    vec![
-        exact!("estimate_22_holds_for_quadratics" => {
+    [
+        statements! {
+            proved + tested energy_is_at_most_a_multiple_of_the_gradient[a, b, c, d, lambda, mu] about "(22)-(24)";
+            refuted control_half_the_multiple_of_the_gradient[a, b, c, d, lambda, mu]
+                fails "energy <= factor * (two * mu + two * part) * gradient";
+        },
+        vec![
+            exact!("estimate_22_holds_for_quadratics" => {
             draws::hold(1000, draws_of(), &["always"], |draw| estimate_22(draw, (1, 1)))
         }).about(&["(22)-(24)"]),
-        // Quadratics come nearer than four fifths of the constant.
+            // Quadratics come nearer than four fifths of the constant.
         exact!("control_four_fifths_of_the_constant_of_22" => {
             draws::reject(draws_of(), |draw| estimate_22(draw, (16, 25)))
         }),
-        exact!("the_trace_inequality_holds_for_affine_functions" => {
+            exact!("the_trace_inequality_holds_for_affine_functions" => {
             draws::hold(400, draws_of(), &["without the gradient", "with it"], |draw| trace(draw, 1))
         }).about(&["(22)-(24)"]),
-        exact!("control_the_trace_without_the_gradient" => {
+            exact!("control_the_trace_without_the_gradient" => {
             draws::reject(draws_of(), |draw| trace(draw, 0))
         }),
-        // pi^2 > 9.8696
+            // pi^2 > 9.8696
         exact!("estimate_23_holds_for_polynomials" => {
             draws::hold(400, draws_of(), &["always"], |draw| estimate_23(draw, (98_696, 10_000)))
         }).about(&["(22)-(24)"]),
-        // s (1 - s) has the quotient 10.
+            // s (1 - s) has the quotient 10.
         exact!("control_a_larger_number_for_pi" => {
             draws::reject(draws_of(), |draw| estimate_23(draw, (101, 10)))
         }),
-        proved(energy),
-        tested(energy),
-        refuted(half),
-        doubles!("theorem_3_5_bounds_the_errors_of_the_solver" => bounds(1.0)).about(&["Theorem 3.5", "(21)", "(22)-(24)"]),
-        doubles!("control_errors_ten_times_as_large" => noticed(bounds(10.0))),
+            doubles!("theorem_3_5_bounds_the_errors_of_the_solver" => bounds(1.0)).about(&["Theorem 3.5", "(21)", "(22)-(24)"]),
+            doubles!("control_errors_ten_times_as_large" => noticed(bounds(10.0))),
+        ],
     ]
+    .concat()
 }

@@ -117,12 +117,11 @@ mod row {
 
     use super::*;
     use crate::bodies::{Body, Definition, Rule, Side, bodies, contact_class, sum};
-    use crate::claim::{Claim, Outcome, noticed, proved, refuted, tested};
+    use crate::claim::{Claim, Outcome, noticed};
     use crate::claims::theorem_3_3::one_triangle;
     use crate::draws;
     use crate::naive::Line;
     use crate::numbers::Exact;
-    use crate::statement;
 
     /// An integrand on a side, from its number and lambda^h there.
     type Integrand<'a> = &'a dyn Fn(&Side, usize, &Line<Exact>) -> Line<Exact>;
@@ -365,55 +364,6 @@ mod row {
 
     /// The row of section 2.3.
     pub fn claim() -> Claim {
-        let projection = statement!(
-            contact_pressure_is_the_projection,
-            [u_n, g, sigma_n, gamma, mu],
-            ["pressed", "open"]
-        )
-        .about(&["(9)"]);
-        let equivalent = statement!(
-            conditions_9_and_10_are_equivalent,
-            [u_n, g, sigma_n, gamma, mu, l],
-            ["both hold", "neither holds"]
-        )
-        .about(&["(10)"]);
-        let converse = statement!(
-            condition_9_leaves_only_the_contact_pressure,
-            [u_n, g, sigma_n, gamma, l],
-            ["pressed", "open"]
-        )
-        .about(&["(9)"])
-        .prepared(onto_9);
-        let form = statement!(
-            method_is_its_mixed_form_at_a_point,
-            [u, g, s, gamma, v, t],
-            ["pressed", "open"]
-        )
-        .about(&["the mixed problem"]);
-        let all = [projection, equivalent, converse, form];
-        let mut checks: Vec<_> = all.into_iter().map(proved).collect();
-        checks.extend(all.into_iter().map(tested));
-        checks.extend([
-            exact!("mixed_form_9_and_10_hold_on_random_bodies_for_p1" => mixed_p1()).about(&["(9)", "(10)", "the mixed problem"]),
-            exact!("sigma_n_of_a_discrete_solution_is_not_its_multiplier" => stress_is_not_the_multiplier()).about(&["the mixed problem"]),
-            exact!("control_sigma_n_is_the_multiplier_without_penetration" => stress_is_the_multiplier_on_the_floor()),
-            exact!("mixed_form_by_points_holds_on_random_bodies_for_p2" => mixed_p2()),
-            doubles!("complementarity_of_the_contact_pressure_holds_up_to_rounding" => complementarity_in_doubles()),
-            doubles!("the_pressure_of_computed_solutions_is_the_multiplier" => solutions()),
-            doubles!("control_normal_stress_of_computed_solutions_for_the_multiplier" => discrete_stress_for_the_multiplier()),
-            exact!("control_sign_of_the_multiplier_turned" => sign_of_the_multiplier()),
-            refuted(statement!(
-                control_normal_stress_for_the_multiplier,
-                [u_n, g, sigma_n, gamma, mu],
-                fails "nine(&point, zero, l) == zero && nine(&point, l + l, l) == zero"
-            )),
-            refuted(statement!(
-                control_9_gives_10_for_one_multiplier_on_two_edges,
-                [first, second, gamma, other],
-                fails "first + second >= zero"
-            )),
-            refuted(statement!(control_multiplier_without_gamma, [u_n, g, sigma_n, gamma, mu], fails "nine(&point, zero, l) == zero && nine(&point, l + l, l) == zero")),
-        ]);
         Claim {
             id: "7",
             title: "The contact pressure as a projection, and the mixed form",
@@ -423,7 +373,35 @@ mod row {
             preconditions: "gamma > 0, constant on each edge (7).",
             limits: "That the discrete solution satisfies (8), hence the first mixed equation, is certified on the small meshes of row 10, not on these three cases; (10) for it is checked at nodes, not integrated. That the integrals (9) and (10) for all mu are equivalent, and that the mixed problem gives (8) back, is proved at a point; the step to integrals is on the page (docs/theory.md, 8).",
             single: None,
-            checks,
+            checks: [
+                statements! {
+                    proved + tested contact_pressure_is_the_projection[u_n, g, sigma_n, gamma, mu]: "pressed", "open"
+                        about "(9)";
+                    proved + tested conditions_9_and_10_are_equivalent[u_n, g, sigma_n, gamma, mu, l]
+                        : "both hold", "neither holds" about "(10)";
+                    proved + tested condition_9_leaves_only_the_contact_pressure[u_n, g, sigma_n, gamma, l]
+                        : "pressed", "open" about "(9)" prepared(onto_9);
+                    proved + tested method_is_its_mixed_form_at_a_point[u, g, s, gamma, v, t]: "pressed", "open"
+                        about "the mixed problem";
+                    refuted control_normal_stress_for_the_multiplier[u_n, g, sigma_n, gamma, mu]
+                        fails "nine(&point, zero, l) == zero && nine(&point, l + l, l) == zero";
+                    refuted control_9_gives_10_for_one_multiplier_on_two_edges[first, second, gamma, other]
+                        fails "first + second >= zero";
+                    refuted control_multiplier_without_gamma[u_n, g, sigma_n, gamma, mu]
+                        fails "nine(&point, zero, l) == zero && nine(&point, l + l, l) == zero";
+                },
+                vec![
+                    exact!("mixed_form_9_and_10_hold_on_random_bodies_for_p1" => mixed_p1()).about(&["(9)", "(10)", "the mixed problem"]),
+                    exact!("sigma_n_of_a_discrete_solution_is_not_its_multiplier" => stress_is_not_the_multiplier()).about(&["the mixed problem"]),
+                    exact!("control_sigma_n_is_the_multiplier_without_penetration" => stress_is_the_multiplier_on_the_floor()),
+                    exact!("mixed_form_by_points_holds_on_random_bodies_for_p2" => mixed_p2()),
+                    doubles!("complementarity_of_the_contact_pressure_holds_up_to_rounding" => complementarity_in_doubles()),
+                    doubles!("the_pressure_of_computed_solutions_is_the_multiplier" => solutions()),
+                    doubles!("control_normal_stress_of_computed_solutions_for_the_multiplier" => discrete_stress_for_the_multiplier()),
+                    exact!("control_sign_of_the_multiplier_turned" => sign_of_the_multiplier()),
+                ],
+            ]
+            .concat(),
         }
     }
 }

@@ -21,8 +21,6 @@ pub mod constants;
 pub mod curved;
 pub mod discrete_forms;
 #[cfg(not(kani))]
-pub mod engine;
-#[cfg(not(kani))]
 pub mod error_bound;
 #[cfg(not(kani))]
 pub mod falsehoods;
@@ -78,7 +76,7 @@ pub fn all() -> Vec<Claim> {
         variational_inequality::claim(),
         a_priori::claim(),
         parts::claim(),
-        engine::claim(),
+        falsehoods::claim(),
         error_bound::claim(),
         quantities::claim(),
     ];

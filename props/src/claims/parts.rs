@@ -18,11 +18,10 @@ use signorini::kernel::{ContactEdge, Element, Material, P1, P2, Plane, Stress};
 use signorini::nalgebra::{Matrix2, Vector2};
 
 use crate::bodies::{Body, Definition, Draw, bodies, sum};
-use crate::claim::{Claim, Outcome, proved, refuted};
+use crate::claim::{Claim, Outcome};
 use crate::claims::geometry;
 use crate::draws;
 use crate::numbers::Exact;
-use crate::statement;
 use crate::statement::take;
 use crate::verdict::{Ordered, Verdict};
 use crate::{ensure, given};
@@ -198,18 +197,11 @@ pub fn control_no_factor_for_a_turning_direction<S: Ordered>(
 
 // The direction of contact, on bodies.
 
-/// A unit vector by its half angle's tangent: ((1 - t^2), 2 t)/(1 + t^2).
-fn unit(t: Exact) -> [Exact; 2] {
-    let one = Exact::from(1);
-    let norm = one + t * t;
-    [(one - t * t) / norm, Exact::from(2) * t / norm]
-}
-
 /// Directions at the nodes of a side: its normal, turned by what the drawn field says.
 fn directions<const M: usize>(body: &Body, e: usize) -> [[Exact; 2]; M] {
     let ([nx, ny], drawn) = (body.contact[e].n, body.drawn(1));
     std::array::from_fn(|a| {
-        let [c, s] = unit(drawn[(3 * e + a) % drawn.len()][0] / Exact::from(8));
+        let [c, s] = (drawn[(3 * e + a) % drawn.len()][0] / Exact::from(8)).on_circle();
         [c * nx - s * ny, s * nx + c * ny]
     })
 }
@@ -323,26 +315,9 @@ fn the_bound_11_holds() -> Outcome {
 /// Puts a unit vector with a cosine that is not negative at a place of the data.
 fn put_unit(v: &mut [Exact], at: usize) {
     // A tangent between 0 and 1: a cosine that is not negative.
-    let t = v[at];
-    let t = if t < Exact::from(0) { -t } else { t };
+    let t = v[at].abs();
     let t = if t > Exact::from(1) { Exact::from(1) / t } else { t };
-    [v[at], v[at + 1]] = unit(t);
-}
-
-fn unit_normal_at_4(v: &mut [Exact]) {
-    put_unit(v, 4);
-}
-
-fn unit_at_4(v: &mut [Exact]) {
-    put_unit(v, 4);
-}
-
-fn unit_at_2(v: &mut [Exact]) {
-    put_unit(v, 2);
-}
-
-fn unit_at_1(v: &mut [Exact]) {
-    put_unit(v, 1);
+    [v[at], v[at + 1]] = t.on_circle();
 }
 
 // Materials.
@@ -391,74 +366,6 @@ pub fn means_by_hats_keep_integral_and_bounds<S: Ordered>([s, t, v, w, m]: [S; 5
 
 /// The row.
 pub fn claim() -> Claim {
-    let checks = vec![
-        proved(
-            statement!(
-                traction_of_a_shape_is_d_sigma_n,
-                [gx, gy, vx, vy, nx, ny, dx, dy, lambda, mu],
-                ["always"]
-            )
-            .prepared(unit_normal_at_4),
-        ),
-        proved(
-            statement!(
-                traction_along_any_direction_is_bounded_by_the_energy,
-                [xx, xy, yx, yy, nx, ny, dx, dy, lambda, mu],
-                ["always"]
-            )
-            .with_hints(|v| across_and_strains(take(v)).to_vec()),
-        ),
-        proved(
-            statement!(
-                traction_along_a_turning_direction_is_bounded_by_its_factor,
-                [a, b, s1, r, c, s],
-                ["always"]
-            )
-            .about(&["Lemma 3.2", "(11)"])
-            .with_hints(|v| squared(take(v)).to_vec())
-            .prepared(unit_at_4),
-        ),
-        proved(
-            statement!(the_turning_factor_is_attained, [a, c, s], ["always"]).prepared(unit_at_1),
-        ),
-        proved(
-            statement!(traction_of_p1_needs_no_factor, [a, b, c, s], ["always"])
-                .about(&["Lemma 3.2", "(11)"])
-                .with_hints(|v| {
-                    let [a, b, c, s] = take(v);
-                    vec![a - (a * c + b * s), b * c - a * s]
-                })
-                .prepared(unit_at_2),
-        ),
-        proved(statement!(
-            a_bar_of_two_materials_has_one_pressure,
-            [p, lambda, mu, other, nu],
-            ["always"]
-        )),
-        proved(statement!(means_by_hats_keep_integral_and_bounds, [s, t, v, w, m], ["always"])),
-        exact!("functionals_along_directions_are_their_definitions_and_with_n_the_papers" => functionals_are_their_definitions()),
-        exact!("bound_11_holds_along_turning_directions" => the_bound_11_holds())
-            .about(&["Lemma 3.2", "(11)"]),
-        doubles!("gaps_and_directions_of_obstacles_are_their_definitions" => geometry::obstacles_are_their_definitions()),
-        doubles!("the_smooth_boundary_of_a_circle_is_the_circle" => geometry::smooth_boundaries_are_exact_on_circles()),
-        doubles!("middles_of_smooth_boundaries_have_the_normals_of_their_curves" => geometry::middles_of_smooth_boundaries_have_the_normals_of_their_curves()),
-        doubles!("control_normals_of_facets_for_those_of_the_curves" => geometry::normals_of_facets_for_those_of_the_curves()),
-        doubles!("control_directions_away_from_the_obstacle" => geometry::directions_away_from_the_obstacle()),
-        doubles!("control_middles_of_facets_for_those_of_the_curves" => geometry::middles_of_facets_for_those_of_the_curves()),
-        refuted(statement!(
-            control_shear_modulus_for_the_stiffness,
-            [xx, yy, dx, dy, lambda, mu],
-            fails "along * along <= (dx * dx + dy * dy) * mu * energy_density(stress, g)"
-        )),
-        refuted(
-            statement!(
-                control_no_factor_for_a_turning_direction,
-                [a, b, s1, r, c, s],
-                fails "along <= whole"
-            )
-            .prepared(unit_at_4),
-        ),
-    ];
     Claim {
         id: "20",
         title: "Beyond the paper: the direction of contact as a field, materials, recovered pressures",
@@ -468,6 +375,36 @@ pub fn claim() -> Claim {
         preconditions: "mu > 0 and lambda + mu > 0 with lambda as it acts in the plane. n~ turns by no more than a right angle along an edge: by less than 40 degrees where the line is smooth, by definition.",
         limits: "Peaks and orders of recovered pressures are measured (tests/suite/peaks.rs, parts.rs, recovered.rs), not proved.",
         single: None,
-        checks,
+        checks: [
+            statements! {
+                proved traction_of_a_shape_is_d_sigma_n[gx, gy, vx, vy, nx, ny, dx, dy, lambda, mu]
+                    prepared(|v| put_unit(v, 4));
+                proved traction_along_any_direction_is_bounded_by_the_energy[xx, xy, yx, yy, nx, ny, dx, dy, lambda, mu]
+                    hints(|v| across_and_strains(take(v)).to_vec());
+                proved traction_along_a_turning_direction_is_bounded_by_its_factor[a, b, s1, r, c, s]
+                    about "Lemma 3.2", "(11)" hints(|v| squared(take(v)).to_vec()) prepared(|v| put_unit(v, 4));
+                proved the_turning_factor_is_attained[a, c, s] prepared(|v| put_unit(v, 1));
+                proved traction_of_p1_needs_no_factor[a, b, c, s] about "Lemma 3.2", "(11)"
+                    hints(|v| { let [a, b, c, s] = take(v); vec![a - (a * c + b * s), b * c - a * s] })
+                    prepared(|v| put_unit(v, 2));
+                proved a_bar_of_two_materials_has_one_pressure[p, lambda, mu, other, nu];
+                proved means_by_hats_keep_integral_and_bounds[s, t, v, w, m];
+                refuted control_shear_modulus_for_the_stiffness[xx, yy, dx, dy, lambda, mu]
+                    fails "along * along <= (dx * dx + dy * dy) * mu * energy_density(stress, g)";
+                refuted control_no_factor_for_a_turning_direction[a, b, s1, r, c, s] fails "along <= whole"
+                    prepared(|v| put_unit(v, 4));
+            },
+            vec![
+                exact!("functionals_along_directions_are_their_definitions_and_with_n_the_papers" => functionals_are_their_definitions()),
+                exact!("bound_11_holds_along_turning_directions" => the_bound_11_holds()).about(&["Lemma 3.2", "(11)"]),
+                doubles!("gaps_and_directions_of_obstacles_are_their_definitions" => geometry::obstacles_are_their_definitions()),
+                doubles!("the_smooth_boundary_of_a_circle_is_the_circle" => geometry::smooth_boundaries_are_exact_on_circles()),
+                doubles!("middles_of_smooth_boundaries_have_the_normals_of_their_curves" => geometry::middles_of_smooth_boundaries_have_the_normals_of_their_curves()),
+                doubles!("control_normals_of_facets_for_those_of_the_curves" => geometry::normals_of_facets_for_those_of_the_curves()),
+                doubles!("control_directions_away_from_the_obstacle" => geometry::directions_away_from_the_obstacle()),
+                doubles!("control_middles_of_facets_for_those_of_the_curves" => geometry::middles_of_facets_for_those_of_the_curves()),
+            ],
+        ]
+        .concat(),
     }
 }

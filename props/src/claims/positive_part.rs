@@ -174,10 +174,7 @@ pub use row::claim;
 #[cfg(not(kani))]
 mod row {
     use super::*;
-    use crate::claim::{
-        Claim, Outcome, in_doubles, model_checked, proved, refuted, refuted_in_doubles, tested,
-    };
-    use crate::statement;
+    use crate::claim::{Claim, Outcome, model_checked};
 
     /// Where a product overflows, both sides of a \[a\]+ = \[a\]+^2 are +oo; the infinities themselves are left out of
     /// it, for 0 * oo is NaN.
@@ -198,45 +195,6 @@ mod row {
 
     /// The row of (4).
     pub fn claim() -> Claim {
-        let facts = statement!(positive_part_satisfies_4, [a], ["positive", "negative", "zero"])
-            .about(&["(4)"]);
-        let projection = statement!(
-            positive_part_is_the_projection_on_the_half_line,
-            [a, m],
-            ["positive", "negative", "zero"]
-        );
-        let unique = statement!(
-            complementarity_leaves_only_the_positive_part,
-            [a, q],
-            ["positive", "negative", "zero"]
-        );
-        let slope = statement!(
-            slope_is_the_derivative_of_the_positive_part,
-            [a, b],
-            ["positive", "negative", "zero"]
-        );
-        let absolute =
-            statement!(control_absolute_value_for_the_positive_part, [a], fails "a * p == p * p");
-        let uncut = statement!(control_no_cut_at_zero, [a], fails "p - part(-a) == a");
-        let negative =
-            statement!(control_negative_part_for_the_positive_part, [a], fails "p >= zero");
-        let mut checks = vec![
-            proved(facts),
-            proved(projection),
-            proved(unique),
-            proved(slope),
-            tested(facts),
-            tested(projection),
-            tested(unique),
-            tested(slope),
-            in_doubles(facts),
-            doubles!("overflow_zero_and_nan_behave_as_stated" => special_doubles()),
-            refuted(absolute),
-            refuted(uncut),
-            refuted(negative),
-            refuted_in_doubles(absolute),
-        ];
-        checks.extend(HARNESSES.iter().copied().map(model_checked));
         Claim {
             id: "1",
             title: "The positive part",
@@ -246,7 +204,26 @@ mod row {
             preconditions: "None for the first line. In doubles the infinities are left out: -oo * 0 is a NaN.",
             limits: "The slope at 0 is a choice (0), not a fact about [.]+.",
             single: None,
-            checks,
+            checks: [
+                statements! {
+                    proved + tested + in_doubles positive_part_satisfies_4[a]: "positive", "negative", "zero"
+                        about "(4)";
+                    proved + tested positive_part_is_the_projection_on_the_half_line[a, m]
+                        : "positive", "negative", "zero";
+                    proved + tested complementarity_leaves_only_the_positive_part[a, q]
+                        : "positive", "negative", "zero";
+                    proved + tested slope_is_the_derivative_of_the_positive_part[a, b]: "positive", "negative", "zero";
+                    refuted + refuted_in_doubles control_absolute_value_for_the_positive_part[a]
+                        fails "a * p == p * p";
+                    refuted control_no_cut_at_zero[a] fails "p - part(-a) == a";
+                    refuted control_negative_part_for_the_positive_part[a] fails "p >= zero";
+                },
+                vec![
+                    doubles!("overflow_zero_and_nan_behave_as_stated" => special_doubles()),
+                ],
+                model_checked(HARNESSES),
+            ]
+            .concat(),
         }
     }
 }

@@ -293,12 +293,9 @@ pub use row::{claim, remark_2_2};
 #[cfg(not(kani))]
 mod row {
     use super::*;
-    use crate::claim::{
-        Claim, Outcome, in_doubles, model_checked, proved, refuted, refuted_in_doubles, tested,
-    };
+    use crate::claim::{Claim, Outcome, model_checked};
     use crate::draws;
     use crate::numbers::Exact;
-    use crate::statement;
 
     /// Some of the data that violate (2) are moved onto it, the others stay: penetration where sigma_n < 0 becomes contact,
     /// tension at a gap becomes no force where gamma > 1.
@@ -330,70 +327,6 @@ mod row {
 
     /// The row of Proposition 2.1.
     pub fn claim() -> Claim {
-        let equivalence = statement!(
-            conditions_2_are_equation_5,
-            [u_n, g, sigma_n, gamma],
-            ["contact", "gap", "touching without force", "neither holds"]
-        )
-        .about(&["(2)", "Proposition 2.1", "(5)"])
-        .prepared(onto_equation_5);
-        let definitions = statement!(
-            contact_functions_are_their_definitions,
-            [u_n, g, sigma_n, gamma],
-            ["pressed", "open"]
-        )
-        .about(&["(5)", "P_gamma, A_gamma"]);
-        let violation = statement!(
-            violation_is_zero_exactly_where_2_holds,
-            [u_n, g, sigma_n, gamma],
-            ["contact", "gap", "touching without force", "neither holds"]
-        )
-        .about(&["(2)"])
-        .prepared(onto_equation_5);
-        let scaled = statement!(
-            scaled_conditions_are_the_scaled_equation,
-            [u, s],
-            ["contact", "gap", "touching without force", "neither holds"]
-        );
-        let converse = statement!(
-            conditions_2_imply_the_scaled_equation,
-            [u, s],
-            ["contact", "gap", "touching without force"]
-        )
-        .about(&["(5)"]);
-        let rounding = statement!(
-            scaled_equation_implies_2_up_to_rounding,
-            [u, s],
-            ["gap", "contact", "contact up to rounding"]
-        )
-        .about(&["(5)"]);
-        let mut checks = vec![
-            proved(equivalence),
-            proved(definitions),
-            proved(violation),
-            proved(scaled),
-            tested(equivalence),
-            tested(definitions),
-            tested(violation),
-            in_doubles(converse),
-            in_doubles(rounding),
-            doubles!("a_displacement_below_rounding_is_kept" => kept_counterexample()),
-            refuted_in_doubles(scaled.failing("conditions_2 == equation")),
-            doubles!("control_equation_5_as_written_in_doubles" => as_written()),
-            refuted(
-                statement!(control_gap_forgotten, [u_n, g, sigma_n, gamma], fails "conditions_2 == equation_5"),
-            ),
-            refuted(
-                statement!(control_sign_inside_5_turned, [u_n, g, sigma_n, gamma], fails "conditions_2 == equation_5"),
-            ),
-            refuted(
-                statement!(control_absolute_value_in_5, [u_n, g, sigma_n, gamma], fails "conditions_2 == equation_5"),
-            ),
-            refuted(
-                statement!(control_gamma_omitted, [u_n, g, sigma_n, gamma], fails "conditions_2 == equation_5"),
-            ),
-        ];
-        checks.extend(HARNESSES.iter().copied().map(model_checked));
         Claim {
             id: "2",
             title: "Contact as one equation",
@@ -403,26 +336,40 @@ mod row {
             preconditions: "gamma > 0 (the paper's). The gap is ours; the paper has g = 0.",
             limits: "One point of Gamma_C. That the traces u_n and sigma_n exist there is the regularity of the solution, which nothing here looks at. (2)(iv), no friction, is no equation of the kernel: the tangential traction is natural in (8).",
             single: None,
-            checks,
+            checks: [
+                statements! {
+                    proved + tested conditions_2_are_equation_5[u_n, g, sigma_n, gamma]
+                        : "contact", "gap", "touching without force", "neither holds"
+                        about "(2)", "Proposition 2.1", "(5)" prepared(onto_equation_5);
+                    proved + tested contact_functions_are_their_definitions[u_n, g, sigma_n, gamma]: "pressed", "open"
+                        about "(5)", "P_gamma, A_gamma";
+                    proved + tested violation_is_zero_exactly_where_2_holds[u_n, g, sigma_n, gamma]
+                        : "contact", "gap", "touching without force", "neither holds" about "(2)"
+                        prepared(onto_equation_5);
+                    proved scaled_conditions_are_the_scaled_equation[u, s]
+                        : "contact", "gap", "touching without force", "neither holds";
+                    refuted_in_doubles scaled_conditions_are_the_scaled_equation[u, s] fails "conditions_2 == equation";
+                    in_doubles conditions_2_imply_the_scaled_equation[u, s]
+                        : "contact", "gap", "touching without force" about "(5)";
+                    in_doubles scaled_equation_implies_2_up_to_rounding[u, s]
+                        : "gap", "contact", "contact up to rounding" about "(5)";
+                    refuted control_gap_forgotten[u_n, g, sigma_n, gamma] fails "conditions_2 == equation_5";
+                    refuted control_sign_inside_5_turned[u_n, g, sigma_n, gamma] fails "conditions_2 == equation_5";
+                    refuted control_absolute_value_in_5[u_n, g, sigma_n, gamma] fails "conditions_2 == equation_5";
+                    refuted control_gamma_omitted[u_n, g, sigma_n, gamma] fails "conditions_2 == equation_5";
+                },
+                vec![
+                    doubles!("a_displacement_below_rounding_is_kept" => kept_counterexample()),
+                    doubles!("control_equation_5_as_written_in_doubles" => as_written()),
+                ],
+                model_checked(HARNESSES),
+            ]
+            .concat(),
         }
     }
 
     /// The row of Remark 2.2.
     pub fn remark_2_2() -> Claim {
-        let independent = statement!(
-            equation_5_does_not_depend_on_gamma,
-            [u_n, g, sigma_n, gamma, other],
-            ["contact", "gap", "touching without force", "neither holds"]
-        )
-        .about(&["Remark 2.2"])
-        .prepared(onto_equation_5);
-        let pointwise = statement!(
-            conditions_2_are_equation_5,
-            [u_n, g, sigma_n, gamma],
-            ["contact", "gap", "touching without force", "neither holds"]
-        )
-        .about(&["Remark 2.2"])
-        .prepared(onto_equation_5);
         Claim {
             id: "3",
             title: "gamma may be a function",
@@ -432,17 +379,16 @@ mod row {
             preconditions: "gamma > 0 at the point. It is needed: gamma < 0 and gamma = 0 are refuted by the controls.",
             limits: "Nothing about measurability of gamma: in the code it is constant on each edge, (7).",
             single: None,
-            checks: vec![
-                proved(pointwise),
-                proved(independent),
-                tested(independent),
-                refuted(
-                    statement!(control_gamma_of_any_sign, [u_n, g, sigma_n, gamma], fails "conditions_2 == equation_5"),
-                ),
-                refuted(
-                    statement!(control_gamma_may_be_zero, [u_n, g, sigma_n, gamma], fails "division by zero"),
-                ),
-            ],
+            checks: statements! {
+                proved + tested equation_5_does_not_depend_on_gamma[u_n, g, sigma_n, gamma, other]
+                    : "contact", "gap", "touching without force", "neither holds" about "Remark 2.2"
+                    prepared(onto_equation_5);
+                proved conditions_2_are_equation_5[u_n, g, sigma_n, gamma]
+                    : "contact", "gap", "touching without force", "neither holds" about "Remark 2.2"
+                    prepared(onto_equation_5);
+                refuted control_gamma_of_any_sign[u_n, g, sigma_n, gamma] fails "conditions_2 == equation_5";
+                refuted control_gamma_may_be_zero[u_n, g, sigma_n, gamma] fails "division by zero";
+            },
         }
     }
 }

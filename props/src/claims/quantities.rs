@@ -148,12 +148,11 @@ mod row {
     use signorini::solve::Degree;
 
     use super::*;
-    use crate::claim::{Claim, Outcome, proved, refuted, tested};
+    use crate::claim::{Claim, Outcome};
     use crate::claims::error_bound::forces;
     use crate::claims::error_bound::solved::{Draw, bodies};
     use crate::draws;
     use crate::numbers::Exact;
-    use crate::statement;
 
     /// u_n = g where the force is not zero, and the other signs.
     fn onto_contact(x: &mut [Exact]) {
@@ -295,40 +294,6 @@ mod row {
 
     /// The row.
     pub fn claim() -> Claim {
-        let mean = statement!(the_mean_of_two_stresses_splits, [s, q, t], ["always"])
-            .about(&["the error bound"]);
-        let terms = statement!(
-            contact_adds_two_terms_that_are_not_negative,
-            [u_n, v_n, g, sigma_n, tau_n],
-            ["contact", "no force"]
-        )
-        .about(&["the error bound"])
-        .prepared(onto_contact);
-        let force = statement!(little_force_where_there_is_a_gap, [v_n, g, sigma_n, d], ["always"])
-            .about(&["the error bound"])
-            .prepared(onto_the_gap);
-        let opening =
-            statement!(little_opening_where_there_is_pressure, [u_n, g, tau_n, p], ["always"])
-                .about(&["the error bound"])
-                .prepared(onto_the_pressure);
-        let inside = statement!(what_is_missed_is_largest_inside, [x, eta, k, m], ["always"])
-            .about(&["the error bound"])
-            .prepared(onto_the_inside);
-        let end = statement!(what_is_missed_is_largest_at_the_end, [x, eta, k, m], ["always"])
-            .about(&["the error bound"])
-            .prepared(onto_the_end);
-        let pair = statement!(
-            a_dual_pair_gives_the_force,
-            [l, a_v_w, s, q, t, x, r, u_n, v_n, g, s_o],
-            ["always"]
-        )
-        .about(&["the error bound"]);
-        let upper = statement!(
-            contact_adds_to_the_upper_end_at_most_a_and_b,
-            [u_n, v_n, g, sigma_n, tau_n, r, omega, k],
-            ["always"]
-        )
-        .prepared(onto_the_upper_end);
         Claim {
             id: "26",
             title: "Forces of the true solution between two numbers",
@@ -338,58 +303,44 @@ mod row {
             preconditions: "Green's formula, by which the integrals of these products over the body are those over its boundary.",
             limits: "That a w that misses its value at a vertex of Gamma_C, and a dual pair with a load or a traction of its own, are refused: tests/suite/quantities.rs. An upper bound of the peak pressure is not provable, and is not given.",
             single: None,
-            checks: [vec![
-                proved(mean),
-                proved(terms),
-                proved(force),
-                proved(opening),
-                proved(inside),
-                proved(end),
-                proved(pair),
-                proved(upper),
-                tested(mean),
-                tested(terms),
-                tested(force),
-                tested(opening),
-                tested(inside),
-                tested(end),
-                tested(pair),
-                tested(upper),
-                refuted(statement!(
-                    control_the_traction_turned,
-                    [l, a_v_w, s, q, t, x, r, u_n, v_n, g, s_o],
-                    fails "force == near - (s - (q + t) / two) * x + r * (g - u) + so"
-                )),
-                refuted(statement!(
-                    control_an_eighth_of_the_distance,
-                    [s, q, t],
-                    fails "(s - m) * (s - m) == (q - t) * (q - t) / S::from(8) + (s - q) * (s - t)"
-                )),
-                refuted(statement!(
-                    control_tau_in_place_of_the_mean,
-                    [s, q, t],
-                    fails "(s - t) * (s - t) == half * half + (s - q) * (s - t)"
-                )),
-                refuted(statement!(
-                    control_without_the_opening_under_tau,
-                    [u_n, v_n, g, sigma_n, tau_n],
-                    fails "(s - t) * (u - v) == t * (v - g) - s * (v - g)"
-                )),
-                refuted(statement!(
-                    control_the_upper_end_without_b,
-                    [u_n, v_n, g, sigma_n, tau_n, r, omega, k],
-                    fails "r * (g - u) - s * omega <= k * a"
-                )),
-                refuted(statement!(
-                    control_without_the_square_of_eta,
-                    [x, eta, k, m],
-                    fails "value <= k * m * m"
-                )),
-                exact!("forces_in_balls_are_around_those_in_rationals" => balls_are_around_the_rationals()).about(&["the error bound"]),
-                exact!("control_forces_far_outside" => balls_far_around_the_rationals()),
-                doubles!("forces_balance_and_meet_those_of_a_finer_mesh" => forces_agree()).about(&["the error bound"]),
-                doubles!("control_forces_beside_four_times_the_load" => forces_of_another_load()),
-            ], forces::checks().to_vec()].concat(),
+            checks: [
+                statements! {
+                    proved + tested the_mean_of_two_stresses_splits[s, q, t] about "the error bound";
+                    proved + tested contact_adds_two_terms_that_are_not_negative[u_n, v_n, g, sigma_n, tau_n]
+                        : "contact", "no force" about "the error bound" prepared(onto_contact);
+                    proved + tested little_force_where_there_is_a_gap[v_n, g, sigma_n, d] about "the error bound"
+                        prepared(onto_the_gap);
+                    proved + tested little_opening_where_there_is_pressure[u_n, g, tau_n, p] about "the error bound"
+                        prepared(onto_the_pressure);
+                    proved + tested what_is_missed_is_largest_inside[x, eta, k, m] about "the error bound"
+                        prepared(onto_the_inside);
+                    proved + tested what_is_missed_is_largest_at_the_end[x, eta, k, m] about "the error bound"
+                        prepared(onto_the_end);
+                    proved + tested a_dual_pair_gives_the_force[l, a_v_w, s, q, t, x, r, u_n, v_n, g, s_o]
+                        about "the error bound";
+                    proved + tested contact_adds_to_the_upper_end_at_most_a_and_b[u_n, v_n, g, sigma_n, tau_n, r, omega, k]
+                        prepared(onto_the_upper_end);
+                    refuted control_the_traction_turned[l, a_v_w, s, q, t, x, r, u_n, v_n, g, s_o]
+                        fails "force == near - (s - (q + t) / two) * x + r * (g - u) + so";
+                    refuted control_an_eighth_of_the_distance[s, q, t]
+                        fails "(s - m) * (s - m) == (q - t) * (q - t) / S::from(8) + (s - q) * (s - t)";
+                    refuted control_tau_in_place_of_the_mean[s, q, t]
+                        fails "(s - t) * (s - t) == half * half + (s - q) * (s - t)";
+                    refuted control_without_the_opening_under_tau[u_n, v_n, g, sigma_n, tau_n]
+                        fails "(s - t) * (u - v) == t * (v - g) - s * (v - g)";
+                    refuted control_the_upper_end_without_b[u_n, v_n, g, sigma_n, tau_n, r, omega, k]
+                        fails "r * (g - u) - s * omega <= k * a";
+                    refuted control_without_the_square_of_eta[x, eta, k, m] fails "value <= k * m * m";
+                },
+                vec![
+                    exact!("forces_in_balls_are_around_those_in_rationals" => balls_are_around_the_rationals()).about(&["the error bound"]),
+                    exact!("control_forces_far_outside" => balls_far_around_the_rationals()),
+                    doubles!("forces_balance_and_meet_those_of_a_finer_mesh" => forces_agree()).about(&["the error bound"]),
+                    doubles!("control_forces_beside_four_times_the_load" => forces_of_another_load()),
+                ],
+                forces::checks().to_vec(),
+            ]
+            .concat(),
         }
     }
 }

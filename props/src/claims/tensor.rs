@@ -15,9 +15,8 @@ use signorini::kernel::{Material, Plane, Squares, Stress};
 use signorini::nalgebra::{Matrix2, Vector2};
 
 use crate::bodies::square;
-use crate::claim::{Check, proved, refuted, tested};
+use crate::claim::Check;
 use crate::numbers::Exact;
-use crate::statement;
 use crate::statement::take;
 use crate::verdict::{Ordered, Verdict};
 use crate::{ensure, given};
@@ -349,114 +348,39 @@ fn with_a_root(v: &mut [Exact]) {
 
 /// A unit vector at the end, from the last component: (1 - t^2, 2 t)/(1 + t^2).
 fn unit_at_the_end(v: &mut [Exact]) {
-    let (one, t, count) = (Exact::from(1), v[v.len() - 1], v.len());
-    let norm = one + t * t;
-    (v[count - 2], v[count - 1]) = ((one - t * t) / norm, Exact::from(2) * t / norm);
+    let count = v.len();
+    [v[count - 2], v[count - 1]] = v[count - 1].on_circle();
 }
 
 /// The checks of row 9 about tensors.
 pub fn checks() -> Vec<Check> {
-    let stress = statement!(
-        stress_is_the_tensor_times_the_strain,
-        [c11, c12, c16, c22, c26, c66, xx, xy, yx, yy, p, q, r],
-        ["always"]
-    )
-    .about(&["(1)"]);
-    let lame = statement!(lambda_and_mu_are_a_tensor, [lambda, mu, xx, xy, yx, yy], ["always"]);
-    let shapes = statement!(
-        shapes_of_any_tensor_are_their_definitions,
-        [c11, c12, c16, c22, c26, c66, gx, gy, hx, hy, nx, ny, dx, dy],
-        ["always"]
-    );
-    let acoustic = statement!(
-        the_acoustic_tensor_is_the_energy_of_a_strain_along_two_directions,
-        [c11, c12, c16, c22, c26, c66, nx, ny, dx, dy],
-        ["always"]
-    );
-    let normal = statement!(
-        normal_stress_is_bounded_by_the_energy_of_any_tensor,
-        [c11, c12, c16, c22, c26, c66, xx, yy, xy, nx, ny],
-        ["always"]
-    )
-    .about(&["Lemma 3.2", "(11)"])
-    .prepared(positive);
-    let along = statement!(
-        traction_along_a_direction_is_bounded_by_the_energy_of_any_tensor,
-        [c11, c12, c16, c22, c26, c66, xx, yy, xy, nx, ny, dx, dy],
-        ["always"]
-    )
-    .prepared(positive);
-    let without = statement!(
-        a_strain_has_this_energy_without_its_part_along_two_directions,
-        [c11, c12, c16, c22, c26, c66, xx, yy, xy, nx, ny, dx, dy],
-        ["always"]
-    )
-    .about(&["Lemma 3.2", "(11)"]);
-    let not_negative =
-        statement!(an_energy_that_is_not_negative_bounds_the_traction, [w, energy, z], ["always"])
-            .about(&["Lemma 3.2", "(11)"]);
-    let attained = statement!(
-        the_constant_of_any_tensor_is_attained,
-        [c11, c12, c16, c22, c26, c66, nx, ny, dx, dy, c],
-        ["always"]
-    )
-    .about(&["Lemma 3.2", "(11)"]);
-    let largest = statement!(
-        no_direction_has_more_than_the_largest_eigenvalue,
-        [c11, c16, c66, dx, dy, r],
-        ["always"]
-    )
-    .with_hints(|v| vec![v[3], v[4], across(take(&v[..5]))])
-    .prepared(with_a_root);
-    let whole = statement!(
-        the_whole_traction_is_bounded_by_the_largest_eigenvalue,
-        [t, q, c, energy],
-        ["always"]
-    );
-    let squares = statement!(
-        the_energies_of_any_tensor_are_sums_of_squares,
-        [k, m, g, a, b, c, exx, eyy, exy, fxx, fyy, fxy],
-        ["always"]
-    );
-    let moduli = statement!(the_moduli_of_a_tensor_are_found, [k, m, g, a, b, c], ["always"]);
-    let turned = statement!(
-        a_tensor_that_is_turned_has_the_stress_of_before,
-        [c11, c12, c16, c22, c26, c66, xx, yy, xy, cos, sin],
-        ["always"]
-    )
-    .prepared(unit_at_the_end);
-    let zz = statement!(
-        a_tensor_that_is_turned_has_the_stress_across_the_plane_of_before,
-        [p, q, r, xx, yy, xy, cos, sin],
-        ["always"]
-    )
-    .prepared(unit_at_the_end);
-    let all = [
-        stress,
-        lame,
-        shapes,
-        acoustic,
-        without,
-        not_negative,
-        attained,
-        largest,
-        whole,
-        squares,
-        moduli,
-        turned,
-        zz,
-    ];
-    let mut checks: Vec<Check> = all.into_iter().map(proved).collect();
-    checks.extend(all.into_iter().chain([normal, along]).map(tested));
-    checks.push(refuted(statement!(
-        control_lambda_plus_two_mu_of_the_nearest_law,
-        [l11, l21, l22, l31, l32, l33, xx, yy, xy],
-        fails "yy * yy <= constant(&material) * form(c, eps, eps)"
-    )));
-    checks.push(refuted(statement!(
-        control_half_the_trace_of_the_acoustic_tensor,
-        [l11, l21, l22, l31, l32, l33, xx, yy, xy],
-        fails "yy * yy <= constant(&material) * form(c, eps, eps)"
-    )));
-    checks
+    statements! {
+        proved + tested stress_is_the_tensor_times_the_strain[c11, c12, c16, c22, c26, c66, xx, xy, yx, yy, p, q, r]
+            about "(1)";
+        proved + tested lambda_and_mu_are_a_tensor[lambda, mu, xx, xy, yx, yy];
+        proved + tested shapes_of_any_tensor_are_their_definitions[c11, c12, c16, c22, c26, c66, gx, gy, hx, hy, nx, ny, dx, dy];
+        proved + tested the_acoustic_tensor_is_the_energy_of_a_strain_along_two_directions[c11, c12, c16, c22, c26, c66, nx, ny, dx, dy];
+        tested normal_stress_is_bounded_by_the_energy_of_any_tensor[c11, c12, c16, c22, c26, c66, xx, yy, xy, nx, ny]
+            about "Lemma 3.2", "(11)" prepared(positive);
+        tested traction_along_a_direction_is_bounded_by_the_energy_of_any_tensor[c11, c12, c16, c22, c26, c66, xx, yy, xy, nx, ny, dx, dy]
+            prepared(positive);
+        proved + tested a_strain_has_this_energy_without_its_part_along_two_directions[c11, c12, c16, c22, c26, c66, xx, yy, xy, nx, ny, dx, dy]
+            about "Lemma 3.2", "(11)";
+        proved + tested an_energy_that_is_not_negative_bounds_the_traction[w, energy, z] about "Lemma 3.2", "(11)";
+        proved + tested the_constant_of_any_tensor_is_attained[c11, c12, c16, c22, c26, c66, nx, ny, dx, dy, c]
+            about "Lemma 3.2", "(11)";
+        proved + tested no_direction_has_more_than_the_largest_eigenvalue[c11, c16, c66, dx, dy, r]
+            hints(|v| vec![v[3], v[4], across(take(&v[..5]))]) prepared(with_a_root);
+        proved + tested the_whole_traction_is_bounded_by_the_largest_eigenvalue[t, q, c, energy];
+        proved + tested the_energies_of_any_tensor_are_sums_of_squares[k, m, g, a, b, c, exx, eyy, exy, fxx, fyy, fxy];
+        proved + tested the_moduli_of_a_tensor_are_found[k, m, g, a, b, c];
+        proved + tested a_tensor_that_is_turned_has_the_stress_of_before[c11, c12, c16, c22, c26, c66, xx, yy, xy, cos, sin]
+            prepared(unit_at_the_end);
+        proved + tested a_tensor_that_is_turned_has_the_stress_across_the_plane_of_before[p, q, r, xx, yy, xy, cos, sin]
+            prepared(unit_at_the_end);
+        refuted control_lambda_plus_two_mu_of_the_nearest_law[l11, l21, l22, l31, l32, l33, xx, yy, xy]
+            fails "yy * yy <= constant(&material) * form(c, eps, eps)";
+        refuted control_half_the_trace_of_the_acoustic_tensor[l11, l21, l22, l31, l32, l33, xx, yy, xy]
+            fails "yy * yy <= constant(&material) * form(c, eps, eps)";
+    }
 }

@@ -47,10 +47,9 @@ pub use row::claim;
 #[cfg(not(kani))]
 mod row {
     use super::*;
-    use crate::claim::{Claim, proved, refuted, tested};
+    use crate::claim::Claim;
     use crate::claims::lemma_3_1::inequality_3_at_affine_solutions;
     use crate::numbers::Exact;
-    use crate::statement;
 
     /// u_n = g where the force is not zero.
     fn onto_contact(v: &mut [Exact]) {
@@ -64,20 +63,6 @@ mod row {
 
     /// The row of (3).
     pub fn claim() -> Claim {
-        let sign = statement!(
-            conditions_2_give_the_sign_of_3,
-            [u_n, g, sigma_n, v_n],
-            ["contact", "no force"]
-        )
-        .about(&["(3)"])
-        .prepared(onto_contact);
-        let converse = statement!(
-            the_sign_of_3_gives_conditions_2,
-            [u_n, g, sigma_n],
-            ["contact", "no force"]
-        )
-        .about(&["(3)"])
-        .prepared(onto_contact);
         Claim {
             id: "16",
             title: "The variational inequality",
@@ -87,23 +72,21 @@ mod row {
             preconditions: "Green's formula, which row 4 checks on bodies.",
             limits: "That (3) has one solution (Stampacchia) is taken from analysis; so is Green's formula, by which (3) for all v in K is the inequality at each point.",
             single: None,
-            checks: vec![
-                proved(sign),
-                proved(converse),
-                tested(sign),
-                tested(converse),
-                exact!("inequality_3_holds_at_affine_solutions_on_random_bodies" => inequality_3_at_affine_solutions()).about(&["(3)"]),
-                refuted(statement!(
-                    control_sign_of_3_without_complementarity,
-                    [u_n, g, sigma_n, v_n],
-                    fails "s * (v - u) >= zero"
-                )),
-                refuted(statement!(
-                    control_sign_of_3_for_every_v,
-                    [u_n, g, sigma_n, v_n],
-                    fails "s * (v - u) >= zero"
-                )),
-            ],
+            checks: [
+                statements! {
+                    proved + tested conditions_2_give_the_sign_of_3[u_n, g, sigma_n, v_n]: "contact", "no force"
+                        about "(3)" prepared(onto_contact);
+                    proved + tested the_sign_of_3_gives_conditions_2[u_n, g, sigma_n]: "contact", "no force"
+                        about "(3)" prepared(onto_contact);
+                    refuted control_sign_of_3_without_complementarity[u_n, g, sigma_n, v_n]
+                        fails "s * (v - u) >= zero";
+                    refuted control_sign_of_3_for_every_v[u_n, g, sigma_n, v_n] fails "s * (v - u) >= zero";
+                },
+                vec![
+                    exact!("inequality_3_holds_at_affine_solutions_on_random_bodies" => inequality_3_at_affine_solutions()).about(&["(3)"]),
+                ],
+            ]
+            .concat(),
         }
     }
 }

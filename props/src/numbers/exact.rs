@@ -70,6 +70,13 @@ impl Exact {
         self.with(BigRational::clone)
     }
 
+    /// ((1 - t^2), 2 t)/(1 + t^2): a unit vector by the tangent of its half angle.
+    pub fn on_circle(self) -> [Exact; 2] {
+        let one = Exact::from(1);
+        let norm = one + self * self;
+        [(one - self * self) / norm, Exact::from(2) * self / norm]
+    }
+
     /// |self|
     pub fn abs(self) -> Exact {
         Exact::new(self.with(BigRational::abs))

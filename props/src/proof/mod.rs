@@ -292,23 +292,6 @@ mod tests {
         Verdict::Holds("all")
     }
 
-    fn a_number_is_its_product_with_an_inverse<S: Ordered>([a, b]: [S; 2]) -> Verdict {
-        ensure!(a / b * b == a);
-        Verdict::Holds("all")
-    }
-
-    fn a_quotient_returns<S: Ordered>([a, b]: [S; 2]) -> Verdict {
-        given!(b * b > S::from(0));
-        ensure!(a / b * b == a);
-        ensure!(S::from(1) / (S::from(3) * b) * b == S::from(1) / S::from(3));
-        Verdict::Holds("all")
-    }
-
-    fn nothing_satisfies_this<S: Ordered>([a]: [S; 1]) -> Verdict {
-        given!(a > S::from(1) && a < S::from(0));
-        Verdict::Holds("never")
-    }
-
     #[expect(clippy::double_comparisons, clippy::eq_op, reason = "the comparisons are under test")]
     fn a_comparison_has_one_answer<S: Ordered>([a, b]: [S; 2]) -> Verdict {
         let answers = [a < b, a == b, a > b].map(u8::from);
@@ -332,16 +315,8 @@ mod tests {
     }
 
     #[test]
-    fn a_division_by_something_that_may_be_zero_fails() {
-        let statement = statement!(a_number_is_its_product_with_an_inverse, [a, b], ["all"]);
-        let why = prove(&statement).unwrap_err();
-        assert!(why.contains("division by zero") && why.ends_with("b = 0"), "{why}");
-        assert!(prove(&statement!(a_quotient_returns, [a, b], ["all"])).is_ok());
-    }
-
-    #[test]
-    fn a_class_that_nothing_reaches_is_an_error() {
-        let why = prove(&statement!(nothing_satisfies_this, [a], ["never"])).unwrap_err();
+    fn a_class_that_is_not_listed_or_that_nothing_reaches_is_an_error() {
+        let why = prove(&statement!(a_square_is_not_negative, [a], ["all", "never"])).unwrap_err();
         assert!(why.contains("'never'"), "{why}");
         let why = prove(&statement!(a_square_is_not_negative, [a], ["other"])).unwrap_err();
         assert!(why.contains("not listed"), "{why}");
@@ -349,13 +324,8 @@ mod tests {
 
     #[test]
     fn a_statement_without_a_class_is_not_proved() {
-        for statement in [
-            statement!(nothing_satisfies_this, [a], []),
-            statement!(a_square_is_not_negative, [a], []),
-        ] {
-            let why = prove(&statement).unwrap_err();
-            assert!(why.contains("names no class"), "{why}");
-        }
+        let why = prove(&statement!(a_square_is_not_negative, [a], [])).unwrap_err();
+        assert!(why.contains("names no class"), "{why}");
     }
 
     fn two_conclusions<S: Ordered>([a]: [S; 1]) -> Verdict {
@@ -377,51 +347,6 @@ mod tests {
         assert!(refute(&second).unwrap().ends_with("a < S::from(2)"));
         let never = statement!(two_conclusions, [a], fails "a > S::from(1)");
         assert!(refute(&never).is_err());
-    }
-
-    fn a_division_by_zero_is_followed_by_another<S: Ordered>([a, b]: [S; 2]) -> Verdict {
-        ensure!(a / b / b * b * b == a);
-        Verdict::Holds("all")
-    }
-
-    #[test]
-    fn a_second_division_does_not_excuse_a_division_by_zero() {
-        let statement = statement!(a_division_by_zero_is_followed_by_another, [a, b], ["all"]);
-        let why = prove(&statement).unwrap_err();
-        assert!(why.contains("division by zero") && why.ends_with("b = 0"), "{why}");
-    }
-
-    fn a_high_power_is_below_a_multiple<S: Ordered>([x]: [S; 1]) -> Verdict {
-        given!(x > S::from(2));
-        let power = (0..257).fold(S::from(1), |product, _| product * x);
-        ensure!(power < S::from(2) * x);
-        Verdict::Holds("all")
-    }
-
-    #[test]
-    fn exponents_do_not_wrap_around() {
-        let statement = statement!(a_high_power_is_below_a_multiple, [x], ["all"]);
-        let why = prove(&statement).unwrap_err();
-        assert!(why.contains("power < S::from(2) * x"), "{why}");
-        // 1 (x - 2) + 1 (2x - x^257) - ... would cancel with x^257 = x: x - 2 > 0, x^257 - 2x >= 0 for (x - 2) - x + 2 = 0.
-        let paths = explore(1, statement.symbolic);
-        let path = paths.iter().find(|path| path.verdict.fails()).unwrap();
-        let numbers = 0..path.facts.len();
-        let mut terms: Vec<certificate::Term> = numbers
-            .map(|i| certificate::Term {
-                weight: polynomial::integer(1),
-                facts: vec![i],
-                squares: vec![],
-            })
-            .collect();
-        terms.push(certificate::Term {
-            weight: polynomial::integer(2),
-            facts: vec![],
-            squares: vec![],
-        });
-        let certificate = Certificate { terms, multiples: vec![] };
-        let refusal = certificate::check(&path.facts, &certificate);
-        assert_eq!(refusal, Err(certificate::Refusal::DoesNotCancel));
     }
 
     #[test]
